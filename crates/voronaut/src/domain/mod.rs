@@ -1,0 +1,5 @@
+//! Planar domains.
+
+mod pslg;
+
+pub use pslg::{Filling, Pslg, Segment, Side};

@@ -1,0 +1,77 @@
+//! A planar straight-line graph as a user brings it: not yet validated.
+
+use crate::geometry::Point;
+
+/// What lies on one side of a segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The input does not say; it follows from the rest.
+    Unknown,
+    /// Not part of the domain.
+    Outside,
+    /// The region with this label.
+    Region(i32),
+}
+
+/// A straight piece of boundary, interface or feature curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Vertex numbers of its ends.
+    pub ends: [u32; 2],
+    /// The user's label.
+    pub label: i32,
+    /// Whether the segment must be an edge of the mesh as it is, never split.
+    pub required: bool,
+    /// What lies left of the direction `ends[0]` to `ends[1]`.
+    pub left: Side,
+    /// What lies right of it.
+    pub right: Side,
+}
+
+/// How areas are told apart where the sides of the segments do not say.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Filling {
+    /// Every segment says what lies on both sides.
+    Sides,
+    /// Areas enclosed by segments alternate: in, out (a hole), in again (an island) ...
+    EvenOdd,
+    /// Every enclosed area belongs to the domain but for those that hold a hole point; region points label areas.
+    Enclosed {
+        /// One point inside each hole.
+        holes: Vec<Point>,
+        /// A point inside a region, and its label.
+        regions: Vec<(Point, i32)>,
+    },
+}
+
+/// A planar straight-line graph: the raw form of every planar domain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pslg {
+    /// Positions.
+    pub points: Vec<Point>,
+    /// One label per point.
+    pub point_labels: Vec<i32>,
+    /// Points that stay vertices even in the middle of a straight run (Medit's `Corners`, `RequiredVertices`).
+    pub required_points: Vec<u32>,
+    /// Boundary, interfaces and features.
+    pub segments: Vec<Segment>,
+    /// How areas are told apart.
+    pub filling: Filling,
+    /// How far (Euclidean) mesh edges may stray from the segments; zero keeps every corner. A disk sets it, and
+    /// `--hausd` overrides it.
+    pub tolerance: f64,
+    /// For each point a name for messages, such as `ring 3, position 17` or `vertex 12`; empty if points are
+    /// numbered as in the file (from 1).
+    pub names: Vec<String>,
+}
+
+impl Pslg {
+    /// How to name a point in a message: its name in the input and its coordinates.
+    pub fn describe(&self, point: u32) -> String {
+        let p = self.points[point as usize];
+        match self.names.get(point as usize) {
+            Some(name) => format!("{name} {p}"),
+            None => format!("vertex {} {p}", point + 1),
+        }
+    }
+}

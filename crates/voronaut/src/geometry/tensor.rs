@@ -1,0 +1,194 @@
+//! Symmetric 2 x 2 tensors: the metric M of a plane or of a tangent plane.
+//!
+//! The squared length of a vector e is e' M e; an eigenvalue 1/h^2 asks for edges of Euclidean length h along its
+//! eigenvector.
+
+use super::Vector;
+use std::ops::{Add, Mul};
+
+/// The symmetric matrix ((xx, xy), (xy, yy)); a metric when positive definite.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tensor {
+    /// First diagonal entry.
+    pub xx: f64,
+    /// Off-diagonal entry.
+    pub xy: f64,
+    /// Second diagonal entry.
+    pub yy: f64,
+}
+
+/// Eigenvalues of a symmetric tensor, with the unit eigenvector of the larger one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eigen {
+    /// The larger eigenvalue.
+    pub large: f64,
+    /// The smaller eigenvalue.
+    pub small: f64,
+    /// Unit eigenvector of `large`; that of `small` is [`Vector::perpendicular`] to it.
+    pub axis: Vector,
+}
+
+impl Tensor {
+    /// The identity: Euclidean length.
+    pub const IDENTITY: Tensor = Tensor::new(1.0, 0.0, 1.0);
+
+    /// The tensor with entries m11, m12, m22 (the order of Medit's `.sol` files).
+    pub const fn new(xx: f64, xy: f64, yy: f64) -> Self {
+        Self { xx, xy, yy }
+    }
+
+    /// The tensor that asks for Euclidean size `h` in every direction: identity / h^2.
+    pub fn isotropic(h: f64) -> Self {
+        Self::new(1.0 / (h * h), 0.0, 1.0 / (h * h))
+    }
+
+    /// The tensor with eigenvalue `along` for the unit vector `axis` and `across` for the one perpendicular to it.
+    pub fn from_axis(axis: Vector, along: f64, across: f64) -> Self {
+        let (x, y, d) = (axis.x, axis.y, along - across);
+        Self::new(across + d * x * x, d * x * y, across + d * y * y)
+    }
+
+    /// M v.
+    pub fn apply(self, v: Vector) -> Vector {
+        Vector::new(self.xx * v.x + self.xy * v.y, self.xy * v.x + self.yy * v.y)
+    }
+
+    /// u' M v.
+    pub fn dot(self, u: Vector, v: Vector) -> f64 {
+        u.dot(self.apply(v))
+    }
+
+    /// Metric length of a vector: sqrt(v' M v).
+    pub fn length(self, v: Vector) -> f64 {
+        self.dot(v, v).max(0.0).sqrt()
+    }
+
+    /// Determinant, without the cancellation of `xx yy - xy^2` where one eigenvalue is tiny.
+    pub fn determinant(self) -> f64 {
+        let product = self.xy * self.xy;
+        let rounding = self.xy.mul_add(self.xy, -product);
+        self.xx.mul_add(self.yy, -product) - rounding
+    }
+
+    /// The inverse; the caller knows that the tensor is not singular.
+    #[must_use]
+    pub fn inverse(self) -> Tensor {
+        let d = self.determinant();
+        Tensor::new(self.yy / d, -self.xy / d, self.xx / d)
+    }
+
+    /// Whether all entries are finite and both eigenvalues positive.
+    pub fn is_positive_definite(self) -> bool {
+        self.xx.is_finite()
+            && self.xy.is_finite()
+            && self.yy.is_finite()
+            && self.xx > 0.0
+            && self.yy > 0.0
+            && self.determinant() > 0.0
+    }
+
+    /// Eigenvalues and the axis of the larger one (the x axis where both are equal).
+    pub fn eigen(self) -> Eigen {
+        let half_difference = 0.5 * (self.xx - self.yy);
+        let radius = half_difference.hypot(self.xy);
+        let mean = 0.5 * (self.xx + self.yy);
+        let large = mean + radius;
+        let small = if mean > 0.0 { self.determinant() / large } else { mean - radius };
+        let angle = 0.5 * self.xy.atan2(half_difference);
+        Eigen { large, small, axis: Vector::new(angle.cos(), angle.sin()) }
+    }
+
+    /// The symmetric tensor with the same axes and each eigenvalue mapped by `f`.
+    #[must_use]
+    pub fn map_eigenvalues(self, f: impl Fn(f64) -> f64) -> Tensor {
+        let e = self.eigen();
+        Tensor::from_axis(e.axis, f(e.large), f(e.small))
+    }
+
+    /// Matrix logarithm of a positive definite tensor.
+    #[must_use]
+    pub fn log(self) -> Tensor {
+        self.map_eigenvalues(f64::ln)
+    }
+
+    /// Matrix exponential of a symmetric tensor; positive definite.
+    #[must_use]
+    pub fn exp(self) -> Tensor {
+        // Not through `map_eigenvalues`: a logarithm is no metric, and its smaller eigenvalue may be negative.
+        let mean = 0.5 * (self.xx + self.yy);
+        let half_difference = 0.5 * (self.xx - self.yy);
+        let radius = half_difference.hypot(self.xy);
+        let angle = 0.5 * self.xy.atan2(half_difference);
+        Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), (mean + radius).exp(), (mean - radius).exp())
+    }
+
+    /// Log-Euclidean mean: exp of the weighted sum of logarithms. Weights sum to one.
+    pub fn log_mean(weighted: impl IntoIterator<Item = (Tensor, f64)>) -> Tensor {
+        weighted.into_iter().fold(Tensor::default(), |sum, (tensor, weight)| sum + tensor.log() * weight).exp()
+    }
+
+    /// The rows (a, b), (0, c) of the upper triangular F with F' F = M: F v is v in an orthonormal frame.
+    pub fn cholesky(self) -> [f64; 3] {
+        let a = self.xx.sqrt();
+        let b = self.xy / a;
+        [a, b, (self.determinant() / self.xx).max(0.0).sqrt()]
+    }
+
+    /// Ratio of the longer to the shorter Euclidean size the tensor asks for: sqrt(large / small), at least 1.
+    pub fn anisotropy(self) -> f64 {
+        let e = self.eigen();
+        (e.large / e.small).sqrt()
+    }
+}
+
+impl Add for Tensor {
+    type Output = Tensor;
+    fn add(self, other: Tensor) -> Tensor {
+        Tensor::new(self.xx + other.xx, self.xy + other.xy, self.yy + other.yy)
+    }
+}
+
+impl Mul<f64> for Tensor {
+    type Output = Tensor;
+    fn mul(self, s: f64) -> Tensor {
+        Tensor::new(self.xx * s, self.xy * s, self.yy * s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(a: Tensor, b: Tensor) -> bool {
+        let scale = a.xx.abs() + a.yy.abs();
+        (a.xx - b.xx).abs() + (a.xy - b.xy).abs() + (a.yy - b.yy).abs() < 1e-12 * scale
+    }
+
+    #[test]
+    fn exp_undoes_log_at_any_anisotropy() {
+        for ratio in [1.0, 10.0, 1e3, 1e6] {
+            for step in 0..12 {
+                let angle = f64::from(step) * 0.27;
+                let m = Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), ratio, 1.0 / ratio);
+                assert!(close(m.log().exp(), m), "ratio {ratio}, angle {angle}");
+            }
+        }
+    }
+
+    #[test]
+    fn cholesky_factor_measures_lengths() {
+        let m = Tensor::new(5.0, -2.0, 3.0);
+        let [a, b, c] = m.cholesky();
+        let v = Vector::new(0.3, -1.7);
+        let image = Vector::new(a * v.x + b * v.y, c * v.y);
+        assert!((image.norm() - m.length(v)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn eigenvalues_survive_cancellation() {
+        let m = Tensor::from_axis(Vector::new(0.6, 0.8), 1e8, 1e-2);
+        let e = m.eigen();
+        assert!((e.large / 1e8 - 1.0).abs() < 1e-12);
+        assert!((e.small / 1e-2 - 1.0).abs() < 1e-4, "{}", e.small);
+    }
+}

@@ -1,0 +1,46 @@
+//! The mesh that leaves the program: plain arrays, as every format and every solver wants them.
+
+use crate::geometry::Point;
+
+/// A triangle mesh with the user's labels ("references" in Medit).
+///
+/// Positions have three coordinates; a planar mesh has z = 0 and its triangles are counter-clockwise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Positions, one per vertex.
+    pub points: Vec<[f64; 3]>,
+    /// One label per vertex; 0 for none.
+    pub point_labels: Vec<i32>,
+    /// Vertex numbers, from 0.
+    pub triangles: Vec<[u32; 3]>,
+    /// One region label per triangle.
+    pub triangle_labels: Vec<i32>,
+    /// Labelled edges: the boundary and the interfaces between regions, in the direction of the input.
+    pub edges: Vec<[u32; 2]>,
+    /// One label per entry of `edges`.
+    pub edge_labels: Vec<i32>,
+    /// Vertices where a feature curve ends, bends or forks.
+    pub corners: Vec<u32>,
+    /// Vertices that the user marked as required.
+    pub required_points: Vec<u32>,
+    /// Entries of `edges` that the user marked as required.
+    pub required_edges: Vec<u32>,
+}
+
+impl Mesh {
+    /// The planar position of a vertex.
+    pub fn point(&self, vertex: u32) -> Point {
+        let [x, y, _] = self.points[vertex as usize];
+        Point::new(x, y)
+    }
+
+    /// The three planar positions of a triangle.
+    pub fn corners_of(&self, triangle: [u32; 3]) -> [Point; 3] {
+        triangle.map(|v| self.point(v))
+    }
+
+    /// Whether every position lies in the plane z = 0.
+    pub fn is_planar(&self) -> bool {
+        self.points.iter().all(|p| p[2] == 0.0)
+    }
+}
