@@ -27,10 +27,10 @@ impl Point {
         Self { x, y }
     }
 
-    /// The point `(1 - t) self + t other`; exact at `t = 0` and `t = 1`.
+    /// The point `self + t (other - self)`; a coordinate that both points share is kept to the last bit.
     #[must_use]
     pub fn lerp(self, other: Point, t: f64) -> Point {
-        Point::new(self.x * (1.0 - t) + other.x * t, self.y * (1.0 - t) + other.y * t)
+        self + (other - self) * t
     }
 
     /// The midpoint of two points.

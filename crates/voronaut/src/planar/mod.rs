@@ -1,1 +1,58 @@
-//! planar
+//! A triangulation embedded in the plane: every living face is counter-clockwise, by exact predicates, at every moment.
+
+mod constrain;
+mod delaunay;
+mod locate;
+mod operations;
+
+pub use constrain::Crossing;
+pub use delaunay::{Duplicate, delaunay};
+pub use locate::Location;
+
+use crate::geometry::{Orientation, Point, orientation, signed_area};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+
+/// A triangulation and the position of each of its vertices.
+#[derive(Clone, Debug, Default)]
+pub struct Planar {
+    /// Topology, lengths, constraints.
+    pub topology: Triangulation,
+    /// Position of each vertex slot.
+    pub positions: Vec<Point>,
+}
+
+impl Planar {
+    /// The position of a vertex.
+    pub fn position(&self, v: VertexId) -> Point {
+        self.positions[v.index()]
+    }
+
+    /// The positions of a face's corners, counter-clockwise.
+    pub fn triangle(&self, f: FaceId) -> [Point; 3] {
+        self.topology.corners(f).map(|v| self.position(v))
+    }
+
+    /// The positions of a half-edge's ends.
+    pub fn ends(&self, h: HalfEdge) -> [Point; 2] {
+        [self.position(self.topology.origin(h)), self.position(self.topology.target(h))]
+    }
+
+    /// The Euclidean area of all faces.
+    pub fn area(&self) -> f64 {
+        self.topology.faces().map(|f| self.triangle(f)).map(|[a, b, c]| 0.5 * signed_area(a, b, c)).sum()
+    }
+
+    /// Whether the edge has two faces that form a strictly convex quadrilateral: a flip keeps the embedding.
+    pub fn is_convex(&self, h: HalfEdge) -> bool {
+        let Some(t) = self.topology.twin(h) else { return false };
+        let [a, b] = self.ends(h);
+        let c = self.position(self.topology.apex(h));
+        let d = self.position(self.topology.apex(t));
+        orientation(d, b, c) == Orientation::Left && orientation(c, a, d) == Orientation::Left
+    }
+
+    /// Whether every face is counter-clockwise.
+    pub fn is_embedded(&self) -> bool {
+        self.topology.faces().map(|f| self.triangle(f)).all(|[a, b, c]| orientation(a, b, c) == Orientation::Left)
+    }
+}

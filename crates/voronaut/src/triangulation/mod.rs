@@ -1,1 +1,198 @@
-//! triangulation
+//! The one triangulation structure for canvas and mesh: half-edges in triangles, a metric length per edge.
+//!
+//! Its topology never reads positions. Self-edges and multi-edges are allowed (flips by length can make them), so
+//! edges are half-edges, never pairs of vertices. See [`crate::planar`] for an embedding in the plane.
+
+mod check;
+mod ids;
+mod operations;
+mod star;
+
+pub use check::Broken;
+pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
+pub use star::Star;
+
+use ids::NONE;
+
+/// A triangulation: half-edge `3 f + i` is the i-th edge of face f, counter-clockwise.
+///
+/// Per half-edge it keeps the origin, the twin, the metric length (the same on both sides, NaN where not yet known)
+/// and the constraint (boundary or feature) that the edge is part of. Removed faces and vertices leave holes in the
+/// numbering that later insertions fill.
+#[derive(Clone, Debug, Default)]
+pub struct Triangulation {
+    origin: Vec<VertexId>,
+    twin: Vec<u32>,
+    length: Vec<f64>,
+    constraint: Vec<u32>,
+    region: Vec<i32>,
+    start: Vec<u32>,
+    free_faces: Vec<FaceId>,
+    free_vertices: Vec<VertexId>,
+}
+
+impl Triangulation {
+    /// Builds the structure from counter-clockwise triangles over `vertex_count` vertices.
+    ///
+    /// Two triangles that traverse an edge in opposite directions become neighbours. The caller guarantees that no
+    /// edge is traversed twice in the same direction and that the triangles around each vertex form one fan;
+    /// [`Triangulation::check`] tells.
+    pub fn from_triangles(vertex_count: usize, triangles: &[[u32; 3]], regions: &[i32]) -> Self {
+        let mut result = Self { start: vec![NONE; vertex_count], ..Self::default() };
+        for (triangle, &region) in triangles.iter().zip(regions) {
+            result.push_face(triangle.map(VertexId), region);
+        }
+        result.pair_twins();
+        for h in (0..result.origin.len() as u32).map(HalfEdge) {
+            result.set_start(h);
+        }
+        result
+    }
+
+    fn pair_twins(&mut self) {
+        let key = |h: HalfEdge| {
+            let (a, b) = (self.origin(h).0, self.target(h).0);
+            (a.min(b), a.max(b))
+        };
+        let mut order: Vec<HalfEdge> = (0..self.origin.len() as u32).map(HalfEdge).collect();
+        order.sort_by_key(|&h| (key(h), h));
+        let pairs: Vec<_> = order.windows(2).filter(|w| key(w[0]) == key(w[1])).map(|w| (w[0], w[1])).collect();
+        for (h, t) in pairs {
+            self.glue(h, t);
+        }
+    }
+
+    /// Number of vertex slots; some may be dead.
+    pub fn vertex_slots(&self) -> usize {
+        self.start.len()
+    }
+
+    /// Number of living vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.start.len() - self.free_vertices.len()
+    }
+
+    /// Number of living faces.
+    pub fn face_count(&self) -> usize {
+        self.region.len() - self.free_faces.len()
+    }
+
+    /// Number of face slots; some may be dead.
+    pub fn face_slots(&self) -> usize {
+        self.region.len()
+    }
+
+    /// All living vertices that belong to a face, in order of their ids.
+    pub fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+        (0..self.start.len() as u32).map(VertexId).filter(|&v| self.is_vertex(v))
+    }
+
+    /// All living faces.
+    pub fn faces(&self) -> impl Iterator<Item = FaceId> + '_ {
+        (0..self.region.len() as u32).map(FaceId).filter(|&f| self.is_face(f))
+    }
+
+    /// One half-edge of every edge: that with the smaller id, or the only one at the border.
+    pub fn edges(&self) -> impl Iterator<Item = HalfEdge> + '_ {
+        self.faces().flat_map(FaceId::half_edges).filter(|&h| self.twin(h).is_none_or(|t| h < t))
+    }
+
+    /// Whether the slot holds a vertex of some face.
+    pub fn is_vertex(&self, v: VertexId) -> bool {
+        self.start[v.index()] != NONE
+    }
+
+    /// Whether the slot holds a face.
+    pub fn is_face(&self, f: FaceId) -> bool {
+        self.origin[3 * f.index()] != VertexId(NONE)
+    }
+
+    /// The vertex that a half-edge leaves.
+    pub fn origin(&self, h: HalfEdge) -> VertexId {
+        self.origin[h.index()]
+    }
+
+    /// The vertex that a half-edge reaches.
+    pub fn target(&self, h: HalfEdge) -> VertexId {
+        self.origin[h.next().index()]
+    }
+
+    /// The vertex opposite to a half-edge in its face.
+    pub fn apex(&self, h: HalfEdge) -> VertexId {
+        self.origin[h.prev().index()]
+    }
+
+    /// The other side of the edge; `None` at the border.
+    pub fn twin(&self, h: HalfEdge) -> Option<HalfEdge> {
+        let t = self.twin[h.index()];
+        (t != NONE).then_some(HalfEdge(t))
+    }
+
+    /// The three vertices of a face, counter-clockwise.
+    pub fn corners(&self, f: FaceId) -> [VertexId; 3] {
+        f.half_edges().map(|h| self.origin(h))
+    }
+
+    /// Metric length of the edge; NaN where not known.
+    pub fn length(&self, h: HalfEdge) -> f64 {
+        self.length[h.index()]
+    }
+
+    /// Sets the metric length of the edge, on both sides.
+    pub fn set_length(&mut self, h: HalfEdge, length: f64) {
+        self.length[h.index()] = length;
+        if let Some(t) = self.twin(h) {
+            self.length[t.index()] = length;
+        }
+    }
+
+    /// The constraint that the edge is part of.
+    pub fn constraint(&self, h: HalfEdge) -> Option<Constraint> {
+        let c = self.constraint[h.index()];
+        (c != NONE).then_some(Constraint(c))
+    }
+
+    /// Marks the edge as part of a constraint, on both sides.
+    pub fn set_constraint(&mut self, h: HalfEdge, constraint: Constraint) {
+        self.constraint[h.index()] = constraint.0;
+        if let Some(t) = self.twin(h) {
+            self.constraint[t.index()] = constraint.0;
+        }
+    }
+
+    /// Whether a flip may not remove the edge: it is constrained, or at the border.
+    pub fn is_fixed(&self, h: HalfEdge) -> bool {
+        self.constraint[h.index()] != NONE || self.twin[h.index()] == NONE
+    }
+
+    /// Label of the region a face lies in.
+    pub fn region(&self, f: FaceId) -> i32 {
+        self.region[f.index()]
+    }
+
+    /// Sets the label of the region a face lies in.
+    pub fn set_region(&mut self, f: FaceId, region: i32) {
+        self.region[f.index()] = region;
+    }
+
+    /// Some half-edge that leaves the vertex; at the border the one whose right side is the border.
+    pub fn start(&self, v: VertexId) -> Option<HalfEdge> {
+        let h = self.start[v.index()];
+        (h != NONE).then_some(HalfEdge(h))
+    }
+
+    /// The half-edges that leave a vertex, counter-clockwise; at the border from one end of the fan to the other.
+    pub fn star(&self, v: VertexId) -> Star<'_> {
+        Star::new(self, v)
+    }
+
+    /// Whether the vertex lies on the border.
+    pub fn is_border_vertex(&self, v: VertexId) -> bool {
+        self.start(v).is_some_and(|h| self.twin(h).is_none())
+    }
+
+    /// The half-edge from a to b, if a face has it (the first of several).
+    pub fn find(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
+        self.star(a).find(|&h| self.target(h) == b)
+    }
+}
