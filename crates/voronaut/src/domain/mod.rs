@@ -1,8 +1,68 @@
-//! Planar domains.
+//! Planar domains: polygons with holes, components, regions and features, validated once and for all.
 
+mod build;
+mod chains;
 mod from_mesh;
 mod pslg;
 mod read;
 mod shapes;
+mod sides;
 
+pub use chains::Chain;
 pub use pslg::{Filling, Pslg, Segment, Side};
+
+use crate::geometry::{Aabb, Point};
+use crate::planar::Planar;
+
+/// A valid planar domain: its boundary crosses nothing, encloses an area, and every triangle of that area knows its
+/// region.
+///
+/// It holds the constrained Delaunay triangulation of its corners, which is where meshing starts. Constraint i of the
+/// triangulation is segment i of the graph. Vertices where two parts of the domain touch in a point are split, one
+/// per part.
+#[derive(Clone, Debug)]
+pub struct Domain {
+    pslg: Pslg,
+    planar: Planar,
+    sources: Vec<Option<u32>>,
+}
+
+impl Domain {
+    /// The graph: corners and segments, without the vertices in the middle of straight runs.
+    pub fn pslg(&self) -> &Pslg {
+        &self.pslg
+    }
+
+    /// The triangulated corners.
+    pub fn planar(&self) -> &Planar {
+        &self.planar
+    }
+
+    /// For each vertex slot of [`Domain::planar`] the point of the graph that it stands for.
+    pub fn sources(&self) -> &[Option<u32>] {
+        &self.sources
+    }
+
+    /// The segments between the domain and its outside, without interfaces and inner features.
+    pub fn boundary(&self) -> Vec<(Point, Point)> {
+        let t = &self.planar.topology;
+        let border = t.edges().filter(|&h| t.twin(h).is_none());
+        border.map(|h| self.planar.ends(h)).map(|[a, b]| (a, b)).collect()
+    }
+
+    /// Triangles that cover the domain exactly.
+    pub fn triangles(&self) -> Vec<[Point; 3]> {
+        self.planar.topology.faces().map(|f| self.planar.triangle(f)).collect()
+    }
+
+    /// Euclidean area.
+    pub fn area(&self) -> f64 {
+        self.planar.area()
+    }
+
+    /// The smallest axis-aligned box around the domain.
+    pub fn bounds(&self) -> Aabb {
+        let used = self.planar.topology.vertices().map(|v| self.planar.position(v));
+        Aabb::of(used).expect("a domain has at least one triangle")
+    }
+}

@@ -66,12 +66,19 @@ pub struct Pslg {
 }
 
 impl Pslg {
+    /// The name of a point in the input.
+    pub fn name(&self, point: u32) -> String {
+        self.names.get(point as usize).map_or_else(|| format!("vertex {}", point + 1), Clone::clone)
+    }
+
     /// How to name a point in a message: its name in the input and its coordinates.
     pub fn describe(&self, point: u32) -> String {
-        let p = self.points[point as usize];
-        match self.names.get(point as usize) {
-            Some(name) => format!("{name} {p}"),
-            None => format!("vertex {} {p}", point + 1),
-        }
+        format!("{} {}", self.name(point), self.points[point as usize])
+    }
+
+    /// How to name a segment in a message: by its two ends.
+    pub fn describe_segment(&self, segment: u32) -> String {
+        let [a, b] = self.segments[segment as usize].ends;
+        format!("{} - {}", self.describe(a), self.describe(b))
     }
 }

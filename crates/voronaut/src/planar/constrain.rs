@@ -8,12 +8,12 @@ use std::collections::VecDeque;
 /// Edges by their ends: half-edge ids move when a neighbour is flipped.
 type Edges = VecDeque<[VertexId; 2]>;
 
-/// The segment crosses one that is already there.
+/// The segment crosses, or runs along, one that is already there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crossing {
-    /// The constraint that is crossed.
+    /// The constraint that is met.
     pub with: Constraint,
-    /// The edge of it that is crossed.
+    /// The edge of it that is met.
     pub edge: [VertexId; 2],
 }
 
@@ -29,16 +29,20 @@ impl Planar {
     /// Makes the segment a-b a chain of constrained edges: one edge, or several where vertices lie exactly on it.
     ///
     /// # Errors
-    /// The segment crosses a constrained edge. The triangulation stays valid.
+    /// The segment crosses a constrained edge, or runs along one. The triangulation stays valid.
     pub fn constrain(&mut self, a: VertexId, b: VertexId, constraint: Constraint) -> Result<(), Crossing> {
         let mut at = a;
         while at != b {
-            let edge = match self.ahead(at, b) {
-                Ahead::Vertex(edge) => edge,
-                Ahead::Edge(first) => self.recover(at, b, first)?,
+            let (edge, recovered) = match self.ahead(at, b) {
+                Ahead::Vertex(edge) => (edge, false),
+                Ahead::Edge(first) => (self.recover(at, b, first)?, true),
             };
-            at = self.topology.target(edge);
+            let next = self.topology.target(edge);
+            if let Some(with) = self.topology.constraint(edge).filter(|_| !recovered) {
+                return Err(Crossing { with, edge: [at, next] });
+            }
             self.topology.set_constraint(edge, constraint);
+            at = next;
         }
         Ok(())
     }

@@ -1,0 +1,98 @@
+//! From a graph as the user brings it to a valid domain.
+
+use super::sides::Areas;
+use super::{Domain, Pslg, Side};
+use crate::error::{Error, Result};
+use crate::geometry::segment_intersection;
+use crate::planar::{Crossing, Duplicate, Planar, delaunay};
+use crate::triangulation::{Constraint, VertexId};
+
+impl Domain {
+    /// Validates a graph: finite coordinates, no duplicate points, no crossings, a closed boundary around some area.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] with the first fault and its place.
+    pub fn new(pslg: &Pslg) -> Result<Self> {
+        check_entries(pslg)?;
+        let pslg = pslg.without_straight_vertices();
+        let mut planar = triangulate(&pslg)?;
+        let areas = Areas::classify(&pslg, &planar)?;
+        for f in planar.topology.faces().collect::<Vec<_>>() {
+            if let Side::Region(label) = areas.of(f) {
+                planar.topology.set_region(f, label);
+            }
+        }
+        let mut sources: Vec<Option<u32>> = (0..pslg.points.len() as u32).map(Some).collect();
+        sources.extend([None; 3]);
+        planar.topology.retain_faces(|f| matches!(areas.of(f), Side::Region(_)));
+        for v in 0..sources.len() {
+            if !planar.topology.is_vertex(VertexId(v as u32)) {
+                sources[v] = None;
+            }
+        }
+        split_pinches(&mut planar, &mut sources);
+        debug_assert!(planar.topology.check().is_ok() && planar.is_embedded());
+        Ok(Self { pslg, planar, sources })
+    }
+}
+
+fn check_entries(pslg: &Pslg) -> Result<()> {
+    if let Some(bad) = pslg.points.iter().position(|p| !p.is_finite()) {
+        let help = "every coordinate must be a finite number";
+        return Err(Error::domain("a coordinate is not finite", pslg.describe(bad as u32), help));
+    }
+    // Exact predicates multiply up to four coordinates: beyond these sizes the products leave the range of f64.
+    let extreme = |x: f64| x != 0.0 && !(1e-60..=1e60).contains(&x.abs());
+    if let Some(bad) = pslg.points.iter().position(|p| p.x.abs() > 1e60 || p.y.abs() > 1e60) {
+        let help = "choose another unit of length";
+        return Err(Error::domain("a coordinate is larger than 1e60", pslg.describe(bad as u32), help));
+    }
+    let spread = crate::geometry::Aabb::of(pslg.points.iter().copied()).map(|b| b.extent());
+    if pslg.segments.len() < 3 || spread.is_none_or(|e| e.x <= 0.0 || e.y <= 0.0 || extreme(e.x.max(e.y))) {
+        let help = "give at least three points that are not on one line, joined by a closed boundary";
+        return Err(Error::domain("the boundary encloses no area", "the whole input", help));
+    }
+    let degenerate = |s: &super::Segment| s.ends[0] == s.ends[1];
+    if let Some(bad) = pslg.segments.iter().position(degenerate) {
+        let help = "remove it";
+        return Err(Error::domain("a segment has length zero", pslg.describe_segment(bad as u32), help));
+    }
+    Ok(())
+}
+
+fn triangulate(pslg: &Pslg) -> Result<Planar> {
+    let mut planar = delaunay(&pslg.points).map_err(|Duplicate(i, j)| {
+        let place = format!("{} and {}", pslg.describe(i), pslg.name(j));
+        Error::domain("two points have the same position", place, "merge them into one vertex")
+    })?;
+    for (i, segment) in pslg.segments.iter().enumerate() {
+        let [a, b] = segment.ends.map(VertexId);
+        planar
+            .constrain(a, b, Constraint(i as u32))
+            .map_err(|crossing| crossing_error(pslg, &planar, i as u32, crossing))?;
+    }
+    Ok(planar)
+}
+
+fn crossing_error(pslg: &Pslg, planar: &Planar, segment: u32, crossing: Crossing) -> Error {
+    let [a, b] = pslg.segments[segment as usize].ends.map(VertexId).map(|v| planar.position(v));
+    let [c, d] = crossing.edge.map(|v| planar.position(v));
+    let place = format!(
+        "{}: segment {} meets segment {}",
+        segment_intersection(a, b, c, d),
+        pslg.describe_segment(segment),
+        pslg.describe_segment(crossing.with.0),
+    );
+    let help = "boundaries may touch only at common vertices: split the two segments there, or move one of them";
+    Error::domain("the boundary crosses or overlaps itself", place, help)
+}
+
+fn split_pinches(planar: &mut Planar, sources: &mut Vec<Option<u32>>) {
+    for (copy, original) in planar.topology.split_pinched_vertices() {
+        let slots = planar.topology.vertex_slots();
+        planar.positions.resize(slots, planar.position(original));
+        planar.positions[copy.index()] = planar.position(original);
+        sources.resize(slots, None);
+        sources[copy.index()] = sources[original.index()];
+    }
+}

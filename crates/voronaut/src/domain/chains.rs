@@ -1,0 +1,214 @@
+//! Curves of the domain: maximal runs of segments between the vertices where something happens.
+
+use super::{Pslg, Segment, Side};
+use crate::geometry::{Point, signed_area};
+
+/// A run of segments with one label and one pair of sides; its inner vertices belong to no other segment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// Vertices in order; a closed curve ends with the vertex it starts with.
+    pub vertices: Vec<u32>,
+    /// The segments' label, sides and so on; `ends` is that of the first segment.
+    pub kind: Segment,
+}
+
+impl Pslg {
+    /// Cuts the segments into curves. A curve ends where segments fork or end, where label or sides change, at
+    /// required points, and at both ends of required segments.
+    pub fn chains(&self) -> Vec<Chain> {
+        let incident = self.incident_segments();
+        let is_node = self.nodes(&incident);
+        let mut used = vec![false; self.segments.len()];
+        let mut chains = Vec::new();
+        let from_nodes = (0..self.points.len()).filter(|&v| is_node[v]);
+        for v in from_nodes.chain(0..self.points.len()) {
+            for &s in &incident[v] {
+                if !used[s as usize] {
+                    chains.push(self.trace(v as u32, s, &incident, &is_node, &mut used));
+                }
+            }
+        }
+        chains
+    }
+
+    /// The same graph with other vertices along its curves. Points that no curve uses any more are dropped, but for
+    /// required ones.
+    #[must_use]
+    pub fn with_chains(&self, chains: &[Chain]) -> Pslg {
+        let mut kept = vec![false; self.points.len()];
+        self.required_points.iter().for_each(|&v| kept[v as usize] = true);
+        chains.iter().flat_map(|c| &c.vertices).for_each(|&v| kept[v as usize] = true);
+        let mut number = vec![0; self.points.len()];
+        let old: Vec<usize> = (0..self.points.len()).filter(|&v| kept[v]).collect();
+        old.iter().enumerate().for_each(|(new, &v)| number[v] = new as u32);
+        let segments = chains.iter().flat_map(|c| {
+            let number = &number;
+            c.vertices.windows(2).map(move |w| Segment { ends: [w[0], w[1]].map(|v| number[v as usize]), ..c.kind })
+        });
+        Pslg {
+            points: old.iter().map(|&v| self.points[v]).collect(),
+            point_labels: old.iter().map(|&v| self.point_labels[v]).collect(),
+            required_points: self.required_points.iter().map(|&v| number[v as usize]).collect(),
+            segments: segments.collect(),
+            filling: self.filling.clone(),
+            tolerance: self.tolerance,
+            names: old.iter().map(|&v| self.name(v as u32)).collect(),
+        }
+    }
+
+    /// Drops the vertices in the middle of straight runs: those that lie on the chord to within the rounding of the
+    /// coordinates.
+    #[must_use]
+    pub fn without_straight_vertices(&self) -> Pslg {
+        let mut chains = self.chains();
+        chains.iter_mut().for_each(|chain| self.straighten(chain));
+        self.with_chains(&chains)
+    }
+
+    fn straighten(&self, chain: &mut Chain) {
+        let n = chain.vertices.len();
+        if chain.vertices[0] == chain.vertices[n - 1] {
+            let corner = (0..n - 1).find(|&i| {
+                let [a, b, c] = [i + n - 2, i, i + 1].map(|j| self.point(chain.vertices[j % (n - 1)]));
+                !on_chord(a, b, c)
+            });
+            chain.vertices.pop();
+            chain.vertices.rotate_left(corner.unwrap_or(0));
+            chain.vertices.push(chain.vertices[0]);
+        }
+        let mut kept = vec![chain.vertices[0]];
+        let mut run: Vec<u32> = Vec::new();
+        for &v in &chain.vertices[1..] {
+            let anchor = self.point(kept[kept.len() - 1]);
+            let straight = run.iter().all(|&m| on_chord(anchor, self.point(m), self.point(v)));
+            if !straight {
+                kept.extend(run.last());
+                run.clear();
+            }
+            run.push(v);
+        }
+        kept.extend(run.last());
+        chain.vertices = kept;
+    }
+
+    fn incident_segments(&self) -> Vec<Vec<u32>> {
+        let mut incident = vec![Vec::new(); self.points.len()];
+        for (s, segment) in self.segments.iter().enumerate() {
+            segment.ends.iter().for_each(|&v| incident[v as usize].push(s as u32));
+        }
+        incident
+    }
+
+    fn nodes(&self, incident: &[Vec<u32>]) -> Vec<bool> {
+        let mut is_node: Vec<bool> = (0..self.points.len())
+            .map(|v| match incident[v][..] {
+                [s, t] => {
+                    let (s, t) = (self.segments[s as usize], self.segments[t as usize]);
+                    let [l, r] = sides_arriving(&s, v as u32);
+                    let [other_r, other_l] = sides_arriving(&t, v as u32);
+                    s.label != t.label || [l, r] != [other_l, other_r] || s.required || t.required
+                }
+                _ => true,
+            })
+            .collect();
+        self.required_points.iter().for_each(|&v| is_node[v as usize] = true);
+        is_node
+    }
+
+    fn trace(&self, from: u32, segment: u32, incident: &[Vec<u32>], is_node: &[bool], used: &mut [bool]) -> Chain {
+        let mut kind = self.segments[segment as usize];
+        if kind.ends[0] != from {
+            kind = Segment { ends: [kind.ends[1], kind.ends[0]], left: kind.right, right: kind.left, ..kind };
+        }
+        let mut vertices = vec![from];
+        let (mut at, mut s) = (from, segment);
+        loop {
+            used[s as usize] = true;
+            let [a, b] = self.segments[s as usize].ends;
+            at = if a == at { b } else { a };
+            vertices.push(at);
+            let next = incident[at as usize].iter().find(|&&t| !used[t as usize]);
+            match next {
+                Some(&t) if !is_node[at as usize] => s = t,
+                _ => return Chain { vertices, kind },
+            }
+        }
+    }
+
+    fn point(&self, v: u32) -> Point {
+        self.points[v as usize]
+    }
+}
+
+/// What lies left and right of a segment when walking towards `v`, one of its ends.
+fn sides_arriving(segment: &Segment, v: u32) -> [Side; 2] {
+    if segment.ends[1] == v { [segment.left, segment.right] } else { [segment.right, segment.left] }
+}
+
+/// Whether b lies between a and c, as far from their line as rounding of the coordinates can put it.
+fn on_chord(a: Point, b: Point, c: Point) -> bool {
+    let size = [a, b, c].iter().fold(0.0_f64, |m, p| m.max(p.x.abs()).max(p.y.abs()));
+    let rounding = 2.0 * f64::EPSILON * size;
+    signed_area(a, b, c).abs() <= rounding * (c - a).norm() && (b - a).dot(c - b) > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::Filling;
+
+    fn polygon(points: &[(f64, f64)], labels: &[i32]) -> Pslg {
+        let n = points.len() as u32;
+        let segment = |i: u32| Segment {
+            ends: [i, (i + 1) % n],
+            label: labels[i as usize],
+            required: false,
+            left: Side::Region(1),
+            right: Side::Outside,
+        };
+        Pslg {
+            points: points.iter().map(|&(x, y)| Point::new(x, y)).collect(),
+            point_labels: vec![0; points.len()],
+            required_points: Vec::new(),
+            segments: (0..n).map(segment).collect(),
+            filling: Filling::Sides,
+            tolerance: 0.0,
+            names: Vec::new(),
+        }
+    }
+
+    const SQUARE: [(f64, f64); 8] =
+        [(0.5, 0.0), (0.7, 0.0), (1.0, 0.0), (1.0, 0.3), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0), (0.1, 0.0)];
+
+    #[test]
+    fn straight_vertices_go_and_corners_stay() {
+        let clean = polygon(&SQUARE, &[1; 8]).without_straight_vertices();
+        assert_eq!((clean.points.len(), clean.segments.len()), (4, 4));
+        assert_eq!(clean.names.len(), 4);
+        assert!(clean.names.contains(&"vertex 3".to_string()), "{:?}", clean.names);
+    }
+
+    #[test]
+    fn a_change_of_label_is_a_corner() {
+        let mut labels = [1; 8];
+        labels[0] = 2;
+        let clean = polygon(&SQUARE, &labels).without_straight_vertices();
+        assert_eq!(clean.points.len(), 6);
+    }
+
+    #[test]
+    fn required_points_stay() {
+        let mut pslg = polygon(&SQUARE, &[1; 8]);
+        pslg.required_points.push(7);
+        let clean = pslg.without_straight_vertices();
+        assert_eq!(clean.points.len(), 5);
+        assert_eq!(clean.points[clean.required_points[0] as usize], Point::new(0.1, 0.0));
+    }
+
+    #[test]
+    fn a_fine_circle_is_no_straight_run() {
+        let circle: Vec<(f64, f64)> =
+            (0..4096).map(|i| f64::from(i) * std::f64::consts::TAU / 4096.0).map(|t| (t.cos(), t.sin())).collect();
+        assert_eq!(polygon(&circle, &[1; 4096]).without_straight_vertices().points.len(), 4096);
+    }
+}
