@@ -2,6 +2,7 @@
 
 // The modules follow the flow of data; each uses only those above it (held by tests/architecture.rs).
 pub mod domain;
+pub mod dual;
 pub mod error;
 pub mod formats;
 pub mod geodesic;

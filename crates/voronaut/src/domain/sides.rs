@@ -99,8 +99,8 @@ impl Areas {
             .find(|&h| outside(h.face()) && planar.topology.twin(h).is_none_or(|t| outside(t.face())));
         let Some(h) = useless else { return Ok(()) };
         let segment = planar.topology.constraint(h).expect("constrained").0;
-        let place = loose_end(pslg)
-            .map_or_else(|| format!("segment {}", pslg.describe_segment(segment)), |v| pslg.describe(v));
+        let place =
+            loose_end(pslg).map_or_else(|| format!("segment {}", pslg.describe_segment(segment)), |v| pslg.describe(v));
         Err(Error::domain("the boundary is open, or a segment lies outside of the domain,", place, OPEN_HELP))
     }
 }

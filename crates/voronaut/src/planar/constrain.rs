@@ -94,12 +94,7 @@ impl Planar {
     }
 
     /// The edges that the segment crosses, in order, up to the first vertex on it.
-    fn crossed_edges(
-        &self,
-        a: VertexId,
-        b: VertexId,
-        first: HalfEdge,
-    ) -> Result<(Edges, VertexId), Crossing> {
+    fn crossed_edges(&self, a: VertexId, b: VertexId, first: HalfEdge) -> Result<(Edges, VertexId), Crossing> {
         let (p, q) = (self.position(a), self.position(b));
         let mut crossed = VecDeque::new();
         let mut h = first;

@@ -1,0 +1,80 @@
+//! In-circle tests from metric lengths.
+//!
+//! Of the two diagonals of a quadrilateral a d b c the Delaunay one, a-b, has opposite angles at c and d that sum to
+//! at most pi (flat model space; DESIGN.md, fact 2, and Boissonnat et al. for the definition). The *margin* is the sine
+//! of that sum: positive where the edge is Delaunay, zero for four points on a circle, negative where it must flip.
+
+use crate::geometry::{Tensor, Vector};
+
+/// The margin of the edge a-b with one tensor for the whole quadrilateral. Vectors run from c to a, c to b, d to b
+/// and d to a; the triangles a b c and b a d are counter-clockwise.
+pub fn frozen_margin(tensor: Tensor, [ca, cb]: [Vector; 2], [db, da]: [Vector; 2]) -> f64 {
+    let root = tensor.determinant().max(0.0).sqrt();
+    let at_c = Angles::normalised(tensor.dot(ca, cb), root * ca.cross(cb));
+    let at_d = Angles::normalised(tensor.dot(db, da), root * db.cross(da));
+    at_c.0 * at_d.1 + at_c.1 * at_d.0
+}
+
+/// The angles at the two ends of a diagonal, from five metric lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Angles {
+    margin: f64,
+    sensitivity: f64,
+}
+
+impl Angles {
+    /// From the lengths of the edge and of the other two edges of each of its triangles.
+    pub fn from_lengths(edge: f64, [ac, bc]: [f64; 2], [ad, bd]: [f64; 2]) -> Self {
+        let (c, area_c) = opposite(edge, ac, bc);
+        let (d, area_d) = opposite(edge, ad, bd);
+        let sensitivity = |a: f64, b: f64, area: f64| edge * (edge + a + b) / (2.0 * area.max(f64::MIN_POSITIVE));
+        Self { margin: c.0 * d.1 + c.1 * d.0, sensitivity: sensitivity(ac, bc, area_c) + sensitivity(ad, bd, area_d) }
+    }
+
+    /// The margin: the sine of the sum of the two angles.
+    pub fn margin(&self) -> f64 {
+        self.margin
+    }
+
+    /// A first-order bound on the margin's error, of lengths with this relative error.
+    pub fn error(&self, relative: f64) -> f64 {
+        self.sensitivity * relative
+    }
+
+    /// (cosine, sine) of the angle with this dot and cross product.
+    fn normalised(dot: f64, cross: f64) -> (f64, f64) {
+        let size = dot.hypot(cross).max(f64::MIN_POSITIVE);
+        (dot / size, cross / size)
+    }
+}
+
+/// (cosine, sine) of the angle opposite to `edge` in a triangle with the other sides a and b, and the triangle's
+/// area. Where the lengths break the triangle inequality the triangle is flat.
+fn opposite(edge: f64, a: f64, b: f64) -> ((f64, f64), f64) {
+    let squared = (a + b + edge) * (a + b - edge).max(0.0) * (edge + a - b).max(0.0) * (edge - a + b).max(0.0);
+    let area = 0.25 * squared.sqrt();
+    (Angles::normalised(0.5 * (a * a + b * b - edge * edge), 2.0 * area), area)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_has_margin_zero_and_lozenges_have_signs() {
+        let diagonal = 2.0_f64.sqrt();
+        assert!(Angles::from_lengths(diagonal, [1.0, 1.0], [1.0, 1.0]).margin().abs() < 1e-15);
+        assert!(Angles::from_lengths(1.0, [1.0, 1.0], [1.0, 1.0]).margin() > 0.86);
+        assert!(Angles::from_lengths(3.0_f64.sqrt(), [1.0, 1.0], [1.0, 1.0]).margin() < -0.86);
+    }
+
+    #[test]
+    fn frozen_margin_agrees_with_lengths() {
+        let m = Tensor::new(4.0, 1.0, 2.0);
+        let [a, b, c, d] = [(0.0, 0.0), (1.0, 0.1), (0.4, 0.9), (0.6, -0.7)].map(|(x, y)| Vector::new(x, y));
+        let length = |u: Vector, v: Vector| m.length(u - v);
+        let by_lengths = Angles::from_lengths(length(a, b), [length(a, c), length(b, c)], [length(a, d), length(b, d)]);
+        let frozen = frozen_margin(m, [a - c, b - c], [b - d, a - d]);
+        assert!((by_lengths.margin() - frozen).abs() < 1e-14);
+    }
+}
