@@ -80,3 +80,22 @@ pub(super) fn merge_segments(
     }
     Ok(merged)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn repeated_segments_are_merged() {
+        let segments = [listed([4, 2], 1, false), listed([2, 3], 1, false), listed([2, 4], 1, true)];
+        let merged = merge_segments(segments.into_iter(), "edge", 1, |v| format!("vertex {v}")).unwrap();
+        assert_eq!(merged, [listed([4, 2], 1, true), listed([2, 3], 1, false)]);
+    }
+
+    #[test]
+    fn the_first_repeated_point_is_named() {
+        let points = [(0.0, 1.0), (0.0, 2.0), (-0.0, 1.0), (0.0, 2.0)].map(|(x, y)| Point::new(x, y));
+        let error = check_points((5..).zip(points), |v| format!("vertex {v}")).unwrap_err();
+        assert!(error.to_string().contains("vertex 5 and vertex 7 have the same coordinates at (-0, 1)"), "{error}");
+    }
+}

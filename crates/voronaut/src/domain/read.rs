@@ -103,6 +103,7 @@ fn later(what: String) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
     use std::io::Write;
 
     fn with_file<T>(ending: &str, content: &[u8], test: impl Fn(&str) -> T) -> T {
@@ -166,6 +167,78 @@ mod tests {
                 assert!(message.contains(expected) && message.contains(path), "{message}");
                 assert!(!error.help().is_empty());
             });
+        }
+    }
+
+    /// Words that a `.mesh` or a `.poly` file may hold, in any order.
+    fn soup() -> impl Strategy<Value = String> {
+        let words = [
+            "0",
+            "1",
+            "2",
+            "3",
+            "4",
+            "0.5",
+            "-1",
+            "1e308",
+            "1e18",
+            "9999999999999999999",
+            "nan",
+            "\n",
+            "#",
+            "Vertices 3\n",
+            "Vertices 3 0 0 1 1 0 1 0 1 1",
+            "Edges 2",
+            "Edges 1 1 2 3",
+            "Triangles 1 1 2 3",
+            "Triangles 2",
+            "Corners 1 1",
+            "RequiredVertices",
+            "RequiredEdges 1 1",
+            "SolAtVertices 2",
+            "1 3",
+            "Dimension",
+            "End",
+            "Tetrahedra",
+            "\u{e9}",
+        ];
+        let opening = prop::sample::select(vec![
+            "MeshVersionFormatted 2 Dimension 2 ",
+            "MeshVersionFormatted 2 Dimension 3 Vertices 4 0 0 0 1 1 0 0 1 0 1 0 1 1 1 0 1 ",
+            "3 2\n1 0 0\n2 1 0\n3 0 1\n",
+            "2 2 1\n0 0 0 5\n1 1 0 5\n1\n",
+            "",
+        ]);
+        let rest = prop::collection::vec(prop::sample::select(words.to_vec()), 0..24);
+        (opening, rest).prop_map(|(opening, rest)| opening.to_owned() + &rest.join(" "))
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_makes_a_reader_panic(text in soup()) {
+            let _ = crate::formats::sol::read(&text, "a.sol");
+            if let Ok(mesh) = medit::read(&text, "a.mesh") {
+                prop_assert_eq!(&medit::read(&medit::write(&mesh), "b.mesh").unwrap(), &mesh);
+                let _ = from_mesh::from_mesh(&mesh);
+            }
+            if let Ok(poly) = poly::read(&text, "a.poly") {
+                let _ = from_poly::from_poly(&poly);
+            }
+        }
+
+        #[test]
+        fn no_rings_make_the_reader_panic(
+            rings in prop::collection::vec(prop::collection::vec((0..3, 0..3), 3..7), 1..4)
+        ) {
+            let ring = |ring: &Vec<(i32, i32)>| {
+                let closed = ring.iter().chain(ring.first()).map(|(x, y)| format!("[{x},{y}]"));
+                format!("[{}]", closed.collect::<Vec<_>>().join(","))
+            };
+            let rings: Vec<_> = rings.iter().map(ring).collect();
+            let text = format!(r#"{{"type":"Polygon","coordinates":[{}]}}"#, rings.join(","));
+            if let Ok(polygons) = geojson::read(&text, "a.json") {
+                let _ = from_geojson::from_geojson(&polygons);
+            }
         }
     }
 }

@@ -19,7 +19,7 @@ pub fn rect(min: Point, max: Point) -> Result<Pslg> {
         return Err(shape_error("a rectangle needs x0 < x1 and y0 < y1; this one has its corners", min, max));
     }
     let points = vec![min, Point::new(max.x, min.y), max, Point::new(min.x, max.y)];
-    Ok(region_inside(points, |side| side as i32 + 1, 0.0))
+    Ok(region_inside(points, |side| SIDES[side], 0.0))
 }
 
 /// The disk as a polygon of 4096 vertices on its circle: region 1, boundary label 1.
@@ -47,14 +47,17 @@ pub fn disk(centre: Point, radius: f64) -> Result<Pslg> {
     Err(Error::domain(what, format!("centre {centre}, radius {radius}"), help))
 }
 
+/// Labels of a rectangle's sides, from the bottom on.
+const SIDES: [i32; 4] = [1, 2, 3, 4];
+
 /// Vertices of a disk's polygon; a multiple of four. Its chords are within 3e-7 of the radius.
 const CIRCLE: usize = 4096;
 
 /// How far mesh edges may stray from a disk's circle, by default, as a fraction of its radius.
 const TOLERANCE: f64 = 1e-3;
 
-/// How coarse floating-point numbers may be near a disk, as a fraction of its radius: far less than its chords (1.5e-3),
-/// which then neither vanish nor cross.
+/// How coarse floating-point numbers may be near a disk, as a fraction of its radius: far less than its chords
+/// (1.5e-3), which then neither vanish nor cross.
 const ROUNDING: f64 = 1e-4;
 
 /// Vertex `step` of a disk's polygon; exact where the circle meets the axes.
@@ -104,7 +107,7 @@ mod tests {
     fn a_rectangle_has_its_sides_labelled() {
         let pslg = rect(Point::new(-1.0, 0.0), Point::new(2.0, 1.0)).unwrap();
         let bottom = pslg.segments[0];
-        assert_eq!(bottom.ends.map(|v| pslg.points[v as usize].y), [0.0, 0.0]);
+        assert!(bottom.ends.iter().all(|&v| pslg.points[v as usize].y == 0.0));
         assert_eq!((bottom.left, bottom.right), (Side::Region(1), Side::Outside));
         assert_eq!(pslg.segments.iter().map(|s| s.label).collect::<Vec<_>>(), [1, 2, 3, 4]);
         assert!(pslg.tolerance == 0.0);
@@ -135,7 +138,7 @@ mod tests {
             (disk(p(0.0, 1e13), 1.0), "distinct, finite coordinates"),
             (disk(p(1e308, 0.0), 1.7e308), "distinct, finite coordinates"),
         ] {
-            let error = shape.err().expect(expected);
+            let error = shape.expect_err(expected);
             assert!(error.to_string().contains(expected), "{error}");
             assert!(!error.help().is_empty());
         }

@@ -1,4 +1,4 @@
-//! GeoJSON (RFC 7946): polygons, their coordinates taken as planar.
+//! `GeoJSON` (RFC 7946): polygons, their coordinates taken as planar.
 
 use crate::error::{Error, Result};
 use crate::geometry::Point;
@@ -42,7 +42,7 @@ pub struct Ring {
 ///
 /// # Errors
 ///
-/// [`Error::Parse`] of what is no GeoJSON, holds other geometries than polygons, or none. [`Error::Domain`] with
+/// [`Error::Parse`] of what is no `GeoJSON`, holds other geometries than polygons, or none. [`Error::Domain`] with
 /// feature, polygon, ring, position and coordinates of a ring that is not closed, has fewer than four positions, or
 /// equal consecutive ones, or of a position without two finite coordinates.
 pub fn read(text: &str, place: &str) -> Result<Polygons> {

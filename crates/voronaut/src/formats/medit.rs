@@ -262,8 +262,8 @@ mod tests {
     fn other_sections_are_passed_over() {
         let body = "Normals 2 0 0 1\n-1.e0 0 .5\nRidges 1 1\nQuadrilaterals\n0\nFuture\n9 9\nEDGES 1 1 2 4\nEnd\nrest";
         let mesh = read(&format!("{HEAD}{body}"), "a.mesh").unwrap();
+        assert_eq!(mesh.point(2), crate::geometry::Point::new(0.0, 1.0));
         assert_eq!((mesh.edges, mesh.edge_labels), (vec![[0, 1]], vec![4]));
-        assert_eq!(mesh.points[2], [0.0, 1.0, 0.0]);
         assert_eq!(mesh.point_labels, [1, 2, 3]);
     }
 

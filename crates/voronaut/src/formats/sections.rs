@@ -81,3 +81,25 @@ pub(super) fn known_dimension(dimension: Option<u8>, words: &Words<'_>, section:
 fn is_keyword(word: Word<'_>) -> bool {
     word.text.starts_with(|c: char| c.is_ascii_alphabetic())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sections_are_told_apart_by_their_keywords() {
+        let mut words =
+            Words::new("meshversionformatted 2\nDimension\n3 Normals 1\n0 -1.e0 .5\nEdges 0 END 7", "a.mesh");
+        read_head(&mut words).unwrap();
+        let next =
+            |words: &mut Words<'_>| next_section(words, "Normals").map(|word| word.map(|w| (w.line, w.text.len())));
+        assert_eq!(next(&mut words).unwrap(), Some((2, 9)));
+        assert_eq!(read_dimension(&mut words).unwrap(), 3);
+        assert_eq!(next(&mut words).unwrap(), Some((3, 7)));
+        assert!(next(&mut words.clone()).unwrap_err().to_string().starts_with("a.mesh:3: '1' where the next section"));
+        skip_section(&mut words);
+        assert_eq!(next(&mut words).unwrap(), Some((5, 5)));
+        skip_section(&mut words);
+        assert_eq!(next(&mut words).unwrap(), None);
+    }
+}
