@@ -96,3 +96,103 @@ fn split_pinches(planar: &mut Planar, sources: &mut Vec<Option<u32>>) {
         sources[copy.index()] = sources[original.index()];
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::{Filling, Segment, rect};
+    use crate::geometry::Point;
+
+    /// Closed loops of points, as an even-odd domain.
+    fn loops(outlines: &[&[(f64, f64)]]) -> Pslg {
+        let mut pslg = rect(Point::new(0.0, 0.0), Point::new(1.0, 1.0)).unwrap();
+        (pslg.points, pslg.segments) = (Vec::new(), Vec::new());
+        for outline in outlines {
+            let (first, n) = (pslg.points.len() as u32, outline.len() as u32);
+            pslg.points.extend(outline.iter().map(|&(x, y)| Point::new(x, y)));
+            pslg.segments.extend((0..n).map(|i| Segment {
+                ends: [first + i, first + (i + 1) % n],
+                label: 1,
+                required: false,
+                left: Side::Unknown,
+                right: Side::Unknown,
+            }));
+        }
+        pslg.point_labels = vec![0; pslg.points.len()];
+        pslg.filling = Filling::EvenOdd;
+        pslg
+    }
+
+    const OUTER: &[(f64, f64)] = &[(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)];
+
+    #[test]
+    fn holes_and_islands_alternate() {
+        let hole: &[(f64, f64)] = &[(1.0, 1.0), (3.0, 1.0), (3.0, 3.0), (1.0, 3.0)];
+        let island: &[(f64, f64)] = &[(1.5, 1.5), (2.5, 1.5), (2.5, 2.5), (1.5, 2.5)];
+        let domain = Domain::new(&loops(&[OUTER, hole, island])).unwrap();
+        assert!((domain.area() - 13.0).abs() < 1e-14);
+        assert_eq!(domain.boundary().len(), 12);
+        domain.planar().topology.check().unwrap();
+    }
+
+    #[test]
+    fn a_hole_that_touches_the_outline_in_a_point_is_fine() {
+        let hole: &[(f64, f64)] = &[(2.0, 0.0), (3.0, 2.0), (1.0, 2.0)];
+        let domain = Domain::new(&loops(&[OUTER, hole])).unwrap();
+        assert!((domain.area() - 14.0).abs() < 1e-14);
+        domain.planar().topology.check().unwrap();
+        let at_touch =
+            domain.planar().topology.vertices().filter(|&v| domain.planar().position(v) == Point::new(2.0, 0.0));
+        assert_eq!(at_touch.count(), 2, "one vertex for each side of the pinch");
+    }
+
+    fn fault(pslg: &Pslg) -> String {
+        let error = Domain::new(pslg).unwrap_err();
+        assert!(!error.help().is_empty());
+        error.to_string()
+    }
+
+    #[test]
+    fn self_crossing_is_refused_with_the_place() {
+        let bow_tie: &[(f64, f64)] = &[(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)];
+        let message = fault(&loops(&[bow_tie]));
+        assert!(message.contains("crosses") && message.contains("(1, 1)") && message.contains("vertex 3"), "{message}");
+    }
+
+    #[test]
+    fn overlapping_edges_are_refused() {
+        let neighbour: &[(f64, f64)] = &[(1.0, 4.0), (2.0, 4.0), (2.0, 5.0), (1.0, 5.0)];
+        assert!(fault(&loops(&[OUTER, neighbour])).contains("overlaps"));
+    }
+
+    #[test]
+    fn open_boundaries_are_refused_with_the_loose_end() {
+        let mut open = loops(&[OUTER]);
+        open.segments.pop();
+        let message = fault(&open);
+        assert!(message.contains("open") && message.contains("vertex 1 (0, 0)"), "{message}");
+        open.filling = Filling::Enclosed { holes: Vec::new(), regions: Vec::new() };
+        assert!(fault(&open).contains("open"));
+    }
+
+    #[test]
+    fn duplicate_points_and_bad_numbers_are_refused() {
+        let twice: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 0.0), (-1.0, 1.0)];
+        assert!(fault(&loops(&[twice])).contains("vertex 1 (0, 0) and vertex 4"));
+        let nan: &[(f64, f64)] = &[(0.0, 0.0), (1.0, f64::NAN), (1.0, 1.0)];
+        assert!(fault(&loops(&[nan])).contains("not finite at vertex 2"));
+        let line: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)];
+        assert!(fault(&loops(&[line])).contains("encloses no area"));
+        let line: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 1.0), (2.0, 2.0)];
+        fault(&loops(&[line]));
+    }
+
+    #[test]
+    fn slivers_of_a_millionth_are_domains() {
+        for scale in [1e-9, 1.0, 1e9] {
+            let sliver = [(0.0, 0.0), (scale, 0.0), (scale, 1e-6 * scale), (0.0, 1e-6 * scale)];
+            let domain = Domain::new(&loops(&[&sliver])).unwrap();
+            assert!((domain.area() / (1e-6 * scale * scale) - 1.0).abs() < 1e-9);
+        }
+    }
+}

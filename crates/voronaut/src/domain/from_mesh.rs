@@ -1,1 +1,352 @@
-//! from_mesh
+//! Domains from meshes: the area of the triangles, or what the edges enclose.
+
+use super::distinct::{check_points, listed, merge_segments, unordered};
+use super::{Filling, Pslg, Segment, Side};
+use crate::error::{Error, Result};
+use crate::geometry::{Orientation, orientation};
+use crate::mesh::Mesh;
+
+/// The domain of a planar mesh.
+///
+/// With triangles (oriented either way): their area, in regions by their labels; segments are the edges that the mesh
+/// lists, then those of one triangle or between regions that it does not list (label 0). Without triangles: what the
+/// edges enclose, alternating from outside in if two edges meet at every vertex, else all of it. Edges keep the
+/// direction of the list. Kept are the vertices of segments, corners of edges and triangles, and all required
+/// vertices; `names` has the numbers of the mesh if vertices were left out.
+///
+/// # Errors
+///
+/// [`Error::Unsupported`] of z other than 0. [`Error::Domain`] with the place of: neither edges nor triangles, two
+/// vertices with the same coordinates, an edge without length, edges between the same vertices with different labels,
+/// an edge with three triangles or two on the same side, an edge that is no triangle's, a triangle without area.
+/// [`Error::Mesh`] of numbers beyond the lists they refer to.
+pub fn from_mesh(mesh: &Mesh) -> Result<Pslg> {
+    check_numbers(mesh)?;
+    check_planar(mesh)?;
+    let used = used_vertices(mesh);
+    let in_use = (0..).zip(&used).filter(|&(_, &used)| used).map(|(vertex, _)| (vertex, mesh.point(vertex)));
+    check_points(in_use, name)?;
+    let segments = listed_segments(mesh)?;
+    let (segments, filling) = if mesh.triangles.is_empty() {
+        let filling = filling_of(&segments, mesh.points.len());
+        (segments, filling)
+    } else {
+        (with_sides(mesh, segments)?, Filling::Sides)
+    };
+    if segments.is_empty() {
+        let help = "give a mesh with triangles, or with the edges of the boundary";
+        return Err(Error::domain("a mesh with neither edges nor triangles", "its sections Edges and Triangles", help));
+    }
+    Ok(compact(mesh, &used, segments, filling))
+}
+
+/// The two sides of an edge: left and right of the direction from its smaller to its larger vertex.
+struct EdgeSides {
+    ends: [u32; 2],
+    left: Side,
+    right: Side,
+}
+
+/// An edge of one triangle, from its smaller to its larger vertex.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct TriangleEdge {
+    ends: [u32; 2],
+    triangle_is_left: bool,
+    triangle: u32,
+}
+
+fn check_numbers(mesh: &Mesh) -> Result<()> {
+    let vertices = mesh.points.len();
+    let referred = mesh.triangles.as_flattened().iter().chain(mesh.edges.as_flattened());
+    let vertex = referred.chain(&mesh.corners).chain(&mesh.required_points).find(|&&v| v as usize >= vertices);
+    let edge = mesh.required_edges.iter().find(|&&e| e as usize >= mesh.edges.len());
+    let (what, of) = match (vertex, edge) {
+        (Some(vertex), _) => (format!("vertex {vertex} (from 0) does not exist"), format!("{vertices} vertices")),
+        (_, Some(edge)) => (format!("edge {edge} (from 0) does not exist"), format!("{} edges", mesh.edges.len())),
+        _ => return Ok(()),
+    };
+    Err(Error::Mesh { what, place: format!("a list of {of}"), help: "correct the number".into() })
+}
+
+fn check_planar(mesh: &Mesh) -> Result<()> {
+    let finite = |p: &[f64; 3]| p.iter().all(|x| x.is_finite());
+    if let Some(vertex) = mesh.points.iter().position(|p| !finite(p)) {
+        let place = format!("vertex {} {:?}", vertex + 1, mesh.points[vertex]);
+        return Err(Error::domain("a coordinate is not finite", place, "remove or correct the vertex"));
+    }
+    let Some(vertex) = mesh.points.iter().position(|p| p[2] != 0.0) else { return Ok(()) };
+    let what = format!("a surface as domain (vertex {} has z = {})", vertex + 1, mesh.points[vertex][2]);
+    Err(Error::Unsupported { what, help: "give a planar mesh: Dimension 2, or z = 0 at every vertex".into() })
+}
+
+/// Vertices of triangles and edges, and the required ones.
+fn used_vertices(mesh: &Mesh) -> Vec<bool> {
+    let mut used = vec![false; mesh.points.len()];
+    let elements = mesh.triangles.as_flattened().iter().chain(mesh.edges.as_flattened());
+    for &vertex in elements.chain(&mesh.required_points) {
+        used[vertex as usize] = true;
+    }
+    used
+}
+
+fn listed_segments(mesh: &Mesh) -> Result<Vec<Segment>> {
+    let mut required = vec![false; mesh.edges.len()];
+    for &edge in &mesh.required_edges {
+        required[edge as usize] = true;
+    }
+    let segments =
+        mesh.edges.iter().zip(required).enumerate().map(|(index, (&ends, required))| {
+            listed(ends, mesh.edge_labels.get(index).copied().unwrap_or(0), required)
+        });
+    merge_segments(segments, "edge", 1, |vertex| describe(mesh, vertex))
+}
+
+fn filling_of(segments: &[Segment], vertices: usize) -> Filling {
+    let mut degree = vec![0_u32; vertices];
+    for vertex in segments.iter().flat_map(|segment| segment.ends) {
+        degree[vertex as usize] += 1;
+    }
+    if degree.iter().all(|&degree| degree == 0 || degree == 2) {
+        return Filling::EvenOdd;
+    }
+    Filling::Enclosed { holes: Vec::new(), regions: Vec::new() }
+}
+
+/// Gives listed segments the sides that the triangles tell, and adds the boundaries and interfaces not listed.
+fn with_sides(mesh: &Mesh, mut segments: Vec<Segment>) -> Result<Vec<Segment>> {
+    let edges = sides_of_edges(mesh)?;
+    let mut is_listed = vec![false; edges.len()];
+    for segment in &mut segments {
+        let ends = unordered(segment.ends);
+        let Ok(index) = edges.binary_search_by_key(&ends, |edge| edge.ends) else {
+            let place = format!("{} - {}", describe(mesh, segment.ends[0]), describe(mesh, segment.ends[1]));
+            let help = "remove the edge, or all triangles (then the edges alone are the domain)";
+            return Err(Error::domain("an edge in the list is no edge of a triangle", place, help));
+        };
+        is_listed[index] = true;
+        let EdgeSides { left, right, .. } = edges[index];
+        (segment.left, segment.right) = if ends == segment.ends { (left, right) } else { (right, left) };
+    }
+    let unlisted = edges.iter().zip(is_listed).filter(|(edge, is_listed)| !is_listed && edge.left != edge.right);
+    segments.extend(unlisted.map(|(&EdgeSides { ends: [a, b], left, right }, _)| {
+        // Boundaries run with the domain on their left.
+        let (ends, left, right) = if left == Side::Outside { ([b, a], right, left) } else { ([a, b], left, right) };
+        Segment { ends, label: 0, required: false, left, right }
+    }));
+    Ok(segments)
+}
+
+/// All edges of the triangles, in the order of their ends.
+fn sides_of_edges(mesh: &Mesh) -> Result<Vec<EdgeSides>> {
+    let mut edges = Vec::with_capacity(3 * mesh.triangles.len());
+    for (triangle, &vertices) in (0..).zip(&mesh.triangles) {
+        let is_left = is_counter_clockwise(mesh, triangle, vertices)?;
+        let [a, b, c] = vertices;
+        edges.extend([[a, b], [b, c], [c, a]].map(|ends| TriangleEdge {
+            ends: unordered(ends),
+            triangle_is_left: is_left == (ends[0] < ends[1]),
+            triangle,
+        }));
+    }
+    edges.sort_unstable();
+    edges.chunk_by(|a, b| a.ends == b.ends).map(|group| sides(mesh, group)).collect()
+}
+
+/// The sides of an edge from the triangles at it, of which there may be one on each side.
+fn sides(mesh: &Mesh, group: &[TriangleEdge]) -> Result<EdgeSides> {
+    let region =
+        |edge: &TriangleEdge| Side::Region(mesh.triangle_labels.get(edge.triangle as usize).copied().unwrap_or(0));
+    let ends = group[0].ends;
+    match group {
+        [one] if one.triangle_is_left => Ok(EdgeSides { ends, left: region(one), right: Side::Outside }),
+        [one] => Ok(EdgeSides { ends, left: Side::Outside, right: region(one) }),
+        // In sorted order the triangle on the right comes first.
+        [right, left] if right.triangle_is_left != left.triangle_is_left => {
+            Ok(EdgeSides { ends, left: region(left), right: region(right) })
+        }
+        [first, second] => {
+            let triangles = format!("triangles {} and {}", first.triangle + 1, second.triangle + 1);
+            let what = format!("overlapping triangles: {triangles} lie on the same side of an edge");
+            Err(edge_error(mesh, what, ends, "remove one of the triangles"))
+        }
+        more => {
+            let first = more.iter().map(|edge| edge.triangle).min().unwrap_or(0);
+            let last = more.iter().map(|edge| edge.triangle).max().unwrap_or(0);
+            let triangles = format!("{} triangles (the first is {}, the last {})", more.len(), first + 1, last + 1);
+            let what = format!("a non-manifold edge of {triangles}");
+            Err(edge_error(mesh, what, ends, "leave at most two triangles at each edge"))
+        }
+    }
+}
+
+fn is_counter_clockwise(mesh: &Mesh, triangle: u32, vertices: [u32; 3]) -> Result<bool> {
+    let [a, b, c] = mesh.corners_of(vertices);
+    match orientation(a, b, c) {
+        Orientation::Left => Ok(true),
+        Orientation::Right => Ok(false),
+        Orientation::Collinear => {
+            let place = vertices.map(|vertex| describe(mesh, vertex)).join(", ");
+            let what = format!("triangle {} has no area", u64::from(triangle) + 1);
+            Err(Error::domain(what, place, "remove the triangle, or move its vertices apart"))
+        }
+    }
+}
+
+/// Leaves out the vertices that the domain does not need, and renumbers.
+fn compact(mesh: &Mesh, used: &[bool], mut segments: Vec<Segment>, filling: Filling) -> Pslg {
+    let count = mesh.points.len();
+    let mut required = vec![false; count];
+    let corners = mesh.corners.iter().filter(|&&vertex| used[vertex as usize]);
+    for &vertex in corners.chain(&mesh.required_points) {
+        required[vertex as usize] = true;
+    }
+    let mut kept = required.clone();
+    for vertex in segments.iter().flat_map(|segment| segment.ends) {
+        kept[vertex as usize] = true;
+    }
+    let vertices: Vec<u32> = (0..count as u32).filter(|&vertex| kept[vertex as usize]).collect();
+    let mut numbers = vec![0; count];
+    for (number, &vertex) in (0..).zip(&vertices) {
+        numbers[vertex as usize] = number;
+    }
+    for segment in &mut segments {
+        segment.ends = segment.ends.map(|vertex| numbers[vertex as usize]);
+    }
+    let label = |&vertex: &u32| mesh.point_labels.get(vertex as usize).copied().unwrap_or(0);
+    let is_required = |&(_, &vertex): &(u32, &u32)| required[vertex as usize];
+    Pslg {
+        points: vertices.iter().map(|&vertex| mesh.point(vertex)).collect(),
+        point_labels: vertices.iter().map(label).collect(),
+        required_points: (0..).zip(&vertices).filter(is_required).map(|(number, _)| number).collect(),
+        segments,
+        filling,
+        tolerance: 0.0,
+        names: if vertices.len() == count { Vec::new() } else { vertices.iter().map(|&v| name(v)).collect() },
+    }
+}
+
+fn edge_error(mesh: &Mesh, what: String, [a, b]: [u32; 2], help: &str) -> Error {
+    Error::domain(what, format!("{} - {}", describe(mesh, a), describe(mesh, b)), help)
+}
+
+fn describe(mesh: &Mesh, vertex: u32) -> String {
+    format!("{} {}", name(vertex), mesh.point(vertex))
+}
+
+fn name(vertex: u32) -> String {
+    format!("vertex {}", u64::from(vertex) + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two regions, 4 left and 5 right of x = 1, the first in two triangles: vertices 1 to 6 of a 2 x 1 rectangle
+    /// from (0, 0), and an unused one before them.
+    fn two_regions() -> Mesh {
+        let corners = [(9.0, 9.0), (0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (0.0, 1.0)];
+        Mesh {
+            points: corners.map(|(x, y)| [x, y, 0.0]).to_vec(),
+            point_labels: (0..7).collect(),
+            triangles: vec![[1, 2, 5], [1, 6, 5], [2, 3, 4], [4, 2, 5]],
+            triangle_labels: vec![4, 4, 5, 5],
+            edges: vec![[2, 1], [1, 5]],
+            edge_labels: vec![7, 8],
+            corners: vec![0, 1],
+            required_points: vec![3],
+            required_edges: vec![1],
+        }
+    }
+
+    fn segment(pslg: &Pslg, ends: [u32; 2]) -> Segment {
+        *pslg.segments.iter().find(|s| s.ends == ends).unwrap_or_else(|| panic!("{ends:?} in {pslg:?}"))
+    }
+
+    #[test]
+    fn triangles_tell_regions() {
+        let pslg = from_mesh(&two_regions()).unwrap();
+        assert_eq!((pslg.points.len(), pslg.segments.len(), &pslg.filling), (6, 8, &Filling::Sides));
+        let listed = segment(&pslg, [1, 0]);
+        assert_eq!((listed.label, listed.left, listed.right), (7, Side::Outside, Side::Region(4)));
+        let feature = segment(&pslg, [0, 4]);
+        assert_eq!((feature.left, feature.right, feature.required), (Side::Region(4), Side::Region(4), true));
+        let interface = segment(&pslg, [1, 4]);
+        assert_eq!((interface.left, interface.right, interface.label), (Side::Region(4), Side::Region(5), 0));
+        let right = segment(&pslg, [2, 3]);
+        assert_eq!((right.left, right.right), (Side::Region(5), Side::Outside));
+        assert_eq!(pslg.required_points, [0, 2]);
+        assert_eq!((pslg.describe(0), pslg.point_labels[0]), ("vertex 2 (0, 0)".into(), 1));
+    }
+
+    #[test]
+    fn interior_vertices_are_left_out() {
+        let points = [(0.0, 0.0), (3.0, 0.0), (0.0, 3.0), (1.0, 1.0)].map(|(x, y)| [x, y, 0.0]).to_vec();
+        let triangles = vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let pslg = from_mesh(&Mesh { points, triangles, ..Mesh::default() }).unwrap();
+        assert_eq!((pslg.points.len(), pslg.segments.len()), (3, 3));
+        assert!(pslg.segments.iter().all(|s| s.left == Side::Region(0) && s.right == Side::Outside));
+    }
+
+    #[test]
+    fn edges_alone_enclose() {
+        let boundary = vec![[1, 3], [3, 4], [4, 6], [6, 1], [1, 6]];
+        let mut mesh = Mesh { triangles: vec![], edges: boundary, edge_labels: vec![1; 5], ..two_regions() };
+        let pslg = from_mesh(&mesh).unwrap();
+        assert_eq!((pslg.segments.len(), &pslg.filling), (4, &Filling::EvenOdd));
+        assert!(pslg.segments.iter().all(|s| s.left == Side::Unknown));
+        mesh.edges.push([1, 4]);
+        assert_eq!(from_mesh(&mesh).unwrap().filling, Filling::Enclosed { holes: vec![], regions: vec![] });
+    }
+
+    fn message(change: impl Fn(&mut Mesh)) -> String {
+        let mut mesh = two_regions();
+        change(&mut mesh);
+        let error = from_mesh(&mesh).unwrap_err();
+        assert!(!error.help().is_empty(), "{error}");
+        error.to_string()
+    }
+
+    #[test]
+    fn bad_triangles_are_refused_with_their_place() {
+        let three = message(|m| m.triangles.push([2, 5, 6]));
+        assert!(
+            three.contains(
+                "a non-manifold edge of 3 triangles (the first is 1, the last 5) at vertex 3 (1, 0) - vertex 6 (1, 1)"
+            ),
+            "{three}"
+        );
+        let same = message(|m| m.triangles.push([1, 2, 4]));
+        assert!(
+            same.contains("triangles 1 and 5 lie on the same side of an edge at vertex 2 (0, 0) - vertex 3 (1, 0)"),
+            "{same}"
+        );
+        let flat = message(|m| m.triangles.push([1, 2, 3]));
+        assert!(flat.contains("triangle 5 has no area at vertex 2 (0, 0), vertex 3 (1, 0), vertex 4 (2, 0)"), "{flat}");
+        let beyond = message(|m| m.triangles.push([1, 2, 70]));
+        assert!(beyond.contains("vertex 70 (from 0) does not exist at a list of 7 vertices"), "{beyond}");
+    }
+
+    #[test]
+    fn bad_vertices_and_edges_are_refused_with_their_place() {
+        for (message, expected) in [
+            (message(|m| m.points[5] = [-0.0, 1.0, 0.0]), "vertex 6 and vertex 7 have the same coordinates at (0, 1)"),
+            (message(|m| m.points[3][2] = 0.5), "not supported: a surface as domain (vertex 4 has z = 0.5)"),
+            (message(|m| m.points[3][1] = f64::NAN), "a coordinate is not finite at vertex 4 [2.0, NaN, 0.0]"),
+            (
+                message(|m| m.edges[0] = [2, 2]),
+                "edge 1 has no length: both its ends are the same vertex at vertex 3 (1, 0)",
+            ),
+            (message(|m| m.edges[1] = [1, 2]), "edges 1 and 2 join the same vertices with different labels 7 and 8"),
+            (
+                message(|m| m.edges[1] = [1, 4]),
+                "an edge in the list is no edge of a triangle at vertex 2 (0, 0) - vertex 5 (2, 1)",
+            ),
+            (
+                message(|m| *m = Mesh { points: m.points.clone(), ..Mesh::default() }),
+                "a mesh with neither edges nor triangles",
+            ),
+        ] {
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}

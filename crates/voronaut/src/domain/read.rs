@@ -1,1 +1,244 @@
-//! read
+//! A planar domain from what the user writes for it: a shape, or a file.
+
+use super::{Pslg, from_geojson, from_mesh, from_poly, shapes};
+use crate::error::{Error, Result};
+use crate::formats::{geojson, medit, poly};
+use crate::geometry::Point;
+use std::path::{Path, PathBuf};
+
+/// Reads a planar domain: `rect:x0,y0,x1,y1`, `disk:cx,cy,r`, or a file `.geojson`, `.json`, `.poly` or `.mesh`.
+///
+/// # Errors
+///
+/// [`Error::Io`] of a file that cannot be read; [`Error::Parse`] of a specification or a file that is not what its
+/// format asks for, empty, or not UTF-8; [`Error::Domain`] of what makes no domain, as far as one look at points,
+/// segments and rings tells; [`Error::Unsupported`] of surfaces and of formats of later versions.
+pub fn read(spec: &str) -> Result<Pslg> {
+    if let Some(shape) = read_shape(spec) {
+        return shape;
+    }
+    let path = Path::new(spec);
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    match ending.as_deref() {
+        Some("geojson" | "json") => {
+            let polygons = geojson::read(&read_text(path)?, spec)?;
+            from_geojson::from_geojson(&polygons).map_err(|error| in_file(spec, error))
+        }
+        Some("poly") => {
+            let poly = poly::read(&read_text(path)?, spec)?;
+            from_poly::from_poly(&poly).map_err(|error| in_file(spec, error))
+        }
+        Some("mesh") => {
+            let mesh = medit::read(&read_text(path)?, spec)?;
+            from_mesh::from_mesh(&mesh).map_err(|error| in_file(spec, error))
+        }
+        Some(ending) if LATER_ENDINGS.contains(&ending) => Err(later(format!("a .{ending} file as domain ({spec})"))),
+        _ => Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", WORKS_TODAY)),
+    }
+}
+
+const WORKS_TODAY: &str =
+    "give rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly or .mesh";
+
+const LATER_ENDINGS: [&str; 8] = ["obj", "off", "ply", "stl", "msh", "meshb", "vtu", "vtp"];
+
+const LATER_SHAPES: [&str; 4] = ["sphere", "torus", "chair", "implicit"];
+
+/// The shape that a specification names; `None` if it names none.
+fn read_shape(spec: &str) -> Option<Result<Pslg>> {
+    let (name, numbers) = spec.split_once(':').map_or((spec, None), |(name, numbers)| (name, Some(numbers)));
+    match (name, numbers) {
+        ("rect", Some(numbers)) => Some(
+            read_numbers(spec, numbers, "rect:x0,y0,x1,y1")
+                .and_then(|[x0, y0, x1, y1]| shapes::rect(Point::new(x0, y0), Point::new(x1, y1))),
+        ),
+        ("disk", Some(numbers)) => {
+            Some(read_numbers(spec, numbers, "disk:cx,cy,r").and_then(|[x, y, r]| shapes::disk(Point::new(x, y), r)))
+        }
+        _ if LATER_SHAPES.contains(&name) => Some(Err(later(format!("the surface {spec} as domain")))),
+        _ => None,
+    }
+}
+
+fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Result<[f64; N]> {
+    let error = |what: String| Error::parse(spec, what, format!("write {usage}"));
+    let words: Vec<_> = numbers.split(',').map(str::trim).collect();
+    if words.len() != N {
+        return Err(error(format!("{} numbers where {N} are expected", words.len())));
+    }
+    let mut values = [0.0; N];
+    for (value, word) in values.iter_mut().zip(words) {
+        *value = word.parse().map_err(|_| error(format!("'{word}' is not a number")))?;
+    }
+    Ok(values)
+}
+
+fn read_text(path: &Path) -> Result<String> {
+    let bytes = std::fs::read(path).map_err(|source| Error::Io { path: PathBuf::from(path), source })?;
+    let place = path.display().to_string();
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let what = format!("not a text in UTF-8 (byte {})", error.utf8_error().valid_up_to() + 1);
+        let help = "save the file as UTF-8 text; binary files are not read yet";
+        Error::parse(&place, what, help)
+    })?;
+    if text.trim().is_empty() {
+        return Err(Error::parse(place, "the file is empty", "check that the program that wrote it had finished"));
+    }
+    Ok(text)
+}
+
+/// Adds the file to the place of an error of its domain.
+fn in_file(file: &str, error: Error) -> Error {
+    match error {
+        Error::Domain { what, place, help } => Error::Domain { what, place: format!("{file}, {place}"), help },
+        Error::Unsupported { what, help } => Error::Unsupported { what: format!("{what} in {file}"), help },
+        other => other,
+    }
+}
+
+fn later(what: String) -> Error {
+    Error::Unsupported { what, help: format!("this version meshes planar domains: {WORKS_TODAY}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::io::Write;
+
+    fn with_file<T>(ending: &str, content: &[u8], test: impl Fn(&str) -> T) -> T {
+        let mut file = tempfile::Builder::new().suffix(ending).tempfile().unwrap();
+        file.write_all(content).unwrap();
+        test(file.path().to_str().unwrap())
+    }
+
+    #[test]
+    fn shapes_and_files_are_read() {
+        assert_eq!(read("rect: 0, 0,1e0,2").unwrap().points.len(), 4);
+        assert_eq!(read("disk:0,0,1").unwrap().points.len(), 4096);
+        let geojson = br#"{"type":"Polygon","coordinates":[[[0,0],[1,0],[0,1],[0,0]]]}"#;
+        let poly = b"3\n1 0 0\n2 1 0\n3 0 1\n3\n1 1 2\n2 2 3\n3 3 1\n";
+        let mesh = b"MeshVersionFormatted 2 Dimension 2 Vertices 3 0 0 0 1 0 0 0 1 0 Triangles 1 1 2 3 4 End";
+        for (ending, content) in [(".GeoJSON", &geojson[..]), (".json", geojson), (".poly", poly), (".mesh", mesh)] {
+            let pslg = with_file(ending, content, |path| read(path).unwrap());
+            assert_eq!((pslg.points.len(), pslg.segments.len()), (3, 3), "{ending}");
+        }
+    }
+
+    #[test]
+    fn bad_specifications() {
+        for (spec, expected) in [
+            ("rect:0,0,1", "rect:0,0,1: 3 numbers where 4 are expected"),
+            ("disk:0,x,1", "disk:0,x,1: 'x' is not a number"),
+            ("rect:0,0,0,1", "invalid domain: a rectangle needs x0 < x1"),
+            ("disk:0,0,nan", "invalid domain: a disk without a positive radius"),
+            ("sphere:1", "not supported: the surface sphere:1 as domain"),
+            ("chair", "not supported: the surface chair as domain"),
+            ("part.STL", "not supported: a .stl file as domain (part.STL)"),
+            ("mesh", "mesh: neither a shape nor a file with an ending that is known"),
+            ("", ": neither a shape nor a file"),
+            ("no/such/file.poly", "no/such/file.poly: "),
+        ] {
+            let error = read(spec).unwrap_err();
+            assert!(error.to_string().starts_with(expected), "{error}");
+            assert!(!error.help().is_empty());
+        }
+        assert!(matches!(read("no/such/file.mesh"), Err(Error::Io { .. })));
+        assert!(read("torus:2,1").unwrap_err().help().contains("rect:x0,y0,x1,y1"));
+    }
+
+    #[test]
+    fn bad_files_are_named() {
+        for (ending, content, expected) in [
+            (".mesh", &b""[..], ": the file is empty"),
+            (".geojson", b" \n\t\n", ": the file is empty"),
+            (".mesh", b"Mesh\xff", ": not a text in UTF-8 (byte 5)"),
+            (".poly", b"2\n1 0 0\n2 0 0\n1\n1 1 2\n", ", (0, 0)"),
+            (".json", br#"{"type":"Point","coordinates":[0,0]}"#, ", feature 1: a Point where a Polygon"),
+            (
+                ".mesh",
+                b"MeshVersionFormatted 2 Dimension 3 Vertices 1 0 0 1 0 End",
+                " as domain (vertex 1 has z = 1) in ",
+            ),
+        ] {
+            with_file(ending, content, |path| {
+                let error = read(path).unwrap_err();
+                let message = error.to_string();
+                assert!(message.contains(expected) && message.contains(path), "{message}");
+                assert!(!error.help().is_empty());
+            });
+        }
+    }
+
+    /// Words that a `.mesh` or a `.poly` file may hold, in any order.
+    fn soup() -> impl Strategy<Value = String> {
+        let words = [
+            "0",
+            "1",
+            "2",
+            "3",
+            "4",
+            "0.5",
+            "-1",
+            "1e308",
+            "1e18",
+            "9999999999999999999",
+            "nan",
+            "\n",
+            "#",
+            "Vertices 3\n",
+            "Vertices 3 0 0 1 1 0 1 0 1 1",
+            "Edges 2",
+            "Edges 1 1 2 3",
+            "Triangles 1 1 2 3",
+            "Triangles 2",
+            "Corners 1 1",
+            "RequiredVertices",
+            "RequiredEdges 1 1",
+            "SolAtVertices 2",
+            "1 3",
+            "Dimension",
+            "End",
+            "Tetrahedra",
+            "\u{e9}",
+        ];
+        let opening = prop::sample::select(vec![
+            "MeshVersionFormatted 2 Dimension 2 ",
+            "MeshVersionFormatted 2 Dimension 3 Vertices 4 0 0 0 1 1 0 0 1 0 1 0 1 1 1 0 1 ",
+            "3 2\n1 0 0\n2 1 0\n3 0 1\n",
+            "2 2 1\n0 0 0 5\n1 1 0 5\n1\n",
+            "",
+        ]);
+        let rest = prop::collection::vec(prop::sample::select(words.to_vec()), 0..24);
+        (opening, rest).prop_map(|(opening, rest)| opening.to_owned() + &rest.join(" "))
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_makes_a_reader_panic(text in soup()) {
+            let _ = crate::formats::sol::read(&text, "a.sol");
+            if let Ok(mesh) = medit::read(&text, "a.mesh") {
+                prop_assert_eq!(&medit::read(&medit::write(&mesh), "b.mesh").unwrap(), &mesh);
+                let _ = from_mesh::from_mesh(&mesh);
+            }
+            if let Ok(poly) = poly::read(&text, "a.poly") {
+                let _ = from_poly::from_poly(&poly);
+            }
+        }
+
+        #[test]
+        fn no_rings_make_the_reader_panic(
+            rings in prop::collection::vec(prop::collection::vec((0..3, 0..3), 3..7), 1..4)
+        ) {
+            let ring = |ring: &Vec<(i32, i32)>| {
+                let closed = ring.iter().chain(ring.first()).map(|(x, y)| format!("[{x},{y}]"));
+                format!("[{}]", closed.collect::<Vec<_>>().join(","))
+            };
+            let rings: Vec<_> = rings.iter().map(ring).collect();
+            let text = format!(r#"{{"type":"Polygon","coordinates":[{}]}}"#, rings.join(","));
+            if let Ok(polygons) = geojson::read(&text, "a.json") {
+                let _ = from_geojson::from_geojson(&polygons);
+            }
+        }
+    }
+}
