@@ -1,1 +1,171 @@
-//! dual
+//! The Riemannian Delaunay triangulation of seeds in a planar domain, with straight edges: the mesh in the making.
+//!
+//! It starts as the constrained Delaunay triangulation of the domain's corners and changes by insertions, moves,
+//! removals and flips, each of which keeps it embedded. Edges are flipped by the metric in-circle test
+//! ([`flips`](self)); a flip that the metric wants and the plane forbids is *blocked*.
+
+mod assemble;
+mod edit;
+mod flips;
+mod margin;
+
+pub use margin::{Effort, LEVELS, Margin};
+
+use crate::domain::Domain;
+use crate::error::{Error, Result};
+use crate::geodesic::{LocalMetric, hermite};
+use crate::geometry::{Point, Tensor};
+use crate::metric::MetricField;
+use crate::planar::Planar;
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use rayon::prelude::*;
+
+/// What holds a vertex in its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// It is this point of the domain's graph.
+    Corner(u32),
+    /// It lies on a segment of the domain's graph.
+    Curve,
+    /// Nothing: it may move and go.
+    Free,
+}
+
+/// Work counters; deterministic.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DualCounters {
+    /// In-circle tests settled at each level of [`LEVELS`].
+    pub tests: [u64; LEVELS],
+    /// Tests whose margin stayed within the estimated error of the last level.
+    pub uncertain: u64,
+    /// Flips done.
+    pub flips: u64,
+}
+
+/// See the [module](self).
+pub struct Dual<'a> {
+    field: &'a dyn MetricField,
+    planar: Planar,
+    locals: Vec<LocalMetric>,
+    kinds: Vec<Kind>,
+    touched: Vec<FaceId>,
+    stack: Vec<HalfEdge>,
+    counters: DualCounters,
+    fault: Option<(Point, Tensor)>,
+}
+
+impl<'a> Dual<'a> {
+    /// The triangulated corners of a domain. `field` measures in units of the wanted edge length.
+    ///
+    /// # Errors
+    /// The metric is not positive definite at a corner.
+    pub fn new(domain: &Domain, field: &'a dyn MetricField) -> Result<Self> {
+        let planar = domain.planar().clone();
+        let kinds = domain.sources().iter().map(|s| s.map_or(Kind::Free, Kind::Corner)).collect();
+        let mut dual = Self {
+            field,
+            locals: vec![LocalMetric::default(); planar.positions.len()],
+            planar,
+            kinds,
+            touched: Vec::new(),
+            stack: Vec::new(),
+            counters: DualCounters::default(),
+            fault: None,
+        };
+        dual.measure_all();
+        dual.verdict()?;
+        dual.flip_all(Effort::Local);
+        Ok(dual)
+    }
+
+    /// Topology.
+    pub fn topology(&self) -> &Triangulation {
+        &self.planar.topology
+    }
+
+    /// The embedded triangulation.
+    pub fn planar(&self) -> &Planar {
+        &self.planar
+    }
+
+    /// The metric field, in units of the wanted edge length.
+    pub fn field(&self) -> &'a dyn MetricField {
+        self.field
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.planar.topology.vertex_count()
+    }
+
+    /// Position of a vertex.
+    pub fn position(&self, v: VertexId) -> Point {
+        self.planar.position(v)
+    }
+
+    /// The metric around a vertex.
+    pub fn local(&self, v: VertexId) -> &LocalMetric {
+        &self.locals[v.index()]
+    }
+
+    /// What holds a vertex.
+    pub fn kind(&self, v: VertexId) -> Kind {
+        self.kinds[v.index()]
+    }
+
+    /// Work counters since the beginning.
+    pub fn counters(&self) -> &DualCounters {
+        &self.counters
+    }
+
+    /// Metric length of an edge, estimated from its ends ([`hermite`]).
+    pub fn edge_length(&self, h: HalfEdge) -> f64 {
+        let (u, v) = (self.topology().origin(h), self.topology().target(h));
+        hermite(self.position(u), self.local(u), self.position(v), self.local(v)).value
+    }
+
+    /// The faces that changed since the last call, some of them perhaps several times or removed.
+    pub fn take_touched(&mut self) -> Vec<FaceId> {
+        std::mem::take(&mut self.touched)
+    }
+
+    /// Whether the metric was found valid wherever it was evaluated so far.
+    ///
+    /// # Errors
+    /// [`Error::Metric`] with the first place where it is not positive definite and finite.
+    pub fn verdict(&self) -> Result<()> {
+        let Some((p, t)) = self.fault else { return Ok(()) };
+        let what = format!("the tensor {}, {}, {} is not finite and positive definite", t.xx, t.xy, t.yy);
+        Err(Error::metric(what, p.to_string(), "give a metric whose eigenvalues are positive in the whole domain"))
+    }
+
+    /// Evaluates the metric at every vertex, in parallel.
+    pub(crate) fn measure_all(&mut self) {
+        let field = self.field;
+        let (topology, positions) = (&self.planar.topology, &self.planar.positions);
+        self.locals.par_iter_mut().enumerate().with_min_len(256).for_each(|(v, local)| {
+            if topology.is_vertex(VertexId(v as u32)) {
+                *local = LocalMetric::at(field, positions[v]);
+            }
+        });
+        for v in 0..self.locals.len() {
+            if self.planar.topology.is_vertex(VertexId(v as u32)) {
+                self.locals[v] = self.vetted(self.planar.positions[v], self.locals[v]);
+            }
+        }
+    }
+
+    /// The metric around a point; where it is not valid that is noted, and the Euclidean metric serves instead.
+    fn measure(&mut self, p: Point) -> LocalMetric {
+        let local = LocalMetric::at(self.field, p);
+        self.vetted(p, local)
+    }
+
+    fn vetted(&mut self, p: Point, local: LocalMetric) -> LocalMetric {
+        if local.tensor.is_positive_definite() {
+            return local;
+        }
+        self.fault.get_or_insert((p, local.tensor));
+        LocalMetric { tensor: Tensor::IDENTITY, derivative: [Tensor::default(); 2] }
+    }
+}

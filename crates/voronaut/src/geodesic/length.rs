@@ -100,8 +100,11 @@ fn relaxed_length(field: &dyn MetricField, p: Point, q: Point, segments: usize) 
 
 /// Energy of a path: the sum of squared segment lengths, each with the tensor at its middle.
 fn path_energy_of(field: &dyn MetricField, path: &[Point]) -> f64 {
-    let energy: f64 = path.windows(2).map(|w| field.at(w[0].midpoint(w[1])).dot(w[1] - w[0], w[1] - w[0])).sum();
-    if energy.is_finite() { energy } else { f64::INFINITY }
+    let of_segment = |w: &[Point]| {
+        let tensor = field.at(w[0].midpoint(w[1]));
+        if tensor.is_positive_definite() { tensor.dot(w[1] - w[0], w[1] - w[0]) } else { f64::INFINITY }
+    };
+    path.windows(2).map(of_segment).sum()
 }
 
 /// A Newton step with the Hessian of the path with frozen tensors (block tridiagonal and positive definite): solved

@@ -18,14 +18,16 @@ pub struct LocalMetric {
 
 impl LocalMetric {
     /// Evaluates the field at p and, for the derivatives, at four points a quarter of a metric unit away along the
-    /// tensor's axes.
+    /// tensor's axes. Where one of those is no metric (a field may end with the domain) the derivative counts as zero.
     pub fn at(field: &dyn MetricField, p: Point) -> Self {
         let tensor = field.at(p);
         let eigen = tensor.eigen();
         let [u, v] = [eigen.axis, eigen.axis.perpendicular()];
         let along = |axis: Vector, eigenvalue: f64| {
             let step = DIFFERENCE_STEP / eigenvalue.sqrt();
-            (field.at(p + axis * step) + field.at(p - axis * step) * -1.0) * (0.5 / step)
+            let (ahead, behind) = (field.at(p + axis * step), field.at(p - axis * step));
+            let valid = ahead.is_positive_definite() && behind.is_positive_definite();
+            if valid { (ahead + behind * -1.0) * (0.5 / step) } else { Tensor::default() }
         };
         let (du, dv) = (along(u, eigen.large), along(v, eigen.small));
         Self { tensor, derivative: [du * u.x + dv * v.x, du * u.y + dv * v.y] }

@@ -1,0 +1,58 @@
+//! Insertion, removal and moves of seeds. Each says whether it was done; what would not be embedded is not done.
+
+use super::{Dual, Effort, Kind};
+use crate::geometry::Point;
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
+
+impl Dual<'_> {
+    /// Puts a free seed strictly inside a face.
+    pub fn insert_in_face(&mut self, f: FaceId, p: Point) -> Option<VertexId> {
+        let v = self.planar.insert_in_face(f, p)?;
+        self.settle(v, Kind::Free);
+        Some(v)
+    }
+
+    /// Puts a seed on an edge: a curve's if the edge is constrained, else a free one. Returns it and the half-edge from
+    /// it to the old target of h.
+    pub fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<(VertexId, HalfEdge)> {
+        let kind = if self.planar.topology.is_fixed(h) { Kind::Curve } else { Kind::Free };
+        let target = self.planar.topology.target(h);
+        let (v, _) = self.planar.insert_on_edge(h, p)?;
+        self.settle(v, kind);
+        // A constrained half still stands after the flips; that of a free edge may be gone.
+        Some((v, self.planar.topology.find(v, target).unwrap_or(h)))
+    }
+
+    /// Moves a free seed if all its faces stay counter-clockwise; the metric there is to be measured by the caller
+    /// ([`Dual::measure_all`]).
+    pub(crate) fn shift(&mut self, v: VertexId, to: Point) -> bool {
+        debug_assert_eq!(self.kind(v), Kind::Free, "only free seeds move");
+        self.planar.move_vertex(v, to)
+    }
+
+    /// Removes a free seed.
+    pub fn remove(&mut self, v: VertexId) -> bool {
+        if self.kind(v) != Kind::Free {
+            return false;
+        }
+        let topology = &self.planar.topology;
+        let link: Vec<VertexId> = topology.star(v).map(|h| topology.target(h)).collect();
+        let removed = self.planar.remove_vertex(v);
+        for u in link {
+            self.flip_around(u, Effort::Local);
+        }
+        removed
+    }
+
+    fn settle(&mut self, v: VertexId, kind: Kind) {
+        let local = self.measure(self.position(v));
+        let slots = self.planar.topology.vertex_slots();
+        self.locals.resize(slots, local);
+        self.kinds.resize(slots, kind);
+        self.locals[v.index()] = local;
+        self.kinds[v.index()] = kind;
+        let star: Vec<FaceId> = self.planar.topology.star(v).map(HalfEdge::face).collect();
+        self.touched.extend(star);
+        self.flip_around(v, Effort::Local);
+    }
+}

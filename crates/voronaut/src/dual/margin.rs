@@ -1,0 +1,97 @@
+//! The filtered in-circle test: each level costs more and errs less, and runs only where the one before it cannot tell.
+
+use super::Dual;
+use crate::geodesic::{Angles, Length, frozen_margin, hermite, path_energy};
+use crate::geometry::Tensor;
+use crate::triangulation::{HalfEdge, VertexId};
+
+/// Number of levels: frozen tensor, expansions at the ends, path energy with 8 and with 16 segments.
+pub const LEVELS: usize = 4;
+
+/// How far up the levels a test may climb.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// To lengths from the expansions at the vertices: no evaluation of the field.
+    Local,
+    /// To the last level.
+    Full,
+}
+
+/// The outcome of an in-circle test: the sine of the sum of the two angles that face the edge (see
+/// [`crate::geodesic::Angles`]); negative where the edge should be flipped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margin {
+    /// The sine.
+    pub value: f64,
+    /// Estimated error of `value`.
+    pub error: f64,
+    /// The level that settled it.
+    pub level: usize,
+}
+
+impl Margin {
+    /// Whether the sign is settled.
+    pub fn is_certain(&self) -> bool {
+        self.value.abs() > self.error
+    }
+}
+
+/// The four corners of the two faces at an edge a-b: c to the left, d to the right of a -> b.
+struct Quad {
+    a: VertexId,
+    b: VertexId,
+    c: VertexId,
+    d: VertexId,
+}
+
+impl Dual<'_> {
+    /// The margin of an edge with two faces.
+    pub fn margin(&mut self, h: HalfEdge, effort: Effort) -> Margin {
+        let t = self.topology().twin(h).expect("an edge with two faces");
+        let topology = self.topology();
+        let quad = Quad { a: topology.origin(h), b: topology.target(h), c: topology.apex(h), d: topology.apex(t) };
+        let mut margin = self.frozen(&quad);
+        for level in 1..LEVELS {
+            let last = effort == Effort::Local && level > 1;
+            if margin.is_certain() || last {
+                break;
+            }
+            margin = self.by_lengths(&quad, level);
+        }
+        self.counters.tests[margin.level] += 1;
+        self.counters.uncertain += u64::from(!margin.is_certain());
+        margin
+    }
+
+    /// Level 0: the mean tensor of the four corners; its error from how much the corners' tensors differ.
+    fn frozen(&self, quad: &Quad) -> Margin {
+        let [a, b, c, d] = [quad.a, quad.b, quad.c, quad.d].map(|v| self.position(v));
+        let tensors = [quad.a, quad.b, quad.c, quad.d].map(|v| self.local(v).tensor);
+        let mean = tensors.iter().fold(Tensor::default(), |sum, &t| sum + t) * 0.25;
+        let value = frozen_margin(mean, [a - c, b - c], [b - d, a - d]);
+        let spread = |v| {
+            let reference = mean.dot(v, v);
+            tensors.iter().map(|t| (t.dot(v, v) / reference - 1.0).abs()).fold(0.0, f64::max)
+        };
+        let error = spread(b - a).max(spread(d - c));
+        Margin { value, error: if error.is_finite() { error } else { f64::INFINITY }, level: 0 }
+    }
+
+    fn by_lengths(&self, quad: &Quad, level: usize) -> Margin {
+        let length = |u: VertexId, v: VertexId| self.length_between(u, v, level);
+        let Quad { a, b, c, d } = *quad;
+        let (ab, ac, bc, ad, bd) = (length(a, b), length(a, c), length(b, c), length(a, d), length(b, d));
+        let relative = [ab, ac, bc, ad, bd].iter().map(|l| l.error).fold(0.0, f64::max);
+        let angles = Angles::from_lengths(ab.value, [ac.value, bc.value], [ad.value, bd.value]);
+        Margin { value: angles.margin(), error: angles.error(relative), level }
+    }
+
+    fn length_between(&self, u: VertexId, v: VertexId, level: usize) -> Length {
+        let (p, q) = (self.position(u), self.position(v));
+        match level {
+            1 => hermite(p, self.local(u), q, self.local(v)),
+            2 => path_energy(self.field, p, q, 8),
+            _ => path_energy(self.field, p, q, 16),
+        }
+    }
+}
