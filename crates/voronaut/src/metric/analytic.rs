@@ -108,8 +108,8 @@ impl SwirlField {
     /// The eigenvalue along v1 at distance `r` from the origin.
     fn along(self, r: f64) -> f64 {
         match self {
-            SwirlField::Authors => 1.0 / (stretch(r.cbrt() + r) + 1.0),
-            SwirlField::Printed => (1.0 / stretch(r.cbrt() + r.sqrt())).clamp(1.0 / 50.0, 1.0).powi(2),
+            SwirlField::Authors => 1.0 / (stretch(r.cbrt().midpoint(r)) + 1.0),
+            SwirlField::Printed => (1.0 / stretch(r.cbrt().midpoint(r.sqrt()))).clamp(1.0 / 50.0, 1.0).powi(2),
         }
     }
 }
@@ -146,9 +146,9 @@ impl MetricField for Shock {
     }
 }
 
-/// |50 (1 - (f - 1)^2)| for f = `twice_f` / 2.
-fn stretch(twice_f: f64) -> f64 {
-    (50.0 * (1.0 - (0.5 * twice_f - 1.0).powi(2))).abs()
+/// |50 (1 - (f - 1)^2)|
+fn stretch(f: f64) -> f64 {
+    (50.0 * (1.0 - (f - 1.0).powi(2))).abs()
 }
 
 /// An error that names a parameter unless it is as `needed`.
@@ -160,6 +160,7 @@ pub(super) fn require(holds: bool, place: &str, name: &str, value: f64, needed: 
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "exact results are the point")]
 mod tests {
     use super::*;
 
@@ -182,7 +183,7 @@ mod tests {
         let t = (1.0 - r * r) * (1.0 - r * r);
         let (vx, vy) = (-py + t * px, px + t * py);
         let n2 = vx * vx + vy * vy;
-        let f = if printed { (r.powf(1.0 / 3.0) + r.sqrt()) / 2.0 } else { (r.powf(1.0 / 3.0) + r) / 2.0 };
+        let f = 0.5 * r.powf(1.0 / 3.0) + 0.5 * if printed { r.sqrt() } else { r };
         let a = (50.0 * (1.0 - (f - 1.0) * (f - 1.0))).abs();
         let e = if printed { (1.0 / a).clamp(0.02, 1.0).powi(2) } else { 1.0 / (a + 1.0) };
         Tensor::new((e * vx * vx + vy * vy) / n2, (e * vx * vy - vx * vy) / n2, (e * vy * vy + vx * vx) / n2)

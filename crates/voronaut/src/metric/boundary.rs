@@ -20,8 +20,8 @@ pub struct BoundarySizes {
     pub h_max: f64,
 }
 
-/// The field M = n n' / h_n^2 + t t' / h_t^2 of [`BoundarySizes`], where n points from the nearest point of the
-/// boundary to p, t is across n, and h_n and h_t are the sizes across and along.
+/// The field M = n n' / a^2 + t t' / b^2, where n points from the nearest point of the boundary to p, t is across n,
+/// and a and b are the sizes across and along the boundary that [`BoundarySizes`] gives.
 ///
 /// On the boundary, where rounding leaves n no direction, n is the normal of the segment; where several segments are
 /// equally near (at a shared vertex, half-way between two walls) M is the log-Euclidean mean of their tensors.

@@ -163,7 +163,7 @@ mod tests {
                 "h_min <= h_max",
             ),
         ] {
-            let error = Bounded::new(Uniform::default(), bounds).err().expect("senseless limits");
+            let error = Bounded::new(Uniform::default(), bounds).unwrap_err();
             assert_eq!(error.to_string(), message);
             assert!(error.help().contains(help), "{}", error.help());
         }

@@ -8,10 +8,11 @@ use rayon::prelude::*;
 
 /// The integral of sqrt(det M) over triangles that do not overlap, to a relative error of about 1e-4 of the total.
 ///
-/// Adaptive: a 7-point rule of degree 5 (Radon), against itself on the two halves of a triangle cut across its longest
-/// edge; triangles that contribute most of the error are cut further. It starts from at least 16,384 pieces, so that
-/// layers a thousand times thinner than the domain are seen, and costs at most 21 evaluations for each of these and
-/// each triangle given, plus 2^23. Parallel; the same result, bit for bit, for any number of threads.
+/// Adaptive: a 7-point rule of degree 5 (Radon), against itself on the four quarters of a triangle; those that
+/// contribute most of the error are cut further: in four, or in two where the metric varies across one edge only (layers
+/// along a boundary). It starts from at least 8,192 pieces, so that layers a thousand times
+/// thinner than the domain are seen, and costs at most 35 evaluations for each of up to 16,384 pieces and each triangle
+/// given, plus 2^24. Parallel; the same result, bit for bit, for any number of threads.
 ///
 /// # Errors
 /// [`Error::Metric`] where the tensor is not finite and positive definite, or where the error is still above 5 % of
@@ -23,49 +24,67 @@ pub fn complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f
     loop {
         let total: f64 = pieces.iter().map(Piece::integral).sum();
         let error: f64 = pieces.iter().map(Piece::error).sum();
-        if error <= TOLERANCE * total {
+        if error <= TOLERANCE * total && total.is_finite() {
             return Ok(total);
         }
         // Pieces below this make up half the tolerance, so that one above it exists.
         let allowed = 0.5 * TOLERANCE * total / pieces.len() as f64;
         let (kept, cut): (Vec<Piece>, Vec<Piece>) = pieces.into_iter().partition(|piece| piece.error() <= allowed);
-        spent += 2 * EVALUATIONS_PER_CUT * cut.len();
-        if spent > MAX_EVALUATIONS || cut.is_empty() {
+        let parts: Vec<Measured> = cut.iter().flat_map(Piece::cut).collect();
+        spent += parts.len() * EVALUATIONS_PER_PART;
+        if spent > MAX_EVALUATIONS || parts.is_empty() {
             let worst = cut.iter().chain(&kept).max_by(|a, b| a.error().total_cmp(&b.error()));
             return settle(total, error, worst);
         }
-        let halves =
-            cut.iter().flat_map(|piece| bisect(piece.triangle).into_iter().zip(piece.halves.map(Some))).collect();
         pieces = kept;
-        pieces.extend(measure(field, halves)?);
+        pieces.extend(measure(field, parts)?);
     }
 }
 
 /// Error of the result, relative to it; the estimate is that of the coarser rule, so that the truth is mostly better.
 const TOLERANCE: f64 = 1e-4;
 /// Pieces to start from.
-const PIECES: f64 = 16_384.0;
+const PIECES: f64 = 8192.0;
 /// Evaluations after the start.
-const MAX_EVALUATIONS: usize = 1 << 23;
-/// Evaluations that a piece costs when its own integral is known: its two halves'.
-const EVALUATIONS_PER_CUT: usize = 2 * 7;
+const MAX_EVALUATIONS: usize = 1 << 24;
+/// Evaluations that a new piece costs at most: its own and its four quarters'.
+const EVALUATIONS_PER_PART: usize = 5 * 7;
+/// The metric does not vary along an edge if it varies so much less than along the others.
+const FLAT: f64 = 0.1;
 /// Above this estimate of the relative error the integral is not trusted.
 const HOPELESS: f64 = 0.05;
 
-/// A triangle with its integral, by one rule and by one on each half.
+/// A triangle with its integral, by one rule and by one on each quarter.
+///
+/// Quarters, not halves: a cut parallel to the direction in which the metric varies would find no difference.
 struct Piece {
     triangle: [Point; 3],
     whole: f64,
-    halves: [f64; 2],
+    quarters: [f64; 4],
 }
 
 impl Piece {
     fn integral(&self) -> f64 {
-        self.halves[0] + self.halves[1]
+        self.quarters.iter().sum()
     }
 
     fn error(&self) -> f64 {
         (self.whole - self.integral()).abs()
+    }
+
+    /// Smaller pieces: two, by a cut across another edge, if the metric does not vary along one edge; else the quarters.
+    fn cut(&self) -> Vec<Measured> {
+        let [a, b, c] = self.triangle;
+        let [at_a, at_b, at_c, _] = self.quarters;
+        let edges = [([a, b, c], at_b - at_a), ([b, c, a], at_c - at_b), ([c, a, b], at_a - at_c)];
+        let most = edges.iter().fold(0.0, |most: f64, (_, variation)| most.max(variation.abs()));
+        match edges.into_iter().find(|(_, variation)| variation.abs() < FLAT * most) {
+            Some(([start, end, apex], _)) if squared(end, apex) >= squared(apex, start) => {
+                halve([end, apex, start]).map(|half| (half, None)).into()
+            }
+            Some(([start, end, apex], _)) => halve([apex, start, end]).map(|half| (half, None)).into(),
+            None => quarter(self.triangle).into_iter().zip(self.quarters.map(Some)).collect(),
+        }
     }
 }
 
@@ -100,8 +119,9 @@ fn start(triangles: &[[Point; 3]]) -> Result<Vec<Measured>> {
 fn measure(field: &dyn MetricField, triangles: Vec<Measured>) -> Result<Vec<Piece>> {
     let piece = |(triangle, known): Measured| {
         let whole = known.map_or_else(|| integrate(field, triangle), Ok)?;
-        let [first, second] = bisect(triangle);
-        Ok(Piece { triangle, whole, halves: [integrate(field, first)?, integrate(field, second)?] })
+        let [a, b, c, d] = quarter(triangle);
+        let quarters = [integrate(field, a)?, integrate(field, b)?, integrate(field, c)?, integrate(field, d)?];
+        Ok(Piece { triangle, whole, quarters })
     };
     // Collected before the first error is looked for, or threads would race for whose is reported.
     let pieces: Vec<Result<Piece>> = triangles.into_par_iter().with_min_len(64).map(piece).collect();
@@ -130,17 +150,30 @@ fn integrate(field: &dyn MetricField, [a, b, c]: [Point; 3]) -> Result<f64> {
 
 /// The two halves of a triangle cut across its longest edge.
 fn bisect([a, b, c]: [Point; 3]) -> [[Point; 3]; 2] {
-    let square = |p: Point, q: Point| (q - p).dot(q - p);
-    let (ab, bc, ca) = (square(a, b), square(b, c), square(c, a));
-    let [a, b, c] = if ab >= bc && ab >= ca {
-        [a, b, c]
+    let (ab, bc, ca) = (squared(a, b), squared(b, c), squared(c, a));
+    if ab >= bc && ab >= ca {
+        halve([a, b, c])
     } else if bc >= ca {
-        [b, c, a]
+        halve([b, c, a])
     } else {
-        [c, a, b]
-    };
+        halve([c, a, b])
+    }
+}
+
+/// The two halves of a triangle cut across its first edge.
+fn halve([a, b, c]: [Point; 3]) -> [[Point; 3]; 2] {
     let middle = a.midpoint(b);
     [[a, middle, c], [middle, b, c]]
+}
+
+fn squared(a: Point, b: Point) -> f64 {
+    (b - a).dot(b - a)
+}
+
+/// The four triangles of the corners and the middles of the edges.
+fn quarter([a, b, c]: [Point; 3]) -> [[Point; 3]; 4] {
+    let (ab, bc, ca) = (a.midpoint(b), b.midpoint(c), c.midpoint(a));
+    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
 
 fn area([a, b, c]: [Point; 3]) -> f64 {
@@ -149,7 +182,7 @@ fn area([a, b, c]: [Point; 3]) -> f64 {
 
 /// The result when no more evaluations are allowed.
 fn settle(total: f64, error: f64, worst: Option<&Piece>) -> Result<f64> {
-    if error <= HOPELESS * total {
+    if error <= HOPELESS * total && total.is_finite() {
         return Ok(total);
     }
     let place = worst.map_or("an unknown place".into(), |piece| piece.triangle[0].to_string());
@@ -161,6 +194,7 @@ fn settle(total: f64, error: f64, worst: Option<&Piece>) -> Result<f64> {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "exact results are the point")]
 mod tests {
     use super::*;
     use crate::geometry::{Tensor, Vector};
@@ -206,6 +240,20 @@ mod tests {
     }
 
     #[test]
+    fn layers_along_a_boundary_are_cheap() {
+        // Boundary layers of a wing: a millionth of its length; along the walls, the area per length is the integral
+        // of 1 / (h0 + d / 5)^2.
+        let evaluations = AtomicUsize::new(0);
+        let field = |p: Point| {
+            evaluations.fetch_add(1, Ordering::Relaxed);
+            Tensor::isotropic(1e-6 + 0.2 * p.y)
+        };
+        let truth = 3.0 * 5.0 * (1e6 - 1.0 / (1e-6 + 0.4));
+        assert_close(complexity(&field, &rectangle(-1.0, 0.0, 2.0, 2.0)).unwrap(), truth);
+        assert!(evaluations.into_inner() < 2_000_000);
+    }
+
+    #[test]
     fn thin_triangles_are_no_trouble() {
         let field = |p: Point| Tensor::new(1.0 + p.x * p.x, 0.0, 1.0 + p.x * p.x);
         assert_close(complexity(&field, &rectangle(0.0, 0.0, 100.0, 1e-6)).unwrap(), 1e-6 * (100.0 + 1e6 / 3.0));
@@ -213,7 +261,7 @@ mod tests {
 
     #[test]
     fn integrable_singularities_are_integrated() {
-        // sqrt(det M) = 1 / r over the unit square around 0: 4 ln(1 + sqrt 2) / ... by symmetry, 8 triangles.
+        // sqrt(det M) = 1 / r over the unit square around 0.
         let field = |p: Point| Tensor::IDENTITY * (1.0 / p.x.hypot(p.y));
         let truth = 4.0 * (1.0 + 2f64.sqrt()).ln();
         assert_close(complexity(&field, &rectangle(-0.5, -0.5, 0.5, 0.5)).unwrap(), truth);

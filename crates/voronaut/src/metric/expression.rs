@@ -122,6 +122,7 @@ fn pop(stack: &[f64; STACK], top: &mut usize) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "exact results are the point")]
 mod tests {
     use super::*;
     use proptest::prelude::*;
@@ -228,10 +229,10 @@ mod tests {
                         "sin" => v[0].sin(),
                         "max" => v[0].max(v[1]),
                         _ => {
-                            if v[0] != 0.0 {
-                                v[1]
-                            } else {
+                            if v[0] == 0.0 {
                                 v[2]
+                            } else {
+                                v[1]
                             }
                         }
                     }

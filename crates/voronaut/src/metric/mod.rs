@@ -28,6 +28,7 @@ mod spec;
 mod speed;
 mod tree;
 mod validate;
+mod vocabulary;
 
 pub use analytic::{Shock, Swirl, SwirlField, Uniform};
 pub use boundary::{Boundary, BoundarySizes};
