@@ -22,7 +22,7 @@ pub struct Swirl {
     pub field: SwirlField,
 }
 
-/// The report's swirl as its authors compute it, or as it is printed: the two differ (erratum 3 in the project's notes).
+/// The report's swirl as its authors compute it, or as it is printed: the two differ (erratum 15.3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SwirlField {
     /// The authors' code: M = v1 v1' / (a + 1) + v2 v2', a = |50 (1 - (f - 1)^2)|, f = (cbrt(r) + r) / 2. Sizes along
@@ -34,7 +34,7 @@ pub enum SwirlField {
     Printed,
 }
 
-/// The hyperbolic shock (RR-9103, 15.2 with erratum 2): thin cells along the gradient of
+/// The hyperbolic shock (RR-9103, 15.2, corrected: as printed, cells are long along the gradient): thin cells along the gradient of
 /// E(x, y) = tanh((2 x - sin 5 y) / lambda) + x^3 + x y^2.
 ///
 /// M = F' F with F = U diag(1 + phi |grad E|, 1) U' and grad E along U's first column; the identity where grad E = 0.

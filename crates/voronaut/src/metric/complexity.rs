@@ -9,8 +9,8 @@ use rayon::prelude::*;
 /// The integral of sqrt(det M) over triangles that do not overlap, to a relative error of about 1e-4 of the total.
 ///
 /// Adaptive: a 7-point rule of degree 5 (Radon), against itself on the four quarters of a triangle; those that
-/// contribute most of the error are cut further: in four, or in two where the metric varies across one edge only (layers
-/// along a boundary). It starts from at least 8,192 pieces, so that layers a thousand times
+/// contribute most of the error are cut further: in four, or in two where the metric varies across one edge only
+/// (layers along a boundary). It starts from at least 8,192 pieces of like area, so that layers a thousand times
 /// thinner than the domain are seen, and costs at most 35 evaluations for each of up to 16,384 pieces and each triangle
 /// given, plus 2^24. Parallel; the same result, bit for bit, for any number of threads.
 ///
@@ -27,8 +27,7 @@ pub fn complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f
         if error <= TOLERANCE * total && total.is_finite() {
             return Ok(total);
         }
-        // Pieces below this make up half the tolerance, so that one above it exists.
-        let allowed = 0.5 * TOLERANCE * total / pieces.len() as f64;
+        let allowed = negligible(&pieces, 0.5 * TOLERANCE * total);
         let (kept, cut): (Vec<Piece>, Vec<Piece>) = pieces.into_iter().partition(|piece| piece.error() <= allowed);
         let parts: Vec<Measured> = cut.iter().flat_map(Piece::cut).collect();
         spent += parts.len() * EVALUATIONS_PER_PART;
@@ -41,8 +40,9 @@ pub fn complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f
     }
 }
 
-/// Error of the result, relative to it; the estimate is that of the coarser rule, so that the truth is mostly better.
-const TOLERANCE: f64 = 1e-4;
+/// Estimated error of the result, relative to it. The estimate is far too large for smooth metrics and some times too
+/// small at singularities: a fifth of the 1e-4 that is promised.
+const TOLERANCE: f64 = 2e-5;
 /// Pieces to start from.
 const PIECES: f64 = 8192.0;
 /// Evaluations after the start.
@@ -72,7 +72,7 @@ impl Piece {
         (self.whole - self.integral()).abs()
     }
 
-    /// Smaller pieces: two, by a cut across another edge, if the metric does not vary along one edge; else the quarters.
+    /// Smaller pieces: where the metric does not vary along one edge, two, by a cut across another; else the quarters.
     fn cut(&self) -> Vec<Measured> {
         let [a, b, c] = self.triangle;
         let [at_a, at_b, at_c, _] = self.quarters;
@@ -89,6 +89,18 @@ impl Piece {
 }
 
 type Measured = ([Point; 3], Option<f64>);
+
+/// The largest error such that the pieces with no more make up a sum of at most `allowance`.
+fn negligible(pieces: &[Piece], allowance: f64) -> f64 {
+    let mut errors: Vec<f64> = pieces.iter().map(Piece::error).collect();
+    errors.sort_unstable_by(f64::total_cmp);
+    let mut sum = 0.0;
+    let small = errors.iter().take_while(|error| {
+        sum += **error;
+        sum <= allowance
+    });
+    small.last().copied().unwrap_or(0.0)
+}
 
 /// The triangles with area, cut until none is larger than a share of the total.
 fn start(triangles: &[[Point; 3]]) -> Result<Vec<Measured>> {
@@ -250,7 +262,8 @@ mod tests {
         };
         let truth = 3.0 * 5.0 * (1e6 - 1.0 / (1e-6 + 0.4));
         assert_close(complexity(&field, &rectangle(-1.0, 0.0, 2.0, 2.0)).unwrap(), truth);
-        assert!(evaluations.into_inner() < 2_000_000);
+        let count = evaluations.into_inner();
+        assert!(count < 3_000_000, "{count} evaluations");
     }
 
     #[test]

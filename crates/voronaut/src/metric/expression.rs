@@ -34,7 +34,7 @@ impl Expression {
     /// Compiles a text.
     ///
     /// # Errors
-    /// [`Error::Parse`](crate::Error::Parse) with the column (from 1, in characters) and the text with a caret below it.
+    /// [`Error::Parse`](crate::Error::Parse) with the column (from 1, in characters), the text and a caret below it.
     pub fn parse(text: &str, variables: Variables) -> Result<Self> {
         Self::parse_range(text, 0..text.len(), variables, "expression")
     }
