@@ -34,8 +34,8 @@ pub enum SwirlField {
     Printed,
 }
 
-/// The hyperbolic shock (RR-9103, 15.2, corrected: as printed, cells are long along the gradient): thin cells along the gradient of
-/// E(x, y) = tanh((2 x - sin 5 y) / lambda) + x^3 + x y^2.
+/// The hyperbolic shock (RR-9103, 15.2, corrected: as printed, cells are long along the gradient): cells are thin along
+/// the gradient of E(x, y) = tanh((2 x - sin 5 y) / lambda) + x^3 + x y^2.
 ///
 /// M = F' F with F = U diag(1 + phi |grad E|, 1) U' and grad E along U's first column; the identity where grad E = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
