@@ -11,8 +11,8 @@
 //! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits |
 //! | [`Scaled`] | `-n`, `--complexity` | another field times a factor |
 //!
-//! [`MetricSpec`] reads the second column; [`complexity()`] integrates sqrt(det M); [`check_tensor`] and [`check_field`]
-//! tell whether values are a metric. Fields do not check their own values: whoever uses a tensor does.
+//! [`MetricSpec`] reads the second column; [`complexity()`] integrates sqrt(det M); [`check_tensor`] and
+//! [`check_field`] tell whether values are a metric. Fields do not check their own values: whoever uses a tensor does.
 
 mod analytic;
 mod boundary;
