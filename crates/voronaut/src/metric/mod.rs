@@ -1,4 +1,45 @@
 //! Metric fields: a symmetric positive definite tensor at every point of the domain.
+//!
+//! | field | as a METRIC | what it is |
+//! |---|---|---|
+//! | [`Uniform`] | `uniform`, `uniform:m11,m12,m22` | the same tensor everywhere |
+//! | [`Swirl`] | `swirl:nu=3,field=authors` | long cells along a spiral (RR-9103, 15.3) |
+//! | [`Shock`] | `shock:phi=10,lambda=0.6` | thin cells across a sine-shaped front (RR-9103, 15.2) |
+//! | [`Formula`] | `formula:m11; m12; m22` | three expressions in x and y |
+//! | [`Boundary`] | `boundary:h0=0.01,growth=1.2,aspect=1,h_max=inf` | layers along the boundary |
+//! | [`Sampled`] | `FILE.sol` | tensors or sizes at the vertices of a mesh, log-Euclidean between them |
+//! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits |
+//! | [`Scaled`] | `-n`, `--complexity` | another field times a factor |
+//!
+//! [`MetricSpec`] reads the second column; [`complexity()`] integrates sqrt(det M); [`check_tensor`] and
+//! [`check_field`] tell whether values are a metric. Fields do not check their own values: whoever uses a tensor does.
+
+mod analytic;
+mod boundary;
+mod bounds;
+mod complexity;
+mod expression;
+mod formula;
+mod parser;
+mod sampled;
+mod scaled;
+mod spec;
+#[cfg(test)]
+mod speed;
+mod tree;
+mod validate;
+mod vocabulary;
+
+pub use analytic::{Shock, Swirl, SwirlField, Uniform};
+pub use boundary::{Boundary, BoundarySizes};
+pub use bounds::{Bounded, Bounds};
+pub use complexity::complexity;
+pub use expression::{Expression, Variables};
+pub use formula::Formula;
+pub use sampled::Sampled;
+pub use scaled::Scaled;
+pub use spec::MetricSpec;
+pub use validate::{check_field, check_tensor};
 
 use crate::geometry::{Point, Tensor};
 
@@ -14,5 +55,11 @@ pub trait MetricField: Sync {
 impl<F: Fn(Point) -> Tensor + Sync> MetricField for F {
     fn at(&self, p: Point) -> Tensor {
         self(p)
+    }
+}
+
+impl MetricField for Box<dyn MetricField + '_> {
+    fn at(&self, p: Point) -> Tensor {
+        (**self).at(p)
     }
 }

@@ -1,0 +1,317 @@
+//! A metric given at the vertices of a background mesh.
+
+use super::MetricField;
+use super::tree::BoxTree;
+use super::validate::check_tensor_at;
+use crate::error::{Error, Result};
+use crate::geometry::{Aabb, Point, Tensor, Vector};
+use crate::mesh::Mesh;
+
+/// Tensors at the vertices of a planar triangle mesh; inside triangles the log-Euclidean interpolation, exp of the
+/// linear interpolation of log M, which is positive definite and between the sizes at the corners.
+///
+/// Outside the mesh the value is that at the nearest point of the mesh. The field is continuous but for outside points
+/// equally near to two parts of the mesh.
+#[derive(Clone, Debug)]
+pub struct Sampled {
+    /// Logarithms, one per vertex.
+    logs: Vec<Tensor>,
+    /// In the order of `tree`.
+    triangles: Vec<Triangle>,
+    tree: BoxTree,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Triangle {
+    corners: [Point; 3],
+    vertices: [u32; 3],
+}
+
+impl Sampled {
+    /// The field of one tensor per vertex.
+    ///
+    /// # Errors
+    /// [`Error::Metric`] where the numbers of tensors and vertices differ, or a tensor is not finite and positive
+    /// definite; [`Error::Domain`] where the background has no triangles, is not planar, not finite, or refers to
+    /// vertices it does not have.
+    pub fn new(background: &Mesh, tensors: &[Tensor]) -> Result<Self> {
+        check_background(background)?;
+        check_count(background, "tensors", tensors.len())?;
+        for (i, &tensor) in tensors.iter().enumerate() {
+            check_tensor_at(tensor, || describe(background, i))?;
+        }
+        let corners: Vec<[Point; 3]> = background.triangles.iter().map(|&t| background.corners_of(t)).collect();
+        let boxes: Vec<Aabb> = corners.iter().filter_map(|&c| Aabb::of(c)).collect();
+        let (tree, order) = BoxTree::new(&boxes);
+        let triangle = |&i: &u32| Triangle { corners: corners[i as usize], vertices: background.triangles[i as usize] };
+        let logs = tensors.iter().map(|tensor| tensor.log()).collect();
+        Ok(Self { logs, triangles: order.iter().map(triangle).collect(), tree })
+    }
+
+    /// The isotropic field of one size per vertex: log-linear, so that a size half-way is the geometric mean.
+    ///
+    /// # Errors
+    /// As [`Sampled::new`]; [`Error::Metric`] where a size is not positive and finite.
+    pub fn sizes(background: &Mesh, sizes: &[f64]) -> Result<Self> {
+        check_background(background)?;
+        check_count(background, "sizes", sizes.len())?;
+        if let Some(i) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) {
+            let what = format!("the size h = {} is not positive and finite", sizes[i]);
+            return Err(Error::metric(what, describe(background, i), "a size is the length of edges there"));
+        }
+        let tensors: Vec<Tensor> = sizes.iter().map(|&h| Tensor::isotropic(h)).collect();
+        Self::new(background, &tensors)
+    }
+
+    /// The triangle nearest to `p` and the barycentric coordinates of the nearest point in it; `None` where `p` is
+    /// not finite.
+    fn locate(&self, p: Point) -> Option<(&Triangle, [f64; 3])> {
+        let mut best = f64::INFINITY;
+        let mut found = None;
+        self.tree.search(p, |position| {
+            let triangle = &self.triangles[position];
+            let (distance, weights) = nearest_point(triangle.corners, p);
+            if distance < best {
+                best = distance;
+                found = Some((triangle, weights));
+            }
+            best
+        });
+        found
+    }
+}
+
+impl MetricField for Sampled {
+    fn at(&self, p: Point) -> Tensor {
+        let Some((triangle, weights)) = self.locate(p) else {
+            return Tensor::new(f64::NAN, f64::NAN, f64::NAN);
+        };
+        let [a, b, c] = triangle.vertices.map(|v| self.logs[v as usize]);
+        (a * weights[0] + b * weights[1] + c * weights[2]).exp()
+    }
+}
+
+/// Squared distance of `p` to a triangle of either orientation, even without area, and the barycentric coordinates
+/// of the nearest point.
+fn nearest_point([a, b, c]: [Point; 3], p: Point) -> (f64, [f64; 3]) {
+    let areas = [(b - p).cross(c - p), (c - p).cross(a - p), (a - p).cross(b - p)];
+    let total: f64 = areas.iter().sum();
+    if total != 0.0 && areas.iter().all(|area| area * total >= 0.0) {
+        return (0.0, areas.map(|area| area / total));
+    }
+    let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
+    for (i, (start, end)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+        let (along, offset) = (end - start, p - start);
+        let square = along.dot(along);
+        let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let rest: Vector = offset - along * t;
+        if rest.dot(rest) < best.0 {
+            let mut weights = [0.0; 3];
+            weights[i] = 1.0 - t;
+            weights[(i + 1) % 3] = t;
+            best = (rest.dot(rest), weights);
+        }
+    }
+    best
+}
+
+fn check_background(background: &Mesh) -> Result<()> {
+    let place = "the background mesh of the metric";
+    if background.triangles.is_empty() {
+        return Err(Error::domain("no triangles", place, "a metric at vertices needs a mesh with triangles"));
+    }
+    if let Some(i) = background.points.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
+        return Err(Error::domain(
+            "a coordinate is not finite",
+            describe(background, i),
+            "correct the background mesh",
+        ));
+    }
+    if let Some(i) = background.points.iter().position(|p| p[2] != 0.0) {
+        let what = format!("z = {} is not zero", background.points[i][2]);
+        return Err(Error::domain(what, describe(background, i), "the background mesh must lie in the plane z = 0"));
+    }
+    let count = background.points.len();
+    if let Some(i) = background.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= count)) {
+        let what = format!("triangle {} refers to a vertex beyond the last, {count}", i + 1);
+        return Err(Error::domain(what, place, "correct the background mesh"));
+    }
+    Ok(())
+}
+
+fn check_count(background: &Mesh, what: &str, found: usize) -> Result<()> {
+    let needed = background.points.len();
+    if found == needed {
+        return Ok(());
+    }
+    let what = format!("{found} {what} for {needed} vertices");
+    let help = "the metric must have one value for each vertex of the background mesh, in the same order";
+    Err(Error::metric(what, "the background mesh", help))
+}
+
+/// A vertex, numbered from 1, for messages.
+fn describe(mesh: &Mesh, vertex: usize) -> String {
+    let [x, y, _] = mesh.points[vertex];
+    format!("vertex {} {}", vertex + 1, Point::new(x, y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The unit square as 2 n^2 triangles of mixed orientation, vertices moved a little.
+    fn grid(n: u32) -> Mesh {
+        let step = 1.0 / f64::from(n);
+        let wobble =
+            |i: u32, j: u32| 0.2 * step * f64::from(i * 7 + j * 13).sin() * f64::from(u8::from(i % n * (j % n) > 0));
+        let position = |k: u32| {
+            let (i, j) = (k % (n + 1), k / (n + 1));
+            [f64::from(i) * step + wobble(i, j), f64::from(j) * step + wobble(j, i), 0.0]
+        };
+        let cell = |k: u32| {
+            let a = k % n + k / n * (n + 1);
+            [[a, a + 1, a + n + 2], [a, a + n + 1, a + n + 2]]
+        };
+        Mesh {
+            points: (0..(n + 1) * (n + 1)).map(position).collect(),
+            triangles: (0..n * n).flat_map(cell).collect(),
+            ..Mesh::default()
+        }
+    }
+
+    fn smooth(p: Point) -> Tensor {
+        let angle = p.x + 2.0 * p.y;
+        Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), 100.0 * (1.0 + p.x), 1.0 + p.y)
+    }
+
+    fn sampled(mesh: &Mesh) -> Sampled {
+        let tensors: Vec<Tensor> = (0..mesh.points.len() as u32).map(|v| smooth(mesh.point(v))).collect();
+        Sampled::new(mesh, &tensors).unwrap()
+    }
+
+    fn error(a: Tensor, b: Tensor) -> f64 {
+        ((a.xx - b.xx).abs() + (a.xy - b.xy).abs() + (a.yy - b.yy).abs()) / (b.xx + b.yy)
+    }
+
+    #[test]
+    fn vertices_keep_their_tensors() {
+        let mesh = grid(9);
+        let field = sampled(&mesh);
+        for v in 0..mesh.points.len() as u32 {
+            let p = mesh.point(v);
+            assert!(error(field.at(p), smooth(p)) < 1e-10, "{p}");
+        }
+    }
+
+    #[test]
+    fn interpolation_converges_with_second_order() {
+        let worst = |n| {
+            let field = sampled(&grid(n));
+            let at = |i: u32| Point::new((f64::from(i) * 0.618).fract(), (f64::from(i) * 0.414).fract());
+            (0..2000).map(|i| error(field.at(at(i)), smooth(at(i)))).fold(0.0, f64::max)
+        };
+        let (coarse, fine) = (worst(20), worst(40));
+        assert!(fine < 0.33 * coarse && fine < 0.02, "{coarse} {fine}");
+    }
+
+    #[test]
+    fn a_constant_tensor_is_reproduced_everywhere() {
+        let mesh = grid(5);
+        let m = Tensor::new(5.0, -2.0, 3.0);
+        let field = Sampled::new(&mesh, &vec![m; mesh.points.len()]).unwrap();
+        for p in [Point::new(0.3, 0.4), Point::new(0.0, 1.0), Point::new(-7.0, 3.0), Point::new(0.5, 1e9)] {
+            assert!(error(field.at(p), m) < 1e-14, "{p}");
+        }
+    }
+
+    #[test]
+    fn outside_is_the_nearest_point_of_the_mesh() {
+        let field = sampled(&grid(6));
+        for (p, q) in [((-0.5, 0.3), (0.0, 0.3)), ((0.77, 1.4), (0.77, 1.0)), ((3.0, -2.0), (1.0, 0.0))] {
+            let (outside, nearest) = (field.at(Point::new(p.0, p.1)), field.at(Point::new(q.0, q.1)));
+            assert!(error(outside, nearest) < 1e-12, "{p:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn location_agrees_with_brute_force(x in -0.5..1.5, y in -0.5..1.5) {
+            let field = sampled(&grid(8));
+            let p = Point::new(x, y);
+            let truth = field.triangles.iter().map(|t| nearest_point(t.corners, p).0).fold(f64::INFINITY, f64::min);
+            let (triangle, w) = field.locate(p).unwrap();
+            let [a, b, c] = triangle.corners;
+            let q = Point::new(a.x * w[0] + b.x * w[1] + c.x * w[2], a.y * w[0] + b.y * w[1] + c.y * w[2]);
+            prop_assert!((p.distance(q) - truth.sqrt()).abs() < 1e-14);
+            prop_assert!(w.iter().all(|w| *w >= 0.0) && (w.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        }
+
+        #[test]
+        fn a_small_step_changes_little(x in -0.2..1.2, y in -0.2..1.2, angle in 0.0..6.3) {
+            let field = sampled(&grid(8));
+            let (p, step) = (Point::new(x, y), Vector::new(f64::cos(angle), f64::sin(angle)) * 1e-7);
+            prop_assert!(error(field.at(p + step), field.at(p)) < 1e-5);
+        }
+    }
+
+    #[test]
+    fn triangles_without_area_are_harmless() {
+        let mut mesh = grid(3);
+        mesh.triangles.extend([[0, 0, 0], [0, 1, 1], [0, 1, 2]]);
+        let field = sampled(&mesh);
+        assert!(field.at(Point::new(0.3, -0.2)).is_positive_definite());
+        assert!(field.at(Point::new(f64::NAN, 0.0)).xx.is_nan());
+    }
+
+    #[test]
+    fn sizes_interpolate_geometrically() {
+        let mesh = Mesh {
+            points: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        };
+        let field = Sampled::sizes(&mesh, &[0.1, 10.0, 0.1]).unwrap();
+        assert!(error(field.at(Point::new(0.5, 0.0)), Tensor::IDENTITY) < 1e-12);
+    }
+
+    #[test]
+    fn bad_input_is_named() {
+        let mesh = grid(2);
+        let mut tensors = vec![Tensor::IDENTITY; 9];
+        let message = |result: Result<Sampled>| result.unwrap_err().to_string();
+        assert_eq!(
+            message(Sampled::new(&mesh, &tensors[1..])),
+            "invalid metric: 8 tensors for 9 vertices at the background mesh"
+        );
+        assert!(message(Sampled::sizes(&mesh, &[1.0])).contains("1 sizes for 9 vertices"));
+        tensors[2] = Tensor::new(1.0, 2.0, 1.0);
+        assert_eq!(
+            message(Sampled::new(&mesh, &tensors)),
+            "invalid metric: the tensor m11 = 1, m12 = 2, m22 = 1 is not positive definite at vertex 3 (1, 0)"
+        );
+        let mut sizes = [1.0; 9];
+        sizes[3] = -0.5;
+        assert_eq!(
+            message(Sampled::sizes(&mesh, &sizes)),
+            "invalid metric: the size h = -0.5 is not positive and finite at vertex 4 (0, 0.5)"
+        );
+        sizes[3] = 1e-200;
+        assert!(message(Sampled::sizes(&mesh, &sizes)).contains("m11 = inf"));
+    }
+
+    #[test]
+    fn bad_backgrounds_are_named() {
+        let message = |mesh: &Mesh| Sampled::sizes(mesh, &[1.0; 9]).unwrap_err().to_string();
+        assert!(message(&Mesh { triangles: vec![], ..grid(2) }).contains("no triangles at the background mesh"));
+        assert!(
+            message(&Mesh { triangles: vec![[0, 1, 9]], ..grid(2) })
+                .contains("triangle 1 refers to a vertex beyond the last, 9")
+        );
+        let mut mesh = grid(2);
+        mesh.points[8][2] = 0.25;
+        assert_eq!(message(&mesh), "invalid domain: z = 0.25 is not zero at vertex 9 (1, 1)");
+        mesh.points[8] = [f64::NAN, 1.0, 0.0];
+        assert_eq!(message(&mesh), "invalid domain: a coordinate is not finite at vertex 9 (NaN, 1)");
+    }
+}
