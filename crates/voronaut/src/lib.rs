@@ -12,6 +12,7 @@ pub mod metric;
 pub mod optimise;
 pub mod output;
 pub mod planar;
+pub mod progress;
 pub mod quality;
 pub mod recipe;
 pub mod sampling;

@@ -1,6 +1,15 @@
 //! The main job as one function: from a domain and a metric to a valid unit mesh.
 
+use crate::domain::Domain;
+use crate::dual::{Dual, Kind, LEVELS};
+use crate::error::Result;
 use crate::mesh::Mesh;
+use crate::metric::{MetricField, Scaled};
+use crate::optimise::{exchange, meet_blocked_flips, relax};
+use crate::progress::Progress;
+use crate::quality;
+use crate::sampling::{Plan, Target, refine, sample_segments, simplify};
+use std::time::Instant;
 
 /// What the mesher may be told; every parameter has one name (flag, TOML key, Python keyword) and one default.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -26,9 +35,10 @@ impl Default for MeshOptions {
 /// What the mesher counted: deterministic, the same on every machine and for any number of threads.
 #[derive(Clone, Debug, Default, serde::Serialize)]
 pub struct MeshCounters {
-    /// In-circle tests settled by each level of the filter: frozen tensor, chord length, path energy.
-    pub geodesic_tests: [u64; 3],
-    /// Tests whose margin stayed within the error bound of the last level.
+    /// In-circle tests settled by each level of the filter: frozen tensor, expansions at the vertices, path energy
+    /// with 8 and with 16 segments.
+    pub geodesic_tests: [u64; LEVELS],
+    /// Tests whose margin stayed within the estimated error of the last level tried.
     pub uncertain: u64,
     /// The smallest margin among the final mesh's edges (sine of the sum of opposite angles).
     pub min_margin: f64,
@@ -51,18 +61,161 @@ pub struct Meshed {
     pub notes: Vec<String>,
 }
 
-/// Told about progress during long work; the library never prints.
-pub trait Progress: Sync {
-    /// A stage began, with so many units of work.
-    fn stage(&self, name: &'static str, total: u64);
-    /// So many units of the current stage are done.
-    fn done(&self, units: u64);
+/// Seeding starts again with a corrected scale at most so many times.
+const ROUNDS: usize = 4;
+/// The geometric mean of the free edges' lengths may differ from one by this much before seeding starts again.
+const SCALE_TOLERANCE: f64 = 0.04;
+/// Seeds put at blocked flips, as a share of all: N is kept within one per cent.
+const BLOCKED_SHARE: f64 = 0.005;
+/// Seeds exchanged between two halves of the relaxation, as a share of all.
+const EXCHANGED_SHARE: f64 = 0.02;
+
+/// Meshes a domain by a metric: plans the scale, samples the boundary, fills the interior, relaxes, checks.
+///
+/// # Errors
+/// The metric is invalid somewhere, or the work would exceed the memory limit. A valid domain with a valid metric is
+/// refused for no other reason; what could not be met is in [`Meshed::notes`].
+pub fn mesh(
+    domain: &Domain,
+    field: &dyn MetricField,
+    options: &MeshOptions,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    let mut job = Job { field, options, progress, seconds: Vec::new(), notes: Vec::new() };
+    let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
+    let mut dual = job.timed("seed", |job| job.seed(&domain, &plan, count, scale))?;
+    job.timed("relax", |job| job.relax(&mut dual))?;
+    job.timed("check", |job| job.finish(&domain, &mut dual))
 }
 
-/// Progress that nobody watches.
-pub struct Silent;
+struct Job<'a> {
+    field: &'a dyn MetricField,
+    options: &'a MeshOptions,
+    progress: &'a dyn Progress,
+    seconds: Vec<(&'static str, f64)>,
+    notes: Vec<String>,
+}
 
-impl Progress for Silent {
-    fn stage(&self, _name: &'static str, _total: u64) {}
-    fn done(&self, _units: u64) {}
+impl<'a> Job<'a> {
+    fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
+        let start = Instant::now();
+        let result = work(self);
+        self.seconds.push((stage, start.elapsed().as_secs_f64()));
+        result
+    }
+
+    fn target(&self) -> Target {
+        match (self.options.vertices, self.options.complexity) {
+            (Some(n), _) => Target::Vertices(n),
+            (None, Some(c)) => Target::Complexity(c),
+            (None, None) => Target::Metric,
+        }
+    }
+
+    /// The domain with its curves simplified as allowed, its plan, and the count and scale to start from.
+    fn plan(&mut self, domain: &Domain) -> Result<(Domain, Plan, usize, f64)> {
+        self.progress.stage("planning", 1);
+        let tolerance = self.options.hausd.unwrap_or(domain.pslg().tolerance);
+        let mut plan = Plan::new(domain, self.field)?;
+        let (mut count, mut scale) = plan.start(self.target(), self.options.memory_limit)?;
+        let mut simplified = domain.clone();
+        if tolerance > 0.0 {
+            // Fewer corners let the metric be finer, and the other way round: two rounds settle it.
+            for _ in 0..2 {
+                simplified = simplify(domain, &Scaled { field: self.field, factor: scale }, tolerance);
+                plan = Plan::new(&simplified, self.field)?;
+                (count, scale) = plan.start(self.target(), self.options.memory_limit)?;
+            }
+        }
+        if plan.corners() > count && self.options.vertices.is_some() {
+            let corners = plan.corners();
+            self.notes.push(format!(
+                "{count} vertices were asked for, but the domain's own corners are {corners}: simplify with --hausd"
+            ));
+        }
+        Ok((simplified, plan, count, scale))
+    }
+
+    /// Seeds the domain with `count` vertices; the scale follows from what the seeds' distances turn out to be. Where
+    /// the scale is given, the count follows instead.
+    fn seed(&mut self, domain: &Domain, plan: &Plan, mut count: usize, mut scale: f64) -> Result<Dual<'a>> {
+        for round in 1.. {
+            self.progress.stage("seeding", count as u64);
+            let mut dual = Dual::new(domain, Scaled { field: self.field, factor: scale })?;
+            sample_segments(&mut dual, &plan.edges, &plan.arcs, scale);
+            refine(&mut dual, count, self.progress);
+            dual.verdict()?;
+            let mean = mean_free_edge(&dual);
+            if round == ROUNDS || (mean - 1.0).abs() < SCALE_TOLERANCE {
+                return Ok(dual);
+            }
+            if self.options.vertices.is_some() {
+                scale /= mean * mean;
+            } else {
+                count = ((count as f64) * mean * mean).round() as usize;
+            }
+            while plan.boundary_vertices(scale) > count as f64 && plan.boundary_vertices(scale) > plan.corners() as f64
+            {
+                scale *= 0.98;
+            }
+        }
+        unreachable!("the last round returns")
+    }
+
+    fn relax(&mut self, dual: &mut Dual) -> Result<()> {
+        let count = dual.vertex_count();
+        let steps = self.options.lloyd;
+        self.progress.stage("relaxing", steps as u64);
+        let most = |share: f64| (count as f64 * share) as usize;
+        for quarter in 0..4 {
+            relax(dual, (steps * (quarter + 1)) / 4 - (steps * quarter) / 4, self.progress)?;
+            if quarter < 3 {
+                let met = meet_blocked_flips(dual, most(BLOCKED_SHARE));
+                exchange(dual, count, most(EXCHANGED_SHARE).max(met));
+            }
+            self.fit_scale(dual);
+        }
+        dual.verdict()
+    }
+
+    /// With a count given, the factor is the one for which free edges have unit length in the (geometric) mean.
+    fn fit_scale(&self, dual: &mut Dual) {
+        if self.options.vertices.is_some() {
+            let mean = mean_free_edge(dual);
+            dual.rescale(dual.field().factor / (mean * mean));
+        }
+    }
+
+    fn finish(&mut self, domain: &Domain, dual: &mut Dual) -> Result<Meshed> {
+        self.progress.stage("checking", 1);
+        dual.flip_all(crate::dual::Effort::Full);
+        let blocked_flips = dual.blocked_flips().len() as u64;
+        let min_margin = dual.smallest_margin().unwrap_or(0.0);
+        let mesh = dual.to_mesh(domain);
+        quality::check(&mesh)?;
+        let counters = MeshCounters {
+            geodesic_tests: dual.counters().tests,
+            uncertain: dual.counters().uncertain,
+            min_margin,
+            blocked_flips,
+        };
+        let (seconds, notes) = (std::mem::take(&mut self.seconds), std::mem::take(&mut self.notes));
+        Ok(Meshed { mesh, metric_scale: dual.field().factor, counters, seconds, notes })
+    }
+}
+
+/// Geometric mean of the metric lengths of the edges that touch no constraint; of all edges where there are none.
+fn mean_free_edge(dual: &Dual) -> f64 {
+    let topology = dual.topology();
+    let is_free = |v| dual.kind(v) == Kind::Free;
+    let (mut sum, mut number) = ([0.0; 2], [0_usize; 2]);
+    for h in topology.edges() {
+        let group = usize::from(is_free(topology.origin(h)) && is_free(topology.target(h)));
+        sum[group] += dual.edge_length(h).max(f64::MIN_POSITIVE).ln();
+        number[group] += 1;
+    }
+    // A handful of inner edges says little: below that all edges count.
+    let mean =
+        if number[1] >= 10 { sum[1] / number[1] as f64 } else { (sum[0] + sum[1]) / (number[0] + number[1]) as f64 };
+    mean.exp()
 }

@@ -90,8 +90,8 @@ impl Dual<'_> {
         let (p, q) = (self.position(u), self.position(v));
         match level {
             1 => hermite(p, self.local(u), q, self.local(v)),
-            2 => path_energy(self.field, p, q, 8),
-            _ => path_energy(self.field, p, q, 16),
+            2 => path_energy(&self.field, p, q, 8),
+            _ => path_energy(&self.field, p, q, 16),
         }
     }
 }

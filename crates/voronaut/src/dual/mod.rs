@@ -15,7 +15,7 @@ use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, hermite};
 use crate::geometry::{Point, Tensor};
-use crate::metric::MetricField;
+use crate::metric::Scaled;
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use rayon::prelude::*;
@@ -44,7 +44,7 @@ pub struct DualCounters {
 
 /// See the [module](self).
 pub struct Dual<'a> {
-    field: &'a dyn MetricField,
+    field: Scaled<'a>,
     planar: Planar,
     locals: Vec<LocalMetric>,
     kinds: Vec<Kind>,
@@ -55,11 +55,11 @@ pub struct Dual<'a> {
 }
 
 impl<'a> Dual<'a> {
-    /// The triangulated corners of a domain. `field` measures in units of the wanted edge length.
+    /// The triangulated corners of a domain. The field measures in units of the wanted edge length.
     ///
     /// # Errors
     /// The metric is not positive definite at a corner.
-    pub fn new(domain: &Domain, field: &'a dyn MetricField) -> Result<Self> {
+    pub fn new(domain: &Domain, field: Scaled<'a>) -> Result<Self> {
         let planar = domain.planar().clone();
         let kinds = domain.sources().iter().map(|s| s.map_or(Kind::Free, Kind::Corner)).collect();
         let mut dual = Self {
@@ -89,8 +89,14 @@ impl<'a> Dual<'a> {
     }
 
     /// The metric field, in units of the wanted edge length.
-    pub fn field(&self) -> &'a dyn MetricField {
+    pub fn field(&self) -> Scaled<'a> {
         self.field
+    }
+
+    /// Multiplies the metric by another factor instead; seeds and edges stay.
+    pub fn rescale(&mut self, factor: f64) {
+        self.field.factor = factor;
+        self.measure_all();
     }
 
     /// Number of vertices.
@@ -145,7 +151,7 @@ impl<'a> Dual<'a> {
         let (topology, positions) = (&self.planar.topology, &self.planar.positions);
         self.locals.par_iter_mut().enumerate().with_min_len(256).for_each(|(v, local)| {
             if topology.is_vertex(VertexId(v as u32)) {
-                *local = LocalMetric::at(field, positions[v]);
+                *local = LocalMetric::at(&field, positions[v]);
             }
         });
         for v in 0..self.locals.len() {
@@ -157,7 +163,7 @@ impl<'a> Dual<'a> {
 
     /// The metric around a point; where it is not valid that is noted, and the Euclidean metric serves instead.
     fn measure(&mut self, p: Point) -> LocalMetric {
-        let local = LocalMetric::at(self.field, p);
+        let local = LocalMetric::at(&self.field, p);
         self.vetted(p, local)
     }
 

@@ -1,0 +1,71 @@
+//! Exchanging seeds: removing those that crowd, adding where edges are too long, at a given number of vertices.
+
+use crate::dual::{Dual, Kind};
+use crate::progress::Silent;
+use crate::sampling::refine;
+use crate::triangulation::VertexId;
+
+/// Edges shorter than this in the metric (just below the unit range) mark seeds that crowd.
+const SHORT: f64 = 0.66;
+
+/// Removes free seeds at edges that are too short, shortest first and no two of them neighbours, at most a share of
+/// all vertices; then inserts where circumradii are largest until there are `count` vertices again. Returns how many
+/// seeds were removed.
+pub fn exchange(dual: &mut Dual, count: usize, most: usize) -> usize {
+    let removed = remove_crowded(dual, most, SHORT);
+    let excess = dual.vertex_count().saturating_sub(count);
+    let removed = removed + if excess > 0 { remove_crowded(dual, excess, f64::INFINITY) } else { 0 };
+    refine(dual, count, &Silent);
+    removed
+}
+
+fn remove_crowded(dual: &mut Dual, most: usize, shorter_than: f64) -> usize {
+    let mut short: Vec<(f64, [VertexId; 2])> = dual
+        .topology()
+        .edges()
+        .map(|h| (dual.edge_length(h), [dual.topology().origin(h), dual.topology().target(h)]))
+        .filter(|&(length, ends)| length < shorter_than && ends.iter().any(|&v| dual.kind(v) == Kind::Free))
+        .collect();
+    short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut spoken_for = vec![false; dual.topology().vertex_slots()];
+    let mut removed = 0;
+    for (_, ends) in short {
+        if removed == most {
+            break;
+        }
+        let crowded = ends.into_iter().filter(|&v| dual.kind(v) == Kind::Free && !spoken_for[v.index()]);
+        let Some(v) = crowded.min_by(|&u, &v| nearest_two(dual, u).total_cmp(&nearest_two(dual, v))) else { continue };
+        let link: Vec<VertexId> = dual.topology().star(v).map(|h| dual.topology().target(h)).collect();
+        if dual.remove(v) {
+            removed += 1;
+            link.into_iter().chain(ends).for_each(|u| spoken_for[u.index()] = true);
+        }
+    }
+    removed
+}
+
+/// The sum of a seed's two shortest edges: the smaller, the more it crowds.
+fn nearest_two(dual: &Dual, v: VertexId) -> f64 {
+    let mut lengths: Vec<f64> = dual.topology().star(v).map(|h| dual.edge_length(h)).collect();
+    lengths.sort_by(f64::total_cmp);
+    lengths.iter().take(2).sum()
+}
+
+/// Puts a seed at the middle of each edge whose flip the metric wants and the plane forbids, worst first and at most
+/// `most` of them. Returns how many.
+pub fn meet_blocked_flips(dual: &mut Dual, most: usize) -> usize {
+    let mut blocked = dual.blocked_flips();
+    blocked.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+    let ends = |h| [dual.topology().origin(h), dual.topology().target(h)];
+    let edges: Vec<[VertexId; 2]> = blocked.into_iter().map(|(h, _)| ends(h)).collect();
+    let mut met = 0;
+    for [a, b] in edges {
+        if met == most {
+            break;
+        }
+        let Some(h) = dual.topology().find(a, b) else { continue };
+        let middle = dual.position(a).midpoint(dual.position(b));
+        met += usize::from(dual.insert_on_edge(h, middle).is_some());
+    }
+    met
+}

@@ -1,0 +1,238 @@
+//! The interior: seeds one at a time at the circumcentre of the face whose metric circumradius is largest.
+
+use crate::dual::{Dual, Kind};
+use crate::geometry::{Point, Tensor, Vector};
+use crate::planar::Location;
+use crate::progress::Progress;
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Constrained edges shorter than this (metric length) are not split for an encroaching seed: both halves stay unit
+/// edges, and spikes do not cascade.
+const SPLIT_FLOOR: f64 = std::f64::consts::SQRT_2;
+/// A circumcentre nearer than this share of the circumradius to a vertex means that the metric varies too much for the
+/// circle to say where the gap is.
+const CROWDED: f64 = 0.5;
+
+/// How refinement went.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Refined {
+    /// Seeds put at circumcentres.
+    pub circumcentres: usize,
+    /// Constrained edges split because a circumcentre encroached on them.
+    pub encroached: usize,
+    /// Edges halved because no circumcentre could be had.
+    pub halved: usize,
+}
+
+/// Inserts seeds until the dual has `count` vertices.
+pub fn refine(dual: &mut Dual, count: usize, progress: &dyn Progress) -> Refined {
+    let mut refiner = Refiner { queue: BinaryHeap::new(), refined: Refined::default() };
+    dual.take_touched();
+    let faces: Vec<FaceId> = dual.topology().faces().collect();
+    refiner.enqueue(dual, faces);
+    let mut reported = dual.vertex_count();
+    while dual.vertex_count() < count {
+        if !refiner.improve_worst(dual) && !refiner.halve_longest(dual, count) {
+            break;
+        }
+        if dual.vertex_count() >= reported + 256 {
+            progress.done((dual.vertex_count() - reported) as u64);
+            reported = dual.vertex_count();
+        }
+    }
+    refiner.refined
+}
+
+/// A face by its metric circumradius; stale once the face has changed.
+struct Entry {
+    radius: f64,
+    face: FaceId,
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Entry {}
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Entry {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.radius.total_cmp(&other.radius).then(other.face.cmp(&self.face))
+    }
+}
+
+struct Refiner {
+    queue: BinaryHeap<Entry>,
+    refined: Refined,
+}
+
+impl Refiner {
+    fn enqueue(&mut self, dual: &Dual, faces: Vec<FaceId>) {
+        for face in faces {
+            if dual.topology().is_face(face) {
+                self.queue.push(Entry { radius: circumcircle(dual, face).1, face });
+            }
+        }
+    }
+
+    /// Takes the worst face and inserts a seed for it, if one can be had. False when no face is left.
+    fn improve_worst(&mut self, dual: &mut Dual) -> bool {
+        while let Some(Entry { radius, face }) = self.queue.pop() {
+            if !dual.topology().is_face(face) {
+                continue;
+            }
+            let (centre, now) = circumcircle(dual, face);
+            if now.to_bits() != radius.to_bits() {
+                continue;
+            }
+            let done = self.insert_for(dual, face, centre, radius) || self.halve_longest_of(dual, face);
+            let touched = dual.take_touched();
+            self.enqueue(dual, touched);
+            if done {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn insert_for(&mut self, dual: &mut Dual, face: FaceId, centre: Point, radius: f64) -> bool {
+        let inserted = match dual.planar().walk(face, centre, true) {
+            Location::Face(f) => {
+                if let Some(h) = encroached_edge(dual, f, centre) {
+                    return self.split_encroached(dual, h);
+                }
+                !is_crowded(dual, f, centre, radius) && dual.insert_in_face(f, centre).is_some()
+            }
+            Location::Edge(h) if !dual.topology().is_fixed(h) => {
+                !is_crowded(dual, h.face(), centre, radius) && dual.insert_on_edge(h, centre).is_some()
+            }
+            Location::Edge(h) | Location::Behind(h) => return self.split_encroached(dual, h),
+            Location::Vertex(_) => false,
+        };
+        self.refined.circumcentres += usize::from(inserted);
+        inserted
+    }
+
+    fn split_encroached(&mut self, dual: &mut Dual, h: HalfEdge) -> bool {
+        let split = dual.edge_length(h) > SPLIT_FLOOR && split_constrained(dual, h);
+        self.refined.encroached += usize::from(split);
+        split
+    }
+
+    /// Halves the longest edge of a face whose circumcentre cannot be had, if that edge is too long.
+    fn halve_longest_of(&mut self, dual: &mut Dual, face: FaceId) -> bool {
+        let by_length = |h: &HalfEdge| (dual.edge_length(*h), *h);
+        let longest = face.half_edges().iter().map(by_length).max_by(|a, b| a.0.total_cmp(&b.0));
+        let halved = longest.is_some_and(|(length, h)| length > SPLIT_FLOOR && halve(dual, h));
+        self.refined.halved += usize::from(halved);
+        halved
+    }
+
+    /// Halves the longest edges of all, for when every face is as good as its circumcentre can make it and vertices
+    /// are still wanted. False when nothing could be halved.
+    fn halve_longest(&mut self, dual: &mut Dual, count: usize) -> bool {
+        let mut edges: Vec<(f64, HalfEdge)> = dual.topology().edges().map(|h| (dual.edge_length(h), h)).collect();
+        edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let wanted = (count - dual.vertex_count()).min(edges.len() / 8 + 1);
+        let ends = |h: HalfEdge| [dual.topology().origin(h), dual.topology().target(h)];
+        let candidates: Vec<[VertexId; 2]> = edges.iter().map(|&(_, h)| ends(h)).collect();
+        let mut done = 0;
+        for [a, b] in candidates {
+            if done == wanted {
+                break;
+            }
+            let edge = dual.topology().find(a, b).or_else(|| dual.topology().find(b, a));
+            done += usize::from(edge.is_some_and(|h| halve(dual, h)));
+        }
+        self.refined.halved += done;
+        let touched = dual.take_touched();
+        self.enqueue(dual, touched);
+        done > 0
+    }
+}
+
+/// Circumcentre and metric circumradius of a face, with the mean of its corners' tensors for the whole face.
+fn circumcircle(dual: &Dual, face: FaceId) -> (Point, f64) {
+    let corners = dual.topology().corners(face);
+    let tensor = corners.iter().fold(Tensor::default(), |sum, &v| sum + dual.local(v).tensor) * (1.0 / 3.0);
+    let [a, b, c] = corners.map(|v| dual.position(v));
+    let (u, v) = (b - a, c - a);
+    let (uu, vv) = (tensor.dot(u, u), tensor.dot(v, v));
+    // M x . u = uu / 2 and M x . v = vv / 2.
+    let (mu, mv) = (tensor.apply(u), tensor.apply(v));
+    let determinant = mu.cross(mv);
+    let x = Vector::new(uu * mv.y - vv * mu.y, vv * mu.x - uu * mv.x) * (0.5 / determinant);
+    let radius = tensor.length(x);
+    if radius.is_finite() { (a + x, radius) } else { (a.lerp(b, 0.5), f64::MAX) }
+}
+
+/// A constrained edge of the face, or of a neighbour that the point would see, in whose diametral ball the point lies.
+fn encroached_edge(dual: &Dual, face: FaceId, p: Point) -> Option<HalfEdge> {
+    let topology = dual.topology();
+    let beyond = face.half_edges().into_iter().filter(|&h| !topology.is_fixed(h)).filter_map(|h| topology.twin(h));
+    let seen = face.half_edges().into_iter().chain(beyond.flat_map(|t| [t.next(), t.prev()]));
+    let encroached = |h: &HalfEdge| {
+        let [a, b] = dual.planar().ends(*h);
+        let tensor = (dual.local(topology.origin(*h)).tensor + dual.local(topology.target(*h)).tensor) * 0.5;
+        topology.is_fixed(*h) && tensor.dot(a - p, b - p) < 0.0
+    };
+    seen.filter(encroached).max_by(|&g, &h| dual.edge_length(g).total_cmp(&dual.edge_length(h)))
+}
+
+fn is_crowded(dual: &Dual, face: FaceId, p: Point, radius: f64) -> bool {
+    let near = |v: VertexId| {
+        let d = p - dual.position(v);
+        dual.local(v).tensor.length(d) < CROWDED * radius.min(1.0)
+    };
+    dual.topology().corners(face).into_iter().any(near)
+}
+
+fn halve(dual: &mut Dual, h: HalfEdge) -> bool {
+    if dual.topology().is_fixed(h) {
+        return split_constrained(dual, h);
+    }
+    let [a, b] = dual.planar().ends(h);
+    dual.insert_on_edge(h, a.midpoint(b)).is_some()
+}
+
+/// Splits a constrained edge at its middle, or, next to a sharp corner, on one of the concentric shells of radius
+/// 2^k around it, so that the edges of both curves at the corner are split at the same distance (Ruppert 1995).
+fn split_constrained(dual: &mut Dual, h: HalfEdge) -> bool {
+    let (a, b) = (dual.topology().origin(h), dual.topology().target(h));
+    let length = dual.edge_length(h);
+    let shell = (0.5 * length).log2().round().exp2() / length;
+    let t = match (is_sharp(dual, a), is_sharp(dual, b)) {
+        (true, false) => shell,
+        (false, true) => 1.0 - shell,
+        _ => 0.5,
+    };
+    let p = dual.position(a).lerp(dual.position(b), t);
+    dual.insert_on_edge(h, p).is_some()
+}
+
+/// Whether two constrained edges meet at a corner at less than 60 degrees in the metric.
+fn is_sharp(dual: &Dual, v: VertexId) -> bool {
+    if !matches!(dual.kind(v), Kind::Corner(_)) {
+        return false;
+    }
+    let topology = dual.topology();
+    let mut directions: Vec<Vector> = Vec::new();
+    for h in topology.star(v) {
+        let ends = [(h, topology.target(h)), (h.prev(), topology.apex(h))];
+        let fixed = ends.into_iter().filter(|&(e, _)| topology.is_fixed(e));
+        directions.extend(fixed.map(|(_, u)| dual.position(u) - dual.position(v)));
+    }
+    let tensor = dual.local(v).tensor;
+    let cosine = |u: Vector, w: Vector| tensor.dot(u, w) / (tensor.length(u) * tensor.length(w));
+    (0..directions.len()).any(|i| {
+        // An inner feature's edge is met from both sides, hence the bound below one.
+        directions[..i].iter().any(|&u| (0.5..1.0 - 1e-12).contains(&cosine(u, directions[i])))
+    })
+}

@@ -1,0 +1,121 @@
+//! How fine the metric must be for a mesh of so many vertices, and what that mesh will need.
+
+use super::segments::{MetricArc, pieces};
+use crate::domain::Domain;
+use crate::error::{Error, Result};
+use crate::metric::{MetricField, complexity};
+use crate::triangulation::HalfEdge;
+use rayon::prelude::*;
+
+/// What the size of the mesh should follow from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// This many vertices; the metric is scaled to that.
+    Vertices(usize),
+    /// This integral of sqrt(det M); the metric is scaled to that.
+    Complexity(f64),
+    /// The metric as it is.
+    Metric,
+}
+
+/// Metric area of the equilateral triangle with unit edges.
+const UNIT_TRIANGLE: f64 = 0.433_012_701_892_219_3;
+/// Bytes that a vertex of the mesh costs at the peak, with its two triangles: measured 0.9 kB, rounded up.
+const BYTES_PER_VERTEX: f64 = 1200.0;
+
+/// A domain measured by a metric.
+pub struct Plan {
+    /// The integral of sqrt(det M).
+    pub complexity: f64,
+    /// One half-edge of every constrained edge of the domain's triangulation, and whether it must stay whole.
+    pub edges: Vec<(HalfEdge, bool)>,
+    /// Their metric lengths.
+    pub arcs: Vec<MetricArc>,
+    corners: usize,
+}
+
+impl Plan {
+    /// Measures the domain, in parallel.
+    ///
+    /// # Errors
+    /// The metric is not positive definite somewhere, or its complexity not finite.
+    pub fn new(domain: &Domain, field: &dyn MetricField) -> Result<Self> {
+        let planar = domain.planar();
+        let required = |h| planar.topology.constraint(h).is_some_and(|c| domain.pslg().segments[c.0 as usize].required);
+        let constrained = planar.topology.edges().filter(|&h| planar.topology.constraint(h).is_some());
+        let edges: Vec<(HalfEdge, bool)> = constrained.map(|h| (h, required(h))).collect();
+        let arcs = edges.par_iter().map(|&(h, _)| planar.ends(h)).map(|[a, b]| MetricArc::new(field, a, b)).collect();
+        let complexity = complexity(field, &domain.triangles())?;
+        Ok(Self { complexity, edges, arcs, corners: planar.topology.vertex_count() })
+    }
+
+    /// Vertices of the domain itself: no mesh has fewer.
+    pub fn corners(&self) -> usize {
+        self.corners
+    }
+
+    /// Vertices on the boundary and interfaces when the metric is multiplied by `scale`.
+    pub fn boundary_vertices(&self, scale: f64) -> f64 {
+        let cuts = |(arc, &(_, required)): (&MetricArc, &(HalfEdge, bool))| {
+            if required { 0.0 } else { pieces(arc.length() * scale.sqrt()) as f64 - 1.0 }
+        };
+        self.corners as f64 + self.arcs.iter().zip(&self.edges).map(cuts).sum::<f64>()
+    }
+
+    /// Expected vertices of the unit mesh of the metric times `scale`: half its triangles plus half its boundary
+    /// (Euler), with all triangles equilateral.
+    pub fn expected_vertices(&self, scale: f64) -> f64 {
+        let boundary = self.boundary_vertices(scale);
+        boundary.max(0.5 * scale * self.complexity / UNIT_TRIANGLE + 0.5 * boundary)
+    }
+
+    /// The largest scale for which no more than `count` vertices are expected.
+    pub fn scale_for(&self, count: f64) -> f64 {
+        let mut low = count * UNIT_TRIANGLE / self.complexity;
+        while self.expected_vertices(low) > count && low > f64::MIN_POSITIVE {
+            low *= 0.5;
+        }
+        let mut high = low.max(f64::MIN_POSITIVE);
+        while self.expected_vertices(high) <= count {
+            high *= 2.0;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.expected_vertices(middle) <= count { low = middle } else { high = middle }
+        }
+        low
+    }
+
+    /// Vertex count and metric factor to start from.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where the mesh is estimated to need more memory than `memory_limit` bytes, or more vertices
+    /// than ids can number.
+    pub fn start(&self, target: Target, memory_limit: u64) -> Result<(usize, f64)> {
+        let (count, scale) = match target {
+            Target::Vertices(n) => (n as f64, self.scale_for(n as f64)),
+            Target::Complexity(c) => (self.expected_vertices(c / self.complexity), c / self.complexity),
+            Target::Metric => (self.expected_vertices(1.0), 1.0),
+        };
+        check_memory(count, memory_limit)?;
+        Ok((count.round().max(3.0) as usize, scale))
+    }
+}
+
+/// # Errors
+/// [`Error::Limit`] as in [`Plan::start`].
+fn check_memory(vertices: f64, limit: u64) -> Result<()> {
+    let needed = vertices * BYTES_PER_VERTEX;
+    let ids = f64::from(u32::MAX) / 8.0;
+    if needed <= limit as f64 && vertices < ids {
+        return Ok(());
+    }
+    let gib = f64::from(1 << 30);
+    let what = format!(
+        "a mesh of about {vertices:.3e} vertices is estimated to need {:.1} GiB of memory, and the limit is {:.1} GiB",
+        needed / gib,
+        limit as f64 / gib
+    );
+    let help = "ask for fewer vertices (-n), a coarser metric (--h-min), or raise --memory-limit".into();
+    Err(Error::Limit { what, help })
+}

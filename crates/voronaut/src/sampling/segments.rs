@@ -1,0 +1,106 @@
+//! Segments of the boundary and of interfaces, sampled at unit metric length.
+
+use crate::dual::Dual;
+use crate::geodesic::chord;
+use crate::geometry::Point;
+use crate::metric::MetricField;
+use crate::triangulation::HalfEdge;
+
+/// Metric length along a straight segment, as a piecewise linear function of the parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MetricArc {
+    /// Breakpoints (parameter in 0..=1, metric length from the start), both increasing.
+    breaks: Vec<(f64, f64)>,
+}
+
+/// Halves that differ by more than this share are cut again: within a piece length grows almost linearly.
+const UNEVEN: f64 = 0.05;
+/// Relative error allowed for a piece's length.
+const TOLERANCE: f64 = 1e-3;
+const MAX_DEPTH: u32 = 16;
+
+impl MetricArc {
+    /// Measures the segment a-b, with pieces as fine as the field needs.
+    pub fn new(field: &dyn MetricField, a: Point, b: Point) -> Self {
+        let mut arc = Self { breaks: vec![(0.0, 0.0)] };
+        let whole = chord(field, a, b);
+        arc.measure(&|t0, t1| chord(field, a.lerp(b, t0), a.lerp(b, t1)), (0.0, 1.0), whole, MAX_DEPTH);
+        arc
+    }
+
+    /// Metric length of the whole segment.
+    pub fn length(&self) -> f64 {
+        self.breaks[self.breaks.len() - 1].1
+    }
+
+    /// The parameter at which a share (0..=1) of the metric length is behind.
+    pub fn parameter(&self, share: f64) -> f64 {
+        let target = share * self.length();
+        let i = self.breaks.partition_point(|&(_, l)| l < target).clamp(1, self.breaks.len() - 1);
+        let ((t0, l0), (t1, l1)) = (self.breaks[i - 1], self.breaks[i]);
+        if l1 > l0 { t0 + (t1 - t0) * (target - l0) / (l1 - l0) } else { t1 }
+    }
+
+    fn measure(&mut self, length: &impl Fn(f64, f64) -> f64, (t0, t1): (f64, f64), whole: f64, depth: u32) {
+        let middle = 0.5 * (t0 + t1);
+        let (first, second) = (length(t0, middle), length(middle, t1));
+        let sum = first + second;
+        let settled = (sum - whole).abs() <= TOLERANCE * sum && (first - second).abs() <= UNEVEN * sum;
+        if settled || depth == 0 || sum.is_nan() {
+            let behind = self.length();
+            self.breaks.extend([(middle, behind + first), (t1, behind + sum)]);
+        } else {
+            self.measure(length, (t0, middle), first, depth - 1);
+            self.measure(length, (middle, t1), second, depth - 1);
+        }
+    }
+}
+
+/// How many edges a segment of this metric length is cut into: the nearest whole number, at least one.
+pub fn pieces(length: f64) -> usize {
+    // Saturates: an absurd length is caught by the estimate of the work before anything is cut.
+    (length.round() as usize).max(1)
+}
+
+/// Cuts every constrained edge of a fresh dual into edges of about unit metric length; `arcs` are the edges' lengths
+/// under the unscaled field, in order, and `scale` the field's factor. Required segments stay whole.
+///
+/// A cut that rounding would make invalid is left out. Returns the number of new vertices.
+pub fn sample_segments(dual: &mut Dual, edges: &[(HalfEdge, bool)], arcs: &[MetricArc], scale: f64) -> usize {
+    let before = dual.vertex_count();
+    let ends: Vec<_> = edges.iter().map(|&(h, _)| [dual.topology().origin(h), dual.topology().target(h)]).collect();
+    for ((&(_, required), arc), [from, to]) in edges.iter().zip(arcs).zip(ends) {
+        if required {
+            continue;
+        }
+        let n = pieces(arc.length() * scale.sqrt());
+        let (a, b) = (dual.position(from), dual.position(to));
+        let mut start = from;
+        for k in 1..n {
+            let Some(h) = dual.topology().find(start, to) else { break };
+            let p = a.lerp(b, arc.parameter(k as f64 / n as f64));
+            if let Some((v, _)) = dual.insert_on_edge(h, p) {
+                start = v;
+            }
+        }
+    }
+    dual.vertex_count() - before
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Tensor;
+
+    #[test]
+    fn arc_length_of_the_half_plane_is_a_logarithm() {
+        let field = |p: Point| Tensor::isotropic(p.y);
+        let arc = MetricArc::new(&field, Point::new(0.0, 1e-3), Point::new(0.0, 1.0));
+        let exact = 1e3_f64.ln();
+        assert!((arc.length() / exact - 1.0).abs() < 1e-3, "{}", arc.length());
+        for share in [0.1, 0.5, 0.9] {
+            let y = 1e-3 + (1.0 - 1e-3) * arc.parameter(share);
+            assert!(((y / 1e-3).ln() / exact - share).abs() < 5e-3);
+        }
+    }
+}
