@@ -47,7 +47,9 @@ fn turns(mesh: &Mesh) -> Vec<u32> {
 fn overlapping_fans(mesh: &Mesh, boundary: &[[u32; 2]], turns: &[u32]) -> Vec<Fault> {
     let mut covers = vec![0; boundary.len()];
     let mut on_boundary = vec![false; mesh.points.len()];
-    boundary.iter().for_each(|&[v, _]| on_boundary[v as usize] = true);
+    for &[v, _] in boundary {
+        on_boundary[v as usize] = true;
+    }
     for &[a, b, c] in &mesh.triangles {
         for [v, from, to] in [[a, b, c], [b, c, a], [c, a, b]] {
             if on_boundary[v as usize] {

@@ -12,3 +12,7 @@ mod validity;
 pub use fidelity::{Farthest, Fidelity, fidelity};
 pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};
 pub use validity::{Fault, Validity, check, validity};
+
+pub(crate) use edges::Edges;
+#[cfg(test)]
+pub(crate) use test_meshes::{grid, mesh};
