@@ -70,17 +70,12 @@ pub fn validity(mesh: &Mesh) -> Validity {
     found
 }
 
-/// Nothing for a valid mesh.
+/// Nothing for a valid mesh (see [`validity`]).
 ///
 /// # Errors
 /// [`Error::Mesh`] with the first fault of a mesh that is not valid.
 pub fn check(mesh: &Mesh) -> Result<()> {
-    match validity(mesh).first_fault {
-        None => Ok(()),
-        Some(Fault { what, place }) => {
-            Err(Error::Mesh { what, place, help: "repair the mesh there, or mesh its domain anew".into() })
-        }
-    }
+    validity(mesh).demand()
 }
 
 impl fmt::Display for Fault {
@@ -90,6 +85,19 @@ impl fmt::Display for Fault {
 }
 
 impl Validity {
+    /// Nothing if the mesh is valid.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] with the first fault.
+    pub fn demand(&self) -> Result<()> {
+        match self.first_fault.clone() {
+            None => Ok(()),
+            Some(Fault { what, place }) => {
+                Err(Error::Mesh { what, place, help: "repair the mesh there, or mesh its domain anew".into() })
+            }
+        }
+    }
+
     fn fault(&mut self, what: impl Into<String>, place: impl Into<String>) {
         self.first_fault.get_or_insert_with(|| Fault { what: what.into(), place: place.into() });
     }
