@@ -1,1 +1,29 @@
-fn main() {}
+//! The command line of voronaut. Exit code 0: done; 1: the input or the result is not what was asked; 2: wrong usage.
+
+mod args;
+mod check;
+mod files;
+mod mesh;
+mod progress;
+mod summary;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let done = match Arguments::parse().command {
+        Command::Mesh(args) => mesh::run(&args),
+        Command::Check(args) => check::run(&args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            if !error.help().is_empty() {
+                eprintln!("  help: {}", error.help());
+            }
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,1 +1,136 @@
-//! output
+//! What leaves the program: mesh files, pictures, reports. A file is there as a whole or not at all.
+
+mod atomic;
+mod colours;
+mod ellipses;
+mod frame;
+mod obj;
+#[cfg(feature = "png")]
+mod png;
+pub mod report;
+mod strokes;
+mod svg;
+mod vtu;
+
+pub use atomic::{demand_directory, write};
+#[cfg(feature = "png")]
+pub use png::render_png;
+pub use report::Report;
+pub use svg::{Picture, Shade, svg};
+
+use crate::error::{Error, Result};
+use crate::formats::medit;
+use crate::mesh::Mesh;
+use std::path::Path;
+
+/// A mesh format that can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Medit's text format `.mesh`: everything a [`Mesh`] holds.
+    Medit,
+    /// VTK's `.vtu`: triangles, labelled edges, labels.
+    Vtu,
+    /// Wavefront's `.obj`: positions, triangles grouped by region label, labelled edges without their labels.
+    Obj,
+}
+
+/// Formats of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// Vector.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+/// Mesh formats that are known but not yet written.
+const LATER: [&str; 6] = ["meshb", "msh", "off", "ply", "stl", "vtp"];
+
+impl Format {
+    /// The format a file name asks for by its ending, in upper or lower case.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`], with the endings that work.
+    pub fn from_path(path: &Path) -> Result<Self> {
+        match ending(path).as_str() {
+            "mesh" => Ok(Format::Medit),
+            "vtu" => Ok(Format::Vtu),
+            "obj" => Ok(Format::Obj),
+            other => {
+                let what = if LATER.contains(&other) {
+                    format!("writing .{other} ({}) is not there yet", path.display())
+                } else {
+                    format!("{} does not end like a mesh file", path.display())
+                };
+                Err(Error::Unsupported { what, help: "end the name of the mesh file in .mesh, .vtu or .obj".into() })
+            }
+        }
+    }
+}
+
+impl PictureFormat {
+    /// The format a file name asks for by its ending, in upper or lower case.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`], with the endings that work.
+    pub fn from_path(path: &Path) -> Result<Self> {
+        let png = cfg!(feature = "png");
+        match ending(path).as_str() {
+            "svg" => Ok(PictureFormat::Svg),
+            "png" if png => Ok(PictureFormat::Png),
+            _ => {
+                let what = format!("{} does not end like a picture", path.display());
+                let help = if png { "end the name of the picture in .svg or .png" } else { "end it in .svg" };
+                Err(Error::Unsupported { what, help: help.into() })
+            }
+        }
+    }
+}
+
+/// Writes a mesh in the format its name ends in, as a whole or not at all.
+///
+/// # Errors
+/// [`Error::Unsupported`] for other endings, [`Error::Io`] where the file cannot be written.
+pub fn write_mesh(mesh: &Mesh, path: &Path) -> Result<()> {
+    match Format::from_path(path)? {
+        Format::Medit => write(path, medit::write(mesh).as_bytes()),
+        Format::Vtu => write(path, &vtu::vtu(mesh)),
+        Format::Obj => write(path, obj::obj(mesh).as_bytes()),
+    }
+}
+
+/// Writes a picture made by [`svg`] in the format its name ends in, as a whole or not at all.
+///
+/// # Errors
+/// [`Error::Unsupported`] for other endings, [`Error::Limit`] for too many pixels, [`Error::Io`] where the file cannot
+/// be written.
+pub fn write_picture(svg: &str, path: &Path) -> Result<()> {
+    match PictureFormat::from_path(path)? {
+        PictureFormat::Svg => write(path, svg.as_bytes()),
+        #[cfg(feature = "png")]
+        PictureFormat::Png => write(path, &render_png(svg)?),
+        #[cfg(not(feature = "png"))]
+        PictureFormat::Png => unreachable!("from_path knows no png without the feature"),
+    }
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_name_formats() {
+        let format = |name: &str| Format::from_path(Path::new(name));
+        assert_eq!(format("a.b/c.MESH").unwrap(), Format::Medit);
+        assert_eq!(format("c.vtu").unwrap(), Format::Vtu);
+        for wrong in ["c.meshb", "c", "", "mesh", "c.svg"] {
+            let error = format(wrong).unwrap_err();
+            assert!(error.help().contains(".mesh"), "{wrong}: {error}");
+        }
+        assert!(PictureFormat::from_path(Path::new("a.gif")).is_err());
+    }
+}

@@ -1,0 +1,225 @@
+//! What users type.
+
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use std::path::PathBuf;
+use voronaut::metric::Bounds;
+use voronaut::recipe::MeshOptions;
+
+/// Anisotropic triangle meshes from a Riemannian metric field.
+#[derive(Debug, Parser)]
+#[command(version, propagate_version = true)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Mesh a domain: valid, with edges of length one in a metric
+    #[command(after_help = MESH_EXAMPLES)]
+    Mesh(MeshArgs),
+    /// Examine a mesh: validity, quality in a metric, distance to its domain
+    #[command(after_help = CHECK_EXAMPLES)]
+    Check(CheckArgs),
+}
+
+const MESH_EXAMPLES: &str = "\
+DOMAIN  a file: .mesh (boundary edges or triangles), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r
+METRIC  uniform, uniform:m11,m12,m22, swirl[:nu=3,field=authors], shock[:phi=10,lambda=0.6],
+        'formula:m11; m12; m22' in x and y, boundary:h0=,growth=,aspect=,h_max=, or a file .sol;
+        an eigenvalue 1/h^2 asks for edges of length h along its eigenvector
+
+Examples:
+  voronaut mesh rect:0,0,2,1 --metric uniform -n 2000 -o plate.mesh
+  voronaut mesh disk:0,0,1 --metric swirl -n 4000 -o swirl.vtu --picture swirl.svg
+  voronaut mesh rect:-1,-1,1,1 --metric 'formula:1/(0.01 + 0.2*abs(y))^2; 0; 25' -o layer.mesh
+  voronaut mesh wing.mesh --metric wing.sol --h-min 1e-4 --a-max 100 -o adapted.mesh --report run.json
+  voronaut mesh sea.geojson --metric boundary:h0=2,growth=1.3 -n 20000 -o sea.mesh -q";
+
+const CHECK_EXAMPLES: &str = "\
+Exits with 1 if the mesh is not valid; the report is written all the same.
+
+Examples:
+  voronaut check plate.mesh
+  voronaut check swirl.mesh --metric swirl --metric-scale 1873.2 --report check.json
+  voronaut check adapted.mesh --metric wing.sol --background wing.mesh --domain wing.mesh";
+
+#[derive(Debug, Args)]
+pub(crate) struct MeshArgs {
+    /// What to mesh: a file or a shape
+    pub(crate) domain: String,
+    /// Sizes and directions of the edges (see below)
+    #[arg(long)]
+    pub(crate) metric: String,
+    /// Vertices the mesh should have; one factor scales the metric to meet it
+    #[arg(short = 'n', long, value_name = "N", value_parser = value_parser!(u32).range(3..), conflicts_with = "complexity")]
+    pub(crate) vertices: Option<u32>,
+    /// Integral of sqrt(det M) over the domain; one factor scales the metric to meet it
+    #[arg(long, value_name = "C", value_parser = positive)]
+    pub(crate) complexity: Option<f64>,
+    /// The mesh file: .mesh, .vtu or .obj
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) metric_choices: MetricChoices,
+    /// How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]
+    #[arg(long, value_name = "D", value_parser = not_negative)]
+    pub(crate) hausd: Option<f64>,
+    /// Steps of Riemannian Lloyd relaxation
+    #[arg(long, value_name = "STEPS", default_value_t = MeshOptions::default().lloyd)]
+    pub(crate) lloyd: usize,
+    /// Refuse work that is estimated to need more memory than this
+    #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
+    pub(crate) memory_limit: f64,
+    #[command(flatten)]
+    pub(crate) outputs: Outputs,
+    #[command(flatten)]
+    pub(crate) run: Run,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    /// The mesh: a .mesh file
+    pub(crate) mesh: PathBuf,
+    /// Measure lengths, shapes and angles in this metric (as for `mesh`)
+    #[arg(long)]
+    pub(crate) metric: Option<String>,
+    /// A factor on the metric tensor, such as `metric_scale` of a report
+    #[arg(long, value_name = "FACTOR", value_parser = positive, requires = "metric")]
+    pub(crate) metric_scale: Option<f64>,
+    /// Measure the distance to the boundary of this domain (as for `mesh`)
+    #[arg(long)]
+    pub(crate) domain: Option<String>,
+    #[command(flatten)]
+    pub(crate) metric_choices: MetricChoices,
+    #[command(flatten)]
+    pub(crate) outputs: Outputs,
+    #[command(flatten)]
+    pub(crate) run: Run,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MetricChoices {
+    /// Least Euclidean size the metric may ask for
+    #[arg(long, value_name = "H", value_parser = positive)]
+    h_min: Option<f64>,
+    /// Greatest Euclidean size the metric may ask for
+    #[arg(long, value_name = "H", value_parser = positive)]
+    h_max: Option<f64>,
+    /// Greatest ratio of the two sizes at a point, at least 1
+    #[arg(long, value_name = "RATIO", value_parser = positive)]
+    a_max: Option<f64>,
+    /// The mesh on which a .sol metric is given [default: the domain's own]
+    #[arg(long, value_name = "MESH")]
+    pub(crate) background: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Outputs {
+    /// Draw a picture: .svg or .png
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
+    /// What the picture shows
+    #[arg(long, value_delimiter = ',', default_value = "mesh", requires = "picture")]
+    pub(crate) show: Vec<Show>,
+    /// Write all figures as JSON
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Run {
+    /// Threads to use [default: all]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..))]
+    pub(crate) threads: Option<u16>,
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Say more: stages, counters
+    #[arg(short, long)]
+    pub(crate) verbose: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Show {
+    /// Triangles
+    Mesh,
+    /// Balls of the metric
+    Ellipses,
+}
+
+/// Bytes of a gibibyte.
+const GIB: f64 = 1_073_741_824.0;
+
+impl MetricChoices {
+    pub(crate) fn bounds(&self) -> Bounds {
+        Bounds { h_min: self.h_min, h_max: self.h_max, a_max: self.a_max }
+    }
+}
+
+impl MeshArgs {
+    pub(crate) fn options(&self) -> MeshOptions {
+        MeshOptions {
+            vertices: self.vertices.map(|vertices| vertices as usize),
+            complexity: self.complexity,
+            hausd: self.hausd,
+            lloyd: self.lloyd,
+            memory_limit: (self.memory_limit * GIB) as u64,
+        }
+    }
+}
+
+fn default_memory_limit() -> f64 {
+    MeshOptions::default().memory_limit as f64 / GIB
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("not a positive number".into()),
+    }
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("not a number from 0 up".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn definitions_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn defaults_are_the_library_s() {
+        let words = ["voronaut", "mesh", "rect:0,0,1,1", "--metric", "uniform", "-o", "a.mesh"];
+        let Command::Mesh(args) = Arguments::try_parse_from(words).unwrap().command else { unreachable!() };
+        let (ours, theirs) = (args.options(), MeshOptions::default());
+        assert_eq!(format!("{ours:?}"), format!("{theirs:?}"));
+    }
+
+    #[test]
+    fn nonsense_is_wrong_usage() {
+        let base = ["voronaut", "mesh", "rect:0,0,1,1", "--metric", "uniform", "-o", "a.mesh"];
+        for more in [
+            &["-n", "2"][..],
+            &["-n", "100", "--complexity", "3"],
+            &["--h-min", "nan"],
+            &["--hausd", "-1"],
+            &["--threads", "0"],
+            &["--show", "mesh"],
+            &["--show", "cells", "--picture", "a.svg"],
+            &["-q", "-v"],
+        ] {
+            let error = Arguments::try_parse_from(base.iter().chain(more)).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{more:?}");
+        }
+    }
+}

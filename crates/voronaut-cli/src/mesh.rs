@@ -1,0 +1,88 @@
+//! `voronaut mesh`: from the command line to the library and back. All calls of the mesher are here.
+
+use crate::args::MeshArgs;
+use crate::progress::Bar;
+use crate::{files, summary};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::time::Instant;
+use voronaut::domain::Domain;
+use voronaut::geometry::Point;
+use voronaut::metric::MetricSpec;
+use voronaut::output::Report;
+use voronaut::output::report::{Dual, Seconds};
+use voronaut::quality::{metric_quality, validity};
+use voronaut::recipe::{self, Meshed};
+use voronaut::{Error, Result};
+
+/// Meshes a domain. Nothing is written unless the mesh is valid.
+pub(crate) fn run(args: &MeshArgs) -> Result<()> {
+    let start = Instant::now();
+    files::demand_writable(Some(&args.out), &args.outputs)?;
+    files::set_threads(&args.run)?;
+    let bounds = args.metric_choices.bounds();
+    bounds.check()?;
+    let spec = MetricSpec::parse(&args.metric)?;
+    let domain = Domain::read(&args.domain)?;
+    let background = background(&spec, args);
+    let metric = recipe::metric(&spec, &domain, background, bounds)?;
+    let meshed = {
+        let bar = Bar::new(args.run.quiet, args.run.verbose);
+        recipe::mesh(&domain, metric.as_ref(), &args.options(), &bar)?
+    };
+    let found = validity(&meshed.mesh);
+    found.demand().map_err(ours)?;
+    let scaled = |p: Point| metric.at(p) * meshed.metric_scale;
+    let figures = metric_quality(&meshed.mesh, &scaled)?;
+    let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
+    fill_in(&mut report, &meshed, options(args));
+    report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
+    files::write(Some(&args.out), &args.outputs, &meshed.mesh, Some(&scaled), &report)?;
+    summary::print(&args.out.display().to_string(), &report, &args.run);
+    Ok(())
+}
+
+/// The mesh a `.sol` file belongs to: as told, or the domain's own file.
+fn background<'a>(spec: &MetricSpec, args: &'a MeshArgs) -> Option<&'a Path> {
+    let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
+    args.metric_choices.background.as_deref().or(own)
+}
+
+/// A mesh of ours that is not valid is our fault, not the user's.
+fn ours(error: Error) -> Error {
+    match error {
+        Error::Mesh { what, place, .. } => {
+            let help = "this is a fault of voronaut: nothing was written; please report it with the input";
+            Error::Mesh { what, place, help: help.into() }
+        }
+        other => other,
+    }
+}
+
+fn fill_in(report: &mut Report, meshed: &Meshed, options: Value) {
+    let counters = &meshed.counters;
+    report.dual = Some(Dual {
+        geodesic_tests: counters.geodesic_tests,
+        uncertain: counters.uncertain,
+        min_margin: counters.min_margin,
+        blocked_flips: counters.blocked_flips,
+    });
+    report.metric_scale = Some(meshed.metric_scale);
+    report.notes.clone_from(&meshed.notes);
+    report.options = options;
+}
+
+/// All options, as used.
+fn options(args: &MeshArgs) -> Value {
+    let bounds = args.metric_choices.bounds();
+    let mut options = json!(args.options());
+    let more = json!({
+        "domain": args.domain, "metric": args.metric, "out": args.out, "background": args.metric_choices.background,
+        "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
+        "picture": args.outputs.picture, "report": args.outputs.report, "threads": args.run.threads,
+    });
+    if let (Value::Object(options), Value::Object(more)) = (&mut options, more) {
+        options.extend(more);
+    }
+    options
+}

@@ -1,0 +1,77 @@
+//! What a run says when it is done: one screen on stdout.
+
+use crate::args::Run;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use voronaut::output::Report;
+use voronaut::quality::{Farthest, Spot};
+
+/// Prints the figures of a report unless told to be quiet, and its notes on stderr.
+pub(crate) fn print(title: &str, report: &Report, run: &Run) {
+    if run.quiet {
+        return;
+    }
+    // Whoever closed the other end of a pipe has seen enough.
+    let _ = std::io::stdout().write_all(summary(title, report, run.verbose).as_bytes());
+    for note in &report.notes {
+        eprintln!("note: {note}");
+    }
+}
+
+fn summary(title: &str, report: &Report, verbose: bool) -> String {
+    let mut text = format!("{title}\n");
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<12} {value}");
+    };
+    line("vertices", report.vertices.to_string());
+    line("triangles", report.triangles.to_string());
+    line("valid", valid(report));
+    if let Some(lengths) = report.metric_edge_length {
+        let (min, mean, max) = (lengths.min, lengths.mean, lengths.max);
+        let share = 100.0 * lengths.unit_fraction;
+        line("unit edges", format!("{share:.1} %   (metric length {min:.3} to {max:.3}, mean {mean:.3})"));
+    }
+    if let (Some(quality), Some(angle)) = (report.quality, report.angle) {
+        line("quality", format!("{:.3} mean, {:.3} min", quality.mean, quality.min));
+        line("angles", format!("{:.1} deg mean of the smallest, {:.1} deg min", angle.mean_min, angle.min));
+    }
+    if let Some(worst) = report.worst {
+        line("worst", format!("triangle at {}", place(worst.triangle)));
+        line("", format!("longest edge at {}, shortest at {}", place(worst.longest_edge), place(worst.shortest_edge)));
+    }
+    if let Some(fidelity) = report.fidelity {
+        line("to domain", distance(fidelity.mesh_to_domain));
+        line("from domain", distance(fidelity.domain_to_mesh));
+    }
+    if let Some(scale) = report.metric_scale {
+        line("metric scale", format!("{scale}"));
+    }
+    if let (Some(dual), true) = (&report.dual, verbose) {
+        let [frozen, chord, path] = dual.geodesic_tests;
+        line("tests", format!("{frozen} frozen, {chord} chord, {path} path; {} uncertain", dual.uncertain));
+        line("margin", format!("{:.2e}; {} blocked flips", dual.min_margin, dual.blocked_flips));
+    }
+    if verbose {
+        report.seconds.stages.iter().for_each(|(name, time)| line(name, format!("{time:.2} s")));
+    }
+    let memory = report.peak_memory_bytes.map(|bytes| format!(", {} MB at most", bytes / 1_000_000));
+    line("time", format!("{:.2} s{}", report.seconds.total, memory.unwrap_or_default()));
+    text
+}
+
+fn valid(report: &Report) -> String {
+    let found = &report.validity;
+    match &found.first_fault {
+        None => format!("yes   (Euler number {}, boundary loops {})", found.euler, found.boundary_loops),
+        Some(fault) => format!("no: {fault}"),
+    }
+}
+
+fn place(spot: Spot) -> String {
+    format!("({:.6}, {:.6}): {:.3}", spot.at[0], spot.at[1], spot.value)
+}
+
+fn distance(farthest: Option<Farthest>) -> String {
+    farthest
+        .map_or("nothing to measure".into(), |far| format!("{:.3e} at ({}, {})", far.distance, far.at[0], far.at[1]))
+}

@@ -1,0 +1,54 @@
+//! The colours of pictures.
+
+/// Ink of the boundary and the interfaces.
+pub(super) const BOUNDARY: &str = "#14213d";
+/// Ink of the edges of the mesh.
+pub(super) const EDGE: &str = "#33466b";
+/// Ink of the ellipses.
+pub(super) const ELLIPSE: &str = "#d1442b";
+/// The domain where its triangles are not shown.
+pub(super) const DOMAIN: &str = "#eef2f5";
+
+/// A soft fill: `level` from 0 (palest) to 1 (strongest), a hue of its own for each region (0 for the first).
+pub(super) fn fill(region: usize, level: f64) -> String {
+    // The golden angle keeps any number of hues apart; within a region the hue drifts, as in the best ramps.
+    let hue = 215.0 + 137.508 * region as f64 + 45.0 * level;
+    oklch(0.98 - 0.28 * level, 0.012 + 0.098 * level, hue)
+}
+
+/// A fill for quality: 1 (best) is almost white, 0 a warm red.
+pub(super) fn quality_fill(quality: f64) -> String {
+    let bad = (1.0 - quality).clamp(0.0, 1.0);
+    oklch(0.985 - 0.335 * bad, 0.006 + 0.154 * bad, 85.0 - 55.0 * bad)
+}
+
+/// An opaque colour from the OKLCH space (Ottosson 2020: lightness, chroma, hue in degrees), clipped to sRGB.
+fn oklch(lightness: f64, chroma: f64, hue: f64) -> String {
+    let (a, b) = (chroma * hue.to_radians().cos(), chroma * hue.to_radians().sin());
+    let l = (lightness + 0.396_337_777_4 * a + 0.215_803_757_3 * b).powi(3);
+    let m = (lightness - 0.105_561_345_8 * a - 0.063_854_172_8 * b).powi(3);
+    let s = (lightness - 0.089_484_177_5 * a - 1.291_485_548 * b).powi(3);
+    let [r, g, b] = [
+        4.076_741_662_1 * l - 3.307_711_591_3 * m + 0.230_969_929_2 * s,
+        -1.268_438_004_6 * l + 2.609_757_401_1 * m - 0.341_319_396_5 * s,
+        -0.004_196_086_3 * l - 0.703_418_614_7 * m + 1.707_614_701 * s,
+    ]
+    .map(|linear| {
+        let linear = linear.clamp(0.0, 1.0);
+        let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+        (255.0 * encoded).round() as u8
+    });
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn oklch_knows_white_black_and_red() {
+        assert_eq!(oklch(1.0, 0.0, 0.0), "#ffffff");
+        assert_eq!(oklch(0.0, 0.0, 0.0), "#000000");
+        assert_eq!(oklch(0.627_955, 0.257_683, 29.234), "#ff0000");
+    }
+}

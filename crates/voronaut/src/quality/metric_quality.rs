@@ -1,0 +1,331 @@
+//! Lengths, shapes and angles of a mesh in a metric.
+
+use super::edges::Edges;
+use crate::error::{Error, Result};
+use crate::geometry::{Point, Tensor};
+use crate::mesh::Mesh;
+use crate::metric::MetricField;
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+
+/// The figures of a planar mesh in a metric field. They do not change when mesh and metric are pulled back by the same
+/// affine map.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct MetricQuality {
+    /// Metric lengths of all edges.
+    pub metric_edge_length: EdgeLengths,
+    /// Metric lengths of the edges that touch no boundary vertex; `None` where there are none.
+    pub interior_edge_length: Option<EdgeLengths>,
+    /// Shape of the triangles.
+    pub quality: Quality,
+    /// Angles of the triangles.
+    pub angle: Angles,
+    /// Where the metric is honoured least.
+    pub worst: Worst,
+}
+
+/// Metric lengths of edges: the integral of sqrt(e' M e) along the straight edge by 5-point Gauss-Legendre.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct EdgeLengths {
+    /// Shortest.
+    pub min: f64,
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Longest.
+    pub max: f64,
+    /// Standard deviation (of the whole population).
+    pub std: f64,
+    /// Share of the edges whose length is in [1/sqrt 2, sqrt 2].
+    pub unit_fraction: f64,
+}
+
+/// 4 sqrt 3 A / (sum of the squared side lengths), A and sides in the metric M of the triangle, the log-Euclidean mean
+/// of the tensors at its vertices: 1 for an equilateral triangle, 0 for a flat one, negative for an inverted one.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Quality {
+    /// Of the worst triangle.
+    pub min: f64,
+    /// Arithmetic mean over triangles.
+    pub mean: f64,
+}
+
+/// Degrees, in the metric M of the triangle (see [`Quality`]).
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Angles {
+    /// The smallest angle of the mesh.
+    pub min: f64,
+    /// The mean over triangles of the smallest angle of each.
+    pub mean_min: f64,
+}
+
+/// Where to look.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Worst {
+    /// The triangle with the least quality, by its centroid.
+    pub triangle: Spot,
+    /// The edge of the greatest metric length, by its midpoint.
+    pub longest_edge: Spot,
+    /// The edge of the least metric length, by its midpoint.
+    pub shortest_edge: Spot,
+}
+
+/// A figure, and the place it was taken.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Spot {
+    /// The figure.
+    pub value: f64,
+    /// x and y.
+    pub at: [f64; 2],
+}
+
+/// Measures a planar mesh in a metric, in parallel; the same bits for any number of threads.
+///
+/// # Errors
+/// [`Error::Mesh`] where the mesh has no triangles or names vertices that do not exist, [`Error::Unsupported`] where it
+/// is not planar, [`Error::Metric`] where the tensor at a vertex or at a Gauss point is not positive definite.
+pub fn metric_quality(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQuality> {
+    demand_planar(mesh)?;
+    let edges = Edges::of(&mesh.triangles);
+    let mut on_boundary = vec![false; mesh.points.len()];
+    edges.boundary().into_iter().for_each(|h| edges.ends(h).iter().for_each(|&v| on_boundary[v as usize] = true));
+    let ends: Vec<[u32; 2]> = edges.iter().map(|(ends, _)| ends).collect();
+    let lengths = collect(&ends, |&ends| edge_length(ends.map(|v| mesh.point(v)), metric))?;
+    let logarithms = vertex_logarithms(mesh, metric)?;
+    let shapes: Vec<Shape> = mesh.triangles.par_iter().map(|&t| shape(mesh, t, &logarithms)).collect();
+    let is_interior = |ends: &[u32; 2]| ends.iter().all(|&v| !on_boundary[v as usize]);
+    let interior = ends.iter().zip(&lengths).filter(|(ends, _)| is_interior(ends)).map(|(_, &length)| length);
+    let all = EdgeLengths::of(&lengths);
+    Ok(MetricQuality {
+        metric_edge_length: all.ok_or_else(|| fault("there are no triangles", "the array of triangles"))?,
+        interior_edge_length: EdgeLengths::of(&interior.collect::<Vec<_>>()),
+        quality: Quality { min: least(&shapes, |s| s.quality), mean: mean(&shapes, |s| s.quality) },
+        angle: Angles { min: least(&shapes, |s| s.angle), mean_min: mean(&shapes, |s| s.angle) },
+        worst: Worst {
+            triangle: spot(&shapes, |s| s.quality, |t| centroid(mesh.corners_of(mesh.triangles[t]))),
+            longest_edge: spot(&lengths, |l| -l, |e| midpoint(mesh, ends[e])).map(|length| -length),
+            shortest_edge: spot(&lengths, |&l| l, |e| midpoint(mesh, ends[e])),
+        },
+    })
+}
+
+impl EdgeLengths {
+    fn of(lengths: &[f64]) -> Option<Self> {
+        let is_unit = |length: &&f64| (FRAC_1_SQRT_2..=SQRT_2).contains(*length);
+        let mean = mean(lengths, |&l| l);
+        (!lengths.is_empty()).then(|| Self {
+            min: least(lengths, |&l| l),
+            mean,
+            max: -least(lengths, |&l| -l),
+            std: self::mean(lengths, |&l| (l - mean) * (l - mean)).sqrt(),
+            unit_fraction: lengths.iter().filter(is_unit).count() as f64 / lengths.len() as f64,
+        })
+    }
+}
+
+impl Spot {
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        Self { value: f(self.value), at: self.at }
+    }
+}
+
+/// Nodes on [0, 1] and weights of 5-point Gauss-Legendre quadrature.
+const GAUSS: [(f64, f64); 5] = [
+    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
+    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
+    (0.5, 0.284_444_444_444_444_44),
+    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
+    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
+];
+
+/// Metric length of the straight edge.
+fn edge_length([a, b]: [Point; 2], metric: &dyn MetricField) -> Result<f64> {
+    GAUSS.iter().map(|&(t, weight)| Ok(weight * tensor(metric, a.lerp(b, t))?.length(b - a))).sum()
+}
+
+/// Quality and smallest angle (degrees) of a triangle in its own metric.
+struct Shape {
+    quality: f64,
+    angle: f64,
+}
+
+fn shape(mesh: &Mesh, triangle: [u32; 3], logarithms: &[Tensor]) -> Shape {
+    let [la, lb, lc] = triangle.map(|v| logarithms[v as usize]);
+    let m = ((la + lb + lc) * (1.0 / 3.0)).exp();
+    let [a, b, c] = mesh.corners_of(triangle);
+    let (ab, bc, ca) = (b - a, c - b, a - c);
+    // Twice the area in the metric.
+    let double_area = m.determinant().max(0.0).sqrt() * ab.cross(-ca);
+    let squares = m.dot(ab, ab) + m.dot(bc, bc) + m.dot(ca, ca);
+    let angle = |u, v| double_area.atan2(m.dot(u, v));
+    let smallest = angle(ab, -ca).min(angle(bc, -ab)).min(angle(ca, -bc));
+    let quality = if squares > 0.0 { 2.0 * 3.0_f64.sqrt() * double_area / squares } else { 0.0 };
+    Shape { quality, angle: smallest.to_degrees() }
+}
+
+/// Logarithms of the tensors at the vertices of triangles; zero at vertices of no triangle.
+fn vertex_logarithms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Vec<Tensor>> {
+    let mut used = vec![false; mesh.points.len()];
+    mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+    let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
+    let logarithm =
+        |v: u32| if used[v as usize] { Ok(tensor(metric, mesh.point(v))?.log()) } else { Ok(Tensor::default()) };
+    collect(&vertices, |&v| logarithm(v))
+}
+
+fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {
+    let m = metric.at(p);
+    let help = "mend the metric there, or give bounds on it (--h-min, --h-max, --a-max)";
+    let what = || format!("({}, {}, {}) is not positive definite", m.xx, m.xy, m.yy);
+    if m.is_positive_definite() { Ok(m) } else { Err(Error::metric(what(), p.to_string(), help)) }
+}
+
+/// Maps in parallel; the error is that of the first item that has one, for any number of threads.
+fn collect<T: Sync, U: Send>(items: &[T], f: impl Fn(&T) -> Result<U> + Sync + Send) -> Result<Vec<U>> {
+    // Errors are large: only the first is kept, by asking for it again.
+    let values: Vec<Option<U>> = items.par_iter().map(|item| f(item).ok()).collect();
+    values.into_iter().zip(items).map(|(value, item)| value.map_or_else(|| f(item), Ok)).collect()
+}
+
+/// The least figure; infinite of nothing.
+fn least<T>(items: &[T], figure: impl Fn(&T) -> f64) -> f64 {
+    items.iter().map(figure).fold(f64::INFINITY, f64::min)
+}
+
+/// The mean of a figure, summed in order; not a number of nothing.
+fn mean<T>(items: &[T], figure: impl Fn(&T) -> f64) -> f64 {
+    items.iter().map(figure).sum::<f64>() / items.len() as f64
+}
+
+/// The first of the least figures, and its place.
+fn spot<T>(items: &[T], figure: impl Fn(&T) -> f64, place: impl Fn(usize) -> Point) -> Spot {
+    let least = items.iter().map(figure).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+    least.map_or(Spot { value: f64::NAN, at: [f64::NAN; 2] }, |(index, value)| {
+        let at = place(index);
+        Spot { value, at: [at.x, at.y] }
+    })
+}
+
+fn midpoint(mesh: &Mesh, [a, b]: [u32; 2]) -> Point {
+    mesh.point(a).midpoint(mesh.point(b))
+}
+
+fn centroid([a, b, c]: [Point; 3]) -> Point {
+    Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0)
+}
+
+fn demand_planar(mesh: &Mesh) -> Result<()> {
+    if mesh.triangles.as_flattened().iter().any(|&v| v as usize >= mesh.points.len()) {
+        return Err(fault("a triangle names a vertex that does not exist", "the array of triangles"));
+    }
+    if mesh.is_planar() {
+        return Ok(());
+    }
+    let what = "the quality of a surface mesh in a metric".into();
+    Err(Error::Unsupported { what, help: "use a planar mesh (z = 0)".into() })
+}
+
+fn fault(what: &str, place: &str) -> Error {
+    Error::Mesh { what: what.into(), place: place.into(), help: "check that the file is complete".into() }
+}
+
+#[cfg(test)]
+#[allow(clippy::float_cmp, reason = "the truths are exact")]
+mod tests {
+    use super::super::test_meshes::{grid, lattice, mesh};
+    use super::*;
+    use crate::geometry::Vector;
+
+    fn close(a: f64, b: f64) {
+        assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{a} is not {b}");
+    }
+
+    fn assert_close(a: &MetricQuality, b: &MetricQuality) {
+        let (la, lb) = (a.metric_edge_length, b.metric_edge_length);
+        close(la.min, lb.min);
+        close(la.mean, lb.mean);
+        close(la.max, lb.max);
+        close(la.std, lb.std);
+        close(la.unit_fraction, lb.unit_fraction);
+        close(a.quality.min, b.quality.min);
+        close(a.quality.mean, b.quality.mean);
+        close(a.angle.min, b.angle.min);
+        close(a.angle.mean_min, b.angle.mean_min);
+    }
+
+    /// The linear map with rows (a, b), (c, d), and the metric that makes it an isometry onto the Euclidean plane.
+    fn pull_back(mesh: &Mesh, [a, b, c, d]: [f64; 4]) -> (Mesh, Tensor) {
+        let determinant = a * d - b * c;
+        let mut image = mesh.clone();
+        image.points.iter_mut().for_each(|p| *p = [a * p[0] + b * p[1], c * p[0] + d * p[1], 0.0]);
+        let (first, second) = (Vector::new(d, -b) * (1.0 / determinant), Vector::new(-c, a) * (1.0 / determinant));
+        let m = Tensor::new(
+            first.x * first.x + second.x * second.x,
+            first.x * first.y + second.x * second.y,
+            first.y * first.y + second.y * second.y,
+        );
+        (image, m)
+    }
+
+    #[test]
+    fn equilateral_lattice_is_perfect() {
+        let found = metric_quality(&lattice(8), &|_| Tensor::IDENTITY).unwrap();
+        let lengths = found.metric_edge_length;
+        assert_eq!(lengths.unit_fraction, 1.0);
+        for figure in [lengths.min, lengths.mean, lengths.max, found.quality.min, found.quality.mean] {
+            close(figure, 1.0);
+        }
+        close(found.angle.min, 60.0);
+        close(found.angle.mean_min, 60.0);
+        assert!(lengths.std < 1e-12);
+        close(found.interior_edge_length.unwrap().mean, 1.0);
+        assert_eq!(metric_quality(&lattice(1), &|_| Tensor::IDENTITY).unwrap().interior_edge_length, None);
+    }
+
+    #[test]
+    fn two_right_triangles() {
+        let found = metric_quality(&grid(1, 1), &|_| Tensor::IDENTITY).unwrap();
+        close(found.metric_edge_length.mean, (4.0 + SQRT_2) / 5.0);
+        close(found.quality.min, 3.0_f64.sqrt() / 2.0);
+        close(found.angle.min, 45.0);
+        assert_eq!(found.worst.longest_edge.at, [0.5, 0.5]);
+    }
+
+    #[test]
+    fn affine_pull_back_changes_nothing() {
+        let truth = metric_quality(&lattice(6), &|_| Tensor::IDENTITY).unwrap();
+        for map in [[1e3, 0.0, 0.0, 1.0], [2.0, 30.0, -0.1, 4.0], [1e-9, 0.0, 0.0, 1e-9], [1e9, 3e8, 0.0, 2e9]] {
+            let (image, m) = pull_back(&lattice(6), map);
+            assert_close(&metric_quality(&image, &|_| m).unwrap(), &truth);
+        }
+    }
+
+    #[test]
+    fn quadrature_follows_a_metric_that_varies() {
+        // Length of (0, 0)-(1, 0) with sqrt(xx) = 1 + x^3 is 5/4, exact for polynomials up to degree 9.
+        let metric = |p: Point| Tensor::new((1.0 + p.x.powi(3)).powi(2), 0.0, 1.0);
+        close(edge_length([Point::new(0.0, 0.0), Point::new(1.0, 0.0)], &metric).unwrap(), 1.25);
+    }
+
+    #[test]
+    fn bad_metric_and_bad_mesh_are_errors() {
+        let bad = |p: Point| if p.x > 3.5 { Tensor::new(1.0, 2.0, 1.0) } else { Tensor::IDENTITY };
+        assert!(matches!(metric_quality(&grid(4, 4), &bad), Err(Error::Metric { .. })));
+        let nan = |_: Point| Tensor::new(f64::NAN, 0.0, 1.0);
+        assert!(matches!(metric_quality(&grid(4, 4), &nan), Err(Error::Metric { .. })));
+        assert!(matches!(metric_quality(&Mesh::default(), &bad), Err(Error::Mesh { .. })));
+        let missing = mesh(&[[0.0, 0.0]], &[[0, 1, 2]]);
+        assert!(matches!(metric_quality(&missing, &bad), Err(Error::Mesh { .. })));
+        let nowhere = mesh(&[[0.0, 0.0], [f64::NAN, 0.0], [0.0, 1.0]], &[[0, 1, 2]]);
+        assert!(metric_quality(&nowhere, &|_| Tensor::IDENTITY).is_ok());
+    }
+
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits() {
+        let metric = |p: Point| Tensor::new(1.0 + p.x * p.x, 0.3, 2.0 + p.y.sin());
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| metric_quality(&grid(70, 70), &metric).unwrap())
+        };
+        assert_eq!(with(1), with(5));
+    }
+}

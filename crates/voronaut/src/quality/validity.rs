@@ -1,0 +1,323 @@
+//! Whether a mesh is a mesh: by counting and by exact predicates, never by a tolerance.
+
+use super::edges::{self, Edges, NONE};
+use super::embedding;
+use crate::error::{Error, Result};
+use crate::geometry::{Orientation, Point, orientation};
+use crate::mesh::Mesh;
+use rayon::prelude::*;
+use std::fmt;
+
+/// What was found in a mesh. `valid` means: at least one triangle, every figure marked (fault) is zero.
+///
+/// On a mesh that is not planar (some z is not 0) `inverted` counts only triangles with a repeated vertex and
+/// `overlaps` is 0: both are questions about the plane. Where numbers are out of range nothing else is looked at;
+/// where triangles are inverted or edges not manifold, overlaps are not looked for.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Validity {
+    /// Whether there is no fault.
+    pub valid: bool,
+    /// Triangles whose exact orientation is not counter-clockwise; flat ones count (fault).
+    pub inverted: usize,
+    /// Edges with more than two triangles, or with two that traverse it in the same direction (fault).
+    pub non_manifold_edges: usize,
+    /// Vertices that lie exactly where one with a smaller number lies (fault).
+    pub duplicate_vertices: usize,
+    /// Places where the embedded triangles cover each other, or boundary edges touch away from shared vertices
+    /// (fault). Places are vertices, boundary edges or boundary components: zero or not is what matters.
+    pub overlaps: usize,
+    /// Vertex or edge numbers that do not exist, and label arrays of the wrong length (fault).
+    pub out_of_range: usize,
+    /// Vertices with a coordinate that is not finite (fault).
+    pub not_finite: usize,
+    /// Labelled edges that are no edge of a triangle (fault).
+    pub stray_edges: usize,
+    /// Vertices of no triangle.
+    pub unused_vertices: usize,
+    /// Closed curves of which the boundary consists.
+    pub boundary_loops: usize,
+    /// V - E + F over the vertices in use, the edges of triangles, and triangles.
+    pub euler: isize,
+    /// Euclidean area; signed on a planar mesh.
+    pub area: f64,
+    /// The first fault, in the order of the checks.
+    pub first_fault: Option<Fault>,
+}
+
+/// What is wrong, and where.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Fault {
+    /// What, with numbers from 1 as in files.
+    pub what: String,
+    /// Coordinates, or an entry of an array.
+    pub place: String,
+}
+
+/// Examines a mesh in O(n log n). Never fails: what is wrong is in the answer.
+pub fn validity(mesh: &Mesh) -> Validity {
+    let mut found = Validity::default();
+    found.examine_numbers(mesh);
+    if found.out_of_range == 0 {
+        let edges = Edges::of(&mesh.triangles);
+        found.examine_vertices(mesh);
+        found.examine_triangles(mesh);
+        found.examine_edges(mesh, &edges);
+        if found.first_fault.is_none() && mesh.is_planar() {
+            found.examine_embedding(mesh, &edges);
+        }
+    }
+    found.valid = found.first_fault.is_none();
+    found
+}
+
+/// Nothing for a valid mesh (see [`validity`]).
+///
+/// # Errors
+/// [`Error::Mesh`] with the first fault of a mesh that is not valid.
+pub fn check(mesh: &Mesh) -> Result<()> {
+    validity(mesh).demand()
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} at {}", self.what, self.place)
+    }
+}
+
+impl Validity {
+    /// Nothing if the mesh is valid.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] with the first fault.
+    pub fn demand(&self) -> Result<()> {
+        match self.first_fault.clone() {
+            None => Ok(()),
+            Some(Fault { what, place }) => {
+                Err(Error::Mesh { what, place, help: "repair the mesh there, or mesh its domain anew".into() })
+            }
+        }
+    }
+
+    fn fault(&mut self, what: impl Into<String>, place: impl Into<String>) {
+        self.first_fault.get_or_insert_with(|| Fault { what: what.into(), place: place.into() });
+    }
+
+    fn examine_numbers(&mut self, mesh: &Mesh) {
+        let vertices = mesh.points.len();
+        self.examine_range("triangle", mesh.triangles.as_flattened(), 3, vertices);
+        self.examine_range("edge", mesh.edges.as_flattened(), 2, vertices);
+        self.examine_range("corner", &mesh.corners, 1, vertices);
+        self.examine_range("required vertex", &mesh.required_points, 1, vertices);
+        self.examine_range("required edge", &mesh.required_edges, 1, mesh.edges.len());
+        for (name, labels, entries) in [
+            ("vertices", mesh.point_labels.len(), vertices),
+            ("triangles", mesh.triangle_labels.len(), mesh.triangles.len()),
+            ("edges", mesh.edge_labels.len(), mesh.edges.len()),
+        ] {
+            if labels != entries {
+                self.out_of_range += 1;
+                self.fault(format!("{entries} {name} but {labels} labels of {name}"), "the arrays of labels");
+            }
+        }
+        if mesh.triangles.is_empty() {
+            self.fault("there are no triangles", "the array of triangles");
+        }
+    }
+
+    fn examine_range(&mut self, name: &str, numbers: &[u32], per_entry: usize, limit: usize) {
+        let mut wrong = numbers.iter().enumerate().filter(|&(_, &number)| number as usize >= limit);
+        if let Some((index, &number)) = wrong.next() {
+            self.out_of_range += 1 + wrong.count();
+            let what = format!("number {} does not exist, the last is {limit}", u64::from(number) + 1);
+            self.fault(what, format!("{name} {}", index / per_entry + 1));
+        }
+    }
+
+    fn examine_vertices(&mut self, mesh: &Mesh) {
+        let finite = |p: &[f64; 3]| p.iter().all(|x| x.is_finite());
+        let mut sorted: Vec<([u64; 3], u32)> = (0u32..).zip(&mesh.points).map(|(v, p)| (bits(*p), v)).collect();
+        for (v, p) in (1..).zip(&mesh.points).filter(|(_, p)| !finite(p)) {
+            self.not_finite += 1;
+            self.fault(format!("vertex {v} is not finite"), format!("({}, {}, {})", p[0], p[1], p[2]));
+        }
+        sorted.retain(|&(_, v)| finite(&mesh.points[v as usize]));
+        sorted.par_sort_unstable();
+        for pair in sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            self.duplicate_vertices += 1;
+            let what = format!("vertices {} and {} are at the same position", pair[0].1 + 1, pair[1].1 + 1);
+            self.fault(what, mesh.point(pair[0].1).to_string());
+        }
+        let mut used = vec![false; mesh.points.len()];
+        mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+        self.unused_vertices = used.iter().filter(|&&used| !used).count();
+    }
+
+    fn examine_triangles(&mut self, mesh: &Mesh) {
+        let planar = mesh.is_planar();
+        self.area = mesh.triangles.iter().map(|&t| if planar { planar_area(mesh, t) } else { area(mesh, t) }).sum();
+        let wrong = |&[a, b, c]: &[u32; 3]| {
+            let [p, q, r] = mesh.corners_of([a, b, c]);
+            a == b || b == c || c == a || planar && orientation(p, q, r) != Orientation::Left
+        };
+        let inverted: Vec<usize> =
+            (0..mesh.triangles.len()).into_par_iter().filter(|&t| wrong(&mesh.triangles[t])).collect();
+        self.inverted = inverted.len();
+        if let Some(&t) = inverted.first() {
+            let [a, b, c] = mesh.triangles[t].map(|v| u64::from(v) + 1);
+            let what = format!("triangle {} (vertices {a} {b} {c}) is inverted or flat", t + 1);
+            self.fault(what, centroid(mesh.corners_of(mesh.triangles[t])).to_string());
+        }
+    }
+
+    fn examine_edges(&mut self, mesh: &Mesh, edges: &Edges) {
+        let used = mesh.points.len() - self.unused_vertices;
+        self.euler = used.cast_signed() - edges.count().cast_signed() + mesh.triangles.len().cast_signed();
+        for ([a, b], half_edges) in edges.iter().filter(|(_, half_edges)| !edges.is_manifold(half_edges)) {
+            self.non_manifold_edges += 1;
+            let count = half_edges.len();
+            let what =
+                format!("edge {} {} is not manifold: {count} triangles, or the same direction twice", a + 1, b + 1);
+            self.fault(what, mesh.point(a).midpoint(mesh.point(b)).to_string());
+        }
+        self.boundary_loops = boundary_loops(edges);
+        for (number, &[a, b]) in (1..).zip(&mesh.edges).filter(|(_, [a, b])| !edges.contains(*a, *b)) {
+            self.stray_edges += 1;
+            let what = format!("labelled edge {number} (vertices {} {}) is no edge of a triangle", a + 1, b + 1);
+            self.fault(what, mesh.point(a).midpoint(mesh.point(b)).to_string());
+        }
+    }
+
+    fn examine_embedding(&mut self, mesh: &Mesh, edges: &Edges) {
+        let overlaps = embedding::overlaps(mesh, edges);
+        self.overlaps = overlaps.len();
+        if let Some(fault) = overlaps.into_iter().next() {
+            self.fault(fault.what, fault.place);
+        }
+    }
+}
+
+/// Cycles of the boundary: from each boundary half-edge on through the fan of triangles at its end.
+fn boundary_loops(edges: &Edges) -> usize {
+    let twins = edges.twins();
+    let mut seen = vec![false; twins.len()];
+    let mut loops = 0;
+    for start in edges.boundary() {
+        let mut half_edge = start;
+        loops += usize::from(!seen[start as usize]);
+        while !std::mem::replace(&mut seen[half_edge as usize], true) {
+            half_edge = edges::next(half_edge);
+            while twins[half_edge as usize] != NONE {
+                half_edge = edges::next(twins[half_edge as usize]);
+            }
+        }
+    }
+    loops
+}
+
+/// Equal for equal coordinates: 0 and -0 are the same place.
+fn bits(p: [f64; 3]) -> [u64; 3] {
+    p.map(|x| (x + 0.0).to_bits())
+}
+
+fn planar_area(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
+    let [a, b, c] = mesh.corners_of(triangle);
+    0.5 * (b - a).cross(c - a)
+}
+
+fn area(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|v| mesh.points[v as usize]);
+    let side = |p: [f64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
+    let ([ux, uy, uz], [vx, vy, vz]) = (side(b), side(c));
+    0.5 * (uy * vz - uz * vy).hypot(uz * vx - ux * vz).hypot(ux * vy - uy * vx)
+}
+
+fn centroid([a, b, c]: [Point; 3]) -> Point {
+    Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0)
+}
+
+#[cfg(test)]
+#[allow(clippy::float_cmp, reason = "the truths are exact")]
+mod tests {
+    use super::super::test_meshes::{fan, grid, lattice, mesh, with_hole};
+    use super::*;
+
+    #[test]
+    fn two_triangles_are_valid() {
+        let found = validity(&grid(1, 1));
+        assert!(found.valid, "{found:?}");
+        assert_eq!((found.euler, found.boundary_loops, found.area), (1, 1, 1.0));
+    }
+
+    #[test]
+    fn a_hole_lowers_the_euler_number() {
+        let found = validity(&with_hole());
+        assert!(found.valid, "{found:?}");
+        assert_eq!((found.euler, found.boundary_loops, found.area), (0, 2, 8.0));
+    }
+
+    #[test]
+    fn scale_does_not_matter() {
+        for scale in [1e-9, 1e-3, 1e9] {
+            let mut scaled = lattice(12);
+            scaled.points.iter_mut().for_each(|p| *p = p.map(|x| x * scale));
+            assert!(validity(&scaled).valid);
+        }
+    }
+
+    #[test]
+    fn folded_mesh_is_inverted() {
+        let folded = mesh(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.2, 0.2]], &[[0, 1, 2], [2, 1, 3]]);
+        let found = validity(&folded);
+        assert_eq!((found.valid, found.inverted), (false, 1));
+        assert!(check(&folded).unwrap_err().to_string().contains("triangle 2"), "{:?}", check(&folded));
+    }
+
+    #[test]
+    fn fan_around_a_vertex_turns_once() {
+        assert!(validity(&fan(7, 1)).valid);
+        assert!(validity(&fan(3, 1)).valid);
+        let found = validity(&fan(7, 2));
+        assert_eq!((found.valid, found.inverted, found.overlaps), (false, 0, 1), "{found:?}");
+    }
+
+    #[test]
+    fn repeated_directions_and_third_triangles_are_not_manifold() {
+        let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.2, 0.9], [0.5, -1.0]];
+        assert_eq!(validity(&mesh(&points, &[[0, 1, 2], [0, 1, 3]])).non_manifold_edges, 1);
+        assert_eq!(validity(&mesh(&points, &[[0, 1, 2], [0, 1, 3], [1, 0, 4]])).non_manifold_edges, 1);
+        assert_eq!(validity(&mesh(&points, &[[0, 1, 2], [0, 1, 2]])).non_manifold_edges, 3);
+    }
+
+    #[test]
+    fn duplicates_are_found_by_value() {
+        let doubled = mesh(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [-0.0, 0.0], [0.0, 0.0]], &[[0, 1, 2]]);
+        let found = validity(&doubled);
+        assert_eq!((found.valid, found.duplicate_vertices, found.unused_vertices), (false, 2, 2));
+    }
+
+    #[test]
+    fn broken_numbers_are_faults_not_panics() {
+        let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        assert!(!validity(&Mesh::default()).valid);
+        assert_eq!(validity(&mesh(&points, &[[0, 1, 3]])).out_of_range, 1);
+        assert_eq!(validity(&mesh(&points, &[[0, 1, u32::MAX]])).out_of_range, 1);
+        assert_eq!(validity(&mesh(&points, &[[0, 1, 1]])).inverted, 1);
+        let found = validity(&mesh(&[[0.0, 0.0], [f64::NAN, 0.0], [0.0, f64::INFINITY]], &[[0, 1, 2]]));
+        assert_eq!((found.valid, found.not_finite), (false, 2));
+        let mut unlabelled = grid(1, 1);
+        unlabelled.triangle_labels.clear();
+        assert_eq!(validity(&unlabelled).out_of_range, 1);
+        let mut stray = grid(1, 1);
+        (stray.edges, stray.edge_labels) = (vec![[1, 2], [0, 3], [0, 1]], vec![1; 3]);
+        assert_eq!(validity(&stray).stray_edges, 1);
+    }
+
+    #[test]
+    fn surfaces_are_examined_for_topology() {
+        let mut roof = grid(1, 1);
+        roof.points[3][2] = 1.0;
+        let found = validity(&roof);
+        assert!(found.valid, "{found:?}");
+        assert!(found.area > 1.0);
+    }
+}
