@@ -2,7 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use voronaut::recipe::Progress;
+use voronaut::progress::Progress;
 
 /// Shows the current stage on stderr if that is a terminal; says each stage in a line of its own if verbose.
 pub(crate) struct Bar {

@@ -47,8 +47,8 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
         line("metric scale", format!("{scale}"));
     }
     if let (Some(dual), true) = (&report.dual, verbose) {
-        let [frozen, chord, path] = dual.geodesic_tests;
-        line("tests", format!("{frozen} frozen, {chord} chord, {path} path; {} uncertain", dual.uncertain));
+        let tests = dual.geodesic_tests.map(|n| n.to_string()).join(" + ");
+        line("tests", format!("{tests} by level; {} uncertain", dual.uncertain));
         line("margin", format!("{:.2e}; {} blocked flips", dual.min_margin, dual.blocked_flips));
     }
     if verbose {

@@ -8,6 +8,10 @@ use crate::triangulation::{HalfEdge, VertexId};
 /// Number of levels: frozen tensor, expansions at the ends, path energy with 8 and with 16 segments.
 pub const LEVELS: usize = 4;
 
+/// Quadrilaterals whose shorter diagonal is longer than this (metric length) are settled by the frozen tensor: local
+/// expansions say nothing so far away, and such edges are on their way to be split.
+const LONG: f64 = 3.0;
+
 /// How far up the levels a test may climb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
@@ -74,7 +78,8 @@ impl Dual<'_> {
             tensors.iter().map(|t| (t.dot(v, v) / reference - 1.0).abs()).fold(0.0, f64::max)
         };
         let error = spread(b - a).max(spread(d - c));
-        Margin { value, error: if error.is_finite() { error } else { f64::INFINITY }, level: 0 }
+        let is_long = mean.length(b - a).min(mean.length(d - c)) > LONG;
+        Margin { value, error: if error.is_finite() && !is_long { error } else { 0.0 }, level: 0 }
     }
 
     fn by_lengths(&self, quad: &Quad, level: usize) -> Margin {

@@ -67,7 +67,7 @@ pub struct Diagram {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Dual {
     /// In-circle tests settled by each level of the filter.
-    pub geodesic_tests: [u64; 3],
+    pub geodesic_tests: [u64; crate::dual::LEVELS],
     /// Tests whose margin stayed within the error bound of the last level.
     pub uncertain: u64,
     /// The smallest margin among the final mesh's edges.

@@ -1,5 +1,9 @@
 //! The main job as one function: from a domain and a metric to a valid unit mesh.
 
+mod field;
+
+pub use field::metric;
+
 use crate::domain::Domain;
 use crate::dual::{Dual, Kind, LEVELS};
 use crate::error::Result;
@@ -143,9 +147,10 @@ impl<'a> Job<'a> {
             self.progress.stage("seeding", count as u64);
             let mut dual = Dual::new(domain, Scaled { field: self.field, factor: scale })?;
             sample_segments(&mut dual, &plan.edges, &plan.arcs, scale);
-            refine(&mut dual, count, self.progress);
+            let _r = refine(&mut dual, count, self.progress);
             dual.verdict()?;
             let mean = mean_free_edge(&dual);
+            eprintln!("DBG round {round} scale {scale} count {count} got {} boundary {} refined {:?} mean {mean} flips {:?}", dual.vertex_count(), plan.boundary_vertices(scale), _r, dual.counters());
             if round == ROUNDS || (mean - 1.0).abs() < SCALE_TOLERANCE {
                 return Ok(dual);
             }
