@@ -6,9 +6,9 @@ use crate::triangulation::{HalfEdge, VertexId};
 /// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
 const TIE: f64 = 1e-9;
 
-/// Edges flipped per edge examined before a pass gives up: inconsistent lengths can make flips cycle, and honest
-/// passes were seen to need fewer than three.
-const FLIPS_PER_EDGE: u64 = 10;
+/// How often one pass flips the edge in one slot: inconsistent tests can make flips go round in a circle, which must
+/// neither last for ever nor keep the rest of the mesh from its flips. Honest passes were seen to need three.
+const FLIPS_PER_SLOT: u8 = 6;
 
 impl Dual<'_> {
     /// Flips every edge that the metric wants flipped and the plane allows. Returns the number of flips.
@@ -26,13 +26,13 @@ impl Dual<'_> {
     }
 
     /// Edges that the metric wants flipped and the plane forbids, with their margins.
-    pub fn blocked_flips(&mut self) -> Vec<(HalfEdge, f64)> {
+    pub fn blocked_flips(&mut self, effort: Effort) -> Vec<(HalfEdge, f64)> {
         let edges: Vec<HalfEdge> =
             self.planar.topology.edges().filter(|&h| !self.planar.topology.is_fixed(h)).collect();
         let mut blocked = Vec::new();
-        for h in edges {
-            let margin = self.margin(h, Effort::Full);
-            if margin.value < -TIE && margin.is_certain() && !self.planar.is_convex(h) {
+        for h in edges.into_iter().filter(|&h| !self.planar.is_convex(h)).collect::<Vec<_>>() {
+            let margin = self.margin(h, effort);
+            if margin.value < -TIE && margin.is_certain() {
                 blocked.push((h, margin.value));
             }
         }
@@ -40,27 +40,29 @@ impl Dual<'_> {
     }
 
     /// The smallest margin among all edges that could be flipped; `None` of none.
-    pub fn smallest_margin(&mut self) -> Option<f64> {
+    pub fn smallest_margin(&mut self, effort: Effort) -> Option<f64> {
         let edges: Vec<HalfEdge> =
             self.planar.topology.edges().filter(|&h| !self.planar.topology.is_fixed(h)).collect();
-        edges.into_iter().map(|h| self.margin(h, Effort::Full).value).reduce(f64::min)
+        edges.into_iter().map(|h| self.margin(h, effort).value).reduce(f64::min)
     }
 
     fn flip_stacked(&mut self, effort: Effort) -> u64 {
-        let budget = FLIPS_PER_EDGE * self.stack.len() as u64;
-        let mut flips = 0;
+        let mut flipped: Vec<HalfEdge> = Vec::new();
         while let Some(h) = self.stack.pop() {
             if self.planar.topology.is_fixed(h) || self.margin(h, effort).value >= -TIE || !self.planar.is_convex(h) {
                 continue;
             }
-            if flips == budget {
-                self.stack.clear();
-                break;
+            let slot = self.planar.topology.twin(h).map_or(h, |t| h.min(t));
+            self.flips_of_slot.resize(3 * self.planar.topology.face_slots(), 0);
+            let count = &mut self.flips_of_slot[slot.index()];
+            if *count < FLIPS_PER_SLOT {
+                *count += 1;
+                flipped.push(slot);
+                self.flip(h);
             }
-            self.flip(h);
-            flips += 1;
         }
-        flips
+        flipped.iter().for_each(|slot| self.flips_of_slot[slot.index()] = 0);
+        flipped.len() as u64
     }
 
     fn flip(&mut self, h: HalfEdge) {

@@ -1,14 +1,16 @@
 //! The filtered in-circle test: each level costs more and errs less, and runs only where the one before it cannot tell.
 
 use super::Dual;
-use crate::geodesic::{Angles, Length, frozen_margin, hermite, path_energy};
+use crate::geodesic::{Angles, Length, bent_chord, frozen_margin, hermite, path_energy};
 use crate::geometry::Tensor;
 use crate::triangulation::{HalfEdge, VertexId};
 
-/// Number of levels: frozen tensor, expansions at the ends, path energy with 8 and with 16 segments.
+/// Number of levels: frozen tensor, expansions at the vertices, quadrature along the chords, path energy with 8
+/// segments.
 pub const LEVELS: usize = 4;
 
-/// Quadrilaterals whose shorter diagonal is longer than this (metric length) are settled by the frozen tensor: local
+/// Quadrilaterals at a rough vertex are settled by the frozen tensor, too: their geodesics cannot be told from
+/// expansions, and tests that contradict each other make flips go in circles. Quadrilaterals whose shorter diagonal is longer than this (metric length) are settled by the frozen tensor: local
 /// expansions say nothing so far away, and such edges are on their way to be split.
 const LONG: f64 = 3.0;
 
@@ -16,9 +18,11 @@ const LONG: f64 = 3.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
     /// To lengths from the expansions at the vertices: no evaluation of the field.
-    Local,
-    /// To the last level.
-    Full,
+    Local = 1,
+    /// To quadrature along the chords.
+    Chord = 2,
+    /// To the last level: path energy.
+    Full = 3,
 }
 
 /// The outcome of an in-circle test: the sine of the sum of the two angles that face the edge (see
@@ -55,9 +59,8 @@ impl Dual<'_> {
         let topology = self.topology();
         let quad = Quad { a: topology.origin(h), b: topology.target(h), c: topology.apex(h), d: topology.apex(t) };
         let mut margin = self.frozen(&quad);
-        for level in 1..LEVELS {
-            let last = effort == Effort::Local && level > 1;
-            if margin.is_certain() || last {
+        for level in 1..=(if std::env::var("FROZEN").is_ok() { 0 } else { effort as usize }) {
+            if margin.is_certain() {
                 break;
             }
             margin = self.by_lengths(&quad, level);
@@ -79,7 +82,8 @@ impl Dual<'_> {
         };
         let error = spread(b - a).max(spread(d - c));
         let is_long = mean.length(b - a).min(mean.length(d - c)) > LONG;
-        Margin { value, error: if error.is_finite() && !is_long { error } else { 0.0 }, level: 0 }
+        let is_rough = [quad.a, quad.b, quad.c, quad.d].iter().any(|&v| self.local(v).is_rough);
+        Margin { value, error: if is_long || is_rough { 0.0 } else { error }, level: 0 }
     }
 
     fn by_lengths(&self, quad: &Quad, level: usize) -> Margin {
@@ -95,8 +99,8 @@ impl Dual<'_> {
         let (p, q) = (self.position(u), self.position(v));
         match level {
             1 => hermite(p, self.local(u), q, self.local(v)),
-            2 => path_energy(&self.field, p, q, 8),
-            _ => path_energy(&self.field, p, q, 16),
+            2 => bent_chord(&self.field, p, self.local(u), q, self.local(v)),
+            _ => path_energy(&self.field, p, q, 8),
         }
     }
 }

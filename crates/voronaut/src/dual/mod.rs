@@ -13,7 +13,7 @@ pub use margin::{Effort, LEVELS, Margin};
 
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::geodesic::{LocalMetric, hermite};
+use crate::geodesic::{LocalMetric, chord, hermite};
 use crate::geometry::{Point, Tensor};
 use crate::metric::Scaled;
 use crate::planar::Planar;
@@ -50,6 +50,7 @@ pub struct Dual<'a> {
     kinds: Vec<Kind>,
     touched: Vec<FaceId>,
     stack: Vec<HalfEdge>,
+    flips_of_slot: Vec<u8>,
     counters: DualCounters,
     fault: Option<(Point, Tensor)>,
 }
@@ -69,6 +70,7 @@ impl<'a> Dual<'a> {
             kinds,
             touched: Vec::new(),
             stack: Vec::new(),
+            flips_of_slot: Vec::new(),
             counters: DualCounters::default(),
             fault: None,
         };
@@ -124,10 +126,15 @@ impl<'a> Dual<'a> {
         &self.counters
     }
 
-    /// Metric length of an edge, estimated from its ends ([`hermite`]).
+    /// Metric length of an edge: estimated from its ends ([`hermite`]), or, where the metric is rough, by quadrature
+    /// along the chord.
     pub fn edge_length(&self, h: HalfEdge) -> f64 {
         let (u, v) = (self.topology().origin(h), self.topology().target(h));
-        hermite(self.position(u), self.local(u), self.position(v), self.local(v)).value
+        let (p, q) = (self.position(u), self.position(v));
+        if self.local(u).is_rough || self.local(v).is_rough {
+            return chord(&self.field, p, q);
+        }
+        hermite(p, self.local(u), q, self.local(v)).value
     }
 
     /// The faces that changed since the last call, some of them perhaps several times or removed.
@@ -172,6 +179,6 @@ impl<'a> Dual<'a> {
             return local;
         }
         self.fault.get_or_insert((p, local.tensor));
-        LocalMetric { tensor: Tensor::IDENTITY, derivative: [Tensor::default(); 2] }
+        LocalMetric { tensor: Tensor::IDENTITY, ..LocalMetric::default() }
     }
 }

@@ -3,34 +3,77 @@
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 
-/// Finite differences are taken over this share of the metric unit length: at the scale of a cell, so that a kink or
-/// the noise of a sampled field does not pass for curvature (DESIGN.md, "Christoffel symbols").
+/// Finite differences are taken over this share of the metric unit length: at the scale of a cell, so that noise of
+/// the field does not pass for curvature (DESIGN.md, "Rough metrics").
 const DIFFERENCE_STEP: f64 = 0.25;
+/// A field whose second differences over that step exceed this share of the tensor is rough there.
+const ROUGH: f64 = 0.08;
+/// Directions and radius (metric units) of the samples over which a rough field is averaged.
+const RING: usize = 8;
+const RING_RADIUS: f64 = 0.5;
 
 /// The metric tensor at a point and its first derivatives.
+///
+/// Where the field is *rough* - kinked or jumping within a cell, as near the medial axis of a jagged coast - no
+/// expansion at a point describes it. There the tensor is the mean over a ball about a unit wide, and the derivatives
+/// are those of the best linear fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LocalMetric {
     /// The tensor M.
     pub tensor: Tensor,
     /// dM/dx and dM/dy.
     pub derivative: [Tensor; 2],
+    /// Whether the field is rough here.
+    pub is_rough: bool,
 }
 
 impl LocalMetric {
     /// Evaluates the field at p and, for the derivatives, at four points a quarter of a metric unit away along the
-    /// tensor's axes. Where one of those is no metric (a field may end with the domain) the derivative counts as zero.
+    /// tensor's axes; at eight more where it is rough. Where the field is no metric at one of the points around p (a
+    /// field may end with the domain) the derivative counts as zero.
     pub fn at(field: &dyn MetricField, p: Point) -> Self {
         let tensor = field.at(p);
         let eigen = tensor.eigen();
-        let [u, v] = [eigen.axis, eigen.axis.perpendicular()];
-        let along = |axis: Vector, eigenvalue: f64| {
-            let step = DIFFERENCE_STEP / eigenvalue.sqrt();
-            let (ahead, behind) = (field.at(p + axis * step), field.at(p - axis * step));
-            let valid = ahead.is_positive_definite() && behind.is_positive_definite();
-            if valid { (ahead + behind * -1.0) * (0.5 / step) } else { Tensor::default() }
-        };
-        let (du, dv) = (along(u, eigen.large), along(v, eigen.small));
-        Self { tensor, derivative: [du * u.x + dv * v.x, du * u.y + dv * v.y] }
+        let axes = [eigen.axis, eigen.axis.perpendicular()];
+        let steps = [eigen.large, eigen.small].map(|eigenvalue| DIFFERENCE_STEP / eigenvalue.sqrt());
+        let mut along = [Tensor::default(); 2];
+        let mut second = 0.0_f64;
+        for i in 0..2 {
+            let offset = axes[i] * steps[i];
+            let (ahead, behind) = (field.at(p + offset), field.at(p - offset));
+            if ahead.is_positive_definite() && behind.is_positive_definite() {
+                along[i] = (ahead + behind * -1.0) * (0.5 / steps[i]);
+                second = second.max(relative_size((ahead + behind) * 0.5 + tensor * -1.0, axes, steps));
+            }
+        }
+        if second > ROUGH {
+            return Self::averaged(field, p, tensor);
+        }
+        let [u, v] = axes;
+        let derivative = [along[0] * u.x + along[1] * v.x, along[0] * u.y + along[1] * v.y];
+        Self { tensor, derivative, is_rough: false }
+    }
+
+    /// The mean over the centre and a ring, and the derivatives of the linear function that fits the ring best; the
+    /// ring is the circle of half a unit in the tensor at the centre.
+    fn averaged(field: &dyn MetricField, p: Point, centre: Tensor) -> Self {
+        let [a, b, c] = centre.cholesky();
+        let (mut sum, mut number, mut slopes) = (centre, 1.0, [Tensor::default(); 2]);
+        for k in 0..RING / 2 {
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / RING as f64).sin_cos();
+            let y = sin / c;
+            let offset = Vector::new((cos - b * y) / a, y) * RING_RADIUS;
+            let (ahead, behind) = (field.at(p + offset), field.at(p - offset));
+            if ahead.is_positive_definite() && behind.is_positive_definite() {
+                (sum, number) = (sum + ahead + behind, number + 2.0);
+                let difference = ahead + behind * -1.0;
+                slopes = [slopes[0] + difference * cos, slopes[1] + difference * sin];
+            }
+        }
+        // Along the two axes of the frame F v = (a x + b y, c y), then back: d/dx = a d/du, d/dy = b d/du + c d/dv.
+        let scale = 2.0 / (RING as f64 * RING_RADIUS);
+        let [du, dv] = slopes.map(|slope| slope * scale);
+        Self { tensor: sum * (1.0 / number), derivative: [du * a, du * b + dv * c], is_rough: true }
     }
 
     /// The derivative of the tensor along a vector.
@@ -68,6 +111,14 @@ impl LocalMetric {
             Vector::default()
         }
     }
+}
+
+/// The size of a difference of tensors relative to the tensor with these axes, whose metric lengths over `steps` are
+/// [`DIFFERENCE_STEP`].
+fn relative_size(difference: Tensor, axes: [Vector; 2], steps: [f64; 2]) -> f64 {
+    let [u, v] = [axes[0] * steps[0], axes[1] * steps[1]];
+    let entries = [difference.dot(u, u), difference.dot(u, v), difference.dot(v, v)];
+    entries.iter().fold(0.0_f64, |size, entry| size.max(entry.abs())) / (DIFFERENCE_STEP * DIFFERENCE_STEP)
 }
 
 #[cfg(test)]

@@ -5,5 +5,5 @@ mod length;
 mod local;
 
 pub use in_circle::{Angles, frozen_margin};
-pub use length::{Length, chord, hermite, path_energy};
+pub use length::{Length, bent_chord, chord, hermite, path_energy};
 pub use local::LocalMetric;

@@ -1,6 +1,6 @@
 //! Exchanging seeds: removing those that crowd, adding where edges are too long, at a given number of vertices.
 
-use crate::dual::{Dual, Kind};
+use crate::dual::{Dual, Effort, Kind};
 use crate::progress::Silent;
 use crate::sampling::refine;
 use crate::triangulation::VertexId;
@@ -54,7 +54,7 @@ fn nearest_two(dual: &Dual, v: VertexId) -> f64 {
 /// Puts a seed at the middle of each edge whose flip the metric wants and the plane forbids, worst first and at most
 /// `most` of them. Returns how many.
 pub fn meet_blocked_flips(dual: &mut Dual, most: usize) -> usize {
-    let mut blocked = dual.blocked_flips();
+    let mut blocked = dual.blocked_flips(Effort::Local);
     blocked.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
     let ends = |h| [dual.topology().origin(h), dual.topology().target(h)];
     let edges: Vec<[VertexId; 2]> = blocked.into_iter().map(|(h, _)| ends(h)).collect();

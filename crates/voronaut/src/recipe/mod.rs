@@ -5,7 +5,7 @@ mod field;
 pub use field::metric;
 
 use crate::domain::Domain;
-use crate::dual::{Dual, Kind, LEVELS};
+use crate::dual::{Dual, Effort, Kind, LEVELS};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Scaled};
@@ -150,7 +150,13 @@ impl<'a> Job<'a> {
             let _r = refine(&mut dual, count, self.progress);
             dual.verdict()?;
             let mean = mean_free_edge(&dual);
-            eprintln!("DBG round {round} scale {scale} count {count} got {} boundary {} refined {:?} mean {mean} flips {:?}", dual.vertex_count(), plan.boundary_vertices(scale), _r, dual.counters());
+            eprintln!(
+                "DBG round {round} scale {scale} count {count} got {} boundary {} refined {:?} mean {mean} flips {:?}",
+                dual.vertex_count(),
+                plan.boundary_vertices(scale),
+                _r,
+                dual.counters()
+            );
             if round == ROUNDS || (mean - 1.0).abs() < SCALE_TOLERANCE {
                 return Ok(dual);
             }
@@ -193,9 +199,9 @@ impl<'a> Job<'a> {
 
     fn finish(&mut self, domain: &Domain, dual: &mut Dual) -> Result<Meshed> {
         self.progress.stage("checking", 1);
-        dual.flip_all(crate::dual::Effort::Full);
-        let blocked_flips = dual.blocked_flips().len() as u64;
-        let min_margin = dual.smallest_margin().unwrap_or(0.0);
+        dual.flip_all(Effort::Chord);
+        let blocked_flips = dual.blocked_flips(Effort::Chord).len() as u64;
+        let min_margin = dual.smallest_margin(Effort::Local).unwrap_or(0.0);
         let mesh = dual.to_mesh(domain);
         quality::check(&mesh)?;
         let counters = MeshCounters {

@@ -1,7 +1,9 @@
 //! The interior: seeds one at a time at the circumcentre of the face whose metric circumradius is largest.
 
 use crate::dual::{Dual, Kind};
+use crate::geodesic::chord;
 use crate::geometry::{Point, Tensor, Vector};
+use crate::metric::MetricField;
 use crate::planar::Location;
 use crate::progress::Progress;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
@@ -11,9 +13,17 @@ use std::collections::BinaryHeap;
 /// Constrained edges shorter than this (metric length) are not split for an encroaching seed: both halves stay unit
 /// edges, and spikes do not cascade.
 const SPLIT_FLOOR: f64 = std::f64::consts::SQRT_2;
-/// A circumcentre nearer than this share of the circumradius to a vertex means that the metric varies too much for the
-/// circle to say where the gap is.
-const CROWDED: f64 = 0.5;
+/// New seeds keep at least this distance (metric length) from the corners of the face that they fall into.
+const SPACING: f64 = 0.55;
+
+/// Corners farther apart than this (metric length) say little of what lies between them.
+const FAR: f64 = 2.5;
+
+/// What came of a try to insert a seed.
+enum Attempt {
+    Inserted,
+    Crowded,
+}
 
 /// How refinement went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,6 +32,8 @@ pub struct Refined {
     pub circumcentres: usize,
     /// Constrained edges split because a circumcentre encroached on them.
     pub encroached: usize,
+    /// Seeds put at centroids, where the circumcentre was too near to other seeds.
+    pub centroids: usize,
     /// Edges halved because no circumcentre could be had.
     pub halved: usize,
 }
@@ -92,7 +104,7 @@ impl Refiner {
             if now.to_bits() != radius.to_bits() {
                 continue;
             }
-            let done = self.insert_for(dual, face, centre, radius) || self.halve_longest_of(dual, face);
+            let done = self.insert_for(dual, face, centre);
             let touched = dual.take_touched();
             self.enqueue(dual, touched);
             if done {
@@ -102,37 +114,52 @@ impl Refiner {
         false
     }
 
-    fn insert_for(&mut self, dual: &mut Dual, face: FaceId, centre: Point, radius: f64) -> bool {
+    /// A seed for a face: at its circumcentre, else (where the metric varies so much that the circle says little) at
+    /// its centroid or in the middle of its longest edge. Each must keep its distance from the seeds around it.
+    fn insert_for(&mut self, dual: &mut Dual, face: FaceId, centre: Point) -> bool {
+        match self.insert_at_circumcentre(dual, face, centre) {
+            Attempt::Inserted => return true,
+            Attempt::Crowded => {}
+        }
+        let centroid = centroid(dual.planar().triangle(face));
+        if !is_crowded(dual, face, centroid) && dual.insert_in_face(face, centroid).is_some() {
+            self.refined.centroids += 1;
+            return true;
+        }
+        let longest = face.half_edges().into_iter().max_by(|&g, &h| chord_of(dual, g).total_cmp(&chord_of(dual, h)));
+        let halved = longest.is_some_and(|h| {
+            let [a, b] = dual.planar().ends(h);
+            let allowed = !dual.topology().is_fixed(h) || chord_of(dual, h) > SPLIT_FLOOR;
+            let roomy = |e: HalfEdge| !is_crowded(dual, e.face(), a.midpoint(b));
+            allowed && roomy(h) && dual.topology().twin(h).is_none_or(roomy) && halve(dual, h)
+        });
+        self.refined.halved += usize::from(halved);
+        halved
+    }
+
+    fn insert_at_circumcentre(&mut self, dual: &mut Dual, face: FaceId, centre: Point) -> Attempt {
         let inserted = match dual.planar().walk(face, centre, true) {
             Location::Face(f) => {
                 if let Some(h) = encroached_edge(dual, f, centre) {
                     return self.split_encroached(dual, h);
                 }
-                !is_crowded(dual, f, centre, radius) && dual.insert_in_face(f, centre).is_some()
+                !is_crowded(dual, f, centre) && dual.insert_in_face(f, centre).is_some()
             }
             Location::Edge(h) if !dual.topology().is_fixed(h) => {
-                !is_crowded(dual, h.face(), centre, radius) && dual.insert_on_edge(h, centre).is_some()
+                let roomy = |e: HalfEdge| !is_crowded(dual, e.face(), centre);
+                roomy(h) && dual.topology().twin(h).is_none_or(roomy) && dual.insert_on_edge(h, centre).is_some()
             }
             Location::Edge(h) | Location::Behind(h) => return self.split_encroached(dual, h),
             Location::Vertex(_) => false,
         };
         self.refined.circumcentres += usize::from(inserted);
-        inserted
+        if inserted { Attempt::Inserted } else { Attempt::Crowded }
     }
 
-    fn split_encroached(&mut self, dual: &mut Dual, h: HalfEdge) -> bool {
-        let split = dual.edge_length(h) > SPLIT_FLOOR && split_constrained(dual, h);
+    fn split_encroached(&mut self, dual: &mut Dual, h: HalfEdge) -> Attempt {
+        let split = chord_of(dual, h) > SPLIT_FLOOR && split_constrained(dual, h);
         self.refined.encroached += usize::from(split);
-        split
-    }
-
-    /// Halves the longest edge of a face whose circumcentre cannot be had, if that edge is too long.
-    fn halve_longest_of(&mut self, dual: &mut Dual, face: FaceId) -> bool {
-        let by_length = |h: &HalfEdge| (dual.edge_length(*h), *h);
-        let longest = face.half_edges().iter().map(by_length).max_by(|a, b| a.0.total_cmp(&b.0));
-        let halved = longest.is_some_and(|(length, h)| length > SPLIT_FLOOR && halve(dual, h));
-        self.refined.halved += usize::from(halved);
-        halved
+        if split { Attempt::Inserted } else { Attempt::Crowded }
     }
 
     /// Halves the longest edges of all, for when every face is as good as its circumcentre can make it and vertices
@@ -158,12 +185,18 @@ impl Refiner {
     }
 }
 
-/// Circumcentre and metric circumradius of a face, with the mean of its corners' tensors for the whole face.
+/// Circumcentre and metric circumradius of a face, with one tensor for the whole face: the mean of its corners', or,
+/// where they are so far away that they say little of the face, mostly that at its centroid.
 fn circumcircle(dual: &Dual, face: FaceId) -> (Point, f64) {
     let corners = dual.topology().corners(face);
-    let tensor = corners.iter().fold(Tensor::default(), |sum, &v| sum + dual.local(v).tensor) * (1.0 / 3.0);
+    let mean = corners.iter().fold(Tensor::default(), |sum, &v| sum + dual.local(v).tensor) * (1.0 / 3.0);
     let [a, b, c] = corners.map(|v| dual.position(v));
     let (u, v) = (b - a, c - a);
+    let tensor = if mean.length(u).max(mean.length(v)) > FAR {
+        Tensor::log_mean([(mean, 0.25), (dual.field().at(centroid([a, b, c])), 0.75)])
+    } else {
+        mean
+    };
     let (uu, vv) = (tensor.dot(u, u), tensor.dot(v, v));
     // M x . u = uu / 2 and M x . v = vv / 2.
     let (mu, mv) = (tensor.apply(u), tensor.apply(v));
@@ -186,12 +219,15 @@ fn encroached_edge(dual: &Dual, face: FaceId, p: Point) -> Option<HalfEdge> {
     seen.filter(encroached).max_by(|&g, &h| dual.edge_length(g).total_cmp(&dual.edge_length(h)))
 }
 
-fn is_crowded(dual: &Dual, face: FaceId, p: Point, radius: f64) -> bool {
-    let near = |v: VertexId| {
-        let d = p - dual.position(v);
-        dual.local(v).tensor.length(d) < CROWDED * radius.min(1.0)
-    };
-    dual.topology().corners(face).into_iter().any(near)
+/// Whether the point is too near to a corner of the face that holds it.
+fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
+    dual.topology().corners(face).into_iter().any(|v| chord(&dual.field(), p, dual.position(v)) < SPACING)
+}
+
+/// Metric length along an edge.
+fn chord_of(dual: &Dual, h: HalfEdge) -> f64 {
+    let [a, b] = dual.planar().ends(h);
+    chord(&dual.field(), a, b)
 }
 
 fn halve(dual: &mut Dual, h: HalfEdge) -> bool {
@@ -235,4 +271,8 @@ fn is_sharp(dual: &Dual, v: VertexId) -> bool {
         // An inner feature's edge is met from both sides, hence the bound below one.
         directions[..i].iter().any(|&u| (0.5..1.0 - 1e-12).contains(&cosine(u, directions[i])))
     })
+}
+
+fn centroid([a, b, c]: [Point; 3]) -> Point {
+    Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0)
 }
