@@ -3,6 +3,7 @@
 use super::cell::{Cell, centroid};
 use crate::dual::{Dual, Effort, Kind};
 use crate::error::Result;
+use crate::geodesic::chord;
 use crate::geometry::{Point, Vector};
 use crate::progress::Progress;
 use crate::triangulation::VertexId;
@@ -63,7 +64,9 @@ fn to_centroid(dual: &Dual, v: VertexId, cell: &mut Cell) -> Vector {
     let [a, b, c] = local.tensor.cholesky();
     let image = |q: Point| {
         let w = local.log(q - p);
-        Vector::new(a * w.x + b * w.y, c * w.y)
+        let w = Vector::new(a * w.x + b * w.y, c * w.y);
+        // No expansion gives lengths in a rough field; quadrature does.
+        if local.is_rough { w * (chord(&dual.field(), p, q) / w.norm()) } else { w }
     };
     let topology = dual.topology();
     let farthest = topology.star(v).map(|h| image(dual.position(topology.target(h))).norm()).fold(0.0, f64::max);

@@ -72,7 +72,7 @@ const SCALE_TOLERANCE: f64 = 0.04;
 /// Seeds put at blocked flips, as a share of all: N is kept within one per cent.
 const BLOCKED_SHARE: f64 = 0.005;
 /// Seeds exchanged between two halves of the relaxation, as a share of all.
-const EXCHANGED_SHARE: f64 = 0.02;
+const EXCHANGED_SHARE: f64 = 0.06;
 
 /// Meshes a domain by a metric: plans the scale, samples the boundary, fills the interior, relaxes, checks.
 ///
@@ -147,16 +147,9 @@ impl<'a> Job<'a> {
             self.progress.stage("seeding", count as u64);
             let mut dual = Dual::new(domain, Scaled { field: self.field, factor: scale })?;
             sample_segments(&mut dual, &plan.edges, &plan.arcs, scale);
-            let _r = refine(&mut dual, count, self.progress);
+            refine(&mut dual, count, self.progress);
             dual.verdict()?;
             let mean = mean_free_edge(&dual);
-            eprintln!(
-                "DBG round {round} scale {scale} count {count} got {} boundary {} refined {:?} mean {mean} flips {:?}",
-                dual.vertex_count(),
-                plan.boundary_vertices(scale),
-                _r,
-                dual.counters()
-            );
             if round == ROUNDS || (mean - 1.0).abs() < SCALE_TOLERANCE {
                 return Ok(dual);
             }
@@ -199,9 +192,9 @@ impl<'a> Job<'a> {
 
     fn finish(&mut self, domain: &Domain, dual: &mut Dual) -> Result<Meshed> {
         self.progress.stage("checking", 1);
-        dual.flip_all(Effort::Chord);
-        let blocked_flips = dual.blocked_flips(Effort::Chord).len() as u64;
-        let min_margin = dual.smallest_margin(Effort::Local).unwrap_or(0.0);
+        dual.flip_all(Effort::Full);
+        let blocked_flips = dual.blocked_flips(Effort::Full).len() as u64;
+        let min_margin = dual.smallest_margin(Effort::Full).unwrap_or(0.0);
         let mesh = dual.to_mesh(domain);
         quality::check(&mesh)?;
         let counters = MeshCounters {

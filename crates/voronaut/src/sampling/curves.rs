@@ -25,12 +25,14 @@ pub fn simplify(domain: &Domain, field: &dyn MetricField, tolerance: f64) -> Dom
 fn thin(pslg: &Pslg, chain: &Chain, field: &dyn MetricField, tolerance: f64) -> Chain {
     let points: Vec<Point> = chain.vertices.iter().map(|&v| pslg.points[v as usize]).collect();
     let mut kept = unit_steps(&points, field);
-    if chain.vertices[0] == chain.vertices[chain.vertices.len() - 1] {
-        let n = points.len() - 1;
-        kept.extend([n / 3, 2 * n / 3]);
-    }
     kept.sort_unstable();
     kept.dedup();
+    let is_loop = chain.vertices[0] == chain.vertices[chain.vertices.len() - 1];
+    if is_loop && kept.len() < 4 {
+        let n = points.len() - 1;
+        kept = vec![0, n / 3, 2 * n / 3, n];
+        kept.dedup();
+    }
     let mut result = vec![kept[0]];
     for pair in kept.windows(2) {
         keep_within(&points, (pair[0], pair[1]), tolerance, &mut result);
