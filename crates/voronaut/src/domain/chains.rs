@@ -61,7 +61,9 @@ impl Pslg {
     #[must_use]
     pub fn without_straight_vertices(&self) -> Pslg {
         let mut chains = self.chains();
-        chains.iter_mut().for_each(|chain| self.straighten(chain));
+        for chain in &mut chains {
+            self.straighten(chain);
+        }
         self.with_chains(&chains)
     }
 
