@@ -208,18 +208,22 @@ impl<'a> Job<'a> {
     }
 }
 
-/// Geometric mean of the metric lengths of the edges that touch no constraint; of all edges where there are none.
+/// Geometric mean of the metric lengths of the edges that touch no constraint. Where there are next to none (channels
+/// narrower than a unit) the median of all edges, which is that of the edges along the channel.
 fn mean_free_edge(dual: &Dual) -> f64 {
     let topology = dual.topology();
     let is_free = |v| dual.kind(v) == Kind::Free;
-    let (mut sum, mut number) = ([0.0; 2], [0_usize; 2]);
+    let (mut free, mut all) = (Vec::new(), Vec::new());
     for h in topology.edges() {
-        let group = usize::from(is_free(topology.origin(h)) && is_free(topology.target(h)));
-        sum[group] += dual.edge_length(h).max(f64::MIN_POSITIVE).ln();
-        number[group] += 1;
+        let logarithm = dual.edge_length(h).max(f64::MIN_POSITIVE).ln();
+        all.push(logarithm);
+        if is_free(topology.origin(h)) && is_free(topology.target(h)) {
+            free.push(logarithm);
+        }
     }
-    // A handful of inner edges says little: below that all edges count.
-    let mean =
-        if number[1] >= 10 { sum[1] / number[1] as f64 } else { (sum[0] + sum[1]) / (number[0] + number[1]) as f64 };
-    mean.exp()
+    if 20 * free.len() > all.len() {
+        return (free.iter().sum::<f64>() / free.len() as f64).exp();
+    }
+    all.sort_by(f64::total_cmp);
+    all[all.len() / 2].exp()
 }
