@@ -32,6 +32,7 @@ pub struct Plan {
     /// Their metric lengths.
     pub arcs: Vec<MetricArc>,
     corners: usize,
+    copies: usize,
 }
 
 impl Plan {
@@ -46,12 +47,17 @@ impl Plan {
         let edges: Vec<(HalfEdge, bool)> = constrained.map(|h| (h, required(h))).collect();
         let arcs = edges.par_iter().map(|&(h, _)| planar.ends(h)).map(|[a, b]| MetricArc::new(field, a, b)).collect();
         let complexity = complexity(field, &domain.triangles())?;
-        Ok(Self { complexity, edges, arcs, corners: planar.topology.vertex_count() })
+        Ok(Self { complexity, edges, arcs, corners: planar.topology.vertex_count(), copies: copies(domain) })
     }
 
-    /// Vertices of the domain itself: no mesh has fewer.
+    /// Vertices of the domain itself, with copies: no mesh has fewer.
     pub fn corners(&self) -> usize {
         self.corners
+    }
+
+    /// Vertices that are there twice while meshing, and joined in the mesh: where the domain touches itself in a point.
+    pub fn copies(&self) -> usize {
+        self.copies
     }
 
     /// Vertices on the boundary and interfaces when the metric is multiplied by `scale`.
@@ -90,20 +96,28 @@ impl Plan {
         low
     }
 
-    /// Vertex count and metric factor to start from.
+    /// Vertex count (with copies) and metric factor to start from.
     ///
     /// # Errors
     /// [`Error::Limit`] where the mesh is estimated to need more memory than `memory_limit` bytes, or more vertices
     /// than ids can number.
     pub fn start(&self, target: Target, memory_limit: u64) -> Result<(usize, f64)> {
         let (count, scale) = match target {
-            Target::Vertices(n) => (n as f64, self.scale_for(n as f64)),
+            Target::Vertices(n) => ((n + self.copies) as f64, self.scale_for((n + self.copies) as f64)),
             Target::Complexity(c) => (self.expected_vertices(c / self.complexity), c / self.complexity),
             Target::Metric => (self.expected_vertices(1.0), 1.0),
         };
         check_memory(count, memory_limit)?;
         Ok((count.round().max(3.0) as usize, scale))
     }
+}
+
+fn copies(domain: &Domain) -> usize {
+    let mut sources: Vec<u32> = domain.sources().iter().flatten().copied().collect();
+    let all = sources.len();
+    sources.sort_unstable();
+    sources.dedup();
+    all - sources.len()
 }
 
 /// # Errors
