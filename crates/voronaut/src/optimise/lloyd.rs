@@ -89,7 +89,7 @@ fn shift(dual: &mut Dual, v: VertexId, step: Vector) -> bool {
     let mut share = 1.0;
     for _ in 0..=HALVINGS {
         if dual.shift(v, from + step * share) {
-            return share == 1.0;
+            return share >= 1.0;
         }
         share *= 0.5;
     }

@@ -39,8 +39,8 @@ impl Default for MeshOptions {
 /// What the mesher counted: deterministic, the same on every machine and for any number of threads.
 #[derive(Clone, Debug, Default, serde::Serialize)]
 pub struct MeshCounters {
-    /// In-circle tests settled by each level of the filter: frozen tensor, expansions at the vertices, path energy
-    /// with 8 and with 16 segments.
+    /// In-circle tests settled by each level of the filter: frozen tensor, expansions at the vertices, quadrature
+    /// along the chords, path energy with 8 segments.
     pub geodesic_tests: [u64; LEVELS],
     /// Tests whose margin stayed within the estimated error of the last level tried.
     pub uncertain: u64,
