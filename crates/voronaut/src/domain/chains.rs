@@ -60,16 +60,19 @@ impl Pslg {
     /// coordinates.
     #[must_use]
     pub fn without_straight_vertices(&self) -> Pslg {
+        let is_node = self.nodes(&self.incident_segments());
         let mut chains = self.chains();
         for chain in &mut chains {
-            self.straighten(chain);
+            self.straighten(chain, is_node[chain.vertices[0] as usize]);
         }
         self.with_chains(&chains)
     }
 
-    fn straighten(&self, chain: &mut Chain) {
+    /// Drops a curve's straight vertices. A closed curve that starts at a node keeps it; any other starts anew at a
+    /// corner.
+    fn straighten(&self, chain: &mut Chain, starts_at_node: bool) {
         let n = chain.vertices.len();
-        if chain.vertices[0] == chain.vertices[n - 1] {
+        if chain.vertices[0] == chain.vertices[n - 1] && !starts_at_node {
             let corner = (0..n - 1).find(|&i| {
                 let [a, b, c] = [i + n - 2, i, i + 1].map(|j| self.point(chain.vertices[j % (n - 1)]));
                 !on_chord(a, b, c)
@@ -205,6 +208,20 @@ mod tests {
         let clean = pslg.without_straight_vertices();
         assert_eq!(clean.points.len(), 5);
         assert_eq!(clean.points[clean.required_points[0] as usize], Point::new(0.1, 0.0));
+        assert!(clean.segments.iter().flat_map(|s| s.ends).any(|v| v == clean.required_points[0]));
+        assert_eq!(clean.segments.len(), 5);
+    }
+
+    #[test]
+    fn a_fork_in_the_middle_of_a_closed_curve_s_straight_run_stays() {
+        let mut pslg = polygon(&SQUARE, &[1; 8]);
+        pslg.points.push(Point::new(0.5, 0.5));
+        pslg.point_labels.push(0);
+        let branch = Segment { ends: [0, 8], left: Side::Region(1), ..pslg.segments[0] };
+        pslg.segments.push(Segment { right: Side::Region(1), ..branch });
+        let clean = pslg.without_straight_vertices();
+        let fork = |v: &u32| clean.points[*v as usize] == Point::new(0.5, 0.0);
+        assert_eq!(clean.segments.iter().flat_map(|s| s.ends).filter(fork).count(), 3);
     }
 
     #[test]

@@ -14,7 +14,7 @@ pub use margin::{Effort, LEVELS, Margin};
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, chord, hermite};
-use crate::geometry::{Point, Tensor};
+use crate::geometry::{Point, Readable, Tensor};
 use crate::metric::Scaled;
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
@@ -148,7 +148,8 @@ impl<'a> Dual<'a> {
     /// [`Error::Metric`] with the first place where it is not positive definite and finite.
     pub fn verdict(&self) -> Result<()> {
         let Some((p, t)) = self.fault else { return Ok(()) };
-        let what = format!("the tensor {}, {}, {} is not finite and positive definite", t.xx, t.xy, t.yy);
+        let [xx, xy, yy] = [t.xx, t.xy, t.yy].map(Readable);
+        let what = format!("the tensor {xx}, {xy}, {yy} is not finite and positive definite");
         Err(Error::metric(what, p.to_string(), "give a metric whose eigenvalues are positive in the whole domain"))
     }
 

@@ -4,6 +4,6 @@ mod point;
 mod predicates;
 mod tensor;
 
-pub use point::{Aabb, Point, Vector};
+pub use point::{Aabb, Point, Readable, Vector};
 pub use predicates::{Orientation, in_circle, orientation, segment_intersection, signed_area};
 pub use tensor::{Eigen, Tensor};

@@ -80,7 +80,22 @@ impl Vector {
 
 impl fmt::Display for Point {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "({}, {})", self.x, self.y)
+        write!(f, "({}, {})", Readable(self.x), Readable(self.y))
+    }
+}
+
+/// A number as messages show it: all its digits, with an exponent where plain digits would be a row of zeros.
+#[derive(Clone, Copy, Debug)]
+pub struct Readable(pub f64);
+
+impl fmt::Display for Readable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size == 0.0 || !size.is_finite() || (1e-6..1e21).contains(&size) {
+            write!(f, "{}", self.0)
+        } else {
+            write!(f, "{:e}", self.0)
+        }
     }
 }
 
@@ -161,5 +176,17 @@ impl Aabb {
     /// The middle of the box.
     pub fn centre(&self) -> Point {
         self.min.midpoint(self.max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_readable_at_every_scale() {
+        let shown = [0.0, -0.25, 1e300, 3e-75, f64::NAN].map(|x| Readable(x).to_string());
+        assert_eq!(shown, ["0", "-0.25", "1e300", "3e-75", "NaN"]);
+        assert_eq!(Point::new(1e16, -1e-9).to_string(), "(10000000000000000, -1e-9)");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::MetricField;
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Tensor};
+use crate::geometry::{Point, Readable, Tensor};
 
 /// Whether `tensor`, the value of a field at `p`, is finite and positive definite; the error names the point and
 /// the entries.
@@ -26,8 +26,8 @@ pub(super) fn check_tensor_at(tensor: Tensor, place: impl FnOnce() -> String) ->
     if tensor.is_positive_definite() {
         return Ok(());
     }
-    let Tensor { xx, xy, yy } = tensor;
-    let (fault, help) = if [xx, xy, yy].iter().all(|entry| entry.is_finite()) {
+    let entries = [tensor.xx, tensor.xy, tensor.yy];
+    let (fault, help) = if entries.iter().all(|entry| entry.is_finite()) {
         (
             "not positive definite",
             "a metric needs m11 > 0, m22 > 0 and m11 m22 > m12^2, everywhere on the domain and a little outside it",
@@ -35,6 +35,7 @@ pub(super) fn check_tensor_at(tensor: Tensor, place: impl FnOnce() -> String) ->
     } else {
         ("not finite", "check the metric for a division by zero, a root or logarithm of a negative number, an overflow")
     };
+    let [xx, xy, yy] = entries.map(Readable);
     Err(Error::metric(format!("the tensor m11 = {xx}, m12 = {xy}, m22 = {yy} is {fault}"), place(), help))
 }
 

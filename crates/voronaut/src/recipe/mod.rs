@@ -132,7 +132,7 @@ impl<'a> Job<'a> {
             }
         }
         if plan.corners() > count && self.options.vertices.is_some() {
-            let corners = plan.corners();
+            let (count, corners) = (count - plan.copies(), plan.corners() - plan.copies());
             self.notes.push(format!(
                 "{count} vertices were asked for, but the domain's own corners are {corners}: simplify with --hausd"
             ));
@@ -158,8 +158,8 @@ impl<'a> Job<'a> {
             } else {
                 count = ((count as f64) * mean * mean).round() as usize;
             }
-            while plan.boundary_vertices(scale) > count as f64 && plan.boundary_vertices(scale) > plan.corners() as f64
-            {
+            let too_many = |scale| plan.boundary_vertices(scale) > count.max(plan.corners()) as f64;
+            while self.options.vertices.is_some() && too_many(scale) {
                 scale *= 0.98;
             }
         }
@@ -208,18 +208,53 @@ impl<'a> Job<'a> {
     }
 }
 
-/// Geometric mean of the metric lengths of the edges that touch no constraint; of all edges where there are none.
+/// Geometric mean of the metric lengths of the edges that touch no constraint. Where there are next to none (channels
+/// narrower than a unit) the median of all edges, which is that of the edges along the channel.
 fn mean_free_edge(dual: &Dual) -> f64 {
     let topology = dual.topology();
     let is_free = |v| dual.kind(v) == Kind::Free;
-    let (mut sum, mut number) = ([0.0; 2], [0_usize; 2]);
+    let (mut free, mut all) = (Vec::new(), Vec::new());
     for h in topology.edges() {
-        let group = usize::from(is_free(topology.origin(h)) && is_free(topology.target(h)));
-        sum[group] += dual.edge_length(h).max(f64::MIN_POSITIVE).ln();
-        number[group] += 1;
+        let logarithm = dual.edge_length(h).max(f64::MIN_POSITIVE).ln();
+        all.push(logarithm);
+        if is_free(topology.origin(h)) && is_free(topology.target(h)) {
+            free.push(logarithm);
+        }
     }
-    // A handful of inner edges says little: below that all edges count.
-    let mean =
-        if number[1] >= 10 { sum[1] / number[1] as f64 } else { (sum[0] + sum[1]) / (number[0] + number[1]) as f64 };
-    mean.exp()
+    if 20 * free.len() > all.len() {
+        return (free.iter().sum::<f64>() / free.len() as f64).exp();
+    }
+    all.sort_by(f64::total_cmp);
+    all[all.len() / 2].exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::from_poly;
+    use crate::formats::poly;
+    use crate::geometry::{Point, Tensor};
+    use crate::progress::Silent;
+
+    fn meshed(domain: &Domain, vertices: Option<usize>) -> Meshed {
+        let options = MeshOptions { vertices, ..MeshOptions::default() };
+        mesh(domain, &|_: Point| Tensor::isotropic(0.01), &options, &Silent).unwrap()
+    }
+
+    /// A square with two holes that share a corner.
+    const TOUCHING: &str = "11 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 1 2\n6 1.5 1.5\n7 2 2\n8 1.5 2.5\n\
+                            9 2.5 1.5\n10 3 2\n11 2.5 2.5\n12 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n5 5 6\n6 6 7\n\
+                            7 7 8\n8 8 5\n9 7 9\n10 9 10\n11 10 11\n12 11 7\n2\n1 1.5 2\n2 2.5 2\n";
+
+    #[test]
+    fn holes_that_touch_cost_no_vertex() {
+        let domain = Domain::new(&from_poly(&poly::read(TOUCHING, "touching.poly").unwrap()).unwrap()).unwrap();
+        assert_eq!(meshed(&domain, Some(200)).mesh.points.len(), 200);
+    }
+
+    #[test]
+    fn a_metric_that_is_used_as_it_is_is_not_scaled() {
+        let strip = Domain::read("rect:0,0,1,1e-3").unwrap();
+        assert_eq!(meshed(&strip, None).metric_scale.to_bits(), 1.0_f64.to_bits());
+    }
 }

@@ -32,6 +32,7 @@ pub struct Plan {
     /// Their metric lengths.
     pub arcs: Vec<MetricArc>,
     corners: usize,
+    copies: usize,
 }
 
 impl Plan {
@@ -46,12 +47,17 @@ impl Plan {
         let edges: Vec<(HalfEdge, bool)> = constrained.map(|h| (h, required(h))).collect();
         let arcs = edges.par_iter().map(|&(h, _)| planar.ends(h)).map(|[a, b]| MetricArc::new(field, a, b)).collect();
         let complexity = complexity(field, &domain.triangles())?;
-        Ok(Self { complexity, edges, arcs, corners: planar.topology.vertex_count() })
+        Ok(Self { complexity, edges, arcs, corners: planar.topology.vertex_count(), copies: copies(domain) })
     }
 
-    /// Vertices of the domain itself: no mesh has fewer.
+    /// Vertices of the domain itself, with copies: no mesh has fewer.
     pub fn corners(&self) -> usize {
         self.corners
+    }
+
+    /// Vertices that are there twice while meshing, and joined in the mesh: where the domain touches itself in a point.
+    pub fn copies(&self) -> usize {
+        self.copies
     }
 
     /// Vertices on the boundary and interfaces when the metric is multiplied by `scale`.
@@ -69,10 +75,14 @@ impl Plan {
         boundary.max(0.5 * scale * self.complexity / UNIT_TRIANGLE + 0.5 * boundary)
     }
 
-    /// The largest scale for which no more than `count` vertices are expected.
+    /// The largest scale for which no more than `count` vertices are expected; where the corners alone are more, the
+    /// scale at which the metric asks for no vertex beside them.
     pub fn scale_for(&self, count: f64) -> f64 {
         let mut low = count * UNIT_TRIANGLE / self.complexity;
-        while self.expected_vertices(low) > count && low > f64::MIN_POSITIVE {
+        while self.expected_vertices(low) > count {
+            if self.expected_vertices(low) <= self.corners as f64 {
+                return low;
+            }
             low *= 0.5;
         }
         let mut high = low.max(f64::MIN_POSITIVE);
@@ -86,20 +96,28 @@ impl Plan {
         low
     }
 
-    /// Vertex count and metric factor to start from.
+    /// Vertex count (with copies) and metric factor to start from.
     ///
     /// # Errors
     /// [`Error::Limit`] where the mesh is estimated to need more memory than `memory_limit` bytes, or more vertices
     /// than ids can number.
     pub fn start(&self, target: Target, memory_limit: u64) -> Result<(usize, f64)> {
         let (count, scale) = match target {
-            Target::Vertices(n) => (n as f64, self.scale_for(n as f64)),
+            Target::Vertices(n) => ((n + self.copies) as f64, self.scale_for((n + self.copies) as f64)),
             Target::Complexity(c) => (self.expected_vertices(c / self.complexity), c / self.complexity),
             Target::Metric => (self.expected_vertices(1.0), 1.0),
         };
         check_memory(count, memory_limit)?;
         Ok((count.round().max(3.0) as usize, scale))
     }
+}
+
+fn copies(domain: &Domain) -> usize {
+    let mut sources: Vec<u32> = domain.sources().iter().flatten().copied().collect();
+    let all = sources.len();
+    sources.sort_unstable();
+    sources.dedup();
+    all - sources.len()
 }
 
 /// # Errors
