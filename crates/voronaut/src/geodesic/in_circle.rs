@@ -43,7 +43,7 @@ impl Angles {
 
     /// (cosine, sine) of the angle with this dot and cross product.
     fn normalised(dot: f64, cross: f64) -> (f64, f64) {
-        let size = dot.hypot(cross).max(f64::MIN_POSITIVE);
+        let size = (dot * dot + cross * cross).sqrt().max(f64::MIN_POSITIVE);
         (dot / size, cross / size)
     }
 }

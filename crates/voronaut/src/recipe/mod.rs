@@ -167,6 +167,7 @@ impl<'a> Job<'a> {
     }
 
     fn relax(&mut self, dual: &mut Dual) -> Result<()> {
+        dual.reorder();
         let count = dual.vertex_count();
         let steps = self.options.lloyd;
         self.progress.stage("relaxing", steps as u64);
