@@ -111,6 +111,43 @@ fn files_are_one_idea_each() {
     }
 }
 
+#[test]
+fn every_cited_work_is_in_the_bibliography() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let read = |name: &str| fs::read_to_string(root.join(name)).expect("a readable document");
+    let bibliography = read("references.bib");
+    let entries: Vec<&str> = bibliography.split("\n@").collect();
+    let documents = ["DESIGN.md", "ARCHITECTURE.md", "README.md"].map(|name| (name.to_string(), read(name)));
+    let texts = sources().into_iter().map(|source| (source.name, source.text)).chain(documents);
+    let mut cited = 0;
+    for (file, text) in texts {
+        for (author, year) in citations(&text) {
+            let is_it = |entry: &&str| entry.contains(&author) && entry.contains(&format!("year = {{{year}}}"));
+            assert!(entries.iter().any(|entry| is_it(&entry)), "{file}: no entry for {author} {year}");
+            cited += 1;
+        }
+    }
+    assert!(cited > 5, "citations are written as they were");
+}
+
+/// Name and year of what is cited as `Name 1999`, `Name and Other 1999` or `Name et al. 1999`.
+fn citations(text: &str) -> Vec<(String, String)> {
+    let bare = |word: &str| word.trim_matches(|c: char| !c.is_alphanumeric()).to_string();
+    let words: Vec<String> = text
+        .split_whitespace()
+        .filter(|word| !word.starts_with("//"))
+        .map(bare)
+        .filter(|w| w != "et" && w != "al")
+        .collect();
+    let is_year = |word: &str| word.len() == 4 && (word.starts_with("19") || word.starts_with("20"));
+    let cited = words.windows(2).filter(|pair| {
+        is_year(&pair[1]) && pair[1].chars().all(|c| c.is_ascii_digit()) && pair[0].starts_with(char::is_uppercase)
+    });
+    // Bibliographies write accents as commands: the part of a name before the first of them is enough.
+    let plain = |name: &str| name.chars().take_while(char::is_ascii).collect::<String>();
+    cited.map(|pair| (plain(&pair[0]), pair[1].clone())).collect()
+}
+
 /// All files of the library, without those that are only there for tests.
 fn sources() -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
