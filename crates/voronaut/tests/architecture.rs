@@ -123,7 +123,7 @@ fn every_cited_work_is_in_the_bibliography() {
     for (file, text) in texts {
         for (author, year) in citations(&text) {
             let is_it = |entry: &&str| entry.contains(&author) && entry.contains(&format!("year = {{{year}}}"));
-            assert!(entries.iter().any(|entry| is_it(&entry)), "{file}: no entry for {author} {year}");
+            assert!(entries.iter().any(is_it), "{file}: no entry for {author} {year}");
             cited += 1;
         }
     }

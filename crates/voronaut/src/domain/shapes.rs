@@ -24,7 +24,7 @@ pub fn rect(min: Point, max: Point) -> Result<Pslg> {
 
 /// The disk as a polygon of 4096 vertices on its circle: region 1, boundary label 1.
 ///
-/// Its tolerance is a thousandth of the radius, so that a mesh may use longer chords.
+/// Its tolerance is a hundredth of the radius, so that a mesh may use longer chords.
 ///
 /// # Errors
 ///
