@@ -9,10 +9,12 @@ mod metrics;
 mod random;
 
 use random::Random;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc;
+use std::sync::Mutex;
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 use voronaut::domain::Domain;
 use voronaut::progress::Silent;
@@ -79,25 +81,45 @@ fn chosen_cases() -> Option<Range<u64>> {
 /// Two at a time; in the order of their numbers.
 fn run_all(numbers: Range<u64>) -> Vec<Case> {
     let next = AtomicU64::new(numbers.start);
+    let running = Mutex::new(BTreeMap::new());
     let (sender, receiver) = mpsc::channel();
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            let (sender, next) = (sender.clone(), &next);
-            scope.spawn(move || {
-                loop {
-                    let number = next.fetch_add(1, Ordering::Relaxed);
-                    if number >= numbers.end {
-                        break;
-                    }
-                    sender.send(run(number)).expect("received below");
-                }
-            });
+    let work = |sender: mpsc::Sender<Case>| {
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= numbers.end {
+                break;
+            }
+            running.lock().expect("no panic holds it").insert(number, Instant::now());
+            sender.send(run(number)).expect("received below");
+            running.lock().expect("no panic holds it").remove(&number);
         }
+    };
+    let mut cases = std::thread::scope(|scope| {
+        for sender in [sender.clone(), sender] {
+            scope.spawn(|| work(sender));
+        }
+        collect(&receiver, &running)
     });
-    drop(sender);
-    let mut cases: Vec<Case> = receiver.into_iter().collect();
     cases.sort_by_key(|case| case.number);
     cases
+}
+
+/// All cases as they come in. A case that hangs ends the process, with its number: threads cannot be stopped.
+fn collect(receiver: &mpsc::Receiver<Case>, running: &Mutex<BTreeMap<u64, Instant>>) -> Vec<Case> {
+    let mut cases = Vec::new();
+    loop {
+        match receiver.recv_timeout(Duration::from_secs(1)) {
+            Ok(case) => cases.push(case),
+            Err(RecvTimeoutError::Disconnected) => return cases,
+            Err(RecvTimeoutError::Timeout) => {
+                let running = running.lock().expect("no panic holds it");
+                if let Some((number, _)) = running.iter().find(|(_, since)| since.elapsed() > 3 * SLOWEST) {
+                    eprintln!("case {number} hangs");
+                    std::process::exit(1);
+                }
+            }
+        }
+    }
 }
 
 fn run(number: u64) -> Case {
