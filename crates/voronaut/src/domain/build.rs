@@ -25,9 +25,9 @@ impl Domain {
         let mut sources: Vec<Option<u32>> = (0..pslg.points.len() as u32).map(Some).collect();
         sources.extend([None; 3]);
         planar.topology.retain_faces(|f| matches!(areas.of(f), Side::Region(_)));
-        for v in 0..sources.len() {
-            if !planar.topology.is_vertex(VertexId(v as u32)) {
-                sources[v] = None;
+        for (v, source) in (0..).zip(&mut sources) {
+            if !planar.topology.is_vertex(VertexId(v)) {
+                *source = None;
             }
         }
         split_pinches(&mut planar, &mut sources);

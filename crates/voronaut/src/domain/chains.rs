@@ -62,7 +62,9 @@ impl Pslg {
     pub fn without_straight_vertices(&self) -> Pslg {
         let is_node = self.nodes(&self.incident_segments());
         let mut chains = self.chains();
-        chains.iter_mut().for_each(|chain| self.straighten(chain, is_node[chain.vertices[0] as usize]));
+        for chain in &mut chains {
+            self.straighten(chain, is_node[chain.vertices[0] as usize]);
+        }
         self.with_chains(&chains)
     }
 

@@ -25,7 +25,7 @@ impl Areas {
         let outer = areas.area_of[far_face(planar).index()] as usize;
         areas.sides[outer] = Side::Outside;
         match &pslg.filling {
-            Filling::Sides => areas.from_segments(pslg, planar)?,
+            Filling::Sides => areas.read_segments(pslg, planar)?,
             Filling::EvenOdd => areas.alternate(planar, outer),
             Filling::Enclosed { holes, regions } => areas.fill(planar, holes, regions),
         }
@@ -38,7 +38,7 @@ impl Areas {
         self.sides[self.area_of[f.index()] as usize]
     }
 
-    fn from_segments(&mut self, pslg: &Pslg, planar: &Planar) -> Result<()> {
+    fn read_segments(&mut self, pslg: &Pslg, planar: &Planar) -> Result<()> {
         for h in constrained_half_edges(planar) {
             let (segment, said) = said_of_left(pslg, planar, h);
             let known = &mut self.sides[self.area_of[h.face().index()] as usize];

@@ -61,7 +61,9 @@ impl Dual<'_> {
                 self.flip(h);
             }
         }
-        flipped.iter().for_each(|slot| self.flips_of_slot[slot.index()] = 0);
+        for slot in &flipped {
+            self.flips_of_slot[slot.index()] = 0;
+        }
         flipped.len() as u64
     }
 

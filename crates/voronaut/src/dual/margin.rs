@@ -9,9 +9,10 @@ use crate::triangulation::{HalfEdge, VertexId};
 /// segments.
 pub const LEVELS: usize = 4;
 
-/// Quadrilaterals at a rough vertex are settled by the frozen tensor, too: their geodesics cannot be told from
-/// expansions, and tests that contradict each other make flips go in circles. Quadrilaterals whose shorter diagonal is longer than this (metric length) are settled by the frozen tensor: local
-/// expansions say nothing so far away, and such edges are on their way to be split.
+/// Quadrilaterals whose shorter diagonal is longer than this (metric length) are settled by the frozen tensor: local
+/// expansions say nothing so far away, and such edges are on their way to be split. So are quadrilaterals at a rough
+/// vertex: their geodesics cannot be told from expansions, and tests that contradict each other make flips go in
+/// circles.
 const LONG: f64 = 3.0;
 
 /// How far up the levels a test may climb.

@@ -153,6 +153,16 @@ impl<'a> Dual<'a> {
         Err(Error::metric(what, p.to_string(), "give a metric whose eigenvalues are positive in the whole domain"))
     }
 
+    /// Numbers vertices and faces along a Hilbert curve; ids change. Passes over all seeds are then fast for any size.
+    pub fn reorder(&mut self) {
+        let (planar, old) = self.planar.reordered();
+        self.locals = old.iter().map(|&v| self.locals[v.index()]).collect();
+        self.kinds = old.iter().map(|&v| self.kinds[v.index()]).collect();
+        self.planar = planar;
+        self.touched.clear();
+        self.flips_of_slot.clear();
+    }
+
     /// Evaluates the metric at every vertex, in parallel.
     pub(crate) fn measure_all(&mut self) {
         let field = self.field;
@@ -166,6 +176,23 @@ impl<'a> Dual<'a> {
             if self.planar.topology.is_vertex(VertexId(v as u32)) {
                 self.locals[v] = self.vetted(self.planar.positions[v], self.locals[v]);
             }
+        }
+    }
+
+    /// Measures, in parallel, the edges at rough vertices by quadrature along the chord, and stores their lengths in
+    /// the triangulation.
+    pub(crate) fn measure_rough_edges(&mut self) {
+        let is_rough = |v: VertexId| self.local(v).is_rough;
+        let topology = self.topology();
+        let at_rough = |&h: &HalfEdge| is_rough(topology.origin(h)) || is_rough(topology.target(h));
+        let edges: Vec<HalfEdge> = topology.edges().filter(at_rough).collect();
+        let length = |&h: &HalfEdge| {
+            let [p, q] = self.planar.ends(h);
+            chord(&self.field, p, q)
+        };
+        let lengths: Vec<f64> = edges.par_iter().with_min_len(64).map(length).collect();
+        for (h, length) in edges.into_iter().zip(lengths) {
+            self.planar.topology.set_length(h, length);
         }
     }
 

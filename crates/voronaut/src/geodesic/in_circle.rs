@@ -1,8 +1,7 @@
 //! In-circle tests from metric lengths.
 //!
 //! Of the two diagonals of a quadrilateral a d b c the Delaunay one, a-b, has opposite angles at c and d that sum to
-//! at most pi (flat model space; DESIGN.md, fact 2, and Boissonnat et al. for the definition). The *margin* is the sine
-//! of that sum: positive where the edge is Delaunay, zero for four points on a circle, negative where it must flip.
+//! at most pi (flat model space; DESIGN.md, "In-circle tests"). The *margin* is the sine of that sum: positive where the edge is Delaunay, zero for four points on a circle, negative where it must flip.
 
 use crate::geometry::{Tensor, Vector};
 
@@ -43,7 +42,7 @@ impl Angles {
 
     /// (cosine, sine) of the angle with this dot and cross product.
     fn normalised(dot: f64, cross: f64) -> (f64, f64) {
-        let size = dot.hypot(cross).max(f64::MIN_POSITIVE);
+        let size = (dot * dot + cross * cross).sqrt().max(f64::MIN_POSITIVE);
         (dot / size, cross / size)
     }
 }

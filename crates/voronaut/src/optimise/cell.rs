@@ -38,7 +38,7 @@ impl Cell {
             if at_p <= 0.0 {
                 self.scratch.push(p);
             }
-            if (at_p < 0.0) != (at_q < 0.0) && at_p != at_q {
+            if (at_p < 0.0) != (at_q < 0.0) {
                 self.scratch.push(p + (q - p) * (at_p / (at_p - at_q)));
             }
         }

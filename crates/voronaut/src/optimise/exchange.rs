@@ -1,8 +1,9 @@
 //! Exchanging seeds: removing those that crowd, adding where edges are too long, at a given number of vertices.
 
 use crate::dual::{Dual, Effort, Kind};
+use crate::planar::Location;
 use crate::progress::Silent;
-use crate::sampling::refine;
+use crate::sampling::{insert_spaced, refine};
 use crate::triangulation::VertexId;
 
 /// Edges shorter than this in the metric (just below the unit range) mark seeds that crowd.
@@ -65,7 +66,7 @@ pub fn meet_blocked_flips(dual: &mut Dual, most: usize) -> usize {
         }
         let Some(h) = dual.topology().find(a, b) else { continue };
         let middle = dual.position(a).midpoint(dual.position(b));
-        met += usize::from(dual.insert_on_edge(h, middle).is_some());
+        met += usize::from(insert_spaced(dual, Location::Edge(h), middle));
     }
     met
 }

@@ -3,10 +3,9 @@
 use super::cell::{Cell, centroid};
 use crate::dual::{Dual, Effort, Kind};
 use crate::error::Result;
-use crate::geodesic::chord;
-use crate::geometry::{Point, Vector};
+use crate::geometry::Vector;
 use crate::progress::Progress;
-use crate::triangulation::VertexId;
+use crate::triangulation::{HalfEdge, VertexId};
 use rayon::prelude::*;
 
 /// A seed whose move would turn a triangle over tries this many times with half of the move.
@@ -33,6 +32,7 @@ pub struct Relaxed {
 pub fn relax(dual: &mut Dual, steps: usize, progress: &dyn Progress) -> Result<Relaxed> {
     let mut relaxed = Relaxed::default();
     for _ in 0..steps {
+        dual.measure_rough_edges();
         let moves = targets(dual);
         let mut sum = 0.0;
         for &(v, step) in &moves {
@@ -60,22 +60,20 @@ fn targets(dual: &Dual) -> Vec<(VertexId, Vector)> {
 
 /// The tangent vector from a seed to the centroid of its cell.
 fn to_centroid(dual: &Dual, v: VertexId, cell: &mut Cell) -> Vector {
-    let (p, local) = (dual.position(v), dual.local(v));
+    let (p, local, topology) = (dual.position(v), dual.local(v), dual.topology());
     let [a, b, c] = local.tensor.cholesky();
-    let image = |q: Point| {
-        let w = local.log(q - p);
+    let image = |u: VertexId, length: f64| {
+        let w = local.log(dual.position(u) - p);
         let w = Vector::new(a * w.x + b * w.y, c * w.y);
         // No expansion gives lengths in a rough field; quadrature does.
-        if local.is_rough { w * (chord(&dual.field(), p, q) / w.norm()) } else { w }
+        if local.is_rough { w * (length / w.norm()) } else { w }
     };
-    let topology = dual.topology();
-    let farthest = topology.star(v).map(|h| image(dual.position(topology.target(h))).norm()).fold(0.0, f64::max);
-    cell.reset(farthest);
+    let neighbour = |h: HalfEdge| image(topology.target(h), topology.length(h));
+    cell.reset(topology.star(v).map(|h| neighbour(h).norm()).fold(0.0, f64::max));
     for h in topology.star(v) {
-        let neighbour = image(dual.position(topology.target(h)));
-        cell.cut_by_bisector(neighbour);
+        cell.cut_by_bisector(neighbour(h));
         if topology.is_fixed(h.next()) {
-            cell.cut_by_line(neighbour, image(dual.position(topology.apex(h))));
+            cell.cut_by_line(neighbour(h), image(topology.apex(h), topology.length(h.prev())));
         }
     }
     let centre = centroid(cell.corners());
@@ -89,7 +87,7 @@ fn shift(dual: &mut Dual, v: VertexId, step: Vector) -> bool {
     let mut share = 1.0;
     for _ in 0..=HALVINGS {
         if dual.shift(v, from + step * share) {
-            return share == 1.0;
+            return share >= 1.0;
         }
         share *= 0.5;
     }

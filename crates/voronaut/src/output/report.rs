@@ -68,7 +68,7 @@ pub struct Diagram {
 pub struct Dual {
     /// In-circle tests settled by each level of the filter.
     pub geodesic_tests: [u64; crate::dual::LEVELS],
-    /// Tests whose margin stayed within the error bound of the last level.
+    /// Tests whose margin stayed within the estimated error of the last level tried.
     pub uncertain: u64,
     /// The smallest margin among the final mesh's edges.
     pub min_margin: f64,

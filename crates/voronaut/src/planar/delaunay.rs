@@ -1,5 +1,6 @@
 //! Euclidean Delaunay triangulation of points, by insertion along a Hilbert curve and exact flips.
 
+use super::order::hilbert_order;
 use super::{Location, Planar};
 use crate::geometry::{Aabb, Point, in_circle};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
@@ -65,41 +66,6 @@ fn far_triangle(points: &[Point]) -> [Point; 3] {
     let reach = bounds.extent().x.max(bounds.extent().y).max(f64::MIN_POSITIVE.sqrt()).max((x.abs() + y.abs()) * 1e-12);
     let r = 16.0 * reach;
     [Point::new(x - 2.0 * r, y - r), Point::new(x + 2.0 * r, y - r), Point::new(x, y + 2.0 * r)]
-}
-
-/// Indices of the points along a Hilbert curve on a 65,536 x 65,536 grid: neighbours in the order are near in the plane.
-fn hilbert_order(points: &[Point]) -> Vec<u32> {
-    let Some(bounds) = Aabb::of(points.iter().copied()) else { return Vec::new() };
-    let extent = bounds.extent();
-    let scale = 65_535.0 / extent.x.max(extent.y).max(f64::MIN_POSITIVE);
-    let mut keyed: Vec<(u32, u32)> = points
-        .iter()
-        .enumerate()
-        .map(|(i, p)| {
-            let cell = (*p - bounds.min) * scale;
-            (hilbert_index(cell.x as u32, cell.y as u32), i as u32)
-        })
-        .collect();
-    keyed.sort_unstable();
-    keyed.into_iter().map(|(_, i)| i).collect()
-}
-
-fn hilbert_index(mut x: u32, mut y: u32) -> u32 {
-    let mut index = 0;
-    let mut side = 1 << 15;
-    while side > 0 {
-        let (right, top) = (u32::from(x & side > 0), u32::from(y & side > 0));
-        index += side * side * ((3 * right) ^ top);
-        if top == 0 {
-            if right == 1 {
-                x = 65_535 - x;
-                y = 65_535 - y;
-            }
-            std::mem::swap(&mut x, &mut y);
-        }
-        side >>= 1;
-    }
-    index
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ mod constrain;
 mod delaunay;
 mod locate;
 mod operations;
+mod order;
 
 pub use constrain::Crossing;
 pub use delaunay::{Duplicate, delaunay};

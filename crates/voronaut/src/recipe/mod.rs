@@ -39,8 +39,8 @@ impl Default for MeshOptions {
 /// What the mesher counted: deterministic, the same on every machine and for any number of threads.
 #[derive(Clone, Debug, Default, serde::Serialize)]
 pub struct MeshCounters {
-    /// In-circle tests settled by each level of the filter: frozen tensor, expansions at the vertices, path energy
-    /// with 8 and with 16 segments.
+    /// In-circle tests settled by each level of the filter: frozen tensor, expansions at the vertices, quadrature
+    /// along the chords, path energy with 8 segments.
     pub geodesic_tests: [u64; LEVELS],
     /// Tests whose margin stayed within the estimated error of the last level tried.
     pub uncertain: u64,
@@ -167,6 +167,7 @@ impl<'a> Job<'a> {
     }
 
     fn relax(&mut self, dual: &mut Dual) -> Result<()> {
+        dual.reorder();
         let count = dual.vertex_count();
         let steps = self.options.lloyd;
         self.progress.stage("relaxing", steps as u64);
@@ -208,20 +209,24 @@ impl<'a> Job<'a> {
     }
 }
 
-/// Geometric mean of the metric lengths of the edges that touch no constraint; of all edges where there are none.
+/// Geometric mean of the metric lengths of the edges that touch no constraint. Where there are next to none (channels
+/// narrower than a unit) the median of all edges, which is that of the edges along the channel.
 fn mean_free_edge(dual: &Dual) -> f64 {
     let topology = dual.topology();
     let is_free = |v| dual.kind(v) == Kind::Free;
-    let (mut sum, mut number) = ([0.0; 2], [0_usize; 2]);
+    let (mut free, mut all) = (Vec::new(), Vec::new());
     for h in topology.edges() {
-        let group = usize::from(is_free(topology.origin(h)) && is_free(topology.target(h)));
-        sum[group] += dual.edge_length(h).max(f64::MIN_POSITIVE).ln();
-        number[group] += 1;
+        let logarithm = dual.edge_length(h).max(f64::MIN_POSITIVE).ln();
+        all.push(logarithm);
+        if is_free(topology.origin(h)) && is_free(topology.target(h)) {
+            free.push(logarithm);
+        }
     }
-    // A handful of inner edges says little: below that all edges count.
-    let mean =
-        if number[1] >= 10 { sum[1] / number[1] as f64 } else { (sum[0] + sum[1]) / (number[0] + number[1]) as f64 };
-    mean.exp()
+    if 20 * free.len() > all.len() {
+        return (free.iter().sum::<f64>() / free.len() as f64).exp();
+    }
+    all.sort_by(f64::total_cmp);
+    all[all.len() / 2].exp()
 }
 
 #[cfg(test)]

@@ -122,16 +122,17 @@ impl Refiner {
             Attempt::Crowded => {}
         }
         let centroid = centroid(dual.planar().triangle(face));
-        if !is_crowded(dual, face, centroid) && dual.insert_in_face(face, centroid).is_some() {
+        if insert_spaced(dual, Location::Face(face), centroid) {
             self.refined.centroids += 1;
             return true;
         }
         let longest = face.half_edges().into_iter().max_by(|&g, &h| chord_of(dual, g).total_cmp(&chord_of(dual, h)));
         let halved = longest.is_some_and(|h| {
+            if dual.topology().is_fixed(h) {
+                return chord_of(dual, h) > SPLIT_FLOOR && split_constrained(dual, h);
+            }
             let [a, b] = dual.planar().ends(h);
-            let allowed = !dual.topology().is_fixed(h) || chord_of(dual, h) > SPLIT_FLOOR;
-            let roomy = |e: HalfEdge| !is_crowded(dual, e.face(), a.midpoint(b));
-            allowed && roomy(h) && dual.topology().twin(h).is_none_or(roomy) && halve(dual, h)
+            insert_spaced(dual, Location::Edge(h), a.midpoint(b))
         });
         self.refined.halved += usize::from(halved);
         halved
@@ -143,12 +144,9 @@ impl Refiner {
                 if let Some(h) = encroached_edge(dual, f, centre) {
                     return self.split_encroached(dual, h);
                 }
-                !is_crowded(dual, f, centre) && dual.insert_in_face(f, centre).is_some()
+                insert_spaced(dual, Location::Face(f), centre)
             }
-            Location::Edge(h) if !dual.topology().is_fixed(h) => {
-                let roomy = |e: HalfEdge| !is_crowded(dual, e.face(), centre);
-                roomy(h) && dual.topology().twin(h).is_none_or(roomy) && dual.insert_on_edge(h, centre).is_some()
-            }
+            Location::Edge(h) if !dual.topology().is_fixed(h) => insert_spaced(dual, Location::Edge(h), centre),
             Location::Edge(h) | Location::Behind(h) => return self.split_encroached(dual, h),
             Location::Vertex(_) => false,
         };
@@ -219,9 +217,37 @@ fn encroached_edge(dual: &Dual, face: FaceId, p: Point) -> Option<HalfEdge> {
     seen.filter(encroached).max_by(|&g, &h| dual.edge_length(g).total_cmp(&dual.edge_length(h)))
 }
 
-/// Whether the point is too near to a corner of the face that holds it.
+/// Puts a free seed inside a face or on an unconstrained edge, unless it would come nearer than [`SPACING`] to another.
+pub(crate) fn insert_spaced(dual: &mut Dual, place: Location, p: Point) -> bool {
+    match place {
+        Location::Face(f) => !is_crowded(dual, f, p) && dual.insert_in_face(f, p).is_some(),
+        Location::Edge(h) if !dual.topology().is_fixed(h) => {
+            !is_crowded(dual, h.face(), p) && dual.insert_on_edge(h, p).is_some()
+        }
+        _ => false,
+    }
+}
+
+/// Whether a vertex is too near to a point of the face: one of the face's corners, or one that is reached from the
+/// nearest of them by going from neighbour to nearer neighbour.
 fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
-    dual.topology().corners(face).into_iter().any(|v| chord(&dual.field(), p, dual.position(v)) < SPACING)
+    let topology = dual.topology();
+    let tensor = dual.field().at(p);
+    let distance = |v: VertexId| tensor.length(p - dual.position(v));
+    let too_near = |v: VertexId| chord(&dual.field(), p, dual.position(v)) < SPACING;
+    let corners = topology.corners(face);
+    if corners.into_iter().any(too_near) {
+        return true;
+    }
+    let nearer = |u: VertexId, v: VertexId| if distance(v) < distance(u) { v } else { u };
+    let mut nearest = corners.into_iter().reduce(nearer).expect("a face has corners");
+    loop {
+        let next = topology.star(nearest).map(|h| topology.target(h)).fold(nearest, nearer);
+        if next == nearest {
+            return too_near(nearest);
+        }
+        nearest = next;
+    }
 }
 
 /// Metric length along an edge.

@@ -7,6 +7,7 @@ mod plan;
 mod segments;
 
 pub use curves::simplify;
+pub(crate) use interior::insert_spaced;
 pub use interior::{Refined, refine};
 pub use plan::{Plan, Target};
 pub use segments::{MetricArc, sample_segments};

@@ -75,10 +75,14 @@ impl Plan {
         boundary.max(0.5 * scale * self.complexity / UNIT_TRIANGLE + 0.5 * boundary)
     }
 
-    /// The largest scale for which no more than `count` vertices are expected.
+    /// The largest scale for which no more than `count` vertices are expected; where the corners alone are more, the
+    /// scale at which the metric asks for no vertex beside them.
     pub fn scale_for(&self, count: f64) -> f64 {
         let mut low = count * UNIT_TRIANGLE / self.complexity;
-        while self.expected_vertices(low) > count && low > f64::MIN_POSITIVE {
+        while self.expected_vertices(low) > count {
+            if self.expected_vertices(low) <= self.corners as f64 {
+                return low;
+            }
             low *= 0.5;
         }
         let mut high = low.max(f64::MIN_POSITIVE);

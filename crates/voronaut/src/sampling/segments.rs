@@ -57,7 +57,7 @@ impl MetricArc {
 }
 
 /// How many edges a segment of this metric length is cut into: the nearest whole number, at least one.
-pub fn pieces(length: f64) -> usize {
+pub(super) fn pieces(length: f64) -> usize {
     // Saturates: an absurd length is caught by the estimate of the work before anything is cut.
     (length.round() as usize).max(1)
 }

@@ -58,6 +58,6 @@ impl HalfEdge {
     /// The previous half-edge of the face.
     #[must_use]
     pub fn prev(self) -> HalfEdge {
-        HalfEdge(if self.0 % 3 == 0 { self.0 + 2 } else { self.0 - 1 })
+        HalfEdge(if self.0.is_multiple_of(3) { self.0 + 2 } else { self.0 - 1 })
     }
 }

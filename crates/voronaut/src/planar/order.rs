@@ -1,0 +1,87 @@
+//! Order along a Hilbert curve, so that what is near in the plane is near in memory.
+
+use super::Planar;
+use crate::geometry::{Aabb, Point};
+use crate::triangulation::{Constraint, HalfEdge, Triangulation, VertexId};
+
+impl Planar {
+    /// The same triangulation with vertices and faces numbered along a Hilbert curve, without dead slots or lengths;
+    /// and for each new vertex its old id.
+    pub fn reordered(&self) -> (Planar, Vec<VertexId>) {
+        let living: Vec<VertexId> = self.topology.vertices().collect();
+        let points: Vec<Point> = living.iter().map(|&v| self.position(v)).collect();
+        let old: Vec<VertexId> = hilbert_order(&points).into_iter().map(|i| living[i as usize]).collect();
+        let mut number = vec![u32::MAX; self.topology.vertex_slots()];
+        for (new, v) in old.iter().enumerate() {
+            number[v.index()] = new as u32;
+        }
+        let mut faces: Vec<_> = self.topology.faces().collect();
+        let corners = |f| self.topology.corners(f).map(|v| number[v.index()]);
+        faces.sort_by_key(|&f| corners(f).into_iter().min());
+        let triangles: Vec<[u32; 3]> = faces.iter().map(|&f| corners(f)).collect();
+        let regions: Vec<i32> = faces.iter().map(|&f| self.topology.region(f)).collect();
+        let mut topology = Triangulation::from_triangles(old.len(), &triangles, &regions);
+        let constraints = faces.iter().flat_map(|f| f.half_edges()).map(|h| self.topology.constraint(h));
+        for (h, constraint) in constraints.enumerate().filter_map(|(h, c)| c.map(|c: Constraint| (h, c))) {
+            topology.set_constraint(HalfEdge(h as u32), constraint);
+        }
+        let positions = old.iter().map(|&v| self.position(v)).collect();
+        (Planar { topology, positions }, old)
+    }
+}
+
+/// Indices of the points along a Hilbert curve on a 65,536 x 65,536 grid: neighbours in the order are near in the plane.
+pub(super) fn hilbert_order(points: &[Point]) -> Vec<u32> {
+    let Some(bounds) = Aabb::of(points.iter().copied()) else { return Vec::new() };
+    let extent = bounds.extent();
+    let scale = 65_535.0 / extent.x.max(extent.y).max(f64::MIN_POSITIVE);
+    let mut keyed: Vec<(u32, u32)> = points
+        .iter()
+        .enumerate()
+        .map(|(i, p)| {
+            let cell = (*p - bounds.min) * scale;
+            (hilbert_index(cell.x as u32, cell.y as u32), i as u32)
+        })
+        .collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|(_, i)| i).collect()
+}
+
+fn hilbert_index(mut x: u32, mut y: u32) -> u32 {
+    let mut index = 0;
+    let mut side = 1 << 15;
+    while side > 0 {
+        let (right, top) = (u32::from(x & side > 0), u32::from(y & side > 0));
+        index += side * side * ((3 * right) ^ top);
+        if top == 0 {
+            if right == 1 {
+                x = 65_535 - x;
+                y = 65_535 - y;
+            }
+            std::mem::swap(&mut x, &mut y);
+        }
+        side >>= 1;
+    }
+    index
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planar::delaunay;
+
+    #[test]
+    fn reordering_keeps_the_triangulation() {
+        let points: Vec<Point> = (0..40).map(|i| Point::new(f64::from(i * 7 % 40), f64::from(i * i % 23))).collect();
+        let mut planar = delaunay(&points).unwrap();
+        let edge = planar.topology.edges().find(|&h| planar.topology.twin(h).is_some()).unwrap();
+        planar.topology.set_constraint(edge, Constraint(3));
+        let (new, old) = planar.reordered();
+        new.topology.check().unwrap();
+        assert!(new.is_embedded());
+        assert_eq!(new.topology.face_count(), planar.topology.face_count());
+        assert!(old.iter().enumerate().all(|(i, &v)| new.positions[i] == planar.position(v)));
+        let constrained: Vec<_> = new.topology.edges().filter(|&h| new.topology.constraint(h).is_some()).collect();
+        assert_eq!(constrained.len(), 1);
+    }
+}
