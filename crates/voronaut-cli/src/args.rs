@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::path::PathBuf;
 use voronaut::metric::Bounds;
+use voronaut::output::Picture;
 use voronaut::recipe::MeshOptions;
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
@@ -122,6 +123,9 @@ pub(crate) struct Outputs {
     /// What the picture shows
     #[arg(long, value_delimiter = ',', default_value = "mesh", requires = "picture")]
     pub(crate) show: Vec<Show>,
+    /// Pixels of the picture's longer side
+    #[arg(long, value_name = "PIXELS", default_value_t = Picture::default().width, value_parser = value_parser!(u32).range(16..=16_000), requires = "picture")]
+    pub(crate) pixels: u32,
     /// Write all figures as JSON
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
@@ -215,6 +219,8 @@ mod tests {
             &["--hausd", "-1"],
             &["--threads", "0"],
             &["--show", "mesh"],
+            &["--pixels", "800"],
+            &["--pixels", "8", "--picture", "a.svg"],
             &["--show", "cells", "--picture", "a.svg"],
             &["-q", "-v"],
         ] {

@@ -53,6 +53,11 @@ pub(crate) fn set_threads(run: &Run) -> Result<()> {
 
 fn draw(outputs: &Outputs, mesh: &Mesh, metric: Option<&dyn MetricField>) -> Result<String> {
     let shows = |what| outputs.show.contains(&what);
-    let picture = Picture { mesh: shows(Show::Mesh), ellipses: shows(Show::Ellipses), ..Picture::default() };
+    let picture = Picture {
+        mesh: shows(Show::Mesh),
+        ellipses: shows(Show::Ellipses),
+        width: outputs.pixels,
+        ..Picture::default()
+    };
     output::svg(mesh, metric, &picture)
 }

@@ -79,7 +79,7 @@ fn options(args: &MeshArgs) -> Value {
     let more = json!({
         "domain": args.domain, "metric": args.metric, "out": args.out, "background": args.metric_choices.background,
         "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
-        "picture": args.outputs.picture, "report": args.outputs.report, "threads": args.run.threads,
+        "picture": args.outputs.picture, "pixels": args.outputs.pixels, "report": args.outputs.report, "threads": args.run.threads,
     });
     if let (Value::Object(options), Value::Object(more)) = (&mut options, more) {
         options.extend(more);

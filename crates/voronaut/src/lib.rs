@@ -1,21 +1,109 @@
-//! voronaut: anisotropic triangle meshes from a Riemannian metric field.
+//! Anisotropic triangle meshes from a Riemannian metric field.
+//!
+//! A *metric field* gives a symmetric positive definite tensor M at every point of a planar domain. It says how long an
+//! edge e is, sqrt(e' M e), and with that how large a triangle should be, which way it should point and how thin it
+//! should be: a *unit mesh* has edges of metric length one. This crate makes unit meshes. What it returns is always a
+//! valid mesh; what the metric asked for and could not be had is counted, not hidden.
+//!
+//! # From a polygon to a drawn mesh
+//!
+//! A [`Domain`](domain::Domain) is a polygon with holes, regions and labels, validated once and for all. It comes from
+//! a file, from a shape, or from a graph of points and segments:
+//!
+//! ```
+//! use voronaut::domain::{Domain, from_geojson};
+//! use voronaut::formats::geojson;
+//!
+//! let text = r#"{ "type": "Polygon", "coordinates": [
+//!     [[0, 0], [4, 0], [4, 2], [0, 2], [0, 0]],
+//!     [[1, 0.5], [2, 0.5], [2, 1.5], [1, 1.5], [1, 0.5]]
+//! ] }"#;
+//! let polygons = geojson::read(text, "plate with a hole")?;
+//! let plate = Domain::new(&from_geojson(&polygons)?)?;
+//! assert_eq!(plate.area(), 7.0);
+//! # assert_eq!(Domain::read("rect:0,0,4,2")?.area(), 8.0);
+//! # Ok::<(), voronaut::Error>(())
+//! ```
+//!
+//! A metric is anything that implements [`MetricField`](metric::MetricField), closures among them. This one asks for
+//! edges of length 0.5 along x, and across it 0.05 near the line y = 1, more elsewhere. The whole pipeline is one
+//! function, [`recipe::mesh`]; its options have defaults, here all but the number of vertices:
+//!
+//! ```
+//! # use voronaut::domain::Domain;
+//! # let plate = Domain::read("rect:0,0,4,2")?;
+//! use voronaut::geometry::{Point, Tensor};
+//! use voronaut::progress::Silent;
+//! use voronaut::recipe::{self, MeshOptions};
+//!
+//! let metric = |p: Point| {
+//!     let across = 0.05 + 0.2 * (p.y - 1.0).abs();
+//!     Tensor::new(1.0 / (0.5 * 0.5), 0.0, 1.0 / (across * across))
+//! };
+//! let options = MeshOptions { vertices: Some(400), ..MeshOptions::default() };
+//! let meshed = recipe::mesh(&plate, &metric, &options, &Silent)?;
+//! assert!(meshed.mesh.points.len().abs_diff(400) <= 4);
+//! # Ok::<(), voronaut::Error>(())
+//! ```
+//!
+//! The metric was scaled by one factor, [`Meshed::metric_scale`](recipe::Meshed::metric_scale), to meet that number. In
+//! the scaled metric the mesh can be measured, and drawn:
+//!
+//! ```
+//! # use voronaut::domain::Domain;
+//! # use voronaut::geometry::{Point, Tensor};
+//! # use voronaut::{progress::Silent, recipe::{self, MeshOptions}};
+//! # let plate = Domain::read("rect:0,0,4,2")?;
+//! # let metric = |p: Point| {
+//! #     let across = 0.05 + 0.2 * (p.y - 1.0).abs();
+//! #     Tensor::new(1.0 / (0.5 * 0.5), 0.0, 1.0 / (across * across))
+//! # };
+//! # let options = MeshOptions { vertices: Some(400), ..MeshOptions::default() };
+//! # let meshed = recipe::mesh(&plate, &metric, &options, &Silent)?;
+//! use voronaut::metric::Scaled;
+//! use voronaut::output::{self, Picture};
+//! use voronaut::quality::{metric_quality, validity};
+//!
+//! let unit = Scaled { field: &metric, factor: meshed.metric_scale };
+//! assert!(validity(&meshed.mesh).valid);
+//! let figures = metric_quality(&meshed.mesh, &unit)?;
+//! assert!(figures.metric_edge_length.unit_fraction > 0.8);
+//!
+//! let picture = Picture { ellipses: true, ..Picture::default() };
+//! let svg = output::svg(&meshed.mesh, Some(&unit), &picture)?;
+//! let file = std::env::temp_dir().join(format!("voronaut-tour-{}.svg", std::process::id()));
+//! output::write_picture(&svg, &file)?;
+//! # std::fs::remove_file(&file).expect("just written");
+//! # Ok::<(), voronaut::Error>(())
+//! ```
+//!
+//! # Where to look
+//!
+//! The modules below stand in the order of the flow of data, and each uses only those above it: `ARCHITECTURE.md` in the
+//! repository has the map and the invariants, `DESIGN.md` the reasons with measurements. Errors say what is wrong and
+//! where; [`Error::help`] says what to do about it.
 
-// The modules follow the flow of data; each uses only those above it (held by tests/architecture.rs).
-pub mod domain;
-pub mod dual;
+// In the order of the flow of data; each module uses only those above it (held by tests/architecture.rs).
 pub mod error;
-pub mod formats;
-pub mod geodesic;
+pub mod progress;
 pub mod geometry;
 pub mod mesh;
-pub mod metric;
-pub mod optimise;
-pub mod output;
-pub mod planar;
-pub mod progress;
-pub mod quality;
-pub mod recipe;
-pub mod sampling;
 pub mod triangulation;
+pub mod planar;
+pub mod formats;
+pub mod domain;
+pub mod metric;
+pub mod geodesic;
+pub mod dual;
+pub mod sampling;
+pub mod optimise;
+pub mod quality;
+pub mod output;
+pub mod recipe;
 
 pub use error::{Error, Result};
+
+/// The README's examples are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(pslg.points[1024], Point::new(1.0, 1.0));
         let centre = Point::new(1.0, -2.0);
         assert!(pslg.points.iter().all(|p| (p.distance(centre) - 3.0).abs() < 1e-14));
-        assert!((pslg.tolerance - 3e-3).abs() < 1e-15);
+        assert!((pslg.tolerance - 3e-2).abs() < 1e-15);
         assert!(pslg.segments.iter().all(|s| s.label == 1 && s.left == Side::Region(1)));
     }
 

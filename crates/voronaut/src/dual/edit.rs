@@ -13,8 +13,11 @@ impl Dual<'_> {
     }
 
     /// Puts a seed on an edge: a curve's if the edge is constrained, else a free one. Returns it and the half-edge from
-    /// it to the old target of h.
+    /// it to the old target of h. The edge of a required segment stays whole.
     pub fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<(VertexId, HalfEdge)> {
+        if self.planar.topology.constraint(h).is_some_and(|c| self.required[c.0 as usize]) {
+            return None;
+        }
         let kind = if self.planar.topology.is_fixed(h) { Kind::Curve } else { Kind::Free };
         let target = self.planar.topology.target(h);
         let (v, _) = self.planar.insert_on_edge(h, p)?;

@@ -1,7 +1,8 @@
 //! In-circle tests from metric lengths.
 //!
 //! Of the two diagonals of a quadrilateral a d b c the Delaunay one, a-b, has opposite angles at c and d that sum to
-//! at most pi (flat model space; DESIGN.md, "In-circle tests"). The *margin* is the sine of that sum: positive where the edge is Delaunay, zero for four points on a circle, negative where it must flip.
+//! at most pi (in the flat model space; DESIGN.md, "In-circle tests"). The *margin* is the sine of that sum: positive
+//! where the edge is Delaunay, zero for four points on a circle, negative where it must flip.
 
 use crate::geometry::{Tensor, Vector};
 

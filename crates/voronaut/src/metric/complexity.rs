@@ -325,7 +325,6 @@ mod tests {
                     let value = complexity(&counted, &rectangle(-1.0, -1.0, 1.0, 1.0)).unwrap();
                     let error = value / truth - 1.0;
                     let count = evaluations.into_inner();
-                    println!("{gaussian} {width} {angle:.2} {error:.2e} {count}");
                     assert!(error.abs() < 1e-4, "{gaussian} {width} {angle:.2}: {error:.2e}, {count} evaluations");
                 }
             }

@@ -24,8 +24,6 @@ mod parser;
 mod sampled;
 mod scaled;
 mod spec;
-#[cfg(test)]
-mod speed;
 mod tree;
 mod validate;
 mod vocabulary;

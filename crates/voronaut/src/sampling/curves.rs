@@ -2,8 +2,10 @@
 
 use crate::domain::{Chain, Domain, Pslg};
 use crate::geodesic::chord;
-use crate::geometry::Point;
+use crate::geometry::{Aabb, Orientation, Point, orientation};
 use crate::metric::MetricField;
+use rstar::primitives::GeomWithData;
+use rstar::{AABB, RTree};
 
 /// The domain with fewer vertices along its curves: about one per unit of metric length, more where an edge would
 /// stray farther than `tolerance` (Euclidean) from the vertices that it skips. Ends of curves stay, loops keep at
@@ -11,9 +13,10 @@ use crate::metric::MetricField;
 pub fn simplify(domain: &Domain, field: &dyn MetricField, tolerance: f64) -> Domain {
     let pslg = domain.pslg();
     let chains = pslg.chains();
+    let neighbours = Neighbours::new(pslg);
     let mut allowed = tolerance;
     for _ in 0..6 {
-        let thinned: Vec<Chain> = chains.iter().map(|chain| thin(pslg, chain, field, allowed)).collect();
+        let thinned: Vec<Chain> = chains.iter().map(|chain| thin(pslg, chain, field, allowed, &neighbours)).collect();
         if let Ok(simplified) = Domain::new(&pslg.with_chains(&thinned)) {
             return simplified;
         }
@@ -22,7 +25,7 @@ pub fn simplify(domain: &Domain, field: &dyn MetricField, tolerance: f64) -> Dom
     domain.clone()
 }
 
-fn thin(pslg: &Pslg, chain: &Chain, field: &dyn MetricField, tolerance: f64) -> Chain {
+fn thin(pslg: &Pslg, chain: &Chain, field: &dyn MetricField, tolerance: f64, neighbours: &Neighbours) -> Chain {
     let points: Vec<Point> = chain.vertices.iter().map(|&v| pslg.points[v as usize]).collect();
     let mut kept = unit_steps(&points, field);
     kept.sort_unstable();
@@ -35,9 +38,41 @@ fn thin(pslg: &Pslg, chain: &Chain, field: &dyn MetricField, tolerance: f64) -> 
     }
     let mut result = vec![kept[0]];
     for pair in kept.windows(2) {
-        keep_within(&points, (pair[0], pair[1]), tolerance, &mut result);
+        keep_within((&points, &chain.vertices), (pair[0], pair[1]), tolerance, neighbours, &mut result);
     }
     Chain { vertices: result.into_iter().map(|i| chain.vertices[i]).collect(), kind: chain.kind }
+}
+
+/// All vertices of the domain, to see which of them a chord would leave on its other side.
+struct Neighbours(RTree<GeomWithData<[f64; 2], u32>>);
+
+impl Neighbours {
+    fn new(pslg: &Pslg) -> Self {
+        let entries = pslg.points.iter().enumerate().map(|(i, p)| GeomWithData::new([p.x, p.y], i as u32)).collect();
+        Self(RTree::bulk_load(entries))
+    }
+
+    /// Whether a vertex that is not part of the run lies between the run and its chord (de Berg, van Kreveld and
+    /// Schirra 1998): the chord would change on which side of the curve that vertex is.
+    fn any_between(&self, run: &[Point], vertices: &[u32]) -> bool {
+        let Some(bounds) = Aabb::of(run.iter().copied()).filter(|_| run.len() > 2) else { return false };
+        let envelope = AABB::from_corners([bounds.min.x, bounds.min.y], [bounds.max.x, bounds.max.y]);
+        self.0.locate_in_envelope(envelope).any(|entry| {
+            let [x, y] = *entry.geom();
+            !vertices.contains(&entry.data) && is_inside(run, Point::new(x, y))
+        })
+    }
+}
+
+/// Even-odd test of a point against a closed polygon.
+fn is_inside(polygon: &[Point], p: Point) -> bool {
+    let mut inside = false;
+    for (i, &b) in polygon.iter().enumerate() {
+        let a = polygon[(i + polygon.len() - 1) % polygon.len()];
+        let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
+        inside ^= low.y <= p.y && p.y < high.y && orientation(low, high, p) == Orientation::Left;
+    }
+    inside
 }
 
 /// Indices of the points nearest to equal steps of about unit metric length along a polyline, ends included.
@@ -60,15 +95,23 @@ fn unit_steps(points: &[Point], field: &dyn MetricField) -> Vec<usize> {
 }
 
 /// Adds to `result` what must be kept after point `from` up to `to`, so that no chord strays farther than the
-/// tolerance (Douglas and Peucker 1973).
-fn keep_within(points: &[Point], (from, to): (usize, usize), tolerance: f64, result: &mut Vec<usize>) {
+/// tolerance (Douglas and Peucker 1973) or leaves another vertex on its wrong side.
+fn keep_within(
+    (points, vertices): (&[Point], &[u32]),
+    (from, to): (usize, usize),
+    tolerance: f64,
+    neighbours: &Neighbours,
+    result: &mut Vec<usize>,
+) {
     let mut pending = vec![(from, to)];
     while let Some((i, j)) = pending.pop() {
         let farthest = (i + 1..j)
             .map(|k| (distance_to_segment(points[k], points[i], points[j]), k))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         match farthest {
-            Some((distance, k)) if distance > tolerance => pending.extend([(k, j), (i, k)]),
+            Some((distance, k)) if distance > tolerance || neighbours.any_between(&points[i..=j], &vertices[i..=j]) => {
+                pending.extend([(k, j), (i, k)]);
+            }
             _ => result.push(j),
         }
     }

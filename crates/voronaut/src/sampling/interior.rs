@@ -13,17 +13,10 @@ use std::collections::BinaryHeap;
 /// Constrained edges shorter than this (metric length) are not split for an encroaching seed: both halves stay unit
 /// edges, and spikes do not cascade.
 const SPLIT_FLOOR: f64 = std::f64::consts::SQRT_2;
-/// New seeds keep at least this distance (metric length) from the corners of the face that they fall into.
+/// New seeds keep at least this distance (metric length) from all others.
 const SPACING: f64 = 0.55;
-
 /// Corners farther apart than this (metric length) say little of what lies between them.
 const FAR: f64 = 2.5;
-
-/// What came of a try to insert a seed.
-enum Attempt {
-    Inserted,
-    Crowded,
-}
 
 /// How refinement went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -117,9 +110,8 @@ impl Refiner {
     /// A seed for a face: at its circumcentre, else (where the metric varies so much that the circle says little) at
     /// its centroid or in the middle of its longest edge. Each must keep its distance from the seeds around it.
     fn insert_for(&mut self, dual: &mut Dual, face: FaceId, centre: Point) -> bool {
-        match self.insert_at_circumcentre(dual, face, centre) {
-            Attempt::Inserted => return true,
-            Attempt::Crowded => {}
+        if self.insert_at_circumcentre(dual, face, centre) {
+            return true;
         }
         let centroid = centroid(dual.planar().triangle(face));
         if insert_spaced(dual, Location::Face(face), centroid) {
@@ -128,36 +120,28 @@ impl Refiner {
         }
         let longest = face.half_edges().into_iter().max_by(|&g, &h| chord_of(dual, g).total_cmp(&chord_of(dual, h)));
         let halved = longest.is_some_and(|h| {
-            if dual.topology().is_fixed(h) {
-                return chord_of(dual, h) > SPLIT_FLOOR && split_constrained(dual, h);
-            }
             let [a, b] = dual.planar().ends(h);
-            insert_spaced(dual, Location::Edge(h), a.midpoint(b))
+            split_if_long(dual, h) || insert_spaced(dual, Location::Edge(h), a.midpoint(b))
         });
         self.refined.halved += usize::from(halved);
         halved
     }
 
-    fn insert_at_circumcentre(&mut self, dual: &mut Dual, face: FaceId, centre: Point) -> Attempt {
-        let inserted = match dual.planar().walk(face, centre, true) {
-            Location::Face(f) => {
-                if let Some(h) = encroached_edge(dual, f, centre) {
-                    return self.split_encroached(dual, h);
-                }
-                insert_spaced(dual, Location::Face(f), centre)
-            }
-            Location::Edge(h) if !dual.topology().is_fixed(h) => insert_spaced(dual, Location::Edge(h), centre),
-            Location::Edge(h) | Location::Behind(h) => return self.split_encroached(dual, h),
-            Location::Vertex(_) => false,
+    fn insert_at_circumcentre(&mut self, dual: &mut Dual, face: FaceId, centre: Point) -> bool {
+        let place = dual.planar().walk(face, centre, true);
+        let encroached = match place {
+            Location::Face(f) => encroached_edge(dual, f, centre),
+            Location::Edge(h) | Location::Behind(h) => Some(h).filter(|&h| dual.topology().is_fixed(h)),
+            Location::Vertex(_) => None,
         };
+        if let Some(h) = encroached {
+            let split = split_if_long(dual, h);
+            self.refined.encroached += usize::from(split);
+            return split;
+        }
+        let inserted = insert_spaced(dual, place, centre);
         self.refined.circumcentres += usize::from(inserted);
-        if inserted { Attempt::Inserted } else { Attempt::Crowded }
-    }
-
-    fn split_encroached(&mut self, dual: &mut Dual, h: HalfEdge) -> Attempt {
-        let split = chord_of(dual, h) > SPLIT_FLOOR && split_constrained(dual, h);
-        self.refined.encroached += usize::from(split);
-        if split { Attempt::Inserted } else { Attempt::Crowded }
+        inserted
     }
 
     /// Halves the longest edges of all, for when every face is as good as its circumcentre can make it and vertices
@@ -262,6 +246,11 @@ fn halve(dual: &mut Dual, h: HalfEdge) -> bool {
     }
     let [a, b] = dual.planar().ends(h);
     dual.insert_on_edge(h, a.midpoint(b)).is_some()
+}
+
+/// Splits a constrained edge if both halves will still be unit edges.
+fn split_if_long(dual: &mut Dual, h: HalfEdge) -> bool {
+    dual.topology().is_fixed(h) && chord_of(dual, h) > SPLIT_FLOOR && split_constrained(dual, h)
 }
 
 /// Splits a constrained edge at its middle, or, next to a sharp corner, on one of the concentric shells of radius

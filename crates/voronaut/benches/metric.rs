@@ -1,12 +1,23 @@
-//! How long one evaluation of each field takes:
-//! `cargo test --release -p voronaut --lib metric::speed -- --ignored --nocapture`.
+//! How long one evaluation of each metric field takes, and the integral of sqrt(det M):
+//! `cargo bench -p voronaut --bench metric`. Timings are read by people, never asserted.
 
-use super::*;
-use crate::mesh::Mesh;
 use rstar::primitives::Line;
 use rstar::{PointDistance, RTree};
 use std::hint::black_box;
 use std::time::Instant;
+use voronaut::geometry::{Point, Tensor};
+use voronaut::mesh::Mesh;
+use voronaut::metric::{
+    Boundary, BoundarySizes, Bounded, Bounds, Formula, MetricField, Sampled, Scaled, Shock, Swirl, SwirlField, Uniform,
+    complexity,
+};
+
+fn main() {
+    fields();
+    boundaries();
+    wrapped_fields();
+    complexities();
+}
 
 fn points() -> Vec<Point> {
     let at = |i: u32| Point::new((f64::from(i) * 0.618_034).fract(), (f64::from(i) * 0.414_214).fract());
@@ -52,41 +63,51 @@ fn background(n: u32) -> Mesh {
     }
 }
 
-#[test]
-#[ignore = "a measurement"]
-fn nanoseconds_per_evaluation() {
+fn fields() {
     report("uniform", &Uniform::default());
     report("swirl authors", &Swirl::default());
     report("swirl printed", &Swirl { field: SwirlField::Printed, ..Swirl::default() });
     report("shock", &Shock::default());
     for text in ["1; 0; 1", "1/(0.1+x^2)^2; 0; 4", "100*exp(-50*x^2)+1; 0.1*sin(3*x)*y; if(y<0, 10, 10+90*y)"] {
-        report(text, &Formula::planar(text).unwrap());
+        report(text, &Formula::planar(text).expect("three expressions"));
     }
-    for count in [400, 8_000, 100_000] {
-        let sizes = BoundarySizes { aspect: 5.0, ..BoundarySizes::from_h0(0.001) };
-        report(&format!("boundary of {count}"), &Boundary::new(&coast(count), sizes).unwrap());
-    }
-    let lines = coast(8_000).into_iter().map(|(a, b)| Line::new([a.x, a.y], [b.x, b.y])).collect();
-    let tree = RTree::bulk_load(lines);
-    report("rstar, distance only", &|p: Point| {
-        let q = [p.x, p.y];
-        Tensor::isotropic(tree.nearest_neighbor(q).map_or(1.0, |line| line.distance_2(&q)))
-    });
     for n in [30, 300] {
         let mesh = background(n);
         let tensors: Vec<Tensor> = (0..mesh.points.len() as u32).map(|v| Shock::default().at(mesh.point(v))).collect();
-        report(&format!("sampled on {} triangles", 2 * n * n), &Sampled::new(&mesh, &tensors).unwrap());
+        report(&format!("sampled on {} triangles", 2 * n * n), &Sampled::new(&mesh, &tensors).expect("a metric"));
     }
+}
+
+/// Boundaries, and the nearest segment by a general R-tree to compare with (the distance alone, no tensor).
+fn boundaries() {
+    for count in [400, 8_000, 100_000] {
+        report(&format!("boundary of {count}"), &boundary(count));
+        let lines = coast(count).into_iter().map(|(a, b)| Line::new([a.x, a.y], [b.x, b.y])).collect();
+        let tree = RTree::bulk_load(lines);
+        report("... rstar, distance only", &|p: Point| {
+            let q = [p.x, p.y];
+            Tensor::isotropic(tree.nearest_neighbor(q).map_or(1.0, |line| line.distance_2(&q)))
+        });
+    }
+}
+
+fn wrapped_fields() {
     let bounds = Bounds { h_min: Some(0.05), h_max: Some(0.5), a_max: Some(5.0) };
-    report("shock, bounded", &Bounded::new(Shock::default(), bounds).unwrap());
+    report("shock, bounded", &Bounded::new(Shock::default(), bounds).expect("sensible bounds"));
     report("shock, scaled", &Scaled { field: &Shock::default(), factor: 3.0 });
+}
+
+fn complexities() {
     let corners = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)].map(|(x, y)| Point::new(x, y));
     let triangles = [[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]];
-    let sizes = BoundarySizes { aspect: 5.0, ..BoundarySizes::from_h0(0.001) };
-    let boundary = Boundary::new(&coast(8_000), sizes).unwrap();
-    for (name, field) in [("shock", &Shock::default() as &dyn MetricField), ("boundary of 8000", &boundary)] {
+    for (name, field) in [("shock", &Shock::default() as &dyn MetricField), ("boundary of 8000", &boundary(8_000))] {
         let start = Instant::now();
-        let value = complexity(field, &triangles).unwrap();
+        let value = complexity(field, &triangles).expect("a metric");
         println!("complexity of {name}: {value:.6} in {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
     }
+}
+
+fn boundary(count: u32) -> Boundary {
+    let sizes = BoundarySizes { aspect: 5.0, ..BoundarySizes::from_h0(0.001) };
+    Boundary::new(&coast(count), sizes).expect("a boundary")
 }

@@ -1,0 +1,27 @@
+//! The same mesh, bit for bit, for any number of threads.
+
+use voronaut::domain::Domain;
+use voronaut::metric::{MetricField, Shock, Swirl};
+use voronaut::progress::Silent;
+use voronaut::recipe::{self, MeshOptions, Meshed};
+
+fn mesh_with(threads: usize, domain: &Domain, metric: &dyn MetricField) -> Meshed {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    let options = MeshOptions { vertices: Some(1200), ..MeshOptions::default() };
+    pool.install(|| recipe::mesh(domain, metric, &options, &Silent)).expect("a mesh")
+}
+
+#[test]
+fn threads_do_not_change_a_bit_of_the_mesh() {
+    let domain = Domain::read("rect:-2,-2,2,2").expect("a rectangle");
+    let smooth = Shock { phi: 1.0, lambda: 0.6 };
+    for metric in [&smooth as &dyn MetricField, &Swirl::default()] {
+        let one = mesh_with(1, &domain, metric);
+        for threads in [2, 5] {
+            let several = mesh_with(threads, &domain, metric);
+            assert_eq!(one.mesh, several.mesh);
+            assert_eq!(one.metric_scale.to_bits(), several.metric_scale.to_bits());
+            assert_eq!(one.counters.geodesic_tests, several.counters.geodesic_tests);
+        }
+    }
+}
