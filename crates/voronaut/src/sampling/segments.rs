@@ -4,7 +4,7 @@ use crate::dual::Dual;
 use crate::geodesic::chord;
 use crate::geometry::Point;
 use crate::metric::MetricField;
-use crate::triangulation::HalfEdge;
+use crate::triangulation::{HalfEdge, VertexId};
 
 /// Metric length along a straight segment, as a piecewise linear function of the parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,22 +75,44 @@ pub fn sample_segments(dual: &mut Dual, edges: &[(HalfEdge, bool)], arcs: &[Metr
         }
         let n = pieces(arc.length() * scale.sqrt());
         let (a, b) = (dual.position(from), dual.position(to));
-        let mut start = from;
-        for k in 1..n {
-            let Some(h) = dual.topology().find(start, to) else { break };
-            let p = a.lerp(b, arc.parameter(k as f64 / n as f64));
-            if let Some((v, _)) = dual.insert_on_edge(h, p) {
-                start = v;
-            }
-        }
+        let cuts: Vec<Point> = (1..n).map(|k| a.lerp(b, arc.parameter(k as f64 / n as f64))).collect();
+        cut(dual, from, to, &cuts);
     }
     dual.vertex_count() - before
+}
+
+/// Cuts an edge at points along it, the middle one first: one after the other, each would take over the whole fan of
+/// the wall opposite, in quadratic time.
+fn cut(dual: &mut Dual, from: VertexId, to: VertexId, points: &[Point]) {
+    let mut pending = vec![(from, to, 0..points.len())];
+    while let Some((from, to, range)) = pending.pop() {
+        let Some(h) = dual.topology().find(from, to) else { continue };
+        let middle = usize::midpoint(range.start, range.end);
+        let candidates = (middle..range.end).chain((range.start..middle).rev());
+        let done = candidates.into_iter().find_map(|k| dual.insert_on_edge(h, points[k]).map(|(v, _)| (k, v)));
+        if let Some((k, v)) = done {
+            pending.extend([(v, to, k + 1..range.end), (from, v, range.start..k)]);
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::domain::Domain;
     use crate::geometry::Tensor;
+    use crate::metric::Scaled;
+    use crate::sampling::Plan;
+
+    #[test]
+    fn walls_face_to_face_are_cut_in_little_time() {
+        let domain = Domain::read("rect:0,0,1,1e-6").unwrap();
+        let field = |_: Point| Tensor::isotropic(1e-4);
+        let plan = Plan::new(&domain, &field).unwrap();
+        let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
+        assert_eq!(sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0), 2 * 9_999);
+        assert!(dual.counters().flips < 40 * 10_000, "{}", dual.counters().flips);
+    }
 
     #[test]
     fn arc_length_of_the_half_plane_is_a_logarithm() {

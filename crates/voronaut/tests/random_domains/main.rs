@@ -9,11 +9,14 @@ mod metrics;
 mod random;
 
 use random::Random;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc;
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
+use voronaut::Error;
 use voronaut::domain::Domain;
 use voronaut::progress::Silent;
 use voronaut::recipe::{self, MeshOptions};
@@ -79,25 +82,45 @@ fn chosen_cases() -> Option<Range<u64>> {
 /// Two at a time; in the order of their numbers.
 fn run_all(numbers: Range<u64>) -> Vec<Case> {
     let next = AtomicU64::new(numbers.start);
+    let running = Mutex::new(BTreeMap::new());
     let (sender, receiver) = mpsc::channel();
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            let (sender, next) = (sender.clone(), &next);
-            scope.spawn(move || {
-                loop {
-                    let number = next.fetch_add(1, Ordering::Relaxed);
-                    if number >= numbers.end {
-                        break;
-                    }
-                    sender.send(run(number)).expect("received below");
-                }
-            });
+    let work = |sender: mpsc::Sender<Case>| {
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= numbers.end {
+                break;
+            }
+            running.lock().expect("no panic holds it").insert(number, Instant::now());
+            sender.send(run(number)).expect("received below");
+            running.lock().expect("no panic holds it").remove(&number);
         }
+    };
+    let mut cases = std::thread::scope(|scope| {
+        for sender in [sender.clone(), sender] {
+            scope.spawn(|| work(sender));
+        }
+        collect(&receiver, &running)
     });
-    drop(sender);
-    let mut cases: Vec<Case> = receiver.into_iter().collect();
     cases.sort_by_key(|case| case.number);
     cases
+}
+
+/// All cases as they come in. A case that hangs ends the process, with its number: threads cannot be stopped.
+fn collect(receiver: &mpsc::Receiver<Case>, running: &Mutex<BTreeMap<u64, Instant>>) -> Vec<Case> {
+    let mut cases = Vec::new();
+    loop {
+        match receiver.recv_timeout(Duration::from_secs(1)) {
+            Ok(case) => cases.push(case),
+            Err(RecvTimeoutError::Disconnected) => return cases,
+            Err(RecvTimeoutError::Timeout) => {
+                let running = running.lock().expect("no panic holds it");
+                if let Some((number, _)) = running.iter().find(|(_, since)| since.elapsed() > 3 * SLOWEST) {
+                    eprintln!("case {number} hangs");
+                    std::process::exit(1);
+                }
+            }
+        }
+    }
 }
 
 fn run(number: u64) -> Case {
@@ -127,6 +150,7 @@ fn mesh(number: u64, what: &mut String) -> Outcome {
     *what = format!("{}, {name}, {target}, {:?}", drawn.shape, drawn.placement);
     let meshed = match recipe::mesh(&domain, metric.as_ref(), &options, &Silent) {
         Ok(meshed) => meshed,
+        Err(Error::Limit { what, .. }) if options.vertices.is_none() => return Outcome::Meshed(what),
         Err(error) => return Outcome::Failed(error.to_string()),
     };
     let faults = checks::faults(&drawn, &domain, &meshed.mesh);
@@ -142,13 +166,12 @@ fn mesh(number: u64, what: &mut String) -> Outcome {
     }
 }
 
+/// Mostly a number of vertices, else a complexity. A long and narrow domain can then need millions of vertices: the
+/// limit on memory refuses what would take too long for a test.
 fn options(random: &mut Random) -> MeshOptions {
     let size = random.size(50.0, 2000.0);
-    if random.chance(0.15) {
-        MeshOptions { complexity: Some(0.5 * size), ..MeshOptions::default() }
-    } else {
-        MeshOptions { vertices: Some(size as usize), ..MeshOptions::default() }
-    }
+    let target = if random.chance(0.15) { (None, Some(0.5 * size)) } else { (Some(size as usize), None) };
+    MeshOptions { vertices: target.0, complexity: target.1, memory_limit: 8 << 20, ..MeshOptions::default() }
 }
 
 fn misses(wanted: usize, found: usize) -> bool {
