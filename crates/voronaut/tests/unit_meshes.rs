@@ -3,7 +3,7 @@
 use voronaut::domain::Domain;
 use voronaut::formats::medit;
 use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::{MetricField, MetricSpec};
+use voronaut::metric::{Bounds, MetricField, MetricSpec};
 use voronaut::progress::Silent;
 use voronaut::quality::{MetricQuality, check, metric_quality, validity};
 use voronaut::recipe::{MeshOptions, Meshed, mesh, metric};
@@ -18,7 +18,7 @@ fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize) -> (Meshed,
 }
 
 fn named(spec: &str, domain: &Domain) -> Box<dyn MetricField> {
-    metric(&MetricSpec::parse(spec).unwrap(), domain, None, Default::default()).unwrap()
+    metric(&MetricSpec::parse(spec).unwrap(), domain, None, Bounds::default()).unwrap()
 }
 
 #[test]
