@@ -69,6 +69,10 @@ pub struct Meshed {
 const ROUNDS: usize = 4;
 /// The geometric mean of the free edges' lengths may differ from one by this much before seeding starts again.
 const SCALE_TOLERANCE: f64 = 0.04;
+/// Where the metric is given as it is, the number of seeds may differ from the planned one by this factor: the plan knows
+/// area and boundary, and edges that straight lines cannot honour (lengths in the hundreds were seen) are no reason to
+/// put in millions of seeds.
+const MOST_CORRECTED: f64 = 2.0;
 /// Seeds put at blocked flips, as a share of all: N is kept within one per cent.
 const BLOCKED_SHARE: f64 = 0.005;
 /// Seeds exchanged between two halves of the relaxation, as a share of all.
@@ -143,6 +147,7 @@ impl<'a> Job<'a> {
     /// Seeds the domain with `count` vertices; the scale follows from what the seeds' distances turn out to be. Where
     /// the scale is given, the count follows instead.
     fn seed(&mut self, domain: &Domain, plan: &Plan, mut count: usize, mut scale: f64) -> Result<Dual<'a>> {
+        let planned = count as f64;
         for round in 1.. {
             self.progress.stage("seeding", count as u64);
             let mut dual = Dual::new(domain, Scaled { field: self.field, factor: scale })?;
@@ -156,7 +161,8 @@ impl<'a> Job<'a> {
             if self.options.vertices.is_some() {
                 scale /= mean * mean;
             } else {
-                count = ((count as f64) * mean * mean).round() as usize;
+                let wanted = count as f64 * mean * mean;
+                count = wanted.clamp(planned / MOST_CORRECTED, planned * MOST_CORRECTED).round() as usize;
             }
             let too_many = |scale| plan.boundary_vertices(scale) > count.max(plan.corners()) as f64;
             while self.options.vertices.is_some() && too_many(scale) {
