@@ -3,20 +3,20 @@
 use crate::dual::{Dual, Effort, Kind};
 use crate::planar::Location;
 use crate::progress::Silent;
-use crate::sampling::{insert_spaced, refine};
+use crate::sampling::{Fill, insert_spaced, refine};
 use crate::triangulation::VertexId;
 
 /// Edges shorter than this in the metric (just below the unit range) mark seeds that crowd.
 const SHORT: f64 = 0.66;
 
 /// Removes free seeds at edges that are too short, shortest first and no two of them neighbours, at most a share of
-/// all vertices; then inserts where circumradii are largest until there are `count` vertices again. Returns how many
+/// all vertices; then inserts where circumradii are largest until there are as many vertices as `fill` says again. Returns how many
 /// seeds were removed.
-pub fn exchange(dual: &mut Dual, count: usize, most: usize) -> usize {
+pub fn exchange(dual: &mut Dual, fill: Fill, most: usize) -> usize {
     let removed = remove_crowded(dual, most, SHORT);
-    let excess = dual.vertex_count().saturating_sub(count);
+    let excess = dual.vertex_count().saturating_sub(fill.count());
     let removed = removed + if excess > 0 { remove_crowded(dual, excess, f64::INFINITY) } else { 0 };
-    refine(dual, count, &Silent);
+    refine(dual, fill, &Silent);
     removed
 }
 

@@ -12,7 +12,7 @@ use crate::metric::{MetricField, Scaled};
 use crate::optimise::{exchange, meet_blocked_flips, relax};
 use crate::progress::Progress;
 use crate::quality;
-use crate::sampling::{Plan, Target, refine, sample_segments, simplify};
+use crate::sampling::{Fill, Plan, Target, refine, sample_segments, simplify};
 use std::time::Instant;
 
 /// What the mesher may be told; every parameter has one name (flag, TOML key, Python keyword) and one default.
@@ -69,10 +69,6 @@ pub struct Meshed {
 const ROUNDS: usize = 4;
 /// The geometric mean of the free edges' lengths may differ from one by this much before seeding starts again.
 const SCALE_TOLERANCE: f64 = 0.04;
-/// Where the metric is given as it is, the number of seeds may differ from the planned one by this factor: the plan knows
-/// area and boundary, and edges that straight lines cannot honour (lengths in the hundreds were seen) are no reason to
-/// put in millions of seeds.
-const MOST_CORRECTED: f64 = 2.0;
 /// Seeds put at blocked flips, as a share of all: N is kept within one per cent.
 const BLOCKED_SHARE: f64 = 0.005;
 /// Seeds exchanged between two halves of the relaxation, as a share of all.
@@ -144,25 +140,30 @@ impl<'a> Job<'a> {
         Ok((simplified, plan, count, scale))
     }
 
+    /// A count that was asked for is met exactly; one that follows from the metric is an estimate.
+    fn fill(&self, count: usize) -> Fill {
+        if self.options.vertices.is_some() { Fill::Exactly(count) } else { Fill::AtMost(count) }
+    }
+
     /// Seeds the domain with `count` vertices; the scale follows from what the seeds' distances turn out to be. Where
     /// the scale is given, the count follows instead.
     fn seed(&mut self, domain: &Domain, plan: &Plan, mut count: usize, mut scale: f64) -> Result<Dual<'a>> {
-        let planned = count as f64;
         for round in 1.. {
             self.progress.stage("seeding", count as u64);
             let mut dual = Dual::new(domain, Scaled { field: self.field, factor: scale })?;
             sample_segments(&mut dual, &plan.edges, &plan.arcs, scale);
-            refine(&mut dual, count, self.progress);
+            refine(&mut dual, self.fill(count), self.progress);
             dual.verdict()?;
             let mean = mean_free_edge(&dual);
             if round == ROUNDS || (mean - 1.0).abs() < SCALE_TOLERANCE {
+                self.note_shortfall(&dual, plan, count);
                 return Ok(dual);
             }
             if self.options.vertices.is_some() {
                 scale /= mean * mean;
             } else {
-                let wanted = count as f64 * mean * mean;
-                count = wanted.clamp(planned / MOST_CORRECTED, planned * MOST_CORRECTED).round() as usize;
+                // One round corrects by a factor of two at most: a mean over few edges can be far off.
+                count = ((count as f64) * (mean * mean).clamp(0.5, 2.0)).round() as usize;
             }
             let too_many = |scale| plan.boundary_vertices(scale) > count.max(plan.corners()) as f64;
             while self.options.vertices.is_some() && too_many(scale) {
@@ -170,6 +171,14 @@ impl<'a> Job<'a> {
             }
         }
         unreachable!("the last round returns")
+    }
+
+    fn note_shortfall(&mut self, dual: &Dual, plan: &Plan, count: usize) {
+        let got = dual.vertex_count();
+        if self.options.vertices.is_some() && got < count {
+            let (got, count) = (got - plan.copies(), count - plan.copies());
+            self.notes.push(format!("{count} vertices were asked for, but rounding leaves room for {got} only"));
+        }
     }
 
     fn relax(&mut self, dual: &mut Dual) -> Result<()> {
@@ -182,7 +191,7 @@ impl<'a> Job<'a> {
             relax(dual, (steps * (quarter + 1)) / 4 - (steps * quarter) / 4, self.progress)?;
             if quarter < 3 {
                 let met = meet_blocked_flips(dual, most(BLOCKED_SHARE));
-                exchange(dual, count, most(EXCHANGED_SHARE).max(met));
+                exchange(dual, self.fill(count), most(EXCHANGED_SHARE).max(met));
             }
             self.fit_scale(dual);
         }

@@ -18,6 +18,26 @@ const SPACING: f64 = 0.55;
 /// Corners farther apart than this (metric length) say little of what lies between them.
 const FAR: f64 = 2.5;
 
+/// How many vertices refinement goes for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fill {
+    /// This many, if need be by halving the longest edges where no circumcentre can be had.
+    Exactly(usize),
+    /// This many, or fewer where the metric leaves no room.
+    AtMost(usize),
+}
+
+impl Fill {
+    /// The number.
+    pub fn count(self) -> usize {
+        let (Fill::Exactly(count) | Fill::AtMost(count)) = self;
+        count
+    }
+}
+
+/// Passes over all edges to halve the longest, each up to an eighth of them; more means that rounding forbids most.
+const MOST_PASSES: usize = 100;
+
 /// How refinement went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Refined {
@@ -31,16 +51,21 @@ pub struct Refined {
     pub halved: usize,
 }
 
-/// Inserts seeds until the dual has `count` vertices.
-pub fn refine(dual: &mut Dual, count: usize, progress: &dyn Progress) -> Refined {
+/// Inserts seeds until the dual has as many vertices as asked for.
+pub fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Refined {
+    let count = fill.count();
     let mut refiner = Refiner { queue: BinaryHeap::new(), refined: Refined::default() };
     dual.take_touched();
     let faces: Vec<FaceId> = dual.topology().faces().collect();
     refiner.enqueue(dual, faces);
-    let mut reported = dual.vertex_count();
+    let (mut reported, mut passes) = (dual.vertex_count(), 0);
     while dual.vertex_count() < count {
-        if !refiner.improve_worst(dual) && !refiner.halve_longest(dual, count) {
-            break;
+        if !refiner.improve_worst(dual) {
+            passes += 1;
+            let goes_on = fill == Fill::Exactly(count) && passes <= MOST_PASSES;
+            if !goes_on || !refiner.halve_longest(dual, count) {
+                break;
+            }
         }
         if dual.vertex_count() >= reported + 256 {
             progress.done((dual.vertex_count() - reported) as u64);

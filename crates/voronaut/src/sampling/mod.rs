@@ -8,6 +8,6 @@ mod segments;
 
 pub use curves::simplify;
 pub(crate) use interior::insert_spaced;
-pub use interior::{Refined, refine};
+pub use interior::{Fill, Refined, refine};
 pub use plan::{Plan, Target};
 pub use segments::{MetricArc, sample_segments};

@@ -358,7 +358,9 @@ fn regions(random: &mut Random, sketch: &mut Sketch) {
         let centre = a.midpoint(b).midpoint(c.midpoint(d));
         sketch.regions.push((centre, label));
     }
-    rows.iter().for_each(|row| sketch.open(row));
+    for row in &rows {
+        sketch.open(row);
+    }
     let mut around = rows[0].clone();
     around.extend(rows[rows.len() - 1].iter().rev());
     sketch.loops.push((around, 1.0));

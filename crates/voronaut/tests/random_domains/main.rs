@@ -87,8 +87,7 @@ fn run_all(numbers: &[u64]) -> Vec<Case> {
     let running = Mutex::new(BTreeMap::new());
     let (sender, receiver) = mpsc::channel();
     let work = |sender: mpsc::Sender<Case>| {
-        loop {
-            let Some(&number) = numbers.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
+        while let Some(&number) = numbers.get(next.fetch_add(1, Ordering::Relaxed)) {
             running.lock().expect("no panic holds it").insert(number, Instant::now());
             sender.send(run(number)).expect("received below");
             running.lock().expect("no panic holds it").remove(&number);

@@ -2,7 +2,7 @@
 
 use voronaut::geometry::{Point, Vector};
 
-/// SplitMix64 (Steele, Lea and Flood 2014).
+/// `SplitMix64` (Steele, Lea and Flood 2014).
 pub(crate) struct Random(u64);
 
 impl Random {
