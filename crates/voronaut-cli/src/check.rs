@@ -6,7 +6,7 @@ use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
 use voronaut::domain::Domain;
-use voronaut::formats::medit;
+use voronaut::formats::{medit, read_text};
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{MetricField, MetricSpec};
@@ -52,8 +52,7 @@ fn read(path: &Path) -> Result<Mesh> {
         let what = format!("{} does not end in .mesh", path.display());
         return Err(Error::Unsupported { what, help: "convert the mesh to Medit's text format".into() });
     }
-    let text = std::fs::read_to_string(path).map_err(|source| Error::Io { path: path.into(), source })?;
-    medit::read(&text, &path.display().to_string())
+    medit::read(&read_text(path)?, &path.display().to_string())
 }
 
 /// The metric, times its factor. A `.sol` file belongs to the background mesh, else to the domain's, else to the mesh.

@@ -12,14 +12,14 @@ pub(crate) fn demand_writable(mesh: Option<&Path>, outputs: &Outputs) -> Result<
     mesh.map(Format::from_path).transpose()?;
     outputs.picture.as_deref().map(PictureFormat::from_path).transpose()?;
     let files = [mesh, outputs.picture.as_deref(), outputs.report.as_deref()];
-    let mut seen: Vec<&Path> = Vec::new();
+    let mut seen = Vec::new();
     for file in files.into_iter().flatten() {
-        output::demand_directory(file)?;
-        if seen.contains(&file) {
+        let place = output::place(file)?;
+        if seen.contains(&place) {
             let what = "two outputs have the same name";
             return Err(Error::parse(file.display().to_string(), what, "give each output a name of its own"));
         }
-        seen.push(file);
+        seen.push(place);
     }
     Ok(())
 }

@@ -2,9 +2,9 @@
 
 use super::{Pslg, from_geojson, from_mesh, from_poly, shapes};
 use crate::error::{Error, Result};
-use crate::formats::{geojson, medit, poly};
+use crate::formats::{geojson, medit, poly, read_text};
 use crate::geometry::Point;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Reads a planar domain: `rect:x0,y0,x1,y1`, `disk:cx,cy,r`, or a file `.geojson`, `.json`, `.poly` or `.mesh`.
 ///
@@ -71,20 +71,6 @@ fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Resul
         *value = word.parse().map_err(|_| error(format!("'{word}' is not a number")))?;
     }
     Ok(values)
-}
-
-fn read_text(path: &Path) -> Result<String> {
-    let bytes = std::fs::read(path).map_err(|source| Error::Io { path: PathBuf::from(path), source })?;
-    let place = path.display().to_string();
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let what = format!("not a text in UTF-8 (byte {})", error.utf8_error().valid_up_to() + 1);
-        let help = "save the file as UTF-8 text; binary files are not read yet";
-        Error::parse(&place, what, help)
-    })?;
-    if text.trim().is_empty() {
-        return Err(Error::parse(place, "the file is empty", "check that the program that wrote it had finished"));
-    }
-    Ok(text)
 }
 
 /// Adds the file to the place of an error of its domain.

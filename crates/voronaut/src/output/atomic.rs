@@ -33,6 +33,17 @@ pub fn demand_directory(path: &Path) -> Result<()> {
     }
 }
 
+/// The one name of the file at a path, by which two spellings of it (`a.obj`, `./a.obj`) are known to be the same.
+///
+/// # Errors
+/// As [`demand_directory`].
+pub fn place(path: &Path) -> Result<PathBuf> {
+    demand_directory(path)?;
+    let directory = fs::canonicalize(directory(path)).map_err(|source| Error::Io { path: path.into(), source })?;
+    let place = directory.join(path.file_name().unwrap_or_default());
+    Ok(fs::canonicalize(&place).unwrap_or(place))
+}
+
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let old = fs::metadata(path).ok();
     if old.as_ref().is_some_and(|old| !old.is_file()) {

@@ -12,7 +12,7 @@ mod strokes;
 mod svg;
 mod vtu;
 
-pub use atomic::{demand_directory, write};
+pub use atomic::{demand_directory, place, write};
 #[cfg(feature = "png")]
 pub use png::render_png;
 pub use report::Report;

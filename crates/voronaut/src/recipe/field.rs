@@ -2,9 +2,9 @@
 
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::formats::medit;
 use crate::formats::sol::{self, SolutionValues};
-use crate::geometry::Tensor;
+use crate::formats::{medit, read_text};
+use crate::geometry::{Aabb, Tensor};
 use crate::mesh::Mesh;
 use crate::metric::{Boundary, Bounded, Bounds, MetricField, MetricSpec, Sampled};
 use std::path::Path;
@@ -25,19 +25,20 @@ pub fn metric(
         MetricSpec::Shock(field) => Box::new(*field),
         MetricSpec::Formula(field) => Box::new(field.clone()),
         MetricSpec::Boundary(sizes) => Box::new(Boundary::new(&domain.boundary(), *sizes)?),
-        MetricSpec::File(path) => Box::new(sampled(path, background)?),
+        MetricSpec::File(path) => Box::new(sampled(path, background, domain)?),
     };
     if bounds == Bounds::default() { Ok(field) } else { Ok(Box::new(Bounded::new(field, bounds)?)) }
 }
 
-fn sampled(path: &Path, background: Option<&Path>) -> Result<Sampled> {
-    let solution = sol::read(&text(path)?, &path.display().to_string())?;
+fn sampled(path: &Path, background: Option<&Path>, domain: &Domain) -> Result<Sampled> {
+    let solution = sol::read(&read_text(path)?, &path.display().to_string())?;
     let is_mesh = |p: &&Path| p.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mesh"));
     let Some(file) = background.filter(is_mesh) else {
         let help = "name the mesh that the values belong to: --background FILE.mesh";
         return Err(Error::parse(path.display().to_string(), "a .sol file needs a .mesh it belongs to", help));
     };
-    let mesh: Mesh = medit::read(&text(file)?, &file.display().to_string())?;
+    let mesh: Mesh = medit::read(&read_text(file)?, &file.display().to_string())?;
+    demand_cover(&mesh, file, domain)?;
     match solution.values {
         SolutionValues::Scalar(sizes) => Sampled::sizes(&mesh, &sizes),
         SolutionValues::Tensor(entries) => {
@@ -51,6 +52,19 @@ fn sampled(path: &Path, background: Option<&Path>) -> Result<Sampled> {
     }
 }
 
-fn text(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path).map_err(|source| Error::Io { path: path.into(), source })
+/// How far a domain may reach beyond its background mesh, as a share of the mesh's extent: curves are meshed by chords.
+const OVERHANG: f64 = 0.05;
+
+/// Beyond its mesh a sampled field goes on with the nearest value: right for a sliver along a curved boundary, a
+/// mistake anywhere else.
+fn demand_cover(background: &Mesh, file: &Path, domain: &Domain) -> Result<()> {
+    let Some(cover) = Aabb::of((0..background.points.len() as u32).map(|v| background.point(v))) else { return Ok(()) };
+    let (bounds, allowed) = (domain.bounds(), cover.extent() * OVERHANG);
+    let (lower, upper) = (cover.min - bounds.min, bounds.max - cover.max);
+    if lower.x.max(upper.x) <= allowed.x && lower.y.max(upper.y) <= allowed.y {
+        return Ok(());
+    }
+    let what = format!("the domain ({} to {}) reaches beyond the background mesh", bounds.min, bounds.max);
+    let place = format!("{} ({} to {})", file.display(), cover.min, cover.max);
+    Err(Error::metric(what, place, "give the mesh on which the values were computed, in the coordinates of the domain"))
 }
