@@ -19,21 +19,47 @@ use rayon::prelude::*;
 /// the total after that many evaluations (the metric has a singularity that cannot be integrated); [`Error::Domain`]
 /// of a triangle that is not finite.
 pub fn complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f64> {
+    let Integral { total, error, worst } = adapt(field, triangles, TOLERANCE, MAX_EVALUATIONS)?;
+    settle(total, error, worst.as_ref())
+}
+
+/// A rough value of [`complexity`], to about 1 %, for no more than 2^20 evaluations after the start; never refused for
+/// what its error may be.
+///
+/// # Errors
+/// As [`complexity`], for tensors and triangles that are not valid, and where the value is not finite.
+pub fn rough_complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f64> {
+    let Integral { total, worst, .. } = adapt(field, triangles, ROUGH_TOLERANCE, MAX_EVALUATIONS >> 4)?;
+    settle(total, 0.0, worst.as_ref())
+}
+
+struct Integral {
+    total: f64,
+    error: f64,
+    worst: Option<Piece>,
+}
+
+fn adapt(
+    field: &dyn MetricField,
+    triangles: &[[Point; 3]],
+    tolerance: f64,
+    max_evaluations: usize,
+) -> Result<Integral> {
     let mut pieces = measure(field, start(triangles)?)?;
     let mut spent = 0;
     loop {
         let total: f64 = pieces.iter().map(Piece::integral).sum();
         let error: f64 = pieces.iter().map(Piece::error).sum();
-        if error <= TOLERANCE * total && total.is_finite() {
-            return Ok(total);
+        if error <= tolerance * total && total.is_finite() {
+            return Ok(Integral { total, error, worst: None });
         }
-        let allowed = negligible(&pieces, 0.5 * TOLERANCE * total);
+        let allowed = negligible(&pieces, 0.5 * tolerance * total);
         let (kept, cut): (Vec<Piece>, Vec<Piece>) = pieces.into_iter().partition(|piece| piece.error() <= allowed);
         let parts: Vec<Measured> = cut.iter().flat_map(Piece::cut).collect();
         spent += parts.len() * EVALUATIONS_PER_PART;
-        if spent > MAX_EVALUATIONS || parts.is_empty() {
-            let worst = cut.iter().chain(&kept).max_by(|a, b| a.error().total_cmp(&b.error()));
-            return settle(total, error, worst);
+        if spent > max_evaluations || parts.is_empty() {
+            let worst = cut.into_iter().chain(kept).max_by(|a, b| a.error().total_cmp(&b.error()));
+            return Ok(Integral { total, error, worst });
         }
         pieces = kept;
         pieces.extend(measure(field, parts)?);
@@ -43,6 +69,8 @@ pub fn complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f
 /// Estimated error of the result, relative to it. The estimate is far too large for smooth metrics and some times too
 /// small at singularities: a fifth of the 1e-4 that is promised.
 const TOLERANCE: f64 = 2e-5;
+/// The same for a rough value.
+const ROUGH_TOLERANCE: f64 = 1e-2;
 /// Pieces to start from.
 const PIECES: f64 = 8192.0;
 /// Evaluations after the start.

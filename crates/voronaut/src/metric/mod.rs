@@ -31,7 +31,7 @@ mod vocabulary;
 pub use analytic::{Shock, Swirl, SwirlField, Uniform};
 pub use boundary::{Boundary, BoundarySizes};
 pub use bounds::{Bounded, Bounds};
-pub use complexity::complexity;
+pub use complexity::{complexity, rough_complexity};
 pub use expression::{Expression, Variables};
 pub use formula::Formula;
 pub use sampled::Sampled;

@@ -120,14 +120,14 @@ impl<'a> Job<'a> {
     fn plan(&mut self, domain: &Domain) -> Result<(Domain, Plan, usize, f64)> {
         self.progress.stage("planning", 1);
         let tolerance = self.options.hausd.unwrap_or(domain.pslg().tolerance);
-        let mut plan = Plan::new(domain, self.field)?;
+        let mut plan = Plan::new(domain, self.field, self.target())?;
         let (mut count, mut scale) = plan.start(self.target(), self.options.memory_limit)?;
         let mut simplified = domain.clone();
         if tolerance > 0.0 {
             // Fewer corners let the metric be finer, and the other way round: two rounds settle it.
             for _ in 0..2 {
                 simplified = simplify(domain, &Scaled { field: self.field, factor: scale }, tolerance);
-                plan = Plan::new(&simplified, self.field)?;
+                plan = Plan::new(&simplified, self.field, self.target())?;
                 (count, scale) = plan.start(self.target(), self.options.memory_limit)?;
             }
         }

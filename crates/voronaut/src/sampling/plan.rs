@@ -3,7 +3,7 @@
 use super::segments::{MetricArc, pieces};
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::metric::{MetricField, complexity};
+use crate::metric::{MetricField, complexity, rough_complexity};
 use crate::triangulation::HalfEdge;
 use rayon::prelude::*;
 
@@ -36,17 +36,19 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Measures the domain, in parallel.
+    /// Measures the domain, in parallel, as accurately as the target needs.
     ///
     /// # Errors
     /// The metric is not positive definite somewhere, or its complexity not finite.
-    pub fn new(domain: &Domain, field: &dyn MetricField) -> Result<Self> {
+    pub fn new(domain: &Domain, field: &dyn MetricField, target: Target) -> Result<Self> {
         let planar = domain.planar();
         let required = |h| planar.topology.constraint(h).is_some_and(|c| domain.pslg().segments[c.0 as usize].required);
         let constrained = planar.topology.edges().filter(|&h| planar.topology.constraint(h).is_some());
         let edges: Vec<(HalfEdge, bool)> = constrained.map(|h| (h, required(h))).collect();
         let arcs = edges.par_iter().map(|&(h, _)| planar.ends(h)).map(|[a, b]| MetricArc::new(field, a, b)).collect();
-        let complexity = complexity(field, &domain.triangles())?;
+        // With a count given the integral is only where the search for the scale starts.
+        let integral = if matches!(target, Target::Vertices(_)) { rough_complexity } else { complexity };
+        let complexity = integral(field, &domain.triangles())?;
         Ok(Self { complexity, edges, arcs, corners: planar.topology.vertex_count(), copies: copies(domain) })
     }
 
