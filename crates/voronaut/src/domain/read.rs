@@ -2,7 +2,7 @@
 
 use super::{Pslg, from_geojson, from_mesh, from_poly, shapes};
 use crate::error::{Error, Result};
-use crate::formats::{geojson, medit, poly, read_text};
+use crate::formats::{geojson, medit, poly};
 use crate::geometry::Point;
 use std::path::Path;
 
@@ -71,6 +71,24 @@ fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Resul
         *value = word.parse().map_err(|_| error(format!("'{word}' is not a number")))?;
     }
     Ok(values)
+}
+
+/// Reads a text file.
+///
+/// # Errors
+/// [`Error::Io`] where it cannot be read; [`Error::Parse`] where it is empty, or no text.
+pub fn read_text(path: &Path) -> Result<String> {
+    let bytes = std::fs::read(path).map_err(|source| Error::Io { path: path.into(), source })?;
+    let place = path.display().to_string();
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let what = format!("not a text in UTF-8 (byte {})", error.utf8_error().valid_up_to() + 1);
+        let help = "save the file as UTF-8 text; binary files are not read yet";
+        Error::parse(&place, what, help)
+    })?;
+    if text.trim().is_empty() {
+        return Err(Error::parse(place, "the file is empty", "check that the program that wrote it had finished"));
+    }
+    Ok(text)
 }
 
 /// Adds the file to the place of an error of its domain.

@@ -1,9 +1,9 @@
 //! From what the user says of a metric to the field itself, with its files read.
 
-use crate::domain::Domain;
+use crate::domain::{Domain, read_text};
 use crate::error::{Error, Result};
+use crate::formats::medit;
 use crate::formats::sol::{self, SolutionValues};
-use crate::formats::{medit, read_text};
 use crate::geometry::{Aabb, Tensor};
 use crate::mesh::Mesh;
 use crate::metric::{Boundary, Bounded, Bounds, MetricField, MetricSpec, Sampled};
