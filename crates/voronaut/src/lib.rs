@@ -1,6 +1,8 @@
 //! voronaut: anisotropic triangle meshes from a Riemannian metric field.
 
 // The modules follow the flow of data; each uses only those above it (held by tests/architecture.rs).
+pub mod canvas;
+pub mod diagram;
 pub mod domain;
 pub mod dual;
 pub mod error;

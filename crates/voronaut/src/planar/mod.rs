@@ -6,7 +6,7 @@ mod locate;
 mod operations;
 
 pub use constrain::Crossing;
-pub use delaunay::{Duplicate, delaunay};
+pub use delaunay::{Duplicate, delaunay, hilbert_order};
 pub use locate::Location;
 
 use crate::geometry::{Orientation, Point, orientation, signed_area};
