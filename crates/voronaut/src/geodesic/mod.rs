@@ -4,6 +4,7 @@
 //! (a canvas): distances to the nearest of many sources, by solvers that share one interface, [`Geodesic`], and never
 //! read positions.
 
+mod bow;
 mod front;
 mod in_circle;
 mod label;
@@ -12,6 +13,7 @@ mod local;
 mod march;
 mod update;
 
+pub use bow::bowed_chord;
 pub use in_circle::{Angles, frozen_margin};
 pub use label::{Label, NO_COLOUR, Sources, Support};
 pub use length::{Length, bent_chord, chord, hermite, path_energy};
