@@ -37,13 +37,36 @@ pub struct Nerve {
     pub triangles: Vec<NerveTriangle>,
 }
 
+impl Nerve {
+    /// From all witnesses: one of each simplex is kept, that with the smallest id.
+    pub(super) fn new(
+        vertices: Vec<(u32, VertexId)>,
+        mut edges: Vec<NerveEdge>,
+        mut triangles: Vec<NerveTriangle>,
+    ) -> Self {
+        edges.sort_unstable_by_key(|e| (e.colours, e.witness));
+        edges.dedup_by(|later, first| {
+            let same = later.colours == first.colours;
+            first.border = if same { first.border.or(later.border) } else { first.border };
+            same
+        });
+        triangles.sort_unstable_by_key(|t| (t.colours, t.witness));
+        triangles.dedup_by(|later, first| {
+            let same = later.colours == first.colours;
+            first.witnesses += u32::from(same);
+            same
+        });
+        Self { vertices, edges, triangles }
+    }
+}
+
 impl Diagram<'_> {
-    /// Reads the nerve off the canvas.
+    /// Reads the nerve off the canvas, as the report does: from canvas edges with two colours, faces with three.
     pub fn nerve(&self) -> Nerve {
-        Nerve { vertices: self.coloured_vertices(), edges: self.bicoloured_edges(), triangles: self.tricoloured_faces() }
+        Nerve::new(self.coloured_vertices(), self.bicoloured_edges(), self.tricoloured_faces())
     }
 
-    fn coloured_vertices(&self) -> Vec<(u32, VertexId)> {
+    pub(super) fn coloured_vertices(&self) -> Vec<(u32, VertexId)> {
         let mut first = vec![None; self.colours()];
         for v in (0..self.canvas.vertex_count() as u32).map(VertexId) {
             if let Some(colour) = self.colour(v) {
@@ -64,14 +87,7 @@ impl Diagram<'_> {
             (a != b && a != NO_COLOUR && b != NO_COLOUR)
                 .then(|| NerveEdge { colours: [a.min(b), a.max(b)], witness: h, border })
         };
-        let mut edges: Vec<NerveEdge> = topology.edges().filter_map(between).collect();
-        edges.sort_unstable_by_key(|e| (e.colours, e.witness));
-        edges.dedup_by(|later, first| {
-            let same = later.colours == first.colours;
-            first.border = if same { first.border.or(later.border) } else { first.border };
-            same
-        });
-        edges
+        topology.edges().filter_map(between).collect()
     }
 
     fn tricoloured_faces(&self) -> Vec<NerveTriangle> {
@@ -81,19 +97,12 @@ impl Diagram<'_> {
             let distinct = a != b && b != c && c != a && [a, b, c].iter().all(|&x| x != NO_COLOUR);
             distinct.then(|| NerveTriangle { colours: smallest_first([a, b, c]), witness, witnesses: 1 })
         };
-        let mut triangles: Vec<NerveTriangle> = topology.faces().filter_map(of_face).collect();
-        triangles.sort_unstable_by_key(|t| (t.colours, t.witness));
-        triangles.dedup_by(|later, first| {
-            let same = later.colours == first.colours;
-            first.witnesses += u32::from(same);
-            same
-        });
-        triangles
+        topology.faces().filter_map(of_face).collect()
     }
 }
 
 /// The same cycle, its smallest member first.
-fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
+pub(super) fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
     if a < b && a < c {
         [a, b, c]
     } else if b < c {

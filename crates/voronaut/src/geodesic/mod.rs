@@ -11,6 +11,7 @@ mod label;
 mod length;
 mod local;
 mod march;
+mod patch;
 mod update;
 
 pub use bow::bowed_chord;
@@ -19,6 +20,7 @@ pub use label::{Label, NO_COLOUR, Sources, Support};
 pub use length::{Length, bent_chord, chord, hermite, path_energy};
 pub use local::LocalMetric;
 pub use march::{Marching, Propagation};
+pub use patch::PatchSolver;
 pub use update::Wave;
 
 use crate::triangulation::{Triangulation, VertexId};

@@ -47,7 +47,8 @@ impl Crossing {
         (x, ((a - x) * (a + x)).max(0.0).sqrt())
     }
 
-    fn circular(&self) -> Option<f64> {
+    /// The distance at the apex from the source laid out flat; `None` where the path misses the base.
+    pub(super) fn circular(&self) -> Option<f64> {
         let (l, s, t) = (self.base, self.at_start, self.at_end);
         // The source lies at (u, -depth).
         let u = 0.5 * (l + (s - t) * (s + t) / l);
