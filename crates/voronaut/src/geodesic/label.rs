@@ -23,7 +23,7 @@ pub enum Support {
     Nothing,
     /// A source beside the vertex.
     Source,
-    /// Both ends of the half-edge opposite to the vertex in some face.
+    /// Both ends of the half-edge, opposite to the vertex in its face or (unfolded) in the face beyond.
     Edge(HalfEdge),
     /// The other end of this edge, along it.
     Vertex(HalfEdge),

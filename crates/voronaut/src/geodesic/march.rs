@@ -3,10 +3,11 @@
 //! A label is (distance, colour). The labels wanted are the one solution of
 //!
 //! ```text
-//! label(x) = least of: the sources at x; label(y) + |xy| over neighbours y; crossings of faces (x, y, z)
+//! label(x) = least of: the sources at x; label(y) + |xy| over neighbours y; crossings of faces (x, y, z), or, where
+//!            the angle at x is wide, of the two faces (x, a, b) and (b, a, z) by one of a, b and z
 //! ```
 //!
-//! where y and z have the same colour and every value is greater than those it comes from. By that last condition the
+//! where the two ends of the edge that is crossed have the same colour and every value is greater than those it comes from. By that last condition the
 //! solution is unique: of two, the least label in which they differ would have the same origin in both. Hence the
 //! labels do not depend on the order of work, and labels mended after a change are, bit for bit, those made anew.
 //!
@@ -18,7 +19,7 @@
 
 use super::front::Front;
 use super::label::{Label, Sources, Support};
-use super::update::{Crossing, Wave};
+use super::update::{Crossing, Unfolding, Wave};
 use super::{Geodesic, MarchCounters};
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
@@ -81,6 +82,10 @@ impl Geodesic for Marching {
     }
 }
 
+/// Unfolding is tried where the sum of the squares of the sides at a corner is less than this share of that of the base:
+/// at right and obtuse angles, and a little below.
+const WIDE: f64 = 1.05;
+
 struct March<'a> {
     wave: Wave,
     canvas: &'a Triangulation,
@@ -119,6 +124,17 @@ impl March<'_> {
             if canvas.twin(left).is_none() {
                 self.offer(canvas.origin(left), self.along(left, v));
             }
+            let [opposite, left, right] = [h.next(), left, h].map(|e| canvas.twin(e).filter(|&g| self.is_wide(g)));
+            if let Some(g) = opposite {
+                self.offer(canvas.apex(g), self.over(g, h));
+                self.offer(canvas.apex(g), self.over(g, h.prev()));
+            }
+            if let Some(g) = left {
+                self.offer(canvas.apex(g), self.over(g, h));
+            }
+            if let Some(g) = right {
+                self.offer(canvas.apex(g), self.over(g, h.prev()));
+            }
         }
     }
 
@@ -134,7 +150,8 @@ impl March<'_> {
         let canvas = self.canvas;
         for h in canvas.star(v) {
             let last = canvas.twin(h.prev()).is_none().then(|| canvas.apex(h));
-            for y in [Some(canvas.target(h)), last].into_iter().flatten() {
+            let beyond = canvas.twin(h.next()).map(|g| canvas.apex(g));
+            for y in [Some(canvas.target(h)), last, beyond].into_iter().flatten() {
                 if y != v && self.rests_on(y, v) {
                     self.reconsider(y);
                 }
@@ -164,6 +181,10 @@ impl March<'_> {
             crossings += 1;
             consider(self.along(h, canvas.target(h)));
             consider(self.across(h.next()));
+            if let Some(t) = canvas.twin(h.next()).filter(|_| self.is_wide(h.next())) {
+                consider(self.over(h.next(), t.next()));
+                consider(self.over(h.next(), t.prev()));
+            }
             if canvas.twin(h.prev()).is_none() {
                 consider(self.along(h.prev(), canvas.apex(h)));
             }
@@ -200,7 +221,7 @@ impl March<'_> {
     /// The label that reaches the apex of a half-edge's face across the half-edge.
     fn across(&self, h: HalfEdge) -> Label {
         let canvas = self.canvas;
-        let (start, end) = (self.state.labels[canvas.origin(h).index()], self.state.labels[canvas.target(h).index()]);
+        let (start, end) = (self.label_at(canvas.origin(h)), self.label_at(canvas.target(h)));
         if start.colour != end.colour || start.support() == Support::Nothing {
             return Label::FAR;
         }
@@ -213,5 +234,39 @@ impl March<'_> {
         };
         let distance = crossing.distance(self.wave);
         distance.map_or(Label::FAR, |distance| Label::new(distance, start.colour, Support::Edge(h)))
+    }
+
+    /// Whether the angle at the apex of a half-edge's face is too wide for fronts that come straight at the half-edge.
+    fn is_wide(&self, h: HalfEdge) -> bool {
+        let [l, a, b] = [h, h.next(), h.prev()].map(|e| self.canvas.length(e));
+        a * a + b * b < WIDE * l * l
+    }
+
+    /// The label that reaches the apex of the face of g from an edge of the face beyond g, across that edge and g.
+    fn over(&self, g: HalfEdge, edge: HalfEdge) -> Label {
+        let canvas = self.canvas;
+        let (start, end) = (self.label_at(canvas.origin(edge)), self.label_at(canvas.target(edge)));
+        let Some(t) = canvas.twin(g).filter(|_| start.colour == end.colour && start.support() != Support::Nothing)
+        else {
+            return Label::FAR;
+        };
+        let unfolding = Unfolding {
+            base: canvas.length(g),
+            from_start: canvas.length(g.prev()),
+            from_end: canvas.length(g.next()),
+            beyond_start: canvas.length(t.next()),
+            beyond_end: canvas.length(t.prev()),
+        };
+        // t.next() leaves the start of g for the far apex, t.prev() leaves the far apex for the end of g.
+        let distance = if edge == t.next() {
+            unfolding.from_start_edge(self.wave, start.distance, end.distance)
+        } else {
+            unfolding.mirrored().from_start_edge(self.wave, end.distance, start.distance)
+        };
+        distance.map_or(Label::FAR, |distance| Label::new(distance, start.colour, Support::Edge(edge)))
+    }
+
+    fn label_at(&self, v: VertexId) -> Label {
+        self.state.labels[v.index()]
     }
 }

@@ -41,42 +41,133 @@ impl Crossing {
         found.filter(|&distance| distance > self.at_start.max(self.at_end))
     }
 
-    fn apex(&self) -> (f64, f64) {
-        let (l, a, b) = (self.base, self.from_start, self.from_end);
-        let x = 0.5 * (l + (a - b) * (a + b) / l);
-        (x, ((a - x) * (a + x)).max(0.0).sqrt())
-    }
-
     /// The distance at the apex from the source laid out flat; `None` where the path misses the base.
     pub(super) fn circular(&self) -> Option<f64> {
-        let (l, s, t) = (self.base, self.at_start, self.at_end);
-        // The source lies at (u, -depth).
-        let u = 0.5 * (l + (s - t) * (s + t) / l);
-        let depth2 = (s - u) * (s + u);
-        if depth2 < -ON_LINE * l * l {
-            return None;
-        }
-        let depth = depth2.max(0.0).sqrt();
-        let (x, y) = self.apex();
+        let (u, depth) = self.source()?;
+        let (x, y) = layout(self.base, self.from_start, self.from_end);
         let crossing = u * y + x * depth;
         let reach = depth + y;
-        (crossing >= 0.0 && crossing <= l * reach).then(|| (x - u).hypot(reach))
+        (crossing >= 0.0 && crossing <= self.base * reach).then(|| (x - u).hypot(reach))
+    }
+
+    /// The virtual source lies at (u, -depth).
+    fn source(&self) -> Option<(f64, f64)> {
+        let (l, s, t) = (self.base, self.at_start, self.at_end);
+        let u = 0.5 * (l + (s - t) * (s + t) / l);
+        let depth2 = (s - u) * (s + u);
+        (depth2 >= -ON_LINE * l * l).then(|| (u, depth2.max(0.0).sqrt()))
     }
 
     fn plane(&self) -> Option<f64> {
-        let (l, d) = (self.base, self.at_end - self.at_start);
-        let (x, y) = self.apex();
-        // The gradient is (d / l, g), |gradient| = 1; the characteristic through the apex meets the base at x - y d / (l g).
-        let slope = d / l;
-        let g = ((1.0 - slope) * (1.0 + slope)).max(0.0).sqrt();
+        let (slope, g) = self.gradient()?;
+        let (x, y) = layout(self.base, self.from_start, self.from_end);
         let foot = x * g - y * slope;
-        (g > 0.0 && foot >= 0.0 && foot <= l * g).then(|| self.at_start + slope * x + g * y)
+        (foot >= 0.0 && foot <= self.base * g).then(|| self.at_start + slope * x + g * y)
     }
+
+    /// The unit gradient (slope, g) of a plane wave.
+    fn gradient(&self) -> Option<(f64, f64)> {
+        let slope = (self.at_end - self.at_start) / self.base;
+        let g = ((1.0 - slope) * (1.0 + slope)).max(0.0).sqrt();
+        (g > 0.0).then_some((slope, g))
+    }
+
+    /// Where on the base's line the path to the apex (x, y) crosses it.
+    fn foot(&self, wave: Wave, (x, y): (f64, f64)) -> Option<f64> {
+        match wave {
+            Wave::Circular => self.source().map(|(u, depth)| (u * y + x * depth) / (depth + y)),
+            Wave::Plane => self.gradient().map(|(slope, g)| x - y * slope / g),
+        }
+    }
+}
+
+/// A triangle whose front comes from the face beyond its base, where the angle at its apex is too wide for a front to
+/// reach both ends of the base before the apex (Kimmel and Sethian 1998): both faces are laid out in one plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unfolding {
+    pub(super) base: f64,
+    pub(super) from_start: f64,
+    pub(super) from_end: f64,
+    /// Distances of the far face's apex from the base's start and end.
+    pub(super) beyond_start: f64,
+    pub(super) beyond_end: f64,
+}
+
+impl Unfolding {
+    /// The distance at the apex of a path that crosses the edge from the base's start to the far apex, then the base;
+    /// `None` if there is none, or if it is not longer than the distances that it comes from.
+    pub(super) fn from_start_edge(&self, wave: Wave, at_start: f64, at_far: f64) -> Option<f64> {
+        let (l, s, t) = (self.beyond_start, at_start, at_far);
+        let apex = layout(self.base, self.from_start, self.from_end);
+        let below = layout(self.base, self.beyond_start, self.beyond_end);
+        // Coordinates along the far edge, from the base's start, and across it, towards the apex.
+        let (cos, sin) = (below.0 / l, -below.1 / l);
+        let (along, across) = (apex.0 * cos + apex.1 * sin, apex.1 * cos - apex.0 * sin);
+        if across <= 0.0 {
+            return None;
+        }
+        let crossing = Crossing {
+            base: l,
+            from_start: self.from_start,
+            from_end: (along - l).hypot(across),
+            at_start: s,
+            at_end: t,
+        };
+        // The path leaves the source for the apex and must pass the base's start on the side of its end.
+        let foot = crossing.foot(wave, (along, across))?;
+        let direction = ((along - foot) * cos - across * sin, (along - foot) * sin + across * cos);
+        let at_base = apex.0 - direction.0 * apex.1 / direction.1;
+        let is_through = direction.1 > 0.0 && at_base >= 0.0 && at_base <= self.base;
+        if is_through { crossing.distance(wave) } else { None }
+    }
+
+    /// The mirror image: start and end exchanged.
+    pub(super) fn mirrored(self) -> Self {
+        Self {
+            from_start: self.from_end,
+            from_end: self.from_start,
+            beyond_start: self.beyond_end,
+            beyond_end: self.beyond_start,
+            ..self
+        }
+    }
+}
+
+/// The apex of a triangle over the base from (0, 0) to (l, 0), at the distances a and b from its ends.
+fn layout(l: f64, a: f64, b: f64) -> (f64, f64) {
+    let x = 0.5 * (l + (a - b) * (a + b) / l);
+    (x, ((a - x) * (a + x)).max(0.0).sqrt())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn unfolded_circular_waves_are_exact_in_the_plane() {
+        let to = |p: (f64, f64), q: (f64, f64)| (p.0 - q.0).hypot(p.1 - q.1);
+        let (start, end, apex, far) = ((0.0, 0.0), (2.0, 0.0), (0.8, 0.3), (1.1, -1.0));
+        let unfolding = Unfolding {
+            base: 2.0,
+            from_start: to(start, apex),
+            from_end: to(end, apex),
+            beyond_start: to(start, far),
+            beyond_end: to(end, far),
+        };
+        let mut found = 0;
+        for i in 0..400 {
+            let angle = f64::from(i) * 0.004 * std::f64::consts::PI - std::f64::consts::PI;
+            let source = (1.0 + 3.0 * angle.cos(), 3.0 * angle.sin());
+            let left = unfolding.from_start_edge(Wave::Circular, to(start, source), to(far, source));
+            let right = unfolding.mirrored().from_start_edge(Wave::Circular, to(end, source), to(far, source));
+            for distance in [left, right].into_iter().flatten() {
+                found += usize::from(source.1 < 0.0);
+                let exact = to(source, apex);
+                assert!(source.1 > 0.0 || (distance - exact).abs() < 1e-13, "{source:?} {distance} {exact}");
+            }
+        }
+        assert!(found > 150, "{found}");
+    }
 
     fn crossing(source: (f64, f64), apex: (f64, f64), l: f64) -> (Crossing, f64) {
         let to = |p: (f64, f64), q: (f64, f64)| (p.0 - q.0).hypot(p.1 - q.1);
