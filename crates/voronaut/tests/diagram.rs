@@ -158,11 +158,17 @@ fn the_nerve_of_a_turning_metric_converges_to_delaunay() {
     };
     let [coarse, fine] = [20, 100].map(wrong);
     println!("{} seeds, {} triangles: wrong {coarse:.4} and {fine:.4}", seeds.len(), truth.len());
-    assert!(coarse < 0.08 && fine < 0.01, "{coarse} {fine}");
+    assert!(coarse < 0.03 && fine < 0.003, "{coarse} {fine}");
 }
 
 /// Mean relative error of the distances from a point, away from it and from the border.
-fn error(canvas: &Canvas, field: &dyn MetricField, wave: Wave, from: Point, exact: &dyn Fn(Point) -> Option<f64>) -> f64 {
+fn error(
+    canvas: &Canvas,
+    field: &dyn MetricField,
+    wave: Wave,
+    from: Point,
+    exact: &dyn Fn(Point) -> Option<f64>,
+) -> f64 {
     let diagram = Diagram::with_solver(canvas, field, &[from], Marching { wave }).unwrap();
     let errors: Vec<f64> = vertices(canvas)
         .filter_map(|v| exact(canvas.position(v)).map(|truth| (diagram.distance(v) / truth - 1.0).abs()))
@@ -179,7 +185,7 @@ fn distances_converge_in_flat_space() {
         // Straight paths in the image stay in the domain if they pass clear of its border.
         (p.x.abs() < 0.7 && p.y.abs() < 0.45 && truth > 0.1).then_some(truth)
     };
-    for (wave, best, order) in [(Wave::Circular, 1e-3, 0.5), (Wave::Plane, 1e-2, 0.4)] {
+    for (wave, best, order) in [(Wave::Circular, 5e-4, 0.9), (Wave::Plane, 1e-2, 0.3)] {
         let errors = [1000, 4000, 16_000].map(|n| {
             let canvas = Canvas::intrinsic(&domain, &WAVES.metric, n).unwrap();
             error(&canvas, &WAVES.metric, wave, from, &exact)
@@ -199,13 +205,13 @@ fn distances_converge_in_the_half_plane() {
         let inside = p.x.abs() < 1.2 && p.y > 0.7 && p.y < 2.2 && d2 > 0.04;
         inside.then(|| (1.0 + d2 / (2.0 * p.y * from.y)).acosh())
     };
-    for (wave, best) in [(Wave::Circular, 1e-3), (Wave::Plane, 1e-2)] {
+    for (wave, best, order) in [(Wave::Circular, 5e-4, 0.9), (Wave::Plane, 1.5e-2, 0.3)] {
         let errors = [1000, 4000, 16_000].map(|n| {
             let canvas = Canvas::intrinsic(&domain, &half_plane, n).unwrap();
             error(&canvas, &half_plane, wave, from, &exact)
         });
         println!("{wave:?}: {errors:?}");
-        assert!((errors[0] / errors[2]).log2() / 2.0 > 0.4 && errors[2] < best, "{wave:?} {errors:?}");
+        assert!((errors[0] / errors[2]).log2() / 2.0 > order && errors[2] < best, "{wave:?} {errors:?}");
     }
 }
 
@@ -279,8 +285,7 @@ fn passage() -> (Domain, Vec<Vec<Point>>) {
     let corners = |x0: f64, y0: f64, x1: f64, y1: f64| -> Vec<Point> {
         [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| Point::new(x, y)).to_vec()
     };
-    let outlines =
-        vec![corners(0.0, 0.0, 4.0, 2.0), corners(1.9, 0.0625, 2.1, 1.0), corners(1.9, 1.02, 2.1, 1.9375)];
+    let outlines = vec![corners(0.0, 0.0, 4.0, 2.0), corners(1.9, 0.0625, 2.1, 1.0), corners(1.9, 1.02, 2.1, 1.9375)];
     let mut pslg: Pslg = rect(Point::new(0.0, 0.0), Point::new(1.0, 1.0)).unwrap();
     (pslg.points, pslg.segments) = (Vec::new(), Vec::new());
     for outline in &outlines {
@@ -380,7 +385,8 @@ fn threads_do_not_change_a_bit() {
         pool.install(|| {
             let field = Shock::default();
             let canvas = Canvas::intrinsic(&domain, &field, 5000).unwrap();
-            let seeds: Vec<Point> = (1..300).map(|i| Point::new(4.0 * halton(i).0 - 2.0, 4.0 * halton(i).1 - 2.0)).collect();
+            let seeds: Vec<Point> =
+                (1..300).map(|i| Point::new(4.0 * halton(i).0 - 2.0, 4.0 * halton(i).1 - 2.0)).collect();
             let diagram = Diagram::new(&canvas, &field, &seeds).unwrap();
             let distances: Vec<u64> = vertices(&canvas).map(|v| diagram.distance(v).to_bits()).collect();
             (*canvas.counters(), distances, diagram.sharp_nerve())
@@ -400,7 +406,8 @@ fn wild_metrics_and_canvases_of_a_few_vertices_are_survived() {
             canvas.topology().check().unwrap();
             canvas.embedded().topology.check().unwrap();
             assert!(canvas.embedded().is_embedded());
-            let seeds: Vec<Point> = (1..40).map(|i| Point::new(2.0 * halton(i).0 - 1.0, 2.0 * halton(i).1 - 1.0)).collect();
+            let seeds: Vec<Point> =
+                (1..40).map(|i| Point::new(2.0 * halton(i).0 - 1.0, 2.0 * halton(i).1 - 1.0)).collect();
             let diagram = Diagram::new(&canvas, field, &seeds).unwrap();
             assert!(vertices(&canvas).all(|v| diagram.distance(v).is_finite()));
             let _ = diagram.sharp_nerve();

@@ -37,8 +37,9 @@ pub(super) fn refine(
         check_tensor(tensors[v.index()], p)?;
     }
     let mut refiner = Refiner { planar, tensors, field, queue: Buckets::default(), stack: Vec::new() };
-    let edges: Vec<HalfEdge> = refiner.planar.topology.edges().collect();
-    edges.into_iter().for_each(|h| refiner.enqueue(h));
+    for h in refiner.planar.topology.edges().collect::<Vec<_>>() {
+        refiner.enqueue(h);
+    }
     while refiner.planar.topology.vertex_count() < vertices {
         let Some([a, b]) = refiner.queue.pop() else { break };
         let topology = &refiner.planar.topology;
@@ -71,7 +72,9 @@ impl Refiner<'_> {
         counters.planar_flips += self.flip_around(v);
         let star: Vec<HalfEdge> = self.planar.topology.star(v).collect();
         let last = star.last().map(|h| h.prev()).filter(|&h| self.planar.topology.twin(h).is_none());
-        star.into_iter().chain(last).for_each(|h| self.enqueue(h));
+        for h in star.into_iter().chain(last) {
+            self.enqueue(h);
+        }
         Ok(())
     }
 
@@ -110,11 +113,8 @@ impl Refiner<'_> {
     fn enqueue(&mut self, h: HalfEdge) {
         let ends = [self.planar.topology.origin(h), self.planar.topology.target(h)];
         let [p, q] = self.planar.ends(h);
-        let length = if self.planar.positions.len() < COARSE {
-            chord(self.field, p, q)
-        } else {
-            self.simpson(ends, p, q)
-        };
+        let length =
+            if self.planar.positions.len() < COARSE { chord(self.field, p, q) } else { self.simpson(ends, p, q) };
         self.queue.push(length, ends);
     }
 

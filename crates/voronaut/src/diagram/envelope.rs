@@ -5,9 +5,9 @@
 //! functions, whatever the size of the face: the Voronoi vertices in it need not be separated by canvas vertices, and each is
 //! found with its place. On a curved canvas this holds to second order in the size of the face.
 
+use super::Diagram;
 use super::nerve::{Nerve, NerveEdge, NerveTriangle, smallest_first};
 use super::overlap::Overlap;
-use super::Diagram;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use rayon::prelude::*;
 
@@ -53,9 +53,8 @@ impl Diagram<'_> {
                 for k in 0..j {
                     let Some((weights, turn)) = meeting([&near[k], &near[j], &near[i]]) else { continue };
                     let level = near[i].at(weights);
-                    let is_lowest = near.iter().enumerate().all(|(n, other)| {
-                        [i, j, k].contains(&n) || other.at(weights) >= level
-                    });
+                    let is_lowest =
+                        near.iter().enumerate().all(|(n, other)| [i, j, k].contains(&n) || other.at(weights) >= level);
                     if is_lowest && weights.iter().all(|&w| w >= -ON_EDGE) {
                         let [a, b, c] = [near[k].colour, near[j].colour, near[i].colour];
                         let colours = smallest_first(if turn > 0.0 { [a, b, c] } else { [a, c, b] });
@@ -107,11 +106,11 @@ fn near<const N: usize>(overlap: &Overlap, vertices: [VertexId; N]) -> Vec<Near<
             near.push(Near { colour, squares: found.map(|d| d.unwrap_or(f64::INFINITY).powi(2)) });
         }
     }
-    undominated(near)
+    undominated(&near)
 }
 
 /// Leaves out what another colour beats at every vertex, and all but the nearest few.
-fn undominated<const N: usize>(near: Vec<Near<N>>) -> Vec<Near<N>> {
+fn undominated<const N: usize>(near: &[Near<N>]) -> Vec<Near<N>> {
     let beats = |a: &Near<N>, b: &Near<N>| a.squares.iter().zip(b.squares).all(|(&x, y)| x < y);
     let mut kept: Vec<Near<N>> = near.iter().filter(|n| !near.iter().any(|other| beats(other, n))).copied().collect();
     if kept.len() > COLOURS {

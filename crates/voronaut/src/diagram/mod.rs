@@ -58,7 +58,9 @@ impl<'a> Diagram<'a> {
         let mut sources = Sources::new(canvas.vertex_count());
         let mut placed = Vec::with_capacity(seeds.len());
         for (i, (&at, starts)) in seeds.iter().zip(starts).enumerate() {
-            starts.iter().for_each(|s| sources.add(s.vertex, s.distance, i as u32));
+            for s in &starts {
+                sources.add(s.vertex, s.distance, i as u32);
+            }
             placed.push(Some(Seed { at, starts }));
         }
         let propagation = solver.propagate(canvas.topology(), &sources);
@@ -211,14 +213,18 @@ impl<'a> Diagram<'a> {
     }
 
     fn sources_of(&mut self, colour: u32, starts: &[Start]) {
-        starts.iter().for_each(|s| self.sources.add(s.vertex, s.distance, colour));
+        for s in starts {
+            self.sources.add(s.vertex, s.distance, colour);
+        }
     }
 
     /// Takes a seed's starts away; returns the vertices that had them.
     fn lift(&mut self, colour: u32) -> Vec<VertexId> {
         let seed = self.seeds.get_mut(colour as usize).and_then(Option::take);
         let vertices: Vec<VertexId> = seed.iter().flat_map(|s| &s.starts).map(|s| s.vertex).collect();
-        vertices.iter().for_each(|&v| self.sources.remove(v, colour));
+        for &v in &vertices {
+            self.sources.remove(v, colour);
+        }
         vertices
     }
 

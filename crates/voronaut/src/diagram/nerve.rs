@@ -84,8 +84,11 @@ impl Diagram<'_> {
         let between = |h: HalfEdge| {
             let [a, b] = [topology.origin(h), topology.target(h)].map(|v| self.label(v).colour);
             let border = topology.twin(h).is_none().then_some(h);
-            (a != b && a != NO_COLOUR && b != NO_COLOUR)
-                .then(|| NerveEdge { colours: [a.min(b), a.max(b)], witness: h, border })
+            (a != b && a != NO_COLOUR && b != NO_COLOUR).then(|| NerveEdge {
+                colours: [a.min(b), a.max(b)],
+                witness: h,
+                border,
+            })
         };
         topology.edges().filter_map(between).collect()
     }

@@ -69,7 +69,9 @@ impl Diagram<'_> {
             }
             ring = ring.end..vertices.len();
         }
-        vertices.iter().for_each(|v| seen[v.index()] = false);
+        for v in &vertices {
+            seen[v.index()] = false;
+        }
         let distances = solver.distances(&vertices, seed.starts.iter().map(|s| (s.vertex, s.distance)));
         vertices.into_iter().zip(distances).filter(|(_, distance)| distance.is_finite()).collect()
     }

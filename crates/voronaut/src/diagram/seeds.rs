@@ -2,22 +2,25 @@
 
 use crate::canvas::Canvas;
 use crate::error::{Error, Result};
-use crate::geodesic::chord;
-use crate::geometry::Point;
+use crate::geodesic::bowed_chord;
+use crate::geometry::{Orientation, Point, orientation};
 use crate::metric::MetricField;
-use crate::planar::{Location, hilbert_order};
+use crate::planar::{Location, Planar, hilbert_order};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use rayon::prelude::*;
 
-/// A canvas vertex and the metric length of the straight segment to it from a seed.
+/// A canvas vertex in sight of a seed, and the metric length of the geodesic between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Start {
     pub(super) vertex: VertexId,
     pub(super) distance: f64,
 }
 
-/// The starts of a seed: every vertex of the embedded face that holds it; of both faces where it lies on an edge, of all
-/// around a vertex where it lies on one.
+/// How many faces away from the one that holds it a seed looks for vertices: fronts are most curved, and poorest, where
+/// they start.
+const SIGHT: u32 = 3;
+
+/// The starts of a seed: every vertex of the embedded face that holds it, and those in sight across its edges.
 ///
 /// # Errors
 /// The seed is outside the domain.
@@ -56,19 +59,47 @@ pub(super) fn starts_at_vertex(canvas: &Canvas, field: &dyn MetricField, v: Vert
 }
 
 fn starts_at(canvas: &Canvas, field: &dyn MetricField, seed: Point, location: Location) -> Vec<Start> {
-    let topology = &canvas.embedded().topology;
-    let mut vertices: Vec<VertexId> = match location {
-        Location::Vertex(v) => topology.star(v).flat_map(|h| [v, topology.target(h), topology.apex(h)]).collect(),
-        Location::Face(f) => topology.corners(f).into(),
+    let planar = canvas.embedded();
+    let topology = &planar.topology;
+    let edges_of = |f: FaceId| f.half_edges().into_iter();
+    let rim: Vec<HalfEdge> = match location {
+        Location::Vertex(v) => topology.star(v).map(HalfEdge::next).collect(),
+        Location::Face(f) => edges_of(f).collect(),
         Location::Edge(h) | Location::Behind(h) => {
-            let faces = [Some(h), topology.twin(h)].into_iter().flatten().map(HalfEdge::face);
-            faces.flat_map(|f| topology.corners(f)).collect()
+            let sides = [Some(h), topology.twin(h)].into_iter().flatten();
+            sides.flat_map(|side| [side.next(), side.prev()]).collect()
         }
     };
+    let mut vertices: Vec<VertexId> = rim.iter().flat_map(|&h| [topology.origin(h), topology.target(h)]).collect();
+    if let Location::Vertex(v) = location {
+        vertices.push(v);
+    }
+    for h in rim {
+        let [right, left] = planar.ends(h);
+        look(planar, seed, h, [right, left], SIGHT, &mut vertices);
+    }
     vertices.sort_unstable();
     vertices.dedup();
-    let start = |vertex: VertexId| Start { vertex, distance: chord(field, seed, canvas.position(vertex)) };
+    let start = |vertex: VertexId| Start { vertex, distance: bowed_chord(field, seed, planar.position(vertex)) };
     vertices.into_iter().map(start).collect()
+}
+
+/// Collects the vertices that the seed sees across an edge, between two directions, within so many faces.
+fn look(planar: &Planar, seed: Point, h: HalfEdge, [right, left]: [Point; 2], faces: u32, seen: &mut Vec<VertexId>) {
+    let Some(t) = planar.topology.twin(h).filter(|_| faces > 0) else { return };
+    let w = planar.topology.apex(t);
+    let p = planar.position(w);
+    let is_right = orientation(seed, right, p) == Orientation::Right;
+    let is_left = orientation(seed, left, p) == Orientation::Left;
+    if !is_right && !is_left {
+        seen.push(w);
+    }
+    if !is_right {
+        look(planar, seed, t.next(), [right, if is_left { left } else { p }], faces - 1, seen);
+    }
+    if !is_left {
+        look(planar, seed, t.prev(), [if is_right { right } else { p }, left], faces - 1, seen);
+    }
 }
 
 fn face_of(canvas: &Canvas, location: Location) -> Option<FaceId> {

@@ -75,7 +75,9 @@ impl Geodesic for Marching {
 
     fn update(&self, canvas: &Triangulation, sources: &Sources, changed: &[VertexId], state: &mut Propagation) {
         let mut march = March { wave: self.wave, canvas, sources, state };
-        changed.iter().for_each(|&v| march.reconsider(v));
+        for &v in changed {
+            march.reconsider(v);
+        }
         while let Some(v) = march.state.front.pop() {
             march.settle(v);
         }

@@ -34,7 +34,9 @@ impl<'a> PatchSolver<'a> {
     /// The distance of each vertex of the patch from the source that has the given distances from some of them; infinite
     /// where it is not reached within the patch.
     pub fn distances(&mut self, patch: &[VertexId], starts: impl Iterator<Item = (VertexId, f64)>) -> Vec<f64> {
-        patch.iter().enumerate().for_each(|(i, v)| self.slots[v.index()] = i as u32);
+        for (i, v) in patch.iter().enumerate() {
+            self.slots[v.index()] = i as u32;
+        }
         self.distances.clear();
         self.distances.resize(patch.len(), f64::INFINITY);
         for (v, distance) in starts {
@@ -51,7 +53,9 @@ impl<'a> PatchSolver<'a> {
                 self.heap.clear();
             }
         }
-        patch.iter().for_each(|v| self.slots[v.index()] = OUTSIDE);
+        for v in patch {
+            self.slots[v.index()] = OUTSIDE;
+        }
         std::mem::take(&mut self.distances)
     }
 
@@ -87,7 +91,8 @@ impl<'a> PatchSolver<'a> {
     }
 
     fn offer(&mut self, vertex: VertexId, distance: Option<f64>) {
-        let (Some(distance), Some(old)) = (distance, self.distances.get_mut(self.slots[vertex.index()] as usize)) else {
+        let (Some(distance), Some(old)) = (distance, self.distances.get_mut(self.slots[vertex.index()] as usize))
+        else {
             return;
         };
         if distance < *old * (1.0 - ROUNDING) {

@@ -186,7 +186,8 @@ mod tests {
     fn circular_waves_are_exact_in_the_plane() {
         for i in 0..200 {
             let f = f64::from(i);
-            let (c, exact) = crossing((1.0 + (1.3 * f).sin(), -1.0 - f / 50.0), (0.9 + 0.5 * (2.1 * f).cos(), 1.0), 2.0);
+            let (c, exact) =
+                crossing((1.0 + (1.3 * f).sin(), -1.0 - f / 50.0), (0.9 + 0.5 * (2.1 * f).cos(), 1.0), 2.0);
             if let Some(distance) = c.distance(Wave::Circular) {
                 assert!((distance - exact).abs() < 1e-13, "{c:?}");
             }
