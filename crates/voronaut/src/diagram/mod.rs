@@ -3,6 +3,7 @@
 //! Every canvas vertex has the colour of its nearest seed and the distance to it. Seeds are inserted, removed and moved
 //! one at a time, each by work on the cells concerned only, and with the result that making the diagram anew would have.
 
+mod assemble;
 mod envelope;
 mod nerve;
 mod overlap;

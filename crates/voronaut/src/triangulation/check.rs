@@ -114,7 +114,8 @@ mod tests {
             t.start[d.index()] = ids::NONE;
             t.glue(h, g);
             for e in [0, 1, 2, 3, 4, 5].map(HalfEdge) {
-                t.start[t.origin(e).index()] = ids::NONE;
+                let v = t.origin(e);
+                t.start[v.index()] = ids::NONE;
             }
             for e in [0, 1, 2, 3, 4, 5].map(HalfEdge) {
                 t.set_start(e);
