@@ -5,7 +5,7 @@ use crate::triangulation::{HalfEdge, Triangulation};
 
 /// Margins (sine of the sum of opposite angles) above minus this are ties: flipping them gains nothing.
 const TIE: f64 = 1e-9;
-/// Flips at most, per edge. With exact lengths flips end by themselves; measured were less than two.
+/// Flips at most, per edge. With exact lengths flips end by themselves; measured was less than one per vertex.
 const FLIPS_PER_EDGE: usize = 100;
 
 /// Flips every edge whose two opposite angles sum to more than pi, until none is left. Constraints do not hold edges

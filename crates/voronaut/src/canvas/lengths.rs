@@ -2,7 +2,7 @@
 //!
 //! An edge has the length of the geodesic between its ends, not of its chord: where the metric turns within an edge, chords
 //! are too long by the same share on every canvas triangle, and that share adds up along a front. (Pull-back of flat
-//! space at anisotropy 35, 10,000 vertices: chords err by 3 % in the mean, geodesics by less than 0.1 %.)
+//! space at anisotropy around 35, 10,000 vertices: distances err by 2.7 % in the mean with chords, by 0.12 % with geodesics.)
 
 use super::CanvasCounters;
 use crate::error::{Error, Result};

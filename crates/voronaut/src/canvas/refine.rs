@@ -17,7 +17,7 @@ const COARSE: usize = 20_000;
 /// The frozen-tensor test must be violated by more than this (sine of the angles' sum) for a flip: tests of neighbouring
 /// quadrilaterals with different tensors contradict each other near zero.
 const CLEARLY: f64 = 1e-2;
-/// Flips after one split at most; honest ones are around four.
+/// Flips after one split at most; measured was a little more than one in the mean.
 const FLIPS_PER_SPLIT: usize = 64;
 
 /// Refines until there are `vertices` vertices.

@@ -39,7 +39,7 @@ impl Diagram<'_> {
         let faces = || embedded.topology.faces();
         let mesh = Mesh {
             points: embedded.positions.iter().map(|p| [p.x, p.y, 0.0]).collect(),
-            point_labels: self.propagation.labels().iter().map(|l| l.colour as i32).collect(),
+            point_labels: self.propagation.labels().iter().map(|l| l.colour.cast_signed()).collect(),
             triangles: faces().map(|f| embedded.topology.corners(f).map(|v| v.0)).collect(),
             triangle_labels: faces().map(|f| embedded.topology.region(f)).collect(),
             ..Mesh::default()

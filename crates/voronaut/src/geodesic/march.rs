@@ -261,9 +261,9 @@ impl March<'_> {
         };
         // t.next() leaves the start of g for the far apex, t.prev() leaves the far apex for the end of g.
         let distance = if edge == t.next() {
-            unfolding.from_start_edge(self.wave, start.distance, end.distance)
+            unfolding.over_start_edge(self.wave, start.distance, end.distance)
         } else {
-            unfolding.mirrored().from_start_edge(self.wave, end.distance, start.distance)
+            unfolding.mirrored().over_start_edge(self.wave, end.distance, start.distance)
         };
         distance.map_or(Label::FAR, |distance| Label::new(distance, start.colour, Support::Edge(edge)))
     }

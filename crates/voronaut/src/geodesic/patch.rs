@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 
 /// Improvements by a smaller share of the distance are rounding.
 const ROUNDING: f64 = 1e-12;
-/// Vertices are settled at most so many times as the patch has vertices; measured were less than 1.1.
+/// Vertices are settled at most so many times as the patch has vertices: corrections must not go on for ever.
 const ROUNDS: usize = 20;
 
 /// Solves for one patch after the other with the same memory.

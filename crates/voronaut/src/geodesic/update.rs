@@ -62,7 +62,7 @@ impl Crossing {
         let (slope, g) = self.gradient()?;
         let (x, y) = layout(self.base, self.from_start, self.from_end);
         let foot = x * g - y * slope;
-        (foot >= 0.0 && foot <= self.base * g).then(|| self.at_start + slope * x + g * y)
+        (foot >= 0.0 && foot <= self.base * g).then_some(self.at_start + slope * x + g * y)
     }
 
     /// The unit gradient (slope, g) of a plane wave.
@@ -96,7 +96,7 @@ pub(super) struct Unfolding {
 impl Unfolding {
     /// The distance at the apex of a path that crosses the edge from the base's start to the far apex, then the base;
     /// `None` if there is none, or if it is not longer than the distances that it comes from.
-    pub(super) fn from_start_edge(&self, wave: Wave, at_start: f64, at_far: f64) -> Option<f64> {
+    pub(super) fn over_start_edge(&self, wave: Wave, at_start: f64, at_far: f64) -> Option<f64> {
         let (l, s, t) = (self.beyond_start, at_start, at_far);
         let apex = layout(self.base, self.from_start, self.from_end);
         let below = layout(self.base, self.beyond_start, self.beyond_end);
@@ -158,8 +158,8 @@ mod tests {
         for i in 0..400 {
             let angle = f64::from(i) * 0.004 * std::f64::consts::PI - std::f64::consts::PI;
             let source = (1.0 + 3.0 * angle.cos(), 3.0 * angle.sin());
-            let left = unfolding.from_start_edge(Wave::Circular, to(start, source), to(far, source));
-            let right = unfolding.mirrored().from_start_edge(Wave::Circular, to(end, source), to(far, source));
+            let left = unfolding.over_start_edge(Wave::Circular, to(start, source), to(far, source));
+            let right = unfolding.mirrored().over_start_edge(Wave::Circular, to(end, source), to(far, source));
             // Two distances do not tell a source from its mirror image: only sources beyond the edge count.
             let is_beyond =
                 |p: (f64, f64), q: (f64, f64)| (q.0 - p.0) * (source.1 - p.1) - (q.1 - p.1) * (source.0 - p.0) < -1e-9;

@@ -6,9 +6,6 @@ use super::{FaceId, HalfEdge, Triangulation, VertexId};
 impl Triangulation {
     /// The same triangulation, its vertices in the given order and its faces in the order in which the stars of those
     /// vertices meet them. Dead slots are gone. The caller lists every living vertex once.
-    ///
-    /// On a triangulation of a million vertices that was refined everywhere at once, walks are several times faster
-    /// after this.
     #[must_use]
     pub fn renumbered(&self, order: &[VertexId]) -> Self {
         let mut vertex = vec![NONE; self.vertex_slots()];
