@@ -16,8 +16,7 @@ pub fn read(text: &str, name: &str) -> Result<Vec<Point>> {
 fn point(line: &str) -> Option<Point> {
     let numbers: Vec<f64> = line.split_whitespace().map(|word| word.parse().ok()).collect::<Option<_>>()?;
     let p = match numbers[..] {
-        [x, y] => Point::new(x, y),
-        [x, y, 0.0] => Point::new(x, y),
+        [x, y] | [x, y, 0.0] => Point::new(x, y),
         _ => return None,
     };
     p.is_finite().then_some(p)
