@@ -19,6 +19,9 @@ pub(crate) enum Command {
     /// Mesh a domain: valid, with edges of length one in a metric
     #[command(after_help = MESH_EXAMPLES)]
     Mesh(MeshArgs),
+    /// Voronoi diagram and dual of the seeds given: none is added or moved
+    #[command(after_help = DUAL_EXAMPLES)]
+    Dual(DualArgs),
     /// Examine a mesh: validity, quality in a metric, distance to its domain
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
@@ -36,6 +39,13 @@ Examples:
   voronaut mesh rect:-1,-1,1,1 --metric 'formula:1/(0.01 + 0.2*abs(y))^2; 0; 25' -o layer.mesh
   voronaut mesh wing.mesh --metric wing.sol --h-min 1e-4 --a-max 100 -o adapted.mesh --report run.json
   voronaut mesh sea.geojson --metric boundary:h0=2,growth=1.3 -n 20000 -o sea.mesh -q";
+
+const DUAL_EXAMPLES: &str = "\
+Line i of FILE, `x y`, is seed and vertex i. DOMAIN and METRIC are as for `mesh`; the metric is used as it is.
+
+Examples:
+  voronaut dual rect:-2,-2,2,2 --metric swirl --seeds seeds.txt -o dual.mesh
+  voronaut dual sea.geojson --metric boundary:h0=2 --seeds ports.txt -o dual.vtu --diagram cells.vtu --report run.json";
 
 const CHECK_EXAMPLES: &str = "\
 Exits with 1 if the mesh is not valid; the report is written all the same.
@@ -72,6 +82,36 @@ pub(crate) struct MeshArgs {
     /// Refuse work that is estimated to need more memory than this
     #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
     pub(crate) memory_limit: f64,
+    #[command(flatten)]
+    pub(crate) outputs: Outputs,
+    #[command(flatten)]
+    pub(crate) run: Run,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DualArgs {
+    /// The domain: a file or a shape
+    pub(crate) domain: String,
+    /// The metric in which distances are measured
+    #[arg(long)]
+    pub(crate) metric: String,
+    /// The seeds: a file with a line `x y` for each
+    #[arg(long, value_name = "FILE")]
+    pub(crate) seeds: PathBuf,
+    /// The dual with straight edges: .mesh, .vtu or .obj
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) out: PathBuf,
+    /// Write the coloured canvas, with colours and distances: .vtu
+    #[arg(long, value_name = "FILE")]
+    pub(crate) diagram: Option<PathBuf>,
+    /// Canvas vertices per seed; 20,000 in all at least
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = 100)]
+    pub(crate) canvas_size: u32,
+    /// Exit with 1 if a straight triangle comes out inverted or the dual is no valid mesh
+    #[arg(long)]
+    pub(crate) strict: bool,
+    #[command(flatten)]
+    pub(crate) metric_choices: MetricChoices,
     #[command(flatten)]
     pub(crate) outputs: Outputs,
     #[command(flatten)]

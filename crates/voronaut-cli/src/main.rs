@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod dual;
 mod files;
 mod mesh;
 mod progress;
@@ -14,6 +15,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Mesh(args) => mesh::run(&args),
+        Command::Dual(args) => dual::run(&args),
         Command::Check(args) => check::run(&args),
     };
     match done {

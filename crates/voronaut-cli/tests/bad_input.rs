@@ -197,10 +197,10 @@ fn absurd_sizes_are_refused_before_the_work() {
     let place = Place::new();
     let square = ["mesh", "rect:0,0,1,1", "-o", "out.mesh", "--metric"];
     let with = |words: &[&'static str]| [&square[..], words].concat();
-    refused(&place, &with(&["uniform", "-n", "4000000000"]), &["limit exceeded", "GiB", "fewer vertices"]);
-    refused(&place, &with(&["uniform", "--complexity", "1e15"]), &["limit exceeded", "GiB"]);
-    refused(&place, &with(&["uniform:1e20,0,1e20"]), &["limit exceeded", "GiB", "--memory-limit"]);
-    refused(&place, &with(&["uniform", "-n", "100000", "--memory-limit", "0.001"]), &["limit exceeded", "GiB"]);
+    refused(&place, &with(&["uniform", "-n", "4000000000"]), &["limit exceeded", "MiB", "fewer vertices"]);
+    refused(&place, &with(&["uniform", "--complexity", "1e15"]), &["limit exceeded", "MiB"]);
+    refused(&place, &with(&["uniform:1e20,0,1e20"]), &["limit exceeded", "MiB", "--memory-limit"]);
+    refused(&place, &with(&["uniform", "-n", "100000", "--memory-limit", "0.001"]), &["limit exceeded", "MiB"]);
     words_refused("rect:0,0,1e300,1", "uniform", &["larger than 1e60", "(1e300, 0)"]);
     words_refused("rect:-1e308,0,1e308,1", "uniform", &["not finite", "-1e308"]);
     words_refused("rect:0,0,1e-300,1e-300", "uniform", &["invalid domain"]);

@@ -94,6 +94,8 @@ pub mod formats;
 pub mod domain;
 pub mod metric;
 pub mod geodesic;
+pub mod canvas;
+pub mod diagram;
 pub mod dual;
 pub mod sampling;
 pub mod optimise;

@@ -2,6 +2,7 @@
 
 pub mod geojson;
 pub mod medit;
+pub mod points;
 pub mod poly;
 mod sections;
 pub mod sol;

@@ -56,7 +56,7 @@ fn bending(local: &LocalMetric, d: Vector) -> f64 {
 }
 
 /// Abscissae in (0, 1) and weights of five-point Gauss-Legendre quadrature.
-const GAUSS: [(f64, f64); 5] = [
+pub(super) const GAUSS: [(f64, f64); 5] = [
     (0.046_910_077_030_668, 0.118_463_442_528_094_5),
     (0.230_765_344_947_158_45, 0.239_314_335_249_683_2),
     (0.5, 0.284_444_444_444_444_4),

@@ -94,9 +94,30 @@ impl PictureFormat {
 pub fn write_mesh(mesh: &Mesh, path: &Path) -> Result<()> {
     match Format::from_path(path)? {
         Format::Medit => write(path, medit::write(mesh).as_bytes()),
-        Format::Vtu => write(path, &vtu::vtu(mesh)),
+        Format::Vtu => write(path, &vtu::vtu(mesh, None)),
         Format::Obj => write(path, obj::obj(mesh).as_bytes()),
     }
+}
+
+/// Writes a coloured canvas as `.vtu`, as a whole or not at all: point data `label` (colour) and `distance`.
+///
+/// # Errors
+/// [`Error::Unsupported`] for other endings, [`Error::Io`] where the file cannot be written.
+pub fn write_diagram(canvas: &Mesh, distances: &[f64], path: &Path) -> Result<()> {
+    demand_diagram(path)?;
+    write(path, &vtu::vtu(canvas, Some(distances)))
+}
+
+/// Refuses names that do not end like a diagram.
+///
+/// # Errors
+/// [`Error::Unsupported`] for other endings than `.vtu`.
+pub fn demand_diagram(path: &Path) -> Result<()> {
+    if ending(path) == "vtu" {
+        return Ok(());
+    }
+    let what = format!("a diagram in {}", path.display());
+    Err(Error::Unsupported { what, help: "end the name of the diagram in .vtu".into() })
 }
 
 /// Writes a picture made by [`svg`] in the format its name ends in, as a whole or not at all.

@@ -7,16 +7,20 @@ const LINE: u8 = 3;
 const TRIANGLE: u8 = 5;
 
 /// A mesh as the bytes of a `.vtu` file: its triangles, then its labelled edges as line cells; point and cell data
-/// `label`. Little endian on every machine.
-pub(super) fn vtu(mesh: &Mesh) -> Vec<u8> {
+/// `label`, and point data `distance` if given. Little endian on every machine.
+pub(super) fn vtu(mesh: &Mesh, distances: Option<&[f64]>) -> Vec<u8> {
     let cells = mesh.triangles.len() + mesh.edges.len();
     let mut file = Appended::default();
     let label = r#"<DataArray type="Int32" Name="label""#;
     let points = format!(
-        "      <PointData Scalars=\"label\">\n{}      </PointData>\n\
+        "      <PointData Scalars=\"label\">\n{}{}      </PointData>\n\
          \x20     <CellData Scalars=\"label\">\n{}      </CellData>\n\
          \x20     <Points>\n{}      </Points>\n",
         file.array(label, &bytes(labels(&mesh.point_labels, mesh.points.len()), i32::to_le_bytes)),
+        distances.map_or_else(String::new, |distances| {
+            let distance = r#"<DataArray type="Float64" Name="distance""#;
+            file.array(distance, &bytes(distances.iter().copied(), f64::to_le_bytes))
+        }),
         file.array(label, &bytes(cell_labels(mesh), i32::to_le_bytes)),
         file.array(
             r#"<DataArray type="Float64" Name="Points" NumberOfComponents="3""#,
@@ -100,7 +104,7 @@ mod tests {
             edge_labels: vec![9],
             ..Mesh::default()
         };
-        let file = vtu(&mesh);
+        let file = vtu(&mesh, None);
         let raw = file.windows(2).position(|pair| pair == b"\n_").unwrap() + 2;
         let head = std::str::from_utf8(&file[..raw]).unwrap();
         let array = |index: usize| {

@@ -9,6 +9,7 @@ mod order;
 pub use constrain::Crossing;
 pub use delaunay::{Duplicate, delaunay};
 pub use locate::Location;
+pub use order::hilbert_order;
 
 use crate::geometry::{Orientation, Point, orientation, signed_area};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};

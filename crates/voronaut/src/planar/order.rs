@@ -31,7 +31,7 @@ impl Planar {
 }
 
 /// Indices of the points along a Hilbert curve on a 65,536 x 65,536 grid: neighbours in the order are near in the plane.
-pub(super) fn hilbert_order(points: &[Point]) -> Vec<u32> {
+pub fn hilbert_order(points: &[Point]) -> Vec<u32> {
     let Some(bounds) = Aabb::of(points.iter().copied()) else { return Vec::new() };
     let extent = bounds.extent();
     let scale = 65_535.0 / extent.x.max(extent.y).max(f64::MIN_POSITIVE);

@@ -19,6 +19,10 @@ pub fn metric(
     background: Option<&Path>,
     bounds: Bounds,
 ) -> Result<Box<dyn MetricField>> {
+    if let (Some(mesh), false) = (background, matches!(spec, MetricSpec::File(_))) {
+        let what = "only a .sol metric is given on a background mesh";
+        return Err(Error::parse(format!("background {}", mesh.display()), what, "leave the background out"));
+    }
     let field: Box<dyn MetricField> = match spec {
         MetricSpec::Uniform(field) => Box::new(*field),
         MetricSpec::Swirl(field) => Box::new(*field),

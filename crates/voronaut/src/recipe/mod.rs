@@ -89,7 +89,8 @@ pub fn mesh(
     let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
     let mut dual = job.timed("seed", |job| job.seed(&domain, &plan, count, scale))?;
     job.timed("relax", |job| job.relax(&mut dual))?;
-    job.timed("check", |job| job.finish(&domain, &mut dual))
+    let meshed = job.timed("check", |job| job.finish(&domain, &mut dual))?;
+    Ok(Meshed { seconds: job.seconds, notes: job.notes, ..meshed })
 }
 
 struct Job<'a> {
@@ -206,7 +207,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    fn finish(&mut self, domain: &Domain, dual: &mut Dual) -> Result<Meshed> {
+    fn finish(&self, domain: &Domain, dual: &mut Dual) -> Result<Meshed> {
         self.progress.stage("checking", 1);
         dual.flip_all(Effort::Full);
         let blocked_flips = dual.blocked_flips(Effort::Full).len() as u64;
@@ -219,8 +220,8 @@ impl<'a> Job<'a> {
             min_margin,
             blocked_flips,
         };
-        let (seconds, notes) = (std::mem::take(&mut self.seconds), std::mem::take(&mut self.notes));
-        Ok(Meshed { mesh, metric_scale: dual.field().factor, counters, seconds, notes })
+        let metric_scale = dual.field().factor;
+        Ok(Meshed { mesh, metric_scale, counters, seconds: Vec::new(), notes: Vec::new() })
     }
 }
 

@@ -130,12 +130,9 @@ fn check_memory(vertices: f64, limit: u64) -> Result<()> {
     if needed <= limit as f64 && vertices < ids {
         return Ok(());
     }
-    let gib = f64::from(1 << 30);
-    let what = format!(
-        "a mesh of about {vertices:.3e} vertices is estimated to need {:.1} GiB of memory, and the limit is {:.1} GiB",
-        needed / gib,
-        limit as f64 / gib
-    );
+    let mib = |bytes: f64| format!("{:.0} MiB", bytes / f64::from(1 << 20));
+    let (needed, limit) = (mib(needed), mib(limit as f64));
+    let what = format!("about {vertices:.3e} vertices are estimated to need {needed} of memory; the limit is {limit}");
     let help = "ask for fewer vertices (-n), a coarser metric (--h-min), or raise --memory-limit".into();
     Err(Error::Limit { what, help })
 }

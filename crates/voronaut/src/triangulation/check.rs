@@ -99,6 +99,34 @@ mod tests {
         assert_eq!((t.face_count(), t.star(w).count()), (8, 4));
     }
 
+    /// Faces a b c and b a d whose edges at a are one edge: flips by length can leave a vertex with one edge only.
+    #[test]
+    fn a_flip_inside_a_cone_keeps_twins() {
+        for glued in [[2, 4], [1, 5]] {
+            let mut t = Triangulation::from_triangles(4, &[[0, 1, 2], [1, 0, 3]], &[0, 0]);
+            let [h, g] = glued.map(HalfEdge);
+            let (c, d) = (VertexId(2), VertexId(3));
+            for e in [0, 1, 2, 3, 4, 5].map(HalfEdge) {
+                if t.origin(e) == d {
+                    t.origin[e.index()] = c;
+                }
+            }
+            t.start[d.index()] = ids::NONE;
+            t.glue(h, g);
+            for e in [0, 1, 2, 3, 4, 5].map(HalfEdge) {
+                let v = t.origin(e);
+                t.start[v.index()] = ids::NONE;
+            }
+            for e in [0, 1, 2, 3, 4, 5].map(HalfEdge) {
+                t.set_start(e);
+            }
+            t.check().unwrap();
+            t.flip(HalfEdge(0));
+            t.check().unwrap();
+            assert_eq!((t.origin(HalfEdge(0)), t.target(HalfEdge(0))), (c, c), "a loop");
+        }
+    }
+
     #[test]
     fn splitting_a_border_edge_keeps_its_constraint() {
         let mut t = hexagon();

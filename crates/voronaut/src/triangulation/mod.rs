@@ -6,6 +6,7 @@
 mod check;
 mod ids;
 mod operations;
+mod renumber;
 mod star;
 
 pub use check::Broken;
@@ -158,6 +159,11 @@ impl Triangulation {
         if let Some(t) = self.twin(h) {
             self.constraint[t.index()] = constraint.0;
         }
+    }
+
+    /// Takes the edge out of its constraint, on both sides.
+    pub fn clear_constraint(&mut self, h: HalfEdge) {
+        self.set_constraint(h, Constraint(NONE));
     }
 
     /// Whether a flip may not remove the edge: it is constrained, or at the border.

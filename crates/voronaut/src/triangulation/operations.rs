@@ -26,17 +26,17 @@ impl Triangulation {
     /// ```
     ///
     /// (drawn with h from a to b, faces a b c and b a d). The new edge's length is NaN. The caller owes an edge with
-    /// two faces and no constraint.
+    /// two different faces and no constraint; outer edges of the two may be glued to each other.
     pub fn flip(&mut self, h: HalfEdge) {
         let t = self.twin(h).expect("a border edge has one face and cannot be flipped");
         debug_assert!(!self.is_fixed(h), "a constrained edge cannot be flipped");
         let (c, d) = (self.apex(h), self.apex(t));
         let (bc, ca, ad, db) = (h.next(), h.prev(), t.next(), t.prev());
-        let outer = [ca, ad, db, bc].map(|e| self.take(e));
-        self.put(h.next(), outer[0]);
-        self.put(h.prev(), outer[1]);
-        self.put(t.next(), outer[2]);
-        self.put(t.prev(), outer[3]);
+        let (from, to) = ([ca, ad, db, bc], [h.next(), h.prev(), t.next(), t.prev()]);
+        let outer = from.map(|e| self.take(e).with_moved_twin(from, to));
+        for (slot, record) in to.into_iter().zip(outer) {
+            self.put(slot, record);
+        }
         self.origin[h.index()] = d;
         self.origin[t.index()] = c;
         self.length[h.index()] = f64::NAN;
@@ -258,4 +258,14 @@ struct Record {
     twin: u32,
     length: f64,
     constraint: u32,
+}
+
+impl Record {
+    /// The record once the half-edges `from` have moved to `to`: where its twin is one of them, the twin moves along.
+    fn with_moved_twin(mut self, from: [HalfEdge; 4], to: [HalfEdge; 4]) -> Self {
+        if let Some(i) = from.iter().position(|e| e.0 == self.twin) {
+            self.twin = to[i].0;
+        }
+        self
+    }
 }

@@ -1,0 +1,113 @@
+//! The canvas (RR-9103, sections 6.2 and 7): the discretised domain on which distances travel.
+//!
+//! Solvers see only [`Canvas::topology`]: vertices, faces, edges with metric lengths, never positions. What is
+//! drawn, or found by its coordinates, uses [`Canvas::embedded`], the triangulation of the plane from which the lengths
+//! were taken. Both have the same vertices.
+
+mod flip;
+mod lengths;
+mod locate;
+mod refine;
+
+use crate::domain::Domain;
+use crate::error::Result;
+use crate::geometry::Point;
+use crate::metric::MetricField;
+use crate::planar::{Planar, hilbert_order};
+use crate::triangulation::{Triangulation, VertexId};
+use locate::Finder;
+
+/// How a canvas came about. Deterministic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CanvasCounters {
+    /// Vertices put on edges while the triangulation was refined.
+    pub splits: u64,
+    /// Flips while it was refined, in the plane.
+    pub planar_flips: u64,
+    /// Edges split because the lengths around a face broke the triangle inequality.
+    pub repairs: u64,
+    /// Edges shortened, where repairs came to their end, to the sum of the other two of their face.
+    pub shortened: u64,
+    /// Flips to the intrinsic Delaunay triangulation, by lengths alone.
+    pub flips: u64,
+}
+
+/// An immutable canvas of a planar domain.
+///
+/// Two triangulations on the same vertices: *embedded*, straight edges in the plane that cover the domain exactly
+/// and keep its constraints; and the one that distances travel on, whose edges are known by metric length alone. Edges
+/// of the second that flips have made are not straight in the plane; nothing needs them to be, for points are located,
+/// refinement is done and paths are drawn in the first. Chords of both have the metric length of a straight segment
+/// ([`crate::geodesic::chord`]) or, if flipped, of the straight line through flattened triangles.
+#[derive(Debug)]
+pub struct Canvas {
+    embedded: Planar,
+    topology: Triangulation,
+    counters: CanvasCounters,
+    finder: Finder,
+}
+
+impl Canvas {
+    /// The intrinsic canvas: refines the domain's triangulation to about `vertices` vertices, evenly in the metric,
+    /// takes metric lengths by quadrature, and flips by lengths alone until it is intrinsic Delaunay.
+    ///
+    /// It has more vertices only if the domain itself has, or where lengths had to be repaired.
+    ///
+    /// # Errors
+    /// [`crate::Error::Metric`] where the metric is not positive definite at a vertex.
+    pub fn intrinsic(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        let mut canvas = Self::straight(domain, field, vertices)?;
+        canvas.counters.flips = flip::to_intrinsic_delaunay(&mut canvas.topology);
+        Ok(canvas)
+    }
+
+    /// The same vertices as [`Canvas::intrinsic`] without its flips: both triangulations are the embedded one.
+    ///
+    /// # Errors
+    /// As for [`Canvas::intrinsic`].
+    pub fn straight(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        let mut counters = CanvasCounters::default();
+        let planar = refine::refine(domain.planar().clone(), field, vertices, &mut counters)?;
+        let mut embedded = renumbered(&planar);
+        lengths::measure(&mut embedded, field, &mut counters)?;
+        let topology = embedded.topology.clone();
+        Ok(Self { finder: Finder::new(&embedded), embedded, topology, counters })
+    }
+
+    /// What distances travel on: vertices, faces, metric lengths.
+    pub fn topology(&self) -> &Triangulation {
+        &self.topology
+    }
+
+    /// The same vertices, triangulated in the plane.
+    pub fn embedded(&self) -> &Planar {
+        &self.embedded
+    }
+
+    /// Number of vertices; all slots are used.
+    pub fn vertex_count(&self) -> usize {
+        self.topology.vertex_slots()
+    }
+
+    /// The position of a vertex.
+    pub fn position(&self, v: VertexId) -> Point {
+        self.embedded.position(v)
+    }
+
+    /// How the canvas came about.
+    pub fn counters(&self) -> &CanvasCounters {
+        &self.counters
+    }
+}
+
+/// The vertices along a Hilbert curve, for the sake of the cache.
+fn renumbered(planar: &Planar) -> Planar {
+    let living: Vec<VertexId> = planar.topology.vertices().collect();
+    let positions: Vec<Point> = living.iter().map(|&v| planar.position(v)).collect();
+    let order = hilbert_order(&positions);
+    let old: Vec<VertexId> = order.iter().map(|&i| living[i as usize]).collect();
+    Planar {
+        topology: planar.topology.renumbered(&old),
+        positions: order.iter().map(|&i| positions[i as usize]).collect(),
+    }
+}

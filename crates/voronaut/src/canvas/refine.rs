@@ -1,0 +1,157 @@
+//! Refinement in the plane: the metrically longest edge is halved, and the metric's flips follow, again and again.
+//!
+//! Everything here happens in the embedded triangulation, before any flip by lengths: a point on a straight edge has
+//! coordinates, one on a flipped edge has none.
+
+use super::CanvasCounters;
+use crate::error::Result;
+use crate::geodesic::{chord, frozen_margin};
+use crate::geometry::{Point, Tensor};
+use crate::metric::{MetricField, check_tensor};
+use crate::planar::Planar;
+use crate::triangulation::{HalfEdge, VertexId};
+
+/// Edges are measured by five evaluations of the field while there are fewer vertices than this, by one from then on:
+/// long edges may hide in their middle what their ends do not tell.
+const COARSE: usize = 20_000;
+/// The frozen-tensor test must be violated by more than this (sine of the angles' sum) for a flip: tests of neighbouring
+/// quadrilaterals with different tensors contradict each other near zero.
+const CLEARLY: f64 = 1e-2;
+/// Flips after one split at most; measured was a little more than one in the mean.
+const FLIPS_PER_SPLIT: usize = 64;
+
+/// Refines until there are `vertices` vertices.
+///
+/// # Errors
+/// The metric is not positive definite at a vertex.
+pub(super) fn refine(
+    planar: Planar,
+    field: &dyn MetricField,
+    vertices: usize,
+    counters: &mut CanvasCounters,
+) -> Result<Planar> {
+    let mut tensors = vec![Tensor::IDENTITY; planar.positions.len()];
+    for v in planar.topology.vertices() {
+        let p = planar.position(v);
+        tensors[v.index()] = field.at(p);
+        check_tensor(tensors[v.index()], p)?;
+    }
+    let mut refiner = Refiner { planar, tensors, field, queue: Buckets::default(), stack: Vec::new() };
+    for h in refiner.planar.topology.edges().collect::<Vec<_>>() {
+        refiner.enqueue(h);
+    }
+    while refiner.planar.topology.vertex_count() < vertices {
+        let Some([a, b]) = refiner.queue.pop() else { break };
+        let topology = &refiner.planar.topology;
+        let Some(h) = topology.find(a, b).or_else(|| topology.find(b, a)) else { continue };
+        refiner.split(h, counters)?;
+    }
+    Ok(refiner.planar)
+}
+
+struct Refiner<'a> {
+    planar: Planar,
+    tensors: Vec<Tensor>,
+    field: &'a dyn MetricField,
+    queue: Buckets,
+    stack: Vec<HalfEdge>,
+}
+
+impl Refiner<'_> {
+    /// Halves an edge, flips around the new vertex, and queues the edges there. An edge whose middle rounding has put
+    /// beyond a neighbour stays whole.
+    fn split(&mut self, h: HalfEdge, counters: &mut CanvasCounters) -> Result<()> {
+        let [p, q] = self.planar.ends(h);
+        let middle = p.midpoint(q);
+        let tensor = self.field.at(middle);
+        check_tensor(tensor, middle)?;
+        let Some((v, _)) = self.planar.insert_on_edge(h, middle) else { return Ok(()) };
+        self.tensors.resize(self.planar.positions.len().max(self.tensors.len()), tensor);
+        self.tensors[v.index()] = tensor;
+        counters.splits += 1;
+        counters.planar_flips += self.flip_around(v);
+        let star: Vec<HalfEdge> = self.planar.topology.star(v).collect();
+        let last = star.last().map(|h| h.prev()).filter(|&h| self.planar.topology.twin(h).is_none());
+        for h in star.into_iter().chain(last) {
+            self.enqueue(h);
+        }
+        Ok(())
+    }
+
+    fn flip_around(&mut self, v: VertexId) -> u64 {
+        let link = self.planar.topology.star(v).map(HalfEdge::next);
+        self.stack.extend(link);
+        let mut flips = 0;
+        while let Some(h) = self.stack.pop() {
+            if self.planar.topology.is_fixed(h) || self.margin(h) > -CLEARLY || !self.planar.is_convex(h) {
+                continue;
+            }
+            let t = self.planar.topology.twin(h).expect("not fixed");
+            self.planar.topology.flip(h);
+            flips += 1;
+            if flips == FLIPS_PER_SPLIT {
+                self.stack.clear();
+                break;
+            }
+            // h now runs from d to c, one of which is v: the other two edges of its two faces face v.
+            let facing = |e: HalfEdge| self.planar.topology.apex(e) == v;
+            let outer = [h.next(), h.prev(), t.next(), t.prev()];
+            self.stack.extend(outer.into_iter().filter(|&e| facing(e)));
+        }
+        flips as u64
+    }
+
+    fn margin(&self, h: HalfEdge) -> f64 {
+        let topology = &self.planar.topology;
+        let t = topology.twin(h).expect("not fixed");
+        let quad = [topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)];
+        let mean = quad.iter().fold(Tensor::default(), |sum, v| sum + self.tensors[v.index()]) * 0.25;
+        let [a, b, c, d] = quad.map(|v| self.planar.position(v));
+        frozen_margin(mean, [a - c, b - c], [b - d, a - d])
+    }
+
+    fn enqueue(&mut self, h: HalfEdge) {
+        let ends = [self.planar.topology.origin(h), self.planar.topology.target(h)];
+        let [p, q] = self.planar.ends(h);
+        let length =
+            if self.planar.positions.len() < COARSE { chord(self.field, p, q) } else { self.simpson(ends, p, q) };
+        self.queue.push(length, ends);
+    }
+
+    /// Metric length along an edge by Simpson's rule.
+    fn simpson(&self, [a, b]: [VertexId; 2], p: Point, q: Point) -> f64 {
+        let d = q - p;
+        let at_ends = self.tensors[a.index()].length(d) + self.tensors[b.index()].length(d);
+        (at_ends + 4.0 * self.field.at(p.midpoint(q)).length(d)) / 6.0
+    }
+}
+
+/// A queue of edges, longest first to within a fourth of an octave.
+#[derive(Default)]
+struct Buckets {
+    buckets: Vec<Vec<[VertexId; 2]>>,
+}
+
+impl Buckets {
+    fn push(&mut self, length: f64, edge: [VertexId; 2]) {
+        if !(length > 0.0 && length.is_finite()) {
+            return;
+        }
+        // Exponent and the first two bits of the mantissa: grows with the length.
+        let bucket = (length.to_bits() >> 50) as usize;
+        if bucket >= self.buckets.len() {
+            self.buckets.resize_with(bucket + 1, Vec::new);
+        }
+        self.buckets[bucket].push(edge);
+    }
+
+    fn pop(&mut self) -> Option<[VertexId; 2]> {
+        while let Some(last) = self.buckets.last_mut() {
+            if let Some(edge) = last.pop() {
+                return Some(edge);
+            }
+            self.buckets.pop();
+        }
+        None
+    }
+}

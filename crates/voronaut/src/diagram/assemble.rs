@@ -1,0 +1,49 @@
+//! From the nerve to a mesh: its straight realisation (RR-9103, sections 11 and 14: SRDT), and the canvas as a mesh.
+
+use super::{Diagram, Nerve};
+use crate::domain::Domain;
+use crate::mesh::Mesh;
+use std::collections::BTreeSet;
+
+impl Diagram<'_> {
+    /// The nerve with straight edges between the seeds: vertex i is seed i, triangles turn as their cells do - a triangle
+    /// that comes out clockwise is one that straight edges invert. Edges whose border witness lies on the domain's
+    /// boundary carry its label, as far as a triangle has them. A removed seed is no vertex of any triangle, at (0, 0).
+    pub fn to_mesh(&self, nerve: &Nerve, domain: &Domain) -> Mesh {
+        let mut mesh = Mesh::default();
+        for colour in 0..self.colours() as u32 {
+            let p = self.seed(colour).unwrap_or_default();
+            mesh.points.push([p.x, p.y, 0.0]);
+        }
+        mesh.point_labels = vec![0; mesh.points.len()];
+        mesh.triangles = nerve.triangles.iter().map(|t| t.colours).collect();
+        let region = |t: &super::NerveTriangle| self.canvas.topology().region(t.witness);
+        mesh.triangle_labels = nerve.triangles.iter().map(region).collect();
+        let sides: BTreeSet<[u32; 2]> = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        for edge in &nerve.edges {
+            let [a, b] = edge.colours;
+            let side = [[a, b], [b, a]].into_iter().find(|side| sides.contains(side));
+            if let (Some(side), Some(h)) = (side, edge.border) {
+                let segment = self.canvas.topology().constraint(h);
+                let label = segment.and_then(|c| domain.pslg().segments.get(c.0 as usize)).map_or(0, |s| s.label);
+                mesh.edges.push(side);
+                mesh.edge_labels.push(label);
+            }
+        }
+        mesh
+    }
+
+    /// The canvas as a mesh, its vertices labelled by colour (-1 where no seed reaches), and their distances.
+    pub fn to_coloured_canvas(&self) -> (Mesh, Vec<f64>) {
+        let embedded = self.canvas.embedded();
+        let faces = || embedded.topology.faces();
+        let mesh = Mesh {
+            points: embedded.positions.iter().map(|p| [p.x, p.y, 0.0]).collect(),
+            point_labels: self.propagation.labels().iter().map(|l| l.colour.cast_signed()).collect(),
+            triangles: faces().map(|f| embedded.topology.corners(f).map(|v| v.0)).collect(),
+            triangle_labels: faces().map(|f| embedded.topology.region(f)).collect(),
+            ..Mesh::default()
+        };
+        (mesh, self.propagation.labels().iter().map(|l| l.distance).collect())
+    }
+}

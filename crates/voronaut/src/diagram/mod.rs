@@ -1,0 +1,235 @@
+//! The discretised Riemannian Voronoi diagram (RR-9103, section 6.3) of seeds on a canvas.
+//!
+//! Every canvas vertex has the colour of its nearest seed and the distance to it. Seeds are inserted, removed and moved
+//! one at a time, each by work on the cells concerned only, and with the result that making the diagram anew would have.
+
+mod assemble;
+mod envelope;
+mod nerve;
+mod overlap;
+mod seeds;
+
+pub use nerve::{Nerve, NerveEdge, NerveTriangle};
+
+use crate::canvas::Canvas;
+use crate::error::{Error, Result};
+use crate::geodesic::{Geodesic, Label, MarchCounters, Marching, NO_COLOUR, Propagation, Sources, Support};
+use crate::geometry::Point;
+use crate::metric::MetricField;
+use crate::triangulation::VertexId;
+use seeds::Start;
+
+/// See the [module](self). Seed i has colour i; a removed seed's colour is not used again.
+pub struct Diagram<'a> {
+    canvas: &'a Canvas,
+    field: &'a dyn MetricField,
+    solver: Box<dyn Geodesic + 'a>,
+    seeds: Vec<Option<Seed>>,
+    sources: Sources,
+    propagation: Propagation,
+}
+
+/// A seed: where it is, and the canvas vertices that it gives a distance to.
+#[derive(Clone, Debug)]
+struct Seed {
+    at: Point,
+    starts: Vec<Start>,
+}
+
+impl<'a> Diagram<'a> {
+    /// The diagram of seeds by fast marching with circular waves, all fronts at once.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] of a seed outside the domain.
+    pub fn new(canvas: &'a Canvas, field: &'a dyn MetricField, seeds: &[Point]) -> Result<Self> {
+        Self::with_solver(canvas, field, seeds, Marching::default())
+    }
+
+    /// The diagram of seeds by a solver.
+    ///
+    /// # Errors
+    /// As for [`Diagram::new`].
+    pub fn with_solver(
+        canvas: &'a Canvas,
+        field: &'a dyn MetricField,
+        seeds: &[Point],
+        solver: impl Geodesic + 'a,
+    ) -> Result<Self> {
+        let starts = seeds::starts_of_all(canvas, field, seeds)?;
+        let mut sources = Sources::new(canvas.vertex_count());
+        let mut placed = Vec::with_capacity(seeds.len());
+        for (i, (&at, starts)) in seeds.iter().zip(starts).enumerate() {
+            for s in &starts {
+                sources.add(s.vertex, s.distance, i as u32);
+            }
+            placed.push(Some(Seed { at, starts }));
+        }
+        let propagation = solver.propagate(canvas.topology(), &sources);
+        Ok(Self { canvas, field, solver: Box::new(solver), seeds: placed, sources, propagation })
+    }
+
+    /// Inserts a seed by one front from it; returns its colour.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] outside the domain; the diagram is as before.
+    pub fn insert(&mut self, at: Point) -> Result<u32> {
+        let colour = self.seeds.len() as u32;
+        let starts = seeds::starts(self.canvas, self.field, at)?;
+        self.seeds.push(None);
+        self.place(colour, at, starts);
+        Ok(colour)
+    }
+
+    /// Inserts a seed at a canvas vertex; returns its colour.
+    pub fn insert_at_vertex(&mut self, v: VertexId) -> u32 {
+        let colour = self.seeds.len() as u32;
+        let starts = seeds::starts_at_vertex(self.canvas, self.field, v);
+        self.seeds.push(None);
+        self.place(colour, self.canvas.position(v), starts);
+        colour
+    }
+
+    /// Removes a seed; its neighbours' fronts fill its cell. Says whether there was one.
+    pub fn remove(&mut self, colour: u32) -> bool {
+        let changed = self.lift(colour);
+        self.mend(&changed);
+        !changed.is_empty()
+    }
+
+    /// Moves a seed, which keeps its colour.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where there is no such seed, or it would leave the domain; the diagram is as before.
+    pub fn move_to(&mut self, colour: u32, to: Point) -> Result<()> {
+        if self.seed(colour).is_none() {
+            let help = "colours are those that insertions returned and removals have not ended";
+            return Err(Error::domain("no such seed", format!("colour {colour}"), help));
+        }
+        let starts = seeds::starts(self.canvas, self.field, to)?;
+        let changed = self.lift(colour);
+        self.sources_of(colour, &starts);
+        let all: Vec<VertexId> = changed.into_iter().chain(starts.iter().map(|s| s.vertex)).collect();
+        self.seeds[colour as usize] = Some(Seed { at: to, starts });
+        self.mend(&all);
+        Ok(())
+    }
+
+    /// The canvas.
+    pub fn canvas(&self) -> &'a Canvas {
+        self.canvas
+    }
+
+    /// Where a seed is; `None` of a removed one.
+    pub fn seed(&self, colour: u32) -> Option<Point> {
+        self.seeds.get(colour as usize)?.as_ref().map(|seed| seed.at)
+    }
+
+    /// Number of colours given so far, those of removed seeds among them.
+    pub fn colours(&self) -> usize {
+        self.seeds.len()
+    }
+
+    /// Metric distance from a canvas vertex to its seed; infinite where no seed reaches.
+    pub fn distance(&self, v: VertexId) -> f64 {
+        self.label(v).distance
+    }
+
+    /// The colour of a canvas vertex; `None` where no seed reaches.
+    pub fn colour(&self, v: VertexId) -> Option<u32> {
+        let colour = self.label(v).colour;
+        (colour != NO_COLOUR).then_some(colour)
+    }
+
+    /// The canvas vertex that the distance came from, the nearer to the seed of two; `None` beside the seed.
+    pub fn parent(&self, v: VertexId) -> Option<VertexId> {
+        let topology = self.canvas.topology();
+        match self.label(v).support() {
+            Support::Nothing | Support::Source => None,
+            Support::Vertex(h) => {
+                let (a, b) = (topology.origin(h), topology.target(h));
+                Some(if a == v { b } else { a })
+            }
+            Support::Edge(h) => {
+                let (a, b) = (topology.origin(h), topology.target(h));
+                Some(if self.distance(b) < self.distance(a) { b } else { a })
+            }
+        }
+    }
+
+    /// Colour, distance and support of a canvas vertex.
+    pub fn label(&self, v: VertexId) -> &Label {
+        self.propagation.label(v)
+    }
+
+    /// Work of the solver since the beginning.
+    pub fn counters(&self) -> &MarchCounters {
+        self.propagation.counters()
+    }
+
+    /// The canvas vertex farthest from its seed, and its distance: where farthest-point refinement puts the next seed.
+    pub fn farthest(&self) -> Option<(VertexId, f64)> {
+        let vertices = (0..self.canvas.vertex_count() as u32).map(VertexId);
+        vertices.map(|v| (v, self.distance(v))).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
+    }
+
+    /// Canvas vertices per colour.
+    pub fn cell_sizes(&self) -> Vec<usize> {
+        let mut sizes = vec![0; self.seeds.len()];
+        for label in self.propagation.labels() {
+            if let Some(size) = sizes.get_mut(label.colour as usize) {
+                *size += 1;
+            }
+        }
+        sizes
+    }
+
+    /// Canvas vertices that canvas edges of their colour do not connect to their seed (RR-9103: orphans), in order.
+    pub fn orphans(&self) -> Vec<VertexId> {
+        let topology = self.canvas.topology();
+        let mut reached = vec![false; self.canvas.vertex_count()];
+        let mut stack: Vec<VertexId> = Vec::new();
+        let mut reach = |v: VertexId, stack: &mut Vec<VertexId>| {
+            if !std::mem::replace(&mut reached[v.index()], true) {
+                stack.push(v);
+            }
+        };
+        for (colour, seed) in self.seeds.iter().enumerate() {
+            let starts = seed.iter().flat_map(|s| &s.starts).map(|s| s.vertex);
+            starts.filter(|&v| self.label(v).colour == colour as u32).for_each(|v| reach(v, &mut stack));
+        }
+        while let Some(v) = stack.pop() {
+            let colour = self.label(v).colour;
+            let neighbours = topology.star(v).flat_map(|h| [topology.target(h), topology.apex(h)]);
+            neighbours.filter(|&y| self.label(y).colour == colour).for_each(|y| reach(y, &mut stack));
+        }
+        let is_orphan = |v: &VertexId| !reached[v.index()] && self.colour(*v).is_some();
+        (0..reached.len() as u32).map(VertexId).filter(is_orphan).collect()
+    }
+
+    fn place(&mut self, colour: u32, at: Point, starts: Vec<Start>) {
+        self.sources_of(colour, &starts);
+        let changed: Vec<VertexId> = starts.iter().map(|s| s.vertex).collect();
+        self.seeds[colour as usize] = Some(Seed { at, starts });
+        self.mend(&changed);
+    }
+
+    fn sources_of(&mut self, colour: u32, starts: &[Start]) {
+        for s in starts {
+            self.sources.add(s.vertex, s.distance, colour);
+        }
+    }
+
+    /// Takes a seed's starts away; returns the vertices that had them.
+    fn lift(&mut self, colour: u32) -> Vec<VertexId> {
+        let seed = self.seeds.get_mut(colour as usize).and_then(Option::take);
+        let vertices: Vec<VertexId> = seed.iter().flat_map(|s| &s.starts).map(|s| s.vertex).collect();
+        for &v in &vertices {
+            self.sources.remove(v, colour);
+        }
+        vertices
+    }
+
+    fn mend(&mut self, changed: &[VertexId]) {
+        self.solver.update(self.canvas.topology(), &self.sources, changed, &mut self.propagation);
+    }
+}

@@ -1,0 +1,116 @@
+//! The nerve of the diagram and its witnesses (RR-9103, section 6.4 and Figure 7).
+
+use super::Diagram;
+use crate::geodesic::NO_COLOUR;
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
+
+/// Two cells that touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NerveEdge {
+    /// The two colours, the smaller first.
+    pub colours: [u32; 2],
+    /// A canvas edge between the two cells: the half-edge with the smallest id.
+    pub witness: HalfEdge,
+    /// Such an edge on the border of the domain, if there is one.
+    pub border: Option<HalfEdge>,
+}
+
+/// Three cells that meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NerveTriangle {
+    /// The three colours counter-clockwise as their cells lie around the witness, the smallest first.
+    pub colours: [u32; 3],
+    /// A canvas face with a vertex in each of the three cells: the one with the smallest id.
+    pub witness: FaceId,
+    /// How many canvas faces witness it.
+    pub witnesses: u32,
+}
+
+/// The simplices that the canvas witnesses, each with a witness; sorted by colours.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Nerve {
+    /// Colours with a cell, and the canvas vertex of the cell that is nearest to its seed.
+    pub vertices: Vec<(u32, VertexId)>,
+    /// Pairs of cells that share a canvas edge.
+    pub edges: Vec<NerveEdge>,
+    /// Triples of cells that share a canvas face. The same three colours, turning the other way, are another triangle.
+    pub triangles: Vec<NerveTriangle>,
+}
+
+impl Nerve {
+    /// From all witnesses: one of each simplex is kept, that with the smallest id.
+    pub(super) fn new(
+        vertices: Vec<(u32, VertexId)>,
+        mut edges: Vec<NerveEdge>,
+        mut triangles: Vec<NerveTriangle>,
+    ) -> Self {
+        edges.sort_unstable_by_key(|e| (e.colours, e.witness));
+        edges.dedup_by(|later, first| {
+            let same = later.colours == first.colours;
+            first.border = if same { first.border.or(later.border) } else { first.border };
+            same
+        });
+        triangles.sort_unstable_by_key(|t| (t.colours, t.witness));
+        triangles.dedup_by(|later, first| {
+            let same = later.colours == first.colours;
+            first.witnesses += u32::from(same);
+            same
+        });
+        Self { vertices, edges, triangles }
+    }
+}
+
+impl Diagram<'_> {
+    /// Reads the nerve off the canvas, as the report does: from canvas edges with two colours, faces with three.
+    pub fn nerve(&self) -> Nerve {
+        Nerve::new(self.coloured_vertices(), self.bicoloured_edges(), self.tricoloured_faces())
+    }
+
+    pub(super) fn coloured_vertices(&self) -> Vec<(u32, VertexId)> {
+        let mut first = vec![None; self.colours()];
+        for v in (0..self.canvas.vertex_count() as u32).map(VertexId) {
+            if let Some(colour) = self.colour(v) {
+                let best: &mut Option<VertexId> = &mut first[colour as usize];
+                if best.is_none_or(|b| self.distance(v) < self.distance(b)) {
+                    *best = Some(v);
+                }
+            }
+        }
+        first.into_iter().enumerate().filter_map(|(colour, v)| Some((colour as u32, v?))).collect()
+    }
+
+    fn bicoloured_edges(&self) -> Vec<NerveEdge> {
+        let topology = self.canvas.topology();
+        let between = |h: HalfEdge| {
+            let [a, b] = [topology.origin(h), topology.target(h)].map(|v| self.label(v).colour);
+            let border = topology.twin(h).is_none().then_some(h);
+            (a != b && a != NO_COLOUR && b != NO_COLOUR).then(|| NerveEdge {
+                colours: [a.min(b), a.max(b)],
+                witness: h,
+                border,
+            })
+        };
+        topology.edges().filter_map(between).collect()
+    }
+
+    fn tricoloured_faces(&self) -> Vec<NerveTriangle> {
+        let topology = self.canvas.topology();
+        let of_face = |witness: FaceId| {
+            let [a, b, c] = topology.corners(witness).map(|v| self.label(v).colour);
+            let distinct = a != b && b != c && c != a && [a, b, c].iter().all(|&x| x != NO_COLOUR);
+            distinct.then(|| NerveTriangle { colours: smallest_first([a, b, c]), witness, witnesses: 1 })
+        };
+        topology.faces().filter_map(of_face).collect()
+    }
+}
+
+/// The same cycle, its smallest member first.
+pub(super) fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
+    if a < b && a < c {
+        [a, b, c]
+    } else if b < c {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}

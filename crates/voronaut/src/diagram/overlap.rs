@@ -1,0 +1,98 @@
+//! Every cell a little beyond its borders: distances that know of one seed only.
+//!
+//! Where two fronts meet, values are poor on both sides, for neither crosses a face whose vertices have different colours.
+//! So each seed's distances are computed once more, by themselves, on its cell and a few rings around it.
+
+use super::Diagram;
+use crate::geodesic::{NO_COLOUR, PatchSolver};
+use crate::triangulation::VertexId;
+use rayon::prelude::*;
+
+/// Rings of canvas vertices around a cell.
+const RINGS: usize = 3;
+/// Cells that share the memory of one solver.
+const CELLS: usize = 128;
+
+/// The distances of canvas vertices to the seeds whose cells are near.
+pub(super) struct Overlap {
+    first: Vec<u32>,
+    entries: Vec<(u32, f64)>,
+}
+
+impl Overlap {
+    /// The seeds near a vertex by colour, with their distances.
+    pub(super) fn at(&self, v: VertexId) -> &[(u32, f64)] {
+        &self.entries[self.first[v.index()] as usize..self.first[v.index() + 1] as usize]
+    }
+}
+
+type Patch = Vec<(VertexId, f64)>;
+
+impl Diagram<'_> {
+    /// Computes the distances of every cell and its surroundings, in parallel.
+    pub(super) fn overlap(&self) -> Overlap {
+        let cells = self.cells();
+        let colours: Vec<u32> = (0..self.colours() as u32).collect();
+        let patches = |chunk: &[u32]| -> Vec<Patch> {
+            let mut solver = PatchSolver::new(self.canvas.topology());
+            let mut seen = vec![false; self.canvas.vertex_count()];
+            chunk.iter().map(|&colour| self.patch(colour, &cells[colour as usize], &mut solver, &mut seen)).collect()
+        };
+        let patches: Vec<Patch> = colours.par_chunks(CELLS).flat_map_iter(patches).collect();
+        gather(self.canvas.vertex_count(), &patches)
+    }
+
+    fn cells(&self) -> Vec<Vec<VertexId>> {
+        let mut cells = vec![Vec::new(); self.colours()];
+        for v in (0..self.canvas.vertex_count() as u32).map(VertexId) {
+            let colour = self.label(v).colour;
+            if colour != NO_COLOUR {
+                cells[colour as usize].push(v);
+            }
+        }
+        cells
+    }
+
+    fn patch(&self, colour: u32, cell: &[VertexId], solver: &mut PatchSolver, seen: &mut [bool]) -> Patch {
+        let Some(seed) = &self.seeds[colour as usize] else { return Patch::new() };
+        let topology = self.canvas.topology();
+        let mut vertices: Vec<VertexId> = Vec::with_capacity(2 * cell.len());
+        let candidates = seed.starts.iter().map(|s| s.vertex).chain(cell.iter().copied());
+        vertices.extend(candidates.filter(|v| !std::mem::replace(&mut seen[v.index()], true)));
+        let mut ring = 0..vertices.len();
+        for _ in 0..RINGS {
+            for i in ring.clone() {
+                for h in topology.star(vertices[i]) {
+                    let around = [topology.target(h), topology.apex(h)];
+                    vertices.extend(around.into_iter().filter(|v| !std::mem::replace(&mut seen[v.index()], true)));
+                }
+            }
+            ring = ring.end..vertices.len();
+        }
+        for v in &vertices {
+            seen[v.index()] = false;
+        }
+        let distances = solver.distances(&vertices, seed.starts.iter().map(|s| (s.vertex, s.distance)));
+        vertices.into_iter().zip(distances).filter(|(_, distance)| distance.is_finite()).collect()
+    }
+}
+
+/// From lists by colour to lists by vertex.
+fn gather(vertices: usize, patches: &[Patch]) -> Overlap {
+    let mut first = vec![0_u32; vertices + 1];
+    for (v, _) in patches.iter().flatten() {
+        first[v.index() + 1] += 1;
+    }
+    for v in 0..vertices {
+        first[v + 1] += first[v];
+    }
+    let mut next = first.clone();
+    let mut entries = vec![(NO_COLOUR, f64::INFINITY); first[vertices] as usize];
+    for (colour, patch) in patches.iter().enumerate() {
+        for &(v, distance) in patch {
+            entries[next[v.index()] as usize] = (colour as u32, distance);
+            next[v.index()] += 1;
+        }
+    }
+    Overlap { first, entries }
+}

@@ -1,0 +1,44 @@
+//! Lists of points: a line `x y` (or `x y z`) each; empty lines and what follows `#` say nothing.
+
+use crate::error::{Error, Result};
+use crate::geometry::Point;
+
+/// Reads planar points; a third coordinate must be 0. `name` is the file's, for messages.
+///
+/// # Errors
+/// [`Error::Parse`] with the line that is no point.
+pub fn read(text: &str, name: &str) -> Result<Vec<Point>> {
+    let content = |line: &str| line.split('#').next().unwrap_or_default().trim().to_owned();
+    let lines = text.lines().map(content).enumerate().filter(|(_, line)| !line.is_empty());
+    lines.map(|(i, line)| point(&line).ok_or_else(|| fault(name, i + 1, &line))).collect()
+}
+
+fn point(line: &str) -> Option<Point> {
+    let numbers: Vec<f64> = line.split_whitespace().map(|word| word.parse().ok()).collect::<Option<_>>()?;
+    let p = match numbers[..] {
+        [x, y] | [x, y, 0.0] => Point::new(x, y),
+        _ => return None,
+    };
+    p.is_finite().then_some(p)
+}
+
+fn fault(name: &str, line: usize, text: &str) -> Error {
+    let shown: String = text.chars().take(40).collect();
+    Error::parse(format!("{name}:{line}"), format!("'{shown}' is no point"), "write two numbers, x y, on each line")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_read_and_faults_named() {
+        let points = read("# seeds\n 1 2\n\n-3e2\t4.5 0 # third\n", "s.txt").unwrap();
+        assert_eq!(points, [Point::new(1.0, 2.0), Point::new(-300.0, 4.5)]);
+        for bad in ["1", "1 2 3", "a b", "1 nan", "1 2 0 0"] {
+            let error = read(&format!("0 0\n{bad}"), "s.txt").unwrap_err();
+            assert!(error.to_string().starts_with("s.txt:2:"), "{error}");
+        }
+        assert!(read("", "s.txt").unwrap().is_empty());
+    }
+}

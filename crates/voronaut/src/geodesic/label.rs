@@ -1,0 +1,154 @@
+//! What a propagation says of a vertex, and where it starts from.
+
+use crate::triangulation::{HalfEdge, VertexId};
+use std::cmp::Ordering;
+
+/// The colour of a vertex that no source reaches.
+pub const NO_COLOUR: u32 = u32::MAX;
+
+/// Distance to the nearest source, the source's colour, and what the distance was computed from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Label {
+    /// Metric distance; infinite where no source reaches.
+    pub distance: f64,
+    /// Colour of the source; [`NO_COLOUR`] where none reaches.
+    pub colour: u32,
+    pub(super) support: u32,
+}
+
+/// What a distance was computed from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Support {
+    /// No source reaches the vertex.
+    Nothing,
+    /// A source beside the vertex.
+    Source,
+    /// Both ends of the half-edge, opposite to the vertex in its face or (unfolded) in the face beyond.
+    Edge(HalfEdge),
+    /// The other end of this edge, along it.
+    Vertex(HalfEdge),
+}
+
+const NOTHING: u32 = u32::MAX;
+const SOURCE: u32 = u32::MAX - 1;
+
+impl Label {
+    /// The label of a vertex that no source reaches.
+    pub const FAR: Label = Label { distance: f64::INFINITY, colour: NO_COLOUR, support: NOTHING };
+
+    pub(super) fn new(distance: f64, colour: u32, support: Support) -> Self {
+        let support = match support {
+            Support::Nothing => NOTHING,
+            Support::Source => SOURCE,
+            Support::Edge(h) => 2 * h.0,
+            Support::Vertex(h) => 2 * h.0 + 1,
+        };
+        Self { distance, colour, support }
+    }
+
+    /// What the distance was computed from.
+    pub fn support(&self) -> Support {
+        match self.support {
+            NOTHING => Support::Nothing,
+            SOURCE => Support::Source,
+            code if code % 2 == 0 => Support::Edge(HalfEdge(code / 2)),
+            code => Support::Vertex(HalfEdge(code / 2)),
+        }
+    }
+
+    /// Nearer first; of equally near the smaller colour, of those the smaller support.
+    pub(super) fn order(&self, other: &Self) -> Ordering {
+        let by_distance = self.distance.total_cmp(&other.distance);
+        by_distance.then_with(|| (self.colour, self.support).cmp(&(other.colour, other.support)))
+    }
+
+    pub(super) fn is_before(&self, other: &Self) -> bool {
+        self.order(other) == Ordering::Less
+    }
+}
+
+/// Where distances start: vertices with the distance of a source beside them.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    first: Vec<u32>,
+    records: Vec<Record>,
+    free: Vec<u32>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Record {
+    distance: f64,
+    colour: u32,
+    next: u32,
+}
+
+impl Sources {
+    /// No sources on a canvas with so many vertices.
+    pub fn new(vertices: usize) -> Self {
+        Self { first: vec![NOTHING; vertices], ..Self::default() }
+    }
+
+    /// Adds a start at a vertex.
+    pub fn add(&mut self, v: VertexId, distance: f64, colour: u32) {
+        let record = Record { distance, colour, next: self.first[v.index()] };
+        let slot = self.free.pop().unwrap_or(self.records.len() as u32);
+        if slot as usize == self.records.len() {
+            self.records.push(record);
+        } else {
+            self.records[slot as usize] = record;
+        }
+        self.first[v.index()] = slot;
+    }
+
+    /// Removes all starts of a colour at a vertex.
+    pub fn remove(&mut self, v: VertexId, colour: u32) {
+        let kept: Vec<(f64, u32)> = self.at(v).filter(|&(_, c)| c != colour).collect();
+        let mut slot = std::mem::replace(&mut self.first[v.index()], NOTHING);
+        while slot != NOTHING {
+            self.free.push(slot);
+            slot = self.records[slot as usize].next;
+        }
+        for (distance, colour) in kept {
+            self.add(v, distance, colour);
+        }
+    }
+
+    /// The starts at a vertex: distance and colour.
+    pub fn at(&self, v: VertexId) -> impl Iterator<Item = (f64, u32)> + '_ {
+        let record = move |slot: u32| (slot != NOTHING).then(|| self.records[slot as usize]);
+        let chain = std::iter::successors(record(self.first[v.index()]), move |r| record(r.next));
+        chain.map(|r| (r.distance, r.colour))
+    }
+
+    /// The nearest start at a vertex.
+    pub(super) fn nearest(&self, v: VertexId) -> Label {
+        let labels = self.at(v).map(|(distance, colour)| Label::new(distance, colour, Support::Source));
+        labels.fold(Label::FAR, |best, label| if label.is_before(&best) { label } else { best })
+    }
+
+    /// The vertices that have a start.
+    pub fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+        (0..self.first.len() as u32).map(VertexId).filter(|v| self.first[v.index()] != NOTHING)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sources_come_and_go() {
+        let mut sources = Sources::new(3);
+        let v = VertexId(1);
+        sources.add(v, 0.5, 7);
+        sources.add(v, 0.25, 9);
+        sources.add(v, 0.25, 8);
+        assert_eq!((sources.nearest(v).colour, sources.vertices().count()), (8, 1));
+        sources.remove(v, 8);
+        sources.remove(v, 9);
+        assert_eq!(sources.at(v).collect::<Vec<_>>(), [(0.5, 7)]);
+        sources.add(v, 0.1, 3);
+        assert!(sources.records.len() <= 3, "slots are used again");
+        assert_eq!(sources.nearest(VertexId(0)), Label::FAR);
+    }
+}
