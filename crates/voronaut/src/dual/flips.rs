@@ -1,6 +1,7 @@
 //! Lawson's flips by the metric in-circle test, on a triangulation that stays embedded.
 
 use super::{Dual, Effort};
+use crate::geometry::signed_area;
 use crate::triangulation::{HalfEdge, VertexId};
 
 /// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
@@ -9,6 +10,10 @@ const TIE: f64 = 1e-9;
 /// How often one pass flips the edge in one slot: inconsistent tests can make flips go round in a circle, which must
 /// neither last for ever nor keep the rest of the mesh from its flips. Honest passes were seen to need three.
 const FLIPS_PER_SLOT: u8 = 6;
+
+/// A flip may not make a triangle smaller than this share of the smaller one before: where lengths of straight edges
+/// contradict each other it would leave slivers.
+const FLATTEST: f64 = 0.1;
 
 impl Dual<'_> {
     /// Flips every edge that the metric wants flipped and the plane allows. Returns the number of flips.
@@ -30,7 +35,7 @@ impl Dual<'_> {
         let edges: Vec<HalfEdge> =
             self.planar.topology.edges().filter(|&h| !self.planar.topology.is_fixed(h)).collect();
         let mut blocked = Vec::new();
-        for h in edges.into_iter().filter(|&h| !self.planar.is_convex(h)).collect::<Vec<_>>() {
+        for h in edges.into_iter().filter(|&h| !self.allows_flip(h)).collect::<Vec<_>>() {
             let margin = self.margin(h, effort);
             if margin.value < -TIE && margin.is_certain() {
                 blocked.push((h, margin.value));
@@ -49,7 +54,7 @@ impl Dual<'_> {
     fn flip_stacked(&mut self, effort: Effort) -> u64 {
         let mut flipped: Vec<HalfEdge> = Vec::new();
         while let Some(h) = self.stack.pop() {
-            if self.planar.topology.is_fixed(h) || self.margin(h, effort).value >= -TIE || !self.planar.is_convex(h) {
+            if self.planar.topology.is_fixed(h) || self.margin(h, effort).value >= -TIE || !self.allows_flip(h) {
                 continue;
             }
             let slot = self.planar.topology.twin(h).map_or(h, |t| h.min(t));
@@ -65,6 +70,17 @@ impl Dual<'_> {
             self.flips_of_slot[slot.index()] = 0;
         }
         flipped.len() as u64
+    }
+
+    /// Whether the plane allows a flip: the quadrilateral is strictly convex, and the flip leaves no triangle that is
+    /// next to nothing beside both triangles of before.
+    fn allows_flip(&self, h: HalfEdge) -> bool {
+        let Some(t) = self.planar.topology.twin(h) else { return false };
+        let [a, b] = self.planar.ends(h);
+        let [c, d] = [h, t].map(|e| self.planar.position(self.planar.topology.apex(e)));
+        let before = signed_area(a, b, c).min(signed_area(b, a, d));
+        let after = signed_area(d, b, c).min(signed_area(c, a, d));
+        after > FLATTEST * before && self.planar.is_convex(h)
     }
 
     fn flip(&mut self, h: HalfEdge) {

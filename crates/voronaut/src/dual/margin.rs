@@ -10,9 +10,9 @@ use crate::triangulation::{HalfEdge, VertexId};
 pub const LEVELS: usize = 4;
 
 /// Quadrilaterals whose shorter diagonal is longer than this (metric length) are settled by the frozen tensor: local
-/// expansions say nothing so far away, and such edges are on their way to be split. So are quadrilaterals at a rough
-/// vertex: their geodesics cannot be told from expansions, and tests that contradict each other make flips go in
-/// circles.
+/// expansions say nothing so far away, and such edges are on their way to be split. So are, with
+/// [`Effort::Local`], quadrilaterals at a rough vertex: expansions say nothing of them, and while seeds still move the
+/// dearer levels are not worth their price.
 const LONG: f64 = 3.0;
 
 /// How far up the levels a test may climb.
@@ -59,12 +59,20 @@ impl Dual<'_> {
         let t = self.topology().twin(h).expect("an edge with two faces");
         let topology = self.topology();
         let quad = Quad { a: topology.origin(h), b: topology.target(h), c: topology.apex(h), d: topology.apex(t) };
+        let is_rough = [quad.a, quad.b, quad.c, quad.d].iter().any(|&v| self.local(v).is_rough);
         let mut margin = self.frozen(&quad);
-        for level in 1..=effort as usize {
+        if is_rough && effort == Effort::Local {
+            margin.error = 0.0;
+        }
+        let levels = if is_rough { 2..=(effort as usize).min(2) } else { 1..=effort as usize };
+        for level in levels {
             if margin.is_certain() {
                 break;
             }
-            margin = self.by_lengths(&quad, level);
+            match self.by_lengths(&quad, level) {
+                Some(better) => margin = better,
+                None => margin.error = 0.0,
+            }
         }
         self.counters.tests[margin.level] += 1;
         self.counters.uncertain += u64::from(!margin.is_certain());
@@ -83,17 +91,17 @@ impl Dual<'_> {
         };
         let error = spread(b - a).max(spread(d - c));
         let is_long = mean.length(b - a).min(mean.length(d - c)) > LONG;
-        let is_rough = [quad.a, quad.b, quad.c, quad.d].iter().any(|&v| self.local(v).is_rough);
-        Margin { value, error: if is_long || is_rough { 0.0 } else { error }, level: 0 }
+        Margin { value, error: if is_long { 0.0 } else { error }, level: 0 }
     }
 
-    fn by_lengths(&self, quad: &Quad, level: usize) -> Margin {
+    /// The margin from five lengths; `None` where they make no triangles, and the level before has to do.
+    fn by_lengths(&self, quad: &Quad, level: usize) -> Option<Margin> {
         let length = |u: VertexId, v: VertexId| self.length_between(u, v, level);
         let Quad { a, b, c, d } = *quad;
         let (ab, ac, bc, ad, bd) = (length(a, b), length(a, c), length(b, c), length(a, d), length(b, d));
         let relative = [ab, ac, bc, ad, bd].iter().map(|l| l.error).fold(0.0, f64::max);
         let angles = Angles::from_lengths(ab.value, [ac.value, bc.value], [ad.value, bd.value]);
-        Margin { value: angles.margin(), error: angles.error(relative), level }
+        (!angles.is_flat()).then(|| Margin { value: angles.margin(), error: angles.error(relative), level })
     }
 
     fn length_between(&self, u: VertexId, v: VertexId, level: usize) -> Length {

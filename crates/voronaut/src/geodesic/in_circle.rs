@@ -20,6 +20,7 @@ pub fn frozen_margin(tensor: Tensor, [ca, cb]: [Vector; 2], [db, da]: [Vector; 2
 pub struct Angles {
     margin: f64,
     sensitivity: f64,
+    flatness: f64,
 }
 
 impl Angles {
@@ -28,12 +29,22 @@ impl Angles {
         let (c, area_c) = opposite(edge, ac, bc);
         let (d, area_d) = opposite(edge, ad, bd);
         let sensitivity = |a: f64, b: f64, area: f64| edge * (edge + a + b) / (2.0 * area.max(f64::MIN_POSITIVE));
-        Self { margin: c.0 * d.1 + c.1 * d.0, sensitivity: sensitivity(ac, bc, area_c) + sensitivity(ad, bd, area_d) }
+        Self {
+            margin: c.0 * d.1 + c.1 * d.0,
+            sensitivity: sensitivity(ac, bc, area_c) + sensitivity(ad, bd, area_d),
+            flatness: (area_c / (ac * bc).max(edge * edge)).min(area_d / (ad * bd).max(edge * edge)),
+        }
     }
 
     /// The margin: the sine of the sum of the two angles.
     pub fn margin(&self) -> f64 {
         self.margin
+    }
+
+    /// Whether one of the triangles is nearly flat (height below a twentieth of the base), or its lengths break the
+    /// triangle inequality, as those of chords may: its angles then say nothing.
+    pub fn is_flat(&self) -> bool {
+        self.flatness < 0.025
     }
 
     /// A first-order bound on the margin's error, of lengths with this relative error.
