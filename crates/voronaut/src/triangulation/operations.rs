@@ -263,8 +263,8 @@ struct Record {
 impl Record {
     /// The record once the half-edges `from` have moved to `to`: where its twin is one of them, the twin moves along.
     fn with_moved_twin(mut self, from: [HalfEdge; 4], to: [HalfEdge; 4]) -> Self {
-        if let Some(i) = from.iter().position(|e| e.0 == self.twin) {
-            self.twin = to[i].0;
+        if let Some((_, new)) = from.iter().zip(to).find(|(old, _)| old.0 == self.twin) {
+            self.twin = new.0;
         }
         self
     }
