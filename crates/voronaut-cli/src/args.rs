@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::path::PathBuf;
+use voronaut::canvas::VERTICES_PER_SEED;
 use voronaut::metric::Bounds;
 use voronaut::output::Picture;
 use voronaut::recipe::MeshOptions;
@@ -105,7 +106,7 @@ pub(crate) struct DualArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) diagram: Option<PathBuf>,
     /// Canvas vertices per seed; 20,000 in all at least
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = 100)]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = VERTICES_PER_SEED)]
     pub(crate) canvas_size: u32,
     /// Exit with 1 if a straight triangle comes out inverted or the dual is no valid mesh
     #[arg(long)]

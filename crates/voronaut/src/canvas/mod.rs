@@ -17,6 +17,9 @@ use crate::planar::{Planar, hilbert_order};
 use crate::triangulation::{Triangulation, VertexId};
 use locate::Finder;
 
+/// Canvas vertices per seed (`--canvas-size`) unless told otherwise.
+pub const VERTICES_PER_SEED: u32 = 100;
+
 /// How a canvas came about. Deterministic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CanvasCounters {

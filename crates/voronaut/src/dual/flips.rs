@@ -1,6 +1,6 @@
 //! Lawson's flips by the metric in-circle test, on a triangulation that stays embedded.
 
-use super::{Dual, Effort};
+use super::{Dual, Effort, Margin};
 use crate::geometry::signed_area;
 use crate::triangulation::{HalfEdge, VertexId};
 
@@ -8,7 +8,7 @@ use crate::triangulation::{HalfEdge, VertexId};
 const TIE: f64 = 1e-9;
 
 /// How often one pass flips the edge in one slot: inconsistent tests can make flips go round in a circle, which must
-/// neither last for ever nor keep the rest of the mesh from its flips. Honest passes were seen to need three.
+/// neither last for ever nor keep the rest of the mesh from its flips.
 const FLIPS_PER_SLOT: u8 = 6;
 
 /// A flip may not make a triangle smaller than this share of the smaller one before: where lengths of straight edges
@@ -30,25 +30,21 @@ impl Dual<'_> {
         self.flip_stacked(effort)
     }
 
-    /// Edges that the metric wants flipped and the plane forbids, with their margins.
-    pub fn blocked_flips(&mut self, effort: Effort) -> Vec<(HalfEdge, f64)> {
-        let edges: Vec<HalfEdge> =
-            self.planar.topology.edges().filter(|&h| !self.planar.topology.is_fixed(h)).collect();
-        let mut blocked = Vec::new();
-        for h in edges.into_iter().filter(|&h| !self.allows_flip(h)).collect::<Vec<_>>() {
-            let margin = self.margin(h, effort);
-            if margin.value < -TIE && margin.is_certain() {
-                blocked.push((h, margin.value));
-            }
-        }
-        blocked
+    /// Edges that the metric wants flipped and the plane forbids, with their margins, certain or not.
+    pub fn blocked_flips(&mut self, effort: Effort) -> Vec<(HalfEdge, Margin)> {
+        let forbidden: Vec<HalfEdge> = self.free_edges().filter(|&h| !self.allows_flip(h)).collect();
+        let with_margin = forbidden.into_iter().map(|h| (h, self.margin(h, effort)));
+        with_margin.filter(|(_, margin)| margin.value < -TIE).collect()
     }
 
-    /// The smallest margin among all edges that could be flipped; `None` of none.
+    /// The smallest margin among all edges that are not constrained; `None` of none.
     pub fn smallest_margin(&mut self, effort: Effort) -> Option<f64> {
-        let edges: Vec<HalfEdge> =
-            self.planar.topology.edges().filter(|&h| !self.planar.topology.is_fixed(h)).collect();
+        let edges: Vec<HalfEdge> = self.free_edges().collect();
         edges.into_iter().map(|h| self.margin(h, effort).value).reduce(f64::min)
+    }
+
+    fn free_edges(&self) -> impl Iterator<Item = HalfEdge> + '_ {
+        self.planar.topology.edges().filter(|&h| !self.planar.topology.is_fixed(h))
     }
 
     fn flip_stacked(&mut self, effort: Effort) -> u64 {

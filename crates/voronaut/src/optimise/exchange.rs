@@ -9,9 +9,9 @@ use crate::triangulation::VertexId;
 /// Edges shorter than this in the metric (just below the unit range) mark seeds that crowd.
 const SHORT: f64 = 0.66;
 
-/// Removes free seeds at edges that are too short, shortest first and no two of them neighbours, at most a share of
-/// all vertices; then inserts where circumradii are largest until there are as many vertices as `fill` says again. Returns how many
-/// seeds were removed.
+/// Removes free seeds at edges that are too short, shortest first and no two of them neighbours, at most `most`; then
+/// inserts where circumradii are largest until there are as many vertices as `fill` says again. Returns how many seeds
+/// were removed.
 pub fn exchange(dual: &mut Dual, fill: Fill, most: usize) -> usize {
     let removed = remove_crowded(dual, most, SHORT);
     let excess = dual.vertex_count().saturating_sub(fill.count());
@@ -52,11 +52,12 @@ fn nearest_two(dual: &Dual, v: VertexId) -> f64 {
     lengths.iter().take(2).sum()
 }
 
-/// Puts a seed at the middle of each edge whose flip the metric wants and the plane forbids, worst first and at most
-/// `most` of them. Returns how many.
+/// Puts a seed at the middle of each edge whose flip the metric certainly wants and the plane forbids, worst first and
+/// at most `most` of them. Returns how many.
 pub fn meet_blocked_flips(dual: &mut Dual, most: usize) -> usize {
     let mut blocked = dual.blocked_flips(Effort::Local);
-    blocked.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+    blocked.retain(|(_, margin)| margin.is_certain());
+    blocked.sort_by(|a, b| a.1.value.total_cmp(&b.1.value).then(a.0.cmp(&b.0)));
     let ends = |h| [dual.topology().origin(h), dual.topology().target(h)];
     let edges: Vec<[VertexId; 2]> = blocked.into_iter().map(|(h, _)| ends(h)).collect();
     let mut met = 0;

@@ -57,7 +57,7 @@ fn farthest(segments: &[(Point, Point)], index: &Segments) -> Option<Farthest> {
 }
 
 #[cfg(test)]
-#[allow(clippy::float_cmp, reason = "the truths are exact")]
+#[expect(clippy::float_cmp, reason = "the truths are exact")]
 mod tests {
     use super::super::test_meshes::{fan, grid, with_hole};
     use super::*;

@@ -229,7 +229,7 @@ fn fault(what: &str, place: &str) -> Error {
 }
 
 #[cfg(test)]
-#[allow(clippy::float_cmp, reason = "the truths are exact")]
+#[expect(clippy::float_cmp, reason = "the truths are exact")]
 mod tests {
     use super::super::test_meshes::{grid, lattice, mesh};
     use super::*;

@@ -236,7 +236,6 @@ fn centroid([a, b, c]: [Point; 3]) -> Point {
 }
 
 #[cfg(test)]
-#[allow(clippy::float_cmp, reason = "the truths are exact")]
 mod tests {
     use super::super::test_meshes::{fan, grid, lattice, mesh, with_hole};
     use super::*;
