@@ -3,9 +3,10 @@
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::path::PathBuf;
 use voronaut::canvas::VERTICES_PER_SEED;
+use voronaut::dual::Road;
 use voronaut::metric::Bounds;
 use voronaut::output::Picture;
-use voronaut::recipe::MeshOptions;
+use voronaut::recipe::{MeshOptions, Seeding};
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
 #[derive(Debug, Parser)]
@@ -44,8 +45,13 @@ Examples:
 const DUAL_EXAMPLES: &str = "\
 Line i of FILE, `x y`, is seed and vertex i. DOMAIN and METRIC are as for `mesh`; the metric is used as it is.
 
+With --edges geodesic OUT holds the seeds first, then the points of the geodesics; edges are their segments (in a .vtu one
+polyline cell for each), labelled with the number of the edge, and triangles cut up the region of each Riemannian triangle,
+labelled with its number, both from 1. Lengths are in the report and in the .vtu.
+
 Examples:
   voronaut dual rect:-2,-2,2,2 --metric swirl --seeds seeds.txt -o dual.mesh
+  voronaut dual rect:-2,-2,2,2 --metric swirl --seeds seeds.txt -o rdt.vtu --edges geodesic --picture rdt.png --show geodesics
   voronaut dual sea.geojson --metric boundary:h0=2 --seeds ports.txt -o dual.vtu --diagram cells.vtu --report run.json";
 
 const CHECK_EXAMPLES: &str = "\
@@ -80,6 +86,15 @@ pub(crate) struct MeshArgs {
     /// Steps of Riemannian Lloyd relaxation
     #[arg(long, value_name = "STEPS", default_value_t = MeshOptions::default().lloyd)]
     pub(crate) lloyd: usize,
+    /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
+    #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(MeshOptions::default().dual))]
+    pub(crate) dual: Dual,
+    /// Where interior seeds come to lie: sizing (at circumcentres) or farthest (from all seeds, on a canvas)
+    #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().seeding)]
+    pub(crate) seeding: Seeding,
+    /// Canvas vertices per seed, where a canvas is used
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = MeshOptions::default().canvas_size)]
+    pub(crate) canvas_size: u32,
     /// Refuse work that is estimated to need more memory than this
     #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
     pub(crate) memory_limit: f64,
@@ -99,16 +114,25 @@ pub(crate) struct DualArgs {
     /// The seeds: a file with a line `x y` for each
     #[arg(long, value_name = "FILE")]
     pub(crate) seeds: PathBuf,
-    /// The dual with straight edges: .mesh, .vtu or .obj
+    /// The dual: .mesh, .vtu or .obj
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// Write the coloured canvas, with colours and distances: .vtu
     #[arg(long, value_name = "FILE")]
     pub(crate) diagram: Option<PathBuf>,
-    /// Canvas vertices per seed; 20,000 in all at least
+    /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
+    #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(Road::default()))]
+    pub(crate) dual: Dual,
+    /// How OUT has the edges: straight, or as the geodesics that they are (polylines, with the regions between them)
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = EdgesOut::Straight)]
+    pub(crate) edges: EdgesOut,
+    /// Canvas vertices per seed; 150,000 in all at least, for up to 300 seeds
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = VERTICES_PER_SEED)]
     pub(crate) canvas_size: u32,
-    /// Exit with 1 if a straight triangle comes out inverted or the dual is no valid mesh
+    /// Refuse work that is estimated to need more memory than this
+    #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
+    memory_limit: f64,
+    /// Exit with 1 if what OUT would hold is not embedded: straight triangles inverted, edges that cross
     #[arg(long)]
     pub(crate) strict: bool,
     #[command(flatten)]
@@ -191,6 +215,71 @@ pub(crate) enum Show {
     Mesh,
     /// Balls of the metric
     Ellipses,
+    /// Voronoi cells of the vertices
+    Cells,
+    /// Canvas triangles that witness Voronoi vertices (red) and edges (grey), over cells
+    Witnesses,
+    /// Edges of the dual as geodesics, over cells
+    Geodesics,
+    /// Riemannian triangles with lines of equal barycentric coordinates, over cells
+    Triangles,
+}
+
+impl Show {
+    /// Whether it takes a diagram to show it.
+    pub(crate) fn is_of_diagram(self) -> bool {
+        matches!(self, Show::Cells | Show::Witnesses | Show::Geodesics | Show::Triangles)
+    }
+}
+
+/// How the edges of a dual are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EdgesOut {
+    /// Straight
+    Straight,
+    /// As geodesics
+    Geodesic,
+}
+
+/// [`Road`], as it is typed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Dual {
+    /// Lengths of geodesics
+    Geodesic,
+    /// The nerve of the diagram
+    Canvas,
+    /// Lengths, and the diagram where they cannot decide
+    Both,
+}
+
+impl EdgesOut {
+    /// As it is typed.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            EdgesOut::Straight => "straight",
+            EdgesOut::Geodesic => "geodesic",
+        }
+    }
+}
+
+impl From<Dual> for Road {
+    fn from(typed: Dual) -> Self {
+        match typed {
+            Dual::Geodesic => Road::Geodesic,
+            Dual::Canvas => Road::Canvas,
+            Dual::Both => Road::Both,
+        }
+    }
+}
+
+impl From<Road> for Dual {
+    fn from(road: Road) -> Self {
+        match road {
+            Road::Geodesic => Dual::Geodesic,
+            Road::Canvas => Dual::Canvas,
+            Road::Both => Dual::Both,
+        }
+    }
 }
 
 /// Bytes of a gibibyte.
@@ -202,6 +291,13 @@ impl MetricChoices {
     }
 }
 
+impl DualArgs {
+    /// In bytes.
+    pub(crate) fn memory_limit(&self) -> u64 {
+        (self.memory_limit * GIB) as u64
+    }
+}
+
 impl MeshArgs {
     pub(crate) fn options(&self) -> MeshOptions {
         MeshOptions {
@@ -209,6 +305,9 @@ impl MeshArgs {
             complexity: self.complexity,
             hausd: self.hausd,
             lloyd: self.lloyd,
+            dual: self.dual.into(),
+            seeding: self.seeding,
+            canvas_size: self.canvas_size,
             memory_limit: (self.memory_limit * GIB) as u64,
         }
     }
@@ -259,10 +358,12 @@ mod tests {
             &["--h-min", "nan"],
             &["--hausd", "-1"],
             &["--threads", "0"],
+            &["--seeding", "protected"],
+            &["--canvas-size", "0"],
             &["--show", "mesh"],
             &["--pixels", "800"],
             &["--pixels", "8", "--picture", "a.svg"],
-            &["--show", "cells", "--picture", "a.svg"],
+            &["--show", "stars", "--picture", "a.svg"],
             &["-q", "-v"],
         ] {
             let error = Arguments::try_parse_from(base.iter().chain(more)).unwrap_err();

@@ -1,6 +1,7 @@
 //! `voronaut check`: examines a mesh that is there.
 
 use crate::args::CheckArgs;
+use crate::files::{Drawn, MeshFile};
 use crate::{files, summary};
 use serde_json::json;
 use std::path::Path;
@@ -18,7 +19,11 @@ use voronaut::{Error, Result};
 /// Examines a mesh. The report is written for any mesh; figures in a metric and pictures are for valid ones.
 pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     let start = Instant::now();
-    files::demand_writable(None, &args.outputs)?;
+    files::demand_writable(None, None, &args.outputs)?;
+    if Drawn::is_wanted(&args.outputs) {
+        let what = "a picture of cells of a mesh that is only checked".into();
+        return Err(Error::Unsupported { what, help: "give its vertices to voronaut dual as seeds".into() });
+    }
     files::set_threads(&args.run)?;
     let mesh = read(&args.mesh)?;
     let found = validity(&mesh);
@@ -42,7 +47,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     }
     report.fidelity = domain.map(|domain| fidelity(&mesh, &domain.boundary()));
     report.seconds.total = start.elapsed().as_secs_f64();
-    files::write(None, &args.outputs, &mesh, metric.as_deref(), &report)?;
+    files::write(&MeshFile::None, &args.outputs, &mesh, metric.as_deref(), &report, &Drawn::default())?;
     summary::print(&args.mesh.display().to_string(), &report, &args.run);
     Ok(())
 }

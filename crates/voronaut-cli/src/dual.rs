@@ -1,31 +1,33 @@
 //! `voronaut dual`: diagram and dual of the seeds given.
 
-use crate::args::DualArgs;
+use crate::args::{DualArgs, EdgesOut};
+use crate::files::{Drawn, MeshFile};
+use crate::seeds::SeedFile;
 use crate::{files, summary};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
-use voronaut::canvas::Canvas;
-use voronaut::diagram::Diagram;
+use voronaut::canvas::{self, Canvas};
+use voronaut::diagram::{Diagram, resolve};
 use voronaut::domain::Domain;
-use voronaut::formats::points;
-use voronaut::metric::MetricSpec;
+use voronaut::dual::Road;
+use voronaut::mesh::Mesh;
+use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::{self, Report, report};
-use voronaut::quality::{metric_quality, validity};
-use voronaut::recipe;
+use voronaut::quality::{crossing_edges, metric_quality, validity};
+use voronaut::realisation::Realisation;
+use voronaut::recipe::{self, SeedDual};
+use voronaut::sampling;
 use voronaut::{Error, Result};
 
-/// Canvas vertices at least: a few seeds' cells are large, and so is what the metric does within them.
-const LEAST_CANVAS: usize = 20_000;
+/// With `--dual canvas` the canvas is refined so many times where it does not tell Voronoi vertices apart.
+const ROUNDS: u32 = 3;
 
-/// The nerve of the seeds' cells with straight edges. Triangles that come out inverted are counted, not refused.
+/// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
 pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let start = Instant::now();
-    files::demand_writable(Some(&args.out), &args.outputs)?;
-    if let Some(path) = &args.diagram {
-        output::demand_diagram(path)?;
-        output::demand_directory(path)?;
-    }
+    args.diagram.as_deref().map(output::demand_diagram).transpose()?;
+    files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs)?;
     files::set_threads(&args.run)?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
@@ -33,8 +35,8 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let domain = Domain::read(&args.domain)?;
     let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
     let metric = recipe::metric(&spec, &domain, args.metric_choices.background.as_deref().or(own), bounds)?;
-    let text = std::fs::read_to_string(&args.seeds).map_err(|source| Error::Io { path: args.seeds.clone(), source })?;
-    let seeds = points::read(&text, &args.seeds.display().to_string())?;
+    let file = SeedFile::read(&args.seeds)?;
+    let seeds = &file.seeds;
     let mut stages = Vec::new();
     let mut begin = start;
     let mut stage = |name: &'static str| {
@@ -42,31 +44,44 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
         begin = Instant::now();
     };
     stage("read");
-    let size = (args.canvas_size as usize).saturating_mul(seeds.len()).max(LEAST_CANVAS);
-    let canvas = Canvas::intrinsic(&domain, metric.as_ref(), size)?;
+    let size = canvas::size_for(seeds.len(), args.canvas_size);
+    sampling::demand_memory(seeds.len() as f64, size as f64, args.memory_limit())?;
+    let mut canvas = Canvas::intrinsic(&domain, metric.as_ref(), size)?;
+    file.demand_inside(&canvas)?;
+    let road = Road::from(args.dual);
+    if road == Road::Canvas {
+        canvas = resolve(canvas, metric.as_ref(), seeds, ROUNDS)?.canvas;
+    }
     stage("canvas");
-    let diagram = Diagram::new(&canvas, metric.as_ref(), &seeds)?;
+    let diagram = Diagram::new(&canvas, metric.as_ref(), seeds)?;
     stage("diagram");
-    let mesh = diagram.to_mesh(&diagram.sharp_nerve(), &domain);
-    stage("nerve");
-    let found = validity(&mesh);
-    let inverted = found.inverted;
-    let fault = if args.strict { found.demand().err() } else { None };
-    let is_valid = found.valid;
-    let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
-    if is_valid {
-        report = report.with_quality(&metric_quality(&mesh, metric.as_ref())?);
+    let SeedDual { triangles, nerve, mut account, seconds } = recipe::dual(&diagram, metric.as_ref(), road);
+    let mesh = diagram.to_mesh(triangles, &nerve, &domain);
+    account.crossing_edges = Some(crossing_edges(&mesh).len());
+    stage("dual");
+    let is_curved = args.edges == EdgesOut::Geodesic || Drawn::has_geodesics(&args.outputs);
+    let curved = is_curved.then(|| Realisation::new(&diagram, metric.as_ref(), &mesh.triangles));
+    account.geodesics = curved.as_ref().map(report::Geodesics::of);
+    if is_curved {
+        stage("geodesics");
     }
-    report.canvas = Some(report::Canvas { kind: "intrinsic".into(), vertices: canvas.vertex_count() });
-    report.diagram = Some(report::Diagram { orphans: diagram.orphans().len() });
-    report.notes = notes(&diagram, inverted);
+    let mut report = reported(&mesh, metric.as_ref(), account)?;
+    report.canvas = Some(report::Canvas::of(&canvas));
+    report.diagram = Some(report::Diagram::of(&diagram));
+    report.notes = notes(&diagram, &report);
     report.options = options(args);
+    // Parts of "dual".
+    stages.extend(seconds);
     report.seconds = report::Seconds { stages, total: start.elapsed().as_secs_f64() };
-    if let Some(fault) = fault {
-        files::write_report(&args.outputs, &report)?;
-        return Err(fault);
+    if args.strict {
+        demand_embedded(args, &report).or_else(|fault| files::write_report(&args.outputs, &report).and(Err(fault)))?;
     }
-    files::write(Some(&args.out), &args.outputs, &mesh, Some(metric.as_ref()), &report)?;
+    let drawn = Drawn::from_diagram(&args.outputs, &diagram, &mesh, metric.as_ref(), curved.as_ref());
+    let file = match &curved {
+        Some(curved) if args.edges == EdgesOut::Geodesic => MeshFile::Geodesic(&args.out, curved),
+        _ => MeshFile::Straight(&args.out),
+    };
+    files::write(&file, &args.outputs, &mesh, Some(metric.as_ref()), &report, &drawn)?;
     if let Some(path) = &args.diagram {
         let (canvas, distances) = diagram.to_coloured_canvas();
         output::write_diagram(&canvas, &distances, path)?;
@@ -75,11 +90,60 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     Ok(())
 }
 
-fn notes(diagram: &Diagram, inverted: usize) -> Vec<String> {
+/// The figures of the dual with straight edges, in the metric only where it is valid.
+fn reported(mesh: &Mesh, metric: &dyn MetricField, account: report::Dual) -> Result<Report> {
+    let found = validity(mesh);
+    let is_valid = found.valid;
+    let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
+    if is_valid {
+        report = report.with_quality(&metric_quality(mesh, metric)?);
+    }
+    report.dual = Some(account);
+    Ok(report)
+}
+
+/// Refuses what OUT would hold if it is not embedded.
+fn demand_embedded(args: &DualArgs, report: &Report) -> Result<()> {
+    let dual = report.dual.as_ref();
+    if args.edges == EdgesOut::Straight {
+        report.validity.demand()?;
+        let crossing = dual.and_then(|dual| dual.crossing_edges).unwrap_or(0);
+        return demand_none(crossing, "pairs of straight edges cross", args);
+    }
+    let geodesics = dual.and_then(|dual| dual.geodesics.as_ref());
+    let [crossing, open] = geodesics.map_or([0; 2], |found| [found.crossing_geodesics, found.open_regions]);
+    demand_none(crossing, "pairs of geodesic edges meet elsewhere than at seeds", args)?;
+    demand_none(open, "triangles of geodesic edges bound no region", args)
+}
+
+fn demand_none(count: usize, what: &str, args: &DualArgs) -> Result<()> {
+    if count == 0 {
+        return Ok(());
+    }
+    let help = "add seeds where the metric changes fast, or leave out --strict";
+    Err(Error::Mesh { what: format!("{count} {what}"), place: args.out.display().to_string(), help: help.into() })
+}
+
+fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {
     let mut notes = Vec::new();
-    if inverted > 0 {
-        notes
-            .push(format!("{inverted} straight triangles come out inverted: the dual does not embed with these seeds"));
+    if report.triangles == 0 {
+        notes.push("there are no triangles: no three cells meet in the domain".into());
+    }
+    let mut note = |count: usize, what: &str| {
+        if count > 0 {
+            notes.push(format!("{count} {what}"));
+        }
+    };
+    note(
+        report.validity.inverted,
+        "straight triangles come out inverted: the dual does not embed with straight edges and these seeds",
+    );
+    if let Some(dual) = &report.dual {
+        note(dual.crossing_edges.unwrap_or(0), "pairs of straight edges cross");
+        if let Some(found) = &dual.geodesics {
+            note(found.crossing_geodesics, "pairs of geodesic edges meet elsewhere than at seeds");
+            note(found.open_regions, "triangles of geodesic edges bound no region, and have none in the file");
+        }
     }
     let empty = diagram.cell_sizes().iter().filter(|&&size| size == 0).count();
     if empty > 0 {
@@ -92,7 +156,7 @@ fn notes(diagram: &Diagram, inverted: usize) -> Vec<String> {
 fn options(args: &DualArgs) -> serde_json::Value {
     json!({
         "domain": args.domain, "metric": args.metric, "seeds": args.seeds, "out": args.out, "diagram": args.diagram,
-        "canvas": "intrinsic", "canvas_size": args.canvas_size, "geodesic": "march", "strict": args.strict,
+        "canvas": "intrinsic", "canvas_size": args.canvas_size, "geodesic": "march", "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
         "picture": args.outputs.picture, "report": args.outputs.report, "threads": args.run.threads,
     })

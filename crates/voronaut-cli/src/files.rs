@@ -2,16 +2,23 @@
 
 use crate::args::{Outputs, Run, Show};
 use std::path::Path;
+use voronaut::diagram::{Cells, Diagram};
+use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
-use voronaut::output::{self, Format, Picture, PictureFormat, Report};
+use voronaut::output::{self, Format, Layers, Picture, PictureFormat, Report};
+use voronaut::realisation::{Grid, Realisation};
 use voronaut::{Error, Result};
 
-/// Refuses, before any work, outputs that could not be written: endings, directories, one name used twice.
-pub(crate) fn demand_writable(mesh: Option<&Path>, outputs: &Outputs) -> Result<()> {
+/// Pieces per side in which pictures show a Riemannian triangle.
+const PIECES: usize = 4;
+
+/// Refuses, before any work, outputs that could not be written: endings, directories, one name used twice. `more` is
+/// what is written beside a mesh.
+pub(crate) fn demand_writable(mesh: Option<&Path>, more: Option<&Path>, outputs: &Outputs) -> Result<()> {
     mesh.map(Format::from_path).transpose()?;
     outputs.picture.as_deref().map(PictureFormat::from_path).transpose()?;
-    let files = [mesh, outputs.picture.as_deref(), outputs.report.as_deref()];
+    let files = [mesh, more, outputs.picture.as_deref(), outputs.report.as_deref()];
     let mut seen = Vec::new();
     for file in files.into_iter().flatten() {
         let place = output::place(file)?;
@@ -24,16 +31,87 @@ pub(crate) fn demand_writable(mesh: Option<&Path>, outputs: &Outputs) -> Result<
     Ok(())
 }
 
+/// What a picture shows of a diagram.
+#[derive(Default)]
+pub(crate) struct Drawn {
+    cells: Option<Cells>,
+    witnesses: Option<[Vec<[Point; 3]>; 2]>,
+    geodesics: Vec<Vec<Point>>,
+    grids: Vec<Vec<Point>>,
+}
+
+impl Drawn {
+    /// Whether the picture, if there is one, needs a diagram.
+    pub(crate) fn is_wanted(outputs: &Outputs) -> bool {
+        outputs.picture.is_some() && outputs.show.iter().any(|show| show.is_of_diagram())
+    }
+
+    /// Whether the picture, if there is one, shows a mesh with geodesic edges.
+    pub(crate) fn has_geodesics(outputs: &Outputs) -> bool {
+        outputs.picture.is_some() && outputs.show.iter().any(|show| matches!(show, Show::Geodesics | Show::Triangles))
+    }
+
+    /// As far as asked for, from a diagram whose seeds are the mesh's vertices, and the mesh with geodesic edges if that is
+    /// there already.
+    pub(crate) fn from_diagram(
+        outputs: &Outputs,
+        diagram: &Diagram,
+        mesh: &Mesh,
+        field: &dyn MetricField,
+        realisation: Option<&Realisation>,
+    ) -> Self {
+        if !Self::is_wanted(outputs) {
+            return Self::default();
+        }
+        let witnesses = outputs.show.contains(&Show::Witnesses).then(|| {
+            let found = diagram.witnesses();
+            [diagram.corners_of(&found.vertices), diagram.corners_of(&found.edges)]
+        });
+        let mut drawn = Self { cells: Some(diagram.to_cells()), witnesses, ..Self::default() };
+        if Self::has_geodesics(outputs) {
+            let own = realisation.is_none().then(|| Realisation::new(diagram, field, &mesh.triangles));
+            if let Some(found) = realisation.or(own.as_ref()) {
+                drawn.geodesics = found.edges.iter().map(|edge| edge.points.clone()).collect();
+                if outputs.show.contains(&Show::Triangles) {
+                    let grids = found.grids(field, PIECES);
+                    drawn.grids = grids.iter().flatten().flat_map(Grid::lines).collect();
+                }
+            }
+        }
+        drawn
+    }
+
+    fn layers(&self) -> Layers<'_> {
+        let witnesses = self.witnesses.as_ref().map(|[vertices, edges]| [vertices.as_slice(), edges.as_slice()]);
+        Layers { cells: self.cells.as_ref(), witnesses, geodesics: &self.geodesics, grids: &self.grids }
+    }
+}
+
+/// What goes into the mesh file, and where that is.
+pub(crate) enum MeshFile<'a> {
+    /// None.
+    None,
+    /// The mesh itself.
+    Straight(&'a Path),
+    /// A dual with geodesic edges.
+    Geodesic(&'a Path, &'a Realisation),
+}
+
 /// Writes mesh, picture and report, as far as asked for. The picture is drawn before anything is written.
 pub(crate) fn write(
-    mesh_file: Option<&Path>,
+    mesh_file: &MeshFile,
     outputs: &Outputs,
     mesh: &Mesh,
     metric: Option<&dyn MetricField>,
     report: &Report,
+    drawn: &Drawn,
 ) -> Result<()> {
-    let picture = outputs.picture.as_deref().map(|path| Ok((path, draw(outputs, mesh, metric)?))).transpose()?;
-    mesh_file.map(|path| output::write_mesh(mesh, path)).transpose()?;
+    let picture = outputs.picture.as_deref().map(|path| Ok((path, draw(outputs, mesh, metric, drawn)?))).transpose()?;
+    match mesh_file {
+        MeshFile::None => {}
+        MeshFile::Straight(path) => output::write_mesh(mesh, path)?,
+        MeshFile::Geodesic(path, realisation) => output::write_realisation(realisation, path)?,
+    }
     picture.map(|(path, svg)| output::write_picture(&svg, path)).transpose()?;
     write_report(outputs, report)
 }
@@ -51,7 +129,7 @@ pub(crate) fn set_threads(run: &Run) -> Result<()> {
     built.map_err(|error| Error::Limit { what: format!("{threads} threads: {error}"), help: help.into() })
 }
 
-fn draw(outputs: &Outputs, mesh: &Mesh, metric: Option<&dyn MetricField>) -> Result<String> {
+fn draw(outputs: &Outputs, mesh: &Mesh, metric: Option<&dyn MetricField>, drawn: &Drawn) -> Result<String> {
     let shows = |what| outputs.show.contains(&what);
     let picture = Picture {
         mesh: shows(Show::Mesh),
@@ -59,5 +137,5 @@ fn draw(outputs: &Outputs, mesh: &Mesh, metric: Option<&dyn MetricField>) -> Res
         width: outputs.pixels,
         ..Picture::default()
     };
-    output::svg(mesh, metric, &picture)
+    output::svg_with(mesh, metric, &picture, &drawn.layers())
 }

@@ -6,6 +6,7 @@ mod dual;
 mod files;
 mod mesh;
 mod progress;
+mod seeds;
 mod summary;
 
 use args::{Arguments, Command};

@@ -1,16 +1,20 @@
 //! `voronaut mesh`: from the command line to the library and back. All calls of the mesher are here.
 
 use crate::args::MeshArgs;
+use crate::files::{Drawn, MeshFile};
 use crate::progress::Bar;
 use crate::{files, summary};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::time::Instant;
+use voronaut::canvas::{Canvas, VERTICES_PER_SEED};
+use voronaut::diagram::Diagram;
 use voronaut::domain::Domain;
 use voronaut::geometry::Point;
-use voronaut::metric::MetricSpec;
+use voronaut::mesh::Mesh;
+use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::Report;
-use voronaut::output::report::{Dual, Seconds};
+use voronaut::output::report::Seconds;
 use voronaut::quality::{metric_quality, validity};
 use voronaut::recipe::{self, Meshed};
 use voronaut::{Error, Result};
@@ -18,7 +22,7 @@ use voronaut::{Error, Result};
 /// Meshes a domain. Nothing is written unless the mesh is valid.
 pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let start = Instant::now();
-    files::demand_writable(Some(&args.out), &args.outputs)?;
+    files::demand_writable(Some(&args.out), None, &args.outputs)?;
     files::set_threads(&args.run)?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
@@ -37,9 +41,21 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     fill_in(&mut report, &meshed, options(args));
     report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
-    files::write(Some(&args.out), &args.outputs, &meshed.mesh, Some(&scaled), &report)?;
+    let drawn = drawn(args, &domain, &meshed.mesh, &scaled)?;
+    files::write(&MeshFile::Straight(&args.out), &args.outputs, &meshed.mesh, Some(&scaled), &report, &drawn)?;
     summary::print(&args.out.display().to_string(), &report, &args.run);
     Ok(())
+}
+
+/// The diagram of the mesh's vertices, made only to be drawn.
+fn drawn(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField) -> Result<Drawn> {
+    if !Drawn::is_wanted(&args.outputs) {
+        return Ok(Drawn::default());
+    }
+    let seeds: Vec<Point> = mesh.points.iter().map(|p| Point::new(p[0], p[1])).collect();
+    let size = (VERTICES_PER_SEED as usize).saturating_mul(seeds.len());
+    let canvas = Canvas::intrinsic(domain, metric, size)?;
+    Ok(Drawn::from_diagram(&args.outputs, &Diagram::new(&canvas, metric, &seeds)?, mesh, metric, None))
 }
 
 /// The mesh a `.sol` file belongs to: as told, or the domain's own file.
@@ -60,13 +76,9 @@ fn ours(error: Error) -> Error {
 }
 
 fn fill_in(report: &mut Report, meshed: &Meshed, options: Value) {
-    let counters = &meshed.counters;
-    report.dual = Some(Dual {
-        geodesic_tests: counters.geodesic_tests,
-        uncertain: counters.uncertain,
-        min_margin: counters.min_margin,
-        blocked_flips: counters.blocked_flips,
-    });
+    report.dual = Some(meshed.dual.clone());
+    report.canvas.clone_from(&meshed.canvas);
+    report.diagram.clone_from(&meshed.diagram);
     report.metric_scale = Some(meshed.metric_scale);
     report.notes.clone_from(&meshed.notes);
     report.options = options;

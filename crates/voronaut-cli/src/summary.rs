@@ -47,9 +47,11 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
         line("metric scale", format!("{scale}"));
     }
     if let (Some(dual), true) = (&report.dual, verbose) {
-        let tests = dual.geodesic_tests.map(|n| n.to_string()).join(" + ");
-        line("tests", format!("{tests} by level; {} uncertain", dual.uncertain));
+        let tests: Vec<String> = dual.geodesic_tests.iter().map(u64::to_string).collect();
+        line("tests", format!("{} by level; {} edges uncertain", tests.join(" + "), dual.uncertain));
         line("margin", format!("{:.2e}; {} blocked flips", dual.min_margin, dual.blocked_flips));
+        let (differ, compared) = (dual.disagreements.len(), dual.compared);
+        line("roads", format!("lengths and diagram differ on {differ} of {compared} edges compared"));
     }
     if verbose {
         report.seconds.stages.iter().for_each(|(name, time)| line(name, format!("{time:.2} s")));

@@ -96,10 +96,12 @@ pub mod metric;
 pub mod geodesic;
 pub mod canvas;
 pub mod diagram;
+pub mod rdt;
 pub mod dual;
 pub mod sampling;
 pub mod optimise;
 pub mod quality;
+pub mod realisation;
 pub mod output;
 pub mod recipe;
 

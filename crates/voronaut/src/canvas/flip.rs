@@ -5,32 +5,39 @@ use crate::triangulation::{HalfEdge, Triangulation};
 
 /// Margins (sine of the sum of opposite angles) above minus this are ties: flipping them gains nothing.
 const TIE: f64 = 1e-9;
-/// Flips at most, per edge. With exact lengths flips end by themselves; measured was less than one per vertex.
-const FLIPS_PER_EDGE: usize = 100;
+/// Flips of one slot at most. With exact lengths flips end by themselves, after less than one per vertex; lengths of flat
+/// triangles contradict each other, and flips then go round.
+const FLIPS_PER_SLOT: u8 = 20;
 
 /// Flips every edge whose two opposite angles sum to more than pi, until none is left. Constraints do not hold edges
 /// back: distances pass through features. Returns the number of flips.
 pub(super) fn to_intrinsic_delaunay(topology: &mut Triangulation) -> u64 {
     let mut stack: Vec<HalfEdge> = topology.edges().collect();
-    let most = stack.len() * FLIPS_PER_EDGE;
-    let mut flips = 0;
+    let mut flips_of_slot = vec![0_u8; 3 * topology.face_slots()];
+    let mut flips: u64 = 0;
     while let Some(h) = stack.pop() {
-        if flips == most {
-            break;
-        }
         let Some(t) = topology.twin(h).filter(|t| t.face() != h.face()) else { continue };
+        let slot = h.min(t).index();
+        if flips_of_slot[slot] == FLIPS_PER_SLOT {
+            continue;
+        }
         let quad = Quad::around(topology, h, t);
         if quad.margin() >= -TIE {
             continue;
         }
         let diagonal = quad.other_diagonal();
+        // By rounding: two vertices of a needle may fall together.
+        if !(diagonal > 0.0 && diagonal.is_finite()) {
+            continue;
+        }
         topology.clear_constraint(h);
         topology.flip(h);
         topology.set_length(h, diagonal);
+        flips_of_slot[slot] += 1;
         flips += 1;
         stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
     }
-    flips as u64
+    flips
 }
 
 /// The lengths of an edge a-b and of the outer edges of its faces a b c and b a d.

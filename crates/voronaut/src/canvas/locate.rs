@@ -1,17 +1,27 @@
 //! Finding the face of the embedded triangulation that holds a point, in any domain.
 
 use super::Canvas;
-use crate::geometry::{Orientation, Point, orientation};
-use crate::planar::{Location, Planar};
-use crate::triangulation::{FaceId, VertexId};
+use crate::geometry::{Aabb, Orientation, Point, Vector, orientation};
+use crate::planar::{Location, Planar, hilbert_order};
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use rstar::{AABB, RTree, RTreeObject};
+use std::collections::HashMap;
 use std::sync::OnceLock;
+
+/// Points outside the domain by no more than this, as a share of the largest coordinate, are on its border.
+const ROUNDING: f64 = 1e-14;
 
 /// Where to start walks from, and what to fall back on where holes bar the way.
 #[derive(Debug)]
 pub(super) struct Finder {
     anchors: Vec<VertexId>,
     tree: OnceLock<RTree<Boxed>>,
+    /// Vertices that share their position with others, by position: the fans of pinched vertices.
+    copies: HashMap<[u64; 2], Vec<VertexId>>,
+    /// What holds the domain; far from it predicates overflow.
+    bounds: Option<Aabb>,
+    /// What coordinates may err by in the computations that made them.
+    rounding: f64,
 }
 
 impl Finder {
@@ -20,16 +30,16 @@ impl Finder {
         // away. Along the Hilbert curve every k-th vertex is a well-spread sample.
         let step = (planar.positions.len() as f64).powf(2.0 / 3.0).ceil().max(1.0) as usize;
         let anchors = (0..planar.positions.len() as u32).step_by(step).map(VertexId).collect();
-        Self { anchors, tree: OnceLock::new() }
+        let largest = planar.positions.iter().map(|p| p.x.abs().max(p.y.abs())).fold(0.0, f64::max);
+        let bounds = Aabb::of(planar.positions.iter().copied());
+        Self { anchors, tree: OnceLock::new(), copies: copies(planar), bounds, rounding: ROUNDING * largest }
     }
 }
 
 impl Canvas {
-    /// The face, edge or vertex of the embedded triangulation that holds a point; `None` outside the domain.
+    /// The face, edge or vertex of the embedded triangulation that holds a point; `None` outside the domain. A point
+    /// that rounding has put beside a slanted border is on it.
     pub fn locate(&self, p: Point) -> Option<Location> {
-        if !p.is_finite() {
-            return None;
-        }
         let near = |v: &&VertexId| self.position(**v).distance(p);
         let anchor = self.finder.anchors.iter().min_by(|a, b| near(a).total_cmp(&near(b)))?;
         self.locate_from(self.embedded.topology.start(*anchor)?.face(), p)
@@ -37,23 +47,67 @@ impl Canvas {
 
     /// [`Canvas::locate`] for a point that is near a face.
     pub fn locate_from(&self, near: FaceId, p: Point) -> Option<Location> {
+        let Finder { bounds: Some(bounds), rounding, .. } = &self.finder else { return None };
+        let is_between = |x: f64, low: f64, high: f64| x >= low - rounding && x <= high + rounding;
+        if !is_between(p.x, bounds.min.x, bounds.max.x) || !is_between(p.y, bounds.min.y, bounds.max.y) {
+            return None;
+        }
         match self.embedded.walk(near, p, false) {
+            Location::Behind(h) if self.is_beside(h, p) => Some(Location::Edge(h)),
             Location::Behind(_) => self.search(p),
             found => Some(found),
+        }
+    }
+
+    /// [`Canvas::locate`] for many points.
+    pub fn locate_all(&self, points: &[Point]) -> Vec<Option<Location>> {
+        let mut locations: Vec<Option<Location>> = vec![None; points.len()];
+        let mut near: Option<FaceId> = None;
+        for i in hilbert_order(points).into_iter().map(|i| i as usize) {
+            let found = near.map_or_else(|| self.locate(points[i]), |f| self.locate_from(f, points[i]));
+            near = found.and_then(|location| self.face_of(location)).or(near);
+            locations[i] = found;
+        }
+        locations
+    }
+
+    /// The vertices at the position of a vertex, in order: more than one where the domain touches itself in a point, one
+    /// for each fan of faces.
+    pub fn copies(&self, v: VertexId) -> Vec<VertexId> {
+        self.finder.copies.get(&key(self.position(v))).map_or_else(|| vec![v], Clone::clone)
+    }
+
+    fn face_of(&self, location: Location) -> Option<FaceId> {
+        match location {
+            Location::Face(f) => Some(f),
+            Location::Edge(h) | Location::Behind(h) => Some(h.face()),
+            Location::Vertex(v) => self.embedded.topology.start(v).map(HalfEdge::face),
         }
     }
 
     /// Looks at all faces whose boxes hold the point. The tree is made when it is first needed.
     fn search(&self, p: Point) -> Option<Location> {
         let tree = self.finder.tree.get_or_init(|| RTree::bulk_load(boxes(&self.embedded)));
-        let at_point = AABB::from_point([p.x, p.y]);
+        let d = Vector::new(1.0, 1.0) * self.finder.rounding;
+        let around = AABB::from_corners([p.x - d.x, p.y - d.y], [p.x + d.x, p.y + d.y]);
+        let topology = &self.embedded.topology;
+        let near = || tree.locate_in_envelope_intersecting(around).map(|boxed| boxed.face);
         let holds = |f: &FaceId| {
             let [a, b, c] = self.embedded.triangle(*f);
             [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, p) != Orientation::Right)
         };
-        let face = tree.locate_in_envelope_intersecting(at_point).map(|boxed| boxed.face).filter(holds).min()?;
         // From a face that holds the point the walk ends at once.
-        Some(self.embedded.walk(face, p, false))
+        let inside = near().filter(holds).min().map(|face| self.embedded.walk(face, p, false));
+        let at_border = |h: &HalfEdge| topology.twin(*h).is_none() && self.is_beside(*h, p);
+        inside.or_else(|| near().flat_map(FaceId::half_edges).filter(at_border).min().map(Location::Edge))
+    }
+
+    /// Whether a point lies, but for rounding, on an edge.
+    fn is_beside(&self, h: HalfEdge, p: Point) -> bool {
+        let [a, b] = self.embedded.ends(h);
+        let d = b - a;
+        let foot = a.lerp(b, ((p - a).dot(d) / d.dot(d)).clamp(0.0, 1.0));
+        foot.distance(p) <= self.finder.rounding
     }
 }
 
@@ -68,6 +122,26 @@ impl RTreeObject for Boxed {
     fn envelope(&self) -> Self::Envelope {
         self.envelope
     }
+}
+
+/// One key for a position, whatever the signs of its zeros.
+fn key(p: Point) -> [u64; 2] {
+    [p.x + 0.0, p.y + 0.0].map(f64::to_bits)
+}
+
+fn copies(planar: &Planar) -> HashMap<[u64; 2], Vec<VertexId>> {
+    let topology = &planar.topology;
+    let borders = topology.faces().flat_map(FaceId::half_edges).filter(|&h| topology.twin(h).is_none());
+    let mut at: HashMap<[u64; 2], Vec<VertexId>> = HashMap::new();
+    // A vertex starts one side of the border.
+    for v in borders.map(|h| topology.origin(h)) {
+        at.entry(key(planar.position(v))).or_default().push(v);
+    }
+    at.retain(|_, vertices| vertices.len() > 1);
+    for vertices in at.values_mut() {
+        vertices.sort_unstable();
+    }
+    at
 }
 
 fn boxes(planar: &Planar) -> Vec<Boxed> {

@@ -4,10 +4,13 @@
 //! drawn, or found by its coordinates, uses [`Canvas::embedded`], the triangulation of the plane from which the lengths
 //! were taken. Both have the same vertices.
 
+mod border;
 mod flip;
 mod lengths;
 mod locate;
 mod refine;
+
+pub use border::Border;
 
 use crate::domain::Domain;
 use crate::error::Result;
@@ -18,10 +21,23 @@ use crate::triangulation::{Triangulation, VertexId};
 use locate::Finder;
 
 /// Canvas vertices per seed (`--canvas-size`) unless told otherwise.
-pub const VERTICES_PER_SEED: u32 = 100;
+pub const VERTICES_PER_SEED: u32 = 60;
+/// Vertices of a canvas at least: the cells of a few seeds are large, and so is what the metric does within them.
+pub const LEAST_VERTICES: usize = 150_000;
+/// So many seeds are few.
+pub const FEW_SEEDS: usize = 300;
+/// Bytes that a canvas vertex costs at the peak, with a diagram on the canvas: measured 0.44 to 0.55 kB, with a reserve.
+pub const BYTES_PER_VERTEX: f64 = 700.0;
+
+/// Vertices of a canvas for so many seeds: `per_seed` for each, and [`LEAST_VERTICES`] at least for up to
+/// [`FEW_SEEDS`], from where on that least falls with their number.
+pub fn size_for(seeds: usize, per_seed: u32) -> usize {
+    let least = LEAST_VERTICES / seeds.div_ceil(FEW_SEEDS).max(1);
+    seeds.saturating_mul(per_seed as usize).max(least)
+}
 
 /// How a canvas came about. Deterministic.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct CanvasCounters {
     /// Vertices put on edges while the triangulation was refined.
     pub splits: u64,
@@ -59,9 +75,7 @@ impl Canvas {
     /// # Errors
     /// [`crate::Error::Metric`] where the metric is not positive definite at a vertex.
     pub fn intrinsic(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        let mut canvas = Self::straight(domain, field, vertices)?;
-        canvas.counters.flips = flip::to_intrinsic_delaunay(&mut canvas.topology);
-        Ok(canvas)
+        Self::intrinsic_from(domain.planar().clone(), field, vertices)
     }
 
     /// The same vertices as [`Canvas::intrinsic`] without its flips: both triangulations are the embedded one.
@@ -69,12 +83,54 @@ impl Canvas {
     /// # Errors
     /// As for [`Canvas::intrinsic`].
     pub fn straight(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        Self::straight_from(domain.planar().clone(), field, vertices)
+    }
+
+    /// [`Canvas::intrinsic`] from any embedded triangulation, which may cover a part of a domain only. Its vertices are
+    /// vertices of the canvas, under other ids.
+    ///
+    /// # Errors
+    /// As for [`Canvas::intrinsic`].
+    pub fn intrinsic_from(planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        Ok(Self::straight_from(planar, field, vertices)?.flipped())
+    }
+
+    fn straight_from(planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         let mut counters = CanvasCounters::default();
-        let planar = refine::refine(domain.planar().clone(), field, vertices, &mut counters)?;
+        let planar = refine::refine(planar, field, vertices, &mut counters)?;
         let mut embedded = renumbered(&planar);
         lengths::measure(&mut embedded, field, &mut counters)?;
+        Ok(Self::of(embedded, counters))
+    }
+
+    /// This canvas with half the size around some vertices: their edges in the embedded triangulation are halved, the
+    /// new edges measured, and all flipped anew by lengths. Old vertices keep their ids and places, new ones come after
+    /// them. `field` is the one that the canvas was made with.
+    ///
+    /// # Errors
+    /// As for [`Canvas::intrinsic`].
+    pub fn refined(&self, field: &dyn MetricField, around: &[VertexId]) -> Result<Self> {
+        let topology = &self.embedded.topology;
+        // At the border the last edge of a star is known only by the face before it.
+        let edges = around.iter().flat_map(|&v| topology.star(v)).flat_map(|h| [h, h.prev()]);
+        let ends = |h| [topology.origin(h), topology.target(h)];
+        let mut edges: Vec<[VertexId; 2]> = edges.map(ends).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let mut counters = self.counters;
+        let mut embedded = refine::halve(self.embedded.clone(), field, &edges, &mut counters)?;
+        lengths::measure(&mut embedded, field, &mut counters)?;
+        Ok(Self::of(embedded, counters).flipped())
+    }
+
+    fn of(embedded: Planar, counters: CanvasCounters) -> Self {
         let topology = embedded.topology.clone();
-        Ok(Self { finder: Finder::new(&embedded), embedded, topology, counters })
+        Self { finder: Finder::new(&embedded), embedded, topology, counters }
+    }
+
+    fn flipped(mut self) -> Self {
+        self.counters.flips = flip::to_intrinsic_delaunay(&mut self.topology);
+        self
     }
 
     /// What distances travel on: vertices, faces, metric lengths.

@@ -10,15 +10,22 @@ use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, check_tensor};
 use crate::planar::Planar;
 use crate::triangulation::{HalfEdge, VertexId};
+use rayon::prelude::*;
 
 /// Edges are measured by five evaluations of the field while there are fewer vertices than this, by one from then on:
 /// long edges may hide in their middle what their ends do not tell.
 const COARSE: usize = 20_000;
+/// Ends agree on an edge's length if they differ by less than this share of their sum.
+const ALIKE: f64 = 0.05;
 /// The frozen-tensor test must be violated by more than this (sine of the angles' sum) for a flip: tests of neighbouring
 /// quadrilaterals with different tensors contradict each other near zero.
 const CLEARLY: f64 = 1e-2;
+/// A fixed edge that the middle of another sees under an angle with a cosine below this is halved first.
+const CREEPING: f64 = -0.99;
 /// Flips after one split at most; measured was a little more than one in the mean.
 const FLIPS_PER_SPLIT: usize = 64;
+/// Faces no higher than this share of their coordinates are flat.
+const ROUNDING: f64 = 1e-15;
 
 /// Refines until there are `vertices` vertices.
 ///
@@ -30,21 +37,34 @@ pub(super) fn refine(
     vertices: usize,
     counters: &mut CanvasCounters,
 ) -> Result<Planar> {
-    let mut tensors = vec![Tensor::IDENTITY; planar.positions.len()];
-    for v in planar.topology.vertices() {
-        let p = planar.position(v);
-        tensors[v.index()] = field.at(p);
-        check_tensor(tensors[v.index()], p)?;
-    }
-    let mut refiner = Refiner { planar, tensors, field, queue: Buckets::default(), stack: Vec::new() };
+    let mut refiner = Refiner::new(planar, field)?;
     for h in refiner.planar.topology.edges().collect::<Vec<_>>() {
         refiner.enqueue(h);
     }
     while refiner.planar.topology.vertex_count() < vertices {
         let Some([a, b]) = refiner.queue.pop() else { break };
-        let topology = &refiner.planar.topology;
-        let Some(h) = topology.find(a, b).or_else(|| topology.find(b, a)) else { continue };
-        refiner.split(h, counters)?;
+        if let Some(h) = refiner.edge(a, b) {
+            refiner.split(h, counters)?;
+        }
+    }
+    Ok(refiner.planar)
+}
+
+/// Halves edges, given by their ends, with the flips that follow; an edge that a flip has taken away is passed over.
+///
+/// # Errors
+/// The metric is not positive definite at a vertex.
+pub(super) fn halve(
+    planar: Planar,
+    field: &dyn MetricField,
+    edges: &[[VertexId; 2]],
+    counters: &mut CanvasCounters,
+) -> Result<Planar> {
+    let mut refiner = Refiner::new(planar, field)?;
+    for &[a, b] in edges {
+        if let Some(h) = refiner.edge(a, b) {
+            refiner.split(h, counters)?;
+        }
     }
     Ok(refiner.planar)
 }
@@ -57,10 +77,56 @@ struct Refiner<'a> {
     stack: Vec<HalfEdge>,
 }
 
-impl Refiner<'_> {
-    /// Halves an edge, flips around the new vertex, and queues the edges there. An edge whose middle rounding has put
-    /// beyond a neighbour stays whole.
+impl<'a> Refiner<'a> {
+    fn new(planar: Planar, field: &'a dyn MetricField) -> Result<Self> {
+        let positions = &planar.positions;
+        let tensors: Vec<Tensor> = positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
+        for v in planar.topology.vertices() {
+            check_tensor(tensors[v.index()], planar.position(v))?;
+        }
+        Ok(Self { planar, tensors, field, queue: Buckets::default(), stack: Vec::new() })
+    }
+
+    fn edge(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
+        let topology = &self.planar.topology;
+        topology.find(a, b).or_else(|| topology.find(b, a))
+    }
+
+    /// Halves an edge, or first the fixed edge beside it that its middle encroaches: else new vertices creep ever closer
+    /// to a border that they see under a small angle.
     fn split(&mut self, h: HalfEdge, counters: &mut CanvasCounters) -> Result<()> {
+        let Some(fixed) = self.encroached(h) else { return self.halve(h, counters) };
+        let [a, b] = [self.planar.topology.origin(h), self.planar.topology.target(h)];
+        self.halve(fixed, counters)?;
+        if let Some(h) = self.edge(a, b) {
+            self.enqueue(h);
+        }
+        Ok(())
+    }
+
+    /// The fixed edge of a face beside an edge that the edge's middle nearly lies on.
+    fn encroached(&self, h: HalfEdge) -> Option<HalfEdge> {
+        let topology = &self.planar.topology;
+        if topology.is_fixed(h) {
+            return None;
+        }
+        let [p, q] = self.planar.ends(h);
+        let middle = p.midpoint(q);
+        let tensor = (self.tensors[topology.origin(h).index()] + self.tensors[topology.target(h).index()]) * 0.5;
+        let is_near = |e: &HalfEdge| {
+            let [a, b] = self.planar.ends(*e);
+            let (u, v) = (a - middle, b - middle);
+            topology.is_fixed(*e) && tensor.dot(u, v) < CREEPING * tensor.length(u) * tensor.length(v)
+        };
+        [Some(h), topology.twin(h)].into_iter().flatten().flat_map(|side| [side.next(), side.prev()]).find(is_near)
+    }
+
+    /// Halves an edge, flips around the new vertex, and queues the edges there. An edge whose middle rounding has put
+    /// beyond a neighbour stays whole, and so does one beside a face that is flat but for rounding.
+    fn halve(&mut self, h: HalfEdge, counters: &mut CanvasCounters) -> Result<()> {
+        if is_beside_flat(&self.planar, h) {
+            return Ok(());
+        }
         let [p, q] = self.planar.ends(h);
         let middle = p.midpoint(q);
         let tensor = self.field.at(middle);
@@ -118,12 +184,26 @@ impl Refiner<'_> {
         self.queue.push(length, ends);
     }
 
-    /// Metric length along an edge by Simpson's rule.
+    /// Metric length along an edge by Simpson's rule; without its middle, where the ends agree.
     fn simpson(&self, [a, b]: [VertexId; 2], p: Point, q: Point) -> f64 {
         let d = q - p;
-        let at_ends = self.tensors[a.index()].length(d) + self.tensors[b.index()].length(d);
+        let [at_a, at_b] = [a, b].map(|v| self.tensors[v.index()].length(d));
+        let at_ends = at_a + at_b;
+        if (at_a - at_b).abs() < ALIKE * at_ends {
+            return 0.5 * at_ends;
+        }
         (at_ends + 4.0 * self.field.at(p.midpoint(q)).length(d)) / 6.0
     }
+}
+
+/// Whether one of an edge's faces is no higher over it than rounding. Splitting such an edge would leave a face half as
+/// high, again and again, down to where numbers end.
+pub(super) fn is_beside_flat(planar: &Planar, h: HalfEdge) -> bool {
+    let [p, q] = planar.ends(h);
+    let rounding = ROUNDING * [p.x, p.y, q.x, q.y].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let area = |side: HalfEdge| (q - p).cross(planar.position(planar.topology.apex(side)) - p).abs();
+    let sides = [Some(h), planar.topology.twin(h)];
+    sides.into_iter().flatten().any(|side| area(side) <= rounding * p.distance(q))
 }
 
 /// A queue of edges, longest first to within a fourth of an octave.

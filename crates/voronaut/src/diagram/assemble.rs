@@ -1,24 +1,23 @@
 //! From the nerve to a mesh: its straight realisation (RR-9103, sections 11 and 14: SRDT), and the canvas as a mesh.
 
-use super::{Diagram, Nerve};
+use super::nerve::smallest_first;
+use super::{Diagram, Nerve, NerveTriangle};
 use crate::domain::Domain;
 use crate::mesh::Mesh;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Diagram<'_> {
-    /// The nerve with straight edges between the seeds: vertex i is seed i, triangles turn as their cells do - a triangle
-    /// that comes out clockwise is one that straight edges invert. Edges whose border witness lies on the domain's
-    /// boundary carry its label, as far as a triangle has them. A removed seed is no vertex of any triangle, at (0, 0).
-    pub fn to_mesh(&self, nerve: &Nerve, domain: &Domain) -> Mesh {
-        let mut mesh = Mesh::default();
+    /// Triangles of seeds (those of the nerve, or what became of them) with straight edges: vertex i is seed i, and a
+    /// triangle that comes out clockwise is one that straight edges invert. Edges whose border witness lies on the domain's
+    /// boundary carry its label, as far as a triangle has them. A triangle has the region label of its witness, or, where
+    /// the nerve does not have it, of a neighbour. A removed seed is no vertex of any triangle, at (0, 0).
+    pub fn to_mesh(&self, triangles: Vec<[u32; 3]>, nerve: &Nerve, domain: &Domain) -> Mesh {
+        let mut mesh = Mesh { triangle_labels: self.regions(&triangles, nerve), triangles, ..Mesh::default() };
         for colour in 0..self.colours() as u32 {
             let p = self.seed(colour).unwrap_or_default();
             mesh.points.push([p.x, p.y, 0.0]);
         }
         mesh.point_labels = vec![0; mesh.points.len()];
-        mesh.triangles = nerve.triangles.iter().map(|t| t.colours).collect();
-        let region = |t: &super::NerveTriangle| self.canvas.topology().region(t.witness);
-        mesh.triangle_labels = nerve.triangles.iter().map(region).collect();
         let sides: BTreeSet<[u32; 2]> = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
         for edge in &nerve.edges {
             let [a, b] = edge.colours;
@@ -31,6 +30,21 @@ impl Diagram<'_> {
             }
         }
         mesh
+    }
+
+    fn regions(&self, triangles: &[[u32; 3]], nerve: &Nerve) -> Vec<i32> {
+        let of = |t: &NerveTriangle| self.canvas.topology().region(t.witness);
+        let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)]);
+        let mut beside: BTreeMap<[u32; 2], i32> = BTreeMap::new();
+        for t in &nerve.triangles {
+            beside.extend(sides(t.colours).map(|side| (side, of(t))));
+        }
+        let region = |triangle: &[u32; 3]| {
+            let colours = smallest_first(*triangle);
+            let own = nerve.triangles.binary_search_by_key(&colours, |t| t.colours).map(|i| of(&nerve.triangles[i]));
+            own.ok().or_else(|| sides(colours).iter().find_map(|side| beside.get(side).copied())).unwrap_or(0)
+        };
+        triangles.iter().map(region).collect()
     }
 
     /// The canvas as a mesh, its vertices labelled by colour (-1 where no seed reaches), and their distances.

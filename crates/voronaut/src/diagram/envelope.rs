@@ -18,9 +18,9 @@ const COLOURS: usize = 12;
 
 /// A colour near a face and its squared distances from the face's vertices.
 #[derive(Clone, Copy)]
-struct Near<const N: usize> {
-    colour: u32,
-    squares: [f64; N],
+pub(super) struct Near<const N: usize> {
+    pub(super) colour: u32,
+    pub(super) squares: [f64; N],
 }
 
 impl<const N: usize> Near<N> {
@@ -37,28 +37,32 @@ impl Diagram<'_> {
         let topology = self.canvas.topology();
         let faces: Vec<FaceId> = topology.faces().collect();
         let triangles: Vec<NerveTriangle> =
-            faces.par_iter().with_min_len(1024).flat_map_iter(|&f| self.vertices_in(&overlap, f)).collect();
+            faces.par_iter().with_min_len(1024).flat_map_iter(|&f| self.vertices_in(overlap, f)).collect();
         let edges: Vec<HalfEdge> = topology.edges().collect();
         let pairs: Vec<NerveEdge> =
-            edges.par_iter().with_min_len(1024).flat_map_iter(|&h| self.borders_on(&overlap, h)).collect();
+            edges.par_iter().with_min_len(1024).flat_map_iter(|&h| self.borders_on(overlap, h)).collect();
         Nerve::new(self.coloured_vertices(), pairs, triangles)
     }
 
     /// The Voronoi vertices in a face.
-    fn vertices_in(&self, overlap: &Overlap, f: FaceId) -> Vec<NerveTriangle> {
-        let near = near(overlap, self.canvas.topology().corners(f));
+    fn vertices_in(&self, overlap: &Overlap, witness: FaceId) -> Vec<NerveTriangle> {
+        let near = near(overlap, self.canvas.topology().corners(witness));
         let mut found = Vec::new();
         for i in 0..near.len() {
             for j in 0..i {
                 for k in 0..j {
                     let Some((weights, turn)) = meeting([&near[k], &near[j], &near[i]]) else { continue };
+                    if weights.iter().any(|&w| w < -ON_EDGE) {
+                        continue;
+                    }
                     let level = near[i].at(weights);
-                    let is_lowest =
-                        near.iter().enumerate().all(|(n, other)| [i, j, k].contains(&n) || other.at(weights) >= level);
-                    if is_lowest && weights.iter().all(|&w| w >= -ON_EDGE) {
+                    let others = near.iter().enumerate().filter(|(n, _)| ![i, j, k].contains(n));
+                    let gaps = others.map(|(_, other)| (other.colour, other.at(weights) / level - 1.0));
+                    let fourth = gaps.min_by(|a, b| a.1.total_cmp(&b.1));
+                    if fourth.is_none_or(|(_, gap)| gap >= 0.0) {
                         let [a, b, c] = [near[k].colour, near[j].colour, near[i].colour];
                         let colours = smallest_first(if turn > 0.0 { [a, b, c] } else { [a, c, b] });
-                        found.push(NerveTriangle { colours, witness: f, witnesses: 1 });
+                        found.push(NerveTriangle { colours, witness, witnesses: 1, fourth });
                     }
                 }
             }
@@ -124,7 +128,7 @@ fn undominated<const N: usize>(near: &[Near<N>]) -> Vec<Near<N>> {
 
 /// Where three linear functions meet, in barycentric coordinates, and how the colours turn around that place: positive for
 /// counter-clockwise.
-fn meeting([a, b, c]: [&Near<3>; 3]) -> Option<([f64; 3], f64)> {
+pub(super) fn meeting([a, b, c]: [&Near<3>; 3]) -> Option<([f64; 3], f64)> {
     // (b - a) and (c - a) vanish: the weights are their cross product, scaled to sum one.
     let u: [f64; 3] = std::array::from_fn(|i| b.squares[i] - a.squares[i]);
     let v: [f64; 3] = std::array::from_fn(|i| c.squares[i] - a.squares[i]);

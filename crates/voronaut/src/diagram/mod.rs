@@ -4,12 +4,25 @@
 //! one at a time, each by work on the cells concerned only, and with the result that making the diagram anew would have.
 
 mod assemble;
+mod cells;
+mod descend;
 mod envelope;
 mod nerve;
 mod overlap;
+mod passes;
+mod paths;
+mod resolve;
 mod seeds;
+#[cfg(test)]
+mod test_diagrams;
+mod witnesses;
 
+pub use cells::{Cells, Outline};
 pub use nerve::{Nerve, NerveEdge, NerveTriangle};
+pub use passes::Passes;
+pub use paths::Paths;
+pub use resolve::{Resolved, resolve};
+pub use witnesses::Witnesses;
 
 use crate::canvas::Canvas;
 use crate::error::{Error, Result};
@@ -17,7 +30,9 @@ use crate::geodesic::{Geodesic, Label, MarchCounters, Marching, NO_COLOUR, Propa
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::triangulation::VertexId;
-use seeds::Start;
+use overlap::Overlap;
+use seeds::{Care, Start};
+use std::sync::OnceLock;
 
 /// See the [module](self). Seed i has colour i; a removed seed's colour is not used again.
 pub struct Diagram<'a> {
@@ -27,6 +42,7 @@ pub struct Diagram<'a> {
     seeds: Vec<Option<Seed>>,
     sources: Sources,
     propagation: Propagation,
+    overlap: OnceLock<Overlap>,
 }
 
 /// A seed: where it is, and the canvas vertices that it gives a distance to.
@@ -45,6 +61,26 @@ impl<'a> Diagram<'a> {
         Self::with_solver(canvas, field, seeds, Marching::default())
     }
 
+    /// The diagram of the vertices of a mesh of the canvas's domain, which may touch itself in points: of as many vertices
+    /// in one place as the domain has fans there, in order, each belongs to one fan. (Elsewhere a seed belongs to all.)
+    ///
+    /// # Errors
+    /// As for [`Diagram::new`].
+    pub fn of_vertices(canvas: &'a Canvas, field: &'a dyn MetricField, vertices: &[Point]) -> Result<Self> {
+        let starts = seeds::starts_of_all(canvas, field, vertices, true, Care::Full)?;
+        Ok(Self::from_starts(canvas, field, vertices, starts, Box::new(Marching::default())))
+    }
+
+    /// [`Diagram::of_vertices`] with distances that are poorer around seeds where the metric varies much, for a tenth of
+    /// the evaluations: good enough to find where seeds are far.
+    ///
+    /// # Errors
+    /// As for [`Diagram::new`].
+    pub fn roughly_of_vertices(canvas: &'a Canvas, field: &'a dyn MetricField, vertices: &[Point]) -> Result<Self> {
+        let starts = seeds::starts_of_all(canvas, field, vertices, true, Care::Quick)?;
+        Ok(Self::from_starts(canvas, field, vertices, starts, Box::new(Marching::default())))
+    }
+
     /// The diagram of seeds by a solver.
     ///
     /// # Errors
@@ -55,7 +91,17 @@ impl<'a> Diagram<'a> {
         seeds: &[Point],
         solver: impl Geodesic + 'a,
     ) -> Result<Self> {
-        let starts = seeds::starts_of_all(canvas, field, seeds)?;
+        let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Full)?;
+        Ok(Self::from_starts(canvas, field, seeds, starts, Box::new(solver)))
+    }
+
+    fn from_starts(
+        canvas: &'a Canvas,
+        field: &'a dyn MetricField,
+        seeds: &[Point],
+        starts: Vec<Vec<Start>>,
+        solver: Box<dyn Geodesic + 'a>,
+    ) -> Self {
         let mut sources = Sources::new(canvas.vertex_count());
         let mut placed = Vec::with_capacity(seeds.len());
         for (i, (&at, starts)) in seeds.iter().zip(starts).enumerate() {
@@ -65,7 +111,7 @@ impl<'a> Diagram<'a> {
             placed.push(Some(Seed { at, starts }));
         }
         let propagation = solver.propagate(canvas.topology(), &sources);
-        Ok(Self { canvas, field, solver: Box::new(solver), seeds: placed, sources, propagation })
+        Self { canvas, field, solver, seeds: placed, sources, propagation, overlap: OnceLock::new() }
     }
 
     /// Inserts a seed by one front from it; returns its colour.
@@ -82,8 +128,17 @@ impl<'a> Diagram<'a> {
 
     /// Inserts a seed at a canvas vertex; returns its colour.
     pub fn insert_at_vertex(&mut self, v: VertexId) -> u32 {
+        self.insert_with(v, Care::Full)
+    }
+
+    /// Inserts a seed at a canvas vertex into a diagram made by [`Diagram::roughly_of_vertices`]; returns its colour.
+    pub fn insert_roughly(&mut self, v: VertexId) -> u32 {
+        self.insert_with(v, Care::Quick)
+    }
+
+    fn insert_with(&mut self, v: VertexId, care: Care) -> u32 {
         let colour = self.seeds.len() as u32;
-        let starts = seeds::starts_at_vertex(self.canvas, self.field, v);
+        let starts = seeds::starts_at_vertex(self.canvas, self.field, v, care);
         self.seeds.push(None);
         self.place(colour, self.canvas.position(v), starts);
         colour
@@ -230,6 +285,7 @@ impl<'a> Diagram<'a> {
     }
 
     fn mend(&mut self, changed: &[VertexId]) {
+        self.overlap = OnceLock::new();
         self.solver.update(self.canvas.topology(), &self.sources, changed, &mut self.propagation);
     }
 }

@@ -16,7 +16,7 @@ pub struct NerveEdge {
 }
 
 /// Three cells that meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NerveTriangle {
     /// The three colours counter-clockwise as their cells lie around the witness, the smallest first.
     pub colours: [u32; 3],
@@ -24,10 +24,14 @@ pub struct NerveTriangle {
     pub witness: FaceId,
     /// How many canvas faces witness it.
     pub witnesses: u32,
+    /// The fourth seed nearest to where the three cells meet, and how far it is from making that place its own: the
+    /// squares of the distances to it and to the three differ by this share of the latter. `None` where no other seed is
+    /// near, and in [`Diagram::nerve`], which does not know the place.
+    pub fourth: Option<(u32, f64)>,
 }
 
 /// The simplices that the canvas witnesses, each with a witness; sorted by colours.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Nerve {
     /// Colours with a cell, and the canvas vertex of the cell that is nearest to its seed.
     pub vertices: Vec<(u32, VertexId)>,
@@ -53,10 +57,19 @@ impl Nerve {
         triangles.sort_unstable_by_key(|t| (t.colours, t.witness));
         triangles.dedup_by(|later, first| {
             let same = later.colours == first.colours;
-            first.witnesses += u32::from(same);
+            if same {
+                first.witnesses += 1;
+                first.fourth = nearer(first.fourth, later.fourth);
+            }
             same
         });
         Self { vertices, edges, triangles }
+    }
+
+    /// The sides of those triangles that a test picks, the smaller colour first; those of two such triangles twice.
+    pub fn sides<'a>(&'a self, pick: impl Fn(&NerveTriangle) -> bool + 'a) -> impl Iterator<Item = [u32; 2]> + 'a {
+        let picked = self.triangles.iter().filter(move |t| pick(t)).map(|t| t.colours);
+        picked.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).map(|[a, b]| [a.min(b), a.max(b)])
     }
 }
 
@@ -98,10 +111,14 @@ impl Diagram<'_> {
         let of_face = |witness: FaceId| {
             let [a, b, c] = topology.corners(witness).map(|v| self.label(v).colour);
             let distinct = a != b && b != c && c != a && [a, b, c].iter().all(|&x| x != NO_COLOUR);
-            distinct.then(|| NerveTriangle { colours: smallest_first([a, b, c]), witness, witnesses: 1 })
+            distinct.then(|| NerveTriangle { colours: smallest_first([a, b, c]), witness, witnesses: 1, fourth: None })
         };
         topology.faces().filter_map(of_face).collect()
     }
+}
+
+fn nearer(a: Option<(u32, f64)>, b: Option<(u32, f64)>) -> Option<(u32, f64)> {
+    a.into_iter().chain(b).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// The same cycle, its smallest member first.

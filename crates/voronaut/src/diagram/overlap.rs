@@ -24,13 +24,24 @@ impl Overlap {
     pub(super) fn at(&self, v: VertexId) -> &[(u32, f64)] {
         &self.entries[self.first[v.index()] as usize..self.first[v.index() + 1] as usize]
     }
+
+    /// The distance of a vertex to a seed, where it is known.
+    pub(super) fn distance(&self, v: VertexId, colour: u32) -> Option<f64> {
+        let list = self.at(v);
+        list.binary_search_by_key(&colour, |e| e.0).ok().map(|i| list[i].1)
+    }
 }
 
 type Patch = Vec<(VertexId, f64)>;
 
 impl Diagram<'_> {
-    /// Computes the distances of every cell and its surroundings, in parallel.
-    pub(super) fn overlap(&self) -> Overlap {
+    /// The distances of every cell and its surroundings; computed, in parallel, when they are first asked for after a
+    /// change.
+    pub(super) fn overlap(&self) -> &Overlap {
+        self.overlap.get_or_init(|| self.computed_overlap())
+    }
+
+    fn computed_overlap(&self) -> Overlap {
         let cells = self.cells();
         let colours: Vec<u32> = (0..self.colours() as u32).collect();
         let patches = |chunk: &[u32]| -> Vec<Patch> {

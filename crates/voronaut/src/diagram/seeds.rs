@@ -5,9 +5,10 @@ use crate::error::{Error, Result};
 use crate::geodesic::bowed_chord;
 use crate::geometry::{Orientation, Point, orientation};
 use crate::metric::MetricField;
-use crate::planar::{Location, Planar, hilbert_order};
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use crate::planar::{Location, Planar};
+use crate::triangulation::{HalfEdge, VertexId};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// A canvas vertex in sight of a seed, and the metric length of the geodesic between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,68 +21,123 @@ pub(super) struct Start {
 /// they start.
 const SIGHT: u32 = 3;
 
-/// The starts of a seed: every vertex of the embedded face that holds it, and those in sight across its edges.
+/// What starts may cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Care {
+    /// All vertices in sight, each by the length of its geodesic.
+    Full,
+    /// Beyond the face of the seed by straight lines and Simpson's rule: two evaluations each.
+    Quick,
+}
+
+/// The starts of a seed: every vertex of the embedded face that holds it, and those in sight across its edges. Where
+/// the domain touches itself in a point, a seed there starts in all fans.
 ///
 /// # Errors
 /// The seed is outside the domain.
 pub(super) fn starts(canvas: &Canvas, field: &dyn MetricField, seed: Point) -> Result<Vec<Start>> {
     let location = canvas.locate(seed).ok_or_else(|| outside(seed))?;
-    Ok(starts_at(canvas, field, seed, location))
+    Ok(starts_in(canvas, field, seed, &places(canvas, location), Care::Full))
 }
 
-/// [`starts`] of many seeds: located one after the other along a curve, measured in parallel.
+/// [`starts`] of many seeds. Where the domain touches itself in a point and seeds are the vertices of a mesh of it, as many
+/// seeds in the point as there are fans have a fan each, in order.
 ///
 /// # Errors
 /// A seed, by number, is outside the domain.
-pub(super) fn starts_of_all(canvas: &Canvas, field: &dyn MetricField, seeds: &[Point]) -> Result<Vec<Vec<Start>>> {
-    if let Some(i) = seeds.iter().position(|p| !p.is_finite()) {
-        return Err(numbered(i, seeds[i]));
+pub(super) fn starts_of_all(
+    canvas: &Canvas,
+    field: &dyn MetricField,
+    seeds: &[Point],
+    are_vertices: bool,
+    care: Care,
+) -> Result<Vec<Vec<Start>>> {
+    let mut found: Vec<Vec<Location>> = Vec::with_capacity(seeds.len());
+    for (i, location) in canvas.locate_all(seeds).into_iter().enumerate() {
+        found.push(places(canvas, location.ok_or_else(|| numbered(i, seeds[i]))?));
     }
-    let mut locations: Vec<Option<Location>> = vec![None; seeds.len()];
-    let mut near: Option<FaceId> = None;
-    for i in hilbert_order(seeds).into_iter().map(|i| i as usize) {
-        let found = near.map_or_else(|| canvas.locate(seeds[i]), |f| canvas.locate_from(f, seeds[i]));
-        near = found.and_then(|location| face_of(canvas, location)).or(near);
-        locations[i] = found;
+    if are_vertices {
+        share_fans(&mut found);
     }
-    if let Some(i) = locations.iter().position(Option::is_none) {
-        return Err(numbered(i, seeds[i]));
-    }
-    let measured = |(&seed, &location): (&Point, &Option<Location>)| {
-        location.map_or_else(Vec::new, |location| starts_at(canvas, field, seed, location))
-    };
-    Ok(seeds.par_iter().zip(&locations).with_min_len(64).map(measured).collect())
+    let measured = |(&seed, places): (&Point, &Vec<Location>)| starts_in(canvas, field, seed, places, care);
+    Ok(seeds.par_iter().zip(&found).with_min_len(64).map(measured).collect())
 }
 
 /// [`starts`] of a seed at a canvas vertex.
-pub(super) fn starts_at_vertex(canvas: &Canvas, field: &dyn MetricField, v: VertexId) -> Vec<Start> {
-    starts_at(canvas, field, canvas.position(v), Location::Vertex(v))
+pub(super) fn starts_at_vertex(canvas: &Canvas, field: &dyn MetricField, v: VertexId, care: Care) -> Vec<Start> {
+    starts_in(canvas, field, canvas.position(v), &places(canvas, Location::Vertex(v)), care)
 }
 
-fn starts_at(canvas: &Canvas, field: &dyn MetricField, seed: Point, location: Location) -> Vec<Start> {
+/// All fans of a place.
+fn places(canvas: &Canvas, location: Location) -> Vec<Location> {
+    match location {
+        Location::Vertex(v) => canvas.copies(v).into_iter().map(Location::Vertex).collect(),
+        other => vec![other],
+    }
+}
+
+fn share_fans(found: &mut [Vec<Location>]) {
+    let mut seeds_at: BTreeMap<VertexId, Vec<usize>> = BTreeMap::new();
+    for (i, places) in found.iter().enumerate() {
+        if let [Location::Vertex(first), _, ..] = places[..] {
+            seeds_at.entry(first).or_default().push(i);
+        }
+    }
+    for seeds in seeds_at.into_values() {
+        if seeds.len() == found[seeds[0]].len() {
+            for (k, i) in seeds.into_iter().enumerate() {
+                found[i] = vec![found[i][k]];
+            }
+        }
+    }
+}
+
+fn starts_in(canvas: &Canvas, field: &dyn MetricField, seed: Point, places: &[Location], care: Care) -> Vec<Start> {
+    places.iter().flat_map(|&location| starts_at(canvas, field, seed, location, care)).collect()
+}
+
+fn starts_at(canvas: &Canvas, field: &dyn MetricField, seed: Point, location: Location, care: Care) -> Vec<Start> {
     let planar = canvas.embedded();
+    let (rim, mut near) = around(planar, location);
+    let mut far = Vec::new();
+    for h in rim {
+        let [right, left] = planar.ends(h);
+        look(planar, seed, h, [right, left], SIGHT, &mut far);
+    }
+    near.sort_unstable();
+    near.dedup();
+    far.sort_unstable();
+    far.dedup();
+    far.retain(|v| near.binary_search(v).is_err());
+    let geodesic = |vertex: VertexId| Start { vertex, distance: bowed_chord(field, seed, planar.position(vertex)) };
+    if care == Care::Full {
+        return near.into_iter().chain(far).map(geodesic).collect();
+    }
+    let tensor = field.at(seed);
+    let straight = |vertex: VertexId| {
+        let q = planar.position(vertex);
+        let [middle, end] = [seed.midpoint(q), q].map(|p| field.at(p).length(q - seed));
+        Start { vertex, distance: (tensor.length(q - seed) + 4.0 * middle + end) / 6.0 }
+    };
+    near.into_iter().map(geodesic).chain(far.into_iter().map(straight)).collect()
+}
+
+/// The edges around the faces that hold a place, and the vertices of these faces.
+fn around(planar: &Planar, location: Location) -> (Vec<HalfEdge>, Vec<VertexId>) {
     let topology = &planar.topology;
-    let edges_of = |f: FaceId| f.half_edges().into_iter();
     let rim: Vec<HalfEdge> = match location {
         Location::Vertex(v) => topology.star(v).map(HalfEdge::next).collect(),
-        Location::Face(f) => edges_of(f).collect(),
+        Location::Face(f) => f.half_edges().to_vec(),
         Location::Edge(h) | Location::Behind(h) => {
             let sides = [Some(h), topology.twin(h)].into_iter().flatten();
             sides.flat_map(|side| [side.next(), side.prev()]).collect()
         }
     };
-    let mut vertices: Vec<VertexId> = rim.iter().flat_map(|&h| [topology.origin(h), topology.target(h)]).collect();
+    let mut near: Vec<VertexId> = rim.iter().flat_map(|&h| [topology.origin(h), topology.target(h)]).collect();
     if let Location::Vertex(v) = location {
-        vertices.push(v);
+        near.push(v);
     }
-    for h in rim {
-        let [right, left] = planar.ends(h);
-        look(planar, seed, h, [right, left], SIGHT, &mut vertices);
-    }
-    vertices.sort_unstable();
-    vertices.dedup();
-    let start = |vertex: VertexId| Start { vertex, distance: bowed_chord(field, seed, planar.position(vertex)) };
-    vertices.into_iter().map(start).collect()
+    (rim, near)
 }
 
 /// Collects the vertices that the seed sees across an edge, between two directions, within so many faces.
@@ -99,14 +155,6 @@ fn look(planar: &Planar, seed: Point, h: HalfEdge, [right, left]: [Point; 2], fa
     }
     if !is_left {
         look(planar, seed, t.prev(), [if is_right { right } else { p }, left], faces - 1, seen);
-    }
-}
-
-fn face_of(canvas: &Canvas, location: Location) -> Option<FaceId> {
-    match location {
-        Location::Face(f) => Some(f),
-        Location::Edge(h) | Location::Behind(h) => Some(h.face()),
-        Location::Vertex(v) => canvas.embedded().topology.start(v).map(HalfEdge::face),
     }
 }
 

@@ -19,6 +19,11 @@ impl Dual<'_> {
         mesh
     }
 
+    /// The number in [`Dual::to_mesh`] of each vertex by id; `u32::MAX` of those that are none.
+    pub fn numbering(&self, domain: &Domain) -> Vec<u32> {
+        self.numbered_points(domain).1
+    }
+
     fn numbered_points(&self, domain: &Domain) -> (Mesh, Vec<u32>) {
         let pslg = domain.pslg();
         let mut mesh = Mesh::default();

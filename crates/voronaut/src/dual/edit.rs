@@ -1,5 +1,6 @@
 //! Insertion, removal and moves of seeds. Each says whether it was done; what would not be embedded is not done.
 
+use super::margin::Known;
 use super::{Dual, Effort, Kind};
 use crate::geometry::Point;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
@@ -30,6 +31,7 @@ impl Dual<'_> {
     /// ([`Dual::measure_all`]).
     pub(crate) fn shift(&mut self, v: VertexId, to: Point) -> bool {
         debug_assert_eq!(self.kind(v), Kind::Free, "only free seeds move");
+        self.known = Known::default();
         self.planar.move_vertex(v, to)
     }
 
@@ -41,6 +43,7 @@ impl Dual<'_> {
         let topology = &self.planar.topology;
         let link: Vec<VertexId> = topology.star(v).map(|h| topology.target(h)).collect();
         let removed = self.planar.remove_vertex(v);
+        self.known = Known::default();
         for u in link {
             self.flip_around(u, Effort::Local);
         }

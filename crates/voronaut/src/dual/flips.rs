@@ -1,7 +1,8 @@
 //! Lawson's flips by the metric in-circle test, on a triangulation that stays embedded.
 
+use super::margin::pair;
 use super::{Dual, Effort, Margin};
-use crate::geometry::signed_area;
+use crate::geometry::{Tensor, signed_area};
 use crate::triangulation::{HalfEdge, VertexId};
 
 /// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
@@ -11,16 +12,23 @@ const TIE: f64 = 1e-9;
 /// neither last for ever nor keep the rest of the mesh from its flips.
 const FLIPS_PER_SLOT: u8 = 6;
 
-/// A flip may not make a triangle smaller than this share of the smaller one before: where lengths of straight edges
-/// contradict each other it would leave slivers.
-const FLATTEST: f64 = 0.1;
+/// A flip may not leave a triangle whose quality is below this if both were better before: where lengths of straight
+/// edges contradict each other, or geodesics bend away from them, it would leave slivers.
+const POOR: f64 = 0.3;
 
 impl Dual<'_> {
     /// Flips every edge that the metric wants flipped and the plane allows. Returns the number of flips.
     pub fn flip_all(&mut self, effort: Effort) -> u64 {
+        let before = self.counters.flips;
+        if effort == Effort::Full {
+            // Cheap flips first: few margins are then left to be measured one by one.
+            self.flip_all(Effort::Chord);
+            self.measure_margins();
+        }
         let edges: Vec<HalfEdge> = self.planar.topology.edges().collect();
         self.stack.extend(edges);
-        self.flip_stacked(effort)
+        self.flip_stacked(effort);
+        self.counters.flips - before
     }
 
     /// Flips around a vertex and onwards.
@@ -43,14 +51,24 @@ impl Dual<'_> {
         edges.into_iter().map(|h| self.margin(h, effort).value).reduce(f64::min)
     }
 
-    fn free_edges(&self) -> impl Iterator<Item = HalfEdge> + '_ {
-        self.planar.topology.edges().filter(|&h| !self.planar.topology.is_fixed(h))
+    /// The edges that a flip may remove.
+    pub(super) fn free_edges(&self) -> impl Iterator<Item = HalfEdge> + '_ {
+        self.planar.topology.edges().filter(|&h| !self.planar.topology.is_fixed(h) && !self.is_held(h))
+    }
+
+    pub(super) fn is_held(&self, h: HalfEdge) -> bool {
+        let topology = &self.planar.topology;
+        !self.known.held.is_empty() && self.known.held.contains(&pair(topology.origin(h), topology.target(h)))
     }
 
     fn flip_stacked(&mut self, effort: Effort) -> u64 {
         let mut flipped: Vec<HalfEdge> = Vec::new();
         while let Some(h) = self.stack.pop() {
-            if self.planar.topology.is_fixed(h) || self.margin(h, effort).value >= -TIE || !self.allows_flip(h) {
+            if self.planar.topology.is_fixed(h)
+                || self.is_held(h)
+                || self.margin(h, effort).value >= -TIE
+                || !self.allows_flip(h)
+            {
                 continue;
             }
             let slot = self.planar.topology.twin(h).map_or(h, |t| h.min(t));
@@ -68,15 +86,22 @@ impl Dual<'_> {
         flipped.len() as u64
     }
 
-    /// Whether the plane allows a flip: the quadrilateral is strictly convex, and the flip leaves no triangle that is
-    /// next to nothing beside both triangles of before.
-    fn allows_flip(&self, h: HalfEdge) -> bool {
-        let Some(t) = self.planar.topology.twin(h) else { return false };
-        let [a, b] = self.planar.ends(h);
-        let [c, d] = [h, t].map(|e| self.planar.position(self.planar.topology.apex(e)));
-        let before = signed_area(a, b, c).min(signed_area(b, a, d));
-        let after = signed_area(d, b, c).min(signed_area(c, a, d));
-        after > FLATTEST * before && self.planar.is_convex(h)
+    /// Whether the plane allows a flip: the quadrilateral is strictly convex, and the flip leaves no straight triangle
+    /// that is poor in the metric and poorer than both of before.
+    pub(super) fn allows_flip(&self, h: HalfEdge) -> bool {
+        let topology = self.topology();
+        let Some(t) = topology.twin(h).filter(|_| self.planar.is_convex(h)) else { return false };
+        let [a, b, c, d] = [topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)];
+        let after = self.shape([d, b, c]).min(self.shape([c, a, d]));
+        after > POOR || after > self.shape([a, b, c]).min(self.shape([b, a, d]))
+    }
+
+    /// Quality of a straight triangle in the mean tensor of its corners: 1 of an equilateral one.
+    fn shape(&self, corners: [VertexId; 3]) -> f64 {
+        let tensor = corners.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / 3.0);
+        let [a, b, c] = corners.map(|v| self.position(v));
+        let squares: f64 = [b - a, c - b, a - c].iter().map(|&e| tensor.dot(e, e)).sum();
+        2.0 * 3.0_f64.sqrt() * signed_area(a, b, c) * tensor.determinant().max(0.0).sqrt() / squares
     }
 
     fn flip(&mut self, h: HalfEdge) {

@@ -5,19 +5,23 @@
 //! ([`flips`](self)); a flip that the metric wants and the plane forbids is *blocked*.
 
 mod assemble;
+mod consult;
 mod edit;
 mod flips;
 mod margin;
+mod patch;
 
+pub use consult::{Consultation, Disagreement, Made, Road};
 pub use margin::{Effort, LEVELS, Margin};
 
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::geodesic::{LocalMetric, chord, hermite};
+use crate::geodesic::{LocalMetric, Paths, chord, hermite};
 use crate::geometry::{Point, Readable, Tensor};
 use crate::metric::Scaled;
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use margin::Known;
 use rayon::prelude::*;
 
 /// What holds a vertex in its place.
@@ -36,8 +40,6 @@ pub enum Kind {
 pub struct DualCounters {
     /// In-circle tests settled at each level of [`LEVELS`].
     pub tests: [u64; LEVELS],
-    /// Tests whose margin stayed within the estimated error of the last level.
-    pub uncertain: u64,
     /// Flips done.
     pub flips: u64,
 }
@@ -52,6 +54,8 @@ pub struct Dual<'a> {
     touched: Vec<FaceId>,
     stack: Vec<HalfEdge>,
     flips_of_slot: Vec<u8>,
+    known: Known,
+    paths: Paths,
     counters: DualCounters,
     fault: Option<(Point, Tensor)>,
 }
@@ -73,6 +77,8 @@ impl<'a> Dual<'a> {
             touched: Vec::new(),
             stack: Vec::new(),
             flips_of_slot: Vec::new(),
+            known: Known::default(),
+            paths: Paths::default(),
             counters: DualCounters::default(),
             fault: None,
         };
@@ -163,10 +169,12 @@ impl<'a> Dual<'a> {
         self.planar = planar;
         self.touched.clear();
         self.flips_of_slot.clear();
+        self.known = Known::default();
     }
 
     /// Evaluates the metric at every vertex, in parallel.
     pub(crate) fn measure_all(&mut self) {
+        self.known = Known::default();
         let field = self.field;
         let (topology, positions) = (&self.planar.topology, &self.planar.positions);
         self.locals.par_iter_mut().enumerate().with_min_len(256).for_each(|(v, local)| {
@@ -200,6 +208,7 @@ impl<'a> Dual<'a> {
 
     /// The metric around a point; where it is not valid that is noted, and the Euclidean metric serves instead.
     fn measure(&mut self, p: Point) -> LocalMetric {
+        self.known = Known::default();
         let local = LocalMetric::at(&self.field, p);
         self.vetted(p, local)
     }

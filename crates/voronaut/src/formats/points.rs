@@ -8,9 +8,18 @@ use crate::geometry::Point;
 /// # Errors
 /// [`Error::Parse`] with the line that is no point.
 pub fn read(text: &str, name: &str) -> Result<Vec<Point>> {
-    let content = |line: &str| line.split('#').next().unwrap_or_default().trim().to_owned();
-    let lines = text.lines().map(content).enumerate().filter(|(_, line)| !line.is_empty());
-    lines.map(|(i, line)| point(&line).ok_or_else(|| fault(name, i + 1, &line))).collect()
+    rows(text).map(|(number, row)| point(row).ok_or_else(|| fault(name, number, row))).collect()
+}
+
+/// The line of each point of a text that [`read`] reads, from 1.
+pub fn lines(text: &str) -> Vec<usize> {
+    rows(text).map(|(number, _)| number).collect()
+}
+
+/// What is on the lines that say something, with their numbers.
+fn rows(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let rows = text.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
+    (1..).zip(rows).filter(|(_, row)| !row.is_empty())
 }
 
 fn point(line: &str) -> Option<Point> {
@@ -35,6 +44,7 @@ mod tests {
     fn points_are_read_and_faults_named() {
         let points = read("# seeds\n 1 2\n\n-3e2\t4.5 0 # third\n", "s.txt").unwrap();
         assert_eq!(points, [Point::new(1.0, 2.0), Point::new(-300.0, 4.5)]);
+        assert_eq!(lines("# seeds\n 1 2\n\n-3e2\t4.5 0 # third\n"), [2, 4]);
         for bad in ["1", "1 2 3", "a b", "1 nan", "1 2 0 0"] {
             let error = read(&format!("0 0\n{bad}"), "s.txt").unwrap_err();
             assert!(error.to_string().starts_with("s.txt:2:"), "{error}");

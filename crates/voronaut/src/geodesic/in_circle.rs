@@ -61,10 +61,15 @@ impl Angles {
 
 /// (cosine, sine) of the angle opposite to `edge` in a triangle with the other sides a and b, and the triangle's
 /// area. Where the lengths break the triangle inequality the triangle is flat.
-fn opposite(edge: f64, a: f64, b: f64) -> ((f64, f64), f64) {
+pub(super) fn opposite(edge: f64, a: f64, b: f64) -> ((f64, f64), f64) {
     let squared = (a + b + edge) * (a + b - edge).max(0.0) * (edge + a - b).max(0.0) * (edge - a + b).max(0.0);
     let area = 0.25 * squared.sqrt();
     (Angles::normalised(0.5 * (a * a + b * b - edge * edge), 2.0 * area), area)
+}
+
+/// The circumradius of a flat triangle with these sides; infinite where they make none.
+pub fn circumradius(a: f64, b: f64, c: f64) -> f64 {
+    a * b * c / (4.0 * opposite(a, b, c).1)
 }
 
 #[cfg(test)]

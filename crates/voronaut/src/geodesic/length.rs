@@ -75,14 +75,17 @@ pub fn chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
 /// the chord's length. The error is the difference to the path of half as many segments.
 pub fn path_energy(field: &dyn MetricField, p: Point, q: Point, segments: usize) -> Length {
     let straight = chord(field, p, q);
-    let coarse = relaxed_length(field, p, q, (segments / 2).max(2)).min(straight);
-    let fine = relaxed_length(field, p, q, segments.max(4)).min(straight);
+    let coarse = relaxed_length(field, p, q, (segments / 2).max(2), CONVERGED).min(straight);
+    let fine = relaxed_length(field, p, q, segments.max(4), CONVERGED).min(straight);
     Length { value: fine, error: (coarse - fine).abs() / fine.max(f64::MIN_POSITIVE) }
 }
 
 const NEWTON_STEPS: usize = 12;
+/// A Newton step that gains no more than this share of the energy is the last.
+const CONVERGED: f64 = 1e-12;
 
-fn relaxed_length(field: &dyn MetricField, p: Point, q: Point, segments: usize) -> f64 {
+/// Length of the path from the chord whose energy is minimised until a step gains no more than the share `settled`.
+pub(super) fn relaxed_length(field: &dyn MetricField, p: Point, q: Point, segments: usize, settled: f64) -> f64 {
     let mut path: Vec<Point> = (0..=segments).map(|i| p.lerp(q, i as f64 / segments as f64)).collect();
     path[segments] = q;
     let mut energy = path_energy_of(field, &path);
@@ -95,7 +98,7 @@ fn relaxed_length(field: &dyn MetricField, p: Point, q: Point, segments: usize) 
             if trial_energy < energy {
                 let gain = energy - trial_energy;
                 (path, energy) = (trial, trial_energy);
-                break gain > 1e-12 * energy;
+                break gain > settled * energy;
             }
             damping *= 0.5;
             if damping < 0.05 {

@@ -141,7 +141,7 @@ impl March<'_> {
     }
 
     fn offer(&mut self, v: VertexId, label: Label) {
-        if label.is_before(&self.state.due[v.index()]) {
+        if label.is_before(&self.state.due[v.index()]) && !self.is_circular(&label, v) {
             self.state.due[v.index()] = label;
             self.enqueue(v);
         }
@@ -169,12 +169,23 @@ impl March<'_> {
         }
     }
 
+    /// Whether a label of a vertex comes from that vertex: edges that flips have made may lead around a hole and back. A
+    /// label must not rest on itself, not even while it is stale.
+    fn is_circular(&self, label: &Label, v: VertexId) -> bool {
+        let ends = |h: HalfEdge| [self.canvas.origin(h), self.canvas.target(h)];
+        match label.support() {
+            Support::Nothing | Support::Source => false,
+            Support::Edge(h) => ends(h).contains(&v),
+            Support::Vertex(h) => ends(h) == [v, v],
+        }
+    }
+
     /// Computes the due label anew from everything around the vertex.
     fn reconsider(&mut self, v: VertexId) {
         let canvas = self.canvas;
         let mut best = self.sources.nearest(v);
         let mut consider = |label: Label| {
-            if label.is_before(&best) {
+            if label.is_before(&best) && !self.is_circular(&label, v) {
                 best = label;
             }
         };

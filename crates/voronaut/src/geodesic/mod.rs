@@ -5,22 +5,38 @@
 //! read positions.
 
 mod bow;
+mod circumcentre;
+mod curve;
 mod front;
 mod in_circle;
+mod jet;
+mod karcher;
 mod label;
 mod length;
 mod local;
 mod march;
 mod patch;
+mod path;
+mod predicate;
+mod rule;
+mod straighten;
+mod tension;
 mod update;
 
-pub use bow::bowed_chord;
-pub use in_circle::{Angles, frozen_margin};
+pub use bow::{bowed_between, bowed_chord};
+pub use circumcentre::margin_by_power;
+pub use curve::Curve;
+pub use in_circle::{Angles, circumradius, frozen_margin};
+pub use jet::gauss_curvature;
+pub use karcher::karcher_mean;
 pub use label::{Label, NO_COLOUR, Sources, Support};
 pub use length::{Length, bent_chord, chord, hermite, path_energy};
 pub use local::LocalMetric;
 pub use march::{Marching, Propagation};
 pub use patch::PatchSolver;
+pub use path::{Fineness, PathLength, Paths};
+pub use predicate::{Margin, margin_from_lengths};
+pub use straighten::{Obstacles, Open, Polyline, straighten};
 pub use update::Wave;
 
 use crate::triangulation::{Triangulation, VertexId};
@@ -35,7 +51,7 @@ pub trait Geodesic: Sync {
 }
 
 /// Work of a propagation, counted; deterministic.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct MarchCounters {
     /// Vertices taken from the front.
     pub settled: u64,

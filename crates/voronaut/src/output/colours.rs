@@ -9,6 +9,82 @@ pub(super) const ELLIPSE: &str = "#d1442b";
 /// The domain where its triangles are not shown.
 pub(super) const DOMAIN: &str = "#eef2f5";
 
+/// Lines between cells, and between pale ones.
+pub(super) const CELL_BORDER: &str = "#ffffff";
+pub(super) const PALE_BORDER: &str = "#c9ced8";
+/// Dots at seeds.
+pub(super) const SEED: &str = "#1b2540";
+/// Geodesic edges.
+pub(super) const GEODESIC: &str = "#1b2540";
+/// Lines of equal barycentric coordinates.
+pub(super) const GRID: &str = "#4a5b85";
+/// Fill and ink of canvas faces that witness Voronoi edges, and Voronoi vertices.
+pub(super) const EDGE_WITNESS: [&str; 2] = ["#aab0ba", "#8b929e"];
+pub(super) const VERTEX_WITNESS: [&str; 2] = ["#d8293c", "#a3182b"];
+
+/// The colour of a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    /// Which of the hues: neighbours have different ones.
+    pub(super) hue: usize,
+    /// A variation that the eye notices only beside another.
+    pub(super) shade: usize,
+    /// How much stands over it.
+    pub(super) tint: Tint,
+}
+
+/// How strong the colours of cells are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tint {
+    /// Cells alone.
+    Full,
+    /// Under lines.
+    Soft,
+    /// Under filled triangles.
+    Pale,
+}
+
+/// Lightness, chroma and hue (OKLCH) of cells: from deep blue over green to sand and rose, light and dark in turns.
+const CELLS: [[f64; 3]; 7] = [
+    [0.69, 0.085, 258.0],
+    [0.80, 0.065, 222.0],
+    [0.72, 0.075, 182.0],
+    [0.84, 0.070, 140.0],
+    [0.89, 0.075, 92.0],
+    [0.79, 0.090, 55.0],
+    [0.73, 0.085, 15.0],
+];
+
+impl Cell {
+    /// Number of hues.
+    pub(super) const HUES: usize = CELLS.len();
+    /// Number of shades of each.
+    pub(super) const SHADES: usize = 3;
+
+    pub(super) fn fill(self) -> String {
+        let [lightness, chroma, hue] = CELLS[self.hue];
+        let lightness = lightness + 0.022 * (self.shade as f64 - 1.0);
+        // From the colour itself towards white, with less of its contrast.
+        let [middle, contrast, strength] = match self.tint {
+            Tint::Full => [0.79, 1.0, 1.0],
+            Tint::Soft => [0.86, 0.65, 0.72],
+            Tint::Pale => [0.94, 0.2, 0.3],
+        };
+        oklch(middle + contrast * (lightness - 0.79), strength * chroma, hue)
+    }
+
+    /// How like two hues are: large for near ones.
+    pub(super) fn likeness(a: usize, b: usize) -> f64 {
+        let [x, y] = [a, b].map(|i| {
+            let [lightness, chroma, hue] = CELLS[i];
+            let angle = hue.to_radians();
+            [lightness, chroma * angle.cos(), chroma * angle.sin()]
+        });
+        let square: f64 = x.iter().zip(y).map(|(u, v)| (u - v) * (u - v)).sum();
+        0.005 / (0.005 + square)
+    }
+}
+
 /// A soft fill: `level` from 0 (palest) to 1 (strongest), a hue of its own for each region (0 for the first).
 pub(super) fn fill(region: usize, level: f64) -> String {
     // The golden angle keeps any number of hues apart; within a region the hue drifts, as in the best ramps.
@@ -44,6 +120,16 @@ fn oklch(lightness: f64, chroma: f64, hue: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn hues_of_cells_are_told_apart() {
+        for a in 0..Cell::HUES {
+            for b in 0..a {
+                let [fill, other] = [a, b].map(|hue| Cell { hue, shade: 1, tint: Tint::Soft }.fill());
+                assert!(fill != other && Cell::likeness(a, b) < Cell::likeness(a, a));
+            }
+        }
+    }
 
     #[test]
     fn oklch_knows_white_black_and_red() {

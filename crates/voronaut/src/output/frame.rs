@@ -74,6 +74,12 @@ impl PathData {
         }
     }
 
+    /// Adds a line of no length: a dot where lines have round ends.
+    pub(super) fn dot(&mut self, point: [i64; 2]) {
+        self.polyline(&[point], false);
+        self.text.push_str("h0");
+    }
+
     /// Adds an ellipse: a point of it and the opposite one, its semi-axes, and the angle (degrees, clockwise on paper)
     /// of the first.
     pub(super) fn ellipse(&mut self, [from, to]: [[i64; 2]; 2], [rx, ry]: [i64; 2], degrees: f64) {

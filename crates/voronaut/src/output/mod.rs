@@ -1,26 +1,31 @@
 //! What leaves the program: mesh files, pictures, reports. A file is there as a whole or not at all.
 
 mod atomic;
+mod cells;
 mod colours;
 mod ellipses;
 mod frame;
 mod obj;
+mod palette;
 #[cfg(feature = "png")]
 mod png;
 pub mod report;
+mod simplify;
 mod strokes;
 mod svg;
 mod vtu;
 
 pub use atomic::{demand_directory, place, write};
+pub use cells::Layers;
 #[cfg(feature = "png")]
 pub use png::render_png;
 pub use report::Report;
-pub use svg::{Picture, Shade, svg};
+pub use svg::{Picture, Shade, svg, svg_with};
 
 use crate::error::{Error, Result};
 use crate::formats::medit;
 use crate::mesh::Mesh;
+use crate::realisation::Realisation;
 use std::path::Path;
 
 /// A mesh format that can be written.
@@ -96,6 +101,19 @@ pub fn write_mesh(mesh: &Mesh, path: &Path) -> Result<()> {
         Format::Medit => write(path, medit::write(mesh).as_bytes()),
         Format::Vtu => write(path, &vtu::vtu(mesh, None)),
         Format::Obj => write(path, obj::obj(mesh).as_bytes()),
+    }
+}
+
+/// Writes a realisation of a dual with geodesic edges in the format its name ends in, as a whole or not at all: what
+/// [`Realisation::to_mesh`] holds, in a `.vtu` with each edge as one polyline cell, and with cell data `label` (number of the
+/// triangle or the edge, from 1), `seeds` (from 0; the third is -1 for edges) and `length` (0 for triangles).
+///
+/// # Errors
+/// As for [`write_mesh`].
+pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
+    match Format::from_path(path)? {
+        Format::Vtu => write(path, &vtu::curved(realisation)),
+        Format::Medit | Format::Obj => write_mesh(&realisation.to_mesh(), path),
     }
 }
 

@@ -1,6 +1,10 @@
 //! The machine-readable account of a run (`--report`).
 
+use crate::canvas::CanvasCounters;
+use crate::dual::Road;
+use crate::geodesic::MarchCounters;
 use crate::quality::{Angles, EdgeLengths, Fidelity, MetricQuality, Quality, Validity, Worst};
+use crate::realisation::{self, Found, Realisation};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
@@ -54,6 +58,9 @@ pub struct Canvas {
     pub kind: String,
     /// Its vertices.
     pub vertices: usize,
+    /// How it came about, its fields beside these.
+    #[serde(flatten)]
+    pub counters: CanvasCounters,
 }
 
 /// The discrete Riemannian Voronoi diagram.
@@ -61,19 +68,115 @@ pub struct Canvas {
 pub struct Diagram {
     /// Canvas vertices cut off from their cell.
     pub orphans: usize,
+    /// Work of the solver, its fields beside this one.
+    #[serde(flatten)]
+    pub counters: MarchCounters,
 }
 
-/// Counters of the dual, as the mesher counted them.
+impl Canvas {
+    /// Of an intrinsic canvas.
+    pub fn of(canvas: &crate::canvas::Canvas) -> Self {
+        Self { kind: "intrinsic".into(), vertices: canvas.vertex_count(), counters: *canvas.counters() }
+    }
+}
+
+impl Diagram {
+    /// Of a diagram as it is.
+    pub fn of(diagram: &crate::diagram::Diagram) -> Self {
+        Self { orphans: diagram.orphans().len(), counters: *diagram.counters() }
+    }
+}
+
+/// The dual: how its edges were settled, and how sure that is. Deterministic.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Dual {
     /// In-circle tests settled by each level of the filter.
-    pub geodesic_tests: [u64; crate::dual::LEVELS],
-    /// Tests whose margin stayed within the estimated error of the last level tried.
-    pub uncertain: u64,
-    /// The smallest margin among the final mesh's edges.
+    pub geodesic_tests: Vec<u64>,
+    /// Edges of which neither lengths nor the diagram are sure: those of `uncertain_edges`.
+    pub uncertain: usize,
+    /// The smallest margin (sine of the sum of opposite angles) among the edges that lengths decided on.
     pub min_margin: f64,
     /// Flips that the metric wants and the plane forbids.
-    pub blocked_flips: u64,
+    pub blocked_flips: usize,
+    /// Edges on which lengths and the diagram were compared.
+    pub compared: usize,
+    /// Those on which they differ.
+    pub disagreements: Vec<Disagreement>,
+    /// The edges of which neither is sure.
+    pub uncertain_edges: Vec<UncertainEdge>,
+    /// Pairs of straight edges without a common vertex that cross.
+    pub crossing_edges: Option<usize>,
+    /// The edges as geodesics, where they were found, its fields beside these.
+    #[serde(flatten)]
+    pub geodesics: Option<Geodesics>,
+}
+
+/// The edges of a dual as geodesics.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Geodesics {
+    /// Pairs of geodesics that meet elsewhere than at a seed.
+    pub crossing_geodesics: usize,
+    /// Edges that were moved aside because they crossed another one from the same seed.
+    pub parted_geodesics: usize,
+    /// Triangles whose three geodesics bound no region.
+    pub open_regions: usize,
+    /// All edges, in order.
+    pub geodesic_edges: Vec<GeodesicEdge>,
+}
+
+/// An edge as a geodesic. Vertices are numbered from 0.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GeodesicEdge {
+    /// Its ends.
+    pub edge: [u32; 2],
+    /// Metric length.
+    pub length: f64,
+    /// Estimated relative error of the length.
+    pub error: f64,
+    /// How it was found.
+    pub found: Found,
+}
+
+impl Geodesics {
+    /// Of a realisation.
+    pub fn of(realisation: &Realisation) -> Self {
+        let edge = |e: &realisation::GeodesicEdge| {
+            let (length, error) = (e.length, e.error);
+            GeodesicEdge { edge: e.ends, length, error, found: e.found }
+        };
+        Self {
+            crossing_geodesics: realisation.crossing.len(),
+            parted_geodesics: realisation.edges.iter().filter(|e| e.found == Found::Parted).count(),
+            open_regions: realisation.open(),
+            geodesic_edges: realisation.edges.iter().map(edge).collect(),
+        }
+    }
+}
+
+/// An edge on which lengths of geodesics and the nerve of the diagram differ. Vertices are numbered from 0.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Disagreement {
+    /// Its ends.
+    pub edge: [u32; 2],
+    /// The ends of the other diagonal, if that is what the nerve has.
+    pub instead: Option<[u32; 2]>,
+    /// Its margin by lengths.
+    pub margin: f64,
+    /// Estimated error of the margin.
+    pub error: f64,
+    /// Which of the two was followed.
+    pub settled_by: Road,
+}
+
+/// An edge of which neither lengths nor the diagram are sure. Vertices are numbered from 0.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct UncertainEdge {
+    /// Its ends.
+    pub edge: [u32; 2],
+    /// Its margin by lengths.
+    pub margin: f64,
+    /// Estimated error of the margin.
+    pub error: f64,
 }
 
 /// Wall time per stage in order, then `total`. A stage that ran more than once is one entry.

@@ -15,10 +15,11 @@ const CLASSES: usize = 11;
 /// Width of boundary and interfaces, in pixels.
 const BOUNDARY_WIDTH: f64 = 1.3;
 
-/// One SVG path per class of line width, all inner edges; `heights` holds each triangle's least height in pixels.
-pub(super) fn inner_edges(svg: &mut String, mesh: &Mesh, edges: &Edges, heights: &[f64], frame: &Frame) {
+/// One SVG path per class of line width: all edges between at least so many triangles; `heights` holds each triangle's
+/// least height in pixels.
+pub(super) fn edges_of(svg: &mut String, mesh: &Mesh, edges: &Edges, sides: usize, heights: &[f64], frame: &Frame) {
     let mut classes = vec![PathData::default(); CLASSES];
-    for ([a, b], half_edges) in edges.iter().filter(|(_, half_edges)| half_edges.len() > 1) {
+    for ([a, b], half_edges) in edges.iter().filter(|(_, half_edges)| half_edges.len() >= sides) {
         let height = half_edges.iter().map(|&(_, h)| heights[h as usize / 3]).fold(f64::INFINITY, f64::min);
         let class = (2.0 * (WIDEST / (SHARE * height)).log2()).round().clamp(0.0, (CLASSES - 1) as f64);
         classes[class as usize].polyline(&[a, b].map(|v| frame.place(mesh.point(v))), false);

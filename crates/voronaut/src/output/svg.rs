@@ -1,7 +1,10 @@
 //! A picture of a mesh.
 
+use super::cells::{self, Layers};
+use super::colours::Tint;
 use super::frame::{Frame, PathData};
 use super::{colours, ellipses, strokes};
+use crate::diagram::Cells;
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Point};
 use crate::mesh::Mesh;
@@ -45,28 +48,75 @@ impl Default for Picture {
 /// # Errors
 /// [`Error::Unsupported`] for ellipses without a metric, [`Error::Metric`] where it is not positive definite.
 pub fn svg(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture) -> Result<String> {
+    svg_with(mesh, metric, picture, &Layers::default())
+}
+
+/// [`svg`] with the cells of a diagram instead of filled triangles, and what else the layers hold; the border drawn on top
+/// is then that of the cells' domain.
+///
+/// # Errors
+/// As for [`svg`].
+pub fn svg_with(
+    mesh: &Mesh,
+    metric: Option<&dyn MetricField>,
+    picture: &Picture,
+    layers: &Layers<'_>,
+) -> Result<String> {
     let (triangles, labels) = drawable(mesh);
     let edges = Edges::of(&triangles);
-    let corners = triangles.as_flattened().iter().map(|&v| mesh.point(v));
-    let bounds = Aabb::of(corners).unwrap_or(Aabb { min: Point::default(), max: Point::default() });
     let heights: Vec<f64> = triangles.iter().map(|&t| least_height(mesh, t)).collect();
-    let frame = Frame::new(bounds, f64::from(picture.width.max(16)), |scale| scale * low_percentile(&heights));
+    let frame = frame(mesh, &triangles, &heights, *picture, layers.cells);
     let pixels: Vec<f64> = heights.iter().map(|&height| frame.pixels(height)).collect();
 
     let mut text = head(&frame);
-    if picture.mesh {
-        fill(&mut text, mesh, &frame, &triangles, &classes(mesh, &triangles, &labels, picture.shade));
-        strokes::inner_edges(&mut text, mesh, &edges, &pixels, &frame);
+    if let Some(found) = layers.cells {
+        let has_lines = picture.mesh || picture.ellipses || !layers.geodesics.is_empty();
+        let tint = if has_lines { Tint::Soft } else { Tint::Full };
+        cells::cells(&mut text, found, &frame, if layers.witnesses.is_some() { Tint::Pale } else { tint });
     } else {
-        let one_class = vec![colours::DOMAIN.to_string(); triangles.len()];
-        fill(&mut text, mesh, &frame, &triangles, &one_class);
+        let one_class = || vec![colours::DOMAIN.to_string(); triangles.len()];
+        let fills = if picture.mesh { classes(mesh, &triangles, &labels, picture.shade) } else { one_class() };
+        fill(&mut text, mesh, &frame, &triangles, &fills);
+    }
+    if let Some(faces) = layers.witnesses {
+        cells::witnesses(&mut text, faces, &frame);
+    }
+    if picture.mesh {
+        let sides = if layers.cells.is_some() { 1 } else { 2 };
+        strokes::edges_of(&mut text, mesh, &edges, sides, &pixels, &frame);
     }
     if picture.ellipses {
-        ellipses::ellipses(&mut text, mesh, &edges, metric.ok_or_else(no_metric)?, &frame, picture.mesh)?;
+        let is_faint = picture.mesh || layers.cells.is_some();
+        ellipses::ellipses(&mut text, mesh, &edges, metric.ok_or_else(no_metric)?, &frame, is_faint)?;
     }
-    strokes::boundary(&mut text, mesh, &edges, &frame);
+    let thickness = layers.cells.map_or(10.0, |found| cells::typical(found, &frame)[0]);
+    if !layers.grids.is_empty() {
+        cells::grids(&mut text, layers.grids, thickness, &frame);
+    }
+    if !layers.geodesics.is_empty() {
+        cells::geodesics(&mut text, layers.geodesics, thickness, &frame);
+    }
+    if let Some(found) = layers.cells {
+        cells::seeds(&mut text, found, &frame);
+        cells::border(&mut text, found, &frame);
+    } else {
+        strokes::boundary(&mut text, mesh, &edges, &frame);
+    }
     text.push_str("</svg>\n");
     Ok(text)
+}
+
+/// A frame around the domain, as far as it is known, fine enough for thin triangles or cells.
+fn frame(mesh: &Mesh, triangles: &[[u32; 3]], heights: &[f64], picture: Picture, cells: Option<&Cells>) -> Frame {
+    let border = cells.iter().flat_map(|c| c.border.iter().flatten().copied());
+    let corners = triangles.as_flattened().iter().map(|&v| mesh.point(v));
+    let bounds = Aabb::of(border.chain(corners)).unwrap_or(Aabb { min: Point::default(), max: Point::default() });
+    let width = f64::from(picture.width.max(16));
+    // Lines between cells and along triangles are drawn: both tell how fine the paper must be.
+    let coarse = Frame::new(bounds, width, |_| 1.0);
+    let thin = cells.map_or(f64::INFINITY, |found| cells::typical(found, &coarse)[1]);
+    let drawn = if picture.mesh || cells.is_none() { low_percentile(heights) } else { f64::INFINITY };
+    Frame::new(bounds, width, |scale| thin.min(scale * drawn))
 }
 
 /// How many levels of colour there are per region.

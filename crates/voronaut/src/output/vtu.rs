@@ -1,46 +1,62 @@
 //! VTK's XML format for unstructured grids (`.vtu`), with its arrays raw and appended: exact, compact, quick to read.
 
 use crate::mesh::Mesh;
+use crate::realisation::Realisation;
 
 /// VTK's cell types.
 const LINE: u8 = 3;
+const POLY_LINE: u8 = 4;
 const TRIANGLE: u8 = 5;
 
+const LABEL: &str = r#"<DataArray type="Int32" Name="label""#;
+const COLOUR: &str = r#"<DataArray type="Int32" Name="colour""#;
+const SEEDS: &str = r#"<DataArray type="Int32" Name="seeds" NumberOfComponents="3""#;
+
 /// A mesh as the bytes of a `.vtu` file: its triangles, then its labelled edges as line cells; point and cell data
-/// `label`, and point data `distance` if given. Little endian on every machine.
+/// `label`. With distances, those of a diagram, points have `colour` and `distance` instead. Little endian on every
+/// machine.
 pub(super) fn vtu(mesh: &Mesh, distances: Option<&[f64]>) -> Vec<u8> {
-    let cells = mesh.triangles.len() + mesh.edges.len();
     let mut file = Appended::default();
-    let label = r#"<DataArray type="Int32" Name="label""#;
-    let points = format!(
-        "      <PointData Scalars=\"label\">\n{}{}      </PointData>\n\
-         \x20     <CellData Scalars=\"label\">\n{}      </CellData>\n\
-         \x20     <Points>\n{}      </Points>\n",
-        file.array(label, &bytes(labels(&mesh.point_labels, mesh.points.len()), i32::to_le_bytes)),
-        distances.map_or_else(String::new, |distances| {
-            let distance = r#"<DataArray type="Float64" Name="distance""#;
-            file.array(distance, &bytes(distances.iter().copied(), f64::to_le_bytes))
-        }),
-        file.array(label, &bytes(cell_labels(mesh), i32::to_le_bytes)),
-        file.array(
-            r#"<DataArray type="Float64" Name="Points" NumberOfComponents="3""#,
-            &bytes(mesh.points.iter().flatten().copied(), f64::to_le_bytes)
-        ),
-    );
-    let cell_arrays = format!(
-        "      <Cells>\n{}{}{}      </Cells>\n",
-        file.array(r#"<DataArray type="Int64" Name="connectivity""#, &bytes(connectivity(mesh), i64::to_le_bytes)),
-        file.array(r#"<DataArray type="Int64" Name="offsets""#, &bytes(offsets(mesh), i64::to_le_bytes)),
-        file.array(r#"<DataArray type="UInt8" Name="types""#, &types(mesh)),
-    );
-    let count = mesh.points.len();
-    let head = format!(
-        "<?xml version=\"1.0\"?>\n\
-         <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-         \x20 <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{cells}\">\n\
-         {points}{cell_arrays}    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_"
-    );
-    [head.as_bytes(), &file.data, b"\n  </AppendedData>\n</VTKFile>\n"].concat()
+    let of_points = if distances.is_some() { COLOUR } else { LABEL };
+    let mut points = file.array(of_points, &bytes(labels(&mesh.point_labels, mesh.points.len()), i32::to_le_bytes));
+    if let Some(distances) = distances {
+        let distance = r#"<DataArray type="Float64" Name="distance""#;
+        points += &file.array(distance, &bytes(distances.iter().copied(), f64::to_le_bytes));
+    }
+    let cells = file.array(LABEL, &bytes(cell_labels(mesh), i32::to_le_bytes));
+    let lines: Vec<&[u32]> = mesh.edges.iter().map(<[u32; 2]>::as_slice).collect();
+    file.finish([&points, &cells], &Cells { points: &mesh.points, triangles: &mesh.triangles, lines, line: LINE })
+}
+
+/// A realisation as the bytes of a `.vtu` file: the triangles that its regions are cut into, then its edges as polyline
+/// cells; cell data `label`, `seeds` and `length`.
+pub(super) fn curved(realisation: &Realisation) -> Vec<u8> {
+    let (mesh, lines) = (realisation.to_mesh(), realisation.lines());
+    let edges = &realisation.edges;
+    let labels = mesh.triangle_labels.iter().copied().chain((1..).take(edges.len()));
+    let of_triangles = mesh.triangle_labels.iter().map(|&label| realisation.triangles[label as usize - 1]);
+    let seeds = of_triangles.map(|t| t.map(u32::cast_signed));
+    let seeds = seeds.chain(edges.iter().map(|e| [e.ends[0].cast_signed(), e.ends[1].cast_signed(), -1]));
+    let lengths = mesh.triangles.iter().map(|_| 0.0).chain(edges.iter().map(|e| e.length));
+    let mut file = Appended::default();
+    let points = file.array(LABEL, &bytes(mesh.point_labels.iter().copied(), i32::to_le_bytes));
+    let cells = [
+        file.array(LABEL, &bytes(labels, i32::to_le_bytes)),
+        file.array(SEEDS, &bytes(seeds.flatten(), i32::to_le_bytes)),
+        file.array(r#"<DataArray type="Float64" Name="length""#, &bytes(lengths, f64::to_le_bytes)),
+    ];
+    let lines = lines.iter().map(Vec::as_slice).collect();
+    let all = Cells { points: &mesh.points, triangles: &mesh.triangles, lines, line: POLY_LINE };
+    file.finish([&points, &cells.concat()], &all)
+}
+
+/// What an unstructured grid consists of.
+struct Cells<'a> {
+    points: &'a [[f64; 3]],
+    triangles: &'a [[u32; 3]],
+    lines: Vec<&'a [u32]>,
+    /// The type of the lines' cells.
+    line: u8,
 }
 
 /// The raw section of the file: each array behind its length in bytes.
@@ -57,6 +73,51 @@ impl Appended {
         self.data.extend(bytes);
         format!("        {element} format=\"appended\" offset=\"{offset}\"/>\n")
     }
+
+    /// The file, with the elements of point and cell data that are appended already.
+    fn finish(mut self, [point_data, cell_data]: [&str; 2], cells: &Cells) -> Vec<u8> {
+        let positions = r#"<DataArray type="Float64" Name="Points" NumberOfComponents="3""#;
+        let points = self.array(positions, &bytes(cells.points.iter().flatten().copied(), f64::to_le_bytes));
+        let connectivity = bytes(cells.connectivity(), i64::to_le_bytes);
+        let cell_arrays = [
+            self.array(r#"<DataArray type="Int64" Name="connectivity""#, &connectivity),
+            self.array(r#"<DataArray type="Int64" Name="offsets""#, &bytes(cells.offsets(), i64::to_le_bytes)),
+            self.array(r#"<DataArray type="UInt8" Name="types""#, &cells.types()),
+        ]
+        .concat();
+        let (count, number) = (cells.points.len(), cells.triangles.len() + cells.lines.len());
+        let head = format!(
+            "<?xml version=\"1.0\"?>\n\
+             <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+             \x20 <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{number}\">\n\
+             \x20     <PointData>\n{point_data}      </PointData>\n\
+             \x20     <CellData Scalars=\"label\">\n{cell_data}      </CellData>\n\
+             \x20     <Points>\n{points}      </Points>\n      <Cells>\n{cell_arrays}      </Cells>\n\
+             \x20   </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_"
+        );
+        [head.as_bytes(), &self.data, b"\n  </AppendedData>\n</VTKFile>\n"].concat()
+    }
+}
+
+impl Cells<'_> {
+    fn connectivity(&self) -> impl Iterator<Item = i64> {
+        let lines = self.lines.iter().copied().flatten();
+        self.triangles.as_flattened().iter().chain(lines).copied().map(i64::from)
+    }
+
+    /// Where each cell ends in the connectivity.
+    fn offsets(&self) -> impl Iterator<Item = i64> {
+        let sizes =
+            self.triangles.iter().map(|_| 3).chain(self.lines.iter().map(|line| line.len().cast_signed() as i64));
+        sizes.scan(0, |end, size| {
+            *end += size;
+            Some(*end)
+        })
+    }
+
+    fn types(&self) -> Vec<u8> {
+        [vec![TRIANGLE; self.triangles.len()], vec![self.line; self.lines.len()]].concat()
+    }
 }
 
 fn bytes<T, const N: usize>(values: impl IntoIterator<Item = T>, to_bytes: impl Fn(T) -> [u8; N]) -> Vec<u8> {
@@ -70,23 +131,6 @@ fn labels(labels: &[i32], count: usize) -> impl Iterator<Item = i32> {
 
 fn cell_labels(mesh: &Mesh) -> impl Iterator<Item = i32> {
     labels(&mesh.triangle_labels, mesh.triangles.len()).chain(labels(&mesh.edge_labels, mesh.edges.len()))
-}
-
-fn connectivity(mesh: &Mesh) -> impl Iterator<Item = i64> {
-    mesh.triangles.as_flattened().iter().chain(mesh.edges.as_flattened()).copied().map(i64::from)
-}
-
-/// Where each cell ends in the connectivity.
-fn offsets(mesh: &Mesh) -> impl Iterator<Item = i64> {
-    let sizes = mesh.triangles.iter().map(|_| 3).chain(mesh.edges.iter().map(|_| 2));
-    sizes.scan(0, |end, size| {
-        *end += size;
-        Some(*end)
-    })
-}
-
-fn types(mesh: &Mesh) -> Vec<u8> {
-    [vec![TRIANGLE; mesh.triangles.len()], vec![LINE; mesh.edges.len()]].concat()
 }
 
 #[cfg(test)]

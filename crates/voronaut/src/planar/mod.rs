@@ -1,5 +1,6 @@
 //! A triangulation embedded in the plane: every living face is counter-clockwise, by exact predicates, at every moment.
 
+mod connect;
 mod constrain;
 mod delaunay;
 mod locate;

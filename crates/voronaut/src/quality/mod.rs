@@ -1,5 +1,6 @@
 //! What a mesh is worth: valid or not, good or not in a metric, close or not to its domain.
 
+mod crossings;
 mod edges;
 mod embedding;
 mod fidelity;
@@ -9,6 +10,7 @@ mod segments;
 mod test_meshes;
 mod validity;
 
+pub use crossings::{Crossing, crossing_edges, crossings};
 pub use fidelity::{Farthest, Fidelity, fidelity};
 pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};
 pub use validity::{Fault, Validity, check, validity};

@@ -1,18 +1,25 @@
 //! The main job as one function: from a domain and a metric to a valid unit mesh.
 
+mod dual;
 mod field;
+mod seeding;
+mod settle;
 
+pub use dual::{SeedDual, dual};
 pub use field::metric;
+pub use seeding::Seeding;
 
+use crate::canvas::{self, Canvas};
 use crate::domain::Domain;
-use crate::dual::{Dual, Effort, Kind, LEVELS};
+use crate::dual::{Dual, Kind, Road};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Scaled};
 use crate::optimise::{exchange, meet_blocked_flips, relax};
+use crate::output::report;
 use crate::progress::Progress;
 use crate::quality;
-use crate::sampling::{Fill, Plan, Target, refine, sample_segments, simplify};
+use crate::sampling::{Fill, Plan, Target, demand_memory, refine, sample_segments, simplify};
 use std::time::Instant;
 
 /// What the mesher may be told; every parameter has one name (flag, TOML key, Python keyword) and one default.
@@ -26,28 +33,29 @@ pub struct MeshOptions {
     pub hausd: Option<f64>,
     /// Steps of Riemannian Lloyd relaxation.
     pub lloyd: usize,
+    /// Which road decides on the topology.
+    pub dual: Road,
+    /// How the interior is seeded.
+    pub seeding: Seeding,
+    /// Canvas vertices per seed, where a canvas is used.
+    pub canvas_size: u32,
     /// Limit on the memory the work is estimated to need, in bytes.
     pub memory_limit: u64,
 }
 
 impl Default for MeshOptions {
     fn default() -> Self {
-        Self { vertices: None, complexity: None, hausd: None, lloyd: 40, memory_limit: 16 << 30 }
+        Self {
+            vertices: None,
+            complexity: None,
+            hausd: None,
+            lloyd: 40,
+            dual: Road::default(),
+            seeding: Seeding::default(),
+            canvas_size: canvas::VERTICES_PER_SEED,
+            memory_limit: 16 << 30,
+        }
     }
-}
-
-/// What the mesher counted: deterministic, the same on every machine and for any number of threads.
-#[derive(Clone, Debug, Default, serde::Serialize)]
-pub struct MeshCounters {
-    /// In-circle tests settled by each level of the filter: frozen tensor, expansions at the vertices, quadrature
-    /// along the chords, path energy with 8 segments.
-    pub geodesic_tests: [u64; LEVELS],
-    /// Tests whose margin stayed within the estimated error of the last level tried.
-    pub uncertain: u64,
-    /// The smallest margin among the final mesh's edges (sine of the sum of opposite angles).
-    pub min_margin: f64,
-    /// Flips that the metric wants and the plane forbids, in the final mesh.
-    pub blocked_flips: u64,
 }
 
 /// The result of meshing.
@@ -57,8 +65,12 @@ pub struct Meshed {
     pub mesh: Mesh,
     /// The factor on the metric tensor for which the mesh is a unit mesh (1 where the metric was used as it is).
     pub metric_scale: f64,
-    /// Work counters.
-    pub counters: MeshCounters,
+    /// How its edges were settled.
+    pub dual: report::Dual,
+    /// The canvas, where one was made: that of the seeding, or where edges were settled by one.
+    pub canvas: Option<report::Canvas>,
+    /// The diagram on it.
+    pub diagram: Option<report::Diagram>,
     /// Wall time per stage, in order.
     pub seconds: Vec<(&'static str, f64)>,
     /// What could not be met, in words for the user; empty when all was.
@@ -85,18 +97,27 @@ pub fn mesh(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
-    let mut job = Job { field, options, progress, seconds: Vec::new(), notes: Vec::new() };
+    let mut job = Job { field, options, progress, canvas: None, diagram: None, seconds: Vec::new(), notes: Vec::new() };
     let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
-    let mut dual = job.timed("seed", |job| job.seed(&domain, &plan, count, scale))?;
+    let on_canvas = options.dual.seeds_asked(count) as f64 * f64::from(options.canvas_size);
+    demand_memory(count as f64, on_canvas, options.memory_limit)?;
+    let canvas = job.canvas(&domain, count)?;
+    let mut dual = job.timed("seed", |job| job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
     job.timed("relax", |job| job.relax(&mut dual))?;
-    let meshed = job.timed("check", |job| job.finish(&domain, &mut dual))?;
-    Ok(Meshed { seconds: job.seconds, notes: job.notes, ..meshed })
+    let settled = job.timed("settle", |job| settle::settle(&mut dual, &domain, job.options, job.progress))?;
+    let mesh = job.timed("check", |job| job.finish(&domain, &dual))?;
+    let settle::Settled { dual: account, canvas, diagram } = settled;
+    let (canvas, diagram) = (job.canvas.or(canvas), job.diagram.or(diagram));
+    let metric_scale = dual.field().factor;
+    Ok(Meshed { mesh, metric_scale, dual: account, canvas, diagram, seconds: job.seconds, notes: job.notes })
 }
 
 struct Job<'a> {
     field: &'a dyn MetricField,
     options: &'a MeshOptions,
     progress: &'a dyn Progress,
+    canvas: Option<report::Canvas>,
+    diagram: Option<report::Diagram>,
     seconds: Vec<(&'static str, f64)>,
     notes: Vec<String>,
 }
@@ -148,11 +169,21 @@ impl<'a> Job<'a> {
 
     /// Seeds the domain with `count` vertices; the scale follows from what the seeds' distances turn out to be. Where
     /// the scale is given, the count follows instead.
-    fn seed(&mut self, domain: &Domain, plan: &Plan, mut count: usize, mut scale: f64) -> Result<Dual<'a>> {
+    fn seed(
+        &mut self,
+        domain: &Domain,
+        canvas: Option<&Canvas>,
+        plan: &Plan,
+        mut count: usize,
+        mut scale: f64,
+    ) -> Result<Dual<'a>> {
         for round in 1.. {
             self.progress.stage("seeding", count as u64);
             let mut dual = Dual::new(domain, Scaled { field: self.field, factor: scale })?;
             sample_segments(&mut dual, &plan.edges, &plan.arcs, scale);
+            if let Some(canvas) = canvas {
+                self.seed_farthest(canvas, &mut dual, count)?;
+            }
             refine(&mut dual, self.fill(count), self.progress);
             dual.verdict()?;
             let mean = mean_free_edge(&dual);
@@ -188,9 +219,11 @@ impl<'a> Job<'a> {
         let steps = self.options.lloyd;
         self.progress.stage("relaxing", steps as u64);
         let most = |share: f64| (count as f64 * share) as usize;
+        // Farthest points that are not to be relaxed stay as they are.
+        let exchanges = steps > 0 || self.options.seeding == Seeding::Sizing;
         for quarter in 0..4 {
             relax(dual, (steps * (quarter + 1)) / 4 - (steps * quarter) / 4, self.progress)?;
-            if quarter < 3 {
+            if quarter < 3 && exchanges {
                 let met = meet_blocked_flips(dual, most(BLOCKED_SHARE));
                 exchange(dual, self.fill(count), most(EXCHANGED_SHARE).max(met));
             }
@@ -207,21 +240,11 @@ impl<'a> Job<'a> {
         }
     }
 
-    fn finish(&self, domain: &Domain, dual: &mut Dual) -> Result<Meshed> {
+    fn finish(&self, domain: &Domain, dual: &Dual) -> Result<Mesh> {
         self.progress.stage("checking", 1);
-        dual.flip_all(Effort::Full);
-        let blocked_flips = dual.blocked_flips(Effort::Full).len() as u64;
-        let min_margin = dual.smallest_margin(Effort::Full).unwrap_or(0.0);
         let mesh = dual.to_mesh(domain);
         quality::check(&mesh)?;
-        let counters = MeshCounters {
-            geodesic_tests: dual.counters().tests,
-            uncertain: dual.counters().uncertain,
-            min_margin,
-            blocked_flips,
-        };
-        let metric_scale = dual.field().factor;
-        Ok(Meshed { mesh, metric_scale, counters, seconds: Vec::new(), notes: Vec::new() })
+        Ok(mesh)
     }
 }
 

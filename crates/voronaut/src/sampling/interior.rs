@@ -14,7 +14,7 @@ use std::collections::BinaryHeap;
 /// edges, and spikes do not cascade.
 const SPLIT_FLOOR: f64 = std::f64::consts::SQRT_2;
 /// New seeds keep at least this distance (metric length) from all others.
-const SPACING: f64 = 0.55;
+pub(super) const SPACING: f64 = 0.55;
 /// Corners farther apart than this (metric length) say little of what lies between them.
 const FAR: f64 = 2.5;
 

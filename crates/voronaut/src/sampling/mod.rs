@@ -1,13 +1,15 @@
 //! Placing seeds: first the boundary and interfaces at unit metric length, then the interior, one seed at a time where
-//! the metric circumradius is largest.
+//! the metric circumradius is largest, or where the nearest seed is farthest.
 
 mod curves;
+mod farthest;
 mod interior;
 mod plan;
 mod segments;
 
 pub use curves::simplify;
+pub use farthest::{Farthest, refine_farthest};
 pub(crate) use interior::insert_spaced;
 pub use interior::{Fill, Refined, refine};
-pub use plan::{Plan, Target};
+pub use plan::{Plan, Target, demand_memory};
 pub use segments::{MetricArc, sample_segments};

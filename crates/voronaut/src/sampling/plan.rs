@@ -1,6 +1,7 @@
 //! How fine the metric must be for a mesh of so many vertices, and what that mesh will need.
 
 use super::segments::{MetricArc, pieces};
+use crate::canvas;
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::metric::{MetricField, complexity, rough_complexity};
@@ -109,7 +110,7 @@ impl Plan {
             Target::Complexity(c) => (self.expected_vertices(c / self.complexity), c / self.complexity),
             Target::Metric => (self.expected_vertices(1.0), 1.0),
         };
-        check_memory(count, memory_limit)?;
+        demand_memory(count, 0.0, memory_limit)?;
         Ok((count.round().max(3.0) as usize, scale))
     }
 }
@@ -122,17 +123,25 @@ fn copies(domain: &Domain) -> usize {
     all - sources.len()
 }
 
+/// Demands that a mesh of so many vertices, made with a canvas of so many (0: none), fits into `limit` bytes.
+///
 /// # Errors
-/// [`Error::Limit`] as in [`Plan::start`].
-fn check_memory(vertices: f64, limit: u64) -> Result<()> {
-    let needed = vertices * BYTES_PER_VERTEX;
+/// [`Error::Limit`] where it is estimated not to, or where ids could not number all vertices.
+pub fn demand_memory(vertices: f64, canvas: f64, limit: u64) -> Result<()> {
+    let needed = vertices * BYTES_PER_VERTEX + canvas * canvas::BYTES_PER_VERTEX;
     let ids = f64::from(u32::MAX) / 8.0;
-    if needed <= limit as f64 && vertices < ids {
+    if needed <= limit as f64 && vertices.max(canvas) < ids {
         return Ok(());
     }
     let mib = |bytes: f64| format!("{:.0} MiB", bytes / f64::from(1 << 20));
     let (needed, limit) = (mib(needed), mib(limit as f64));
-    let what = format!("about {vertices:.3e} vertices are estimated to need {needed} of memory; the limit is {limit}");
-    let help = "ask for fewer vertices (-n), a coarser metric (--h-min), or raise --memory-limit".into();
+    let (and_canvas, coarser) = if canvas > 0.0 {
+        (format!(" and {canvas:.3e} of a canvas"), ", fewer canvas vertices per seed (--canvas-size)")
+    } else {
+        (String::new(), "")
+    };
+    let work = format!("about {vertices:.3e} vertices{and_canvas}");
+    let what = format!("{work} are estimated to need {needed} of memory; the limit is {limit}");
+    let help = format!("ask for fewer vertices (-n){coarser}, a coarser metric (--h-min), or raise --memory-limit");
     Err(Error::Limit { what, help })
 }

@@ -165,11 +165,11 @@ fn mesh(number: u64, what: &mut String) -> Outcome {
 }
 
 /// Mostly a number of vertices, else a complexity. A long and narrow domain can then need millions of vertices: the
-/// limit on memory refuses what would take too long for a test.
+/// limit on memory, enough for the canvas of 2,000, refuses what would take too long for a test.
 fn options(random: &mut Random) -> MeshOptions {
     let size = random.size(50.0, 2000.0);
     let target = if random.chance(0.15) { (None, Some(0.5 * size)) } else { (Some(size as usize), None) };
-    MeshOptions { vertices: target.0, complexity: target.1, memory_limit: 8 << 20, ..MeshOptions::default() }
+    MeshOptions { vertices: target.0, complexity: target.1, memory_limit: 48 << 20, ..MeshOptions::default() }
 }
 
 fn misses(wanted: usize, found: usize) -> bool {

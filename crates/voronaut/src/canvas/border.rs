@@ -1,0 +1,114 @@
+//! The border of the domain as an obstacle to paths.
+
+use super::Canvas;
+use crate::geodesic::Obstacles;
+use crate::geometry::{Aabb, Orientation, Point, orientation};
+use crate::triangulation::{FaceId, HalfEdge};
+use rstar::primitives::GeomWithData;
+use rstar::{AABB, RTree, RTreeObject};
+
+/// The sides of a canvas's border, and the corners around which paths can bend.
+pub struct Border<'a> {
+    canvas: &'a Canvas,
+    sides: RTree<Side>,
+    corners: RTree<GeomWithData<[f64; 2], ()>>,
+    /// Distances below this are rounding.
+    rounding: f64,
+}
+
+/// A side of the border, the domain on its left.
+struct Side {
+    from: Point,
+    to: Point,
+}
+
+impl RTreeObject for Side {
+    type Envelope = AABB<[f64; 2]>;
+    fn envelope(&self) -> Self::Envelope {
+        AABB::from_corners([self.from.x, self.from.y], [self.to.x, self.to.y])
+    }
+}
+
+/// Rounding, as a share of the domain's extent.
+const ROUNDING: f64 = 1e-10;
+
+impl<'a> Border<'a> {
+    /// The border of a canvas; work in proportion to its faces.
+    pub fn of(canvas: &'a Canvas) -> Self {
+        let embedded = canvas.embedded();
+        let topology = &embedded.topology;
+        let borders = || topology.faces().flat_map(FaceId::half_edges).filter(|&h| topology.twin(h).is_none());
+        let sides = borders().map(|h| Side { from: embedded.ends(h)[0], to: embedded.ends(h)[1] }).collect();
+        let corners = borders().filter_map(|h| reflex(canvas, h)).map(|p| GeomWithData::new([p.x, p.y], ())).collect();
+        let extent = Aabb::of(embedded.positions.iter().copied()).map_or(0.0, |b| b.extent().norm());
+        Self { canvas, sides: RTree::bulk_load(sides), corners: RTree::bulk_load(corners), rounding: ROUNDING * extent }
+    }
+
+    /// How far left of a side a point lies.
+    fn beside(side: &Side, p: Point) -> f64 {
+        let along = side.to - side.from;
+        along.cross(p - side.from) / along.norm()
+    }
+
+    fn crosses(&self, side: &Side, p: Point, q: Point) -> bool {
+        let [dp, dq] = [p, q].map(|x| Self::beside(side, x));
+        if dp.min(dq) > -self.rounding || dp.max(dq) < self.rounding {
+            return false;
+        }
+        let along = side.to - side.from;
+        let at = (p.lerp(q, dp / (dp - dq)) - side.from).dot(along) / along.dot(along);
+        (-ROUNDING..=1.0 + ROUNDING).contains(&at)
+    }
+}
+
+/// The start of a side of the border if the domain's angle there is more than straight.
+fn reflex(canvas: &Canvas, h: HalfEdge) -> Option<Point> {
+    let topology = &canvas.embedded().topology;
+    let v = topology.origin(h);
+    let last = topology.star(v).last()?;
+    let before = canvas.position(topology.apex(last));
+    let [at, after] = canvas.embedded().ends(h);
+    (orientation(before, at, after) == Orientation::Right).then_some(at)
+}
+
+impl Obstacles for Border<'_> {
+    fn bars(&self, p: Point, q: Point) -> bool {
+        // Wide enough to notice the side that a segment starts just outside of: step by step it would walk away.
+        let wide = 2.0 * self.rounding;
+        let envelope =
+            AABB::from_corners([p.x.min(q.x) - wide, p.y.min(q.y) - wide], [p.x.max(q.x) + wide, p.y.max(q.y) + wide]);
+        let mut is_near = false;
+        for side in self.sides.locate_in_envelope_intersecting(envelope) {
+            if self.crosses(side, p, q) {
+                return true;
+            }
+            is_near = true;
+        }
+        // A segment that starts on the border crosses nothing on its way out.
+        let middle = p.midpoint(q);
+        let is_beside = |side: &Side| {
+            let along = side.to - side.from;
+            let t = ((middle - side.from).dot(along) / along.dot(along)).clamp(0.0, 1.0);
+            middle.distance(side.from + along * t) <= self.rounding
+        };
+        is_near
+            && self.canvas.locate(middle).is_none()
+            && !self.sides.locate_in_envelope_intersecting(envelope).any(is_beside)
+    }
+
+    fn corner_between(&self, from: [Point; 2], to: [Point; 2]) -> Option<Point> {
+        let bounds = Aabb::of(from.into_iter().chain(to))?;
+        let envelope = AABB::from_corners([bounds.min.x, bounds.min.y], [bounds.max.x, bounds.max.y]);
+        let holds = |[a, b, c]: [Point; 3], p: Point| {
+            let sides = [(a, b), (b, c), (c, a)].map(|(u, v)| (v - u).cross(p - u));
+            sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0)
+        };
+        let swept =
+            [[from[0], from[1], to[1]], [from[0], to[1], to[0]], [from[0], from[1], to[0]], [from[1], to[1], to[0]]];
+        let corners = self.corners.locate_in_envelope_intersecting(envelope);
+        let points = corners.map(|corner| Point::new(corner.geom()[0], corner.geom()[1]));
+        let inside = points.filter(|&p| swept.iter().any(|&triangle| holds(triangle, p)));
+        let height = |p: Point| (from[1] - from[0]).cross(p - from[0]).abs();
+        inside.min_by(|&p, &q| height(p).total_cmp(&height(q)).then(p.x.total_cmp(&q.x)).then(p.y.total_cmp(&q.y)))
+    }
+}

@@ -1,0 +1,243 @@
+//! The two roads to one dual: lengths of geodesics, and the diagram on a canvas (RR-9103, section 6.4).
+//!
+//! Each finds what the other cannot: in-circle tests by length are exact where geodesics are short and the field is
+//! smooth; the diagram knows about far seeds, wild fields and walls, to within the size of its canvas.
+
+use super::margin::pair;
+use super::patch::Patch;
+use super::{Dual, Effort, Margin};
+use crate::canvas::{Canvas, CanvasCounters};
+use crate::diagram::{Diagram, NerveTriangle, resolve};
+use crate::error::Result;
+use crate::geodesic::MarchCounters;
+use crate::triangulation::{HalfEdge, VertexId};
+use std::collections::HashSet;
+
+/// Which road decides on the topology (`--dual`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Road {
+    /// In-circle tests by lengths of geodesics.
+    Geodesic,
+    /// The nerve of the diagram on a canvas.
+    Canvas,
+    /// In-circle tests, and the nerve where their estimated error is too large to decide.
+    #[default]
+    Both,
+}
+
+impl Road {
+    /// How many of so many seeds a diagram has at most.
+    pub fn seeds_asked(self, seeds: usize) -> usize {
+        match self {
+            Road::Geodesic => 0,
+            Road::Canvas => seeds,
+            Road::Both => LEAST_SEEDS.max(seeds / SHARE).min(seeds),
+        }
+    }
+}
+
+/// A diagram is asked where the margin of a test is within its error and that error is larger than this, about the
+/// error of a nerve's: nearer ties are beyond both.
+const BEYOND_LENGTHS: f64 = 0.1;
+
+/// With [`Road::Both`] the canvas covers at most so many seeds, or one of so many of the mesh's: a diagram of everything
+/// takes far longer than the mesh. The least known edges come first.
+const LEAST_SEEDS: usize = 1000;
+const SHARE: usize = 20;
+
+/// Where there is more than one unknown edge to so many seeds, the canvas has so many vertices at least.
+const WILD: usize = 4;
+const LEAST_VERTICES: usize = 15_000;
+
+/// With [`Road::Canvas`] the canvas is refined so many times where it does not tell Voronoi vertices apart.
+const ROUNDS: u32 = 3;
+
+/// A nerve is not sure of a triangle whose place a fourth seed would win if squares of distances were off by this share:
+/// distances on a canvas err by some thousandths.
+const BEYOND_CANVAS: f64 = 0.01;
+
+/// An edge on which the roads differ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disagreement {
+    /// The ends of the edge by lengths of geodesics.
+    pub edge: [VertexId; 2],
+    /// The ends of the other diagonal, if the nerve has it.
+    pub instead: Option<[VertexId; 2]>,
+    /// The edge's margin by lengths.
+    pub margin: Margin,
+    /// Which road was followed.
+    pub settled_by: Road,
+}
+
+/// What came of asking the diagram.
+#[derive(Clone, Debug, Default)]
+pub struct Consultation {
+    /// Edges on which the two roads were compared.
+    pub compared: usize,
+    /// Those on which they differ.
+    pub disagreements: Vec<Disagreement>,
+    /// Edges of the nerve that were wanted and cannot be had as straight edges, each with a seed at both ends.
+    pub impossible: Vec<[VertexId; 2]>,
+    /// The canvas and its diagram, where they were needed.
+    pub made: Option<Made>,
+    /// Edges of the mesh of which neither road is sure, each with its margin by lengths.
+    pub uncertain: Vec<([VertexId; 2], Margin)>,
+}
+
+/// A canvas and a diagram that were made, and what they cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Made {
+    /// Vertices of the canvas.
+    pub canvas_vertices: usize,
+    /// How the canvas came about.
+    pub canvas: CanvasCounters,
+    /// Canvas vertices cut off from their cells.
+    pub orphans: usize,
+    /// Work of the solver.
+    pub diagram: MarchCounters,
+}
+
+impl Dual<'_> {
+    /// Asks the diagram for the topology where the road says so, on a canvas with so many vertices per seed, around the
+    /// edges concerned only. Edges by lengths are to be settled before ([`Dual::flip_all`] with [`Effort::Full`]).
+    ///
+    /// # Errors
+    /// The metric is not positive definite somewhere around these edges.
+    pub fn consult_diagram(&mut self, road: Road, per_seed: u32) -> Result<Consultation> {
+        let asked = self.edges_to_ask(road);
+        if asked.is_empty() {
+            let uncertain = self.uncertain_edges(&HashSet::new());
+            return Ok(Consultation { uncertain, ..Consultation::default() });
+        }
+        let most = road.seeds_asked(self.vertex_count());
+        let Patch { planar, is_inner } = match road {
+            Road::Both => self.patch_within(&asked, most),
+            Road::Canvas | Road::Geodesic => self.patch_around(&asked),
+        };
+        let ids: Vec<VertexId> = planar.topology.vertices().collect();
+        let seeds: Vec<_> = ids.iter().map(|&v| planar.position(v)).collect();
+        let field = self.field();
+        // Where much is unknown the cells are wide.
+        let least = if WILD * asked.len() > seeds.len() { LEAST_VERTICES } else { 0 };
+        let vertices = (seeds.len() * per_seed as usize).max(least);
+        let mut canvas = Canvas::intrinsic_from(planar, &field, vertices)?;
+        if road == Road::Canvas {
+            canvas = resolve(canvas, &field, &seeds, ROUNDS)?.canvas;
+        }
+        let diagram = Diagram::of_vertices(&canvas, &field, &seeds)?;
+        let nerve = diagram.sharp_nerve();
+        let sides = nerve.sides(|_| true).map(|[i, j]| pair(ids[i as usize], ids[j as usize]));
+        let wanted: HashSet<[VertexId; 2]> = sides.filter(|s| s.iter().all(|v| is_inner[v.index()])).collect();
+        let unsure = |t: &NerveTriangle| t.fourth.is_some_and(|(_, gap)| gap < BEYOND_CANVAS);
+        let unsure = nerve.sides(unsure).map(|[i, j]| pair(ids[i as usize], ids[j as usize])).collect();
+        let mut found = self.compare(road, &wanted, &is_inner);
+        found.made = Some(Made {
+            canvas_vertices: canvas.vertex_count(),
+            canvas: *canvas.counters(),
+            orphans: diagram.orphans().len(),
+            diagram: *diagram.counters(),
+        });
+        found.impossible = self.adopt(road, wanted);
+        found.uncertain = self.uncertain_edges(&unsure);
+        Ok(found)
+    }
+
+    /// The edges of which lengths are not sure, and that are not held, or held and the nerve is not sure of them.
+    fn uncertain_edges(&mut self, unsure: &HashSet<[VertexId; 2]>) -> Vec<([VertexId; 2], Margin)> {
+        let topology = self.topology();
+        let edges: Vec<HalfEdge> = topology.edges().filter(|&h| !topology.is_fixed(h)).collect();
+        let mut uncertain = Vec::new();
+        for h in edges {
+            let [ends, _] = self.quad(h).diagonals();
+            if !self.is_held(h) || unsure.contains(&ends) {
+                let margin = self.margin(h, Effort::Full);
+                uncertain.extend((!margin.is_certain()).then_some((ends, margin)));
+            }
+        }
+        uncertain
+    }
+
+    fn edges_to_ask(&mut self, road: Road) -> Vec<HalfEdge> {
+        let free: Vec<HalfEdge> = self.free_edges().collect();
+        match road {
+            Road::Geodesic => Vec::new(),
+            Road::Canvas => free,
+            Road::Both => self.beyond_lengths(free),
+        }
+    }
+
+    /// The edges that lengths do not decide, those that they know least about first.
+    fn beyond_lengths(&mut self, edges: Vec<HalfEdge>) -> Vec<HalfEdge> {
+        let certainty = |margin: Margin| margin.value.abs() / margin.error;
+        let mut found: Vec<(f64, HalfEdge)> = Vec::new();
+        for h in edges {
+            if self.is_beyond_lengths(h) {
+                found.push((certainty(self.margin(h, Effort::Full)), h));
+            }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.into_iter().map(|(_, h)| h).collect()
+    }
+
+    fn is_beyond_lengths(&mut self, h: HalfEdge) -> bool {
+        let margin = self.margin(h, Effort::Full);
+        !margin.is_certain() && margin.error > BEYOND_LENGTHS
+    }
+
+    /// Holds the edges of the mesh against those of the nerve.
+    fn compare(&mut self, road: Road, wanted: &HashSet<[VertexId; 2]>, is_inner: &[bool]) -> Consultation {
+        let mut found = Consultation::default();
+        for h in self.free_edges().collect::<Vec<_>>() {
+            let [edge, other] = self.quad(h).diagonals();
+            if !edge.iter().chain(&other).all(|v| is_inner[v.index()]) {
+                continue;
+            }
+            found.compared += 1;
+            if !wanted.contains(&edge) {
+                let margin = self.margin(h, Effort::Full);
+                let by_canvas = road == Road::Canvas || self.is_beyond_lengths(h);
+                let settled_by = if by_canvas { Road::Canvas } else { Road::Geodesic };
+                let instead = Some(other).filter(|other| wanted.contains(other));
+                found.disagreements.push(Disagreement { edge, instead, margin, settled_by });
+            }
+        }
+        found
+    }
+
+    /// Makes edges of the nerve edges of the mesh, as far as the plane allows and the road leads, and holds them; the
+    /// others then follow by lengths. Returns those that cannot be had.
+    fn adopt(&mut self, road: Road, wanted: HashSet<[VertexId; 2]>) -> Vec<[VertexId; 2]> {
+        let is_missing = |&[u, v]: &[VertexId; 2]| self.topology().find(u, v).is_none();
+        let mut missing: Vec<[VertexId; 2]> = wanted.iter().copied().filter(is_missing).collect();
+        missing.sort_unstable();
+        self.known.held = wanted;
+        let mut before = usize::MAX;
+        while missing.len() < before {
+            before = missing.len();
+            missing.retain(|&ends| !self.join(road, ends));
+        }
+        self.flip_all(Effort::Full);
+        missing
+            .retain(|&ends| self.crossed_by(ends).iter().any(|&h| road == Road::Canvas || self.is_beyond_lengths(h)));
+        missing
+    }
+
+    /// Joins two seeds by flips of edges that are neither held nor fixed, and that the road leaves to the diagram.
+    fn join(&mut self, road: Road, [u, v]: [VertexId; 2]) -> bool {
+        let crossed = self.crossed_by([u, v]);
+        let may_go = |dual: &mut Self, h: HalfEdge| {
+            !dual.planar.topology.is_fixed(h) && !dual.is_held(h) && (road == Road::Canvas || dual.is_beyond_lengths(h))
+        };
+        let leaves_no_sliver = |dual: &Self| crossed.len() > 1 || crossed.iter().all(|&h| dual.allows_flip(h));
+        !crossed.is_empty()
+            && crossed.iter().all(|&h| may_go(self, h))
+            && leaves_no_sliver(self)
+            && self.planar.connect(u, v).is_some()
+    }
+
+    /// The edges between two seeds that are not joined; none where the line between them leaves the domain.
+    fn crossed_by(&self, [u, v]: [VertexId; 2]) -> Vec<HalfEdge> {
+        self.planar.edges_between(u, v).unwrap_or_default()
+    }
+}

@@ -1,0 +1,92 @@
+//! A part of the mesh around some of its edges, as a triangulation of its own.
+
+use super::Dual;
+use crate::planar::Planar;
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
+
+/// Rings of seeds around the edges' quadrilaterals: the cells of the quadrilaterals' own seeds are then whole.
+const RINGS: usize = 2;
+
+/// All triangles around a set of seeds.
+pub(super) struct Patch {
+    /// The triangles, with the mesh's ids; those elsewhere are gone.
+    pub(super) planar: Planar,
+    /// Seeds whose cells do not reach the patch's own border, by id.
+    pub(super) is_inner: Vec<bool>,
+}
+
+impl Dual<'_> {
+    /// The patch around edges.
+    pub(super) fn patch_around(&self, edges: &[HalfEdge]) -> Patch {
+        let topology = self.topology();
+        let mut inside = vec![false; topology.vertex_slots()];
+        for &h in edges {
+            for side in [Some(h), topology.twin(h)].into_iter().flatten() {
+                inside[topology.origin(side).index()] = true;
+                inside[topology.apex(side).index()] = true;
+            }
+        }
+        let mut is_inner = inside.clone();
+        for ring in 1..=RINGS {
+            self.grow(&mut inside);
+            if ring == RINGS - 1 {
+                is_inner.clone_from(&inside);
+            }
+        }
+        while self.close_fans(&mut inside) {}
+        let mut planar = self.planar().clone();
+        planar.topology.retain_faces(|f| self.is_in(f, &inside));
+        Patch { planar, is_inner }
+    }
+
+    /// The patch around as many edges, from the first on, as keep it within so many seeds; around one edge at least.
+    pub(super) fn patch_within(&self, edges: &[HalfEdge], seeds: usize) -> Patch {
+        let whole = self.patch_around(edges);
+        if whole.planar.topology.vertex_count() <= seeds {
+            return whole;
+        }
+        let fits = |count: usize| self.patch_around(&edges[..count]).planar.topology.vertex_count() <= seeds;
+        let (mut low, mut high) = (1, edges.len());
+        while high - low > 1 {
+            let middle = low.midpoint(high);
+            if fits(middle) { low = middle } else { high = middle }
+        }
+        self.patch_around(&edges[..low])
+    }
+
+    /// Adds all neighbours.
+    fn grow(&self, inside: &mut [bool]) {
+        let topology = self.topology();
+        let next: Vec<VertexId> = topology
+            .edges()
+            .flat_map(|h| [[topology.origin(h), topology.target(h)], [topology.target(h), topology.origin(h)]])
+            .filter(|[u, v]| inside[u.index()] && !inside[v.index()])
+            .map(|[_, v]| v)
+            .collect();
+        for v in next {
+            inside[v.index()] = true;
+        }
+    }
+
+    /// A face belongs to the patch if one of its corners is inside.
+    fn is_in(&self, f: FaceId, inside: &[bool]) -> bool {
+        self.topology().corners(f).iter().any(|v| inside[v.index()])
+    }
+
+    /// Takes in the vertices whose faces would form several fans. Says whether there were any.
+    fn close_fans(&self, inside: &mut [bool]) -> bool {
+        let topology = self.topology();
+        let starts_fan = |h: &HalfEdge| {
+            let before = topology.twin(*h).map(HalfEdge::face);
+            self.is_in(h.face(), inside) && !before.is_some_and(|f| self.is_in(f, inside))
+        };
+        let pinched: Vec<VertexId> = topology
+            .vertices()
+            .filter(|v| !inside[v.index()] && topology.star(*v).filter(starts_fan).count() > 1)
+            .collect();
+        for v in &pinched {
+            inside[v.index()] = true;
+        }
+        !pinched.is_empty()
+    }
+}

@@ -1,0 +1,130 @@
+//! The in-circle test by its definition: a point equally far from three seeds, and how far the fourth is from it.
+
+use super::in_circle::opposite;
+use super::path::{Fineness, Paths, Solved};
+use super::predicate::Margin;
+use crate::geometry::{Point, Tensor, Vector};
+use crate::metric::MetricField;
+
+/// Newton steps at most with coarse geodesics, and then with those asked for.
+const STEPS: [usize; 2] = [8, 4];
+/// The residue (share of the squared radius) at which they end.
+const RESIDUE: [f64; 2] = [1e-6, 1e-12];
+/// Errors of spokes, times this: estimates three times too small were seen.
+const SAFETY: f64 = 4.0;
+/// Spokes that are known no better than this (share of their length) lead nowhere.
+const VAGUE: f64 = 0.02;
+
+/// The margin of the edge a-b between the triangles a b c and b a d: the power of d with respect to the circle around
+/// a, b and c, whose centre is found by Newton steps on three geodesic distances, normalised as [`Margin`] says. `lengths` are
+/// those of a-b, a-c, b-c, a-d and b-d.
+///
+/// This is the definition, on any surface; no curvature enters. [`Margin::UNKNOWN`] where no centre is found, as may be
+/// for triangles that are nearly straight: of the two, a b c should be the larger.
+pub fn margin_by_power(
+    paths: &Paths,
+    field: &dyn MetricField,
+    [a, b, c, d]: [Point; 4],
+    lengths: [f64; 5],
+    fineness: Fineness,
+) -> Margin {
+    let Some(circle) = Circle::around(paths, field, [a, b, c], fineness) else { return Margin::UNKNOWN };
+    let Some(to_d) = paths.solve(field, circle.centre, d, fineness) else { return Margin::UNKNOWN };
+    let [ab, ac, bc, ad, bd] = lengths;
+    let (area_c, area_d) = (opposite(ab, ac, bc).1, opposite(ab, ad, bd).1);
+    let scale = 2.0 * area_c / (ac * bc * ad * bd);
+    let square = to_d.length.value.powi(2);
+    let value = scale * (square - circle.square);
+    // The power is linear in the squared distances of a, b and c, with the weights that have d as their mean.
+    let weights = 1.0 + 2.0 * area_d / area_c;
+    let error = scale * (2.0 * SAFETY * to_d.length.error * square + weights * circle.error);
+    if value.is_finite() && error.is_finite() { Margin { value, error } } else { Margin::UNKNOWN }
+}
+
+struct Circle {
+    centre: Point,
+    /// Squared radius, and its error.
+    square: f64,
+    error: f64,
+}
+
+impl Circle {
+    fn around(paths: &Paths, field: &dyn MetricField, corners: [Point; 3], fineness: Fineness) -> Option<Self> {
+        // Coarse geodesics lead near the centre.
+        let flat = flat_centre(field, corners)?;
+        let coarse = Self::from_centre(paths, field, corners, flat, Fineness::COARSEST, 0)?;
+        Self::from_centre(paths, field, corners, coarse.centre, fineness, 1)
+    }
+
+    fn from_centre(
+        paths: &Paths,
+        field: &dyn MetricField,
+        corners: [Point; 3],
+        mut centre: Point,
+        fineness: Fineness,
+        pass: usize,
+    ) -> Option<Self> {
+        let mut known: Option<Self> = None;
+        for _ in 0..STEPS[pass] {
+            let spokes = corners.map(|p| paths.solve(field, centre, p, fineness));
+            let [Some(a), Some(b), Some(c)] = spokes else { return None };
+            let squares = [a, b, c].map(|s| s.length.value.powi(2));
+            let [least, most] =
+                [squares.iter().copied().fold(f64::INFINITY, f64::min), squares.iter().copied().fold(0.0, f64::max)];
+            let relative = [a, b, c].iter().map(|s| s.length.error).fold(0.0, f64::max);
+            if relative > VAGUE {
+                return None;
+            }
+            let circle = Self { centre, square: squares[0], error: 2.0 * SAFETY * relative * most + (most - least) };
+            let stalls = known.as_ref().is_some_and(|k| k.error <= circle.error);
+            if most - least < RESIDUE[pass] * most || (stalls && most - least < 0.1 * circle.error) {
+                return Some(circle);
+            }
+            centre = next_centre(field, centre, &[a, b, c], squares)?;
+            known = Some(circle);
+        }
+        known.filter(|circle| circle.error < 1e-3 * circle.square)
+    }
+}
+
+/// A Newton step to where the three squared distances are equal, at most a half of the radius long.
+fn next_centre(field: &dyn MetricField, at: Point, [a, b, c]: &[Solved; 3], squares: [f64; 3]) -> Option<Point> {
+    let (u, v) = ((b.pull - a.pull) * 2.0, (c.pull - a.pull) * 2.0);
+    let step = cramer(u, v, squares[0] - squares[1], squares[0] - squares[2])?;
+    let (size, limit) = (field.at(at).length(step), 0.5 * squares[0].sqrt());
+    Some(at + step * (limit / size).min(1.0))
+}
+
+/// The circumcentre with one tensor, that at the centroid.
+fn flat_centre(field: &dyn MetricField, [a, b, c]: [Point; 3]) -> Option<Point> {
+    let (u, v) = (b - a, c - a);
+    let tensor: Tensor = field.at(a + (u + v) * (1.0 / 3.0));
+    let x = cramer(tensor.apply(u), tensor.apply(v), 0.5 * tensor.dot(u, u), 0.5 * tensor.dot(v, v))?;
+    Some(a + x)
+}
+
+/// The vector with the dot products r with u and s with v.
+fn cramer(u: Vector, v: Vector, r: f64, s: f64) -> Option<Vector> {
+    let x = Vector::new(r * v.y - s * u.y, s * u.x - r * v.x) * (1.0 / u.cross(v));
+    (x.x.is_finite() && x.y.is_finite()).then_some(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn circles_of_the_half_plane_are_circles() {
+        let field = |p: Point| Tensor::isotropic(p.y);
+        let distance = |p: Point, q: Point| 2.0 * (0.5 * (q - p).norm() / (p.y * q.y).sqrt()).asinh();
+        let on = |angle: f64| Point::new(0.3 + 0.4 * angle.cos(), 1.2 + 0.4 * angle.sin());
+        let [a, b, c] = [3.5, 6.0, 1.5].map(on);
+        let paths = Paths::default();
+        for (shift, sign) in [(1e-8, 1.0), (-1e-8, -1.0), (0.1, 1.0), (-0.1, -1.0)] {
+            let d = on(4.7) + Vector::new(0.0, -shift);
+            let lengths = [(a, b), (a, c), (b, c), (a, d), (b, d)].map(|(p, q)| distance(p, q));
+            let margin = margin_by_power(&paths, &field, [a, b, c, d], lengths, Fineness::FINEST);
+            assert!(margin.is_certain() && margin.value * sign > 0.0, "{shift} {margin:?}");
+        }
+    }
+}

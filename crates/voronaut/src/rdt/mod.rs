@@ -1,0 +1,252 @@
+//! The Riemannian Delaunay triangulation of any seeds: topology only, by in-circle tests with geodesic lengths.
+//!
+//! It starts from triangles that are nearly right (a diagram's nerve), makes them a triangulation, and flips edges until
+//! every in-circle test agrees. A test climbs only as far as it must: one tensor, expansions at the seeds, geodesics of
+//! growing degree, and at last the circumcentre itself. Nothing is embedded, so that nothing keeps an edge from being
+//! flipped; how the triangulation is drawn is for others to say. It ends where the triangles it started from end.
+
+mod fill;
+mod flips;
+mod site;
+mod start;
+mod tests_by_level;
+
+pub use start::Start;
+pub use tests_by_level::LEVELS;
+
+use crate::geodesic::{Margin, PathLength, Paths};
+use crate::geometry::Point;
+use crate::metric::MetricField;
+use crate::triangulation::{HalfEdge, Triangulation, VertexId};
+use rayon::prelude::*;
+use site::Site;
+use std::collections::{HashMap, HashSet};
+
+/// Distances on a canvas, held against geodesics found from the metric alone, which may not be the shortest and know no
+/// holes: of two seeds, their distance and an absolute bound on its error; `None` where it is not known.
+pub type Reference<'a> = &'a (dyn Fn(u32, u32) -> Option<(f64, f64)> + Sync);
+
+/// How far in-circle tests are followed.
+#[derive(Clone, Copy)]
+pub struct Trust<'a> {
+    /// What geodesics are held against. Where they do not agree no test is made, and the start stays as it is.
+    pub reference: Option<Reference<'a>>,
+    /// The greatest error of a margin whose sign is followed although it is not certain. Above, the start stays as it is.
+    pub doubt: f64,
+}
+
+impl Default for Trust<'_> {
+    /// Tests only, whatever they are worth.
+    fn default() -> Self {
+        Self { reference: None, doubt: f64::INFINITY }
+    }
+}
+
+/// An edge of the triangulation with its in-circle test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// The seeds at its ends.
+    pub ends: [u32; 2],
+    /// The seeds opposite to it: to its left, and to its right, if there is a triangle there.
+    pub apexes: [Option<u32>; 2],
+    /// The in-circle test; `None` of an edge with one triangle.
+    pub margin: Option<Margin>,
+    /// The level that settled it, below [`LEVELS`].
+    pub level: usize,
+}
+
+impl Edge {
+    /// Whether there was a test, and it could not tell.
+    pub fn is_uncertain(&self) -> bool {
+        self.margin.is_some_and(|margin| !margin.is_certain())
+    }
+}
+
+/// What was done. Deterministic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RdtCounters {
+    /// Triangles of the start left out because others claimed one of their sides, or their corners were not three seeds.
+    pub dropped: u64,
+    /// Triangles put into small holes of the start.
+    pub filled: u64,
+    /// Vertices that had to be made two because their triangles were not one fan.
+    pub split: u64,
+    /// Seeds without a triangle.
+    pub isolated: u64,
+    /// In-circle tests settled at each level.
+    pub tests: [u64; LEVELS],
+    /// Geodesics solved for.
+    pub paths: u64,
+    /// Geodesics that the reference did not agree with.
+    pub vetoed: u64,
+    /// Flips.
+    pub flips: u64,
+    /// Edges left although a test wants them flipped: the other diagonal is an edge already.
+    pub blocked: u64,
+    /// Edges left although a test wants them flipped: they were flipped too often, so that tests contradict each other.
+    pub circling: u64,
+}
+
+/// See the [module](self).
+pub struct Rdt<'a> {
+    field: &'a dyn MetricField,
+    trust: Trust<'a>,
+    paths: Paths,
+    sites: Vec<Site>,
+    topology: Triangulation,
+    seed_of: Vec<u32>,
+    lengths: HashMap<(u32, u32), Known>,
+    tested: Vec<Option<Tested>>,
+    flips_of_slot: Vec<u8>,
+    started_with: Vec<[u32; 2]>,
+    dropped: Vec<[u32; 3]>,
+    counters: RdtCounters,
+}
+
+/// The best length known between two seeds.
+#[derive(Clone, Copy)]
+struct Known {
+    length: PathLength,
+    /// The level at which it was found.
+    level: usize,
+    /// It is the reference's.
+    is_vetoed: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Tested {
+    margin: Margin,
+    level: usize,
+}
+
+impl<'a> Rdt<'a> {
+    /// The triangulation of seeds, which are known by their numbers, from a start.
+    ///
+    /// The field may measure in any unit, and seeds may be denser here than there: the scale of a cell is taken from the
+    /// start's edges. A seed where the field is no metric is left out.
+    pub fn new(field: &'a dyn MetricField, seeds: &[Point], start: &Start, trust: Trust<'a>) -> Self {
+        let mut sites: Vec<Site> = seeds.par_iter().with_min_len(256).map(|&at| Site::new(field, at)).collect();
+        let mut counters = RdtCounters::default();
+        let triangles = start.triangulated(&sites, &mut counters);
+        let spacings = site::spacings(&sites, &triangles);
+        sites.par_iter_mut().zip(&spacings).with_min_len(64).for_each(|(site, &spacing)| site.expand(field, spacing));
+        let mut topology = Triangulation::from_triangles(seeds.len(), &triangles, &vec![0; triangles.len()]);
+        let seed_of = split(&mut topology, seeds.len());
+        counters.split = (seed_of.len() - seeds.len()) as u64;
+        let mut used = vec![false; seeds.len()];
+        topology.vertices().for_each(|v| used[seed_of[v.index()] as usize] = true);
+        counters.isolated = used.iter().filter(|used| !**used).count() as u64;
+        let slots = 3 * topology.face_slots();
+        let mut rdt = Self {
+            field,
+            trust,
+            paths: Paths::default(),
+            sites,
+            topology,
+            seed_of,
+            lengths: HashMap::new(),
+            tested: vec![None; slots],
+            flips_of_slot: vec![0; slots],
+            started_with: Vec::new(),
+            dropped: missing(&start.triangles, &triangles),
+            counters,
+        };
+        rdt.started_with = rdt.pairs();
+        rdt.settle();
+        rdt
+    }
+
+    /// The triangles, counter-clockwise, by the numbers of their seeds.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        self.topology.faces().map(|f| self.topology.corners(f).map(|v| self.seed(v))).collect()
+    }
+
+    /// The triangles of the start that it could not hold beside the others, smallest seed first.
+    pub fn dropped(&self) -> &[[u32; 3]] {
+        &self.dropped
+    }
+
+    /// The topology; its vertices are numbered like the seeds, but for copies where [`RdtCounters::split`] is not zero.
+    /// Edges whose length was needed carry it.
+    pub fn topology(&self) -> &Triangulation {
+        &self.topology
+    }
+
+    /// The seed of a vertex of the topology.
+    pub fn seed(&self, v: VertexId) -> u32 {
+        self.seed_of[v.index()]
+    }
+
+    /// All edges with their margins.
+    pub fn edges(&self) -> Vec<Edge> {
+        self.topology.edges().map(|h| self.edge(h)).collect()
+    }
+
+    /// The edges that the start did not have: where the start and the in-circle tests disagree.
+    pub fn disagreements(&self) -> Vec<Edge> {
+        let is_new = |e: &Edge| self.started_with.binary_search(&sorted(e.ends)).is_err();
+        self.edges().into_iter().filter(is_new).collect()
+    }
+
+    /// The smallest margin of all edges; `None` where no edge has two triangles.
+    pub fn smallest_margin(&self) -> Option<Edge> {
+        let tested = self.edges().into_iter().filter(|e| e.margin.is_some());
+        tested.min_by(|a, b| value(a).total_cmp(&value(b)))
+    }
+
+    /// What was done.
+    pub fn counters(&self) -> &RdtCounters {
+        &self.counters
+    }
+
+    /// The best length known between two seeds; `None` where no test needed one.
+    pub fn length(&self, i: u32, j: u32) -> Option<PathLength> {
+        self.lengths.get(&(i.min(j), i.max(j))).map(|known| known.length)
+    }
+
+    fn edge(&self, h: HalfEdge) -> Edge {
+        let topology = &self.topology;
+        let tested = self.tested[h.index()];
+        Edge {
+            ends: [topology.origin(h), topology.target(h)].map(|v| self.seed(v)),
+            apexes: [Some(h), topology.twin(h)].map(|side| side.map(|e| self.seed(topology.apex(e)))),
+            margin: tested.map(|t| t.margin),
+            level: tested.map_or(0, |t| t.level),
+        }
+    }
+
+    /// The ends of all edges, the smaller first, sorted.
+    fn pairs(&self) -> Vec<[u32; 2]> {
+        let topology = &self.topology;
+        let ends = |h| sorted([topology.origin(h), topology.target(h)].map(|v| self.seed(v)));
+        let mut pairs: Vec<[u32; 2]> = topology.edges().map(ends).collect();
+        pairs.sort_unstable();
+        pairs
+    }
+}
+
+/// Gives every fan of triangles a vertex of its own; returns the seed of every vertex.
+fn split(topology: &mut Triangulation, seeds: usize) -> Vec<u32> {
+    let mut seed_of: Vec<u32> = (0..seeds as u32).collect();
+    for (copy, of) in topology.split_pinched_vertices() {
+        let seed = seed_of[of.index()];
+        seed_of.resize(seed_of.len().max(copy.index() + 1), seed);
+        seed_of[copy.index()] = seed;
+    }
+    seed_of
+}
+
+/// The triangles of the first list that the second lacks, wherever they begin.
+fn missing(wanted: &[[u32; 3]], found: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
+    let found: HashSet<[u32; 3]> = found.iter().map(turned).collect();
+    wanted.iter().map(turned).filter(|t| !found.contains(t)).collect()
+}
+
+fn value(edge: &Edge) -> f64 {
+    edge.margin.map_or(f64::INFINITY, |margin| margin.value)
+}
+
+fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}

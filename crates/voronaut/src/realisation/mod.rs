@@ -1,0 +1,50 @@
+//! The Riemannian Delaunay triangulation as it lies in the plane (Rouxel-Labbé et al. 2017, section 10): geodesic edges as
+//! polylines, and the triangles between them.
+
+mod edges;
+mod regions;
+mod simplices;
+mod untangle;
+
+pub use edges::{Found, GeodesicEdge};
+pub use simplices::Grid;
+
+use crate::diagram::Diagram;
+use crate::geometry::Point;
+use crate::metric::MetricField;
+use crate::quality::{Edges, crossings};
+
+/// See the [module](self).
+#[derive(Clone, Debug, Default)]
+pub struct Realisation {
+    /// The seeds, in order.
+    pub seeds: Vec<Point>,
+    /// The triangles that it is of, by their seeds.
+    pub triangles: Vec<[u32; 3]>,
+    /// Their edges, each once, in order of its seeds, smaller first.
+    pub edges: Vec<GeodesicEdge>,
+    /// Pairs of edges, by number, that meet elsewhere than at a seed.
+    pub crossing: Vec<[u32; 2]>,
+    /// For each triangle the straight ones that it is cut into, by the vertices of [`Realisation::to_mesh`]; none where its
+    /// edges bound no region, counter-clockwise.
+    pub regions: Vec<Vec<[u32; 3]>>,
+}
+
+impl Realisation {
+    /// Of triangles of a diagram's seeds, such as its nerve or a dual.
+    pub fn new(diagram: &Diagram, field: &dyn MetricField, triangles: &[[u32; 3]]) -> Self {
+        let pairs: Vec<[u32; 2]> = Edges::of(triangles).iter().map(|e| e.0).collect();
+        let edges = edges::of(diagram, field, &pairs);
+        let mut crossing: Vec<[u32; 2]> = crossings(&edges).iter().map(|c| c.paths).collect();
+        crossing.dedup();
+        let seeds = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default()).collect();
+        let mut found = Self { seeds, triangles: triangles.to_vec(), edges, crossing, regions: Vec::new() };
+        found.regions = found.cut(field);
+        found
+    }
+
+    /// Triangles whose edges bound no region.
+    pub fn open(&self) -> usize {
+        self.regions.iter().filter(|region| region.is_empty()).count()
+    }
+}

@@ -1,0 +1,167 @@
+//! Riemannian triangles as regions of the plane: what lies between three geodesics, cut into straight triangles.
+
+use super::Realisation;
+use super::edges::GeodesicEdge;
+use crate::geometry::{Orientation, Point, Tensor, orientation};
+use crate::mesh::Mesh;
+use crate::metric::MetricField;
+use rayon::prelude::*;
+
+impl Realisation {
+    /// Vertices of a mesh that holds all seeds, then the inner points of all edges: the number of an edge's first one.
+    fn first_points(&self) -> Vec<u32> {
+        let mut next = self.seeds.len() as u32;
+        let inner = self.edges.iter().map(|edge| edge.points.len().saturating_sub(2) as u32);
+        let first = |count: u32| {
+            next += count;
+            next - count
+        };
+        inner.map(first).collect()
+    }
+
+    /// The vertices of each edge in [`Realisation::to_mesh`], from its first seed to its second.
+    pub fn lines(&self) -> Vec<Vec<u32>> {
+        let first = self.first_points();
+        (0..self.edges.len()).map(|edge| self.line(edge, &first)).collect()
+    }
+
+    fn line(&self, edge: usize, first: &[u32]) -> Vec<u32> {
+        let GeodesicEdge { ends, points, .. } = &self.edges[edge];
+        let inner = (0..points.len().saturating_sub(2) as u32).map(|k| first[edge] + k);
+        std::iter::once(ends[0]).chain(inner).chain(std::iter::once(ends[1])).collect()
+    }
+
+    /// The number of the edge between two seeds.
+    pub fn edge_between(&self, a: u32, b: u32) -> Option<usize> {
+        self.edges.binary_search_by_key(&[a.min(b), a.max(b)], |edge| edge.ends).ok()
+    }
+
+    /// The realisation as a mesh: the seeds in order, then the inner points of the polylines, edge by edge; the segments of
+    /// each polyline as edges labelled with its number, and each Riemannian triangle as the straight triangles that it is
+    /// cut into, labelled with its number, numbers from 1. It is a valid mesh if no edges cross and no region is open.
+    pub fn to_mesh(&self) -> Mesh {
+        let mut mesh = Mesh::default();
+        let inner = self.edges.iter().flat_map(|edge| inner(&edge.points));
+        mesh.points = self.seeds.iter().chain(inner).map(|p| [p.x, p.y, 0.0]).collect();
+        mesh.point_labels = vec![0; mesh.points.len()];
+        for (line, label) in self.lines().iter().zip(1..) {
+            mesh.edges.extend(line.windows(2).map(|w| [w[0], w[1]]));
+            mesh.edge_labels.resize(mesh.edges.len(), label);
+        }
+        for (region, label) in self.regions.iter().zip(1..) {
+            mesh.triangles.extend(region);
+            mesh.triangle_labels.resize(mesh.triangles.len(), label);
+        }
+        mesh
+    }
+
+    /// Each triangle's region, cut into straight triangles by the numbers of [`Realisation::to_mesh`]; empty where its edges
+    /// bound no region, counter-clockwise.
+    pub(super) fn cut(&self, field: &dyn MetricField) -> Vec<Vec<[u32; 3]>> {
+        let first = self.first_points();
+        self.triangles.par_iter().map(|&t| self.cut_one(field, t, &first).unwrap_or_default()).collect()
+    }
+
+    fn cut_one(&self, field: &dyn MetricField, [a, b, c]: [u32; 3], first: &[u32]) -> Option<Vec<[u32; 3]>> {
+        let mut corners = Vec::new();
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            let edge = self.edge_between(from, to)?;
+            let (mut numbers, mut points) = (self.line(edge, first), self.edges[edge].points.clone());
+            if from > to {
+                numbers.reverse();
+                points.reverse();
+            }
+            let last = numbers.len() - 1;
+            corners.extend(numbers.into_iter().zip(points).take(last));
+        }
+        let middle = [a, b, c].map(|i| self.seeds[i as usize]);
+        let tensor = field.at(middle[0] + ((middle[1] - middle[0]) + (middle[2] - middle[0])) * (1.0 / 3.0));
+        Region { corners, tensor }.cut()
+    }
+}
+
+fn inner(points: &[Point]) -> &[Point] {
+    points.get(1..points.len().saturating_sub(1)).unwrap_or_default()
+}
+
+/// A polygon, counter-clockwise, that ears are cut off.
+struct Region {
+    corners: Vec<(u32, Point)>,
+    tensor: Tensor,
+}
+
+impl Region {
+    /// The triangles that fill it; `None` if it is no simple counter-clockwise polygon.
+    fn cut(mut self) -> Option<Vec<[u32; 3]>> {
+        let mut triangles = Vec::with_capacity(self.corners.len());
+        let mut ears: Vec<Option<f64>> = (0..self.corners.len()).map(|i| self.ear(i)).collect();
+        while self.corners.len() > 3 {
+            let n = self.corners.len();
+            let best = |ears: &[Option<f64>]| {
+                let all = ears.iter().enumerate().filter_map(|(i, shape)| Some((i, (*shape)?)));
+                all.max_by(|x, y| x.1.total_cmp(&y.1)).map(|x| x.0)
+            };
+            // What was in the way of an ear may be gone.
+            let i = best(&ears).or_else(|| {
+                ears = (0..n).map(|i| self.ear(i)).collect();
+                best(&ears)
+            })?;
+            triangles.push(self.around(i).map(|k| self.corners[k].0));
+            self.corners.remove(i);
+            ears.remove(i);
+            for k in [(i + n - 2) % (n - 1), i % (n - 1)] {
+                ears[k] = self.ear(k);
+            }
+        }
+        let [a, b, c] = self.around(1).map(|k| self.corners[k]);
+        triangles.push([a.0, b.0, c.0]);
+        (orientation(a.1, b.1, c.1) == Orientation::Left).then_some(triangles)
+    }
+
+    fn around(&self, i: usize) -> [usize; 3] {
+        let n = self.corners.len();
+        [(i + n - 1) % n, i, (i + 1) % n]
+    }
+
+    /// The shape of the ear at a corner, the better the greater; `None` where there is none.
+    fn ear(&self, i: usize) -> Option<f64> {
+        let numbers = self.around(i);
+        let [a, b, c] = numbers.map(|k| self.corners[k].1);
+        if orientation(a, b, c) != Orientation::Left {
+            return None;
+        }
+        let is_in =
+            |p: Point| [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, p) != Orientation::Right);
+        let others = self.corners.iter().enumerate().filter(|(k, _)| !numbers.contains(k));
+        if others.map(|(_, corner)| corner.1).any(is_in) {
+            return None;
+        }
+        let squares: f64 = [b - a, c - b, a - c].iter().map(|&side| self.tensor.dot(side, side)).sum();
+        Some((b - a).cross(c - a) / squares)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cut(points: &[(f64, f64)]) -> Option<Vec<[u32; 3]>> {
+        let corners = (0..).zip(points).map(|(i, &(x, y))| (i, Point::new(x, y))).collect();
+        Region { corners, tensor: Tensor::IDENTITY }.cut()
+    }
+
+    #[test]
+    fn bays_are_cut_and_knots_are_not() {
+        let bay = [(0.0, 0.0), (1.0, 0.8), (2.0, 0.0), (2.0, 1.0), (1.0, 1.2), (0.0, 1.0)];
+        let triangles = cut(&bay).unwrap();
+        let area = |[a, b, c]: [u32; 3]| {
+            let [a, b, c] = [a, b, c].map(|i| Point::new(bay[i as usize].0, bay[i as usize].1));
+            0.5 * (b - a).cross(c - a)
+        };
+        assert_eq!(triangles.len(), 4);
+        assert!(triangles.iter().all(|&t| area(t) > 0.0));
+        assert!((triangles.iter().map(|&t| area(t)).sum::<f64>() - 1.4).abs() < 1e-12);
+        assert!(cut(&[(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)]).is_none(), "clockwise");
+        assert!(cut(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]).is_none(), "a knot");
+    }
+}

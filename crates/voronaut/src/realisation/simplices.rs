@@ -1,0 +1,107 @@
+//! Riemannian triangles by barycentric coordinates: grids of Karcher means.
+
+use super::Realisation;
+use crate::geodesic::{Fineness, Paths, karcher_mean};
+use crate::geometry::{Orientation, Point, orientation};
+use crate::metric::MetricField;
+use rayon::prelude::*;
+
+/// A Riemannian triangle in pieces: the images of barycentric coordinates that are multiples of 1/n.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Pieces per side.
+    pub sides: usize,
+    /// Row by row: row i has the coordinate i/n of the third corner, and goes from the first corner's side to the second's.
+    pub points: Vec<Point>,
+}
+
+impl Grid {
+    /// The point with j/n of the second corner and i/n of the third; i + j is at most n.
+    pub fn at(&self, j: usize, i: usize) -> Point {
+        // Rows before this one have n + 1, n, ... points.
+        self.points[i * (2 * self.sides + 3 - i) / 2 + j]
+    }
+
+    /// The lines on which one coordinate is a multiple of 1/n, without the sides.
+    pub fn lines(&self) -> Vec<Vec<Point>> {
+        let n = self.sides;
+        let line = |k: usize, point: &dyn Fn(usize) -> Point| (0..=n - k).map(point).collect();
+        let of_one =
+            |k: usize| [line(k, &|j| self.at(j, k)), line(k, &|i| self.at(k, i)), line(k, &|j| self.at(j, n - k - j))];
+        (1..n).flat_map(of_one).collect()
+    }
+
+    /// Whether all its straight pieces are counter-clockwise, so that the map is one-to-one as far as it shows.
+    pub fn is_embedded(&self) -> bool {
+        let is_left = |a, b, c| orientation(a, b, c) == Orientation::Left;
+        let n = self.sides;
+        (0..n).all(|i| {
+            let upward = |j: usize| is_left(self.at(j, i), self.at(j + 1, i), self.at(j, i + 1));
+            let downward = |j: usize| is_left(self.at(j + 1, i), self.at(j + 1, i + 1), self.at(j, i + 1));
+            (0..n - i).all(upward) && (1..n - i).all(|j| downward(j - 1))
+        })
+    }
+}
+
+impl Realisation {
+    /// The triangles in n by n pieces: sides are the edges as drawn, at equal metric lengths, and points inside are
+    /// [`karcher_mean`]s. `None` where there are none, or pieces turn over: the triangle is too large for its curvature,
+    /// or leads around a hole.
+    pub fn grids(&self, field: &dyn MetricField, sides: usize) -> Vec<Option<Grid>> {
+        let paths = Paths::default();
+        let sides = sides.max(1);
+        let grid = |&triangle: &[u32; 3]| self.grid(field, &paths, triangle, sides).filter(Grid::is_embedded);
+        self.triangles.par_iter().map(grid).collect()
+    }
+
+    fn grid(&self, field: &dyn MetricField, paths: &Paths, [a, b, c]: [u32; 3], n: usize) -> Option<Grid> {
+        let corners = [a, b, c].map(|i| self.seeds[i as usize]);
+        let [ab, bc, ac] = [[a, b], [b, c], [a, c]].map(|pair| self.side(field, pair, n));
+        let [ab, bc, ac] = [ab?, bc?, ac?];
+        let mut points = Vec::with_capacity((n + 1) * (n + 2) / 2);
+        for i in 0..=n {
+            for j in 0..=n - i {
+                let weights = [n - i - j, j, i].map(|k| k as f64);
+                points.push(match (j, i) {
+                    (j, 0) => ab[j],
+                    (0, i) => ac[i],
+                    (j, i) if i + j == n => bc[i],
+                    _ => karcher_mean(paths, field, corners, weights, Fineness::MIDDLE)?,
+                });
+            }
+        }
+        Some(Grid { sides: n, points })
+    }
+
+    /// An edge at equal metric lengths.
+    fn side(&self, field: &dyn MetricField, [from, to]: [u32; 2], n: usize) -> Option<Vec<Point>> {
+        let mut line = self.edges[self.edge_between(from, to)?].points.clone();
+        if from > to {
+            line.reverse();
+        }
+        let mut reached = vec![0.0];
+        for w in line.windows(2) {
+            reached.push(reached[reached.len() - 1] + field.at(w[0].midpoint(w[1])).length(w[1] - w[0]));
+        }
+        let total = reached[reached.len() - 1];
+        let at = |k: usize| {
+            let goal = total * k as f64 / n as f64;
+            let i = reached.partition_point(|&r| r <= goal).clamp(1, line.len() - 1);
+            line[i - 1].lerp(line[i], ((goal - reached[i - 1]) / (reached[i] - reached[i - 1])).clamp(0.0, 1.0))
+        };
+        let ends = [line[0], line[line.len() - 1]];
+        Some(
+            (0..=n)
+                .map(|k| {
+                    if k == 0 {
+                        ends[0]
+                    } else if k == n {
+                        ends[1]
+                    } else {
+                        at(k)
+                    }
+                })
+                .collect(),
+        )
+    }
+}

@@ -1,0 +1,104 @@
+//! The dual of given seeds: none is added, none moved.
+
+use crate::diagram::{Diagram, Nerve, NerveTriangle};
+use crate::dual::Road;
+use crate::metric::MetricField;
+use crate::output::report;
+use crate::rdt::{Edge, Rdt, Start, Trust};
+use std::collections::HashSet;
+use std::time::Instant;
+
+/// Lengths found from the metric alone may differ by this share from those on the canvas, through whose vertices ways lead:
+/// more says that they are of another way.
+const CANVAS_ERROR: f64 = 0.03;
+/// With [`Road::Both`] the nerve stands where the margin by lengths is within its error and that is larger than this.
+const DOUBT: f64 = 0.05;
+/// The nerve is not sure of a place that a fourth seed would win if squares of distances were off by this share.
+const NERVE_ERROR: f64 = 0.01;
+
+/// The dual of a diagram's seeds.
+#[derive(Clone, Debug)]
+pub struct SeedDual {
+    /// Triangles by their seeds, counter-clockwise as the cells lie.
+    pub triangles: Vec<[u32; 3]>,
+    /// The nerve, sharp within canvas faces.
+    pub nerve: Nerve,
+    /// How the edges were settled. Margins are those by lengths; edges are numbered by their seeds.
+    pub account: report::Dual,
+    /// Wall time of the nerve and of the in-circle tests.
+    pub seconds: Vec<(&'static str, f64)>,
+}
+
+/// The dual by the road that is asked for: the nerve of the cells as drawn on the canvas, or what in-circle tests by
+/// lengths of geodesics make of it, or, with both, as far as these are sure and agree with distances on the canvas.
+pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road) -> SeedDual {
+    let start = Instant::now();
+    let nerve = diagram.sharp_nerve();
+    let passes = diagram.passes();
+    let nerve_seconds = start.elapsed().as_secs_f64();
+    let seeds: Vec<_> = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default()).collect();
+    let reference = |i: u32, j: u32| passes.distance(i, j).map(|distance| (distance, CANVAS_ERROR * distance));
+    let trust = match road {
+        Road::Geodesic => Trust::default(),
+        Road::Canvas | Road::Both => Trust { reference: Some(&reference), doubt: DOUBT },
+    };
+    let rdt = Rdt::new(field, &seeds, &Start::from_nerve(&nerve), trust);
+    let seconds = vec![("nerve", nerve_seconds), ("tests", start.elapsed().as_secs_f64() - nerve_seconds)];
+    let account = account(&rdt, &nerve, road);
+    let triangles = match road {
+        Road::Canvas => nerve.triangles.iter().map(|t| t.colours).collect(),
+        Road::Geodesic => rdt.triangles(),
+        Road::Both => rdt.triangles().into_iter().chain(left_out(&rdt, &nerve)).collect(),
+    };
+    SeedDual { triangles, nerve, account, seconds }
+}
+
+/// Triangles of the nerve that no triangulation could hold beside the others, and of which it is sure: cells that touch
+/// in two places.
+fn left_out(rdt: &Rdt, nerve: &Nerve) -> Vec<[u32; 3]> {
+    let is_sure = |t: &NerveTriangle| t.fourth.is_none_or(|(_, gap)| gap >= NERVE_ERROR);
+    let sure: HashSet<[u32; 3]> = nerve.triangles.iter().filter(|t| is_sure(t)).map(|t| t.colours).collect();
+    rdt.dropped().iter().copied().filter(|t| sure.contains(t)).collect()
+}
+
+fn account(rdt: &Rdt, nerve: &Nerve, road: Road) -> report::Dual {
+    let edges = rdt.edges();
+    let of_nerve: HashSet<[u32; 2]> = nerve.sides(|_| true).collect();
+    let unsure: HashSet<[u32; 2]> = nerve.sides(|t| t.fourth.is_some_and(|(_, gap)| gap < NERVE_ERROR)).collect();
+    let is_open = |edge: &&Edge| match road {
+        Road::Geodesic => edge.is_uncertain(),
+        Road::Canvas => unsure.contains(&sorted(edge.ends)),
+        Road::Both => edge.is_uncertain() && unsure.contains(&sorted(edge.ends)),
+    };
+    let uncertain_edges: Vec<report::UncertainEdge> = edges.iter().filter(is_open).map(uncertain).collect();
+    let differing = rdt.disagreements().into_iter().map(|edge| disagreement(&edge, &of_nerve, road));
+    let tested = edges.iter().filter(|edge| edge.margin.is_some());
+    let values = tested.clone().filter(|edge| !edge.is_uncertain()).filter_map(|edge| edge.margin.map(|m| m.value));
+    report::Dual {
+        geodesic_tests: rdt.counters().tests.to_vec(),
+        uncertain: uncertain_edges.len(),
+        min_margin: values.fold(1.0, f64::min),
+        blocked_flips: (rdt.counters().blocked + rdt.counters().circling) as usize,
+        compared: tested.count(),
+        disagreements: differing.collect(),
+        uncertain_edges,
+        ..report::Dual::default()
+    }
+}
+
+fn uncertain(edge: &Edge) -> report::UncertainEdge {
+    let (margin, error) = edge.margin.map_or((0.0, f64::INFINITY), |m| (m.value, m.error));
+    report::UncertainEdge { edge: edge.ends, margin, error }
+}
+
+fn disagreement(edge: &Edge, of_nerve: &HashSet<[u32; 2]>, road: Road) -> report::Disagreement {
+    let (margin, error) = edge.margin.map_or((0.0, f64::INFINITY), |m| (m.value, m.error));
+    let other = if let [Some(c), Some(d)] = edge.apexes { Some(sorted([c, d])) } else { None };
+    let settled_by = if road == Road::Canvas { Road::Canvas } else { Road::Geodesic };
+    let instead = other.filter(|other| of_nerve.contains(other));
+    report::Disagreement { edge: edge.ends, instead, margin, error, settled_by }
+}
+
+fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}

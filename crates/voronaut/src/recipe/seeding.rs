@@ -1,0 +1,82 @@
+//! How the interior is seeded.
+
+use super::Job;
+use crate::canvas::{self, Canvas};
+use crate::diagram::Diagram;
+use crate::domain::Domain;
+use crate::dual::Dual;
+use crate::error::{Error, Result};
+use crate::geometry::Point;
+use crate::output::report;
+use crate::sampling::{demand_memory, refine_farthest};
+use std::fmt;
+use std::str::FromStr;
+
+/// How the interior is seeded, once the boundary is sampled at unit length; its names are those users type.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Seeding {
+    /// `sizing`: at the circumcentre of the face whose metric circumradius is largest.
+    #[default]
+    Sizing,
+    /// `farthest`: at the canvas vertex that is farthest, in geodesic distance, from all seeds so far. Needs a canvas.
+    Farthest,
+}
+
+impl fmt::Display for Seeding {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Seeding::Sizing => "sizing",
+            Seeding::Farthest => "farthest",
+        })
+    }
+}
+
+impl FromStr for Seeding {
+    type Err = Error;
+
+    /// # Errors
+    /// [`Error::Unsupported`] of `protected`, which is still to come; [`Error::Parse`] of any other name.
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "sizing" => Ok(Seeding::Sizing),
+            "farthest" => Ok(Seeding::Farthest),
+            "protected" => Err(Error::Unsupported {
+                what: "seeding `protected` is not there yet".into(),
+                help: "choose sizing or farthest".into(),
+            }),
+            _ => Err(Error::parse(format!("seeding {name}"), "no such seeding", "choose sizing or farthest")),
+        }
+    }
+}
+
+impl Job<'_> {
+    /// The canvas of the domain, if seeding needs one: it does not depend on the metric's factor, so one serves all
+    /// rounds of seeding.
+    ///
+    /// # Errors
+    /// The memory limit, or the metric at a canvas vertex.
+    pub(super) fn canvas(&mut self, domain: &Domain, seeds: usize) -> Result<Option<Canvas>> {
+        if self.options.seeding != Seeding::Farthest {
+            return Ok(None);
+        }
+        let size = canvas::size_for(seeds, self.options.canvas_size);
+        demand_memory(seeds as f64, size as f64, self.options.memory_limit)?;
+        self.progress.stage("canvas", 1);
+        let canvas = self.timed("canvas", |job| Canvas::intrinsic(domain, job.field, size))?;
+        self.canvas = Some(report::Canvas::of(&canvas));
+        Ok(Some(canvas))
+    }
+
+    /// Fills the interior of a dual whose segments are sampled.
+    ///
+    /// # Errors
+    /// None that a dual of the canvas's domain could cause.
+    pub(super) fn seed_farthest(&mut self, canvas: &Canvas, dual: &mut Dual, count: usize) -> Result<()> {
+        let seeds: Vec<Point> = dual.topology().vertices().map(|v| dual.position(v)).collect();
+        let mut diagram = Diagram::roughly_of_vertices(canvas, self.field, &seeds)?;
+        refine_farthest(dual, &mut diagram, self.fill(count), self.progress);
+        self.diagram = Some(report::Diagram::of(&diagram));
+        Ok(())
+    }
+}
