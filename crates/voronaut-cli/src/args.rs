@@ -6,7 +6,7 @@ use voronaut::canvas::VERTICES_PER_SEED;
 use voronaut::dual::Road;
 use voronaut::metric::Bounds;
 use voronaut::output::Picture;
-use voronaut::recipe::{MeshOptions, Seeding};
+use voronaut::recipe::{Centroid, MeshOptions, Seeding};
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
 #[derive(Debug, Parser)]
@@ -86,6 +86,10 @@ pub(crate) struct MeshArgs {
     /// Steps of Riemannian Lloyd relaxation
     #[arg(long, value_name = "STEPS", default_value_t = MeshOptions::default().lloyd)]
     pub(crate) lloyd: usize,
+    /// The centroids seeds are relaxed to: tangent (of cells in tangent planes), canvas (of the diagram's cells) or weighted
+    /// (equation 9 of the report, to compare)
+    #[arg(long, value_name = "WHICH", default_value_t = MeshOptions::default().centroid)]
+    pub(crate) centroid: Centroid,
     /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
     #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(MeshOptions::default().dual))]
     pub(crate) dual: Dual,
@@ -305,6 +309,7 @@ impl MeshArgs {
             complexity: self.complexity,
             hausd: self.hausd,
             lloyd: self.lloyd,
+            centroid: self.centroid,
             dual: self.dual.into(),
             seeding: self.seeding,
             canvas_size: self.canvas_size,

@@ -79,6 +79,7 @@ fn fill_in(report: &mut Report, meshed: &Meshed, options: Value) {
     report.dual = Some(meshed.dual.clone());
     report.canvas.clone_from(&meshed.canvas);
     report.diagram.clone_from(&meshed.diagram);
+    report.relaxation = Some(meshed.relaxation.clone());
     report.metric_scale = Some(meshed.metric_scale);
     report.notes.clone_from(&meshed.notes);
     report.options = options;

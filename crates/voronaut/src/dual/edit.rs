@@ -2,8 +2,25 @@
 
 use super::margin::Known;
 use super::{Dual, Effort, Kind};
-use crate::geometry::Point;
+use crate::geodesic::LocalMetric;
+use crate::geometry::{Point, Vector};
+use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
+
+/// Seeds, edges and the metric at the seeds, with its factor.
+pub(crate) struct Saved {
+    planar: Planar,
+    locals: Vec<LocalMetric>,
+    kinds: Vec<Kind>,
+    factor: f64,
+}
+
+impl Saved {
+    /// Where a seed was.
+    pub(crate) fn position(&self, v: VertexId) -> Point {
+        self.planar.position(v)
+    }
+}
 
 impl Dual<'_> {
     /// Puts a free seed strictly inside a face.
@@ -27,10 +44,53 @@ impl Dual<'_> {
         Some((v, self.planar.topology.find(v, target).unwrap_or(h)))
     }
 
-    /// Moves a free seed if all its faces stay counter-clockwise; the metric there is to be measured by the caller
+    /// What insertions, removals, moves and flips change, to be [restored](Dual::restore).
+    pub(crate) fn saved(&self) -> Saved {
+        Saved { planar: self.planar.clone(), locals: self.locals.clone(), kinds: self.kinds.clone(), factor: self.field.factor }
+    }
+
+    /// Takes back what was done since.
+    pub(crate) fn restore(&mut self, saved: &Saved) {
+        self.planar.clone_from(&saved.planar);
+        self.locals.clone_from(&saved.locals);
+        self.kinds.clone_from(&saved.kinds);
+        self.field.factor = saved.factor;
+        self.known = Known::default();
+        self.touched.clear();
+    }
+
+    /// The neighbours of a curve's seed along its segment, as positions.
+    pub(crate) fn neighbours_on_segment(&self, v: VertexId) -> Option<[Point; 2]> {
+        let topology = self.topology();
+        let mut ends = topology.star(v).flat_map(|h| {
+            let ahead = topology.is_fixed(h).then(|| topology.target(h));
+            let is_last = topology.twin(h.prev()).is_none();
+            [ahead, is_last.then(|| topology.apex(h))]
+        });
+        let first = ends.by_ref().flatten().next()?;
+        let second = ends.flatten().next()?;
+        Some([self.position(first), self.position(second)])
+    }
+
+    /// Where a curve's seed comes to lie that is moved by a vector: on the segment, and, for its two edges there, only as far as
+    /// they stay within `lengths` (metric), or get no farther out; half of that, for neighbours may slide as well.
+    pub(crate) fn slid(&self, v: VertexId, by: Vector, lengths: [f64; 2]) -> Point {
+        let from = self.position(v);
+        let Some([a, b]) = self.neighbours_on_segment(v) else { return from };
+        let tensor = self.local(v).tensor;
+        let (whole, behind) = (tensor.length(b - a), tensor.length(from - a));
+        let ahead = whole - behind;
+        let [least, most] = lengths;
+        let step = by.dot(b - a) / (b - a).dot(b - a) * whole;
+        let room = |shrinks: f64, grows: f64| (0.5 * (shrinks - least).min(most - grows)).max(0.0);
+        let step = step.clamp(-room(behind, ahead), room(ahead, behind));
+        a.lerp(b, (behind + step) / whole)
+    }
+
+    /// Moves a seed if all its faces stay counter-clockwise; the metric there is to be measured by the caller
     /// ([`Dual::measure_all`]).
     pub(crate) fn shift(&mut self, v: VertexId, to: Point) -> bool {
-        debug_assert_eq!(self.kind(v), Kind::Free, "only free seeds move");
+        debug_assert!(!matches!(self.kind(v), Kind::Corner(_)), "corners stay");
         self.known = Known::default();
         self.planar.move_vertex(v, to)
     }

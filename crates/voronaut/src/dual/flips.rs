@@ -2,7 +2,7 @@
 
 use super::margin::pair;
 use super::{Dual, Effort, Margin};
-use crate::geometry::{Tensor, signed_area};
+use crate::geometry::{Point, Tensor, signed_area};
 use crate::triangulation::{HalfEdge, VertexId};
 
 /// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
@@ -14,7 +14,7 @@ const FLIPS_PER_SLOT: u8 = 6;
 
 /// A flip may not leave a triangle whose quality is below this if both were better before: where lengths of straight
 /// edges contradict each other, or geodesics bend away from them, it would leave slivers.
-const POOR: f64 = 0.3;
+const POOR: f64 = 0.5;
 
 impl Dual<'_> {
     /// Flips every edge that the metric wants flipped and the plane allows. Returns the number of flips.
@@ -97,11 +97,15 @@ impl Dual<'_> {
     }
 
     /// Quality of a straight triangle in the mean tensor of its corners: 1 of an equilateral one.
-    fn shape(&self, corners: [VertexId; 3]) -> f64 {
-        let tensor = corners.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / 3.0);
-        let [a, b, c] = corners.map(|v| self.position(v));
-        let squares: f64 = [b - a, c - b, a - c].iter().map(|&e| tensor.dot(e, e)).sum();
-        2.0 * 3.0_f64.sqrt() * signed_area(a, b, c) * tensor.determinant().max(0.0).sqrt() / squares
+    pub(crate) fn shape(&self, corners: [VertexId; 3]) -> f64 {
+        shape(corners.map(|v| self.local(v).tensor), corners.map(|v| self.position(v)))
+    }
+
+    /// The same of the triangle of a seed, were it at a point nearby, and two others, counter-clockwise.
+    pub(crate) fn shape_from(&self, v: VertexId, at: Point, [b, c]: [VertexId; 2]) -> f64 {
+        let local = self.local(v);
+        let there = local.tensor + local.derivative_along(at - self.position(v));
+        shape([there, self.local(b).tensor, self.local(c).tensor], [at, self.position(b), self.position(c)])
     }
 
     fn flip(&mut self, h: HalfEdge) {
@@ -111,4 +115,10 @@ impl Dual<'_> {
         self.touched.extend([h.face(), t.face()]);
         self.stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
     }
+}
+
+fn shape([k, l, m]: [Tensor; 3], [a, b, c]: [Point; 3]) -> f64 {
+    let tensor = (k + l + m) * (1.0 / 3.0);
+    let squares: f64 = [b - a, c - b, a - c].iter().map(|&e| tensor.dot(e, e)).sum();
+    2.0 * 3.0_f64.sqrt() * signed_area(a, b, c) * tensor.determinant().max(0.0).sqrt() / squares
 }

@@ -12,6 +12,7 @@ mod margin;
 mod patch;
 
 pub use consult::{Consultation, Disagreement, Made, Road};
+pub(crate) use edit::Saved;
 pub use margin::{Effort, LEVELS, Margin};
 
 use crate::domain::Domain;
@@ -174,12 +175,21 @@ impl<'a> Dual<'a> {
 
     /// Evaluates the metric at every vertex, in parallel.
     pub(crate) fn measure_all(&mut self) {
+        self.measure_each(|_, field, p| LocalMetric::at(field, p));
+    }
+
+    /// Evaluates the metric at every vertex that has moved; where it was rough it counts as rough still.
+    pub(crate) fn measure_moved(&mut self) {
+        self.measure_each(|local, field, p| local.moved(field, p));
+    }
+
+    fn measure_each(&mut self, measure: impl Fn(&LocalMetric, &Scaled, Point) -> LocalMetric + Sync) {
         self.known = Known::default();
         let field = self.field;
         let (topology, positions) = (&self.planar.topology, &self.planar.positions);
         self.locals.par_iter_mut().enumerate().with_min_len(256).for_each(|(v, local)| {
             if topology.is_vertex(VertexId(v as u32)) {
-                *local = LocalMetric::at(&field, positions[v]);
+                *local = measure(local, &field, positions[v]);
             }
         });
         for v in 0..self.locals.len() {
@@ -204,6 +214,12 @@ impl<'a> Dual<'a> {
         for (h, length) in edges.into_iter().zip(lengths) {
             self.planar.topology.set_length(h, length);
         }
+    }
+
+    /// Evaluates the metric at a vertex that has moved.
+    pub(crate) fn remeasure(&mut self, v: VertexId) {
+        let local = self.measure(self.position(v));
+        self.locals[v.index()] = local;
     }
 
     /// The metric around a point; where it is not valid that is noted, and the Euclidean metric serves instead.

@@ -33,6 +33,19 @@ impl LocalMetric {
     /// field may end with the domain) the derivative counts as zero.
     pub fn at(field: &dyn MetricField, p: Point) -> Self {
         let tensor = field.at(p);
+        let (found, second) = Self::expanded(field, p, tensor);
+        if second > ROUGH { Self::averaged(field, p, tensor) } else { found }
+    }
+
+    /// [`LocalMetric::at`] at a point that a seed has moved to: rough if the seed was so before. So understood it
+    /// depends continuously on the point.
+    pub fn moved(&self, field: &dyn MetricField, p: Point) -> Self {
+        let tensor = field.at(p);
+        if self.is_rough { Self::averaged(field, p, tensor) } else { Self::expanded(field, p, tensor).0 }
+    }
+
+    /// By differences along the axes, and the size of the second ones relative to the tensor.
+    fn expanded(field: &dyn MetricField, p: Point, tensor: Tensor) -> (Self, f64) {
         let eigen = tensor.eigen();
         let axes = [eigen.axis, eigen.axis.perpendicular()];
         let steps = [eigen.large, eigen.small].map(|eigenvalue| DIFFERENCE_STEP / eigenvalue.sqrt());
@@ -46,12 +59,9 @@ impl LocalMetric {
                 second = second.max(relative_size((ahead + behind) * 0.5 + tensor * -1.0, axes, steps));
             }
         }
-        if second > ROUGH {
-            return Self::averaged(field, p, tensor);
-        }
         let [u, v] = axes;
         let derivative = [along[0] * u.x + along[1] * v.x, along[0] * u.y + along[1] * v.y];
-        Self { tensor, derivative, is_rough: false }
+        (Self { tensor, derivative, is_rough: false }, second)
     }
 
     /// The mean over the centre and a ring, and the derivatives of the linear function that fits the ring best; the

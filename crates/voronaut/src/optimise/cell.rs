@@ -9,6 +9,17 @@ pub struct Cell {
     scratch: Vec<Vector>,
 }
 
+/// Moments of a cell about its seed, in the tangent plane there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moments {
+    /// Area.
+    pub mass: f64,
+    /// The integral of the position vector.
+    pub first: Vector,
+    /// The integral of its square: the seed's share of the energy of centroidal Voronoi tessellations.
+    pub second: f64,
+}
+
 impl Cell {
     /// Starts again with a square of this half-width.
     pub fn reset(&mut self, half_width: f64) {
@@ -27,6 +38,11 @@ impl Cell {
         let normal = (a - b).perpendicular();
         let offset = normal.dot(a);
         if offset > 0.0 { self.cut(normal, offset) } else { self.cut(-normal, -offset) }
+    }
+
+    /// Keeps what lies to the left of a vector from the origin.
+    pub fn keep_left_of(&mut self, direction: Vector) {
+        self.cut(-direction.perpendicular(), 0.0);
     }
 
     /// Keeps the points x with x . normal <= offset (Sutherland and Hodgman 1974).
@@ -49,20 +65,34 @@ impl Cell {
     pub fn corners(&self) -> &[Vector] {
         &self.corners
     }
+
+    /// The cell's moments about the origin.
+    pub fn moments(&self) -> Moments {
+        let mut moments = Moments::default();
+        for (i, &p) in self.corners.iter().enumerate() {
+            let q = self.corners[(i + 1) % self.corners.len()];
+            let cross = p.cross(q);
+            moments.mass += 0.5 * cross;
+            moments.first = moments.first + (p + q) * (cross / 6.0);
+            moments.second += cross / 12.0 * (p.dot(p) + p.dot(q) + q.dot(q));
+        }
+        moments
+    }
 }
 
-/// Centroid of a convex polygon that holds the origin; the origin where the polygon has no area.
-pub fn centroid(corners: &[Vector]) -> Vector {
-    let mut area = 0.0;
-    let mut moment = Vector::default();
-    for (i, &p) in corners.iter().enumerate() {
-        let q = corners[(i + 1) % corners.len()];
-        let cross = p.cross(q);
-        area += cross;
-        moment = moment + (p + q) * (cross / 3.0);
+impl Moments {
+    /// The centroid; the origin where the cell has no area.
+    pub fn centroid(&self) -> Vector {
+        let mean = self.first * (1.0 / self.mass);
+        if self.mass > 0.0 && mean.norm().is_finite() { mean } else { Vector::default() }
     }
-    let mean = moment * (1.0 / area);
-    if area > 0.0 && mean.norm().is_finite() { mean } else { Vector::default() }
+}
+
+impl std::ops::Add for Moments {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { mass: self.mass + other.mass, first: self.first + other.first, second: self.second + other.second }
+    }
 }
 
 #[cfg(test)]
@@ -76,9 +106,22 @@ mod tests {
         for (x, y) in [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -3.0)] {
             cell.cut_by_bisector(Vector::new(x, y));
         }
-        let c = centroid(cell.corners());
+        let moments = cell.moments();
+        let c = moments.centroid();
         assert!(c.x.abs() < 1e-15 && (c.y + 0.5).abs() < 1e-15, "{c:?}");
+        // A rectangle of 1 by 2 from y = -1.5 to 0.5.
+        assert!((moments.mass - 2.0).abs() < 1e-15 && (moments.second - (1.0 / 6.0 + 3.5 / 3.0)).abs() < 1e-14);
         cell.cut_by_line(Vector::new(-5.0, -0.5), Vector::new(5.0, -0.5));
-        assert!(centroid(cell.corners()).norm() < 1e-15);
+        assert!(cell.moments().centroid().norm() < 1e-15);
+    }
+
+    #[test]
+    fn half_planes_keep_what_is_left() {
+        let mut cell = Cell::default();
+        cell.reset(1.0);
+        cell.keep_left_of(Vector::new(1.0, 0.0));
+        let moments = cell.moments();
+        assert!((moments.mass - 2.0).abs() < 1e-15 && (moments.centroid().y - 0.5).abs() < 1e-15);
+        assert_eq!(Cell::default().moments().centroid(), Vector::default());
     }
 }

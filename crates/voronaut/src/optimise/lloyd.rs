@@ -1,95 +1,157 @@
-//! Riemannian Lloyd relaxation: every free seed moves to the centroid of its cell in its tangent plane.
+//! Relaxation: seeds move so that the energy of centroidal Voronoi tessellations falls (Lloyd 1982; Du, Faber and
+//! Gunzburger 1999).
 
-use super::cell::{Cell, centroid};
-use crate::dual::{Dual, Effort, Kind};
+use super::cells::Cells;
+use super::movers::{State, is_rough_around};
+use super::quasi_newton::Memory;
+use super::rest::Rest;
+use crate::dual::{Dual, Effort, Saved};
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::progress::Progress;
-use crate::triangulation::{HalfEdge, VertexId};
-use rayon::prelude::*;
 
-/// A seed whose move would turn a triangle over tries this many times with half of the move.
-const HALVINGS: u32 = 4;
+/// A step that raises the energy is taken back and tried again, shorter or with fewer seeds, this many times.
+const BACKTRACKS: u32 = 8;
+/// After so many of them the quasi-Newton directions give way to Lloyd's steps, and after so many steps are halved in any case.
+const LLOYD_AFTER: u32 = 3;
+const SHORTER_AFTER: u32 = 6;
+/// Relaxation has stalled when a step lowers the energy by less than this share.
+const STALLED: f64 = 1e-6;
 
 /// How a relaxation went.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Relaxed {
+    /// The energy before the first step and after each: the sum over all cells of the integral of the squared distance
+    /// to the seed, in the metric as given (not scaled), as far as the cells that were used know it. With
+    /// [`Cells::Weighted`](super::Cells::Weighted) it may rise, else it never does.
+    pub energy: Vec<f64>,
     /// Root mean square of the moves (metric units), one entry per step.
     pub moves: Vec<f64>,
     /// Flips done.
     pub flips: u64,
     /// Moves cut short or left out, to keep the triangulation embedded.
     pub held: u64,
+    /// Steps taken back because they raised the energy.
+    pub taken_back: u64,
+    /// Whether it ended early, because the energy would not fall any more.
+    pub stalled: bool,
 }
 
-/// Moves all free seeds `steps` times. Neighbours are seen through the second-order logarithm map, cells are cut there
-/// by bisectors and by the boundary, and seeds move by the second-order exponential map (DESIGN.md, "Lloyd"). After
-/// each step edges are flipped; the triangulation stays embedded throughout. The result does not depend on the number
-/// of threads.
+impl Relaxed {
+    /// What came after this.
+    pub fn append(&mut self, next: Relaxed) {
+        // What happened in between counts as part of the first step.
+        let is_first = self.energy.is_empty();
+        self.energy.extend(next.energy.into_iter().skip(usize::from(!is_first)));
+        self.moves.extend(next.moves);
+        self.flips += next.flips;
+        self.held += next.held;
+        self.taken_back += next.taken_back;
+        self.stalled = next.stalled;
+    }
+}
+
+/// Lowers the energy in at most so many steps; ends early when it stalls.
+///
+/// Directions are those of a quasi-Newton method whose first guess is Lloyd's step to the centroid, and Lloyd's where the
+/// metric is rough. Free seeds move by the second-order exponential map, those on a segment slide along it, corners stay.
+/// After each step edges are flipped. A step that would raise the energy is taken back, and the seeds to blame rest
+/// before the others are shortened. The triangulation stays embedded throughout. The result does not depend on the
+/// number of threads.
 ///
 /// # Errors
 /// The metric is found invalid at a seed.
-pub fn relax(dual: &mut Dual, steps: usize, progress: &dyn Progress) -> Result<Relaxed> {
+pub fn relax(dual: &mut Dual, cells: &Cells, steps: usize, progress: &dyn Progress) -> Result<Relaxed> {
     let mut relaxed = Relaxed::default();
+    if steps == 0 {
+        return Ok(relaxed);
+    }
+    dual.measure_rough_edges();
+    let state = State::of(dual, cells)?;
+    relaxed.energy.push(state.energy);
+    let mut descent =
+        Descent { cells, memory: Memory::default(), rest: Rest::new(state.seeds.len()), state, relaxed };
     for _ in 0..steps {
-        dual.measure_rough_edges();
-        let moves = targets(dual);
-        let mut sum = 0.0;
-        for &(v, step) in &moves {
-            sum += dual.local(v).tensor.dot(step, step);
-            relaxed.held += u64::from(!shift(dual, v, step));
-        }
-        dual.measure_all();
-        dual.verdict()?;
-        relaxed.flips += dual.flip_all(Effort::Local);
-        dual.take_touched();
-        relaxed.moves.push((sum / moves.len().max(1) as f64).sqrt());
+        let before = descent.state.energy;
+        let done = descent.step(dual)?;
         progress.done(1);
-    }
-    Ok(relaxed)
-}
-
-/// Where each free seed wants to go, as a difference of positions.
-fn targets(dual: &Dual) -> Vec<(VertexId, Vector)> {
-    let free: Vec<VertexId> = dual.topology().vertices().filter(|&v| dual.kind(v) == Kind::Free).collect();
-    free.par_iter()
-        .with_min_len(256)
-        .map_init(Cell::default, |cell, &v| (v, dual.local(v).exp(to_centroid(dual, v, cell))))
-        .collect()
-}
-
-/// The tangent vector from a seed to the centroid of its cell.
-fn to_centroid(dual: &Dual, v: VertexId, cell: &mut Cell) -> Vector {
-    let (p, local, topology) = (dual.position(v), dual.local(v), dual.topology());
-    let [a, b, c] = local.tensor.cholesky();
-    let image = |u: VertexId, length: f64| {
-        let w = local.log(dual.position(u) - p);
-        let w = Vector::new(a * w.x + b * w.y, c * w.y);
-        // No expansion gives lengths in a rough field; quadrature does.
-        if local.is_rough { w * (length / w.norm()) } else { w }
-    };
-    let neighbour = |h: HalfEdge| image(topology.target(h), topology.length(h));
-    cell.reset(topology.star(v).map(|h| neighbour(h).norm()).fold(0.0, f64::max));
-    for h in topology.star(v) {
-        cell.cut_by_bisector(neighbour(h));
-        if topology.is_fixed(h.next()) {
-            cell.cut_by_line(neighbour(h), image(topology.apex(h), topology.length(h.prev())));
+        if !done || (cells.lower_energy() && before - descent.state.energy < STALLED * before) {
+            descent.relaxed.stalled = true;
+            break;
         }
     }
-    let centre = centroid(cell.corners());
-    let y = centre.y / c;
-    Vector::new((centre.x - b * y) / a, y)
+    Ok(descent.relaxed)
 }
 
-/// Moves a seed, or as far as the embedding allows; says whether it went all the way.
-fn shift(dual: &mut Dual, v: VertexId, step: Vector) -> bool {
-    let from = dual.position(v);
-    let mut share = 1.0;
-    for _ in 0..=HALVINGS {
-        if dual.shift(v, from + step * share) {
-            return share >= 1.0;
+struct Descent<'a> {
+    cells: &'a Cells<'a>,
+    memory: Memory,
+    rest: Rest,
+    state: State,
+    relaxed: Relaxed,
+}
+
+impl Descent<'_> {
+    /// One step that lowers the energy; false if none was found, and the dual is as before.
+    fn step(&mut self, dual: &mut Dual) -> Result<bool> {
+        let before = dual.saved();
+        let mut direction = self.state.direction(dual, &self.memory);
+        let mut share = 1.0;
+        self.rest.next_step();
+        for attempt in 1..=BACKTRACKS {
+            let (held, flips) = self.advance(dual, &direction, share)?;
+            let next = State::of(dual, self.cells)?;
+            if next.energy <= self.state.energy || !self.cells.lower_energy() {
+                (self.relaxed.held, self.relaxed.flips) = (self.relaxed.held + held, self.relaxed.flips + flips);
+                self.accept(dual, &before, next);
+                return Ok(true);
+            }
+            let resting = self.rest.blame(dual, &self.state, &next);
+            dual.restore(&before);
+            self.relaxed.taken_back += 1;
+            if attempt > LLOYD_AFTER && !self.memory.is_empty() {
+                self.memory.clear();
+                direction = self.state.direction(dual, &self.memory);
+            } else if resting == 0 || attempt > SHORTER_AFTER {
+                share *= 0.5;
+            }
         }
-        share *= 0.5;
+        Ok(false)
     }
-    false
+
+    /// Moves all seeds that do not rest by a share of a direction and settles the triangulation; moves held back, and flips.
+    fn advance(&self, dual: &mut Dual, direction: &[Vector], share: f64) -> Result<(u64, u64)> {
+        let mut held = 0;
+        for (i, (seed, &d)) in self.state.seeds.iter().zip(direction).enumerate() {
+            if self.rest.is_awake(i) {
+                held += u64::from(!seed.shift(dual, d * share));
+            }
+        }
+        dual.measure_moved();
+        dual.verdict()?;
+        let flips = dual.flip_all(Effort::Local);
+        dual.take_touched();
+        dual.measure_rough_edges();
+        Ok((held, flips))
+    }
+
+    fn accept(&mut self, dual: &Dual, before: &Saved, next: State) {
+        let seeds = &self.state.seeds;
+        let mut step: Vec<Vector> = seeds.iter().map(|s| dual.position(s.id) - before.position(s.id)).collect();
+        let squares = seeds.iter().zip(&step).map(|(s, &d)| dual.local(s.id).tensor.dot(d, d));
+        self.relaxed.moves.push((squares.sum::<f64>() / step.len().max(1) as f64).sqrt());
+        let mut change: Vec<Vector> =
+            next.gradient.iter().zip(&self.state.gradient).map(|(&now, &was)| now - was).collect();
+        for (i, seed) in seeds.iter().enumerate() {
+            // Rough and resting seeds would spoil the memory of the others.
+            if is_rough_around(dual, seed.id) || !self.rest.is_awake(i) {
+                (step[i], change[i]) = (Vector::default(), Vector::default());
+            }
+        }
+        if self.cells.lower_energy() {
+            self.memory.remember(step, change);
+        }
+        self.relaxed.energy.push(next.energy);
+        self.state = next;
+    }
 }

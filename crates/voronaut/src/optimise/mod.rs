@@ -1,9 +1,20 @@
-//! Moving seeds: Riemannian Lloyd relaxation, and the exchange of seeds where edges are too short or too long.
+//! Moving seeds: relaxation by the energy of centroidal Voronoi tessellations, and the exchange of seeds where edges are
+//! too short or too long.
 
 mod cell;
+mod cells;
 mod exchange;
 mod lloyd;
+mod movers;
+mod on_canvas;
+mod quasi_newton;
+mod rest;
+mod tangent;
+mod worst;
 
-pub use cell::{Cell, centroid};
+pub use cell::{Cell, Moments};
+pub use cells::Cells;
 pub use exchange::{exchange, meet_blocked_flips};
 pub use lloyd::{Relaxed, relax};
+pub use on_canvas::OnCanvas;
+pub use worst::mend_worst;

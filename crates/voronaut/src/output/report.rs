@@ -3,6 +3,7 @@
 use crate::canvas::CanvasCounters;
 use crate::dual::Road;
 use crate::geodesic::MarchCounters;
+use crate::optimise::Relaxed;
 use crate::quality::{Angles, EdgeLengths, Fidelity, MetricQuality, Quality, Validity, Worst};
 use crate::realisation::{self, Found, Realisation};
 use serde::ser::SerializeMap;
@@ -37,6 +38,8 @@ pub struct Report {
     pub diagram: Option<Diagram>,
     /// Counters of the dual.
     pub dual: Option<Dual>,
+    /// How the seeds were relaxed.
+    pub relaxation: Option<Relaxed>,
     /// The factor on the metric tensor for which the mesh is a unit mesh.
     pub metric_scale: Option<f64>,
     /// What could not be met, in words.
@@ -250,7 +253,7 @@ mod tests {
         report.dual = Some(Dual { min_margin: f64::NAN, ..Dual::default() });
         let value: Value = serde_json::from_str(&report.to_json()).unwrap();
         for key in "vertices triangles valid inverted non_manifold_edges duplicate_vertices euler area \
-                    metric_edge_length interior_edge_length quality angle canvas diagram dual metric_scale notes \
+                    metric_edge_length interior_edge_length quality angle canvas diagram dual relaxation metric_scale notes \
                     seconds peak_memory_bytes version options"
             .split_whitespace()
         {

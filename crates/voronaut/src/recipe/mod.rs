@@ -2,11 +2,13 @@
 
 mod dual;
 mod field;
+mod relaxing;
 mod seeding;
 mod settle;
 
 pub use dual::{SeedDual, dual};
 pub use field::metric;
+pub use relaxing::Centroid;
 pub use seeding::Seeding;
 
 use crate::canvas::{self, Canvas};
@@ -15,7 +17,7 @@ use crate::dual::{Dual, Kind, Road};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Scaled};
-use crate::optimise::{exchange, meet_blocked_flips, relax};
+use crate::optimise::Relaxed;
 use crate::output::report;
 use crate::progress::Progress;
 use crate::quality;
@@ -31,8 +33,10 @@ pub struct MeshOptions {
     pub complexity: Option<f64>,
     /// How far (Euclidean) mesh edges may stray from the boundary; `None`: the domain's own tolerance.
     pub hausd: Option<f64>,
-    /// Steps of Riemannian Lloyd relaxation.
+    /// Steps of Riemannian Lloyd relaxation, at most: it ends where it stalls.
     pub lloyd: usize,
+    /// The centroids that it moves seeds to.
+    pub centroid: Centroid,
     /// Which road decides on the topology.
     pub dual: Road,
     /// How the interior is seeded.
@@ -50,6 +54,7 @@ impl Default for MeshOptions {
             complexity: None,
             hausd: None,
             lloyd: 40,
+            centroid: Centroid::default(),
             dual: Road::default(),
             seeding: Seeding::default(),
             canvas_size: canvas::VERTICES_PER_SEED,
@@ -67,6 +72,8 @@ pub struct Meshed {
     pub metric_scale: f64,
     /// How its edges were settled.
     pub dual: report::Dual,
+    /// How the seeds were relaxed.
+    pub relaxation: Relaxed,
     /// The canvas, where one was made: that of the seeding, or where edges were settled by one.
     pub canvas: Option<report::Canvas>,
     /// The diagram on it.
@@ -103,13 +110,13 @@ pub fn mesh(
     demand_memory(count as f64, on_canvas, options.memory_limit)?;
     let canvas = job.canvas(&domain, count)?;
     let mut dual = job.timed("seed", |job| job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
-    job.timed("relax", |job| job.relax(&mut dual))?;
+    let relaxation = job.timed("relax", |job| job.relax(&mut dual, canvas.as_ref()))?;
     let settled = job.timed("settle", |job| settle::settle(&mut dual, &domain, job.options, job.progress))?;
     let mesh = job.timed("check", |job| job.finish(&domain, &dual))?;
     let settle::Settled { dual: account, canvas, diagram } = settled;
     let (canvas, diagram) = (job.canvas.or(canvas), job.diagram.or(diagram));
     let metric_scale = dual.field().factor;
-    Ok(Meshed { mesh, metric_scale, dual: account, canvas, diagram, seconds: job.seconds, notes: job.notes })
+    Ok(Meshed { mesh, metric_scale, dual: account, relaxation, canvas, diagram, seconds: job.seconds, notes: job.notes })
 }
 
 struct Job<'a> {
@@ -181,7 +188,7 @@ impl<'a> Job<'a> {
             self.progress.stage("seeding", count as u64);
             let mut dual = Dual::new(domain, Scaled { field: self.field, factor: scale })?;
             sample_segments(&mut dual, &plan.edges, &plan.arcs, scale);
-            if let Some(canvas) = canvas {
+            if let Some(canvas) = canvas.filter(|_| self.options.seeding == Seeding::Farthest) {
                 self.seed_farthest(canvas, &mut dual, count)?;
             }
             refine(&mut dual, self.fill(count), self.progress);
@@ -211,25 +218,6 @@ impl<'a> Job<'a> {
             let (got, count) = (got - plan.copies(), count - plan.copies());
             self.notes.push(format!("{count} vertices were asked for, but rounding leaves room for {got} only"));
         }
-    }
-
-    fn relax(&mut self, dual: &mut Dual) -> Result<()> {
-        dual.reorder();
-        let count = dual.vertex_count();
-        let steps = self.options.lloyd;
-        self.progress.stage("relaxing", steps as u64);
-        let most = |share: f64| (count as f64 * share) as usize;
-        // Farthest points that are not to be relaxed stay as they are.
-        let exchanges = steps > 0 || self.options.seeding == Seeding::Sizing;
-        for quarter in 0..4 {
-            relax(dual, (steps * (quarter + 1)) / 4 - (steps * quarter) / 4, self.progress)?;
-            if quarter < 3 && exchanges {
-                let met = meet_blocked_flips(dual, most(BLOCKED_SHARE));
-                exchange(dual, self.fill(count), most(EXCHANGED_SHARE).max(met));
-            }
-            self.fit_scale(dual);
-        }
-        dual.verdict()
     }
 
     /// With a count given, the factor is the one for which free edges have unit length in the (geometric) mean.

@@ -1,6 +1,6 @@
 //! How the interior is seeded.
 
-use super::Job;
+use super::{Centroid, Job};
 use crate::canvas::{self, Canvas};
 use crate::diagram::Diagram;
 use crate::domain::Domain;
@@ -51,13 +51,13 @@ impl FromStr for Seeding {
 }
 
 impl Job<'_> {
-    /// The canvas of the domain, if seeding needs one: it does not depend on the metric's factor, so one serves all
+    /// The canvas of the domain, if seeding or relaxing needs one: it does not depend on the metric's factor, so one serves all
     /// rounds of seeding.
     ///
     /// # Errors
     /// The memory limit, or the metric at a canvas vertex.
     pub(super) fn canvas(&mut self, domain: &Domain, seeds: usize) -> Result<Option<Canvas>> {
-        if self.options.seeding != Seeding::Farthest {
+        if self.options.seeding != Seeding::Farthest && self.options.centroid == Centroid::Tangent {
             return Ok(None);
         }
         let size = canvas::size_for(seeds, self.options.canvas_size);

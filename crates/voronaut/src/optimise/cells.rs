@@ -1,0 +1,52 @@
+//! Where the moments of the cells come from.
+
+use super::cell::Moments;
+use super::on_canvas::OnCanvas;
+use super::tangent::tangent_moments;
+use crate::dual::Dual;
+use crate::error::Result;
+use crate::geometry::Vector;
+use crate::triangulation::VertexId;
+
+/// The cells that relaxation works with.
+pub enum Cells<'a> {
+    /// Cut in the tangent plane at each seed, from what its neighbours are seen as through the second-order logarithm map.
+    /// Fast; right where the metric changes little over an edge.
+    Tangent,
+    /// Those of the diagram on a canvas, with the distances there; directions by the second-order logarithm map.
+    Canvas(OnCanvas<'a>),
+    /// The same cells, and the report's centroid (RR-9103, equation 9): the Euclidean one with the metric's area as weight. For
+    /// comparison: it is not the Riemannian one (erratum 14), and nothing holds the energy.
+    Weighted(OnCanvas<'a>),
+}
+
+impl Cells<'_> {
+    /// The moments of every seed's cell about the seed, in order of the vertices' ids; tangent vectors are in the
+    /// orthonormal frame of the Cholesky factor of the tensor there.
+    ///
+    /// # Errors
+    /// [`crate::Error::Domain`] if the canvas is not of the dual's domain.
+    pub fn moments(&self, dual: &Dual) -> Result<Vec<(VertexId, Moments)>> {
+        match self {
+            Cells::Tangent => Ok(tangent_moments(dual)),
+            Cells::Canvas(cells) => cells.moments(dual, OnCanvas::logarithm),
+            Cells::Weighted(cells) => cells.moments(dual, OnCanvas::difference),
+        }
+    }
+
+    /// Whether steps that raise the energy are taken back.
+    pub(super) fn lower_energy(&self) -> bool {
+        !matches!(self, Cells::Weighted(_))
+    }
+}
+
+/// A tangent vector in the orthonormal frame that a tensor's Cholesky factor makes.
+pub(super) fn to_frame([a, b, c]: [f64; 3], v: Vector) -> Vector {
+    Vector::new(a * v.x + b * v.y, c * v.y)
+}
+
+/// The inverse of [`to_frame`].
+pub(super) fn from_frame([a, b, c]: [f64; 3], w: Vector) -> Vector {
+    let y = w.y / c;
+    Vector::new((w.x - b * y) / a, y)
+}

@@ -1,0 +1,96 @@
+//! Limited-memory quasi-Newton directions (L-BFGS: Nocedal 1980), as used for centroidal Voronoi tessellations by Liu et al.
+//! (2009), on top of Lloyd's step.
+
+use crate::geometry::Vector;
+use std::collections::VecDeque;
+
+/// So many steps are remembered.
+const MEMORY: usize = 7;
+
+/// A step that was taken, and how the gradient changed along it.
+struct Pair {
+    step: Vec<Vector>,
+    change: Vec<Vector>,
+    /// Their product.
+    product: f64,
+}
+
+/// The last steps and what they did to the gradient.
+#[derive(Default)]
+pub(super) struct Memory {
+    pairs: VecDeque<Pair>,
+}
+
+impl Memory {
+    /// Whether nothing is remembered: directions are then those of `scaled` alone.
+    pub(super) fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
+    /// Forgets everything.
+    pub(super) fn clear(&mut self) {
+        self.pairs.clear();
+    }
+
+    /// Remembers a step, unless the energy is not convex along it.
+    pub(super) fn remember(&mut self, step: Vec<Vector>, change: Vec<Vector>) {
+        let product = dot(&step, &change);
+        let least = 1e-10 * (dot(&step, &step) * dot(&change, &change)).sqrt();
+        if product > least {
+            self.pairs.truncate(MEMORY - 1);
+            self.pairs.push_front(Pair { step, change, product });
+        }
+    }
+
+    /// The descent direction for a gradient: minus the inverse Hessian, as far as known, times the gradient. `scaled`
+    /// multiplies by a first guess of the inverse Hessian.
+    pub(super) fn direction(&self, gradient: &[Vector], scaled: impl Fn(Vec<Vector>) -> Vec<Vector>) -> Vec<Vector> {
+        let mut rest = gradient.to_vec();
+        let mut shares = Vec::with_capacity(self.pairs.len());
+        for pair in &self.pairs {
+            let share = dot(&pair.step, &rest) / pair.product;
+            add(&mut rest, &pair.change, -share);
+            shares.push(share);
+        }
+        let mut direction = scaled(rest);
+        for (pair, share) in self.pairs.iter().zip(shares).rev() {
+            let back = dot(&pair.change, &direction) / pair.product;
+            add(&mut direction, &pair.step, share - back);
+        }
+        direction.iter_mut().for_each(|d| *d = -*d);
+        direction
+    }
+}
+
+pub(super) fn dot(a: &[Vector], b: &[Vector]) -> f64 {
+    a.iter().zip(b).map(|(u, v)| u.dot(*v)).sum()
+}
+
+fn add(to: &mut [Vector], what: &[Vector], times: f64) {
+    to.iter_mut().zip(what).for_each(|(sum, &w)| *sum = *sum + w * times);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quadratic_energy_is_minimised_in_a_few_steps() {
+        // E = sum of k |x|^2 / 2 with k = 1, 2, ... , 6, from (1, 1): gradient k x.
+        let gradient =
+            |x: &[Vector]| x.iter().enumerate().map(|(i, &v)| v * (i + 1) as f64).collect::<Vec<Vector>>();
+        let mut x = vec![Vector::new(1.0, 1.0); 6];
+        let mut memory = Memory::default();
+        for _ in 0..12 {
+            let before = gradient(&x);
+            let step = memory.direction(&before, |g| g.iter().map(|&v| v * 0.25).collect());
+            // The best length along the direction of a quadratic energy.
+            let length = -dot(&step, &before) / dot(&step, &gradient(&step));
+            let step: Vec<Vector> = step.iter().map(|&s| s * length).collect();
+            x.iter_mut().zip(&step).for_each(|(p, &s)| *p = *p + s);
+            let change = gradient(&x).iter().zip(&before).map(|(&a, &b)| a - b).collect();
+            memory.remember(step, change);
+        }
+        assert!(dot(&x, &x).sqrt() < 1e-6, "{x:?}");
+    }
+}
