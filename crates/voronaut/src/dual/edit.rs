@@ -46,7 +46,12 @@ impl Dual<'_> {
 
     /// What insertions, removals, moves and flips change, to be [restored](Dual::restore).
     pub(crate) fn saved(&self) -> Saved {
-        Saved { planar: self.planar.clone(), locals: self.locals.clone(), kinds: self.kinds.clone(), factor: self.field.factor }
+        Saved {
+            planar: self.planar.clone(),
+            locals: self.locals.clone(),
+            kinds: self.kinds.clone(),
+            factor: self.field.factor,
+        }
     }
 
     /// Takes back what was done since.

@@ -39,6 +39,7 @@ impl LocalMetric {
 
     /// [`LocalMetric::at`] at a point that a seed has moved to: rough if the seed was so before. So understood it
     /// depends continuously on the point.
+    #[must_use]
     pub fn moved(&self, field: &dyn MetricField, p: Point) -> Self {
         let tensor = field.at(p);
         if self.is_rough { Self::averaged(field, p, tensor) } else { Self::expanded(field, p, tensor).0 }

@@ -69,8 +69,7 @@ pub fn relax(dual: &mut Dual, cells: &Cells, steps: usize, progress: &dyn Progre
     dual.measure_rough_edges();
     let state = State::of(dual, cells)?;
     relaxed.energy.push(state.energy);
-    let mut descent =
-        Descent { cells, memory: Memory::default(), rest: Rest::new(state.seeds.len()), state, relaxed };
+    let mut descent = Descent { cells, memory: Memory::default(), rest: Rest::new(state.seeds.len()), state, relaxed };
     for _ in 0..steps {
         let before = descent.state.energy;
         let done = descent.step(dual)?;

@@ -57,7 +57,9 @@ impl Memory {
             let back = dot(&pair.change, &direction) / pair.product;
             add(&mut direction, &pair.step, share - back);
         }
-        direction.iter_mut().for_each(|d| *d = -*d);
+        for d in &mut direction {
+            *d = -*d;
+        }
         direction
     }
 }
@@ -77,8 +79,7 @@ mod tests {
     #[test]
     fn a_quadratic_energy_is_minimised_in_a_few_steps() {
         // E = sum of k |x|^2 / 2 with k = 1, 2, ... , 6, from (1, 1): gradient k x.
-        let gradient =
-            |x: &[Vector]| x.iter().enumerate().map(|(i, &v)| v * (i + 1) as f64).collect::<Vec<Vector>>();
+        let gradient = |x: &[Vector]| x.iter().enumerate().map(|(i, &v)| v * (i + 1) as f64).collect::<Vec<Vector>>();
         let mut x = vec![Vector::new(1.0, 1.0); 6];
         let mut memory = Memory::default();
         for _ in 0..12 {

@@ -116,7 +116,16 @@ pub fn mesh(
     let settle::Settled { dual: account, canvas, diagram } = settled;
     let (canvas, diagram) = (job.canvas.or(canvas), job.diagram.or(diagram));
     let metric_scale = dual.field().factor;
-    Ok(Meshed { mesh, metric_scale, dual: account, relaxation, canvas, diagram, seconds: job.seconds, notes: job.notes })
+    Ok(Meshed {
+        mesh,
+        metric_scale,
+        dual: account,
+        relaxation,
+        canvas,
+        diagram,
+        seconds: job.seconds,
+        notes: job.notes,
+    })
 }
 
 struct Job<'a> {
