@@ -55,7 +55,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     stage("canvas");
     let diagram = Diagram::new(&canvas, metric.as_ref(), seeds)?;
     stage("diagram");
-    let SeedDual { triangles, nerve, mut account, seconds } = recipe::dual(&diagram, metric.as_ref(), road);
+    let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } = recipe::dual(&diagram, metric.as_ref(), road);
     let mesh = diagram.to_mesh(triangles, &nerve, &domain);
     account.crossing_edges = Some(crossing_edges(&mesh).len());
     stage("dual");
@@ -67,7 +67,12 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     }
     let mut report = reported(&mesh, metric.as_ref(), account)?;
     report.canvas = Some(report::Canvas::of(&canvas));
-    report.diagram = Some(report::Diagram::of(&diagram));
+    report.diagram = Some(report::Diagram { raw_nerve: Some(raw_nerve), ..report::Diagram::of(&diagram) });
+    let net = Drawn::needs_net(&args.outputs).then(|| recipe::net(&diagram, metric.as_ref(), &exact));
+    report.net = net.as_ref().map(report::NetFigures::of);
+    if net.is_some() {
+        stage("net");
+    }
     report.notes = notes(&diagram, &report);
     report.options = options(args);
     // Parts of "dual".

@@ -46,6 +46,11 @@ impl Drawn {
         outputs.picture.is_some() && outputs.show.iter().any(|show| show.is_of_diagram())
     }
 
+    /// Whether the dual's seeds are to be measured as a net: for the report, or the picture.
+    pub(crate) fn needs_net(outputs: &Outputs) -> bool {
+        outputs.report.is_some() || outputs.show.contains(&Show::Protection)
+    }
+
     /// Whether the picture, if there is one, shows a mesh with geodesic edges.
     pub(crate) fn has_geodesics(outputs: &Outputs) -> bool {
         outputs.picture.is_some() && outputs.show.iter().any(|show| matches!(show, Show::Geodesics | Show::Triangles))

@@ -14,7 +14,7 @@ use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::Report;
-use voronaut::output::report::Seconds;
+use voronaut::output::report::{NetFigures, Seconds};
 use voronaut::quality::{metric_quality, validity};
 use voronaut::recipe::{self, Meshed};
 use voronaut::{Error, Result};
@@ -80,6 +80,8 @@ fn fill_in(report: &mut Report, meshed: &Meshed, options: Value) {
     report.canvas.clone_from(&meshed.canvas);
     report.diagram.clone_from(&meshed.diagram);
     report.metric_scale = Some(meshed.metric_scale);
+    report.net = meshed.net.as_ref().map(NetFigures::of);
+    report.protection = meshed.protection;
     report.notes.clone_from(&meshed.notes);
     report.options = options;
 }

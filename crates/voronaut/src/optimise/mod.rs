@@ -3,7 +3,9 @@
 mod cell;
 mod exchange;
 mod lloyd;
+mod protect;
 
 pub use cell::{Cell, centroid};
 pub use exchange::{exchange, meet_blocked_flips};
 pub use lloyd::{Relaxed, relax};
+pub use protect::{Ending, Protected, measured, protect};

@@ -2,10 +2,11 @@
 
 mod dual;
 mod field;
+mod protection;
 mod seeding;
 mod settle;
 
-pub use dual::{SeedDual, dual};
+pub use dual::{SeedDual, dual, net};
 pub use field::metric;
 pub use seeding::Seeding;
 
@@ -15,6 +16,7 @@ use crate::dual::{Dual, Kind, Road};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Scaled};
+use crate::net::Net;
 use crate::optimise::{exchange, meet_blocked_flips, relax};
 use crate::output::report;
 use crate::progress::Progress;
@@ -37,6 +39,14 @@ pub struct MeshOptions {
     pub dual: Road,
     /// How the interior is seeded.
     pub seeding: Seeding,
+    /// With [`Seeding::Protected`], the power protection asked of every interior simplex, as a share of epsilon, the
+    /// greatest circumradius.
+    pub protection: f64,
+    /// With [`Seeding::Protected`], the radius of the ball around a circumcentre in which a seed is picked, as a share of
+    /// the circumradius.
+    pub picking_radius: f64,
+    /// Whether the net of the mesh's vertices is measured ([`Meshed::net`]); with [`Seeding::Protected`] it always is.
+    pub net: bool,
     /// Canvas vertices per seed, where a canvas is used.
     pub canvas_size: u32,
     /// Limit on the memory the work is estimated to need, in bytes.
@@ -52,6 +62,9 @@ impl Default for MeshOptions {
             lloyd: 40,
             dual: Road::default(),
             seeding: Seeding::default(),
+            protection: 0.2,
+            picking_radius: 0.3,
+            net: false,
             canvas_size: canvas::VERTICES_PER_SEED,
             memory_limit: 16 << 30,
         }
@@ -71,6 +84,10 @@ pub struct Meshed {
     pub canvas: Option<report::Canvas>,
     /// The diagram on it.
     pub diagram: Option<report::Diagram>,
+    /// The vertices as a net, by their numbers in the mesh, where it was asked for.
+    pub net: Option<Net>,
+    /// How protection went, with [`Seeding::Protected`].
+    pub protection: Option<report::Protection>,
     /// Wall time per stage, in order.
     pub seconds: Vec<(&'static str, f64)>,
     /// What could not be met, in words for the user; empty when all was.
@@ -104,12 +121,15 @@ pub fn mesh(
     let canvas = job.canvas(&domain, count)?;
     let mut dual = job.timed("seed", |job| job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
     job.timed("relax", |job| job.relax(&mut dual))?;
+    let protected = job.protect(&mut dual)?;
     let settled = job.timed("settle", |job| settle::settle(&mut dual, &domain, job.options, job.progress))?;
     let mesh = job.timed("check", |job| job.finish(&domain, &dual))?;
+    let (net, protection) = job.net(&domain, &dual, protected);
     let settle::Settled { dual: account, canvas, diagram } = settled;
     let (canvas, diagram) = (job.canvas.or(canvas), job.diagram.or(diagram));
     let metric_scale = dual.field().factor;
-    Ok(Meshed { mesh, metric_scale, dual: account, canvas, diagram, seconds: job.seconds, notes: job.notes })
+    let (seconds, notes) = (job.seconds, job.notes);
+    Ok(Meshed { mesh, metric_scale, dual: account, canvas, diagram, net, protection, seconds, notes })
 }
 
 struct Job<'a> {
@@ -219,7 +239,7 @@ impl<'a> Job<'a> {
         let steps = self.options.lloyd;
         self.progress.stage("relaxing", steps as u64);
         let most = |share: f64| (count as f64 * share) as usize;
-        // Farthest points that are not to be relaxed stay as they are.
+        // Farthest points and protected seeds that are not to be relaxed stay as they are.
         let exchanges = steps > 0 || self.options.seeding == Seeding::Sizing;
         for quarter in 0..4 {
             relax(dual, (steps * (quarter + 1)) / 4 - (steps * quarter) / 4, self.progress)?;
