@@ -55,7 +55,8 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     stage("canvas");
     let diagram = Diagram::new(&canvas, metric.as_ref(), seeds)?;
     stage("diagram");
-    let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } = recipe::dual(&diagram, metric.as_ref(), road);
+    let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
+        recipe::dual(&diagram, metric.as_ref(), road);
     let mesh = diagram.to_mesh(triangles, &nerve, &domain);
     account.crossing_edges = Some(crossing_edges(&mesh).len());
     stage("dual");

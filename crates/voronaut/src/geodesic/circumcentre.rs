@@ -63,6 +63,13 @@ impl Circle {
         Self::from_centre(paths, field, corners, coarse.centre, fineness, 1)
     }
 
+    /// [`Circle::around`] with the finest paths from the first step on: finds some circles that coarse paths lead away from.
+    pub fn around_carefully(paths: &Paths, field: &dyn MetricField, corners: [Point; 3]) -> Option<Self> {
+        let [a, b, c] = corners;
+        let flat = flat_centre(field.at(a + ((b - a) + (c - a)) * (1.0 / 3.0)), corners)?;
+        Self::from_centre(paths, field, corners, flat, Fineness::FINEST, 0)
+    }
+
     /// The power of a point: its squared geodesic distance from the centre, less the squared radius; negative inside.
     /// `None` where no path to the point is found.
     pub fn power(&self, paths: &Paths, field: &dyn MetricField, p: Point, fineness: Fineness) -> Option<f64> {

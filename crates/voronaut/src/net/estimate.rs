@@ -1,8 +1,10 @@
 //! Circles and powers by expansions of the metric, for seeds that come, go and move.
 
+use crate::dual::Dual;
 use crate::geodesic::{LocalMetric, chord, equalising_step, flat_centre, hermite};
 use crate::geometry::{Point, Tensor};
 use crate::metric::MetricField;
+use crate::planar::Location;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// Newton steps at most to a circumcentre, and the residue (share of the squared radius) at which they end.
@@ -21,6 +23,26 @@ pub trait Sites {
     fn local(&self, v: VertexId) -> &LocalMetric;
     /// Whether a point is in the domain, as a seed near it sees it.
     fn is_inside(&self, near: VertexId, p: Point) -> bool;
+}
+
+impl Sites for Dual<'_> {
+    fn field(&self) -> &dyn MetricField {
+        self.scaled_field()
+    }
+    fn topology(&self) -> &Triangulation {
+        self.topology()
+    }
+    fn position(&self, v: VertexId) -> Point {
+        self.position(v)
+    }
+    fn local(&self, v: VertexId) -> &LocalMetric {
+        self.local(v)
+    }
+    /// Whether the straight way to the point stays in the domain.
+    fn is_inside(&self, near: VertexId, p: Point) -> bool {
+        let face = self.topology().start(near).map(HalfEdge::face);
+        face.is_some_and(|face| !matches!(self.planar().walk(face, p, false), Location::Behind(_)))
+    }
 }
 
 /// A circle whose centre is known with the metric around it.

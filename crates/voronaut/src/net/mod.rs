@@ -9,6 +9,7 @@ mod measure;
 mod random;
 
 pub use estimate::{Estimate, Sites};
+pub use measure::Memory;
 pub use random::Random;
 
 use crate::geodesic::Paths;
@@ -49,10 +50,11 @@ pub struct Net {
     pub triangles: Vec<Ball<3>>,
     /// Of the edges at the border: where the border of two cells meets that of the domain.
     pub border: Vec<Ball<2>>,
-    /// Triangles and border edges without a circle: nearly straight, or with geodesics that are not resolved.
+    /// Border edges and triangles with their circumcentre in the domain, as one tensor has it, of which no circle was found:
+    /// they are nearly straight, or geodesics are not resolved.
     pub unmeasured: usize,
     /// How far a point of the domain is from its nearest seed at most: the greatest radius of the circles with centres
-    /// in the domain.
+    /// in the domain and no seed in them.
     pub epsilon: f64,
     /// The least distance between two seeds.
     pub mu: f64,
@@ -77,13 +79,21 @@ impl Net {
     /// For every triangle all seeds are asked that share an edge with one of its corners: a seed in its circle need not
     /// be opposite to one of its sides. Distances know of no holes.
     pub fn measure(field: &dyn MetricField, found: &Triangles) -> Self {
+        Self::measure_again(field, found, &mut Memory::default())
+    }
+
+    /// [`Net::measure`] of seeds of which most are where they were when the memory was written: what depends on no seed that
+    /// has moved is not measured again. The memory is of one field and one domain.
+    pub fn measure_again(field: &dyn MetricField, found: &Triangles, memory: &mut Memory) -> Self {
         let paths = Paths::default();
         let measure = measure::Measure::new(&paths, field, found);
         let mut net = Self { mu: measure.mu(), ..Self::default() };
-        net.triangles = measure.triangles();
+        (net.triangles, net.unmeasured) = measure.triangles(memory);
         net.border = measure.border();
-        net.unmeasured = found.triangles.len() + found.border.len() - net.triangles.len() - net.border.len();
-        let radii = net.interior().map(|ball| ball.radius).chain(net.border.iter().map(|ball| ball.radius));
+        net.unmeasured += found.border.len() - net.border.len();
+        // A circle with a seed in it says nothing of how far points are from seeds.
+        let interior = net.interior().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius);
+        let radii = interior.chain(net.border.iter().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius));
         net.epsilon = radii.fold(0.0, f64::max);
         net
     }

@@ -7,25 +7,32 @@ use crate::error::Result;
 use crate::geodesic::{Angles, LocalMetric, hermite};
 use crate::geometry::Point;
 use crate::metric::MetricField;
-use crate::net::{Ball, Estimate, Net, Random, Sites, Triangles};
-use crate::planar::Location;
+use crate::net::{Ball, Estimate, Memory, Net, Random, Sites, Triangles};
 use crate::progress::Progress;
 use crate::rdt::{Rdt, Start, Trust};
-use crate::triangulation::{HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// Rounds of measuring with geodesics and moving seeds, at most.
-const ROUNDS: usize = 24;
+const ROUNDS: usize = 30;
 /// Rounds that may pass, one after the other, without fewer unprotected simplices.
 const PATIENCE: usize = 8;
-/// Places tried for the seeds around one simplex, a round.
-const TRIES: usize = 60;
+/// Places tried for the seeds around one simplex, a round: with estimates, and with geodesics.
+const TRIES: [usize; 2] = [60, 15];
+/// From this round on, and while no more than so many simplices are unprotected, places are tried with geodesics.
+const GEODESICS: (usize, usize) = (3, 8);
 /// Seeds are moved within a ball of this radius, as a share of epsilon: at first, and at most.
-const BALL: [f64; 2] = [0.15, 0.6];
+const BALL: [f64; 2] = [0.15, 0.4];
 /// It grows by this factor from round to round.
 const GROWTH: f64 = 1.15;
 /// Estimates are asked for this much more power than geodesics, and for more by this factor wherever geodesics found less
 /// than the estimates had said.
-const ASKED: [f64; 2] = [1.03, 1.15];
+const ASKED: [f64; 2] = [1.03, 1.1];
+/// At most by this factor.
+const MOST_ASKED: f64 = 1.5;
+/// With geodesics it is this much more, since epsilon may grow by other moves.
+const ASKED_OF_GEODESICS: f64 = 1.01;
+/// Shares of the power asked for that are as good as none.
+const LEAST_GAIN: f64 = 1e-6;
 /// Flips after one move, at most: lengths that contradict each other must not make it last for ever.
 const FLIPS: usize = 60;
 
@@ -67,6 +74,7 @@ pub struct Protected {
 pub fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<Protected> {
     dual.reorder();
     let mut mender = Mender::new(dual, share);
+    let clock = std::time::Instant::now();
     let (mut best, mut since) = (usize::MAX, 0);
     let mut found: Option<Protected> = None;
     for round in 0.. {
@@ -81,8 +89,17 @@ pub fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<P
             _ => None,
         };
         let epsilon = net.epsilon;
+        eprintln!(
+            "round {round} bad {} unm {} moves {} tries {} eps {epsilon} {:?}",
+            bad.len(),
+            net.unmeasured,
+            mender.moves,
+            mender.tries,
+            clock.elapsed()
+        );
         let (moves, tries, unprotected) = (mender.moves, mender.tries, [first, bad.len()]);
-        let state = Protected { ending: ending.unwrap_or(Ending::Stalled), rounds: round, moves, tries, unprotected, net };
+        let state =
+            Protected { ending: ending.unwrap_or(Ending::Stalled), rounds: round, moves, tries, unprotected, net };
         found = Some(state);
         if ending.is_some() {
             break;
@@ -98,20 +115,25 @@ pub fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<P
 pub fn measured(dual: &Dual) -> Net {
     let seeds: Vec<Point> = (0..dual.topology().vertex_slots() as u32).map(|v| dual.position(VertexId(v))).collect();
     let rdt = triangulated(dual, &seeds, dual.topology());
-    measure(dual, &seeds, &rdt)
+    measure(dual, &seeds, &rdt.triangles(), &mut Memory::default())
 }
 
 /// The triangulation of seeds by lengths of geodesics, from one that is nearly right.
 fn triangulated<'a>(dual: &'a Dual, seeds: &[Point], start: &Triangulation) -> Rdt<'a> {
-    let triangles = start.faces().map(|f| start.corners(f).map(|v| v.0)).collect();
+    let triangles = corners_of(start, start.faces());
     let at_border = border_of(start).into_iter().map(|[a, b]| [a.min(b), a.max(b)]).collect();
     Rdt::new(dual.scaled_field(), seeds, &Start { triangles, at_border }, Trust::default())
 }
 
-fn measure(dual: &Dual, seeds: &[Point], rdt: &Rdt) -> Net {
-    let (triangles, border) = (rdt.triangles(), border_of(dual.topology()));
-    let is_inside = |seed: u32, p: Point| sees(dual, VertexId(seed), p);
-    Net::measure(dual.scaled_field(), &Triangles { seeds, triangles: &triangles, border: &border, is_inside: &is_inside })
+fn measure(dual: &Dual, seeds: &[Point], triangles: &[[u32; 3]], memory: &mut Memory) -> Net {
+    let border = border_of(dual.topology());
+    let is_inside = |seed: u32, p: Point| dual.is_inside(VertexId(seed), p);
+    let found = Triangles { seeds, triangles, border: &border, is_inside: &is_inside };
+    Net::measure_again(dual.scaled_field(), &found, memory)
+}
+
+fn corners_of(topology: &Triangulation, faces: impl Iterator<Item = FaceId>) -> Vec<[u32; 3]> {
+    faces.map(|f| topology.corners(f).map(|v| v.0)).collect()
 }
 
 fn border_of(topology: &Triangulation) -> Vec<[u32; 2]> {
@@ -119,28 +141,11 @@ fn border_of(topology: &Triangulation) -> Vec<[u32; 2]> {
     border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect()
 }
 
-/// Whether the straight way from a seed to a point stays in the domain.
-fn sees(dual: &Dual, from: VertexId, p: Point) -> bool {
-    let face = dual.topology().start(from).map(HalfEdge::face);
-    face.is_some_and(|face| !matches!(dual.planar().walk(face, p, false), Location::Behind(_)))
-}
-
-impl Sites for Dual<'_> {
-    fn field(&self) -> &dyn MetricField {
-        self.scaled_field()
-    }
-    fn topology(&self) -> &Triangulation {
-        self.topology()
-    }
-    fn position(&self, v: VertexId) -> Point {
-        self.position(v)
-    }
-    fn local(&self, v: VertexId) -> &LocalMetric {
-        self.local(v)
-    }
-    fn is_inside(&self, near: VertexId, p: Point) -> bool {
-        sees(self, near, p)
-    }
+/// What places for seeds are tried with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum By {
+    Estimates,
+    Geodesics,
 }
 
 /// The seeds of a dual in a triangulation that is embedded nowhere, as geodesics want it.
@@ -152,6 +157,7 @@ struct Mender<'a, 'b> {
     topology: Triangulation,
     /// By how much more power than asked for estimates must have at each seed.
     excess: Vec<f64>,
+    memory: Memory,
     random: Random,
     moves: u64,
     tries: u64,
@@ -178,7 +184,7 @@ impl Sites for Mender<'_, '_> {
         &self.locals[v.index()]
     }
     fn is_inside(&self, near: VertexId, p: Point) -> bool {
-        sees(self.dual, near, p)
+        self.dual.is_inside(near, p)
     }
 }
 
@@ -192,6 +198,7 @@ impl<'a, 'b> Mender<'a, 'b> {
             locals: all().map(|v| *dual.local(v)).collect(),
             topology: dual.topology().clone(),
             excess: vec![ASKED[0]; slots],
+            memory: Memory::default(),
             random: Random::new(slots as u64),
             moves: 0,
             tries: 0,
@@ -202,61 +209,95 @@ impl<'a, 'b> Mender<'a, 'b> {
     /// Triangulates and measures with geodesics; the seeds of what is unprotected, worst first.
     fn measure(&mut self) -> (Net, Vec<Vec<VertexId>>) {
         let rdt = triangulated(self.dual, &self.positions, &self.topology);
-        let net = measure(self.dual, &self.positions, &rdt);
+        let net = measure(self.dual, &self.positions, &rdt.triangles(), &mut self.memory);
         if rdt.counters().split == 0 {
             self.topology = rdt.topology().clone();
         }
+        let bad = self.unprotected(&net);
+        (net, bad)
+    }
+
+    fn unprotected(&self, net: &Net) -> Vec<Vec<VertexId>> {
         let asked = self.share * net.epsilon;
         let triangles = net.interior().filter(|ball| ball.protection() < asked).map(around);
         let border = net.border.iter().filter(|ball| ball.protection() < asked).map(around);
         let mut bad: Vec<(f64, Vec<VertexId>)> = triangles.chain(border).collect();
         bad.retain(|(_, seeds)| seeds.iter().any(|&v| self.dual.kind(v) == Kind::Free));
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        (net, bad.into_iter().map(|(_, seeds)| seeds).collect())
+        bad.into_iter().map(|(_, seeds)| seeds).collect()
     }
 
     /// One round: for each simplex, the best of the places tried for its seeds.
     fn mend(&mut self, bad: &[Vec<VertexId>], round: usize, epsilon: f64) {
         let radius = epsilon * (BALL[0] * GROWTH.powi(round as i32)).min(BALL[1]);
         let asked = (self.share * epsilon).powi(2);
+        let by = if round >= GEODESICS.0 && bad.len() <= GEODESICS.1 { By::Geodesics } else { By::Estimates };
         for seeds in bad {
             if round > 0 {
-                seeds.iter().for_each(|v| self.excess[v.index()] = (self.excess[v.index()] * ASKED[1]).min(2.0));
+                let more = |excess: f64| (excess * ASKED[1]).min(MOST_ASKED);
+                seeds.iter().for_each(|v| self.excess[v.index()] = more(self.excess[v.index()]));
             }
-            self.mend_one(seeds, asked, radius);
+            self.mend_one(seeds, by, asked, radius);
         }
     }
 
-    fn mend_one(&mut self, seeds: &[VertexId], asked: f64, radius: f64) {
+    fn mend_one(&mut self, seeds: &[VertexId], by: By, asked: f64, radius: f64) {
         let free: Vec<VertexId> = seeds.iter().copied().filter(|&v| self.dual.kind(v) == Kind::Free).collect();
-        let before: Vec<f64> = free.iter().map(|&v| self.shortfall(v, asked)).collect();
+        let mut memory = Memory::default();
+        let before: Vec<f64> = free.iter().map(|&v| self.shortfall(v, by, asked, &mut memory)).collect();
         let mut best: Option<(f64, VertexId, Point)> = None;
-        for k in 0..TRIES {
+        for k in 0..TRIES[by as usize] {
             let (v, before) = (free[k % free.len()], before[k % free.len()]);
             let to = self.place_near(v, radius);
+            if !self.is_inside(v, to) {
+                continue;
+            }
             self.tries += 1;
             let trial = self.try_move(v, to);
-            let gain = before - self.shortfall(v, asked);
+            let gain = before - self.shortfall(v, by, asked, &mut memory);
             self.take_back(trial);
-            if gain > 1e-6 && best.is_none_or(|b| gain > b.0) {
+            if gain > LEAST_GAIN && best.is_none_or(|b| gain > b.0) {
                 best = Some((gain, v, to));
-            }
-            // All that was missing around the seed is there.
-            if best.is_some_and(|b| b.1 == v && b.0 >= before - 1e-9) {
-                break;
+                if gain >= before - LEAST_GAIN {
+                    // All that was missing around the seed is there.
+                    break;
+                }
             }
         }
-        if let Some((_, v, to)) = best {
-            if self.dual.relocate(v, to) {
-                self.try_move(v, to);
-                self.moves += 1;
-            }
+        if let Some((_, v, to)) = best.filter(|&(_, v, to)| self.dual.relocate(v, to)) {
+            self.try_move(v, to);
+            self.moves += 1;
         }
     }
 
-    fn shortfall(&self, v: VertexId, asked: f64) -> f64 {
+    fn shortfall(&self, v: VertexId, by: By, asked: f64, memory: &mut Memory) -> f64 {
         let estimate = Estimate(self);
-        estimate.shortfall(&estimate.around(v), |u| asked * self.excess[u.index()])
+        let faces = estimate.around(v);
+        match by {
+            By::Estimates => estimate.shortfall(&faces, |u| asked * self.excess[u.index()]),
+            By::Geodesics => self.exact_shortfall(&faces, asked * ASKED_OF_GEODESICS, memory),
+        }
+    }
+
+    /// [`Estimate::shortfall`] by geodesics.
+    fn exact_shortfall(&self, faces: &[FaceId], asked: f64, memory: &mut Memory) -> f64 {
+        let topology = &self.topology;
+        // The powers of seeds count that the neighbours of the faces' corners are.
+        let corners = faces.iter().flat_map(|&f| topology.corners(f));
+        let mut wide: Vec<FaceId> = corners.flat_map(|v| topology.star(v).map(HalfEdge::face)).collect();
+        wide.sort_unstable();
+        wide.dedup();
+        let border = wide.iter().flat_map(|f| f.half_edges()).filter(|&h| topology.twin(h).is_none());
+        let border: Vec<[u32; 2]> = border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect();
+        let triangles = corners_of(topology, wide.into_iter());
+        let is_inside = |seed: u32, p: Point| self.is_inside(VertexId(seed), p);
+        let found = Triangles { seeds: &self.positions, triangles: &triangles, border: &border, is_inside: &is_inside };
+        let net = Net::measure_again(self.dual.scaled_field(), &found, memory);
+        let mut own = corners_of(topology, faces.iter().copied());
+        own.sort_unstable();
+        let of_faces = net.interior().filter(|ball| own.binary_search(&ball.corners).is_ok()).map(|ball| ball.power);
+        let powers = of_faces.chain(net.border.iter().map(|ball| ball.power));
+        net.unmeasured as f64 + powers.map(|power| (1.0 - power / asked).max(0.0)).sum::<f64>()
     }
 
     /// A random point within a distance of a seed.
@@ -303,9 +344,8 @@ impl<'a, 'b> Mender<'a, 'b> {
         let topology = &self.topology;
         let Some(t) = topology.twin(h).filter(|_| !topology.is_fixed(h)) else { return false };
         let [a, b, c, d] = [topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)];
-        let length = |u: VertexId, v: VertexId| {
-            hermite(self.position(u), self.local(u), self.position(v), self.local(v)).value
-        };
+        let length =
+            |u: VertexId, v: VertexId| hermite(self.position(u), self.local(u), self.position(v), self.local(v)).value;
         let angles = Angles::from_lengths(length(a, b), [length(a, c), length(b, c)], [length(a, d), length(b, d)]);
         angles.margin() < -1e-9 && c != d && topology.find(c, d).is_none() && topology.find(d, c).is_none()
     }

@@ -87,7 +87,8 @@ pub fn net(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]]) -> Ne
     };
     let sees = |from, p| !matches!(canvas.embedded().walk(from, p, false), Location::Behind(_));
     let is_inside = |seed: u32, p: Point| face(seed).is_some_and(|from| sees(from, p));
-    let mut net = Net::measure(field, &Triangles { seeds: &seeds, triangles: exact, border: &[], is_inside: &is_inside });
+    let mut net =
+        Net::measure(field, &Triangles { seeds: &seeds, triangles: exact, border: &[], is_inside: &is_inside });
     let farthest = diagram.farthest().map_or(0.0, |(_, distance)| distance);
     net.epsilon = if farthest.is_finite() { net.epsilon.max(farthest) } else { net.epsilon };
     net

@@ -21,7 +21,9 @@ use crate::optimise::{exchange, meet_blocked_flips, relax};
 use crate::output::report;
 use crate::progress::Progress;
 use crate::quality;
-use crate::sampling::{Fill, Plan, Target, demand_memory, refine, sample_segments, simplify};
+use crate::sampling::{
+    Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, sample_segments, simplify,
+};
 use std::time::Instant;
 
 /// What the mesher may be told; every parameter has one name (flag, TOML key, Python keyword) and one default.
@@ -204,7 +206,7 @@ impl<'a> Job<'a> {
             if let Some(canvas) = canvas {
                 self.seed_farthest(canvas, &mut dual, count)?;
             }
-            refine(&mut dual, self.fill(count), self.progress);
+            self.refine(&mut dual, count);
             dual.verdict()?;
             let mean = mean_free_edge(&dual);
             if round == ROUNDS || (mean - 1.0).abs() < SCALE_TOLERANCE {
@@ -225,6 +227,17 @@ impl<'a> Job<'a> {
         unreachable!("the last round returns")
     }
 
+    /// Fills the interior. Places are picked for protection only if no relaxation is going to move the seeds.
+    fn refine(&self, dual: &mut Dual, count: usize) {
+        let (fill, options) = (self.fill(count), self.options);
+        if options.seeding == Seeding::Protected && options.lloyd == 0 {
+            let picking = Picking { protection: options.protection, radius: options.picking_radius };
+            refine_protected(dual, fill, picking, self.progress);
+        } else {
+            refine(dual, fill, self.progress);
+        }
+    }
+
     fn note_shortfall(&mut self, dual: &Dual, plan: &Plan, count: usize) {
         let got = dual.vertex_count();
         if self.options.vertices.is_some() && got < count {
@@ -239,8 +252,8 @@ impl<'a> Job<'a> {
         let steps = self.options.lloyd;
         self.progress.stage("relaxing", steps as u64);
         let most = |share: f64| (count as f64 * share) as usize;
-        // Farthest points and protected seeds that are not to be relaxed stay as they are.
-        let exchanges = steps > 0 || self.options.seeding == Seeding::Sizing;
+        // Farthest points that are not to be relaxed stay as they are.
+        let exchanges = steps > 0 || self.options.seeding != Seeding::Farthest;
         for quarter in 0..4 {
             relax(dual, (steps * (quarter + 1)) / 4 - (steps * quarter) / 4, self.progress)?;
             if quarter < 3 && exchanges {

@@ -45,7 +45,9 @@ impl FromStr for Seeding {
             "sizing" => Ok(Seeding::Sizing),
             "farthest" => Ok(Seeding::Farthest),
             "protected" => Ok(Seeding::Protected),
-            _ => Err(Error::parse(format!("seeding {name}"), "no such seeding", "choose sizing, farthest or protected")),
+            _ => {
+                Err(Error::parse(format!("seeding {name}"), "no such seeding", "choose sizing, farthest or protected"))
+            }
         }
     }
 }
