@@ -16,12 +16,12 @@ use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::{self, Report, report};
 use voronaut::quality::{crossing_edges, metric_quality, validity};
 use voronaut::realisation::Realisation;
-use voronaut::recipe::{self, SeedDual};
+use voronaut::recipe::{self, MeshOptions, SeedDual};
 use voronaut::sampling;
 use voronaut::{Error, Result};
 
 /// With `--dual canvas` the canvas is refined so many times where it does not tell Voronoi vertices apart.
-const ROUNDS: u32 = 3;
+const ROUNDS: u32 = 8;
 
 /// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
 pub(crate) fn run(args: &DualArgs) -> Result<()> {
@@ -83,6 +83,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
         demand_embedded(args, &report).or_else(|fault| files::write_report(&args.outputs, &report).and(Err(fault)))?;
     }
     let drawn = Drawn::from_diagram(&args.outputs, &diagram, &mesh, metric.as_ref(), curved.as_ref());
+    let drawn = drawn.with_net(&args.outputs, net.as_ref(), MeshOptions::default().protection);
     let file = match &curved {
         Some(curved) if args.edges == EdgesOut::Geodesic => MeshFile::Geodesic(&args.out, curved),
         _ => MeshFile::Straight(&args.out),

@@ -42,6 +42,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     fill_in(&mut report, &meshed, options(args));
     report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     let drawn = drawn(args, &domain, &meshed.mesh, &scaled)?;
+    let drawn = drawn.with_net(&args.outputs, meshed.net.as_ref(), args.protection);
     files::write(&MeshFile::Straight(&args.out), &args.outputs, &meshed.mesh, Some(&scaled), &report, &drawn)?;
     summary::print(&args.out.display().to_string(), &report, &args.run);
     Ok(())

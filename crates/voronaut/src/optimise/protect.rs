@@ -15,13 +15,13 @@ use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 /// Rounds of measuring with geodesics and moving seeds, at most.
 const ROUNDS: usize = 30;
 /// Rounds that may pass, one after the other, without fewer unprotected simplices.
-const PATIENCE: usize = 8;
+const PATIENCE: usize = 6;
 /// Places tried for the seeds around one simplex, a round: with estimates, and with geodesics.
-const TRIES: [usize; 2] = [60, 15];
+const TRIES: [usize; 2] = [60, 24];
 /// From this round on, and while no more than so many simplices are unprotected, places are tried with geodesics.
 const GEODESICS: (usize, usize) = (3, 8);
 /// Seeds are moved within a ball of this radius, as a share of epsilon: at first, and at most.
-const BALL: [f64; 2] = [0.15, 0.4];
+const BALL: [f64; 2] = [0.15, 0.5];
 /// It grows by this factor from round to round.
 const GROWTH: f64 = 1.15;
 /// Estimates are asked for this much more power than geodesics, and for more by this factor wherever geodesics found less
@@ -74,7 +74,6 @@ pub struct Protected {
 pub fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<Protected> {
     dual.reorder();
     let mut mender = Mender::new(dual, share);
-    let clock = std::time::Instant::now();
     let (mut best, mut since) = (usize::MAX, 0);
     let mut found: Option<Protected> = None;
     for round in 0.. {
@@ -89,14 +88,6 @@ pub fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<P
             _ => None,
         };
         let epsilon = net.epsilon;
-        eprintln!(
-            "round {round} bad {} unm {} moves {} tries {} eps {epsilon} {:?}",
-            bad.len(),
-            net.unmeasured,
-            mender.moves,
-            mender.tries,
-            clock.elapsed()
-        );
         let (moves, tries, unprotected) = (mender.moves, mender.tries, [first, bad.len()]);
         let state =
             Protected { ending: ending.unwrap_or(Ending::Stalled), rounds: round, moves, tries, unprotected, net };
