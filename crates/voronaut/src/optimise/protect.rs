@@ -220,13 +220,15 @@ impl<'a, 'b> Mender<'a, 'b> {
 
     /// One round: for each simplex, the best of the places tried for its seeds.
     fn mend(&mut self, bad: &[Vec<VertexId>], round: usize, epsilon: f64) {
-        let radius = epsilon * (BALL[0] * GROWTH.powi(round as i32)).min(BALL[1]);
+        let radius = epsilon * (BALL[0] * GROWTH.powf(round as f64)).min(BALL[1]);
         let asked = (self.share * epsilon).powi(2);
         let by = if round >= GEODESICS.0 && bad.len() <= GEODESICS.1 { By::Geodesics } else { By::Estimates };
         for seeds in bad {
             if round > 0 {
                 let more = |excess: f64| (excess * ASKED[1]).min(MOST_ASKED);
-                seeds.iter().for_each(|v| self.excess[v.index()] = more(self.excess[v.index()]));
+                for v in seeds {
+                    self.excess[v.index()] = more(self.excess[v.index()]);
+                }
             }
             self.mend_one(seeds, by, asked, radius);
         }
@@ -246,7 +248,7 @@ impl<'a, 'b> Mender<'a, 'b> {
             self.tries += 1;
             let trial = self.try_move(v, to);
             let gain = before - self.shortfall(v, by, asked, &mut memory);
-            self.take_back(trial);
+            self.take_back(&trial);
             if gain > LEAST_GAIN && best.is_none_or(|b| gain > b.0) {
                 best = Some((gain, v, to));
                 if gain >= before - LEAST_GAIN {
@@ -308,7 +310,7 @@ impl<'a, 'b> Mender<'a, 'b> {
         Trial { v, from, flips: self.flip_around(v) }
     }
 
-    fn take_back(&mut self, trial: Trial) {
+    fn take_back(&mut self, trial: &Trial) {
         for &h in trial.flips.iter().rev() {
             // Four flips of an edge are none.
             (0..3).for_each(|_| self.topology.flip(h));

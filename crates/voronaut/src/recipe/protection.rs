@@ -24,6 +24,12 @@ impl Job<'_> {
             let asked = self.options.protection;
             self.notes.push(format!("{left} simplices are less power-protected than by {asked} epsilon"));
         }
+        if protected.net.unmeasured > 0 {
+            let unknown = protected.net.unmeasured;
+            self.notes.push(format!(
+                "{unknown} simplices have no circle that geodesics find: whether they are protected is unknown"
+            ));
+        }
         Ok(Some(protected))
     }
 
