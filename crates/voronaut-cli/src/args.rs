@@ -233,7 +233,7 @@ pub(crate) enum Show {
     Geodesics,
     /// Riemannian triangles with lines of equal barycentric coordinates, over cells
     Triangles,
-    /// Triangles by their power protection: red where it is none, white where there is much
+    /// Triangles by their power protection: blue where it is less than asked for, pale where there is much
     Protection,
 }
 

@@ -9,7 +9,7 @@ const MUCH: f64 = 1.0;
 /// Levels of colour.
 const LEVELS: f64 = 11.0;
 
-/// How each triangle of a net is filled: red below the protection asked for, paler the more there is above it; grey where
+/// How each triangle of a net is filled: blue below the protection asked for, from warm to pale the more there is above it; grey where
 /// the circumcentre is outside the domain or no circle was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Protection {
@@ -28,7 +28,7 @@ impl Protection {
     pub(super) fn fill(&self, triangle: [u32; 3]) -> String {
         match self.shares.get(&sorted(triangle)) {
             None => "#d8d8d8".into(),
-            Some(&share) if share < self.asked => "#d42020".into(),
+            Some(&share) if share < self.asked => "#2040c0".into(),
             Some(&share) => {
                 let above = ((share - self.asked) / (MUCH - self.asked).max(0.1)).clamp(0.0, 1.0);
                 colours::quality_fill((above * LEVELS).round() / LEVELS)
@@ -48,7 +48,7 @@ mod tests {
     use crate::geometry::Point;
 
     #[test]
-    fn what_is_asked_for_parts_red_from_pale() {
+    fn what_is_asked_for_parts_blue_from_warm() {
         let ball = |power: f64, first: u32| Ball {
             corners: [first, 8, 9],
             centre: Point::default(),
