@@ -93,9 +93,19 @@ pub(crate) struct MeshArgs {
     /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
     #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(MeshOptions::default().dual))]
     pub(crate) dual: Dual,
-    /// Where interior seeds come to lie: sizing (at circumcentres) or farthest (from all seeds, on a canvas)
+    /// Where interior seeds come to lie: sizing (at circumcentres), farthest (from all seeds, on a canvas) or protected
+    /// (sizing, and power-protected)
     #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().seeding)]
     pub(crate) seeding: Seeding,
+    /// With --seeding protected: the protection asked for, as a share of the greatest circumradius
+    #[arg(long, value_name = "SHARE", value_parser = not_negative, default_value_t = MeshOptions::default().protection)]
+    pub(crate) protection: f64,
+    /// With --seeding protected: where a seed may be picked around a circumcentre, as a share of the circumradius
+    #[arg(long, value_name = "SHARE", value_parser = not_negative, default_value_t = MeshOptions::default().picking_radius)]
+    pub(crate) picking_radius: f64,
+    /// Measure the net of the vertices: epsilon, mu, lambda, power protection (in the report)
+    #[arg(long)]
+    pub(crate) net: bool,
     /// Canvas vertices per seed, where a canvas is used
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = MeshOptions::default().canvas_size)]
     pub(crate) canvas_size: u32,
@@ -227,6 +237,8 @@ pub(crate) enum Show {
     Geodesics,
     /// Riemannian triangles with lines of equal barycentric coordinates, over cells
     Triangles,
+    /// Triangles by their power protection: blue where it is less than asked for, pale where there is much
+    Protection,
 }
 
 impl Show {
@@ -312,6 +324,9 @@ impl MeshArgs {
             centroid: self.centroid,
             dual: self.dual.into(),
             seeding: self.seeding,
+            protection: self.protection,
+            picking_radius: self.picking_radius,
+            net: self.net || self.outputs.show.contains(&Show::Protection),
             canvas_size: self.canvas_size,
             memory_limit: (self.memory_limit * GIB) as u64,
         }
@@ -363,7 +378,9 @@ mod tests {
             &["--h-min", "nan"],
             &["--hausd", "-1"],
             &["--threads", "0"],
-            &["--seeding", "protected"],
+            &["--seeding", "nearest"],
+            &["--protection", "-0.1"],
+            &["--picking-radius", "nan"],
             &["--canvas-size", "0"],
             &["--show", "mesh"],
             &["--pixels", "800"],

@@ -1,6 +1,6 @@
 //! `voronaut check`: examines a mesh that is there.
 
-use crate::args::CheckArgs;
+use crate::args::{CheckArgs, Show};
 use crate::files::{Drawn, MeshFile};
 use crate::{files, summary};
 use serde_json::json;
@@ -20,7 +20,7 @@ use voronaut::{Error, Result};
 pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     let start = Instant::now();
     files::demand_writable(None, None, &args.outputs)?;
-    if Drawn::is_wanted(&args.outputs) {
+    if Drawn::is_wanted(&args.outputs) || args.outputs.show.contains(&Show::Protection) {
         let what = "a picture of cells of a mesh that is only checked".into();
         return Err(Error::Unsupported { what, help: "give its vertices to voronaut dual as seeds".into() });
     }

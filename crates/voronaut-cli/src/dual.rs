@@ -16,12 +16,12 @@ use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::{self, Report, report};
 use voronaut::quality::{crossing_edges, metric_quality, validity};
 use voronaut::realisation::Realisation;
-use voronaut::recipe::{self, SeedDual};
+use voronaut::recipe::{self, MeshOptions, SeedDual};
 use voronaut::sampling;
 use voronaut::{Error, Result};
 
 /// With `--dual canvas` the canvas is refined so many times where it does not tell Voronoi vertices apart.
-const ROUNDS: u32 = 3;
+const ROUNDS: u32 = 8;
 
 /// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
 pub(crate) fn run(args: &DualArgs) -> Result<()> {
@@ -55,7 +55,8 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     stage("canvas");
     let diagram = Diagram::new(&canvas, metric.as_ref(), seeds)?;
     stage("diagram");
-    let SeedDual { triangles, nerve, mut account, seconds } = recipe::dual(&diagram, metric.as_ref(), road);
+    let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
+        recipe::dual(&diagram, metric.as_ref(), road);
     let mesh = diagram.to_mesh(triangles, &nerve, &domain);
     account.crossing_edges = Some(crossing_edges(&mesh).len());
     stage("dual");
@@ -67,7 +68,12 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     }
     let mut report = reported(&mesh, metric.as_ref(), account)?;
     report.canvas = Some(report::Canvas::of(&canvas));
-    report.diagram = Some(report::Diagram::of(&diagram));
+    report.diagram = Some(report::Diagram { raw_nerve: Some(raw_nerve), ..report::Diagram::of(&diagram) });
+    let net = Drawn::needs_net(&args.outputs).then(|| recipe::net(&diagram, metric.as_ref(), &exact));
+    report.net = net.as_ref().map(report::NetFigures::of);
+    if net.is_some() {
+        stage("net");
+    }
     report.notes = notes(&diagram, &report);
     report.options = options(args);
     // Parts of "dual".
@@ -77,6 +83,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
         demand_embedded(args, &report).or_else(|fault| files::write_report(&args.outputs, &report).and(Err(fault)))?;
     }
     let drawn = Drawn::from_diagram(&args.outputs, &diagram, &mesh, metric.as_ref(), curved.as_ref());
+    let drawn = drawn.with_net(&args.outputs, net.as_ref(), MeshOptions::default().protection);
     let file = match &curved {
         Some(curved) if args.edges == EdgesOut::Geodesic => MeshFile::Geodesic(&args.out, curved),
         _ => MeshFile::Straight(&args.out),

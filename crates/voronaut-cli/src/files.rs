@@ -6,7 +6,8 @@ use voronaut::diagram::{Cells, Diagram};
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
-use voronaut::output::{self, Format, Layers, Picture, PictureFormat, Report};
+use voronaut::net::Net;
+use voronaut::output::{self, Format, Layers, Picture, PictureFormat, Protection, Report};
 use voronaut::realisation::{Grid, Realisation};
 use voronaut::{Error, Result};
 
@@ -38,6 +39,7 @@ pub(crate) struct Drawn {
     witnesses: Option<[Vec<[Point; 3]>; 2]>,
     geodesics: Vec<Vec<Point>>,
     grids: Vec<Vec<Point>>,
+    protection: Option<Protection>,
 }
 
 impl Drawn {
@@ -46,9 +48,21 @@ impl Drawn {
         outputs.picture.is_some() && outputs.show.iter().any(|show| show.is_of_diagram())
     }
 
+    /// Whether the dual's seeds are to be measured as a net: for the report, or the picture.
+    pub(crate) fn needs_net(outputs: &Outputs) -> bool {
+        outputs.report.is_some() || outputs.show.contains(&Show::Protection)
+    }
+
     /// Whether the picture, if there is one, shows a mesh with geodesic edges.
     pub(crate) fn has_geodesics(outputs: &Outputs) -> bool {
         outputs.picture.is_some() && outputs.show.iter().any(|show| matches!(show, Show::Geodesics | Show::Triangles))
+    }
+
+    /// With triangles by the protection of a net, of which so much was asked for, if the picture shows that.
+    pub(crate) fn with_net(mut self, outputs: &Outputs, net: Option<&Net>, asked: f64) -> Self {
+        let net = net.filter(|_| outputs.show.contains(&Show::Protection));
+        self.protection = net.map(|net| Protection::new(net, asked));
+        self
     }
 
     /// As far as asked for, from a diagram whose seeds are the mesh's vertices, and the mesh with geodesic edges if that is
@@ -83,7 +97,13 @@ impl Drawn {
 
     fn layers(&self) -> Layers<'_> {
         let witnesses = self.witnesses.as_ref().map(|[vertices, edges]| [vertices.as_slice(), edges.as_slice()]);
-        Layers { cells: self.cells.as_ref(), witnesses, geodesics: &self.geodesics, grids: &self.grids }
+        Layers {
+            cells: self.cells.as_ref(),
+            witnesses,
+            geodesics: &self.geodesics,
+            protection: self.protection.as_ref(),
+            grids: &self.grids,
+        }
     }
 }
 
@@ -132,7 +152,7 @@ pub(crate) fn set_threads(run: &Run) -> Result<()> {
 fn draw(outputs: &Outputs, mesh: &Mesh, metric: Option<&dyn MetricField>, drawn: &Drawn) -> Result<String> {
     let shows = |what| outputs.show.contains(&what);
     let picture = Picture {
-        mesh: shows(Show::Mesh),
+        mesh: shows(Show::Mesh) || shows(Show::Protection),
         ellipses: shows(Show::Ellipses),
         width: outputs.pixels,
         ..Picture::default()

@@ -14,7 +14,7 @@ use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::Report;
-use voronaut::output::report::Seconds;
+use voronaut::output::report::{NetFigures, Seconds};
 use voronaut::quality::{metric_quality, validity};
 use voronaut::recipe::{self, Meshed};
 use voronaut::{Error, Result};
@@ -42,6 +42,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     fill_in(&mut report, &meshed, options(args));
     report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     let drawn = drawn(args, &domain, &meshed.mesh, &scaled)?;
+    let drawn = drawn.with_net(&args.outputs, meshed.net.as_ref(), args.protection);
     files::write(&MeshFile::Straight(&args.out), &args.outputs, &meshed.mesh, Some(&scaled), &report, &drawn)?;
     summary::print(&args.out.display().to_string(), &report, &args.run);
     Ok(())
@@ -81,6 +82,8 @@ fn fill_in(report: &mut Report, meshed: &Meshed, options: Value) {
     report.diagram.clone_from(&meshed.diagram);
     report.relaxation = Some(meshed.relaxation.clone());
     report.metric_scale = Some(meshed.metric_scale);
+    report.net = meshed.net.as_ref().map(NetFigures::of);
+    report.protection = meshed.protection;
     report.notes.clone_from(&meshed.notes);
     report.options = options;
 }

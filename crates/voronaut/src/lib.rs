@@ -98,6 +98,7 @@ pub mod canvas;
 pub mod diagram;
 pub mod rdt;
 pub mod dual;
+pub mod net;
 pub mod sampling;
 pub mod optimise;
 pub mod quality;

@@ -100,6 +100,16 @@ impl Dual<'_> {
         self.planar.move_vertex(v, to)
     }
 
+    /// Moves a free seed if all its faces stay counter-clockwise, measures the metric there, and flips around it.
+    pub(crate) fn relocate(&mut self, v: VertexId, to: Point) -> bool {
+        if !self.shift(v, to) {
+            return false;
+        }
+        self.locals[v.index()] = self.measure(to);
+        self.flip_around(v, Effort::Local);
+        true
+    }
+
     /// Removes a free seed.
     pub fn remove(&mut self, v: VertexId) -> bool {
         if self.kind(v) != Kind::Free {
@@ -109,8 +119,11 @@ impl Dual<'_> {
         let link: Vec<VertexId> = topology.star(v).map(|h| topology.target(h)).collect();
         let removed = self.planar.remove_vertex(v);
         self.known = Known::default();
-        for u in link {
+        for &u in &link {
             self.flip_around(u, Effort::Local);
+        }
+        for u in link {
+            self.touched.extend(self.planar.topology.star(u).map(HalfEdge::face));
         }
         removed
     }

@@ -104,6 +104,11 @@ impl<'a> Dual<'a> {
         self.field
     }
 
+    /// [`Dual::field`], to be borrowed.
+    pub(crate) fn scaled_field(&self) -> &Scaled<'a> {
+        &self.field
+    }
+
     /// Multiplies the metric by another factor instead; seeds and edges stay.
     pub fn rescale(&mut self, factor: f64) {
         self.field.factor = factor;

@@ -41,19 +41,39 @@ pub fn margin_by_power(
     if value.is_finite() && error.is_finite() { Margin { value, error } } else { Margin::UNKNOWN }
 }
 
-struct Circle {
-    centre: Point,
-    /// Squared radius, and its error.
-    square: f64,
-    error: f64,
+/// A circle of the metric: all points at one geodesic distance from its centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circle {
+    /// The centre; it may lie outside any domain.
+    pub centre: Point,
+    /// The squared radius.
+    pub square: f64,
+    /// Estimated absolute error of the squared radius (not a bound).
+    pub error: f64,
 }
 
 impl Circle {
-    fn around(paths: &Paths, field: &dyn MetricField, corners: [Point; 3], fineness: Fineness) -> Option<Self> {
+    /// The circle through three points, its centre found by Newton steps on three geodesic distances. `None` where
+    /// there is none to be found: the points are nearly on a geodesic, or paths to them are not resolved.
+    pub fn around(paths: &Paths, field: &dyn MetricField, corners: [Point; 3], fineness: Fineness) -> Option<Self> {
         // Coarse geodesics lead near the centre.
-        let flat = flat_centre(field, corners)?;
+        let [a, b, c] = corners;
+        let flat = flat_centre(field.at(a + ((b - a) + (c - a)) * (1.0 / 3.0)), corners)?;
         let coarse = Self::from_centre(paths, field, corners, flat, Fineness::COARSEST, 0)?;
         Self::from_centre(paths, field, corners, coarse.centre, fineness, 1)
+    }
+
+    /// [`Circle::around`] with the finest paths from the first step on: finds some circles that coarse paths lead away from.
+    pub fn around_carefully(paths: &Paths, field: &dyn MetricField, corners: [Point; 3]) -> Option<Self> {
+        let [a, b, c] = corners;
+        let flat = flat_centre(field.at(a + ((b - a) + (c - a)) * (1.0 / 3.0)), corners)?;
+        Self::from_centre(paths, field, corners, flat, Fineness::FINEST, 0)
+    }
+
+    /// The power of a point: its squared geodesic distance from the centre, less the squared radius; negative inside.
+    /// `None` where no path to the point is found.
+    pub fn power(&self, paths: &Paths, field: &dyn MetricField, p: Point, fineness: Fineness) -> Option<f64> {
+        paths.length(field, self.centre, p, fineness).map(|length| length.value.powi(2) - self.square)
     }
 
     fn from_centre(
@@ -89,16 +109,21 @@ impl Circle {
 
 /// A Newton step to where the three squared distances are equal, at most a half of the radius long.
 fn next_centre(field: &dyn MetricField, at: Point, [a, b, c]: &[Solved; 3], squares: [f64; 3]) -> Option<Point> {
-    let (u, v) = ((b.pull - a.pull) * 2.0, (c.pull - a.pull) * 2.0);
-    let step = cramer(u, v, squares[0] - squares[1], squares[0] - squares[2])?;
-    let (size, limit) = (field.at(at).length(step), 0.5 * squares[0].sqrt());
-    Some(at + step * (limit / size).min(1.0))
+    Some(at + equalising_step(field.at(at), [a.pull, b.pull, c.pull], squares)?)
 }
 
-/// The circumcentre with one tensor, that at the centroid.
-fn flat_centre(field: &dyn MetricField, [a, b, c]: [Point; 3]) -> Option<Point> {
+/// The Newton step to where three squared distances are equal, given half their derivatives by their common end; at most a
+/// half of the radius long.
+pub(crate) fn equalising_step(tensor: Tensor, [a, b, c]: [Vector; 3], squares: [f64; 3]) -> Option<Vector> {
+    let (u, v) = ((b - a) * 2.0, (c - a) * 2.0);
+    let step = cramer(u, v, squares[0] - squares[1], squares[0] - squares[2])?;
+    let (size, limit) = (tensor.length(step), 0.5 * squares[0].sqrt());
+    Some(step * (limit / size).min(1.0))
+}
+
+/// The circumcentre with one tensor.
+pub(crate) fn flat_centre(tensor: Tensor, [a, b, c]: [Point; 3]) -> Option<Point> {
     let (u, v) = (b - a, c - a);
-    let tensor: Tensor = field.at(a + (u + v) * (1.0 / 3.0));
     let x = cramer(tensor.apply(u), tensor.apply(v), 0.5 * tensor.dot(u, u), 0.5 * tensor.dot(v, v))?;
     Some(a + x)
 }

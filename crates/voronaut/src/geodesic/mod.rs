@@ -24,7 +24,8 @@ mod tension;
 mod update;
 
 pub use bow::{bowed_between, bowed_chord};
-pub use circumcentre::margin_by_power;
+pub use circumcentre::{Circle, margin_by_power};
+pub(crate) use circumcentre::{equalising_step, flat_centre};
 pub use curve::Curve;
 pub use in_circle::{Angles, circumradius, frozen_margin};
 pub use jet::gauss_curvature;

@@ -3,6 +3,7 @@
 use super::colours::{self, Cell, Tint};
 use super::frame::{Frame, PathData};
 use super::palette;
+use super::protection::Protection;
 use super::simplify::simplify;
 use crate::diagram::{Cells, Outline};
 use crate::geometry::Point;
@@ -29,6 +30,8 @@ pub struct Layers<'a> {
     pub witnesses: Option<[&'a [[Point; 3]]; 2]>,
     /// Polylines drawn over the cells, such as the geodesic edges of the dual.
     pub geodesics: &'a [Vec<Point>],
+    /// Triangles by their power protection, instead of their size.
+    pub protection: Option<&'a Protection>,
     /// Fainter polylines under those, such as lines of equal barycentric coordinates in Riemannian triangles.
     pub grids: &'a [Vec<Point>],
 }

@@ -7,6 +7,7 @@ mod ellipses;
 mod frame;
 mod obj;
 mod palette;
+mod protection;
 #[cfg(feature = "png")]
 mod png;
 pub mod report;
@@ -19,6 +20,7 @@ pub use atomic::{demand_directory, place, write};
 pub use cells::Layers;
 #[cfg(feature = "png")]
 pub use png::render_png;
+pub use protection::Protection;
 pub use report::Report;
 pub use svg::{Picture, Shade, svg, svg_with};
 

@@ -3,6 +3,8 @@
 use crate::canvas::CanvasCounters;
 use crate::dual::Road;
 use crate::geodesic::MarchCounters;
+use crate::net::Net;
+use crate::optimise::Ending;
 use crate::optimise::Relaxed;
 use crate::quality::{Angles, EdgeLengths, Fidelity, MetricQuality, Quality, Validity, Worst};
 use crate::realisation::{self, Found, Realisation};
@@ -40,6 +42,10 @@ pub struct Report {
     pub dual: Option<Dual>,
     /// How the seeds were relaxed.
     pub relaxation: Option<Relaxed>,
+    /// The vertices as a net, where it was measured.
+    pub net: Option<NetFigures>,
+    /// How protection of the seeds went, where it was asked for.
+    pub protection: Option<Protection>,
     /// The factor on the metric tensor for which the mesh is a unit mesh.
     pub metric_scale: Option<f64>,
     /// What could not be met, in words.
@@ -71,9 +77,22 @@ pub struct Canvas {
 pub struct Diagram {
     /// Canvas vertices cut off from their cell.
     pub orphans: usize,
+    /// The nerve as canvas faces of three colours alone have it, beside the exact dual.
+    pub raw_nerve: Option<RawNerve>,
     /// Work of the solver, its fields beside this one.
     #[serde(flatten)]
     pub counters: MarchCounters,
+}
+
+/// How far canvas faces of three colours are the exact dual: nothing within faces, no in-circle test.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RawNerve {
+    /// Triples of cells that share a canvas face.
+    pub triangles: usize,
+    /// Triangles of the exact dual that no face witnesses.
+    pub missing: usize,
+    /// Triples that are no triangle of the exact dual.
+    pub extra: usize,
 }
 
 impl Canvas {
@@ -86,8 +105,74 @@ impl Canvas {
 impl Diagram {
     /// Of a diagram as it is.
     pub fn of(diagram: &crate::diagram::Diagram) -> Self {
-        Self { orphans: diagram.orphans().len(), counters: *diagram.counters() }
+        Self { orphans: diagram.orphans().len(), raw_nerve: None, counters: *diagram.counters() }
     }
+}
+
+/// A set of seeds as a net. Lengths are metric, in units of the mesh's edges where the metric was scaled.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct NetFigures {
+    /// How far a point of the domain is from the nearest seed, at most.
+    pub epsilon: f64,
+    /// The least distance of two seeds.
+    pub mu: f64,
+    /// mu / epsilon.
+    pub lambda: f64,
+    /// The power protection of the least protected triangle with its circumcentre in the domain.
+    pub delta: f64,
+    /// The same as a share of epsilon.
+    pub delta_over_epsilon: f64,
+    /// The power protection of the least protected place where the border of two cells meets that of the domain, as a
+    /// share of epsilon; null where edges do not follow the border.
+    pub border_delta_over_epsilon: Option<f64>,
+    /// Triangles with their circumcentre in the domain.
+    pub interior: usize,
+    /// Those of them that are not Delaunay: a seed is in their circle.
+    pub not_delaunay: usize,
+    /// The shares of epsilon below which the protection of a hundredth, a tenth and half of them is.
+    pub delta_percentiles: [f64; 3],
+    /// Triangles and border edges without a circle: nearly straight, or with geodesics that are not resolved.
+    pub unmeasured: usize,
+}
+
+impl NetFigures {
+    /// Of a net.
+    pub fn of(net: &Net) -> Self {
+        let mut all: Vec<f64> = net.interior().map(|ball| ball.protection() / net.epsilon).collect();
+        all.sort_unstable_by(f64::total_cmp);
+        let at = |share: f64| all.get((share * all.len() as f64) as usize).copied().unwrap_or(f64::NAN);
+        Self {
+            epsilon: net.epsilon,
+            mu: net.mu,
+            lambda: net.lambda(),
+            delta: net.delta(),
+            delta_over_epsilon: net.delta() / net.epsilon,
+            border_delta_over_epsilon: (!net.border.is_empty()).then(|| net.border_delta() / net.epsilon),
+            interior: all.len(),
+            not_delaunay: net.interior().filter(|ball| ball.power < 0.0).count(),
+            delta_percentiles: [0.01, 0.1, 0.5].map(at),
+            unmeasured: net.unmeasured,
+        }
+    }
+}
+
+/// How seeds were moved until they were protected. Deterministic.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Protection {
+    /// The share of epsilon asked for.
+    pub asked: f64,
+    /// Why it ended.
+    pub ending: Ending,
+    /// Rounds of moves.
+    pub rounds: usize,
+    /// Moves of seeds.
+    pub moves: u64,
+    /// Places tried for them.
+    pub tries: u64,
+    /// Interior triangles and border edges that were not protected before.
+    pub unprotected_before: usize,
+    /// Those that are not protected in the end.
+    pub unprotected: usize,
 }
 
 /// The dual: how its edges were settled, and how sure that is. Deterministic.

@@ -75,7 +75,11 @@ pub fn svg_with(
         cells::cells(&mut text, found, &frame, if layers.witnesses.is_some() { Tint::Pale } else { tint });
     } else {
         let one_class = || vec![colours::DOMAIN.to_string(); triangles.len()];
-        let fills = if picture.mesh { classes(mesh, &triangles, &labels, picture.shade) } else { one_class() };
+        let fills = match layers.protection {
+            Some(protection) => triangles.iter().map(|&t| protection.fill(t)).collect(),
+            None if picture.mesh => classes(mesh, &triangles, &labels, picture.shade),
+            None => one_class(),
+        };
         fill(&mut text, mesh, &frame, &triangles, &fills);
     }
     if let Some(faces) = layers.witnesses {

@@ -2,9 +2,13 @@
 
 use crate::diagram::{Diagram, Nerve, NerveTriangle};
 use crate::dual::Road;
+use crate::geometry::Point;
 use crate::metric::MetricField;
+use crate::net::{Net, Triangles};
 use crate::output::report;
+use crate::planar::Location;
 use crate::rdt::{Edge, Rdt, Start, Trust};
+use crate::triangulation::HalfEdge;
 use std::collections::HashSet;
 use std::time::Instant;
 
@@ -23,6 +27,10 @@ pub struct SeedDual {
     pub triangles: Vec<[u32; 3]>,
     /// The nerve, sharp within canvas faces.
     pub nerve: Nerve,
+    /// The triangles of the exact dual: what in-circle tests make of the nerve, whatever the road.
+    pub exact: Vec<[u32; 3]>,
+    /// What canvas faces of three colours alone have of it.
+    pub raw_nerve: report::RawNerve,
     /// How the edges were settled. Margins are those by lengths; edges are numbered by their seeds.
     pub account: report::Dual,
     /// Wall time of the nerve and of the in-circle tests.
@@ -50,7 +58,40 @@ pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road) -> SeedDual 
         Road::Geodesic => rdt.triangles(),
         Road::Both => rdt.triangles().into_iter().chain(left_out(&rdt, &nerve)).collect(),
     };
-    SeedDual { triangles, nerve, account, seconds }
+    let exact = rdt.triangles();
+    let raw_nerve = compared(&diagram.nerve(), &exact);
+    SeedDual { triangles, nerve, exact, raw_nerve, account, seconds }
+}
+
+fn compared(raw: &Nerve, exact: &[[u32; 3]]) -> report::RawNerve {
+    let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
+    let exact: HashSet<[u32; 3]> = exact.iter().map(turned).collect();
+    let raw: HashSet<[u32; 3]> = raw.triangles.iter().map(|t| t.colours).collect();
+    report::RawNerve {
+        triangles: raw.len(),
+        missing: exact.difference(&raw).count(),
+        extra: raw.difference(&exact).count(),
+    }
+}
+
+/// The net of a diagram's seeds, from the triangles of their exact dual. Its epsilon is the greatest of the circumradii and
+/// of the distances of canvas vertices; seeds need not lie on the border, so that nothing is said of protection there.
+pub fn net(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]]) -> Net {
+    let seeds: Vec<Point> = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default()).collect();
+    let canvas = diagram.canvas();
+    let at = canvas.locate_all(&seeds);
+    let face = |seed: u32| match at[seed as usize]? {
+        Location::Face(f) => Some(f),
+        Location::Edge(h) | Location::Behind(h) => Some(h.face()),
+        Location::Vertex(v) => canvas.embedded().topology.start(v).map(HalfEdge::face),
+    };
+    let sees = |from, p| !matches!(canvas.embedded().walk(from, p, false), Location::Behind(_));
+    let is_inside = |seed: u32, p: Point| face(seed).is_some_and(|from| sees(from, p));
+    let mut net =
+        Net::measure(field, &Triangles { seeds: &seeds, triangles: exact, border: &[], is_inside: &is_inside });
+    let farthest = diagram.farthest().map_or(0.0, |(_, distance)| distance);
+    net.epsilon = if farthest.is_finite() { net.epsilon.max(farthest) } else { net.epsilon };
+    net
 }
 
 /// Triangles of the nerve that no triangulation could hold beside the others, and of which it is sure: cells that touch

@@ -2,11 +2,12 @@
 
 mod dual;
 mod field;
+mod protection;
 mod relaxing;
 mod seeding;
 mod settle;
 
-pub use dual::{SeedDual, dual};
+pub use dual::{SeedDual, dual, net};
 pub use field::metric;
 pub use relaxing::Centroid;
 pub use seeding::Seeding;
@@ -17,11 +18,14 @@ use crate::dual::{Dual, Kind, Road};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Scaled};
+use crate::net::Net;
 use crate::optimise::Relaxed;
 use crate::output::report;
 use crate::progress::Progress;
 use crate::quality;
-use crate::sampling::{Fill, Plan, Target, demand_memory, refine, sample_segments, simplify};
+use crate::sampling::{
+    Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, sample_segments, simplify,
+};
 use std::time::Instant;
 
 /// What the mesher may be told; every parameter has one name (flag, TOML key, Python keyword) and one default.
@@ -41,6 +45,14 @@ pub struct MeshOptions {
     pub dual: Road,
     /// How the interior is seeded.
     pub seeding: Seeding,
+    /// With [`Seeding::Protected`], the power protection asked of every interior simplex, as a share of epsilon, the
+    /// greatest circumradius.
+    pub protection: f64,
+    /// With [`Seeding::Protected`], the radius of the ball around a circumcentre in which a seed is picked, as a share of
+    /// the circumradius.
+    pub picking_radius: f64,
+    /// Whether the net of the mesh's vertices is measured ([`Meshed::net`]); with [`Seeding::Protected`] it always is.
+    pub net: bool,
     /// Canvas vertices per seed, where a canvas is used.
     pub canvas_size: u32,
     /// Limit on the memory the work is estimated to need, in bytes.
@@ -57,6 +69,9 @@ impl Default for MeshOptions {
             centroid: Centroid::default(),
             dual: Road::default(),
             seeding: Seeding::default(),
+            protection: 0.2,
+            picking_radius: 0.3,
+            net: false,
             canvas_size: canvas::VERTICES_PER_SEED,
             memory_limit: 16 << 30,
         }
@@ -78,6 +93,10 @@ pub struct Meshed {
     pub canvas: Option<report::Canvas>,
     /// The diagram on it.
     pub diagram: Option<report::Diagram>,
+    /// The vertices as a net, by their numbers in the mesh, where it was asked for.
+    pub net: Option<Net>,
+    /// How protection went, with [`Seeding::Protected`].
+    pub protection: Option<report::Protection>,
     /// Wall time per stage, in order.
     pub seconds: Vec<(&'static str, f64)>,
     /// What could not be met, in words for the user; empty when all was.
@@ -111,21 +130,15 @@ pub fn mesh(
     let canvas = job.canvas(&domain, count)?;
     let mut dual = job.timed("seed", |job| job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
     let relaxation = job.timed("relax", |job| job.relax(&mut dual, canvas.as_ref()))?;
+    let protected = job.protect(&mut dual)?;
     let settled = job.timed("settle", |job| settle::settle(&mut dual, &domain, job.options, job.progress))?;
     let mesh = job.timed("check", |job| job.finish(&domain, &dual))?;
+    let (net, protection) = job.net(&domain, &dual, protected);
     let settle::Settled { dual: account, canvas, diagram } = settled;
     let (canvas, diagram) = (job.canvas.or(canvas), job.diagram.or(diagram));
     let metric_scale = dual.field().factor;
-    Ok(Meshed {
-        mesh,
-        metric_scale,
-        dual: account,
-        relaxation,
-        canvas,
-        diagram,
-        seconds: job.seconds,
-        notes: job.notes,
-    })
+    let (seconds, notes) = (job.seconds, job.notes);
+    Ok(Meshed { mesh, metric_scale, dual: account, relaxation, canvas, diagram, net, protection, seconds, notes })
 }
 
 struct Job<'a> {
@@ -200,7 +213,7 @@ impl<'a> Job<'a> {
             if let Some(canvas) = canvas.filter(|_| self.options.seeding == Seeding::Farthest) {
                 self.seed_farthest(canvas, &mut dual, count)?;
             }
-            refine(&mut dual, self.fill(count), self.progress);
+            self.refine(&mut dual, count);
             dual.verdict()?;
             let mean = mean_free_edge(&dual);
             if round == ROUNDS || (mean - 1.0).abs() < SCALE_TOLERANCE {
@@ -219,6 +232,17 @@ impl<'a> Job<'a> {
             }
         }
         unreachable!("the last round returns")
+    }
+
+    /// Fills the interior. Places are picked for protection only if no relaxation is going to move the seeds.
+    fn refine(&self, dual: &mut Dual, count: usize) {
+        let (fill, options) = (self.fill(count), self.options);
+        if options.seeding == Seeding::Protected && options.lloyd == 0 {
+            let picking = Picking { protection: options.protection, radius: options.picking_radius };
+            refine_protected(dual, fill, picking, self.progress);
+        } else {
+            refine(dual, fill, self.progress);
+        }
     }
 
     fn note_shortfall(&mut self, dual: &Dual, plan: &Plan, count: usize) {

@@ -110,7 +110,7 @@ impl Job<'_> {
 
     /// Farthest points that are not to be relaxed stay as they are.
     fn exchanges(&self) -> bool {
-        self.options.lloyd > 0 || self.options.seeding == Seeding::Sizing
+        self.options.lloyd > 0 || self.options.seeding != Seeding::Farthest
     }
 }
 

@@ -21,6 +21,8 @@ pub enum Seeding {
     Sizing,
     /// `farthest`: at the canvas vertex that is farthest, in geodesic distance, from all seeds so far. Needs a canvas.
     Farthest,
+    /// `protected`: as `sizing`, with seeds put where they leave every simplex power-protected; then moved until that is so.
+    Protected,
 }
 
 impl fmt::Display for Seeding {
@@ -28,6 +30,7 @@ impl fmt::Display for Seeding {
         f.write_str(match self {
             Seeding::Sizing => "sizing",
             Seeding::Farthest => "farthest",
+            Seeding::Protected => "protected",
         })
     }
 }
@@ -36,16 +39,15 @@ impl FromStr for Seeding {
     type Err = Error;
 
     /// # Errors
-    /// [`Error::Unsupported`] of `protected`, which is still to come; [`Error::Parse`] of any other name.
+    /// [`Error::Parse`] of any other name.
     fn from_str(name: &str) -> Result<Self> {
         match name {
             "sizing" => Ok(Seeding::Sizing),
             "farthest" => Ok(Seeding::Farthest),
-            "protected" => Err(Error::Unsupported {
-                what: "seeding `protected` is not there yet".into(),
-                help: "choose sizing or farthest".into(),
-            }),
-            _ => Err(Error::parse(format!("seeding {name}"), "no such seeding", "choose sizing or farthest")),
+            "protected" => Ok(Seeding::Protected),
+            _ => {
+                Err(Error::parse(format!("seeding {name}"), "no such seeding", "choose sizing, farthest or protected"))
+            }
         }
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn settle(
     let made = found.made;
     let canvas =
         made.map(|m| report::Canvas { kind: "intrinsic".into(), vertices: m.canvas_vertices, counters: m.canvas });
-    let diagram = made.map(|m| report::Diagram { orphans: m.orphans, counters: m.diagram });
+    let diagram = made.map(|m| report::Diagram { orphans: m.orphans, raw_nerve: None, counters: m.diagram });
     Ok(Settled { dual: account(dual, domain, found), canvas, diagram })
 }
 

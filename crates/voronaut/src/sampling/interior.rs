@@ -53,8 +53,16 @@ pub struct Refined {
 
 /// Inserts seeds until the dual has as many vertices as asked for.
 pub fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Refined {
+    refine_with(dual, fill, progress, &mut |dual, place, (centre, _)| insert_spaced(dual, place, centre))
+}
+
+/// Puts a seed at, or near, a circumcentre, which is in this place, given with the circumradius; says whether it did.
+pub(super) type Steiner<'a> = &'a mut dyn FnMut(&mut Dual, Location, (Point, f64)) -> bool;
+
+/// [`refine`], with the seeds for circumcentres put where `steiner` says.
+pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, steiner: Steiner) -> Refined {
     let count = fill.count();
-    let mut refiner = Refiner { queue: BinaryHeap::new(), refined: Refined::default() };
+    let mut refiner = Refiner { queue: BinaryHeap::new(), refined: Refined::default(), steiner };
     dual.take_touched();
     let faces: Vec<FaceId> = dual.topology().faces().collect();
     refiner.enqueue(dual, faces);
@@ -98,12 +106,13 @@ impl Ord for Entry {
     }
 }
 
-struct Refiner {
+struct Refiner<'a> {
     queue: BinaryHeap<Entry>,
     refined: Refined,
+    steiner: Steiner<'a>,
 }
 
-impl Refiner {
+impl Refiner<'_> {
     fn enqueue(&mut self, dual: &Dual, faces: Vec<FaceId>) {
         for face in faces {
             if dual.topology().is_face(face) {
@@ -122,7 +131,7 @@ impl Refiner {
             if now.to_bits() != radius.to_bits() {
                 continue;
             }
-            let done = self.insert_for(dual, face, centre);
+            let done = self.insert_for(dual, face, (centre, radius));
             let touched = dual.take_touched();
             self.enqueue(dual, touched);
             if done {
@@ -134,9 +143,13 @@ impl Refiner {
 
     /// A seed for a face: at its circumcentre, else (where the metric varies so much that the circle says little) at
     /// its centroid or in the middle of its longest edge. Each must keep its distance from the seeds around it.
-    fn insert_for(&mut self, dual: &mut Dual, face: FaceId, centre: Point) -> bool {
-        if self.insert_at_circumcentre(dual, face, centre) {
+    fn insert_for(&mut self, dual: &mut Dual, face: FaceId, circle: (Point, f64)) -> bool {
+        if self.insert_at_circumcentre(dual, face, circle) {
             return true;
+        }
+        if !dual.topology().is_face(face) {
+            // Places were tried, and left other faces, which are in the queue.
+            return false;
         }
         let centroid = centroid(dual.planar().triangle(face));
         if insert_spaced(dual, Location::Face(face), centroid) {
@@ -152,7 +165,7 @@ impl Refiner {
         halved
     }
 
-    fn insert_at_circumcentre(&mut self, dual: &mut Dual, face: FaceId, centre: Point) -> bool {
+    fn insert_at_circumcentre(&mut self, dual: &mut Dual, face: FaceId, (centre, radius): (Point, f64)) -> bool {
         let place = dual.planar().walk(face, centre, true);
         let encroached = match place {
             Location::Face(f) => encroached_edge(dual, f, centre),
@@ -164,7 +177,7 @@ impl Refiner {
             self.refined.encroached += usize::from(split);
             return split;
         }
-        let inserted = insert_spaced(dual, place, centre);
+        let inserted = (self.steiner)(dual, place, (centre, radius));
         self.refined.circumcentres += usize::from(inserted);
         inserted
     }
@@ -214,7 +227,7 @@ fn circumcircle(dual: &Dual, face: FaceId) -> (Point, f64) {
 }
 
 /// A constrained edge of the face, or of a neighbour that the point would see, in whose diametral ball the point lies.
-fn encroached_edge(dual: &Dual, face: FaceId, p: Point) -> Option<HalfEdge> {
+pub(super) fn encroached_edge(dual: &Dual, face: FaceId, p: Point) -> Option<HalfEdge> {
     let topology = dual.topology();
     let beyond = face.half_edges().into_iter().filter(|&h| !topology.is_fixed(h)).filter_map(|h| topology.twin(h));
     let seen = face.half_edges().into_iter().chain(beyond.flat_map(|t| [t.next(), t.prev()]));
@@ -239,7 +252,7 @@ pub(crate) fn insert_spaced(dual: &mut Dual, place: Location, p: Point) -> bool 
 
 /// Whether a vertex is too near to a point of the face: one of the face's corners, or one that is reached from the
 /// nearest of them by going from neighbour to nearer neighbour.
-fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
+pub(super) fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
     let topology = dual.topology();
     let tensor = dual.field().at(p);
     let distance = |v: VertexId| tensor.length(p - dual.position(v));

@@ -5,6 +5,7 @@ mod curves;
 mod farthest;
 mod interior;
 mod plan;
+mod protected;
 mod segments;
 
 pub use curves::simplify;
@@ -12,4 +13,5 @@ pub use farthest::{Farthest, refine_farthest};
 pub(crate) use interior::insert_spaced;
 pub use interior::{Fill, Refined, refine};
 pub use plan::{Plan, Target, demand_memory};
+pub use protected::{Picked, Picking, refine_protected};
 pub use segments::{MetricArc, sample_segments};

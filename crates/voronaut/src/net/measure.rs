@@ -1,0 +1,182 @@
+//! Circles and powers by geodesics.
+
+use super::{Ball, Triangles};
+use crate::geodesic::{Circle, Fineness, Paths, chord, flat_centre};
+use crate::geometry::Point;
+use crate::metric::MetricField;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// A geodesic is taken to be no shorter than this share of the straight segment between its ends: seeds farther away than
+/// that allows are not asked.
+const LEAST_SHARE: f64 = 0.7;
+/// Circles whose squared radius is known no better than this share are sought once more with the finest paths.
+const VAGUE: f64 = 1e-3;
+/// Steps at most in which the middle of a border edge is found, and the difference of the squared distances (share of
+/// the squared edge) at which it is.
+const STEPS: usize = 20;
+const SETTLED: f64 = 1e-8;
+
+/// Circles of triangles that were measured, with the seeds that they depend on.
+#[derive(Clone, Debug, Default)]
+pub struct Memory(HashMap<[u32; 3], Remembered>);
+
+#[derive(Clone, Debug)]
+struct Remembered {
+    seeds: Vec<(u32, Point)>,
+    /// `None` of a triangle that has none.
+    ball: Option<Ball<3>>,
+    /// It has none although its circumcentre seems to be in the domain.
+    is_unmeasured: bool,
+}
+
+/// Squared distances, circles and powers of seeds.
+pub(super) struct Measure<'a> {
+    paths: &'a Paths,
+    field: &'a dyn MetricField,
+    found: &'a Triangles<'a>,
+    neighbours: Vec<Vec<u32>>,
+}
+
+impl<'a> Measure<'a> {
+    pub(super) fn new(paths: &'a Paths, field: &'a dyn MetricField, found: &'a Triangles<'a>) -> Self {
+        let mut neighbours = vec![Vec::new(); found.seeds.len()];
+        for &[a, b, c] in found.triangles {
+            for [i, j] in [[a, b], [b, c], [c, a]] {
+                neighbours[i as usize].push(j);
+                neighbours[j as usize].push(i);
+            }
+        }
+        for list in &mut neighbours {
+            list.sort_unstable();
+            list.dedup();
+        }
+        Self { paths, field, found, neighbours }
+    }
+
+    /// The circles of all triangles that have one, as far as possible from memory, which then knows all of them; and how
+    /// many have none although they should.
+    pub(super) fn triangles(&self, memory: &mut Memory) -> (Vec<Ball<3>>, usize) {
+        let measured = |&corners: &[u32; 3]| {
+            let seeds: Vec<(u32, Point)> =
+                corners.into_iter().chain(self.around(&corners)).map(|i| (i, self.seed(i))).collect();
+            let known = memory.0.get(&corners).filter(|known| known.seeds == seeds);
+            if let Some(known) = known {
+                return (corners, known.clone());
+            }
+            let ball = self.triangle(corners);
+            (corners, Remembered { seeds, ball, is_unmeasured: ball.is_none() && self.seems_interior(corners) })
+        };
+        let found: Vec<([u32; 3], Remembered)> =
+            self.found.triangles.par_iter().with_min_len(16).map(measured).collect();
+        let unmeasured = found.iter().filter(|(_, remembered)| remembered.is_unmeasured).count();
+        let balls = found.iter().filter_map(|(_, remembered)| remembered.ball).collect();
+        memory.0.extend(found);
+        (balls, unmeasured)
+    }
+
+    /// The circles of all border edges that have one.
+    pub(super) fn border(&self) -> Vec<Ball<2>> {
+        self.found.border.par_iter().with_min_len(16).filter_map(|&ends| self.border_edge(ends)).collect()
+    }
+
+    /// The least distance between neighbours: along the shortest chords until no other edge can be shorter.
+    pub(super) fn mu(&self) -> f64 {
+        let edges = self.neighbours.iter().enumerate().flat_map(|(i, list)| list.iter().map(move |&j| (i as u32, j)));
+        let chord = |(i, j): (u32, u32)| (chord(self.field, self.seed(i), self.seed(j)), self.seed(i), self.seed(j));
+        let mut edges: Vec<_> = edges.filter(|(i, j)| i < j).map(chord).collect();
+        edges.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut least = f64::INFINITY;
+        for (chord, p, q) in edges {
+            if LEAST_SHARE * chord > least {
+                break;
+            }
+            let geodesic = self.paths.length(self.field, p, q, Fineness::MIDDLE);
+            least = least.min(geodesic.map_or(chord, |length| length.value));
+        }
+        least
+    }
+
+    fn seed(&self, i: u32) -> Point {
+        self.found.seeds[i as usize]
+    }
+
+    fn triangle(&self, corners: [u32; 3]) -> Option<Ball<3>> {
+        let points = corners.map(|i| self.seed(i));
+        let around = |fineness| Circle::around(self.paths, self.field, points, fineness);
+        let known = around(Fineness::MIDDLE).filter(|circle| circle.error < VAGUE * circle.square);
+        // Circles around centres far outside the domain are not worth the finest paths.
+        let fine = || around(Fineness::FINEST).or_else(|| Circle::around_carefully(self.paths, self.field, points));
+        let circle = known.or_else(|| self.seems_interior(corners).then(fine).flatten())?;
+        let is_interior = (self.found.is_inside)(corners[0], circle.centre);
+        Some(self.ball(corners, &circle, is_interior))
+    }
+
+    /// Whether the circumcentre with one tensor is in the domain.
+    fn seems_interior(&self, corners: [u32; 3]) -> bool {
+        let points = corners.map(|i| self.seed(i));
+        let middle = points[0] + ((points[1] - points[0]) + (points[2] - points[0])) * (1.0 / 3.0);
+        let centre = flat_centre(self.field.at(middle), points);
+        centre.is_some_and(|centre| (self.found.is_inside)(corners[0], centre))
+    }
+
+    fn border_edge(&self, ends: [u32; 2]) -> Option<Ball<2>> {
+        let circle = self.middle(ends.map(|i| self.seed(i)))?;
+        Some(self.ball(ends, &circle, true))
+    }
+
+    fn ball<const N: usize>(&self, corners: [u32; N], circle: &Circle, is_interior: bool) -> Ball<N> {
+        let (power, nearest) = self.least_power(&corners, circle);
+        Ball { corners, centre: circle.centre, radius: circle.square.sqrt(), power, nearest, is_interior }
+    }
+
+    /// The seeds that share an edge with a corner and are none, in order.
+    fn around(&self, corners: &[u32]) -> Vec<u32> {
+        let mut around: Vec<u32> = corners.iter().flat_map(|&i| self.neighbours[i as usize].iter().copied()).collect();
+        around.sort_unstable();
+        around.dedup();
+        around.retain(|i| !corners.contains(i));
+        around
+    }
+
+    /// The least power of a seed that shares an edge with a corner, nearest chords first.
+    fn least_power(&self, corners: &[u32], circle: &Circle) -> (f64, Option<u32>) {
+        let chord = |i: u32| (chord(self.field, circle.centre, self.seed(i)), i);
+        let mut chords: Vec<(f64, u32)> = self.around(corners).into_iter().map(chord).collect();
+        chords.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let (mut least, mut nearest) = (f64::INFINITY, None);
+        for (chord, i) in chords {
+            if (LEAST_SHARE * chord).powi(2) - circle.square > least {
+                break;
+            }
+            let power = circle.power(self.paths, self.field, self.seed(i), Fineness::MIDDLE);
+            let power = power.unwrap_or(chord * chord - circle.square);
+            if power < least {
+                (least, nearest) = (power, Some(i));
+            }
+        }
+        (least, nearest)
+    }
+
+    /// The circle around the point of a straight border edge that is equally far from both ends, by the secant method:
+    /// the difference of the squared distances is nearly linear.
+    fn middle(&self, [a, b]: [Point; 2]) -> Option<Circle> {
+        let square = |p: Point, q: Point| {
+            self.paths.length(self.field, p, q, Fineness::MIDDLE).map(|length| length.value.powi(2))
+        };
+        let whole = square(a, b)?;
+        let (mut before, mut t) = ((0.0, -whole), 0.5);
+        for _ in 0..STEPS {
+            let centre = a.lerp(b, t);
+            let [to_a, to_b] = [square(a, centre)?, square(b, centre)?];
+            let difference = to_a - to_b;
+            if difference.abs() < SETTLED * whole {
+                return Some(Circle { centre, square: 0.5 * (to_a + to_b), error: difference.abs() });
+            }
+            let next: f64 = t - difference * (t - before.0) / (difference - before.1);
+            before = (t, difference);
+            t = next.clamp(0.01, 0.99);
+        }
+        None
+    }
+}

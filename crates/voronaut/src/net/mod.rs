@@ -1,0 +1,125 @@
+//! What a set of seeds is as a net (RR-9103, sections 3.1 and 3.4): how well it covers a domain (epsilon), how far its
+//! seeds are apart (mu), and how far every Delaunay circle is from holding a fourth seed (delta, the power protection).
+//!
+//! [`Net::measure`] is exact up to the error of geodesics. [`Estimate`] is the cheap version for seeds that come, go and
+//! move: the same figures from expansions of the metric ([`LocalMetric`](crate::geodesic::LocalMetric)).
+
+mod estimate;
+mod measure;
+mod random;
+
+pub use estimate::{Estimate, Sites};
+pub use measure::Memory;
+pub use random::Random;
+
+use crate::geodesic::Paths;
+use crate::geometry::Point;
+use crate::metric::MetricField;
+
+/// A Delaunay circle: of a triangle, or of an edge at the border of the domain, where its centre is on that edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball<const N: usize> {
+    /// The seeds on the circle.
+    pub corners: [u32; N],
+    /// The centre: a vertex of the Voronoi diagram where it lies in the domain.
+    pub centre: Point,
+    /// The radius, in the metric.
+    pub radius: f64,
+    /// The least power (squared distance from the centre less squared radius) of a seed near the triangle that is no
+    /// corner of it: the square of the power protection; negative of a triangle that is not Delaunay. Infinite where
+    /// there is no other seed.
+    pub power: f64,
+    /// The seed of that power.
+    pub nearest: Option<u32>,
+    /// Whether the centre is in the domain, as its triangle sees it. The others are no simplices of the Voronoi diagram's
+    /// dual, which ends at the border.
+    pub is_interior: bool,
+}
+
+impl<const N: usize> Ball<N> {
+    /// The power protection delta: 0 where there is none.
+    pub fn protection(&self) -> f64 {
+        self.power.max(0.0).sqrt()
+    }
+}
+
+/// The circles of a net, and what follows from them. Lengths are those of the metric.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Net {
+    /// Of the triangles, in their order, without those that have no circle.
+    pub triangles: Vec<Ball<3>>,
+    /// Of the edges at the border: where the border of two cells meets that of the domain.
+    pub border: Vec<Ball<2>>,
+    /// Border edges and triangles with their circumcentre in the domain, as one tensor has it, of which no circle was found:
+    /// they are nearly straight, or geodesics are not resolved.
+    pub unmeasured: usize,
+    /// How far a point of the domain is from its nearest seed at most: the greatest radius of the circles with centres
+    /// in the domain and no seed in them.
+    pub epsilon: f64,
+    /// The least distance between two seeds.
+    pub mu: f64,
+}
+
+/// A triangulation of seeds whose circles are asked for.
+#[derive(Clone, Copy)]
+pub struct Triangles<'a> {
+    /// The seeds.
+    pub seeds: &'a [Point],
+    /// Riemannian Delaunay triangles by their seeds, counter-clockwise.
+    pub triangles: &'a [[u32; 3]],
+    /// Edges that are pieces of the domain's border, straight, with both seeds on it.
+    pub border: &'a [[u32; 2]],
+    /// Whether a point is in the domain, as the triangle sees it that has the seed for a corner.
+    pub is_inside: &'a (dyn Fn(u32, Point) -> bool + Sync),
+}
+
+impl Net {
+    /// Measures with geodesics, in parallel. The field may measure in any unit.
+    ///
+    /// For every triangle all seeds are asked that share an edge with one of its corners: a seed in its circle need not
+    /// be opposite to one of its sides. Distances know of no holes.
+    pub fn measure(field: &dyn MetricField, found: &Triangles) -> Self {
+        Self::measure_again(field, found, &mut Memory::default())
+    }
+
+    /// [`Net::measure`] of seeds of which most are where they were when the memory was written: what depends on no seed that
+    /// has moved is not measured again. The memory is of one field and one domain.
+    pub fn measure_again(field: &dyn MetricField, found: &Triangles, memory: &mut Memory) -> Self {
+        let paths = Paths::default();
+        let measure = measure::Measure::new(&paths, field, found);
+        let mut net = Self { mu: measure.mu(), ..Self::default() };
+        (net.triangles, net.unmeasured) = measure.triangles(memory);
+        net.border = measure.border();
+        net.unmeasured += found.border.len() - net.border.len();
+        // A circle with a seed in it says nothing of how far points are from seeds.
+        let interior = net.interior().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius);
+        let radii = interior.chain(net.border.iter().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius));
+        net.epsilon = radii.fold(0.0, f64::max);
+        net
+    }
+
+    /// The triangles whose circumcentre is in the domain.
+    pub fn interior(&self) -> impl Iterator<Item = &Ball<3>> {
+        self.triangles.iter().filter(|ball| ball.is_interior)
+    }
+
+    /// mu / epsilon: 1 of seeds as even as can be.
+    pub fn lambda(&self) -> f64 {
+        self.mu / self.epsilon
+    }
+
+    /// The power protection of the interior triangles: that of the least protected; infinite where there are none.
+    pub fn delta(&self) -> f64 {
+        self.interior().map(Ball::protection).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The power protection of the edges at the border; infinite where there are none.
+    pub fn border_delta(&self) -> f64 {
+        self.border.iter().map(Ball::protection).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How many interior triangles are less protected than by a share of epsilon.
+    pub fn unprotected(&self, share: f64) -> usize {
+        self.interior().filter(|ball| ball.protection() < share * self.epsilon).count()
+    }
+}

@@ -1,0 +1,350 @@
+//! Moving seeds until every Delaunay circle is power-protected (RR-9103, section 3.4): random perturbations of the seeds
+//! around those that are not, as in the algorithms of Boissonnat et al. 2014 and, for constraints in general, Moser and
+//! Tardos 2010.
+
+use crate::dual::{Dual, Kind};
+use crate::error::Result;
+use crate::geodesic::{Angles, LocalMetric, hermite};
+use crate::geometry::Point;
+use crate::metric::MetricField;
+use crate::net::{Ball, Estimate, Memory, Net, Random, Sites, Triangles};
+use crate::progress::Progress;
+use crate::rdt::{Rdt, Start, Trust};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+
+/// Rounds of measuring with geodesics and moving seeds, at most.
+const ROUNDS: usize = 30;
+/// Rounds that may pass, one after the other, without fewer unprotected simplices.
+const PATIENCE: usize = 6;
+/// Places tried for the seeds around one simplex, a round: with estimates, and with geodesics.
+const TRIES: [usize; 2] = [60, 24];
+/// From this round on, and while no more than so many simplices are unprotected, places are tried with geodesics.
+const GEODESICS: (usize, usize) = (3, 8);
+/// Seeds are moved within a ball of this radius, as a share of epsilon: at first, and at most.
+const BALL: [f64; 2] = [0.15, 0.5];
+/// It grows by this factor from round to round.
+const GROWTH: f64 = 1.15;
+/// Estimates are asked for this much more power than geodesics, and for more by this factor wherever geodesics found less
+/// than the estimates had said.
+const ASKED: [f64; 2] = [1.03, 1.1];
+/// At most by this factor.
+const MOST_ASKED: f64 = 1.5;
+/// With geodesics it is this much more, since epsilon may grow by other moves.
+const ASKED_OF_GEODESICS: f64 = 1.01;
+/// Shares of the power asked for that are as good as none.
+const LEAST_GAIN: f64 = 1e-6;
+/// Flips after one move, at most: lengths that contradict each other must not make it last for ever.
+const FLIPS: usize = 60;
+
+/// How it ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// Every interior simplex is protected.
+    Protected,
+    /// Rounds went by without progress.
+    Stalled,
+    /// The last round that is allowed was over.
+    OutOfRounds,
+}
+
+/// What was done, and the net that is left.
+#[derive(Clone, Debug)]
+pub struct Protected {
+    /// Why it ended.
+    pub ending: Ending,
+    /// Rounds of moves.
+    pub rounds: usize,
+    /// Seeds moved, counted every time.
+    pub moves: u64,
+    /// Places tried.
+    pub tries: u64,
+    /// Triangles and border edges that were less protected than asked for at the beginning, and that are now.
+    pub unprotected: [usize; 2],
+    /// The net, measured with geodesics; seeds are numbered like vertices.
+    pub net: Net,
+}
+
+/// Moves free seeds until the power protection of every interior triangle and of the edges at the border is at least a
+/// share of epsilon, both measured with geodesics. What cannot be had is left and counted. Vertices are numbered anew
+/// ([`Dual::reorder`]); no seed is added or removed. The result does not depend on the number of threads.
+///
+/// # Errors
+/// The metric is found invalid at a seed.
+pub fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<Protected> {
+    dual.reorder();
+    let mut mender = Mender::new(dual, share);
+    let (mut best, mut since) = (usize::MAX, 0);
+    let mut found: Option<Protected> = None;
+    for round in 0.. {
+        let (net, bad) = mender.measure();
+        let first = found.as_ref().map_or(bad.len(), |p| p.unprotected[0]);
+        since = if bad.len() < best { 0 } else { since + 1 };
+        best = best.min(bad.len());
+        let ending = match round {
+            _ if bad.is_empty() => Some(Ending::Protected),
+            ROUNDS => Some(Ending::OutOfRounds),
+            _ if since > PATIENCE => Some(Ending::Stalled),
+            _ => None,
+        };
+        let epsilon = net.epsilon;
+        let (moves, tries, unprotected) = (mender.moves, mender.tries, [first, bad.len()]);
+        let state =
+            Protected { ending: ending.unwrap_or(Ending::Stalled), rounds: round, moves, tries, unprotected, net };
+        found = Some(state);
+        if ending.is_some() {
+            break;
+        }
+        mender.mend(&bad, round, epsilon);
+        progress.done(1);
+    }
+    dual.verdict()?;
+    Ok(found.expect("the first round measures"))
+}
+
+/// The Riemannian Delaunay triangulation of a dual's seeds, which straight edges need not follow, and its net.
+pub fn measured(dual: &Dual) -> Net {
+    let seeds: Vec<Point> = (0..dual.topology().vertex_slots() as u32).map(|v| dual.position(VertexId(v))).collect();
+    let rdt = triangulated(dual, &seeds, dual.topology());
+    measure(dual, &seeds, &rdt.triangles(), &mut Memory::default())
+}
+
+/// The triangulation of seeds by lengths of geodesics, from one that is nearly right.
+fn triangulated<'a>(dual: &'a Dual, seeds: &[Point], start: &Triangulation) -> Rdt<'a> {
+    let triangles = corners_of(start, start.faces());
+    let at_border = border_of(start).into_iter().map(|[a, b]| [a.min(b), a.max(b)]).collect();
+    Rdt::new(dual.scaled_field(), seeds, &Start { triangles, at_border }, Trust::default())
+}
+
+fn measure(dual: &Dual, seeds: &[Point], triangles: &[[u32; 3]], memory: &mut Memory) -> Net {
+    let border = border_of(dual.topology());
+    let is_inside = |seed: u32, p: Point| dual.is_inside(VertexId(seed), p);
+    let found = Triangles { seeds, triangles, border: &border, is_inside: &is_inside };
+    Net::measure_again(dual.scaled_field(), &found, memory)
+}
+
+fn corners_of(topology: &Triangulation, faces: impl Iterator<Item = FaceId>) -> Vec<[u32; 3]> {
+    faces.map(|f| topology.corners(f).map(|v| v.0)).collect()
+}
+
+fn border_of(topology: &Triangulation) -> Vec<[u32; 2]> {
+    let border = topology.edges().filter(|&h| topology.twin(h).is_none());
+    border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect()
+}
+
+/// What places for seeds are tried with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum By {
+    Estimates,
+    Geodesics,
+}
+
+/// The seeds of a dual in a triangulation that is embedded nowhere, as geodesics want it.
+struct Mender<'a, 'b> {
+    dual: &'a mut Dual<'b>,
+    share: f64,
+    positions: Vec<Point>,
+    locals: Vec<LocalMetric>,
+    topology: Triangulation,
+    /// By how much more power than asked for estimates must have at each seed.
+    excess: Vec<f64>,
+    memory: Memory,
+    random: Random,
+    moves: u64,
+    tries: u64,
+}
+
+/// A move on trial, and how to take it back.
+struct Trial {
+    v: VertexId,
+    from: (Point, LocalMetric),
+    flips: Vec<HalfEdge>,
+}
+
+impl Sites for Mender<'_, '_> {
+    fn field(&self) -> &dyn MetricField {
+        self.dual.scaled_field()
+    }
+    fn topology(&self) -> &Triangulation {
+        &self.topology
+    }
+    fn position(&self, v: VertexId) -> Point {
+        self.positions[v.index()]
+    }
+    fn local(&self, v: VertexId) -> &LocalMetric {
+        &self.locals[v.index()]
+    }
+    fn is_inside(&self, near: VertexId, p: Point) -> bool {
+        self.dual.is_inside(near, p)
+    }
+}
+
+impl<'a, 'b> Mender<'a, 'b> {
+    fn new(dual: &'a mut Dual<'b>, share: f64) -> Self {
+        let slots = dual.topology().vertex_slots();
+        let all = || (0..slots as u32).map(VertexId);
+        Self {
+            share,
+            positions: all().map(|v| dual.position(v)).collect(),
+            locals: all().map(|v| *dual.local(v)).collect(),
+            topology: dual.topology().clone(),
+            excess: vec![ASKED[0]; slots],
+            memory: Memory::default(),
+            random: Random::new(slots as u64),
+            moves: 0,
+            tries: 0,
+            dual,
+        }
+    }
+
+    /// Triangulates and measures with geodesics; the seeds of what is unprotected, worst first.
+    fn measure(&mut self) -> (Net, Vec<Vec<VertexId>>) {
+        let rdt = triangulated(self.dual, &self.positions, &self.topology);
+        let net = measure(self.dual, &self.positions, &rdt.triangles(), &mut self.memory);
+        if rdt.counters().split == 0 {
+            self.topology = rdt.topology().clone();
+        }
+        let bad = self.unprotected(&net);
+        (net, bad)
+    }
+
+    fn unprotected(&self, net: &Net) -> Vec<Vec<VertexId>> {
+        let asked = self.share * net.epsilon;
+        let triangles = net.interior().filter(|ball| ball.protection() < asked).map(around);
+        let border = net.border.iter().filter(|ball| ball.protection() < asked).map(around);
+        let mut bad: Vec<(f64, Vec<VertexId>)> = triangles.chain(border).collect();
+        bad.retain(|(_, seeds)| seeds.iter().any(|&v| self.dual.kind(v) == Kind::Free));
+        bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        bad.into_iter().map(|(_, seeds)| seeds).collect()
+    }
+
+    /// One round: for each simplex, the best of the places tried for its seeds.
+    fn mend(&mut self, bad: &[Vec<VertexId>], round: usize, epsilon: f64) {
+        let radius = epsilon * (BALL[0] * GROWTH.powf(round as f64)).min(BALL[1]);
+        let asked = (self.share * epsilon).powi(2);
+        let by = if round >= GEODESICS.0 && bad.len() <= GEODESICS.1 { By::Geodesics } else { By::Estimates };
+        for seeds in bad {
+            if round > 0 {
+                let more = |excess: f64| (excess * ASKED[1]).min(MOST_ASKED);
+                for v in seeds {
+                    self.excess[v.index()] = more(self.excess[v.index()]);
+                }
+            }
+            self.mend_one(seeds, by, asked, radius);
+        }
+    }
+
+    fn mend_one(&mut self, seeds: &[VertexId], by: By, asked: f64, radius: f64) {
+        let free: Vec<VertexId> = seeds.iter().copied().filter(|&v| self.dual.kind(v) == Kind::Free).collect();
+        let mut memory = Memory::default();
+        let before: Vec<f64> = free.iter().map(|&v| self.shortfall(v, by, asked, &mut memory)).collect();
+        let mut best: Option<(f64, VertexId, Point)> = None;
+        for k in 0..TRIES[by as usize] {
+            let (v, before) = (free[k % free.len()], before[k % free.len()]);
+            let to = self.place_near(v, radius);
+            if !self.is_inside(v, to) {
+                continue;
+            }
+            self.tries += 1;
+            let trial = self.try_move(v, to);
+            let gain = before - self.shortfall(v, by, asked, &mut memory);
+            self.take_back(&trial);
+            if gain > LEAST_GAIN && best.is_none_or(|b| gain > b.0) {
+                best = Some((gain, v, to));
+                if gain >= before - LEAST_GAIN {
+                    // All that was missing around the seed is there.
+                    break;
+                }
+            }
+        }
+        if let Some((_, v, to)) = best.filter(|&(_, v, to)| self.dual.relocate(v, to)) {
+            self.try_move(v, to);
+            self.moves += 1;
+        }
+    }
+
+    fn shortfall(&self, v: VertexId, by: By, asked: f64, memory: &mut Memory) -> f64 {
+        let estimate = Estimate(self);
+        let faces = estimate.around(v);
+        match by {
+            By::Estimates => estimate.shortfall(&faces, |u| asked * self.excess[u.index()]),
+            By::Geodesics => self.exact_shortfall(&faces, asked * ASKED_OF_GEODESICS, memory),
+        }
+    }
+
+    /// [`Estimate::shortfall`] by geodesics.
+    fn exact_shortfall(&self, faces: &[FaceId], asked: f64, memory: &mut Memory) -> f64 {
+        let topology = &self.topology;
+        // The powers of seeds count that the neighbours of the faces' corners are.
+        let corners = faces.iter().flat_map(|&f| topology.corners(f));
+        let mut wide: Vec<FaceId> = corners.flat_map(|v| topology.star(v).map(HalfEdge::face)).collect();
+        wide.sort_unstable();
+        wide.dedup();
+        let border = wide.iter().flat_map(|f| f.half_edges()).filter(|&h| topology.twin(h).is_none());
+        let border: Vec<[u32; 2]> = border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect();
+        let triangles = corners_of(topology, wide.into_iter());
+        let is_inside = |seed: u32, p: Point| self.is_inside(VertexId(seed), p);
+        let found = Triangles { seeds: &self.positions, triangles: &triangles, border: &border, is_inside: &is_inside };
+        let net = Net::measure_again(self.dual.scaled_field(), &found, memory);
+        let mut own = corners_of(topology, faces.iter().copied());
+        own.sort_unstable();
+        let of_faces = net.interior().filter(|ball| own.binary_search(&ball.corners).is_ok()).map(|ball| ball.power);
+        let powers = of_faces.chain(net.border.iter().map(|ball| ball.power));
+        net.unmeasured as f64 + powers.map(|power| (1.0 - power / asked).max(0.0)).sum::<f64>()
+    }
+
+    /// A random point within a distance of a seed.
+    fn place_near(&mut self, v: VertexId, radius: f64) -> Point {
+        let local = &self.locals[v.index()];
+        let [a, b, c] = local.tensor.cholesky();
+        let mut step = self.random.in_disk() * radius;
+        step.y /= c;
+        step.x = (step.x - b * step.y) / a;
+        self.positions[v.index()] + local.exp(step)
+    }
+
+    fn try_move(&mut self, v: VertexId, to: Point) -> Trial {
+        let from = (self.positions[v.index()], self.locals[v.index()]);
+        self.positions[v.index()] = to;
+        self.locals[v.index()] = LocalMetric::at(self.dual.scaled_field(), to);
+        Trial { v, from, flips: self.flip_around(v) }
+    }
+
+    fn take_back(&mut self, trial: &Trial) {
+        for &h in trial.flips.iter().rev() {
+            // Four flips of an edge are none.
+            (0..3).for_each(|_| self.topology.flip(h));
+        }
+        (self.positions[trial.v.index()], self.locals[trial.v.index()]) = trial.from;
+    }
+
+    /// Lawson's flips around a seed by lengths from expansions; returns them in order.
+    fn flip_around(&mut self, v: VertexId) -> Vec<HalfEdge> {
+        let mut stack: Vec<HalfEdge> = self.topology.star(v).flat_map(|h| [h, h.next()]).collect();
+        let mut flips = Vec::new();
+        while let Some(h) = stack.pop() {
+            if flips.len() < FLIPS && self.wants_flip(h) {
+                self.topology.flip(h);
+                flips.push(h);
+                let t = self.topology.twin(h).expect("flipped edges have two faces");
+                stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
+            }
+        }
+        flips
+    }
+
+    fn wants_flip(&self, h: HalfEdge) -> bool {
+        let topology = &self.topology;
+        let Some(t) = topology.twin(h).filter(|_| !topology.is_fixed(h)) else { return false };
+        let [a, b, c, d] = [topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)];
+        let length =
+            |u: VertexId, v: VertexId| hermite(self.position(u), self.local(u), self.position(v), self.local(v)).value;
+        let angles = Angles::from_lengths(length(a, b), [length(a, c), length(b, c)], [length(a, d), length(b, d)]);
+        angles.margin() < -1e-9 && c != d && topology.find(c, d).is_none() && topology.find(d, c).is_none()
+    }
+}
+
+/// The power of a circle and the seeds that it depends on.
+fn around<const N: usize>(ball: &Ball<N>) -> (f64, Vec<VertexId>) {
+    (ball.power, ball.corners.iter().copied().chain(ball.nearest).map(VertexId).collect())
+}
