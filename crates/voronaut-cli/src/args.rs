@@ -191,6 +191,9 @@ pub(crate) struct Outputs {
     /// Pixels of the picture's longer side
     #[arg(long, value_name = "PIXELS", default_value_t = Picture::default().width, value_parser = value_parser!(u32).range(16..=16_000), requires = "picture")]
     pub(crate) pixels: u32,
+    /// Draw how metric edge lengths and angles are distributed, with straight and with geodesic edges: .svg
+    #[arg(long, value_name = "FILE", requires = "metric")]
+    pub(crate) histograms: Option<PathBuf>,
     /// Write all figures as JSON
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,

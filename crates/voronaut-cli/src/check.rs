@@ -44,6 +44,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     report.metric_scale = args.metric.is_some().then_some(args.metric_scale.unwrap_or(1.0));
     if let Some(metric) = &metric {
         report = report.with_quality(&metric_quality(&mesh, metric.as_ref())?);
+        report.histograms = files::histograms(&args.outputs, &mesh, metric.as_ref())?;
     }
     report.fidelity = domain.map(|domain| fidelity(&mesh, &domain.boundary()));
     report.seconds.total = start.elapsed().as_secs_f64();

@@ -66,6 +66,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
         stage("geodesics");
     }
     let mut report = reported(&mesh, metric.as_ref(), account)?;
+    report.histograms = files::histograms(&args.outputs, &mesh, metric.as_ref())?;
     report.canvas = Some(report::Canvas::of(&canvas));
     report.diagram = Some(report::Diagram::of(&diagram));
     report.notes = notes(&diagram, &report);
@@ -158,6 +159,6 @@ fn options(args: &DualArgs) -> serde_json::Value {
         "domain": args.domain, "metric": args.metric, "seeds": args.seeds, "out": args.out, "diagram": args.diagram,
         "canvas": "intrinsic", "canvas_size": args.canvas_size, "geodesic": "march", "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
-        "picture": args.outputs.picture, "report": args.outputs.report, "threads": args.run.threads,
+        "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
     })
 }

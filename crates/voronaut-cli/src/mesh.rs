@@ -40,6 +40,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let figures = metric_quality(&meshed.mesh, &scaled)?;
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     fill_in(&mut report, &meshed, options(args));
+    report.histograms = files::histograms(&args.outputs, &meshed.mesh, &scaled)?;
     report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     let drawn = drawn(args, &domain, &meshed.mesh, &scaled)?;
     files::write(&MeshFile::Straight(&args.out), &args.outputs, &meshed.mesh, Some(&scaled), &report, &drawn)?;
@@ -91,7 +92,7 @@ fn options(args: &MeshArgs) -> Value {
     let more = json!({
         "domain": args.domain, "metric": args.metric, "out": args.out, "background": args.metric_choices.background,
         "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
-        "picture": args.outputs.picture, "pixels": args.outputs.pixels, "report": args.outputs.report, "threads": args.run.threads,
+        "picture": args.outputs.picture, "pixels": args.outputs.pixels, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
     });
     if let (Value::Object(options), Value::Object(more)) = (&mut options, more) {
         options.extend(more);

@@ -3,7 +3,7 @@
 use crate::canvas::CanvasCounters;
 use crate::dual::Road;
 use crate::geodesic::MarchCounters;
-use crate::quality::{Angles, EdgeLengths, Fidelity, MetricQuality, Quality, Validity, Worst};
+use crate::quality::{Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, Validity, Worst};
 use crate::realisation::{self, Found, Realisation};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -29,6 +29,9 @@ pub struct Report {
     pub angle: Option<Angles>,
     /// Where the metric is honoured least.
     pub worst: Option<Worst>,
+    /// How edge lengths and angles are distributed, with straight and with geodesic edges; only where asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub histograms: Option<Histograms>,
     /// Euclidean distance to the domain's boundary.
     pub fidelity: Option<Fidelity>,
     /// The canvas, where one was used.
