@@ -4,9 +4,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::path::PathBuf;
 use voronaut::canvas::VERTICES_PER_SEED;
 use voronaut::dual::Road;
-use voronaut::metric::Bounds;
+use voronaut::metric::{Bounds, MOST_SWEEPS};
 use voronaut::output::Picture;
-use voronaut::recipe::{MeshOptions, Seeding};
+use voronaut::recipe::{MeshOptions, SMOOTH_METRIC, Seeding};
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
 #[derive(Debug, Parser)]
@@ -175,6 +175,10 @@ pub(crate) struct MetricChoices {
     /// Greatest ratio of the two sizes at a point, at least 1
     #[arg(long, value_name = "RATIO", value_parser = positive)]
     a_max: Option<f64>,
+    /// Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a .sol
+    /// file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
+    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(..=i64::from(MOST_SWEEPS)), allow_negative_numbers = true, default_value_t = SMOOTH_METRIC)]
+    pub(crate) smooth_metric: u32,
     /// The mesh on which a .sol metric is given [default: the domain's own]
     #[arg(long, value_name = "MESH")]
     pub(crate) background: Option<PathBuf>,
@@ -363,6 +367,9 @@ mod tests {
             &["--threads", "0"],
             &["--seeding", "protected"],
             &["--canvas-size", "0"],
+            &["--smooth-metric", "-1"],
+            &["--smooth-metric", "10001"],
+            &["--smooth-metric", "1.5"],
             &["--show", "mesh"],
             &["--pixels", "800"],
             &["--pixels", "8", "--picture", "a.svg"],

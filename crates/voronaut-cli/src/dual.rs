@@ -34,7 +34,9 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let spec = MetricSpec::parse(&args.metric)?;
     let domain = Domain::read(&args.domain)?;
     let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
-    let metric = recipe::metric(&spec, &domain, args.metric_choices.background.as_deref().or(own), bounds)?;
+    let background = args.metric_choices.background.as_deref().or(own);
+    let metric = recipe::metric(&spec, &domain, background, bounds)?;
+    let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
     let file = SeedFile::read(&args.seeds)?;
     let seeds = &file.seeds;
     let mut stages = Vec::new();
@@ -159,6 +161,7 @@ fn options(args: &DualArgs) -> serde_json::Value {
         "domain": args.domain, "metric": args.metric, "seeds": args.seeds, "out": args.out, "diagram": args.diagram,
         "canvas": "intrinsic", "canvas_size": args.canvas_size, "geodesic": "march", "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
+        "smooth_metric": args.metric_choices.smooth_metric,
         "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
     })
 }

@@ -30,6 +30,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let domain = Domain::read(&args.domain)?;
     let background = background(&spec, args);
     let metric = recipe::metric(&spec, &domain, background, bounds)?;
+    let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
     let meshed = {
         let bar = Bar::new(args.run.quiet, args.run.verbose);
         recipe::mesh(&domain, metric.as_ref(), &args.options(), &bar)?
@@ -91,6 +92,7 @@ fn options(args: &MeshArgs) -> Value {
     let mut options = json!(args.options());
     let more = json!({
         "domain": args.domain, "metric": args.metric, "out": args.out, "background": args.metric_choices.background,
+        "smooth_metric": args.metric_choices.smooth_metric,
         "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
         "picture": args.outputs.picture, "pixels": args.outputs.pixels, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
     });

@@ -63,6 +63,11 @@ impl Sampled {
         Self::new(background, &tensors)
     }
 
+    /// The same with other logarithms at the vertices.
+    pub(super) fn with_logarithms(self, logs: Vec<Tensor>) -> Self {
+        Self { logs, ..self }
+    }
+
     /// The triangle nearest to `p` and the barycentric coordinates of the nearest point in it; `None` where `p` is
     /// not finite.
     fn locate(&self, p: Point) -> Option<(&Triangle, [f64; 3])> {

@@ -111,7 +111,8 @@ fn total(histogram: &Histogram) -> usize {
 
 impl Panel<'_> {
     fn draw(&self, text: &mut String) {
-        let [straight, geodesic] = [&self.histogram.counts.straight, &self.histogram.counts.geodesic].map(|c| shares(c));
+        let [straight, geodesic] =
+            [&self.histogram.counts.straight, &self.histogram.counts.geodesic].map(|c| shares(c));
         let greatest = straight.iter().chain(&geodesic).copied().fold(1.0, f64::max);
         let step = round_step(greatest / STEPS);
         let top = (greatest / step).ceil() * step;
@@ -198,7 +199,8 @@ impl Panel<'_> {
 
     fn legend(&self, text: &mut String) {
         words(text, [self.left, 30.0], "font-size=\"18\" font-weight=\"bold\"", self.title);
-        let rows = [("straight", &self.legend.straight, STRAIGHT, "1"), ("geodesic", &self.legend.geodesic, CURVED, "0.08")];
+        let rows =
+            [("straight", &self.legend.straight, STRAIGHT, "1"), ("geodesic", &self.legend.geodesic, CURVED, "0.08")];
         for (row, (name, says, [fill, ink], opacity)) in rows.into_iter().enumerate() {
             let y = 56.0 + 22.0 * row as f64;
             let _ = writeln!(
@@ -253,7 +255,9 @@ mod tests {
         let found = histograms(&grid(4, 4), &|_: Point| Tensor::IDENTITY).unwrap();
         let text = histograms_svg(&found);
         assert!(text.ends_with("</svg>\n") && text.matches("straight: mean").count() == 2);
-        assert!(text.contains("mean 60.0\u{b0}") && text.contains("metric length of 56 edges") && !text.contains("NaN"));
+        assert!(
+            text.contains("mean 60.0\u{b0}") && text.contains("metric length of 56 edges") && !text.contains("NaN")
+        );
         assert!(!text.contains("Counted as straight"));
         let bent = histograms_svg(&Histograms { geodesics_not_found: 3, ..found });
         assert!(bent.contains("straight among the geodesic edges: 3 of which"));

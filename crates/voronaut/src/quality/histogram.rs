@@ -160,7 +160,8 @@ mod tests {
     /// How many values the bins that touch this value have.
     fn near(histogram: &Histogram, value: f64) -> [usize; 2] {
         let width = histogram.bounds[1];
-        let bins = || (0..histogram.bounds.len()).filter(|&i| (histogram.bounds[i] + 0.5 * width - value).abs() < 0.6 * width);
+        let bins =
+            || (0..histogram.bounds.len()).filter(|&i| (histogram.bounds[i] + 0.5 * width - value).abs() < 0.6 * width);
         [&histogram.counts.straight, &histogram.counts.geodesic].map(|counts| bins().map(|i| counts[i]).sum())
     }
 
@@ -200,7 +201,8 @@ mod tests {
             (1.0 + ((p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)) / (2.0 * p[1] * q[1])).acosh()
         });
         // The hyperbolic law of cosines.
-        let at = |a: f64, b: f64, c: f64| ((b.cosh() * c.cosh() - a.cosh()) / (b.sinh() * c.sinh())).acos().to_degrees();
+        let at =
+            |a: f64, b: f64, c: f64| ((b.cosh() * c.cosh() - a.cosh()) / (b.sinh() * c.sinh())).acos().to_degrees();
         let mean = (at(a, b, c) + at(b, c, a) + at(c, a, b)) / 3.0;
         assert!(mean < 58.0 && (found.angle.mean.geodesic - mean).abs() < 1e-3, "{mean} {:?}", found.angle.mean);
         assert!((found.angle.mean.straight - 60.0).abs() < 1e-9);

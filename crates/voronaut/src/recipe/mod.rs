@@ -6,7 +6,7 @@ mod seeding;
 mod settle;
 
 pub use dual::{SeedDual, dual};
-pub use field::metric;
+pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, metric, smooth_metric};
 pub use seeding::Seeding;
 
 use crate::canvas::{self, Canvas};
