@@ -9,8 +9,10 @@ use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use std::collections::HashSet;
 
-/// Lengths that are known no better than this (relative) count as not found: far below what a histogram shows.
-const VAGUE: f64 = 1e-3;
+/// Lengths that are known no better than this (relative) count as not found: a histogram hardly shows more.
+const VAGUE: f64 = 1e-2;
+/// Of those that are known no better than this more modes make nothing: the field has kinks there.
+const HOPELESS: f64 = 0.1;
 /// A geodesic that turns out of the domain by no more than this (radians) runs along its border.
 const ALONG: f64 = 1e-6;
 
@@ -63,8 +65,8 @@ fn border(mesh: &Mesh, edges: &Edges) -> HashSet<u32> {
 fn edge(paths: &Paths, metric: &dyn MetricField, [p, q]: [Point; 2], inside: Option<f64>) -> Result<MeasuredEdge> {
     let straight = edge_length([p, q], metric)?;
     let chord = MeasuredEdge { straight, geodesic: straight, directions: [q - p, p - q], found: Found::No };
-    let from = |a, b| [Fineness::MIDDLE, Fineness::FINEST].iter().find_map(|&f| logarithm(paths, metric, [a, b], f));
-    let (Some(ahead), Some(back)) = (from(p, q), from(q, p)) else { return Ok(chord) };
+    let Some(ahead) = logarithm(paths, metric, [p, q]) else { return Ok(chord) };
+    let Some(back) = logarithm(paths, metric, [q, p]) else { return Ok(chord) };
     if let Some(side) = inside {
         let turns = [angle(metric.at(p), q - p, ahead.velocity), angle(metric.at(q), back.velocity, p - q)];
         if turns.iter().any(|turn| side * turn < -ALONG) {
@@ -75,8 +77,12 @@ fn edge(paths: &Paths, metric: &dyn MetricField, [p, q]: [Point; 2], inside: Opt
     Ok(MeasuredEdge { straight, geodesic, directions: [ahead.velocity, back.velocity], found: Found::Geodesic })
 }
 
-fn logarithm(paths: &Paths, metric: &dyn MetricField, [p, q]: [Point; 2], fineness: Fineness) -> Option<Logarithm> {
-    paths.logarithm(metric, p, q, fineness).filter(|found| found.length.error < VAGUE)
+/// With as many modes as it takes.
+fn logarithm(paths: &Paths, metric: &dyn MetricField, [p, q]: [Point; 2]) -> Option<Logarithm> {
+    let with = |fineness| paths.logarithm(metric, p, q, fineness);
+    let first = with(Fineness::MIDDLE).filter(|found| found.length.error < HOPELESS)?;
+    let found = if first.length.error < VAGUE { first } else { with(Fineness::FINEST)? };
+    (found.length.error < VAGUE).then_some(found)
 }
 
 #[cfg(test)]
