@@ -71,12 +71,11 @@ fn metric(args: &CheckArgs, text: &str, domain: Option<&Domain>) -> Result<Box<d
     let own = matches!(spec, MetricSpec::File(_)).then_some(own_file);
     let background = args.metric_choices.background.as_deref().or(own);
     let own;
-    let domain = match domain {
-        Some(domain) => domain,
-        None => {
-            own = Domain::read(&args.mesh.to_string_lossy())?;
-            &own
-        }
+    let domain = if let Some(domain) = domain {
+        domain
+    } else {
+        own = Domain::read(&args.mesh.to_string_lossy())?;
+        &own
     };
     let metric = recipe::metric(&spec, domain, background, bounds)?;
     let metric = recipe::smooth_metric(metric, domain, background, args.metric_choices.smooth_metric)?;

@@ -88,7 +88,9 @@ impl Histogram {
         let bins = (last / width).round() as usize + 1;
         let count = |values: &[f64]| {
             let mut counts = vec![0; bins];
-            values.iter().for_each(|value| counts[((value / width) as usize).min(bins - 1)] += 1);
+            for value in values {
+                counts[((value / width) as usize).min(bins - 1)] += 1;
+            }
             counts
         };
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
@@ -126,7 +128,9 @@ fn geodesic_angles(
 ) -> Result<Vec<f64>> {
     let mut edge_of = vec![0; 3 * mesh.triangles.len()];
     for (edge, (_, half_edges)) in edges.iter().enumerate() {
-        half_edges.iter().for_each(|&(_, h)| edge_of[h as usize] = edge);
+        for &(_, half_edge) in half_edges {
+            edge_of[half_edge as usize] = edge;
+        }
     }
     let numbers: Vec<usize> = (0..mesh.triangles.len()).collect();
     let angles = collect(&numbers, |&t| {
