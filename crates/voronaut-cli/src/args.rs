@@ -4,9 +4,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::path::PathBuf;
 use voronaut::canvas::VERTICES_PER_SEED;
 use voronaut::dual::Road;
-use voronaut::metric::Bounds;
+use voronaut::metric::{Bounds, MOST_SWEEPS};
 use voronaut::output::Picture;
-use voronaut::recipe::{Centroid, MeshOptions, Seeding};
+use voronaut::recipe::{Centroid, MeshOptions, SMOOTH_METRIC, Seeding};
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
 #[derive(Debug, Parser)]
@@ -189,6 +189,10 @@ pub(crate) struct MetricChoices {
     /// Greatest ratio of the two sizes at a point, at least 1
     #[arg(long, value_name = "RATIO", value_parser = positive)]
     a_max: Option<f64>,
+    /// Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a .sol
+    /// file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
+    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(..=i64::from(MOST_SWEEPS)), allow_negative_numbers = true, default_value_t = SMOOTH_METRIC)]
+    pub(crate) smooth_metric: u32,
     /// The mesh on which a .sol metric is given [default: the domain's own]
     #[arg(long, value_name = "MESH")]
     pub(crate) background: Option<PathBuf>,
@@ -205,6 +209,9 @@ pub(crate) struct Outputs {
     /// Pixels of the picture's longer side
     #[arg(long, value_name = "PIXELS", default_value_t = Picture::default().width, value_parser = value_parser!(u32).range(16..=16_000), requires = "picture")]
     pub(crate) pixels: u32,
+    /// Draw how metric edge lengths and angles are distributed, with straight and with geodesic edges: .svg
+    #[arg(long, value_name = "FILE", requires = "metric")]
+    pub(crate) histograms: Option<PathBuf>,
     /// Write all figures as JSON
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
@@ -382,6 +389,9 @@ mod tests {
             &["--protection", "-0.1"],
             &["--picking-radius", "nan"],
             &["--canvas-size", "0"],
+            &["--smooth-metric", "-1"],
+            &["--smooth-metric", "10001"],
+            &["--smooth-metric", "1.5"],
             &["--show", "mesh"],
             &["--pixels", "800"],
             &["--pixels", "8", "--picture", "a.svg"],

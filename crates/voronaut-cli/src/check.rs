@@ -32,6 +32,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     report.options = json!({
         "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
+        "smooth_metric": args.metric_choices.smooth_metric,
     });
     if let Err(fault) = fault {
         report.seconds.total = start.elapsed().as_secs_f64();
@@ -44,6 +45,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     report.metric_scale = args.metric.is_some().then_some(args.metric_scale.unwrap_or(1.0));
     if let Some(metric) = &metric {
         report = report.with_quality(&metric_quality(&mesh, metric.as_ref())?);
+        report.histograms = files::histograms(&args.outputs, &mesh, metric.as_ref())?;
     }
     report.fidelity = domain.map(|domain| fidelity(&mesh, &domain.boundary()));
     report.seconds.total = start.elapsed().as_secs_f64();
@@ -68,10 +70,15 @@ fn metric(args: &CheckArgs, text: &str, domain: Option<&Domain>) -> Result<Box<d
     let own_file = args.domain.as_deref().map_or(args.mesh.as_path(), Path::new);
     let own = matches!(spec, MetricSpec::File(_)).then_some(own_file);
     let background = args.metric_choices.background.as_deref().or(own);
-    let metric = match domain {
-        Some(domain) => recipe::metric(&spec, domain, background, bounds)?,
-        None => recipe::metric(&spec, &Domain::read(&args.mesh.to_string_lossy())?, background, bounds)?,
+    let own;
+    let domain = if let Some(domain) = domain {
+        domain
+    } else {
+        own = Domain::read(&args.mesh.to_string_lossy())?;
+        &own
     };
+    let metric = recipe::metric(&spec, domain, background, bounds)?;
+    let metric = recipe::smooth_metric(metric, domain, background, args.metric_choices.smooth_metric)?;
     let scale = args.metric_scale.unwrap_or(1.0);
     Ok(Box::new(move |p: Point| metric.at(p) * scale))
 }

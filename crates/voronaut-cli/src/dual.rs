@@ -34,7 +34,9 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let spec = MetricSpec::parse(&args.metric)?;
     let domain = Domain::read(&args.domain)?;
     let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
-    let metric = recipe::metric(&spec, &domain, args.metric_choices.background.as_deref().or(own), bounds)?;
+    let background = args.metric_choices.background.as_deref().or(own);
+    let metric = recipe::metric(&spec, &domain, background, bounds)?;
+    let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
     let file = SeedFile::read(&args.seeds)?;
     let seeds = &file.seeds;
     let mut stages = Vec::new();
@@ -67,6 +69,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
         stage("geodesics");
     }
     let mut report = reported(&mesh, metric.as_ref(), account)?;
+    report.histograms = files::histograms(&args.outputs, &mesh, metric.as_ref())?;
     report.canvas = Some(report::Canvas::of(&canvas));
     report.diagram = Some(report::Diagram { raw_nerve: Some(raw_nerve), ..report::Diagram::of(&diagram) });
     let net = Drawn::needs_net(&args.outputs).then(|| recipe::net(&diagram, metric.as_ref(), &exact));
@@ -165,6 +168,7 @@ fn options(args: &DualArgs) -> serde_json::Value {
         "domain": args.domain, "metric": args.metric, "seeds": args.seeds, "out": args.out, "diagram": args.diagram,
         "canvas": "intrinsic", "canvas_size": args.canvas_size, "geodesic": "march", "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
-        "picture": args.outputs.picture, "report": args.outputs.report, "threads": args.run.threads,
+        "smooth_metric": args.metric_choices.smooth_metric,
+        "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
     })
 }

@@ -8,6 +8,7 @@ use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::net::Net;
 use voronaut::output::{self, Format, Layers, Picture, PictureFormat, Protection, Report};
+use voronaut::quality::{self, Histograms};
 use voronaut::realisation::{Grid, Realisation};
 use voronaut::{Error, Result};
 
@@ -19,7 +20,8 @@ const PIECES: usize = 4;
 pub(crate) fn demand_writable(mesh: Option<&Path>, more: Option<&Path>, outputs: &Outputs) -> Result<()> {
     mesh.map(Format::from_path).transpose()?;
     outputs.picture.as_deref().map(PictureFormat::from_path).transpose()?;
-    let files = [mesh, more, outputs.picture.as_deref(), outputs.report.as_deref()];
+    outputs.histograms.as_deref().map(output::demand_histograms).transpose()?;
+    let files = [mesh, more, outputs.picture.as_deref(), outputs.histograms.as_deref(), outputs.report.as_deref()];
     let mut seen = Vec::new();
     for file in files.into_iter().flatten() {
         let place = output::place(file)?;
@@ -117,7 +119,12 @@ pub(crate) enum MeshFile<'a> {
     Geodesic(&'a Path, &'a Realisation),
 }
 
-/// Writes mesh, picture and report, as far as asked for. The picture is drawn before anything is written.
+/// The distributions of lengths and angles, if they are to be drawn.
+pub(crate) fn histograms(outputs: &Outputs, mesh: &Mesh, metric: &dyn MetricField) -> Result<Option<Histograms>> {
+    outputs.histograms.is_some().then(|| quality::histograms(mesh, metric)).transpose()
+}
+
+/// Writes mesh, picture, histograms and report, as far as asked for. The picture is drawn before anything is written.
 pub(crate) fn write(
     mesh_file: &MeshFile,
     outputs: &Outputs,
@@ -133,6 +140,9 @@ pub(crate) fn write(
         MeshFile::Geodesic(path, realisation) => output::write_realisation(realisation, path)?,
     }
     picture.map(|(path, svg)| output::write_picture(&svg, path)).transpose()?;
+    if let (Some(path), Some(found)) = (&outputs.histograms, &report.histograms) {
+        output::write(path, output::histograms_svg(found).as_bytes())?;
+    }
     write_report(outputs, report)
 }
 

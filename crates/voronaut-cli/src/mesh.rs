@@ -30,6 +30,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let domain = Domain::read(&args.domain)?;
     let background = background(&spec, args);
     let metric = recipe::metric(&spec, &domain, background, bounds)?;
+    let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
     let meshed = {
         let bar = Bar::new(args.run.quiet, args.run.verbose);
         recipe::mesh(&domain, metric.as_ref(), &args.options(), &bar)?
@@ -40,6 +41,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let figures = metric_quality(&meshed.mesh, &scaled)?;
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     fill_in(&mut report, &meshed, options(args));
+    report.histograms = files::histograms(&args.outputs, &meshed.mesh, &scaled)?;
     report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     let drawn = drawn(args, &domain, &meshed.mesh, &scaled)?;
     let drawn = drawn.with_net(&args.outputs, meshed.net.as_ref(), args.protection);
@@ -94,8 +96,9 @@ fn options(args: &MeshArgs) -> Value {
     let mut options = json!(args.options());
     let more = json!({
         "domain": args.domain, "metric": args.metric, "out": args.out, "background": args.metric_choices.background,
+        "smooth_metric": args.metric_choices.smooth_metric,
         "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
-        "picture": args.outputs.picture, "pixels": args.outputs.pixels, "report": args.outputs.report, "threads": args.run.threads,
+        "picture": args.outputs.picture, "pixels": args.outputs.pixels, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
     });
     if let (Value::Object(options), Value::Object(more)) = (&mut options, more) {
         options.extend(more);

@@ -9,6 +9,7 @@
 //! | [`Boundary`] | `boundary:h0=0.01,growth=1.2,aspect=1,h_max=inf` | layers along the boundary |
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at the vertices of a mesh, log-Euclidean between them |
 //! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits |
+//! | [`smoothed()`] | `--smooth-metric` | another field, averaged over neighbours on a background mesh |
 //! | [`Scaled`] | `-n`, `--complexity` | another field times a factor |
 //!
 //! [`MetricSpec`] reads the second column; [`complexity()`] integrates sqrt(det M); [`check_tensor`] and
@@ -23,6 +24,7 @@ mod formula;
 mod parser;
 mod sampled;
 mod scaled;
+mod smoothed;
 mod spec;
 mod tree;
 mod validate;
@@ -36,6 +38,7 @@ pub use expression::{Expression, Variables};
 pub use formula::Formula;
 pub use sampled::Sampled;
 pub use scaled::Scaled;
+pub use smoothed::{MOST_SWEEPS, smoothed};
 pub use spec::MetricSpec;
 pub use validate::{check_field, check_tensor};
 

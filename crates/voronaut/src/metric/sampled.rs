@@ -16,10 +16,14 @@ use crate::mesh::Mesh;
 pub struct Sampled {
     /// Logarithms, one per vertex.
     logs: Vec<Tensor>,
-    /// In the order of `tree`.
+    /// In the order of `tree`, once for each piece.
     triangles: Vec<Triangle>,
     tree: BoxTree,
 }
+
+/// Boxes may be so many times larger than their triangles before these are cut, and triangles cut so often.
+const ROOMY: f64 = 8.0;
+const HALVINGS: u32 = 5;
 
 #[derive(Clone, Copy, Debug)]
 struct Triangle {
@@ -41,9 +45,16 @@ impl Sampled {
             check_tensor_at(tensor, || describe(background, i))?;
         }
         let corners: Vec<[Point; 3]> = background.triangles.iter().map(|&t| background.corners_of(t)).collect();
-        let boxes: Vec<Aabb> = corners.iter().filter_map(|&c| Aabb::of(c)).collect();
+        let mut pieces: Vec<(Aabb, usize)> = Vec::new();
+        for (i, &triangle) in corners.iter().enumerate() {
+            cut(triangle, HALVINGS, &mut |piece| pieces.push((piece, i)));
+        }
+        let boxes: Vec<Aabb> = pieces.iter().map(|&(piece, _)| piece).collect();
         let (tree, order) = BoxTree::new(&boxes);
-        let triangle = |&i: &u32| Triangle { corners: corners[i as usize], vertices: background.triangles[i as usize] };
+        let triangle = |&piece: &u32| {
+            let (_, i) = pieces[piece as usize];
+            Triangle { corners: corners[i], vertices: background.triangles[i] }
+        };
         let logs = tensors.iter().map(|tensor| tensor.log()).collect();
         Ok(Self { logs, triangles: order.iter().map(triangle).collect(), tree })
     }
@@ -63,9 +74,18 @@ impl Sampled {
         Self::new(background, &tensors)
     }
 
+    /// The same with other logarithms at the vertices.
+    pub(super) fn with_logarithms(self, logs: Vec<Tensor>) -> Self {
+        Self { logs, ..self }
+    }
+
     /// The triangle nearest to `p` and the barycentric coordinates of the nearest point in it; `None` where `p` is
     /// not finite.
     fn locate(&self, p: Point) -> Option<(&Triangle, [f64; 3])> {
+        if !p.is_finite() {
+            // No box is farther than another: all would be looked into.
+            return None;
+        }
         let mut best = f64::INFINITY;
         let mut found = None;
         self.tree.search(p, |position| {
@@ -89,6 +109,22 @@ impl MetricField for Sampled {
         let [a, b, c] = triangle.vertices.map(|v| self.logs[v as usize]);
         (a * weights[0] + b * weights[1] + c * weights[2]).exp()
     }
+}
+
+/// Calls back with boxes that hold a triangle: one, or, where that would be much larger than the triangle, those of the
+/// halves at its longest side. Without that the boxes of thin triangles overlap, and a search looks into hundreds.
+fn cut([a, b, c]: [Point; 3], halvings: u32, found: &mut impl FnMut(Aabb)) {
+    let Some(whole) = Aabb::of([a, b, c]) else { return };
+    let (extent, area) = (whole.extent(), 0.5 * (b - a).cross(c - a).abs());
+    if halvings == 0 || extent.x * extent.y <= ROOMY * area {
+        return found(whole);
+    }
+    let sides = [(a, b, c), (b, c, a), (c, a, b)];
+    let (p, q, apex) =
+        sides.into_iter().max_by(|s, t| s.0.distance(s.1).total_cmp(&t.0.distance(t.1))).unwrap_or((a, b, c));
+    let middle = p.midpoint(q);
+    cut([p, middle, apex], halvings - 1, found);
+    cut([middle, q, apex], halvings - 1, found);
 }
 
 /// Squared distance of `p` to a triangle of either orientation, even without area, and the barycentric coordinates
@@ -262,6 +298,21 @@ mod tests {
         let field = sampled(&mesh);
         assert!(field.at(Point::new(0.3, -0.2)).is_positive_definite());
         assert!(field.at(Point::new(f64::NAN, 0.0)).xx.is_nan());
+    }
+
+    #[test]
+    fn thin_triangles_are_found_as_thick_ones() {
+        // Turned by 45 degrees and a thousand times longer than wide.
+        let turn = |[x, y, _]: [f64; 3]| [x + 1e-3 * y, x - 1e-3 * y, 0.0];
+        let (thick, mut thin) = (grid(8), grid(8));
+        thin.points.iter_mut().for_each(|p| *p = turn(*p));
+        let tensors: Vec<Tensor> = (0..thick.points.len() as u32).map(|v| smooth(thick.point(v))).collect();
+        let [thick, thin] = [thick, thin].map(|mesh| Sampled::new(&mesh, &tensors).unwrap());
+        for i in 0..500 {
+            let p = [(f64::from(i) * 0.618).fract(), (f64::from(i) * 0.414).fract(), 0.0];
+            let [x, y, _] = turn(p);
+            assert!(error(thin.at(Point::new(x, y)), thick.at(Point::new(p[0], p[1]))) < 1e-9, "{p:?}");
+        }
     }
 
     #[test]

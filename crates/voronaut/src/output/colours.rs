@@ -22,6 +22,16 @@ pub(super) const GRID: &str = "#4a5b85";
 pub(super) const EDGE_WITNESS: [&str; 2] = ["#aab0ba", "#8b929e"];
 pub(super) const VERTEX_WITNESS: [&str; 2] = ["#d8293c", "#a3182b"];
 
+/// Fill and ink of what is counted of straight edges, and of geodesic ones.
+pub(super) const STRAIGHT: [&str; 2] = ["#a9bfdf", "#4a6ba3"];
+pub(super) const CURVED: [&str; 2] = ["#d1442b", "#d1442b"];
+/// The range that is wanted, behind a histogram, and what marks it.
+pub(super) const WANTED: [&str; 2] = ["#f1f5ea", "#7d9160"];
+/// Lines across a histogram, its axes, and words.
+pub(super) const RULE: &str = "#dfe3ea";
+pub(super) const AXIS: &str = "#6b7486";
+pub(super) const TEXT: &str = "#14213d";
+
 /// The colour of a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {

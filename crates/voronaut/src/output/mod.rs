@@ -5,6 +5,7 @@ mod cells;
 mod colours;
 mod ellipses;
 mod frame;
+mod histogram;
 mod obj;
 mod palette;
 mod protection;
@@ -18,6 +19,7 @@ mod vtu;
 
 pub use atomic::{demand_directory, place, write};
 pub use cells::Layers;
+pub use histogram::histograms_svg;
 #[cfg(feature = "png")]
 pub use png::render_png;
 pub use protection::Protection;
@@ -138,6 +140,18 @@ pub fn demand_diagram(path: &Path) -> Result<()> {
     }
     let what = format!("a diagram in {}", path.display());
     Err(Error::Unsupported { what, help: "end the name of the diagram in .vtu".into() })
+}
+
+/// Refuses names that do not end like a drawing of histograms.
+///
+/// # Errors
+/// [`Error::Unsupported`] for other endings than `.svg`.
+pub fn demand_histograms(path: &Path) -> Result<()> {
+    if ending(path) == "svg" {
+        return Ok(());
+    }
+    let what = format!("histograms in {}", path.display());
+    Err(Error::Unsupported { what, help: "end the name of the histograms in .svg".into() })
 }
 
 /// Writes a picture made by [`svg`] in the format its name ends in, as a whole or not at all.

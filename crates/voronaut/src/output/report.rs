@@ -4,9 +4,8 @@ use crate::canvas::CanvasCounters;
 use crate::dual::Road;
 use crate::geodesic::MarchCounters;
 use crate::net::Net;
-use crate::optimise::Ending;
-use crate::optimise::Relaxed;
-use crate::quality::{Angles, EdgeLengths, Fidelity, MetricQuality, Quality, Validity, Worst};
+use crate::optimise::{Ending, Relaxed};
+use crate::quality::{Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, Validity, Worst};
 use crate::realisation::{self, Found, Realisation};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -32,6 +31,9 @@ pub struct Report {
     pub angle: Option<Angles>,
     /// Where the metric is honoured least.
     pub worst: Option<Worst>,
+    /// How edge lengths and angles are distributed, with straight and with geodesic edges; only where asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub histograms: Option<Histograms>,
     /// Euclidean distance to the domain's boundary.
     pub fidelity: Option<Fidelity>,
     /// The canvas, where one was used.

@@ -2,7 +2,7 @@
 
 use super::edges::Edges;
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Tensor};
+use crate::geometry::{Point, Tensor, Vector};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use rayon::prelude::*;
@@ -109,7 +109,7 @@ pub fn metric_quality(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQua
 }
 
 impl EdgeLengths {
-    fn of(lengths: &[f64]) -> Option<Self> {
+    pub(super) fn of(lengths: &[f64]) -> Option<Self> {
         let is_unit = |length: &&f64| (FRAC_1_SQRT_2..=SQRT_2).contains(*length);
         let mean = mean(lengths, |&l| l);
         (!lengths.is_empty()).then(|| Self {
@@ -138,7 +138,7 @@ const GAUSS: [(f64, f64); 5] = [
 ];
 
 /// Metric length of the straight edge.
-fn edge_length([a, b]: [Point; 2], metric: &dyn MetricField) -> Result<f64> {
+pub(super) fn edge_length([a, b]: [Point; 2], metric: &dyn MetricField) -> Result<f64> {
     GAUSS.iter().map(|&(t, weight)| Ok(weight * tensor(metric, a.lerp(b, t))?.length(b - a))).sum()
 }
 
@@ -149,21 +149,30 @@ struct Shape {
 }
 
 fn shape(mesh: &Mesh, triangle: [u32; 3], logarithms: &[Tensor]) -> Shape {
-    let [la, lb, lc] = triangle.map(|v| logarithms[v as usize]);
-    let m = ((la + lb + lc) * (1.0 / 3.0)).exp();
+    let m = mean_tensor(triangle, logarithms);
     let [a, b, c] = mesh.corners_of(triangle);
     let (ab, bc, ca) = (b - a, c - b, a - c);
     // Twice the area in the metric.
     let double_area = m.determinant().max(0.0).sqrt() * ab.cross(-ca);
     let squares = m.dot(ab, ab) + m.dot(bc, bc) + m.dot(ca, ca);
-    let angle = |u, v| double_area.atan2(m.dot(u, v));
-    let smallest = angle(ab, -ca).min(angle(bc, -ab)).min(angle(ca, -bc));
+    let smallest = angle(m, ab, -ca).min(angle(m, bc, -ab)).min(angle(m, ca, -bc));
     let quality = if squares > 0.0 { 2.0 * 3.0_f64.sqrt() * double_area / squares } else { 0.0 };
     Shape { quality, angle: smallest.to_degrees() }
 }
 
+/// The tensor of a triangle: the log-Euclidean mean of those at its vertices.
+pub(super) fn mean_tensor(triangle: [u32; 3], logarithms: &[Tensor]) -> Tensor {
+    let [a, b, c] = triangle.map(|v| logarithms[v as usize]);
+    ((a + b + c) * (1.0 / 3.0)).exp()
+}
+
+/// The angle (radians, from -pi to pi) by which u must turn to point along v, in a metric.
+pub(super) fn angle(m: Tensor, u: Vector, v: Vector) -> f64 {
+    (m.determinant().max(0.0).sqrt() * u.cross(v)).atan2(m.dot(u, v))
+}
+
 /// Logarithms of the tensors at the vertices of triangles; zero at vertices of no triangle.
-fn vertex_logarithms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Vec<Tensor>> {
+pub(super) fn vertex_logarithms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Vec<Tensor>> {
     let mut used = vec![false; mesh.points.len()];
     mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
     let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
@@ -172,7 +181,7 @@ fn vertex_logarithms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Vec<Tensor
     collect(&vertices, |&v| logarithm(v))
 }
 
-fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {
+pub(super) fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {
     let m = metric.at(p);
     let help = "mend the metric there, or give bounds on it (--h-min, --h-max, --a-max)";
     let what = || format!("({}, {}, {}) is not positive definite", m.xx, m.xy, m.yy);
@@ -180,7 +189,7 @@ fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {
 }
 
 /// Maps in parallel; the error is that of the first item that has one, for any number of threads.
-fn collect<T: Sync, U: Send>(items: &[T], f: impl Fn(&T) -> Result<U> + Sync + Send) -> Result<Vec<U>> {
+pub(super) fn collect<T: Sync, U: Send>(items: &[T], f: impl Fn(&T) -> Result<U> + Sync + Send) -> Result<Vec<U>> {
     // Errors are large: only the first is kept, by asking for it again.
     let values: Vec<Option<U>> = items.par_iter().map(|item| f(item).ok()).collect();
     values.into_iter().zip(items).map(|(value, item)| value.map_or_else(|| f(item), Ok)).collect()
@@ -213,7 +222,7 @@ fn centroid([a, b, c]: [Point; 3]) -> Point {
     Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0)
 }
 
-fn demand_planar(mesh: &Mesh) -> Result<()> {
+pub(super) fn demand_planar(mesh: &Mesh) -> Result<()> {
     if mesh.triangles.as_flattened().iter().any(|&v| v as usize >= mesh.points.len()) {
         return Err(fault("a triangle names a vertex that does not exist", "the array of triangles"));
     }
@@ -233,7 +242,6 @@ fn fault(what: &str, place: &str) -> Error {
 mod tests {
     use super::super::test_meshes::{grid, lattice, mesh};
     use super::*;
-    use crate::geometry::Vector;
 
     fn close(a: f64, b: f64) {
         assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{a} is not {b}");

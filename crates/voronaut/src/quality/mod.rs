@@ -4,6 +4,8 @@ mod crossings;
 mod edges;
 mod embedding;
 mod fidelity;
+mod geodesics;
+mod histogram;
 mod metric_quality;
 mod segments;
 #[cfg(test)]
@@ -12,6 +14,7 @@ mod validity;
 
 pub use crossings::{Crossing, crossing_edges, crossings};
 pub use fidelity::{Farthest, Fidelity, fidelity};
+pub use histogram::{Both, Histogram, Histograms, histograms};
 pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};
 pub use validity::{Fault, Validity, check, validity};
 

@@ -8,7 +8,7 @@ mod seeding;
 mod settle;
 
 pub use dual::{SeedDual, dual, net};
-pub use field::metric;
+pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, metric, smooth_metric};
 pub use relaxing::Centroid;
 pub use seeding::Seeding;
 

@@ -1,0 +1,239 @@
+//! How metric edge lengths and angles are distributed, with straight edges and with geodesic ones (RR-9103, figure 20).
+
+use super::edges::Edges;
+use super::geodesics::{Found, MeasuredEdge, measure};
+use super::metric_quality::{EdgeLengths, angle, collect, demand_planar, mean_tensor, tensor, vertex_logarithms};
+use crate::error::Result;
+use crate::mesh::Mesh;
+use crate::metric::MetricField;
+use rayon::prelude::*;
+
+/// A figure of the mesh with straight edges, and the same with geodesic edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Both<T> {
+    /// With straight edges: the SRDT, if the mesh is one.
+    pub straight: T,
+    /// With geodesic edges: the RDT, if the mesh is one.
+    pub geodesic: T,
+}
+
+/// Values counted in bins.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Histogram {
+    /// Where bins begin, in increasing order. Each ends where the next begins; the last also has all that is larger.
+    pub bounds: Vec<f64>,
+    /// How many values each bin has: two lists of as many entries as there are bounds, their fields beside these.
+    #[serde(flatten)]
+    pub counts: Both<Vec<usize>>,
+    /// Arithmetic means of the values; not a number of none.
+    pub mean: Both<f64>,
+    /// Standard deviations (of the whole population).
+    pub std: Both<f64>,
+}
+
+/// The distributions of a mesh in a metric.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Histograms {
+    /// Metric lengths of all edges.
+    pub edge_length: Histogram,
+    /// Share of the edges whose length is in [1/sqrt 2, sqrt 2]; not a number of none.
+    pub unit_fraction: Both<f64>,
+    /// All angles of all triangles, in degrees from 0 to 180. Between straight edges in the triangle's own metric (see
+    /// [`Quality`](super::Quality)), where the three sum to 180; between geodesics at the vertex, in the metric there, where
+    /// they need not.
+    pub angle: Histogram,
+    /// Edges for which no geodesic was found: among the geodesic figures theirs are those of the straight edge.
+    pub geodesics_not_found: usize,
+    /// Edges on the border of the domain whose geodesic would leave the domain; they, too, count as straight.
+    pub geodesics_on_border: usize,
+}
+
+/// Width of the bins of lengths, and where the last begins.
+const LENGTHS: (f64, f64) = (0.05, 2.0);
+/// Width of the bins of angles, and where the last begins, in degrees.
+const ANGLES: (f64, f64) = (3.0, 177.0);
+
+/// Measures the edges and angles of a planar mesh in a metric, in parallel; the same bits for any number of threads.
+///
+/// Geodesics are found from the metric alone ([`Paths::logarithm`](crate::geodesic::Paths::logarithm), from the chord on),
+/// some 500 evaluations of the field for each edge, or a few thousand where it has kinks. They know no domain but on its border: the edges of one triangle
+/// that [`Mesh::edges`] has. A mesh without triangles has empty histograms.
+///
+/// # Errors
+/// As for [`metric_quality`](super::metric_quality()), but for meshes without triangles.
+pub fn histograms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Histograms> {
+    demand_planar(mesh)?;
+    let edges = Edges::of(&mesh.triangles);
+    let measured = measure(mesh, &edges, metric)?;
+    let lengths = Both {
+        straight: measured.iter().map(|e| e.straight).collect::<Vec<_>>(),
+        geodesic: measured.iter().map(|e| e.geodesic).collect(),
+    };
+    let angles =
+        Both { straight: straight_angles(mesh, metric)?, geodesic: geodesic_angles(mesh, &edges, &measured, metric)? };
+    let count = |found| measured.iter().filter(|edge| edge.found == found).count();
+    let unit = |lengths: &[f64]| EdgeLengths::of(lengths).map_or(f64::NAN, |figures| figures.unit_fraction);
+    Ok(Histograms {
+        unit_fraction: Both { straight: unit(&lengths.straight), geodesic: unit(&lengths.geodesic) },
+        edge_length: Histogram::of(LENGTHS, &lengths),
+        angle: Histogram::of(ANGLES, &angles),
+        geodesics_not_found: count(Found::No),
+        geodesics_on_border: count(Found::OnBorder),
+    })
+}
+
+impl Histogram {
+    /// Of values from 0 up, in bins of this width, the last of which begins at `last`.
+    fn of((width, last): (f64, f64), values: &Both<Vec<f64>>) -> Self {
+        let bins = (last / width).round() as usize + 1;
+        let count = |values: &[f64]| {
+            let mut counts = vec![0; bins];
+            for value in values {
+                counts[((value / width) as usize).min(bins - 1)] += 1;
+            }
+            counts
+        };
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let deviation = |values: &[f64]| {
+            let centre = mean(values);
+            mean(&values.iter().map(|value| (value - centre).powi(2)).collect::<Vec<_>>()).sqrt()
+        };
+        Self {
+            // Not multiples of the width, which would have the rounding of 0.05 in them.
+            bounds: (0..bins).map(|i| last * i as f64 / (bins - 1) as f64).collect(),
+            counts: Both { straight: count(&values.straight), geodesic: count(&values.geodesic) },
+            mean: Both { straight: mean(&values.straight), geodesic: mean(&values.geodesic) },
+            std: Both { straight: deviation(&values.straight), geodesic: deviation(&values.geodesic) },
+        }
+    }
+}
+
+/// The three angles of each triangle between its straight edges.
+fn straight_angles(mesh: &Mesh, metric: &dyn MetricField) -> Result<Vec<f64>> {
+    let logarithms = vertex_logarithms(mesh, metric)?;
+    let of_triangle = |&triangle: &[u32; 3]| {
+        let m = mean_tensor(triangle, &logarithms);
+        let [a, b, c] = mesh.corners_of(triangle);
+        [angle(m, b - a, c - a), angle(m, c - b, a - b), angle(m, a - c, b - c)].map(unsigned)
+    };
+    Ok(mesh.triangles.par_iter().map(of_triangle).collect::<Vec<_>>().into_flattened())
+}
+
+/// The three angles of each triangle between the geodesics that leave its vertices.
+fn geodesic_angles(
+    mesh: &Mesh,
+    edges: &Edges,
+    measured: &[MeasuredEdge],
+    metric: &dyn MetricField,
+) -> Result<Vec<f64>> {
+    let mut edge_of = vec![0; 3 * mesh.triangles.len()];
+    for (edge, (_, half_edges)) in edges.iter().enumerate() {
+        for &(_, half_edge) in half_edges {
+            edge_of[half_edge as usize] = edge;
+        }
+    }
+    let numbers: Vec<usize> = (0..mesh.triangles.len()).collect();
+    let angles = collect(&numbers, |&t| {
+        let triangle = mesh.triangles[t];
+        // From a corner towards the one after it, and from that one back.
+        let sides = [0, 1, 2].map(|i| {
+            let [ahead, back] = measured[edge_of[3 * t + i]].directions;
+            if triangle[i] < triangle[(i + 1) % 3] { [ahead, back] } else { [back, ahead] }
+        });
+        let mut angles = [0.0; 3];
+        for (i, found) in angles.iter_mut().enumerate() {
+            let m = tensor(metric, mesh.point(triangle[i]))?;
+            *found = unsigned(angle(m, sides[i][0], sides[(i + 2) % 3][1]));
+        }
+        Ok(angles)
+    });
+    Ok(angles?.into_flattened())
+}
+
+/// Degrees, whichever way round.
+fn unsigned(angle: f64) -> f64 {
+    angle.abs().to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_meshes::{grid, lattice, mesh};
+    use super::*;
+    use crate::geometry::{Point, Tensor};
+
+    /// How many values the bins that touch this value have.
+    fn near(histogram: &Histogram, value: f64) -> [usize; 2] {
+        let width = histogram.bounds[1];
+        let bins =
+            || (0..histogram.bounds.len()).filter(|&i| (histogram.bounds[i] + 0.5 * width - value).abs() < 0.6 * width);
+        [&histogram.counts.straight, &histogram.counts.geodesic].map(|counts| bins().map(|i| counts[i]).sum())
+    }
+
+    #[test]
+    fn equilateral_lattice_has_unit_edges_and_sixty_degrees() {
+        let lattice = lattice(8);
+        let found = histograms(&lattice, &|_: Point| Tensor::IDENTITY).unwrap();
+        let edges = Edges::of(&lattice.triangles).count();
+        assert_eq!(near(&found.edge_length, 1.0), [edges; 2]);
+        assert_eq!(near(&found.angle, 60.0), [3 * lattice.triangles.len(); 2]);
+        for mean in [found.edge_length.mean.straight, found.edge_length.mean.geodesic] {
+            assert!((mean - 1.0).abs() < 1e-9, "{mean}");
+        }
+        assert!((found.angle.mean.straight - 60.0).abs() < 1e-9 && (found.angle.mean.geodesic - 60.0).abs() < 1e-6);
+        assert!((found.unit_fraction.geodesic - 1.0).abs() < 1e-15);
+        assert_eq!((found.geodesics_not_found, found.geodesics_on_border), (0, 0));
+    }
+
+    #[test]
+    fn right_triangles_of_a_known_mesh() {
+        // Two squares of side 0.62, cut in halves: 7 sides, 2 diagonals.
+        let found = histograms(&grid(2, 1), &|_: Point| Tensor::IDENTITY * 0.62_f64.powi(2)).unwrap();
+        assert_eq!((near(&found.edge_length, 0.62), near(&found.edge_length, 0.62 * 2.0_f64.sqrt())), ([7; 2], [2; 2]));
+        assert_eq!((near(&found.angle, 45.0), near(&found.angle, 90.0)), ([8; 2], [4; 2]));
+        assert!((found.unit_fraction.straight - 2.0 / 9.0).abs() < 1e-15);
+        let far = histograms(&grid(2, 1), &|_: Point| Tensor::IDENTITY * 100.0).unwrap();
+        assert_eq!(far.edge_length.counts.straight.last(), Some(&9));
+    }
+
+    #[test]
+    fn hyperbolic_triangles_have_less_than_180_degrees() {
+        let corners = [[0.0, 1.0], [0.5, 1.1], [0.1, 1.7]];
+        let half_plane = |p: Point| Tensor::isotropic(p.y);
+        let found = histograms(&mesh(&corners, &[[0, 1, 2]]), &half_plane).unwrap();
+        let [a, b, c] = [[1, 2], [2, 0], [0, 1]].map(|[i, j]: [usize; 2]| {
+            let [p, q] = [corners[i], corners[j]];
+            (1.0 + ((p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2)) / (2.0 * p[1] * q[1])).acosh()
+        });
+        // The hyperbolic law of cosines.
+        let at =
+            |a: f64, b: f64, c: f64| ((b.cosh() * c.cosh() - a.cosh()) / (b.sinh() * c.sinh())).acos().to_degrees();
+        let mean = (at(a, b, c) + at(b, c, a) + at(c, a, b)) / 3.0;
+        assert!(mean < 58.0 && (found.angle.mean.geodesic - mean).abs() < 1e-3, "{mean} {:?}", found.angle.mean);
+        assert!((found.angle.mean.straight - 60.0).abs() < 1e-9);
+        assert!((found.edge_length.mean.geodesic - (a + b + c) / 3.0).abs() < 1e-8);
+        assert!(found.edge_length.mean.straight > found.edge_length.mean.geodesic);
+    }
+
+    #[test]
+    fn where_there_is_no_geodesic_the_straight_edge_stands() {
+        // An edge of no length: no direction, and nothing to divide by.
+        let degenerate = mesh(&[[0.0, 0.0], [0.0, 0.0], [1.0, 0.0]], &[[0, 1, 2]]);
+        let found = histograms(&degenerate, &|_: Point| Tensor::IDENTITY).unwrap();
+        assert_eq!(found.geodesics_not_found, 1);
+        assert_eq!(found.edge_length.counts.straight, found.edge_length.counts.geodesic);
+        let none = histograms(&Mesh::default(), &|_: Point| Tensor::IDENTITY).unwrap();
+        assert!(none.edge_length.counts.straight.iter().all(|&count| count == 0) && none.angle.mean.straight.is_nan());
+    }
+
+    #[test]
+    fn bad_metrics_and_threads() {
+        let nan = |_: Point| Tensor::new(f64::NAN, 0.0, 1.0);
+        assert!(matches!(histograms(&grid(2, 2), &nan), Err(crate::Error::Metric { .. })));
+        let metric = |p: Point| Tensor::new(1.0 + p.x * p.x, 0.3, 2.0 + p.y.sin());
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| histograms(&grid(20, 20), &metric).unwrap())
+        };
+        assert_eq!(with(1), with(3));
+    }
+}
