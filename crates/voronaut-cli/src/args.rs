@@ -4,6 +4,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::path::PathBuf;
 use voronaut::canvas::VERTICES_PER_SEED;
 use voronaut::dual::Road;
+use voronaut::geometry::{Aabb, Point};
 use voronaut::metric::{Bounds, MOST_SWEEPS};
 use voronaut::output::Picture;
 use voronaut::recipe::{Centroid, MeshOptions, SMOOTH_METRIC, Seeding};
@@ -209,6 +210,9 @@ pub(crate) struct Outputs {
     /// Pixels of the picture's longer side
     #[arg(long, value_name = "PIXELS", default_value_t = Picture::default().width, value_parser = value_parser!(u32).range(16..=16_000), requires = "picture")]
     pub(crate) pixels: u32,
+    /// What the picture is cut to: x0,y0,x1,y1 [default: everything]
+    #[arg(long, value_name = "BOX", value_parser = window, allow_hyphen_values = true, requires = "picture")]
+    pub(crate) window: Option<Aabb>,
     /// Draw how metric edge lengths and angles are distributed, with straight and with geodesic edges: .svg
     #[arg(long, value_name = "FILE", requires = "metric")]
     pub(crate) histograms: Option<PathBuf>,
@@ -344,6 +348,17 @@ fn default_memory_limit() -> f64 {
     MeshOptions::default().memory_limit as f64 / GIB
 }
 
+/// A box by two of its corners.
+fn window(text: &str) -> Result<Aabb, String> {
+    let numbers: Vec<f64> = text.split(',').map_while(|word| word.trim().parse().ok()).collect();
+    let corners = match numbers[..] {
+        [x0, y0, x1, y1] if text.split(',').count() == 4 => [Point::new(x0, y0), Point::new(x1, y1)],
+        _ => return Err("not four numbers x0,y0,x1,y1".into()),
+    };
+    let has_room = |b: &Aabb| b.extent().x > 0.0 && b.extent().y > 0.0 && b.extent().norm().is_finite();
+    Aabb::of(corners).filter(has_room).ok_or_else(|| "the box is empty or not finite".into())
+}
+
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
@@ -394,6 +409,10 @@ mod tests {
             &["--smooth-metric", "1.5"],
             &["--show", "mesh"],
             &["--pixels", "800"],
+            &["--window", "0,0,1,1"],
+            &["--window", "0,0,1", "--picture", "a.svg"],
+            &["--window", "0,0,1,nan", "--picture", "a.svg"],
+            &["--window", "0,1,1,1", "--picture", "a.svg"],
             &["--pixels", "8", "--picture", "a.svg"],
             &["--show", "stars", "--picture", "a.svg"],
             &["-q", "-v"],

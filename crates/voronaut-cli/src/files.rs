@@ -165,6 +165,7 @@ fn draw(outputs: &Outputs, mesh: &Mesh, metric: Option<&dyn MetricField>, drawn:
         mesh: shows(Show::Mesh) || shows(Show::Protection),
         ellipses: shows(Show::Ellipses),
         width: outputs.pixels,
+        window: outputs.window,
         ..Picture::default()
     };
     output::svg_with(mesh, metric, &picture, &drawn.layers())

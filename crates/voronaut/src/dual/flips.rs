@@ -2,7 +2,7 @@
 
 use super::margin::pair;
 use super::{Dual, Effort, Margin};
-use crate::geometry::{Point, Tensor, signed_area};
+use crate::geometry::{Tensor, signed_area};
 use crate::triangulation::{HalfEdge, VertexId};
 
 /// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
@@ -97,15 +97,11 @@ impl Dual<'_> {
     }
 
     /// Quality of a straight triangle in the mean tensor of its corners: 1 of an equilateral one.
-    pub(crate) fn shape(&self, corners: [VertexId; 3]) -> f64 {
-        shape(corners.map(|v| self.local(v).tensor), corners.map(|v| self.position(v)))
-    }
-
-    /// The same of the triangle of a seed, were it at a point nearby, and two others, counter-clockwise.
-    pub(crate) fn shape_from(&self, v: VertexId, at: Point, [b, c]: [VertexId; 2]) -> f64 {
-        let local = self.local(v);
-        let there = local.tensor + local.derivative_along(at - self.position(v));
-        shape([there, self.local(b).tensor, self.local(c).tensor], [at, self.position(b), self.position(c)])
+    fn shape(&self, corners: [VertexId; 3]) -> f64 {
+        let tensor = corners.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / 3.0);
+        let [a, b, c] = corners.map(|v| self.position(v));
+        let squares: f64 = [b - a, c - b, a - c].iter().map(|&e| tensor.dot(e, e)).sum();
+        2.0 * 3.0_f64.sqrt() * signed_area(a, b, c) * tensor.determinant().max(0.0).sqrt() / squares
     }
 
     fn flip(&mut self, h: HalfEdge) {
@@ -115,10 +111,4 @@ impl Dual<'_> {
         self.touched.extend([h.face(), t.face()]);
         self.stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
     }
-}
-
-fn shape([k, l, m]: [Tensor; 3], [a, b, c]: [Point; 3]) -> f64 {
-    let tensor = (k + l + m) * (1.0 / 3.0);
-    let squares: f64 = [b - a, c - b, a - c].iter().map(|&e| tensor.dot(e, e)).sum();
-    2.0 * 3.0_f64.sqrt() * signed_area(a, b, c) * tensor.determinant().max(0.0).sqrt() / squares
 }

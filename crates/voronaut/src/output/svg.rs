@@ -24,6 +24,8 @@ pub struct Picture {
     pub shade: Shade,
     /// Pixels of the longer side.
     pub width: u32,
+    /// What is seen; `None`: everything.
+    pub window: Option<Aabb>,
 }
 
 /// How triangles are filled.
@@ -37,7 +39,7 @@ pub enum Shade {
 
 impl Default for Picture {
     fn default() -> Self {
-        Self { mesh: true, ellipses: false, shade: Shade::Size, width: 1600 }
+        Self { mesh: true, ellipses: false, shade: Shade::Size, width: 1600, window: None }
     }
 }
 
@@ -110,11 +112,14 @@ pub fn svg_with(
     Ok(text)
 }
 
-/// A frame around the domain, as far as it is known, fine enough for thin triangles or cells.
+/// A frame around what is to be seen, or the domain as far as it is known, fine enough for thin triangles or cells.
 fn frame(mesh: &Mesh, triangles: &[[u32; 3]], heights: &[f64], picture: Picture, cells: Option<&Cells>) -> Frame {
     let border = cells.iter().flat_map(|c| c.border.iter().flatten().copied());
     let corners = triangles.as_flattened().iter().map(|&v| mesh.point(v));
-    let bounds = Aabb::of(border.chain(corners)).unwrap_or(Aabb { min: Point::default(), max: Point::default() });
+    let bounds = picture
+        .window
+        .or_else(|| Aabb::of(border.chain(corners)))
+        .unwrap_or(Aabb { min: Point::default(), max: Point::default() });
     let width = f64::from(picture.width.max(16));
     // Lines between cells and along triangles are drawn: both tell how fine the paper must be.
     let coarse = Frame::new(bounds, width, |_| 1.0);
