@@ -15,8 +15,9 @@ const BACKTRACKS: u32 = 8;
 /// After so many of them the quasi-Newton directions give way to Lloyd's steps, and after so many steps are halved in any case.
 const LLOYD_AFTER: u32 = 3;
 const SHORTER_AFTER: u32 = 6;
-/// Relaxation has stalled when a step lowers the energy by less than this share.
+/// Relaxation has stalled when so many steps in a row lower the energy by less than this share each.
 const STALLED: f64 = 1e-6;
+const IN_A_ROW: u32 = 3;
 
 /// How a relaxation went.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
@@ -70,11 +71,14 @@ pub fn relax(dual: &mut Dual, cells: &Cells, steps: usize, progress: &dyn Progre
     let state = State::of(dual, cells)?;
     relaxed.energy.push(state.energy);
     let mut descent = Descent { cells, memory: Memory::default(), rest: Rest::new(state.seeds.len()), state, relaxed };
+    let mut small = 0;
     for _ in 0..steps {
         let before = descent.state.energy;
         let done = descent.step(dual)?;
         progress.done(1);
-        if !done || (cells.lower_energy() && before - descent.state.energy < STALLED * before) {
+        let is_small = cells.lower_energy() && before - descent.state.energy < STALLED * before;
+        small = if is_small { small + 1 } else { 0 };
+        if !done || small == IN_A_ROW {
             descent.relaxed.stalled = true;
             break;
         }
