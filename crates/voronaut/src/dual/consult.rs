@@ -10,7 +10,7 @@ use crate::canvas::{Canvas, CanvasCounters};
 use crate::diagram::{Diagram, NerveTriangle, resolve};
 use crate::error::Result;
 use crate::geodesic::MarchCounters;
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::HashSet;
 
 /// Which road decides on the topology (`--dual`).
@@ -56,6 +56,9 @@ const ROUNDS: u32 = 3;
 /// A nerve is not sure of a triangle whose place a fourth seed would win if squares of distances were off by this share:
 /// distances on a canvas err by some thousandths.
 const BEYOND_CANVAS: f64 = 0.01;
+
+/// Several flips at once may not leave a triangle of a quality below this, poorer than all before.
+const SLIVER: f64 = 0.1;
 
 /// An edge on which the roads differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -229,11 +232,26 @@ impl Dual<'_> {
         let may_go = |dual: &mut Self, h: HalfEdge| {
             !dual.planar.topology.is_fixed(h) && !dual.is_held(h) && (road == Road::Canvas || dual.is_beyond_lengths(h))
         };
-        let leaves_no_sliver = |dual: &Self| crossed.len() > 1 || crossed.iter().all(|&h| dual.allows_flip(h));
-        !crossed.is_empty()
-            && crossed.iter().all(|&h| may_go(self, h))
-            && leaves_no_sliver(self)
-            && self.planar.connect(u, v).is_some()
+        if crossed.is_empty() || !crossed.iter().all(|&h| may_go(self, h)) {
+            return false;
+        }
+        if let [only] = crossed[..] {
+            return self.allows_flip(only) && self.planar.connect(u, v).is_some();
+        }
+        let before = self.planar.clone();
+        let faces: Vec<FaceId> =
+            crossed.iter().flat_map(|&h| [Some(h), self.topology().twin(h)]).flatten().map(HalfEdge::face).collect();
+        let poorest =
+            |dual: &Self| faces.iter().map(|&f| dual.shape(dual.topology().corners(f))).fold(f64::INFINITY, f64::min);
+        let was = poorest(self);
+        let is_joined = self.planar.connect(u, v).is_some();
+        // Flips keep the ids of faces.
+        let is = poorest(self);
+        if is_joined && is < SLIVER && is < was {
+            self.planar = before;
+            return false;
+        }
+        is_joined
     }
 
     /// The edges between two seeds that are not joined; none where the line between them leaves the domain.

@@ -97,7 +97,7 @@ impl Dual<'_> {
     }
 
     /// Quality of a straight triangle in the mean tensor of its corners: 1 of an equilateral one.
-    fn shape(&self, corners: [VertexId; 3]) -> f64 {
+    pub(super) fn shape(&self, corners: [VertexId; 3]) -> f64 {
         let tensor = corners.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / 3.0);
         let [a, b, c] = corners.map(|v| self.position(v));
         let squares: f64 = [b - a, c - b, a - c].iter().map(|&e| tensor.dot(e, e)).sum();

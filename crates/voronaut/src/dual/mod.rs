@@ -221,6 +221,12 @@ impl<'a> Dual<'a> {
         }
     }
 
+    /// Evaluates the metric at a vertex that has moved.
+    pub(crate) fn remeasure(&mut self, v: VertexId) {
+        let local = self.measure(self.position(v));
+        self.locals[v.index()] = local;
+    }
+
     /// The metric around a point; where it is not valid that is noted, and the Euclidean metric serves instead.
     fn measure(&mut self, p: Point) -> LocalMetric {
         self.known = Known::default();

@@ -11,6 +11,7 @@ mod protect;
 mod quasi_newton;
 mod rest;
 mod tangent;
+mod worst;
 
 pub use cell::{Cell, Moments};
 pub use cells::Cells;
@@ -18,3 +19,4 @@ pub use exchange::{exchange, meet_blocked_flips};
 pub use lloyd::{Relaxed, relax};
 pub use on_canvas::OnCanvas;
 pub use protect::{Ending, Protected, measured, protect};
+pub use worst::mend_worst;

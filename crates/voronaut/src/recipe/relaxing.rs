@@ -4,7 +4,7 @@ use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job, Seeding};
 use crate::canvas::Canvas;
 use crate::dual::Dual;
 use crate::error::{Error, Result};
-use crate::optimise::{Cells, OnCanvas, Relaxed, exchange, meet_blocked_flips, relax};
+use crate::optimise::{Cells, OnCanvas, Relaxed, exchange, meet_blocked_flips, mend_worst, relax};
 use std::fmt;
 use std::str::FromStr;
 
@@ -23,6 +23,8 @@ pub enum Centroid {
 
 /// Relaxation goes in so many parts.
 const PARTS: usize = 4;
+/// Triangles that are mended in the end, as a share of all.
+const MENDED_SHARE: f64 = 0.002;
 /// Relative error of the energy that tangent planes give, where all seeds are rough.
 const ROUGH_DOUBT: f64 = 0.03;
 
@@ -75,6 +77,9 @@ impl Job<'_> {
             relaxed.append(relax(dual, &cells, left, self.progress)?);
         }
         self.fit_scale(dual);
+        if self.exchanges() {
+            mend_worst(dual, (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize);
+        }
         dual.verdict()?;
         Ok(relaxed)
     }
