@@ -79,7 +79,7 @@ fn the_energy_grows_with_the_square_of_the_metric_s_factor() {
 
 /// The points of a mesh on the border of the unit square, along it.
 fn border(mesh: &Mesh) -> usize {
-    let is_on = |x: f64| x == 0.0 || x == 1.0;
+    let is_on = |x: f64| [0.0, 1.0].contains(&x);
     mesh.points.iter().filter(|p| is_on(p[0]) || is_on(p[1])).count()
 }
 
@@ -90,7 +90,8 @@ fn boundary_seeds_slide_and_stay_on_the_boundary() {
     let [before, after] = [0, 40].map(|lloyd| relaxed("rect:0,0,1,1", &bump, 600, lloyd, Centroid::Tangent));
     assert!(border(&before.mesh) > 60 && border(&before.mesh) == border(&after.mesh));
     let bottom = |meshed: &Meshed| {
-        let mut found: Vec<f64> = meshed.mesh.points.iter().filter(|p| p[1] == 0.0).map(|p| p[0]).collect();
+        let mut found: Vec<f64> =
+            meshed.mesh.points.iter().filter(|p| p[1].abs() < f64::MIN_POSITIVE).map(|p| p[0]).collect();
         found.sort_by(f64::total_cmp);
         found
     };
