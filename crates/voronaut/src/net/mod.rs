@@ -6,10 +6,12 @@
 
 mod estimate;
 mod measure;
+mod on_canvas;
 mod random;
 
 pub use estimate::{Estimate, Sites};
 pub use measure::Memory;
+pub use on_canvas::measure_on_canvas;
 pub use random::Random;
 
 use crate::geodesic::Paths;
@@ -53,6 +55,10 @@ pub struct Net {
     /// Border edges and triangles with their circumcentre in the domain, as one tensor has it, of which no circle was found:
     /// they are nearly straight, or geodesics are not resolved.
     pub unmeasured: usize,
+    /// The triangles among them.
+    pub unknown: Vec<[u32; 3]>,
+    /// Triangles whose circles geodesics did not find and distances on a canvas did ([`Net::learn`]).
+    pub by_canvas: usize,
     /// How far a point of the domain is from its nearest seed at most: the greatest radius of the circles with centres
     /// in the domain and no seed in them.
     pub epsilon: f64,
@@ -88,14 +94,43 @@ impl Net {
         let paths = Paths::default();
         let measure = measure::Measure::new(&paths, field, found);
         let mut net = Self { mu: measure.mu(), ..Self::default() };
-        (net.triangles, net.unmeasured) = measure.triangles(memory);
+        (net.triangles, net.unknown) = measure.triangles(found.triangles, memory);
         net.border = measure.border();
-        net.unmeasured += found.border.len() - net.border.len();
-        // A circle with a seed in it says nothing of how far points are from seeds.
-        let interior = net.interior().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius);
-        let radii = interior.chain(net.border.iter().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius));
-        net.epsilon = radii.fold(0.0, f64::max);
+        net.unmeasured = net.unknown.len() + found.border.len() - net.border.len();
+        net.cover();
         net
+    }
+
+    /// The circles of some of the triangles, and of the border edges, and nothing else: neither epsilon nor mu.
+    pub fn measure_some(
+        field: &dyn MetricField,
+        found: &Triangles,
+        wanted: &[[u32; 3]],
+        memory: &mut Memory,
+    ) -> Self {
+        let paths = Paths::default();
+        let measure = measure::Measure::new(&paths, field, found);
+        let (triangles, unknown) = measure.triangles(wanted, memory);
+        let border = measure.border();
+        let unmeasured = unknown.len() + found.border.len() - border.len();
+        Self { triangles, border, unmeasured, unknown, ..Self::default() }
+    }
+
+    /// Takes in what a canvas knows of triangles that have no circle by geodesics: their circles, or that they are no
+    /// simplices, since their circumcentres lie outside the domain.
+    pub fn learn(&mut self, balls: &[Ball<3>], outside: &[[u32; 3]]) {
+        self.unknown.retain(|corners| !outside.contains(corners) && !balls.iter().any(|ball| ball.corners == *corners));
+        self.unmeasured -= balls.len() + outside.len();
+        self.by_canvas += balls.len();
+        self.triangles.extend_from_slice(balls);
+        self.cover();
+    }
+
+    fn cover(&mut self) {
+        // A circle with a seed in it says nothing of how far points are from seeds.
+        let interior = self.interior().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius);
+        let radii = interior.chain(self.border.iter().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius));
+        self.epsilon = radii.fold(0.0, f64::max);
     }
 
     /// The triangles whose circumcentre is in the domain.

@@ -11,6 +11,7 @@ mod protect;
 mod quasi_newton;
 mod rest;
 mod tangent;
+mod unresolved;
 mod worst;
 
 pub use cell::{Cell, Moments};
