@@ -11,12 +11,13 @@ mod random;
 
 pub use estimate::{Estimate, Sites};
 pub use measure::Memory;
-pub use on_canvas::measure_on_canvas;
+pub use on_canvas::circles_on_canvas;
 pub use random::Random;
 
 use crate::geodesic::Paths;
 use crate::geometry::Point;
 use crate::metric::MetricField;
+use std::collections::HashSet;
 
 /// A Delaunay circle: of a triangle, or of an edge at the border of the domain, where its centre is on that edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +58,7 @@ pub struct Net {
     pub unmeasured: usize,
     /// The triangles among them.
     pub unknown: Vec<[u32; 3]>,
-    /// Triangles whose circles geodesics did not find and distances on a canvas did ([`Net::learn`]).
+    /// Triangles whose circles geodesics did not find and distances on a canvas did ([`circles_on_canvas`]).
     pub by_canvas: usize,
     /// How far a point of the domain is from its nearest seed at most: the greatest radius of the circles with centres
     /// in the domain and no seed in them.
@@ -91,13 +92,30 @@ impl Net {
     /// [`Net::measure`] of seeds of which most are where they were when the memory was written: what depends on no seed that
     /// has moved is not measured again. The memory is of one field and one domain.
     pub fn measure_again(field: &dyn MetricField, found: &Triangles, memory: &mut Memory) -> Self {
+        Self::measure_beside(field, found, &[], memory)
+    }
+
+    /// [`Net::measure_again`] where some circles are known from a canvas ([`circles_on_canvas`]).
+    pub fn measure_beside(
+        field: &dyn MetricField,
+        found: &Triangles,
+        known: &[Ball<3>],
+        memory: &mut Memory,
+    ) -> Self {
         let paths = Paths::default();
         let measure = measure::Measure::new(&paths, field, found);
-        let mut net = Self { mu: measure.mu(), ..Self::default() };
-        (net.triangles, net.unknown) = measure.triangles(found.triangles, memory);
+        let of_canvas: HashSet<[u32; 3]> = known.iter().map(|ball| turned(ball.corners)).collect();
+        let is_open = |corners: &&[u32; 3]| !of_canvas.contains(&turned(**corners));
+        let wanted: Vec<[u32; 3]> = found.triangles.iter().filter(is_open).copied().collect();
+        let mut net = Self { mu: measure.mu(), by_canvas: known.len(), ..Self::default() };
+        (net.triangles, net.unknown) = measure.triangles(&wanted, memory);
+        net.triangles.extend_from_slice(known);
         net.border = measure.border();
         net.unmeasured = net.unknown.len() + found.border.len() - net.border.len();
-        net.cover();
+        // A circle with a seed in it says nothing of how far points are from seeds.
+        let interior = net.interior().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius);
+        let radii = interior.chain(net.border.iter().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius));
+        net.epsilon = radii.fold(0.0, f64::max);
         net
     }
 
@@ -114,23 +132,6 @@ impl Net {
         let border = measure.border();
         let unmeasured = unknown.len() + found.border.len() - border.len();
         Self { triangles, border, unmeasured, unknown, ..Self::default() }
-    }
-
-    /// Takes in what a canvas knows of triangles that have no circle by geodesics: their circles, or that they are no
-    /// simplices, since their circumcentres lie outside the domain.
-    pub fn learn(&mut self, balls: &[Ball<3>], outside: &[[u32; 3]]) {
-        self.unknown.retain(|corners| !outside.contains(corners) && !balls.iter().any(|ball| ball.corners == *corners));
-        self.unmeasured -= balls.len() + outside.len();
-        self.by_canvas += balls.len();
-        self.triangles.extend_from_slice(balls);
-        self.cover();
-    }
-
-    fn cover(&mut self) {
-        // A circle with a seed in it says nothing of how far points are from seeds.
-        let interior = self.interior().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius);
-        let radii = interior.chain(self.border.iter().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius));
-        self.epsilon = radii.fold(0.0, f64::max);
     }
 
     /// The triangles whose circumcentre is in the domain.
@@ -157,4 +158,9 @@ impl Net {
     pub fn unprotected(&self, share: f64) -> usize {
         self.interior().filter(|ball| ball.protection() < share * self.epsilon).count()
     }
+}
+
+/// The same cycle, its smallest member first.
+fn turned([a, b, c]: [u32; 3]) -> [u32; 3] {
+    [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])
 }

@@ -2,7 +2,8 @@
 //! around those that are not, as in the algorithms of Boissonnat et al. 2014 and, for constraints in general, Moser and
 //! Tardos 2010.
 
-use super::unresolved;
+use super::region::Region;
+use super::survey::{Survey, corners_of};
 use crate::dual::{Dual, Kind};
 use crate::error::Result;
 use crate::geodesic::{Angles, LocalMetric, hermite};
@@ -10,8 +11,8 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::net::{Ball, Estimate, Memory, Net, Random, Sites, Triangles};
 use crate::progress::Progress;
-use crate::rdt::{self, Rdt, Start, Trust};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Rounds of measuring with geodesics and moving seeds, at most.
@@ -20,6 +21,9 @@ const ROUNDS: usize = 30;
 const PATIENCE: usize = 6;
 /// Places tried for the seeds around one simplex, a round: with estimates, and, of these the best, with geodesics.
 const TRIES: [usize; 2] = [60, 16];
+/// And by the diagram on a canvas, where geodesics are not resolved; powers found there shall be this much greater.
+const TRIES_ON_CANVAS: usize = 20;
+const ASKED_OF_CANVAS: f64 = 1.1;
 /// After so many rounds without progress the neighbours of a simplex's seeds are moved as well, and seeds on curves slide.
 const WIDER: usize = 2;
 /// Seeds slide along curves only as far as their edges there keep within these lengths (metric).
@@ -109,38 +113,6 @@ pub fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<P
     Ok(found.expect("the first round measures"))
 }
 
-/// The Riemannian Delaunay triangulation of a dual's seeds, which straight edges need not follow, and its net.
-pub fn measured(dual: &Dual) -> Net {
-    let seeds: Vec<Point> = (0..dual.topology().vertex_slots() as u32).map(|v| dual.position(VertexId(v))).collect();
-    let rdt = triangulated(dual, &seeds, dual.topology(), rdt::Memory::default());
-    measure(dual, &seeds, &rdt.triangles(), &mut Memory::default())
-}
-
-/// The triangulation of seeds by lengths of geodesics, from one that is nearly right.
-fn triangulated<'a>(dual: &'a Dual, seeds: &[Point], start: &Triangulation, memory: rdt::Memory) -> Rdt<'a> {
-    let triangles = corners_of(start, start.faces());
-    let at_border = border_of(start).into_iter().map(|[a, b]| [a.min(b), a.max(b)]).collect();
-    Rdt::again(dual.scaled_field(), seeds, &Start { triangles, at_border }, Trust::default(), memory)
-}
-
-fn measure(dual: &Dual, seeds: &[Point], triangles: &[[u32; 3]], memory: &mut Memory) -> Net {
-    let border = border_of(dual.topology());
-    let is_inside = |seed: u32, p: Point| dual.is_inside(VertexId(seed), p);
-    let found = Triangles { seeds, triangles, border: &border, is_inside: &is_inside };
-    let mut net = Net::measure_again(dual.scaled_field(), &found, memory);
-    unresolved::learn(dual, seeds, &mut net);
-    net
-}
-
-fn corners_of(topology: &Triangulation, faces: impl Iterator<Item = FaceId>) -> Vec<[u32; 3]> {
-    faces.map(|f| topology.corners(f).map(|v| v.0)).collect()
-}
-
-fn border_of(topology: &Triangulation) -> Vec<[u32; 2]> {
-    let border = topology.edges().filter(|&h| topology.twin(h).is_none());
-    border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect()
-}
-
 /// What places for seeds are tried with.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum By {
@@ -157,8 +129,7 @@ struct Mender<'a, 'b> {
     topology: Triangulation,
     /// By how much more power than asked for estimates must have at each seed.
     excess: Vec<f64>,
-    memory: Memory,
-    tests: rdt::Memory,
+    survey: Survey,
     is_wide: bool,
     random: Random,
     moves: u64,
@@ -200,8 +171,7 @@ impl<'a, 'b> Mender<'a, 'b> {
             locals: all().map(|v| *dual.local(v)).collect(),
             topology: dual.topology().clone(),
             excess: vec![ASKED[0]; slots],
-            memory: Memory::default(),
-            tests: rdt::Memory::default(),
+            survey: Survey::default(),
             is_wide: false,
             random: Random::new(slots as u64),
             moves: 0,
@@ -212,13 +182,8 @@ impl<'a, 'b> Mender<'a, 'b> {
 
     /// Triangulates and measures with geodesics; the seeds of what is unprotected, worst first.
     fn measure(&mut self) -> (Net, Vec<Vec<VertexId>>) {
-        let tests = std::mem::take(&mut self.tests);
-        let rdt = triangulated(self.dual, &self.positions, &self.topology, tests);
-        let triangles = rdt.triangles();
-        let topology = (rdt.counters().split == 0).then(|| rdt.topology().clone());
-        self.tests = rdt.into_memory();
+        let (net, topology) = self.survey.take(self.dual, &self.positions, &self.topology);
         self.topology = topology.unwrap_or_else(|| self.topology.clone());
-        let net = measure(self.dual, &self.positions, &triangles, &mut self.memory);
         let bad = self.unprotected(&net);
         (net, bad)
     }
@@ -251,11 +216,15 @@ impl<'a, 'b> Mender<'a, 'b> {
 
     fn mend_one(&mut self, seeds: &[VertexId], by: By, asked: f64, radius: f64) {
         let movable = self.movable(seeds);
-        let mut found = self.places(&movable, by, asked, radius);
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let best = match by {
-            By::Estimates => found.first().copied(),
-            By::Geodesics => self.best_by_geodesics(&found, asked),
+        let best = if self.survey.is_by_canvas(seeds) {
+            self.best_by_canvas(seeds, &movable, asked, radius)
+        } else {
+            let mut found = self.places(&movable, by, asked, radius);
+            found.sort_by(|a, b| b.0.total_cmp(&a.0));
+            match by {
+                By::Estimates => found.first().copied(),
+                By::Geodesics => self.best_by_geodesics(&found, asked),
+            }
         };
         let best = best.filter(|best| best.0 > LEAST_GAIN);
         if let Some((_, v, to)) = best.filter(|&(_, v, to)| self.dual.relocate(v, to)) {
@@ -300,6 +269,34 @@ impl<'a, 'b> Mender<'a, 'b> {
             }
         }
         found
+    }
+
+    /// The best of some places by the diagram on a canvas around a simplex.
+    fn best_by_canvas(
+        &mut self,
+        seeds: &[VertexId],
+        movable: &[VertexId],
+        asked: f64,
+        radius: f64,
+    ) -> Option<(f64, VertexId, Point)> {
+        let region = Region::around(self.dual, seeds)?;
+        let mut places = vec![(seeds[0], self.position(seeds[0]))];
+        for k in 0..if movable.is_empty() { 0 } else { TRIES_ON_CANVAS } {
+            let v = movable[k % movable.len()];
+            places.push((v, self.place_near(v, radius)));
+        }
+        self.tries += places.len() as u64;
+        let missing = |ball: &Ball<3>| (1.0 - ball.power / (asked * ASKED_OF_CANVAS)).max(0.0);
+        let this = &*self;
+        let shortfall = |&(v, to): &(VertexId, Point)| {
+            let at = |u: VertexId| if u == v { to } else { this.position(u) };
+            let circles = region.circles(this.dual, at)?;
+            Some(circles.iter().map(missing).sum::<f64>())
+        };
+        let found: Vec<Option<f64>> = places.par_iter().map(shortfall).collect();
+        let before = found[0]?;
+        let gains = found.iter().zip(&places).filter_map(|(after, &(v, to))| Some((before - (*after)?, v, to)));
+        gains.reduce(|a, b| if b.0 > a.0 { b } else { a })
     }
 
     /// The best of the first places by geodesics.
@@ -351,8 +348,7 @@ impl<'a, 'b> Mender<'a, 'b> {
         let own = corners_of(topology, faces.iter().copied());
         let is_inside = |seed: u32, p: Point| self.is_inside(VertexId(seed), p);
         let found = Triangles { seeds: &self.positions, triangles: &triangles, border: &border, is_inside: &is_inside };
-        let mut net = Net::measure_some(self.dual.scaled_field(), &found, &own, memory);
-        unresolved::learn(self.dual, &self.positions, &mut net);
+        let net = Net::measure_some(self.dual.scaled_field(), &found, &own, memory);
         let powers = net.interior().map(|ball| ball.power).chain(net.border.iter().map(|ball| ball.power));
         net.unmeasured as f64 + powers.map(|power| (1.0 - power / asked).max(0.0)).sum::<f64>()
     }
