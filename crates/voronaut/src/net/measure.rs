@@ -69,9 +69,9 @@ impl<'a> Measure<'a> {
             let ball = self.triangle(corners);
             (corners, Remembered { seeds, ball, is_unmeasured: ball.is_none() && self.seems_interior(corners) })
         };
-        let found: Vec<([u32; 3], Remembered)> =
-            wanted.par_iter().with_min_len(4).map(measured).collect();
-        let unknown = found.iter().filter(|(_, remembered)| remembered.is_unmeasured).map(|(corners, _)| *corners).collect();
+        let found: Vec<([u32; 3], Remembered)> = wanted.par_iter().with_min_len(4).map(measured).collect();
+        let unknown =
+            found.iter().filter(|(_, remembered)| remembered.is_unmeasured).map(|(corners, _)| *corners).collect();
         let balls = found.iter().filter_map(|(_, remembered)| remembered.ball).collect();
         memory.0.extend(found);
         (balls, unknown)
@@ -119,7 +119,8 @@ impl<'a> Measure<'a> {
         }
         // Of several circles the one of cells that meet has no seed in it.
         let starts = self.starts(points);
-        let others = starts.into_iter().filter_map(|start| Circle::near(self.paths, self.field, points, start)).map(ball);
+        let others =
+            starts.into_iter().filter_map(|start| Circle::near(self.paths, self.field, points, start)).map(ball);
         let best = |a: Ball<3>, b: Ball<3>| {
             let rank = |ball: &Ball<3>| if ball.is_interior { ball.power } else { f64::NEG_INFINITY };
             if rank(&b) > rank(&a) { b } else { a }

@@ -96,12 +96,7 @@ impl Net {
     }
 
     /// [`Net::measure_again`] where some circles are known from a canvas ([`circles_on_canvas`]).
-    pub fn measure_beside(
-        field: &dyn MetricField,
-        found: &Triangles,
-        known: &[Ball<3>],
-        memory: &mut Memory,
-    ) -> Self {
+    pub fn measure_beside(field: &dyn MetricField, found: &Triangles, known: &[Ball<3>], memory: &mut Memory) -> Self {
         let paths = Paths::default();
         let measure = measure::Measure::new(&paths, field, found);
         let of_canvas: HashSet<[u32; 3]> = known.iter().map(|ball| turned(ball.corners)).collect();
@@ -120,12 +115,7 @@ impl Net {
     }
 
     /// The circles of some of the triangles, and of the border edges, and nothing else: neither epsilon nor mu.
-    pub fn measure_some(
-        field: &dyn MetricField,
-        found: &Triangles,
-        wanted: &[[u32; 3]],
-        memory: &mut Memory,
-    ) -> Self {
+    pub fn measure_some(field: &dyn MetricField, found: &Triangles, wanted: &[[u32; 3]], memory: &mut Memory) -> Self {
         let paths = Paths::default();
         let measure = measure::Measure::new(&paths, field, found);
         let (triangles, unknown) = measure.triangles(wanted, memory);

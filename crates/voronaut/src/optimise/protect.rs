@@ -23,8 +23,10 @@ const PATIENCE: usize = 6;
 const TRIES: [usize; 2] = [60, 16];
 /// And by the diagram on a canvas, where geodesics are not resolved; powers found there shall be this much greater.
 const TRIES_ON_CANVAS: usize = 20;
-const ASKED_OF_CANVAS: f64 = 1.1;
-/// After so many rounds without progress the neighbours of a simplex's seeds are moved as well, and seeds on curves slide.
+const ASKED_OF_CANVAS: f64 = 1.15;
+/// Vertices of that canvas per seed.
+const PER_SEED: usize = 80;
+/// After so many rounds without progress, and every other round from then on, the neighbours of a simplex's seeds are moved as well, and seeds on curves slide.
 const WIDER: usize = 2;
 /// Seeds slide along curves only as far as their edges there keep within these lengths (metric).
 const SLIDING: [f64; 2] = [0.75, 1.35];
@@ -105,7 +107,7 @@ pub fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<P
         if ending.is_some() {
             break;
         }
-        mender.is_wide = since >= WIDER;
+        mender.is_wide = since >= WIDER && since % 2 == 0;
         mender.mend(&bad, round, epsilon);
         progress.done(1);
     }
@@ -216,18 +218,18 @@ impl<'a, 'b> Mender<'a, 'b> {
 
     fn mend_one(&mut self, seeds: &[VertexId], by: By, asked: f64, radius: f64) {
         let movable = self.movable(seeds);
-        let best = if self.survey.is_by_canvas(seeds) {
-            self.best_by_canvas(seeds, &movable, asked, radius)
+        let mut found = if self.survey.is_by_canvas(seeds) {
+            self.places_on_canvas(seeds, &movable, asked, radius).unwrap_or_default()
         } else {
-            let mut found = self.places(&movable, by, asked, radius);
-            found.sort_by(|a, b| b.0.total_cmp(&a.0));
-            match by {
-                By::Estimates => found.first().copied(),
-                By::Geodesics => self.best_by_geodesics(&found, asked),
-            }
+            self.places(&movable, by, asked, radius)
         };
-        let best = best.filter(|best| best.0 > LEAST_GAIN);
-        if let Some((_, v, to)) = best.filter(|&(_, v, to)| self.dual.relocate(v, to)) {
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        if by == By::Geodesics && !self.survey.is_by_canvas(seeds) {
+            found = self.best_by_geodesics(&found, asked).into_iter().collect();
+        }
+        // The mesh with straight edges may not let a seed go where it should: then the next best place.
+        let mut useful = found.into_iter().take_while(|place| place.0 > LEAST_GAIN);
+        if let Some((_, v, to)) = useful.find(|&(_, v, to)| self.dual.relocate(v, to)) {
             self.try_move(v, to);
             self.moves += 1;
         }
@@ -252,8 +254,7 @@ impl<'a, 'b> Mender<'a, 'b> {
     /// Places for seeds by what they gain, estimated; until one gains everything, if estimates are to decide.
     fn places(&mut self, movable: &[VertexId], by: By, asked: f64, radius: f64) -> Vec<(f64, VertexId, Point)> {
         let mut memory = Memory::default();
-        let before: Vec<f64> =
-            movable.iter().map(|&v| self.shortfall(v, By::Estimates, asked, &mut memory)).collect();
+        let before: Vec<f64> = movable.iter().map(|&v| self.shortfall(v, By::Estimates, asked, &mut memory)).collect();
         let mut found = Vec::new();
         for k in 0..if movable.is_empty() { 0 } else { TRIES[0].max(4 * movable.len()) } {
             let (v, before) = (movable[k % movable.len()], before[k % movable.len()]);
@@ -271,32 +272,33 @@ impl<'a, 'b> Mender<'a, 'b> {
         found
     }
 
-    /// The best of some places by the diagram on a canvas around a simplex.
-    fn best_by_canvas(
+    /// Places for seeds by what they gain in the diagram on a canvas around a simplex.
+    fn places_on_canvas(
         &mut self,
         seeds: &[VertexId],
         movable: &[VertexId],
         asked: f64,
         radius: f64,
-    ) -> Option<(f64, VertexId, Point)> {
-        let region = Region::around(self.dual, seeds)?;
+    ) -> Option<Vec<(f64, VertexId, Point)>> {
+        let region = Region::around(self.dual, seeds, PER_SEED)?;
         let mut places = vec![(seeds[0], self.position(seeds[0]))];
         for k in 0..if movable.is_empty() { 0 } else { TRIES_ON_CANVAS } {
             let v = movable[k % movable.len()];
             places.push((v, self.place_near(v, radius)));
         }
         self.tries += places.len() as u64;
+        let inner = |ball: &&Ball<3>| region.holds(&ball.corners);
         let missing = |ball: &Ball<3>| (1.0 - ball.power / (asked * ASKED_OF_CANVAS)).max(0.0);
         let this = &*self;
         let shortfall = |&(v, to): &(VertexId, Point)| {
             let at = |u: VertexId| if u == v { to } else { this.position(u) };
             let circles = region.circles(this.dual, at)?;
-            Some(circles.iter().map(missing).sum::<f64>())
+            Some(circles.iter().filter(inner).map(missing).sum::<f64>())
         };
         let found: Vec<Option<f64>> = places.par_iter().map(shortfall).collect();
         let before = found[0]?;
         let gains = found.iter().zip(&places).filter_map(|(after, &(v, to))| Some((before - (*after)?, v, to)));
-        gains.reduce(|a, b| if b.0 > a.0 { b } else { a })
+        Some(gains.collect())
     }
 
     /// The best of the first places by geodesics.
@@ -361,7 +363,11 @@ impl<'a, 'b> Mender<'a, 'b> {
         step.y /= c;
         step.x = (step.x - b * step.y) / a;
         let step = local.exp(step);
-        if self.dual.kind(v) == Kind::Curve { self.dual.slid(v, step, SLIDING) } else { self.positions[v.index()] + step }
+        if self.dual.kind(v) == Kind::Curve {
+            self.dual.slid(v, step, SLIDING)
+        } else {
+            self.positions[v.index()] + step
+        }
     }
 
     fn try_move(&mut self, v: VertexId, to: Point) -> Trial {

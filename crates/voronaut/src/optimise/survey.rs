@@ -9,8 +9,10 @@ use crate::triangulation::{FaceId, Triangulation, VertexId};
 
 /// How often the region where a canvas decides grows at most, from one survey to the next; and the share of the seeds that
 /// it may have: elsewhere what geodesics do not tell stays unknown.
-const GROWING: usize = 3;
+const GROWING: usize = 4;
 const LARGEST: f64 = 0.3;
+/// Canvas vertices per seed there.
+const PER_SEED: usize = 200;
 
 /// Surveys of seeds of which few move in between.
 #[derive(Default)]
@@ -43,7 +45,7 @@ impl Survey {
 
     /// Whether a canvas decides on the triangles of some of these seeds.
     pub(super) fn is_by_canvas(&self, seeds: &[VertexId]) -> bool {
-        self.region.as_ref().is_some_and(|region| seeds.iter().any(|v| region.holds(&[v.0])))
+        self.region.as_ref().is_some_and(|region| seeds.iter().any(|v| region.touches(&[v.0])))
     }
 
     fn grow(&mut self, dual: &Dual, unknown: &[u32]) -> bool {
@@ -52,7 +54,7 @@ impl Survey {
         seeds.sort_unstable();
         seeds.dedup();
         let has_room = (seeds.len() as f64) < LARGEST * dual.topology().vertex_count() as f64;
-        let grown = has_room.then(|| Region::around(dual, &seeds)).flatten();
+        let grown = has_room.then(|| Region::around(dual, &seeds, PER_SEED)).flatten();
         grown.is_some_and(|region| {
             self.region = Some(region);
             true
@@ -62,13 +64,14 @@ impl Survey {
     fn take_once(&mut self, dual: &Dual, positions: &[Point], start: &Triangulation) -> (Net, Option<Triangulation>) {
         let circles = self.region.as_ref().and_then(|region| region.circles(dual, |v| positions[v.index()]));
         let region = self.region.as_ref().filter(|_| circles.is_some());
-        let circles = circles.unwrap_or_default();
+        let mut circles = circles.unwrap_or_default();
         // The diagram's triangles stand between the region's seeds: no length is good enough there.
         let vetoed = |i: u32, j: u32| region.is_some_and(|region| region.holds(&[i, j])).then_some((0.0, 0.0));
         let trust = Trust { reference: Some(&vetoed), ..Trust::default() };
         let mut triangles = corners_of(start, start.faces());
-        triangles.retain(|corners| !region.is_some_and(|region| region.holds(corners)));
+        triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
         triangles.extend(circles.iter().map(|ball| ball.corners));
+        circles.retain(|ball| region.is_some_and(|region| region.holds(&ball.corners)));
         let at_border = border_of(start).into_iter().map(|[a, b]| [a.min(b), a.max(b)]).collect();
         let tests = std::mem::take(&mut self.tests);
         let rdt = Rdt::again(dual.scaled_field(), positions, &Start { triangles, at_border }, trust, tests);
