@@ -18,11 +18,11 @@ use std::collections::BTreeMap;
 /// Rounds of measuring with geodesics and moving seeds, at most.
 const ROUNDS: usize = 30;
 /// Rounds that may pass, one after the other, without fewer unprotected simplices.
-const PATIENCE: usize = 6;
+const PATIENCE: usize = 4;
 /// Places tried for the seeds around one simplex, a round: with estimates, and, of these the best, with geodesics.
 const TRIES: [usize; 2] = [60, 16];
 /// And by the diagram on a canvas, where geodesics are not resolved; powers found there shall be this much greater.
-const TRIES_ON_CANVAS: usize = 20;
+const TRIES_ON_CANVAS: usize = 12;
 const ASKED_OF_CANVAS: f64 = 1.15;
 /// Vertices of that canvas per seed.
 const PER_SEED: usize = 80;
@@ -31,7 +31,7 @@ const WIDER: usize = 2;
 /// Seeds slide along curves only as far as their edges there keep within these lengths (metric).
 const SLIDING: [f64; 2] = [0.75, 1.35];
 /// From this round on, and while no more than so many simplices are unprotected, places are tried with geodesics.
-const GEODESICS: (usize, usize) = (3, 12);
+const GEODESICS: (usize, usize) = (2, 20);
 /// Seeds are moved within a ball of this radius, as a share of epsilon: at first, and at most.
 const BALL: [f64; 2] = [0.15, 0.5];
 /// It grows by this factor from round to round.
@@ -281,22 +281,20 @@ impl<'a, 'b> Mender<'a, 'b> {
         radius: f64,
     ) -> Option<Vec<(f64, VertexId, Point)>> {
         let region = Region::around(self.dual, seeds, PER_SEED)?;
-        let mut places = vec![(seeds[0], self.position(seeds[0]))];
-        for k in 0..if movable.is_empty() { 0 } else { TRIES_ON_CANVAS } {
-            let v = movable[k % movable.len()];
-            places.push((v, self.place_near(v, radius)));
-        }
-        self.tries += places.len() as u64;
-        let inner = |ball: &&Ball<3>| region.holds(&ball.corners);
         let missing = |ball: &Ball<3>| (1.0 - ball.power / (asked * ASKED_OF_CANVAS)).max(0.0);
-        let this = &*self;
-        let shortfall = |&(v, to): &(VertexId, Point)| {
+        let shortfall = |this: &Self, v: VertexId, to: Point| {
             let at = |u: VertexId| if u == v { to } else { this.position(u) };
-            let circles = region.circles(this.dual, at)?;
-            Some(circles.iter().filter(inner).map(missing).sum::<f64>())
+            Some(region.circles(this.dual, at)?.iter().map(missing).sum::<f64>())
         };
-        let found: Vec<Option<f64>> = places.par_iter().map(shortfall).collect();
-        let before = found[0]?;
+        let before = shortfall(self, seeds[0], self.position(seeds[0]))?;
+        if before <= LEAST_GAIN || movable.is_empty() {
+            return None;
+        }
+        let seeds = movable.iter().cycle().take(TRIES_ON_CANVAS);
+        let places: Vec<(VertexId, Point)> = seeds.map(|&v| (v, self.place_near(v, radius))).collect();
+        self.tries += places.len() as u64;
+        let this = &*self;
+        let found: Vec<Option<f64>> = places.par_iter().map(|&(v, to)| shortfall(this, v, to)).collect();
         let gains = found.iter().zip(&places).filter_map(|(after, &(v, to))| Some((before - (*after)?, v, to)));
         Some(gains.collect())
     }

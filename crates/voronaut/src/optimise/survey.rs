@@ -64,14 +64,13 @@ impl Survey {
     fn take_once(&mut self, dual: &Dual, positions: &[Point], start: &Triangulation) -> (Net, Option<Triangulation>) {
         let circles = self.region.as_ref().and_then(|region| region.circles(dual, |v| positions[v.index()]));
         let region = self.region.as_ref().filter(|_| circles.is_some());
-        let mut circles = circles.unwrap_or_default();
-        // The diagram's triangles stand between the region's seeds: no length is good enough there.
-        let vetoed = |i: u32, j: u32| region.is_some_and(|region| region.holds(&[i, j])).then_some((0.0, 0.0));
+        let circles = circles.unwrap_or_default();
+        // The diagram's triangles stand around the region's seeds: no length is good enough there.
+        let vetoed = |i: u32, j: u32| region.is_some_and(|region| region.touches(&[i, j])).then_some((0.0, 0.0));
         let trust = Trust { reference: Some(&vetoed), ..Trust::default() };
         let mut triangles = corners_of(start, start.faces());
         triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
         triangles.extend(circles.iter().map(|ball| ball.corners));
-        circles.retain(|ball| region.is_some_and(|region| region.holds(&ball.corners)));
         let at_border = border_of(start).into_iter().map(|[a, b]| [a.min(b), a.max(b)]).collect();
         let tests = std::mem::take(&mut self.tests);
         let rdt = Rdt::again(dual.scaled_field(), positions, &Start { triangles, at_border }, trust, tests);
