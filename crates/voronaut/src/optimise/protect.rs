@@ -18,9 +18,9 @@ use std::collections::BTreeMap;
 /// Rounds of measuring with geodesics and moving seeds, at most.
 const ROUNDS: usize = 30;
 /// Rounds that may pass, one after the other, without fewer unprotected simplices.
-const PATIENCE: usize = 4;
+const PATIENCE: usize = 6;
 /// Places tried for the seeds around one simplex, a round: with estimates, and, of these the best, with geodesics.
-const TRIES: [usize; 2] = [60, 16];
+const TRIES: [usize; 2] = [60, 24];
 /// And by the diagram on a canvas, where geodesics are not resolved; powers found there shall be this much greater.
 const TRIES_ON_CANVAS: usize = 12;
 const ASKED_OF_CANVAS: f64 = 1.15;

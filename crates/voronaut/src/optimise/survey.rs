@@ -74,7 +74,10 @@ impl Survey {
         let at_border = border_of(start).into_iter().map(|[a, b]| [a.min(b), a.max(b)]).collect();
         let tests = std::mem::take(&mut self.tests);
         let rdt = Rdt::again(dual.scaled_field(), positions, &Start { triangles, at_border }, trust, tests);
-        let triangles = rdt.triangles();
+        // Of the region's seeds the diagram has all simplices: where cells touch twice no triangulation can hold them.
+        let mut triangles = rdt.triangles();
+        triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
+        triangles.extend(circles.iter().map(|ball| ball.corners));
         let topology = (rdt.counters().split == 0).then(|| rdt.topology().clone());
         self.tests = rdt.into_memory();
         (measure(dual, positions, &triangles, &circles, &mut self.memory), topology)
