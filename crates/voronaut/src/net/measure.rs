@@ -38,6 +38,7 @@ pub(super) struct Measure<'a> {
     field: &'a dyn MetricField,
     found: &'a Triangles<'a>,
     neighbours: Vec<Vec<u32>>,
+    is_at_border: Vec<bool>,
 }
 
 impl<'a> Measure<'a> {
@@ -53,7 +54,9 @@ impl<'a> Measure<'a> {
             list.sort_unstable();
             list.dedup();
         }
-        Self { paths, field, found, neighbours }
+        let mut is_at_border = vec![false; found.seeds.len()];
+        found.border.iter().flatten().for_each(|&i| is_at_border[i as usize] = true);
+        Self { paths, field, found, neighbours, is_at_border }
     }
 
     /// The circles of those triangles that have one, as far as possible from memory, which then knows all of them; and
@@ -67,7 +70,7 @@ impl<'a> Measure<'a> {
                 return (corners, known.clone());
             }
             let ball = self.triangle(corners);
-            (corners, Remembered { seeds, ball, is_unmeasured: ball.is_none() && self.seems_interior(corners) })
+            (corners, Remembered { seeds, ball, is_unmeasured: ball.is_none() && self.may_be_interior(corners) })
         };
         let found: Vec<([u32; 3], Remembered)> = wanted.par_iter().with_min_len(4).map(measured).collect();
         let unknown =
@@ -109,12 +112,12 @@ impl<'a> Measure<'a> {
         let known = around(Fineness::MIDDLE).filter(|circle| circle.error < VAGUE * circle.square);
         // Circles around centres far outside the domain are not worth the finest paths.
         let fine = || around(Fineness::FINEST).or_else(|| Circle::around_carefully(self.paths, self.field, points));
-        let circle = known.or_else(|| self.seems_interior(corners).then(fine).flatten());
+        let circle = known.or_else(|| self.may_be_interior(corners).then(fine).flatten());
         let ball = |circle: Circle| self.ball(corners, &circle, (self.found.is_inside)(corners[0], circle.centre));
         if let Some(found) = circle.map(ball).filter(|ball| ball.power > 0.0 || !ball.is_interior) {
             return Some(found);
         }
-        if !self.seems_interior(corners) {
+        if !self.may_be_interior(corners) {
             return circle.map(ball);
         }
         // Of several circles the one of cells that meet has no seed in it.
@@ -140,6 +143,12 @@ impl<'a> Measure<'a> {
         let across = tensor.inverse().apply((q - p).perpendicular());
         let across = across * (0.5 * length / tensor.length(across));
         flat.chain(BESIDE.iter().map(|&share| middle + across * share)).collect()
+    }
+
+    /// Whether the circumcentre with one tensor is in the domain, or no corner at the border says that it may be outside.
+    fn may_be_interior(&self, corners: [u32; 3]) -> bool {
+        let is_free = |i: &u32| !self.is_at_border[*i as usize];
+        (!self.found.border.is_empty() && corners.iter().all(is_free)) || self.seems_interior(corners)
     }
 
     /// Whether the circumcentre with one tensor is in the domain.
