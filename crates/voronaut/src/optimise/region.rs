@@ -12,6 +12,7 @@ const RINGS: usize = 2;
 /// Seeds, and a canvas that holds their cells.
 pub(super) struct Region {
     canvas: Canvas,
+    core: Vec<VertexId>,
     near: Vec<VertexId>,
     is_inner: Vec<bool>,
 }
@@ -29,7 +30,12 @@ impl Region {
         let part = dual.part_around(&inner, RINGS);
         let near: Vec<VertexId> = part.topology.vertices().collect();
         let canvas = Canvas::intrinsic_from(part, dual.scaled_field(), per_seed * near.len()).ok()?;
-        Some(Self { canvas, near, is_inner })
+        Some(Self { canvas, core: seeds.to_vec(), near, is_inner })
+    }
+
+    /// The region around the same seeds where they are now.
+    pub(super) fn anew(&self, dual: &Dual, per_seed: usize) -> Option<Self> {
+        Self::around(dual, &self.core, per_seed)
     }
 
     /// Whether all of these are its seeds.

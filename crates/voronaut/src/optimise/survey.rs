@@ -62,7 +62,13 @@ impl Survey {
     }
 
     fn take_once(&mut self, dual: &Dual, positions: &[Point], start: &Triangulation) -> (Net, Option<Triangulation>) {
-        let circles = self.region.as_ref().and_then(|region| region.circles(dual, |v| positions[v.index()]));
+        let found = |region: &Region| region.circles(dual, |v| positions[v.index()]);
+        let mut circles = self.region.as_ref().and_then(found);
+        if circles.is_none() {
+            // Seeds have left the part of the domain that the canvas covers.
+            self.region = self.region.as_ref().and_then(|region| region.anew(dual, PER_SEED));
+            circles = self.region.as_ref().and_then(found);
+        }
         let region = self.region.as_ref().filter(|_| circles.is_some());
         let circles = circles.unwrap_or_default();
         // The diagram's triangles stand around the region's seeds: no length is good enough there.
