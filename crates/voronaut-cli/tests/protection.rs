@@ -48,6 +48,13 @@ fn a_net_is_measured_only_where_it_is_wanted() {
     assert!(measured["protection"].is_null());
     let [epsilon, mu, lambda] = ["epsilon", "mu", "lambda"].map(|key| measured["net"][key].as_f64().unwrap());
     assert!(epsilon > 0.5 && epsilon < 1.1 && mu > 0.3 && (lambda - mu / epsilon).abs() < 1e-9, "{epsilon} {mu}");
+
+    place.put("seeds.txt", "0.2 0.2\n0.8 0.3\n0.5 0.9\n");
+    let dual = ["dual", "rect:0,0,1,1", "--metric", "uniform", "--seeds", "seeds.txt", "-o", "d.mesh"];
+    let net = &runs(&place, &dual)["net"];
+    // The farthest corner, (0, 1), is nearest to the third seed.
+    assert!((net["epsilon"].as_f64().unwrap() - 0.26_f64.sqrt()).abs() < 1e-3, "{net}");
+    assert!((net["mu"].as_f64().unwrap() - 0.37_f64.sqrt()).abs() < 1e-6, "{net}");
 }
 
 #[test]
