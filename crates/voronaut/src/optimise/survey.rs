@@ -33,14 +33,21 @@ impl Survey {
     ) -> (Net, Option<Triangulation>) {
         let mut surveyed = self.take_once(dual, positions, start);
         for _ in 0..GROWING {
-            let unknown: Vec<u32> = surveyed.0.unknown.iter().flatten().copied().collect();
-            let is_known = |region: &Region| region.holds(&unknown);
-            if unknown.is_empty() || self.region.as_ref().is_some_and(is_known) || !self.grow(dual, &unknown) {
+            let doubtful = self.doubtful(&surveyed.0);
+            if doubtful.is_empty() || !self.grow(dual, &doubtful) {
                 break;
             }
             surveyed = self.take_once(dual, positions, start);
         }
         surveyed
+    }
+
+    /// The seeds of triangles beside the region that have no circle, or one with a seed in it although in-circle tests put
+    /// them there: then lengths of geodesics contradict each other.
+    fn doubtful(&self, net: &Net) -> Vec<u32> {
+        let turned_over = net.interior().filter(|ball| ball.power < 0.0).map(|ball| ball.corners);
+        let all = net.unknown.iter().copied().chain(turned_over);
+        all.filter(|corners| !self.region.as_ref().is_some_and(|region| region.touches(corners))).flatten().collect()
     }
 
     /// Whether a canvas decides on the triangles of some of these seeds.
