@@ -62,7 +62,8 @@ impl Diagram<'_> {
                     if fourth.is_none_or(|(_, gap)| gap >= 0.0) {
                         let [a, b, c] = [near[k].colour, near[j].colour, near[i].colour];
                         let colours = smallest_first(if turn > 0.0 { [a, b, c] } else { [a, c, b] });
-                        found.push(NerveTriangle { colours, witness, witnesses: 1, fourth });
+                        let square = Some(level);
+                        found.push(NerveTriangle { colours, witness, witnesses: 1, fourth, square });
                     }
                 }
             }

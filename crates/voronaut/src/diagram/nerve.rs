@@ -28,6 +28,8 @@ pub struct NerveTriangle {
     /// squares of the distances to it and to the three differ by this share of the latter. `None` where no other seed is
     /// near, and in [`Diagram::nerve`], which does not know the place.
     pub fourth: Option<(u32, f64)>,
+    /// The squared distance of that place from the three; `None` in [`Diagram::nerve`].
+    pub square: Option<f64>,
 }
 
 /// The simplices that the canvas witnesses, each with a witness; sorted by colours.
@@ -111,7 +113,8 @@ impl Diagram<'_> {
         let of_face = |witness: FaceId| {
             let [a, b, c] = topology.corners(witness).map(|v| self.label(v).colour);
             let distinct = a != b && b != c && c != a && [a, b, c].iter().all(|&x| x != NO_COLOUR);
-            distinct.then(|| NerveTriangle { colours: smallest_first([a, b, c]), witness, witnesses: 1, fourth: None })
+            let colours = smallest_first([a, b, c]);
+            distinct.then_some(NerveTriangle { colours, witness, witnesses: 1, fourth: None, square: None })
         };
         topology.faces().filter_map(of_face).collect()
     }

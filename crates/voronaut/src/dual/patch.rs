@@ -39,6 +39,17 @@ impl Dual<'_> {
         Patch { planar, is_inner }
     }
 
+    /// The triangles within some rings of neighbours around seeds, with the mesh's ids.
+    pub fn part_around(&self, seeds: &[VertexId], rings: usize) -> Planar {
+        let mut inside = vec![false; self.topology().vertex_slots()];
+        seeds.iter().for_each(|v| inside[v.index()] = true);
+        (0..rings).for_each(|_| self.grow(&mut inside));
+        while self.close_fans(&mut inside) {}
+        let mut planar = self.planar().clone();
+        planar.topology.retain_faces(|f| self.is_in(f, &inside));
+        planar
+    }
+
     /// The patch around as many edges, from the first on, as keep it within so many seeds; around one edge at least.
     pub(super) fn patch_within(&self, edges: &[HalfEdge], seeds: usize) -> Patch {
         let whole = self.patch_around(edges);

@@ -14,6 +14,10 @@ const RESIDUE: [f64; 2] = [1e-6, 1e-12];
 const SAFETY: f64 = 4.0;
 /// Spokes that are known no better than this (share of their length) lead nowhere.
 const VAGUE: f64 = 0.02;
+/// Damped steps at most, and how often one is halved at most; and the residue that may be left where none leads nearer.
+const DAMPED_STEPS: usize = 20;
+const HALVINGS: i32 = 6;
+const RESIDUE_LEFT: f64 = 1e-5;
 
 /// The margin of the edge a-b between the triangles a b c and b a d: the power of d with respect to the circle around
 /// a, b and c, whose centre is found by Newton steps on three geodesic distances, normalised as [`Margin`] says. `lengths` are
@@ -70,6 +74,23 @@ impl Circle {
         Self::from_centre(paths, field, corners, flat, Fineness::FINEST, 0)
     }
 
+    /// The circle through three points whose centre damped Newton steps reach from a place: of the points where three
+    /// lengths of geodesics are equal, one near that place. `None` where there is none, or paths are not resolved.
+    pub fn near(paths: &Paths, field: &dyn MetricField, corners: [Point; 3], start: Point) -> Option<Self> {
+        let (mut fineness, mut now) = (Fineness::MIDDLE, None);
+        let mut from = start;
+        loop {
+            let found = Descent { paths, field, corners, fineness }.from(from);
+            now = found.or(now);
+            from = found.map_or(start, |circle: Self| circle.centre);
+            match (now, fineness.next()) {
+                (Some(circle), _) if circle.error < 1e-4 * circle.square => return Some(circle),
+                (_, Some(finer)) => fineness = finer,
+                (known, None) => return known.filter(|circle| circle.error < 1e-2 * circle.square),
+            }
+        }
+    }
+
     /// The power of a point: its squared geodesic distance from the centre, less the squared radius; negative inside.
     /// `None` where no path to the point is found.
     pub fn power(&self, paths: &Paths, field: &dyn MetricField, p: Point, fineness: Fineness) -> Option<f64> {
@@ -104,6 +125,52 @@ impl Circle {
             known = Some(circle);
         }
         known.filter(|circle| circle.error < 1e-3 * circle.square)
+    }
+}
+
+/// Newton steps to a circumcentre that are shortened until they lead nearer to it.
+struct Descent<'a> {
+    paths: &'a Paths,
+    field: &'a dyn MetricField,
+    corners: [Point; 3],
+    fineness: Fineness,
+}
+
+/// Three paths from one place.
+struct Spokes {
+    circle: Circle,
+    solved: [Solved; 3],
+    squares: [f64; 3],
+    spread: f64,
+}
+
+impl Descent<'_> {
+    fn from(&self, start: Point) -> Option<Circle> {
+        let mut now = self.spokes(start)?;
+        for _ in 0..DAMPED_STEPS {
+            if now.spread < RESIDUE[1].max(0.01 * now.circle.error / now.circle.square) * now.circle.square {
+                break;
+            }
+            let tensor = self.field.at(now.circle.centre);
+            let step = equalising_step(tensor, now.solved.map(|s| s.pull), now.squares)?;
+            let shares = (0..HALVINGS).map(|k| 0.5_f64.powi(k));
+            let mut trials = shares.filter_map(|share| self.spokes(now.circle.centre + step * share));
+            let Some(better) = trials.find(|trial| trial.spread < now.spread) else { break };
+            now = better;
+        }
+        (now.spread < RESIDUE_LEFT * now.circle.square).then_some(now.circle)
+    }
+
+    fn spokes(&self, centre: Point) -> Option<Spokes> {
+        let spokes = self.corners.map(|p| self.paths.solve(self.field, centre, p, self.fineness));
+        let [Some(a), Some(b), Some(c)] = spokes else { return None };
+        let solved = [a, b, c];
+        let squares = solved.map(|s| s.length.value.powi(2));
+        let [least, most] = squares.iter().fold([f64::INFINITY, 0.0], |[a, b], &s: &f64| [a.min(s), b.max(s)]);
+        let relative = solved.iter().map(|s| s.length.error).fold(0.0, f64::max);
+        let spread = most - least;
+        let circle = Circle { centre, square: squares[0], error: 2.0 * SAFETY * relative * most + spread };
+        (relative < VAGUE && spread.is_finite()).then_some(Spokes { circle, solved, squares, spread })
     }
 }
 

@@ -15,6 +15,8 @@ const VAGUE: f64 = 1e-3;
 /// Steps at most in which the middle of a border edge is found, and the difference of the squared distances (share of
 /// the squared edge) at which it is.
 const STEPS: usize = 20;
+/// Where circumcentres are sought beside the longest side of a triangle, in halves of its length.
+const BESIDE: [f64; 5] = [0.0, 0.5, -0.5, 1.0, -1.0];
 const SETTLED: f64 = 1e-8;
 
 /// Circles of triangles that were measured, with the seeds that they depend on.
@@ -36,6 +38,7 @@ pub(super) struct Measure<'a> {
     field: &'a dyn MetricField,
     found: &'a Triangles<'a>,
     neighbours: Vec<Vec<u32>>,
+    is_at_border: Vec<bool>,
 }
 
 impl<'a> Measure<'a> {
@@ -51,12 +54,14 @@ impl<'a> Measure<'a> {
             list.sort_unstable();
             list.dedup();
         }
-        Self { paths, field, found, neighbours }
+        let mut is_at_border = vec![false; found.seeds.len()];
+        found.border.iter().flatten().for_each(|&i| is_at_border[i as usize] = true);
+        Self { paths, field, found, neighbours, is_at_border }
     }
 
-    /// The circles of all triangles that have one, as far as possible from memory, which then knows all of them; and how
-    /// many have none although they should.
-    pub(super) fn triangles(&self, memory: &mut Memory) -> (Vec<Ball<3>>, usize) {
+    /// The circles of those triangles that have one, as far as possible from memory, which then knows all of them; and
+    /// those that have none although they should.
+    pub(super) fn triangles(&self, wanted: &[[u32; 3]], memory: &mut Memory) -> (Vec<Ball<3>>, Vec<[u32; 3]>) {
         let measured = |&corners: &[u32; 3]| {
             let seeds: Vec<(u32, Point)> =
                 corners.into_iter().chain(self.around(&corners)).map(|i| (i, self.seed(i))).collect();
@@ -65,14 +70,14 @@ impl<'a> Measure<'a> {
                 return (corners, known.clone());
             }
             let ball = self.triangle(corners);
-            (corners, Remembered { seeds, ball, is_unmeasured: ball.is_none() && self.seems_interior(corners) })
+            (corners, Remembered { seeds, ball, is_unmeasured: ball.is_none() && self.may_be_interior(corners) })
         };
-        let found: Vec<([u32; 3], Remembered)> =
-            self.found.triangles.par_iter().with_min_len(16).map(measured).collect();
-        let unmeasured = found.iter().filter(|(_, remembered)| remembered.is_unmeasured).count();
+        let found: Vec<([u32; 3], Remembered)> = wanted.par_iter().with_min_len(4).map(measured).collect();
+        let unknown =
+            found.iter().filter(|(_, remembered)| remembered.is_unmeasured).map(|(corners, _)| *corners).collect();
         let balls = found.iter().filter_map(|(_, remembered)| remembered.ball).collect();
         memory.0.extend(found);
-        (balls, unmeasured)
+        (balls, unknown)
     }
 
     /// The circles of all border edges that have one.
@@ -107,9 +112,43 @@ impl<'a> Measure<'a> {
         let known = around(Fineness::MIDDLE).filter(|circle| circle.error < VAGUE * circle.square);
         // Circles around centres far outside the domain are not worth the finest paths.
         let fine = || around(Fineness::FINEST).or_else(|| Circle::around_carefully(self.paths, self.field, points));
-        let circle = known.or_else(|| self.seems_interior(corners).then(fine).flatten())?;
-        let is_interior = (self.found.is_inside)(corners[0], circle.centre);
-        Some(self.ball(corners, &circle, is_interior))
+        let circle = known.or_else(|| self.may_be_interior(corners).then(fine).flatten());
+        let ball = |circle: Circle| self.ball(corners, &circle, (self.found.is_inside)(corners[0], circle.centre));
+        if let Some(found) = circle.map(ball).filter(|ball| ball.power > 0.0 || !ball.is_interior) {
+            return Some(found);
+        }
+        if !self.may_be_interior(corners) {
+            return circle.map(ball);
+        }
+        // Of several circles the one of cells that meet has no seed in it.
+        let starts = self.starts(points);
+        let others =
+            starts.into_iter().filter_map(|start| Circle::near(self.paths, self.field, points, start)).map(ball);
+        let best = |a: Ball<3>, b: Ball<3>| {
+            let rank = |ball: &Ball<3>| if ball.is_interior { ball.power } else { f64::NEG_INFINITY };
+            if rank(&b) > rank(&a) { b } else { a }
+        };
+        circle.map(ball).into_iter().chain(others).reduce(best)
+    }
+
+    /// Places from which a circumcentre may be found where the metric turns fast: the circumcentres with the tensors at the
+    /// corners, and places beside the longest side.
+    fn starts(&self, corners: [Point; 3]) -> Vec<Point> {
+        let flat = corners.iter().filter_map(|&p| flat_centre(self.field.at(p), corners));
+        let [a, b, c] = corners;
+        let sides = [[a, b], [b, c], [c, a]].map(|[p, q]| (chord(self.field, p, q), p, q));
+        let (length, p, q) = sides.into_iter().fold(sides[0], |most, side| if side.0 > most.0 { side } else { most });
+        let middle = p.midpoint(q);
+        let tensor = self.field.at(middle);
+        let across = tensor.inverse().apply((q - p).perpendicular());
+        let across = across * (0.5 * length / tensor.length(across));
+        flat.chain(BESIDE.iter().map(|&share| middle + across * share)).collect()
+    }
+
+    /// Whether the circumcentre with one tensor is in the domain, or no corner at the border says that it may be outside.
+    fn may_be_interior(&self, corners: [u32; 3]) -> bool {
+        let is_free = |i: &u32| !self.is_at_border[*i as usize];
+        (!self.found.border.is_empty() && corners.iter().all(is_free)) || self.seems_interior(corners)
     }
 
     /// Whether the circumcentre with one tensor is in the domain.

@@ -6,15 +6,18 @@
 
 mod estimate;
 mod measure;
+mod on_canvas;
 mod random;
 
 pub use estimate::{Estimate, Sites};
 pub use measure::Memory;
+pub use on_canvas::circles_on_canvas;
 pub use random::Random;
 
 use crate::geodesic::Paths;
 use crate::geometry::Point;
 use crate::metric::MetricField;
+use std::collections::HashSet;
 
 /// A Delaunay circle: of a triangle, or of an edge at the border of the domain, where its centre is on that edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +56,10 @@ pub struct Net {
     /// Border edges and triangles with their circumcentre in the domain, as one tensor has it, of which no circle was found:
     /// they are nearly straight, or geodesics are not resolved.
     pub unmeasured: usize,
+    /// The triangles among them.
+    pub unknown: Vec<[u32; 3]>,
+    /// Triangles whose circles geodesics did not find and distances on a canvas did ([`circles_on_canvas`]).
+    pub by_canvas: usize,
     /// How far a point of the domain is from its nearest seed at most: the greatest radius of the circles with centres
     /// in the domain and no seed in them.
     pub epsilon: f64,
@@ -85,17 +92,36 @@ impl Net {
     /// [`Net::measure`] of seeds of which most are where they were when the memory was written: what depends on no seed that
     /// has moved is not measured again. The memory is of one field and one domain.
     pub fn measure_again(field: &dyn MetricField, found: &Triangles, memory: &mut Memory) -> Self {
+        Self::measure_beside(field, found, &[], memory)
+    }
+
+    /// [`Net::measure_again`] where some circles are known from a canvas ([`circles_on_canvas`]).
+    pub fn measure_beside(field: &dyn MetricField, found: &Triangles, known: &[Ball<3>], memory: &mut Memory) -> Self {
         let paths = Paths::default();
         let measure = measure::Measure::new(&paths, field, found);
-        let mut net = Self { mu: measure.mu(), ..Self::default() };
-        (net.triangles, net.unmeasured) = measure.triangles(memory);
+        let of_canvas: HashSet<[u32; 3]> = known.iter().map(|ball| turned(ball.corners)).collect();
+        let is_open = |corners: &&[u32; 3]| !of_canvas.contains(&turned(**corners));
+        let wanted: Vec<[u32; 3]> = found.triangles.iter().filter(is_open).copied().collect();
+        let mut net = Self { mu: measure.mu(), by_canvas: known.len(), ..Self::default() };
+        (net.triangles, net.unknown) = measure.triangles(&wanted, memory);
+        net.triangles.extend_from_slice(known);
         net.border = measure.border();
-        net.unmeasured += found.border.len() - net.border.len();
+        net.unmeasured = net.unknown.len() + found.border.len() - net.border.len();
         // A circle with a seed in it says nothing of how far points are from seeds.
         let interior = net.interior().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius);
         let radii = interior.chain(net.border.iter().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius));
         net.epsilon = radii.fold(0.0, f64::max);
         net
+    }
+
+    /// The circles of some of the triangles, and of the border edges, and nothing else: neither epsilon nor mu.
+    pub fn measure_some(field: &dyn MetricField, found: &Triangles, wanted: &[[u32; 3]], memory: &mut Memory) -> Self {
+        let paths = Paths::default();
+        let measure = measure::Measure::new(&paths, field, found);
+        let (triangles, unknown) = measure.triangles(wanted, memory);
+        let border = measure.border();
+        let unmeasured = unknown.len() + found.border.len() - border.len();
+        Self { triangles, border, unmeasured, unknown, ..Self::default() }
     }
 
     /// The triangles whose circumcentre is in the domain.
@@ -122,4 +148,9 @@ impl Net {
     pub fn unprotected(&self, share: f64) -> usize {
         self.interior().filter(|ball| ball.protection() < share * self.epsilon).count()
     }
+}
+
+/// The same cycle, its smallest member first.
+fn turned([a, b, c]: [u32; 3]) -> [u32; 3] {
+    [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])
 }

@@ -9,7 +9,9 @@ mod movers;
 mod on_canvas;
 mod protect;
 mod quasi_newton;
+mod region;
 mod rest;
+mod survey;
 mod tangent;
 mod worst;
 
@@ -18,5 +20,6 @@ pub use cells::Cells;
 pub use exchange::{exchange, meet_blocked_flips};
 pub use lloyd::{Relaxed, relax};
 pub use on_canvas::OnCanvas;
-pub use protect::{Ending, Protected, measured, protect};
+pub use protect::{Ending, Protected, protect};
+pub use survey::measured;
 pub use worst::mend_worst;

@@ -2,6 +2,8 @@
 //! around those that are not, as in the algorithms of Boissonnat et al. 2014 and, for constraints in general, Moser and
 //! Tardos 2010.
 
+use super::region::Region;
+use super::survey::{Survey, corners_of};
 use crate::dual::{Dual, Kind};
 use crate::error::Result;
 use crate::geodesic::{Angles, LocalMetric, hermite};
@@ -9,17 +11,27 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::net::{Ball, Estimate, Memory, Net, Random, Sites, Triangles};
 use crate::progress::Progress;
-use crate::rdt::{Rdt, Start, Trust};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Rounds of measuring with geodesics and moving seeds, at most.
 const ROUNDS: usize = 30;
 /// Rounds that may pass, one after the other, without fewer unprotected simplices.
 const PATIENCE: usize = 6;
-/// Places tried for the seeds around one simplex, a round: with estimates, and with geodesics.
+/// Places tried for the seeds around one simplex, a round: with estimates, and, of these the best, with geodesics.
 const TRIES: [usize; 2] = [60, 24];
+/// And by the diagram on a canvas, where geodesics are not resolved; powers found there shall be this much greater.
+const TRIES_ON_CANVAS: usize = 12;
+const ASKED_OF_CANVAS: f64 = 1.15;
+/// Vertices of that canvas per seed.
+const PER_SEED: usize = 80;
+/// After so many rounds without progress, and every other round from then on, the neighbours of a simplex's seeds are moved as well, and seeds on curves slide.
+const WIDER: usize = 2;
+/// Seeds slide along curves only as far as their edges there keep within these lengths (metric).
+const SLIDING: [f64; 2] = [0.75, 1.35];
 /// From this round on, and while no more than so many simplices are unprotected, places are tried with geodesics.
-const GEODESICS: (usize, usize) = (3, 8);
+const GEODESICS: (usize, usize) = (2, 20);
 /// Seeds are moved within a ball of this radius, as a share of epsilon: at first, and at most.
 const BALL: [f64; 2] = [0.15, 0.5];
 /// It grows by this factor from round to round.
@@ -95,41 +107,12 @@ pub fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<P
         if ending.is_some() {
             break;
         }
+        mender.is_wide = since >= WIDER && since % 2 == 0;
         mender.mend(&bad, round, epsilon);
         progress.done(1);
     }
     dual.verdict()?;
     Ok(found.expect("the first round measures"))
-}
-
-/// The Riemannian Delaunay triangulation of a dual's seeds, which straight edges need not follow, and its net.
-pub fn measured(dual: &Dual) -> Net {
-    let seeds: Vec<Point> = (0..dual.topology().vertex_slots() as u32).map(|v| dual.position(VertexId(v))).collect();
-    let rdt = triangulated(dual, &seeds, dual.topology());
-    measure(dual, &seeds, &rdt.triangles(), &mut Memory::default())
-}
-
-/// The triangulation of seeds by lengths of geodesics, from one that is nearly right.
-fn triangulated<'a>(dual: &'a Dual, seeds: &[Point], start: &Triangulation) -> Rdt<'a> {
-    let triangles = corners_of(start, start.faces());
-    let at_border = border_of(start).into_iter().map(|[a, b]| [a.min(b), a.max(b)]).collect();
-    Rdt::new(dual.scaled_field(), seeds, &Start { triangles, at_border }, Trust::default())
-}
-
-fn measure(dual: &Dual, seeds: &[Point], triangles: &[[u32; 3]], memory: &mut Memory) -> Net {
-    let border = border_of(dual.topology());
-    let is_inside = |seed: u32, p: Point| dual.is_inside(VertexId(seed), p);
-    let found = Triangles { seeds, triangles, border: &border, is_inside: &is_inside };
-    Net::measure_again(dual.scaled_field(), &found, memory)
-}
-
-fn corners_of(topology: &Triangulation, faces: impl Iterator<Item = FaceId>) -> Vec<[u32; 3]> {
-    faces.map(|f| topology.corners(f).map(|v| v.0)).collect()
-}
-
-fn border_of(topology: &Triangulation) -> Vec<[u32; 2]> {
-    let border = topology.edges().filter(|&h| topology.twin(h).is_none());
-    border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect()
 }
 
 /// What places for seeds are tried with.
@@ -148,7 +131,8 @@ struct Mender<'a, 'b> {
     topology: Triangulation,
     /// By how much more power than asked for estimates must have at each seed.
     excess: Vec<f64>,
-    memory: Memory,
+    survey: Survey,
+    is_wide: bool,
     random: Random,
     moves: u64,
     tries: u64,
@@ -189,7 +173,8 @@ impl<'a, 'b> Mender<'a, 'b> {
             locals: all().map(|v| *dual.local(v)).collect(),
             topology: dual.topology().clone(),
             excess: vec![ASKED[0]; slots],
-            memory: Memory::default(),
+            survey: Survey::default(),
+            is_wide: false,
             random: Random::new(slots as u64),
             moves: 0,
             tries: 0,
@@ -199,11 +184,8 @@ impl<'a, 'b> Mender<'a, 'b> {
 
     /// Triangulates and measures with geodesics; the seeds of what is unprotected, worst first.
     fn measure(&mut self) -> (Net, Vec<Vec<VertexId>>) {
-        let rdt = triangulated(self.dual, &self.positions, &self.topology);
-        let net = measure(self.dual, &self.positions, &rdt.triangles(), &mut self.memory);
-        if rdt.counters().split == 0 {
-            self.topology = rdt.topology().clone();
-        }
+        let (net, topology) = self.survey.take(self.dual, &self.positions, &self.topology);
+        self.topology = topology.unwrap_or_else(|| self.topology.clone());
         let bad = self.unprotected(&net);
         (net, bad)
     }
@@ -212,8 +194,8 @@ impl<'a, 'b> Mender<'a, 'b> {
         let asked = self.share * net.epsilon;
         let triangles = net.interior().filter(|ball| ball.protection() < asked).map(around);
         let border = net.border.iter().filter(|ball| ball.protection() < asked).map(around);
-        let mut bad: Vec<(f64, Vec<VertexId>)> = triangles.chain(border).collect();
-        bad.retain(|(_, seeds)| seeds.iter().any(|&v| self.dual.kind(v) == Kind::Free));
+        let unknown = net.unknown.iter().map(|corners| (f64::NEG_INFINITY, corners.map(VertexId).to_vec()));
+        let mut bad: Vec<(f64, Vec<VertexId>)> = triangles.chain(border).chain(unknown).collect();
         bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         bad.into_iter().map(|(_, seeds)| seeds).collect()
     }
@@ -235,32 +217,112 @@ impl<'a, 'b> Mender<'a, 'b> {
     }
 
     fn mend_one(&mut self, seeds: &[VertexId], by: By, asked: f64, radius: f64) {
-        let free: Vec<VertexId> = seeds.iter().copied().filter(|&v| self.dual.kind(v) == Kind::Free).collect();
-        let mut memory = Memory::default();
-        let before: Vec<f64> = free.iter().map(|&v| self.shortfall(v, by, asked, &mut memory)).collect();
-        let mut best: Option<(f64, VertexId, Point)> = None;
-        for k in 0..TRIES[by as usize] {
-            let (v, before) = (free[k % free.len()], before[k % free.len()]);
-            let to = self.place_near(v, radius);
-            if !self.is_inside(v, to) {
-                continue;
-            }
-            self.tries += 1;
-            let trial = self.try_move(v, to);
-            let gain = before - self.shortfall(v, by, asked, &mut memory);
-            self.take_back(&trial);
-            if gain > LEAST_GAIN && best.is_none_or(|b| gain > b.0) {
-                best = Some((gain, v, to));
-                if gain >= before - LEAST_GAIN {
-                    // All that was missing around the seed is there.
-                    break;
-                }
-            }
+        let movable = self.movable(seeds);
+        let mut found = if self.survey.is_by_canvas(seeds) {
+            self.places_on_canvas(seeds, &movable, asked, radius).unwrap_or_default()
+        } else {
+            self.places(&movable, by, asked, radius)
+        };
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        if by == By::Geodesics && !self.survey.is_by_canvas(seeds) {
+            found = self.best_by_geodesics(&found, asked).into_iter().collect();
         }
-        if let Some((_, v, to)) = best.filter(|&(_, v, to)| self.dual.relocate(v, to)) {
+        // The mesh with straight edges may not let a seed go where it should: then the next best place.
+        let mut useful = found.into_iter().take_while(|place| place.0 > LEAST_GAIN);
+        if let Some((_, v, to)) = useful.find(|&(_, v, to)| self.dual.relocate(v, to)) {
             self.try_move(v, to);
             self.moves += 1;
         }
+    }
+
+    /// The free seeds among these; where there are none, or that did not help, others around as well.
+    fn movable(&self, seeds: &[VertexId]) -> Vec<VertexId> {
+        let is_free = |v: &VertexId| self.dual.kind(*v) == Kind::Free;
+        let free: Vec<VertexId> = seeds.iter().copied().filter(is_free).collect();
+        if !self.is_wide && !free.is_empty() {
+            return free;
+        }
+        let star = |&v: &VertexId| self.topology.star(v).flat_map(|h| [self.topology.target(h), self.topology.apex(h)]);
+        let mut all: Vec<VertexId> = seeds.iter().flat_map(star).filter(is_free).collect();
+        all.extend(seeds.iter().filter(|&&v| self.dual.kind(v) == Kind::Curve));
+        all.extend(free);
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Places for seeds by what they gain, estimated; until one gains everything, if estimates are to decide.
+    fn places(&mut self, movable: &[VertexId], by: By, asked: f64, radius: f64) -> Vec<(f64, VertexId, Point)> {
+        let mut memory = Memory::default();
+        let before: Vec<f64> = movable.iter().map(|&v| self.shortfall(v, By::Estimates, asked, &mut memory)).collect();
+        let mut found = Vec::new();
+        for k in 0..if movable.is_empty() { 0 } else { TRIES[0].max(4 * movable.len()) } {
+            let (v, before) = (movable[k % movable.len()], before[k % movable.len()]);
+            let to = self.place_near(v, radius);
+            if self.dual.kind(v) == Kind::Free && !self.is_inside(v, to) {
+                continue;
+            }
+            let gain = before - self.shortfall_at(v, to, By::Estimates, asked, &mut memory);
+            found.push((gain, v, to));
+            if by == By::Estimates && gain > LEAST_GAIN && gain >= before - LEAST_GAIN {
+                // All that was missing around the seed is there.
+                break;
+            }
+        }
+        found
+    }
+
+    /// Places for seeds by what they gain in the diagram on a canvas around a simplex.
+    fn places_on_canvas(
+        &mut self,
+        seeds: &[VertexId],
+        movable: &[VertexId],
+        asked: f64,
+        radius: f64,
+    ) -> Option<Vec<(f64, VertexId, Point)>> {
+        let region = Region::around(self.dual, seeds, PER_SEED)?;
+        let missing = |ball: &Ball<3>| (1.0 - ball.power / (asked * ASKED_OF_CANVAS)).max(0.0);
+        let shortfall = |this: &Self, v: VertexId, to: Point| {
+            let at = |u: VertexId| if u == v { to } else { this.position(u) };
+            Some(region.circles(this.dual, at)?.iter().map(missing).sum::<f64>())
+        };
+        let before = shortfall(self, seeds[0], self.position(seeds[0]))?;
+        if before <= LEAST_GAIN || movable.is_empty() {
+            return None;
+        }
+        let seeds = movable.iter().cycle().take(TRIES_ON_CANVAS);
+        let places: Vec<(VertexId, Point)> = seeds.map(|&v| (v, self.place_near(v, radius))).collect();
+        self.tries += places.len() as u64;
+        let this = &*self;
+        let found: Vec<Option<f64>> = places.par_iter().map(|&(v, to)| shortfall(this, v, to)).collect();
+        let gains = found.iter().zip(&places).filter_map(|(after, &(v, to))| Some((before - (*after)?, v, to)));
+        Some(gains.collect())
+    }
+
+    /// The best of the first places by geodesics.
+    fn best_by_geodesics(&mut self, found: &[(f64, VertexId, Point)], asked: f64) -> Option<(f64, VertexId, Point)> {
+        let mut memory = Memory::default();
+        let mut before: BTreeMap<VertexId, f64> = BTreeMap::new();
+        let mut best: Option<(f64, VertexId, Point)> = None;
+        for &(_, v, to) in found.iter().take(TRIES[1]) {
+            let before = *before.entry(v).or_insert_with(|| self.shortfall(v, By::Geodesics, asked, &mut memory));
+            let gain = before - self.shortfall_at(v, to, By::Geodesics, asked, &mut memory);
+            if best.is_none_or(|b| gain > b.0) {
+                best = Some((gain, v, to));
+            }
+            if gain > LEAST_GAIN && gain >= before - LEAST_GAIN {
+                break;
+            }
+        }
+        best
+    }
+
+    fn shortfall_at(&mut self, v: VertexId, to: Point, by: By, asked: f64, memory: &mut Memory) -> f64 {
+        self.tries += 1;
+        let trial = self.try_move(v, to);
+        let shortfall = self.shortfall(v, by, asked, memory);
+        self.take_back(&trial);
+        shortfall
     }
 
     fn shortfall(&self, v: VertexId, by: By, asked: f64, memory: &mut Memory) -> f64 {
@@ -280,27 +342,30 @@ impl<'a, 'b> Mender<'a, 'b> {
         let mut wide: Vec<FaceId> = corners.flat_map(|v| topology.star(v).map(HalfEdge::face)).collect();
         wide.sort_unstable();
         wide.dedup();
-        let border = wide.iter().flat_map(|f| f.half_edges()).filter(|&h| topology.twin(h).is_none());
+        let border = faces.iter().flat_map(|f| f.half_edges()).filter(|&h| topology.twin(h).is_none());
         let border: Vec<[u32; 2]> = border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect();
         let triangles = corners_of(topology, wide.into_iter());
+        let own = corners_of(topology, faces.iter().copied());
         let is_inside = |seed: u32, p: Point| self.is_inside(VertexId(seed), p);
         let found = Triangles { seeds: &self.positions, triangles: &triangles, border: &border, is_inside: &is_inside };
-        let net = Net::measure_again(self.dual.scaled_field(), &found, memory);
-        let mut own = corners_of(topology, faces.iter().copied());
-        own.sort_unstable();
-        let of_faces = net.interior().filter(|ball| own.binary_search(&ball.corners).is_ok()).map(|ball| ball.power);
-        let powers = of_faces.chain(net.border.iter().map(|ball| ball.power));
+        let net = Net::measure_some(self.dual.scaled_field(), &found, &own, memory);
+        let powers = net.interior().map(|ball| ball.power).chain(net.border.iter().map(|ball| ball.power));
         net.unmeasured as f64 + powers.map(|power| (1.0 - power / asked).max(0.0)).sum::<f64>()
     }
 
-    /// A random point within a distance of a seed.
+    /// A random point within a distance of a seed; on its curve, of a seed that is bound to one.
     fn place_near(&mut self, v: VertexId, radius: f64) -> Point {
         let local = &self.locals[v.index()];
         let [a, b, c] = local.tensor.cholesky();
         let mut step = self.random.in_disk() * radius;
         step.y /= c;
         step.x = (step.x - b * step.y) / a;
-        self.positions[v.index()] + local.exp(step)
+        let step = local.exp(step);
+        if self.dual.kind(v) == Kind::Curve {
+            self.dual.slid(v, step, SLIDING)
+        } else {
+            self.positions[v.index()] + step
+        }
     }
 
     fn try_move(&mut self, v: VertexId, to: Point) -> Trial {

@@ -135,6 +135,8 @@ pub struct NetFigures {
     pub delta_percentiles: [f64; 3],
     /// Triangles and border edges without a circle: nearly straight, or with geodesics that are not resolved.
     pub unmeasured: usize,
+    /// Triangles measured by distances on a canvas, since geodesics are not resolved there.
+    pub by_canvas: usize,
 }
 
 impl NetFigures {
@@ -154,6 +156,7 @@ impl NetFigures {
             not_delaunay: net.interior().filter(|ball| ball.power < 0.0).count(),
             delta_percentiles: [0.01, 0.1, 0.5].map(at),
             unmeasured: net.unmeasured,
+            by_canvas: net.by_canvas,
         }
     }
 }
@@ -175,6 +178,22 @@ pub struct Protection {
     pub unprotected_before: usize,
     /// Those that are not protected in the end.
     pub unprotected: usize,
+    /// The nerve of the seeds that a canvas shows by itself.
+    pub raw_nerve: CanvasNerve,
+}
+
+/// The raw nerve of seeds on a canvas that was refined for them. Deterministic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct CanvasNerve {
+    /// Vertices of the canvas.
+    pub canvas_vertices: usize,
+    /// Rounds of refinement around Voronoi vertices that it did not tell apart.
+    pub rounds: u32,
+    /// Places where it still does not.
+    pub unwitnessed: usize,
+    /// The nerve, beside the exact dual.
+    #[serde(flatten)]
+    pub nerve: RawNerve,
 }
 
 /// The dual: how its edges were settled, and how sure that is. Deterministic.

@@ -7,10 +7,12 @@
 
 mod fill;
 mod flips;
+mod memory;
 mod site;
 mod start;
 mod tests_by_level;
 
+pub use memory::Memory;
 pub use start::Start;
 pub use tests_by_level::LEVELS;
 
@@ -96,6 +98,7 @@ pub struct Rdt<'a> {
     topology: Triangulation,
     seed_of: Vec<u32>,
     lengths: HashMap<(u32, u32), Known>,
+    memory: Memory,
     tested: Vec<Option<Tested>>,
     flips_of_slot: Vec<u8>,
     started_with: Vec<[u32; 2]>,
@@ -125,6 +128,19 @@ impl<'a> Rdt<'a> {
     /// The field may measure in any unit, and seeds may be denser here than there: the scale of a cell is taken from the
     /// start's edges. A seed where the field is no metric is left out.
     pub fn new(field: &'a dyn MetricField, seeds: &[Point], start: &Start, trust: Trust<'a>) -> Self {
+        Self::again(field, seeds, start, trust, Memory::default())
+    }
+
+    /// [`Rdt::new`] of seeds of which most are where they were when the memory was written ([`Rdt::into_memory`]): what depends
+    /// on no seed that has moved is not tested again.
+    pub fn again(
+        field: &'a dyn MetricField,
+        seeds: &[Point],
+        start: &Start,
+        trust: Trust<'a>,
+        mut memory: Memory,
+    ) -> Self {
+        memory.keep_for(seeds);
         let mut sites: Vec<Site> = seeds.par_iter().with_min_len(256).map(|&at| Site::new(field, at)).collect();
         let mut counters = RdtCounters::default();
         let triangles = start.triangulated(&sites, &mut counters);
@@ -144,7 +160,8 @@ impl<'a> Rdt<'a> {
             sites,
             topology,
             seed_of,
-            lengths: HashMap::new(),
+            lengths: std::mem::take(&mut memory.lengths),
+            memory,
             tested: vec![None; slots],
             flips_of_slot: vec![0; slots],
             started_with: Vec::new(),

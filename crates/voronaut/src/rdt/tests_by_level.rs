@@ -59,6 +59,11 @@ impl Rdt<'_> {
     /// Tests edges, in parallel, level by level, up to and including `last`; stores and returns the outcomes.
     pub(super) fn test(&mut self, edges: &[HalfEdge], last: usize) {
         let mut pending: Vec<(HalfEdge, Quad)> = edges.iter().filter_map(|&h| Some((h, self.quad(h)?))).collect();
+        pending.retain(|(h, quad)| {
+            let known = self.memory.test(quad);
+            self.tested[h.index()] = known.or(self.tested[h.index()]);
+            known.is_none()
+        });
         for level in FROZEN..=last {
             let (tested, passed): (Vec<_>, Vec<_>) =
                 pending.into_iter().partition(|(h, quad)| self.may_tell(*h, quad, level));

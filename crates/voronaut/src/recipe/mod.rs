@@ -125,12 +125,13 @@ pub fn mesh(
 ) -> Result<Meshed> {
     let mut job = Job { field, options, progress, canvas: None, diagram: None, seconds: Vec::new(), notes: Vec::new() };
     let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
-    let on_canvas = options.dual.seeds_asked(count) as f64 * f64::from(options.canvas_size);
+    let asked = if options.seeding == Seeding::Protected { count } else { options.dual.seeds_asked(count) };
+    let on_canvas = asked as f64 * f64::from(options.canvas_size);
     demand_memory(count as f64, on_canvas, options.memory_limit)?;
     let canvas = job.canvas(&domain, count)?;
     let mut dual = job.timed("seed", |job| job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
     let relaxation = job.timed("relax", |job| job.relax(&mut dual, canvas.as_ref()))?;
-    let protected = job.protect(&mut dual)?;
+    let protected = job.protect(&domain, &mut dual)?;
     let settled = job.timed("settle", |job| settle::settle(&mut dual, &domain, job.options, job.progress))?;
     let mesh = job.timed("check", |job| job.finish(&domain, &dual))?;
     let (net, protection) = job.net(&domain, &dual, protected);

@@ -1,19 +1,30 @@
 //! Protected seeds: the last moves, and what the report says of the net.
 
 use super::{Job, Seeding};
+use crate::canvas::{self, Canvas};
+use crate::diagram::{Diagram, resolve};
 use crate::domain::Domain;
-use crate::dual::Dual;
+use crate::dual::{Dual, Road};
 use crate::error::Result;
+use crate::geometry::Point;
 use crate::net::{Ball, Net};
 use crate::optimise::{Ending, Protected, measured, protect};
 use crate::output::report;
+
+/// The canvas of protected seeds is refined so many times at most: protection makes Voronoi vertices no farther apart than
+/// canvas vertices may be.
+const ROUNDS: u32 = 8;
 
 impl Job<'_> {
     /// With [`Seeding::Protected`], moves seeds until their simplices are protected.
     ///
     /// # Errors
     /// The metric is found invalid at a seed.
-    pub(super) fn protect(&mut self, dual: &mut Dual) -> Result<Option<Protected>> {
+    pub(super) fn protect(
+        &mut self,
+        domain: &Domain,
+        dual: &mut Dual,
+    ) -> Result<Option<(Protected, report::CanvasNerve)>> {
         if self.options.seeding != Seeding::Protected {
             return Ok(None);
         }
@@ -30,7 +41,33 @@ impl Job<'_> {
                 "{unknown} simplices have no circle that geodesics find: whether they are protected is unknown"
             ));
         }
-        Ok(Some(protected))
+        self.progress.stage("comparing with a canvas", 1);
+        let nerve = self.timed("raw_nerve", |job| job.raw_nerve(domain, dual))?;
+        if nerve.nerve.missing + nerve.nerve.extra > 0 {
+            let report::RawNerve { missing, extra, .. } = nerve.nerve;
+            self.notes.push(format!(
+                "the nerve on a canvas lacks {missing} triangles of the exact dual and has {extra} others"
+            ));
+        }
+        Ok(Some((protected, nerve)))
+    }
+
+    /// The nerve of the vertices on a canvas that is refined where it does not tell Voronoi vertices apart, held against the
+    /// exact dual. (Where the domain touches itself in points, of the vertices there only one counts.)
+    fn raw_nerve(&self, domain: &Domain, dual: &Dual) -> Result<report::CanvasNerve> {
+        let number = dual.numbering(domain);
+        let mut seeds: Vec<(u32, Point)> =
+            dual.topology().vertices().map(|v| (number[v.index()], dual.position(v))).collect();
+        seeds.sort_by_key(|seed| seed.0);
+        seeds.dedup_by_key(|seed| seed.0);
+        let seeds: Vec<Point> = seeds.into_iter().map(|seed| seed.1).collect();
+        let field = dual.scaled_field();
+        let size = canvas::size_for(seeds.len(), self.options.canvas_size);
+        let resolved = resolve(Canvas::intrinsic(domain, field, size)?, field, &seeds, ROUNDS)?;
+        let diagram = Diagram::new(&resolved.canvas, field, &seeds)?;
+        let nerve = super::dual(&diagram, field, Road::Both).raw_nerve;
+        let canvas_vertices = resolved.canvas.vertex_count();
+        Ok(report::CanvasNerve { canvas_vertices, rounds: resolved.rounds, unwitnessed: resolved.unwitnessed, nerve })
     }
 
     /// The net of the mesh's vertices, by their numbers in the mesh, where it is wanted, and how protection went.
@@ -38,11 +75,11 @@ impl Job<'_> {
         &mut self,
         domain: &Domain,
         dual: &Dual,
-        protected: Option<Protected>,
+        protected: Option<(Protected, report::CanvasNerve)>,
     ) -> (Option<Net>, Option<report::Protection>) {
-        let account = protected.as_ref().map(|p| self.account(p));
+        let account = protected.as_ref().map(|(protected, nerve)| self.account(protected, *nerve));
         let net = match protected {
-            Some(protected) => protected.net,
+            Some((protected, _)) => protected.net,
             None if self.options.net => self.timed("net", |_| measured(dual)),
             None => return (None, None),
         };
@@ -50,7 +87,7 @@ impl Job<'_> {
         (Some(numbered(net, &number)), account)
     }
 
-    fn account(&self, protected: &Protected) -> report::Protection {
+    fn account(&self, protected: &Protected, raw_nerve: report::CanvasNerve) -> report::Protection {
         let [before, after] = protected.unprotected;
         report::Protection {
             asked: self.options.protection,
@@ -60,6 +97,7 @@ impl Job<'_> {
             tries: protected.tries,
             unprotected_before: before,
             unprotected: after,
+            raw_nerve,
         }
     }
 }
@@ -67,6 +105,7 @@ impl Job<'_> {
 fn numbered(mut net: Net, number: &[u32]) -> Net {
     net.triangles.iter_mut().for_each(|ball| renumber(ball, number));
     net.border.iter_mut().for_each(|ball| renumber(ball, number));
+    net.unknown.iter_mut().flatten().for_each(|corner| *corner = number[*corner as usize]);
     net
 }
 

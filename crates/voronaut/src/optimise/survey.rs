@@ -1,0 +1,121 @@
+//! The Riemannian Delaunay triangulation of a dual's seeds, which straight edges need not follow, and its net.
+
+use super::region::Region;
+use crate::dual::Dual;
+use crate::geometry::Point;
+use crate::net::{Ball, Memory, Net, Sites, Triangles};
+use crate::rdt::{self, Rdt, Start, Trust};
+use crate::triangulation::{FaceId, Triangulation, VertexId};
+
+/// How often the region where a canvas decides grows at most, from one survey to the next; and the share of the seeds that
+/// it may have: elsewhere what geodesics do not tell stays unknown.
+const GROWING: usize = 4;
+const LARGEST: f64 = 0.3;
+/// Canvas vertices per seed there.
+const PER_SEED: usize = 200;
+
+/// Surveys of seeds of which few move in between.
+#[derive(Default)]
+pub(super) struct Survey {
+    memory: Memory,
+    tests: rdt::Memory,
+    region: Option<Region>,
+}
+
+impl Survey {
+    /// Triangulates, from a triangulation that is nearly right, and measures: with geodesics, and where these are not
+    /// resolved by the diagram on a canvas. The topology is `None` where vertices had to be made two.
+    pub(super) fn take(
+        &mut self,
+        dual: &Dual,
+        positions: &[Point],
+        start: &Triangulation,
+    ) -> (Net, Option<Triangulation>) {
+        let mut surveyed = self.take_once(dual, positions, start);
+        for _ in 0..GROWING {
+            let doubtful = self.doubtful(&surveyed.0);
+            if doubtful.is_empty() || !self.grow(dual, &doubtful) {
+                break;
+            }
+            surveyed = self.take_once(dual, positions, start);
+        }
+        surveyed
+    }
+
+    /// The seeds of triangles beside the region that have no circle, or one with a seed in it although in-circle tests put
+    /// them there: then lengths of geodesics contradict each other.
+    fn doubtful(&self, net: &Net) -> Vec<u32> {
+        let turned_over = net.interior().filter(|ball| ball.power < 0.0).map(|ball| ball.corners);
+        let all = net.unknown.iter().copied().chain(turned_over);
+        all.filter(|corners| !self.region.as_ref().is_some_and(|region| region.touches(corners))).flatten().collect()
+    }
+
+    /// Whether a canvas decides on the triangles of some of these seeds.
+    pub(super) fn is_by_canvas(&self, seeds: &[VertexId]) -> bool {
+        self.region.as_ref().is_some_and(|region| seeds.iter().any(|v| region.touches(&[v.0])))
+    }
+
+    fn grow(&mut self, dual: &Dual, unknown: &[u32]) -> bool {
+        let mut seeds: Vec<VertexId> = unknown.iter().map(|&i| VertexId(i)).collect();
+        seeds.extend(self.region.iter().flat_map(Region::seeds));
+        seeds.sort_unstable();
+        seeds.dedup();
+        let has_room = (seeds.len() as f64) < LARGEST * dual.topology().vertex_count() as f64;
+        let grown = has_room.then(|| Region::around(dual, &seeds, PER_SEED)).flatten();
+        grown.is_some_and(|region| {
+            self.region = Some(region);
+            true
+        })
+    }
+
+    fn take_once(&mut self, dual: &Dual, positions: &[Point], start: &Triangulation) -> (Net, Option<Triangulation>) {
+        let found = |region: &Region| region.circles(dual, |v| positions[v.index()]);
+        let mut circles = self.region.as_ref().and_then(found);
+        if circles.is_none() {
+            // Seeds have left the part of the domain that the canvas covers.
+            self.region = self.region.as_ref().and_then(|region| region.anew(dual, PER_SEED));
+            circles = self.region.as_ref().and_then(found);
+        }
+        let region = self.region.as_ref().filter(|_| circles.is_some());
+        let circles = circles.unwrap_or_default();
+        // The diagram's triangles stand around the region's seeds: no length is good enough there.
+        let vetoed = |i: u32, j: u32| region.is_some_and(|region| region.touches(&[i, j])).then_some((0.0, 0.0));
+        let trust = Trust { reference: Some(&vetoed), ..Trust::default() };
+        let mut triangles = corners_of(start, start.faces());
+        triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
+        triangles.extend(circles.iter().map(|ball| ball.corners));
+        let at_border = border_of(start).into_iter().map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        let tests = std::mem::take(&mut self.tests);
+        let rdt = Rdt::again(dual.scaled_field(), positions, &Start { triangles, at_border }, trust, tests);
+        // Of the region's seeds the diagram has all simplices: where cells touch twice no triangulation can hold them.
+        let mut triangles = rdt.triangles();
+        triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
+        triangles.extend(circles.iter().map(|ball| ball.corners));
+        let topology = (rdt.counters().split == 0).then(|| rdt.topology().clone());
+        self.tests = rdt.into_memory();
+        (measure(dual, positions, &triangles, &circles, &mut self.memory), topology)
+    }
+}
+
+fn measure(dual: &Dual, seeds: &[Point], triangles: &[[u32; 3]], known: &[Ball<3>], memory: &mut Memory) -> Net {
+    let border = border_of(dual.topology());
+    let is_inside = |seed: u32, p: Point| dual.is_inside(VertexId(seed), p);
+    let found = Triangles { seeds, triangles, border: &border, is_inside: &is_inside };
+    Net::measure_beside(dual.scaled_field(), &found, known, memory)
+}
+
+/// Corners of faces by their numbers.
+pub(super) fn corners_of(topology: &Triangulation, faces: impl Iterator<Item = FaceId>) -> Vec<[u32; 3]> {
+    faces.map(|f| topology.corners(f).map(|v| v.0)).collect()
+}
+
+fn border_of(topology: &Triangulation) -> Vec<[u32; 2]> {
+    let border = topology.edges().filter(|&h| topology.twin(h).is_none());
+    border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect()
+}
+
+/// The Riemannian Delaunay triangulation of a dual's seeds, measured.
+pub fn measured(dual: &Dual) -> Net {
+    let seeds: Vec<Point> = (0..dual.topology().vertex_slots() as u32).map(|v| dual.position(VertexId(v))).collect();
+    Survey::default().take(dual, &seeds, dual.topology()).0
+}
