@@ -42,7 +42,9 @@ impl Dual<'_> {
     /// The triangles within some rings of neighbours around seeds, with the mesh's ids.
     pub fn part_around(&self, seeds: &[VertexId], rings: usize) -> Planar {
         let mut inside = vec![false; self.topology().vertex_slots()];
-        seeds.iter().for_each(|v| inside[v.index()] = true);
+        for v in seeds {
+            inside[v.index()] = true;
+        }
         (0..rings).for_each(|_| self.grow(&mut inside));
         while self.close_fans(&mut inside) {}
         let mut planar = self.planar().clone();
