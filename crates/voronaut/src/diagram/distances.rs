@@ -7,6 +7,7 @@ use crate::canvas::{Border, Canvas};
 use crate::error::Result;
 use crate::geodesic::{MarchCounters, Method, Polyline, bowed_chord, straighten};
 use crate::geometry::Point;
+use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::triangulation::VertexId;
 
@@ -103,6 +104,27 @@ impl<'a> Distances<'a> {
             return Ok(straighten(self.field, &points, &Border::of(self.canvas)));
         }
         Ok(Polyline { length: Polyline::length_of(self.field, &points), points })
+    }
+
+    /// The canvas as a mesh with the distances of its points, and with a path as labelled edges between points of its own,
+    /// behind the others, if there is one. Points are labelled 0, those of the path 1.
+    pub fn to_mesh(&self, path: Option<&Polyline>) -> (Mesh, Vec<f64>) {
+        let embedded = self.canvas.embedded();
+        let along: &[Point] = path.map_or(&[], |path| &path.points);
+        let first = embedded.positions.len() as u32;
+        let segments = along.len().saturating_sub(1) as u32;
+        let faces = || embedded.topology.faces();
+        let mesh = Mesh {
+            points: embedded.positions.iter().chain(along).map(|p| [p.x, p.y, 0.0]).collect(),
+            point_labels: [vec![0; embedded.positions.len()], vec![1; along.len()]].concat(),
+            triangles: faces().map(|f| embedded.topology.corners(f).map(|v| v.0)).collect(),
+            triangle_labels: faces().map(|f| embedded.topology.region(f)).collect(),
+            edges: (first..first + segments).map(|v| [v, v + 1]).collect(),
+            edge_labels: vec![1; segments as usize],
+            ..Mesh::default()
+        };
+        let of_path = along.iter().map(|&p| self.at(p).unwrap_or(f64::INFINITY));
+        (mesh, self.values.iter().copied().chain(of_path).collect())
     }
 
     /// The lines of equal distance at these distances: pieces within canvas faces, two points each.
