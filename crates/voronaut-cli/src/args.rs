@@ -61,7 +61,8 @@ Examples:
 
 const DISTANCE_EXAMPLES: &str = "\
 DOMAIN and METRIC are as for `mesh`; the metric is used as it is. METHOD: march (fast marching by lengths, the most accurate),
-stvd[:window=8] (Campen 2013), dijkstra, konukoglu (recursive anisotropic fast marching 2007).
+stvd[:window=8] (Campen 2013), dijkstra, konukoglu (recursive fast marching, 2007), lbr (FM-LBR on a grid, Mirebeau 2014),
+heat (Crane 2013).
 OUT has the canvas with point data `distance`; the path's points come behind the canvas's, its segments are line cells.
 
 Examples:
@@ -107,6 +108,9 @@ pub(crate) struct MeshArgs {
     /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
     #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(MeshOptions::default().dual))]
     pub(crate) dual: Dual,
+    /// How distances on the canvas are computed where the diagram decides: march, stvd[:window=8], dijkstra or konukoglu
+    #[arg(long, value_name = "METHOD", default_value_t = MeshOptions::default().geodesic)]
+    pub(crate) geodesic: Method,
     /// Where interior seeds come to lie: sizing (at circumcentres), farthest (from all seeds, on a canvas) or protected
     /// (sizing, and power-protected)
     #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().seeding)]
@@ -151,6 +155,9 @@ pub(crate) struct DualArgs {
     /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
     #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(Road::default()))]
     pub(crate) dual: Dual,
+    /// How distances on the canvas are computed: march, stvd[:window=8], dijkstra or konukoglu
+    #[arg(long, value_name = "METHOD", default_value_t = Method::default())]
+    pub(crate) geodesic: Method,
     /// How OUT has the edges: straight, or as the geodesics that they are (polylines, with the regions between them)
     #[arg(long, value_enum, value_name = "HOW", default_value_t = EdgesOut::Straight)]
     pub(crate) edges: EdgesOut,
@@ -394,6 +401,7 @@ impl MeshArgs {
             lloyd: self.lloyd,
             centroid: self.centroid,
             dual: self.dual.into(),
+            geodesic: self.geodesic,
             seeding: self.seeding,
             protection: self.protection,
             picking_radius: self.picking_radius,

@@ -5,7 +5,7 @@ mod common;
 use common::{Place, stderr};
 use serde_json::Value;
 
-const METHODS: [&str; 4] = ["march", "stvd", "dijkstra", "konukoglu"];
+const METHODS: [&str; 6] = ["march", "stvd", "dijkstra", "konukoglu", "lbr", "heat"];
 
 fn words<'a>(more: &[&'a str]) -> Vec<&'a str> {
     let uniform = ["distance", "rect:0,0,2,1", "--metric", "uniform:4,0,1", "-o", "out.vtu", "--canvas-size", "2000"];
@@ -52,6 +52,29 @@ fn faults_are_named() {
     fails(&["--from", "1,0.5", "--geodesic", "mmp"], 2, "no such method");
     fails(&["--from", "1,0.5", "--picture", "out.gif"], 1, "out.gif");
     fails(&["--from", "1,0.5", "--memory-limit", "0.0001"], 1, "raise --memory-limit");
+}
+
+#[test]
+fn diagrams_are_driven_by_methods_that_can() {
+    let place = Place::new();
+    place.put("seeds.txt", "0.3 0.3\n1.5 0.4\n0.9 0.8\n1.2 0.2\n");
+    let dual = ["dual", "rect:0,0,2,1", "--metric", "uniform", "--seeds", "seeds.txt", "-o", "out.mesh", "-q"];
+    let mesh = ["mesh", "rect:0,0,2,1", "--metric", "uniform", "-n", "60", "--dual", "canvas", "-o", "out.mesh", "-q"];
+    for method in ["march", "stvd:window=4", "dijkstra", "konukoglu"] {
+        for words in [&[&dual[..], &["--canvas-size", "20"]].concat(), &mesh[..]] {
+            let more = ["--geodesic", method, "--report", "out.json"];
+            let output = place.run(&[words, &more].concat());
+            assert!(output.status.success(), "{method}: {}", stderr(&output));
+            let report: Value = serde_json::from_slice(&place.read("out.json")).unwrap();
+            assert_eq!(report["options"]["geodesic"], method);
+        }
+    }
+    for words in [&dual[..], &mesh[..]] {
+        let output = place.run(&[words, &["--geodesic", "heat"]].concat());
+        assert_eq!(output.status.code(), Some(1));
+        let said = stderr(&output);
+        assert!(said.contains("a diagram by heat") && said.contains("march, stvd, dijkstra, konukoglu"), "{said}");
+    }
 }
 
 #[test]

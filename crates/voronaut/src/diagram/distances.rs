@@ -5,8 +5,8 @@ use super::seeds::{self, Care, Start};
 use super::{Diagram, solver};
 use crate::canvas::{Border, Canvas};
 use crate::error::Result;
-use crate::geodesic::{MarchCounters, Method, Polyline, bowed_chord, straighten};
-use crate::geometry::Point;
+use crate::geodesic::{Heat, Lattice, MarchCounters, Method, Polyline, Sources, bowed_chord, straighten};
+use crate::geometry::{Aabb, Point};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::triangulation::VertexId;
@@ -27,15 +27,20 @@ impl<'a> Distances<'a> {
     /// Distances by a method from points of the domain.
     ///
     /// # Errors
-    /// [`crate::Error::Domain`] of a point outside the domain.
+    /// [`crate::Error::Domain`] of a point outside the domain; as for [`Heat::on`].
     pub fn new(canvas: &'a Canvas, field: &'a dyn MetricField, from: &[Point], method: Method) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, from, false, Care::Full)?;
-        let solver = solver(canvas, field, method);
-        let diagram = Diagram::from_starts(canvas, field, from, starts.clone(), solver);
-        let vertices = || (0..canvas.vertex_count() as u32).map(VertexId);
-        let values = vertices().map(|v| diagram.distance(v)).collect();
-        let parents = vertices().map(|v| diagram.parent(v)).collect();
-        let counters = Some(*diagram.counters());
+        let (values, parents, counters) = match method {
+            Method::Lbr => (on_lattice(canvas, field, from, &starts), Vec::new(), None),
+            Method::Heat => (Heat::on(canvas.topology())?.distances(&sources(canvas, &starts))?, Vec::new(), None),
+            _ => {
+                let solver = solver(canvas, field, method)?;
+                let diagram = Diagram::from_starts(canvas, field, from, starts.clone(), solver);
+                let vertices = || (0..canvas.vertex_count() as u32).map(VertexId);
+                let parents = vertices().map(|v| diagram.parent(v)).collect();
+                (vertices().map(|v| diagram.distance(v)).collect(), parents, Some(*diagram.counters()))
+            }
+        };
         Ok(Self { canvas, field, method, from: from.to_vec(), starts, values, parents, counters })
     }
 
@@ -139,6 +144,33 @@ impl<'a> Distances<'a> {
         }
         pieces
     }
+}
+
+/// By [`Lattice`] on as many nodes as the canvas has vertices; vertices in sight of a point have the length of the way there.
+fn on_lattice(canvas: &Canvas, field: &dyn MetricField, from: &[Point], starts: &[Vec<Start>]) -> Vec<f64> {
+    let positions = &canvas.embedded().positions;
+    let Some(bounds) = Aabb::of(positions.iter().copied()) else { return Vec::new() };
+    let extent = bounds.extent();
+    // What of the box is outside the domain costs no nodes.
+    let nodes = positions.len() as f64 * (extent.x * extent.y / canvas.embedded().area()).min(100.0);
+    let border = Border::of(canvas);
+    let is_inside = |points: &[Point]| canvas.locate_all(points).iter().map(Option::is_some).collect();
+    let mut values = Lattice::new(bounds, nodes as usize, field, is_inside, &border).distances(from, positions);
+    for start in starts.iter().flatten() {
+        let value = &mut values[start.vertex.index()];
+        *value = value.min(start.distance);
+    }
+    values
+}
+
+fn sources(canvas: &Canvas, starts: &[Vec<Start>]) -> Sources {
+    let mut sources = Sources::new(canvas.vertex_count());
+    for (colour, starts) in starts.iter().enumerate() {
+        for start in starts {
+            sources.add(start.vertex, start.distance, colour as u32);
+        }
+    }
+    sources
 }
 
 /// Where a function that is linear on a triangle has a value.

@@ -57,13 +57,16 @@ struct Seed {
     starts: Vec<Start>,
 }
 
-fn solver<'a>(canvas: &'a Canvas, field: &dyn MetricField, method: Method) -> Box<dyn Geodesic + 'a> {
-    match method {
-        Method::March => Box::new(Marching::on(canvas.topology())),
+/// # Errors
+/// [`Error::Unsupported`] of a method that does not drive diagrams.
+fn solver<'a>(canvas: &'a Canvas, field: &dyn MetricField, method: Method) -> Result<Box<dyn Geodesic + 'a>> {
+    method.demand_diagrams()?;
+    Ok(match method {
+        Method::March | Method::Lbr | Method::Heat => Box::new(Marching::on(canvas.topology())),
         Method::Stvd { window } => Box::new(Stvd::on(canvas.graph(field), window)),
         Method::Dijkstra => Box::new(Dijkstra::on(canvas.graph(field))),
         Method::Konukoglu => Box::new(Konukoglu::on(canvas.graph(field))),
-    }
+    })
 }
 
 impl<'a> Diagram<'a> {
@@ -81,8 +84,21 @@ impl<'a> Diagram<'a> {
     /// # Errors
     /// As for [`Diagram::new`].
     pub fn of_vertices(canvas: &'a Canvas, field: &'a dyn MetricField, vertices: &[Point]) -> Result<Self> {
+        Self::of_vertices_by(canvas, field, vertices, Method::March)
+    }
+
+    /// [`Diagram::of_vertices`] by one of the methods.
+    ///
+    /// # Errors
+    /// As for [`Diagram::by_method`].
+    pub fn of_vertices_by(
+        canvas: &'a Canvas,
+        field: &'a dyn MetricField,
+        vertices: &[Point],
+        method: Method,
+    ) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, vertices, true, Care::Full)?;
-        Ok(Self::from_starts(canvas, field, vertices, starts, Box::new(Marching::on(canvas.topology()))))
+        Ok(Self::from_starts(canvas, field, vertices, starts, solver(canvas, field, method)?))
     }
 
     /// [`Diagram::of_vertices`] with distances that are poorer around seeds where the metric varies much, for a tenth of
@@ -112,10 +128,10 @@ impl<'a> Diagram<'a> {
     /// The diagram of seeds by one of the methods, on what of the canvas it travels on.
     ///
     /// # Errors
-    /// As for [`Diagram::new`].
+    /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams.
     pub fn by_method(canvas: &'a Canvas, field: &'a dyn MetricField, seeds: &[Point], method: Method) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Full)?;
-        Ok(Self::from_starts(canvas, field, seeds, starts, solver(canvas, field, method)))
+        Ok(Self::from_starts(canvas, field, seeds, starts, solver(canvas, field, method)?))
     }
 
     fn from_starts(

@@ -19,6 +19,10 @@ pub enum Method {
     Dijkstra,
     /// `konukoglu`: recursive anisotropic fast marching ([`Konukoglu`](super::Konukoglu)).
     Konukoglu,
+    /// `lbr`: FM-LBR on a Cartesian grid of its own ([`Lattice`](super::Lattice)); distances only.
+    Lbr,
+    /// `heat`: the heat method ([`Heat`](super::Heat)); distances only.
+    Heat,
 }
 
 /// The window of [`Method::Stvd`] unless told otherwise: that of the report's authors.
@@ -26,7 +30,26 @@ pub const STVD_WINDOW: usize = 8;
 
 impl Method {
     /// All methods, those with a parameter at its default.
-    pub const ALL: [Method; 4] = [Self::March, Self::Stvd { window: STVD_WINDOW }, Self::Dijkstra, Self::Konukoglu];
+    pub const ALL: [Method; 6] =
+        [Self::March, Self::Stvd { window: STVD_WINDOW }, Self::Dijkstra, Self::Konukoglu, Self::Lbr, Self::Heat];
+
+    /// Whether it gives every vertex the colour of its source, so that diagrams can be made by it.
+    pub fn drives_diagrams(self) -> bool {
+        !matches!(self, Self::Lbr | Self::Heat)
+    }
+
+    /// Refuses methods that do not drive diagrams.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`], with those that do.
+    pub fn demand_diagrams(self) -> Result<()> {
+        if self.drives_diagrams() {
+            return Ok(());
+        }
+        let what = format!("a diagram by {self}, which gives distances alone");
+        let names: Vec<&str> = Self::ALL.iter().filter(|m| m.drives_diagrams()).map(|m| m.name()).collect();
+        Err(Error::Unsupported { what, help: format!("use one of {}", names.join(", ")) })
+    }
 
     /// The name without parameters.
     pub fn name(self) -> &'static str {
@@ -35,6 +58,8 @@ impl Method {
             Method::Stvd { .. } => "stvd",
             Method::Dijkstra => "dijkstra",
             Method::Konukoglu => "konukoglu",
+            Method::Lbr => "lbr",
+            Method::Heat => "heat",
         }
     }
 }

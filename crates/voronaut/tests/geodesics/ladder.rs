@@ -62,11 +62,15 @@ const CASES: [Case; 3] = [
     },
 ];
 
-/// Greatest and mean relative error.
+/// Greatest and mean relative error of the vertices that are reached: all, but for a few by [`Method::Lbr`] where stencils
+/// leave the domain.
 fn errors(case: &Case, canvas: &Canvas, method: Method) -> [f64; 2] {
     let field = &case.metric as &dyn MetricField;
     let found = Distances::new(canvas, field, &[case.from], method).unwrap();
-    let known = canvas.embedded().positions.iter().zip(found.values());
+    let reached = found.values().iter().filter(|d| d.is_finite()).count();
+    let least = if method == Method::Lbr { 0.9 } else { 1.0 };
+    assert!(reached as f64 >= least * found.values().len() as f64, "{method}: {reached} reached");
+    let known = canvas.embedded().positions.iter().zip(found.values()).filter(|(_, d)| d.is_finite());
     let all: Vec<f64> = known.filter_map(|(&p, d)| (case.exact)(p).map(|exact| (d / exact - 1.0).abs())).collect();
     [all.iter().copied().fold(0.0, f64::max), all.iter().sum::<f64>() / all.len() as f64]
 }
@@ -80,6 +84,9 @@ fn expected(method: Method) -> (f64, f64) {
         Method::Stvd { .. } => (0.5, 0.02),
         // Edges have a few directions.
         Method::Dijkstra => (-0.5, 0.06),
+        // First order, from afar: stencils are ten nodes wide, and the metric turns within them.
+        Method::Lbr => (0.6, 0.18),
+        Method::Heat => (1.0, 0.006),
     }
 }
 
