@@ -4,6 +4,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::path::PathBuf;
 use voronaut::canvas::VERTICES_PER_SEED;
 use voronaut::dual::Road;
+use voronaut::geodesic::Method;
 use voronaut::geometry::{Aabb, Point};
 use voronaut::metric::{Bounds, MOST_SWEEPS};
 use voronaut::output::Picture;
@@ -25,6 +26,9 @@ pub(crate) enum Command {
     /// Voronoi diagram and dual of the seeds given: none is added or moved
     #[command(after_help = DUAL_EXAMPLES)]
     Dual(DualArgs),
+    /// Distances in a metric from given points to everywhere, and the shortest path to one
+    #[command(after_help = DISTANCE_EXAMPLES)]
+    Distance(DistanceArgs),
     /// Examine a mesh: validity, quality in a metric, distance to its domain
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
@@ -54,6 +58,16 @@ Examples:
   voronaut dual rect:-2,-2,2,2 --metric swirl --seeds seeds.txt -o dual.mesh
   voronaut dual rect:-2,-2,2,2 --metric swirl --seeds seeds.txt -o rdt.vtu --edges geodesic --picture rdt.png --show geodesics
   voronaut dual sea.geojson --metric boundary:h0=2 --seeds ports.txt -o dual.vtu --diagram cells.vtu --report run.json";
+
+const DISTANCE_EXAMPLES: &str = "\
+DOMAIN and METRIC are as for `mesh`; the metric is used as it is. METHOD: march (fast marching by lengths, the most accurate),
+stvd[:window=8] (Campen 2013), dijkstra, konukoglu (recursive fast marching, 2007), lbr (FM-LBR on a grid, Mirebeau 2014),
+heat (Crane 2013).
+OUT has the canvas with point data `distance`; the path's points come behind the canvas's, its segments are line cells.
+
+Examples:
+  voronaut distance rect:-2,-2,2,2 --metric swirl --from 1,0.5 -o distance.vtu --picture distance.png
+  voronaut distance sea.geojson --metric boundary:h0=2 --from 10,20 --from 300,-40 --to 90,80 -o way.vtu --report way.json";
 
 const CHECK_EXAMPLES: &str = "\
 Exits with 1 if the mesh is not valid; the report is written all the same.
@@ -94,6 +108,9 @@ pub(crate) struct MeshArgs {
     /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
     #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(MeshOptions::default().dual))]
     pub(crate) dual: Dual,
+    /// How distances on the canvas are computed where the diagram decides: march, stvd[:window=8], dijkstra or konukoglu
+    #[arg(long, value_name = "METHOD", default_value_t = MeshOptions::default().geodesic)]
+    pub(crate) geodesic: Method,
     /// Where interior seeds come to lie: sizing (at circumcentres), farthest (from all seeds, on a canvas) or protected
     /// (sizing, and power-protected)
     #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().seeding)]
@@ -138,6 +155,9 @@ pub(crate) struct DualArgs {
     /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
     #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(Road::default()))]
     pub(crate) dual: Dual,
+    /// How distances on the canvas are computed: march, stvd[:window=8], dijkstra or konukoglu
+    #[arg(long, value_name = "METHOD", default_value_t = Method::default())]
+    pub(crate) geodesic: Method,
     /// How OUT has the edges: straight, or as the geodesics that they are (polylines, with the regions between them)
     #[arg(long, value_enum, value_name = "HOW", default_value_t = EdgesOut::Straight)]
     pub(crate) edges: EdgesOut,
@@ -157,6 +177,49 @@ pub(crate) struct DualArgs {
     #[command(flatten)]
     pub(crate) run: Run,
 }
+
+#[derive(Debug, Args)]
+pub(crate) struct DistanceArgs {
+    /// The domain: a file or a shape
+    pub(crate) domain: String,
+    /// The metric in which distances are measured
+    #[arg(long)]
+    pub(crate) metric: String,
+    /// Where distances start: a point of the domain; may be given more than once
+    #[arg(long, value_name = "X,Y", value_parser = point, required = true, allow_hyphen_values = true)]
+    pub(crate) from: Vec<Point>,
+    /// Trace the shortest path from this point to the nearest of those
+    #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) to: Option<Point>,
+    /// The distances on the canvas, and the path: .vtu
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) out: PathBuf,
+    /// How distances are computed
+    #[arg(long, value_name = "METHOD", default_value_t = Method::default())]
+    pub(crate) geodesic: Method,
+    /// Vertices of the canvas, in all
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = CANVAS_VERTICES)]
+    pub(crate) canvas_size: u32,
+    /// Refuse work that is estimated to need more memory than this
+    #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
+    memory_limit: f64,
+    /// Draw the distances, lines of equal distance and the path: .svg or .png
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
+    /// Pixels of the picture's longer side
+    #[arg(long, value_name = "PIXELS", default_value_t = Picture::default().width, value_parser = value_parser!(u32).range(16..=16_000), requires = "picture")]
+    pub(crate) pixels: u32,
+    /// Write all figures as JSON
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) metric_choices: MetricChoices,
+    #[command(flatten)]
+    pub(crate) run: Run,
+}
+
+/// Vertices of the canvas of `distance`: marching errs by about a thousandth then, in half a second.
+const CANVAS_VERTICES: u32 = 40_000;
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
@@ -325,6 +388,13 @@ impl DualArgs {
     }
 }
 
+impl DistanceArgs {
+    /// In bytes.
+    pub(crate) fn memory_limit(&self) -> u64 {
+        (self.memory_limit * GIB) as u64
+    }
+}
+
 impl MeshArgs {
     pub(crate) fn options(&self) -> MeshOptions {
         MeshOptions {
@@ -334,6 +404,7 @@ impl MeshArgs {
             lloyd: self.lloyd,
             centroid: self.centroid,
             dual: self.dual.into(),
+            geodesic: self.geodesic,
             seeding: self.seeding,
             protection: self.protection,
             picking_radius: self.picking_radius,
@@ -357,6 +428,14 @@ fn window(text: &str) -> Result<Aabb, String> {
     };
     let has_room = |b: &Aabb| b.extent().x > 0.0 && b.extent().y > 0.0 && b.extent().norm().is_finite();
     Aabb::of(corners).filter(has_room).ok_or_else(|| "the box is empty or not finite".into())
+}
+
+fn point(text: &str) -> Result<Point, String> {
+    let numbers: Vec<f64> = text.split(',').map_while(|word| word.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y] if Point::new(x, y).is_finite() && text.matches(',').count() == 1 => Ok(Point::new(x, y)),
+        _ => Err("not a point: write two numbers, X,Y".into()),
+    }
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -28,6 +28,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let start = Instant::now();
     args.diagram.as_deref().map(output::demand_diagram).transpose()?;
     files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs)?;
+    args.geodesic.demand_diagrams()?;
     files::set_threads(&args.run)?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
@@ -55,7 +56,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
         canvas = resolve(canvas, metric.as_ref(), seeds, ROUNDS)?.canvas;
     }
     stage("canvas");
-    let diagram = Diagram::new(&canvas, metric.as_ref(), seeds)?;
+    let diagram = Diagram::by_method(&canvas, metric.as_ref(), seeds, args.geodesic)?;
     stage("diagram");
     let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
         recipe::dual(&diagram, metric.as_ref(), road);
@@ -166,7 +167,7 @@ fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {
 fn options(args: &DualArgs) -> serde_json::Value {
     json!({
         "domain": args.domain, "metric": args.metric, "seeds": args.seeds, "out": args.out, "diagram": args.diagram,
-        "canvas": "intrinsic", "canvas_size": args.canvas_size, "geodesic": "march", "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
+        "canvas": "intrinsic", "canvas_size": args.canvas_size, "geodesic": args.geodesic, "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
         "smooth_metric": args.metric_choices.smooth_metric,
         "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,

@@ -104,6 +104,7 @@ impl Drawn {
             witnesses,
             geodesics: &self.geodesics,
             protection: self.protection.as_ref(),
+            values: None,
             grids: &self.grids,
         }
     }

@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod distance;
 mod dual;
 mod files;
 mod mesh;
@@ -17,6 +18,7 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Mesh(args) => mesh::run(&args),
         Command::Dual(args) => dual::run(&args),
+        Command::Distance(args) => distance::run(&args),
         Command::Check(args) => check::run(&args),
     };
     match done {

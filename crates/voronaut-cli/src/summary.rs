@@ -18,6 +18,28 @@ pub(crate) fn print(title: &str, report: &Report, run: &Run) {
     }
 }
 
+/// Prints what a run of `distance` has found, from its report, unless told to be quiet.
+pub(crate) fn print_distance(title: &str, told: &serde_json::Value, run: &Run) {
+    if run.quiet {
+        return;
+    }
+    let mut text = format!("{title}\n");
+    let mut line = |name: &str, value: &serde_json::Value| {
+        if !value.is_null() {
+            let _ = writeln!(text, "  {name:<12} {value}");
+        }
+    };
+    line("distance", &told["distance"]);
+    line("path", &told["path_length"]);
+    line("farthest", &told["farthest"]);
+    line("canvas", &told["canvas"]["vertices"]);
+    line("seconds", &told["seconds"]["total"]);
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    if let Some(count) = told["unreached"].as_u64().filter(|&count| count > 0) {
+        eprintln!("note: {count} canvas vertices are not reached: infinite in the file");
+    }
+}
+
 fn summary(title: &str, report: &Report, verbose: bool) -> String {
     let mut text = format!("{title}\n");
     let mut line = |name: &str, value: String| {

@@ -71,6 +71,21 @@ impl Canvas {
         locations
     }
 
+    /// The corners of the embedded face that holds a point, with its barycentric coordinates where they are not zero; `None`
+    /// outside the domain.
+    pub fn weights(&self, p: Point) -> Option<Vec<(VertexId, f64)>> {
+        let f = match self.locate(p)? {
+            Location::Vertex(v) => return Some(vec![(v, 1.0)]),
+            Location::Face(f) => f,
+            Location::Edge(h) | Location::Behind(h) => h.face(),
+        };
+        let [a, b, c] = self.embedded.triangle(f);
+        let areas = [(b, c), (c, a), (a, b)].map(|(u, v)| (u - p).cross(v - p).max(0.0));
+        let sum: f64 = areas.iter().sum();
+        let all = self.embedded.topology.corners(f).into_iter().zip(areas.map(|area| area / sum));
+        Some(all.filter(|w| w.1 > 0.0).collect())
+    }
+
     /// The vertices at the position of a vertex, in order: more than one where the domain touches itself in a point, one
     /// for each fan of faces.
     pub fn copies(&self, v: VertexId) -> Vec<VertexId> {

@@ -14,11 +14,13 @@ pub use border::Border;
 
 use crate::domain::Domain;
 use crate::error::Result;
+use crate::geodesic::Graph;
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::planar::{Planar, hilbert_order};
 use crate::triangulation::{Triangulation, VertexId};
 use locate::Finder;
+use rayon::prelude::*;
 
 /// Canvas vertices per seed (`--canvas-size`) unless told otherwise.
 pub const VERTICES_PER_SEED: u32 = 60;
@@ -146,6 +148,18 @@ impl Canvas {
     /// Number of vertices; all slots are used.
     pub fn vertex_count(&self) -> usize {
         self.topology.vertex_slots()
+    }
+
+    /// The vertices with their tensors and the edges of [`Canvas::embedded`], for methods that know no triangles. `field` is
+    /// the one that the canvas was made with.
+    pub fn graph(&self, field: &dyn MetricField) -> Graph {
+        let topology = &self.embedded.topology;
+        let tensors = self.embedded.positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
+        let mut neighbours = vec![Vec::new(); self.vertex_count()];
+        for h in topology.edges() {
+            neighbours[topology.origin(h).index()].push(topology.target(h).0);
+        }
+        Graph::new(self.embedded.positions.clone(), tensors, &neighbours)
     }
 
     /// The position of a vertex.

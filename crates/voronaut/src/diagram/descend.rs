@@ -5,18 +5,24 @@
 //! that the way is straight there; where it would leave the face that it has just come from, it follows the edge between
 //! the two down to a vertex.
 
-use super::Diagram;
+use super::seeds::Start;
+use crate::canvas::Canvas;
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, Vector, orientation};
+use crate::metric::MetricField;
 use crate::planar::Location;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
-/// The descent to one seed.
+/// The descent to one seed, or to whichever of several the distances lead to.
 pub(super) struct Descent<'a> {
-    pub(super) diagram: &'a Diagram<'a>,
-    pub(super) colour: u32,
-    /// The distances of canvas vertices to the seed; infinite where not known.
+    pub(super) canvas: &'a Canvas,
+    pub(super) field: &'a dyn MetricField,
+    /// Where the seeds are, and the vertices that they give a distance to.
+    pub(super) seeds: &'a [(Point, &'a [Start])],
+    /// The distances of canvas vertices to the nearest of the seeds; infinite where not known.
     pub(super) distance: &'a dyn Fn(VertexId) -> f64,
+    /// The vertex that the distance of a vertex came from, where that is known.
+    pub(super) parent: &'a dyn Fn(VertexId) -> Option<VertexId>,
 }
 
 /// A place on the way.
@@ -36,22 +42,21 @@ impl Descent<'_> {
     /// # Errors
     /// [`Error::Domain`] of a point outside the domain, or from where the distances do not lead to the seed.
     pub(super) fn trace(&self, from: Point) -> Result<Vec<Point>> {
-        let Some(seed) = self.diagram.seed(self.colour) else { return Err(self.stuck(from)) };
-        let location = self.diagram.canvas.locate(from).ok_or_else(|| self.stuck(from))?;
+        let location = self.canvas.locate(from).ok_or_else(|| stuck(from))?;
         let mut place = self.begin(from, location);
         let mut path = vec![from];
         // Distances decrease on the way, so that no face is met often; the bound guards against rounding.
-        let most = 4 * self.diagram.canvas.embedded().topology.face_slots();
+        let most = 4 * self.canvas.embedded().topology.face_slots();
         for _ in 0..most {
-            if self.sees_seed(place, seed) {
+            if let Some(seed) = self.seen(place) {
                 path.push(seed);
                 path.dedup();
                 return Ok(path);
             }
-            place = self.step(place).ok_or_else(|| self.stuck(from))?;
+            place = self.step(place).ok_or_else(|| stuck(from))?;
             path.push(self.point(place));
         }
-        Err(self.stuck(from))
+        Err(stuck(from))
     }
 
     fn begin(&self, from: Point, location: Location) -> Place {
@@ -59,9 +64,9 @@ impl Descent<'_> {
             Location::Face(f) => Place::Face(from, f, None),
             Location::Vertex(v) => Place::Vertex(v),
             Location::Edge(h) | Location::Behind(h) => {
-                let twin = self.diagram.canvas.embedded().topology.twin(h);
+                let twin = self.canvas.embedded().topology.twin(h);
                 let leads_in = |h: &HalfEdge| {
-                    let [a, b] = self.diagram.canvas.embedded().ends(*h);
+                    let [a, b] = self.canvas.embedded().ends(*h);
                     self.direction(h.face(), from).is_some_and(|w| (b - a).cross(w) > 0.0)
                 };
                 let side = [Some(h), twin].into_iter().flatten().find(leads_in).unwrap_or(h);
@@ -73,22 +78,20 @@ impl Descent<'_> {
     fn point(&self, place: Place) -> Point {
         match place {
             Place::Face(p, ..) => p,
-            Place::Vertex(v) => self.diagram.canvas.position(v),
+            Place::Vertex(v) => self.canvas.position(v),
         }
     }
 
-    /// Whether the seed is in the face, or among the vertices that took their distance from the seed itself.
-    fn sees_seed(&self, place: Place, seed: Point) -> bool {
-        match place {
+    /// The seed that is in the face, or gave the vertex its distance.
+    fn seen(&self, place: Place) -> Option<Point> {
+        let sees = |(seed, starts): &&(Point, &[Start])| match place {
             Place::Face(_, f, _) => {
-                let [a, b, c] = self.diagram.canvas.embedded().triangle(f);
-                [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, seed) != Orientation::Right)
+                let [a, b, c] = self.canvas.embedded().triangle(f);
+                [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, *seed) != Orientation::Right)
             }
-            Place::Vertex(v) => {
-                let seed = self.diagram.seeds[self.colour as usize].as_ref();
-                seed.is_some_and(|s| s.starts.iter().any(|start| start.vertex == v))
-            }
-        }
+            Place::Vertex(v) => starts.iter().any(|start| start.vertex == v),
+        };
+        self.seeds.iter().find(sees).map(|seed| seed.0)
     }
 
     fn step(&self, place: Place) -> Option<Place> {
@@ -100,19 +103,19 @@ impl Descent<'_> {
 
     /// The direction of descent in a face, with the metric at a point of it.
     fn direction(&self, f: FaceId, at: Point) -> Option<Vector> {
-        let embedded = self.diagram.canvas.embedded();
+        let embedded = self.canvas.embedded();
         let [a, b, c] = embedded.triangle(f);
         let [da, db, dc] = embedded.topology.corners(f).map(|v| (self.distance)(v));
         let (u, v) = (b - a, c - a);
         // grad d with grad d . u = db - da and grad d . v = dc - da.
         let gradient = (v.perpendicular() * (da - db) + u.perpendicular() * (dc - da)) * (1.0 / u.cross(v));
-        let down = -self.diagram.field.at(at).inverse().apply(gradient);
+        let down = -self.field.at(at).inverse().apply(gradient);
         (down.x.is_finite() && down.y.is_finite() && down != Vector::default()).then_some(down)
     }
 
     /// From a point of a face to its edge, or down along the edge through which the face was entered.
     fn cross(&self, p: Point, f: FaceId, entered: Option<HalfEdge>) -> Option<Place> {
-        let embedded = self.diagram.canvas.embedded();
+        let embedded = self.canvas.embedded();
         let Some(down) = self.direction(f, p) else { return self.lowest(embedded.topology.corners(f)) };
         let leads_out = |h: HalfEdge| (embedded.ends(h)[1] - embedded.ends(h)[0]).cross(down) <= 0.0;
         if let Some(h) = entered.filter(|&h| leads_out(h)) {
@@ -126,7 +129,7 @@ impl Descent<'_> {
 
     /// When a ray meets an edge, and where on it (0 at its start, 1 at its end).
     fn exit(&self, p: Point, down: Vector, h: HalfEdge) -> Option<(f64, f64)> {
-        let [a, b] = self.diagram.canvas.embedded().ends(h);
+        let [a, b] = self.canvas.embedded().ends(h);
         let rate = (b - a).cross(down);
         if rate >= 0.0 {
             return None;
@@ -138,7 +141,7 @@ impl Descent<'_> {
 
     /// At a place on an edge, to go on into the face beyond; at the border the next step then leads along it.
     fn arrive(&self, h: HalfEdge, t: f64) -> Place {
-        let embedded = self.diagram.canvas.embedded();
+        let embedded = self.canvas.embedded();
         if !(AT_VERTEX..=1.0 - AT_VERTEX).contains(&t) {
             return Place::Vertex(if t > 0.5 { embedded.topology.target(h) } else { embedded.topology.origin(h) });
         }
@@ -149,7 +152,7 @@ impl Descent<'_> {
 
     /// From a vertex through the face where the descent is steepest, else along the steepest edge, else to its parent.
     fn leave(&self, v: VertexId) -> Option<Place> {
-        let embedded = self.diagram.canvas.embedded();
+        let embedded = self.canvas.embedded();
         let (topology, at) = (&embedded.topology, embedded.position(v));
         let mut best: Option<(f64, Place)> = None;
         let mut offer = |rate: f64, place: Option<Place>| {
@@ -165,7 +168,7 @@ impl Descent<'_> {
             let down = self.direction(h.face(), at);
             if let Some(down) = down.filter(|&w| a.cross(w) >= 0.0 && w.cross(b) >= 0.0) {
                 let exit = self.exit(at, down, h.next());
-                offer(self.diagram.field.at(at).length(down), exit.map(|(_, t)| self.arrive(h.next(), t)));
+                offer(self.field.at(at).length(down), exit.map(|(_, t)| self.arrive(h.next(), t)));
             }
             for (u, e) in [(topology.target(h), h), (topology.apex(h), h.prev())] {
                 let (rate, place) = edge(u, e);
@@ -177,9 +180,9 @@ impl Descent<'_> {
 
     /// The vertex that the distance of a vertex came from, if it is in sight and nearer.
     fn parent(&self, v: VertexId) -> Option<Place> {
-        let parent = self.diagram.parent(v).filter(|_| self.diagram.colour(v) == Some(self.colour))?;
-        let near = self.diagram.canvas.embedded().topology.start(v)?.face();
-        let seen = self.diagram.canvas.embedded().walk(near, self.diagram.canvas.position(parent), false);
+        let parent = (self.parent)(v)?;
+        let near = self.canvas.embedded().topology.start(v)?.face();
+        let seen = self.canvas.embedded().walk(near, self.canvas.position(parent), false);
         let is_down = (self.distance)(parent) < (self.distance)(v) && seen == Location::Vertex(parent);
         is_down.then_some(Place::Vertex(parent))
     }
@@ -188,9 +191,9 @@ impl Descent<'_> {
         let least = vertices.into_iter().min_by(|&a, &b| (self.distance)(a).total_cmp(&(self.distance)(b)))?;
         (self.distance)(least).is_finite().then_some(Place::Vertex(least))
     }
+}
 
-    fn stuck(&self, from: Point) -> Error {
-        let what = format!("no way from there to seed {}", self.colour + 1);
-        Error::domain(what, from.to_string(), "take a point of the domain that the seed reaches, or a finer canvas")
-    }
+fn stuck(from: Point) -> Error {
+    let help = "take a point of the domain that the seed reaches, or a finer canvas";
+    Error::domain("no way from there to a seed", from.to_string(), help)
 }

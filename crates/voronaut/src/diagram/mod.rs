@@ -6,6 +6,7 @@
 mod assemble;
 mod cells;
 mod descend;
+mod distances;
 mod envelope;
 mod nerve;
 mod overlap;
@@ -18,6 +19,7 @@ mod test_diagrams;
 mod witnesses;
 
 pub use cells::{Cells, Outline};
+pub use distances::Distances;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle};
 pub use passes::Passes;
 pub use paths::Paths;
@@ -26,7 +28,10 @@ pub use witnesses::Witnesses;
 
 use crate::canvas::Canvas;
 use crate::error::{Error, Result};
-use crate::geodesic::{Geodesic, Label, MarchCounters, Marching, NO_COLOUR, Propagation, Sources, Support};
+use crate::geodesic::{
+    Dijkstra, Geodesic, Konukoglu, Label, MarchCounters, Marching, Method, NO_COLOUR, Propagation, Sources, Stvd,
+    Support,
+};
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::triangulation::VertexId;
@@ -52,13 +57,25 @@ struct Seed {
     starts: Vec<Start>,
 }
 
+/// # Errors
+/// [`Error::Unsupported`] of a method that does not drive diagrams.
+fn solver<'a>(canvas: &'a Canvas, field: &dyn MetricField, method: Method) -> Result<Box<dyn Geodesic + 'a>> {
+    method.demand_diagrams()?;
+    Ok(match method {
+        Method::March | Method::Lbr | Method::Heat => Box::new(Marching::on(canvas.topology())),
+        Method::Stvd { window } => Box::new(Stvd::on(canvas.graph(field), window)),
+        Method::Dijkstra => Box::new(Dijkstra::on(canvas.graph(field))),
+        Method::Konukoglu => Box::new(Konukoglu::on(canvas.graph(field))),
+    })
+}
+
 impl<'a> Diagram<'a> {
     /// The diagram of seeds by fast marching with circular waves, all fronts at once.
     ///
     /// # Errors
     /// [`Error::Domain`] of a seed outside the domain.
     pub fn new(canvas: &'a Canvas, field: &'a dyn MetricField, seeds: &[Point]) -> Result<Self> {
-        Self::with_solver(canvas, field, seeds, Marching::default())
+        Self::with_solver(canvas, field, seeds, Marching::on(canvas.topology()))
     }
 
     /// The diagram of the vertices of a mesh of the canvas's domain, which may touch itself in points: of as many vertices
@@ -67,8 +84,21 @@ impl<'a> Diagram<'a> {
     /// # Errors
     /// As for [`Diagram::new`].
     pub fn of_vertices(canvas: &'a Canvas, field: &'a dyn MetricField, vertices: &[Point]) -> Result<Self> {
+        Self::of_vertices_by(canvas, field, vertices, Method::March)
+    }
+
+    /// [`Diagram::of_vertices`] by one of the methods.
+    ///
+    /// # Errors
+    /// As for [`Diagram::by_method`].
+    pub fn of_vertices_by(
+        canvas: &'a Canvas,
+        field: &'a dyn MetricField,
+        vertices: &[Point],
+        method: Method,
+    ) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, vertices, true, Care::Full)?;
-        Ok(Self::from_starts(canvas, field, vertices, starts, Box::new(Marching::default())))
+        Ok(Self::from_starts(canvas, field, vertices, starts, solver(canvas, field, method)?))
     }
 
     /// [`Diagram::of_vertices`] with distances that are poorer around seeds where the metric varies much, for a tenth of
@@ -78,7 +108,7 @@ impl<'a> Diagram<'a> {
     /// As for [`Diagram::new`].
     pub fn roughly_of_vertices(canvas: &'a Canvas, field: &'a dyn MetricField, vertices: &[Point]) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, vertices, true, Care::Quick)?;
-        Ok(Self::from_starts(canvas, field, vertices, starts, Box::new(Marching::default())))
+        Ok(Self::from_starts(canvas, field, vertices, starts, Box::new(Marching::on(canvas.topology()))))
     }
 
     /// The diagram of seeds by a solver.
@@ -93,6 +123,15 @@ impl<'a> Diagram<'a> {
     ) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Full)?;
         Ok(Self::from_starts(canvas, field, seeds, starts, Box::new(solver)))
+    }
+
+    /// The diagram of seeds by one of the methods, on what of the canvas it travels on.
+    ///
+    /// # Errors
+    /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams.
+    pub fn by_method(canvas: &'a Canvas, field: &'a dyn MetricField, seeds: &[Point], method: Method) -> Result<Self> {
+        let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Full)?;
+        Ok(Self::from_starts(canvas, field, seeds, starts, solver(canvas, field, method)?))
     }
 
     fn from_starts(
@@ -110,7 +149,7 @@ impl<'a> Diagram<'a> {
             }
             placed.push(Some(Seed { at, starts }));
         }
-        let propagation = solver.propagate(canvas.topology(), &sources);
+        let propagation = solver.propagate(&sources);
         Self { canvas, field, solver, seeds: placed, sources, propagation, overlap: OnceLock::new() }
     }
 
@@ -200,6 +239,7 @@ impl<'a> Diagram<'a> {
         let topology = self.canvas.topology();
         match self.label(v).support() {
             Support::Nothing | Support::Source => None,
+            Support::Neighbour(u) => Some(u),
             Support::Vertex(h) => {
                 let (a, b) = (topology.origin(h), topology.target(h));
                 Some(if a == v { b } else { a })
@@ -286,6 +326,6 @@ impl<'a> Diagram<'a> {
 
     fn mend(&mut self, changed: &[VertexId]) {
         self.overlap = OnceLock::new();
-        self.solver.update(self.canvas.topology(), &self.sources, changed, &mut self.propagation);
+        self.solver.update(&self.sources, changed, &mut self.propagation);
     }
 }

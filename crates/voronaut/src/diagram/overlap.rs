@@ -4,7 +4,7 @@
 //! So each seed's distances are computed once more, by themselves, on its cell and a few rings around it.
 
 use super::Diagram;
-use crate::geodesic::{NO_COLOUR, PatchSolver};
+use crate::geodesic::{NO_COLOUR, Patches};
 use crate::triangulation::VertexId;
 use rayon::prelude::*;
 
@@ -45,9 +45,12 @@ impl Diagram<'_> {
         let cells = self.cells();
         let colours: Vec<u32> = (0..self.colours() as u32).collect();
         let patches = |chunk: &[u32]| -> Vec<Patch> {
-            let mut solver = PatchSolver::new(self.canvas.topology());
+            let mut solver = self.solver.patches();
             let mut seen = vec![false; self.canvas.vertex_count()];
-            chunk.iter().map(|&colour| self.patch(colour, &cells[colour as usize], &mut solver, &mut seen)).collect()
+            chunk
+                .iter()
+                .map(|&colour| self.patch(colour, &cells[colour as usize], solver.as_mut(), &mut seen))
+                .collect()
         };
         let patches: Vec<Patch> = colours.par_chunks(CELLS).flat_map_iter(patches).collect();
         gather(self.canvas.vertex_count(), &patches)
@@ -64,7 +67,7 @@ impl Diagram<'_> {
         cells
     }
 
-    fn patch(&self, colour: u32, cell: &[VertexId], solver: &mut PatchSolver, seen: &mut [bool]) -> Patch {
+    fn patch(&self, colour: u32, cell: &[VertexId], solver: &mut dyn Patches, seen: &mut [bool]) -> Patch {
         let Some(seed) = &self.seeds[colour as usize] else { return Patch::new() };
         let topology = self.canvas.topology();
         let mut vertices: Vec<VertexId> = Vec::with_capacity(2 * cell.len());
@@ -83,7 +86,8 @@ impl Diagram<'_> {
         for v in &vertices {
             seen[v.index()] = false;
         }
-        let distances = solver.distances(&vertices, seed.starts.iter().map(|s| (s.vertex, s.distance)));
+        let starts: Vec<(VertexId, f64)> = seed.starts.iter().map(|s| (s.vertex, s.distance)).collect();
+        let distances = solver.distances(&vertices, &starts);
         vertices.into_iter().zip(distances).filter(|(_, distance)| distance.is_finite()).collect()
     }
 }

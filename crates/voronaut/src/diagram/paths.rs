@@ -7,7 +7,6 @@ use crate::canvas::Border;
 use crate::error::{Error, Result};
 use crate::geodesic::{Obstacles, Polyline, straighten};
 use crate::geometry::Point;
-use crate::planar::Location;
 use crate::triangulation::VertexId;
 use rayon::prelude::*;
 
@@ -81,12 +80,16 @@ impl Paths<'_> {
 
     fn descend(&self, from: Point, colour: u32) -> Result<Vec<Point>> {
         let distance = |v: VertexId| self.overlap.distance(v, colour).unwrap_or(f64::INFINITY);
-        Descent { diagram: self.diagram, colour, distance: &distance }.trace(from)
+        let Diagram { canvas, field, .. } = self.diagram;
+        let seed = self.diagram.seeds.get(colour as usize).and_then(Option::as_ref);
+        let seeds: Vec<_> = seed.iter().map(|s| (s.at, s.starts.as_slice())).collect();
+        let parent = |v: VertexId| self.diagram.parent(v).filter(|_| self.diagram.colour(v) == Some(colour));
+        Descent { canvas, field: *field, seeds: &seeds, distance: &distance, parent: &parent }.trace(from)
     }
 
     /// The seed with the least interpolated distance at a point.
     fn nearest(&self, from: Point) -> Option<u32> {
-        let weights = self.weights(from)?;
+        let weights = self.diagram.canvas.weights(from)?;
         let at = |colour: u32| {
             let known = |v: VertexId| self.overlap.distance(v, colour).unwrap_or(f64::INFINITY);
             weights.iter().map(|&(v, weight)| weight * known(v)).sum::<f64>()
@@ -94,21 +97,6 @@ impl Paths<'_> {
         let colours = weights.iter().flat_map(|w| self.overlap.at(w.0)).map(|e| e.0);
         let all = colours.map(|colour| (at(colour), colour)).filter(|x| x.0.is_finite());
         all.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|best| best.1)
-    }
-
-    /// The corners of the canvas face that holds a point, with its barycentric coordinates where they are not zero.
-    fn weights(&self, p: Point) -> Option<Vec<(VertexId, f64)>> {
-        let embedded = self.diagram.canvas.embedded();
-        let f = match self.diagram.canvas.locate(p)? {
-            Location::Vertex(v) => return Some(vec![(v, 1.0)]),
-            Location::Face(f) => f,
-            Location::Edge(h) | Location::Behind(h) => h.face(),
-        };
-        let [a, b, c] = embedded.triangle(f);
-        let areas = [(b, c), (c, a), (a, b)].map(|(u, v)| (u - p).cross(v - p).max(0.0));
-        let sum: f64 = areas.iter().sum();
-        let all = embedded.topology.corners(f).into_iter().zip(areas.map(|area| area / sum));
-        Some(all.filter(|w| w.1 > 0.0).collect())
     }
 }
 
@@ -132,7 +120,7 @@ mod tests {
             let colour = paths.nearest(from).unwrap();
             assert_eq!((path[0], path[path.len() - 1]), (from, diagram.seed(colour).unwrap()));
             let at = |p: Point| {
-                let weights = paths.weights(p).unwrap();
+                let weights = canvas.weights(p).unwrap();
                 weights.iter().map(|&(v, w)| w * paths.overlap.distance(v, colour).unwrap()).sum::<f64>()
             };
             // Not the last two: interpolation is poor around the seed.

@@ -9,7 +9,7 @@ use super::{Dual, Effort, Margin};
 use crate::canvas::{Canvas, CanvasCounters};
 use crate::diagram::{Diagram, NerveTriangle, resolve};
 use crate::error::Result;
-use crate::geodesic::MarchCounters;
+use crate::geodesic::{MarchCounters, Method};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::HashSet;
 
@@ -102,12 +102,12 @@ pub struct Made {
 }
 
 impl Dual<'_> {
-    /// Asks the diagram for the topology where the road says so, on a canvas with so many vertices per seed, around the
+    /// Asks the diagram, by a method, for the topology where the road says so, on a canvas with so many vertices per seed, around the
     /// edges concerned only. Edges by lengths are to be settled before ([`Dual::flip_all`] with [`Effort::Full`]).
     ///
     /// # Errors
-    /// The metric is not positive definite somewhere around these edges.
-    pub fn consult_diagram(&mut self, road: Road, per_seed: u32) -> Result<Consultation> {
+    /// The metric is not positive definite somewhere around these edges; the method does not drive diagrams.
+    pub fn consult_diagram(&mut self, road: Road, per_seed: u32, method: Method) -> Result<Consultation> {
         let asked = self.edges_to_ask(road);
         if asked.is_empty() {
             let uncertain = self.uncertain_edges(&HashSet::new());
@@ -128,7 +128,7 @@ impl Dual<'_> {
         if road == Road::Canvas {
             canvas = resolve(canvas, &field, &seeds, ROUNDS)?.canvas;
         }
-        let diagram = Diagram::of_vertices(&canvas, &field, &seeds)?;
+        let diagram = Diagram::of_vertices_by(&canvas, &field, &seeds, method)?;
         let nerve = diagram.sharp_nerve();
         let sides = nerve.sides(|_| true).map(|[i, j]| pair(ids[i as usize], ids[j as usize]));
         let wanted: HashSet<[VertexId; 2]> = sides.filter(|s| s.iter().all(|v| is_inner[v.index()])).collect();

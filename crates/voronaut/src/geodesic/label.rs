@@ -27,10 +27,14 @@ pub enum Support {
     Edge(HalfEdge),
     /// The other end of this edge, along it.
     Vertex(HalfEdge),
+    /// This neighbour, in a graph; of two the nearer to the source.
+    Neighbour(VertexId),
 }
 
 const NOTHING: u32 = u32::MAX;
 const SOURCE: u32 = u32::MAX - 1;
+/// Kinds of support that name a half-edge or a vertex, in the last digit of its code: ids are below 2^32 / 3.
+const KINDS: u32 = 3;
 
 impl Label {
     /// The label of a vertex that no source reaches.
@@ -40,10 +44,15 @@ impl Label {
         let support = match support {
             Support::Nothing => NOTHING,
             Support::Source => SOURCE,
-            Support::Edge(h) => 2 * h.0,
-            Support::Vertex(h) => 2 * h.0 + 1,
+            Support::Edge(h) => KINDS * h.0,
+            Support::Vertex(h) => KINDS * h.0 + 1,
+            Support::Neighbour(v) => KINDS * v.0 + 2,
         };
         Self { distance, colour, support }
+    }
+
+    pub(super) fn of_source(distance: f64, colour: u32) -> Self {
+        Self::new(distance, colour, Support::Source)
     }
 
     /// What the distance was computed from.
@@ -51,8 +60,11 @@ impl Label {
         match self.support {
             NOTHING => Support::Nothing,
             SOURCE => Support::Source,
-            code if code % 2 == 0 => Support::Edge(HalfEdge(code / 2)),
-            code => Support::Vertex(HalfEdge(code / 2)),
+            code => match code % KINDS {
+                0 => Support::Edge(HalfEdge(code / KINDS)),
+                1 => Support::Vertex(HalfEdge(code / KINDS)),
+                _ => Support::Neighbour(VertexId(code / KINDS)),
+            },
         }
     }
 
@@ -122,7 +134,7 @@ impl Sources {
 
     /// The nearest start at a vertex.
     pub(super) fn nearest(&self, v: VertexId) -> Label {
-        let labels = self.at(v).map(|(distance, colour)| Label::new(distance, colour, Support::Source));
+        let labels = self.at(v).map(|(distance, colour)| Label::of_source(distance, colour));
         labels.fold(Label::FAR, |best, label| if label.is_before(&best) { label } else { best })
     }
 

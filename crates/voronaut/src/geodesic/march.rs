@@ -19,27 +19,72 @@
 
 use super::front::Front;
 use super::label::{Label, Sources, Support};
+use super::patch::PatchSolver;
 use super::update::{Crossing, Unfolding, Wave};
-use super::{Geodesic, MarchCounters};
+use super::{Geodesic, MarchCounters, Patches};
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
-/// Fast marching with waves of one shape.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Marching {
+/// Fast marching on a triangulation with waves of one shape.
+#[derive(Clone, Copy, Debug)]
+pub struct Marching<'a> {
+    canvas: &'a Triangulation,
     /// The shape of fronts within a face.
-    pub wave: Wave,
+    wave: Wave,
+}
+
+impl<'a> Marching<'a> {
+    /// With circular waves.
+    pub fn on(canvas: &'a Triangulation) -> Self {
+        Self { canvas, wave: Wave::default() }
+    }
+
+    /// With waves of another shape.
+    #[must_use]
+    pub fn with_wave(self, wave: Wave) -> Self {
+        Self { wave, ..self }
+    }
 }
 
 /// Labels of all vertices, with what is needed to mend them.
 #[derive(Clone, Debug)]
 pub struct Propagation {
-    labels: Vec<Label>,
-    due: Vec<Label>,
-    front: Front,
-    counters: MarchCounters,
+    pub(super) labels: Vec<Label>,
+    pub(super) due: Vec<Label>,
+    pub(super) front: Front,
+    pub(super) counters: MarchCounters,
 }
 
 impl Propagation {
+    /// Labels that nothing will mend in part.
+    pub(super) fn of(labels: Vec<Label>, counters: MarchCounters) -> Self {
+        Self { labels, due: Vec::new(), front: Front::default(), counters }
+    }
+
+    /// Makes labels that came at once ready to be mended in part: each is its due one.
+    pub(super) fn mark_settled(&mut self) {
+        if self.due.len() < self.labels.len() {
+            self.due.clone_from(&self.labels);
+            self.front = Front::new(self.labels.len());
+        }
+    }
+
+    /// Takes labels made anew; the work for them is added.
+    pub(super) fn replace(&mut self, anew: Self) {
+        let before = std::mem::replace(self, anew).counters;
+        self.counters += before;
+    }
+
+    /// Puts the vertex on the front if its label is not the due one, else takes it off.
+    pub(super) fn enqueue(&mut self, v: VertexId) {
+        let (label, due) = (&self.labels[v.index()], &self.due[v.index()]);
+        if label == due {
+            self.front.remove(v);
+        } else {
+            let key = if due.is_before(label) { due } else { label };
+            self.front.set(v, key);
+        }
+    }
+
     fn new(vertices: usize) -> Self {
         Self {
             labels: vec![Label::FAR; vertices],
@@ -65,16 +110,20 @@ impl Propagation {
     }
 }
 
-impl Geodesic for Marching {
-    fn propagate(&self, canvas: &Triangulation, sources: &Sources) -> Propagation {
-        let mut state = Propagation::new(canvas.vertex_slots());
+impl Geodesic for Marching<'_> {
+    fn propagate(&self, sources: &Sources) -> Propagation {
+        let mut state = Propagation::new(self.canvas.vertex_slots());
         let starts: Vec<VertexId> = sources.vertices().collect();
-        self.update(canvas, sources, &starts, &mut state);
+        self.update(sources, &starts, &mut state);
         state
     }
 
-    fn update(&self, canvas: &Triangulation, sources: &Sources, changed: &[VertexId], state: &mut Propagation) {
-        let mut march = March { wave: self.wave, canvas, sources, state };
+    fn patches(&self) -> Box<dyn Patches + '_> {
+        Box::new(PatchSolver::new(self.canvas))
+    }
+
+    fn update(&self, sources: &Sources, changed: &[VertexId], state: &mut Propagation) {
+        let mut march = March { wave: self.wave, canvas: self.canvas, sources, state };
         for &v in changed {
             march.reconsider(v);
         }
@@ -110,7 +159,7 @@ impl March<'_> {
             self.state.counters.withdrawn += 1;
             self.state.labels[v.index()] = Label::FAR;
             self.reconsider_dependents(v);
-            self.enqueue(v);
+            self.state.enqueue(v);
         }
     }
 
@@ -143,7 +192,7 @@ impl March<'_> {
     fn offer(&mut self, v: VertexId, label: Label) {
         if label.is_before(&self.state.due[v.index()]) && !self.is_circular(&label, v) {
             self.state.due[v.index()] = label;
-            self.enqueue(v);
+            self.state.enqueue(v);
         }
     }
 
@@ -164,7 +213,7 @@ impl March<'_> {
     /// Whether the due label of y comes from the label of v.
     fn rests_on(&self, y: VertexId, v: VertexId) -> bool {
         match self.state.due[y.index()].support() {
-            Support::Nothing | Support::Source => false,
+            Support::Nothing | Support::Source | Support::Neighbour(_) => false,
             Support::Edge(h) | Support::Vertex(h) => self.canvas.origin(h) == v || self.canvas.target(h) == v,
         }
     }
@@ -174,7 +223,7 @@ impl March<'_> {
     fn is_circular(&self, label: &Label, v: VertexId) -> bool {
         let ends = |h: HalfEdge| [self.canvas.origin(h), self.canvas.target(h)];
         match label.support() {
-            Support::Nothing | Support::Source => false,
+            Support::Nothing | Support::Source | Support::Neighbour(_) => false,
             Support::Edge(h) => ends(h).contains(&v),
             Support::Vertex(h) => ends(h) == [v, v],
         }
@@ -205,18 +254,7 @@ impl March<'_> {
         self.state.counters.reconsidered += 1;
         self.state.counters.crossings += crossings;
         self.state.due[v.index()] = best;
-        self.enqueue(v);
-    }
-
-    /// Puts the vertex on the front if its label is not the due one, else takes it off.
-    fn enqueue(&mut self, v: VertexId) {
-        let (label, due) = (&self.state.labels[v.index()], &self.state.due[v.index()]);
-        if label == due {
-            self.state.front.remove(v);
-        } else {
-            let key = if due.is_before(label) { due } else { label };
-            self.state.front.set(v, key);
-        }
+        self.state.enqueue(v);
     }
 
     /// The label that reaches one end of an edge from the other, `from`, along it.

@@ -1,26 +1,35 @@
 //! Geodesics of a metric field.
 //!
-//! From the metric alone: local expansions, lengths of short paths, in-circle tests. On a triangulation with metric lengths
-//! (a canvas): distances to the nearest of many sources, by solvers that share one interface, [`Geodesic`], and never
-//! read positions.
+//! From the metric alone: local expansions, lengths of short paths, in-circle tests. On a canvas: distances to the nearest
+//! of many sources, by solvers that share one interface, [`Geodesic`]. Each is made on what it travels on: [`Marching`] on a
+//! triangulation with metric lengths, without positions; the others on a [`Graph`], which every kind of canvas gives.
 
 mod bow;
 mod circumcentre;
 mod curve;
+mod dijkstra;
 mod front;
+mod graph;
+mod heat;
 mod in_circle;
 mod jet;
 mod karcher;
+mod konukoglu;
 mod label;
+mod lattice;
 mod length;
 mod local;
 mod logarithm;
 mod march;
+mod method;
 mod patch;
 mod path;
 mod predicate;
 mod rule;
+mod simplex;
 mod straighten;
+mod stvd;
+mod sweep;
 mod tension;
 mod update;
 
@@ -28,29 +37,49 @@ pub use bow::{bowed_between, bowed_chord};
 pub use circumcentre::{Circle, margin_by_power};
 pub(crate) use circumcentre::{equalising_step, flat_centre};
 pub use curve::Curve;
+pub use dijkstra::Dijkstra;
+pub use graph::Graph;
+pub use heat::Heat;
 pub use in_circle::{Angles, circumradius, frozen_margin};
 pub use jet::gauss_curvature;
 pub use karcher::karcher_mean;
+pub use konukoglu::Konukoglu;
 pub use label::{Label, NO_COLOUR, Sources, Support};
+pub use lattice::Lattice;
 pub use length::{Length, bent_chord, chord, hermite, path_energy};
 pub use local::LocalMetric;
 pub use logarithm::Logarithm;
 pub use march::{Marching, Propagation};
-pub use patch::PatchSolver;
+pub use method::{Method, STVD_WINDOW};
 pub use path::{Fineness, PathLength, Paths};
 pub use predicate::{Margin, margin_from_lengths};
 pub use straighten::{Obstacles, Open, Polyline, straighten};
+pub use stvd::Stvd;
 pub use update::Wave;
 
-use crate::triangulation::{Triangulation, VertexId};
+use crate::triangulation::VertexId;
 
-/// A solver of distances on a canvas.
+/// A solver of distances on a canvas, with which it was made.
 pub trait Geodesic: Sync {
     /// Distance to, and colour of, the nearest source of every vertex.
-    fn propagate(&self, canvas: &Triangulation, sources: &Sources) -> Propagation;
+    fn propagate(&self, sources: &Sources) -> Propagation;
 
-    /// Mends labels after the sources at the vertices `changed` have changed; the result equals [`Geodesic::propagate`].
-    fn update(&self, canvas: &Triangulation, sources: &Sources, changed: &[VertexId], state: &mut Propagation);
+    /// Mends labels after the sources at the vertices `changed` have changed; the result equals [`Geodesic::propagate`], by
+    /// which a method that knows no better makes them anew.
+    fn update(&self, sources: &Sources, changed: &[VertexId], state: &mut Propagation) {
+        let _ = changed;
+        state.replace(self.propagate(sources));
+    }
+
+    /// The same method on parts of the canvas.
+    fn patches(&self) -> Box<dyn Patches + '_>;
+}
+
+/// Distances from one source on one part of a canvas after the other, without regard for other sources.
+pub trait Patches {
+    /// The distance of each vertex of the patch from the source that has the given distances from some vertices; infinite
+    /// where it is not reached within the patch.
+    fn distances(&mut self, patch: &[VertexId], starts: &[(VertexId, f64)]) -> Vec<f64>;
 }
 
 /// Work of a propagation, counted; deterministic.
@@ -60,8 +89,17 @@ pub struct MarchCounters {
     pub settled: u64,
     /// Those of them whose label was stale and was withdrawn.
     pub withdrawn: u64,
-    /// Crossings of a face tried.
+    /// Crossings of a face tried; on a graph, steps over an edge.
     pub crossings: u64,
     /// Labels computed anew from all neighbours.
     pub reconsidered: u64,
+}
+
+impl std::ops::AddAssign for MarchCounters {
+    fn add_assign(&mut self, more: Self) {
+        self.settled += more.settled;
+        self.withdrawn += more.withdrawn;
+        self.crossings += more.crossings;
+        self.reconsidered += more.reconsidered;
+    }
 }

@@ -1,5 +1,6 @@
 //! Distances from one source on a part of the canvas, without regard for other sources.
 
+use super::Patches;
 use super::update::Crossing;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 use std::cmp::Ordering;
@@ -15,7 +16,7 @@ const ROUNDS: usize = 20;
 /// Within a patch a value may be corrected after its neighbours have used it, so that (unlike in
 /// [`Marching`](super::Marching)) a front may cross a face in any direction: with circular waves, distances on a flat
 /// intrinsic Delaunay canvas are exact, obtuse faces or not, where the straight path stays in the patch.
-pub struct PatchSolver<'a> {
+pub(super) struct PatchSolver<'a> {
     canvas: &'a Triangulation,
     slots: Vec<u32>,
     distances: Vec<f64>,
@@ -26,37 +27,9 @@ const OUTSIDE: u32 = u32::MAX;
 
 impl<'a> PatchSolver<'a> {
     /// A solver on a canvas.
-    pub fn new(canvas: &'a Triangulation) -> Self {
+    pub(super) fn new(canvas: &'a Triangulation) -> Self {
         let slots = vec![OUTSIDE; canvas.vertex_slots()];
         Self { canvas, slots, distances: Vec::new(), heap: BinaryHeap::new() }
-    }
-
-    /// The distance of each vertex of the patch from the source that has the given distances from some of them; infinite
-    /// where it is not reached within the patch.
-    pub fn distances(&mut self, patch: &[VertexId], starts: impl Iterator<Item = (VertexId, f64)>) -> Vec<f64> {
-        for (i, v) in patch.iter().enumerate() {
-            self.slots[v.index()] = i as u32;
-        }
-        self.distances.clear();
-        self.distances.resize(patch.len(), f64::INFINITY);
-        for (v, distance) in starts {
-            self.offer(v, Some(distance));
-        }
-        let mut budget = patch.len() * ROUNDS;
-        while let Some(Reached { distance, vertex }) = self.heap.pop() {
-            if self.distance(vertex) < distance {
-                continue;
-            }
-            self.spread(vertex);
-            budget -= 1;
-            if budget == 0 {
-                self.heap.clear();
-            }
-        }
-        for v in patch {
-            self.slots[v.index()] = OUTSIDE;
-        }
-        std::mem::take(&mut self.distances)
     }
 
     fn distance(&self, v: VertexId) -> f64 {
@@ -99,6 +72,34 @@ impl<'a> PatchSolver<'a> {
             *old = distance;
             self.heap.push(Reached { distance, vertex });
         }
+    }
+}
+
+impl Patches for PatchSolver<'_> {
+    fn distances(&mut self, patch: &[VertexId], starts: &[(VertexId, f64)]) -> Vec<f64> {
+        for (i, v) in patch.iter().enumerate() {
+            self.slots[v.index()] = i as u32;
+        }
+        self.distances.clear();
+        self.distances.resize(patch.len(), f64::INFINITY);
+        for &(v, distance) in starts {
+            self.offer(v, Some(distance));
+        }
+        let mut budget = patch.len() * ROUNDS;
+        while let Some(Reached { distance, vertex }) = self.heap.pop() {
+            if self.distance(vertex) < distance {
+                continue;
+            }
+            self.spread(vertex);
+            budget -= 1;
+            if budget == 0 {
+                self.heap.clear();
+            }
+        }
+        for v in patch {
+            self.slots[v.index()] = OUTSIDE;
+        }
+        std::mem::take(&mut self.distances)
     }
 }
 

@@ -32,6 +32,8 @@ pub struct Layers<'a> {
     pub geodesics: &'a [Vec<Point>],
     /// Triangles by their power protection, instead of their size.
     pub protection: Option<&'a Protection>,
+    /// Triangles by a value at the mesh's points, from strong (the least) to pale, instead of their size.
+    pub values: Option<&'a [f64]>,
     /// Fainter polylines under those, such as lines of equal barycentric coordinates in Riemannian triangles.
     pub grids: &'a [Vec<Point>],
 }

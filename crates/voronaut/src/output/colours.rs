@@ -16,6 +16,8 @@ pub(super) const PALE_BORDER: &str = "#c9ced8";
 pub(super) const SEED: &str = "#1b2540";
 /// Geodesic edges.
 pub(super) const GEODESIC: &str = "#1b2540";
+/// Where a value is not known.
+pub(super) const UNKNOWN: &str = "#d8d8d8";
 /// Lines of equal barycentric coordinates.
 pub(super) const GRID: &str = "#4a5b85";
 /// Fill and ink of canvas faces that witness Voronoi edges, and Voronoi vertices.

@@ -77,10 +77,11 @@ pub fn svg_with(
         cells::cells(&mut text, found, &frame, if layers.witnesses.is_some() { Tint::Pale } else { tint });
     } else {
         let one_class = || vec![colours::DOMAIN.to_string(); triangles.len()];
-        let fills = match layers.protection {
-            Some(protection) => triangles.iter().map(|&t| protection.fill(t)).collect(),
-            None if picture.mesh => classes(mesh, &triangles, &labels, picture.shade),
-            None => one_class(),
+        let fills = match (layers.protection, layers.values) {
+            (Some(protection), _) => triangles.iter().map(|&t| protection.fill(t)).collect(),
+            (None, Some(values)) => bands(&triangles, values),
+            (None, None) if picture.mesh => classes(mesh, &triangles, &labels, picture.shade),
+            (None, None) => one_class(),
         };
         fill(&mut text, mesh, &frame, &triangles, &fills);
     }
@@ -179,6 +180,16 @@ fn classes(mesh: &Mesh, triangles: &[[u32; 3]], labels: &[i32], shade: Shade) ->
     let share = |size: f64| ((high - size) / (high - low)).clamp(0.0, 1.0);
     let region = |label: &i32| regions.binary_search(label).unwrap_or(0);
     labels.iter().zip(&sizes).map(|(label, &size)| colours::fill(region(label), level(share(size)))).collect()
+}
+
+/// The fill of each triangle by the mean of the values at its corners: the less, the stronger; grey where that is not finite.
+fn bands(triangles: &[[u32; 3]], values: &[f64]) -> Vec<String> {
+    const BANDS: f64 = 40.0;
+    let mean = |t: &[u32; 3]| t.iter().map(|&v| values.get(v as usize).copied().unwrap_or(f64::NAN)).sum::<f64>() / 3.0;
+    let most = triangles.iter().map(mean).filter(|value| value.is_finite()).fold(0.0, f64::max);
+    let level = |value: f64| ((1.0 - value / most) * BANDS).round() / BANDS;
+    let of = |value: f64| if value.is_finite() { colours::fill(0, level(value)) } else { colours::UNKNOWN.into() };
+    triangles.iter().map(|t| of(mean(t))).collect()
 }
 
 /// The range of sizes that the levels of colour span: all but the outermost hundredths, at least a factor of four.

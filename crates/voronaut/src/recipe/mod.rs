@@ -16,6 +16,7 @@ use crate::canvas::{self, Canvas};
 use crate::domain::Domain;
 use crate::dual::{Dual, Kind, Road};
 use crate::error::Result;
+use crate::geodesic::Method;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Scaled};
 use crate::net::Net;
@@ -43,6 +44,8 @@ pub struct MeshOptions {
     pub centroid: Centroid,
     /// Which road decides on the topology.
     pub dual: Road,
+    /// How distances on the canvas are computed where a diagram settles edges; seeding marches.
+    pub geodesic: Method,
     /// How the interior is seeded.
     pub seeding: Seeding,
     /// With [`Seeding::Protected`], the power protection asked of every interior simplex, as a share of epsilon, the
@@ -68,6 +71,7 @@ impl Default for MeshOptions {
             lloyd: 40,
             centroid: Centroid::default(),
             dual: Road::default(),
+            geodesic: Method::default(),
             seeding: Seeding::default(),
             protection: 0.2,
             picking_radius: 0.3,
@@ -115,7 +119,7 @@ const EXCHANGED_SHARE: f64 = 0.06;
 /// Meshes a domain by a metric: plans the scale, samples the boundary, fills the interior, relaxes, checks.
 ///
 /// # Errors
-/// The metric is invalid somewhere, or the work would exceed the memory limit. A valid domain with a valid metric is
+/// The metric is invalid somewhere, the work would exceed the memory limit, or the method drives no diagrams. A valid domain with a valid metric is
 /// refused for no other reason; what could not be met is in [`Meshed::notes`].
 pub fn mesh(
     domain: &Domain,
@@ -123,6 +127,7 @@ pub fn mesh(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
+    options.geodesic.demand_diagrams()?;
     let mut job = Job { field, options, progress, canvas: None, diagram: None, seconds: Vec::new(), notes: Vec::new() };
     let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
     let asked = if options.seeding == Seeding::Protected { count } else { options.dual.seeds_asked(count) };

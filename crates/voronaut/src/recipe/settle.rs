@@ -20,7 +20,7 @@ pub(super) fn settle(
 ) -> Result<Settled> {
     progress.stage("settling edges", 1);
     dual.flip_all(Effort::Full);
-    let found = dual.consult_diagram(options.dual, options.canvas_size)?;
+    let found = dual.consult_diagram(options.dual, options.canvas_size, options.geodesic)?;
     let made = found.made;
     let canvas =
         made.map(|m| report::Canvas { kind: "intrinsic".into(), vertices: m.canvas_vertices, counters: m.canvas });

@@ -151,7 +151,8 @@ fn error(
     from: Point,
     exact: &dyn Fn(Point) -> Option<f64>,
 ) -> f64 {
-    let diagram = Diagram::with_solver(canvas, field, &[from], Marching { wave }).unwrap();
+    let diagram =
+        Diagram::with_solver(canvas, field, &[from], Marching::on(canvas.topology()).with_wave(wave)).unwrap();
     let errors: Vec<f64> = vertices(canvas)
         .filter_map(|v| exact(canvas.position(v)).map(|truth| (diagram.distance(v) / truth - 1.0).abs()))
         .collect();
@@ -243,8 +244,8 @@ fn solvers_share_one_interface() {
     let canvas = Canvas::straight(&domain, &Uniform::default(), 400).unwrap();
     let mut sources = Sources::new(canvas.vertex_count());
     sources.add(VertexId(3), 0.5, 8);
-    let solver: &dyn Geodesic = &Marching { wave: Wave::Plane };
-    let found = solver.propagate(canvas.topology(), &sources);
+    let solver: &dyn Geodesic = &Marching::on(canvas.topology()).with_wave(Wave::Plane);
+    let found = solver.propagate(&sources);
     assert!(found.labels().iter().all(|l| l.colour == 8 && l.distance >= 0.5));
 }
 

@@ -1,0 +1,90 @@
+//! What methods that know no triangles travel on: vertices with a tensor each, and who is whose neighbour.
+
+use crate::geometry::{Point, Tensor};
+use crate::triangulation::VertexId;
+
+/// An immutable graph over the vertices of a canvas, of whichever kind. Neighbours are reciprocal and in order.
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    positions: Vec<Point>,
+    tensors: Vec<Tensor>,
+    /// The neighbours of v are those from `first[v]` to `first[v + 1]`.
+    first: Vec<u32>,
+    neighbours: Vec<VertexId>,
+}
+
+impl Graph {
+    /// A graph of vertices at these (Euclidean) positions with the metric there, in the units of the metric field. Two
+    /// vertices are neighbours if either names the other, as in a star set; a vertex is never its own.
+    ///
+    /// The three lists are of the same length, and neighbours are places in them.
+    pub fn new(positions: Vec<Point>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
+        assert!(positions.len() == tensors.len() && tensors.len() == neighbours.len(), "an entry for each vertex");
+        let named = neighbours.iter().enumerate().flat_map(|(v, list)| list.iter().map(move |&u| (v as u32, u)));
+        let mut pairs: Vec<(u32, u32)> = named.filter(|(v, u)| v != u).flat_map(|(v, u)| [(v, u), (u, v)]).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let mut first = vec![0; positions.len() + 1];
+        for &(v, _) in &pairs {
+            first[v as usize + 1] += 1;
+        }
+        for v in 0..positions.len() {
+            first[v + 1] += first[v];
+        }
+        Self { positions, tensors, first, neighbours: pairs.into_iter().map(|(_, u)| VertexId(u)).collect() }
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// All vertices, in order.
+    pub fn vertices(&self) -> impl Iterator<Item = VertexId> {
+        (0..self.positions.len() as u32).map(VertexId)
+    }
+
+    /// Where a vertex is (Euclidean).
+    pub fn position(&self, v: VertexId) -> Point {
+        self.positions[v.index()]
+    }
+
+    /// The metric at a vertex.
+    pub fn tensor(&self, v: VertexId) -> Tensor {
+        self.tensors[v.index()]
+    }
+
+    /// The neighbours of a vertex, by their numbers.
+    pub fn neighbours(&self, v: VertexId) -> &[VertexId] {
+        &self.neighbours[self.first[v.index()] as usize..self.first[v.index() + 1] as usize]
+    }
+
+    /// Number of pairs of neighbours.
+    pub fn edge_count(&self) -> usize {
+        self.neighbours.len() / 2
+    }
+
+    /// Metric length of the straight edge between two vertices, by the trapezium rule: the mean of what the tensors at its
+    /// ends say.
+    pub fn length(&self, a: VertexId, b: VertexId) -> f64 {
+        let e = self.position(b) - self.position(a);
+        0.5 * (self.tensor(a).length(e) + self.tensor(b).length(e))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_are_reciprocal_and_named_once() {
+        let positions = [(0.0, 0.0), (2.0, 0.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
+        let tensors = vec![Tensor::IDENTITY, Tensor::new(9.0, 0.0, 1.0), Tensor::IDENTITY];
+        let graph = Graph::new(positions, tensors, &[vec![1, 1, 0], vec![], vec![0]]);
+        assert_eq!(graph.neighbours(VertexId(0)), [VertexId(1), VertexId(2)]);
+        assert_eq!(graph.neighbours(VertexId(1)), [VertexId(0)]);
+        assert_eq!((graph.vertex_count(), graph.edge_count()), (3, 2));
+        assert!((graph.length(VertexId(0), VertexId(1)) - 4.0).abs() < 1e-15);
+        assert!(graph.vertices().all(|v| graph.neighbours(v).iter().all(|&u| graph.neighbours(u).contains(&v))));
+    }
+}

@@ -1,0 +1,201 @@
+//! Distances from heat: let it flow for a short time, follow its gradient at unit speed.
+
+use super::label::Sources;
+use crate::error::{Error, Result};
+use crate::geometry::Vector;
+use crate::triangulation::{FaceId, Triangulation, VertexId};
+use faer::Side;
+use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::solvers::Llt;
+use faer::sparse::{SparseColMat, Triplet};
+
+/// Heat flows for the square of so many mean edges.
+const EDGES: f64 = 1.0;
+/// Heat below this share of the greatest is lost to underflow: the time is then made longer.
+const LEAST_HEAT: f64 = 1e-280;
+/// How often the time is made four times as long, at most.
+const LENGTHENINGS: u32 = 8;
+/// Faces are taken to be no flatter than this share of their base.
+const FLATTEST: f64 = 1e-6;
+
+type Factor = Llt<usize, f64>;
+
+/// The heat method (Crane 2013) on a triangulation, by its metric lengths alone: with M = F' F the isotropic method on faces
+/// stretched by F. The matrices are factored once and serve for any sources.
+///
+/// It gives a smoothed distance to the nearest of all sources, of whatever colour, and no parents: it does not drive
+/// diagrams. Borders are insulated. On a canvas that is not intrinsic Delaunay cotangents are negative and heat may be too.
+pub struct Heat<'a> {
+    canvas: &'a Triangulation,
+    /// Metric area that belongs to each vertex.
+    mass: Vec<f64>,
+    stiffness: Vec<(usize, usize, f64)>,
+    time: f64,
+    flow: Factor,
+    poisson: Factor,
+    /// The connected part that each vertex belongs to, by its first vertex.
+    part: Vec<usize>,
+}
+
+impl<'a> Heat<'a> {
+    /// Factors the matrices of a canvas.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] where one is not positive definite by rounding.
+    pub fn on(canvas: &'a Triangulation) -> Result<Self> {
+        let n = canvas.vertex_slots();
+        let (mut mass, mut stiffness) = (vec![0.0; n], Vec::new());
+        for f in canvas.faces() {
+            let face = Face::of(canvas, f);
+            for i in 0..3 {
+                mass[face.corners[i]] += face.area / 3.0;
+                for j in 0..3 {
+                    let value = face.area * face.slopes[i].dot(face.slopes[j]);
+                    stiffness.push((face.corners[i], face.corners[j], value));
+                }
+            }
+        }
+        let edges = canvas.edges().count().max(1) as f64;
+        let mean = canvas.edges().map(|h| canvas.length(h)).sum::<f64>() / edges;
+        let time = (EDGES * mean).powi(2);
+        let part = parts(canvas);
+        // One vertex of each part is held: sources and sinks of its flow balance, so that nothing flows there.
+        let grounds = (0..n).filter(|&v| part[v] == v).map(|v| (v, v, 1.0));
+        let poisson = factor(n, stiffness.iter().copied().chain(grounds))?;
+        let flow = factor(n, flow(&mass, &stiffness, time))?;
+        Ok(Self { canvas, mass, stiffness, time, flow, poisson, part })
+    }
+
+    /// The distance of each vertex from the nearest source; infinite in parts without one.
+    ///
+    /// # Errors
+    /// As for [`Heat::on`], where the time had to be made longer.
+    pub fn distances(&self, sources: &Sources) -> Result<Vec<f64>> {
+        let heat = self.heat(sources)?;
+        let mut balance = vec![0.0; self.mass.len()];
+        for f in self.canvas.faces() {
+            let face = Face::of(self.canvas, f);
+            let Some(direction) = face.downhill(&heat) else { continue };
+            for (&v, slope) in face.corners.iter().zip(face.slopes) {
+                balance[v] += face.area * direction.dot(slope);
+            }
+        }
+        let mut distances = solve(&self.poisson, &balance);
+        self.shift(sources, &mut distances);
+        Ok(distances)
+    }
+
+    /// Heat from a narrow bell around every source, after a short time.
+    fn heat(&self, sources: &Sources) -> Result<Vec<f64>> {
+        let nearest: Vec<(usize, f64)> = starts(sources).collect();
+        let mut time = self.time;
+        let mut longer: Option<Factor> = None;
+        for _ in 0..LENGTHENINGS {
+            let mut start = vec![0.0; self.mass.len()];
+            for &(v, distance) in &nearest {
+                start[v] = self.mass[v] * (-distance * distance / time).exp();
+            }
+            let heat = solve(longer.as_ref().unwrap_or(&self.flow), &start);
+            let most = heat.iter().copied().fold(0.0, f64::max);
+            let is_warm =
+                |v: usize| heat[v] > LEAST_HEAT * most || !nearest.iter().any(|&(u, _)| self.part[u] == self.part[v]);
+            if (0..heat.len()).all(is_warm) {
+                return Ok(heat);
+            }
+            time *= 4.0;
+            longer = Some(factor(self.mass.len(), flow(&self.mass, &self.stiffness, time))?);
+        }
+        Err(Error::Unsupported {
+            what: "heat on a canvas so long that it vanishes on the way".into(),
+            help: "use another method, such as march".into(),
+        })
+    }
+
+    /// Distances are known but for a constant in each part: that which fits the vertices around sources best. These keep
+    /// the distances that they were given.
+    fn shift(&self, sources: &Sources, distances: &mut [f64]) {
+        let mut sums = vec![(0.0, 0.0); distances.len()];
+        for (v, distance) in starts(sources) {
+            let sum = &mut sums[self.part[v]];
+            *sum = (sum.0 + distance - distances[v], sum.1 + 1.0);
+        }
+        for (v, distance) in distances.iter_mut().enumerate() {
+            let (sum, count) = sums[self.part[v]];
+            *distance = if count > 0.0 { (*distance + sum / count).max(0.0) } else { f64::INFINITY };
+        }
+        for (v, distance) in starts(sources) {
+            distances[v] = distance;
+        }
+    }
+}
+
+fn starts(sources: &Sources) -> impl Iterator<Item = (usize, f64)> + '_ {
+    sources.vertices().map(|v| (v.index(), sources.nearest(v).distance))
+}
+
+fn flow(mass: &[f64], stiffness: &[(usize, usize, f64)], time: f64) -> impl Iterator<Item = (usize, usize, f64)> {
+    let capacity = mass.iter().enumerate().map(move |(v, &mass)| (v, v, mass / time));
+    stiffness.iter().copied().chain(capacity)
+}
+
+fn factor(n: usize, entries: impl Iterator<Item = (usize, usize, f64)>) -> Result<Factor> {
+    let entries: Vec<Triplet<usize, usize, f64>> = entries.map(|(i, j, value)| Triplet::new(i, j, value)).collect();
+    let matrix = SparseColMat::try_new_from_triplets(n, n, &entries).ok();
+    matrix.and_then(|matrix| matrix.sp_cholesky(Side::Lower).ok()).ok_or_else(|| Error::Unsupported {
+        what: "heat on this canvas, whose matrix is not positive definite by rounding".into(),
+        help: "use another method, such as march, or limit the metric (--a-max)".into(),
+    })
+}
+
+fn solve(factor: &Factor, right: &[f64]) -> Vec<f64> {
+    let right = faer::Mat::from_fn(right.len(), 1, |i, _| right[i]);
+    let found = factor.solve(&right);
+    (0..found.nrows()).map(|i| found[(i, 0)]).collect()
+}
+
+/// A face laid out flat.
+struct Face {
+    corners: [usize; 3],
+    area: f64,
+    /// The gradients of the functions that are one at a corner and zero at the others.
+    slopes: [Vector; 3],
+}
+
+impl Face {
+    fn of(canvas: &Triangulation, f: FaceId) -> Self {
+        let [base, to_end, to_start] = f.half_edges().map(|h| canvas.length(h));
+        let x = 0.5 * (base + (to_start - to_end) * (to_start + to_end) / base);
+        let y = ((to_start - x) * (to_start + x)).max(0.0).sqrt().max(FLATTEST * base);
+        let area = 0.5 * base * y;
+        // Across the side opposite to each corner, divided by twice the area.
+        let sides = [Vector::new(x - base, y), Vector::new(-x, -y), Vector::new(base, 0.0)];
+        let slopes = sides.map(|side| side.perpendicular() * (0.5 / area));
+        Self { corners: canvas.corners(f).map(VertexId::index), area, slopes }
+    }
+
+    /// The unit vector against the gradient of a function.
+    fn downhill(&self, values: &[f64]) -> Option<Vector> {
+        let values = self.corners.map(|v| values[v]);
+        // Heat far away is too small a number to be squared.
+        let most = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        let gradient = self.slopes.iter().zip(values).fold(Vector::default(), |sum, (&s, v)| sum + s * (v / most));
+        let length = gradient.norm();
+        (length > 0.0 && length.is_finite()).then(|| -gradient * (1.0 / length))
+    }
+}
+
+/// The connected part of every vertex, named by its first vertex.
+fn parts(canvas: &Triangulation) -> Vec<usize> {
+    let mut part = vec![usize::MAX; canvas.vertex_slots()];
+    for first in 0..part.len() {
+        let mut stack = vec![first];
+        while let Some(v) = stack.pop() {
+            if part[v] == usize::MAX {
+                part[v] = first;
+                let star = canvas.star(VertexId(v as u32));
+                stack.extend(star.flat_map(|h| [canvas.target(h), canvas.apex(h)]).map(VertexId::index));
+            }
+        }
+    }
+    part
+}
