@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::path::PathBuf;
-use voronaut::canvas::VERTICES_PER_SEED;
+use voronaut::canvas::{self, VERTICES_PER_SEED};
 use voronaut::dual::Road;
 use voronaut::metric::{Bounds, MOST_SWEEPS};
 use voronaut::output::Picture;
@@ -106,6 +106,9 @@ pub(crate) struct MeshArgs {
     /// Measure the net of the vertices: epsilon, mu, lambda, power protection (in the report)
     #[arg(long)]
     pub(crate) net: bool,
+    /// What distances travel on, where a canvas is used: intrinsic, isotropic or starset (see `dual`)
+    #[arg(long, value_name = "WHICH", default_value_t = MeshOptions::default().canvas)]
+    pub(crate) canvas: canvas::Kind,
     /// Canvas vertices per seed, where a canvas is used
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = MeshOptions::default().canvas_size)]
     pub(crate) canvas_size: u32,
@@ -140,6 +143,10 @@ pub(crate) struct DualArgs {
     /// How OUT has the edges: straight, or as the geodesics that they are (polylines, with the regions between them)
     #[arg(long, value_enum, value_name = "HOW", default_value_t = EdgesOut::Straight)]
     pub(crate) edges: EdgesOut,
+    /// What distances travel on: intrinsic (flipped by metric lengths), isotropic (Euclidean Delaunay, as fine as the metric's
+    /// finest direction) or starset (a graph: not for marching)
+    #[arg(long, value_name = "WHICH", default_value_t = canvas::Kind::default())]
+    pub(crate) canvas: canvas::Kind,
     /// Canvas vertices per seed; 150,000 in all at least, for up to 300 seeds
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = VERTICES_PER_SEED)]
     pub(crate) canvas_size: u32,
@@ -334,6 +341,7 @@ impl MeshArgs {
             protection: self.protection,
             picking_radius: self.picking_radius,
             net: self.net || self.outputs.show.contains(&Show::Protection),
+            canvas: self.canvas,
             canvas_size: self.canvas_size,
             memory_limit: (self.memory_limit * GIB) as u64,
         }
@@ -388,6 +396,7 @@ mod tests {
             &["--seeding", "nearest"],
             &["--protection", "-0.1"],
             &["--picking-radius", "nan"],
+            &["--canvas", "grid"],
             &["--canvas-size", "0"],
             &["--smooth-metric", "-1"],
             &["--smooth-metric", "10001"],

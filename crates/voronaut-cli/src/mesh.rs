@@ -57,7 +57,7 @@ fn drawn(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
     }
     let seeds: Vec<Point> = mesh.points.iter().map(|p| Point::new(p[0], p[1])).collect();
     let size = (VERTICES_PER_SEED as usize).saturating_mul(seeds.len());
-    let canvas = Canvas::intrinsic(domain, metric, size)?;
+    let canvas = Canvas::new(args.canvas, domain, metric, size)?;
     Ok(Drawn::from_diagram(&args.outputs, &Diagram::new(&canvas, metric, &seeds)?, mesh, metric, None))
 }
 

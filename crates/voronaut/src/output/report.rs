@@ -98,9 +98,9 @@ pub struct RawNerve {
 }
 
 impl Canvas {
-    /// Of an intrinsic canvas.
+    /// Of a canvas.
     pub fn of(canvas: &crate::canvas::Canvas) -> Self {
-        Self { kind: "intrinsic".into(), vertices: canvas.vertex_count(), counters: *canvas.counters() }
+        Self { kind: canvas.kind().to_string(), vertices: canvas.vertex_count(), counters: *canvas.counters() }
     }
 }
 

@@ -53,6 +53,8 @@ pub struct MeshOptions {
     pub picking_radius: f64,
     /// Whether the net of the mesh's vertices is measured ([`Meshed::net`]); with [`Seeding::Protected`] it always is.
     pub net: bool,
+    /// Which canvas, where one is used: for seeding and relaxing, and to settle edges.
+    pub canvas: canvas::Kind,
     /// Canvas vertices per seed, where a canvas is used.
     pub canvas_size: u32,
     /// Limit on the memory the work is estimated to need, in bytes.
@@ -72,6 +74,7 @@ impl Default for MeshOptions {
             protection: 0.2,
             picking_radius: 0.3,
             net: false,
+            canvas: canvas::Kind::default(),
             canvas_size: canvas::VERTICES_PER_SEED,
             memory_limit: 16 << 30,
         }
@@ -123,6 +126,7 @@ pub fn mesh(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
+    options.canvas.demand_triangulation()?;
     let mut job = Job { field, options, progress, canvas: None, diagram: None, seconds: Vec::new(), notes: Vec::new() };
     let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
     let on_canvas = options.dual.seeds_asked(count) as f64 * f64::from(options.canvas_size);
