@@ -6,7 +6,7 @@ use voronaut::canvas::{self, VERTICES_PER_SEED};
 use voronaut::dual::Road;
 use voronaut::metric::{Bounds, MOST_SWEEPS};
 use voronaut::output::Picture;
-use voronaut::recipe::{Centroid, MeshOptions, SMOOTH_METRIC, Seeding};
+use voronaut::recipe::{Centroid, MeshOptions, Mesher, SMOOTH_METRIC, Seeding};
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
 #[derive(Debug, Parser)]
@@ -83,6 +83,10 @@ pub(crate) struct MeshArgs {
     /// How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]
     #[arg(long, value_name = "D", value_parser = not_negative)]
     pub(crate) hausd: Option<f64>,
+    /// What makes the mesh: voronoi, or starset (Delaunay stars in the metrics of their vertices, refined until they agree: to
+    /// compare; -n then sets the scale only)
+    #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().mesher)]
+    pub(crate) mesher: Mesher,
     /// Steps of Riemannian Lloyd relaxation
     #[arg(long, value_name = "STEPS", default_value_t = MeshOptions::default().lloyd)]
     pub(crate) lloyd: usize,
@@ -334,6 +338,7 @@ impl MeshArgs {
             vertices: self.vertices.map(|vertices| vertices as usize),
             complexity: self.complexity,
             hausd: self.hausd,
+            mesher: self.mesher,
             lloyd: self.lloyd,
             centroid: self.centroid,
             dual: self.dual.into(),
@@ -397,6 +402,7 @@ mod tests {
             &["--protection", "-0.1"],
             &["--picking-radius", "nan"],
             &["--canvas", "grid"],
+            &["--mesher", "grid"],
             &["--canvas-size", "0"],
             &["--smooth-metric", "-1"],
             &["--smooth-metric", "10001"],

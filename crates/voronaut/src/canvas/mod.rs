@@ -6,6 +6,7 @@
 
 mod border;
 mod buckets;
+mod consistent;
 mod flip;
 mod isotropic;
 mod kind;
@@ -17,6 +18,7 @@ mod star_set;
 mod steiner;
 
 pub use border::Border;
+pub use consistent::{Consistency, Consistent, PickCounters, UNIT_RADIUS, consistent};
 pub use isotropic::isotropic_size;
 pub use kind::Kind;
 pub use star_set::{StarFigures, StarSet};

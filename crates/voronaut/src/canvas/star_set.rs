@@ -7,7 +7,7 @@ use crate::domain::Domain;
 use crate::error::Result;
 use crate::geometry::{Point, Tensor};
 use crate::metric::MetricField;
-use crate::triangulation::VertexId;
+use crate::triangulation::{HalfEdge, VertexId};
 use rayon::prelude::*;
 use std::collections::HashSet;
 
@@ -39,7 +39,7 @@ pub struct StarFigures {
     pub simplices: usize,
     /// The greatest circumradius of a star's simplex, in the metric of the star.
     pub radius: f64,
-    /// Rounds of refinement.
+    /// Rounds of refinement; of consistent stars, passes over all of them in search of inconsistencies.
     pub rounds: usize,
     /// Stars that rounding kept from being found: they are those of the embedded triangulation.
     pub unsettled: usize,
@@ -109,14 +109,14 @@ impl StarSet {
 /// Stars over an embedded triangulation that both grow.
 pub(super) struct Stars<'a> {
     pub(super) steiner: Steiner<'a>,
-    pub(super) stars: Vec<Star>,
+    pub(super) by_vertex: Vec<Star>,
     unsettled: usize,
 }
 
 impl<'a> Stars<'a> {
     /// The stars of all vertices of a triangulation.
     pub(super) fn new(steiner: Steiner<'a>) -> Self {
-        let mut stars = Self { steiner, stars: Vec::new(), unsettled: 0 };
+        let mut stars = Self { steiner, by_vertex: Vec::new(), unsettled: 0 };
         stars.update_all();
         stars
     }
@@ -124,7 +124,7 @@ impl<'a> Stars<'a> {
     /// Finds all stars anew.
     pub(super) fn update_all(&mut self) {
         let all: Vec<VertexId> = self.steiner.planar.topology.vertices().collect();
-        self.stars = vec![Star::new(); self.steiner.planar.topology.vertex_slots()];
+        self.by_vertex = vec![Star::new(); self.steiner.planar.topology.vertex_slots()];
         self.unsettled = self.update(&all);
     }
 
@@ -137,11 +137,11 @@ impl<'a> Stars<'a> {
             |finder, part| part.iter().map(|v| find(finder, v)).collect::<Vec<_>>(),
         );
         let found: Vec<Option<Star>> = parts.flatten_iter().collect();
-        self.stars.resize(steiner.planar.topology.vertex_slots(), Star::new());
+        self.by_vertex.resize(steiner.planar.topology.vertex_slots(), Star::new());
         let mut unsettled = 0;
         for (&v, star) in dirty.iter().zip(found) {
             unsettled += usize::from(star.is_none());
-            self.stars[v.index()] = star.unwrap_or_else(|| self.embedded(v));
+            self.by_vertex[v.index()] = star.unwrap_or_else(|| self.embedded(v));
         }
         unsettled
     }
@@ -162,10 +162,10 @@ impl<'a> Stars<'a> {
     fn refine_largest(&mut self, most: usize) -> Result<usize> {
         let largest = |v: u32| {
             let circles =
-                self.stars[v as usize].iter().filter_map(|s| Some((self.circle(VertexId(v), s.ends)?, s.ends)));
+                self.by_vertex[v as usize].iter().filter_map(|s| Some((self.circle(VertexId(v), s.ends)?, s.ends)));
             circles.max_by(|a, b| a.0.1.total_cmp(&b.0.1)).map(|((centre, radius), ends)| (radius, v, ends, centre))
         };
-        let mut all: Vec<_> = (0..self.stars.len() as u32).into_par_iter().filter_map(largest).collect();
+        let mut all: Vec<_> = (0..self.by_vertex.len() as u32).into_par_iter().filter_map(largest).collect();
         all.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         // The largest first; never so many that small ones are cut before large ones are known.
         all.truncate(all.len().div_ceil(3));
@@ -191,14 +191,19 @@ impl<'a> Stars<'a> {
     /// Puts a vertex at a point seen from v, or on the fixed edge in its way. Stars are to be mended after.
     pub(super) fn place(&mut self, v: VertexId, p: Point, radius: f64) -> Result<Placed> {
         let planar = &self.steiner.planar;
-        let towards = planar.face_towards(v, p).or_else(|| planar.topology.start(v).map(|h| h.face()));
+        let towards = planar.face_towards(v, p).or_else(|| planar.topology.start(v).map(HalfEdge::face));
         let Some(from) = towards else { return Ok(Placed::Refused) };
         self.steiner.place(from, p, radius)
     }
 
+    /// Gives new vertices empty stars.
+    pub(super) fn make_room(&mut self) {
+        self.by_vertex.resize(self.steiner.planar.topology.vertex_slots(), Star::new());
+    }
+
     /// Finds the stars of new vertices, and those that they change.
     pub(super) fn mend(&mut self, new: &[VertexId]) -> Vec<VertexId> {
-        self.stars.resize(self.steiner.planar.topology.vertex_slots(), Star::new());
+        self.make_room();
         let mut dirty: Vec<VertexId> = new.iter().flat_map(|&v| self.changed_by(v)).collect();
         dirty.sort_unstable();
         dirty.dedup();
@@ -224,14 +229,14 @@ impl<'a> Stars<'a> {
                 let centre = self.circle(v, spoke.ends);
                 centre.is_some_and(|(c, r)| self.steiner.tensors[v.index()].length(p - c) <= r * (1.0 + 1e-9))
             };
-            let idle = if self.stars[v.index()].iter().any(holds) {
+            let idle = if self.by_vertex[v.index()].iter().any(holds) {
                 changed.push(v);
                 0
             } else {
                 idle + 1
             };
             if idle < 2 {
-                let mine = self.stars[v.index()].iter().flat_map(|s| s.ends);
+                let mine = self.by_vertex[v.index()].iter().flat_map(|s| s.ends);
                 next.extend(ring(v).chain(mine).filter(|u| !seen.contains(u)).map(|u| (u, idle)));
             }
         }
@@ -242,10 +247,9 @@ impl<'a> Stars<'a> {
 
     /// Whether the star of v has the simplex v a b.
     pub(super) fn has(&self, v: VertexId, ends: [VertexId; 2]) -> bool {
-        self.stars[v.index()].iter().any(|spoke| spoke.ends == ends)
+        self.by_vertex[v.index()].iter().any(|spoke| spoke.ends == ends)
     }
 
-    #[expect(dead_code, reason = "for consistent star sets")]
     /// Whether all three stars have a simplex.
     pub(super) fn agree(&self, [a, b, c]: [VertexId; 3]) -> bool {
         self.has(a, [b, c]) && self.has(b, [c, a]) && self.has(c, [a, b])
@@ -255,7 +259,7 @@ impl<'a> Stars<'a> {
         self.update_all();
         let figures = StarFigures { rounds, ..self.figures() };
         let positions = self.steiner.planar.positions;
-        StarSet { positions, tensors: self.steiner.tensors, stars: self.stars, figures }
+        StarSet { positions, tensors: self.steiner.tensors, stars: self.by_vertex, figures }
     }
 
     /// Counts.
@@ -263,8 +267,8 @@ impl<'a> Stars<'a> {
         let mut figures =
             StarFigures { vertices: self.steiner.planar.topology.vertex_count(), ..StarFigures::default() };
         figures.unsettled = self.unsettled;
-        for v in (0..self.stars.len() as u32).map(VertexId) {
-            for spoke in &self.stars[v.index()] {
+        for v in (0..self.by_vertex.len() as u32).map(VertexId) {
+            for spoke in &self.by_vertex[v.index()] {
                 let [a, b] = spoke.ends;
                 let others = [(a, self.has(a, [b, v])), (b, self.has(b, [v, a]))];
                 // Counted at the first of the vertices that have it.

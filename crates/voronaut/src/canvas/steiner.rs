@@ -165,7 +165,7 @@ impl<'a> Steiner<'a> {
     }
 
     /// Removes a vertex that was just inserted, and flips as before; says whether it could.
-    fn take_out(&mut self, v: VertexId) -> bool {
+    pub(super) fn take_out(&mut self, v: VertexId) -> bool {
         let topology = &self.planar.topology;
         let link: Vec<[VertexId; 2]> =
             topology.star(v).map(HalfEdge::next).map(|h| [topology.origin(h), topology.target(h)]).collect();

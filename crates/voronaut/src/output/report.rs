@@ -1,6 +1,6 @@
 //! The machine-readable account of a run (`--report`).
 
-use crate::canvas::CanvasCounters;
+use crate::canvas::{CanvasCounters, PickCounters, StarFigures};
 use crate::dual::Road;
 use crate::geodesic::MarchCounters;
 use crate::net::Net;
@@ -48,6 +48,8 @@ pub struct Report {
     pub net: Option<NetFigures>,
     /// How protection of the seeds went, where it was asked for.
     pub protection: Option<Protection>,
+    /// The star set that became the mesh, where it was made so.
+    pub star_set: Option<StarSet>,
     /// The factor on the metric tensor for which the mesh is a unit mesh.
     pub metric_scale: Option<f64>,
     /// What could not be met, in words.
@@ -72,6 +74,17 @@ pub struct Canvas {
     /// How it came about, its fields beside these.
     #[serde(flatten)]
     pub counters: CanvasCounters,
+}
+
+/// A consistent star set. Deterministic.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StarSet {
+    /// The star set as it ended.
+    #[serde(flatten)]
+    pub figures: StarFigures,
+    /// How it was refined.
+    #[serde(flatten)]
+    pub counters: PickCounters,
 }
 
 /// The discrete Riemannian Voronoi diagram.

@@ -2,6 +2,7 @@
 
 mod dual;
 mod field;
+mod mesher;
 mod protection;
 mod relaxing;
 mod seeding;
@@ -9,6 +10,7 @@ mod settle;
 
 pub use dual::{SeedDual, dual, net};
 pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, metric, smooth_metric};
+pub use mesher::Mesher;
 pub use relaxing::Centroid;
 pub use seeding::Seeding;
 
@@ -37,6 +39,8 @@ pub struct MeshOptions {
     pub complexity: Option<f64>,
     /// How far (Euclidean) mesh edges may stray from the boundary; `None`: the domain's own tolerance.
     pub hausd: Option<f64>,
+    /// What makes the mesh. The options below are for [`Mesher::Voronoi`], but for the memory limit.
+    pub mesher: Mesher,
     /// Steps of Riemannian Lloyd relaxation, at most: it ends where it stalls.
     pub lloyd: usize,
     /// The centroids that it moves seeds to.
@@ -67,6 +71,7 @@ impl Default for MeshOptions {
             vertices: None,
             complexity: None,
             hausd: None,
+            mesher: Mesher::default(),
             lloyd: 40,
             centroid: Centroid::default(),
             dual: Road::default(),
@@ -100,6 +105,8 @@ pub struct Meshed {
     pub net: Option<Net>,
     /// How protection went, with [`Seeding::Protected`].
     pub protection: Option<report::Protection>,
+    /// The star set that became the mesh, with [`Mesher::StarSet`].
+    pub star_set: Option<report::StarSet>,
     /// Wall time per stage, in order.
     pub seconds: Vec<(&'static str, f64)>,
     /// What could not be met, in words for the user; empty when all was.
@@ -126,8 +133,11 @@ pub fn mesh(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
+    if options.mesher == Mesher::StarSet {
+        return mesher::by_stars(domain, field, options, progress);
+    }
     options.canvas.demand_triangulation()?;
-    let mut job = Job { field, options, progress, canvas: None, diagram: None, seconds: Vec::new(), notes: Vec::new() };
+    let mut job = Job::new(field, options, progress);
     let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
     let on_canvas = options.dual.seeds_asked(count) as f64 * f64::from(options.canvas_size);
     demand_memory(count as f64, on_canvas, options.memory_limit)?;
@@ -142,7 +152,20 @@ pub fn mesh(
     let (canvas, diagram) = (job.canvas.or(canvas), job.diagram.or(diagram));
     let metric_scale = dual.field().factor;
     let (seconds, notes) = (job.seconds, job.notes);
-    Ok(Meshed { mesh, metric_scale, dual: account, relaxation, canvas, diagram, net, protection, seconds, notes })
+    let star_set = None;
+    Ok(Meshed {
+        mesh,
+        metric_scale,
+        dual: account,
+        relaxation,
+        canvas,
+        diagram,
+        net,
+        protection,
+        star_set,
+        seconds,
+        notes,
+    })
 }
 
 struct Job<'a> {
@@ -156,6 +179,10 @@ struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
+    fn new(field: &'a dyn MetricField, options: &'a MeshOptions, progress: &'a dyn Progress) -> Self {
+        Self { field, options, progress, canvas: None, diagram: None, seconds: Vec::new(), notes: Vec::new() }
+    }
+
     fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
         let start = Instant::now();
         let result = work(self);
