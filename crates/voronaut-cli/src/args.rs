@@ -2,13 +2,13 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::path::PathBuf;
-use voronaut::canvas::VERTICES_PER_SEED;
+use voronaut::canvas::{self, VERTICES_PER_SEED};
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Aabb, Point};
 use voronaut::metric::{Bounds, MOST_SWEEPS};
 use voronaut::output::Picture;
-use voronaut::recipe::{Centroid, MeshOptions, SMOOTH_METRIC, Seeding};
+use voronaut::recipe::{Centroid, MeshOptions, Mesher, SMOOTH_METRIC, Seeding};
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
 #[derive(Debug, Parser)]
@@ -98,6 +98,10 @@ pub(crate) struct MeshArgs {
     /// How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]
     #[arg(long, value_name = "D", value_parser = not_negative)]
     pub(crate) hausd: Option<f64>,
+    /// What makes the mesh: voronoi, or starset (Delaunay stars in the metrics of their vertices, refined until they agree: to
+    /// compare; -n then sets the scale only)
+    #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().mesher)]
+    pub(crate) mesher: Mesher,
     /// Steps of Riemannian Lloyd relaxation
     #[arg(long, value_name = "STEPS", default_value_t = MeshOptions::default().lloyd)]
     pub(crate) lloyd: usize,
@@ -124,6 +128,9 @@ pub(crate) struct MeshArgs {
     /// Measure the net of the vertices: epsilon, mu, lambda, power protection (in the report)
     #[arg(long)]
     pub(crate) net: bool,
+    /// What distances travel on, where a canvas is used: intrinsic, isotropic or starset (see `dual`)
+    #[arg(long, value_name = "WHICH", default_value_t = MeshOptions::default().canvas)]
+    pub(crate) canvas: canvas::Kind,
     /// Canvas vertices per seed, where a canvas is used
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = MeshOptions::default().canvas_size)]
     pub(crate) canvas_size: u32,
@@ -161,6 +168,10 @@ pub(crate) struct DualArgs {
     /// How OUT has the edges: straight, or as the geodesics that they are (polylines, with the regions between them)
     #[arg(long, value_enum, value_name = "HOW", default_value_t = EdgesOut::Straight)]
     pub(crate) edges: EdgesOut,
+    /// What distances travel on: intrinsic (flipped by metric lengths), isotropic (Euclidean Delaunay, as fine as the metric's
+    /// finest direction) or starset (a graph: not for marching)
+    #[arg(long, value_name = "WHICH", default_value_t = canvas::Kind::default())]
+    pub(crate) canvas: canvas::Kind,
     /// Canvas vertices per seed; 150,000 in all at least, for up to 300 seeds
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = VERTICES_PER_SEED)]
     pub(crate) canvas_size: u32,
@@ -401,6 +412,7 @@ impl MeshArgs {
             vertices: self.vertices.map(|vertices| vertices as usize),
             complexity: self.complexity,
             hausd: self.hausd,
+            mesher: self.mesher,
             lloyd: self.lloyd,
             centroid: self.centroid,
             dual: self.dual.into(),
@@ -409,6 +421,7 @@ impl MeshArgs {
             protection: self.protection,
             picking_radius: self.picking_radius,
             net: self.net || self.outputs.show.contains(&Show::Protection),
+            canvas: self.canvas,
             canvas_size: self.canvas_size,
             memory_limit: (self.memory_limit * GIB) as u64,
         }
@@ -482,6 +495,8 @@ mod tests {
             &["--seeding", "nearest"],
             &["--protection", "-0.1"],
             &["--picking-radius", "nan"],
+            &["--canvas", "grid"],
+            &["--mesher", "grid"],
             &["--canvas-size", "0"],
             &["--smooth-metric", "-1"],
             &["--smooth-metric", "10001"],

@@ -30,6 +30,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs)?;
     args.geodesic.demand_diagrams()?;
     files::set_threads(&args.run)?;
+    args.canvas.demand_triangulation()?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
     let spec = MetricSpec::parse(&args.metric)?;
@@ -49,7 +50,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     stage("read");
     let size = canvas::size_for(seeds.len(), args.canvas_size);
     sampling::demand_memory(seeds.len() as f64, size as f64, args.memory_limit())?;
-    let mut canvas = Canvas::intrinsic(&domain, metric.as_ref(), size)?;
+    let mut canvas = Canvas::new(args.canvas, &domain, metric.as_ref(), size)?;
     file.demand_inside(&canvas)?;
     let road = Road::from(args.dual);
     if road == Road::Canvas {
@@ -167,7 +168,7 @@ fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {
 fn options(args: &DualArgs) -> serde_json::Value {
     json!({
         "domain": args.domain, "metric": args.metric, "seeds": args.seeds, "out": args.out, "diagram": args.diagram,
-        "canvas": "intrinsic", "canvas_size": args.canvas_size, "geodesic": args.geodesic, "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
+        "canvas": args.canvas, "canvas_size": args.canvas_size, "geodesic": args.geodesic, "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
         "smooth_metric": args.metric_choices.smooth_metric,
         "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,

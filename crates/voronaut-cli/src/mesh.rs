@@ -24,6 +24,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let start = Instant::now();
     files::demand_writable(Some(&args.out), None, &args.outputs)?;
     files::set_threads(&args.run)?;
+    args.canvas.demand_triangulation()?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
     let spec = MetricSpec::parse(&args.metric)?;
@@ -57,7 +58,7 @@ fn drawn(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
     }
     let seeds: Vec<Point> = mesh.points.iter().map(|p| Point::new(p[0], p[1])).collect();
     let size = (VERTICES_PER_SEED as usize).saturating_mul(seeds.len());
-    let canvas = Canvas::intrinsic(domain, metric, size)?;
+    let canvas = Canvas::new(args.canvas, domain, metric, size)?;
     Ok(Drawn::from_diagram(&args.outputs, &Diagram::new(&canvas, metric, &seeds)?, mesh, metric, None))
 }
 
@@ -79,10 +80,13 @@ fn ours(error: Error) -> Error {
 }
 
 fn fill_in(report: &mut Report, meshed: &Meshed, options: Value) {
-    report.dual = Some(meshed.dual.clone());
+    report.star_set = meshed.star_set;
+    if meshed.star_set.is_none() {
+        report.dual = Some(meshed.dual.clone());
+        report.relaxation = Some(meshed.relaxation.clone());
+    }
     report.canvas.clone_from(&meshed.canvas);
     report.diagram.clone_from(&meshed.diagram);
-    report.relaxation = Some(meshed.relaxation.clone());
     report.metric_scale = Some(meshed.metric_scale);
     report.net = meshed.net.as_ref().map(NetFigures::of);
     report.protection = meshed.protection;

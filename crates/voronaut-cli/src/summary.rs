@@ -65,6 +65,12 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
         line("to domain", distance(fidelity.mesh_to_domain));
         line("from domain", distance(fidelity.domain_to_mesh));
     }
+    if let Some(found) = report.star_set {
+        let (stars, picks) = (found.figures, found.counters);
+        let (disagree, rounds) = (stars.inconsistencies, stars.rounds);
+        let (picked, unpicked) = (picks.picked, picks.unpicked);
+        line("stars", format!("{disagree} inconsistencies; {rounds} rounds, {picked} vertices picked, {unpicked} not"));
+    }
     if let Some(scale) = report.metric_scale {
         line("metric scale", format!("{scale}"));
     }

@@ -390,3 +390,28 @@ fn threads_do_not_change_a_byte() {
         assert!(with(words, "1") == with(words, "2"), "{words:?}");
     }
 }
+
+#[test]
+fn canvases_are_chosen_and_named_in_the_report() {
+    let place = Place::new();
+    place.put("seeds.txt", seed_file(&scattered(12, 0.1, 0.9, 5)));
+    let base = ["dual", "rect:0,0,1,1", "--metric", "uniform", "--seeds", "seeds.txt", "-o", "d.mesh", "-q"];
+    runs(&place, &[&base[..], &["--canvas", "isotropic", "--report", "r.json"]].concat());
+    assert_eq!(report(&place, "r.json")["canvas"]["kind"], "isotropic");
+    let output = place.run(&[&base[..], &["--canvas", "starset"]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(said.contains("no triangles to march through") && said.contains("stvd, dijkstra, konukoglu"), "{said}");
+}
+
+#[test]
+fn the_star_set_mesher_reports_its_stars() {
+    let place = Place::new();
+    let words =
+        ["mesh", "rect:0,0,2,1", "--metric", "uniform:30,5,1", "-n", "300", "--mesher", "starset", "-o", "m.mesh"];
+    let said = runs(&place, &[&words[..], &["--report", "r.json"]].concat());
+    assert!(said.contains("0 inconsistencies"), "{said}");
+    let report = report(&place, "r.json");
+    assert_eq!((&report["valid"], &report["star_set"]["inconsistencies"]), (&Value::Bool(true), &Value::from(0)));
+    assert_eq!(report["star_set"]["vertices"], report["vertices"]);
+}

@@ -5,12 +5,23 @@
 //! were taken. Both have the same vertices.
 
 mod border;
+mod buckets;
+mod consistent;
 mod flip;
+mod isotropic;
+mod kind;
 mod lengths;
 mod locate;
 mod refine;
+mod star;
+mod star_set;
+mod steiner;
 
 pub use border::Border;
+pub use consistent::{Consistency, Consistent, PickCounters, UNIT_RADIUS, consistent};
+pub use isotropic::isotropic_size;
+pub use kind::Kind;
+pub use star_set::{StarFigures, StarSet};
 
 use crate::domain::Domain;
 use crate::error::Result;
@@ -19,6 +30,7 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::planar::{Planar, hilbert_order};
 use crate::triangulation::{Triangulation, VertexId};
+use isotropic::Until;
 use locate::Finder;
 use rayon::prelude::*;
 
@@ -41,7 +53,7 @@ pub fn size_for(seeds: usize, per_seed: u32) -> usize {
 /// How a canvas came about. Deterministic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct CanvasCounters {
-    /// Vertices put on edges while the triangulation was refined.
+    /// Vertices put on edges, or at circumcentres, while the triangulation was refined.
     pub splits: u64,
     /// Flips while it was refined, in the plane.
     pub planar_flips: u64,
@@ -64,6 +76,7 @@ pub struct CanvasCounters {
 pub struct Canvas {
     embedded: Planar,
     topology: Triangulation,
+    kind: Kind,
     counters: CanvasCounters,
     finder: Finder,
 }
@@ -97,16 +110,68 @@ impl Canvas {
         Ok(Self::straight_from(planar, field, vertices)?.flipped())
     }
 
+    /// The isotropic canvas (RR-9103, section 6.2) with so many vertices: a Euclidean Delaunay triangulation, refined at the
+    /// circumcentre of the face whose circumradius is largest beside [`isotropic_size`] there. Lengths are as for
+    /// [`Canvas::straight`]; no edge is flipped by them.
+    ///
+    /// It has more vertices only if the domain itself has, or where lengths had to be repaired.
+    ///
+    /// # Errors
+    /// As for [`Canvas::intrinsic`].
+    pub fn isotropic(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        Self::isotropic_from(domain.planar().clone(), field, Until { vertices, sizes: 0.0 })
+    }
+
+    /// [`Canvas::isotropic`] with as many vertices as it takes until no circumradius exceeds so many [`isotropic_size`]s
+    /// (at its circumcentre), but for faces that rounding or a small angle of the domain leaves no way to cut. The authors
+    /// use 1.
+    ///
+    /// # Errors
+    /// As for [`Canvas::intrinsic`].
+    pub fn isotropic_sized(domain: &Domain, field: &dyn MetricField, sizes: f64) -> Result<Self> {
+        Self::isotropic_from(domain.planar().clone(), field, Until { vertices: usize::MAX, sizes })
+    }
+
+    fn isotropic_from(planar: Planar, field: &dyn MetricField, until: Until) -> Result<Self> {
+        let mut counters = CanvasCounters::default();
+        let planar = isotropic::refine(planar, field, until, &mut counters)?;
+        Self::measured(&planar, field, Kind::Isotropic, counters)
+    }
+
     fn straight_from(planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         let mut counters = CanvasCounters::default();
         let planar = refine::refine(planar, field, vertices, &mut counters)?;
-        let mut embedded = renumbered(&planar);
+        Self::measured(&planar, field, Kind::Intrinsic, counters)
+    }
+
+    fn measured(planar: &Planar, field: &dyn MetricField, kind: Kind, mut counters: CanvasCounters) -> Result<Self> {
+        let mut embedded = renumbered(planar);
         lengths::measure(&mut embedded, field, &mut counters)?;
-        Ok(Self::of(embedded, counters))
+        Ok(Self::of(embedded, kind, counters))
+    }
+
+    /// The canvas of a kind that is a triangulation, by [`Canvas::intrinsic`] or [`Canvas::isotropic`].
+    ///
+    /// # Errors
+    /// As for these, and for a star set [`crate::Error::Unsupported`], by [`Kind::demand_triangulation`].
+    pub fn new(kind: Kind, domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        Self::from_planar(kind, domain.planar().clone(), field, vertices)
+    }
+
+    /// [`Canvas::new`] from any embedded triangulation, as for [`Canvas::intrinsic_from`].
+    ///
+    /// # Errors
+    /// As for [`Canvas::new`].
+    pub fn from_planar(kind: Kind, planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        kind.demand_triangulation()?;
+        match kind {
+            Kind::Isotropic => Self::isotropic_from(planar, field, Until { vertices, sizes: 0.0 }),
+            _ => Self::intrinsic_from(planar, field, vertices),
+        }
     }
 
     /// This canvas with half the size around some vertices: their edges in the embedded triangulation are halved, the
-    /// new edges measured, and all flipped anew by lengths. Old vertices keep their ids and places, new ones come after
+    /// new edges measured, and all flipped anew by lengths (on an isotropic canvas by the Euclidean test). Old vertices keep their ids and places, new ones come after
     /// them. `field` is the one that the canvas was made with.
     ///
     /// # Errors
@@ -120,14 +185,18 @@ impl Canvas {
         edges.sort_unstable();
         edges.dedup();
         let mut counters = self.counters;
-        let mut embedded = refine::halve(self.embedded.clone(), field, &edges, &mut counters)?;
+        let mut embedded = match self.kind {
+            Kind::Isotropic => isotropic::halve(self.embedded.clone(), &edges, &mut counters),
+            _ => refine::halve(self.embedded.clone(), field, &edges, &mut counters)?,
+        };
         lengths::measure(&mut embedded, field, &mut counters)?;
-        Ok(Self::of(embedded, counters).flipped())
+        let canvas = Self::of(embedded, self.kind, counters);
+        Ok(if self.kind == Kind::Isotropic { canvas } else { canvas.flipped() })
     }
 
-    fn of(embedded: Planar, counters: CanvasCounters) -> Self {
+    fn of(embedded: Planar, kind: Kind, counters: CanvasCounters) -> Self {
         let topology = embedded.topology.clone();
-        Self { finder: Finder::new(&embedded), embedded, topology, counters }
+        Self { finder: Finder::new(&embedded), embedded, topology, kind, counters }
     }
 
     fn flipped(mut self) -> Self {
@@ -165,6 +234,11 @@ impl Canvas {
     /// The position of a vertex.
     pub fn position(&self, v: VertexId) -> Point {
         self.embedded.position(v)
+    }
+
+    /// Which canvas it is; one by [`Canvas::straight`] counts as intrinsic.
+    pub fn kind(&self) -> Kind {
+        self.kind
     }
 
     /// How the canvas came about.

@@ -4,6 +4,7 @@
 //! coordinates, one on a flipped edge has none.
 
 use super::CanvasCounters;
+use super::buckets::Buckets;
 use crate::error::Result;
 use crate::geodesic::{chord, frozen_margin};
 use crate::geometry::{Point, Tensor};
@@ -73,7 +74,7 @@ struct Refiner<'a> {
     planar: Planar,
     tensors: Vec<Tensor>,
     field: &'a dyn MetricField,
-    queue: Buckets,
+    queue: Buckets<[VertexId; 2]>,
     stack: Vec<HalfEdge>,
 }
 
@@ -204,34 +205,4 @@ pub(super) fn is_beside_flat(planar: &Planar, h: HalfEdge) -> bool {
     let area = |side: HalfEdge| (q - p).cross(planar.position(planar.topology.apex(side)) - p).abs();
     let sides = [Some(h), planar.topology.twin(h)];
     sides.into_iter().flatten().any(|side| area(side) <= rounding * p.distance(q))
-}
-
-/// A queue of edges, longest first to within a fourth of an octave.
-#[derive(Default)]
-struct Buckets {
-    buckets: Vec<Vec<[VertexId; 2]>>,
-}
-
-impl Buckets {
-    fn push(&mut self, length: f64, edge: [VertexId; 2]) {
-        if !(length > 0.0 && length.is_finite()) {
-            return;
-        }
-        // Exponent and the first two bits of the mantissa: grows with the length.
-        let bucket = (length.to_bits() >> 50) as usize;
-        if bucket >= self.buckets.len() {
-            self.buckets.resize_with(bucket + 1, Vec::new);
-        }
-        self.buckets[bucket].push(edge);
-    }
-
-    fn pop(&mut self) -> Option<[VertexId; 2]> {
-        while let Some(last) = self.buckets.last_mut() {
-            if let Some(edge) = last.pop() {
-                return Some(edge);
-            }
-            self.buckets.pop();
-        }
-        None
-    }
 }

@@ -1,5 +1,6 @@
 //! Planar domains: polygons with holes, components, regions and features, validated once and for all.
 
+mod assemble;
 mod build;
 mod chains;
 mod distinct;

@@ -6,7 +6,7 @@
 use super::margin::pair;
 use super::patch::Patch;
 use super::{Dual, Effort, Margin};
-use crate::canvas::{Canvas, CanvasCounters};
+use crate::canvas::{self, Canvas, CanvasCounters};
 use crate::diagram::{Diagram, NerveTriangle, resolve};
 use crate::error::Result;
 use crate::geodesic::{MarchCounters, Method};
@@ -91,6 +91,8 @@ pub struct Consultation {
 /// A canvas and a diagram that were made, and what they cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Made {
+    /// Which canvas.
+    pub kind: canvas::Kind,
     /// Vertices of the canvas.
     pub canvas_vertices: usize,
     /// How the canvas came about.
@@ -102,12 +104,19 @@ pub struct Made {
 }
 
 impl Dual<'_> {
-    /// Asks the diagram, by a method, for the topology where the road says so, on a canvas with so many vertices per seed, around the
-    /// edges concerned only. Edges by lengths are to be settled before ([`Dual::flip_all`] with [`Effort::Full`]).
+    /// Asks the diagram, by a method, for the topology where the road says so, on a canvas of a kind with so many vertices per
+    /// seed, around the edges concerned only. Edges by lengths are to be settled before ([`Dual::flip_all`] with
+    /// [`Effort::Full`]).
     ///
     /// # Errors
     /// The metric is not positive definite somewhere around these edges; the method does not drive diagrams.
-    pub fn consult_diagram(&mut self, road: Road, per_seed: u32, method: Method) -> Result<Consultation> {
+    pub fn consult_diagram(
+        &mut self,
+        road: Road,
+        canvas: canvas::Kind,
+        per_seed: u32,
+        method: Method,
+    ) -> Result<Consultation> {
         let asked = self.edges_to_ask(road);
         if asked.is_empty() {
             let uncertain = self.uncertain_edges(&HashSet::new());
@@ -124,7 +133,7 @@ impl Dual<'_> {
         // Where much is unknown the cells are wide.
         let least = if WILD * asked.len() > seeds.len() { LEAST_VERTICES } else { 0 };
         let vertices = (seeds.len() * per_seed as usize).max(least);
-        let mut canvas = Canvas::intrinsic_from(planar, &field, vertices)?;
+        let mut canvas = Canvas::from_planar(canvas, planar, &field, vertices)?;
         if road == Road::Canvas {
             canvas = resolve(canvas, &field, &seeds, ROUNDS)?.canvas;
         }
@@ -136,6 +145,7 @@ impl Dual<'_> {
         let unsure = nerve.sides(unsure).map(|[i, j]| pair(ids[i as usize], ids[j as usize])).collect();
         let mut found = self.compare(road, &wanted, &is_inner);
         found.made = Some(Made {
+            kind: canvas.kind(),
             canvas_vertices: canvas.vertex_count(),
             canvas: *canvas.counters(),
             orphans: diagram.orphans().len(),

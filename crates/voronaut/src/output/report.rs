@@ -1,6 +1,6 @@
 //! The machine-readable account of a run (`--report`).
 
-use crate::canvas::CanvasCounters;
+use crate::canvas::{CanvasCounters, PickCounters, StarFigures};
 use crate::dual::Road;
 use crate::geodesic::MarchCounters;
 use crate::net::Net;
@@ -48,6 +48,8 @@ pub struct Report {
     pub net: Option<NetFigures>,
     /// How protection of the seeds went, where it was asked for.
     pub protection: Option<Protection>,
+    /// The star set that became the mesh, where it was made so.
+    pub star_set: Option<StarSet>,
     /// The factor on the metric tensor for which the mesh is a unit mesh.
     pub metric_scale: Option<f64>,
     /// What could not be met, in words.
@@ -74,6 +76,17 @@ pub struct Canvas {
     pub counters: CanvasCounters,
 }
 
+/// A consistent star set. Deterministic.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StarSet {
+    /// The star set as it ended.
+    #[serde(flatten)]
+    pub figures: StarFigures,
+    /// How it was refined.
+    #[serde(flatten)]
+    pub counters: PickCounters,
+}
+
 /// The discrete Riemannian Voronoi diagram.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Diagram {
@@ -98,9 +111,9 @@ pub struct RawNerve {
 }
 
 impl Canvas {
-    /// Of an intrinsic canvas.
+    /// Of a canvas.
     pub fn of(canvas: &crate::canvas::Canvas) -> Self {
-        Self { kind: "intrinsic".into(), vertices: canvas.vertex_count(), counters: *canvas.counters() }
+        Self { kind: canvas.kind().to_string(), vertices: canvas.vertex_count(), counters: *canvas.counters() }
     }
 }
 

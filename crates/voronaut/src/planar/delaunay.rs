@@ -41,8 +41,9 @@ pub fn delaunay(points: &[Point]) -> Result<Planar, Duplicate> {
 }
 
 impl Planar {
-    /// Lawson's flips in the Euclidean plane from the edges on the stack outwards; constrained edges stay.
-    pub(super) fn legalise(&mut self, stack: &mut Vec<HalfEdge>) {
+    /// Lawson's flips in the Euclidean plane from the edges on the stack outwards, until the stack is empty; constrained
+    /// edges stay. What was constrained Delaunay but for these edges is so again.
+    pub fn legalise(&mut self, stack: &mut Vec<HalfEdge>) {
         while let Some(h) = stack.pop() {
             if self.topology.is_fixed(h) || !self.violates_in_circle(h) || !self.is_convex(h) {
                 continue;

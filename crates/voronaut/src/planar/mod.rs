@@ -40,6 +40,18 @@ impl Planar {
         [self.position(self.topology.origin(h)), self.position(self.topology.target(h))]
     }
 
+    /// The face at a vertex that the straight way to a point enters (one of two where that is along an edge); `None` where
+    /// it leaves the triangulation.
+    pub fn face_towards(&self, v: VertexId, p: Point) -> Option<FaceId> {
+        let at = self.position(v);
+        let is_left = |a: VertexId, b: Point| orientation(at, self.position(a), b) != Orientation::Right;
+        let holds = |h: &HalfEdge| {
+            let apex = self.topology.apex(*h);
+            is_left(self.topology.target(*h), p) && orientation(at, self.position(apex), p) != Orientation::Left
+        };
+        self.topology.star(v).find(holds).map(HalfEdge::face)
+    }
+
     /// The Euclidean area of all faces.
     pub fn area(&self) -> f64 {
         self.topology.faces().map(|f| self.triangle(f)).map(|[a, b, c]| 0.5 * signed_area(a, b, c)).sum()

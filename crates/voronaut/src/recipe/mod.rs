@@ -2,6 +2,7 @@
 
 mod dual;
 mod field;
+mod mesher;
 mod protection;
 mod relaxing;
 mod seeding;
@@ -9,6 +10,7 @@ mod settle;
 
 pub use dual::{SeedDual, dual, net};
 pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, metric, smooth_metric};
+pub use mesher::Mesher;
 pub use relaxing::Centroid;
 pub use seeding::Seeding;
 
@@ -38,6 +40,8 @@ pub struct MeshOptions {
     pub complexity: Option<f64>,
     /// How far (Euclidean) mesh edges may stray from the boundary; `None`: the domain's own tolerance.
     pub hausd: Option<f64>,
+    /// What makes the mesh. The options below are for [`Mesher::Voronoi`], but for the memory limit.
+    pub mesher: Mesher,
     /// Steps of Riemannian Lloyd relaxation, at most: it ends where it stalls.
     pub lloyd: usize,
     /// The centroids that it moves seeds to.
@@ -56,6 +60,8 @@ pub struct MeshOptions {
     pub picking_radius: f64,
     /// Whether the net of the mesh's vertices is measured ([`Meshed::net`]); with [`Seeding::Protected`] it always is.
     pub net: bool,
+    /// Which canvas, where one is used: for seeding and relaxing, and to settle edges.
+    pub canvas: canvas::Kind,
     /// Canvas vertices per seed, where a canvas is used.
     pub canvas_size: u32,
     /// Limit on the memory the work is estimated to need, in bytes.
@@ -68,6 +74,7 @@ impl Default for MeshOptions {
             vertices: None,
             complexity: None,
             hausd: None,
+            mesher: Mesher::default(),
             lloyd: 40,
             centroid: Centroid::default(),
             dual: Road::default(),
@@ -76,6 +83,7 @@ impl Default for MeshOptions {
             protection: 0.2,
             picking_radius: 0.3,
             net: false,
+            canvas: canvas::Kind::default(),
             canvas_size: canvas::VERTICES_PER_SEED,
             memory_limit: 16 << 30,
         }
@@ -101,6 +109,8 @@ pub struct Meshed {
     pub net: Option<Net>,
     /// How protection went, with [`Seeding::Protected`].
     pub protection: Option<report::Protection>,
+    /// The star set that became the mesh, with [`Mesher::StarSet`].
+    pub star_set: Option<report::StarSet>,
     /// Wall time per stage, in order.
     pub seconds: Vec<(&'static str, f64)>,
     /// What could not be met, in words for the user; empty when all was.
@@ -127,8 +137,12 @@ pub fn mesh(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
+    if options.mesher == Mesher::StarSet {
+        return mesher::by_stars(domain, field, options, progress);
+    }
+    options.canvas.demand_triangulation()?;
     options.geodesic.demand_diagrams()?;
-    let mut job = Job { field, options, progress, canvas: None, diagram: None, seconds: Vec::new(), notes: Vec::new() };
+    let mut job = Job::new(field, options, progress);
     let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
     let asked = if options.seeding == Seeding::Protected { count } else { options.dual.seeds_asked(count) };
     let on_canvas = asked as f64 * f64::from(options.canvas_size);
@@ -144,7 +158,20 @@ pub fn mesh(
     let (canvas, diagram) = (job.canvas.or(canvas), job.diagram.or(diagram));
     let metric_scale = dual.field().factor;
     let (seconds, notes) = (job.seconds, job.notes);
-    Ok(Meshed { mesh, metric_scale, dual: account, relaxation, canvas, diagram, net, protection, seconds, notes })
+    let star_set = None;
+    Ok(Meshed {
+        mesh,
+        metric_scale,
+        dual: account,
+        relaxation,
+        canvas,
+        diagram,
+        net,
+        protection,
+        star_set,
+        seconds,
+        notes,
+    })
 }
 
 struct Job<'a> {
@@ -158,6 +185,10 @@ struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
+    fn new(field: &'a dyn MetricField, options: &'a MeshOptions, progress: &'a dyn Progress) -> Self {
+        Self { field, options, progress, canvas: None, diagram: None, seconds: Vec::new(), notes: Vec::new() }
+    }
+
     fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
         let start = Instant::now();
         let result = work(self);

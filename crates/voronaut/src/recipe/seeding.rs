@@ -65,7 +65,7 @@ impl Job<'_> {
         let size = canvas::size_for(seeds, self.options.canvas_size);
         demand_memory(seeds as f64, size as f64, self.options.memory_limit)?;
         self.progress.stage("canvas", 1);
-        let canvas = self.timed("canvas", |job| Canvas::intrinsic(domain, job.field, size))?;
+        let canvas = self.timed("canvas", |job| Canvas::new(job.options.canvas, domain, job.field, size))?;
         self.canvas = Some(report::Canvas::of(&canvas));
         Ok(Some(canvas))
     }

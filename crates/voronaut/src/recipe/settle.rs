@@ -20,10 +20,10 @@ pub(super) fn settle(
 ) -> Result<Settled> {
     progress.stage("settling edges", 1);
     dual.flip_all(Effort::Full);
-    let found = dual.consult_diagram(options.dual, options.canvas_size, options.geodesic)?;
+    let found = dual.consult_diagram(options.dual, options.canvas, options.canvas_size, options.geodesic)?;
     let made = found.made;
     let canvas =
-        made.map(|m| report::Canvas { kind: "intrinsic".into(), vertices: m.canvas_vertices, counters: m.canvas });
+        made.map(|m| report::Canvas { kind: m.kind.to_string(), vertices: m.canvas_vertices, counters: m.canvas });
     let diagram = made.map(|m| report::Diagram { orphans: m.orphans, raw_nerve: None, counters: m.diagram });
     Ok(Settled { dual: account(dual, domain, found), canvas, diagram })
 }

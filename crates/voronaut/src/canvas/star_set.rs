@@ -1,0 +1,284 @@
+//! Star sets (RR-9103, section 7): the Delaunay star of every vertex in its own metric, whether or not the stars agree.
+
+use super::star::{Finder, Star, circle};
+use super::steiner::{Placed, Steiner};
+use super::{CanvasCounters, refine, renumbered};
+use crate::domain::Domain;
+use crate::error::Result;
+use crate::geometry::{Point, Tensor};
+use crate::metric::MetricField;
+use crate::triangulation::{HalfEdge, VertexId};
+use rayon::prelude::*;
+use std::collections::HashSet;
+
+/// The share of the vertices that the embedded triangulation is refined to before stars are.
+const FROM_EMBEDDED: f64 = 0.7;
+/// Stars are searched in parts of so many at least.
+const PART: usize = 512;
+
+/// The stars of a set of vertices, cut by the domain's boundary and by its inner features. A graph, not a triangulation:
+/// a simplex may be in the star of one of its vertices and not in that of another, an *inconsistency*.
+///
+/// Deterministic, for any number of threads.
+#[derive(Debug)]
+pub struct StarSet {
+    positions: Vec<Point>,
+    tensors: Vec<Tensor>,
+    stars: Vec<Star>,
+    figures: StarFigures,
+}
+
+/// A star set in numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct StarFigures {
+    /// Vertices.
+    pub vertices: usize,
+    /// Simplices that are in the star of one of their vertices and not in that of another.
+    pub inconsistencies: usize,
+    /// Simplices of any star, each once.
+    pub simplices: usize,
+    /// The greatest circumradius of a star's simplex, in the metric of the star.
+    pub radius: f64,
+    /// Rounds of refinement; of consistent stars, passes over all of them in search of inconsistencies.
+    pub rounds: usize,
+    /// Stars that rounding kept from being found: they are those of the embedded triangulation.
+    pub unsettled: usize,
+}
+
+impl StarSet {
+    /// A star set of so many vertices (more if the domain itself has more), even in the metric: a part of them from the
+    /// refinement of [`super::Canvas::intrinsic`], then circumcentres of the largest simplices of stars. A centre that
+    /// encroaches the boundary halves it instead.
+    ///
+    /// # Errors
+    /// [`crate::Error::Metric`] where the metric is not positive definite at a vertex.
+    pub fn new(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        let start = (FROM_EMBEDDED * vertices as f64) as usize;
+        let planar = refine::refine(domain.planar().clone(), field, start, &mut CanvasCounters::default())?;
+        let mut stars = Stars::new(Steiner::metric(renumbered(&planar), field)?);
+        let mut rounds = 0;
+        loop {
+            let missing = vertices.saturating_sub(stars.steiner.planar.topology.vertex_count());
+            if missing == 0 || stars.refine_largest(missing)? == 0 {
+                break;
+            }
+            rounds += 1;
+        }
+        Ok(stars.finished(rounds))
+    }
+
+    /// Positions of the vertices (Euclidean), their tensors, and the neighbours of each: those in its star and those in
+    /// whose star it is, in order. What a graph for geodesic methods is made of.
+    pub fn into_graph(self) -> (Vec<Point>, Vec<Tensor>, Vec<Vec<u32>>) {
+        let neighbours = self.neighbours();
+        (self.positions, self.tensors, neighbours)
+    }
+
+    /// The reciprocal neighbours of every vertex, in order.
+    pub fn neighbours(&self) -> Vec<Vec<u32>> {
+        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.positions.len()];
+        for (v, star) in (0..).zip(&self.stars) {
+            for u in star.iter().flat_map(|spoke| spoke.ends) {
+                neighbours[v as usize].push(u.0);
+                neighbours[u.index()].push(v);
+            }
+        }
+        for list in &mut neighbours {
+            list.sort_unstable();
+            list.dedup();
+        }
+        neighbours
+    }
+
+    /// The simplices of the star of a vertex, each by its other two vertices, counter-clockwise.
+    pub fn star(&self, v: u32) -> impl Iterator<Item = [u32; 2]> + '_ {
+        self.stars[v as usize].iter().map(|spoke| spoke.ends.map(|u| u.0))
+    }
+
+    /// Position (Euclidean) of a vertex.
+    pub fn position(&self, v: u32) -> Point {
+        self.positions[v as usize]
+    }
+
+    /// How it came about.
+    pub fn figures(&self) -> &StarFigures {
+        &self.figures
+    }
+}
+
+/// Stars over an embedded triangulation that both grow.
+pub(super) struct Stars<'a> {
+    pub(super) steiner: Steiner<'a>,
+    pub(super) by_vertex: Vec<Star>,
+    unsettled: usize,
+}
+
+impl<'a> Stars<'a> {
+    /// The stars of all vertices of a triangulation.
+    pub(super) fn new(steiner: Steiner<'a>) -> Self {
+        let mut stars = Self { steiner, by_vertex: Vec::new(), unsettled: 0 };
+        stars.update_all();
+        stars
+    }
+
+    /// Finds all stars anew.
+    pub(super) fn update_all(&mut self) {
+        let all: Vec<VertexId> = self.steiner.planar.topology.vertices().collect();
+        self.by_vertex = vec![Star::new(); self.steiner.planar.topology.vertex_slots()];
+        self.unsettled = self.update(&all);
+    }
+
+    /// Finds some stars anew, in parallel; returns how many could not be found.
+    fn update(&mut self, dirty: &[VertexId]) -> usize {
+        let steiner = &self.steiner;
+        let find = |finder: &mut Finder, &v: &VertexId| finder.star(v, steiner.tensors[v.index()]);
+        let parts = dirty.par_chunks(PART).map_init(
+            || Finder::new(&steiner.planar),
+            |finder, part| part.iter().map(|v| find(finder, v)).collect::<Vec<_>>(),
+        );
+        let found: Vec<Option<Star>> = parts.flatten_iter().collect();
+        self.by_vertex.resize(steiner.planar.topology.vertex_slots(), Star::new());
+        let mut unsettled = 0;
+        for (&v, star) in dirty.iter().zip(found) {
+            unsettled += usize::from(star.is_none());
+            self.by_vertex[v.index()] = star.unwrap_or_else(|| self.embedded(v));
+        }
+        unsettled
+    }
+
+    fn embedded(&self, v: VertexId) -> Star {
+        let topology = &self.steiner.planar.topology;
+        let spoke =
+            |h| super::star::Spoke { ends: [topology.target(h), topology.apex(h)], region: topology.region(h.face()) };
+        topology.star(v).map(spoke).collect()
+    }
+
+    /// The circle of a simplex of v's star, in v's metric.
+    pub(super) fn circle(&self, v: VertexId, [a, b]: [VertexId; 2]) -> Option<(Point, f64)> {
+        circle(self.steiner.tensors[v.index()], [v, a, b].map(|u| self.steiner.planar.position(u)))
+    }
+
+    /// One round: circumcentres of the largest simplices, `most` of them, where no other was put in this round.
+    fn refine_largest(&mut self, most: usize) -> Result<usize> {
+        let largest = |v: u32| {
+            let circles =
+                self.by_vertex[v as usize].iter().filter_map(|s| Some((self.circle(VertexId(v), s.ends)?, s.ends)));
+            circles.max_by(|a, b| a.0.1.total_cmp(&b.0.1)).map(|((centre, radius), ends)| (radius, v, ends, centre))
+        };
+        let mut all: Vec<_> = (0..self.by_vertex.len() as u32).into_par_iter().filter_map(largest).collect();
+        all.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        // The largest first; never so many that small ones are cut before large ones are known.
+        all.truncate(all.len().div_ceil(3));
+        let mut taken: HashSet<VertexId> = HashSet::new();
+        let mut dirty = Vec::new();
+        let mut placed = 0;
+        for (radius, v, ends, centre) in all {
+            let v = VertexId(v);
+            if placed == most || [v, ends[0], ends[1]].iter().any(|u| taken.contains(u)) {
+                continue;
+            }
+            if let Placed::Inserted(new) | Placed::Halved(new) = self.place(v, centre, radius)? {
+                taken.extend(self.steiner.planar.topology.star(new).map(|h| self.steiner.planar.topology.target(h)));
+                taken.extend([v, ends[0], ends[1]]);
+                dirty.push(new);
+                placed += 1;
+            }
+        }
+        self.mend(&dirty);
+        Ok(placed)
+    }
+
+    /// Puts a vertex at a point seen from v, or on the fixed edge in its way. Stars are to be mended after.
+    pub(super) fn place(&mut self, v: VertexId, p: Point, radius: f64) -> Result<Placed> {
+        let planar = &self.steiner.planar;
+        let towards = planar.face_towards(v, p).or_else(|| planar.topology.start(v).map(HalfEdge::face));
+        let Some(from) = towards else { return Ok(Placed::Refused) };
+        self.steiner.place(from, p, radius)
+    }
+
+    /// Gives new vertices empty stars.
+    pub(super) fn make_room(&mut self) {
+        self.by_vertex.resize(self.steiner.planar.topology.vertex_slots(), Star::new());
+    }
+
+    /// Finds the stars of new vertices, and those that they change.
+    pub(super) fn mend(&mut self, new: &[VertexId]) -> Vec<VertexId> {
+        self.make_room();
+        let mut dirty: Vec<VertexId> = new.iter().flat_map(|&v| self.changed_by(v)).collect();
+        dirty.sort_unstable();
+        dirty.dedup();
+        self.update(&dirty);
+        dirty
+    }
+
+    /// The vertices whose stars a vertex changes: it is in a circle of theirs. Searched from it through the neighbourhood
+    /// until two steps lead to no more.
+    pub(super) fn changed_by(&self, new: VertexId) -> Vec<VertexId> {
+        let topology = &self.steiner.planar.topology;
+        let p = self.steiner.planar.position(new);
+        let ring = |v: VertexId| topology.star(v).flat_map(|h| [topology.target(h), topology.apex(h)]);
+        let mut changed = vec![new];
+        let mut seen: HashSet<VertexId> = HashSet::from([new]);
+        let mut next: Vec<(VertexId, u8)> = ring(new).map(|v| (v, 0)).collect();
+        changed.extend(ring(new));
+        while let Some((v, idle)) = next.pop() {
+            if !seen.insert(v) {
+                continue;
+            }
+            let holds = |spoke: &super::star::Spoke| {
+                let centre = self.circle(v, spoke.ends);
+                centre.is_some_and(|(c, r)| self.steiner.tensors[v.index()].length(p - c) <= r * (1.0 + 1e-9))
+            };
+            let idle = if self.by_vertex[v.index()].iter().any(holds) {
+                changed.push(v);
+                0
+            } else {
+                idle + 1
+            };
+            if idle < 2 {
+                let mine = self.by_vertex[v.index()].iter().flat_map(|s| s.ends);
+                next.extend(ring(v).chain(mine).filter(|u| !seen.contains(u)).map(|u| (u, idle)));
+            }
+        }
+        changed.sort_unstable();
+        changed.dedup();
+        changed
+    }
+
+    /// Whether the star of v has the simplex v a b.
+    pub(super) fn has(&self, v: VertexId, ends: [VertexId; 2]) -> bool {
+        self.by_vertex[v.index()].iter().any(|spoke| spoke.ends == ends)
+    }
+
+    /// Whether all three stars have a simplex.
+    pub(super) fn agree(&self, [a, b, c]: [VertexId; 3]) -> bool {
+        self.has(a, [b, c]) && self.has(b, [c, a]) && self.has(c, [a, b])
+    }
+
+    fn finished(mut self, rounds: usize) -> StarSet {
+        self.update_all();
+        let figures = StarFigures { rounds, ..self.figures() };
+        let positions = self.steiner.planar.positions;
+        StarSet { positions, tensors: self.steiner.tensors, stars: self.by_vertex, figures }
+    }
+
+    /// Counts.
+    pub(super) fn figures(&self) -> StarFigures {
+        let mut figures =
+            StarFigures { vertices: self.steiner.planar.topology.vertex_count(), ..StarFigures::default() };
+        figures.unsettled = self.unsettled;
+        for v in (0..self.by_vertex.len() as u32).map(VertexId) {
+            for spoke in &self.by_vertex[v.index()] {
+                let [a, b] = spoke.ends;
+                let others = [(a, self.has(a, [b, v])), (b, self.has(b, [v, a]))];
+                // Counted at the first of the vertices that have it.
+                if others.iter().all(|&(u, has)| !has || v < u) {
+                    figures.simplices += 1;
+                    figures.inconsistencies += usize::from(!(others[0].1 && others[1].1));
+                }
+                figures.radius = self.circle(v, spoke.ends).map_or(figures.radius, |(_, r)| figures.radius.max(r));
+            }
+        }
+        figures
+    }
+}

@@ -1,0 +1,183 @@
+//! Points put into an embedded triangulation by Delaunay refinement, with care for what is fixed (Ruppert 1995): a point
+//! that would lie in the diametral circle of a fixed edge, or beyond it, is not inserted; the edge is halved instead.
+
+use crate::error::Result;
+use crate::geodesic::frozen_margin;
+use crate::geometry::{Point, Tensor};
+use crate::metric::{MetricField, check_tensor};
+use crate::planar::{Location, Planar};
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
+
+/// Fixed edges shorter than this share of the circle that asks for it are not halved: under a small angle between
+/// two of them halving would go on for long.
+const SHORTEST: f64 = 0.05;
+/// The frozen-tensor test must be violated by more than this (sine of the angles' sum) for a flip.
+const CLEARLY: f64 = 1e-2;
+/// Flips in a metric after one insertion at most: tests with different tensors contradict each other.
+const FLIPS_PER_POINT: usize = 64;
+
+/// What became of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Placed {
+    /// It is this vertex.
+    Inserted(VertexId),
+    /// It was not inserted: a fixed edge was halved, at this vertex.
+    Halved(VertexId),
+    /// Rounding leaves no room, or the fixed edge in its way is too short.
+    Refused,
+}
+
+/// A triangulation under refinement: Delaunay in the Euclidean plane, or about so in a metric.
+pub(super) struct Steiner<'a> {
+    pub(super) planar: Planar,
+    /// The metric by which edges flip and circles are measured; `None` for the Euclidean plane.
+    field: Option<&'a dyn MetricField>,
+    /// One per vertex slot, where there is a metric.
+    pub(super) tensors: Vec<Tensor>,
+    stack: Vec<HalfEdge>,
+    changed: Vec<FaceId>,
+}
+
+impl<'a> Steiner<'a> {
+    /// In the Euclidean plane, from a constrained Delaunay triangulation.
+    pub(super) fn euclidean(planar: Planar) -> Self {
+        Self { planar, field: None, tensors: Vec::new(), stack: Vec::new(), changed: Vec::new() }
+    }
+
+    /// In a metric, from any triangulation.
+    ///
+    /// # Errors
+    /// The metric is not positive definite at a vertex.
+    pub(super) fn metric(planar: Planar, field: &'a dyn MetricField) -> Result<Self> {
+        let tensors: Vec<Tensor> = planar.positions.iter().map(|&p| field.at(p)).collect();
+        for v in planar.topology.vertices() {
+            check_tensor(tensors[v.index()], planar.position(v))?;
+        }
+        Ok(Self { field: Some(field), tensors, ..Self::euclidean(planar) })
+    }
+
+    /// Inserts a point that is seen from a face, unless it encroaches a fixed edge: then that is halved. `radius` is that
+    /// of the circle (in the metric) whose centre the point is, or near to which it is.
+    ///
+    /// # Errors
+    /// The metric is not positive definite at the new vertex.
+    pub(super) fn place(&mut self, from: FaceId, p: Point, radius: f64) -> Result<Placed> {
+        let placed = match self.planar.walk(from, p, true) {
+            Location::Behind(h) => return self.halve(h, radius),
+            Location::Vertex(_) => return Ok(Placed::Refused),
+            Location::Edge(h) if self.planar.topology.is_fixed(h) => return self.halve(h, radius),
+            Location::Edge(h) => self.planar.insert_on_edge(h, p).map(|(v, _)| v),
+            Location::Face(f) => self.planar.insert_in_face(f, p),
+        };
+        let Some(v) = placed else { return Ok(Placed::Refused) };
+        self.added(v)?;
+        let encroached = self.planar.topology.star(v).map(HalfEdge::next).find(|&h| self.is_encroached(h, p, radius));
+        let Some(h) = encroached else { return Ok(Placed::Inserted(v)) };
+        let [a, b] = [self.planar.topology.origin(h), self.planar.topology.target(h)];
+        if !self.take_out(v) {
+            return Ok(Placed::Inserted(v));
+        }
+        match self.planar.topology.find(a, b).or_else(|| self.planar.topology.find(b, a)) {
+            Some(h) => self.halve(h, radius),
+            None => Ok(Placed::Refused),
+        }
+    }
+
+    /// The faces that are new since this was asked last, and those around the last new vertex.
+    pub(super) fn take_changed(&mut self) -> Vec<FaceId> {
+        let topology = &self.planar.topology;
+        let mut changed = std::mem::take(&mut self.changed);
+        changed.retain(|&f| topology.is_face(f));
+        changed.sort_unstable();
+        changed.dedup();
+        changed
+    }
+
+    fn tensor_at(&self, p: Point) -> Tensor {
+        self.field.map_or(Tensor::isotropic(1.0), |field| field.at(p))
+    }
+
+    /// Whether a point sees a fixed edge, long enough to be halved, under an obtuse angle.
+    fn is_encroached(&self, h: HalfEdge, p: Point, radius: f64) -> bool {
+        if !self.planar.topology.is_fixed(h) {
+            return false;
+        }
+        let [a, b] = self.planar.ends(h);
+        let tensor = self.tensor_at(p);
+        tensor.dot(a - p, b - p) < 0.0 && tensor.length(b - a) > SHORTEST * radius
+    }
+
+    /// Halves a fixed edge.
+    pub(super) fn halve(&mut self, h: HalfEdge, radius: f64) -> Result<Placed> {
+        let [a, b] = self.planar.ends(h);
+        let middle = a.midpoint(b);
+        if self.tensor_at(middle).length(b - a) <= SHORTEST * radius {
+            return Ok(Placed::Refused);
+        }
+        let Some((v, _)) = self.planar.insert_on_edge(h, middle) else { return Ok(Placed::Refused) };
+        self.added(v)?;
+        Ok(Placed::Halved(v))
+    }
+
+    /// Flips around a vertex that was just inserted.
+    fn added(&mut self, v: VertexId) -> Result<()> {
+        if let Some(field) = self.field {
+            let p = self.planar.position(v);
+            let tensor = field.at(p);
+            check_tensor(tensor, p)?;
+            self.tensors.resize(self.planar.positions.len(), tensor);
+            self.tensors[v.index()] = tensor;
+        }
+        self.stack.extend(self.planar.topology.star(v).map(HalfEdge::next));
+        self.flip();
+        self.changed.extend(self.planar.topology.star(v).map(HalfEdge::face));
+        Ok(())
+    }
+
+    fn flip(&mut self) {
+        if self.field.is_none() {
+            self.planar.legalise(&mut self.stack);
+            return;
+        }
+        let mut flips = 0;
+        while let Some(h) = self.stack.pop() {
+            if self.planar.topology.is_fixed(h) || self.margin(h) > -CLEARLY || !self.planar.is_convex(h) {
+                continue;
+            }
+            let Some(t) = self.planar.topology.twin(h) else { continue };
+            self.planar.topology.flip(h);
+            self.stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
+            self.changed.extend([h.face(), t.face()]);
+            flips += 1;
+            if flips == FLIPS_PER_POINT {
+                self.stack.clear();
+            }
+        }
+    }
+
+    fn margin(&self, h: HalfEdge) -> f64 {
+        let topology = &self.planar.topology;
+        let Some(t) = topology.twin(h) else { return 0.0 };
+        let quad = [topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)];
+        let mean = quad.iter().fold(Tensor::default(), |sum, v| sum + self.tensors[v.index()]) * 0.25;
+        let [a, b, c, d] = quad.map(|v| self.planar.position(v));
+        frozen_margin(mean, [a - c, b - c], [b - d, a - d])
+    }
+
+    /// Removes a vertex that was just inserted, and flips as before; says whether it could.
+    pub(super) fn take_out(&mut self, v: VertexId) -> bool {
+        let topology = &self.planar.topology;
+        let link: Vec<[VertexId; 2]> =
+            topology.star(v).map(HalfEdge::next).map(|h| [topology.origin(h), topology.target(h)]).collect();
+        if !self.planar.remove_vertex(v) {
+            return false;
+        }
+        let inside: Vec<HalfEdge> = link.iter().filter_map(|&[a, b]| self.planar.topology.find(a, b)).collect();
+        self.stack.extend(inside.iter().flat_map(|h| h.face().half_edges()));
+        self.flip();
+        for [a, b] in link {
+            self.changed.extend(self.planar.topology.find(a, b).map(HalfEdge::face));
+        }
+        true
+    }
+}

@@ -1,0 +1,142 @@
+//! Which mesher; and the local Delaunay algorithm as one (RR-9103, section 7.1), to compare.
+
+use super::{Job, MeshOptions, Meshed};
+use crate::canvas::{Consistency, UNIT_RADIUS, consistent};
+use crate::domain::Domain;
+use crate::error::{Error, Result};
+use crate::metric::{MetricField, Scaled};
+use crate::optimise::Relaxed;
+use crate::output::report;
+use crate::progress::Progress;
+use crate::quality;
+use crate::sampling::demand_memory;
+use std::fmt;
+use std::str::FromStr;
+
+/// What makes the mesh; its names are those users type (`--mesher`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Mesher {
+    /// `voronoi`: the dual of a Riemannian Voronoi diagram, always embedded.
+    #[default]
+    Voronoi,
+    /// `starset`: Delaunay stars, each in its vertex's own metric, refined until they agree. The metric's scale is met,
+    /// not the number of vertices; where the metric turns fast it takes many more.
+    StarSet,
+}
+
+impl fmt::Display for Mesher {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Mesher::Voronoi => "voronoi",
+            Mesher::StarSet => "starset",
+        })
+    }
+}
+
+impl FromStr for Mesher {
+    type Err = Error;
+
+    /// # Errors
+    /// [`Error::Parse`] of any other name.
+    fn from_str(name: &str) -> Result<Self> {
+        match name {
+            "voronoi" => Ok(Mesher::Voronoi),
+            "starset" => Ok(Mesher::StarSet),
+            _ => Err(Error::parse(format!("mesher {name}"), "no such mesher", "choose voronoi or starset")),
+        }
+    }
+}
+
+/// Stars are given up when they have so many times the vertices of a unit mesh, and [`SPARE`].
+const MOST: usize = 20;
+/// Vertices more, for coarse meshes of intricate domains.
+const SPARE: usize = 1000;
+
+/// Meshes a domain by consistent star sets.
+///
+/// # Errors
+/// As for [`super::mesh`], and where stars do not come to agree or are no valid mesh.
+pub(super) fn by_stars(
+    domain: &Domain,
+    field: &dyn MetricField,
+    options: &MeshOptions,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    let mut job = Job::new(field, options, progress);
+    let (domain, _, count, scale) = job.timed("plan", |job| job.plan(domain))?;
+    let most = MOST * count + SPARE;
+    demand_memory(count as f64, most as f64, options.memory_limit)?;
+    progress.stage("stars", 1);
+    let scaled = Scaled { field, factor: scale };
+    let found = job.timed("stars", |_| consistent(&domain, &scaled, Consistency { radius: UNIT_RADIUS, most }))?;
+    progress.stage("checking", 1);
+    let corner = |v: crate::triangulation::VertexId| domain.sources().get(v.index()).copied().flatten();
+    let mesh = domain.mesh_of(&found.planar, corner);
+    job.timed("check", |_| quality::check(&mesh))?;
+    if let Some(asked) = options.vertices.filter(|&asked| asked != mesh.points.len()) {
+        let got = mesh.points.len();
+        job.notes.push(format!("{asked} vertices set the scale of the metric; stars that agree took {got}"));
+    }
+    Ok(Meshed {
+        mesh,
+        metric_scale: scale,
+        dual: report::Dual::default(),
+        relaxation: Relaxed::default(),
+        canvas: None,
+        diagram: None,
+        net: None,
+        protection: None,
+        star_set: Some(report::StarSet { figures: found.figures, counters: found.counters }),
+        seconds: job.seconds,
+        notes: job.notes,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point, Tensor};
+    use crate::metric::{Shock, Uniform};
+    use crate::progress::Silent;
+    use crate::recipe;
+
+    fn mesh(domain: &str, field: &dyn MetricField, vertices: usize) -> Result<Meshed> {
+        let options = MeshOptions { mesher: Mesher::StarSet, vertices: Some(vertices), ..MeshOptions::default() };
+        recipe::mesh(&Domain::read(domain).unwrap(), field, &options, &Silent)
+    }
+
+    #[test]
+    fn stars_that_agree_are_a_valid_mesh() {
+        let uniform = Uniform(Tensor::new(30.0, 5.0, 1.0));
+        let gentle = |p: Point| Tensor::new(4.0 + 0.5 * p.x, 0.3 * p.y, 1.0 + 0.5 * p.y * p.y);
+        for (domain, field) in [("rect:0,0,2,1", &uniform as &dyn MetricField), ("rect:0,0,2,1", &gentle)] {
+            let meshed = mesh(domain, field, 300).unwrap();
+            let found = meshed.star_set.unwrap();
+            let vertices = meshed.mesh.points.len();
+            assert!(found.figures.inconsistencies == 0 && found.figures.radius <= UNIT_RADIUS, "{found:?}");
+            assert_eq!((found.figures.vertices, found.figures.unsettled), (vertices, 0));
+            assert_eq!(found.figures.simplices, meshed.mesh.triangles.len());
+            assert!(quality::validity(&meshed.mesh).area > 1.999 && (200..1500).contains(&vertices), "{vertices}");
+        }
+    }
+
+    #[test]
+    fn names_are_read_as_written_and_others_refused() {
+        for mesher in [Mesher::Voronoi, Mesher::StarSet] {
+            assert_eq!(mesher.to_string().parse::<Mesher>().unwrap(), mesher);
+        }
+        let error = "grid".parse::<Mesher>().unwrap_err();
+        assert_eq!(
+            (error.to_string().as_str(), error.help()),
+            ("mesher grid: no such mesher", "choose voronoi or starset")
+        );
+    }
+
+    #[test]
+    fn stars_that_do_not_come_to_agree_are_an_error_with_a_place() {
+        let error = mesh("rect:-1,-1,1,1", &Shock { phi: 10.0, lambda: 0.006 }, 30).unwrap_err();
+        assert!(error.to_string().contains("the stars do not agree with 1600 vertices, for example at ("), "{error}");
+        assert!(error.help().contains("--mesher voronoi"), "{}", error.help());
+    }
+}
