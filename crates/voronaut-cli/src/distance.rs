@@ -62,6 +62,7 @@ fn outputs(args: &DistanceArgs) -> Outputs {
         picture: args.picture.clone(),
         show: Vec::new(),
         pixels: args.pixels,
+        window: None,
         histograms: None,
         report: args.report.clone(),
     }

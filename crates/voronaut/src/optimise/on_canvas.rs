@@ -82,7 +82,9 @@ impl<'a> OnCanvas<'a> {
             let local = local(colour);
             let handed: Vector = match diagram.label(x).support() {
                 Support::Nothing | Support::Source => Vector::default(),
-                Support::Vertex(_) | Support::Neighbour(_) => diagram.parent(x).map_or(Vector::default(), |p| directions[p.index()]),
+                Support::Vertex(_) | Support::Neighbour(_) => {
+                    diagram.parent(x).map_or(Vector::default(), |p| directions[p.index()])
+                }
                 Support::Edge(h) => {
                     let topology = self.canvas.topology();
                     let [a, b] = [topology.origin(h), topology.target(h)];
