@@ -409,8 +409,7 @@ fn the_star_set_mesher_reports_its_stars() {
     let place = Place::new();
     let words =
         ["mesh", "rect:0,0,2,1", "--metric", "uniform:30,5,1", "-n", "300", "--mesher", "starset", "-o", "m.mesh"];
-    let said = runs(&place, &[&words[..], &["--report", "r.json"]].concat());
-    assert!(said.contains("0 inconsistencies"), "{said}");
+    runs(&place, &[&words[..], &["--report", "r.json"]].concat());
     let report = report(&place, "r.json");
     assert_eq!((&report["valid"], &report["star_set"]["inconsistencies"]), (&Value::Bool(true), &Value::from(0)));
     assert_eq!(report["star_set"]["vertices"], report["vertices"]);
