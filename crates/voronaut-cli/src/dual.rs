@@ -8,7 +8,7 @@ use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
 use voronaut::canvas::{self, Canvas};
-use voronaut::diagram::{Diagram, resolve};
+use voronaut::diagram::{Diagram, RESOLVE_ROUNDS, resolve};
 use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::mesh::Mesh;
@@ -19,9 +19,6 @@ use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, MeshOptions, SeedDual};
 use voronaut::sampling;
 use voronaut::{Error, Result};
-
-/// With `--dual canvas` the canvas is refined so many times where it does not tell Voronoi vertices apart.
-const ROUNDS: u32 = 8;
 
 /// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
 pub(crate) fn run(args: &DualArgs) -> Result<()> {
@@ -54,7 +51,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     file.demand_inside(&canvas)?;
     let road = Road::from(args.dual);
     if road == Road::Canvas {
-        canvas = resolve(canvas, metric.as_ref(), seeds, ROUNDS)?.canvas;
+        canvas = resolve(canvas, metric.as_ref(), seeds, RESOLVE_ROUNDS)?.canvas;
     }
     stage("canvas");
     let diagram = Diagram::by_method(&canvas, metric.as_ref(), seeds, args.geodesic)?;

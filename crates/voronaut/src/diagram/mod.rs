@@ -23,7 +23,7 @@ pub use distances::Distances;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle};
 pub use passes::Passes;
 pub use paths::Paths;
-pub use resolve::{Resolved, resolve};
+pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
 pub use witnesses::Witnesses;
 
 use crate::canvas::Canvas;

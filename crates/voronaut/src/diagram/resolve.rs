@@ -23,6 +23,9 @@ pub struct Resolved {
     pub unwitnessed: usize,
 }
 
+/// Rounds of [`resolve`] after which the nerve of protected seeds is as a rule witnessed.
+pub const RESOLVE_ROUNDS: u32 = 8;
+
 /// Refines a canvas until its faces with three colours ([`Diagram::nerve`]) are the nerve of the seeds' cells as drawn
 /// within faces ([`Diagram::sharp_nerve`]), each alone in its face: around the places where they are not, again and
 /// again. Ends when there are no such places, after so many rounds, or when the faces there are tiny beside the cells.

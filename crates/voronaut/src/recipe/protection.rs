@@ -2,7 +2,7 @@
 
 use super::{Job, Seeding};
 use crate::canvas::{self, Canvas};
-use crate::diagram::{Diagram, resolve};
+use crate::diagram::{Diagram, RESOLVE_ROUNDS, resolve};
 use crate::domain::Domain;
 use crate::dual::{Dual, Road};
 use crate::error::Result;
@@ -10,10 +10,6 @@ use crate::geometry::Point;
 use crate::net::{Ball, Net};
 use crate::optimise::{Ending, Protected, measured, protect};
 use crate::output::report;
-
-/// The canvas of protected seeds is refined so many times at most: protection makes Voronoi vertices no farther apart than
-/// canvas vertices may be.
-const ROUNDS: u32 = 8;
 
 impl Job<'_> {
     /// With [`Seeding::Protected`], moves seeds until their simplices are protected.
@@ -63,7 +59,7 @@ impl Job<'_> {
         let seeds: Vec<Point> = seeds.into_iter().map(|seed| seed.1).collect();
         let field = dual.scaled_field();
         let size = canvas::size_for(seeds.len(), self.options.canvas_size);
-        let resolved = resolve(Canvas::intrinsic(domain, field, size)?, field, &seeds, ROUNDS)?;
+        let resolved = resolve(Canvas::intrinsic(domain, field, size)?, field, &seeds, RESOLVE_ROUNDS)?;
         let diagram = Diagram::new(&resolved.canvas, field, &seeds)?;
         let nerve = super::dual(&diagram, field, Road::Both).raw_nerve;
         let canvas_vertices = resolved.canvas.vertex_count();
