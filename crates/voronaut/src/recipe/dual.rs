@@ -29,7 +29,7 @@ pub struct SeedDual {
     pub nerve: Nerve,
     /// The triangles of the exact dual: what in-circle tests make of the nerve, whatever the road.
     pub exact: Vec<[u32; 3]>,
-    /// What canvas faces of three colours alone have of it.
+    /// What canvas faces of three colours alone have of it; of a star set, simplices of stars.
     pub raw_nerve: report::RawNerve,
     /// How the edges were settled. Margins are those by lengths; edges are numbered by their seeds.
     pub account: report::Dual,
@@ -59,14 +59,21 @@ pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road) -> SeedDual 
         Road::Both => rdt.triangles().into_iter().chain(left_out(&rdt, &nerve)).collect(),
     };
     let exact = rdt.triangles();
-    let raw_nerve = compared(&diagram.nerve(), &exact);
+    let raw_nerve = compared(&raw_triangles(diagram), &exact);
     SeedDual { triangles, nerve, exact, raw_nerve, account, seconds }
 }
 
-fn compared(raw: &Nerve, exact: &[[u32; 3]]) -> report::RawNerve {
+fn raw_triangles(diagram: &Diagram) -> Vec<[u32; 3]> {
+    match diagram.canvas().stars() {
+        Some(_) => diagram.star_triangles(),
+        None => diagram.nerve().triangles.iter().map(|t| t.colours).collect(),
+    }
+}
+
+fn compared(raw: &[[u32; 3]], exact: &[[u32; 3]]) -> report::RawNerve {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
     let exact: HashSet<[u32; 3]> = exact.iter().map(turned).collect();
-    let raw: HashSet<[u32; 3]> = raw.triangles.iter().map(|t| t.colours).collect();
+    let raw: HashSet<[u32; 3]> = raw.iter().copied().collect();
     report::RawNerve {
         triangles: raw.len(),
         missing: exact.difference(&raw).count(),
