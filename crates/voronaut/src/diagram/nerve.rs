@@ -81,16 +81,24 @@ impl Diagram<'_> {
         Nerve::new(self.coloured_vertices(), self.bicoloured_edges(), self.tricoloured_faces())
     }
 
-    /// The triangles of the nerve as the report reads them off a star set (Figure 7): simplices of any star with vertices of
-    /// three colours, each triple as in [`NerveTriangle::colours`], sorted. Stars that disagree may have triangles that
-    /// exclude each other. None on another canvas.
-    pub fn star_triangles(&self) -> Vec<[u32; 3]> {
-        let Some(stars) = self.canvas.stars() else { return Vec::new() };
-        let vertices = (0..self.canvas.vertex_count() as u32).map(VertexId);
-        let simplices = vertices.flat_map(|v| stars.star(v).map(move |[a, b]| [v, a, b]));
-        let mut found: Vec<[u32; 3]> = simplices.filter_map(|simplex| self.three_colours(simplex)).collect();
+    /// The triangles of the nerve as the report reads them off the canvas (Figure 7), with a witness each: a canvas simplex
+    /// with vertices of three colours, which are turned and sorted as in [`Nerve::triangles`]. Of a star set they are the
+    /// simplices of any star, which where stars disagree may exclude each other; else the faces.
+    pub fn witnesses_of_triangles(&self) -> Vec<([u32; 3], [VertexId; 3])> {
+        let coloured = |simplex| Some((self.three_colours(simplex)?, simplex));
+        let mut found: Vec<([u32; 3], [VertexId; 3])> = match self.canvas.stars() {
+            None => {
+                let topology = self.canvas.topology();
+                topology.faces().filter_map(|f| coloured(topology.corners(f))).collect()
+            }
+            Some(stars) => {
+                let vertices = (0..self.canvas.vertex_count() as u32).map(VertexId);
+                let simplices = vertices.flat_map(|v| stars.star(v).map(move |[a, b]| [v, a, b]));
+                simplices.filter_map(coloured).collect()
+            }
+        };
         found.sort_unstable();
-        found.dedup();
+        found.dedup_by_key(|witness| witness.0);
         found
     }
 

@@ -59,21 +59,14 @@ pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road) -> SeedDual 
         Road::Both => rdt.triangles().into_iter().chain(left_out(&rdt, &nerve)).collect(),
     };
     let exact = rdt.triangles();
-    let raw_nerve = compared(&raw_triangles(diagram), &exact);
+    let raw_nerve = compared(diagram, &exact);
     SeedDual { triangles, nerve, exact, raw_nerve, account, seconds }
 }
 
-fn raw_triangles(diagram: &Diagram) -> Vec<[u32; 3]> {
-    match diagram.canvas().stars() {
-        Some(_) => diagram.star_triangles(),
-        None => diagram.nerve().triangles.iter().map(|t| t.colours).collect(),
-    }
-}
-
-fn compared(raw: &[[u32; 3]], exact: &[[u32; 3]]) -> report::RawNerve {
+fn compared(diagram: &Diagram, exact: &[[u32; 3]]) -> report::RawNerve {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
     let exact: HashSet<[u32; 3]> = exact.iter().map(turned).collect();
-    let raw: HashSet<[u32; 3]> = raw.iter().copied().collect();
+    let raw: HashSet<[u32; 3]> = diagram.witnesses_of_triangles().into_iter().map(|witness| witness.0).collect();
     report::RawNerve {
         triangles: raw.len(),
         missing: exact.difference(&raw).count(),
