@@ -140,11 +140,8 @@ impl Dual<'_> {
         let unsure = |t: &NerveTriangle| t.fourth.is_some_and(|(_, gap)| gap < BEYOND_CANVAS);
         let unsure = nerve.sides(unsure).map(|[i, j]| pair(ids[i as usize], ids[j as usize])).collect();
         let mut found = self.compare(road, &wanted, &is_inner);
-        found.made = Some(Made {
-            canvas: canvas.figures(),
-            orphans: diagram.orphans().len(),
-            diagram: *diagram.counters(),
-        });
+        found.made =
+            Some(Made { canvas: canvas.figures(), orphans: diagram.orphans().len(), diagram: *diagram.counters() });
         found.impossible = self.adopt(road, wanted);
         found.uncertain = self.uncertain_edges(&unsure);
         Ok(found)
