@@ -18,6 +18,9 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// All kinds.
+    pub const ALL: [Kind; 3] = [Kind::Intrinsic, Kind::Isotropic, Kind::StarSet];
+
     /// Nothing for a canvas that is a triangulation, as fast marching and the diagram need it.
     ///
     /// # Errors
@@ -67,7 +70,7 @@ mod tests {
 
     #[test]
     fn names_are_read_as_written_and_others_refused() {
-        for kind in [Kind::Intrinsic, Kind::Isotropic, Kind::StarSet] {
+        for kind in Kind::ALL {
             assert_eq!(kind.to_string().parse::<Kind>().unwrap(), kind);
             assert_eq!(kind.demand_triangulation().is_ok(), kind != Kind::StarSet);
         }
