@@ -219,8 +219,8 @@ impl Canvas {
         self.topology.vertex_slots()
     }
 
-    /// The vertices with their tensors and the edges of [`Canvas::embedded`], for methods that know no triangles. `field` is
-    /// the one that the canvas was made with.
+    /// The vertices with their tensors and the edges of [`Canvas::embedded`] with their lengths there, for methods that know no
+    /// triangles. `field` is the one that the canvas was made with.
     pub fn graph(&self, field: &dyn MetricField) -> Graph {
         let topology = &self.embedded.topology;
         let tensors = self.embedded.positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
@@ -228,7 +228,9 @@ impl Canvas {
         for h in topology.edges() {
             neighbours[topology.origin(h).index()].push(topology.target(h).0);
         }
+        let edge = |a, b| topology.find(a, b).or_else(|| topology.find(b, a));
         Graph::new(self.embedded.positions.clone(), tensors, &neighbours)
+            .with_lengths(|a, b| edge(a, b).map_or(f64::INFINITY, |h| topology.length(h)))
     }
 
     /// The position of a vertex.

@@ -7,17 +7,17 @@ use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor};
 
 /// A metric on a domain, and its distances from a point.
-pub struct Case {
+pub(crate) struct Case {
     /// What it is called in tables.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// As [`Domain::read`] takes it.
-    pub domain: String,
+    pub(crate) domain: String,
     /// The metric.
-    pub metric: Box<dyn Fn(Point) -> Tensor + Sync>,
+    pub(crate) metric: Box<dyn Fn(Point) -> Tensor + Sync>,
     /// Where distances start.
-    pub from: Point,
+    pub(crate) from: Point,
     /// The distance of a point; `None` where the geodesic may leave the domain.
-    pub exact: Box<dyn Fn(Point) -> Option<f64> + Sync>,
+    pub(crate) exact: Box<dyn Fn(Point) -> Option<f64> + Sync>,
 }
 
 /// Vertices nearer to the source than this share of the farthest one are not measured: relative errors say little there, and
@@ -26,12 +26,12 @@ const NEAR: f64 = 0.05;
 
 impl Case {
     /// The domain of the case.
-    pub fn domain(&self) -> Domain {
+    pub(crate) fn domain(&self) -> Domain {
         Domain::read(&self.domain).unwrap()
     }
 
     /// Greatest and mean relative error over the vertices that are reached, with known distance, and not near the source.
-    pub fn errors(&self, canvas: &Canvas, found: &Distances) -> [f64; 2] {
+    pub(crate) fn errors(&self, canvas: &Canvas, found: &Distances) -> [f64; 2] {
         let pairs = canvas.embedded().positions.iter().zip(found.values());
         let known: Vec<(f64, f64)> = pairs.filter_map(|(&p, &d)| Some((d, (self.exact)(p)?))).collect();
         let farthest = known.iter().fold(0.0, |farthest: f64, &(_, exact)| farthest.max(exact));
@@ -48,7 +48,7 @@ impl Case {
 /// Its eigenvalues' product is 1 / anisotropy^2 everywhere, and the ratio of their roots is the anisotropy at crests and troughs
 /// (x = 1/2, -1/2), and 1 + (pi height)^2 times that, nearly, on the flanks between, where the long axis turns by the arc
 /// tangent of pi height to either side.
-pub fn turning(anisotropy: f64, height: f64) -> Case {
+pub(crate) fn turning(anisotropy: f64, height: f64) -> Case {
     let image = move |p: Point| Point::new(p.x / anisotropy, p.y + height * (PI * p.x).sin());
     let from = Point::new(0.1, -0.2);
     let exact = move |p: Point| {
@@ -71,7 +71,7 @@ const LOOKS: u32 = 64;
 
 /// A curved metric: the hyperbolic half-plane (curvature -1), with all of it, the domain too, stretched in x by the anisotropy,
 /// which is the same everywhere.
-pub fn half_plane(anisotropy: f64) -> Case {
+pub(crate) fn half_plane(anisotropy: f64) -> Case {
     const TOP: f64 = 3.0;
     let from = Point::new(0.2 * anisotropy, 1.3);
     let exact = move |p: Point| {
