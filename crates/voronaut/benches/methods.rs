@@ -89,7 +89,13 @@ fn figures(case: &Case, canvas: &Canvas, method: Method) -> Result<[String; 5]> 
 
 /// Two significant digits or more.
 fn digits(x: f64) -> String {
-    let places = if x >= 10.0 { 0 } else if x >= 1.0 { 1 } else { 2 };
+    let places = if x >= 10.0 {
+        0
+    } else if x >= 1.0 {
+        1
+    } else {
+        2
+    };
     format!("{x:.places$}")
 }
 

@@ -10,8 +10,7 @@ use crate::triangulation::VertexId;
 ///
 /// From the vertex a that a front has reached to its neighbour x the distance is the least over the last predecessors of
 /// a, as many as the window has: the predecessor's distance, and the length of the straight line from there to x,
-/// measured by the metric along the way's edges, each projected on that line; or the distance at a and the length of the edge
-/// to x, as the graph has it. The window being fixed, the relative error does
+/// measured by the metric along the way's edges, each projected on that line. The window being fixed, the relative error does
 /// not vanish on fine canvases. It is not the same in other coordinates either: the projection is Euclidean.
 ///
 /// The least may be less than the distance at a. As every other method, this one says then that x is not nearer than a.
@@ -25,8 +24,8 @@ pub struct Stvd {
 }
 
 impl Stvd {
-    /// On a graph, with a window of so many edges, at least one; with one it is Dijkstra's method, but for edges along
-    /// which the two rules for lengths differ.
+    /// On a graph, with a window of so many edges, at least one; with one it is Dijkstra's method with another rule for the
+    /// lengths of edges.
     pub fn on(graph: Graph, window: usize) -> Self {
         let roots = graph.vertices().map(|v| graph.tensor(v).map_eigenvalues(f64::sqrt)).collect();
         Self { graph, roots, window: window.max(1) }
@@ -43,8 +42,7 @@ impl Step for Stvd {
     fn carry(&self, graph: &Graph, labels: &[Label], from: VertexId, x: VertexId) -> Label {
         let at = graph.position(x);
         let mut edges: Vec<(Vector, Tensor)> = Vec::with_capacity(self.window);
-        let label = labels[from.index()];
-        let mut best = label.distance + graph.length(from, x);
+        let mut best = f64::INFINITY;
         let (mut near, mut next) = (x, Some(from));
         while let Some(a) = next.filter(|_| edges.len() < self.window) {
             let root = (self.roots[near.index()] + self.roots[a.index()]) * 0.5;
@@ -60,6 +58,7 @@ impl Step for Stvd {
                 _ => None,
             };
         }
+        let label = labels[from.index()];
         Label::new(beyond(best, label.distance), label.colour, Support::Neighbour(from))
     }
 }
