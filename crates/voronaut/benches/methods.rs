@@ -52,9 +52,12 @@ fn print_table(cases: &[Case; 3], vertices: usize) {
                 Err(error) => Err(error.to_string()),
             });
             refusals.extend(figures.iter().filter_map(|f| f.as_ref().err()).map(|why| format!("{kind}: {why}")));
-            let cells = [0, 1, 2, 3, 4].map(|column| {
-                figures.each_ref().map(|f| f.as_ref().map_or("refused".to_string(), |f| f[column].clone())).join(", ")
-            });
+            let cell = |figures: &std::result::Result<[String; 5], String>, column: usize| match figures {
+                Ok(cells) => cells[column].clone(),
+                Err(_) if column == 0 => "refused".to_string(),
+                Err(_) => "-".to_string(),
+            };
+            let cells = [0, 1, 2, 3, 4].map(|column| figures.each_ref().map(|f| cell(f, column)).join(", "));
             let [max, mean, reached, updates, time] = cells;
             rows.push([kind.to_string(), method.to_string(), max, mean, reached, updates, time]);
         }
@@ -87,7 +90,7 @@ fn figures(case: &Case, canvas: &Canvas, method: Method) -> Result<[String; 5]> 
     Ok([digits(max), digits(mean), format!("{reached}"), updates, format!("{:.1}", 1e6 * seconds / n)])
 }
 
-/// Two significant digits or more.
+/// With as many places as two digits take, but two at most.
 fn digits(x: f64) -> String {
     let places = if x >= 10.0 {
         0

@@ -16,6 +16,13 @@ fn uniform() -> Case {
     Case { name: "uniform, turned", domain, metric: Box::new(move |_| tensor), from, exact: Box::new(exact) }
 }
 
+/// Measured in a box only: well away from the border, which some methods do not come near.
+fn within(case: Case, low: Point, high: Point) -> Case {
+    let exact = case.exact;
+    let is_inside = move |p: Point| p.x > low.x && p.x < high.x && p.y > low.y && p.y < high.y;
+    Case { exact: Box::new(move |p| exact(p).filter(|_| is_inside(p))), ..case }
+}
+
 /// Greatest and mean relative error of the vertices that are reached: all, but for a few by [`Method::Lbr`] where stencils
 /// leave the domain.
 fn errors(case: &Case, canvas: &Canvas, method: Method) -> [f64; 2] {
@@ -44,7 +51,9 @@ fn expected(method: Method) -> (f64, f64) {
 #[test]
 fn methods_converge_as_theory_says() {
     let mut faults = Vec::new();
-    for case in [uniform(), turning(10.0, 0.25), half_plane(10.0)] {
+    let wave = within(turning(10.0, 0.25), Point::new(-0.7, -0.45), Point::new(0.7, 0.45));
+    let half_plane = within(half_plane(10.0), Point::new(-12.0, 0.7), Point::new(12.0, 2.2));
+    for case in [uniform(), wave, half_plane] {
         let canvases = [1000, 4000, 16_000].map(|n| Canvas::intrinsic(&case.domain(), &case.metric, n).unwrap());
         for method in Method::ALL {
             let found = canvases.each_ref().map(|canvas| errors(&case, canvas, method));
