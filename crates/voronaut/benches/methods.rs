@@ -65,7 +65,9 @@ fn print_table(cases: &[Case; 3], vertices: usize) {
     print!("{}", markdown(&rows));
     refusals.sort_unstable();
     refusals.dedup();
-    refusals.iter().for_each(|why| println!("\nRefused: {why}"));
+    for why in refusals {
+        println!("\nRefused: {why}");
+    }
 }
 
 /// The cells of a run: greatest and mean relative error where [`Case::errors`] measures, the share of all vertices that have a
@@ -109,7 +111,8 @@ fn markdown<const N: usize>(rows: &[[String; N]]) -> String {
         let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("| {cell:width$} "));
         cells.collect::<String>() + "|\n"
     };
-    let rule = widths.iter().map(|width| format!("|{}", "-".repeat(width + 2))).collect::<String>() + "|\n";
+    let rules: Vec<String> = widths.iter().map(|width| "-".repeat(width + 2)).collect();
+    let rule = format!("|{}|\n", rules.join("|"));
     let mut lines = rows.iter().map(line);
     lines.next().unwrap_or_default() + &rule + &lines.collect::<String>()
 }
