@@ -4,7 +4,7 @@ use voronaut::canvas::{Canvas, StarSet};
 use voronaut::domain::{Domain, from_geojson};
 use voronaut::formats::geojson;
 use voronaut::geometry::{Point, Tensor, in_circle, signed_area};
-use voronaut::metric::{MetricField, Shock, Swirl, Uniform};
+use voronaut::metric::{Shock, Swirl, Uniform};
 use voronaut::triangulation::VertexId;
 
 fn plate() -> Domain {

@@ -26,7 +26,7 @@ pub use star_set::{StarFigures, StarSet};
 
 use crate::domain::Domain;
 use crate::error::Result;
-use crate::geodesic::Graph;
+use crate::geodesic::{Graph, bowed_chord};
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::planar::{Planar, hilbert_order};
@@ -246,8 +246,8 @@ impl Canvas {
         self.topology.vertex_slots()
     }
 
-    /// The vertices with their tensors and the edges of [`Canvas::embedded`], of a star set those of its stars, for methods
-    /// that know no triangles. `field` is the one that the canvas was made with.
+    /// The vertices with their tensors and the edges of [`Canvas::embedded`], of a star set those of its stars, with lengths of
+    /// geodesics, for methods that know no triangles. `field` is the one that the canvas was made with.
     pub fn graph(&self, field: &dyn MetricField) -> Graph {
         let topology = &self.embedded.topology;
         let tensors = self.embedded.positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
@@ -259,7 +259,11 @@ impl Canvas {
             neighbours
         };
         let neighbours = self.stars.as_ref().map_or_else(of_edges, StarSet::neighbours);
+        let known = |a, b| topology.find(a, b).or_else(|| topology.find(b, a)).map(|h| topology.length(h));
+        // One order, so that the length is the same in both directions.
+        let measured = |a: VertexId, b: VertexId| bowed_chord(field, self.position(a.min(b)), self.position(a.max(b)));
         Graph::new(self.embedded.positions.clone(), tensors, &neighbours)
+            .with_lengths(|a, b| known(a, b).unwrap_or_else(|| measured(a, b)))
     }
 
     /// The stars, if it is a star set.

@@ -1,6 +1,6 @@
 //! The length of a short geodesic by its one leading mode of bending.
 
-use super::length::{GAUSS, relaxed_length};
+use super::length::GAUSS;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 
@@ -8,10 +8,16 @@ use crate::metric::MetricField;
 const TRIAL: f64 = 0.1;
 /// Beyond this bow the one mode does not tell the path.
 const FAR: f64 = 0.3;
-/// Segments of the path that serves then.
-const SEGMENTS: usize = 8;
-/// Its energy is minimised until a step gains no more than this share.
-const SETTLED: f64 = 1e-4;
+/// Where tensors are not interpolated paths of one mode are trusted up to this bow,
+const NEAR: f64 = 0.1;
+/// and where what the best bow saves is what was foreseen, but for this share of the length;
+const FORESEEN: f64 = 5e-4;
+/// else the path is halved, so often at most.
+const HALVINGS: u32 = 5;
+/// The longest step from one bow to the next.
+const LONGEST: f64 = 4.0;
+/// Rounds in search of the best bow, each with trials closer to the last one's best.
+const ROUNDS: u32 = 6;
 
 /// Tensors at five places around a chord that differ by no more than this (in the norm of the one in the middle) are
 /// interpolated.
@@ -19,17 +25,23 @@ const STEADY: f64 = 0.25;
 
 /// Length of the geodesic p-q: the least length of the parabolas through p and q, by quadrature on three of them and on
 /// the best of the parabola through their lengths. To second order in the length geodesics are parabolas; where the best
-/// one bows out far, a path of segments ([`path_energy`](super::path_energy)) answers instead. It asks nothing of the field's derivatives: kinks do no harm.
+/// one bows out far, its top divides the path in two, and so on. It asks nothing of the field's derivatives: kinks do no
+/// harm.
 ///
 /// Where the metric varies little from end to end and across, tensors are interpolated from five, and the error is of
-/// fourth order in the length; else the field is evaluated wherever it is needed (21 times), and the length is that of
-/// some path, never more than the chord's.
+/// fourth order in the length; else the field is evaluated wherever it is needed (some 20 times, and again for each half), and
+/// the length is that of some path, never more than the chord's.
 pub fn bowed_chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
     bowed_between(field, [p, q], [field.at(p), field.at(q)])
 }
 
 /// [`bowed_chord`] where the tensors at both ends are known.
-pub fn bowed_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [Tensor; 2]) -> f64 {
+pub fn bowed_between(field: &dyn MetricField, ends: [Point; 2], tensors: [Tensor; 2]) -> f64 {
+    halved(field, ends, tensors, HALVINGS)
+}
+
+/// The length of a path that may still be halved so often.
+fn halved(field: &dyn MetricField, [p, q]: [Point; 2], ends: [Tensor; 2], halvings: u32) -> f64 {
     let d = q - p;
     let middle = p.midpoint(q);
     let tensor = field.at(middle);
@@ -38,24 +50,76 @@ pub fn bowed_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [Tensor;
     let across = conjugate * (tensor.length(d) / tensor.length(conjugate).max(f64::MIN_POSITIVE));
     let samples = Samples { middle: tensor, ends, sides: [TRIAL, -TRIAL].map(|bow| field.at(middle + across * bow)) };
     let interpolated = |bow: f64| parabola(|t, offset| samples.at(t, offset), d, across, bow);
-    if let Some(length) = Some(&samples).filter(|s| s.are_steady()).and_then(|_| least(interpolated).1) {
+    if let Some(length) = Some(&samples).filter(|s| s.are_steady()).and_then(|_| least(interpolated)) {
         return length;
     }
-    let evaluated = |bow: f64| parabola(|t, offset| field.at(p + d * t + across * offset), d, across, bow);
-    let (straight, best) = least(evaluated);
-    best.unwrap_or_else(|| {
-        let path = relaxed_length(field, p, q, SEGMENTS, SETTLED);
-        if path.is_finite() { path.min(straight) } else { straight }
-    })
+    // Any other direction across does, as paths go; the one that leads least far meets the fewest changes of the metric.
+    let aside = d.perpendicular();
+    let aside = aside * (d.cross(across) / d.cross(aside));
+    let evaluated = |bow: f64| parabola(|t, offset| field.at(p + d * t + aside * offset), d, aside, bow);
+    let straight = evaluated(0.0);
+    let best = Best::of(evaluated, straight);
+    if best.is_trusted() || halvings == 0 || !straight.is_finite() {
+        return best.length;
+    }
+    let top = middle + aside * best.bow;
+    let at_top = field.at(top);
+    let both = halved(field, [p, top], [ends[0], at_top], halvings - 1)
+        + halved(field, [top, q], [at_top, ends[1]], halvings - 1);
+    if both < best.length { both } else { best.length }
 }
 
-/// The length without a bow, and the least one if the bow that it has is small, from the length by bow.
-fn least(length: impl Fn(f64) -> f64) -> (f64, Option<f64>) {
+/// The least length, from the length by bow, if the bow that it has is small.
+fn least(length: impl Fn(f64) -> f64) -> Option<f64> {
     let [straight, left, right] = [0.0, TRIAL, -TRIAL].map(&length);
     let (slope, curvature) = ((left - right) / (2.0 * TRIAL), (left + right - 2.0 * straight) / (TRIAL * TRIAL));
     let best = -slope / curvature;
     let is_near = curvature > 0.0 && best.abs() <= FAR;
-    (straight, is_near.then(|| length(best).min(straight)))
+    is_near.then(|| length(best).min(straight))
+}
+
+/// The best bow that was found.
+struct Best {
+    bow: f64,
+    length: f64,
+    /// By what share of itself the length differs from what the trials before had foreseen.
+    surprise: f64,
+}
+
+impl Best {
+    /// From no bow on by parabolas through the squares of the lengths of three bows, until the next one's is as foreseen: far
+    /// from the best bow lengths themselves grow as straight lines.
+    fn of(length: impl Fn(f64) -> f64, straight: f64) -> Self {
+        let mut best = Self { bow: 0.0, length: straight, surprise: f64::INFINITY };
+        let mut trial = TRIAL;
+        for _ in 0..ROUNDS {
+            let (centre, here) = (best.bow, best.length);
+            let bows = [centre + trial, centre - trial];
+            let lengths = bows.map(&length);
+            let ([left, right], square) = (lengths.map(|length| length * length), here * here);
+            let (slope, curvature) = (0.5 * (left - right) / trial, (left + right - 2.0 * square) / (trial * trial));
+            // Where they are no upward parabola: on to the shorter side.
+            let step = if curvature > 0.0 { -slope / curvature } else { -4.0 * trial * slope.signum() };
+            let next = centre + step.clamp(-LONGEST, LONGEST);
+            let found = length(next);
+            let foreseen = square + step * (slope + 0.5 * step * curvature);
+            for (bow, length) in [(next, found), (bows[0], lengths[0]), (bows[1], lengths[1])] {
+                if length < best.length {
+                    (best.bow, best.length) = (bow, length);
+                }
+            }
+            best.surprise = (found - foreseen.max(0.0).sqrt()).abs() / found;
+            if curvature > 0.0 && best.surprise <= FORESEEN {
+                break;
+            }
+            trial = (best.bow - centre).abs().clamp(0.25 * trial, trial);
+        }
+        best
+    }
+
+    fn is_trusted(&self) -> bool {
+        self.bow.abs() <= NEAR && self.surprise <= FORESEEN
+    }
 }
 
 /// Length of the path p + t d + 4 t (1 - t) bow across for t from 0 to 1, with tensors by t and offset across.
@@ -106,6 +170,7 @@ impl Samples {
 mod tests {
     use super::*;
     use crate::geodesic::chord;
+    use std::f64::consts::PI;
 
     #[test]
     fn uniform_metrics_have_straight_geodesics() {
@@ -124,10 +189,27 @@ mod tests {
         };
         let bowed = |p: Point, q: Point| bowed_chord(&field, p, q);
         let errors = [1.6, 0.8, 0.4, 0.2, 0.1].map(|h| error(h, &bowed).abs());
-        // Of the first two the field is evaluated all along the paths, of the others tensors are interpolated.
-        assert!((errors[0] / errors[1]).log2() > 3.5 && errors[2] < errors[1] / 4.0, "{errors:?}");
+        // The first is halved, of the second the field is evaluated all along, of the others tensors are interpolated.
+        assert!(errors[0] < errors[1] && errors[2] < errors[1] / 4.0, "{errors:?}");
         assert!((errors[2] / errors[4]).log2() > 5.0, "{errors:?}");
         assert!(errors[4] < 2e-3 * error(0.1, &|p, q| chord(&field, p, q)), "{errors:?}");
+    }
+
+    #[test]
+    fn chords_far_too_long_are_bent() {
+        // Flat space pulled back by a wave that is a hundred times as high as these edges are long.
+        let image = |p: Point| Point::new(p.x / 40.0, p.y + 0.5 * (PI * p.x).sin());
+        let field = |p: Point| {
+            let slope = 0.5 * PI * (PI * p.x).cos();
+            Tensor::new(1.0 / 1600.0 + slope * slope, slope, 1.0)
+        };
+        let edges = [(0.281, -0.5, -0.091, 0.105), (-0.439, -0.14, 0.082, -0.04), (-0.624, -0.102, 0.086, 0.033)];
+        for (x, y, dx, dy) in edges {
+            let (p, q) = (Point::new(x, y), Point::new(x + dx, y + dy));
+            let exact = image(p).distance(image(q));
+            let (found, straight) = (bowed_chord(&field, p, q) / exact, chord(&field, p, q) / exact);
+            assert!(straight > 3.0 && (found - 1.0).abs() < 5e-3, "{straight} {found}");
+        }
     }
 
     #[test]

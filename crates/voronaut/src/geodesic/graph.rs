@@ -2,6 +2,7 @@
 
 use crate::geometry::{Point, Tensor};
 use crate::triangulation::VertexId;
+use rayon::prelude::*;
 
 /// An immutable graph over the vertices of a canvas, of whichever kind. Neighbours are reciprocal and in order.
 #[derive(Clone, Debug, Default)]
@@ -11,11 +12,14 @@ pub struct Graph {
     /// The neighbours of v are those from `first[v]` to `first[v + 1]`.
     first: Vec<u32>,
     neighbours: Vec<VertexId>,
+    /// Metric lengths of the edges to them.
+    lengths: Vec<f64>,
 }
 
 impl Graph {
     /// A graph of vertices at these (Euclidean) positions with the metric there, in the units of the metric field. Two
-    /// vertices are neighbours if either names the other, as in a star set; a vertex is never its own.
+    /// vertices are neighbours if either names the other, as in a star set; a vertex is never its own. Edges have their
+    /// lengths by the trapezium rule: the mean of what the tensors at their ends say of a straight line.
     ///
     /// The three lists are of the same length, and neighbours are places in them.
     pub fn new(positions: Vec<Point>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
@@ -31,7 +35,22 @@ impl Graph {
         for v in 0..positions.len() {
             first[v + 1] += first[v];
         }
-        Self { positions, tensors, first, neighbours: pairs.into_iter().map(|(_, u)| VertexId(u)).collect() }
+        let straight = |&(v, u): &(u32, u32)| {
+            let e = positions[u as usize] - positions[v as usize];
+            0.5 * (tensors[v as usize].length(e) + tensors[u as usize].length(e))
+        };
+        let lengths = pairs.iter().map(straight).collect();
+        let neighbours = pairs.into_iter().map(|(_, u)| VertexId(u)).collect();
+        Self { positions, tensors, first, neighbours, lengths }
+    }
+
+    /// The same graph with other lengths of its edges (metric, positive, the same in both directions).
+    #[must_use]
+    pub fn with_lengths(mut self, length: impl Fn(VertexId, VertexId) -> f64 + Sync) -> Self {
+        let of_vertex = |v: VertexId| self.neighbours(v).iter().map(move |&u| (v, u));
+        let vertices = (0..self.positions.len() as u32).into_par_iter().with_min_len(1024).map(VertexId);
+        self.lengths = vertices.flat_map_iter(of_vertex).map(|(v, u)| length(v, u)).collect();
+        self
     }
 
     /// Number of vertices.
@@ -64,11 +83,10 @@ impl Graph {
         self.neighbours.len() / 2
     }
 
-    /// Metric length of the straight edge between two vertices, by the trapezium rule: the mean of what the tensors at its
-    /// ends say.
+    /// Metric length of the edge between two vertices; infinite if they are not neighbours.
     pub fn length(&self, a: VertexId, b: VertexId) -> f64 {
-        let e = self.position(b) - self.position(a);
-        0.5 * (self.tensor(a).length(e) + self.tensor(b).length(e))
+        let place = self.neighbours(a).binary_search(&b);
+        place.map_or(f64::INFINITY, |i| self.lengths[self.first[a.index()] as usize + i])
     }
 }
 
@@ -85,6 +103,9 @@ mod tests {
         assert_eq!(graph.neighbours(VertexId(1)), [VertexId(0)]);
         assert_eq!((graph.vertex_count(), graph.edge_count()), (3, 2));
         assert!((graph.length(VertexId(0), VertexId(1)) - 4.0).abs() < 1e-15);
+        assert!(graph.length(VertexId(1), VertexId(2)).is_infinite());
+        let other = graph.clone().with_lengths(|a, b| f64::from(a.0 + b.0));
+        assert!([1, 2].iter().all(|&v| (other.length(VertexId(v), VertexId(0)) - f64::from(v)).abs() < 1e-15));
         assert!(graph.vertices().all(|v| graph.neighbours(v).iter().all(|&u| graph.neighbours(u).contains(&v))));
     }
 }

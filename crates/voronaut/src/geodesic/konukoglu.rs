@@ -1,7 +1,7 @@
 //! Recursive anisotropic fast marching: fronts cross the faces at a vertex, and what they get wrong is corrected.
 
 use super::label::{Label, Sources, Support};
-use super::simplex::crossing;
+use super::simplex::crossing_by_lengths;
 use super::sweep::{self, Step, beyond};
 use super::{Geodesic, Graph, Patches, Propagation};
 use crate::triangulation::VertexId;
@@ -11,8 +11,8 @@ const CORRECTION: f64 = 1e-6;
 
 /// Recursive anisotropic fast marching (Konukoglu 2007).
 ///
-/// A front reaches a vertex from two neighbours that are neighbours themselves, by a plane wave in the mean of the three
-/// tensors. Where the metric is anisotropic a front may have to reach a vertex before those its distance depends on, so
+/// A front reaches a vertex from two neighbours that are neighbours themselves, by a plane wave in the metric that gives the
+/// three edges their lengths. Where the metric is anisotropic a front may have to reach a vertex before those its distance depends on, so
 /// settled vertices are corrected, with all that follow from them, until none improves by more than 1e-6 of its distance.
 /// The result is that of the Hopf-Lax scheme, of first order; the number of corrections grows with the anisotropy that the
 /// graph does not follow. Three mutual neighbours count as a face, so that a hole of three canvas edges does not bar the way.
@@ -38,15 +38,14 @@ impl Step for Konukoglu {
     fn carry(&self, graph: &Graph, labels: &[Label], from: VertexId, x: VertexId) -> Label {
         let label = labels[from.index()];
         let mut best = (beyond(label.distance + graph.length(from, x), label.distance), from);
-        let at = graph.position(x);
-        let u = graph.position(from) - at;
+        let to_from = graph.length(x, from);
         for k in common(graph.neighbours(from), graph.neighbours(x)) {
             let other = labels[k.index()];
             if other.colour != label.colour {
                 continue;
             }
-            let tensor = (graph.tensor(x) + graph.tensor(from) + graph.tensor(k)) * (1.0 / 3.0);
-            let found = crossing(tensor, [u, graph.position(k) - at], [label.distance, other.distance]);
+            let sides = [to_from, graph.length(x, k)];
+            let found = crossing_by_lengths(sides, graph.length(from, k), [label.distance, other.distance]);
             let nearer = if other.is_before(&label) { k } else { from };
             if let Some(distance) = found.map(|d| beyond(d, labels[nearer.index()].distance)).filter(|&d| d < best.0) {
                 best = (distance, nearer);

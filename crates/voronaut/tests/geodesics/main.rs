@@ -1,5 +1,6 @@
 //! What every method of computing distances must do on every canvas, and how accurate each is against closed forms.
 
+mod cases;
 mod ladder;
 
 use voronaut::canvas::{Canvas, Kind};
