@@ -109,7 +109,7 @@ impl Best {
                 }
             }
             best.surprise = (found - foreseen.max(0.0).sqrt()).abs() / found;
-            if curvature > 0.0 && best.surprise <= FORESEEN {
+            if curvature > 0.0 && (best.surprise <= FORESEEN || best.bow.abs() <= NEAR) {
                 break;
             }
             trial = (best.bow - centre).abs().clamp(0.25 * trial, trial);
@@ -118,7 +118,7 @@ impl Best {
     }
 
     fn is_trusted(&self) -> bool {
-        self.bow.abs() <= NEAR && self.surprise <= FORESEEN
+        self.bow.abs() <= NEAR
     }
 }
 
