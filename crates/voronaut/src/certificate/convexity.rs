@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::f64::consts::PI;
 
 /// Canvas vertices at which the curvature is sampled, at most about.
-const SAMPLES: usize = 20_000;
+const SAMPLES: usize = 5_000;
 
 /// What is known of convex disks. Lengths are of the metric.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

@@ -34,7 +34,7 @@ use serde::Serialize;
 /// The radius of the neighbourhood U of Theorem 9.10 in epsilons: nothing that the proof of the theorem speaks of is farther away.
 const REACH: f64 = 6.0;
 /// Canvas vertices at which distances are held against geodesics, at most about.
-const SAMPLES: usize = 3000;
+const SAMPLES: usize = 1000;
 /// Entries of tensors that differ by no more than this share are the same but for rounding.
 const ROUNDING: f64 = 1e-12;
 

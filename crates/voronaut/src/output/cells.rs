@@ -36,6 +36,8 @@ pub struct Layers<'a> {
     pub values: Option<&'a [f64]>,
     /// Fainter polylines under those, such as lines of equal barycentric coordinates in Riemannian triangles.
     pub grids: &'a [Vec<Point>],
+    /// Cells by a factor, 1 where conditions just hold, instead of colours that differ; those without one are grey.
+    pub factors: Option<&'a BTreeMap<u32, f64>>,
 }
 
 /// The cells, coloured so that neighbours differ: one SVG path per colour and width of line.
