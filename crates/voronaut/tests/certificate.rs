@@ -1,7 +1,7 @@
 //! Certificates: what is certified is so, and random seeds are not certified.
 
 use std::collections::BTreeSet;
-use voronaut::canvas::Canvas;
+use voronaut::canvas::{Canvas, Kind};
 use voronaut::certificate::{Certificate, Constants, Outcome};
 use voronaut::diagram::Diagram;
 use voronaut::domain::Domain;
@@ -147,9 +147,9 @@ fn demand_witnesses(case: &Case) {
 fn what_is_certified_in_a_uniform_metric_is_the_exact_dual() {
     let square = Domain::read("rect:0,0,1,1").unwrap();
     let mut random = Random(2026);
-    let (mut certified, mut compared, mut different) = (0, 0, 0);
+    let (mut certified, mut compared) = (0, 0);
     for round in 0..500 {
-        // Every fourth is Euclidean, every tenth has a canvas that is too coarse.
+        // Every fourth is Euclidean.
         let map = if round % 4 == 0 {
             Map([15.0, 0.0, 15.0])
         } else {
@@ -157,12 +157,11 @@ fn what_is_certified_in_a_uniform_metric_is_the_exact_dual() {
         };
         let (jitter, share) = (random.between(0.0, 0.1), random.between(0.5, 1.0));
         let seeds = lattice(map, jitter, &mut random);
-        let vertices = if round % 10 == 9 { 900 } else { (9000.0 * share) as usize };
+        let vertices = (8000.0 * share) as usize;
         let canvas = Canvas::intrinsic(&square, &Uniform(map.metric()), vertices).unwrap();
         let found = uniform(map, &seeds, &canvas);
         let is_certified = holds(&found.certificate, "9.1") || holds(&found.certificate, "9.9");
         assert_eq!(holds(&found.certificate, "9.1"), is_certified && round % 4 == 0);
-        different += usize::from(found.raw != found.exact);
         if is_certified {
             assert_eq!(found.raw, found.exact, "round {round}");
             demand_witnesses(&found);
@@ -170,6 +169,105 @@ fn what_is_certified_in_a_uniform_metric_is_the_exact_dual() {
             compared += found.exact.len();
         }
     }
-    assert!(certified > 150 && certified < 450 && different > 10, "{certified} certified, {different} differ");
+    assert!(certified > 150 && certified < 450, "{certified} of 500 certified");
     assert!(compared > 5 * certified, "{compared} triangles in {certified} cases");
+}
+
+/// Lengths of a tensor that turns by a tenth of a radian across the unit square; 1 is about the distance of lattice seeds.
+fn turning(scale: f64) -> impl Fn(Point) -> Tensor + Sync {
+    move |p: Point| {
+        let (sin, cos) = (0.05 * (p.x - 0.5)).sin_cos();
+        Tensor::from_axis(Vector::new(cos, sin), 1.5 * scale * scale, scale * scale)
+    }
+}
+
+#[test]
+fn a_protected_net_passes_in_a_turning_metric_and_says_what_it_takes() {
+    let (square, field) = (Domain::read("rect:0,0,1,1").unwrap(), turning(26.0));
+    let map = Map([26.0 * 1.5_f64.sqrt(), 0.0, 26.0]);
+    let seeds = lattice(map, 0.02, &mut Random(5));
+    let canvas = Canvas::intrinsic(&square, &field, 30_000).unwrap();
+    let found = varied(&field, &seeds, &canvas);
+    let certificate = &found.certificate;
+    use Outcome::{Fails, Holds};
+    let wanted = [("9.1", Fails), ("9.9", Fails), ("9.10", Holds), ("9.4", Holds), ("10.20", Holds), ("11.2", Holds)];
+    assert_eq!(outcomes(certificate), wanted, "{:?}", certificate.verdicts);
+    assert!(found.raw == found.exact && found.exact.len() > 100);
+    assert!(certificate.psi > 1.0001 && certificate.psi < 1.01 && !certificate.is_uniform);
+    demand_witnesses(&found);
+
+    // On a coarser canvas the nerve is no longer certified; the size that is asked for is about the same, and fails are reported
+    // by their factor.
+    let coarse = varied(&field, &seeds, &Canvas::intrinsic(&square, &field, 6000).unwrap()).certificate;
+    let verdict = coarse.verdict("9.10").unwrap();
+    assert!(verdict.outcome == Fails && verdict.factor > 1.0 && verdict.factor < 4.0, "{verdict:?}");
+    let [fine, rough] = [certificate, &coarse].map(|c| c.verdict("9.10").unwrap().size.unwrap());
+    assert!((fine / rough - 1.0).abs() < 0.05, "{fine} {rough}");
+}
+
+#[test]
+fn random_seeds_are_not_certified_and_their_nerve_on_a_coarse_canvas_is_wrong() {
+    let square = Domain::read("rect:0,0,1,1").unwrap();
+    let mut random = Random(11);
+    let map = Map([40.0, 5.0, 40.0]);
+    let seeds: Vec<Point> = (0..1500).map(|_| Point::new(random.next(), random.next())).collect();
+    let canvas = Canvas::intrinsic(&square, &Uniform(map.metric()), 12_000).unwrap();
+    let found = uniform(map, &seeds, &canvas);
+    for theorem in ["9.1", "9.9", "9.10", "9.4"] {
+        let verdict = found.certificate.verdict(theorem).unwrap();
+        assert!(verdict.outcome == Outcome::Fails && verdict.factor > 100.0, "{verdict:?}");
+    }
+    assert!(!found.exact.is_empty() && found.raw != found.exact);
+    let walks = &found.certificate.walks;
+    assert!(walks.found > 0 && walks.found < walks.started, "{walks:?}");
+}
+
+#[test]
+fn without_covered_seeds_nothing_holds() {
+    let square = Domain::read("rect:0,0,1,1").unwrap();
+    let map = Map([4.0, 0.0, 4.0]);
+    let seeds = lattice(map, 0.0, &mut Random(3));
+    let canvas = Canvas::intrinsic(&square, &Uniform(map.metric()), 2000).unwrap();
+    let certificate = uniform(map, &seeds, &canvas).certificate;
+    assert_eq!((certificate.covered, certificate.border_not_covered), (0, seeds.len()));
+    assert!(certificate.verdicts.iter().all(|verdict| verdict.outcome != Outcome::Holds), "{:?}", certificate.verdicts);
+    assert!(certificate.verdicts.iter().any(|verdict| verdict.outcome == Outcome::NotMeasured));
+}
+
+#[test]
+fn a_curved_metric_has_its_convexity_radius_and_loops_that_are_not_excluded() {
+    // A sphere of radius 1, by stereographic projection, within 1.5 radians of a pole: K = 1, and more than pi of it.
+    let sphere = |p: Point| Tensor::isotropic(0.5 * (1.0 + p.x * p.x + p.y * p.y));
+    let disk = Domain::read("disk:0,0,0.93").unwrap();
+    let seeds: Vec<Point> = lattice(Map([14.0, 0.0, 14.0]), 0.02, &mut Random(9))
+        .into_iter()
+        .map(|p| Point::new(1.8 * p.x - 0.9, 1.8 * p.y - 0.9))
+        .filter(|p| p.x.hypot(p.y) < 0.92)
+        .collect();
+    let canvas = Canvas::intrinsic(&disk, &sphere, 8000).unwrap();
+    let certificate = varied(&sphere, &seeds, &canvas).certificate;
+    let convexity = &certificate.convexity;
+    assert!((convexity.curvature - 1.0).abs() < 1e-3, "{convexity:?}");
+    assert!((convexity.radius - std::f64::consts::FRAC_PI_2).abs() < 1e-3, "{convexity:?}");
+    // The area of a cap of height h is 2 pi h.
+    let height = 1.0 - (2.0 * 0.93_f64.atan()).cos();
+    assert!((convexity.total / (std::f64::consts::TAU * height) - 1.0).abs() < 0.01, "{convexity:?}");
+    assert!(convexity.doubt().is_some() && !holds(&certificate, "10.20") && !holds(&certificate, "11.2"));
+}
+
+#[test]
+fn a_certified_canvas_makes_the_certificate_hold_or_is_refused() {
+    let (square, field) = (Domain::read("rect:0,0,1,1").unwrap(), turning(26.0));
+    let seeds = lattice(Map([26.0 * 1.5_f64.sqrt(), 0.0, 26.0]), 0.02, &mut Random(5));
+    let with = |seeds: &[Point], limit: u64| {
+        recipe::certified_canvas(Kind::Intrinsic, &square, &field, seeds, Constants::Corrected, limit)
+    };
+    let canvas = with(&seeds, 1 << 30).unwrap();
+    assert!(holds(&varied(&field, &seeds, &canvas).certificate, "9.4"));
+    let error = with(&seeds, 10_000_000).unwrap_err();
+    assert!(error.to_string().contains("are estimated to need"), "{error}");
+    let mut random = Random(4);
+    let scattered: Vec<Point> = (0..700).map(|_| Point::new(random.next(), random.next())).collect();
+    let error = with(&scattered, 1 << 30).unwrap_err();
+    assert!(error.to_string().contains("no canvas is certified for these seeds"), "{error}");
 }

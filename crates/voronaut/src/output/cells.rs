@@ -62,6 +62,24 @@ pub(super) fn cells(svg: &mut String, cells: &Cells, frame: &Frame, tint: Tint) 
     svg.push_str("</g>\n");
 }
 
+/// The cells by the factors that they have: one SVG path per colour and width of line.
+pub(super) fn factors(svg: &mut String, cells: &Cells, factors: &BTreeMap<u32, f64>, frame: &Frame) {
+    let mut paths: BTreeMap<(usize, String), PathData> = BTreeMap::new();
+    for (i, outlines) in cells.outlines.iter().enumerate() {
+        let width = class(WIDEST_BORDER, BORDER_SHARE * thickness(outlines, frame));
+        let fill = colours::factor_fill(factors.get(&(i as u32)).copied().unwrap_or(f64::NAN));
+        let path = paths.entry((width, fill)).or_default();
+        for outline in outlines {
+            path.polyline(&place(&outline.points, &outline.corners, true, frame), true);
+        }
+    }
+    for ((class, fill), path) in paths {
+        let (ink, width) = (colours::CELL_BORDER, frame.quanta(width(WIDEST_BORDER, class)));
+        let style = format!(r#"fill="{fill}" stroke="{ink}" stroke-width="{width:.1}" stroke-linejoin="round""#);
+        let _ = writeln!(svg, r#"<path {style} d="{}"/>"#, path.text());
+    }
+}
+
 /// A dot at each seed, smaller in thin cells.
 pub(super) fn seeds(svg: &mut String, cells: &Cells, frame: &Frame) {
     let mut paths = vec![PathData::default(); CLASSES];
