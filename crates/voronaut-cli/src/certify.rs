@@ -36,7 +36,10 @@ pub(crate) fn lines(found: &Certificate) -> Vec<(String, String)> {
     let net = &found.net;
     let (covered, left) = (found.covered, found.border_not_covered);
     let mut lines = vec![
-        ("covered".into(), format!("{covered} seeds; {left} are within {:.3e} of the border: not covered", found.border_distance)),
+        (
+            "covered".into(),
+            format!("{covered} seeds; {left} are within {:.3e} of the border: not covered", found.border_distance),
+        ),
         (
             "net".into(),
             format!(
@@ -66,7 +69,10 @@ pub(crate) fn lines(found: &Certificate) -> Vec<(String, String)> {
     let walks = &found.walks;
     let (ended, started) = (walks.found, walks.started);
     let (mean, most) = (walks.mean_steps, walks.max_steps);
-    lines.push(("walks".into(), format!("{ended} of {started} Voronoi vertices witnessed, {mean:.2} steps ({most} at most)")));
+    lines.push((
+        "walks".into(),
+        format!("{ended} of {started} Voronoi vertices witnessed, {mean:.2} steps ({most} at most)"),
+    ));
     lines
 }
 

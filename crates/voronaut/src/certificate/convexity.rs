@@ -35,17 +35,27 @@ impl Convexity {
     /// Why short geodesic loops are not excluded.
     pub fn doubt(&self) -> Option<String> {
         if self.holes > 0 {
-            return Some(format!("the injectivity radius: geodesic loops around {} holes are not excluded", self.holes));
+            return Some(format!(
+                "the injectivity radius: geodesic loops around {} holes are not excluded",
+                self.holes
+            ));
         }
         let total = self.total;
         // A value that is none is a doubt as well.
         let is_small = total < PI;
-        (!is_small).then(|| format!("the injectivity radius: {total:.3} of positive curvature (pi or more) may bound loops"))
+        (!is_small)
+            .then(|| format!("the injectivity radius: {total:.3} of positive curvature (pi or more) may bound loops"))
     }
 }
 
 /// Samples the curvature over differences of a few hundredths of `unit`, a length of the metric.
-pub(super) fn convexity(diagram: &Diagram, field: &dyn MetricField, net: &Net, coverage: &Coverage, unit: f64) -> Convexity {
+pub(super) fn convexity(
+    diagram: &Diagram,
+    field: &dyn MetricField,
+    net: &Net,
+    coverage: &Coverage,
+    unit: f64,
+) -> Convexity {
     let canvas = diagram.canvas();
     let planar = canvas.embedded();
     let topology = &planar.topology;
@@ -61,10 +71,17 @@ pub(super) fn convexity(diagram: &Diagram, field: &dyn MetricField, net: &Net, c
     let found: Vec<(f64, f64)> = vertices.par_iter().with_min_len(256).map(sampled).collect();
     // NaN must not be lost in a maximum.
     let most = found.iter().map(|s| s.0).fold(0.0, |a: f64, b: f64| if b > a || b.is_nan() { b } else { a });
-    let total = stride as f64 * found.iter().map(|&(k, area)| if k.is_nan() { k } else { k.max(0.0) * area }).sum::<f64>();
+    let total =
+        stride as f64 * found.iter().map(|&(k, area)| if k.is_nan() { k } else { k.max(0.0) * area }).sum::<f64>();
     let euler = topology.vertex_count() + topology.face_count();
     let holes = (topology.edges().count() + 1).saturating_sub(euler);
-    let radius = if most > FLAT { unit * 0.5 * PI / most.sqrt() } else if most.is_nan() { f64::NAN } else { f64::INFINITY };
+    let radius = if most > FLAT {
+        unit * 0.5 * PI / most.sqrt()
+    } else if most.is_nan() {
+        f64::NAN
+    } else {
+        f64::INFINITY
+    };
     Convexity { curvature: most / unit.powi(2), total, holes, radius, bend: bend(diagram, field, net, coverage) }
 }
 

@@ -99,7 +99,13 @@ pub struct Cell {
 impl Certificate {
     /// Certifies a diagram on a canvas that is a triangulation. `net` is that of its seeds, with epsilon that of the whole domain,
     /// from the triangles of the exact dual (`recipe::net`).
-    pub fn new(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]], net: &Net, constants: Constants) -> Self {
+    pub fn new(
+        diagram: &Diagram,
+        field: &dyn MetricField,
+        exact: &[[u32; 3]],
+        net: &Net,
+        constants: Constants,
+    ) -> Self {
         let longest = longest_edge(diagram.canvas());
         let mut coverage = Coverage::new(diagram, field, net, longest);
         let (inner, open) = coverage::inner_net(&coverage, net, exact);
@@ -226,8 +232,7 @@ fn distance_error(diagram: &Diagram, field: &dyn MetricField, coverage: &Coverag
         Some((length.value - diagram.distance(*v)).abs() + length.error * length.value)
     };
     let sampled: Vec<VertexId> = all.iter().copied().step_by((all.len() / SAMPLES).max(1)).collect();
-    let errors: Vec<f64> =
-        sampled.par_iter().with_min_len(16).map(|v| error(v).unwrap_or(f64::NAN)).collect();
+    let errors: Vec<f64> = sampled.par_iter().with_min_len(16).map(|v| error(v).unwrap_or(f64::NAN)).collect();
     let worst = errors.into_iter().reduce(|a, b| if b > a || b.is_nan() { b } else { a });
     worst.unwrap_or(f64::NAN)
 }

@@ -73,7 +73,13 @@ pub(super) fn half_longest(diagram: &Diagram, is_picked: impl Fn(u32) -> bool) -
 ///
 /// # Errors
 /// As for [`Canvas::intrinsic`].
-pub fn sized_canvas(domain: &Domain, field: &dyn MetricField, size: f64, start: f64, most: f64) -> Result<Option<Canvas>> {
+pub fn sized_canvas(
+    domain: &Domain,
+    field: &dyn MetricField,
+    size: f64,
+    start: f64,
+    most: f64,
+) -> Result<Option<Canvas>> {
     let mut vertices = start.max(100.0);
     while vertices <= most {
         let canvas = Canvas::intrinsic(domain, field, vertices as usize)?;

@@ -80,7 +80,8 @@ impl Verdict {
     ) -> Self {
         let is_unknown = |condition: &Condition| condition.measured.is_nan() || condition.limit.is_nan();
         let unknown = conditions.iter().find(|condition| is_unknown(condition));
-        let not_measured = not_measured.or_else(|| unknown.map(|condition| format!("no figure for: {}", condition.what)));
+        let not_measured =
+            not_measured.or_else(|| unknown.map(|condition| format!("no figure for: {}", condition.what)));
         let outcome = match &not_measured {
             _ if conditions.iter().any(|condition| !condition.holds && !is_unknown(condition)) => Outcome::Fails,
             Some(_) => Outcome::NotMeasured,

@@ -1,7 +1,7 @@
 //! The certificate of a diagram's seeds, and the canvas that it takes.
 
 use super::{SeedDual, dual, net};
-use crate::canvas::{BYTES_PER_VERTEX, Canvas, Kind, size_for, VERTICES_PER_SEED};
+use crate::canvas::{BYTES_PER_VERTEX, Canvas, Kind, VERTICES_PER_SEED, size_for};
 use crate::certificate::{Area, Certificate, Constants, sized_canvas};
 use crate::diagram::Diagram;
 use crate::domain::Domain;
@@ -44,7 +44,8 @@ pub fn certified_canvas(
             break;
         }
         // A finer canvas has smaller errors: what is asked with none leaves the most room.
-        let size = RESERVE * certificate.verdict("9.10").and_then(|verdict| verdict.size).ok_or_else(|| hopeless(&certificate))?;
+        let size = RESERVE
+            * certificate.verdict("9.10").and_then(|verdict| verdict.size).ok_or_else(|| hopeless(&certificate))?;
         let size = size.min(RESERVE * certificate.size);
         let cost = Area::of(&canvas, field).cost(size);
         let estimate = if kind == Kind::Isotropic { cost.isotropic } else { cost.intrinsic };
@@ -67,7 +68,10 @@ fn on(canvas: &Canvas, field: &dyn MetricField, seeds: &[Point], constants: Cons
 }
 
 fn too_fine(size: f64, most: f64) -> Error {
-    let what = format!("a canvas without edges longer than {:.3e} in the metric needs more than {most:.3e} vertices", 2.0 * size);
+    let what = format!(
+        "a canvas without edges longer than {:.3e} in the metric needs more than {most:.3e} vertices",
+        2.0 * size
+    );
     Error::Limit { what, help: "raise --memory-limit, or give --canvas-size a number".into() }
 }
 
@@ -75,9 +79,8 @@ fn hopeless(certificate: &Certificate) -> Error {
     let verdict = certificate.verdict("9.10");
     let doubt = verdict.and_then(|verdict| verdict.not_measured.clone());
     let missed = verdict.into_iter().flat_map(|verdict| &verdict.conditions).find(|condition| !condition.holds);
-    let why = missed.map(|condition| {
-        format!("{}: {:.3e} against {:.3e}", condition.what, condition.measured, condition.limit)
-    });
+    let why = missed
+        .map(|condition| format!("{}: {:.3e} against {:.3e}", condition.what, condition.measured, condition.limit));
     let what = format!("no canvas is certified for these seeds: {}", doubt.or(why).unwrap_or_default());
     let help = "see --certify for all figures; take more seeds, better protected (mesh --seeding protected), or give \
                 --canvas-size a number";
