@@ -54,14 +54,15 @@ impl Figures {
         self.mu / self.epsilon
     }
 
-    /// How far a vertex of a Voronoi cell is at least from the edges that do not end there, in a uniform metric (Lemma 9.5;
-    /// its statement has 8 where its proof gives 4): delta^2 mu sqrt(1 - (mu / 2 epsilon)^2) / (4 epsilon^2).
+    /// How far a vertex of a Voronoi cell is at least from the edges that do not end there, in a uniform metric (Lemma
+    /// 9.5; its statement has 8 where its proof gives 4): delta^2 mu sqrt(1 - (mu / 2 epsilon)^2) / (4 epsilon^2).
     pub fn separation(&self) -> f64 {
         self.delta.powi(2) * self.mu / (4.0 * self.epsilon.powi(2)) * self.sine_of_corner()
     }
 
     /// The diameter below which a convex set meets only cells that have a Voronoi vertex in common, in a uniform metric
-    /// (`docs/guarantees.md`, Lemma A): the separation, and two thirds of mu, below which it cannot meet three sides of one cell.
+    /// (`docs/guarantees.md`, Lemma A): the separation, and two thirds of mu, below which it cannot meet three sides of
+    /// one cell.
     pub fn resolution(&self) -> f64 {
         self.separation().min(2.0 / 3.0 * self.mu)
     }
@@ -72,7 +73,8 @@ impl Figures {
 }
 
 impl Constants {
-    /// The sizing field that Theorem 9.1 asks of a canvas, in the metric, which is uniform: no edge is longer than 2 `s0`.
+    /// The sizing field that Theorem 9.1 asks of a canvas, in the metric, which is uniform: no edge is longer than 2
+    /// `s0`.
     pub fn uniform_size(self, net: &Figures) -> f64 {
         match self {
             Constants::Corrected => 0.5 * net.resolution(),
@@ -80,8 +82,8 @@ impl Constants {
         }
     }
 
-    /// The Euclidean length that is no longer than one of the metric, in any direction (Theorem 9.9). The report has the
-    /// square root of the least eigenvalue where it is one over that of the greatest.
+    /// The Euclidean length that is no longer than one of the metric, in any direction (Theorem 9.9). The report has
+    /// the square root of the least eigenvalue where it is one over that of the greatest.
     pub fn alpha(self, [small, large]: [f64; 2]) -> f64 {
         match self {
             Constants::Corrected => 1.0 / large.sqrt(),
@@ -89,9 +91,9 @@ impl Constants {
         }
     }
 
-    /// The sizing field, in the metric, that Theorem 9.10 asks of a canvas around a cell within whose surroundings tensors are
-    /// distorted by no more than `psi`; with distances that are wrong by no more than `error` (section 9.4). `None` where
-    /// no canvas is fine enough: the net must be better, or denser.
+    /// The sizing field, in the metric, that Theorem 9.10 asks of a canvas around a cell within whose surroundings
+    /// tensors are distorted by no more than `psi`; with distances that are wrong by no more than `error` (section
+    /// 9.4). `None` where no canvas is fine enough: the net must be better, or denser.
     pub fn size(self, net: &Figures, psi: f64, error: f64) -> Option<f64> {
         let size = match self {
             Constants::Corrected => corrected_size(net, psi, error)?,
@@ -127,8 +129,9 @@ pub fn slack(net: &Figures, psi: f64, error: f64) -> f64 {
     (psi.powi(2) - psi.powi(-2)) * reach.powi(2) + 4.0 * error * reach / psi.powi(2)
 }
 
-/// How far the circumcentres of a Delaunay triangle are apart in the metric and in a uniform one (Lemma 5.13, erratum), in
-/// the latter: the least fixed point of chi = eta / sin(asin(mu'' / (2 (psi epsilon + chi))) / 2). `None` where there is none.
+/// How far the circumcentres of a Delaunay triangle are apart in the metric and in a uniform one (Lemma 5.13, erratum),
+/// in the latter: the least fixed point of chi = eta / sin(asin(mu'' / (2 (psi epsilon + chi))) / 2). `None` where
+/// there is none.
 pub fn centre_shift(net: &Figures, psi: f64) -> Option<f64> {
     let reach = psi * net.epsilon;
     let square = (net.mu / psi).powi(2) - ((psi - 1.0 / psi) * net.epsilon).powi(2);

@@ -23,11 +23,11 @@ pub struct Convexity {
     pub total: f64,
     /// Holes of the domain: loops around them are not excluded.
     pub holes: usize,
-    /// No smaller disk is other than convex, if there are no short loops: min(injectivity radius / 2, pi / (2 sqrt curvature));
-    /// infinite where the curvature is nowhere positive.
+    /// No smaller disk is other than convex, if there are no short loops: min(injectivity radius / 2, pi / (2 sqrt
+    /// curvature)); infinite where the curvature is nowhere positive.
     pub radius: f64,
-    /// Of the covered triangles: how much the two shorter sides are longer than the third at least, as a share of it, less the
-    /// errors of the lengths. Positive where no three seeds of a triangle lie on a geodesic.
+    /// Of the covered triangles: how much the two shorter sides are longer than the third at least, as a share of it,
+    /// less the errors of the lengths. Positive where no three seeds of a triangle lie on a geodesic.
     pub bend: f64,
 }
 

@@ -10,8 +10,8 @@ use crate::net::Net;
 use crate::triangulation::{HalfEdge, VertexId};
 use std::collections::{HashMap, HashSet};
 
-/// A covered seed is at least so many times the epsilon of the whole domain, and so many of the inner cells', from the border:
-/// no point, seed or path that the proofs speak of is beyond it (`docs/guarantees.md`, "The border").
+/// A covered seed is at least so many times the epsilon of the whole domain, and so many of the inner cells', from the
+/// border: no point, seed or path that the proofs speak of is beyond it (`docs/guarantees.md`, "The border").
 const DEPTH: [f64; 2] = [2.0, 5.0];
 
 /// Seeds by their distance from the border.
@@ -28,8 +28,8 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Of the seeds of a diagram; `longest` is the longest edge of its canvas, for points are as far from canvas vertices.
-    /// Before [`Coverage::cover`] no seed is covered.
+    /// Of the seeds of a diagram; `longest` is the longest edge of its canvas, for points are as far from canvas
+    /// vertices. Before [`Coverage::cover`] no seed is covered.
     pub(super) fn new(diagram: &Diagram, field: &dyn MetricField, net: &Net, longest: f64) -> Self {
         let depths = depths(diagram, field);
         let complete: Vec<bool> = depths.iter().map(|&depth| depth > net.epsilon + longest).collect();
@@ -53,6 +53,10 @@ impl Coverage {
 pub(super) fn inner_net(coverage: &Coverage, net: &Net, exact: &[[u32; 3]]) -> (Figures, Option<String>) {
     let touches = |corners: &[u32; 3]| corners.iter().any(|&i| coverage.complete[i as usize]);
     let balls: Vec<_> = net.triangles.iter().filter(|ball| touches(&ball.corners)).collect();
+    if balls.is_empty() {
+        let none = Figures { epsilon: f64::NAN, mu: net.mu, delta: f64::NAN };
+        return (none, Some("no cell is known to end at other cells only: all seeds are near the border".into()));
+    }
     let figures = Figures {
         epsilon: balls.iter().map(|ball| ball.radius).fold(0.0, f64::max),
         mu: net.mu,

@@ -14,9 +14,9 @@ pub fn distortion(g: Tensor, h: Tensor) -> f64 {
     eigen.large.max(1.0 / eigen.small).max(1.0).sqrt()
 }
 
-/// An estimate of the greatest distortion between the tensor at a point and those within a distance of it, measured with that
-/// tensor: the largest of 576 samples, times the root of the largest ratio of two neighbouring ones. No bound: a field may
-/// do what it likes between samples.
+/// An estimate of the greatest distortion between the tensor at a point and those within a distance of it, measured
+/// with that tensor: the largest of 576 samples, times the root of the largest ratio of two neighbouring ones. No
+/// bound: a field may do what it likes between samples.
 pub fn distortion_around(field: &dyn MetricField, p: Point, radius: f64) -> f64 {
     let centre = field.at(p);
     let [u, v] = frame(centre);

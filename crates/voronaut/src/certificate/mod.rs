@@ -1,8 +1,8 @@
-//! Certificates (RR-9103, sections 4, 5 and 8 to 11): whether the report's theorems hold of given seeds, metric and canvas, by how
-//! much they miss, and what it would take. The derivations are in `docs/guarantees.md`.
+//! Certificates (RR-9103, sections 4, 5 and 8 to 11): whether the report's theorems hold of given seeds, metric and
+//! canvas, by how much they miss, and what it would take. The derivations are in `docs/guarantees.md`.
 //!
-//! What is said is no proof: the metric is sampled, and geodesics are computed. It never says that a theorem holds of which a
-//! hypothesis was not looked at. Section 12 (surfaces) is left out: there are none yet.
+//! What is said is no proof: the metric is sampled, and geodesics are computed. It never says that a theorem holds of
+//! which a hypothesis was not looked at. Section 12 (surfaces) is left out: there are none yet.
 
 mod constants;
 mod convexity;
@@ -31,7 +31,8 @@ use crate::triangulation::VertexId;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// The radius of the neighbourhood U of Theorem 9.10 in epsilons: nothing that the proof of the theorem speaks of is farther away.
+/// The radius of the neighbourhood U of Theorem 9.10 in epsilons: nothing that the proof of the theorem speaks of is
+/// farther away.
 const REACH: f64 = 6.0;
 /// Canvas vertices at which distances are held against geodesics, at most about.
 const SAMPLES: usize = 1000;
@@ -66,7 +67,8 @@ pub struct Certificate {
     pub convexity: Convexity,
     /// What is said of each theorem.
     pub verdicts: Vec<Verdict>,
-    /// The least s0 that a theorem with a finite one asks for with these distances (section 9.4), and the canvas that it takes.
+    /// The least s0 that a theorem with a finite one asks for with these distances (section 9.4), and the canvas that
+    /// it takes.
     pub asked_size: Option<f64>,
     /// Vertices of the canvas that it takes.
     pub asked_canvas: Option<Cost>,
@@ -91,14 +93,14 @@ pub struct Cell {
     pub mu: f64,
     /// The least protected of its Voronoi vertices.
     pub delta: f64,
-    /// By how much the cell, with its own psi and delta, misses the conditions of section 9.4: of the distortion, and of the canvas;
-    /// infinite where no canvas and no distortion would do.
+    /// By how much the cell, with its own psi and delta, misses the conditions of section 9.4: of the distortion, and
+    /// of the canvas; infinite where no canvas and no distortion would do.
     pub factor: f64,
 }
 
 impl Certificate {
-    /// Certifies a diagram on a canvas that is a triangulation. `net` is that of its seeds, with epsilon that of the whole domain,
-    /// from the triangles of the exact dual (`recipe::net`).
+    /// Certifies a diagram on a canvas that is a triangulation. `net` is that of its seeds, with epsilon that of the
+    /// whole domain, from the triangles of the exact dual (`recipe::net`).
     pub fn new(
         diagram: &Diagram,
         field: &dyn MetricField,
@@ -112,7 +114,7 @@ impl Certificate {
         coverage.cover(net, longest, &inner);
         let none = || (coverage.count() == 0).then(|| format!("no seed is {:.3e} from the border", coverage.least));
         let cells = cells(diagram, field, net, &coverage, &inner);
-        let psi = cells.iter().map(|cell| cell.psi).fold(1.0, f64::max);
+        let psi = cells.iter().map(|cell| cell.psi).reduce(f64::max).unwrap_or(f64::NAN);
         let [size, euclidean_size] = sizing::half_longest(diagram, |i| coverage.complete[i as usize]);
         let evidence = Evidence {
             constants,
@@ -123,7 +125,7 @@ impl Certificate {
             euclidean_size,
             distance_error: distance_error(diagram, field, &coverage),
             convexity: convexity::convexity(diagram, field, net, &coverage, inner.epsilon),
-            doubt: none().or(open),
+            doubt: open.or_else(none),
         };
         let is_walked = |ball: &&Ball<3>| ball.corners.iter().any(|&i| coverage.covered[i as usize]);
         let walks = Walks::of(diagram, net.triangles.iter().filter(is_walked));
@@ -214,8 +216,8 @@ fn uniform(diagram: &Diagram, field: &dyn MetricField) -> Option<[f64; 2]> {
     positions.par_iter().with_min_len(1024).all(is_same).then_some([eigen.small, eigen.large])
 }
 
-/// How far canvas distances are from lengths of geodesics at most, with the errors of these, at samples of the covered cells;
-/// NaN where there are none, or geodesics are not found.
+/// How far canvas distances are from lengths of geodesics at most, with the errors of these, at samples of the covered
+/// cells; NaN where there are none, or geodesics are not found.
 fn distance_error(diagram: &Diagram, field: &dyn MetricField, coverage: &Coverage) -> f64 {
     let canvas = diagram.canvas();
     let vertices = (0..canvas.vertex_count() as u32).map(VertexId);

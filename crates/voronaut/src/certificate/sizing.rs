@@ -65,11 +65,12 @@ pub(super) fn half_longest(diagram: &Diagram, is_picked: impl Fn(u32) -> bool) -
             longest = [longest[0].max(topology.length(h)), longest[1].max(euclidean)];
         }
     }
-    longest.map(|length| 0.5 * length)
+    // Where there are none nothing is known.
+    longest.map(|length| if length > 0.0 { 0.5 * length } else { f64::NAN })
 }
 
-/// An intrinsic canvas of which no edge is longer than `2 size` in the metric, by as many vertices as that takes; and what
-/// made it end: `None` if it would take more than `most` vertices.
+/// An intrinsic canvas of which no edge is longer than `2 size` in the metric, by as many vertices as that takes; and
+/// what made it end: `None` if it would take more than `most` vertices.
 ///
 /// # Errors
 /// As for [`Canvas::intrinsic`].

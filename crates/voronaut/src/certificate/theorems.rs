@@ -216,7 +216,8 @@ mod tests {
             verdicts(&evidence)[1].holds()
         };
         let asked = Constants::Printed.uniform_size(&evidence().net);
-        // In the metric 100 I a Euclidean length is ten times as long: the report lets it be ten times too long instead.
+        // In the metric 100 I a Euclidean length is ten times as long: the report lets it be ten times too long
+        // instead.
         assert!(with([100.0, 100.0], 5.0 * asked));
         assert!(!with([0.01, 0.01], 5.0 * asked));
     }

@@ -23,8 +23,8 @@ pub struct Condition {
     pub measured: f64,
     /// What it must be below, or above.
     pub limit: f64,
-    /// By what the measured value misses the limit: 1 at the limit, less where the condition holds, infinite where no factor
-    /// would do.
+    /// By what the measured value misses the limit: 1 at the limit, less where the condition holds, infinite where no
+    /// factor would do.
     pub factor: f64,
     /// Whether the condition holds.
     pub holds: bool,
@@ -66,8 +66,8 @@ pub struct Verdict {
     pub conditions: Vec<Condition>,
     /// Why a hypothesis could not be checked.
     pub not_measured: Option<String>,
-    /// The sizing field s0 that it asks of the canvas, in the metric: no edge is longer than twice that. `None` where no
-    /// canvas would do, or it asks none.
+    /// The sizing field s0 that it asks of the canvas, in the metric: no edge is longer than twice that. `None` where
+    /// no canvas would do, or it asks none.
     pub size: Option<f64>,
 }
 

@@ -14,8 +14,8 @@ pub struct Walks {
     pub started: usize,
     /// Those whose witness was found.
     pub found: usize,
-    /// Of these, those of which the report's walk, towards the missing seed, went the wrong way along the border of the two
-    /// cells; the other way led there.
+    /// Of these, those of which the report's walk, towards the missing seed, went the wrong way along the border of the
+    /// two cells; the other way led there.
     pub turned: usize,
     /// Faces passed, on average and at most: 0 where the first face is the witness.
     pub mean_steps: f64,
@@ -52,11 +52,12 @@ pub struct Found {
     pub turned: bool,
 }
 
-/// Walks from the face that holds `at`, where the cells of three colours meet, between two of the cells towards the seed of
-/// the third, as far as faces have no other colour. `None` where that leads to no witness: the canvas is too coarse.
+/// Walks from the face that holds `at`, where the cells of three colours meet, between two of the cells towards the
+/// seed of the third, as far as faces have no other colour. `None` where that leads to no witness: the canvas is too
+/// coarse.
 ///
-/// On an intrinsic canvas, whose faces are not those of the plane, the walk starts in the first face with three or else two of
-/// the colours around the corners of the plane's.
+/// On an intrinsic canvas, whose faces are not those of the plane, the walk starts in the first face with three or else
+/// two of the colours around the corners of the plane's.
 pub fn walk(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<Found> {
     let first = start(diagram, colours, at)?;
     let found = colours_of(diagram, first);

@@ -115,8 +115,8 @@ const FAR: f64 = 1e4;
 /// Levels of colour per power of ten.
 const PER_DECADE: f64 = 3.0;
 
-/// A fill for the factor by which a condition is missed, on a logarithmic scale: green from 1 down, from sand to a dark red up
-/// from there; grey where it is none.
+/// A fill for the factor by which a condition is missed, on a logarithmic scale: green from 1 down, from sand to a dark
+/// red up from there; grey where it is none.
 pub(super) fn factor_fill(factor: f64) -> String {
     if factor.is_nan() {
         return UNKNOWN.into();

@@ -21,12 +21,13 @@ pub fn certify(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]], c
     Certificate::new(diagram, field, exact, &net(diagram, field, exact), constants)
 }
 
-/// The canvas for which section 9.4's conditions hold, if the seeds allow one: refined to the sizing field s0 that a certificate on
-/// an ordinary canvas asks for, with `size_for` the seeds as the least. Its vertices are estimated before it is made.
+/// The canvas for which section 9.4's conditions hold, if the seeds allow one: refined to the sizing field s0 that a
+/// certificate on an ordinary canvas asks for, with `size_for` the seeds as the least. Its vertices are estimated
+/// before it is made.
 ///
 /// # Errors
-/// [`Error::Limit`] where no canvas would do, with the factor by which the seeds miss the conditions, and where the one that
-/// would is estimated to need more memory than `memory_limit` bytes; as for [`Canvas::new`].
+/// [`Error::Limit`] where no canvas would do, with the factor by which the seeds miss the conditions, and where the one
+/// that would is estimated to need more memory than `memory_limit` bytes; as for [`Canvas::new`].
 pub fn certified_canvas(
     kind: Kind,
     domain: &Domain,
