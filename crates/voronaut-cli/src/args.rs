@@ -1,8 +1,10 @@
 //! What users type.
 
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use std::fmt;
 use std::path::PathBuf;
 use voronaut::canvas::{self, VERTICES_PER_SEED};
+use voronaut::certificate::Constants;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Aabb, Point};
@@ -172,9 +174,15 @@ pub(crate) struct DualArgs {
     /// direction) or starset (even in the metric; methods on graphs travel along Delaunay stars, each in its own metric)
     #[arg(long, value_name = "WHICH", default_value_t = canvas::Kind::default())]
     pub(crate) canvas: canvas::Kind,
-    /// Canvas vertices per seed; 150,000 in all at least, for up to 300 seeds
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = VERTICES_PER_SEED)]
-    pub(crate) canvas_size: u32,
+    /// Canvas vertices per seed, 150,000 in all at least, for up to 300 seeds; or certified: as many as the theorems ask for
+    #[arg(long, value_name = "N", value_parser = canvas_size, default_value_t = CanvasSize::default())]
+    pub(crate) canvas_size: CanvasSize,
+    /// Say which of the report's theorems hold of these seeds and this canvas, by how much others miss, and what it would take
+    #[arg(long)]
+    pub(crate) certify: bool,
+    /// The formulas of these theorems: corrected, or printed (with the report's errors, to compare)
+    #[arg(long, value_name = "WHICH", default_value_t = Constants::default())]
+    pub(crate) constants: Constants,
     /// Refuse work that is estimated to need more memory than this
     #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
     memory_limit: f64,
@@ -324,12 +332,14 @@ pub(crate) enum Show {
     Triangles,
     /// Triangles by their power protection: blue where it is less than asked for, pale where there is much
     Protection,
+    /// Cells by the factor by which they miss the conditions of the certificate (`dual`): green where they hold
+    Certificate,
 }
 
 impl Show {
     /// Whether it takes a diagram to show it.
     pub(crate) fn is_of_diagram(self) -> bool {
-        matches!(self, Show::Cells | Show::Witnesses | Show::Geodesics | Show::Triangles)
+        matches!(self, Show::Cells | Show::Witnesses | Show::Geodesics | Show::Triangles | Show::Certificate)
     }
 }
 
@@ -351,6 +361,30 @@ pub(crate) enum Dual {
     Canvas,
     /// Lengths, and the diagram where they cannot decide
     Both,
+}
+
+/// How fine the canvas of a dual is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CanvasSize {
+    /// So many vertices per seed.
+    PerSeed(u32),
+    /// As fine as its certificate asks.
+    Certified,
+}
+
+impl Default for CanvasSize {
+    fn default() -> Self {
+        CanvasSize::PerSeed(VERTICES_PER_SEED)
+    }
+}
+
+impl fmt::Display for CanvasSize {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            CanvasSize::PerSeed(count) => write!(f, "{count}"),
+            CanvasSize::Certified => f.write_str("certified"),
+        }
+    }
 }
 
 impl EdgesOut {
@@ -448,6 +482,14 @@ fn point(text: &str) -> Result<Point, String> {
     match numbers[..] {
         [x, y] if Point::new(x, y).is_finite() && text.matches(',').count() == 1 => Ok(Point::new(x, y)),
         _ => Err("not a point: write two numbers, X,Y".into()),
+    }
+}
+
+fn canvas_size(text: &str) -> Result<CanvasSize, String> {
+    match text.parse::<u32>() {
+        _ if text == "certified" => Ok(CanvasSize::Certified),
+        Ok(count) if count > 0 => Ok(CanvasSize::PerSeed(count)),
+        _ => Err("not a number from 1 up, nor `certified`".into()),
     }
 }
 

@@ -1,9 +1,9 @@
 //! `voronaut dual`: diagram and dual of the seeds given.
 
-use crate::args::{DualArgs, EdgesOut};
+use crate::args::{CanvasSize, DualArgs, EdgesOut};
 use crate::files::{Drawn, MeshFile};
 use crate::seeds::SeedFile;
-use crate::{files, summary};
+use crate::{certify, files, summary};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
@@ -44,14 +44,8 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
         begin = Instant::now();
     };
     stage("read");
-    let size = canvas::size_for(seeds.len(), args.canvas_size);
-    sampling::demand_memory(seeds.len() as f64, size as f64, args.memory_limit())?;
-    let mut canvas = Canvas::new(args.canvas, &domain, metric.as_ref(), size)?;
-    file.demand_inside(&canvas)?;
     let road = Road::from(args.dual);
-    if road == Road::Canvas {
-        canvas = resolve(canvas, metric.as_ref(), seeds, RESOLVE_ROUNDS)?.canvas;
-    }
+    let canvas = canvas(args, &domain, metric.as_ref(), &file)?;
     stage("canvas");
     let diagram = Diagram::by_method(&canvas, metric.as_ref(), seeds, args.geodesic)?;
     stage("diagram");
@@ -70,10 +64,15 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     report.histograms = files::histograms(&args.outputs, &mesh, metric.as_ref())?;
     report.canvas = Some(canvas.figures());
     report.diagram = Some(report::Diagram { raw_nerve: Some(raw_nerve), ..report::Diagram::of(&diagram) });
-    let net = Drawn::needs_net(&args.outputs).then(|| recipe::net(&diagram, metric.as_ref(), &exact));
+    let is_measured = Drawn::needs_net(&args.outputs) || certify::is_wanted(args);
+    let net = is_measured.then(|| recipe::net(&diagram, metric.as_ref(), &exact));
     report.net = net.as_ref().map(report::NetFigures::of);
     if net.is_some() {
         stage("net");
+    }
+    report.certificate = certify::certificate(args, &diagram, metric.as_ref(), &exact, net.as_ref());
+    if report.certificate.is_some() {
+        stage("certificate");
     }
     report.notes = notes(&diagram, &report);
     report.options = options(args);
@@ -85,6 +84,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     }
     let drawn = Drawn::from_diagram(&args.outputs, &diagram, &mesh, metric.as_ref(), curved.as_ref());
     let drawn = drawn.with_net(&args.outputs, net.as_ref(), MeshOptions::default().protection);
+    let drawn = drawn.with_certificate(&args.outputs, report.certificate.as_ref());
     let file = match &curved {
         Some(curved) if args.edges == EdgesOut::Geodesic => MeshFile::Geodesic(&args.out, curved),
         _ => MeshFile::Straight(&args.out),
@@ -96,6 +96,23 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     }
     summary::print(&args.out.display().to_string(), &report, &args.run);
     Ok(())
+}
+
+/// The canvas that is asked for, in whose domain all seeds are.
+fn canvas(args: &DualArgs, domain: &Domain, metric: &dyn MetricField, file: &SeedFile) -> Result<Canvas> {
+    let seeds = &file.seeds;
+    let CanvasSize::PerSeed(per_seed) = args.canvas_size else {
+        file.demand_inside(&Canvas::new(args.canvas, domain, metric, 0)?)?;
+        return recipe::certified_canvas(args.canvas, domain, metric, seeds, args.constants, args.memory_limit());
+    };
+    let size = canvas::size_for(seeds.len(), per_seed);
+    sampling::demand_memory(seeds.len() as f64, size as f64, args.memory_limit())?;
+    let canvas = Canvas::new(args.canvas, domain, metric, size)?;
+    file.demand_inside(&canvas)?;
+    if Road::from(args.dual) == Road::Canvas {
+        return Ok(resolve(canvas, metric, seeds, RESOLVE_ROUNDS)?.canvas);
+    }
+    Ok(canvas)
 }
 
 /// The figures of the dual with straight edges, in the metric only where it is valid.
@@ -164,7 +181,8 @@ fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {
 fn options(args: &DualArgs) -> serde_json::Value {
     json!({
         "domain": args.domain, "metric": args.metric, "seeds": args.seeds, "out": args.out, "diagram": args.diagram,
-        "canvas": args.canvas, "canvas_size": args.canvas_size, "geodesic": args.geodesic, "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
+        "canvas": args.canvas, "canvas_size": certify::canvas_size(args),
+        "certify": args.certify, "constants": args.constants, "geodesic": args.geodesic, "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
         "smooth_metric": args.metric_choices.smooth_metric,
         "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,

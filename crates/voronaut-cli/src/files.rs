@@ -1,7 +1,9 @@
 //! The files a run writes: tried before the work, written after it.
 
 use crate::args::{Outputs, Run, Show};
+use std::collections::BTreeMap;
 use std::path::Path;
+use voronaut::certificate::Certificate;
 use voronaut::diagram::{Cells, Diagram};
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
@@ -42,6 +44,7 @@ pub(crate) struct Drawn {
     geodesics: Vec<Vec<Point>>,
     grids: Vec<Vec<Point>>,
     protection: Option<Protection>,
+    factors: Option<BTreeMap<u32, f64>>,
 }
 
 impl Drawn {
@@ -64,6 +67,13 @@ impl Drawn {
     pub(crate) fn with_net(mut self, outputs: &Outputs, net: Option<&Net>, asked: f64) -> Self {
         let net = net.filter(|_| outputs.show.contains(&Show::Protection));
         self.protection = net.map(|net| Protection::new(net, asked));
+        self
+    }
+
+    /// With cells by the factor by which they miss a certificate's conditions, if the picture shows that.
+    pub(crate) fn with_certificate(mut self, outputs: &Outputs, certificate: Option<&Certificate>) -> Self {
+        let certificate = certificate.filter(|_| outputs.show.contains(&Show::Certificate));
+        self.factors = certificate.map(|found| found.cells.iter().map(|cell| (cell.seed, cell.factor)).collect());
         self
     }
 
@@ -106,6 +116,7 @@ impl Drawn {
             protection: self.protection.as_ref(),
             values: None,
             grids: &self.grids,
+            factors: self.factors.as_ref(),
         }
     }
 }

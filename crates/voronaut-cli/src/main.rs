@@ -1,6 +1,7 @@
 //! The command line of voronaut. Exit code 0: done; 1: the input or the result is not what was asked; 2: wrong usage.
 
 mod args;
+mod certify;
 mod check;
 mod distance;
 mod dual;

@@ -1,6 +1,7 @@
 //! What a run says when it is done: one screen on stdout.
 
 use crate::args::Run;
+use crate::certify;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use voronaut::output::Report;
@@ -83,6 +84,9 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
     }
     if verbose {
         report.seconds.stages.iter().for_each(|(name, time)| line(name, format!("{time:.2} s")));
+    }
+    if let Some(certificate) = &report.certificate {
+        certify::lines(certificate).into_iter().for_each(|(name, value)| line(&name, value));
     }
     let memory = report.peak_memory_bytes.map(|bytes| format!(", {} MB at most", bytes / 1_000_000));
     line("time", format!("{:.2} s{}", report.seconds.total, memory.unwrap_or_default()));

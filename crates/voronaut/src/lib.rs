@@ -99,6 +99,7 @@ pub mod diagram;
 pub mod rdt;
 pub mod dual;
 pub mod net;
+pub mod certificate;
 pub mod sampling;
 pub mod optimise;
 pub mod quality;

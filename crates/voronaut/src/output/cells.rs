@@ -36,6 +36,8 @@ pub struct Layers<'a> {
     pub values: Option<&'a [f64]>,
     /// Fainter polylines under those, such as lines of equal barycentric coordinates in Riemannian triangles.
     pub grids: &'a [Vec<Point>],
+    /// Cells by a factor, 1 where conditions just hold, instead of colours that differ; those without one are grey.
+    pub factors: Option<&'a BTreeMap<u32, f64>>,
 }
 
 /// The cells, coloured so that neighbours differ: one SVG path per colour and width of line.
@@ -58,6 +60,24 @@ pub(super) fn cells(svg: &mut String, cells: &Cells, frame: &Frame, tint: Tint) 
         let _ = writeln!(svg, r#"<path fill="{fill}" stroke="{ink}" stroke-width="{width:.1}" d="{}"/>"#, path.text());
     }
     svg.push_str("</g>\n");
+}
+
+/// The cells by the factors that they have: one SVG path per colour and width of line.
+pub(super) fn factors(svg: &mut String, cells: &Cells, factors: &BTreeMap<u32, f64>, frame: &Frame) {
+    let mut paths: BTreeMap<(usize, String), PathData> = BTreeMap::new();
+    for (i, outlines) in cells.outlines.iter().enumerate() {
+        let width = class(WIDEST_BORDER, BORDER_SHARE * thickness(outlines, frame));
+        let fill = colours::factor_fill(factors.get(&(i as u32)).copied().unwrap_or(f64::NAN));
+        let path = paths.entry((width, fill)).or_default();
+        for outline in outlines {
+            path.polyline(&place(&outline.points, &outline.corners, true, frame), true);
+        }
+    }
+    for ((class, fill), path) in paths {
+        let (ink, width) = (colours::CELL_BORDER, frame.quanta(width(WIDEST_BORDER, class)));
+        let style = format!(r#"fill="{fill}" stroke="{ink}" stroke-width="{width:.1}" stroke-linejoin="round""#);
+        let _ = writeln!(svg, r#"<path {style} d="{}"/>"#, path.text());
+    }
 }
 
 /// A dot at each seed, smaller in thin cells.

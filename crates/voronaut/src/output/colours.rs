@@ -110,6 +110,24 @@ pub(super) fn quality_fill(quality: f64) -> String {
     oklch(0.985 - 0.335 * bad, 0.006 + 0.154 * bad, 85.0 - 55.0 * bad)
 }
 
+/// The factor by which conditions are missed from which on fills are as strong as can be.
+const FAR: f64 = 1e4;
+/// Levels of colour per power of ten.
+const PER_DECADE: f64 = 3.0;
+
+/// A fill for the factor by which a condition is missed, on a logarithmic scale: green from 1 down, from sand to a dark
+/// red up from there; grey where it is none.
+pub(super) fn factor_fill(factor: f64) -> String {
+    if factor.is_nan() {
+        return UNKNOWN.into();
+    }
+    let level = ((factor.clamp(1.0 / FAR, FAR).log10() * PER_DECADE).ceil() / PER_DECADE) / FAR.log10();
+    if level <= 0.0 {
+        return oklch(0.86 + 0.06 * level, 0.10 - 0.03 * level, 150.0);
+    }
+    oklch(0.93 - 0.48 * level, 0.07 + 0.10 * level, 85.0 - 60.0 * level)
+}
+
 /// An opaque colour from the OKLCH space (Ottosson 2020: lightness, chroma, hue in degrees), clipped to sRGB.
 fn oklch(lightness: f64, chroma: f64, hue: f64) -> String {
     let (a, b) = (chroma * hue.to_radians().cos(), chroma * hue.to_radians().sin());
@@ -141,6 +159,13 @@ mod tests {
                 assert!(fill != other && Cell::likeness(a, b) < Cell::likeness(a, a));
             }
         }
+    }
+
+    #[test]
+    fn factors_part_green_from_warm_at_one() {
+        let fills = [0.01, 0.99, 1.01, 30.0, 1e9, f64::INFINITY, f64::NAN].map(factor_fill);
+        assert!(fills[1] != fills[2] && fills[2] != fills[3] && fills[3] != fills[4] && fills[4] == fills[5]);
+        assert!(fills[0] != fills[1] && fills[6] == UNKNOWN);
     }
 
     #[test]

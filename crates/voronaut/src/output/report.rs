@@ -1,6 +1,7 @@
 //! The machine-readable account of a run (`--report`).
 
 use crate::canvas::{CanvasFigures, PickCounters, StarFigures};
+use crate::certificate::Certificate;
 use crate::dual::Road;
 use crate::geodesic::MarchCounters;
 use crate::net::Net;
@@ -48,6 +49,9 @@ pub struct Report {
     pub net: Option<NetFigures>,
     /// How protection of the seeds went, where it was asked for.
     pub protection: Option<Protection>,
+    /// What the report's theorems guarantee, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
     /// The star set that became the mesh, where it was made so.
     pub star_set: Option<StarSet>,
     /// The factor on the metric tensor for which the mesh is a unit mesh.

@@ -74,7 +74,10 @@ pub fn svg_with(
     if let Some(found) = layers.cells {
         let has_lines = picture.mesh || picture.ellipses || !layers.geodesics.is_empty();
         let tint = if has_lines { Tint::Soft } else { Tint::Full };
-        cells::cells(&mut text, found, &frame, if layers.witnesses.is_some() { Tint::Pale } else { tint });
+        match layers.factors {
+            Some(factors) => cells::factors(&mut text, found, factors, &frame),
+            None => cells::cells(&mut text, found, &frame, if layers.witnesses.is_some() { Tint::Pale } else { tint }),
+        }
     } else {
         let one_class = || vec![colours::DOMAIN.to_string(); triangles.len()];
         let fills = match (layers.protection, layers.values) {

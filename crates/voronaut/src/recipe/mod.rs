@@ -1,5 +1,6 @@
 //! The main job as one function: from a domain and a metric to a valid unit mesh.
 
+mod certified;
 mod dual;
 mod field;
 mod mesher;
@@ -8,6 +9,7 @@ mod relaxing;
 mod seeding;
 mod settle;
 
+pub use certified::{certified_canvas, certify};
 pub use dual::{SeedDual, dual, net};
 pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, metric, smooth_metric};
 pub use mesher::Mesher;
