@@ -105,7 +105,7 @@ fn nerve(
     conditions.insert(0, protected(evidence));
     conditions.insert(1, Condition::below(what, evidence.psi - 1.0, allowed - 1.0));
     let size = evidence.constants.size(&evidence.net, evidence.psi, error);
-    conditions.push(Condition::below(EDGE, evidence.size, size.unwrap_or(0.0)));
+    conditions.push(Condition::below(EDGE, evidence.size, size.unwrap_or(none_of(evidence))));
     let doubt = evidence.doubt.clone();
     let verdict = Verdict::new(theorem, says, conditions, doubt);
     size.map_or(verdict.clone(), |size| verdict.asking(size))
@@ -120,7 +120,13 @@ fn greatest_error(evidence: &Evidence) -> f64 {
         if is_enough { low = middle } else { high = middle }
     }
     // Bisection never ends at 0.
-    if evidence.constants.size(&evidence.net, evidence.psi, 0.0).is_some() { low } else { 0.0 }
+    let is_none = evidence.constants.size(&evidence.net, evidence.psi, 0.0).is_none();
+    if is_none { none_of(evidence) } else { low }
+}
+
+/// The limit where no size would do: 0, but unknown where net or distortion was not measured.
+fn none_of(evidence: &Evidence) -> f64 {
+    if (evidence.net.epsilon + evidence.psi).is_nan() { f64::NAN } else { 0.0 }
 }
 
 fn geodesic_dual(evidence: &Evidence) -> Verdict {
