@@ -262,6 +262,15 @@ impl<'a> Diagram<'a> {
         self.canvas
     }
 
+    /// By what distance its cells are the nearest places.
+    pub fn kind(&self) -> Kind {
+        match self.measure {
+            Measure::Ways(_) => Kind::Riemannian,
+            Measure::Chords(Chords::InMetricOfPlace) => Kind::DuWang,
+            Measure::Chords(Chords::InMetricOfSeed) => Kind::LabelleShewchuk,
+        }
+    }
+
     /// Where a seed is; `None` of a removed one.
     pub fn seed(&self, colour: u32) -> Option<Point> {
         self.seeds.get(colour as usize)?.as_ref().map(|seed| seed.at)

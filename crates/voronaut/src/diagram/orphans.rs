@@ -110,8 +110,7 @@ mod tests {
         let (domain, swirl) = (Domain::read("rect:-2,-2,2,2").unwrap(), Swirl::default());
         let canvas = Canvas::intrinsic(&domain, &swirl, 20_000).unwrap();
         let seeds = seeds_of(&domain, 80);
-        let components =
-            Kind::ALL.map(|kind| Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap());
+        let components = Kind::ALL.map(|kind| Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap());
         let [ours, du_wang, labelle] = components.map(|diagram| {
             let components = diagram.orphan_components();
             assert_eq!(components.iter().map(Vec::len).sum::<usize>(), diagram.orphans().len());

@@ -1,0 +1,131 @@
+//! Orphans and inverted triangles of three Voronoi diagrams of the same seeds on the same canvas, as a table in Markdown:
+//!
+//! ```sh
+//! cargo run --release --example orphans -- table swirl 500 1000 2000 4000
+//! cargo run --release --example orphans -- picture swirl 1000 orphans.png
+//! ```
+//!
+//! Metrics: `swirl` on [-2, 2]^2, any other specification on [-1, 1]^2. Seeds are *relaxed*, the vertices of `voronaut mesh
+//! -n N` with its defaults, or *random*: N different vertices of the canvas, drawn evenly by splitmix64 from 1. The canvas
+//! is even in the metric, so that these are random points of the metric's density. Canvases have 60 vertices per seed.
+//!
+//! Triangles are those of the nerve as canvas faces of three colours have it, nothing mended: *inverted* ones come out
+//! clockwise or flat with straight edges (SRDT). *Open* ones have geodesic edges (RDT) that bound no region on their left.
+
+use std::collections::BTreeSet;
+use std::error::Error;
+use std::path::Path;
+use voronaut::canvas::{Canvas, VERTICES_PER_SEED, size_for};
+use voronaut::diagram::{Diagram, Kind};
+use voronaut::domain::Domain;
+use voronaut::geodesic::Method;
+use voronaut::geometry::{Orientation, Point, orientation};
+use voronaut::mesh::Mesh;
+use voronaut::metric::{Bounds, MetricField, MetricSpec};
+use voronaut::net::Random;
+use voronaut::output::{self, Layers, Picture};
+use voronaut::progress::Silent;
+use voronaut::realisation::Realisation;
+use voronaut::recipe::{self, MeshOptions};
+use voronaut::triangulation::VertexId;
+
+type Outcome<T> = Result<T, Box<dyn Error>>;
+
+fn main() -> Outcome<()> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["table", metric, ref counts @ ..] if !counts.is_empty() => table(&Scene::new(metric)?, counts),
+        ["picture", metric, count, file] => picture(&Scene::new(metric)?, count.parse()?, Path::new(file)),
+        _ => Err("table METRIC N..., or picture METRIC N FILE".into()),
+    }
+}
+
+/// Where it is about.
+struct Scene {
+    name: String,
+    domain: Domain,
+    field: Box<dyn MetricField>,
+}
+
+impl Scene {
+    fn new(metric: &str) -> Outcome<Self> {
+        let shape = if metric.starts_with("swirl") { "rect:-2,-2,2,2" } else { "rect:-1,-1,1,1" };
+        let domain = Domain::read(shape)?;
+        let field = recipe::metric(&MetricSpec::parse(metric)?, &domain, None, Bounds::default())?;
+        Ok(Self { name: metric.into(), domain, field })
+    }
+
+    fn field(&self) -> &dyn MetricField {
+        self.field.as_ref()
+    }
+
+    fn canvas(&self, seeds: usize) -> Outcome<Canvas> {
+        Ok(Canvas::intrinsic(&self.domain, self.field(), size_for(seeds, VERTICES_PER_SEED))?)
+    }
+
+    fn relaxed(&self, count: usize) -> Outcome<Vec<Point>> {
+        let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
+        let mesh = recipe::mesh(&self.domain, self.field(), &options, &Silent)?.mesh;
+        Ok((0..mesh.points.len() as u32).map(|v| mesh.point(v)).collect())
+    }
+}
+
+fn random(canvas: &Canvas, count: usize) -> Vec<Point> {
+    let (mut random, mut chosen) = (Random::new(1), BTreeSet::new());
+    while chosen.len() < count.min(canvas.vertex_count()) {
+        chosen.insert((random.number() * canvas.vertex_count() as f64) as u32);
+    }
+    chosen.into_iter().map(|v| canvas.position(VertexId(v))).collect()
+}
+
+fn table(scene: &Scene, counts: &[&str]) -> Outcome<()> {
+    println!("| metric | seeds | diagram | orphans | their vertices | triangles | inverted | open |");
+    println!("|---|---|---|---|---|---|---|---|");
+    for count in counts {
+        let count = count.parse()?;
+        let canvas = scene.canvas(count)?;
+        for (name, seeds) in [("relaxed", scene.relaxed(count)?), ("random", random(&canvas, count))] {
+            for kind in [Kind::LabelleShewchuk, Kind::DuWang, Kind::Riemannian] {
+                let diagram = Diagram::of_kind(kind, &canvas, scene.field(), &seeds, Method::March)?;
+                let orphans = diagram.orphan_components();
+                let triangles: Vec<[u32; 3]> = diagram.nerve().triangles.iter().map(|t| t.colours).collect();
+                let open = match kind {
+                    Kind::Riemannian => Realisation::new(&diagram, scene.field(), &triangles).open().to_string(),
+                    _ => String::new(),
+                };
+                println!(
+                    "| {} | {} {name} | {kind} | {} | {} | {} | {} | {open} |",
+                    scene.name,
+                    seeds.len(),
+                    orphans.len(),
+                    orphans.concat().len(),
+                    triangles.len(),
+                    triangles.iter().filter(|&&t| is_inverted(&seeds, t)).count(),
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+fn is_inverted(seeds: &[Point], triangle: [u32; 3]) -> bool {
+    let [a, b, c] = triangle.map(|i| seeds[i as usize]);
+    orientation(a, b, c) != Orientation::Left
+}
+
+/// Labelle-Shewchuk, Du-Wang and Riemannian cells of relaxed seeds side by side, orphans in red.
+fn picture(scene: &Scene, count: usize, file: &Path) -> Outcome<()> {
+    const PIXELS: u32 = 800;
+    let (canvas, seeds) = (scene.canvas(count)?, scene.relaxed(count)?);
+    let mut parts = String::new();
+    for (place, kind) in [Kind::LabelleShewchuk, Kind::DuWang, Kind::Riemannian].into_iter().enumerate() {
+        let cells = Diagram::of_kind(kind, &canvas, scene.field(), &seeds, Method::March)?.to_cells();
+        let what = Picture { mesh: false, width: PIXELS, ..Picture::default() };
+        let layers = Layers { cells: Some(&cells), ..Layers::default() };
+        let part = output::svg_with(&Mesh::default(), None, &what, &layers)?;
+        parts += &part.replacen("<svg ", &format!("<svg x=\"{}\" ", place as u32 * PIXELS), 1);
+    }
+    let size = format!("width=\"{}\" height=\"{PIXELS}\"", 3 * PIXELS);
+    let svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size}>\n{parts}</svg>\n");
+    Ok(output::write_picture(&svg, file)?)
+}
