@@ -92,7 +92,7 @@ mod tests {
         let domain = Domain::read("rect:-2,-2,2,2").unwrap();
         let uniform = |_: Point| Tensor::new(9.0, 2.0, 1.0);
         let canvas = Canvas::intrinsic(&domain, &uniform, 6000).unwrap();
-        let seeds = seeds_of(&domain, 50);
+        let seeds = seeds_of(&plate_with_hole(), 50);
         let made = |kind| Diagram::of_kind(kind, &canvas, &uniform, &seeds, Method::March).unwrap();
         let [ours, du_wang, labelle] = Kind::ALL.map(made);
         let topology = canvas.topology();
@@ -130,6 +130,22 @@ mod tests {
                 let colour = anew.colour(v).map(|colour| kept[colour as usize] as u32);
                 assert_eq!((diagram.colour(v), diagram.distance(v)), (colour, anew.distance(v)));
             }
+        }
+    }
+
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits() {
+        let (domain, swirl) = (plate_with_hole(), Swirl::default());
+        let canvas = Canvas::intrinsic(&domain, &swirl, 6000).unwrap();
+        let seeds = seeds_of(&domain, 200);
+        for (kind, _) in RIVALS {
+            let colours = |threads| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let made = || Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap();
+                let diagram = pool.install(made);
+                vertices(&canvas).map(|v| *diagram.label(v)).collect::<Vec<_>>()
+            };
+            assert_eq!(colours(1), colours(3));
         }
     }
 

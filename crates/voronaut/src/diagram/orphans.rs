@@ -68,7 +68,7 @@ mod tests {
     use super::*;
     use crate::canvas::Canvas;
     use crate::diagram::Kind;
-    use crate::diagram::test_diagrams::seeds_of;
+    use crate::diagram::test_diagrams::{plate_with_hole, seeds_of};
     use crate::domain::Domain;
     use crate::geodesic::Method;
     use crate::geometry::{Point, Tensor};
@@ -109,7 +109,7 @@ mod tests {
     fn the_swirl_makes_orphans_of_chords_and_none_of_geodesics() {
         let (domain, swirl) = (Domain::read("rect:-2,-2,2,2").unwrap(), Swirl::default());
         let canvas = Canvas::intrinsic(&domain, &swirl, 20_000).unwrap();
-        let seeds = seeds_of(&domain, 80);
+        let seeds = seeds_of(&plate_with_hole(), 80);
         let components = Kind::ALL.map(|kind| Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap());
         let [ours, du_wang, labelle] = components.map(|diagram| {
             let components = diagram.orphan_components();
