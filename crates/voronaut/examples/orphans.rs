@@ -19,7 +19,7 @@ use voronaut::canvas::{Canvas, VERTICES_PER_SEED, size_for};
 use voronaut::diagram::{Diagram, Kind};
 use voronaut::domain::Domain;
 use voronaut::geodesic::Method;
-use voronaut::geometry::{Orientation, Point, orientation};
+use voronaut::geometry::{Aabb, Orientation, Point, orientation};
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Bounds, MetricField, MetricSpec};
 use voronaut::net::Random;
@@ -43,16 +43,18 @@ fn main() -> Outcome<()> {
 /// Where it is about.
 struct Scene {
     name: String,
+    is_swirl: bool,
     domain: Domain,
     field: Box<dyn MetricField>,
 }
 
 impl Scene {
     fn new(metric: &str) -> Outcome<Self> {
-        let shape = if metric.starts_with("swirl") { "rect:-2,-2,2,2" } else { "rect:-1,-1,1,1" };
+        let is_swirl = metric.starts_with("swirl");
+        let shape = if is_swirl { "rect:-2,-2,2,2" } else { "rect:-1,-1,1,1" };
         let domain = Domain::read(shape)?;
         let field = recipe::metric(&MetricSpec::parse(metric)?, &domain, None, Bounds::default())?;
-        Ok(Self { name: metric.into(), domain, field })
+        Ok(Self { name: metric.into(), is_swirl, domain, field })
     }
 
     fn field(&self) -> &dyn MetricField {
@@ -113,15 +115,18 @@ fn is_inverted(seeds: &[Point], triangle: [u32; 3]) -> bool {
     orientation(a, b, c) != Orientation::Left
 }
 
-/// Labelle-Shewchuk, Du-Wang and Riemannian cells of relaxed seeds side by side, orphans in red.
+/// Labelle-Shewchuk, Du-Wang and Riemannian cells of relaxed seeds in the middle of the domain, side by side, orphans in red.
 fn picture(scene: &Scene, count: usize, file: &Path) -> Outcome<()> {
-    const PIXELS: u32 = 800;
+    const PIXELS: u32 = 440;
     let (canvas, seeds) = (scene.canvas(count)?, scene.relaxed(count)?);
+    let half = if scene.is_swirl { 1.0 } else { 0.5 };
+    let window = Some(Aabb { min: Point::new(-half, -half), max: Point::new(half, half) });
     let mut parts = String::new();
     for (place, kind) in [Kind::LabelleShewchuk, Kind::DuWang, Kind::Riemannian].into_iter().enumerate() {
         let cells = Diagram::of_kind(kind, &canvas, scene.field(), &seeds, Method::March)?.to_cells();
-        let what = Picture { mesh: false, width: PIXELS, ..Picture::default() };
-        let layers = Layers { cells: Some(&cells), ..Layers::default() };
+        let what = Picture { mesh: false, width: PIXELS, window, ..Picture::default() };
+        // No witnesses are drawn, but all three are as pale as if some were.
+        let layers = Layers { cells: Some(&cells), witnesses: Some([&[], &[]]), ..Layers::default() };
         let part = output::svg_with(&Mesh::default(), None, &what, &layers)?;
         parts += &part.replacen("<svg ", &format!("<svg x=\"{}\" ", place as u32 * PIXELS), 1);
     }

@@ -53,6 +53,11 @@ impl Cells {
         let canvas = Canvas::intrinsic(domain, field, vertices)?;
         Ok(Diagram::new(&canvas, field, seeds)?.to_cells())
     }
+
+    /// Whether a cell has a part without its seed.
+    pub fn has_orphans(&self) -> bool {
+        self.outlines.iter().flatten().any(|outline| outline.is_orphan)
+    }
 }
 
 impl Diagram<'_> {

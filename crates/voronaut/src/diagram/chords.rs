@@ -141,9 +141,10 @@ mod tests {
         for (kind, _) in RIVALS {
             let colours = |threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                let made = || Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap();
-                let diagram = pool.install(made);
-                vertices(&canvas).map(|v| *diagram.label(v)).collect::<Vec<_>>()
+                pool.install(|| {
+                    let diagram = Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap();
+                    vertices(&canvas).map(|v| *diagram.label(v)).collect::<Vec<_>>()
+                })
             };
             assert_eq!(colours(1), colours(3));
         }

@@ -24,7 +24,7 @@ const CLASSES: usize = 13;
 /// What of a diagram a picture shows besides a mesh.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Layers<'a> {
-    /// Cells, as filled regions under everything else, with dots at the seeds; their orphans in red.
+    /// Cells, as filled regions under everything else, with dots at the seeds; orphans in red over paler ones.
     pub cells: Option<&'a Cells>,
     /// Canvas faces that witness Voronoi vertices (red) and Voronoi edges (grey); cells are paler then.
     pub witnesses: Option<[&'a [[Point; 3]]; 2]>,

@@ -54,7 +54,7 @@ pub(super) enum Tint {
     Full,
     /// Under lines.
     Soft,
-    /// Under filled triangles.
+    /// Under filled triangles or orphans.
     Pale,
 }
 

@@ -74,7 +74,8 @@ pub fn svg_with(
     if let Some(found) = layers.cells {
         let has_lines = picture.mesh || picture.ellipses || !layers.geodesics.is_empty();
         let tint = if has_lines { Tint::Soft } else { Tint::Full };
-        cells::cells(&mut text, found, &frame, if layers.witnesses.is_some() { Tint::Pale } else { tint });
+        let is_ground = layers.witnesses.is_some() || found.has_orphans();
+        cells::cells(&mut text, found, &frame, if is_ground { Tint::Pale } else { tint });
     } else {
         let one_class = || vec![colours::DOMAIN.to_string(); triangles.len()];
         let fills = match (layers.protection, layers.values) {
