@@ -10,7 +10,8 @@
 //! is even in the metric, so that these are random points of the metric's density. Canvases have 60 vertices per seed.
 //!
 //! Triangles are those of the nerve as canvas faces of three colours have it, nothing mended: *inverted* ones come out
-//! clockwise or flat with straight edges (SRDT). *Open* ones have geodesic edges (RDT) that bound no region on their left.
+//! clockwise or flat with straight edges (SRDT). *Open* ones have geodesic edges (RDT) that bound no region on their left. The
+//! Riemannian dual is there once more as `voronaut dual` has it, *settled* by in-circle tests.
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -18,6 +19,7 @@ use std::path::Path;
 use voronaut::canvas::{Canvas, VERTICES_PER_SEED, size_for};
 use voronaut::diagram::{Diagram, Kind};
 use voronaut::domain::Domain;
+use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Aabb, Orientation, Point, orientation};
 use voronaut::mesh::Mesh;
@@ -88,36 +90,40 @@ fn table(scene: &Scene, counts: &[&str]) -> Outcome<()> {
         let canvas = scene.canvas(count)?;
         for (name, seeds) in [("relaxed", scene.relaxed(count)?), ("random", random(&canvas, count))] {
             for kind in [Kind::LabelleShewchuk, Kind::DuWang, Kind::Riemannian] {
-                let diagram = Diagram::of_kind(kind, &canvas, scene.field(), &seeds, Method::March)?;
-                let orphans = diagram.orphan_components();
-                let triangles: Vec<[u32; 3]> = diagram.nerve().triangles.iter().map(|t| t.colours).collect();
-                let open = match kind {
-                    Kind::Riemannian => Realisation::new(&diagram, scene.field(), &triangles).open().to_string(),
-                    _ => String::new(),
-                };
-                println!(
-                    "| {} | {} {name} | {kind} | {} | {} | {} | {} | {open} |",
-                    scene.name,
-                    seeds.len(),
-                    orphans.len(),
-                    orphans.concat().len(),
-                    triangles.len(),
-                    triangles.iter().filter(|&&t| is_inverted(&seeds, t)).count(),
-                );
+                let begin = format!("| {} | {} {name} | {kind}", scene.name, seeds.len());
+                rows(&begin, &Diagram::of_kind(kind, &canvas, scene.field(), &seeds, Method::March)?, scene.field());
             }
         }
     }
     Ok(())
 }
 
-fn is_inverted(seeds: &[Point], triangle: [u32; 3]) -> bool {
-    let [a, b, c] = triangle.map(|i| seeds[i as usize]);
+fn rows(begin: &str, diagram: &Diagram, field: &dyn MetricField) {
+    let orphans = diagram.orphan_components();
+    let orphans = format!("{} | {}", orphans.len(), orphans.concat().len());
+    let row = |what: &str, triangles: &[[u32; 3]], open: &str| {
+        let inverted = triangles.iter().filter(|&&t| is_inverted(diagram, t)).count();
+        println!("{begin}{what} | {orphans} | {} | {inverted} | {open} |", triangles.len());
+    };
+    let nerve: Vec<[u32; 3]> = diagram.nerve().triangles.iter().map(|t| t.colours).collect();
+    if diagram.kind() != Kind::Riemannian {
+        return row("", &nerve, "");
+    }
+    let settled = recipe::dual(diagram, field, Road::default()).triangles;
+    for (what, triangles) in [("", nerve), (", settled", settled)] {
+        row(what, &triangles, &Realisation::new(diagram, field, &triangles).open().to_string());
+    }
+}
+
+fn is_inverted(diagram: &Diagram, triangle: [u32; 3]) -> bool {
+    let [a, b, c] = triangle.map(|i| diagram.seed(i).unwrap_or_default());
     orientation(a, b, c) != Orientation::Left
 }
 
 /// Labelle-Shewchuk, Du-Wang and Riemannian cells of relaxed seeds in the middle of the domain, side by side, orphans in red.
 fn picture(scene: &Scene, count: usize, file: &Path) -> Outcome<()> {
-    const PIXELS: u32 = 440;
+    const PIXELS: u32 = 350;
+    const GAP: u32 = 10;
     let (canvas, seeds) = (scene.canvas(count)?, scene.relaxed(count)?);
     let half = if scene.is_swirl { 1.0 } else { 0.5 };
     let window = Some(Aabb { min: Point::new(-half, -half), max: Point::new(half, half) });
@@ -128,9 +134,11 @@ fn picture(scene: &Scene, count: usize, file: &Path) -> Outcome<()> {
         // No witnesses are drawn, but all three are as pale as if some were.
         let layers = Layers { cells: Some(&cells), witnesses: Some([&[], &[]]), ..Layers::default() };
         let part = output::svg_with(&Mesh::default(), None, &what, &layers)?;
-        parts += &part.replacen("<svg ", &format!("<svg x=\"{}\" ", place as u32 * PIXELS), 1);
+        parts += &part.replacen("<svg ", &format!("<svg x=\"{}\" ", place as u32 * (PIXELS + GAP)), 1);
     }
-    let size = format!("width=\"{}\" height=\"{PIXELS}\"", 3 * PIXELS);
-    let svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size}>\n{parts}</svg>\n");
+    let size = format!("width=\"{}\" height=\"{PIXELS}\"", 3 * PIXELS + 2 * GAP);
+    let svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" {size}>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{parts}</svg>\n"
+    );
     Ok(output::write_picture(&svg, file)?)
 }
