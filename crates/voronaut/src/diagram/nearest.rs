@@ -119,7 +119,7 @@ impl Search {
     fn visit(&mut self, site: &Site) {
         let tensor = self.frozen.map_or(site.tensor, |frozen| frozen.0);
         let found = (tensor.length(self.place - site.at), site.colour);
-        if self.best.is_none_or(|best| found.0 < best.0 || found.0 == best.0 && found.1 < best.1) {
+        if self.best.is_none_or(|best| found.0 < best.0 || (found.0 <= best.0 && found.1 < best.1)) {
             self.best = Some(found);
         }
     }
