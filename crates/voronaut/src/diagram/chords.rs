@@ -83,8 +83,8 @@ mod tests {
         // Twice as long for each unit of x beyond 0: only the metric of the place sees that.
         let stretched = |p: Point| Tensor::new((1.0 + p.x.max(0.0)).powi(2), 0.0, 1.0);
         let [seed, place] = [Point::new(0.0, 0.0), Point::new(2.0, 0.0)];
-        assert_eq!(Chords::InMetricOfSeed.length(&stretched, seed, place), 2.0);
-        assert_eq!(Chords::InMetricOfPlace.length(&stretched, seed, place), 6.0);
+        let length = |chords: Chords| chords.length(&stretched, seed, place);
+        assert_eq!((length(Chords::InMetricOfSeed), length(Chords::InMetricOfPlace)), (2.0, 6.0));
     }
 
     #[test]
