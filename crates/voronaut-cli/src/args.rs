@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::PathBuf;
 use voronaut::canvas::{self, VERTICES_PER_SEED};
 use voronaut::certificate::Constants;
+use voronaut::diagram;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Aabb, Point};
@@ -164,6 +165,11 @@ pub(crate) struct DualArgs {
     /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
     #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(Road::default()))]
     pub(crate) dual: Dual,
+    /// Which Voronoi diagram: riemannian, or, by straight distances, du-wang (in the metric of the place) or labelle-shewchuk (in
+    /// that of the seed). Of these two OUT has the nerve as the canvas shows it, whatever --dual says; --show cells has their
+    /// orphans in red
+    #[arg(long, value_name = "WHICH", default_value_t = diagram::Kind::default())]
+    pub(crate) voronoi: diagram::Kind,
     /// How distances on the canvas are computed: march, stvd[:window=8], dijkstra or konukoglu
     #[arg(long, value_name = "METHOD", default_value_t = Method::default())]
     pub(crate) geodesic: Method,

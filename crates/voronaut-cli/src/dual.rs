@@ -1,6 +1,6 @@
 //! `voronaut dual`: diagram and dual of the seeds given.
 
-use crate::args::{CanvasSize, DualArgs, EdgesOut};
+use crate::args::{CanvasSize, DualArgs, EdgesOut, Show};
 use crate::files::{Drawn, MeshFile};
 use crate::seeds::SeedFile;
 use crate::{certify, files, summary};
@@ -8,9 +8,10 @@ use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
 use voronaut::canvas::{self, Canvas};
-use voronaut::diagram::{Diagram, RESOLVE_ROUNDS, resolve};
+use voronaut::diagram::{Diagram, Kind, RESOLVE_ROUNDS, resolve};
 use voronaut::domain::Domain;
 use voronaut::dual::Road;
+use voronaut::geodesic::Method;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::{self, Report, report};
@@ -26,6 +27,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     args.diagram.as_deref().map(output::demand_diagram).transpose()?;
     files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs)?;
     args.geodesic.demand_diagrams()?;
+    demand_geodesics(args)?;
     files::set_threads(&args.run)?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
@@ -46,8 +48,9 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     stage("read");
     let road = Road::from(args.dual);
     let canvas = canvas(args, &domain, metric.as_ref(), &file)?;
+    let is_riemannian = args.voronoi == Kind::Riemannian;
     stage("canvas");
-    let diagram = Diagram::by_method(&canvas, metric.as_ref(), seeds, args.geodesic)?;
+    let diagram = Diagram::of_kind(args.voronoi, &canvas, metric.as_ref(), seeds, args.geodesic)?;
     stage("diagram");
     let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
         recipe::dual(&diagram, metric.as_ref(), road);
@@ -63,8 +66,9 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let mut report = reported(&mesh, metric.as_ref(), account)?;
     report.histograms = files::histograms(&args.outputs, &mesh, metric.as_ref())?;
     report.canvas = Some(canvas.figures());
-    report.diagram = Some(report::Diagram { raw_nerve: Some(raw_nerve), ..report::Diagram::of(&diagram) });
-    let is_measured = Drawn::needs_net(&args.outputs) || certify::is_wanted(args);
+    report.diagram =
+        Some(report::Diagram { raw_nerve: is_riemannian.then_some(raw_nerve), ..report::Diagram::of(&diagram) });
+    let is_measured = is_riemannian && (Drawn::needs_net(&args.outputs) || certify::is_wanted(args));
     let net = is_measured.then(|| recipe::net(&diagram, metric.as_ref(), &exact));
     report.net = net.as_ref().map(report::NetFigures::of);
     if net.is_some() {
@@ -109,10 +113,27 @@ fn canvas(args: &DualArgs, domain: &Domain, metric: &dyn MetricField, file: &See
     sampling::demand_memory(seeds.len() as f64, size as f64, args.memory_limit())?;
     let canvas = Canvas::new(args.canvas, domain, metric, size)?;
     file.demand_inside(&canvas)?;
-    if Road::from(args.dual) == Road::Canvas {
+    if args.voronoi == Kind::Riemannian && Road::from(args.dual) == Road::Canvas {
         return Ok(resolve(canvas, metric, seeds, RESOLVE_ROUNDS)?.canvas);
     }
     Ok(canvas)
+}
+
+/// Refuses what only the Riemannian diagram has where another is asked for.
+fn demand_geodesics(args: &DualArgs) -> Result<()> {
+    let shows_protection = args.outputs.show.contains(&Show::Protection);
+    let what = match () {
+        () if args.voronoi == Kind::Riemannian => return Ok(()),
+        () if args.edges == EdgesOut::Geodesic => "--edges geodesic",
+        () if Drawn::has_geodesics(&args.outputs) => "--show geodesics or triangles",
+        () if shows_protection => "--show protection",
+        () if certify::is_wanted(args) => "--certify",
+        () if args.canvas_size == CanvasSize::Certified => "--canvas-size certified",
+        () if args.geodesic != Method::default() => "--geodesic",
+        () => return Ok(()),
+    };
+    let help = format!("leave out {what}, or --voronoi");
+    Err(Error::Unsupported { what: format!("{what} with a diagram that measures straight distances"), help })
 }
 
 /// The figures of the dual with straight edges, in the metric only where it is valid.
@@ -163,6 +184,8 @@ fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {
         report.validity.inverted,
         "straight triangles come out inverted: the dual does not embed with straight edges and these seeds",
     );
+    let orphans = report.diagram.as_ref().map_or(0, |diagram| diagram.orphan_components);
+    note(orphans, "orphans: parts of cells that do not hang together with their seeds");
     if let Some(dual) = &report.dual {
         note(dual.crossing_edges.unwrap_or(0), "pairs of straight edges cross");
         if let Some(found) = &dual.geodesics {
@@ -182,7 +205,7 @@ fn options(args: &DualArgs) -> serde_json::Value {
     json!({
         "domain": args.domain, "metric": args.metric, "seeds": args.seeds, "out": args.out, "diagram": args.diagram,
         "canvas": args.canvas, "canvas_size": certify::canvas_size(args),
-        "certify": args.certify, "constants": args.constants, "geodesic": args.geodesic, "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
+        "voronoi": args.voronoi, "certify": args.certify, "constants": args.constants, "geodesic": args.geodesic, "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
         "smooth_metric": args.metric_choices.smooth_metric,
         "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,

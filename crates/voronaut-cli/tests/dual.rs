@@ -417,3 +417,40 @@ fn the_star_set_mesher_reports_its_stars() {
     assert_eq!((&report["valid"], &report["star_set"]["inconsistencies"]), (&Value::Bool(true), &Value::from(0)));
     assert_eq!(report["star_set"]["vertices"], report["vertices"]);
 }
+
+#[test]
+fn other_diagrams_have_orphans_that_are_counted_and_drawn() {
+    let place = Place::new();
+    place.put("seeds.txt", seed_file(&scattered(100, -2.0, 2.0, 5)));
+    let red = "#d8293c";
+    for kind in ["riemannian", "du-wang", "labelle-shewchuk"] {
+        let more = ["--metric", "swirl", "--voronoi", kind, "--canvas-size", "60", "--picture", "out.svg"];
+        let outputs = ["--show", "cells", "--report", "out.json"];
+        runs(&place, &dual(&[&more[..], &outputs].concat()));
+        let (found, has_orphans) = (report(&place, "out.json"), kind != "riemannian");
+        assert_eq!(found["options"]["voronoi"], kind);
+        let [vertices, components] =
+            ["orphans", "orphan_components"].map(|name| found["diagram"][name].as_u64().unwrap());
+        assert!(vertices >= components && (components > 0) == has_orphans, "{kind}: {vertices} {components}");
+        assert_eq!(found["diagram"]["raw_nerve"].is_null(), has_orphans);
+        let picture = String::from_utf8(place.read("out.svg")).unwrap();
+        assert_eq!(picture.contains(red), has_orphans, "{kind}");
+    }
+}
+
+#[test]
+fn what_only_geodesics_have_is_refused_of_other_diagrams() {
+    let place = swirled();
+    for more in [
+        &["--edges", "geodesic"][..],
+        &["--geodesic", "dijkstra"],
+        &["--picture", "out.svg", "--show", "geodesics"],
+        &["--picture", "out.svg", "--show", "protection"],
+    ] {
+        let output = place.run(&dual(&[&["--metric", "swirl", "--voronoi", "du-wang"][..], more].concat()));
+        let said = stderr(&output);
+        assert!(!output.status.success() && said.contains("straight distances"), "{more:?}: {said}");
+    }
+    let output = place.run(&dual(&["--metric", "swirl", "--voronoi", "power"]));
+    assert!(stderr(&output).contains("no such diagram"), "{}", stderr(&output));
+}

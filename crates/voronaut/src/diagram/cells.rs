@@ -40,6 +40,8 @@ pub struct Outline {
     pub points: Vec<Point>,
     /// Which of them are corners, where three cells meet or two at the border of the domain; increasing.
     pub corners: Vec<u32>,
+    /// Whether it bounds an orphan: a part of the cell without the seed ([`Diagram::orphans`]).
+    pub is_orphan: bool,
 }
 
 impl Cells {
@@ -50,6 +52,11 @@ impl Cells {
     pub fn of_seeds(domain: &Domain, field: &dyn MetricField, seeds: &[Point], vertices: usize) -> Result<Self> {
         let canvas = Canvas::intrinsic(domain, field, vertices)?;
         Ok(Diagram::new(&canvas, field, seeds)?.to_cells())
+    }
+
+    /// Whether a cell has a part without its seed.
+    pub fn has_orphans(&self) -> bool {
+        self.outlines.iter().flatten().any(|outline| outline.is_orphan)
     }
 }
 
@@ -65,7 +72,8 @@ impl Diagram<'_> {
             borders.map(|h| Piece { colour: 0, from: topology.origin(h).0, to: topology.target(h).0 }).collect();
         let mut outlines = vec![Vec::new(); self.colours()];
         for (colour, chain) in chains(&mut pieces) {
-            outlines[colour as usize].push(cutter.outline(&chain));
+            let is_orphan = cutter.bounds_orphan(colour, &chain);
+            outlines[colour as usize].push(Outline { is_orphan, ..cutter.outline(&chain) });
         }
         let features = topology.edges().filter(|&h| topology.twin(h).is_some() && topology.is_fixed(h));
         Cells {
@@ -91,6 +99,7 @@ struct Cutter<'a> {
     diagram: &'a Diagram<'a>,
     overlap: &'a Overlap,
     colours: Vec<u32>,
+    is_orphan: Vec<bool>,
 }
 
 impl<'a> Cutter<'a> {
@@ -102,7 +111,9 @@ impl<'a> Cutter<'a> {
             least.map_or(diagram.label(VertexId(v)).colour, |e| e.0)
         };
         let colours = (0..diagram.canvas.vertex_count() as u32).into_par_iter().map(nearest).collect();
-        Self { diagram, overlap, colours }
+        let mut is_orphan = vec![false; diagram.canvas.vertex_count()];
+        diagram.orphans().into_iter().for_each(|v| is_orphan[v.index()] = true);
+        Self { diagram, overlap, colours, is_orphan }
     }
 
     fn colour(&self, v: VertexId) -> u32 {
@@ -179,6 +190,18 @@ impl<'a> Cutter<'a> {
             outline.points.push(point);
         }
         outline
+    }
+
+    /// Whether a chain goes around orphans: vertices of its colour beside it are all of them. (In the embedded canvas an
+    /// orphan may hang together with its cell by an edge that the canvas proper does not have.)
+    fn bounds_orphan(&self, colour: u32, chain: &[u32]) -> bool {
+        let topology = &self.diagram.canvas.embedded().topology;
+        let half_edges = self.vertices() as u32..(self.vertices() + 3 * topology.face_slots()) as u32;
+        let crossed =
+            chain.iter().filter(|node| half_edges.contains(node)).map(|node| HalfEdge(node - half_edges.start));
+        let beside = crossed.flat_map(|h| [topology.origin(h), topology.target(h)]);
+        let mut own = beside.filter(|&v| self.colour(v) == colour).peekable();
+        own.peek().is_some() && own.all(|v| self.is_orphan[v.index()])
     }
 
     /// Where the border between the cells of an edge's ends crosses it.

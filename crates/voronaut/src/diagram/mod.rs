@@ -2,13 +2,18 @@
 //!
 //! Every canvas vertex has the colour of its nearest seed and the distance to it. Seeds are inserted, removed and moved
 //! one at a time, each by work on the cells concerned only, and with the result that making the diagram anew would have.
+//! The diagrams of other [`Kind`]s are coloured by straight distances instead, and made anew at every change.
 
 mod assemble;
 mod cells;
+mod chords;
 mod descend;
 mod distances;
 mod envelope;
+mod kind;
+mod nearest;
 mod nerve;
+mod orphans;
 mod overlap;
 mod passes;
 mod paths;
@@ -20,6 +25,7 @@ mod witnesses;
 
 pub use cells::{Cells, Outline};
 pub use distances::Distances;
+pub use kind::Kind;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle};
 pub use passes::Passes;
 pub use paths::Paths;
@@ -33,8 +39,9 @@ use crate::geodesic::{
     Support,
 };
 use crate::geometry::Point;
-use crate::metric::MetricField;
+use crate::metric::{MetricField, check_field};
 use crate::triangulation::VertexId;
+use chords::Chords;
 use overlap::Overlap;
 use seeds::{Care, Start};
 use std::sync::OnceLock;
@@ -43,11 +50,19 @@ use std::sync::OnceLock;
 pub struct Diagram<'a> {
     canvas: &'a Canvas,
     field: &'a dyn MetricField,
-    solver: Box<dyn Geodesic + 'a>,
+    measure: Measure<'a>,
     seeds: Vec<Option<Seed>>,
     sources: Sources,
     propagation: Propagation,
     overlap: OnceLock<Overlap>,
+}
+
+/// How distances from seeds come about.
+enum Measure<'a> {
+    /// Along shortest ways on the canvas.
+    Ways(Box<dyn Geodesic + 'a>),
+    /// Straight.
+    Chords(Chords),
 }
 
 /// A seed: where it is, and the canvas vertices that it gives a distance to.
@@ -134,12 +149,43 @@ impl<'a> Diagram<'a> {
         Ok(Self::from_starts(canvas, field, seeds, starts, solver(canvas, field, method)?))
     }
 
+    /// The diagram of a kind; a method is for the Riemannian one.
+    ///
+    /// # Errors
+    /// As for [`Diagram::by_method`]; [`Error::Metric`] where the metric is not positive definite at a seed.
+    pub fn of_kind(
+        kind: Kind,
+        canvas: &'a Canvas,
+        field: &'a dyn MetricField,
+        seeds: &[Point],
+        method: Method,
+    ) -> Result<Self> {
+        let chords = match kind {
+            Kind::Riemannian => return Self::by_method(canvas, field, seeds, method),
+            Kind::DuWang => Chords::InMetricOfPlace,
+            Kind::LabelleShewchuk => Chords::InMetricOfSeed,
+        };
+        let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Quick)?;
+        check_field(field, seeds.iter().copied())?;
+        Ok(Self::measured(canvas, field, seeds, starts, Measure::Chords(chords)))
+    }
+
     fn from_starts(
         canvas: &'a Canvas,
         field: &'a dyn MetricField,
         seeds: &[Point],
         starts: Vec<Vec<Start>>,
         solver: Box<dyn Geodesic + 'a>,
+    ) -> Self {
+        Self::measured(canvas, field, seeds, starts, Measure::Ways(solver))
+    }
+
+    fn measured(
+        canvas: &'a Canvas,
+        field: &'a dyn MetricField,
+        seeds: &[Point],
+        starts: Vec<Vec<Start>>,
+        measure: Measure<'a>,
     ) -> Self {
         let mut sources = Sources::new(canvas.vertex_count());
         let mut placed = Vec::with_capacity(seeds.len());
@@ -149,8 +195,11 @@ impl<'a> Diagram<'a> {
             }
             placed.push(Some(Seed { at, starts }));
         }
-        let propagation = solver.propagate(&sources);
-        Self { canvas, field, solver, seeds: placed, sources, propagation, overlap: OnceLock::new() }
+        let propagation = match &measure {
+            Measure::Ways(solver) => solver.propagate(&sources),
+            Measure::Chords(chords) => chords.propagate(canvas, field, &placed),
+        };
+        Self { canvas, field, measure, seeds: placed, sources, propagation, overlap: OnceLock::new() }
     }
 
     /// Inserts a seed by one front from it; returns its colour.
@@ -213,6 +262,15 @@ impl<'a> Diagram<'a> {
         self.canvas
     }
 
+    /// By what distance its cells are the nearest places.
+    pub fn kind(&self) -> Kind {
+        match self.measure {
+            Measure::Ways(_) => Kind::Riemannian,
+            Measure::Chords(Chords::InMetricOfPlace) => Kind::DuWang,
+            Measure::Chords(Chords::InMetricOfSeed) => Kind::LabelleShewchuk,
+        }
+    }
+
     /// Where a seed is; `None` of a removed one.
     pub fn seed(&self, colour: u32) -> Option<Point> {
         self.seeds.get(colour as usize)?.as_ref().map(|seed| seed.at)
@@ -223,7 +281,7 @@ impl<'a> Diagram<'a> {
         self.seeds.len()
     }
 
-    /// Metric distance from a canvas vertex to its seed; infinite where no seed reaches.
+    /// Metric distance (that of the diagram's kind) from a canvas vertex to its seed; infinite where no seed reaches.
     pub fn distance(&self, v: VertexId) -> f64 {
         self.label(v).distance
     }
@@ -278,29 +336,6 @@ impl<'a> Diagram<'a> {
         sizes
     }
 
-    /// Canvas vertices that canvas edges of their colour do not connect to their seed (RR-9103: orphans), in order.
-    pub fn orphans(&self) -> Vec<VertexId> {
-        let topology = self.canvas.topology();
-        let mut reached = vec![false; self.canvas.vertex_count()];
-        let mut stack: Vec<VertexId> = Vec::new();
-        let mut reach = |v: VertexId, stack: &mut Vec<VertexId>| {
-            if !std::mem::replace(&mut reached[v.index()], true) {
-                stack.push(v);
-            }
-        };
-        for (colour, seed) in self.seeds.iter().enumerate() {
-            let starts = seed.iter().flat_map(|s| &s.starts).map(|s| s.vertex);
-            starts.filter(|&v| self.label(v).colour == colour as u32).for_each(|v| reach(v, &mut stack));
-        }
-        while let Some(v) = stack.pop() {
-            let colour = self.label(v).colour;
-            let neighbours = topology.star(v).flat_map(|h| [topology.target(h), topology.apex(h)]);
-            neighbours.filter(|&y| self.label(y).colour == colour).for_each(|y| reach(y, &mut stack));
-        }
-        let is_orphan = |v: &VertexId| !reached[v.index()] && self.colour(*v).is_some();
-        (0..reached.len() as u32).map(VertexId).filter(is_orphan).collect()
-    }
-
     fn place(&mut self, colour: u32, at: Point, starts: Vec<Start>) {
         self.sources_of(colour, &starts);
         let changed: Vec<VertexId> = starts.iter().map(|s| s.vertex).collect();
@@ -326,6 +361,9 @@ impl<'a> Diagram<'a> {
 
     fn mend(&mut self, changed: &[VertexId]) {
         self.overlap = OnceLock::new();
-        self.solver.update(&self.sources, changed, &mut self.propagation);
+        match &self.measure {
+            Measure::Ways(solver) => solver.update(&self.sources, changed, &mut self.propagation),
+            Measure::Chords(chords) => self.propagation = chords.propagate(self.canvas, self.field, &self.seeds),
+        }
     }
 }

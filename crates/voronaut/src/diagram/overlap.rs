@@ -3,8 +3,8 @@
 //! Where two fronts meet, values are poor on both sides, for neither crosses a face whose vertices have different colours.
 //! So each seed's distances are computed once more, by themselves, on its cell and a few rings around it.
 
-use super::Diagram;
-use crate::geodesic::{NO_COLOUR, Patches};
+use super::{Diagram, Measure, Seed};
+use crate::geodesic::NO_COLOUR;
 use crate::triangulation::VertexId;
 use rayon::prelude::*;
 
@@ -33,6 +33,8 @@ impl Overlap {
 }
 
 type Patch = Vec<(VertexId, f64)>;
+/// The distances of a patch's vertices to its seed.
+type Measured<'a> = dyn FnMut(&Seed, &[VertexId]) -> Vec<f64> + 'a;
 
 impl Diagram<'_> {
     /// The distances of every cell and its surroundings; computed, in parallel, when they are first asked for after a
@@ -45,15 +47,32 @@ impl Diagram<'_> {
         let cells = self.cells();
         let colours: Vec<u32> = (0..self.colours() as u32).collect();
         let patches = |chunk: &[u32]| -> Vec<Patch> {
-            let mut solver = self.solver.patches();
+            let mut distances = self.patch_distances();
             let mut seen = vec![false; self.canvas.vertex_count()];
             chunk
                 .iter()
-                .map(|&colour| self.patch(colour, &cells[colour as usize], solver.as_mut(), &mut seen))
+                .map(|&colour| self.patch(colour, &cells[colour as usize], distances.as_mut(), &mut seen))
                 .collect()
         };
         let patches: Vec<Patch> = colours.par_chunks(CELLS).flat_map_iter(patches).collect();
         gather(self.canvas.vertex_count(), &patches)
+    }
+
+    /// The distances of vertices to one seed after the other.
+    fn patch_distances(&self) -> Box<Measured<'_>> {
+        match &self.measure {
+            Measure::Chords(chords) => Box::new(|seed, vertices| {
+                let to = |&v: &VertexId| chords.length(self.field, seed.at, self.canvas.position(v));
+                vertices.iter().map(to).collect()
+            }),
+            Measure::Ways(solver) => {
+                let mut solver = solver.patches();
+                Box::new(move |seed, vertices| {
+                    let starts: Vec<(VertexId, f64)> = seed.starts.iter().map(|s| (s.vertex, s.distance)).collect();
+                    solver.distances(vertices, &starts)
+                })
+            }
+        }
     }
 
     fn cells(&self) -> Vec<Vec<VertexId>> {
@@ -67,7 +86,7 @@ impl Diagram<'_> {
         cells
     }
 
-    fn patch(&self, colour: u32, cell: &[VertexId], solver: &mut dyn Patches, seen: &mut [bool]) -> Patch {
+    fn patch(&self, colour: u32, cell: &[VertexId], measured: &mut Measured, seen: &mut [bool]) -> Patch {
         let Some(seed) = &self.seeds[colour as usize] else { return Patch::new() };
         let topology = self.canvas.topology();
         let mut vertices: Vec<VertexId> = Vec::with_capacity(2 * cell.len());
@@ -86,8 +105,7 @@ impl Diagram<'_> {
         for v in &vertices {
             seen[v.index()] = false;
         }
-        let starts: Vec<(VertexId, f64)> = seed.starts.iter().map(|s| (s.vertex, s.distance)).collect();
-        let distances = solver.distances(&vertices, &starts);
+        let distances = measured(seed, &vertices);
         vertices.into_iter().zip(distances).filter(|(_, distance)| distance.is_finite()).collect()
     }
 }

@@ -95,6 +95,8 @@ pub struct Made {
     pub canvas: CanvasFigures,
     /// Canvas vertices cut off from their cells.
     pub orphans: usize,
+    /// The connected sets that they form.
+    pub orphan_components: usize,
     /// Work of the solver.
     pub diagram: MarchCounters,
 }
@@ -140,8 +142,13 @@ impl Dual<'_> {
         let unsure = |t: &NerveTriangle| t.fourth.is_some_and(|(_, gap)| gap < BEYOND_CANVAS);
         let unsure = nerve.sides(unsure).map(|[i, j]| pair(ids[i as usize], ids[j as usize])).collect();
         let mut found = self.compare(road, &wanted, &is_inner);
-        found.made =
-            Some(Made { canvas: canvas.figures(), orphans: diagram.orphans().len(), diagram: *diagram.counters() });
+        let orphans = diagram.orphan_components();
+        found.made = Some(Made {
+            canvas: canvas.figures(),
+            orphans: orphans.iter().map(Vec::len).sum(),
+            orphan_components: orphans.len(),
+            diagram: *diagram.counters(),
+        });
         found.impossible = self.adopt(road, wanted);
         found.uncertain = self.uncertain_edges(&unsure);
         Ok(found)

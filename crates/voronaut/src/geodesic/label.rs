@@ -21,7 +21,7 @@ pub struct Label {
 pub enum Support {
     /// No source reaches the vertex.
     Nothing,
-    /// A source beside the vertex.
+    /// A source beside the vertex, or one that distances lead straight from.
     Source,
     /// Both ends of the half-edge, opposite to the vertex in its face or (unfolded) in the face beyond.
     Edge(HalfEdge),
@@ -51,7 +51,8 @@ impl Label {
         Self { distance, colour, support }
     }
 
-    pub(super) fn of_source(distance: f64, colour: u32) -> Self {
+    /// The label of a vertex that has its distance straight from a source.
+    pub(crate) fn of_source(distance: f64, colour: u32) -> Self {
         Self::new(distance, colour, Support::Source)
     }
 

@@ -56,7 +56,7 @@ pub struct Propagation {
 
 impl Propagation {
     /// Labels that nothing will mend in part.
-    pub(super) fn of(labels: Vec<Label>, counters: MarchCounters) -> Self {
+    pub(crate) fn of(labels: Vec<Label>, counters: MarchCounters) -> Self {
         Self { labels, due: Vec::new(), front: Front::default(), counters }
     }
 

@@ -24,7 +24,7 @@ const CLASSES: usize = 13;
 /// What of a diagram a picture shows besides a mesh.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Layers<'a> {
-    /// Cells, as filled regions under everything else, with dots at the seeds.
+    /// Cells, as filled regions under everything else, with dots at the seeds; orphans in red over paler ones.
     pub cells: Option<&'a Cells>,
     /// Canvas faces that witness Voronoi vertices (red) and Voronoi edges (grey); cells are paler then.
     pub witnesses: Option<[&'a [[Point; 3]]; 2]>,
@@ -60,6 +60,20 @@ pub(super) fn cells(svg: &mut String, cells: &Cells, frame: &Frame, tint: Tint) 
         let _ = writeln!(svg, r#"<path fill="{fill}" stroke="{ink}" stroke-width="{width:.1}" d="{}"/>"#, path.text());
     }
     svg.push_str("</g>\n");
+    orphans(svg, cells, frame);
+}
+
+/// Orphans over the cells, so that even the smallest is seen.
+fn orphans(svg: &mut String, cells: &Cells, frame: &Frame) {
+    let mut path = PathData::default();
+    for outline in cells.outlines.iter().flatten().filter(|outline| outline.is_orphan) {
+        path.polyline(&place(&outline.points, &outline.corners, true, frame), true);
+    }
+    if !path.text().is_empty() {
+        let ([fill, ink], width) = (colours::ORPHAN, frame.quanta(0.5));
+        let style = format!(r#"fill="{fill}" stroke="{ink}" stroke-width="{width:.1}" stroke-linejoin="round""#);
+        let _ = writeln!(svg, r#"<path {style} d="{}"/>"#, path.text());
+    }
 }
 
 /// The cells by the factors that they have: one SVG path per colour and width of line.

@@ -14,6 +14,8 @@ pub(super) const CELL_BORDER: &str = "#ffffff";
 pub(super) const PALE_BORDER: &str = "#c9ced8";
 /// Dots at seeds.
 pub(super) const SEED: &str = "#1b2540";
+/// Fill and ink of orphans.
+pub(super) const ORPHAN: [&str; 2] = ["#d8293c", "#5c0d1a"];
 /// Geodesic edges.
 pub(super) const GEODESIC: &str = "#1b2540";
 /// Where a value is not known.
@@ -52,7 +54,7 @@ pub(super) enum Tint {
     Full,
     /// Under lines.
     Soft,
-    /// Under filled triangles.
+    /// Under filled triangles or orphans.
     Pale,
 }
 

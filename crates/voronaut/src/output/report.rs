@@ -84,6 +84,8 @@ pub struct StarSet {
 pub struct Diagram {
     /// Canvas vertices cut off from their cell.
     pub orphans: usize,
+    /// The connected sets that they form.
+    pub orphan_components: usize,
     /// The nerve as canvas faces of three colours alone have it, beside the exact dual.
     pub raw_nerve: Option<RawNerve>,
     /// Work of the solver, its fields beside this one.
@@ -105,7 +107,13 @@ pub struct RawNerve {
 impl Diagram {
     /// Of a diagram as it is.
     pub fn of(diagram: &crate::diagram::Diagram) -> Self {
-        Self { orphans: diagram.orphans().len(), raw_nerve: None, counters: *diagram.counters() }
+        let components = diagram.orphan_components();
+        Self {
+            orphans: components.iter().map(Vec::len).sum(),
+            orphan_components: components.len(),
+            raw_nerve: None,
+            counters: *diagram.counters(),
+        }
     }
 }
 

@@ -74,9 +74,10 @@ pub fn svg_with(
     if let Some(found) = layers.cells {
         let has_lines = picture.mesh || picture.ellipses || !layers.geodesics.is_empty();
         let tint = if has_lines { Tint::Soft } else { Tint::Full };
+        let is_ground = layers.witnesses.is_some() || found.has_orphans();
         match layers.factors {
             Some(factors) => cells::factors(&mut text, found, factors, &frame),
-            None => cells::cells(&mut text, found, &frame, if layers.witnesses.is_some() { Tint::Pale } else { tint }),
+            None => cells::cells(&mut text, found, &frame, if is_ground { Tint::Pale } else { tint }),
         }
     } else {
         let one_class = || vec![colours::DOMAIN.to_string(); triangles.len()];

@@ -24,7 +24,12 @@ pub(super) fn settle(
     let found = dual.consult_diagram(options.dual, options.canvas, options.canvas_size, options.geodesic)?;
     let made = found.made;
     let canvas = made.map(|m| m.canvas);
-    let diagram = made.map(|m| report::Diagram { orphans: m.orphans, raw_nerve: None, counters: m.diagram });
+    let diagram = made.map(|m| report::Diagram {
+        orphans: m.orphans,
+        orphan_components: m.orphan_components,
+        raw_nerve: None,
+        counters: m.diagram,
+    });
     Ok(Settled { dual: account(dual, domain, found), canvas, diagram })
 }
 
