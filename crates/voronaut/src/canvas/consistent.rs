@@ -2,21 +2,19 @@
 //! triangles of a mesh.
 
 use super::buckets::Buckets;
-use super::star::Star;
+use super::agreement::Before;
+use super::star::Spoke;
 use super::star_set::{StarFigures, Stars};
 use super::steiner::{Placed, Steiner};
-use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Vector};
 use crate::metric::MetricField;
 use crate::planar::Planar;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// A simplex is cut if its circumradius is more than so many times its shortest edge: rho zero of the authors.
 const RATIO: f64 = 3.0;
-/// A new inconsistent simplex is tolerated if its circumradius is so many times that of the simplex cut: the authors' beta.
-const BETA: f64 = 2.5;
 /// The picking ball's radius, as a share of the circumradius: the authors' delta.
 const PICKING: f64 = 0.3;
 /// Places tried in it, the circumcentre first: the authors' number.
@@ -54,6 +52,8 @@ pub struct PickCounters {
     pub picked: u64,
     /// For inconsistent ones, at their circumcentre, for want of such a place.
     pub unpicked: u64,
+    /// Vertices that were moved instead.
+    pub moved: u64,
     /// Places tried.
     pub tries: u64,
 }
@@ -63,8 +63,9 @@ pub struct PickCounters {
 /// # Errors
 /// [`Error::Metric`]; [`Error::Limit`] with a place where stars disagree when there are too many vertices;
 /// [`Error::Mesh`] where rounding leaves no room to refine, or the stars agree and are no triangulation.
-pub fn consistent(domain: &Domain, field: &dyn MetricField, asked: Consistency) -> Result<Consistent> {
-    let stars = Stars::new(Steiner::metric(domain.planar().clone(), field)?);
+pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) -> Result<Consistent> {
+    let stars = Stars::new(Steiner::metric(start, field)?);
+    eprintln!("start {:?}", stars.figures());
     let (large, thin, counters) = (Buckets::default(), Buckets::default(), PickCounters::default());
     let mut picker = Picker { stars, asked, large, thin, counters, random: 1 };
     let all: Vec<VertexId> = picker.stars.steiner.planar.topology.vertices().collect();
@@ -79,11 +80,15 @@ pub fn consistent(domain: &Domain, field: &dyn MetricField, asked: Consistency) 
         if picker.cut_bad()? > 0 {
             continue;
         }
+        let n0 = picker.inconsistent().len();
+        picker.relocate()?;
         let inconsistent = picker.inconsistent();
+        eprintln!("relocated {n0} -> {}", inconsistent.len());
+        eprintln!("round {rounds} n {} inconsistent {} {:?}", picker.stars.steiner.planar.topology.vertex_count(), inconsistent.len(), picker.counters);
         if inconsistent.is_empty() {
             break;
         }
-        picker.make_consistent(&inconsistent)?;
+        picker.make_consistent(inconsistent)?;
     }
     let figures = StarFigures { rounds, ..picker.stars.figures() };
     Ok(Consistent { planar: union(&picker.stars)?, figures, counters: picker.counters })
@@ -94,14 +99,19 @@ fn all_vertices(stars: &Stars) -> Vec<VertexId> {
 }
 
 /// A simplex of the star of its first vertex.
-type Simplex = (VertexId, [VertexId; 2]);
+pub(super) type Simplex = (VertexId, [VertexId; 2]);
 
-struct Picker<'a> {
-    stars: Stars<'a>,
+enum Fault {
+    Large(f64),
+    Thin(f64),
+}
+
+pub(super) struct Picker<'a> {
+    pub(super) stars: Stars<'a>,
     asked: Consistency,
     large: Buckets<Simplex>,
     thin: Buckets<Simplex>,
-    counters: PickCounters,
+    pub(super) counters: PickCounters,
     random: u64,
 }
 
@@ -109,15 +119,11 @@ impl Picker<'_> {
     /// Queues what is large or thin in some stars.
     fn note(&mut self, dirty: &[VertexId]) {
         for &v in dirty {
-            for spoke in &self.stars.by_vertex[v.index()] {
-                let Some((_, radius)) = self.stars.circle(v, spoke.ends) else { continue };
-                let tensor = self.stars.steiner.tensors[v.index()];
-                let [p, q, r] = [v, spoke.ends[0], spoke.ends[1]].map(|u| self.stars.steiner.planar.position(u));
-                let shortest = tensor.length(q - p).min(tensor.length(r - q)).min(tensor.length(p - r));
-                if radius > self.asked.radius {
-                    self.large.push(radius, (v, spoke.ends));
-                } else if radius > RATIO * shortest {
-                    self.thin.push(radius / shortest, (v, spoke.ends));
+            for &Spoke { ends, .. } in &self.stars.by_vertex[v.index()] {
+                match self.fault(v, ends) {
+                    Some(Fault::Large(radius)) => self.large.push(radius, (v, ends)),
+                    Some(Fault::Thin(ratio)) => self.thin.push(ratio, (v, ends)),
+                    None => {}
                 }
             }
         }
@@ -160,102 +166,123 @@ impl Picker<'_> {
     }
 
     /// All simplices that not all of their vertices' stars have.
-    fn inconsistent(&self) -> Vec<Simplex> {
+    pub(super) fn inconsistent(&self) -> Vec<Simplex> {
         let mut found = Vec::new();
         for v in all_vertices(&self.stars) {
-            let spokes = self.stars.by_vertex[v.index()].iter().map(|spoke| spoke.ends);
-            found.extend(spokes.filter(|&[a, b]| !self.stars.agree([v, a, b])).map(|ends| (v, ends)));
+            let spokes = self.stars.by_vertex[v.index()].iter().map(|spoke| (v, spoke.ends));
+            found.extend(spokes.filter(|&simplex| self.is_inconsistent(simplex)));
         }
         found
     }
 
-    /// Cuts inconsistent simplices that are still there when it is their turn.
-    fn make_consistent(&mut self, inconsistent: &[Simplex]) -> Result<()> {
-        let mut is_idle = true;
-        for &(v, ends) in inconsistent {
-            if self.circle((v, ends)).is_some() && !self.stars.agree([v, ends[0], ends[1]]) && self.pick(v, ends)? {
-                is_idle = false;
+    /// Whether a star has a simplex, and another has not.
+    pub(super) fn is_inconsistent(&self, (v, ends): Simplex) -> bool {
+        self.stars.has(v, ends) && !self.stars.agree([v, ends[0], ends[1]])
+    }
+
+    /// Cuts inconsistent simplices, the largest first, of those near each other one.
+    fn make_consistent(&mut self, mut inconsistent: Vec<Simplex>) -> Result<()> {
+        let radius = |s: &Simplex| self.stars.circle(s.0, s.1).map_or(0.0, |(_, radius)| radius);
+        inconsistent.sort_by(|s, t| radius(t).total_cmp(&radius(s)).then(s.cmp(t)));
+        let mut touched: HashSet<VertexId> = HashSet::new();
+        for &(v, ends) in &inconsistent {
+            if [v, ends[0], ends[1]].iter().any(|u| touched.contains(u)) || !self.is_inconsistent((v, ends)) {
+                continue;
+            }
+            if let Some(new) = self.pick(v, ends)? {
+                touched.extend([v, ends[0], ends[1]]);
+                touched.extend(self.stars.by_vertex[new.index()].iter().flat_map(|spoke| spoke.ends));
                 self.demand_room(v)?;
                 self.cut_bad()?;
             }
         }
-        if is_idle {
+        if touched.is_empty() {
             let place = self.stars.steiner.planar.position(inconsistent[0].0).to_string();
             return Err(not_meshed("stars disagree where rounding leaves no room to refine them", place));
         }
         Ok(())
     }
 
-    /// Puts a vertex near the centre of an inconsistent simplex, where that makes no new inconsistency that is small; else
-    /// at its centre (`pick_valid`). Says whether there is a new vertex.
-    fn pick(&mut self, v: VertexId, ends: [VertexId; 2]) -> Result<bool> {
-        let Some((centre, radius)) = self.stars.circle(v, ends) else { return Ok(false) };
-        let [a, b, c] = self.stars.steiner.tensors[v.index()].cholesky();
+    /// Puts a vertex near the centre of an inconsistent simplex, where that leaves the fewest inconsistent ones.
+    fn pick(&mut self, v: VertexId, ends: [VertexId; 2]) -> Result<Option<VertexId>> {
+        let Some((centre, radius)) = self.stars.circle(v, ends) else { return Ok(None) };
+        let mut best: Option<(isize, Point)> = None;
         for attempt in 0..TRIES {
             self.counters.tries += 1;
-            let (x, y) = if attempt == 0 { (0.0, 0.0) } else { self.in_disk() };
-            let away = Vector::new((x - b * y / c) / a, y / c) * (PICKING * radius);
-            match self.stars.place(v, centre + away, radius)? {
+            let place = if attempt == 0 { centre } else { centre + self.in_ball(v, radius) };
+            match self.stars.place(v, place, radius)? {
                 Placed::Refused => {}
                 Placed::Halved(new) => {
                     self.counters.picked += 1;
-                    return Ok(self.keep(new));
+                    return Ok(Some(self.keep(new)));
                 }
                 Placed::Inserted(new) => {
-                    if self.is_kept(new, BETA * radius) {
+                    let (left, change) = self.tried(new);
+                    if left == 0 {
                         self.counters.picked += 1;
-                        return Ok(true);
+                        return Ok(Some(new));
+                    }
+                    if best.is_none_or(|(least, _)| change < least) {
+                        best = Some((change, place));
                     }
                 }
             }
         }
-        if let Placed::Inserted(new) | Placed::Halved(new) = self.stars.place(v, centre, radius)? {
-            self.counters.unpicked += 1;
-            return Ok(self.keep(new));
+        let place = best.map_or(centre, |(_, place)| place);
+        let gain = best.is_some_and(|(change, _)| change < 0);
+        if let Placed::Inserted(new) | Placed::Halved(new) = self.stars.place(v, place, radius)? {
+            *(if gain { &mut self.counters.picked } else { &mut self.counters.unpicked }) += 1;
+            return Ok(Some(self.keep(new)));
         }
-        Ok(false)
+        Ok(None)
     }
 
-    fn keep(&mut self, new: VertexId) -> bool {
+    /// A vector to somewhere in the picking ball.
+    pub(super) fn in_ball(&mut self, v: VertexId, radius: f64) -> Vector {
+        let [a, b, c] = self.stars.steiner.tensors[v.index()].cholesky();
+        let (x, y) = self.in_disk();
+        Vector::new((x - b * y / c) / a, y / c) * (PICKING * radius)
+    }
+
+    fn keep(&mut self, new: VertexId) -> VertexId {
         let dirty = self.stars.mend(&[new]);
         self.note(&dirty);
-        true
+        new
     }
 
-    /// Keeps a vertex if the inconsistent simplices that it makes are all larger than a circumradius; else takes it out.
-    fn is_kept(&mut self, new: VertexId, least: f64) -> bool {
+    /// Says how many inconsistent simplices a new vertex leaves around it, and how many more than there were. Unless it leaves
+    /// none it is taken out again.
+    fn tried(&mut self, new: VertexId) -> (usize, isize) {
         self.stars.make_room();
         let dirty = self.stars.changed_by(new);
-        let before: HashMap<VertexId, Star> =
-            dirty.iter().map(|&w| (w, self.stars.by_vertex[w.index()].clone())).collect();
+        let before = Before::of(&self.stars, dirty.iter().copied());
         self.stars.mend(&[new]);
-        if !self.makes_small(&before, least) || !self.stars.steiner.take_out(new) {
+        let change = before.change(&self.stars);
+        if change.after == 0 || !self.stars.steiner.take_out(new) {
             self.note(&dirty);
-            return true;
+            return (0, 0);
         }
-        for (w, star) in before {
-            self.stars.by_vertex[w.index()] = star;
-        }
+        before.restore(&mut self.stars);
         self.stars.by_vertex[new.index()].clear();
-        false
+        (change.after, change.after as isize - change.before as isize)
     }
 
-    /// Whether stars disagree now, and did not before, on a simplex with a circumradius below `least`.
-    fn makes_small(&self, before: &HashMap<VertexId, Star>, least: f64) -> bool {
-        let had = |v: VertexId, ends: [VertexId; 2]| {
-            before.get(&v).map_or_else(|| self.stars.has(v, ends), |star| star.iter().any(|spoke| spoke.ends == ends))
-        };
-        let turns = |v: VertexId, [a, b]: [VertexId; 2]| [(v, [a, b]), (a, [b, v]), (b, [v, a])];
-        let is_new = |v: VertexId, ends: [VertexId; 2]| {
-            let held = turns(v, ends).iter().filter(|&&(u, others)| had(u, others)).count();
-            let holders = turns(v, ends).into_iter().filter(|&(u, others)| self.stars.has(u, others));
-            let holders: Vec<Simplex> = holders.collect();
-            let is_small = |&(u, others): &Simplex| self.stars.circle(u, others).is_some_and(|(_, r)| r < least);
-            (held == 0 || held == 3) && holders.len() < 3 && holders.iter().any(is_small)
-        };
-        let now = before.keys().flat_map(|&w| self.stars.by_vertex[w.index()].iter().map(move |spoke| (w, spoke.ends)));
-        let then = before.iter().flat_map(|(&w, star)| star.iter().map(move |spoke| (w, spoke.ends)));
-        now.chain(then).any(|(w, ends)| is_new(w, ends))
+    /// Whether no simplex of a star is large or thin.
+    pub(super) fn is_good(&self, v: VertexId) -> bool {
+        self.stars.by_vertex[v.index()].iter().all(|spoke| self.fault(v, spoke.ends).is_none())
+    }
+
+    /// How large a simplex is if it is too large, and how thin if too thin.
+    fn fault(&self, v: VertexId, ends: [VertexId; 2]) -> Option<Fault> {
+        let (_, radius) = self.stars.circle(v, ends)?;
+        let tensor = self.stars.steiner.tensors[v.index()];
+        let [p, q, r] = [v, ends[0], ends[1]].map(|u| self.stars.steiner.planar.position(u));
+        let shortest = tensor.length(q - p).min(tensor.length(r - q)).min(tensor.length(p - r));
+        if radius > self.asked.radius {
+            Some(Fault::Large(radius))
+        } else {
+            (radius > RATIO * shortest).then_some(Fault::Thin(radius / shortest))
+        }
     }
 
     /// A point of the unit disk, evenly distributed.

@@ -4,6 +4,7 @@
 //! drawn, or found by its coordinates, uses [`Canvas::embedded`], the triangulation of the plane from which the lengths
 //! were taken. Both have the same vertices.
 
+mod agreement;
 mod border;
 mod buckets;
 mod consistent;
@@ -13,6 +14,7 @@ mod kind;
 mod lengths;
 mod locate;
 mod refine;
+mod relocate;
 mod star;
 mod star_set;
 mod steiner;

@@ -4,8 +4,8 @@ use super::{Job, MeshOptions, Meshed};
 use crate::canvas::{Consistency, UNIT_RADIUS, consistent};
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::metric::{MetricField, Scaled};
-use crate::optimise::Relaxed;
+use crate::metric::{MetricField, Scaled, Steadied};
+use crate::dual::Kind;
 use crate::output::report;
 use crate::progress::Progress;
 use crate::quality;
@@ -64,14 +64,25 @@ pub(super) fn by_stars(
     progress: &dyn Progress,
 ) -> Result<Meshed> {
     let mut job = Job::new(field, options, progress);
-    let (domain, _, count, scale) = job.timed("plan", |job| job.plan(domain))?;
+    let (_, _, _, scale) = job.timed("plan", |job| job.plan(domain))?;
+    let scaled = Scaled { field, factor: scale };
+    let most: f64 = std::env::var("TURN").map_or(0.6, |r| r.parse().unwrap());
+    let steadied = Steadied { field: &scaled, most };
+    let as_it_is = MeshOptions { vertices: None, complexity: None, ..options.clone() };
+    let mut job = Job::new(&steadied, &as_it_is, progress);
+    let (domain, plan, count, one) = job.timed("plan", |job| job.plan(domain))?;
     let most = MOST * count + SPARE;
     demand_memory(count as f64, most as f64, options.memory_limit)?;
+    let mut dual = job.timed("seed", |job| job.seed(&domain, None, &plan, count, one))?;
+    let relaxation = job.timed("relax", |job| job.relax(&mut dual, None))?;
     progress.stage("stars", 1);
-    let scaled = Scaled { field, factor: scale };
-    let found = job.timed("stars", |_| consistent(&domain, &scaled, Consistency { radius: UNIT_RADIUS, most }))?;
+    let radius: f64 = std::env::var("RADIUS").map_or(UNIT_RADIUS, |r| r.parse().unwrap());
+    let found = job.timed("stars", |_| consistent(dual.planar().clone(), &steadied, Consistency { radius, most }))?;
     progress.stage("checking", 1);
-    let corner = |v: crate::triangulation::VertexId| domain.sources().get(v.index()).copied().flatten();
+    let corner = |v: crate::triangulation::VertexId| match (v.index() < dual.planar().positions.len()).then(|| dual.kind(v)) {
+        Some(Kind::Corner(c)) => Some(c),
+        _ => None,
+    };
     let mesh = domain.mesh_of(&found.planar, corner);
     job.timed("check", |_| quality::check(&mesh))?;
     if let Some(asked) = options.vertices.filter(|&asked| asked != mesh.points.len()) {
@@ -82,7 +93,7 @@ pub(super) fn by_stars(
         mesh,
         metric_scale: scale,
         dual: report::Dual::default(),
-        relaxation: Relaxed::default(),
+        relaxation,
         canvas: None,
         diagram: None,
         net: None,
