@@ -3,6 +3,7 @@
 
 use super::buckets::Buckets;
 use super::agreement::Before;
+use super::relocate::relocate;
 use super::star::Spoke;
 use super::star_set::{StarFigures, Stars};
 use super::steiner::{Placed, Steiner};
@@ -81,7 +82,10 @@ pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) ->
             continue;
         }
         let n0 = picker.inconsistent().len();
-        picker.relocate()?;
+        picker.counters.moved += relocate(&mut picker.stars.steiner, asked.radius)?;
+        picker.stars.update_all();
+        picker.note(&all_vertices(&picker.stars));
+        picker.cut_bad()?;
         let inconsistent = picker.inconsistent();
         eprintln!("relocated {n0} -> {}", inconsistent.len());
         eprintln!("round {rounds} n {} inconsistent {} {:?}", picker.stars.steiner.planar.topology.vertex_count(), inconsistent.len(), picker.counters);

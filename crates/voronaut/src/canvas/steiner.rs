@@ -177,13 +177,6 @@ impl<'a> Steiner<'a> {
         Ok(is_moved)
     }
 
-    /// Flips around a vertex that has moved.
-    pub(super) fn legalise_around(&mut self, v: VertexId) {
-        let topology = &self.planar.topology;
-        self.stack.extend(topology.star(v).flat_map(|h| [h, h.next()]));
-        self.flip();
-    }
-
     /// Removes a vertex that was just inserted, and flips as before; says whether it could.
     pub(super) fn take_out(&mut self, v: VertexId) -> bool {
         let topology = &self.planar.topology;

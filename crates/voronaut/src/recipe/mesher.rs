@@ -77,7 +77,7 @@ pub(super) fn by_stars(
     let relaxation = job.timed("relax", |job| job.relax(&mut dual, None))?;
     progress.stage("stars", 1);
     let radius: f64 = std::env::var("RADIUS").map_or(UNIT_RADIUS, |r| r.parse().unwrap());
-    let found = job.timed("stars", |_| consistent(dual.planar().clone(), &steadied, Consistency { radius, most }))?;
+    let found = job.timed("stars", |_| consistent(dual.planar().clone(), &scaled, Consistency { radius, most }))?;
     progress.stage("checking", 1);
     let corner = |v: crate::triangulation::VertexId| match (v.index() < dual.planar().positions.len()).then(|| dual.kind(v)) {
         Some(Kind::Corner(c)) => Some(c),
