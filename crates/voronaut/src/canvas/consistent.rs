@@ -21,6 +21,11 @@ const PICKING: f64 = 0.3;
 /// Places tried in it, the circumcentre first: the authors' number.
 const TRIES: usize = 60;
 
+/// Rounds of moves and insertions at most.
+const ROUNDS: usize = 60;
+/// What to do where stars do not come to agree.
+pub const NEEDS_MORE: &str = "star sets need far more vertices where the metric turns fast: use --mesher voronoi";
+
 /// When and how far to refine.
 #[derive(Clone, Copy, Debug)]
 pub struct Consistency {
@@ -66,7 +71,6 @@ pub struct PickCounters {
 /// [`Error::Mesh`] where rounding leaves no room to refine, or the stars agree and are no triangulation.
 pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) -> Result<Consistent> {
     let stars = Stars::new(Steiner::metric(start, field)?);
-    eprintln!("start {:?}", stars.figures());
     let (large, thin, counters) = (Buckets::default(), Buckets::default(), PickCounters::default());
     let mut picker = Picker { stars, asked, large, thin, counters, random: 1 };
     let all: Vec<VertexId> = picker.stars.steiner.planar.topology.vertices().collect();
@@ -81,16 +85,16 @@ pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) ->
         if picker.cut_bad()? > 0 {
             continue;
         }
-        let n0 = picker.inconsistent().len();
         picker.counters.moved += relocate(&mut picker.stars.steiner, asked.radius)?;
         picker.stars.update_all();
         picker.note(&all_vertices(&picker.stars));
         picker.cut_bad()?;
         let inconsistent = picker.inconsistent();
-        eprintln!("relocated {n0} -> {}", inconsistent.len());
-        eprintln!("round {rounds} n {} inconsistent {} {:?}", picker.stars.steiner.planar.topology.vertex_count(), inconsistent.len(), picker.counters);
         if inconsistent.is_empty() {
             break;
+        }
+        if rounds == ROUNDS {
+            return Err(picker.not_agreed(inconsistent[0].0));
         }
         picker.make_consistent(inconsistent)?;
     }
@@ -103,19 +107,19 @@ fn all_vertices(stars: &Stars) -> Vec<VertexId> {
 }
 
 /// A simplex of the star of its first vertex.
-pub(super) type Simplex = (VertexId, [VertexId; 2]);
+type Simplex = (VertexId, [VertexId; 2]);
 
 enum Fault {
     Large(f64),
     Thin(f64),
 }
 
-pub(super) struct Picker<'a> {
-    pub(super) stars: Stars<'a>,
+struct Picker<'a> {
+    stars: Stars<'a>,
     asked: Consistency,
     large: Buckets<Simplex>,
     thin: Buckets<Simplex>,
-    pub(super) counters: PickCounters,
+    counters: PickCounters,
     random: u64,
 }
 
@@ -163,14 +167,18 @@ impl Picker<'_> {
         if self.stars.steiner.planar.topology.vertex_count() <= self.asked.most {
             return Ok(());
         }
-        let (most, place) = (self.asked.most, self.stars.steiner.planar.position(v));
-        let what = format!("the stars do not agree with {most} vertices, for example at {place}");
-        let help = "star sets need far more vertices where the metric turns fast: use --mesher voronoi".into();
-        Err(Error::Limit { what, help })
+        Err(self.not_agreed(v))
+    }
+
+    fn not_agreed(&self, v: VertexId) -> Error {
+        let count = self.stars.steiner.planar.topology.vertex_count();
+        let place = self.stars.steiner.planar.position(v);
+        let what = format!("the stars do not agree with {count} vertices, for example at {place}");
+        Error::Limit { what, help: NEEDS_MORE.into() }
     }
 
     /// All simplices that not all of their vertices' stars have.
-    pub(super) fn inconsistent(&self) -> Vec<Simplex> {
+    fn inconsistent(&self) -> Vec<Simplex> {
         let mut found = Vec::new();
         for v in all_vertices(&self.stars) {
             let spokes = self.stars.by_vertex[v.index()].iter().map(|spoke| (v, spoke.ends));
@@ -180,7 +188,7 @@ impl Picker<'_> {
     }
 
     /// Whether a star has a simplex, and another has not.
-    pub(super) fn is_inconsistent(&self, (v, ends): Simplex) -> bool {
+    fn is_inconsistent(&self, (v, ends): Simplex) -> bool {
         self.stars.has(v, ends) && !self.stars.agree([v, ends[0], ends[1]])
     }
 
@@ -242,7 +250,7 @@ impl Picker<'_> {
     }
 
     /// A vector to somewhere in the picking ball.
-    pub(super) fn in_ball(&mut self, v: VertexId, radius: f64) -> Vector {
+    fn in_ball(&mut self, v: VertexId, radius: f64) -> Vector {
         let [a, b, c] = self.stars.steiner.tensors[v.index()].cholesky();
         let (x, y) = self.in_disk();
         Vector::new((x - b * y / c) / a, y / c) * (PICKING * radius)
@@ -269,11 +277,6 @@ impl Picker<'_> {
         before.restore(&mut self.stars);
         self.stars.by_vertex[new.index()].clear();
         (change.after, change.after as isize - change.before as isize)
-    }
-
-    /// Whether no simplex of a star is large or thin.
-    pub(super) fn is_good(&self, v: VertexId) -> bool {
-        self.stars.by_vertex[v.index()].iter().all(|spoke| self.fault(v, spoke.ends).is_none())
     }
 
     /// How large a simplex is if it is too large, and how thin if too thin.
@@ -335,6 +338,5 @@ fn not_meshed(what: &str, place: String) -> Error {
     }
 }
 
-/// The radius for which simplices are unit on the average: the mean circumradius of refinement is about this share of
-/// what it refines to.
-pub const UNIT_RADIUS: f64 = 0.8;
+/// A circumradius that simplices of a relaxed unit mesh keep below: the mean is 0.6.
+pub const UNIT_RADIUS: f64 = 1.0;

@@ -20,7 +20,7 @@ mod star_set;
 mod steiner;
 
 pub use border::Border;
-pub use consistent::{Consistency, Consistent, PickCounters, UNIT_RADIUS, consistent};
+pub use consistent::{Consistency, Consistent, NEEDS_MORE, PickCounters, UNIT_RADIUS, consistent};
 pub use isotropic::isotropic_size;
 pub use kind::Kind;
 pub use star_set::{StarFigures, StarSet};

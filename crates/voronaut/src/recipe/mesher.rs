@@ -1,7 +1,7 @@
 //! Which mesher; and the local Delaunay algorithm as one (RR-9103, section 7.1), to compare.
 
 use super::{Job, MeshOptions, Meshed};
-use crate::canvas::{Consistency, UNIT_RADIUS, consistent};
+use crate::canvas::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::metric::{MetricField, Scaled, Steadied};
@@ -64,20 +64,23 @@ pub(super) fn by_stars(
     progress: &dyn Progress,
 ) -> Result<Meshed> {
     let mut job = Job::new(field, options, progress);
-    let (_, _, _, scale) = job.timed("plan", |job| job.plan(domain))?;
+    let (_, _, unit, scale) = job.timed("plan", |job| job.plan(domain))?;
     let scaled = Scaled { field, factor: scale };
-    let most: f64 = std::env::var("TURN").map_or(0.6, |r| r.parse().unwrap());
-    let steadied = Steadied { field: &scaled, most };
+    let turn: f64 = std::env::var("TURN").map_or(0.6, |r| r.parse().unwrap());
+    let steadied = Steadied { field: &scaled, most: turn };
     let as_it_is = MeshOptions { vertices: None, complexity: None, ..options.clone() };
     let mut job = Job::new(&steadied, &as_it_is, progress);
     let (domain, plan, count, one) = job.timed("plan", |job| job.plan(domain))?;
-    let most = MOST * count + SPARE;
+    let most = MOST * unit + SPARE;
+    if count > most {
+        let what = format!("stars need about {count} vertices to agree, where a unit mesh has {unit}");
+        return Err(Error::Limit { what, help: NEEDS_MORE.into() });
+    }
     demand_memory(count as f64, most as f64, options.memory_limit)?;
     let mut dual = job.timed("seed", |job| job.seed(&domain, None, &plan, count, one))?;
     let relaxation = job.timed("relax", |job| job.relax(&mut dual, None))?;
     progress.stage("stars", 1);
-    let radius: f64 = std::env::var("RADIUS").map_or(UNIT_RADIUS, |r| r.parse().unwrap());
-    let found = job.timed("stars", |_| consistent(dual.planar().clone(), &scaled, Consistency { radius, most }))?;
+    let found = job.timed("stars", |_| consistent(dual.planar().clone(), &scaled, Consistency { radius: UNIT_RADIUS, most }))?;
     progress.stage("checking", 1);
     let corner = |v: crate::triangulation::VertexId| match (v.index() < dual.planar().positions.len()).then(|| dual.kind(v)) {
         Some(Kind::Corner(c)) => Some(c),
