@@ -42,9 +42,8 @@ impl Before {
         let mut change = Change::default();
         for corners in touched {
             let turns = [0, 1, 2].map(|i| (corners[i], [corners[(i + 1) % 3], corners[(i + 2) % 3]]));
-            let holders = |has: &dyn Fn(VertexId, [VertexId; 2]) -> bool| {
-                turns.iter().filter(|&&(v, ends)| has(v, ends)).count()
-            };
+            let holders =
+                |has: &dyn Fn(VertexId, [VertexId; 2]) -> bool| turns.iter().filter(|&&(v, ends)| has(v, ends)).count();
             let had = |v: VertexId, ends: [VertexId; 2]| {
                 self.stars.get(&v).map_or_else(|| now.has(v, ends), |star| star.iter().any(|s| s.ends == ends))
             };

@@ -1,8 +1,8 @@
 //! The local Delaunay algorithm as a mesher (RR-9103, section 7.1): stars are refined until they agree, and are then the
 //! triangles of a mesh.
 
-use super::buckets::Buckets;
 use super::agreement::Before;
+use super::buckets::Buckets;
 use super::relocate::relocate;
 use super::star::Spoke;
 use super::star_set::{StarFigures, Stars};
@@ -38,7 +38,7 @@ pub struct Consistency {
 /// A consistent star set as a triangulation, and what it took.
 #[derive(Clone, Debug)]
 pub struct Consistent {
-    /// The triangles, with the constraints and regions of the domain. Vertices of the domain keep their ids. Each triangle is
+    /// The triangles, with the constraints and regions of the domain. Vertices that it started from keep their ids. Each triangle is
     /// counter-clockwise; that none overlap is for the caller to check.
     pub planar: Planar,
     /// The star set.
@@ -54,7 +54,7 @@ pub struct PickCounters {
     pub for_size: u64,
     /// For those whose circumradius was too large beside their shortest edge.
     pub for_shape: u64,
-    /// For inconsistent ones, at a place that makes no new small inconsistency.
+    /// For inconsistent ones, at a place that leaves fewer of them.
     pub picked: u64,
     /// For inconsistent ones, at their circumcentre, for want of such a place.
     pub unpicked: u64,
@@ -64,7 +64,7 @@ pub struct PickCounters {
     pub tries: u64,
 }
 
-/// Refines the stars of a domain's corners until all are small, well shaped and consistent.
+/// Moves free vertices of a triangulation and refines its stars until all are small, well shaped and consistent.
 ///
 /// # Errors
 /// [`Error::Metric`]; [`Error::Limit`] with a place where stars disagree when there are too many vertices;
@@ -93,7 +93,7 @@ pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) ->
         if inconsistent.is_empty() {
             break;
         }
-        if rounds == ROUNDS {
+        if rounds >= ROUNDS {
             return Err(picker.not_agreed(inconsistent[0].0));
         }
         picker.make_consistent(inconsistent)?;
