@@ -49,8 +49,8 @@ impl FromStr for Mesher {
     }
 }
 
-/// The metric turns by so much over a unit of the sampling at most: the least count on the mild shock of those tried that
-/// ends soon.
+/// The metric turns by about so much over a unit of the sampling. On the mild shock 1.3 gave fewer vertices, and took six
+/// times as long.
 const TURN: f64 = 1.0;
 /// Stars are given up when they have so many times the vertices of a unit mesh, and [`SPARE`].
 const MOST: usize = 20;
