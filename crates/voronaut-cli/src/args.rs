@@ -168,8 +168,8 @@ pub(crate) struct DualArgs {
     /// How OUT has the edges: straight, or as the geodesics that they are (polylines, with the regions between them)
     #[arg(long, value_enum, value_name = "HOW", default_value_t = EdgesOut::Straight)]
     pub(crate) edges: EdgesOut,
-    /// What distances travel on: intrinsic (flipped by metric lengths), isotropic (Euclidean Delaunay, as fine as the metric's
-    /// finest direction) or starset (a graph: not for marching)
+    /// What distances travel on: intrinsic (even in the metric), isotropic (Euclidean Delaunay, as fine as the metric's finest
+    /// direction) or starset (even in the metric; methods on graphs travel along Delaunay stars, each in its own metric)
     #[arg(long, value_name = "WHICH", default_value_t = canvas::Kind::default())]
     pub(crate) canvas: canvas::Kind,
     /// Canvas vertices per seed; 150,000 in all at least, for up to 300 seeds

@@ -117,7 +117,7 @@ fn told(
         "distance": args.to.and_then(|p| found.at(p)).filter(|d| d.is_finite()),
         "path_length": path.map(|path| path.length), "path_points": path.map(|path| path.points.len()),
         "farthest": reached.copied().fold(0.0, f64::max), "unreached": unreached,
-        "geodesic": args.geodesic, "canvas": report::Canvas::of(canvas), "counters": found.counters(),
+        "geodesic": args.geodesic, "canvas": canvas.figures(), "counters": found.counters(),
         "seconds": seconds, "peak_memory_bytes": report::peak_memory_bytes(), "version": env!("CARGO_PKG_VERSION"),
         "options": {
             "domain": args.domain, "metric": args.metric, "out": args.out, "canvas": "intrinsic",

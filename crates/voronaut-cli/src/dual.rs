@@ -27,7 +27,6 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs)?;
     args.geodesic.demand_diagrams()?;
     files::set_threads(&args.run)?;
-    args.canvas.demand_triangulation()?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
     let spec = MetricSpec::parse(&args.metric)?;
@@ -69,7 +68,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     }
     let mut report = reported(&mesh, metric.as_ref(), account)?;
     report.histograms = files::histograms(&args.outputs, &mesh, metric.as_ref())?;
-    report.canvas = Some(report::Canvas::of(&canvas));
+    report.canvas = Some(canvas.figures());
     report.diagram = Some(report::Diagram { raw_nerve: Some(raw_nerve), ..report::Diagram::of(&diagram) });
     let net = Drawn::needs_net(&args.outputs).then(|| recipe::net(&diagram, metric.as_ref(), &exact));
     report.net = net.as_ref().map(report::NetFigures::of);

@@ -24,7 +24,6 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let start = Instant::now();
     files::demand_writable(Some(&args.out), None, &args.outputs)?;
     files::set_threads(&args.run)?;
-    args.canvas.demand_triangulation()?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
     let spec = MetricSpec::parse(&args.metric)?;

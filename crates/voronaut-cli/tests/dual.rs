@@ -398,10 +398,13 @@ fn canvases_are_chosen_and_named_in_the_report() {
     let base = ["dual", "rect:0,0,1,1", "--metric", "uniform", "--seeds", "seeds.txt", "-o", "d.mesh", "-q"];
     runs(&place, &[&base[..], &["--canvas", "isotropic", "--report", "r.json"]].concat());
     assert_eq!(report(&place, "r.json")["canvas"]["kind"], "isotropic");
-    let output = place.run(&[&base[..], &["--canvas", "starset"]].concat());
-    assert_eq!(output.status.code(), Some(1));
-    let said = stderr(&output);
-    assert!(said.contains("no triangles to march through") && said.contains("stvd, dijkstra, konukoglu"), "{said}");
+    for method in ["march", "stvd", "dijkstra", "konukoglu"] {
+        let words = ["--canvas", "starset", "--geodesic", method, "--report", "r.json"];
+        runs(&place, &[&base[..], &words].concat());
+        let report = report(&place, "r.json");
+        assert_eq!((&report["canvas"]["kind"], report["valid"].as_bool()), (&Value::from("starset"), Some(true)));
+        assert_eq!(report["canvas"]["stars"]["inconsistencies"], 0, "one metric");
+    }
 }
 
 #[test]

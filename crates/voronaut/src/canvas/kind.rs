@@ -13,25 +13,14 @@ pub enum Kind {
     Intrinsic,
     /// `isotropic`: a Euclidean Delaunay triangulation as fine everywhere as the metric is in its finest direction.
     Isotropic,
-    /// `starset`: the Delaunay stars of the vertices, each in its vertex's own metric: a graph, not a triangulation.
+    /// `starset`: even in the metric, with the Delaunay stars of the vertices, each in its vertex's own metric, as the graph
+    /// that methods without triangles travel on.
     StarSet,
 }
 
 impl Kind {
-    /// Nothing for a canvas that is a triangulation, as fast marching and the diagram need it.
-    ///
-    /// # Errors
-    /// [`Error::Unsupported`] for a star set.
-    pub fn demand_triangulation(self) -> Result<()> {
-        if self != Kind::StarSet {
-            return Ok(());
-        }
-        let what = "fast marching (--geodesic march) on a star set, which has no triangles to march through".into();
-        let help = "star sets serve methods that travel on graphs (stvd, dijkstra, konukoglu); for marching choose \
-                    --canvas intrinsic or isotropic"
-            .into();
-        Err(Error::Unsupported { what, help })
-    }
+    /// All kinds.
+    pub const ALL: [Kind; 3] = [Kind::Intrinsic, Kind::Isotropic, Kind::StarSet];
 }
 
 impl fmt::Display for Kind {
@@ -67,15 +56,11 @@ mod tests {
 
     #[test]
     fn names_are_read_as_written_and_others_refused() {
-        for kind in [Kind::Intrinsic, Kind::Isotropic, Kind::StarSet] {
+        for kind in Kind::ALL {
             assert_eq!(kind.to_string().parse::<Kind>().unwrap(), kind);
-            assert_eq!(kind.demand_triangulation().is_ok(), kind != Kind::StarSet);
         }
         let error = "grid".parse::<Kind>().unwrap_err();
         assert_eq!(error.to_string(), "canvas grid: no such canvas");
         assert_eq!(error.help(), "choose intrinsic, isotropic or starset");
-        let error = Kind::StarSet.demand_triangulation().unwrap_err();
-        assert!(error.to_string().contains("no triangles to march through"), "{error}");
-        assert!(error.help().contains("stvd"), "{}", error.help());
     }
 }

@@ -1,8 +1,9 @@
 //! The canvas (RR-9103, sections 6.2 and 7): the discretised domain on which distances travel.
 //!
-//! Solvers see only [`Canvas::topology`]: vertices, faces, edges with metric lengths, never positions. What is
-//! drawn, or found by its coordinates, uses [`Canvas::embedded`], the triangulation of the plane from which the lengths
-//! were taken. Both have the same vertices.
+//! Solvers see only [`Canvas::topology`], vertices, faces, edges with metric lengths, never positions, or the graph of
+//! [`Canvas::graph`]. What is drawn, or found by its coordinates, uses [`Canvas::embedded`], the triangulation of the plane
+//! from which the lengths were taken. All have the same vertices. Kinds of canvas differ in where these are, and a star set
+//! in its graph.
 
 mod agreement;
 mod border;
@@ -67,7 +68,22 @@ pub struct CanvasCounters {
     pub flips: u64,
 }
 
-/// An immutable canvas of a planar domain.
+/// A canvas in numbers. Deterministic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct CanvasFigures {
+    /// Which canvas.
+    pub kind: Kind,
+    /// Its vertices.
+    pub vertices: usize,
+    /// How it came about, its fields beside these.
+    #[serde(flatten)]
+    pub counters: CanvasCounters,
+    /// Its stars, of a star set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stars: Option<StarFigures>,
+}
+
+/// An immutable canvas of a planar domain, of any [`Kind`].
 ///
 /// Two triangulations on the same vertices: *embedded*, straight edges in the plane that cover the domain exactly
 /// and keep its constraints; and the one that distances travel on, whose edges are known by metric length alone. Edges
@@ -78,6 +94,7 @@ pub struct CanvasCounters {
 pub struct Canvas {
     embedded: Planar,
     topology: Triangulation,
+    stars: Option<StarSet>,
     kind: Kind,
     counters: CanvasCounters,
     finder: Finder,
@@ -100,7 +117,9 @@ impl Canvas {
     /// # Errors
     /// As for [`Canvas::intrinsic`].
     pub fn straight(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::straight_from(domain.planar().clone(), field, vertices)
+        let mut counters = CanvasCounters::default();
+        let planar = refine::refine(domain.planar().clone(), field, vertices, &mut counters)?;
+        Self::unflipped(renumbered(&planar), field, Kind::Intrinsic, counters)
     }
 
     /// [`Canvas::intrinsic`] from any embedded triangulation, which may cover a part of a domain only. Its vertices are
@@ -109,19 +128,19 @@ impl Canvas {
     /// # Errors
     /// As for [`Canvas::intrinsic`].
     pub fn intrinsic_from(planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Ok(Self::straight_from(planar, field, vertices)?.flipped())
+        Self::from_planar(Kind::Intrinsic, planar, field, vertices)
     }
 
     /// The isotropic canvas (RR-9103, section 6.2) with so many vertices: a Euclidean Delaunay triangulation, refined at the
-    /// circumcentre of the face whose circumradius is largest beside [`isotropic_size`] there. Lengths are as for
-    /// [`Canvas::straight`]; no edge is flipped by them.
+    /// circumcentre of the face whose circumradius is largest beside [`isotropic_size`] there. Its triangles are obtuse in the
+    /// metric, so that distances that need triangles travel on the intrinsic Delaunay triangulation of its vertices.
     ///
     /// It has more vertices only if the domain itself has, or where lengths had to be repaired.
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
     pub fn isotropic(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::isotropic_from(domain.planar().clone(), field, Until { vertices, sizes: 0.0 })
+        Self::new(Kind::Isotropic, domain, field, vertices)
     }
 
     /// [`Canvas::isotropic`] with as many vertices as it takes until no circumradius exceeds so many [`isotropic_size`]s
@@ -131,31 +150,28 @@ impl Canvas {
     /// # Errors
     /// As for [`Canvas::intrinsic`].
     pub fn isotropic_sized(domain: &Domain, field: &dyn MetricField, sizes: f64) -> Result<Self> {
-        Self::isotropic_from(domain.planar().clone(), field, Until { vertices: usize::MAX, sizes })
-    }
-
-    fn isotropic_from(planar: Planar, field: &dyn MetricField, until: Until) -> Result<Self> {
         let mut counters = CanvasCounters::default();
-        let planar = isotropic::refine(planar, field, until, &mut counters)?;
-        Self::measured(&planar, field, Kind::Isotropic, counters)
+        let until = Until { vertices: usize::MAX, sizes };
+        let planar = isotropic::refine(domain.planar().clone(), field, until, &mut counters)?;
+        Self::measured(renumbered(&planar), field, Kind::Isotropic, counters)
     }
 
-    fn straight_from(planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        let mut counters = CanvasCounters::default();
-        let planar = refine::refine(planar, field, vertices, &mut counters)?;
-        Self::measured(&planar, field, Kind::Intrinsic, counters)
-    }
-
-    fn measured(planar: &Planar, field: &dyn MetricField, kind: Kind, mut counters: CanvasCounters) -> Result<Self> {
-        let mut embedded = renumbered(planar);
-        lengths::measure(&mut embedded, field, &mut counters)?;
-        Ok(Self::of(embedded, kind, counters))
-    }
-
-    /// The canvas of a kind that is a triangulation, by [`Canvas::intrinsic`] or [`Canvas::isotropic`].
+    /// The star set (RR-9103, section 7) with so many vertices, even in the metric: its graph are the Delaunay stars of the
+    /// vertices, each in its vertex's own metric. Distances that need triangles travel on the intrinsic Delaunay
+    /// triangulation of the same vertices.
+    ///
+    /// It has more vertices only if the domain itself has, or where lengths had to be repaired.
     ///
     /// # Errors
-    /// As for these, and for a star set [`crate::Error::Unsupported`], by [`Kind::demand_triangulation`].
+    /// As for [`Canvas::intrinsic`].
+    pub fn star_set(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        Self::new(Kind::StarSet, domain, field, vertices)
+    }
+
+    /// The canvas of a kind, by [`Canvas::intrinsic`], [`Canvas::isotropic`] or [`Canvas::star_set`].
+    ///
+    /// # Errors
+    /// As for these.
     pub fn new(kind: Kind, domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         Self::from_planar(kind, domain.planar().clone(), field, vertices)
     }
@@ -165,15 +181,17 @@ impl Canvas {
     /// # Errors
     /// As for [`Canvas::new`].
     pub fn from_planar(kind: Kind, planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        kind.demand_triangulation()?;
-        match kind {
-            Kind::Isotropic => Self::isotropic_from(planar, field, Until { vertices, sizes: 0.0 }),
-            _ => Self::intrinsic_from(planar, field, vertices),
-        }
+        let mut counters = CanvasCounters::default();
+        let planar = match kind {
+            Kind::Intrinsic => refine::refine(planar, field, vertices, &mut counters)?,
+            Kind::Isotropic => isotropic::refine(planar, field, Until { vertices, sizes: 0.0 }, &mut counters)?,
+            Kind::StarSet => star_set::refine(planar, field, vertices, &mut counters)?,
+        };
+        Self::measured(renumbered(&planar), field, kind, counters)
     }
 
     /// This canvas with half the size around some vertices: their edges in the embedded triangulation are halved, the
-    /// new edges measured, and all flipped anew by lengths (on an isotropic canvas by the Euclidean test). Old vertices keep their ids and places, new ones come after
+    /// new edges measured, and all flipped anew by lengths. Old vertices keep their ids and places, new ones come after
     /// them. `field` is the one that the canvas was made with.
     ///
     /// # Errors
@@ -187,23 +205,32 @@ impl Canvas {
         edges.sort_unstable();
         edges.dedup();
         let mut counters = self.counters;
-        let mut embedded = match self.kind {
+        let embedded = match self.kind {
             Kind::Isotropic => isotropic::halve(self.embedded.clone(), &edges, &mut counters),
-            _ => refine::halve(self.embedded.clone(), field, &edges, &mut counters)?,
+            Kind::Intrinsic | Kind::StarSet => refine::halve(self.embedded.clone(), field, &edges, &mut counters)?,
         };
+        Self::measured(embedded, field, self.kind, counters)
+    }
+
+    /// The canvas on the vertices of a triangulation, of which some lengths may be known.
+    fn measured(embedded: Planar, field: &dyn MetricField, kind: Kind, counters: CanvasCounters) -> Result<Self> {
+        let mut canvas = Self::unflipped(embedded, field, kind, counters)?;
+        canvas.counters.flips = flip::to_intrinsic_delaunay(&mut canvas.topology);
+        if kind == Kind::StarSet {
+            canvas.stars = Some(StarSet::new(&canvas.embedded, field)?);
+        }
+        Ok(canvas)
+    }
+
+    fn unflipped(
+        mut embedded: Planar,
+        field: &dyn MetricField,
+        kind: Kind,
+        mut counters: CanvasCounters,
+    ) -> Result<Self> {
         lengths::measure(&mut embedded, field, &mut counters)?;
-        let canvas = Self::of(embedded, self.kind, counters);
-        Ok(if self.kind == Kind::Isotropic { canvas } else { canvas.flipped() })
-    }
-
-    fn of(embedded: Planar, kind: Kind, counters: CanvasCounters) -> Self {
-        let topology = embedded.topology.clone();
-        Self { finder: Finder::new(&embedded), embedded, topology, kind, counters }
-    }
-
-    fn flipped(mut self) -> Self {
-        self.counters.flips = flip::to_intrinsic_delaunay(&mut self.topology);
-        self
+        let (topology, finder) = (embedded.topology.clone(), Finder::new(&embedded));
+        Ok(Self { finder, embedded, topology, stars: None, kind, counters })
     }
 
     /// What distances travel on: vertices, faces, metric lengths.
@@ -221,16 +248,25 @@ impl Canvas {
         self.topology.vertex_slots()
     }
 
-    /// The vertices with their tensors and the edges of [`Canvas::embedded`], for methods that know no triangles. `field` is
-    /// the one that the canvas was made with.
+    /// The vertices with their tensors and the edges of [`Canvas::embedded`], of a star set those of its stars, for methods
+    /// that know no triangles. `field` is the one that the canvas was made with.
     pub fn graph(&self, field: &dyn MetricField) -> Graph {
         let topology = &self.embedded.topology;
         let tensors = self.embedded.positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
-        let mut neighbours = vec![Vec::new(); self.vertex_count()];
-        for h in topology.edges() {
-            neighbours[topology.origin(h).index()].push(topology.target(h).0);
-        }
+        let of_edges = || {
+            let mut neighbours = vec![Vec::new(); self.vertex_count()];
+            for h in topology.edges() {
+                neighbours[topology.origin(h).index()].push(topology.target(h).0);
+            }
+            neighbours
+        };
+        let neighbours = self.stars.as_ref().map_or_else(of_edges, StarSet::neighbours);
         Graph::new(self.embedded.positions.clone(), tensors, &neighbours)
+    }
+
+    /// The stars, if it is a star set.
+    pub fn stars(&self) -> Option<&StarSet> {
+        self.stars.as_ref()
     }
 
     /// The position of a vertex.
@@ -246,6 +282,12 @@ impl Canvas {
     /// How the canvas came about.
     pub fn counters(&self) -> &CanvasCounters {
         &self.counters
+    }
+
+    /// The canvas in numbers.
+    pub fn figures(&self) -> CanvasFigures {
+        let stars = self.stars.as_ref().map(|stars| *stars.figures());
+        CanvasFigures { kind: self.kind, vertices: self.vertex_count(), counters: self.counters, stars }
     }
 }
 

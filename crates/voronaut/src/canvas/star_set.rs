@@ -3,10 +3,10 @@
 use super::star::{Finder, Star, circle};
 use super::steiner::{Placed, Steiner};
 use super::{CanvasCounters, refine, renumbered};
-use crate::domain::Domain;
 use crate::error::Result;
-use crate::geometry::{Point, Tensor};
+use crate::geometry::Point;
 use crate::metric::MetricField;
+use crate::planar::Planar;
 use crate::triangulation::{HalfEdge, VertexId};
 use rayon::prelude::*;
 use std::collections::HashSet;
@@ -16,14 +16,12 @@ const FROM_EMBEDDED: f64 = 0.7;
 /// Stars are searched in parts of so many at least.
 const PART: usize = 512;
 
-/// The stars of a set of vertices, cut by the domain's boundary and by its inner features. A graph, not a triangulation:
-/// a simplex may be in the star of one of its vertices and not in that of another, an *inconsistency*.
+/// The stars of the vertices of a canvas, cut by the domain's boundary and by its inner features. A graph, not a
+/// triangulation: a simplex may be in the star of one of its vertices and not in that of another, an *inconsistency*.
 ///
 /// Deterministic, for any number of threads.
 #[derive(Debug)]
 pub struct StarSet {
-    positions: Vec<Point>,
-    tensors: Vec<Tensor>,
     stars: Vec<Star>,
     figures: StarFigures,
 }
@@ -39,44 +37,50 @@ pub struct StarFigures {
     pub simplices: usize,
     /// The greatest circumradius of a star's simplex, in the metric of the star.
     pub radius: f64,
-    /// Rounds of refinement; of consistent stars, passes over all of them in search of inconsistencies.
+    /// Of stars made consistent, passes over all of them in search of inconsistencies.
     pub rounds: usize,
     /// Stars that rounding kept from being found: they are those of the embedded triangulation.
     pub unsettled: usize,
 }
 
+/// Refines a triangulation to so many vertices (more if it has more), even in the metric: to a part of them as for
+/// [`super::Canvas::intrinsic`], then at circumcentres of the largest simplices of stars. A centre that encroaches the
+/// boundary halves it instead.
+///
+/// # Errors
+/// The metric is not positive definite at a vertex.
+pub(super) fn refine(
+    planar: Planar,
+    field: &dyn MetricField,
+    vertices: usize,
+    counters: &mut CanvasCounters,
+) -> Result<Planar> {
+    let start = (FROM_EMBEDDED * vertices as f64) as usize;
+    let planar = refine::refine(planar, field, start, counters)?;
+    let mut stars = Stars::new(Steiner::metric(renumbered(&planar), field)?);
+    loop {
+        let missing = vertices.saturating_sub(stars.steiner.planar.topology.vertex_count());
+        let placed = if missing == 0 { 0 } else { stars.refine_largest(missing)? };
+        counters.splits += placed as u64;
+        if placed == 0 {
+            return Ok(stars.steiner.planar);
+        }
+    }
+}
+
 impl StarSet {
-    /// A star set of so many vertices (more if the domain itself has more), even in the metric: a part of them from the
-    /// refinement of [`super::Canvas::intrinsic`], then circumcentres of the largest simplices of stars. A centre that
-    /// encroaches the boundary halves it instead.
+    /// The stars of all vertices of an embedded triangulation, none of whose slots is empty.
     ///
     /// # Errors
-    /// [`crate::Error::Metric`] where the metric is not positive definite at a vertex.
-    pub fn new(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        let start = (FROM_EMBEDDED * vertices as f64) as usize;
-        let planar = refine::refine(domain.planar().clone(), field, start, &mut CanvasCounters::default())?;
-        let mut stars = Stars::new(Steiner::metric(renumbered(&planar), field)?);
-        let mut rounds = 0;
-        loop {
-            let missing = vertices.saturating_sub(stars.steiner.planar.topology.vertex_count());
-            if missing == 0 || stars.refine_largest(missing)? == 0 {
-                break;
-            }
-            rounds += 1;
-        }
-        Ok(stars.finished(rounds))
+    /// The metric is not positive definite at a vertex.
+    pub(super) fn new(embedded: &Planar, field: &dyn MetricField) -> Result<Self> {
+        let stars = Stars::new(Steiner::metric(embedded.clone(), field)?);
+        Ok(Self { figures: stars.figures(), stars: stars.by_vertex })
     }
 
-    /// Positions of the vertices (Euclidean), their tensors, and the neighbours of each: those in its star and those in
-    /// whose star it is, in order. What a graph for geodesic methods is made of.
-    pub fn into_graph(self) -> (Vec<Point>, Vec<Tensor>, Vec<Vec<u32>>) {
-        let neighbours = self.neighbours();
-        (self.positions, self.tensors, neighbours)
-    }
-
-    /// The reciprocal neighbours of every vertex, in order.
+    /// The neighbours of every vertex, in order: those in its star and those in whose star it is.
     pub fn neighbours(&self) -> Vec<Vec<u32>> {
-        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.positions.len()];
+        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.stars.len()];
         for (v, star) in (0..).zip(&self.stars) {
             for u in star.iter().flat_map(|spoke| spoke.ends) {
                 neighbours[v as usize].push(u.0);
@@ -91,16 +95,11 @@ impl StarSet {
     }
 
     /// The simplices of the star of a vertex, each by its other two vertices, counter-clockwise.
-    pub fn star(&self, v: u32) -> impl Iterator<Item = [u32; 2]> + '_ {
-        self.stars[v as usize].iter().map(|spoke| spoke.ends.map(|u| u.0))
+    pub fn star(&self, v: VertexId) -> impl Iterator<Item = [VertexId; 2]> + '_ {
+        self.stars[v.index()].iter().map(|spoke| spoke.ends)
     }
 
-    /// Position (Euclidean) of a vertex.
-    pub fn position(&self, v: u32) -> Point {
-        self.positions[v as usize]
-    }
-
-    /// How it came about.
+    /// The star set in numbers.
     pub fn figures(&self) -> &StarFigures {
         &self.figures
     }
@@ -253,13 +252,6 @@ impl<'a> Stars<'a> {
     /// Whether all three stars have a simplex.
     pub(super) fn agree(&self, [a, b, c]: [VertexId; 3]) -> bool {
         self.has(a, [b, c]) && self.has(b, [c, a]) && self.has(c, [a, b])
-    }
-
-    fn finished(mut self, rounds: usize) -> StarSet {
-        self.update_all();
-        let figures = StarFigures { rounds, ..self.figures() };
-        let positions = self.steiner.planar.positions;
-        StarSet { positions, tensors: self.steiner.tensors, stars: self.by_vertex, figures }
     }
 
     /// Counts.

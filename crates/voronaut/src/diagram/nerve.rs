@@ -81,6 +81,34 @@ impl Diagram<'_> {
         Nerve::new(self.coloured_vertices(), self.bicoloured_edges(), self.tricoloured_faces())
     }
 
+    /// The triangles of the nerve as the report reads them off the canvas (Figure 7), with a witness each: a canvas simplex
+    /// with vertices of three colours, which are turned and sorted as in [`Nerve::triangles`]. Of a star set they are the
+    /// simplices of any star, which where stars disagree may exclude each other; else the faces.
+    pub fn witnesses_of_triangles(&self) -> Vec<([u32; 3], [VertexId; 3])> {
+        let coloured = |simplex| Some((self.three_colours(simplex)?, simplex));
+        let mut found: Vec<([u32; 3], [VertexId; 3])> = match self.canvas.stars() {
+            None => {
+                let topology = self.canvas.topology();
+                topology.faces().filter_map(|f| coloured(topology.corners(f))).collect()
+            }
+            Some(stars) => {
+                let vertices = (0..self.canvas.vertex_count() as u32).map(VertexId);
+                let simplices = vertices.flat_map(|v| stars.star(v).map(move |[a, b]| [v, a, b]));
+                simplices.filter_map(coloured).collect()
+            }
+        };
+        found.sort_unstable();
+        found.dedup_by_key(|witness| witness.0);
+        found
+    }
+
+    /// The colours of three vertices, if they are three.
+    fn three_colours(&self, vertices: [VertexId; 3]) -> Option<[u32; 3]> {
+        let [a, b, c] = vertices.map(|v| self.label(v).colour);
+        let distinct = a != b && b != c && c != a && [a, b, c].iter().all(|&x| x != NO_COLOUR);
+        distinct.then_some(smallest_first([a, b, c]))
+    }
+
     pub(super) fn coloured_vertices(&self) -> Vec<(u32, VertexId)> {
         let mut first = vec![None; self.colours()];
         for v in (0..self.canvas.vertex_count() as u32).map(VertexId) {
@@ -111,10 +139,8 @@ impl Diagram<'_> {
     fn tricoloured_faces(&self) -> Vec<NerveTriangle> {
         let topology = self.canvas.topology();
         let of_face = |witness: FaceId| {
-            let [a, b, c] = topology.corners(witness).map(|v| self.label(v).colour);
-            let distinct = a != b && b != c && c != a && [a, b, c].iter().all(|&x| x != NO_COLOUR);
-            let colours = smallest_first([a, b, c]);
-            distinct.then_some(NerveTriangle { colours, witness, witnesses: 1, fourth: None, square: None })
+            let colours = self.three_colours(topology.corners(witness))?;
+            Some(NerveTriangle { colours, witness, witnesses: 1, fourth: None, square: None })
         };
         topology.faces().filter_map(of_face).collect()
     }

@@ -6,7 +6,7 @@
 use super::margin::pair;
 use super::patch::Patch;
 use super::{Dual, Effort, Margin};
-use crate::canvas::{self, Canvas, CanvasCounters};
+use crate::canvas::{self, Canvas, CanvasFigures};
 use crate::diagram::{Diagram, NerveTriangle, resolve};
 use crate::error::Result;
 use crate::geodesic::{MarchCounters, Method};
@@ -89,14 +89,10 @@ pub struct Consultation {
 }
 
 /// A canvas and a diagram that were made, and what they cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Made {
-    /// Which canvas.
-    pub kind: canvas::Kind,
-    /// Vertices of the canvas.
-    pub canvas_vertices: usize,
-    /// How the canvas came about.
-    pub canvas: CanvasCounters,
+    /// The canvas.
+    pub canvas: CanvasFigures,
     /// Canvas vertices cut off from their cells.
     pub orphans: usize,
     /// Work of the solver.
@@ -144,13 +140,8 @@ impl Dual<'_> {
         let unsure = |t: &NerveTriangle| t.fourth.is_some_and(|(_, gap)| gap < BEYOND_CANVAS);
         let unsure = nerve.sides(unsure).map(|[i, j]| pair(ids[i as usize], ids[j as usize])).collect();
         let mut found = self.compare(road, &wanted, &is_inner);
-        found.made = Some(Made {
-            kind: canvas.kind(),
-            canvas_vertices: canvas.vertex_count(),
-            canvas: *canvas.counters(),
-            orphans: diagram.orphans().len(),
-            diagram: *diagram.counters(),
-        });
+        found.made =
+            Some(Made { canvas: canvas.figures(), orphans: diagram.orphans().len(), diagram: *diagram.counters() });
         found.impossible = self.adopt(road, wanted);
         found.uncertain = self.uncertain_edges(&unsure);
         Ok(found)

@@ -1,6 +1,6 @@
 //! The machine-readable account of a run (`--report`).
 
-use crate::canvas::{CanvasCounters, PickCounters, StarFigures};
+use crate::canvas::{CanvasFigures, PickCounters, StarFigures};
 use crate::dual::Road;
 use crate::geodesic::MarchCounters;
 use crate::net::Net;
@@ -37,7 +37,7 @@ pub struct Report {
     /// Euclidean distance to the domain's boundary.
     pub fidelity: Option<Fidelity>,
     /// The canvas, where one was used.
-    pub canvas: Option<Canvas>,
+    pub canvas: Option<CanvasFigures>,
     /// The diagram, where one was made.
     pub diagram: Option<Diagram>,
     /// Counters of the dual.
@@ -62,18 +62,6 @@ pub struct Report {
     pub version: &'static str,
     /// All options, as used.
     pub options: Value,
-}
-
-/// The canvas of a diagram.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Canvas {
-    /// How it was built.
-    pub kind: String,
-    /// Its vertices.
-    pub vertices: usize,
-    /// How it came about, its fields beside these.
-    #[serde(flatten)]
-    pub counters: CanvasCounters,
 }
 
 /// A consistent star set. Deterministic.
@@ -108,13 +96,6 @@ pub struct RawNerve {
     pub missing: usize,
     /// Triples that are no triangle of the exact dual.
     pub extra: usize,
-}
-
-impl Canvas {
-    /// Of a canvas.
-    pub fn of(canvas: &crate::canvas::Canvas) -> Self {
-        Self { kind: canvas.kind().to_string(), vertices: canvas.vertex_count(), counters: *canvas.counters() }
-    }
 }
 
 impl Diagram {

@@ -29,7 +29,7 @@ pub struct SeedDual {
     pub nerve: Nerve,
     /// The triangles of the exact dual: what in-circle tests make of the nerve, whatever the road.
     pub exact: Vec<[u32; 3]>,
-    /// What canvas faces of three colours alone have of it.
+    /// What canvas faces of three colours alone have of it; of a star set, simplices of stars.
     pub raw_nerve: report::RawNerve,
     /// How the edges were settled. Margins are those by lengths; edges are numbered by their seeds.
     pub account: report::Dual,
@@ -59,14 +59,14 @@ pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road) -> SeedDual 
         Road::Both => rdt.triangles().into_iter().chain(left_out(&rdt, &nerve)).collect(),
     };
     let exact = rdt.triangles();
-    let raw_nerve = compared(&diagram.nerve(), &exact);
+    let raw_nerve = compared(diagram, &exact);
     SeedDual { triangles, nerve, exact, raw_nerve, account, seconds }
 }
 
-fn compared(raw: &Nerve, exact: &[[u32; 3]]) -> report::RawNerve {
+fn compared(diagram: &Diagram, exact: &[[u32; 3]]) -> report::RawNerve {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
     let exact: HashSet<[u32; 3]> = exact.iter().map(turned).collect();
-    let raw: HashSet<[u32; 3]> = raw.triangles.iter().map(|t| t.colours).collect();
+    let raw: HashSet<[u32; 3]> = diagram.witnesses_of_triangles().into_iter().map(|witness| witness.0).collect();
     report::RawNerve {
         triangles: raw.len(),
         missing: exact.difference(&raw).count(),

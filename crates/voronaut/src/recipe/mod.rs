@@ -14,7 +14,7 @@ pub use mesher::Mesher;
 pub use relaxing::Centroid;
 pub use seeding::Seeding;
 
-use crate::canvas::{self, Canvas};
+use crate::canvas::{self, Canvas, CanvasFigures};
 use crate::domain::Domain;
 use crate::dual::{Dual, Kind, Road};
 use crate::error::Result;
@@ -102,7 +102,7 @@ pub struct Meshed {
     /// How the seeds were relaxed.
     pub relaxation: Relaxed,
     /// The canvas, where one was made: that of the seeding, or where edges were settled by one.
-    pub canvas: Option<report::Canvas>,
+    pub canvas: Option<CanvasFigures>,
     /// The diagram on it.
     pub diagram: Option<report::Diagram>,
     /// The vertices as a net, by their numbers in the mesh, where it was asked for.
@@ -140,7 +140,6 @@ pub fn mesh(
     if options.mesher == Mesher::StarSet {
         return mesher::by_stars(domain, field, options, progress);
     }
-    options.canvas.demand_triangulation()?;
     options.geodesic.demand_diagrams()?;
     let mut job = Job::new(field, options, progress);
     let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
@@ -178,7 +177,7 @@ struct Job<'a> {
     field: &'a dyn MetricField,
     options: &'a MeshOptions,
     progress: &'a dyn Progress,
-    canvas: Option<report::Canvas>,
+    canvas: Option<CanvasFigures>,
     diagram: Option<report::Diagram>,
     seconds: Vec<(&'static str, f64)>,
     notes: Vec<String>,

@@ -66,7 +66,7 @@ impl Job<'_> {
         demand_memory(seeds as f64, size as f64, self.options.memory_limit)?;
         self.progress.stage("canvas", 1);
         let canvas = self.timed("canvas", |job| Canvas::new(job.options.canvas, domain, job.field, size))?;
-        self.canvas = Some(report::Canvas::of(&canvas));
+        self.canvas = Some(canvas.figures());
         Ok(Some(canvas))
     }
 

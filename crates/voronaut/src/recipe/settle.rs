@@ -1,6 +1,7 @@
 //! The last pass: which edges the mesh has, by both roads, and how sure that is.
 
 use super::MeshOptions;
+use crate::canvas::CanvasFigures;
 use crate::domain::Domain;
 use crate::dual::{Consultation, Disagreement, Dual, Effort, Margin};
 use crate::error::Result;
@@ -22,8 +23,7 @@ pub(super) fn settle(
     dual.flip_all(Effort::Full);
     let found = dual.consult_diagram(options.dual, options.canvas, options.canvas_size, options.geodesic)?;
     let made = found.made;
-    let canvas =
-        made.map(|m| report::Canvas { kind: m.kind.to_string(), vertices: m.canvas_vertices, counters: m.canvas });
+    let canvas = made.map(|m| m.canvas);
     let diagram = made.map(|m| report::Diagram { orphans: m.orphans, raw_nerve: None, counters: m.diagram });
     Ok(Settled { dual: account(dual, domain, found), canvas, diagram })
 }
@@ -32,7 +32,7 @@ pub(super) fn settle(
 #[derive(Clone, Debug, Default)]
 pub(super) struct Settled {
     pub(super) dual: report::Dual,
-    pub(super) canvas: Option<report::Canvas>,
+    pub(super) canvas: Option<CanvasFigures>,
     pub(super) diagram: Option<report::Diagram>,
 }
 

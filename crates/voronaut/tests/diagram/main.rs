@@ -1,5 +1,6 @@
 //! Canvas, marching and diagram against truths: closed forms, affine Voronoi diagrams, paths around corners, recomputation.
 
+mod canvases;
 mod common;
 mod holes;
 mod updates;

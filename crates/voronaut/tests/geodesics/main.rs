@@ -1,8 +1,8 @@
-//! What every method of computing distances must do, and how accurate each is against closed forms.
+//! What every method of computing distances must do on every canvas, and how accurate each is against closed forms.
 
 mod ladder;
 
-use voronaut::canvas::Canvas;
+use voronaut::canvas::{Canvas, Kind};
 use voronaut::diagram::{Diagram, Distances};
 use voronaut::domain::{Domain, from_poly};
 use voronaut::formats::poly;
@@ -29,6 +29,16 @@ fn points(half: f64) -> Vec<Point> {
     corners.map(|(x, y)| Point::new(half * x, half * y)).to_vec()
 }
 
+/// Every method on every kind of canvas.
+fn pairs() -> impl Iterator<Item = (Kind, Method)> {
+    Kind::ALL.into_iter().flat_map(|kind| Method::ALL.map(|method| (kind, method)))
+}
+
+/// A canvas of each kind.
+fn canvases(domain: &Domain, field: &dyn MetricField, vertices: usize) -> [Canvas; 3] {
+    Kind::ALL.map(|kind| Canvas::new(kind, domain, field, vertices).unwrap())
+}
+
 fn square(half: f64) -> Domain {
     Domain::read(&format!("rect:{},{},{half},{half}", -half, -half)).unwrap()
 }
@@ -50,9 +60,10 @@ fn distances_are_symmetric_and_obey_the_triangle_inequality() {
         Tensor::new(1.0 + slope * slope, slope, 1.0)
     };
     let (domain, points) = (square(2.0), points(2.0));
-    let canvas = Canvas::intrinsic(&domain, &turning, 6000).unwrap();
-    for method in Method::ALL {
-        let (d, tolerance) = (table(&canvas, &turning, method, &points), 0.5 * tolerance(method));
+    let canvases = canvases(&domain, &turning, 6000);
+    for (canvas, method) in canvases.iter().flat_map(|canvas| Method::ALL.map(|method| (canvas, method))) {
+        let (d, tolerance) = (table(canvas, &turning, method, &points), 0.5 * tolerance(method));
+        let method = format!("{method} on {}", canvas.kind());
         let n = points.len();
         for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).filter(|(i, j)| i != j) {
             assert!((d[i][j] / d[j][i] - 1.0).abs() < tolerance, "{method}: {} and {}", d[i][j], d[j][i]);
@@ -69,16 +80,16 @@ fn scaling_the_metric_scales_distances() {
     let (domain, swirl, points) = (square(2.0), Swirl::default(), points(2.0));
     // Powers of two, so that nothing is rounded otherwise.
     let factors = [1.0, 2.0_f64.powi(30), 2.0_f64.powi(-30)];
-    for method in Method::ALL {
+    for (kind, method) in pairs() {
         let [unit, large, small] = factors.map(|factor| {
             let field = move |p: Point| swirl.at(p) * factor;
-            let canvas = Canvas::intrinsic(&domain, &field, 1500).unwrap();
+            let canvas = Canvas::new(kind, &domain, &field, 1500).unwrap();
             let found = Distances::new(&canvas, &field, &points[..2], method).unwrap();
             found.values().iter().map(|d| d / factor.sqrt()).collect::<Vec<f64>>()
         });
         assert!(unit.len() == large.len() && unit.len() == small.len());
         for ((a, b), c) in unit.iter().zip(&large).zip(&small) {
-            assert!((a - b).abs() <= 1e-9 * a && (a - c).abs() <= 1e-9 * a, "{method}: {a} {b} {c}");
+            assert!((a - b).abs() <= 1e-9 * a && (a - c).abs() <= 1e-9 * a, "{method} on {kind}: {a} {b} {c}");
         }
     }
 }
@@ -110,8 +121,8 @@ fn distances_are_those_of_the_affine_image() {
 #[test]
 fn distances_grow_from_parents_and_paths_lead_back() {
     let (domain, swirl, from) = (square(2.0), Swirl::default(), points(2.0));
-    let canvas = Canvas::intrinsic(&domain, &swirl, 5000).unwrap();
-    for method in Method::ALL {
+    for (kind, method) in pairs() {
+        let canvas = Canvas::new(kind, &domain, &swirl, 5000).unwrap();
         let found = Distances::new(&canvas, &swirl, &from, method).unwrap();
         for v in (0..canvas.vertex_count() as u32).map(VertexId) {
             if let Some(parent) = found.parent(v) {
@@ -134,9 +145,9 @@ fn distances_grow_from_parents_and_paths_lead_back() {
 #[test]
 fn diagrams_by_every_method_change_as_if_made_anew() {
     let (domain, swirl) = (square(2.0), Swirl::default());
-    let canvas = Canvas::intrinsic(&domain, &swirl, 1500).unwrap();
     let seed = |i: u32| Point::new((1.7 * f64::from(i)).sin() * 1.9, (2.3 * f64::from(i)).cos() * 1.9);
-    for method in Method::ALL.into_iter().filter(|method| method.drives_diagrams()) {
+    for (kind, method) in pairs().filter(|pair| pair.1.drives_diagrams()) {
+        let canvas = Canvas::new(kind, &domain, &swirl, 1500).unwrap();
         let mut seeds: Vec<Point> = (1..=30).map(seed).collect();
         let mut diagram = Diagram::by_method(&canvas, &swirl, &seeds, method).unwrap();
         for i in 0..12 {
@@ -149,10 +160,11 @@ fn diagrams_by_every_method_change_as_if_made_anew() {
         assert!(diagram.remove(seeds.len() as u32));
         let anew = Diagram::by_method(&canvas, &swirl, &seeds, method).unwrap();
         for v in (0..canvas.vertex_count() as u32).map(VertexId) {
-            assert_eq!(diagram.label(v), anew.label(v), "{method}: {v:?}");
+            assert_eq!(diagram.label(v), anew.label(v), "{method} on {kind}: {v:?}");
         }
         assert!(diagram.cell_sizes()[..seeds.len()].iter().all(|&size| size > 0), "{method}");
     }
+    let canvas = Canvas::intrinsic(&domain, &swirl, 1500).unwrap();
     for method in [Method::Lbr, Method::Heat] {
         let error = Diagram::by_method(&canvas, &swirl, &[seed(1)], method).err().unwrap();
         assert_eq!(error.to_string(), format!("not supported: a diagram by {method}, which gives distances alone"));
