@@ -3,7 +3,7 @@
 
 use super::agreement::Before;
 use super::buckets::Buckets;
-use super::relocate::relocate;
+use super::relocate::{Quiet, relocate};
 use super::star::Spoke;
 use super::star_set::{StarFigures, Stars};
 use super::steiner::{Placed, Steiner};
@@ -72,10 +72,10 @@ pub struct PickCounters {
 pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) -> Result<Consistent> {
     let stars = Stars::new(Steiner::metric(start, field)?);
     let (large, thin, counters) = (Buckets::default(), Buckets::default(), PickCounters::default());
-    let mut picker = Picker { stars, asked, large, thin, counters, random: 1 };
+    let mut picker = Picker { stars, asked, large, thin, counters, quiet: Quiet::default(), random: 1 };
     let all: Vec<VertexId> = picker.stars.steiner.planar.topology.vertices().collect();
     picker.note(&all);
-    let mut rounds = 0;
+    let mut rounds = 0;let t0=std::time::Instant::now();
     loop {
         picker.cut_bad()?;
         rounds += 1;
@@ -85,11 +85,12 @@ pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) ->
         if picker.cut_bad()? > 0 {
             continue;
         }
-        picker.counters.moved += relocate(&mut picker.stars.steiner, asked.radius)?;
+        picker.counters.moved += relocate(&mut picker.stars.steiner, asked.radius, &mut picker.quiet)?;
         picker.stars.update_all();
         picker.note(&all_vertices(&picker.stars));
         picker.cut_bad()?;
         let inconsistent = picker.inconsistent();
+        eprintln!("DBG round {rounds} n {} inc {} {:?} t {:?}", picker.stars.steiner.planar.topology.vertex_count(), inconsistent.len(), picker.counters, t0.elapsed());
         if inconsistent.is_empty() {
             break;
         }
@@ -120,12 +121,14 @@ struct Picker<'a> {
     large: Buckets<Simplex>,
     thin: Buckets<Simplex>,
     counters: PickCounters,
+    quiet: Quiet,
     random: u64,
 }
 
 impl Picker<'_> {
     /// Queues what is large or thin in some stars.
     fn note(&mut self, dirty: &[VertexId]) {
+        self.quiet.wake(dirty.iter().copied());
         for &v in dirty {
             for &Spoke { ends, .. } in &self.stars.by_vertex[v.index()] {
                 match self.fault(v, ends) {

@@ -15,6 +15,8 @@ use std::f64::consts::PI;
 
 /// Angles that face an edge should be so much (radians) below a straight angle, together.
 const MARGIN: f64 = 0.1;
+/// The tangent of the margin, or a little more: most sums are told to be below it without an arc.
+const TANGENT: f64 = 0.1004;
 /// A vertex is tried so far from its place, in units of the metric.
 const STEPS: [f64; 3] = [0.2, 0.06, 0.015];
 /// In so many directions.
@@ -26,14 +28,29 @@ const SWEEPS: usize = 60;
 /// A pass that lowers the sum by less than this share of it is the last.
 const STALL: f64 = 1e-3;
 
+/// Which vertices no move helps, until something changes near them: from one relocation to the next.
+#[derive(Default)]
+pub(super) struct Quiet(Vec<bool>);
+
+impl Quiet {
+    /// Some vertices are to be tried again.
+    pub(super) fn wake(&mut self, vertices: impl IntoIterator<Item = VertexId>) {
+        for v in vertices {
+            if let Some(is_quiet) = self.0.get_mut(v.index()) {
+                *is_quiet = false;
+            }
+        }
+    }
+}
+
 /// Moves free vertices, and flips edges, until every star agrees or it helps no more; no triangle's circumradius passes
 /// `largest` for that. Says how many moves it took.
 ///
 /// # Errors
 /// The metric is not positive definite where a vertex was moved.
-pub(super) fn relocate(steiner: &mut Steiner, largest: f64) -> Result<u64> {
-    let is_quiet = vec![false; steiner.planar.topology.vertex_slots()];
-    let mut work = Relocation { steiner, largest, is_quiet, moves: 0 };
+pub(super) fn relocate(steiner: &mut Steiner, largest: f64, quiet: &mut Quiet) -> Result<u64> {
+    quiet.0.resize(steiner.planar.topology.vertex_slots(), false);
+    let mut work = Relocation { steiner, largest, quiet, terms: Vec::new(), moves: 0 };
     let mut before = work.total().0;
     for _ in 0..SWEEPS {
         work.flips();
@@ -47,64 +64,90 @@ pub(super) fn relocate(steiner: &mut Steiner, largest: f64) -> Result<u64> {
     Ok(work.moves)
 }
 
+/// What is added for one circle, edge or triangle.
+#[derive(Clone, Copy)]
+enum Term {
+    /// Of an edge's ends, an apex on its left and a vertex on its right: by how much the two angles that face the edge, in
+    /// the metric of the vertex that comes last, exceed a straight angle less the margin, together.
+    Facing([VertexId; 4], VertexId),
+    /// By how much a triangle is too large, in the metric of its first corner.
+    Size([VertexId; 3]),
+    /// By how much an edge is too short, in the metric of its first end.
+    Length([VertexId; 2]),
+}
+
+impl Term {
+    fn touches(&self, v: VertexId) -> bool {
+        match self {
+            Self::Facing(quad, _) => quad.contains(&v),
+            Self::Size(corners) => corners.contains(&v),
+            Self::Length(ends) => ends.contains(&v),
+        }
+    }
+}
+
 struct Relocation<'a, 'f> {
     steiner: &'a mut Steiner<'f>,
     largest: f64,
-    /// Vertices that no move helps, until something moves near them.
-    is_quiet: Vec<bool>,
+    quiet: &'a mut Quiet,
+    /// Those of the last vertex that was tried, with what they add where it was, the greatest first.
+    terms: Vec<(f64, Term)>,
     moves: u64,
 }
 
 impl Relocation<'_, '_> {
     /// The sum over all faces, and the number of circles, each in one metric, that hold a vertex.
     fn total(&self) -> (f64, usize) {
-        let faces = self.steiner.planar.topology.faces();
-        faces.map(|f| self.of_face(f)).fold((0.0, 0), |sum, face| (sum.0 + face.0, sum.1 + face.1))
-    }
-
-    /// What a face adds.
-    fn of_face(&self, f: FaceId) -> (f64, usize) {
-        let topology = &self.steiner.planar.topology;
         let (mut sum, mut violated) = (0.0, 0);
-        for e in f.half_edges() {
-            let [v, across] = [topology.apex(e), topology.origin(e)];
-            sum += self.of_size(f, v) + self.of_length(e, across) + self.of_length(e, topology.target(e));
-            let Some(t) = self.free_twin(e) else { continue };
-            let metrics = [v, across, topology.target(e)];
-            let facing = metrics.map(|u| self.facing(e, topology.apex(t), u));
-            let beyond = [t.next(), t.prev()].map(|g| self.free_twin(g));
-            let far = beyond.into_iter().flatten().map(|g| self.facing(e, topology.apex(g), v));
-            for excess in facing.into_iter().chain(far) {
-                sum += excess * excess;
-                violated += usize::from(excess > MARGIN);
-            }
+        for f in self.steiner.planar.topology.faces() {
+            self.of_face(f, |term| {
+                let value = self.value(term);
+                sum += value;
+                violated += usize::from(matches!(term, Term::Facing(..)) && value > MARGIN * MARGIN);
+            });
         }
         (sum, violated)
+    }
+
+    /// What a face adds, term by term.
+    fn of_face(&self, f: FaceId, mut add: impl FnMut(Term)) {
+        let topology = &self.steiner.planar.topology;
+        for e in f.half_edges() {
+            let [v, a, b] = [topology.apex(e), topology.origin(e), topology.target(e)];
+            add(Term::Size([v, a, b]));
+            add(Term::Length([a, b]));
+            add(Term::Length([b, a]));
+            let Some(t) = self.free_twin(e) else { continue };
+            for at in [v, a, b] {
+                add(Term::Facing([a, b, v, topology.apex(t)], at));
+            }
+            for g in [t.next(), t.prev()].into_iter().filter_map(|g| self.free_twin(g)) {
+                add(Term::Facing([a, b, v, topology.apex(g)], v));
+            }
+        }
+    }
+
+    fn value(&self, term: Term) -> f64 {
+        let (planar, tensors) = (&self.steiner.planar, &self.steiner.tensors);
+        let excess = match term {
+            Term::Facing(quad, at) => {
+                let [a, b, c, d] = quad.map(|v| planar.position(v));
+                excess(tensors[at.index()], [a - c, b - c], [b - d, a - d])
+            }
+            Term::Size(corners) => {
+                let circle = circle(tensors[corners[0].index()], corners.map(|v| planar.position(v)));
+                circle.map_or(f64::INFINITY, |(_, radius)| radius) / self.largest - 1.0
+            }
+            Term::Length([a, b]) => {
+                1.0 - tensors[a.index()].length(planar.position(b) - planar.position(a)) / SHORTEST
+            }
+        };
+        excess.max(0.0).powi(2)
     }
 
     fn free_twin(&self, h: HalfEdge) -> Option<HalfEdge> {
         let topology = &self.steiner.planar.topology;
         topology.twin(h).filter(|_| !topology.is_fixed(h))
-    }
-
-    /// The two angles under which the apex of a half-edge and a vertex beyond it see it, in the metric of `at`: by how much
-    /// they exceed a straight angle less the margin, together.
-    fn facing(&self, h: HalfEdge, beyond: VertexId, at: VertexId) -> f64 {
-        let planar = &self.steiner.planar;
-        let [a, b] = planar.ends(h);
-        let [c, d] = [planar.topology.apex(h), beyond].map(|v| planar.position(v));
-        excess(self.steiner.tensors[at.index()], [a - c, b - c], [b - d, a - d])
-    }
-
-    fn of_size(&self, f: FaceId, v: VertexId) -> f64 {
-        let circle = circle(self.steiner.tensors[v.index()], self.steiner.planar.triangle(f));
-        let radius = circle.map_or(f64::INFINITY, |(_, radius)| radius);
-        (radius / self.largest - 1.0).max(0.0).powi(2)
-    }
-
-    fn of_length(&self, h: HalfEdge, at: VertexId) -> f64 {
-        let [a, b] = self.steiner.planar.ends(h);
-        (1.0 - self.steiner.tensors[at.index()].length(b - a) / SHORTEST).max(0.0).powi(2)
     }
 
     /// Some faces, and those that can see into them.
@@ -124,14 +167,11 @@ impl Relocation<'_, '_> {
         near
     }
 
-    /// What some faces add; some number that is not less than `most` if it is not less.
-    fn sum(&self, faces: &[FaceId], most: f64) -> f64 {
+    /// What some faces add.
+    fn sum(&self, faces: &[FaceId]) -> f64 {
         let mut sum = 0.0;
         for &f in faces {
-            sum += self.of_face(f).0;
-            if sum >= most {
-                break;
-            }
+            self.of_face(f, |term| sum += self.value(term));
         }
         sum
     }
@@ -141,8 +181,8 @@ impl Relocation<'_, '_> {
         let all: Vec<VertexId> = self.steiner.planar.topology.vertices().collect();
         for v in all {
             let topology = &self.steiner.planar.topology;
-            let is_free = !topology.is_border_vertex(v) && !topology.star(v).any(|h| topology.is_fixed(h));
-            if is_free && !self.is_quiet[v.index()] {
+            let is_free = || !topology.is_border_vertex(v) && !topology.star(v).any(|h| topology.is_fixed(h));
+            if !self.quiet.0[v.index()] && is_free() {
                 self.improve(v)?;
             }
         }
@@ -152,37 +192,64 @@ impl Relocation<'_, '_> {
     /// Moves a vertex to the best of the places tried, of the longest step with which any is better than its own.
     fn improve(&mut self, v: VertexId) -> Result<()> {
         let near = self.near(self.steiner.planar.topology.star(v).map(HalfEdge::face).collect());
-        let energy = self.sum(&near, f64::INFINITY);
+        let energy = self.gather(v, &near);
         let from = self.steiner.planar.position(v);
-        let [a, b, c] = self.steiner.tensors[v.index()].cholesky();
+        let tensor = self.steiner.tensors[v.index()];
+        let [a, b, c] = tensor.cholesky();
         for step in STEPS.into_iter().filter(|_| energy > 0.0) {
-            let mut best: (f64, Option<Point>) = (energy, None);
+            let mut best = (energy, from, tensor);
             for i in 0..DIRECTIONS {
                 let (y, x) = (2.0 * PI * f64::from(i) / f64::from(DIRECTIONS)).sin_cos();
                 let to = from + Vector::new((x - b * y / c) / a, y / c) * step;
                 if self.steiner.shift(v, to)? {
-                    let there = self.sum(&near, best.0);
+                    let there = self.there(best.0);
                     if there < best.0 {
-                        best = (there, Some(to));
+                        best = (there, to, self.steiner.tensors[v.index()]);
                     }
-                    self.steiner.shift(v, from)?;
                 }
             }
-            if let Some(to) = best.1 {
+            self.steiner.put(v, best.1, best.2);
+            if best.0 < energy {
                 self.moves += 1;
-                self.steiner.shift(v, to)?;
                 self.wake(&near);
                 return Ok(());
             }
         }
-        self.is_quiet[v.index()] = true;
+        self.quiet.0[v.index()] = true;
         Ok(())
     }
 
-    fn wake(&mut self, near: &[FaceId]) {
-        for v in near.iter().flat_map(|&f| self.steiner.planar.topology.corners(f)) {
-            self.is_quiet[v.index()] = false;
+    /// Finds the terms that depend on where a vertex is; their sum.
+    fn gather(&mut self, v: VertexId, near: &[FaceId]) -> f64 {
+        let mut terms = std::mem::take(&mut self.terms);
+        terms.clear();
+        for &f in near {
+            self.of_face(f, |term| {
+                if term.touches(v) {
+                    terms.push((self.value(term), term));
+                }
+            });
         }
+        terms.sort_by(|a, b| b.0.total_cmp(&a.0));
+        self.terms = terms;
+        self.terms.iter().map(|term| term.0).sum()
+    }
+
+    /// The sum of the gathered terms as things are now; some number that is not less than `most` if it is not less.
+    fn there(&self, most: f64) -> f64 {
+        let mut sum = 0.0;
+        for &(_, term) in &self.terms {
+            sum += self.value(term);
+            if sum >= most {
+                break;
+            }
+        }
+        sum
+    }
+
+    fn wake(&mut self, near: &[FaceId]) {
+        let topology = &self.steiner.planar.topology;
+        self.quiet.wake(near.iter().flat_map(|&f| topology.corners(f)));
     }
 
     /// Flips edges where that lowers the sum.
@@ -190,15 +257,13 @@ impl Relocation<'_, '_> {
         let all: Vec<HalfEdge> = self.steiner.planar.topology.edges().collect();
         for h in all {
             let Some(t) = self.free_twin(h) else { continue };
-            let is_bad = self.of_face(h.face()).0 + self.of_face(t.face()).0 > 0.0;
-            if !is_bad || !self.steiner.planar.is_convex(h) {
+            if self.sum(&[h.face(), t.face()]) == 0.0 || !self.steiner.planar.is_convex(h) {
                 continue;
             }
             let near = self.near(vec![h.face(), t.face()]);
-            let before = self.sum(&near, f64::INFINITY);
+            let before = self.sum(&near);
             self.steiner.planar.topology.flip(h);
-            let after = self.sum(&near, before);
-            if after < before {
+            if self.sum(&near) < before {
                 self.wake(&near);
                 continue;
             }
@@ -215,10 +280,11 @@ fn excess(tensor: Tensor, [a, b]: [Vector; 2], [c, d]: [Vector; 2]) -> f64 {
     let root = tensor.determinant().sqrt();
     let (sine, other_sine) = (root * a.cross(b), root * c.cross(d));
     let (cosine, other_cosine) = (tensor.dot(a, b), tensor.dot(c, d));
+    // The sum's sine and cosine, both times the same.
     let across = sine * other_cosine + cosine * other_sine;
     let along = cosine * other_cosine - sine * other_sine;
-    // The sum's sine and cosine, both times the same: most sums are small, and need no arc.
-    if along >= 0.0 && across >= 0.0 || other_sine <= 0.0 {
+    let is_below = across > 0.0 && (along >= 0.0 || across > TANGENT * -along);
+    if is_below || other_sine <= 0.0 {
         return 0.0;
     }
     let angle = across.atan2(along);

@@ -177,6 +177,12 @@ impl<'a> Steiner<'a> {
         Ok(is_moved)
     }
 
+    /// Puts a vertex where it was, with the metric that is known there.
+    pub(super) fn put(&mut self, v: VertexId, at: Point, tensor: Tensor) {
+        self.planar.positions[v.index()] = at;
+        self.tensors[v.index()] = tensor;
+    }
+
     /// Removes a vertex that was just inserted, and flips as before; says whether it could.
     pub(super) fn take_out(&mut self, v: VertexId) -> bool {
         let topology = &self.planar.topology;
