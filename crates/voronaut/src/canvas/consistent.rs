@@ -21,8 +21,10 @@ const PICKING: f64 = 0.3;
 /// Places tried in it, the circumcentre first: the authors' number.
 const TRIES: usize = 60;
 
-/// Rounds of moves and insertions at most.
-const ROUNDS: usize = 60;
+/// More inconsistent simplices than this, for each vertex, are not worth cutting: that makes more of them.
+const HOPELESS: f64 = 0.1;
+/// Rounds in a row that leave no fewer inconsistent simplices than one before are so many at most.
+const PATIENCE: usize = 3;
 /// What to do where stars do not come to agree.
 pub const NEEDS_MORE: &str = "star sets need far more vertices where the metric turns fast: use --mesher voronoi";
 
@@ -75,26 +77,21 @@ pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) ->
     let mut picker = Picker { stars, asked, large, thin, counters, quiet: Quiet::default(), random: 1 };
     let all: Vec<VertexId> = picker.stars.steiner.planar.topology.vertices().collect();
     picker.note(&all);
-    let mut rounds = 0;let t0=std::time::Instant::now();
+    let mut rounds = 0;
+    let (mut least, mut idle) = (usize::MAX, 0);
+    let t0 = std::time::Instant::now();
     loop {
-        picker.cut_bad()?;
         rounds += 1;
-        // What mending may have missed is found here.
-        picker.stars.update_all();
-        picker.note(&all_vertices(&picker.stars));
-        if picker.cut_bad()? > 0 {
-            continue;
-        }
-        picker.counters.moved += relocate(&mut picker.stars.steiner, asked.radius, &mut picker.quiet)?;
-        picker.stars.update_all();
-        picker.note(&all_vertices(&picker.stars));
-        picker.cut_bad()?;
+        picker.settle()?;
         let inconsistent = picker.inconsistent();
         eprintln!("DBG round {rounds} n {} inc {} {:?} t {:?}", picker.stars.steiner.planar.topology.vertex_count(), inconsistent.len(), picker.counters, t0.elapsed());
         if inconsistent.is_empty() {
             break;
         }
-        if rounds >= ROUNDS {
+        idle = if inconsistent.len() < least { 0 } else { idle + 1 };
+        least = least.min(inconsistent.len());
+        let share = inconsistent.len() as f64 / picker.stars.steiner.planar.topology.vertex_count() as f64;
+        if share > HOPELESS || idle == PATIENCE {
             return Err(picker.not_agreed(inconsistent[0].0));
         }
         picker.make_consistent(inconsistent)?;
@@ -128,7 +125,6 @@ struct Picker<'a> {
 impl Picker<'_> {
     /// Queues what is large or thin in some stars.
     fn note(&mut self, dirty: &[VertexId]) {
-        self.quiet.wake(dirty.iter().copied());
         for &v in dirty {
             for &Spoke { ends, .. } in &self.stars.by_vertex[v.index()] {
                 match self.fault(v, ends) {
@@ -151,12 +147,25 @@ impl Picker<'_> {
             if let Placed::Inserted(new) | Placed::Halved(new) = placed {
                 cut += 1;
                 *(if large.is_some() { &mut self.counters.for_size } else { &mut self.counters.for_shape }) += 1;
-                let dirty = self.stars.mend(&[new]);
-                self.note(&dirty);
+                self.keep(new);
                 self.demand_room(v)?;
             }
             if matches!(placed, Placed::Halved(_)) {
                 self.note(&[v]);
+            }
+        }
+    }
+
+    /// Moves vertices, and cuts what is large or thin.
+    fn settle(&mut self) -> Result<()> {
+        self.cut_bad()?;
+        self.counters.moved += relocate(&mut self.stars.steiner, self.asked.radius, &mut self.quiet)?;
+        loop {
+            // What mending may have missed is found here.
+            self.stars.update_all();
+            self.note(&all_vertices(&self.stars));
+            if self.cut_bad()? == 0 {
+                return Ok(());
             }
         }
     }
@@ -261,8 +270,13 @@ impl Picker<'_> {
 
     fn keep(&mut self, new: VertexId) -> VertexId {
         let dirty = self.stars.mend(&[new]);
-        self.note(&dirty);
+        self.changed(&dirty);
         new
+    }
+
+    fn changed(&mut self, dirty: &[VertexId]) {
+        self.quiet.wake(dirty.iter().copied());
+        self.note(dirty);
     }
 
     /// Says how many inconsistent simplices a new vertex leaves around it, and how many more than there were. Unless it leaves
@@ -274,7 +288,7 @@ impl Picker<'_> {
         self.stars.mend(&[new]);
         let change = before.change(&self.stars);
         if change.after == 0 || !self.stars.steiner.take_out(new) {
-            self.note(&dirty);
+            self.changed(&dirty);
             return (0, 0);
         }
         before.restore(&mut self.stars);

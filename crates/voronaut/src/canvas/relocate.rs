@@ -9,7 +9,7 @@
 use super::star::circle;
 use super::steiner::Steiner;
 use crate::error::Result;
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geometry::{Tensor, Vector};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::f64::consts::PI;
 

@@ -3,8 +3,8 @@
 use super::MetricField;
 use crate::geometry::{Point, Tensor, Vector};
 
-/// The step over which a field is seen to turn is found in so many rounds.
-const ROUNDS: usize = 2;
+/// The step over which a field is seen to turn, in its units.
+const STEP: f64 = 0.2;
 
 /// Another field times a factor at each place, such that its shape turns by about [`Steadied::most`] over a unit of the
 /// product, no more. Where it turns less the factor is close to one.
@@ -25,23 +25,19 @@ impl MetricField for Steadied<'_> {
         if !tensor.is_positive_definite() {
             return tensor;
         }
-        let mut factor: f64 = 1.0;
-        for _ in 0..ROUNDS {
-            let excess = self.turn(p, tensor, factor.sqrt().recip()) / self.most;
-            factor = (1.0 + excess.powi(4)).sqrt();
-        }
-        tensor * factor
+        let excess = self.turn(p, tensor) / self.most;
+        tensor * (1.0 + excess.powi(4)).sqrt()
     }
 }
 
 impl Steadied<'_> {
-    /// How much the field turns for each unit, seen over a step along both axes of a frame.
-    fn turn(&self, p: Point, tensor: Tensor, step: f64) -> f64 {
+    /// How much the field turns for each unit, along both axes of a frame.
+    fn turn(&self, p: Point, tensor: Tensor) -> f64 {
         let [a, b, c] = tensor.cholesky();
         let axes = [Vector::new(1.0 / a, 0.0), Vector::new(-b / (a * c), 1.0 / c)];
         let [x, y] = axes.map(|axis| {
-            let away = axis * (0.5 * step);
-            turn(self.field.at(p + away), self.field.at(p - away)) / step
+            let away = axis * (0.5 * STEP);
+            turn(self.field.at(p + away), self.field.at(p - away)) / STEP
         });
         x.hypot(y)
     }

@@ -49,9 +49,8 @@ impl FromStr for Mesher {
     }
 }
 
-/// The metric turns by about so much over a unit of the sampling. On the mild shock 1.3 gave fewer vertices, and took six
-/// times as long.
-const TURN: f64 = 1.0;
+/// The metric turns by about so much over a unit of the sampling: the first with which stars come to agree.
+const TURNS: [f64; 5] = [1.4, 1.0, 0.7, 0.5, 0.35];
 /// Stars are given up when they have so many times the vertices of a unit mesh, and [`SPARE`].
 const MOST: usize = 20;
 /// Vertices more, for coarse meshes of intricate domains.
@@ -71,31 +70,50 @@ pub(super) fn by_stars(
     let mut job = Job::new(field, options, progress);
     let (_, _, unit, scale) = job.timed("plan", |job| job.plan(domain))?;
     let scaled = Scaled { field, factor: scale };
-    let steadied = Steadied { field: &scaled, most: TURN };
-    let as_it_is = MeshOptions { vertices: None, complexity: None, ..options.clone() };
-    let mut job = Job::new(&steadied, &as_it_is, progress);
+    let mut refused = None;
+    for most in TURNS {
+        let steadied = Steadied { field: &scaled, most };
+        let as_it_is = MeshOptions { vertices: None, complexity: None, ..options.clone() };
+        let mut steady = Job { seconds: job.seconds, notes: job.notes, ..Job::new(&steadied, &as_it_is, progress) };
+        match agreed(&mut steady, domain, &scaled, unit) {
+            Ok(mut meshed) => {
+                let got = meshed.mesh.points.len();
+                if let Some(asked) = options.vertices.filter(|&asked| asked != got) {
+                    let note = format!("{asked} vertices set the scale of the metric; stars that agree took {got}");
+                    meshed.notes.push(note);
+                }
+                return Ok(Meshed { metric_scale: scale, ..meshed });
+            }
+            Err(error @ Error::Limit { .. }) => refused = Some(error),
+            Err(error) => return Err(error),
+        }
+        (job.seconds, job.notes) = (steady.seconds, steady.notes);
+    }
+    Err(refused.expect("there are turns"))
+}
+
+/// One try.
+fn agreed(job: &mut Job, domain: &Domain, scaled: &Scaled, unit: usize) -> Result<Meshed> {
     let (domain, plan, count, one) = job.timed("plan", |job| job.plan(domain))?;
     let most = MOST * unit + SPARE;
+    eprintln!("DBG count {count} most {most} unit {unit}");
     if count > most {
         let what = format!("stars need about {count} vertices to agree, where a unit mesh has {unit}");
         return Err(Error::Limit { what, help: NEEDS_MORE.into() });
     }
-    demand_memory(count as f64, most as f64, options.memory_limit)?;
+    demand_memory(count as f64, most as f64, job.options.memory_limit)?;
     let mut dual = job.timed("seed", |job| job.seed(&domain, None, &plan, count, one))?;
     let relaxation = job.timed("relax", |job| job.relax(&mut dual, None))?;
-    progress.stage("stars", 1);
-    let found =
-        job.timed("stars", |_| consistent(dual.planar().clone(), &scaled, Consistency { radius: UNIT_RADIUS, most }))?;
-    progress.stage("checking", 1);
+    job.progress.stage("stars", 1);
+    let asked = Consistency { radius: UNIT_RADIUS, most };
+    eprintln!("DBG n {} seconds {:?}", dual.planar().positions.len(), job.seconds);
+    let found = job.timed("stars", |_| consistent(dual.planar().clone(), scaled, asked))?;
+    job.progress.stage("checking", 1);
     let mesh = domain.mesh_of(&found.planar, |v| corner(&dual, v));
     job.timed("check", |_| quality::check(&mesh))?;
-    if let Some(asked) = options.vertices.filter(|&asked| asked != mesh.points.len()) {
-        let got = mesh.points.len();
-        job.notes.push(format!("{asked} vertices set the scale of the metric; stars that agree took {got}"));
-    }
     Ok(Meshed {
         mesh,
-        metric_scale: scale,
+        metric_scale: 1.0,
         dual: report::Dual::default(),
         relaxation,
         canvas: None,
@@ -103,8 +121,8 @@ pub(super) fn by_stars(
         net: None,
         protection: None,
         star_set: Some(report::StarSet { figures: found.figures, counters: found.counters }),
-        seconds: job.seconds,
-        notes: job.notes,
+        seconds: std::mem::take(&mut job.seconds),
+        notes: std::mem::take(&mut job.notes),
     })
 }
 
