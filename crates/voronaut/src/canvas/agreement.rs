@@ -63,3 +63,44 @@ fn first_smallest([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
         [c, a, b]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canvas::steiner::Steiner;
+    use crate::domain::Domain;
+    use crate::geometry::{Point, Tensor};
+    use crate::metric::Uniform;
+
+    #[test]
+    fn a_simplex_that_one_star_loses_is_counted_once_and_comes_back() {
+        let square = Domain::read("rect:0,0,1,1").unwrap();
+        let metric = Uniform(Tensor::isotropic(1.0));
+        let mut stars = Stars::new(Steiner::metric(square.planar().clone(), &metric).unwrap());
+        let first = stars.steiner.planar.topology.vertices().next().unwrap();
+        stars.place(first, Point::new(0.4, 0.45), 1.0).unwrap();
+        stars.update_all();
+        let whole = stars.by_vertex.clone();
+        let before = Before::of(&stars, [first]);
+        assert_eq!(before.change(&stars), Change { before: 0, after: 0 });
+        let lost = stars.by_vertex[first.index()].pop().unwrap();
+        assert_eq!(before.change(&stars), Change { before: 0, after: 1 });
+        let also = Before::of(&stars, lost.ends);
+        for v in lost.ends {
+            stars.by_vertex[v.index()].retain(|spoke| !spoke.ends.contains(&first) || !spoke.ends.iter().all(|u| lost.ends.contains(u) || *u == first));
+        }
+        assert_eq!(also.change(&stars), Change { before: 1, after: 0 }, "no star has it");
+        also.restore(&mut stars);
+        before.restore(&mut stars);
+        assert_eq!(stars.by_vertex, whole);
+    }
+
+    #[test]
+    fn turns_of_a_triangle_are_one() {
+        let [a, b, c] = [3, 7, 9].map(VertexId);
+        for turn in [[a, b, c], [b, c, a], [c, a, b]] {
+            assert_eq!(first_smallest(turn), [a, b, c]);
+        }
+        assert_eq!(first_smallest([c, b, a]), [a, c, b]);
+    }
+}

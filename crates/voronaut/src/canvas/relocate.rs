@@ -291,3 +291,81 @@ fn excess(tensor: Tensor, [a, b]: [Vector; 2], [c, d]: [Vector; 2]) -> f64 {
     let angle = if angle < 0.0 { angle + 2.0 * PI } else { angle };
     (angle - (PI - MARGIN)).max(0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canvas::CanvasCounters;
+    use crate::canvas::refine;
+    use crate::canvas::star_set::Stars;
+    use crate::domain::Domain;
+    use crate::geometry::Point;
+    use crate::metric::MetricField;
+    use crate::planar::Planar;
+
+    /// Cells that are three times as long as wide, along a direction that turns by 1.2 radians for each unit of x.
+    fn turning(p: Point) -> Tensor {
+        let angle = 1.2 * p.x;
+        Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), 100.0, 900.0)
+    }
+
+    fn refined(field: &dyn MetricField) -> Planar {
+        let square = Domain::read("rect:0,0,1,1").unwrap();
+        let planar = refine::refine(square.planar().clone(), field, 400, &mut CanvasCounters::default()).unwrap();
+        crate::canvas::renumbered(&planar)
+    }
+
+    fn inconsistencies(planar: &Planar, field: &dyn MetricField) -> usize {
+        Stars::new(Steiner::metric(planar.clone(), field).unwrap()).figures().inconsistencies
+    }
+
+    #[test]
+    fn moves_leave_fewer_inconsistencies_and_keep_the_boundary() {
+        let before = refined(&turning);
+        let mut steiner = Steiner::metric(before.clone(), &turning).unwrap();
+        let moves = relocate(&mut steiner, 2.0, &mut Quiet::default()).unwrap();
+        let after = steiner.planar;
+        let counts = [&before, &after].map(|planar| inconsistencies(planar, &turning));
+        assert!(moves > 0 && 2 * counts[1] < counts[0], "{moves} moves: {counts:?}");
+        assert_eq!(after.topology.vertex_count(), before.topology.vertex_count());
+        after.topology.check().unwrap();
+        for v in after.topology.vertices() {
+            let is_kept = after.position(v) == before.position(v);
+            assert!(is_kept || !after.topology.is_border_vertex(v), "{v:?}");
+            assert_eq!(steiner.tensors[v.index()], turning(after.position(v)), "{v:?}");
+        }
+        for f in after.topology.faces() {
+            let [a, b, c] = after.triangle(f);
+            assert!((b - a).cross(c - a) > 0.0, "{a} {b} {c}");
+        }
+    }
+
+    #[test]
+    fn what_is_quiet_is_not_tried_again_until_it_is_woken() {
+        let mut steiner = Steiner::metric(refined(&turning), &turning).unwrap();
+        let mut quiet = Quiet(vec![true; steiner.planar.topology.vertex_slots()]);
+        let all: Vec<VertexId> = steiner.planar.topology.vertices().collect();
+        let mut work = Relocation { steiner: &mut steiner, largest: 2.0, quiet: &mut quiet, terms: Vec::new(), moves: 0 };
+        work.sweep().unwrap();
+        assert_eq!(work.moves, 0);
+        work.quiet.wake(all);
+        work.sweep().unwrap();
+        assert!(work.moves > 0);
+    }
+
+    #[test]
+    fn angles_are_told_with_and_without_an_arc() {
+        let tensor = Tensor::new(2.0, 0.3, 1.0);
+        let angle = |u: Vector, v: Vector| (tensor.dot(u, v) / (tensor.length(u) * tensor.length(v))).acos();
+        let (a, b, c) = (Point::new(0.0, 0.0), Point::new(1.0, 0.0), Point::new(0.4, 0.5));
+        let mut positive = 0;
+        for i in 1..400 {
+            let d = Point::new(0.6, -0.005 * f64::from(i));
+            let sum = angle(a - c, b - c) + angle(b - d, a - d);
+            let (expected, got) = ((sum - (PI - MARGIN)).max(0.0), excess(tensor, [a - c, b - c], [b - d, a - d]));
+            assert!((got - expected).abs() < 1e-9, "{d}: {got} {expected}");
+            positive += usize::from(got > 0.0);
+        }
+        assert!((50..350).contains(&positive), "{positive}");
+    }
+}

@@ -4,7 +4,7 @@ use super::MetricField;
 use crate::geometry::{Point, Tensor, Vector};
 
 /// The step over which a field is seen to turn, in its units.
-const STEP: f64 = 0.2;
+const STEP: f64 = 0.05;
 
 /// Another field times a factor at each place, such that its shape turns by about [`Steadied::most`] over a unit of the
 /// product, no more. Where it turns less the factor is close to one.

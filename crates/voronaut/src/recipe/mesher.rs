@@ -6,6 +6,7 @@ use crate::domain::Domain;
 use crate::dual::{Dual, Kind};
 use crate::error::{Error, Result};
 use crate::metric::{MetricField, Scaled, Steadied};
+use crate::optimise::Relaxed;
 use crate::output::report;
 use crate::progress::Progress;
 use crate::quality;
@@ -51,6 +52,8 @@ impl FromStr for Mesher {
 
 /// The metric turns by about so much over a unit of the sampling: the first with which stars come to agree.
 const TURNS: [f64; 5] = [1.4, 1.0, 0.7, 0.5, 0.35];
+/// Steps of relaxation of such a sampling, at most: vertices are moved after it, for another reason.
+const LLOYD: usize = 10;
 /// Stars are given up when they have so many times the vertices of a unit mesh, and [`SPARE`].
 const MOST: usize = 20;
 /// Vertices more, for coarse meshes of intricate domains.
@@ -68,61 +71,76 @@ pub(super) fn by_stars(
     progress: &dyn Progress,
 ) -> Result<Meshed> {
     let mut job = Job::new(field, options, progress);
-    let (_, _, unit, scale) = job.timed("plan", |job| job.plan(domain))?;
-    let scaled = Scaled { field, factor: scale };
-    let mut refused = None;
-    for most in TURNS {
-        let steadied = Steadied { field: &scaled, most };
-        let as_it_is = MeshOptions { vertices: None, complexity: None, ..options.clone() };
-        let mut steady = Job { seconds: job.seconds, notes: job.notes, ..Job::new(&steadied, &as_it_is, progress) };
-        match agreed(&mut steady, domain, &scaled, unit) {
-            Ok(mut meshed) => {
-                let got = meshed.mesh.points.len();
-                if let Some(asked) = options.vertices.filter(|&asked| asked != got) {
-                    let note = format!("{asked} vertices set the scale of the metric; stars that agree took {got}");
-                    meshed.notes.push(note);
-                }
-                return Ok(Meshed { metric_scale: scale, ..meshed });
-            }
-            Err(error @ Error::Limit { .. }) => refused = Some(error),
-            Err(error) => return Err(error),
+    let start = sampled(&mut job, domain, None)?;
+    let (scaled, unit) = (start.dual.field(), start.dual.vertex_count());
+    let mut meshed = agreed(&mut job, &start, &scaled, unit);
+    for most in std::env::var("SM_TURNS").map(|t| t.split(',').map(|x| x.parse().unwrap()).collect::<Vec<f64>>()).unwrap_or(TURNS.to_vec()) {
+        if !matches!(meshed, Err(Error::Limit { .. })) {
+            break;
         }
+        let steadied = Steadied { field: &scaled, most };
+        let lloyd = options.lloyd.min(LLOYD);
+        let as_it_is = MeshOptions { vertices: None, complexity: None, lloyd, ..options.clone() };
+        let mut steady = Job { seconds: job.seconds, notes: job.notes, ..Job::new(&steadied, &as_it_is, progress) };
+        let start = sampled(&mut steady, domain, Some(unit))?;
+        meshed = agreed(&mut steady, &start, &scaled, unit);
         (job.seconds, job.notes) = (steady.seconds, steady.notes);
     }
-    Err(refused.expect("there are turns"))
+    let mut meshed = meshed?;
+    let got = meshed.mesh.points.len();
+    if let Some(asked) = options.vertices.filter(|&asked| asked != got) {
+        job.notes.push(format!("{asked} vertices set the scale of the metric; stars that agree took {got}"));
+    }
+    (meshed.seconds, meshed.notes) = (job.seconds, job.notes);
+    Ok(meshed)
 }
 
-/// One try.
-fn agreed(job: &mut Job, domain: &Domain, scaled: &Scaled, unit: usize) -> Result<Meshed> {
-    let (domain, plan, count, one) = job.timed("plan", |job| job.plan(domain))?;
-    let most = MOST * unit + SPARE;
-    eprintln!("DBG count {count} most {most} unit {unit}");
-    if count > most {
+/// What stars are refined from.
+struct Start<'a> {
+    domain: Domain,
+    dual: Dual<'a>,
+    relaxation: Relaxed,
+}
+
+/// Relaxed seeds; where the size of a unit mesh is given, an error if they are too many beside that.
+fn sampled<'a>(job: &mut Job<'a>, domain: &Domain, unit: Option<usize>) -> Result<Start<'a>> {
+    let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
+    let unit = unit.unwrap_or(count);
+    if count > most(unit) {
         let what = format!("stars need about {count} vertices to agree, where a unit mesh has {unit}");
         return Err(Error::Limit { what, help: NEEDS_MORE.into() });
     }
-    demand_memory(count as f64, most as f64, job.options.memory_limit)?;
-    let mut dual = job.timed("seed", |job| job.seed(&domain, None, &plan, count, one))?;
+    demand_memory(count as f64, most(unit) as f64, job.options.memory_limit)?;
+    let mut dual = job.timed("seed", |job| job.seed(&domain, None, &plan, count, scale))?;
     let relaxation = job.timed("relax", |job| job.relax(&mut dual, None))?;
+    Ok(Start { domain, dual, relaxation })
+}
+
+fn most(unit: usize) -> usize {
+    MOST * unit + SPARE
+}
+
+/// Moves and refines until stars agree.
+fn agreed(job: &mut Job, start: &Start, scaled: &Scaled, unit: usize) -> Result<Meshed> {
     job.progress.stage("stars", 1);
-    let asked = Consistency { radius: UNIT_RADIUS, most };
-    eprintln!("DBG n {} seconds {:?}", dual.planar().positions.len(), job.seconds);
-    let found = job.timed("stars", |_| consistent(dual.planar().clone(), scaled, asked))?;
+    let asked = Consistency { radius: UNIT_RADIUS, most: most(unit) };
+    eprintln!("DBG n {} seconds {:?}", start.dual.planar().positions.len(), job.seconds);
+    let found = job.timed("stars", |_| consistent(start.dual.planar().clone(), scaled, asked))?;
     job.progress.stage("checking", 1);
-    let mesh = domain.mesh_of(&found.planar, |v| corner(&dual, v));
+    let mesh = start.domain.mesh_of(&found.planar, |v| corner(&start.dual, v));
     job.timed("check", |_| quality::check(&mesh))?;
     Ok(Meshed {
         mesh,
-        metric_scale: 1.0,
+        metric_scale: scaled.factor,
         dual: report::Dual::default(),
-        relaxation,
+        relaxation: start.relaxation.clone(),
         canvas: None,
         diagram: None,
         net: None,
         protection: None,
         star_set: Some(report::StarSet { figures: found.figures, counters: found.counters }),
-        seconds: std::mem::take(&mut job.seconds),
-        notes: std::mem::take(&mut job.notes),
+        seconds: Vec::new(),
+        notes: Vec::new(),
     })
 }
 
