@@ -69,7 +69,8 @@ pub struct PickCounters {
 /// Moves free vertices of a triangulation and refines its stars until all are small, well shaped and consistent.
 ///
 /// # Errors
-/// [`Error::Metric`]; [`Error::Limit`] with a place where stars disagree when there are too many vertices;
+/// [`Error::Metric`]; [`Error::Limit`] with a place where stars disagree when there are too many vertices, too many
+/// inconsistencies to begin with, or no fewer after some rounds;
 /// [`Error::Mesh`] where rounding leaves no room to refine, or the stars agree and are no triangulation.
 pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) -> Result<Consistent> {
     let stars = Stars::new(Steiner::metric(start, field)?);
@@ -79,19 +80,17 @@ pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) ->
     picker.note(&all);
     let mut rounds = 0;
     let (mut least, mut idle) = (usize::MAX, 0);
-    let t0 = std::time::Instant::now();
     loop {
         rounds += 1;
         picker.settle()?;
         let inconsistent = picker.inconsistent();
-        eprintln!("DBG round {rounds} n {} inc {} {:?} t {:?}", picker.stars.steiner.planar.topology.vertex_count(), inconsistent.len(), picker.counters, t0.elapsed());
         if inconsistent.is_empty() {
             break;
         }
         idle = if inconsistent.len() < least { 0 } else { idle + 1 };
         least = least.min(inconsistent.len());
         let share = inconsistent.len() as f64 / picker.stars.steiner.planar.topology.vertex_count() as f64;
-        if share > std::env::var("SM_HOPE").map_or(HOPELESS, |x| x.parse().unwrap()) || idle == PATIENCE {
+        if share > HOPELESS || idle == PATIENCE {
             return Err(picker.not_agreed(inconsistent[0].0));
         }
         picker.make_consistent(inconsistent)?;

@@ -138,9 +138,7 @@ impl Relocation<'_, '_> {
                 let circle = circle(tensors[corners[0].index()], corners.map(|v| planar.position(v)));
                 circle.map_or(f64::INFINITY, |(_, radius)| radius) / self.largest - 1.0
             }
-            Term::Length([a, b]) => {
-                1.0 - tensors[a.index()].length(planar.position(b) - planar.position(a)) / SHORTEST
-            }
+            Term::Length([a, b]) => 1.0 - tensors[a.index()].length(planar.position(b) - planar.position(a)) / SHORTEST,
         };
         excess.max(0.0).powi(2)
     }
@@ -345,7 +343,8 @@ mod tests {
         let mut steiner = Steiner::metric(refined(&turning), &turning).unwrap();
         let mut quiet = Quiet(vec![true; steiner.planar.topology.vertex_slots()]);
         let all: Vec<VertexId> = steiner.planar.topology.vertices().collect();
-        let mut work = Relocation { steiner: &mut steiner, largest: 2.0, quiet: &mut quiet, terms: Vec::new(), moves: 0 };
+        let mut work =
+            Relocation { steiner: &mut steiner, largest: 2.0, quiet: &mut quiet, terms: Vec::new(), moves: 0 };
         work.sweep().unwrap();
         assert_eq!(work.moves, 0);
         work.quiet.wake(all);
