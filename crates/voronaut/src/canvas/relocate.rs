@@ -24,9 +24,9 @@ const DIRECTIONS: u32 = 8;
 /// Edges should be as long as this, in units of the metric.
 const SHORTEST: f64 = 0.15;
 /// Passes over all vertices at most.
-const SWEEPS: usize = 60;
+const SWEEPS: usize = 30;
 /// A pass that lowers the sum by less than this share of it is the last.
-const STALL: f64 = 1e-3;
+const STALL: f64 = 1e-2;
 
 /// Which vertices no move helps, until something changes near them: from one relocation to the next.
 #[derive(Default)]

@@ -55,7 +55,7 @@ const TURNS: [f64; 5] = [1.4, 1.2, 1.0, 0.7, 0.5];
 /// Steps of relaxation of such a sampling, at most: vertices are moved after it, for another reason.
 const LLOYD: usize = 10;
 /// Stars are given up when they have so many times the vertices of a unit mesh, and [`SPARE`].
-const MOST: usize = 20;
+const MOST: usize = 10;
 /// Vertices more, for coarse meshes of intricate domains.
 const SPARE: usize = 1000;
 
