@@ -83,7 +83,7 @@ mod tests {
         let whole = stars.by_vertex.clone();
         let before = Before::of(&stars, [first]);
         assert_eq!(before.change(&stars), Change { before: 0, after: 0 });
-        let lost = stars.by_vertex[first.index()].pop().unwrap();
+        stars.by_vertex[first.index()].pop().unwrap();
         assert_eq!(before.change(&stars), Change { before: 0, after: 1 });
         before.restore(&mut stars);
         assert_eq!(stars.by_vertex, whole);

@@ -292,7 +292,7 @@ impl Picker<'_> {
         }
         before.restore(&mut self.stars);
         self.stars.by_vertex[new.index()].clear();
-        (change.after, change.after as isize - change.before as isize)
+        (change.after, change.after.cast_signed() - change.before.cast_signed())
     }
 
     /// How large a simplex is if it is too large, and how thin if too thin.
