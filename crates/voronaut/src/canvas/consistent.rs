@@ -1,26 +1,32 @@
 //! The local Delaunay algorithm as a mesher (RR-9103, section 7.1): stars are refined until they agree, and are then the
 //! triangles of a mesh.
 
+use super::agreement::Before;
 use super::buckets::Buckets;
-use super::star::Star;
+use super::relocate::{Quiet, relocate};
+use super::star::Spoke;
 use super::star_set::{StarFigures, Stars};
 use super::steiner::{Placed, Steiner};
-use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Vector};
 use crate::metric::MetricField;
 use crate::planar::Planar;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// A simplex is cut if its circumradius is more than so many times its shortest edge: rho zero of the authors.
 const RATIO: f64 = 3.0;
-/// A new inconsistent simplex is tolerated if its circumradius is so many times that of the simplex cut: the authors' beta.
-const BETA: f64 = 2.5;
 /// The picking ball's radius, as a share of the circumradius: the authors' delta.
 const PICKING: f64 = 0.3;
 /// Places tried in it, the circumcentre first: the authors' number.
 const TRIES: usize = 60;
+
+/// More inconsistent simplices than this, for each vertex, are not worth cutting: that makes more of them.
+const HOPELESS: f64 = 0.1;
+/// Rounds in a row that leave no fewer inconsistent simplices than one before are so many at most.
+const PATIENCE: usize = 3;
+/// What to do where stars do not come to agree.
+pub const NEEDS_MORE: &str = "star sets need far more vertices where the metric turns fast: use --mesher voronoi";
 
 /// When and how far to refine.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +40,7 @@ pub struct Consistency {
 /// A consistent star set as a triangulation, and what it took.
 #[derive(Clone, Debug)]
 pub struct Consistent {
-    /// The triangles, with the constraints and regions of the domain. Vertices of the domain keep their ids. Each triangle is
+    /// The triangles, with the constraints and regions of the domain. Vertices that it started from keep their ids. Each triangle is
     /// counter-clockwise; that none overlap is for the caller to check.
     pub planar: Planar,
     /// The star set.
@@ -50,40 +56,44 @@ pub struct PickCounters {
     pub for_size: u64,
     /// For those whose circumradius was too large beside their shortest edge.
     pub for_shape: u64,
-    /// For inconsistent ones, at a place that makes no new small inconsistency.
+    /// For inconsistent ones, at a place that leaves fewer of them.
     pub picked: u64,
     /// For inconsistent ones, at their circumcentre, for want of such a place.
     pub unpicked: u64,
+    /// Vertices that were moved instead.
+    pub moved: u64,
     /// Places tried.
     pub tries: u64,
 }
 
-/// Refines the stars of a domain's corners until all are small, well shaped and consistent.
+/// Moves free vertices of a triangulation and refines its stars until all are small, well shaped and consistent.
 ///
 /// # Errors
-/// [`Error::Metric`]; [`Error::Limit`] with a place where stars disagree when there are too many vertices;
+/// [`Error::Metric`]; [`Error::Limit`] with a place where stars disagree when there are too many vertices, too many
+/// inconsistencies to begin with, or no fewer after some rounds;
 /// [`Error::Mesh`] where rounding leaves no room to refine, or the stars agree and are no triangulation.
-pub fn consistent(domain: &Domain, field: &dyn MetricField, asked: Consistency) -> Result<Consistent> {
-    let stars = Stars::new(Steiner::metric(domain.planar().clone(), field)?);
+pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) -> Result<Consistent> {
+    let stars = Stars::new(Steiner::metric(start, field)?);
     let (large, thin, counters) = (Buckets::default(), Buckets::default(), PickCounters::default());
-    let mut picker = Picker { stars, asked, large, thin, counters, random: 1 };
+    let mut picker = Picker { stars, asked, large, thin, counters, quiet: Quiet::default(), random: 1 };
     let all: Vec<VertexId> = picker.stars.steiner.planar.topology.vertices().collect();
     picker.note(&all);
     let mut rounds = 0;
+    let (mut least, mut idle) = (usize::MAX, 0);
     loop {
-        picker.cut_bad()?;
         rounds += 1;
-        // What mending may have missed is found here.
-        picker.stars.update_all();
-        picker.note(&all_vertices(&picker.stars));
-        if picker.cut_bad()? > 0 {
-            continue;
-        }
+        picker.settle()?;
         let inconsistent = picker.inconsistent();
         if inconsistent.is_empty() {
             break;
         }
-        picker.make_consistent(&inconsistent)?;
+        idle = if inconsistent.len() < least { 0 } else { idle + 1 };
+        least = least.min(inconsistent.len());
+        let share = inconsistent.len() as f64 / picker.stars.steiner.planar.topology.vertex_count() as f64;
+        if share > HOPELESS || idle == PATIENCE {
+            return Err(picker.not_agreed(inconsistent[0].0));
+        }
+        picker.make_consistent(inconsistent)?;
     }
     let figures = StarFigures { rounds, ..picker.stars.figures() };
     Ok(Consistent { planar: union(&picker.stars)?, figures, counters: picker.counters })
@@ -96,12 +106,18 @@ fn all_vertices(stars: &Stars) -> Vec<VertexId> {
 /// A simplex of the star of its first vertex.
 type Simplex = (VertexId, [VertexId; 2]);
 
+enum Fault {
+    Large(f64),
+    Thin(f64),
+}
+
 struct Picker<'a> {
     stars: Stars<'a>,
     asked: Consistency,
     large: Buckets<Simplex>,
     thin: Buckets<Simplex>,
     counters: PickCounters,
+    quiet: Quiet,
     random: u64,
 }
 
@@ -109,15 +125,11 @@ impl Picker<'_> {
     /// Queues what is large or thin in some stars.
     fn note(&mut self, dirty: &[VertexId]) {
         for &v in dirty {
-            for spoke in &self.stars.by_vertex[v.index()] {
-                let Some((_, radius)) = self.stars.circle(v, spoke.ends) else { continue };
-                let tensor = self.stars.steiner.tensors[v.index()];
-                let [p, q, r] = [v, spoke.ends[0], spoke.ends[1]].map(|u| self.stars.steiner.planar.position(u));
-                let shortest = tensor.length(q - p).min(tensor.length(r - q)).min(tensor.length(p - r));
-                if radius > self.asked.radius {
-                    self.large.push(radius, (v, spoke.ends));
-                } else if radius > RATIO * shortest {
-                    self.thin.push(radius / shortest, (v, spoke.ends));
+            for &Spoke { ends, .. } in &self.stars.by_vertex[v.index()] {
+                match self.fault(v, ends) {
+                    Some(Fault::Large(radius)) => self.large.push(radius, (v, ends)),
+                    Some(Fault::Thin(ratio)) => self.thin.push(ratio, (v, ends)),
+                    None => {}
                 }
             }
         }
@@ -134,12 +146,25 @@ impl Picker<'_> {
             if let Placed::Inserted(new) | Placed::Halved(new) = placed {
                 cut += 1;
                 *(if large.is_some() { &mut self.counters.for_size } else { &mut self.counters.for_shape }) += 1;
-                let dirty = self.stars.mend(&[new]);
-                self.note(&dirty);
+                self.keep(new);
                 self.demand_room(v)?;
             }
             if matches!(placed, Placed::Halved(_)) {
                 self.note(&[v]);
+            }
+        }
+    }
+
+    /// Moves vertices, and cuts what is large or thin.
+    fn settle(&mut self) -> Result<()> {
+        self.cut_bad()?;
+        self.counters.moved += relocate(&mut self.stars.steiner, self.asked.radius, &mut self.quiet)?;
+        loop {
+            // What mending may have missed is found here.
+            self.stars.update_all();
+            self.note(&all_vertices(&self.stars));
+            if self.cut_bad()? == 0 {
+                return Ok(());
             }
         }
     }
@@ -153,109 +178,134 @@ impl Picker<'_> {
         if self.stars.steiner.planar.topology.vertex_count() <= self.asked.most {
             return Ok(());
         }
-        let (most, place) = (self.asked.most, self.stars.steiner.planar.position(v));
-        let what = format!("the stars do not agree with {most} vertices, for example at {place}");
-        let help = "star sets need far more vertices where the metric turns fast: use --mesher voronoi".into();
-        Err(Error::Limit { what, help })
+        Err(self.not_agreed(v))
+    }
+
+    fn not_agreed(&self, v: VertexId) -> Error {
+        let count = self.stars.steiner.planar.topology.vertex_count();
+        let place = self.stars.steiner.planar.position(v);
+        let what = format!("the stars do not agree with {count} vertices, for example at {place}");
+        Error::Limit { what, help: NEEDS_MORE.into() }
     }
 
     /// All simplices that not all of their vertices' stars have.
     fn inconsistent(&self) -> Vec<Simplex> {
         let mut found = Vec::new();
         for v in all_vertices(&self.stars) {
-            let spokes = self.stars.by_vertex[v.index()].iter().map(|spoke| spoke.ends);
-            found.extend(spokes.filter(|&[a, b]| !self.stars.agree([v, a, b])).map(|ends| (v, ends)));
+            let spokes = self.stars.by_vertex[v.index()].iter().map(|spoke| (v, spoke.ends));
+            found.extend(spokes.filter(|&simplex| self.is_inconsistent(simplex)));
         }
         found
     }
 
-    /// Cuts inconsistent simplices that are still there when it is their turn.
-    fn make_consistent(&mut self, inconsistent: &[Simplex]) -> Result<()> {
-        let mut is_idle = true;
-        for &(v, ends) in inconsistent {
-            if self.circle((v, ends)).is_some() && !self.stars.agree([v, ends[0], ends[1]]) && self.pick(v, ends)? {
-                is_idle = false;
+    /// Whether a star has a simplex, and another has not.
+    fn is_inconsistent(&self, (v, ends): Simplex) -> bool {
+        self.stars.has(v, ends) && !self.stars.agree([v, ends[0], ends[1]])
+    }
+
+    /// Cuts inconsistent simplices, the largest first, of those near each other one.
+    fn make_consistent(&mut self, mut inconsistent: Vec<Simplex>) -> Result<()> {
+        let radius = |s: &Simplex| self.stars.circle(s.0, s.1).map_or(0.0, |(_, radius)| radius);
+        inconsistent.sort_by(|s, t| radius(t).total_cmp(&radius(s)).then(s.cmp(t)));
+        let mut touched: HashSet<VertexId> = HashSet::new();
+        for &(v, ends) in &inconsistent {
+            if [v, ends[0], ends[1]].iter().any(|u| touched.contains(u)) || !self.is_inconsistent((v, ends)) {
+                continue;
+            }
+            if let Some(new) = self.pick(v, ends)? {
+                touched.extend([v, ends[0], ends[1]]);
+                touched.extend(self.stars.by_vertex[new.index()].iter().flat_map(|spoke| spoke.ends));
                 self.demand_room(v)?;
                 self.cut_bad()?;
             }
         }
-        if is_idle {
+        if touched.is_empty() {
             let place = self.stars.steiner.planar.position(inconsistent[0].0).to_string();
             return Err(not_meshed("stars disagree where rounding leaves no room to refine them", place));
         }
         Ok(())
     }
 
-    /// Puts a vertex near the centre of an inconsistent simplex, where that makes no new inconsistency that is small; else
-    /// at its centre (`pick_valid`). Says whether there is a new vertex.
-    fn pick(&mut self, v: VertexId, ends: [VertexId; 2]) -> Result<bool> {
-        let Some((centre, radius)) = self.stars.circle(v, ends) else { return Ok(false) };
-        let [a, b, c] = self.stars.steiner.tensors[v.index()].cholesky();
+    /// Puts a vertex near the centre of an inconsistent simplex, where that leaves the fewest inconsistent ones.
+    fn pick(&mut self, v: VertexId, ends: [VertexId; 2]) -> Result<Option<VertexId>> {
+        let Some((centre, radius)) = self.stars.circle(v, ends) else { return Ok(None) };
+        let mut best: Option<(isize, Point)> = None;
         for attempt in 0..TRIES {
             self.counters.tries += 1;
-            let (x, y) = if attempt == 0 { (0.0, 0.0) } else { self.in_disk() };
-            let away = Vector::new((x - b * y / c) / a, y / c) * (PICKING * radius);
-            match self.stars.place(v, centre + away, radius)? {
+            let place = if attempt == 0 { centre } else { centre + self.in_ball(v, radius) };
+            match self.stars.place(v, place, radius)? {
                 Placed::Refused => {}
                 Placed::Halved(new) => {
                     self.counters.picked += 1;
-                    return Ok(self.keep(new));
+                    return Ok(Some(self.keep(new)));
                 }
                 Placed::Inserted(new) => {
-                    if self.is_kept(new, BETA * radius) {
+                    let (left, change) = self.tried(new);
+                    if left == 0 {
                         self.counters.picked += 1;
-                        return Ok(true);
+                        return Ok(Some(new));
+                    }
+                    if best.is_none_or(|(least, _)| change < least) {
+                        best = Some((change, place));
                     }
                 }
             }
         }
-        if let Placed::Inserted(new) | Placed::Halved(new) = self.stars.place(v, centre, radius)? {
-            self.counters.unpicked += 1;
-            return Ok(self.keep(new));
+        let place = best.map_or(centre, |(_, place)| place);
+        let gain = best.is_some_and(|(change, _)| change < 0);
+        if let Placed::Inserted(new) | Placed::Halved(new) = self.stars.place(v, place, radius)? {
+            *(if gain { &mut self.counters.picked } else { &mut self.counters.unpicked }) += 1;
+            return Ok(Some(self.keep(new)));
         }
-        Ok(false)
+        Ok(None)
     }
 
-    fn keep(&mut self, new: VertexId) -> bool {
+    /// A vector to somewhere in the picking ball.
+    fn in_ball(&mut self, v: VertexId, radius: f64) -> Vector {
+        let [a, b, c] = self.stars.steiner.tensors[v.index()].cholesky();
+        let (x, y) = self.in_disk();
+        Vector::new((x - b * y / c) / a, y / c) * (PICKING * radius)
+    }
+
+    fn keep(&mut self, new: VertexId) -> VertexId {
         let dirty = self.stars.mend(&[new]);
-        self.note(&dirty);
-        true
+        self.changed(&dirty);
+        new
     }
 
-    /// Keeps a vertex if the inconsistent simplices that it makes are all larger than a circumradius; else takes it out.
-    fn is_kept(&mut self, new: VertexId, least: f64) -> bool {
+    fn changed(&mut self, dirty: &[VertexId]) {
+        self.quiet.wake(dirty.iter().copied());
+        self.note(dirty);
+    }
+
+    /// Says how many inconsistent simplices a new vertex leaves around it, and how many more than there were. Unless it leaves
+    /// none it is taken out again.
+    fn tried(&mut self, new: VertexId) -> (usize, isize) {
         self.stars.make_room();
         let dirty = self.stars.changed_by(new);
-        let before: HashMap<VertexId, Star> =
-            dirty.iter().map(|&w| (w, self.stars.by_vertex[w.index()].clone())).collect();
+        let before = Before::of(&self.stars, dirty.iter().copied());
         self.stars.mend(&[new]);
-        if !self.makes_small(&before, least) || !self.stars.steiner.take_out(new) {
-            self.note(&dirty);
-            return true;
+        let change = before.change(&self.stars);
+        if change.after == 0 || !self.stars.steiner.take_out(new) {
+            self.changed(&dirty);
+            return (0, 0);
         }
-        for (w, star) in before {
-            self.stars.by_vertex[w.index()] = star;
-        }
+        before.restore(&mut self.stars);
         self.stars.by_vertex[new.index()].clear();
-        false
+        (change.after, change.after.cast_signed() - change.before.cast_signed())
     }
 
-    /// Whether stars disagree now, and did not before, on a simplex with a circumradius below `least`.
-    fn makes_small(&self, before: &HashMap<VertexId, Star>, least: f64) -> bool {
-        let had = |v: VertexId, ends: [VertexId; 2]| {
-            before.get(&v).map_or_else(|| self.stars.has(v, ends), |star| star.iter().any(|spoke| spoke.ends == ends))
-        };
-        let turns = |v: VertexId, [a, b]: [VertexId; 2]| [(v, [a, b]), (a, [b, v]), (b, [v, a])];
-        let is_new = |v: VertexId, ends: [VertexId; 2]| {
-            let held = turns(v, ends).iter().filter(|&&(u, others)| had(u, others)).count();
-            let holders = turns(v, ends).into_iter().filter(|&(u, others)| self.stars.has(u, others));
-            let holders: Vec<Simplex> = holders.collect();
-            let is_small = |&(u, others): &Simplex| self.stars.circle(u, others).is_some_and(|(_, r)| r < least);
-            (held == 0 || held == 3) && holders.len() < 3 && holders.iter().any(is_small)
-        };
-        let now = before.keys().flat_map(|&w| self.stars.by_vertex[w.index()].iter().map(move |spoke| (w, spoke.ends)));
-        let then = before.iter().flat_map(|(&w, star)| star.iter().map(move |spoke| (w, spoke.ends)));
-        now.chain(then).any(|(w, ends)| is_new(w, ends))
+    /// How large a simplex is if it is too large, and how thin if too thin.
+    fn fault(&self, v: VertexId, ends: [VertexId; 2]) -> Option<Fault> {
+        let (_, radius) = self.stars.circle(v, ends)?;
+        let tensor = self.stars.steiner.tensors[v.index()];
+        let [p, q, r] = [v, ends[0], ends[1]].map(|u| self.stars.steiner.planar.position(u));
+        let shortest = tensor.length(q - p).min(tensor.length(r - q)).min(tensor.length(p - r));
+        if radius > self.asked.radius {
+            Some(Fault::Large(radius))
+        } else {
+            (radius > RATIO * shortest).then_some(Fault::Thin(radius / shortest))
+        }
     }
 
     /// A point of the unit disk, evenly distributed.
@@ -304,6 +354,5 @@ fn not_meshed(what: &str, place: String) -> Error {
     }
 }
 
-/// The radius for which simplices are unit on the average: the mean circumradius of refinement is about this share of
-/// what it refines to.
-pub const UNIT_RADIUS: f64 = 0.8;
+/// A circumradius that simplices of a relaxed unit mesh keep below: the mean is 0.6.
+pub const UNIT_RADIUS: f64 = 1.0;

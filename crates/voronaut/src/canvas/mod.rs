@@ -5,6 +5,7 @@
 //! from which the lengths were taken. All have the same vertices. Kinds of canvas differ in where these are, and a star set
 //! in its graph.
 
+mod agreement;
 mod border;
 mod buckets;
 mod consistent;
@@ -14,12 +15,13 @@ mod kind;
 mod lengths;
 mod locate;
 mod refine;
+mod relocate;
 mod star;
 mod star_set;
 mod steiner;
 
 pub use border::Border;
-pub use consistent::{Consistency, Consistent, PickCounters, UNIT_RADIUS, consistent};
+pub use consistent::{Consistency, Consistent, NEEDS_MORE, PickCounters, UNIT_RADIUS, consistent};
 pub use isotropic::isotropic_size;
 pub use kind::Kind;
 pub use star_set::{StarFigures, StarSet};

@@ -128,7 +128,7 @@ impl<'a> Stars<'a> {
     }
 
     /// Finds some stars anew, in parallel; returns how many could not be found.
-    fn update(&mut self, dirty: &[VertexId]) -> usize {
+    pub(super) fn update(&mut self, dirty: &[VertexId]) -> usize {
         let steiner = &self.steiner;
         let find = |finder: &mut Finder, &v: &VertexId| finder.star(v, steiner.tensors[v.index()]);
         let parts = dirty.par_chunks(PART).map_init(

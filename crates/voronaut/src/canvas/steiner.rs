@@ -164,6 +164,25 @@ impl<'a> Steiner<'a> {
         frozen_margin(mean, [a - c, b - c], [b - d, a - d])
     }
 
+    /// Moves a vertex, without flips; says whether it could.
+    ///
+    /// # Errors
+    /// The metric is not positive definite at the new place.
+    pub(super) fn shift(&mut self, v: VertexId, to: Point) -> Result<bool> {
+        let is_moved = self.planar.move_vertex(v, to);
+        if let Some(field) = self.field.filter(|_| is_moved) {
+            self.tensors[v.index()] = field.at(to);
+            check_tensor(self.tensors[v.index()], to)?;
+        }
+        Ok(is_moved)
+    }
+
+    /// Puts a vertex where it was, with the metric that is known there.
+    pub(super) fn put(&mut self, v: VertexId, at: Point, tensor: Tensor) {
+        self.planar.positions[v.index()] = at;
+        self.tensors[v.index()] = tensor;
+    }
+
     /// Removes a vertex that was just inserted, and flips as before; says whether it could.
     pub(super) fn take_out(&mut self, v: VertexId) -> bool {
         let topology = &self.planar.topology;

@@ -11,6 +11,7 @@
 //! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits |
 //! | [`smoothed()`] | `--smooth-metric` | another field, averaged over neighbours on a background mesh |
 //! | [`Scaled`] | `-n`, `--complexity` | another field times a factor |
+//! | [`Steadied`] | `--mesher starset` | another field, finer where it turns |
 //!
 //! [`MetricSpec`] reads the second column; [`complexity()`] integrates sqrt(det M); [`check_tensor`] and
 //! [`check_field`] tell whether values are a metric. Fields do not check their own values: whoever uses a tensor does.
@@ -26,6 +27,7 @@ mod sampled;
 mod scaled;
 mod smoothed;
 mod spec;
+mod steadied;
 mod tree;
 mod validate;
 mod vocabulary;
@@ -40,6 +42,7 @@ pub use sampled::Sampled;
 pub use scaled::Scaled;
 pub use smoothed::{MOST_SWEEPS, smoothed};
 pub use spec::MetricSpec;
+pub use steadied::Steadied;
 pub use validate::{check_field, check_tensor};
 
 use crate::geometry::{Point, Tensor};

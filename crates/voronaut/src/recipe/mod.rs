@@ -193,7 +193,11 @@ impl<'a> Job<'a> {
     fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
         let start = Instant::now();
         let result = work(self);
-        self.seconds.push((stage, start.elapsed().as_secs_f64()));
+        let took = start.elapsed().as_secs_f64();
+        match self.seconds.iter_mut().find(|(name, _)| *name == stage) {
+            Some((_, seconds)) => *seconds += took,
+            None => self.seconds.push((stage, took)),
+        }
         result
     }
 
