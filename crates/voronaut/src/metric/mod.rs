@@ -21,6 +21,7 @@ mod bounds;
 mod complexity;
 mod expression;
 mod formula;
+mod number;
 mod parser;
 mod sampled;
 mod scaled;
