@@ -60,7 +60,11 @@ fn read_shape(spec: &str) -> Option<Result<Pslg>> {
     }
 }
 
-fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Result<[f64; N]> {
+/// The comma-separated numbers of a shape.
+///
+/// # Errors
+/// [`Error::Parse`] of more, fewer, or what is no number.
+pub fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Result<[f64; N]> {
     let error = |what: String| Error::parse(spec, what, format!("write {usage}"));
     let words: Vec<_> = numbers.split(',').map(str::trim).collect();
     if words.len() != N {

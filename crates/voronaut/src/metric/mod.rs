@@ -36,11 +36,12 @@ pub use boundary::{Boundary, BoundarySizes};
 pub use bounds::{Bounded, Bounds};
 pub use complexity::{complexity, rough_complexity};
 pub use expression::{Expression, Variables};
-pub use formula::Formula;
+pub use formula::{Formula, SpaceFormula};
 pub use sampled::Sampled;
 pub use scaled::Scaled;
 pub use smoothed::{MOST_SWEEPS, smoothed};
 pub use spec::MetricSpec;
+pub(crate) use spec::Parameters;
 pub use validate::{check_field, check_tensor};
 
 use crate::geometry::{Point, Tensor};
