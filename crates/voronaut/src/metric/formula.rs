@@ -57,12 +57,7 @@ impl SpaceFormula {
 }
 
 /// Expressions between semicolons, as many as there are names; `count` is their number as a word.
-fn entries<const N: usize>(
-    text: &str,
-    names: [&str; N],
-    count: &str,
-    variables: Variables,
-) -> Result<[Expression; N]> {
+fn entries<const N: usize>(text: &str, names: [&str; N], count: &str, variables: Variables) -> Result<[Expression; N]> {
     let mut starts = vec![0];
     starts.extend(text.match_indices(';').map(|(at, _)| at + 1));
     if starts.len() != N {

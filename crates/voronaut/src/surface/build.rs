@@ -229,7 +229,10 @@ mod tests {
             (message(&|m| m.triangles[1] = [3, 1, 3]), "triangle 2 has a vertex twice at vertex 4 (0, 0, 1)"),
             (message(&|m| m.points[3] = [0.5, 0.0, 0.0]), "triangle 2 has no area at vertex 1 (0, 0, 0), vertex 2"),
             (message(&|m| m.points[3] = [1.0, 0.0, 0.0]), "triangle 2 has no area"),
-            (message(&|m| m.triangles.push([3, 2, 1])), "triangles 3 and 5 have the same vertices at vertex 2 (1, 0, 0)"),
+            (
+                message(&|m| m.triangles.push([3, 2, 1])),
+                "triangles 3 and 5 have the same vertices at vertex 2 (1, 0, 0)",
+            ),
             (
                 message(&|m| {
                     m.points.push([5.0, 5.0, 5.0]);

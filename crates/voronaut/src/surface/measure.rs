@@ -152,7 +152,11 @@ mod tests {
     #[test]
     fn components_and_borders() {
         let surface = ring_and_triangle();
-        let found: Vec<_> = surface.components().iter().map(|c| (c.faces.len(), c.euler_characteristic, c.borders, c.genus())).collect();
+        let found: Vec<_> = surface
+            .components()
+            .iter()
+            .map(|c| (c.faces.len(), c.euler_characteristic, c.borders, c.genus()))
+            .collect();
         assert_eq!(found, [(8, 0, 2, 0), (1, 1, 1, 0)]);
         assert_eq!(surface.euler_characteristic(), 1);
         let loops = surface.border_loops();

@@ -87,6 +87,7 @@ fn read_file(spec: &str) -> Result<Surface> {
 mod tests {
     use super::*;
     use crate::surface::Implicit;
+    use proptest::prelude::*;
     use std::io::Write;
 
     fn data(name: &str) -> String {
@@ -107,9 +108,7 @@ mod tests {
 
     #[test]
     fn shapes_lie_on_their_equations() {
-        for (spec, genus) in
-            [("sphere:2", 0), ("torus: 2, 0.5", 1), ("implicit:x^2+y^2+2*z^2-1;-2,-2,-2,2,2,2", 0)]
-        {
+        for (spec, genus) in [("sphere:2", 0), ("torus: 2, 0.5", 1), ("implicit:x^2+y^2+2*z^2-1;-2,-2,-2,2,2,2", 0)] {
             let Input { surface, implicit } = read(spec, None).unwrap();
             let f = implicit.unwrap();
             let components = surface.components();
@@ -158,6 +157,64 @@ mod tests {
             let error = read(spec, None).unwrap_err();
             assert!(error.to_string().starts_with(expected), "{error}");
             assert!(!error.help().is_empty());
+        }
+    }
+
+    /// Words that surface files may hold, in any order, behind a beginning that makes sense.
+    fn soup() -> impl Strategy<Value = String> {
+        let words = [
+            "0",
+            "1",
+            "2",
+            "3",
+            "-1",
+            "0.5",
+            "1e308",
+            "9999999999999999999",
+            "nan",
+            "\n",
+            "#",
+            "v 0 0 1\n",
+            "f 1 2 3\n",
+            "f 1/2/3 -1",
+            "l 1 2",
+            "3 0 1 2\n",
+            "3 2 1 3\n",
+            "facet normal 0 0 1 outer loop",
+            "vertex 1 0 0",
+            "vertex 0 1 1",
+            "vertex 0 0 0",
+            "endloop endfacet\n",
+            "endsolid",
+            "element face 2\n",
+            "property float x\n",
+            "property list uchar int vertex_indices\n",
+            "end_header\n",
+            "\u{e9}",
+        ];
+        let opening = prop::sample::select(vec![
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n",
+            "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n",
+            "solid a\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n",
+            "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty int x\nproperty char y\nproperty short z\n",
+            "",
+        ]);
+        let rest = prop::collection::vec(prop::sample::select(words.to_vec()), 0..24);
+        (opening, rest).prop_map(|(opening, rest)| opening.to_owned() + &rest.join(" "))
+    }
+
+    proptest! {
+        #[test]
+        fn no_file_makes_a_reader_panic(text in soup()) {
+            let bytes = text.as_bytes();
+            let found = [obj::read(&text, "a"), off::read(&text, "a"), ply::read(bytes, "a"), stl::read(bytes, "a")];
+            for surface in found.into_iter().flatten().filter_map(|mesh| Surface::new(&mesh).ok()) {
+                prop_assert!(surface.topology().check().is_ok());
+                prop_assert!(surface.components().iter().all(|c| c.genus() >= 0));
+                let fitted = crate::surface::metric::fit_curvatures(&surface);
+                prop_assert!(fitted.iter().flatten().all(|c| c.values.iter().all(|value| !value.is_nan())));
+            }
         }
     }
 }

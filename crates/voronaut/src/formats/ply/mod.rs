@@ -192,10 +192,16 @@ mod tests {
         }
         let whole = binary(true);
         let first = whole.len() - 2 - 13 - 4 - 17 - 4 * 17;
-        assert_eq!(message(&whole[..first + 20]), format!("a.ply, byte {}: the file ends in row 2 of 4 of vertex", first + 17));
+        assert_eq!(
+            message(&whole[..first + 20]),
+            format!("a.ply, byte {}: the file ends in row 2 of 4 of vertex", first + 17)
+        );
         let mut bad = whole;
         bad[first + 17..first + 21].copy_from_slice(&f32::NAN.to_be_bytes());
-        assert_eq!(message(&bad), format!("a.ply, byte {}: a coordinate is not finite (row 2 of 4 of vertex)", first + 34));
+        assert_eq!(
+            message(&bad),
+            format!("a.ply, byte {}: a coordinate is not finite (row 2 of 4 of vertex)", first + 34)
+        );
     }
 
     #[test]
@@ -210,7 +216,10 @@ mod tests {
             ("ply\nformat ascii 1.0\nproperty float x\nend_header\n", "a.ply:3: a property before any element"),
             ("ply\nformat ascii 1.0\nelement vertex -1\nend_header\n", "a.ply:3: '-1' is out of range"),
             ("ply\nformat ascii 1.0\nelement vertex\nend_header\n", "a.ply:3: an element without name and count"),
-            ("ply\nformat ascii 1.0\nelement face 0\nproperty quad q\nend_header\n", "a.ply:4: 'property quad q' is not"),
+            (
+                "ply\nformat ascii 1.0\nelement face 0\nproperty quad q\nend_header\n",
+                "a.ply:4: 'property quad q' is not",
+            ),
             ("ply\nformat ascii 1.0\nfoo\nend_header\n", "a.ply:3: 'foo' has no place in the head"),
             ("ply\nformat ascii 1.0\nelement face 0\nend_header\n", "a.ply: the file has no element vertex"),
         ] {

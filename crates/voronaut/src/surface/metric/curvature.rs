@@ -69,7 +69,10 @@ mod tests {
     fn an_apex_has_no_metric() {
         let f = Expression::parse("x^2+y^2-z^2", Variables::Space).unwrap();
         let surface = torus(2.0, 0.7, 1.0).unwrap();
-        let place = Place { position: crate::geometry::Point3::default(), ..surface.place(crate::triangulation::FaceId(0), [1.0, 0.0, 0.0]) };
+        let place = Place {
+            position: crate::geometry::Point3::default(),
+            ..surface.place(crate::triangulation::FaceId(0), [1.0, 0.0, 0.0])
+        };
         assert!(!ImplicitCurvature { f, floor: 0.1 }.at(&place).is_positive_definite());
     }
 }

@@ -47,7 +47,11 @@ impl Sampled {
             SolutionValues::Scalar(sizes) => {
                 if let Some(i) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) {
                     let what = format!("the size h = {} is not positive and finite", sizes[i]);
-                    return Err(Error::metric(what, format!("vertex {}", i + 1), "a size is the length of edges there"));
+                    return Err(Error::metric(
+                        what,
+                        format!("vertex {}", i + 1),
+                        "a size is the length of edges there",
+                    ));
                 }
                 let tensors: Vec<Tensor3> = sizes.iter().map(|&h| Tensor3::isotropic(h)).collect();
                 Self::new(surface, &tensors)

@@ -12,7 +12,10 @@ pub fn check_tensor3(tensor: Tensor3, place: impl FnOnce() -> String) -> Result<
         return Ok(());
     }
     let (fault, help) = if tensor.is_finite() {
-        ("not positive definite", "a metric needs positive eigenvalues everywhere on the surface; the order is m11 m12 m22 m13 m23 m33")
+        (
+            "not positive definite",
+            "a metric needs positive eigenvalues everywhere on the surface; the order is m11 m12 m22 m13 m23 m33",
+        )
     } else {
         ("not finite", "check the metric for a division by zero, a root or logarithm of a negative number, an overflow")
     };
