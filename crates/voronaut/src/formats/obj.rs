@@ -86,7 +86,7 @@ impl Reader<'_> {
     fn reference(&mut self, word: Word<'_>, at: At<'_>) -> Result<u32> {
         let text = word.text.split('/').next().unwrap_or_default();
         let number: i64 = whole(self.place, Word { text, ..word }, at)?;
-        let known = self.mesh.points.len() as i64;
+        let known = i64::try_from(self.mesh.points.len()).unwrap_or(i64::MAX);
         let absolute = if number < 0 { known + 1 + number } else { number };
         match u32::try_from(absolute) {
             Ok(absolute) if absolute > 0 => {

@@ -121,7 +121,7 @@ mod tests {
             "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n",
         ] {
             let mesh = read(text, "a.off").unwrap();
-            assert_eq!(mesh.points[2], [1.0, 1.0, 0.0]);
+            assert_eq!(mesh.points[2].map(f64::to_bits), [1.0_f64, 1.0, 0.0].map(f64::to_bits));
             assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
         }
     }

@@ -122,7 +122,7 @@ fn expect_word(words: &mut Words<'_>, expected: &str, at: At<'_>) -> Result<()> 
 struct Corners {
     known: HashMap<[u64; 3], u32>,
     points: Vec<[f64; 3]>,
-    corners: Vec<u32>,
+    vertices: Vec<u32>,
 }
 
 impl Corners {
@@ -133,11 +133,11 @@ impl Corners {
             self.points.push(point);
             self.points.len() as u32 - 1
         });
-        self.corners.push(vertex);
+        self.vertices.push(vertex);
     }
 
     fn into_mesh(self) -> Mesh {
-        let (triangles, _) = self.corners.as_chunks::<3>();
+        let (triangles, _) = self.vertices.as_chunks::<3>();
         Mesh {
             point_labels: vec![0; self.points.len()],
             points: self.points,

@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn powers_have_derivatives_at_zero_and_below() {
         let p = Point3::new(0.0, -2.0, 0.0);
-        assert_eq!(jet("x^1 + y^3", p).gradient.to_owned(), crate::geometry::Vector3::new(1.0, 12.0, 0.0));
+        assert_eq!(jet("x^1 + y^3", p).gradient, crate::geometry::Vector3::new(1.0, 12.0, 0.0));
         assert_eq!(jet("x^0 + x^2", p).hessian.to_disk().map(f64::to_bits)[0], 2.0_f64.to_bits());
         assert!(jet("sqrt(0) + x", p).gradient.x.is_finite(), "constants have no derivatives");
     }

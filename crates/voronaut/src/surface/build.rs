@@ -188,9 +188,12 @@ mod tests {
 
     #[test]
     fn the_fewer_triangles_are_turned() {
-        for (turn, count) in [(vec![], 0), (vec![1], 1), (vec![0, 3], 2), (vec![0, 2, 3], 1), (vec![0, 1, 2, 3], 0)] {
+        for (turn, count) in [(vec![], 0), (vec![1_u32], 1), (vec![0, 3], 2), (vec![0, 2, 3], 1), (vec![0, 1, 2, 3], 0)]
+        {
             let mut mesh = tetrahedron();
-            turn.iter().for_each(|&t: &usize| mesh.triangles[t].swap(0, 1));
+            for &t in &turn {
+                mesh.triangles[t as usize].swap(0, 1);
+            }
             let surface = Surface::new(&mesh).unwrap();
             assert_eq!(surface.turned(), count, "{turn:?}");
             surface.topology().check().unwrap();
@@ -201,7 +204,7 @@ mod tests {
     fn moebius() -> Mesh {
         let at = |i: u32| {
             let angle = std::f64::consts::TAU * f64::from(i / 2) / 5.0;
-            let across = if i % 2 == 0 { 0.3 } else { -0.3 };
+            let across = if i.is_multiple_of(2) { 0.3 } else { -0.3 };
             let r = 1.0 + across * (0.5 * angle).cos();
             [r * angle.cos(), r * angle.sin(), across * (0.5 * angle).sin()]
         };

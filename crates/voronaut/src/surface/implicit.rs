@@ -44,8 +44,8 @@ impl Curvatures {
     }
 
     /// The metric of RR-9103, 15.1: eigenvalues |c| along the principal directions, at least `floor` (positive), so that
-    /// it stays positive definite where the surface is flat. Triangles of edge length 1 then stay within 1/8 of the
-    /// surface. Across the surface, of which no edge sees anything, the larger of both.
+    /// it stays positive definite where the surface is flat. An edge of metric length 1 strays about an eighth of a unit of
+    /// length from the surface. Across it, where no edge sees anything, the larger of both.
     pub fn metric(&self, floor: f64) -> Tensor3 {
         let [most, least] = self.values.map(|c| c.abs().max(floor));
         Tensor3::from_axes([self.axes[0], self.axes[1], self.normal], [most, least, most])

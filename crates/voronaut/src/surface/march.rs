@@ -175,13 +175,17 @@ mod tests {
     /// The smallest angle in degrees, and the mean length of edges.
     fn shape(surface: &Surface) -> (f64, f64) {
         let t = surface.topology();
-        let angle = t.faces().flat_map(|f| f.half_edges()).map(|h| surface.angle(h)).fold(f64::INFINITY, f64::min);
+        let angle = t
+            .faces()
+            .flat_map(crate::triangulation::FaceId::half_edges)
+            .map(|h| surface.angle(h))
+            .fold(f64::INFINITY, f64::min);
         let lengths: Vec<f64> =
             t.edges().map(|h| surface.position(t.origin(h)).distance(surface.position(t.target(h)))).collect();
         (angle.to_degrees(), lengths.iter().sum::<f64>() / lengths.len() as f64)
     }
 
-    fn genera(surface: &Surface) -> Vec<(i64, usize)> {
+    fn genera(surface: &Surface) -> Vec<(isize, usize)> {
         surface.components().iter().map(|c: &Component| (c.genus(), c.borders)).collect()
     }
 

@@ -10,15 +10,15 @@ pub struct Component {
     /// Its triangles, in the order in which neighbours were found.
     pub faces: Vec<FaceId>,
     /// Vertices minus edges plus triangles.
-    pub euler_characteristic: i64,
+    pub euler_characteristic: isize,
     /// How many closed curves its border consists of; 0 of a closed surface.
     pub borders: usize,
 }
 
 impl Component {
     /// How many handles it has: 0 of a sphere or a disk, 1 of a torus.
-    pub fn genus(&self) -> i64 {
-        (2 - self.borders as i64 - self.euler_characteristic) / 2
+    pub fn genus(&self) -> isize {
+        (2 - self.borders.cast_signed() - self.euler_characteristic) / 2
     }
 }
 
@@ -61,9 +61,9 @@ impl Surface {
     }
 
     /// Vertices minus edges plus triangles.
-    pub fn euler_characteristic(&self) -> i64 {
+    pub fn euler_characteristic(&self) -> isize {
         let t = &self.topology;
-        t.vertices().count() as i64 - t.edges().count() as i64 + t.face_count() as i64
+        t.vertices().count().cast_signed() - t.edges().count().cast_signed() + t.face_count().cast_signed()
     }
 
     /// The closed curves of the border, each as its half-edges in order, the surface on their left.
@@ -125,7 +125,7 @@ impl Surface {
                 }
             }
         }
-        component.euler_characteristic = component.faces.len() as i64;
+        component.euler_characteristic = component.faces.len().cast_signed();
     }
 }
 

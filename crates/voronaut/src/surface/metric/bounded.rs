@@ -41,6 +41,15 @@ mod tests {
     use crate::surface::metric::Constant;
     use crate::surface::sphere;
 
+    /// Thin along the normal, Euclidean in the plane.
+    struct Thin;
+
+    impl SurfaceMetric for Thin {
+        fn at(&self, place: &Place) -> Tensor3 {
+            Tensor3::IDENTITY + Tensor3::square(place.normal) * 1e6
+        }
+    }
+
     #[test]
     fn tangents_are_within_limits_and_normals_do_not_count() {
         let bounds = Bounds { h_min: Some(0.1), h_max: Some(2.0), a_max: Some(5.0) };
@@ -55,16 +64,9 @@ mod tests {
             assert!(field.at(&place).is_positive_definite());
         }
         // Thin along the normal only: within the limits in the plane, and left alone to the bit.
-        let thin = |place: &Place| Tensor3::IDENTITY + Tensor3::square(place.normal) * 1e6;
-        struct Thin<F>(F);
-        impl<F: Fn(&Place) -> Tensor3 + Sync> SurfaceMetric for Thin<F> {
-            fn at(&self, place: &Place) -> Tensor3 {
-                (self.0)(place)
-            }
-        }
-        let field = Bounded::new(Thin(thin), bounds).unwrap();
+        let field = Bounded::new(Thin, bounds).unwrap();
         let place = surface.place_of(crate::triangulation::VertexId(5)).unwrap();
-        assert_eq!(field.at(&place), thin(&place));
+        assert_eq!(field.at(&place), Thin.at(&place));
     }
 
     #[test]

@@ -5,11 +5,10 @@ use crate::surface::{Curvatures, Surface};
 use crate::triangulation::VertexId;
 use rayon::prelude::*;
 
-/// Principal curvatures at every vertex by fitting a polynomial of degree three in the tangent plane to the vertices of its
-/// two rings of neighbours (Cazals and Pouget 2005, "jets"): of meshes with vertices on a smooth surface, curvatures are
-/// then right to the second order in the length of edges, however irregular the mesh; estimators from normals of triangles
-/// (Rusinkiewicz 2004) have no such order at irregular vertices. Where there are too few neighbours the degree is two, and
-/// the order one.
+/// Principal curvatures at every vertex by fitting a polynomial of degree three over the tangent plane to the vertices of
+/// its two rings of neighbours (Cazals and Pouget 2005, "jets"). Where vertices are on a smooth surface, curvatures are
+/// right to the second order in the length of edges, however irregular the mesh: theirs is a proof, which averages of
+/// normals (Rusinkiewicz 2004) do not have. Noise is not smoothed. With too few neighbours the degree is two, the order one.
 ///
 /// One entry per vertex slot: `None` of vertices without triangles, or where those around have no common side.
 pub fn fit_curvatures(surface: &Surface) -> Vec<Option<Curvatures>> {
@@ -54,7 +53,7 @@ fn two_rings(surface: &Surface, v: VertexId, plane: &TangentPlane) -> Vec<Point3
         let next = found.len();
         for i in ring {
             let spokes = t.star(found[i]).filter(|&h| surface.normal(h.face()).dot(plane.normal) > 0.0);
-            // Of a triangle both ends of the far side: at the border one of them has no spoke of its own.
+            // Both ends of the far side: at the border one of them has no spoke of its own.
             for w in spokes.flat_map(|h| [t.target(h), t.apex(h)]).collect::<Vec<_>>() {
                 if !found.contains(&w) {
                     found.push(w);
