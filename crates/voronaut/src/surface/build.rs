@@ -17,7 +17,7 @@ impl Surface {
     /// [`Error::Mesh`] of numbers beyond the lists they refer to. [`Error::Domain`] with the place of: no triangles, a
     /// coordinate that is not finite, a triangle that has a vertex twice or no area, two triangles with the same
     /// vertices, an edge of more than two triangles, a vertex where triangles meet in a point only, a one-sided surface,
-    /// an edge in the list that is no triangle's.
+    /// an edge in the list that is no triangle's, or there twice with different labels.
     pub fn new(mesh: &Mesh) -> Result<Self> {
         mesh.check_numbers()?;
         let positions = finite_positions(mesh)?;
@@ -62,6 +62,11 @@ impl Surface {
                 let what = format!("edge {} of the list is no edge of a triangle", i + 1);
                 Error::domain(what, edge([a, b], &self.positions), "remove it, or let a triangle have it")
             })?;
+            let same = |other: Constraint| self.edge_label(other) == self.edge_labels[i];
+            if let Some(other) = self.topology.constraint(h).filter(|&other| !same(other)) {
+                let what = format!("edges {} and {} of the list are one, with different labels", other.0 + 1, i + 1);
+                return Err(Error::domain(what, edge([a, b], &self.positions), "keep one of them"));
+            }
             self.topology.set_constraint(h, Constraint(i as u32));
         }
         Ok(())
@@ -251,6 +256,10 @@ mod tests {
                 "triangles that meet in a point only at vertex 4 (0, 0, 1)",
             ),
             (message(&|m| *m = moebius()), "a one-sided surface: its triangles cannot all turn the same way at vertex"),
+            (
+                message(&|m| (m.edges, m.edge_labels) = (vec![[0, 1], [1, 0]], vec![5, 6])),
+                "edges 1 and 2 of the list are one, with different labels at vertex 2 (1, 0, 0) - vertex 1 (0, 0, 0)",
+            ),
             (
                 message(&|m| {
                     m.triangles.pop();

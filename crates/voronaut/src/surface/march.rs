@@ -29,7 +29,7 @@ const ROOT_STEPS: usize = 200;
 /// come out as they can. All vertices are on the surface: |f| / |grad f| is at most 1e-12 of the box's diagonal.
 ///
 /// # Errors
-/// [`Error::Domain`] of an empty box, where f has no zero on the grid, is not a number, or jumps across zero;
+/// [`Error::Domain`] of an empty box or edge length, where f has no zero on the grid, is not a number, or jumps across zero;
 /// [`Error::Limit`] of a grid of more than 5e7 points.
 pub fn mesh_implicit(f: &dyn Implicit, bounds: Aabb3, edge: Option<f64>) -> Result<Surface> {
     let extent = bounds.extent();
@@ -37,8 +37,11 @@ pub fn mesh_implicit(f: &dyn Implicit, bounds: Aabb3, edge: Option<f64>) -> Resu
         let place = format!("{} - {}", bounds.min, bounds.max);
         return Err(Error::domain("an empty box", place, "give x0 < x1, y0 < y1, z0 < z1, all finite"));
     }
-    let size = edge.map_or(extent.x.max(extent.y).max(extent.z) / DEFAULT_STEPS, |edge| edge / EDGE);
-    let grid = Grid::new(f, bounds, size)?;
+    let edge = edge.unwrap_or(EDGE * extent.x.max(extent.y).max(extent.z) / DEFAULT_STEPS);
+    if edge.is_nan() || edge <= 0.0 {
+        return Err(Error::domain("no positive edge length", format!("edge = {edge}"), "ask for a positive length"));
+    }
+    let grid = Grid::new(f, bounds, edge / EDGE)?;
     let crossings = grid.crossings();
     if crossings.triangles.is_empty() {
         return Err(no_zero(&grid, bounds));
@@ -240,7 +243,8 @@ mod tests {
             ("1/(x-0.01)", 1.0, None, "f changes sign, but its zero is not reached along its gradient at ("),
             ("x", 0.0, None, "an empty box at (-0, -0, -0) - (0, 0, 0)"),
             ("x", 1.0, Some(1e-3), "limit exceeded: a grid of 5841725401 points"),
-            ("x", 1.0, Some(0.0), "limit exceeded: a grid of inf points"),
+            ("x", 1.0, Some(1e-300), "limit exceeded: a grid of inf points"),
+            ("x", 1.0, Some(-0.1), "no positive edge length at edge = -0.1"),
         ] {
             let error = mesh(text, half, edge).map(|found| found.positions().len()).unwrap_err();
             assert!(error.to_string().contains(expected), "{error}");

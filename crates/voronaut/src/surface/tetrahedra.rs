@@ -32,13 +32,13 @@ const MOST_VALUES: f64 = 5e7;
 const PATHS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
 impl Grid {
-    /// The values of f on a box, at steps of at most `size`.
+    /// The values of f on a box, at steps of at most `size` (but for rounding).
     ///
     /// # Errors
     /// [`Error::Limit`] of too many steps; [`Error::Domain`] where f is NaN.
     pub(super) fn new(f: &dyn Implicit, bounds: Aabb3, size: f64) -> Result<Self> {
         let extent = bounds.extent();
-        let counts = [extent.x, extent.y, extent.z].map(|length| (length / size).ceil().max(1.0));
+        let counts = [extent.x, extent.y, extent.z].map(|length| (length / size - 1e-9).ceil().max(1.0));
         let needed: f64 = counts.iter().map(|count| count + 1.0).product();
         if needed.is_nan() || needed > MOST_VALUES {
             let what = format!("a grid of {needed:.0} points for the implicit surface; at most {MOST_VALUES:.0}");
