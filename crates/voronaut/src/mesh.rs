@@ -1,5 +1,6 @@
 //! The mesh that leaves the program: plain arrays, as every format and every solver wants them.
 
+use crate::error::{Error, Result};
 use crate::geometry::Point;
 
 /// A triangle mesh with the user's labels ("references" in Medit).
@@ -42,5 +43,22 @@ impl Mesh {
     /// Whether every position lies in the plane z = 0.
     pub fn is_planar(&self) -> bool {
         self.points.iter().all(|p| p[2] == 0.0)
+    }
+
+    /// Whether triangles, edges, corners and what is required refer to vertices and edges that exist.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] with the number at fault.
+    pub fn check_numbers(&self) -> Result<()> {
+        let vertices = self.points.len();
+        let referred = self.triangles.as_flattened().iter().chain(self.edges.as_flattened());
+        let vertex = referred.chain(&self.corners).chain(&self.required_points).find(|&&v| v as usize >= vertices);
+        let edge = self.required_edges.iter().find(|&&e| e as usize >= self.edges.len());
+        let (what, of) = match (vertex, edge) {
+            (Some(vertex), _) => (format!("vertex {vertex} (from 0) does not exist"), format!("{vertices} vertices")),
+            (_, Some(edge)) => (format!("edge {edge} (from 0) does not exist"), format!("{} edges", self.edges.len())),
+            _ => return Ok(()),
+        };
+        Err(Error::Mesh { what, place: format!("a list of {of}"), help: "correct the number".into() })
     }
 }

@@ -21,7 +21,7 @@ use crate::mesh::Mesh;
 /// an edge with three triangles or two on the same side, an edge that is no triangle's, a triangle without area.
 /// [`Error::Mesh`] of numbers beyond the lists they refer to.
 pub fn from_mesh(mesh: &Mesh) -> Result<Pslg> {
-    check_numbers(mesh)?;
+    mesh.check_numbers()?;
     check_planar(mesh)?;
     let used = used_vertices(mesh);
     let in_use = (0..).zip(&used).filter(|&(_, &used)| used).map(|(vertex, _)| (vertex, mesh.point(vertex)));
@@ -53,19 +53,6 @@ struct TriangleEdge {
     ends: [u32; 2],
     triangle_is_left: bool,
     triangle: u32,
-}
-
-fn check_numbers(mesh: &Mesh) -> Result<()> {
-    let vertices = mesh.points.len();
-    let referred = mesh.triangles.as_flattened().iter().chain(mesh.edges.as_flattened());
-    let vertex = referred.chain(&mesh.corners).chain(&mesh.required_points).find(|&&v| v as usize >= vertices);
-    let edge = mesh.required_edges.iter().find(|&&e| e as usize >= mesh.edges.len());
-    let (what, of) = match (vertex, edge) {
-        (Some(vertex), _) => (format!("vertex {vertex} (from 0) does not exist"), format!("{vertices} vertices")),
-        (_, Some(edge)) => (format!("edge {edge} (from 0) does not exist"), format!("{} edges", mesh.edges.len())),
-        _ => return Ok(()),
-    };
-    Err(Error::Mesh { what, place: format!("a list of {of}"), help: "correct the number".into() })
 }
 
 fn check_planar(mesh: &Mesh) -> Result<()> {

@@ -60,7 +60,11 @@ fn read_shape(spec: &str) -> Option<Result<Pslg>> {
     }
 }
 
-fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Result<[f64; N]> {
+/// The comma-separated numbers of a shape.
+///
+/// # Errors
+/// [`Error::Parse`] of more, fewer, or what is no number.
+pub fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Result<[f64; N]> {
     let error = |what: String| Error::parse(spec, what, format!("write {usage}"));
     let words: Vec<_> = numbers.split(',').map(str::trim).collect();
     if words.len() != N {
@@ -78,17 +82,25 @@ fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Resul
 /// # Errors
 /// [`Error::Io`] where it cannot be read; [`Error::Parse`] where it is empty, or no text.
 pub fn read_text(path: &Path) -> Result<String> {
-    let bytes = std::fs::read(path).map_err(|source| Error::Io { path: path.into(), source })?;
+    let bytes = read_bytes(path)?;
     let place = path.display().to_string();
     let text = String::from_utf8(bytes).map_err(|error| {
         let what = format!("not a text in UTF-8 (byte {})", error.utf8_error().valid_up_to() + 1);
-        let help = "save the file as UTF-8 text; binary files are not read yet";
+        let help = "save the file as UTF-8 text; this format has no binary form that is read";
         Error::parse(&place, what, help)
     })?;
     if text.trim().is_empty() {
         return Err(Error::parse(place, "the file is empty", "check that the program that wrote it had finished"));
     }
     Ok(text)
+}
+
+/// Reads a file that may be binary.
+///
+/// # Errors
+/// [`Error::Io`] where it cannot be read.
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).map_err(|source| Error::Io { path: path.into(), source })
 }
 
 /// Adds the file to the place of an error of its domain.

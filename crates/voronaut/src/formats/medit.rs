@@ -1,7 +1,7 @@
 //! Medit's text format for meshes, `.mesh` (Frey, INRIA RT-0253): the format of mmg, refine, bamg and `FreeFEM`.
 
 use super::sections::{known_dimension, next_section, read_dimension, read_head, skip_section};
-use super::words::{At, Shortest, Word, Words, error_at};
+use super::words::{At, Largest, Shortest, Word, Words, error_at};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use std::fmt::Write;
@@ -64,13 +64,6 @@ struct Reader<'a> {
     seen: Vec<&'static str>,
     vertices: Largest,
     edges: Largest,
-}
-
-/// The largest number that referred to something so far: whether that exists is known once all sections are read.
-#[derive(Default)]
-struct Largest {
-    number: u32,
-    line: usize,
 }
 
 impl<'a> Reader<'a> {
@@ -150,9 +143,7 @@ impl<'a> Reader<'a> {
             return Err(error_at(self.words.place(), line, format!("{of} 0 does not exist ({at})"), help));
         }
         let largest = if of == "edge" { &mut self.edges } else { &mut self.vertices };
-        if number > largest.number {
-            *largest = Largest { number, line };
-        }
+        largest.note(number, line);
         Ok(number - 1)
     }
 
@@ -174,16 +165,6 @@ impl<'a> Reader<'a> {
         self.vertices.check("vertex", self.mesh.points.len(), place)?;
         self.edges.check("edge", self.mesh.edges.len(), place)?;
         Ok(self.mesh)
-    }
-}
-
-impl Largest {
-    fn check(&self, of: &str, count: usize, place: &str) -> Result<()> {
-        if self.number as usize <= count {
-            return Ok(());
-        }
-        let what = format!("{of} {} does not exist: the file lists {count}", self.number);
-        Err(error_at(place, self.line, what, "check the number, and that the file is whole"))
     }
 }
 

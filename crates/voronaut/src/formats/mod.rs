@@ -2,10 +2,14 @@
 
 pub mod geojson;
 pub mod medit;
+pub mod obj;
+pub mod off;
+pub mod ply;
 pub mod points;
 pub mod poly;
 mod sections;
 pub mod sol;
+pub mod stl;
 mod words;
 
 pub use geojson::Polygons;

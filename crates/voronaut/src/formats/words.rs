@@ -44,6 +44,13 @@ pub(super) struct At<'a> {
     pub(super) rows: u64,
 }
 
+/// The largest number that referred to something so far: whether that exists is known once the text is read.
+#[derive(Default)]
+pub(super) struct Largest {
+    number: u32,
+    line: usize,
+}
+
 /// A number in the shortest form that reads back as itself; huge and tiny ones with an exponent.
 pub(super) struct Shortest(pub(super) f64);
 
@@ -178,6 +185,28 @@ impl<'a> Iterator for Words<'a> {
             self.line = row.line;
             self.row = row.text.split_whitespace();
         }
+    }
+}
+
+impl Largest {
+    /// A reference, counted from 1, on a line.
+    pub(super) fn note(&mut self, number: u32, line: usize) {
+        if number > self.number {
+            *self = Self { number, line };
+        }
+    }
+
+    /// Whether all that was referred to exists.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Parse`] at the line of the largest number.
+    pub(super) fn check(&self, of: &str, count: usize, place: &str) -> Result<()> {
+        if self.number as usize <= count {
+            return Ok(());
+        }
+        let what = format!("{of} {} does not exist: the file lists {count}", self.number);
+        Err(error_at(place, self.line, what, "check the number, and that the file is whole"))
     }
 }
 

@@ -1,9 +1,15 @@
 //! Points, tensors and exact predicates: the vocabulary of everything below.
 
+mod jet;
 mod point;
 mod predicates;
+mod space;
 mod tensor;
+mod tensor3;
 
+pub use jet::Jet3;
 pub use point::{Aabb, Point, Readable, Vector};
 pub use predicates::{Orientation, in_circle, orientation, segment_intersection, signed_area};
+pub use space::{Aabb3, Point3, Vector3};
 pub use tensor::{Eigen, Tensor};
+pub use tensor3::{Eigen3, TangentPlane, Tensor3};

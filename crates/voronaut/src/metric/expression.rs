@@ -1,7 +1,9 @@
 //! Expressions in x, y and z: compiled once to a flat program that runs without allocating.
 
+use super::number::{Binary, Number, Unary};
 use super::parser::Parser;
 use crate::error::Result;
+use crate::geometry::{Jet3, Point3};
 
 /// Which variables an expression may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,30 +53,40 @@ impl Expression {
 
     /// The value at a point; z is not used by expressions of the plane.
     pub fn at(&self, x: f64, y: f64, z: f64) -> f64 {
+        self.run([x, y, z])
+    }
+
+    /// The value at a point with its first and second derivatives, exact but for rounding. Where an expression jumps or
+    /// has a kink (comparisons, `if`, `abs`, `min`, `max`) they are those of one side.
+    pub fn jet(&self, p: Point3) -> Jet3 {
+        self.run(Jet3::coordinates(p.x, p.y, p.z))
+    }
+
+    fn run<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
         // The last value is kept out of the stack: most operations then touch it once or not at all.
-        let mut stack = [0.0; STACK];
+        let mut stack = [N::constant(0.0); STACK];
         let mut top = 0;
-        let mut value = 0.0;
+        let mut value = N::constant(0.0);
         let mut next = 0;
         while let Some(&op) = self.code.get(next) {
             next += 1;
             match op {
-                Op::Constant(c) => push(&mut stack, &mut top, &mut value, c),
+                Op::Constant(c) => push(&mut stack, &mut top, &mut value, N::constant(c)),
                 Op::X => push(&mut stack, &mut top, &mut value, x),
                 Op::Y => push(&mut stack, &mut top, &mut value, y),
                 Op::Z => push(&mut stack, &mut top, &mut value, z),
-                Op::Negate => value = -value,
-                Op::Square => value *= value,
-                Op::Add => value += pop(&stack, &mut top),
-                Op::Subtract => value = pop(&stack, &mut top) - value,
-                Op::Multiply => value *= pop(&stack, &mut top),
-                Op::Divide => value = pop(&stack, &mut top) / value,
-                Op::Power => value = pop(&stack, &mut top).powf(value),
-                Op::Call1(f) => value = f(value),
-                Op::Call2(f) => value = f(pop(&stack, &mut top), value),
+                Op::Negate => value = value.negate(),
+                Op::Square => value = value.square(),
+                Op::Add => value = value.add(pop(&stack, &mut top)),
+                Op::Subtract => value = pop(&stack, &mut top).subtract(value),
+                Op::Multiply => value = value.multiply(pop(&stack, &mut top)),
+                Op::Divide => value = pop(&stack, &mut top).divide(value),
+                Op::Power => value = pop(&stack, &mut top).power(value),
+                Op::Call1(f) => value = value.call1(f),
+                Op::Call2(f) => value = pop(&stack, &mut top).call2(value, f),
                 Op::Jump(target) => next = target as usize,
                 Op::JumpIfZero(target) => {
-                    if value == 0.0 {
+                    if value.is_zero() {
                         next = target as usize;
                     }
                     value = pop(&stack, &mut top);
@@ -102,21 +114,21 @@ pub(super) enum Op {
     Multiply,
     Divide,
     Power,
-    Call1(fn(f64) -> f64),
-    Call2(fn(f64, f64) -> f64),
+    Call1(&'static Unary),
+    Call2(&'static Binary),
     Jump(u32),
     /// Takes the condition off the stack.
     JumpIfZero(u32),
 }
 
 // The compiler of `parser` keeps the height below STACK; the remainder spares the bounds check.
-fn push(stack: &mut [f64; STACK], top: &mut usize, value: &mut f64, new: f64) {
+fn push<N: Number>(stack: &mut [N; STACK], top: &mut usize, value: &mut N, new: N) {
     stack[*top % STACK] = *value;
     *top += 1;
     *value = new;
 }
 
-fn pop(stack: &[f64; STACK], top: &mut usize) -> f64 {
+fn pop<N: Number>(stack: &[N; STACK], top: &mut usize) -> N {
     *top = top.wrapping_sub(1);
     stack[*top % STACK]
 }

@@ -4,7 +4,7 @@ use super::MetricField;
 use super::expression::{Expression, Variables};
 use super::parser::error_at;
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Tensor};
+use crate::geometry::{Point, Point3, Tensor, Tensor3};
 
 /// The field ((m11, m12), (m12, m22)) of three expressions in x and y; see [`Expression`] for what they may hold.
 ///
@@ -15,6 +15,13 @@ pub struct Formula {
     entries: [Expression; 3],
 }
 
+/// The field of space with entries m11, m12, m22, m13, m23, m33 of six expressions in x, y and z; the order is that of
+/// Medit's `.sol` files. Values as for [`Formula`].
+#[derive(Clone, Debug)]
+pub struct SpaceFormula {
+    entries: [Expression; 6],
+}
+
 impl Formula {
     /// Compiles `m11; m12; m22`.
     ///
@@ -22,26 +29,50 @@ impl Formula {
     /// [`Error::Parse`] with the column and the place shown; [`Error::Unsupported`] of six entries, which are a
     /// surface's.
     pub fn planar(text: &str) -> Result<Self> {
-        let mut starts = vec![0];
-        starts.extend(text.match_indices(';').map(|(at, _)| at + 1));
-        let range = |i: usize| starts[i]..starts.get(i + 1).map_or(text.len(), |next| next - 1);
-        match starts.len() {
-            3 => {}
-            6 => {
-                return Err(Error::Unsupported {
-                    what: "a formula of six entries: metrics of space".into(),
-                    help: "in the plane write three entries: m11; m12; m22".into(),
-                });
-            }
-            count => {
-                let at = if count < 3 { text.len() } else { starts[3] - 1 };
-                let what = format!("three entries were expected, not {count}");
-                return Err(error_at(text, at, "formula", &what, "write m11; m12; m22, each in x and y"));
-            }
+        if text.matches(';').count() == 5 {
+            return Err(Error::Unsupported {
+                what: "a formula of six entries: metrics of space".into(),
+                help: "in the plane write three entries: m11; m12; m22".into(),
+            });
         }
-        let entry = |i, name: &str| Expression::parse_range(text, range(i), Variables::Plane, name);
-        Ok(Self { entries: [entry(0, "formula m11")?, entry(1, "formula m12")?, entry(2, "formula m22")?] })
+        let [m11, m12, m22] = entries(text, ["m11", "m12", "m22"], "three", Variables::Plane)?;
+        Ok(Self { entries: [m11, m12, m22] })
     }
+}
+
+impl SpaceFormula {
+    /// Compiles `m11; m12; m22; m13; m23; m33`.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] with the column and the place shown.
+    pub fn parse(text: &str) -> Result<Self> {
+        let names = ["m11", "m12", "m22", "m13", "m23", "m33"];
+        Ok(Self { entries: entries(text, names, "six", Variables::Space)? })
+    }
+
+    /// The tensor at a point.
+    pub fn tensor(&self, p: Point3) -> Tensor3 {
+        Tensor3::from_disk(self.entries.each_ref().map(|entry| entry.at(p.x, p.y, p.z)))
+    }
+}
+
+/// Expressions between semicolons, as many as there are names; `count` is their number as a word.
+fn entries<const N: usize>(text: &str, names: [&str; N], count: &str, variables: Variables) -> Result<[Expression; N]> {
+    let mut starts = vec![0];
+    starts.extend(text.match_indices(';').map(|(at, _)| at + 1));
+    if starts.len() != N {
+        let at = if starts.len() < N { text.len() } else { starts[N] - 1 };
+        let what = format!("{count} entries were expected, not {}", starts.len());
+        let coordinates = if variables == Variables::Plane { "x and y" } else { "x, y and z" };
+        let help = format!("write {}, each in {coordinates}", names.join("; "));
+        return Err(error_at(text, at, "formula", &what, &help));
+    }
+    let mut found = Vec::with_capacity(N);
+    for (i, name) in names.iter().enumerate() {
+        let range = starts[i]..starts.get(i + 1).map_or(text.len(), |next| next - 1);
+        found.push(Expression::parse_range(text, range, variables, &format!("formula {name}"))?);
+    }
+    Ok(found.try_into().expect("one expression per name"))
 }
 
 impl MetricField for Formula {
@@ -82,6 +113,18 @@ mod tests {
         let error = Formula::planar("1; 0; 1; 0").unwrap_err();
         assert!(error.to_string().starts_with("formula, column 8: three entries were expected, not 4"), "{error}");
         assert!(matches!(Formula::planar("1;0;1;0;0;1"), Err(Error::Unsupported { .. })));
+    }
+
+    #[test]
+    fn entries_of_space_are_in_the_order_of_solution_files() {
+        let field = SpaceFormula::parse("1; x; 2+z; y; 0; 9").unwrap();
+        let m = field.tensor(Point3::new(0.25, 0.5, 7.0));
+        assert_eq!(m, Tensor3 { xx: 1.0, xy: 0.25, yy: 9.0, xz: 0.5, yz: 0.0, zz: 9.0 });
+        let error = SpaceFormula::parse("1; 0; 1; 0; 0; q").unwrap_err();
+        assert!(error.to_string().starts_with("formula m33, column 16: unknown name `q`"), "{error}");
+        let error = SpaceFormula::parse("1; 0; 1").unwrap_err();
+        assert!(error.to_string().starts_with("formula, column 8: six entries were expected, not 3"), "{error}");
+        assert_eq!(error.help(), "write m11; m12; m22; m13; m23; m33, each in x, y and z");
     }
 
     #[test]

@@ -161,7 +161,7 @@ impl<'a> Parser<'a> {
             self.expression(0)?;
             count += 1;
             if let (Function::Many(f), 2..) = (function, count) {
-                self.emit(Op::Call2(*f))?;
+                self.emit(Op::Call2(f))?;
             }
             if !self.rest().starts_with(',') {
                 break;
@@ -170,8 +170,8 @@ impl<'a> Parser<'a> {
         }
         self.expect(")")?;
         let needed = match (function, count) {
-            (Function::One(f), 1) => return self.emit(Op::Call1(*f)),
-            (Function::Two(f), 2) => return self.emit(Op::Call2(*f)),
+            (Function::One(f), 1) => return self.emit(Op::Call1(f)),
+            (Function::Two(f), 2) => return self.emit(Op::Call2(f)),
             (Function::Many(_), 2..) => return Ok(()),
             (Function::One(_), _) => "1 argument",
             (Function::Many(_), _) => "2 or more arguments",
@@ -268,13 +268,13 @@ fn fold(op: Op, code: &[Op]) -> Option<(usize, Op)> {
     };
     let value = match (op, a, b) {
         (Op::Negate, _, Some(b)) => return Some((1, Op::Constant(-b))),
-        (Op::Call1(f), _, Some(b)) => return Some((1, Op::Constant(f(b)))),
+        (Op::Call1(f), _, Some(b)) => return Some((1, Op::Constant((f.value)(b)))),
         (Op::Add, Some(a), Some(b)) => a + b,
         (Op::Subtract, Some(a), Some(b)) => a - b,
         (Op::Multiply, Some(a), Some(b)) => a * b,
         (Op::Divide, Some(a), Some(b)) => a / b,
         (Op::Power, Some(a), Some(b)) => a.powf(b),
-        (Op::Call2(f), Some(a), Some(b)) => f(a, b),
+        (Op::Call2(f), Some(a), Some(b)) => (f.value)(a, b),
         (Op::Power, None, Some(2.0)) => return Some((1, Op::Square)),
         _ => return None,
     };

@@ -126,13 +126,17 @@ fn number(place: &str, key: &str, value: &str) -> Result<f64> {
 }
 
 /// `key=value,key=value`, each key known and given once.
-struct Parameters<'a> {
+pub(crate) struct Parameters<'a> {
     place: String,
     pairs: Vec<(&'a str, &'a str)>,
 }
 
 impl<'a> Parameters<'a> {
-    fn read(metric: &str, text: Option<&'a str>, keys: &[&str]) -> Result<Self> {
+    /// Reads the parameters of a metric.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] of what is not key=value, of other keys, and of keys given twice.
+    pub(crate) fn read(metric: &str, text: Option<&'a str>, keys: &[&str]) -> Result<Self> {
         let place = format!("metric {metric}");
         let mut pairs: Vec<(&str, &str)> = Vec::new();
         let help = format!("write {metric}:key=value,key=value with keys among {}", keys.join(", "));
@@ -153,12 +157,13 @@ impl<'a> Parameters<'a> {
         Ok(Self { place, pairs })
     }
 
-    fn get(&self, key: &str) -> Option<&'a str> {
+    /// The value of a key, if it is given.
+    pub(crate) fn get(&self, key: &str) -> Option<&'a str> {
         self.pairs.iter().find(|(known, _)| *known == key).map(|(_, value)| *value)
     }
 
     /// Replaces a default by the number given, if one is.
-    fn set(&self, key: &str, target: &mut f64) -> Result<()> {
+    pub(crate) fn set(&self, key: &str, target: &mut f64) -> Result<()> {
         if let Some(value) = self.get(key) {
             *target = number(&self.place, key, value)?;
         }

@@ -1,0 +1,150 @@
+//! Geomview's `.off` in text form.
+
+use super::words::{At, Row, Rows, Word, error_at, number, shortened, whole};
+use crate::error::Result;
+use crate::mesh::Mesh;
+
+/// Reads an `.off` text: vertices, and faces cut into fans around their first vertex.
+///
+/// The head may be `OFF` or, with more columns, `COFF`, `NOFF` and their like, or missing; what follows the coordinates and
+/// the faces' vertices on their rows (colours, normals) is passed over. Labels are 0. Memory follows the text, never a
+/// count written in it.
+///
+/// # Errors
+///
+/// [`crate::Error::Parse`] with the line of another head, of what is no finite number, of a row that is too short or
+/// missing, and of a vertex that does not exist.
+pub fn read(text: &str, place: &str) -> Result<Mesh> {
+    let mut reader = Reader { place, rows: Rows::new(text), line: 1 };
+    let [vertices, faces] = reader.read_counts()?;
+    let mut mesh = Mesh::default();
+    for at in At::rows("the vertices", vertices) {
+        mesh.points.push(reader.read_vertex(at)?);
+    }
+    for at in At::rows("the faces", faces) {
+        let polygon = reader.read_face(at, vertices)?;
+        let fan = polygon[1..].windows(2).map(|pair| [polygon[0], pair[0], pair[1]]);
+        mesh.triangles.extend(fan);
+    }
+    mesh.point_labels = vec![0; mesh.points.len()];
+    mesh.triangle_labels = vec![0; mesh.triangles.len()];
+    Ok(mesh)
+}
+
+/// Dialects whose vertices begin with their three coordinates.
+const HEADS: [&str; 7] = ["OFF", "COFF", "NOFF", "CNOFF", "STOFF", "STCOFF", "STNOFF"];
+
+struct Reader<'a> {
+    place: &'a str,
+    rows: Rows<'a>,
+    line: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn read_counts(&mut self) -> Result<[u64; 2]> {
+        let at = At::head("the file");
+        let row = self.next_row(at)?;
+        let mut words = row.words().peekable();
+        let first = words.peek().map_or("", |word| word.text);
+        if !first.starts_with(|c: char| c.is_ascii_digit()) {
+            if !HEADS.iter().any(|head| head.eq_ignore_ascii_case(first)) {
+                let what = format!("the file begins with '{}', not with OFF", shortened(first));
+                return Err(error_at(self.place, row.line, what, "give a file in the text form of .off"));
+            }
+            words.next();
+        }
+        if words.peek().is_some() {
+            return self.counts(words, at);
+        }
+        let row = self.next_row(at)?;
+        self.counts(row.words(), at)
+    }
+
+    /// Vertices and faces; a count of edges may follow and means nothing.
+    fn counts(&self, mut words: impl Iterator<Item = Word<'a>>, at: At<'_>) -> Result<[u64; 2]> {
+        let mut count = || whole(self.place, self.word(words.next(), at)?, at);
+        Ok([count()?, count()?])
+    }
+
+    fn read_vertex(&mut self, at: At<'_>) -> Result<[f64; 3]> {
+        let mut words = self.next_row(at)?.words();
+        let mut point = [0.0; 3];
+        for coordinate in &mut point {
+            *coordinate = number(self.place, self.word(words.next(), at)?, at)?;
+        }
+        Ok(point)
+    }
+
+    fn read_face(&mut self, at: At<'_>, vertices: u64) -> Result<Vec<u32>> {
+        let mut words = self.next_row(at)?.words();
+        let corners: u64 = whole(self.place, self.word(words.next(), at)?, at)?;
+        if corners < 3 {
+            let what = format!("a face of {corners} vertices ({at})");
+            return Err(error_at(self.place, self.line, what, "a face needs three vertices or more"));
+        }
+        let mut polygon = Vec::new();
+        for _ in 0..corners {
+            let vertex: u32 = whole(self.place, self.word(words.next(), at)?, at)?;
+            if u64::from(vertex) >= vertices {
+                let what = format!("vertex {vertex} does not exist: the file announces {vertices} ({at})");
+                return Err(error_at(self.place, self.line, what, "number from 0, and below the count of vertices"));
+            }
+            polygon.push(vertex);
+        }
+        Ok(polygon)
+    }
+
+    fn next_row(&mut self, at: At<'_>) -> Result<Row<'a>> {
+        let row = self.rows.next().ok_or_else(|| {
+            let help = format!("the file is cut off, or the count of {} is too large", at.section);
+            error_at(self.place, self.line, format!("the text ends in {at}"), help)
+        })?;
+        self.line = row.line;
+        Ok(row)
+    }
+
+    fn word(&self, word: Option<Word<'a>>, at: At<'_>) -> Result<Word<'a>> {
+        let help = "write all numbers of a vertex or a face on one row";
+        word.ok_or_else(|| error_at(self.place, self.line, format!("the row ends too early ({at})"), help))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dialects() {
+        for text in [
+            "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 255 0 0\n",
+            "COFF 4 1 5 # counts\n\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 0 0 0 0\n0 1 0 9 9 9 9\n4 0 1 2 3",
+            "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n",
+        ] {
+            let mesh = read(text, "a.off").unwrap();
+            assert_eq!(mesh.points[2].map(f64::to_bits), [1.0_f64, 1.0, 0.0].map(f64::to_bits));
+            assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+        }
+    }
+
+    #[test]
+    fn errors_say_what_and_where() {
+        for (text, expected) in [
+            ("", "a.off:1: the text ends in the head of the file"),
+            ("solid\n", "a.off:1: the file begins with 'solid', not with OFF"),
+            ("OFF BINARY\n", "a.off:1: 'BINARY' is not a whole number"),
+            ("OFF\n3", "a.off:2: the row ends too early (the head of the file)"),
+            ("OFF\n9000000000000000000 1 0\n0 0 0", "a.off:3: the text ends in row 2 of 9000000000000000000 of the v"),
+            ("OFF\n1 1 0\n0 0\n", "a.off:3: the row ends too early (row 1 of 1 of the vertices)"),
+            ("OFF\n1 1 0\n0 0 inf\n", "a.off:3: 'inf' is not a finite number (row 1 of 1 of the vertices)"),
+            ("OFF\n1 1 0\n0 0 0\n2 0 0", "a.off:4: a face of 2 vertices (row 1 of 1 of the faces)"),
+            ("OFF\n1 1 0\n0 0 0\n3 0 0 1", "a.off:4: vertex 1 does not exist: the file announces 1"),
+            ("OFF\n1 1 0\n0 0 0\n3 0 0 -1", "a.off:4: '-1' is out of range"),
+            ("OFF\n1 1 0\n0 0 0\n4000000000 0 0 0", "a.off:4: the row ends too early (row 1 of 1 of the faces)"),
+            ("OFF\n1 2 0\n0 0 0\n3 0 0 0", "a.off:4: the text ends in row 2 of 2 of the faces"),
+        ] {
+            let error = read(text, "a.off").unwrap_err();
+            assert!(error.to_string().starts_with(expected), "{error}");
+            assert!(!error.help().is_empty());
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! Stereolithography `.stl`, as text and binary: triangles without shared vertices.
+
+use super::words::{At, Words, error_at, shortened};
+use crate::error::{Error, Result};
+use crate::mesh::Mesh;
+use std::collections::HashMap;
+
+/// Reads an `.stl` file. Corners with exactly the same coordinates become one vertex, in the order of the file (the
+/// format has no other way to say that triangles are neighbours); nothing else is joined. Normals, names and attributes
+/// are passed over, labels are 0.
+///
+/// A file is binary if its length is the one its count of triangles asks for, else text. Memory follows the file, never
+/// a count written in it.
+///
+/// # Errors
+///
+/// [`Error::Parse`] with the line, or the triangle, of what is not as announced: a file cut off, a coordinate that is no
+/// finite number, words out of place.
+pub fn read(bytes: &[u8], place: &str) -> Result<Mesh> {
+    if let Some(triangles) = binary_body(bytes) {
+        return read_binary(triangles, place);
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) if text.trim_start().to_ascii_lowercase().starts_with("solid") => read_text(text, place),
+        _ => Err(neither(bytes, place)),
+    }
+}
+
+/// The head of a binary file: 80 bytes of anything, then the number of triangles.
+const HEAD: usize = 84;
+/// A binary triangle: normal, three corners, an attribute of two bytes.
+const TRIANGLE: usize = 50;
+
+fn announced(bytes: &[u8]) -> Option<u32> {
+    bytes.get(HEAD - 4..HEAD)?.try_into().ok().map(u32::from_le_bytes)
+}
+
+fn binary_body(bytes: &[u8]) -> Option<&[u8]> {
+    let length = HEAD as u64 + TRIANGLE as u64 * u64::from(announced(bytes)?);
+    (bytes.len() as u64 == length).then(|| &bytes[HEAD..])
+}
+
+fn neither(bytes: &[u8], place: &str) -> Error {
+    let help = "give an .stl file as text ('solid ...') or binary; this one may be cut off";
+    let what = match announced(bytes) {
+        Some(count) => format!("neither text nor binary: {} bytes, where {count} triangles are announced", bytes.len()),
+        None => format!("neither text nor binary: {} bytes", bytes.len()),
+    };
+    Error::parse(place, what, help)
+}
+
+fn read_binary(body: &[u8], place: &str) -> Result<Mesh> {
+    let mut corners = Corners::default();
+    for (i, triangle) in body.chunks_exact(TRIANGLE).enumerate() {
+        let (numbers, _) = triangle[12..48].as_chunks::<4>();
+        for corner in numbers.chunks_exact(3) {
+            let point = [0, 1, 2].map(|axis| f64::from(f32::from_le_bytes(corner[axis])));
+            if !point.iter().all(|x| x.is_finite()) {
+                let place = format!("{place}, byte {}", HEAD + TRIANGLE * i);
+                let what = format!("triangle {} has a coordinate that is not finite", i + 1);
+                return Err(Error::parse(place, what, "remove or correct the triangle"));
+            }
+            corners.push(point);
+        }
+    }
+    Ok(corners.into_mesh())
+}
+
+fn read_text(text: &str, place: &str) -> Result<Mesh> {
+    let mut words = Words::new(text, place);
+    let mut corners = Corners::default();
+    let mut facets = 0;
+    // Names of solids are any words on their lines.
+    let mut name_line = None;
+    while let Some(word) = words.next() {
+        if name_line == Some(word.line) {
+            continue;
+        }
+        match word.text.to_ascii_lowercase().as_str() {
+            "solid" | "endsolid" => name_line = Some(word.line),
+            "facet" => {
+                facets += 1;
+                read_facet(&mut words, facets, &mut corners)?;
+            }
+            _ => {
+                let what = format!("'{}' where a facet or endsolid should be", shortened(word.text));
+                return Err(error_at(place, word.line, what, "check the end of the facet before"));
+            }
+        }
+    }
+    Ok(corners.into_mesh())
+}
+
+fn read_facet(words: &mut Words<'_>, number: u64, corners: &mut Corners) -> Result<()> {
+    let at = At { section: "the facets", row: number, rows: number };
+    expect_word(words, "normal", at)?;
+    for _ in 0..3 {
+        // Some programs write nan for the normals of thin triangles; nobody needs them.
+        words.expect(at)?;
+    }
+    expect_word(words, "outer", at)?;
+    expect_word(words, "loop", at)?;
+    for _ in 0..3 {
+        expect_word(words, "vertex", at)?;
+        corners.push([words.number(at)?, words.number(at)?, words.number(at)?]);
+    }
+    expect_word(words, "endloop", at)?;
+    expect_word(words, "endfacet", at)
+}
+
+fn expect_word(words: &mut Words<'_>, expected: &str, at: At<'_>) -> Result<()> {
+    let word = words.expect(at)?;
+    if word.text.eq_ignore_ascii_case(expected) {
+        return Ok(());
+    }
+    let what = format!("'{}' where '{expected}' should be ({at})", shortened(word.text));
+    Err(error_at(words.place(), word.line, what, "write facets as 'facet normal', 'outer loop', three times 'vertex'"))
+}
+
+/// Corners joined into vertices as they come.
+#[derive(Default)]
+struct Corners {
+    known: HashMap<[u64; 3], u32>,
+    points: Vec<[f64; 3]>,
+    vertices: Vec<u32>,
+}
+
+impl Corners {
+    fn push(&mut self, point: [f64; 3]) {
+        // Adding zero makes -0 equal to 0 in its bits, too.
+        let key = point.map(|x| (x + 0.0).to_bits());
+        let vertex = *self.known.entry(key).or_insert_with(|| {
+            self.points.push(point);
+            self.points.len() as u32 - 1
+        });
+        self.vertices.push(vertex);
+    }
+
+    fn into_mesh(self) -> Mesh {
+        let (triangles, _) = self.vertices.as_chunks::<3>();
+        Mesh {
+            point_labels: vec![0; self.points.len()],
+            points: self.points,
+            triangle_labels: vec![0; triangles.len()],
+            triangles: triangles.to_vec(),
+            ..Mesh::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "solid a facet of life\n facet normal nan 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   \
+                        vertex 0 1 0\n  endloop\n endfacet\nfacet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\n\
+                        vertex -0 1 0\nendloop\nendfacet\nendsolid a facet of life\n";
+
+    fn binary(triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
+        let mut bytes = b"solid, says a binary file".to_vec();
+        bytes.resize(80, b' ');
+        bytes.extend((triangles.len() as u32).to_le_bytes());
+        for triangle in triangles {
+            bytes.extend([0; 12]);
+            bytes.extend(triangle.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+            bytes.extend([0; 2]);
+        }
+        bytes
+    }
+
+    #[test]
+    fn text_and_binary_say_the_same() {
+        let mesh = read(TEXT.as_bytes(), "a.stl").unwrap();
+        assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
+        let [a, b, c, d] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        assert_eq!(read(&binary(&[[a, b, c], [b, d, c]]), "a.stl").unwrap(), mesh);
+    }
+
+    #[test]
+    fn errors_say_what_and_where() {
+        let message = |bytes: &[u8]| {
+            let error = read(bytes, "a.stl").unwrap_err();
+            assert!(!error.help().is_empty());
+            error.to_string()
+        };
+        let whole = binary(&[[[0.0; 3]; 3]; 2]);
+        assert_eq!(message(&[]), "a.stl: neither text nor binary: 0 bytes");
+        assert!(message(b"solid x\nfacet normal 0 0 1 inner").starts_with("a.stl:2: 'inner' where 'outer' should be"));
+        let cut = whole[..whole.len() - 1].iter().map(|b| if *b == b's' { 0xff } else { *b }).collect::<Vec<u8>>();
+        assert_eq!(message(&cut), "a.stl: neither text nor binary: 183 bytes, where 2 triangles are announced");
+        let mut lying = whole;
+        lying[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+        lying[0] = 0xff;
+        assert!(message(&lying).contains("184 bytes, where 4294967295 triangles are announced"));
+        let bad = binary(&[[[0.0; 3]; 3], [[0.0, f32::NAN, 0.0]; 3]]);
+        assert_eq!(message(&bad), "a.stl, byte 134: triangle 2 has a coordinate that is not finite");
+        for (from, to, expected) in [
+            ("vertex 1 1 0", "vertex 1 1", "a.stl:13: 'vertex' is not a number (row 2 of 2 of the facets)"),
+            ("endloop\nendfacet\nends", "", "a.stl:14: 'olid' where 'endloop' should be"),
+            ("endsolid", "facets", "a.stl:16: 'facets' where a facet or endsolid should be"),
+            ("vertex -0", "vertex inf", "a.stl:13: 'inf' is not a finite number"),
+        ] {
+            assert!(message(TEXT.replace(from, to).as_bytes()).starts_with(expected), "{expected}");
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Second-order forward differentiation in three variables: numbers that carry their gradient and their Hessian.
+
+use super::{Tensor3, Vector3};
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A function's value at a point of space with its first and second derivatives there. Arithmetic follows the chain rule
+/// (Griewank and Walther 2008): derivatives are exact but for rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jet3 {
+    /// The value.
+    pub value: f64,
+    /// First derivatives.
+    pub gradient: Vector3,
+    /// Second derivatives.
+    pub hessian: Tensor3,
+}
+
+impl Jet3 {
+    /// A function that is the same everywhere.
+    pub fn constant(value: f64) -> Self {
+        Self { value, ..Self::default() }
+    }
+
+    /// The coordinates x, y and z as functions.
+    pub fn coordinates(x: f64, y: f64, z: f64) -> [Self; 3] {
+        let axes = [Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 1.0, 0.0), Vector3::new(0.0, 0.0, 1.0)];
+        let values = [x, y, z];
+        std::array::from_fn(|i| Self { value: values[i], gradient: axes[i], hessian: Tensor3::default() })
+    }
+
+    /// Whether all derivatives vanish.
+    pub fn is_constant(&self) -> bool {
+        self.gradient == Vector3::default() && self.hessian == Tensor3::default()
+    }
+
+    /// g(f): g's value at f, and its first and second derivative there.
+    #[must_use]
+    pub fn chain(self, value: f64, [first, second]: [f64; 2]) -> Self {
+        if self.is_constant() {
+            // Also where g has no derivative, as sqrt at zero.
+            return Self::constant(value);
+        }
+        let hessian = self.hessian * first + Tensor3::square(self.gradient) * second;
+        Self { value, gradient: self.gradient * first, hessian }
+    }
+
+    /// g(f, h): g's value there, and its derivatives by the first, the second, and then by both twice (11, 12, 22).
+    #[must_use]
+    pub fn chain2(self, other: Self, value: f64, first: [f64; 2], second: [f64; 3]) -> Self {
+        if other.is_constant() {
+            return self.chain(value, [first[0], second[0]]);
+        }
+        if self.is_constant() {
+            return other.chain(value, [first[1], second[2]]);
+        }
+        let mixed = Tensor3::symmetric_product(self.gradient, other.gradient) * second[1];
+        let [a, b] = [self.chain(0.0, [first[0], second[0]]), other.chain(0.0, [first[1], second[2]])];
+        Self { value, gradient: a.gradient + b.gradient, hessian: a.hessian + b.hessian + mixed }
+    }
+}
+
+impl Neg for Jet3 {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { value: -self.value, gradient: -self.gradient, hessian: self.hessian * -1.0 }
+    }
+}
+
+impl Add for Jet3 {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            gradient: self.gradient + other.gradient,
+            hessian: self.hessian + other.hessian,
+        }
+    }
+}
+
+impl Sub for Jet3 {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Jet3 {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        self.chain2(other, self.value * other.value, [other.value, self.value], [0.0, 1.0, 0.0])
+    }
+}

@@ -1,0 +1,275 @@
+//! From an indexed list of triangles to a surface.
+
+use super::Surface;
+use super::orient::{Side, orient, sides};
+use crate::error::{Error, Result};
+use crate::geometry::Point3;
+use crate::mesh::Mesh;
+use crate::triangulation::{Broken, Constraint, Triangulation, VertexId};
+
+impl Surface {
+    /// The surface of a mesh's triangles, with its labels; edges of the list are fixed.
+    ///
+    /// Where neighbouring triangles turn different ways, the fewer of a component are turned ([`Surface::turned`]).
+    /// Nothing is joined: triangles are neighbours if they share two vertex numbers.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] of numbers beyond the lists they refer to. [`Error::Domain`] with the place of: no triangles, a
+    /// coordinate that is not finite, a triangle that has a vertex twice or no area, two triangles with the same
+    /// vertices, an edge of more than two triangles, a vertex where triangles meet in a point only, a one-sided surface,
+    /// an edge in the list that is no triangle's, or there twice with different labels.
+    pub fn new(mesh: &Mesh) -> Result<Self> {
+        mesh.check_numbers()?;
+        let positions = finite_positions(mesh)?;
+        check_triangles(&mesh.triangles, &positions)?;
+        let mut triangles = mesh.triangles.clone();
+        let sides = sides(&triangles);
+        check_edges(&sides, &positions)?;
+        let turned = orient(&mut triangles, &sides, |ends| edge(ends, &positions))?;
+        let mut regions = mesh.triangle_labels.clone();
+        regions.resize(triangles.len(), 0);
+        let topology = Triangulation::from_triangles(positions.len(), &triangles, &regions);
+        check_fans(&topology, &positions)?;
+        let (mut point_labels, mut edge_labels) = (mesh.point_labels.clone(), mesh.edge_labels.clone());
+        point_labels.resize(positions.len(), 0);
+        edge_labels.resize(mesh.edges.len(), 0);
+        let required_points = required_points(mesh);
+        let mut surface = Self { topology, positions, point_labels, edge_labels, required_points, turned };
+        surface.fix_edges(&mesh.edges)?;
+        Ok(surface)
+    }
+
+    /// The surface as plain arrays; fixed edges are its edges, border or not. [`Surface::new`] makes the same of it.
+    pub fn to_mesh(&self) -> Mesh {
+        let t = &self.topology;
+        let fixed: Vec<_> = t.edges().filter_map(|h| Some((h, t.constraint(h)?))).collect();
+        Mesh {
+            points: self.positions.iter().map(|p| p.to_array()).collect(),
+            point_labels: self.point_labels.clone(),
+            triangles: t.faces().map(|f| t.corners(f).map(|v| v.0)).collect(),
+            triangle_labels: t.faces().map(|f| t.region(f)).collect(),
+            edges: fixed.iter().map(|&(h, _)| [t.origin(h).0, t.target(h).0]).collect(),
+            edge_labels: fixed.iter().map(|&(_, constraint)| self.edge_label(constraint)).collect(),
+            required_points: self.required_points.iter().map(|v| v.0).collect(),
+            ..Mesh::default()
+        }
+    }
+
+    fn fix_edges(&mut self, edges: &[[u32; 2]]) -> Result<()> {
+        for (i, &[a, b]) in edges.iter().enumerate() {
+            let [v, w] = [a, b].map(VertexId);
+            let h = self.topology.find(v, w).or_else(|| self.topology.find(w, v)).ok_or_else(|| {
+                let what = format!("edge {} of the list is no edge of a triangle", i + 1);
+                Error::domain(what, edge([a, b], &self.positions), "remove it, or let a triangle have it")
+            })?;
+            let same = |other: Constraint| self.edge_label(other) == self.edge_labels[i];
+            if let Some(other) = self.topology.constraint(h).filter(|&other| !same(other)) {
+                let what = format!("edges {} and {} of the list are one, with different labels", other.0 + 1, i + 1);
+                return Err(Error::domain(what, edge([a, b], &self.positions), "keep one of them"));
+            }
+            self.topology.set_constraint(h, Constraint(i as u32));
+        }
+        Ok(())
+    }
+}
+
+/// Triangles count as without area where their height is so small a part of their longest side: as rounding makes it.
+const FLAT: f64 = 1e-14;
+
+fn finite_positions(mesh: &Mesh) -> Result<Vec<Point3>> {
+    if mesh.triangles.is_empty() {
+        return Err(Error::domain("no triangles", "the mesh", "give a surface as a mesh of triangles"));
+    }
+    let positions: Vec<Point3> = mesh.points.iter().map(|&p| p.into()).collect();
+    match positions.iter().position(|p| !p.is_finite()) {
+        None => Ok(positions),
+        Some(i) => {
+            let place = vertex(i as u32, &positions);
+            Err(Error::domain("a coordinate is not finite", place, "remove or correct the vertex"))
+        }
+    }
+}
+
+fn check_triangles(triangles: &[[u32; 3]], positions: &[Point3]) -> Result<()> {
+    for (i, &[a, b, c]) in triangles.iter().enumerate() {
+        if a == b || b == c || c == a {
+            let what = format!("triangle {} has a vertex twice", i + 1);
+            let twice = if a == b { a } else { c };
+            return Err(Error::domain(what, vertex(twice, positions), "remove the triangle"));
+        }
+        let [p, q, r] = [a, b, c].map(|v| positions[v as usize]);
+        let longest = (q - p).norm().max((r - q).norm()).max((p - r).norm());
+        let double_area = (q - p).cross(r - p).norm();
+        if double_area.is_nan() || double_area <= FLAT * longest * longest {
+            let what = format!("triangle {} has no area", i + 1);
+            let place = format!("{}, {}, {}", vertex(a, positions), vertex(b, positions), vertex(c, positions));
+            return Err(Error::domain(what, place, "remove it and join its neighbours, or move one of its corners"));
+        }
+    }
+    check_duplicates(triangles, positions)
+}
+
+fn check_duplicates(triangles: &[[u32; 3]], positions: &[Point3]) -> Result<()> {
+    let sorted = |(i, &triangle): (usize, &[u32; 3])| {
+        let mut vertices = triangle;
+        vertices.sort_unstable();
+        (vertices, i)
+    };
+    let mut keys: Vec<_> = triangles.iter().enumerate().map(sorted).collect();
+    keys.sort_unstable();
+    let Some(pair) = keys.windows(2).find(|pair| pair[0].0 == pair[1].0) else { return Ok(()) };
+    let what = format!("triangles {} and {} have the same vertices", pair[0].1 + 1, pair[1].1 + 1);
+    Err(Error::domain(what, vertex(pair[0].0[0], positions), "keep one of them"))
+}
+
+fn check_edges(sides: &[Side], positions: &[Point3]) -> Result<()> {
+    let Some(triple) = sides.windows(3).find(|triple| triple[0].ends == triple[2].ends) else { return Ok(()) };
+    let count = sides.iter().filter(|side| side.ends == triple[0].ends).count();
+    let [s, t, u] = [0, 1, 2].map(|i| triple[i].triangle + 1);
+    let what = format!("an edge of {count} triangles (among them {s}, {t} and {u})");
+    Err(Error::domain(what, edge(triple[0].ends, positions), "leave at most two triangles at every edge"))
+}
+
+fn check_fans(topology: &Triangulation, positions: &[Point3]) -> Result<()> {
+    match topology.check() {
+        Ok(()) => Ok(()),
+        Err(Broken::Fan(v)) => {
+            let help = "split the vertex, one for each group of neighbouring triangles";
+            Err(Error::domain("triangles that meet in a point only", vertex(v.0, positions), help))
+        }
+        Err(other) => Err(Error::Mesh {
+            what: format!("its triangles do not hang together ({other:?})"),
+            place: "the surface".into(),
+            help: "please report this".into(),
+        }),
+    }
+}
+
+fn required_points(mesh: &Mesh) -> Vec<VertexId> {
+    let mut points: Vec<_> = mesh.corners.iter().chain(&mesh.required_points).copied().map(VertexId).collect();
+    points.sort_unstable();
+    points.dedup();
+    points
+}
+
+/// A vertex, numbered from 1, for messages.
+fn vertex(v: u32, positions: &[Point3]) -> String {
+    format!("vertex {} {}", v + 1, positions[v as usize])
+}
+
+fn edge([a, b]: [u32; 2], positions: &[Point3]) -> String {
+    format!("{} - {}", vertex(a, positions), vertex(b, positions))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tetrahedron() -> Mesh {
+        Mesh {
+            points: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+            triangle_labels: vec![4, 5, 6, 7],
+            ..Mesh::default()
+        }
+    }
+
+    #[test]
+    fn labels_and_fixed_edges_are_kept() {
+        let mut mesh = tetrahedron();
+        mesh.points.push([9.0, 9.0, 9.0]);
+        (mesh.edges, mesh.edge_labels) = (vec![[2, 1], [0, 3]], vec![8, 9]);
+        (mesh.corners, mesh.required_points) = (vec![3, 1], vec![1]);
+        let surface = Surface::new(&mesh).unwrap();
+        let t = surface.topology();
+        assert_eq!(t.faces().map(|f| t.region(f)).collect::<Vec<_>>(), [4, 5, 6, 7]);
+        let h = t.find(VertexId(1), VertexId(2)).unwrap();
+        assert_eq!(t.constraint(h).map(|c| surface.edge_label(c)), Some(8));
+        assert_eq!(surface.required_points(), [VertexId(1), VertexId(3)]);
+        assert_eq!((t.vertices().count(), surface.turned()), (4, 0));
+        let again = Surface::new(&surface.to_mesh()).unwrap();
+        assert_eq!(again.to_mesh(), surface.to_mesh());
+    }
+
+    #[test]
+    fn the_fewer_triangles_are_turned() {
+        for (turn, count) in [(vec![], 0), (vec![1_u32], 1), (vec![0, 3], 2), (vec![0, 2, 3], 1), (vec![0, 1, 2, 3], 0)]
+        {
+            let mut mesh = tetrahedron();
+            for &t in &turn {
+                mesh.triangles[t as usize].swap(0, 1);
+            }
+            let surface = Surface::new(&mesh).unwrap();
+            assert_eq!(surface.turned(), count, "{turn:?}");
+            surface.topology().check().unwrap();
+            assert_eq!(surface.topology().edges().count(), 6);
+        }
+    }
+
+    fn moebius() -> Mesh {
+        let at = |i: u32| {
+            let angle = std::f64::consts::TAU * f64::from(i / 2) / 5.0;
+            let across = if i.is_multiple_of(2) { 0.3 } else { -0.3 };
+            let r = 1.0 + across * (0.5 * angle).cos();
+            [r * angle.cos(), r * angle.sin(), across * (0.5 * angle).sin()]
+        };
+        let strip = (0..5).flat_map(|k| {
+            let [a, b] = [2 * k, 2 * k + 1];
+            let [c, d] = if k < 4 { [a + 2, b + 2] } else { [1, 0] };
+            [[a, b, c], [b, d, c]]
+        });
+        Mesh { points: (0..10).map(at).collect(), triangles: strip.collect(), ..Mesh::default() }
+    }
+
+    #[test]
+    fn what_makes_no_surface_is_named_with_its_place() {
+        let message = |change: &dyn Fn(&mut Mesh)| {
+            let mut mesh = tetrahedron();
+            change(&mut mesh);
+            let error = Surface::new(&mesh).unwrap_err();
+            assert!(!error.help().is_empty());
+            error.to_string()
+        };
+        for (message, expected) in [
+            (message(&|m| *m = Mesh::default()), "invalid domain: no triangles"),
+            (message(&|m| m.points[1][2] = f64::NAN), "a coordinate is not finite at vertex 2 (1, 0, NaN)"),
+            (message(&|m| m.triangles[1][2] = 4), "invalid mesh: vertex 4 (from 0) does not exist at a list of 4"),
+            (message(&|m| m.triangles[1] = [3, 1, 3]), "triangle 2 has a vertex twice at vertex 4 (0, 0, 1)"),
+            (message(&|m| m.points[3] = [0.5, 0.0, 0.0]), "triangle 2 has no area at vertex 1 (0, 0, 0), vertex 2"),
+            (message(&|m| m.points[3] = [1.0, 0.0, 0.0]), "triangle 2 has no area"),
+            (
+                message(&|m| m.triangles.push([3, 2, 1])),
+                "triangles 3 and 5 have the same vertices at vertex 2 (1, 0, 0)",
+            ),
+            (
+                message(&|m| {
+                    m.points.push([5.0, 5.0, 5.0]);
+                    m.triangles.push([0, 1, 4]);
+                }),
+                "an edge of 3 triangles (among them 1, 2 and 5) at vertex 1 (0, 0, 0) - vertex 2 (1, 0, 0)",
+            ),
+            (
+                message(&|m| {
+                    m.points.extend([[0.0, 0.0, 2.0], [1.0, 0.0, 2.0]]);
+                    m.triangles.push([3, 4, 5]);
+                }),
+                "triangles that meet in a point only at vertex 4 (0, 0, 1)",
+            ),
+            (message(&|m| *m = moebius()), "a one-sided surface: its triangles cannot all turn the same way at vertex"),
+            (
+                message(&|m| (m.edges, m.edge_labels) = (vec![[0, 1], [1, 0]], vec![5, 6])),
+                "edges 1 and 2 of the list are one, with different labels at vertex 2 (1, 0, 0) - vertex 1 (0, 0, 0)",
+            ),
+            (
+                message(&|m| {
+                    m.triangles.pop();
+                    m.points.push([1.0; 3]);
+                    m.edges = vec![[0, 1], [0, 4]];
+                }),
+                "edge 2 of the list is no edge of a triangle at vertex 1 (0, 0, 0) - vertex 5 (1, 1, 1)",
+            ),
+        ] {
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}

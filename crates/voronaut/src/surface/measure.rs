@@ -1,0 +1,180 @@
+//! Size and shape of a surface: area, normals, components, borders, genus.
+
+use super::Surface;
+use crate::geometry::{Aabb3, Vector3};
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
+
+/// A connected part of a surface.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Component {
+    /// Its triangles, in the order in which neighbours were found.
+    pub faces: Vec<FaceId>,
+    /// Vertices minus edges plus triangles.
+    pub euler_characteristic: isize,
+    /// How many closed curves its border consists of; 0 of a closed surface.
+    pub borders: usize,
+}
+
+impl Component {
+    /// How many handles it has: 0 of a sphere or a disk, 1 of a torus.
+    pub fn genus(&self) -> isize {
+        (2 - self.borders.cast_signed() - self.euler_characteristic) / 2
+    }
+}
+
+impl Surface {
+    /// The triangle's normal with the length of twice its area, to the side from which it is counter-clockwise.
+    pub fn area_vector(&self, f: FaceId) -> Vector3 {
+        let [a, b, c] = self.triangle(f);
+        (b - a).cross(c - a)
+    }
+
+    /// The triangle's unit normal.
+    pub fn normal(&self, f: FaceId) -> Vector3 {
+        // The area was found positive; where its square underflows the direction does not matter any more.
+        self.area_vector(f).unit().unwrap_or(Vector3::new(0.0, 0.0, 1.0))
+    }
+
+    /// The mean of the normals of a vertex's triangles, weighted by their angles there (Thurmer and Wuthrich 1998), so
+    /// that cutting a flat part differently changes nothing. `None` without triangles, or where the mean is zero.
+    pub fn vertex_normal(&self, v: VertexId) -> Option<Vector3> {
+        let weighted = self.topology.star(v).map(|h| self.normal(h.face()) * self.angle(h));
+        weighted.fold(Vector3::default(), |sum, normal| sum + normal).unit()
+    }
+
+    /// The angle of a half-edge's triangle at its origin, in radians.
+    pub fn angle(&self, h: HalfEdge) -> f64 {
+        let at = self.position(self.topology.origin(h));
+        let [u, v] = [self.topology.target(h), self.topology.apex(h)].map(|v| self.position(v) - at);
+        u.cross(v).norm().atan2(u.dot(v))
+    }
+
+    /// The sum of the triangles' areas.
+    pub fn area(&self) -> f64 {
+        self.topology.faces().map(|f| 0.5 * self.area_vector(f).norm()).sum()
+    }
+
+    /// The smallest axis-aligned box around the triangles.
+    pub fn bounds(&self) -> Aabb3 {
+        let used = self.topology.vertices().map(|v| self.position(v));
+        Aabb3::of(used).expect("a surface has at least one triangle")
+    }
+
+    /// Vertices minus edges plus triangles.
+    pub fn euler_characteristic(&self) -> isize {
+        let t = &self.topology;
+        t.vertices().count().cast_signed() - t.edges().count().cast_signed() + t.face_count().cast_signed()
+    }
+
+    /// The closed curves of the border, each as its half-edges in order, the surface on their left.
+    pub fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
+        let t = &self.topology;
+        let mut seen = vec![false; 3 * t.face_slots()];
+        let mut loops = Vec::new();
+        for start in t.edges().filter(|&h| t.twin(h).is_none()) {
+            let mut curve = Vec::new();
+            let mut next = Some(start);
+            while let Some(h) = next.filter(|h| !seen[h.index()]) {
+                seen[h.index()] = true;
+                curve.push(h);
+                // A border vertex starts at its border.
+                next = t.start(t.target(h));
+            }
+            if !curve.is_empty() {
+                loops.push(curve);
+            }
+        }
+        loops
+    }
+
+    /// The connected parts, in the order of their first triangles.
+    pub fn components(&self) -> Vec<Component> {
+        let t = &self.topology;
+        let mut part = vec![usize::MAX; t.face_slots()];
+        let mut components = Vec::new();
+        for start in t.faces() {
+            if part[start.index()] == usize::MAX {
+                part[start.index()] = components.len();
+                components.push(Component { faces: vec![start], euler_characteristic: 0, borders: 0 });
+                self.grow(&mut components, &mut part);
+            }
+        }
+        for v in t.vertices() {
+            let start = t.start(v).expect("a vertex of a face");
+            components[part[start.face().index()]].euler_characteristic += 1;
+        }
+        for h in t.edges() {
+            components[part[h.face().index()]].euler_characteristic -= 1;
+        }
+        for curve in self.border_loops() {
+            components[part[curve[0].face().index()]].borders += 1;
+        }
+        components
+    }
+
+    /// Adds all triangles that hang together with the first of the last component.
+    fn grow(&self, components: &mut [Component], part: &mut [usize]) {
+        let Some((component, before)) = components.split_last_mut() else { return };
+        let mut next = 0;
+        while let Some(&f) = component.faces.get(next) {
+            next += 1;
+            for other in f.half_edges().into_iter().filter_map(|h| self.topology.twin(h)).map(HalfEdge::face) {
+                if part[other.index()] == usize::MAX {
+                    part[other.index()] = before.len();
+                    component.faces.push(other);
+                }
+            }
+        }
+        component.euler_characteristic = component.faces.len().cast_signed();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::geometry::Vector3;
+    use crate::mesh::Mesh;
+    use crate::surface::Surface;
+    use crate::triangulation::VertexId;
+
+    /// A square ring of eight triangles in the plane, and a triangle apart.
+    fn ring_and_triangle() -> Surface {
+        let outer = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 3.0, 0.0], [0.0, 3.0, 0.0]];
+        let inner = [[1.0, 1.0, 0.0], [2.0, 1.0, 0.0], [2.0, 2.0, 0.0], [1.0, 2.0, 0.0]];
+        let apart = [[9.0, 0.0, 0.0], [9.0, 2.0, 0.0], [9.0, 0.0, 2.0]];
+        let ring = (0..4).flat_map(|i| {
+            let j = (i + 1) % 4;
+            [[i, j, 4 + j], [i, 4 + j, 4 + i]]
+        });
+        let triangles = ring.chain([[8, 9, 10]]).collect();
+        Surface::new(&Mesh { points: [&outer[..], &inner, &apart].concat(), triangles, ..Mesh::default() }).unwrap()
+    }
+
+    #[test]
+    fn components_and_borders() {
+        let surface = ring_and_triangle();
+        let found: Vec<_> = surface
+            .components()
+            .iter()
+            .map(|c| (c.faces.len(), c.euler_characteristic, c.borders, c.genus()))
+            .collect();
+        assert_eq!(found, [(8, 0, 2, 0), (1, 1, 1, 0)]);
+        assert_eq!(surface.euler_characteristic(), 1);
+        let loops = surface.border_loops();
+        assert_eq!(loops.iter().map(Vec::len).collect::<Vec<_>>(), [4, 4, 3]);
+        for curve in loops {
+            for (i, &h) in curve.iter().enumerate() {
+                let next = curve[(i + 1) % curve.len()];
+                assert_eq!(surface.topology().target(h), surface.topology().origin(next));
+            }
+        }
+    }
+
+    #[test]
+    fn sizes_and_normals() {
+        let surface = ring_and_triangle();
+        assert!((surface.area() - 10.0).abs() < 1e-14);
+        assert_eq!(surface.bounds().extent(), Vector3::new(9.0, 3.0, 2.0));
+        assert_eq!(surface.vertex_normal(VertexId(1)), Some(Vector3::new(0.0, 0.0, 1.0)));
+        assert_eq!(surface.vertex_normal(VertexId(9)), Some(Vector3::new(1.0, 0.0, 0.0)));
+    }
+}

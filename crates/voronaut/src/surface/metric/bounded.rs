@@ -1,0 +1,77 @@
+//! Limits on what a field says of tangents.
+
+use super::SurfaceMetric;
+use crate::error::Result;
+use crate::geometry::{TangentPlane, Tensor3};
+use crate::metric::Bounds;
+use crate::surface::Place;
+
+/// A field within [`Bounds`] in the tangent planes; what it says of the normal becomes the larger tangential eigenvalue
+/// where limits change it.
+#[derive(Clone, Debug)]
+pub struct Bounded<F> {
+    field: F,
+    bounds: Bounds,
+}
+
+impl<F: SurfaceMetric> Bounded<F> {
+    /// The field with its tangential parts clamped.
+    ///
+    /// # Errors
+    /// As [`Bounds::check`].
+    pub fn new(field: F, bounds: Bounds) -> Result<Self> {
+        bounds.check()?;
+        Ok(Self { field, bounds })
+    }
+}
+
+impl<F: SurfaceMetric> SurfaceMetric for Bounded<F> {
+    fn at(&self, place: &Place) -> Tensor3 {
+        let tensor = self.field.at(place);
+        let plane = TangentPlane::new(place.normal);
+        let tangential = plane.restrict(tensor);
+        let clamped = self.bounds.clamp(tangential);
+        if clamped == tangential { tensor } else { plane.extend(clamped, clamped.eigen().large) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::metric::Constant;
+    use crate::surface::sphere;
+
+    /// Thin along the normal, Euclidean in the plane.
+    struct Thin;
+
+    impl SurfaceMetric for Thin {
+        fn at(&self, place: &Place) -> Tensor3 {
+            Tensor3::IDENTITY + Tensor3::square(place.normal) * 1e6
+        }
+    }
+
+    #[test]
+    fn tangents_are_within_limits_and_normals_do_not_count() {
+        let bounds = Bounds { h_min: Some(0.1), h_max: Some(2.0), a_max: Some(5.0) };
+        let wild = Tensor3::from_disk([1e6, 0.0, 1e-6, 0.0, 0.0, 1.0]);
+        let field = Bounded::new(Constant(wild), bounds).unwrap();
+        let surface = sphere(1.0, 0.3).unwrap();
+        for f in surface.topology().faces() {
+            let place = surface.place(f, [0.2, 0.3, 0.5]);
+            let tangential = TangentPlane::new(place.normal).restrict(field.at(&place)).eigen();
+            let sizes = [tangential.large, tangential.small].map(|e| 1.0 / e.sqrt());
+            assert!(sizes[0] >= 0.1 - 1e-9 && sizes[1] <= 2.0 + 1e-9 && sizes[1] / sizes[0] <= 5.0 + 1e-9, "{sizes:?}");
+            assert!(field.at(&place).is_positive_definite());
+        }
+        // Thin along the normal only: within the limits in the plane, and left alone to the bit.
+        let field = Bounded::new(Thin, bounds).unwrap();
+        let place = surface.place_of(crate::triangulation::VertexId(5)).unwrap();
+        assert_eq!(field.at(&place), Thin.at(&place));
+    }
+
+    #[test]
+    fn senseless_limits_are_named() {
+        let bounds = Bounds { h_min: Some(-1.0), ..Bounds::default() };
+        assert!(Bounded::new(Constant(Tensor3::IDENTITY), bounds).unwrap_err().to_string().contains("h_min = -1"));
+    }
+}

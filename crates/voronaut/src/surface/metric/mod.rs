@@ -1,0 +1,78 @@
+//! Metric fields on surfaces: a symmetric positive definite tensor of space at every place of a surface, of which edges
+//! see the part in the tangent plane.
+//!
+//! | field | as a METRIC | what it is |
+//! |---|---|---|
+//! | [`Constant`] | `uniform` | the surface's own lengths |
+//! | [`Shock`] | `shock:phi=10,lambda=0.6` | thin across the shock of RR-9103, 15.2, in space |
+//! | [`SpaceFormula`] | `formula:m11; m12; m22; m13; m23; m33` | six expressions in x, y, z |
+//! | [`ImplicitCurvature`] | `curvature`, of an equation | principal curvatures, exact (RR-9103, 15.1) |
+//! | [`Sampled`] | `curvature`, of a file | principal curvatures at vertices, fitted ([`fit_curvatures`]) |
+//! | [`Sampled`] | `FILE.sol` | tensors or sizes at vertices, log-Euclidean between them |
+//! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits, in the tangent plane |
+//!
+//! [`Spec`] reads the second column, [`field`] makes the field; [`check_tensor3`] tells whether a value is a metric.
+
+mod bounded;
+mod curvature;
+mod fit;
+mod sampled;
+mod spec;
+mod validate;
+
+pub use bounded::Bounded;
+pub use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
+pub use fit::fit_curvatures;
+pub use sampled::Sampled;
+pub use spec::{Spec, field};
+pub use validate::check_tensor3;
+
+use super::Place;
+use crate::geometry::{Point, Point3, Tensor3};
+use crate::metric::{MetricField, Shock, SpaceFormula};
+
+/// A Riemannian metric field on a surface.
+///
+/// The contract: `at` is a pure function of the place and returns a positive definite tensor in units of 1 / length^2.
+/// Whatever it says of the normal direction, no edge sees it.
+pub trait SurfaceMetric: Sync {
+    /// The tensor at a place.
+    fn at(&self, place: &Place) -> Tensor3;
+}
+
+/// Fields of space are fields on every surface.
+impl<F: Fn(Point3) -> Tensor3 + Sync> SurfaceMetric for F {
+    fn at(&self, place: &Place) -> Tensor3 {
+        self(place.position)
+    }
+}
+
+impl SurfaceMetric for Box<dyn SurfaceMetric + '_> {
+    fn at(&self, place: &Place) -> Tensor3 {
+        (**self).at(place)
+    }
+}
+
+/// The same tensor everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant(pub Tensor3);
+
+impl SurfaceMetric for Constant {
+    fn at(&self, _place: &Place) -> Tensor3 {
+        self.0
+    }
+}
+
+/// E does not depend on z: F = U diag(1 + phi |grad E|, 1, 1) U' has the planar field in its upper left corner.
+impl SurfaceMetric for Shock {
+    fn at(&self, place: &Place) -> Tensor3 {
+        let planar = MetricField::at(self, Point::new(place.position.x, place.position.y));
+        Tensor3 { xx: planar.xx, xy: planar.xy, yy: planar.yy, ..Tensor3::IDENTITY }
+    }
+}
+
+impl SurfaceMetric for SpaceFormula {
+    fn at(&self, place: &Place) -> Tensor3 {
+        self.tensor(place.position)
+    }
+}

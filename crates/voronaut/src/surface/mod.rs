@@ -1,0 +1,114 @@
+//! Surfaces of triangles in space, closed or with borders, of any genus: validated once and for all.
+//!
+//! | module | what it is |
+//! |---|---|
+//! | `build`, `orient` | from an indexed list of triangles to a [`Surface`], or what is wrong and where |
+//! | `measure` | area, normals, Euler characteristic, components, borders |
+//! | `nearest` | the closest point of a surface |
+//! | `implicit`, `march` | surfaces f(x, y, z) = 0: derivatives, projection, a first mesh by marching tetrahedra |
+//! | `shapes`, `read` | spheres, tori, files: what users write for a surface |
+//! | [`metric`] | metric fields on surfaces, curvature among them |
+
+mod build;
+mod implicit;
+mod march;
+mod measure;
+pub mod metric;
+mod nearest;
+mod orient;
+mod read;
+mod shapes;
+mod tetrahedra;
+
+pub use implicit::{Curvatures, Implicit, curvatures, project};
+pub use march::mesh_implicit;
+pub use measure::Component;
+pub use nearest::{Closest, Nearest};
+pub use read::{Input, read};
+pub use shapes::{chair, sphere, torus};
+
+use crate::geometry::{Point3, Vector3};
+use crate::triangulation::{Constraint, FaceId, Triangulation, VertexId};
+
+/// A surface of triangles: every edge has one triangle or two, the triangles around a vertex form one fan, neighbours
+/// turn the same way, and no triangle is without area.
+///
+/// Vertices have the numbers of the input; those of no triangle belong to nothing. Regions are the labels of triangles,
+/// constraint i of the topology is edge i of the input's list. Lengths of edges are not known to the topology.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    topology: Triangulation,
+    positions: Vec<Point3>,
+    point_labels: Vec<i32>,
+    edge_labels: Vec<i32>,
+    required_points: Vec<VertexId>,
+    turned: usize,
+}
+
+/// A point of a surface, and where on it that is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Where it is in space.
+    pub position: Point3,
+    /// The triangle that holds it.
+    pub face: FaceId,
+    /// Its barycentric coordinates there; their sum is one.
+    pub weights: [f64; 3],
+    /// The triangle's unit normal.
+    pub normal: Vector3,
+}
+
+impl Surface {
+    /// The triangles and how they hang together.
+    pub fn topology(&self) -> &Triangulation {
+        &self.topology
+    }
+
+    /// Positions, one per vertex slot.
+    pub fn positions(&self) -> &[Point3] {
+        &self.positions
+    }
+
+    /// Where a vertex is.
+    pub fn position(&self, v: VertexId) -> Point3 {
+        self.positions[v.index()]
+    }
+
+    /// One label per vertex slot; 0 for none.
+    pub fn point_labels(&self) -> &[i32] {
+        &self.point_labels
+    }
+
+    /// The label of a fixed edge.
+    pub fn edge_label(&self, constraint: Constraint) -> i32 {
+        self.edge_labels[constraint.0 as usize]
+    }
+
+    /// Vertices that the input marks as corners or as required, in order.
+    pub fn required_points(&self) -> &[VertexId] {
+        &self.required_points
+    }
+
+    /// How many triangles of the input were turned so that all neighbours agree.
+    pub fn turned(&self) -> usize {
+        self.turned
+    }
+
+    /// The corners of a triangle.
+    pub fn triangle(&self, f: FaceId) -> [Point3; 3] {
+        self.topology.corners(f).map(|v| self.position(v))
+    }
+
+    /// The place with these barycentric coordinates in a triangle.
+    pub fn place(&self, face: FaceId, weights: [f64; 3]) -> Place {
+        Place { position: Point3::weighted(self.triangle(face), weights), face, weights, normal: self.normal(face) }
+    }
+
+    /// A vertex as a place: a corner of one of its triangles. `None` of a vertex without triangles.
+    pub fn place_of(&self, v: VertexId) -> Option<Place> {
+        let h = self.topology.start(v)?;
+        let mut weights = [0.0; 3];
+        weights[h.index() % 3] = 1.0;
+        Some(Place { position: self.position(v), ..self.place(h.face(), weights) })
+    }
+}

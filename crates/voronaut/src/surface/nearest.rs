@@ -1,0 +1,138 @@
+//! The closest point of a surface.
+
+use super::{Place, Surface};
+use crate::geometry::{Aabb3, Point3};
+use crate::triangulation::FaceId;
+use rstar::{AABB, PointDistance, RTree, RTreeObject};
+
+/// The triangles of a surface in a tree of boxes: one search costs about the logarithm of their number.
+#[derive(Clone, Debug)]
+pub struct Nearest {
+    tree: RTree<Triangle>,
+}
+
+/// What of a surface is closest to a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closest {
+    /// The closest point, and where on the surface it is.
+    pub place: Place,
+    /// Its distance.
+    pub distance: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Triangle {
+    corners: [Point3; 3],
+    face: FaceId,
+}
+
+impl Nearest {
+    /// Puts all triangles of a surface into a tree.
+    pub fn new(surface: &Surface) -> Self {
+        let triangles = surface.topology().faces().map(|face| Triangle { corners: surface.triangle(face), face });
+        Self { tree: RTree::bulk_load(triangles.collect()) }
+    }
+
+    /// The point of the surface that is closest to `p`; of several, one. `surface` is the one the tree was made of.
+    /// `None` where `p` is not finite.
+    pub fn closest(&self, surface: &Surface, p: Point3) -> Option<Closest> {
+        if !p.is_finite() {
+            return None;
+        }
+        let found = self.tree.nearest_neighbor(p.to_array())?;
+        let place = surface.place(found.face, closest_weights(found.corners, p));
+        Some(Closest { place, distance: place.position.distance(p) })
+    }
+}
+
+impl RTreeObject for Triangle {
+    type Envelope = AABB<[f64; 3]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        let bounds = Aabb3::of(self.corners).expect("three corners");
+        AABB::from_corners(bounds.min.to_array(), bounds.max.to_array())
+    }
+}
+
+impl PointDistance for Triangle {
+    fn distance_2(&self, &p: &[f64; 3]) -> f64 {
+        let p = Point3::from(p);
+        let offset = Point3::weighted(self.corners, closest_weights(self.corners, p)) - p;
+        offset.dot(offset)
+    }
+}
+
+/// Barycentric coordinates of the point of a triangle that is closest to `p`.
+fn closest_weights([a, b, c]: [Point3; 3], p: Point3) -> [f64; 3] {
+    let normal = (b - a).cross(c - a);
+    let part = |q: Point3, r: Point3| normal.dot((q - p).cross(r - p));
+    let parts = [part(b, c), part(c, a), part(a, b)];
+    let total = normal.dot(normal);
+    if total > 0.0 && parts.iter().all(|&part| part >= 0.0) {
+        let [_, s, t] = parts.map(|part| part / total);
+        return [1.0 - s - t, s, t];
+    }
+    let on_side = |(i, [start, end]): (usize, [Point3; 2])| {
+        let (along, offset) = (end - start, p - start);
+        let square = along.dot(along);
+        let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let rest = offset - along * t;
+        let mut weights = [0.0; 3];
+        (weights[i], weights[(i + 1) % 3]) = (1.0 - t, t);
+        (rest.dot(rest), weights)
+    };
+    let sides = [[a, b], [b, c], [c, a]].into_iter().enumerate().map(on_side);
+    sides.min_by(|a, b| a.0.total_cmp(&b.0)).map_or([1.0, 0.0, 0.0], |(_, weights)| weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::torus;
+    use proptest::prelude::*;
+
+    /// Distance to a triangle by narrowing both of its coordinates: slow, simple, and of other arithmetic.
+    fn by_narrowing([a, b, c]: [Point3; 3], p: Point3) -> f64 {
+        fn least(most: f64, f: &dyn Fn(f64) -> f64) -> f64 {
+            let (mut low, mut high) = (0.0, most);
+            for _ in 0..100 {
+                let (s, t) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+                if f(s) < f(t) { high = t } else { low = s }
+            }
+            f(0.5 * (low + high))
+        }
+        // Convex in both together, and so is what is left of it when one is chosen best.
+        least(1.0, &|u| least(1.0 - u, &|v| (a + (b - a) * u + (c - a) * v).distance(p)))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn distance_to_one_triangle(q in prop::array::uniform12(-1.0..1.0)) {
+            let [a, b, c, p] = [0, 3, 6, 9].map(|i| Point3::new(q[i], q[i + 1], q[i + 2]));
+            let distance = Point3::weighted([a, b, c], closest_weights([a, b, c], p)).distance(p);
+            prop_assert!((distance - by_narrowing([a, b, c], p)).abs() < 1e-7, "{distance}");
+        }
+
+        #[test]
+        fn the_tree_finds_what_a_loop_finds(x in -4.0..4.0, y in -4.0..4.0, z in -2.0..2.0) {
+            let surface = torus(2.0, 0.7, 0.8).unwrap();
+            let p = Point3::new(x, y, z);
+            let truth = surface.topology().faces().map(|f| {
+                let corners = surface.triangle(f);
+                Point3::weighted(corners, closest_weights(corners, p)).distance(p)
+            });
+            let truth = truth.fold(f64::INFINITY, f64::min);
+            let found = Nearest::new(&surface).closest(&surface, p).unwrap();
+            prop_assert!((found.distance - truth).abs() < 1e-13);
+            prop_assert!((found.place.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            prop_assert!(found.place.weights.iter().all(|&w| w >= -1e-14));
+        }
+    }
+
+    #[test]
+    fn places_that_are_not_finite_have_no_closest_point() {
+        let surface = torus(2.0, 0.7, 0.8).unwrap();
+        assert_eq!(Nearest::new(&surface).closest(&surface, Point3::new(f64::NAN, 0.0, 0.0)), None);
+    }
+}

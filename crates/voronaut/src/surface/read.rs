@@ -1,0 +1,220 @@
+//! A surface from what the user writes for it: a shape, an equation, or a file.
+
+use super::shapes::{CHAIR, chair, sphere, torus};
+use super::{Surface, mesh_implicit};
+use crate::domain::{read_bytes, read_numbers, read_text};
+use crate::error::{Error, Result};
+use crate::formats::{medit, obj, off, ply, stl};
+use crate::geometry::{Aabb3, Point3};
+use crate::metric::{Expression, Variables};
+use std::path::Path;
+
+/// A surface as it was given.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// Its triangles.
+    pub surface: Surface,
+    /// Its equation f = 0, if it has one: then vertices are on it, and curvatures are exact.
+    pub implicit: Option<Expression>,
+}
+
+/// Edges of shapes are this part of their diagonal, unless told otherwise.
+const DEFAULT_EDGE: f64 = 1.0 / 64.0;
+
+/// Reads a surface: `sphere:r`, `torus:R,r`, `chair`, `implicit:EXPR;x0,y0,z0,x1,y1,z1`, or a file `.obj`, `.off`, `.ply`,
+/// `.stl` or `.mesh`. `edge` is the length of the edges of what is not a file, about.
+///
+/// # Errors
+/// [`Error::Io`] of a file that cannot be read; [`Error::Parse`] of a text that is not what its format asks for;
+/// [`Error::Domain`] of what makes no surface; [`Error::Limit`] of too many triangles.
+pub fn read(spec: &str, edge: Option<f64>) -> Result<Input> {
+    let (name, rest) = spec.split_once(':').map_or((spec, None), |(name, rest)| (name, Some(rest)));
+    match (name.trim(), rest) {
+        ("sphere", Some(numbers)) => {
+            let [r] = read_numbers(spec, numbers, "sphere:r")?;
+            let surface = sphere(r, edge.unwrap_or(12.0_f64.sqrt() * r * DEFAULT_EDGE))?;
+            with_equation(surface, &format!("x^2+y^2+z^2-{r:e}^2"))
+        }
+        ("torus", Some(numbers)) => {
+            let [ring, tube] = read_numbers(spec, numbers, "torus:R,r")?;
+            let size = (ring + tube).hypot(ring + tube).hypot(tube) * 2.0;
+            let surface = torus(ring, tube, edge.unwrap_or(size * DEFAULT_EDGE))?;
+            with_equation(surface, &format!("(sqrt(x^2+y^2)-{ring:e})^2+z^2-{tube:e}^2"))
+        }
+        ("chair", None) => with_equation(chair(edge)?, CHAIR),
+        ("implicit", Some(rest)) => read_implicit(spec, rest, edge),
+        _ => Ok(Input { surface: read_file(spec)?, implicit: None }),
+    }
+}
+
+fn with_equation(surface: Surface, equation: &str) -> Result<Input> {
+    Ok(Input { surface, implicit: Some(Expression::parse(equation, Variables::Space)?) })
+}
+
+fn read_implicit(spec: &str, rest: &str, edge: Option<f64>) -> Result<Input> {
+    const USAGE: &str = "implicit:EXPR;x0,y0,z0,x1,y1,z1";
+    let Some((equation, numbers)) = rest.rsplit_once(';') else {
+        return Err(Error::parse(spec, "an equation without its box", format!("write {USAGE}")));
+    };
+    let f = Expression::parse(equation, Variables::Space)?;
+    let [x0, y0, z0, x1, y1, z1] = read_numbers(spec, numbers, USAGE)?;
+    let bounds = Aabb3 { min: Point3::new(x0, y0, z0), max: Point3::new(x1, y1, z1) };
+    Ok(Input { surface: mesh_implicit(&f, bounds, edge)?, implicit: Some(f) })
+}
+
+fn read_file(spec: &str) -> Result<Surface> {
+    let path = Path::new(spec);
+    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    let mesh = match ending.as_deref() {
+        Some("obj") => obj::read(&read_text(path)?, spec)?,
+        Some("off") => off::read(&read_text(path)?, spec)?,
+        Some("ply") => ply::read(&read_bytes(path)?, spec)?,
+        Some("stl") => stl::read(&read_bytes(path)?, spec)?,
+        Some("mesh") => medit::read(&read_text(path)?, spec)?,
+        _ => {
+            let help = "give sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a file .obj, .off, .ply, \
+                        .stl or .mesh";
+            return Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", help));
+        }
+    };
+    Surface::new(&mesh).map_err(|error| match error {
+        Error::Domain { what, place, help } => Error::Domain { what, place: format!("{spec}, {place}"), help },
+        other => other,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::Implicit;
+    use proptest::prelude::*;
+    use std::io::Write;
+
+    fn data(name: &str) -> String {
+        format!("{}/../../data/{name}", env!("CARGO_MANIFEST_DIR"))
+    }
+
+    #[test]
+    fn spot_and_bob() {
+        let spot = read(&data("spot.obj"), None).unwrap().surface;
+        let components = spot.components();
+        assert_eq!((spot.positions().len(), components.len()), (2930, 1));
+        assert_eq!((components[0].genus(), components[0].borders, spot.turned()), (0, 0, 0));
+        let bob = read(&data("bob_small.obj"), None).unwrap().surface;
+        let components = bob.components();
+        assert_eq!((bob.positions().len(), components.len()), (250, 1));
+        assert_eq!((components[0].genus(), components[0].borders, bob.turned()), (1, 0, 0));
+    }
+
+    #[test]
+    fn shapes_lie_on_their_equations() {
+        for (spec, genus) in [("sphere:2", 0), ("torus: 2, 0.5", 1), ("implicit:x^2+y^2+2*z^2-1;-2,-2,-2,2,2,2", 0)] {
+            let Input { surface, implicit } = read(spec, None).unwrap();
+            let f = implicit.unwrap();
+            let components = surface.components();
+            assert_eq!((components.len(), components[0].genus()), (1, genus), "{spec}");
+            let size = surface.bounds().diagonal();
+            for &p in surface.positions() {
+                let jet = Implicit::jet(&f, p);
+                assert!(jet.value.abs() < 1e-11 * size * jet.gradient.norm(), "{spec}: {p}");
+            }
+            let edges: Vec<_> = surface.topology().edges().collect();
+            assert!((1_000..100_000).contains(&edges.len()), "{spec}: {}", edges.len());
+        }
+    }
+
+    #[test]
+    fn files_by_their_endings() {
+        let text = "OFF 4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+        let mut file = tempfile::Builder::new().suffix(".OFF").tempfile().unwrap();
+        file.write_all(text.as_bytes()).unwrap();
+        assert_eq!(read(file.path().to_str().unwrap(), None).unwrap().surface.euler_characteristic(), 2);
+        let mut file = tempfile::Builder::new().suffix(".obj").tempfile().unwrap();
+        file.write_all(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n").unwrap();
+        let path = file.path().to_str().unwrap();
+        let error = read(path, None).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            format!("invalid domain: triangles 1 and 2 have the same vertices at {path}, vertex 1 (0, 0, 0)")
+        );
+    }
+
+    #[test]
+    fn bad_specifications() {
+        for (spec, expected) in [
+            ("sphere:1,2", "sphere:1,2: 2 numbers where 1 are expected"),
+            ("sphere:x", "sphere:x: 'x' is not a number"),
+            ("sphere:-1", "invalid domain: a sphere whose radii"),
+            ("torus:1,2", "invalid domain: a torus whose tube meets itself"),
+            ("sphere", "sphere: neither a shape nor a file"),
+            ("chair:1", "chair:1: neither a shape nor a file"),
+            ("implicit:x", "implicit:x: an equation without its box"),
+            ("implicit:x+;0,0,0,1,1,1", "expression, column 3: a value was expected"),
+            ("implicit:x;0,0,0,1,1", "implicit:x;0,0,0,1,1: 5 numbers where 6 are expected"),
+            ("implicit:x;0,0,0,0,1,1", "invalid domain: an empty box at (0, 0, 0) - (0, 1, 1)"),
+            ("no/such/file.stl", "no/such/file.stl: "),
+        ] {
+            let error = read(spec, None).unwrap_err();
+            assert!(error.to_string().starts_with(expected), "{error}");
+            assert!(!error.help().is_empty());
+        }
+    }
+
+    /// Words that surface files may hold, in any order, behind a beginning that makes sense.
+    fn soup() -> impl Strategy<Value = String> {
+        let words = [
+            "0",
+            "1",
+            "2",
+            "3",
+            "-1",
+            "0.5",
+            "1e308",
+            "9999999999999999999",
+            "nan",
+            "\n",
+            "#",
+            "v 0 0 1\n",
+            "f 1 2 3\n",
+            "f 1/2/3 -1",
+            "l 1 2",
+            "3 0 1 2\n",
+            "3 2 1 3\n",
+            "facet normal 0 0 1 outer loop",
+            "vertex 1 0 0",
+            "vertex 0 1 1",
+            "vertex 0 0 0",
+            "endloop endfacet\n",
+            "endsolid",
+            "element face 2\n",
+            "property float x\n",
+            "property list uchar int vertex_indices\n",
+            "end_header\n",
+            "\u{e9}",
+        ];
+        let opening = prop::sample::select(vec![
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n",
+            "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n",
+            "solid a\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n",
+            "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty int x\nproperty char y\nproperty short z\n",
+            "",
+        ]);
+        let rest = prop::collection::vec(prop::sample::select(words.to_vec()), 0..24);
+        (opening, rest).prop_map(|(opening, rest)| opening.to_owned() + &rest.join(" "))
+    }
+
+    proptest! {
+        #[test]
+        fn no_file_makes_a_reader_panic(text in soup()) {
+            let bytes = text.as_bytes();
+            let found = [obj::read(&text, "a"), off::read(&text, "a"), ply::read(bytes, "a"), stl::read(bytes, "a")];
+            for surface in found.into_iter().flatten().filter_map(|mesh| Surface::new(&mesh).ok()) {
+                prop_assert!(surface.topology().check().is_ok());
+                prop_assert!(surface.components().iter().all(|c| c.genus() >= 0));
+                let fitted = crate::surface::metric::fit_curvatures(&surface);
+                prop_assert!(fitted.iter().flatten().all(|c| c.values.iter().all(|value| !value.is_nan())));
+            }
+        }
+    }
+}

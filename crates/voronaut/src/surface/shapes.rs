@@ -1,0 +1,215 @@
+//! Surfaces that need no file.
+
+use super::{Surface, mesh_implicit};
+use crate::error::{Error, Result};
+use crate::geometry::{Aabb3, Point3, Vector3};
+use crate::mesh::Mesh;
+use crate::metric::{Expression, Variables};
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+/// The chair of RR-9103 with k = 5, a = 0.95, b = 0.8: (x^2 + y^2 + z^2 - a k^2)^2 -
+/// b ((z - k)^2 - 2 x^2) ((z + k)^2 - 2 y^2).
+pub(super) const CHAIR: &str = "(x^2+y^2+z^2-0.95*5^2)^2 - 0.8*((z-5)^2-2*x^2)*((z+5)^2-2*y^2)";
+
+/// Half the side of a box around the chair.
+const CHAIR_BOX: f64 = 6.0;
+
+/// More vertices than this no shape is made of.
+const MOST_VERTICES: f64 = 5e7;
+
+/// The sphere around the origin: an icosahedron whose triangles are cut into four, and their vertices pushed onto the
+/// sphere, until no edge is longer than `edge`.
+///
+/// # Errors
+/// [`Error::Domain`] unless radius and edge length are positive and finite; [`Error::Limit`] of too many vertices.
+pub fn sphere(radius: f64, edge: f64) -> Result<Surface> {
+    check("sphere", &[radius, edge])?;
+    check_count(4.0 * TAU * (radius / edge).powi(2))?;
+    let (mut points, mut triangles) = icosahedron();
+    let longest = |points: &[Vector3], triangles: &[[u32; 3]]| {
+        let edges = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        edges.map(|[a, b]| (points[a as usize] - points[b as usize]).norm()).fold(0.0, f64::max)
+    };
+    while longest(&points, &triangles) * radius > edge {
+        triangles = halve(&mut points, &triangles);
+    }
+    let points = points.into_iter().map(|v| (Point3::default() + v * radius).to_array()).collect();
+    Surface::new(&Mesh { points, triangle_labels: vec![1; triangles.len()], triangles, ..Mesh::default() })
+}
+
+/// The torus around the z axis: a tube of radius `tube` along a circle of radius `ring`, as a grid in its two angles with
+/// edges of about `edge`; vertices are on it.
+///
+/// # Errors
+/// [`Error::Domain`] unless all are positive and finite and the tube thinner than the ring; [`Error::Limit`] of too many
+/// vertices.
+pub fn torus(ring: f64, tube: f64, edge: f64) -> Result<Surface> {
+    check("torus", &[ring, tube, edge])?;
+    if tube >= ring {
+        let place = format!("torus:{ring},{tube}");
+        return Err(Error::domain(
+            "a torus whose tube meets itself",
+            place,
+            "give R > r: first the ring, then the tube",
+        ));
+    }
+    let around = |radius: f64| (TAU * radius / edge).ceil().max(3.0);
+    let (long, short) = (around(ring + tube), around(tube));
+    check_count(long * short)?;
+    let (long, short) = (long as u32, short as u32);
+    let at = |i: u32, j: u32| {
+        // Every other row is shifted by half a step: triangles come out nearly equilateral.
+        let shift = 0.5 * f64::from(j % 2);
+        let (sin_u, cos_u) = (TAU * (f64::from(i) + shift) / f64::from(long)).sin_cos();
+        let (sin_v, cos_v) = (TAU * f64::from(j) / f64::from(short)).sin_cos();
+        let r = ring + tube * cos_v;
+        [r * cos_u, r * sin_u, tube * sin_v]
+    };
+    let number = |i: u32, j: u32| i % long + j % short * long;
+    let cell = |(i, j): (u32, u32)| {
+        let [a, b, c, d] = [number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)];
+        // The shifted row above lies half a step ahead; above a shifted row the next lies behind, but for the seam.
+        if j % 2 == 0 { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }
+    };
+    let cells = (0..short).flat_map(|j| (0..long).map(move |i| (i, j)));
+    let triangles: Vec<[u32; 3]> = cells.flat_map(cell).collect();
+    let points = (0..short).flat_map(|j| (0..long).map(move |i| at(i, j))).collect();
+    Surface::new(&Mesh { points, triangle_labels: vec![1; triangles.len()], triangles, ..Mesh::default() })
+}
+
+/// The chair of RR-9103, k = 5, a = 0.95, b = 0.8, with edges of about `edge` (by default a 64th of 12).
+///
+/// # Errors
+/// As for [`mesh_implicit`].
+pub fn chair(edge: Option<f64>) -> Result<Surface> {
+    let corner = |s: f64| Point3::new(s, s, s);
+    let f = Expression::parse(CHAIR, Variables::Space)?;
+    mesh_implicit(&f, Aabb3 { min: corner(-CHAIR_BOX), max: corner(CHAIR_BOX) }, edge)
+}
+
+fn check(name: &str, lengths: &[f64]) -> Result<()> {
+    if lengths.iter().all(|length| *length > 0.0 && length.is_finite()) {
+        return Ok(());
+    }
+    let what = format!("a {name} whose radii and edge length are not all positive and finite");
+    let given: Vec<String> = lengths.iter().map(f64::to_string).collect();
+    Err(Error::domain(what, given.join(", "), "give positive, finite numbers"))
+}
+
+fn check_count(needed: f64) -> Result<()> {
+    if needed <= MOST_VERTICES {
+        return Ok(());
+    }
+    let what = format!("about {needed:.0} vertices for the shape; at most {MOST_VERTICES:.0}");
+    Err(Error::Limit { what, help: "ask for longer edges".into() })
+}
+
+fn icosahedron() -> (Vec<Vector3>, Vec<[u32; 3]>) {
+    let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
+    let mut points = Vec::new();
+    for (s, t) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
+        points.extend([Vector3::new(s, t, 0.0), Vector3::new(0.0, s, t), Vector3::new(t, 0.0, s)]);
+    }
+    let points: Vec<Vector3> = points.into_iter().map(|v| v * (1.0 / golden.hypot(1.0))).collect();
+    // Neighbours are those nearer than a right angle.
+    let near = |a: usize, b: usize| points[a].dot(points[b]) > 0.0;
+    let mut triangles = Vec::new();
+    for a in 0..12 {
+        for b in (a + 1..12).filter(|&b| near(a, b)) {
+            for c in (b + 1..12).filter(|&c| near(a, c) && near(b, c)) {
+                let outward = (points[b] - points[a]).cross(points[c] - points[a]).dot(points[a]) > 0.0;
+                triangles.push(if outward { [a, b, c] } else { [a, c, b] }.map(|v| v as u32));
+            }
+        }
+    }
+    (points, triangles)
+}
+
+/// Every triangle as four, with the middles of edges pushed onto the unit sphere.
+fn halve(points: &mut Vec<Vector3>, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut middles: HashMap<[u32; 2], u32> = HashMap::new();
+    let mut middle = |a: u32, b: u32| {
+        *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+            let sum = points[a as usize] + points[b as usize];
+            points.push(sum * (1.0 / sum.norm()));
+            points.len() as u32 - 1
+        })
+    };
+    let four = |&[a, b, c]: &[u32; 3]| {
+        let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    };
+    triangles.iter().flat_map(four).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::Implicit;
+
+    #[test]
+    fn spheres_are_round_and_closed() {
+        for (radius, edge, count) in [(1.0, 2.0, 12), (3.0, 1.0, 162), (3.0, 0.9, 642), (1e-6, 3.5e-7, 162)] {
+            let surface = sphere(radius, edge).unwrap();
+            assert_eq!(surface.positions().len(), count);
+            assert_eq!((surface.euler_characteristic(), surface.border_loops().len(), surface.turned()), (2, 0, 0));
+            for &p in surface.positions() {
+                assert!(((p - Point3::default()).norm() / radius - 1.0).abs() < 1e-15);
+            }
+            assert!(
+                surface
+                    .topology()
+                    .faces()
+                    .all(|f| surface.normal(f).dot(surface.triangle(f)[0] - Point3::default()) > 0.0)
+            );
+        }
+    }
+
+    #[test]
+    fn tori_are_on_their_equation_and_closed() {
+        for (ring, tube, edge) in [(2.0, 0.7, 0.3), (2.0, 0.7, 0.1), (5.0, 0.1, 1.0), (1.0, 0.99, 0.2)] {
+            let surface = torus(ring, tube, edge).unwrap();
+            assert_eq!((surface.euler_characteristic(), surface.border_loops().len(), surface.turned()), (0, 0, 0));
+            assert_eq!(surface.components().iter().map(super::super::Component::genus).collect::<Vec<_>>(), [1]);
+            for p in surface.positions() {
+                assert!(((p.x.hypot(p.y) - ring).hypot(p.z) / tube - 1.0).abs() < 1e-12);
+            }
+            for f in surface.topology().faces() {
+                let [a, ..] = surface.triangle(f);
+                let middle = Point3::new(a.x, a.y, 0.0);
+                let scale = ring / (middle - Point3::default()).norm();
+                let centre = Point3::new(middle.x * scale, middle.y * scale, 0.0);
+                assert!(edge > tube || surface.normal(f).dot(a - centre) > 0.0, "normals point out");
+            }
+        }
+    }
+
+    #[test]
+    fn the_chair_is_closed_smooth_and_in_its_box() {
+        let surface = chair(None).unwrap();
+        let components = surface.components();
+        assert_eq!((components.len(), components[0].euler_characteristic, components[0].borders), (1, -4, 0));
+        // The same on a finer grid: nothing is lost between grid points.
+        assert_eq!(chair(Some(0.1)).unwrap().euler_characteristic(), -4);
+        let f = Expression::parse(CHAIR, Variables::Space).unwrap();
+        let slopes = surface.positions().iter().map(|&p| Implicit::jet(&f, p).gradient.norm());
+        let least = slopes.fold(f64::INFINITY, f64::min);
+        assert!(least > 1.0, "smooth: {least}");
+        let bounds = surface.bounds();
+        assert!([bounds.min, bounds.max].iter().flat_map(|p| p.to_array()).all(|x| x.abs() < 5.9), "{bounds:?}");
+    }
+
+    #[test]
+    fn senseless_sizes_are_named() {
+        for (error, expected) in [
+            (sphere(-1.0, 1.0).unwrap_err(), "a sphere whose radii and edge length are not all positive"),
+            (sphere(1.0, 1e-9).unwrap_err(), "limit exceeded: about"),
+            (torus(1.0, 2.0, 0.1).unwrap_err(), "a torus whose tube meets itself at torus:1,2"),
+            (torus(1.0, f64::NAN, 0.1).unwrap_err(), "a torus whose radii and edge length are not all positive"),
+        ] {
+            assert!(error.to_string().contains(expected), "{error}");
+            assert!(!error.help().is_empty());
+        }
+    }
+}
