@@ -86,7 +86,9 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
         report.seconds.stages.iter().for_each(|(name, time)| line(name, format!("{time:.2} s")));
     }
     if let Some(certificate) = &report.certificate {
-        certify::lines(certificate).into_iter().for_each(|(name, value)| line(&name, value));
+        for (name, value) in certify::lines(certificate) {
+            line(&name, value);
+        }
     }
     let memory = report.peak_memory_bytes.map(|bytes| format!(", {} MB at most", bytes / 1_000_000));
     line("time", format!("{:.2} s{}", report.seconds.total, memory.unwrap_or_default()));

@@ -184,13 +184,13 @@ fn turning(scale: f64) -> impl Fn(Point) -> Tensor + Sync {
 
 #[test]
 fn a_protected_net_passes_in_a_turning_metric_and_says_what_it_takes() {
+    use Outcome::{Fails, Holds};
     let (square, field) = (Domain::read("rect:0,0,1,1").unwrap(), turning(26.0));
     let map = Map([26.0 * 1.5_f64.sqrt(), 0.0, 26.0]);
     let seeds = lattice(map, 0.02, &mut Random(5));
     let canvas = Canvas::intrinsic(&square, &field, 30_000).unwrap();
     let found = varied(&field, &seeds, &canvas);
     let certificate = &found.certificate;
-    use Outcome::{Fails, Holds};
     let wanted = [("9.1", Fails), ("9.9", Fails), ("9.10", Holds), ("9.4", Holds), ("10.20", Holds), ("11.2", Holds)];
     assert_eq!(outcomes(certificate), wanted, "{:?}", certificate.verdicts);
     assert!(found.raw == found.exact && found.exact.len() > 100);

@@ -133,7 +133,9 @@ impl Certificate {
     }
 
     fn of(evidence: &Evidence, coverage: &Coverage, walks: Walks, mut cells: Vec<Cell>, area: Area) -> Self {
-        cells.iter_mut().for_each(|cell| cell.factor = factor(cell, evidence));
+        for cell in &mut cells {
+            cell.factor = factor(cell, evidence);
+        }
         let verdicts = verdicts(evidence);
         let asked_size = verdicts.iter().find(|verdict| verdict.theorem == "9.4").and_then(|verdict| verdict.size);
         let covered = coverage.count();

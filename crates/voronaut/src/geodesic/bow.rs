@@ -1,6 +1,6 @@
 //! The length of a short geodesic by its one leading mode of bending.
 
-use super::length::GAUSS;
+use super::length::{GAUSS, chord, relaxed_length};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 
@@ -8,11 +8,17 @@ use crate::metric::MetricField;
 const TRIAL: f64 = 0.1;
 /// Beyond this bow the one mode does not tell the path.
 const FAR: f64 = 0.3;
-/// Where tensors are not interpolated paths of one mode are trusted up to this bow,
+/// Segments of the path that serves then.
+const SEGMENTS: usize = 8;
+/// Its energy is minimised until a step gains no more than this share.
+const SETTLED: f64 = 1e-4;
+/// Where the tensors around a chord give it lengths that differ by this factor the best bow is searched, too,
+const UNLIKE: f64 = 1.2;
+/// and the path halved at its top unless it is no more than this,
 const NEAR: f64 = 0.1;
-/// and where what the best bow saves is what was foreseen, but for this share of the length;
+/// and saves what was foreseen, but for this share of the length;
 const FORESEEN: f64 = 5e-4;
-/// else the path is halved, so often at most.
+/// so often at most.
 const HALVINGS: u32 = 5;
 /// The longest step from one bow to the next.
 const LONGEST: f64 = 4.0;
@@ -25,57 +31,66 @@ const STEADY: f64 = 0.25;
 
 /// Length of the geodesic p-q: the least length of the parabolas through p and q, by quadrature on three of them and on
 /// the best of the parabola through their lengths. To second order in the length geodesics are parabolas; where the best
-/// one bows out far, its top divides the path in two, and so on. It asks nothing of the field's derivatives: kinks do no
-/// harm.
+/// one bows out far, a path of segments ([`path_energy`](super::path_energy)) answers instead, or parts of parabolas. It asks nothing of the field's derivatives: kinks do no harm.
 ///
 /// Where the metric varies little from end to end and across, tensors are interpolated from five, and the error is of
-/// fourth order in the length; else the field is evaluated wherever it is needed (some 20 times, and again for each half), and
-/// the length is that of some path, never more than the chord's.
+/// fourth order in the length; else the field is evaluated wherever it is needed (21 times), and the length is that of
+/// some path, never more than the chord's.
 pub fn bowed_chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
     bowed_between(field, [p, q], [field.at(p), field.at(q)])
 }
 
 /// [`bowed_chord`] where the tensors at both ends are known.
-pub fn bowed_between(field: &dyn MetricField, ends: [Point; 2], tensors: [Tensor; 2]) -> f64 {
-    halved(field, ends, tensors, HALVINGS)
-}
-
-/// The length of a path that may still be halved so often.
-fn halved(field: &dyn MetricField, [p, q]: [Point; 2], ends: [Tensor; 2], halvings: u32) -> f64 {
+pub fn bowed_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [Tensor; 2]) -> f64 {
     let d = q - p;
     let middle = p.midpoint(q);
     let tensor = field.at(middle);
-    // Orthogonal to the chord in the metric at its middle, and of its length there.
-    let conjugate = tensor.apply(d).perpendicular();
-    let across = conjugate * (tensor.length(d) / tensor.length(conjugate).max(f64::MIN_POSITIVE));
+    let across = across(tensor, d);
     let samples = Samples { middle: tensor, ends, sides: [TRIAL, -TRIAL].map(|bow| field.at(middle + across * bow)) };
     let interpolated = |bow: f64| parabola(|t, offset| samples.at(t, offset), d, across, bow);
-    if let Some(length) = Some(&samples).filter(|s| s.are_steady()).and_then(|_| least(interpolated)) {
+    if let Some(length) = Some(&samples).filter(|s| s.are_steady()).and_then(|_| least(interpolated).1) {
         return length;
     }
-    // Any other direction across does, as paths go; the one that leads least far meets the fewest changes of the metric.
+    let evaluated = |bow: f64| parabola(|t, offset| field.at(p + d * t + across * offset), d, across, bow);
+    let (straight, best) = least(evaluated);
+    let length = best.unwrap_or_else(|| {
+        let path = relaxed_length(field, p, q, SEGMENTS, SETTLED);
+        if path.is_finite() { path.min(straight) } else { straight }
+    });
+    if samples.differ(d) { length.min(halved(field, [p, q], straight, HALVINGS)) } else { length }
+}
+
+/// Orthogonal to a chord in the metric at its middle, and of its length there.
+fn across(tensor: Tensor, d: Vector) -> Vector {
+    let conjugate = tensor.apply(d).perpendicular();
+    conjugate * (tensor.length(d) / tensor.length(conjugate).max(f64::MIN_POSITIVE))
+}
+
+/// The length of a path that bends far, or is a part of such a one, and may still be halved so often; `straight` without a
+/// bend.
+fn halved(field: &dyn MetricField, [p, q]: [Point; 2], straight: f64, halvings: u32) -> f64 {
+    // Along any direction across, as paths go; the one that leads least far meets the fewest changes of the metric.
+    let d = q - p;
     let aside = d.perpendicular();
-    let aside = aside * (d.cross(across) / d.cross(aside));
-    let evaluated = |bow: f64| parabola(|t, offset| field.at(p + d * t + aside * offset), d, aside, bow);
-    let straight = evaluated(0.0);
-    let best = Best::of(evaluated, straight);
+    let aside = aside * (d.cross(across(field.at(p.midpoint(q)), d)) / d.cross(aside));
+    let length = |bow: f64| parabola(|t, offset| field.at(p + d * t + aside * offset), d, aside, bow);
+    let best = Best::of(length, straight);
     if best.is_trusted() || halvings == 0 || !straight.is_finite() {
         return best.length;
     }
-    let top = middle + aside * best.bow;
-    let at_top = field.at(top);
-    let both = halved(field, [p, top], [ends[0], at_top], halvings - 1)
-        + halved(field, [top, q], [at_top, ends[1]], halvings - 1);
+    let top = p.midpoint(q) + aside * best.bow;
+    let part = |ends: [Point; 2]| halved(field, ends, chord(field, ends[0], ends[1]), halvings - 1);
+    let both = part([p, top]) + part([top, q]);
     if both < best.length { both } else { best.length }
 }
 
-/// The least length, from the length by bow, if the bow that it has is small.
-fn least(length: impl Fn(f64) -> f64) -> Option<f64> {
+/// The length without a bow, and the least one if the bow that it has is small, from the length by bow.
+fn least(length: impl Fn(f64) -> f64) -> (f64, Option<f64>) {
     let [straight, left, right] = [0.0, TRIAL, -TRIAL].map(&length);
     let (slope, curvature) = ((left - right) / (2.0 * TRIAL), (left + right - 2.0 * straight) / (TRIAL * TRIAL));
     let best = -slope / curvature;
     let is_near = curvature > 0.0 && best.abs() <= FAR;
-    is_near.then(|| length(best).min(straight))
+    (straight, is_near.then(|| length(best).min(straight)))
 }
 
 /// The best bow that was found.
@@ -109,7 +124,7 @@ impl Best {
                 }
             }
             best.surprise = (found - foreseen.max(0.0).sqrt()).abs() / found;
-            if curvature > 0.0 && (best.surprise <= FORESEEN || best.bow.abs() <= NEAR) {
+            if curvature > 0.0 && best.surprise <= FORESEEN {
                 break;
             }
             trial = (best.bow - centre).abs().clamp(0.25 * trial, trial);
@@ -118,7 +133,7 @@ impl Best {
     }
 
     fn is_trusted(&self) -> bool {
-        self.bow.abs() <= NEAR
+        self.bow.abs() <= NEAR && self.surprise <= FORESEEN
     }
 }
 
@@ -147,6 +162,12 @@ impl Samples {
         let share = offset / TRIAL;
         let (left, right) = (0.5 * share * (share + 1.0), 0.5 * share * (share - 1.0));
         along + self.sides[0] * left + self.sides[1] * right + self.middle * -(share * share)
+    }
+
+    /// Whether lengths of the chord by one tensor alone differ much.
+    fn differ(&self, d: Vector) -> bool {
+        let lengths = || self.ends.iter().chain(&self.sides).chain([&self.middle]).map(|tensor| tensor.length(d));
+        lengths().fold(0.0, f64::max) > UNLIKE * lengths().fold(f64::INFINITY, f64::min)
     }
 
     fn are_steady(&self) -> bool {
@@ -189,8 +210,8 @@ mod tests {
         };
         let bowed = |p: Point, q: Point| bowed_chord(&field, p, q);
         let errors = [1.6, 0.8, 0.4, 0.2, 0.1].map(|h| error(h, &bowed).abs());
-        // The first is halved, of the second the field is evaluated all along, of the others tensors are interpolated.
-        assert!(errors[0] < errors[1] && errors[2] < errors[1] / 4.0, "{errors:?}");
+        // Of the first two the field is evaluated all along the paths, of the others tensors are interpolated.
+        assert!((errors[0] / errors[1]).log2() > 3.5 && errors[2] < errors[1] / 4.0, "{errors:?}");
         assert!((errors[2] / errors[4]).log2() > 5.0, "{errors:?}");
         assert!(errors[4] < 2e-3 * error(0.1, &|p, q| chord(&field, p, q)), "{errors:?}");
     }

@@ -85,7 +85,7 @@ const NEWTON_STEPS: usize = 12;
 const CONVERGED: f64 = 1e-12;
 
 /// Length of the path from the chord whose energy is minimised until a step gains no more than the share `settled`.
-fn relaxed_length(field: &dyn MetricField, p: Point, q: Point, segments: usize, settled: f64) -> f64 {
+pub(super) fn relaxed_length(field: &dyn MetricField, p: Point, q: Point, segments: usize, settled: f64) -> f64 {
     let mut path: Vec<Point> = (0..=segments).map(|i| p.lerp(q, i as f64 / segments as f64)).collect();
     path[segments] = q;
     let mut energy = path_energy_of(field, &path);

@@ -5,6 +5,7 @@
 //! shortest of the paths that pass vertices as it does, which need not be the shortest of all.
 
 use super::edge_path::edge_path;
+use crate::geometry::Point;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 use std::f64::consts::PI;
 
@@ -56,16 +57,13 @@ struct Strip<'a> {
     portals: Vec<HalfEdge>,
 }
 
-/// A point of the layout.
-type Flat = [f64; 2];
-
 /// A vertex that the taut path touches.
 #[derive(Clone, Copy)]
 struct Bend {
     /// Its portal, and whether it is the left end of it.
     portal: usize,
     is_left: bool,
-    at: Flat,
+    at: Point,
 }
 
 impl Strip<'_> {
@@ -207,9 +205,9 @@ impl Strip<'_> {
     fn laid_out(&self) -> Option<Layout> {
         let topology = self.topology;
         let &first = self.portals.first()?;
-        let (mut right, mut left) = ([0.0; 2], [topology.length(first), 0.0]);
+        let (mut right, mut left) = (Point::default(), Point::new(topology.length(first), 0.0));
         let from = apex_over(right, left, topology.length(first.prev()), topology.length(first.next()));
-        let mut layout = Layout { from, to: [0.0; 2], ends: Vec::with_capacity(self.portals.len()) };
+        let mut layout = Layout { from, to: Point::default(), ends: Vec::with_capacity(self.portals.len()) };
         for (i, &portal) in self.portals.iter().enumerate() {
             layout.ends.push([left, right]);
             let across = topology.twin(portal)?;
@@ -226,57 +224,58 @@ impl Strip<'_> {
 
 /// A strip laid out flat: its ends, and the left and right ends of its portals.
 struct Layout {
-    from: Flat,
-    to: Flat,
-    ends: Vec<[Flat; 2]>,
+    from: Point,
+    to: Point,
+    ends: Vec<[Point; 2]>,
 }
 
 impl Layout {
     /// The vertices that the shortest path in the strip bends around (Lee and Preparata 1984), in order.
     fn bends(&self) -> Vec<Bend> {
-        let mut bends: Vec<Bend> = Vec::new();
-        let mut apex = self.from;
-        let mut start = 0;
-        'funnel: loop {
-            let [mut left, mut right] = [None::<Bend>; 2];
-            for portal in start..=self.ends.len() {
-                let [at_left, at_right] = self.ends.get(portal).copied().unwrap_or([self.to; 2]);
-                let side = |at: Flat, is_left: bool| Bend { portal, is_left, at };
-                if right.is_none_or(|r| turn(apex, r.at, at_right) >= 0.0) {
-                    if let Some(l) = left.filter(|l| turn(apex, l.at, at_right) > 0.0) {
-                        (apex, start) = (l.at, self.past(l));
-                        bends.push(l);
-                        continue 'funnel;
-                    }
-                    right = Some(side(at_right, false));
-                }
-                if left.is_none_or(|l| turn(apex, l.at, at_left) <= 0.0) {
-                    if let Some(r) = right.filter(|r| turn(apex, r.at, at_left) < 0.0) {
-                        (apex, start) = (r.at, self.past(r));
-                        bends.push(r);
-                        continue 'funnel;
-                    }
-                    left = Some(side(at_left, true));
-                }
-            }
-            return bends;
+        let mut bends = Vec::new();
+        let (mut apex, mut start) = (self.from, 0);
+        while let Some(bend) = self.next_bend(apex, start) {
+            (apex, start) = (bend.at, self.past(bend));
+            bends.push(bend);
         }
+        bends
+    }
+
+    /// The first bend of the path that is at the apex before a portal: the funnel from there closes at it.
+    fn next_bend(&self, apex: Point, start: usize) -> Option<Bend> {
+        let [mut left, mut right] = [None::<Bend>; 2];
+        for portal in start..=self.ends.len() {
+            let [at_left, at_right] = self.ends.get(portal).copied().unwrap_or([self.to; 2]);
+            if right.is_none_or(|r| turn(apex, r.at, at_right) >= 0.0) {
+                if let Some(l) = left.filter(|l| turn(apex, l.at, at_right) > 0.0) {
+                    return Some(l);
+                }
+                right = Some(Bend { portal, is_left: false, at: at_right });
+            }
+            if left.is_none_or(|l| turn(apex, l.at, at_left) <= 0.0) {
+                if let Some(r) = right.filter(|r| turn(apex, r.at, at_left) < 0.0) {
+                    return Some(r);
+                }
+                left = Some(Bend { portal, is_left: true, at: at_left });
+            }
+        }
+        None
     }
 
     /// The first portal behind a bend that does not end in it.
     fn past(&self, bend: Bend) -> usize {
-        let same = |ends: &&[Flat; 2]| ends[usize::from(!bend.is_left)] == bend.at;
+        let same = |ends: &&[Point; 2]| ends[usize::from(!bend.is_left)] == bend.at;
         bend.portal + self.ends[bend.portal..].iter().take_while(same).count()
     }
 
-    fn path(&self, bends: &[Bend]) -> Vec<Flat> {
+    fn path(&self, bends: &[Bend]) -> Vec<Point> {
         let inner = bends.iter().map(|bend| bend.at);
         std::iter::once(self.from).chain(inner).chain(std::iter::once(self.to)).collect()
     }
 
     fn taut(&self, portals: &[HalfEdge], bends: &[Bend]) -> Taut {
         let path = self.path(bends);
-        let length = path.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum();
+        let length = path.windows(2).map(|w| w[0].distance(w[1])).sum();
         let mut crossings = Vec::with_capacity(portals.len());
         let mut piece = 0;
         for (i, (&portal, &[left, right])) in portals.iter().zip(&self.ends).enumerate() {
@@ -294,27 +293,24 @@ impl Layout {
 }
 
 /// Twice the signed area of a triangle: positive where c is left of the way from a to b.
-fn turn(a: Flat, b: Flat, c: Flat) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+fn turn(a: Point, b: Point, c: Point) -> f64 {
+    (b - a).cross(c - a)
 }
 
 /// The angle between two directions from a point, at most pi.
-fn angle_between(at: Flat, a: Flat, b: Flat) -> f64 {
-    let [u, v] = [a, b].map(|p| [p[0] - at[0], p[1] - at[1]]);
-    (u[0] * v[1] - u[1] * v[0]).abs().atan2(u[0] * v[0] + u[1] * v[1])
+fn angle_between(at: Point, a: Point, b: Point) -> f64 {
+    (a - at).cross(b - at).abs().atan2((a - at).dot(b - at))
 }
 
 /// The point to the left of the way from a to b that has these distances from both.
-fn apex_over(a: Flat, b: Flat, from_a: f64, from_b: f64) -> Flat {
-    let base = [b[0] - a[0], b[1] - a[1]];
-    let long = base[0].hypot(base[1]);
-    let along = 0.5 * (long + (from_a - from_b) * (from_a + from_b) / long);
+fn apex_over(a: Point, b: Point, from_a: f64, from_b: f64) -> Point {
+    let long = a.distance(b);
+    let along = (b - a) * (1.0 / long);
+    let foot = 0.5 * (long + (from_a - from_b) * (from_a + from_b) / long);
     // Four areas, squared: well defined for thin faces, too.
-    let product =
-        (from_a + from_b + long) * (from_a + from_b - long) * (long + from_a - from_b) * (long - from_a + from_b);
-    let above = 0.5 * product.max(0.0).sqrt() / long;
-    let [x, y] = base.map(|c| c / long);
-    [a[0] + x * along - y * above, a[1] + y * along + x * above]
+    let sum = from_a + from_b;
+    let product = (sum + long) * (sum - long) * (long + from_a - from_b) * (long - from_a + from_b);
+    a + along * foot + along.perpendicular() * (0.5 * product.max(0.0).sqrt() / long)
 }
 
 #[cfg(test)]
@@ -420,7 +416,7 @@ mod tests {
         for n in [1, 2, 5] {
             let (places, triangles) = cube(n);
             let topology = in_space(&places, &triangles);
-            let find = |at: Place| VertexId(places.iter().position(|&p| p == at).unwrap() as u32);
+            let find = |at: Place| VertexId(places.iter().position(|&p| distance(p, at) < 1e-9).unwrap() as u32);
             for (a, b) in [([0.0; 3], [1.0; 3]), ([1.0, 0.0, 0.0], [0.0, 1.0, 1.0]), ([0.0, 1.0, 0.0], [1.0, 0.0, 1.0])]
             {
                 let found = taut(&topology, find(a), find(b)).unwrap();
