@@ -4,6 +4,7 @@ mod common;
 
 use common::{Place, stderr};
 use serde_json::Value;
+use std::fmt::Write;
 
 /// A triangular lattice with this spacing in the unit square.
 fn lattice(spacing: f64) -> String {
@@ -15,7 +16,7 @@ fn lattice(spacing: f64) -> String {
                 spacing * 0.75_f64.sqrt() * (f64::from(j) + 0.4),
             );
             if x > 0.0 && x < 1.0 && y < 1.0 {
-                text += &format!("{x} {y}\n");
+                writeln!(text, "{x} {y}").expect("a string takes all");
             }
         }
     }

@@ -50,7 +50,12 @@ impl Coverage {
 }
 
 /// The net of the complete cells, and what keeps it from being one.
-pub(super) fn inner_net(coverage: &Coverage, net: &Net, exact: &[[u32; 3]]) -> (Figures, Option<String>) {
+pub(super) fn inner_net(
+    coverage: &Coverage,
+    diagram: &Diagram,
+    net: &Net,
+    exact: &[[u32; 3]],
+) -> (Figures, Option<String>) {
     let touches = |corners: &[u32; 3]| corners.iter().any(|&i| coverage.complete[i as usize]);
     let balls: Vec<_> = net.triangles.iter().filter(|ball| touches(&ball.corners)).collect();
     if balls.is_empty() {
@@ -58,21 +63,32 @@ pub(super) fn inner_net(coverage: &Coverage, net: &Net, exact: &[[u32; 3]]) -> (
         return (none, Some("no cell is known to end at other cells only: all seeds are near the border".into()));
     }
     let figures = Figures {
-        epsilon: balls.iter().map(|ball| ball.radius).fold(0.0, f64::max),
+        // In a metric that varies, the farthest point of a cell need not be a Voronoi vertex.
+        epsilon: balls.iter().map(|ball| ball.radius).fold(farthest(coverage, diagram), f64::max),
         mu: net.mu,
         delta: balls.iter().map(|ball| ball.protection()).fold(f64::INFINITY, f64::min),
     };
     let wanted = exact.iter().filter(|corners| touches(corners)).count();
     let outside = balls.iter().filter(|ball| !ball.is_interior).count();
+    let chords = net.by_chord;
     let open = open_stars(coverage, exact);
     let reason = if balls.len() < wanted {
         Some(format!("{} triangles of inner cells have no circle that geodesics find", wanted - balls.len()))
     } else if outside > 0 {
         Some(format!("{outside} circles of inner cells have their centres outside the domain"))
+    } else if chords > 0 {
+        Some(format!("{chords} lengths that mu and delta are from: geodesics are not resolved there"))
     } else {
         (open > 0).then(|| format!("the triangles around {open} inner seeds do not close"))
     };
     (figures, reason)
+}
+
+/// How far a canvas vertex of a complete cell is from its seed at most.
+fn farthest(coverage: &Coverage, diagram: &Diagram) -> f64 {
+    let vertices = (0..diagram.canvas().vertex_count() as u32).map(VertexId);
+    let is_inner = |v: &VertexId| diagram.colour(*v).is_some_and(|i| coverage.complete[i as usize]);
+    vertices.filter(is_inner).map(|v| diagram.distance(v)).fold(0.0, f64::max)
 }
 
 /// Complete seeds whose triangles are no closed fan.

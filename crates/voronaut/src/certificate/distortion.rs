@@ -7,11 +7,13 @@ use crate::metric::MetricField;
 const CIRCLES: usize = 12;
 const PLACES: usize = 48;
 
-/// psi: the metrics of two tensors measure no vector longer than this times what the other does. At least 1.
+/// psi: the metrics of two tensors measure no vector longer than this times what the other does. At least 1; infinite where
+/// one of them is no metric.
 pub fn distortion(g: Tensor, h: Tensor) -> f64 {
     let [u, v] = frame(g);
     let eigen = Tensor::new(h.dot(u, u), h.dot(u, v), h.dot(v, v)).eigen();
-    eigen.large.max(1.0 / eigen.small).max(1.0).sqrt()
+    let is_metric = eigen.small > 0.0 && eigen.large.is_finite();
+    if is_metric { eigen.large.max(1.0 / eigen.small).max(1.0).sqrt() } else { f64::INFINITY }
 }
 
 /// An estimate of the greatest distortion between the tensor at a point and those within a distance of it, measured
@@ -49,6 +51,17 @@ fn frame(g: Tensor) -> [Vector; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_no_metric_is_distorted_beyond_measure() {
+        let (good, nan, indefinite) = (Tensor::IDENTITY, Tensor::isotropic(f64::NAN), Tensor::new(1.0, 2.0, 1.0));
+        for bad in [nan, indefinite] {
+            assert!(distortion(good, bad).is_infinite() && distortion(bad, good).is_infinite(), "{bad:?}");
+            let field = move |p: Point| if p.x > 0.9 { bad } else { good };
+            assert!(distortion_around(&field, Point::new(0.0, 0.0), 1.0).is_infinite(), "{bad:?}");
+            assert!(distortion_around(&field, Point::new(1.0, 0.0), 0.05).is_infinite(), "{bad:?}");
+        }
+    }
 
     #[test]
     fn equal_tensors_are_not_distorted_and_scaled_ones_by_the_scale() {

@@ -110,7 +110,7 @@ impl Certificate {
     ) -> Self {
         let longest = longest_edge(diagram.canvas());
         let mut coverage = Coverage::new(diagram, field, net, longest);
-        let (inner, open) = coverage::inner_net(&coverage, net, exact);
+        let (inner, open) = coverage::inner_net(&coverage, diagram, net, exact);
         coverage.cover(net, longest, &inner);
         let none = || (coverage.count() == 0).then(|| format!("no seed is {:.3e} from the border", coverage.least));
         let cells = cells(diagram, field, net, &coverage, &inner);
@@ -123,7 +123,7 @@ impl Certificate {
             uniform: uniform(diagram, field),
             size,
             euclidean_size,
-            distance_error: distance_error(diagram, field, &coverage),
+            distance_error: distance_error(diagram, field, net, &coverage),
             convexity: convexity::convexity(diagram, field, net, &coverage, inner.epsilon),
             doubt: open.or_else(none),
         };
@@ -218,9 +218,26 @@ fn uniform(diagram: &Diagram, field: &dyn MetricField) -> Option<[f64; 2]> {
     positions.par_iter().with_min_len(1024).all(is_same).then_some([eigen.small, eigen.large])
 }
 
-/// How far canvas distances are from lengths of geodesics at most, with the errors of these, at samples of the covered
-/// cells; NaN where there are none, or geodesics are not found.
-fn distance_error(diagram: &Diagram, field: &dyn MetricField, coverage: &Coverage) -> f64 {
+/// The seeds that share a triangle with each seed.
+fn neighbours(net: &Net, seeds: usize) -> Vec<Vec<u32>> {
+    let mut neighbours = vec![Vec::new(); seeds];
+    for &[a, b, c] in net.triangles.iter().map(|ball| &ball.corners) {
+        for [i, j] in [[a, b], [b, c], [c, a]] {
+            neighbours[i as usize].push(j);
+            neighbours[j as usize].push(i);
+        }
+    }
+    for list in &mut neighbours {
+        list.sort_unstable();
+        list.dedup();
+    }
+    neighbours
+}
+
+/// How far canvas distances are from lengths of geodesics at most, or beyond those to the seeds of neighbouring cells, with the
+/// errors of these, at samples of the covered cells; NaN where there are none, or geodesics are not found.
+fn distance_error(diagram: &Diagram, field: &dyn MetricField, net: &Net, coverage: &Coverage) -> f64 {
+    let neighbours = neighbours(net, coverage.covered.len());
     let canvas = diagram.canvas();
     let vertices = (0..canvas.vertex_count() as u32).map(VertexId);
     let is_covered = |v: &VertexId| diagram.colour(*v).is_some_and(|i| coverage.covered[i as usize]);
@@ -232,8 +249,15 @@ fn distance_error(diagram: &Diagram, field: &dyn MetricField, coverage: &Coverag
         if p == seed {
             return Some(diagram.distance(*v));
         }
+        let found = diagram.distance(*v);
         let length = paths.length(field, p, seed, Fineness::MIDDLE)?;
-        Some((length.value - diagram.distance(*v)).abs() + length.error * length.value)
+        let mut error = (length.value - found).abs() + length.error * length.value;
+        // A seed that should have won is nearer than what was found.
+        for &other in &neighbours[colour as usize] {
+            let length = paths.length(field, p, diagram.seed(other)?, Fineness::MIDDLE)?;
+            error = error.max(found - length.value + length.error * length.value);
+        }
+        Some(error)
     };
     let sampled: Vec<VertexId> = all.iter().copied().step_by((all.len() / SAMPLES).max(1)).collect();
     let errors: Vec<f64> = sampled.par_iter().with_min_len(16).map(|v| error(v).unwrap_or(f64::NAN)).collect();

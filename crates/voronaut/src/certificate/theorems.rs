@@ -30,6 +30,10 @@ pub struct Evidence {
 const NERVE: &str = "the canvas's three-coloured faces are the dual";
 const EDGE: &str = "half the longest canvas edge is below s0";
 
+/// Below this share of epsilon delta may be an error of the lengths that it comes from: its square is that of a difference of
+/// squares.
+const CERTAIN: f64 = 1e-3;
+
 /// Verdicts on Theorems 9.1, 9.9 and 9.10, on section 9.4, on Theorem 10.20 and Lemma 11.2, in this order.
 pub fn verdicts(evidence: &Evidence) -> Vec<Verdict> {
     let embedded = geodesic_dual(evidence);
@@ -43,7 +47,8 @@ fn is_round([small, large]: [f64; 2]) -> bool {
 }
 
 fn protected(evidence: &Evidence) -> Condition {
-    Condition::above("the net is power-protected: delta above 0", evidence.net.delta, 0.0)
+    let least = CERTAIN * evidence.net.epsilon;
+    Condition::above("the net is power-protected: delta above a thousandth of epsilon", evidence.net.delta, least)
 }
 
 fn euclidean(evidence: &Evidence) -> Verdict {
@@ -105,7 +110,8 @@ fn nerve(
     conditions.insert(0, protected(evidence));
     conditions.insert(1, Condition::below(what, evidence.psi - 1.0, allowed - 1.0));
     let size = evidence.constants.size(&evidence.net, evidence.psi, error);
-    conditions.push(Condition::below(EDGE, evidence.size, size.unwrap_or(none_of(evidence))));
+    let none = if error.is_nan() { error } else { none_of(evidence) };
+    conditions.push(Condition::below(EDGE, evidence.size, size.unwrap_or(none)));
     let doubt = evidence.doubt.clone();
     let verdict = Verdict::new(theorem, says, conditions, doubt);
     size.map_or(verdict.clone(), |size| verdict.asking(size))
@@ -222,7 +228,7 @@ mod tests {
             verdicts(&evidence)[1].holds()
         };
         let asked = Constants::Printed.uniform_size(&evidence().net);
-        // In the metric 100 I a Euclidean length is ten times as long: the report lets it be ten times too long
+        // In the metric 100 I a Euclidean length is ten times as long: the report lets it be a hundred times too long
         // instead.
         assert!(with([100.0, 100.0], 5.0 * asked));
         assert!(!with([0.01, 0.01], 5.0 * asked));

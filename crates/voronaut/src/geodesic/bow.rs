@@ -210,8 +210,8 @@ mod tests {
         };
         let bowed = |p: Point, q: Point| bowed_chord(&field, p, q);
         let errors = [1.6, 0.8, 0.4, 0.2, 0.1].map(|h| error(h, &bowed).abs());
-        // Of the first two the field is evaluated all along the paths, of the others tensors are interpolated.
-        assert!((errors[0] / errors[1]).log2() > 3.5 && errors[2] < errors[1] / 4.0, "{errors:?}");
+        // The first is halved, of the second the field is evaluated all along, of the others tensors are interpolated.
+        assert!(errors[0] < errors[1] && errors[2] < errors[1] / 4.0, "{errors:?}");
         assert!((errors[2] / errors[4]).log2() > 5.0, "{errors:?}");
         assert!(errors[4] < 2e-3 * error(0.1, &|p, q| chord(&field, p, q)), "{errors:?}");
     }

@@ -6,6 +6,7 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A geodesic is taken to be no shorter than this share of the straight segment between its ends: seeds farther away than
 /// that allows are not asked.
@@ -39,6 +40,8 @@ pub(super) struct Measure<'a> {
     found: &'a Triangles<'a>,
     neighbours: Vec<Vec<u32>>,
     is_at_border: Vec<bool>,
+    /// Lengths for which a chord stood in.
+    chords: AtomicUsize,
 }
 
 impl<'a> Measure<'a> {
@@ -56,7 +59,7 @@ impl<'a> Measure<'a> {
         }
         let mut is_at_border = vec![false; found.seeds.len()];
         found.border.iter().flatten().for_each(|&i| is_at_border[i as usize] = true);
-        Self { paths, field, found, neighbours, is_at_border }
+        Self { paths, field, found, neighbours, is_at_border, chords: AtomicUsize::new(0) }
     }
 
     /// The circles of those triangles that have one, as far as possible from memory, which then knows all of them; and
@@ -97,9 +100,20 @@ impl<'a> Measure<'a> {
                 break;
             }
             let geodesic = self.paths.length(self.field, p, q, Fineness::MIDDLE);
-            least = least.min(geodesic.map_or(chord, |length| length.value));
+            least = least.min(geodesic.map_or_else(|| self.stand_in(chord), |length| length.value));
         }
         least
+    }
+
+    /// A chord where geodesics are not resolved: no less than the length that is wanted.
+    fn stand_in(&self, chord: f64) -> f64 {
+        self.chords.fetch_add(1, Ordering::Relaxed);
+        chord
+    }
+
+    /// How many lengths, so far, are chords.
+    pub(super) fn chords(&self) -> usize {
+        self.chords.load(Ordering::Relaxed)
     }
 
     fn seed(&self, i: u32) -> Point {
@@ -189,7 +203,7 @@ impl<'a> Measure<'a> {
                 break;
             }
             let power = circle.power(self.paths, self.field, self.seed(i), Fineness::MIDDLE);
-            let power = power.unwrap_or(chord * chord - circle.square);
+            let power = power.unwrap_or_else(|| self.stand_in(chord).powi(2) - circle.square);
             if power < least {
                 (least, nearest) = (power, Some(i));
             }

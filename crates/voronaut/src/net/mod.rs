@@ -60,6 +60,9 @@ pub struct Net {
     pub unknown: Vec<[u32; 3]>,
     /// Triangles whose circles geodesics did not find and distances on a canvas did ([`circles_on_canvas`]).
     pub by_canvas: usize,
+    /// Lengths, of those that mu and powers are from, for which chords stand in where geodesics are not resolved: these are
+    /// no shorter than the lengths. Lengths that a memory knew are not counted again.
+    pub by_chord: usize,
     /// How far a point of the domain is from its nearest seed at most: the greatest radius of the circles with centres
     /// in the domain and no seed in them.
     pub epsilon: f64,
@@ -106,6 +109,7 @@ impl Net {
         (net.triangles, net.unknown) = measure.triangles(&wanted, memory);
         net.triangles.extend_from_slice(known);
         net.border = measure.border();
+        net.by_chord = measure.chords();
         net.unmeasured = net.unknown.len() + found.border.len() - net.border.len();
         // A circle with a seed in it says nothing of how far points are from seeds.
         let interior = net.interior().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius);
