@@ -222,6 +222,9 @@ pub(crate) struct DistanceArgs {
     /// How distances are computed
     #[arg(long, value_name = "METHOD", default_value_t = Method::default())]
     pub(crate) geodesic: Method,
+    /// What distances travel on: intrinsic, isotropic or starset (see `dual`)
+    #[arg(long, value_name = "WHICH", default_value_t = canvas::Kind::default())]
+    pub(crate) canvas: canvas::Kind,
     /// Vertices of the canvas, in all
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = CANVAS_VERTICES)]
     pub(crate) canvas_size: u32,

@@ -34,7 +34,7 @@ pub(crate) fn run(args: &DistanceArgs) -> Result<()> {
     let metric = recipe::metric(&spec, &domain, background, bounds)?;
     let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
     let read = start.elapsed().as_secs_f64();
-    let canvas = Canvas::intrinsic(&domain, metric.as_ref(), args.canvas_size as usize)?;
+    let canvas = Canvas::new(args.canvas, &domain, metric.as_ref(), args.canvas_size as usize)?;
     demand_inside(args, &canvas)?;
     let made = start.elapsed().as_secs_f64();
     let found = Distances::new(&canvas, metric.as_ref(), &args.from, args.geodesic)?;
@@ -120,7 +120,7 @@ fn told(
         "geodesic": args.geodesic, "canvas": canvas.figures(), "counters": found.counters(),
         "seconds": seconds, "peak_memory_bytes": report::peak_memory_bytes(), "version": env!("CARGO_PKG_VERSION"),
         "options": {
-            "domain": args.domain, "metric": args.metric, "out": args.out, "canvas": "intrinsic",
+            "domain": args.domain, "metric": args.metric, "out": args.out, "canvas": args.canvas,
             "canvas_size": args.canvas_size, "geodesic": args.geodesic, "background": args.metric_choices.background,
             "bounds": bounds, "smooth_metric": args.metric_choices.smooth_metric, "picture": args.picture,
             "pixels": args.pixels, "report": args.report, "threads": args.run.threads,

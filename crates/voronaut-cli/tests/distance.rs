@@ -15,17 +15,20 @@ fn words<'a>(more: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn every_method_writes_its_field_and_path() {
     let place = Place::new();
-    for method in METHODS {
-        let more = ["--from", "0.1,0.5", "--from", "0.1,0.9", "--to", "1.6,0.5", "--geodesic", method];
+    let canvases = ["intrinsic", "isotropic", "starset"];
+    for (canvas, method) in canvases.iter().flat_map(|&canvas| METHODS.map(|method| (canvas, method))) {
+        let more =
+            ["--from", "0.1,0.5", "--from", "0.1,0.9", "--to", "1.6,0.5", "--geodesic", method, "--canvas", canvas];
         let files = ["--report", "out.json", "--picture", "out.svg", "--pixels", "200"];
         let output = place.run(&words(&[&more[..], &files].concat()));
-        assert!(output.status.success(), "{method}: {}", stderr(&output));
+        assert!(output.status.success(), "{method} on {canvas}: {}", stderr(&output));
         let report: Value = serde_json::from_slice(&place.read("out.json")).unwrap();
         for key in ["distance", "path_length"] {
             let length = report[key].as_f64().unwrap();
-            assert!(length > 2.9 && length < 3.3, "{method}: {key} {length}");
+            assert!(length > 2.9 && length < 3.3, "{method} on {canvas}: {key} {length}");
         }
         assert_eq!((&report["geodesic"], &report["unreached"]), (&Value::from(method), &Value::from(0)));
+        assert_eq!(report["canvas"]["kind"], canvas);
         assert!(report["canvas"]["vertices"].as_u64().unwrap() >= 2000);
         let file = place.read("out.vtu");
         assert!(String::from_utf8_lossy(&file[..2000]).contains("Name=\"distance\""));
