@@ -305,7 +305,10 @@ fn refinement_around_vertices_keeps_the_canvas() {
     assert!(refined.embedded().is_embedded());
     assert!((refined.embedded().area() - 16.0).abs() < 1e-9);
     assert!(vertices(&canvas).all(|v| refined.position(v) == canvas.position(v)));
-    let shortest = |c: &Canvas, v| c.topology().star(v).map(|h| c.topology().length(h)).fold(f64::INFINITY, f64::min);
+    let shortest = |c: &Canvas, v| {
+        let lengths = c.embedded().topology.star(v).map(|h| c.embedded().ends(h)).map(|[p, q]| p.distance(q));
+        lengths.fold(f64::INFINITY, f64::min)
+    };
     for &v in &around {
         assert!(shortest(&refined, v) < 0.05 * shortest(&canvas, v), "halved seven times");
     }
