@@ -87,6 +87,7 @@ fn a_certified_canvas_is_refused_by_its_estimate_or_by_the_seeds() {
     let place = place();
     let (report, _) = runs(&place, &["--canvas-size", "certified"]);
     assert_eq!((outcome(&report, "9.4"), &report["options"]["canvas_size"]), (&"holds".into(), &"certified".into()));
+    let place = Place::new();
     place.put("seeds.txt", "0.2 0.2\n0.8 0.3\n0.5 0.9\n");
     let output = place.run(&[&DUAL[..], &["--canvas-size", "certified"]].concat());
     assert_eq!(output.status.code(), Some(1));
@@ -94,6 +95,7 @@ fn a_certified_canvas_is_refused_by_its_estimate_or_by_the_seeds() {
     for bad in ["0", "exact", "-1"] {
         assert_eq!(place.run(&[&DUAL[..], &["--canvas-size", bad]].concat()).status.code(), Some(2), "{bad}");
     }
+    assert_eq!(place.files(), ["seeds.txt"]);
 }
 
 #[test]

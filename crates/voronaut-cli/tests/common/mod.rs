@@ -28,7 +28,6 @@ impl Place {
     }
 
     /// The names of all files, hidden ones too, sorted.
-    #[allow(dead_code, reason = "not every test file needs it")]
     pub(crate) fn files(&self) -> Vec<String> {
         let entries = fs::read_dir(self.path()).expect("readable").map(|entry| entry.expect("readable").file_name());
         let mut names: Vec<String> = entries.map(|name| name.to_string_lossy().into_owned()).collect();

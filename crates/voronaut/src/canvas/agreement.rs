@@ -2,7 +2,7 @@
 
 use super::star::Star;
 use super::star_set::Stars;
-use crate::triangulation::VertexId;
+use crate::triangulation::{VertexId, smallest_first};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The stars of some vertices as they were.
@@ -37,7 +37,7 @@ impl Before {
         let mut touched: BTreeSet<[VertexId; 3]> = BTreeSet::new();
         for (&v, star) in &self.stars {
             let both = star.iter().chain(&now.by_vertex[v.index()]);
-            touched.extend(both.map(|spoke| first_smallest([v, spoke.ends[0], spoke.ends[1]])));
+            touched.extend(both.map(|spoke| smallest_first([v, spoke.ends[0], spoke.ends[1]])));
         }
         let mut change = Change::default();
         for corners in touched {
@@ -51,16 +51,6 @@ impl Before {
             change.after += usize::from((1..3).contains(&holders(&|v, ends| now.has(v, ends))));
         }
         change
-    }
-}
-
-fn first_smallest([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
-    if a < b && a < c {
-        [a, b, c]
-    } else if b < c {
-        [b, c, a]
-    } else {
-        [c, a, b]
     }
 }
 
@@ -93,8 +83,8 @@ mod tests {
     fn turns_of_a_triangle_are_one() {
         let [a, b, c] = [3, 7, 9].map(VertexId);
         for turn in [[a, b, c], [b, c, a], [c, a, b]] {
-            assert_eq!(first_smallest(turn), [a, b, c]);
+            assert_eq!(smallest_first(turn), [a, b, c]);
         }
-        assert_eq!(first_smallest([c, b, a]), [a, c, b]);
+        assert_eq!(smallest_first([c, b, a]), [a, c, b]);
     }
 }

@@ -26,7 +26,7 @@ use crate::diagram::Diagram;
 use crate::geodesic::{Fineness, Paths};
 use crate::geometry::{Point, Tensor};
 use crate::metric::MetricField;
-use crate::net::{Ball, Net};
+use crate::net::{Ball, Net, neighbours};
 use crate::triangulation::VertexId;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -218,26 +218,10 @@ fn uniform(diagram: &Diagram, field: &dyn MetricField) -> Option<[f64; 2]> {
     positions.par_iter().with_min_len(1024).all(is_same).then_some([eigen.small, eigen.large])
 }
 
-/// The seeds that share a triangle with each seed.
-fn neighbours(net: &Net, seeds: usize) -> Vec<Vec<u32>> {
-    let mut neighbours = vec![Vec::new(); seeds];
-    for &[a, b, c] in net.triangles.iter().map(|ball| &ball.corners) {
-        for [i, j] in [[a, b], [b, c], [c, a]] {
-            neighbours[i as usize].push(j);
-            neighbours[j as usize].push(i);
-        }
-    }
-    for list in &mut neighbours {
-        list.sort_unstable();
-        list.dedup();
-    }
-    neighbours
-}
-
 /// How far canvas distances are from lengths of geodesics at most, or beyond those to the seeds of neighbouring cells, with the
 /// errors of these, at samples of the covered cells; NaN where there are none, or geodesics are not found.
 fn distance_error(diagram: &Diagram, field: &dyn MetricField, net: &Net, coverage: &Coverage) -> f64 {
-    let neighbours = neighbours(net, coverage.covered.len());
+    let neighbours = neighbours(coverage.covered.len(), net.triangles.iter().map(|ball| ball.corners));
     let canvas = diagram.canvas();
     let vertices = (0..canvas.vertex_count() as u32).map(VertexId);
     let is_covered = |v: &VertexId| diagram.colour(*v).is_some_and(|i| coverage.covered[i as usize]);

@@ -1,9 +1,9 @@
 //! From the nerve to a mesh: its straight realisation (RR-9103, sections 11 and 14: SRDT), and the canvas as a mesh.
 
-use super::nerve::smallest_first;
 use super::{Diagram, Nerve, NerveTriangle};
 use crate::domain::Domain;
 use crate::mesh::Mesh;
+use crate::triangulation::smallest_first;
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Diagram<'_> {

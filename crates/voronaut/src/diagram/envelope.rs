@@ -6,9 +6,9 @@
 //! found with its place. On a curved canvas this holds to second order in the size of the face.
 
 use super::Diagram;
-use super::nerve::{Nerve, NerveEdge, NerveTriangle, smallest_first};
+use super::nerve::{Nerve, NerveEdge, NerveTriangle};
 use super::overlap::Overlap;
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, VertexId, smallest_first};
 use rayon::prelude::*;
 
 /// A Voronoi vertex this far (barycentric) outside a face still counts: it may lie on the edge.

@@ -2,7 +2,7 @@
 
 use super::Diagram;
 use crate::geodesic::NO_COLOUR;
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, VertexId, smallest_first};
 
 /// Two cells that touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,15 +148,4 @@ impl Diagram<'_> {
 
 fn nearer(a: Option<(u32, f64)>, b: Option<(u32, f64)>) -> Option<(u32, f64)> {
     a.into_iter().chain(b).min_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// The same cycle, its smallest member first.
-pub(super) fn smallest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
-    if a < b && a < c {
-        [a, b, c]
-    } else if b < c {
-        [b, c, a]
-    } else {
-        [c, a, b]
-    }
 }

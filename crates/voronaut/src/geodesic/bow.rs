@@ -31,11 +31,12 @@ const STEADY: f64 = 0.25;
 
 /// Length of the geodesic p-q: the least length of the parabolas through p and q, by quadrature on three of them and on
 /// the best of the parabola through their lengths. To second order in the length geodesics are parabolas; where the best
-/// one bows out far, a path of segments ([`path_energy`](super::path_energy)) answers instead, or parts of parabolas. It asks nothing of the field's derivatives: kinks do no harm.
+/// one bows out far, a path of segments ([`path_energy`](super::path_energy)) answers instead; and where the metric differs much
+/// around the chord, a path of parts of parabolas, if that is shorter. It asks nothing of the field's derivatives: kinks do no harm.
 ///
 /// Where the metric varies little from end to end and across, tensors are interpolated from five, and the error is of
-/// fourth order in the length; else the field is evaluated wherever it is needed (21 times), and the length is that of
-/// some path, never more than the chord's.
+/// fourth order in the length; else the field is evaluated wherever it is needed, 21 times at least, and the length is
+/// that of some path, never more than the chord's.
 pub fn bowed_chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
     bowed_between(field, [p, q], [field.at(p), field.at(q)])
 }

@@ -46,17 +46,7 @@ pub(super) struct Measure<'a> {
 
 impl<'a> Measure<'a> {
     pub(super) fn new(paths: &'a Paths, field: &'a dyn MetricField, found: &'a Triangles<'a>) -> Self {
-        let mut neighbours = vec![Vec::new(); found.seeds.len()];
-        for &[a, b, c] in found.triangles {
-            for [i, j] in [[a, b], [b, c], [c, a]] {
-                neighbours[i as usize].push(j);
-                neighbours[j as usize].push(i);
-            }
-        }
-        for list in &mut neighbours {
-            list.sort_unstable();
-            list.dedup();
-        }
+        let neighbours = super::neighbours(found.seeds.len(), found.triangles.iter().copied());
         let mut is_at_border = vec![false; found.seeds.len()];
         found.border.iter().flatten().for_each(|&i| is_at_border[i as usize] = true);
         Self { paths, field, found, neighbours, is_at_border, chords: AtomicUsize::new(0) }

@@ -154,6 +154,22 @@ impl Net {
     }
 }
 
+/// The seeds that share a triangle with each of so many seeds, in order.
+pub(crate) fn neighbours(seeds: usize, triangles: impl Iterator<Item = [u32; 3]>) -> Vec<Vec<u32>> {
+    let mut neighbours = vec![Vec::new(); seeds];
+    for [a, b, c] in triangles {
+        for [i, j] in [[a, b], [b, c], [c, a]] {
+            neighbours[i as usize].push(j);
+            neighbours[j as usize].push(i);
+        }
+    }
+    for list in &mut neighbours {
+        list.sort_unstable();
+        list.dedup();
+    }
+    neighbours
+}
+
 /// The same cycle, its smallest member first.
 fn turned([a, b, c]: [u32; 3]) -> [u32; 3] {
     [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])

@@ -202,3 +202,14 @@ impl Triangulation {
         self.star(a).find(|&h| self.target(h) == b)
     }
 }
+
+/// The same cycle of three, its smallest member first.
+pub fn smallest_first<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [T; 3] {
+    if a < b && a < c {
+        [a, b, c]
+    } else if b < c {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}
