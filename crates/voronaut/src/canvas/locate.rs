@@ -41,18 +41,18 @@ impl Canvas {
     /// that rounding has put beside a slanted border is on it.
     pub fn locate(&self, p: Point) -> Option<Location> {
         let near = |v: &&VertexId| self.position(**v).distance(p);
-        let anchor = self.finder.anchors.iter().min_by(|a, b| near(a).total_cmp(&near(b)))?;
-        self.locate_from(self.embedded.topology.start(*anchor)?.face(), p)
+        let anchor = self.embedded.finder.anchors.iter().min_by(|a, b| near(a).total_cmp(&near(b)))?;
+        self.locate_from(self.embedded.planar.topology.start(*anchor)?.face(), p)
     }
 
     /// [`Canvas::locate`] for a point that is near a face.
     pub fn locate_from(&self, near: FaceId, p: Point) -> Option<Location> {
-        let Finder { bounds: Some(bounds), rounding, .. } = &self.finder else { return None };
+        let Finder { bounds: Some(bounds), rounding, .. } = &self.embedded.finder else { return None };
         let is_between = |x: f64, low: f64, high: f64| x >= low - rounding && x <= high + rounding;
         if !is_between(p.x, bounds.min.x, bounds.max.x) || !is_between(p.y, bounds.min.y, bounds.max.y) {
             return None;
         }
-        match self.embedded.walk(near, p, false) {
+        match self.embedded.planar.walk(near, p, false) {
             Location::Behind(h) if self.is_beside(h, p) => Some(Location::Edge(h)),
             Location::Behind(_) => self.search(p),
             found => Some(found),
@@ -79,50 +79,50 @@ impl Canvas {
             Location::Face(f) => f,
             Location::Edge(h) | Location::Behind(h) => h.face(),
         };
-        let [a, b, c] = self.embedded.triangle(f);
+        let [a, b, c] = self.embedded.planar.triangle(f);
         let areas = [(b, c), (c, a), (a, b)].map(|(u, v)| (u - p).cross(v - p).max(0.0));
         let sum: f64 = areas.iter().sum();
-        let all = self.embedded.topology.corners(f).into_iter().zip(areas.map(|area| area / sum));
+        let all = self.embedded.planar.topology.corners(f).into_iter().zip(areas.map(|area| area / sum));
         Some(all.filter(|w| w.1 > 0.0).collect())
     }
 
     /// The vertices at the position of a vertex, in order: more than one where the domain touches itself in a point, one
     /// for each fan of faces.
     pub fn copies(&self, v: VertexId) -> Vec<VertexId> {
-        self.finder.copies.get(&key(self.position(v))).map_or_else(|| vec![v], Clone::clone)
+        self.embedded.finder.copies.get(&key(self.position(v))).map_or_else(|| vec![v], Clone::clone)
     }
 
     fn face_of(&self, location: Location) -> Option<FaceId> {
         match location {
             Location::Face(f) => Some(f),
             Location::Edge(h) | Location::Behind(h) => Some(h.face()),
-            Location::Vertex(v) => self.embedded.topology.start(v).map(HalfEdge::face),
+            Location::Vertex(v) => self.embedded.planar.topology.start(v).map(HalfEdge::face),
         }
     }
 
     /// Looks at all faces whose boxes hold the point. The tree is made when it is first needed.
     fn search(&self, p: Point) -> Option<Location> {
-        let tree = self.finder.tree.get_or_init(|| RTree::bulk_load(boxes(&self.embedded)));
-        let d = Vector::new(1.0, 1.0) * self.finder.rounding;
+        let tree = self.embedded.finder.tree.get_or_init(|| RTree::bulk_load(boxes(&self.embedded.planar)));
+        let d = Vector::new(1.0, 1.0) * self.embedded.finder.rounding;
         let around = AABB::from_corners([p.x - d.x, p.y - d.y], [p.x + d.x, p.y + d.y]);
-        let topology = &self.embedded.topology;
+        let topology = &self.embedded.planar.topology;
         let near = || tree.locate_in_envelope_intersecting(around).map(|boxed| boxed.face);
         let holds = |f: &FaceId| {
-            let [a, b, c] = self.embedded.triangle(*f);
+            let [a, b, c] = self.embedded.planar.triangle(*f);
             [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, p) != Orientation::Right)
         };
         // From a face that holds the point the walk ends at once.
-        let inside = near().filter(holds).min().map(|face| self.embedded.walk(face, p, false));
+        let inside = near().filter(holds).min().map(|face| self.embedded.planar.walk(face, p, false));
         let at_border = |h: &HalfEdge| topology.twin(*h).is_none() && self.is_beside(*h, p);
         inside.or_else(|| near().flat_map(FaceId::half_edges).filter(at_border).min().map(Location::Edge))
     }
 
     /// Whether a point lies, but for rounding, on an edge.
     fn is_beside(&self, h: HalfEdge, p: Point) -> bool {
-        let [a, b] = self.embedded.ends(h);
+        let [a, b] = self.embedded.planar.ends(h);
         let d = b - a;
         let foot = a.lerp(b, ((p - a).dot(d) / d.dot(d)).clamp(0.0, 1.0));
-        foot.distance(p) <= self.finder.rounding
+        foot.distance(p) <= self.embedded.finder.rounding
     }
 }
 

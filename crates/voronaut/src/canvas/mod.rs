@@ -9,22 +9,28 @@ mod agreement;
 mod border;
 mod buckets;
 mod consistent;
+mod draped;
 mod flip;
 mod isotropic;
 mod kind;
 mod lengths;
 mod locate;
+mod on_surface;
 mod refine;
 mod relocate;
 mod star;
 mod star_set;
 mod steiner;
+mod surface_stars;
+mod way;
 
 pub use border::Border;
+pub use draped::Draped;
 pub use consistent::{Consistency, Consistent, NEEDS_MORE, PickCounters, UNIT_RADIUS, consistent};
 pub use isotropic::isotropic_size;
 pub use kind::Kind;
 pub use star_set::{StarFigures, StarSet};
+pub use way::Way;
 
 use crate::domain::Domain;
 use crate::error::Result;
@@ -83,21 +89,60 @@ pub struct CanvasFigures {
     pub stars: Option<StarFigures>,
 }
 
-/// An immutable canvas of a planar domain, of any [`Kind`].
+/// An immutable canvas of any [`Kind`], of a planar domain or, as a `Canvas<Draped>`, of a surface.
 ///
-/// Two triangulations on the same vertices: *embedded*, straight edges in the plane that cover the domain exactly
-/// and keep its constraints; and the one that distances travel on, whose edges are known by metric length alone. Edges
-/// of the second that flips have made are not straight in the plane; nothing needs them to be, for points are located,
-/// refinement is done and paths are drawn in the first. Chords of both have the metric length of a straight segment
-/// ([`crate::geodesic::chord`]) or, if flipped, of the straight line through flattened triangles.
+/// Two triangulations on the same vertices: *embedded*, which covers the domain exactly and keeps its constraints, with
+/// straight edges in the plane or in the triangles of a surface; and the one that distances travel on, whose edges are known
+/// by metric length alone. Edges of the second that flips have made are not straight in the domain; nothing needs them to
+/// be, for points are located, refinement is done and paths are drawn in the first. Chords of both have the metric length of
+/// a straight segment ([`crate::geodesic::chord`]) or, if flipped, of the straight line through flattened triangles.
 #[derive(Debug)]
-pub struct Canvas {
-    embedded: Planar,
+pub struct Canvas<E = InPlane> {
+    embedded: E,
     topology: Triangulation,
     stars: Option<StarSet>,
     kind: Kind,
     counters: CanvasCounters,
+}
+
+/// What a canvas of a planar domain is embedded as.
+#[derive(Debug)]
+pub struct InPlane {
+    planar: Planar,
     finder: Finder,
+}
+
+impl<E> Canvas<E> {
+    /// What distances travel on: vertices, faces, metric lengths.
+    pub fn topology(&self) -> &Triangulation {
+        &self.topology
+    }
+
+    /// Number of vertices; all slots are used.
+    pub fn vertex_count(&self) -> usize {
+        self.topology.vertex_slots()
+    }
+
+    /// The stars, if it is a star set.
+    pub fn stars(&self) -> Option<&StarSet> {
+        self.stars.as_ref()
+    }
+
+    /// Which canvas it is; one by [`Canvas::straight`] counts as intrinsic.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// How the canvas came about.
+    pub fn counters(&self) -> &CanvasCounters {
+        &self.counters
+    }
+
+    /// The canvas in numbers.
+    pub fn figures(&self) -> CanvasFigures {
+        let stars = self.stars.as_ref().map(|stars| *stars.figures());
+        CanvasFigures { kind: self.kind, vertices: self.vertex_count(), counters: self.counters, stars }
+    }
 }
 
 impl Canvas {
@@ -197,7 +242,7 @@ impl Canvas {
     /// # Errors
     /// As for [`Canvas::intrinsic`].
     pub fn refined(&self, field: &dyn MetricField, around: &[VertexId]) -> Result<Self> {
-        let topology = &self.embedded.topology;
+        let topology = &self.embedded.planar.topology;
         // At the border the last edge of a star is known only by the face before it.
         let edges = around.iter().flat_map(|&v| topology.star(v)).flat_map(|h| [h, h.prev()]);
         let ends = |h| [topology.origin(h), topology.target(h)];
@@ -206,8 +251,8 @@ impl Canvas {
         edges.dedup();
         let mut counters = self.counters;
         let embedded = match self.kind {
-            Kind::Isotropic => isotropic::halve(self.embedded.clone(), &edges, &mut counters),
-            Kind::Intrinsic | Kind::StarSet => refine::halve(self.embedded.clone(), field, &edges, &mut counters)?,
+            Kind::Isotropic => isotropic::halve(self.embedded.planar.clone(), &edges, &mut counters),
+            Kind::Intrinsic | Kind::StarSet => refine::halve(self.embedded.planar.clone(), field, &edges, &mut counters)?,
         };
         Self::measured(embedded, field, self.kind, counters)
     }
@@ -217,7 +262,7 @@ impl Canvas {
         let mut canvas = Self::unflipped(embedded, field, kind, counters)?;
         canvas.counters.flips = flip::to_intrinsic_delaunay(&mut canvas.topology);
         if kind == Kind::StarSet {
-            canvas.stars = Some(StarSet::new(&canvas.embedded, field)?);
+            canvas.stars = Some(StarSet::new(&canvas.embedded.planar, field)?);
         }
         Ok(canvas)
     }
@@ -230,29 +275,19 @@ impl Canvas {
     ) -> Result<Self> {
         lengths::measure(&mut embedded, field, &mut counters)?;
         let (topology, finder) = (embedded.topology.clone(), Finder::new(&embedded));
-        Ok(Self { finder, embedded, topology, stars: None, kind, counters })
-    }
-
-    /// What distances travel on: vertices, faces, metric lengths.
-    pub fn topology(&self) -> &Triangulation {
-        &self.topology
+        Ok(Self { embedded: InPlane { planar: embedded, finder }, topology, stars: None, kind, counters })
     }
 
     /// The same vertices, triangulated in the plane.
     pub fn embedded(&self) -> &Planar {
-        &self.embedded
-    }
-
-    /// Number of vertices; all slots are used.
-    pub fn vertex_count(&self) -> usize {
-        self.topology.vertex_slots()
+        &self.embedded.planar
     }
 
     /// The vertices with their tensors and the edges of [`Canvas::embedded`], of a star set those of its stars, with lengths of
     /// geodesics, for methods that know no triangles. `field` is the one that the canvas was made with.
     pub fn graph(&self, field: &dyn MetricField) -> Graph {
-        let topology = &self.embedded.topology;
-        let tensors = self.embedded.positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
+        let topology = &self.embedded.planar.topology;
+        let tensors = self.embedded.planar.positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
         let of_edges = || {
             let mut neighbours = vec![Vec::new(); self.vertex_count()];
             for h in topology.edges() {
@@ -264,34 +299,13 @@ impl Canvas {
         let known = |a, b| topology.find(a, b).or_else(|| topology.find(b, a)).map(|h| topology.length(h));
         // One order, so that the length is the same in both directions.
         let measured = |a: VertexId, b: VertexId| bowed_chord(field, self.position(a.min(b)), self.position(a.max(b)));
-        Graph::new(self.embedded.positions.clone(), tensors, &neighbours)
+        Graph::new(self.embedded.planar.positions.clone(), tensors, &neighbours)
             .with_lengths(|a, b| known(a, b).unwrap_or_else(|| measured(a, b)))
-    }
-
-    /// The stars, if it is a star set.
-    pub fn stars(&self) -> Option<&StarSet> {
-        self.stars.as_ref()
     }
 
     /// The position of a vertex.
     pub fn position(&self, v: VertexId) -> Point {
-        self.embedded.position(v)
-    }
-
-    /// Which canvas it is; one by [`Canvas::straight`] counts as intrinsic.
-    pub fn kind(&self) -> Kind {
-        self.kind
-    }
-
-    /// How the canvas came about.
-    pub fn counters(&self) -> &CanvasCounters {
-        &self.counters
-    }
-
-    /// The canvas in numbers.
-    pub fn figures(&self) -> CanvasFigures {
-        let stars = self.stars.as_ref().map(|stars| *stars.figures());
-        CanvasFigures { kind: self.kind, vertices: self.vertex_count(), counters: self.counters, stars }
+        self.embedded.planar.position(v)
     }
 }
 

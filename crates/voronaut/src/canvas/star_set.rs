@@ -78,6 +78,11 @@ impl StarSet {
         Ok(Self { figures: stars.figures(), stars: stars.by_vertex })
     }
 
+    /// Stars that were found elsewhere.
+    pub(super) fn of(stars: Vec<Star>, figures: StarFigures) -> Self {
+        Self { stars, figures }
+    }
+
     /// The neighbours of every vertex, in order: those in its star and those in whose star it is.
     pub fn neighbours(&self) -> Vec<Vec<u32>> {
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.stars.len()];
@@ -256,19 +261,26 @@ impl<'a> Stars<'a> {
 
     /// Counts.
     pub(super) fn figures(&self) -> StarFigures {
-        let mut figures =
-            StarFigures { vertices: self.steiner.planar.topology.vertex_count(), ..StarFigures::default() };
-        figures.unsettled = self.unsettled;
-        for v in (0..self.by_vertex.len() as u32).map(VertexId) {
-            for spoke in &self.by_vertex[v.index()] {
+        let radius = |v: VertexId, ends| self.circle(v, ends).map(|(_, radius)| radius);
+        StarFigures { unsettled: self.unsettled, ..StarFigures::of(&self.by_vertex, radius) }
+    }
+}
+
+impl StarFigures {
+    /// Counts of stars, with the circumradius of a simplex of the star of a vertex.
+    pub(super) fn of(stars: &[Star], radius: impl Fn(VertexId, [VertexId; 2]) -> Option<f64>) -> Self {
+        let has = |v: VertexId, ends: [VertexId; 2]| stars[v.index()].iter().any(|spoke| spoke.ends == ends);
+        let mut figures = Self { vertices: stars.iter().filter(|star| !star.is_empty()).count(), ..Self::default() };
+        for v in (0..stars.len() as u32).map(VertexId) {
+            for spoke in &stars[v.index()] {
                 let [a, b] = spoke.ends;
-                let others = [(a, self.has(a, [b, v])), (b, self.has(b, [v, a]))];
+                let others = [(a, has(a, [b, v])), (b, has(b, [v, a]))];
                 // Counted at the first of the vertices that have it.
                 if others.iter().all(|&(u, has)| !has || v < u) {
                     figures.simplices += 1;
                     figures.inconsistencies += usize::from(!(others[0].1 && others[1].1));
                 }
-                figures.radius = self.circle(v, spoke.ends).map_or(figures.radius, |(_, r)| figures.radius.max(r));
+                figures.radius = radius(v, spoke.ends).map_or(figures.radius, |r| figures.radius.max(r));
             }
         }
         figures

@@ -23,7 +23,7 @@ impl Diagram<'_> {
             let [a, b] = edge.colours;
             let side = [[a, b], [b, a]].into_iter().find(|side| sides.contains(side));
             if let (Some(side), Some(h)) = (side, edge.border) {
-                let segment = self.canvas.topology().constraint(h);
+                let segment = self.ground.canvas.topology().constraint(h);
                 let label = segment.and_then(|c| domain.pslg().segments.get(c.0 as usize)).map_or(0, |s| s.label);
                 mesh.edges.push(side);
                 mesh.edge_labels.push(label);
@@ -33,7 +33,7 @@ impl Diagram<'_> {
     }
 
     fn regions(&self, triangles: &[[u32; 3]], nerve: &Nerve) -> Vec<i32> {
-        let of = |t: &NerveTriangle| self.canvas.topology().region(t.witness);
+        let of = |t: &NerveTriangle| self.ground.canvas.topology().region(t.witness);
         let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)]);
         let mut beside: BTreeMap<[u32; 2], i32> = BTreeMap::new();
         for t in &nerve.triangles {
@@ -49,7 +49,7 @@ impl Diagram<'_> {
 
     /// The canvas as a mesh, its vertices labelled by colour (-1 where no seed reaches), and their distances.
     pub fn to_coloured_canvas(&self) -> (Mesh, Vec<f64>) {
-        let embedded = self.canvas.embedded();
+        let embedded = self.ground.canvas.embedded();
         let faces = || embedded.topology.faces();
         let mesh = Mesh {
             points: embedded.positions.iter().map(|p| [p.x, p.y, 0.0]).collect(),

@@ -66,7 +66,7 @@ impl Diagram<'_> {
     pub fn to_cells(&self) -> Cells {
         let cutter = Cutter::new(self);
         let mut pieces = cutter.pieces();
-        let topology = &self.canvas.embedded().topology;
+        let topology = &self.ground.canvas.embedded().topology;
         let borders = topology.faces().flat_map(FaceId::half_edges).filter(|&h| topology.twin(h).is_none());
         let mut loops: Vec<Piece> =
             borders.map(|h| Piece { colour: 0, from: topology.origin(h).0, to: topology.target(h).0 }).collect();
@@ -81,7 +81,7 @@ impl Diagram<'_> {
             outlines,
             neighbours: cutter.neighbours(),
             border: chains(&mut loops).into_iter().map(|(_, chain)| cutter.outline(&chain).points).collect(),
-            features: features.map(|h| self.canvas.embedded().ends(h)).collect(),
+            features: features.map(|h| self.ground.canvas.embedded().ends(h)).collect(),
         }
     }
 }
@@ -95,23 +95,23 @@ struct Piece {
     to: u32,
 }
 
-struct Cutter<'a> {
-    diagram: &'a Diagram<'a>,
-    overlap: &'a Overlap,
+struct Cutter<'d, 'a> {
+    diagram: &'d Diagram<'a>,
+    overlap: &'d Overlap,
     colours: Vec<u32>,
     is_orphan: Vec<bool>,
 }
 
-impl<'a> Cutter<'a> {
-    fn new(diagram: &'a Diagram<'a>) -> Self {
+impl<'d, 'a> Cutter<'d, 'a> {
+    fn new(diagram: &'d Diagram<'a>) -> Self {
         let overlap = diagram.overlap();
         let nearest = |v: u32| {
             let list = overlap.at(VertexId(v)).iter();
             let least = list.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
             least.map_or(diagram.label(VertexId(v)).colour, |e| e.0)
         };
-        let colours = (0..diagram.canvas.vertex_count() as u32).into_par_iter().map(nearest).collect();
-        let mut is_orphan = vec![false; diagram.canvas.vertex_count()];
+        let colours = (0..diagram.ground.canvas.vertex_count() as u32).into_par_iter().map(nearest).collect();
+        let mut is_orphan = vec![false; diagram.ground.canvas.vertex_count()];
         diagram.orphans().into_iter().for_each(|v| is_orphan[v.index()] = true);
         Self { diagram, overlap, colours, is_orphan }
     }
@@ -122,7 +122,7 @@ impl<'a> Cutter<'a> {
 
     /// The pieces of all outlines; none around what no seed reaches.
     fn pieces(&self) -> Vec<Piece> {
-        let topology = &self.diagram.canvas.embedded().topology;
+        let topology = &self.diagram.ground.canvas.embedded().topology;
         let mut pieces = Vec::new();
         for f in topology.faces() {
             self.cut(f, &mut pieces);
@@ -143,7 +143,7 @@ impl<'a> Cutter<'a> {
 
     /// The borders within a face: around each corner whose cell does not have the whole face.
     fn cut(&self, f: FaceId, pieces: &mut Vec<Piece>) {
-        let topology = &self.diagram.canvas.embedded().topology;
+        let topology = &self.diagram.ground.canvas.embedded().topology;
         let half_edges = f.half_edges();
         let colours = topology.corners(f).map(|v| self.colour(v));
         let all_differ = colours[0] != colours[1] && colours[1] != colours[2] && colours[2] != colours[0];
@@ -167,17 +167,17 @@ impl<'a> Cutter<'a> {
     }
 
     fn crossing_node(&self, h: HalfEdge) -> u32 {
-        let side = self.diagram.canvas.embedded().topology.twin(h).map_or(h, |t| t.min(h));
+        let side = self.diagram.ground.canvas.embedded().topology.twin(h).map_or(h, |t| t.min(h));
         self.vertices() as u32 + side.0
     }
 
     fn outline(&self, chain: &[u32]) -> Outline {
-        let topology = &self.diagram.canvas.embedded().topology;
+        let topology = &self.diagram.ground.canvas.embedded().topology;
         let (vertices, half_edges) = (self.vertices() as u32, 3 * topology.face_slots() as u32);
         let mut outline = Outline::default();
         for &node in chain {
             let (point, is_corner) = if node < vertices {
-                (self.diagram.canvas.position(VertexId(node)), false)
+                (self.diagram.ground.canvas.position(VertexId(node)), false)
             } else if node < vertices + half_edges {
                 let h = HalfEdge(node - vertices);
                 (self.crossing(h), topology.twin(h).is_none())
@@ -195,7 +195,7 @@ impl<'a> Cutter<'a> {
     /// Whether a chain goes around orphans: vertices of its colour beside it are all of them. (In the embedded canvas an
     /// orphan may hang together with its cell by an edge that the canvas proper does not have.)
     fn bounds_orphan(&self, colour: u32, chain: &[u32]) -> bool {
-        let topology = &self.diagram.canvas.embedded().topology;
+        let topology = &self.diagram.ground.canvas.embedded().topology;
         let half_edges = self.vertices() as u32..(self.vertices() + 3 * topology.face_slots()) as u32;
         let crossed =
             chain.iter().filter(|node| half_edges.contains(node)).map(|node| HalfEdge(node - half_edges.start));
@@ -206,7 +206,7 @@ impl<'a> Cutter<'a> {
 
     /// Where the border between the cells of an edge's ends crosses it.
     fn crossing(&self, h: HalfEdge) -> Point {
-        let embedded = self.diagram.canvas.embedded();
+        let embedded = self.diagram.ground.canvas.embedded();
         let ends = [embedded.topology.origin(h), embedded.topology.target(h)];
         let [p, q] = embedded.ends(h);
         let lead = ends.map(|v| self.square(v, self.colour(ends[1])) - self.square(v, self.colour(ends[0])));
@@ -222,7 +222,7 @@ impl<'a> Cutter<'a> {
 
     /// Where the three cells of a face's corners meet, kept in the face.
     fn meeting(&self, f: FaceId) -> Point {
-        let embedded = self.diagram.canvas.embedded();
+        let embedded = self.diagram.ground.canvas.embedded();
         let corners = embedded.topology.corners(f);
         let near = corners.map(|v| {
             let colour = self.colour(v);
@@ -241,7 +241,7 @@ impl<'a> Cutter<'a> {
     }
 
     fn neighbours(&self) -> Vec<[u32; 2]> {
-        let topology = &self.diagram.canvas.embedded().topology;
+        let topology = &self.diagram.ground.canvas.embedded().topology;
         let ends = topology.edges().map(|h| [topology.origin(h), topology.target(h)].map(|v| self.colour(v)));
         let border = ends.filter(|&[a, b]| a != b && a != NO_COLOUR && b != NO_COLOUR);
         let mut pairs: Vec<[u32; 2]> = border.map(|[a, b]| [a.min(b), a.max(b)]).collect();

@@ -2,8 +2,8 @@
 //! Shewchuk ([`super::Kind`]).
 
 use super::Seed;
+use super::ground::{Flat, Straight};
 use super::nearest::{Nearest, Site};
-use crate::canvas::Canvas;
 use crate::geodesic::{Label, MarchCounters, Propagation};
 use crate::geometry::Point;
 use crate::metric::MetricField;
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 /// Which tensor a chord is measured with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Chords {
+pub enum Chords {
     /// That at the seed (Labelle and Shewchuk).
     InMetricOfSeed,
     /// That at the place whose distance it is (Du and Wang).
@@ -21,16 +21,22 @@ pub(super) enum Chords {
 
 impl Chords {
     /// The distance of a place from a seed.
-    pub(super) fn length(self, field: &dyn MetricField, seed: Point, place: Point) -> f64 {
+    fn measured(self, field: &dyn MetricField, seed: Point, place: Point) -> f64 {
         let frozen_at = match self {
             Chords::InMetricOfSeed => seed,
             Chords::InMetricOfPlace => place,
         };
         field.at(frozen_at).length(place - seed)
     }
+}
+
+impl<'a> Straight<'a, Flat<'a>> for Chords {
+    fn length(&self, ground: Flat, seed: Point, place: Point) -> f64 {
+        self.measured(ground.field, seed, place)
+    }
 
     /// Every canvas vertex with its nearest seed, of equally near ones the first: exact but for the rounding of lengths.
-    pub(super) fn propagate(self, canvas: &Canvas, field: &dyn MetricField, seeds: &[Option<Seed>]) -> Propagation {
+    fn propagate(&self, Flat { canvas, field }: Flat, seeds: &[Option<Seed<Point>>]) -> Propagation {
         let sites = (0..).zip(seeds).filter_map(|(colour, seed)| {
             let at = seed.as_ref()?.at;
             Some(Site { at, colour, tensor: field.at(at) })
@@ -38,7 +44,7 @@ impl Chords {
         let nearest = Nearest::new(sites.collect());
         let label = |v: u32| {
             let place = canvas.position(VertexId(v));
-            let frozen = (self == Chords::InMetricOfPlace).then(|| field.at(place));
+            let frozen = (*self == Chords::InMetricOfPlace).then(|| field.at(place));
             nearest.find(place, frozen).map_or(Label::FAR, |(distance, colour)| Label::of_source(distance, colour))
         };
         let labels = (0..canvas.vertex_count() as u32).into_par_iter().with_min_len(1024).map(label).collect();
@@ -49,6 +55,7 @@ impl Chords {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::canvas::Canvas;
     use crate::diagram::test_diagrams::{plate_with_hole, seeds_of};
     use crate::diagram::{Diagram, Kind};
     use crate::domain::Domain;
@@ -71,7 +78,7 @@ mod tests {
         for (kind, chords) in RIVALS {
             let diagram = Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap();
             for v in vertices(&canvas) {
-                let to = |i: usize| chords.length(&swirl, seeds[i], canvas.position(v));
+                let to = |i: usize| chords.measured(&swirl, seeds[i], canvas.position(v));
                 let best = (0..seeds.len()).min_by(|&i, &j| to(i).total_cmp(&to(j))).unwrap();
                 assert_eq!((diagram.colour(v), diagram.distance(v)), (Some(best as u32), to(best)), "{kind} {v:?}");
             }
@@ -83,7 +90,7 @@ mod tests {
         // Twice as long for each unit of x beyond 0: only the metric of the place sees that.
         let stretched = |p: Point| Tensor::new((1.0 + p.x.max(0.0)).powi(2), 0.0, 1.0);
         let [seed, place] = [Point::new(0.0, 0.0), Point::new(2.0, 0.0)];
-        let length = |chords: Chords| chords.length(&stretched, seed, place);
+        let length = |chords: Chords| chords.measured(&stretched, seed, place);
         assert_eq!((length(Chords::InMetricOfSeed), length(Chords::InMetricOfPlace)), (2.0, 6.0));
     }
 

@@ -2,7 +2,7 @@
 
 use super::descend::Descent;
 use super::seeds::{self, Care, Start};
-use super::{Diagram, solver};
+use super::{Diagram, Flat, solver};
 use crate::canvas::{Border, Canvas};
 use crate::error::Result;
 use crate::geodesic::{Heat, Lattice, MarchCounters, Method, Polyline, Sources, bowed_chord, straighten};
@@ -34,7 +34,7 @@ impl<'a> Distances<'a> {
             Method::Lbr => (on_lattice(canvas, field, from, &starts), Vec::new(), None),
             Method::Heat => (Heat::on(canvas.topology())?.distances(&sources(canvas, &starts))?, Vec::new(), None),
             _ => {
-                let solver = solver(canvas, field, method)?;
+                let solver = solver(Flat { canvas, field }, method)?;
                 let diagram = Diagram::from_starts(canvas, field, from, starts.clone(), solver);
                 let vertices = || (0..canvas.vertex_count() as u32).map(VertexId);
                 let parents = vertices().map(|v| diagram.parent(v)).collect();

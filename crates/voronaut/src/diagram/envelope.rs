@@ -5,7 +5,7 @@
 //! functions, whatever the size of the face: the Voronoi vertices in it need not be separated by canvas vertices, and each is
 //! found with its place. On a curved canvas this holds to second order in the size of the face.
 
-use super::Diagram;
+use super::{Diagram, Ground};
 use super::nerve::{Nerve, NerveEdge, NerveTriangle};
 use super::overlap::Overlap;
 use crate::triangulation::{FaceId, HalfEdge, VertexId, smallest_first};
@@ -29,12 +29,12 @@ impl<const N: usize> Near<N> {
     }
 }
 
-impl Diagram<'_> {
+impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// The nerve of the cells with their borders drawn within canvas faces: exact on a flat canvas, where
     /// [`Diagram::nerve`] needs witnesses among whole faces. Distances are computed anew around every cell.
     pub fn sharp_nerve(&self) -> Nerve {
         let overlap = self.overlap();
-        let topology = self.canvas.topology();
+        let topology = self.ground.topology();
         let faces: Vec<FaceId> = topology.faces().collect();
         let triangles: Vec<NerveTriangle> =
             faces.par_iter().with_min_len(1024).flat_map_iter(|&f| self.vertices_in(overlap, f)).collect();
@@ -46,7 +46,7 @@ impl Diagram<'_> {
 
     /// The Voronoi vertices in a face.
     fn vertices_in(&self, overlap: &Overlap, witness: FaceId) -> Vec<NerveTriangle> {
-        let near = near(overlap, self.canvas.topology().corners(witness));
+        let near = near(overlap, self.ground.topology().corners(witness));
         let mut found = Vec::new();
         for i in 0..near.len() {
             for j in 0..i {
@@ -73,7 +73,7 @@ impl Diagram<'_> {
 
     /// The pairs of cells whose border crosses an edge.
     fn borders_on(&self, overlap: &Overlap, h: HalfEdge) -> Vec<NerveEdge> {
-        let topology = self.canvas.topology();
+        let topology = self.ground.topology();
         let near = near(overlap, [topology.origin(h), topology.target(h)]);
         let border = topology.twin(h).is_none().then_some(h);
         let mut found = Vec::new();

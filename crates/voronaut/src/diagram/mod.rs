@@ -10,6 +10,7 @@ mod chords;
 mod descend;
 mod distances;
 mod envelope;
+mod ground;
 mod kind;
 mod nearest;
 mod nerve;
@@ -25,6 +26,7 @@ mod witnesses;
 
 pub use cells::{Cells, Outline};
 pub use distances::Distances;
+pub use ground::{Flat, Ground};
 pub use kind::Kind;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle};
 pub use passes::Passes;
@@ -32,56 +34,45 @@ pub use paths::Paths;
 pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
 pub use witnesses::Witnesses;
 
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Draped};
 use crate::error::{Error, Result};
-use crate::geodesic::{
-    Dijkstra, Geodesic, Konukoglu, Label, MarchCounters, Marching, Method, NO_COLOUR, Propagation, Sources, Stvd,
-    Support,
-};
+use crate::geodesic::{Geodesic, Label, MarchCounters, Marching, Method, NO_COLOUR, Propagation, Sources, Support};
 use crate::geometry::Point;
 use crate::metric::{MetricField, check_field};
 use crate::triangulation::VertexId;
 use chords::Chords;
+use ground::{Straight as _, solver};
 use overlap::Overlap;
 use seeds::{Care, Start};
 use std::sync::OnceLock;
 
-/// See the [module](self). Seed i has colour i; a removed seed's colour is not used again.
-pub struct Diagram<'a> {
-    canvas: &'a Canvas,
-    field: &'a dyn MetricField,
-    measure: Measure<'a>,
-    seeds: Vec<Option<Seed>>,
+/// See the [module](self). Seed i has colour i; a removed seed's colour is not used again. It is the same for every
+/// [`Ground`]: a `Diagram<'a>` lies in the plane, a [`SurfaceDiagram`] on a surface.
+pub struct Diagram<'a, G: Ground<'a> = Flat<'a>> {
+    ground: G,
+    measure: Measure<'a, G>,
+    seeds: Vec<Option<Seed<G::Place>>>,
     sources: Sources,
     propagation: Propagation,
     overlap: OnceLock<Overlap>,
 }
 
+/// The diagram of seeds on a surface.
+pub type SurfaceDiagram<'a> = Diagram<'a, &'a Canvas<Draped<'a>>>;
+
 /// How distances from seeds come about.
-enum Measure<'a> {
+enum Measure<'a, G: Ground<'a>> {
     /// Along shortest ways on the canvas.
     Ways(Box<dyn Geodesic + 'a>),
     /// Straight.
-    Chords(Chords),
+    Chords(G::Straight),
 }
 
 /// A seed: where it is, and the canvas vertices that it gives a distance to.
 #[derive(Clone, Debug)]
-struct Seed {
-    at: Point,
+pub struct Seed<P> {
+    at: P,
     starts: Vec<Start>,
-}
-
-/// # Errors
-/// [`Error::Unsupported`] of a method that does not drive diagrams.
-fn solver<'a>(canvas: &'a Canvas, field: &dyn MetricField, method: Method) -> Result<Box<dyn Geodesic + 'a>> {
-    method.demand_diagrams()?;
-    Ok(match method {
-        Method::March | Method::Lbr | Method::Heat => Box::new(Marching::on(canvas.topology())),
-        Method::Stvd { window } => Box::new(Stvd::on(canvas.graph(field), window)),
-        Method::Dijkstra => Box::new(Dijkstra::on(canvas.graph(field))),
-        Method::Konukoglu => Box::new(Konukoglu::on(canvas.graph(field))),
-    })
 }
 
 impl<'a> Diagram<'a> {
@@ -113,7 +104,7 @@ impl<'a> Diagram<'a> {
         method: Method,
     ) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, vertices, true, Care::Full)?;
-        Ok(Self::from_starts(canvas, field, vertices, starts, solver(canvas, field, method)?))
+        Ok(Self::from_starts(canvas, field, vertices, starts, solver(Flat { canvas, field }, method)?))
     }
 
     /// [`Diagram::of_vertices`] with distances that are poorer around seeds where the metric varies much, for a tenth of
@@ -146,7 +137,7 @@ impl<'a> Diagram<'a> {
     /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams.
     pub fn by_method(canvas: &'a Canvas, field: &'a dyn MetricField, seeds: &[Point], method: Method) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Full)?;
-        Ok(Self::from_starts(canvas, field, seeds, starts, solver(canvas, field, method)?))
+        Ok(Self::from_starts(canvas, field, seeds, starts, solver(Flat { canvas, field }, method)?))
     }
 
     /// The diagram of a kind; a method is for the Riemannian one.
@@ -185,9 +176,59 @@ impl<'a> Diagram<'a> {
         field: &'a dyn MetricField,
         seeds: &[Point],
         starts: Vec<Vec<Start>>,
-        measure: Measure<'a>,
+        measure: Measure<'a, Flat<'a>>,
     ) -> Self {
-        let mut sources = Sources::new(canvas.vertex_count());
+        Self::made(Flat { canvas, field }, seeds, starts, measure)
+    }
+
+    /// Inserts a seed by one front from it; returns its colour.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] outside the domain; the diagram is as before.
+    pub fn insert(&mut self, at: Point) -> Result<u32> {
+        let colour = self.seeds.len() as u32;
+        let starts = seeds::starts(self.ground.canvas, self.ground.field, at)?;
+        self.seeds.push(None);
+        self.place(colour, at, starts);
+        Ok(colour)
+    }
+
+    /// Moves a seed, which keeps its colour.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where there is no such seed, or it would leave the domain; the diagram is as before.
+    pub fn move_to(&mut self, colour: u32, to: Point) -> Result<()> {
+        if self.seed(colour).is_none() {
+            let help = "colours are those that insertions returned and removals have not ended";
+            return Err(Error::domain("no such seed", format!("colour {colour}"), help));
+        }
+        let starts = seeds::starts(self.ground.canvas, self.ground.field, to)?;
+        let changed = self.lift(colour);
+        self.sources_of(colour, &starts);
+        let all: Vec<VertexId> = changed.into_iter().chain(starts.iter().map(|s| s.vertex)).collect();
+        self.seeds[colour as usize] = Some(Seed { at: to, starts });
+        self.mend(&all);
+        Ok(())
+    }
+
+    /// The canvas.
+    pub fn canvas(&self) -> &'a Canvas {
+        self.ground.canvas
+    }
+
+    /// By what distance its cells are the nearest places.
+    pub fn kind(&self) -> Kind {
+        match self.measure {
+            Measure::Ways(_) => Kind::Riemannian,
+            Measure::Chords(Chords::InMetricOfPlace) => Kind::DuWang,
+            Measure::Chords(Chords::InMetricOfSeed) => Kind::LabelleShewchuk,
+        }
+    }
+}
+
+impl<'a, G: Ground<'a>> Diagram<'a, G> {
+    fn made(ground: G, seeds: &[G::Place], starts: Vec<Vec<Start>>, measure: Measure<'a, G>) -> Self {
+        let mut sources = Sources::new(ground.topology().vertex_slots());
         let mut placed = Vec::with_capacity(seeds.len());
         for (i, (&at, starts)) in seeds.iter().zip(starts).enumerate() {
             for s in &starts {
@@ -197,21 +238,9 @@ impl<'a> Diagram<'a> {
         }
         let propagation = match &measure {
             Measure::Ways(solver) => solver.propagate(&sources),
-            Measure::Chords(chords) => chords.propagate(canvas, field, &placed),
+            Measure::Chords(chords) => chords.propagate(ground, &placed),
         };
-        Self { canvas, field, measure, seeds: placed, sources, propagation, overlap: OnceLock::new() }
-    }
-
-    /// Inserts a seed by one front from it; returns its colour.
-    ///
-    /// # Errors
-    /// [`Error::Domain`] outside the domain; the diagram is as before.
-    pub fn insert(&mut self, at: Point) -> Result<u32> {
-        let colour = self.seeds.len() as u32;
-        let starts = seeds::starts(self.canvas, self.field, at)?;
-        self.seeds.push(None);
-        self.place(colour, at, starts);
-        Ok(colour)
+        Self { ground, measure, seeds: placed, sources, propagation, overlap: OnceLock::new() }
     }
 
     /// Inserts a seed at a canvas vertex; returns its colour.
@@ -226,9 +255,9 @@ impl<'a> Diagram<'a> {
 
     fn insert_with(&mut self, v: VertexId, care: Care) -> u32 {
         let colour = self.seeds.len() as u32;
-        let starts = seeds::starts_at_vertex(self.canvas, self.field, v, care);
+        let starts = self.ground.starts_at_vertex(v, care);
         self.seeds.push(None);
-        self.place(colour, self.canvas.position(v), starts);
+        self.place(colour, self.ground.place(v), starts);
         colour
     }
 
@@ -239,40 +268,8 @@ impl<'a> Diagram<'a> {
         !changed.is_empty()
     }
 
-    /// Moves a seed, which keeps its colour.
-    ///
-    /// # Errors
-    /// [`Error::Domain`] where there is no such seed, or it would leave the domain; the diagram is as before.
-    pub fn move_to(&mut self, colour: u32, to: Point) -> Result<()> {
-        if self.seed(colour).is_none() {
-            let help = "colours are those that insertions returned and removals have not ended";
-            return Err(Error::domain("no such seed", format!("colour {colour}"), help));
-        }
-        let starts = seeds::starts(self.canvas, self.field, to)?;
-        let changed = self.lift(colour);
-        self.sources_of(colour, &starts);
-        let all: Vec<VertexId> = changed.into_iter().chain(starts.iter().map(|s| s.vertex)).collect();
-        self.seeds[colour as usize] = Some(Seed { at: to, starts });
-        self.mend(&all);
-        Ok(())
-    }
-
-    /// The canvas.
-    pub fn canvas(&self) -> &'a Canvas {
-        self.canvas
-    }
-
-    /// By what distance its cells are the nearest places.
-    pub fn kind(&self) -> Kind {
-        match self.measure {
-            Measure::Ways(_) => Kind::Riemannian,
-            Measure::Chords(Chords::InMetricOfPlace) => Kind::DuWang,
-            Measure::Chords(Chords::InMetricOfSeed) => Kind::LabelleShewchuk,
-        }
-    }
-
     /// Where a seed is; `None` of a removed one.
-    pub fn seed(&self, colour: u32) -> Option<Point> {
+    pub fn seed(&self, colour: u32) -> Option<G::Place> {
         self.seeds.get(colour as usize)?.as_ref().map(|seed| seed.at)
     }
 
@@ -294,7 +291,7 @@ impl<'a> Diagram<'a> {
 
     /// The canvas vertex that the distance came from, the nearer to the seed of two; `None` beside the seed.
     pub fn parent(&self, v: VertexId) -> Option<VertexId> {
-        let topology = self.canvas.topology();
+        let topology = self.ground.topology();
         match self.label(v).support() {
             Support::Nothing | Support::Source => None,
             Support::Neighbour(u) => Some(u),
@@ -321,8 +318,12 @@ impl<'a> Diagram<'a> {
 
     /// The canvas vertex farthest from its seed, and its distance: where farthest-point refinement puts the next seed.
     pub fn farthest(&self) -> Option<(VertexId, f64)> {
-        let vertices = (0..self.canvas.vertex_count() as u32).map(VertexId);
+        let vertices = (0..self.vertex_count() as u32).map(VertexId);
         vertices.map(|v| (v, self.distance(v))).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
+    }
+
+    fn vertex_count(&self) -> usize {
+        self.ground.topology().vertex_slots()
     }
 
     /// Canvas vertices per colour.
@@ -336,7 +337,7 @@ impl<'a> Diagram<'a> {
         sizes
     }
 
-    fn place(&mut self, colour: u32, at: Point, starts: Vec<Start>) {
+    fn place(&mut self, colour: u32, at: G::Place, starts: Vec<Start>) {
         self.sources_of(colour, &starts);
         let changed: Vec<VertexId> = starts.iter().map(|s| s.vertex).collect();
         self.seeds[colour as usize] = Some(Seed { at, starts });
@@ -363,7 +364,7 @@ impl<'a> Diagram<'a> {
         self.overlap = OnceLock::new();
         match &self.measure {
             Measure::Ways(solver) => solver.update(&self.sources, changed, &mut self.propagation),
-            Measure::Chords(chords) => self.propagation = chords.propagate(self.canvas, self.field, &self.seeds),
+            Measure::Chords(chords) => self.propagation = chords.propagate(self.ground, &self.seeds),
         }
     }
 }

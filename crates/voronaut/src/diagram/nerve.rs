@@ -1,6 +1,6 @@
 //! The nerve of the diagram and its witnesses (RR-9103, section 6.4 and Figure 7).
 
-use super::Diagram;
+use super::{Diagram, Ground};
 use crate::geodesic::NO_COLOUR;
 use crate::triangulation::{FaceId, HalfEdge, VertexId, smallest_first};
 
@@ -75,7 +75,7 @@ impl Nerve {
     }
 }
 
-impl Diagram<'_> {
+impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// Reads the nerve off the canvas, as the report does: from canvas edges with two colours, faces with three.
     pub fn nerve(&self) -> Nerve {
         Nerve::new(self.coloured_vertices(), self.bicoloured_edges(), self.tricoloured_faces())
@@ -86,13 +86,13 @@ impl Diagram<'_> {
     /// simplices of any star, which where stars disagree may exclude each other; else the faces.
     pub fn witnesses_of_triangles(&self) -> Vec<([u32; 3], [VertexId; 3])> {
         let coloured = |simplex| Some((self.three_colours(simplex)?, simplex));
-        let mut found: Vec<([u32; 3], [VertexId; 3])> = match self.canvas.stars() {
+        let mut found: Vec<([u32; 3], [VertexId; 3])> = match self.ground.stars() {
             None => {
-                let topology = self.canvas.topology();
+                let topology = self.ground.topology();
                 topology.faces().filter_map(|f| coloured(topology.corners(f))).collect()
             }
             Some(stars) => {
-                let vertices = (0..self.canvas.vertex_count() as u32).map(VertexId);
+                let vertices = (0..self.vertex_count() as u32).map(VertexId);
                 let simplices = vertices.flat_map(|v| stars.star(v).map(move |[a, b]| [v, a, b]));
                 simplices.filter_map(coloured).collect()
             }
@@ -111,7 +111,7 @@ impl Diagram<'_> {
 
     pub(super) fn coloured_vertices(&self) -> Vec<(u32, VertexId)> {
         let mut first = vec![None; self.colours()];
-        for v in (0..self.canvas.vertex_count() as u32).map(VertexId) {
+        for v in (0..self.vertex_count() as u32).map(VertexId) {
             if let Some(colour) = self.colour(v) {
                 let best: &mut Option<VertexId> = &mut first[colour as usize];
                 if best.is_none_or(|b| self.distance(v) < self.distance(b)) {
@@ -123,7 +123,7 @@ impl Diagram<'_> {
     }
 
     fn bicoloured_edges(&self) -> Vec<NerveEdge> {
-        let topology = self.canvas.topology();
+        let topology = self.ground.topology();
         let between = |h: HalfEdge| {
             let [a, b] = [topology.origin(h), topology.target(h)].map(|v| self.label(v).colour);
             let border = topology.twin(h).is_none().then_some(h);
@@ -137,7 +137,7 @@ impl Diagram<'_> {
     }
 
     fn tricoloured_faces(&self) -> Vec<NerveTriangle> {
-        let topology = self.canvas.topology();
+        let topology = self.ground.topology();
         let of_face = |witness: FaceId| {
             let colours = self.three_colours(topology.corners(witness))?;
             Some(NerveTriangle { colours, witness, witnesses: 1, fourth: None, square: None })

@@ -1,10 +1,10 @@
 //! Orphans: what of a cell does not hang together with its seed (RR-9103, section 1; Labelle and Shewchuk 2003).
 
-use super::Diagram;
+use super::{Diagram, Ground};
 use crate::geodesic::NO_COLOUR;
 use crate::triangulation::{Triangulation, VertexId};
 
-impl Diagram<'_> {
+impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// Canvas vertices that canvas edges of their colour do not connect to their seed (to a vertex of its colour in its
     /// sight), in order. Fronts leave none but where a cell is thinner than the canvas is fine.
     pub fn orphans(&self) -> Vec<VertexId> {
@@ -20,7 +20,7 @@ impl Diagram<'_> {
             let starts = seed.iter().flat_map(|seed| &seed.starts).map(|start| start.vertex);
             starts.filter(move |&v| self.label(v).colour == colour)
         });
-        components(self.canvas.topology(), &|v| self.label(v).colour, starts)
+        components(self.ground.topology(), &|v| self.label(v).colour, starts)
     }
 }
 

@@ -3,7 +3,8 @@
 //! Where two fronts meet, values are poor on both sides, for neither crosses a face whose vertices have different colours.
 //! So each seed's distances are computed once more, by themselves, on its cell and a few rings around it.
 
-use super::{Diagram, Measure, Seed};
+use super::ground::Straight as _;
+use super::{Diagram, Ground, Measure, Seed};
 use crate::geodesic::NO_COLOUR;
 use crate::triangulation::VertexId;
 use rayon::prelude::*;
@@ -34,9 +35,9 @@ impl Overlap {
 
 type Patch = Vec<(VertexId, f64)>;
 /// The distances of a patch's vertices to its seed.
-type Measured<'a> = dyn FnMut(&Seed, &[VertexId]) -> Vec<f64> + 'a;
+type Measured<'m, P> = dyn FnMut(&Seed<P>, &[VertexId]) -> Vec<f64> + 'm;
 
-impl Diagram<'_> {
+impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// The distances of every cell and its surroundings; computed, in parallel, when they are first asked for after a
     /// change.
     pub(super) fn overlap(&self) -> &Overlap {
@@ -48,21 +49,21 @@ impl Diagram<'_> {
         let colours: Vec<u32> = (0..self.colours() as u32).collect();
         let patches = |chunk: &[u32]| -> Vec<Patch> {
             let mut distances = self.patch_distances();
-            let mut seen = vec![false; self.canvas.vertex_count()];
+            let mut seen = vec![false; self.vertex_count()];
             chunk
                 .iter()
                 .map(|&colour| self.patch(colour, &cells[colour as usize], distances.as_mut(), &mut seen))
                 .collect()
         };
         let patches: Vec<Patch> = colours.par_chunks(CELLS).flat_map_iter(patches).collect();
-        gather(self.canvas.vertex_count(), &patches)
+        gather(self.vertex_count(), &patches)
     }
 
     /// The distances of vertices to one seed after the other.
-    fn patch_distances(&self) -> Box<Measured<'_>> {
+    fn patch_distances(&self) -> Box<Measured<'_, G::Place>> {
         match &self.measure {
             Measure::Chords(chords) => Box::new(|seed, vertices| {
-                let to = |&v: &VertexId| chords.length(self.field, seed.at, self.canvas.position(v));
+                let to = |&v: &VertexId| chords.length(self.ground, seed.at, self.ground.place(v));
                 vertices.iter().map(to).collect()
             }),
             Measure::Ways(solver) => {
@@ -77,7 +78,7 @@ impl Diagram<'_> {
 
     fn cells(&self) -> Vec<Vec<VertexId>> {
         let mut cells = vec![Vec::new(); self.colours()];
-        for v in (0..self.canvas.vertex_count() as u32).map(VertexId) {
+        for v in (0..self.vertex_count() as u32).map(VertexId) {
             let colour = self.label(v).colour;
             if colour != NO_COLOUR {
                 cells[colour as usize].push(v);
@@ -86,9 +87,9 @@ impl Diagram<'_> {
         cells
     }
 
-    fn patch(&self, colour: u32, cell: &[VertexId], measured: &mut Measured, seen: &mut [bool]) -> Patch {
+    fn patch(&self, colour: u32, cell: &[VertexId], measured: &mut Measured<'_, G::Place>, seen: &mut [bool]) -> Patch {
         let Some(seed) = &self.seeds[colour as usize] else { return Patch::new() };
-        let topology = self.canvas.topology();
+        let topology = self.ground.topology();
         let mut vertices: Vec<VertexId> = Vec::with_capacity(2 * cell.len());
         let candidates = seed.starts.iter().map(|s| s.vertex).chain(cell.iter().copied());
         vertices.extend(candidates.filter(|v| !std::mem::replace(&mut seen[v.index()], true)));

@@ -1,6 +1,6 @@
 //! Where the shortest ways between neighbouring seeds pass from cell to cell, and how long they are.
 
-use super::Diagram;
+use super::{Diagram, Ground};
 use crate::triangulation::VertexId;
 use std::collections::HashMap;
 
@@ -10,12 +10,12 @@ pub struct Passes {
     best: HashMap<[u32; 2], (f64, VertexId)>,
 }
 
-impl Diagram<'_> {
+impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// The passes between all seeds whose cells touch, or nearly do.
     pub fn passes(&self) -> Passes {
         let overlap = self.overlap();
         let mut best: HashMap<[u32; 2], (f64, VertexId)> = HashMap::new();
-        for v in (0..self.canvas.vertex_count() as u32).map(VertexId) {
+        for v in (0..self.vertex_count() as u32).map(VertexId) {
             let list = overlap.at(v);
             for (k, &(a, to_a)) in list.iter().enumerate() {
                 for &(b, to_b) in &list[k + 1..] {

@@ -1,6 +1,6 @@
 //! Shortest paths: from a point to its seed, and between neighbouring seeds.
 
-use super::Diagram;
+use super::{Diagram, Flat};
 use super::descend::Descent;
 use super::overlap::Overlap;
 use crate::canvas::Border;
@@ -11,13 +11,13 @@ use crate::triangulation::VertexId;
 use rayon::prelude::*;
 
 /// Diagrams with the distances of every cell and its surroundings, from which any number of paths are traced.
-pub struct Paths<'a> {
-    diagram: &'a Diagram<'a>,
-    overlap: &'a Overlap,
+pub struct Paths<'d, 'a> {
+    diagram: &'d Diagram<'a>,
+    overlap: &'d Overlap,
     border: Border<'a>,
 }
 
-impl Diagram<'_> {
+impl<'a> Diagram<'a> {
     /// The way from a point of the domain to its nearest seed, by descent on the canvas: a polyline within the domain that
     /// begins at the point and ends at the seed, as good as the canvas is fine. [`Paths::geodesic`] has it straight. Where
     /// many are wanted, [`Diagram::paths`] does the work that they share once.
@@ -29,12 +29,12 @@ impl Diagram<'_> {
     }
 
     /// What all paths need: distances computed anew around every cell.
-    pub fn paths(&self) -> Paths<'_> {
-        Paths { diagram: self, overlap: self.overlap(), border: Border::of(self.canvas) }
+    pub fn paths(&self) -> Paths<'_, 'a> {
+        Paths { diagram: self, overlap: self.overlap(), border: Border::of(self.ground.canvas) }
     }
 }
 
-impl Paths<'_> {
+impl Paths<'_, '_> {
     /// See [`Diagram::path`].
     ///
     /// # Errors
@@ -52,7 +52,7 @@ impl Paths<'_> {
     /// # Errors
     /// As for [`Diagram::path`].
     pub fn geodesic(&self, from: Point) -> Result<Polyline> {
-        Ok(straighten(self.diagram.field, &self.path(from)?, &self.border))
+        Ok(straighten(self.diagram.ground.field, &self.path(from)?, &self.border))
     }
 
     /// The geodesics between pairs of seeds whose cells touch, such as the edges of the nerve or of a dual, in parallel.
@@ -66,30 +66,30 @@ impl Paths<'_> {
             let pass = passes.vertex(a, b);
             let ends = [self.diagram.seed(a)?, self.diagram.seed(b)?];
             let joined = pass.and_then(|v| {
-                let at = self.diagram.canvas.position(v);
+                let at = self.diagram.ground.canvas.position(v);
                 let mut path = self.descend(at, a).ok()?;
                 path.reverse();
                 path.extend(self.descend(at, b).ok()?.into_iter().skip(1));
                 Some(path)
             });
             let straight = || (!self.border.bars(ends[0], ends[1])).then(|| ends.to_vec());
-            Some(straighten(self.diagram.field, &joined.or_else(straight)?, &self.border))
+            Some(straighten(self.diagram.ground.field, &joined.or_else(straight)?, &self.border))
         };
         pairs.par_iter().map(join).collect()
     }
 
     fn descend(&self, from: Point, colour: u32) -> Result<Vec<Point>> {
         let distance = |v: VertexId| self.overlap.distance(v, colour).unwrap_or(f64::INFINITY);
-        let Diagram { canvas, field, .. } = self.diagram;
+        let Flat { canvas, field } = self.diagram.ground;
         let seed = self.diagram.seeds.get(colour as usize).and_then(Option::as_ref);
         let seeds: Vec<_> = seed.iter().map(|s| (s.at, s.starts.as_slice())).collect();
         let parent = |v: VertexId| self.diagram.parent(v).filter(|_| self.diagram.colour(v) == Some(colour));
-        Descent { canvas, field: *field, seeds: &seeds, distance: &distance, parent: &parent }.trace(from)
+        Descent { canvas, field, seeds: &seeds, distance: &distance, parent: &parent }.trace(from)
     }
 
     /// The seed with the least interpolated distance at a point.
     fn nearest(&self, from: Point) -> Option<u32> {
-        let weights = self.diagram.canvas.weights(from)?;
+        let weights = self.diagram.ground.canvas.weights(from)?;
         let at = |colour: u32| {
             let known = |v: VertexId| self.overlap.distance(v, colour).unwrap_or(f64::INFINITY);
             weights.iter().map(|&(v, weight)| weight * known(v)).sum::<f64>()

@@ -72,7 +72,7 @@ fn unresolved(diagram: &Diagram) -> Vec<[VertexId; 3]> {
 fn coarse(diagram: &Diagram, simplices: &[[VertexId; 3]]) -> Vec<VertexId> {
     let canvas = diagram.canvas();
     let is_coarse = |&&[a, b, c]: &&[VertexId; 3]| {
-        let side = |[u, v]: [VertexId; 2]| chord(diagram.field, canvas.position(u), canvas.position(v));
+        let side = |[u, v]: [VertexId; 2]| chord(diagram.ground.field, canvas.position(u), canvas.position(v));
         let longest = [[a, b], [b, c], [c, a]].map(side).into_iter().fold(0.0, f64::max);
         let nearest = [a, b, c].map(|v| diagram.distance(v)).into_iter().fold(f64::INFINITY, f64::min);
         longest > TINY * nearest

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 /// A canvas vertex in sight of a seed, and the metric length of the geodesic between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Start {
+pub struct Start {
     pub(super) vertex: VertexId,
     pub(super) distance: f64,
 }
@@ -23,7 +23,7 @@ const SIGHT: u32 = 3;
 
 /// What starts may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Care {
+pub enum Care {
     /// All vertices in sight, each by the length of its geodesic.
     Full,
     /// Beyond the face of the seed by straight lines and Simpson's rule: two evaluations each.

@@ -1,6 +1,6 @@
 //! All witnesses of the nerve (RR-9103, section 6.4 and Figure 7), to be drawn.
 
-use super::Diagram;
+use super::{Diagram, Ground};
 use crate::geodesic::NO_COLOUR;
 use crate::geometry::Point;
 use crate::triangulation::FaceId;
@@ -14,10 +14,10 @@ pub struct Witnesses {
     pub edges: Vec<FaceId>,
 }
 
-impl Diagram<'_> {
+impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// All witnesses, in order: faces of the canvas that distances travel on, as for [`Diagram::nerve`].
     pub fn witnesses(&self) -> Witnesses {
-        let topology = self.canvas.topology();
+        let topology = self.ground.topology();
         let mut witnesses = Witnesses::default();
         for f in topology.faces() {
             let [a, b, c] = topology.corners(f).map(|v| self.label(v).colour);
@@ -29,12 +29,14 @@ impl Diagram<'_> {
         }
         witnesses
     }
+}
 
+impl Diagram<'_> {
     /// The corners of faces of the canvas that distances travel on. Sides that flips have made are no straight lines in
     /// the plane; triangles drawn from these points are their chords.
     pub fn corners_of(&self, faces: &[FaceId]) -> Vec<[Point; 3]> {
-        let topology = self.canvas.topology();
-        faces.iter().map(|&f| topology.corners(f).map(|v| self.canvas.position(v))).collect()
+        let topology = self.ground.topology();
+        faces.iter().map(|&f| topology.corners(f).map(|v| self.ground.canvas.position(v))).collect()
     }
 }
 

@@ -1,13 +1,36 @@
 //! What methods that know no triangles travel on: vertices with a tensor each, and who is whose neighbour.
 
-use crate::geometry::{Point, Tensor};
+use crate::geometry::{Point, Tensor, Vector};
 use crate::triangulation::VertexId;
 use rayon::prelude::*;
+use std::fmt;
+use std::sync::Arc;
+
+/// How the vertices of a graph see each other. Each has a frame of its own: that of the plane, or one of its tangent plane.
+pub trait Sight: Send + Sync {
+    /// The straight line from one vertex to another, in the frame of the first of the three.
+    fn line(&self, seen_from: VertexId, from: VertexId, to: VertexId) -> Vector;
+    /// A tensor in the frame of the second vertex, turned to that of the first.
+    fn turned(&self, seen_from: VertexId, at: VertexId, tensor: Tensor) -> Tensor;
+}
+
+/// Vertices of the plane, at these positions.
+struct InPlane(Vec<Point>);
+
+impl Sight for InPlane {
+    fn line(&self, _seen_from: VertexId, from: VertexId, to: VertexId) -> Vector {
+        self.0[to.index()] - self.0[from.index()]
+    }
+
+    fn turned(&self, _seen_from: VertexId, _at: VertexId, tensor: Tensor) -> Tensor {
+        tensor
+    }
+}
 
 /// An immutable graph over the vertices of a canvas, of whichever kind. Neighbours are reciprocal and in order.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone)]
 pub struct Graph {
-    positions: Vec<Point>,
+    sight: Arc<dyn Sight>,
     tensors: Vec<Tensor>,
     /// The neighbours of v are those from `first[v]` to `first[v + 1]`.
     first: Vec<u32>,
@@ -17,58 +40,67 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// A graph of vertices at these (Euclidean) positions with the metric there, in the units of the metric field. Two
-    /// vertices are neighbours if either names the other, as in a star set; a vertex is never its own. Edges have their
-    /// lengths by the trapezium rule: the mean of what the tensors at their ends say of a straight line.
+    /// A graph of vertices of the plane at these (Euclidean) positions with the metric there, in the units of the metric field.
     ///
-    /// The three lists are of the same length, and neighbours are places in them.
+    /// As for [`Graph::seen_by`]; positions are as many as tensors.
     pub fn new(positions: Vec<Point>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
-        assert!(positions.len() == tensors.len() && tensors.len() == neighbours.len(), "an entry for each vertex");
+        assert!(positions.len() == tensors.len(), "an entry for each vertex");
+        Self::seen_by(Arc::new(InPlane(positions)), tensors, neighbours)
+    }
+
+    /// A graph of vertices that see each other so, with the metric in the frame of each. Two vertices are neighbours if either
+    /// names the other, as in a star set; a vertex is never its own. Edges have their lengths by the trapezium rule: the mean
+    /// of what the tensors at their ends say of a straight line.
+    ///
+    /// Tensors are as many as lists of neighbours, and these are places in them.
+    pub fn seen_by(sight: Arc<dyn Sight>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
+        assert!(tensors.len() == neighbours.len(), "an entry for each vertex");
         let named = neighbours.iter().enumerate().flat_map(|(v, list)| list.iter().map(move |&u| (v as u32, u)));
         let mut pairs: Vec<(u32, u32)> = named.filter(|(v, u)| v != u).flat_map(|(v, u)| [(v, u), (u, v)]).collect();
         pairs.sort_unstable();
         pairs.dedup();
-        let mut first = vec![0; positions.len() + 1];
+        let mut first = vec![0; tensors.len() + 1];
         for &(v, _) in &pairs {
             first[v as usize + 1] += 1;
         }
-        for v in 0..positions.len() {
+        for v in 0..tensors.len() {
             first[v + 1] += first[v];
         }
         let straight = |&(v, u): &(u32, u32)| {
-            let e = positions[u as usize] - positions[v as usize];
-            0.5 * (tensors[v as usize].length(e) + tensors[u as usize].length(e))
+            let ends = [VertexId(v), VertexId(u)];
+            let said_by = |end: VertexId| tensors[end.index()].length(sight.line(end, ends[0], ends[1]));
+            0.5 * (said_by(ends[0]) + said_by(ends[1]))
         };
         let lengths = pairs.iter().map(straight).collect();
         let neighbours = pairs.into_iter().map(|(_, u)| VertexId(u)).collect();
-        Self { positions, tensors, first, neighbours, lengths }
+        Self { sight, tensors, first, neighbours, lengths }
     }
 
     /// The same graph with other lengths of its edges (metric, positive, the same in both directions).
     #[must_use]
     pub fn with_lengths(mut self, length: impl Fn(VertexId, VertexId) -> f64 + Sync) -> Self {
         let of_vertex = |v: VertexId| self.neighbours(v).iter().map(move |&u| (v, u));
-        let vertices = (0..self.positions.len() as u32).into_par_iter().with_min_len(1024).map(VertexId);
+        let vertices = (0..self.tensors.len() as u32).into_par_iter().with_min_len(1024).map(VertexId);
         self.lengths = vertices.flat_map_iter(of_vertex).map(|(v, u)| length(v, u)).collect();
         self
     }
 
     /// Number of vertices.
     pub fn vertex_count(&self) -> usize {
-        self.positions.len()
+        self.tensors.len()
     }
 
     /// All vertices, in order.
     pub fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        (0..self.positions.len() as u32).map(VertexId)
+        (0..self.tensors.len() as u32).map(VertexId)
     }
 
-    /// Where a vertex is (Euclidean).
-    pub fn position(&self, v: VertexId) -> Point {
-        self.positions[v.index()]
+    /// How its vertices see each other.
+    pub fn sight(&self) -> &dyn Sight {
+        self.sight.as_ref()
     }
 
-    /// The metric at a vertex.
+    /// The metric at a vertex, in its frame.
     pub fn tensor(&self, v: VertexId) -> Tensor {
         self.tensors[v.index()]
     }
@@ -87,6 +119,12 @@ impl Graph {
     pub fn length(&self, a: VertexId, b: VertexId) -> f64 {
         let place = self.neighbours(a).binary_search(&b);
         place.map_or(f64::INFINITY, |i| self.lengths[self.first[a.index()] as usize + i])
+    }
+}
+
+impl fmt::Debug for Graph {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Graph").field("vertices", &self.vertex_count()).field("edges", &self.edge_count()).finish()
     }
 }
 

@@ -40,7 +40,7 @@ pub use circumcentre::{Circle, margin_by_power};
 pub(crate) use circumcentre::{equalising_step, flat_centre};
 pub use curve::Curve;
 pub use dijkstra::Dijkstra;
-pub use graph::Graph;
+pub use graph::{Graph, Sight};
 pub use heat::Heat;
 pub use in_circle::{Angles, circumradius, frozen_margin};
 pub use jet::gauss_curvature;

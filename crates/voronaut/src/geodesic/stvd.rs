@@ -40,14 +40,15 @@ fn projected(edges: &[(Vector, Tensor)], u: Vector) -> f64 {
 
 impl Step for Stvd {
     fn carry(&self, graph: &Graph, labels: &[Label], from: VertexId, x: VertexId) -> Label {
-        let at = graph.position(x);
+        let sight = graph.sight();
         let mut edges: Vec<(Vector, Tensor)> = Vec::with_capacity(self.window);
         let mut best = f64::INFINITY;
         let (mut near, mut next) = (x, Some(from));
         while let Some(a) = next.filter(|_| edges.len() < self.window) {
-            let root = (self.roots[near.index()] + self.roots[a.index()]) * 0.5;
-            edges.push((graph.position(near) - graph.position(a), root));
-            let line = at - graph.position(a);
+            let root = [near, a].map(|v| sight.turned(x, v, self.roots[v.index()]));
+            let root = (root[0] + root[1]) * 0.5;
+            edges.push((sight.line(x, a, near), root));
+            let line = sight.line(x, a, x);
             let length = line.norm();
             if length > 0.0 {
                 best = best.min(labels[a.index()].distance + projected(&edges, line * (1.0 / length)));

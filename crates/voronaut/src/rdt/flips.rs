@@ -1,6 +1,6 @@
 //! Lawson's flips on a topology, in rounds: tests in parallel, then flips of edges that share no triangle.
 
-use super::tests_by_level::{LEVELS, RESOLUTION};
+use super::judge::{Judge, LEVELS, RESOLUTION};
 use super::{Rdt, Tested};
 use crate::geodesic::Margin;
 use crate::triangulation::HalfEdge;
@@ -9,7 +9,7 @@ use crate::triangulation::HalfEdge;
 /// must not go on for ever.
 const FLIPS_PER_SLOT: [u8; 2] = [20, 3];
 
-impl Rdt<'_> {
+impl<J: Judge> Rdt<J> {
     /// Flips until every test agrees: first on what one tensor says with certainty, so that few geodesics are asked for
     /// that are not going to stay, then on everything.
     pub(super) fn settle(&mut self) {
@@ -89,7 +89,7 @@ impl Rdt<'_> {
 
     /// Whether a test asks for a flip: with certainty, or at the end by its best estimate; four seeds on a circle do not.
     fn wants_flip(&self, margin: Margin, is_final: bool) -> bool {
-        let is_followed = is_final && margin.error > RESOLUTION && margin.error <= self.trust.doubt;
+        let is_followed = is_final && margin.error > RESOLUTION && margin.error <= self.judge.doubt();
         margin.value < 0.0 && (margin.is_certain() || is_followed)
     }
 }

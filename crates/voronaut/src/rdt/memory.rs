@@ -1,7 +1,7 @@
 //! Lengths and in-circle tests of a triangulation, for the next one of which few seeds have moved.
 
-use super::tests_by_level::Quad;
-use super::{Known, Rdt, Tested};
+use super::judge::{Judge, Lengths, Quad};
+use super::{Rdt, Tested};
 use crate::geometry::Point;
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use std::collections::HashMap;
 #[derive(Clone, Default)]
 pub struct Memory {
     seeds: Vec<Point>,
-    pub(super) lengths: HashMap<(u32, u32), Known>,
+    pub(super) lengths: Lengths,
     tests: HashMap<[u32; 4], Tested>,
 }
 
@@ -28,7 +28,7 @@ impl Memory {
     }
 }
 
-impl Rdt<'_> {
+impl<J: Judge> Rdt<J> {
     /// What was found, for [`Rdt::again`].
     pub fn into_memory(mut self) -> Memory {
         let edges: Vec<_> = self.topology.edges().collect();

@@ -5,24 +5,27 @@
 //! growing degree, and at last the circumcentre itself. Nothing is embedded, so that nothing keeps an edge from being
 //! flipped; how the triangulation is drawn is for others to say. It ends where the triangles it started from end.
 
+mod by_levels;
 mod fill;
 mod flips;
+mod in_field;
+mod judge;
 mod memory;
+mod on_surface;
 mod site;
 mod start;
-mod tests_by_level;
 
+pub use in_field::InField;
+pub use judge::{Judge, LEVELS, Lengths, Quad};
 pub use memory::Memory;
+pub use on_surface::OnSurface;
 pub use start::Start;
-pub use tests_by_level::LEVELS;
 
-use crate::geodesic::{Margin, PathLength, Paths};
+use crate::geodesic::{Margin, PathLength};
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
-use rayon::prelude::*;
-use site::Site;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// Distances on a canvas, held against geodesics found from the metric alone, which may not be the shortest and know no
 /// holes: of two seeds, their distance and an absolute bound on its error; `None` where it is not known.
@@ -90,14 +93,11 @@ pub struct RdtCounters {
 }
 
 /// See the [module](self).
-pub struct Rdt<'a> {
-    field: &'a dyn MetricField,
-    trust: Trust<'a>,
-    paths: Paths,
-    sites: Vec<Site>,
+pub struct Rdt<J> {
+    judge: J,
     topology: Triangulation,
     seed_of: Vec<u32>,
-    lengths: HashMap<(u32, u32), Known>,
+    lengths: Lengths,
     memory: Memory,
     tested: Vec<Option<Tested>>,
     flips_of_slot: Vec<u8>,
@@ -108,7 +108,7 @@ pub struct Rdt<'a> {
 
 /// The best length known between two seeds.
 #[derive(Clone, Copy)]
-struct Known {
+pub struct Known {
     length: PathLength,
     /// The level at which it was found.
     level: usize,
@@ -122,7 +122,7 @@ struct Tested {
     level: usize,
 }
 
-impl<'a> Rdt<'a> {
+impl<'a> Rdt<InField<'a>> {
     /// The triangulation of seeds, which are known by their numbers, from a start.
     ///
     /// The field may measure in any unit, and seeds may be denser here than there: the scale of a cell is taken from the
@@ -141,23 +141,39 @@ impl<'a> Rdt<'a> {
         mut memory: Memory,
     ) -> Self {
         memory.keep_for(seeds);
-        let mut sites: Vec<Site> = seeds.par_iter().with_min_len(256).map(|&at| Site::new(field, at)).collect();
+        let mut judge = InField::new(field, seeds, trust);
         let mut counters = RdtCounters::default();
-        let triangles = start.triangulated(&sites, &mut counters);
-        let spacings = site::spacings(&sites, &triangles);
-        sites.par_iter_mut().zip(&spacings).with_min_len(64).for_each(|(site, &spacing)| site.expand(field, spacing));
-        let mut topology = Triangulation::from_triangles(seeds.len(), &triangles, &vec![0; triangles.len()]);
-        let seed_of = split(&mut topology, seeds.len());
-        counters.split = (seed_of.len() - seeds.len()) as u64;
-        let mut used = vec![false; seeds.len()];
+        let triangles = start.triangulated(&judge, &mut counters);
+        judge.expand(&triangles);
+        Self::settled(judge, seeds.len(), start, &triangles, counters, memory)
+    }
+}
+
+impl<J: Judge> Rdt<J> {
+    /// The triangulation of the seeds, so many, that a judge knows, from a start.
+    pub fn judged(judge: J, seeds: usize, start: &Start) -> Self {
+        let mut counters = RdtCounters::default();
+        let triangles = start.triangulated(&judge, &mut counters);
+        Self::settled(judge, seeds, start, &triangles, counters, Memory::default())
+    }
+
+    fn settled(
+        judge: J,
+        seeds: usize,
+        start: &Start,
+        triangles: &[[u32; 3]],
+        mut counters: RdtCounters,
+        mut memory: Memory,
+    ) -> Self {
+        let mut topology = Triangulation::from_triangles(seeds, triangles, &vec![0; triangles.len()]);
+        let seed_of = split(&mut topology, seeds);
+        counters.split = (seed_of.len() - seeds) as u64;
+        let mut used = vec![false; seeds];
         topology.vertices().for_each(|v| used[seed_of[v.index()] as usize] = true);
         counters.isolated = used.iter().filter(|used| !**used).count() as u64;
         let slots = 3 * topology.face_slots();
         let mut rdt = Self {
-            field,
-            trust,
-            paths: Paths::default(),
-            sites,
+            judge,
             topology,
             seed_of,
             lengths: std::mem::take(&mut memory.lengths),
@@ -165,7 +181,7 @@ impl<'a> Rdt<'a> {
             tested: vec![None; slots],
             flips_of_slot: vec![0; slots],
             started_with: Vec::new(),
-            dropped: missing(&start.triangles, &triangles),
+            dropped: missing(&start.triangles, triangles),
             counters,
         };
         rdt.started_with = rdt.pairs();

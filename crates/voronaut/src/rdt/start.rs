@@ -1,7 +1,7 @@
 //! From triangles that are nearly a triangulation to one.
 
 use super::fill::Outline;
-use super::{RdtCounters, Site};
+use super::{Judge, RdtCounters};
 use crate::diagram::Nerve;
 use crate::geometry::Vector;
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,9 +29,22 @@ impl Start {
         }
     }
 
+    /// Whether the triangles are a triangulation already: every oriented side occurs once, and has its other side or touches the
+    /// border.
+    pub fn is_whole(&self) -> bool {
+        let turns = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+        let mut sides: Vec<[u32; 2]> = self.triangles.iter().flat_map(turns).collect();
+        sides.sort_unstable();
+        let is_once = sides.windows(2).all(|pair| pair[0] != pair[1]);
+        let has_other = |&[a, b]: &[u32; 2]| {
+            sides.binary_search(&[b, a]).is_ok() || self.at_border.contains(&[a.min(b), a.max(b)])
+        };
+        is_once && !sides.is_empty() && sides.iter().all(has_other)
+    }
+
     /// Triangles in which no oriented side occurs twice, with small holes filled.
-    pub(super) fn triangulated(&self, sites: &[Site], counters: &mut RdtCounters) -> Vec<[u32; 3]> {
-        let mut sides = Sides { sites, next: BTreeMap::new() };
+    pub(super) fn triangulated(&self, judge: &dyn Judge, counters: &mut RdtCounters) -> Vec<[u32; 3]> {
+        let mut sides = Sides { judge, next: BTreeMap::new() };
         let mut candidates: Vec<[u32; 3]> = self.triangles.iter().copied().filter(|&t| sides.are_seeds(t)).collect();
         // Those with the smallest circles first: of two that claim a side the Delaunay one, mostly.
         candidates.sort_by(|&a, &b| sides.size(a).total_cmp(&sides.size(b)).then(a.cmp(&b)));
@@ -71,7 +84,7 @@ impl Start {
     /// from the border.
     fn is_hole(&self, outline: &[u32], sides: &Sides) -> bool {
         let at_border = (0..outline.len()).filter(|&i| self.touches_border(outline, i)).count();
-        outline.len() <= SMALL && 2 * at_border < outline.len() && sides.area(outline) > 0.0
+        outline.len() <= SMALL && 2 * at_border < outline.len() && sides.judge.encloses(outline)
     }
 
     /// Whether side i of a loop joins cells that touch at the border.
@@ -105,14 +118,13 @@ impl Start {
 
 /// The sides of triangles accepted so far: which triangle has the side a -> b.
 pub(super) struct Sides<'a> {
-    pub(super) sites: &'a [Site],
+    judge: &'a dyn Judge,
     next: BTreeMap<(u32, u32), u32>,
 }
 
 impl Sides<'_> {
     fn are_seeds(&self, [a, b, c]: [u32; 3]) -> bool {
-        let is_metric = |i: u32| self.sites.get(i as usize).is_some_and(|s| s.local.tensor.is_positive_definite());
-        a != b && b != c && c != a && [a, b, c].into_iter().all(is_metric)
+        a != b && b != c && c != a && [a, b, c].into_iter().all(|i| self.judge.is_seed(i))
     }
 
     pub(super) fn has(&self, a: u32, b: u32) -> bool {
@@ -135,13 +147,6 @@ impl Sides<'_> {
         all.filter(|&[a, b, c]| a < b && a < c).collect()
     }
 
-    /// Twice the area that a loop encloses, with straight sides; positive where it turns counter-clockwise.
-    fn area(&self, outline: &[u32]) -> f64 {
-        let origin = self.sites[outline[0] as usize].at;
-        let arm = |i: usize| self.sites[outline[i % outline.len()] as usize].at - origin;
-        (1..outline.len()).map(|i| arm(i).cross(arm(i + 1))).sum()
-    }
-
     /// Removes the triangles beside loops; returns how many.
     fn remove_along(&mut self, loops: &[Vec<u32>]) -> u64 {
         let before = self.next.len();
@@ -157,14 +162,9 @@ impl Sides<'_> {
         ((before - self.next.len()) / 3) as u64
     }
 
-    /// The squared circumradius of a triangle in the mean of its tensors; infinite where it is turned over.
+    /// See [`Judge::size`].
     pub(super) fn size(&self, triangle: [u32; 3]) -> f64 {
-        let [a, b, c] = triangle.map(|i| &self.sites[i as usize]);
-        let tensor = (a.local.tensor + b.local.tensor + c.local.tensor) * (1.0 / 3.0);
-        let (u, v) = (b.at - a.at, c.at - a.at);
-        let doubled = tensor.determinant().max(0.0).sqrt() * u.cross(v);
-        let product = tensor.dot(u, u) * tensor.dot(v, v) * tensor.dot(v - u, v - u);
-        if doubled > 0.0 { product / (4.0 * doubled * doubled) } else { f64::INFINITY }
+        self.judge.size(triangle)
     }
 
     /// The loops of sides with a triangle on one side only: the missing triangles lie to their left. Each is simple.
@@ -194,7 +194,7 @@ impl Sides<'_> {
     /// came from.
     fn turn(&self, from: Option<u32>, at: u32, leaving: &mut BTreeMap<u32, Vec<u32>>) -> Option<u32> {
         let targets = leaving.get_mut(&at).filter(|targets| !targets.is_empty())?;
-        let direction = |v: u32| self.sites[v as usize].at - self.sites[at as usize].at;
+        let direction = |v: u32| self.judge.direction(at, v);
         let best = match from {
             Some(from) if targets.len() > 1 => {
                 let back = direction(from);

@@ -7,7 +7,7 @@ use crate::metric::MetricField;
 use crate::net::{Net, Triangles};
 use crate::output::report;
 use crate::planar::Location;
-use crate::rdt::{Edge, Rdt, Start, Trust};
+use crate::rdt::{Judge, Edge, Rdt, Start, Trust};
 use crate::triangulation::HalfEdge;
 use std::collections::HashSet;
 use std::time::Instant;
@@ -114,13 +114,13 @@ pub fn net(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]]) -> Ne
 
 /// Triangles of the nerve that no triangulation could hold beside the others, and of which it is sure: cells that touch
 /// in two places.
-fn left_out(rdt: &Rdt, nerve: &Nerve) -> Vec<[u32; 3]> {
+fn left_out(rdt: &Rdt<impl Judge>, nerve: &Nerve) -> Vec<[u32; 3]> {
     let is_sure = |t: &NerveTriangle| t.fourth.is_none_or(|(_, gap)| gap >= NERVE_ERROR);
     let sure: HashSet<[u32; 3]> = nerve.triangles.iter().filter(|t| is_sure(t)).map(|t| t.colours).collect();
     rdt.dropped().iter().copied().filter(|t| sure.contains(t)).collect()
 }
 
-fn account(rdt: &Rdt, nerve: &Nerve, road: Road) -> report::Dual {
+fn account(rdt: &Rdt<impl Judge>, nerve: &Nerve, road: Road) -> report::Dual {
     let edges = rdt.edges();
     let of_nerve: HashSet<[u32; 2]> = nerve.sides(|_| true).collect();
     let unsure: HashSet<[u32; 2]> = nerve.sides(|t| t.fourth.is_some_and(|(_, gap)| gap < NERVE_ERROR)).collect();

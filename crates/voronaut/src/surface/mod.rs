@@ -5,12 +5,15 @@
 //! | `build`, `orient` | from an indexed list of triangles to a [`Surface`], or what is wrong and where |
 //! | `measure` | area, normals, Euler characteristic, components, borders |
 //! | `nearest` | the closest point of a surface |
+//! | `input`, `chart` | a surface with its equation, if it has one; how points come onto it; parts of it seen as parts of the plane |
 //! | `implicit`, `march` | surfaces f(x, y, z) = 0: derivatives, projection, a first mesh by marching tetrahedra |
 //! | `shapes`, `read` | spheres, tori, files: what users write for a surface |
 //! | [`metric`] | metric fields on surfaces, curvature among them |
 
 mod build;
+mod chart;
 mod implicit;
+mod input;
 mod march;
 mod measure;
 pub mod metric;
@@ -20,11 +23,14 @@ mod read;
 mod shapes;
 mod tetrahedra;
 
+pub use chart::{Chart, STEEPEST};
 pub use implicit::{Curvatures, Implicit, curvatures, project};
+pub use input::{Input, OFF_SURFACE};
 pub use march::mesh_implicit;
 pub use measure::Component;
+pub(crate) use nearest::closest_weights;
 pub use nearest::{Closest, Nearest};
-pub use read::{Input, read};
+pub use read::read;
 pub use shapes::{chair, sphere, torus};
 
 use crate::geometry::{Point3, Vector3};
@@ -102,6 +108,11 @@ impl Surface {
     /// The place with these barycentric coordinates in a triangle.
     pub fn place(&self, face: FaceId, weights: [f64; 3]) -> Place {
         Place { position: Point3::weighted(self.triangle(face), weights), face, weights, normal: self.normal(face) }
+    }
+
+    /// The place of a triangle that is closest to a point.
+    pub fn closest_on(&self, face: FaceId, p: Point3) -> Place {
+        self.place(face, nearest::closest_weights(self.triangle(face), p))
     }
 
     /// A vertex as a place: a corner of one of its triangles. `None` of a vertex without triangles.

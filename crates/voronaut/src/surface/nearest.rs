@@ -63,7 +63,7 @@ impl PointDistance for Triangle {
 }
 
 /// Barycentric coordinates of the point of a triangle that is closest to `p`.
-fn closest_weights([a, b, c]: [Point3; 3], p: Point3) -> [f64; 3] {
+pub(crate) fn closest_weights([a, b, c]: [Point3; 3], p: Point3) -> [f64; 3] {
     let normal = (b - a).cross(c - a);
     let part = |q: Point3, r: Point3| normal.dot((q - p).cross(r - p));
     let parts = [part(b, c), part(c, a), part(a, b)];

@@ -1,22 +1,13 @@
 //! A surface from what the user writes for it: a shape, an equation, or a file.
 
 use super::shapes::{CHAIR, chair, sphere, torus};
-use super::{Surface, mesh_implicit};
+use super::{Input, Surface, mesh_implicit};
 use crate::domain::{read_bytes, read_numbers, read_text};
 use crate::error::{Error, Result};
 use crate::formats::{medit, obj, off, ply, stl};
 use crate::geometry::{Aabb3, Point3};
 use crate::metric::{Expression, Variables};
 use std::path::Path;
-
-/// A surface as it was given.
-#[derive(Clone, Debug)]
-pub struct Input {
-    /// Its triangles.
-    pub surface: Surface,
-    /// Its equation f = 0, if it has one: then vertices are on it, and curvatures are exact.
-    pub implicit: Option<Expression>,
-}
 
 /// Edges of shapes are this part of their diagonal, unless told otherwise.
 const DEFAULT_EDGE: f64 = 1.0 / 64.0;
@@ -43,12 +34,12 @@ pub fn read(spec: &str, edge: Option<f64>) -> Result<Input> {
         }
         ("chair", None) => with_equation(chair(edge)?, CHAIR),
         ("implicit", Some(rest)) => read_implicit(spec, rest, edge),
-        _ => Ok(Input { surface: read_file(spec)?, implicit: None }),
+        _ => Ok(Input::new(read_file(spec)?, None)),
     }
 }
 
 fn with_equation(surface: Surface, equation: &str) -> Result<Input> {
-    Ok(Input { surface, implicit: Some(Expression::parse(equation, Variables::Space)?) })
+    Ok(Input::new(surface, Some(Expression::parse(equation, Variables::Space)?)))
 }
 
 fn read_implicit(spec: &str, rest: &str, edge: Option<f64>) -> Result<Input> {
@@ -59,7 +50,7 @@ fn read_implicit(spec: &str, rest: &str, edge: Option<f64>) -> Result<Input> {
     let f = Expression::parse(equation, Variables::Space)?;
     let [x0, y0, z0, x1, y1, z1] = read_numbers(spec, numbers, USAGE)?;
     let bounds = Aabb3 { min: Point3::new(x0, y0, z0), max: Point3::new(x1, y1, z1) };
-    Ok(Input { surface: mesh_implicit(&f, bounds, edge)?, implicit: Some(f) })
+    Ok(Input::new(mesh_implicit(&f, bounds, edge)?, Some(f)))
 }
 
 fn read_file(spec: &str) -> Result<Surface> {
@@ -109,7 +100,7 @@ mod tests {
     #[test]
     fn shapes_lie_on_their_equations() {
         for (spec, genus) in [("sphere:2", 0), ("torus: 2, 0.5", 1), ("implicit:x^2+y^2+2*z^2-1;-2,-2,-2,2,2,2", 0)] {
-            let Input { surface, implicit } = read(spec, None).unwrap();
+            let Input { surface, implicit, .. } = read(spec, None).unwrap();
             let f = implicit.unwrap();
             let components = surface.components();
             assert_eq!((components.len(), components[0].genus()), (1, genus), "{spec}");

@@ -1,24 +1,21 @@
-//! The filtered in-circle test: each level costs more and errs less, and runs only where the one before cannot tell.
+//! Seeds of the plane in a metric field.
 
-use super::{Known, Rdt, Tested};
+use super::judge::{Judge, Lengths, Quad};
+use super::{Known, Trust};
+use super::site::{self, Site};
 use crate::geodesic::{
-    Fineness, Margin, PathLength, circumradius, frozen_margin, hermite, margin_by_power, margin_from_lengths,
+    Fineness, Margin, PathLength, Paths, circumradius, frozen_margin, hermite, margin_by_power, margin_from_lengths,
 };
-use crate::geometry::Tensor;
-use crate::triangulation::HalfEdge;
+use crate::geometry::{Point, Tensor, Vector};
+use crate::metric::MetricField;
 use rayon::prelude::*;
 
-/// Number of levels: one tensor for the quadrilateral; lengths from the expansions at the seeds; geodesics with 4, 8 and
-/// 16 modes; the circumcentre with geodesics of 8 and of 16 modes.
-pub const LEVELS: usize = 7;
 const FROZEN: usize = 0;
 const EXPANSIONS: usize = 1;
 const FIRST_PATH: usize = 2;
 const LAST_PATH: usize = 4;
 const CIRCUMCENTRE: usize = 5;
 
-/// Where the margin is known this well and still may be zero, four seeds count as being on a circle.
-pub(super) const RESOLUTION: f64 = 1e-9;
 /// Where curvature times the square of the length exceeds this, the circles of both triangles are looked at.
 const MUCH_CURVED: f64 = 0.1;
 /// Edges longer than so many times the spacing of the seeds at their ends are not told by one tensor, nor by expansions;
@@ -29,99 +26,98 @@ const OF_SPREAD: f64 = 0.5;
 /// The error of a length from expansions, times this; and a share that it always has.
 const OF_EXPANSION: (f64, f64) = (1.0, 5e-4);
 
-/// The four seeds around an edge a-b: c to the left, d to the right of a -> b.
-#[derive(Clone, Copy)]
-pub(super) struct Quad {
-    pub(super) a: u32,
-    pub(super) b: u32,
-    pub(super) c: u32,
-    pub(super) d: u32,
+/// See the [module](self).
+pub struct InField<'a> {
+    field: &'a dyn MetricField,
+    trust: Trust<'a>,
+    paths: Paths,
+    sites: Vec<Site>,
 }
 
-impl Quad {
-    /// The pairs a-b, a-c, b-c, a-d, b-d.
-    fn pairs(&self) -> [(u32, u32); 5] {
-        let Quad { a, b, c, d } = *self;
-        [(a, b), (a, c), (b, c), (a, d), (b, d)].map(|(i, j): (u32, u32)| (i.min(j), i.max(j)))
+impl<'a> InField<'a> {
+    /// Seeds with the tensors there.
+    pub(super) fn new(field: &'a dyn MetricField, seeds: &[Point], trust: Trust<'a>) -> Self {
+        let sites = seeds.par_iter().with_min_len(256).map(|&at| Site::new(field, at)).collect();
+        Self { field, trust, paths: Paths::default(), sites }
+    }
+
+    /// Takes derivatives and curvature at the scale of the cells, which triangles tell.
+    pub(super) fn expand(&mut self, triangles: &[[u32; 3]]) {
+        let spacings = site::spacings(&self.sites, triangles);
+        let field = self.field;
+        self.sites.par_iter_mut().zip(&spacings).with_min_len(64).for_each(|(site, &spacing)| site.expand(field, spacing));
     }
 }
 
-impl Rdt<'_> {
-    /// The quadrilateral around an edge with two triangles.
-    pub(super) fn quad(&self, h: HalfEdge) -> Option<Quad> {
-        let t = self.topology.twin(h)?;
-        let [a, b, c, d] =
-            [self.topology.origin(h), self.topology.target(h), self.topology.apex(h), self.topology.apex(t)]
-                .map(|v| self.seed(v));
-        Some(Quad { a, b, c, d })
+impl Judge for InField<'_> {
+    fn is_seed(&self, i: u32) -> bool {
+        self.sites.get(i as usize).is_some_and(|s| s.local.tensor.is_positive_definite())
     }
 
-    /// Tests edges, in parallel, level by level, up to and including `last`; stores and returns the outcomes.
-    pub(super) fn test(&mut self, edges: &[HalfEdge], last: usize) {
-        let mut pending: Vec<(HalfEdge, Quad)> = edges.iter().filter_map(|&h| Some((h, self.quad(h)?))).collect();
-        pending.retain(|(h, quad)| {
-            let known = self.memory.test(quad);
-            self.tested[h.index()] = known.or(self.tested[h.index()]);
-            known.is_none()
-        });
-        for level in FROZEN..=last {
-            let (tested, passed): (Vec<_>, Vec<_>) =
-                pending.into_iter().partition(|(h, quad)| self.may_tell(*h, quad, level));
-            if (FIRST_PATH..=LAST_PATH).contains(&level) {
-                self.solve_for(&tested, level);
-            }
-            let outcomes: Vec<Margin> =
-                tested.par_iter().with_min_len(16).map(|(_, quad)| self.margin(quad, level)).collect();
-            pending = passed;
-            for ((h, quad), margin) in tested.into_iter().zip(outcomes) {
-                if !self.settles(h, margin, level) {
-                    pending.push((h, quad));
-                }
-            }
-        }
-        for (h, _) in pending {
-            self.counters.tests[self.tested[h.index()].map_or(0, |t| t.level)] += 1;
-        }
+    fn direction(&self, from: u32, to: u32) -> Vector {
+        self.sites[to as usize].at - self.sites[from as usize].at
     }
 
-    /// Whether a level can add to what is known of an edge: finer lengths cannot where curvature is what they leave open, nor
-    /// a circle with finer spokes where none was found.
-    fn may_tell(&self, h: HalfEdge, quad: &Quad, level: usize) -> bool {
+    fn size(&self, triangle: [u32; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|i| &self.sites[i as usize]);
+        let tensor = (a.local.tensor + b.local.tensor + c.local.tensor) * (1.0 / 3.0);
+        let (u, v) = (b.at - a.at, c.at - a.at);
+        let doubled = tensor.determinant().max(0.0).sqrt() * u.cross(v);
+        let product = tensor.dot(u, u) * tensor.dot(v, v) * tensor.dot(v - u, v - u);
+        if doubled > 0.0 { product / (4.0 * doubled * doubled) } else { f64::INFINITY }
+    }
+
+    fn encloses(&self, outline: &[u32]) -> bool {
+        let arm = |i: usize| self.direction(outline[0], outline[i % outline.len()]);
+        (1..outline.len()).map(|i| arm(i).cross(arm(i + 1))).sum::<f64>() > 0.0
+    }
+
+    fn is_by_lengths(&self, level: usize) -> bool {
+        (FIRST_PATH..=LAST_PATH).contains(&level)
+    }
+
+    fn doubt(&self) -> f64 {
+        self.trust.doubt
+    }
+
+    /// Finer lengths cannot add where curvature is what they leave open, nor a circle with finer spokes where none was found.
+    fn may_tell(&self, quad: &Quad, level: usize, lengths: &Lengths, settled: Option<usize>) -> bool {
         match level {
             FROZEN..=FIRST_PATH | CIRCUMCENTRE => true,
-            ..=LAST_PATH => self.lengths_of(quad).is_none_or(|lengths| {
+            ..=LAST_PATH => quad.lengths(lengths).is_none_or(|lengths| {
                 let exact = margin_from_lengths(&lengths.map(|length| PathLength { error: 0.0, ..length }));
                 exact.error < 0.5 * margin_from_lengths(&lengths).error
             }),
-            _ => self.tested[h.index()].is_some_and(|t| t.level == CIRCUMCENTRE),
+            _ => settled == Some(CIRCUMCENTRE),
         }
     }
 
-    /// Keeps the outcome of a level unless the one before was better; says whether that is all that is to be known.
-    fn settles(&mut self, h: HalfEdge, margin: Margin, level: usize) -> bool {
-        self.keep(h, margin, level);
-        let is_settled = margin.is_certain() || margin.error < RESOLUTION;
-        self.counters.tests[level] += u64::from(is_settled);
-        is_settled
-    }
-
-    /// Keeps the outcome of a level unless the one before was better.
-    fn keep(&mut self, h: HalfEdge, margin: Margin, level: usize) {
-        let known = &mut self.tested[h.index()];
-        if level == FROZEN || known.is_none_or(|k| margin.error < k.margin.error) {
-            *known = Some(Tested { margin, level });
-        }
-    }
-
-    fn margin(&self, quad: &Quad, level: usize) -> Margin {
+    fn margin(&self, quad: &Quad, level: usize, lengths: &Lengths) -> Margin {
         match level {
             FROZEN => self.frozen(quad),
             EXPANSIONS => self.by_expansions(quad),
-            FIRST_PATH..=LAST_PATH => self.by_paths(quad),
-            _ => self.by_power(quad, level),
+            FIRST_PATH..=LAST_PATH => {
+                quad.lengths(lengths).map_or(Margin::UNKNOWN, |lengths| margin_from_lengths(&lengths))
+            }
+            _ => self.by_power(quad, level, lengths),
         }
     }
 
+    fn solve(&self, i: u32, j: u32, level: usize) -> Option<Known> {
+        let [p, q] = [i, j].map(|k| &self.sites[k as usize]);
+        let fineness = [Fineness::COARSEST, Fineness::MIDDLE, Fineness::FINEST][level - FIRST_PATH];
+        let found = self.paths.length(self.field, p.at, q.at, fineness);
+        let agreed = found.filter(|l| self.agrees(i, j, [1.0 - l.error, 1.0 + l.error].map(|x| l.value * x)));
+        let vetoed = || {
+            let (distance, error) = self.trust.reference.and_then(|reference| reference(i, j))?;
+            let length = PathLength { value: distance, error: error / distance, curvature: [0.0; 2] };
+            Some(Known { length, level, is_vetoed: true })
+        };
+        agreed.map(|length| Known { length, level, is_vetoed: false }).or_else(vetoed)
+    }
+}
+
+impl InField<'_> {
     /// One tensor for all, the mean of the four; the error from what the tensors at the ends say of each edge.
     fn frozen(&self, quad: &Quad) -> Margin {
         let sites = [quad.a, quad.b, quad.c, quad.d].map(|i| &self.sites[i as usize]);
@@ -190,20 +186,8 @@ impl Rdt<'_> {
         known.is_none_or(|(distance, error)| least <= distance + error && most >= distance - error)
     }
 
-    fn by_paths(&self, quad: &Quad) -> Margin {
-        self.lengths_of(quad).map_or(Margin::UNKNOWN, |lengths| margin_from_lengths(&lengths))
-    }
-
-    /// The five lengths, if they are known and of geodesics: ways around holes make no triangles that a test could use.
-    fn lengths_of(&self, quad: &Quad) -> Option<[PathLength; 5]> {
-        let length = |pair| self.lengths.get(&pair).filter(|known| !known.is_vetoed).map(|known| known.length);
-        let known = quad.pairs().map(length);
-        let [Some(ab), Some(ac), Some(bc), Some(ad), Some(bd)] = known else { return None };
-        Some([ab, ac, bc, ad, bd])
-    }
-
-    fn by_power(&self, quad: &Quad, level: usize) -> Margin {
-        let known = quad.pairs().map(|pair| self.lengths.get(&pair));
+    fn by_power(&self, quad: &Quad, level: usize, lengths: &Lengths) -> Margin {
+        let known = quad.pairs().map(|pair| lengths.get(&pair));
         let [Some(ab), Some(ac), Some(bc), Some(ad), Some(bd)] = known else { return Margin::UNKNOWN };
         let known = [ab, ac, bc, ad, bd];
         let [ab, ac, bc, ad, bd] = known.map(|k| k.length.value);
@@ -235,36 +219,5 @@ impl Rdt<'_> {
             return Margin { value, error: half + margin.error.max(other.error) };
         }
         Margin { error: margin.error + share * margin.value.abs(), ..margin }
-    }
-
-    /// Solves, in parallel, for the lengths that quadrilaterals lack at a level.
-    fn solve_for(&mut self, pending: &[(HalfEdge, Quad)], level: usize) {
-        let is_lacking =
-            |pair: &(u32, u32)| self.lengths.get(pair).is_none_or(|known| known.level < level && !known.is_vetoed);
-        let mut pairs: Vec<(u32, u32)> = pending.iter().flat_map(|(_, quad)| quad.pairs()).filter(is_lacking).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
-        let solved: Vec<Option<Known>> =
-            pairs.par_iter().with_min_len(16).map(|&(i, j)| self.solve(i, j, level)).collect();
-        self.counters.paths += pairs.len() as u64;
-        for (pair, known) in pairs.into_iter().zip(solved) {
-            if let Some(known) = known {
-                self.counters.vetoed += u64::from(known.is_vetoed);
-                self.lengths.insert(pair, known);
-            }
-        }
-    }
-
-    fn solve(&self, i: u32, j: u32, level: usize) -> Option<Known> {
-        let [p, q] = [i, j].map(|k| &self.sites[k as usize]);
-        let fineness = [Fineness::COARSEST, Fineness::MIDDLE, Fineness::FINEST][level - FIRST_PATH];
-        let found = self.paths.length(self.field, p.at, q.at, fineness);
-        let agreed = found.filter(|l| self.agrees(i, j, [1.0 - l.error, 1.0 + l.error].map(|x| l.value * x)));
-        let vetoed = || {
-            let (distance, error) = self.trust.reference.and_then(|reference| reference(i, j))?;
-            let length = PathLength { value: distance, error: error / distance, curvature: [0.0; 2] };
-            Some(Known { length, level, is_vetoed: true })
-        };
-        agreed.map(|length| Known { length, level, is_vetoed: false }).or_else(vetoed)
     }
 }

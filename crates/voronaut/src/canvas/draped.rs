@@ -1,0 +1,404 @@
+//! A triangulation draped over a surface: every face lies in a triangle of the input or, on an equation's surface, has its
+//! corners on it.
+
+use super::CanvasCounters;
+use super::buckets::Buckets;
+use super::isotropic::isotropic_size;
+use super::lengths::{self, Measured};
+use crate::error::{Error, Result};
+use crate::geodesic::bowed_between;
+use crate::geometry::{Point3, TangentPlane, Tensor3, Vector3};
+use crate::surface::metric::{SurfaceMetric, check_tensor3};
+use crate::surface::{Chart, Input, Place};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Tensors at the ends of an edge say the same of it, and of what is across it, if they differ by no more than this share.
+const ALIKE: f64 = 0.02;
+/// Where they differ by more than this the edge may bow.
+const UNLIKE: f64 = 0.05;
+/// A seed this near (barycentric) to an edge of its face is on it.
+const ON_EDGE: f64 = 1e-9;
+
+/// See the [module](self). Faces are labelled with the number of the input's triangle that they lie in.
+#[derive(Clone)]
+pub struct Draped<'s> {
+    pub(super) input: &'s Input,
+    pub(super) metric: &'s dyn SurfaceMetric,
+    pub(super) topology: Triangulation,
+    places: Vec<Place>,
+    tensors: Vec<Tensor3>,
+}
+
+/// A chord of the surface, and what lies over it.
+struct Chord {
+    /// The direction of the surface over the middle.
+    along: Vector3,
+    /// The direction across the chord that the surface bulges in, as long as the chord.
+    up: Vector3,
+    /// The length by the metric and the direction at each end.
+    at: [f64; 2],
+    /// How much the ends differ in what they say of the directions along and aside.
+    spread: f64,
+}
+
+impl Chord {
+    /// With the mean of two tensors in the middle.
+    fn simpson(&self, middle: [Tensor3; 2]) -> f64 {
+        let [m, n] = middle.map(|tensor| tensor.length(self.along));
+        (self.at[0] + 2.0 * (m + n) + self.at[1]) / 6.0
+    }
+}
+
+/// By what edges are halved, the greatest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Size {
+    /// Metric length.
+    Metric,
+    /// Euclidean length beside what the metric asks for in its finest direction.
+    Isotropic,
+}
+
+impl<'s> Draped<'s> {
+    /// The triangles of the input.
+    ///
+    /// # Errors
+    /// [`Error::Metric`] where the metric is not positive definite at a vertex.
+    pub(super) fn new(input: &'s Input, metric: &'s dyn SurfaceMetric) -> Result<Self> {
+        let mut topology = input.surface.topology().clone();
+        for f in topology.faces().collect::<Vec<_>>() {
+            topology.set_region(f, f.0.cast_signed());
+        }
+        let slots = topology.vertex_slots() as u32;
+        let place = |v: u32| {
+            let place = input.surface.place_of(VertexId(v))?;
+            // On an equation's surface its normal counts.
+            Some(if input.implicit.is_some() { input.lift(&place, place.position)? } else { place })
+        };
+        let unused = input.surface.place(topology.faces().next().expect("a surface has triangles"), [1.0, 0.0, 0.0]);
+        let places: Vec<Place> = (0..slots).into_par_iter().map(|v| place(v).unwrap_or(unused)).collect();
+        let tensors: Vec<Tensor3> = places.par_iter().with_min_len(256).map(|place| metric.at(place)).collect();
+        for v in topology.vertices() {
+            check_tensor3(tensors[v.index()], || places[v.index()].position.to_string())?;
+        }
+        let mut draped = Self { input, metric, topology, places, tensors };
+        draped.measure_all();
+        Ok(draped)
+    }
+
+    /// Halves the largest edge, again and again, until there are so many vertices.
+    ///
+    /// # Errors
+    /// The metric is not positive definite at a new vertex.
+    pub(super) fn refine(&mut self, size: Size, vertices: usize, counters: &mut CanvasCounters) -> Result<()> {
+        let mut queue: Buckets<[VertexId; 2]> = Buckets::default();
+        let enqueue = |draped: &Self, queue: &mut Buckets<_>, h: HalfEdge| {
+            queue.push(draped.size_of(h, size), [draped.topology.origin(h), draped.topology.target(h)]);
+        };
+        for h in self.topology.edges().collect::<Vec<_>>() {
+            enqueue(self, &mut queue, h);
+        }
+        while self.topology.vertex_count() < vertices {
+            let Some([a, b]) = queue.pop() else { break };
+            let Some(h) = self.topology.find(a, b).or_else(|| self.topology.find(b, a)) else { continue };
+            let Some(v) = self.halve(h)? else { continue };
+            counters.splits += 1;
+            for h in self.spokes(v) {
+                enqueue(self, &mut queue, h);
+            }
+        }
+        Ok(())
+    }
+
+    /// Halves edges, given by their ends.
+    ///
+    /// # Errors
+    /// As for [`Draped::refine`].
+    pub(super) fn halve_all(&mut self, edges: &[[VertexId; 2]], counters: &mut CanvasCounters) -> Result<()> {
+        for &[a, b] in edges {
+            if let Some(h) = self.topology.find(a, b).or_else(|| self.topology.find(b, a)) {
+                counters.splits += u64::from(self.halve(h)?.is_some());
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes places vertices; returns these. Places at one vertex have the same.
+    ///
+    /// # Errors
+    /// As for [`Draped::refine`].
+    pub(super) fn insert_all(&mut self, seeds: &[Place]) -> Result<Vec<VertexId>> {
+        let mut at_home: BTreeMap<FaceId, Vec<FaceId>> = BTreeMap::new();
+        for f in self.topology.faces() {
+            at_home.entry(self.home(f)).or_default().push(f);
+        }
+        let mut found = Vec::with_capacity(seeds.len());
+        for seed in seeds {
+            let homes = self.homes_around(seed.face);
+            let faces = homes.iter().flat_map(|home| at_home.get(home).map_or(&[][..], Vec::as_slice));
+            let held = faces.map(|&f| (f, self.closest_on(f, seed.position)));
+            let deepest = |weights: [f64; 3]| weights.into_iter().fold(f64::INFINITY, f64::min);
+            let order = |x: &(f64, [f64; 3]), y: &(f64, [f64; 3])| x.0.total_cmp(&y.0).then(deepest(y.1).total_cmp(&deepest(x.1)));
+            let Some((f, (_, weights))) = held.min_by(|x, y| order(&x.1, &y.1)) else {
+                return Err(Error::domain("a seed off the surface", seed.position.to_string(), "move it onto the surface"));
+            };
+            let before = self.topology.face_slots() as u32;
+            found.push(self.insert_in(f, weights, *seed)?);
+            for new in (before..self.topology.face_slots() as u32).map(FaceId) {
+                at_home.entry(self.home(new)).or_default().push(new);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The input's triangles in which a place of one of them may be: on an equation's surface those around it, too.
+    fn homes_around(&self, home: FaceId) -> Vec<FaceId> {
+        if self.input.implicit.is_none() {
+            return vec![home];
+        }
+        let input = self.input.surface.topology();
+        let mut homes: Vec<FaceId> =
+            input.corners(home).into_iter().flat_map(|v| input.star(v)).map(HalfEdge::face).collect();
+        homes.sort_unstable();
+        homes.dedup();
+        homes
+    }
+
+    /// The distance of a point to a face, with the weights of the closest one; on a plane face that holds it zero but for
+    /// rounding, which must not decide.
+    fn closest_on(&self, f: FaceId, p: Point3) -> (f64, [f64; 3]) {
+        let corners = self.topology.corners(f).map(|v| self.position(v));
+        let weights = crate::surface::closest_weights(corners, p);
+        let distance = Point3::weighted(corners, weights).distance(p);
+        (if distance < 1e-13 * self.input.diagonal() { 0.0 } else { distance }, weights)
+    }
+
+    fn insert_in(&mut self, f: FaceId, weights: [f64; 3], seed: Place) -> Result<VertexId> {
+        let near_zero = weights.map(|w| w <= ON_EDGE);
+        let [ab, bc, ca] = f.half_edges();
+        let corner = self.topology.corners(f).into_iter().find(|&v| self.position(v) == seed.position);
+        if let Some(v) = corner {
+            return Ok(v);
+        }
+        let v = self.add(seed)?;
+        match near_zero {
+            [true, ..] => drop(self.topology.split_edge(bc, v)),
+            [_, true, _] => drop(self.topology.split_edge(ca, v)),
+            [.., true] => drop(self.topology.split_edge(ab, v)),
+            _ => self.topology.split_face(f, v),
+        }
+        self.measure_around(v);
+        Ok(v)
+    }
+
+    /// A new vertex at a place.
+    fn add(&mut self, place: Place) -> Result<VertexId> {
+        let tensor = self.metric.at(&place);
+        check_tensor3(tensor, || place.position.to_string())?;
+        let v = self.topology.add_vertex();
+        self.places.resize(v.index() + 1, place);
+        self.tensors.resize(v.index() + 1, tensor);
+        (self.places[v.index()], self.tensors[v.index()]) = (place, tensor);
+        Ok(v)
+    }
+
+    /// The middle of an edge, on the surface.
+    fn middle(&self, h: HalfEdge) -> Option<Place> {
+        let [a, b] = [self.topology.origin(h), self.topology.target(h)];
+        let p = self.position(a).lerp(self.position(b), 0.5);
+        match self.input.implicit {
+            Some(_) => self.input.lift(&self.places[a.index()], p),
+            None => Some(self.input.surface.closest_on(self.home(h.face()), p)),
+        }
+    }
+
+    fn size_of(&self, h: HalfEdge, size: Size) -> f64 {
+        match size {
+            Size::Metric => self.topology.length(h),
+            Size::Isotropic => {
+                let [a, b] = [self.topology.origin(h), self.topology.target(h)];
+                let finest = |v: VertexId| isotropic_size(self.plane(v).restrict(self.tensors[v.index()]));
+                self.position(a).distance(self.position(b)) / finest(a).min(finest(b))
+            }
+        }
+    }
+
+    fn measure_all(&mut self) {
+        let edges: Vec<HalfEdge> = self.topology.edges().collect();
+        let lengths: Vec<f64> = edges.par_iter().with_min_len(256).map(|&h| self.length_of(h)).collect();
+        edges.into_iter().zip(lengths).for_each(|(h, length)| self.topology.set_length(h, length));
+    }
+
+    fn measure_around(&mut self, v: VertexId) {
+        for h in self.spokes(v) {
+            let length = self.length_of(h);
+            self.topology.set_length(h, length);
+        }
+    }
+
+    /// A half-edge of every edge at a vertex.
+    fn spokes(&self, v: VertexId) -> Vec<HalfEdge> {
+        let star: Vec<HalfEdge> = self.topology.star(v).collect();
+        let last = star.last().map(|h| h.prev()).filter(|&h| self.topology.twin(h).is_none());
+        star.into_iter().chain(last).collect()
+    }
+
+    /// The metric length of an edge along the surface: by Simpson's rule, on an equation's surface along the cubic that its
+    /// tangent planes at the ends make (which is of fourth order); where the metric differs much along the edge, that of the
+    /// best bow in the chart at the middle.
+    fn length_of(&self, h: HalfEdge) -> f64 {
+        let ends = [self.topology.origin(h), self.topology.target(h)];
+        let [p, q] = ends.map(|v| &self.places[v.index()]);
+        let tensors = ends.map(|v| self.tensors[v.index()]);
+        let chord = self.chord([p, q], tensors);
+        if chord.spread < ALIKE {
+            return chord.simpson([tensors[0], tensors[1]]);
+        }
+        let Some(place) = self.middle(h) else { return f64::NAN };
+        let tensor = self.metric.at(&place);
+        let simpson = chord.simpson([tensor, tensor]);
+        if chord.spread < UNLIKE {
+            return simpson;
+        }
+        let chart = Chart::new(self.input, self.metric, place, chord.up.unit().unwrap_or(place.normal));
+        let [flat_p, flat_q] = [p, q].map(|end| chart.flatten(end.position));
+        let bowed = bowed_between(&chart, [flat_p, flat_q], [p, q].map(|end| chart.tensor(end)));
+        if bowed.is_finite() { bowed.min(simpson) } else { simpson }
+    }
+
+    /// The metric length between two near places along the surface, by Simpson's rule.
+    pub(super) fn between(&self, places: [&Place; 2], tensors: [Tensor3; 2]) -> f64 {
+        if places[0].position == places[1].position {
+            return 0.0;
+        }
+        self.chord(places, tensors).simpson(tensors)
+    }
+
+    fn chord(&self, [p, q]: [&Place; 2], [m, n]: [Tensor3; 2]) -> Chord {
+        let e = q.position - p.position;
+        let (up, [slope_p, slope_q]) = self.slopes(p, q, e);
+        let at = [m.length(e + up * slope_p), n.length(e + up * slope_q)];
+        let aside = e.cross(up);
+        let spread = relative(at[0], at[1]).max(relative(m.length(aside), n.length(aside)));
+        Chord { along: e + up * (-0.25 * (slope_p + slope_q)), up, at, spread }
+    }
+
+    /// The direction across a chord that the surface bulges in, as long as the chord, and the slopes of the surface over it at
+    /// both ends; none in the plane of a triangle.
+    fn slopes(&self, p: &Place, q: &Place, e: Vector3) -> (Vector3, [f64; 2]) {
+        let mean = p.normal + q.normal;
+        let square = e.dot(e);
+        let across = mean - e * (mean.dot(e) / square);
+        let Some(unit) = across.unit() else { return (Vector3::default(), [0.0; 2]) };
+        if self.input.implicit.is_none() {
+            return (unit * square.sqrt(), [0.0; 2]);
+        }
+        let up = unit * square.sqrt();
+        (up, [p, q].map(|place| -place.normal.dot(e) / place.normal.dot(up)))
+    }
+
+    /// The tangent plane at a vertex, of a surface of triangles that of the mean normal.
+    pub fn plane(&self, v: VertexId) -> TangentPlane {
+        TangentPlane::new(self.input.normal(&self.places[v.index()]))
+    }
+
+    /// The surface.
+    pub fn input(&self) -> &'s Input {
+        self.input
+    }
+
+    /// Its metric.
+    pub fn metric(&self) -> &'s dyn SurfaceMetric {
+        self.metric
+    }
+
+    /// Vertices and faces.
+    pub fn topology(&self) -> &Triangulation {
+        &self.topology
+    }
+
+    /// The input's triangle that a face lies in.
+    pub fn home(&self, f: FaceId) -> FaceId {
+        FaceId(self.topology.region(f).cast_unsigned())
+    }
+
+    /// Where a vertex is.
+    pub fn place(&self, v: VertexId) -> &Place {
+        &self.places[v.index()]
+    }
+
+    /// Where a vertex is in space.
+    pub fn position(&self, v: VertexId) -> Point3 {
+        self.places[v.index()].position
+    }
+
+    /// The metric at a vertex.
+    pub fn tensor(&self, v: VertexId) -> Tensor3 {
+        self.tensors[v.index()]
+    }
+
+    /// The same in another order of vertices; all slots are used.
+    pub(super) fn renumbered(&self, order: &[VertexId]) -> Self {
+        Self {
+            topology: self.topology.renumbered(order),
+            places: order.iter().map(|v| self.places[v.index()]).collect(),
+            tensors: order.iter().map(|v| self.tensors[v.index()]).collect(),
+            ..*self
+        }
+    }
+}
+
+impl Measured for Draped<'_> {
+    fn topology_mut(&mut self) -> &mut Triangulation {
+        &mut self.topology
+    }
+
+    fn topology(&self) -> &Triangulation {
+        &self.topology
+    }
+
+    fn halve(&mut self, h: HalfEdge) -> Result<Option<VertexId>> {
+        let [a, b] = [self.topology.origin(h), self.topology.target(h)];
+        let Some(place) = self.middle(h) else { return Ok(None) };
+        if [a, b].iter().any(|&v| self.position(v) == place.position) {
+            return Ok(None);
+        }
+        let v = self.add(place)?;
+        self.topology.split_edge(h, v);
+        self.measure_around(v);
+        Ok(Some(v))
+    }
+
+    fn is_beside_flat(&self, _h: HalfEdge) -> bool {
+        false
+    }
+
+    fn place_of(&self, h: HalfEdge) -> String {
+        let [p, q] = [self.topology.origin(h), self.topology.target(h)].map(|v| self.position(v));
+        format!("{p} - {q}")
+    }
+}
+
+impl Draped<'_> {
+    /// Makes the lengths of every face those of a triangle.
+    ///
+    /// # Errors
+    /// A length is not finite, or the metric is not positive definite at a new vertex.
+    pub(super) fn settle_lengths(&mut self, counters: &mut CanvasCounters) -> Result<()> {
+        for h in self.topology.edges().collect::<Vec<_>>() {
+            lengths::check(self, h)?;
+        }
+        lengths::make_triangles(self, counters)
+    }
+}
+
+impl std::fmt::Debug for Draped<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Draped").field("vertices", &self.places.len()).finish_non_exhaustive()
+    }
+}
+
+fn relative(a: f64, b: f64) -> f64 {
+    (a - b).abs() / a.min(b)
+}

@@ -1,0 +1,69 @@
+//! A surface around a place, seen from above as a part of the plane.
+
+use super::metric::SurfaceMetric;
+use super::{Input, Place};
+use crate::geometry::{Point, Point3, TangentPlane, Tensor, Vector, Vector3};
+use crate::metric::MetricField;
+
+/// The parallel projection of a surface and its metric along the normal at a place to the plane there, with the place as origin:
+/// a metric field of the plane whose geodesics are the projections of the surface's. What works in the plane works in a
+/// chart (RR-9103, section 12).
+///
+/// It is good as far as the surface does not turn away: where its normal is more than [`STEEPEST`] from the chart's, the
+/// field is no metric. A coordinate is lifted to the closest place, not straight up: they differ by third order in its size.
+pub struct Chart<'a> {
+    input: &'a Input,
+    metric: &'a dyn SurfaceMetric,
+    at: Place,
+    plane: TangentPlane,
+}
+
+/// The least cosine of the angle between the normals of a chart and of the surface in it.
+pub const STEEPEST: f64 = 0.2;
+
+impl<'a> Chart<'a> {
+    /// The chart at a place, along a unit vector.
+    pub fn new(input: &'a Input, metric: &'a dyn SurfaceMetric, at: Place, normal: Vector3) -> Self {
+        Self { input, metric, at, plane: TangentPlane::new(normal) }
+    }
+
+    /// The plane.
+    pub fn plane(&self) -> &TangentPlane {
+        &self.plane
+    }
+
+    /// The coordinates of a point.
+    pub fn flatten(&self, p: Point3) -> Point {
+        Point::default() + self.plane.flatten(p - self.at.position)
+    }
+
+    /// The place with these coordinates; `None` where the surface cannot be reached.
+    pub fn place(&self, u: Point) -> Option<Place> {
+        self.input.lift(&self.at, self.at.position + self.plane.lift(u - Point::default()))
+    }
+
+    /// The tensor of a place in the coordinates of the chart; not a number where the surface turns away.
+    pub fn tensor(&self, place: &Place) -> Tensor {
+        let upright = place.normal.dot(self.plane.normal);
+        if upright.is_nan() || upright < STEEPEST {
+            return Tensor::new(f64::NAN, f64::NAN, f64::NAN);
+        }
+        // The tangents of the surface over the two axes.
+        let tangent = |axis: Vector3| axis - self.plane.normal * (axis.dot(place.normal) / upright);
+        let [u, v] = [self.plane.u, self.plane.v].map(tangent);
+        let m = self.metric.at(place);
+        Tensor::new(m.dot(u, u), m.dot(u, v), m.dot(v, v))
+    }
+
+    /// A vector along the surface at a place whose projection is the given one.
+    pub fn tangent(&self, normal: Vector3, v: Vector) -> Vector3 {
+        let flat = self.plane.lift(v);
+        flat - self.plane.normal * (flat.dot(normal) / self.plane.normal.dot(normal))
+    }
+}
+
+impl MetricField for Chart<'_> {
+    fn at(&self, u: Point) -> Tensor {
+        self.place(u).map_or(Tensor::new(f64::NAN, f64::NAN, f64::NAN), |place| self.tensor(&place))
+    }
+}

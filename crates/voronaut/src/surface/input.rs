@@ -1,0 +1,144 @@
+//! A surface as it was given, and how points near it come onto it.
+
+use super::{Nearest, Place, Surface, project};
+use crate::error::{Error, Result};
+use crate::geometry::{Point3, Vector3};
+use crate::metric::Expression;
+use crate::triangulation::{FaceId, HalfEdge};
+use std::sync::OnceLock;
+
+/// A surface as it was given: triangles, and an equation f = 0 if it has one.
+#[derive(Debug)]
+pub struct Input {
+    /// Its triangles.
+    pub surface: Surface,
+    /// Its equation, if it has one: then vertices are on it, and normals and curvatures are exact.
+    pub implicit: Option<Expression>,
+    /// Unit normals, one per vertex slot.
+    normals: Vec<Vector3>,
+    /// The diagonal of its bounding box.
+    diagonal: f64,
+    nearest: OnceLock<Nearest>,
+}
+
+/// Newton's method ends when a step is no longer than this share of the diagonal.
+const ON_SURFACE: f64 = 1e-14;
+/// It leads no farther away than this share of the diagonal.
+const REACH: f64 = 0.25;
+/// The faces passed in search of a closest point, at most.
+const FACES: usize = 4096;
+/// A point this far from the surface, as a share of the diagonal, is not meant to be on it.
+pub const OFF_SURFACE: f64 = 1e-2;
+
+impl Input {
+    /// A surface with its equation, if it has one, on which its vertices are.
+    pub fn new(surface: Surface, implicit: Option<Expression>) -> Self {
+        let up = Vector3::new(0.0, 0.0, 1.0);
+        let mut normals = vec![up; surface.positions().len()];
+        for v in surface.topology().vertices() {
+            normals[v.index()] = surface.vertex_normal(v).unwrap_or(up);
+        }
+        let diagonal = surface.bounds().diagonal();
+        Self { surface, implicit, normals, diagonal, nearest: OnceLock::new() }
+    }
+
+    /// The diagonal of the bounding box of its triangles.
+    pub fn diagonal(&self) -> f64 {
+        self.diagonal
+    }
+
+    /// The closest place of the surface; of an equation's one to which Newton's method leads from the closest triangle.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where the point is not finite, or farther than a hundredth of the diagonal from the surface.
+    pub fn closest(&self, p: Point3) -> Result<Place> {
+        let nearest = self.nearest.get_or_init(|| Nearest::new(&self.surface));
+        let found = nearest.closest(&self.surface, p).and_then(|found| self.lift(&found.place, p));
+        let is_near = |place: &Place| place.position.distance(p) <= OFF_SURFACE * self.diagonal;
+        found.filter(is_near).ok_or_else(|| {
+            let help = "give points on the surface, or within a hundredth of its diagonal from it";
+            Error::domain("a point off the surface", p.to_string(), help)
+        })
+    }
+
+    /// The place of the surface that a point near a place is nearest to: found from triangle to triangle or, on an equation's
+    /// surface, by Newton's method, with the given place's triangle. `None` where the latter leads nowhere.
+    pub fn lift(&self, near: &Place, p: Point3) -> Option<Place> {
+        match &self.implicit {
+            Some(f) => {
+                let position = project(f, p, REACH * self.diagonal, ON_SURFACE * self.diagonal)?;
+                Some(Place { position, normal: f.jet(position).gradient.unit()?, ..*near })
+            }
+            None => p.is_finite().then(|| self.walk(near.face, p)),
+        }
+    }
+
+    /// From triangle to triangle as long as that leads nearer to a point.
+    fn walk(&self, from: FaceId, p: Point3) -> Place {
+        let topology = self.surface.topology();
+        let mut best = self.surface.closest_on(from, p);
+        for _ in 0..FACES {
+            let [ab, bc, ca] = best.face.half_edges();
+            let [a, b, c] = best.weights.map(|w| w <= 0.0);
+            // Beside the edges and around the corners that the closest point lies on.
+            let across = [(c, ab), (a, bc), (b, ca)].into_iter().filter(|edge| edge.0).filter_map(|e| topology.twin(e.1));
+            let corner = [(b && c, ab), (c && a, bc), (a && b, ca)].into_iter().find(|at| at.0).map(|at| at.1);
+            let around = corner.into_iter().flat_map(|h| topology.star(topology.origin(h)));
+            let faces = across.chain(around).map(HalfEdge::face);
+            let distance = |place: &Place| place.position.distance(p);
+            let next = faces.map(|f| self.surface.closest_on(f, p)).min_by(|x, y| distance(x).total_cmp(&distance(y)));
+            match next.filter(|next| distance(next) < distance(&best)) {
+                Some(next) => best = next,
+                None => break,
+            }
+        }
+        best
+    }
+
+    /// The unit normal of the surface at a place: exact of an equation, else between those of the triangle's corners.
+    pub fn normal(&self, place: &Place) -> Vector3 {
+        if self.implicit.is_some() {
+            return place.normal;
+        }
+        let corners = self.surface.topology().corners(place.face);
+        let weighted = corners.iter().zip(place.weights).map(|(v, weight)| self.normals[v.index()] * weight);
+        weighted.fold(Vector3::default(), |sum, normal| sum + normal).unit().unwrap_or(place.normal)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::read;
+
+    #[test]
+    fn points_come_onto_the_surface_from_near_places() {
+        for spec in ["sphere:2", "torus:2,0.5"] {
+            let exact = read(spec, Some(0.2)).unwrap();
+            let mesh = Input::new(exact.surface.clone(), None);
+            let nearest = Nearest::new(&exact.surface);
+            for v in exact.surface.topology().vertices().step_by(7) {
+                let place = exact.surface.place_of(v).unwrap();
+                let aside = exact.normal(&exact.lift(&place, place.position).unwrap()).perpendicular();
+                for step in [0.0, 0.1, 0.3] {
+                    let p = place.position + aside * step;
+                    let (on_mesh, on_equation) = (mesh.lift(&place, p).unwrap(), exact.lift(&place, p).unwrap());
+                    let truth = nearest.closest(&exact.surface, p).unwrap();
+                    assert!((on_mesh.position.distance(p) - truth.distance).abs() < 1e-12, "{spec} {p}");
+                    let f = exact.implicit.as_ref().unwrap().jet(on_equation.position);
+                    assert!(f.value.abs() < 1e-12 && (f.gradient.unit().unwrap() - on_equation.normal).norm() < 1e-12);
+                    assert!(mesh.normal(&on_mesh).dot(on_equation.normal) > 0.99);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn points_far_off_are_refused() {
+        let sphere = read("sphere:1", None).unwrap();
+        assert!(sphere.closest(Point3::new(0.0, 0.0, 1.01)).is_ok());
+        for p in [Point3::new(0.0, 0.0, 1.1), Point3::default(), Point3::new(f64::NAN, 0.0, 1.0)] {
+            assert!(sphere.closest(p).unwrap_err().to_string().contains("a point off the surface"));
+        }
+    }
+}

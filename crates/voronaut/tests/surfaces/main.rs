@@ -1,0 +1,3 @@
+//! Diagrams and duals on surfaces, against what is known in closed form.
+
+mod sphere;
