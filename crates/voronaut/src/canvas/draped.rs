@@ -7,7 +7,7 @@ use super::isotropic::isotropic_size;
 use super::lengths::{self, Measured};
 use crate::error::{Error, Result};
 use crate::geodesic::bowed_between;
-use crate::geometry::{Point3, TangentPlane, Tensor3, Vector3};
+use crate::geometry::{Point3, TangentPlane, Tensor3};
 use crate::surface::metric::{SurfaceMetric, check_tensor3};
 use crate::surface::{Chart, Input, Place};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
@@ -29,26 +29,6 @@ pub struct Draped<'s> {
     pub(super) topology: Triangulation,
     places: Vec<Place>,
     tensors: Vec<Tensor3>,
-}
-
-/// A chord of the surface, and what lies over it.
-struct Chord {
-    /// The direction of the surface over the middle.
-    along: Vector3,
-    /// The direction across the chord that the surface bulges in, as long as the chord.
-    up: Vector3,
-    /// The length by the metric and the direction at each end.
-    at: [f64; 2],
-    /// How much the ends differ in what they say of the directions along and aside.
-    spread: f64,
-}
-
-impl Chord {
-    /// With the mean of two tensors in the middle.
-    fn simpson(&self, middle: [Tensor3; 2]) -> f64 {
-        let [m, n] = middle.map(|tensor| tensor.length(self.along));
-        (self.at[0] + 2.0 * (m + n) + self.at[1]) / 6.0
-    }
 }
 
 /// By what edges are halved, the greatest first.
@@ -251,7 +231,7 @@ impl<'s> Draped<'s> {
         let ends = [self.topology.origin(h), self.topology.target(h)];
         let [p, q] = ends.map(|v| &self.places[v.index()]);
         let tensors = ends.map(|v| self.tensors[v.index()]);
-        let chord = self.chord([p, q], tensors);
+        let chord = self.input.chord([p, q], tensors);
         if chord.spread < ALIKE {
             return chord.simpson([tensors[0], tensors[1]]);
         }
@@ -272,30 +252,7 @@ impl<'s> Draped<'s> {
         if places[0].position == places[1].position {
             return 0.0;
         }
-        self.chord(places, tensors).simpson(tensors)
-    }
-
-    fn chord(&self, [p, q]: [&Place; 2], [m, n]: [Tensor3; 2]) -> Chord {
-        let e = q.position - p.position;
-        let (up, [slope_p, slope_q]) = self.slopes(p, q, e);
-        let at = [m.length(e + up * slope_p), n.length(e + up * slope_q)];
-        let aside = e.cross(up);
-        let spread = relative(at[0], at[1]).max(relative(m.length(aside), n.length(aside)));
-        Chord { along: e + up * (-0.25 * (slope_p + slope_q)), up, at, spread }
-    }
-
-    /// The direction across a chord that the surface bulges in, as long as the chord, and the slopes of the surface over it at
-    /// both ends; none in the plane of a triangle.
-    fn slopes(&self, p: &Place, q: &Place, e: Vector3) -> (Vector3, [f64; 2]) {
-        let mean = p.normal + q.normal;
-        let square = e.dot(e);
-        let across = mean - e * (mean.dot(e) / square);
-        let Some(unit) = across.unit() else { return (Vector3::default(), [0.0; 2]) };
-        if self.input.implicit.is_none() {
-            return (unit * square.sqrt(), [0.0; 2]);
-        }
-        let up = unit * square.sqrt();
-        (up, [p, q].map(|place| -place.normal.dot(e) / place.normal.dot(up)))
+        self.input.chord(places, tensors).simpson(tensors)
     }
 
     /// The tangent plane at a vertex, of a surface of triangles that of the mean normal.
@@ -397,8 +354,4 @@ impl std::fmt::Debug for Draped<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Draped").field("vertices", &self.places.len()).finish_non_exhaustive()
     }
-}
-
-fn relative(a: f64, b: f64) -> f64 {
-    (a - b).abs() / a.min(b)
 }

@@ -5,7 +5,7 @@ use super::draped::Draped;
 use super::star::{Finder, Spoke, Star, circle};
 use super::{Canvas, StarFigures, StarSet};
 use crate::geodesic::{Graph, Sight};
-use crate::geometry::{Orientation, Point, Point3, TangentPlane, Tensor, Tensor3, Vector, Vector3, orientation};
+use crate::geometry::{Orientation, Point, Point3, TangentPlane, Tensor, Tensor3, Vector, orientation};
 use crate::planar::Planar;
 use crate::triangulation::{Triangulation, VertexId};
 use rayon::prelude::*;
@@ -108,23 +108,9 @@ impl Sight for OnSurface {
 
     fn turned(&self, seen_from: VertexId, at: VertexId, tensor: Tensor) -> Tensor {
         let [here, there] = [seen_from, at].map(|v| &self.planes[v.index()]);
-        let turn = Turn { from: here.normal, to: there.normal };
-        let [u, v] = [here.u, here.v].map(|axis| there.flatten(turn.apply(axis)));
+        let turned = here.turned(there.normal);
+        let [u, v] = [turned.u, turned.v].map(|axis| there.flatten(axis));
         Tensor::new(tensor.dot(u, u), tensor.dot(u, v), tensor.dot(v, v))
-    }
-}
-
-/// The smallest rotation between two unit vectors that are not opposite.
-struct Turn {
-    from: Vector3,
-    to: Vector3,
-}
-
-impl Turn {
-    fn apply(&self, v: Vector3) -> Vector3 {
-        let sum = self.from + self.to;
-        // v - (v . (m + n)) / (1 + m . n) (m + n) + 2 (m . v) n  (Rodrigues).
-        v - sum * (v.dot(sum) / (1.0 + self.from.dot(self.to))) + self.to * (2.0 * v.dot(self.from))
     }
 }
 
@@ -154,21 +140,5 @@ impl Canvas<Draped<'_>> {
         };
         Graph::seen_by(Arc::new(OnSurface { positions, planes }), tensors, &neighbours)
             .with_lengths(|a, b| known(a, b).unwrap_or_else(|| straight(a.min(b), a.max(b))))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_smallest_rotation_takes_one_normal_to_the_other() {
-        let unit = |x, y, z| Vector3::new(x, y, z).unit().unwrap();
-        let turn = Turn { from: unit(1.0, 2.0, 2.0), to: unit(-2.0, 1.0, 3.0) };
-        assert!((turn.apply(turn.from) - turn.to).norm() < 1e-15);
-        let axis = turn.from.cross(turn.to);
-        assert!((turn.apply(axis) - axis).norm() < 1e-15);
-        let v = Vector3::new(0.3, -0.7, 0.2);
-        assert!((turn.apply(v).norm() - v.norm()).abs() < 1e-15);
     }
 }

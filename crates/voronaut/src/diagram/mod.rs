@@ -322,7 +322,8 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         vertices.map(|v| (v, self.distance(v))).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
     }
 
-    fn vertex_count(&self) -> usize {
+    /// Number of canvas vertices.
+    pub fn vertex_count(&self) -> usize {
         self.ground.topology().vertex_slots()
     }
 

@@ -8,7 +8,7 @@ use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 /// Seeds, edges and the metric at the seeds, with its factor.
-pub(crate) struct Saved {
+pub struct Saved {
     planar: Planar,
     locals: Vec<LocalMetric>,
     kinds: Vec<Kind>,

@@ -9,11 +9,15 @@ mod consult;
 mod edit;
 mod flips;
 mod margin;
+mod moving;
+mod on_surface;
 mod patch;
 
 pub use consult::{Consultation, Disagreement, Made, Road};
-pub(crate) use edit::Saved;
+pub use edit::Saved;
 pub use margin::{Effort, LEVELS, Margin};
+pub use moving::Moving;
+pub use on_surface::SurfaceDual;
 
 use crate::domain::Domain;
 use crate::error::{Error, Result};

@@ -18,30 +18,35 @@ pub struct Length {
 /// Speed along the chord by cubic Hermite interpolation, less the share that the geodesic saves by bending: it leaves
 /// the chord with the acceleration r, the part of Gamma(d, d) across the chord, and d^2 = L^2 - |r|^2 / 12.
 pub fn hermite(p: Point, at_p: &LocalMetric, q: Point, at_q: &LocalMetric) -> Length {
-    let d = q - p;
-    let speed = |local: &LocalMetric| {
+    hermite_between([at_p, at_q], [q - p, q - p])
+}
+
+/// [`hermite`] where each end has coordinates of its own: the chord from the first to the second as each sees it.
+pub fn hermite_between(ends: [&LocalMetric; 2], chords: [Vector; 2]) -> Length {
+    let speed = |i: usize| {
+        let (local, d) = (ends[i], chords[i]);
         let speed = local.tensor.length(d).max(f64::MIN_POSITIVE);
         (speed, 0.5 * local.derivative_along(d).dot(d, d) / speed)
     };
-    let ((s0, slope0), (s1, slope1)) = (speed(at_p), speed(at_q));
+    let ((s0, slope0), (s1, slope1)) = (speed(0), speed(1));
     let trapezium = 0.5 * (s0 + s1);
     // Slopes from differences at a kink can be anything: the correction stays within a third of the trapezium.
     let correction = ((slope0 - slope1) / 12.0).clamp(-trapezium / 3.0, trapezium / 3.0);
     let chord = trapezium + correction;
-    let bent = less_bending(chord, at_p, at_q, d);
+    let bent = less_bending(chord, ends, chords);
     Length { value: bent.value, error: 0.3 * (correction / chord).abs() + bent.error }
 }
 
 /// Length of the geodesic p-q from quadrature along the chord, less what it saves by bending (see [`hermite`]). The
 /// error is a third of that saving: the next term of its series is smaller by the square of the turn.
 pub fn bent_chord(field: &dyn MetricField, p: Point, at_p: &LocalMetric, q: Point, at_q: &LocalMetric) -> Length {
-    let bent = less_bending(chord(field, p, q), at_p, at_q, q - p);
+    let bent = less_bending(chord(field, p, q), [at_p, at_q], [q - p, q - p]);
     Length { value: bent.value, error: bent.error / 3.0 }
 }
 
 /// What bending leaves of a chord's length; its error is the relative saving.
-fn less_bending(chord: f64, at_p: &LocalMetric, at_q: &LocalMetric, d: Vector) -> Length {
-    let bend = 0.5 * (bending(at_p, d) + bending(at_q, d));
+fn less_bending(chord: f64, ends: [&LocalMetric; 2], chords: [Vector; 2]) -> Length {
+    let bend = 0.5 * (bending(ends[0], chords[0]) + bending(ends[1], chords[1]));
     let saved = (bend / 12.0).min(0.5 * chord * chord);
     Length { value: (chord * chord - saved).sqrt(), error: saved / (chord * chord) }
 }

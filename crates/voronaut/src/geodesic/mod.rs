@@ -48,7 +48,7 @@ pub use karcher::karcher_mean;
 pub use konukoglu::Konukoglu;
 pub use label::{Label, NO_COLOUR, Sources, Support};
 pub use lattice::Lattice;
-pub use length::{Length, bent_chord, chord, hermite, path_energy};
+pub use length::{Length, bent_chord, chord, hermite, hermite_between, path_energy};
 pub use local::LocalMetric;
 pub use logarithm::Logarithm;
 pub use march::{Marching, Propagation};

@@ -163,6 +163,14 @@ impl TangentPlane {
         Self { u, v: normal.cross(u), normal }
     }
 
+    /// This plane with its axes after the smallest rotation that takes its normal to another (Rodrigues); not the opposite one.
+    #[must_use]
+    pub fn turned(&self, normal: Vector3) -> Self {
+        let sum = self.normal + normal;
+        let turn = |v: Vector3| v - sum * (v.dot(sum) / (1.0 + self.normal.dot(normal)));
+        Self { u: turn(self.u), v: turn(self.v), normal }
+    }
+
     /// What a tensor says of vectors in the plane, in the plane's coordinates: B' M B with B = (u, v).
     pub fn restrict(&self, m: Tensor3) -> Tensor {
         let (mu, mv) = (m.apply(self.u), m.apply(self.v));
@@ -319,5 +327,18 @@ mod tests {
     fn multiples_of_the_identity_are_their_own_frame() {
         let e = Tensor3::isotropic(0.5).eigen();
         assert_eq!(e.values.map(f64::to_bits), [4.0_f64; 3].map(f64::to_bits));
+    }
+
+    #[test]
+    fn the_smallest_rotation_takes_one_plane_to_another() {
+        let unit = |x, y, z| Vector3::new(x, y, z).unit().unwrap();
+        let (from, to) = (TangentPlane::new(unit(1.0, 2.0, 2.0)), unit(-2.0, 1.0, 3.0));
+        let turned = from.turned(to);
+        for (axis, other) in [(turned.u, turned.v), (turned.v, turned.normal), (turned.normal, turned.u)] {
+            assert!((axis.norm() - 1.0).abs() < 1e-15 && axis.dot(other).abs() < 1e-15);
+        }
+        // The axis of the rotation stays.
+        let axis = from.normal.cross(to);
+        assert!((turned.lift(from.flatten(axis)) - axis).norm() < 1e-15);
     }
 }

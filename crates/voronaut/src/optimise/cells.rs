@@ -3,7 +3,7 @@
 use super::cell::Moments;
 use super::on_canvas::OnCanvas;
 use super::tangent::tangent_moments;
-use crate::dual::Dual;
+use crate::dual::{Dual, Moving};
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::triangulation::VertexId;
@@ -20,13 +20,34 @@ pub enum Cells<'a> {
     Weighted(OnCanvas<'a>),
 }
 
-impl Cells<'_> {
+/// Where the moments of the cells of a triangulation's seeds come from.
+pub trait CellsOf<M> {
     /// The moments of every seed's cell about the seed, in order of the vertices' ids; tangent vectors are in the
     /// orthonormal frame of the Cholesky factor of the tensor there.
     ///
     /// # Errors
-    /// [`crate::Error::Domain`] if the canvas is not of the dual's domain.
-    pub fn moments(&self, dual: &Dual) -> Result<Vec<(VertexId, Moments)>> {
+    /// [`crate::Error::Domain`] if cells are of a canvas that is not of the dual's domain.
+    fn moments(&self, dual: &M) -> Result<Vec<(VertexId, Moments)>>;
+
+    /// Whether steps that raise the energy are taken back.
+    fn lower_energy(&self) -> bool;
+}
+
+/// The cells of [`Cells::Tangent`], on surfaces, too.
+pub struct Tangent;
+
+impl<M: Moving> CellsOf<M> for Tangent {
+    fn moments(&self, dual: &M) -> Result<Vec<(VertexId, Moments)>> {
+        Ok(tangent_moments(dual))
+    }
+
+    fn lower_energy(&self) -> bool {
+        true
+    }
+}
+
+impl CellsOf<Dual<'_>> for Cells<'_> {
+    fn moments(&self, dual: &Dual) -> Result<Vec<(VertexId, Moments)>> {
         match self {
             Cells::Tangent => Ok(tangent_moments(dual)),
             Cells::Canvas(cells) => cells.moments(dual, OnCanvas::logarithm),
@@ -34,8 +55,7 @@ impl Cells<'_> {
         }
     }
 
-    /// Whether steps that raise the energy are taken back.
-    pub(super) fn lower_energy(&self) -> bool {
+    fn lower_energy(&self) -> bool {
         !matches!(self, Cells::Weighted(_))
     }
 }

@@ -1,11 +1,11 @@
 //! Relaxation: seeds move so that the energy of centroidal Voronoi tessellations falls (Lloyd 1982; Du, Faber and
 //! Gunzburger 1999).
 
-use super::cells::Cells;
+use super::cells::CellsOf;
 use super::movers::{State, is_rough_around};
 use super::quasi_newton::Memory;
 use super::rest::Rest;
-use crate::dual::{Dual, Effort, Saved};
+use crate::dual::Moving;
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::progress::Progress;
@@ -62,12 +62,17 @@ impl Relaxed {
 ///
 /// # Errors
 /// The metric is found invalid at a seed.
-pub fn relax(dual: &mut Dual, cells: &Cells, steps: usize, progress: &dyn Progress) -> Result<Relaxed> {
+pub fn relax<M: Moving>(
+    dual: &mut M,
+    cells: &impl CellsOf<M>,
+    steps: usize,
+    progress: &dyn Progress,
+) -> Result<Relaxed> {
     let mut relaxed = Relaxed::default();
     if steps == 0 {
         return Ok(relaxed);
     }
-    dual.measure_rough_edges();
+    dual.measure();
     let state = State::of(dual, cells)?;
     relaxed.energy.push(state.energy);
     let mut descent = Descent { cells, memory: Memory::default(), rest: Rest::new(state.seeds.len()), state, relaxed };
@@ -86,18 +91,21 @@ pub fn relax(dual: &mut Dual, cells: &Cells, steps: usize, progress: &dyn Progre
     Ok(descent.relaxed)
 }
 
-struct Descent<'a> {
-    cells: &'a Cells<'a>,
+struct Descent<'a, C> {
+    cells: &'a C,
     memory: Memory,
     rest: Rest,
     state: State,
     relaxed: Relaxed,
 }
 
-impl Descent<'_> {
+impl<C> Descent<'_, C> {
     /// One step that lowers the energy; false if none was found, and the dual is as before.
-    fn step(&mut self, dual: &mut Dual) -> Result<bool> {
-        let before = dual.saved();
+    fn step<M: Moving>(&mut self, dual: &mut M) -> Result<bool>
+    where
+        C: CellsOf<M>,
+    {
+        let before = dual.save();
         let mut direction = self.state.direction(dual, &self.memory);
         let mut share = 1.0;
         self.rest.next_step();
@@ -110,7 +118,7 @@ impl Descent<'_> {
                 return Ok(true);
             }
             let resting = self.rest.blame(dual, &self.state, &next);
-            dual.restore(&before);
+            dual.take_back(&before);
             self.relaxed.taken_back += 1;
             if attempt > LLOYD_AFTER && !self.memory.is_empty() {
                 self.memory.clear();
@@ -123,24 +131,23 @@ impl Descent<'_> {
     }
 
     /// Moves all seeds that do not rest by a share of a direction and settles the triangulation; moves held back, and flips.
-    fn advance(&self, dual: &mut Dual, direction: &[Vector], share: f64) -> Result<(u64, u64)> {
+    fn advance(&self, dual: &mut impl Moving, direction: &[Vector], share: f64) -> Result<(u64, u64)> {
         let mut held = 0;
         for (i, (seed, &d)) in self.state.seeds.iter().zip(direction).enumerate() {
             if self.rest.is_awake(i) {
                 held += u64::from(!seed.shift(dual, d * share));
             }
         }
-        dual.measure_moved();
-        dual.verdict()?;
-        let flips = dual.flip_all(Effort::Local);
-        dual.take_touched();
-        dual.measure_rough_edges();
+        let flips = dual.settle_moves()?;
         Ok((held, flips))
     }
 
-    fn accept(&mut self, dual: &Dual, before: &Saved, next: State) {
+    fn accept<M: Moving>(&mut self, dual: &M, before: &M::Saved, next: State)
+    where
+        C: CellsOf<M>,
+    {
         let seeds = &self.state.seeds;
-        let mut step: Vec<Vector> = seeds.iter().map(|s| dual.position(s.id) - before.position(s.id)).collect();
+        let mut step: Vec<Vector> = seeds.iter().map(|s| dual.moved_since(before, s.id)).collect();
         let squares = seeds.iter().zip(&step).map(|(s, &d)| dual.local(s.id).tensor.dot(d, d));
         self.relaxed.moves.push((squares.sum::<f64>() / step.len().max(1) as f64).sqrt());
         let mut change: Vec<Vector> =

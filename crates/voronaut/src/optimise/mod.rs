@@ -16,7 +16,7 @@ mod tangent;
 mod worst;
 
 pub use cell::{Cell, Moments};
-pub use cells::Cells;
+pub use cells::{Cells, CellsOf, Tangent};
 pub use exchange::{exchange, meet_blocked_flips};
 pub use lloyd::{Relaxed, relax};
 pub use on_canvas::OnCanvas;

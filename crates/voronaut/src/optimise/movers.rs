@@ -1,9 +1,9 @@
 //! The seeds that can move, the energy, and its gradient.
 
 use super::cell::Moments;
-use super::cells::{Cells, from_frame};
+use super::cells::{CellsOf, from_frame};
 use super::quasi_newton::{Memory, dot};
-use crate::dual::{Dual, Kind};
+use crate::dual::{Kind, Moving};
 use crate::error::Result;
 use crate::geometry::Vector;
 use crate::triangulation::VertexId;
@@ -49,10 +49,10 @@ impl State {
     /// Of a dual whose rough edges are measured.
     ///
     /// # Errors
-    /// Those of [`Cells::moments`].
-    pub(super) fn of(dual: &Dual, cells: &Cells) -> Result<Self> {
+    /// Those of [`CellsOf::moments`].
+    pub(super) fn of<M: Moving>(dual: &M, cells: &impl CellsOf<M>) -> Result<Self> {
         let moments = cells.moments(dual)?;
-        let square = dual.field().factor.powi(2);
+        let square = dual.factor().powi(2);
         let shares: Vec<_> = moments.iter().map(|&(v, m)| (v, m.second / square)).collect();
         let energy = shares.iter().map(|(_, share)| share).sum();
         let straight = !cells.lower_energy();
@@ -62,7 +62,7 @@ impl State {
     }
 
     /// Where to go: the quasi-Newton direction at smooth seeds, Lloyd's step at rough ones.
-    pub(super) fn direction(&self, dual: &Dual, memory: &Memory) -> Vec<Vector> {
+    pub(super) fn direction(&self, dual: &impl Moving, memory: &Memory) -> Vec<Vector> {
         let lloyd: Vec<Vector> = self.seeds.iter().zip(&self.gradient).map(|(s, &g)| -s.scaled(dual, g)).collect();
         let mut direction = memory.direction(&self.gradient, |gradient| {
             self.seeds.iter().zip(gradient).map(|(seed, g)| seed.scaled(dual, g)).collect()
@@ -81,20 +81,20 @@ impl State {
 }
 
 /// Whether the metric is rough at a seed or one of its neighbours: no quasi-Newton step helps there.
-pub(super) fn is_rough_around(dual: &Dual, v: VertexId) -> bool {
+pub(super) fn is_rough_around(dual: &impl Moving, v: VertexId) -> bool {
     dual.local(v).is_rough || dual.topology().star(v).any(|h| dual.local(dual.topology().target(h)).is_rough)
 }
 
 impl Mover {
     /// The seed, and the gradient of the scaled energy there; `None` of a corner, and of a seed on a segment without room.
-    fn new(dual: &Dual, id: VertexId, moments: &Moments, straight: bool) -> Option<(Self, Vector)> {
+    fn new(dual: &impl Moving, id: VertexId, moments: &Moments, straight: bool) -> Option<(Self, Vector)> {
         let freedom = match dual.kind(id) {
             Kind::Corner(_) => return None,
             Kind::Free if straight => Freedom::Straight,
             Kind::Free => Freedom::Exponential,
             Kind::Curve => {
-                let [a, b] = dual.neighbours_on_segment(id)?;
-                Freedom::Along((b - a) * (1.0 / (b - a).norm()))
+                let along = dual.along_segment(id)?;
+                Freedom::Along(along * (1.0 / along.norm()))
             }
         };
         let tensor = dual.local(id).tensor;
@@ -104,7 +104,7 @@ impl Mover {
     }
 
     /// A first guess of the inverse Hessian times a covector: the gradient, so scaled, is minus the step to the centroid.
-    fn scaled(&self, dual: &Dual, gradient: Vector) -> Vector {
+    fn scaled(&self, dual: &impl Moving, gradient: Vector) -> Vector {
         if self.mass <= 0.0 {
             return Vector::default();
         }
@@ -117,17 +117,17 @@ impl Mover {
     }
 
     /// Moves the seed, or as far as the embedding allows; says whether it went all the way.
-    pub(super) fn shift(&self, dual: &mut Dual, step: Vector) -> bool {
-        let (from, local) = (dual.position(self.id), *dual.local(self.id));
+    pub(super) fn shift(&self, dual: &mut impl Moving, step: Vector) -> bool {
+        let local = *dual.local(self.id);
         let step = step * (LONGEST / local.tensor.length(step)).min(1.0);
         let mut share = 1.0;
         for _ in 0..=HALVINGS {
-            let goal = match self.freedom {
-                Freedom::Exponential => from + local.exp(step) * share,
-                Freedom::Straight => from + step * share,
-                Freedom::Along(_) => dual.slid(self.id, step * share, SLIDING),
+            let is_done = match self.freedom {
+                Freedom::Exponential => dual.shift_by(self.id, local.exp(step) * share),
+                Freedom::Straight => dual.shift_by(self.id, step * share),
+                Freedom::Along(_) => dual.slide_by(self.id, step * share, SLIDING),
             };
-            if dual.shift(self.id, goal) {
+            if is_done {
                 return share >= 1.0;
             }
             share *= 0.5;

@@ -1,7 +1,7 @@
 //! Which seeds rest while others are relaxed.
 
 use super::movers::State;
-use crate::dual::Dual;
+use crate::dual::Moving;
 
 /// A seed rests for twice as many steps as the last time, up to this many.
 const LONGEST: u16 = 64;
@@ -32,7 +32,7 @@ impl Rest {
     }
 
     /// Puts the seeds to rest around which the energy rose most, with their neighbours. Returns how many.
-    pub(super) fn blame(&mut self, dual: &Dual, before: &State, after: &State) -> usize {
+    pub(super) fn blame(&mut self, dual: &impl Moving, before: &State, after: &State) -> usize {
         let topology = dual.topology();
         let rise = rise_around(dual, before, after);
         let rise_at = |i: usize| rise[before.seeds[i].id.index()];
@@ -63,7 +63,7 @@ impl Rest {
 }
 
 /// By how much the energy of the cells at and around each seed has risen, by its id.
-fn rise_around(dual: &Dual, before: &State, after: &State) -> Vec<f64> {
+fn rise_around(dual: &impl Moving, before: &State, after: &State) -> Vec<f64> {
     let topology = dual.topology();
     let mut rise = vec![0.0; topology.vertex_slots()];
     for (&(v, was), &(_, now)) in before.shares.iter().zip(&after.shares) {

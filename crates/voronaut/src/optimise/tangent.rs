@@ -2,7 +2,7 @@
 
 use super::cell::{Cell, Moments};
 use super::cells::to_frame;
-use crate::dual::{Dual, Kind};
+use crate::dual::{Kind, Moving};
 use crate::geometry::Vector;
 use crate::triangulation::{HalfEdge, VertexId};
 use rayon::prelude::*;
@@ -10,21 +10,21 @@ use rayon::prelude::*;
 /// The moments of every seed's cell, cut in the tangent plane at the seed: by bisectors with its neighbours, which are seen through
 /// the second-order logarithm map, and by the domain's segments. Tangent vectors are in the orthonormal frame of
 /// [`to_frame`]. In order of the vertices' ids; lengths at rough seeds must have been measured.
-pub(super) fn tangent_moments(dual: &Dual) -> Vec<(VertexId, Moments)> {
+pub(super) fn tangent_moments(dual: &impl Moving) -> Vec<(VertexId, Moments)> {
     let seeds: Vec<VertexId> = dual.topology().vertices().collect();
     let of = |cell: &mut Cell, v: VertexId| (v, View::at(dual, v).moments(cell));
     seeds.into_par_iter().with_min_len(256).map_init(Cell::default, of).collect()
 }
 
 /// What the neighbourhood looks like in the tangent plane at a seed.
-struct View<'a> {
-    dual: &'a Dual<'a>,
+struct View<'a, M> {
+    dual: &'a M,
     seed: VertexId,
     frame: [f64; 3],
 }
 
-impl<'a> View<'a> {
-    fn at(dual: &'a Dual<'a>, seed: VertexId) -> Self {
+impl<'a, M: Moving> View<'a, M> {
+    fn at(dual: &'a M, seed: VertexId) -> Self {
         Self { dual, seed, frame: dual.local(seed).tensor.cholesky() }
     }
 
@@ -91,7 +91,7 @@ impl<'a> View<'a> {
 
     fn image(&self, u: VertexId, length: f64) -> Vector {
         let local = self.dual.local(self.seed);
-        let w = to_frame(self.frame, local.log(self.dual.position(u) - self.dual.position(self.seed)));
+        let w = to_frame(self.frame, local.log(self.dual.offset(self.seed, u)));
         // No expansion gives lengths in a rough field; quadrature does.
         if local.is_rough { w * (length / w.norm()) } else { w }
     }

@@ -2,6 +2,7 @@
 
 use crate::canvas::{CanvasFigures, PickCounters, StarFigures};
 use crate::certificate::Certificate;
+use crate::diagram::Ground;
 use crate::dual::Road;
 use crate::geodesic::MarchCounters;
 use crate::net::Net;
@@ -106,7 +107,7 @@ pub struct RawNerve {
 
 impl Diagram {
     /// Of a diagram as it is.
-    pub fn of(diagram: &crate::diagram::Diagram) -> Self {
+    pub fn of<'a, G: Ground<'a>>(diagram: &crate::diagram::Diagram<'a, G>) -> Self {
         let components = diagram.orphan_components();
         Self {
             orphans: components.iter().map(Vec::len).sum(),

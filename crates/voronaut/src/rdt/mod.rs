@@ -227,6 +227,22 @@ impl<J: Judge> Rdt<J> {
         tested.min_by(|a, b| value(a).total_cmp(&value(b)))
     }
 
+    /// What knows the seeds.
+    pub fn judge(&self) -> &J {
+        &self.judge
+    }
+
+    /// The in-circle test of any four seeds around an edge by the lengths known, or found for it.
+    pub fn margin_of(&self, quad: &Quad) -> Margin {
+        let level = (0..LEVELS).rev().find(|&level| self.judge.is_by_lengths(level)).unwrap_or(0);
+        let known = |&(i, j): &(u32, u32)| {
+            let found = self.lengths.get(&(i, j)).copied().or_else(|| self.judge.solve(i, j, level));
+            found.map(|found| ((i, j), found))
+        };
+        let lengths: Lengths = quad.pairs().iter().filter_map(known).collect();
+        self.judge.margin(quad, level, &lengths)
+    }
+
     /// What was done.
     pub fn counters(&self) -> &RdtCounters {
         &self.counters

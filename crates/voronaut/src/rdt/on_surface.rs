@@ -2,11 +2,11 @@
 
 use super::Known;
 use super::judge::{Judge, Lengths, Quad};
-use crate::canvas::{Canvas, Draped};
+use crate::canvas::{Canvas, Draped, metric_area};
 use crate::diagram::SurfaceDiagram;
 use crate::geodesic::{Margin, PathLength, circumradius, margin_from_lengths};
 use crate::geometry::{Point3, TangentPlane, Vector};
-use crate::triangulation::{FaceId, VertexId};
+use crate::triangulation::{FaceId, Triangulation, VertexId};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -36,6 +36,11 @@ impl<'a> OnSurface<'a> {
         let seeds: Vec<VertexId> = (0..diagram.colours() as u32).filter_map(|colour| diagram.seed(colour)).collect();
         let planes = seeds.par_iter().map(|&v| canvas.draped().plane(v)).collect();
         Self { canvas, planes, curvature: curvatures(diagram, seeds.len()), seeds }
+    }
+
+    /// The canvas vertices that are the seeds.
+    pub fn seeds(&self) -> &[VertexId] {
+        &self.seeds
     }
 
     fn position(&self, i: u32) -> Point3 {
@@ -119,10 +124,9 @@ fn curvatures(diagram: &SurfaceDiagram, seeds: usize) -> Vec<f64> {
 }
 
 /// The angles at the corners of a face with its lengths, and its area.
-fn flat(topology: &crate::triangulation::Triangulation, f: FaceId) -> ([f64; 3], f64) {
+fn flat(topology: &Triangulation, f: FaceId) -> ([f64; 3], f64) {
     let [ab, bc, ca] = f.half_edges().map(|h| topology.length(h));
-    let square = (ab + bc + ca) * (ab + bc - ca) * (ab - bc + ca) * (bc + ca - ab);
-    let doubled = 0.5 * square.max(0.0).sqrt();
-    let angle = |x: f64, y: f64, opposite: f64| doubled.atan2(0.5 * (x * x + y * y - opposite * opposite));
-    ([angle(ab, ca, bc), angle(ab, bc, ca), angle(bc, ca, ab)], 0.5 * doubled)
+    let area = metric_area(topology, f);
+    let angle = |x: f64, y: f64, opposite: f64| (4.0 * area).atan2(x * x + y * y - opposite * opposite);
+    ([angle(ab, ca, bc), angle(ab, bc, ca), angle(bc, ca, ab)], area)
 }

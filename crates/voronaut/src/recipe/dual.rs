@@ -1,6 +1,6 @@
 //! The dual of given seeds: none is added, none moved.
 
-use crate::diagram::{Diagram, Kind, Nerve, NerveTriangle};
+use crate::diagram::{Diagram, Ground, Kind, Nerve, NerveTriangle};
 use crate::dual::Road;
 use crate::geometry::Point;
 use crate::metric::MetricField;
@@ -81,7 +81,7 @@ fn as_read(diagram: &Diagram) -> SeedDual {
     }
 }
 
-fn compared(diagram: &Diagram, exact: &[[u32; 3]]) -> report::RawNerve {
+pub(super) fn compared<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, exact: &[[u32; 3]]) -> report::RawNerve {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
     let exact: HashSet<[u32; 3]> = exact.iter().map(turned).collect();
     let raw: HashSet<[u32; 3]> = diagram.witnesses_of_triangles().into_iter().map(|witness| witness.0).collect();
@@ -114,13 +114,13 @@ pub fn net(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]]) -> Ne
 
 /// Triangles of the nerve that no triangulation could hold beside the others, and of which it is sure: cells that touch
 /// in two places.
-fn left_out(rdt: &Rdt<impl Judge>, nerve: &Nerve) -> Vec<[u32; 3]> {
+pub(super) fn left_out(rdt: &Rdt<impl Judge>, nerve: &Nerve) -> Vec<[u32; 3]> {
     let is_sure = |t: &NerveTriangle| t.fourth.is_none_or(|(_, gap)| gap >= NERVE_ERROR);
     let sure: HashSet<[u32; 3]> = nerve.triangles.iter().filter(|t| is_sure(t)).map(|t| t.colours).collect();
     rdt.dropped().iter().copied().filter(|t| sure.contains(t)).collect()
 }
 
-fn account(rdt: &Rdt<impl Judge>, nerve: &Nerve, road: Road) -> report::Dual {
+pub(super) fn account(rdt: &Rdt<impl Judge>, nerve: &Nerve, road: Road) -> report::Dual {
     let edges = rdt.edges();
     let of_nerve: HashSet<[u32; 2]> = nerve.sides(|_| true).collect();
     let unsure: HashSet<[u32; 2]> = nerve.sides(|t| t.fourth.is_some_and(|(_, gap)| gap < NERVE_ERROR)).collect();

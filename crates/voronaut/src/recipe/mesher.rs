@@ -81,17 +81,17 @@ pub(super) fn by_stars(
         let steadied = Steadied { field: &scaled, most };
         let lloyd = options.lloyd.min(LLOYD);
         let as_it_is = MeshOptions { vertices: None, complexity: None, lloyd, ..options.clone() };
-        let mut steady = Job { seconds: job.seconds, notes: job.notes, ..Job::new(&steadied, &as_it_is, progress) };
+        let mut steady = Job { watch: job.watch, notes: job.notes, ..Job::new(&steadied, &as_it_is, progress) };
         let start = sampled(&mut steady, domain, Some(unit))?;
         meshed = agreed(&mut steady, &start, &scaled, unit);
-        (job.seconds, job.notes) = (steady.seconds, steady.notes);
+        (job.watch, job.notes) = (steady.watch, steady.notes);
     }
     let mut meshed = meshed?;
     let got = meshed.mesh.points.len();
     if let Some(asked) = options.vertices.filter(|&asked| asked != got) {
         job.notes.push(format!("{asked} vertices set the scale of the metric; stars that agree took {got}"));
     }
-    (meshed.seconds, meshed.notes) = (job.seconds, job.notes);
+    (meshed.seconds, meshed.notes) = (job.watch.seconds, job.notes);
     Ok(meshed)
 }
 

@@ -4,15 +4,18 @@ mod certified;
 mod dual;
 mod field;
 mod mesher;
+mod on_surface;
 mod protection;
 mod relaxing;
 mod seeding;
 mod settle;
+mod stopwatch;
 
 pub use certified::{certified_canvas, certify};
 pub use dual::{SeedDual, dual, net};
 pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, metric, smooth_metric};
 pub use mesher::Mesher;
+pub use on_surface::{mesh_surface, surface_dual, surface_mesh};
 pub use relaxing::Centroid;
 pub use seeding::Seeding;
 
@@ -32,6 +35,7 @@ use crate::sampling::{
     Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, sample_segments, simplify,
 };
 use std::time::Instant;
+use stopwatch::Stopwatch;
 
 /// What the mesher may be told; every parameter has one name (flag, TOML key, Python keyword) and one default.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -158,7 +162,7 @@ pub fn mesh(
     let settle::Settled { dual: account, canvas, diagram } = settled;
     let (canvas, diagram) = (job.canvas.or(canvas), job.diagram.or(diagram));
     let metric_scale = dual.field().factor;
-    let (seconds, notes) = (job.seconds, job.notes);
+    let (seconds, notes) = (job.watch.seconds, job.notes);
     let star_set = None;
     Ok(Meshed {
         mesh,
@@ -181,23 +185,19 @@ struct Job<'a> {
     progress: &'a dyn Progress,
     canvas: Option<CanvasFigures>,
     diagram: Option<report::Diagram>,
-    seconds: Vec<(&'static str, f64)>,
+    watch: Stopwatch,
     notes: Vec<String>,
 }
 
 impl<'a> Job<'a> {
     fn new(field: &'a dyn MetricField, options: &'a MeshOptions, progress: &'a dyn Progress) -> Self {
-        Self { field, options, progress, canvas: None, diagram: None, seconds: Vec::new(), notes: Vec::new() }
+        Self { field, options, progress, canvas: None, diagram: None, watch: Stopwatch::default(), notes: Vec::new() }
     }
 
     fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
         let start = Instant::now();
         let result = work(self);
-        let took = start.elapsed().as_secs_f64();
-        match self.seconds.iter_mut().find(|(name, _)| *name == stage) {
-            Some((_, seconds)) => *seconds += took,
-            None => self.seconds.push((stage, took)),
-        }
+        self.watch.add(stage, start);
         result
     }
 

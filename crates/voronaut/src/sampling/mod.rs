@@ -4,6 +4,7 @@
 mod curves;
 mod farthest;
 mod interior;
+mod on_surface;
 mod plan;
 mod protected;
 mod segments;
@@ -12,6 +13,7 @@ pub use curves::simplify;
 pub use farthest::{Farthest, refine_farthest};
 pub(crate) use interior::insert_spaced;
 pub use interior::{Fill, Refined, refine};
+pub use on_surface::{Seeded, euler, seed_surface};
 pub use plan::{Plan, Target, demand_memory};
 pub use protected::{Picked, Picking, refine_protected};
 pub use segments::{MetricArc, sample_segments};

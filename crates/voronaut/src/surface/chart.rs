@@ -2,7 +2,7 @@
 
 use super::metric::SurfaceMetric;
 use super::{Input, Place};
-use crate::geometry::{Point, Point3, TangentPlane, Tensor, Vector, Vector3};
+use crate::geometry::{Point, Point3, TangentPlane, Tensor, Vector3};
 use crate::metric::MetricField;
 
 /// The parallel projection of a surface and its metric along the normal at a place to the plane there, with the place as origin:
@@ -24,7 +24,12 @@ pub const STEEPEST: f64 = 0.2;
 impl<'a> Chart<'a> {
     /// The chart at a place, along a unit vector.
     pub fn new(input: &'a Input, metric: &'a dyn SurfaceMetric, at: Place, normal: Vector3) -> Self {
-        Self { input, metric, at, plane: TangentPlane::new(normal) }
+        Self::in_plane(input, metric, at, TangentPlane::new(normal))
+    }
+
+    /// The chart at a place in the coordinates of a plane.
+    pub fn in_plane(input: &'a Input, metric: &'a dyn SurfaceMetric, at: Place, plane: TangentPlane) -> Self {
+        Self { input, metric, at, plane }
     }
 
     /// The plane.
@@ -53,12 +58,6 @@ impl<'a> Chart<'a> {
         let [u, v] = [self.plane.u, self.plane.v].map(tangent);
         let m = self.metric.at(place);
         Tensor::new(m.dot(u, u), m.dot(u, v), m.dot(v, v))
-    }
-
-    /// A vector along the surface at a place whose projection is the given one.
-    pub fn tangent(&self, normal: Vector3, v: Vector) -> Vector3 {
-        let flat = self.plane.lift(v);
-        flat - self.plane.normal * (flat.dot(normal) / self.plane.normal.dot(normal))
     }
 }
 

@@ -5,13 +5,15 @@
 //! | `build`, `orient` | from an indexed list of triangles to a [`Surface`], or what is wrong and where |
 //! | `measure` | area, normals, Euler characteristic, components, borders |
 //! | `nearest` | the closest point of a surface |
-//! | `input`, `chart` | a surface with its equation, if it has one; how points come onto it; parts of it seen as parts of the plane |
+//! | `input` | a surface with its equation, if it has one; how points come onto it |
+//! | `chart`, `chord` | a part of a surface seen as a part of the plane; the way over a chord |
 //! | `implicit`, `march` | surfaces f(x, y, z) = 0: derivatives, projection, a first mesh by marching tetrahedra |
 //! | `shapes`, `read` | spheres, tori, files: what users write for a surface |
 //! | [`metric`] | metric fields on surfaces, curvature among them |
 
 mod build;
 mod chart;
+mod chord;
 mod implicit;
 mod input;
 mod march;
@@ -24,6 +26,7 @@ mod shapes;
 mod tetrahedra;
 
 pub use chart::{Chart, STEEPEST};
+pub use chord::Chord;
 pub use implicit::{Curvatures, Implicit, curvatures, project};
 pub use input::{Input, OFF_SURFACE};
 pub use march::mesh_implicit;

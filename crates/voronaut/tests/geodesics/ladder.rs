@@ -110,10 +110,10 @@ fn a_fixed_window_does_not_converge() {
         let middle = VertexId(n * n / 2);
         let mut sources = Sources::new(graph.vertex_count());
         // Exact around the source, as diagrams have it, at the same distance on all grids.
-        let exact = |v: VertexId| TURNED.length(graph.position(v) - graph.position(middle));
+        let exact = |v: VertexId| TURNED.length(graph.sight().line(middle, middle, v));
         graph.vertices().filter(|&v| exact(v) < 0.15).for_each(|v| sources.add(v, exact(v), 0));
         let inside = |v: &VertexId| {
-            let p = graph.position(*v);
+            let p = graph.sight().line(middle, middle, *v);
             p.x.abs() < 0.9 && p.y.abs() < 0.9 && exact(*v) > 0.3
         };
         let solvers: [Box<dyn Geodesic>; 3] = [

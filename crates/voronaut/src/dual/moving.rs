@@ -1,0 +1,107 @@
+//! What relaxation asks of a triangulation whose seeds it moves, in the plane or on a surface.
+
+use super::{Dual, Effort, Kind, Saved};
+use crate::error::Result;
+use crate::geodesic::LocalMetric;
+use crate::geometry::Vector;
+use crate::triangulation::{Triangulation, VertexId};
+
+/// Seeds that can move, with their triangulation. Vectors at a seed are in its own coordinates: those of the plane, or of a
+/// chart there.
+pub trait Moving: Sync {
+    /// Seeds, edges, and the metric at the seeds, to come back to.
+    type Saved;
+
+    /// Topology.
+    fn topology(&self) -> &Triangulation;
+    /// The metric around a seed, in units of the wanted edge length.
+    fn local(&self, v: VertexId) -> &LocalMetric;
+    /// What holds a seed.
+    fn kind(&self, v: VertexId) -> Kind;
+    /// Where another seed is, seen from a seed.
+    fn offset(&self, from: VertexId, to: VertexId) -> Vector;
+    /// The factor on the metric.
+    fn factor(&self) -> f64;
+    /// The direction of the segment that a curve's seed is on: from one neighbour there to the other.
+    fn along_segment(&self, v: VertexId) -> Option<Vector>;
+
+    /// Moves a seed, unless a triangle would turn over; says whether it did.
+    fn shift_by(&mut self, v: VertexId, by: Vector) -> bool;
+    /// Moves a curve's seed along its segment, as far as its edges there stay within these lengths (metric).
+    fn slide_by(&mut self, v: VertexId, by: Vector, lengths: [f64; 2]) -> bool;
+    /// Measures what has to be known before cells are cut.
+    fn measure(&mut self);
+    /// After seeds have moved: measures the metric there and flips. Returns how many flips.
+    ///
+    /// # Errors
+    /// The metric is found invalid at a seed.
+    fn settle_moves(&mut self) -> Result<u64>;
+
+    /// What moves and flips change.
+    fn save(&self) -> Self::Saved;
+    /// Takes back what was done since.
+    fn take_back(&mut self, saved: &Self::Saved);
+    /// How a seed has moved since.
+    fn moved_since(&self, saved: &Self::Saved, v: VertexId) -> Vector;
+}
+
+impl Moving for Dual<'_> {
+    type Saved = Saved;
+
+    fn topology(&self) -> &Triangulation {
+        Dual::topology(self)
+    }
+
+    fn local(&self, v: VertexId) -> &LocalMetric {
+        Dual::local(self, v)
+    }
+
+    fn kind(&self, v: VertexId) -> Kind {
+        Dual::kind(self, v)
+    }
+
+    fn offset(&self, from: VertexId, to: VertexId) -> Vector {
+        self.position(to) - self.position(from)
+    }
+
+    fn factor(&self) -> f64 {
+        self.field().factor
+    }
+
+    fn along_segment(&self, v: VertexId) -> Option<Vector> {
+        self.neighbours_on_segment(v).map(|[a, b]| b - a)
+    }
+
+    fn shift_by(&mut self, v: VertexId, by: Vector) -> bool {
+        self.shift(v, self.position(v) + by)
+    }
+
+    fn slide_by(&mut self, v: VertexId, by: Vector, lengths: [f64; 2]) -> bool {
+        self.shift(v, self.slid(v, by, lengths))
+    }
+
+    fn measure(&mut self) {
+        self.measure_rough_edges();
+    }
+
+    fn settle_moves(&mut self) -> Result<u64> {
+        self.measure_moved();
+        self.verdict()?;
+        let flips = self.flip_all(Effort::Local);
+        self.take_touched();
+        self.measure_rough_edges();
+        Ok(flips)
+    }
+
+    fn save(&self) -> Saved {
+        self.saved()
+    }
+
+    fn take_back(&mut self, saved: &Saved) {
+        self.restore(saved);
+    }
+
+    fn moved_since(&self, saved: &Saved, v: VertexId) -> Vector {
+        self.position(v) - saved.position(v)
+    }
+}

@@ -1,0 +1,358 @@
+//! The Riemannian Delaunay triangulation of seeds on a surface, with straight edges in space: the mesh in the making.
+//!
+//! It starts as the dual of a diagram and changes by moves and flips, each of which keeps it a triangulation of the surface
+//! without doubled edges, and lets no triangle turn away from the surface's normals. What the metric is around a seed, and where its neighbours are, is
+//! told in a chart there (RR-9103, section 12).
+
+use super::{Kind, Moving};
+use crate::error::{Error, Result};
+use crate::geodesic::{Angles, LocalMetric, Margin, hermite_between};
+use crate::rdt::Quad;
+use crate::geometry::{Point, Point3, TangentPlane, Vector, Vector3};
+use crate::metric::Scaled;
+use crate::surface::metric::SurfaceMetric;
+use crate::surface::{Chart, Input, Place};
+use crate::triangulation::{HalfEdge, Triangulation, VertexId};
+use rayon::prelude::*;
+
+/// Margins closer to zero than this are ties.
+const TIE: f64 = 1e-9;
+/// How often one pass flips the edge in one slot.
+const FLIPS_PER_SLOT: u8 = 6;
+/// A flip may not leave a triangle whose quality is below this if both were better before.
+const POOR: f64 = 0.5;
+/// The least cosine between a triangle's normal and those of the surface at its corners.
+const UPRIGHT: f64 = 0.3;
+/// Slopes of the surface over a chord that tell its length; steeper ones count as this.
+const STEEP: f64 = 0.8;
+
+/// See the [module](self).
+pub struct SurfaceDual<'a> {
+    input: &'a Input,
+    metric: &'a dyn SurfaceMetric,
+    factor: f64,
+    state: State,
+    flips: u64,
+}
+
+/// What moves and flips change.
+#[derive(Clone)]
+pub struct State {
+    topology: Triangulation,
+    places: Vec<Place>,
+    planes: Vec<TangentPlane>,
+    locals: Vec<LocalMetric>,
+    kinds: Vec<Kind>,
+}
+
+impl<'a> SurfaceDual<'a> {
+    /// A triangulation of seeds at places of a surface, all of them in triangles that turn counter-clockwise around the
+    /// surface's normals. Those at the border stay where they are.
+    ///
+    /// # Errors
+    /// [`Error::Metric`] where the metric is not positive definite at a seed.
+    pub fn new(
+        input: &'a Input,
+        metric: &'a dyn SurfaceMetric,
+        factor: f64,
+        places: Vec<Place>,
+        topology: Triangulation,
+    ) -> Result<Self> {
+        let planes = places.iter().map(|place| TangentPlane::new(input.normal(place))).collect();
+        let kind = |v: u32| if topology.is_border_vertex(VertexId(v)) { Kind::Corner(v) } else { Kind::Free };
+        let kinds = (0..places.len() as u32).map(kind).collect();
+        let locals = vec![LocalMetric::default(); places.len()];
+        let mut dual = Self { input, metric, factor, state: State { topology, places, planes, locals, kinds }, flips: 0 };
+        dual.measure_each(|_, field| LocalMetric::at(field, Point::default()))?;
+        Ok(dual)
+    }
+
+    /// Topology: vertex i is seed i.
+    pub fn topology(&self) -> &Triangulation {
+        &self.state.topology
+    }
+
+    /// The triangles by their seeds.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        self.topology().faces().map(|f| self.topology().corners(f).map(|v| v.0)).collect()
+    }
+
+    /// Where the seeds are.
+    pub fn places(&self) -> &[Place] {
+        &self.state.places
+    }
+
+    /// The factor on the metric.
+    pub fn factor(&self) -> f64 {
+        self.factor
+    }
+
+    /// Multiplies the metric by another factor instead.
+    ///
+    /// # Errors
+    /// As for [`SurfaceDual::new`].
+    pub fn rescale(&mut self, factor: f64) -> Result<()> {
+        self.factor = factor;
+        self.measure_each(|_, field| LocalMetric::at(field, Point::default()))
+    }
+
+    /// Flips done so far.
+    pub fn flips(&self) -> u64 {
+        self.flips
+    }
+
+    fn position(&self, v: VertexId) -> Point3 {
+        self.state.places[v.index()].position
+    }
+
+    fn measure_each(&mut self, measure: impl Fn(&LocalMetric, &Scaled) -> LocalMetric + Sync) -> Result<()> {
+        let (input, metric, factor) = (self.input, self.metric, self.factor);
+        let State { places, planes, locals, .. } = &mut self.state;
+        locals.par_iter_mut().zip(places.as_slice()).zip(planes.as_slice()).with_min_len(64).for_each(|((local, at), plane)| {
+            let chart = Chart::in_plane(input, metric, *at, *plane);
+            *local = measure(local, &Scaled { field: &chart, factor });
+        });
+        match self.state.locals.iter().position(|local| !local.tensor.is_positive_definite()) {
+            None => Ok(()),
+            Some(i) => {
+                let what = "the tensor there is not finite and positive definite";
+                let help = "give a metric whose eigenvalues are positive on the whole surface";
+                Err(Error::metric(what, self.state.places[i].position.to_string(), help))
+            }
+        }
+    }
+
+    /// Metric length of the geodesic between two seeds, estimated from both ends; where the metric is rough, by Simpson's rule.
+    pub fn length_between(&self, u: VertexId, v: VertexId) -> f64 {
+        let ends = [u, v].map(|w| &self.state.locals[w.index()]);
+        if ends.iter().any(|local| local.is_rough) {
+            return self.chord_length(u, v);
+        }
+        hermite_between(ends, [self.offset(u, v), -self.offset(v, u)]).value
+    }
+
+    fn chord_length(&self, u: VertexId, v: VertexId) -> f64 {
+        let [p, q] = [u, v].map(|w| &self.state.places[w.index()]);
+        let tensors = [p, q].map(|place| self.metric.at(place));
+        let middle = self.input.lift(p, p.position.lerp(q.position, 0.5));
+        let middle = middle.map_or(tensors, |place| [self.metric.at(&place); 2]);
+        self.input.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()
+    }
+
+    /// The in-circle test of an edge with two faces: the sine of the sum of the angles that face it; `None` where lengths
+    /// make no triangles.
+    fn margin(&self, h: HalfEdge) -> Option<f64> {
+        let [a, b, c, d] = self.quad(h)?;
+        let length = |u, v| self.length_between(u, v);
+        let angles = Angles::from_lengths(length(a, b), [length(a, c), length(b, c)], [length(a, d), length(b, d)]);
+        (!angles.is_flat()).then(|| angles.margin())
+    }
+
+    /// The ends of an edge, and what is to its left and right.
+    fn quad(&self, h: HalfEdge) -> Option<[VertexId; 4]> {
+        let topology = self.topology();
+        let t = topology.twin(h)?;
+        Some([topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)])
+    }
+
+    /// Flips every edge that the metric wants flipped and the surface allows. Returns the number of flips.
+    pub fn flip_all(&mut self) -> u64 {
+        let edges: Vec<HalfEdge> = self.topology().edges().collect();
+        let topology = &self.state.topology;
+        let wants = |&h: &HalfEdge| !topology.is_fixed(h) && self.margin(h).is_some_and(|margin| margin < -TIE);
+        let stack: Vec<HalfEdge> = edges.into_par_iter().with_min_len(64).filter(wants).collect();
+        self.flip_stacked(stack, |dual, h| dual.margin(h))
+    }
+
+    /// Flips by a test of the caller's: every edge with a certainly negative margin whose flip the surface allows. Returns the
+    /// number of flips.
+    pub fn settle_by(&mut self, test: impl Fn(&Quad) -> Margin) -> u64 {
+        let edges: Vec<HalfEdge> = self.topology().edges().collect();
+        self.flip_stacked(edges, |dual, h| certain(&test(&dual.seeds_around(h)?)))
+    }
+
+    /// How many edges a test wants flipped.
+    pub fn disagreeing(&self, test: impl Fn(&Quad) -> Margin) -> usize {
+        let wants = |&h: &HalfEdge| {
+            let margin = self.seeds_around(h).and_then(|quad| certain(&test(&quad)));
+            !self.topology().is_fixed(h) && margin.is_some_and(|value| value < -TIE)
+        };
+        self.topology().edges().filter(wants).count()
+    }
+
+    fn seeds_around(&self, h: HalfEdge) -> Option<Quad> {
+        let [a, b, c, d] = self.quad(h)?.map(|v| v.0);
+        Some(Quad { a, b, c, d })
+    }
+
+    /// Flips edges and what follows from them as long as a test gives a negative margin and the surface allows it.
+    fn flip_stacked(
+        &mut self,
+        mut stack: Vec<HalfEdge>,
+        margin: impl Fn(&Self, HalfEdge) -> Option<f64>,
+    ) -> u64 {
+        let mut flips_of_slot = vec![0_u8; 3 * self.topology().face_slots()];
+        let before = self.flips;
+        while let Some(h) = stack.pop() {
+            let Some(t) = self.topology().twin(h).filter(|_| !self.topology().is_fixed(h)) else { continue };
+            let slot = h.min(t).index();
+            let is_wanted = flips_of_slot[slot] < FLIPS_PER_SLOT && margin(self, h).is_some_and(|m| m < -TIE);
+            if !is_wanted || !self.allows_flip(h) {
+                continue;
+            }
+            flips_of_slot[slot] += 1;
+            self.state.topology.flip(h);
+            self.flips += 1;
+            stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
+        }
+        self.flips - before
+    }
+
+    /// Whether a flip leaves a triangulation without doubled edges whose triangles stand upright on the surface, and makes
+    /// none that is poor in the metric and poorer than both of before.
+    fn allows_flip(&self, h: HalfEdge) -> bool {
+        let Some([a, b, c, d]) = self.quad(h) else { return false };
+        let topology = self.topology();
+        let joins = |u: VertexId, v: VertexId| topology.star(u).any(|e| topology.target(e) == v || topology.apex(e) == v);
+        if c == d || joins(c, d) || [a, b].iter().any(|&v| topology.star(v).count() <= 3) {
+            return false;
+        }
+        let (now, then) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
+        let upright = |triangles: [[VertexId; 3]; 2]| triangles.map(|t| self.upright(t)).into_iter().fold(1.0, f64::min);
+        let after = upright(then);
+        if after < UPRIGHT && after < upright(now) {
+            return false;
+        }
+        let shape = |triangles: [[VertexId; 3]; 2]| triangles.map(|t| self.shape(t)).into_iter().fold(1.0, f64::min);
+        let after = shape(then);
+        after > POOR || after > shape(now)
+    }
+
+    /// The least cosine between the normal of a triangle and those of the surface at its corners.
+    pub fn upright(&self, corners: [VertexId; 3]) -> f64 {
+        let normals = corners.map(|v| self.state.planes[v.index()].normal);
+        upright(corners.map(|v| self.position(v)), normals)
+    }
+
+    /// Quality of a triangle by its lengths: 1 of an equilateral one.
+    pub fn shape(&self, [a, b, c]: [VertexId; 3]) -> f64 {
+        let [x, y, z] = [(a, b), (b, c), (c, a)].map(|(u, v)| self.length_between(u, v));
+        let square = (x + y + z) * (x + y - z) * (x - y + z) * (y + z - x);
+        3.0_f64.sqrt() * square.max(0.0).sqrt() / (x * x + y * y + z * z)
+    }
+
+    /// The geometric mean of the edges' lengths.
+    pub fn mean_length(&self) -> f64 {
+        let edges: Vec<HalfEdge> = self.topology().edges().collect();
+        let log = |&h: &HalfEdge| self.length_between(self.topology().origin(h), self.topology().target(h)).ln();
+        let logs: Vec<f64> = edges.par_iter().with_min_len(64).map(log).collect();
+        (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp()
+    }
+}
+
+/// The value of a margin whose sign is certain.
+fn certain(margin: &Margin) -> Option<f64> {
+    margin.is_certain().then_some(margin.value)
+}
+
+fn upright([a, b, c]: [Point3; 3], normals: [Vector3; 3]) -> f64 {
+    let normal = (b - a).cross(c - a).unit().unwrap_or_default();
+    normals.iter().map(|n| n.dot(normal)).fold(1.0, f64::min)
+}
+
+impl Moving for SurfaceDual<'_> {
+    type Saved = State;
+
+    fn topology(&self) -> &Triangulation {
+        &self.state.topology
+    }
+
+    fn local(&self, v: VertexId) -> &LocalMetric {
+        &self.state.locals[v.index()]
+    }
+
+    fn kind(&self, v: VertexId) -> Kind {
+        self.state.kinds[v.index()]
+    }
+
+    /// In the direction of the projection, as long as the way along the surface, by the cubic over the chord.
+    fn offset(&self, from: VertexId, to: VertexId) -> Vector {
+        let e = self.position(to) - self.position(from);
+        let flat = self.state.planes[from.index()].flatten(e);
+        let square = e.dot(e);
+        let slopes = [from, to].map(|v| {
+            let normal = self.state.planes[v.index()].normal;
+            let sine = -normal.dot(e) / square.sqrt();
+            (sine / (1.0 - sine * sine).max(f64::MIN_POSITIVE).sqrt()).clamp(-STEEP, STEEP)
+        });
+        let [a, b] = slopes;
+        let length = square.sqrt() * (1.0 + (2.0 * (a * a + b * b) - a * b) / 30.0);
+        let norm = flat.norm();
+        if norm > 0.0 { flat * (length / norm) } else { Vector::default() }
+    }
+
+    fn factor(&self) -> f64 {
+        self.factor
+    }
+
+    fn along_segment(&self, _v: VertexId) -> Option<Vector> {
+        None
+    }
+
+    fn shift_by(&mut self, v: VertexId, by: Vector) -> bool {
+        let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
+        let Some(place) = self.input.lift(&at, at.position + plane.lift(by)) else { return false };
+        let normal = self.input.normal(&place);
+        if normal.dot(plane.normal) < UPRIGHT {
+            return false;
+        }
+        let topology = self.topology();
+        let stands = |h: HalfEdge| {
+            let [a, b] = [topology.target(h), topology.apex(h)];
+            let normals = [normal, self.state.planes[a.index()].normal, self.state.planes[b.index()].normal];
+            let after = upright([place.position, self.position(a), self.position(b)], normals);
+            after >= UPRIGHT || after >= self.upright([v, a, b])
+        };
+        if !topology.star(v).all(stands) {
+            return false;
+        }
+        self.state.places[v.index()] = place;
+        self.state.planes[v.index()] = plane.turned(normal);
+        true
+    }
+
+    fn slide_by(&mut self, _v: VertexId, _by: Vector, _lengths: [f64; 2]) -> bool {
+        false
+    }
+
+    fn measure(&mut self) {
+        let topology = self.topology();
+        let is_rough = |v: VertexId| self.local(v).is_rough;
+        let at_rough = |&h: &HalfEdge| is_rough(topology.origin(h)) || is_rough(topology.target(h));
+        let edges: Vec<HalfEdge> = topology.edges().filter(at_rough).collect();
+        let length = |&h: &HalfEdge| self.chord_length(topology.origin(h), topology.target(h));
+        let lengths: Vec<f64> = edges.par_iter().with_min_len(64).map(length).collect();
+        for (h, length) in edges.into_iter().zip(lengths) {
+            self.state.topology.set_length(h, length);
+        }
+    }
+
+    fn settle_moves(&mut self) -> Result<u64> {
+        self.measure_each(|local, field| local.moved(field, Point::default()))?;
+        let flips = self.flip_all();
+        self.measure();
+        Ok(flips)
+    }
+
+    fn save(&self) -> State {
+        self.state.clone()
+    }
+
+    fn take_back(&mut self, saved: &State) {
+        self.state.clone_from(saved);
+    }
+
+    fn moved_since(&self, saved: &State, v: VertexId) -> Vector {
+        self.state.planes[v.index()].flatten(self.position(v) - saved.places[v.index()].position)
+    }
+}

@@ -1,0 +1,234 @@
+//! The main job on a surface, and the dual of seeds on it.
+
+use super::dual::{SeedDual, account, compared, left_out};
+use super::stopwatch::Stopwatch;
+use super::{MeshOptions, Meshed, Mesher, Seeding};
+use crate::canvas::{Canvas, Draped};
+use crate::diagram::SurfaceDiagram;
+use crate::dual::{Road, SurfaceDual};
+use crate::error::{Error, Result};
+use crate::geometry::Point3;
+use crate::mesh::Mesh;
+use crate::optimise::{Relaxed, Tangent, relax};
+use crate::output::report;
+use crate::progress::Progress;
+use crate::quality;
+use crate::rdt::{OnSurface, Rdt, Start};
+use crate::sampling::{demand_memory, euler, seed_surface};
+use crate::surface::metric::SurfaceMetric;
+use crate::surface::{Input, Place};
+use crate::triangulation::Triangulation;
+use std::time::Instant;
+
+/// Vertices of the canvas on which the surface is measured first.
+const MEASURING: usize = 20_000;
+/// Relaxation goes in so many parts, the factor on the metric made fit between them.
+const PARTS: usize = 4;
+
+/// Meshes a surface by a metric: farthest points on its canvas, relaxed in charts, edges settled by geodesics on the canvas.
+/// Vertices are on the surface. With a number of vertices asked for the metric is scaled by one factor to meet it.
+///
+/// # Errors
+/// The metric is invalid somewhere; the work would exceed the memory limit; cells cannot be made discs with the vertices
+/// asked for; options that are for the plane.
+pub fn mesh_surface(
+    input: &Input,
+    metric: &dyn SurfaceMetric,
+    options: &MeshOptions,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    demand_supported(options)?;
+    let mut job = Job { input, metric, options, progress, watch: Stopwatch::default() };
+    let (count, scale) = job.timed("plan", Job::plan)?;
+    let canvas = job.timed("canvas", |job| job.canvas(count, &[]))?.0;
+    let seeded = job.timed("seed", |job| {
+        job.progress.stage("seeding", count as u64);
+        seed_surface(&canvas, count, 1.0 / scale.sqrt(), options.geodesic, progress)
+    })?;
+    let (mut dual, relaxation) = job.timed("relax", |job| job.relaxed(&canvas, &seeded.dual, scale))?;
+    let (settled, figures, diagram) = job.timed("settle", |job| job.settle(&mut dual))?;
+    let mesh = job.timed("check", |job| job.finish(&dual))?;
+    let mut notes = Vec::new();
+    if seeded.added > 0 {
+        notes.push(format!("{} vertices were added where cells were no discs or met twice", seeded.added));
+    }
+    Ok(Meshed {
+        mesh,
+        metric_scale: dual.factor(),
+        dual: settled,
+        relaxation,
+        canvas: Some(figures),
+        diagram: Some(diagram),
+        net: None,
+        protection: None,
+        star_set: None,
+        seconds: job.watch.seconds,
+        notes,
+    })
+}
+
+/// The dual of a diagram's seeds on a surface, by the road that is asked for; see [`super::dual()`].
+pub fn surface_dual(diagram: &SurfaceDiagram, road: Road) -> SeedDual {
+    let start = Instant::now();
+    let nerve = diagram.sharp_nerve();
+    let nerve_seconds = start.elapsed().as_secs_f64();
+    let raw = Start::from_nerve(&diagram.nerve());
+    let from = if raw.is_whole() { raw } else { Start::from_nerve(&nerve) };
+    let rdt = Rdt::judged(OnSurface::new(diagram), diagram.colours(), &from);
+    let seconds = vec![("nerve", nerve_seconds), ("tests", start.elapsed().as_secs_f64() - nerve_seconds)];
+    let triangles = match road {
+        Road::Canvas => nerve.triangles.iter().map(|t| t.colours).collect(),
+        Road::Geodesic => rdt.triangles(),
+        Road::Both => rdt.triangles().into_iter().chain(left_out(&rdt, &nerve)).collect(),
+    };
+    let account = account(&rdt, &nerve, road);
+    let exact = rdt.triangles();
+    let raw_nerve = compared(diagram, &exact);
+    SeedDual { triangles, nerve, exact, raw_nerve, account, seconds }
+}
+
+/// Triangles of seeds on a surface as a mesh: vertex i is seed i, with the region labels of the surface.
+pub fn surface_mesh(input: &Input, places: &[Place], triangles: Vec<[u32; 3]>) -> Mesh {
+    let topology = input.surface.topology();
+    let label = |t: &[u32; 3]| {
+        let corners = t.map(|v| places[v as usize].position);
+        let middle = Point3::weighted(corners, [1.0 / 3.0; 3]);
+        let place = input.lift(&places[t[0] as usize], middle).unwrap_or(places[t[0] as usize]);
+        topology.region(place.face)
+    };
+    Mesh {
+        points: places.iter().map(|place| place.position.to_array()).collect(),
+        point_labels: vec![0; places.len()],
+        triangle_labels: triangles.iter().map(label).collect(),
+        triangles,
+        ..Mesh::default()
+    }
+}
+
+fn demand_supported(options: &MeshOptions) -> Result<()> {
+    options.geodesic.demand_diagrams()?;
+    let planar = if options.mesher == Mesher::StarSet {
+        Some("the star-set mesher")
+    } else if options.seeding == Seeding::Protected {
+        Some("protected seeding")
+    } else {
+        None
+    };
+    planar.map_or(Ok(()), |what| {
+        let help = "leave the option out: surfaces are seeded by farthest points".into();
+        Err(Error::Unsupported { what: format!("{what} on a surface"), help })
+    })
+}
+
+struct Job<'a> {
+    input: &'a Input,
+    metric: &'a dyn SurfaceMetric,
+    options: &'a MeshOptions,
+    progress: &'a dyn Progress,
+    watch: Stopwatch,
+}
+
+type Settled = (report::Dual, crate::canvas::CanvasFigures, report::Diagram);
+
+impl<'a> Job<'a> {
+    fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
+        let start = Instant::now();
+        let result = work(self);
+        self.watch.add(stage, start);
+        result
+    }
+
+    /// The number of vertices, and the factor on the metric for which edges then are of unit length.
+    ///
+    /// A triangulation with V vertices has 2 (V - chi) - B faces, B of its edges on the border; each has the area sqrt(3) / 4.
+    fn plan(&mut self) -> Result<(usize, f64)> {
+        self.progress.stage("planning", 1);
+        let (canvas, _) = Canvas::on_surface(self.options.canvas, self.input, self.metric, MEASURING, &[])?;
+        let draped = canvas.draped();
+        let (area, chi) = (draped.area(), euler(draped.topology()) as f64);
+        let border: f64 = draped.borders().iter().flatten().map(|&h| draped.topology().length(h)).sum();
+        let vertices = |factor: f64| 2.0 / 3.0_f64.sqrt() * area * factor + 0.5 * border * factor.sqrt() + chi;
+        let (count, factor) = match (self.options.vertices, self.options.complexity) {
+            (Some(count), _) => {
+                // The square root of the factor by the quadratic formula.
+                let (a, b, c) = (2.0 / 3.0_f64.sqrt() * area, 0.5 * border, chi - count as f64);
+                let root = ((b * b - 4.0 * a * c.min(0.0)).sqrt() - b) / (2.0 * a);
+                (count, root * root)
+            }
+            (None, Some(complexity)) => (vertices(complexity / area).round() as usize, complexity / area),
+            (None, None) => (vertices(1.0).round() as usize, 1.0),
+        };
+        let least = 4 * self.input.surface.components().len();
+        let canvas = self.canvas_size(count) as f64;
+        demand_memory(count as f64, canvas, self.options.memory_limit)?;
+        let factor = if factor > 0.0 { factor } else { 1.0 };
+        Ok((count.max(least), factor))
+    }
+
+    fn canvas_size(&self, count: usize) -> usize {
+        crate::canvas::size_for(count, self.options.canvas_size)
+    }
+
+    fn canvas(&mut self, count: usize, seeds: &[Place]) -> Result<(Canvas<Draped<'a>>, Vec<crate::triangulation::VertexId>)> {
+        self.progress.stage("canvas", 1);
+        Canvas::on_surface(self.options.canvas, self.input, self.metric, self.canvas_size(count), seeds)
+    }
+
+    /// The triangulation of the seeds, relaxed.
+    fn relaxed(
+        &mut self,
+        canvas: &Canvas<Draped>,
+        seeds: &Rdt<OnSurface>,
+        scale: f64,
+    ) -> Result<(SurfaceDual<'a>, Relaxed)> {
+        let steps = self.options.lloyd;
+        self.progress.stage("relaxing", steps as u64);
+        let places: Vec<Place> = seeds.judge().seeds().iter().map(|&v| *canvas.draped().place(v)).collect();
+        let triangles = seeds.triangles();
+        let topology = Triangulation::from_triangles(places.len(), &triangles, &vec![0; triangles.len()]);
+        let mut dual = SurfaceDual::new(self.input, self.metric, scale, places, topology)?;
+        dual.flip_all();
+        self.fit_scale(&mut dual)?;
+        let mut relaxed = Relaxed::default();
+        for part in 0..PARTS {
+            let steps = (steps * (part + 1)) / PARTS - (steps * part) / PARTS;
+            relaxed.append(relax(&mut dual, &Tangent, steps, self.progress)?);
+            self.fit_scale(&mut dual)?;
+        }
+        Ok((dual, relaxed))
+    }
+
+    fn fit_scale(&self, dual: &mut SurfaceDual) -> Result<()> {
+        if self.options.vertices.is_some() {
+            let mean = dual.mean_length();
+            dual.rescale(dual.factor() / (mean * mean))?;
+        }
+        Ok(())
+    }
+
+    /// Flips by lengths of geodesics on a canvas that has the seeds as vertices.
+    fn settle(&mut self, dual: &mut SurfaceDual) -> Result<Settled> {
+        self.progress.stage("settling edges", 1);
+        let (canvas, at) = self.canvas(dual.places().len(), dual.places())?;
+        let diagram = SurfaceDiagram::on_surface(&canvas, &at, self.options.geodesic)?;
+        let triangles = dual.triangles();
+        let at_border = Start::from_nerve(&diagram.nerve()).at_border;
+        let rdt = Rdt::judged(OnSurface::new(&diagram), at.len(), &Start { triangles, at_border });
+        dual.settle_by(|quad| rdt.margin_of(quad));
+        let blocked = dual.disagreeing(|quad| rdt.margin_of(quad));
+        let account = report::Dual { blocked_flips: blocked, ..account(&rdt, &diagram.nerve(), Road::Geodesic) };
+        Ok((account, canvas.figures(), report::Diagram::of(&diagram)))
+    }
+
+    fn finish(&self, dual: &SurfaceDual) -> Result<Mesh> {
+        self.progress.stage("checking", 1);
+        let mesh = surface_mesh(self.input, dual.places(), dual.triangles());
+        quality::check(&mesh)?;
+        if euler(dual.topology()) != self.input.surface.euler_characteristic() {
+            let help = "ask for more vertices (-n); please report this with the input".into();
+            let what = "the mesh has another topology than the surface".into();
+            return Err(Error::Mesh { what, place: "the mesh".into(), help });
+        }
+        Ok(mesh)
+    }
+}
