@@ -33,5 +33,28 @@ fn main() {
     }
     let min = q.iter().copied().fold(1.0, f64::min);
     println!("quality mean {:.4} min {:.4} unit {:.4} folded {folded}", q.iter().sum::<f64>() / q.len() as f64, min, unit as f64 / edges as f64);
+    let mut worst: Vec<(f64, usize)> = q.iter().copied().zip(0..).collect();
+    worst.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for &(q, t) in &worst[..5.min(worst.len())] { let t = meshed.mesh.triangles[t]; println!("  {q:.4} {:?} lengths {:?} eig {:?}", meshed.mesh.points[t[0] as usize].map(|x| (x * 1e3).round() / 1e3),
+        [(0, 1), (1, 2), (2, 0)].map(|(i, j)| { let e = Point3::from(meshed.mesh.points[t[j] as usize]) - Point3::from(meshed.mesh.points[t[i] as usize]); [t[i], t[j]].map(|v| ((tensors[v as usize] * meshed.metric_scale).length(e) * 100.0).round() / 100.0) }),
+        t.map(|v| (tensors[v as usize] * meshed.metric_scale).eigen().values.map(|x| (1e3 / x.sqrt()).round() / 1e3))); }
+    let ours = voronaut::surface::Surface::new(&meshed.mesh).unwrap();
+    let one = |from: &voronaut::surface::Surface, to: &voronaut::surface::Surface| {
+        let near = voronaut::surface::Nearest::new(to);
+        let k = (400_000 / from.topology().face_count()).max(3) as f64; let k = k.sqrt().ceil() as i32;
+        let (mut sum, mut area, mut most) = (0.0, 0.0, 0.0_f64);
+        for f in from.topology().faces() {
+            let a = 0.5 * from.area_vector(f).norm();
+            let mut cnt = 0.0; let mut s = 0.0;
+            for i in 0..k { for j in 0..k - i { let w = [(i as f64 + 1.0 / 3.0) / k as f64, (j as f64 + 1.0 / 3.0) / k as f64]; 
+                let p = Point3::weighted(from.triangle(f), [1.0 - w[0] - w[1], w[0], w[1]]);
+                let d = near.closest(to, p).unwrap().distance; s += d * d; cnt += 1.0; most = most.max(d); } }
+            sum += a * s / cnt; area += a;
+        }
+        ((sum / area).sqrt(), most)
+    };
+    let d = input.surface.bounds().diagonal();
+    let (a, b) = (one(&ours, &input.surface), one(&input.surface, &ours));
+    println!("rms {:.3e} {:.3e} hausdorff {:.3e} {:.3e} (of diagonal)", a.0 / d, b.0 / d, a.1 / d, b.1 / d);
     if let Some(out) = args.get(4) { voronaut::output::write_mesh(&meshed.mesh, std::path::Path::new(out)).unwrap(); }
 }

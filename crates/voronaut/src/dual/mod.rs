@@ -9,6 +9,7 @@ mod consult;
 mod edit;
 mod flips;
 mod margin;
+mod mending;
 mod moving;
 mod on_surface;
 mod patch;
@@ -16,6 +17,7 @@ mod patch;
 pub use consult::{Consultation, Disagreement, Made, Road};
 pub use edit::Saved;
 pub use margin::{Effort, LEVELS, Margin};
+pub use mending::Mending;
 pub use moving::Moving;
 pub use on_surface::SurfaceDual;
 

@@ -82,6 +82,16 @@ impl<'a> SurfaceDual<'a> {
         &self.state.places
     }
 
+    /// The surface.
+    pub fn input(&self) -> &'a Input {
+        self.input
+    }
+
+    /// Its metric, not scaled.
+    pub fn metric(&self) -> &'a dyn SurfaceMetric {
+        self.metric
+    }
+
     /// The factor on the metric.
     pub fn factor(&self) -> f64 {
         self.factor
@@ -162,6 +172,28 @@ impl<'a> SurfaceDual<'a> {
         let wants = |&h: &HalfEdge| !topology.is_fixed(h) && self.margin(h).is_some_and(|margin| margin < -TIE);
         let stack: Vec<HalfEdge> = edges.into_par_iter().with_min_len(64).filter(wants).collect();
         self.flip_stacked(stack, |dual, h| dual.margin(h))
+    }
+
+    /// Flips around a seed and onwards.
+    pub(super) fn flip_around(&mut self, v: VertexId) -> u64 {
+        let star: Vec<HalfEdge> = self.topology().star(v).flat_map(|h| [h, h.next()]).collect();
+        self.flip_stacked(star, |dual, h| dual.margin(h))
+    }
+
+    /// Evaluates the metric at a seed that has moved.
+    pub(super) fn remeasure(&mut self, v: VertexId) {
+        let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
+        let chart = Chart::in_plane(self.input, self.metric, at, plane);
+        let local = self.state.locals[v.index()].moved(&Scaled { field: &chart, factor: self.factor }, Point::default());
+        if local.tensor.is_positive_definite() {
+            self.state.locals[v.index()] = local;
+        }
+    }
+
+    /// Where a seed comes to lie that is moved by a vector of its tangent plane.
+    pub(super) fn place_after(&self, v: VertexId, by: Vector) -> Option<Place> {
+        let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
+        self.input.lift(&at, at.position + plane.lift(by))
     }
 
     /// Flips by a test of the caller's: every edge with a certainly negative margin whose flip the surface allows. Returns the
@@ -300,8 +332,8 @@ impl Moving for SurfaceDual<'_> {
     }
 
     fn shift_by(&mut self, v: VertexId, by: Vector) -> bool {
-        let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
-        let Some(place) = self.input.lift(&at, at.position + plane.lift(by)) else { return false };
+        let plane = self.state.planes[v.index()];
+        let Some(place) = self.place_after(v, by) else { return false };
         let normal = self.input.normal(&place);
         if normal.dot(plane.normal) < UPRIGHT {
             return false;

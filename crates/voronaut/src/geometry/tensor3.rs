@@ -149,10 +149,35 @@ impl Tensor3 {
         self.map_eigenvalues(f64::ln)
     }
 
-    /// Matrix exponential of a symmetric tensor; positive definite.
+    /// Matrix exponential of a symmetric tensor; positive definite. By Taylor's series and squaring (Moler and Van Loan 2003),
+    /// which is many times as fast as by eigenvalues: metric fields on surfaces live by it.
     #[must_use]
     pub fn exp(self) -> Tensor3 {
-        self.map_eigenvalues(f64::exp)
+        let mean = (self.xx + self.yy + self.zz) / 3.0;
+        let deviation = self + Tensor3::IDENTITY * -mean;
+        let size = deviation.to_disk().into_iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        if !size.is_finite() || size > LARGEST {
+            return self.map_eigenvalues(f64::exp);
+        }
+        // Row sums are at most three entries.
+        let halvings = (3.0 * size / SMALL).log2().ceil().max(0.0) as i32;
+        let small = deviation * 0.5_f64.powi(halvings);
+        let term = |sum: Tensor3, k: u32| Tensor3::IDENTITY + sum.product(small) * (1.0 / f64::from(k));
+        let series = (1..=TERMS).rev().fold(Tensor3::IDENTITY, term);
+        (0..halvings).fold(series, |root, _| root.product(root)) * mean.exp()
+    }
+
+    /// The product of two tensors with the same axes, which is symmetric.
+    fn product(self, other: Tensor3) -> Tensor3 {
+        let (a, b) = (self, other);
+        Tensor3 {
+            xx: a.xx * b.xx + a.xy * b.xy + a.xz * b.xz,
+            xy: a.xx * b.xy + a.xy * b.yy + a.xz * b.yz,
+            yy: a.xy * b.xy + a.yy * b.yy + a.yz * b.yz,
+            xz: a.xx * b.xz + a.xy * b.yz + a.xz * b.zz,
+            yz: a.xy * b.xz + a.yy * b.yz + a.yz * b.zz,
+            zz: a.xz * b.xz + a.yz * b.yz + a.zz * b.zz,
+        }
     }
 }
 
@@ -196,6 +221,12 @@ impl TangentPlane {
     }
 }
 
+/// Exponents (but for their mean) above this are left to eigenvalues.
+const LARGEST: f64 = 300.0;
+/// Taylor's series is taken of tensors no larger than this, and so far.
+const SMALL: f64 = 0.35;
+const TERMS: u32 = 12;
+
 /// Sweeps of Jacobi's method; it converges quadratically, five or six are the rule.
 const SWEEPS: usize = 30;
 
@@ -209,7 +240,7 @@ fn rotate(m: &mut [[f64; 3]; 3], axes: &mut [[f64; 3]; 3], p: usize, q: usize) {
     }
     let theta = 0.5 * (m[q][q] / off - m[p][p] / off);
     let t = 1.0_f64.copysign(theta) / (theta.abs() + theta.hypot(1.0));
-    let cos = 1.0 / t.hypot(1.0);
+    let cos = 1.0 / (t * t + 1.0).sqrt();
     let sin = t * cos;
     m[p][p] -= t * off;
     m[q][q] += t * off;

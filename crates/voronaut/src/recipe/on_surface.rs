@@ -9,7 +9,7 @@ use crate::dual::{Road, SurfaceDual};
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
 use crate::mesh::Mesh;
-use crate::optimise::{Relaxed, Tangent, relax};
+use crate::optimise::{Relaxed, Tangent, mend_worst, relax};
 use crate::output::report;
 use crate::progress::Progress;
 use crate::quality;
@@ -24,6 +24,9 @@ use std::time::Instant;
 const MEASURING: usize = 20_000;
 /// Relaxation goes in so many parts, the factor on the metric made fit between them.
 const PARTS: usize = 4;
+/// Triangles that are mended in the end, as a share of all, and how often.
+const MENDED_SHARE: f64 = 0.02;
+const MENDINGS: usize = 3;
 
 /// Meshes a surface by a metric: farthest points on its canvas, relaxed in charts, edges settled by geodesics on the canvas.
 /// Vertices are on the surface. With a number of vertices asked for the metric is scaled by one factor to meet it.
@@ -194,6 +197,10 @@ impl<'a> Job<'a> {
             let steps = (steps * (part + 1)) / PARTS - (steps * part) / PARTS;
             relaxed.append(relax(&mut dual, &Tangent, steps, self.progress)?);
             self.fit_scale(&mut dual)?;
+        }
+        let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
+        for _ in 0..MENDINGS {
+            mend_worst(&mut dual, poor);
         }
         Ok((dual, relaxed))
     }

@@ -79,6 +79,7 @@ impl Job<'_> {
         self.fit_scale(dual);
         if self.exchanges() {
             mend_worst(dual, (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize);
+            dual.take_touched();
         }
         dual.verdict()?;
         Ok(relaxed)
