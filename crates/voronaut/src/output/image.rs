@@ -1,11 +1,13 @@
 //! Images of pixels within an SVG.
 
-use crate::error::{Error, Result};
+#[cfg(not(feature = "png"))]
+use crate::error::Error;
+use crate::error::Result;
 
 /// Opaque pixels, row by row, as the address of a PNG that holds them.
 ///
 /// # Errors
-/// [`Error::Unsupported`] if the library was built without PNG.
+/// [`Error::Unsupported`](crate::Error::Unsupported) if the library was built without PNG.
 #[cfg(feature = "png")]
 pub(super) fn data_url(pixels: &[[u8; 3]], width: u32) -> Result<String> {
     let height = (pixels.len() as u32).checked_div(width).unwrap_or(0);
@@ -13,6 +15,7 @@ pub(super) fn data_url(pixels: &[[u8; 3]], width: u32) -> Result<String> {
     Ok(format!("data:image/png;base64,{}", base64(&png)))
 }
 
+/// Refuses: the library was built without PNG.
 #[cfg(not(feature = "png"))]
 pub(super) fn data_url(_: &[[u8; 3]], _: u32) -> Result<String> {
     let what = "a picture of a surface, for this build knows no PNG".into();

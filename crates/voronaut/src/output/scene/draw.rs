@@ -13,9 +13,9 @@ use std::fmt::Write;
 /// Lines are straightened by at most so many pixels.
 const TOLERANCE: f64 = 0.1;
 /// How far behind a surface a line may be and still be on it, as a share of the picture's longer side. Lines that join
-/// points of a surface are chords; those of a circle are nearer to it than this if they are shorter than an eighth of its
-/// radius.
-const TOUCH: f64 = 0.002;
+/// points of a surface are chords: those of a circle that fills the picture are nearer to it than this if they are shorter
+/// than a fifth of its radius.
+const TOUCH: f64 = 0.003;
 /// The thinnest line, in pixels.
 const THINNEST: f64 = 0.25;
 

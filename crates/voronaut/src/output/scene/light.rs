@@ -10,8 +10,8 @@ use rayon::prelude::*;
 /// Where the light comes from: the left, above, the front.
 const LIGHT: Vector3 = Vector3::new(-0.48, 0.62, 0.62);
 /// Light from everywhere, from the lamp, and from the sky above.
-const AMBIENT: f64 = 0.30;
-const LAMP: f64 = 0.66;
+const AMBIENT: f64 = 0.38;
+const LAMP: f64 = 0.64;
 const SKY: f64 = 0.12;
 /// How far the lamp's light reaches around a body, as a cosine.
 const WRAP: f64 = 0.25;
@@ -19,7 +19,7 @@ const WRAP: f64 = 0.25;
 const GLOSS: f64 = 0.05;
 const SHARPNESS: i32 = 24;
 /// How much darker surfaces are that are seen from the side.
-const RIM: f64 = 0.38;
+const RIM: f64 = 0.35;
 /// What is left of red, green and blue on the back of a triangle.
 const BACK: [f64; 3] = [0.62, 0.54, 0.50];
 

@@ -18,8 +18,10 @@ mod faces;
 mod light;
 mod view;
 mod visible;
-#[cfg(test)]
+#[cfg(all(test, feature = "png"))]
 mod tests;
+#[cfg(test)]
+mod look;
 
 pub use draw::draw_surface;
 pub use view::View;

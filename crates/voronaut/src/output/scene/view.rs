@@ -25,9 +25,9 @@ const FLAT: f64 = 0.6;
 const HUGE: f64 = 1e140;
 
 impl Default for View {
-    /// From the front (z), from the right and above (y).
+    /// From above (y), a side, and from where z is negative: there models of animals tend to have their faces.
     fn default() -> Self {
-        Self { from: Vector3::new(0.55, 0.35, 1.0), up: Vector3::new(0.0, 1.0, 0.0), pixels: 1600 }
+        Self { from: Vector3::new(-0.6, 0.35, -1.0), up: Vector3::new(0.0, 1.0, 0.0), pixels: 1600 }
     }
 }
 
