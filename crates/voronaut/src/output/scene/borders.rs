@@ -94,7 +94,9 @@ impl<'a> Borders<'a> {
             }
             [a, b, c] => {
                 let junction = self.edges.len() + self.junctions.len();
-                cuts.iter().for_each(|&cut| self.link(cut, junction));
+                for cut in [a, b, c] {
+                    self.link(cut, junction);
+                }
                 self.junctions.push([a, b, c]);
             }
             _ => {}
@@ -170,13 +172,19 @@ mod tests {
     #[test]
     fn every_cut_is_on_one_line() {
         let (points, triangles, colours) =
-            grid(25, |x, y| if (x - 12.0).hypot(y - 6.0) < 3.5 { 9 } else { u32::from(x > 11.3) + 2 * u32::from(y > 13.4) });
+            grid(
+                25,
+                |x, y| if (x - 12.0).hypot(y - 6.0) < 3.5 { 9 } else { u32::from(x > 11.3) + 2 * u32::from(y > 13.4) },
+            );
         let borders = Borders::new(&points, &triangles, &colours);
         let lines = borders.lines();
         // Four ends at the border of the grid, two junctions or more where the colours meet, and the disk.
         assert!(!borders.junctions.is_empty());
         let inner: usize = lines.iter().map(|line| line.windows(2).count()).sum();
-        let two: usize = triangles.iter().filter(|&&t| sides(t).iter().filter(|&&s| borders.share(s).is_some()).count() == 2).count();
+        let two: usize = triangles
+            .iter()
+            .filter(|&&t| sides(t).iter().filter(|&&s| borders.share(s).is_some()).count() == 2)
+            .count();
         assert_eq!(inner, two + 3 * borders.junctions.len());
     }
 }

@@ -55,11 +55,7 @@ fn pieces(triangle: [u32; 3], corners: [Corner; 3], borders: &Borders) -> Vec<([
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         if let (Some(after), Some(before)) = (cuts[i], cuts[k]) {
             let rest = [[after, corners[j], corners[k]], [after, corners[k], before]];
-            return vec![
-                ([corners[i], after, before], triangle[i]),
-                (rest[0], triangle[j]),
-                (rest[1], triangle[j]),
-            ];
+            return vec![([corners[i], after, before], triangle[i]), (rest[0], triangle[j]), (rest[1], triangle[j])];
         }
     }
     vec![(corners, triangle[0])]

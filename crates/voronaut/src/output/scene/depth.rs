@@ -1,4 +1,4 @@
-//! Which triangle is nearest to the eye, by samples (Catmull 1974).
+//! Which triangle is nearest to the eye, by samples: a z-buffer.
 
 /// No triangle.
 pub(super) const NONE: u32 = u32::MAX;

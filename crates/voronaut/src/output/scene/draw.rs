@@ -16,12 +16,15 @@ const TOLERANCE: f64 = 0.1;
 /// points of a surface are chords: those of a circle that fills the picture are nearer to it than this if they are shorter
 /// than a fifth of its radius.
 const TOUCH: f64 = 0.003;
-/// The thinnest line, in pixels.
+/// Widths where the surface is seen from the side, as shares of the full width, which is had from the cosine 1 / `FULL` on.
+const THINNER: [f64; 4] = [1.0, 0.75, 0.5, 0.35];
+const FULL: f64 = 1.7;
+/// The thinnest line where the surface faces the eye, in pixels.
 const THINNEST: f64 = 0.25;
 
 /// Draws a scene as the text of an SVG file: triangles as an image of shaded pixels (PNG, with white around), smooth where
-/// they have normals, the backs of triangles in a darker and warmer shade; lines over it as paths, one for each stroke,
-/// without what is hidden by triangles. The side of triangles that is seen more is taken for the front. What has points
+/// they have normals, the backs of triangles in a darker and warmer shade; lines over it as paths, one for
+/// each class of width, without what is hidden by triangles. The side of triangles that is seen more is taken for the front. What has points
 /// that are not finite is left out.
 ///
 /// # Errors
@@ -48,23 +51,28 @@ pub fn draw_surface(scene: &Scene, view: &View) -> Result<String> {
     Ok(text)
 }
 
-/// One path of all lines with a stroke.
+/// The lines with a stroke: one path of those that lie where the surface faces the eye, others for those where it does
+/// less and less, which are thinner.
 fn lines(text: &mut String, scene: &Scene, stroke: Stroke, screen: &Screen, camera: &Camera) {
     let frame = &camera.frame;
     let of_stroke = scene.lines.iter().filter(|line| line.stroke == stroke);
     let placed: Vec<Vec<[f64; 3]>> =
         of_stroke.filter_map(|line| line.points.iter().map(|&p| camera.place(p)).collect()).collect();
-    let mut path = PathData::default();
+    let mut paths: [PathData; THINNER.len()] = Default::default();
     for part in placed.iter().flat_map(|line| screen.visible(line)) {
-        let points: Vec<[i64; 2]> = part.iter().map(|&p| frame.quanta_at(p)).collect();
+        let class =
+            if stroke.is_thinned() { THINNER.iter().filter(|&&share| FULL * part.facing < share).count() } else { 0 };
+        let path = &mut paths[class.min(THINNER.len() - 1)];
+        let points: Vec<[i64; 2]> = part.points.iter().map(|&p| frame.quanta_at(p)).collect();
         match points[..] {
             [dot] => path.dot(dot),
             _ => path.polyline(&simplify(&points, &[], false, frame.quanta(TOLERANCE)), false),
         }
     }
-    if !path.text().is_empty() {
-        let width = frame.quanta(width(stroke, &placed));
-        let _ = writeln!(text, r#"<path stroke="{}" stroke-width="{width:.1}" d="{}"/>"#, stroke.ink(), path.text());
+    let width = frame.quanta(width(stroke, &placed));
+    for (path, share) in paths.iter().zip(THINNER).filter(|(path, _)| !path.text().is_empty()) {
+        let (ink, width) = (stroke.ink(), width * share);
+        let _ = writeln!(text, r#"<path stroke="{ink}" stroke-width="{width:.1}" d="{}"/>"#, path.text());
     }
 }
 

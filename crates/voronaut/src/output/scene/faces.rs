@@ -18,7 +18,8 @@ impl Scene {
         let at = |v: u32| Point3::from(mesh.points[v as usize]);
         let corners: Vec<[Point3; 3]> = used.iter().map(|triangle| triangle.map(at)).collect();
         let fills = fills(&corners, &labels, shade);
-        let triangles = corners.iter().zip(fills).map(|(&corners, fill)| SceneTriangle { corners, normals: None, fill });
+        let triangles =
+            corners.iter().zip(fills).map(|(&corners, fill)| SceneTriangle { corners, normals: None, fill });
         let edges = Edges::of(&used);
         let (inner, mut border): (Vec<_>, Vec<_>) = edges.iter().partition(|(_, half_edges)| half_edges.len() > 1);
         border.extend(mesh.edges.iter().filter(|[a, b]| edges.contains(*a, *b)).map(|&ends| (ends, [].as_slice())));

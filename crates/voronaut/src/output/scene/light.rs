@@ -1,9 +1,9 @@
 //! Light on triangles: from samples to pixels.
 
 use super::super::colours;
+use super::Scene;
 use super::depth::{DepthMap, Facet, NONE, SAMPLES};
 use super::view::Camera;
-use super::Scene;
 use crate::geometry::Vector3;
 use rayon::prelude::*;
 
@@ -26,6 +26,7 @@ const BACK: [f64; 3] = [0.62, 0.54, 0.50];
 /// What light needs to know of a triangle.
 struct Lit {
     facet: Facet,
+    facing: f64,
     normals: [Vector3; 3],
     colour: [f64; 3],
 }
@@ -47,10 +48,10 @@ impl Bodies {
             let flat = Vector3::new(x, y, z).unit().unwrap_or(Vector3::new(0.0, 0.0, 1.0));
             // Normals are turned to the side that is seen.
             let seen = |n: Vector3| if n.dot(flat) < 0.0 { -n } else { n };
-            let normals = triangle.normals.map_or([flat; 3], |normals| {
-                normals.map(|n| seen(camera.turn(n).unit().unwrap_or(flat)))
-            });
-            lit.push(Lit { facet, normals, colour: colours::decode(&triangle.fill.colour()) });
+            let normals = triangle
+                .normals
+                .map_or([flat; 3], |normals| normals.map(|n| seen(camera.turn(n).unit().unwrap_or(flat))));
+            lit.push(Lit { facet, facing: flat.z, normals, colour: colours::decode(&triangle.fill.colour()) });
         }
         Self { lit }
     }
@@ -58,6 +59,11 @@ impl Bodies {
     /// The triangle with a number of the map.
     pub(super) fn facet(&self, id: u32) -> &Facet {
         &self.lit[id as usize].facet
+    }
+
+    /// The cosine between the triangle's normal and the direction to the eye.
+    pub(super) fn facing(&self, id: u32) -> f64 {
+        self.lit[id as usize].facing
     }
 
     /// Red, green and blue of each pixel, row by row; white where nothing is. What is seen of more than the other is

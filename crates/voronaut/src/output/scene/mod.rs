@@ -16,12 +16,10 @@ mod depth;
 mod draw;
 mod faces;
 mod light;
-mod view;
-mod visible;
 #[cfg(all(test, feature = "png"))]
 mod tests;
-#[cfg(test)]
-mod look;
+mod view;
+mod visible;
 
 pub use draw::draw_surface;
 pub use view::View;
@@ -137,13 +135,18 @@ impl Stroke {
         }
     }
 
+    /// Whether it is thinner where the surface is seen from the side, for many may crowd there.
+    fn is_thinned(self) -> bool {
+        !matches!(self, Stroke::Border | Stroke::Seed)
+    }
+
     /// Its width as a share of the length of typical lines, and at most, in pixels.
     fn width(self) -> [f64; 2] {
         match self {
             Stroke::Cell => [0.045, 1.2],
             Stroke::Edge => [0.05, 1.0],
             Stroke::Border => [1.0, 1.6],
-            Stroke::Geodesic => [0.05, 1.6],
+            Stroke::Geodesic => [0.06, 1.9],
             Stroke::Seed => [0.0, 4.2],
         }
     }

@@ -10,12 +10,21 @@ const SHORTEST: f64 = 1.6;
 /// What is hidden over a shorter length, between two parts that are seen, is drawn.
 const GAP: f64 = 1.0;
 
-/// A point of a line in pixels, how far along it is, and whether it is seen.
+/// A part of a line that is seen.
+pub(super) struct Part {
+    /// Its points in pixels.
+    pub(super) points: Vec<[f64; 2]>,
+    /// How much the surface it lies on faces the eye, as the mean cosine; 1 of lines elsewhere.
+    pub(super) facing: f64,
+}
+
+/// A point of a line in pixels, how far along it is, whether it is seen, and how much what it lies on faces the eye.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     at: [f64; 2],
     along: f64,
     is_seen: bool,
+    facing: Option<f64>,
 }
 
 /// The bodies that hide lines.
@@ -27,19 +36,24 @@ pub(super) struct Screen<'a> {
 }
 
 impl Screen<'_> {
-    /// The parts of a line that are seen, as polylines in pixels.
-    pub(super) fn visible(&self, line: &[[f64; 3]]) -> Vec<Vec<[f64; 2]>> {
+    /// The parts of a line that are seen.
+    pub(super) fn visible(&self, line: &[[f64; 3]]) -> Vec<Part> {
         let mut samples = self.samples(line);
         heal(&mut samples);
         let is_whole = samples.iter().all(|sample| sample.is_seen);
         let is_long = |run: &[Sample]| is_whole || run[run.len() - 1].along - run[0].along >= SHORTEST;
         let runs = samples.chunk_by(|a, b| a.is_seen == b.is_seen).filter(|run| run[0].is_seen && is_long(run));
-        runs.map(|run| run.iter().map(|sample| sample.at).collect()).collect()
+        let facing = |run: &[Sample]| {
+            let known: Vec<f64> = run.iter().filter_map(|sample| sample.facing).collect();
+            if known.is_empty() { 1.0 } else { known.iter().sum::<f64>() / known.len() as f64 }
+        };
+        let part = |run: &[Sample]| Part { points: run.iter().map(|sample| sample.at).collect(), facing: facing(run) };
+        runs.map(part).collect()
     }
 
     fn samples(&self, line: &[[f64; 3]]) -> Vec<Sample> {
         let Some(&first) = line.first() else { return Vec::new() };
-        let mut samples = vec![Sample { at: [first[0], first[1]], along: 0.0, is_seen: self.sees(first) }];
+        let mut samples = vec![self.sample(first, 0.0)];
         let mut before = 0.0;
         for ends in line.windows(2) {
             let [p, q] = [ends[0], ends[1]];
@@ -48,18 +62,20 @@ impl Screen<'_> {
             for step in 1..=steps as u32 {
                 let t = f64::from(step) / steps;
                 let at = [0, 1, 2].map(|i| p[i] + t * (q[i] - p[i]));
-                samples.push(Sample { at: [at[0], at[1]], along: before + t * length, is_seen: self.sees(at) });
+                samples.push(self.sample(at, before + t * length));
             }
             before += length;
         }
         samples
     }
 
-    /// Whether nothing is before a point.
-    fn sees(&self, [x, y, depth]: [f64; 3]) -> bool {
-        let [x, y] = [x, y].map(|pixels| pixels * SAMPLES as f64);
-        let in_front = self.map.at(x, y).map(|id| self.bodies.facet(id).depth(x, y) / SAMPLES as f64);
-        in_front.is_none_or(|surface| surface <= depth + self.touch)
+    fn sample(&self, [x, y, depth]: [f64; 3], along: f64) -> Sample {
+        let [column, row] = [x, y].map(|pixels| pixels * SAMPLES as f64);
+        let nearest = self.map.at(column, row);
+        let before =
+            nearest.map_or(f64::NEG_INFINITY, |id| self.bodies.facet(id).depth(column, row) / SAMPLES as f64 - depth);
+        let facing = nearest.filter(|_| before.abs() <= self.touch).map(|id| self.bodies.facing(id));
+        Sample { at: [x, y], along, is_seen: before <= self.touch, facing }
     }
 }
 
