@@ -147,7 +147,7 @@ mod tests {
     fn neighbours_differ_and_nothing_is_plain() {
         let scene = scene([Some(5), Some(5), Some(9), None]);
         let fill = |at: [f64; 2]| {
-            let has = |t: &&SceneTriangle| t.corners.iter().any(|p| [p.x, p.y] == at);
+            let has = |t: &&SceneTriangle| t.corners.iter().any(|&p| p == Point3::new(at[0], at[1], 0.0));
             scene.triangles.iter().find(has).unwrap().fill
         };
         assert_eq!(fill([0.0, 0.0]), fill([1.0, 0.0]));
