@@ -18,6 +18,8 @@ pub(super) const SEED: &str = "#1b2540";
 pub(super) const ORPHAN: [&str; 2] = ["#d8293c", "#5c0d1a"];
 /// Geodesic edges.
 pub(super) const GEODESIC: &str = "#1b2540";
+/// A surface without any other colour.
+pub(super) const SURFACE: &str = "#c9d3e2";
 /// Where a value is not known.
 pub(super) const UNKNOWN: &str = "#d8d8d8";
 /// Lines of equal barycentric coordinates.
@@ -141,12 +143,24 @@ fn oklch(lightness: f64, chroma: f64, hue: f64) -> String {
         -1.268_438_004_6 * l + 2.609_757_401_1 * m - 0.341_319_396_5 * s,
         -0.004_196_086_3 * l - 0.703_418_614_7 * m + 1.707_614_701 * s,
     ]
-    .map(|linear| {
-        let linear = linear.clamp(0.0, 1.0);
-        let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-        (255.0 * encoded).round() as u8
-    });
+    .map(encode);
     format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// An intensity of light, clipped to one byte of sRGB.
+pub(super) fn encode(linear: f64) -> u8 {
+    let linear = linear.clamp(0.0, 1.0);
+    let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (255.0 * encoded).round() as u8
+}
+
+/// The intensities of red, green and blue light in a colour written as `#rrggbb`; none where it is not.
+pub(super) fn decode(colour: &str) -> [f64; 3] {
+    [1, 3, 5].map(|at| {
+        let byte = colour.get(at..at + 2).and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        let encoded = f64::from(byte.unwrap_or(0)) / 255.0;
+        if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    })
 }
 
 #[cfg(test)]
@@ -168,6 +182,13 @@ mod tests {
         let fills = [0.01, 0.99, 1.01, 30.0, 1e9, f64::INFINITY, f64::NAN].map(factor_fill);
         assert!(fills[1] != fills[2] && fills[2] != fills[3] && fills[3] != fills[4] && fills[4] == fills[5]);
         assert!(fills[0] != fills[1] && fills[6] == UNKNOWN);
+    }
+
+    #[test]
+    fn light_is_decoded_and_encoded() {
+        for byte in 0..=255_u8 {
+            assert_eq!(decode(&format!("#00{byte:02x}ff")).map(encode), [0, byte, 255]);
+        }
     }
 
     #[test]

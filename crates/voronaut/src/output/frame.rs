@@ -48,9 +48,19 @@ impl Frame {
 
     /// A point in quanta.
     pub(super) fn place(&self, p: Point) -> [i64; 2] {
+        self.quanta_at(self.pixels_at(p))
+    }
+
+    /// A point in pixels.
+    pub(super) fn pixels_at(&self, p: Point) -> [f64; 2] {
         let x = (p.x - self.bounds.min.x) * self.scale + self.margin;
         let y = (self.bounds.max.y - p.y) * self.scale + self.margin;
-        [x, y].map(|pixels| self.quanta(pixels).round().clamp(-FAR, FAR) as i64)
+        [x, y]
+    }
+
+    /// A point that is given in pixels, in quanta.
+    pub(super) fn quanta_at(&self, pixels: [f64; 2]) -> [i64; 2] {
+        pixels.map(|pixels| self.quanta(pixels).round().clamp(-FAR, FAR) as i64)
     }
 }
 

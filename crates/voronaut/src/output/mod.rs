@@ -6,12 +6,14 @@ mod colours;
 mod ellipses;
 mod frame;
 mod histogram;
+mod image;
 mod obj;
 mod palette;
 mod protection;
 #[cfg(feature = "png")]
 mod png;
 pub mod report;
+mod scene;
 mod simplify;
 mod strokes;
 mod svg;
@@ -24,6 +26,7 @@ pub use histogram::histograms_svg;
 pub use png::render_png;
 pub use protection::Protection;
 pub use report::Report;
+pub use scene::{Fill, Scene, SceneLine, SceneTriangle, Stroke, View, draw_surface};
 pub use svg::{Picture, Shade, svg, svg_with};
 
 use crate::error::{Error, Result};
@@ -154,7 +157,7 @@ pub fn demand_histograms(path: &Path) -> Result<()> {
     Err(Error::Unsupported { what, help: "end the name of the histograms in .svg".into() })
 }
 
-/// Writes a picture made by [`svg`] in the format its name ends in, as a whole or not at all.
+/// Writes a picture made by [`svg`] or [`draw_surface`] in the format its name ends in, as a whole or not at all.
 ///
 /// # Errors
 /// [`Error::Unsupported`] for other endings, [`Error::Limit`] for too many pixels, [`Error::Io`] where the file cannot

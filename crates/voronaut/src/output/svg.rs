@@ -197,7 +197,7 @@ fn bands(triangles: &[[u32; 3]], values: &[f64]) -> Vec<String> {
 }
 
 /// The range of sizes that the levels of colour span: all but the outermost hundredths, at least a factor of four.
-fn spread(sizes: &[f64]) -> [f64; 2] {
+pub(super) fn spread(sizes: &[f64]) -> [f64; 2] {
     let mut sorted: Vec<f64> = sizes.iter().copied().filter(|size| size.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied().unwrap_or(0.0);
