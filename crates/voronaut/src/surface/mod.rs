@@ -20,7 +20,7 @@ mod read;
 mod shapes;
 mod tetrahedra;
 
-pub use implicit::{Curvatures, Implicit, curvatures, project};
+pub use implicit::{Curvatures, Implicit, closest_zero, curvatures, project};
 pub use march::mesh_implicit;
 pub use measure::Component;
 pub use nearest::{Closest, Nearest};
