@@ -240,7 +240,7 @@ fn unknown_endings_of_domains_are_answered_with_those_that_work() {
     words_refused("rect:0,0", "uniform", &["2 numbers where 4 are expected", "rect:x0,y0,x1,y1"]);
     let place = Place::new();
     place.put("a.poly", "");
-    refused(&place, &["check", "a.poly"], &["a.poly does not end in .mesh"]);
+    refused(&place, &["check", "a.poly"], &["a.poly: the name does not end like", ".off"]);
 }
 
 #[test]

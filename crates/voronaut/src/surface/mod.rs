@@ -7,9 +7,11 @@
 //! | `nearest` | the closest point of a surface |
 //! | `implicit`, `march` | surfaces f(x, y, z) = 0: derivatives, projection, a first mesh by marching tetrahedra |
 //! | `shapes`, `read` | spheres, tori, files: what users write for a surface |
+//! | `given` | a planar domain or a surface: what users write for either |
 //! | [`metric`] | metric fields on surfaces, curvature among them |
 
 mod build;
+mod given;
 mod implicit;
 mod march;
 mod measure;
@@ -20,11 +22,12 @@ mod read;
 mod shapes;
 mod tetrahedra;
 
+pub use given::Given;
 pub use implicit::{Curvatures, Implicit, closest_zero, curvatures, project};
 pub use march::mesh_implicit;
 pub use measure::Component;
 pub use nearest::{Closest, Nearest};
-pub use read::{Input, read};
+pub use read::{Input, WRITTEN, read, read_mesh};
 pub use shapes::{chair, sphere, torus};
 
 use crate::geometry::{Point3, Vector3};
