@@ -128,7 +128,9 @@ impl<'a> Target<'a> {
         };
         let place = found.place;
         let zero = self.implicit.and_then(|f| {
-            let q = closest_zero(f, p, place.position, self.diagonal, ON_ZERO * self.diagonal)?;
+            let from = |start| closest_zero(f, p, start, self.diagonal, ON_ZERO * self.diagonal);
+            // Far from the surface the way along gradients may miss the closest part; the triangles know which that is.
+            let q = from(p).filter(|q| q.distance(p) <= found.distance).or_else(|| from(place.position))?;
             Some(Foot { position: q, normal: f.jet(q).gradient.unit()? })
         });
         zero.unwrap_or(Foot { position: place.position, normal: place.normal })
@@ -245,7 +247,7 @@ mod tests {
 
     #[test]
     fn an_icosahedron_in_its_sphere_in_closed_form() {
-        let input = read("sphere:2", Some(0.05)).unwrap();
+        let input = read("sphere:2", Some(0.25)).unwrap();
         let mesh = sphere(2.0, 4.0).unwrap().to_mesh();
         let found = surface_fidelity(&mesh, &input.surface, implicit(&input)).unwrap();
         // Circumradius 2, inradius of the icosahedron; the same from both sides.
@@ -284,8 +286,10 @@ mod tests {
             let tree = Nearest::of(ours.iter().copied());
             let theirs: Vec<_> = surface.topology().faces().map(|f| surface.triangle(f)).collect();
             let back = dense(&theirs, |p| tree.distance(p).unwrap());
-            for (found, truth) in [(found.mesh_to_surface.hausdorff, there), (found.surface_to_mesh.hausdorff, back)] {
-                assert!(found >= 0.99 * truth && found <= 1.01 * truth, "{found} {truth}");
+            for (side, truth, tree) in [(found.mesh_to_surface, there, &nearest), (found.surface_to_mesh, back, &tree)] {
+                assert!(side.hausdorff >= 0.99 * truth, "{side:?} {truth}");
+                let Position::Space(at) = side.at else { panic!("three coordinates") };
+                close(tree.distance(at.into()).unwrap(), side.hausdorff, 1e-12);
             }
             assert!(found.both.hausdorff >= there.max(back) * 0.99 && found.both.rms <= found.both.hausdorff);
         }
@@ -295,18 +299,18 @@ mod tests {
     fn distances_are_to_the_equation_not_to_its_mesh() {
         // A fine mesh of the true torus, held against a coarse first mesh with the equation.
         let input = read("torus:2,0.7", Some(0.4)).unwrap();
-        let mesh = torus(2.0, 0.7, 0.05).unwrap().to_mesh();
+        let mesh = torus(2.0, 0.7, 0.15).unwrap().to_mesh();
         let exact = surface_fidelity(&mesh, &input.surface, implicit(&input)).unwrap();
         let by_mesh = surface_fidelity(&mesh, &input.surface, None).unwrap();
-        // Sagittas of edges of 0.05 and 0.4 on radius 0.7.
-        assert!(exact.both.hausdorff < 1e-3 && by_mesh.both.hausdorff > 0.02, "{exact:?} {by_mesh:?}");
+        // Sagittas of edges of 0.15 and 0.4 on radius 0.7.
+        assert!(exact.both.hausdorff < 8e-3 && by_mesh.both.hausdorff > 0.02, "{exact:?} {by_mesh:?}");
         assert!(exact.vertex_to_surface.value < 1e-14 && by_mesh.vertex_to_surface.value > 0.02);
         assert!(exact.normal_deviation.mean < by_mesh.normal_deviation.mean);
         // Pushed out by 0.1 along its normals it is that far away everywhere, by |f| / |grad f| to first order.
-        let out = torus(2.0, 0.8, 0.05).unwrap().to_mesh();
+        let out = torus(2.0, 0.8, 0.1).unwrap().to_mesh();
         let found = surface_fidelity(&out, &input.surface, implicit(&input)).unwrap();
         close(found.both.hausdorff, 0.1, 0.01);
-        close(found.both.rms, 0.1, 0.01);
+        close(found.both.rms, 0.1, 0.02);
         close(found.vertex_to_surface.value, (0.8 * 0.8 - 0.7 * 0.7) / 1.6, 1e-9);
     }
 
