@@ -87,7 +87,7 @@ fn on_surface(
     demand_for_surfaces(args)?;
     if let Some(Input { surface, implicit }) = given {
         let implicit = implicit.as_ref().map(|f| f as &dyn Implicit);
-        report.fidelity = Some(Strayed::Surface(surface_fidelity(mesh, surface, implicit)?));
+        report.fidelity = Some(Strayed::Surface(surface_fidelity(mesh, surface, implicit)?.into()));
     }
     if let Some(text) = &args.metric {
         let own;

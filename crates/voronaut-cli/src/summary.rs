@@ -63,12 +63,14 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
         line("worst", format!("triangle at {}", place(worst.triangle)));
         line("", format!("longest edge at {}, shortest at {}", place(worst.longest_edge), place(worst.shortest_edge)));
     }
-    match report.fidelity {
+    match &report.fidelity {
         Some(Strayed::Boundary(fidelity)) => {
             line("to domain", distance(fidelity.mesh_to_domain));
             line("from domain", distance(fidelity.domain_to_mesh));
         }
-        Some(Strayed::Surface(fidelity)) => surface_lines(&fidelity).into_iter().for_each(|(name, value)| line(name, value)),
+        Some(Strayed::Surface(fidelity)) => {
+            surface_lines(fidelity).into_iter().for_each(|(name, value)| line(name, value))
+        }
         None => {}
     }
     if let Some(found) = report.star_set {
@@ -116,7 +118,8 @@ fn surface_lines(found: &SurfaceFidelity) -> [(&'static str, String); 4] {
     };
     let vertices = found.vertex_to_surface;
     let normals = found.normal_deviation;
-    let deviation = format!("{:.2} deg mean, {:.2} deg at {}", normals.mean, normals.max.value, position(normals.max.at));
+    let deviation =
+        format!("{:.2} deg mean, {:.2} deg at {}", normals.mean, normals.max.value, position(normals.max.at));
     [
         ("to surface", side(found.mesh_to_surface)),
         ("from surface", side(found.surface_to_mesh)),

@@ -34,13 +34,18 @@ pub fn read(spec: &str) -> Result<Pslg> {
         }
         Some(ending) if OTHER_ENDINGS.contains(&ending) => {
             Err(not_planar(format!("a .{ending} file as planar domain ({spec})")))
-        },
-        _ => Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", format!("give {WRITTEN}"))),
+        }
+        _ => Err(Error::parse(
+            spec,
+            "neither a shape nor a file with an ending that is known",
+            format!("give {WRITTEN}"),
+        )),
     }
 }
 
 /// What users write for a planar domain.
-pub const WRITTEN: &str = "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly or .mesh";
+pub const WRITTEN: &str =
+    "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly or .mesh";
 
 const OTHER_ENDINGS: [&str; 8] = ["obj", "off", "ply", "stl", "msh", "meshb", "vtu", "vtp"];
 

@@ -6,7 +6,9 @@ use crate::dual::Road;
 use crate::geodesic::MarchCounters;
 use crate::net::Net;
 use crate::optimise::{Ending, Relaxed};
-use crate::quality::{Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, SurfaceFidelity, Validity, Worst};
+use crate::quality::{
+    Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, SurfaceFidelity, Validity, Worst,
+};
 use crate::realisation::{self, Found, Realisation};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -69,13 +71,13 @@ pub struct Report {
 }
 
 /// How far a mesh strays from its domain.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Strayed {
     /// From the boundary of a planar domain.
     Boundary(Fidelity),
     /// From a surface.
-    Surface(SurfaceFidelity),
+    Surface(Box<SurfaceFidelity>),
 }
 
 /// A consistent star set. Deterministic.

@@ -105,7 +105,8 @@ fn meet_in_plane([p, q]: [Point3; 2], triangle: [Point3; 3]) -> Option<Point3> {
     });
     crossed.map(|[a, b]| {
         let (from, to) = (signed_area(a, b, start), signed_area(a, b, end));
-        if from == to { p.lerp(q, 0.5) } else { p.lerp(q, from / (from - to)) }
+        let share = from / (from - to);
+        p.lerp(q, if share.is_finite() { share } else { 0.5 })
     })
 }
 
@@ -196,8 +197,12 @@ mod tests {
 
     #[test]
     fn nearly_is_not_quite() {
-        let tip = |z: f64| Corners { vertices: [3, 4, 5], points: [[0.1, 0.2, z], [0.1, 0.2, 1.0], [0.3, 0.2, 1.0]].map(Point3::from) };
-        let floor = Corners { vertices: [0, 1, 2], points: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from) };
+        let tip = |z: f64| Corners {
+            vertices: [3, 4, 5],
+            points: [[0.1, 0.2, z], [0.1, 0.2, 1.0], [0.3, 0.2, 1.0]].map(Point3::from),
+        };
+        let floor =
+            Corners { vertices: [0, 1, 2], points: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from) };
         assert!(contact(&floor, &tip(0.0)).is_some() && contact(&floor, &tip(1e-300)).is_none());
         // One unit in the last place off a slanting plane through 0.1, 0.2, 0.3, which binary numbers do not hold.
         let slant = |x: f64| {

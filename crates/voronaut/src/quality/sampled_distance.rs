@@ -35,7 +35,11 @@ const MOST_PIECES: usize = 200_000;
 ///
 /// The greatest distance is that of a sample, so never more than the truth. The integral is by the midpoints of the edges of
 /// quarters of the triangles: exact where the squared distance is quadratic on each.
-pub(super) fn sample(triangles: &[[Point3; 3]], floor: f64, measure: impl Fn(Point3) -> Sample + Sync) -> Option<Sampled> {
+pub(super) fn sample(
+    triangles: &[[Point3; 3]],
+    floor: f64,
+    measure: impl Fn(Point3) -> Sample + Sync,
+) -> Option<Sampled> {
     let quarters = |&corners: &[Point3; 3]| Piece::new(corners, &measure).cut(&measure);
     let mut pieces: Vec<Piece> = triangles.par_iter().flat_map_iter(quarters).collect();
     let mut farthest = farthest_of(&pieces)?;

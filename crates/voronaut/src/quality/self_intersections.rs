@@ -113,7 +113,10 @@ mod tests {
         };
         let found = validity(&mesh);
         assert_eq!((found.non_manifold_vertices, found.non_manifold_edges, found.overlaps), (1, 0, 0), "{found:?}");
-        assert_eq!(found.first_fault.unwrap().to_string(), "the triangles around vertex 1 are not one fan at (0, 0, 0)");
+        assert_eq!(
+            found.first_fault.unwrap().to_string(),
+            "the triangles around vertex 1 are not one fan at (0, 0, 0)"
+        );
     }
 
     #[test]

@@ -189,7 +189,9 @@ impl Normals {
         let mut found: Vec<(f64, f64)> = triangles.par_iter().map(compare).collect();
         let reversed = found.iter().map(|(area, angle)| area * angle.cos()).sum::<f64>() < 0.0;
         if reversed {
-            found.iter_mut().for_each(|(_, angle)| *angle = std::f64::consts::PI - *angle);
+            for (_, angle) in &mut found {
+                *angle = std::f64::consts::PI - *angle;
+            }
         }
         let area: f64 = found.iter().map(|(area, _)| area).sum();
         let sum: f64 = found.iter().map(|(area, angle)| area * angle.to_degrees()).sum();
@@ -224,7 +226,8 @@ mod tests {
     fn dense(triangles: &[[Point3; 3]], distance: impl Fn(Point3) -> f64) -> f64 {
         const STEPS: u32 = 20;
         let of_one = |&t: &[Point3; 3]| {
-            let pairs = (0..=STEPS).flat_map(|i| (0..=STEPS - i).map(move |j| [i, j].map(|x| f64::from(x) / f64::from(STEPS))));
+            let pairs =
+                (0..=STEPS).flat_map(|i| (0..=STEPS - i).map(move |j| [i, j].map(|x| f64::from(x) / f64::from(STEPS))));
             pairs.map(|[s, t_]| distance(Point3::weighted(t, [1.0 - s - t_, s, t_]))).fold(0.0, f64::max)
         };
         triangles.iter().map(of_one).fold(0.0, f64::max)
@@ -286,7 +289,8 @@ mod tests {
             let tree = Nearest::of(ours.iter().copied());
             let theirs: Vec<_> = surface.topology().faces().map(|f| surface.triangle(f)).collect();
             let back = dense(&theirs, |p| tree.distance(p).unwrap());
-            for (side, truth, tree) in [(found.mesh_to_surface, there, &nearest), (found.surface_to_mesh, back, &tree)] {
+            for (side, truth, tree) in [(found.mesh_to_surface, there, &nearest), (found.surface_to_mesh, back, &tree)]
+            {
                 assert!(side.hausdorff >= 0.99 * truth, "{side:?} {truth}");
                 let Position::Space(at) = side.at else { panic!("three coordinates") };
                 close(tree.distance(at.into()).unwrap(), side.hausdorff, 1e-12);
@@ -320,7 +324,9 @@ mod tests {
         let mut mesh = surface.to_mesh();
         // A vertex pulled beyond its neighbours, over the surface.
         let [a, b, c] = mesh.triangles[40];
-        let far = |axis: usize| mesh.points[b as usize][axis] + mesh.points[c as usize][axis] - 0.9 * mesh.points[a as usize][axis];
+        let far = |axis: usize| {
+            mesh.points[b as usize][axis] + mesh.points[c as usize][axis] - 0.9 * mesh.points[a as usize][axis]
+        };
         let p = Point3::new(far(0), far(1), far(2)) - Point3::default();
         mesh.points[a as usize] = (Point3::default() + p * (1.0 / p.norm())).to_array();
         let found = surface_fidelity(&mesh, &surface, None).unwrap();

@@ -61,10 +61,15 @@ mod tests {
 
     #[test]
     fn shapes_and_files_are_told_apart() {
-        assert!(is_surface("sphere:1") && is_surface(" torus: 2, 0.7") && is_surface("implicit:x^2+y^2+z^2-1;-2,-2,-2,2,2,2"));
+        assert!(
+            is_surface("sphere:1")
+                && is_surface(" torus: 2, 0.7")
+                && is_surface("implicit:x^2+y^2+z^2-1;-2,-2,-2,2,2,2")
+        );
         assert!(!is_surface("rect:0,0,1,1") && !is_surface("disk:0,0,1"));
         let mesh = |z: f64, triangles: &str| {
-            let text = format!("MeshVersionFormatted 2 Dimension 3 Vertices 3 0 0 0 0 1 0 0 0 0 1 {z} 0\n{triangles} End");
+            let text =
+                format!("MeshVersionFormatted 2 Dimension 3 Vertices 3 0 0 0 0 1 0 0 0 0 1 {z} 0\n{triangles} End");
             file(".MESH", &text)
         };
         let triangle = "Triangles 1 1 2 3 0";
@@ -98,7 +103,8 @@ mod tests {
         let curve = file(".mesh", "MeshVersionFormatted 2 Dimension 3 Vertices 2 0 0 0 0 1 0 1 0 Edges 1 1 2 0 End");
         let error = Given::read(curve.path().to_str().unwrap(), None).unwrap_err();
         assert!(error.to_string().contains("vertex 2 has z = 1"), "{error}");
-        let lone = file(".mesh", "MeshVersionFormatted 2 Dimension 3 Vertices 3 0 0 1 0 1 0 0 0 2 0 -1 0 Triangles 1 1 2 3 0");
+        let lone =
+            file(".mesh", "MeshVersionFormatted 2 Dimension 3 Vertices 3 0 0 1 0 1 0 0 0 2 0 -1 0 Triangles 1 1 2 3 0");
         let error = Given::read(lone.path().to_str().unwrap(), None).unwrap_err().to_string();
         assert!(error.contains("triangle 1 has no area") && error.contains(lone.path().to_str().unwrap()), "{error}");
     }

@@ -92,8 +92,7 @@ pub fn read_mesh(file: &str) -> Result<Mesh> {
 const ENDINGS: [&str; 5] = ["mesh", "obj", "off", "ply", "stl"];
 
 /// What users write for a surface.
-pub const WRITTEN: &str =
-    "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .obj, .off, .ply, .stl or .mesh";
+pub const WRITTEN: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .obj, .off, .ply, .stl or .mesh";
 
 /// How a file name ends, in lower case.
 pub(super) fn ending(file: &str) -> Option<String> {
