@@ -69,7 +69,9 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
             line("from domain", distance(fidelity.domain_to_mesh));
         }
         Some(Strayed::Surface(fidelity)) => {
-            surface_lines(fidelity).into_iter().for_each(|(name, value)| line(name, value))
+            for (name, value) in surface_lines(fidelity) {
+                line(name, value);
+            }
         }
         None => {}
     }
