@@ -175,17 +175,20 @@ mod tests {
         assert!(rotate(flat).distance(at.into()) < 1e-12);
     }
 
+    /// Large along the normal of every place.
+    struct Thick;
+
+    impl SurfaceMetric for Thick {
+        fn at(&self, place: &Place) -> Tensor3 {
+            Tensor3::IDENTITY + Tensor3::square(place.normal) * 1e4
+        }
+    }
+
     #[test]
     fn the_normal_is_not_seen() {
         let surface = sphere(2.0, 0.4).unwrap();
         let mesh = torus(1.5, 0.4, 0.2).unwrap().to_mesh();
         let truth = surface_quality(&mesh, &surface, &Constant(Tensor3::IDENTITY)).unwrap();
-        struct Thick;
-        impl SurfaceMetric for Thick {
-            fn at(&self, place: &Place) -> Tensor3 {
-                Tensor3::IDENTITY + Tensor3::square(place.normal) * 1e4
-            }
-        }
         assert_close(&surface_quality(&mesh, &surface, &Thick).unwrap(), &truth, 1e-9);
         let longest = truth.metric_edge_length.max;
         let edges = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
