@@ -17,10 +17,10 @@ pub enum Given {
 impl Given {
     /// Reads what the user wrote. `sphere:`, `torus:`, `chair`, `implicit:` and files `.obj`, `.off`, `.ply` and `.stl` are
     /// surfaces; a `.mesh` is one if it has triangles and some z is not 0. All else is a planar domain. `edge` is as for
-    /// [`read`].
+    /// [`read()`].
     ///
     /// # Errors
-    /// As for [`read`] and [`Domain::read`]; of what is neither, the help names both.
+    /// As for [`read()`] and [`Domain::read`]; of what is neither, the help names both.
     pub fn read(spec: &str, edge: Option<f64>) -> Result<Self> {
         let name = spec.split(':').next().unwrap_or_default().trim();
         let ending = ending(spec);
