@@ -75,8 +75,13 @@ Examples:
 const CHECK_EXAMPLES: &str = "\
 Exits with 1 if the mesh is not valid; the report is written all the same.
 
+The mesh of a surface (some z is not 0) is held against a surface as DOMAIN: sphere:r, torus:R,r, chair,
+implicit:EXPR;x0,y0,z0,x1,y1,z1, or a file .obj, .off, .ply, .stl or .mesh. METRIC is then uniform, curvature[:floor=C],
+shock[:phi=10,lambda=0.6], 'formula:m11; m12; m22; m13; m23; m33' in x, y, z, or a file .sol of the domain's file.
+
 Examples:
   voronaut check plate.mesh
+  voronaut check cow.ply --domain spot.obj --metric curvature --metric-scale 310 --report check.json
   voronaut check swirl.mesh --metric swirl --metric-scale 1873.2 --report check.json
   voronaut check adapted.mesh --metric wing.sol --background wing.mesh --domain wing.mesh";
 
@@ -93,7 +98,7 @@ pub(crate) struct MeshArgs {
     /// Integral of sqrt(det M) over the domain; one factor scales the metric to meet it
     #[arg(long, value_name = "C", value_parser = positive)]
     pub(crate) complexity: Option<f64>,
-    /// The mesh file: .mesh, .vtu or .obj
+    /// The mesh file: .mesh, .vtu, .obj, .off, .ply or .stl
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
@@ -156,7 +161,7 @@ pub(crate) struct DualArgs {
     /// The seeds: a file with a line `x y` for each
     #[arg(long, value_name = "FILE")]
     pub(crate) seeds: PathBuf,
-    /// The dual: .mesh, .vtu or .obj
+    /// The dual: .mesh, .vtu, .obj, .off, .ply or .stl
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// Write the coloured canvas, with colours and distances: .vtu
@@ -251,7 +256,7 @@ const CANVAS_VERTICES: u32 = 40_000;
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// The mesh: a .mesh file
+    /// The mesh: .mesh, .obj, .off, .ply or .stl
     pub(crate) mesh: PathBuf,
     /// Measure lengths, shapes and angles in this metric (as for `mesh`)
     #[arg(long)]
@@ -259,7 +264,8 @@ pub(crate) struct CheckArgs {
     /// A factor on the metric tensor, such as `metric_scale` of a report
     #[arg(long, value_name = "FACTOR", value_parser = positive, requires = "metric")]
     pub(crate) metric_scale: Option<f64>,
-    /// Measure the distance to the boundary of this domain (as for `mesh`)
+    /// Measure the distance to the boundary of this domain (as for `mesh`), or to this surface [default of a metric on a surface:
+    /// the mesh itself]
     #[arg(long)]
     pub(crate) domain: Option<String>,
     #[command(flatten)]

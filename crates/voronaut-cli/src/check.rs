@@ -6,14 +6,16 @@ use crate::{files, summary};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
-use voronaut::domain::{Domain, read_text};
-use voronaut::formats::medit;
-use voronaut::geometry::Point;
+use voronaut::domain::{Domain, from_mesh};
+use voronaut::geometry::{Point, Tensor3};
 use voronaut::mesh::Mesh;
 use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::Report;
-use voronaut::quality::{fidelity, metric_quality, validity};
+use voronaut::output::report::Strayed;
+use voronaut::quality::{fidelity, metric_quality, surface_fidelity, surface_quality, validity};
 use voronaut::recipe;
+use voronaut::surface::metric::{Spec, SurfaceMetric};
+use voronaut::surface::{self, Given, Implicit, Input, Place, Surface};
 use voronaut::{Error, Result};
 
 /// Examines a mesh. The report is written for any mesh; figures in a metric and pictures are for valid ones.
@@ -25,7 +27,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
         return Err(Error::Unsupported { what, help: "give its vertices to voronaut dual as seeds".into() });
     }
     files::set_threads(&args.run)?;
-    let mesh = read(&args.mesh)?;
+    let mesh = surface::read_mesh(&args.mesh.to_string_lossy())?;
     let found = validity(&mesh);
     let fault = found.demand();
     let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
@@ -40,30 +42,102 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
         summary::print(&args.mesh.display().to_string(), &report, &args.run);
         return Err(fault);
     }
-    let domain = args.domain.as_deref().map(Domain::read).transpose()?;
-    let metric = args.metric.as_deref().map(|text| metric(args, text, domain.as_ref())).transpose()?;
     report.metric_scale = args.metric.is_some().then_some(args.metric_scale.unwrap_or(1.0));
-    if let Some(metric) = &metric {
-        report = report.with_quality(&metric_quality(&mesh, metric.as_ref())?);
-        report.histograms = files::histograms(&args.outputs, &mesh, metric.as_ref())?;
-    }
-    report.fidelity = domain.map(|domain| fidelity(&mesh, &domain.boundary()));
-    report.seconds.total = start.elapsed().as_secs_f64();
-    files::write(&MeshFile::None, &args.outputs, &mesh, metric.as_deref(), &report, &Drawn::default())?;
+    let report = match args.domain.as_deref().map(|spec| Given::read(spec, None)).transpose()? {
+        Some(Given::Surface(input)) => on_surface(args, &mesh, Some(&input), report, start)?,
+        None if !mesh.is_planar() => on_surface(args, &mesh, None, report, start)?,
+        Some(Given::Plane(domain)) => in_plane(args, &mesh, Some(&domain), report, start)?,
+        None => in_plane(args, &mesh, None, report, start)?,
+    };
     summary::print(&args.mesh.display().to_string(), &report, &args.run);
     Ok(())
 }
 
-fn read(path: &Path) -> Result<Mesh> {
-    if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mesh")) {
-        let what = format!("{} does not end in .mesh", path.display());
-        return Err(Error::Unsupported { what, help: "convert the mesh to Medit's text format".into() });
+/// Measures a planar mesh and writes what was found.
+fn in_plane(
+    args: &CheckArgs,
+    mesh: &Mesh,
+    domain: Option<&Domain>,
+    mut report: Report,
+    start: Instant,
+) -> Result<Report> {
+    if !mesh.is_planar() {
+        let what = format!("{} is not planar (z = 0), its domain is", args.mesh.display());
+        return Err(Error::Unsupported { what, help: "give the surface that it is a mesh of as --domain".into() });
     }
-    medit::read(&read_text(path)?, &path.display().to_string())
+    let metric = args.metric.as_deref().map(|text| planar_metric(args, text, mesh, domain)).transpose()?;
+    if let Some(metric) = &metric {
+        report = report.with_quality(&metric_quality(mesh, metric.as_ref())?);
+        report.histograms = files::histograms(&args.outputs, mesh, metric.as_ref())?;
+    }
+    report.fidelity = domain.map(|domain| Strayed::Boundary(fidelity(mesh, &domain.boundary())));
+    report.seconds.total = start.elapsed().as_secs_f64();
+    files::write(&MeshFile::None, &args.outputs, mesh, metric.as_deref(), &report, &Drawn::default())?;
+    Ok(report)
+}
+
+/// Measures the mesh of a surface, of its own triangles if no other is given, and writes what was found.
+fn on_surface(
+    args: &CheckArgs,
+    mesh: &Mesh,
+    given: Option<&Input>,
+    mut report: Report,
+    start: Instant,
+) -> Result<Report> {
+    demand_for_surfaces(args)?;
+    if let Some(Input { surface, implicit, .. }) = given {
+        let implicit = implicit.as_ref().map(|f| f as &dyn Implicit);
+        report.fidelity = Some(Strayed::Surface(surface_fidelity(mesh, surface, implicit)?.into()));
+    }
+    if let Some(text) = &args.metric {
+        let own;
+        let input = if let Some(input) = given {
+            input
+        } else {
+            own = Input::new(Surface::new(mesh)?, None);
+            &own
+        };
+        let field = surface::metric::field(&Spec::parse(text)?, input, args.metric_choices.bounds())?;
+        let scaled = Scaled { field, factor: args.metric_scale.unwrap_or(1.0) };
+        report = report.with_quality(&surface_quality(mesh, &input.surface, &scaled)?);
+    }
+    report.seconds.total = start.elapsed().as_secs_f64();
+    files::write_report(&args.outputs, &report)?;
+    Ok(report)
+}
+
+/// A metric on a surface times a factor.
+struct Scaled {
+    field: Box<dyn SurfaceMetric>,
+    factor: f64,
+}
+
+impl SurfaceMetric for Scaled {
+    fn at(&self, place: &Place) -> Tensor3 {
+        self.field.at(place) * self.factor
+    }
+}
+
+/// Refuses what is not there for surfaces.
+fn demand_for_surfaces(args: &CheckArgs) -> Result<()> {
+    let refused = [
+        (args.outputs.picture.is_some(), "a picture of the mesh of a surface", "leave out --picture"),
+        (args.outputs.histograms.is_some(), "histograms of the mesh of a surface", "leave out --histograms"),
+        (args.metric_choices.smooth_metric > 0, "smoothing of a metric on a surface", "leave out --smooth-metric"),
+        (
+            args.metric_choices.background.is_some(),
+            "a background mesh for a metric on a surface",
+            "give the file that the values belong to as --domain",
+        ),
+    ];
+    match refused.into_iter().find(|(is_asked, ..)| *is_asked) {
+        Some((_, what, help)) => Err(Error::Unsupported { what: what.into(), help: help.into() }),
+        None => Ok(()),
+    }
 }
 
 /// The metric, times its factor. A `.sol` file belongs to the background mesh, else to the domain's, else to the mesh.
-fn metric(args: &CheckArgs, text: &str, domain: Option<&Domain>) -> Result<Box<dyn MetricField>> {
+fn planar_metric(args: &CheckArgs, text: &str, mesh: &Mesh, domain: Option<&Domain>) -> Result<Box<dyn MetricField>> {
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
     let spec = MetricSpec::parse(text)?;
@@ -74,7 +148,7 @@ fn metric(args: &CheckArgs, text: &str, domain: Option<&Domain>) -> Result<Box<d
     let domain = if let Some(domain) = domain {
         domain
     } else {
-        own = Domain::read(&args.mesh.to_string_lossy())?;
+        own = Domain::new(&from_mesh(mesh)?)?;
         &own
     };
     let metric = recipe::metric(&spec, domain, background, bounds)?;

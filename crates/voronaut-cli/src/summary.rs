@@ -5,7 +5,8 @@ use crate::certify;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use voronaut::output::Report;
-use voronaut::quality::{Farthest, Spot};
+use voronaut::output::report::Strayed;
+use voronaut::quality::{Deviation, Farthest, Position, Spot, SurfaceFidelity};
 
 /// Prints the figures of a report unless told to be quiet, and its notes on stderr.
 pub(crate) fn print(title: &str, report: &Report, run: &Run) {
@@ -62,9 +63,17 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
         line("worst", format!("triangle at {}", place(worst.triangle)));
         line("", format!("longest edge at {}, shortest at {}", place(worst.longest_edge), place(worst.shortest_edge)));
     }
-    if let Some(fidelity) = report.fidelity {
-        line("to domain", distance(fidelity.mesh_to_domain));
-        line("from domain", distance(fidelity.domain_to_mesh));
+    match &report.fidelity {
+        Some(Strayed::Boundary(fidelity)) => {
+            line("to domain", distance(fidelity.mesh_to_domain));
+            line("from domain", distance(fidelity.domain_to_mesh));
+        }
+        Some(Strayed::Surface(fidelity)) => {
+            for (name, value) in surface_lines(fidelity) {
+                line(name, value);
+            }
+        }
+        None => {}
     }
     if let Some(found) = report.star_set {
         let (stars, picks) = (found.figures, found.counters);
@@ -103,8 +112,31 @@ fn valid(report: &Report) -> String {
     }
 }
 
+/// How far the mesh of a surface strays from it.
+fn surface_lines(found: &SurfaceFidelity) -> [(&'static str, String); 4] {
+    let side = |side: Deviation| {
+        let (most, share, rms) = (side.hausdorff, 100.0 * side.hausdorff_share, side.rms);
+        format!("{most:.3e} at most ({share:.2e} % of the diagonal), rms {rms:.3e}, at {}", position(side.at))
+    };
+    let vertices = found.vertex_to_surface;
+    let normals = found.normal_deviation;
+    let deviation =
+        format!("{:.2} deg mean, {:.2} deg at {}", normals.mean, normals.max.value, position(normals.max.at));
+    [
+        ("to surface", side(found.mesh_to_surface)),
+        ("from surface", side(found.surface_to_mesh)),
+        ("vertices", format!("off by {:.3e} at most, at {}", vertices.value, position(vertices.at))),
+        ("normals", format!("{deviation}; {} triangles folded over", found.folded)),
+    ]
+}
+
 fn place(spot: Spot) -> String {
-    format!("({:.6}, {:.6}): {:.3}", spot.at[0], spot.at[1], spot.value)
+    format!("{}: {:.3}", position(spot.at), spot.value)
+}
+
+fn position(at: Position) -> String {
+    let coordinates: Vec<String> = at.coordinates().iter().map(|x| format!("{x:.6}")).collect();
+    format!("({})", coordinates.join(", "))
 }
 
 fn distance(farthest: Option<Farthest>) -> String {

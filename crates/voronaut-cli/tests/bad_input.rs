@@ -215,7 +215,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
     let square = ["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "100", "-o"];
     let with = |words: &[&'static str]| [&square[..], words].concat();
     for name in ["out.xyz", "out", "out.meshb"] {
-        refused(&place, &with(&[name]), &[name, "not supported", ".mesh, .vtu or .obj"]);
+        refused(&place, &with(&[name]), &[name, "not supported", ".mesh, .vtu, .obj, .off"]);
     }
     refused(&place, &with(&["nowhere/out.mesh"]), &["nowhere: No such file or directory"]);
     refused(&place, &with(&["out.mesh", "--picture", "out.gif"]), &["out.gif", ".svg or .png"]);
@@ -240,7 +240,7 @@ fn unknown_endings_of_domains_are_answered_with_those_that_work() {
     words_refused("rect:0,0", "uniform", &["2 numbers where 4 are expected", "rect:x0,y0,x1,y1"]);
     let place = Place::new();
     place.put("a.poly", "");
-    refused(&place, &["check", "a.poly"], &["a.poly does not end in .mesh"]);
+    refused(&place, &["check", "a.poly"], &["a.poly: the name does not end like", ".off"]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The mesh that leaves the program: plain arrays, as every format and every solver wants them.
 
 use crate::error::{Error, Result};
-use crate::geometry::Point;
+use crate::geometry::{Point, Point3};
 
 /// A triangle mesh with the user's labels ("references" in Medit).
 ///
@@ -38,6 +38,16 @@ impl Mesh {
     /// The three planar positions of a triangle.
     pub fn corners_of(&self, triangle: [u32; 3]) -> [Point; 3] {
         triangle.map(|v| self.point(v))
+    }
+
+    /// The position of a vertex in space.
+    pub fn position(&self, vertex: u32) -> Point3 {
+        self.points[vertex as usize].into()
+    }
+
+    /// The three positions of a triangle in space.
+    pub fn positions_of(&self, triangle: [u32; 3]) -> [Point3; 3] {
+        triangle.map(|v| self.position(v))
     }
 
     /// Whether every position lies in the plane z = 0.

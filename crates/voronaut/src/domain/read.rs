@@ -12,7 +12,7 @@ use std::path::Path;
 ///
 /// [`Error::Io`] of a file that cannot be read; [`Error::Parse`] of a specification or a file that is not what its
 /// format asks for, empty, or not UTF-8; [`Error::Domain`] of what makes no domain, as far as one look at points,
-/// segments and rings tells; [`Error::Unsupported`] of surfaces and of formats of later versions.
+/// segments and rings tells; [`Error::Unsupported`] of surfaces and of formats that are not read.
 pub fn read(spec: &str) -> Result<Pslg> {
     if let Some(shape) = read_shape(spec) {
         return shape;
@@ -32,17 +32,24 @@ pub fn read(spec: &str) -> Result<Pslg> {
             let mesh = medit::read(&read_text(path)?, spec)?;
             from_mesh::from_mesh(&mesh).map_err(|error| in_file(spec, error))
         }
-        Some(ending) if LATER_ENDINGS.contains(&ending) => Err(later(format!("a .{ending} file as domain ({spec})"))),
-        _ => Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", WORKS_TODAY)),
+        Some(ending) if OTHER_ENDINGS.contains(&ending) => {
+            Err(not_planar(format!("a .{ending} file as planar domain ({spec})")))
+        }
+        _ => Err(Error::parse(
+            spec,
+            "neither a shape nor a file with an ending that is known",
+            format!("give {WRITTEN}"),
+        )),
     }
 }
 
-const WORKS_TODAY: &str =
-    "give rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly or .mesh";
+/// What users write for a planar domain.
+pub const WRITTEN: &str =
+    "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly or .mesh";
 
-const LATER_ENDINGS: [&str; 8] = ["obj", "off", "ply", "stl", "msh", "meshb", "vtu", "vtp"];
+const OTHER_ENDINGS: [&str; 8] = ["obj", "off", "ply", "stl", "msh", "meshb", "vtu", "vtp"];
 
-const LATER_SHAPES: [&str; 4] = ["sphere", "torus", "chair", "implicit"];
+const SURFACES: [&str; 4] = ["sphere", "torus", "chair", "implicit"];
 
 /// The shape that a specification names; `None` if it names none.
 fn read_shape(spec: &str) -> Option<Result<Pslg>> {
@@ -55,7 +62,7 @@ fn read_shape(spec: &str) -> Option<Result<Pslg>> {
         ("disk", Some(numbers)) => {
             Some(read_numbers(spec, numbers, "disk:cx,cy,r").and_then(|[x, y, r]| shapes::disk(Point::new(x, y), r)))
         }
-        _ if LATER_SHAPES.contains(&name) => Some(Err(later(format!("the surface {spec} as domain")))),
+        _ if SURFACES.contains(&name) => Some(Err(not_planar(format!("the surface {spec} as planar domain")))),
         _ => None,
     }
 }
@@ -112,8 +119,8 @@ fn in_file(file: &str, error: Error) -> Error {
     }
 }
 
-fn later(what: String) -> Error {
-    Error::Unsupported { what, help: format!("this version meshes planar domains: {WORKS_TODAY}") }
+fn not_planar(what: String) -> Error {
+    Error::Unsupported { what, help: format!("give {WRITTEN}") }
 }
 
 #[cfg(test)]
@@ -148,9 +155,9 @@ mod tests {
             ("disk:0,x,1", "disk:0,x,1: 'x' is not a number"),
             ("rect:0,0,0,1", "invalid domain: a rectangle needs x0 < x1"),
             ("disk:0,0,nan", "invalid domain: a disk without a positive radius"),
-            ("sphere:1", "not supported: the surface sphere:1 as domain"),
-            ("chair", "not supported: the surface chair as domain"),
-            ("part.STL", "not supported: a .stl file as domain (part.STL)"),
+            ("sphere:1", "not supported: the surface sphere:1 as planar domain"),
+            ("chair", "not supported: the surface chair as planar domain"),
+            ("part.STL", "not supported: a .stl file as planar domain (part.STL)"),
             ("mesh", "mesh: neither a shape nor a file with an ending that is known"),
             ("", ": neither a shape nor a file"),
             ("no/such/file.poly", "no/such/file.poly: "),

@@ -1,8 +1,9 @@
 //! Geomview's `.off` in text form.
 
-use super::words::{At, Row, Rows, Word, error_at, number, shortened, whole};
+use super::words::{At, Row, Rows, Shortest, Word, error_at, number, shortened, whole};
 use crate::error::Result;
 use crate::mesh::Mesh;
+use std::fmt::Write;
 
 /// Reads an `.off` text: vertices, and faces cut into fans around their first vertex.
 ///
@@ -29,6 +30,19 @@ pub fn read(text: &str, place: &str) -> Result<Mesh> {
     mesh.point_labels = vec![0; mesh.points.len()];
     mesh.triangle_labels = vec![0; mesh.triangles.len()];
     Ok(mesh)
+}
+
+/// Writes vertices and triangles as an `.off` text that [`read`] turns into the same; labels and edges have no place there.
+pub fn write(mesh: &Mesh) -> String {
+    let mut out = format!("OFF\n{} {} 0\n", mesh.points.len(), mesh.triangles.len());
+    // Writing to a string cannot fail.
+    for [x, y, z] in &mesh.points {
+        let _ = writeln!(out, "{} {} {}", Shortest(*x), Shortest(*y), Shortest(*z));
+    }
+    for [a, b, c] in &mesh.triangles {
+        let _ = writeln!(out, "3 {a} {b} {c}");
+    }
+    out
 }
 
 /// Dialects whose vertices begin with their three coordinates.
@@ -124,6 +138,18 @@ mod tests {
             assert_eq!(mesh.points[2].map(f64::to_bits), [1.0_f64, 1.0, 0.0].map(f64::to_bits));
             assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
         }
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let mesh = Mesh {
+            points: vec![[0.1, -1e-300, 1e22], [1.0 / 3.0, 0.0, -2.5], [0.0, 1.0, f64::MIN_POSITIVE]],
+            point_labels: vec![0; 3],
+            triangles: vec![[0, 1, 2], [2, 1, 0]],
+            triangle_labels: vec![0; 2],
+            ..Mesh::default()
+        };
+        assert_eq!(read(&write(&mesh), "a.off").unwrap(), mesh);
     }
 
     #[test]

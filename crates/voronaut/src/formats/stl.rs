@@ -26,6 +26,23 @@ pub fn read(bytes: &[u8], place: &str) -> Result<Mesh> {
     }
 }
 
+/// Writes triangles as a binary `.stl` file. The format has single precision: corners are rounded, to infinity beyond 3e38, and
+/// those that come to lie on each other are one vertex when the file is read. It has no shared vertices, no labels, no edges.
+pub fn write(mesh: &Mesh) -> Vec<u8> {
+    let mut bytes = b"voronaut".to_vec();
+    bytes.resize(HEAD - 4, b' ');
+    bytes.extend((mesh.triangles.len() as u32).to_le_bytes());
+    for &triangle in &mesh.triangles {
+        let corners = mesh.positions_of(triangle);
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).unit().unwrap_or_default();
+        let numbers = [normal.x, normal.y, normal.z].into_iter().chain(corners.iter().flat_map(|p| p.to_array()));
+        bytes.extend(numbers.flat_map(|x| (x as f32).to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
 /// The head of a binary file: 80 bytes of anything, then the number of triangles.
 const HEAD: usize = 84;
 /// A binary triangle: normal, three corners, an attribute of two bytes.
@@ -174,6 +191,23 @@ mod tests {
         assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
         let [a, b, c, d] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
         assert_eq!(read(&binary(&[[a, b, c], [b, d, c]]), "a.stl").unwrap(), mesh);
+    }
+
+    #[test]
+    fn what_is_written_has_the_same_triangles() {
+        let mesh = Mesh {
+            points: vec![[0.1, 0.0, 0.5], [1.0 / 3.0, 2.0, -2.5], [0.0, 1e7, 3.0], [7.0, 8.0, 9.0]],
+            triangles: vec![[3, 1, 2], [2, 1, 0]],
+            ..Mesh::default()
+        };
+        let again = read(&write(&mesh), "a.stl").unwrap();
+        assert_eq!((again.points.len(), again.triangles.len()), (4, 2));
+        for (found, truth) in again.triangles.iter().zip(&mesh.triangles) {
+            let rounded = mesh.positions_of(*truth).map(|p| p.to_array().map(|x| f64::from(x as f32).to_bits()));
+            assert_eq!(again.positions_of(*found).map(|p| p.to_array().map(f64::to_bits)), rounded);
+        }
+        let normal = &write(&mesh)[HEAD + TRIANGLE..][..12];
+        assert!(normal.iter().any(|&byte| byte != 0), "normals are written");
     }
 
     #[test]

@@ -9,7 +9,7 @@ mod tensor3;
 
 pub use jet::Jet3;
 pub use point::{Aabb, Point, Readable, Vector};
-pub use predicates::{Orientation, in_circle, orientation, segment_intersection, signed_area};
+pub use predicates::{Orientation, in_circle, orientation, segment_intersection, signed_area, signed_volume};
 pub use space::{Aabb3, Point3, Vector3};
 pub use tensor::{Eigen, Tensor};
 pub use tensor3::{Eigen3, TangentPlane, Tensor3};

@@ -1,8 +1,8 @@
 //! Exact predicates (Shewchuk's, by the `robust` crate): the sign is right for every finite input
 //! whose products neither over- nor underflow.
 
-use super::Point;
-use robust::Coord;
+use super::{Point, Point3};
+use robust::{Coord, Coord3D};
 
 /// On which side of the directed line a-b the point c lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +35,13 @@ pub fn signed_area(a: Point, b: Point, c: Point) -> f64 {
 /// Positive when d lies strictly inside the circle through the counter-clockwise a, b, c; exact sign.
 pub fn in_circle(a: Point, b: Point, c: Point, d: Point) -> f64 {
     robust::incircle(coord(a), coord(b), coord(c), coord(d))
+}
+
+/// Six times the signed volume of the tetrahedron a, b, c, d, positive where a, b, c look clockwise from d; the sign is
+/// exact, zero for four points of one plane, the value rounded.
+pub fn signed_volume(a: Point3, b: Point3, c: Point3, d: Point3) -> f64 {
+    let coord = |p: Point3| Coord3D { x: p.x, y: p.y, z: p.z };
+    robust::orient3d(coord(a), coord(b), coord(c), coord(d))
 }
 
 /// Where the lines through a-b and c-d meet (rounded): for messages, never for decisions.

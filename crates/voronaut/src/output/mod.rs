@@ -30,7 +30,7 @@ pub use scene::{Fill, Scene, SceneLine, SceneTriangle, Stroke, View, draw_surfac
 pub use svg::{Picture, Shade, svg, svg_with};
 
 use crate::error::{Error, Result};
-use crate::formats::medit;
+use crate::formats::{medit, off, ply, stl};
 use crate::mesh::Mesh;
 use crate::realisation::Realisation;
 use std::path::Path;
@@ -44,6 +44,12 @@ pub enum Format {
     Vtu,
     /// Wavefront's `.obj`: positions, triangles grouped by region label, labelled edges without their labels.
     Obj,
+    /// Geomview's `.off` as text: positions and triangles.
+    Off,
+    /// Stanford's `.ply`, binary, little-endian, coordinates as doubles: positions and triangles.
+    Ply,
+    /// Stereolithography `.stl`, binary: triangles without shared vertices, coordinates rounded to single precision.
+    Stl,
 }
 
 /// Formats of a picture.
@@ -56,7 +62,7 @@ pub enum PictureFormat {
 }
 
 /// Mesh formats that are known but not yet written.
-const LATER: [&str; 6] = ["meshb", "msh", "off", "ply", "stl", "vtp"];
+const LATER: [&str; 3] = ["meshb", "msh", "vtp"];
 
 impl Format {
     /// The format a file name asks for by its ending, in upper or lower case.
@@ -68,13 +74,17 @@ impl Format {
             "mesh" => Ok(Format::Medit),
             "vtu" => Ok(Format::Vtu),
             "obj" => Ok(Format::Obj),
+            "off" => Ok(Format::Off),
+            "ply" => Ok(Format::Ply),
+            "stl" => Ok(Format::Stl),
             other => {
                 let what = if LATER.contains(&other) {
                     format!("writing .{other} ({}) is not there yet", path.display())
                 } else {
                     format!("{} does not end like a mesh file", path.display())
                 };
-                Err(Error::Unsupported { what, help: "end the name of the mesh file in .mesh, .vtu or .obj".into() })
+                let help = "end the name of the mesh file in .mesh, .vtu, .obj, .off, .ply or .stl";
+                Err(Error::Unsupported { what, help: help.into() })
             }
         }
     }
@@ -108,6 +118,9 @@ pub fn write_mesh(mesh: &Mesh, path: &Path) -> Result<()> {
         Format::Medit => write(path, medit::write(mesh).as_bytes()),
         Format::Vtu => write(path, &vtu::vtu(mesh, None)),
         Format::Obj => write(path, obj::obj(mesh).as_bytes()),
+        Format::Off => write(path, off::write(mesh).as_bytes()),
+        Format::Ply => write(path, &ply::write(mesh)),
+        Format::Stl => write(path, &stl::write(mesh)),
     }
 }
 
@@ -120,7 +133,7 @@ pub fn write_mesh(mesh: &Mesh, path: &Path) -> Result<()> {
 pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
     match Format::from_path(path)? {
         Format::Vtu => write(path, &vtu::curved(realisation)),
-        Format::Medit | Format::Obj => write_mesh(&realisation.to_mesh(), path),
+        _ => write_mesh(&realisation.to_mesh(), path),
     }
 }
 
@@ -190,5 +203,26 @@ mod tests {
             assert!(error.help().contains(".mesh"), "{wrong}: {error}");
         }
         assert!(PictureFormat::from_path(Path::new("a.gif")).is_err());
+    }
+
+    #[test]
+    fn surfaces_read_back_from_every_format_that_is_read() {
+        let directory = tempfile::tempdir().unwrap();
+        let mesh = crate::surface::torus(2.0, 0.7, 0.4).unwrap().to_mesh();
+        for (ending, tolerance) in [("mesh", 0.0), ("obj", 0.0), ("off", 0.0), ("ply", 0.0), ("stl", 1e-6)] {
+            let path = directory.path().join(format!("torus.{ending}"));
+            write_mesh(&mesh, &path).unwrap();
+            let again = crate::surface::read_mesh(path.to_str().unwrap()).unwrap();
+            assert_eq!((again.points.len(), again.triangles.len()), (mesh.points.len(), mesh.triangles.len()));
+            for (&found, &truth) in again.triangles.iter().zip(&mesh.triangles) {
+                for (p, q) in again.positions_of(found).into_iter().zip(mesh.positions_of(truth)) {
+                    assert!(p.distance(q) <= tolerance, "{ending}: {p} {q}");
+                }
+            }
+            if ending != "stl" {
+                assert_eq!(again.triangles, mesh.triangles, "{ending}");
+            }
+            assert_eq!(again.triangle_labels[0], i32::from(ending == "mesh" || ending == "obj"), "{ending}");
+        }
     }
 }

@@ -7,7 +7,9 @@ use crate::dual::Road;
 use crate::geodesic::MarchCounters;
 use crate::net::Net;
 use crate::optimise::{Ending, Relaxed};
-use crate::quality::{Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, Validity, Worst};
+use crate::quality::{
+    Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, SurfaceFidelity, Validity, Worst,
+};
 use crate::realisation::{self, Found, Realisation};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -36,8 +38,8 @@ pub struct Report {
     /// How edge lengths and angles are distributed, with straight and with geodesic edges; only where asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub histograms: Option<Histograms>,
-    /// Euclidean distance to the domain's boundary.
-    pub fidelity: Option<Fidelity>,
+    /// Euclidean distance to the domain's boundary, or to the surface.
+    pub fidelity: Option<Strayed>,
     /// The canvas, where one was used.
     pub canvas: Option<CanvasFigures>,
     /// The diagram, where one was made.
@@ -67,6 +69,16 @@ pub struct Report {
     pub version: &'static str,
     /// All options, as used.
     pub options: Value,
+}
+
+/// How far a mesh strays from its domain.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Strayed {
+    /// From the boundary of a planar domain.
+    Boundary(Fidelity),
+    /// From a surface.
+    Surface(Box<SurfaceFidelity>),
 }
 
 /// A consistent star set. Deterministic.

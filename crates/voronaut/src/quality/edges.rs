@@ -80,6 +80,11 @@ pub(crate) fn next(half_edge: u32) -> u32 {
     if half_edge % 3 == 2 { half_edge - 2 } else { half_edge + 1 }
 }
 
+/// The half-edge before one, around its triangle.
+pub(crate) fn previous(half_edge: u32) -> u32 {
+    if half_edge.is_multiple_of(3) { half_edge + 2 } else { half_edge - 1 }
+}
+
 fn ends(triangles: &[[u32; 3]], half_edge: u32) -> [u32; 2] {
     let triangle = triangles[half_edge as usize / 3];
     [triangle[half_edge as usize % 3], triangle[next(half_edge) as usize % 3]]

@@ -1,14 +1,15 @@
 //! Lengths, shapes and angles of a mesh in a metric.
 
 use super::edges::Edges;
+use super::position::{Position, middle};
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geometry::{Point, Point3, Tensor, Vector};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-/// The figures of a planar mesh in a metric field. They do not change when mesh and metric are pulled back by the same
+/// The figures of a mesh in a metric field. They do not change when mesh and metric are pulled back by the same
 /// affine map.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct MetricQuality {
@@ -74,8 +75,8 @@ pub struct Worst {
 pub struct Spot {
     /// The figure.
     pub value: f64,
-    /// x and y.
-    pub at: [f64; 2],
+    /// Where.
+    pub at: Position,
 }
 
 /// Measures a planar mesh in a metric, in parallel; the same bits for any number of threads.
@@ -85,25 +86,41 @@ pub struct Spot {
 /// is not planar, [`Error::Metric`] where the tensor at a vertex or at a Gauss point is not positive definite.
 pub fn metric_quality(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQuality> {
     demand_planar(mesh)?;
+    let logarithms = vertex_logarithms(mesh, metric)?;
+    let length = |ends: [u32; 2]| edge_length(ends.map(|v| mesh.point(v)), metric);
+    figures(mesh, length, |t| Shape::of(mean_tensor(t, &logarithms), mesh.corners_of(t)), Position::in_plane)
+}
+
+/// The figures of a mesh from the metric length of each edge, by its vertices, and the shape of each triangle.
+///
+/// # Errors
+/// [`Error::Mesh`] without triangles, and the first error of a length.
+pub(super) fn figures(
+    mesh: &Mesh,
+    length: impl Fn([u32; 2]) -> Result<f64> + Sync + Send,
+    shape: impl Fn([u32; 3]) -> Shape + Sync,
+    position: impl Fn(Point3) -> Position,
+) -> Result<MetricQuality> {
     let edges = Edges::of(&mesh.triangles);
     let mut on_boundary = vec![false; mesh.points.len()];
     edges.boundary().into_iter().for_each(|h| edges.ends(h).iter().for_each(|&v| on_boundary[v as usize] = true));
     let ends: Vec<[u32; 2]> = edges.iter().map(|(ends, _)| ends).collect();
-    let lengths = collect(&ends, |&ends| edge_length(ends.map(|v| mesh.point(v)), metric))?;
-    let logarithms = vertex_logarithms(mesh, metric)?;
-    let shapes: Vec<Shape> = mesh.triangles.par_iter().map(|&t| shape(mesh, t, &logarithms)).collect();
+    let lengths = collect(&ends, |&ends| length(ends))?;
+    let shapes: Vec<Shape> = mesh.triangles.par_iter().map(|&t| shape(t)).collect();
     let is_interior = |ends: &[u32; 2]| ends.iter().all(|&v| !on_boundary[v as usize]);
     let interior = ends.iter().zip(&lengths).filter(|(ends, _)| is_interior(ends)).map(|(_, &length)| length);
-    let all = EdgeLengths::of(&lengths);
+    let all = EdgeLengths::of(&lengths).ok_or_else(|| fault("there are no triangles", "the array of triangles"))?;
+    let of_triangle = |t: usize| position(middle(mesh, &mesh.triangles[t]));
+    let of_edge = |e: usize| position(middle(mesh, &ends[e]));
     Ok(MetricQuality {
-        metric_edge_length: all.ok_or_else(|| fault("there are no triangles", "the array of triangles"))?,
+        metric_edge_length: all,
         interior_edge_length: EdgeLengths::of(&interior.collect::<Vec<_>>()),
         quality: Quality { min: least(&shapes, |s| s.quality), mean: mean(&shapes, |s| s.quality) },
         angle: Angles { min: least(&shapes, |s| s.angle), mean_min: mean(&shapes, |s| s.angle) },
         worst: Worst {
-            triangle: spot(&shapes, |s| s.quality, |t| centroid(mesh.corners_of(mesh.triangles[t]))),
-            longest_edge: spot(&lengths, |l| -l, |e| midpoint(mesh, ends[e])).map(|length| -length),
-            shortest_edge: spot(&lengths, |&l| l, |e| midpoint(mesh, ends[e])),
+            triangle: spot(&shapes, |s| s.quality, of_triangle),
+            longest_edge: spot(&lengths, |l| -l, of_edge).map(|length| -length),
+            shortest_edge: spot(&lengths, |&l| l, of_edge),
         },
     })
 }
@@ -123,13 +140,13 @@ impl EdgeLengths {
 }
 
 impl Spot {
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+    pub(super) fn map(self, f: impl Fn(f64) -> f64) -> Self {
         Self { value: f(self.value), at: self.at }
     }
 }
 
 /// Nodes on [0, 1] and weights of 5-point Gauss-Legendre quadrature.
-const GAUSS: [(f64, f64); 5] = [
+pub(super) const GAUSS: [(f64, f64); 5] = [
     (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
     (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
     (0.5, 0.284_444_444_444_444_44),
@@ -143,21 +160,23 @@ pub(super) fn edge_length([a, b]: [Point; 2], metric: &dyn MetricField) -> Resul
 }
 
 /// Quality and smallest angle (degrees) of a triangle in its own metric.
-struct Shape {
+#[derive(Default)]
+pub(super) struct Shape {
     quality: f64,
     angle: f64,
 }
 
-fn shape(mesh: &Mesh, triangle: [u32; 3], logarithms: &[Tensor]) -> Shape {
-    let m = mean_tensor(triangle, logarithms);
-    let [a, b, c] = mesh.corners_of(triangle);
-    let (ab, bc, ca) = (b - a, c - b, a - c);
-    // Twice the area in the metric.
-    let double_area = m.determinant().max(0.0).sqrt() * ab.cross(-ca);
-    let squares = m.dot(ab, ab) + m.dot(bc, bc) + m.dot(ca, ca);
-    let smallest = angle(m, ab, -ca).min(angle(m, bc, -ab)).min(angle(m, ca, -bc));
-    let quality = if squares > 0.0 { 2.0 * 3.0_f64.sqrt() * double_area / squares } else { 0.0 };
-    Shape { quality, angle: smallest.to_degrees() }
+impl Shape {
+    /// Of the triangle with these corners in the metric m.
+    pub(super) fn of(m: Tensor, [a, b, c]: [Point; 3]) -> Self {
+        let (ab, bc, ca) = (b - a, c - b, a - c);
+        // Twice the area in the metric.
+        let double_area = m.determinant().max(0.0).sqrt() * ab.cross(-ca);
+        let squares = m.dot(ab, ab) + m.dot(bc, bc) + m.dot(ca, ca);
+        let smallest = angle(m, ab, -ca).min(angle(m, bc, -ab)).min(angle(m, ca, -bc));
+        let quality = if squares > 0.0 { 2.0 * 3.0_f64.sqrt() * double_area / squares } else { 0.0 };
+        Shape { quality, angle: smallest.to_degrees() }
+    }
 }
 
 /// The tensor of a triangle: the log-Euclidean mean of those at its vertices.
@@ -206,34 +225,30 @@ fn mean<T>(items: &[T], figure: impl Fn(&T) -> f64) -> f64 {
 }
 
 /// The first of the least figures, and its place.
-fn spot<T>(items: &[T], figure: impl Fn(&T) -> f64, place: impl Fn(usize) -> Point) -> Spot {
+pub(super) fn spot<T>(items: &[T], figure: impl Fn(&T) -> f64, place: impl Fn(usize) -> Position) -> Spot {
     let least = items.iter().map(figure).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-    least.map_or(Spot { value: f64::NAN, at: [f64::NAN; 2] }, |(index, value)| {
-        let at = place(index);
-        Spot { value, at: [at.x, at.y] }
-    })
+    let nowhere = Spot { value: f64::NAN, at: Position::Plane([f64::NAN; 2]) };
+    least.map_or(nowhere, |(index, value)| Spot { value, at: place(index) })
 }
 
-fn midpoint(mesh: &Mesh, [a, b]: [u32; 2]) -> Point {
-    mesh.point(a).midpoint(mesh.point(b))
-}
-
-fn centroid([a, b, c]: [Point; 3]) -> Point {
-    Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0)
-}
-
-pub(super) fn demand_planar(mesh: &Mesh) -> Result<()> {
+/// Refuses triangles with vertices that do not exist.
+pub(super) fn demand_vertices(mesh: &Mesh) -> Result<()> {
     if mesh.triangles.as_flattened().iter().any(|&v| v as usize >= mesh.points.len()) {
         return Err(fault("a triangle names a vertex that does not exist", "the array of triangles"));
     }
+    Ok(())
+}
+
+pub(super) fn demand_planar(mesh: &Mesh) -> Result<()> {
+    demand_vertices(mesh)?;
     if mesh.is_planar() {
         return Ok(());
     }
-    let what = "the quality of a surface mesh in a metric".into();
+    let what = "a metric of the plane on the mesh of a surface".into();
     Err(Error::Unsupported { what, help: "use a planar mesh (z = 0)".into() })
 }
 
-fn fault(what: &str, place: &str) -> Error {
+pub(super) fn fault(what: &str, place: &str) -> Error {
     Error::Mesh { what: what.into(), place: place.into(), help: "check that the file is complete".into() }
 }
 
@@ -295,7 +310,7 @@ mod tests {
         close(found.metric_edge_length.mean, (4.0 + SQRT_2) / 5.0);
         close(found.quality.min, 3.0_f64.sqrt() / 2.0);
         close(found.angle.min, 45.0);
-        assert_eq!(found.worst.longest_edge.at, [0.5, 0.5]);
+        assert_eq!(found.worst.longest_edge.at, Position::Plane([0.5, 0.5]));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What a mesh is worth: valid or not, good or not in a metric, close or not to its domain.
 
+mod contact;
 mod crossings;
 mod edges;
 mod embedding;
@@ -7,7 +8,12 @@ mod fidelity;
 mod geodesics;
 mod histogram;
 mod metric_quality;
+mod position;
+mod sampled_distance;
 mod segments;
+mod self_intersections;
+mod surface_fidelity;
+mod surface_quality;
 #[cfg(test)]
 mod test_meshes;
 mod validity;
@@ -16,6 +22,9 @@ pub use crossings::{Crossing, crossing_edges, crossings};
 pub use fidelity::{Farthest, Fidelity, fidelity};
 pub use histogram::{Both, Histogram, Histograms, histograms};
 pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};
+pub use position::Position;
+pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
+pub use surface_quality::surface_quality;
 pub use validity::{Fault, Validity, check, validity};
 
 pub(crate) use edges::Edges;

@@ -1,7 +1,10 @@
 //! Whether a mesh is a mesh: by counting and by exact predicates, never by a tolerance.
 
+use super::contact::is_flat;
 use super::edges::{self, Edges, NONE};
 use super::embedding;
+use super::position::middle;
+use super::self_intersections::self_intersections;
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, orientation};
 use crate::mesh::Mesh;
@@ -10,9 +13,9 @@ use std::fmt;
 
 /// What was found in a mesh. `valid` means: at least one triangle, every figure marked (fault) is zero.
 ///
-/// On a mesh that is not planar (some z is not 0) `inverted` counts only triangles with a repeated vertex and
-/// `overlaps` is 0: both are questions about the plane. Where numbers are out of range nothing else is looked at;
-/// where triangles are inverted or edges not manifold, overlaps are not looked for.
+/// A mesh is that of a surface if some z is not 0: then `inverted` counts the triangles that are exactly flat, `overlaps` the
+/// pairs of triangles that meet. Where numbers are out of range nothing else is looked at. Overlaps are not looked for
+/// where triangles are inverted or positions not finite; in the plane, where there is any other fault.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Validity {
     /// Whether there is no fault.
@@ -21,10 +24,14 @@ pub struct Validity {
     pub inverted: usize,
     /// Edges with more than two triangles, or with two that traverse it in the same direction (fault).
     pub non_manifold_edges: usize,
+    /// Vertices of a surface whose triangles are not one fan, ends of edges that are not manifold among them (fault). 0 of a
+    /// planar mesh, where regions may touch in a vertex.
+    pub non_manifold_vertices: usize,
     /// Vertices that lie exactly where one with a smaller number lies (fault).
     pub duplicate_vertices: usize,
     /// Places where the embedded triangles cover each other, or boundary edges touch away from shared vertices
-    /// (fault). Places are vertices, boundary edges or boundary components: zero or not is what matters.
+    /// (fault). Places are vertices, boundary edges or boundary components: zero or not is what matters. Of a surface: pairs
+    /// of triangles that have more in common than a vertex or an edge of both, by exact predicates.
     pub overlaps: usize,
     /// Vertex or edge numbers that do not exist, and label arrays of the wrong length (fault).
     pub out_of_range: usize,
@@ -62,8 +69,15 @@ pub fn validity(mesh: &Mesh) -> Validity {
         found.examine_vertices(mesh);
         found.examine_triangles(mesh);
         found.examine_edges(mesh, &edges);
-        if found.first_fault.is_none() && mesh.is_planar() {
-            found.examine_embedding(mesh, &edges);
+        if mesh.is_planar() {
+            if found.first_fault.is_none() {
+                found.examine_embedding(mesh, &edges);
+            }
+        } else {
+            found.examine_fans(mesh, &edges);
+            if found.inverted == 0 && found.not_finite == 0 {
+                found.examine_contacts(mesh);
+            }
         }
     }
     found.valid = found.first_fault.is_none();
@@ -100,6 +114,15 @@ impl Validity {
 
     fn fault(&mut self, what: impl Into<String>, place: impl Into<String>) {
         self.first_fault.get_or_insert_with(|| Fault { what: what.into(), place: place.into() });
+    }
+
+    /// A fault in the middle of some vertices.
+    fn fault_at(&mut self, what: impl Into<String>, mesh: &Mesh, vertices: &[u32]) {
+        if self.first_fault.is_none() {
+            let at = middle(mesh, vertices);
+            let planar = || Point::new(at.x, at.y).to_string();
+            self.fault(what, if mesh.is_planar() { planar() } else { at.to_string() });
+        }
     }
 
     fn examine_numbers(&mut self, mesh: &Mesh) {
@@ -145,7 +168,7 @@ impl Validity {
         for pair in sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
             self.duplicate_vertices += 1;
             let what = format!("vertices {} and {} are at the same position", pair[0].1 + 1, pair[1].1 + 1);
-            self.fault(what, mesh.point(pair[0].1).to_string());
+            self.fault_at(what, mesh, &[pair[0].1]);
         }
         let mut used = vec![false; mesh.points.len()];
         mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
@@ -157,7 +180,8 @@ impl Validity {
         self.area = mesh.triangles.iter().map(|&t| if planar { planar_area(mesh, t) } else { area(mesh, t) }).sum();
         let wrong = |&[a, b, c]: &[u32; 3]| {
             let [p, q, r] = mesh.corners_of([a, b, c]);
-            a == b || b == c || c == a || planar && orientation(p, q, r) != Orientation::Left
+            let is_wrong = || orientation(p, q, r) != Orientation::Left;
+            a == b || b == c || c == a || if planar { is_wrong() } else { is_flat(mesh.positions_of([a, b, c])) }
         };
         let inverted: Vec<usize> =
             (0..mesh.triangles.len()).into_par_iter().filter(|&t| wrong(&mesh.triangles[t])).collect();
@@ -165,7 +189,7 @@ impl Validity {
         if let Some(&t) = inverted.first() {
             let [a, b, c] = mesh.triangles[t].map(|v| u64::from(v) + 1);
             let what = format!("triangle {} (vertices {a} {b} {c}) is inverted or flat", t + 1);
-            self.fault(what, centroid(mesh.corners_of(mesh.triangles[t])).to_string());
+            self.fault_at(what, mesh, &mesh.triangles[t]);
         }
     }
 
@@ -177,13 +201,28 @@ impl Validity {
             let count = half_edges.len();
             let what =
                 format!("edge {} {} is not manifold: {count} triangles, or the same direction twice", a + 1, b + 1);
-            self.fault(what, mesh.point(a).midpoint(mesh.point(b)).to_string());
+            self.fault_at(what, mesh, &[a, b]);
         }
         self.boundary_loops = boundary_loops(edges);
         for (number, &[a, b]) in (1..).zip(&mesh.edges).filter(|(_, [a, b])| !edges.contains(*a, *b)) {
             self.stray_edges += 1;
             let what = format!("labelled edge {number} (vertices {} {}) is no edge of a triangle", a + 1, b + 1);
-            self.fault(what, mesh.point(a).midpoint(mesh.point(b)).to_string());
+            self.fault_at(what, mesh, &[a, b]);
+        }
+    }
+
+    fn examine_fans(&mut self, mesh: &Mesh, edges: &Edges) {
+        for v in split_vertices(mesh, edges) {
+            self.non_manifold_vertices += 1;
+            self.fault_at(format!("the triangles around vertex {} are not one fan", v + 1), mesh, &[v]);
+        }
+    }
+
+    fn examine_contacts(&mut self, mesh: &Mesh) {
+        let (pairs, first) = self_intersections(mesh);
+        self.overlaps = pairs;
+        if let Some(fault) = first {
+            self.fault(fault.what, fault.place);
         }
     }
 
@@ -214,6 +253,40 @@ fn boundary_loops(edges: &Edges) -> usize {
     loops
 }
 
+/// Vertices with triangles that cannot be reached from another one of theirs across edges at the vertex.
+fn split_vertices(mesh: &Mesh, edges: &Edges) -> Vec<u32> {
+    let twins = edges.twins();
+    let mut corners = vec![0_u32; mesh.points.len()];
+    let mut start = vec![NONE; mesh.points.len()];
+    for (h, &v) in (0..).zip(mesh.triangles.as_flattened()) {
+        corners[v as usize] += 1;
+        start[v as usize] = h;
+    }
+    let fan = |start: u32| {
+        let mut count = 1;
+        // Counter-clockwise, and if that ends at a border, clockwise from the start.
+        let mut h = start;
+        loop {
+            h = twins[edges::previous(h) as usize];
+            if h == start {
+                return count;
+            }
+            if h == NONE {
+                break;
+            }
+            count += 1;
+        }
+        h = start;
+        while twins[h as usize] != NONE {
+            h = edges::next(twins[h as usize]);
+            count += 1;
+        }
+        count
+    };
+    let is_split = |&v: &u32| corners[v as usize] > 0 && fan(start[v as usize]) < corners[v as usize];
+    (0..mesh.points.len() as u32).filter(is_split).collect()
+}
+
 /// Equal for equal coordinates: 0 and -0 are the same place.
 fn bits(p: [f64; 3]) -> [u64; 3] {
     p.map(|x| (x + 0.0).to_bits())
@@ -229,10 +302,6 @@ fn area(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
     let side = |p: [f64; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
     let ([ux, uy, uz], [vx, vy, vz]) = (side(b), side(c));
     0.5 * (uy * vz - uz * vy).hypot(uz * vx - ux * vz).hypot(ux * vy - uy * vx)
-}
-
-fn centroid([a, b, c]: [Point; 3]) -> Point {
-    Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0)
 }
 
 #[cfg(test)]

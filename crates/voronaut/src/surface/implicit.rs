@@ -91,6 +91,28 @@ pub fn project(f: &dyn Implicit, p: Point3, reach: f64, tolerance: f64) -> Optio
     None
 }
 
+/// A point of f = 0 that is closest to `p` as far as steps along the surface tell, from where [`project`] takes `start`: the
+/// rest of the way is across it, to 1e-3 of the distance. `None` where `project` finds nothing from `start`.
+pub fn closest_zero(f: &dyn Implicit, p: Point3, start: Point3, reach: f64, tolerance: f64) -> Option<Point3> {
+    /// Across enough: its effect on the distance is half the square.
+    const ACROSS: f64 = 1e-3;
+    let mut q = project(f, start, reach, tolerance)?;
+    for _ in 0..STEPS {
+        let Some(normal) = f.jet(q).gradient.unit() else { break };
+        let way = p - q;
+        let along = way - normal * way.dot(normal);
+        if along.norm() <= tolerance.max(ACROSS * way.norm()) {
+            break;
+        }
+        // Steps that do not come nearer are halved: far from the surface they may lead anywhere.
+        let steps = [1.0, 0.5, 0.25, 0.125].into_iter();
+        let tries = steps.filter_map(|share| project(f, q + along * share, reach, tolerance));
+        let Some(next) = tries.into_iter().find(|next| next.distance(p) < way.norm()) else { break };
+        q = next;
+    }
+    Some(q)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,11 +9,13 @@
 //! | `chart`, `chord` | a part of a surface seen as a part of the plane; the way over a chord |
 //! | `implicit`, `march` | surfaces f(x, y, z) = 0: derivatives, projection, a first mesh by marching tetrahedra |
 //! | `shapes`, `read` | spheres, tori, files: what users write for a surface |
+//! | `given` | a planar domain or a surface: what users write for either |
 //! | [`metric`] | metric fields on surfaces, curvature among them |
 
 mod build;
 mod chart;
 mod chord;
+mod given;
 mod implicit;
 mod input;
 mod march;
@@ -27,13 +29,14 @@ mod tetrahedra;
 
 pub use chart::{Chart, STEEPEST};
 pub use chord::Chord;
-pub use implicit::{Curvatures, Implicit, curvatures, project};
+pub use given::Given;
+pub use implicit::{Curvatures, Implicit, closest_zero, curvatures, project};
 pub use input::{Input, OFF_SURFACE};
 pub use march::mesh_implicit;
 pub use measure::Component;
 pub(crate) use nearest::closest_weights;
 pub use nearest::{Closest, Nearest};
-pub use read::read;
+pub use read::{WRITTEN, read, read_mesh};
 pub use shapes::{chair, sphere, torus};
 
 use crate::geometry::{Point3, Vector3};

@@ -33,6 +33,21 @@ impl Nearest {
         Self { tree: RTree::bulk_load(triangles.collect()) }
     }
 
+    /// Puts triangles of no surface into a tree: for distances alone.
+    pub fn of(triangles: impl Iterator<Item = [Point3; 3]>) -> Self {
+        let triangles = triangles.zip(0..).map(|(corners, i)| Triangle { corners, face: FaceId(i) });
+        Self { tree: RTree::bulk_load(triangles.collect()) }
+    }
+
+    /// The distance of `p` to the closest triangle. `None` without triangles, or where `p` is not finite.
+    pub fn distance(&self, p: Point3) -> Option<f64> {
+        if !p.is_finite() {
+            return None;
+        }
+        let corners = self.tree.nearest_neighbor(p.to_array())?.corners;
+        Some(Point3::weighted(corners, closest_weights(corners, p)).distance(p))
+    }
+
     /// The point of the surface that is closest to `p`; of several, one. `surface` is the one the tree was made of.
     /// `None` where `p` is not finite.
     pub fn closest(&self, surface: &Surface, p: Point3) -> Option<Closest> {

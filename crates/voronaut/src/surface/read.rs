@@ -6,6 +6,7 @@ use crate::domain::{read_bytes, read_numbers, read_text};
 use crate::error::{Error, Result};
 use crate::formats::{medit, obj, off, ply, stl};
 use crate::geometry::{Aabb3, Point3};
+use crate::mesh::Mesh;
 use crate::metric::{Expression, Variables};
 use std::path::Path;
 
@@ -34,7 +35,13 @@ pub fn read(spec: &str, edge: Option<f64>) -> Result<Input> {
         }
         ("chair", None) => with_equation(chair(edge)?, CHAIR),
         ("implicit", Some(rest)) => read_implicit(spec, rest, edge),
-        _ => Ok(Input::new(read_file(spec)?, None)),
+        _ if ending(spec).is_some_and(|ending| ENDINGS.contains(&ending.as_str())) => {
+            Ok(Input::new(of_file(spec, &read_mesh(spec)?)?, None))
+        }
+        _ => {
+            let help = format!("give {WRITTEN}");
+            Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", help))
+        }
     }
 }
 
@@ -53,23 +60,40 @@ fn read_implicit(spec: &str, rest: &str, edge: Option<f64>) -> Result<Input> {
     Ok(Input::new(mesh_implicit(&f, bounds, edge)?, Some(f)))
 }
 
-fn read_file(spec: &str) -> Result<Surface> {
-    let path = Path::new(spec);
-    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
-    let mesh = match ending.as_deref() {
-        Some("obj") => obj::read(&read_text(path)?, spec)?,
-        Some("off") => off::read(&read_text(path)?, spec)?,
-        Some("ply") => ply::read(&read_bytes(path)?, spec)?,
-        Some("stl") => stl::read(&read_bytes(path)?, spec)?,
-        Some("mesh") => medit::read(&read_text(path)?, spec)?,
+/// Reads a mesh from a file `.mesh`, `.obj`, `.off`, `.ply` or `.stl`, planar or not, and whether it is a surface or not.
+///
+/// # Errors
+/// [`Error::Io`] of a file that cannot be read; [`Error::Parse`] of another ending, and of what is not as its format asks.
+pub fn read_mesh(file: &str) -> Result<Mesh> {
+    let path = Path::new(file);
+    match ending(file).as_deref() {
+        Some("obj") => obj::read(&read_text(path)?, file),
+        Some("off") => off::read(&read_text(path)?, file),
+        Some("ply") => ply::read(&read_bytes(path)?, file),
+        Some("stl") => stl::read(&read_bytes(path)?, file),
+        Some("mesh") => medit::read(&read_text(path)?, file),
         _ => {
-            let help = "give sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a file .obj, .off, .ply, \
-                        .stl or .mesh";
-            return Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", help));
+            let help = "give a mesh in a file .mesh, .obj, .off, .ply or .stl";
+            Err(Error::parse(file, "the name does not end like that of a mesh that can be read", help))
         }
-    };
-    Surface::new(&mesh).map_err(|error| match error {
-        Error::Domain { what, place, help } => Error::Domain { what, place: format!("{spec}, {place}"), help },
+    }
+}
+
+/// Endings of files that meshes are read from.
+const ENDINGS: [&str; 5] = ["mesh", "obj", "off", "ply", "stl"];
+
+/// What users write for a surface.
+pub const WRITTEN: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .obj, .off, .ply, .stl or .mesh";
+
+/// How a file name ends, in lower case.
+pub(super) fn ending(file: &str) -> Option<String> {
+    Path::new(file).extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase)
+}
+
+/// The surface of a file's mesh; errors name the file.
+pub(super) fn of_file(file: &str, mesh: &Mesh) -> Result<Surface> {
+    Surface::new(mesh).map_err(|error| match error {
+        Error::Domain { what, place, help } => Error::Domain { what, place: format!("{file}, {place}"), help },
         other => other,
     })
 }

@@ -1,0 +1,152 @@
+//! `check` of surface meshes: every format, faults, distances to a surface and figures in a metric on it.
+
+mod common;
+
+use common::{Place, stderr};
+use serde_json::Value;
+use voronaut::mesh::Mesh;
+use voronaut::output::write_mesh;
+use voronaut::surface::{sphere, torus};
+
+fn put(place: &Place, name: &str, mesh: &Mesh) {
+    write_mesh(mesh, &place.path().join(name)).unwrap();
+}
+
+/// Runs `check`, which succeeds, and returns its report and what it printed.
+fn checked(place: &Place, words: &[&str]) -> (Value, String) {
+    let output = place.run(&[&["check"], words, &["--report", "r.json"]].concat());
+    assert!(output.status.success(), "{words:?}: {}", stderr(&output));
+    (serde_json::from_slice(&place.read("r.json")).unwrap(), String::from_utf8(output.stdout).unwrap())
+}
+
+fn refused(place: &Place, words: &[&str], expected: &[&str]) {
+    let output = place.run(&[&["check"], words].concat());
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{words:?}: {said}");
+    for part in expected {
+        assert!(said.contains(part), "{words:?}: {part:?} is not in {said}");
+    }
+}
+
+fn number(report: &Value, path: &str) -> f64 {
+    report.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {report}"))
+}
+
+#[test]
+fn meshes_of_every_format_are_read() {
+    let place = Place::new();
+    let mesh = torus(2.0, 0.7, 0.4).unwrap().to_mesh();
+    for name in ["a.mesh", "a.obj", "a.off", "a.ply", "a.stl"] {
+        put(&place, name, &mesh);
+        let (report, said) = checked(&place, &[name]);
+        assert_eq!(
+            (&report["valid"], &report["euler"], &report["boundary_loops"]),
+            (&true.into(), &0.into(), &0.into())
+        );
+        assert_eq!(report["vertices"], mesh.points.len());
+        assert!(report["fidelity"].is_null() && said.contains("valid        yes"), "{said}");
+        assert!((number(&report, "/area") - 55.0).abs() < 3.0);
+    }
+}
+
+#[test]
+fn a_mesh_is_held_against_its_surface() {
+    let place = Place::new();
+    let mesh = sphere(1.0, 0.3).unwrap().to_mesh();
+    put(&place, "a.off", &mesh);
+    let (report, said) = checked(&place, &["a.off", "--domain", "sphere:1"]);
+    // Inscribed: what is missing is the greatest sagitta, about edge^2 / 6 for an equilateral triangle.
+    let hausdorff = number(&report, "/fidelity/hausdorff");
+    assert!(hausdorff > 0.003 && hausdorff < 0.015, "{hausdorff}");
+    assert!((number(&report, "/fidelity/hausdorff_share") - hausdorff / 12.0_f64.sqrt()).abs() < 1e-3);
+    assert!(
+        number(&report, "/fidelity/rms") < hausdorff && number(&report, "/fidelity/vertex_to_surface/value") < 1e-14
+    );
+    assert!(number(&report, "/fidelity/normal_deviation/max/value") < 3.0);
+    assert_eq!(report["fidelity"]["folded"], 0);
+    assert_eq!(report["fidelity"]["at"].as_array().unwrap().len(), 3);
+    for line in ["to surface", "from surface", "vertices     off by", "0 triangles folded over"] {
+        assert!(said.contains(line), "{line}: {said}");
+    }
+    // Against itself, as a file.
+    let (report, _) = checked(&place, &["a.off", "--domain", "a.off"]);
+    assert!(number(&report, "/fidelity/hausdorff") < 1e-14);
+}
+
+#[test]
+fn metrics_on_surfaces_are_measured() {
+    let place = Place::new();
+    let mesh = sphere(2.0, 0.5).unwrap().to_mesh();
+    put(&place, "a.mesh", &mesh);
+    let edges = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let longest = edges.map(|[a, b]| mesh.position(a).distance(mesh.position(b))).fold(0.0, f64::max);
+    let max = |words: &[&str]| {
+        let (report, said) = checked(&place, &[&["a.mesh"], words].concat());
+        assert!(said.contains("unit edges") && number(&report, "/quality/min") > 0.8, "{said}");
+        assert_eq!(report["worst"]["longest_edge"]["at"].as_array().unwrap().len(), 3);
+        number(&report, "/metric_edge_length/max")
+    };
+    assert!((max(&["--metric", "uniform"]) - longest).abs() < 1e-12, "the mesh itself is the surface");
+    assert!((max(&["--metric", "uniform", "--metric-scale", "9"]) - 3.0 * longest).abs() < 1e-12);
+    assert!((max(&["--metric", "uniform", "--h-max", "0.1"]) - 10.0 * longest).abs() < 1e-9);
+    // Curvature 1 / 2: lengths times its root; exact on the equation.
+    let curved = max(&["--metric", "curvature", "--domain", "sphere:2"]);
+    assert!((curved / longest - 0.5_f64.sqrt()).abs() < 0.02, "{curved} {longest}");
+    let count = mesh.points.len();
+    let solution = format!("MeshVersionFormatted 2 Dimension 3 SolAtVertices {count} 1 1\n{}", "0.5\n".repeat(count));
+    place.put("a.sol", solution);
+    assert!((max(&["--metric", "a.sol"]) - 2.0 * longest).abs() < 1e-12);
+    assert!((max(&["--metric", "a.sol", "--domain", "a.mesh"]) - 2.0 * longest).abs() < 1e-12);
+    refused(&place, &["a.mesh", "--metric", "a.sol", "--domain", "sphere:2"], &["values for", "the surface"]);
+}
+
+#[test]
+fn faults_of_surfaces_are_found_and_reported() {
+    let place = Place::new();
+    // One vertex of the torus through to the other side.
+    let mut mesh = torus(2.0, 0.7, 0.4).unwrap().to_mesh();
+    let last = mesh.points.len() - 1;
+    mesh.points[last] = mesh.points[last].map(|x| -x);
+    put(&place, "a.ply", &mesh);
+    refused(&place, &["a.ply", "--report", "r.json"], &["invalid mesh: triangles", "meet at ("]);
+    let report: Value = serde_json::from_slice(&place.read("r.json")).unwrap();
+    assert_eq!(report["valid"], false);
+    assert!(number(&report, "/overlaps") > 1.0 && number(&report, "/non_manifold_vertices") == 0.0);
+}
+
+#[test]
+fn what_is_not_there_for_surfaces_is_said() {
+    let place = Place::new();
+    put(&place, "a.off", &sphere(1.0, 0.5).unwrap().to_mesh());
+    refused(&place, &["a.off", "--picture", "a.svg"], &["not supported: a picture of the mesh of a surface", "help: "]);
+    let uniform = ["a.off", "--metric", "uniform"];
+    for (more, expected) in [
+        (&["--smooth-metric", "3"][..], "not supported: smoothing"),
+        (&["--histograms", "h.svg"], "not supported: histograms"),
+        (&["--background", "a.off"], "not supported: a background mesh"),
+        (&["--domain", "rect:0,0,1,1"], "not supported: a.off is not planar"),
+        (&["--h-min", "2", "--h-max", "1"], "h_min"),
+    ] {
+        refused(&place, &[&uniform[..], more].concat(), &[expected, "help: "]);
+    }
+    refused(&place, &["a.off", "--metric", "swirl"], &["not supported: metric swirl on a surface"]);
+    refused(&place, &["a.off", "--domain", "cube:1"], &["neither a shape nor a file", "torus:R,r", ".geojson"]);
+    refused(&place, &["a.xyz"], &["a.xyz", ".off"]);
+    assert_eq!(place.files(), ["a.off"]);
+}
+
+#[test]
+fn planar_meshes_of_surface_formats_stay_planar() {
+    let place = Place::new();
+    place.put("a.off", "OFF 4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n");
+    let (report, _) = checked(&place, &["a.off", "--metric", "uniform:4,0,4", "--domain", "rect:0,0,1,1"]);
+    assert!((number(&report, "/metric_edge_length/min") - 2.0).abs() < 1e-12);
+    assert_eq!(report["worst"]["longest_edge"]["at"].as_array().unwrap().len(), 2);
+    assert!(number(&report, "/fidelity/mesh_to_domain/distance") < 1e-15);
+    let (report, _) = checked(&place, &["a.off", "--metric", "uniform:4,0,4"]);
+    assert!((number(&report, "/metric_edge_length/min") - 2.0).abs() < 1e-12);
+    // Held against a surface that happens to be flat.
+    let (report, _) = checked(&place, &["a.off", "--metric", "uniform", "--domain", "a.off"]);
+    assert!(number(&report, "/fidelity/hausdorff") < 1e-15);
+    assert!((number(&report, "/metric_edge_length/min") - 1.0).abs() < 1e-12);
+}

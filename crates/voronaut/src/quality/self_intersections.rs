@@ -1,0 +1,131 @@
+//! Triangles of a surface that meet each other where they are not neighbours, decided exactly.
+
+use super::contact::{Corners, contact};
+use super::validity::Fault;
+use crate::geometry::Aabb3;
+use crate::mesh::Mesh;
+use rayon::prelude::*;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+
+/// How many pairs of triangles have more in common than a vertex or an edge that both name, and the first of them.
+/// Neighbours that lie flat on each other count. Needs finite positions and triangles that are not flat.
+///
+/// Pairs whose boxes meet are found in a tree: O(n log n) where triangles are not much longer than their distance from
+/// those that are no neighbours.
+pub(super) fn self_intersections(mesh: &Mesh) -> (usize, Option<Fault>) {
+    let corners: Vec<Corners> =
+        mesh.triangles.par_iter().map(|&t| Corners { vertices: t, points: mesh.positions_of(t) }).collect();
+    let boxes: Vec<AABB<[f64; 3]>> = corners.par_iter().filter_map(bounds).collect();
+    let numbered = boxes.iter().zip(0..).map(|(b, i)| GeomWithData::new(Rectangle::from_aabb(*b), i));
+    let tree: RTree<GeomWithData<Rectangle<[f64; 3]>, usize>> = RTree::bulk_load(numbered.collect());
+    let of_one = |i: usize| {
+        let others = tree.locate_in_envelope_intersecting(boxes[i]).map(|other| other.data).filter(|&j| j > i);
+        let met: Vec<usize> = others.filter(|&j| contact(&corners[i], &corners[j]).is_some()).collect();
+        (met.len(), met.into_iter().min())
+    };
+    let found: Vec<(usize, Option<usize>)> = (0..boxes.len()).into_par_iter().map(of_one).collect();
+    let first = found.iter().zip(0..).find_map(|(&(_, other), i)| fault(&corners, i, other?));
+    (found.iter().map(|(count, _)| count).sum(), first)
+}
+
+fn bounds(corners: &Corners) -> Option<AABB<[f64; 3]>> {
+    let bounds = Aabb3::of(corners.points)?;
+    Some(AABB::from_corners(bounds.min.to_array(), bounds.max.to_array()))
+}
+
+fn fault(corners: &[Corners], i: usize, j: usize) -> Option<Fault> {
+    let place = contact(&corners[i], &corners[j])?;
+    Some(Fault { what: format!("triangles {} and {} meet", i + 1, j + 1), place: place.to_string() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::validity::validity;
+    use crate::mesh::Mesh;
+    use crate::surface::{Surface, sphere, torus};
+
+    fn scaled(mut mesh: Mesh, scale: f64) -> Mesh {
+        mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= scale);
+        mesh
+    }
+
+    /// The torus of radii 2 and 0.7 with another tube: one thicker than the ring goes through itself.
+    fn with_tube(tube: f64) -> Mesh {
+        let mut mesh = torus(2.0, 0.7, 0.3).unwrap().to_mesh();
+        for p in &mut mesh.points {
+            let from_axis = p[0].hypot(p[1]);
+            let factor = (2.0 + (from_axis - 2.0) / 0.7 * tube) / from_axis;
+            *p = [p[0] * factor, p[1] * factor, p[2] / 0.7 * tube];
+        }
+        mesh
+    }
+
+    #[test]
+    fn spheres_and_tori_are_clean() {
+        let surfaces = [sphere(1.0, 2.0), sphere(3.0, 0.3), torus(2.0, 0.7, 0.2), torus(5.0, 0.1, 1.0)];
+        for mesh in surfaces.map(|surface: crate::Result<Surface>| surface.unwrap().to_mesh()) {
+            for scale in [1e-9, 1.0, 1e9] {
+                let found = validity(&scaled(mesh.clone(), scale));
+                assert!(found.valid, "{found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_torus_through_itself_is_found_with_the_place() {
+        assert!(validity(&with_tube(1.9)).valid);
+        for scale in [1e-9, 1.0, 1e9] {
+            let found = validity(&scaled(with_tube(2.5), scale));
+            assert!(!found.valid && found.overlaps > 50, "{found:?}");
+            let fault = found.first_fault.unwrap();
+            assert!(fault.what.starts_with("triangles ") && fault.what.ends_with(" meet"), "{fault:?}");
+            let at: Vec<f64> = fault.place[1..fault.place.len() - 1].split(", ").map(|x| x.parse().unwrap()).collect();
+            // It meets itself on the axis, and there about 1.5 above and below the middle.
+            assert!(at[0].hypot(at[1]) < 0.7 * scale && at[2].abs() < 2.5 * scale, "{fault:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_doubled_overlaps() {
+        let mut mesh = sphere(1.0, 0.5).unwrap().to_mesh();
+        let count = mesh.points.len() as u32;
+        mesh.points.extend(mesh.points.clone());
+        mesh.point_labels.extend(vec![0; count as usize]);
+        mesh.triangles.extend(mesh.triangles.clone().into_iter().map(|t| t.map(|v| v + count)));
+        mesh.triangle_labels.extend(vec![0; mesh.triangle_labels.len()]);
+        let found = validity(&mesh);
+        assert_eq!((found.duplicate_vertices, found.non_manifold_vertices), (count as usize, 0));
+        assert!(found.overlaps >= mesh.triangles.len() / 2, "{found:?}");
+    }
+
+    #[test]
+    fn two_tetrahedra_that_share_a_vertex_are_no_surface() {
+        let points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]];
+        let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+        let other = tetrahedron.map(|t| t.map(|v: u32| if v == 0 { 0 } else { v + 3 }));
+        let mesh = Mesh {
+            points: points.map(|p| p.map(f64::from)).to_vec(),
+            point_labels: vec![0; 7],
+            triangles: [tetrahedron, other.map(|[a, b, c]| [a, c, b])].concat(),
+            triangle_labels: vec![0; 8],
+            ..Mesh::default()
+        };
+        let found = validity(&mesh);
+        assert_eq!((found.non_manifold_vertices, found.non_manifold_edges, found.overlaps), (1, 0, 0), "{found:?}");
+        assert_eq!(
+            found.first_fault.unwrap().to_string(),
+            "the triangles around vertex 1 are not one fan at (0, 0, 0)"
+        );
+    }
+
+    #[test]
+    fn flat_triangles_are_faults() {
+        let mut mesh = sphere(1.0, 2.0).unwrap().to_mesh();
+        let [a, b, c] = mesh.triangles[0];
+        let middle = |axis: usize| 0.5 * (mesh.points[a as usize][axis] + mesh.points[b as usize][axis]);
+        mesh.points[c as usize] = [middle(0), middle(1), middle(2)];
+        let found = validity(&mesh);
+        assert!(found.inverted >= 1 && !found.valid, "{found:?}");
+    }
+}

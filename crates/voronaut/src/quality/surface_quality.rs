@@ -1,0 +1,241 @@
+//! Lengths, shapes and angles of the mesh of a surface in a metric on that surface.
+
+use super::metric_quality::{GAUSS, MetricQuality, Shape, collect, demand_vertices, fault, figures};
+use super::position::Position;
+use crate::error::Result;
+use crate::geometry::{Point, Point3, TangentPlane, Tensor, Tensor3, Vector, Vector3};
+use crate::mesh::Mesh;
+use crate::surface::metric::{SurfaceMetric, check_tensor3};
+use crate::surface::{Nearest, Surface};
+
+/// Measures the mesh of a surface in a metric on it, in parallel; the same bits for any number of threads. `surface` is what
+/// the metric is a field on; the mesh may stray from it.
+///
+/// The metric along a straight edge is that of the closest places of the surface, seen by the edge's direction in their
+/// tangent planes: an edge keeps its Euclidean length, and never sees the eigenvalue of the normal. The metric of a triangle is
+/// the log-Euclidean mean of those at its corners, each restricted to its tangent plane and turned into the triangle's plane by
+/// the smallest rotation. Triangles have no side: their quality is never negative.
+///
+/// # Errors
+/// [`Error::Mesh`](crate::Error::Mesh) where the mesh has no triangles, names vertices that do not exist, or has positions that
+/// are not finite; [`Error::Metric`](crate::Error::Metric) where a tensor is not positive definite.
+pub fn surface_quality(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric) -> Result<MetricQuality> {
+    demand_vertices(mesh)?;
+    let field = Field { surface, nearest: Nearest::new(surface), metric };
+    let mut used = vec![false; mesh.points.len()];
+    mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+    let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
+    let seen = |v: u32| used[v as usize].then(|| field.at(mesh.position(v))).transpose();
+    let tensors = collect(&vertices, |&v| seen(v))?;
+    let shape = |t: [u32; 3]| {
+        let corners = t.map(|v| tensors[v as usize]);
+        let [Some(a), Some(b), Some(c)] = corners else { return Shape::default() };
+        shape(mesh.positions_of(t), [a, b, c])
+    };
+    figures(mesh, |ends| field.length(ends.map(|v| mesh.position(v))), shape, Position::from)
+}
+
+/// A metric field, and where to look it up.
+struct Field<'a> {
+    surface: &'a Surface,
+    nearest: Nearest,
+    metric: &'a dyn SurfaceMetric,
+}
+
+/// A tensor of space, and the normal of the surface there.
+#[derive(Clone, Copy)]
+struct Seen {
+    tensor: Tensor3,
+    normal: Vector3,
+}
+
+impl Field<'_> {
+    /// What the metric is at the closest place.
+    fn at(&self, p: Point3) -> Result<Seen> {
+        let not_finite = || fault("a position is not finite", &p.to_string());
+        let place = self.nearest.closest(self.surface, p).ok_or_else(not_finite)?.place;
+        let tensor = self.metric.at(&place);
+        check_tensor3(tensor, || place.position.to_string())?;
+        Ok(Seen { tensor, normal: place.normal })
+    }
+
+    /// The length of a straight edge.
+    fn length(&self, [a, b]: [Point3; 2]) -> Result<f64> {
+        let part = |&(t, weight): &(f64, f64)| Ok(weight * self.at(a.lerp(b, t))?.length(b - a));
+        GAUSS.iter().map(part).sum()
+    }
+}
+
+impl Seen {
+    /// The metric length of a vector of its Euclidean length that points along its part in the tangent plane; the mean over
+    /// directions, roughly, of one that has no such part.
+    fn length(&self, edge: Vector3) -> f64 {
+        let tangent = edge - self.normal * edge.dot(self.normal);
+        match tangent.unit() {
+            Some(direction) => self.tensor.length(direction) * edge.norm(),
+            None => TangentPlane::new(self.normal).restrict(self.tensor).determinant().powf(0.25) * edge.norm(),
+        }
+    }
+
+    /// What the tensor says of tangents, in the coordinates of another plane, to which the smallest rotation takes them.
+    fn in_plane(&self, plane: &TangentPlane) -> Tensor {
+        // Tangent planes have no side.
+        let normal = if self.normal.dot(plane.normal) < 0.0 { -self.normal } else { self.normal };
+        let sum = normal + plane.normal;
+        let turned = |axis: Vector3| axis - sum * (axis.dot(normal) / (1.0 + normal.dot(plane.normal)));
+        let (u, v) = (turned(plane.u), turned(plane.v));
+        Tensor::new(self.tensor.dot(u, u), self.tensor.dot(u, v), self.tensor.dot(v, v))
+    }
+}
+
+/// Of a triangle by its corners and what the metric is there; of a flat one, zero.
+fn shape([a, b, c]: [Point3; 3], corners: [Seen; 3]) -> Shape {
+    let Some(normal) = (b - a).cross(c - a).unit() else { return Shape::default() };
+    let plane = TangentPlane::new(normal);
+    let [l, m, n] = corners.map(|seen| seen.in_plane(&plane).log());
+    let flat = |p: Point3| {
+        let Vector { x, y } = plane.flatten(p - a);
+        Point::new(x, y)
+    };
+    Shape::of(((l + m + n) * (1.0 / 3.0)).exp(), [a, b, c].map(flat))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::metric_quality::metric_quality;
+    use super::super::test_meshes::grid;
+    use super::*;
+    use crate::surface::metric::Constant;
+    use crate::surface::{Place, sphere, torus};
+
+    fn close(a: f64, b: f64, tolerance: f64) {
+        assert!((a - b).abs() <= tolerance * b.abs(), "{a} is not {b}");
+    }
+
+    fn assert_close(a: &MetricQuality, b: &MetricQuality, tolerance: f64) {
+        let (la, lb) = (a.metric_edge_length, b.metric_edge_length);
+        for (a, b) in [
+            (la.min, lb.min),
+            (la.mean, lb.mean),
+            (la.max, lb.max),
+            (a.quality.min, b.quality.min),
+            (a.quality.mean, b.quality.mean),
+            (a.angle.min, b.angle.min),
+            (a.angle.mean_min, b.angle.mean_min),
+            (a.worst.longest_edge.value, b.worst.longest_edge.value),
+        ] {
+            close(a, b, tolerance);
+        }
+    }
+
+    /// A rotation, its rows.
+    fn rotation() -> [Vector3; 3] {
+        let axis = Vector3::new(0.48, 0.6, 0.64);
+        let u = axis.perpendicular();
+        [u, axis.cross(u), axis]
+    }
+
+    fn rotate(p: Point3) -> Point3 {
+        let v = p - Point3::default();
+        let [a, b, c] = rotation().map(|row| row.dot(v));
+        Point3::new(a, b, c)
+    }
+
+    fn bent() -> Mesh {
+        let mut mesh = grid(6, 5);
+        mesh.points.iter_mut().for_each(|p| *p = [p[0] + 0.05 * p[1] * p[1], p[1] - 0.02 * p[0] * p[1], 0.0]);
+        mesh
+    }
+
+    #[test]
+    fn planes_in_space_are_planes() {
+        let flat = bent();
+        let planar = |p: Point| Tensor::new(3.0 + p.x.sin(), 0.4 * p.y.cos(), 1.0 + 0.1 * p.x * p.y);
+        let truth = metric_quality(&flat, &planar).unwrap();
+        let mut turned = flat.clone();
+        turned.points.iter_mut().for_each(|p| *p = rotate(Point3::from(*p)).to_array());
+        // The planar field, with whatever normal eigenvalue, in the coordinates of space.
+        let rows = rotation();
+        let columns = [0, 1, 2].map(|i| {
+            let [x, y, z] = rows.map(|row| [row.x, row.y, row.z][i]);
+            Vector3::new(x, y, z)
+        });
+        let field = |p: Point3| {
+            let v = p - Point3::default();
+            let m = planar(Point::new(columns[0].dot(v), columns[1].dot(v)));
+            TangentPlane { u: columns[0], v: columns[1], normal: columns[2] }.extend(m, 1e5)
+        };
+        let surface = Surface::new(&turned).unwrap();
+        let found = surface_quality(&turned, &surface, &field).unwrap();
+        assert_close(&found, &truth, 1e-9);
+        assert_eq!(found.interior_edge_length.is_some(), truth.interior_edge_length.is_some());
+        let [p, q] = [found, truth].map(|found| found.worst.triangle.at);
+        let flat = Point3::new(q.coordinates()[0], q.coordinates()[1], 0.0);
+        let Position::Space(at) = p else { panic!("three coordinates") };
+        assert!(rotate(flat).distance(at.into()) < 1e-12);
+    }
+
+    /// Large along the normal of every place.
+    struct Thick;
+
+    impl SurfaceMetric for Thick {
+        fn at(&self, place: &Place) -> Tensor3 {
+            Tensor3::IDENTITY + Tensor3::square(place.normal) * 1e4
+        }
+    }
+
+    #[test]
+    fn the_normal_is_not_seen() {
+        let surface = sphere(2.0, 0.4).unwrap();
+        let mesh = torus(1.5, 0.4, 0.2).unwrap().to_mesh();
+        let truth = surface_quality(&mesh, &surface, &Constant(Tensor3::IDENTITY)).unwrap();
+        assert_close(&surface_quality(&mesh, &surface, &Thick).unwrap(), &truth, 1e-9);
+        let longest = truth.metric_edge_length.max;
+        let edges = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let lengths = edges.map(|[a, b]| mesh.position(a).distance(mesh.position(b)));
+        close(longest, lengths.fold(0.0, f64::max), 1e-12);
+    }
+
+    #[test]
+    fn a_rolled_sheet_is_the_sheet() {
+        let sheet = bent();
+        let m = Tensor::new(9.0, 2.0, 1.0);
+        let truth = metric_quality(&sheet, &|_| m).unwrap();
+        // Unit steps around a cylinder: what chords and tangents see differs by the square of 1 / radius.
+        for radius in [20.0, 80.0] {
+            let mut rolled = sheet.clone();
+            for p in &mut rolled.points {
+                let angle = p[0] / radius;
+                *p = [radius * angle.sin(), p[1], radius * angle.cos()];
+            }
+            let field = |p: Point3| {
+                let from_axis = p.x.hypot(p.z);
+                let around = Vector3::new(p.z / from_axis, 0.0, -p.x / from_axis);
+                let along = Vector3::new(0.0, 1.0, 0.0);
+                TangentPlane { u: around, v: along, normal: around.cross(along) }.extend(m, 77.0)
+            };
+            let found = surface_quality(&rolled, &Surface::new(&rolled).unwrap(), &field).unwrap();
+            assert_close(&found, &truth, 5.0 / (radius * radius));
+        }
+    }
+
+    #[test]
+    fn faults_are_errors_and_threads_do_not_matter() {
+        let surface = sphere(2.0, 0.4).unwrap();
+        let mesh = surface.to_mesh();
+        let nan = surface_quality(&mesh, &surface, &|_: Point3| Tensor3::IDENTITY * f64::NAN);
+        assert!(matches!(nan, Err(crate::Error::Metric { .. })));
+        let empty = surface_quality(&Mesh::default(), &surface, &Constant(Tensor3::IDENTITY));
+        assert!(matches!(empty, Err(crate::Error::Mesh { .. })));
+        let mut broken = mesh.clone();
+        broken.points[0][1] = f64::NAN;
+        let broken = surface_quality(&broken, &surface, &Constant(Tensor3::IDENTITY));
+        assert!(matches!(broken, Err(crate::Error::Mesh { .. })));
+        let field = |p: Point3| Tensor3::from_disk([2.0 + p.x.sin(), 0.1, 2.0, 0.1, 0.1, 1.0 + p.y * p.y]);
+        let with = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| surface_quality(&mesh, &surface, &field).unwrap())
+        };
+        assert_eq!(with(1), with(3));
+    }
+}

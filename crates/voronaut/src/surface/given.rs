@@ -1,0 +1,111 @@
+//! What the user writes for a domain, which may lie in the plane or be a surface.
+
+use super::read::{ending, of_file};
+use super::{Input, WRITTEN, read, read_mesh};
+use crate::domain::{self, Domain};
+use crate::error::{Error, Result};
+
+/// A domain: of the plane, or a surface in space.
+#[derive(Debug)]
+pub enum Given {
+    /// A planar domain.
+    Plane(Domain),
+    /// A surface.
+    Surface(Input),
+}
+
+impl Given {
+    /// Reads what the user wrote. `sphere:`, `torus:`, `chair`, `implicit:` and files `.obj`, `.off`, `.ply` and `.stl` are
+    /// surfaces; a `.mesh` is one if it has triangles and some z is not 0. All else is a planar domain. `edge` is as for
+    /// [`read()`].
+    ///
+    /// # Errors
+    /// As for [`read()`] and [`Domain::read`]; of what is neither, the help names both.
+    pub fn read(spec: &str, edge: Option<f64>) -> Result<Self> {
+        let name = spec.split(':').next().unwrap_or_default().trim();
+        let ending = ending(spec);
+        match ending.as_deref() {
+            _ if ["sphere", "torus", "chair", "implicit"].contains(&name) => Ok(Self::Surface(read(spec, edge)?)),
+            _ if ["rect", "disk"].contains(&name) => Ok(Self::Plane(Domain::read(spec)?)),
+            Some("obj" | "off" | "ply" | "stl") => Ok(Self::Surface(read(spec, edge)?)),
+            Some("mesh") => {
+                let mesh = read_mesh(spec)?;
+                if mesh.triangles.is_empty() || mesh.is_planar() {
+                    return Ok(Self::Plane(Domain::read(spec)?));
+                }
+                Ok(Self::Surface(Input::new(of_file(spec, &mesh)?, None)))
+            }
+            Some("geojson" | "json" | "poly") => Ok(Self::Plane(Domain::read(spec)?)),
+            _ => {
+                let help = format!("give {}; or {WRITTEN}", domain::WRITTEN);
+                Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", help))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    fn file(ending: &str, content: &str) -> tempfile::NamedTempFile {
+        let mut file = tempfile::Builder::new().suffix(ending).tempfile().unwrap();
+        file.write_all(content.as_bytes()).unwrap();
+        file
+    }
+
+    fn is_surface(spec: &str) -> bool {
+        matches!(Given::read(spec, Some(0.5)).unwrap(), Given::Surface(_))
+    }
+
+    #[test]
+    fn shapes_and_files_are_told_apart() {
+        assert!(
+            is_surface("sphere:1")
+                && is_surface(" torus: 2, 0.7")
+                && is_surface("implicit:x^2+y^2+z^2-1;-2,-2,-2,2,2,2")
+        );
+        assert!(!is_surface("rect:0,0,1,1") && !is_surface("disk:0,0,1"));
+        let mesh = |z: f64, triangles: &str| {
+            let text =
+                format!("MeshVersionFormatted 2 Dimension 3 Vertices 3 0 0 0 0 1 0 0 0 0 1 {z} 0\n{triangles} End");
+            file(".MESH", &text)
+        };
+        let triangle = "Triangles 1 1 2 3 0";
+        assert!(is_surface(mesh(0.5, triangle).path().to_str().unwrap()));
+        assert!(!is_surface(mesh(0.0, triangle).path().to_str().unwrap()));
+        assert!(!is_surface(mesh(0.0, "Edges 3 1 2 1 2 3 1 3 1 1").path().to_str().unwrap()));
+        let off = file(".Off", "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+        assert!(is_surface(off.path().to_str().unwrap()), "planar, and yet a surface by its ending");
+        let poly = file(".poly", "3\n1 0 0\n2 1 0\n3 0 1\n3\n1 1 2\n2 2 3\n3 3 1\n");
+        assert!(!is_surface(poly.path().to_str().unwrap()));
+    }
+
+    #[test]
+    fn mistakes_are_named_with_what_works() {
+        for (spec, expected) in [
+            ("sphere", "sphere: neither a shape"),
+            ("torus:1", "torus:1: 1 numbers where 2 are expected"),
+            ("rect:0,0,1", "rect:0,0,1: 3 numbers"),
+            ("no/such.mesh", "no/such.mesh: "),
+            ("no/such.ply", "no/such.ply: "),
+            ("no/such.poly", "no/such.poly: "),
+        ] {
+            let error = Given::read(spec, None).unwrap_err();
+            assert!(error.to_string().starts_with(expected) && !error.help().is_empty(), "{error}");
+        }
+        for spec in ["", "cube:1", "part.msh", "part.step", "mesh"] {
+            let error = Given::read(spec, None).unwrap_err();
+            assert!(error.to_string().contains("neither a shape nor a file"), "{error}");
+            assert!(error.help().contains(".geojson") && error.help().contains("torus:R,r"), "{}", error.help());
+        }
+        let curve = file(".mesh", "MeshVersionFormatted 2 Dimension 3 Vertices 2 0 0 0 0 1 0 1 0 Edges 1 1 2 0 End");
+        let error = Given::read(curve.path().to_str().unwrap(), None).unwrap_err();
+        assert!(error.to_string().contains("vertex 2 has z = 1"), "{error}");
+        let lone =
+            file(".mesh", "MeshVersionFormatted 2 Dimension 3 Vertices 3 0 0 1 0 1 0 0 0 2 0 -1 0 Triangles 1 1 2 3 0");
+        let error = Given::read(lone.path().to_str().unwrap(), None).unwrap_err().to_string();
+        assert!(error.contains("triangle 1 has no area") && error.contains(lone.path().to_str().unwrap()), "{error}");
+    }
+}
