@@ -18,7 +18,8 @@ use std::collections::BTreeMap;
 const ALIKE: f64 = 0.02;
 /// Where they differ by more than this the edge may bow.
 const UNLIKE: f64 = 0.05;
-/// A seed this near (barycentric) to an edge of its face is on it.
+/// A seed this near (barycentric) to an edge of its face is on it, and one this near (as a share of the longest edge) to a
+/// corner is there.
 const ON_EDGE: f64 = 1e-9;
 
 /// See the [module](self). Faces are labelled with the number of the input's triangle that they lie in.
@@ -157,8 +158,11 @@ impl<'s> Draped<'s> {
     fn insert_in(&mut self, f: FaceId, weights: [f64; 3], seed: Place) -> Result<VertexId> {
         let near_zero = weights.map(|w| w <= ON_EDGE);
         let [ab, bc, ca] = f.half_edges();
-        let corner = self.topology.corners(f).into_iter().find(|&v| self.position(v) == seed.position);
-        if let Some(v) = corner {
+        let corners = self.topology.corners(f);
+        let [p, q, r] = corners.map(|v| self.position(v));
+        let rounding = ON_EDGE * p.distance(q).max(q.distance(r)).max(r.distance(p));
+        if let Some(v) = corners.into_iter().find(|&v| self.position(v).distance(seed.position) <= rounding) {
+            self.places[v.index()].position = seed.position;
             return Ok(v);
         }
         let v = self.add(seed)?;

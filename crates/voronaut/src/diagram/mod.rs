@@ -10,6 +10,7 @@ mod chords;
 mod descend;
 mod distances;
 mod envelope;
+mod glued;
 mod ground;
 mod kind;
 mod nearest;

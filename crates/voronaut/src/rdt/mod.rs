@@ -157,16 +157,36 @@ impl<J: Judge> Rdt<J> {
         Self::settled(judge, seeds, start, &triangles, counters, Memory::default())
     }
 
+    /// The triangulation of the seeds, so many, that a judge knows, from one that may have doubled edges: vertices are seeds,
+    /// those behind them copies of the seeds in the list.
+    pub fn from_glued(judge: J, seeds: usize, topology: Triangulation, copies: &[u32]) -> Self {
+        let seed_of = (0..seeds as u32).chain(copies.iter().copied()).collect();
+        Self::of_topology(judge, seeds, topology, seed_of, RdtCounters::default(), Memory::default())
+    }
+
     fn settled(
         judge: J,
         seeds: usize,
         start: &Start,
         triangles: &[[u32; 3]],
-        mut counters: RdtCounters,
-        mut memory: Memory,
+        counters: RdtCounters,
+        memory: Memory,
     ) -> Self {
         let mut topology = Triangulation::from_triangles(seeds, triangles, &vec![0; triangles.len()]);
         let seed_of = split(&mut topology, seeds);
+        let mut rdt = Self::of_topology(judge, seeds, topology, seed_of, counters, memory);
+        rdt.dropped = missing(&start.triangles, triangles);
+        rdt
+    }
+
+    fn of_topology(
+        judge: J,
+        seeds: usize,
+        topology: Triangulation,
+        seed_of: Vec<u32>,
+        mut counters: RdtCounters,
+        mut memory: Memory,
+    ) -> Self {
         counters.split = (seed_of.len() - seeds) as u64;
         let mut used = vec![false; seeds];
         topology.vertices().for_each(|v| used[seed_of[v.index()] as usize] = true);
@@ -181,7 +201,7 @@ impl<J: Judge> Rdt<J> {
             tested: vec![None; slots],
             flips_of_slot: vec![0; slots],
             started_with: Vec::new(),
-            dropped: missing(&start.triangles, triangles),
+            dropped: Vec::new(),
             counters,
         };
         rdt.started_with = rdt.pairs();

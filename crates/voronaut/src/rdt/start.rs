@@ -29,19 +29,6 @@ impl Start {
         }
     }
 
-    /// Whether the triangles are a triangulation already: every oriented side occurs once, and has its other side or touches the
-    /// border.
-    pub fn is_whole(&self) -> bool {
-        let turns = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
-        let mut sides: Vec<[u32; 2]> = self.triangles.iter().flat_map(turns).collect();
-        sides.sort_unstable();
-        let is_once = sides.windows(2).all(|pair| pair[0] != pair[1]);
-        let has_other = |&[a, b]: &[u32; 2]| {
-            sides.binary_search(&[b, a]).is_ok() || self.at_border.contains(&[a.min(b), a.max(b)])
-        };
-        is_once && !sides.is_empty() && sides.iter().all(has_other)
-    }
-
     /// Triangles in which no oriented side occurs twice, with small holes filled.
     pub(super) fn triangulated(&self, judge: &dyn Judge, counters: &mut RdtCounters) -> Vec<[u32; 3]> {
         let mut sides = Sides { judge, next: BTreeMap::new() };

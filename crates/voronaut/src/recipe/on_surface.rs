@@ -75,9 +75,8 @@ pub fn surface_dual(diagram: &SurfaceDiagram, road: Road) -> SeedDual {
     let start = Instant::now();
     let nerve = diagram.sharp_nerve();
     let nerve_seconds = start.elapsed().as_secs_f64();
-    let raw = Start::from_nerve(&diagram.nerve());
-    let from = if raw.is_whole() { raw } else { Start::from_nerve(&nerve) };
-    let rdt = Rdt::judged(OnSurface::new(diagram), diagram.colours(), &from);
+    let (glued, copies) = diagram.glued_nerve();
+    let rdt = Rdt::from_glued(OnSurface::new(diagram), diagram.colours(), glued, &copies);
     let seconds = vec![("nerve", nerve_seconds), ("tests", start.elapsed().as_secs_f64() - nerve_seconds)];
     let triangles = match road {
         Road::Canvas => nerve.triangles.iter().map(|t| t.colours).collect(),

@@ -7,7 +7,7 @@ use crate::diagram::SurfaceDiagram;
 use crate::error::{Error, Result};
 use crate::geodesic::Method;
 use crate::progress::Progress;
-use crate::rdt::{OnSurface, Rdt, Start};
+use crate::rdt::{OnSurface, Rdt};
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
 /// Seeds on a closed border at least.
@@ -77,9 +77,8 @@ fn made_whole(mut diagram: SurfaceDiagram) -> Result<Seeded> {
 
 /// The dual of a diagram's seeds, and the colours around which it is no triangulation of the surface.
 fn dual_of<'a>(diagram: &SurfaceDiagram<'a>) -> (Rdt<OnSurface<'a>>, Vec<u32>) {
-    let raw = Start::from_nerve(&diagram.nerve());
-    let start = if raw.is_whole() { raw } else { Start::from_nerve(&diagram.sharp_nerve()) };
-    let dual = Rdt::judged(OnSurface::new(diagram), diagram.colours(), &start);
+    let (glued, copies) = diagram.glued_nerve();
+    let dual = Rdt::from_glued(OnSurface::new(diagram), diagram.colours(), glued, &copies);
     let mut poor = no_discs(diagram);
     let topology = dual.topology();
     let is_open = |h: &HalfEdge| topology.twin(*h).is_none();
@@ -98,6 +97,7 @@ fn dual_of<'a>(diagram: &SurfaceDiagram<'a>) -> (Rdt<OnSurface<'a>>, Vec<u32>) {
     topology.vertices().for_each(|v| used[dual.seed(v) as usize] = true);
     poor.extend((0..).zip(&used).filter(|(_, used)| !**used).map(|(colour, _)| colour));
     poor.extend(topology.vertices().filter(|v| v.index() >= diagram.colours()).map(|v| dual.seed(v)));
+    poor.extend(doubled(topology).into_iter().flatten().map(|v| dual.seed(v)));
     if poor.is_empty() && euler(topology) != euler(diagram.canvas().draped().topology()) {
         // Cells that are discs and meet once each make the surface; what is amiss is between the largest of them.
         poor.extend(diagram.farthest().and_then(|(v, _)| diagram.colour(v)));
@@ -105,6 +105,15 @@ fn dual_of<'a>(diagram: &SurfaceDiagram<'a>) -> (Rdt<OnSurface<'a>>, Vec<u32>) {
     poor.sort_unstable();
     poor.dedup();
     (dual, poor)
+}
+
+/// The ends of edges that are there twice, or join a vertex to itself.
+fn doubled(topology: &Triangulation) -> Vec<[VertexId; 2]> {
+    let ends = |h: HalfEdge| [topology.origin(h), topology.target(h)];
+    let mut all: Vec<[VertexId; 2]> = topology.edges().map(ends).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+    all.sort_unstable();
+    let loops = all.iter().filter(|[a, b]| a == b).copied();
+    loops.chain(all.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0])).collect()
 }
 
 /// The cells whose canvas vertices, with the edges and faces between them, are no disc.

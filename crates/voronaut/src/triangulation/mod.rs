@@ -50,6 +50,25 @@ impl Triangulation {
         result
     }
 
+    /// Builds the structure from counter-clockwise triangles that are glued as told: half-edge `3 i + k` is side k of triangle i,
+    /// and a twin names this one back. Edges may be doubled; vertices may have several fans
+    /// ([`Triangulation::split_pinched_vertices`]).
+    pub fn glued(vertex_count: usize, triangles: &[[u32; 3]], twins: &[Option<u32>]) -> Self {
+        let mut result = Self { start: vec![NONE; vertex_count], ..Self::default() };
+        for triangle in triangles {
+            result.push_face(triangle.map(VertexId), 0);
+        }
+        for (h, twin) in (0..).zip(twins) {
+            if let Some(t) = twin.filter(|&t| h < t) {
+                result.glue(HalfEdge(h), HalfEdge(t));
+            }
+        }
+        for h in (0..result.origin.len() as u32).map(HalfEdge) {
+            result.set_start(h);
+        }
+        result
+    }
+
     fn pair_twins(&mut self) {
         let key = |h: HalfEdge| {
             let (a, b) = (self.origin(h).0, self.target(h).0);

@@ -51,7 +51,6 @@ fn sharp_nerve() {
     }
     for nerve in [diagram.nerve(), diagram.sharp_nerve()] {
     let start = Start::from_nerve(&nerve);
-    println!("whole? {}", start.is_whole());
     let rdt = Rdt::judged(OnSurface::new(&diagram), seeds.len(), &start);
     let found: HashSet<[u32; 3]> = rdt.triangles().into_iter().collect();
     let right = found.iter().filter(|&&t| is_on_hull(&seeds, t)).count();
