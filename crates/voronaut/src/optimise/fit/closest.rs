@@ -1,0 +1,110 @@
+//! Closest points on triangles whose vertices move, found from a triangle nearby.
+
+use crate::geometry::{Point3, Vector3};
+use crate::triangulation::{FaceId, Triangulation};
+
+/// Triangles with positions of their own.
+#[derive(Clone)]
+pub(super) struct Sheet<'a> {
+    pub(super) topology: &'a Triangulation,
+    pub(super) positions: Vec<Point3>,
+}
+
+/// The closest point of a triangle to some point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Foot {
+    pub(super) face: FaceId,
+    /// Its barycentric coordinates.
+    pub(super) weights: [f64; 3],
+    /// From it to the point.
+    pub(super) offset: Vector3,
+}
+
+impl Foot {
+    /// The square of the distance.
+    pub(super) fn square(&self) -> f64 {
+        self.offset.dot(self.offset)
+    }
+
+    /// Whether it is off the triangle's border, so that the offset is along the normal.
+    fn is_inside(&self) -> bool {
+        self.weights.iter().all(|&w| w > 0.0)
+    }
+}
+
+impl Sheet<'_> {
+    /// The corners of a triangle.
+    pub(super) fn triangle(&self, f: FaceId) -> [Point3; 3] {
+        self.topology.corners(f).map(|v| self.positions[v.index()])
+    }
+
+    /// The normal with the length of twice the area.
+    pub(super) fn area_vector(&self, f: FaceId) -> Vector3 {
+        area_vector(self.triangle(f))
+    }
+
+    /// The closest point of one triangle.
+    pub(super) fn foot(&self, face: FaceId, p: Point3) -> Foot {
+        let corners = self.triangle(face);
+        let weights = closest_weights(corners, p);
+        Foot { face, weights, offset: p - Point3::weighted(corners, weights) }
+    }
+
+    /// A closest point among the triangles around: from triangle to triangle while that comes nearer. It may miss what is
+    /// near across a gap, so the distance is an upper bound.
+    pub(super) fn descend(&self, start: FaceId, p: Point3) -> Foot {
+        let mut best = self.foot(start, p);
+        loop {
+            let from = best.face;
+            let around = self.topology.corners(from).into_iter().flat_map(|v| self.topology.star(v));
+            for face in around.map(|h| h.face()).filter(|&f| f != from) {
+                let foot = self.foot(face, p);
+                if foot.square() < best.square() {
+                    best = foot;
+                }
+            }
+            if best.face == from {
+                return best;
+            }
+        }
+    }
+
+    /// The unit direction along which the distance of a foot changes most: the normal inside a triangle, at its border
+    /// from the foot to the point. Zero where there is none.
+    pub(super) fn direction(&self, foot: &Foot) -> Vector3 {
+        let along = if foot.is_inside() { self.area_vector(foot.face) } else { foot.offset };
+        along.unit().or_else(|| self.area_vector(foot.face).unit()).unwrap_or_default()
+    }
+}
+
+/// The normal of a triangle with the length of twice its area.
+pub(super) fn area_vector([a, b, c]: [Point3; 3]) -> Vector3 {
+    (b - a).cross(c - a)
+}
+
+/// Barycentric coordinates of the point of a triangle that is closest to `p`.
+fn closest_weights(corners: [Point3; 3], p: Point3) -> [f64; 3] {
+    let normal = area_vector(corners);
+    let part = |i: usize| normal.dot((corners[(i + 1) % 3] - p).cross(corners[(i + 2) % 3] - p));
+    let parts = [part(0), part(1), part(2)];
+    let total = normal.dot(normal);
+    if total > 0.0 && parts.iter().all(|&part| part >= 0.0) {
+        let [_, s, t] = parts.map(|part| part / total);
+        return [1.0 - s - t, s, t];
+    }
+    let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
+    // What is beyond one side only is closest to that side.
+    for i in (0..3).filter(|&i| total <= 0.0 || parts[i] < 0.0) {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let (along, offset) = (corners[k] - corners[j], p - corners[j]);
+        let square = along.dot(along);
+        let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let rest = offset - along * t;
+        if rest.dot(rest) < best.0 {
+            let mut weights = [0.0; 3];
+            (weights[j], weights[k]) = (1.0 - t, t);
+            best = (rest.dot(rest), weights);
+        }
+    }
+    best.1
+}
