@@ -1,7 +1,8 @@
 //! Closest points on triangles whose vertices move, found from a triangle nearby.
 
 use crate::geometry::{Point3, Vector3};
-use crate::triangulation::{FaceId, Triangulation};
+use crate::surface::Surface;
+use crate::triangulation::{FaceId, HalfEdge, Triangulation};
 
 /// Triangles with positions of their own.
 #[derive(Clone)]
@@ -32,7 +33,12 @@ impl Foot {
     }
 }
 
-impl Sheet<'_> {
+impl<'a> Sheet<'a> {
+    /// A surface's triangles, where they are.
+    pub(super) fn of(surface: &'a Surface) -> Self {
+        Self { topology: surface.topology(), positions: surface.positions().to_vec() }
+    }
+
     /// The corners of a triangle.
     pub(super) fn triangle(&self, f: FaceId) -> [Point3; 3] {
         self.topology.corners(f).map(|v| self.positions[v.index()])
@@ -50,18 +56,25 @@ impl Sheet<'_> {
         Foot { face, weights, offset: p - Point3::weighted(corners, weights) }
     }
 
-    /// A closest point among the triangles around: from triangle to triangle while that comes nearer. It may miss what is
-    /// near across a gap, so the distance is an upper bound.
+    /// A closest point among the triangles around: from triangle to triangle while that comes nearer. From inside a triangle
+    /// its neighbours are looked at, from its border those that share an end of the side. It may miss what is near across
+    /// a gap, so the distance is an upper bound.
     pub(super) fn descend(&self, start: FaceId, p: Point3) -> Foot {
         let mut best = self.foot(start, p);
         loop {
             let from = best.face;
-            let around = self.topology.corners(from).into_iter().flat_map(|v| self.topology.star(v));
-            for face in around.map(|h| h.face()).filter(|&f| f != from) {
-                let foot = self.foot(face, p);
-                if foot.square() < best.square() {
+            let reached = best;
+            let mut look = |h: HalfEdge| {
+                let foot = self.foot(h.face(), p);
+                if h.face() != from && foot.square() < best.square() {
                     best = foot;
                 }
+            };
+            if reached.is_inside() {
+                from.half_edges().into_iter().filter_map(|h| self.topology.twin(h)).for_each(&mut look);
+            } else {
+                let at = reached.weights.into_iter().zip(self.topology.corners(from)).filter(|&(w, _)| w > 0.0);
+                at.flat_map(|(_, v)| self.topology.star(v)).for_each(&mut look);
             }
             if best.face == from {
                 return best;

@@ -43,8 +43,7 @@ impl<'a> System<'a> {
     /// Moves of all vertices that solve the system with `damping` times the mean of its diagonal at every vertex added to it
     /// (Levenberg 1944, Marquardt 1963): along flat parts, where gaps say nothing, vertices stay.
     pub(super) fn solve(&self, damping: f64) -> Vec<Vector3> {
-        let added = self.diagonal.iter().map(|d| damping * (d.xx + d.yy + d.zz) / 3.0);
-        let added: Vec<f64> = added.collect();
+        let added: Vec<f64> = self.diagonal.iter().map(|d| damping * (d.xx + d.yy + d.zz) / 3.0).collect();
         let inverse: Vec<Tensor3> = self.diagonal.iter().zip(&added).map(|(&d, &a)| inverted(d, a)).collect();
         let free = |v: &[Vector3]| -> Vec<Vector3> {
             v.iter().zip(self.free).map(|(&v, &free)| if free { v } else { Vector3::default() }).collect()
