@@ -121,3 +121,34 @@ fn closest_weights(corners: [Point3; 3], p: Point3) -> [f64; 3] {
     }
     best.1
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{Nearest, torus};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn descents_from_nearby_find_the_closest(u in 0.0..6.28, v in 0.0..6.28, off in -0.2..0.2, face in 0_u32..100) {
+            let surface = torus(2.0, 0.7, 0.4).unwrap();
+            let sheet = Sheet::of(&surface);
+            let tree = Nearest::new(&surface);
+            let at = |u: f64, v: f64, tube: f64| {
+                let ring = 2.0 + tube * v.cos();
+                Point3::new(ring * u.cos(), ring * u.sin(), tube * v.sin())
+            };
+            let p = at(u, v, 0.7 + off);
+            let truth = tree.closest(&surface, p).unwrap();
+            let near = tree.closest(&surface, at(u + 0.3, v - 0.4, 0.7)).unwrap().place.face;
+            let foot = sheet.descend(near, p);
+            prop_assert!((foot.square().sqrt() - truth.distance).abs() < 1e-12);
+            prop_assert!((foot.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            prop_assert!((sheet.direction(&foot).dot(foot.offset).abs() - truth.distance).abs() < 1e-12);
+            // From anywhere: never nearer than the closest of all, nor farther than where it began.
+            let far = sheet.descend(FaceId(face), p);
+            prop_assert!(far.square().sqrt() > truth.distance - 1e-12);
+            prop_assert!(far.square() <= sheet.foot(FaceId(face), p).square());
+        }
+    }
+}

@@ -69,3 +69,33 @@ fn side(a: Point3, b: Point3, c: Point3, d: Point3) -> f64 {
     let value = orient3d(a, b, c, d);
     if value == 0.0 { 0.0 } else { value.signum() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::triangulation::Triangulation;
+
+    fn count(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> usize {
+        let topology = Triangulation::from_triangles(points.len(), triangles, &vec![0; triangles.len()]);
+        let sheet = Sheet { topology: &topology, positions: points.iter().map(|&p| p.into()).collect() };
+        let all = crossings(&sheet, |_| true);
+        assert_eq!(all, crossings(&sheet, |f| f == FaceId(1)), "one asks for both");
+        all.len()
+    }
+
+    #[test]
+    fn triangles_pierce_touch_and_share_corners() {
+        let ground = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+        let with = |other: [[f64; 3]; 3]| count(&[ground, other].concat(), &[[0, 1, 2], [3, 4, 5]]);
+        assert_eq!(with([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), 1, "an edge through it");
+        assert_eq!(with([[1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 0.5]]), 1, "and its edge through the other");
+        assert_eq!(with([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), 0, "touches it");
+        assert_eq!(with([[1.0, 1.0, 1e-300], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), 0, "is above it");
+        assert_eq!(with([[1.0, 1.0, 0.0], [5.0, 1.0, 0.0], [5.0, 5.0, 0.0]]), 0, "lies in its plane");
+        let fan = |other: [f64; 3], another: [f64; 3]| {
+            count(&[&ground[..], &[other, another]].concat(), &[[0, 1, 2], [0, 3, 4]])
+        };
+        assert_eq!(fan([1.0, 1.0, 1.0], [1.0, 1.0, -1.0]), 1, "a corner in common, through it");
+        assert_eq!(fan([1.0, 1.0, 1.0], [-1.0, -1.0, 1.0]), 0, "a corner in common");
+    }
+}

@@ -80,8 +80,7 @@ impl<'a> Guard<'a> {
             corners.any(|v| before.positions[v.index()] != after.positions[v.index()])
         };
         let faces: Vec<FaceId> = before.topology.faces().collect();
-        let bad: Vec<FaceId> =
-            faces.into_par_iter().filter(|&f| has_moved(f) && !self.is_well(after, f)).collect();
+        let bad: Vec<FaceId> = faces.into_par_iter().filter(|&f| has_moved(f) && !self.is_well(after, f)).collect();
         if !bad.is_empty() {
             return bad;
         }
@@ -106,4 +105,40 @@ fn shape(surface: &Sheet, mesh: &Sheet, f: FaceId, below: FaceId) -> Shape {
     let below = surface.descend(below, Point3::weighted([a, b, c], [1.0 / 3.0; 3])).face;
     let [own, other] = [area_vector, surface.area_vector(below)].map(|n| n.unit().unwrap_or_default());
     Shape { quality, facing: own.dot(other), below }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{Nearest, Surface, torus};
+    use crate::triangulation::VertexId;
+
+    fn limited(mesh: &Surface, surface: &Surface, moves: &[Vector3]) -> Limited {
+        let (own, other) = (Sheet::of(mesh), Sheet::of(surface));
+        let tree = Nearest::new(surface);
+        let below = |f| tree.closest(surface, Point3::weighted(mesh.triangle(f), [1.0 / 3.0; 3])).unwrap().place.face;
+        Guard::new(&other, &own, below).limit(&own, moves)
+    }
+
+    #[test]
+    fn small_moves_are_free_and_those_across_a_neighbour_are_not() {
+        let (mesh, surface) = (torus(2.0, 0.7, 0.6).unwrap(), torus(2.0, 0.7, 0.2).unwrap());
+        let neighbour = mesh.topology().target(mesh.topology().start(VertexId(5)).unwrap());
+        let across = mesh.position(neighbour) - mesh.position(VertexId(5));
+        let moved = |part: f64| {
+            let mut moves = vec![Vector3::default(); mesh.positions().len()];
+            moves[5] = across * part;
+            let found = limited(&mesh, &surface, &moves);
+            let reached = found.positions[5].distance(mesh.position(VertexId(5))) / across.norm();
+            assert!((0..moves.len()).all(|v| v == 5 || found.positions[v] == mesh.positions()[v]));
+            (found.held_back, reached)
+        };
+        assert_eq!(moved(0.25).0, 0);
+        assert!((moved(0.25).1 - 0.25).abs() < 1e-14);
+        let (held_back, reached) = moved(2.0);
+        assert_eq!(held_back, 1);
+        assert!(reached == 0.0 || (reached < 1.0 && reached > 0.0), "{reached}");
+        // A hundred lengths away no halving is enough.
+        assert_eq!(moved(100.0), (1, 0.0));
+    }
 }

@@ -104,8 +104,7 @@ impl<'a> Samples<'a> {
     ) -> Assignment {
         let to_mesh: Vec<Foot> = self.of_surface.par_iter().enumerate().map(|(i, s)| on_mesh(i, s.place)).collect();
         let count = PER_TRIANGLE * mesh.topology.face_slots();
-        let to_surface: Vec<Foot> =
-            (0..count).into_par_iter().map(|i| on_surface(i, of_mesh(mesh, i).0)).collect();
+        let to_surface: Vec<Foot> = (0..count).into_par_iter().map(|i| on_surface(i, of_mesh(mesh, i).0)).collect();
         let mut sums = [[0.0; 2]; 2];
         for (foot, s) in to_mesh.iter().zip(&self.of_surface) {
             sums[0][0] += s.weight * foot.square();
@@ -198,4 +197,44 @@ fn scattered(k: usize) -> [f64; 3] {
     let [s, t] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2].map(|step: f64| (0.5 + step * k as f64).fract());
     let (s, t) = if s + t > 1.0 { (1.0 - s, 1.0 - t) } else { (s, t) };
     [1.0 - s - t, s, t]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::torus;
+
+    #[test]
+    fn means_over_the_mesh_are_exact_of_quadratic_functions() {
+        let surface = torus(2.0, 0.7, 0.9).unwrap();
+        let sheet = Sheet::of(&surface);
+        for f in surface.topology().faces().take(10) {
+            let numbers = (0..PER_TRIANGLE).map(|k| PER_TRIANGLE * f.index() + k);
+            let [a, b, c] = surface.triangle(f);
+            let area = 0.5 * surface.area_vector(f).norm();
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for i in numbers {
+                let (p, weight) = of_mesh(&sheet, i);
+                sum += weight * p.x * p.x;
+                weights += weight;
+            }
+            let exact = area * (a.x * a.x + b.x * b.x + c.x * c.x + a.x * b.x + b.x * c.x + c.x * a.x) / 6.0;
+            assert!((weights / area - 1.0).abs() < 1e-13 && (sum / exact - 1.0).abs() < 1e-12, "{sum} {exact}");
+            let middle = of_mesh(&sheet, PER_TRIANGLE * f.index() + MIDDLE).0;
+            assert!(middle.distance(Point3::weighted([a, b, c], [1.0 / 3.0; 3])) < 1e-14);
+        }
+    }
+
+    #[test]
+    fn samples_of_the_surface_are_even() {
+        let surface = torus(2.0, 0.7, 0.2).unwrap();
+        let samples = of_surface(&surface, 10_000);
+        assert_eq!(samples.len(), 10_000 + surface.positions().len());
+        let total: f64 = samples.iter().map(|s| s.weight).sum();
+        let mean = |f: &dyn Fn(Point3) -> f64| samples.iter().map(|s| s.weight * f(s.place)).sum::<f64>() / total;
+        // Of a torus: x^2 has the mean (R^2 + 3/2 r^2) / 2, z^2 has r^2 / 2.
+        assert!(mean(&|p| p.x).abs() < 0.01 && mean(&|p| p.z).abs() < 0.01);
+        assert!((mean(&|p| p.x * p.x) / 2.3675 - 1.0).abs() < 0.01, "{}", mean(&|p| p.x * p.x));
+        assert!((mean(&|p| p.z * p.z) / 0.245 - 1.0).abs() < 0.02, "{}", mean(&|p| p.z * p.z));
+    }
 }

@@ -110,3 +110,57 @@ fn add(x: &mut [Vector3], v: &[Vector3], factor: f64) {
         *x = *x + v * factor;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::torus;
+    use crate::triangulation::FaceId;
+
+    /// Some pairs with every weight, direction and gap, by a sequence without pattern.
+    fn pairs(faces: usize) -> Vec<Pair> {
+        let noise = |k: usize| (k as f64 * 12.9898).sin() * 43_758.545_3 % 1.0;
+        let pair = |k: usize| {
+            let [s, t] = [1, 2].map(|i| 0.5 * noise(7 * k + i).abs());
+            let direction = Vector3::new(noise(7 * k + 3), noise(7 * k + 4), noise(7 * k + 5)).unit().unwrap();
+            let face = FaceId((k % faces) as u32);
+            Pair { face, weights: [1.0 - s - t, s, t], direction, gap: noise(7 * k + 6), weight: 1.0 }
+        };
+        (0..20 * faces).map(pair).collect()
+    }
+
+    #[test]
+    fn moves_are_where_the_energy_is_least() {
+        let surface = torus(2.0, 0.7, 1.2).unwrap();
+        let t = surface.topology();
+        let mut free = vec![true; t.vertex_slots()];
+        free[3] = false;
+        let damping = 0.1;
+        let system = System::new(t, &free, pairs(t.face_count()).into_iter());
+        let moves = system.solve(damping);
+        assert_eq!(moves[3], Vector3::default());
+        let energy = |moves: &[Vector3]| {
+            let mut sum = 0.0;
+            for pair in pairs(t.face_count()) {
+                let corners = t.corners(pair.face);
+                let by = (0..3).map(|i| pair.direction.dot(moves[corners[i].index()]) * pair.weights[i]).sum::<f64>();
+                sum += pair.weight * (pair.gap - by).powi(2);
+                for i in 0..3 {
+                    let m = moves[corners[i].index()];
+                    sum += damping / 3.0 * pair.weight * pair.weights[i].powi(2) * m.dot(m);
+                }
+            }
+            sum
+        };
+        let least = energy(&moves);
+        assert!(least < 0.99 * energy(&vec![Vector3::default(); moves.len()]));
+        for v in (0..moves.len()).filter(|&v| free[v]) {
+            for step in [Vector3::new(1e-3, 0.0, 0.0), Vector3::new(0.0, -1e-3, 0.0), Vector3::new(0.0, 0.0, 1e-3)] {
+                let [mut there, mut back] = [moves.clone(), moves.clone()];
+                (there[v], back[v]) = (moves[v] + step, moves[v] - step);
+                let slope = (energy(&there) - energy(&back)) / 2e-3;
+                assert!(slope.abs() < 1e-5, "{slope}");
+            }
+        }
+    }
+}
