@@ -2,7 +2,7 @@
 
 use crate::geometry::{Point3, Vector3};
 use crate::surface::Surface;
-use crate::triangulation::{FaceId, HalfEdge, Triangulation};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// Triangles with positions of their own.
 #[derive(Clone)]
@@ -21,6 +21,9 @@ pub(super) struct Foot {
     pub(super) offset: Vector3,
 }
 
+/// A barycentric coordinate up to this is zero.
+const ON_BORDER: f64 = 1e-9;
+
 impl Foot {
     /// The square of the distance.
     pub(super) fn square(&self) -> f64 {
@@ -29,7 +32,12 @@ impl Foot {
 
     /// Whether it is off the triangle's border, so that the offset is along the normal.
     fn is_inside(&self) -> bool {
-        self.weights.iter().all(|&w| w > 0.0)
+        self.held_by().all(|held| held)
+    }
+
+    /// Which corners it is not opposite to, but for rounding.
+    fn held_by(&self) -> impl Iterator<Item = bool> {
+        self.weights.into_iter().map(|w| w > ON_BORDER)
     }
 }
 
@@ -73,7 +81,7 @@ impl<'a> Sheet<'a> {
             if reached.is_inside() {
                 from.half_edges().into_iter().filter_map(|h| self.topology.twin(h)).for_each(&mut look);
             } else {
-                let at = reached.weights.into_iter().zip(self.topology.corners(from)).filter(|&(w, _)| w > 0.0);
+                let at = reached.held_by().zip(self.topology.corners(from)).filter(|&(held, _)| held);
                 at.flat_map(|(_, v)| self.topology.star(v)).for_each(&mut look);
             }
             if best.face == from {
@@ -82,11 +90,31 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// The unit direction along which the distance of a foot changes most: the normal inside a triangle, at its border
-    /// from the foot to the point. Zero where there is none.
-    pub(super) fn direction(&self, foot: &Foot) -> Vector3 {
-        let along = if foot.is_inside() { self.area_vector(foot.face) } else { foot.offset };
-        along.unit().or_else(|| self.area_vector(foot.face).unit()).unwrap_or_default()
+    /// The unit direction along which the distance of a foot changes most: the normal inside a triangle, at its border from
+    /// the foot to the point. Where these are hardly apart (beside `near`) that says nothing, and the mean normal there
+    /// takes its place, without a jump.
+    pub(super) fn direction(&self, foot: &Foot, near: f64) -> Vector3 {
+        if foot.is_inside() {
+            return self.area_vector(foot.face).unit().unwrap_or_default();
+        }
+        let normal = self.mean_normal(foot);
+        let side = if normal.dot(foot.offset) < 0.0 { -near } else { near };
+        (foot.offset + normal * side).unit().unwrap_or(normal)
+    }
+
+    /// The mean of the normals at a point of an edge, or at a vertex, there weighted by angles (Baerentzen and Aanaes 2005).
+    fn mean_normal(&self, foot: &Foot) -> Vector3 {
+        let t = self.topology;
+        let at = |v: VertexId| self.positions[v.index()];
+        let corners = foot.held_by().zip(t.corners(foot.face)).filter(|&(held, _)| held).map(|(_, v)| v);
+        let corners: Vec<VertexId> = corners.collect();
+        let around = t.star(corners[0]).filter(|h| corners.iter().all(|v| t.corners(h.face()).contains(v)));
+        let weighted = around.map(|h| {
+            let [u, v] = [t.target(h), t.apex(h)].map(|v| at(v) - at(t.origin(h)));
+            let angle = if corners.len() == 1 { u.cross(v).norm().atan2(u.dot(v)) } else { 1.0 };
+            self.area_vector(h.face()).unit().unwrap_or_default() * angle
+        });
+        weighted.fold(Vector3::default(), |sum, n| sum + n).unit().unwrap_or_default()
     }
 }
 
@@ -144,7 +172,7 @@ mod tests {
             let foot = sheet.descend(near, p);
             prop_assert!((foot.square().sqrt() - truth.distance).abs() < 1e-12);
             prop_assert!((foot.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
-            prop_assert!((sheet.direction(&foot).dot(foot.offset).abs() - truth.distance).abs() < 1e-12);
+            prop_assert!((sheet.direction(&foot, 0.0).dot(foot.offset).abs() - truth.distance).abs() < 1e-12);
             // From anywhere: never nearer than the closest of all, nor farther than where it began.
             let far = sheet.descend(FaceId(face), p);
             prop_assert!(far.square().sqrt() > truth.distance - 1e-12);

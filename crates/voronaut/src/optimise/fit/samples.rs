@@ -61,6 +61,9 @@ const FARTHER: f64 = 0.1;
 /// ... up to this many times.
 const FARTHEST: f64 = 100.0;
 
+/// Distances below this part of the root mean square have no direction of their own at a vertex or an edge.
+const NEAR: f64 = 0.1;
+
 impl Assignment {
     /// A factor on the weight of a pair: what is far apart, tips above all, is drawn together more, for less than a per cent
     /// of the root mean square distance.
@@ -122,16 +125,17 @@ impl<'a> Samples<'a> {
 
     /// All pairs of samples and their closest points; weights of each direction sum to one.
     pub(super) fn pairs<'b>(&'b self, mesh: &'b Sheet, at: &'b Assignment) -> impl Iterator<Item = Pair> + 'b {
+        let near = NEAR * at.mean_square.sqrt();
         let total: f64 = self.of_surface.iter().map(|s| s.weight).sum();
         let area: f64 = mesh.topology.faces().map(|f| 0.5 * mesh.area_vector(f).norm()).sum();
         let to_mesh = at.to_mesh.iter().zip(&self.of_surface).map(move |(foot, s)| {
-            let direction = mesh.direction(foot);
+            let direction = mesh.direction(foot, near);
             let gap = direction.dot(foot.offset);
             let weight = s.weight / total * at.urgency(foot);
             Pair { face: foot.face, weights: foot.weights, direction, gap, weight }
         });
         let to_surface = at.to_surface.iter().enumerate().map(move |(i, foot)| {
-            let direction = self.surface.direction(foot);
+            let direction = self.surface.direction(foot, near);
             let gap = -direction.dot(foot.offset);
             let (face, weights) = on_lattice(i);
             let weight = of_mesh(mesh, i).1 / area * at.urgency(foot);
