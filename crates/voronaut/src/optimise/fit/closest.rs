@@ -155,10 +155,11 @@ mod tests {
     use super::*;
     use crate::surface::{Nearest, torus};
     use proptest::prelude::*;
+    use std::f64::consts::TAU;
 
     proptest! {
         #[test]
-        fn descents_from_nearby_find_the_closest(u in 0.0..6.28, v in 0.0..6.28, off in -0.2..0.2, face in 0_u32..100) {
+        fn descents_from_nearby_find_the_closest(u in 0.0..TAU, v in 0.0..TAU, off in -0.2..0.2, face in 0_u32..100) {
             let surface = torus(2.0, 0.7, 0.4).unwrap();
             let sheet = Sheet::of(&surface);
             let tree = Nearest::new(&surface);

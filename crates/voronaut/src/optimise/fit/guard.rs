@@ -3,7 +3,7 @@
 use super::closest::Sheet;
 use super::crossing::crossings;
 use crate::geometry::{Point3, Vector3};
-use crate::triangulation::FaceId;
+use crate::triangulation::{FaceId, VertexId};
 use rayon::prelude::*;
 
 /// What a mesh was like before anything moved, and the surface below it.
@@ -64,10 +64,12 @@ impl<'a> Guard<'a> {
                 break;
             }
             let mut vertices: Vec<usize> =
-                harmed.iter().flat_map(|&f| mesh.topology.corners(f)).map(|v| v.index()).collect();
+                harmed.iter().flat_map(|&f| mesh.topology.corners(f)).map(VertexId::index).collect();
             vertices.sort_unstable();
             vertices.dedup();
-            vertices.into_iter().for_each(|v| halvings[v] += 1);
+            for v in vertices {
+                halvings[v] += 1;
+            }
         }
         let held_back = (0..moves.len()).filter(|&v| halvings[v] > 0 && moves[v] != Vector3::default()).count();
         Limited { positions: moved.positions, held_back }
@@ -111,7 +113,6 @@ fn shape(surface: &Sheet, mesh: &Sheet, f: FaceId, below: FaceId) -> Shape {
 mod tests {
     use super::*;
     use crate::surface::{Nearest, Surface, torus};
-    use crate::triangulation::VertexId;
 
     fn limited(mesh: &Surface, surface: &Surface, moves: &[Vector3]) -> Limited {
         let (own, other) = (Sheet::of(mesh), Sheet::of(surface));

@@ -16,7 +16,7 @@ mod system;
 mod tests;
 
 use crate::error::Result;
-use crate::geometry::Vector3;
+use crate::geometry::{Point3, Vector3};
 use crate::mesh::Mesh;
 use crate::surface::Surface;
 use crate::triangulation::VertexId;
@@ -69,8 +69,7 @@ pub struct Misfit {
 /// Moves vertices of a mesh near a surface so that their root mean square distance falls: a mesh whose vertices are on a
 /// curved surface is on its inner side everywhere else, and halving the differences costs no vertex.
 ///
-/// As Levy and Bonneel 2012, section 4.3, fit a mesh to samples by least squares, but of both directions' distances, and by
-/// Gauss-Newton steps: samples keep their closest points, and distances are measured along the directions between the two,
+/// Least squares to samples, as Levy and Bonneel 2012 have it, but of both directions' distances, and by Gauss-Newton steps: samples keep their closest points, and distances are measured along the directions between the two,
 /// so that vertices glide along what is flat for free, and damping (Levenberg 1944, Marquardt 1963) keeps them where they
 /// gain nothing by it. The mean square distance never rises. Topology, labels and order stay. Vertices at the border,
 /// corners, required vertices and those of required edges stay; ends of other labelled edges move.
@@ -100,7 +99,7 @@ pub fn fit(mesh: &Mesh, surface: &Surface, options: &FitOptions) -> Result<Fitte
     let Some(after) = end.filter(|after| after.rms <= before.rms) else {
         return Ok(Fitted { mesh: mesh.clone(), before, after: before, moved: 0, held_back, steps: 0 });
     };
-    let moved = fitted.points.iter().zip(&mesh.points).filter(|(a, b)| a != b).count();
+    let moved = fitted.points.iter().zip(&mesh.points).filter(|&(&a, &b)| Point3::from(a) != b.into()).count();
     Ok(Fitted { mesh: fitted, before, after, moved, held_back, steps })
 }
 
@@ -134,7 +133,7 @@ impl<'a> Fitting<'a> {
     fn new(mesh: &Mesh, start: &'a Surface, samples: &'a Samples<'a>, at: Assignment) -> Self {
         let sheet = Sheet::of(start);
         Self {
-            guard: Guard::new(&samples.surface, &sheet, |f| samples.below(&at, f)),
+            guard: Guard::new(&samples.surface, &sheet, |f| at.below(f)),
             samples,
             free: free_vertices(mesh, start),
             sheet,

@@ -65,6 +65,11 @@ const FARTHEST: f64 = 100.0;
 const NEAR: f64 = 0.1;
 
 impl Assignment {
+    /// Where on the surface the middle of a triangle of the mesh is closest.
+    pub(super) fn below(&self, f: FaceId) -> FaceId {
+        self.to_surface[PER_TRIANGLE * f.index() + MIDDLE].face
+    }
+
     /// A factor on the weight of a pair: what is far apart, tips above all, is drawn together more, for less than a per cent
     /// of the root mean square distance.
     fn urgency(&self, foot: &Foot) -> f64 {
@@ -142,11 +147,6 @@ impl<'a> Samples<'a> {
             Pair { face, weights, direction, gap, weight }
         });
         to_mesh.chain(to_surface)
-    }
-
-    /// Where on the surface the middle of a triangle of the mesh is, about.
-    pub(super) fn below(&self, at: &Assignment, f: FaceId) -> FaceId {
-        at.to_surface[PER_TRIANGLE * f.index() + MIDDLE].face
     }
 }
 

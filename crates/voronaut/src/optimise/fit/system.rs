@@ -2,7 +2,7 @@
 
 use super::samples::Pair;
 use crate::geometry::{Tensor3, Vector3};
-use crate::triangulation::Triangulation;
+use crate::triangulation::{Triangulation, VertexId};
 
 /// Normal equations of a Gauss-Newton step: with the weights of every pair held, moves of vertices that close the gaps
 /// best. Kept by triangles, each with the blocks of its pairs of corners.
@@ -76,7 +76,7 @@ impl<'a> System<'a> {
     fn apply(&self, added: &[f64], x: &[Vector3]) -> Vec<Vector3> {
         let mut image: Vec<Vector3> = x.iter().zip(added).map(|(&x, &a)| x * a).collect();
         for f in self.topology.faces() {
-            let corners = self.topology.corners(f).map(|v| v.index());
+            let corners = self.topology.corners(f).map(VertexId::index);
             let blocks = &self.blocks[f.index()];
             for (i, &v) in corners.iter().enumerate() {
                 let (next, previous) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
