@@ -1,9 +1,10 @@
 //! Moving seeds: relaxation by the energy of centroidal Voronoi tessellations, and the exchange of seeds where edges are
-//! too short or too long.
+//! too short or too long. On surfaces: vertices of a finished mesh moved to where it is closest to the surface (`fit`).
 
 mod cell;
 mod cells;
 mod exchange;
+mod fit;
 mod lloyd;
 mod movers;
 mod on_canvas;
@@ -18,6 +19,7 @@ mod worst;
 pub use cell::{Cell, Moments};
 pub use cells::{Cells, CellsOf, Tangent};
 pub use exchange::{exchange, meet_blocked_flips};
+pub use fit::{FitOptions, Fitted, Misfit, fit};
 pub use lloyd::{Relaxed, relax};
 pub use on_canvas::OnCanvas;
 pub use protect::{Ending, Protected, protect};

@@ -1,0 +1,183 @@
+//! Closest points on triangles whose vertices move, found from a triangle nearby.
+
+use crate::geometry::{Point3, Vector3};
+use crate::surface::Surface;
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+
+/// Triangles with positions of their own.
+#[derive(Clone)]
+pub(super) struct Sheet<'a> {
+    pub(super) topology: &'a Triangulation,
+    pub(super) positions: Vec<Point3>,
+}
+
+/// The closest point of a triangle to some point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Foot {
+    pub(super) face: FaceId,
+    /// Its barycentric coordinates.
+    pub(super) weights: [f64; 3],
+    /// From it to the point.
+    pub(super) offset: Vector3,
+}
+
+/// A barycentric coordinate up to this is zero.
+const ON_BORDER: f64 = 1e-9;
+
+impl Foot {
+    /// The square of the distance.
+    pub(super) fn square(&self) -> f64 {
+        self.offset.dot(self.offset)
+    }
+
+    /// Whether it is off the triangle's border, so that the offset is along the normal.
+    fn is_inside(&self) -> bool {
+        self.held_by().all(|held| held)
+    }
+
+    /// Which corners it is not opposite to, but for rounding.
+    fn held_by(&self) -> impl Iterator<Item = bool> {
+        self.weights.into_iter().map(|w| w > ON_BORDER)
+    }
+}
+
+impl<'a> Sheet<'a> {
+    /// A surface's triangles, where they are.
+    pub(super) fn of(surface: &'a Surface) -> Self {
+        Self { topology: surface.topology(), positions: surface.positions().to_vec() }
+    }
+
+    /// The corners of a triangle.
+    pub(super) fn triangle(&self, f: FaceId) -> [Point3; 3] {
+        self.topology.corners(f).map(|v| self.positions[v.index()])
+    }
+
+    /// The normal with the length of twice the area.
+    pub(super) fn area_vector(&self, f: FaceId) -> Vector3 {
+        area_vector(self.triangle(f))
+    }
+
+    /// The closest point of one triangle.
+    pub(super) fn foot(&self, face: FaceId, p: Point3) -> Foot {
+        let corners = self.triangle(face);
+        let weights = closest_weights(corners, p);
+        Foot { face, weights, offset: p - Point3::weighted(corners, weights) }
+    }
+
+    /// A closest point among the triangles around: from triangle to triangle while that comes nearer. From inside a triangle
+    /// its neighbours are looked at, from its border those that share an end of the side. It may miss what is near across
+    /// a gap, so the distance is an upper bound.
+    pub(super) fn descend(&self, start: FaceId, p: Point3) -> Foot {
+        let mut best = self.foot(start, p);
+        loop {
+            let from = best.face;
+            let reached = best;
+            let mut look = |h: HalfEdge| {
+                let foot = self.foot(h.face(), p);
+                if h.face() != from && foot.square() < best.square() {
+                    best = foot;
+                }
+            };
+            if reached.is_inside() {
+                from.half_edges().into_iter().filter_map(|h| self.topology.twin(h)).for_each(&mut look);
+            } else {
+                let at = reached.held_by().zip(self.topology.corners(from)).filter(|&(held, _)| held);
+                at.flat_map(|(_, v)| self.topology.star(v)).for_each(&mut look);
+            }
+            if best.face == from {
+                return best;
+            }
+        }
+    }
+
+    /// The unit direction along which the distance of a foot changes most: the normal inside a triangle, at its border from
+    /// the foot to the point. Where these are hardly apart (beside `near`) that says nothing, and the mean normal there
+    /// takes its place, without a jump.
+    pub(super) fn direction(&self, foot: &Foot, near: f64) -> Vector3 {
+        if foot.is_inside() {
+            return self.area_vector(foot.face).unit().unwrap_or_default();
+        }
+        let normal = self.mean_normal(foot);
+        let side = if normal.dot(foot.offset) < 0.0 { -near } else { near };
+        (foot.offset + normal * side).unit().unwrap_or(normal)
+    }
+
+    /// The mean of the normals at a point of an edge, or at a vertex, there weighted by angles (Baerentzen and Aanaes 2005).
+    fn mean_normal(&self, foot: &Foot) -> Vector3 {
+        let t = self.topology;
+        let at = |v: VertexId| self.positions[v.index()];
+        let corners = foot.held_by().zip(t.corners(foot.face)).filter(|&(held, _)| held).map(|(_, v)| v);
+        let corners: Vec<VertexId> = corners.collect();
+        let around = t.star(corners[0]).filter(|h| corners.iter().all(|v| t.corners(h.face()).contains(v)));
+        let weighted = around.map(|h| {
+            let [u, v] = [t.target(h), t.apex(h)].map(|v| at(v) - at(t.origin(h)));
+            let angle = if corners.len() == 1 { u.cross(v).norm().atan2(u.dot(v)) } else { 1.0 };
+            self.area_vector(h.face()).unit().unwrap_or_default() * angle
+        });
+        weighted.fold(Vector3::default(), |sum, n| sum + n).unit().unwrap_or_default()
+    }
+}
+
+/// The normal of a triangle with the length of twice its area.
+pub(super) fn area_vector([a, b, c]: [Point3; 3]) -> Vector3 {
+    (b - a).cross(c - a)
+}
+
+/// Barycentric coordinates of the point of a triangle that is closest to `p`.
+fn closest_weights(corners: [Point3; 3], p: Point3) -> [f64; 3] {
+    let normal = area_vector(corners);
+    let part = |i: usize| normal.dot((corners[(i + 1) % 3] - p).cross(corners[(i + 2) % 3] - p));
+    let parts = [part(0), part(1), part(2)];
+    let total = normal.dot(normal);
+    if total > 0.0 && parts.iter().all(|&part| part >= 0.0) {
+        let [_, s, t] = parts.map(|part| part / total);
+        return [1.0 - s - t, s, t];
+    }
+    let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
+    // What is beyond one side only is closest to that side.
+    for i in (0..3).filter(|&i| total <= 0.0 || parts[i] < 0.0) {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let (along, offset) = (corners[k] - corners[j], p - corners[j]);
+        let square = along.dot(along);
+        let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let rest = offset - along * t;
+        if rest.dot(rest) < best.0 {
+            let mut weights = [0.0; 3];
+            (weights[j], weights[k]) = (1.0 - t, t);
+            best = (rest.dot(rest), weights);
+        }
+    }
+    best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{Nearest, torus};
+    use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    proptest! {
+        #[test]
+        fn descents_from_nearby_find_the_closest(u in 0.0..TAU, v in 0.0..TAU, off in -0.2..0.2, face in 0_u32..100) {
+            let surface = torus(2.0, 0.7, 0.4).unwrap();
+            let sheet = Sheet::of(&surface);
+            let tree = Nearest::new(&surface);
+            let at = |u: f64, v: f64, tube: f64| {
+                let ring = 2.0 + tube * v.cos();
+                Point3::new(ring * u.cos(), ring * u.sin(), tube * v.sin())
+            };
+            let p = at(u, v, 0.7 + off);
+            let truth = tree.closest(&surface, p).unwrap();
+            let near = tree.closest(&surface, at(u + 0.3, v - 0.4, 0.7)).unwrap().place.face;
+            let foot = sheet.descend(near, p);
+            prop_assert!((foot.square().sqrt() - truth.distance).abs() < 1e-12);
+            prop_assert!((foot.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            prop_assert!((sheet.direction(&foot, 0.0).dot(foot.offset).abs() - truth.distance).abs() < 1e-12);
+            // From anywhere: never nearer than the closest of all, nor farther than where it began.
+            let far = sheet.descend(FaceId(face), p);
+            prop_assert!(far.square().sqrt() > truth.distance - 1e-12);
+            prop_assert!(far.square() <= sheet.foot(FaceId(face), p).square());
+        }
+    }
+}
