@@ -18,6 +18,8 @@ use std::collections::BTreeMap;
 const ALIKE: f64 = 0.02;
 /// Where they differ by more than this the edge may bow.
 const UNLIKE: f64 = 0.05;
+/// The least share of a straight edge's length that its best bow has.
+const NOT_RESOLVED: f64 = 0.5;
 /// A seed this near (barycentric) to an edge of its face is on it, and one this near (as a share of the longest edge) to a
 /// corner is there.
 const ON_EDGE: f64 = 1e-9;
@@ -30,6 +32,14 @@ pub struct Draped<'s> {
     pub(super) topology: Triangulation,
     places: Vec<Place>,
     tensors: Vec<Tensor3>,
+}
+
+/// Which way along an edge is measured. Long edges may bow far away from what halves of them would see: while a triangulation is
+/// refined they are straight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    Straight,
+    Shortest,
 }
 
 /// By what edges are halved, the greatest first.
@@ -64,7 +74,7 @@ impl<'s> Draped<'s> {
             check_tensor3(tensors[v.index()], || places[v.index()].position.to_string())?;
         }
         let mut draped = Self { input, metric, topology, places, tensors };
-        draped.measure_all();
+        draped.measure_all(Way::Straight);
         Ok(draped)
     }
 
@@ -193,7 +203,7 @@ impl<'s> Draped<'s> {
         let p = self.position(a).lerp(self.position(b), 0.5);
         match self.input.implicit {
             Some(_) => self.input.lift(&self.places[a.index()], p),
-            None => Some(self.input.surface.closest_on(self.home(h.face()), p)),
+            None => Some(Place { position: p, ..self.input.surface.closest_on(self.home(h.face()), p) }),
         }
     }
 
@@ -208,15 +218,15 @@ impl<'s> Draped<'s> {
         }
     }
 
-    fn measure_all(&mut self) {
+    fn measure_all(&mut self, way: Way) {
         let edges: Vec<HalfEdge> = self.topology.edges().collect();
-        let lengths: Vec<f64> = edges.par_iter().with_min_len(256).map(|&h| self.length_of(h)).collect();
+        let lengths: Vec<f64> = edges.par_iter().with_min_len(256).map(|&h| self.length_of(h, way)).collect();
         edges.into_iter().zip(lengths).for_each(|(h, length)| self.topology.set_length(h, length));
     }
 
     fn measure_around(&mut self, v: VertexId) {
         for h in self.spokes(v) {
-            let length = self.length_of(h);
+            let length = self.length_of(h, Way::Straight);
             self.topology.set_length(h, length);
         }
     }
@@ -229,9 +239,9 @@ impl<'s> Draped<'s> {
     }
 
     /// The metric length of an edge along the surface: by Simpson's rule, on an equation's surface along the cubic that its
-    /// tangent planes at the ends make (which is of fourth order); where the metric differs much along the edge, that of the
-    /// best bow in the chart at the middle.
-    fn length_of(&self, h: HalfEdge) -> f64 {
+    /// tangent planes at the ends make (which is of fourth order); if it may bow, where the metric differs much along the edge,
+    /// that of the best bow in the chart at the middle.
+    fn length_of(&self, h: HalfEdge, way: Way) -> f64 {
         let ends = [self.topology.origin(h), self.topology.target(h)];
         let [p, q] = ends.map(|v| &self.places[v.index()]);
         let tensors = ends.map(|v| self.tensors[v.index()]);
@@ -242,13 +252,14 @@ impl<'s> Draped<'s> {
         let Some(place) = self.middle(h) else { return f64::NAN };
         let tensor = self.metric.at(&place);
         let simpson = chord.simpson([tensor, tensor]);
-        if chord.spread < UNLIKE {
+        if chord.spread < UNLIKE || way == Way::Straight {
             return simpson;
         }
         let chart = Chart::new(self.input, self.metric, place, chord.up.unit().unwrap_or(place.normal));
         let [flat_p, flat_q] = [p, q].map(|end| chart.flatten(end.position));
         let bowed = bowed_between(&chart, [flat_p, flat_q], [p, q].map(|end| chart.tensor(end)));
-        if bowed.is_finite() { bowed.min(simpson) } else { simpson }
+        // A way that is much shorter than the edge leaves its surroundings: the metric is not resolved there.
+        if bowed.is_finite() { bowed.clamp(NOT_RESOLVED * simpson, simpson) } else { simpson }
     }
 
     /// The metric length between two near places along the surface, by Simpson's rule.
@@ -342,11 +353,12 @@ impl Measured for Draped<'_> {
 }
 
 impl Draped<'_> {
-    /// Makes the lengths of every face those of a triangle.
+    /// Measures all edges, and makes the lengths of every face those of a triangle.
     ///
     /// # Errors
     /// A length is not finite, or the metric is not positive definite at a new vertex.
     pub(super) fn settle_lengths(&mut self, counters: &mut CanvasCounters) -> Result<()> {
+        self.measure_all(Way::Shortest);
         for h in self.topology.edges().collect::<Vec<_>>() {
             lengths::check(self, h)?;
         }

@@ -12,7 +12,7 @@ use crate::geometry::{Point, Point3, TangentPlane, Vector, Vector3};
 use crate::metric::Scaled;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
-use crate::triangulation::{HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use rayon::prelude::*;
 
 /// Margins closer to zero than this are ties.
@@ -258,6 +258,12 @@ impl<'a> SurfaceDual<'a> {
         let shape = |triangles: [[VertexId; 3]; 2]| triangles.map(|t| self.shape(t)).into_iter().fold(1.0, f64::min);
         let after = shape(then);
         after > POOR || after > shape(now)
+    }
+
+    /// How many triangles do not stand upright on the surface.
+    pub fn downright(&self) -> usize {
+        let is_down = |&f: &FaceId| self.upright(self.topology().corners(f)) < UPRIGHT;
+        self.topology().faces().filter(is_down).count()
     }
 
     /// The least cosine between the normal of a triangle and those of the surface at its corners.

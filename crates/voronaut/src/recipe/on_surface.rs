@@ -3,11 +3,12 @@
 use super::dual::{SeedDual, account, compared, left_out};
 use super::stopwatch::Stopwatch;
 use super::{MeshOptions, Meshed, Mesher, Seeding};
-use crate::canvas::{Canvas, Draped};
+use crate::canvas::{Canvas, Draped, Kind};
 use crate::diagram::SurfaceDiagram;
 use crate::dual::{Road, SurfaceDual};
 use crate::error::{Error, Result};
-use crate::geometry::Point3;
+use crate::geodesic::Method;
+use crate::geometry::{Point3, Tensor3};
 use crate::mesh::Mesh;
 use crate::optimise::{Relaxed, Tangent, mend_worst, relax};
 use crate::output::report;
@@ -15,7 +16,7 @@ use crate::progress::Progress;
 use crate::quality;
 use crate::rdt::{OnSurface, Rdt, Start};
 use crate::sampling::{demand_memory, euler, seed_surface};
-use crate::surface::metric::SurfaceMetric;
+use crate::surface::metric::{Constant, SurfaceMetric};
 use crate::surface::{Input, Place};
 use crate::triangulation::Triangulation;
 use std::time::Instant;
@@ -189,6 +190,12 @@ impl<'a> Job<'a> {
         let triangles = seeds.triangles();
         let topology = Triangulation::from_triangles(places.len(), &triangles, &vec![0; triangles.len()]);
         let mut dual = SurfaceDual::new(self.input, self.metric, scale, places, topology)?;
+        if dual.downright() > 0 {
+            // Straight edges cannot honour the metric here. The Delaunay triangulation in space can be flipped towards it.
+            let topology = self.euclidean(dual.places())?;
+            let straight = SurfaceDual::new(self.input, self.metric, scale, dual.places().to_vec(), topology)?;
+            dual = if straight.downright() < dual.downright() { straight } else { dual };
+        }
         dual.flip_all();
         self.fit_scale(&mut dual)?;
         let mut relaxed = Relaxed::default();
@@ -202,6 +209,18 @@ impl<'a> Job<'a> {
             mend_worst(&mut dual, poor);
         }
         Ok((dual, relaxed))
+    }
+
+    /// The Delaunay triangulation of seeds in the surface's own metric.
+    fn euclidean(&self, places: &[Place]) -> Result<Triangulation> {
+        let own = Constant(Tensor3::IDENTITY);
+        let size = self.canvas_size(places.len());
+        let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, self.input, &own, size, places)?;
+        let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March)?;
+        let (glued, copies) = diagram.glued_nerve();
+        let rdt = Rdt::from_glued(OnSurface::new(&diagram), at.len(), glued, &copies);
+        let triangles = rdt.triangles();
+        Ok(Triangulation::from_triangles(places.len(), &triangles, &vec![0; triangles.len()]))
     }
 
     fn fit_scale(&self, dual: &mut SurfaceDual) -> Result<()> {
