@@ -3,7 +3,7 @@
 use super::dual::{SeedDual, account, compared, left_out};
 use super::stopwatch::Stopwatch;
 use super::{MeshOptions, Meshed, Mesher, Seeding};
-use crate::canvas::{Canvas, Draped, Kind};
+use crate::canvas::{Canvas, Draped};
 use crate::diagram::SurfaceDiagram;
 use crate::dual::{Road, SurfaceDual};
 use crate::error::{Error, Result};
@@ -15,10 +15,10 @@ use crate::output::report;
 use crate::progress::Progress;
 use crate::quality;
 use crate::rdt::{OnSurface, Rdt, Start};
-use crate::sampling::{demand_memory, euler, seed_surface};
+use crate::sampling::{demand_memory, euler, seed_surface, surface_triangulation};
 use crate::surface::metric::{Constant, SurfaceMetric};
 use crate::surface::{Input, Place};
-use crate::triangulation::Triangulation;
+use crate::triangulation::{Triangulation, VertexId};
 use std::time::Instant;
 
 /// Vertices of the canvas on which the surface is measured first.
@@ -172,7 +172,7 @@ impl<'a> Job<'a> {
         crate::canvas::size_for(count, self.options.canvas_size)
     }
 
-    fn canvas(&mut self, count: usize, seeds: &[Place]) -> Result<(Canvas<Draped<'a>>, Vec<crate::triangulation::VertexId>)> {
+    fn canvas(&mut self, count: usize, seeds: &[Place]) -> Result<(Canvas<Draped<'a>>, Vec<VertexId>)> {
         self.progress.stage("canvas", 1);
         Canvas::on_surface(self.options.canvas, self.input, self.metric, self.canvas_size(count), seeds)
     }
@@ -190,9 +190,10 @@ impl<'a> Job<'a> {
         let triangles = seeds.triangles();
         let topology = Triangulation::from_triangles(places.len(), &triangles, &vec![0; triangles.len()]);
         let mut dual = SurfaceDual::new(self.input, self.metric, scale, places, topology)?;
-        if dual.downright() > 0 {
+        if dual.downright() > 0
+            && let Some(topology) = euclidean(canvas, seeds.judge().seeds())?
+        {
             // Straight edges cannot honour the metric here. The Delaunay triangulation in space can be flipped towards it.
-            let topology = self.euclidean(dual.places())?;
             let straight = SurfaceDual::new(self.input, self.metric, scale, dual.places().to_vec(), topology)?;
             dual = if straight.downright() < dual.downright() { straight } else { dual };
         }
@@ -209,18 +210,6 @@ impl<'a> Job<'a> {
             mend_worst(&mut dual, poor);
         }
         Ok((dual, relaxed))
-    }
-
-    /// The Delaunay triangulation of seeds in the surface's own metric.
-    fn euclidean(&self, places: &[Place]) -> Result<Triangulation> {
-        let own = Constant(Tensor3::IDENTITY);
-        let size = self.canvas_size(places.len());
-        let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, self.input, &own, size, places)?;
-        let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March)?;
-        let (glued, copies) = diagram.glued_nerve();
-        let rdt = Rdt::from_glued(OnSurface::new(&diagram), at.len(), glued, &copies);
-        let triangles = rdt.triangles();
-        Ok(Triangulation::from_triangles(places.len(), &triangles, &vec![0; triangles.len()]))
     }
 
     fn fit_scale(&self, dual: &mut SurfaceDual) -> Result<()> {
@@ -256,4 +245,15 @@ impl<'a> Job<'a> {
         }
         Ok(mesh)
     }
+}
+
+/// The Delaunay triangulation of seeds in the surface's own metric; `None` where cells are no discs or meet twice.
+fn euclidean(canvas: &Canvas<Draped>, seeds: &[VertexId]) -> Result<Option<Triangulation>> {
+    let own = Constant(Tensor3::IDENTITY);
+    let canvas = canvas.remeasured(&own)?;
+    let diagram = SurfaceDiagram::on_surface(&canvas, seeds, Method::March)?;
+    let (dual, poor) = surface_triangulation(&diagram);
+    let triangles = dual.triangles();
+    let topology = Triangulation::from_triangles(seeds.len(), &triangles, &vec![0; triangles.len()]);
+    Ok(poor.is_empty().then_some(topology))
 }

@@ -59,7 +59,7 @@ pub fn seed_surface<'a>(
 fn made_whole(mut diagram: SurfaceDiagram) -> Result<Seeded> {
     let before = diagram.colours();
     for _ in 0..ROUNDS {
-        let (dual, poor) = dual_of(&diagram);
+        let (dual, poor) = surface_triangulation(&diagram);
         if poor.is_empty() {
             let added = diagram.colours() - before;
             return Ok(Seeded { diagram, dual, added });
@@ -68,7 +68,7 @@ fn made_whole(mut diagram: SurfaceDiagram) -> Result<Seeded> {
             diagram.insert_at_vertex(v);
         }
     }
-    let (_, poor) = dual_of(&diagram);
+    let (_, poor) = surface_triangulation(&diagram);
     let at = poor.first().and_then(|&colour| diagram.seed(colour)).map(|v| diagram.canvas().draped().position(v));
     let help = "ask for more vertices (-n), or a finer canvas (--canvas-size)";
     let place = at.map_or_else(|| "the surface".to_owned(), |p| p.to_string());
@@ -76,7 +76,7 @@ fn made_whole(mut diagram: SurfaceDiagram) -> Result<Seeded> {
 }
 
 /// The dual of a diagram's seeds, and the colours around which it is no triangulation of the surface.
-fn dual_of<'a>(diagram: &SurfaceDiagram<'a>) -> (Rdt<OnSurface<'a>>, Vec<u32>) {
+pub fn surface_triangulation<'a>(diagram: &SurfaceDiagram<'a>) -> (Rdt<OnSurface<'a>>, Vec<u32>) {
     let (glued, copies) = diagram.glued_nerve();
     let dual = Rdt::from_glued(OnSurface::new(diagram), diagram.colours(), glued, &copies);
     let mut poor = no_discs(diagram);
