@@ -38,9 +38,11 @@ pub(crate) enum Command {
 }
 
 const MESH_EXAMPLES: &str = "\
-DOMAIN  a file: .mesh (boundary edges or triangles), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r
+DOMAIN  a file: .mesh (boundary edges or triangles), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
+        or a surface: .obj, .off, .ply, .stl, .mesh; sphere:r, torus:R,r, chair, 'implicit:EXPR;x0,y0,z0,x1,y1,z1'
 METRIC  uniform, uniform:m11,m12,m22, swirl[:nu=3,field=authors], shock[:phi=10,lambda=0.6],
         'formula:m11; m12; m22' in x and y, boundary:h0=,growth=,aspect=,h_max=, or a file .sol;
+        on surfaces: uniform, curvature[:floor=C], shock, 'formula:m11; m12; m22; m13; m23; m33' in x, y, z, or a .sol;
         an eigenvalue 1/h^2 asks for edges of length h along its eigenvector
 
 Examples:
@@ -48,10 +50,11 @@ Examples:
   voronaut mesh disk:0,0,1 --metric swirl -n 4000 -o swirl.vtu --picture swirl.svg
   voronaut mesh rect:-1,-1,1,1 --metric 'formula:1/(0.01 + 0.2*abs(y))^2; 0; 25' -o layer.mesh
   voronaut mesh wing.mesh --metric wing.sol --h-min 1e-4 --a-max 100 -o adapted.mesh --report run.json
-  voronaut mesh sea.geojson --metric boundary:h0=2,growth=1.3 -n 20000 -o sea.mesh -q";
+  voronaut mesh sea.geojson --metric boundary:h0=2,growth=1.3 -n 20000 -o sea.mesh -q
+  voronaut mesh spot.obj --metric curvature -n 1020 --fit -o spot-1020.obj --picture spot.png --show cells,mesh";
 
 const DUAL_EXAMPLES: &str = "\
-Line i of FILE, `x y`, is seed and vertex i. DOMAIN and METRIC are as for `mesh`; the metric is used as it is.
+Line i of FILE, `x y` (of a surface `x y z`, on it or near), is seed and vertex i. DOMAIN and METRIC are as for `mesh`; the metric is used as it is.
 
 With --edges geodesic OUT holds the seeds first, then the points of the geodesics; edges are their segments (in a .vtu one
 polyline cell for each), labelled with the number of the edge, and triangles cut up the region of each Riemannian triangle,
@@ -103,9 +106,13 @@ pub(crate) struct MeshArgs {
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) metric_choices: MetricChoices,
-    /// How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]
+    /// How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]; of a surface: mesh and surface
+    /// from each other, by more vertices unless -n says how many
     #[arg(long, value_name = "D", value_parser = not_negative)]
     pub(crate) hausd: Option<f64>,
+    /// Surfaces: vertices where mesh and surface are closest in the sense of least squares, instead of on the surface
+    #[arg(long)]
+    pub(crate) fit: bool,
     /// What makes the mesh: voronoi, or starset (Delaunay stars in the metrics of their vertices, refined until they agree: to
     /// compare; -n then sets the scale only)
     #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().mesher)]
@@ -461,6 +468,7 @@ impl MeshArgs {
             vertices: self.vertices.map(|vertices| vertices as usize),
             complexity: self.complexity,
             hausd: self.hausd,
+            fit: self.fit,
             mesher: self.mesher,
             lloyd: self.lloyd,
             centroid: self.centroid,

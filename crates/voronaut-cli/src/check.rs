@@ -2,20 +2,21 @@
 
 use crate::args::{CheckArgs, Show};
 use crate::files::{Drawn, MeshFile};
+use crate::surfaces::Scaled;
 use crate::{files, summary};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
 use voronaut::domain::{Domain, from_mesh};
-use voronaut::geometry::{Point, Tensor3};
+use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::Report;
 use voronaut::output::report::Strayed;
 use voronaut::quality::{fidelity, metric_quality, surface_fidelity, surface_quality, validity};
 use voronaut::recipe;
-use voronaut::surface::metric::{Spec, SurfaceMetric};
-use voronaut::surface::{self, Given, Implicit, Input, Place, Surface};
+use voronaut::surface::metric::Spec;
+use voronaut::surface::{self, Given, Implicit, Input, Surface};
 use voronaut::{Error, Result};
 
 /// Examines a mesh. The report is written for any mesh; figures in a metric and pictures are for valid ones.
@@ -98,24 +99,12 @@ fn on_surface(
             &own
         };
         let field = surface::metric::field(&Spec::parse(text)?, input, args.metric_choices.bounds())?;
-        let scaled = Scaled { field, factor: args.metric_scale.unwrap_or(1.0) };
+        let scaled = Scaled { field: field.as_ref(), factor: args.metric_scale.unwrap_or(1.0) };
         report = report.with_quality(&surface_quality(mesh, &input.surface, &scaled)?);
     }
     report.seconds.total = start.elapsed().as_secs_f64();
     files::write_report(&args.outputs, &report)?;
     Ok(report)
-}
-
-/// A metric on a surface times a factor.
-struct Scaled {
-    field: Box<dyn SurfaceMetric>,
-    factor: f64,
-}
-
-impl SurfaceMetric for Scaled {
-    fn at(&self, place: &Place) -> Tensor3 {
-        self.field.at(place) * self.factor
-    }
 }
 
 /// Refuses what is not there for surfaces.

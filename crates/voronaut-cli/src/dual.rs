@@ -3,7 +3,7 @@
 use crate::args::{CanvasSize, DualArgs, EdgesOut, Show};
 use crate::files::{Drawn, MeshFile};
 use crate::seeds::SeedFile;
-use crate::{certify, files, summary};
+use crate::{certify, files, summary, surfaces};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
@@ -19,6 +19,7 @@ use voronaut::quality::{crossing_edges, metric_quality, validity};
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, MeshOptions, SeedDual};
 use voronaut::sampling;
+use voronaut::surface::Given;
 use voronaut::{Error, Result};
 
 /// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
@@ -31,8 +32,11 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     files::set_threads(&args.run)?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
+    let domain = match Given::read(&args.domain, None)? {
+        Given::Surface(input) => return surfaces::dual(args, &input, start),
+        Given::Plane(domain) => domain,
+    };
     let spec = MetricSpec::parse(&args.metric)?;
-    let domain = Domain::read(&args.domain)?;
     let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
     let background = args.metric_choices.background.as_deref().or(own);
     let metric = recipe::metric(&spec, &domain, background, bounds)?;
@@ -201,7 +205,7 @@ fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {
 }
 
 /// All options, as used.
-fn options(args: &DualArgs) -> serde_json::Value {
+pub(crate) fn options(args: &DualArgs) -> serde_json::Value {
     json!({
         "domain": args.domain, "metric": args.metric, "seeds": args.seeds, "out": args.out, "diagram": args.diagram,
         "canvas": args.canvas, "canvas_size": certify::canvas_size(args),

@@ -10,6 +10,7 @@ mod mesh;
 mod progress;
 mod seeds;
 mod summary;
+mod surfaces;
 
 use args::{Arguments, Command};
 use clap::Parser;

@@ -3,7 +3,7 @@
 use crate::args::MeshArgs;
 use crate::files::{Drawn, MeshFile};
 use crate::progress::Bar;
-use crate::{files, summary};
+use crate::{files, summary, surfaces};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::time::Instant;
@@ -17,6 +17,7 @@ use voronaut::output::Report;
 use voronaut::output::report::{NetFigures, Seconds};
 use voronaut::quality::{metric_quality, validity};
 use voronaut::recipe::{self, Meshed};
+use voronaut::surface::Given;
 use voronaut::{Error, Result};
 
 /// Meshes a domain. Nothing is written unless the mesh is valid.
@@ -26,8 +27,12 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     files::set_threads(&args.run)?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
+    let domain = match Given::read(&args.domain, None)? {
+        Given::Surface(input) => return surfaces::mesh(args, &input, start),
+        Given::Plane(domain) => domain,
+    };
+    demand_planar(args)?;
     let spec = MetricSpec::parse(&args.metric)?;
-    let domain = Domain::read(&args.domain)?;
     let background = background(&spec, args);
     let metric = recipe::metric(&spec, &domain, background, bounds)?;
     let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
@@ -61,6 +66,15 @@ fn drawn(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
     Ok(Drawn::from_diagram(&args.outputs, &Diagram::new(&canvas, metric, &seeds)?, mesh, metric, None))
 }
 
+/// Refuses what is for surfaces.
+fn demand_planar(args: &MeshArgs) -> Result<()> {
+    if args.fit {
+        let what = "--fit in the plane".into();
+        return Err(Error::Unsupported { what, help: "leave out --fit: it is for surfaces".into() });
+    }
+    Ok(())
+}
+
 /// The mesh a `.sol` file belongs to: as told, or the domain's own file.
 fn background<'a>(spec: &MetricSpec, args: &'a MeshArgs) -> Option<&'a Path> {
     let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
@@ -68,7 +82,7 @@ fn background<'a>(spec: &MetricSpec, args: &'a MeshArgs) -> Option<&'a Path> {
 }
 
 /// A mesh of ours that is not valid is our fault, not the user's.
-fn ours(error: Error) -> Error {
+pub(crate) fn ours(error: Error) -> Error {
     match error {
         Error::Mesh { what, place, .. } => {
             let help = "this is a fault of voronaut: nothing was written; please report it with the input";
@@ -78,7 +92,7 @@ fn ours(error: Error) -> Error {
     }
 }
 
-fn fill_in(report: &mut Report, meshed: &Meshed, options: Value) {
+pub(crate) fn fill_in(report: &mut Report, meshed: &Meshed, options: Value) {
     report.star_set = meshed.star_set;
     if meshed.star_set.is_none() {
         report.dual = Some(meshed.dual.clone());
@@ -94,7 +108,7 @@ fn fill_in(report: &mut Report, meshed: &Meshed, options: Value) {
 }
 
 /// All options, as used.
-fn options(args: &MeshArgs) -> Value {
+pub(crate) fn options(args: &MeshArgs) -> Value {
     let bounds = args.metric_choices.bounds();
     let mut options = json!(args.options());
     let more = json!({

@@ -1,7 +1,10 @@
 //! How large a surface is in its metric.
 
 use super::draped::Draped;
+use crate::error::Result;
 use crate::geometry::Vector3;
+use crate::mesh::Mesh;
+use crate::surface::Surface;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// A border turns by more than this angle (degrees) at a corner.
@@ -17,6 +20,18 @@ impl Draped<'_> {
     /// The metric area: the integral of sqrt(det M) over the surface.
     pub fn area(&self) -> f64 {
         self.topology.faces().map(|f| metric_area(&self.topology, f)).sum()
+    }
+
+    /// As a surface of its own: every face a triangle.
+    ///
+    /// # Errors
+    /// [`Error::Domain`](crate::Error::Domain) of faces without area.
+    pub fn to_surface(&self) -> Result<Surface> {
+        Surface::new(&Mesh {
+            points: (0..self.topology.vertex_slots() as u32).map(|v| self.position(VertexId(v)).to_array()).collect(),
+            triangles: self.topology.faces().map(|f| self.topology.corners(f).map(|v| v.0)).collect(),
+            ..Mesh::default()
+        })
     }
 
     /// The closed curves of the border, each as its half-edges in order, beginning at a corner where it has one.

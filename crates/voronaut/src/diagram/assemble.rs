@@ -1,9 +1,9 @@
 //! From the nerve to a mesh: its straight realisation (RR-9103, sections 11 and 14: SRDT), and the canvas as a mesh.
 
-use super::{Diagram, Nerve, NerveTriangle};
+use super::{Diagram, Nerve, NerveTriangle, SurfaceDiagram};
 use crate::domain::Domain;
 use crate::mesh::Mesh;
-use crate::triangulation::smallest_first;
+use crate::triangulation::{VertexId, smallest_first};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Diagram<'_> {
@@ -56,6 +56,24 @@ impl Diagram<'_> {
             point_labels: self.propagation.labels().iter().map(|l| l.colour.cast_signed()).collect(),
             triangles: faces().map(|f| embedded.topology.corners(f).map(|v| v.0)).collect(),
             triangle_labels: faces().map(|f| embedded.topology.region(f)).collect(),
+            ..Mesh::default()
+        };
+        (mesh, self.propagation.labels().iter().map(|l| l.distance).collect())
+    }
+}
+
+impl SurfaceDiagram<'_> {
+    /// The canvas as a mesh with the region labels of the surface, its vertices labelled by colour (-1 where no seed reaches),
+    /// and their distances.
+    pub fn to_coloured_surface(&self) -> (Mesh, Vec<f64>) {
+        let draped = self.canvas().draped();
+        let (topology, own) = (draped.topology(), draped.input().surface.topology());
+        let vertices = (0..self.vertex_count() as u32).map(VertexId);
+        let mesh = Mesh {
+            points: vertices.map(|v| draped.position(v).to_array()).collect(),
+            point_labels: self.propagation.labels().iter().map(|l| l.colour.cast_signed()).collect(),
+            triangles: topology.faces().map(|f| topology.corners(f).map(|v| v.0)).collect(),
+            triangle_labels: topology.faces().map(|f| own.region(draped.home(f))).collect(),
             ..Mesh::default()
         };
         (mesh, self.propagation.labels().iter().map(|l| l.distance).collect())

@@ -131,15 +131,9 @@ fn agreed(job: &mut Job, start: &Start, scaled: &Scaled, unit: usize) -> Result<
     Ok(Meshed {
         mesh,
         metric_scale: scaled.factor,
-        dual: report::Dual::default(),
         relaxation: start.relaxation.clone(),
-        canvas: None,
-        diagram: None,
-        net: None,
-        protection: None,
         star_set: Some(report::StarSet { figures: found.figures, counters: found.counters }),
-        seconds: Vec::new(),
-        notes: Vec::new(),
+        ..Meshed::default()
     })
 }
 

@@ -30,7 +30,7 @@ use crate::net::Net;
 use crate::optimise::Relaxed;
 use crate::output::report;
 use crate::progress::Progress;
-use crate::quality;
+use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{
     Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, sample_segments, simplify,
 };
@@ -44,8 +44,11 @@ pub struct MeshOptions {
     pub vertices: Option<usize>,
     /// Target of the integral of sqrt(det M); the metric is scaled to meet it.
     pub complexity: Option<f64>,
-    /// How far (Euclidean) mesh edges may stray from the boundary; `None`: the domain's own tolerance.
+    /// How far (Euclidean) mesh edges may stray from the boundary; `None`: the domain's own tolerance. Of a surface: how far
+    /// mesh and surface may be from each other; where that asks for more vertices, and no number is given, there are more.
     pub hausd: Option<f64>,
+    /// Of a surface: whether vertices are moved off it, to where mesh and surface are closest in the sense of least squares.
+    pub fit: bool,
     /// What makes the mesh. The options below are for [`Mesher::Voronoi`], but for the memory limit.
     pub mesher: Mesher,
     /// Steps of Riemannian Lloyd relaxation, at most: it ends where it stalls.
@@ -80,6 +83,7 @@ impl Default for MeshOptions {
             vertices: None,
             complexity: None,
             hausd: None,
+            fit: false,
             mesher: Mesher::default(),
             lloyd: 40,
             centroid: Centroid::default(),
@@ -97,7 +101,7 @@ impl Default for MeshOptions {
 }
 
 /// The result of meshing.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Meshed {
     /// A valid mesh.
     pub mesh: Mesh,
@@ -115,6 +119,8 @@ pub struct Meshed {
     pub net: Option<Net>,
     /// How protection went, with [`Seeding::Protected`].
     pub protection: Option<report::Protection>,
+    /// How far the mesh of a surface is from it, where [`MeshOptions::hausd`] or [`MeshOptions::fit`] asked for it.
+    pub fidelity: Option<SurfaceFidelity>,
     /// The star set that became the mesh, with [`Mesher::StarSet`].
     pub star_set: Option<report::StarSet>,
     /// Wall time per stage, in order.
@@ -173,6 +179,7 @@ pub fn mesh(
         diagram,
         net,
         protection,
+        fidelity: None,
         star_set,
         seconds,
         notes,

@@ -3,21 +3,21 @@
 use super::dual::{SeedDual, account, compared, left_out};
 use super::stopwatch::Stopwatch;
 use super::{MeshOptions, Meshed, Mesher, Seeding};
-use crate::canvas::{Canvas, Draped};
+use crate::canvas::{Canvas, CanvasFigures, Draped};
 use crate::diagram::SurfaceDiagram;
 use crate::dual::{Road, SurfaceDual};
 use crate::error::{Error, Result};
 use crate::geodesic::Method;
 use crate::geometry::{Point3, Tensor3};
 use crate::mesh::Mesh;
-use crate::optimise::{Relaxed, Tangent, mend_worst, relax};
+use crate::optimise::{FitOptions, Relaxed, Tangent, fit, mend_worst, relax};
 use crate::output::report;
 use crate::progress::Progress;
-use crate::quality;
+use crate::quality::{self, SurfaceFidelity};
 use crate::rdt::{OnSurface, Rdt, Start};
 use crate::sampling::{demand_memory, euler, seed_surface, surface_triangulation};
 use crate::surface::metric::{Constant, SurfaceMetric};
-use crate::surface::{Input, Place};
+use crate::surface::{Implicit, Input, Place, Surface};
 use crate::triangulation::{Triangulation, VertexId};
 use std::time::Instant;
 
@@ -25,6 +25,9 @@ use std::time::Instant;
 const MEASURING: usize = 20_000;
 /// Relaxation goes in so many parts, the factor on the metric made fit between them.
 const PARTS: usize = 4;
+/// Rounds of more vertices for the sake of the distance to the surface, and how many times as many at most in one.
+const ROUNDS: usize = 8;
+const MOST_MORE: f64 = 4.0;
 /// Triangles that are mended in the end, as a share of all, and how often.
 const MENDED_SHARE: f64 = 0.02;
 const MENDINGS: usize = 3;
@@ -43,32 +46,24 @@ pub fn mesh_surface(
 ) -> Result<Meshed> {
     demand_supported(options)?;
     let mut job = Job { input, metric, options, progress, watch: Stopwatch::default() };
-    let (count, scale) = job.timed("plan", Job::plan)?;
-    let canvas = job.timed("canvas", |job| job.canvas(count, &[]))?.0;
-    let seeded = job.timed("seed", |job| {
-        job.progress.stage("seeding", count as u64);
-        seed_surface(&canvas, count, 1.0 / scale.sqrt(), options.geodesic, progress)
-    })?;
-    let (mut dual, relaxation) = job.timed("relax", |job| job.relaxed(&canvas, &seeded.dual, scale))?;
-    let (settled, figures, diagram) = job.timed("settle", |job| job.settle(&mut dual))?;
-    let mesh = job.timed("check", |job| job.finish(&dual))?;
-    let mut notes = Vec::new();
-    if seeded.added > 0 {
-        notes.push(format!("{} vertices were added where cells were no discs or met twice", seeded.added));
+    let (mut count, mut scale) = job.timed("plan", Job::plan)?;
+    for round in 1.. {
+        let (mut meshed, fidelity) = job.meshed(count, scale)?;
+        let distance = fidelity.as_ref().map_or(0.0, |found| found.both.hausdorff);
+        let ratio = options.hausd.map_or(0.0, |most| distance / most.max(f64::MIN_POSITIVE));
+        if ratio > 1.0 && (options.vertices.is_some() || round == ROUNDS) {
+            let most = options.hausd.unwrap_or_default();
+            meshed.notes.push(format!("mesh and surface are {distance:.3e} apart where --hausd asks for {most:.3e}"));
+        }
+        if ratio <= 1.0 || options.vertices.is_some() || round == ROUNDS {
+            return Ok(Meshed { fidelity, seconds: job.watch.seconds, ..meshed });
+        }
+        // Distances fall with the square of the edges: with the number of vertices.
+        let more = (1.1 * ratio).min(MOST_MORE);
+        (count, scale) = ((count as f64 * more).ceil() as usize, scale * more);
+        demand_memory(count as f64, job.canvas_size(count) as f64, options.memory_limit)?;
     }
-    Ok(Meshed {
-        mesh,
-        metric_scale: dual.factor(),
-        dual: settled,
-        relaxation,
-        canvas: Some(figures),
-        diagram: Some(diagram),
-        net: None,
-        protection: None,
-        star_set: None,
-        seconds: job.watch.seconds,
-        notes,
-    })
+    unreachable!("the last round returns")
 }
 
 /// The dual of a diagram's seeds on a surface, by the road that is asked for; see [`super::dual()`].
@@ -131,7 +126,14 @@ struct Job<'a> {
     watch: Stopwatch,
 }
 
-type Settled = (report::Dual, crate::canvas::CanvasFigures, report::Diagram);
+/// What came of the last pass.
+struct Settled {
+    account: report::Dual,
+    figures: CanvasFigures,
+    diagram: report::Diagram,
+    /// Of an equation's surface that is to be fitted, the canvas.
+    fine: Option<Surface>,
+}
 
 impl<'a> Job<'a> {
     fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
@@ -139,6 +141,57 @@ impl<'a> Job<'a> {
         let result = work(self);
         self.watch.add(stage, start);
         result
+    }
+
+    /// A mesh with so many vertices, and how far it is from the surface, if that is asked for.
+    fn meshed(&mut self, count: usize, scale: f64) -> Result<(Meshed, Option<SurfaceFidelity>)> {
+        let canvas = self.timed("canvas", |job| job.canvas(count, &[]))?.0;
+        let seeded = self.timed("seed", |job| {
+            job.progress.stage("seeding", count as u64);
+            seed_surface(&canvas, count, 1.0 / scale.sqrt(), job.options.geodesic, job.progress)
+        })?;
+        let (mut dual, relaxation) = self.timed("relax", |job| job.relaxed(&canvas, &seeded.dual, scale))?;
+        let settled = self.timed("settle", |job| job.settle(&mut dual))?;
+        let mut notes = Vec::new();
+        if seeded.added > 0 {
+            notes.push(format!("{} vertices were added where cells were no discs or met twice", seeded.added));
+        }
+        let mesh = self.timed("check", |job| job.finish(&dual))?;
+        let mesh = self.timed("fit", |job| job.fitted(mesh, settled.fine.as_ref(), &mut notes))?;
+        let fidelity = self.timed("check", |job| job.fidelity(&mesh))?;
+        let meshed = Meshed {
+            mesh,
+            metric_scale: dual.factor(),
+            dual: settled.account,
+            relaxation,
+            canvas: Some(settled.figures),
+            diagram: Some(settled.diagram),
+            notes,
+            ..Meshed::default()
+        };
+        Ok((meshed, fidelity))
+    }
+
+    /// The mesh with its vertices at least-squares positions, if that is asked for; as it was where that would not be valid.
+    fn fitted(&self, mesh: Mesh, fine: Option<&Surface>, notes: &mut Vec<String>) -> Result<Mesh> {
+        if !self.options.fit {
+            return Ok(mesh);
+        }
+        self.progress.stage("fitting", 1);
+        let fitted = fit(&mesh, fine.unwrap_or(&self.input.surface), &FitOptions::default())?.mesh;
+        if quality::check(&fitted).is_ok() {
+            return Ok(fitted);
+        }
+        notes.push("vertices are on the surface: least-squares positions would not make a valid mesh".into());
+        Ok(mesh)
+    }
+
+    fn fidelity(&self, mesh: &Mesh) -> Result<Option<SurfaceFidelity>> {
+        if self.options.hausd.is_none() && !self.options.fit {
+            return Ok(None);
+        }
+        let implicit = self.input.implicit.as_ref().map(|f| f as &dyn Implicit);
+        quality::surface_fidelity(mesh, &self.input.surface, implicit).map(Some)
     }
 
     /// The number of vertices, and the factor on the metric for which edges then are of unit length.
@@ -231,7 +284,9 @@ impl<'a> Job<'a> {
         dual.settle_by(|quad| rdt.margin_of(quad));
         let blocked = dual.disagreeing(|quad| rdt.margin_of(quad));
         let account = report::Dual { blocked_flips: blocked, ..account(&rdt, &diagram.nerve(), Road::Geodesic) };
-        Ok((account, canvas.figures(), report::Diagram::of(&diagram)))
+        let is_fine = self.options.fit && self.input.implicit.is_some();
+        let fine = is_fine.then(|| canvas.draped().to_surface()).transpose()?;
+        Ok(Settled { account, figures: canvas.figures(), diagram: report::Diagram::of(&diagram), fine })
     }
 
     fn finish(&self, dual: &SurfaceDual) -> Result<Mesh> {

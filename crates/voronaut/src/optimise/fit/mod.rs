@@ -23,20 +23,23 @@ use crate::triangulation::VertexId;
 use closest::Sheet;
 use guard::Guard;
 use samples::{Assignment, Samples};
-use system::System;
+use system::{Anchors, System};
 
 /// How [`fit`] works.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitOptions {
     /// Steps at most: closest points are found, then positions solved for.
     pub steps: usize,
     /// Samples of the surface per triangle of the mesh, beside the surface's vertices; one at least.
     pub samples: usize,
+    /// How stiffly a vertex is held to the normal through its first place, as a share of what samples say of it: 0 lets it
+    /// slide as far as that gains anything, at the cost of the triangles' shapes and lengths in the metric.
+    pub stiffness: f64,
 }
 
 impl Default for FitOptions {
     fn default() -> Self {
-        Self { steps: 8, samples: 24 }
+        Self { steps: 8, samples: 24, stiffness: 0.05 }
     }
 }
 
@@ -85,7 +88,7 @@ pub fn fit(mesh: &Mesh, surface: &Surface, options: &FitOptions) -> Result<Fitte
     let samples = Samples::new(surface, options.samples.max(1) * start.topology().face_count());
     let first = samples.assign(surface, &start);
     let before = Misfit::of(&first);
-    let mut fitting = Fitting::new(mesh, &start, &samples, first);
+    let mut fitting = Fitting::new(mesh, &start, &samples, first, options.stiffness);
     for _ in 0..options.steps {
         if !fitting.step() {
             break;
@@ -120,6 +123,9 @@ struct Fitting<'a> {
     samples: &'a Samples<'a>,
     guard: Guard<'a>,
     free: Vec<bool>,
+    /// Where vertices began, and the unit normals there.
+    first: Vec<(Point3, Vector3)>,
+    stiffness: f64,
     sheet: Sheet<'a>,
     at: Assignment,
     damping: f64,
@@ -130,12 +136,16 @@ struct Fitting<'a> {
 }
 
 impl<'a> Fitting<'a> {
-    fn new(mesh: &Mesh, start: &'a Surface, samples: &'a Samples<'a>, at: Assignment) -> Self {
+    fn new(mesh: &Mesh, start: &'a Surface, samples: &'a Samples<'a>, at: Assignment, stiffness: f64) -> Self {
         let sheet = Sheet::of(start);
+        let normal = |v: u32| start.vertex_normal(VertexId(v)).unwrap_or_default();
+        let first = (0..).zip(start.positions()).map(|(v, &p)| (p, normal(v))).collect();
         Self {
             guard: Guard::new(&samples.surface, &sheet, |f| at.below(f)),
             samples,
             free: free_vertices(mesh, start),
+            first,
+            stiffness,
             sheet,
             at,
             damping: DAMPING,
@@ -151,7 +161,9 @@ impl<'a> Fitting<'a> {
             return false;
         }
         let system = System::new(self.sheet.topology, &self.free, self.samples.pairs(&self.sheet, &self.at));
-        let mut moves = system.solve(self.damping);
+        let away = self.sheet.positions.iter().zip(&self.first).map(|(&now, &(then, normal))| (now - then, normal));
+        let anchors = Anchors { lines: away.collect(), stiffness: self.stiffness };
+        let mut moves = system.solve(self.damping, &anchors);
         moves.iter_mut().filter(|m| m.norm() <= self.rounding).for_each(|m| *m = Vector3::default());
         let limited = self.guard.limit(&self.sheet, &moves);
         let next = Sheet { positions: limited.positions, ..self.sheet };

@@ -15,6 +15,13 @@ pub(super) struct System<'a> {
     free: &'a [bool],
 }
 
+/// What keeps vertices from sliding: of each how far it is from where it began, and the unit normal there.
+pub(super) struct Anchors {
+    pub(super) lines: Vec<(Vector3, Vector3)>,
+    /// Stiffness of the springs, as a share of a vertex's own.
+    pub(super) stiffness: f64,
+}
+
 /// Conjugate gradients end where the residual is this part of the first one, ...
 const RESIDUAL: f64 = 1e-8;
 /// ... or after so many steps; what has been found by then lowers the energy, too.
@@ -41,15 +48,28 @@ impl<'a> System<'a> {
     }
 
     /// Moves of all vertices that solve the system with `damping` times the mean of its diagonal at every vertex added to it
-    /// (Levenberg 1944, Marquardt 1963): along flat parts, where gaps say nothing, vertices stay.
-    pub(super) fn solve(&self, damping: f64) -> Vec<Vector3> {
-        let added: Vec<f64> = self.diagonal.iter().map(|d| damping * (d.xx + d.yy + d.zz) / 3.0).collect();
-        let inverse: Vec<Tensor3> = self.diagonal.iter().zip(&added).map(|(&d, &a)| inverted(d, a)).collect();
+    /// (Levenberg 1944, Marquardt 1963): along flat parts, where gaps say nothing, vertices stay. And with springs, so many times as
+    /// stiff, that pull every vertex back to the line through its anchor.
+    pub(super) fn solve(&self, damping: f64, anchors: &Anchors) -> Vec<Vector3> {
+        let mean = |d: &Tensor3| (d.xx + d.yy + d.zz) / 3.0;
+        let springs = self.diagonal.iter().zip(&anchors.lines).map(|(d, &(_, along))| {
+            (Tensor3::IDENTITY + Tensor3::square(along) * -1.0) * (anchors.stiffness * mean(d))
+        });
+        let springs: Vec<Tensor3> = springs.collect();
+        let added: Vec<Tensor3> = self
+            .diagonal
+            .iter()
+            .zip(&springs)
+            .map(|(d, &spring)| Tensor3::IDENTITY * (damping * mean(d)) + spring)
+            .collect();
+        let inverse: Vec<Tensor3> = self.diagonal.iter().zip(&added).map(|(&d, &a)| inverted(d + a)).collect();
+        let pulls = springs.iter().zip(&anchors.lines).map(|(spring, &(away, _))| spring.apply(away));
+        let right: Vec<Vector3> = self.right.iter().zip(pulls).map(|(&r, pull)| r - pull).collect();
         let free = |v: &[Vector3]| -> Vec<Vector3> {
             v.iter().zip(self.free).map(|(&v, &free)| if free { v } else { Vector3::default() }).collect()
         };
         let mut x = vec![Vector3::default(); self.free.len()];
-        let mut rest = free(&self.right);
+        let mut rest = free(&right);
         let mut conditioned = precondition(&inverse, &rest);
         let mut along = conditioned.clone();
         let mut rho = dot(&rest, &conditioned);
@@ -73,8 +93,8 @@ impl<'a> System<'a> {
         x
     }
 
-    fn apply(&self, added: &[f64], x: &[Vector3]) -> Vec<Vector3> {
-        let mut image: Vec<Vector3> = x.iter().zip(added).map(|(&x, &a)| x * a).collect();
+    fn apply(&self, added: &[Tensor3], x: &[Vector3]) -> Vec<Vector3> {
+        let mut image: Vec<Vector3> = x.iter().zip(added).map(|(&x, a)| a.apply(x)).collect();
         for f in self.topology.faces() {
             let corners = self.topology.corners(f).map(VertexId::index);
             let blocks = &self.blocks[f.index()];
@@ -88,13 +108,13 @@ impl<'a> System<'a> {
     }
 }
 
-/// The inverse of a block with `added` on its diagonal; zero where there is nothing.
-fn inverted(block: Tensor3, added: f64) -> Tensor3 {
-    if added <= 0.0 {
+/// The inverse of a block; zero where there is nothing.
+fn inverted(block: Tensor3) -> Tensor3 {
+    let eigen = block.eigen();
+    if eigen.values[2] <= 0.0 {
         return Tensor3::default();
     }
-    let eigen = block.eigen();
-    Tensor3::from_axes(eigen.axes, eigen.values.map(|value| 1.0 / (value.max(0.0) + added)))
+    Tensor3::from_axes(eigen.axes, eigen.values.map(|value| 1.0 / value))
 }
 
 fn precondition(inverse: &[Tensor3], v: &[Vector3]) -> Vec<Vector3> {
@@ -137,7 +157,8 @@ mod tests {
         free[3] = false;
         let damping = 0.1;
         let system = System::new(t, &free, pairs(t.face_count()).into_iter());
-        let moves = system.solve(damping);
+        let anchors = Anchors { lines: vec![(Vector3::default(), Vector3::new(0.0, 0.0, 1.0)); free.len()], stiffness: 0.0 };
+        let moves = system.solve(damping, &anchors);
         assert_eq!(moves[3], Vector3::default());
         let energy = |moves: &[Vector3]| {
             let mut sum = 0.0;
