@@ -68,14 +68,22 @@ const STEPS: usize = 50;
 /// The point of f = 0 that Newton's method along the gradient reaches from `p`, with |f| / |grad f| at most `tolerance`
 /// (a length); `None` where it goes farther than `reach` from `p`, or finds no gradient.
 pub fn project(f: &dyn Implicit, p: Point3, reach: f64, tolerance: f64) -> Option<Point3> {
+    project_pinned(f, p, Pins::default(), reach, tolerance)
+}
+
+/// Which coordinates of a point stay as they are.
+pub(super) type Pins = [bool; 3];
+
+/// As [`project`], along the part of the gradient that leaves the pinned coordinates alone.
+pub(super) fn project_pinned(f: &dyn Implicit, p: Point3, pins: Pins, reach: f64, tolerance: f64) -> Option<Point3> {
     let mut q = p;
     for _ in 0..STEPS {
         let jet = f.jet(q);
         if jet.value == 0.0 {
             return Some(q);
         }
-        let square = jet.gradient.dot(jet.gradient);
-        let step = jet.gradient * (jet.value / square);
+        let gradient = unpinned(jet.gradient, pins);
+        let step = gradient * (jet.value / gradient.dot(gradient));
         let length = step.norm();
         if !length.is_finite() {
             return None;
@@ -111,6 +119,12 @@ pub fn closest_zero(f: &dyn Implicit, p: Point3, start: Point3, reach: f64, tole
         q = next;
     }
     Some(q)
+}
+
+/// The part of a vector along coordinates that are not pinned.
+pub(super) fn unpinned(v: Vector3, [x, y, z]: Pins) -> Vector3 {
+    let free = |pinned: bool, coordinate: f64| if pinned { 0.0 } else { coordinate };
+    Vector3::new(free(x, v.x), free(y, v.y), free(z, v.z))
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 //! | `input` | a surface with its equation, if it has one; how points come onto it |
 //! | `chart`, `chord` | a part of a surface seen as a part of the plane; the way over a chord |
 //! | `implicit`, `march` | surfaces f(x, y, z) = 0: derivatives, projection, a first mesh by marching tetrahedra |
+//! | `level`, `remesh` | a triangulation on f = 0; better triangles for it, as fine as its curvature asks for |
 //! | `shapes`, `read` | spheres, tori, files: what users write for a surface |
 //! | `given` | a planar domain or a surface: what users write for either |
 //! | [`metric`] | metric fields on surfaces, curvature among them |
@@ -18,12 +19,14 @@ mod chord;
 mod given;
 mod implicit;
 mod input;
+mod level;
 mod march;
 mod measure;
 pub mod metric;
 mod nearest;
 mod orient;
 mod read;
+mod remesh;
 mod shapes;
 mod tetrahedra;
 

@@ -75,6 +75,13 @@ impl Grid {
         self.min + Vector3::new(self.step.x * i as f64, self.step.y * j as f64, self.step.z * k as f64)
     }
 
+    /// On which sides of the box a vertex is, along each axis: 1 on the upper one, -1 on the lower one, else 0.
+    pub(super) fn sides(&self, vertex: usize) -> [i8; 3] {
+        let [nx, ny, nz] = self.cubes;
+        let (i, j, k) = (vertex % (nx + 1), vertex / (nx + 1) % (ny + 1), vertex / ((nx + 1) * (ny + 1)));
+        [(i, nx), (j, ny), (k, nz)].map(|(i, n)| i8::from(i == n) - i8::from(i == 0))
+    }
+
     /// The value at a vertex.
     pub(super) fn value(&self, vertex: usize) -> f64 {
         self.values[vertex]

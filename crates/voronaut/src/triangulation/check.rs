@@ -127,6 +127,65 @@ mod tests {
         }
     }
 
+    /// Collapses edges, in a random order, as long as that is possible; everything holds after each.
+    fn shrink(t: &mut Triangulation, euler: isize) {
+        let mut random = 1_u64;
+        loop {
+            let possible: Vec<HalfEdge> =
+                t.faces().flat_map(FaceId::half_edges).filter(|&h| t.can_collapse(h)).collect();
+            let Some(last) = possible.len().checked_sub(1) else { break };
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let h = possible[(random >> 33) as usize % (last + 1)];
+            let (gone, kept) = (t.origin(h), t.target(h));
+            t.collapse(h);
+            t.check().unwrap();
+            assert!(!t.is_vertex(gone) && t.is_vertex(kept));
+            let mut sorted: Vec<_> =
+                t.edges().map(|h| (t.origin(h).min(t.target(h)), t.origin(h).max(t.target(h)))).collect();
+            sorted.sort_unstable();
+            assert!(sorted.windows(2).all(|pair| pair[0] != pair[1]), "a double edge");
+            let count = t.vertices().count().cast_signed() - sorted.len().cast_signed();
+            assert_eq!(count + t.face_count().cast_signed(), euler);
+        }
+    }
+
+    #[test]
+    fn collapses_keep_the_topology_to_the_last() {
+        // An octahedron with vertices inside its faces shrinks to a tetrahedron.
+        let octahedron = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+        let mut sphere = Triangulation::from_triangles(6, &octahedron, &[0; 8]);
+        for f in (0..8).chain([3, 9, 12]).map(FaceId) {
+            let v = sphere.add_vertex();
+            sphere.split_face(f, v);
+        }
+        shrink(&mut sphere, 2);
+        assert_eq!((sphere.face_count(), sphere.vertex_count()), (4, 4));
+        // A hexagon shrinks to a triangle, an annulus to one with three vertices on each side.
+        let mut disk = hexagon();
+        shrink(&mut disk, 1);
+        assert_eq!((disk.face_count(), disk.vertex_count()), (1, 3));
+        let ring: Vec<[u32; 3]> =
+            (0..5).flat_map(|i| [[i, (i + 1) % 5, i + 5], [(i + 1) % 5, (i + 1) % 5 + 5, i + 5]]).collect();
+        let mut ring = Triangulation::from_triangles(10, &ring, &[0; 10]);
+        shrink(&mut ring, 0);
+        assert_eq!(ring.edges().filter(|&h| ring.twin(h).is_none()).count(), 6);
+    }
+
+    #[test]
+    fn a_collapse_keeps_constraints_and_forgets_lengths() {
+        let mut t = hexagon();
+        t.edges().collect::<Vec<_>>().into_iter().for_each(|h| t.set_length(h, 1.0));
+        let spoke = t.find(VertexId(1), VertexId(0)).unwrap();
+        t.set_constraint(spoke, Constraint(3));
+        let inner = t.find(VertexId(0), VertexId(2)).unwrap();
+        t.collapse(inner);
+        t.check().unwrap();
+        assert_eq!(t.constraint(t.find(VertexId(1), VertexId(2)).unwrap()), Some(Constraint(3)));
+        assert!(t.star(VertexId(2)).all(|h| t.length(h).is_nan()));
+        let far = t.find(VertexId(4), VertexId(5)).unwrap();
+        assert!((t.length(far) - 1.0).abs() < 1e-15);
+    }
+
     #[test]
     fn splitting_a_border_edge_keeps_its_constraint() {
         let mut t = hexagon();

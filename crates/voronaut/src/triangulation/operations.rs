@@ -130,6 +130,67 @@ impl Triangulation {
         }
     }
 
+    /// Whether [`Triangulation::collapse`] keeps every vertex in one fan and makes no edge double: the ends of the edge
+    /// have no common neighbours but the apexes of its faces, and no apex would be left with two faces or none; an
+    /// inner edge has no more than one end on the border (the link condition; Dey et al. 1999).
+    pub fn can_collapse(&self, h: HalfEdge) -> bool {
+        let (a, b, twin) = (self.origin(h), self.target(h), self.twin(h));
+        if a == b || twin.is_some() && self.is_border_vertex(a) && self.is_border_vertex(b) {
+            return false;
+        }
+        let sides = [Some(h), twin];
+        let stays = |side: HalfEdge| {
+            let apex = self.apex(side);
+            let faces = self.star(apex).count();
+            if self.is_border_vertex(apex) { faces > 1 } else { faces > 3 }
+        };
+        let around = self.neighbours(b);
+        let common = self.neighbours(a).into_iter().filter(|v| around.contains(v)).count();
+        sides.into_iter().flatten().all(stays) && common == sides.into_iter().flatten().count()
+    }
+
+    /// The vertices that an edge joins to this one.
+    fn neighbours(&self, v: VertexId) -> Vec<VertexId> {
+        let mut found: Vec<VertexId> = self.star(v).flat_map(|h| [self.target(h), self.apex(h)]).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// Removes the origin of an edge: its edges end at the edge's target instead, and the faces of the edge vanish.
+    /// Lengths of all edges at the target become NaN. The caller owes [`Triangulation::can_collapse`].
+    pub fn collapse(&mut self, h: HalfEdge) {
+        let (a, b) = (self.origin(h), self.target(h));
+        let fan: Vec<HalfEdge> = self.star(a).chain(self.star(b)).collect();
+        for &e in &fan {
+            self.origin[e.index()] = b;
+        }
+        let mut touched = fan;
+        for side in [Some(h), self.twin(h)].into_iter().flatten() {
+            let outer = [side.next(), side.prev()].map(|e| self.twin(e));
+            let constraint = self.constraint(side.next()).or_else(|| self.constraint(side.prev()));
+            self.kill(side.face());
+            match outer {
+                [Some(e), Some(g)] => self.glue(e, g),
+                [one, other] => one.or(other).into_iter().for_each(|e| self.twin[e.index()] = NONE),
+            }
+            for e in outer.into_iter().flatten() {
+                self.constraint[e.index()] = constraint.map_or(NONE, |c| c.0);
+                touched.extend(e.face().half_edges());
+            }
+        }
+        self.start[a.index()] = NONE;
+        self.free_vertices.push(a);
+        touched.retain(|e| self.is_face(e.face()));
+        for e in touched {
+            self.set_start(e);
+        }
+        for e in self.star(b).collect::<Vec<_>>() {
+            self.set_length(e, f64::NAN);
+            self.set_length(e.prev(), f64::NAN);
+        }
+    }
+
     /// Removes faces; edges between a removed and a kept face become border. Vertices left without a face are freed.
     pub fn retain_faces(&mut self, keep: impl Fn(FaceId) -> bool) {
         let doomed: Vec<FaceId> = self.faces().filter(|&f| !keep(f)).collect();
