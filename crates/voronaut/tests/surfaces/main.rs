@@ -1,3 +1,4 @@
-//! Diagrams and duals on surfaces, against what is known in closed form.
+//! Diagrams, duals and meshes on surfaces, against what is known in closed form.
 
+mod meshes;
 mod sphere;

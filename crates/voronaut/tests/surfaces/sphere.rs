@@ -2,15 +2,17 @@
 
 use std::collections::HashSet;
 use voronaut::canvas::{Canvas, Kind};
-use voronaut::diagram::Diagram;
+use voronaut::diagram::SurfaceDiagram;
+use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Point3, Tensor3};
+use voronaut::recipe;
 use voronaut::surface::metric::Constant;
-use voronaut::rdt::{OnSurface, Rdt, Start};
 use voronaut::surface::{Place, read};
+use voronaut::triangulation::smallest_first;
 
 /// Random points of the unit sphere.
-pub fn seeds(count: usize) -> Vec<Point3> {
+fn seeds(count: usize) -> Vec<Point3> {
     let mut state = 88_172_645_463_325_252_u64;
     let mut random = || {
         state ^= state << 13;
@@ -26,49 +28,36 @@ pub fn seeds(count: usize) -> Vec<Point3> {
     (0..count).map(|_| point()).collect()
 }
 
-fn is_on_hull(seeds: &[Point3], [a, b, c]: [u32; 3]) -> bool {
+/// How far the seed that is farthest out of a triangle's plane is: negative for a face of the hull. As a margin: the power of
+/// the seed, times twice the triangle's area, over the product of the four edges to its neighbours.
+fn farthest_out(seeds: &[Point3], [a, b, c]: [u32; 3]) -> f64 {
     let [p, q, r] = [a, b, c].map(|i| seeds[i as usize]);
     let normal = (q - p).cross(r - p);
-    (0..).zip(seeds).all(|(i, &s)| [a, b, c].contains(&i) || normal.dot(s - p) < 0.0)
+    let scale = p.distance(q).max(q.distance(r)).max(r.distance(p)).powi(4);
+    let others = (0..).zip(seeds).filter(|(i, _)| ![a, b, c].contains(i));
+    others.map(|(_, &s)| 2.0 * normal.dot(s - p) / scale).fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn dual_of(seeds: &[Point3], per_seed: usize) -> Vec<[u32; 3]> {
+    let input = read("sphere:1", None).unwrap();
+    let metric = Constant(Tensor3::IDENTITY);
+    let places: Vec<Place> = seeds.iter().map(|&p| input.closest(p).unwrap()).collect();
+    let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, per_seed * seeds.len(), &places).unwrap();
+    let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
+    assert_eq!(diagram.orphans().len(), 0);
+    recipe::surface_dual(&diagram, Road::Both).triangles
 }
 
 #[test]
-fn sharp_nerve() {
-    for (n, per) in [(3000, 180_000), (3000, 60_000), (300, 18_000), (40, 10_000), (12, 5000)] {
-    let input = read("sphere:1", None).unwrap();
-    let metric = Constant(Tensor3::IDENTITY);
-    let seeds = seeds(n);
-    let places: Vec<Place> = seeds.iter().map(|&p| input.closest(p).unwrap()).collect();
-    let t = std::time::Instant::now();
-    let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, per, &places).unwrap();
-    println!("canvas {:?} {:?}", canvas.figures(), t.elapsed());
-    let diagram = Diagram::on_surface(&canvas, &at, Method::March).unwrap();
-    println!("diagram {:?}", t.elapsed());
-    for nerve in [diagram.nerve(), diagram.sharp_nerve()] {
-        let found: HashSet<[u32; 3]> = nerve.triangles.iter().map(|t| t.colours).collect();
-        let right = found.iter().filter(|&&t| is_on_hull(&seeds, t)).count();
-        println!("{} triangles, {right} on the hull of {}, {:?}", found.len(), 2 * seeds.len() - 4, t.elapsed());
-    }
-    for nerve in [diagram.nerve(), diagram.sharp_nerve()] {
-    let start = Start::from_nerve(&nerve);
-    let rdt = Rdt::judged(OnSurface::new(&diagram), seeds.len(), &start);
-    let found: HashSet<[u32; 3]> = rdt.triangles().into_iter().collect();
-    let right = found.iter().filter(|&&t| is_on_hull(&seeds, t)).count();
-    println!("{} triangles, {right} on the hull, {:?} {:?}", found.len(), rdt.counters(), t.elapsed());
-    let (mut worst, mut over): (f64, f64) = (0.0, 0.0);
-    for e in rdt.edges() {
-        let Some(margin) = e.margin else { println!("border {:?} {:?}", e, e.ends.map(|i| seeds[i as usize])); continue };
-        let [a, b] = e.ends;
-        let [c, d] = e.apexes.map(|x| x.unwrap_or(0));
-        let normal = (seeds[b as usize] - seeds[a as usize]).cross(seeds[c as usize] - seeds[a as usize]);
-        let truth = -2.0 * normal.dot(seeds[d as usize] - seeds[a as usize]);
-        let scale = [(a, c), (b, c), (a, d), (b, d)].map(|(i, j)| seeds[i as usize].distance(seeds[j as usize])).iter().product::<f64>();
-        let truth = truth / scale;
-        worst = worst.max((truth - margin.value).abs());
-        over = over.max((truth - margin.value).abs() / margin.error);
-        if truth < 0.0 { println!("{truth:.3e} {:.3e} {:.3e}", margin.value, margin.error); }
-    }
-    println!("worst {worst:.3e} of error {over:.3}");
-    }
+fn the_dual_of_random_seeds_is_the_convex_hull() {
+    for (count, per_seed) in [(3000, 60), (3000, 20), (300, 60), (40, 60)] {
+        let seeds = seeds(count);
+        let triangles = dual_of(&seeds, per_seed);
+        let distinct: HashSet<[u32; 3]> = triangles.iter().map(|&t| smallest_first(t)).collect();
+        assert_eq!((triangles.len(), distinct.len()), (2 * count - 4, 2 * count - 4));
+        let out: Vec<f64> = triangles.iter().map(|&t| farthest_out(&seeds, t)).filter(|&out| out > 0.0).collect();
+        let clearly = out.iter().filter(|&&out| out > 1e-5).count();
+        println!("{count} seeds, {per_seed} canvas vertices each: {} wrong, {clearly} above 1e-5", out.len());
+        assert!(clearly == 0 && 1000 * out.len() <= triangles.len(), "{out:?}");
     }
 }

@@ -1,0 +1,102 @@
+//! Meshes of surfaces: valid, of the surface's topology, with their vertices on it.
+
+use voronaut::canvas::Kind;
+use voronaut::geometry::Tensor3;
+use voronaut::metric::Bounds;
+use voronaut::progress::Silent;
+use voronaut::quality::{surface_fidelity, surface_quality, validity};
+use voronaut::recipe::{MeshOptions, Meshed, mesh_surface};
+use voronaut::surface::metric::{Spec, SurfaceMetric, field};
+use voronaut::surface::{Implicit, Input, Place, read};
+
+fn data(name: &str) -> String {
+    format!("{}/../../data/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+struct Scaled<'a>(&'a dyn SurfaceMetric, f64);
+
+impl SurfaceMetric for Scaled<'_> {
+    fn at(&self, place: &Place) -> Tensor3 {
+        self.0.at(place) * self.1
+    }
+}
+
+fn meshed(input: &Input, metric: &str, options: &MeshOptions) -> (Meshed, f64, f64) {
+    let metric = field(&Spec::parse(metric).unwrap(), input, Bounds::default()).unwrap();
+    let meshed = mesh_surface(input, metric.as_ref(), options, &Silent).unwrap();
+    let figures =
+        surface_quality(&meshed.mesh, &input.surface, &Scaled(metric.as_ref(), meshed.metric_scale)).unwrap();
+    (meshed, figures.quality.mean, figures.quality.min)
+}
+
+/// Least mean and least quality that are asked for: low where the metric changes much over an edge.
+#[test]
+fn meshes_are_valid_and_of_the_surface_s_topology() {
+    for (spec, metric, count, least) in [
+        ("sphere:1", "uniform", 300, [0.96, 0.6]),
+        ("torus:2,0.7", "curvature", 400, [0.93, 0.5]),
+        (&data("spot.obj"), "curvature", 220, [0.85, 0.2]),
+        (&data("bob_small.obj"), "curvature", 220, [0.9, 0.4]),
+        ("chair", "curvature", 600, [0.88, 0.2]),
+        ("sphere:1", "shock:phi=1", 500, [0.85, 0.05]),
+        ("implicit:z-0.2*sin(3*x);-1,-1,-1,1,1,1", "uniform", 300, [0.9, 0.2]),
+        ("implicit:(x^2+y^2+z^2-1)*((x-3)^2+y^2+z^2-0.25);-2,-2,-2,4,2,2", "uniform", 300, [0.95, 0.5]),
+    ] {
+        let input = read(spec, None).unwrap();
+        let (meshed, mean, min) = meshed(&input, metric, &MeshOptions { vertices: Some(count), ..MeshOptions::default() });
+        let mesh = &meshed.mesh;
+        let found = validity(mesh);
+        println!("{spec} {metric}: {} vertices, quality {mean:.3} / {min:.3}", mesh.points.len());
+        assert!(found.valid, "{spec}: {found:?}");
+        assert_eq!(found.euler, input.surface.euler_characteristic(), "{spec}");
+        assert_eq!(found.boundary_loops, input.surface.border_loops().len(), "{spec}");
+        assert!(mesh.points.len().abs_diff(count) * 100 <= count, "{spec}: {}", mesh.points.len());
+        let implicit = input.implicit.as_ref().map(|f| f as &dyn Implicit);
+        let fidelity = surface_fidelity(mesh, &input.surface, implicit).unwrap();
+        assert!(fidelity.vertex_to_surface.value < 1e-9 * input.diagonal(), "{spec}: {fidelity:?}");
+        assert!(fidelity.folded == 0 && !fidelity.reversed, "{spec}: {fidelity:?}");
+        assert!(mean > least[0] && min > least[1], "{spec}: {mean} {min}");
+    }
+}
+
+#[test]
+fn any_number_of_threads_and_any_canvas_make_a_mesh() {
+    let input = read("torus:2,0.7", None).unwrap();
+    for canvas in Kind::ALL {
+        let options = MeshOptions { vertices: Some(150), canvas, lloyd: 8, ..MeshOptions::default() };
+        let of_threads = [1, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| meshed(&input, "curvature", &options).0.mesh)
+        });
+        assert_eq!(of_threads[0], of_threads[1], "{canvas}");
+        assert!(validity(&of_threads[0]).valid);
+    }
+}
+
+#[test]
+fn fitting_brings_spot_nearer_and_keeps_shapes() {
+    let input = read(&data("spot.obj"), None).unwrap();
+    let of = |fit: bool| {
+        let options = MeshOptions { vertices: Some(1020), fit, ..MeshOptions::default() };
+        let (meshed, mean, min) = meshed(&input, "curvature", &options);
+        let fidelity = surface_fidelity(&meshed.mesh, &input.surface, None).unwrap();
+        println!("fit {fit}: quality {mean:.3} / {min:.3}, {:?}", fidelity.both);
+        assert!(validity(&meshed.mesh).valid && mean >= 0.9 && min >= 0.2, "{mean} {min}");
+        fidelity.both
+    };
+    let (on, off) = (of(false), of(true));
+    assert!(off.rms_share < 6e-4 && off.hausdorff_share < 5e-3, "{off:?}");
+    assert!(off.rms < 0.6 * on.rms, "{on:?} {off:?}");
+}
+
+#[test]
+fn a_distance_asks_for_more_vertices_unless_their_number_is_given() {
+    let input = read("sphere:1", None).unwrap();
+    let options = MeshOptions { complexity: Some(60.0), hausd: Some(5e-3), ..MeshOptions::default() };
+    let (found, ..) = meshed(&input, "uniform", &options);
+    let distance = found.fidelity.unwrap().both.hausdorff;
+    assert!(distance <= 5e-3 && found.mesh.points.len() > 200 && found.notes.is_empty(), "{distance}");
+    let few = MeshOptions { vertices: Some(80), hausd: Some(5e-3), ..MeshOptions::default() };
+    let (found, ..) = meshed(&input, "uniform", &few);
+    assert!(found.mesh.points.len() == 80 && found.notes[0].contains("--hausd asks for"), "{:?}", found.notes);
+}
