@@ -8,7 +8,7 @@ use voronaut::certificate::Constants;
 use voronaut::diagram;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
-use voronaut::geometry::{Aabb, Point};
+use voronaut::geometry::{Aabb, Point, Point3};
 use voronaut::metric::{Bounds, MOST_SWEEPS};
 use voronaut::output::Picture;
 use voronaut::recipe::{Centroid, MeshOptions, Mesher, SMOOTH_METRIC, Seeding};
@@ -66,14 +66,16 @@ Examples:
   voronaut dual sea.geojson --metric boundary:h0=2 --seeds ports.txt -o dual.vtu --diagram cells.vtu --report run.json";
 
 const DISTANCE_EXAMPLES: &str = "\
-DOMAIN and METRIC are as for `mesh`; the metric is used as it is. METHOD: march (fast marching by lengths, the most accurate),
-stvd[:window=8] (Campen 2013), dijkstra, konukoglu (recursive fast marching, 2007), lbr (FM-LBR on a grid, Mirebeau 2014),
-heat (Crane 2013).
+DOMAIN and METRIC are as for `mesh`, or a surface and a metric on it as for `check`; the metric is used as it is. Points near a
+surface are moved onto it. METHOD: march (fast marching by lengths, the most accurate),
+stvd[:window=8] (Campen 2013), dijkstra, konukoglu (recursive fast marching, 2007), lbr (FM-LBR on a grid of the plane, Mirebeau
+2014), heat (Crane 2013).
 OUT has the canvas with point data `distance`; the path's points come behind the canvas's, its segments are line cells.
 
 Examples:
   voronaut distance rect:-2,-2,2,2 --metric swirl --from 1,0.5 -o distance.vtu --picture distance.png
-  voronaut distance sea.geojson --metric boundary:h0=2 --from 10,20 --from 300,-40 --to 90,80 -o way.vtu --report way.json";
+  voronaut distance sea.geojson --metric boundary:h0=2 --from 10,20 --from 300,-40 --to 90,80 -o way.vtu --report way.json
+  voronaut distance torus:2,0.7 --metric curvature --from 2.7,0,0 --to -1.3,0,0 -o torus.vtu --picture torus.png";
 
 const CHECK_EXAMPLES: &str = "\
 Exits with 1 if the mesh is not valid; the report is written all the same.
@@ -223,11 +225,11 @@ pub(crate) struct DistanceArgs {
     #[arg(long)]
     pub(crate) metric: String,
     /// Where distances start: a point of the domain; may be given more than once
-    #[arg(long, value_name = "X,Y", value_parser = point, required = true, allow_hyphen_values = true)]
-    pub(crate) from: Vec<Point>,
+    #[arg(long, value_name = "X,Y[,Z]", value_parser = coordinates, required = true, allow_hyphen_values = true)]
+    pub(crate) from: Vec<Coordinates>,
     /// Trace the shortest path from this point to the nearest of those
-    #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
-    pub(crate) to: Option<Point>,
+    #[arg(long, value_name = "X,Y[,Z]", value_parser = coordinates, allow_hyphen_values = true)]
+    pub(crate) to: Option<Coordinates>,
     /// The distances on the canvas, and the path: .vtu
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
@@ -500,11 +502,21 @@ fn window(text: &str) -> Result<Aabb, String> {
     Aabb::of(corners).filter(has_room).ok_or_else(|| "the box is empty or not finite".into())
 }
 
-fn point(text: &str) -> Result<Point, String> {
-    let numbers: Vec<f64> = text.split(',').map_while(|word| word.trim().parse().ok()).collect();
-    match numbers[..] {
-        [x, y] if Point::new(x, y).is_finite() && text.matches(',').count() == 1 => Ok(Point::new(x, y)),
-        _ => Err("not a point: write two numbers, X,Y".into()),
+/// A point as it was written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Coordinates {
+    /// Of the plane.
+    Plane(Point),
+    /// Of space.
+    Space(Point3),
+}
+
+fn coordinates(text: &str) -> Result<Coordinates, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y]) if Point::new(x, y).is_finite() => Ok(Coordinates::Plane(Point::new(x, y))),
+        Some(&[x, y, z]) if Point3::new(x, y, z).is_finite() => Ok(Coordinates::Space(Point3::new(x, y, z))),
+        _ => Err("not a point: write two numbers, X,Y, or on a surface three, X,Y,Z".into()),
     }
 }
 

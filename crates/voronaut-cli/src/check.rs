@@ -2,7 +2,7 @@
 
 use crate::args::{CheckArgs, Show};
 use crate::files::{Drawn, MeshFile};
-use crate::surfaces::Scaled;
+use crate::metric::{self, Scaled};
 use crate::{files, summary};
 use serde_json::json;
 use std::path::Path;
@@ -15,7 +15,6 @@ use voronaut::output::Report;
 use voronaut::output::report::Strayed;
 use voronaut::quality::{fidelity, metric_quality, surface_fidelity, surface_quality, validity};
 use voronaut::recipe;
-use voronaut::surface::metric::Spec;
 use voronaut::surface::{self, Given, Implicit, Input, Surface};
 use voronaut::{Error, Result};
 
@@ -98,7 +97,7 @@ fn on_surface(
             own = Input::new(Surface::new(mesh)?, None);
             &own
         };
-        let field = surface::metric::field(&Spec::parse(text)?, input, args.metric_choices.bounds())?;
+        let field = metric::on_surface(text, input, &args.metric_choices)?;
         let scaled = Scaled { field: field.as_ref(), factor: args.metric_scale.unwrap_or(1.0) };
         report = report.with_quality(&surface_quality(mesh, &input.surface, &scaled)?);
     }
@@ -112,16 +111,10 @@ fn demand_for_surfaces(args: &CheckArgs) -> Result<()> {
     let refused = [
         (args.outputs.picture.is_some(), "a picture of the mesh of a surface", "leave out --picture"),
         (args.outputs.histograms.is_some(), "histograms of the mesh of a surface", "leave out --histograms"),
-        (args.metric_choices.smooth_metric > 0, "smoothing of a metric on a surface", "leave out --smooth-metric"),
-        (
-            args.metric_choices.background.is_some(),
-            "a background mesh for a metric on a surface",
-            "give the file that the values belong to as --domain",
-        ),
     ];
     match refused.into_iter().find(|(is_asked, ..)| *is_asked) {
         Some((_, what, help)) => Err(Error::Unsupported { what: what.into(), help: help.into() }),
-        None => Ok(()),
+        None => metric::demand_for_surfaces(&args.metric_choices),
     }
 }
 

@@ -7,6 +7,7 @@ mod distance;
 mod dual;
 mod files;
 mod mesh;
+mod metric;
 mod progress;
 mod seeds;
 mod summary;

@@ -1,7 +1,8 @@
 //! `voronaut mesh` and `voronaut dual` on a surface.
 
-use crate::args::{CanvasSize, DualArgs, EdgesOut, MeshArgs, MetricChoices, Outputs, Show};
+use crate::args::{CanvasSize, DualArgs, EdgesOut, MeshArgs, Outputs, Show};
 use crate::files;
+use crate::metric::{self, Scaled};
 use crate::progress::Bar;
 use crate::seeds::SeedFile;
 use crate::summary;
@@ -11,21 +12,20 @@ use voronaut::canvas::{self, Canvas};
 use voronaut::diagram::{Kind, SurfaceDiagram};
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
-use voronaut::geometry::{Point3, Tensor3};
+use voronaut::geometry::Point3;
 use voronaut::mesh::Mesh;
 use voronaut::output::{self, Report, Scene, Shade, Stroke, View, report};
 use voronaut::quality::{surface_quality, validity};
 use voronaut::recipe::{self, SeedDual};
 use voronaut::sampling;
-use voronaut::surface::metric::{Spec, SurfaceMetric, field};
 use voronaut::surface::{Input, Place};
 use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
 
 /// Meshes a surface. Nothing is written unless the mesh is valid.
 pub(crate) fn mesh(args: &MeshArgs, input: &Input, start: Instant) -> Result<()> {
-    demand_supported(&args.outputs, &args.metric_choices)?;
-    let metric = field(&Spec::parse(&args.metric)?, input, args.metric_choices.bounds())?;
+    demand_supported(&args.outputs)?;
+    let metric = metric::on_surface(&args.metric, input, &args.metric_choices)?;
     let meshed = {
         let bar = Bar::new(args.run.quiet, args.run.verbose);
         recipe::mesh_surface(input, metric.as_ref(), &args.options(), &bar)?
@@ -52,9 +52,9 @@ pub(crate) fn mesh(args: &MeshArgs, input: &Input, start: Instant) -> Result<()>
 
 /// The dual of seeds on a surface.
 pub(crate) fn dual(args: &DualArgs, input: &Input, start: Instant) -> Result<()> {
-    demand_supported(&args.outputs, &args.metric_choices)?;
+    demand_supported(&args.outputs)?;
     demand_dual(args)?;
-    let metric = field(&Spec::parse(&args.metric)?, input, args.metric_choices.bounds())?;
+    let metric = metric::on_surface(&args.metric, input, &args.metric_choices)?;
     let (file, seeds) = SeedFile::read_in_space(&args.seeds)?;
     let places = file.on_surface(input, &seeds)?;
     let mut stages = vec![("read", start.elapsed().as_secs_f64())];
@@ -70,8 +70,7 @@ pub(crate) fn dual(args: &DualArgs, input: &Input, start: Instant) -> Result<()>
     stage(&mut stages, "canvas");
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, args.geodesic)?;
     stage(&mut stages, "diagram");
-    let SeedDual { triangles, account, seconds, raw_nerve, .. } =
-        recipe::surface_dual(&diagram, Road::from(args.dual));
+    let SeedDual { triangles, account, seconds, raw_nerve, .. } = recipe::surface_dual(&diagram, Road::from(args.dual));
     let mesh = recipe::surface_mesh(input, &places, triangles);
     stage(&mut stages, "dual");
     stages.extend(seconds);
@@ -104,13 +103,7 @@ pub(crate) fn dual(args: &DualArgs, input: &Input, start: Instant) -> Result<()>
     Ok(())
 }
 
-fn write(
-    picture: Option<(&Path, String)>,
-    outputs: &Outputs,
-    mesh: &Mesh,
-    out: &Path,
-    report: &Report,
-) -> Result<()> {
+fn write(picture: Option<(&Path, String)>, outputs: &Outputs, mesh: &Mesh, out: &Path, report: &Report) -> Result<()> {
     output::write_mesh(mesh, out)?;
     picture.map(|(path, svg)| output::write_picture(&svg, path)).transpose()?;
     files::write_report(outputs, report)
@@ -126,7 +119,8 @@ fn drawn(outputs: &Outputs, diagram: &SurfaceDiagram, mesh: &Mesh) -> Result<Str
     let shows = |what| outputs.show.contains(&what);
     let draped = diagram.canvas().draped();
     let is_of_canvas = shows(Show::Cells) || shows(Show::Geodesics);
-    let mut scene = if is_of_canvas { coloured(diagram, shows(Show::Cells)) } else { Scene::of_mesh(mesh, Shade::Size) };
+    let mut scene =
+        if is_of_canvas { coloured(diagram, shows(Show::Cells)) } else { Scene::of_mesh(mesh, Shade::Size) };
     let edges = edges(mesh);
     if shows(Show::Geodesics) {
         scene = scene.with(edges.iter().filter_map(|&ends| geodesic(diagram, ends)), Stroke::Geodesic);
@@ -182,27 +176,13 @@ fn with_geodesics(diagram: &SurfaceDiagram, mesh: &Mesh) -> Mesh {
     all
 }
 
-/// A metric on a surface times a factor.
-pub(crate) struct Scaled<'a> {
-    pub(crate) field: &'a dyn SurfaceMetric,
-    pub(crate) factor: f64,
-}
-
-impl SurfaceMetric for Scaled<'_> {
-    fn at(&self, place: &Place) -> Tensor3 {
-        self.field.at(place) * self.factor
-    }
-}
-
 /// Refuses what is not there for surfaces.
-fn demand_supported(outputs: &Outputs, choices: &MetricChoices) -> Result<()> {
+fn demand_supported(outputs: &Outputs) -> Result<()> {
     let is_shown = |show: &Show| matches!(show, Show::Mesh | Show::Cells | Show::Geodesics);
     let refused = [
         (outputs.histograms.is_some(), "--histograms"),
         (outputs.window.is_some(), "--window"),
         (!outputs.show.iter().all(is_shown), "--show of anything but mesh, cells and geodesics"),
-        (choices.smooth_metric > 0, "--smooth-metric"),
-        (choices.background.is_some(), "--background"),
     ];
     refused.into_iter().find(|refused| refused.0).map_or(Ok(()), |(_, what)| Err(unsupported(what)))
 }

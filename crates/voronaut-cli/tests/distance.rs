@@ -46,9 +46,10 @@ fn faults_are_named() {
         assert!(stderr(&output).contains(said), "{more:?}: {}", stderr(&output));
         assert!(place.files().is_empty());
     };
-    fails(&[], 2, "--from <X,Y>");
+    fails(&[], 2, "--from <X,Y[,Z]>");
     fails(&["--from", "1"], 2, "write two numbers, X,Y");
-    fails(&["--from", "1,2,3"], 2, "write two numbers, X,Y");
+    fails(&["--from", "1,2,3"], 1, "--from (1, 2, 3): a point of space, and the domain is planar");
+    fails(&["--from", "1,2,3,4"], 2, "write two numbers, X,Y");
     fails(&["--from", "1,nan"], 2, "write two numbers, X,Y");
     fails(&["--from", "-1,0.5"], 1, "a point outside the domain at --from (-1, 0.5)");
     fails(&["--from", "1,0.5", "--to", "9,9"], 1, "--to (9, 9)");
@@ -99,4 +100,77 @@ fn paths_go_around_holes() {
             assert!(length > 0.9 * exact && length < 1.1 * exact, "{method}: {key} {length} {exact}");
         }
     }
+}
+
+#[test]
+fn distances_on_surfaces_are_great_circles() {
+    let place = Place::new();
+    let canvases = ["intrinsic", "isotropic", "starset"];
+    let methods = METHODS.iter().filter(|&&method| method != "lbr");
+    for (canvas, method) in methods.flat_map(|&method| canvases.map(|canvas| (canvas, method))) {
+        let words = ["distance", "sphere:2", "--metric", "uniform", "--from", "2,0,0", "--from", "0,0,-2.01"];
+        let more = ["--to", "0,1.2,1.6", "-o", "out.vtu", "--canvas-size", "6000", "--geodesic", method];
+        let files = ["--canvas", canvas, "--report", "out.json", "--picture", "out.svg", "--pixels", "200"];
+        let output = place.run(&[&words[..], &more, &files].concat());
+        assert!(output.status.success(), "{method} on {canvas}: {}", stderr(&output));
+        let report: Value = serde_json::from_slice(&place.read("out.json")).unwrap();
+        let exact = std::f64::consts::PI;
+        for key in ["distance", "path_length"] {
+            let length = report[key].as_f64().unwrap();
+            assert!(length > 0.97 * exact && length < 1.15 * exact, "{method} on {canvas}: {key} {length}");
+        }
+        if method == "march" {
+            assert!((report["path_length"].as_f64().unwrap() / exact - 1.0).abs() < 1e-5);
+        }
+        assert_eq!((&report["unreached"], &report["canvas"]["kind"]), (&Value::from(0), &Value::from(canvas)));
+        assert_eq!((&report["from"][1][2], report["to"].as_array().unwrap().len()), (&Value::from(-2.0), 3));
+        assert!(String::from_utf8_lossy(&place.read("out.vtu")[..2000]).contains("Name=\"distance\""));
+        assert!(String::from_utf8(place.read("out.svg")).unwrap().contains("<image"));
+        assert_eq!(place.files(), ["out.json", "out.svg", "out.vtu"]);
+    }
+}
+
+#[test]
+fn lengths_over_folds_are_exact() {
+    let place = Place::new();
+    // Two sides of a box, folded upwards along the y axis.
+    place.put("fold.off", "OFF 6 4 0\n1 0 0\n1 2 0\n0 0 0\n0 2 0\n0 0 1\n0 2 1\n3 0 1 2\n3 1 3 2\n3 2 3 4\n3 3 5 4\n");
+    let words =
+        ["distance", "fold.off", "--metric", "formula:4; 0; 1; 0; 0; 4", "--from", "0.9,0.3,0", "--to", "0,1.5,0.6"];
+    let output = place.run(&[&words[..], &["-o", "out.vtu", "--report", "out.json", "--canvas-size", "3000"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let report: Value = serde_json::from_slice(&place.read("out.json")).unwrap();
+    let exact = (2.0_f64 * 1.5).hypot(1.2);
+    for (key, most) in [("distance", 1e-3), ("path_length", 1e-12)] {
+        assert!((report[key].as_f64().unwrap() / exact - 1.0).abs() < most, "{key} {} {exact}", report[key]);
+    }
+}
+
+#[test]
+fn faults_on_surfaces_are_named() {
+    let place = Place::new();
+    let fails = |more: &[&str], said: &str| {
+        let words = ["distance", "sphere:1", "--metric", "uniform", "-o", "out.vtu", "--canvas-size", "500"];
+        let output = place.run(&[&words[..], more].concat());
+        assert_eq!(output.status.code(), Some(1), "{more:?}");
+        assert!(stderr(&output).contains(said), "{more:?}: {}", stderr(&output));
+        assert!(place.files().is_empty());
+    };
+    let from = ["--from", "1,0,0"];
+    fails(&["--from", "1,0"], "--from (1, 0): a point of the plane, and the domain is a surface");
+    fails(&["--from", "1.2,0,0"], "a point off the surface at --from (1.2, 0, 0)");
+    fails(&[&from[..], &["--to", "0,0,0"]].concat(), "a point off the surface at --to (0, 0, 0)");
+    fails(&[&from[..], &["--geodesic", "lbr"]].concat(), "not supported: distances by lbr on a surface");
+    fails(&[&from[..], &["--smooth-metric", "2"]].concat(), "not supported: smoothing of a metric on a surface");
+}
+
+#[test]
+fn one_point_may_be_given_twice() {
+    let place = Place::new();
+    let words = ["distance", "sphere:1", "--metric", "uniform", "-o", "out.vtu", "--canvas-size", "500"];
+    let points = ["--from", "1,0,0", "--from", "1,0,0", "--to", "1,0,0", "--report", "out.json"];
+    let output = place.run(&[&words[..], &points].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let report: Value = serde_json::from_slice(&place.read("out.json")).unwrap();
+    assert_eq!((&report["distance"], &report["path_length"]), (&Value::from(0.0), &Value::from(0.0)));
 }

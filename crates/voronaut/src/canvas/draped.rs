@@ -138,9 +138,15 @@ impl<'s> Draped<'s> {
             let faces = homes.iter().flat_map(|home| at_home.get(home).map_or(&[][..], Vec::as_slice));
             let held = faces.map(|&f| (f, self.closest_on(f, seed.position)));
             let deepest = |weights: [f64; 3]| weights.into_iter().fold(f64::INFINITY, f64::min);
-            let order = |x: &(f64, [f64; 3]), y: &(f64, [f64; 3])| x.0.total_cmp(&y.0).then(deepest(y.1).total_cmp(&deepest(x.1)));
+            let order = |x: &(f64, [f64; 3]), y: &(f64, [f64; 3])| {
+                x.0.total_cmp(&y.0).then(deepest(y.1).total_cmp(&deepest(x.1)))
+            };
             let Some((f, (_, weights))) = held.min_by(|x, y| order(&x.1, &y.1)) else {
-                return Err(Error::domain("a seed off the surface", seed.position.to_string(), "move it onto the surface"));
+                return Err(Error::domain(
+                    "a seed off the surface",
+                    seed.position.to_string(),
+                    "move it onto the surface",
+                ));
             };
             let before = self.topology.face_slots() as u32;
             found.push(self.insert_in(f, weights, *seed)?);

@@ -26,8 +26,8 @@ mod surface_stars;
 mod way;
 
 pub use border::Border;
-pub use draped::Draped;
 pub use consistent::{Consistency, Consistent, NEEDS_MORE, PickCounters, UNIT_RADIUS, consistent};
+pub use draped::Draped;
 pub use extent::metric_area;
 pub use isotropic::isotropic_size;
 pub use kind::Kind;
@@ -254,7 +254,9 @@ impl Canvas {
         let mut counters = self.counters;
         let embedded = match self.kind {
             Kind::Isotropic => isotropic::halve(self.embedded.planar.clone(), &edges, &mut counters),
-            Kind::Intrinsic | Kind::StarSet => refine::halve(self.embedded.planar.clone(), field, &edges, &mut counters)?,
+            Kind::Intrinsic | Kind::StarSet => {
+                refine::halve(self.embedded.planar.clone(), field, &edges, &mut counters)?
+            }
         };
         Self::measured(embedded, field, self.kind, counters)
     }

@@ -1,47 +1,44 @@
 //! Distances from given points by any of the methods, and the ways back.
 
 use super::descend::Descent;
-use super::seeds::{self, Care, Start};
-use super::{Diagram, Flat, solver};
+use super::seeds::{Care, Start};
+use super::unfold::OnEdge;
+use super::{Diagram, Flat, Ground, Measure, solver};
 use crate::canvas::{Border, Canvas};
 use crate::error::Result;
-use crate::geodesic::{Heat, Lattice, MarchCounters, Method, Polyline, Sources, bowed_chord, straighten};
-use crate::geometry::{Aabb, Point};
+use crate::geodesic::{Heat, MarchCounters, Method, Polyline, Sources, bowed_chord, straighten};
+use crate::geometry::Point;
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
-use crate::triangulation::VertexId;
+use crate::triangulation::{FaceId, VertexId};
 
-/// The distance of every canvas vertex from the nearest of given points.
-pub struct Distances<'a> {
-    canvas: &'a Canvas,
-    field: &'a dyn MetricField,
+/// The distance of every canvas vertex from the nearest of given places: of the plane, or a
+/// [`SurfaceDistances`](super::SurfaceDistances).
+pub struct Distances<'a, G: Ground<'a> = Flat<'a>> {
+    pub(super) ground: G,
     method: Method,
-    from: Vec<Point>,
+    pub(super) from: Vec<G::Place>,
     starts: Vec<Vec<Start>>,
     values: Vec<f64>,
     parents: Vec<Option<VertexId>>,
     counters: Option<MarchCounters>,
 }
 
-impl<'a> Distances<'a> {
-    /// Distances by a method from points of the domain.
-    ///
-    /// # Errors
-    /// [`crate::Error::Domain`] of a point outside the domain; as for [`Heat::on`].
-    pub fn new(canvas: &'a Canvas, field: &'a dyn MetricField, from: &[Point], method: Method) -> Result<Self> {
-        let starts = seeds::starts_of_all(canvas, field, from, false, Care::Full)?;
+impl<'a, G: Ground<'a>> Distances<'a, G> {
+    pub(super) fn by_method(ground: G, from: &[G::Place], method: Method) -> Result<Self> {
+        let starts = ground.starts_of_all(from, false, Care::Full)?;
         let (values, parents, counters) = match method {
-            Method::Lbr => (on_lattice(canvas, field, from, &starts), Vec::new(), None),
-            Method::Heat => (Heat::on(canvas.topology())?.distances(&sources(canvas, &starts))?, Vec::new(), None),
+            Method::Lbr => (ground.on_lattice(from, &starts)?, Vec::new(), None),
+            Method::Heat => (Heat::on(ground.topology())?.distances(&sources(ground, &starts))?, Vec::new(), None),
             _ => {
-                let solver = solver(Flat { canvas, field }, method)?;
-                let diagram = Diagram::from_starts(canvas, field, from, starts.clone(), solver);
-                let vertices = || (0..canvas.vertex_count() as u32).map(VertexId);
+                let ways = Measure::Ways(solver(ground, method)?);
+                let diagram = Diagram::made(ground, from, starts.clone(), ways);
+                let vertices = || (0..diagram.vertex_count() as u32).map(VertexId);
                 let parents = vertices().map(|v| diagram.parent(v)).collect();
                 (vertices().map(|v| diagram.distance(v)).collect(), parents, Some(*diagram.counters()))
             }
         };
-        Ok(Self { canvas, field, method, from: from.to_vec(), starts, values, parents, counters })
+        Ok(Self { ground, method, from: from.to_vec(), starts, values, parents, counters })
     }
 
     /// The metric distances of the canvas vertices, in order; infinite where no point is reached.
@@ -64,11 +61,46 @@ impl<'a> Distances<'a> {
         self.parents.get(v.index()).copied().flatten()
     }
 
+    /// The lines of equal distance at these distances: pieces within embedded canvas faces, by where they begin and end.
+    pub(super) fn pieces<'b>(&'b self, levels: &'b [f64]) -> impl Iterator<Item = [OnEdge; 2]> + 'b {
+        let embedded = self.ground.embedded();
+        let corners = move |f: FaceId| embedded.corners(f).map(|v| (v, self.values[v.index()]));
+        let reached = embedded.faces().map(corners).filter(|corners| corners.iter().all(|c| c.1.is_finite()));
+        reached.flat_map(|corners| levels.iter().filter_map(move |&level| piece(corners, level)))
+    }
+
+    /// The embedded canvas as a mesh, and with a path as labelled edges between points of its own, behind the others. Points
+    /// are labelled 0, those of the path 1.
+    pub(super) fn mesh_with(&self, points: &[[f64; 3]], along: &[[f64; 3]], label: impl Fn(FaceId) -> i32) -> Mesh {
+        let embedded = self.ground.embedded();
+        let first = points.len() as u32;
+        let segments = along.len().saturating_sub(1) as u32;
+        Mesh {
+            point_labels: [vec![0; points.len()], vec![1; along.len()]].concat(),
+            points: [points, along].concat(),
+            triangles: embedded.faces().map(|f| embedded.corners(f).map(|v| v.0)).collect(),
+            triangle_labels: embedded.faces().map(label).collect(),
+            edges: (first..first + segments).map(|v| [v, v + 1]).collect(),
+            edge_labels: vec![1; segments as usize],
+            ..Mesh::default()
+        }
+    }
+}
+
+impl<'a> Distances<'a> {
+    /// Distances by a method from points of the domain.
+    ///
+    /// # Errors
+    /// [`crate::Error::Domain`] of a point outside the domain; as for [`Heat::on`].
+    pub fn new(canvas: &'a Canvas, field: &'a dyn MetricField, from: &[Point], method: Method) -> Result<Self> {
+        Self::by_method(Flat { canvas, field }, from, method)
+    }
+
     /// The distance of a point of the domain, interpolated in the canvas face that holds it as in flat space; where all its
     /// corners see the same one of the given points, the length of the way straight there. `None` outside the domain,
     /// infinite where no point is reached.
     pub fn at(&self, p: Point) -> Option<f64> {
-        let weights = self.canvas.weights(p)?;
+        let weights = self.ground.canvas.weights(p)?;
         // In flat space: the sum of w d^2 less that of w_i w_j |v_i v_j|^2 over the sides.
         let mut square: f64 = weights.iter().map(|&(v, weight)| weight * self.values[v.index()].powi(2)).sum();
         for (i, &(v, of_v)) in weights.iter().enumerate() {
@@ -81,13 +113,13 @@ impl<'a> Distances<'a> {
             let is_start = |v: VertexId| starts.iter().any(|start| start.vertex == v);
             weights.iter().all(|&(v, _)| is_start(v))
         });
-        let straight = beside.map(|(&q, _)| bowed_chord(self.field, q, p));
+        let straight = beside.map(|(&q, _)| bowed_chord(self.ground.field, q, p));
         straight.min_by(f64::total_cmp).or(Some(between))
     }
 
     /// Metric length of a side of a face.
     fn side(&self, v: VertexId, u: VertexId) -> f64 {
-        let topology = &self.canvas.embedded().topology;
+        let topology = self.ground.embedded();
         topology.find(v, u).or_else(|| topology.find(u, v)).map_or(0.0, |h| topology.length(h))
     }
 
@@ -98,73 +130,42 @@ impl<'a> Distances<'a> {
     /// # Errors
     /// [`crate::Error::Domain`] of a point outside the domain, or one from where the distances lead to none of the points.
     pub fn path(&self, to: Point) -> Result<Polyline> {
+        let Flat { canvas, field } = self.ground;
         let seeds: Vec<(Point, &[Start])> =
             self.from.iter().zip(&self.starts).map(|(&at, starts)| (at, starts.as_slice())).collect();
         let distance = |v: VertexId| self.values[v.index()];
         let parent = |v: VertexId| self.parent(v);
-        let descent =
-            Descent { canvas: self.canvas, field: self.field, seeds: &seeds, distance: &distance, parent: &parent };
+        let descent = Descent { canvas, field, seeds: &seeds, distance: &distance, parent: &parent };
         let points = descent.trace(to)?;
         if self.method == Method::March {
-            return Ok(straighten(self.field, &points, &Border::of(self.canvas)));
+            return Ok(straighten(field, &points, &Border::of(canvas)));
         }
-        Ok(Polyline { length: Polyline::length_of(self.field, &points), points })
+        Ok(Polyline { length: Polyline::length_of(field, &points), points })
     }
 
     /// The canvas as a mesh with the distances of its points, and with a path as labelled edges between points of its own,
     /// behind the others, if there is one. Points are labelled 0, those of the path 1.
     pub fn to_mesh(&self, path: Option<&Polyline>) -> (Mesh, Vec<f64>) {
-        let embedded = self.canvas.embedded();
+        let embedded = self.ground.canvas.embedded();
         let along: &[Point] = path.map_or(&[], |path| &path.points);
-        let first = embedded.positions.len() as u32;
-        let segments = along.len().saturating_sub(1) as u32;
-        let faces = || embedded.topology.faces();
-        let mesh = Mesh {
-            points: embedded.positions.iter().chain(along).map(|p| [p.x, p.y, 0.0]).collect(),
-            point_labels: [vec![0; embedded.positions.len()], vec![1; along.len()]].concat(),
-            triangles: faces().map(|f| embedded.topology.corners(f).map(|v| v.0)).collect(),
-            triangle_labels: faces().map(|f| embedded.topology.region(f)).collect(),
-            edges: (first..first + segments).map(|v| [v, v + 1]).collect(),
-            edge_labels: vec![1; segments as usize],
-            ..Mesh::default()
-        };
+        let flat = |p: &Point| [p.x, p.y, 0.0];
+        let points: Vec<[f64; 3]> = embedded.positions.iter().map(flat).collect();
+        let along_flat: Vec<[f64; 3]> = along.iter().map(flat).collect();
+        let mesh = self.mesh_with(&points, &along_flat, |f| embedded.topology.region(f));
         let of_path = along.iter().map(|&p| self.at(p).unwrap_or(f64::INFINITY));
         (mesh, self.values.iter().copied().chain(of_path).collect())
     }
 
     /// The lines of equal distance at these distances: pieces within canvas faces, two points each.
     pub fn isolines(&self, levels: &[f64]) -> Vec<[Point; 2]> {
-        let embedded = self.canvas.embedded();
-        let mut pieces = Vec::new();
-        for f in embedded.topology.faces() {
-            let corners = embedded.topology.corners(f).map(|v| (self.canvas.position(v), self.values[v.index()]));
-            if corners.iter().all(|c| c.1.is_finite()) {
-                pieces.extend(levels.iter().filter_map(|&level| piece(corners, level)));
-            }
-        }
-        pieces
+        let canvas = self.ground.canvas;
+        let at = |([a, b], t): OnEdge| canvas.position(a).lerp(canvas.position(b), t);
+        self.pieces(levels).map(|piece| piece.map(at)).collect()
     }
 }
 
-/// By [`Lattice`] on as many nodes as the canvas has vertices; vertices in sight of a point have the length of the way there.
-fn on_lattice(canvas: &Canvas, field: &dyn MetricField, from: &[Point], starts: &[Vec<Start>]) -> Vec<f64> {
-    let positions = &canvas.embedded().positions;
-    let Some(bounds) = Aabb::of(positions.iter().copied()) else { return Vec::new() };
-    let extent = bounds.extent();
-    // What of the box is outside the domain costs no nodes.
-    let nodes = positions.len() as f64 * (extent.x * extent.y / canvas.embedded().area()).min(100.0);
-    let border = Border::of(canvas);
-    let is_inside = |points: &[Point]| canvas.locate_all(points).iter().map(Option::is_some).collect();
-    let mut values = Lattice::new(bounds, nodes as usize, field, is_inside, &border).distances(from, positions);
-    for start in starts.iter().flatten() {
-        let value = &mut values[start.vertex.index()];
-        *value = value.min(start.distance);
-    }
-    values
-}
-
-fn sources(canvas: &Canvas, starts: &[Vec<Start>]) -> Sources {
-    let mut sources = Sources::new(canvas.vertex_count());
+fn sources<'a, G: Ground<'a>>(ground: G, starts: &[Vec<Start>]) -> Sources {
+    let mut sources = Sources::new(ground.topology().vertex_slots());
     for (colour, starts) in starts.iter().enumerate() {
         for start in starts {
             sources.add(start.vertex, start.distance, colour as u32);
@@ -174,10 +175,10 @@ fn sources(canvas: &Canvas, starts: &[Vec<Start>]) -> Sources {
 }
 
 /// Where a function that is linear on a triangle has a value.
-fn piece(corners: [(Point, f64); 3], level: f64) -> Option<[Point; 2]> {
+fn piece(corners: [(VertexId, f64); 3], level: f64) -> Option<[OnEdge; 2]> {
     let [a, b, c] = corners;
-    let crossing = |(p, at_p): (Point, f64), (q, at_q): (Point, f64)| {
-        ((at_p < level) != (at_q < level)).then(|| p.lerp(q, (level - at_p) / (at_q - at_p)))
+    let crossing = |(p, at_p): (VertexId, f64), (q, at_q): (VertexId, f64)| {
+        ((at_p < level) != (at_q < level)).then(|| ([p, q], (level - at_p) / (at_q - at_p)))
     };
     let mut found = [crossing(a, b), crossing(b, c), crossing(c, a)].into_iter().flatten();
     Some([found.next()?, found.next()?])

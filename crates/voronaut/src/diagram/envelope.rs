@@ -5,9 +5,9 @@
 //! functions, whatever the size of the face: the Voronoi vertices in it need not be separated by canvas vertices, and each is
 //! found with its place. On a curved canvas this holds to second order in the size of the face.
 
-use super::{Diagram, Ground};
 use super::nerve::{Nerve, NerveEdge, NerveTriangle};
 use super::overlap::Overlap;
+use super::{Diagram, Ground};
 use crate::triangulation::{FaceId, HalfEdge, VertexId, smallest_first};
 use rayon::prelude::*;
 

@@ -1,6 +1,7 @@
 //! What a diagram lies on: a canvas of the plane or of a surface, with the metric it was made with.
 
 use super::chords::Chords;
+use super::lattice;
 use super::seeds::{self, Care, Start};
 use super::{Measure, Seed, SurfaceDiagram};
 use crate::canvas::{Canvas, Draped, StarSet};
@@ -20,12 +21,19 @@ pub trait Ground<'a>: Copy + Send + Sync {
 
     /// What distances travel on.
     fn topology(&self) -> &'a Triangulation;
+    /// The same vertices, triangulated where they are: what is drawn.
+    fn embedded(&self) -> &'a Triangulation;
     /// The stars, if it is a star set.
     fn stars(&self) -> Option<&'a StarSet>;
     /// Where a canvas vertex is.
     fn place(&self, v: VertexId) -> Self::Place;
     /// What methods without triangles travel on.
     fn graph(&self) -> Graph;
+    /// The starts of a seed.
+    ///
+    /// # Errors
+    /// The seed is outside the domain.
+    fn starts(&self, seed: Self::Place) -> Result<Vec<Start>>;
     /// The starts of seeds, which may be the vertices of a mesh of the domain.
     ///
     /// # Errors
@@ -33,6 +41,11 @@ pub trait Ground<'a>: Copy + Send + Sync {
     fn starts_of_all(&self, seeds: &[Self::Place], are_vertices: bool, care: Care) -> Result<Vec<Vec<Start>>>;
     /// The starts of a seed at a canvas vertex.
     fn starts_at_vertex(&self, v: VertexId, care: Care) -> Vec<Start>;
+    /// The distances of all canvas vertices from places with these starts by [`Method::Lbr`].
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] where there is no grid.
+    fn on_lattice(&self, from: &[Self::Place], starts: &[Vec<Start>]) -> Result<Vec<f64>>;
 }
 
 /// Distances that do not follow the canvas.
@@ -58,6 +71,10 @@ impl<'a> Ground<'a> for Flat<'a> {
         self.canvas.topology()
     }
 
+    fn embedded(&self) -> &'a Triangulation {
+        &self.canvas.embedded().topology
+    }
+
     fn stars(&self) -> Option<&'a StarSet> {
         self.canvas.stars()
     }
@@ -70,12 +87,20 @@ impl<'a> Ground<'a> for Flat<'a> {
         self.canvas.graph(self.field)
     }
 
+    fn starts(&self, seed: Point) -> Result<Vec<Start>> {
+        seeds::starts(self.canvas, self.field, seed)
+    }
+
     fn starts_of_all(&self, seeds: &[Point], are_vertices: bool, care: Care) -> Result<Vec<Vec<Start>>> {
         seeds::starts_of_all(self.canvas, self.field, seeds, are_vertices, care)
     }
 
     fn starts_at_vertex(&self, v: VertexId, care: Care) -> Vec<Start> {
         seeds::starts_at_vertex(self.canvas, self.field, v, care)
+    }
+
+    fn on_lattice(&self, from: &[Point], starts: &[Vec<Start>]) -> Result<Vec<f64>> {
+        Ok(lattice::distances(self.canvas, self.field, from, starts))
     }
 }
 
@@ -86,6 +111,10 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
 
     fn topology(&self) -> &'a Triangulation {
         Canvas::topology(*self)
+    }
+
+    fn embedded(&self) -> &'a Triangulation {
+        self.draped().topology()
     }
 
     fn stars(&self) -> Option<&'a StarSet> {
@@ -100,19 +129,26 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
         self.surface_graph()
     }
 
-    fn starts_of_all(&self, seeds: &[VertexId], _are_vertices: bool, care: Care) -> Result<Vec<Vec<Start>>> {
-        let start = |&v: &VertexId| {
-            if v.index() < self.vertex_count() {
-                return Ok(self.starts_at_vertex(v, care));
-            }
-            let help = "seeds on a surface are vertices of its canvas";
-            Err(Error::domain("a seed that is no canvas vertex", format!("vertex {}", v.0), help))
-        };
-        seeds.iter().map(start).collect()
+    fn starts(&self, seed: VertexId) -> Result<Vec<Start>> {
+        if seed.index() < self.vertex_count() {
+            return Ok(self.starts_at_vertex(seed, Care::Full));
+        }
+        let help = "seeds on a surface are vertices of its canvas";
+        Err(Error::domain("a seed that is no canvas vertex", format!("vertex {}", seed.0), help))
+    }
+
+    fn starts_of_all(&self, seeds: &[VertexId], _are_vertices: bool, _care: Care) -> Result<Vec<Vec<Start>>> {
+        seeds.iter().map(|&seed| self.starts(seed)).collect()
     }
 
     fn starts_at_vertex(&self, vertex: VertexId, _care: Care) -> Vec<Start> {
         vec![Start { vertex, distance: 0.0 }]
+    }
+
+    fn on_lattice(&self, _from: &[VertexId], _starts: &[Vec<Start>]) -> Result<Vec<f64>> {
+        let (what, lbr) = ("distances by lbr on a surface, which has no Cartesian grid".into(), Method::Lbr);
+        let others: Vec<&str> = Method::ALL.iter().filter(|&&m| m != lbr).map(|m| m.name()).collect();
+        Err(Error::Unsupported { what, help: format!("use one of {}", others.join(", ")) })
     }
 }
 

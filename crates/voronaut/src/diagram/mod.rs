@@ -13,6 +13,7 @@ mod envelope;
 mod glued;
 mod ground;
 mod kind;
+mod lattice;
 mod nearest;
 mod nerve;
 mod orphans;
@@ -21,8 +22,10 @@ mod passes;
 mod paths;
 mod resolve;
 mod seeds;
+mod surface_distances;
 #[cfg(test)]
 mod test_diagrams;
+mod unfold;
 mod witnesses;
 
 pub use cells::{Cells, Outline};
@@ -33,6 +36,7 @@ pub use nerve::{Nerve, NerveEdge, NerveTriangle};
 pub use passes::Passes;
 pub use paths::Paths;
 pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
+pub use surface_distances::SurfaceDistances;
 pub use witnesses::Witnesses;
 
 use crate::canvas::{Canvas, Draped};
@@ -182,36 +186,6 @@ impl<'a> Diagram<'a> {
         Self::made(Flat { canvas, field }, seeds, starts, measure)
     }
 
-    /// Inserts a seed by one front from it; returns its colour.
-    ///
-    /// # Errors
-    /// [`Error::Domain`] outside the domain; the diagram is as before.
-    pub fn insert(&mut self, at: Point) -> Result<u32> {
-        let colour = self.seeds.len() as u32;
-        let starts = seeds::starts(self.ground.canvas, self.ground.field, at)?;
-        self.seeds.push(None);
-        self.place(colour, at, starts);
-        Ok(colour)
-    }
-
-    /// Moves a seed, which keeps its colour.
-    ///
-    /// # Errors
-    /// [`Error::Domain`] where there is no such seed, or it would leave the domain; the diagram is as before.
-    pub fn move_to(&mut self, colour: u32, to: Point) -> Result<()> {
-        if self.seed(colour).is_none() {
-            let help = "colours are those that insertions returned and removals have not ended";
-            return Err(Error::domain("no such seed", format!("colour {colour}"), help));
-        }
-        let starts = seeds::starts(self.ground.canvas, self.ground.field, to)?;
-        let changed = self.lift(colour);
-        self.sources_of(colour, &starts);
-        let all: Vec<VertexId> = changed.into_iter().chain(starts.iter().map(|s| s.vertex)).collect();
-        self.seeds[colour as usize] = Some(Seed { at: to, starts });
-        self.mend(&all);
-        Ok(())
-    }
-
     /// The canvas.
     pub fn canvas(&self) -> &'a Canvas {
         self.ground.canvas
@@ -242,6 +216,36 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
             Measure::Chords(chords) => chords.propagate(ground, &placed),
         };
         Self { ground, measure, seeds: placed, sources, propagation, overlap: OnceLock::new() }
+    }
+
+    /// Inserts a seed by one front from it; returns its colour.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] outside the domain, on a surface of what is no canvas vertex; the diagram is as before.
+    pub fn insert(&mut self, at: G::Place) -> Result<u32> {
+        let colour = self.seeds.len() as u32;
+        let starts = self.ground.starts(at)?;
+        self.seeds.push(None);
+        self.place(colour, at, starts);
+        Ok(colour)
+    }
+
+    /// Moves a seed, which keeps its colour.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where there is no such seed, or it would leave the domain; the diagram is as before.
+    pub fn move_to(&mut self, colour: u32, to: G::Place) -> Result<()> {
+        if self.seed(colour).is_none() {
+            let help = "colours are those that insertions returned and removals have not ended";
+            return Err(Error::domain("no such seed", format!("colour {colour}"), help));
+        }
+        let starts = self.ground.starts(to)?;
+        let changed = self.lift(colour);
+        self.sources_of(colour, &starts);
+        let all: Vec<VertexId> = changed.into_iter().chain(starts.iter().map(|s| s.vertex)).collect();
+        self.seeds[colour as usize] = Some(Seed { at: to, starts });
+        self.mend(&all);
+        Ok(())
     }
 
     /// Inserts a seed at a canvas vertex; returns its colour.

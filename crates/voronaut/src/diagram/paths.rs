@@ -1,8 +1,8 @@
 //! Shortest paths: from a point to its seed, and between neighbouring seeds.
 
-use super::{Diagram, Flat};
 use super::descend::Descent;
 use super::overlap::Overlap;
+use super::{Diagram, Flat};
 use crate::canvas::Border;
 use crate::error::{Error, Result};
 use crate::geodesic::{Obstacles, Polyline, straighten};

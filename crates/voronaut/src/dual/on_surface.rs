@@ -7,9 +7,9 @@
 use super::{Kind, Moving};
 use crate::error::{Error, Result};
 use crate::geodesic::{Angles, LocalMetric, Margin, hermite_between};
-use crate::rdt::Quad;
 use crate::geometry::{Point, Point3, TangentPlane, Vector, Vector3};
 use crate::metric::Scaled;
+use crate::rdt::Quad;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
@@ -62,7 +62,8 @@ impl<'a> SurfaceDual<'a> {
         let kind = |v: u32| if topology.is_border_vertex(VertexId(v)) { Kind::Corner(v) } else { Kind::Free };
         let kinds = (0..places.len() as u32).map(kind).collect();
         let locals = vec![LocalMetric::default(); places.len()];
-        let mut dual = Self { input, metric, factor, state: State { topology, places, planes, locals, kinds }, flips: 0 };
+        let mut dual =
+            Self { input, metric, factor, state: State { topology, places, planes, locals, kinds }, flips: 0 };
         dual.measure_each(|_, field| LocalMetric::at(field, Point::default()))?;
         Ok(dual)
     }
@@ -118,10 +119,12 @@ impl<'a> SurfaceDual<'a> {
     fn measure_each(&mut self, measure: impl Fn(&LocalMetric, &Scaled) -> LocalMetric + Sync) -> Result<()> {
         let (input, metric, factor) = (self.input, self.metric, self.factor);
         let State { places, planes, locals, .. } = &mut self.state;
-        locals.par_iter_mut().zip(places.as_slice()).zip(planes.as_slice()).with_min_len(64).for_each(|((local, at), plane)| {
-            let chart = Chart::in_plane(input, metric, *at, *plane);
-            *local = measure(local, &Scaled { field: &chart, factor });
-        });
+        locals.par_iter_mut().zip(places.as_slice()).zip(planes.as_slice()).with_min_len(64).for_each(
+            |((local, at), plane)| {
+                let chart = Chart::in_plane(input, metric, *at, *plane);
+                *local = measure(local, &Scaled { field: &chart, factor });
+            },
+        );
         match self.state.locals.iter().position(|local| !local.tensor.is_positive_definite()) {
             None => Ok(()),
             Some(i) => {
@@ -184,7 +187,8 @@ impl<'a> SurfaceDual<'a> {
     pub(super) fn remeasure(&mut self, v: VertexId) {
         let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
         let chart = Chart::in_plane(self.input, self.metric, at, plane);
-        let local = self.state.locals[v.index()].moved(&Scaled { field: &chart, factor: self.factor }, Point::default());
+        let local =
+            self.state.locals[v.index()].moved(&Scaled { field: &chart, factor: self.factor }, Point::default());
         if local.tensor.is_positive_definite() {
             self.state.locals[v.index()] = local;
         }
@@ -218,11 +222,7 @@ impl<'a> SurfaceDual<'a> {
     }
 
     /// Flips edges and what follows from them as long as a test gives a negative margin and the surface allows it.
-    fn flip_stacked(
-        &mut self,
-        mut stack: Vec<HalfEdge>,
-        margin: impl Fn(&Self, HalfEdge) -> Option<f64>,
-    ) -> u64 {
+    fn flip_stacked(&mut self, mut stack: Vec<HalfEdge>, margin: impl Fn(&Self, HalfEdge) -> Option<f64>) -> u64 {
         let mut flips_of_slot = vec![0_u8; 3 * self.topology().face_slots()];
         let before = self.flips;
         while let Some(h) = stack.pop() {
@@ -245,12 +245,14 @@ impl<'a> SurfaceDual<'a> {
     fn allows_flip(&self, h: HalfEdge) -> bool {
         let Some([a, b, c, d]) = self.quad(h) else { return false };
         let topology = self.topology();
-        let joins = |u: VertexId, v: VertexId| topology.star(u).any(|e| topology.target(e) == v || topology.apex(e) == v);
+        let joins =
+            |u: VertexId, v: VertexId| topology.star(u).any(|e| topology.target(e) == v || topology.apex(e) == v);
         if c == d || joins(c, d) || [a, b].iter().any(|&v| topology.star(v).count() <= 3) {
             return false;
         }
         let (now, then) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
-        let upright = |triangles: [[VertexId; 3]; 2]| triangles.map(|t| self.upright(t)).into_iter().fold(1.0, f64::min);
+        let upright =
+            |triangles: [[VertexId; 3]; 2]| triangles.map(|t| self.upright(t)).into_iter().fold(1.0, f64::min);
         let after = upright(then);
         if after < UPRIGHT && after < upright(now) {
             return false;

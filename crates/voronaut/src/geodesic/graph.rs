@@ -12,6 +12,10 @@ pub trait Sight: Send + Sync {
     fn line(&self, seen_from: VertexId, from: VertexId, to: VertexId) -> Vector;
     /// A tensor in the frame of the second vertex, turned to that of the first.
     fn turned(&self, seen_from: VertexId, at: VertexId, tensor: Tensor) -> Tensor;
+    /// Whether what lies between two vertices is nearly flat, so that a straight line between them means something.
+    fn is_flat(&self, _from: VertexId, _to: VertexId) -> bool {
+        true
+    }
 }
 
 /// Vertices of the plane, at these positions.

@@ -8,6 +8,8 @@ use faer::Side;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Llt;
 use faer::sparse::{SparseColMat, Triplet};
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::PI;
 
 /// Heat flows for the square of so many mean edges.
 const EDGES: f64 = 1.0;
@@ -85,15 +87,18 @@ impl<'a> Heat<'a> {
         Ok(distances)
     }
 
-    /// Heat from a narrow bell around every source, after a short time.
+    /// Heat from a narrow bell around every source, after a short time. A source that gives its distance to a single vertex has
+    /// all the heat of a bell, pi t, there: by the area of that vertex sources would be of unequal strength.
     fn heat(&self, sources: &Sources) -> Result<Vec<f64>> {
         let nearest: Vec<(usize, f64)> = starts(sources).collect();
         let mut time = self.time;
         let mut longer: Option<Factor> = None;
+        let lone = lone(sources);
         for _ in 0..LENGTHENINGS {
             let mut start = vec![0.0; self.mass.len()];
             for &(v, distance) in &nearest {
-                start[v] = self.mass[v] * (-distance * distance / time).exp();
+                let area = if lone.contains(&v) { PI * time } else { self.mass[v] };
+                start[v] = area * (-distance * distance / time).exp();
             }
             let heat = solve(longer.as_ref().unwrap_or(&self.flow), &start);
             let most = heat.iter().copied().fold(0.0, f64::max);
@@ -127,6 +132,17 @@ impl<'a> Heat<'a> {
             distances[v] = distance;
         }
     }
+}
+
+/// The vertices that are the only ones of their source.
+fn lone(sources: &Sources) -> BTreeSet<usize> {
+    let mut of_colour: BTreeMap<u32, Option<usize>> = BTreeMap::new();
+    for v in sources.vertices() {
+        for (_, colour) in sources.at(v) {
+            of_colour.entry(colour).and_modify(|only| *only = None).or_insert(Some(v.index()));
+        }
+    }
+    of_colour.into_values().flatten().collect()
 }
 
 fn starts(sources: &Sources) -> impl Iterator<Item = (usize, f64)> + '_ {
@@ -198,4 +214,40 @@ fn parts(canvas: &Triangulation) -> Vec<usize> {
         }
     }
     part
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canvas::{Canvas, Kind};
+    use crate::geometry::{Point3, Tensor3};
+    use crate::surface::metric::Constant;
+    use crate::surface::read;
+
+    #[test]
+    fn sources_are_equally_strong_whatever_area_their_vertices_have() {
+        let (input, metric) = (read("sphere:1", Some(0.2)).unwrap(), Constant(Tensor3::IDENTITY));
+        // The second one is a hundred times smaller than others: around it there are three more.
+        let poles = [(0.0, 1.0), (0.0, -1.0), (2e-3, -1.0), (-1e-3, -1.0), (-2e-3, -1.0)];
+        let place = |(i, (x, z)): (usize, (f64, f64))| {
+            let y = if i == 3 { 2e-3 } else { 0.0 };
+            input.closest(Point3::new(x, y, z)).unwrap()
+        };
+        let places: Vec<_> = poles.into_iter().enumerate().map(place).collect();
+        let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, 6000, &places).unwrap();
+        let mut sources = Sources::new(canvas.vertex_count());
+        sources.add(at[0], 0.0, 0);
+        sources.add(at[1], 0.0, 1);
+        let found = Heat::on(canvas.topology()).unwrap().distances(&sources).unwrap();
+        // As far from one as from the other.
+        let near = |z: f64| {
+            let of_band = (0..canvas.vertex_count() as u32).map(VertexId).filter(|&v| {
+                let at = canvas.draped().position(v).z;
+                at * z > 0.0 && (at.abs() - 0.7).abs() < 0.05
+            });
+            let values: Vec<f64> = of_band.map(|v| found[v.index()]).collect();
+            values.iter().sum::<f64>() / values.len() as f64
+        };
+        assert!((near(1.0) / near(-1.0) - 1.0).abs() < 0.02, "{} {}", near(1.0), near(-1.0));
+    }
 }

@@ -13,6 +13,8 @@ use crate::triangulation::VertexId;
 /// measured by the metric along the way's edges, each projected on that line. The window being fixed, the relative error does
 /// not vanish on fine canvases. It is not the same in other coordinates either: the projection is Euclidean.
 ///
+/// On a surface the window ends where that turns away: there are no straight lines around a bend.
+///
 /// The least may be less than the distance at a. As every other method, this one says then that x is not nearer than a.
 /// Labels are mended by making them anew: they depend on the order of work.
 #[derive(Clone, Debug)]
@@ -41,10 +43,12 @@ fn projected(edges: &[(Vector, Tensor)], u: Vector) -> f64 {
 impl Step for Stvd {
     fn carry(&self, graph: &Graph, labels: &[Label], from: VertexId, x: VertexId) -> Label {
         let sight = graph.sight();
+        let label = labels[from.index()];
         let mut edges: Vec<(Vector, Tensor)> = Vec::with_capacity(self.window);
-        let mut best = f64::INFINITY;
+        let is_bent = !sight.is_flat(x, from);
+        let mut best = if is_bent { label.distance + graph.length(from, x) } else { f64::INFINITY };
         let (mut near, mut next) = (x, Some(from));
-        while let Some(a) = next.filter(|_| edges.len() < self.window) {
+        while let Some(a) = next.filter(|&a| edges.len() < self.window && sight.is_flat(x, a)) {
             let root = [near, a].map(|v| sight.turned(x, v, self.roots[v.index()]));
             let root = (root[0] + root[1]) * 0.5;
             edges.push((sight.line(x, a, near), root));
@@ -59,7 +63,6 @@ impl Step for Stvd {
                 _ => None,
             };
         }
-        let label = labels[from.index()];
         Label::new(beyond(best, label.distance), label.colour, Support::Neighbour(from))
     }
 }

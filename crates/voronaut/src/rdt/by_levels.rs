@@ -25,10 +25,9 @@ impl<J: Judge> Rdt<J> {
             known.is_none()
         });
         for level in 0..=last {
-            let (tested, passed): (Vec<_>, Vec<_>) =
-                pending.into_iter().partition(|(h, quad)| {
-                    self.judge.may_tell(quad, level, &self.lengths, self.tested[h.index()].map(|t| t.level))
-                });
+            let (tested, passed): (Vec<_>, Vec<_>) = pending.into_iter().partition(|(h, quad)| {
+                self.judge.may_tell(quad, level, &self.lengths, self.tested[h.index()].map(|t| t.level))
+            });
             if self.judge.is_by_lengths(level) {
                 self.solve_for(&tested, level);
             }

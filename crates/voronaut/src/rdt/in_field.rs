@@ -1,8 +1,8 @@
 //! Seeds of the plane in a metric field.
 
 use super::judge::{Judge, Lengths, Quad};
-use super::{Known, Trust};
 use super::site::{self, Site};
+use super::{Known, Trust};
 use crate::geodesic::{
     Fineness, Margin, PathLength, Paths, circumradius, frozen_margin, hermite, margin_by_power, margin_from_lengths,
 };
@@ -45,7 +45,11 @@ impl<'a> InField<'a> {
     pub(super) fn expand(&mut self, triangles: &[[u32; 3]]) {
         let spacings = site::spacings(&self.sites, triangles);
         let field = self.field;
-        self.sites.par_iter_mut().zip(&spacings).with_min_len(64).for_each(|(site, &spacing)| site.expand(field, spacing));
+        self.sites
+            .par_iter_mut()
+            .zip(&spacings)
+            .with_min_len(64)
+            .for_each(|(site, &spacing)| site.expand(field, spacing));
     }
 }
 

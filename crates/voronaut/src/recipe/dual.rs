@@ -7,7 +7,7 @@ use crate::metric::MetricField;
 use crate::net::{Net, Triangles};
 use crate::output::report;
 use crate::planar::Location;
-use crate::rdt::{Judge, Edge, Rdt, Start, Trust};
+use crate::rdt::{Edge, Judge, Rdt, Start, Trust};
 use crate::triangulation::HalfEdge;
 use std::collections::HashSet;
 use std::time::Instant;

@@ -258,10 +258,7 @@ impl<'a> Job<'a> {
             relaxed.append(relax(&mut dual, &Tangent, steps, self.progress)?);
             self.fit_scale(&mut dual)?;
         }
-        let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
-        for _ in 0..MENDINGS {
-            mend_worst(&mut dual, poor);
-        }
+        mend(&mut dual);
         Ok((dual, relaxed))
     }
 
@@ -283,6 +280,7 @@ impl<'a> Job<'a> {
         let rdt = Rdt::judged(OnSurface::new(&diagram), at.len(), &Start { triangles, at_border });
         dual.settle_by(|quad| rdt.margin_of(quad));
         let blocked = dual.disagreeing(|quad| rdt.margin_of(quad));
+        mend(dual);
         let account = report::Dual { blocked_flips: blocked, ..account(&rdt, &diagram.nerve(), Road::Geodesic) };
         let is_fine = self.options.fit && self.input.implicit.is_some();
         let fine = is_fine.then(|| canvas.draped().to_surface()).transpose()?;
@@ -299,6 +297,14 @@ impl<'a> Job<'a> {
             return Err(Error::Mesh { what, place: "the mesh".into(), help });
         }
         Ok(mesh)
+    }
+}
+
+/// Mends the worst triangles.
+fn mend(dual: &mut SurfaceDual) {
+    let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
+    for _ in 0..MENDINGS {
+        mend_worst(dual, poor);
     }
 }
 

@@ -153,7 +153,8 @@ fn farthest_of(diagram: &SurfaceDiagram, colours: &[u32]) -> Vec<VertexId> {
 
 /// Vertices minus edges plus faces.
 pub fn euler(topology: &Triangulation) -> isize {
-    let [v, e, f] = [topology.vertices().count(), topology.edges().count(), topology.face_count()].map(usize::cast_signed);
+    let [v, e, f] =
+        [topology.vertices().count(), topology.edges().count(), topology.face_count()].map(usize::cast_signed);
     v - e + f
 }
 

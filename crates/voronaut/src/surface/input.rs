@@ -81,7 +81,8 @@ impl Input {
             let [ab, bc, ca] = best.face.half_edges();
             let [a, b, c] = best.weights.map(|w| w <= 0.0);
             // Beside the edges and around the corners that the closest point lies on.
-            let across = [(c, ab), (a, bc), (b, ca)].into_iter().filter(|edge| edge.0).filter_map(|e| topology.twin(e.1));
+            let across =
+                [(c, ab), (a, bc), (b, ca)].into_iter().filter(|edge| edge.0).filter_map(|e| topology.twin(e.1));
             let corner = [(b && c, ab), (c && a, bc), (a && b, ca)].into_iter().find(|at| at.0).map(|at| at.1);
             let around = corner.into_iter().flat_map(|h| topology.star(topology.origin(h)));
             let faces = across.chain(around).map(HalfEdge::face);

@@ -34,11 +34,16 @@ impl Case {
     pub(crate) fn errors(&self, canvas: &Canvas, found: &Distances) -> [f64; 2] {
         let pairs = canvas.embedded().positions.iter().zip(found.values());
         let known: Vec<(f64, f64)> = pairs.filter_map(|(&p, &d)| Some((d, (self.exact)(p)?))).collect();
-        let farthest = known.iter().fold(0.0, |farthest: f64, &(_, exact)| farthest.max(exact));
-        let measured = known.iter().filter(|(d, exact)| d.is_finite() && *exact > NEAR * farthest);
-        let errors: Vec<f64> = measured.map(|(d, exact)| (d / exact - 1.0).abs()).collect();
-        [errors.iter().copied().fold(0.0, f64::max), errors.iter().sum::<f64>() / errors.len() as f64]
+        relative_errors(&known)
     }
+}
+
+/// Greatest and mean relative error of found distances, each with the exact one, that are finite and not near the source.
+pub(crate) fn relative_errors(known: &[(f64, f64)]) -> [f64; 2] {
+    let farthest = known.iter().fold(0.0, |farthest: f64, &(_, exact)| farthest.max(exact));
+    let measured = known.iter().filter(|(d, exact)| d.is_finite() && *exact > NEAR * farthest);
+    let errors: Vec<f64> = measured.map(|(d, exact)| (d / exact - 1.0).abs()).collect();
+    [errors.iter().copied().fold(0.0, f64::max), errors.iter().sum::<f64>() / errors.len() as f64]
 }
 
 /// A flat metric that turns: the pull-back of the Euclidean one by (x, y) to (x / anisotropy, y + height sin(pi x)) on

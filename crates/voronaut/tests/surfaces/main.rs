@@ -1,4 +1,9 @@
 //! Diagrams, duals and meshes on surfaces, against what is known in closed form.
 
 mod meshes;
+mod random;
+mod sheet;
 mod sphere;
+mod torus;
+#[path = "../wavy/mod.rs"]
+mod wavy;

@@ -157,7 +157,8 @@ mod tests {
         free[3] = false;
         let damping = 0.1;
         let system = System::new(t, &free, pairs(t.face_count()).into_iter());
-        let anchors = Anchors { lines: vec![(Vector3::default(), Vector3::new(0.0, 0.0, 1.0)); free.len()], stiffness: 0.0 };
+        let anchors =
+            Anchors { lines: vec![(Vector3::default(), Vector3::new(0.0, 0.0, 1.0)); free.len()], stiffness: 0.0 };
         let moves = system.solve(damping, &anchors);
         assert_eq!(moves[3], Vector3::default());
         let energy = |moves: &[Vector3]| {

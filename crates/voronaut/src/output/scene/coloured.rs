@@ -101,7 +101,7 @@ impl Fills {
 
 /// At each vertex the mean of its triangles' normals, weighted by their angles there (Thurmer and Wuthrich 1998); not of
 /// unit length.
-fn normals(positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<Vector3> {
+pub(super) fn normals(positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<Vector3> {
     let mut sums = vec![Vector3::default(); positions.len()];
     for triangle in triangles {
         let [a, b, c] = triangle.map(|v| positions[v as usize]);

@@ -8,6 +8,7 @@
 //! | `visible` | what of a line is in front |
 //! | `draw` | the picture: an image, and lines over it |
 //! | `faces` | scenes of meshes and of surfaces |
+//! | `levels` | scenes of values |
 //! | `coloured`, `borders` | scenes of coloured canvases: cells with smooth borders |
 
 mod borders;
@@ -15,6 +16,7 @@ mod coloured;
 mod depth;
 mod draw;
 mod faces;
+mod levels;
 mod light;
 #[cfg(all(test, feature = "png"))]
 mod tests;
@@ -84,6 +86,8 @@ pub struct SceneLine {
 pub enum Stroke {
     /// Between cells: white.
     Cell,
+    /// A line of equal value: thin.
+    Level,
     /// An edge of a mesh: thin.
     Edge,
     /// A border or a feature of a surface.
@@ -123,11 +127,13 @@ impl Fill {
 }
 
 impl Stroke {
-    const ALL: [Stroke; 5] = [Stroke::Cell, Stroke::Edge, Stroke::Border, Stroke::Geodesic, Stroke::Seed];
+    const ALL: [Stroke; 6] =
+        [Stroke::Cell, Stroke::Level, Stroke::Edge, Stroke::Border, Stroke::Geodesic, Stroke::Seed];
 
     fn ink(self) -> &'static str {
         match self {
             Stroke::Cell => colours::CELL_BORDER,
+            Stroke::Level => colours::GRID,
             Stroke::Edge => colours::EDGE,
             Stroke::Border => colours::BOUNDARY,
             Stroke::Geodesic => colours::GEODESIC,
@@ -144,6 +150,7 @@ impl Stroke {
     fn width(self) -> [f64; 2] {
         match self {
             Stroke::Cell => [0.045, 1.2],
+            Stroke::Level => [1.0, 0.8],
             Stroke::Edge => [0.05, 1.0],
             Stroke::Border => [1.0, 1.6],
             Stroke::Geodesic => [0.06, 1.9],

@@ -1,0 +1,37 @@
+//! Metrics on surfaces, from what is typed.
+
+use crate::args::MetricChoices;
+use voronaut::geometry::Tensor3;
+use voronaut::surface::metric::{Spec, SurfaceMetric, field};
+use voronaut::surface::{Input, Place};
+use voronaut::{Error, Result};
+
+/// The metric on a surface that a text names, within limits.
+pub(crate) fn on_surface(text: &str, input: &Input, choices: &MetricChoices) -> Result<Box<dyn SurfaceMetric>> {
+    demand_for_surfaces(choices)?;
+    field(&Spec::parse(text)?, input, choices.bounds())
+}
+
+/// Refuses what is not there for metrics on surfaces.
+pub(crate) fn demand_for_surfaces(choices: &MetricChoices) -> Result<()> {
+    let (what, help) = if choices.smooth_metric > 0 {
+        ("smoothing of a metric on a surface", "leave out --smooth-metric")
+    } else if choices.background.is_some() {
+        ("a background mesh for a metric on a surface", "give the file that the values belong to as the domain")
+    } else {
+        return Ok(());
+    };
+    Err(Error::Unsupported { what: what.into(), help: help.into() })
+}
+
+/// A metric on a surface times a factor.
+pub(crate) struct Scaled<'a> {
+    pub(crate) field: &'a dyn SurfaceMetric,
+    pub(crate) factor: f64,
+}
+
+impl SurfaceMetric for Scaled<'_> {
+    fn at(&self, place: &Place) -> Tensor3 {
+        self.field.at(place) * self.factor
+    }
+}
