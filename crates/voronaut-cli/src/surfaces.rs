@@ -36,7 +36,7 @@ pub(crate) fn mesh(args: &MeshArgs, input: &Input, start: Instant) -> Result<()>
     let figures = surface_quality(&meshed.mesh, &input.surface, &scaled)?;
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     crate::mesh::fill_in(&mut report, &meshed, crate::mesh::options(args));
-    report.fidelity = meshed.fidelity.clone().map(|found| report::Strayed::Surface(found.into()));
+    report.fidelity = meshed.fidelity.map(|found| report::Strayed::Surface(found.into()));
     report.seconds = report::Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     let picture = args.outputs.picture.as_deref().map(|path| {
         let places = places(input, &meshed.mesh)?;

@@ -144,15 +144,14 @@ fn duplicate_points_are_named() {
 #[test]
 fn wrong_dimensions_are_refused() {
     domain_refused("a.poly", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n", &["a.poly:1", "dimension 3, not 2"]);
-    let surface = SQUARE
-        .replace("Dimension 2", "Dimension 3")
-        .replace("0 0 0\n1 0 0\n1 1 0\n0 1 0\n", "0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 1 0\n");
-    domain_refused("a.mesh", surface, &["vertex 4 has z = 1", "a.mesh", "planar"]);
+    let raised = "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 1 0\n\
+                  Edges 4\n1 2 1\n2 3 1\n3 4 1\n4 1 1\nEnd\n";
+    domain_refused("a.mesh", raised, &["vertex 4 has z = 1", "a.mesh", "planar"]);
     domain_refused("a.geojson", r#"{"type":"Point","coordinates":[0,0]}"#, &["a Point where a Polygon", "feature 1"]);
     solution_refused(solution(3, 3, &["1 0 1 0 0 1"; 4]), &["metric.sol", "no planar metric"]);
     solution_refused(solution(2, 2, &["1 1"; 4]), &["metric.sol", "no planar metric"]);
     words_refused("rect:0,0,1,1", "formula:1;0;1;0;0;1", &["six entries", "not supported"]);
-    words_refused("sphere:1", "uniform", &["sphere:1", "not supported"]);
+    words_refused("sphere:1", "swirl", &["metric swirl on a surface", "not supported"]);
 }
 
 #[test]
@@ -235,7 +234,7 @@ fn a_directory_that_takes_no_files_is_named() {
 
 #[test]
 fn unknown_endings_of_domains_are_answered_with_those_that_work() {
-    domain_refused("a.stl", "solid", &["a.stl", ".geojson, .json, .poly or .mesh"]);
+    domain_refused("a.stl", "solid", &["a.stl", "no triangles"]);
     domain_refused("a.xyz", "solid", &["a.xyz", ".geojson, .json, .poly or .mesh"]);
     words_refused("rect:0,0", "uniform", &["2 numbers where 4 are expected", "rect:x0,y0,x1,y1"]);
     let place = Place::new();

@@ -1,4 +1,4 @@
-//! `check` of surface meshes: every format, faults, distances to a surface and figures in a metric on it.
+//! Surfaces: `check` of their meshes (every format, faults, distances to a surface, figures in a metric on it), `mesh`, `dual`.
 
 mod common;
 
@@ -10,6 +10,14 @@ use voronaut::surface::{sphere, torus};
 
 fn put(place: &Place, name: &str, mesh: &Mesh) {
     write_mesh(mesh, &place.path().join(name)).unwrap();
+}
+
+fn text(place: &Place, name: &str) -> String {
+    String::from_utf8(place.read(name)).unwrap()
+}
+
+fn json(place: &Place, name: &str) -> Value {
+    serde_json::from_slice(&place.read(name)).unwrap()
 }
 
 /// Runs `check`, which succeeds, and returns its report and what it printed.
@@ -149,4 +157,71 @@ fn planar_meshes_of_surface_formats_stay_planar() {
     let (report, _) = checked(&place, &["a.off", "--metric", "uniform", "--domain", "a.off"]);
     assert!(number(&report, "/fidelity/hausdorff") < 1e-15);
     assert!((number(&report, "/metric_edge_length/min") - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_sphere_is_meshed_and_the_dual_of_its_vertices_is_the_mesh() {
+    let place = Place::new();
+    let words = ["mesh", "sphere:1", "--metric", "uniform", "-n", "60", "--canvas-size", "20", "-o", "s.obj"];
+    let output =
+        place.run(&[&words[..], &["--report", "s.json", "--picture", "s.svg", "--show", "cells,mesh"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let report = json(&place, "s.json");
+    assert_eq!(
+        (report["vertices"].as_u64(), report["euler"].as_i64(), report["valid"].as_bool()),
+        (Some(60), Some(2), Some(true))
+    );
+    assert!(report["quality"]["mean"].as_f64().unwrap() > 0.95 && text(&place, "s.svg").contains("<image"));
+    let seeds: Vec<String> =
+        text(&place, "s.obj").lines().filter_map(|l| l.strip_prefix("v ").map(String::from)).collect();
+    place.put("seeds.txt", seeds.join("\n"));
+    let output = place.run(&[
+        "dual",
+        "sphere:1",
+        "--metric",
+        "uniform",
+        "--seeds",
+        "seeds.txt",
+        "-o",
+        "d.obj",
+        "--report",
+        "d.json",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let sides = |file: &str| {
+        let mut faces: Vec<Vec<u32>> = Vec::new();
+        for line in text(&place, file).lines().filter_map(|l| l.strip_prefix("f ").map(String::from)) {
+            let mut face: Vec<u32> = line.split_whitespace().map(|v| v.parse().unwrap()).collect();
+            face.sort_unstable();
+            faces.push(face);
+        }
+        faces.sort_unstable();
+        faces
+    };
+    assert_eq!(sides("s.obj"), sides("d.obj"));
+    assert_eq!(json(&place, "d.json")["diagram"]["orphans"].as_u64(), Some(0));
+}
+
+#[test]
+fn what_surfaces_do_not_have_is_refused_before_anything_is_written() {
+    let place = Place::new();
+    place.put("off.txt", "0 0 1\n0 0 1.5\n");
+    place.put("flat.txt", "0 1\n");
+    let mesh = ["mesh", "sphere:1", "--metric", "uniform", "-n", "60", "-o", "s.obj"];
+    let dual = |seeds: &'static str| ["dual", "sphere:1", "--metric", "uniform", "--seeds", seeds, "-o", "d.obj"];
+    for (words, expected) in [
+        ([&mesh[..], &["--seeding", "protected"]].concat(), "protected seeding on a surface"),
+        ([&mesh[..], &["--mesher", "starset"]].concat(), "the star-set mesher on a surface"),
+        ([&mesh[..], &["--histograms", "h.svg"]].concat(), "--histograms on a surface"),
+        ([&dual("off.txt")[..], &["--certify"]].concat(), "--certify on a surface"),
+        (dual("off.txt").to_vec(), "off.txt:2: the seed (0, 0, 1.5) is off the surface"),
+        (dual("flat.txt").to_vec(), "flat.txt:1: '0 1' is no point"),
+        (vec!["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "60", "--fit", "-o", "s.obj"], "--fit in the plane"),
+    ] {
+        let before = place.files();
+        let output = place.run(&words);
+        let said = stderr(&output);
+        assert!(output.status.code() == Some(1) && said.contains(expected), "{words:?}: {said}");
+        assert_eq!(place.files(), before);
+    }
 }

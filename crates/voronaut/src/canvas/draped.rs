@@ -24,7 +24,7 @@ const NOT_RESOLVED: f64 = 0.5;
 /// corner is there.
 const ON_EDGE: f64 = 1e-9;
 
-/// See the [module](self). Faces are labelled with the number of the input's triangle that they lie in.
+/// A triangulation draped over a surface, with its metric. Faces are labelled with the number of the input's triangle that they lie in.
 #[derive(Clone)]
 pub struct Draped<'s> {
     pub(super) input: &'s Input,

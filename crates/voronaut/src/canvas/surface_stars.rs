@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn vertices_see_each_other_by_rotations() {
         let input = read("sphere:1", None).unwrap();
-        let (canvas, _) = Canvas::on_surface(Kind::StarSet, &input, &UNIFORM, 2000, &[]).unwrap();
+        let (canvas, _) = Canvas::on_surface(Kind::StarSet, &input, &UNIFORM, 2_000, &[]).unwrap();
         let (graph, draped) = (canvas.surface_graph(), canvas.draped());
         let sight = graph.sight();
         for v in graph.vertices() {

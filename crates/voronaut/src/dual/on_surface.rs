@@ -26,7 +26,7 @@ const UPRIGHT: f64 = 0.3;
 /// Slopes of the surface over a chord that tell its length; steeper ones count as this.
 const STEEP: f64 = 0.8;
 
-/// See the [module](self).
+/// The Riemannian Delaunay triangulation of seeds on a surface, with straight edges in space: the mesh in the making.
 pub struct SurfaceDual<'a> {
     input: &'a Input,
     metric: &'a dyn SurfaceMetric,
@@ -174,13 +174,13 @@ impl<'a> SurfaceDual<'a> {
         let topology = &self.state.topology;
         let wants = |&h: &HalfEdge| !topology.is_fixed(h) && self.margin(h).is_some_and(|margin| margin < -TIE);
         let stack: Vec<HalfEdge> = edges.into_par_iter().with_min_len(64).filter(wants).collect();
-        self.flip_stacked(stack, |dual, h| dual.margin(h))
+        self.flip_stacked(stack, Self::margin)
     }
 
     /// Flips around a seed and onwards.
     pub(super) fn flip_around(&mut self, v: VertexId) -> u64 {
         let star: Vec<HalfEdge> = self.topology().star(v).flat_map(|h| [h, h.next()]).collect();
-        self.flip_stacked(star, |dual, h| dual.margin(h))
+        self.flip_stacked(star, Self::margin)
     }
 
     /// Evaluates the metric at a seed that has moved.

@@ -26,7 +26,7 @@ const OF_SPREAD: f64 = 0.5;
 /// The error of a length from expansions, times this; and a share that it always has.
 const OF_EXPANSION: (f64, f64) = (1.0, 5e-4);
 
-/// See the [module](self).
+/// Seeds of the plane in a metric field, with what levels of tests need of them.
 pub struct InField<'a> {
     field: &'a dyn MetricField,
     trust: Trust<'a>,

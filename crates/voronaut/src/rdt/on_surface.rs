@@ -20,7 +20,7 @@ const OF_EQUATION: f64 = 1e-6;
 /// Margins with a greater error are not followed: where a quadrilateral spans much of a sphere lengths alone do not tell.
 const DOUBT: f64 = 0.5;
 
-/// See the [module](self).
+/// Seeds of a diagram on a surface. Lengths between them are those of geodesics pulled taut on the canvas, and curvatures the mean over their cells.
 pub struct OnSurface<'a> {
     canvas: &'a Canvas<Draped<'a>>,
     seeds: Vec<VertexId>,
