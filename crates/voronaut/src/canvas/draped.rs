@@ -37,7 +37,7 @@ pub struct Draped<'s> {
 /// Which way along an edge is measured. Long edges may bow far away from what halves of them would see: while a triangulation is
 /// refined they are straight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Way {
+enum Along {
     Straight,
     Shortest,
 }
@@ -70,7 +70,7 @@ impl<'s> Draped<'s> {
         let unused = input.surface.place(topology.faces().next().expect("a surface has triangles"), [1.0, 0.0, 0.0]);
         let places: Vec<Place> = (0..slots).into_par_iter().map(|v| place(v).unwrap_or(unused)).collect();
         let mut draped = Self { input, metric, topology, places, tensors: Vec::new() }.in_metric(metric)?;
-        draped.measure_all(Way::Straight);
+        draped.measure_all(Along::Straight);
         Ok(draped)
     }
 
@@ -232,15 +232,15 @@ impl<'s> Draped<'s> {
         }
     }
 
-    fn measure_all(&mut self, way: Way) {
+    fn measure_all(&mut self, along: Along) {
         let edges: Vec<HalfEdge> = self.topology.edges().collect();
-        let lengths: Vec<f64> = edges.par_iter().with_min_len(256).map(|&h| self.length_of(h, way)).collect();
+        let lengths: Vec<f64> = edges.par_iter().with_min_len(256).map(|&h| self.length_of(h, along)).collect();
         edges.into_iter().zip(lengths).for_each(|(h, length)| self.topology.set_length(h, length));
     }
 
     fn measure_around(&mut self, v: VertexId) {
         for h in self.spokes(v) {
-            let length = self.length_of(h, Way::Straight);
+            let length = self.length_of(h, Along::Straight);
             self.topology.set_length(h, length);
         }
     }
@@ -255,7 +255,7 @@ impl<'s> Draped<'s> {
     /// The metric length of an edge along the surface: by Simpson's rule, on an equation's surface along the cubic that its
     /// tangent planes at the ends make (which is of fourth order); if it may bow, where the metric differs much along the edge,
     /// that of the best bow in the chart at the middle.
-    fn length_of(&self, h: HalfEdge, way: Way) -> f64 {
+    fn length_of(&self, h: HalfEdge, along: Along) -> f64 {
         let ends = [self.topology.origin(h), self.topology.target(h)];
         let [p, q] = ends.map(|v| &self.places[v.index()]);
         let tensors = ends.map(|v| self.tensors[v.index()]);
@@ -266,7 +266,7 @@ impl<'s> Draped<'s> {
         let Some(place) = self.middle(h) else { return f64::NAN };
         let tensor = self.metric.at(&place);
         let simpson = chord.simpson([tensor, tensor]);
-        if chord.spread < UNLIKE || way == Way::Straight {
+        if chord.spread < UNLIKE || along == Along::Straight {
             return simpson;
         }
         let chart = Chart::new(self.input, self.metric, place, chord.up.unit().unwrap_or(place.normal));
@@ -372,7 +372,7 @@ impl Draped<'_> {
     /// # Errors
     /// A length is not finite, or the metric is not positive definite at a new vertex.
     pub(super) fn settle_lengths(&mut self, counters: &mut CanvasCounters) -> Result<()> {
-        self.measure_all(Way::Shortest);
+        self.measure_all(Along::Shortest);
         for h in self.topology.edges().collect::<Vec<_>>() {
             lengths::check(self, h)?;
         }
