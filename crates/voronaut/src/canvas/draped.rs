@@ -110,19 +110,6 @@ impl<'s> Draped<'s> {
         Ok(())
     }
 
-    /// Halves edges, given by their ends.
-    ///
-    /// # Errors
-    /// As for [`Draped::refine`].
-    pub(super) fn halve_all(&mut self, edges: &[[VertexId; 2]], counters: &mut CanvasCounters) -> Result<()> {
-        for &[a, b] in edges {
-            if let Some(h) = self.topology.find(a, b).or_else(|| self.topology.find(b, a)) {
-                counters.splits += u64::from(self.halve(h)?.is_some());
-            }
-        }
-        Ok(())
-    }
-
     /// Makes places vertices; returns these. Places at one vertex have the same.
     ///
     /// # Errors

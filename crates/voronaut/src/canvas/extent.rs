@@ -36,22 +36,10 @@ impl Draped<'_> {
 
     /// The closed curves of the border, each as its half-edges in order, beginning at a corner where it has one.
     pub fn borders(&self) -> Vec<Vec<HalfEdge>> {
-        let t = &self.topology;
-        let mut seen = vec![false; 3 * t.face_slots()];
-        let mut loops = Vec::new();
-        for first in t.edges().filter(|&h| t.twin(h).is_none()) {
-            let mut curve = Vec::new();
-            let mut next = Some(first);
-            while let Some(h) = next.filter(|h| !seen[h.index()]) {
-                seen[h.index()] = true;
-                curve.push(h);
-                next = t.start(t.target(h));
-            }
-            if !curve.is_empty() {
-                let begin = (0..curve.len()).find(|&i| self.is_corner(&curve, i)).unwrap_or(0);
-                curve.rotate_left(begin);
-                loops.push(curve);
-            }
+        let mut loops = self.topology.border_loops();
+        for curve in &mut loops {
+            let begin = (0..curve.len()).find(|&i| self.is_corner(curve, i)).unwrap_or(0);
+            curve.rotate_left(begin);
         }
         loops
     }

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3};
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Place};
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::VertexId;
 
 impl<'s> Canvas<Draped<'s>> {
     /// The canvas of a kind on a surface, with about so many vertices (more if the surface has more), and some places as
@@ -39,23 +39,6 @@ impl<'s> Canvas<Draped<'s>> {
         (0..).zip(&order).for_each(|(new, old)| number[old.index()] = VertexId(new));
         let at = at.into_iter().map(|v| number[v.index()]).collect();
         Ok((Self::flipped(draped.renumbered(&order), kind, counters), at))
-    }
-
-    /// This canvas with half the size around some vertices, as [`Canvas::refined`] in the plane. Old vertices keep their ids.
-    ///
-    /// # Errors
-    /// [`Error::Metric`] where the metric is not positive definite at a new vertex.
-    pub fn refined_around(&self, around: &[VertexId]) -> Result<Self> {
-        let topology = &self.embedded.topology;
-        let edges = around.iter().flat_map(|&v| topology.star(v)).flat_map(|h| [h, h.prev()]);
-        let ends = |h: HalfEdge| [topology.origin(h), topology.target(h)];
-        let mut edges: Vec<[VertexId; 2]> = edges.map(ends).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        edges.sort_unstable();
-        edges.dedup();
-        let (mut counters, mut draped) = (self.counters, self.embedded.clone());
-        draped.halve_all(&edges, &mut counters)?;
-        draped.settle_lengths(&mut counters)?;
-        Ok(Self::flipped(draped, self.kind, counters))
     }
 
     /// The same vertices with lengths in another metric.

@@ -3,7 +3,7 @@
 use super::dual::{SeedDual, account, compared, left_out};
 use super::stopwatch::Stopwatch;
 use super::{MeshOptions, Meshed, Mesher, Seeding};
-use crate::canvas::{Canvas, CanvasFigures, Draped};
+use crate::canvas::{Canvas, CanvasFigures, Draped, Kind};
 use crate::diagram::SurfaceDiagram;
 use crate::dual::{Road, SurfaceDual};
 use crate::error::{Error, Result};
@@ -15,7 +15,7 @@ use crate::output::report;
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
 use crate::rdt::{OnSurface, Rdt, Start};
-use crate::sampling::{demand_memory, euler, seed_surface, surface_triangulation};
+use crate::sampling::{demand_memory, seed_surface, surface_triangulation};
 use crate::surface::metric::{Constant, SurfaceMetric};
 use crate::surface::{Implicit, Input, Place, Surface};
 use crate::triangulation::{Triangulation, VertexId};
@@ -205,9 +205,9 @@ impl<'a> Job<'a> {
     /// A triangulation with V vertices has 2 (V - chi) - B faces, B of its edges on the border; each has the area sqrt(3) / 4.
     fn plan(&mut self) -> Result<(usize, f64)> {
         self.progress.stage("planning", 1);
-        let (canvas, _) = Canvas::on_surface(self.options.canvas, self.input, self.metric, MEASURING, &[])?;
+        let (canvas, _) = Canvas::on_surface(Kind::Intrinsic, self.input, self.metric, MEASURING, &[])?;
         let draped = canvas.draped();
-        let (area, chi) = (draped.area(), euler(draped.topology()) as f64);
+        let (area, chi) = (draped.area(), draped.topology().euler_characteristic() as f64);
         let border: f64 = draped.borders().iter().flatten().map(|&h| draped.topology().length(h)).sum();
         let vertices = |factor: f64| 2.0 / 3.0_f64.sqrt() * area * factor + 0.5 * border * factor.sqrt() + chi;
         let (count, factor) = match (self.options.vertices, self.options.complexity) {
@@ -282,12 +282,13 @@ impl<'a> Job<'a> {
         let (canvas, at) = self.canvas(dual.places().len(), dual.places())?;
         let diagram = SurfaceDiagram::on_surface(&canvas, &at, self.options.geodesic)?;
         let triangles = dual.triangles();
-        let at_border = Start::from_nerve(&diagram.nerve()).at_border;
+        let nerve = diagram.nerve();
+        let at_border = Start::from_nerve(&nerve).at_border;
         let rdt = Rdt::judged(OnSurface::new(&diagram), at.len(), &Start { triangles, at_border });
         dual.settle_by(|quad| rdt.margin_of(quad));
         let blocked = dual.disagreeing(|quad| rdt.margin_of(quad));
         mend(dual);
-        let account = report::Dual { blocked_flips: blocked, ..account(&rdt, &diagram.nerve(), Road::Geodesic) };
+        let account = report::Dual { blocked_flips: blocked, ..account(&rdt, &nerve, Road::Geodesic) };
         let is_fine = self.options.fit && self.input.implicit.is_some();
         let fine = is_fine.then(|| canvas.draped().to_surface()).transpose()?;
         Ok(Settled { account, figures: canvas.figures(), diagram: report::Diagram::of(&diagram), fine })
@@ -297,7 +298,7 @@ impl<'a> Job<'a> {
         self.progress.stage("checking", 1);
         let mesh = surface_mesh(self.input, dual.places(), dual.triangles());
         quality::check(&mesh)?;
-        if euler(dual.topology()) != self.input.surface.euler_characteristic() {
+        if dual.topology().euler_characteristic() != self.input.surface.euler_characteristic() {
             let help = "ask for more vertices (-n); please report this with the input".into();
             let what = "the mesh has another topology than the surface".into();
             return Err(Error::Mesh { what, place: "the mesh".into(), help });

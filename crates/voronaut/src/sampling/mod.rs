@@ -13,7 +13,7 @@ pub use curves::simplify;
 pub use farthest::{Farthest, refine_farthest};
 pub(crate) use interior::insert_spaced;
 pub use interior::{Fill, Refined, refine};
-pub use on_surface::{Seeded, euler, seed_surface, surface_triangulation};
+pub use on_surface::{Seeded, seed_surface, surface_triangulation};
 pub use plan::{Plan, Target, demand_memory};
 pub use protected::{Picked, Picking, refine_protected};
 pub use segments::{MetricArc, sample_segments};

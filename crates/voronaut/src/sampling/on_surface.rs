@@ -98,7 +98,8 @@ pub fn surface_triangulation<'a>(diagram: &SurfaceDiagram<'a>) -> (Rdt<OnSurface
     poor.extend((0..).zip(&used).filter(|(_, used)| !**used).map(|(colour, _)| colour));
     poor.extend(topology.vertices().filter(|v| v.index() >= diagram.colours()).map(|v| dual.seed(v)));
     poor.extend(doubled(topology).into_iter().flatten().map(|v| dual.seed(v)));
-    if poor.is_empty() && euler(topology) != euler(diagram.canvas().draped().topology()) {
+    if poor.is_empty() && topology.euler_characteristic() != diagram.canvas().draped().topology().euler_characteristic()
+    {
         // Cells that are discs and meet once each make the surface; what is amiss is between the largest of them.
         poor.extend(diagram.farthest().and_then(|(v, _)| diagram.colour(v)));
     }
@@ -149,13 +150,6 @@ fn farthest_of(diagram: &SurfaceDiagram, colours: &[u32]) -> Vec<VertexId> {
         }
     }
     colours.iter().filter_map(|&colour| best[colour as usize]).collect()
-}
-
-/// Vertices minus edges plus faces.
-pub fn euler(topology: &Triangulation) -> isize {
-    let [v, e, f] =
-        [topology.vertices().count(), topology.edges().count(), topology.face_count()].map(usize::cast_signed);
-    v - e + f
 }
 
 /// Vertices of a closed curve, its corners among them, that are about so far apart.

@@ -32,11 +32,6 @@ impl<'a> Chart<'a> {
         Self { input, metric, at, plane }
     }
 
-    /// The plane.
-    pub fn plane(&self) -> &TangentPlane {
-        &self.plane
-    }
-
     /// The coordinates of a point.
     pub fn flatten(&self, p: Point3) -> Point {
         Point::default() + self.plane.flatten(p - self.at.position)

@@ -60,31 +60,14 @@ impl Surface {
         Aabb3::of(used).expect("a surface has at least one triangle")
     }
 
-    /// Vertices minus edges plus triangles.
+    /// [`Triangulation::euler_characteristic`](crate::triangulation::Triangulation::euler_characteristic).
     pub fn euler_characteristic(&self) -> isize {
-        let t = &self.topology;
-        t.vertices().count().cast_signed() - t.edges().count().cast_signed() + t.face_count().cast_signed()
+        self.topology.euler_characteristic()
     }
 
-    /// The closed curves of the border, each as its half-edges in order, the surface on their left.
+    /// [`Triangulation::border_loops`](crate::triangulation::Triangulation::border_loops).
     pub fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
-        let t = &self.topology;
-        let mut seen = vec![false; 3 * t.face_slots()];
-        let mut loops = Vec::new();
-        for start in t.edges().filter(|&h| t.twin(h).is_none()) {
-            let mut curve = Vec::new();
-            let mut next = Some(start);
-            while let Some(h) = next.filter(|h| !seen[h.index()]) {
-                seen[h.index()] = true;
-                curve.push(h);
-                // A border vertex starts at its border.
-                next = t.start(t.target(h));
-            }
-            if !curve.is_empty() {
-                loops.push(curve);
-            }
-        }
-        loops
+        self.topology.border_loops()
     }
 
     /// The connected parts, in the order of their first triangles.

@@ -216,6 +216,32 @@ impl Triangulation {
         self.start(v).is_some_and(|h| self.twin(h).is_none())
     }
 
+    /// Vertices minus edges plus faces.
+    pub fn euler_characteristic(&self) -> isize {
+        let [v, e] = [self.vertices().count(), self.edges().count()].map(usize::cast_signed);
+        v - e + self.face_count().cast_signed()
+    }
+
+    /// The closed curves of the border, each as its half-edges in order, the faces on their left.
+    pub fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
+        let mut seen = vec![false; 3 * self.face_slots()];
+        let mut loops = Vec::new();
+        for start in self.edges().filter(|&h| self.twin(h).is_none()) {
+            let mut curve = Vec::new();
+            let mut next = Some(start);
+            while let Some(h) = next.filter(|h| !seen[h.index()]) {
+                seen[h.index()] = true;
+                curve.push(h);
+                // A border vertex starts at its border.
+                next = self.start(self.target(h));
+            }
+            if !curve.is_empty() {
+                loops.push(curve);
+            }
+        }
+        loops
+    }
+
     /// The half-edge from a to b, if a face has it (the first of several).
     pub fn find(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
         self.star(a).find(|&h| self.target(h) == b)

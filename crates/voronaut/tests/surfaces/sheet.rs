@@ -12,22 +12,11 @@ use voronaut::planar::{Planar, delaunay};
 use voronaut::recipe::surface_dual;
 use voronaut::surface::Place;
 use voronaut::surface::metric::Constant;
-use voronaut::triangulation::{FaceId, HalfEdge};
+use voronaut::triangulation::{FaceId, HalfEdge, smallest_first};
 
 const SEEDS: usize = 2000;
 /// Sines of the angle by which four seeds miss lying on a circle, below which flips are forgiven.
 const MARGIN: f64 = 1e-5;
-
-/// A triangle's corners with the smallest first.
-fn named([a, b, c]: [u32; 3]) -> [u32; 3] {
-    if a < b && a < c {
-        [a, b, c]
-    } else if b < c {
-        [b, c, a]
-    } else {
-        [c, a, b]
-    }
-}
 
 /// The centre of the circle through three points, and its radius.
 fn circle([a, b, c]: [Point; 3]) -> (Point, f64) {
@@ -55,7 +44,7 @@ fn truth(flat: &Planar, length: f64) -> Vec<([u32; 3], f64)> {
     };
     let margins = |f: FaceId| f.half_edges().map(|h| margin(flat, h)).into_iter().fold(f64::INFINITY, f64::min);
     let inner = flat.topology.faces().filter(is_within);
-    inner.map(|f| (named(flat.topology.corners(f).map(|v| v.0)), margins(f))).collect()
+    inner.map(|f| (smallest_first(flat.topology.corners(f).map(|v| v.0)), margins(f))).collect()
 }
 
 /// Every kind of canvas leads to the flat Delaunay triangulation.
@@ -73,7 +62,7 @@ fn duals_on_a_sheet_are_delaunay_unrolled() {
         let (canvas, at) = Canvas::on_surface(kind, &input, &metric, size_for(SEEDS, 60), &places).unwrap();
         let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
         let dual = surface_dual(&diagram, Road::Geodesic);
-        let found: HashSet<[u32; 3]> = dual.triangles.iter().copied().map(named).collect();
+        let found: HashSet<[u32; 3]> = dual.triangles.iter().copied().map(smallest_first).collect();
         let missing: Vec<_> = truth.iter().filter(|t| !found.contains(&t.0)).collect();
         let wrong = missing.iter().filter(|t| t.1 > MARGIN).count();
         println!(

@@ -1,5 +1,6 @@
 //! On a sphere with its own metric the Riemannian Delaunay triangulation is the convex hull.
 
+use crate::random::Random;
 use std::collections::HashSet;
 use voronaut::canvas::{Canvas, Kind};
 use voronaut::diagram::SurfaceDiagram;
@@ -13,15 +14,9 @@ use voronaut::triangulation::smallest_first;
 
 /// Random points of the unit sphere.
 fn seeds(count: usize) -> Vec<Point3> {
-    let mut state = 88_172_645_463_325_252_u64;
-    let mut random = || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut random = Random(88_172_645_463_325_252);
     let mut point = || {
-        let (z, angle) = (2.0 * random() - 1.0, std::f64::consts::TAU * random());
+        let (z, angle) = (2.0 * random.next() - 1.0, std::f64::consts::TAU * random.next());
         let r = (1.0 - z * z).sqrt();
         Point3::new(r * angle.cos(), r * angle.sin(), z)
     };

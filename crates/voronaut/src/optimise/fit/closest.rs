@@ -1,7 +1,7 @@
 //! Closest points on triangles whose vertices move, found from a triangle nearby.
 
 use crate::geometry::{Point3, Vector3};
-use crate::surface::Surface;
+use crate::surface::{Surface, closest_weights};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// Triangles with positions of their own.
@@ -121,33 +121,6 @@ impl<'a> Sheet<'a> {
 /// The normal of a triangle with the length of twice its area.
 pub(super) fn area_vector([a, b, c]: [Point3; 3]) -> Vector3 {
     (b - a).cross(c - a)
-}
-
-/// Barycentric coordinates of the point of a triangle that is closest to `p`.
-fn closest_weights(corners: [Point3; 3], p: Point3) -> [f64; 3] {
-    let normal = area_vector(corners);
-    let part = |i: usize| normal.dot((corners[(i + 1) % 3] - p).cross(corners[(i + 2) % 3] - p));
-    let parts = [part(0), part(1), part(2)];
-    let total = normal.dot(normal);
-    if total > 0.0 && parts.iter().all(|&part| part >= 0.0) {
-        let [_, s, t] = parts.map(|part| part / total);
-        return [1.0 - s - t, s, t];
-    }
-    let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
-    // What is beyond one side only is closest to that side.
-    for i in (0..3).filter(|&i| total <= 0.0 || parts[i] < 0.0) {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        let (along, offset) = (corners[k] - corners[j], p - corners[j]);
-        let square = along.dot(along);
-        let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        let rest = offset - along * t;
-        if rest.dot(rest) < best.0 {
-            let mut weights = [0.0; 3];
-            (weights[j], weights[k]) = (1.0 - t, t);
-            best = (rest.dot(rest), weights);
-        }
-    }
-    best.1
 }
 
 #[cfg(test)]
