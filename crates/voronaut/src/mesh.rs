@@ -24,8 +24,12 @@ pub struct Mesh {
     pub corners: Vec<u32>,
     /// Vertices that the user marked as required.
     pub required_points: Vec<u32>,
+    /// Entries of `edges` that are creases of a surface ("ridges" in Medit).
+    pub ridges: Vec<u32>,
     /// Entries of `edges` that the user marked as required.
     pub required_edges: Vec<u32>,
+    /// Entries of `triangles` that the user marked as required.
+    pub required_triangles: Vec<u32>,
 }
 
 impl Mesh {
@@ -63,12 +67,18 @@ impl Mesh {
         let vertices = self.points.len();
         let referred = self.triangles.as_flattened().iter().chain(self.edges.as_flattened());
         let vertex = referred.chain(&self.corners).chain(&self.required_points).find(|&&v| v as usize >= vertices);
-        let edge = self.required_edges.iter().find(|&&e| e as usize >= self.edges.len());
-        let (what, of) = match (vertex, edge) {
-            (Some(vertex), _) => (format!("vertex {vertex} (from 0) does not exist"), format!("{vertices} vertices")),
-            (_, Some(edge)) => (format!("edge {edge} (from 0) does not exist"), format!("{} edges", self.edges.len())),
-            _ => return Ok(()),
-        };
-        Err(Error::Mesh { what, place: format!("a list of {of}"), help: "correct the number".into() })
+        let vertex = (vertex.copied(), "vertex", vertices, "vertices");
+        let beyond = |list: &[u32], most: usize| list.iter().copied().find(|&i| i as usize >= most);
+        let [edges, triangles] = [self.edges.len(), self.triangles.len()];
+        let edge = (beyond(&self.required_edges, edges).or(beyond(&self.ridges, edges)), "edge", edges, "edges");
+        let triangle = (beyond(&self.required_triangles, triangles), "triangle", triangles, "triangles");
+        for (found, one, count, many) in [vertex, edge, triangle] {
+            if let Some(number) = found {
+                let (what, place) =
+                    (format!("{one} {number} (from 0) does not exist"), format!("a list of {count} {many}"));
+                return Err(Error::Mesh { what, place, help: "correct the number".into() });
+            }
+        }
+        Ok(())
     }
 }

@@ -242,6 +242,7 @@ mod tests {
             corners: vec![0, 1],
             required_points: vec![3],
             required_edges: vec![1],
+            ..Mesh::default()
         }
     }
 

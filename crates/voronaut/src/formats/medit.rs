@@ -8,9 +8,9 @@ use std::fmt::Write;
 
 /// Reads a mesh as it stands in a `.mesh` text: triangles keep the orientation of the file.
 ///
-/// Kept are `Vertices`, `Edges`, `Triangles`, `Corners`, `RequiredVertices` and `RequiredEdges`; all other sections
-/// are passed over. Sections come in any order, keywords in any case, `End` may be missing. `place` names the text in
-/// messages. Memory follows the text, never a count written in it.
+/// Kept are `Vertices`, `Edges`, `Triangles`, `Corners`, `Ridges`, `RequiredVertices`, `RequiredEdges` and
+/// `RequiredTriangles`; all other sections are passed over. Sections come in any order, keywords in any case, `End` may be
+/// missing. `place` names the text in messages. Memory follows the text, never a count written in it.
 ///
 /// # Errors
 ///
@@ -45,14 +45,25 @@ pub fn write(mesh: &Mesh) -> String {
     write_elements(&mut out, "Triangles", &mesh.triangles, &mesh.triangle_labels);
     write_numbers(&mut out, "Corners", &mesh.corners);
     write_numbers(&mut out, "RequiredVertices", &mesh.required_points);
+    write_numbers(&mut out, "Ridges", &mesh.ridges);
     write_numbers(&mut out, "RequiredEdges", &mesh.required_edges);
+    write_numbers(&mut out, "RequiredTriangles", &mesh.required_triangles);
     out.push_str("\nEnd\n");
     out
 }
 
 /// Sections that are read; any other is passed over.
-const SECTIONS: [&str; 7] =
-    ["Dimension", "Vertices", "Edges", "Triangles", "Corners", "RequiredVertices", "RequiredEdges"];
+const SECTIONS: [&str; 9] = [
+    "Dimension",
+    "Vertices",
+    "Edges",
+    "Triangles",
+    "Corners",
+    "Ridges",
+    "RequiredVertices",
+    "RequiredEdges",
+    "RequiredTriangles",
+];
 
 /// Sections of elements that a triangle mesh cannot hold.
 const FOREIGN: [&str; 5] = ["Quadrilaterals", "Tetrahedra", "Hexahedra", "Prisms", "Pyramids"];
@@ -64,12 +75,14 @@ struct Reader<'a> {
     seen: Vec<&'static str>,
     vertices: Largest,
     edges: Largest,
+    triangles: Largest,
 }
 
 impl<'a> Reader<'a> {
     fn new(text: &'a str, place: &'a str) -> Self {
-        let (vertices, edges) = (Largest::default(), Largest::default());
-        Self { words: Words::new(text, place), mesh: Mesh::default(), dimension: None, seen: vec![], vertices, edges }
+        let [vertices, edges, triangles] = <[Largest; 3]>::default();
+        let (words, mesh) = (Words::new(text, place), Mesh::default());
+        Self { words, mesh, dimension: None, seen: vec![], vertices, edges, triangles }
     }
 
     fn read_section(&mut self, keyword: Word<'_>) -> Result<()> {
@@ -97,7 +110,9 @@ impl<'a> Reader<'a> {
             "Triangles" => (self.mesh.triangles, self.mesh.triangle_labels) = self.read_elements(name)?,
             "Corners" => self.mesh.corners = self.read_numbers(name, "vertex")?,
             "RequiredVertices" => self.mesh.required_points = self.read_numbers(name, "vertex")?,
-            _ => self.mesh.required_edges = self.read_numbers(name, "edge")?,
+            "Ridges" => self.mesh.ridges = self.read_numbers(name, "edge")?,
+            "RequiredEdges" => self.mesh.required_edges = self.read_numbers(name, "edge")?,
+            _ => self.mesh.required_triangles = self.read_numbers(name, "triangle")?,
         }
         Ok(())
     }
@@ -142,7 +157,11 @@ impl<'a> Reader<'a> {
             let help = "number from 1, as Medit does";
             return Err(error_at(self.words.place(), line, format!("{of} 0 does not exist ({at})"), help));
         }
-        let largest = if of == "edge" { &mut self.edges } else { &mut self.vertices };
+        let largest = match of {
+            "edge" => &mut self.edges,
+            "triangle" => &mut self.triangles,
+            _ => &mut self.vertices,
+        };
         largest.note(number, line);
         Ok(number - 1)
     }
@@ -164,6 +183,7 @@ impl<'a> Reader<'a> {
         }
         self.vertices.check("vertex", self.mesh.points.len(), place)?;
         self.edges.check("edge", self.mesh.edges.len(), place)?;
+        self.triangles.check("triangle", self.mesh.triangles.len(), place)?;
         Ok(self.mesh)
     }
 }
@@ -220,7 +240,9 @@ mod tests {
             edge_labels: vec![9, 8],
             corners: vec![2],
             required_points: vec![0, 3],
+            ridges: vec![0, 1],
             required_edges: vec![1],
+            required_triangles: vec![1],
         }
     }
 

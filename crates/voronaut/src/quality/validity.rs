@@ -132,6 +132,8 @@ impl Validity {
         self.examine_range("corner", &mesh.corners, 1, vertices);
         self.examine_range("required vertex", &mesh.required_points, 1, vertices);
         self.examine_range("required edge", &mesh.required_edges, 1, mesh.edges.len());
+        self.examine_range("ridge", &mesh.ridges, 1, mesh.edges.len());
+        self.examine_range("required triangle", &mesh.required_triangles, 1, mesh.triangles.len());
         for (name, labels, entries) in [
             ("vertices", mesh.point_labels.len(), vertices),
             ("triangles", mesh.triangle_labels.len(), mesh.triangles.len()),
