@@ -12,6 +12,7 @@ use voronaut::geometry::{Aabb, Point, Point3};
 use voronaut::metric::{Bounds, MOST_SWEEPS};
 use voronaut::output::Picture;
 use voronaut::recipe::{Centroid, MeshOptions, Mesher, SMOOTH_METRIC, Seeding};
+use voronaut::surface::FeatureOptions;
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
 #[derive(Debug, Parser)]
@@ -115,6 +116,13 @@ pub(crate) struct MeshArgs {
     /// Surfaces: vertices where mesh and surface are closest in the sense of least squares, instead of on the surface
     #[arg(long)]
     pub(crate) fit: bool,
+    /// Edges of a surface where its normal turns by more than this angle are creases: they are kept, as borders, listed edges and
+    /// edges between labels are, and with them the corners where such curves turn by as much
+    #[arg(long, value_name = "DEGREES", value_parser = positive, default_value_t = FeatureOptions::DEFAULT_ANGLE)]
+    pub(crate) ar: f64,
+    /// Look for no creases and corners by angles
+    #[arg(long, conflicts_with = "ar")]
+    pub(crate) nr: bool,
     /// What makes the mesh: voronoi, or starset (Delaunay stars in the metrics of their vertices, refined until they agree: to
     /// compare; -n then sets the scale only)
     #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().mesher)]
@@ -465,6 +473,10 @@ impl DistanceArgs {
 }
 
 impl MeshArgs {
+    pub(crate) fn features(&self) -> FeatureOptions {
+        FeatureOptions { ar: (!self.nr).then_some(self.ar) }
+    }
+
     pub(crate) fn options(&self) -> MeshOptions {
         MeshOptions {
             vertices: self.vertices.map(|vertices| vertices as usize),

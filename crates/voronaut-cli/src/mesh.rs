@@ -28,7 +28,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
     let domain = match Given::read(&args.domain, None)? {
-        Given::Surface(input) => return surfaces::mesh(args, &input, start),
+        Given::Surface(input) => return surfaces::mesh(args, input, start),
         Given::Plane(domain) => domain,
     };
     demand_planar(args)?;
@@ -114,7 +114,7 @@ pub(crate) fn options(args: &MeshArgs) -> Value {
     let more = json!({
         "domain": args.domain, "metric": args.metric, "out": args.out, "background": args.metric_choices.background,
         "smooth_metric": args.metric_choices.smooth_metric,
-        "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
+        "ar": args.features().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
         "picture": args.outputs.picture, "pixels": args.outputs.pixels, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
     });
     if let (Value::Object(options), Value::Object(more)) = (&mut options, more) {

@@ -23,8 +23,10 @@ use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
 
 /// Meshes a surface. Nothing is written unless the mesh is valid.
-pub(crate) fn mesh(args: &MeshArgs, input: &Input, start: Instant) -> Result<()> {
+pub(crate) fn mesh(args: &MeshArgs, input: Input, start: Instant) -> Result<()> {
     demand_supported(&args.outputs)?;
+    let whole = args.outputs.picture.is_some().then(|| Input::new(input.surface.clone(), input.implicit.clone()));
+    let input = &input.cut(&args.features())?;
     let metric = metric::on_surface(&args.metric, input, &args.metric_choices)?;
     let meshed = {
         let bar = Bar::new(args.run.quiet, args.run.verbose);
@@ -38,10 +40,12 @@ pub(crate) fn mesh(args: &MeshArgs, input: &Input, start: Instant) -> Result<()>
     crate::mesh::fill_in(&mut report, &meshed, crate::mesh::options(args));
     report.fidelity = meshed.fidelity.map(|found| report::Strayed::Surface(found.into()));
     report.seconds = report::Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
-    let picture = args.outputs.picture.as_deref().map(|path| {
-        let places = places(input, &meshed.mesh)?;
+    // Cells are drawn across creases.
+    let picture = args.outputs.picture.as_deref().zip(whole.as_ref()).map(|(path, whole)| {
+        let metric = metric::on_surface(&args.metric, whole, &args.metric_choices)?;
+        let places = places(whole, &meshed.mesh)?;
         let size = canvas::size_for(places.len(), args.canvas_size);
-        let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), size, &places)?;
+        let (canvas, at) = Canvas::on_surface(args.canvas, whole, metric.as_ref(), size, &places)?;
         let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March)?;
         Ok::<_, Error>((path, drawn(&args.outputs, &diagram, &meshed.mesh)?))
     });

@@ -47,7 +47,7 @@ pub struct State {
 
 impl<'a> SurfaceDual<'a> {
     /// A triangulation of seeds at places of a surface, all of them in triangles that turn counter-clockwise around the
-    /// surface's normals. Those at the border stay where they are.
+    /// surface's normals. Those at the border stay where they are, and so many of the first.
     ///
     /// # Errors
     /// [`Error::Metric`] where the metric is not positive definite at a seed.
@@ -56,10 +56,12 @@ impl<'a> SurfaceDual<'a> {
         metric: &'a dyn SurfaceMetric,
         factor: f64,
         places: Vec<Place>,
+        staying: usize,
         topology: Triangulation,
     ) -> Result<Self> {
         let planes = places.iter().map(|place| TangentPlane::new(input.normal(place))).collect();
-        let kind = |v: u32| if topology.is_border_vertex(VertexId(v)) { Kind::Corner(v) } else { Kind::Free };
+        let stays = |v: u32| (v as usize) < staying || topology.is_border_vertex(VertexId(v));
+        let kind = |v: u32| if stays(v) { Kind::Corner(v) } else { Kind::Free };
         let kinds = (0..places.len() as u32).map(kind).collect();
         let locals = vec![LocalMetric::default(); places.len()];
         let mut dual =
@@ -266,6 +268,14 @@ impl<'a> SurfaceDual<'a> {
     pub fn downright(&self) -> usize {
         let is_down = |&f: &FaceId| self.upright(self.topology().corners(f)) < UPRIGHT;
         self.topology().faces().filter(is_down).count()
+    }
+
+    /// Whether a triangle faces away from the mean of the surface's normals at its corners.
+    pub fn is_folded(&self, f: FaceId) -> bool {
+        let corners = self.topology().corners(f);
+        let [a, b, c] = corners.map(|v| self.position(v));
+        let mean = corners.iter().fold(Vector3::default(), |sum, v| sum + self.state.planes[v.index()].normal);
+        (b - a).cross(c - a).dot(mean) < 0.0
     }
 
     /// The least cosine between the normal of a triangle and those of the surface at its corners.

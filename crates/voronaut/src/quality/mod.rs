@@ -4,6 +4,7 @@ mod contact;
 mod crossings;
 mod edges;
 mod embedding;
+mod faults;
 mod fidelity;
 mod geodesics;
 mod histogram;
@@ -19,6 +20,7 @@ mod test_meshes;
 mod validity;
 
 pub use crossings::{Crossing, crossing_edges, crossings};
+pub use faults::faulty_triangles;
 pub use fidelity::{Farthest, Fidelity, fidelity};
 pub use histogram::{Both, Histogram, Histograms, histograms};
 pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};

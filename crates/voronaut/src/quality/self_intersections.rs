@@ -8,35 +8,38 @@ use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
-/// How many pairs of triangles have more in common than a vertex or an edge that both name, and the first of them.
+/// The pairs of triangles that have more in common than a vertex or an edge that both name, the smaller number first, in order.
 /// Neighbours that lie flat on each other count. Needs finite positions and triangles that are not flat.
 ///
 /// Pairs whose boxes meet are found in a tree: O(n log n) where triangles are not much longer than their distance from
 /// those that are no neighbours.
-pub(super) fn self_intersections(mesh: &Mesh) -> (usize, Option<Fault>) {
-    let corners: Vec<Corners> =
-        mesh.triangles.par_iter().map(|&t| Corners { vertices: t, points: mesh.positions_of(t) }).collect();
+pub(super) fn self_intersections(mesh: &Mesh) -> Vec<[usize; 2]> {
+    let corners: Vec<Corners> = mesh.triangles.par_iter().map(|&t| corners(mesh, t)).collect();
     let boxes: Vec<AABB<[f64; 3]>> = corners.par_iter().filter_map(bounds).collect();
     let numbered = boxes.iter().zip(0..).map(|(b, i)| GeomWithData::new(Rectangle::from_aabb(*b), i));
     let tree: RTree<GeomWithData<Rectangle<[f64; 3]>, usize>> = RTree::bulk_load(numbered.collect());
     let of_one = |i: usize| {
         let others = tree.locate_in_envelope_intersecting(boxes[i]).map(|other| other.data).filter(|&j| j > i);
-        let met: Vec<usize> = others.filter(|&j| contact(&corners[i], &corners[j]).is_some()).collect();
-        (met.len(), met.into_iter().min())
+        let mut met: Vec<usize> = others.filter(|&j| contact(&corners[i], &corners[j]).is_some()).collect();
+        met.sort_unstable();
+        met.into_iter().map(|j| [i, j]).collect::<Vec<_>>()
     };
-    let found: Vec<(usize, Option<usize>)> = (0..boxes.len()).into_par_iter().map(of_one).collect();
-    let first = found.iter().zip(0..).find_map(|(&(_, other), i)| fault(&corners, i, other?));
-    (found.iter().map(|(count, _)| count).sum(), first)
+    (0..boxes.len()).into_par_iter().flat_map_iter(of_one).collect()
+}
+
+/// What to say of a pair of triangles that meet.
+pub(super) fn fault(mesh: &Mesh, [i, j]: [usize; 2]) -> Option<Fault> {
+    let place = contact(&corners(mesh, mesh.triangles[i]), &corners(mesh, mesh.triangles[j]))?;
+    Some(Fault { what: format!("triangles {} and {} meet", i + 1, j + 1), place: place.to_string() })
+}
+
+fn corners(mesh: &Mesh, t: [u32; 3]) -> Corners {
+    Corners { vertices: t, points: mesh.positions_of(t) }
 }
 
 fn bounds(corners: &Corners) -> Option<AABB<[f64; 3]>> {
     let bounds = Aabb3::of(corners.points)?;
     Some(AABB::from_corners(bounds.min.to_array(), bounds.max.to_array()))
-}
-
-fn fault(corners: &[Corners], i: usize, j: usize) -> Option<Fault> {
-    let place = contact(&corners[i], &corners[j])?;
-    Some(Fault { what: format!("triangles {} and {} meet", i + 1, j + 1), place: place.to_string() })
 }
 
 #[cfg(test)]

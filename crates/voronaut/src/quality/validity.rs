@@ -4,7 +4,7 @@ use super::contact::is_flat;
 use super::edges::{self, Edges, NONE};
 use super::embedding;
 use super::position::middle;
-use super::self_intersections::self_intersections;
+use super::self_intersections::{self, self_intersections};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, orientation};
 use crate::mesh::Mesh;
@@ -221,9 +221,9 @@ impl Validity {
     }
 
     fn examine_contacts(&mut self, mesh: &Mesh) {
-        let (pairs, first) = self_intersections(mesh);
-        self.overlaps = pairs;
-        if let Some(fault) = first {
+        let pairs = self_intersections(mesh);
+        self.overlaps = pairs.len();
+        if let Some(fault) = pairs.first().and_then(|&pair| self_intersections::fault(mesh, pair)) {
             self.fault(fault.what, fault.place);
         }
     }
@@ -256,7 +256,7 @@ fn boundary_loops(edges: &Edges) -> usize {
 }
 
 /// Vertices with triangles that cannot be reached from another one of theirs across edges at the vertex.
-fn split_vertices(mesh: &Mesh, edges: &Edges) -> Vec<u32> {
+pub(super) fn split_vertices(mesh: &Mesh, edges: &Edges) -> Vec<u32> {
     let twins = edges.twins();
     let mut corners = vec![0_u32; mesh.points.len()];
     let mut start = vec![NONE; mesh.points.len()];

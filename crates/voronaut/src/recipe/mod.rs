@@ -5,19 +5,23 @@ mod dual;
 mod field;
 mod mesher;
 mod on_surface;
+mod patches;
 mod protection;
 mod relaxing;
 mod seeding;
 mod settle;
 mod stopwatch;
+mod surface_dual;
+mod surface_pass;
 
 pub use certified::{certified_canvas, certify};
 pub use dual::{SeedDual, dual, net};
 pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, metric, smooth_metric};
 pub use mesher::Mesher;
-pub use on_surface::{mesh_surface, surface_dual, surface_mesh};
+pub use on_surface::mesh_surface;
 pub use relaxing::Centroid;
 pub use seeding::Seeding;
+pub use surface_dual::{surface_dual, surface_mesh};
 
 use crate::canvas::{self, Canvas, CanvasFigures};
 use crate::domain::Domain;

@@ -1,8 +1,10 @@
 //! Placing seeds: first the boundary and interfaces at unit metric length, then the interior, one seed at a time where
 //! the metric circumradius is largest, or where the nearest seed is farthest.
 
+mod contract;
 mod curves;
 mod farthest;
+mod features;
 mod interior;
 mod on_surface;
 mod plan;
@@ -11,9 +13,10 @@ mod segments;
 
 pub use curves::simplify;
 pub use farthest::{Farthest, refine_farthest};
+pub use features::{FeatureEdge, FeatureSeed, FeatureSeeds, MeasuredCurves};
 pub(crate) use interior::insert_spaced;
 pub use interior::{Fill, Refined, refine};
-pub use on_surface::{Seeded, seed_surface, surface_triangulation};
+pub use on_surface::{Seeded, seed_surface, triangulated};
 pub use plan::{Plan, Target, demand_memory};
 pub use protected::{Picked, Picking, refine_protected};
 pub use segments::{MetricArc, sample_segments};

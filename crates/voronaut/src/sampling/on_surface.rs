@@ -1,48 +1,46 @@
-//! Seeds on a surface: its borders at even spacing, then farthest points (RR-9103, section 13), and more where cells are no
-//! discs or meet twice.
+//! Seeds inside the patches of a surface: farthest points (RR-9103, section 13), and a triangulation of all seeds.
 
+use super::contract::contracted;
 use super::farthest::Farthest;
 use crate::canvas::{Canvas, Draped};
 use crate::diagram::SurfaceDiagram;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geodesic::Method;
 use crate::progress::Progress;
 use crate::rdt::{OnSurface, Rdt};
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
-/// Seeds on a closed border at least.
-const LEAST_ON_BORDER: usize = 3;
-/// Rounds of seeds for cells that are no discs.
-const ROUNDS: usize = 40;
+/// Rounds of seeds for what contraction leaves.
+const ROUNDS: usize = 8;
 
-/// Seeds of a surface, with a triangulation of the surface: vertex i is seed i.
+/// Seeds of a surface, with a triangulation of the surface.
 pub struct Seeded<'a> {
     /// The diagram on the canvas.
     pub diagram: SurfaceDiagram<'a>,
-    /// The Riemannian Delaunay triangulation.
-    pub dual: Rdt<OnSurface<'a>>,
-    /// Seeds that were put in for the sake of cells that were no discs.
+    /// The triangles by their colours: those of the Riemannian Delaunay triangulation where that is one of the surface, else
+    /// those of the contracted canvas.
+    pub triangles: Vec<[u32; 3]>,
+    /// Seeds that were put in because fewer do not make the surface.
     pub added: usize,
 }
 
-/// As many seeds as asked for, at canvas vertices, borders with edges of about the length `spacing` (metric); more where
-/// cells are no discs, or two of them meet twice: then their dual is no triangulation of the surface.
+/// As many seeds as asked for: those that are given, on borders, and others at canvas vertices inside, where `may_hold` lets
+/// them be. More where fewer do not make a triangulation of the surface.
 ///
 /// # Errors
-/// [`Error::Unsupported`] of a method that drives no diagrams; [`Error::Domain`] where so many rounds of seeds do not make it a
-/// triangulation.
+/// [`crate::Error::Unsupported`] of a method that drives no diagrams; [`crate::Error::Domain`] where so many rounds of seeds make
+/// no triangulation.
 pub fn seed_surface<'a>(
     canvas: &'a Canvas<Draped<'a>>,
+    given: &[VertexId],
     count: usize,
-    spacing: f64,
     method: Method,
+    may_hold: impl Fn(VertexId) -> bool,
     progress: &dyn Progress,
 ) -> Result<Seeded<'a>> {
-    let on_border: Vec<VertexId> =
-        canvas.draped().borders().iter().flat_map(|curve| spaced(canvas.draped(), curve, spacing)).collect();
-    let mut diagram = SurfaceDiagram::on_surface(canvas, &on_border, method)?;
+    let mut diagram = SurfaceDiagram::on_surface(canvas, given, method)?;
     let topology = canvas.draped().topology();
-    let mut farthest = Farthest::new(&diagram, |v| !topology.is_border_vertex(v));
+    let mut farthest = Farthest::new(&diagram, |v| !topology.is_border_vertex(v) && may_hold(v));
     let mut reported = 0;
     while diagram.colours() < count {
         let Some((v, _)) = farthest.pop(&diagram) else { break };
@@ -52,31 +50,38 @@ pub fn seed_surface<'a>(
             reported = diagram.colours();
         }
     }
-    made_whole(diagram)
+    triangulated(diagram)
 }
 
-/// Adds seeds until the dual is a triangulation of the surface.
-fn made_whole(mut diagram: SurfaceDiagram) -> Result<Seeded> {
+/// The triangulation of a diagram's seeds; adds seeds if it must.
+///
+/// # Errors
+/// As for [`seed_surface`].
+pub fn triangulated(mut diagram: SurfaceDiagram) -> Result<Seeded> {
     let before = diagram.colours();
+    let (dual, poor) = surface_triangulation(&diagram);
+    if poor.is_empty() {
+        return Ok(Seeded { triangles: dual.triangles(), diagram, added: 0 });
+    }
     for _ in 0..ROUNDS {
-        let (dual, poor) = surface_triangulation(&diagram);
-        if poor.is_empty() {
+        let (triangles, left) = contracted(&diagram);
+        if left.is_empty() {
             let added = diagram.colours() - before;
-            return Ok(Seeded { diagram, dual, added });
+            return Ok(Seeded { diagram, triangles, added });
         }
-        for v in farthest_of(&diagram, &poor) {
+        let farthest = left.iter().max_by(|&&v, &&w| diagram.distance(v).total_cmp(&diagram.distance(w)));
+        if let Some(&v) = farthest {
             diagram.insert_at_vertex(v);
         }
     }
-    let (_, poor) = surface_triangulation(&diagram);
-    let at = poor.first().and_then(|&colour| diagram.seed(colour)).map(|v| diagram.canvas().draped().position(v));
+    let (_, left) = contracted(&diagram);
+    let place =
+        left.first().map_or_else(|| "the surface".to_owned(), |&v| diagram.canvas().draped().position(v).to_string());
     let help = "ask for more vertices (-n), or a finer canvas (--canvas-size)";
-    let place = at.map_or_else(|| "the surface".to_owned(), |p| p.to_string());
-    Err(Error::domain("cells that are no discs, whose dual is no triangulation of the surface", place, help))
+    Err(crate::Error::domain("too few vertices for a mesh of the surface's topology", place, help))
 }
-
 /// The dual of a diagram's seeds, and the colours around which it is no triangulation of the surface.
-pub fn surface_triangulation<'a>(diagram: &SurfaceDiagram<'a>) -> (Rdt<OnSurface<'a>>, Vec<u32>) {
+fn surface_triangulation<'a>(diagram: &SurfaceDiagram<'a>) -> (Rdt<OnSurface<'a>>, Vec<u32>) {
     let (glued, copies) = diagram.glued_nerve();
     let dual = Rdt::from_glued(OnSurface::new(diagram), diagram.colours(), glued, &copies);
     let mut poor = no_discs(diagram);
@@ -136,42 +141,4 @@ fn no_discs(diagram: &SurfaceDiagram) -> Vec<u32> {
         add(a.filter(|_| a == b && b == c), 1);
     }
     (0..).zip(count).filter(|(_, count)| *count != 1).map(|(colour, _)| colour).collect()
-}
-
-/// The canvas vertex that is farthest from its seed, of each of some cells; none of a cell that is one vertex.
-fn farthest_of(diagram: &SurfaceDiagram, colours: &[u32]) -> Vec<VertexId> {
-    let mut best: Vec<Option<VertexId>> = vec![None; diagram.colours()];
-    for v in diagram.canvas().topology().vertices() {
-        if let Some(best) = diagram.colour(v).and_then(|colour| best.get_mut(colour as usize)) {
-            let is_farther = best.is_none_or(|known| diagram.distance(known) < diagram.distance(v));
-            if is_farther && diagram.distance(v) > 0.0 {
-                *best = Some(v);
-            }
-        }
-    }
-    colours.iter().filter_map(|&colour| best[colour as usize]).collect()
-}
-
-/// Vertices of a closed curve, its corners among them, that are about so far apart.
-fn spaced(draped: &Draped, curve: &[HalfEdge], spacing: f64) -> Vec<VertexId> {
-    let topology = draped.topology();
-    let corners: Vec<usize> = (0..curve.len()).filter(|&i| i == 0 || draped.is_corner(curve, i)).collect();
-    let least = LEAST_ON_BORDER.div_ceil(corners.len());
-    let mut found = Vec::new();
-    for (k, &begin) in corners.iter().enumerate() {
-        let end = corners.get(k + 1).copied().unwrap_or(curve.len());
-        let lengths: Vec<f64> = curve[begin..end].iter().map(|&h| topology.length(h)).collect();
-        let total: f64 = lengths.iter().sum();
-        let parts = ((total / spacing).round() as usize).clamp(least.min(end - begin), end - begin);
-        let (mut along, mut part) = (0.0, 0);
-        for (h, length) in curve[begin..end].iter().zip(&lengths) {
-            // The vertex nearest to the next division.
-            if part < parts && along + 0.5 * length >= total * part as f64 / parts as f64 {
-                found.push(topology.origin(*h));
-                part += 1;
-            }
-            along += length;
-        }
-    }
-    found
 }

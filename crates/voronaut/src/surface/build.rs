@@ -1,11 +1,12 @@
 //! From an indexed list of triangles to a surface.
 
-use super::Surface;
 use super::orient::{Side, orient, sides};
+use super::{Mark, Surface};
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
 use crate::mesh::Mesh;
-use crate::triangulation::{Broken, Constraint, Triangulation, VertexId};
+use crate::triangulation::{Broken, Constraint, FaceId, Triangulation, VertexId};
+use std::collections::BTreeSet;
 
 impl Surface {
     /// The surface of a mesh's triangles, with its labels; edges of the list are fixed.
@@ -30,11 +31,18 @@ impl Surface {
         regions.resize(triangles.len(), 0);
         let topology = Triangulation::from_triangles(positions.len(), &triangles, &regions);
         check_fans(&topology, &positions)?;
-        let (mut point_labels, mut edge_labels) = (mesh.point_labels.clone(), mesh.edge_labels.clone());
+        let mut point_labels = mesh.point_labels.clone();
         point_labels.resize(positions.len(), 0);
-        edge_labels.resize(mesh.edges.len(), 0);
-        let required_points = required_points(mesh);
-        let mut surface = Self { topology, positions, point_labels, edge_labels, required_points, turned };
+        let mut surface = Self {
+            topology,
+            positions,
+            point_labels,
+            marks: marks(mesh),
+            corners: in_order(&mesh.corners).map(VertexId).collect(),
+            required_points: in_order(&mesh.required_points).map(VertexId).collect(),
+            required_triangles: in_order(&mesh.required_triangles).map(FaceId).collect(),
+            turned,
+        };
         surface.fix_edges(&mesh.edges)?;
         Ok(surface)
     }
@@ -43,15 +51,20 @@ impl Surface {
     pub fn to_mesh(&self) -> Mesh {
         let t = &self.topology;
         let fixed: Vec<_> = t.edges().filter_map(|h| Some((h, t.constraint(h)?))).collect();
+        let marks: Vec<Mark> = fixed.iter().map(|&(_, constraint)| self.mark(constraint)).collect();
+        let marked = |is: fn(&Mark) -> bool| (0..).zip(&marks).filter(|(_, mark)| is(mark)).map(|(i, _)| i).collect();
         Mesh {
             points: self.positions.iter().map(|p| p.to_array()).collect(),
             point_labels: self.point_labels.clone(),
             triangles: t.faces().map(|f| t.corners(f).map(|v| v.0)).collect(),
             triangle_labels: t.faces().map(|f| t.region(f)).collect(),
             edges: fixed.iter().map(|&(h, _)| [t.origin(h).0, t.target(h).0]).collect(),
-            edge_labels: fixed.iter().map(|&(_, constraint)| self.edge_label(constraint)).collect(),
+            edge_labels: marks.iter().map(|mark| mark.label).collect(),
+            corners: self.corners.iter().map(|v| v.0).collect(),
             required_points: self.required_points.iter().map(|v| v.0).collect(),
-            ..Mesh::default()
+            ridges: marked(|mark| mark.is_ridge),
+            required_edges: marked(|mark| mark.is_required),
+            required_triangles: self.required_triangles.iter().map(|f| f.0).collect(),
         }
     }
 
@@ -62,7 +75,7 @@ impl Surface {
                 let what = format!("edge {} of the list is no edge of a triangle", i + 1);
                 Error::domain(what, edge([a, b], &self.positions), "remove it, or let a triangle have it")
             })?;
-            let same = |other: Constraint| self.edge_label(other) == self.edge_labels[i];
+            let same = |other: Constraint| self.mark(other).label == self.marks[i].label;
             if let Some(other) = self.topology.constraint(h).filter(|&other| !same(other)) {
                 let what = format!("edges {} and {} of the list are one, with different labels", other.0 + 1, i + 1);
                 return Err(Error::domain(what, edge([a, b], &self.positions), "keep one of them"));
@@ -145,11 +158,16 @@ fn check_fans(topology: &Triangulation, positions: &[Point3]) -> Result<()> {
     }
 }
 
-fn required_points(mesh: &Mesh) -> Vec<VertexId> {
-    let mut points: Vec<_> = mesh.corners.iter().chain(&mesh.required_points).copied().map(VertexId).collect();
-    points.sort_unstable();
-    points.dedup();
-    points
+fn marks(mesh: &Mesh) -> Vec<Mark> {
+    let label = |i: usize| mesh.edge_labels.get(i).copied().unwrap_or_default();
+    let mut marks: Vec<Mark> = (0..mesh.edges.len()).map(|i| Mark { label: label(i), ..Mark::default() }).collect();
+    mesh.ridges.iter().for_each(|&i| marks[i as usize].is_ridge = true);
+    mesh.required_edges.iter().for_each(|&i| marks[i as usize].is_required = true);
+    marks
+}
+
+fn in_order(numbers: &[u32]) -> impl Iterator<Item = u32> {
+    numbers.iter().copied().collect::<BTreeSet<u32>>().into_iter()
 }
 
 /// A vertex, numbered from 1, for messages.
@@ -184,8 +202,11 @@ mod tests {
         let t = surface.topology();
         assert_eq!(t.faces().map(|f| t.region(f)).collect::<Vec<_>>(), [4, 5, 6, 7]);
         let h = t.find(VertexId(1), VertexId(2)).unwrap();
-        assert_eq!(t.constraint(h).map(|c| surface.edge_label(c)), Some(8));
-        assert_eq!(surface.required_points(), [VertexId(1), VertexId(3)]);
+        assert_eq!(t.constraint(h).map(|c| surface.mark(c).label), Some(8));
+        assert_eq!(
+            (surface.corners(), surface.required_points()),
+            (&[VertexId(1), VertexId(3)][..], &[VertexId(1)][..])
+        );
         assert_eq!((t.vertices().count(), surface.turned()), (4, 0));
         let again = Surface::new(&surface.to_mesh()).unwrap();
         assert_eq!(again.to_mesh(), surface.to_mesh());

@@ -1,5 +1,7 @@
 //! A surface as it was given, and how points near it come onto it.
 
+use super::cut::{Seams, cut};
+use super::features::FeatureOptions;
 use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
 use crate::geometry::{Point3, Vector3};
@@ -14,6 +16,8 @@ pub struct Input {
     pub surface: Surface,
     /// Its equation, if it has one: then vertices are on it, and normals and curvatures are exact.
     pub implicit: Option<Expression>,
+    /// Where the surface is open, or was cut open.
+    pub seams: Seams,
     /// Unit normals, one per vertex slot.
     normals: Vec<Vector3>,
     /// The diagonal of its bounding box.
@@ -33,13 +37,35 @@ pub const OFF_SURFACE: f64 = 1e-2;
 impl Input {
     /// A surface with its equation, if it has one, on which its vertices are.
     pub fn new(surface: Surface, implicit: Option<Expression>) -> Self {
+        let seams = Seams::uncut(&surface);
+        Self::with_seams(surface, implicit, seams)
+    }
+
+    /// The same surface cut open along its features, so that a mesh keeps them. On an equation's surface no creases are looked
+    /// for.
+    ///
+    /// # Errors
+    /// As for [`Surface::new`].
+    pub fn cut(self, options: &FeatureOptions) -> Result<Self> {
+        let options = if self.implicit.is_some() { &FeatureOptions { ar: None } } else { options };
+        let (surface, seams) = cut(&self.surface, options)?;
+        // Of an equation's surface creases are not looked for; its border bends all the same.
+        let seams = if self.implicit.is_some() && surface.positions().len() == self.surface.positions().len() {
+            self.seams
+        } else {
+            seams
+        };
+        Ok(Self::with_seams(surface, self.implicit, seams))
+    }
+
+    fn with_seams(surface: Surface, implicit: Option<Expression>, seams: Seams) -> Self {
         let up = Vector3::new(0.0, 0.0, 1.0);
         let mut normals = vec![up; surface.positions().len()];
         for v in surface.topology().vertices() {
             normals[v.index()] = surface.vertex_normal(v).unwrap_or(up);
         }
         let diagonal = surface.bounds().diagonal();
-        Self { surface, implicit, normals, diagonal, nearest: OnceLock::new() }
+        Self { surface, implicit, seams, normals, diagonal, nearest: OnceLock::new() }
     }
 
     /// The diagonal of the bounding box of its triangles.

@@ -5,6 +5,8 @@
 //! | `build`, `orient` | from an indexed list of triangles to a [`Surface`], or what is wrong and where |
 //! | `measure` | area, normals, Euler characteristic, components, borders |
 //! | `nearest` | the closest point of a surface |
+//! | `features`, `curves` | creases, borders, interfaces, edges of the list; the curves that they make, from corner to corner |
+//! | `cut` | a surface cut open along its features into patches |
 //! | `input` | a surface with its equation, if it has one; how points come onto it |
 //! | `chart`, `chord` | a part of a surface seen as a part of the plane; the way over a chord |
 //! | `implicit`, `march` | surfaces f(x, y, z) = 0: derivatives, projection, a first mesh by marching tetrahedra |
@@ -16,6 +18,9 @@
 mod build;
 mod chart;
 mod chord;
+mod curves;
+mod cut;
+mod features;
 mod given;
 mod implicit;
 mod input;
@@ -32,6 +37,9 @@ mod tetrahedra;
 
 pub use chart::{Chart, STEEPEST};
 pub use chord::Chord;
+pub use curves::{Curve, CurveEdge, Curves};
+pub use cut::Seams;
+pub use features::{FeatureOptions, Mark};
 pub use given::Given;
 pub use implicit::{Curvatures, Implicit, closest_zero, curvatures, project};
 pub use input::{Input, OFF_SURFACE};
@@ -55,8 +63,10 @@ pub struct Surface {
     topology: Triangulation,
     positions: Vec<Point3>,
     point_labels: Vec<i32>,
-    edge_labels: Vec<i32>,
+    marks: Vec<Mark>,
+    corners: Vec<VertexId>,
     required_points: Vec<VertexId>,
+    required_triangles: Vec<FaceId>,
     turned: usize,
 }
 
@@ -94,14 +104,24 @@ impl Surface {
         &self.point_labels
     }
 
-    /// The label of a fixed edge.
-    pub fn edge_label(&self, constraint: Constraint) -> i32 {
-        self.edge_labels[constraint.0 as usize]
+    /// What the input says of a fixed edge.
+    pub fn mark(&self, constraint: Constraint) -> Mark {
+        self.marks[constraint.0 as usize]
     }
 
-    /// Vertices that the input marks as corners or as required, in order.
+    /// Vertices that the input marks as corners, in order.
+    pub fn corners(&self) -> &[VertexId] {
+        &self.corners
+    }
+
+    /// Vertices that the input marks as required, in order.
     pub fn required_points(&self) -> &[VertexId] {
         &self.required_points
+    }
+
+    /// Triangles that the input marks as required, in order.
+    pub fn required_triangles(&self) -> &[FaceId] {
+        &self.required_triangles
     }
 
     /// How many triangles of the input were turned so that all neighbours agree.

@@ -160,11 +160,22 @@ impl Triangulation {
     /// Removes the origin of an edge: its edges end at the edge's target instead, and the faces of the edge vanish.
     /// Lengths of all edges at the target become NaN. The caller owes [`Triangulation::can_collapse`].
     pub fn collapse(&mut self, h: HalfEdge) {
+        self.merge(h, self.target(h));
+    }
+
+    /// Removes the target of an edge, as [`Triangulation::collapse`] does its origin.
+    pub fn collapse_back(&mut self, h: HalfEdge) {
+        self.merge(h, self.origin(h));
+    }
+
+    /// Makes the ends of an edge one of them.
+    fn merge(&mut self, h: HalfEdge, kept: VertexId) {
         let (a, b) = (self.origin(h), self.target(h));
         let fan: Vec<HalfEdge> = self.star(a).chain(self.star(b)).collect();
         for &e in &fan {
-            self.origin[e.index()] = b;
+            self.origin[e.index()] = kept;
         }
+        let gone = if kept == a { b } else { a };
         let mut touched = fan;
         for side in [Some(h), self.twin(h)].into_iter().flatten() {
             let outer = [side.next(), side.prev()].map(|e| self.twin(e));
@@ -179,13 +190,13 @@ impl Triangulation {
                 touched.extend(e.face().half_edges());
             }
         }
-        self.start[a.index()] = NONE;
-        self.free_vertices.push(a);
+        self.start[gone.index()] = NONE;
+        self.free_vertices.push(gone);
         touched.retain(|e| self.is_face(e.face()));
         for e in touched {
             self.set_start(e);
         }
-        for e in self.star(b).collect::<Vec<_>>() {
+        for e in self.star(kept).collect::<Vec<_>>() {
             self.set_length(e, f64::NAN);
             self.set_length(e.prev(), f64::NAN);
         }

@@ -1,0 +1,279 @@
+//! One pass over a surface: seeds, their triangulation, relaxed and settled, and one mesh of all patches.
+
+use super::MeshOptions;
+use super::dual::account;
+use super::patches::Patched;
+use super::stopwatch::Stopwatch;
+use crate::canvas::{Canvas, CanvasFigures, Draped};
+use crate::diagram::SurfaceDiagram;
+use crate::dual::{Road, SurfaceDual};
+use crate::error::{Error, Result};
+use crate::geodesic::Method;
+use crate::geometry::{Point3, Tensor3};
+use crate::mesh::Mesh;
+use crate::optimise::{Relaxed, Tangent, mend_worst, relax};
+use crate::output::report;
+use crate::progress::Progress;
+use crate::quality;
+use crate::rdt::{OnSurface, Rdt, Start};
+use crate::sampling::{FeatureSeeds, MeasuredCurves, Seeded, seed_surface, triangulated};
+use crate::surface::metric::{Constant, SurfaceMetric};
+use crate::surface::{Input, Place, Surface};
+use crate::triangulation::{Triangulation, VertexId};
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+/// Relaxation goes in so many parts, the factor on the metric made fit between them.
+const PARTS: usize = 4;
+/// Triangles that are mended in the end, as a share of all, and how often.
+const MENDED_SHARE: f64 = 0.02;
+const MENDINGS: usize = 3;
+/// Seeds put into faulty triangles are this far from their corners and from each other, as a share of the longest edge.
+const APART: f64 = 0.1;
+
+/// What passes are made with.
+pub(super) struct Setting<'a> {
+    pub(super) input: &'a Input,
+    pub(super) metric: &'a dyn SurfaceMetric,
+    pub(super) options: &'a MeshOptions,
+    pub(super) progress: &'a dyn Progress,
+    pub(super) curves: MeasuredCurves<'a>,
+}
+
+/// What a pass has come to.
+pub(super) struct Pass<'a> {
+    input: &'a Input,
+    pub(super) dual: SurfaceDual<'a>,
+    features: FeatureSeeds,
+    owners: Vec<u32>,
+    added: usize,
+    pub(super) relaxed: Relaxed,
+    pub(super) settled: Settled,
+}
+
+/// What came of settling edges.
+pub(super) struct Settled {
+    pub(super) account: report::Dual,
+    pub(super) figures: CanvasFigures,
+    pub(super) diagram: report::Diagram,
+    /// Of an equation's surface that is to be fitted, the canvas.
+    pub(super) fine: Option<Surface>,
+}
+
+/// Where the passes before made no mesh.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Reseed {
+    /// Places that shall be seeds.
+    places: Vec<Place>,
+    /// How many times as many seeds as their lengths ask for each curve shall have; one if there is no entry.
+    density: Vec<usize>,
+    /// Passes before.
+    pub(super) rounds: usize,
+}
+
+impl Reseed {
+    /// What to tell the user.
+    pub(super) fn note(&self) -> Option<String> {
+        (self.rounds > 0).then(|| {
+            let count = self.places.len();
+            format!("made anew {} times, with {count} seeds where triangles met or folded over", self.rounds)
+        })
+    }
+}
+
+impl<'a> Setting<'a> {
+    /// A pass with so many vertices.
+    ///
+    /// # Errors
+    /// The metric is invalid somewhere; there are too few vertices for the surface's topology.
+    pub(super) fn pass(&self, count: usize, scale: f64, reseed: &Reseed, watch: &mut Stopwatch) -> Result<Pass<'a>> {
+        let begin = Instant::now();
+        let features = self.curves.sampled(1.0 / scale.sqrt(), self.options.hausd, &reseed.density);
+        let (mut given, owners) = features.flattened();
+        given.extend(&reseed.places);
+        let count = count.max(features.seeds.len()) + owners.len() - features.seeds.len();
+        let (canvas, at) = self.canvas(count, &given)?;
+        watch.add("canvas", begin);
+        let begin = Instant::now();
+        self.progress.stage("seeding", count as u64);
+        let may_hold = |v: VertexId| !self.is_required(&canvas, v);
+        let seeded = seed_surface(&canvas, &at, count, self.options.geodesic, may_hold, self.progress)?;
+        watch.add("seed", begin);
+        let begin = Instant::now();
+        let (mut dual, relaxed) = self.relaxed(&canvas, &seeded, &given[..owners.len()], scale)?;
+        watch.add("relax", begin);
+        let begin = Instant::now();
+        let settled = self.settle(&mut dual)?;
+        watch.add("settle", begin);
+        Ok(Pass { input: self.input, dual, features, owners, added: seeded.added, relaxed, settled })
+    }
+
+    fn canvas(&self, count: usize, seeds: &[Place]) -> Result<(Canvas<Draped<'a>>, Vec<VertexId>)> {
+        self.progress.stage("canvas", 1);
+        let size = crate::canvas::size_for(count, self.options.canvas_size);
+        Canvas::on_surface(self.options.canvas, self.input, self.metric, size, seeds)
+    }
+
+    /// Whether a canvas vertex lies in a required triangle.
+    fn is_required(&self, canvas: &Canvas<Draped>, v: VertexId) -> bool {
+        let required = self.input.surface.required_triangles();
+        !required.is_empty() && required.binary_search(&canvas.draped().place(v).face).is_ok()
+    }
+
+    /// The triangulation of the seeds, relaxed; the first of them are given, and stay.
+    fn relaxed(
+        &self,
+        canvas: &Canvas<Draped>,
+        seeds: &Seeded,
+        given: &[Place],
+        scale: f64,
+    ) -> Result<(SurfaceDual<'a>, Relaxed)> {
+        let steps = self.options.lloyd;
+        self.progress.stage("relaxing", steps as u64);
+        let at: Vec<VertexId> = (0..seeds.diagram.colours() as u32).filter_map(|i| seeds.diagram.seed(i)).collect();
+        let inside = at[given.len()..].iter().map(|&v| *canvas.draped().place(v));
+        let places: Vec<Place> = given.iter().copied().chain(inside).collect();
+        let dual = |triangles: &[[u32; 3]]| {
+            let topology = Triangulation::from_triangles(places.len(), triangles, &vec![0; triangles.len()]);
+            SurfaceDual::new(self.input, self.metric, scale, places.clone(), given.len(), topology)
+        };
+        let mut best = dual(&seeds.triangles)?;
+        if best.downright() > 0 {
+            // Straight edges cannot honour the metric here. The Delaunay triangulation in space can be flipped towards it.
+            if let Some(triangles) = euclidean(canvas, &at)? {
+                let straight = dual(&triangles)?;
+                best = if straight.downright() < best.downright() { straight } else { best };
+            }
+        }
+        best.flip_all();
+        self.fit_scale(&mut best)?;
+        let mut relaxed = Relaxed::default();
+        for part in 0..PARTS {
+            let steps = (steps * (part + 1)) / PARTS - (steps * part) / PARTS;
+            relaxed.append(relax(&mut best, &Tangent, steps, self.progress)?);
+            self.fit_scale(&mut best)?;
+        }
+        mend(&mut best);
+        Ok((best, relaxed))
+    }
+
+    fn fit_scale(&self, dual: &mut SurfaceDual) -> Result<()> {
+        if self.options.vertices.is_some() {
+            let mean = dual.mean_length();
+            dual.rescale(dual.factor() / (mean * mean))?;
+        }
+        Ok(())
+    }
+
+    /// Flips by lengths of geodesics on a canvas that has the seeds as vertices.
+    fn settle(&self, dual: &mut SurfaceDual) -> Result<Settled> {
+        self.progress.stage("settling edges", 1);
+        let (canvas, at) = self.canvas(dual.places().len(), dual.places())?;
+        let diagram = SurfaceDiagram::on_surface(&canvas, &at, self.options.geodesic)?;
+        let triangles = dual.triangles();
+        let nerve = diagram.nerve();
+        let at_border = Start::from_nerve(&nerve).at_border;
+        let rdt = Rdt::judged(OnSurface::new(&diagram), at.len(), &Start { triangles, at_border });
+        dual.settle_by(|quad| rdt.margin_of(quad));
+        let blocked = dual.disagreeing(|quad| rdt.margin_of(quad));
+        mend(dual);
+        let account = report::Dual { blocked_flips: blocked, ..account(&rdt, &nerve, Road::Geodesic) };
+        let is_fine = self.options.fit && self.input.implicit.is_some();
+        let fine = is_fine.then(|| canvas.draped().to_surface()).transpose()?;
+        Ok(Settled { account, figures: canvas.figures(), diagram: report::Diagram::of(&diagram), fine })
+    }
+}
+
+impl Pass<'_> {
+    fn patched(&self) -> Patched<'_> {
+        Patched { input: self.input, features: &self.features, owners: &self.owners }
+    }
+
+    /// One mesh of all patches; its triangles are in the order of the dual's.
+    pub(super) fn mesh(&self) -> Mesh {
+        self.patched().mesh(self.dual.places(), &self.dual.triangles())
+    }
+
+    /// The triangles at which it is no mesh, or that are folded over.
+    pub(super) fn faulty(&self, mesh: &Mesh) -> Vec<u32> {
+        let folded = (0..).zip(self.dual.topology().faces()).filter(|&(_, f)| self.dual.is_folded(f)).map(|(i, _)| i);
+        let faulty: BTreeSet<u32> = quality::faulty_triangles(mesh).into_iter().chain(folded).collect();
+        faulty.into_iter().collect()
+    }
+
+    /// Nothing of a valid mesh of the surface's topology with all that is required.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] with the first fault.
+    pub(super) fn demand(&self, mesh: &Mesh) -> Result<()> {
+        let help = "ask for more vertices (-n); please report this with the input";
+        let fault = |what: &str, place: String| Err(Error::Mesh { what: what.into(), place, help: help.into() });
+        if let Some(found) = quality::validity(mesh).first_fault {
+            return fault(&found.what, found.place);
+        }
+        if self.dual.topology().euler_characteristic() != self.input.surface.euler_characteristic() {
+            return fault("the mesh has another topology than the surface", "the mesh".into());
+        }
+        if mesh.required_triangles.len() < self.input.surface.required_triangles().len() {
+            return fault("a required triangle is not in the mesh", "the mesh".into());
+        }
+        Ok(())
+    }
+
+    /// What to do differently: a seed in each faulty triangle inside a patch, more seeds on the curves that one touches.
+    pub(super) fn reseed(&self, faulty: &[u32], before: Reseed) -> Reseed {
+        let mut density = before.density;
+        density.resize(self.input.seams.features.curves.len(), 1);
+        let mut places = before.places;
+        let triangles = self.dual.triangles();
+        let mut curves: BTreeSet<usize> = BTreeSet::new();
+        for corners in faulty.iter().map(|&t| triangles[t as usize]) {
+            let seeds: BTreeSet<u32> = corners.iter().filter_map(|&v| self.owners.get(v as usize).copied()).collect();
+            let touched = self.features.edges.iter().filter(|edge| edge.ends.iter().any(|v| seeds.contains(v)));
+            curves.extend(touched.map(|edge| edge.curve));
+            let at = corners.map(|v| self.dual.places()[v as usize]);
+            let middle = Point3::weighted(at.map(|place| place.position), [1.0 / 3.0; 3]);
+            let apart = |other: &Place, place: &Place| other.position.distance(place.position) > APART * reach(at);
+            let place =
+                self.input.lift(&at[0], middle).filter(|place| at.iter().chain(&places).all(|p| apart(p, place)));
+            places.extend(place);
+        }
+        for curve in curves {
+            density[curve] *= 2;
+        }
+        Reseed { places, density, rounds: before.rounds + 1 }
+    }
+
+    /// What to tell the user.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let folded = self.dual.topology().faces().filter(|&f| self.dual.is_folded(f)).count();
+        let told = [
+            (self.added, "vertices were added where fewer do not make the surface"),
+            (self.features.loose, "single feature edges inside a patch: only their ends are kept"),
+            (folded, "triangles face away from the surface: straight edges cannot honour the metric there"),
+        ];
+        told.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect()
+    }
+}
+
+/// The longest edge of a triangle.
+fn reach(at: [Place; 3]) -> f64 {
+    let [a, b, c] = at.map(|place| place.position);
+    a.distance(b).max(b.distance(c)).max(c.distance(a))
+}
+
+/// Mends the worst triangles.
+fn mend(dual: &mut SurfaceDual) {
+    let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
+    for _ in 0..MENDINGS {
+        mend_worst(dual, poor);
+    }
+}
+
+/// The triangles of the Delaunay triangulation of seeds in the surface's own metric; `None` where it would need more of them.
+fn euclidean(canvas: &Canvas<Draped>, seeds: &[VertexId]) -> Result<Option<Vec<[u32; 3]>>> {
+    let own = Constant(Tensor3::IDENTITY);
+    let canvas = canvas.remeasured(&own)?;
+    let seeded = triangulated(SurfaceDiagram::on_surface(&canvas, seeds, Method::March)?)?;
+    Ok((seeded.added == 0).then_some(seeded.triangles))
+}

@@ -1,0 +1,250 @@
+//! Seeds on the features of a surface: at stops, and along curves at even metric length.
+
+use crate::geometry::Point3;
+use crate::surface::metric::SurfaceMetric;
+use crate::surface::{Curve, Input, Mark, Place};
+use crate::triangulation::VertexId;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// The length of an edge of a curve is known when halving it changes it by no more than this share,
+const PRECISE: f64 = 1e-3;
+/// or it was halved so often; it is so often at least.
+const HALVINGS: u32 = 10;
+const LEAST_HALVINGS: u32 = 2;
+/// Seeds of a closed curve, and edges of a curve from a stop to itself, at least.
+const LEAST_OF_LOOP: usize = 3;
+
+/// A surface's feature curves with their metric lengths. Where the metric differs on the two sides of a crease, that counts in
+/// which it is longer.
+pub struct MeasuredCurves<'a> {
+    input: &'a Input,
+    lengths: Vec<Vec<Piece>>,
+}
+
+/// A piece of a curve along which the metric hardly changes.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    edge: usize,
+    /// Where on the edge it begins and ends.
+    range: [f64; 2],
+    /// The metric length of the curve before it, and to its end.
+    behind: [f64; 2],
+}
+
+/// A seed on a feature.
+#[derive(Clone, Debug)]
+pub struct FeatureSeed {
+    /// Where it is on each side of the feature: one place per patch there, or several where a patch meets itself. All have one
+    /// position.
+    pub places: Vec<Place>,
+    /// The vertex of the input that it is, if it is one that has to be kept.
+    pub stop: Option<VertexId>,
+}
+
+/// Seeds on all features, and the edges between them.
+#[derive(Clone, Debug, Default)]
+pub struct FeatureSeeds {
+    /// The seeds.
+    pub seeds: Vec<FeatureSeed>,
+    /// The edges that the mesh shall have, by their seeds, and what they are.
+    pub edges: Vec<FeatureEdge>,
+    /// Single edges inside a patch, which cannot be cut open: their ends are seeds, and nothing else is done for them.
+    pub loose: usize,
+}
+
+/// An edge that the mesh shall have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FeatureEdge {
+    /// Its seeds.
+    pub ends: [u32; 2],
+    /// What it is.
+    pub mark: Mark,
+    /// The number of its curve.
+    pub curve: usize,
+}
+
+impl FeatureSeeds {
+    /// All places, those of each seed one after the other, and for each the seed that it belongs to.
+    pub fn flattened(&self) -> (Vec<Place>, Vec<u32>) {
+        let each = (0..).zip(&self.seeds).flat_map(|(i, seed)| seed.places.iter().map(move |place| (*place, i)));
+        each.unzip()
+    }
+}
+
+impl<'a> MeasuredCurves<'a> {
+    /// Measures the curves of a surface's seams.
+    pub fn new(input: &'a Input, metric: &dyn SurfaceMetric) -> Self {
+        let lengths = input.seams.features.curves.par_iter().map(|curve| pieces(input, metric, curve)).collect();
+        Self { input, lengths }
+    }
+
+    fn length(&self, curve: usize) -> f64 {
+        self.lengths[curve].last().map_or(0.0, |piece| piece.behind[1])
+    }
+
+    /// The metric length of the border.
+    pub fn border_length(&self) -> f64 {
+        let curves = self.input.seams.features.curves.iter().enumerate();
+        curves.filter(|(_, curve)| curve.is_border()).map(|(i, _)| self.length(i)).sum()
+    }
+
+    /// Seeds at the stops, and along curves about `spacing` (metric) apart; closer where the edges between them would stray
+    /// farther than `hausd` (Euclidean) from the curve, and where fewer would make two edges of the mesh one. Of a required curve
+    /// all vertices are seeds. `density` says how many times as many edges each curve shall have; 1 if it says nothing.
+    pub fn sampled(&self, spacing: f64, hausd: Option<f64>, density: &[usize]) -> FeatureSeeds {
+        let features = &self.input.seams.features;
+        let mut found = FeatureSeeds::default();
+        let mut at: BTreeMap<VertexId, u32> = BTreeMap::new();
+        for &v in &features.stops {
+            at.insert(v, found.seeds.len() as u32);
+            found.seeds.push(FeatureSeed { stop: Some(v), ..self.at_vertex(v) });
+        }
+        let mut joined: BTreeMap<[VertexId; 2], bool> = BTreeMap::new();
+        for (i, curve) in features.curves.iter().enumerate() {
+            if self.is_slit(curve) && curve.edges.len() == 1 {
+                found.loose += 1;
+                continue;
+            }
+            let [a, b] = curve.ends();
+            let is_first = joined.insert([a.min(b), a.max(b)], true).is_none();
+            let parts = (self.length(i) / spacing).round() as usize;
+            let parts = parts.max(self.least(curve, is_first)) * density.get(i).copied().unwrap_or(1);
+            let stations = self.stations(i, parts, hausd);
+            let inner = stations[1..stations.len() - 1].iter().map(|&station| self.at_station(curve, station));
+            let first = found.seeds.len() as u32;
+            let [begin, end] = if curve.has_stops { [at[&a], at[&b]] } else { [first; 2] };
+            found.seeds.extend(if curve.has_stops { None } else { Some(self.at_vertex(a)) });
+            let before = found.seeds.len() as u32;
+            found.seeds.extend(inner);
+            let chain: Vec<u32> = [begin].into_iter().chain(before..found.seeds.len() as u32).chain([end]).collect();
+            let edge = |pair: &[u32]| FeatureEdge { ends: [pair[0], pair[1]], mark: curve.mark, curve: i };
+            found.edges.extend(chain.windows(2).map(edge));
+        }
+        found
+    }
+
+    /// The number of edges that a curve needs for the mesh to be one.
+    fn least(&self, curve: &Curve, is_first: bool) -> usize {
+        let [a, b] = curve.ends();
+        match () {
+            () if a == b => LEAST_OF_LOOP,
+            // A slit without a seed between its ends would have two edges between them.
+            () if self.is_slit(curve) || !is_first => 2,
+            () => 1,
+        }
+    }
+
+    /// Whether a curve ends inside a patch on both sides.
+    fn is_slit(&self, curve: &Curve) -> bool {
+        !curve.is_border() && curve.ends().iter().all(|&v| self.input.seams.copies(v).len() == 1)
+    }
+
+    /// Places on a curve, as edges and parameters, that cut it into so many parts or more. First and last are its ends.
+    fn stations(&self, curve: usize, parts: usize, hausd: Option<f64>) -> Vec<(usize, f64)> {
+        let edges = &self.input.seams.features.curves[curve].edges;
+        if self.input.seams.features.curves[curve].mark.is_required {
+            return (0..edges.len()).map(|i| (i, 0.0)).chain([(edges.len() - 1, 1.0)]).collect();
+        }
+        let total = self.length(curve);
+        let mut stations: Vec<(usize, f64)> = vec![(0, 0.0)];
+        for k in 1..parts {
+            stations.push(self.station(curve, total * k as f64 / parts as f64));
+        }
+        stations.push((edges.len() - 1, 1.0));
+        match hausd {
+            None => stations,
+            Some(most) => self.refined(curve, &stations, most),
+        }
+    }
+
+    /// Where a curve has this length behind it.
+    fn station(&self, curve: usize, length: f64) -> (usize, f64) {
+        let pieces = &self.lengths[curve];
+        let piece = pieces[pieces.partition_point(|piece| piece.behind[1] < length).min(pieces.len() - 1)];
+        let [begin, end] = piece.behind;
+        let share = if end > begin { (length - begin) / (end - begin) } else { 0.0 };
+        (piece.edge, piece.range[0] + (piece.range[1] - piece.range[0]) * share.clamp(0.0, 1.0))
+    }
+
+    /// The stations, and between them vertices of the curve, so that no chord strays farther (Douglas and Peucker 1973).
+    fn refined(&self, curve: usize, stations: &[(usize, f64)], most: f64) -> Vec<(usize, f64)> {
+        let edges = &self.input.seams.features.curves[curve].edges;
+        let surface = &self.input.surface;
+        let at = |(edge, t): (usize, f64)| {
+            let [a, b] = edges[edge].positions(surface);
+            a.lerp(b, t)
+        };
+        let mut refined = vec![stations[0]];
+        for pair in stations.windows(2) {
+            let mut pending = vec![(pair[0], pair[1])];
+            while let Some((from, to)) = pending.pop() {
+                let between = from.0 + 1..=to.0;
+                let strays = |&i: &usize| distance_to_segment(surface.position(edges[i].from), [at(from), at(to)]);
+                let farthest = between.max_by(|i, j| strays(i).total_cmp(&strays(j)));
+                match farthest.filter(|i| strays(i) > most) {
+                    Some(i) => pending.extend([((i, 0.0), to), (from, (i, 0.0))]),
+                    None => refined.push(to),
+                }
+            }
+        }
+        refined
+    }
+
+    fn at_station(&self, curve: &Curve, (edge, t): (usize, f64)) -> FeatureSeed {
+        let on = curve.edges[edge];
+        if t <= 0.0 || t >= 1.0 {
+            return self.at_vertex(if t <= 0.0 { on.from } else { on.to });
+        }
+        FeatureSeed { places: self.lifted(on.places(&self.input.surface, t)), stop: None }
+    }
+
+    fn at_vertex(&self, v: VertexId) -> FeatureSeed {
+        let copies = self.input.seams.copies(v).iter();
+        let places = copies.filter_map(|&copy| self.input.surface.place_of(copy)).collect();
+        FeatureSeed { places: self.lifted(places), stop: None }
+    }
+
+    /// On an equation's surface, places that are on it.
+    fn lifted(&self, places: Vec<Place>) -> Vec<Place> {
+        if self.input.implicit.is_none() {
+            return places;
+        }
+        places.into_iter().map(|place| self.input.lift(&place, place.position).unwrap_or(place)).collect()
+    }
+}
+
+fn pieces(input: &Input, metric: &dyn SurfaceMetric, curve: &Curve) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut behind = 0.0;
+    for (i, edge) in curve.edges.iter().enumerate() {
+        let [a, b] = edge.positions(&input.surface);
+        let along = b - a;
+        let speed = |t: f64| {
+            let on_sides = edge.places(&input.surface, t).into_iter();
+            on_sides.map(|place| metric.at(&place).length(along)).fold(0.0, f64::max)
+        };
+        let mut pending = vec![([0.0, 1.0], [speed(0.0), speed(1.0)], 0)];
+        while let Some(([s, t], [at_s, at_t], depth)) = pending.pop() {
+            let (half, middle) = (0.5 * (s + t), speed(0.5 * (s + t)));
+            let [by_ends, by_three] = [0.5 * (at_s + at_t), (at_s + 4.0 * middle + at_t) / 6.0];
+            let is_precise = depth >= LEAST_HALVINGS && (by_ends - by_three).abs() <= PRECISE * by_three;
+            if depth == HALVINGS || is_precise {
+                let length = by_three * (t - s);
+                pieces.push(Piece { edge: i, range: [s, t], behind: [behind, behind + length] });
+                behind += length;
+            } else {
+                pending.push(([half, t], [middle, at_t], depth + 1));
+                pending.push(([s, half], [at_s, middle], depth + 1));
+            }
+        }
+    }
+    pieces
+}
+
+fn distance_to_segment(p: Point3, [a, b]: [Point3; 2]) -> f64 {
+    let (along, offset) = (b - a, p - a);
+    let square = along.dot(along);
+    let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+    p.distance(a.lerp(b, t))
+}
