@@ -1,5 +1,6 @@
 //! Points, tensors and exact predicates: the vocabulary of everything below.
 
+mod intersection;
 mod jet;
 mod point;
 mod predicates;

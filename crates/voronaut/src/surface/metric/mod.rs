@@ -9,18 +9,22 @@
 //! | [`ImplicitCurvature`] | `curvature`, of an equation | principal curvatures, exact (RR-9103, 15.1) |
 //! | [`Sampled`] | `curvature`, of a file | principal curvatures at vertices, fitted ([`fit_curvatures`]) |
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at vertices, log-Euclidean between them |
+//! | [`Chordal`] | `--hausd` | another field, with edges short enough to stay within a distance of the surface |
 //! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits, in the tangent plane |
 //!
 //! [`Spec`] reads the second column, [`field`] makes the field; [`check_tensor3`] tells whether a value is a metric.
 
 mod bounded;
+mod chordal;
 mod curvature;
 mod fit;
+mod graded;
 mod sampled;
 mod spec;
 mod validate;
 
 pub use bounded::Bounded;
+pub use chordal::{CHORD, Chordal};
 pub use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub use fit::fit_curvatures;
 pub use sampled::Sampled;
@@ -48,6 +52,12 @@ impl<F: Fn(Point3) -> Tensor3 + Sync> SurfaceMetric for F {
 }
 
 impl SurfaceMetric for Box<dyn SurfaceMetric + '_> {
+    fn at(&self, place: &Place) -> Tensor3 {
+        (**self).at(place)
+    }
+}
+
+impl SurfaceMetric for &dyn SurfaceMetric {
     fn at(&self, place: &Place) -> Tensor3 {
         (**self).at(place)
     }

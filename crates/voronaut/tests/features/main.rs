@@ -1,0 +1,69 @@
+//! Surfaces with creases, fillets, borders and materials: features stay where they are, to the last bit at corners.
+
+mod common;
+mod mutations;
+#[path = "../parts/mod.rs"]
+mod parts;
+
+use common::faults;
+use parts::Part;
+use voronaut::metric::Bounds;
+use voronaut::progress::Silent;
+use voronaut::recipe::{MeshOptions, mesh_surface};
+use voronaut::surface::metric::{Spec, field};
+use voronaut::surface::{Input, Surface};
+
+/// What is meshed: the part with its features. The only place where these tests say how that is done.
+fn input(part: &Part) -> Input {
+    Input::new(Surface::new(&part.mesh).unwrap(), None)
+}
+
+/// As far as chords of an even mesh are from arcs of the greatest curvature, k h^2 / 8, for edges twice as long as its own.
+/// The curvature metric makes them longer where the surface is flat, and they end where it is not: three times.
+fn distance(part: &Part, surface: &Surface, count: usize, metric: &str) -> f64 {
+    let longer = if metric == "uniform" { 2.0 } else { 3.0 };
+    let edge = longer * (surface.area() * 2.0 / 3.0_f64.sqrt() / count as f64).sqrt();
+    part.curvature * edge * edge / 8.0 + 1e-9 * surface.bounds().diagonal()
+}
+
+/// Meshes a part with every number of vertices and checks all that is known of it.
+fn keeps_features(name: &str, metric: &str, counts: &[usize]) {
+    let part = parts::all().into_iter().find(|part| part.name == name).unwrap();
+    let input = input(&part);
+    let field = field(&Spec::parse(metric).unwrap(), &input, Bounds::default()).unwrap();
+    for &count in counts {
+        let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
+        let mesh = mesh_surface(&input, field.as_ref(), &options, &Silent).unwrap().mesh;
+        let found = faults(&part, &mesh, distance(&part, &input.surface, count, metric));
+        println!("{name} {metric} {count}: {} vertices, {} faults", mesh.points.len(), found.len());
+        assert!(found.is_empty(), "{name} {metric} {count}:\n{}", found[..found.len().min(8)].join("\n"));
+        // Curves take the vertices they need.
+        assert!(mesh.points.len() * 5 > count * 4 && mesh.points.len() * 2 < count * 3, "{}", mesh.points.len());
+    }
+}
+
+/// Tests of a part with both metrics, and with many vertices if asked for.
+macro_rules! parts_keep_features {
+    ($($name:ident)*) => { $(
+        mod $name {
+            #[test]
+            fn uniform() {
+                super::keeps_features(stringify!($name), "uniform", &[500, 2000]);
+            }
+
+            #[test]
+            fn curvature() {
+                super::keeps_features(stringify!($name), "curvature", &[500, 2000]);
+            }
+
+            #[test]
+            #[ignore = "takes minutes"]
+            fn many_vertices() {
+                super::keeps_features(stringify!($name), "uniform", &[5000]);
+                super::keeps_features(stringify!($name), "curvature", &[5000]);
+            }
+        }
+    )* };
+}
+
+parts_keep_features! { cube cube_plain bracket bracket_cad patch two blade }
