@@ -23,6 +23,8 @@ const FLIPS_PER_SLOT: u8 = 6;
 const POOR: f64 = 0.5;
 /// The least cosine between a triangle's normal and those of the surface at its corners.
 const UPRIGHT: f64 = 0.3;
+/// Flips that unfold, at most, as a multiple of the number of faces.
+const UNFOLDINGS: u64 = 8;
 /// Slopes of the surface over a chord that tell its length; steeper ones count as this.
 const STEEP: f64 = 0.8;
 
@@ -245,23 +247,66 @@ impl<'a> SurfaceDual<'a> {
     /// Whether a flip leaves a triangulation without doubled edges whose triangles stand upright on the surface, and makes
     /// none that is poor in the metric and poorer than both of before.
     fn allows_flip(&self, h: HalfEdge) -> bool {
-        let Some([a, b, c, d]) = self.quad(h) else { return false };
+        let Some(Flip { now, then }) = self.flip_of(h) else { return false };
+        let [before, after] = [now, then].map(|pair| self.leaning(pair));
+        if before.upright < UPRIGHT || after.upright < UPRIGHT {
+            return after.is_better_than(&before);
+        }
+        let [before, after] = [now, then].map(|pair| pair.map(|t| self.shape(t)).into_iter().fold(1.0, f64::min));
+        after > POOR || after > before
+    }
+
+    /// The triangles of an edge, and those after its flip, if that makes no edge double.
+    fn flip_of(&self, h: HalfEdge) -> Option<Flip> {
+        let [a, b, c, d] = self.quad(h)?;
         let topology = self.topology();
         let joins =
             |u: VertexId, v: VertexId| topology.star(u).any(|e| topology.target(e) == v || topology.apex(e) == v);
-        if c == d || joins(c, d) || [a, b].iter().any(|&v| topology.star(v).count() <= 3) {
-            return false;
+        let is_lost = |v: &VertexId| topology.star(*v).count() <= if topology.is_border_vertex(*v) { 1 } else { 3 };
+        if c == d || joins(c, d) || [a, b].iter().any(is_lost) {
+            return None;
         }
-        let (now, then) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
-        let upright =
-            |triangles: [[VertexId; 3]; 2]| triangles.map(|t| self.upright(t)).into_iter().fold(1.0, f64::min);
-        let after = upright(then);
-        if after < UPRIGHT && after < upright(now) {
-            return false;
+        Some(Flip { now: [[a, b, c], [b, a, d]], then: [[d, b, c], [c, a, d]] })
+    }
+
+    fn leaning(&self, triangles: [[VertexId; 3]; 2]) -> Leaning {
+        let mut found = Leaning { area: 0.0, upright: 1.0 };
+        for t in triangles {
+            let [a, b, c] = t.map(|v| self.position(v));
+            let upright = self.upright(t);
+            found.area += (b - a).cross(c - a).norm() * (UPRIGHT - upright).max(0.0);
+            found.upright = found.upright.min(upright);
         }
-        let shape = |triangles: [[VertexId; 3]; 2]| triangles.map(|t| self.shape(t)).into_iter().fold(1.0, f64::min);
-        let after = shape(then);
-        after > POOR || after > shape(now)
+        found
+    }
+
+    /// Flips edges of triangles that do not stand upright, whatever the metric says, as long as less of their area leans over.
+    /// Returns the number of flips.
+    pub fn unfold(&mut self) -> u64 {
+        let is_down = |dual: &Self, f: FaceId| dual.upright(dual.topology().corners(f)) < UPRIGHT;
+        let mut stack: Vec<FaceId> = self.topology().faces().filter(|&f| is_down(self, f)).collect();
+        let before = self.flips;
+        let most = before + UNFOLDINGS * self.topology().face_count() as u64;
+        while let Some(f) = stack.pop().filter(|_| self.flips < most) {
+            if !is_down(self, f) {
+                continue;
+            }
+            let better = |&h: &HalfEdge| {
+                let Flip { now, then } = self.flip_of(h).filter(|_| !self.topology().is_fixed(h))?;
+                let [before, after] = [now, then].map(|pair| self.leaning(pair));
+                after.is_better_than(&before).then_some((h, before.area - after.area))
+            };
+            let best = f.half_edges().iter().filter_map(better).max_by(|x, y| x.1.total_cmp(&y.1));
+            if let Some((h, _)) = best {
+                let twin = self.topology().twin(h);
+                self.state.topology.flip(h);
+                self.flips += 1;
+                let around = [Some(h.face()), twin.map(HalfEdge::face)].into_iter().flatten();
+                let beyond = around.clone().flat_map(FaceId::half_edges).filter_map(|e| self.topology().twin(e));
+                stack.extend(beyond.map(HalfEdge::face).chain(around));
+            }
+        }
+        self.flips - before
     }
 
     /// How many triangles do not stand upright on the surface.
@@ -291,12 +336,39 @@ impl<'a> SurfaceDual<'a> {
         3.0_f64.sqrt() * square.max(0.0).sqrt() / (x * x + y * y + z * z)
     }
 
-    /// The geometric mean of the edges' lengths.
+    /// The geometric mean of the lengths of edges that are free to be as long as the metric wants: not between seeds that stay.
     pub fn mean_length(&self) -> f64 {
-        let edges: Vec<HalfEdge> = self.topology().edges().collect();
+        let stays = |v: VertexId| self.state.kinds[v.index()] != Kind::Free;
+        let is_free = |h: &HalfEdge| !stays(self.topology().origin(*h)) || !stays(self.topology().target(*h));
+        let mut edges: Vec<HalfEdge> = self.topology().edges().filter(is_free).collect();
+        if edges.is_empty() {
+            edges = self.topology().edges().collect();
+        }
         let log = |&h: &HalfEdge| self.length_between(self.topology().origin(h), self.topology().target(h)).ln();
         let logs: Vec<f64> = edges.par_iter().with_min_len(64).map(log).collect();
         (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp()
+    }
+}
+
+/// Two triangles before and after a flip.
+struct Flip {
+    now: [[VertexId; 3]; 2],
+    then: [[VertexId; 3]; 2],
+}
+
+/// How far two triangles are from standing upright.
+struct Leaning {
+    /// Their areas, each weighted by how far it leans over; 0 of upright ones. In a plane this is twice what is covered too often,
+    /// and flips that make it less lead to a triangulation that is embedded.
+    area: f64,
+    /// The least cosine between their normals and those of the surface; 0 of triangles without area.
+    upright: f64,
+}
+
+impl Leaning {
+    fn is_better_than(&self, other: &Self) -> bool {
+        let rounding = 1e-9 * other.area;
+        self.area < other.area - rounding || (self.area <= other.area + rounding && self.upright > other.upright)
     }
 }
 

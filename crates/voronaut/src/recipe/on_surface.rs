@@ -157,12 +157,12 @@ impl Job<'_> {
         let (canvas, _) = Canvas::on_surface(Kind::Intrinsic, self.setting.input, self.setting.metric, MEASURING, &[])?;
         let draped = canvas.draped();
         let (area, chi) = (draped.area(), draped.topology().euler_characteristic() as f64);
-        let border = self.setting.curves.border_length();
-        let vertices = |factor: f64| 2.0 / 3.0_f64.sqrt() * area * factor + 0.5 * border * factor.sqrt() + chi;
+        let extra = self.setting.curves.extra();
+        let vertices = |factor: f64| 2.0 / 3.0_f64.sqrt() * area * factor + extra * factor.sqrt() + chi;
         let (count, factor) = match (self.setting.options.vertices, self.setting.options.complexity) {
             (Some(count), _) => {
                 // The square root of the factor by the quadratic formula.
-                let (a, b, c) = (2.0 / 3.0_f64.sqrt() * area, 0.5 * border, chi - count as f64);
+                let (a, b, c) = (2.0 / 3.0_f64.sqrt() * area, extra, chi - count as f64);
                 let root = ((b * b - 4.0 * a * c.min(0.0)).sqrt() - b) / (2.0 * a);
                 (count, root * root)
             }

@@ -90,7 +90,9 @@ impl<'a> Setting<'a> {
         let begin = Instant::now();
         let features = self.curves.sampled(1.0 / scale.sqrt(), self.options.hausd, &reseed.density);
         let (mut given, owners) = features.flattened();
-        given.extend(&reseed.places);
+        let is_new = |place: &&Place| given.iter().all(|other| other.position != place.position);
+        let more: Vec<Place> = reseed.places.iter().filter(is_new).copied().collect();
+        given.extend(more);
         let count = count.max(features.seeds.len()) + owners.len() - features.seeds.len();
         let (canvas, at) = self.canvas(count, &given)?;
         watch.add("canvas", begin);
@@ -145,6 +147,7 @@ impl<'a> Setting<'a> {
                 best = if straight.downright() < best.downright() { straight } else { best };
             }
         }
+        best.unfold();
         best.flip_all();
         self.fit_scale(&mut best)?;
         let mut relaxed = Relaxed::default();
@@ -176,6 +179,7 @@ impl<'a> Setting<'a> {
         let rdt = Rdt::judged(OnSurface::new(&diagram), at.len(), &Start { triangles, at_border });
         dual.settle_by(|quad| rdt.margin_of(quad));
         let blocked = dual.disagreeing(|quad| rdt.margin_of(quad));
+        dual.unfold();
         mend(dual);
         let account = report::Dual { blocked_flips: blocked, ..account(&rdt, &nerve, Road::Geodesic) };
         let is_fine = self.options.fit && self.input.implicit.is_some();
@@ -229,13 +233,15 @@ impl Pass<'_> {
         let mut curves: BTreeSet<usize> = BTreeSet::new();
         for corners in faulty.iter().map(|&t| triangles[t as usize]) {
             let seeds: BTreeSet<u32> = corners.iter().filter_map(|&v| self.owners.get(v as usize).copied()).collect();
-            let touched = self.features.edges.iter().filter(|edge| edge.ends.iter().any(|v| seeds.contains(v)));
-            curves.extend(touched.map(|edge| edge.curve));
+            if seeds.len() == 3 {
+                // Between features alone there may be no room for a seed.
+                let touched = self.features.edges.iter().filter(|edge| edge.ends.iter().all(|v| seeds.contains(v)));
+                curves.extend(touched.map(|edge| edge.curve));
+            }
             let at = corners.map(|v| self.dual.places()[v as usize]);
             let middle = Point3::weighted(at.map(|place| place.position), [1.0 / 3.0; 3]);
             let apart = |other: &Place, place: &Place| other.position.distance(place.position) > APART * reach(at);
-            let place =
-                self.input.lift(&at[0], middle).filter(|place| at.iter().chain(&places).all(|p| apart(p, place)));
+            let place = self.input.lift(&at[0], middle).filter(|place| at.iter().chain(&places).all(|p| apart(p, place)));
             places.extend(place);
         }
         for curve in curves {

@@ -2,7 +2,7 @@
 
 use crate::geometry::Point3;
 use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Curve, Input, Mark, Place};
+use crate::surface::{Curve, CurveEdge, Input, Mark, Place};
 use crate::triangulation::VertexId;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -19,7 +19,13 @@ const LEAST_OF_LOOP: usize = 3;
 /// which it is longer.
 pub struct MeasuredCurves<'a> {
     input: &'a Input,
-    lengths: Vec<Vec<Piece>>,
+    curves: Vec<MeasuredCurve>,
+}
+
+struct MeasuredCurve {
+    pieces: Vec<Piece>,
+    /// The length of each side in the metric there; 0 of a side that is none.
+    sides: [f64; 2],
 }
 
 /// A piece of a curve along which the metric hardly changes.
@@ -75,18 +81,19 @@ impl FeatureSeeds {
 impl<'a> MeasuredCurves<'a> {
     /// Measures the curves of a surface's seams.
     pub fn new(input: &'a Input, metric: &dyn SurfaceMetric) -> Self {
-        let lengths = input.seams.features.curves.par_iter().map(|curve| pieces(input, metric, curve)).collect();
-        Self { input, lengths }
+        let curves = input.seams.features.curves.par_iter().map(|curve| measured(input, metric, curve)).collect();
+        Self { input, curves }
     }
 
     fn length(&self, curve: usize) -> f64 {
-        self.lengths[curve].last().map_or(0.0, |piece| piece.behind[1])
+        self.curves[curve].pieces.last().map_or(0.0, |piece| piece.behind[1])
     }
 
-    /// The metric length of the border.
-    pub fn border_length(&self) -> f64 {
-        let curves = self.input.seams.features.curves.iter().enumerate();
-        curves.filter(|(_, curve)| curve.is_border()).map(|(i, _)| self.length(i)).sum()
+    /// How many vertices curves add to those that the areas of the patches ask for, in terms of the root of the factor on the metric:
+    /// half the border's length, and of creases what the metrics of their two sides differ by.
+    pub fn extra(&self) -> f64 {
+        let of = |(i, curve): (usize, &MeasuredCurve)| self.length(i) - 0.5 * (curve.sides[0] + curve.sides[1]);
+        self.curves.iter().enumerate().map(of).sum()
     }
 
     /// Seeds at the stops, and along curves about `spacing` (metric) apart; closer where the edges between them would stray
@@ -160,7 +167,7 @@ impl<'a> MeasuredCurves<'a> {
 
     /// Where a curve has this length behind it.
     fn station(&self, curve: usize, length: f64) -> (usize, f64) {
-        let pieces = &self.lengths[curve];
+        let pieces = &self.curves[curve].pieces;
         let piece = pieces[pieces.partition_point(|piece| piece.behind[1] < length).min(pieces.len() - 1)];
         let [begin, end] = piece.behind;
         let share = if end > begin { (length - begin) / (end - begin) } else { 0.0 };
@@ -214,32 +221,41 @@ impl<'a> MeasuredCurves<'a> {
     }
 }
 
-fn pieces(input: &Input, metric: &dyn SurfaceMetric, curve: &Curve) -> Vec<Piece> {
-    let mut pieces = Vec::new();
-    let mut behind = 0.0;
-    for (i, edge) in curve.edges.iter().enumerate() {
-        let [a, b] = edge.positions(&input.surface);
-        let along = b - a;
-        let speed = |t: f64| {
-            let on_sides = edge.places(&input.surface, t).into_iter();
-            on_sides.map(|place| metric.at(&place).length(along)).fold(0.0, f64::max)
-        };
+fn measured(input: &Input, metric: &dyn SurfaceMetric, curve: &Curve) -> MeasuredCurve {
+    let (mut pieces, mut behind, mut sides) = (Vec::new(), 0.0, [0.0; 2]);
+    for (edge, on) in curve.edges.iter().enumerate() {
+        let speed = |t: f64| speeds(input, metric, on, t);
         let mut pending = vec![([0.0, 1.0], [speed(0.0), speed(1.0)], 0)];
         while let Some(([s, t], [at_s, at_t], depth)) = pending.pop() {
             let (half, middle) = (0.5 * (s + t), speed(0.5 * (s + t)));
-            let [by_ends, by_three] = [0.5 * (at_s + at_t), (at_s + 4.0 * middle + at_t) / 6.0];
+            let greatest = [at_s, middle, at_t].map(|[a, b]| a.max(b));
+            let [by_ends, by_three] =
+                [0.5 * (greatest[0] + greatest[2]), (greatest[0] + 4.0 * greatest[1] + greatest[2]) / 6.0];
             let is_precise = depth >= LEAST_HALVINGS && (by_ends - by_three).abs() <= PRECISE * by_three;
             if depth == HALVINGS || is_precise {
                 let length = by_three * (t - s);
-                pieces.push(Piece { edge: i, range: [s, t], behind: [behind, behind + length] });
+                pieces.push(Piece { edge, range: [s, t], behind: [behind, behind + length] });
                 behind += length;
+                for (k, side) in sides.iter_mut().enumerate() {
+                    *side += (at_s[k] + 4.0 * middle[k] + at_t[k]) / 6.0 * (t - s);
+                }
             } else {
                 pending.push(([half, t], [middle, at_t], depth + 1));
                 pending.push(([s, half], [at_s, middle], depth + 1));
             }
         }
     }
-    pieces
+    MeasuredCurve { pieces, sides }
+}
+
+/// The metric length of an edge by the metric at one of its points, on each side; 0 on a side that is none.
+fn speeds(input: &Input, metric: &dyn SurfaceMetric, edge: &CurveEdge, t: f64) -> [f64; 2] {
+    let [a, b] = edge.positions(&input.surface);
+    let mut speeds = [0.0; 2];
+    for (speed, place) in speeds.iter_mut().zip(edge.places(&input.surface, t)) {
+        *speed = metric.at(&place).length(b - a);
+    }
+    speeds
 }
 
 fn distance_to_segment(p: Point3, [a, b]: [Point3; 2]) -> f64 {
