@@ -13,6 +13,7 @@ use voronaut::metric::{Bounds, MOST_SWEEPS};
 use voronaut::output::Picture;
 use voronaut::recipe::{Centroid, MeshOptions, Mesher, SMOOTH_METRIC, Seeding};
 use voronaut::surface::FeatureOptions;
+use voronaut::surface::RepairOptions;
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
 #[derive(Debug, Parser)]
@@ -165,6 +166,8 @@ pub(crate) struct MeshArgs {
     #[command(flatten)]
     pub(crate) outputs: Outputs,
     #[command(flatten)]
+    pub(crate) damage: Damage,
+    #[command(flatten)]
     pub(crate) run: Run,
 }
 
@@ -222,6 +225,8 @@ pub(crate) struct DualArgs {
     #[command(flatten)]
     pub(crate) outputs: Outputs,
     #[command(flatten)]
+    pub(crate) damage: Damage,
+    #[command(flatten)]
     pub(crate) run: Run,
 }
 
@@ -265,6 +270,8 @@ pub(crate) struct DistanceArgs {
     #[command(flatten)]
     pub(crate) metric_choices: MetricChoices,
     #[command(flatten)]
+    pub(crate) damage: Damage,
+    #[command(flatten)]
     pub(crate) run: Run,
 }
 
@@ -290,6 +297,8 @@ pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(crate) outputs: Outputs,
     #[command(flatten)]
+    pub(crate) damage: Damage,
+    #[command(flatten)]
     pub(crate) run: Run,
 }
 
@@ -311,6 +320,21 @@ pub(crate) struct MetricChoices {
     /// The mesh on which a .sol metric is given [default: the domain's own]
     #[arg(long, value_name = "MESH")]
     pub(crate) background: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Damage {
+    /// Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that meet in a
+    /// point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
+    #[arg(long)]
+    pub(crate) repair: bool,
+}
+
+impl Damage {
+    /// What may be done to the meshes of surfaces.
+    pub(crate) fn options(&self) -> RepairOptions {
+        RepairOptions { repair: self.repair }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -34,7 +34,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     report.options = json!({
         "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
-        "smooth_metric": args.metric_choices.smooth_metric,
+        "smooth_metric": args.metric_choices.smooth_metric, "repair": args.damage.repair,
     });
     if let Err(fault) = fault {
         report.seconds.total = start.elapsed().as_secs_f64();
@@ -43,7 +43,10 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
         return Err(fault);
     }
     report.metric_scale = args.metric.is_some().then_some(args.metric_scale.unwrap_or(1.0));
-    let report = match args.domain.as_deref().map(|spec| Given::read(spec, None)).transpose()? {
+    let read = |spec: &str| Given::read_with(spec, None, args.damage.options());
+    let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();
+    report.notes.extend(mended.iter().flat_map(|mended| mended.sentences()));
+    let report = match given {
         Some(Given::Surface(input)) => on_surface(args, &mesh, Some(&input), report, start)?,
         None if !mesh.is_planar() => on_surface(args, &mesh, None, report, start)?,
         Some(Given::Plane(domain)) => in_plane(args, &mesh, Some(&domain), report, start)?,

@@ -30,10 +30,12 @@ pub(crate) fn run(args: &DistanceArgs) -> Result<()> {
     files::set_threads(&args.run)?;
     args.metric_choices.bounds().check()?;
     demand_memory(args)?;
-    let made = match Given::read(&args.domain, None)? {
+    let (given, mended) = Given::read_with(&args.domain, None, args.damage.options())?;
+    let mut made = match given {
         Given::Plane(domain) => in_plane(args, &domain, start)?,
         Given::Surface(input) => on_surface::run(args, &input, start)?,
     };
+    made.told["notes"] = mended.sentences().collect();
     output::write_diagram(&made.mesh, &made.distances, &args.out)?;
     if let (Some(file), Some(svg)) = (&args.picture, &made.picture) {
         output::write_picture(svg, file)?;
@@ -175,6 +177,7 @@ fn told<'a, G: Ground<'a>>(
             "canvas_size": args.canvas_size, "geodesic": args.geodesic, "background": args.metric_choices.background,
             "bounds": args.metric_choices.bounds(), "smooth_metric": args.metric_choices.smooth_metric, "picture": args.picture,
             "pixels": args.pixels, "report": args.report, "threads": args.run.threads,
+            "repair": args.damage.repair,
         },
     })
 }

@@ -32,8 +32,9 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     files::set_threads(&args.run)?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
-    let domain = match Given::read(&args.domain, None)? {
-        Given::Surface(input) => return surfaces::dual(args, &input, start),
+    let (given, mended) = Given::read_with(&args.domain, None, args.damage.options())?;
+    let domain = match given {
+        Given::Surface(input) => return surfaces::dual(args, &input, &mended, start),
         Given::Plane(domain) => domain,
     };
     let spec = MetricSpec::parse(&args.metric)?;
@@ -213,5 +214,6 @@ pub(crate) fn options(args: &DualArgs) -> serde_json::Value {
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
         "smooth_metric": args.metric_choices.smooth_metric,
         "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
+        "repair": args.damage.repair,
     })
 }

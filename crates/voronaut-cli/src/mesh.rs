@@ -27,8 +27,9 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     files::set_threads(&args.run)?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
-    let domain = match Given::read(&args.domain, None)? {
-        Given::Surface(input) => return surfaces::mesh(args, input, start),
+    let (given, mended) = Given::read_with(&args.domain, None, args.damage.options())?;
+    let domain = match given {
+        Given::Surface(input) => return surfaces::mesh(args, input, &mended, start),
         Given::Plane(domain) => domain,
     };
     demand_planar(args)?;
@@ -116,6 +117,7 @@ pub(crate) fn options(args: &MeshArgs) -> Value {
         "smooth_metric": args.metric_choices.smooth_metric,
         "ar": args.features().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
         "picture": args.outputs.picture, "pixels": args.outputs.pixels, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
+        "repair": args.damage.repair,
     });
     if let (Value::Object(options), Value::Object(more)) = (&mut options, more) {
         options.extend(more);

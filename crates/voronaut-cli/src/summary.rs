@@ -37,6 +37,9 @@ pub(crate) fn print_distance(title: &str, told: &serde_json::Value, run: &Run) {
     line("canvas", &told["canvas"]["vertices"]);
     line("seconds", &told["seconds"]["total"]);
     let _ = std::io::stdout().write_all(text.as_bytes());
+    for note in told["notes"].as_array().into_iter().flatten().filter_map(|note| note.as_str()) {
+        eprintln!("note: {note}");
+    }
     if let Some(count) = told["unreached"].as_u64().filter(|&count| count > 0) {
         eprintln!("note: {count} canvas vertices are not reached: infinite in the file");
     }

@@ -18,12 +18,12 @@ use voronaut::output::{self, Report, Scene, Shade, Stroke, View, report};
 use voronaut::quality::{surface_quality, validity};
 use voronaut::recipe::{self, SeedDual};
 use voronaut::sampling;
-use voronaut::surface::{Input, Place};
+use voronaut::surface::{Input, Mended, Place};
 use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
 
 /// Meshes a surface. Nothing is written unless the mesh is valid.
-pub(crate) fn mesh(args: &MeshArgs, input: Input, start: Instant) -> Result<()> {
+pub(crate) fn mesh(args: &MeshArgs, input: Input, mended: &Mended, start: Instant) -> Result<()> {
     demand_supported(&args.outputs)?;
     let whole = args.outputs.picture.is_some().then(|| Input::new(input.surface.clone(), input.implicit.clone()));
     let input = &input.cut(&args.features())?;
@@ -38,6 +38,7 @@ pub(crate) fn mesh(args: &MeshArgs, input: Input, start: Instant) -> Result<()> 
     let figures = surface_quality(&meshed.mesh, &input.surface, &scaled)?;
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     crate::mesh::fill_in(&mut report, &meshed, crate::mesh::options(args));
+    report.notes.extend(mended.sentences());
     report.fidelity = meshed.fidelity.map(|found| report::Strayed::Surface(found.into()));
     report.seconds = report::Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     // Cells are drawn across creases.
@@ -55,7 +56,7 @@ pub(crate) fn mesh(args: &MeshArgs, input: Input, start: Instant) -> Result<()> 
 }
 
 /// The dual of seeds on a surface.
-pub(crate) fn dual(args: &DualArgs, input: &Input, start: Instant) -> Result<()> {
+pub(crate) fn dual(args: &DualArgs, input: &Input, mended: &Mended, start: Instant) -> Result<()> {
     demand_supported(&args.outputs)?;
     demand_dual(args)?;
     let metric = metric::on_surface(&args.metric, input, &args.metric_choices)?;
@@ -87,6 +88,7 @@ pub(crate) fn dual(args: &DualArgs, input: &Input, start: Instant) -> Result<()>
     report.dual = Some(account);
     report.canvas = Some(canvas.figures());
     report.diagram = Some(report::Diagram { raw_nerve: Some(raw_nerve), ..report::Diagram::of(&diagram) });
+    report.notes.extend(mended.sentences());
     if !is_valid {
         report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
     }

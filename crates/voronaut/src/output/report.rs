@@ -59,7 +59,7 @@ pub struct Report {
     pub star_set: Option<StarSet>,
     /// The factor on the metric tensor for which the mesh is a unit mesh.
     pub metric_scale: Option<f64>,
-    /// What could not be met, in words.
+    /// What could not be met, and what was mended of the input, in words.
     pub notes: Vec<String>,
     /// Wall time.
     pub seconds: Seconds,

@@ -241,7 +241,8 @@ impl Pass<'_> {
             let at = corners.map(|v| self.dual.places()[v as usize]);
             let middle = Point3::weighted(at.map(|place| place.position), [1.0 / 3.0; 3]);
             let apart = |other: &Place, place: &Place| other.position.distance(place.position) > APART * reach(at);
-            let place = self.input.lift(&at[0], middle).filter(|place| at.iter().chain(&places).all(|p| apart(p, place)));
+            let place =
+                self.input.lift(&at[0], middle).filter(|place| at.iter().chain(&places).all(|p| apart(p, place)));
             places.extend(place);
         }
         for curve in curves {

@@ -97,7 +97,7 @@ fn finite_positions(mesh: &Mesh) -> Result<Vec<Point3>> {
     match positions.iter().position(|p| !p.is_finite()) {
         None => Ok(positions),
         Some(i) => {
-            let place = vertex(i as u32, &positions);
+            let place = at(i as u32, &positions);
             Err(Error::domain("a coordinate is not finite", place, "remove or correct the vertex"))
         }
     }
@@ -108,18 +108,22 @@ fn check_triangles(triangles: &[[u32; 3]], positions: &[Point3]) -> Result<()> {
         if a == b || b == c || c == a {
             let what = format!("triangle {} has a vertex twice", i + 1);
             let twice = if a == b { a } else { c };
-            return Err(Error::domain(what, vertex(twice, positions), "remove the triangle"));
+            return Err(Error::domain(what, at(twice, positions), "remove the triangle"));
         }
         let [p, q, r] = [a, b, c].map(|v| positions[v as usize]);
-        let longest = (q - p).norm().max((r - q).norm()).max((p - r).norm());
-        let double_area = (q - p).cross(r - p).norm();
-        if double_area.is_nan() || double_area <= FLAT * longest * longest {
+        if !has_area([p, q, r]) {
             let what = format!("triangle {} has no area", i + 1);
-            let place = format!("{}, {}, {}", vertex(a, positions), vertex(b, positions), vertex(c, positions));
+            let place = [a, b, c].map(|v| at(v, positions)).join(", ");
             return Err(Error::domain(what, place, "remove it and join its neighbours, or move one of its corners"));
         }
     }
     check_duplicates(triangles, positions)
+}
+
+/// Whether a triangle is more than a line, by more than rounding.
+pub(super) fn has_area([p, q, r]: [Point3; 3]) -> bool {
+    let longest = (q - p).norm().max((r - q).norm()).max((p - r).norm());
+    (q - p).cross(r - p).norm() > FLAT * longest * longest
 }
 
 fn check_duplicates(triangles: &[[u32; 3]], positions: &[Point3]) -> Result<()> {
@@ -132,7 +136,7 @@ fn check_duplicates(triangles: &[[u32; 3]], positions: &[Point3]) -> Result<()> 
     keys.sort_unstable();
     let Some(pair) = keys.windows(2).find(|pair| pair[0].0 == pair[1].0) else { return Ok(()) };
     let what = format!("triangles {} and {} have the same vertices", pair[0].1 + 1, pair[1].1 + 1);
-    Err(Error::domain(what, vertex(pair[0].0[0], positions), "keep one of them"))
+    Err(Error::domain(what, at(pair[0].0[0], positions), "keep one of them"))
 }
 
 fn check_edges(sides: &[Side], positions: &[Point3]) -> Result<()> {
@@ -148,7 +152,7 @@ fn check_fans(topology: &Triangulation, positions: &[Point3]) -> Result<()> {
         Ok(()) => Ok(()),
         Err(Broken::Fan(v)) => {
             let help = "split the vertex, one for each group of neighbouring triangles";
-            Err(Error::domain("triangles that meet in a point only", vertex(v.0, positions), help))
+            Err(Error::domain("triangles that meet in a point only", at(v.0, positions), help))
         }
         Err(other) => Err(Error::Mesh {
             what: format!("its triangles do not hang together ({other:?})"),
@@ -171,12 +175,16 @@ fn in_order(numbers: &[u32]) -> impl Iterator<Item = u32> {
 }
 
 /// A vertex, numbered from 1, for messages.
-fn vertex(v: u32, positions: &[Point3]) -> String {
-    format!("vertex {} {}", v + 1, positions[v as usize])
+pub(super) fn vertex(v: u32, position: Point3) -> String {
+    format!("vertex {} {position}", v + 1)
+}
+
+fn at(v: u32, positions: &[Point3]) -> String {
+    vertex(v, positions[v as usize])
 }
 
 fn edge([a, b]: [u32; 2], positions: &[Point3]) -> String {
-    format!("{} - {}", vertex(a, positions), vertex(b, positions))
+    format!("{} - {}", at(a, positions), at(b, positions))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What the user writes for a domain, which may lie in the plane or be a surface.
 
 use super::read::{ending, of_file};
-use super::{Input, WRITTEN, read, read_mesh};
+use super::{Input, Mended, RepairOptions, WRITTEN, read_mesh, read_with};
 use crate::domain::{self, Domain};
 use crate::error::{Error, Result};
 
@@ -22,20 +22,31 @@ impl Given {
     /// # Errors
     /// As for [`read()`] and [`Domain::read`]; of what is neither, the help names both.
     pub fn read(spec: &str, edge: Option<f64>) -> Result<Self> {
+        Ok(Self::read_with(spec, edge, RepairOptions::default())?.0)
+    }
+
+    /// As [`Given::read`], and surfaces in files are mended as the options say, with what was mended.
+    ///
+    /// # Errors
+    /// As for [`Given::read`].
+    pub fn read_with(spec: &str, edge: Option<f64>, options: RepairOptions) -> Result<(Self, Mended)> {
+        let surface = || read_with(spec, edge, options).map(|(input, mended)| (Self::Surface(input), mended));
+        let plane = || Ok((Self::Plane(Domain::read(spec)?), Mended::default()));
         let name = spec.split(':').next().unwrap_or_default().trim();
         let ending = ending(spec);
         match ending.as_deref() {
-            _ if ["sphere", "torus", "chair", "implicit"].contains(&name) => Ok(Self::Surface(read(spec, edge)?)),
-            _ if ["rect", "disk"].contains(&name) => Ok(Self::Plane(Domain::read(spec)?)),
-            Some("obj" | "off" | "ply" | "stl") => Ok(Self::Surface(read(spec, edge)?)),
+            _ if ["sphere", "torus", "chair", "implicit"].contains(&name) => surface(),
+            _ if ["rect", "disk"].contains(&name) => plane(),
+            Some("obj" | "off" | "ply" | "stl") => surface(),
             Some("mesh") => {
                 let mesh = read_mesh(spec)?;
                 if mesh.triangles.is_empty() || mesh.is_planar() {
-                    return Ok(Self::Plane(Domain::read(spec)?));
+                    return plane();
                 }
-                Ok(Self::Surface(Input::new(of_file(spec, &mesh)?, None)))
+                let (surface, mended) = of_file(spec, &mesh, options)?;
+                Ok((Self::Surface(Input::new(surface, None)), mended))
             }
-            Some("geojson" | "json" | "poly") => Ok(Self::Plane(Domain::read(spec)?)),
+            Some("geojson" | "json" | "poly") => plane(),
             _ => {
                 let help = format!("give {}; or {WRITTEN}", domain::WRITTEN);
                 Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", help))
@@ -106,6 +117,10 @@ mod tests {
         let lone =
             file(".mesh", "MeshVersionFormatted 2 Dimension 3 Vertices 3 0 0 1 0 1 0 0 0 2 0 -1 0 Triangles 1 1 2 3 0");
         let error = Given::read(lone.path().to_str().unwrap(), None).unwrap_err().to_string();
-        assert!(error.contains("triangle 1 has no area") && error.contains(lone.path().to_str().unwrap()), "{error}");
+        assert!(
+            error.contains("no triangles are left: 1 triangle without area")
+                && error.contains(lone.path().to_str().unwrap()),
+            "{error}"
+        );
     }
 }

@@ -3,6 +3,7 @@
 //! | module | what it is |
 //! |---|---|
 //! | `build`, `orient` | from an indexed list of triangles to a [`Surface`], or what is wrong and where |
+//! | `repair` | damage of meshes mended, or named |
 //! | `measure` | area, normals, Euler characteristic, components, borders |
 //! | `nearest` | the closest point of a surface |
 //! | `features`, `curves` | creases, borders, interfaces, edges of the list; the curves that they make, from corner to corner |
@@ -32,6 +33,7 @@ mod nearest;
 mod orient;
 mod read;
 mod remesh;
+mod repair;
 mod shapes;
 mod tetrahedra;
 
@@ -47,7 +49,8 @@ pub use march::mesh_implicit;
 pub use measure::Component;
 pub(crate) use nearest::closest_weights;
 pub use nearest::{Closest, Nearest};
-pub use read::{WRITTEN, read, read_mesh};
+pub use read::{WRITTEN, read, read_mesh, read_with};
+pub use repair::{Damage, Mend, Mended, RepairOptions, repaired};
 pub use shapes::{chair, sphere, torus};
 
 use crate::geometry::{Point3, Vector3};

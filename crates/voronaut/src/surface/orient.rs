@@ -90,7 +90,9 @@ fn turn(triangles: &mut [[u32; 3]], component: &[usize], turned: &[Option<bool>]
     count
 }
 
-fn one_sided(place: String) -> Error {
-    let help = "only two-sided surfaces can be meshed: cut this one open, or correct the triangles there";
+/// The error of a surface without two sides.
+pub(super) fn one_sided(place: String) -> Error {
+    let help =
+        "only two-sided surfaces can be meshed: cut this one open (--repair does), or correct the triangles there";
     Error::domain("a one-sided surface: its triangles cannot all turn the same way", place, help)
 }

@@ -1,7 +1,7 @@
 //! A surface from what the user writes for it: a shape, an equation, or a file.
 
 use super::shapes::{CHAIR, chair, sphere, torus};
-use super::{Input, Surface, mesh_implicit};
+use super::{Input, Mended, RepairOptions, Surface, mesh_implicit, repaired};
 use crate::domain::{read_bytes, read_numbers, read_text};
 use crate::error::{Error, Result};
 use crate::formats::{medit, obj, off, ply, stl};
@@ -14,12 +14,38 @@ use std::path::Path;
 const DEFAULT_EDGE: f64 = 1.0 / 64.0;
 
 /// Reads a surface: `sphere:r`, `torus:R,r`, `chair`, `implicit:EXPR;x0,y0,z0,x1,y1,z1`, or a file `.obj`, `.off`, `.ply`,
-/// `.stl` or `.mesh`. `edge` is the length of the edges of what is not a file, about.
+/// `.stl` or `.mesh`. `edge` is the length of the edges of what is not a file, about. Files are mended as without options.
+///
+/// # Errors
+/// As for [`read_with`].
+pub fn read(spec: &str, edge: Option<f64>) -> Result<Input> {
+    Ok(read_with(spec, edge, RepairOptions::default())?.0)
+}
+
+/// As [`read()`], and files are mended as the options say ([`repaired`]), with what was mended.
 ///
 /// # Errors
 /// [`Error::Io`] of a file that cannot be read; [`Error::Parse`] of a text that is not what its format asks for;
 /// [`Error::Domain`] of what makes no surface; [`Error::Limit`] of too many triangles.
-pub fn read(spec: &str, edge: Option<f64>) -> Result<Input> {
+pub fn read_with(spec: &str, edge: Option<f64>, options: RepairOptions) -> Result<(Input, Mended)> {
+    if ending(spec).is_some_and(|ending| ENDINGS.contains(&ending.as_str())) && !is_shape(spec) {
+        let (surface, mended) = of_file(spec, &read_mesh(spec)?, options)?;
+        return Ok((Input::new(surface, None), mended));
+    }
+    Ok((read_shape(spec, edge)?, Mended::default()))
+}
+
+/// Whether the text begins as that of a shape does.
+pub(super) fn is_shape(spec: &str) -> bool {
+    let (name, rest) = spec.split_once(':').map_or((spec, None), |(name, rest)| (name, Some(rest)));
+    match name.trim() {
+        "sphere" | "torus" | "implicit" => rest.is_some(),
+        "chair" => rest.is_none(),
+        _ => false,
+    }
+}
+
+fn read_shape(spec: &str, edge: Option<f64>) -> Result<Input> {
     let (name, rest) = spec.split_once(':').map_or((spec, None), |(name, rest)| (name, Some(rest)));
     match (name.trim(), rest) {
         ("sphere", Some(numbers)) => {
@@ -35,9 +61,6 @@ pub fn read(spec: &str, edge: Option<f64>) -> Result<Input> {
         }
         ("chair", None) => with_equation(chair(edge)?, CHAIR),
         ("implicit", Some(rest)) => read_implicit(spec, rest, edge),
-        _ if ending(spec).is_some_and(|ending| ENDINGS.contains(&ending.as_str())) => {
-            Ok(Input::new(of_file(spec, &read_mesh(spec)?)?, None))
-        }
         _ => {
             let help = format!("give {WRITTEN}");
             Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", help))
@@ -90,9 +113,10 @@ pub(super) fn ending(file: &str) -> Option<String> {
     Path::new(file).extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase)
 }
 
-/// The surface of a file's mesh; errors name the file.
-pub(super) fn of_file(file: &str, mesh: &Mesh) -> Result<Surface> {
-    Surface::new(mesh).map_err(|error| match error {
+/// The surface of a file's mesh, and what was mended of it; errors name the file.
+pub(super) fn of_file(file: &str, mesh: &Mesh, options: RepairOptions) -> Result<(Surface, Mended)> {
+    let made = repaired(mesh, options).and_then(|(mesh, mended)| Ok((Surface::new(&mesh)?, mended)));
+    made.map_err(|error| match error {
         Error::Domain { what, place, help } => Error::Domain { what, place: format!("{file}, {place}"), help },
         other => other,
     })
@@ -145,13 +169,18 @@ mod tests {
         file.write_all(text.as_bytes()).unwrap();
         assert_eq!(read(file.path().to_str().unwrap(), None).unwrap().surface.euler_characteristic(), 2);
         let mut file = tempfile::Builder::new().suffix(".obj").tempfile().unwrap();
-        file.write_all(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n").unwrap();
+        file.write_all(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 3 2 1\nf 1 2 4\nf 1 2 5\nv 1 1 1\n").unwrap();
         let path = file.path().to_str().unwrap();
         let error = read(path, None).unwrap_err();
         assert_eq!(
             error.to_string(),
-            format!("invalid domain: triangles 1 and 2 have the same vertices at {path}, vertex 1 (0, 0, 0)")
+            format!(
+                "invalid domain: an edge of 3 triangles (among them 1, 3 and 4) at {path}, vertex 1 (0, 0, 0) - vertex 2 (1, 0, 0)"
+            )
         );
+        let (mended, notes) = read_with(path, None, RepairOptions { repair: true }).unwrap();
+        let notes: Vec<_> = notes.sentences().collect();
+        assert_eq!((mended.surface.topology().face_count(), notes.len()), (3, 2), "{notes:?}");
     }
 
     #[test]
@@ -224,6 +253,9 @@ mod tests {
         fn no_file_makes_a_reader_panic(text in soup()) {
             let bytes = text.as_bytes();
             let found = [obj::read(&text, "a"), off::read(&text, "a"), ply::read(bytes, "a"), stl::read(bytes, "a")];
+            for mesh in found.iter().flatten() {
+                let _ = repaired(mesh, RepairOptions { repair: true });
+            }
             for surface in found.into_iter().flatten().filter_map(|mesh| Surface::new(&mesh).ok()) {
                 prop_assert!(surface.topology().check().is_ok());
                 prop_assert!(surface.components().iter().all(|c| c.genus() >= 0));

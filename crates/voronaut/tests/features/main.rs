@@ -11,11 +11,11 @@ use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::recipe::{MeshOptions, mesh_surface};
 use voronaut::surface::metric::{Spec, field};
-use voronaut::surface::{Input, Surface};
+use voronaut::surface::{FeatureOptions, Input, Surface};
 
 /// What is meshed: the part with its features. The only place where these tests say how that is done.
 fn input(part: &Part) -> Input {
-    Input::new(Surface::new(&part.mesh).unwrap(), None)
+    Input::new(Surface::new(&part.mesh).unwrap(), None).cut(&FeatureOptions::default()).unwrap()
 }
 
 /// As far as chords of an even mesh are from arcs of the greatest curvature, k h^2 / 8, for edges twice as long as its own.

@@ -1,0 +1,206 @@
+//! The mesh that comes out, with all its lists renumbered.
+
+use super::fans::Sewn;
+use super::glue::NONE;
+use super::mended::Damage;
+use super::work::Work;
+use crate::mesh::Mesh;
+use crate::surface::orient::sides;
+use std::collections::{HashMap, HashSet};
+
+/// The mesh of the triangles as sewn. Vertices keep their numbers, used or not, and those that were added follow; triangles and
+/// edges keep their order and labels.
+pub(super) fn emit(work: &mut Work, sewn: &Sewn) -> Mesh {
+    let mesh = work.mesh;
+    let label = |labels: &[i32], i: u32| labels.get(i as usize).copied().unwrap_or(0);
+    let vertices = || (0..mesh.points.len() as u32).chain(sewn.added.iter().map(|added| added.1));
+    let edges = Edges::of(work, sewn);
+    let copies = copies(work, sewn);
+    let all_copies = |list: &[u32]| -> Vec<u32> {
+        let of = |v: &u32| copies.get(v).cloned().unwrap_or_else(|| vec![*v]);
+        list.iter().flat_map(of).collect()
+    };
+    let entries = |list: &[u32]| -> Vec<u32> { list.iter().flat_map(|&i| edges.entries[i as usize].clone()).collect() };
+    let required: HashSet<u32> = mesh.required_triangles.iter().copied().collect();
+    let is_of_file = |t: usize| sewn.numbers[t] != [NONE; 3];
+    Mesh {
+        points: points(work, sewn),
+        point_labels: if mesh.point_labels.is_empty() {
+            Vec::new()
+        } else {
+            vertices().map(|v| label(&mesh.point_labels, v)).collect()
+        },
+        triangles: sewn.triangles.clone(),
+        triangle_labels: if mesh.triangle_labels.is_empty() {
+            Vec::new()
+        } else {
+            sewn.sources.iter().map(|&t| label(&mesh.triangle_labels, t)).collect()
+        },
+        edge_labels: edges.sources.iter().map(|&i| label(&mesh.edge_labels, i)).collect(),
+        corners: all_copies(&mesh.corners),
+        required_points: all_copies(&mesh.required_points),
+        ridges: entries(&mesh.ridges),
+        required_edges: entries(&mesh.required_edges),
+        required_triangles: (0..sewn.triangles.len())
+            .filter(|&t| is_of_file(t) && required.contains(&sewn.sources[t]))
+            .map(|t| t as u32)
+            .collect(),
+        edges: edges.ends,
+    }
+}
+
+/// Positions; vertices of no triangle that are not finite come to the origin, where nobody looks.
+fn points(work: &Work, sewn: &Sewn) -> Vec<[f64; 3]> {
+    let mut points = harmless(work.mesh);
+    for &v in sewn.triangles.as_flattened() {
+        if (v as usize) < work.mesh.points.len() {
+            points[v as usize] = work.position(v).to_array();
+        }
+    }
+    points.extend(sewn.added.iter().map(|added| added.0.to_array()));
+    points
+}
+
+/// Positions, the origin for those that are not finite.
+pub(super) fn harmless(mesh: &Mesh) -> Vec<[f64; 3]> {
+    let finite = |p: &[f64; 3]| if p.iter().all(|x| x.is_finite()) { *p } else { [0.0; 3] };
+    mesh.points.iter().map(finite).collect()
+}
+
+/// For each vertex number of the mesh the vertices that it has become, where these are not itself.
+fn copies(work: &Work, sewn: &Sewn) -> HashMap<u32, Vec<u32>> {
+    let corners = sewn.numbers.as_flattened().iter().zip(sewn.triangles.as_flattened());
+    let mut pairs: Vec<(u32, u32)> = corners.map(|(&number, &v)| (number, v)).filter(|p| p.0 != NONE).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    let mut copies: HashMap<u32, Vec<u32>> = HashMap::new();
+    let mut at_place: HashMap<u32, u32> = HashMap::new();
+    for (number, v) in pairs {
+        copies.entry(number).or_default().push(v);
+        at_place.entry(work.places.of(number)).or_insert(v);
+    }
+    // Vertices all of whose triangles are gone: what is at their place stands for them.
+    for v in work.mesh.corners.iter().chain(&work.mesh.required_points) {
+        if let Some(&there) = at_place.get(&work.places.of(*v)) {
+            copies.entry(*v).or_insert_with(|| vec![there]);
+        }
+    }
+    copies
+}
+
+/// The list of edges, renumbered.
+struct Edges {
+    ends: Vec<[u32; 2]>,
+    /// The entry of the mesh's list that each comes from.
+    sources: Vec<u32>,
+    /// For each entry of the mesh's list the entries it has become.
+    entries: Vec<Vec<u32>>,
+}
+
+impl Edges {
+    fn of(work: &mut Work, sewn: &Sewn) -> Self {
+        let mesh = work.mesh;
+        let known = Known::of(work, sewn);
+        let mut first: HashMap<[u32; 2], (u32, [u32; 2])> = HashMap::new();
+        let mut edges = Self { ends: Vec::new(), sources: Vec::new(), entries: vec![Vec::new(); mesh.edges.len()] };
+        for (i, &listed) in (0..).zip(&mesh.edges) {
+            let mut found = known.find(work, listed);
+            if found.is_empty() && !known.is_of_file(listed) && !work.options.repair {
+                // Not lost by repair: the mistake is in the list, and is told as one.
+                found.push(listed);
+            }
+            let before = edges.ends.len();
+            for ends in found {
+                let (sorted, numbers) = (sorted(ends), sorted(listed));
+                // The same edge listed twice by number is a mistake in the list, unless labels agree.
+                let twin = first.get(&sorted).filter(|twin| twin.1 != numbers || work.options.repair);
+                if let Some(&(at, _)) = twin {
+                    edges.entries[i as usize].push(at);
+                    continue;
+                }
+                first.entry(sorted).or_insert((edges.ends.len() as u32, numbers));
+                edges.entries[i as usize].push(edges.ends.len() as u32);
+                edges.ends.push(ends);
+                edges.sources.push(i);
+            }
+            if edges.ends.len() == before {
+                let place = format!("edge {} of the list, {}", i + 1, work.edge(listed));
+                work.mended.add(Damage::Listed, || place);
+            }
+        }
+        edges
+    }
+}
+
+/// Edges of triangles, by which edges of the list are found again.
+struct Known {
+    /// By the vertex numbers of the mesh.
+    by_number: HashMap<[u32; 2], Vec<[u32; 2]>>,
+    /// By places.
+    by_place: HashMap<[u32; 2], Vec<[u32; 2]>>,
+    /// Edges of the mesh as it was.
+    of_file: HashSet<[u32; 2]>,
+}
+
+fn sorted([v, w]: [u32; 2]) -> [u32; 2] {
+    [v.min(w), v.max(w)]
+}
+
+impl Known {
+    fn of(work: &Work, sewn: &Sewn) -> Self {
+        let listed: HashSet<u32> = work.mesh.edges.as_flattened().iter().map(|&v| work.places.of(v)).collect();
+        let (mut by_number, mut by_place) = (HashMap::<_, Vec<_>>::new(), HashMap::<_, Vec<_>>::new());
+        for (corners, numbers) in sewn.triangles.iter().zip(&sewn.numbers).filter(|_| !listed.is_empty()) {
+            for k in 0..3 {
+                let [v, w] = [numbers[k], numbers[(k + 1) % 3]];
+                if v == NONE || w == NONE {
+                    continue;
+                }
+                // The final edge in the direction from the smaller number, or place, to the larger.
+                let ends = [corners[k], corners[(k + 1) % 3]];
+                let back = [ends[1], ends[0]];
+                let push = |list: &mut Vec<[u32; 2]>, ends| {
+                    if !list.contains(&ends) {
+                        list.push(ends);
+                    }
+                };
+                push(by_number.entry(sorted([v, w])).or_default(), if v < w { ends } else { back });
+                let [p, q] = [v, w].map(|v| work.places.of(v));
+                push(by_place.entry(sorted([p, q])).or_default(), if p < q { ends } else { back });
+            }
+        }
+        let of_file = if listed.is_empty() { Vec::new() } else { sides(&work.mesh.triangles) };
+        Self { by_number, by_place, of_file: of_file.into_iter().map(|side| side.ends).collect() }
+    }
+
+    fn is_of_file(&self, ends: [u32; 2]) -> bool {
+        self.of_file.contains(&sorted(ends))
+    }
+
+    /// What an edge of the list has become, in its direction.
+    fn find(&self, work: &Work, [v, w]: [u32; 2]) -> Vec<[u32; 2]> {
+        let turn = |list: &[[u32; 2]], is_forward: bool| -> Vec<[u32; 2]> {
+            list.iter().map(|&[a, b]| if is_forward { [a, b] } else { [b, a] }).collect()
+        };
+        if let Some(found) = self.by_number.get(&sorted([v, w])) {
+            return turn(found, v < w);
+        }
+        let mut found = Vec::new();
+        let mut left = vec![[v, w].map(|v| work.places.of(v))];
+        // Every cut is followed once: cuts of cuts that led back would never end.
+        let mut is_followed = HashSet::new();
+        while let Some([p, q]) = left.pop() {
+            let key = sorted([p, q]);
+            if let Some(ends) = self.by_place.get(&key) {
+                found.extend(turn(ends, p < q));
+            } else if let Some(inside) = work.cuts.get(&key).filter(|_| is_followed.insert(key)) {
+                let mut chain: Vec<u32> = [key[0]].iter().chain(inside).chain(&[key[1]]).copied().collect();
+                if p > q {
+                    chain.reverse();
+                }
+                left.extend(chain.windows(2).rev().map(|ends| [ends[0], ends[1]].map(|v| work.places.of(v))));
+            }
+        }
+        found
+    }
+}

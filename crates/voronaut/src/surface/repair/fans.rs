@@ -1,0 +1,141 @@
+//! Vertices from sides that are glued: one for every fan of triangles.
+
+use super::classes::Classes;
+use super::glue::{NONE, Twins};
+use super::mended::Damage;
+use super::work::Work;
+use crate::error::{Error, Result};
+use crate::geometry::Point3;
+
+/// Triangles with their final vertices.
+pub(super) struct Sewn {
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The triangle of the mesh that each is a part of, or beside which it fills a hole.
+    pub(super) sources: Vec<u32>,
+    /// The corners as the mesh numbers them; [`NONE`] of what is new.
+    pub(super) numbers: Vec<[u32; 3]>,
+    /// The positions of vertices behind those of the mesh, and which vertex of the mesh each is a copy of, or near.
+    pub(super) added: Vec<(Point3, u32)>,
+}
+
+/// Gives every fan of triangles a vertex of its own: the first number in it that no other fan has taken, or a new one.
+///
+/// # Errors
+/// [`Error::Domain`] of a vertex that is several fans by its number, unless damage is to be repaired.
+pub(super) fn sew(work: &mut Work, twins: &Twins) -> Result<Sewn> {
+    let fans = fans(work, twins);
+    demand_fans(work, &fans)?;
+    let corners = work.triangles.as_flattened();
+    let mut least = vec![NONE; corners.len()];
+    for (i, &number) in corners.iter().enumerate() {
+        let fan = fans.of(i as u32) as usize;
+        least[fan] = least[fan].min(number);
+    }
+    let mut owner = vec![NONE; work.mesh.points.len()];
+    let mut added = Vec::new();
+    let mut vertex_of = vec![NONE; corners.len()];
+    for i in 0..corners.len() {
+        let fan = fans.of(i as u32) as usize;
+        if vertex_of[fan] == NONE {
+            let number = least[fan];
+            vertex_of[fan] = if owner[number as usize] == NONE {
+                owner[number as usize] = fan as u32;
+                number
+            } else {
+                added.push((work.position(number), number));
+                (work.mesh.points.len() + added.len() - 1) as u32
+            };
+        }
+        vertex_of[i] = vertex_of[fan];
+    }
+    let triangles = vertex_of.as_chunks::<3>().0.to_vec();
+    let mut sewn = Sewn { triangles, sources: work.sources.clone(), numbers: work.triangles.clone(), added };
+    separate(work, &mut sewn, twins);
+    Ok(sewn)
+}
+
+/// Corners of triangles, 3 t + k, that hang together by glued sides.
+fn fans(work: &Work, twins: &Twins) -> Classes {
+    let mut fans = Classes::new(twins.len());
+    let next = |side: u32| side - side % 3 + (side + 1) % 3;
+    let place = |corner: u32| work.places.of(work.triangles[corner as usize / 3][corner as usize % 3]);
+    for (side, &twin) in (0..).zip(twins).filter(|(side, twin)| **twin != NONE && side < *twin) {
+        let ends = if place(side) == place(twin) { [twin, next(twin)] } else { [next(twin), twin] };
+        fans.join(side, ends[0]);
+        fans.join(next(side), ends[1]);
+    }
+    fans.flatten();
+    fans
+}
+
+fn demand_fans(work: &mut Work, fans: &Classes) -> Result<()> {
+    let corners = work.triangles.as_flattened();
+    let mut keys: Vec<[u32; 2]> = (0..).zip(corners).map(|(i, &number)| [number, fans.of(i)]).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    for same in keys.chunk_by(|a, b| a[0] == b[0]).filter(|same| same.len() > 1) {
+        let place = work.vertex(same[0][0]);
+        if !work.options.repair {
+            let help = "split the vertex, one for each group of neighbouring triangles, or run again with --repair";
+            return Err(Error::domain("triangles that meet in a point only", place, help));
+        }
+        work.mended.add(Damage::Point, || place);
+    }
+    Ok(())
+}
+
+/// Where two fans pass the same edge twice, its vertices are the same and yet these are two edges: all but the first get a
+/// vertex in the middle.
+fn separate(work: &Work, sewn: &mut Sewn, twins: &Twins) {
+    let ends = |side: u32| {
+        let triangle = sewn.triangles[side as usize / 3];
+        let [v, w] = [triangle[side as usize % 3], triangle[(side as usize + 1) % 3]];
+        [v.min(w), v.max(w)]
+    };
+    let firsts = (0..twins.len() as u32).filter(|&side| twins[side as usize] == NONE || side < twins[side as usize]);
+    let mut keyed: Vec<([u32; 2], u32)> = firsts.map(|side| (ends(side), side)).collect();
+    keyed.sort_unstable();
+    let doubled: Vec<u32> =
+        keyed.chunk_by(|a, b| a.0 == b.0).flat_map(|same| &same[1..]).map(|&(_, side)| side).collect();
+    let mut middles = std::collections::BTreeMap::<usize, [u32; 3]>::new();
+    for side in doubled {
+        let numbers = work.triangles[side as usize / 3];
+        let [v, w] = [numbers[side as usize % 3], numbers[(side as usize + 1) % 3]];
+        let middle = (work.mesh.points.len() + sewn.added.len()) as u32;
+        sewn.added.push((work.position(v).lerp(work.position(w), 0.5), v));
+        for side in [side, twins[side as usize]].into_iter().filter(|&side| side != NONE) {
+            middles.entry(side as usize / 3).or_insert([NONE; 3])[side as usize % 3] = middle;
+        }
+    }
+    for (t, middles) in middles {
+        cut(sewn, t, middles);
+    }
+}
+
+/// Cuts a triangle at vertices in the middles of sides 0-1, 1-2, 2-0, where there are any.
+fn cut(sewn: &mut Sewn, t: usize, middles: [u32; 3]) {
+    let (corners, numbers) = (sewn.triangles[t], sewn.numbers[t]);
+    let around = [0, 1, 2].map(|k| [(corners[k], numbers[k]), (middles[k], NONE)]);
+    let mut polygon: Vec<(u32, u32)> = around.concat().into_iter().filter(|v| v.0 != NONE).collect();
+    // A middle between two neighbours that are not on its line is never cut off, so no part is flat.
+    let mut parts = Vec::new();
+    while polygon.len() > 3 {
+        let n = polygon.len();
+        let is_middle = |i: usize| polygon[i % n].1 == NONE && middles.contains(&polygon[i % n].0);
+        let ear = (0..n).find(|&i| !is_middle(i) && (is_middle(i + 1) || is_middle(i + n - 1))).unwrap_or(0);
+        parts.push([polygon[(ear + n - 1) % n], polygon[ear], polygon[(ear + 1) % n]]);
+        polygon.remove(ear);
+    }
+    parts.push([polygon[0], polygon[1], polygon[2]]);
+    let source = sewn.sources[t];
+    for (i, part) in parts.into_iter().enumerate() {
+        let (triangle, numbers) = (part.map(|v| v.0), part.map(|v| v.1));
+        if i == 0 {
+            (sewn.triangles[t], sewn.numbers[t]) = (triangle, numbers);
+        } else {
+            sewn.triangles.push(triangle);
+            sewn.numbers.push(numbers);
+            sewn.sources.push(source);
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! Which sides of triangles are glued to each other.
+
+use super::mended::Damage;
+use super::work::Work;
+use crate::error::{Error, Result};
+use crate::geometry::Vector3;
+use crate::surface::orient::Side;
+
+/// No side.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// For side k of triangle t, at 3 t + k, the side it is glued to, or [`NONE`].
+pub(super) type Twins = Vec<u32>;
+
+/// Where more sides than this meet, none are paired by how straight they go on.
+const PAIRED: usize = 16;
+
+/// Glues sides that lie between the same places (after "Cutting and Stitching", Gueziec et al. 2001).
+///
+/// Two sides alone are glued, whatever their vertex numbers: that is how soups become surfaces. Of more, those are that share
+/// their numbers in pairs; the others are borders that lie on each other, and stay borders, or with repair are glued where
+/// they go on straightest. So a surface by its numbers is never made worse.
+///
+/// # Errors
+/// [`Error::Domain`] of an edge that more than two triangles share by number, unless damage is to be repaired.
+pub(super) fn glue(work: &mut Work) -> Result<Twins> {
+    let all = work.sides();
+    let mut twins = vec![NONE; 3 * work.triangles.len()];
+    for group in all.chunk_by(|s, t| s.ends == t.ends) {
+        match group {
+            [_] => {}
+            [s, t] if is_fold(work, s, t) => {}
+            &[s, t] => join(work, &mut twins, s, t),
+            _ => glue_many(work, &mut twins, group)?,
+        }
+    }
+    Ok(twins)
+}
+
+/// The vertex numbers of a side, the smaller first.
+pub(super) fn numbers(work: &Work, side: u32) -> [u32; 2] {
+    let triangle = work.triangles[side as usize / 3];
+    let [v, w] = [triangle[side as usize % 3], triangle[(side as usize + 1) % 3]];
+    [v.min(w), v.max(w)]
+}
+
+/// Whether two triangles at the same places would be glued back to back though their numbers do not ask for it.
+fn is_fold(work: &Work, s: &Side, t: &Side) -> bool {
+    let sorted = |side: &Side| {
+        let mut places = work.places_of(side.triangle as usize);
+        places.sort_unstable();
+        places
+    };
+    numbers(work, index(work, s)) != numbers(work, index(work, t)) && sorted(s) == sorted(t)
+}
+
+fn index(work: &Work, side: &Side) -> u32 {
+    3 * side.triangle + work.side_index(side) as u32
+}
+
+fn join(work: &Work, twins: &mut Twins, s: Side, t: Side) {
+    let [s, t] = [&s, &t].map(|side| index(work, side));
+    (twins[s as usize], twins[t as usize]) = (t, s);
+}
+
+fn glue_many(work: &mut Work, twins: &mut Twins, group: &[Side]) -> Result<()> {
+    let mut keyed: Vec<([u32; 2], Side)> = group.iter().map(|s| (numbers(work, index(work, s)), *s)).collect();
+    keyed.sort_unstable();
+    let mut left = Vec::new();
+    for same in keyed.chunk_by(|s, t| s.0 == t.0) {
+        match same {
+            [(_, s), (_, t)] => join(work, twins, *s, *t),
+            [(_, s)] => left.push(*s),
+            _ => {
+                let sides: Vec<Side> = same.iter().map(|s| s.1).collect();
+                cut_edge(work, twins, same[0].0, &sides)?;
+            }
+        }
+    }
+    if left.len() > 1 {
+        if work.options.repair {
+            glue_straightest(work, twins, &left);
+        } else {
+            let place = work.edge(group[0].ends);
+            work.mended.add(Damage::Borders, || place);
+        }
+    }
+    Ok(())
+}
+
+/// An edge that three triangles or more share by number.
+fn cut_edge(work: &mut Work, twins: &mut Twins, ends: [u32; 2], sides: &[Side]) -> Result<()> {
+    let place = work.edge(ends);
+    if !work.options.repair {
+        let [s, t, u] = [0, 1, 2].map(|i| work.number(sides[i].triangle as usize));
+        let what = format!("an edge of {} triangles (among them {s}, {t} and {u})", sides.len());
+        let help = "leave at most two triangles at every edge, or run again with --repair";
+        return Err(Error::domain(what, place, help));
+    }
+    work.mended.add(Damage::Edge, || place);
+    glue_straightest(work, twins, sides);
+    Ok(())
+}
+
+fn glue_straightest(work: &Work, twins: &mut Twins, sides: &[Side]) {
+    if sides.len() > PAIRED {
+        return;
+    }
+    let away: Vec<Option<Vector3>> = sides.iter().map(|side| direction(work, side)).collect();
+    let mut pairs = Vec::new();
+    for i in 0..sides.len() {
+        for j in i + 1..sides.len() {
+            let (Some(u), Some(v)) = (away[i], away[j]) else { continue };
+            if is_fold(work, &sides[i], &sides[j]) {
+                continue;
+            }
+            // Triangles that pass the edge in opposite directions belong together rather than others.
+            let agree = if sides[i].forward == sides[j].forward { 0.0 } else { 0.5 };
+            pairs.push((u.dot(v) - agree, i, j));
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut is_taken = vec![false; sides.len()];
+    for (_, i, j) in pairs {
+        if !is_taken[i] && !is_taken[j] {
+            (is_taken[i], is_taken[j]) = (true, true);
+            join(work, twins, sides[i], sides[j]);
+        }
+    }
+}
+
+/// From a side into its triangle, perpendicular to the side.
+fn direction(work: &Work, side: &Side) -> Option<Vector3> {
+    let (k, p) = (work.side_index(side), work.corners(side.triangle as usize));
+    let [a, b, apex] = [0, 1, 2].map(|i| p[(k + i) % 3]);
+    let along = (b - a).unit()?;
+    let off = apex - a;
+    (off - along * off.dot(along)).unit()
+}

@@ -1,0 +1,178 @@
+//! What was mended of a surface, in numbers and in words.
+
+use serde::Serialize;
+
+/// What was found wrong with a mesh of a surface, and mended or left.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct Mended {
+    mends: Vec<Mend>,
+}
+
+/// One kind of damage.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Mend {
+    /// Which.
+    pub kind: Damage,
+    /// How often.
+    pub count: usize,
+    /// Where, the first few times; vertices and triangles have the numbers of the file, from 1.
+    pub places: Vec<String>,
+}
+
+/// Kinds of damage, in the order in which they are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Damage {
+    /// Triangles at a vertex whose coordinates are not finite: dropped (with repair).
+    NotFinite,
+    /// Vertices at the place of another: joined to it.
+    Welded,
+    /// Triangles with a vertex twice or without area: dropped, their neighbours joined.
+    Degenerate,
+    /// Triangles with the vertices of another: dropped.
+    Duplicate,
+    /// Edges with vertices inside them: their triangles cut there (with repair).
+    TJunction,
+    /// Edges of more than two triangles: cut, the straightest pairs stay together (with repair).
+    Edge,
+    /// Edges where more than two borders lie on each other: left as borders.
+    Borders,
+    /// Edges at which a one-sided surface was cut open (with repair).
+    OneSided,
+    /// Seams that stay open because closing them would make a one-sided surface.
+    Seam,
+    /// Vertices in which sheets met in a point: one for each sheet (with repair).
+    Point,
+    /// Triangles that turn another way than most of their component: turned.
+    Turned,
+    /// Small holes: closed (with repair).
+    Closed,
+    /// Small holes: left open.
+    Open,
+    /// Entries of the list of edges that are edges of no triangle, or twice in it: dropped.
+    Listed,
+}
+
+impl Damage {
+    /// What it is and what was done, for one and for many.
+    fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::NotFinite => [
+                "triangle with a coordinate that is not finite was dropped",
+                "triangles with coordinates that are not finite were dropped",
+            ],
+            Self::Welded => [
+                "vertex at the place of another was welded to it",
+                "vertices at the place of another were welded to it",
+            ],
+            Self::Degenerate => ["triangle without area was dropped", "triangles without area were dropped"],
+            Self::Duplicate => ["duplicate triangle was dropped", "duplicate triangles were dropped"],
+            Self::TJunction => [
+                "T-junction was closed by cutting the triangle beside it",
+                "T-junctions were closed by cutting the triangles beside them",
+            ],
+            Self::Edge => ["edge of more than two triangles was cut", "edges of more than two triangles were cut"],
+            Self::Borders => [
+                "edge where more than two borders meet was left open",
+                "edges where more than two borders meet were left open",
+            ],
+            Self::OneSided => {
+                ["edge of a one-sided surface was cut open", "edges of a one-sided surface were cut open"]
+            }
+            Self::Seam => [
+                "seam edge was left open: closed, the surface would be one-sided",
+                "seam edges were left open: closed, the surface would be one-sided",
+            ],
+            Self::Point => [
+                "vertex in which sheets met in a point only was split",
+                "vertices in which sheets met in a point only were split",
+            ],
+            Self::Turned => [
+                "triangle was turned to agree with its neighbours",
+                "triangles were turned to agree with their neighbours",
+            ],
+            Self::Closed => ["small hole was closed", "small holes were closed"],
+            Self::Open => [
+                "small hole was left open (--repair closes what looks like damage)",
+                "small holes were left open (--repair closes what looks like damage)",
+            ],
+            Self::Listed => [
+                "listed edge was dropped: no triangle has it, or it is there twice",
+                "listed edges were dropped: no triangle has them, or they are there twice",
+            ],
+        }
+    }
+}
+
+/// Places that are kept of each kind.
+const PLACES: usize = 3;
+
+impl Mended {
+    /// All that was found, in the order in which it was looked for.
+    pub fn mends(&self) -> &[Mend] {
+        &self.mends
+    }
+
+    /// How often a kind of damage was found.
+    pub fn count(&self, kind: Damage) -> usize {
+        self.mends.iter().find(|mend| mend.kind == kind).map_or(0, |mend| mend.count)
+    }
+
+    /// One sentence for each kind, for users: "3 duplicate triangles were dropped (first: triangle 7)".
+    pub fn sentences(&self) -> impl Iterator<Item = String> + '_ {
+        self.mends.iter().map(|mend| {
+            let [one, many] = mend.kind.words();
+            let first = mend.places.first().map(|place| format!(" (first: {place})")).unwrap_or_default();
+            format!("{} {}{first}", mend.count, if mend.count == 1 { one } else { many })
+        })
+    }
+
+    /// Whether the mesh had to be changed; triangles are turned by [`Surface::new`](crate::surface::Surface::new) anyway.
+    pub(super) fn changes_the_mesh(&self) -> bool {
+        let is_told_only = |kind| matches!(kind, Damage::Turned | Damage::Open | Damage::Borders | Damage::Seam);
+        self.mends.iter().any(|mend| !is_told_only(mend.kind))
+    }
+
+    pub(super) fn add(&mut self, kind: Damage, place: impl FnOnce() -> String) {
+        let at = match self.mends.binary_search_by_key(&kind, |mend| mend.kind) {
+            Ok(at) => at,
+            Err(at) => {
+                self.mends.insert(at, Mend { kind, count: 0, places: Vec::new() });
+                at
+            }
+        };
+        let mend = &mut self.mends[at];
+        mend.count += 1;
+        if mend.places.len() < PLACES {
+            mend.places.push(place());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_count_and_name_the_first() {
+        let mut mended = Mended::default();
+        for i in [7, 9, 11, 13] {
+            mended.add(Damage::Duplicate, || format!("triangle {i}"));
+        }
+        mended.add(Damage::Welded, || "vertex 2".into());
+        let said: Vec<_> = mended.sentences().collect();
+        assert_eq!(
+            said,
+            [
+                "1 vertex at the place of another was welded to it (first: vertex 2)",
+                "4 duplicate triangles were dropped (first: triangle 7)",
+            ]
+        );
+        let told = serde_json::to_string(&mended).unwrap();
+        assert!(
+            told.ends_with(r#"{"kind":"duplicate","count":4,"places":["triangle 7","triangle 9","triangle 11"]}]"#)
+        );
+        assert_eq!((mended.count(Damage::Duplicate), mended.count(Damage::Edge)), (4, 0));
+    }
+}

@@ -1,0 +1,99 @@
+//! Meshes as they come, made surfaces: damage mended, or named with its place.
+//!
+//! | module | what it does |
+//! |---|---|
+//! | `work`, `classes` | a mesh on the bench; sets of numbers |
+//! | `weld` | vertices at one place; coordinates that are not finite |
+//! | `degenerate`, `duplicates` | triangles without area, or there twice |
+//! | `t_junctions` | vertices inside edges |
+//! | `glue`, `two_sided`, `fans` | which sides meet; not one-sided; one vertex per fan |
+//! | `holes`, `fill` | small holes |
+//! | `emit` | lists and labels, renumbered |
+//! | `mended` | what was done, in numbers and words |
+
+mod classes;
+mod degenerate;
+mod duplicates;
+mod emit;
+mod fans;
+mod fill;
+mod glue;
+mod holes;
+mod mended;
+mod t_junctions;
+mod two_sided;
+mod weld;
+mod work;
+
+#[cfg(test)]
+mod tests;
+
+pub use mended::{Damage, Mend, Mended};
+
+use crate::error::{Error, Result};
+use crate::mesh::Mesh;
+use crate::surface::Surface;
+use work::Work;
+
+/// What may be done to a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RepairOptions {
+    /// Whether damage that cannot be mended without guessing is mended, too: triangles at coordinates that are not finite
+    /// dropped, T-junctions closed by cutting triangles, edges of more than two triangles and vertices in which sheets
+    /// meet cut, one-sided surfaces cut open, small holes closed.
+    pub repair: bool,
+}
+
+/// A mesh that [`Surface::new`] accepts, and what was mended for that.
+///
+/// Always: vertices at one place are welded where that closes a seam (exactly there, and on borders within 1e-9 of the
+/// diagonal and 1e-2 of the edges), never where the surface would stop being one; triangles without area and duplicates are
+/// dropped. The rest is up to the options. A mesh without damage comes back as it is. Vertices keep their numbers, and new
+/// ones follow; triangles keep their order. Borders are no damage. n log n in all; deterministic.
+///
+/// # Errors
+/// [`Error::Mesh`] and [`Error::Domain`] as [`Surface::new`]: of damage that the options do not allow to mend, of a list of
+/// edges that does not fit, and where no triangles are left.
+pub fn repaired(mesh: &Mesh, options: RepairOptions) -> Result<(Mesh, Mended)> {
+    mesh.check_numbers()?;
+    let mut work = Work::new(mesh, options);
+    weld::drop_not_finite(&mut work)?;
+    weld::find_places(&mut work);
+    drop_triangles(&mut work)?;
+    if t_junctions::close(&mut work)? {
+        drop_triangles(&mut work)?;
+    }
+    let mut twins = glue::glue(&mut work)?;
+    two_sided::demand(&mut work, &mut twins)?;
+    let mut sewn = fans::sew(&mut work, &twins)?;
+    note_welded(&mut work, &sewn);
+    holes::close(&mut work, &mut sewn);
+    let made = emit::emit(&mut work, &sewn);
+    if made.triangles.is_empty() && !mesh.triangles.is_empty() {
+        let said: Vec<String> = work.mended.sentences().collect();
+        let what = format!("no triangles are left: {}", said.join(", "));
+        return Err(Error::domain(what, "the mesh", "give a surface of triangles with area"));
+    }
+    let made =
+        if work.mended.changes_the_mesh() { made } else { Mesh { points: emit::harmless(mesh), ..mesh.clone() } };
+    Surface::new(&made)?;
+    Ok((made, work.mended))
+}
+
+fn drop_triangles(work: &mut Work) -> Result<()> {
+    degenerate::drop_degenerate(work)?;
+    duplicates::drop_duplicates(work);
+    Ok(())
+}
+
+/// Counts vertices that were joined to another.
+fn note_welded(work: &mut Work, sewn: &fans::Sewn) {
+    let corners = sewn.numbers.as_flattened().iter().zip(sewn.triangles.as_flattened());
+    let mut pairs: Vec<[u32; 2]> = corners.filter(|c| *c.0 != glue::NONE).map(|(&number, &v)| [v, number]).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    for pair in pairs.windows(2).filter(|pair| pair[0][0] == pair[1][0]) {
+        let place = work.vertex(pair[1][1]);
+        work.mended.add(Damage::Welded, || place);
+    }
+}
