@@ -1,5 +1,6 @@
 //! What users type.
 
+use crate::remesh::{self, RemeshArgs};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::fmt;
 use std::path::PathBuf;
@@ -34,6 +35,9 @@ pub(crate) enum Command {
     /// Distances in a metric from given points to everywhere, and the shortest path to one
     #[command(after_help = DISTANCE_EXAMPLES)]
     Distance(DistanceArgs),
+    /// Mesh a surface anew, with the options of mmgs
+    #[command(after_help = remesh::EXAMPLES)]
+    Remesh(RemeshArgs),
     /// Examine a mesh: validity, quality in a metric, distance to its domain
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
@@ -507,6 +511,7 @@ impl MeshArgs {
             complexity: self.complexity,
             hausd: self.hausd,
             fit: self.fit,
+            stiffness: MeshOptions::default().stiffness,
             mesher: self.mesher,
             lloyd: self.lloyd,
             centroid: self.centroid,
@@ -564,14 +569,14 @@ fn canvas_size(text: &str) -> Result<CanvasSize, String> {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
         _ => Err("not a positive number".into()),
     }
 }
 
-fn not_negative(text: &str) -> Result<f64, String> {
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
         _ => Err("not a number from 0 up".into()),

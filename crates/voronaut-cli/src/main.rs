@@ -9,6 +9,7 @@ mod files;
 mod mesh;
 mod metric;
 mod progress;
+mod remesh;
 mod seeds;
 mod summary;
 mod surfaces;
@@ -16,14 +17,10 @@ mod surfaces;
 use args::{Arguments, Command};
 use clap::Parser;
 use std::process::ExitCode;
+use voronaut::Result;
 
 fn main() -> ExitCode {
-    let done = match Arguments::parse().command {
-        Command::Mesh(args) => mesh::run(&args),
-        Command::Dual(args) => dual::run(&args),
-        Command::Distance(args) => distance::run(&args),
-        Command::Check(args) => check::run(&args),
-    };
+    let done = remesh::translated(std::env::args_os()).and_then(|words| run(Arguments::parse_from(words)));
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -33,5 +30,15 @@ fn main() -> ExitCode {
             }
             ExitCode::FAILURE
         }
+    }
+}
+
+fn run(arguments: Arguments) -> Result<()> {
+    match arguments.command {
+        Command::Mesh(args) => mesh::run(&args),
+        Command::Dual(args) => dual::run(&args),
+        Command::Distance(args) => distance::run(&args),
+        Command::Remesh(args) => remesh::run(&args),
+        Command::Check(args) => check::run(&args),
     }
 }

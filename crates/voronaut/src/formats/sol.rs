@@ -14,6 +14,36 @@ pub struct Solution {
     pub values: SolutionValues,
 }
 
+impl Solution {
+    /// The entries of some vertices, in their order.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    #[must_use]
+    pub fn of_vertices(&self, vertices: &[u32]) -> Self {
+        fn taken<T: Clone>(entries: &[T], vertices: &[u32]) -> Vec<T> {
+            vertices.iter().map(|&v| entries[v as usize].clone()).collect()
+        }
+        let values = match &self.values {
+            SolutionValues::Scalar(entries) => SolutionValues::Scalar(taken(entries, vertices)),
+            SolutionValues::Vector(entries) => SolutionValues::Vector(taken(entries, vertices)),
+            SolutionValues::Tensor(entries) => SolutionValues::Tensor(taken(entries, vertices)),
+            SolutionValues::Tensor3(entries) => SolutionValues::Tensor3(taken(entries, vertices)),
+        };
+        Self { dimension: self.dimension, values }
+    }
+
+    /// How many vertices it has entries of.
+    pub fn count(&self) -> usize {
+        match &self.values {
+            SolutionValues::Scalar(entries) => entries.len(),
+            SolutionValues::Vector(entries) => entries.len(),
+            SolutionValues::Tensor(entries) => entries.len(),
+            SolutionValues::Tensor3(entries) => entries.len(),
+        }
+    }
+}
+
 /// The entries of a [`Solution`], in the order of the vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolutionValues {

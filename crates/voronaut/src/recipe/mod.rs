@@ -31,7 +31,7 @@ use crate::geodesic::Method;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Scaled};
 use crate::net::Net;
-use crate::optimise::Relaxed;
+use crate::optimise::{FitOptions, Relaxed};
 use crate::output::report;
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
@@ -53,6 +53,8 @@ pub struct MeshOptions {
     pub hausd: Option<f64>,
     /// Of a surface: whether vertices are moved off it, to where mesh and surface are closest in the sense of least squares.
     pub fit: bool,
+    /// How stiffly these vertices are held where they were; see [`FitOptions`](crate::optimise::FitOptions).
+    pub stiffness: f64,
     /// What makes the mesh. The options below are for [`Mesher::Voronoi`], but for the memory limit.
     pub mesher: Mesher,
     /// Steps of Riemannian Lloyd relaxation, at most: it ends where it stalls.
@@ -88,6 +90,7 @@ impl Default for MeshOptions {
             complexity: None,
             hausd: None,
             fit: false,
+            stiffness: FitOptions::default().stiffness,
             mesher: Mesher::default(),
             lloyd: 40,
             centroid: Centroid::default(),

@@ -133,7 +133,8 @@ impl Job<'_> {
             return Ok(mesh);
         }
         self.setting.progress.stage("fitting", 1);
-        let fitted = fit(&mesh, fine.unwrap_or(&self.setting.input.surface), &FitOptions::default())?.mesh;
+        let options = FitOptions { stiffness: self.setting.options.stiffness, ..FitOptions::default() };
+        let fitted = fit(&mesh, fine.unwrap_or(&self.setting.input.surface), &options)?.mesh;
         if quality::check(&fitted).is_ok() {
             return Ok(fitted);
         }

@@ -4,6 +4,7 @@ use super::cut::{Seams, cut};
 use super::features::FeatureOptions;
 use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
+use crate::formats::sol::Solution;
 use crate::geometry::{Point3, Vector3};
 use crate::metric::Expression;
 use crate::triangulation::{FaceId, HalfEdge};
@@ -56,6 +57,19 @@ impl Input {
             seams
         };
         Ok(Self::with_seams(surface, self.implicit, seams))
+    }
+
+    /// A solution at the vertices of the surface before it was cut, as one at the vertices that it has now.
+    ///
+    /// # Errors
+    /// [`Error::Metric`] where it has not one entry per vertex.
+    pub fn spread(&self, solution: &Solution) -> Result<Solution> {
+        let (found, needed) = (solution.count(), self.seams.vertices_before());
+        if found == needed {
+            return Ok(solution.of_vertices(&self.seams.originals()));
+        }
+        let help = "the metric must have one value for each vertex of the surface's file, in the same order";
+        Err(Error::metric(format!("{found} values for {needed} vertices"), "the surface", help))
     }
 
     fn with_seams(surface: Surface, implicit: Option<Expression>, seams: Seams) -> Self {

@@ -75,7 +75,7 @@ pub struct Misfit {
 /// Least squares to samples, as Levy and Bonneel 2012 have it, but of both directions' distances, and by Gauss-Newton steps: samples keep their closest points, and distances are measured along the directions between the two,
 /// so that vertices glide along what is flat for free, and damping (Levenberg 1944, Marquardt 1963) keeps them where they
 /// gain nothing by it. The mean square distance never rises. Topology, labels and order stay. Vertices at the border,
-/// corners, required vertices and those of required edges stay; ends of other labelled edges move.
+/// corners, the ends of the mesh's edges (its features), and what is required stay.
 ///
 /// No triangle folds over, becomes a sliver or comes to cross another one: moves are shortened until that is so. What is
 /// folded, thin or crossing in the input may remain so. Distances are Euclidean. The result does not depend on the number
@@ -192,8 +192,9 @@ fn free_vertices(mesh: &Mesh, surface: &Surface) -> Vec<bool> {
     let t = surface.topology();
     let slots = (0..mesh.points.len() as u32).map(VertexId);
     let mut free: Vec<bool> = slots.map(|v| t.is_vertex(v) && !t.is_border_vertex(v)).collect();
-    let ends = mesh.required_edges.iter().flat_map(|&e| mesh.edges[e as usize]);
-    for v in mesh.corners.iter().chain(&mesh.required_points).copied().chain(ends) {
+    let required = mesh.required_triangles.iter().flat_map(|&t| mesh.triangles[t as usize]);
+    let ends = mesh.edges.as_flattened().iter().chain(&mesh.corners).chain(&mesh.required_points).copied();
+    for v in ends.chain(required) {
         free[v as usize] = false;
     }
     free

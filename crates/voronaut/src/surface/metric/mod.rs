@@ -9,25 +9,29 @@
 //! | [`ImplicitCurvature`] | `curvature`, of an equation | principal curvatures, exact (RR-9103, 15.1) |
 //! | [`Sampled`] | `curvature`, of a file | principal curvatures at vertices, fitted ([`fit_curvatures`]) |
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at vertices, log-Euclidean between them |
-//! | [`Chordal`] | `--hausd` | another field, with edges short enough to stay within a distance of the surface |
+//! | [`Sampled`] | what `remesh` makes | sizes at vertices for a distance to the surface, graded ([`Sizing`]) |
 //! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits, in the tangent plane |
 //!
 //! [`Spec`] reads the second column, [`field`] makes the field; [`check_tensor3`] tells whether a value is a metric.
 
+mod bends;
 mod bounded;
-mod chordal;
 mod curvature;
 mod fit;
-mod graded;
+mod gradation;
 mod sampled;
+mod sizes;
+mod sizing;
 mod spec;
 mod validate;
 
 pub use bounded::Bounded;
-pub use chordal::{CHORD, Chordal};
 pub use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub use fit::fit_curvatures;
+pub use gradation::grade;
 pub use sampled::Sampled;
+pub use sizes::Sizes;
+pub use sizing::{SAGITTA, Sizing};
 pub use spec::{Spec, field};
 pub use validate::check_tensor3;
 

@@ -66,7 +66,7 @@ pub fn field(spec: &Spec, input: &Input, bounds: Bounds) -> Result<Box<dyn Surfa
         }
         Spec::File(path) => {
             let solution = sol::read(&read_text(path)?, &path.display().to_string())?;
-            Box::new(Sampled::from_solution(&input.surface, &solution)?)
+            Box::new(Sampled::from_solution(&input.surface, &input.spread(&solution)?)?)
         }
     };
     if bounds == Bounds::default() { Ok(field) } else { Ok(Box::new(Bounded::new(field, bounds)?)) }

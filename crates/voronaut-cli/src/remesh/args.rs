@@ -1,0 +1,187 @@
+//! What users of mmgs type.
+
+use crate::args::{Damage, Run, not_negative, positive};
+use clap::Args;
+use std::path::PathBuf;
+use voronaut::surface::FeatureOptions;
+
+pub(crate) const EXAMPLES: &str = "\
+Options are spelt as mmgs's, with one dash or two. IN.sol next to IN.mesh is the metric if no other is named, as mmgs has it: sizes
+h or tensors 1/h^2 at the vertices of IN, kept where the distance to the surface does not ask for less. OUT is IN.o.mesh if not
+given; the metric that was used is written next to it, OUT.sol, with its values at the vertices of OUT.
+
+Lengths are those of the file: 0.01, the default of -hausd, is a hundredth of its unit, whatever the size of the part.
+
+Examples:
+  voronaut remesh part.mesh
+  voronaut remesh part.mesh -hausd 0.001 -hmax 0.1 -out fine.mesh
+  voronaut remesh part.mesh thin.mesh -A -hausd 0.001
+  voronaut remesh -in part.mesh -sol error.sol -hmin 0.01 -hgrad 1.2 -o adapted.mesh --report run.json";
+
+/// Where mmgs's defaults are the user's expectation.
+const HAUSD: f64 = 0.01;
+const HGRAD: f64 = 1.3;
+
+#[derive(Debug, Args)]
+pub(crate) struct RemeshArgs {
+    /// The surface: a .mesh (the ending may be left out), .obj, .off, .ply or .stl
+    #[arg(value_name = "IN", required_unless_present = "input")]
+    pub(crate) first: Option<PathBuf>,
+    /// The mesh [default: IN.o.mesh]
+    #[arg(value_name = "OUT", conflicts_with = "out")]
+    pub(crate) second: Option<PathBuf>,
+    /// The surface, named
+    #[arg(long = "in", value_name = "IN")]
+    input: Option<PathBuf>,
+    /// The mesh, named: .mesh, .vtu, .obj, .off, .ply or .stl
+    #[arg(short, long, value_name = "OUT")]
+    out: Option<PathBuf>,
+    /// Sizes or tensors at the vertices of IN, as -sol or -met
+    #[arg(long, visible_alias = "met", value_name = "FILE")]
+    pub(crate) sol: Option<PathBuf>,
+    /// How far the mesh may be from the surface
+    #[arg(long, value_name = "D", value_parser = positive, default_value_t = HAUSD)]
+    pub(crate) hausd: f64,
+    /// No size is less [default: a thousandth of the bounding box's diagonal]
+    #[arg(long, value_name = "H", value_parser = positive)]
+    pub(crate) hmin: Option<f64>,
+    /// No size is more [default: the bounding box's diagonal]
+    #[arg(long, value_name = "H", value_parser = positive)]
+    pub(crate) hmax: Option<f64>,
+    /// The same size everywhere, but where the distance to the surface asks for less
+    #[arg(long, value_name = "H", value_parser = positive, conflicts_with_all = ["sol", "hmax"])]
+    pub(crate) hsiz: Option<f64>,
+    /// Edges where the normal turns by more than this angle (degrees) are creases, which are kept
+    #[arg(long, value_name = "DEGREES", value_parser = not_negative, default_value_t = FeatureOptions::DEFAULT_ANGLE)]
+    ar: f64,
+    /// Look for no creases by angles
+    #[arg(long)]
+    nr: bool,
+    #[command(flatten)]
+    pub(crate) damage: Damage,
+    /// Sizes grow from edge to edge by this factor at most; -1: as they will. Sizes that depend on the direction always do
+    #[arg(long, value_name = "G", allow_negative_numbers = true, default_value_t = HGRAD)]
+    pub(crate) hgrad: f64,
+    /// Sizes that follow the curvature's directions
+    #[arg(short = 'A')]
+    pub(crate) anisotropic: bool,
+    /// Vertices on the surface, instead of where mesh and surface are closest in the sense of least squares
+    #[arg(long)]
+    pub(crate) no_fit: bool,
+    /// Megabytes the work may need, as estimated before
+    #[arg(short, long, value_name = "MB", value_parser = positive)]
+    pub(crate) memory: Option<f64>,
+    /// How much is said, as mmgs's -v N: nothing from 0 down, more from 5 up
+    #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with_all = ["quiet", "verbose"])]
+    pub(crate) verbosity: Option<i32>,
+    /// Write all figures as JSON
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) unused: Unused,
+    #[command(flatten)]
+    run: Run,
+}
+
+/// Options of mmgs that change nothing here.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Options of mmgs that are accepted, and change nothing")]
+pub(crate) struct Unused {
+    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    hgradreq: Option<f64>,
+    #[arg(long)]
+    nosizreq: bool,
+    #[arg(long)]
+    nosurf: bool,
+    #[arg(long)]
+    noinsert: bool,
+    #[arg(long)]
+    noswap: bool,
+    #[arg(long)]
+    nomove: bool,
+    #[arg(long)]
+    optim: bool,
+    #[arg(long)]
+    nreg: bool,
+    #[arg(long, value_name = "X", num_args = 0..=1)]
+    xreg: Option<Option<f64>>,
+    #[arg(long, value_name = "X", num_args = 0..=1)]
+    rmc: Option<Option<f64>>,
+    #[arg(long)]
+    opnbdy: bool,
+    #[arg(long)]
+    nofem: bool,
+    #[arg(long = "keep-ref")]
+    keep_ref: bool,
+    #[arg(long = "3dMedit", value_name = "N")]
+    medit: Option<i32>,
+    #[arg(short)]
+    debug: bool,
+}
+
+impl Unused {
+    /// What was given, and why it changes nothing.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        const LOCAL: &str = "the mesh is made anew, not by local changes";
+        const REQUIRED: &str = "sizes at what is required are as those elsewhere";
+        const AS_GIVEN: &str = "the surface is meshed as it is given";
+        const LEVEL: &str = "it is for level sets";
+        const FORMAT: &str = "it does not concern surfaces";
+        let all = [
+            ("-hgradreq", self.hgradreq.is_some(), REQUIRED),
+            ("-nosizreq", self.nosizreq, REQUIRED),
+            ("-nosurf", self.nosurf, FORMAT),
+            ("-noinsert", self.noinsert, LOCAL),
+            ("-noswap", self.noswap, LOCAL),
+            ("-nomove", self.nomove, LOCAL),
+            ("-optim", self.optim, LOCAL),
+            ("-nreg", self.nreg, AS_GIVEN),
+            ("-xreg", self.xreg.is_some(), AS_GIVEN),
+            ("-rmc", self.rmc.is_some(), LEVEL),
+            ("-keep-ref", self.keep_ref, LEVEL),
+            ("-opnbdy", self.opnbdy, FORMAT),
+            ("-nofem", self.nofem, FORMAT),
+            ("-3dMedit", self.medit.is_some(), FORMAT),
+            ("-d", self.debug, "--report has the figures"),
+        ];
+        let given = all.into_iter().filter(|(_, is_given, _)| *is_given);
+        given.map(|(name, _, why)| format!("{name} changes nothing: {why}")).collect()
+    }
+}
+
+impl RemeshArgs {
+    /// The surface's file; without an ending that of Medit, as mmgs has it.
+    pub(crate) fn input(&self) -> PathBuf {
+        with_ending(self.input.as_ref().or(self.first.as_ref()).cloned().unwrap_or_default())
+    }
+
+    /// The mesh's file. With -in the first word without an option is OUT.
+    pub(crate) fn out(&self) -> PathBuf {
+        let first = self.first.as_ref().filter(|_| self.input.is_some());
+        let named = self.out.as_ref().or(self.second.as_ref()).or(first);
+        named.map_or_else(|| self.input().with_extension("o.mesh"), |out| with_ending(out.clone()))
+    }
+
+    /// What is kept as creases.
+    pub(crate) fn features(&self) -> FeatureOptions {
+        FeatureOptions { ar: (!self.nr).then_some(self.ar) }
+    }
+
+    /// Threads, and how much is said.
+    pub(crate) fn run(&self) -> Run {
+        Run {
+            threads: self.run.threads,
+            quiet: self.run.quiet || self.verbosity.is_some_and(|n| n <= 0),
+            verbose: self.run.verbose || self.verbosity.is_some_and(|n| n >= 5),
+        }
+    }
+
+    /// `None` where sizes may grow as they will.
+    pub(crate) fn gradation(&self) -> Option<f64> {
+        (self.hgrad >= 0.0).then_some(self.hgrad)
+    }
+}
+
+fn with_ending(path: PathBuf) -> PathBuf {
+    if path.extension().is_some() { path } else { path.with_extension("mesh") }
+}

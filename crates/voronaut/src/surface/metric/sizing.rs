@@ -1,0 +1,271 @@
+//! The sizes that keep a mesh close to its surface.
+
+use super::bends::bend;
+use super::{Sampled, Sizes, fit_curvatures, grade};
+use crate::error::{Error, Result};
+use crate::formats::sol::{Solution, SolutionValues};
+use crate::geometry::{TangentPlane, Tensor, Tensor3};
+use crate::metric::Bounds;
+use crate::surface::{Curvatures, Surface};
+use crate::triangulation::VertexId;
+use rayon::prelude::*;
+
+/// c in h = sqrt(c hausd / curvature), the size that keeps unit meshes within `hausd` of a surface. An edge of length h alone is
+/// an eighth of h^2 times the curvature away, an equilateral triangle a sixth; but edges of unit meshes are up to a third longer.
+/// Measured on a sphere and a torus, vertices on them: mesh and surface are 0.9 `hausd` apart with c = 4, and 0.74 and 0.69 with 3,
+/// which leaves room for what curvatures at vertices do not tell.
+pub const SAGITTA: f64 = 3.0;
+
+/// What sizes are to be made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sizing {
+    /// How far (Euclidean) a mesh with these sizes may be from the surface; positive.
+    pub hausd: f64,
+    /// No size is less; positive.
+    pub h_min: f64,
+    /// No size is more, and flat parts have this one.
+    pub h_max: f64,
+    /// Between neighbouring edges sizes grow by this factor at most, by [`grade`]; `None`: as they will. Sizes that depend on
+    /// the direction are left as they are: gradation would make them alike in all.
+    pub hgrad: Option<f64>,
+    /// Whether sizes follow the principal directions.
+    pub anisotropic: bool,
+}
+
+impl Sizing {
+    /// The sizes of a surface: sqrt([`SAGITTA`] hausd / c) of the larger principal curvature c, and of that of borders and fixed
+    /// edges; anisotropic, of both along their directions. Given sizes or tensors, one per vertex slot, are kept where they are
+    /// less (of tensors the [intersection](Tensor::intersection), then anisotropic). Limits come next, gradation last.
+    ///
+    /// A surface may be cut along its features: what is said is of each side's own.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] that names a parameter out of range; as [`Sampled::from_solution`] of what is given.
+    pub fn sizes(&self, surface: &Surface, given: Option<&Solution>) -> Result<Sizes> {
+        self.check()?;
+        if let Some(given) = given {
+            Sampled::from_solution(surface, given)?;
+        }
+        let curvatures = fit_curvatures(surface);
+        let asked = |v: usize| given.map(|given| asked(given, v));
+        let is_tensor = given.is_some_and(|given| matches!(given.values, SolutionValues::Tensor3(_)));
+        let slots = (0..curvatures.len()).into_par_iter();
+        if self.anisotropic || is_tensor {
+            let tensor = |v: usize| self.tensor(surface, v, curvatures[v].as_ref(), asked(v));
+            return Ok(Sizes::Anisotropic(slots.map(tensor).collect()));
+        }
+        let mut sizes: Vec<f64> = slots.map(|v| self.size(surface, v, curvatures[v].as_ref(), asked(v))).collect();
+        if let Some(hgrad) = self.hgrad {
+            grade(surface, &mut sizes, hgrad);
+        }
+        Ok(Sizes::Isotropic(sizes))
+    }
+
+    fn check(&self) -> Result<()> {
+        Bounds { h_min: Some(self.h_min), h_max: Some(self.h_max), a_max: None }.check()?;
+        let fault = |name: &str, value: f64, help: &str| Err(Error::parse("sizes", format!("{name} = {value}"), help));
+        match self.hgrad {
+            _ if !(self.hausd > 0.0 && self.hausd.is_finite()) => {
+                fault("hausd", self.hausd, "hausd must be positive and finite: a distance")
+            }
+            Some(hgrad) if !(hgrad >= 1.0 && hgrad.is_finite()) => fault(
+                "hgrad",
+                hgrad,
+                "hgrad must be at least 1 and finite: the factor by which sizes grow from edge to edge",
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    /// The size for a curvature.
+    fn of_curvature(&self, curvature: f64) -> f64 {
+        let size = (SAGITTA * self.hausd / curvature.abs()).sqrt();
+        if size.is_nan() { self.h_max } else { size.clamp(self.h_min, self.h_max) }
+    }
+
+    fn size(&self, surface: &Surface, v: usize, curvatures: Option<&Curvatures>, asked: Option<Tensor3>) -> f64 {
+        let of_surface = curvatures.map(|c| self.of_curvature(c.values[0]));
+        let of_curve = bend(surface, VertexId(v as u32)).map(|bend| self.of_curvature(bend.curvature));
+        let asked = asked.map(|tensor| 1.0 / tensor.xx.sqrt());
+        let sizes = [of_surface, of_curve, asked].into_iter().flatten();
+        sizes.fold(self.h_max, f64::min).max(self.h_min)
+    }
+
+    fn tensor(&self, surface: &Surface, v: usize, curvatures: Option<&Curvatures>, asked: Option<Tensor3>) -> Tensor3 {
+        let Some(c) = curvatures else { return Tensor3::isotropic(self.h_max) };
+        let plane = TangentPlane::new(c.normal);
+        let eigenvalue = |size: f64| 1.0 / (size * size);
+        let [along, across] = c.values.map(|c| eigenvalue(self.of_curvature(c)));
+        let of_surface = Tensor::from_axis(plane.flatten(c.axes[0]), along, across);
+        let of_curve = bend(surface, VertexId(v as u32)).map(|bend| {
+            let tangent = plane.flatten(bend.tangent);
+            let along = eigenvalue(self.of_curvature(bend.curvature));
+            // A tangent that leaves the plane is seen from aside, and asks for less.
+            Tensor::from_axis(tangent, along, eigenvalue(self.h_max))
+        });
+        let asked = asked.map(|tensor| plane.restrict(tensor));
+        let all = [of_curve, asked].into_iter().flatten().fold(of_surface, Tensor::intersection);
+        let limits = Bounds { h_min: Some(self.h_min), h_max: Some(self.h_max), a_max: None };
+        let tensor = limits.clamp(all);
+        plane.extend(tensor, tensor.eigen().large)
+    }
+}
+
+/// An entry of a solution, which was found to be a metric.
+fn asked(given: &Solution, v: usize) -> Tensor3 {
+    match &given.values {
+        SolutionValues::Tensor3(entries) => Tensor3::from_disk(entries[v]),
+        SolutionValues::Scalar(sizes) => Tensor3::isotropic(sizes[v]),
+        SolutionValues::Vector(_) | SolutionValues::Tensor(_) => Tensor3::IDENTITY,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point3, Vector3};
+    use crate::mesh::Mesh;
+    use crate::surface::{sphere, torus};
+    use std::f64::consts::TAU;
+
+    const LOOSE: Sizing = Sizing { hausd: 0.01, h_min: 1e-3, h_max: 100.0, hgrad: None, anisotropic: false };
+
+    fn isotropic(sizing: &Sizing, surface: &Surface) -> Vec<f64> {
+        match sizing.sizes(surface, None).unwrap() {
+            Sizes::Isotropic(sizes) => sizes,
+            Sizes::Anisotropic(_) => panic!("isotropic sizes were asked for"),
+        }
+    }
+
+    fn anisotropic(sizing: Sizing, surface: &Surface, given: Option<&Solution>) -> Vec<Tensor3> {
+        match (Sizing { anisotropic: given.is_none(), ..sizing }).sizes(surface, given).unwrap() {
+            Sizes::Anisotropic(tensors) => tensors,
+            Sizes::Isotropic(_) => panic!("tensors were asked for"),
+        }
+    }
+
+    /// An open tube of this radius around the z axis.
+    fn tube(radius: f64, height: f64, around: u32, rings: u32) -> Surface {
+        let at = |i: u32, j: u32| {
+            let angle = TAU * (f64::from(i) + 0.5 * f64::from(j % 2)) / f64::from(around);
+            [radius * angle.cos(), radius * angle.sin(), height * f64::from(j) / f64::from(rings)]
+        };
+        let points = (0..=rings).flat_map(|j| (0..around).map(move |i| at(i, j))).collect();
+        let number = |i: u32, j: u32| i % around + j * around;
+        let triangles = (0..rings).flat_map(|j| {
+            (0..around).flat_map(move |i| {
+                let [a, b, c, d] = [number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)];
+                if j % 2 == 0 { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }
+            })
+        });
+        Surface::new(&Mesh { points, triangles: triangles.collect(), ..Mesh::default() }).unwrap()
+    }
+
+    /// The sizes that a tensor asks for along two unit tangents.
+    fn along(tensor: Tensor3, tangents: [Vector3; 2]) -> [f64; 2] {
+        tangents.map(|t| 1.0 / tensor.length(t))
+    }
+
+    /// Fitted curvatures are right to the second order in edge / radius, and so are sizes.
+    fn is_near(found: f64, expected: f64, edge_over_radius: f64) -> bool {
+        (found / expected - 1.0).abs() <= edge_over_radius * edge_over_radius
+    }
+
+    #[test]
+    fn spheres_and_tubes_have_the_size_of_their_radius() {
+        let expected = |radius: f64| (SAGITTA * 0.01 * radius).sqrt();
+        for h in isotropic(&LOOSE, &sphere(2.0, 0.2).unwrap()) {
+            assert!(is_near(h, expected(2.0), 0.1), "{h}");
+        }
+        // On its rims too, where curvatures are seen from one side, and which bend as it does.
+        let surface = tube(0.5, 2.0, 48, 30);
+        for h in isotropic(&LOOSE, &surface) {
+            assert!(is_near(h, expected(0.5), TAU / 48.0), "{h}");
+        }
+        for (v, tensor) in anisotropic(LOOSE, &surface, None).into_iter().enumerate() {
+            let p = surface.position(VertexId(v as u32));
+            let [round, up] = along(tensor, [Vector3::new(-p.y, p.x, 0.0) * 2.0, Vector3::new(0.0, 0.0, 1.0)]);
+            // Where nothing bends, an error of second order is all there is: of 2 (edge / radius)^2 in the curvature.
+            let straight = (SAGITTA * 0.01 / 2.0).sqrt() / (TAU / 48.0);
+            assert!(is_near(round, expected(0.5), TAU / 48.0) && up > straight, "{round} {up}");
+        }
+    }
+
+    #[test]
+    fn tori_have_sizes_along_both_circles() {
+        let surface = torus(2.0, 0.7, 0.05).unwrap();
+        for (v, tensor) in anisotropic(LOOSE, &surface, None).into_iter().enumerate() {
+            let p = surface.position(VertexId(v as u32));
+            let r = p.x.hypot(p.y);
+            let ring = Vector3::new(-p.y, p.x, 0.0) * (1.0 / r);
+            let out = p - Point3::new(2.0 * p.x / r, 2.0 * p.y / r, 0.0);
+            let [long, short] = along(tensor, [ring, ring.cross(out) * (1.0 / 0.7)]);
+            let expected = |curvature: f64| (SAGITTA * 0.01 / curvature.abs()).sqrt();
+            assert!((short / expected(1.0 / 0.7) - 1.0).abs() < 0.01, "{short}");
+            let truth = (r - 2.0) / 0.7 / r;
+            assert!(truth.abs() < 0.1 || (long / expected(truth) - 1.0).abs() < 0.05, "{long} at {truth}");
+        }
+    }
+
+    #[test]
+    fn limits_and_given_sizes_are_kept() {
+        let surface = sphere(1.0, 0.2).unwrap();
+        let natural = (SAGITTA * 0.01_f64).sqrt();
+        let check = |sizing: Sizing, given: Option<f64>, expected: f64, edge_over_radius: f64| {
+            let values = |h: f64| SolutionValues::Scalar(vec![h; surface.positions().len()]);
+            let given = given.map(|h| Solution { dimension: 3, values: values(h) });
+            let Sizes::Isotropic(sizes) = sizing.sizes(&surface, given.as_ref()).unwrap() else { panic!("isotropic") };
+            assert!(sizes.iter().all(|&h| is_near(h, expected, edge_over_radius)), "{} not {expected}", sizes[0]);
+        };
+        check(Sizing { h_max: 0.1, ..LOOSE }, None, 0.1, 1e-6);
+        check(Sizing { h_min: 0.5, ..LOOSE }, None, 0.5, 1e-6);
+        check(LOOSE, Some(5.0), natural, 0.2);
+        check(LOOSE, Some(0.05), 0.05, 1e-6);
+        check(Sizing { h_min: 0.1, ..LOOSE }, Some(0.05), 0.1, 1e-6);
+        let thin = [400.0, 0.0, 1.0, 0.0, 0.0, 1.0];
+        let values = SolutionValues::Tensor3(vec![thin; surface.positions().len()]);
+        let tensors = anisotropic(LOOSE, &surface, Some(&Solution { dimension: 3, values }));
+        for (curvatures, tensor) in fit_curvatures(&surface).into_iter().zip(tensors) {
+            let plane = TangentPlane::new(curvatures.unwrap().normal);
+            let x = plane.flatten(Vector3::new(1.0, 0.0, 0.0));
+            let found = plane.restrict(tensor);
+            // Both are in it: the sphere's own size, to the second order, and 1 / 20 along x.
+            let wide = 1.0 / found.eigen().small.sqrt();
+            assert!(wide < 1.04 * natural && found.length(x) > 20.0 * x.dot(x) - 1e-9, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn small_sizes_are_approached_slowly() {
+        let surface = torus(2.0, 0.7, 0.2).unwrap();
+        let sizing = Sizing { hgrad: Some(1.3), ..LOOSE };
+        let values = surface.positions().iter().map(|p| if p.x > 2.5 { 0.01 } else { 1.0 }).collect();
+        let given = Solution { dimension: 3, values: SolutionValues::Scalar(values) };
+        let Sizes::Isotropic(sizes) = sizing.sizes(&surface, Some(&given)).unwrap() else { panic!("isotropic") };
+        let t = surface.topology();
+        for h in t.edges() {
+            let [v, w] = [t.origin(h), t.target(h)];
+            let most = 1.3_f64.ln() * surface.position(v).distance(surface.position(w)) + 1e-12;
+            assert!((sizes[v.index()] - sizes[w.index()]).abs() <= most);
+        }
+        assert!(sizes.iter().any(|&h| h > 0.1));
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_named() {
+        let surface = sphere(1.0, 1.0).unwrap();
+        for (sizing, expected) in [
+            (Sizing { hausd: 0.0, ..LOOSE }, "hausd = 0"),
+            (Sizing { hausd: f64::NAN, ..LOOSE }, "hausd = NaN"),
+            (Sizing { h_min: 0.0, ..LOOSE }, "h_min = 0"),
+            (Sizing { h_min: 200.0, ..LOOSE }, "h_min = 200 is larger than h_max = 100"),
+            (Sizing { hgrad: Some(0.9), ..LOOSE }, "hgrad = 0.9"),
+        ] {
+            let error = sizing.sizes(&surface, None).unwrap_err();
+            assert!(error.to_string().contains(expected) && !error.help().is_empty(), "{error}");
+        }
+        let given = Solution { dimension: 3, values: SolutionValues::Scalar(vec![1.0]) };
+        let error = LOOSE.sizes(&surface, Some(&given)).unwrap_err().to_string();
+        assert!(error.contains("1 values for"), "{error}");
+    }
+}
