@@ -24,6 +24,9 @@ const NOT_RESOLVED: f64 = 0.5;
 /// corner is there.
 const ON_EDGE: f64 = 1e-9;
 
+/// A face is flat but for rounding if its height is so small a part of its longest edge.
+const FLAT: f64 = 1e-9;
+
 /// A triangulation draped over a surface, with its metric. Faces are labelled with the number of the input's triangle that they lie in.
 #[derive(Clone)]
 pub struct Draped<'s> {
@@ -332,9 +335,9 @@ impl Measured for Draped<'_> {
     }
 
     fn halve(&mut self, h: HalfEdge) -> Result<Option<VertexId>> {
-        let [a, b] = [self.topology.origin(h), self.topology.target(h)];
         let Some(place) = self.middle(h) else { return Ok(None) };
-        if [a, b].iter().any(|&v| self.position(v) == place.position) {
+        let faces = [Some(h), self.topology.twin(h)].into_iter().flatten().map(HalfEdge::face);
+        if faces.flat_map(|f| self.topology.corners(f)).any(|v| self.position(v) == place.position) {
             return Ok(None);
         }
         let v = self.add(place)?;
@@ -343,8 +346,13 @@ impl Measured for Draped<'_> {
         Ok(Some(v))
     }
 
-    fn is_beside_flat(&self, _h: HalfEdge) -> bool {
-        false
+    fn is_beside_flat(&self, h: HalfEdge) -> bool {
+        let is_flat = |f: FaceId| {
+            let [a, b, c] = self.topology.corners(f).map(|v| self.position(v));
+            let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
+            (b - a).cross(c - a).norm() <= FLAT * longest * longest
+        };
+        [Some(h), self.topology.twin(h)].into_iter().flatten().any(|side| is_flat(side.face()))
     }
 
     fn place_of(&self, h: HalfEdge) -> String {

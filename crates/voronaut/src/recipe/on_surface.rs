@@ -10,7 +10,7 @@ use crate::optimise::{FitOptions, fit};
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{MeasuredCurves, demand_memory};
-use crate::surface::metric::SurfaceMetric;
+use crate::surface::metric::{Closer, SurfaceMetric};
 use crate::surface::{Implicit, Input, Surface};
 use std::time::Instant;
 
@@ -39,6 +39,10 @@ pub fn mesh_surface(
     progress: &dyn Progress,
 ) -> Result<Meshed> {
     demand_supported(options)?;
+    let is_open = options.vertices.is_none() && options.complexity.is_none();
+    let asked = options.hausd.filter(|&hausd| is_open && hausd > 0.0);
+    let closer = asked.map(|hausd| Closer::new(metric, input, hausd)).transpose()?;
+    let metric = closer.as_ref().map_or(metric, |closer| closer as &dyn SurfaceMetric);
     let setting = Setting { input, metric, options, progress, curves: MeasuredCurves::new(input, metric) };
     let mut job = Job { setting, watch: Stopwatch::default() };
     let (mut count, mut scale) = job.timed("plan", Job::plan)?;

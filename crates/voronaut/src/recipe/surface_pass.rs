@@ -18,8 +18,8 @@ use crate::quality;
 use crate::rdt::{OnSurface, Rdt, Start};
 use crate::sampling::{FeatureSeeds, MeasuredCurves, Seeded, seed_surface, triangulated};
 use crate::surface::metric::{Constant, SurfaceMetric};
-use crate::surface::{Input, Place, Surface};
-use crate::triangulation::{Triangulation, VertexId};
+use crate::surface::{Input, Place, Surface, Whole};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use std::collections::BTreeSet;
 use std::time::Instant;
 
@@ -90,9 +90,7 @@ impl<'a> Setting<'a> {
         let begin = Instant::now();
         let features = self.curves.sampled(1.0 / scale.sqrt(), self.options.hausd, &reseed.density);
         let (mut given, owners) = features.flattened();
-        let is_new = |place: &&Place| given.iter().all(|other| other.position != place.position);
-        let more: Vec<Place> = reseed.places.iter().filter(is_new).copied().collect();
-        given.extend(more);
+        given.extend(&reseed.places);
         let count = count.max(features.seeds.len()) + owners.len() - features.seeds.len();
         let (canvas, at) = self.canvas(count, &given)?;
         watch.add("canvas", begin);
@@ -198,10 +196,17 @@ impl Pass<'_> {
         self.patched().mesh(self.dual.places(), &self.dual.triangles())
     }
 
-    /// The triangles at which it is no mesh, or that are folded over.
+    /// The triangles at which it is no mesh, or that are folded over, or whose border is that of no patch.
     pub(super) fn faulty(&self, mesh: &Mesh) -> Vec<u32> {
-        let folded = (0..).zip(self.dual.topology().faces()).filter(|&(_, f)| self.dual.is_folded(f)).map(|(i, _)| i);
-        let faulty: BTreeSet<u32> = quality::faulty_triangles(mesh).into_iter().chain(folded).collect();
+        let topology = self.dual.topology();
+        let features: BTreeSet<[u32; 2]> = self.features.edges.iter().map(|edge| in_order(edge.ends)).collect();
+        let strays = |h: HalfEdge| {
+            let ends = [topology.origin(h), topology.target(h)].map(|v| self.patched().vertex(v.0));
+            topology.twin(h).is_none() && !features.contains(&in_order(ends))
+        };
+        let is_wrong = |f: FaceId| self.dual.is_folded(f) || f.half_edges().into_iter().any(strays);
+        let wrong = (0..).zip(topology.faces()).filter(|&(_, f)| is_wrong(f)).map(|(i, _)| i);
+        let faulty: BTreeSet<u32> = quality::faulty_triangles(mesh).into_iter().chain(wrong).collect();
         faulty.into_iter().collect()
     }
 
@@ -212,11 +217,17 @@ impl Pass<'_> {
     pub(super) fn demand(&self, mesh: &Mesh) -> Result<()> {
         let help = "ask for more vertices (-n); please report this with the input";
         let fault = |what: &str, place: String| Err(Error::Mesh { what: what.into(), place, help: help.into() });
-        if let Some(found) = quality::validity(mesh).first_fault {
+        let found = quality::validity(mesh);
+        if let Some(found) = found.first_fault {
             return fault(&found.what, found.place);
         }
-        if self.dual.topology().euler_characteristic() != self.input.surface.euler_characteristic() {
-            return fault("the mesh has another topology than the surface", "the mesh".into());
+        let Whole { euler, borders } = self.input.seams.whole();
+        if (found.euler, found.boundary_loops) != (euler, borders) {
+            let what = format!(
+                "the mesh has another topology than the surface: Euler number {} and {} borders instead of {euler} and {borders}",
+                found.euler, found.boundary_loops
+            );
+            return fault(&what, "the mesh".into());
         }
         if mesh.required_triangles.len() < self.input.surface.required_triangles().len() {
             return fault("a required triangle is not in the mesh", "the mesh".into());
@@ -261,6 +272,10 @@ impl Pass<'_> {
         ];
         told.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect()
     }
+}
+
+fn in_order([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// The longest edge of a triangle.

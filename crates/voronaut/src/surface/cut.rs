@@ -17,10 +17,26 @@ use crate::triangulation::{FaceId, HalfEdge, VertexId};
 pub struct Seams {
     /// Feature curves and what has to be kept.
     pub features: Curves,
+    whole: Whole,
     /// For each vertex before, its numbers now.
     copies: Vec<Vec<VertexId>>,
     /// For each vertex now, its number before.
     originals: Vec<VertexId>,
+}
+
+/// The topology of a surface before it was cut.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Whole {
+    /// Vertices minus edges plus triangles.
+    pub euler: isize,
+    /// How many closed curves its border consists of.
+    pub borders: usize,
+}
+
+impl Whole {
+    fn of(surface: &Surface) -> Self {
+        Self { euler: surface.euler_characteristic(), borders: surface.border_loops().len() }
+    }
 }
 
 impl Seams {
@@ -33,6 +49,7 @@ impl Seams {
         let slots = (0..surface.positions().len() as u32).map(VertexId);
         Self {
             features: Curves { curves: borders, stops, corners },
+            whole: Whole::of(surface),
             copies: slots.clone().map(|v| vec![v]).collect(),
             originals: slots.collect(),
         }
@@ -41,6 +58,11 @@ impl Seams {
     /// The numbers that a vertex of the surface before has now.
     pub fn copies(&self, v: VertexId) -> &[VertexId] {
         &self.copies[v.index()]
+    }
+
+    /// The topology of the surface before.
+    pub fn whole(&self) -> Whole {
+        self.whole
     }
 
     /// How many vertices there were before.
@@ -90,7 +112,7 @@ pub(super) fn cut(surface: &Surface, options: &FeatureOptions) -> Result<(Surfac
     // Curves have the marks of edges, and tell which are where.
     (mesh.edges, mesh.edge_labels) = (Vec::new(), Vec::new());
     (mesh.ridges, mesh.required_edges) = (Vec::new(), Vec::new());
-    Ok((Surface::new(&mesh)?, Seams { features, copies, originals }))
+    Ok((Surface::new(&mesh)?, Seams { features, whole: Whole::of(surface), copies, originals }))
 }
 
 /// The half-edges that leave a vertex, by the sector between two cuts.

@@ -59,6 +59,16 @@ impl Input {
         Ok(Self::with_seams(surface, self.implicit, seams))
     }
 
+    /// Whether a place is on the border, or so near to it (barycentric).
+    pub fn is_at_border(&self, place: &Place, near: f64) -> bool {
+        let t = self.surface.topology();
+        let [ab, bc, ca] = place.face.half_edges();
+        let beside = [(bc, 0), (ca, 1), (ab, 2)].into_iter();
+        let at_edge = beside.clone().any(|(h, i)| place.weights[i] <= near && t.twin(h).is_none());
+        let corners = t.corners(place.face);
+        at_edge || (0..3).any(|i| place.weights[i] >= 1.0 - near && t.is_border_vertex(corners[i]))
+    }
+
     /// A solution at the vertices of the surface before it was cut, as one at the vertices that it has now.
     ///
     /// # Errors

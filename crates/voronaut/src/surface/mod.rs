@@ -40,7 +40,7 @@ mod tetrahedra;
 pub use chart::{Chart, STEEPEST};
 pub use chord::Chord;
 pub use curves::{Curve, CurveEdge, Curves};
-pub use cut::Seams;
+pub use cut::{Seams, Whole};
 pub use features::{FeatureOptions, Mark};
 pub use given::Given;
 pub use implicit::{Curvatures, Implicit, closest_zero, curvatures, project};

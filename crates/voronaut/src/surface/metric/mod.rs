@@ -10,12 +10,14 @@
 //! | [`Sampled`] | `curvature`, of a file | principal curvatures at vertices, fitted ([`fit_curvatures`]) |
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at vertices, log-Euclidean between them |
 //! | [`Sampled`] | what `remesh` makes | sizes at vertices for a distance to the surface, graded ([`Sizing`]) |
+//! | [`Closer`] | `--hausd` | another field, finer where a distance to the surface asks for it |
 //! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits, in the tangent plane |
 //!
 //! [`Spec`] reads the second column, [`field`] makes the field; [`check_tensor3`] tells whether a value is a metric.
 
 mod bends;
 mod bounded;
+mod closer;
 mod curvature;
 mod fit;
 mod gradation;
@@ -26,6 +28,7 @@ mod spec;
 mod validate;
 
 pub use bounded::Bounded;
+pub use closer::Closer;
 pub use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub use fit::fit_curvatures;
 pub use gradation::grade;
