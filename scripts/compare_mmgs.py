@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Compares `voronaut remesh` with mmgs on the same files and options.
 
-Set up: mmgs comes with the package mmgpy, `python3 -m venv /tmp/mmg && /tmp/mmg/bin/pip install mmgpy` puts `mmgs_O3` into
-/tmp/mmg/bin. This script itself needs nothing but Python.
+Set up: mmgs comes with the package mmgpy, `python3 -m venv mmg && mmg/bin/pip install mmgpy` puts `mmgs_O3` into
+mmg/bin. This script itself needs nothing but Python.
 
-    scripts/compare_mmgs.py --mmgs /tmp/mmg/bin/mmgs_O3                     # data/*.obj and data/parts/*.mesh, and shapes
+    scripts/compare_mmgs.py --mmgs mmg/bin/mmgs_O3                     # data/*.obj and data/parts/*.mesh, and shapes
     scripts/compare_mmgs.py --mmgs ... part.mesh -- -hausd 0.001 -hgrad 1.2 # these files with these options
 
 Files that are not .mesh are written as such first, for mmgs reads no others. Distances are both ways against the file that

@@ -11,7 +11,7 @@ use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{MeasuredCurves, demand_memory};
 use crate::surface::metric::{Closer, SurfaceMetric};
-use crate::surface::{Implicit, Input, Surface};
+use crate::surface::{Component, Implicit, Input, Surface};
 use std::time::Instant;
 
 /// Vertices of the canvas on which the surface is measured first.
@@ -63,7 +63,7 @@ pub fn mesh_surface(
         // Distances fall with the square of the edges: with the number of vertices.
         let more = (1.1 * ratio).min(MOST_MORE);
         (count, scale) = ((count as f64 * more).ceil() as usize, scale * more);
-        demand_memory(count as f64, job.canvas_size(count) as f64, options.memory_limit)?;
+        demand_memory(count as f64, job.setting.canvas_size(count) as f64, options.memory_limit)?;
     }
     unreachable!("the last round returns")
 }
@@ -113,7 +113,7 @@ impl Job<'_> {
             }
             reseed = pass.reseed(&faulty, reseed);
         };
-        pass.demand(&mesh)?;
+        pass.demand(&mesh).map_err(|fault| self.blamed(fault))?;
         notes.extend(reseed.note());
         notes.extend(pass.notes());
         let mesh = self.timed("fit", |job| job.fitted(mesh, pass.settled.fine.as_ref(), &mut notes))?;
@@ -129,6 +129,13 @@ impl Job<'_> {
             ..Meshed::default()
         };
         Ok((meshed, fidelity))
+    }
+
+    /// What to say of a mesh that could not be made: where the surface meets itself, that is why.
+    fn blamed(&self, fault: Error) -> Error {
+        let Some(found) = quality::validity(&self.setting.input.whole_mesh()).first_fault else { return fault };
+        let what = format!("the surface meets itself, and so would its mesh: {}", found.what);
+        Error::domain(what, found.place, "remove what meets, or mesh the parts one by one")
     }
 
     /// The mesh with its vertices at least-squares positions, if that is asked for; as it was where that would not be valid.
@@ -174,14 +181,12 @@ impl Job<'_> {
             (None, Some(complexity)) => (vertices(complexity / area).round() as usize, complexity / area),
             (None, None) => (vertices(1.0).round() as usize, 1.0),
         };
-        let least = 4 * self.setting.input.surface.components().len();
-        let canvas = self.canvas_size(count) as f64;
+        // Patches with a border have their vertices there.
+        let is_closed = |component: &Component| component.borders == 0;
+        let least = 4 * self.setting.input.surface.components().into_iter().filter(is_closed).count();
+        let canvas = self.setting.canvas_size(count) as f64;
         demand_memory(count as f64, canvas, self.setting.options.memory_limit)?;
         let factor = if factor > 0.0 { factor } else { 1.0 };
         Ok((count.max(least), factor))
-    }
-
-    fn canvas_size(&self, count: usize) -> usize {
-        crate::canvas::size_for(count, self.setting.options.canvas_size)
     }
 }

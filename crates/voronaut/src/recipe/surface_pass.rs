@@ -16,13 +16,15 @@ use crate::output::report;
 use crate::progress::Progress;
 use crate::quality;
 use crate::rdt::{OnSurface, Rdt, Start};
-use crate::sampling::{FeatureSeeds, MeasuredCurves, Seeded, seed_surface, triangulated};
+use crate::sampling::{FeatureSeeds, MeasuredCurves, Seeded, seed_surface, triangulated, triangulated_upright};
 use crate::surface::metric::{Constant, SurfaceMetric};
 use crate::surface::{Input, Place, Surface, Whole};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use std::collections::BTreeSet;
 use std::time::Instant;
 
+/// Canvas vertices at least, however few the seeds.
+const LEAST_CANVAS: usize = 20_000;
 /// Relaxation goes in so many parts, the factor on the metric made fit between them.
 const PARTS: usize = 4;
 /// Triangles that are mended in the end, as a share of all, and how often.
@@ -110,8 +112,13 @@ impl<'a> Setting<'a> {
 
     fn canvas(&self, count: usize, seeds: &[Place]) -> Result<(Canvas<Draped<'a>>, Vec<VertexId>)> {
         self.progress.stage("canvas", 1);
-        let size = crate::canvas::size_for(count, self.options.canvas_size);
+        let size = self.canvas_size(count);
         Canvas::on_surface(self.options.canvas, self.input, self.metric, size, seeds)
+    }
+
+    /// Canvas vertices for so many seeds.
+    pub(super) fn canvas_size(&self, count: usize) -> usize {
+        count.saturating_mul(self.options.canvas_size as usize).max(LEAST_CANVAS)
     }
 
     /// Whether a canvas vertex lies in a required triangle.
@@ -138,14 +145,17 @@ impl<'a> Setting<'a> {
             SurfaceDual::new(self.input, self.metric, scale, places.clone(), given.len(), topology)
         };
         let mut best = dual(&seeds.triangles)?;
-        if best.downright() > 0 {
-            // Straight edges cannot honour the metric here. The Delaunay triangulation in space can be flipped towards it.
-            if let Some(triangles) = euclidean(canvas, &at)? {
-                let straight = dual(&triangles)?;
-                best = if straight.downright() < best.downright() { straight } else { best };
+        best.unfold();
+        // Straight edges cannot honour the metric here. Triangulations that stand upright can be flipped towards it.
+        for upright in [euclidean, contracted] {
+            if best.downright() > 0
+                && let Some(triangles) = upright(canvas, &at)?
+            {
+                let mut other = dual(&triangles)?;
+                other.unfold();
+                best = if other.downright() < best.downright() { other } else { best };
             }
         }
-        best.unfold();
         best.flip_all();
         self.fit_scale(&mut best)?;
         let mut relaxed = Relaxed::default();
@@ -297,5 +307,13 @@ fn euclidean(canvas: &Canvas<Draped>, seeds: &[VertexId]) -> Result<Option<Vec<[
     let own = Constant(Tensor3::IDENTITY);
     let canvas = canvas.remeasured(&own)?;
     let seeded = triangulated(SurfaceDiagram::on_surface(&canvas, seeds, Method::March)?)?;
+    Ok((seeded.added == 0).then_some(seeded.triangles))
+}
+
+/// The triangles of seeds that the contracted canvas has; `None` where it would need more of them.
+fn contracted(canvas: &Canvas<Draped>, seeds: &[VertexId]) -> Result<Option<Vec<[u32; 3]>>> {
+    let own = Constant(Tensor3::IDENTITY);
+    let canvas = canvas.remeasured(&own)?;
+    let seeded = triangulated_upright(SurfaceDiagram::on_surface(&canvas, seeds, Method::March)?)?;
     Ok((seeded.added == 0).then_some(seeded.triangles))
 }

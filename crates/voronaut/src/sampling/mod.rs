@@ -16,7 +16,7 @@ pub use farthest::{Farthest, refine_farthest};
 pub use features::{FeatureEdge, FeatureSeed, FeatureSeeds, MeasuredCurves};
 pub(crate) use interior::insert_spaced;
 pub use interior::{Fill, Refined, refine};
-pub use on_surface::{Seeded, seed_surface, triangulated};
+pub use on_surface::{Seeded, seed_surface, triangulated, triangulated_upright};
 pub use plan::{Plan, Target, demand_memory};
 pub use protected::{Picked, Picking, refine_protected};
 pub use segments::{MetricArc, sample_segments};

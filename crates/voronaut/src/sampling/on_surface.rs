@@ -4,7 +4,7 @@ use super::contract::contracted;
 use super::farthest::Farthest;
 use crate::canvas::{Canvas, Draped};
 use crate::diagram::SurfaceDiagram;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geodesic::Method;
 use crate::progress::Progress;
 use crate::rdt::{OnSurface, Rdt};
@@ -57,12 +57,21 @@ pub fn seed_surface<'a>(
 ///
 /// # Errors
 /// As for [`seed_surface`].
-pub fn triangulated(mut diagram: SurfaceDiagram) -> Result<Seeded> {
-    let before = diagram.colours();
+pub fn triangulated(diagram: SurfaceDiagram) -> Result<Seeded> {
     let (dual, poor) = surface_triangulation(&diagram);
     if poor.is_empty() {
         return Ok(Seeded { triangles: dual.triangles(), diagram, added: 0 });
     }
+    triangulated_upright(diagram)
+}
+
+/// The triangulation of a diagram's seeds by contraction of the canvas: its triangles stand upright on the surface if that can
+/// be, whatever the metric says. Adds seeds if it must.
+///
+/// # Errors
+/// As for [`seed_surface`].
+pub fn triangulated_upright(mut diagram: SurfaceDiagram) -> Result<Seeded> {
+    let before = diagram.colours();
     for _ in 0..ROUNDS {
         let (triangles, left) = contracted(&diagram);
         if left.is_empty() {
@@ -78,8 +87,9 @@ pub fn triangulated(mut diagram: SurfaceDiagram) -> Result<Seeded> {
     let place =
         left.first().map_or_else(|| "the surface".to_owned(), |&v| diagram.canvas().draped().position(v).to_string());
     let help = "ask for more vertices (-n), or a finer canvas (--canvas-size)";
-    Err(crate::Error::domain("too few vertices for a mesh of the surface's topology", place, help))
+    Err(Error::domain("too few vertices for a mesh of the surface's topology", place, help))
 }
+
 /// The dual of a diagram's seeds, and the colours around which it is no triangulation of the surface.
 fn surface_triangulation<'a>(diagram: &SurfaceDiagram<'a>) -> (Rdt<OnSurface<'a>>, Vec<u32>) {
     let (glued, copies) = diagram.glued_nerve();

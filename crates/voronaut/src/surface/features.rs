@@ -27,7 +27,7 @@ impl Default for FeatureOptions {
 pub struct Mark {
     /// The user's label; 0 for none.
     pub label: i32,
-    /// Whether the surface has a crease there.
+    /// Whether the surface has a crease there, or ends, as far as it was looked for or is listed.
     pub is_ridge: bool,
     /// Whether it has to stay as it is.
     pub is_required: bool,
@@ -59,9 +59,9 @@ impl Surface {
         self.required_triangles.binary_search(&side.face()).is_ok()
     }
 
-    /// Whether the normals on both sides of an edge differ by more than an angle.
+    /// Whether the normals on both sides of an edge differ by more than an angle. At the border the surface turns back.
     fn turns(&self, h: HalfEdge, angle: f64) -> bool {
-        let Some(twin) = self.topology.twin(h) else { return false };
+        let Some(twin) = self.topology.twin(h) else { return true };
         self.normal(h.face()).dot(self.normal(twin.face())) < angle.to_radians().cos()
     }
 }

@@ -6,6 +6,7 @@ use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
 use crate::formats::sol::Solution;
 use crate::geometry::{Point3, Vector3};
+use crate::mesh::Mesh;
 use crate::metric::Expression;
 use crate::triangulation::{FaceId, HalfEdge};
 use std::sync::OnceLock;
@@ -57,6 +58,19 @@ impl Input {
             seams
         };
         Ok(Self::with_seams(surface, self.implicit, seams))
+    }
+
+    /// The triangles of the surface before it was cut, by its vertices then.
+    pub fn whole_mesh(&self) -> Mesh {
+        let t = self.surface.topology();
+        let before = self.seams.vertices_before();
+        Mesh {
+            points: self.surface.positions()[..before].iter().map(|p| p.to_array()).collect(),
+            point_labels: self.surface.point_labels()[..before].to_vec(),
+            triangles: t.faces().map(|f| t.corners(f).map(|v| self.seams.original(v).0)).collect(),
+            triangle_labels: t.faces().map(|f| t.region(f)).collect(),
+            ..Mesh::default()
+        }
     }
 
     /// Whether a place is on the border, or so near to it (barycentric).

@@ -18,12 +18,41 @@ fn input(part: &Part) -> Input {
     Input::new(Surface::new(&part.mesh).unwrap(), None).cut(&FeatureOptions::default()).unwrap()
 }
 
-/// As far as chords of an even mesh are from arcs of the greatest curvature, k h^2 / 8, for edges twice as long as its own.
-/// The curvature metric makes them longer where the surface is flat, and they end where it is not: three times.
+/// How far mesh and part may be apart: each is as far from the smooth surface as a triangle of its longest edges, k h^2 / 6, with the
+/// greatest curvature k. Edges of the mesh are even ones, by half longer in the uniform metric; by the curvature metric they are
+/// up to three times as long, where the surface is flat, and may end where it is not.
 fn distance(part: &Part, surface: &Surface, count: usize, metric: &str) -> f64 {
-    let longer = if metric == "uniform" { 2.0 } else { 3.0 };
-    let edge = longer * (surface.area() * 2.0 / 3.0_f64.sqrt() / count as f64).sqrt();
-    part.curvature * edge * edge / 8.0 + 1e-9 * surface.bounds().diagonal()
+    let longer = if metric == "uniform" { 1.5 } else { 3.0 };
+    let even = longer * (surface.area() * 2.0 / 3.0_f64.sqrt() / count as f64).sqrt();
+    let t = surface.topology();
+    let own =
+        t.edges().map(|h| surface.position(t.origin(h)).distance(surface.position(t.target(h)))).fold(0.0, f64::max);
+    part.curvature * (even * even + own * own) / 6.0 + 1e-9 * surface.bounds().diagonal()
+}
+
+/// Meshes a part with all that a distance asks for.
+fn keeps_distance(name: &str, share: f64) {
+    let part = parts::all().into_iter().find(|part| part.name == name).unwrap();
+    let input = input(&part);
+    let hausd = share * input.diagonal();
+    let field = field(
+        &Spec::parse("uniform").unwrap(),
+        &input,
+        Bounds { h_max: Some(0.2 * input.diagonal()), ..Bounds::default() },
+    )
+    .unwrap();
+    let options = MeshOptions { hausd: Some(hausd), ..MeshOptions::default() };
+    let mesh = mesh_surface(&input, field.as_ref(), &options, &Silent).unwrap().mesh;
+    let found = faults(&part, &mesh, hausd);
+    println!("{name} within {hausd:.2e}: {} vertices, {} faults", mesh.points.len(), found.len());
+    assert!(found.is_empty(), "{name}:\n{}", found[..found.len().min(8)].join("\n"));
+}
+
+#[test]
+fn distances_are_kept_where_they_are_asked_for() {
+    for (name, share) in [("cube", 1e-3), ("two", 4e-3), ("patch", 4e-3), ("bracket", 4e-3)] {
+        keeps_distance(name, share);
+    }
 }
 
 /// Meshes a part with every number of vertices and checks all that is known of it.
