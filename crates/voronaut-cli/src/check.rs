@@ -15,7 +15,7 @@ use voronaut::output::Report;
 use voronaut::output::report::Strayed;
 use voronaut::quality::{fidelity, metric_quality, surface_fidelity, surface_quality, validity};
 use voronaut::recipe;
-use voronaut::surface::{self, Given, Implicit, Input, Surface};
+use voronaut::surface::{self, Given, Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 
 /// Examines a mesh. The report is written for any mesh; figures in a metric and pictures are for valid ones.
@@ -45,7 +45,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     report.metric_scale = args.metric.is_some().then_some(args.metric_scale.unwrap_or(1.0));
     let read = |spec: &str| Given::read_with(spec, None, args.damage.options());
     let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();
-    report.notes.extend(mended.iter().flat_map(|mended| mended.sentences()));
+    report.notes.extend(mended.iter().flat_map(Mended::sentences));
     let report = match given {
         Some(Given::Surface(input)) => on_surface(args, &mesh, Some(&input), report, start)?,
         None if !mesh.is_planar() => on_surface(args, &mesh, None, report, start)?,

@@ -85,6 +85,11 @@ pub(crate) struct RemeshArgs {
 
 /// Options of mmgs that change nothing here.
 #[derive(Debug, Args)]
+#[expect(
+    clippy::struct_excessive_bools,
+    clippy::option_option,
+    reason = "one per option of mmgs, some with a value or none"
+)]
 #[command(next_help_heading = "Options of mmgs that are accepted, and change nothing")]
 pub(crate) struct Unused {
     #[arg(long, value_name = "G", allow_negative_numbers = true)]

@@ -53,7 +53,7 @@ pub struct MeshOptions {
     pub hausd: Option<f64>,
     /// Of a surface: whether vertices are moved off it, to where mesh and surface are closest in the sense of least squares.
     pub fit: bool,
-    /// How stiffly these vertices are held where they were; see [`FitOptions`](crate::optimise::FitOptions).
+    /// How stiffly these vertices are held where they were; see [`FitOptions`].
     pub stiffness: f64,
     /// What makes the mesh. The options below are for [`Mesher::Voronoi`], but for the memory limit.
     pub mesher: Mesher,

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 
 /// A domain: of the plane, or a surface in space.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "a program has one, and not for long")]
 pub enum Given {
     /// A planar domain.
     Plane(Domain),
@@ -17,10 +18,10 @@ pub enum Given {
 impl Given {
     /// Reads what the user wrote. `sphere:`, `torus:`, `chair`, `implicit:` and files `.obj`, `.off`, `.ply` and `.stl` are
     /// surfaces; a `.mesh` is one if it has triangles and some z is not 0. All else is a planar domain. `edge` is as for
-    /// [`read()`].
+    /// [`read()`](super::read()).
     ///
     /// # Errors
-    /// As for [`read()`] and [`Domain::read`]; of what is neither, the help names both.
+    /// As for [`read()`](super::read()) and [`Domain::read`]; of what is neither, the help names both.
     pub fn read(spec: &str, edge: Option<f64>) -> Result<Self> {
         Ok(Self::read_with(spec, edge, RepairOptions::default())?.0)
     }

@@ -84,7 +84,9 @@ pub(crate) fn renumbered(mesh: &Mesh, random: &mut Random) -> Mesh {
     let scale = 10.0_f64.powf(18.0 * random.unit() - 9.0);
     let mut triangles: Vec<[u32; 3]> = mesh.triangles.iter().map(|t| t.map(|v| number[v as usize])).collect();
     random.shuffle(&mut triangles);
-    triangles.iter_mut().for_each(|t| t.rotate_left(random.below(3)));
+    for t in &mut triangles {
+        t.rotate_left(random.below(3));
+    }
     let points = order.iter().map(|&old| mesh.points[old].map(|x| x * scale)).collect();
     Mesh { points, triangles, ..Mesh::default() }
 }

@@ -38,11 +38,9 @@ impl Done {
     pub(crate) fn words(self) -> &'static [&'static str] {
         match self {
             // What is left of two triangles may hang together in a vertex only.
-            Self::Holes | Self::Missing => &["meet in a point only"],
-            Self::Flipped | Self::DuplicateTriangles | Self::Degenerate => &[],
+            Self::Holes | Self::Missing | Self::DuplicateVertices => &["meet in a point only"],
+            Self::Flipped | Self::DuplicateTriangles | Self::Degenerate | Self::Soup => &[],
             // A vertex that takes over some corners of another may leave it in two fans.
-            Self::DuplicateVertices => &["meet in a point only"],
-            Self::Soup => &[],
             Self::TJunctions => &["a T-junction"],
             Self::NotFinite => &["is not finite"],
             Self::ThreeTriangleEdge => &["an edge of ", "meet in a point only"],
@@ -55,7 +53,7 @@ impl Done {
         if self == Self::Soup {
             return soup(mesh);
         }
-        for _ in 0..1 + random.below(3) {
+        for _ in 0..=random.below(3) {
             let t = random.below(mesh.triangles.len());
             match self {
                 Self::Holes => hole(mesh, t),
@@ -66,7 +64,7 @@ impl Done {
                 Self::Degenerate => degenerate(mesh, t, random),
                 Self::TJunctions => t_junction(mesh, t, random),
                 Self::NotFinite => {
-                    mesh.points[mesh.triangles[t][0] as usize][1] = [f64::NAN, f64::INFINITY][random.below(2)]
+                    mesh.points[mesh.triangles[t][0] as usize][1] = [f64::NAN, f64::INFINITY][random.below(2)];
                 }
                 Self::ThreeTriangleEdge => fin(mesh, t),
                 Self::Pinched => pinch(mesh, t, random),

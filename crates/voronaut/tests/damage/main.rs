@@ -24,10 +24,12 @@ fn tried(mesh: &Mesh, repair: bool) -> Result<(Mesh, Mended), String> {
 fn damaged(seed: u64) -> (Mesh, Vec<Done>) {
     let mut random = Random(seed);
     let mut mesh = base(&mut random);
-    let mut done: Vec<Done> = (0..1 + random.below(3)).map(|_| ALL[random.below(ALL.len())]).collect();
+    let mut done: Vec<Done> = (0..=random.below(3)).map(|_| ALL[random.below(ALL.len())]).collect();
     // One at least of each.
     done[0] = ALL[seed as usize % ALL.len()];
-    done.iter().for_each(|damage| damage.apply(&mut mesh, &mut random));
+    for damage in &done {
+        damage.apply(&mut mesh, &mut random);
+    }
     (mesh, done)
 }
 

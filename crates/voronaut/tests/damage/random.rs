@@ -1,6 +1,6 @@
 //! Random numbers that are the same everywhere.
 
-/// Steele, Lea and Flood's SplitMix64.
+/// Steele, Lea and Flood's `SplitMix64`.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {

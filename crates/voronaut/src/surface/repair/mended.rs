@@ -36,6 +36,8 @@ pub enum Damage {
     TJunction,
     /// Edges of more than two triangles: cut, the straightest pairs stay together (with repair).
     Edge,
+    /// Triangles of small pieces that hang on such an edge: dropped (with repair).
+    Fin,
     /// Edges where more than two borders lie on each other: left as borders.
     Borders,
     /// Edges at which a one-sided surface was cut open (with repair).
@@ -73,6 +75,10 @@ impl Damage {
                 "T-junctions were closed by cutting the triangles beside them",
             ],
             Self::Edge => ["edge of more than two triangles was cut", "edges of more than two triangles were cut"],
+            Self::Fin => [
+                "triangle of a small piece at an edge of more than two triangles was dropped",
+                "triangles of small pieces at edges of more than two triangles were dropped",
+            ],
             Self::Borders => [
                 "edge where more than two borders meet was left open",
                 "edges where more than two borders meet were left open",

@@ -7,6 +7,7 @@
 //! | `degenerate`, `duplicates` | triangles without area, or there twice |
 //! | `t_junctions` | vertices inside edges |
 //! | `glue`, `two_sided`, `fans` | which sides meet; not one-sided; one vertex per fan |
+//! | `loose` | fins, which cutting leaves loose |
 //! | `holes`, `fill` | small holes |
 //! | `emit` | lists and labels, renumbered |
 //! | `mended` | what was done, in numbers and words |
@@ -19,6 +20,7 @@ mod fans;
 mod fill;
 mod glue;
 mod holes;
+mod loose;
 mod mended;
 mod t_junctions;
 mod two_sided;
@@ -39,8 +41,8 @@ use work::Work;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RepairOptions {
     /// Whether damage that cannot be mended without guessing is mended, too: triangles at coordinates that are not finite
-    /// dropped, T-junctions closed by cutting triangles, edges of more than two triangles and vertices in which sheets
-    /// meet cut, one-sided surfaces cut open, small holes closed.
+    /// dropped, T-junctions closed by cutting triangles, edges of more than two triangles (of which fins are
+    /// dropped) and vertices in which sheets meet cut, one-sided surfaces cut open, small holes closed.
     pub repair: bool,
 }
 
@@ -64,6 +66,9 @@ pub fn repaired(mesh: &Mesh, options: RepairOptions) -> Result<(Mesh, Mended)> {
         drop_triangles(&mut work)?;
     }
     let mut twins = glue::glue(&mut work)?;
+    if work.mended.count(Damage::Edge) > 0 && loose::drop_fins(&mut work, &twins) {
+        twins = glue::glue(&mut work)?;
+    }
     two_sided::demand(&mut work, &mut twins)?;
     let mut sewn = fans::sew(&mut work, &twins)?;
     note_welded(&mut work, &sewn);

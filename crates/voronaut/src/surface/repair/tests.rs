@@ -1,6 +1,7 @@
 //! One test for each kind of damage.
 
 use super::*;
+use crate::geometry::Point3;
 use proptest::prelude::*;
 
 /// The cube of side one, each face n x n squares of two triangles, turned outwards.
@@ -102,7 +103,7 @@ fn a_ribbon_whose_ends_lie_on_each_other_with_a_twist_stays_open() {
     let at = |i: u32| {
         let angle = std::f64::consts::TAU * f64::from(i / 2 % 6) / 6.0;
         // Once around, the two sides have changed places.
-        let across = if (i % 2 == 0) == (i < 12) { 0.3 } else { -0.3 };
+        let across = if i.is_multiple_of(2) == (i < 12) { 0.3 } else { -0.3 };
         let r = 1.0 + across * (0.5 * angle).cos();
         [r * angle.cos(), r * angle.sin(), across * (0.5 * angle).sin()]
     };
@@ -250,7 +251,7 @@ fn two_cubes_that_share_an_edge_by_number_are_cut() {
     let shifted = |p: &[f64; 3]| [p[0] + 1.0, p[1] + 1.0, p[2]];
     let number = |v: u32| {
         let p = shifted(&one.points[v as usize]);
-        one.points.iter().position(|q| *q == p).map_or(v + vertices, |at| at as u32)
+        one.points.iter().position(|q| Point3::from(*q) == p.into()).map_or(v + vertices, |at| at as u32)
     };
     two.points.extend(one.points.iter().map(shifted));
     two.triangles.extend(one.triangles.iter().map(|t| t.map(number)));
@@ -268,14 +269,16 @@ fn sheets_that_meet_in_a_point_are_named_or_cut() {
     assert!(refusal(&mesh).contains(&format!("triangles that meet in a point only at vertex {} (", v + 1)));
     let (made, mended) = repaired(&mesh, RepairOptions { repair: true }).unwrap();
     assert_eq!((made.points.len(), mended.count(Damage::Point)), (mesh.points.len() + 1, 1));
-    assert_eq!(made.points[mesh.points.len()], mesh.points[v as usize]);
+    assert_eq!(Point3::from(made.points[mesh.points.len()]), mesh.points[v as usize].into());
     assert_eq!(made.triangles[..108], mesh.triangles[..108]);
 }
 
 #[test]
 fn triangles_that_are_turned_are_counted() {
     let mut mesh = cube(2);
-    [3, 17, 40].into_iter().for_each(|t| mesh.triangles[t].swap(0, 1));
+    for t in [3, 17, 40] {
+        mesh.triangles[t].swap(0, 1);
+    }
     let (made, mended) = repaired(&mesh, RepairOptions::default()).unwrap();
     assert_eq!((made, mended.count(Damage::Turned)), (mesh.clone(), 3));
     mesh.triangles.iter_mut().for_each(|t| t.swap(0, 1));
