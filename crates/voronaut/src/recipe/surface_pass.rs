@@ -137,35 +137,42 @@ impl<'a> Setting<'a> {
     ) -> Result<(SurfaceDual<'a>, Relaxed)> {
         let steps = self.options.lloyd;
         self.progress.stage("relaxing", steps as u64);
-        let at: Vec<VertexId> = (0..seeds.diagram.colours() as u32).filter_map(|i| seeds.diagram.seed(i)).collect();
-        let inside = at[given.len()..].iter().map(|&v| *canvas.draped().place(v));
-        let places: Vec<Place> = given.iter().copied().chain(inside).collect();
-        let dual = |triangles: &[[u32; 3]]| {
-            let topology = Triangulation::from_triangles(places.len(), triangles, &vec![0; triangles.len()]);
-            SurfaceDual::new(self.input, self.metric, scale, places.clone(), given.len(), topology)
-        };
-        let mut best = dual(&seeds.triangles)?;
-        best.unfold();
-        // Straight edges cannot honour the metric here. Triangulations that stand upright can be flipped towards it.
-        for upright in [euclidean, contracted] {
-            if best.downright() > 0
-                && let Some(triangles) = upright(canvas, &at)?
-            {
-                let mut other = dual(&triangles)?;
-                other.unfold();
-                best = if other.downright() < best.downright() { other } else { best };
-            }
-        }
-        best.flip_all();
-        self.fit_scale(&mut best)?;
+        let mut dual = self.started(canvas, seeds, given, scale)?;
+        dual.flip_all();
+        self.fit_scale(&mut dual)?;
         let mut relaxed = Relaxed::default();
         for part in 0..PARTS {
             let steps = (steps * (part + 1)) / PARTS - (steps * part) / PARTS;
-            relaxed.append(relax(&mut best, &Tangent, steps, self.progress)?);
-            self.fit_scale(&mut best)?;
+            relaxed.append(relax(&mut dual, &Tangent, steps, self.progress)?);
+            self.fit_scale(&mut dual)?;
         }
-        mend(&mut best);
-        Ok((best, relaxed))
+        mend(&mut dual);
+        Ok((dual, relaxed))
+    }
+
+    /// The triangulation of the seeds as it is found; where straight edges cannot honour the metric, one that stands upright on
+    /// the surface and can be flipped towards it.
+    fn started(&self, canvas: &Canvas<Draped>, seeds: &Seeded, given: &[Place], scale: f64) -> Result<SurfaceDual<'a>> {
+        let at: Vec<VertexId> = (0..seeds.diagram.colours() as u32).filter_map(|i| seeds.diagram.seed(i)).collect();
+        let inside = at[given.len()..].iter().map(|&v| *canvas.draped().place(v));
+        let places: Vec<Place> = given.iter().copied().chain(inside).collect();
+        let unfolded = |triangles: &[[u32; 3]]| {
+            let topology = Triangulation::from_triangles(places.len(), triangles, &vec![0; triangles.len()]);
+            let mut dual = SurfaceDual::new(self.input, self.metric, scale, places.clone(), given.len(), topology)?;
+            dual.unfold();
+            Ok::<_, Error>(dual)
+        };
+        let mut best = unfolded(&seeds.triangles)?;
+        if best.downright() > 0 {
+            let own = Constant(Tensor3::IDENTITY);
+            let canvas = canvas.remeasured(&own)?;
+            for triangulation in [triangulated, triangulated_upright] {
+                let seeded = triangulation(SurfaceDiagram::on_surface(&canvas, &at, Method::March)?)?;
+                let other = if seeded.added == 0 { unfolded(&seeded.triangles)? } else { continue };
+                best = if other.downright() < best.downright() { other } else { best };
+            }
+        }
+        Ok(best)
     }
 
     fn fit_scale(&self, dual: &mut SurfaceDual) -> Result<()> {
@@ -300,20 +307,4 @@ fn mend(dual: &mut SurfaceDual) {
     for _ in 0..MENDINGS {
         mend_worst(dual, poor);
     }
-}
-
-/// The triangles of the Delaunay triangulation of seeds in the surface's own metric; `None` where it would need more of them.
-fn euclidean(canvas: &Canvas<Draped>, seeds: &[VertexId]) -> Result<Option<Vec<[u32; 3]>>> {
-    let own = Constant(Tensor3::IDENTITY);
-    let canvas = canvas.remeasured(&own)?;
-    let seeded = triangulated(SurfaceDiagram::on_surface(&canvas, seeds, Method::March)?)?;
-    Ok((seeded.added == 0).then_some(seeded.triangles))
-}
-
-/// The triangles of seeds that the contracted canvas has; `None` where it would need more of them.
-fn contracted(canvas: &Canvas<Draped>, seeds: &[VertexId]) -> Result<Option<Vec<[u32; 3]>>> {
-    let own = Constant(Tensor3::IDENTITY);
-    let canvas = canvas.remeasured(&own)?;
-    let seeded = triangulated_upright(SurfaceDiagram::on_surface(&canvas, seeds, Method::March)?)?;
-    Ok((seeded.added == 0).then_some(seeded.triangles))
 }

@@ -127,7 +127,7 @@ fn prune(surface: &Surface, edges: &[(CurveEdge, Mark)], at: &mut [Vec<usize>]) 
             chain.push(i);
             v = if edges[i].0.from == v { edges[i].0.to } else { edges[i].0.from };
         }
-        if chain.len() < LEAST_CREASE {
+        if (1..LEAST_CREASE).contains(&chain.len()) {
             for i in chain {
                 for v in [edges[i].0.from, edges[i].0.to] {
                     at[v.index()].retain(|&j| j != i);

@@ -180,7 +180,7 @@ mod tests {
         );
         let (mended, notes) = read_with(path, None, RepairOptions { repair: true }).unwrap();
         let notes: Vec<_> = notes.sentences().collect();
-        assert_eq!((mended.surface.topology().face_count(), notes.len()), (3, 2), "{notes:?}");
+        assert_eq!((mended.surface.topology().face_count(), notes.len()), (3, 4), "{notes:?}");
     }
 
     #[test]

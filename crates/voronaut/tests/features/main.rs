@@ -2,6 +2,7 @@
 
 mod common;
 mod mutations;
+mod required;
 #[path = "../parts/mod.rs"]
 mod parts;
 
