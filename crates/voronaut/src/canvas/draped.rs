@@ -124,6 +124,12 @@ impl<'s> Draped<'s> {
         }
         let mut found = Vec::with_capacity(seeds.len());
         for seed in seeds {
+            let before = self.topology.face_slots() as u32;
+            if let Some(v) = self.insert_on_border(seed, &at_home)? {
+                found.push(v);
+                self.note_homes(before, &mut at_home);
+                continue;
+            }
             let homes = self.homes_around(seed.face);
             let faces = homes.iter().flat_map(|home| at_home.get(home).map_or(&[][..], Vec::as_slice));
             let held = faces.map(|&f| (f, self.closest_on(f, seed.position)));
@@ -138,13 +144,43 @@ impl<'s> Draped<'s> {
                     "move it onto the surface",
                 ));
             };
-            let before = self.topology.face_slots() as u32;
             found.push(self.insert_in(f, weights, *seed)?);
-            for new in (before..self.topology.face_slots() as u32).map(FaceId) {
-                at_home.entry(self.home(new)).or_default().push(new);
-            }
+            self.note_homes(before, &mut at_home);
         }
         Ok(found)
+    }
+
+    /// Puts faces that are new since there were so many with the others of their homes.
+    fn note_homes(&self, before: u32, at_home: &mut BTreeMap<FaceId, Vec<FaceId>>) {
+        for new in (before..self.topology.face_slots() as u32).map(FaceId) {
+            at_home.entry(self.home(new)).or_default().push(new);
+        }
+    }
+
+    /// Makes a place at the border of an equation's surface a vertex there: it is on the equation, and so beside the edges that
+    /// the border has here. `None` of any other place.
+    fn insert_on_border(&mut self, seed: &Place, at_home: &BTreeMap<FaceId, Vec<FaceId>>) -> Result<Option<VertexId>> {
+        if self.input.implicit.is_none() || !self.input.is_at_border(seed, 0.0) {
+            return Ok(None);
+        }
+        let faces = at_home.get(&seed.face).into_iter().flatten();
+        let borders = faces.flat_map(|f| f.half_edges()).filter(|&h| self.topology.twin(h).is_none());
+        let distance = |h: HalfEdge| {
+            let [a, b] = [self.topology.origin(h), self.topology.target(h)].map(|v| self.position(v));
+            let t = ((seed.position - a).dot(b - a) / (b - a).dot(b - a)).clamp(0.0, 1.0);
+            (a.lerp(b, t).distance(seed.position), t)
+        };
+        let nearest = borders.map(|h| (h, distance(h))).min_by(|x, y| x.1.0.total_cmp(&y.1.0));
+        let Some((h, (_, t))) = nearest else { return Ok(None) };
+        let end = if t <= ON_EDGE { self.topology.origin(h) } else { self.topology.target(h) };
+        if t <= ON_EDGE || t >= 1.0 - ON_EDGE {
+            self.places[end.index()] = *seed;
+            return Ok(Some(end));
+        }
+        let v = self.add(*seed)?;
+        self.topology.split_edge(h, v);
+        self.measure_around(v);
+        Ok(Some(v))
     }
 
     /// The input's triangles in which a place of one of them may be: on an equation's surface those around it, too.

@@ -10,8 +10,8 @@ use crate::progress::Progress;
 use crate::rdt::{OnSurface, Rdt};
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
-/// Rounds of seeds for what contraction leaves.
-const ROUNDS: usize = 8;
+/// Rounds of seeds for what contraction leaves, each of twice as many.
+const ROUNDS: usize = 10;
 
 /// Seeds of a surface, with a triangulation of the surface.
 pub struct Seeded<'a> {
@@ -72,15 +72,17 @@ pub fn triangulated(diagram: SurfaceDiagram) -> Result<Seeded> {
 /// As for [`seed_surface`].
 pub fn triangulated_upright(mut diagram: SurfaceDiagram) -> Result<Seeded> {
     let before = diagram.colours();
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS {
         let (triangles, left) = contracted(&diagram);
         if left.is_empty() {
             let added = diagram.colours() - before;
             return Ok(Seeded { diagram, triangles, added });
         }
-        let farthest = left.iter().max_by(|&&v, &&w| diagram.distance(v).total_cmp(&diagram.distance(w)));
-        if let Some(&v) = farthest {
-            diagram.insert_at_vertex(v);
+        for _ in 0..1 << round {
+            let farthest = left.iter().max_by(|&&v, &&w| diagram.distance(v).total_cmp(&diagram.distance(w)));
+            if let Some(&v) = farthest.filter(|&&v| diagram.distance(v) > 0.0) {
+                diagram.insert_at_vertex(v);
+            }
         }
     }
     let (_, left) = contracted(&diagram);
