@@ -23,6 +23,8 @@ const FLIPS_PER_SLOT: u8 = 6;
 const POOR: f64 = 0.5;
 /// The least cosine between a triangle's normal and those of the surface at its corners.
 const UPRIGHT: f64 = 0.3;
+/// Triangles with this cosine or less are folded over, or flat.
+const FOLDED: f64 = 1e-6;
 /// Flips that unfold, at most, as a multiple of the number of faces.
 const UNFOLDINGS: u64 = 8;
 /// Slopes of the surface over a chord that tell its length; steeper ones count as this.
@@ -249,8 +251,11 @@ impl<'a> SurfaceDual<'a> {
     fn allows_flip(&self, h: HalfEdge) -> bool {
         let Some(Flip { now, then }) = self.flip_of(h) else { return false };
         let [before, after] = [now, then].map(|pair| self.leaning(pair));
-        if before.upright < UPRIGHT || after.upright < UPRIGHT {
+        if before.upright <= FOLDED {
             return after.is_better_than(&before);
+        }
+        if after.upright < UPRIGHT && after.upright < before.upright {
+            return false;
         }
         let [before, after] = [now, then].map(|pair| pair.map(|t| self.shape(t)).into_iter().fold(1.0, f64::min));
         after > POOR || after > before
@@ -280,10 +285,10 @@ impl<'a> SurfaceDual<'a> {
         found
     }
 
-    /// Flips edges of triangles that do not stand upright, whatever the metric says, as long as less of their area leans over.
+    /// Flips edges of triangles that are folded over, whatever the metric says, as long as less of their area leans over.
     /// Returns the number of flips.
     pub fn unfold(&mut self) -> u64 {
-        let is_down = |dual: &Self, f: FaceId| dual.upright(dual.topology().corners(f)) < UPRIGHT;
+        let is_down = |dual: &Self, f: FaceId| dual.upright(dual.topology().corners(f)) <= FOLDED;
         let mut stack: Vec<FaceId> = self.topology().faces().filter(|&f| is_down(self, f)).collect();
         let before = self.flips;
         let most = before + UNFOLDINGS * self.topology().face_count() as u64;
