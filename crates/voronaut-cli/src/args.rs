@@ -10,7 +10,7 @@ use voronaut::diagram;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Aabb, Point, Point3};
-use voronaut::metric::{Bounds, MOST_SWEEPS};
+use voronaut::metric::{Bounds, MOST_SWEEPS, Norm};
 use voronaut::output::Picture;
 use voronaut::recipe::{Centroid, MeshOptions, Mesher, SMOOTH_METRIC, Seeding};
 use voronaut::surface::FeatureOptions;
@@ -139,6 +139,10 @@ pub(crate) struct MeshArgs {
     /// (equation 9 of the report, to compare)
     #[arg(long, value_name = "WHICH", default_value_t = MeshOptions::default().centroid)]
     pub(crate) centroid: Centroid,
+    /// With hessian metrics: sweeps in which vertices move and edges flip so that the error of linear interpolation falls, at
+    /// most; 0 for the metric's unit mesh. Not with limits on the metric
+    #[arg(long, value_name = "SWEEPS", default_value_t = MeshOptions::default().polish)]
+    pub(crate) polish: usize,
     /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
     #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(MeshOptions::default().dual))]
     pub(crate) dual: Dual,
@@ -314,6 +318,9 @@ pub(crate) struct MetricChoices {
     /// Greatest Euclidean size the metric may ask for
     #[arg(long, value_name = "H", value_parser = positive)]
     h_max: Option<f64>,
+    /// With hessian metrics: p of the L^p norm in which the error of linear interpolation is to be least: 1, 2, 4, ... or inf
+    #[arg(long, value_name = "P", default_value_t = Norm::default())]
+    pub(crate) norm: Norm,
     /// Greatest ratio of the two sizes at a point, at least 1
     #[arg(long, value_name = "RATIO", value_parser = positive)]
     a_max: Option<f64>,
@@ -515,6 +522,7 @@ impl MeshArgs {
             mesher: self.mesher,
             lloyd: self.lloyd,
             centroid: self.centroid,
+            polish: self.polish,
             dual: self.dual.into(),
             geodesic: self.geodesic,
             seeding: self.seeding,

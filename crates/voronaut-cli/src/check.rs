@@ -136,7 +136,7 @@ fn planar_metric(args: &CheckArgs, text: &str, mesh: &Mesh, domain: Option<&Doma
         own = Domain::new(&from_mesh(mesh)?)?;
         &own
     };
-    let metric = recipe::metric(&spec, domain, background, bounds)?;
+    let metric = recipe::metric(&spec, domain, background, bounds, args.metric_choices.norm)?;
     let metric = recipe::smooth_metric(metric, domain, background, args.metric_choices.smooth_metric)?;
     let scale = args.metric_scale.unwrap_or(1.0);
     Ok(Box::new(move |p: Point| metric.at(p) * scale))

@@ -61,7 +61,7 @@ fn in_plane(args: &DistanceArgs, domain: &Domain, start: Instant) -> Result<Made
     let spec = MetricSpec::parse(&args.metric)?;
     let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
     let background = args.metric_choices.background.as_deref().or(own);
-    let metric = recipe::metric(&spec, domain, background, args.metric_choices.bounds())?;
+    let metric = recipe::metric(&spec, domain, background, args.metric_choices.bounds(), args.metric_choices.norm)?;
     let metric = recipe::smooth_metric(metric, domain, background, args.metric_choices.smooth_metric)?;
     let read = start.elapsed().as_secs_f64();
     let canvas = Canvas::new(args.canvas, domain, metric.as_ref(), args.canvas_size as usize)?;

@@ -40,7 +40,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let spec = MetricSpec::parse(&args.metric)?;
     let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
     let background = args.metric_choices.background.as_deref().or(own);
-    let metric = recipe::metric(&spec, &domain, background, bounds)?;
+    let metric = recipe::metric(&spec, &domain, background, bounds, args.metric_choices.norm)?;
     let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
     let file = SeedFile::read(&args.seeds)?;
     let seeds = &file.seeds;

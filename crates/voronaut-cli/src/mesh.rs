@@ -12,11 +12,11 @@ use voronaut::diagram::Diagram;
 use voronaut::domain::Domain;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
-use voronaut::metric::{MetricField, MetricSpec};
+use voronaut::metric::{Bounds, MetricField, MetricSpec};
 use voronaut::output::Report;
 use voronaut::output::report::{NetFigures, Seconds};
 use voronaut::quality::{metric_quality, validity};
-use voronaut::recipe::{self, Meshed};
+use voronaut::recipe::{self, Aim, Meshed};
 use voronaut::surface::Given;
 use voronaut::{Error, Result};
 
@@ -35,11 +35,13 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     demand_planar(args)?;
     let spec = MetricSpec::parse(&args.metric)?;
     let background = background(&spec, args);
-    let metric = recipe::metric(&spec, &domain, background, bounds)?;
+    let metric = recipe::metric(&spec, &domain, background, bounds, args.metric_choices.norm)?;
     let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
+    let function = recipe::function(&spec).filter(|_| bounds == Bounds::default());
+    let aim = function.as_deref().map(|function| Aim { function, norm: args.metric_choices.norm });
     let meshed = {
         let bar = Bar::new(args.run.quiet, args.run.verbose);
-        recipe::mesh(&domain, metric.as_ref(), &args.options(), &bar)?
+        recipe::mesh_for(&domain, metric.as_ref(), aim, &args.options(), &bar)?
     };
     let found = validity(&meshed.mesh);
     found.demand().map_err(ours)?;
@@ -98,6 +100,7 @@ pub(crate) fn fill_in(report: &mut Report, meshed: &Meshed, options: Value) {
     if meshed.star_set.is_none() {
         report.dual = Some(meshed.dual.clone());
         report.relaxation = Some(meshed.relaxation.clone());
+        report.polished.clone_from(&meshed.polished);
     }
     report.canvas.clone_from(&meshed.canvas);
     report.diagram.clone_from(&meshed.diagram);

@@ -64,24 +64,18 @@ impl Dual<'_> {
         self.touched.clear();
     }
 
-    /// The neighbours of a curve's seed along its segment, as positions.
-    pub(crate) fn neighbours_on_segment(&self, v: VertexId) -> Option<[Point; 2]> {
-        let topology = self.topology();
-        let mut ends = topology.star(v).flat_map(|h| {
-            let ahead = topology.is_fixed(h).then(|| topology.target(h));
-            let is_last = topology.twin(h.prev()).is_none();
-            [ahead, is_last.then(|| topology.apex(h))]
-        });
-        let first = ends.by_ref().flatten().next()?;
-        let second = ends.flatten().next()?;
-        Some([self.position(first), self.position(second)])
+    /// Takes over a triangulation of the same vertices and constraints that was changed by other rules than the metric's.
+    pub(crate) fn take_over(&mut self, planar: Planar) {
+        self.planar = planar;
+        self.touched.clear();
+        self.measure_all();
     }
 
     /// Where a curve's seed comes to lie that is moved by a vector: on the segment, and, for its two edges there, only as far as
     /// they stay within `lengths` (metric), or get no farther out; half of that, for neighbours may slide as well.
     pub(crate) fn slid(&self, v: VertexId, by: Vector, lengths: [f64; 2]) -> Point {
         let from = self.position(v);
-        let Some([a, b]) = self.neighbours_on_segment(v) else { return from };
+        let Some([a, b]) = self.planar.neighbours_on_segment(v) else { return from };
         let tensor = self.local(v).tensor;
         let (whole, behind) = (tensor.length(b - a), tensor.length(from - a));
         let ahead = whole - behind;

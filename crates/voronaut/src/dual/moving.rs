@@ -69,7 +69,7 @@ impl Moving for Dual<'_> {
     }
 
     fn along_segment(&self, v: VertexId) -> Option<Vector> {
-        self.neighbours_on_segment(v).map(|[a, b]| b - a)
+        self.planar().neighbours_on_segment(v).map(|[a, b]| b - a)
     }
 
     fn shift_by(&mut self, v: VertexId, by: Vector) -> bool {

@@ -3,7 +3,7 @@
 use super::MetricField;
 use super::validate::check_tensor;
 use crate::error::{Error, Result};
-use crate::geometry::Point;
+use crate::geometry::{Point, combine, radon};
 use rayon::prelude::*;
 
 /// The integral of sqrt(det M) over triangles that do not overlap, to a relative error of about 1e-4 of the total.
@@ -116,7 +116,7 @@ impl Piece {
     }
 }
 
-type Measured = ([Point; 3], Option<f64>);
+pub(super) type Measured = ([Point; 3], Option<f64>);
 
 /// The largest error such that the pieces with no more make up a sum of at most `allowance`.
 fn negligible(pieces: &[Piece], allowance: f64) -> f64 {
@@ -131,7 +131,7 @@ fn negligible(pieces: &[Piece], allowance: f64) -> f64 {
 }
 
 /// The triangles with area, cut until none is larger than a share of the total.
-fn start(triangles: &[[Point; 3]]) -> Result<Vec<Measured>> {
+pub(super) fn start(triangles: &[[Point; 3]]) -> Result<Vec<Measured>> {
     if let Some(i) = triangles.iter().position(|t| !area(*t).is_finite()) {
         let [a, b, c] = triangles[i];
         return Err(Error::domain(
@@ -168,24 +168,15 @@ fn measure(field: &dyn MetricField, triangles: Vec<Measured>) -> Result<Vec<Piec
     pieces.into_iter().collect()
 }
 
-/// Radon's rule: exact for polynomials of degree 5.
-fn integrate(field: &dyn MetricField, [a, b, c]: [Point; 3]) -> Result<f64> {
-    let density = |u: f64, v: f64, w: f64| {
-        let p = Point::new(u * a.x + v * b.x + w * c.x, u * a.y + v * b.y + w * c.y);
+fn integrate(field: &dyn MetricField, triangle: [Point; 3]) -> Result<f64> {
+    let mut sum = 0.0;
+    for (at, weight) in radon() {
+        let p = combine(at, triangle);
         let tensor = field.at(p);
         check_tensor(tensor, p)?;
-        Ok(tensor.determinant().sqrt())
-    };
-    let root = 15f64.sqrt();
-    let third = 1.0 / 3.0;
-    let mut sum = 9.0 / 40.0 * density(third, third, third)?;
-    for sign in [-1.0, 1.0] {
-        let near = (6.0 + sign * root) / 21.0;
-        let far = 1.0 - 2.0 * near;
-        let values = density(far, near, near)? + density(near, far, near)? + density(near, near, far)?;
-        sum += (155.0 + sign * root) / 1200.0 * values;
+        sum += weight * tensor.determinant().sqrt();
     }
-    Ok(sum * area([a, b, c]))
+    Ok(sum * area(triangle))
 }
 
 /// The two halves of a triangle cut across its longest edge.

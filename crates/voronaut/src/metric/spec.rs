@@ -1,6 +1,6 @@
 //! The metric as a user writes it on the command line or in a recipe.
 
-use super::{BoundarySizes, Formula, Shock, Swirl, SwirlField, Uniform};
+use super::{BoundarySizes, Expression, Formula, Shock, Swirl, SwirlField, Uniform, Variables};
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use std::path::{Path, PathBuf};
@@ -18,6 +18,10 @@ pub enum MetricSpec {
     Formula(Formula),
     /// `boundary:h0=H,growth=1.2,aspect=1,h_max=inf`; only `h0` is required.
     Boundary(BoundarySizes),
+    /// `hessian:EXPR`: of the second derivatives of a function of x and y.
+    Hessian(Expression),
+    /// `hessian:FILE.sol`: of those recovered from a solution, one number per vertex of a mesh.
+    RecoveredHessian(PathBuf),
     /// A `.sol` file of tensors or sizes.
     File(PathBuf),
 }
@@ -27,7 +31,7 @@ impl MetricSpec {
     ///
     /// # Errors
     /// [`Error::Parse`] that names the part at fault; [`Error::Metric`] of a uniform tensor that is no metric;
-    /// [`Error::Unsupported`] of `curvature`, `hessian` and `.solb`.
+    /// [`Error::Unsupported`] of `curvature` and `.solb`.
     pub fn parse(text: &str) -> Result<Self> {
         let text = text.trim();
         let (name, parameters) = match text.split_once(':') {
@@ -41,7 +45,7 @@ impl MetricSpec {
             "formula" => Ok(Self::Formula(Formula::planar(parameters.unwrap_or_default())?)),
             "boundary" => boundary(&Parameters::read("boundary", parameters, &["h0", "growth", "aspect", "h_max"])?),
             "curvature" => Err(unsupported("metric curvature", "it is for surfaces; in the plane use another metric")),
-            "hessian" => Err(unsupported("metric hessian", "compute the metric elsewhere and give it as a .sol file")),
+            "hessian" => hessian(parameters.unwrap_or_default()),
             _ => file(text),
         }
     }
@@ -49,7 +53,8 @@ impl MetricSpec {
 
 /// What [`MetricSpec::parse`] understands, for help.
 const METRICS: &str = "metrics: uniform, uniform:m11,m12,m22, swirl:nu=3,field=authors, shock:phi=10,lambda=0.6, \
-                       'formula:m11; m12; m22', boundary:h0=0.01,growth=1.2,aspect=1,h_max=inf, FILE.sol";
+                       'formula:m11; m12; m22', boundary:h0=0.01,growth=1.2,aspect=1,h_max=inf, FILE.sol, \
+                       'hessian:EXPR', hessian:FILE.sol";
 
 fn uniform(parameters: Option<&str>) -> Result<MetricSpec> {
     let Some(parameters) = parameters else {
@@ -105,9 +110,22 @@ fn boundary(parameters: &Parameters) -> Result<MetricSpec> {
     Ok(MetricSpec::Boundary(sizes))
 }
 
+/// A file where the text ends as one, else a function.
+fn hessian(text: &str) -> Result<MetricSpec> {
+    match ending(text).as_deref() {
+        Some("sol") => Ok(MetricSpec::RecoveredHessian(text.into())),
+        Some("solb") => Err(unsupported("solutions in .solb files", "convert it to text: .sol")),
+        _ => Ok(MetricSpec::Hessian(Expression::parse_named(text, Variables::Plane, "metric hessian")?)),
+    }
+}
+
+fn ending(text: &str) -> Option<String> {
+    Path::new(text).extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase)
+}
+
 fn file(text: &str) -> Result<MetricSpec> {
     let path = Path::new(text);
-    match path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase).as_deref() {
+    match ending(text).as_deref() {
         Some("sol") => Ok(MetricSpec::File(path.into())),
         Some("solb") => Err(unsupported("metrics in .solb files", "convert it to text: .sol")),
         _ => Err(Error::parse("metric", format!("`{text}` is not a metric"), METRICS)),
@@ -224,6 +242,14 @@ mod tests {
     }
 
     #[test]
+    fn hessians_are_of_functions_or_of_files() {
+        assert!(matches!(parse("hessian:tanh(40*(y-0.5))"), MetricSpec::Hessian(_)));
+        assert!(matches!(parse("hessian:u.sol"), MetricSpec::RecoveredHessian(path) if path == Path::new("u.sol")));
+        let error = MetricSpec::parse("hessian:x + z").unwrap_err().to_string();
+        assert!(error.starts_with("metric hessian, column 5: z is not a variable"), "{error}");
+    }
+
+    #[test]
     fn files_are_known_by_their_ending() {
         for text in ["metric.sol", "a dir/swirl.SOL", "C:\\data\\m.sol", "../uniform.sol"] {
             assert!(matches!(parse(text), MetricSpec::File(path) if path == Path::new(text)), "{text}");
@@ -232,7 +258,7 @@ mod tests {
 
     #[test]
     fn what_a_later_version_does_says_so() {
-        for text in ["curvature", "curvature:norm=2", "hessian:x^2", "hessian:u.sol", "m.solb", "formula:1;0;1;0;0;1"] {
+        for text in ["curvature", "curvature:norm=2", "hessian:u.solb", "m.solb", "formula:1;0;1;0;0;1"] {
             let error = MetricSpec::parse(text).unwrap_err();
             assert!(matches!(error, Error::Unsupported { .. }), "{text}: {error}");
             assert!(!error.help().is_empty());

@@ -6,7 +6,7 @@ use crate::diagram::Ground;
 use crate::dual::Road;
 use crate::geodesic::MarchCounters;
 use crate::net::Net;
-use crate::optimise::{Ending, Relaxed};
+use crate::optimise::{Ending, Polished, Relaxed};
 use crate::quality::{
     Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, SurfaceFidelity, Validity, Worst,
 };
@@ -48,6 +48,9 @@ pub struct Report {
     pub dual: Option<Dual>,
     /// How the seeds were relaxed.
     pub relaxation: Option<Relaxed>,
+    /// How the error of interpolation was lowered.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub polished: Option<Polished>,
     /// The vertices as a net, where it was measured.
     pub net: Option<NetFigures>,
     /// How protection of the seeds went, where it was asked for.

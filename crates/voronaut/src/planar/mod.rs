@@ -66,6 +66,20 @@ impl Planar {
         orientation(d, b, c) == Orientation::Left && orientation(c, a, d) == Orientation::Left
     }
 
+    /// The positions of the two neighbours along the constraint that a vertex is in the middle of; `None` where there are
+    /// none.
+    pub fn neighbours_on_segment(&self, v: VertexId) -> Option<[Point; 2]> {
+        let topology = &self.topology;
+        let mut ends = topology.star(v).flat_map(|h| {
+            let ahead = topology.is_fixed(h).then(|| topology.target(h));
+            let is_last = topology.twin(h.prev()).is_none();
+            [ahead, is_last.then(|| topology.apex(h))]
+        });
+        let first = ends.by_ref().flatten().next()?;
+        let second = ends.flatten().next()?;
+        Some([self.position(first), self.position(second)])
+    }
+
     /// Whether every face is counter-clockwise.
     pub fn is_embedded(&self) -> bool {
         self.topology.faces().map(|f| self.triangle(f)).all(|[a, b, c]| orientation(a, b, c) == Orientation::Left)

@@ -7,7 +7,9 @@ use crate::formats::medit;
 use crate::formats::sol::{self, SolutionValues};
 use crate::geometry::{Aabb, Tensor};
 use crate::mesh::Mesh;
-use crate::metric::{Boundary, Bounded, Bounds, MetricField, MetricSpec, Sampled, smoothed};
+use crate::metric::{
+    Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Sampled, ScalarField, smoothed,
+};
 use std::path::Path;
 
 /// The field that a specification names on a domain, within limits. `background` is the mesh a `.sol` file belongs to.
@@ -19,6 +21,7 @@ pub fn metric(
     domain: &Domain,
     background: Option<&Path>,
     bounds: Bounds,
+    norm: Norm,
 ) -> Result<Box<dyn MetricField>> {
     if let (Some(mesh), false) = (background, matches!(spec, MetricSpec::File(_))) {
         let what = "only a .sol metric is given on a background mesh";
@@ -29,10 +32,22 @@ pub fn metric(
         MetricSpec::Swirl(field) => Box::new(*field),
         MetricSpec::Shock(field) => Box::new(*field),
         MetricSpec::Formula(field) => Box::new(field.clone()),
+        MetricSpec::Hessian(function) => Box::new(Hessian::new(function.clone(), norm, &domain.triangles())?),
+        MetricSpec::RecoveredHessian(path) => {
+            return Err(Error::Unsupported { what: path.display().to_string(), help: String::new() });
+        }
         MetricSpec::Boundary(sizes) => Box::new(Boundary::new(&domain.boundary(), *sizes)?),
         MetricSpec::File(path) => Box::new(sampled(path, background, domain)?),
     };
     if bounds == Bounds::default() { Ok(field) } else { Ok(Box::new(Bounded::new(field, bounds)?)) }
+}
+
+/// The function that a specification is about: that of a Hessian.
+pub fn function(spec: &MetricSpec) -> Option<Box<dyn ScalarField>> {
+    match spec {
+        MetricSpec::Hessian(function) => Some(Box::new(function.clone())),
+        _ => None,
+    }
 }
 
 /// Sweeps of smoothing (`--smooth-metric`, TOML key and Python keyword `smooth_metric`) unless told otherwise.

@@ -16,7 +16,7 @@ mod surface_pass;
 
 pub use certified::{certified_canvas, certify};
 pub use dual::{SeedDual, dual, net};
-pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, metric, smooth_metric};
+pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, function, metric, smooth_metric};
 pub use mesher::Mesher;
 pub use on_surface::mesh_surface;
 pub use relaxing::Centroid;
@@ -29,9 +29,9 @@ use crate::dual::{Dual, Kind, Road};
 use crate::error::Result;
 use crate::geodesic::Method;
 use crate::mesh::Mesh;
-use crate::metric::{MetricField, Scaled};
+use crate::metric::{MetricField, Norm, ScalarField, Scaled};
 use crate::net::Net;
-use crate::optimise::{FitOptions, Relaxed};
+use crate::optimise::{FitOptions, Polished, Relaxed, polish};
 use crate::output::report;
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
@@ -61,6 +61,8 @@ pub struct MeshOptions {
     pub lloyd: usize,
     /// The centroids that it moves seeds to.
     pub centroid: Centroid,
+    /// Sweeps of polishing, at most, where the mesh is for a function ([`Aim`]); see [`crate::optimise::polish`].
+    pub polish: usize,
     /// Which road decides on the topology.
     pub dual: Road,
     /// How distances on the canvas are computed where a diagram settles edges; seeding marches.
@@ -94,6 +96,7 @@ impl Default for MeshOptions {
             mesher: Mesher::default(),
             lloyd: 40,
             centroid: Centroid::default(),
+            polish: 20,
             dual: Road::default(),
             geodesic: Method::default(),
             seeding: Seeding::default(),
@@ -118,6 +121,8 @@ pub struct Meshed {
     pub dual: report::Dual,
     /// How the seeds were relaxed.
     pub relaxation: Relaxed,
+    /// How the error of interpolation was lowered, where the mesh is for a function.
+    pub polished: Option<Polished>,
     /// The canvas, where one was made: that of the seeding, or where edges were settled by one.
     pub canvas: Option<CanvasFigures>,
     /// The diagram on it.
@@ -145,14 +150,38 @@ const BLOCKED_SHARE: f64 = 0.005;
 /// Seeds exchanged between two halves of the relaxation, as a share of all.
 const EXCHANGED_SHARE: f64 = 0.06;
 
-/// Meshes a domain by a metric: plans the scale, samples the boundary, fills the interior, relaxes, checks.
+/// What a mesh is for: a function to be interpolated, and the norm in which the error counts.
+#[derive(Clone, Copy)]
+pub struct Aim<'a> {
+    /// The function.
+    pub function: &'a dyn ScalarField,
+    /// The norm.
+    pub norm: Norm,
+}
+
+/// Meshes a domain by a metric, for any purpose: [`mesh_for`] without an aim.
+///
+/// # Errors
+/// As for [`mesh_for`].
+pub fn mesh(
+    domain: &Domain,
+    field: &dyn MetricField,
+    options: &MeshOptions,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    mesh_for(domain, field, None, options, progress)
+}
+
+/// Meshes a domain by a metric: plans the scale, samples the boundary, fills the interior, relaxes, checks. With an aim, the
+/// mesh is polished in the end: vertices and edges are then where the error is least, which is near the metric's unit mesh.
 ///
 /// # Errors
 /// The metric is invalid somewhere, the work would exceed the memory limit, or the method drives no diagrams. A valid domain with a valid metric is
 /// refused for no other reason; what could not be met is in [`Meshed::notes`].
-pub fn mesh(
+pub fn mesh_for(
     domain: &Domain,
     field: &dyn MetricField,
+    aim: Option<Aim>,
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
@@ -170,6 +199,7 @@ pub fn mesh(
     let relaxation = job.timed("relax", |job| job.relax(&mut dual, canvas.as_ref()))?;
     let protected = job.protect(&domain, &mut dual)?;
     let settled = job.timed("settle", |job| settle::settle(&mut dual, &domain, job.options, job.progress))?;
+    let polished = aim.map(|aim| job.timed("polish", |job| job.polish(&mut dual, aim))).transpose()?;
     let mesh = job.timed("check", |job| job.finish(&domain, &dual))?;
     let (net, protection) = job.net(&domain, &dual, protected);
     let settle::Settled { dual: account, canvas, diagram } = settled;
@@ -182,6 +212,7 @@ pub fn mesh(
         metric_scale,
         dual: account,
         relaxation,
+        polished,
         canvas,
         diagram,
         net,
@@ -315,6 +346,12 @@ impl<'a> Job<'a> {
             let mean = mean_free_edge(dual);
             dual.rescale(dual.field().factor / (mean * mean));
         }
+    }
+
+    fn polish(&self, dual: &mut Dual, aim: Aim) -> Result<Polished> {
+        let sweeps = self.options.polish;
+        self.progress.stage("polishing", sweeps as u64);
+        polish(dual, aim.function, aim.norm, sweeps, self.progress)
     }
 
     fn finish(&self, domain: &Domain, dual: &Dual) -> Result<Mesh> {
