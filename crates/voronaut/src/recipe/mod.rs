@@ -198,7 +198,13 @@ pub fn mesh_for(
     let mut dual = job.timed("seed", |job| job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
     let relaxation = job.timed("relax", |job| job.relax(&mut dual, canvas.as_ref()))?;
     let protected = job.protect(&domain, &mut dual)?;
-    let settled = job.timed("settle", |job| settle::settle(&mut dual, &domain, job.options, job.progress))?;
+    let is_polished = aim.is_some() && options.polish > 0;
+    let settled = if is_polished {
+        // Polishing decides on the edges.
+        settle::Settled::default()
+    } else {
+        job.timed("settle", |job| settle::settle(&mut dual, &domain, job.options, job.progress))?
+    };
     let polished = aim.map(|aim| job.timed("polish", |job| job.polish(&mut dual, aim))).transpose()?;
     let mesh = job.timed("check", |job| job.finish(&domain, &dual))?;
     let (net, protection) = job.net(&domain, &dual, protected);
