@@ -7,6 +7,7 @@ mod predicates;
 mod space;
 mod tensor;
 mod tensor3;
+mod tree;
 
 pub use jet::Jet3;
 pub use point::{Aabb, Point, Readable, Vector};
@@ -14,3 +15,4 @@ pub use predicates::{Orientation, in_circle, orientation, segment_intersection, 
 pub use space::{Aabb3, Point3, Vector3};
 pub use tensor::{Eigen, Tensor};
 pub use tensor3::{Eigen3, TangentPlane, Tensor3};
+pub(crate) use tree::BoxTree;
