@@ -276,7 +276,9 @@ fn write_section(out: &mut String, name: &str, values: &[SolutionValues]) {
     let count = values[0].count();
     // Writing to a string cannot fail.
     let _ = write!(out, "\n{name}\n{count}\n{}", values.len());
-    values.iter().for_each(|values| drop(write!(out, " {}", values.kind())));
+    for values in values {
+        let _ = write!(out, " {}", values.kind());
+    }
     out.push('\n');
     for i in 0..count {
         for (column, &value) in values.iter().flat_map(|values| values.row(i)).enumerate() {

@@ -59,13 +59,15 @@ impl Frame {
             other[i] = 1.0;
             polygon.corners[i] = Corner { frame, other };
         }
-        let polygon = (0..3).fold(polygon, |polygon, i| polygon.cut(i));
-        Overlap::of(polygon)
+        for i in (0..3).filter(|&i| at.iter().any(|corner| corner[i] < 0.0)) {
+            polygon = polygon.cut(i);
+        }
+        Overlap::of(&polygon)
     }
 }
 
 impl Overlap {
-    fn of(polygon: Polygon) -> Option<Self> {
+    fn of(polygon: &Polygon) -> Option<Self> {
         let (mut share, mut products) = (0.0, [[0.0; 3]; 3]);
         for j in 2..polygon.count {
             let fan = [polygon.corners[0], polygon.corners[j - 1], polygon.corners[j]];
@@ -84,7 +86,7 @@ impl Overlap {
             share = -share;
             products.as_flattened_mut().iter_mut().for_each(|product| *product = -*product);
         }
-        (share > 0.0 && share.is_finite()).then_some(Self { share, products, polygon })
+        (share > 0.0 && share.is_finite()).then_some(Self { share, products, polygon: *polygon })
     }
 
     /// The least and the greatest value, on the intersection, of what is linear on the other triangle.

@@ -108,7 +108,7 @@ impl Field {
     }
 
     /// A field of the same kind from what is linear.
-    pub(super) fn from_linear(&self, values: Vec<f64>) -> Self {
+    pub(super) fn with_linear(&self, values: Vec<f64>) -> Self {
         let linear = Self { values, ..*self };
         let values = linear.mapped(Tensor::exp);
         Self { values, ..*self }

@@ -2,7 +2,6 @@
 
 use super::cover::Cover;
 use super::{Field, Place};
-use crate::error::Result;
 use crate::geometry::{Aabb, Point};
 use crate::mesh::{Located, Locator, Mesh};
 use rayon::prelude::*;
@@ -11,7 +10,7 @@ use rayon::prelude::*;
 const ROUNDING: f64 = 1e-9;
 
 /// All fields on the new mesh. Points are found once for all fields of vertices, and once for those of triangles.
-pub(super) fn interpolate(locator: &Locator, old: &Mesh, new: &Mesh, fields: &[Field]) -> Result<(Vec<Field>, Cover)> {
+pub(super) fn interpolate(locator: &Locator, old: &Mesh, new: &Mesh, fields: &[Field]) -> (Vec<Field>, Cover) {
     let vertices: Vec<Point> = (0..new.points.len() as u32).map(|v| new.point(v)).collect();
     let vertices = located(locator, &vertices);
     let on_triangles = fields.iter().any(|field| field.place == Place::Triangles);
@@ -26,7 +25,7 @@ pub(super) fn interpolate(locator: &Locator, old: &Mesh, new: &Mesh, fields: &[F
             Field { values: centroids.iter().flat_map(row).copied().collect(), ..*field }
         }
     });
-    Ok((carried.collect(), cover(old, &vertices)))
+    (carried.collect(), cover(old, &vertices))
 }
 
 fn at_vertices(old: &Mesh, field: &Field, vertices: &[Located]) -> Field {
@@ -35,7 +34,7 @@ fn at_vertices(old: &Mesh, field: &Field, vertices: &[Located]) -> Field {
         let corners = old.triangles[found.triangle as usize].map(|v| linear[v as usize * n + c]);
         mean(corners, found.weights)
     };
-    field.from_linear(vertices.iter().flat_map(|found| (0..n).map(move |c| value(found, c))).collect())
+    field.with_linear(vertices.iter().flat_map(|found| (0..n).map(move |c| value(found, c))).collect())
 }
 
 /// The weighted mean, between the least and the greatest value in spite of rounding.

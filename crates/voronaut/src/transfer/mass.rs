@@ -116,5 +116,7 @@ pub(super) fn balance(values: &mut [f64], weights: &[f64], target: f64) {
     let share = share_missing(values, weights, target);
     let rest = if share == 0.0 { target - dot(values, weights) } else { 0.0 };
     let shift = rest / weights.iter().sum::<f64>();
-    values.iter_mut().for_each(|u| *u += share * u.abs() + shift);
+    for u in values {
+        *u += share * u.abs() + shift;
+    }
 }

@@ -22,7 +22,7 @@ mod projection;
 #[cfg(test)]
 mod tests;
 
-pub use cover::Cover;
+pub use cover::{Cover, Shares};
 pub use field::{Carried, Extent, Field, Kind, Place};
 
 use crate::error::Result;
@@ -50,7 +50,7 @@ pub enum Overshoot {
 /// one is not finite; [`crate::Error::Metric`] where a tensor is no metric.
 pub fn interpolate(old: &Mesh, new: &Mesh, fields: &[Field]) -> Result<(Vec<Carried>, Cover)> {
     let locator = checked(old, new, fields)?;
-    let (carried, cover) = interpolation::interpolate(&locator, old, new, fields)?;
+    let (carried, cover) = interpolation::interpolate(&locator, old, new, fields);
     Ok((field::compared(old, new, fields, carried), cover))
 }
 
@@ -65,7 +65,7 @@ pub fn interpolate(old: &Mesh, new: &Mesh, fields: &[Field]) -> Result<(Vec<Carr
 /// other, or of `new` covered twice.
 pub fn conservative(old: &Mesh, new: &Mesh, fields: &[Field], overshoot: Overshoot) -> Result<(Vec<Carried>, Cover)> {
     let locator = checked(old, new, fields)?;
-    let (interpolated, cover) = interpolation::interpolate(&locator, old, new, fields)?;
+    let (interpolated, cover) = interpolation::interpolate(&locator, old, new, fields);
     let (carried, cover) = projection::project(&locator, [old, new], fields, interpolated, cover, overshoot)?;
     Ok((field::compared(old, new, fields, carried), cover))
 }

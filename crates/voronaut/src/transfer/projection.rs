@@ -33,7 +33,7 @@ pub(super) fn project(
     let mut carried = interpolated;
     for (c, column) in linear.0.iter().enumerate() {
         let target = dot(&sources.linear.column(c), &old_matrix.lumped);
-        let values = nodal(&matrix, &loads, c, column.read(&carried), target, overshoot);
+        let values = nodal(&matrix, &loads, c, &column.read(&carried), target, overshoot);
         column.write(&mut carried, &values);
     }
     for (c, column) in constant.0.iter().enumerate() {
@@ -50,13 +50,13 @@ fn nodal(
     matrix: &MassMatrix<'_>,
     loads: &Loads,
     component: usize,
-    interpolated: Vec<f64>,
+    interpolated: &[f64],
     target: f64,
     overshoot: Overshoot,
 ) -> Vec<f64> {
     let masses = &matrix.lumped;
     let load = matrix.assemble(|t, corner| matrix.areas[t] * loads.products(t, component)[corner]);
-    let mut values = matrix.solve(&load, interpolated.clone());
+    let mut values = matrix.solve(&load, interpolated.to_owned());
     balance(&mut values, masses, target);
     if overshoot == Overshoot::Kept {
         return values;
@@ -81,6 +81,8 @@ struct Column {
     field: usize,
     component: usize,
     width: usize,
+    /// A power of two near the greatest magnitude: squares of values in this unit neither over- nor underflow.
+    unit: f64,
 }
 
 /// The components of all fields of one place but metrics.
@@ -89,26 +91,36 @@ struct Columns(Vec<Column>);
 impl Columns {
     fn of(fields: &[Field], place: Place) -> Self {
         let chosen = fields.iter().enumerate().filter(|(_, field)| field.place == place && field.kind != Kind::Metric);
-        let columns = |(field, of): (usize, &Field)| {
+        let columns = chosen.flat_map(|(field, of)| {
             let width = of.components();
-            (0..width).map(move |component| Column { field, component, width })
-        };
-        Self(chosen.flat_map(columns).collect())
+            (0..width).map(move |component| {
+                let unit = unit(of.values.iter().skip(component).step_by(width));
+                Column { field, component, width, unit }
+            })
+        });
+        Self(columns.collect())
     }
 
     fn gather(&self, fields: &[Field], rows: usize) -> Rows {
-        let row = |i: usize| self.0.iter().map(move |c| fields[c.field].values[i * c.width + c.component]);
+        let row = |i: usize| self.0.iter().map(move |c| fields[c.field].values[i * c.width + c.component] / c.unit);
         Rows { width: self.0.len(), values: (0..rows).flat_map(row).collect() }
     }
 }
 
 impl Column {
     fn read(&self, fields: &[Field]) -> Vec<f64> {
-        fields[self.field].values.iter().skip(self.component).step_by(self.width).copied().collect()
+        fields[self.field].values.iter().skip(self.component).step_by(self.width).map(|u| u / self.unit).collect()
     }
 
     fn write(&self, fields: &mut [Field], values: &[f64]) {
         let slots = fields[self.field].values.iter_mut().skip(self.component).step_by(self.width);
-        slots.zip(values).for_each(|(slot, &value)| *slot = value);
+        slots.zip(values).for_each(|(slot, &value)| *slot = value * self.unit);
     }
+}
+
+fn unit<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+    /// Powers of two beyond this are near those that overflow.
+    const MOST: f64 = 1000.0;
+    let greatest = values.fold(0.0_f64, |most, u| most.max(u.abs()));
+    if greatest > 0.0 { 2.0_f64.powi(greatest.log2().clamp(-MOST, MOST) as i32) } else { 1.0 }
 }

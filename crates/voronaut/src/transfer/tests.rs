@@ -170,13 +170,19 @@ proptest! {
     fn linear_functions_are_reproduced_and_masses_kept(
         sides in (3_u32..14, 3_u32..14), seeds in (0.0..9.0, 0.0..9.0), power in -9_i32..10, turn in 0.0..6.3,
         shift in (-3.0..3.0, -3.0..3.0), slope in (-2.0..2.0, -2.0..2.0), squeeze in prop_oneof![Just(1.0), Just(1e-4)],
+        grade in prop_oneof![Just(1), Just(5)],
     ) {
         let scale = 10.0_f64.powi(power);
         let place = |mut mesh: Mesh| {
             mesh.points.iter_mut().for_each(|p| p[1] *= squeeze);
             moved(mesh, scale, turn, Vector::new(shift.0, shift.1))
         };
-        let (old, new) = (place(square(sides.0, 0.4, seeds.0)), place(square(sides.1, 0.4, seeds.1)));
+        // Graded meshes have thin triangles, flat in the one and upright in the other.
+        let wobble = if grade > 1 { 0.0 } else { 0.4 };
+        let (mut old, mut new) = (square(sides.0, wobble, seeds.0), square(sides.1, wobble, seeds.1));
+        old.points.iter_mut().for_each(|p| p[1] = p[1].powi(grade));
+        new.points.iter_mut().for_each(|p| p[0] = p[0].powi(grade));
+        let (old, new) = (place(old), place(new));
         let linear = |p: Point| 1.0 + (slope.0 * p.x + slope.1 * p.y) / scale;
         let fields = [sampled(&old, linear), sampled(&old, |p| rough(p) - 0.5), on_triangles(&old, rough)];
         for (i, carry) in ALL.into_iter().enumerate() {
@@ -276,6 +282,23 @@ fn means_over_triangles_converge_with_first_order() {
         };
         let (coarse, fine) = (error(16), error(32));
         assert!(fine < 0.56 * coarse, "{coarse} {fine}");
+    }
+}
+
+#[test]
+fn values_of_any_magnitude_are_carried() {
+    let (old, new) = (square(8, 0.3, 0.4), square(11, 0.3, 2.0));
+    let scaled = |factor: f64| [sampled(&old, |p| factor * rough(p)), on_triangles(&old, |p| factor * rough(p))];
+    for carry in ALL {
+        let (plain, _) = carry(&old, &new, &scaled(1.0)).unwrap();
+        for power in [-1000, -600, 600, 1000] {
+            let factor = 2.0_f64.powi(power);
+            let (carried, _) = carry(&old, &new, &scaled(factor)).unwrap();
+            for (plain, carried) in plain.iter().zip(carried) {
+                let values: Vec<f64> = carried.field.values.iter().map(|u| u / factor).collect();
+                assert_eq!(plain.field.values, values);
+            }
+        }
     }
 }
 
