@@ -83,7 +83,7 @@ fn distance(mesh: &Mesh, field: &Field, f: &dyn Fn(Point) -> f64, squeeze: f64) 
 fn square(n: u32, wobble: f64, seed: f64, squeeze: f64) -> Mesh {
     let step = 1.0 / f64::from(n);
     let noise = |i: u32, j: u32| {
-        let is_inside = i % n > 0 && j % n > 0;
+        let is_inside = !(i.is_multiple_of(n) || j.is_multiple_of(n));
         wobble * step * (f64::from(i * 7 + j * 13) * 1.7 + seed).sin() * f64::from(u8::from(is_inside))
     };
     let position = |k: u32| {
