@@ -1,5 +1,6 @@
 //! What users type.
 
+use crate::interpolate::{self, InterpolateArgs};
 use crate::remesh::{self, RemeshArgs};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::fmt;
@@ -38,6 +39,9 @@ pub(crate) enum Command {
     /// Mesh a surface anew, with the options of mmgs
     #[command(after_help = remesh::EXAMPLES)]
     Remesh(RemeshArgs),
+    /// Carry a solution from one planar mesh to another
+    #[command(after_help = interpolate::EXAMPLES)]
+    Interpolate(InterpolateArgs),
     /// Examine a mesh: validity, quality in a metric, distance to its domain
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),

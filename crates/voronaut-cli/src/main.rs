@@ -6,6 +6,7 @@ mod check;
 mod distance;
 mod dual;
 mod files;
+mod interpolate;
 mod mesh;
 mod metric;
 mod progress;
@@ -38,6 +39,7 @@ fn run(arguments: Arguments) -> Result<()> {
         Command::Mesh(args) => mesh::run(&args),
         Command::Dual(args) => dual::run(&args),
         Command::Distance(args) => distance::run(&args),
+        Command::Interpolate(args) => interpolate::run(&args),
         Command::Remesh(args) => remesh::run(&args),
         Command::Check(args) => check::run(&args),
     }

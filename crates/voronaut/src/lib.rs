@@ -93,6 +93,7 @@ pub mod planar;
 pub mod formats;
 pub mod domain;
 pub mod metric;
+pub mod transfer;
 pub mod surface;
 pub mod geodesic;
 pub mod canvas;

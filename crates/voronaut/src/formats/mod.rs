@@ -14,4 +14,4 @@ mod words;
 
 pub use geojson::Polygons;
 pub use poly::Poly;
-pub use sol::{Solution, SolutionValues};
+pub use sol::{Solution, SolutionValues, Solutions};

@@ -1,4 +1,4 @@
-//! Medit's text format for values on vertices, `.sol`: scalars (sizes), vectors and symmetric tensors (metrics).
+//! Medit's text format for values on vertices and triangles, `.sol`: scalars (sizes), vectors and symmetric tensors (metrics).
 
 use super::sections::{known_dimension, next_section, read_dimension, read_head, skip_section};
 use super::words::{At, Shortest, Words, error_at};
@@ -35,16 +35,22 @@ impl Solution {
 
     /// How many vertices it has entries of.
     pub fn count(&self) -> usize {
-        match &self.values {
-            SolutionValues::Scalar(entries) => entries.len(),
-            SolutionValues::Vector(entries) => entries.len(),
-            SolutionValues::Tensor(entries) => entries.len(),
-            SolutionValues::Tensor3(entries) => entries.len(),
-        }
+        self.values.count()
     }
 }
 
-/// The entries of a [`Solution`], in the order of the vertices.
+/// Everything that a `.sol` file holds: any number of solutions on vertices and on triangles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solutions {
+    /// 2 or 3: the coordinates of the mesh's vertices.
+    pub dimension: u8,
+    /// One entry per vertex each.
+    pub vertices: Vec<SolutionValues>,
+    /// One entry per triangle each.
+    pub triangles: Vec<SolutionValues>,
+}
+
+/// The entries of a solution, in the order of the vertices or triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolutionValues {
     /// One number each; as a metric: a size h, not 1/h^2.
@@ -57,6 +63,65 @@ pub enum SolutionValues {
     Tensor3(Vec<[f64; 6]>),
 }
 
+impl SolutionValues {
+    /// How many entries there are.
+    pub fn count(&self) -> usize {
+        match self {
+            SolutionValues::Scalar(entries) => entries.len(),
+            SolutionValues::Vector(entries) => entries.len(),
+            SolutionValues::Tensor(entries) => entries.len(),
+            SolutionValues::Tensor3(entries) => entries.len(),
+        }
+    }
+
+    /// The numbers of entry `i`.
+    ///
+    /// # Panics
+    /// If there is no such entry.
+    pub fn row(&self, i: usize) -> &[f64] {
+        match self {
+            SolutionValues::Scalar(entries) => std::slice::from_ref(&entries[i]),
+            SolutionValues::Vector(entries) => &entries[i],
+            SolutionValues::Tensor(entries) => &entries[i],
+            SolutionValues::Tensor3(entries) => &entries[i],
+        }
+    }
+
+    /// Entries of the same type from their numbers, one after the other; vectors have so many as the dimension says.
+    #[must_use]
+    pub fn with_numbers(&self, dimension: u8, numbers: &[f64]) -> Self {
+        match self {
+            SolutionValues::Scalar(_) => SolutionValues::Scalar(numbers.to_vec()),
+            SolutionValues::Vector(_) => {
+                SolutionValues::Vector(numbers.chunks_exact(usize::from(dimension)).map(<[f64]>::to_vec).collect())
+            }
+            SolutionValues::Tensor(_) => SolutionValues::Tensor(numbers.as_chunks().0.to_vec()),
+            SolutionValues::Tensor3(_) => SolutionValues::Tensor3(numbers.as_chunks().0.to_vec()),
+        }
+    }
+
+    /// The number by which the format calls the type.
+    fn kind(&self) -> u8 {
+        match self {
+            SolutionValues::Scalar(_) => 1,
+            SolutionValues::Vector(_) => 2,
+            SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => 3,
+        }
+    }
+
+    fn push(&mut self, words: &mut Words<'_>, dimension: u8, at: At<'_>) -> Result<()> {
+        match self {
+            SolutionValues::Scalar(entries) => entries.push(words.number(at)?),
+            SolutionValues::Vector(entries) => {
+                entries.push((0..dimension).map(|_| words.number(at)).collect::<Result<_>>()?);
+            }
+            SolutionValues::Tensor(entries) => entries.push(row(words, at)?),
+            SolutionValues::Tensor3(entries) => entries.push(row(words, at)?),
+        }
+        Ok(())
+    }
+}
+
 /// Reads the section `SolAtVertices` of a `.sol` text with one value per vertex; other sections are passed over.
 ///
 /// `place` names the text in messages. Memory follows the text, never a count written in it.
@@ -66,91 +131,162 @@ pub enum SolutionValues {
 /// [`Error::Parse`] with the line of what is not as announced: a text cut off, more or fewer values than
 /// announced, something that is no finite number. [`Error::Unsupported`] of several values per vertex.
 pub fn read(text: &str, place: &str) -> Result<Solution> {
-    let mut words = Words::new(text, place);
-    read_head(&mut words)?;
-    let (mut dimension, mut solution, mut before) = (None, None, "MeshVersionFormatted");
-    while let Some(keyword) = next_section(&mut words, before)? {
-        before = keyword.text;
-        if before.eq_ignore_ascii_case("Dimension") {
-            dimension = Some(read_dimension(&mut words)?);
-        } else if before.eq_ignore_ascii_case("SolAtVertices") && solution.is_none() {
-            let dimension = known_dimension(dimension, &words, SECTION)?;
-            solution = Some(Solution { dimension, values: read_values(&mut words, dimension)? });
-        } else if before.eq_ignore_ascii_case("SolAtVertices") {
-            return Err(error_at(place, keyword.line, "a second section SolAtVertices", "keep one of them"));
-        } else {
-            skip_section(&mut words);
+    let mut file = File::read(text, place, &SECTIONS[..1])?;
+    let Some(mut found) = file.sections[0].take() else {
+        return Err(file.missing("", "save the values on vertices, in a section SolAtVertices"));
+    };
+    match found.values.pop() {
+        Some(values) if found.values.is_empty() => Ok(Solution { dimension: file.dimension, values }),
+        _ => {
+            let what = format!("{} solutions per vertex ({place}:{})", found.values.len() + 1, found.line);
+            Err(Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() })
         }
     }
-    solution.ok_or_else(|| {
-        let help = "save the values on vertices, in a section SolAtVertices";
-        error_at(place, words.line(), "the file has no section SolAtVertices", help)
-    })
+}
+
+/// Reads the sections `SolAtVertices` and `SolAtTriangles` of a `.sol` text, with any number of values per vertex or triangle;
+/// other sections are passed over.
+///
+/// # Errors
+///
+/// As for [`read`]; neither of the sections is there.
+pub fn read_all(text: &str, place: &str) -> Result<Solutions> {
+    let mut file = File::read(text, place, &SECTIONS)?;
+    let [vertices, triangles] = [0, 1].map(|i| file.sections[i].take());
+    if vertices.is_none() && triangles.is_none() {
+        return Err(file.missing(", nor SolAtTriangles", "save values in one of these sections"));
+    }
+    let values = |found: Option<Section>| found.map_or_else(Vec::new, |found| found.values);
+    Ok(Solutions { dimension: file.dimension, vertices: values(vertices), triangles: values(triangles) })
 }
 
 /// Writes a `.sol` text of version 2 that [`read`] turns into the same solution.
 pub fn write(solution: &Solution) -> String {
-    match &solution.values {
-        SolutionValues::Scalar(values) => write_rows(solution, 1, values.iter().map(std::slice::from_ref)),
-        SolutionValues::Vector(values) => write_rows(solution, 2, values.iter().map(Vec::as_slice)),
-        SolutionValues::Tensor(values) => write_rows(solution, 3, values.iter().map(<[f64; 3]>::as_slice)),
-        SolutionValues::Tensor3(values) => write_rows(solution, 3, values.iter().map(<[f64; 6]>::as_slice)),
+    let mut out = head(solution.dimension);
+    write_section(&mut out, SECTIONS[0], std::slice::from_ref(&solution.values));
+    out + "\nEnd\n"
+}
+
+/// Writes a `.sol` text of version 2 that [`read_all`] turns into the same solutions, as many entries each as the first of their
+/// section has.
+///
+/// # Panics
+/// If a solution has fewer.
+pub fn write_all(solutions: &Solutions) -> String {
+    let mut out = head(solutions.dimension);
+    for (name, values) in SECTIONS.into_iter().zip([&solutions.vertices, &solutions.triangles]) {
+        if !values.is_empty() {
+            write_section(&mut out, name, values);
+        }
+    }
+    out + "\nEnd\n"
+}
+
+/// Sections that are read; any other is passed over.
+const SECTIONS: [&str; 2] = ["SolAtVertices", "SolAtTriangles"];
+
+/// What is read of a file.
+struct File<'a> {
+    words: Words<'a>,
+    dimension: u8,
+    /// In the order of [`SECTIONS`].
+    sections: [Option<Section>; 2],
+}
+
+struct Section {
+    /// Where its head ends.
+    line: usize,
+    values: Vec<SolutionValues>,
+}
+
+impl<'a> File<'a> {
+    /// Reads the sections that are wanted.
+    fn read(text: &'a str, place: &'a str, wanted: &[&str]) -> Result<Self> {
+        let mut words = Words::new(text, place);
+        read_head(&mut words)?;
+        let (mut dimension, mut sections, mut before) = (None, [None, None], "MeshVersionFormatted");
+        while let Some(keyword) = next_section(&mut words, before)? {
+            before = keyword.text;
+            let section = wanted.iter().position(|name| name.eq_ignore_ascii_case(before));
+            match section {
+                _ if before.eq_ignore_ascii_case("Dimension") => dimension = Some(read_dimension(&mut words)?),
+                Some(i) if sections[i].is_some() => {
+                    let what = format!("a second section {}", wanted[i]);
+                    return Err(error_at(place, keyword.line, what, "keep one of them"));
+                }
+                Some(i) => {
+                    let dimension = known_dimension(dimension, &words, wanted[i])?;
+                    sections[i] = Some(read_section(&mut words, dimension, wanted[i])?);
+                }
+                None => skip_section(&mut words),
+            }
+        }
+        Ok(Self { words, dimension: dimension.unwrap_or_default(), sections })
+    }
+
+    fn missing(&self, more: &str, help: &str) -> Error {
+        let what = format!("the file has no section SolAtVertices{more}");
+        error_at(self.words.place(), self.words.line(), what, help)
     }
 }
 
-const SECTION: &str = "SolAtVertices";
-
-fn read_values(words: &mut Words<'_>, dimension: u8) -> Result<SolutionValues> {
-    let head = At::head(SECTION);
+fn read_section(words: &mut Words<'_>, dimension: u8, section: &str) -> Result<Section> {
+    let head = At::head(section);
     let count: u64 = words.whole(head)?;
-    let per_vertex: u64 = words.whole(head)?;
-    if per_vertex != 1 {
-        let what = format!("{per_vertex} solutions per vertex ({}:{})", words.place(), words.line());
-        return Err(Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() });
+    let solutions: u64 = words.whole(head)?;
+    if solutions == 0 {
+        let help = "write how many solutions there are, then the type of each: '1 1' for a scalar";
+        return Err(error_at(words.place(), words.line(), format!("no solution in {section}"), help));
     }
-    let kind: i64 = words.whole(head)?;
-    match (kind, dimension) {
-        (1, _) => Ok(SolutionValues::Scalar(read_rows(words, count)?.into_iter().map(|[value]| value).collect())),
-        (2, _) => Ok(SolutionValues::Vector(read_vectors(words, count, dimension)?)),
-        (3, 2) => Ok(SolutionValues::Tensor(read_rows(words, count)?)),
-        (3, _) => Ok(SolutionValues::Tensor3(read_rows(words, count)?)),
-        _ => {
-            let what = format!("the type of the values is {kind}");
-            let help = "write 1 for scalars, 2 for vectors, 3 for symmetric tensors";
-            Err(error_at(words.place(), words.line(), what, help))
-        }
+    let mut values = Vec::new();
+    for _ in 0..solutions {
+        let kind: i64 = words.whole(head)?;
+        values.push(match (kind, dimension) {
+            (1, _) => SolutionValues::Scalar(Vec::new()),
+            (2, _) => SolutionValues::Vector(Vec::new()),
+            (3, 2) => SolutionValues::Tensor(Vec::new()),
+            (3, _) => SolutionValues::Tensor3(Vec::new()),
+            _ => {
+                let what = format!("the type of the values is {kind}");
+                let help = "write 1 for scalars, 2 for vectors, 3 for symmetric tensors";
+                return Err(error_at(words.place(), words.line(), what, help));
+            }
+        });
     }
+    let line = words.line();
+    for at in At::rows(section, count) {
+        values.iter_mut().try_for_each(|values| values.push(words, dimension, at))?;
+    }
+    Ok(Section { line, values })
 }
 
-fn read_rows<const N: usize>(words: &mut Words<'_>, count: u64) -> Result<Vec<[f64; N]>> {
-    let mut rows = Vec::new();
-    for at in At::rows(SECTION, count) {
-        let mut row = [0.0; N];
-        for value in &mut row {
-            *value = words.number(at)?;
-        }
-        rows.push(row);
+fn row<const N: usize>(words: &mut Words<'_>, at: At<'_>) -> Result<[f64; N]> {
+    let mut row = [0.0; N];
+    for value in &mut row {
+        *value = words.number(at)?;
     }
-    Ok(rows)
+    Ok(row)
 }
 
-fn read_vectors(words: &mut Words<'_>, count: u64, dimension: u8) -> Result<Vec<Vec<f64>>> {
-    At::rows(SECTION, count).map(|at| (0..dimension).map(|_| words.number(at)).collect()).collect()
+fn head(dimension: u8) -> String {
+    format!("MeshVersionFormatted 2\n\nDimension {dimension}\n")
 }
 
-fn write_rows<'a>(solution: &Solution, kind: u8, rows: impl ExactSizeIterator<Item = &'a [f64]>) -> String {
-    let (dimension, count) = (solution.dimension, rows.len());
-    let mut out = format!("MeshVersionFormatted 2\n\nDimension {dimension}\n\n{SECTION}\n{count}\n1 {kind}\n");
-    for row in rows {
-        for (column, &value) in row.iter().enumerate() {
+fn write_section(out: &mut String, name: &str, values: &[SolutionValues]) {
+    let count = values[0].count();
+    // Writing to a string cannot fail.
+    let _ = write!(out, "\n{name}\n{count}\n{}", values.len());
+    for values in values {
+        let _ = write!(out, " {}", values.kind());
+    }
+    out.push('\n');
+    for i in 0..count {
+        for (column, &value) in values.iter().flat_map(|values| values.row(i)).enumerate() {
             let space = if column == 0 { "" } else { " " };
-            // Writing to a string cannot fail.
             let _ = write!(out, "{space}{}", Shortest(value));
         }
         out.push('\n');
     }
-    out.push_str("\nEnd\n");
-    out
 }
 
 #[cfg(test)]
@@ -168,6 +304,34 @@ mod tests {
         ] {
             let solution = Solution { dimension, values };
             assert_eq!(read(&write(&solution), "a.sol").unwrap(), solution);
+        }
+    }
+
+    #[test]
+    fn several_solutions_read_back() {
+        let scalars = || SolutionValues::Scalar(vec![0.5, -1e-9]);
+        let vectors = SolutionValues::Vector(vec![vec![1.0, 2.0], vec![0.1, 1.0 / 3.0]]);
+        let tensors = SolutionValues::Tensor(vec![[1.0, 0.5, 2.0], [3.0, -0.5, 2.0]]);
+        let triangles = vec![SolutionValues::Scalar(vec![7.0])];
+        let all = Solutions { dimension: 2, vertices: vec![scalars(), vectors, tensors, scalars()], triangles };
+        let text = write_all(&all);
+        assert!(text.contains("SolAtVertices\n2\n4 1 2 3 1\n0.5 1 2 1 0.5 2 0.5\n"), "{text}");
+        assert_eq!(read_all(&text, "a.sol").unwrap(), all);
+        let cells = Solutions { vertices: vec![], ..all };
+        assert_eq!(read_all(&write_all(&cells), "a.sol").unwrap(), cells);
+    }
+
+    #[test]
+    fn numbers_make_entries_of_the_same_type() {
+        for (values, numbers) in [
+            (SolutionValues::Scalar(vec![1.0, 2.0]), [1.0, 2.0].as_slice()),
+            (SolutionValues::Vector(vec![vec![1.0, 2.0, 3.0]]), &[1.0, 2.0, 3.0]),
+            (SolutionValues::Tensor(vec![[1.0, 2.0, 3.0]]), &[1.0, 2.0, 3.0]),
+            (SolutionValues::Tensor3(vec![[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]]), &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+        ] {
+            let rows: Vec<f64> = (0..values.count()).flat_map(|i| values.row(i)).copied().collect();
+            assert_eq!(rows, numbers);
+            assert_eq!(values.with_numbers(3, numbers), values);
         }
     }
 
@@ -190,6 +354,8 @@ mod tests {
             ("SolAtVertices 2\n1 1\n0.5\nEnd", "a.sol:6: 'End' is not a number (row 2 of 2 of SolAtVertices)"),
             ("SolAtVertices 1\n1 3\n1 NaN 1", "a.sol:5: 'NaN' is not a finite number (row 1 of 1 of SolAtVertices)"),
             ("SolAtVertices 1\n2 1 3\n1 1 0 1", "not supported: 2 solutions per vertex (a.sol:4)"),
+            ("SolAtVertices 900000000000000000\n0", "a.sol:4: no solution in SolAtVertices"),
+            ("SolAtVertices 1\n3 1 2 4\n1", "a.sol:4: the type of the values is 4"),
             ("SolAtVertices 1\n1 4\n1", "a.sol:4: the type of the values is 4"),
             ("SolAtVertices 0\n1 1\nSolAtVertices 0\n1 1", "a.sol:5: a second section SolAtVertices"),
             ("SolAtVertices -1\n1 1", "a.sol:3: '-1' is out of range (the head of SolAtVertices)"),
@@ -198,6 +364,14 @@ mod tests {
             let error = read(&format!("MeshVersionFormatted 2\nDimension 2\n{body}"), "a.sol").unwrap_err();
             assert!(error.to_string().contains(expected), "{error}");
             assert!(!error.help().is_empty());
+        }
+        for (body, expected) in [
+            ("End", "a.sol:3: the file has no section SolAtVertices, nor SolAtTriangles"),
+            ("SolAtTriangles 2\n2 1 2\n1 2 3\n4 5", "a.sol:6: the text ends in row 2 of 2 of SolAtTriangles"),
+            ("SolAtTriangles 0\n1 1\nSolAtTriangles 0\n1 1", "a.sol:5: a second section SolAtTriangles"),
+        ] {
+            let error = read_all(&format!("MeshVersionFormatted 2\nDimension 2\n{body}"), "a.sol").unwrap_err();
+            assert!(error.to_string().contains(expected) && !error.help().is_empty(), "{error}");
         }
     }
 }

@@ -8,6 +8,7 @@ mod quadrature;
 mod space;
 mod tensor;
 mod tensor3;
+mod tree;
 
 pub use jet::Jet3;
 pub use point::{Aabb, Point, Readable, Vector};
@@ -16,3 +17,4 @@ pub(crate) use quadrature::{Node, combine, radon};
 pub use space::{Aabb3, Point3, Vector3};
 pub use tensor::{Eigen, Tensor};
 pub use tensor3::{Eigen3, TangentPlane, Tensor3};
+pub(crate) use tree::BoxTree;

@@ -174,6 +174,11 @@ impl Aabb {
         self.max - self.min
     }
 
+    /// Whether the boxes have a point in common, if only of their borders.
+    pub fn meets(&self, other: &Aabb) -> bool {
+        self.min.x <= other.max.x && other.min.x <= self.max.x && self.min.y <= other.max.y && other.min.y <= self.max.y
+    }
+
     /// The middle of the box.
     pub fn centre(&self) -> Point {
         self.min.midpoint(self.max)

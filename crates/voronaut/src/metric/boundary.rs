@@ -2,9 +2,8 @@
 
 use super::MetricField;
 use super::analytic::require;
-use super::tree::BoxTree;
 use crate::error::{Error, Result};
-use crate::geometry::{Aabb, Point, Tensor, Vector};
+use crate::geometry::{Aabb, BoxTree, Point, Tensor, Vector};
 
 /// What [`Boundary`] asks for, in Euclidean lengths. At distance d from the boundary the size across it is
 /// `min(h_max, h0 + (growth - 1) d)`, and along it `aspect` times that, at most `h_max`.

@@ -32,7 +32,6 @@ mod scaled;
 mod smoothed;
 mod spec;
 mod steadied;
-mod tree;
 mod validate;
 mod vocabulary;
 
@@ -51,6 +50,7 @@ pub use smoothed::{MOST_SWEEPS, smoothed};
 pub use spec::MetricSpec;
 pub(crate) use spec::Parameters;
 pub use steadied::Steadied;
+pub(crate) use validate::check_tensor_at;
 pub use validate::{check_field, check_tensor};
 
 use crate::geometry::{Point, Tensor};

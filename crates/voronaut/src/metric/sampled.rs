@@ -1,11 +1,10 @@
 //! A metric given at the vertices of a background mesh.
 
 use super::MetricField;
-use super::tree::BoxTree;
 use super::validate::check_tensor_at;
 use crate::error::{Error, Result};
-use crate::geometry::{Aabb, Point, Tensor, Vector};
-use crate::mesh::Mesh;
+use crate::geometry::{Point, Tensor};
+use crate::mesh::{Located, Locator, Mesh};
 
 /// Tensors at the vertices of a planar triangle mesh; inside triangles the log-Euclidean interpolation, exp of the
 /// linear interpolation of log M, which is positive definite and between the sizes at the corners.
@@ -16,20 +15,13 @@ use crate::mesh::Mesh;
 pub struct Sampled {
     /// Logarithms, one per vertex.
     logs: Vec<Tensor>,
-    /// In the order of `tree`, once for each piece.
-    triangles: Vec<Triangle>,
-    tree: BoxTree,
+    /// The vertices of every triangle.
+    triangles: Vec<[u32; 3]>,
+    locator: Locator,
 }
 
-/// Boxes may be so many times larger than their triangles before these are cut, and triangles cut so often.
-const ROOMY: f64 = 8.0;
-const HALVINGS: u32 = 5;
-
-#[derive(Clone, Copy, Debug)]
-struct Triangle {
-    corners: [Point; 3],
-    vertices: [u32; 3],
-}
+/// What messages call the mesh.
+const BACKGROUND: &str = "the background mesh of the metric";
 
 impl Sampled {
     /// The field of one tensor per vertex.
@@ -39,24 +31,13 @@ impl Sampled {
     /// definite; [`Error::Domain`] where the background has no triangles, is not planar, not finite, or refers to
     /// vertices it does not have.
     pub fn new(background: &Mesh, tensors: &[Tensor]) -> Result<Self> {
-        check_background(background)?;
+        let locator = Locator::new(background, BACKGROUND)?;
         check_count(background, "tensors", tensors.len())?;
         for (i, &tensor) in tensors.iter().enumerate() {
-            check_tensor_at(tensor, || describe(background, i))?;
+            check_tensor_at(tensor, || background.describe(i))?;
         }
-        let corners: Vec<[Point; 3]> = background.triangles.iter().map(|&t| background.corners_of(t)).collect();
-        let mut pieces: Vec<(Aabb, usize)> = Vec::new();
-        for (i, &triangle) in corners.iter().enumerate() {
-            cut(triangle, HALVINGS, &mut |piece| pieces.push((piece, i)));
-        }
-        let boxes: Vec<Aabb> = pieces.iter().map(|&(piece, _)| piece).collect();
-        let (tree, order) = BoxTree::new(&boxes);
-        let triangle = |&piece: &u32| {
-            let (_, i) = pieces[piece as usize];
-            Triangle { corners: corners[i], vertices: background.triangles[i] }
-        };
         let logs = tensors.iter().map(|tensor| tensor.log()).collect();
-        Ok(Self { logs, triangles: order.iter().map(triangle).collect(), tree })
+        Ok(Self { logs, triangles: background.triangles.clone(), locator })
     }
 
     /// The isotropic field of one size per vertex: log-linear, so that a size half-way is the geometric mean.
@@ -64,11 +45,10 @@ impl Sampled {
     /// # Errors
     /// As [`Sampled::new`]; [`Error::Metric`] where a size is not positive and finite.
     pub fn sizes(background: &Mesh, sizes: &[f64]) -> Result<Self> {
-        check_background(background)?;
         check_count(background, "sizes", sizes.len())?;
         if let Some(i) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) {
             let what = format!("the size h = {} is not positive and finite", sizes[i]);
-            return Err(Error::metric(what, describe(background, i), "a size is the length of edges there"));
+            return Err(Error::metric(what, background.describe(i), "a size is the length of edges there"));
         }
         let tensors: Vec<Tensor> = sizes.iter().map(|&h| Tensor::isotropic(h)).collect();
         Self::new(background, &tensors)
@@ -78,101 +58,16 @@ impl Sampled {
     pub(super) fn with_logarithms(self, logs: Vec<Tensor>) -> Self {
         Self { logs, ..self }
     }
-
-    /// The triangle nearest to `p` and the barycentric coordinates of the nearest point in it; `None` where `p` is
-    /// not finite.
-    fn locate(&self, p: Point) -> Option<(&Triangle, [f64; 3])> {
-        if !p.is_finite() {
-            // No box is farther than another: all would be looked into.
-            return None;
-        }
-        let mut best = f64::INFINITY;
-        let mut found = None;
-        self.tree.search(p, |position| {
-            let triangle = &self.triangles[position];
-            let (distance, weights) = nearest_point(triangle.corners, p);
-            if distance < best {
-                best = distance;
-                found = Some((triangle, weights));
-            }
-            best
-        });
-        found
-    }
 }
 
 impl MetricField for Sampled {
     fn at(&self, p: Point) -> Tensor {
-        let Some((triangle, weights)) = self.locate(p) else {
+        let Some(Located { triangle, weights, .. }) = self.locator.locate(p) else {
             return Tensor::new(f64::NAN, f64::NAN, f64::NAN);
         };
-        let [a, b, c] = triangle.vertices.map(|v| self.logs[v as usize]);
+        let [a, b, c] = self.triangles[triangle as usize].map(|v| self.logs[v as usize]);
         (a * weights[0] + b * weights[1] + c * weights[2]).exp()
     }
-}
-
-/// Calls back with boxes that hold a triangle: one, or, where that would be much larger than the triangle, those of the
-/// halves at its longest side. Without that the boxes of thin triangles overlap, and a search looks into hundreds.
-fn cut([a, b, c]: [Point; 3], halvings: u32, found: &mut impl FnMut(Aabb)) {
-    let Some(whole) = Aabb::of([a, b, c]) else { return };
-    let (extent, area) = (whole.extent(), 0.5 * (b - a).cross(c - a).abs());
-    if halvings == 0 || extent.x * extent.y <= ROOMY * area {
-        return found(whole);
-    }
-    let sides = [(a, b, c), (b, c, a), (c, a, b)];
-    let (p, q, apex) =
-        sides.into_iter().max_by(|s, t| s.0.distance(s.1).total_cmp(&t.0.distance(t.1))).unwrap_or((a, b, c));
-    let middle = p.midpoint(q);
-    cut([p, middle, apex], halvings - 1, found);
-    cut([middle, q, apex], halvings - 1, found);
-}
-
-/// Squared distance of `p` to a triangle of either orientation, even without area, and the barycentric coordinates
-/// of the nearest point.
-fn nearest_point([a, b, c]: [Point; 3], p: Point) -> (f64, [f64; 3]) {
-    let areas = [(b - p).cross(c - p), (c - p).cross(a - p), (a - p).cross(b - p)];
-    let total: f64 = areas.iter().sum();
-    if total != 0.0 && areas.iter().all(|area| area * total >= 0.0) {
-        return (0.0, areas.map(|area| area / total));
-    }
-    let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
-    for (i, (start, end)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
-        let (along, offset) = (end - start, p - start);
-        let square = along.dot(along);
-        let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        let rest: Vector = offset - along * t;
-        if rest.dot(rest) < best.0 {
-            let mut weights = [0.0; 3];
-            weights[i] = 1.0 - t;
-            weights[(i + 1) % 3] = t;
-            best = (rest.dot(rest), weights);
-        }
-    }
-    best
-}
-
-fn check_background(background: &Mesh) -> Result<()> {
-    let place = "the background mesh of the metric";
-    if background.triangles.is_empty() {
-        return Err(Error::domain("no triangles", place, "a metric at vertices needs a mesh with triangles"));
-    }
-    if let Some(i) = background.points.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
-        return Err(Error::domain(
-            "a coordinate is not finite",
-            describe(background, i),
-            "correct the background mesh",
-        ));
-    }
-    if let Some(i) = background.points.iter().position(|p| p[2] != 0.0) {
-        let what = format!("z = {} is not zero", background.points[i][2]);
-        return Err(Error::domain(what, describe(background, i), "the background mesh must lie in the plane z = 0"));
-    }
-    let count = background.points.len();
-    if let Some(i) = background.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= count)) {
-        let what = format!("triangle {} refers to a vertex beyond the last, {count}", i + 1);
-        return Err(Error::domain(what, place, "correct the background mesh"));
-    }
-    Ok(())
 }
 
 fn check_count(background: &Mesh, what: &str, found: usize) -> Result<()> {
@@ -185,15 +80,10 @@ fn check_count(background: &Mesh, what: &str, found: usize) -> Result<()> {
     Err(Error::metric(what, "the background mesh", help))
 }
 
-/// A vertex, numbered from 1, for messages.
-fn describe(mesh: &Mesh, vertex: usize) -> String {
-    let [x, y, _] = mesh.points[vertex];
-    format!("vertex {} {}", vertex + 1, Point::new(x, y))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Vector;
     use proptest::prelude::*;
 
     /// The unit square as 2 n^2 triangles of mixed orientation, vertices moved a little.
@@ -272,18 +162,6 @@ mod tests {
 
     proptest! {
         #[test]
-        fn location_agrees_with_brute_force(x in -0.5..1.5, y in -0.5..1.5) {
-            let field = sampled(&grid(8));
-            let p = Point::new(x, y);
-            let truth = field.triangles.iter().map(|t| nearest_point(t.corners, p).0).fold(f64::INFINITY, f64::min);
-            let (triangle, w) = field.locate(p).unwrap();
-            let [a, b, c] = triangle.corners;
-            let q = Point::new(a.x * w[0] + b.x * w[1] + c.x * w[2], a.y * w[0] + b.y * w[1] + c.y * w[2]);
-            prop_assert!((p.distance(q) - truth.sqrt()).abs() < 1e-14);
-            prop_assert!(w.iter().all(|w| *w >= 0.0) && (w.iter().sum::<f64>() - 1.0).abs() < 1e-14);
-        }
-
-        #[test]
         fn a_small_step_changes_little(x in -0.2..1.2, y in -0.2..1.2, angle in 0.0..6.3) {
             let field = sampled(&grid(8));
             let (p, step) = (Point::new(x, y), Vector::new(f64::cos(angle), f64::sin(angle)) * 1e-7);
@@ -361,8 +239,14 @@ mod tests {
         );
         let mut mesh = grid(2);
         mesh.points[8][2] = 0.25;
-        assert_eq!(message(&mesh), "invalid domain: z = 0.25 is not zero at vertex 9 (1, 1)");
+        assert_eq!(
+            message(&mesh),
+            "invalid domain: z = 0.25 is not zero at vertex 9 (1, 1) of the background mesh of the metric"
+        );
         mesh.points[8] = [f64::NAN, 1.0, 0.0];
-        assert_eq!(message(&mesh), "invalid domain: a coordinate is not finite at vertex 9 (NaN, 1)");
+        assert_eq!(
+            message(&mesh),
+            "invalid domain: a coordinate is not finite at vertex 9 (NaN, 1) of the background mesh of the metric"
+        );
     }
 }

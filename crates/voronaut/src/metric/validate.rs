@@ -22,7 +22,7 @@ pub fn check_field(field: &dyn MetricField, mut points: impl Iterator<Item = Poi
 }
 
 /// [`check_tensor`] with the place in the caller's words.
-pub(super) fn check_tensor_at(tensor: Tensor, place: impl FnOnce() -> String) -> Result<()> {
+pub(crate) fn check_tensor_at(tensor: Tensor, place: impl FnOnce() -> String) -> Result<()> {
     if tensor.is_positive_definite() {
         return Ok(());
     }

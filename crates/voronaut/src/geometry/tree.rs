@@ -3,11 +3,11 @@
 //! Flat, built once, read by any number of threads without allocating; half the time of a general R-tree's nearest
 //! neighbour on the boundaries it is used for, and ties come with the same search.
 
-use crate::geometry::{Aabb, Point};
+use super::{Aabb, Point};
 
 /// Boxes of numbered items; the items of a leaf have consecutive *positions* in [`BoxTree::new`]'s order.
 #[derive(Clone, Debug)]
-pub(super) struct BoxTree {
+pub(crate) struct BoxTree {
     /// In depth-first order: the first child of an inner node follows it.
     nodes: Vec<Node>,
 }
@@ -28,7 +28,7 @@ const MAX_DEPTH: usize = 32;
 
 impl BoxTree {
     /// The tree, and the item at each position. Callers store their items in that order.
-    pub(super) fn new(boxes: &[Aabb]) -> (Self, Vec<u32>) {
+    pub(crate) fn new(boxes: &[Aabb]) -> (Self, Vec<u32>) {
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut nodes = Vec::with_capacity(boxes.len());
         if !boxes.is_empty() {
@@ -37,9 +37,30 @@ impl BoxTree {
         (Self { nodes }, order)
     }
 
+    /// Calls `visit` with the positions of all items whose box meets `bounds`, and of some others near them.
+    pub(crate) fn overlapping(&self, bounds: &Aabb, mut visit: impl FnMut(usize)) {
+        let mut pending = [0; MAX_DEPTH + 1];
+        let mut count = usize::from(!self.nodes.is_empty());
+        while count > 0 {
+            count -= 1;
+            let index = pending[count];
+            let node = &self.nodes[index];
+            if !node.bounds.meets(bounds) {
+                continue;
+            }
+            if node.count > 0 {
+                (node.next..node.next + node.count).for_each(|item| visit(item as usize));
+            } else {
+                pending[count] = node.next as usize;
+                pending[count + 1] = index + 1;
+                count += 2;
+            }
+        }
+    }
+
     /// Calls `visit` with the positions of all items whose box is nearer to `p` than the bound, nearer boxes first.
     /// `visit` returns the new bound, a squared distance; it starts at infinity.
-    pub(super) fn search(&self, p: Point, mut visit: impl FnMut(usize) -> f64) {
+    pub(crate) fn search(&self, p: Point, mut visit: impl FnMut(usize) -> f64) {
         let mut pending = [(0, 0.0); MAX_DEPTH];
         let mut count = usize::from(!self.nodes.is_empty());
         let mut bound = f64::INFINITY;
@@ -124,6 +145,20 @@ mod tests {
             });
             let truth = points.iter().map(|&q| (q - p).dot(q - p)).fold(f64::INFINITY, f64::min);
             prop_assert_eq!(best, truth);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn finds_all_boxes_that_overlap_one(
+            corners in prop::collection::vec((-1.0..1.0, -1.0..1.0, 0.0..0.3, 0.0..0.3), 1..200),
+        ) {
+            let boxed = |(x, y, w, h)| Aabb { min: Point::new(x, y), max: Point::new(x + w, y + h) };
+            let boxes: Vec<Aabb> = corners.into_iter().map(boxed).collect();
+            let (tree, order) = BoxTree::new(&boxes);
+            let mut seen = vec![0; boxes.len()];
+            tree.overlapping(&boxes[0], |position| seen[order[position] as usize] += 1);
+            prop_assert!(boxes.iter().zip(&seen).all(|(b, &count)| count == 1 || count == 0 && !b.meets(&boxes[0])));
         }
     }
 

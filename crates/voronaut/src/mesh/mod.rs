@@ -1,4 +1,9 @@
-//! The mesh that leaves the program: plain arrays, as every format and every solver wants them.
+//! The mesh that leaves the program: plain arrays, as every format and every solver wants them; and where in a planar one
+//! a point is.
+
+mod locate;
+
+pub use locate::{Located, Locator};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3};
@@ -57,6 +62,11 @@ impl Mesh {
     /// Whether every position lies in the plane z = 0.
     pub fn is_planar(&self) -> bool {
         self.points.iter().all(|p| p[2] == 0.0)
+    }
+
+    /// A vertex, numbered from 1, for messages about planar meshes.
+    pub(crate) fn describe(&self, vertex: usize) -> String {
+        format!("vertex {} {}", vertex + 1, self.point(vertex as u32))
     }
 
     /// Whether triangles, edges, corners and what is required refer to vertices and edges that exist.

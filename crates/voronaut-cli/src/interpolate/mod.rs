@@ -1,0 +1,128 @@
+//! `voronaut interpolate`: a solution carried from one mesh to another.
+
+mod args;
+mod told;
+
+pub(crate) use args::{EXAMPLES, InterpolateArgs};
+
+use crate::files;
+use std::path::Path;
+use std::time::Instant;
+use voronaut::domain::read_text;
+use voronaut::formats::sol::{self, SolutionValues, Solutions};
+use voronaut::mesh::Mesh;
+use voronaut::output;
+use voronaut::surface;
+use voronaut::transfer::{Carried, Field, Kind, Overshoot, Place, conservative, interpolate};
+use voronaut::{Error, Result};
+
+/// Carries all fields of a file to another mesh.
+pub(crate) fn run(args: &InterpolateArgs) -> Result<()> {
+    let start = Instant::now();
+    demand_writable(args)?;
+    files::set_threads(&args.run)?;
+    let (old, new) = (planar(&args.old)?, planar(&args.new)?);
+    let given = sol::read_all(&read_text(&args.field)?, &args.field.display().to_string())?;
+    demand_counts(args, &given, &old, &new)?;
+    let fields = fields(args, &given)?;
+    let read = start.elapsed().as_secs_f64();
+    let overshoot = if args.overshoot { Overshoot::Kept } else { Overshoot::Spread };
+    let (carried, cover) = if args.conservative {
+        conservative(&old, &new, &fields, overshoot)?
+    } else {
+        interpolate(&old, &new, &fields)?
+    };
+    let done = start.elapsed().as_secs_f64();
+    output::write(&args.out, sol::write_all(&solutions(&given, &carried)).as_bytes())?;
+    let dimension = usize::from(given.dimension);
+    let seconds = [read, done - read, start.elapsed().as_secs_f64() - done];
+    if let Some(file) = &args.report {
+        let told = told::report(args, [&old, &new], dimension, &carried, &cover, seconds);
+        output::write(file, format!("{told:#}\n").as_bytes())?;
+    }
+    told::print(args, dimension, &carried, &cover);
+    Ok(())
+}
+
+/// Refuses, before any work, outputs that could not be written.
+fn demand_writable(args: &InterpolateArgs) -> Result<()> {
+    let is_sol = args.out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("sol"));
+    if !is_sol {
+        let what = format!("{} does not end like a solution file", args.out.display());
+        return Err(Error::Unsupported { what, help: "end the name of OUT in .sol".into() });
+    }
+    let out = output::place(&args.out)?;
+    let report = args.report.as_deref().map(output::place).transpose()?;
+    if report.is_some_and(|report| report == out) {
+        let what = "two outputs have the same name";
+        return Err(Error::parse(args.out.display().to_string(), what, "give each output a name of its own"));
+    }
+    Ok(())
+}
+
+fn planar(path: &Path) -> Result<Mesh> {
+    let mesh = surface::read_mesh(&path.to_string_lossy())?;
+    if mesh.is_planar() {
+        return Ok(mesh);
+    }
+    let what = format!("interpolate on a surface ({})", path.display());
+    Err(Error::Unsupported { what, help: "give planar meshes: Dimension 2, or z = 0 at every vertex".into() })
+}
+
+fn demand_counts(args: &InterpolateArgs, given: &Solutions, old: &Mesh, new: &Mesh) -> Result<()> {
+    let sections = [
+        ("SolAtVertices", &given.vertices, [old.points.len(), new.points.len()], "vertices"),
+        ("SolAtTriangles", &given.triangles, [old.triangles.len(), new.triangles.len()], "triangles"),
+    ];
+    for (section, solutions, [needed, there], places) in sections {
+        let Some(found) = solutions.first().map(SolutionValues::count).filter(|&found| found != needed) else {
+            continue;
+        };
+        let (field, old, new) = (args.field.display(), args.old.display(), args.new.display());
+        let what = format!("{section} has {found} entries, and {old} has {needed} {places}");
+        let help = if found == there {
+            format!("{new} has {there}: give the meshes in the other order, OLD first")
+        } else {
+            "give as OLD the mesh that the field was computed on".into()
+        };
+        return Err(Error::parse(field.to_string(), what, help));
+    }
+    Ok(())
+}
+
+fn fields(args: &InterpolateArgs, given: &Solutions) -> Result<Vec<Field>> {
+    let on_vertices = given.vertices.iter().map(|values| (Place::Vertices, values));
+    let on_triangles = given.triangles.iter().map(|values| (Place::Triangles, values));
+    let field = |(place, values): (Place, &SolutionValues)| {
+        let kind = match values {
+            SolutionValues::Tensor(_) if !args.linear_tensors => Kind::Metric,
+            SolutionValues::Tensor3(_) if !args.linear_tensors => {
+                let what = format!("metrics of space on planar meshes ({})", args.field.display());
+                let help =
+                    "save the tensors with Dimension 2 (m11 m12 m22), or say --linear-tensors if they are no metrics";
+                return Err(Error::Unsupported { what, help: help.into() });
+            }
+            SolutionValues::Scalar(_) => Kind::Linear(1),
+            SolutionValues::Vector(_) => Kind::Linear(usize::from(given.dimension)),
+            SolutionValues::Tensor(_) => Kind::Linear(3),
+            SolutionValues::Tensor3(_) => Kind::Linear(6),
+        };
+        let numbers = (0..values.count()).flat_map(|i| values.row(i)).copied().collect();
+        Ok(Field { place, kind, values: numbers })
+    };
+    on_vertices.chain(on_triangles).map(field).collect()
+}
+
+/// What was carried, in the order and of the types of what was given.
+fn solutions(given: &Solutions, carried: &[Carried]) -> Solutions {
+    let (vertices, triangles) = carried.split_at(given.vertices.len());
+    let same = |values: &[SolutionValues], carried: &[Carried]| {
+        let pairs = values.iter().zip(carried);
+        pairs.map(|(values, carried)| values.with_numbers(given.dimension, &carried.field.values)).collect()
+    };
+    Solutions {
+        dimension: given.dimension,
+        vertices: same(&given.vertices, vertices),
+        triangles: same(&given.triangles, triangles),
+    }
+}

@@ -1,0 +1,209 @@
+//! Where in a planar mesh a point is, and which triangles a box may meet.
+
+use super::Mesh;
+use crate::error::{Error, Result};
+use crate::geometry::{Aabb, BoxTree, Point, Vector};
+
+/// The triangles of a planar mesh, ready for searches by any number of threads. Triangles may be oriented either way, overlap, or
+/// have no area.
+#[derive(Clone, Debug)]
+pub struct Locator {
+    /// In the order of `tree`, once for each piece.
+    pieces: Vec<Piece>,
+    tree: BoxTree,
+}
+
+/// The point of a mesh that is nearest to a point: the point itself, if it is in the mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Located {
+    /// A triangle that holds the nearest point, by its number from 0.
+    pub triangle: u32,
+    /// Barycentric coordinates there of the nearest point: none is negative, their sum is one.
+    pub weights: [f64; 3],
+    /// How far the nearest point is (Euclidean); zero in the mesh.
+    pub distance: f64,
+}
+
+/// Boxes may be so many times larger than their triangles before these are cut, and triangles cut so often.
+const ROOMY: f64 = 8.0;
+const HALVINGS: u32 = 5;
+
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    /// Of the whole triangle.
+    corners: [Point; 3],
+    triangle: u32,
+}
+
+impl Locator {
+    /// The locator of a mesh that messages call `name`.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where the mesh has no triangles, is not planar, not finite, or refers to vertices it does not have.
+    pub fn new(mesh: &Mesh, name: &str) -> Result<Self> {
+        Self::check(mesh, name)?;
+        let corners: Vec<[Point; 3]> = mesh.triangles.iter().map(|&t| mesh.corners_of(t)).collect();
+        let mut found: Vec<(Aabb, u32)> = Vec::new();
+        for (i, &triangle) in corners.iter().enumerate() {
+            cut(triangle, HALVINGS, &mut |piece| found.push((piece, i as u32)));
+        }
+        let boxes: Vec<Aabb> = found.iter().map(|&(piece, _)| piece).collect();
+        let (tree, order) = BoxTree::new(&boxes);
+        let piece = |&position: &u32| {
+            let (_, triangle) = found[position as usize];
+            Piece { corners: corners[triangle as usize], triangle }
+        };
+        Ok(Self { pieces: order.iter().map(piece).collect(), tree })
+    }
+
+    /// Whether a mesh is planar, finite, and has triangles of vertices that exist; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// As for [`Locator::new`].
+    pub fn check(mesh: &Mesh, name: &str) -> Result<()> {
+        if mesh.triangles.is_empty() {
+            return Err(Error::domain(
+                "no triangles",
+                name,
+                "give a mesh with triangles: values lie between its vertices",
+            ));
+        }
+        if let Some(i) = mesh.points.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
+            let place = format!("{} of {name}", mesh.describe(i));
+            return Err(Error::domain("a coordinate is not finite", place, "correct the mesh"));
+        }
+        if let Some(i) = mesh.points.iter().position(|p| p[2] != 0.0) {
+            let (what, place) =
+                (format!("z = {} is not zero", mesh.points[i][2]), format!("{} of {name}", mesh.describe(i)));
+            return Err(Error::domain(what, place, "the mesh must lie in the plane z = 0"));
+        }
+        let count = mesh.points.len();
+        if let Some(i) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= count)) {
+            let what = format!("triangle {} refers to a vertex beyond the last, {count}", i + 1);
+            return Err(Error::domain(what, name, "correct the mesh"));
+        }
+        Ok(())
+    }
+
+    /// The point of the mesh that is nearest to `p`; `None` where `p` is not finite.
+    pub fn locate(&self, p: Point) -> Option<Located> {
+        if !p.is_finite() {
+            // No box is farther than another: all would be looked into.
+            return None;
+        }
+        let mut best = f64::INFINITY;
+        let mut found = None;
+        self.tree.search(p, |position| {
+            let piece = &self.pieces[position];
+            let (square, weights) = nearest_point(piece.corners, p);
+            if square < best {
+                best = square;
+                found = Some(Located { triangle: piece.triangle, weights, distance: square.sqrt() });
+            }
+            best
+        });
+        found
+    }
+
+    /// Puts into `found` the numbers, ascending, of all triangles that meet the triangle `corners`, and of some that only pass
+    /// near it.
+    pub fn near(&self, corners: [Point; 3], found: &mut Vec<u32>) {
+        found.clear();
+        cut(corners, HALVINGS, &mut |piece| {
+            self.tree.overlapping(&piece, |position| found.push(self.pieces[position].triangle));
+        });
+        found.sort_unstable();
+        found.dedup();
+    }
+}
+
+/// Calls back with boxes that hold a triangle: one, or, where that would be much larger than the triangle, those of the
+/// halves at its longest side. Without that the boxes of thin triangles overlap, and a search looks into hundreds.
+fn cut([a, b, c]: [Point; 3], halvings: u32, found: &mut impl FnMut(Aabb)) {
+    let Some(whole) = Aabb::of([a, b, c]) else { return };
+    let (extent, area) = (whole.extent(), 0.5 * (b - a).cross(c - a).abs());
+    if halvings == 0 || extent.x * extent.y <= ROOMY * area {
+        return found(whole);
+    }
+    let sides = [(a, b, c), (b, c, a), (c, a, b)];
+    let (p, q, apex) =
+        sides.into_iter().max_by(|s, t| s.0.distance(s.1).total_cmp(&t.0.distance(t.1))).unwrap_or((a, b, c));
+    let middle = p.midpoint(q);
+    cut([p, middle, apex], halvings - 1, found);
+    cut([middle, q, apex], halvings - 1, found);
+}
+
+/// Squared distance of `p` to a triangle of either orientation, even without area, and the barycentric coordinates
+/// of the nearest point.
+fn nearest_point([a, b, c]: [Point; 3], p: Point) -> (f64, [f64; 3]) {
+    let areas = [(b - p).cross(c - p), (c - p).cross(a - p), (a - p).cross(b - p)];
+    let total: f64 = areas.iter().sum();
+    if total != 0.0 && areas.iter().all(|area| area * total >= 0.0) {
+        return (0.0, areas.map(|area| area / total));
+    }
+    let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
+    for (i, (start, end)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+        let (along, offset) = (end - start, p - start);
+        let square = along.dot(along);
+        let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let rest: Vector = offset - along * t;
+        if rest.dot(rest) < best.0 {
+            let mut weights = [0.0; 3];
+            weights[i] = 1.0 - t;
+            weights[(i + 1) % 3] = t;
+            best = (rest.dot(rest), weights);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Triangles at random: of any shape, overlapping, some without area.
+    fn triangles() -> impl Strategy<Value = Mesh> {
+        let corner = (0.0..1.0, 0.0..1.0);
+        let size = prop_oneof![Just(0.0), 0.0..1.0];
+        prop::collection::vec((corner.clone(), (-0.2..0.2, -0.2..0.2), (-0.2..0.2, -0.2..0.2), size), 1..40).prop_map(
+            |all| {
+                let mut mesh = Mesh::default();
+                for ((x, y), u, v, size) in all {
+                    let first = mesh.points.len() as u32;
+                    mesh.points.extend([[x, y, 0.0], [x + u.0, y + u.1, 0.0], [x + size * v.0, y + size * v.1, 0.0]]);
+                    mesh.triangles.push([first, first + 1, first + 2]);
+                }
+                mesh
+            },
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn location_agrees_with_brute_force(mesh in triangles(), x in -0.5..1.5, y in -0.5..1.5) {
+            let locator = Locator::new(&mesh, "it").unwrap();
+            let p = Point::new(x, y);
+            let squares = mesh.triangles.iter().map(|&t| nearest_point(mesh.corners_of(t), p).0);
+            let truth = squares.fold(f64::INFINITY, f64::min).sqrt();
+            let found = locator.locate(p).unwrap();
+            let [a, b, c] = mesh.corners_of(mesh.triangles[found.triangle as usize]);
+            let w = found.weights;
+            let q = Point::new(a.x * w[0] + b.x * w[1] + c.x * w[2], a.y * w[0] + b.y * w[1] + c.y * w[2]);
+            prop_assert!((p.distance(q) - truth).abs() < 1e-13 && (found.distance - truth).abs() < 1e-14);
+            prop_assert!(w.iter().all(|w| *w >= 0.0) && (w.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+        }
+
+        #[test]
+        fn triangles_that_hold_a_point_of_a_triangle_are_near_it(mesh in triangles(), r in 0.0..1.0, s in 0.0..1.0) {
+            let locator = Locator::new(&mesh, "it").unwrap();
+            let [a, b, c] = mesh.corners_of(mesh.triangles[0]);
+            let p = a.lerp(b, r).lerp(c, s);
+            let mut near = Vec::new();
+            locator.near([a, b, c], &mut near);
+            for (i, &t) in mesh.triangles.iter().enumerate() {
+                prop_assert!(near.contains(&(i as u32)) || nearest_point(mesh.corners_of(t), p).0 > 0.0);
+            }
+        }
+    }
+}

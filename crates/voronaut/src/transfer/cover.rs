@@ -1,0 +1,65 @@
+//! How well the old mesh covers the new one.
+
+use crate::error::{Error, Result};
+use crate::geometry::Aabb;
+use crate::mesh::Mesh;
+use serde::Serialize;
+
+/// How well the old mesh covers the new one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Cover {
+    /// Vertices of the new mesh that are outside the old one, by more than rounding.
+    pub outside: usize,
+    /// How far the farthest of them is (Euclidean).
+    pub farthest: f64,
+    /// Shares of areas; of conservative transfer only.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub areas: Option<Shares>,
+}
+
+/// Shares of areas that only one of the two meshes covers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Shares {
+    /// Of the new mesh's area: what no triangle of the old mesh covers.
+    pub uncovered: f64,
+    /// Of the old mesh's area: what no triangle of the new mesh covers.
+    pub left: f64,
+    /// Of the new mesh's area: what triangles of the old mesh cover more than once.
+    pub overlapped: f64,
+}
+
+/// How far the new mesh may reach beyond the old one, as a share of the old one's extent, and how much of an area may be missing:
+/// curves are meshed by chords.
+const OVERHANG: f64 = 0.05;
+
+/// Beyond its mesh a field goes on with the nearest value: right for a sliver along a curved boundary, a mistake anywhere
+/// else.
+pub(super) fn demand_extent(old: &Mesh, new: &Mesh) -> Result<()> {
+    let of = |mesh: &Mesh| {
+        let used = mesh.triangles.as_flattened().iter();
+        Aabb::of(used.map(|&v| mesh.point(v)))
+    };
+    let (Some(cover), Some(bounds)) = (of(old), of(new)) else { return Ok(()) };
+    let (allowed, lower, upper) = (cover.extent() * OVERHANG, cover.min - bounds.min, bounds.max - cover.max);
+    if lower.x.max(upper.x) <= allowed.x && lower.y.max(upper.y) <= allowed.y {
+        return Ok(());
+    }
+    let what = format!("the new mesh ({} to {}) reaches beyond the old one", bounds.min, bounds.max);
+    let place = format!("the old mesh ({} to {})", cover.min, cover.max);
+    Err(Error::domain(what, place, "give two meshes of one domain, in the same coordinates"))
+}
+
+impl Shares {
+    /// Whether the meshes are of one domain.
+    pub(super) fn demand(&self) -> Result<()> {
+        let found = [
+            (self.uncovered, "of the new mesh's area are outside the old mesh"),
+            (self.left, "of the old mesh's area are outside the new mesh"),
+            (self.overlapped, "of the new mesh's area are covered more than once: the old mesh overlaps itself"),
+        ];
+        let Some((share, what)) = found.into_iter().find(|(share, _)| *share > OVERHANG) else { return Ok(()) };
+        let what = format!("{:.1} % {what}", 100.0 * share);
+        let help = "give two valid meshes of one domain, or interpolate instead of conserving the integral";
+        Err(Error::domain(what, "the two meshes", help))
+    }
+}
