@@ -151,7 +151,7 @@ fn nearest_point([a, b, c]: [Point; 3], p: Point) -> (f64, [f64; 3]) {
     best
 }
 
-fn check_background(background: &Mesh) -> Result<()> {
+pub(super) fn check_background(background: &Mesh) -> Result<()> {
     let place = "the background mesh of the metric";
     if background.triangles.is_empty() {
         return Err(Error::domain("no triangles", place, "a metric at vertices needs a mesh with triangles"));
@@ -175,7 +175,7 @@ fn check_background(background: &Mesh) -> Result<()> {
     Ok(())
 }
 
-fn check_count(background: &Mesh, what: &str, found: usize) -> Result<()> {
+pub(super) fn check_count(background: &Mesh, what: &str, found: usize) -> Result<()> {
     let needed = background.points.len();
     if found == needed {
         return Ok(());
@@ -186,7 +186,7 @@ fn check_count(background: &Mesh, what: &str, found: usize) -> Result<()> {
 }
 
 /// A vertex, numbered from 1, for messages.
-fn describe(mesh: &Mesh, vertex: usize) -> String {
+pub(super) fn describe(mesh: &Mesh, vertex: usize) -> String {
     let [x, y, _] = mesh.points[vertex];
     format!("vertex {} {}", vertex + 1, Point::new(x, y))
 }

@@ -1,0 +1,1 @@
+//! Metrics at the vertices of a mesh.
