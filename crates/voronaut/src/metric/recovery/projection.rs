@@ -78,8 +78,7 @@ impl<'a> Averaging<'a> {
             if !rings.grow() {
                 break;
             }
-            let inside: Vec<u32> =
-                rings.vertices().iter().copied().filter(|&w| !self.is_border[w as usize]).collect();
+            let inside: Vec<u32> = rings.vertices().iter().copied().filter(|&w| !self.is_border[w as usize]).collect();
             if inside.len() < POINTS {
                 continue;
             }

@@ -20,8 +20,7 @@ impl<'a> Rings<'a> {
     /// Adds a ring; false where nothing is left to add.
     pub(super) fn grow(&mut self) -> bool {
         let (start, end) = (self.last, self.found.len());
-        let next: Vec<u32> =
-            self.found[start..].iter().flat_map(|&v| self.around.at(v as usize)).copied().collect();
+        let next: Vec<u32> = self.found[start..].iter().flat_map(|&v| self.around.at(v as usize)).copied().collect();
         for v in next {
             // Few enough that looking through them beats a set.
             if !self.found.contains(&v) {
