@@ -8,6 +8,7 @@ mod dual;
 mod files;
 mod mesh;
 mod metric;
+mod nodal;
 mod progress;
 mod remesh;
 mod seeds;
@@ -39,6 +40,7 @@ fn run(arguments: Arguments) -> Result<()> {
         Command::Dual(args) => dual::run(&args),
         Command::Distance(args) => distance::run(&args),
         Command::Remesh(args) => remesh::run(&args),
+        Command::Metric(args) => nodal::run(&args),
         Command::Check(args) => check::run(&args),
     }
 }

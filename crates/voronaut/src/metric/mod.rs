@@ -13,6 +13,8 @@
 //! | [`Scaled`] | `-n`, `--complexity` | another field times a factor |
 //! | [`Steadied`] | `--mesher starset` | another field, finer where it turns |
 //!
+//! [`nodal`] has metrics at the vertices of a mesh, and what adapters do with them; [`recover_hessian`] what they come from.
+//!
 //! [`MetricSpec`] reads the second column; [`complexity()`] integrates sqrt(det M); [`check_tensor`] and
 //! [`check_field`] tell whether values are a metric. Fields do not check their own values: whoever uses a tensor does.
 

@@ -18,7 +18,7 @@ use std::collections::BinaryHeap;
 /// all sizes grow by ln(b) per Euclidean length, and a metric is soon as isotropic as its least size; with t = 0 all grow by
 /// one factor, and it is as anisotropic as before. Neighbouring edges of a unit mesh then differ by about the factor b.
 ///
-/// Metrics are intersected with what their neighbours have grown to, finest first, until nothing changes any more (by a millionth
+/// Metrics are intersected with what their neighbours have grown to, densest first, until nothing changes any more (by a millionth
 /// of its determinant); so the result is nowhere coarser than what was given, obeys the law along every edge (to a millionth), and
 /// graded again is the same to the bit. A uniform metric stays.
 ///
@@ -93,9 +93,10 @@ fn unsettled(growth: f64) -> Error {
     Error::Limit { what, help: "choose a larger factor, or limit the anisotropy".into() }
 }
 
-/// The finest direction first; positive numbers have the order of their bits.
+/// The densest first: by the finest direction vertices would be visited sixteen times as often. Positive numbers have the order of
+/// their bits.
 fn entry(tensors: &[Tensor], v: usize) -> (u64, Reverse<u32>) {
-    (tensors[v].eigen().large.to_bits(), Reverse(v as u32))
+    (tensors[v].determinant().to_bits(), Reverse(v as u32))
 }
 
 /// The intersection, where that is not the tensor itself.

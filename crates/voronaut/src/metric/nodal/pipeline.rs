@@ -158,12 +158,14 @@ impl Stage<'_> {
     }
 
     /// The order in which gradation goes about a metric jumps with the factor, and with it, by a little, the complexity. What is
-    /// missing is a factor on the result, which is above 1 and so keeps to the law of the gradation.
+    /// missing is a factor on the result: above 1, so that the law of the gradation stays, but where limits are in the way.
     fn lifted(&self, factor: f64, target: f64) -> Result<Outcome> {
-        let tensors = self.at(factor)?;
-        let rest = target / complexity(self.mesh, &tensors);
-        let lifted: Vec<Tensor> = tensors.into_iter().map(|tensor| tensor * rest).collect();
-        self.outcome(factor, lifted)
+        let graded = self.at(factor)?;
+        let times = |x: f64| restrict(&graded.iter().map(|&m| m * x.exp()).collect::<Vec<_>>(), self.limits);
+        match root(AIM, |x| Ok((complexity(self.mesh, &times(x)?) / target).ln()))? {
+            Root::At(x) | Root::Jump(x) => self.outcome(factor, times(x)?),
+            Root::Below(excess) | Root::Above(excess) => Err(out_of_reach(target, "about", excess)),
+        }
     }
 
     fn touched(&self, factor: f64, tensors: &[Tensor]) -> Result<Touched> {

@@ -125,3 +125,15 @@ fn sources_of_any_units_count_alike() {
         assert!(plain.tensors.iter().zip(&other.tensors).all(|(m, n)| (m.xx / n.xx - 1.0).abs() < 1e-6));
     }
 }
+
+/// mesh-adaptation/animate#178, where a complexity of 1,000 becomes one of 10^9.
+#[test]
+fn functions_of_one_direction_keep_to_the_complexity() {
+    let mesh = grid(10, 0.0);
+    let bounds = Bounds { h_min: Some(1e-5), h_max: Some(0.2), a_max: Some(10.0) };
+    let pipeline = Pipeline { target_complexity: Some(1000.0), limits: bounds.into(), ..Pipeline::default() };
+    let found = pipeline.run(&mesh, &[Source::Hessian(vec![Tensor::new(100.0, 0.0, 0.0); 121])]).unwrap();
+    assert!((found.complexity / 1000.0 - 1.0).abs() < MET);
+    // The anisotropy is the greatest allowed: 1 / (h 10 h) = 1000.
+    assert!(found.tensors.iter().all(|m| (m.xx / 1e4 - 1.0).abs() < 1e-5 && (m.yy / 1e2 - 1.0).abs() < 1e-5));
+}
