@@ -1,6 +1,7 @@
 //! What users type.
 
 use crate::interpolate::{self, InterpolateArgs};
+use crate::nodal::{self, MetricArgs};
 use crate::remesh::{self, RemeshArgs};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use std::fmt;
@@ -42,6 +43,9 @@ pub(crate) enum Command {
     /// Carry a solution from one planar mesh to another
     #[command(after_help = interpolate::EXAMPLES)]
     Interpolate(InterpolateArgs),
+    /// Make a metric at the vertices of a mesh: from solutions, combined, limited, graded, of a complexity
+    #[command(after_help = nodal::EXAMPLES)]
+    Metric(MetricArgs),
     /// Examine a mesh: validity, quality in a metric, distance to its domain
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
@@ -328,6 +332,10 @@ pub(crate) struct MetricChoices {
     /// Greatest ratio of the two sizes at a point, at least 1
     #[arg(long, value_name = "RATIO", value_parser = positive)]
     a_max: Option<f64>,
+    /// Sizes of neighbouring edges differ by about this factor at most, such as 1.3; in the plane, sampled on a background as
+    /// --smooth-metric has it [default: no gradation]
+    #[arg(long, value_name = "FACTOR", value_parser = positive)]
+    pub(crate) gradation: Option<f64>,
     /// Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a .sol
     /// file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
     #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(..=i64::from(MOST_SWEEPS)), allow_negative_numbers = true, default_value_t = SMOOTH_METRIC)]

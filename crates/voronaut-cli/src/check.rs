@@ -14,7 +14,7 @@ use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::Report;
 use voronaut::output::report::Strayed;
 use voronaut::quality::{fidelity, metric_quality, surface_fidelity, surface_quality, validity};
-use voronaut::recipe;
+use voronaut::recipe::{self, GradedAt};
 use voronaut::surface::{self, Given, Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 
@@ -34,7 +34,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     report.options = json!({
         "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
-        "smooth_metric": args.metric_choices.smooth_metric, "repair": args.damage.repair,
+        "smooth_metric": args.metric_choices.smooth_metric, "gradation": args.metric_choices.gradation, "repair": args.damage.repair,
     });
     if let Err(fault) = fault {
         report.seconds.total = start.elapsed().as_secs_f64();
@@ -139,5 +139,7 @@ fn planar_metric(args: &CheckArgs, text: &str, mesh: &Mesh, domain: Option<&Doma
     let metric = recipe::metric(&spec, domain, background, bounds, args.metric_choices.norm)?;
     let metric = recipe::smooth_metric(metric, domain, background, args.metric_choices.smooth_metric)?;
     let scale = args.metric_scale.unwrap_or(1.0);
+    let gradation = args.metric_choices.gradation;
+    let metric = recipe::grade_metric(metric, domain, background, gradation, GradedAt::Scale(scale))?;
     Ok(Box::new(move |p: Point| metric.at(p) * scale))
 }

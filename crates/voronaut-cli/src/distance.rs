@@ -15,7 +15,7 @@ use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricSpec;
 use voronaut::output::{self, Layers, Picture, report};
-use voronaut::recipe;
+use voronaut::recipe::{self, GradedAt};
 use voronaut::surface::Given;
 use voronaut::{Error, Result};
 
@@ -63,6 +63,8 @@ fn in_plane(args: &DistanceArgs, domain: &Domain, start: Instant) -> Result<Made
     let background = args.metric_choices.background.as_deref().or(own);
     let metric = recipe::metric(&spec, domain, background, args.metric_choices.bounds(), args.metric_choices.norm)?;
     let metric = recipe::smooth_metric(metric, domain, background, args.metric_choices.smooth_metric)?;
+    let gradation = args.metric_choices.gradation;
+    let metric = recipe::grade_metric(metric, domain, background, gradation, GradedAt::Scale(1.0))?;
     let read = start.elapsed().as_secs_f64();
     let canvas = Canvas::new(args.canvas, domain, metric.as_ref(), args.canvas_size as usize)?;
     demand_inside(&from, to, &canvas)?;
@@ -175,7 +177,7 @@ fn told<'a, G: Ground<'a>>(
         "options": {
             "domain": args.domain, "metric": args.metric, "out": args.out, "canvas": args.canvas,
             "canvas_size": args.canvas_size, "geodesic": args.geodesic, "background": args.metric_choices.background,
-            "bounds": args.metric_choices.bounds(), "smooth_metric": args.metric_choices.smooth_metric, "picture": args.picture,
+            "bounds": args.metric_choices.bounds(), "smooth_metric": args.metric_choices.smooth_metric, "gradation": args.metric_choices.gradation, "picture": args.picture,
             "pixels": args.pixels, "report": args.report, "threads": args.run.threads,
             "repair": args.damage.repair,
         },

@@ -17,7 +17,7 @@ use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::output::{self, Report, report};
 use voronaut::quality::{crossing_edges, metric_quality, validity};
 use voronaut::realisation::Realisation;
-use voronaut::recipe::{self, MeshOptions, SeedDual};
+use voronaut::recipe::{self, GradedAt, MeshOptions, SeedDual};
 use voronaut::sampling;
 use voronaut::surface::Given;
 use voronaut::{Error, Result};
@@ -42,6 +42,8 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let background = args.metric_choices.background.as_deref().or(own);
     let metric = recipe::metric(&spec, &domain, background, bounds, args.metric_choices.norm)?;
     let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
+    let gradation = args.metric_choices.gradation;
+    let metric = recipe::grade_metric(metric, &domain, background, gradation, GradedAt::Scale(1.0))?;
     let file = SeedFile::read(&args.seeds)?;
     let seeds = &file.seeds;
     let mut stages = Vec::new();
@@ -212,7 +214,7 @@ pub(crate) fn options(args: &DualArgs) -> serde_json::Value {
         "canvas": args.canvas, "canvas_size": certify::canvas_size(args),
         "voronoi": args.voronoi, "certify": args.certify, "constants": args.constants, "geodesic": args.geodesic, "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
-        "smooth_metric": args.metric_choices.smooth_metric,
+        "smooth_metric": args.metric_choices.smooth_metric, "gradation": args.metric_choices.gradation,
         "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
         "repair": args.damage.repair,
     })

@@ -9,6 +9,7 @@ mod files;
 mod interpolate;
 mod mesh;
 mod metric;
+mod nodal;
 mod progress;
 mod remesh;
 mod seeds;
@@ -41,6 +42,7 @@ fn run(arguments: Arguments) -> Result<()> {
         Command::Distance(args) => distance::run(&args),
         Command::Interpolate(args) => interpolate::run(&args),
         Command::Remesh(args) => remesh::run(&args),
+        Command::Metric(args) => nodal::run(&args),
         Command::Check(args) => check::run(&args),
     }
 }

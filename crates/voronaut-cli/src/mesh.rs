@@ -17,6 +17,7 @@ use voronaut::output::Report;
 use voronaut::output::report::{NetFigures, Seconds};
 use voronaut::quality::{metric_quality, validity};
 use voronaut::recipe::{self, Aim, Meshed};
+use voronaut::recipe::{self, GradedAt, Meshed};
 use voronaut::surface::Given;
 use voronaut::{Error, Result};
 
@@ -39,6 +40,8 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
     let function = recipe::function(&spec).filter(|_| bounds == Bounds::default());
     let aim = function.as_deref().map(|function| Aim { function, norm: args.metric_choices.norm });
+    let at = GradedAt::of(args.options().vertices, args.complexity);
+    let metric = recipe::grade_metric(metric, &domain, background, args.metric_choices.gradation, at)?;
     let meshed = {
         let bar = Bar::new(args.run.quiet, args.run.verbose);
         recipe::mesh_for(&domain, metric.as_ref(), aim, &args.options(), &bar)?
@@ -117,7 +120,7 @@ pub(crate) fn options(args: &MeshArgs) -> Value {
     let mut options = json!(args.options());
     let more = json!({
         "domain": args.domain, "metric": args.metric, "out": args.out, "background": args.metric_choices.background,
-        "smooth_metric": args.metric_choices.smooth_metric,
+        "smooth_metric": args.metric_choices.smooth_metric, "gradation": args.metric_choices.gradation,
         "ar": args.features().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
         "picture": args.outputs.picture, "pixels": args.outputs.pixels, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
         "repair": args.damage.repair,

@@ -16,6 +16,8 @@ pub(crate) fn on_surface(text: &str, input: &Input, choices: &MetricChoices) -> 
 pub(crate) fn demand_for_surfaces(choices: &MetricChoices) -> Result<()> {
     let (what, help) = if choices.smooth_metric > 0 {
         ("smoothing of a metric on a surface", "leave out --smooth-metric")
+    } else if choices.gradation.is_some() {
+        ("gradation of a metric on a surface", "leave out --gradation; sizes of `remesh` are graded, by -hgrad")
     } else if choices.background.is_some() {
         ("a background mesh for a metric on a surface", "give the file that the values belong to as the domain")
     } else {

@@ -45,6 +45,31 @@ pub(crate) fn print_distance(title: &str, told: &serde_json::Value, run: &Run) {
     }
 }
 
+/// Prints what a run of `metric` has made, from its report, unless told to be quiet.
+pub(crate) fn print_metric(title: &str, told: &serde_json::Value, run: &Run) {
+    if run.quiet {
+        return;
+    }
+    let number = |value: &serde_json::Value| format!("{:.4e}", value.as_f64().unwrap_or(f64::NAN));
+    let touched = |name: &str| format!("{name} {}", told["touched"][name]);
+    let limits = ["h_min", "h_max", "a_max", "gradation"].map(touched).join(", ");
+    let mut text = format!("{title}\n");
+    for (name, value) in [
+        (
+            "complexity",
+            format!("{}   (a unit mesh of about {} vertices)", told["complexity"], told["expected_vertices"]),
+        ),
+        ("sizes", format!("{} to {}", number(&told["size"]["min"]), number(&told["size"]["max"]))),
+        ("anisotropy", format!("{} at most", number(&told["anisotropy"]["max"]))),
+        ("metric scale", told["metric_scale"].to_string()),
+        ("touched", format!("of {} vertices: {limits}", told["vertices"])),
+        ("time", format!("{:.2} s", told["seconds"]["total"].as_f64().unwrap_or(0.0))),
+    ] {
+        let _ = writeln!(text, "  {name:<12} {value}");
+    }
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
 fn summary(title: &str, report: &Report, verbose: bool) -> String {
     let mut text = format!("{title}\n");
     let mut line = |name: &str, value: String| {

@@ -13,6 +13,8 @@
 //! | [`Scaled`] | `-n`, `--complexity` | another field times a factor |
 //! | [`Steadied`] | `--mesher starset` | another field, finer where it turns |
 //!
+//! [`nodal`] has metrics at the vertices of a mesh, and what adapters do with them; [`recover_hessian`] what they come from.
+//!
 //! [`MetricSpec`] reads the second column; [`complexity()`] integrates sqrt(det M); [`check_tensor`] and
 //! [`check_field`] tell whether values are a metric. Fields do not check their own values: whoever uses a tensor does.
 
@@ -23,9 +25,12 @@ mod complexity;
 mod expression;
 mod formula;
 mod hessian;
+mod neighbours;
+pub mod nodal;
 mod norm;
 mod number;
 mod parser;
+mod recovery;
 mod sampled;
 mod scalar;
 mod scaled;
@@ -43,6 +48,7 @@ pub use expression::{Expression, Variables};
 pub use formula::{Formula, SpaceFormula};
 pub use hessian::Hessian;
 pub use norm::Norm;
+pub use recovery::{Recovery, recover_hessian};
 pub use sampled::Sampled;
 pub use scalar::ScalarField;
 pub use scaled::Scaled;

@@ -1,5 +1,6 @@
 //! A metric smoothed: averaged over the neighbours on a background mesh, again and again.
 
+use super::neighbours::Neighbours;
 use super::{MetricField, Sampled};
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
@@ -35,36 +36,19 @@ pub fn smoothed(field: &dyn MetricField, background: &Mesh, sweeps: u32) -> Resu
     let around = Neighbours::of(background);
     let mut logs: Vec<Tensor> = tensors.iter().map(|tensor| tensor.log()).collect();
     for _ in 0..sweeps {
-        logs = (0..logs.len()).into_par_iter().map(|v| around.smooth(&logs, v)).collect();
+        logs = (0..logs.len()).into_par_iter().map(|v| smooth(&around, &logs, v)).collect();
     }
     Ok(sampled.with_logarithms(logs))
 }
 
-/// The neighbours of every vertex, one list after the other.
-struct Neighbours {
-    starts: Vec<usize>,
-    lists: Vec<u32>,
-}
-
-impl Neighbours {
-    fn of(mesh: &Mesh) -> Self {
-        let both_ways = |&[a, b, c]: &[u32; 3]| [[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]];
-        let mut pairs: Vec<[u32; 2]> = mesh.triangles.iter().flat_map(both_ways).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
-        let starts = (0..=mesh.points.len()).map(|v| pairs.partition_point(|pair| (pair[0] as usize) < v)).collect();
-        Self { starts, lists: pairs.iter().map(|pair| pair[1]).collect() }
+/// A value after one sweep.
+fn smooth(around: &Neighbours, values: &[Tensor], v: usize) -> Tensor {
+    let list = around.at(v);
+    if list.is_empty() {
+        return values[v];
     }
-
-    /// A value after one sweep.
-    fn smooth(&self, values: &[Tensor], v: usize) -> Tensor {
-        let list = &self.lists[self.starts[v]..self.starts[v + 1]];
-        if list.is_empty() {
-            return values[v];
-        }
-        let sum = list.iter().fold(Tensor::default(), |sum, &n| sum + values[n as usize]);
-        values[v] * KEPT + sum * ((1.0 - KEPT) / list.len() as f64)
-    }
+    let sum = list.iter().fold(Tensor::default(), |sum, &n| sum + values[n as usize]);
+    values[v] * KEPT + sum * ((1.0 - KEPT) / list.len() as f64)
 }
 
 #[cfg(test)]

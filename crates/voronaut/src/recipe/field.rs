@@ -73,11 +73,15 @@ pub fn smooth_metric(
     if sweeps == 0 {
         return Ok(field);
     }
-    let mesh = match background {
-        Some(file) => medit::read(&read_text(file)?, &file.display().to_string())?,
-        None => embedded(&Canvas::straight(domain, field.as_ref(), BACKGROUND_VERTICES)?),
-    };
-    Ok(Box::new(smoothed(field.as_ref(), &mesh, sweeps)?))
+    Ok(Box::new(smoothed(field.as_ref(), &background_mesh(field.as_ref(), domain, background)?, sweeps)?))
+}
+
+/// A mesh to sample a field on: its own, or a triangulation of the domain that is even in the metric.
+pub(super) fn background_mesh(field: &dyn MetricField, domain: &Domain, background: Option<&Path>) -> Result<Mesh> {
+    match background {
+        Some(file) => medit::read(&read_text(file)?, &file.display().to_string()),
+        None => Ok(embedded(&Canvas::straight(domain, field, BACKGROUND_VERTICES)?)),
+    }
 }
 
 /// The positions and triangles of a canvas.

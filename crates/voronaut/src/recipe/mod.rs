@@ -3,6 +3,7 @@
 mod certified;
 mod dual;
 mod field;
+mod graded;
 mod mesher;
 mod on_surface;
 mod patches;
@@ -17,6 +18,8 @@ mod surface_pass;
 pub use certified::{certified_canvas, certify};
 pub use dual::{SeedDual, dual, net};
 pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, function, metric, smooth_metric};
+pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, metric, smooth_metric};
+pub use graded::{GradedAt, grade_metric};
 pub use mesher::Mesher;
 pub use on_surface::mesh_surface;
 pub use relaxing::Centroid;

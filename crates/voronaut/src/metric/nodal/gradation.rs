@@ -1,0 +1,247 @@
+//! Metrics that change slowly.
+
+use super::check;
+use super::restrict::Limits;
+use crate::error::{Error, Result};
+use crate::geometry::{Tensor, Vector};
+use crate::mesh::Mesh;
+use crate::metric::neighbours::Neighbours;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// The metric with sizes that grow slowly: along no edge (p, q) does that at q ask for less than what the one at p has grown to.
+/// What it has grown to is Alauzet's (2010) in mixed space: the size h_i along its i-th axis has become h_i times
+///
+/// > (1 + ln(b) |pq| / h_i)^t (1 + ln(b) l)^(1 - t),
+///
+/// |pq| the Euclidean and l the metric length of the edge at p, b the `gradation_factor`, t [`GRADATION_EXPONENT`]. With t = 1
+/// all sizes grow by ln(b) per Euclidean length, and a metric is soon as isotropic as its least size; with t = 0 all grow by
+/// one factor, and it is as anisotropic as before. Neighbouring edges of a unit mesh then differ by about the factor b.
+///
+/// Metrics are intersected with what their neighbours have grown to, densest first, until nothing changes any more (by a millionth
+/// of its determinant); so the result is nowhere coarser than what was given, obeys the law along every edge (to a millionth), and
+/// graded again is the same to the bit. A uniform metric stays.
+///
+/// # Errors
+/// As of [`Sampled::new`](crate::metric::Sampled::new); [`Error::Parse`] unless the factor is finite and at least 1 (then all that
+/// hangs together has one metric); [`Error::Limit`] where it does not settle.
+pub fn grade(mesh: &Mesh, tensors: &[Tensor], gradation_factor: f64) -> Result<Vec<Tensor>> {
+    check(mesh, tensors)?;
+    let mut graded = tensors.to_vec();
+    Gradation::new(mesh, gradation_factor)?.apply(&mut graded, &Limits::default())?;
+    Ok(graded)
+}
+
+/// The exponent t of [`grade`]'s mixed space.
+pub const GRADATION_EXPONENT: f64 = 0.125;
+/// What changes a determinant by a smaller share is no change.
+const SETTLED: f64 = 1e-6;
+/// Updates per vertex after which something is wrong.
+const PATIENCE: usize = 200;
+
+/// The law, and where it holds.
+pub(super) struct Gradation<'a> {
+    mesh: &'a Mesh,
+    around: Neighbours,
+    growth: f64,
+    exponent: f64,
+}
+
+impl<'a> Gradation<'a> {
+    /// On a planar mesh.
+    pub(super) fn new(mesh: &'a Mesh, gradation_factor: f64) -> Result<Self> {
+        if !(gradation_factor >= 1.0 && gradation_factor.is_finite()) {
+            let what = format!("gradation_factor = {gradation_factor} is not at least 1");
+            let help = "1.3 lets edges grow by a third from one to the next; leave it out for no gradation";
+            return Err(Error::parse("metric gradation", what, help));
+        }
+        let around = Neighbours::of(mesh);
+        Ok(Self { mesh, around, growth: gradation_factor.ln(), exponent: GRADATION_EXPONENT })
+    }
+
+    /// Grades tensors that are within limits, and leaves them there: limits come first, where both cannot be had.
+    pub(super) fn apply(&self, tensors: &mut [Tensor], limits: &Limits) -> Result<()> {
+        let mut queue: BinaryHeap<(u64, Reverse<u32>)> = (0..tensors.len()).map(|v| entry(tensors, v)).collect();
+        let mut is_waiting = vec![true; tensors.len()];
+        let mut left = PATIENCE * tensors.len();
+        while let Some((_, Reverse(v))) = queue.pop() {
+            let v = v as usize;
+            if !std::mem::take(&mut is_waiting[v]) {
+                continue;
+            }
+            left = left.checked_sub(1).ok_or_else(|| unsettled(self.growth))?;
+            let from = Source::new(tensors[v]);
+            for &w in self.around.at(v) {
+                let w = w as usize;
+                let grown =
+                    from.grown(self.mesh.point(w as u32) - self.mesh.point(v as u32), self.growth, self.exponent);
+                if let Some(finer) = raised(tensors[w], grown).map(|m| limits.at(w).clamp(m))
+                    && finer.determinant() > tensors[w].determinant() * (1.0 + SETTLED)
+                {
+                    tensors[w] = finer;
+                    is_waiting[w] = true;
+                    queue.push(entry(tensors, w));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn unsettled(growth: f64) -> Error {
+    let what = format!("gradation by the factor {} does not settle: {PATIENCE} updates per vertex", growth.exp());
+    Error::Limit { what, help: "choose a larger factor, or limit the anisotropy".into() }
+}
+
+/// The densest first: by the finest direction vertices would be visited sixteen times as often. Positive numbers have the order of
+/// their bits.
+fn entry(tensors: &[Tensor], v: usize) -> (u64, Reverse<u32>) {
+    (tensors[v].determinant().to_bits(), Reverse(v as u32))
+}
+
+/// The intersection, where that is not the tensor itself.
+fn raised(tensor: Tensor, by: Tensor) -> Option<Tensor> {
+    let rest = tensor + by * -1.0;
+    let is_above = rest.xx >= 0.0 && rest.yy >= 0.0 && rest.determinant() >= 0.0;
+    (!is_above).then(|| tensor.intersection(by))
+}
+
+/// A tensor that others are measured against.
+struct Source {
+    tensor: Tensor,
+    axis: Vector,
+    eigenvalues: [f64; 2],
+}
+
+impl Source {
+    fn new(tensor: Tensor) -> Self {
+        let e = tensor.eigen();
+        Self { tensor, axis: e.axis, eigenvalues: [e.large, e.small] }
+    }
+
+    /// What it allows at an offset.
+    fn grown(&self, offset: Vector, growth: f64, exponent: f64) -> Tensor {
+        let all = (growth * self.tensor.length(offset)).ln_1p() * (1.0 - exponent);
+        let distance = growth * offset.norm();
+        let [large, small] = self.eigenvalues.map(|value| {
+            let own = if exponent > 0.0 { (distance * value.sqrt()).ln_1p() * exponent } else { 0.0 };
+            value * (-2.0 * (own + all)).exp()
+        });
+        Tensor::from_axis(self.axis, large, small)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_meshes::{grid, tensors_at};
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The smallest of (v' M v) / (v' N v) over all v.
+    fn least_ratio(m: Tensor, n: Tensor) -> f64 {
+        let [a, b, c] = n.cholesky();
+        let (p, q) = (Vector::new(1.0 / a, 0.0), Vector::new(-b / (a * c), 1.0 / c));
+        Tensor::new(m.dot(p, p), m.dot(p, q), m.dot(q, q)).eigen().small
+    }
+
+    fn metrics(count: usize) -> impl Strategy<Value = Vec<Tensor>> {
+        let one = (-2.0..3.0, 0.0..1.5, 0.0..std::f64::consts::PI).prop_map(|(size, ratio, angle): (f64, f64, f64)| {
+            let axis = Vector::new(angle.cos(), angle.sin());
+            Tensor::from_axis(axis, 10_f64.powf(size + ratio), 10_f64.powf(size - ratio))
+        });
+        proptest::collection::vec(one, count)
+    }
+
+    /// What a tensor allows at an offset, written as the law is.
+    fn allowed(m: Tensor, offset: Vector, factor: f64) -> Tensor {
+        let (t, beta) = (GRADATION_EXPONENT, factor.ln());
+        m.map_eigenvalues(|value| {
+            let h = 1.0 / value.sqrt();
+            let grown = (1.0 + beta * offset.norm() / h).powf(t) * (1.0 + beta * m.length(offset)).powf(1.0 - t);
+            1.0 / (h * grown).powi(2)
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn the_law_holds_along_every_edge(given in metrics(64), factor in 1.01..3.0_f64) {
+            let mesh = grid(7, 0.4);
+            let graded = grade(&mesh, &given, factor).unwrap();
+            for (v, m) in graded.iter().enumerate() {
+                prop_assert!(least_ratio(*m, given[v]) > 1.0 - 1e-6, "coarser than given at {v}");
+            }
+            for &[a, b, c] in &mesh.triangles {
+                for [p, q] in [[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]] {
+                    let grown = allowed(graded[p as usize], mesh.point(q) - mesh.point(p), factor);
+                    let ratio = least_ratio(graded[q as usize], grown);
+                    prop_assert!(ratio > 1.0 - 1e-5, "{p} {q}: {ratio}");
+                }
+            }
+        }
+
+        #[test]
+        fn graded_again_it_is_the_same_to_the_bit(given in metrics(64), factor in 1.0..3.0_f64) {
+            let mesh = grid(7, 0.4);
+            let graded = grade(&mesh, &given, factor).unwrap();
+            prop_assert_eq!(grade(&mesh, &graded, factor).unwrap(), graded);
+        }
+
+        #[test]
+        fn units_do_not_matter(given in metrics(64), power in -9.0..9.0_f64) {
+            let mesh = grid(7, 0.4);
+            let unit = 10_f64.powf(power);
+            let points = mesh.points.iter().map(|p| p.map(|x| unit * x)).collect();
+            let (small, scaled) = (Mesh { points, ..mesh.clone() }, given.iter().map(|&m| m * (1.0 / (unit * unit))));
+            let found = grade(&small, &scaled.collect::<Vec<_>>(), 1.3).unwrap();
+            for (m, expected) in found.into_iter().zip(grade(&mesh, &given, 1.3).unwrap()) {
+                let d = m * (unit * unit) + expected * -1.0;
+                prop_assert!(d.xx.abs() + d.xy.abs() + d.yy.abs() < 1e-4 * (expected.xx + expected.yy));
+            }
+        }
+
+        #[test]
+        fn sizes_of_isotropic_metrics_are_the_largest_that_obey(sizes in proptest::collection::vec(-6.0..2.0_f64, 64)) {
+            let (mesh, factor) = (grid(7, 0.4), 1.3_f64);
+            let given: Vec<f64> = sizes.iter().map(|s| s.exp()).collect();
+            let tensors: Vec<Tensor> = given.iter().map(|&h| Tensor::isotropic(h)).collect();
+            // Of isotropic metrics both spaces are one: h grows by ln(factor) per length, along the shortest way over edges.
+            let mut most = given.clone();
+            for _ in 0..64 {
+                for &[a, b, c] in &mesh.triangles {
+                    for [p, q] in [[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]].map(|e| e.map(|v| v as usize)) {
+                        let length = mesh.point(p as u32).distance(mesh.point(q as u32));
+                        most[q] = most[q].min(most[p] + factor.ln() * length);
+                    }
+                }
+            }
+            for (m, h) in grade(&mesh, &tensors, factor).unwrap().into_iter().zip(most) {
+                prop_assert!((m.xx.powf(-0.5) / h - 1.0).abs() < 1e-5 && (m.anisotropy() - 1.0).abs() < 1e-5, "{m:?} {h}");
+            }
+        }
+    }
+
+    #[test]
+    fn uniform_metrics_stay() {
+        let mesh = grid(7, 0.4);
+        let given = vec![Tensor::new(500.0, -30.0, 3.0); 64];
+        assert_eq!(grade(&mesh, &given, 1.05).unwrap(), given);
+    }
+
+    #[test]
+    fn with_the_factor_one_there_is_one_metric() {
+        let mesh = grid(3, 0.2);
+        let given = tensors_at(&mesh, |p| Tensor::isotropic(0.1 + p.x));
+        let graded = grade(&mesh, &given, 1.0).unwrap();
+        assert!(graded.iter().all(|m| (m.xx / 100.0 - 1.0).abs() < 1e-4), "{graded:?}");
+    }
+
+    #[test]
+    fn senseless_factors_are_named() {
+        let mesh = grid(1, 0.0);
+        for factor in [0.9, -1.0, f64::NAN, f64::INFINITY] {
+            let error = grade(&mesh, &[Tensor::IDENTITY; 4], factor).unwrap_err();
+            assert!(error.to_string().contains("metric gradation: gradation_factor"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Metrics from meshes and from sizes.
+
+use super::check;
+use crate::error::{Error, Result};
+use crate::geometry::{Point, Tensor};
+use crate::mesh::Mesh;
+use crate::metric::sampled::{check_background, check_count, describe};
+
+/// The metric that a mesh implies: that of a triangle is the one in which it is equilateral with edges of length one (its Steiner
+/// tensor), that of a vertex the log-Euclidean mean of those around it, weighted by (Euclidean) areas. A vertex that no triangle
+/// uses gets the identity; it does not matter.
+///
+/// # Errors
+/// As of [`Sampled::new`](crate::metric::Sampled::new) of what is not a planar mesh; [`Error::Mesh`] of a triangle without area.
+pub fn implied(mesh: &Mesh) -> Result<Vec<Tensor>> {
+    check_background(mesh)?;
+    let mut sums = vec![(Tensor::default(), 0.0); mesh.points.len()];
+    for (i, &t) in mesh.triangles.iter().enumerate() {
+        let corners = mesh.corners_of(t);
+        let tensor = of_triangle(corners);
+        if !tensor.is_positive_definite() {
+            let place = format!("triangle {} at {}", i + 1, corners[0]);
+            let help = "remove triangles without area: voronaut check names them";
+            return Err(Error::Mesh { what: "a triangle has no area".into(), place, help: help.into() });
+        }
+        let [a, b, c] = corners;
+        let area = (b - a).cross(c - a).abs();
+        for v in t {
+            let (sum, total) = &mut sums[v as usize];
+            *sum = *sum + tensor.log() * area;
+            *total += area;
+        }
+    }
+    Ok(sums
+        .into_iter()
+        .map(|(sum, total)| if total > 0.0 { (sum * (1.0 / total)).exp() } else { Tensor::IDENTITY })
+        .collect())
+}
+
+/// The metric in which all edges of a triangle have length one.
+fn of_triangle([a, b, c]: [Point; 3]) -> Tensor {
+    // With J = (b - a, c - a) and G = ((1, 1/2), (1/2, 1)), the products of the edges of the unit triangle: J^-T G J^-1.
+    let (u, v) = (b - a, c - a);
+    let twice = u.cross(v);
+    let (p, q) = (v.perpendicular() * (-1.0 / twice), u.perpendicular() * (1.0 / twice));
+    Tensor::new(
+        p.x * p.x + p.x * q.x + q.x * q.x,
+        p.x * p.y + 0.5 * (p.x * q.y + p.y * q.x) + q.x * q.y,
+        p.y * p.y + p.y * q.y + q.y * q.y,
+    )
+}
+
+/// The metric of one size per vertex: identity / h^2.
+///
+/// # Errors
+/// As of [`Sampled::sizes`](crate::metric::Sampled::sizes).
+pub fn isotropic(mesh: &Mesh, sizes: &[f64]) -> Result<Vec<Tensor>> {
+    check_background(mesh)?;
+    check_count(mesh, "sizes", sizes.len())?;
+    if let Some(v) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) {
+        let what = format!("the size h = {} is not positive and finite", sizes[v]);
+        return Err(Error::metric(what, describe(mesh, v), "a size is the length of edges there"));
+    }
+    let tensors: Vec<Tensor> = sizes.iter().map(|&h| Tensor::isotropic(h)).collect();
+    check(mesh, &tensors)?;
+    Ok(tensors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::complexity;
+    use super::super::test_meshes::grid;
+    use super::*;
+    use crate::geometry::Vector;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn edges_of_a_triangle_have_length_one(x in proptest::array::uniform6(-3.0..3.0_f64)) {
+            let corners @ [a, b, c] = [(x[0], x[1]), (x[2], x[3]), (x[4], x[5])].map(|(x, y)| Point::new(x, y));
+            prop_assume!((b - a).cross(c - a).abs() > 1e-3);
+            let m = of_triangle(corners);
+            for edge in [b - a, c - b, a - c] {
+                prop_assert!((m.length(edge) - 1.0).abs() < 1e-9, "{edge:?}");
+            }
+        }
+    }
+
+    /// Rows of equilateral triangles under a linear map.
+    fn even(map: [Vector; 2]) -> Mesh {
+        let mut mesh = grid(6, 0.0);
+        for [x, y, _] in &mut mesh.points {
+            // Squares with a diagonal from (0, 0) to (1, 1) are sheared to rhombi of two equilateral triangles.
+            let (p, q) = (*x - 0.5 * *y, 0.75_f64.sqrt() * *y);
+            let moved = map[0] * p + map[1] * q;
+            (*x, *y) = (moved.x, moved.y);
+        }
+        mesh
+    }
+
+    #[test]
+    fn of_an_even_mesh_it_is_its_metric() {
+        let map = [Vector::new(3.0, 1.0), Vector::new(-0.02, 0.05)];
+        let mesh = even(map);
+        for (v, m) in implied(&mesh).unwrap().into_iter().enumerate() {
+            let (p, q) = (map[0] * (1.0 / 6.0), map[1] * (1.0 / 6.0));
+            assert!((m.length(p) - 1.0).abs() < 1e-9 && (m.length(q) - 1.0).abs() < 1e-9, "{v}");
+            assert!(m.dot(p, q).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn its_complexity_counts_triangles() {
+        // An equilateral unit triangle has area sqrt(3) / 4; means over vertices make it a little less.
+        let mesh = grid(20, 0.1);
+        let count = complexity(&mesh, &implied(&mesh).unwrap()) / (0.75_f64.sqrt() / 2.0);
+        assert!((count / mesh.triangles.len() as f64 - 1.0).abs() < 0.02, "{count}");
+    }
+
+    #[test]
+    fn flat_triangles_and_wrong_sizes_are_named() {
+        let mut mesh = grid(1, 0.0);
+        mesh.points.push([9.0, 9.0, 0.0]);
+        assert_eq!(implied(&mesh).unwrap()[4], Tensor::IDENTITY);
+        assert!(isotropic(&mesh, &[0.5; 5]).unwrap().iter().all(|&m| m == Tensor::isotropic(0.5)));
+        let error = isotropic(&mesh, &[1.0, 1.0, 0.0, 1.0, 1.0]).unwrap_err();
+        assert!(error.to_string().contains("h = 0 is not positive and finite at vertex 3"), "{error}");
+        mesh.points[3] = mesh.points[0];
+        let error = implied(&mesh).unwrap_err();
+        assert!(error.to_string().contains("a triangle has no area at triangle 1 at (0, 0)"), "{error}");
+    }
+}

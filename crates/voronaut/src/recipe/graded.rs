@@ -1,0 +1,112 @@
+//! A metric on a domain, graded.
+
+use super::field::background_mesh;
+use crate::domain::Domain;
+use crate::error::Result;
+use crate::geometry::Tensor;
+use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, complexity};
+use crate::metric::{MetricField, Sampled};
+use std::path::Path;
+
+/// In which multiple of a metric edges are to have length one, when it is graded: gradation is a law between neighbouring
+/// edges, and scaling a metric changes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GradedAt {
+    /// In the metric times this factor.
+    Scale(f64),
+    /// In the multiple that has this complexity when it is graded.
+    Complexity(f64),
+}
+
+impl GradedAt {
+    /// For a mesh of so many vertices, or of a complexity; else for the metric as it is.
+    pub fn of(vertices: Option<usize>, complexity: Option<f64>) -> Self {
+        let asked = vertices.map(|count| COMPLEXITY_PER_VERTEX * count as f64).or(complexity);
+        asked.map_or(GradedAt::Scale(1.0), GradedAt::Complexity)
+    }
+}
+
+/// The field graded ([`crate::metric::nodal::grade`]) at the vertices of a background: its own mesh if it is a `.sol` file, else a
+/// triangulation of the domain as for [`smooth_metric`](super::smooth_metric). Without a factor, the field as it is, to the bit.
+/// What comes back is in the units of the field given, whatever multiple was graded.
+///
+/// # Errors
+/// As of [`Pipeline::run`]; the background is missing or no mesh.
+pub fn grade_metric(
+    field: Box<dyn MetricField>,
+    domain: &Domain,
+    background: Option<&Path>,
+    gradation_factor: Option<f64>,
+    at: GradedAt,
+) -> Result<Box<dyn MetricField>> {
+    if gradation_factor.is_none() {
+        return Ok(field);
+    }
+    let mesh = background_mesh(field.as_ref(), domain, background)?;
+    let scale = match at {
+        GradedAt::Scale(scale) => scale,
+        GradedAt::Complexity(_) => 1.0,
+    };
+    let vertices = 0..mesh.points.len() as u32;
+    let given: Vec<Tensor> = vertices.map(|v| field.at(mesh.point(v)) * scale).collect();
+    // Refuses what is no metric before it is scaled.
+    Sampled::new(&mesh, &given)?;
+    let target_complexity = match at {
+        GradedAt::Scale(_) => None,
+        GradedAt::Complexity(target) => Some(target),
+    };
+    let own = complexity(&mesh, &given);
+    let pipeline = Pipeline { target_complexity, gradation_factor, ..Pipeline::default() };
+    let graded = pipeline.run(&mesh, &[Source::Metric(given)])?;
+    let back = 1.0 / (scale * graded.factor * target_complexity.map_or(1.0, |target| target / own));
+    let tensors: Vec<Tensor> = graded.tensors.iter().map(|&tensor| tensor * back).collect();
+    Ok(Box::new(Sampled::new(&mesh, &tensors)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point, Vector};
+
+    /// Sizes that jump by a thousand, across and along.
+    fn jumping(p: Point) -> Tensor {
+        if p.x < 0.5 { Tensor::new(1e6, 0.0, 1e4) } else { Tensor::new(1.0, 0.0, 1.0) }
+    }
+
+    fn graded(at: GradedAt, factor: f64) -> Box<dyn MetricField> {
+        let domain = Domain::read("rect:0,0,1,1").unwrap();
+        grade_metric(Box::new(jumping), &domain, None, Some(factor), at).unwrap()
+    }
+
+    #[test]
+    fn sizes_grow_by_the_factor_and_not_more() {
+        let field = graded(GradedAt::Scale(1.0), 1.3);
+        let size = |x: f64| 1.0 / field.at(Point::new(x, 0.5)).length(Vector::new(1.0, 0.0));
+        assert!((size(0.2) / 1e-3 - 1.0).abs() < 1e-6);
+        // Across: 0.001 + ln(1.3) d, for both factors of the law are the same there.
+        for d in [0.1, 0.3] {
+            let expected = 1e-3 + 1.3_f64.ln() * d;
+            assert!((size(0.5 + d) / expected - 1.0).abs() < 0.1, "{d}: {} {expected}", size(0.5 + d));
+        }
+    }
+
+    #[test]
+    fn what_is_graded_is_the_metric_of_the_mesh() {
+        // With a hundredth of the vertices edges are ten times as long, and so is the way over which they grow.
+        let [coarse, fine] = [3e3, 3e5].map(|target| graded(GradedAt::Complexity(target), 1.3));
+        let at = |field: &dyn MetricField, x| field.at(Point::new(x, 0.5)).xx;
+        assert!(
+            (at(coarse.as_ref(), 0.2) / 1e6 - 1.0).abs() < 1e-6 && (at(fine.as_ref(), 0.2) / 1e6 - 1.0).abs() < 1e-6
+        );
+        assert!(at(coarse.as_ref(), 0.7) > 10.0 * at(fine.as_ref(), 0.7));
+    }
+
+    #[test]
+    fn without_a_factor_nothing_happens() {
+        let domain = Domain::read("rect:0,0,1,1").unwrap();
+        let same = grade_metric(Box::new(jumping), &domain, None, None, GradedAt::Complexity(9.0)).unwrap();
+        assert_eq!(same.at(Point::new(0.25, 0.123)), jumping(Point::new(0.25, 0.123)));
+        assert_eq!(GradedAt::of(None, Some(7.0)), GradedAt::Complexity(7.0));
+        assert_eq!(GradedAt::of(None, None), GradedAt::Scale(1.0));
+    }
+}
