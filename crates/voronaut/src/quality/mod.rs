@@ -17,6 +17,7 @@ mod surface_fidelity;
 mod surface_quality;
 #[cfg(test)]
 mod test_meshes;
+mod unmet;
 mod validity;
 
 pub use crossings::{Crossing, crossing_edges, crossings};
@@ -27,6 +28,7 @@ pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Wors
 pub use position::Position;
 pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
 pub use surface_quality::surface_quality;
+pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet, zz};
 pub use validity::{Fault, Validity, check, validity};
 
 pub(crate) use edges::Edges;
