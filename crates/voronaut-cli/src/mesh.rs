@@ -52,7 +52,8 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     report.histograms = files::histograms(&args.outputs, &meshed.mesh, &scaled)?;
     report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     let drawn = drawn(args, &domain, &meshed.mesh, &scaled)?;
-    let drawn = drawn.with_net(&args.outputs, meshed.net.as_ref(), args.protection).with_unmet(&args.outputs, Some(unmet));
+    let drawn =
+        drawn.with_net(&args.outputs, meshed.net.as_ref(), args.protection).with_unmet(&args.outputs, Some(unmet));
     files::write(&MeshFile::Straight(&args.out), &args.outputs, &meshed.mesh, Some(&scaled), &report, &drawn)?;
     summary::print(&args.out.display().to_string(), &report, &args.run);
     Ok(())

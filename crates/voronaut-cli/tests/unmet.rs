@@ -93,7 +93,8 @@ fn edges_are_drawn_by_cause_with_a_legend() {
     stdout(&place, &[&check[..], &["--picture", "b.png", "--show", "unmet"]].concat());
     let [a, b, plain] = ["a.svg", "b.svg", "plain.svg"].map(|name| String::from_utf8(place.read(name)).unwrap());
     assert_eq!(a, b);
-    let height = |text: &str| text.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap();
+    let height =
+        |text: &str| text.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap();
     assert!(height(&a) > height(&plain) + 50.0 && a.contains("stroke-opacity=\"0.3\""));
 }
 

@@ -114,8 +114,8 @@ pub(super) fn quality_fill(quality: f64) -> String {
     oklch(0.985 - 0.335 * bad, 0.006 + 0.154 * bad, 85.0 - 55.0 * bad)
 }
 
-/// Hues (OKLCH) of causes, in their order, that differ for the colour-blind, too: blue, green, orange, purple.
-const CAUSES: [f64; 4] = [255.0, 155.0, 45.0, 325.0];
+/// Hues (OKLCH) of causes, in their order, that differ for the colour-blind, too: magenta, blue, orange, green.
+const CAUSES: [f64; 4] = [0.0, 255.0, 55.0, 150.0];
 
 /// The ink of an edge that is too short, or too long, for the so-manieth cause.
 pub(super) fn cause(number: usize, is_short: bool) -> String {

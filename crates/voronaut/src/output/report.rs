@@ -8,8 +8,7 @@ use crate::geodesic::MarchCounters;
 use crate::net::Net;
 use crate::optimise::{Ending, Relaxed};
 use crate::quality::{
-    Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, SurfaceFidelity, UnmetFigures, Validity,
-    Worst,
+    Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, SurfaceFidelity, UnmetFigures, Validity, Worst,
 };
 use crate::realisation::{self, Found, Realisation};
 use serde::ser::SerializeMap;

@@ -7,11 +7,16 @@ use crate::mesh::Mesh;
 use crate::quality::{Cause, CauseFigures, Edges, Unmet};
 use std::fmt::Write;
 
-/// Edges of a cause: wider than those of the mesh, and never too thin to be seen. In pixels.
+/// Edges of a cause: wider than those of the mesh, and never too thin to be seen; those of the boundary wider than that, too.
+/// In pixels.
 const PEN: Pen = Pen { widest: 2.4, share: 0.26, thinnest: 0.55 };
-/// Height of the legend, and of a unit of its letters, as shares of the picture's width.
-const LEGEND: f64 = 0.075;
-const UNIT: f64 = 0.0011;
+const KEPT_PEN: Pen = Pen { widest: 3.4, share: 0.3, thinnest: 2.4 };
+/// The legend, as shares of the picture's width: a unit of its letters, a row, all of it.
+const UNIT: f64 = 0.0014;
+const ROW: f64 = 0.0185;
+const LEGEND: f64 = 0.083;
+/// What begins at its columns, in shares of the width: margin, and the distance from one to the next.
+const COLUMNS: [f64; 2] = [0.02, 0.245];
 /// How opaque the mesh is under these edges.
 pub(super) const PALE: f64 = 0.3;
 
@@ -24,7 +29,8 @@ pub(super) fn edges(svg: &mut String, mesh: &Mesh, edges: &Edges, unmet: &Unmet,
             let found = unmet.edges.iter().filter(|edge| edge.cause == cause && edge.is_short() == is_short);
             let found = found.filter_map(|edge| all.binary_search_by_key(&edge.edge, |(ends, _)| *ends).ok());
             let ink = colours::cause(cause as usize, is_short);
-            strokes::lines(svg, mesh, found.map(|i| all[i]), PEN, &ink, heights, frame);
+            let pen = if cause == Cause::Boundary { KEPT_PEN } else { PEN };
+            strokes::lines(svg, mesh, found.map(|i| all[i]), pen, &ink, heights, frame);
         }
     }
 }
@@ -37,28 +43,27 @@ pub(super) fn legend_height(frame: &Frame) -> f64 {
 /// The causes with their colours and shares, under the picture.
 pub(super) fn legend(svg: &mut String, unmet: &Unmet, frame: &Frame) {
     let [width, top] = frame.size();
-    let (unit, row) = (UNIT * width, LEGEND * width / 3.3);
+    let unit = UNIT * width;
+    let place = |column: usize, row: usize| {
+        [(COLUMNS[0] + COLUMNS[1] * column as f64) * width, top + (0.65 + row as f64) * ROW * width]
+    };
     let figures = unmet.figures();
     let mut words = PathData::default();
-    let title = format!("{:.1} % of all edges are not of unit length", 100.0 * figures.share);
-    letters::write(&mut words, &title, [0.02 * width, top + 0.55 * row], unit, frame);
+    let title = format!("{:.1} % of all edges are not of unit length in the metric", 100.0 * figures.share);
+    letters::write(&mut words, &title, place(0, 0), unit, frame);
     for (column, (cause, found)) in figures.by_cause.into_iter().enumerate() {
-        let left = (0.02 + 0.245 * column as f64) * width;
-        let rows = [("too short", found.short, true), ("too long", found.long, false)];
-        let share = 100.0 * found.share;
-        letters::write(&mut words, &format!("{}: {share:.1} %", cause.name()), [left, top + 1.4 * row], unit, frame);
-        let mut at = left;
-        for (what, count, is_short) in rows {
-            let share = 100.0 * share_of(count, found);
-            let y = top + 2.3 * row;
-            let swatch = [[at, y - 2.0 * unit], [at + 14.0 * unit, y - 2.0 * unit]].map(|p| frame.quanta_at(p));
+        letters::write(&mut words, &format!("{}:", cause.name()), place(column, 1), unit, frame);
+        for (row, is_short) in [(2, true), (3, false)] {
+            let [x, y] = place(column, row);
+            let swatch = [x, x + 12.0 * unit].map(|x| frame.quanta_at([x, y - 2.0 * unit]));
+            let (ink, thick) = (colours::cause(cause as usize, is_short), frame.quanta(2.4 * unit));
             let mut line = PathData::default();
             line.polyline(&swatch, false);
-            let (ink, thick) = (colours::cause(cause as usize, is_short), frame.quanta(2.6 * unit));
-            let _ = writeln!(svg, r#"<path fill="none" stroke="{ink}" stroke-width="{thick:.1}" d="{}"/>"#, line.text());
-            let says = format!("{share:.1} % {what}");
-            letters::write(&mut words, &says, [at + 17.0 * unit, y], unit, frame);
-            at += 0.12 * width;
+            let _ =
+                writeln!(svg, r#"<path fill="none" stroke="{ink}" stroke-width="{thick:.1}" d="{}"/>"#, line.text());
+            let (count, what) = if is_short { (found.short, "too short") } else { (found.long, "too long") };
+            let says = format!("{:.1} % {what}", 100.0 * share_of(count, found));
+            letters::write(&mut words, &says, [x + 16.0 * unit, y], unit, frame);
         }
     }
     let (ink, thick) = (colours::TEXT, frame.quanta(0.75 * unit));

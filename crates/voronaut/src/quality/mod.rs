@@ -28,7 +28,7 @@ pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Wors
 pub use position::Position;
 pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
 pub use surface_quality::surface_quality;
-pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet, zz};
+pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet};
 pub use validity::{Fault, Validity, check, validity};
 
 pub(crate) use edges::Edges;

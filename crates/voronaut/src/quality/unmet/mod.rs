@@ -40,9 +40,9 @@ pub enum Cause {
     /// There are too few vertices around for this metric, or too many: edges are too long, or too short, all around by much
     /// the same factor, which is the greater part of the edge's own; divided by it the edge would be of unit length.
     Count,
-    /// The metric turns or grows so fast that straight edges cannot have unit length around the edge's middle, at any number of
-    /// vertices for this metric: wherever six unit triangles of the tensor there are laid around it, one of their twelve edges
-    /// is no unit edge of the metric as it varies. Or the edge is long, and the greater part of that is saved by bending it.
+    /// The metric turns or grows so fast that straight edges cannot honour it there, with any vertices: no unit triangle of the
+    /// tensor at the edge's middle, laid around it (six ways are tried), has three straight edges that are of unit length in
+    /// the metric as it varies. Or the edge is long, and bending it would save the greater part of that.
     Turning,
     /// None of these: how vertices happen to be packed, such as a vertex of five or seven edges, or one that relaxation has
     /// not brought to its place.
@@ -176,25 +176,6 @@ pub fn surface_unmet(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric)
     };
     let length = |ends: [u32; 2]| field.length(ends.map(|v| mesh.position(v)));
     find(mesh, FeatureOptions::DEFAULT_ANGLE.to_radians(), length, around, Position::from)
-}
-
-/// ZZ debug
-pub fn zz(mesh: &Mesh, metric: &dyn MetricField) -> [usize; 4] {
-    let edges = Edges::of(&mesh.triangles);
-    let mut n = [0; 4];
-    for (ends, _) in edges.iter() {
-        let [a, b] = ends.map(|v| mesh.point(v));
-        let m = a.midpoint(b);
-        let f = |p: Point| metric.at(m + (p - Point::default()));
-        let ok = is_unit(edge_length([a, b], metric).unwrap());
-        let h = straight::fails(&f);
-        let t = straight::fails1(&f);
-        if ok { n[0] += 1 }
-        if ok && h { n[1] += 1 }
-        if ok && t { n[2] += 1 }
-        if !ok && t { n[3] += 1 }
-    }
-    n
 }
 
 /// What the metric is around the middle of an edge, which lies at the origin.
