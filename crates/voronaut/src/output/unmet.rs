@@ -47,6 +47,9 @@ pub(super) fn legend(svg: &mut String, unmet: &Unmet, frame: &Frame) {
     let place = |column: usize, row: usize| {
         [(COLUMNS[0] + COLUMNS[1] * column as f64) * width, top + (0.65 + row as f64) * ROW * width]
     };
+    // A window shows a part only: what lies below it is covered.
+    let [y, w, h] = [top, width, legend_height(frame)].map(|pixels| frame.quanta(pixels).round());
+    let _ = writeln!(svg, "<rect y=\"{y}\" width=\"{w}\" height=\"{h}\" fill=\"#fff\"/>");
     let figures = unmet.figures();
     let mut words = PathData::default();
     let title = format!("{:.1} % of all edges are not of unit length in the metric", 100.0 * figures.share);
@@ -74,4 +77,39 @@ pub(super) fn legend(svg: &mut String, unmet: &Unmet, frame: &Frame) {
 /// A count of a cause's edges as a share of all edges of the mesh.
 fn share_of(count: usize, found: CauseFigures) -> f64 {
     if found.count > 0 { found.share * count as f64 / found.count as f64 } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Layers, Picture, svg_with};
+    use super::*;
+    use crate::geometry::{Point, Tensor};
+    use crate::quality::{UnmetEdge, grid, unmet};
+
+    /// How many paths have the colour of each cause, for what is too short and too long: one is the legend's.
+    fn paths(found: &Unmet) -> [[usize; 2]; 4] {
+        let layers = Layers { unmet: Some(found), ..Layers::default() };
+        let text = svg_with(&grid(4, 4), None, &Picture::default(), &layers).unwrap();
+        assert!(text.ends_with("</svg>\n") && !text.contains("NaN"));
+        let group = |cause: usize, is_short: bool| {
+            let start = format!("<g fill=\"none\" stroke=\"{}\"", colours::cause(cause, is_short));
+            text.split(&start).skip(1).map(|rest| rest.split("</g>").next().unwrap().matches("<path").count()).sum()
+        };
+        [0, 1, 2, 3].map(|cause| [true, false].map(|is_short| group(cause, is_short)))
+    }
+
+    #[test]
+    fn edges_have_the_colour_of_their_cause() {
+        let none = Unmet::default();
+        assert_eq!(paths(&none), [[0; 2]; 4]);
+        let fine = unmet(&grid(4, 4), &|_: Point| Tensor::isotropic(0.5)).unwrap();
+        assert_eq!(paths(&fine), [[0, 0], [0, 1], [0, 0], [0, 0]]);
+        let mut one = fine.clone();
+        one.edges.truncate(1);
+        one.edges[0] = UnmetEdge { cause: Cause::Turning, length: 0.1, ..one.edges[0] };
+        assert_eq!(paths(&one), [[0, 0], [0, 0], [1, 0], [0, 0]]);
+        // No edge of this mesh.
+        one.edges[0].edge = [0, 99];
+        assert_eq!(paths(&one), [[0; 2]; 4]);
+    }
 }
