@@ -411,6 +411,8 @@ pub(crate) enum Show {
     Triangles,
     /// Triangles by their power protection: blue where it is less than asked for, pale where there is much
     Protection,
+    /// Edges that are not of unit length, coloured by why that is, with a legend: dark where too short, light where too long
+    Unmet,
     /// Cells by the factor by which they miss the conditions of the certificate (`dual`): green where they hold
     Certificate,
 }

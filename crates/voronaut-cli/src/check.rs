@@ -15,6 +15,10 @@ use voronaut::output::Report;
 use voronaut::output::report::Strayed;
 use voronaut::quality::{fidelity, metric_quality, surface_fidelity, surface_quality, validity};
 use voronaut::recipe::{self, GradedAt};
+use voronaut::quality::{
+    Unmet, fidelity, metric_quality, surface_fidelity, surface_quality, surface_unmet, unmet, validity,
+};
+use voronaut::recipe;
 use voronaut::surface::{self, Given, Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 
@@ -22,10 +26,7 @@ use voronaut::{Error, Result};
 pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     let start = Instant::now();
     files::demand_writable(None, None, &args.outputs)?;
-    if Drawn::is_wanted(&args.outputs) || args.outputs.show.contains(&Show::Protection) {
-        let what = "a picture of cells of a mesh that is only checked".into();
-        return Err(Error::Unsupported { what, help: "give its vertices to voronaut dual as seeds".into() });
-    }
+    demand_drawable(args)?;
     files::set_threads(&args.run)?;
     let mesh = surface::read_mesh(&args.mesh.to_string_lossy())?;
     let found = validity(&mesh);
@@ -56,6 +57,20 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     Ok(())
 }
 
+/// Refuses pictures of what a mesh that is only checked does not have.
+fn demand_drawable(args: &CheckArgs) -> Result<()> {
+    let (what, help) = match () {
+        () if Drawn::is_wanted(&args.outputs) || args.outputs.show.contains(&Show::Protection) => {
+            ("a picture of cells of a mesh that is only checked", "give its vertices to voronaut dual as seeds")
+        }
+        () if args.metric.is_none() && args.outputs.show.contains(&Show::Unmet) => {
+            ("a picture of where a metric is not met, without a metric", "give the --metric")
+        }
+        () => return Ok(()),
+    };
+    Err(Error::Unsupported { what: what.into(), help: help.into() })
+}
+
 /// Measures a planar mesh and writes what was found.
 fn in_plane(
     args: &CheckArgs,
@@ -73,9 +88,12 @@ fn in_plane(
         report = report.with_quality(&metric_quality(mesh, metric.as_ref())?);
         report.histograms = files::histograms(&args.outputs, mesh, metric.as_ref())?;
     }
+    let unmet = metric.as_ref().map(|metric| unmet(mesh, metric.as_ref())).transpose()?;
+    report.unmet = unmet.as_ref().map(Unmet::figures);
     report.fidelity = domain.map(|domain| Strayed::Boundary(fidelity(mesh, &domain.boundary())));
     report.seconds.total = start.elapsed().as_secs_f64();
-    files::write(&MeshFile::None, &args.outputs, mesh, metric.as_deref(), &report, &Drawn::default())?;
+    let drawn = Drawn::default().with_unmet(&args.outputs, unmet);
+    files::write(&MeshFile::None, &args.outputs, mesh, metric.as_deref(), &report, &drawn)?;
     Ok(report)
 }
 
@@ -103,6 +121,7 @@ fn on_surface(
         let field = metric::on_surface(text, input, &args.metric_choices)?;
         let scaled = Scaled { field: field.as_ref(), factor: args.metric_scale.unwrap_or(1.0) };
         report = report.with_quality(&surface_quality(mesh, &input.surface, &scaled)?);
+        report.unmet = Some(surface_unmet(mesh, &input.surface, &scaled)?.figures());
     }
     report.seconds.total = start.elapsed().as_secs_f64();
     files::write_report(&args.outputs, &report)?;

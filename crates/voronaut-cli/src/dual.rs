@@ -29,6 +29,10 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs)?;
     args.geodesic.demand_diagrams()?;
     demand_geodesics(args)?;
+    if args.outputs.show.contains(&Show::Unmet) {
+        let what = "a picture of where a metric is not met by seeds that are given".into();
+        return Err(Error::Unsupported { what, help: "give the mesh of the dual to voronaut check".into() });
+    }
     files::set_threads(&args.run)?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;

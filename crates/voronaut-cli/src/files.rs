@@ -10,7 +10,7 @@ use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::net::Net;
 use voronaut::output::{self, Format, Layers, Picture, PictureFormat, Protection, Report};
-use voronaut::quality::{self, Histograms};
+use voronaut::quality::{self, Histograms, Unmet};
 use voronaut::realisation::{Grid, Realisation};
 use voronaut::{Error, Result};
 
@@ -45,6 +45,7 @@ pub(crate) struct Drawn {
     grids: Vec<Vec<Point>>,
     protection: Option<Protection>,
     factors: Option<BTreeMap<u32, f64>>,
+    unmet: Option<Unmet>,
 }
 
 impl Drawn {
@@ -74,6 +75,12 @@ impl Drawn {
     pub(crate) fn with_certificate(mut self, outputs: &Outputs, certificate: Option<&Certificate>) -> Self {
         let certificate = certificate.filter(|_| outputs.show.contains(&Show::Certificate));
         self.factors = certificate.map(|found| found.cells.iter().map(|cell| (cell.seed, cell.factor)).collect());
+        self
+    }
+
+    /// With the edges that are not of unit length, if the picture shows them.
+    pub(crate) fn with_unmet(mut self, outputs: &Outputs, unmet: Option<Unmet>) -> Self {
+        self.unmet = unmet.filter(|_| outputs.show.contains(&Show::Unmet));
         self
     }
 
@@ -117,6 +124,7 @@ impl Drawn {
             values: None,
             grids: &self.grids,
             factors: self.factors.as_ref(),
+            unmet: self.unmet.as_ref(),
         }
     }
 }
@@ -174,7 +182,7 @@ pub(crate) fn set_threads(run: &Run) -> Result<()> {
 fn draw(outputs: &Outputs, mesh: &Mesh, metric: Option<&dyn MetricField>, drawn: &Drawn) -> Result<String> {
     let shows = |what| outputs.show.contains(&what);
     let picture = Picture {
-        mesh: shows(Show::Mesh) || shows(Show::Protection),
+        mesh: shows(Show::Mesh) || shows(Show::Protection) || shows(Show::Unmet),
         ellipses: shows(Show::Ellipses),
         width: outputs.pixels,
         window: outputs.window,

@@ -18,6 +18,8 @@ use voronaut::output::report::{NetFigures, Seconds};
 use voronaut::quality::{metric_quality, validity};
 use voronaut::recipe::{self, Aim, Meshed};
 use voronaut::recipe::{self, GradedAt, Meshed};
+use voronaut::quality::{metric_quality, unmet, validity};
+use voronaut::recipe::{self, Meshed};
 use voronaut::surface::Given;
 use voronaut::{Error, Result};
 
@@ -52,10 +54,13 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let figures = metric_quality(&meshed.mesh, &scaled)?;
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     fill_in(&mut report, &meshed, options(args));
+    let unmet = unmet(&meshed.mesh, &scaled)?;
+    report.unmet = Some(unmet.figures());
     report.histograms = files::histograms(&args.outputs, &meshed.mesh, &scaled)?;
     report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     let drawn = drawn(args, &domain, &meshed.mesh, &scaled)?;
-    let drawn = drawn.with_net(&args.outputs, meshed.net.as_ref(), args.protection);
+    let drawn =
+        drawn.with_net(&args.outputs, meshed.net.as_ref(), args.protection).with_unmet(&args.outputs, Some(unmet));
     files::write(&MeshFile::Straight(&args.out), &args.outputs, &meshed.mesh, Some(&scaled), &report, &drawn)?;
     summary::print(&args.out.display().to_string(), &report, &args.run);
     Ok(())

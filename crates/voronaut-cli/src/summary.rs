@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use voronaut::output::Report;
 use voronaut::output::report::Strayed;
-use voronaut::quality::{Deviation, Farthest, Position, Spot, SurfaceFidelity};
+use voronaut::quality::{Cause, CauseFigures, Deviation, Farthest, Position, Spot, SurfaceFidelity};
 
 /// Prints the figures of a report unless told to be quiet, and its notes on stderr.
 pub(crate) fn print(title: &str, report: &Report, run: &Run) {
@@ -83,6 +83,9 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
         let share = 100.0 * lengths.unit_fraction;
         line("unit edges", format!("{share:.1} %   (metric length {min:.3} to {max:.3}, mean {mean:.3})"));
     }
+    for (i, says) in unmet_lines(report).into_iter().enumerate() {
+        line(if i == 0 { "not met" } else { "" }, says);
+    }
     if let (Some(quality), Some(angle)) = (report.quality, report.angle) {
         line("quality", format!("{:.3} mean, {:.3} min", quality.mean, quality.min));
         line("angles", format!("{:.1} deg mean of the smallest, {:.1} deg min", angle.mean_min, angle.min));
@@ -130,6 +133,25 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
     let memory = report.peak_memory_bytes.map(|bytes| format!(", {} MB at most", bytes / 1_000_000));
     line("time", format!("{:.2} s{}", report.seconds.total, memory.unwrap_or_default()));
     text
+}
+
+/// How many edges are not of unit length, and why; nothing where there are none.
+fn unmet_lines(report: &Report) -> Vec<String> {
+    let Some(unmet) = report.unmet.as_ref().filter(|unmet| unmet.edges > 0) else { return Vec::new() };
+    let causes = unmet.by_cause.iter().filter(|(_, found)| found.count > 0);
+    let shares = causes.clone().map(|(cause, found)| format!("{} {}", share(found.share), cause.name()));
+    let of_edges = format!("{} of edges: {}", share(unmet.share), shares.collect::<Vec<_>>().join(", "));
+    let far = |(_, found): &(&Cause, &CauseFigures)| found.worst.map_or(0.0, |worst| worst.length.ln().abs());
+    let worst = causes.max_by(|a, b| far(a).total_cmp(&far(b)));
+    let says = |(cause, found): (&Cause, &CauseFigures)| {
+        found.worst.map(|worst| format!("worst at {}: {:.3}, {}", position(worst.at), worst.length, cause.name()))
+    };
+    [Some(of_edges), worst.and_then(says)].into_iter().flatten().collect()
+}
+
+/// A share in per cent; never nothing of something.
+fn share(share: f64) -> String {
+    if share > 0.0 && share < 0.0005 { "< 0.1 %".into() } else { format!("{:.1} %", 100.0 * share) }
 }
 
 fn valid(report: &Report) -> String {

@@ -15,7 +15,7 @@ use voronaut::geodesic::Method;
 use voronaut::geometry::Point3;
 use voronaut::mesh::Mesh;
 use voronaut::output::{self, Report, Scene, Shade, Stroke, View, report};
-use voronaut::quality::{surface_quality, validity};
+use voronaut::quality::{surface_quality, surface_unmet, validity};
 use voronaut::recipe::{self, SeedDual};
 use voronaut::sampling;
 use voronaut::surface::{Input, Mended, Place};
@@ -38,6 +38,7 @@ pub(crate) fn mesh(args: &MeshArgs, input: Input, mended: &Mended, start: Instan
     let figures = surface_quality(&meshed.mesh, &input.surface, &scaled)?;
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     crate::mesh::fill_in(&mut report, &meshed, crate::mesh::options(args));
+    report.unmet = Some(surface_unmet(&meshed.mesh, &input.surface, &scaled)?.figures());
     report.notes.extend(mended.sentences());
     report.fidelity = meshed.fidelity.map(|found| report::Strayed::Surface(found.into()));
     report.seconds = report::Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };

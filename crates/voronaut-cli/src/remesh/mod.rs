@@ -16,7 +16,7 @@ use voronaut::domain::read_text;
 use voronaut::formats::sol::{self, Solution};
 use voronaut::output::report::{Seconds, Strayed};
 use voronaut::output::{self, Report};
-use voronaut::quality::{surface_quality, validity};
+use voronaut::quality::{surface_quality, surface_unmet, validity};
 use voronaut::recipe::{self, MeshOptions};
 use voronaut::surface::metric::{Sizes, Sizing};
 use voronaut::surface::{Given, Input, Mended};
@@ -54,6 +54,7 @@ pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     let figures = surface_quality(&meshed.mesh, &input.surface, &scaled)?;
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     mesh::fill_in(&mut report, &meshed, as_used(args, &sizing, metric_file.as_deref()));
+    report.unmet = Some(surface_unmet(&meshed.mesh, &input.surface, &scaled)?.figures());
     report.notes.extend(mended.sentences());
     report.fidelity = meshed.fidelity.map(|found| Strayed::Surface(found.into()));
     report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };

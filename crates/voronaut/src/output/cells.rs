@@ -7,6 +7,7 @@ use super::protection::Protection;
 use super::simplify::simplify;
 use crate::diagram::{Cells, Outline};
 use crate::geometry::Point;
+use crate::quality::Unmet;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -38,6 +39,8 @@ pub struct Layers<'a> {
     pub grids: &'a [Vec<Point>],
     /// Cells by a factor, 1 where conditions just hold, instead of colours that differ; those without one are grey.
     pub factors: Option<&'a BTreeMap<u32, f64>>,
+    /// The edges that are not of unit length by cause, over a paler mesh, with a legend below it.
+    pub unmet: Option<&'a Unmet>,
 }
 
 /// The cells, coloured so that neighbours differ: one SVG path per colour and width of line.

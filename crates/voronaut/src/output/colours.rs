@@ -114,6 +114,15 @@ pub(super) fn quality_fill(quality: f64) -> String {
     oklch(0.985 - 0.335 * bad, 0.006 + 0.154 * bad, 85.0 - 55.0 * bad)
 }
 
+/// Hues (OKLCH) of causes, in their order, that differ for the colour-blind, too: magenta, blue, orange, green.
+const CAUSES: [f64; 4] = [0.0, 255.0, 55.0, 150.0];
+
+/// The ink of an edge that is too short, or too long, for the so-manieth cause.
+pub(super) fn cause(number: usize, is_short: bool) -> String {
+    let [lightness, chroma] = if is_short { [0.40, 0.13] } else { [0.70, 0.16] };
+    oklch(lightness, chroma, CAUSES[number % CAUSES.len()])
+}
+
 /// The factor by which conditions are missed from which on fills are as strong as can be.
 const FAR: f64 = 1e4;
 /// Levels of colour per power of ten.

@@ -7,6 +7,7 @@ mod ellipses;
 mod frame;
 mod histogram;
 mod image;
+mod letters;
 mod obj;
 mod palette;
 mod protection;
@@ -17,6 +18,7 @@ mod scene;
 mod simplify;
 mod strokes;
 mod svg;
+mod unmet;
 mod vtu;
 
 pub use atomic::{demand_directory, place, write};

@@ -8,7 +8,7 @@ use crate::geodesic::MarchCounters;
 use crate::net::Net;
 use crate::optimise::{Ending, Polished, Relaxed};
 use crate::quality::{
-    Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, SurfaceFidelity, Validity, Worst,
+    Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, SurfaceFidelity, UnmetFigures, Validity, Worst,
 };
 use crate::realisation::{self, Found, Realisation};
 use serde::ser::SerializeMap;
@@ -35,6 +35,8 @@ pub struct Report {
     pub angle: Option<Angles>,
     /// Where the metric is honoured least.
     pub worst: Option<Worst>,
+    /// The edges that are not of unit length, by cause.
+    pub unmet: Option<UnmetFigures>,
     /// How edge lengths and angles are distributed, with straight and with geodesic edges; only where asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub histograms: Option<Histograms>,
@@ -381,7 +383,7 @@ mod tests {
         report.dual = Some(Dual { min_margin: f64::NAN, ..Dual::default() });
         let value: Value = serde_json::from_str(&report.to_json()).unwrap();
         for key in "vertices triangles valid inverted non_manifold_edges duplicate_vertices euler area \
-                    metric_edge_length interior_edge_length quality angle canvas diagram dual relaxation metric_scale notes \
+                    metric_edge_length interior_edge_length quality angle unmet canvas diagram dual relaxation metric_scale notes \
                     seconds peak_memory_bytes version options"
             .split_whitespace()
         {

@@ -6,27 +6,50 @@ use crate::mesh::Mesh;
 use crate::quality::Edges;
 use std::fmt::Write;
 
-/// The widest line of an inner edge, in pixels.
-const WIDEST: f64 = 0.8;
-/// Width of a line as a share of the height of the flatter triangle at the edge.
-const SHARE: f64 = 0.085;
-/// Line widths: each class is 1/sqrt 2 of the one before.
-const CLASSES: usize = 11;
+/// How wide lines are that follow the local size.
+#[derive(Clone, Copy)]
+pub(super) struct Pen {
+    /// The widest line, in pixels.
+    pub(super) widest: f64,
+    /// Width of a line as a share of the height of the flatter triangle at the edge.
+    pub(super) share: f64,
+    /// The thinnest line, in pixels.
+    pub(super) thinnest: f64,
+}
+
+/// The lines of inner edges.
+const INNER: Pen = Pen { widest: 0.8, share: 0.085, thinnest: 0.025 };
 /// Width of boundary and interfaces, in pixels.
 const BOUNDARY_WIDTH: f64 = 1.3;
 
 /// One SVG path per class of line width: all edges between at least so many triangles; `heights` holds each triangle's
 /// least height in pixels.
 pub(super) fn edges_of(svg: &mut String, mesh: &Mesh, edges: &Edges, sides: usize, heights: &[f64], frame: &Frame) {
-    let mut classes = vec![PathData::default(); CLASSES];
-    for ([a, b], half_edges) in edges.iter().filter(|(_, half_edges)| half_edges.len() >= sides) {
+    let inner = edges.iter().filter(|(_, half_edges)| half_edges.len() >= sides);
+    lines(svg, mesh, inner, INNER, colours::EDGE, heights, frame);
+}
+
+/// The same of some edges, by a pen and in a colour. Widths come in classes, each 1/sqrt 2 of the one before.
+pub(super) fn lines<'a>(
+    svg: &mut String,
+    mesh: &Mesh,
+    edges: impl Iterator<Item = ([u32; 2], &'a [(u64, u32)])>,
+    pen: Pen,
+    ink: &str,
+    heights: &[f64],
+    frame: &Frame,
+) {
+    let class_of = |width: f64| (2.0 * (pen.widest / width).log2()).round();
+    let last = class_of(pen.thinnest);
+    let mut classes = vec![PathData::default(); last as usize + 1];
+    for ([a, b], half_edges) in edges {
         let height = half_edges.iter().map(|&(_, h)| heights[h as usize / 3]).fold(f64::INFINITY, f64::min);
-        let class = (2.0 * (WIDEST / (SHARE * height)).log2()).round().clamp(0.0, (CLASSES - 1) as f64);
+        let class = class_of(pen.share * height).clamp(0.0, last);
         classes[class as usize].polyline(&[a, b].map(|v| frame.place(mesh.point(v))), false);
     }
-    let _ = writeln!(svg, r#"<g fill="none" stroke="{}" stroke-linecap="round">"#, colours::EDGE);
+    let _ = writeln!(svg, r#"<g fill="none" stroke="{ink}" stroke-linecap="round">"#);
     for (class, path) in classes.iter().enumerate().filter(|(_, path)| !path.text().is_empty()) {
-        let width = frame.quanta(WIDEST * 0.5_f64.powf(0.5 * class as f64));
+        let width = frame.quanta(pen.widest * 0.5_f64.powf(0.5 * class as f64));
         let _ = writeln!(svg, r#"<path stroke-width="{width:.1}" d="{}"/>"#, path.text());
     }
     svg.push_str("</g>\n");

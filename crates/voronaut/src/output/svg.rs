@@ -3,7 +3,7 @@
 use super::cells::{self, Layers};
 use super::colours::Tint;
 use super::frame::{Frame, PathData};
-use super::{colours, ellipses, strokes};
+use super::{colours, ellipses, strokes, unmet};
 use crate::diagram::Cells;
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Point};
@@ -70,7 +70,7 @@ pub fn svg_with(
     let frame = frame(mesh, &triangles, &heights, *picture, layers.cells);
     let pixels: Vec<f64> = heights.iter().map(|&height| frame.pixels(height)).collect();
 
-    let mut text = head(&frame);
+    let mut text = head(&frame, layers.unmet.map_or(0.0, |_| unmet::legend_height(&frame)));
     if let Some(found) = layers.cells {
         let has_lines = picture.mesh || picture.ellipses || !layers.geodesics.is_empty();
         let tint = if has_lines { Tint::Soft } else { Tint::Full };
@@ -84,7 +84,7 @@ pub fn svg_with(
         let fills = match (layers.protection, layers.values) {
             (Some(protection), _) => triangles.iter().map(|&t| protection.fill(t)).collect(),
             (None, Some(values)) => bands(&triangles, values),
-            (None, None) if picture.mesh => classes(mesh, &triangles, &labels, picture.shade),
+            (None, None) if picture.mesh && layers.unmet.is_none() => classes(mesh, &triangles, &labels, picture.shade),
             (None, None) => one_class(),
         };
         fill(&mut text, mesh, &frame, &triangles, &fills);
@@ -94,7 +94,10 @@ pub fn svg_with(
     }
     if picture.mesh {
         let sides = if layers.cells.is_some() { 1 } else { 2 };
+        let opacity = layers.unmet.map_or(1.0, |_| unmet::PALE);
+        let _ = writeln!(text, r#"<g stroke-opacity="{opacity}">"#);
         strokes::edges_of(&mut text, mesh, &edges, sides, &pixels, &frame);
+        text.push_str("</g>\n");
     }
     if picture.ellipses {
         let is_faint = picture.mesh || layers.cells.is_some();
@@ -112,6 +115,10 @@ pub fn svg_with(
         cells::border(&mut text, found, &frame);
     } else {
         strokes::boundary(&mut text, mesh, &edges, &frame);
+    }
+    if let Some(found) = layers.unmet {
+        unmet::edges(&mut text, mesh, &edges, found, &pixels, &frame);
+        unmet::legend(&mut text, found, &frame);
     }
     text.push_str("</svg>\n");
     Ok(text)
@@ -148,8 +155,10 @@ fn drawable(mesh: &Mesh) -> (Vec<[u32; 3]>, Vec<i32>) {
     mesh.triangles.iter().copied().zip(labels).filter(|(triangle, _)| triangle.iter().all(exists)).unzip()
 }
 
-fn head(frame: &Frame) -> String {
+/// The paper: a frame, and so many pixels below it.
+fn head(frame: &Frame, below: f64) -> String {
     let [width, height] = frame.size();
+    let height = height + below;
     let [w, h] = [width, height].map(|side| frame.quanta(side).round());
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {w} {h}\">\n\

@@ -18,6 +18,7 @@ mod surface_fidelity;
 mod surface_quality;
 #[cfg(test)]
 mod test_meshes;
+mod unmet;
 mod validity;
 
 pub use crossings::{Crossing, crossing_edges, crossings};
@@ -29,6 +30,7 @@ pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Wors
 pub use position::Position;
 pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
 pub use surface_quality::surface_quality;
+pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet};
 pub use validity::{Fault, Validity, check, validity};
 
 pub(crate) use edges::Edges;

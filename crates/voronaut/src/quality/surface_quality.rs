@@ -5,6 +5,7 @@ use super::position::Position;
 use crate::error::Result;
 use crate::geometry::{Point, Point3, TangentPlane, Tensor, Tensor3, Vector, Vector3};
 use crate::mesh::Mesh;
+use crate::metric::MetricField;
 use crate::surface::metric::{SurfaceMetric, check_tensor3};
 use crate::surface::{Nearest, Surface};
 
@@ -21,7 +22,7 @@ use crate::surface::{Nearest, Surface};
 /// are not finite; [`Error::Metric`](crate::Error::Metric) where a tensor is not positive definite.
 pub fn surface_quality(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric) -> Result<MetricQuality> {
     demand_vertices(mesh)?;
-    let field = Field { surface, nearest: Nearest::new(surface), metric };
+    let field = Field::new(surface, metric);
     let mut used = vec![false; mesh.points.len()];
     mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
     let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
@@ -36,7 +37,7 @@ pub fn surface_quality(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetri
 }
 
 /// A metric field, and where to look it up.
-struct Field<'a> {
+pub(super) struct Field<'a> {
     surface: &'a Surface,
     nearest: Nearest,
     metric: &'a dyn SurfaceMetric,
@@ -49,7 +50,11 @@ struct Seen {
     normal: Vector3,
 }
 
-impl Field<'_> {
+impl<'a> Field<'a> {
+    pub(super) fn new(surface: &'a Surface, metric: &'a dyn SurfaceMetric) -> Self {
+        Self { surface, nearest: Nearest::new(surface), metric }
+    }
+
     /// What the metric is at the closest place.
     fn at(&self, p: Point3) -> Result<Seen> {
         let not_finite = || fault("a position is not finite", &p.to_string());
@@ -59,8 +64,21 @@ impl Field<'_> {
         Ok(Seen { tensor, normal: place.normal })
     }
 
+    /// The metric around a place, as the tangent plane there sees it, and a vector in it, of its own length; `None` where the
+    /// vector has no tangent part. Where the metric is none, tensors are not finite.
+    pub(super) fn around(&self, p: Point3, edge: Vector3) -> Option<(impl MetricField + '_, Vector)> {
+        let plane = TangentPlane::new(self.at(p).ok()?.normal);
+        let tangent = edge - plane.normal * edge.dot(plane.normal);
+        let flat = plane.flatten(tangent.unit()? * edge.norm());
+        let at = move |q: Point| {
+            let seen = self.at(p + plane.lift(q - Point::default()));
+            seen.map_or(Tensor::isotropic(f64::NAN), |seen| seen.in_plane(&plane))
+        };
+        Some((at, flat))
+    }
+
     /// The length of a straight edge.
-    fn length(&self, [a, b]: [Point3; 2]) -> Result<f64> {
+    pub(super) fn length(&self, [a, b]: [Point3; 2]) -> Result<f64> {
         let part = |&(t, weight): &(f64, f64)| Ok(weight * self.at(a.lerp(b, t))?.length(b - a));
         GAUSS.iter().map(part).sum()
     }

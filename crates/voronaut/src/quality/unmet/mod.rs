@@ -1,0 +1,223 @@
+//! Where the metric was not met, and why: the edges of a mesh that are no unit edges, each with its cause.
+
+mod density;
+mod forced;
+mod straight;
+#[cfg(test)]
+mod tests;
+
+use super::edges::Edges;
+use super::metric_quality::{collect, demand_planar, demand_vertices, edge_length};
+use super::position::{Position, middle};
+use super::surface_quality::Field;
+use crate::error::Result;
+use crate::geometry::{Point, Point3, Vector};
+use crate::mesh::Mesh;
+use crate::metric::MetricField;
+use crate::surface::metric::SurfaceMetric;
+use crate::surface::{FeatureOptions, Surface};
+use density::Density;
+use forced::Forced;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+
+/// Half the logarithm of 2: unit edges have metric lengths whose logarithms are no larger than this.
+const RANGE: f64 = 0.5 * std::f64::consts::LN_2;
+
+/// A planar curve that turns by more than this (radians) in a vertex has a corner there: less is rounding.
+const STRAIGHT: f64 = 1e-6;
+
+/// Why an edge is not of unit length: the first of these that holds of it, but that shortness across the domain comes after
+/// the count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Cause {
+    /// What has to be kept leaves no choice: the edge is required; or it is short, and joins two corners along a border or a
+    /// feature, or two places of borders and features across the domain (a narrow channel, a sharp corner); or it ends in a
+    /// vertex of such an edge that lies on a border or a feature.
+    Boundary,
+    /// There are too few vertices around for this metric, or too many: edges are too long, or too short, all around by much
+    /// the same factor, which is the greater part of the edge's own; divided by it the edge would be of unit length.
+    Count,
+    /// The metric turns or grows so fast that straight edges cannot honour it there, with any vertices: no unit triangle of the
+    /// tensor at the edge's middle, laid around it (six ways are tried), has three straight edges that are of unit length in
+    /// the metric as it varies. Or the edge is long, and bending it would save the greater part of that.
+    Turning,
+    /// None of these: how vertices happen to be packed, such as a vertex of five or seven edges, or one that relaxation has
+    /// not brought to its place.
+    Irregular,
+}
+
+impl Cause {
+    /// All, in order.
+    pub const ALL: [Cause; 4] = [Cause::Boundary, Cause::Count, Cause::Turning, Cause::Irregular];
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Cause::Boundary => "boundary",
+            Cause::Count => "count",
+            Cause::Turning => "turning metric",
+            Cause::Irregular => "irregular",
+        }
+    }
+}
+
+/// An edge whose metric length is outside [1/sqrt 2, sqrt 2].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnmetEdge {
+    /// Its vertices, the smaller first.
+    pub edge: [u32; 2],
+    /// Its metric length, as in [`EdgeLengths`](super::EdgeLengths).
+    pub length: f64,
+    /// Why.
+    pub cause: Cause,
+    /// Its middle.
+    pub at: Position,
+}
+
+impl UnmetEdge {
+    /// Whether it is too short; otherwise it is too long.
+    pub fn is_short(&self) -> bool {
+        self.length < 1.0
+    }
+}
+
+/// The edges of a mesh that are not of unit length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Unmet {
+    /// Those edges, by their vertices.
+    pub edges: Vec<UnmetEdge>,
+    /// How many edges the mesh has.
+    pub of: usize,
+}
+
+/// How many edges are not of unit length, and why.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct UnmetFigures {
+    /// How many.
+    pub edges: usize,
+    /// The same as a share of all edges.
+    pub share: f64,
+    /// The same for each cause; every cause is there.
+    pub by_cause: BTreeMap<Cause, CauseFigures>,
+}
+
+/// The edges of one cause.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct CauseFigures {
+    /// How many.
+    pub count: usize,
+    /// The same as a share of all edges.
+    pub share: f64,
+    /// Those that are too short.
+    pub short: usize,
+    /// Those that are too long.
+    pub long: usize,
+    /// The one whose length is farthest from 1, by its logarithm.
+    pub worst: Option<WorstEdge>,
+}
+
+/// An edge to look at.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct WorstEdge {
+    /// Its metric length.
+    pub length: f64,
+    /// Its middle.
+    pub at: Position,
+}
+
+impl Unmet {
+    /// The figures of these edges.
+    pub fn figures(&self) -> UnmetFigures {
+        let share = |count: usize| if self.of > 0 { count as f64 / self.of as f64 } else { 0.0 };
+        let of_cause = |cause: Cause| {
+            let all: Vec<&UnmetEdge> = self.edges.iter().filter(|edge| edge.cause == cause).collect();
+            let short = all.iter().filter(|edge| edge.is_short()).count();
+            let far = |edge: &UnmetEdge| edge.length.ln().abs();
+            let worst = all.iter().copied().reduce(|worst, edge| if far(edge) > far(worst) { edge } else { worst });
+            let worst = worst.map(|edge| WorstEdge { length: edge.length, at: edge.at });
+            (cause, CauseFigures { count: all.len(), share: share(all.len()), short, long: all.len() - short, worst })
+        };
+        let edges = self.edges.len();
+        UnmetFigures { edges, share: share(edges), by_cause: Cause::ALL.into_iter().map(of_cause).collect() }
+    }
+}
+
+/// Finds the edges of a planar mesh that are not of unit length in a metric, and why, in parallel; the same bits for any number
+/// of threads. Corners of the mesh's borders and labelled edges are those in its lists, and wherever these edges end, fork,
+/// turn, or change their label.
+///
+/// # Errors
+/// As [`metric_quality`](super::metric_quality), but that a mesh without triangles has no such edges.
+pub fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
+    demand_planar(mesh)?;
+    let around = |ends: [u32; 2]| {
+        let [a, b] = ends.map(|v| mesh.point(v));
+        let (middle, half) = (a.midpoint(b), (b - a) * 0.5);
+        Some(Around { field: Box::new(move |p: Point| metric.at(middle + (p - Point::default()))), half })
+    };
+    find(mesh, STRAIGHT, |ends| edge_length(ends.map(|v| mesh.point(v)), metric), around, Position::in_plane)
+}
+
+/// The same of the mesh of a surface in a metric on it, see [`surface_quality`](super::surface_quality()). Features turn in a
+/// corner where they turn by more than [`FeatureOptions::DEFAULT_ANGLE`], for curves of a surface are curved.
+///
+/// # Errors
+/// As [`surface_quality`](super::surface_quality()), but that a mesh without triangles has no such edges.
+pub fn surface_unmet(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric) -> Result<Unmet> {
+    demand_vertices(mesh)?;
+    let field = Field::new(surface, metric);
+    let around = |ends: [u32; 2]| {
+        let [a, b] = ends.map(|v| mesh.position(v));
+        let (metric, edge) = field.around(a.lerp(b, 0.5), b - a)?;
+        Some(Around { field: Box::new(metric), half: edge * 0.5 })
+    };
+    let length = |ends: [u32; 2]| field.length(ends.map(|v| mesh.position(v)));
+    find(mesh, FeatureOptions::DEFAULT_ANGLE.to_radians(), length, around, Position::from)
+}
+
+/// What the metric is around the middle of an edge, which lies at the origin.
+pub(super) struct Around<'a> {
+    /// The metric in a plane.
+    pub(super) field: Box<dyn MetricField + 'a>,
+    /// From the middle to the edge's second end.
+    pub(super) half: Vector,
+}
+
+fn find<'a>(
+    mesh: &Mesh,
+    corner: f64,
+    length: impl Fn([u32; 2]) -> Result<f64> + Sync + Send,
+    around: impl Fn([u32; 2]) -> Option<Around<'a>> + Sync + Send,
+    position: impl Fn(Point3) -> Position + Sync,
+) -> Result<Unmet> {
+    let edges = Edges::of(&mesh.triangles);
+    let ends: Vec<[u32; 2]> = edges.iter().map(|(ends, _)| ends).collect();
+    let lengths = collect(&ends, |&ends| length(ends))?;
+    let forced = Forced::of(mesh, &edges, &lengths, corner);
+    let density = Density::of(mesh.points.len(), &ends, &lengths, |e| forced[e] == Forced::No);
+    let turns = |e: usize| {
+        let around = around(ends[e]);
+        around.is_some_and(|around| straight::fails(around.field.as_ref()) || straight::bends(&around, lengths[e]))
+    };
+    let cause = |e: usize| match () {
+        () if forced[e] == Forced::Kept => Cause::Boundary,
+        () if density.explains(e) => Cause::Count,
+        () if forced[e] == Forced::Across => Cause::Boundary,
+        () if turns(e) => Cause::Turning,
+        () => Cause::Irregular,
+    };
+    let edge = |e: usize| {
+        let at = position(middle(mesh, &ends[e]));
+        UnmetEdge { edge: ends[e], length: lengths[e], cause: cause(e), at }
+    };
+    let wrong: Vec<usize> = (0..ends.len()).filter(|&e| !is_unit(lengths[e])).collect();
+    Ok(Unmet { edges: wrong.into_par_iter().map(edge).collect(), of: ends.len() })
+}
+
+/// Whether a metric length is that of a unit edge.
+fn is_unit(length: f64) -> bool {
+    (FRAC_1_SQRT_2..=SQRT_2).contains(&length)
+}
