@@ -12,9 +12,9 @@ use voronaut::diagram;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Aabb, Point, Point3};
-use voronaut::metric::{Bounds, MOST_SWEEPS, Norm};
+use voronaut::metric::{Bounds, MOST_SWEEPS, Norm, Recovery};
 use voronaut::output::Picture;
-use voronaut::recipe::{Centroid, MeshOptions, Mesher, SMOOTH_METRIC, Seeding};
+use voronaut::recipe::{Centroid, MeshOptions, Mesher, MetricOptions, SMOOTH_METRIC, Seeding};
 use voronaut::surface::FeatureOptions;
 use voronaut::surface::RepairOptions;
 
@@ -329,6 +329,10 @@ pub(crate) struct MetricChoices {
     /// With hessian metrics: p of the L^p norm in which the error of linear interpolation is to be least: 1, 2, 4, ... or inf
     #[arg(long, value_name = "P", default_value_t = Norm::default())]
     pub(crate) norm: Norm,
+    /// With hessian:FILE.sol: how second derivatives are recovered, by a quadratic around each vertex (fit) or a double projection
+    /// (l2)
+    #[arg(long, value_name = "HOW", default_value_t = Recovery::default())]
+    pub(crate) recovery: Recovery,
     /// Greatest ratio of the two sizes at a point, at least 1
     #[arg(long, value_name = "RATIO", value_parser = positive)]
     a_max: Option<f64>,
@@ -504,6 +508,18 @@ const GIB: f64 = 1_073_741_824.0;
 impl MetricChoices {
     pub(crate) fn bounds(&self) -> Bounds {
         Bounds { h_min: self.h_min, h_max: self.h_max, a_max: self.a_max }
+    }
+
+    /// What is asked of a metric in the plane.
+    pub(crate) fn options(&self) -> MetricOptions {
+        MetricOptions {
+            bounds: self.bounds(),
+            norm: self.norm,
+            recovery: self.recovery,
+            smooth_metric: self.smooth_metric,
+            gradation: self.gradation,
+            background: self.background.clone(),
+        }
     }
 }
 

@@ -5,20 +5,17 @@ use crate::files::{Drawn, MeshFile};
 use crate::metric::{self, Scaled};
 use crate::{files, summary};
 use serde_json::json;
-use std::path::Path;
 use std::time::Instant;
 use voronaut::domain::{Domain, from_mesh};
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
-use voronaut::metric::{MetricField, MetricSpec};
+use voronaut::metric::MetricField;
 use voronaut::output::Report;
 use voronaut::output::report::Strayed;
-use voronaut::quality::{fidelity, metric_quality, surface_fidelity, surface_quality, validity};
-use voronaut::recipe::{self, GradedAt};
 use voronaut::quality::{
     Unmet, fidelity, metric_quality, surface_fidelity, surface_quality, surface_unmet, unmet, validity,
 };
-use voronaut::recipe;
+use voronaut::recipe::GradedAt;
 use voronaut::surface::{self, Given, Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 
@@ -142,12 +139,8 @@ fn demand_for_surfaces(args: &CheckArgs) -> Result<()> {
 
 /// The metric, times its factor. A `.sol` file belongs to the background mesh, else to the domain's, else to the mesh.
 fn planar_metric(args: &CheckArgs, text: &str, mesh: &Mesh, domain: Option<&Domain>) -> Result<Box<dyn MetricField>> {
-    let bounds = args.metric_choices.bounds();
-    bounds.check()?;
-    let spec = MetricSpec::parse(text)?;
-    let own_file = args.domain.as_deref().map_or(args.mesh.as_path(), Path::new);
-    let own = matches!(spec, MetricSpec::File(_)).then_some(own_file);
-    let background = args.metric_choices.background.as_deref().or(own);
+    let mesh_file = args.mesh.to_string_lossy();
+    let file = args.domain.as_deref().unwrap_or(&mesh_file);
     let own;
     let domain = if let Some(domain) = domain {
         domain
@@ -155,10 +148,7 @@ fn planar_metric(args: &CheckArgs, text: &str, mesh: &Mesh, domain: Option<&Doma
         own = Domain::new(&from_mesh(mesh)?)?;
         &own
     };
-    let metric = recipe::metric(&spec, domain, background, bounds, args.metric_choices.norm)?;
-    let metric = recipe::smooth_metric(metric, domain, background, args.metric_choices.smooth_metric)?;
     let scale = args.metric_scale.unwrap_or(1.0);
-    let gradation = args.metric_choices.gradation;
-    let metric = recipe::grade_metric(metric, domain, background, gradation, GradedAt::Scale(scale))?;
+    let metric = metric::in_plane(text, domain, file, &args.metric_choices, GradedAt::Scale(scale))?.field;
     Ok(Box::new(move |p: Point| metric.at(p) * scale))
 }

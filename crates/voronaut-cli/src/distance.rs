@@ -3,9 +3,8 @@
 mod on_surface;
 
 use crate::args::{Coordinates, DistanceArgs, Outputs};
-use crate::files;
+use crate::{files, metric};
 use serde_json::{Value, json};
-use std::path::Path;
 use std::time::Instant;
 use voronaut::canvas::{BYTES_PER_VERTEX, Canvas, CanvasFigures};
 use voronaut::diagram::{Distances, Ground};
@@ -13,9 +12,8 @@ use voronaut::domain::Domain;
 use voronaut::geodesic::Polyline;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
-use voronaut::metric::MetricSpec;
 use voronaut::output::{self, Layers, Picture, report};
-use voronaut::recipe::{self, GradedAt};
+use voronaut::recipe::GradedAt;
 use voronaut::surface::Given;
 use voronaut::{Error, Result};
 
@@ -58,13 +56,8 @@ struct Made {
 fn in_plane(args: &DistanceArgs, domain: &Domain, start: Instant) -> Result<Made> {
     let from = args.from.iter().map(|p| flat("--from", p)).collect::<Result<Vec<Point>>>()?;
     let to = args.to.iter().map(|p| flat("--to", p)).next().transpose()?;
-    let spec = MetricSpec::parse(&args.metric)?;
-    let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
-    let background = args.metric_choices.background.as_deref().or(own);
-    let metric = recipe::metric(&spec, domain, background, args.metric_choices.bounds(), args.metric_choices.norm)?;
-    let metric = recipe::smooth_metric(metric, domain, background, args.metric_choices.smooth_metric)?;
-    let gradation = args.metric_choices.gradation;
-    let metric = recipe::grade_metric(metric, domain, background, gradation, GradedAt::Scale(1.0))?;
+    let at = GradedAt::Scale(1.0);
+    let metric = metric::in_plane(&args.metric, domain, &args.domain, &args.metric_choices, at)?.field;
     let read = start.elapsed().as_secs_f64();
     let canvas = Canvas::new(args.canvas, domain, metric.as_ref(), args.canvas_size as usize)?;
     demand_inside(&from, to, &canvas)?;

@@ -3,9 +3,8 @@
 use crate::args::{CanvasSize, DualArgs, EdgesOut, Show};
 use crate::files::{Drawn, MeshFile};
 use crate::seeds::SeedFile;
-use crate::{certify, files, summary, surfaces};
+use crate::{certify, files, metric, summary, surfaces};
 use serde_json::json;
-use std::path::Path;
 use std::time::Instant;
 use voronaut::canvas::{self, Canvas};
 use voronaut::diagram::{Diagram, Kind, RESOLVE_ROUNDS, resolve};
@@ -13,7 +12,7 @@ use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::mesh::Mesh;
-use voronaut::metric::{MetricField, MetricSpec};
+use voronaut::metric::MetricField;
 use voronaut::output::{self, Report, report};
 use voronaut::quality::{crossing_edges, metric_quality, validity};
 use voronaut::realisation::Realisation;
@@ -41,13 +40,8 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
         Given::Surface(input) => return surfaces::dual(args, &input, &mended, start),
         Given::Plane(domain) => domain,
     };
-    let spec = MetricSpec::parse(&args.metric)?;
-    let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
-    let background = args.metric_choices.background.as_deref().or(own);
-    let metric = recipe::metric(&spec, &domain, background, bounds, args.metric_choices.norm)?;
-    let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
-    let gradation = args.metric_choices.gradation;
-    let metric = recipe::grade_metric(metric, &domain, background, gradation, GradedAt::Scale(1.0))?;
+    let at = GradedAt::Scale(1.0);
+    let metric = metric::in_plane(&args.metric, &domain, &args.domain, &args.metric_choices, at)?.field;
     let file = SeedFile::read(&args.seeds)?;
     let seeds = &file.seeds;
     let mut stages = Vec::new();

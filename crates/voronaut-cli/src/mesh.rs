@@ -3,23 +3,19 @@
 use crate::args::MeshArgs;
 use crate::files::{Drawn, MeshFile};
 use crate::progress::Bar;
-use crate::{files, summary, surfaces};
+use crate::{files, metric, summary, surfaces};
 use serde_json::{Value, json};
-use std::path::Path;
 use std::time::Instant;
 use voronaut::canvas::{Canvas, VERTICES_PER_SEED};
 use voronaut::diagram::Diagram;
 use voronaut::domain::Domain;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
-use voronaut::metric::{Bounds, MetricField, MetricSpec};
+use voronaut::metric::MetricField;
 use voronaut::output::Report;
 use voronaut::output::report::{NetFigures, Seconds};
-use voronaut::quality::{metric_quality, validity};
-use voronaut::recipe::{self, Aim, Meshed};
-use voronaut::recipe::{self, GradedAt, Meshed};
 use voronaut::quality::{metric_quality, unmet, validity};
-use voronaut::recipe::{self, Meshed};
+use voronaut::recipe::{self, Aim, GradedAt, Meshed, PlanarMetric};
 use voronaut::surface::Given;
 use voronaut::{Error, Result};
 
@@ -36,14 +32,10 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
         Given::Plane(domain) => domain,
     };
     demand_planar(args)?;
-    let spec = MetricSpec::parse(&args.metric)?;
-    let background = background(&spec, args);
-    let metric = recipe::metric(&spec, &domain, background, bounds, args.metric_choices.norm)?;
-    let metric = recipe::smooth_metric(metric, &domain, background, args.metric_choices.smooth_metric)?;
-    let function = recipe::function(&spec).filter(|_| bounds == Bounds::default());
-    let aim = function.as_deref().map(|function| Aim { function, norm: args.metric_choices.norm });
     let at = GradedAt::of(args.options().vertices, args.complexity);
-    let metric = recipe::grade_metric(metric, &domain, background, args.metric_choices.gradation, at)?;
+    let PlanarMetric { field: metric, function } =
+        metric::in_plane(&args.metric, &domain, &args.domain, &args.metric_choices, at)?;
+    let aim = function.as_deref().map(|function| Aim { function, norm: args.metric_choices.norm });
     let meshed = {
         let bar = Bar::new(args.run.quiet, args.run.verbose);
         recipe::mesh_for(&domain, metric.as_ref(), aim, &args.options(), &bar)?
@@ -84,12 +76,6 @@ fn demand_planar(args: &MeshArgs) -> Result<()> {
         return Err(Error::Unsupported { what, help: "leave out --fit: it is for surfaces".into() });
     }
     Ok(())
-}
-
-/// The mesh a `.sol` file belongs to: as told, or the domain's own file.
-fn background<'a>(spec: &MetricSpec, args: &'a MeshArgs) -> Option<&'a Path> {
-    let own = matches!(spec, MetricSpec::File(_)).then_some(Path::new(&args.domain));
-    args.metric_choices.background.as_deref().or(own)
 }
 
 /// A mesh of ours that is not valid is our fault, not the user's.

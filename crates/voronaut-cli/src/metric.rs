@@ -1,10 +1,25 @@
-//! Metrics on surfaces, from what is typed.
+//! Metrics from what is typed, in the plane and on surfaces.
 
 use crate::args::MetricChoices;
+use std::path::Path;
+use voronaut::domain::Domain;
 use voronaut::geometry::Tensor3;
+use voronaut::metric::MetricSpec;
+use voronaut::recipe::{self, GradedAt, PlanarMetric};
 use voronaut::surface::metric::{Spec, SurfaceMetric, field};
 use voronaut::surface::{Input, Place};
 use voronaut::{Error, Result};
+
+/// The metric in the plane that a text names. `own` is what the domain was read from; `at` the multiple in which edges have length one.
+pub(crate) fn in_plane(
+    text: &str,
+    domain: &Domain,
+    own: &str,
+    choices: &MetricChoices,
+    at: GradedAt,
+) -> Result<PlanarMetric> {
+    recipe::metric(&MetricSpec::parse(text)?, domain, Some(Path::new(own)), &choices.options(), at)
+}
 
 /// The metric on a surface that a text names, within limits.
 pub(crate) fn on_surface(text: &str, input: &Input, choices: &MetricChoices) -> Result<Box<dyn SurfaceMetric>> {

@@ -23,7 +23,7 @@ use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Aabb, Orientation, Point, orientation};
 use voronaut::mesh::Mesh;
-use voronaut::metric::{Bounds, MetricField, MetricSpec};
+use voronaut::metric::MetricField;
 use voronaut::net::Random;
 use voronaut::output::{self, Layers, Picture};
 use voronaut::progress::Silent;
@@ -55,7 +55,7 @@ impl Scene {
         let is_swirl = metric.starts_with("swirl");
         let shape = if is_swirl { "rect:-2,-2,2,2" } else { "rect:-1,-1,1,1" };
         let domain = Domain::read(shape)?;
-        let field = recipe::metric(&MetricSpec::parse(metric)?, &domain, None, Bounds::default())?;
+        let field = recipe::metric_named(metric, &domain)?;
         Ok(Self { name: metric.into(), is_swirl, domain, field })
     }
 

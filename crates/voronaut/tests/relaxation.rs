@@ -3,13 +3,12 @@
 use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor};
 use voronaut::mesh::Mesh;
-use voronaut::metric::{MetricField, MetricSpec};
+use voronaut::metric::MetricField;
 use voronaut::progress::Silent;
 use voronaut::recipe::{self, Centroid, MeshOptions, Meshed};
 
 fn field(text: &str, domain: &Domain) -> Box<dyn MetricField> {
-    let spec = MetricSpec::parse(text).unwrap();
-    recipe::metric(&spec, domain, None, voronaut::metric::Bounds::default()).unwrap()
+    recipe::metric_named(text, domain).unwrap()
 }
 
 fn relaxed(domain: &str, metric: &dyn MetricField, vertices: usize, lloyd: usize, centroid: Centroid) -> Meshed {

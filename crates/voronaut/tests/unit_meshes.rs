@@ -3,10 +3,10 @@
 use voronaut::domain::Domain;
 use voronaut::formats::medit;
 use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::{Bounds, MetricField, MetricSpec};
+use voronaut::metric::MetricField;
 use voronaut::progress::Silent;
 use voronaut::quality::{MetricQuality, check, metric_quality, validity};
-use voronaut::recipe::{MeshOptions, Meshed, mesh, metric};
+use voronaut::recipe::{MeshOptions, Meshed, mesh, metric_named};
 
 fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize) -> (Meshed, MetricQuality) {
     let options = MeshOptions { vertices: Some(vertices), ..MeshOptions::default() };
@@ -18,7 +18,7 @@ fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize) -> (Meshed,
 }
 
 fn named(spec: &str, domain: &Domain) -> Box<dyn MetricField> {
-    metric(&MetricSpec::parse(spec).unwrap(), domain, None, Bounds::default()).unwrap()
+    metric_named(spec, domain).unwrap()
 }
 
 #[test]

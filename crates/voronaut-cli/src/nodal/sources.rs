@@ -7,8 +7,8 @@ use voronaut::formats::sol::{self, SolutionValues};
 use voronaut::geometry::{Point3, Tensor};
 use voronaut::mesh::Mesh;
 use voronaut::metric::nodal::{Limit, Limits, Source, implied, isotropic};
-use voronaut::metric::{Bounds, Expression, MetricSpec, Recovery, Variables, recover_hessian};
-use voronaut::recipe;
+use voronaut::metric::{Expression, MetricSpec, Recovery, Variables, recover_hessian};
+use voronaut::recipe::{self, GradedAt, MetricOptions};
 use voronaut::{Error, Result};
 
 /// What a METRIC text says at the vertices.
@@ -24,8 +24,11 @@ pub(super) fn source(text: &str, mesh: &Mesh, args: &MetricArgs) -> Result<Sourc
     if let (MetricSpec::File(path), None) = (&spec, &args.background) {
         return Ok(Source::Metric(own(path, mesh)?));
     }
-    let background = matches!(spec, MetricSpec::File(_)).then_some(args.background.as_deref()).flatten();
-    let field = recipe::metric(&spec, &Domain::new(&from_mesh(mesh)?)?, background, Bounds::default())?;
+    let options = MetricOptions {
+        background: args.background.clone().filter(|_| matches!(spec, MetricSpec::File(_))),
+        ..MetricOptions::default()
+    };
+    let field = recipe::metric(&spec, &Domain::new(&from_mesh(mesh)?)?, None, &options, GradedAt::Scale(1.0))?.field;
     Ok(Source::Metric((0..mesh.points.len() as u32).map(|v| field.at(mesh.point(v))).collect()))
 }
 

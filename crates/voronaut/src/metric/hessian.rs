@@ -1,13 +1,11 @@
 //! The metric of a function's second derivatives, known at every point.
 
 use super::complexity::start;
+use super::nodal::absolute;
+use super::recovered::FLOOR;
 use super::{Expression, MetricField, Norm};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3, Tensor};
-
-/// The floor of absolute eigenvalues, as a share of the mean over the domain of the greater one: where a function is linear in
-/// some direction, longer edges would gain nothing, and make a metric that no straight edges can honour.
-const FLOOR: f64 = 1e-4;
 
 /// The metric in which a unit mesh has the least L^p error of linear interpolation of a function (Loseille and Alauzet 2011): its
 /// Hessian's absolute value ([`Norm::weighted`]), from exact derivatives. It is defined up to a factor: scale it to a number of
@@ -38,25 +36,18 @@ impl Hessian {
             }
             (sum, count) = (sum + greatest, count + 1.0);
         }
-        let share = std::env::var("FLOOR").ok().and_then(|t| t.parse().ok()).unwrap_or(FLOOR);
-        let floor = share * sum / count;
+        let floor = FLOOR * sum / count;
         if floor > 0.0 {
             return Ok(Self { function, norm, floor });
         }
         let help = "its interpolation is exact on any mesh: use another metric, such as uniform";
         Err(Error::metric("the function's second derivatives vanish everywhere", "the whole domain", help))
     }
-
-    /// The function.
-    pub fn function(&self) -> &Expression {
-        &self.function
-    }
 }
 
 impl MetricField for Hessian {
     fn at(&self, p: Point) -> Tensor {
-        let absolute = |eigenvalue: f64| eigenvalue.abs().max(self.floor);
-        self.norm.weighted(second_derivatives(&self.function, p).map_eigenvalues(absolute))
+        self.norm.weighted(absolute(second_derivatives(&self.function, p), self.floor))
     }
 }
 

@@ -7,6 +7,8 @@
 //! | [`Shock`] | `shock:phi=10,lambda=0.6` | thin cells across a sine-shaped front (RR-9103, 15.2) |
 //! | [`Formula`] | `formula:m11; m12; m22` | three expressions in x and y |
 //! | [`Boundary`] | `boundary:h0=0.01,growth=1.2,aspect=1,h_max=inf` | layers along the boundary |
+//! | [`Hessian`] | `hessian:EXPR` | optimal for the interpolation of a function |
+//! | [`Recovered`] | `hessian:FILE.sol` | the same, for a solution at the vertices of a mesh |
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at the vertices of a mesh, log-Euclidean between them |
 //! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits |
 //! | [`smoothed()`] | `--smooth-metric` | another field, averaged over neighbours on a background mesh |
@@ -30,6 +32,7 @@ pub mod nodal;
 mod norm;
 mod number;
 mod parser;
+mod recovered;
 mod recovery;
 mod sampled;
 mod scalar;
@@ -48,6 +51,7 @@ pub use expression::{Expression, Variables};
 pub use formula::{Formula, SpaceFormula};
 pub use hessian::Hessian;
 pub use norm::Norm;
+pub use recovered::Recovered;
 pub use recovery::{Recovery, recover_hessian};
 pub use sampled::Sampled;
 pub use scalar::ScalarField;

@@ -70,69 +70,9 @@ impl MetricField for Sampled {
     }
 }
 
-fn check_count(background: &Mesh, what: &str, found: usize) -> Result<()> {
-/// Calls back with boxes that hold a triangle: one, or, where that would be much larger than the triangle, those of the
-/// halves at its longest side. Without that the boxes of thin triangles overlap, and a search looks into hundreds.
-fn cut([a, b, c]: [Point; 3], halvings: u32, found: &mut impl FnMut(Aabb)) {
-    let Some(whole) = Aabb::of([a, b, c]) else { return };
-    let (extent, area) = (whole.extent(), 0.5 * (b - a).cross(c - a).abs());
-    if halvings == 0 || extent.x * extent.y <= ROOMY * area {
-        return found(whole);
-    }
-    let sides = [(a, b, c), (b, c, a), (c, a, b)];
-    let (p, q, apex) =
-        sides.into_iter().max_by(|s, t| s.0.distance(s.1).total_cmp(&t.0.distance(t.1))).unwrap_or((a, b, c));
-    let middle = p.midpoint(q);
-    cut([p, middle, apex], halvings - 1, found);
-    cut([middle, q, apex], halvings - 1, found);
-}
-
-/// Squared distance of `p` to a triangle of either orientation, even without area, and the barycentric coordinates
-/// of the nearest point.
-fn nearest_point([a, b, c]: [Point; 3], p: Point) -> (f64, [f64; 3]) {
-    let areas = [(b - p).cross(c - p), (c - p).cross(a - p), (a - p).cross(b - p)];
-    let total: f64 = areas.iter().sum();
-    if total != 0.0 && areas.iter().all(|area| area * total >= 0.0) {
-        return (0.0, areas.map(|area| area / total));
-    }
-    let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
-    for (i, (start, end)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
-        let (along, offset) = (end - start, p - start);
-        let square = along.dot(along);
-        let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        let rest: Vector = offset - along * t;
-        if rest.dot(rest) < best.0 {
-            let mut weights = [0.0; 3];
-            weights[i] = 1.0 - t;
-            weights[(i + 1) % 3] = t;
-            best = (rest.dot(rest), weights);
-        }
-    }
-    best
-}
-
+/// Whether tensors at the vertices of a mesh can make a field.
 pub(super) fn check_background(background: &Mesh) -> Result<()> {
-    let place = "the background mesh of the metric";
-    if background.triangles.is_empty() {
-        return Err(Error::domain("no triangles", place, "a metric at vertices needs a mesh with triangles"));
-    }
-    if let Some(i) = background.points.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
-        return Err(Error::domain(
-            "a coordinate is not finite",
-            describe(background, i),
-            "correct the background mesh",
-        ));
-    }
-    if let Some(i) = background.points.iter().position(|p| p[2] != 0.0) {
-        let what = format!("z = {} is not zero", background.points[i][2]);
-        return Err(Error::domain(what, describe(background, i), "the background mesh must lie in the plane z = 0"));
-    }
-    let count = background.points.len();
-    if let Some(i) = background.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= count)) {
-        let what = format!("triangle {} refers to a vertex beyond the last, {count}", i + 1);
-        return Err(Error::domain(what, place, "correct the background mesh"));
-    }
-    Ok(())
+    Locator::check(background, BACKGROUND)
 }
 
 pub(super) fn check_count(background: &Mesh, what: &str, found: usize) -> Result<()> {
@@ -143,12 +83,6 @@ pub(super) fn check_count(background: &Mesh, what: &str, found: usize) -> Result
     let what = format!("{found} {what} for {needed} vertices");
     let help = "the metric must have one value for each vertex of the background mesh, in the same order";
     Err(Error::metric(what, "the background mesh", help))
-}
-
-/// A vertex, numbered from 1, for messages.
-pub(super) fn describe(mesh: &Mesh, vertex: usize) -> String {
-    let [x, y, _] = mesh.points[vertex];
-    format!("vertex {} {}", vertex + 1, Point::new(x, y))
 }
 
 #[cfg(test)]

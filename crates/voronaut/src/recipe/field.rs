@@ -1,53 +1,109 @@
 //! From what the user says of a metric to the field itself, with its files read.
 
+use super::graded::{GradedAt, grade_metric};
 use crate::canvas::Canvas;
 use crate::domain::{Domain, read_text};
 use crate::error::{Error, Result};
 use crate::formats::medit;
-use crate::formats::sol::{self, SolutionValues};
+use crate::formats::sol::{self, Solution, SolutionValues};
 use crate::geometry::{Aabb, Tensor};
 use crate::mesh::Mesh;
 use crate::metric::{
-    Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Sampled, ScalarField, smoothed,
+    Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Recovered, Recovery, Sampled, ScalarField,
+    smoothed,
 };
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// The field that a specification names on a domain, within limits. `background` is the mesh a `.sol` file belongs to.
+/// What is done to a metric in the plane, in this order: recovery of second derivatives and the norm they are weighted for, limits,
+/// smoothing, gradation. Every parameter has one name (flag, TOML key, Python keyword).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MetricOptions {
+    /// Least and greatest sizes, greatest anisotropy.
+    pub bounds: Bounds,
+    /// The norm in which the error of interpolation is to be least.
+    pub norm: Norm,
+    /// How second derivatives are recovered from a solution.
+    pub recovery: Recovery,
+    /// Sweeps of smoothing.
+    pub smooth_metric: u32,
+    /// How fast sizes may grow; `None` for no gradation.
+    pub gradation: Option<f64>,
+    /// The mesh that values in a file belong to; `None` for the domain's own.
+    pub background: Option<PathBuf>,
+}
+
+/// A metric in the plane.
+pub struct PlanarMetric {
+    /// The field.
+    pub field: Box<dyn MetricField>,
+    /// The function whose interpolation it is for, if it is for one and nothing else was asked of it.
+    pub function: Option<Box<dyn ScalarField>>,
+}
+
+/// The field that a specification names on a domain. `own` is the file that the domain comes from; `at` the multiple of the metric
+/// in which edges are to have length one, for gradation.
 ///
 /// # Errors
-/// A file is missing or not what it should be; the values are no metric; the limits contradict each other.
+/// A file is missing or not what it should be; the values are no metric; the limits contradict each other; as of
+/// [`smoothed`] and [`crate::metric::nodal::Pipeline::run`].
 pub fn metric(
     spec: &MetricSpec,
     domain: &Domain,
-    background: Option<&Path>,
-    bounds: Bounds,
-    norm: Norm,
-) -> Result<Box<dyn MetricField>> {
-    if let (Some(mesh), false) = (background, matches!(spec, MetricSpec::File(_))) {
+    own: Option<&Path>,
+    options: &MetricOptions,
+    at: GradedAt,
+) -> Result<PlanarMetric> {
+    options.bounds.check()?;
+    let is_in_file = matches!(spec, MetricSpec::File(_) | MetricSpec::RecoveredHessian(_));
+    let background = options.background.as_deref().or(own.filter(|_| is_in_file));
+    if let (Some(mesh), false) = (background, is_in_file) {
         let what = "only a .sol metric is given on a background mesh";
         return Err(Error::parse(format!("background {}", mesh.display()), what, "leave the background out"));
     }
+    let (field, function) = named(spec, domain, background, options)?;
+    let field: Box<dyn MetricField> =
+        if options.bounds == Bounds::default() { field } else { Box::new(Bounded::new(field, options.bounds)?) };
+    let field = smooth_metric(field, domain, background, options.smooth_metric)?;
+    let field = grade_metric(field, domain, background, options.gradation, at)?;
+    let is_free = options.bounds == Bounds::default() && options.smooth_metric == 0 && options.gradation.is_none();
+    Ok(PlanarMetric { field, function: function.filter(|_| is_free) })
+}
+
+/// The field that a text names on a domain, when nothing else is asked of it and there is no file.
+///
+/// # Errors
+/// As of [`MetricSpec::parse`] and [`metric`].
+pub fn metric_named(text: &str, domain: &Domain) -> Result<Box<dyn MetricField>> {
+    let made = metric(&MetricSpec::parse(text)?, domain, None, &MetricOptions::default(), GradedAt::Scale(1.0))?;
+    Ok(made.field)
+}
+
+type Named = (Box<dyn MetricField>, Option<Box<dyn ScalarField>>);
+
+/// The field itself, and the function that it is for.
+fn named(spec: &MetricSpec, domain: &Domain, background: Option<&Path>, options: &MetricOptions) -> Result<Named> {
     let field: Box<dyn MetricField> = match spec {
         MetricSpec::Uniform(field) => Box::new(*field),
         MetricSpec::Swirl(field) => Box::new(*field),
         MetricSpec::Shock(field) => Box::new(*field),
         MetricSpec::Formula(field) => Box::new(field.clone()),
-        MetricSpec::Hessian(function) => Box::new(Hessian::new(function.clone(), norm, &domain.triangles())?),
-        MetricSpec::RecoveredHessian(path) => {
-            return Err(Error::Unsupported { what: path.display().to_string(), help: String::new() });
-        }
         MetricSpec::Boundary(sizes) => Box::new(Boundary::new(&domain.boundary(), *sizes)?),
         MetricSpec::File(path) => Box::new(sampled(path, background, domain)?),
+        MetricSpec::Hessian(function) => {
+            let field = Hessian::new(function.clone(), options.norm, &domain.triangles())?;
+            return Ok((Box::new(field), Some(Box::new(function.clone()))));
+        }
+        MetricSpec::RecoveredHessian(path) => {
+            let (mesh, solution) = solution(path, background, domain)?;
+            let SolutionValues::Scalar(values) = solution.values else {
+                let help = "give one number (type 1) per vertex";
+                return Err(Error::parse(path.display().to_string(), "the values are no scalars", help));
+            };
+            let function = Recovered::new(&mesh, &values, options.recovery)?;
+            return Ok((Box::new(function.metric(options.norm)?), Some(Box::new(function))));
+        }
     };
-    if bounds == Bounds::default() { Ok(field) } else { Ok(Box::new(Bounded::new(field, bounds)?)) }
-}
-
-/// The function that a specification is about: that of a Hessian.
-pub fn function(spec: &MetricSpec) -> Option<Box<dyn ScalarField>> {
-    match spec {
-        MetricSpec::Hessian(function) => Some(Box::new(function.clone())),
-        _ => None,
-    }
+    Ok((field, None))
 }
 
 /// Sweeps of smoothing (`--smooth-metric`, TOML key and Python keyword `smooth_metric`) unless told otherwise.
@@ -64,7 +120,7 @@ pub const BACKGROUND_VERTICES: usize = 40_000;
 ///
 /// # Errors
 /// As for [`smoothed`]; the background is missing or no mesh.
-pub fn smooth_metric(
+fn smooth_metric(
     field: Box<dyn MetricField>,
     domain: &Domain,
     background: Option<&Path>,
@@ -94,7 +150,8 @@ fn embedded(canvas: &Canvas) -> Mesh {
     }
 }
 
-fn sampled(path: &Path, background: Option<&Path>, domain: &Domain) -> Result<Sampled> {
+/// A `.sol` file and the mesh that its values belong to, which covers the domain.
+fn solution(path: &Path, background: Option<&Path>, domain: &Domain) -> Result<(Mesh, Solution)> {
     let solution = sol::read(&read_text(path)?, &path.display().to_string())?;
     let is_mesh = |p: &&Path| p.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mesh"));
     let Some(file) = background.filter(is_mesh) else {
@@ -103,6 +160,11 @@ fn sampled(path: &Path, background: Option<&Path>, domain: &Domain) -> Result<Sa
     };
     let mesh: Mesh = medit::read(&read_text(file)?, &file.display().to_string())?;
     demand_cover(&mesh, file, domain)?;
+    Ok((mesh, solution))
+}
+
+fn sampled(path: &Path, background: Option<&Path>, domain: &Domain) -> Result<Sampled> {
+    let (mesh, solution) = solution(path, background, domain)?;
     match solution.values {
         SolutionValues::Scalar(sizes) => Sampled::sizes(&mesh, &sizes),
         SolutionValues::Tensor(entries) => {

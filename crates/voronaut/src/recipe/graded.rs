@@ -27,12 +27,12 @@ impl GradedAt {
 }
 
 /// The field graded ([`crate::metric::nodal::grade`]) at the vertices of a background: its own mesh if it is a `.sol` file, else a
-/// triangulation of the domain as for [`smooth_metric`](super::smooth_metric). Without a factor, the field as it is, to the bit.
+/// triangulation of the domain as for smoothing. Without a factor, the field as it is, to the bit.
 /// What comes back is in the units of the field given, whatever multiple was graded.
 ///
 /// # Errors
 /// As of [`Pipeline::run`]; the background is missing or no mesh.
-pub fn grade_metric(
+pub(super) fn grade_metric(
     field: Box<dyn MetricField>,
     domain: &Domain,
     background: Option<&Path>,

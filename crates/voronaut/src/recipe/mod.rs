@@ -17,9 +17,8 @@ mod surface_pass;
 
 pub use certified::{certified_canvas, certify};
 pub use dual::{SeedDual, dual, net};
-pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, function, metric, smooth_metric};
-pub use field::{BACKGROUND_VERTICES, SMOOTH_METRIC, metric, smooth_metric};
-pub use graded::{GradedAt, grade_metric};
+pub use field::{BACKGROUND_VERTICES, MetricOptions, PlanarMetric, SMOOTH_METRIC, metric, metric_named};
+pub use graded::GradedAt;
 pub use mesher::Mesher;
 pub use on_surface::mesh_surface;
 pub use relaxing::Centroid;

@@ -9,7 +9,7 @@ use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::geodesic::Polyline;
 use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::{Bounds, MetricField, MetricSpec};
+use voronaut::metric::MetricField;
 use voronaut::quality::{Validity, validity};
 use voronaut::realisation::{Found, Realisation};
 use voronaut::recipe;
@@ -98,8 +98,7 @@ fn edges_of_uniform_metrics_are_segments() {
 fn swirl_and_shock_are_embedded_although_straight_edges_are_not() {
     for (domain, metric, half) in [("rect:-2,-2,2,2", "swirl", 2.0), ("rect:-1,-1,1,1", "shock:phi=1,lambda=0.6", 1.0)]
     {
-        let spec = MetricSpec::parse(metric).unwrap();
-        let field = recipe::metric(&spec, &Domain::read(domain).unwrap(), None, Bounds::default()).unwrap();
+        let field = recipe::metric_named(metric, &Domain::read(domain).unwrap()).unwrap();
         // The centre of the swirl is singular, and edges of the seeds around run together there.
         let mut seeds = seeds(280, Point::new(-half, -half), Point::new(half, half));
         seeds.extend((0..20).map(|i| {

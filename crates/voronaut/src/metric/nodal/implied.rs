@@ -4,7 +4,7 @@ use super::check;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
 use crate::mesh::Mesh;
-use crate::metric::sampled::{check_background, check_count, describe};
+use crate::metric::sampled::{check_background, check_count};
 
 /// The metric that a mesh implies: that of a triangle is the one in which it is equilateral with edges of length one (its Steiner
 /// tensor), that of a vertex the log-Euclidean mean of those around it, weighted by (Euclidean) areas. A vertex that no triangle
@@ -59,7 +59,7 @@ pub fn isotropic(mesh: &Mesh, sizes: &[f64]) -> Result<Vec<Tensor>> {
     check_count(mesh, "sizes", sizes.len())?;
     if let Some(v) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) {
         let what = format!("the size h = {} is not positive and finite", sizes[v]);
-        return Err(Error::metric(what, describe(mesh, v), "a size is the length of edges there"));
+        return Err(Error::metric(what, mesh.describe(v), "a size is the length of edges there"));
     }
     let tensors: Vec<Tensor> = sizes.iter().map(|&h| Tensor::isotropic(h)).collect();
     check(mesh, &tensors)?;

@@ -33,7 +33,7 @@ pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, MET, Outcome, Pipeline, S
 pub use restrict::{Limit, Limits, restrict};
 pub use spd::{LEAST_SHARE, absolute, enforce_spd};
 
-use super::sampled::{check_background, check_count, describe};
+use super::sampled::{check_background, check_count};
 use super::validate::check_tensor_at;
 use crate::error::Result;
 use crate::geometry::Tensor;
@@ -43,5 +43,5 @@ use crate::mesh::Mesh;
 fn check(mesh: &Mesh, tensors: &[Tensor]) -> Result<()> {
     check_background(mesh)?;
     check_count(mesh, "tensors", tensors.len())?;
-    tensors.iter().enumerate().try_for_each(|(v, &tensor)| check_tensor_at(tensor, || describe(mesh, v)))
+    tensors.iter().enumerate().try_for_each(|(v, &tensor)| check_tensor_at(tensor, || mesh.describe(v)))
 }

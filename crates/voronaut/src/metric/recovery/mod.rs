@@ -5,7 +5,7 @@ mod least_squares;
 mod projection;
 mod stencil;
 
-use super::sampled::{check_background, describe};
+use super::sampled::check_background;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
@@ -63,7 +63,7 @@ pub fn recover_hessian(mesh: &Mesh, values: &[f64], recovery: Recovery) -> Resul
     }
     if let Some(v) = values.iter().position(|value| !value.is_finite()) {
         let what = format!("the solution's value {} is not finite", values[v]);
-        return Err(Error::metric(what, describe(mesh, v), "correct the solution"));
+        return Err(Error::metric(what, mesh.describe(v), "correct the solution"));
     }
     Ok(match recovery {
         Recovery::L2 => projection::project(mesh, values),

@@ -37,7 +37,7 @@ mod tests {
     fn no_edge_is_inside_a_group_and_no_vertex_is_forgotten() {
         let at = |i: u32| Point::new((f64::from(i) * 0.618).fract(), (f64::from(i) * 0.414).fract());
         let points: Vec<Point> = (0..500).map(at).collect();
-        let (planar, _) = delaunay(&points);
+        let planar = delaunay(&points).unwrap();
         let mut freedoms = vec![Freedom::All; points.len()];
         freedoms[7] = Freedom::None;
         let groups = colours(&planar.topology, &freedoms);
