@@ -17,8 +17,12 @@ impl<'a> Density<'a> {
     /// Of edges with these lengths; those that do not tell are left out.
     pub(super) fn of(vertices: usize, ends: &'a [[u32; 2]], lengths: &[f64], tells: impl Fn(usize) -> bool) -> Self {
         let mut first = vec![0_u32; vertices + 1];
-        ends.as_flattened().iter().for_each(|&v| first[v as usize + 1] += 1);
-        (0..vertices).for_each(|v| first[v + 1] += first[v]);
+        for &v in ends.as_flattened() {
+            first[v as usize + 1] += 1;
+        }
+        for v in 0..vertices {
+            first[v + 1] += first[v];
+        }
         let mut next = first.clone();
         let mut at = vec![0_u32; 2 * ends.len()];
         for (e, pair) in ends.iter().enumerate() {

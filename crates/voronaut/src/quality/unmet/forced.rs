@@ -30,7 +30,9 @@ impl Forced {
                 continue;
             }
             if kept.is_some_and(|kept| kept.is_required || both(&curves.is_corner)) {
-                ends.iter().for_each(|&v| crowded[v as usize] = true);
+                for v in ends {
+                    crowded[v as usize] = true;
+                }
             } else if kept.is_none() && both(&curves.is_on) {
                 *forced = Forced::Across;
             }
