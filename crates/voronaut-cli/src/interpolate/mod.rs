@@ -13,7 +13,7 @@ use voronaut::formats::sol::{self, SolutionValues, Solutions};
 use voronaut::mesh::Mesh;
 use voronaut::output;
 use voronaut::surface;
-use voronaut::transfer::{Carried, Field, Kind, Overshoot, Place, conservative, interpolate};
+use voronaut::transfer::{Overshoot, TransferOptions, carry};
 use voronaut::{Error, Result};
 
 /// Carries all fields of a file to another mesh.
@@ -24,16 +24,12 @@ pub(crate) fn run(args: &InterpolateArgs) -> Result<()> {
     let (old, new) = (planar(&args.old)?, planar(&args.new)?);
     let given = sol::read_all(&read_text(&args.field)?, &args.field.display().to_string())?;
     demand_counts(args, &given, &old, &new)?;
-    let fields = fields(args, &given)?;
     let read = start.elapsed().as_secs_f64();
     let overshoot = if args.overshoot { Overshoot::Kept } else { Overshoot::Spread };
-    let (carried, cover) = if args.conservative {
-        conservative(&old, &new, &fields, overshoot)?
-    } else {
-        interpolate(&old, &new, &fields)?
-    };
+    let options = TransferOptions { conservative: args.conservative, overshoot, linear_tensors: args.linear_tensors };
+    let (solutions, carried, cover) = carry(&old, &new, &given, options)?;
     let done = start.elapsed().as_secs_f64();
-    output::write(&args.out, sol::write_all(&solutions(&given, &carried)).as_bytes())?;
+    output::write(&args.out, sol::write_all(&solutions).as_bytes())?;
     let dimension = usize::from(given.dimension);
     let seconds = [read, done - read, start.elapsed().as_secs_f64() - done];
     if let Some(file) = &args.report {
@@ -88,41 +84,4 @@ fn demand_counts(args: &InterpolateArgs, given: &Solutions, old: &Mesh, new: &Me
         return Err(Error::parse(field.to_string(), what, help));
     }
     Ok(())
-}
-
-fn fields(args: &InterpolateArgs, given: &Solutions) -> Result<Vec<Field>> {
-    let on_vertices = given.vertices.iter().map(|values| (Place::Vertices, values));
-    let on_triangles = given.triangles.iter().map(|values| (Place::Triangles, values));
-    let field = |(place, values): (Place, &SolutionValues)| {
-        let kind = match values {
-            SolutionValues::Tensor(_) if !args.linear_tensors => Kind::Metric,
-            SolutionValues::Tensor3(_) if !args.linear_tensors => {
-                let what = format!("metrics of space on planar meshes ({})", args.field.display());
-                let help =
-                    "save the tensors with Dimension 2 (m11 m12 m22), or say --linear-tensors if they are no metrics";
-                return Err(Error::Unsupported { what, help: help.into() });
-            }
-            SolutionValues::Scalar(_) => Kind::Linear(1),
-            SolutionValues::Vector(_) => Kind::Linear(usize::from(given.dimension)),
-            SolutionValues::Tensor(_) => Kind::Linear(3),
-            SolutionValues::Tensor3(_) => Kind::Linear(6),
-        };
-        let numbers = (0..values.count()).flat_map(|i| values.row(i)).copied().collect();
-        Ok(Field { place, kind, values: numbers })
-    };
-    on_vertices.chain(on_triangles).map(field).collect()
-}
-
-/// What was carried, in the order and of the types of what was given.
-fn solutions(given: &Solutions, carried: &[Carried]) -> Solutions {
-    let (vertices, triangles) = carried.split_at(given.vertices.len());
-    let same = |values: &[SolutionValues], carried: &[Carried]| {
-        let pairs = values.iter().zip(carried);
-        pairs.map(|(values, carried)| values.with_numbers(given.dimension, &carried.field.values)).collect()
-    };
-    Solutions {
-        dimension: given.dimension,
-        vertices: same(&given.vertices, vertices),
-        triangles: same(&given.triangles, triangles),
-    }
 }

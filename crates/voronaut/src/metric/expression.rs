@@ -12,6 +12,8 @@ pub enum Variables {
     Plane,
     /// x, y and z.
     Space,
+    /// x, y and the time t, which takes the place of z.
+    Motion,
 }
 
 /// A compiled expression. From loosest to tightest:
@@ -56,7 +58,7 @@ impl Expression {
         Ok(Self { code: Parser::new(text, range, variables, name).parse()? })
     }
 
-    /// The value at a point; z is not used by expressions of the plane.
+    /// The value at a point; z is not used by expressions of the plane, and is the time of those with one.
     pub fn at(&self, x: f64, y: f64, z: f64) -> f64 {
         self.run([x, y, z])
     }

@@ -3,31 +3,31 @@
 use super::complexity::start;
 use super::nodal::absolute;
 use super::recovered::FLOOR;
-use super::{Expression, MetricField, Norm};
+use super::{MetricField, Norm, Snapshot};
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Point3, Tensor};
+use crate::geometry::{Point, Tensor};
 
 /// The metric in which a unit mesh has the least L^p error of linear interpolation of a function (Loseille and Alauzet 2011): its
 /// Hessian's absolute value ([`Norm::weighted`]), from exact derivatives. It is defined up to a factor: scale it to a number of
 /// vertices or a complexity.
 #[derive(Clone, Debug)]
 pub struct Hessian {
-    function: Expression,
+    function: Snapshot,
     norm: Norm,
     floor: f64,
 }
 
 impl Hessian {
-    /// Of a function of x and y on a domain that these triangles cover.
+    /// Of a function on a domain that these triangles cover.
     ///
     /// # Errors
     /// [`Error::Metric`] where a second derivative is not finite, or where all are zero; [`Error::Domain`] of triangles that are
     /// not finite.
-    pub fn new(function: Expression, norm: Norm, domain: &[[Point; 3]]) -> Result<Self> {
+    pub fn new(function: Snapshot, norm: Norm, domain: &[[Point; 3]]) -> Result<Self> {
         let (mut sum, mut count) = (0.0, 0.0);
         for ([a, b, c], _) in start(domain)? {
             let middle = Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0);
-            let e = second_derivatives(&function, middle).eigen();
+            let e = function.second_derivatives(middle).eigen();
             let greatest = e.large.abs().max(e.small.abs());
             if !greatest.is_finite() {
                 let what = "the function's second derivatives are not finite";
@@ -47,24 +47,19 @@ impl Hessian {
 
 impl MetricField for Hessian {
     fn at(&self, p: Point) -> Tensor {
-        self.norm.weighted(absolute(second_derivatives(&self.function, p), self.floor))
+        self.norm.weighted(absolute(self.function.second_derivatives(p), self.floor))
     }
-}
-
-fn second_derivatives(function: &Expression, p: Point) -> Tensor {
-    let hessian = function.jet(Point3::new(p.x, p.y, 0.0)).hessian;
-    Tensor::new(hessian.xx, hessian.xy, hessian.yy)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metric::Variables;
+    use crate::metric::{Expression, Variables};
 
     fn hessian(text: &str, norm: Norm) -> Result<Hessian> {
         let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y));
         let halves = [[square[0], square[1], square[2]], [square[0], square[2], square[3]]];
-        Hessian::new(Expression::parse(text, Variables::Plane)?, norm, &halves)
+        Hessian::new(Expression::parse(text, Variables::Plane)?.into(), norm, &halves)
     }
 
     fn assert_close(a: Tensor, b: Tensor) {

@@ -54,7 +54,7 @@ pub use norm::Norm;
 pub use recovered::Recovered;
 pub use recovery::{Recovery, recover_hessian};
 pub use sampled::Sampled;
-pub use scalar::ScalarField;
+pub use scalar::{ScalarField, Snapshot};
 pub use scaled::Scaled;
 pub use smoothed::{MOST_SWEEPS, smoothed};
 pub use spec::MetricSpec;

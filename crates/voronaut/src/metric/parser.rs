@@ -126,8 +126,8 @@ impl<'a> Parser<'a> {
         let op = match (name, self.variables) {
             ("x", _) => Op::X,
             ("y", _) => Op::Y,
-            ("z", Variables::Space) => Op::Z,
-            ("z", Variables::Plane) => {
+            ("z", Variables::Space) | ("t", Variables::Motion) => Op::Z,
+            ("z", _) => {
                 return Err(self.error("z is not a variable in the plane", "use x and y"));
             }
             _ => match CONSTANTS.iter().find(|(c, _)| *c == name) {
@@ -140,7 +140,11 @@ impl<'a> Parser<'a> {
     }
 
     fn unknown(&self, name: &str) -> Error {
-        let variables = if self.variables == Variables::Plane { "x y" } else { "x y z" };
+        let variables = match self.variables {
+            Variables::Plane => "x y",
+            Variables::Space => "x y z",
+            Variables::Motion => "x y t",
+        };
         let functions: Vec<&str> = FUNCTIONS.iter().map(|(f, _)| *f).collect();
         let help = format!("variables: {variables}; constants: pi e; functions: {}", functions.join(" "));
         self.error(&format!("unknown name `{name}`"), &help)

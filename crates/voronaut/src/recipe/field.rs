@@ -1,22 +1,24 @@
 //! From what the user says of a metric to the field itself, with its files read.
 
+use super::background::{read, smooth_metric};
 use super::graded::{GradedAt, grade_metric};
-use crate::canvas::Canvas;
 use crate::domain::{Domain, read_text};
 use crate::error::{Error, Result};
-use crate::formats::medit;
-use crate::formats::sol::{self, Solution, SolutionValues};
-use crate::geometry::{Aabb, Tensor};
+use crate::formats::sol::{self, SolutionValues};
+use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::metric::{
     Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Recovered, Recovery, Sampled, ScalarField,
-    smoothed,
+    Snapshot,
 };
 use std::path::{Path, PathBuf};
 
+/// Sweeps of smoothing (`--smooth-metric`, TOML key and Python keyword `smooth_metric`) unless told otherwise.
+pub const SMOOTH_METRIC: u32 = 0;
+
 /// What is done to a metric in the plane, in this order: recovery of second derivatives and the norm they are weighted for, limits,
 /// smoothing, gradation. Every parameter has one name (flag, TOML key, Python keyword).
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MetricOptions {
     /// Least and greatest sizes, greatest anisotropy.
     pub bounds: Bounds,
@@ -32,6 +34,19 @@ pub struct MetricOptions {
     pub background: Option<PathBuf>,
 }
 
+impl Default for MetricOptions {
+    fn default() -> Self {
+        Self {
+            bounds: Bounds::default(),
+            norm: Norm::default(),
+            recovery: Recovery::default(),
+            smooth_metric: SMOOTH_METRIC,
+            gradation: None,
+            background: None,
+        }
+    }
+}
+
 /// A metric in the plane.
 pub struct PlanarMetric {
     /// The field.
@@ -45,7 +60,7 @@ pub struct PlanarMetric {
 ///
 /// # Errors
 /// A file is missing or not what it should be; the values are no metric; the limits contradict each other; as of
-/// [`smoothed`] and [`crate::metric::nodal::Pipeline::run`].
+/// [`crate::metric::smoothed`] and [`crate::metric::nodal::Pipeline::run`].
 pub fn metric(
     spec: &MetricSpec,
     domain: &Domain,
@@ -53,20 +68,58 @@ pub fn metric(
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
-    options.bounds.check()?;
-    let is_in_file = matches!(spec, MetricSpec::File(_) | MetricSpec::RecoveredHessian(_));
-    let background = options.background.as_deref().or(own.filter(|_| is_in_file));
-    if let (Some(mesh), false) = (background, is_in_file) {
-        let what = "only a .sol metric is given on a background mesh";
-        return Err(Error::parse(format!("background {}", mesh.display()), what, "leave the background out"));
-    }
-    let (field, function) = named(spec, domain, background, options)?;
-    let field: Box<dyn MetricField> =
-        if options.bounds == Bounds::default() { field } else { Box::new(Bounded::new(field, options.bounds)?) };
-    let field = smooth_metric(field, domain, background, options.smooth_metric)?;
-    let field = grade_metric(field, domain, background, options.gradation, at)?;
-    let is_free = options.bounds == Bounds::default() && options.smooth_metric == 0 && options.gradation.is_none();
-    Ok(PlanarMetric { field, function: function.filter(|_| is_free) })
+    let background = options.background.as_deref();
+    let (MetricSpec::File(path) | MetricSpec::RecoveredHessian(path)) = spec else {
+        if let Some(mesh) = background {
+            let what = "only a .sol metric is given on a background mesh";
+            return Err(Error::parse(format!("background {}", mesh.display()), what, "leave the background out"));
+        }
+        return finished(named(spec, domain, options.norm)?, domain, None, options, at);
+    };
+    let values = sol::read(&read_text(path)?, &path.display().to_string())?.values;
+    let mesh = read(background.or(own), path, domain)?;
+    let named = match (spec, &values) {
+        (MetricSpec::RecoveredHessian(_), SolutionValues::Scalar(values)) => recovered(&mesh, values, options)?,
+        (MetricSpec::RecoveredHessian(_), _) => {
+            let help = "give one number (type 1) per vertex";
+            return Err(Error::parse(path.display().to_string(), "the values are no scalars", help));
+        }
+        (_, SolutionValues::Scalar(sizes)) => (Box::new(Sampled::sizes(&mesh, sizes)?) as Box<dyn MetricField>, None),
+        _ => (Box::new(sampled(&mesh, &values, &path.display().to_string())?) as Box<dyn MetricField>, None),
+    };
+    finished(named, domain, Some(&mesh), options, at)
+}
+
+/// The metric that a solver's solution on a mesh of the domain asks for: that of its recovered second derivatives, if it is a
+/// scalar; itself, if it is a tensor.
+///
+/// # Errors
+/// As of [`metric`].
+pub fn metric_of_solution(
+    mesh: &Mesh,
+    values: &SolutionValues,
+    domain: &Domain,
+    options: &MetricOptions,
+    at: GradedAt,
+) -> Result<PlanarMetric> {
+    let named = match values {
+        SolutionValues::Scalar(values) => recovered(mesh, values, options)?,
+        _ => (Box::new(sampled(mesh, values, "the solution")?) as Box<dyn MetricField>, None),
+    };
+    finished(named, domain, Some(mesh), options, at)
+}
+
+/// The metric that a function at one time asks for.
+///
+/// # Errors
+/// As of [`metric`].
+pub fn metric_of_function(
+    function: &Snapshot,
+    domain: &Domain,
+    options: &MetricOptions,
+    at: GradedAt,
+) -> Result<PlanarMetric> {
+    finished(optimal(function, domain, options.norm)?, domain, None, options, at)
 }
 
 /// The field that a text names on a domain, when nothing else is asked of it and there is no file.
@@ -78,119 +131,56 @@ pub fn metric_named(text: &str, domain: &Domain) -> Result<Box<dyn MetricField>>
     Ok(made.field)
 }
 
+/// A field, and the function that it is for.
 type Named = (Box<dyn MetricField>, Option<Box<dyn ScalarField>>);
 
-/// The field itself, and the function that it is for.
-fn named(spec: &MetricSpec, domain: &Domain, background: Option<&Path>, options: &MetricOptions) -> Result<Named> {
+fn named(spec: &MetricSpec, domain: &Domain, norm: Norm) -> Result<Named> {
     let field: Box<dyn MetricField> = match spec {
         MetricSpec::Uniform(field) => Box::new(*field),
         MetricSpec::Swirl(field) => Box::new(*field),
         MetricSpec::Shock(field) => Box::new(*field),
         MetricSpec::Formula(field) => Box::new(field.clone()),
         MetricSpec::Boundary(sizes) => Box::new(Boundary::new(&domain.boundary(), *sizes)?),
-        MetricSpec::File(path) => Box::new(sampled(path, background, domain)?),
-        MetricSpec::Hessian(function) => {
-            let field = Hessian::new(function.clone(), options.norm, &domain.triangles())?;
-            return Ok((Box::new(field), Some(Box::new(function.clone()))));
-        }
-        MetricSpec::RecoveredHessian(path) => {
-            let (mesh, solution) = solution(path, background, domain)?;
-            let SolutionValues::Scalar(values) = solution.values else {
-                let help = "give one number (type 1) per vertex";
-                return Err(Error::parse(path.display().to_string(), "the values are no scalars", help));
-            };
-            let function = Recovered::new(&mesh, &values, options.recovery)?;
-            return Ok((Box::new(function.metric(options.norm)?), Some(Box::new(function))));
+        MetricSpec::Hessian(function) => return optimal(&function.clone().into(), domain, norm),
+        MetricSpec::File(path) | MetricSpec::RecoveredHessian(path) => {
+            unreachable!("{} is read with its mesh", path.display())
         }
     };
     Ok((field, None))
 }
 
-/// Sweeps of smoothing (`--smooth-metric`, TOML key and Python keyword `smooth_metric`) unless told otherwise.
-pub const SMOOTH_METRIC: u32 = 0;
-/// Vertices of the background on which a metric is smoothed that has none of its own.
-pub const BACKGROUND_VERTICES: usize = 40_000;
-
-/// The field after so many sweeps of smoothing ([`smoothed`]), on its own background mesh if it is a `.sol` file; else on a
-/// triangulation of the domain with [`BACKGROUND_VERTICES`] (and all of the domain's own) that is even in the metric. With
-/// no sweeps, the field as it is, to the bit.
-///
-/// There, K sweeps smooth with a standard deviation of about sqrt(K) / 400 of the domain's width in the metric, or half the
-/// square root of K N / 40,000 edges of a mesh that has N vertices.
-///
-/// # Errors
-/// As for [`smoothed`]; the background is missing or no mesh.
-fn smooth_metric(
-    field: Box<dyn MetricField>,
-    domain: &Domain,
-    background: Option<&Path>,
-    sweeps: u32,
-) -> Result<Box<dyn MetricField>> {
-    if sweeps == 0 {
-        return Ok(field);
-    }
-    Ok(Box::new(smoothed(field.as_ref(), &background_mesh(field.as_ref(), domain, background)?, sweeps)?))
+fn optimal(function: &Snapshot, domain: &Domain, norm: Norm) -> Result<Named> {
+    let field = Hessian::new(function.clone(), norm, &domain.triangles())?;
+    Ok((Box::new(field), Some(Box::new(function.clone()))))
 }
 
-/// A mesh to sample a field on: its own, or a triangulation of the domain that is even in the metric.
-pub(super) fn background_mesh(field: &dyn MetricField, domain: &Domain, background: Option<&Path>) -> Result<Mesh> {
-    match background {
-        Some(file) => medit::read(&read_text(file)?, &file.display().to_string()),
-        None => Ok(embedded(&Canvas::straight(domain, field, BACKGROUND_VERTICES)?)),
-    }
+fn recovered(mesh: &Mesh, values: &[f64], options: &MetricOptions) -> Result<Named> {
+    let function = Recovered::new(mesh, values, options.recovery)?;
+    Ok((Box::new(function.metric(options.norm)?), Some(Box::new(function))))
 }
 
-/// The positions and triangles of a canvas.
-fn embedded(canvas: &Canvas) -> Mesh {
-    let planar = canvas.embedded();
-    Mesh {
-        points: planar.positions.iter().map(|p| [p.x, p.y, 0.0]).collect(),
-        triangles: planar.topology.faces().map(|face| planar.topology.corners(face).map(|v| v.0)).collect(),
-        ..Mesh::default()
-    }
-}
-
-/// A `.sol` file and the mesh that its values belong to, which covers the domain.
-fn solution(path: &Path, background: Option<&Path>, domain: &Domain) -> Result<(Mesh, Solution)> {
-    let solution = sol::read(&read_text(path)?, &path.display().to_string())?;
-    let is_mesh = |p: &&Path| p.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mesh"));
-    let Some(file) = background.filter(is_mesh) else {
-        let help = "name the mesh that the values belong to: --background FILE.mesh";
-        return Err(Error::parse(path.display().to_string(), "a .sol file needs a .mesh it belongs to", help));
+fn sampled(mesh: &Mesh, values: &SolutionValues, place: &str) -> Result<Sampled> {
+    let SolutionValues::Tensor(entries) = values else {
+        let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
+        return Err(Error::parse(place, "the values are no planar metric", help));
     };
-    let mesh: Mesh = medit::read(&read_text(file)?, &file.display().to_string())?;
-    demand_cover(&mesh, file, domain)?;
-    Ok((mesh, solution))
+    let tensors: Vec<Tensor> = entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect();
+    Sampled::new(mesh, &tensors)
 }
 
-fn sampled(path: &Path, background: Option<&Path>, domain: &Domain) -> Result<Sampled> {
-    let (mesh, solution) = solution(path, background, domain)?;
-    match solution.values {
-        SolutionValues::Scalar(sizes) => Sampled::sizes(&mesh, &sizes),
-        SolutionValues::Tensor(entries) => {
-            let tensors: Vec<Tensor> = entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect();
-            Sampled::new(&mesh, &tensors)
-        }
-        SolutionValues::Vector(_) | SolutionValues::Tensor3(_) => {
-            let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
-            Err(Error::parse(path.display().to_string(), "the values are no planar metric", help))
-        }
-    }
-}
-
-/// How far a domain may reach beyond its background mesh, as a share of the mesh's extent: curves are meshed by chords.
-const OVERHANG: f64 = 0.05;
-
-/// Beyond its mesh a sampled field goes on with the nearest value: right for a sliver along a curved boundary, a
-/// mistake anywhere else.
-fn demand_cover(background: &Mesh, file: &Path, domain: &Domain) -> Result<()> {
-    let Some(cover) = Aabb::of((0..background.points.len() as u32).map(|v| background.point(v))) else { return Ok(()) };
-    let (bounds, allowed) = (domain.bounds(), cover.extent() * OVERHANG);
-    let (lower, upper) = (cover.min - bounds.min, bounds.max - cover.max);
-    if lower.x.max(upper.x) <= allowed.x && lower.y.max(upper.y) <= allowed.y {
-        return Ok(());
-    }
-    let what = format!("the domain ({} to {}) reaches beyond the background mesh", bounds.min, bounds.max);
-    let place = format!("{} ({} to {})", file.display(), cover.min, cover.max);
-    Err(Error::metric(what, place, "give the mesh on which the values were computed, in the coordinates of the domain"))
+/// Limits, then smoothing, then gradation. A function counts only where none of them was asked for.
+fn finished(
+    (field, function): Named,
+    domain: &Domain,
+    own: Option<&Mesh>,
+    options: &MetricOptions,
+    at: GradedAt,
+) -> Result<PlanarMetric> {
+    options.bounds.check()?;
+    let field: Box<dyn MetricField> =
+        if options.bounds == Bounds::default() { field } else { Box::new(Bounded::new(field, options.bounds)?) };
+    let field = smooth_metric(field, domain, own, options.smooth_metric)?;
+    let field = grade_metric(field, domain, own, options.gradation, at)?;
+    let is_free = options.bounds == Bounds::default() && options.smooth_metric == 0 && options.gradation.is_none();
+    Ok(PlanarMetric { field, function: function.filter(|_| is_free) })
 }

@@ -1,12 +1,12 @@
 //! A metric on a domain, graded.
 
-use super::field::background_mesh;
+use super::background::sampling;
 use crate::domain::Domain;
 use crate::error::Result;
 use crate::geometry::Tensor;
+use crate::mesh::Mesh;
 use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, complexity};
 use crate::metric::{MetricField, Sampled};
-use std::path::Path;
 
 /// In which multiple of a metric edges are to have length one, when it is graded: gradation is a law between neighbouring
 /// edges, and scaling a metric changes it.
@@ -35,14 +35,14 @@ impl GradedAt {
 pub(super) fn grade_metric(
     field: Box<dyn MetricField>,
     domain: &Domain,
-    background: Option<&Path>,
+    own: Option<&Mesh>,
     gradation_factor: Option<f64>,
     at: GradedAt,
 ) -> Result<Box<dyn MetricField>> {
     if gradation_factor.is_none() {
         return Ok(field);
     }
-    let mesh = background_mesh(field.as_ref(), domain, background)?;
+    let mesh = sampling(field.as_ref(), domain, own)?;
     let scale = match at {
         GradedAt::Scale(scale) => scale,
         GradedAt::Complexity(_) => 1.0,

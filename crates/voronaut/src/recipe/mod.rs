@@ -1,5 +1,7 @@
 //! The main job as one function: from a domain and a metric to a valid unit mesh.
 
+mod adapt;
+mod background;
 mod certified;
 mod dual;
 mod field;
@@ -15,9 +17,13 @@ mod stopwatch;
 mod surface_dual;
 mod surface_pass;
 
+pub use adapt::{LoopOptions, Source, Step, adapt};
+pub use background::BACKGROUND_VERTICES;
 pub use certified::{certified_canvas, certify};
 pub use dual::{SeedDual, dual, net};
-pub use field::{BACKGROUND_VERTICES, MetricOptions, PlanarMetric, SMOOTH_METRIC, metric, metric_named};
+pub use field::{
+    MetricOptions, PlanarMetric, SMOOTH_METRIC, metric, metric_named, metric_of_function, metric_of_solution,
+};
 pub use graded::GradedAt;
 pub use mesher::Mesher;
 pub use on_surface::mesh_surface;

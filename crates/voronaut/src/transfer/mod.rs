@@ -19,11 +19,13 @@ mod interpolation;
 mod loads;
 mod mass;
 mod projection;
+mod solutions;
 #[cfg(test)]
 mod tests;
 
 pub use cover::{Cover, Shares};
 pub use field::{Carried, Extent, Field, Kind, Place};
+pub use solutions::{TransferOptions, carry};
 
 use crate::error::Result;
 use crate::mesh::{Locator, Mesh};

@@ -1,0 +1,177 @@
+//! The mesh adapted to a solution, again and again: solve, recover, mesh, carry over.
+
+use super::{
+    Aim, GradedAt, MeshOptions, Meshed, MetricOptions, PlanarMetric, mesh_for, metric_of_function, metric_of_solution,
+};
+use crate::domain::Domain;
+use crate::error::{Error, Result};
+use crate::formats::sol::{SolutionValues, Solutions};
+use crate::geometry::Point;
+use crate::mesh::Mesh;
+use crate::metric::{Expression, ScalarField, Snapshot, Uniform};
+use crate::progress::Progress;
+use crate::transfer::{Carried, Cover, TransferOptions, carry};
+use std::collections::BTreeSet;
+
+/// How a mesh is adapted; every parameter has one name (flag, TOML key, Python keyword).
+#[derive(Clone, Debug)]
+pub struct LoopOptions {
+    /// How often; at least once.
+    pub iterations: usize,
+    /// Which of a solver's solutions on vertices the mesh is for, from 1: a scalar, or a tensor, which then is the metric.
+    pub field: usize,
+    /// What is done to the metric.
+    pub metric: MetricOptions,
+    /// How each mesh is made; it needs a number of vertices or a complexity.
+    pub mesh: MeshOptions,
+    /// How solutions are carried to the next mesh.
+    pub transfer: TransferOptions,
+}
+
+/// A user's solver: from the number of the step, a mesh and solutions there to start from (`None` at first) to solutions there.
+pub type Solver<'a> = dyn FnMut(usize, &Mesh, Option<&Solutions>) -> Result<Solutions> + 'a;
+
+/// What the meshes are for.
+pub enum Source<'a> {
+    /// A function of x, y and t, known exactly; t goes evenly from the first time, for the first mesh, to the last.
+    Formula(Expression, [f64; 2]),
+    /// What a solver finds on each mesh, starting from an even one.
+    Solver(&'a mut Solver<'a>),
+}
+
+/// A step of the loop.
+pub struct Step {
+    /// Its number, from 1; 0 is the even mesh that a solver starts from.
+    pub number: usize,
+    /// The time, where there is one.
+    pub time: Option<f64>,
+    /// The mesh, with what is said of it.
+    pub meshed: Meshed,
+    /// Solutions on it: of a formula its values, and then what has been carried along since the first step; else what the solver
+    /// found on the mesh before, carried here.
+    pub solutions: Solutions,
+    /// What became of each carried solution, and how the meshes cover each other; none on the first mesh.
+    pub transfer: Option<(Vec<Carried>, Cover)>,
+    /// Vertices on labelled edges: those of boundary, interfaces and features.
+    pub boundary_vertices: usize,
+}
+
+/// Adapts the mesh of a domain so many times, and calls `each` with every step.
+///
+/// Every mesh is made from the domain itself, whose corners, labels and features it keeps; vertices in the middle of straight runs
+/// of one label are placed anew each time, so that their number follows the metric and does not grow with the steps.
+///
+/// # Errors
+/// Those of the solver, of `each`, of meshing ([`mesh_for`]), recovery and transfer ([`carry`]), with the number of the step.
+pub fn adapt(
+    domain: &Domain,
+    source: Source,
+    options: &LoopOptions,
+    progress: &dyn Progress,
+    each: &mut dyn FnMut(&Step) -> Result<()>,
+) -> Result<()> {
+    let work = Work { domain, options, progress };
+    match source {
+        Source::Formula(function, times) => work.follow(&function, times, each),
+        Source::Solver(solver) => work.solve(solver, each),
+    }
+}
+
+struct Work<'a> {
+    domain: &'a Domain,
+    options: &'a LoopOptions,
+    progress: &'a dyn Progress,
+}
+
+impl Work<'_> {
+    fn follow(
+        &self,
+        function: &Expression,
+        [first, last]: [f64; 2],
+        each: &mut dyn FnMut(&Step) -> Result<()>,
+    ) -> Result<()> {
+        let mut before: Option<(Mesh, SolutionValues)> = None;
+        let steps = self.options.iterations;
+        for number in 1..=steps {
+            let share = (number - 1) as f64 / (steps.max(2) - 1) as f64;
+            let time = first + share * (last - first);
+            let now = Snapshot { expression: function.clone(), time };
+            let metric = metric_of_function(&now, self.domain, &self.options.metric, self.graded_at())?;
+            let meshed = self.mesh(&metric)?;
+            let point = |&[x, y, _]: &[f64; 3]| Point::new(x, y);
+            let values: Vec<f64> = meshed.mesh.points.iter().map(|p| now.value(point(p))).collect();
+            let carried =
+                before.take().map(|(mesh, values)| self.carry(&mesh, &meshed.mesh, &of(values))).transpose()?;
+            let values = SolutionValues::Scalar(values);
+            let (along, transfer) = match carried {
+                Some((mut solutions, transfer)) => (solutions.vertices.swap_remove(0), Some(transfer)),
+                None => (values.clone(), None),
+            };
+            before = Some((meshed.mesh.clone(), along.clone()));
+            let solutions = Solutions { dimension: 2, vertices: vec![values, along], triangles: Vec::new() };
+            each(&Step::new(number, Some(time), meshed, solutions, transfer))?;
+        }
+        Ok(())
+    }
+
+    fn solve(&self, solver: &mut Solver, each: &mut dyn FnMut(&Step) -> Result<()>) -> Result<()> {
+        let even = PlanarMetric { field: Box::new(Uniform::default()), function: None };
+        let nothing = Solutions { dimension: 2, ..Solutions::default() };
+        let mut step = Step::new(0, None, self.mesh(&even)?, nothing, None);
+        each(&step)?;
+        for number in 1..=self.options.iterations {
+            let mesh = &step.meshed.mesh;
+            let found = solver(number, mesh, Some(&step.solutions).filter(|_| number > 1))?;
+            let values = self.chosen(&found)?;
+            let metric = metric_of_solution(mesh, values, self.domain, &self.options.metric, self.graded_at())?;
+            let meshed = self.mesh(&metric)?;
+            let (solutions, transfer) = self.carry(mesh, &meshed.mesh, &found)?;
+            step = Step::new(number, None, meshed, solutions, Some(transfer));
+            each(&step)?;
+        }
+        Ok(())
+    }
+
+    fn graded_at(&self) -> GradedAt {
+        GradedAt::of(self.options.mesh.vertices, self.options.mesh.complexity)
+    }
+
+    fn mesh(&self, metric: &PlanarMetric) -> Result<Meshed> {
+        let norm = self.options.metric.norm;
+        let aim = metric.function.as_deref().map(|function| Aim { function, norm });
+        mesh_for(self.domain, metric.field.as_ref(), aim, &self.options.mesh, self.progress)
+    }
+
+    fn carry(&self, old: &Mesh, new: &Mesh, solutions: &Solutions) -> Result<(Solutions, (Vec<Carried>, Cover))> {
+        let (solutions, carried, cover) = carry(old, new, solutions, self.options.transfer)?;
+        Ok((solutions, (carried, cover)))
+    }
+
+    fn chosen<'s>(&self, found: &'s Solutions) -> Result<&'s SolutionValues> {
+        let number = self.options.field;
+        found.vertices.get(number.wrapping_sub(1)).ok_or_else(|| {
+            let what = format!(
+                "there is no solution number {number} on the vertices: the solver wrote {}",
+                found.vertices.len()
+            );
+            Error::parse("the solver's file", what, "choose another with --field, or write it in SolAtVertices")
+        })
+    }
+}
+
+fn of(values: SolutionValues) -> Solutions {
+    Solutions { dimension: 2, vertices: vec![values], triangles: Vec::new() }
+}
+
+impl Step {
+    fn new(
+        number: usize,
+        time: Option<f64>,
+        meshed: Meshed,
+        solutions: Solutions,
+        transfer: Option<(Vec<Carried>, Cover)>,
+    ) -> Self {
+        let ends: BTreeSet<u32> = meshed.mesh.edges.as_flattened().iter().copied().collect();
+        Self { number, time, meshed, solutions, transfer, boundary_vertices: ends.len() }
+    }
+}
