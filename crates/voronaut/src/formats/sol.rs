@@ -131,7 +131,7 @@ impl SolutionValues {
 /// [`Error::Parse`] with the line of what is not as announced: a text cut off, more or fewer values than
 /// announced, something that is no finite number. [`Error::Unsupported`] of several values per vertex.
 pub fn read(text: &str, place: &str) -> Result<Solution> {
-    let mut file = File::read(text, place, &SECTIONS[..1])?;
+    let mut file = Parsed::read(text, place, &SECTIONS[..1])?;
     let Some(mut found) = file.sections[0].take() else {
         return Err(file.missing("", "save the values on vertices, in a section SolAtVertices"));
     };
@@ -151,7 +151,7 @@ pub fn read(text: &str, place: &str) -> Result<Solution> {
 ///
 /// As for [`read`]; neither of the sections is there.
 pub fn read_all(text: &str, place: &str) -> Result<Solutions> {
-    let mut file = File::read(text, place, &SECTIONS)?;
+    let mut file = Parsed::read(text, place, &SECTIONS)?;
     let [vertices, triangles] = [0, 1].map(|i| file.sections[i].take());
     if vertices.is_none() && triangles.is_none() {
         return Err(file.missing(", nor SolAtTriangles", "save values in one of these sections"));
@@ -186,7 +186,7 @@ pub fn write_all(solutions: &Solutions) -> String {
 const SECTIONS: [&str; 2] = ["SolAtVertices", "SolAtTriangles"];
 
 /// What is read of a file.
-struct File<'a> {
+struct Parsed<'a> {
     words: Words<'a>,
     dimension: u8,
     /// In the order of [`SECTIONS`].
@@ -199,7 +199,7 @@ struct Section {
     values: Vec<SolutionValues>,
 }
 
-impl<'a> File<'a> {
+impl<'a> Parsed<'a> {
     /// Reads the sections that are wanted.
     fn read(text: &'a str, place: &'a str, wanted: &[&str]) -> Result<Self> {
         let mut words = Words::new(text, place);
