@@ -1,5 +1,6 @@
 //! What users type.
 
+use crate::adapt::{self, LoopArgs};
 use crate::interpolate::{self, InterpolateArgs};
 use crate::nodal::{self, MetricArgs};
 use crate::remesh::{self, RemeshArgs};
@@ -46,6 +47,9 @@ pub(crate) enum Command {
     /// Make a metric at the vertices of a mesh: from solutions, combined, limited, graded, of a complexity
     #[command(after_help = nodal::EXAMPLES)]
     Metric(MetricArgs),
+    /// Adapt the mesh of a planar domain to a formula or a solver, again and again
+    #[command(after_help = adapt::EXAMPLES)]
+    Loop(Box<LoopArgs>),
     /// Examine a mesh: validity, quality in a metric, distance to its domain
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),
@@ -526,14 +530,14 @@ impl MetricChoices {
 impl DualArgs {
     /// In bytes.
     pub(crate) fn memory_limit(&self) -> u64 {
-        (self.memory_limit * GIB) as u64
+        in_bytes(self.memory_limit)
     }
 }
 
 impl DistanceArgs {
     /// In bytes.
     pub(crate) fn memory_limit(&self) -> u64 {
-        (self.memory_limit * GIB) as u64
+        in_bytes(self.memory_limit)
     }
 }
 
@@ -561,12 +565,17 @@ impl MeshArgs {
             net: self.net || self.outputs.show.contains(&Show::Protection),
             canvas: self.canvas,
             canvas_size: self.canvas_size,
-            memory_limit: (self.memory_limit * GIB) as u64,
+            memory_limit: in_bytes(self.memory_limit),
         }
     }
 }
 
-fn default_memory_limit() -> f64 {
+/// Gibibytes in bytes.
+pub(crate) fn in_bytes(gibibytes: f64) -> u64 {
+    (gibibytes * GIB) as u64
+}
+
+pub(crate) fn default_memory_limit() -> f64 {
     MeshOptions::default().memory_limit as f64 / GIB
 }
 

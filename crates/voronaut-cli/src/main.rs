@@ -1,5 +1,6 @@
 //! The command line of voronaut. Exit code 0: done; 1: the input or the result is not what was asked; 2: wrong usage.
 
+mod adapt;
 mod args;
 mod certify;
 mod check;
@@ -43,6 +44,7 @@ fn run(arguments: Arguments) -> Result<()> {
         Command::Interpolate(args) => interpolate::run(&args),
         Command::Remesh(args) => remesh::run(&args),
         Command::Metric(args) => nodal::run(&args),
+        Command::Loop(args) => adapt::run(&args),
         Command::Check(args) => check::run(&args),
     }
 }

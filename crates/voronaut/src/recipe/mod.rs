@@ -17,7 +17,7 @@ mod stopwatch;
 mod surface_dual;
 mod surface_pass;
 
-pub use adapt::{LoopOptions, Source, Step, adapt};
+pub use adapt::{LoopOptions, Solver, Source, Step, adapt};
 pub use background::BACKGROUND_VERTICES;
 pub use certified::{certified_canvas, certify};
 pub use dual::{SeedDual, dual, net};
