@@ -88,10 +88,12 @@ mod tests {
         let field = jump(GradedAt::Scale(1.0), 1.3);
         let size = |x: f64| 1.0 / field.at(Point::new(x, 0.5)).length(Vector::new(1.0, 0.0));
         assert!((size(0.2) / 1e-3 - 1.0).abs() < 1e-6);
-        // Across: 0.001 + ln(1.3) d, for both factors of the law are the same there.
+        // Across: 0.001 + ln(1.3) d, for both factors of the law are the same there; ways over edges of even triangles are up to
+        // 2 / sqrt(3) as long as straight ones, and between vertices logarithms are linear.
         for d in [0.1, 0.3] {
             let expected = 1e-3 + 1.3_f64.ln() * d;
-            assert!((size(0.5 + d) / expected - 1.0).abs() < 0.1, "{d}: {} {expected}", size(0.5 + d));
+            let ratio = size(0.5 + d) / expected;
+            assert!(ratio > 0.9 && ratio < 1.3, "{d}: {ratio}");
         }
     }
 

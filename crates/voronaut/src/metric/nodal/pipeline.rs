@@ -62,7 +62,7 @@ pub struct Outcome {
     pub tensors: Vec<Tensor>,
     /// Its complexity.
     pub complexity: f64,
-    /// What the combined metric was multiplied by before its limits.
+    /// What the combined metric was multiplied by, in all.
     pub factor: f64,
     /// How many vertices were changed, and by what.
     pub touched: Touched,
@@ -167,7 +167,10 @@ impl Stage<'_> {
         let graded = self.at(factor)?;
         let times = |x: f64| restrict(&graded.iter().map(|&m| m * x.exp()).collect::<Vec<_>>(), self.limits);
         match root(AIM, |x| Ok((complexity(self.mesh, &times(x)?) / target).ln()))? {
-            Root::At(x) | Root::Jump(x) => self.outcome(factor, times(x)?),
+            Root::At(x) | Root::Jump(x) => {
+                let lifted = self.outcome(factor * x.exp(), times(x)?)?;
+                Ok(Outcome { touched: self.touched(factor, &graded)?, ..lifted })
+            }
             Root::Below(excess) | Root::Above(excess) => Err(out_of_reach(target, "about", target * excess.exp())),
         }
     }

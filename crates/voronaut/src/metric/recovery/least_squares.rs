@@ -11,7 +11,7 @@ pub(super) struct Solved<const N: usize> {
 /// Less of a column is rounding, or points that happen to lie on a curve of second order.
 const DEPENDENT: f64 = 1e-3;
 
-/// The coefficients c that make the sum of the squares of (row . c - value) least, by modified Gram-Schmidt (Bjorck 1967).
+/// The coefficients c that make the sum of the squares of (row . c - value) least, by modified Gram-Schmidt (Björck 1967).
 /// Columns come in the order of their importance: what the first explain is not left to the later ones.
 pub(super) fn solve<const N: usize>(rows: &mut [[f64; N]], values: &mut [f64]) -> Solved<N> {
     let (mut upper, mut along) = ([[0.0; N]; N], [0.0; N]);

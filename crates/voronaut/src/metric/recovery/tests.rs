@@ -1,3 +1,5 @@
+//! Orders of convergence, exactness, and what few vertices tell.
+
 use super::super::nodal::test_meshes::grid;
 use super::*;
 use crate::geometry::{Point, Vector};
