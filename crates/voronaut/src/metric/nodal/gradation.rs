@@ -10,7 +10,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// The metric with sizes that grow slowly: along no edge (p, q) does that at q ask for less than what the one at p has grown to.
-/// What it has grown to is Alauzet's (2010) in mixed space: the size h along each of its axes has become h times
+/// What it has grown to is that of mixed space (Alauzet 2010): the size h along each of its axes has become h times
 ///
 /// > (1 + ln(b) |pq| / h)^t (1 + ln(b) l)^(1 - t),
 ///
