@@ -61,7 +61,7 @@ pub(crate) fn print_metric(title: &str, told: &serde_json::Value, run: &Run) {
         ),
         ("sizes", format!("{} to {}", number(&told["size"]["min"]), number(&told["size"]["max"]))),
         ("anisotropy", format!("{} at most", number(&told["anisotropy"]["max"]))),
-        ("metric scale", told["metric_scale"].to_string()),
+        ("factor", format!("{}   (on the combined metric)", told["factor"])),
         ("touched", format!("of {} vertices: {limits}", told["vertices"])),
         ("time", format!("{:.2} s", told["seconds"]["total"].as_f64().unwrap_or(0.0))),
     ] {

@@ -101,9 +101,9 @@ fn told(args: &MetricArgs, mesh: &Mesh, made: &Outcome, figures: &Figures, secon
     let limit = |text: &Option<LimitText>| text.as_ref().map(LimitText::as_used);
     json!({
         "vertices": mesh.points.len(), "triangles": mesh.triangles.len(),
-        "complexity": made.complexity, "expected_vertices": (made.complexity / COMPLEXITY_PER_VERTEX).round(),
+        "complexity": made.complexity, "expected_vertices": (made.complexity / COMPLEXITY_PER_VERTEX).round() as u64,
         "size": { "min": figures.least, "max": figures.greatest }, "anisotropy": { "max": figures.anisotropy },
-        "metric_scale": made.factor, "touched": made.touched,
+        "factor": made.factor, "touched": made.touched,
         "seconds": { "total": seconds }, "peak_memory_bytes": report::peak_memory_bytes(), "version": env!("CARGO_PKG_VERSION"),
         "options": {
             "mesh": args.mesh, "metric": args.metric, "out": args.out, "norm": args.norm.to_string(),

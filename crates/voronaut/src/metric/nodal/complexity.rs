@@ -79,7 +79,7 @@ fn first_difference(a: f64, b: f64) -> f64 {
     b.exp() * if d > 0.0 { -(-d).exp_m1() / d } else { 1.0 }
 }
 
-/// The sum of h_k / (k + 2)!, h_k the complete homogeneous symmetric polynomials, about the mean: its terms fall like 1 / k!.
+/// The sum of `h_k / (k + 2)!`, with `h_k` the complete homogeneous symmetric polynomials, about the mean: its terms fall like 1 / k!.
 fn close_difference(values: [f64; 3]) -> f64 {
     const TERMS: u32 = 20;
     let mean = values.iter().sum::<f64>() / 3.0;

@@ -10,9 +10,9 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// The metric with sizes that grow slowly: along no edge (p, q) does that at q ask for less than what the one at p has grown to.
-/// What it has grown to is Alauzet's (2010) in mixed space: the size h_i along its i-th axis has become h_i times
+/// What it has grown to is that of mixed space (Alauzet 2010): the size h along each of its axes has become h times
 ///
-/// > (1 + ln(b) |pq| / h_i)^t (1 + ln(b) l)^(1 - t),
+/// > (1 + ln(b) |pq| / h)^t (1 + ln(b) l)^(1 - t),
 ///
 /// |pq| the Euclidean and l the metric length of the edge at p, b the `gradation_factor`, t [`GRADATION_EXPONENT`]. With t = 1
 /// all sizes grow by ln(b) per Euclidean length, and a metric is soon as isotropic as its least size; with t = 0 all grow by

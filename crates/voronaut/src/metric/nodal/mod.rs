@@ -1,7 +1,7 @@
 //! Metrics at the vertices of a planar mesh, one tensor each, and what adapters of meshes do with them.
 //!
 //! Between vertices they are log-Euclidean, as [`Sampled`](super::Sampled) has them. [`Pipeline`] does the operations below in
-//! the one order that meets all that was asked for; parameters have the names that PETSc and animate give them.
+//! the one order that meets all that was asked for; parameters have the names that `PETSc` and animate give them.
 //!
 //! | operation | what it is |
 //! |---|---|

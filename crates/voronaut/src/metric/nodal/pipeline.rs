@@ -62,7 +62,7 @@ pub struct Outcome {
     pub tensors: Vec<Tensor>,
     /// Its complexity.
     pub complexity: f64,
-    /// What the combined metric was multiplied by before its limits.
+    /// What the combined metric was multiplied by, in all.
     pub factor: f64,
     /// How many vertices were changed, and by what.
     pub touched: Touched,
@@ -85,6 +85,8 @@ pub struct Touched {
 pub const MET: f64 = 1e-6;
 /// What the search for the factor aims at.
 const AIM: f64 = 1e-9;
+/// What it aims at where there is a gradation: then the rest, of twice that at most, is a factor on what was graded.
+const LIFT: f64 = 5e-4;
 /// The complexity of a unit mesh of many vertices, for each of them: the area of two equilateral triangles, sqrt(3) / 2.
 pub const COMPLEXITY_PER_VERTEX: f64 = 0.866_025_403_784_438_6;
 
@@ -101,12 +103,13 @@ impl Pipeline {
         let gradation = self.gradation_factor.map(|factor| Gradation::new(mesh, factor)).transpose()?;
         let stage = Stage { mesh, combined: &combined, limits: &self.limits, gradation };
         let Some(target) = self.target_complexity else { return stage.outcome(1.0, stage.at(1.0)?) };
-        let excess = |x: f64| Ok((complexity(mesh, &stage.at(x.exp())?) / target).ln());
-        match root(AIM, excess)? {
-            Root::At(x) => stage.outcome(x.exp(), stage.at(x.exp())?),
-            Root::Jump(x) => stage.lifted(x.exp(), target),
-            Root::Below(least) => Err(out_of_reach(target, "at most", least)),
-            Root::Above(most) => Err(out_of_reach(target, "at least", most)),
+        // Gradation is dear, and its result may be lifted.
+        let aim = if stage.gradation.is_some() { LIFT } else { AIM };
+        let goal = target * (-aim).exp();
+        match root(aim, |x| Ok((complexity(mesh, &stage.at(x.exp())?) / goal).ln()))? {
+            Root::At(x) | Root::Jump(x) => stage.lifted(x.exp(), target),
+            Root::Below(excess) => Err(out_of_reach(target, "at most", goal * excess.exp())),
+            Root::Above(excess) => Err(out_of_reach(target, "at least", goal * excess.exp())),
         }
     }
 
@@ -129,8 +132,8 @@ impl Pipeline {
     }
 }
 
-fn out_of_reach(target: f64, bound: &str, excess: f64) -> Error {
-    let what = format!("a complexity of {target}: within the limits it is {bound} {:.6e}", target * excess.exp());
+fn out_of_reach(target: f64, bound: &str, reached: f64) -> Error {
+    let what = format!("a complexity of {target}: within the limits it is {bound} {reached:.6e}");
     Error::Limit { what, help: "widen h_min and h_max, or ask for a complexity in reach".into() }
 }
 
@@ -157,14 +160,18 @@ impl Stage<'_> {
         Ok(Outcome { complexity: complexity(self.mesh, &tensors), tensors, factor, touched })
     }
 
-    /// The order in which gradation goes about a metric jumps with the factor, and with it, by a little, the complexity. What is
-    /// missing is a factor on the result: above 1, so that the law of the gradation stays, but where limits are in the way.
+    /// What is missing is a factor on the result: above 1, so that the law of the gradation stays, but where limits are in the way.
+    /// Without it the target could not be met: the order in which gradation goes about a metric jumps with the factor of what it
+    /// is given, and with it, by a little, the complexity.
     fn lifted(&self, factor: f64, target: f64) -> Result<Outcome> {
         let graded = self.at(factor)?;
         let times = |x: f64| restrict(&graded.iter().map(|&m| m * x.exp()).collect::<Vec<_>>(), self.limits);
         match root(AIM, |x| Ok((complexity(self.mesh, &times(x)?) / target).ln()))? {
-            Root::At(x) | Root::Jump(x) => self.outcome(factor, times(x)?),
-            Root::Below(excess) | Root::Above(excess) => Err(out_of_reach(target, "about", excess)),
+            Root::At(x) | Root::Jump(x) => {
+                let lifted = self.outcome(factor * x.exp(), times(x)?)?;
+                Ok(Outcome { touched: self.touched(factor, &graded)?, ..lifted })
+            }
+            Root::Below(excess) | Root::Above(excess) => Err(out_of_reach(target, "about", target * excess.exp())),
         }
     }
 

@@ -52,9 +52,9 @@ const PATIENCE: u32 = 3;
 /// Beyond this, exp overflows.
 const FARTHEST: f64 = 600.0;
 /// Steps at most.
-const STEPS: u32 = 200;
-/// Each of so many steps halves the interval, whatever the values: they say nothing of a jump.
-const HALVING: u32 = 4;
+const STEPS: u32 = 100;
+/// Steps after which intervals are halved, whatever the values: they say nothing of a jump.
+const PROMPT: u32 = 20;
 
 /// Between an argument with a negative and one with a positive value.
 fn between(ends: [(f64, f64); 2], tolerance: f64, mut f: impl FnMut(f64) -> Result<f64>) -> Result<Root> {
@@ -64,7 +64,7 @@ fn between(ends: [(f64, f64); 2], tolerance: f64, mut f: impl FnMut(f64) -> Resu
         if high - low <= JUMP * tolerance {
             break;
         }
-        let x = if i % HALVING == 0 { 0.5 * (low + high) } else { low + (high - low) * (below / (below - above)) };
+        let x = if i > PROMPT { 0.5 * (low + high) } else { low + (high - low) * (below / (below - above)) };
         let value = f(x)?;
         if value.abs() <= tolerance {
             return Ok(Root::At(x));

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 
 /// The floor of [`enforce_spd`], as a share of the greatest absolute eigenvalue.
-pub const LEAST_SHARE: f64 = 1e-8;
+pub const LEAST_SHARE: f64 = 1e-6;
 
 /// The tensor with the same axes and the absolute values of the eigenvalues, at least `floor` each (which is positive): the
 /// metric in which the error of linear interpolation is the same in all directions.
@@ -14,7 +14,7 @@ pub fn absolute(hessian: Tensor, floor: f64) -> Tensor {
 }
 
 /// [`absolute`] of Hessians, such that every one is a metric: the floor is [`LEAST_SHARE`] of the greatest absolute eigenvalue
-/// of all, so that no size is more than ten thousand times another and no anisotropy is more than that. Where a function is
+/// of all, so that no size is more than a thousand times another and no anisotropy is more than that. Where a function is
 /// linear nothing is asked for, and a floor that goes along with the function's units is the least that one can do; limits
 /// on sizes do more. Of Hessians that are all zero any metric is optimal: the identity.
 ///

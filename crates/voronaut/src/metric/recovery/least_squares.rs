@@ -11,7 +11,7 @@ pub(super) struct Solved<const N: usize> {
 /// Less of a column is rounding, or points that happen to lie on a curve of second order.
 const DEPENDENT: f64 = 1e-3;
 
-/// The coefficients c that make the sum of the squares of (row . c - value) least, by modified Gram-Schmidt (Bjorck 1967).
+/// The coefficients c that make the sum of the squares of (row . c - value) least, by modified Gram-Schmidt (Björck 1967).
 /// Columns come in the order of their importance: what the first explain is not left to the later ones.
 pub(super) fn solve<const N: usize>(rows: &mut [[f64; N]], values: &mut [f64]) -> Solved<N> {
     let (mut upper, mut along) = ([[0.0; N]; N], [0.0; N]);
@@ -28,13 +28,19 @@ pub(super) fn solve<const N: usize>(rows: &mut [[f64; N]], values: &mut [f64]) -
             continue;
         }
         upper[k][k] = norm;
-        rows.iter_mut().for_each(|row| row[k] /= norm);
+        for row in rows.iter_mut() {
+            row[k] /= norm;
+        }
         for j in k + 1..N {
             upper[k][j] = rows.iter().map(|row| row[k] * row[j]).sum();
-            rows.iter_mut().for_each(|row| row[j] -= upper[k][j] * row[k]);
+            for row in rows.iter_mut() {
+                row[j] -= upper[k][j] * row[k];
+            }
         }
         along[k] = rows.iter().zip(values.iter()).map(|(row, value)| row[k] * value).sum();
-        rows.iter().zip(values.iter_mut()).for_each(|(row, value)| *value -= along[k] * row[k]);
+        for (row, value) in rows.iter().zip(values.iter_mut()) {
+            *value -= along[k] * row[k];
+        }
     }
     Solved { coefficients: back_substituted(&upper, &along), independence }
 }

@@ -43,7 +43,11 @@ impl FromStr for Recovery {
         match text {
             "l2" => Ok(Recovery::L2),
             "fit" => Ok(Recovery::Fit),
-            _ => Err(Error::parse(format!("recovery {text}"), "no such way to recover a Hessian", "choose l2 or fit")),
+            _ => Err(Error::parse(
+                format!("recovery {text}"),
+                "no such way to recover a Hessian (l2, fit)",
+                "choose l2 or fit",
+            )),
         }
     }
 }

@@ -40,7 +40,9 @@ impl<'a> Averaging<'a> {
         let mut areas = vec![0.0; mesh.points.len()];
         for &t in &mesh.triangles {
             let [a, b, c] = mesh.corners_of(t);
-            t.iter().for_each(|&v| areas[v as usize] += (b - a).cross(c - a).abs());
+            for v in t {
+                areas[v as usize] += (b - a).cross(c - a).abs();
+            }
         }
         Self { mesh, around: Neighbours::of(mesh), is_border: border(mesh), areas }
     }
@@ -66,13 +68,13 @@ impl<'a> Averaging<'a> {
     /// Replaces values at the border by linear polynomials fitted to values inside, as far as there are any.
     fn extrapolate(&self, values: &mut [f64]) {
         let border: Vec<usize> = (0..values.len()).filter(|&v| self.is_border[v]).collect();
-        let found: Vec<Option<f64>> = border.par_iter().map(|&v| self.from_inside(values, v)).collect();
+        let found: Vec<Option<f64>> = border.par_iter().map(|&v| self.extrapolated(values, v)).collect();
         for (v, value) in border.into_iter().zip(found) {
             values[v] = value.unwrap_or(values[v]);
         }
     }
 
-    fn from_inside(&self, values: &[f64], v: usize) -> Option<f64> {
+    fn extrapolated(&self, values: &[f64], v: usize) -> Option<f64> {
         let mut rings = Rings::new(&self.around, v);
         for _ in 0..RINGS {
             if !rings.grow() {
@@ -109,7 +111,9 @@ fn border(mesh: &Mesh) -> Vec<bool> {
     edges.sort_unstable();
     let mut is_border = vec![false; mesh.points.len()];
     for edge in edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1) {
-        edge[0].iter().for_each(|&v| is_border[v as usize] = true);
+        for v in edge[0] {
+            is_border[v as usize] = true;
+        }
     }
     is_border
 }

@@ -37,6 +37,9 @@ impl<'a> Rings<'a> {
     }
 }
 
+/// Less than this share of its square is the rounding of a covariance's determinant.
+const FLAT: f64 = 1e-24;
+
 /// Linear coordinates in which vertices around a centre have the identity as their covariance: on meshes of any anisotropy they
 /// see each other at distances of about one.
 pub(super) struct Frame {
@@ -56,8 +59,6 @@ impl Frame {
         let covariance = offsets.map(|d| d * (1.0 / longest)).fold(Tensor::default(), |sum, d| {
             sum + Tensor::new(d.x * d.x, d.x * d.y, d.y * d.y) * (1.0 / vertices.len() as f64)
         });
-        /// Less than this share of its square is the rounding of a covariance.
-        const FLAT: f64 = 1e-24;
         let trace = covariance.xx + covariance.yy;
         if covariance.determinant() <= FLAT * trace * trace {
             return None;

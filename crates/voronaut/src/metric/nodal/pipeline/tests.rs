@@ -1,3 +1,5 @@
+//! Targets met, limits kept, sources on one scale.
+
 use super::super::test_meshes::{grid, tensors_at};
 use super::super::{Limit, grade, normalise};
 use super::*;
