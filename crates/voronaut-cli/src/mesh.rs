@@ -15,7 +15,7 @@ use voronaut::metric::MetricField;
 use voronaut::output::Report;
 use voronaut::output::report::{NetFigures, Seconds};
 use voronaut::quality::{metric_quality, unmet, validity};
-use voronaut::recipe::{self, Aim, GradedAt, Meshed, PlanarMetric};
+use voronaut::recipe::{self, GradedAt, Meshed};
 use voronaut::surface::Given;
 use voronaut::{Error, Result};
 
@@ -33,12 +33,11 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     };
     demand_planar(args)?;
     let at = GradedAt::of(args.options().vertices, args.complexity);
-    let PlanarMetric { field: metric, function } =
-        metric::in_plane(&args.metric, &domain, &args.domain, &args.metric_choices, at)?;
-    let aim = function.as_deref().map(|function| Aim { function, norm: args.metric_choices.norm });
+    let made = metric::in_plane(&args.metric, &domain, &args.domain, &args.metric_choices, at)?;
+    let (metric, aim) = (made.field.as_ref(), made.aim(args.metric_choices.norm));
     let meshed = {
         let bar = Bar::new(args.run.quiet, args.run.verbose);
-        recipe::mesh_for(&domain, metric.as_ref(), aim, &args.options(), &bar)?
+        recipe::mesh_for(&domain, metric, aim, &args.options(), &bar)?
     };
     let found = validity(&meshed.mesh);
     found.demand().map_err(ours)?;

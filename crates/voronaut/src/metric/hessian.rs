@@ -88,7 +88,7 @@ mod tests {
     fn what_has_no_second_derivatives_is_refused() {
         let message = |text| hessian(text, Norm::default()).unwrap_err().to_string();
         assert!(message("3*x - y + 1").contains("vanish everywhere"));
-        assert!(message("1/(x - x)").contains("second derivatives are not finite at ("));
+        assert!(message("sqrt(x - 0.5)").contains("second derivatives are not finite at ("));
         assert!(message("x +").contains("expression, column"));
     }
 }

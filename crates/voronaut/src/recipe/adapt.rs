@@ -1,7 +1,7 @@
 //! The mesh adapted to a solution, again and again: solve, recover, mesh, carry over.
 
 use super::{
-    Aim, GradedAt, MeshOptions, Meshed, MetricOptions, PlanarMetric, mesh_for, metric_of_function, metric_of_solution,
+    GradedAt, MeshOptions, Meshed, MetricOptions, PlanarMetric, mesh_for, metric_of_function, metric_of_solution,
 };
 use crate::domain::Domain;
 use crate::error::{Error, Result};
@@ -115,7 +115,7 @@ impl Work<'_> {
     }
 
     fn solve(&self, solver: &mut Solver, each: &mut dyn FnMut(&Step) -> Result<()>) -> Result<()> {
-        let even = PlanarMetric { field: Box::new(Uniform::default()), function: None };
+        let even = PlanarMetric::plain(Uniform::default());
         let nothing = Solutions { dimension: 2, ..Solutions::default() };
         let mut step = Step::new(0, None, self.mesh(&even)?, nothing, None);
         each(&step)?;
@@ -137,8 +137,7 @@ impl Work<'_> {
     }
 
     fn mesh(&self, metric: &PlanarMetric) -> Result<Meshed> {
-        let norm = self.options.metric.norm;
-        let aim = metric.function.as_deref().map(|function| Aim { function, norm });
+        let aim = metric.aim(self.options.metric.norm);
         mesh_for(self.domain, metric.field.as_ref(), aim, &self.options.mesh, self.progress)
     }
 

@@ -1,5 +1,6 @@
 //! From what the user says of a metric to the field itself, with its files read.
 
+use super::Aim;
 use super::background::{read, smooth_metric};
 use super::graded::{GradedAt, grade_metric};
 use crate::domain::{Domain, read_text};
@@ -9,8 +10,9 @@ use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::metric::{
     Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Recovered, Recovery, Sampled, ScalarField,
-    Snapshot,
+    Snapshot, rough_complexity,
 };
+use crate::quality::interpolation_error;
 use std::path::{Path, PathBuf};
 
 /// Sweeps of smoothing (`--smooth-metric`, TOML key and Python keyword `smooth_metric`) unless told otherwise.
@@ -53,7 +55,26 @@ pub struct PlanarMetric {
     pub field: Box<dyn MetricField>,
     /// The function whose interpolation it is for, if it is for one and nothing else was asked of it.
     pub function: Option<Box<dyn ScalarField>>,
+    /// The error to which that function is known: zero of a formula; of a solution that of its interpolation on its own mesh.
+    pub known_to: f64,
 }
+
+impl PlanarMetric {
+    /// A metric that is for no function.
+    pub fn plain(field: impl MetricField + 'static) -> Self {
+        Self { field: Box::new(field), function: None, known_to: 0.0 }
+    }
+
+    /// What a mesh by it is for.
+    pub fn aim(&self, norm: Norm) -> Option<Aim<'_>> {
+        let known_to = self.known_to;
+        self.function.as_deref().map(|function| Aim { function, norm, known_to })
+    }
+}
+
+/// In the metric of second derivatives no size is greater than this share of the domain's extent: where a function is linear in some
+/// direction, longer edges would gain nothing, and make a metric that no straight edges can honour.
+const LONGEST: f64 = 1.0 / 3.0;
 
 /// The field that a specification names on a domain. `own` is the file that the domain comes from; `at` the multiple of the metric
 /// in which edges are to have length one, for gradation.
@@ -74,18 +95,20 @@ pub fn metric(
             let what = "only a .sol metric is given on a background mesh";
             return Err(Error::parse(format!("background {}", mesh.display()), what, "leave the background out"));
         }
-        return finished(named(spec, domain, options.norm)?, domain, None, options, at);
+        return finished(named(spec, domain, options, at)?, domain, None, options, at);
     };
     let values = sol::read(&read_text(path)?, &path.display().to_string())?.values;
     let mesh = read(background.or(own), path, domain)?;
     let named = match (spec, &values) {
-        (MetricSpec::RecoveredHessian(_), SolutionValues::Scalar(values)) => recovered(&mesh, values, options)?,
+        (MetricSpec::RecoveredHessian(_), SolutionValues::Scalar(values)) => {
+            recovered(&mesh, values, domain, options, at)?
+        }
         (MetricSpec::RecoveredHessian(_), _) => {
             let help = "give one number (type 1) per vertex";
             return Err(Error::parse(path.display().to_string(), "the values are no scalars", help));
         }
-        (_, SolutionValues::Scalar(sizes)) => (Box::new(Sampled::sizes(&mesh, sizes)?) as Box<dyn MetricField>, None),
-        _ => (Box::new(sampled(&mesh, &values, &path.display().to_string())?) as Box<dyn MetricField>, None),
+        (_, SolutionValues::Scalar(sizes)) => PlanarMetric::plain(Sampled::sizes(&mesh, sizes)?),
+        _ => PlanarMetric::plain(sampled(&mesh, &values, &path.display().to_string())?),
     };
     finished(named, domain, Some(&mesh), options, at)
 }
@@ -103,8 +126,8 @@ pub fn metric_of_solution(
     at: GradedAt,
 ) -> Result<PlanarMetric> {
     let named = match values {
-        SolutionValues::Scalar(values) => recovered(mesh, values, options)?,
-        _ => (Box::new(sampled(mesh, values, "the solution")?) as Box<dyn MetricField>, None),
+        SolutionValues::Scalar(values) => recovered(mesh, values, domain, options, at)?,
+        _ => PlanarMetric::plain(sampled(mesh, values, "the solution")?),
     };
     finished(named, domain, Some(mesh), options, at)
 }
@@ -119,7 +142,7 @@ pub fn metric_of_function(
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
-    finished(optimal(function, domain, options.norm)?, domain, None, options, at)
+    finished(optimal(function, domain, options, at)?, domain, None, options, at)
 }
 
 /// The field that a text names on a domain, when nothing else is asked of it and there is no file.
@@ -131,32 +154,48 @@ pub fn metric_named(text: &str, domain: &Domain) -> Result<Box<dyn MetricField>>
     Ok(made.field)
 }
 
-/// A field, and the function that it is for.
-type Named = (Box<dyn MetricField>, Option<Box<dyn ScalarField>>);
-
-fn named(spec: &MetricSpec, domain: &Domain, norm: Norm) -> Result<Named> {
-    let field: Box<dyn MetricField> = match spec {
-        MetricSpec::Uniform(field) => Box::new(*field),
-        MetricSpec::Swirl(field) => Box::new(*field),
-        MetricSpec::Shock(field) => Box::new(*field),
-        MetricSpec::Formula(field) => Box::new(field.clone()),
-        MetricSpec::Boundary(sizes) => Box::new(Boundary::new(&domain.boundary(), *sizes)?),
-        MetricSpec::Hessian(function) => return optimal(&function.clone().into(), domain, norm),
+fn named(spec: &MetricSpec, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
+    Ok(match spec {
+        MetricSpec::Uniform(field) => PlanarMetric::plain(*field),
+        MetricSpec::Swirl(field) => PlanarMetric::plain(*field),
+        MetricSpec::Shock(field) => PlanarMetric::plain(*field),
+        MetricSpec::Formula(field) => PlanarMetric::plain(field.clone()),
+        MetricSpec::Boundary(sizes) => PlanarMetric::plain(Boundary::new(&domain.boundary(), *sizes)?),
+        MetricSpec::Hessian(function) => return optimal(&function.clone().into(), domain, options, at),
         MetricSpec::File(path) | MetricSpec::RecoveredHessian(path) => {
             unreachable!("{} is read with its mesh", path.display())
         }
-    };
-    Ok((field, None))
+    })
 }
 
-fn optimal(function: &Snapshot, domain: &Domain, norm: Norm) -> Result<Named> {
-    let field = Hessian::new(function.clone(), norm, &domain.triangles())?;
-    Ok((Box::new(field), Some(Box::new(function.clone()))))
+fn optimal(function: &Snapshot, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
+    let field = Hessian::new(function.clone(), options.norm, &domain.triangles())?;
+    let field = within_domain(field, domain, at)?;
+    Ok(PlanarMetric { field: Box::new(field), function: Some(Box::new(function.clone())), known_to: 0.0 })
 }
 
-fn recovered(mesh: &Mesh, values: &[f64], options: &MetricOptions) -> Result<Named> {
+fn recovered(
+    mesh: &Mesh,
+    values: &[f64],
+    domain: &Domain,
+    options: &MetricOptions,
+    at: GradedAt,
+) -> Result<PlanarMetric> {
     let function = Recovered::new(mesh, values, options.recovery)?;
-    Ok((Box::new(function.metric(options.norm)?), Some(Box::new(function))))
+    let field = within_domain(function.metric(options.norm)?, domain, at)?;
+    let known_to = interpolation_error(mesh, &function, options.norm)?.norm;
+    Ok(PlanarMetric { field: Box::new(field), function: Some(Box::new(function)), known_to })
+}
+
+/// The field with sizes of at most [`LONGEST`] of the domain's extent, in the multiple in which edges have length one.
+fn within_domain<F: MetricField + 'static>(field: F, domain: &Domain, at: GradedAt) -> Result<Bounded<F>> {
+    let scale = match at {
+        GradedAt::Scale(scale) => scale,
+        GradedAt::Complexity(target) => target / rough_complexity(&field, &domain.triangles())?,
+    };
+    let extent = domain.bounds().extent();
+    let h_max = Some(LONGEST * extent.x.max(extent.y) * scale.sqrt());
+    Bounded::new(field, Bounds { h_max, ..Bounds::default() })
 }
 
 fn sampled(mesh: &Mesh, values: &SolutionValues, place: &str) -> Result<Sampled> {
@@ -170,17 +209,18 @@ fn sampled(mesh: &Mesh, values: &SolutionValues, place: &str) -> Result<Sampled>
 
 /// Limits, then smoothing, then gradation. A function counts only where none of them was asked for.
 fn finished(
-    (field, function): Named,
+    named: PlanarMetric,
     domain: &Domain,
     own: Option<&Mesh>,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
     options.bounds.check()?;
+    let PlanarMetric { field, function, known_to } = named;
     let field: Box<dyn MetricField> =
         if options.bounds == Bounds::default() { field } else { Box::new(Bounded::new(field, options.bounds)?) };
     let field = smooth_metric(field, domain, own, options.smooth_metric)?;
     let field = grade_metric(field, domain, own, options.gradation, at)?;
     let is_free = options.bounds == Bounds::default() && options.smooth_metric == 0 && options.gradation.is_none();
-    Ok(PlanarMetric { field, function: function.filter(|_| is_free) })
+    Ok(PlanarMetric { field, function: function.filter(|_| is_free), known_to })
 }

@@ -40,13 +40,13 @@ pub(super) fn grade_metric(
     at: GradedAt,
 ) -> Result<Box<dyn MetricField>> {
     let Some(factor) = gradation_factor else { return Ok(field) };
-    let sampled = graded(field.as_ref(), &sampling(field.as_ref(), domain, own)?, factor, at)?;
+    let sampled = graded(field.as_ref(), sampling(field.as_ref(), domain, own)?.as_ref(), factor, at)?;
     if own.is_some() {
         return Ok(Box::new(sampled));
     }
     // The metric as it was is coarse where it is to be finer; what was made of it there has a background that is fine enough.
     let mesh = sampling(&sampled, domain, None)?;
-    Ok(Box::new(graded(field.as_ref(), &mesh, factor, at)?))
+    Ok(Box::new(graded(field.as_ref(), mesh.as_ref(), factor, at)?))
 }
 
 /// The field graded at the vertices of a mesh, in its own units.

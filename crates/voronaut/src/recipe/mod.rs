@@ -118,6 +118,11 @@ impl Default for MeshOptions {
     }
 }
 
+/// A function is polished for that has at least this share of the error to which it is known.
+const KNOWN: f64 = 0.5;
+/// What is said of others.
+const NOT_KNOWN: &str = "the solution's own mesh is too coarse to polish this one: adapt again with a solution on it";
+
 /// The result of meshing.
 #[derive(Clone, Debug, Default)]
 pub struct Meshed {
@@ -165,6 +170,9 @@ pub struct Aim<'a> {
     pub function: &'a dyn ScalarField,
     /// The norm.
     pub norm: Norm,
+    /// The error to which the function is known. A mesh whose error is less than half of that is not polished: the rest would be
+    /// fitted to what is not known.
+    pub known_to: f64,
 }
 
 /// Meshes a domain by a metric, for any purpose: [`mesh_for`] without an aim.
@@ -362,9 +370,14 @@ impl<'a> Job<'a> {
         }
     }
 
-    fn polish(&self, dual: &mut Dual, aim: Aim) -> Result<Polished> {
+    fn polish(&mut self, dual: &mut Dual, aim: Aim) -> Result<Polished> {
         let sweeps = self.options.polish;
         self.progress.stage("polishing", sweeps as u64);
+        let before = polish(dual, aim.function, aim.norm, 0, self.progress)?;
+        if before.error.first().is_some_and(|&error| error < KNOWN * aim.known_to) {
+            self.notes.push(NOT_KNOWN.into());
+            return Ok(before);
+        }
         polish(dual, aim.function, aim.norm, sweeps, self.progress)
     }
 

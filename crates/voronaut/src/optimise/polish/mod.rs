@@ -54,8 +54,11 @@ pub fn polish(
     progress: &dyn Progress,
 ) -> Result<Polished> {
     let mut polished = Polished::default();
-    let Some(mut work) = Work::new(dual, function, norm)?.filter(|_| sweeps > 0) else { return Ok(polished) };
+    let Some(mut work) = Work::new(dual, function, norm)? else { return Ok(polished) };
     polished.error.push(work.norm());
+    if sweeps == 0 {
+        return Ok(polished);
+    }
     for _ in 0..sweeps {
         polished.flips += work.flip_all();
         polished.moves += work.move_all();
