@@ -9,11 +9,12 @@ use std::time::Instant;
 use voronaut::domain::{Domain, from_mesh};
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
-use voronaut::metric::MetricField;
+use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
 use voronaut::output::Report;
 use voronaut::output::report::Strayed;
 use voronaut::quality::{
-    Unmet, fidelity, metric_quality, surface_fidelity, surface_quality, surface_unmet, unmet, validity,
+    Unmet, fidelity, interpolation_error, metric_quality, surface_fidelity, surface_quality, surface_unmet, unmet,
+    validity,
 };
 use voronaut::recipe::GradedAt;
 use voronaut::surface::{self, Given, Implicit, Input, Mended, Surface};
@@ -30,7 +31,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     let fault = found.demand();
     let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
     report.options = json!({
-        "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain,
+        "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain, "function": args.function, "norm": args.metric_choices.norm.to_string(),
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
         "smooth_metric": args.metric_choices.smooth_metric, "gradation": args.metric_choices.gradation, "repair": args.damage.repair,
     });
@@ -87,6 +88,10 @@ fn in_plane(
     }
     let unmet = metric.as_ref().map(|metric| unmet(mesh, metric.as_ref())).transpose()?;
     report.unmet = unmet.as_ref().map(Unmet::figures);
+    if let Some(text) = &args.function {
+        let function = Snapshot::from(Expression::parse(text, Variables::Plane)?);
+        report.interpolation = Some(interpolation_error(mesh, &function, args.metric_choices.norm)?);
+    }
     report.fidelity = domain.map(|domain| Strayed::Boundary(fidelity(mesh, &domain.boundary())));
     report.seconds.total = start.elapsed().as_secs_f64();
     let drawn = Drawn::default().with_unmet(&args.outputs, unmet);
@@ -130,6 +135,7 @@ fn demand_for_surfaces(args: &CheckArgs) -> Result<()> {
     let refused = [
         (args.outputs.picture.is_some(), "a picture of the mesh of a surface", "leave out --picture"),
         (args.outputs.histograms.is_some(), "histograms of the mesh of a surface", "leave out --histograms"),
+        (args.function.is_some(), "interpolation on the mesh of a surface", "leave out --function"),
     ];
     match refused.into_iter().find(|(is_asked, ..)| *is_asked) {
         Some((_, what, help)) => Err(Error::Unsupported { what: what.into(), help: help.into() }),

@@ -14,8 +14,8 @@ use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::output::Report;
 use voronaut::output::report::{NetFigures, Seconds};
-use voronaut::quality::{metric_quality, unmet, validity};
-use voronaut::recipe::{self, GradedAt, Meshed};
+use voronaut::quality::{interpolation_error, metric_quality, unmet, validity};
+use voronaut::recipe::{self, Aim, GradedAt, Meshed};
 use voronaut::surface::Given;
 use voronaut::{Error, Result};
 
@@ -48,6 +48,8 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let unmet = unmet(&meshed.mesh, &scaled)?;
     report.unmet = Some(unmet.figures());
     report.histograms = files::histograms(&args.outputs, &meshed.mesh, &scaled)?;
+    let error = |aim: Aim| interpolation_error(&meshed.mesh, aim.function, aim.norm);
+    report.interpolation = aim.map(error).transpose()?;
     report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     let drawn = drawn(args, &domain, &meshed.mesh, &scaled)?;
     let drawn =
@@ -111,6 +113,7 @@ pub(crate) fn options(args: &MeshArgs) -> Value {
     let more = json!({
         "domain": args.domain, "metric": args.metric, "out": args.out, "background": args.metric_choices.background,
         "smooth_metric": args.metric_choices.smooth_metric, "gradation": args.metric_choices.gradation,
+        "norm": args.metric_choices.norm.to_string(), "recovery": args.metric_choices.recovery,
         "ar": args.features().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
         "picture": args.outputs.picture, "pixels": args.outputs.pixels, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
         "repair": args.damage.repair,

@@ -112,6 +112,10 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
         let (picked, unpicked) = (picks.picked, picks.unpicked);
         line("stars", format!("{disagree} inconsistencies; {rounds} rounds, {picked} vertices picked, {unpicked} not"));
     }
+    if let Some(found) = &report.interpolation {
+        let (error, max) = (found.norm, found.max);
+        line("error", format!("{error:.3e} in L^{}, {:.3e} at most, at {}", found.p, max.value, position(max.at)));
+    }
     if let Some(scale) = report.metric_scale {
         line("metric scale", format!("{scale}"));
     }

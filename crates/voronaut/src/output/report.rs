@@ -8,7 +8,8 @@ use crate::geodesic::MarchCounters;
 use crate::net::Net;
 use crate::optimise::{Ending, Polished, Relaxed};
 use crate::quality::{
-    Angles, EdgeLengths, Fidelity, Histograms, MetricQuality, Quality, SurfaceFidelity, UnmetFigures, Validity, Worst,
+    Angles, EdgeLengths, Fidelity, Histograms, InterpolationError, MetricQuality, Quality, SurfaceFidelity,
+    UnmetFigures, Validity, Worst,
 };
 use crate::realisation::{self, Found, Realisation};
 use serde::ser::SerializeMap;
@@ -50,6 +51,9 @@ pub struct Report {
     pub dual: Option<Dual>,
     /// How the seeds were relaxed.
     pub relaxation: Option<Relaxed>,
+    /// The error of linear interpolation of the function that the mesh is for, or that was asked about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interpolation: Option<InterpolationError>,
     /// How the error of interpolation was lowered.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub polished: Option<Polished>,

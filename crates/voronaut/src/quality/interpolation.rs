@@ -6,6 +6,7 @@ use crate::geometry::{Node, Point, combine, radon};
 use crate::mesh::Mesh;
 use crate::metric::{Norm, ScalarField};
 use rayon::prelude::*;
+use std::fmt;
 
 /// Each triangle is cut into so many times so many parts, with a rule of degree 5 on each.
 const PARTS: u32 = 4;
@@ -29,6 +30,15 @@ pub enum Exponent {
     Finite(f64),
     /// `"inf"`.
     Infinite(&'static str),
+}
+
+impl fmt::Display for Exponent {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Exponent::Finite(p) => p.fmt(f),
+            Exponent::Infinite(name) => f.write_str(name),
+        }
+    }
 }
 
 /// The error of linear interpolation of a function on a planar mesh, by 112 values in each triangle: exact for the squares of errors

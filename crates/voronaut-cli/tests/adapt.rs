@@ -1,0 +1,128 @@
+//! `voronaut loop`: to a formula and through a solver; and `hessian:` metrics of the other commands.
+
+mod common;
+
+use common::{Place, stderr};
+use serde_json::Value;
+
+fn json(place: &Place, name: &str) -> Value {
+    serde_json::from_slice(&place.read(name)).unwrap()
+}
+
+/// A solver in the shell's own language: the values of a function of x at the vertices, of a mesh in Medit's text.
+const SOLVER: &str = r#"awk '/^Vertices/{getline n; print "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n" n "\n1 1"; for(i=0;i<n;i++){getline; d=20*($1-0.3-0.05*{step}); print (exp(d)-exp(-d))/(exp(d)+exp(-d))}}' {mesh} > {out}"#;
+
+#[test]
+fn ten_steps_of_a_moving_front() {
+    let place = Place::new();
+    let metric = "hessian:tanh(30*(sqrt((x-0.3-0.4*t)^2 + (y-0.5)^2) - 0.2))";
+    let words = ["loop", "rect:0,0,1,1", "--metric", metric, "-n", "600", "--iterations", "10", "-o", "front.mesh"];
+    let run = place.run(&[&words[..], &["--every", "--report", "loop.json"]].concat());
+    assert!(run.status.success(), "{}", stderr(&run));
+    assert_eq!(String::from_utf8_lossy(&run.stdout).lines().count(), 10);
+    let report = json(&place, "loop.json");
+    let steps = report["steps"].as_array().unwrap();
+    let border = |step: &Value| step["boundary_vertices"].as_u64().unwrap();
+    for (step, number) in steps.iter().zip(1..) {
+        let name = format!("front.{number:02}.mesh");
+        let checked = place.run(&["check", &name, "--domain", "rect:0,0,1,1", "-q"]);
+        assert!(checked.status.success(), "{name}: {}", stderr(&checked));
+        assert_eq!(step["vertices"], 600);
+        assert!(border(step) as f64 <= 1.1 * border(&steps[0]) as f64, "{step}");
+        if number > 1 {
+            let [before, after] = ["before", "after"].map(|when| step["fields"][0][when][0]["mass"].as_f64().unwrap());
+            assert!((after - before).abs() <= 1e-12 * before.abs(), "{before} {after}");
+        }
+    }
+    // The mass of the last step is that of the first: what is carried is never made anew.
+    let masses = |step: &Value, when: &str| step["fields"][0][when][0]["mass"].as_f64().unwrap();
+    let (first, last) = (masses(&steps[1], "before"), masses(&steps[9], "after"));
+    assert!((last - first).abs() <= 1e-10 * first.abs(), "{first} {last}");
+    let carried = String::from_utf8(place.read("front.10.sol")).unwrap();
+    assert!(carried.contains("SolAtVertices\n600\n2 1 1\n"), "{}", &carried[..200]);
+}
+
+#[test]
+fn a_solver_is_run_on_every_mesh() {
+    let place = Place::new();
+    let words = ["loop", "rect:0,0,1,1", "--solver", SOLVER, "-n", "300", "--iterations", "3", "-o", "out.mesh"];
+    let run = place.run(&[&words[..], &["--report", "loop.json"]].concat());
+    assert!(run.status.success(), "{}", stderr(&run));
+    assert_eq!(place.files(), ["loop.json", "out.mesh", "out.sol"]);
+    let report = json(&place, "loop.json");
+    let steps = report["steps"].as_array().unwrap();
+    assert_eq!(steps.len(), 4);
+    assert!(steps[0]["fields"].is_null() && steps[3]["fields"][0]["components"] == 1);
+    assert!(steps[1..].iter().all(|step| step["mass_drift"].as_f64().unwrap() < 1e-10));
+    // The front is at x = 0.45 in the third step: there are the vertices.
+    let mesh = String::from_utf8(place.read("out.mesh")).unwrap();
+    let near = mesh.lines().filter_map(|line| line.split(' ').next()?.parse::<f64>().ok());
+    assert!(near.filter(|x| (x - 0.45).abs() < 0.1).count() > 120);
+}
+
+#[test]
+fn solvers_at_fault_are_named_and_leave_nothing() {
+    let place = Place::new();
+    for (solver, expected) in [
+        ("exit 3 # {mesh} {out}", "solver: step 1: `exit 3"),
+        ("true {mesh} {out}", "wrote no solution"),
+        ("true {mesh}", "{out} is missing"),
+        (
+            "printf 'MeshVersionFormatted 2 Dimension 2 SolAtVertices 2 1 1 0.5 1' > {out} # {mesh}",
+            "SolAtVertices has 2 entries, and the mesh 50 vertices",
+        ),
+        ("cp {mesh} {out}", "out.sol"),
+    ] {
+        let words = ["loop", "rect:0,0,1,1", "--solver", solver, "-n", "50", "--iterations", "2", "-o", "out.mesh"];
+        let run = place.run(&words);
+        assert_eq!(run.status.code(), Some(1), "{solver}");
+        assert!(stderr(&run).contains(expected) && stderr(&run).contains("help:"), "{solver}: {}", stderr(&run));
+        assert!(place.files().is_empty(), "{:?}", place.files());
+    }
+}
+
+#[test]
+fn what_makes_no_loop_is_refused() {
+    let place = Place::new();
+    let base = ["loop", "rect:0,0,1,1", "-n", "50", "--iterations", "2"];
+    for (more, code, expected) in [
+        (&["--metric", "uniform", "-o", "a.mesh"][..], 1, "changes with nothing"),
+        (&["--metric", "hessian:x^2 + z", "-o", "a.mesh"], 1, "z is not a variable"),
+        (&["--metric", "hessian:x^2*t", "-o", "a.sol"], 1, "a.sol"),
+        (&["--metric", "hessian:x", "-o", "a.mesh"], 1, "second derivatives vanish everywhere"),
+        (&["-o", "a.mesh"], 2, "--metric"),
+        (&["--metric", "hessian:x^2", "--solver", "x {mesh} {out}", "-o", "a.mesh"], 2, "cannot be used with"),
+        (&["--metric", "hessian:x^2", "--time", "1", "-o", "a.mesh"], 2, "two times"),
+    ] {
+        let run = place.run(&[&base[..], more].concat());
+        assert_eq!(run.status.code(), Some(code), "{more:?}: {}", stderr(&run));
+        assert!(stderr(&run).contains(expected), "{more:?}: {}", stderr(&run));
+        assert!(place.files().is_empty(), "{:?}", place.files());
+    }
+}
+
+#[test]
+fn a_hessian_of_a_file_is_that_of_its_formula() {
+    let place = Place::new();
+    let metric = "hessian:x^2 + 10*y^2";
+    let words = ["mesh", "rect:0,0,1,1", "--metric", metric, "-n", "400", "-o", "a.mesh", "--report", "a.json"];
+    assert!(place.run(&words).status.success());
+    let mesh = String::from_utf8(place.read("a.mesh")).unwrap();
+    let rows = mesh.split("Vertices").nth(1).unwrap().lines().skip(1).map(|line| line.trim().to_string());
+    let rows: Vec<String> = rows.skip_while(|line| line.split(' ').count() < 2).take(400).collect();
+    let value = |row: &String| {
+        let [x, y]: [f64; 2] = std::array::from_fn(|i| row.split(' ').nth(i).unwrap().parse().unwrap());
+        format!("{}\n", x * x + 10.0 * y * y)
+    };
+    let head = "MeshVersionFormatted 2\nDimension 2\nSolAtVertices 400\n1 1\n";
+    place.put("a.sol", head.to_string() + &rows.iter().map(value).collect::<String>());
+    let words = ["mesh", "rect:0,0,1,1", "--metric", "hessian:a.sol", "--background", "a.mesh", "-n", "400"];
+    let run = place.run(&[&words[..], &["-o", "b.mesh", "--report", "b.json"]].concat());
+    assert!(run.status.success(), "{}", stderr(&run));
+    let error = |name| json(&place, name)["polished"]["error"].as_array().unwrap().last().unwrap().as_f64().unwrap();
+    assert!((error("b.json") / error("a.json") - 1.0).abs() < 0.05, "{} {}", error("a.json"), error("b.json"));
+    // Limits make it a metric like others.
+    let words = ["mesh", "rect:0,0,1,1", "--metric", metric, "-n", "400", "--h-max", "0.2", "-o", "c.mesh"];
+    assert!(place.run(&[&words[..], &["--report", "c.json"]].concat()).status.success());
+    assert!(json(&place, "c.json")["polished"].is_null());
+}
