@@ -53,15 +53,8 @@ pub(crate) struct LoopArgs {
     /// Which of the solver's solutions on vertices the mesh is for, from 1
     #[arg(long, value_name = "I", default_value_t = 1, value_parser = value_parser!(u32).range(1..))]
     pub(crate) field: u32,
-    /// Carry solutions by interpolation, which is fast and lets integrals drift, instead of keeping them
-    #[arg(long)]
-    pub(crate) interpolate: bool,
-    /// Let values carried next to a front be beyond those on both its sides, for the least L2 distance
-    #[arg(long, conflicts_with = "interpolate")]
-    pub(crate) overshoot: bool,
-    /// Symmetric tensors are no metrics: carry each entry for itself
-    #[arg(long)]
-    pub(crate) linear_tensors: bool,
+    #[command(flatten)]
+    pub(crate) transfer: TransferArgs,
     #[command(flatten)]
     pub(crate) metric_choices: MetricChoices,
     /// How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]
@@ -83,6 +76,26 @@ pub(crate) struct LoopArgs {
     pub(crate) run: Run,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct TransferArgs {
+    /// Carry solutions by interpolation, which is fast and lets integrals drift, instead of keeping them
+    #[arg(long)]
+    pub(crate) interpolate: bool,
+    /// Let values carried next to a front be beyond those on both its sides, for the least L2 distance
+    #[arg(long, conflicts_with = "interpolate")]
+    pub(crate) overshoot: bool,
+    /// Symmetric tensors are no metrics: carry each entry for itself
+    #[arg(long)]
+    pub(crate) linear_tensors: bool,
+}
+
+impl TransferArgs {
+    fn options(&self) -> TransferOptions {
+        let overshoot = if self.overshoot { Overshoot::Kept } else { Overshoot::Spread };
+        TransferOptions { conservative: !self.interpolate, overshoot, linear_tensors: self.linear_tensors }
+    }
+}
+
 /// The time of the first and of the last mesh.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Times(pub(crate) [f64; 2]);
@@ -97,7 +110,6 @@ fn times(text: &str) -> Result<Times, String> {
 
 impl LoopArgs {
     pub(crate) fn options(&self) -> LoopOptions {
-        let overshoot = if self.overshoot { Overshoot::Kept } else { Overshoot::Spread };
         LoopOptions {
             iterations: self.iterations as usize,
             field: self.field as usize,
@@ -111,11 +123,7 @@ impl LoopArgs {
                 memory_limit: crate::args::in_bytes(self.memory_limit),
                 ..MeshOptions::default()
             },
-            transfer: TransferOptions {
-                conservative: !self.interpolate,
-                overshoot,
-                linear_tensors: self.linear_tensors,
-            },
+            transfer: self.transfer.options(),
         }
     }
 }

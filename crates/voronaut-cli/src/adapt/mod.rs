@@ -38,7 +38,7 @@ pub(crate) fn run(args: &LoopArgs) -> Result<()> {
     let mut told = Told::new(args, start);
     let mut each = |step: &Step| {
         validity(&step.meshed.mesh).demand().map_err(ours)?;
-        told.add(step)?;
+        told.add(step);
         if args.every || step.number == args.iterations as usize {
             write(&name(args, step.number), step)?;
         }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use voronaut::domain::read_text;
 use voronaut::formats::medit;
-use voronaut::formats::sol::{self, Solutions};
+use voronaut::formats::sol::{self, SolutionValues, Solutions};
 use voronaut::mesh::Mesh;
 use voronaut::output;
 use voronaut::{Error, Result};
@@ -42,7 +42,7 @@ impl Shell {
             output::write(&start_file, sol::write_all(start).as_bytes())?;
         }
         let _ = std::fs::remove_file(&out_file);
-        let start = start.map(|_| start_file.as_path()).unwrap_or(Path::new(""));
+        let start = start.map_or(Path::new(""), |_| start_file.as_path());
         let names = [
             ("{mesh}", mesh_file.display().to_string()),
             ("{start}", start.display().to_string()),
@@ -50,7 +50,7 @@ impl Shell {
             ("{step}", step.to_string()),
         ];
         let text = names.iter().fold(self.command.clone(), |text, (name, value)| text.replace(name, value));
-        self.run(step, &text)?;
+        run(step, &text)?;
         if !out_file.exists() {
             let help = "it has to write its solution to the file that {out} stands for";
             return Err(Error::parse("solver", format!("step {step}: `{text}` wrote no solution"), help));
@@ -58,17 +58,6 @@ impl Shell {
         let found = sol::read_all(&read_text(&out_file)?, &out_file.display().to_string())?;
         demand_counts(step, &found, mesh)?;
         Ok(found)
-    }
-
-    fn run(&self, step: usize, text: &str) -> Result<()> {
-        let (shell, flag) = if cfg!(windows) { ("cmd", "/C") } else { ("sh", "-c") };
-        let status = Command::new(shell).arg(flag).arg(text).status();
-        let what = match status {
-            Ok(status) if status.success() => return Ok(()),
-            Ok(status) => format!("step {step}: `{text}` ended with {status}"),
-            Err(error) => format!("step {step}: `{text}` cannot be run: {error}"),
-        };
-        Err(Error::parse("solver", what, "run the command by hand on a mesh of its own; its messages are above"))
     }
 }
 
@@ -79,13 +68,24 @@ impl Drop for Shell {
     }
 }
 
+fn run(step: usize, text: &str) -> Result<()> {
+    let (shell, flag) = if cfg!(windows) { ("cmd", "/C") } else { ("sh", "-c") };
+    let status = Command::new(shell).arg(flag).arg(text).status();
+    let what = match status {
+        Ok(status) if status.success() => return Ok(()),
+        Ok(status) => format!("step {step}: `{text}` ended with {status}"),
+        Err(error) => format!("step {step}: `{text}` cannot be run: {error}"),
+    };
+    Err(Error::parse("solver", what, "run the command by hand on a mesh of its own; its messages are above"))
+}
+
 fn demand_counts(step: usize, found: &Solutions, mesh: &Mesh) -> Result<()> {
     let sections = [
         ("SolAtVertices", &found.vertices, mesh.points.len(), "vertices"),
         ("SolAtTriangles", &found.triangles, mesh.triangles.len(), "triangles"),
     ];
     for (section, values, needed, places) in sections {
-        if let Some(count) = values.first().map(|values| values.count()).filter(|&count| count != needed) {
+        if let Some(count) = values.first().map(SolutionValues::count).filter(|&count| count != needed) {
             let what = format!("step {step}: {section} has {count} entries, and the mesh {needed} {places}");
             return Err(Error::parse("solver", what, "write one entry for each, in the order of the mesh file"));
         }

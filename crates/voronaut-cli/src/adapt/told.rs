@@ -4,7 +4,6 @@ use super::LoopArgs;
 use serde_json::{Value, json};
 use std::io::Write as _;
 use std::time::Instant;
-use voronaut::Result;
 use voronaut::output::report;
 use voronaut::recipe::Step;
 use voronaut::transfer::{Carried, Extent, Kind};
@@ -22,7 +21,7 @@ impl<'a> Told<'a> {
         Self { args, steps: Vec::new(), start, last: start }
     }
 
-    pub(super) fn add(&mut self, step: &Step) -> Result<()> {
+    pub(super) fn add(&mut self, step: &Step) {
         let seconds = self.last.elapsed().as_secs_f64();
         self.last = Instant::now();
         let mesh = &step.meshed.mesh;
@@ -48,7 +47,6 @@ impl<'a> Told<'a> {
             "fields": step.transfer.as_ref().map(|(carried, _)| carried.iter().map(field).collect::<Vec<Value>>()),
             "cover": step.transfer.as_ref().map(|(_, cover)| cover), "notes": step.meshed.notes, "seconds": seconds,
         }));
-        Ok(())
     }
 
     pub(super) fn report(&self) -> Value {
@@ -63,7 +61,7 @@ impl<'a> Told<'a> {
                 "out": args.out, "every": args.every, "time": args.time.0, "field": args.field,
                 "norm": metric.norm.to_string(), "recovery": metric.recovery, "h_min": metric.bounds.h_min,
                 "h_max": metric.bounds.h_max, "a_max": metric.bounds.a_max, "smooth_metric": metric.smooth_metric,
-                "gradation": metric.gradation, "conservative": transfer.conservative, "overshoot": args.overshoot,
+                "gradation": metric.gradation, "conservative": transfer.conservative, "overshoot": args.transfer.overshoot,
                 "linear_tensors": transfer.linear_tensors, "mesh": options.mesh, "threads": args.run.threads,
             },
         })

@@ -42,7 +42,11 @@ mod tests {
         freedoms[7] = Freedom::None;
         let groups = colours(&planar.topology, &freedoms);
         let mut group = vec![usize::MAX; planar.topology.vertex_slots()];
-        groups.iter().enumerate().for_each(|(i, all)| all.iter().for_each(|v| group[v.index()] = i));
+        for (i, all) in groups.iter().enumerate() {
+            for v in all {
+                group[v.index()] = i;
+            }
+        }
         let ends = |h| [planar.topology.origin(h), planar.topology.target(h)].map(|v| group[v.index()]);
         assert!(planar.topology.edges().map(ends).all(|[a, b]| a != b));
         let has_none = |v: &VertexId| group[v.index()] == usize::MAX;

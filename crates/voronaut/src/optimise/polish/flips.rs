@@ -73,7 +73,9 @@ impl Work<'_> {
             let faces = [h.face().index(), t.face().index()];
             if faces.iter().all(|&face| !is_new[face]) {
                 topology.flip(h);
-                faces.iter().for_each(|&face| is_new[face] = true);
+                for face in faces {
+                    is_new[face] = true;
+                }
             }
         }
         is_new
