@@ -6,6 +6,7 @@ Set up: `apt-get install freefem++` brings bamg as `ffbamg`; `python3 -m venv mm
 
     mmg/bin/python scripts/compare_hessian.py --mmg2d mmg/bin/mmg2d_O3     # the three cases, 2,000 and 10,000 vertices
     ... --cases layers 'exp(-50*(x-y)^2)' --vertices 5000                  # these cases: a name, or a function of x, y
+    ... --mmg2d-options='-hgrad 2' --bamg-options='-ratio 2.5' --floor 0.001 # one set of options: much less time
 
 The domain is the unit square. bamg and mmg2d get the metric that is optimal for the L2 norm, factor * det(H)^(-1/6) * H
 with H the Hessian by absolute eigenvalues, at the vertices of their last mesh, and adapt from a grid of 100 x 100.

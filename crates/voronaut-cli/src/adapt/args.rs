@@ -11,8 +11,8 @@ With --metric hessian:EXPR, a function of x, y and t, mesh number k is made for 
 function's values, and the solution of the first mesh as it was carried through all meshes since.
 
 With --solver CMD the first mesh is even. In each step the shell runs CMD, in which {mesh} stands for the mesh file, {start} for a .sol
-to start from (what the last step found, carried over; nothing in the first), {out} for the .sol that the solver has to write, and
-{step} for the number. The next mesh is for the second derivatives, recovered, of the solution that --field chooses, or in the metric
+to start from (what the last step found, carried over; `-` in the first), {out} for the .sol that the solver has to write, and
+{step} for the number; put quotes around them if your directory for temporary files has spaces. The next mesh is for the second derivatives, recovered, of the solution that --field chooses, or in the metric
 that it is; all that the solver wrote is carried to it, and is in the .sol.
 
 Every mesh is made from DOMAIN anew: boundaries, labels and features are its own, and vertices on straight sides are free to go.
@@ -44,7 +44,7 @@ pub(crate) struct LoopArgs {
     /// The last mesh; its solutions are next to it, in a .sol of the same name
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
-    /// Write the mesh of every step: OUT with .01, .02, ... before its ending
+    /// Write the mesh of every step, too: OUT with .01, .02, ... before its ending
     #[arg(long)]
     pub(crate) every: bool,
     /// The time of the first and of the last mesh

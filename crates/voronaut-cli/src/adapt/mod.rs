@@ -39,8 +39,11 @@ pub(crate) fn run(args: &LoopArgs) -> Result<()> {
     let mut each = |step: &Step| {
         validity(&step.meshed.mesh).demand().map_err(ours)?;
         told.add(step);
-        if args.every || step.number == args.iterations as usize {
-            write(&name(args, step.number), step)?;
+        if args.every {
+            write(&numbered(args, step.number), step)?;
+        }
+        if step.number == args.iterations as usize {
+            write(&args.out, step)?;
         }
         Ok(())
     };
@@ -95,10 +98,7 @@ fn demand_writable(args: &LoopArgs) -> Result<()> {
 }
 
 /// The file of a step's mesh.
-fn name(args: &LoopArgs, number: usize) -> PathBuf {
-    if !args.every {
-        return args.out.clone();
-    }
+fn numbered(args: &LoopArgs, number: usize) -> PathBuf {
     let digits = args.iterations.to_string().len().max(2);
     let ending = args.out.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     args.out.with_extension(format!("{number:0digits$}.{ending}"))

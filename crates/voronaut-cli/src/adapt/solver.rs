@@ -25,7 +25,8 @@ impl Shell {
                 return Err(Error::parse("solver", format!("{needed} is missing in `{command}`"), help));
             }
         }
-        let directory = std::env::temp_dir().join(format!("voronaut-loop-{}", std::process::id()));
+        let place = std::path::absolute(std::env::temp_dir()).unwrap_or_else(|_| std::env::temp_dir());
+        let directory = place.join(format!("voronaut-loop-{}", std::process::id()));
         std::fs::create_dir_all(&directory).map_err(|error| failed(&directory, &error))?;
         Ok(Self { command: command.into(), directory })
     }
@@ -42,7 +43,7 @@ impl Shell {
             output::write(&start_file, sol::write_all(start).as_bytes())?;
         }
         let _ = std::fs::remove_file(&out_file);
-        let start = start.map_or(Path::new(""), |_| start_file.as_path());
+        let start = start.map_or(Path::new("-"), |_| start_file.as_path());
         let names = [
             ("{mesh}", mesh_file.display().to_string()),
             ("{start}", start.display().to_string()),
@@ -55,7 +56,7 @@ impl Shell {
             let help = "it has to write its solution to the file that {out} stands for";
             return Err(Error::parse("solver", format!("step {step}: `{text}` wrote no solution"), help));
         }
-        let found = sol::read_all(&read_text(&out_file)?, &out_file.display().to_string())?;
+        let found = sol::read_all(&read_text(&out_file)?, &format!("the solver's {{out}} of step {step}"))?;
         demand_counts(step, &found, mesh)?;
         Ok(found)
     }

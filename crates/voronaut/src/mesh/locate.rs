@@ -24,9 +24,11 @@ pub struct Located {
     pub distance: f64,
 }
 
-/// Boxes may be so many times larger than their triangles before these are cut, and triangles cut so often.
+/// Boxes may be so many times larger than their triangles before these are cut.
 const ROOMY: f64 = 8.0;
-const HALVINGS: u32 = 5;
+/// Triangles are cut at most so often, and only so far that there are no more than so many pieces for each in the mean.
+const HALVINGS: u32 = 10;
+const PIECES: usize = 16;
 
 #[derive(Clone, Copy, Debug)]
 struct Piece {
@@ -44,8 +46,9 @@ impl Locator {
         Self::check(mesh, name)?;
         let corners: Vec<[Point; 3]> = mesh.triangles.iter().map(|&t| mesh.corners_of(t)).collect();
         let mut found: Vec<(Aabb, u32)> = Vec::new();
+        let halvings = halvings(&corners);
         for (i, &triangle) in corners.iter().enumerate() {
-            cut(triangle, HALVINGS, &mut |piece| found.push((piece, i as u32)));
+            cut(triangle, halvings, &mut |piece| found.push((piece, i as u32)));
         }
         let boxes: Vec<Aabb> = found.iter().map(|&(piece, _)| piece).collect();
         let (tree, order) = BoxTree::new(&boxes);
@@ -115,6 +118,19 @@ impl Locator {
         found.sort_unstable();
         found.dedup();
     }
+}
+
+/// How often triangles may be cut, so that there are not too many pieces. Each cut halves how roomy boxes are.
+fn halvings(triangles: &[[Point; 3]]) -> u32 {
+    let needed = |&corners: &[Point; 3]| {
+        let [a, b, c] = corners;
+        let extent = Aabb::of(corners).map_or(Vector::default(), |whole| whole.extent());
+        let roomy = extent.x * extent.y / (0.5 * ROOMY * (b - a).cross(c - a).abs());
+        if roomy > 1.0 { (roomy.log2().ceil() as u32).min(HALVINGS) } else { 0 }
+    };
+    let needed: Vec<u32> = triangles.iter().map(needed).collect();
+    let pieces = |most: u32| needed.iter().map(|&n| 1_usize << n.min(most)).sum::<usize>();
+    (0..=HALVINGS).rev().find(|&most| pieces(most) <= PIECES * triangles.len()).unwrap_or(0)
 }
 
 /// Calls back with boxes that hold a triangle: one, or, where that would be much larger than the triangle, those of the

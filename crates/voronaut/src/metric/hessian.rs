@@ -40,8 +40,9 @@ impl Hessian {
         if floor > 0.0 {
             return Ok(Self { function, norm, floor });
         }
-        let help = "its interpolation is exact on any mesh: use another metric, such as uniform";
-        Err(Error::metric("the function's second derivatives vanish everywhere", "the whole domain", help))
+        let help = "what is linear needs no mesh, and kinks and jumps have no second derivatives: use another metric, or give values at \
+                    the vertices of a fine mesh (hessian:FILE.sol)";
+        Err(Error::metric("the function's second derivatives vanish everywhere", "all points looked at", help))
     }
 }
 

@@ -128,7 +128,8 @@ impl<'a> Parser<'a> {
             ("y", _) => Op::Y,
             ("z", Variables::Space) | ("t", Variables::Motion) => Op::Z,
             ("z", _) => {
-                return Err(self.error("z is not a variable in the plane", "use x and y"));
+                let help = if self.variables == Variables::Motion { "use x, y and t" } else { "use x and y" };
+                return Err(self.error("z is not a variable in the plane", help));
             }
             _ => match CONSTANTS.iter().find(|(c, _)| *c == name) {
                 Some(&(_, value)) => Op::Constant(value),

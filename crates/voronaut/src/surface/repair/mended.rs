@@ -134,6 +134,20 @@ impl Mended {
         })
     }
 
+    /// What was found in another look, at what the first one made.
+    pub(super) fn append(&mut self, more: Self) {
+        for mend in more.mends {
+            match self.mends.iter_mut().find(|known| known.kind == mend.kind) {
+                Some(known) => {
+                    known.count += mend.count;
+                    known.places.extend(mend.places);
+                    known.places.truncate(PLACES);
+                }
+                None => self.mends.push(mend),
+            }
+        }
+    }
+
     /// Whether the mesh had to be changed; triangles are turned by [`Surface::new`](crate::surface::Surface::new) anyway.
     pub(super) fn changes_the_mesh(&self) -> bool {
         let is_told_only = |kind| matches!(kind, Damage::Turned | Damage::Open | Damage::Borders | Damage::Seam);

@@ -57,6 +57,24 @@ pub struct RepairOptions {
 /// [`Error::Mesh`] and [`Error::Domain`] as [`Surface::new`]: of damage that the options do not allow to mend, of a list of
 /// edges that does not fit, and where no triangles are left.
 pub fn repaired(mesh: &Mesh, options: RepairOptions) -> Result<(Mesh, Mended)> {
+    let (mut made, mut mended) = looked_over(mesh, options)?;
+    let mut looks = 1;
+    while let Err(error) = Surface::new(&made) {
+        if !options.repair || looks == LOOKS {
+            return Err(error);
+        }
+        let (again, more) = looked_over(&made, options)?;
+        mended.append(more);
+        (made, looks) = (again, looks + 1);
+    }
+    Ok((made, mended))
+}
+
+/// What cutting and closing leave behind is looked over again, so often in all.
+const LOOKS: usize = 3;
+
+/// All repairs, once.
+fn looked_over(mesh: &Mesh, options: RepairOptions) -> Result<(Mesh, Mended)> {
     mesh.check_numbers()?;
     let mut work = Work::new(mesh, options);
     weld::drop_not_finite(&mut work)?;
@@ -81,7 +99,6 @@ pub fn repaired(mesh: &Mesh, options: RepairOptions) -> Result<(Mesh, Mended)> {
     }
     let made =
         if work.mended.changes_the_mesh() { made } else { Mesh { points: emit::harmless(mesh), ..mesh.clone() } };
-    Surface::new(&made)?;
     Ok((made, work.mended))
 }
 

@@ -327,6 +327,15 @@ fn mistakes_in_the_list_of_edges_are_told_as_before() {
     assert!(tried(&mesh, true).unwrap_err().to_string().contains("vertex 99 (from 0) does not exist"));
 }
 
+#[test]
+fn what_a_cut_leaves_behind_is_found_in_another_look() {
+    let points: [[u8; 3]; 8] = [[0, 0, 0], [1, 2, 2], [0, 1, 0], [0, 0, 0], [1, 2, 2], [0, 0, 1], [2, 1, 2], [2, 1, 2]];
+    let triangles = vec![[4, 0, 6], [1, 7, 5], [2, 1, 7], [6, 5, 1], [0, 4, 7], [0, 0, 0], [6, 5, 4], [0, 7, 1]];
+    let mesh = Mesh { points: points.map(|p| p.map(f64::from)).into(), triangles, ..Mesh::default() };
+    let (made, _) = repaired(&mesh, RepairOptions { repair: true }).unwrap();
+    assert!(repaired(&made, RepairOptions { repair: true }).is_ok());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
     /// Whatever the triangles of a few vertices at a few places, there is a surface or an error, and repair refuses nothing
