@@ -7,7 +7,8 @@ use voronaut::recipe::{LoopOptions, MeshOptions};
 use voronaut::transfer::{Overshoot, TransferOptions};
 
 pub(crate) const EXAMPLES: &str = "\
-With --metric hessian:EXPR, a function of x, y and t, mesh number k is made for the function at time k, exactly. Its .sol has the
+With --metric hessian:EXPR, a function of x, y and t, each mesh is made for the function at one time, exactly; times go evenly from
+that of the first mesh to that of the last (--time). The .sol has the
 function's values, and the solution of the first mesh as it was carried through all meshes since.
 
 With --solver CMD the first mesh is even. In each step the shell runs CMD, in which {mesh} stands for the mesh file, {start} for a .sol

@@ -27,7 +27,7 @@ impl Shell {
         }
         let place = std::path::absolute(std::env::temp_dir()).unwrap_or_else(|_| std::env::temp_dir());
         let directory = place.join(format!("voronaut-loop-{}", std::process::id()));
-        std::fs::create_dir_all(&directory).map_err(|error| failed(&directory, &error))?;
+        std::fs::create_dir(&directory).map_err(|error| failed(&directory, &error))?;
         Ok(Self { command: command.into(), directory })
     }
 

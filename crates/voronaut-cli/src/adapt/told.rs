@@ -4,6 +4,7 @@ use super::LoopArgs;
 use serde_json::{Value, json};
 use std::io::Write as _;
 use std::time::Instant;
+use voronaut::mesh::Mesh;
 use voronaut::output::report;
 use voronaut::recipe::Step;
 use voronaut::transfer::{Carried, Extent, Kind};
@@ -25,7 +26,8 @@ impl<'a> Told<'a> {
         let seconds = self.last.elapsed().as_secs_f64();
         self.last = Instant::now();
         let mesh = &step.meshed.mesh;
-        let drift = step.transfer.as_ref().map(|(carried, _)| drift(carried));
+        let area = area(mesh);
+        let drift = step.transfer.as_ref().map(|(carried, _)| drift(carried, area));
         let error = step.meshed.polished.as_ref().and_then(|polished| polished.error.last().copied());
         if !self.args.run.quiet {
             let time = step.time.map_or(String::new(), |time| format!("t {time:.4}, "));
@@ -43,7 +45,7 @@ impl<'a> Told<'a> {
         self.steps.push(json!({
             "step": step.number, "time": step.time, "vertices": mesh.points.len(), "triangles": mesh.triangles.len(),
             "boundary_vertices": step.boundary_vertices, "valid": true, "metric_scale": step.meshed.metric_scale,
-            "interpolation_error": error, "mass_drift": drift,
+            "polished_error": error, "mass_drift": drift,
             "fields": step.transfer.as_ref().map(|(carried, _)| carried.iter().map(field).collect::<Vec<Value>>()),
             "cover": step.transfer.as_ref().map(|(_, cover)| cover), "notes": step.meshed.notes, "seconds": seconds,
         }));
@@ -72,10 +74,18 @@ fn field(carried: &Carried) -> Value {
     json!({ "components": carried.field.components(), "before": carried.before, "after": carried.after })
 }
 
-/// The greatest change of a mass, as a share of it.
-fn drift(carried: &[Carried]) -> f64 {
+fn area(mesh: &Mesh) -> f64 {
+    let twice = |&triangle: &[u32; 3]| {
+        let [a, b, c] = mesh.corners_of(triangle);
+        (b - a).cross(c - a)
+    };
+    0.5 * mesh.triangles.iter().map(twice).sum::<f64>()
+}
+
+/// The greatest change of a mass, as a share of what the field would weigh with its greatest magnitude everywhere.
+fn drift(carried: &[Carried], area: f64) -> f64 {
     let of = |(before, after): (&Extent, &Extent)| {
-        let scale = before.mass.abs().max(after.mass.abs());
+        let scale = before.max.abs().max(before.min.abs()) * area;
         if scale > 0.0 { (after.mass - before.mass).abs() / scale } else { 0.0 }
     };
     let densities = carried.iter().filter(|carried| carried.field.kind != Kind::Metric);

@@ -26,9 +26,13 @@ pub struct Located {
 
 /// Boxes may be so many times larger than their triangles before these are cut.
 const ROOMY: f64 = 8.0;
-/// Triangles are cut at most so often, and only so far that there are no more than so many pieces for each in the mean.
-const HALVINGS: u32 = 10;
+/// A triangle is cut into so many pieces at most; all of them only so far that there are no more than so many for each in the mean,
+/// or so many in all: of a few thousand needles each may be cut into hundreds.
+const PIECES_OF_ONE: usize = 1024;
 const PIECES: usize = 16;
+const PIECES_IN_ALL: usize = 1 << 18;
+/// Pieces of a triangle whose neighbourhood is looked for.
+const PIECES_OF_QUERY: usize = 32;
 
 #[derive(Clone, Copy, Debug)]
 struct Piece {
@@ -46,9 +50,9 @@ impl Locator {
         Self::check(mesh, name)?;
         let corners: Vec<[Point; 3]> = mesh.triangles.iter().map(|&t| mesh.corners_of(t)).collect();
         let mut found: Vec<(Aabb, u32)> = Vec::new();
-        let halvings = halvings(&corners);
+        let most = most_pieces(&corners);
         for (i, &triangle) in corners.iter().enumerate() {
-            cut(triangle, halvings, &mut |piece| found.push((piece, i as u32)));
+            cut(triangle, most, &mut |piece| found.push((piece, i as u32)));
         }
         let boxes: Vec<Aabb> = found.iter().map(|&(piece, _)| piece).collect();
         let (tree, order) = BoxTree::new(&boxes);
@@ -112,7 +116,7 @@ impl Locator {
     /// near it.
     pub fn near(&self, corners: [Point; 3], found: &mut Vec<u32>) {
         found.clear();
-        cut(corners, HALVINGS, &mut |piece| {
+        cut(corners, PIECES_OF_QUERY, &mut |piece| {
             self.tree.overlapping(&piece, |position| found.push(self.pieces[position].triangle));
         });
         found.sort_unstable();
@@ -120,33 +124,62 @@ impl Locator {
     }
 }
 
-/// How often triangles may be cut, so that there are not too many pieces. Each cut halves how roomy boxes are.
-fn halvings(triangles: &[[Point; 3]]) -> u32 {
-    let needed = |&corners: &[Point; 3]| {
-        let [a, b, c] = corners;
-        let extent = Aabb::of(corners).map_or(Vector::default(), |whole| whole.extent());
-        let roomy = extent.x * extent.y / (0.5 * ROOMY * (b - a).cross(c - a).abs());
-        if roomy > 1.0 { (roomy.log2().ceil() as u32).min(HALVINGS) } else { 0 }
-    };
-    let needed: Vec<u32> = triangles.iter().map(needed).collect();
-    let pieces = |most: u32| needed.iter().map(|&n| 1_usize << n.min(most)).sum::<usize>();
-    (0..=HALVINGS).rev().find(|&most| pieces(most) <= PIECES * triangles.len()).unwrap_or(0)
+/// Into how many pieces one triangle may be cut, so that there are not too many.
+fn most_pieces(triangles: &[[Point; 3]]) -> usize {
+    let wanted: Vec<usize> = triangles.iter().map(|&corners| wanted_pieces(corners)).collect();
+    let allowed = (PIECES * triangles.len()).max(PIECES_IN_ALL);
+    let is_allowed = |most: &usize| wanted.iter().map(|&count| count.min(*most)).sum::<usize>() <= allowed;
+    std::iter::successors(Some(PIECES_OF_ONE), |most| Some(most / 2))
+        .take_while(|&most| most > 1)
+        .find(is_allowed)
+        .unwrap_or(1)
 }
 
-/// Calls back with boxes that hold a triangle: one, or, where that would be much larger than the triangle, those of the
-/// halves at its longest side. Without that the boxes of thin triangles overlap, and a search looks into hundreds.
-fn cut([a, b, c]: [Point; 3], halvings: u32, found: &mut impl FnMut(Aabb)) {
-    let Some(whole) = Aabb::of([a, b, c]) else { return };
-    let (extent, area) = (whole.extent(), 0.5 * (b - a).cross(c - a).abs());
-    if halvings == 0 || extent.x * extent.y <= ROOMY * area {
+/// Into how many pieces a triangle has to be cut for their boxes together not to be too roomy.
+fn wanted_pieces(corners: [Point; 3]) -> usize {
+    let [a, b, c] = corners;
+    let extent = Aabb::of(corners).map_or(Vector::default(), |whole| whole.extent());
+    let roomy = extent.x * extent.y / (0.5 * ROOMY * (b - a).cross(c - a).abs());
+    // Not a number where there is no extent: one piece.
+    (roomy.ceil() as usize).clamp(1, PIECES_OF_ONE)
+}
+
+/// Calls back with boxes that hold a triangle together: one, or, where that would be much larger than the triangle, those of so many
+/// slices across its longest side, whose boxes are as much smaller. Without that the boxes of needles overlap, and a search
+/// looks into hundreds.
+fn cut(corners: [Point; 3], most: usize, found: &mut impl FnMut(Aabb)) {
+    let Some(whole) = Aabb::of(corners) else { return };
+    let count = wanted_pieces(corners).min(most);
+    if count == 1 {
         return found(whole);
     }
+    let [a, b, c] = corners;
     let sides = [(a, b, c), (b, c, a), (c, a, b)];
     let (p, q, apex) =
         sides.into_iter().max_by(|s, t| s.0.distance(s.1).total_cmp(&t.0.distance(t.1))).unwrap_or((a, b, c));
-    let middle = p.midpoint(q);
-    cut([p, middle, apex], halvings - 1, found);
-    cut([middle, q, apex], halvings - 1, found);
+    let at_apex = ((apex - p).dot(q - p) / (q - p).dot(q - p)).clamp(0.0, 1.0);
+    let section = |t: f64| {
+        let other = match t {
+            _ if t < at_apex => p.lerp(apex, t / at_apex),
+            _ if t > at_apex => apex.lerp(q, (t - at_apex) / (1.0 - at_apex)),
+            _ => apex,
+        };
+        [p.lerp(q, t), other]
+    };
+    for slice in 0..count {
+        let [from, to] = [slice, slice + 1].map(|i| i as f64 / count as f64);
+        let holds_apex = (from..=to).contains(&at_apex).then_some(apex);
+        if let Some(slice) = Aabb::of(section(from).into_iter().chain(section(to)).chain(holds_apex)) {
+            found(padded(slice));
+        }
+    }
+}
+
+/// A box and what rounding may have left out.
+fn padded(b: Aabb) -> Aabb {
+    let pad = |low: f64, high: f64| 4.0 * f64::EPSILON * low.abs().max(high.abs());
+    let by = Vector::new(pad(b.min.x, b.max.x), pad(b.min.y, b.max.y));
+    Aabb { min: b.min - by, max: b.max + by }
 }
 
 /// Squared distance of `p` to a triangle of either orientation, even without area, and the barycentric coordinates
@@ -176,6 +209,27 @@ fn nearest_point([a, b, c]: [Point; 3], p: Point) -> (f64, [f64; 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pieces_of_needles_hold_them_and_are_counted() {
+        for width in [0.5, 0.05, 1e-3, 1e-6] {
+            let (a, b) = (Point::new(3.0, -1.0), Point::new(4.0, 0.0));
+            for apex in [b + Vector::new(-width, width), a.lerp(b, 0.3) + Vector::new(-width, width)] {
+                let mut boxes = Vec::new();
+                cut([a, b, apex], 1024, &mut |piece| boxes.push(piece));
+                assert_eq!(boxes.len(), wanted_pieces([a, b, apex]));
+                for i in 0..200 {
+                    let u = (f64::from(i) * 0.618).fract();
+                    let v = (1.0 - u) * (f64::from(i) * 0.414).fract();
+                    let p = a + (b - a) * u + (apex - a) * v;
+                    let holds = |piece: &Aabb| {
+                        piece.min.x <= p.x && p.x <= piece.max.x && piece.min.y <= p.y && p.y <= piece.max.y
+                    };
+                    assert!(boxes.iter().any(holds), "{width} {p}");
+                }
+            }
+        }
+    }
     use proptest::prelude::*;
 
     /// Triangles at random: of any shape, overlapping, some without area.

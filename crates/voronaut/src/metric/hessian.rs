@@ -24,7 +24,7 @@ impl Hessian {
     /// [`Error::Metric`] where a second derivative is not finite, or where all are zero; [`Error::Domain`] of triangles that are
     /// not finite.
     pub fn new(function: Snapshot, norm: Norm, domain: &[[Point; 3]]) -> Result<Self> {
-        let (mut sum, mut count) = (0.0, 0.0);
+        let (mut sum, mut total) = (0.0, 0.0);
         for ([a, b, c], _) in start(domain)? {
             let middle = Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0);
             let e = function.second_derivatives(middle).eigen();
@@ -34,9 +34,10 @@ impl Hessian {
                 let help = "give a function with two derivatives in the whole domain";
                 return Err(Error::metric(what, middle.to_string(), help));
             }
-            (sum, count) = (sum + greatest, count + 1.0);
+            let area = (b - a).cross(c - a).abs();
+            (sum, total) = (sum + area * greatest, total + area);
         }
-        let floor = FLOOR * sum / count;
+        let floor = FLOOR * sum / total;
         if floor > 0.0 {
             return Ok(Self { function, norm, floor });
         }

@@ -6,7 +6,7 @@ use std::fmt;
 use std::str::FromStr;
 
 /// The exponent p of an L^p norm, at least 1; it may be infinite. The default is 2.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Norm(f64);
 
 impl Default for Norm {

@@ -23,7 +23,7 @@ pub use exchange::{exchange, meet_blocked_flips};
 pub use fit::{FitOptions, Fitted, Misfit, fit};
 pub use lloyd::{Relaxed, relax};
 pub use on_canvas::OnCanvas;
-pub use polish::{Polished, polish};
+pub use polish::{Polished, polish, polishing_norm};
 pub use protect::{Ending, Protected, protect};
 pub use survey::measured;
 pub use worst::mend_worst;

@@ -12,6 +12,7 @@ use crate::metric::{
     Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Recovered, Recovery, Sampled, ScalarField,
     Snapshot, rough_complexity,
 };
+use crate::optimise::polishing_norm;
 use crate::quality::interpolation_error;
 use std::path::{Path, PathBuf};
 
@@ -57,12 +58,14 @@ pub struct PlanarMetric {
     pub function: Option<Box<dyn ScalarField>>,
     /// The error to which that function is known: zero of a formula; of a solution that of its interpolation on its own mesh.
     pub known_to: f64,
+    /// The multiple of the field in which limits on sizes are meant: one, but for Hessians, whose units are those of the function.
+    scale: f64,
 }
 
 impl PlanarMetric {
     /// A metric that is for no function.
     pub fn plain(field: impl MetricField + 'static) -> Self {
-        Self { field: Box::new(field), function: None, known_to: 0.0 }
+        Self { field: Box::new(field), function: None, known_to: 0.0, scale: 1.0 }
     }
 
     /// What a mesh by it is for.
@@ -170,8 +173,8 @@ fn named(spec: &MetricSpec, domain: &Domain, options: &MetricOptions, at: Graded
 
 fn optimal(function: &Snapshot, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
     let field = Hessian::new(function.clone(), options.norm, &domain.triangles())?;
-    let field = within_domain(field, domain, at)?;
-    Ok(PlanarMetric { field: Box::new(field), function: Some(Box::new(function.clone())), known_to: 0.0 })
+    let (field, scale) = within_domain(field, domain, at)?;
+    Ok(PlanarMetric { field: Box::new(field), function: Some(Box::new(function.clone())), known_to: 0.0, scale })
 }
 
 fn recovered(
@@ -182,20 +185,22 @@ fn recovered(
     at: GradedAt,
 ) -> Result<PlanarMetric> {
     let function = Recovered::new(mesh, values, options.recovery)?;
-    let field = within_domain(function.metric(options.norm)?, domain, at)?;
-    let known_to = interpolation_error(mesh, &function, options.norm)?.norm;
-    Ok(PlanarMetric { field: Box::new(field), function: Some(Box::new(function)), known_to })
+    let (field, scale) = within_domain(function.metric(options.norm)?, domain, at)?;
+    // In the norm that polishing goes by.
+    let known_to = interpolation_error(mesh, &function, polishing_norm(options.norm))?.norm;
+    Ok(PlanarMetric { field: Box::new(field), function: Some(Box::new(function)), known_to, scale })
 }
 
-/// The field with sizes of at most [`LONGEST`] of the domain's extent, in the multiple in which edges have length one.
-fn within_domain<F: MetricField + 'static>(field: F, domain: &Domain, at: GradedAt) -> Result<Bounded<F>> {
+/// The field with sizes of at most [`LONGEST`] of the domain's extent, in the multiple in which edges have length one; and that
+/// multiple.
+fn within_domain<F: MetricField + 'static>(field: F, domain: &Domain, at: GradedAt) -> Result<(Bounded<F>, f64)> {
     let scale = match at {
         GradedAt::Scale(scale) => scale,
         GradedAt::Complexity(target) => target / rough_complexity(&field, &domain.triangles())?,
     };
     let extent = domain.bounds().extent();
     let h_max = Some(LONGEST * extent.x.max(extent.y) * scale.sqrt());
-    Bounded::new(field, Bounds { h_max, ..Bounds::default() })
+    Ok((Bounded::new(field, Bounds { h_max, ..Bounds::default() })?, scale))
 }
 
 fn sampled(mesh: &Mesh, values: &SolutionValues, place: &str) -> Result<Sampled> {
@@ -216,11 +221,17 @@ fn finished(
     at: GradedAt,
 ) -> Result<PlanarMetric> {
     options.bounds.check()?;
-    let PlanarMetric { field, function, known_to } = named;
+    let PlanarMetric { field, function, known_to, scale } = named;
+    let unit = scale.sqrt();
+    let bounds = Bounds {
+        h_min: options.bounds.h_min.map(|h| h * unit),
+        h_max: options.bounds.h_max.map(|h| h * unit),
+        a_max: options.bounds.a_max,
+    };
     let field: Box<dyn MetricField> =
-        if options.bounds == Bounds::default() { field } else { Box::new(Bounded::new(field, options.bounds)?) };
+        if bounds == Bounds::default() { field } else { Box::new(Bounded::new(field, bounds)?) };
     let field = smooth_metric(field, domain, own, options.smooth_metric)?;
     let field = grade_metric(field, domain, own, options.gradation, at)?;
     let is_free = options.bounds == Bounds::default() && options.smooth_metric == 0 && options.gradation.is_none();
-    Ok(PlanarMetric { field, function: function.filter(|_| is_free), known_to })
+    Ok(PlanarMetric { field, function: function.filter(|_| is_free), known_to, scale })
 }

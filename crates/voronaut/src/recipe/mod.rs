@@ -214,8 +214,8 @@ pub fn mesh_for(
     let mut dual = job.timed("seed", |job| job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
     let relaxation = job.timed("relax", |job| job.relax(&mut dual, canvas.as_ref()))?;
     let protected = job.protect(&domain, &mut dual)?;
-    let is_polished = aim.is_some() && options.polish > 0;
-    let settled = if is_polished {
+    let aim = aim.map(|aim| job.is_to_be_polished(&mut dual, aim).map(|is| is.then_some(aim))).transpose()?.flatten();
+    let settled = if aim.is_some() {
         // Polishing decides on the edges.
         settle::Settled::default()
     } else {
@@ -370,14 +370,24 @@ impl<'a> Job<'a> {
         }
     }
 
-    fn polish(&mut self, dual: &mut Dual, aim: Aim) -> Result<Polished> {
+    /// Whether the mesh is polished: not where protection was asked for, which it would undo, where there is nothing to gain, or
+    /// where the function is not known well enough.
+    fn is_to_be_polished(&mut self, dual: &mut Dual, aim: Aim) -> Result<bool> {
+        if self.options.polish == 0 || self.options.seeding == Seeding::Protected {
+            return Ok(false);
+        }
+        let now = polish(dual, aim.function, aim.norm, 0, self.progress)?;
+        let Some(&error) = now.error.first() else { return Ok(false) };
+        if error < KNOWN * aim.known_to {
+            self.notes.push(NOT_KNOWN.into());
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    fn polish(&self, dual: &mut Dual, aim: Aim) -> Result<Polished> {
         let sweeps = self.options.polish;
         self.progress.stage("polishing", sweeps as u64);
-        let before = polish(dual, aim.function, aim.norm, 0, self.progress)?;
-        if before.error.first().is_some_and(|&error| error < KNOWN * aim.known_to) {
-            self.notes.push(NOT_KNOWN.into());
-            return Ok(before);
-        }
         polish(dual, aim.function, aim.norm, sweeps, self.progress)
     }
 

@@ -6,6 +6,11 @@ use crate::metric::{Norm, ScalarField};
 /// A greater exponent counts as this one: powers of errors would differ by too much to be added.
 const LARGEST_EXPONENT: f64 = 8.0;
 
+/// The norm that polishing goes by where this one is asked for: L^8 for all above.
+pub fn polishing_norm(norm: Norm) -> Norm {
+    Norm::new(norm.exponent().min(LARGEST_EXPONENT)).unwrap_or(norm)
+}
+
 /// What is to be made small: the integral of |f - its linear interpolation|^p, in a unit of its own for f.
 #[derive(Clone, Copy)]
 pub(super) struct Objective<'a> {
@@ -25,7 +30,7 @@ pub(super) struct Place {
 impl<'a> Objective<'a> {
     /// Errors are measured in shares of `unit`, which is positive.
     pub(super) fn new(function: &'a dyn ScalarField, norm: Norm, unit: f64) -> Self {
-        Self { function, exponent: norm.exponent().min(LARGEST_EXPONENT), unit, nodes: radon() }
+        Self { function, exponent: polishing_norm(norm).exponent(), unit, nodes: radon() }
     }
 
     /// A point with the function's value there.

@@ -16,6 +16,7 @@ use crate::metric::{Norm, ScalarField};
 use crate::planar::Planar;
 use crate::progress::Progress;
 use crate::triangulation::VertexId;
+pub use error::polishing_norm;
 use error::{Objective, Place};
 use rayon::prelude::*;
 
@@ -40,8 +41,8 @@ pub struct Polished {
 /// gains little.
 ///
 /// The number of vertices stays; corners and constraints stay, vertices of segments slide along them. Each move and flip lowers
-/// the error as seven values of the function in each triangle show it, keeps the triangulation embedded, and leaves no
-/// triangle poorer in the metric than 0.05 that was not. Edges are not those of the metric's dual afterwards. The
+/// the error as seven values of the function in each triangle show it, keeps the triangulation embedded, and leaves the poorest of
+/// the triangles around it no poorer than it was, or better than 0.05, in the metric where the vertices were at first. Edges are not those of the metric's dual afterwards. The
 /// result does not depend on the number of threads.
 ///
 /// # Errors
@@ -70,6 +71,9 @@ pub fn polish(
         }
     }
     polished.flips += work.flip_all();
+    if let Some(last) = polished.error.last_mut() {
+        *last = work.norm();
+    }
     dual.take_over(work.planar);
     dual.verdict()?;
     Ok(polished)

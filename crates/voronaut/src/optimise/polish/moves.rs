@@ -63,26 +63,32 @@ impl Work<'_> {
         let here = self.place(v).at;
         if self.freedoms[v.index()] == Freedom::Along {
             let [a, b] = self.planar.neighbours_on_segment(v)?;
-            return Some(Frame { first: (b - a) * 0.5, second: None });
+            let share = (here - a).dot(b - a) / (b - a).dot(b - a);
+            return Some(Frame { segment: Some(([a, b], share)), first: (b - a) * 0.5, second: None });
         }
         let around: Vec<Vector> = ring.iter().flatten().map(|&u| self.place(u).at - here).collect();
         let mean = |of: fn(&Vector) -> f64| around.iter().map(of).sum::<f64>() / around.len() as f64;
         let (xx, xy, yy) = (mean(|d| d.x * d.x), mean(|d| d.x * d.y), mean(|d| d.y * d.y));
         let first = Vector::new(xx.sqrt(), xy / xx.sqrt());
         let rest = (yy - first.y * first.y).max(0.0).sqrt();
-        (first.x > 0.0 && rest > 0.0).then_some(Frame { first, second: Some(Vector::new(0.0, rest)) })
+        (first.x > 0.0 && rest > 0.0).then_some(Frame { segment: None, first, second: Some(Vector::new(0.0, rest)) })
     }
 }
 
 /// One or two directions, of the length of a typical edge that way.
 struct Frame {
+    /// The ends of the segment that a vertex slides along, and where between them it is: steps do not add up their rounding.
+    segment: Option<([Point; 2], f64)>,
     first: Vector,
     second: Option<Vector>,
 }
 
 impl Frame {
     fn at(&self, from: Point, [x, y]: [f64; 2]) -> Point {
-        from + self.first * x + self.second.unwrap_or_default() * y
+        match self.segment {
+            Some(([a, b], share)) => a.lerp(b, share + 0.5 * x),
+            None => from + self.first * x + self.second.unwrap_or_default() * y,
+        }
     }
 
     /// The step to the minimum of a quadratic through values around, made convex where it is not.
@@ -125,7 +131,8 @@ mod tests {
 
     #[test]
     fn the_minimum_of_a_quadratic_is_found_at_once() {
-        let frame = Frame { first: Vector::new(1.0, 0.0), second: Some(Vector::new(0.0, 1.0)) };
+        let (first, second) = (Vector::new(1.0, 0.0), Some(Vector::new(0.0, 1.0)));
+        let frame = Frame { segment: None, first, second };
         let error = |[x, y]: [f64; 2]| 3.0 * (x - 0.1).powi(2) + 2.0 * (x - 0.1) * (y + 0.2) + (y + 0.2).powi(2);
         let [x, y] = frame.newton(error([0.0, 0.0]), error).unwrap();
         assert!((x - 0.1).abs() < 1e-9 && (y + 0.2).abs() < 1e-9, "{x} {y}");
