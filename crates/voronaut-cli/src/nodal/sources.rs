@@ -4,10 +4,10 @@ use super::args::{LimitText, MetricArgs};
 use std::path::Path;
 use voronaut::domain::{Domain, from_mesh, read_text};
 use voronaut::formats::sol::{self, SolutionValues};
-use voronaut::geometry::{Point3, Tensor};
+use voronaut::geometry::Tensor;
 use voronaut::mesh::Mesh;
 use voronaut::metric::nodal::{Limit, Limits, Source, implied, isotropic};
-use voronaut::metric::{Expression, MetricSpec, Recovery, Variables, recover_hessian};
+use voronaut::metric::{MetricSpec, Recovery, ScalarField, Snapshot, recover_hessian};
 use voronaut::recipe::{self, GradedAt, MetricOptions};
 use voronaut::{Error, Result};
 
@@ -17,37 +17,31 @@ pub(super) fn source(text: &str, mesh: &Mesh, args: &MetricArgs) -> Result<Sourc
     if text == "implied" {
         return Ok(Source::Metric(implied(mesh)?));
     }
-    if let Some(of) = text.strip_prefix("hessian:") {
-        return Ok(Source::Hessian(hessian(of.trim(), mesh, args.recovery)?));
+    match MetricSpec::parse(text)? {
+        MetricSpec::RecoveredHessian(path) => {
+            let values = scalars(&path, "a Hessian is recovered from a scalar solution")?;
+            Ok(Source::Hessian(recover_hessian(mesh, &values, args.recovery.unwrap_or_default())?))
+        }
+        MetricSpec::Hessian(function) => Ok(Source::Hessian(hessian(&function.into(), mesh, args.recovery)?)),
+        MetricSpec::File(path) if args.background.is_none() => Ok(Source::Metric(own(&path, mesh)?)),
+        spec => {
+            let background = args.background.clone().filter(|_| matches!(spec, MetricSpec::File(_)));
+            let options = MetricOptions { background, ..MetricOptions::default() };
+            let domain = Domain::new(&from_mesh(mesh)?)?;
+            let field = recipe::metric(&spec, &domain, None, &options, GradedAt::Scale(1.0))?.field;
+            Ok(Source::Metric((0..mesh.points.len() as u32).map(|v| field.at(mesh.point(v))).collect()))
+        }
     }
-    let spec = MetricSpec::parse(text)?;
-    if let (MetricSpec::File(path), None) = (&spec, &args.background) {
-        return Ok(Source::Metric(own(path, mesh)?));
-    }
-    let options = MetricOptions {
-        background: args.background.clone().filter(|_| matches!(spec, MetricSpec::File(_))),
-        ..MetricOptions::default()
-    };
-    let field = recipe::metric(&spec, &Domain::new(&from_mesh(mesh)?)?, None, &options, GradedAt::Scale(1.0))?.field;
-    Ok(Source::Metric((0..mesh.points.len() as u32).map(|v| field.at(mesh.point(v))).collect()))
 }
 
-/// Second derivatives of a solution in a file, or of an expression.
-fn hessian(of: &str, mesh: &Mesh, recovery: Option<Recovery>) -> Result<Vec<Tensor>> {
-    if of.to_ascii_lowercase().ends_with(".sol") {
-        let values = scalars(Path::new(of), "a Hessian is recovered from a scalar solution")?;
-        return recover_hessian(mesh, &values, recovery.unwrap_or_default());
-    }
-    let expression = Expression::parse(of, Variables::Plane)?;
+/// Second derivatives of a function: exact, or recovered from its values.
+fn hessian(function: &Snapshot, mesh: &Mesh, recovery: Option<Recovery>) -> Result<Vec<Tensor>> {
+    let points = (0..mesh.points.len() as u32).map(|v| mesh.point(v));
     if let Some(recovery) = recovery {
-        let values: Vec<f64> = mesh.points.iter().map(|&[x, y, _]| expression.at(x, y, 0.0)).collect();
+        let values: Vec<f64> = points.map(|p| function.value(p)).collect();
         return recover_hessian(mesh, &values, recovery);
     }
-    let exact = |&[x, y, _]: &[f64; 3]| {
-        let h = expression.jet(Point3::new(x, y, 0.0)).hessian;
-        Tensor::new(h.xx, h.xy, h.yy)
-    };
-    Ok(mesh.points.iter().map(exact).collect())
+    Ok(points.map(|p| function.second_derivatives(p)).collect())
 }
 
 /// A metric of one value for each vertex of the mesh itself.

@@ -2,7 +2,7 @@
 
 use super::margin::pair;
 use super::{Dual, Effort, Margin};
-use crate::geometry::{Tensor, signed_area};
+use crate::geometry::Tensor;
 use crate::triangulation::{HalfEdge, VertexId};
 
 /// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
@@ -99,9 +99,7 @@ impl Dual<'_> {
     /// Quality of a straight triangle in the mean tensor of its corners: 1 of an equilateral one.
     pub(super) fn shape(&self, corners: [VertexId; 3]) -> f64 {
         let tensor = corners.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / 3.0);
-        let [a, b, c] = corners.map(|v| self.position(v));
-        let squares: f64 = [b - a, c - b, a - c].iter().map(|&e| tensor.dot(e, e)).sum();
-        2.0 * 3.0_f64.sqrt() * signed_area(a, b, c) * tensor.determinant().max(0.0).sqrt() / squares
+        tensor.shape(corners.map(|v| self.position(v)))
     }
 
     fn flip(&mut self, h: HalfEdge) {

@@ -1,7 +1,7 @@
 //! What mending the worst triangles asks of a triangulation: how good triangles and edges are as a mesh's are measured.
 
 use super::{Dual, Effort, Moving, SurfaceDual};
-use crate::geometry::{Point, Tensor, Tensor3, Vector, signed_area};
+use crate::geometry::{Point, Tensor, Tensor3, Vector};
 use crate::metric::MetricField;
 use crate::surface::Place;
 use crate::triangulation::VertexId;
@@ -45,9 +45,7 @@ impl Mending for Dual<'_> {
     }
 
     fn quality(&self, [a, b, c]: [Site; 3]) -> f64 {
-        let tensor = ((a.log + b.log + c.log) * (1.0 / 3.0)).exp();
-        let squares: f64 = [b.at - a.at, c.at - b.at, a.at - c.at].iter().map(|&e| tensor.dot(e, e)).sum();
-        2.0 * 3.0_f64.sqrt() * signed_area(a.at, b.at, c.at) * tensor.determinant().max(0.0).sqrt() / squares
+        ((a.log + b.log + c.log) * (1.0 / 3.0)).exp().shape([a.at, b.at, c.at])
     }
 
     fn straight_length(&self, [a, b]: [Site; 2]) -> f64 {

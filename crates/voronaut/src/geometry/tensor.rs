@@ -3,7 +3,7 @@
 //! The squared length of a vector e is e' M e; an eigenvalue 1/h^2 asks for edges of Euclidean length h along its
 //! eigenvector.
 
-use super::Vector;
+use super::{Point, Vector, signed_area};
 use std::ops::{Add, Mul};
 
 /// The symmetric matrix ((xx, xy), (xy, yy)); a metric when positive definite.
@@ -132,6 +132,13 @@ impl Tensor {
         let a = self.xx.sqrt();
         let b = self.xy / a;
         [a, b, (self.determinant() / self.xx).max(0.0).sqrt()]
+    }
+
+    /// 4 sqrt(3) times the area of a straight triangle over the sum of its squared edges, all in this metric: 1 of an equilateral
+    /// one, negative of one that is clockwise.
+    pub fn shape(self, [a, b, c]: [Point; 3]) -> f64 {
+        let squares: f64 = [b - a, c - b, a - c].iter().map(|&e| self.dot(e, e)).sum();
+        2.0 * 3.0_f64.sqrt() * signed_area(a, b, c) * self.determinant().max(0.0).sqrt() / squares
     }
 
     /// Ratio of the longer to the shorter Euclidean size the tensor asks for: sqrt(large / small), at least 1.

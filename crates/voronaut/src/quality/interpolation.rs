@@ -47,7 +47,8 @@ impl fmt::Display for Exponent {
 /// # Errors
 /// [`Error::Metric`] where the function is not finite; [`Error::Mesh`] of a mesh without triangles.
 pub fn interpolation_error(mesh: &Mesh, function: &dyn ScalarField, norm: Norm) -> Result<InterpolationError> {
-    let values: Vec<f64> = (0..mesh.points.len() as u32).map(|v| function.value(mesh.point(v))).collect();
+    let values: Vec<f64> =
+        (0..mesh.points.len() as u32).into_par_iter().map(|v| function.value(mesh.point(v))).collect();
     let nodes = nodes();
     let of = |&t: &[u32; 3]| on_triangle(mesh.corners_of(t), t.map(|v| values[v as usize]), function, norm, &nodes);
     let found: Vec<(f64, f64, Point)> = mesh.triangles.par_iter().with_min_len(64).map(of).collect();

@@ -11,7 +11,7 @@ mod moves;
 
 use crate::dual::{Dual, Kind};
 use crate::error::{Error, Result};
-use crate::geometry::{Tensor, signed_area};
+use crate::geometry::Tensor;
 use crate::metric::{Norm, ScalarField};
 use crate::planar::Planar;
 use crate::progress::Progress;
@@ -139,10 +139,9 @@ impl<'a> Work<'a> {
     }
 
     /// Quality in the mean tensor of three vertices of a triangle with these corners: 1 of an equilateral one.
-    fn shape(&self, vertices: [VertexId; 3], [a, b, c]: [Place; 3]) -> f64 {
+    fn shape(&self, vertices: [VertexId; 3], corners: [Place; 3]) -> f64 {
         let tensor = vertices.iter().fold(Tensor::default(), |sum, v| sum + self.tensors[v.index()]) * (1.0 / 3.0);
-        let squares: f64 = [b.at - a.at, c.at - b.at, a.at - c.at].iter().map(|&e| tensor.dot(e, e)).sum();
-        2.0 * 3.0_f64.sqrt() * signed_area(a.at, b.at, c.at) * tensor.determinant().max(0.0).sqrt() / squares
+        tensor.shape(corners.map(|corner| corner.at))
     }
 }
 
