@@ -7,6 +7,7 @@ use crate::{files, summary};
 use serde_json::json;
 use std::time::Instant;
 use voronaut::domain::{Domain, from_mesh};
+use voronaut::formats;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
@@ -17,7 +18,7 @@ use voronaut::quality::{
     validity,
 };
 use voronaut::recipe::GradedAt;
-use voronaut::surface::{self, Given, Implicit, Input, Mended, Surface};
+use voronaut::surface::{Given, Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 
 /// Examines a mesh. The report is written for any mesh; figures in a metric and pictures are for valid ones.
@@ -26,7 +27,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     files::demand_writable(None, None, &args.outputs)?;
     demand_drawable(args)?;
     files::set_threads(&args.run)?;
-    let mesh = surface::read_mesh(&args.mesh.to_string_lossy())?;
+    let mesh = formats::read(&args.mesh)?.mesh;
     let found = validity(&mesh);
     let fault = found.demand();
     let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());

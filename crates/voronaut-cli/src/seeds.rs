@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 use voronaut::canvas::Canvas;
-use voronaut::domain::read_text;
 use voronaut::formats::points;
+use voronaut::formats::read_text;
 use voronaut::geometry::{Point, Point3};
 use voronaut::surface::{Input, Place};
 use voronaut::{Error, Result};

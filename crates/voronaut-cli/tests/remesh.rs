@@ -4,7 +4,7 @@ mod common;
 
 use common::{Place, stderr};
 use serde_json::Value;
-use voronaut::formats::{medit, sol};
+use voronaut::formats::{SolutionValues, medit, sol};
 use voronaut::mesh::Mesh;
 use voronaut::output::write_mesh;
 use voronaut::surface::torus;
@@ -17,11 +17,11 @@ fn place() -> Place {
 }
 
 fn mesh(place: &Place, name: &str) -> Mesh {
-    medit::read(&String::from_utf8(place.read(name)).unwrap(), name).unwrap()
+    medit::read(place.read(name).as_slice(), name).unwrap()
 }
 
-fn solution(place: &Place, name: &str) -> sol::SolutionValues {
-    sol::read(&String::from_utf8(place.read(name)).unwrap(), name).unwrap().values
+fn solution(place: &Place, name: &str) -> SolutionValues {
+    sol::read(place.read(name).as_slice(), name).unwrap().values
 }
 
 fn done(place: &Place, words: &str) -> String {
@@ -44,7 +44,7 @@ fn mesh_and_sizes_come_out_next_to_the_surface() {
     done(&place, "remesh ring -hausd 0.05 -hmax 0.5 -v 0 --report run.json");
     assert_eq!(place.files(), ["ring.mesh", "ring.o.mesh", "ring.o.sol", "run.json"]);
     let mesh = mesh(&place, "ring.o.mesh");
-    let sol::SolutionValues::Scalar(sizes) = solution(&place, "ring.o.sol") else { panic!("sizes") };
+    let SolutionValues::Scalar(sizes) = solution(&place, "ring.o.sol") else { panic!("sizes") };
     assert_eq!(sizes.len(), mesh.points.len());
     // sqrt(3 * 0.05 * 0.7) asks for about 0.32 on the thin tube.
     assert!(sizes.iter().all(|h| (0.25..0.37).contains(h)), "{sizes:?}");
@@ -74,7 +74,7 @@ fn files_are_named_as_mmgs_names_them() {
 fn metrics_are_given_or_found() {
     let place = place();
     let smallest = |name: &str| match solution(&place, name) {
-        sol::SolutionValues::Scalar(sizes) => sizes.into_iter().fold(f64::INFINITY, f64::min),
+        SolutionValues::Scalar(sizes) => sizes.into_iter().fold(f64::INFINITY, f64::min),
         _ => panic!("sizes"),
     };
     sizes(&place, "asked.sol", "0.6");
@@ -93,7 +93,7 @@ fn metrics_are_given_or_found() {
     sizes(&place, "thin.sol", "1 0 1 0 0 6");
     let said = done(&place, "remesh ring.mesh e.mesh -sol thin.sol -hausd 1");
     assert!(said.contains("note: sizes that depend on the direction are not graded"), "{said}");
-    assert!(matches!(solution(&place, "e.sol"), sol::SolutionValues::Tensor3(_)));
+    assert!(matches!(solution(&place, "e.sol"), SolutionValues::Tensor3(_)));
 }
 
 #[test]

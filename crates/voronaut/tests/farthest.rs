@@ -56,7 +56,7 @@ fn touching_holes() -> Domain {
     let text = "13 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 1 2\n6 1.5 1.5\n7 2 2\n8 1.5 2.5\n9 2.5 1.5\n10 3 2\n\
                 11 2.5 2.5\n12 0.5 0.5\n13 3.5 0.7\n13 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n5 5 6\n6 6 7\n7 7 8\n8 8 5\n\
                 9 7 9\n10 9 10\n11 10 11\n12 11 7\n13 12 13\n2\n1 1.5 2\n2 2.5 2\n";
-    let from_poly = voronaut::domain::from_poly(&poly::read(text, "holes.poly").unwrap()).unwrap();
+    let from_poly = voronaut::domain::from_poly(&poly::read(text.as_bytes(), "holes.poly").unwrap()).unwrap();
     Domain::new(&from_poly).unwrap()
 }
 

@@ -2,7 +2,7 @@
 //! at vertices costs against the function itself.
 
 use voronaut::domain::Domain;
-use voronaut::formats::sol::SolutionValues;
+use voronaut::formats::SolutionValues;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, Norm, ScalarField, Snapshot, Variables};

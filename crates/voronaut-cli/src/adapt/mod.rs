@@ -13,9 +13,9 @@ use solver::Shell;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use told::Told;
-use voronaut::formats::sol::{self, Solutions};
+use voronaut::formats::{Format, Solutions};
 use voronaut::metric::{Expression, Variables};
-use voronaut::output::{self, Format};
+use voronaut::output;
 use voronaut::quality::validity;
 use voronaut::recipe::{self, Source, Step};
 use voronaut::surface::Given;
@@ -109,5 +109,5 @@ fn write(file: &Path, step: &Step) -> Result<()> {
     if step.solutions.vertices.is_empty() && step.solutions.triangles.is_empty() {
         return Ok(());
     }
-    output::write(&file.with_extension("sol"), sol::write_all(&step.solutions).as_bytes())
+    output::write_solutions(&step.solutions, &file.with_extension("sol"))
 }

@@ -2,9 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use voronaut::domain::read_text;
-use voronaut::formats::medit;
-use voronaut::formats::sol::{self, SolutionValues, Solutions};
+use voronaut::formats::{self, SolutionValues, Solutions, sol};
 use voronaut::mesh::Mesh;
 use voronaut::output;
 use voronaut::{Error, Result};
@@ -38,9 +36,9 @@ impl Shell {
     pub(super) fn solve(&self, step: usize, mesh: &Mesh, start: Option<&Solutions>) -> Result<Solutions> {
         let file = |name: &str| self.directory.join(name);
         let (mesh_file, start_file, out_file) = (file("mesh.mesh"), file("start.sol"), file("out.sol"));
-        output::write(&mesh_file, medit::write(mesh).as_bytes())?;
+        output::write_mesh(mesh, &mesh_file)?;
         if let Some(start) = start {
-            output::write(&start_file, sol::write_all(start).as_bytes())?;
+            output::write_solutions(start, &start_file)?;
         }
         let _ = std::fs::remove_file(&out_file);
         let start = start.map_or(Path::new("-"), |_| start_file.as_path());
@@ -56,7 +54,7 @@ impl Shell {
             let help = "it has to write its solution to the file that {out} stands for";
             return Err(Error::parse("solver", format!("step {step}: `{text}` wrote no solution"), help));
         }
-        let found = sol::read_all(&read_text(&out_file)?, &format!("the solver's {{out}} of step {step}"))?;
+        let found = sol::read_all(formats::open(&out_file)?, &format!("the solver's {{out}} of step {step}"))?;
         demand_counts(step, &found, mesh)?;
         Ok(found)
     }

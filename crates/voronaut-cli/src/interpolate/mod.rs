@@ -8,11 +8,9 @@ pub(crate) use args::{EXAMPLES, InterpolateArgs};
 use crate::files;
 use std::path::Path;
 use std::time::Instant;
-use voronaut::domain::read_text;
-use voronaut::formats::sol::{self, SolutionValues, Solutions};
+use voronaut::formats::{self, SolutionValues, Solutions};
 use voronaut::mesh::Mesh;
 use voronaut::output;
-use voronaut::surface;
 use voronaut::transfer::{Overshoot, TransferOptions, carry};
 use voronaut::{Error, Result};
 
@@ -22,14 +20,14 @@ pub(crate) fn run(args: &InterpolateArgs) -> Result<()> {
     demand_writable(args)?;
     files::set_threads(&args.run)?;
     let (old, new) = (planar(&args.old)?, planar(&args.new)?);
-    let given = sol::read_all(&read_text(&args.field)?, &args.field.display().to_string())?;
+    let given = formats::read_solutions(&args.field)?;
     demand_counts(args, &given, &old, &new)?;
     let read = start.elapsed().as_secs_f64();
     let overshoot = if args.overshoot { Overshoot::Kept } else { Overshoot::Spread };
     let options = TransferOptions { conservative: args.conservative, overshoot, linear_tensors: args.linear_tensors };
     let (solutions, carried, cover) = carry(&old, &new, &given, options)?;
     let done = start.elapsed().as_secs_f64();
-    output::write(&args.out, sol::write_all(&solutions).as_bytes())?;
+    output::write_solutions(&solutions, &args.out)?;
     let dimension = usize::from(given.dimension);
     let seconds = [read, done - read, start.elapsed().as_secs_f64() - done];
     if let Some(file) = &args.report {
@@ -57,7 +55,7 @@ fn demand_writable(args: &InterpolateArgs) -> Result<()> {
 }
 
 fn planar(path: &Path) -> Result<Mesh> {
-    let mesh = surface::read_mesh(&path.to_string_lossy())?;
+    let mesh = formats::read(path)?.mesh;
     if mesh.is_planar() {
         return Ok(mesh);
     }

@@ -10,11 +10,10 @@ use args::{Combine, LimitText};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::time::Instant;
-use voronaut::formats::sol::{self, Solution, SolutionValues};
+use voronaut::formats::{self, Solution, SolutionValues};
 use voronaut::mesh::Mesh;
 use voronaut::metric::nodal::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline};
 use voronaut::output::{self, report};
-use voronaut::surface;
 use voronaut::{Error, Result};
 
 /// Makes the metric and writes it.
@@ -29,13 +28,13 @@ pub(crate) fn run(args: &MetricArgs) -> Result<()> {
         limits: sources::limits(args)?,
         gradation_factor: args.gradation,
     };
-    let mesh = surface::read_mesh(&args.mesh.to_string_lossy())?;
+    let mesh = formats::read(&args.mesh)?.mesh;
     mesh.check_numbers()?;
     let sources = args.metric.iter().map(|text| sources::source(text, &mesh, args)).collect::<Result<Vec<_>>>()?;
     let made = pipeline.run(&mesh, &sources)?;
     let figures = Figures::of(&made);
     let values = SolutionValues::Tensor(made.tensors.iter().map(|m| [m.xx, m.xy, m.yy]).collect());
-    output::write(&args.out, sol::write(&Solution { dimension: 2, values }).as_bytes())?;
+    output::write_solution(&Solution { dimension: 2, values }, &args.out)?;
     let told = told(args, &mesh, &made, &figures, start.elapsed().as_secs_f64());
     if let Some(file) = &args.report {
         output::write(file, format!("{told:#}\n").as_bytes())?;

@@ -2,8 +2,8 @@
 
 use super::args::{LimitText, MetricArgs};
 use std::path::Path;
-use voronaut::domain::{Domain, from_mesh, read_text};
-use voronaut::formats::sol::{self, SolutionValues};
+use voronaut::domain::{Domain, from_mesh};
+use voronaut::formats::{self, SolutionValues};
 use voronaut::geometry::Tensor;
 use voronaut::mesh::Mesh;
 use voronaut::metric::nodal::{Limit, Limits, Source, implied, isotropic};
@@ -46,10 +46,10 @@ fn hessian(function: &Snapshot, mesh: &Mesh, recovery: Option<Recovery>) -> Resu
 
 /// A metric of one value for each vertex of the mesh itself.
 fn own(path: &Path, mesh: &Mesh) -> Result<Vec<Tensor>> {
-    match sol::read(&read_text(path)?, &path.display().to_string())?.values {
+    match formats::read_solution(path)?.values {
         SolutionValues::Scalar(sizes) => isotropic(mesh, &sizes),
         SolutionValues::Tensor(entries) => Ok(entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect()),
-        SolutionValues::Vector(_) | SolutionValues::Tensor3(_) => {
+        SolutionValues::Vector { .. } | SolutionValues::Tensor3(_) => {
             let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
             Err(Error::parse(path.display().to_string(), "the values are no planar metric", help))
         }
@@ -59,7 +59,7 @@ fn own(path: &Path, mesh: &Mesh) -> Result<Vec<Tensor>> {
 /// One number per vertex from a file.
 fn scalars(path: &Path, need: &str) -> Result<Vec<f64>> {
     let place = path.display().to_string();
-    match sol::read(&read_text(path)?, &place)?.values {
+    match formats::read_solution(path)?.values {
         SolutionValues::Scalar(values) => Ok(values),
         _ => Err(Error::parse(
             place,

@@ -12,8 +12,7 @@ use crate::{files, mesh, summary};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use voronaut::domain::read_text;
-use voronaut::formats::sol::{self, Solution};
+use voronaut::formats::{self, Format, Solution};
 use voronaut::output::report::{Seconds, Strayed};
 use voronaut::output::{self, Report};
 use voronaut::quality::{surface_quality, surface_unmet, validity};
@@ -26,7 +25,7 @@ use voronaut::{Error, Result};
 pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     let start = Instant::now();
     let (run, out) = (args.run(), args.out());
-    output::Format::from_path(&out)?;
+    Format::from_path(&out)?;
     let sol_file = out.with_extension("sol");
     [Some(&out), Some(&sol_file), args.report.as_ref()]
         .into_iter()
@@ -60,7 +59,7 @@ pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     let solution = sizes.solution(&field, meshed.metric_scale, &input.surface, &meshed.mesh.points)?;
     output::write_mesh(&meshed.mesh, &out)?;
-    output::write(&sol_file, sol::write(&solution).as_bytes())?;
+    output::write_solution(&solution, &sol_file)?;
     args.report.as_deref().map_or(Ok(()), |path| output::write(path, report.to_json().as_bytes()))?;
     summary::print(&out.display().to_string(), &report, &run);
     Ok(())
@@ -85,7 +84,7 @@ fn metric_file(args: &RemeshArgs) -> Option<PathBuf> {
 }
 
 fn read_solution(path: &Path) -> Result<Solution> {
-    sol::read(&read_text(path)?, &path.display().to_string())
+    formats::read_solution(path)
 }
 
 fn sizing(args: &RemeshArgs, input: &Input) -> Sizing {

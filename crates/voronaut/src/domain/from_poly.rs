@@ -57,7 +57,7 @@ mod tests {
     use crate::formats::poly;
 
     fn pslg(text: &str) -> Result<Pslg> {
-        from_poly(&poly::read(text, "a.poly")?)
+        from_poly(&poly::read(text.as_bytes(), "a.poly")?)
     }
 
     #[test]

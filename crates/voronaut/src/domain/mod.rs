@@ -17,7 +17,7 @@ pub use from_geojson::from_geojson;
 pub use from_mesh::from_mesh;
 pub use from_poly::from_poly;
 pub use pslg::{Filling, Pslg, Segment, Side};
-pub use read::{WRITTEN, read as read_pslg, read_bytes, read_numbers, read_text};
+pub use read::{WRITTEN, read as read_pslg, read_numbers};
 pub use shapes::{disk, rect};
 
 use crate::error::Result;

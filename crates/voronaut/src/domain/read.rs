@@ -2,7 +2,7 @@
 
 use super::{Pslg, from_geojson, from_mesh, from_poly, shapes};
 use crate::error::{Error, Result};
-use crate::formats::{geojson, medit, poly};
+use crate::formats::{self, Format, geojson, open, poly, read_text};
 use crate::geometry::Point;
 use std::path::Path;
 
@@ -19,22 +19,21 @@ pub fn read(spec: &str) -> Result<Pslg> {
     }
     let path = Path::new(spec);
     let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+    let format = Format::of_ending(path);
     match ending.as_deref() {
         Some("geojson" | "json") => {
             let polygons = geojson::read(&read_text(path)?, spec)?;
             from_geojson::from_geojson(&polygons).map_err(|error| in_file(spec, error))
         }
         Some("poly") => {
-            let poly = poly::read(&read_text(path)?, spec)?;
+            let poly = poly::read(open(path)?, spec)?;
             from_poly::from_poly(&poly).map_err(|error| in_file(spec, error))
         }
-        Some("mesh") => {
-            let mesh = medit::read(&read_text(path)?, spec)?;
+        _ if format.is_some_and(Format::may_be_planar) => {
+            let mesh = formats::read(path)?.mesh;
             from_mesh::from_mesh(&mesh).map_err(|error| in_file(spec, error))
         }
-        Some(ending) if OTHER_ENDINGS.contains(&ending) => {
-            Err(not_planar(format!("a .{ending} file as planar domain ({spec})")))
-        }
+        Some(ending) if format.is_some() => Err(not_planar(format!("a .{ending} file as planar domain ({spec})"))),
         _ => Err(Error::parse(
             spec,
             "neither a shape nor a file with an ending that is known",
@@ -46,8 +45,6 @@ pub fn read(spec: &str) -> Result<Pslg> {
 /// What users write for a planar domain.
 pub const WRITTEN: &str =
     "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly or .mesh";
-
-const OTHER_ENDINGS: [&str; 8] = ["obj", "off", "ply", "stl", "msh", "meshb", "vtu", "vtp"];
 
 const SURFACES: [&str; 4] = ["sphere", "torus", "chair", "implicit"];
 
@@ -84,32 +81,6 @@ pub fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> R
     Ok(values)
 }
 
-/// Reads a text file.
-///
-/// # Errors
-/// [`Error::Io`] where it cannot be read; [`Error::Parse`] where it is empty, or no text.
-pub fn read_text(path: &Path) -> Result<String> {
-    let bytes = read_bytes(path)?;
-    let place = path.display().to_string();
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let what = format!("not a text in UTF-8 (byte {})", error.utf8_error().valid_up_to() + 1);
-        let help = "save the file as UTF-8 text; this format has no binary form that is read";
-        Error::parse(&place, what, help)
-    })?;
-    if text.trim().is_empty() {
-        return Err(Error::parse(place, "the file is empty", "check that the program that wrote it had finished"));
-    }
-    Ok(text)
-}
-
-/// Reads a file that may be binary.
-///
-/// # Errors
-/// [`Error::Io`] where it cannot be read.
-pub fn read_bytes(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|source| Error::Io { path: path.into(), source })
-}
-
 /// Adds the file to the place of an error of its domain.
 fn in_file(file: &str, error: Error) -> Error {
     match error {
@@ -126,6 +97,7 @@ fn not_planar(what: String) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::medit;
     use proptest::prelude::*;
     use std::io::Write;
 
@@ -175,7 +147,7 @@ mod tests {
         for (ending, content, expected) in [
             (".mesh", &b""[..], ": the file is empty"),
             (".geojson", b" \n\t\n", ": the file is empty"),
-            (".mesh", b"Mesh\xff", ": not a text in UTF-8 (byte 5)"),
+            (".mesh", b"Mesh\xff", ":1: not a text in UTF-8 (byte 5 of the line)"),
             (".poly", b"2\n1 0 0\n2 0 0\n1\n1 1 2\n", ", (0, 0)"),
             (".json", br#"{"type":"Point","coordinates":[0,0]}"#, ", feature 1: a Point where a Polygon"),
             (
@@ -239,12 +211,15 @@ mod tests {
     proptest! {
         #[test]
         fn no_text_makes_a_reader_panic(text in soup()) {
-            let _ = crate::formats::sol::read(&text, "a.sol");
-            if let Ok(mesh) = medit::read(&text, "a.mesh") {
-                prop_assert_eq!(&medit::read(&medit::write(&mesh), "b.mesh").unwrap(), &mesh);
+            let bytes = text.as_bytes();
+            let _ = crate::formats::sol::read(bytes, "a.sol");
+            if let Ok(mesh) = medit::read(bytes, "a.mesh") {
+                let mut written = Vec::new();
+                medit::write(&mesh, medit::Form::Text, &mut written).unwrap();
+                prop_assert_eq!(&medit::read(written.as_slice(), "b.mesh").unwrap(), &mesh);
                 let _ = from_mesh::from_mesh(&mesh);
             }
-            if let Ok(poly) = poly::read(&text, "a.poly") {
+            if let Ok(poly) = poly::read(bytes, "a.poly") {
                 let _ = from_poly::from_poly(&poly);
             }
         }

@@ -1,5 +1,8 @@
-//! File formats: text to plain structs and back, without files, domains or metrics.
+//! File formats: bytes to plain structs and back, without domains or metrics.
 
+mod bytes;
+mod document;
+mod files;
 pub mod geojson;
 pub mod medit;
 pub mod obj;
@@ -7,11 +10,14 @@ pub mod off;
 pub mod ply;
 pub mod points;
 pub mod poly;
-mod sections;
 pub mod sol;
 pub mod stl;
+mod values;
+pub(crate) mod vtk;
 mod words;
 
+pub use document::{Document, Field, Fields};
+pub use files::{Format, MESH_ENDINGS, open, read, read_solution, read_solutions, read_text};
 pub use geojson::Polygons;
 pub use poly::Poly;
-pub use sol::{Solution, SolutionValues, Solutions};
+pub use values::{Solution, SolutionValues, Solutions};

@@ -1,8 +1,9 @@
 //! Wavefront `.obj`, as far as surfaces go: vertices, polygons, lines.
 
-use super::words::{At, Largest, Row, Rows, Word, error_at, number, whole};
+use super::words::{At, Largest, Row, Rows, Shortest, Word, error_at, number, whole};
 use crate::error::Result;
 use crate::mesh::Mesh;
+use std::io::{self, BufRead, Write};
 
 /// Reads `v`, `f` and `l` of an `.obj` text.
 ///
@@ -14,9 +15,10 @@ use crate::mesh::Mesh;
 ///
 /// [`crate::Error::Parse`] with the line of what is no finite number, of a face of fewer than three vertices, and of a vertex
 /// that does not exist.
-pub fn read(text: &str, place: &str) -> Result<Mesh> {
+pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
+    let mut rows = Rows::new(source, place);
     let mut reader = Reader { place, mesh: Mesh::default(), label: 0, largest: Largest::default() };
-    for row in Rows::new(text) {
+    while let Some(row) = rows.next()? {
         reader.read_row(row)?;
     }
     let Reader { mut mesh, largest, .. } = reader;
@@ -24,6 +26,31 @@ pub fn read(text: &str, place: &str) -> Result<Mesh> {
     mesh.point_labels = vec![0; mesh.points.len()];
     mesh.edge_labels = vec![0; mesh.edges.len()];
     Ok(mesh)
+}
+
+/// Writes a mesh as an `.obj` text: vertices in order, triangles in order with a group `region_LABEL` wherever the label changes,
+/// then the labelled edges as lines. Coordinates read back as the same bits; labels of vertices and edges have no place there.
+///
+/// # Errors
+/// What `out` says.
+pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+    out.write_all(b"# voronaut\n")?;
+    for [x, y, z] in &mesh.points {
+        writeln!(out, "v {} {} {}", Shortest(*x), Shortest(*y), Shortest(*z))?;
+    }
+    let mut group = None;
+    for (i, &triangle) in mesh.triangles.iter().enumerate() {
+        let label = mesh.triangle_labels.get(i).copied().unwrap_or(0);
+        if group.replace(label) != Some(label) {
+            writeln!(out, "g region_{label}")?;
+        }
+        let [a, b, c] = triangle.map(|v| u64::from(v) + 1);
+        writeln!(out, "f {a} {b} {c}")?;
+    }
+    if !mesh.edges.is_empty() {
+        out.write_all(b"g edges\n")?;
+    }
+    mesh.edges.iter().try_for_each(|&[a, b]| writeln!(out, "l {} {}", u64::from(a) + 1, u64::from(b) + 1))
 }
 
 struct Reader<'a> {
@@ -90,7 +117,7 @@ impl Reader<'_> {
         let absolute = if number < 0 { known + 1 + number } else { number };
         match u32::try_from(absolute) {
             Ok(absolute) if absolute > 0 => {
-                self.largest.note(absolute, word.line);
+                self.largest.note(absolute.into(), word.line as u64);
                 Ok(absolute - 1)
             }
             _ => {
@@ -115,7 +142,7 @@ mod tests {
     fn faces_in_all_their_spellings() {
         let text = "mtllib a.mtl\nv 0 0 0 1.0\nv 1 0 0 # corner\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n\
                     g region_-7\nf 1/1/1 2//1 3/4 4\ng other\nf -1 -2 -3\nl 1 2 3\ns off\n";
-        let mesh = read(text, "a.obj").unwrap();
+        let mesh = read(text.as_bytes(), "a.obj").unwrap();
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [3, 2, 1]]);
         assert_eq!(mesh.triangle_labels, [-7, -7, 0]);
         assert_eq!(mesh.edges, [[0, 1], [1, 2]]);
@@ -137,9 +164,27 @@ mod tests {
             ("v 0 0 0\nf 1 1 /2", "a.obj:2: '' is not a whole number"),
             ("f 1.5 1 1", "a.obj:1: '1.5' is not a whole number"),
         ] {
-            let error = read(text, "a.obj").unwrap_err();
+            let error = read(text.as_bytes(), "a.obj").unwrap_err();
             assert!(error.to_string().starts_with(expected), "{error}");
             assert!(!error.help().is_empty());
         }
+    }
+
+    #[test]
+    fn regions_are_written_as_groups() {
+        let mesh = Mesh {
+            points: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.0, 1.0, 0.0]],
+            point_labels: vec![0; 4],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            triangle_labels: vec![1, -2],
+            edges: vec![[0, 2]],
+            edge_labels: vec![7],
+            ..Mesh::default()
+        };
+        let expected = "# voronaut\nv 0 0 0\nv 1 0 0\nv 1 0.1 0\nv 0 1 0\n\
+                        g region_1\nf 1 2 3\ng region_-2\nf 1 3 4\ng edges\nl 1 3\n";
+        let mut out = Vec::new();
+        write(&mesh, &mut out).unwrap();
+        assert_eq!(String::from_utf8(out).unwrap(), expected);
     }
 }

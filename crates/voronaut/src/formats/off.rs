@@ -3,7 +3,7 @@
 use super::words::{At, Row, Rows, Shortest, Word, error_at, number, shortened, whole};
 use crate::error::Result;
 use crate::mesh::Mesh;
-use std::fmt::Write;
+use std::io::{self, BufRead, Write};
 
 /// Reads an `.off` text: vertices, and faces cut into fans around their first vertex.
 ///
@@ -14,18 +14,23 @@ use std::fmt::Write;
 /// # Errors
 ///
 /// [`crate::Error::Parse`] with the line of another head, of what is no finite number, of a row that is too short or
-/// missing, and of a vertex that does not exist.
-pub fn read(text: &str, place: &str) -> Result<Mesh> {
-    let mut reader = Reader { place, rows: Rows::new(text), line: 1 };
-    let [vertices, faces] = reader.read_counts()?;
+/// missing, of rows left over, and of a vertex that does not exist.
+pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
+    let mut rows = Rows::new(source, place);
+    let [vertices, faces] = read_counts(&mut rows)?;
     let mut mesh = Mesh::default();
     for at in At::rows("the vertices", vertices) {
-        mesh.points.push(reader.read_vertex(at)?);
+        mesh.points.push(read_vertex(&mut rows, at)?);
     }
+    let mut polygon = Vec::new();
     for at in At::rows("the faces", faces) {
-        let polygon = reader.read_face(at, vertices)?;
+        read_face(&mut rows, at, vertices, &mut polygon)?;
         let fan = polygon[1..].windows(2).map(|pair| [polygon[0], pair[0], pair[1]]);
         mesh.triangles.extend(fan);
+    }
+    if let Some(row) = rows.next()? {
+        let what = "more rows than the counts in the file announce";
+        return Err(error_at(place, row.line, what, "check the counts of vertices and faces"));
     }
     mesh.point_labels = vec![0; mesh.points.len()];
     mesh.triangle_labels = vec![0; mesh.triangles.len()];
@@ -33,94 +38,91 @@ pub fn read(text: &str, place: &str) -> Result<Mesh> {
 }
 
 /// Writes vertices and triangles as an `.off` text that [`read`] turns into the same; labels and edges have no place there.
-pub fn write(mesh: &Mesh) -> String {
-    let mut out = format!("OFF\n{} {} 0\n", mesh.points.len(), mesh.triangles.len());
-    // Writing to a string cannot fail.
+///
+/// # Errors
+/// What `out` says.
+pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "OFF\n{} {} 0", mesh.points.len(), mesh.triangles.len())?;
     for [x, y, z] in &mesh.points {
-        let _ = writeln!(out, "{} {} {}", Shortest(*x), Shortest(*y), Shortest(*z));
+        writeln!(out, "{} {} {}", Shortest(*x), Shortest(*y), Shortest(*z))?;
     }
-    for [a, b, c] in &mesh.triangles {
-        let _ = writeln!(out, "3 {a} {b} {c}");
-    }
-    out
+    mesh.triangles.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
 }
 
 /// Dialects whose vertices begin with their three coordinates.
 const HEADS: [&str; 7] = ["OFF", "COFF", "NOFF", "CNOFF", "STOFF", "STCOFF", "STNOFF"];
 
-struct Reader<'a> {
-    place: &'a str,
-    rows: Rows<'a>,
-    line: usize,
+fn read_counts(rows: &mut Rows<'_>) -> Result<[u64; 2]> {
+    let (place, at) = (rows.place(), At::head("the file"));
+    let row = next_row(rows, at)?;
+    let mut words = row.words().peekable();
+    let first = words.peek().map_or("", |word| word.text);
+    if !first.starts_with(|c: char| c.is_ascii_digit()) {
+        if !HEADS.iter().any(|head| head.eq_ignore_ascii_case(first)) {
+            let what = format!("the file begins with '{}', not with OFF", shortened(first));
+            return Err(error_at(place, row.line, what, "give a file in the text form of .off"));
+        }
+        words.next();
+    }
+    if words.peek().is_some() {
+        return counts(place, row.line, words);
+    }
+    drop(words);
+    let row = next_row(rows, at)?;
+    counts(place, row.line, row.words())
 }
 
-impl<'a> Reader<'a> {
-    fn read_counts(&mut self) -> Result<[u64; 2]> {
-        let at = At::head("the file");
-        let row = self.next_row(at)?;
-        let mut words = row.words().peekable();
-        let first = words.peek().map_or("", |word| word.text);
-        if !first.starts_with(|c: char| c.is_ascii_digit()) {
-            if !HEADS.iter().any(|head| head.eq_ignore_ascii_case(first)) {
-                let what = format!("the file begins with '{}', not with OFF", shortened(first));
-                return Err(error_at(self.place, row.line, what, "give a file in the text form of .off"));
-            }
-            words.next();
-        }
-        if words.peek().is_some() {
-            return self.counts(words, at);
-        }
-        let row = self.next_row(at)?;
-        self.counts(row.words(), at)
-    }
+/// Vertices and faces; a count of edges may follow and means nothing.
+fn counts<'w>(place: &str, line: usize, mut words: impl Iterator<Item = Word<'w>>) -> Result<[u64; 2]> {
+    let at = At::head("the file");
+    let mut count = || whole(place, word(place, line, words.next(), at)?, at);
+    Ok([count()?, count()?])
+}
 
-    /// Vertices and faces; a count of edges may follow and means nothing.
-    fn counts(&self, mut words: impl Iterator<Item = Word<'a>>, at: At<'_>) -> Result<[u64; 2]> {
-        let mut count = || whole(self.place, self.word(words.next(), at)?, at);
-        Ok([count()?, count()?])
+fn read_vertex(rows: &mut Rows<'_>, at: At<'_>) -> Result<[f64; 3]> {
+    let place = rows.place();
+    let row = next_row(rows, at)?;
+    let mut words = row.words();
+    let mut point = [0.0; 3];
+    for coordinate in &mut point {
+        *coordinate = number(place, word(place, row.line, words.next(), at)?, at)?;
     }
+    Ok(point)
+}
 
-    fn read_vertex(&mut self, at: At<'_>) -> Result<[f64; 3]> {
-        let mut words = self.next_row(at)?.words();
-        let mut point = [0.0; 3];
-        for coordinate in &mut point {
-            *coordinate = number(self.place, self.word(words.next(), at)?, at)?;
+fn read_face(rows: &mut Rows<'_>, at: At<'_>, vertices: u64, polygon: &mut Vec<u32>) -> Result<()> {
+    let place = rows.place();
+    let row = next_row(rows, at)?;
+    let mut words = row.words();
+    let mut next = || word(place, row.line, words.next(), at);
+    let corners: u64 = whole(place, next()?, at)?;
+    if corners < 3 {
+        let what = format!("a face of {corners} vertices ({at})");
+        return Err(error_at(place, row.line, what, "a face needs three vertices or more"));
+    }
+    polygon.clear();
+    for _ in 0..corners {
+        let vertex: u32 = whole(place, next()?, at)?;
+        if u64::from(vertex) >= vertices {
+            let what = format!("vertex {vertex} does not exist: the file announces {vertices} ({at})");
+            return Err(error_at(place, row.line, what, "number from 0, and below the count of vertices"));
         }
-        Ok(point)
+        polygon.push(vertex);
     }
+    Ok(())
+}
 
-    fn read_face(&mut self, at: At<'_>, vertices: u64) -> Result<Vec<u32>> {
-        let mut words = self.next_row(at)?.words();
-        let corners: u64 = whole(self.place, self.word(words.next(), at)?, at)?;
-        if corners < 3 {
-            let what = format!("a face of {corners} vertices ({at})");
-            return Err(error_at(self.place, self.line, what, "a face needs three vertices or more"));
-        }
-        let mut polygon = Vec::new();
-        for _ in 0..corners {
-            let vertex: u32 = whole(self.place, self.word(words.next(), at)?, at)?;
-            if u64::from(vertex) >= vertices {
-                let what = format!("vertex {vertex} does not exist: the file announces {vertices} ({at})");
-                return Err(error_at(self.place, self.line, what, "number from 0, and below the count of vertices"));
-            }
-            polygon.push(vertex);
-        }
-        Ok(polygon)
+fn next_row<'r>(rows: &'r mut Rows<'_>, at: At<'_>) -> Result<Row<'r>> {
+    if rows.has_next()? {
+        return Ok(rows.next()?.expect("a row was seen"));
     }
+    let help = format!("the file is cut off, or the count of {} is too large", at.section);
+    Err(error_at(rows.place(), rows.line(), format!("the text ends in {at}"), help))
+}
 
-    fn next_row(&mut self, at: At<'_>) -> Result<Row<'a>> {
-        let row = self.rows.next().ok_or_else(|| {
-            let help = format!("the file is cut off, or the count of {} is too large", at.section);
-            error_at(self.place, self.line, format!("the text ends in {at}"), help)
-        })?;
-        self.line = row.line;
-        Ok(row)
-    }
-
-    fn word(&self, word: Option<Word<'a>>, at: At<'_>) -> Result<Word<'a>> {
-        let help = "write all numbers of a vertex or a face on one row";
-        word.ok_or_else(|| error_at(self.place, self.line, format!("the row ends too early ({at})"), help))
-    }
+fn word<'w>(place: &str, line: usize, word: Option<Word<'w>>, at: At<'_>) -> Result<Word<'w>> {
+    let help = "write all numbers of a vertex or a face on one row";
+    word.ok_or_else(|| error_at(place, line, format!("the row ends too early ({at})"), help))
 }
 
 #[cfg(test)]
@@ -134,7 +136,7 @@ mod tests {
             "COFF 4 1 5 # counts\n\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 0 0 0 0\n0 1 0 9 9 9 9\n4 0 1 2 3",
             "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n",
         ] {
-            let mesh = read(text, "a.off").unwrap();
+            let mesh = read(text.as_bytes(), "a.off").unwrap();
             assert_eq!(mesh.points[2].map(f64::to_bits), [1.0_f64, 1.0, 0.0].map(f64::to_bits));
             assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
         }
@@ -149,7 +151,9 @@ mod tests {
             triangle_labels: vec![0; 2],
             ..Mesh::default()
         };
-        assert_eq!(read(&write(&mesh), "a.off").unwrap(), mesh);
+        let mut out = Vec::new();
+        write(&mesh, &mut out).unwrap();
+        assert_eq!(read(out.as_slice(), "a.off").unwrap(), mesh);
     }
 
     #[test]
@@ -166,9 +170,10 @@ mod tests {
             ("OFF\n1 1 0\n0 0 0\n3 0 0 1", "a.off:4: vertex 1 does not exist: the file announces 1"),
             ("OFF\n1 1 0\n0 0 0\n3 0 0 -1", "a.off:4: '-1' is out of range"),
             ("OFF\n1 1 0\n0 0 0\n4000000000 0 0 0", "a.off:4: the row ends too early (row 1 of 1 of the faces)"),
+            ("OFF\n1 1 0\n0 0 0\n3 0 0 0\n1 1 1\n", "a.off:5: more rows than the counts in the file announce"),
             ("OFF\n1 2 0\n0 0 0\n3 0 0 0", "a.off:4: the text ends in row 2 of 2 of the faces"),
         ] {
-            let error = read(text, "a.off").unwrap_err();
+            let error = read(text.as_bytes(), "a.off").unwrap_err();
             assert!(error.to_string().starts_with(expected), "{error}");
             assert!(!error.help().is_empty());
         }

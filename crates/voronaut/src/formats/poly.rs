@@ -3,6 +3,7 @@
 use super::words::{At, Row, Rows, Word, error_at, number, whole};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
+use std::io::BufRead;
 
 /// What a `.poly` file says.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,13 +45,14 @@ pub struct Region {
 /// [`Error::Parse`] with the line of what is not as announced: a text cut off, rows with too many or too few columns,
 /// numbers out of turn, something that is no finite number, an end that is no vertex, no vertices inline, a dimension
 /// other than 2.
-pub fn read(text: &str, place: &str) -> Result<Poly> {
-    let mut reader = Reader { place, rows: Rows::new(text), line: 1, poly: Poly::default() };
-    reader.read_vertices()?;
-    reader.read_segments()?;
-    reader.read_holes()?;
-    reader.read_regions()?;
-    if let Some(row) = reader.rows.next() {
+pub fn read(source: impl BufRead, place: &str) -> Result<Poly> {
+    let mut rows = Rows::new(source, place);
+    let mut reader = Reader { place, line: 1, poly: Poly::default() };
+    reader.read_vertices(&mut rows)?;
+    reader.read_segments(&mut rows)?;
+    reader.read_holes(&mut rows)?;
+    reader.read_regions(&mut rows)?;
+    if let Some(row) = rows.next()? {
         let what = "more rows than the counts in the file announce";
         return Err(error_at(place, row.line, what, "check the counts of holes and regions"));
     }
@@ -59,14 +61,13 @@ pub fn read(text: &str, place: &str) -> Result<Poly> {
 
 struct Reader<'a> {
     place: &'a str,
-    rows: Rows<'a>,
     line: usize,
     poly: Poly,
 }
 
-impl<'a> Reader<'a> {
-    fn read_vertices(&mut self) -> Result<()> {
-        let head = self.head("vertices", 4)?;
+impl Reader<'_> {
+    fn read_vertices(&mut self, rows: &mut Rows<'_>) -> Result<()> {
+        let head = self.head(rows, "vertices", 4)?;
         let [count, dimension, attributes, markers] = head;
         if dimension.unwrap_or(2) != 2 {
             let what = format!("the vertices have dimension {}, not 2", dimension.unwrap_or(2));
@@ -82,7 +83,7 @@ impl<'a> Reader<'a> {
         let attributes = attributes.unwrap_or(0).min(1 << 40) as usize;
         let columns = 3 + attributes + self.marker_columns(markers)?;
         for at in At::rows("vertices", count.unwrap_or(0)) {
-            let row = self.row(at, columns, columns)?;
+            let row = self.row(rows, at, columns, columns)?;
             self.check_vertex_number(row[0], at)?;
             self.poly.points.push(self.point(&row[1..3], at)?);
             self.poly.point_markers.push(self.marker(row.get(3 + attributes), at)?);
@@ -90,11 +91,11 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn read_segments(&mut self) -> Result<()> {
-        let [count, markers] = self.head("segments", 2)?;
+    fn read_segments(&mut self, rows: &mut Rows<'_>) -> Result<()> {
+        let [count, markers] = self.head(rows, "segments", 2)?;
         let columns = 3 + self.marker_columns(markers)?;
         for at in At::rows("segments", count.unwrap_or(0)) {
-            let row = self.row(at, columns, columns)?;
+            let row = self.row(rows, at, columns, columns)?;
             let ends = [self.vertex(row[1], at)?, self.vertex(row[2], at)?];
             self.poly.segments.push(ends);
             self.poly.segment_markers.push(self.marker(row.get(3), at)?);
@@ -102,19 +103,19 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn read_holes(&mut self) -> Result<()> {
-        let [count] = self.optional_head("holes")?;
+    fn read_holes(&mut self, rows: &mut Rows<'_>) -> Result<()> {
+        let [count] = self.optional_head(rows, "holes")?;
         for at in At::rows("holes", count) {
-            let row = self.row(at, 3, 3)?;
+            let row = self.row(rows, at, 3, 3)?;
             self.poly.holes.push(self.point(&row[1..3], at)?);
         }
         Ok(())
     }
 
-    fn read_regions(&mut self) -> Result<()> {
-        let [count] = self.optional_head("regions")?;
+    fn read_regions(&mut self, rows: &mut Rows<'_>) -> Result<()> {
+        let [count] = self.optional_head(rows, "regions")?;
         for at in At::rows("regions", count) {
-            let row = self.row(at, 4, 5)?;
+            let row = self.row(rows, at, 4, 5)?;
             let point = self.point(&row[1..3], at)?;
             let attribute = number(self.place, row[3], at)?;
             let max_area = row.get(4).map(|&word| number(self.place, word, at)).transpose()?;
@@ -124,9 +125,9 @@ impl<'a> Reader<'a> {
     }
 
     /// The counts that open a list; those at the end of the row may be missing.
-    fn head<const N: usize>(&mut self, section: &str, columns: usize) -> Result<[Option<u64>; N]> {
+    fn head<const N: usize>(&mut self, rows: &mut Rows<'_>, section: &str, columns: usize) -> Result<[Option<u64>; N]> {
         let at = At::head(section);
-        let row = self.row(at, 1, columns)?;
+        let row = self.row(rows, at, 1, columns)?;
         let mut counts = [None; N];
         for (count, &word) in counts.iter_mut().zip(&row) {
             *count = Some(whole(self.place, word, at)?);
@@ -135,16 +136,16 @@ impl<'a> Reader<'a> {
     }
 
     /// The count that opens a list which may be missing altogether.
-    fn optional_head(&mut self, section: &str) -> Result<[u64; 1]> {
-        if self.rows.clone().next().is_none() {
+    fn optional_head(&mut self, rows: &mut Rows<'_>, section: &str) -> Result<[u64; 1]> {
+        if !rows.has_next()? {
             return Ok([0]);
         }
-        Ok(self.head::<1>(section, 1)?.map(Option::unwrap_or_default))
+        Ok(self.head::<1>(rows, section, 1)?.map(Option::unwrap_or_default))
     }
 
     /// The words of the next row, which has to have between `least` and `most` columns.
-    fn row(&mut self, at: At<'_>, least: usize, most: usize) -> Result<Vec<Word<'a>>> {
-        let Some(row) = self.rows.next() else {
+    fn row<'r>(&mut self, rows: &'r mut Rows<'_>, at: At<'_>, least: usize, most: usize) -> Result<Vec<Word<'r>>> {
+        let Some(row) = rows.next()? else {
             let help = format!("the file is cut off, or the count of {} is too large", at.section);
             return Err(self.error(format!("the text ends in {at}"), help));
         };
@@ -215,7 +216,7 @@ mod tests {
     fn numbered_from_one_with_everything() {
         let text =
             format!("{SQUARE}\n4 1\n1 1 2 5\n2 2 3 5\n3 3 4 5\n4 4 1 -6\n1\n1 .5 .5\n2\n1 .1 .1 3\n2 .2 .1 4 0.01\n");
-        let poly = read(&text, "a.poly").unwrap();
+        let poly = read(text.as_bytes(), "a.poly").unwrap();
         assert_eq!((poly.points[2], poly.first), (Point::new(1.0, 1.0), 1));
         assert_eq!(poly.point_markers, [7, 7, 7, 8]);
         assert_eq!(poly.segments, [[0, 1], [1, 2], [2, 3], [3, 0]]);
@@ -227,7 +228,7 @@ mod tests {
 
     #[test]
     fn numbered_from_zero_without_markers() {
-        let poly = read("3\n0 0 0\n1 1 0\n2 0 1d0\n3\n1 0 1\n2 1 2\n3 2 0\n", "a.poly").unwrap();
+        let poly = read("3\n0 0 0\n1 1 0\n2 0 1d0\n3\n1 0 1\n2 1 2\n3 2 0\n".as_bytes(), "a.poly").unwrap();
         assert_eq!((poly.segments, poly.first), (vec![[0, 1], [1, 2], [2, 0]], 0));
         assert_eq!((poly.point_markers, poly.segment_markers), (vec![0; 3], vec![0; 3]));
         assert!(poly.holes.is_empty() && poly.regions.is_empty());
@@ -256,7 +257,7 @@ mod tests {
             ),
             ("2 2\n1 0 0\n2 1 1\n1\n1 1 2\n0\n0\n9\n", "a.poly:8: more rows than the counts"),
         ] {
-            let error = read(text, "a.poly").unwrap_err();
+            let error = read(text.as_bytes(), "a.poly").unwrap_err();
             assert!(error.to_string().contains(expected), "{error}");
             assert!(!error.help().is_empty());
         }
@@ -264,6 +265,6 @@ mod tests {
 
     #[test]
     fn the_help_says_to_inline_vertices() {
-        assert!(read("0 2 0 0\n", "a.poly").unwrap_err().help().contains("inline the vertices"));
+        assert!(read("0 2 0 0\n".as_bytes(), "a.poly").unwrap_err().help().contains("inline the vertices"));
     }
 }

@@ -1,95 +1,93 @@
 //! Stereolithography `.stl`, as text and binary: triangles without shared vertices.
 
+use super::bytes::{Bytes, Order};
 use super::words::{At, Words, error_at, shortened};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use std::collections::HashMap;
+use std::io::{self, BufRead, Write};
 
 /// Reads an `.stl` file. Corners with exactly the same coordinates become one vertex, in the order of the file (the
 /// format has no other way to say that triangles are neighbours); nothing else is joined. Normals, names and attributes
 /// are passed over, labels are 0.
 ///
-/// A file is binary if its length is the one its count of triangles asks for, else text. Memory follows the file, never
-/// a count written in it.
+/// A file is text if it begins with `solid` and goes on as text, else binary. Memory follows the file, never a count written in it.
 ///
 /// # Errors
 ///
-/// [`Error::Parse`] with the line, or the triangle, of what is not as announced: a file cut off, a coordinate that is no
-/// finite number, words out of place.
-pub fn read(bytes: &[u8], place: &str) -> Result<Mesh> {
-    if let Some(triangles) = binary_body(bytes) {
-        return read_binary(triangles, place);
-    }
-    match std::str::from_utf8(bytes) {
-        Ok(text) if text.trim_start().to_ascii_lowercase().starts_with("solid") => read_text(text, place),
-        _ => Err(neither(bytes, place)),
+/// [`Error::Parse`] with the line or the byte of what is not as announced: a file cut off or longer than its count of triangles, a
+/// coordinate that is no finite number, words out of place. [`Error::Io`] of a file that cannot be read.
+pub fn read(mut source: impl BufRead, place: &str) -> Result<Mesh> {
+    let start = source.fill_buf().map_err(|source| Error::Io { path: place.into(), source })?;
+    if is_text(start) {
+        read_text(Words::new(source, place))
+    } else {
+        read_binary(Bytes::new(source, 0, Order::Little, place))
     }
 }
 
 /// Writes triangles as a binary `.stl` file. The format has single precision: corners are rounded, to infinity beyond 3e38, and
 /// those that come to lie on each other are one vertex when the file is read. It has no shared vertices, no labels, no edges.
-pub fn write(mesh: &Mesh) -> Vec<u8> {
-    let mut bytes = b"voronaut".to_vec();
-    bytes.resize(HEAD - 4, b' ');
-    bytes.extend((mesh.triangles.len() as u32).to_le_bytes());
+///
+/// # Errors
+/// What `out` says.
+pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+    write!(out, "{:HEAD$}", "voronaut")?;
+    out.write_all(&(mesh.triangles.len() as u32).to_le_bytes())?;
     for &triangle in &mesh.triangles {
         let corners = mesh.positions_of(triangle);
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).unit().unwrap_or_default();
         let numbers = [normal.x, normal.y, normal.z].into_iter().chain(corners.iter().flat_map(|p| p.to_array()));
-        bytes.extend(numbers.flat_map(|x| (x as f32).to_le_bytes()));
-        bytes.extend([0; 2]);
+        let mut row = [0; TRIANGLE];
+        for (bytes, x) in row.as_chunks_mut().0.iter_mut().zip(numbers) {
+            *bytes = (x as f32).to_le_bytes();
+        }
+        out.write_all(&row)?;
     }
-    bytes
+    Ok(())
 }
 
-/// The head of a binary file: 80 bytes of anything, then the number of triangles.
-const HEAD: usize = 84;
+/// The head of a binary file: 80 bytes of anything. The number of triangles follows.
+const HEAD: usize = 80;
 /// A binary triangle: normal, three corners, an attribute of two bytes.
 const TRIANGLE: usize = 50;
 
-fn announced(bytes: &[u8]) -> Option<u32> {
-    bytes.get(HEAD - 4..HEAD)?.try_into().ok().map(u32::from_le_bytes)
+/// Whether a file that begins like this is text. Heads of binary files may begin with `solid`, too, but have zeros or numbers soon.
+fn is_text(start: &[u8]) -> bool {
+    let start = start.trim_ascii_start();
+    let seen = &start[..start.len().min(2 * (HEAD + TRIANGLE))];
+    let is_readable = |byte: &u8| !byte.is_ascii_control() || byte.is_ascii_whitespace();
+    start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) && seen.iter().all(is_readable)
 }
 
-fn binary_body(bytes: &[u8]) -> Option<&[u8]> {
-    let length = HEAD as u64 + TRIANGLE as u64 * u64::from(announced(bytes)?);
-    (bytes.len() as u64 == length).then(|| &bytes[HEAD..])
-}
-
-fn neither(bytes: &[u8], place: &str) -> Error {
-    let help = "give an .stl file as text ('solid ...') or binary; this one may be cut off";
-    let what = match announced(bytes) {
-        Some(count) => format!("neither text nor binary: {} bytes, where {count} triangles are announced", bytes.len()),
-        None => format!("neither text nor binary: {} bytes", bytes.len()),
-    };
-    Error::parse(place, what, help)
-}
-
-fn read_binary(body: &[u8], place: &str) -> Result<Mesh> {
+fn read_binary(mut bytes: Bytes<'_>) -> Result<Mesh> {
+    let head = At::head("the file (neither text nor a whole binary file)");
+    bytes.skip(HEAD as u64, head)?;
+    let count = u64::from(bytes.i32(head)?.cast_unsigned());
     let mut corners = Corners::default();
-    for (i, triangle) in body.chunks_exact(TRIANGLE).enumerate() {
-        let (numbers, _) = triangle[12..48].as_chunks::<4>();
-        for corner in numbers.chunks_exact(3) {
-            let point = [0, 1, 2].map(|axis| f64::from(f32::from_le_bytes(corner[axis])));
-            if !point.iter().all(|x| x.is_finite()) {
-                let place = format!("{place}, byte {}", HEAD + TRIANGLE * i);
-                let what = format!("triangle {} has a coordinate that is not finite", i + 1);
-                return Err(Error::parse(place, what, "remove or correct the triangle"));
-            }
-            corners.push(point);
+    for at in At::rows("the triangles", count) {
+        // Some programs write nan for the normals of thin triangles; nobody needs them.
+        bytes.skip(12, at)?;
+        for _ in 0..3 {
+            corners.push([bytes.f32(at)?, bytes.f32(at)?, bytes.f32(at)?]);
         }
+        bytes.array::<2>(at)?;
     }
-    Ok(corners.into_mesh())
+    if bytes.is_at_end()? {
+        return Ok(corners.into_mesh());
+    }
+    let what = format!("the file goes on behind the {count} triangles that it announces");
+    Err(bytes.error(what, "give an .stl file as text ('solid ...') or binary; this one may be damaged"))
 }
 
-fn read_text(text: &str, place: &str) -> Result<Mesh> {
-    let mut words = Words::new(text, place);
+fn read_text(mut words: Words<'_>) -> Result<Mesh> {
+    let place = words.place();
     let mut corners = Corners::default();
     let mut facets = 0;
     // Names of solids are any words on their lines.
     let mut name_line = None;
-    while let Some(word) = words.next() {
+    while let Some(word) = words.next()? {
         if name_line == Some(word.line) {
             continue;
         }
@@ -126,12 +124,13 @@ fn read_facet(words: &mut Words<'_>, number: u64, corners: &mut Corners) -> Resu
 }
 
 fn expect_word(words: &mut Words<'_>, expected: &str, at: At<'_>) -> Result<()> {
+    let place = words.place();
     let word = words.expect(at)?;
     if word.text.eq_ignore_ascii_case(expected) {
         return Ok(());
     }
     let what = format!("'{}' where '{expected}' should be ({at})", shortened(word.text));
-    Err(error_at(words.place(), word.line, what, "write facets as 'facet normal', 'outer loop', three times 'vertex'"))
+    Err(error_at(place, word.line, what, "write facets as 'facet normal', 'outer loop', three times 'vertex'"))
 }
 
 /// Corners joined into vertices as they come.
@@ -190,7 +189,7 @@ mod tests {
         let mesh = read(TEXT.as_bytes(), "a.stl").unwrap();
         assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
         let [a, b, c, d] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
-        assert_eq!(read(&binary(&[[a, b, c], [b, d, c]]), "a.stl").unwrap(), mesh);
+        assert_eq!(read(binary(&[[a, b, c], [b, d, c]]).as_slice(), "a.stl").unwrap(), mesh);
     }
 
     #[test]
@@ -200,13 +199,15 @@ mod tests {
             triangles: vec![[3, 1, 2], [2, 1, 0]],
             ..Mesh::default()
         };
-        let again = read(&write(&mesh), "a.stl").unwrap();
+        let mut out = Vec::new();
+        write(&mesh, &mut out).unwrap();
+        let again = read(out.as_slice(), "a.stl").unwrap();
         assert_eq!((again.points.len(), again.triangles.len()), (4, 2));
         for (found, truth) in again.triangles.iter().zip(&mesh.triangles) {
             let rounded = mesh.positions_of(*truth).map(|p| p.to_array().map(|x| f64::from(x as f32).to_bits()));
             assert_eq!(again.positions_of(*found).map(|p| p.to_array().map(f64::to_bits)), rounded);
         }
-        let normal = &write(&mesh)[HEAD + TRIANGLE..][..12];
+        let normal = &out[HEAD + 4 + TRIANGLE..][..12];
         assert!(normal.iter().any(|&byte| byte != 0), "normals are written");
     }
 
@@ -218,16 +219,18 @@ mod tests {
             error.to_string()
         };
         let whole = binary(&[[[0.0; 3]; 3]; 2]);
-        assert_eq!(message(&[]), "a.stl: neither text nor binary: 0 bytes");
+        let neither = "(neither text nor a whole binary file)";
+        assert_eq!(message(&[]), format!("a.stl, byte 0: the file ends in the head of the file {neither}"));
         assert!(message(b"solid x\nfacet normal 0 0 1 inner").starts_with("a.stl:2: 'inner' where 'outer' should be"));
-        let cut = whole[..whole.len() - 1].iter().map(|b| if *b == b's' { 0xff } else { *b }).collect::<Vec<u8>>();
-        assert_eq!(message(&cut), "a.stl: neither text nor binary: 183 bytes, where 2 triangles are announced");
+        let cut = &whole[..whole.len() - 1];
+        assert_eq!(message(cut), "a.stl, byte 182: the file ends in row 2 of 2 of the triangles");
+        let more = [&whole, [0].as_slice()].concat();
+        assert_eq!(message(&more), "a.stl, byte 184: the file goes on behind the 2 triangles that it announces");
         let mut lying = whole;
         lying[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-        lying[0] = 0xff;
-        assert!(message(&lying).contains("184 bytes, where 4294967295 triangles are announced"));
+        assert_eq!(message(&lying), "a.stl, byte 184: the file ends in row 3 of 4294967295 of the triangles");
         let bad = binary(&[[[0.0; 3]; 3], [[0.0, f32::NAN, 0.0]; 3]]);
-        assert_eq!(message(&bad), "a.stl, byte 134: triangle 2 has a coordinate that is not finite");
+        assert_eq!(message(&bad), "a.stl, byte 150: NaN is not a finite number (row 2 of 2 of the triangles)");
         for (from, to, expected) in [
             ("vertex 1 1 0", "vertex 1 1", "a.stl:13: 'vertex' is not a number (row 2 of 2 of the facets)"),
             ("endloop\nendfacet\nends", "", "a.stl:14: 'olid' where 'endloop' should be"),

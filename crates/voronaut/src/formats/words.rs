@@ -1,7 +1,9 @@
-//! Rows and words of line-based text formats, with the lines they stand on.
+//! Rows and words of line-based text formats, read line by line, with the lines they stand on.
 
 use crate::error::{Error, Result};
 use std::fmt;
+use std::io::{BufRead, Read};
+use std::ops::Range;
 
 /// A line that holds something, without its comment.
 #[derive(Clone, Copy)]
@@ -12,19 +14,23 @@ pub(super) struct Row<'a> {
     pub(super) text: &'a str,
 }
 
-/// The rows of a text: comments (from `#` to the end of the line) and blank lines are left out.
-#[derive(Clone)]
+/// The rows of a text: comments (from `#` to the end of the line) and blank lines are left out. Only one line at a time is in
+/// memory.
 pub(super) struct Rows<'a> {
-    lines: std::iter::Enumerate<std::str::Lines<'a>>,
+    source: Box<dyn BufRead + 'a>,
+    place: &'a str,
+    line: usize,
+    buffer: Vec<u8>,
+    /// Whether the row in the buffer was looked at but not taken.
+    is_ahead: bool,
 }
 
 /// The words of a text, one after the other, whatever the lines they stand on.
-#[derive(Clone)]
 pub(super) struct Words<'a> {
-    place: &'a str,
     rows: Rows<'a>,
-    row: std::str::SplitWhitespace<'a>,
-    line: usize,
+    /// Where in the row the word is that was read last.
+    word: Range<usize>,
+    is_ahead: bool,
 }
 
 /// A word and the line it stands on.
@@ -44,15 +50,19 @@ pub(super) struct At<'a> {
     pub(super) rows: u64,
 }
 
-/// The largest number that referred to something so far: whether that exists is known once the text is read.
+/// The largest number that referred to something so far: whether that exists is known once the file is read.
 #[derive(Default)]
 pub(super) struct Largest {
-    number: u32,
-    line: usize,
+    number: u64,
+    /// The line, or the byte, where it stands.
+    position: u64,
 }
 
 /// A number in the shortest form that reads back as itself; huge and tiny ones with an exponent.
 pub(super) struct Shortest(pub(super) f64);
+
+/// Longer lines are refused: a binary file may have no line at all.
+const LONGEST_LINE: u64 = 1 << 24;
 
 /// Reads a finite number, with the exponent letter of C (`e`) or Fortran (`d`).
 ///
@@ -102,20 +112,86 @@ pub(super) fn shortened(word: &str) -> String {
 }
 
 impl<'a> Rows<'a> {
-    /// All rows of a text; a byte order mark is no part of it.
-    pub(super) fn new(text: &'a str) -> Self {
-        Self { lines: text.strip_prefix('\u{feff}').unwrap_or(text).lines().enumerate() }
+    /// All rows of a text that messages call `place`; a byte order mark is no part of it.
+    pub(super) fn new(source: impl BufRead + 'a, place: &'a str) -> Self {
+        Self { source: Box::new(source), place, line: 0, buffer: Vec::new(), is_ahead: false }
     }
-}
 
-impl<'a> Iterator for Rows<'a> {
-    type Item = Row<'a>;
+    /// What messages call the text.
+    pub(super) fn place(&self) -> &'a str {
+        self.place
+    }
 
-    fn next(&mut self) -> Option<Row<'a>> {
-        self.lines.by_ref().find_map(|(index, line)| {
-            let text = line.split('#').next().unwrap_or_default();
-            (!text.trim().is_empty()).then_some(Row { line: index + 1, text })
-        })
+    /// The line of the row read last; 1 before the first.
+    pub(super) fn line(&self) -> usize {
+        self.line.max(1)
+    }
+
+    /// The next row; `None` at the end of the text.
+    ///
+    /// # Errors
+    /// [`Error::Io`] of a text that cannot be read; [`Error::Parse`] of a line that is too long, or not UTF-8.
+    pub(super) fn next(&mut self) -> Result<Option<Row<'_>>> {
+        let there = self.advance()?;
+        Ok(there.then(|| self.row()))
+    }
+
+    /// Whether there is another row, which is left to be read.
+    ///
+    /// # Errors
+    /// As of [`Rows::next`].
+    pub(super) fn has_next(&mut self) -> Result<bool> {
+        let line = self.line;
+        self.is_ahead = self.is_ahead || self.advance()?;
+        if !self.is_ahead {
+            self.line = line;
+        }
+        Ok(self.is_ahead)
+    }
+
+    /// Reads on to the next row, and whether there is one.
+    fn advance(&mut self) -> Result<bool> {
+        if std::mem::take(&mut self.is_ahead) {
+            return Ok(true);
+        }
+        let last = self.line;
+        while self.read_line()? {
+            if !self.buffer.trim_ascii().is_empty() {
+                return Ok(true);
+            }
+        }
+        // Messages name the last line that said something.
+        self.line = last;
+        Ok(false)
+    }
+
+    /// The row in the buffer.
+    fn row(&self) -> Row<'_> {
+        let text = std::str::from_utf8(&self.buffer).unwrap_or_default();
+        Row { line: self.line, text }
+    }
+
+    /// Fills the buffer with the next line, without its comment; false at the end of the text.
+    fn read_line(&mut self) -> Result<bool> {
+        self.buffer.clear();
+        let io = |source| Error::Io { path: self.place.into(), source };
+        let read = (&mut self.source).take(LONGEST_LINE).read_until(b'\n', &mut self.buffer).map_err(io)?;
+        self.line += usize::from(read > 0);
+        if self.line == 1 && self.buffer.starts_with(b"\xef\xbb\xbf") {
+            self.buffer.drain(..3);
+        }
+        if let Err(error) = std::str::from_utf8(&self.buffer) {
+            let what = format!("not a text in UTF-8 (byte {} of the line)", error.valid_up_to() + 1);
+            return Err(error_at(self.place, self.line, what, "save the file as UTF-8 text; it seems to be binary"));
+        }
+        if read as u64 == LONGEST_LINE {
+            let what = format!("a line of more than {LONGEST_LINE} bytes");
+            return Err(error_at(self.place, self.line, what, "check that the file is text, and break its lines"));
+        }
+        if let Some(end) = self.buffer.iter().position(|&byte| byte == b'#') {
+            self.buffer.truncate(end);
+        }
+        Ok(read > 0)
     }
 }
 
@@ -128,85 +204,122 @@ impl<'a> Row<'a> {
 
 impl<'a> Words<'a> {
     /// The words of a text that messages call `place`.
-    pub(super) fn new(text: &'a str, place: &'a str) -> Self {
-        Self { place, rows: Rows::new(text), row: "".split_whitespace(), line: 1 }
+    pub(super) fn new(source: impl BufRead + 'a, place: &'a str) -> Self {
+        Self::after(0, source, place)
+    }
+
+    /// The words of what follows so many lines of a text.
+    pub(super) fn after(lines: usize, source: impl BufRead + 'a, place: &'a str) -> Self {
+        Self { rows: Rows { line: lines, ..Rows::new(source, place) }, word: 0..0, is_ahead: false }
     }
 
     /// What messages call the text.
     pub(super) fn place(&self) -> &'a str {
-        self.place
+        self.rows.place
     }
 
     /// The line of the word read last.
     pub(super) fn line(&self) -> usize {
-        self.line
+        self.rows.line()
+    }
+
+    /// The next word; `None` at the end of the text.
+    ///
+    /// # Errors
+    /// As of [`Rows::next`].
+    pub(super) fn next(&mut self) -> Result<Option<Word<'_>>> {
+        let there = self.advance()?;
+        Ok(there.then(|| self.word()))
     }
 
     /// The word after the one read last, left to be read.
-    pub(super) fn peek(&self) -> Option<Word<'a>> {
-        self.clone().next()
+    ///
+    /// # Errors
+    /// As of [`Rows::next`].
+    pub(super) fn peek(&mut self) -> Result<Option<Word<'_>>> {
+        self.is_ahead = self.advance()?;
+        Ok(self.is_ahead.then(|| self.word()))
     }
 
     /// The next word, which has to be there.
     ///
     /// # Errors
     ///
-    /// [`Error::Parse`] with section and row where the text ends.
-    pub(super) fn expect(&mut self, at: At<'_>) -> Result<Word<'a>> {
-        let (place, line) = (self.place, self.line);
-        self.next().ok_or_else(|| {
-            let help = format!("the file is cut off, or the count of {} is too large", at.section);
-            error_at(place, line, format!("the text ends in {at}"), help)
-        })
+    /// [`Error::Parse`] with section and row where the text ends; as of [`Rows::next`].
+    pub(super) fn expect(&mut self, at: At<'_>) -> Result<Word<'_>> {
+        if self.advance()? {
+            return Ok(self.word());
+        }
+        let help = format!("the file is cut off, or the count of {} is too large", at.section);
+        Err(error_at(self.place(), self.line(), format!("the text ends in {at}"), help))
     }
 
     /// The next word as a finite number; errors as of [`Words::expect`] and [`number`].
     pub(super) fn number(&mut self, at: At<'_>) -> Result<f64> {
-        let word = self.expect(at)?;
-        number(self.place, word, at)
+        let place = self.place();
+        number(place, self.expect(at)?, at)
     }
 
     /// The next word as a whole number; errors as of [`Words::expect`] and [`whole`].
     pub(super) fn whole<T: std::str::FromStr>(&mut self, at: At<'_>) -> Result<T> {
-        let word = self.expect(at)?;
-        whole(self.place, word, at)
+        let place = self.place();
+        whole(place, self.expect(at)?, at)
+    }
+
+    /// Reads on to the next word, and whether there is one.
+    fn advance(&mut self) -> Result<bool> {
+        if std::mem::take(&mut self.is_ahead) {
+            return Ok(true);
+        }
+        loop {
+            let rest = self.rows.buffer.get(self.word.end..).unwrap_or_default();
+            if let Some(start) = rest.iter().position(|byte| !is_space(*byte)) {
+                let length = rest[start..].iter().position(|&byte| is_space(byte)).unwrap_or(rest.len() - start);
+                let start = self.word.end + start;
+                self.word = start..start + length;
+                return Ok(true);
+            }
+            self.word = 0..0;
+            if !self.rows.advance()? {
+                self.rows.buffer.clear();
+                return Ok(false);
+            }
+        }
+    }
+
+    fn word(&self) -> Word<'_> {
+        let text = std::str::from_utf8(&self.rows.buffer[self.word.clone()]).unwrap_or_default();
+        Word { line: self.rows.line, text }
     }
 }
 
-impl<'a> Iterator for Words<'a> {
-    type Item = Word<'a>;
-
-    fn next(&mut self) -> Option<Word<'a>> {
-        loop {
-            if let Some(text) = self.row.next() {
-                return Some(Word { line: self.line, text });
-            }
-            let row = self.rows.next()?;
-            self.line = row.line;
-            self.row = row.text.split_whitespace();
-        }
-    }
+/// White space of ASCII, with the vertical tab that C counts among it.
+fn is_space(byte: u8) -> bool {
+    byte.is_ascii_whitespace() || byte == 0x0b
 }
 
 impl Largest {
-    /// A reference, counted from 1, on a line.
-    pub(super) fn note(&mut self, number: u32, line: usize) {
+    /// A reference, counted from 1, at a line or a byte.
+    pub(super) fn note(&mut self, number: u64, position: u64) {
         if number > self.number {
-            *self = Self { number, line };
+            *self = Self { number, position };
         }
     }
 
-    /// Whether all that was referred to exists.
+    /// Whether all that was referred to exists; else the number, and where it stands.
+    pub(super) fn beyond(&self, count: usize) -> Option<(u64, u64)> {
+        (self.number > count as u64).then_some((self.number, self.position))
+    }
+
+    /// Whether all that a text refers to exists.
     ///
     /// # Errors
     ///
     /// [`Error::Parse`] at the line of the largest number.
     pub(super) fn check(&self, of: &str, count: usize, place: &str) -> Result<()> {
-        if self.number as usize <= count {
-            return Ok(());
-        }
-        let what = format!("{of} {} does not exist: the file lists {count}", self.number);
-        Err(error_at(place, self.line, what, "check the number, and that the file is whole"))
+        let Some((number, line)) = self.beyond(count) else { return Ok(()) };
+        let what = format!("{of} {number} does not exist: the file lists {count}");
+        Err(error_at(place, line as usize, what, "check the number, and that the file is whole"))
     }
 }
 
@@ -244,9 +357,19 @@ mod tests {
 
     #[test]
     fn words_know_their_lines() {
-        let words: Vec<_> =
-            Words::new("\u{feff}a b # c\n\n#\r\n  d\n", "f").map(|w| (w.line, w.text.to_owned())).collect();
-        assert_eq!(words, [(1, "a".into()), (1, "b".into()), (4, "d".into())]);
+        let mut words = Words::new("\u{feff}a b # c\n\n#\r\n  d\n\n#".as_bytes(), "f");
+        for expected in [Some((1, "a")), Some((1, "b")), Some((4, "d")), None, None] {
+            assert_eq!(words.peek().unwrap().map(|w| (w.line, w.text)), expected);
+            assert_eq!(words.next().unwrap().map(|w| (w.line, w.text)), expected);
+        }
+        assert_eq!(words.line(), 4);
+    }
+
+    #[test]
+    fn what_is_no_text_is_refused() {
+        let message = |bytes: &[u8]| Rows::new(bytes, "f").has_next().unwrap_err().to_string();
+        assert_eq!(message(b"\n1 2\xff"), "f:2: not a text in UTF-8 (byte 4 of the line)");
+        assert_eq!(message(&vec![b'1'; 1 << 25]), "f:1: a line of more than 16777216 bytes");
     }
 
     #[test]

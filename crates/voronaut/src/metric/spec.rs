@@ -22,7 +22,7 @@ pub enum MetricSpec {
     Hessian(Expression),
     /// `hessian:FILE.sol`: of those recovered from a solution, one number per vertex of a mesh.
     RecoveredHessian(PathBuf),
-    /// A `.sol` file of tensors or sizes.
+    /// A `.sol` or `.solb` file of tensors or sizes.
     File(PathBuf),
 }
 
@@ -31,7 +31,7 @@ impl MetricSpec {
     ///
     /// # Errors
     /// [`Error::Parse`] that names the part at fault; [`Error::Metric`] of a uniform tensor that is no metric;
-    /// [`Error::Unsupported`] of `curvature` and `.solb`.
+    /// [`Error::Unsupported`] of `curvature`.
     pub fn parse(text: &str) -> Result<Self> {
         let text = text.trim();
         let (name, parameters) = match text.split_once(':') {
@@ -113,8 +113,7 @@ fn boundary(parameters: &Parameters) -> Result<MetricSpec> {
 /// A file where the text ends as one, else a function.
 fn hessian(text: &str) -> Result<MetricSpec> {
     match ending(text).as_deref() {
-        Some("sol") => Ok(MetricSpec::RecoveredHessian(text.into())),
-        Some("solb") => Err(unsupported("solutions in .solb files", "convert it to text: .sol")),
+        Some("sol" | "solb") => Ok(MetricSpec::RecoveredHessian(text.into())),
         _ => Ok(MetricSpec::Hessian(Expression::parse_named(text, Variables::Plane, "metric hessian")?)),
     }
 }
@@ -126,8 +125,7 @@ fn ending(text: &str) -> Option<String> {
 fn file(text: &str) -> Result<MetricSpec> {
     let path = Path::new(text);
     match ending(text).as_deref() {
-        Some("sol") => Ok(MetricSpec::File(path.into())),
-        Some("solb") => Err(unsupported("metrics in .solb files", "convert it to text: .sol")),
+        Some("sol" | "solb") => Ok(MetricSpec::File(path.into())),
         _ => Err(Error::parse("metric", format!("`{text}` is not a metric"), METRICS)),
     }
 }

@@ -12,8 +12,16 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// [`Error::Io`] with the path.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_with(path, |out| out.write_all(bytes))
+}
+
+/// As [`write`], of a file that is written piece by piece, and never in memory as a whole.
+///
+/// # Errors
+/// [`Error::Io`] with the path, of what `fill` says too.
+pub fn write_with(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     demand_directory(path)?;
-    replace(path, bytes).map_err(|source| Error::Io { path: path.into(), source })
+    replace(path, fill).map_err(|source| Error::Io { path: path.into(), source })
 }
 
 /// Checks, before long work, that a file can be put at a path: its directory exists and it is no directory itself.
@@ -44,19 +52,26 @@ pub fn place(path: &Path) -> Result<PathBuf> {
     Ok(fs::canonicalize(&place).unwrap_or(place))
 }
 
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn replace(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let old = fs::metadata(path).ok();
     if old.as_ref().is_some_and(|old| !old.is_file()) {
-        return fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
+        return buffered(&mut fs::OpenOptions::new().write(true).open(path)?, fill);
     }
     let target = if old.is_some() { fs::canonicalize(path)? } else { path.to_path_buf() };
     let mut file = builder().tempfile_in(directory(&target))?;
-    file.write_all(bytes)?;
+    buffered(file.as_file_mut(), fill)?;
     if let Some(old) = old {
         file.as_file().set_permissions(old.permissions())?;
     }
     file.persist(&target).map_err(|failed| failed.error)?;
     Ok(())
+}
+
+fn buffered(file: &mut fs::File, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    const BUFFER: usize = 1 << 17;
+    let mut out = io::BufWriter::with_capacity(BUFFER, file);
+    fill(&mut out)?;
+    out.flush()
 }
 
 fn directory(path: &Path) -> PathBuf {

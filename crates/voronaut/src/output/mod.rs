@@ -8,7 +8,6 @@ mod frame;
 mod histogram;
 mod image;
 mod letters;
-mod obj;
 mod palette;
 mod protection;
 #[cfg(feature = "png")]
@@ -21,7 +20,7 @@ mod svg;
 mod unmet;
 mod vtu;
 
-pub use atomic::{demand_directory, place, write};
+pub use atomic::{demand_directory, place, write, write_with};
 pub use cells::Layers;
 pub use histogram::histograms_svg;
 #[cfg(feature = "png")]
@@ -32,27 +31,11 @@ pub use scene::{Fill, Scene, SceneLine, SceneTriangle, Stroke, View, draw_surfac
 pub use svg::{Picture, Shade, svg, svg_with};
 
 use crate::error::{Error, Result};
-use crate::formats::{medit, off, ply, stl};
+use crate::formats::medit::Form;
+use crate::formats::{Fields, Format, Solution, Solutions, sol};
 use crate::mesh::Mesh;
 use crate::realisation::Realisation;
 use std::path::Path;
-
-/// A mesh format that can be written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Medit's text format `.mesh`: everything a [`Mesh`] holds.
-    Medit,
-    /// VTK's `.vtu`: triangles, labelled edges, labels.
-    Vtu,
-    /// Wavefront's `.obj`: positions, triangles grouped by region label, labelled edges without their labels.
-    Obj,
-    /// Geomview's `.off` as text: positions and triangles.
-    Off,
-    /// Stanford's `.ply`, binary, little-endian, coordinates as doubles: positions and triangles.
-    Ply,
-    /// Stereolithography `.stl`, binary: triangles without shared vertices, coordinates rounded to single precision.
-    Stl,
-}
 
 /// Formats of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,35 +44,6 @@ pub enum PictureFormat {
     Svg,
     /// Pixels.
     Png,
-}
-
-/// Mesh formats that are known but not yet written.
-const LATER: [&str; 3] = ["meshb", "msh", "vtp"];
-
-impl Format {
-    /// The format a file name asks for by its ending, in upper or lower case.
-    ///
-    /// # Errors
-    /// [`Error::Unsupported`], with the endings that work.
-    pub fn from_path(path: &Path) -> Result<Self> {
-        match ending(path).as_str() {
-            "mesh" => Ok(Format::Medit),
-            "vtu" => Ok(Format::Vtu),
-            "obj" => Ok(Format::Obj),
-            "off" => Ok(Format::Off),
-            "ply" => Ok(Format::Ply),
-            "stl" => Ok(Format::Stl),
-            other => {
-                let what = if LATER.contains(&other) {
-                    format!("writing .{other} ({}) is not there yet", path.display())
-                } else {
-                    format!("{} does not end like a mesh file", path.display())
-                };
-                let help = "end the name of the mesh file in .mesh, .vtu, .obj, .off, .ply or .stl";
-                Err(Error::Unsupported { what, help: help.into() })
-            }
-        }
-    }
 }
 
 impl PictureFormat {
@@ -116,14 +70,32 @@ impl PictureFormat {
 /// # Errors
 /// [`Error::Unsupported`] for other endings, [`Error::Io`] where the file cannot be written.
 pub fn write_mesh(mesh: &Mesh, path: &Path) -> Result<()> {
-    match Format::from_path(path)? {
-        Format::Medit => write(path, medit::write(mesh).as_bytes()),
-        Format::Vtu => write(path, &vtu::vtu(mesh, None)),
-        Format::Obj => write(path, obj::obj(mesh).as_bytes()),
-        Format::Off => write(path, off::write(mesh).as_bytes()),
-        Format::Ply => write(path, &ply::write(mesh)),
-        Format::Stl => write(path, &stl::write(mesh)),
-    }
+    write_document(mesh, &Fields::default(), path)
+}
+
+/// Writes a mesh and fields in the format its name ends in, as far as the format can hold them, as a whole or not at all.
+///
+/// # Errors
+/// As of [`write_mesh`].
+pub fn write_document(mesh: &Mesh, fields: &Fields, path: &Path) -> Result<()> {
+    let format = Format::from_path(path)?;
+    write_with(path, |out| format.write(mesh, fields, out))
+}
+
+/// Writes a solution as text, or as a binary file if its name ends in `.solb`, as a whole or not at all.
+///
+/// # Errors
+/// [`Error::Io`] where the file cannot be written, or the format cannot hold the values.
+pub fn write_solution(solution: &Solution, path: &Path) -> Result<()> {
+    write_with(path, |out| sol::write(solution, Form::of_solution(path), out))
+}
+
+/// As [`write_solution`], of any number of solutions.
+///
+/// # Errors
+/// As of [`write_solution`].
+pub fn write_solutions(solutions: &Solutions, path: &Path) -> Result<()> {
+    write_with(path, |out| sol::write_all(solutions, Form::of_solution(path), out))
 }
 
 /// Writes a realisation of a dual with geodesic edges in the format its name ends in, as a whole or not at all: what
@@ -145,7 +117,7 @@ pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
 /// [`Error::Unsupported`] for other endings, [`Error::Io`] where the file cannot be written.
 pub fn write_diagram(canvas: &Mesh, distances: &[f64], path: &Path) -> Result<()> {
     demand_diagram(path)?;
-    write(path, &vtu::vtu(canvas, Some(distances)))
+    write(path, &vtu::diagram(canvas, distances))
 }
 
 /// Refuses names that do not end like a diagram.
@@ -198,9 +170,9 @@ mod tests {
     #[test]
     fn endings_name_formats() {
         let format = |name: &str| Format::from_path(Path::new(name));
-        assert_eq!(format("a.b/c.MESH").unwrap(), Format::Medit);
+        assert_eq!(format("a.b/c.MESH").unwrap(), Format::Medit(Form::Text));
         assert_eq!(format("c.vtu").unwrap(), Format::Vtu);
-        for wrong in ["c.meshb", "c", "", "mesh", "c.svg"] {
+        for wrong in ["c.sol", "c", "", "mesh", "c.svg"] {
             let error = format(wrong).unwrap_err();
             assert!(error.help().contains(".mesh"), "{wrong}: {error}");
         }
@@ -211,10 +183,12 @@ mod tests {
     fn surfaces_read_back_from_every_format_that_is_read() {
         let directory = tempfile::tempdir().unwrap();
         let mesh = crate::surface::torus(2.0, 0.7, 0.4).unwrap().to_mesh();
-        for (ending, tolerance) in [("mesh", 0.0), ("obj", 0.0), ("off", 0.0), ("ply", 0.0), ("stl", 1e-6)] {
+        for (ending, tolerance) in
+            [("mesh", 0.0), ("meshb", 0.0), ("obj", 0.0), ("off", 0.0), ("ply", 0.0), ("stl", 1e-6)]
+        {
             let path = directory.path().join(format!("torus.{ending}"));
             write_mesh(&mesh, &path).unwrap();
-            let again = crate::surface::read_mesh(path.to_str().unwrap()).unwrap();
+            let again = crate::formats::read(&path).unwrap().mesh;
             assert_eq!((again.points.len(), again.triangles.len()), (mesh.points.len(), mesh.triangles.len()));
             for (&found, &truth) in again.triangles.iter().zip(&mesh.triangles) {
                 for (p, q) in again.positions_of(found).into_iter().zip(mesh.positions_of(truth)) {
@@ -224,7 +198,7 @@ mod tests {
             if ending != "stl" {
                 assert_eq!(again.triangles, mesh.triangles, "{ending}");
             }
-            assert_eq!(again.triangle_labels[0], i32::from(ending == "mesh" || ending == "obj"), "{ending}");
+            assert_eq!(again.triangle_labels[0], i32::from(ending != "off" && ending != "stl"), "{ending}");
         }
     }
 }

@@ -5,7 +5,7 @@ use super::{
 };
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::formats::sol::{SolutionValues, Solutions};
+use crate::formats::{SolutionValues, Solutions};
 use crate::geometry::Point;
 use crate::mesh::Mesh;
 use crate::metric::{Expression, ScalarField, Snapshot, Uniform};

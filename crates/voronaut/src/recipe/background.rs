@@ -1,9 +1,9 @@
 //! Meshes that metrics are known on, and those they are sampled on to be smoothed or graded.
 
 use crate::canvas::Canvas;
-use crate::domain::{Domain, read_text};
+use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::formats::medit;
+use crate::formats::{self, Format};
 use crate::geometry::Aabb;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, smoothed};
@@ -20,12 +20,12 @@ const OVERHANG: f64 = 0.05;
 /// # Errors
 /// There is no `.mesh` file, it is not one, or the domain reaches beyond it.
 pub(super) fn read(file: Option<&Path>, values: &Path, domain: &Domain) -> Result<Mesh> {
-    let is_mesh = |p: &&Path| p.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mesh"));
+    let is_mesh = |p: &&Path| Format::of_ending(p).is_some_and(Format::may_be_planar);
     let Some(file) = file.filter(is_mesh) else {
         let help = "name the mesh that the values belong to: --background FILE.mesh";
         return Err(Error::parse(values.display().to_string(), "a .sol file needs a .mesh it belongs to", help));
     };
-    let mesh = medit::read(&read_text(file)?, &file.display().to_string())?;
+    let mesh = formats::read(file)?.mesh;
     demand_cover(&mesh, file, domain)?;
     Ok(mesh)
 }

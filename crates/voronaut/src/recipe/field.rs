@@ -3,9 +3,9 @@
 use super::Aim;
 use super::background::{read, smooth_metric};
 use super::graded::{GradedAt, grade_metric};
-use crate::domain::{Domain, read_text};
+use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::formats::sol::{self, SolutionValues};
+use crate::formats::{self, SolutionValues};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::metric::{
@@ -100,7 +100,7 @@ pub fn metric(
         }
         return finished(named(spec, domain, options, at)?, domain, None, options, at);
     };
-    let values = sol::read(&read_text(path)?, &path.display().to_string())?.values;
+    let values = formats::read_solution(path)?.values;
     let mesh = read(background.or(own), path, domain)?;
     let named = match (spec, &values) {
         (MetricSpec::RecoveredHessian(_), SolutionValues::Scalar(values)) => {

@@ -439,7 +439,8 @@ mod tests {
 
     #[test]
     fn holes_that_touch_cost_no_vertex() {
-        let domain = Domain::new(&from_poly(&poly::read(TOUCHING, "touching.poly").unwrap()).unwrap()).unwrap();
+        let domain =
+            Domain::new(&from_poly(&poly::read(TOUCHING.as_bytes(), "touching.poly").unwrap()).unwrap()).unwrap();
         assert_eq!(meshed(&domain, Some(200)).mesh.points.len(), 200);
     }
 

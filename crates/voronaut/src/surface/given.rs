@@ -1,9 +1,11 @@
 //! What the user writes for a domain, which may lie in the plane or be a surface.
 
-use super::read::{ending, of_file};
-use super::{Input, Mended, RepairOptions, WRITTEN, read_mesh, read_with};
+use super::read::of_file;
+use super::{Input, Mended, RepairOptions, WRITTEN, read_with};
 use crate::domain::{self, Domain};
 use crate::error::{Error, Result};
+use crate::formats::{self, Format};
+use std::path::Path;
 
 /// A domain: of the plane, or a surface in space.
 #[derive(Debug)]
@@ -34,20 +36,21 @@ impl Given {
         let surface = || read_with(spec, edge, options).map(|(input, mended)| (Self::Surface(input), mended));
         let plane = || Ok((Self::Plane(Domain::read(spec)?), Mended::default()));
         let name = spec.split(':').next().unwrap_or_default().trim();
-        let ending = ending(spec);
+        let path = Path::new(spec);
+        let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
         match ending.as_deref() {
             _ if ["sphere", "torus", "chair", "implicit"].contains(&name) => surface(),
             _ if ["rect", "disk"].contains(&name) => plane(),
-            Some("obj" | "off" | "ply" | "stl") => surface(),
-            Some("mesh") => {
-                let mesh = read_mesh(spec)?;
+            Some("geojson" | "json" | "poly") => plane(),
+            _ if Format::of_ending(path).is_some_and(Format::may_be_planar) => {
+                let mesh = formats::read(path)?.mesh;
                 if mesh.triangles.is_empty() || mesh.is_planar() {
                     return plane();
                 }
                 let (surface, mended) = of_file(spec, &mesh, options)?;
                 Ok((Self::Surface(Input::new(surface, None)), mended))
             }
-            Some("geojson" | "json" | "poly") => plane(),
+            _ if Format::of_ending(path).is_some() => surface(),
             _ => {
                 let help = format!("give {}; or {WRITTEN}", domain::WRITTEN);
                 Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", help))

@@ -4,7 +4,7 @@ use super::cut::{Seams, cut};
 use super::features::FeatureOptions;
 use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
-use crate::formats::sol::Solution;
+use crate::formats::Solution;
 use crate::geometry::{Point3, Vector3};
 use crate::mesh::Mesh;
 use crate::metric::Expression;

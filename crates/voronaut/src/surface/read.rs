@@ -2,9 +2,9 @@
 
 use super::shapes::{CHAIR, chair, sphere, torus};
 use super::{Input, Mended, RepairOptions, Surface, mesh_implicit, repaired};
-use crate::domain::{read_bytes, read_numbers, read_text};
+use crate::domain::read_numbers;
 use crate::error::{Error, Result};
-use crate::formats::{medit, obj, off, ply, stl};
+use crate::formats::{self, Format};
 use crate::geometry::{Aabb3, Point3};
 use crate::mesh::Mesh;
 use crate::metric::{Expression, Variables};
@@ -28,8 +28,8 @@ pub fn read(spec: &str, edge: Option<f64>) -> Result<Input> {
 /// [`Error::Io`] of a file that cannot be read; [`Error::Parse`] of a text that is not what its format asks for;
 /// [`Error::Domain`] of what makes no surface; [`Error::Limit`] of too many triangles.
 pub fn read_with(spec: &str, edge: Option<f64>, options: RepairOptions) -> Result<(Input, Mended)> {
-    if ending(spec).is_some_and(|ending| ENDINGS.contains(&ending.as_str())) && !is_shape(spec) {
-        let (surface, mended) = of_file(spec, &read_mesh(spec)?, options)?;
+    if Format::of_ending(Path::new(spec)).is_some() && !is_shape(spec) {
+        let (surface, mended) = of_file(spec, &formats::read(Path::new(spec))?.mesh, options)?;
         return Ok((Input::new(surface, None), mended));
     }
     Ok((read_shape(spec, edge)?, Mended::default()))
@@ -83,35 +83,8 @@ fn read_implicit(spec: &str, rest: &str, edge: Option<f64>) -> Result<Input> {
     Ok(Input::new(mesh_implicit(&f, bounds, edge)?, Some(f)))
 }
 
-/// Reads a mesh from a file `.mesh`, `.obj`, `.off`, `.ply` or `.stl`, planar or not, and whether it is a surface or not.
-///
-/// # Errors
-/// [`Error::Io`] of a file that cannot be read; [`Error::Parse`] of another ending, and of what is not as its format asks.
-pub fn read_mesh(file: &str) -> Result<Mesh> {
-    let path = Path::new(file);
-    match ending(file).as_deref() {
-        Some("obj") => obj::read(&read_text(path)?, file),
-        Some("off") => off::read(&read_text(path)?, file),
-        Some("ply") => ply::read(&read_bytes(path)?, file),
-        Some("stl") => stl::read(&read_bytes(path)?, file),
-        Some("mesh") => medit::read(&read_text(path)?, file),
-        _ => {
-            let help = "give a mesh in a file .mesh, .obj, .off, .ply or .stl";
-            Err(Error::parse(file, "the name does not end like that of a mesh that can be read", help))
-        }
-    }
-}
-
-/// Endings of files that meshes are read from.
-const ENDINGS: [&str; 5] = ["mesh", "obj", "off", "ply", "stl"];
-
 /// What users write for a surface.
 pub const WRITTEN: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .obj, .off, .ply, .stl or .mesh";
-
-/// How a file name ends, in lower case.
-pub(super) fn ending(file: &str) -> Option<String> {
-    Path::new(file).extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase)
-}
 
 /// The surface of a file's mesh, and what was mended of it; errors name the file.
 pub(super) fn of_file(file: &str, mesh: &Mesh, options: RepairOptions) -> Result<(Surface, Mended)> {
@@ -125,6 +98,7 @@ pub(super) fn of_file(file: &str, mesh: &Mesh, options: RepairOptions) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::{obj, off, ply, stl};
     use crate::surface::Implicit;
     use proptest::prelude::*;
     use std::io::Write;
@@ -252,7 +226,8 @@ mod tests {
         #[test]
         fn no_file_makes_a_reader_panic(text in soup()) {
             let bytes = text.as_bytes();
-            let found = [obj::read(&text, "a"), off::read(&text, "a"), ply::read(bytes, "a"), stl::read(bytes, "a")];
+            let ply = ply::read(bytes, "a").map(|document| document.mesh);
+            let found = [obj::read(bytes, "a"), off::read(bytes, "a"), ply, stl::read(bytes, "a")];
             for mesh in found.iter().flatten() {
                 let _ = repaired(mesh, RepairOptions { repair: true });
             }

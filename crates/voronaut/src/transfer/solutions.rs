@@ -2,7 +2,7 @@
 
 use super::{Carried, Cover, Field, Kind, Overshoot, Place, conservative, interpolate};
 use crate::error::{Error, Result};
-use crate::formats::sol::{SolutionValues, Solutions};
+use crate::formats::{SolutionValues, Solutions};
 use crate::mesh::Mesh;
 
 /// How solutions are carried; every parameter has one name (flag, TOML key, Python keyword).
@@ -47,7 +47,7 @@ fn fields(given: &Solutions, linear_tensors: bool) -> Result<Vec<Field>> {
                 return Err(Error::Unsupported { what: "metrics of space on planar meshes".into(), help: help.into() });
             }
             SolutionValues::Scalar(_) => Kind::Linear(1),
-            SolutionValues::Vector(_) => Kind::Linear(usize::from(given.dimension)),
+            SolutionValues::Vector { components, .. } => Kind::Linear(*components),
             SolutionValues::Tensor(_) => Kind::Linear(3),
             SolutionValues::Tensor3(_) => Kind::Linear(6),
         };
@@ -62,7 +62,7 @@ fn solutions(given: &Solutions, carried: &[Carried]) -> Solutions {
     let (vertices, triangles) = carried.split_at(given.vertices.len());
     let same = |values: &[SolutionValues], carried: &[Carried]| {
         let pairs = values.iter().zip(carried);
-        pairs.map(|(values, carried)| values.with_numbers(given.dimension, &carried.field.values)).collect()
+        pairs.map(|(values, carried)| values.with_numbers(&carried.field.values)).collect()
     };
     Solutions {
         dimension: given.dimension,

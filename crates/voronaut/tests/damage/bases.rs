@@ -2,8 +2,8 @@
 
 use crate::random::Random;
 use std::collections::HashMap;
+use voronaut::formats;
 use voronaut::mesh::Mesh;
-use voronaut::surface::read_mesh;
 
 /// A closed or bordered surface without damage.
 pub(crate) fn base(random: &mut Random) -> Mesh {
@@ -13,8 +13,8 @@ pub(crate) fn base(random: &mut Random) -> Mesh {
         1 => grid(2 * n, n + 3, true, |u, v| round(3.0 + v.cos(), u, v.sin())),
         2 => sphere(n),
         3 => grid(n + 2, n + 2, false, |u, v| [u, v, 0.3 * (2.0 * u).sin() * v]),
-        4 => read_mesh(&data("spot.obj")).expect("a mesh"),
-        _ => read_mesh(&data("bob_small.obj")).expect("a mesh"),
+        4 => formats::read(data("spot.obj").as_ref()).expect("a mesh").mesh,
+        _ => formats::read(data("bob_small.obj").as_ref()).expect("a mesh").mesh,
     }
 }
 

@@ -151,7 +151,7 @@ fn a_seed_where_holes_touch_belongs_to_both_sides() {
     let ring = "11 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 1 2\n6 1.5 1.5\n7 2 2\n8 1.5 2.5\n9 2.5 1.5\n10 3 2\n\
                 11 2.5 2.5\n12 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n5 5 6\n6 6 7\n7 7 8\n8 8 5\n9 7 9\n10 9 10\n\
                 11 10 11\n12 11 7\n2\n1 1.5 2\n2 2.5 2\n";
-    let domain = Domain::new(&from_poly(&poly::read(ring, "touching.poly").unwrap()).unwrap()).unwrap();
+    let domain = Domain::new(&from_poly(&poly::read(ring.as_bytes(), "touching.poly").unwrap()).unwrap()).unwrap();
     let field = Uniform::default();
     let canvas = Canvas::intrinsic(&domain, &field, 4000).unwrap();
     let touching = Point::new(2.0, 2.0);

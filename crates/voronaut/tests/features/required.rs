@@ -2,7 +2,7 @@
 
 use crate::parts;
 use std::collections::BTreeSet;
-use voronaut::formats::sol::{Solution, SolutionValues};
+use voronaut::formats::{Solution, SolutionValues};
 use voronaut::mesh::Mesh;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;

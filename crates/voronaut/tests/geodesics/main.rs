@@ -92,7 +92,7 @@ fn mapped_square() -> Mapped {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| image(Point::new(x, y)));
     let [a, b, c, d] = corners.map(|p| format!("{} {}", p.x, p.y));
     let text = format!("4 2 0 0\n1 {a}\n2 {b}\n3 {c}\n4 {d}\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n");
-    let mapped = Domain::new(&from_poly(&poly::read(&text, "image").unwrap()).unwrap()).unwrap();
+    let mapped = Domain::new(&from_poly(&poly::read(text.as_bytes(), "image").unwrap()).unwrap()).unwrap();
     let images: Vec<Point> = points(1.0).into_iter().map(image).collect();
     let there = planar(mapped, |_: Point| Tensor::IDENTITY, &images);
     (square(1.0, |_: Point| Tensor::new(16.0, 4.0, 2.0)), there, Point3::distance)

@@ -2,13 +2,14 @@
 
 use crate::error::{Error, Result};
 use crate::formats::words::{At, Word, error_at, shortened, whole};
+use std::io::{BufRead, Read};
 
 /// What the head says.
 pub(super) struct Header {
     pub(super) format: Format,
     pub(super) elements: Vec<Element>,
     /// Where the body begins, in bytes and in lines.
-    pub(super) bytes: usize,
+    pub(super) bytes: u64,
     pub(super) lines: usize,
 }
 
@@ -53,6 +54,9 @@ pub(super) enum Kind {
     F64,
 }
 
+/// Longer lines are in no head.
+const LONGEST_LINE: u64 = 1 << 16;
+
 /// What programs call the list of a face's vertices.
 pub(super) const VERTEX_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
@@ -80,10 +84,15 @@ impl Header {
     ///
     /// # Errors
     /// [`Error::Parse`] with the line at fault.
-    pub(super) fn read(bytes: &[u8], place: &str) -> Result<Self> {
+    pub(super) fn read(source: &mut dyn BufRead, place: &str) -> Result<Self> {
         let mut header = Self { format: Format::Text, elements: Vec::new(), bytes: 0, lines: 0 };
         let mut format = None;
-        while let Some(line) = header.next_line(bytes, place)? {
+        let mut line = Vec::new();
+        while header.next_line(source, &mut line, place)? {
+            let line = std::str::from_utf8(&line).map_err(|_| {
+                let what = format!("the head is no text (line {})", header.lines);
+                Error::parse(place, what, "give a whole .ply file")
+            })?;
             let words: Vec<&str> = line.split_whitespace().collect();
             match words[..] {
                 ["ply"] if header.lines == 1 => {}
@@ -108,16 +117,15 @@ impl Header {
         Err(error_at(place, header.lines.max(1), what, "give a whole .ply file"))
     }
 
-    /// The next line without its end; `None` where no line ends any more.
-    fn next_line<'a>(&mut self, bytes: &'a [u8], place: &str) -> Result<Option<&'a str>> {
-        let rest = &bytes[self.bytes..];
-        let Some(length) = rest.iter().position(|&byte| byte == b'\n') else { return Ok(None) };
-        self.bytes += length + 1;
-        self.lines += 1;
-        std::str::from_utf8(&rest[..length]).map(Some).map_err(|_| {
-            let what = format!("the head is no text (line {})", self.lines);
-            Error::parse(place, what, "give a whole .ply file")
-        })
+    /// The next line; false where no line ends any more.
+    fn next_line(&mut self, source: &mut dyn BufRead, line: &mut Vec<u8>, place: &str) -> Result<bool> {
+        line.clear();
+        let read = source.take(LONGEST_LINE).read_until(b'\n', line);
+        let read = read.map_err(|source| Error::Io { path: place.into(), source })?;
+        self.bytes += read as u64;
+        let ends = line.ends_with(b"\n");
+        self.lines += usize::from(ends);
+        Ok(ends)
     }
 
     fn format(&self, words: &[&str], place: &str) -> Result<Format> {

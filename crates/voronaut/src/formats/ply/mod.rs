@@ -3,142 +3,257 @@
 mod header;
 mod source;
 
+use super::{Document, Field, Fields, SolutionValues};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use header::{Element, Header, Shape};
+use header::{Element, Header, Property, Shape};
 use source::Source;
+use std::io::{self, BufRead, Write};
 
-/// Reads a `.ply` file: `x`, `y`, `z` of the element `vertex`, and the lists `vertex_indices` (or `vertex_index`) of the
-/// element `face`, cut into fans around their first vertex. All other properties and elements are passed over, labels
-/// are 0. Memory follows the file, never a count written in it.
+/// Reads a `.ply` file.
+///
+/// Kept are `x`, `y`, `z` and `label` of the element `vertex`; the lists `vertex_indices` (or `vertex_index`) of the element `face`,
+/// cut into fans around their first vertex, with `label`; `vertex1`, `vertex2` and `label` of the element `edge`. Other properties of
+/// vertices that are one number each are fields, but for normals and colours; of faces they are, where all
+/// faces are triangles. All else is passed over. Memory follows the file, never a count written in it.
 ///
 /// # Errors
 ///
 /// [`Error::Parse`] with the line (in the head and in text) or the byte of what is not as announced: a head that makes no
-/// sense, a file cut off, a coordinate that is not finite, a face of fewer than three vertices, a vertex that does not
-/// exist. [`Error::Unsupported`] of triangle strips.
-pub fn read(bytes: &[u8], place: &str) -> Result<Mesh> {
-    let header = Header::read(bytes, place)?;
-    let mut source = Source::new(&header, bytes, place)?;
-    let mut reader = Reader { mesh: Mesh::default(), place };
+/// sense, a file cut off or too long, a coordinate or a field that is not finite, a face of fewer than three vertices, a vertex that
+/// does not exist. [`Error::Unsupported`] of triangle strips. [`Error::Io`] of a file that cannot be read.
+pub fn read(mut source: impl BufRead, place: &str) -> Result<Document> {
+    let header = Header::read(&mut source, place)?;
+    let mut source = Source::new(&header, source, place);
+    let mut reader = Reader::default();
     for element in &header.elements {
-        reader.read_element(element, &mut source)?;
+        reader.read_element(element, &mut source, place)?;
     }
-    let Reader { mut mesh, .. } = reader;
+    source.finish()?;
     if !header.elements.iter().any(|element| element.name == "vertex") {
         return Err(Error::parse(place, "the file has no element vertex", "save the vertices with x, y and z"));
     }
-    check_faces(&mesh, place)?;
-    mesh.point_labels = vec![0; mesh.points.len()];
-    mesh.triangle_labels = vec![0; mesh.triangles.len()];
-    Ok(mesh)
+    reader.finish(place)
 }
 
-/// Writes vertices and triangles as a `.ply` file in binary form, little-endian, with coordinates as doubles: [`read`] turns it
-/// into the same bits. Labels and edges are left out.
-pub fn write(mesh: &Mesh) -> Vec<u8> {
-    let head = format!(
+/// Writes a mesh and fields as a `.ply` file in binary form, little-endian, with coordinates and fields as doubles: [`read`] turns it
+/// into the same bits. Labelled edges are an element `edge` if there are some. A field of several components is as many properties
+/// `NAME_0`, `NAME_1`, ...
+///
+/// # Errors
+/// What `out` says.
+pub fn write(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()> {
+    let properties = |fields: &[Field]| {
+        fields.iter().flat_map(columns).map(|name| format!("property double {name}\n")).collect::<String>()
+    };
+    let [of_vertices, of_faces] = [&fields.vertices, &fields.triangles].map(|fields| properties(fields));
+    write!(
+        out,
         "ply\nformat binary_little_endian 1.0\ncomment voronaut\nelement vertex {}\nproperty double x\nproperty double y\n\
-         property double z\nelement face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+         property double z\nproperty int label\n{of_vertices}element face {}\nproperty list uchar uint vertex_indices\n\
+         property int label\n{of_faces}",
         mesh.points.len(),
         mesh.triangles.len()
-    );
-    let mut bytes = head.into_bytes();
-    bytes.extend(mesh.points.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
-    for triangle in &mesh.triangles {
-        bytes.push(3);
-        bytes.extend(triangle.iter().flat_map(|v| v.to_le_bytes()));
+    )?;
+    if !mesh.edges.is_empty() {
+        let count = mesh.edges.len();
+        write!(out, "element edge {count}\nproperty uint vertex1\nproperty uint vertex2\nproperty int label\n")?;
     }
-    bytes
+    out.write_all(b"end_header\n")?;
+    let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0).to_le_bytes();
+    for (i, point) in mesh.points.iter().enumerate() {
+        out.write_all(point.map(f64::to_le_bytes).as_flattened())?;
+        out.write_all(&label(&mesh.point_labels, i))?;
+        write_row(&fields.vertices, i, out)?;
+    }
+    for (i, triangle) in mesh.triangles.iter().enumerate() {
+        out.write_all(&[3])?;
+        out.write_all(triangle.map(u32::to_le_bytes).as_flattened())?;
+        out.write_all(&label(&mesh.triangle_labels, i))?;
+        write_row(&fields.triangles, i, out)?;
+    }
+    for (i, edge) in mesh.edges.iter().enumerate() {
+        out.write_all(edge.map(u32::to_le_bytes).as_flattened())?;
+        out.write_all(&label(&mesh.edge_labels, i))?;
+    }
+    Ok(())
 }
 
-struct Reader<'a> {
+/// What a field's components are called; names have no spaces here.
+fn columns(field: &Field) -> Vec<String> {
+    let name = field.name.split_whitespace().collect::<Vec<_>>().join("_");
+    match field.values.components() {
+        1 => vec![name],
+        several => (0..several).map(|i| format!("{name}_{i}")).collect(),
+    }
+}
+
+fn write_row(fields: &[Field], i: usize, out: &mut dyn Write) -> io::Result<()> {
+    let numbers = fields.iter().flat_map(|field| field.values.row(i));
+    numbers.map(|x| x.to_le_bytes()).try_for_each(|bytes| out.write_all(&bytes))
+}
+
+/// Properties that are shown, not computed with.
+const LOOKS: [&str; 7] = ["nx", "ny", "nz", "red", "green", "blue", "alpha"];
+
+/// What a property means.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Role {
+    Coordinate(usize),
+    End(usize),
+    Label,
+    Vertices,
+    Field(usize),
+    None,
+}
+
+#[derive(Default)]
+struct Reader {
     mesh: Mesh,
-    place: &'a str,
+    vertex_fields: Vec<(String, Vec<f64>)>,
+    face_fields: Vec<(String, Vec<f64>)>,
+    has_polygons: bool,
 }
 
-impl Reader<'_> {
-    fn read_element(&mut self, element: &Element, source: &mut Source<'_>) -> Result<()> {
+impl Reader {
+    fn read_element(&mut self, element: &Element, source: &mut Source<'_>, place: &str) -> Result<()> {
         if element.name == "tristrips" && element.count > 0 {
-            let what = format!("triangle strips ({})", self.place);
+            let what = format!("triangle strips ({place})");
             return Err(Error::Unsupported { what, help: "save the faces one by one, as element face".into() });
         }
         if element.properties.is_empty() {
             // Nothing to read, however many there are.
             return Ok(());
         }
+        let roles: Vec<Role> = element.properties.iter().map(|property| self.role(&element.name, property)).collect();
         for row in 1..=element.count {
             source.begin(&element.name, row, element.count);
-            let mut point = [f64::NAN; 3];
-            for property in &element.properties {
-                match property.shape {
-                    Shape::Scalar(kind) => {
-                        let value = source.number(kind)?;
-                        if let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == property.name) {
-                            point[axis] = value;
-                        }
-                    }
-                    Shape::List(counts, kind) => {
-                        let is_face = element.name == "face" && header::VERTEX_LISTS.contains(&property.name.as_str());
-                        let list = read_list(source, counts, kind, is_face)?;
-                        self.push_face(&list, is_face, source)?;
+            self.read_row(element, &roles, source)?;
+        }
+        Ok(())
+    }
+
+    fn role(&mut self, element: &str, property: &Property) -> Role {
+        let name = property.name.as_str();
+        let fields = match (element, property.shape) {
+            ("face", Shape::List(..)) if header::VERTEX_LISTS.contains(&name) => return Role::Vertices,
+            (_, Shape::List(..)) => return Role::None,
+            ("vertex" | "face" | "edge", _) if name == "label" => return Role::Label,
+            ("vertex", _) => &mut self.vertex_fields,
+            ("face", _) => &mut self.face_fields,
+            ("edge", _) => {
+                return ["vertex1", "vertex2"].iter().position(|end| *end == name).map_or(Role::None, Role::End);
+            }
+            _ => return Role::None,
+        };
+        match ["x", "y", "z"].iter().position(|axis| *axis == name) {
+            Some(axis) if element == "vertex" => Role::Coordinate(axis),
+            _ if LOOKS.contains(&name) => Role::None,
+            _ => {
+                fields.push((name.to_owned(), Vec::new()));
+                Role::Field(fields.len() - 1)
+            }
+        }
+    }
+
+    fn read_row(&mut self, element: &Element, roles: &[Role], source: &mut Source<'_>) -> Result<()> {
+        let (mut point, mut ends, mut label) = ([f64::NAN; 3], [None; 2], 0);
+        for (property, &role) in element.properties.iter().zip(roles) {
+            match (property.shape, role) {
+                (Shape::List(counts, kind), _) => {
+                    let list = read_list(source, counts, kind, role == Role::Vertices)?;
+                    if role == Role::Vertices {
+                        self.push_face(&list, source)?;
                     }
                 }
+                (Shape::Scalar(kind), Role::Coordinate(axis)) => point[axis] = source.number(kind)?,
+                (Shape::Scalar(kind), Role::Label) => label = source.number(kind)? as i32,
+                (Shape::Scalar(kind), Role::End(end)) => ends[end] = Some(vertex(source.number(kind)?, source)?),
+                (Shape::Scalar(kind), Role::Field(field)) => {
+                    self.push_value(element, field, source.number(kind)?, source)?
+                }
+                (Shape::Scalar(kind), Role::None | Role::Vertices) => drop(source.number(kind)?),
             }
-            if element.name == "vertex" {
-                self.push_vertex(point, source)?;
+        }
+        match element.name.as_str() {
+            "vertex" => {
+                if !point.iter().all(|x| x.is_finite()) {
+                    return Err(source.error("a coordinate is not finite", "remove or correct the vertex"));
+                }
+                self.mesh.points.push(point);
+                self.mesh.point_labels.push(label);
             }
+            "face" => self.mesh.triangle_labels.resize(self.mesh.triangles.len(), label),
+            "edge" => {
+                let [Some(a), Some(b)] = ends else {
+                    return Err(source.error("an edge without its ends", "write the properties vertex1 and vertex2"));
+                };
+                self.mesh.edges.push([a, b]);
+                self.mesh.edge_labels.push(label);
+            }
+            _ => {}
         }
         Ok(())
     }
 
-    fn push_vertex(&mut self, point: [f64; 3], source: &Source<'_>) -> Result<()> {
-        if !point.iter().all(|x| x.is_finite()) {
-            return Err(source.error("a coordinate is not finite", "remove or correct the vertex"));
+    fn push_value(&mut self, element: &Element, field: usize, value: f64, source: &Source<'_>) -> Result<()> {
+        if !value.is_finite() {
+            return Err(source.error("a value is not finite", "remove or correct it"));
         }
-        self.mesh.points.push(point);
+        let fields = if element.name == "vertex" { &mut self.vertex_fields } else { &mut self.face_fields };
+        fields[field].1.push(value);
         Ok(())
     }
 
-    fn push_face(&mut self, polygon: &[u32], is_face: bool, source: &Source<'_>) -> Result<()> {
-        if !is_face {
-            return Ok(());
-        }
+    fn push_face(&mut self, polygon: &[u32], source: &Source<'_>) -> Result<()> {
         if polygon.len() < 3 {
             let what = format!("a face of {} vertices", polygon.len());
             return Err(source.error(&what, "a face needs three vertices or more"));
         }
+        self.has_polygons |= polygon.len() > 3;
         self.mesh.triangles.extend(polygon[1..].windows(2).map(|pair| [polygon[0], pair[0], pair[1]]));
         Ok(())
+    }
+
+    /// Faces may stand before the vertices: whether these exist is known at the end.
+    fn finish(self, place: &str) -> Result<Document> {
+        let count = self.mesh.points.len();
+        let mut all = self.mesh.triangles.as_flattened().iter().chain(self.mesh.edges.as_flattened());
+        if let Some(vertex) = all.find(|&&v| v as usize >= count) {
+            let what =
+                format!("a face or edge with vertex {vertex}, which does not exist: the file lists {count}, from 0");
+            return Err(Error::parse(place, what, "check the faces, and that the file is whole"));
+        }
+        let fields = |fields: Vec<(String, Vec<f64>)>| {
+            fields.into_iter().map(|(name, values)| Field { name, values: SolutionValues::Scalar(values) }).collect()
+        };
+        let face_fields = if self.has_polygons { Vec::new() } else { self.face_fields };
+        let fields = Fields { vertices: fields(self.vertex_fields), triangles: fields(face_fields) };
+        Ok(Document { mesh: self.mesh, fields })
     }
 }
 
 /// The entries of a list; those of lists that nobody needs are passed over.
 fn read_list(source: &mut Source<'_>, counts: header::Kind, kind: header::Kind, keep: bool) -> Result<Vec<u32>> {
     let length = source.number(counts)?;
-    if length < 0.0 || length.fract() != 0.0 {
+    if length.is_nan() || length < 0.0 || length.fract() != 0.0 {
         return Err(source.error(&format!("a list of {length} entries"), "lists begin with their length"));
     }
     let mut list = Vec::new();
     for _ in 0..length as u64 {
         let value = source.number(kind)?;
-        if !keep {
-            continue;
+        if keep {
+            list.push(vertex(value, source)?);
         }
-        if value < 0.0 || value.fract() != 0.0 || value >= f64::from(u32::MAX) {
-            return Err(source.error(&format!("vertex {value} does not exist"), "number vertices from 0"));
-        }
-        list.push(value as u32);
     }
     Ok(list)
 }
 
-/// Faces may stand before the vertices: whether these exist is known at the end.
-fn check_faces(mesh: &Mesh, place: &str) -> Result<()> {
-    let count = mesh.points.len();
-    let Some(vertex) = mesh.triangles.as_flattened().iter().find(|&&v| v as usize >= count) else { return Ok(()) };
-    let what = format!("a face with vertex {vertex}, which does not exist: the file lists {count}, from 0");
-    Err(Error::parse(place, what, "check the faces, and that the file is whole"))
+fn vertex(value: f64, source: &Source<'_>) -> Result<u32> {
+    if (0.0..f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0 {
+        return Ok(value as u32);
+    }
+    Err(source.error(&format!("vertex {value} does not exist"), "number vertices from 0"))
 }
 
 #[cfg(test)]
@@ -185,23 +300,38 @@ mod tests {
 
     #[test]
     fn text_and_both_byte_orders_say_the_same() {
-        let mesh = read(&text(BODY), "a.ply").unwrap();
+        let mesh = read(text(BODY).as_slice(), "a.ply").unwrap().mesh;
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [2, 1, 0]]);
         assert_eq!(mesh.points[3].map(f64::to_bits), [0.0_f64, 1.0, 0.5].map(f64::to_bits));
-        assert_eq!(read(&binary(false), "a.ply").unwrap(), mesh);
-        assert_eq!(read(&binary(true), "a.ply").unwrap(), mesh);
+        assert_eq!(read(binary(false).as_slice(), "a.ply").unwrap().mesh, mesh);
+        assert_eq!(read(binary(true).as_slice(), "a.ply").unwrap().mesh, mesh);
     }
 
     #[test]
     fn what_is_written_reads_back() {
         let mesh = Mesh {
             points: vec![[0.1, -1e-300, 1e22], [1.0 / 3.0, 0.0, -2.5], [0.0, 1.0, f64::MIN_POSITIVE]],
-            point_labels: vec![0; 3],
+            point_labels: vec![0, -5, i32::MAX],
             triangles: vec![[0, 1, 2], [2, 1, 0]],
-            triangle_labels: vec![0; 2],
+            triangle_labels: vec![7, i32::MIN],
+            edges: vec![[0, 2]],
+            edge_labels: vec![3],
             ..Mesh::default()
         };
-        assert_eq!(read(&write(&mesh), "a.ply").unwrap(), mesh);
+        let field = |name: &str, values: Vec<f64>| Field { name: name.into(), values: SolutionValues::Scalar(values) };
+        let vertices = vec![field("u", vec![0.1, 0.2, -1e99]), field("h", vec![1.0; 3])];
+        let fields = Fields { vertices, triangles: vec![field("error", vec![0.5, 1.5])] };
+        let document = Document { mesh, fields };
+        let mut out = Vec::new();
+        write(&document.mesh, &document.fields, &mut out).unwrap();
+        assert_eq!(read(out.as_slice(), "a.ply").unwrap(), document);
+        let values = SolutionValues::Tensor(vec![[1.0, 0.5, 2.0]; 3]);
+        let tensors = Fields { vertices: vec![Field { name: "my metric".into(), values }], triangles: vec![] };
+        out.clear();
+        write(&document.mesh, &tensors, &mut out).unwrap();
+        let again = read(out.as_slice(), "a.ply").unwrap();
+        let names: Vec<_> = again.fields.vertices.iter().map(|field| field.name.as_str()).collect();
+        assert_eq!(names, ["my_metric_0", "my_metric_1", "my_metric_2"]);
     }
 
     fn message(bytes: &[u8]) -> String {
@@ -217,8 +347,12 @@ mod tests {
             ("0 9 0 nan", "a.ply:15: 'nan' is not a finite number (row 1 of 4 of vertex)"),
             ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n2 0 1 0", "a.ply:16: a face of 2 vertices (row 1 of 2 of face)"),
             ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n3 0 1 -1", "a.ply:16: vertex -1 does not exist (row 1 of 2 of face)"),
-            ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n3 0 1 4 0\n3 0 1 2 0", "a.ply: a face with vertex 4, which does not"),
+            (
+                "0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n3 0 1 4 0\n3 0 1 2 0",
+                "a.ply: a face or edge with vertex 4, which does not",
+            ),
             ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n1e18 0 1", "a.ply:16: the text ends in row 1 of 2 of face"),
+            ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n3 0 1 2 0\n3 0 1 2 0\n7", "a.ply:18: the file goes on behind"),
             ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n-1", "a.ply:16: a list of -1 entries (row 1 of 2 of face)"),
         ] {
             let message = message(&text(body));

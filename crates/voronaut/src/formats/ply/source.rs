@@ -2,12 +2,15 @@
 
 use super::header::{Format, Header, Kind};
 use crate::error::{Error, Result};
+use crate::formats::bytes::{Bytes, Order};
 use crate::formats::words::{At, Words, error_at};
+use std::io::BufRead;
 
 /// Numbers one after the other, and where they stand.
 pub(super) struct Source<'a> {
     body: Body<'a>,
-    place: &'a str,
+    /// In text, the lines of the head.
+    lines_before: usize,
     element: String,
     row: u64,
     rows: u64,
@@ -15,30 +18,18 @@ pub(super) struct Source<'a> {
 
 enum Body<'a> {
     Text(Words<'a>),
-    Binary { bytes: &'a [u8], at: usize, big_endian: bool },
+    Binary(Bytes<'a>),
 }
 
 impl<'a> Source<'a> {
     /// The numbers behind the head.
-    ///
-    /// # Errors
-    /// [`Error::Parse`] of a text that is none.
-    pub(super) fn new(header: &Header, bytes: &'a [u8], place: &'a str) -> Result<Self> {
+    pub(super) fn new(header: &Header, source: impl BufRead + 'a, place: &'a str) -> Self {
         let body = match header.format {
-            Format::Text => {
-                let text = std::str::from_utf8(bytes).map_err(|error| {
-                    let what = format!("not a text in UTF-8 (byte {})", error.valid_up_to() + 1);
-                    Error::parse(place, what, "check the line format: the file seems binary")
-                })?;
-                let mut words = Words::new(text, place);
-                while words.peek().is_some_and(|word| word.line <= header.lines) {
-                    words.next();
-                }
-                Body::Text(words)
-            }
-            format => Body::Binary { bytes, at: header.bytes, big_endian: format == Format::BigEndian },
+            Format::Text => Body::Text(Words::after(header.lines, source, place)),
+            Format::LittleEndian => Body::Binary(Bytes::new(source, header.bytes, Order::Little, place)),
+            Format::BigEndian => Body::Binary(Bytes::new(source, header.bytes, Order::Big, place)),
         };
-        Ok(Self { body, place, element: String::new(), row: 0, rows: 0 })
+        Self { body, lines_before: header.lines, element: String::new(), row: 0, rows: 0 }
     }
 
     /// Says which row of which element comes next.
@@ -57,52 +48,52 @@ impl<'a> Source<'a> {
         let here = At { section: &self.element, row: self.row, rows: self.rows };
         match &mut self.body {
             Body::Text(words) => words.number(here),
-            Body::Binary { bytes, at, big_endian } => {
-                let Some(found) = bytes.get(*at..*at + size(kind)) else {
-                    let what = format!("the file ends in {here}");
-                    let help = "the file is cut off, or its counts are too large";
-                    return Err(Error::parse(format!("{}, byte {at}", self.place), what, help));
-                };
-                *at += found.len();
-                Ok(decode(kind, found, *big_endian))
-            }
+            Body::Binary(bytes) => decode(bytes, kind, here),
         }
+    }
+
+    /// Whether all was read.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] of what is left over.
+    pub(super) fn finish(&mut self) -> Result<()> {
+        let is_at_end = match &mut self.body {
+            Body::Text(words) => words.next()?.is_none(),
+            Body::Binary(bytes) => bytes.is_at_end()?,
+        };
+        if is_at_end {
+            return Ok(());
+        }
+        Err(self.error_at_last("the file goes on behind the elements it announces", "check the counts in its head"))
     }
 
     /// An error at the number read last.
     pub(super) fn error(&self, what: &str, help: &str) -> Error {
         let what = format!("{what} ({})", At { section: &self.element, row: self.row, rows: self.rows });
+        self.error_at_last(what, help)
+    }
+
+    fn error_at_last(&self, what: impl Into<String>, help: &str) -> Error {
         match &self.body {
-            Body::Text(words) => error_at(self.place, words.line(), what, help),
-            Body::Binary { at, .. } => Error::parse(format!("{}, byte {at}", self.place), what, help),
+            Body::Text(words) => error_at(words.place(), words.line().max(self.lines_before), what, help),
+            Body::Binary(bytes) => bytes.error(what, help),
         }
     }
 }
 
-fn size(kind: Kind) -> usize {
-    match kind {
-        Kind::I8 | Kind::U8 => 1,
-        Kind::I16 | Kind::U16 => 2,
-        Kind::I32 | Kind::U32 | Kind::F32 => 4,
-        Kind::F64 => 8,
-    }
-}
-
-/// A number from as many bytes as its kind has.
-fn decode(kind: Kind, found: &[u8], big_endian: bool) -> f64 {
-    let mut bits = 0_u64;
-    for (i, &byte) in found.iter().enumerate() {
-        let place = if big_endian { found.len() - 1 - i } else { i };
-        bits |= u64::from(byte) << (8 * place);
-    }
-    match kind {
-        Kind::I8 => f64::from((bits as u8).cast_signed()),
-        Kind::U8 => f64::from(bits as u8),
-        Kind::I16 => f64::from((bits as u16).cast_signed()),
-        Kind::U16 => f64::from(bits as u16),
-        Kind::I32 => f64::from((bits as u32).cast_signed()),
-        Kind::U32 => f64::from(bits as u32),
-        Kind::F32 => f64::from(f32::from_bits(bits as u32)),
-        Kind::F64 => f64::from_bits(bits),
-    }
+/// A number of as many bytes as its kind has.
+fn decode(bytes: &mut Bytes<'_>, kind: Kind, at: At<'_>) -> Result<f64> {
+    let big = bytes.order == Order::Big;
+    let short = |found: [u8; 2]| if big { u16::from_be_bytes(found) } else { u16::from_le_bytes(found) };
+    Ok(match kind {
+        Kind::I8 => bytes.array::<1>(at)?[0].cast_signed().into(),
+        Kind::U8 => bytes.array::<1>(at)?[0].into(),
+        Kind::I16 => short(bytes.array(at)?).cast_signed().into(),
+        Kind::U16 => short(bytes.array(at)?).into(),
+        Kind::I32 => bytes.i32(at)?.into(),
+        Kind::U32 => bytes.i32(at)?.cast_unsigned().into(),
+        // Whether what nobody needs is finite does not matter.
+        Kind::F32 => f32::from_bits(bytes.i32(at)?.cast_unsigned()).into(),
+        Kind::F64 => f64::from_bits(bytes.i64(at)?.cast_unsigned()),
+    })
 }

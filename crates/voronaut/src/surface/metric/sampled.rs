@@ -2,7 +2,7 @@
 
 use super::{SurfaceMetric, check_tensor3};
 use crate::error::{Error, Result};
-use crate::formats::sol::{Solution, SolutionValues};
+use crate::formats::{Solution, SolutionValues};
 use crate::geometry::Tensor3;
 use crate::surface::{Place, Surface};
 
@@ -56,7 +56,7 @@ impl Sampled {
                 let tensors: Vec<Tensor3> = sizes.iter().map(|&h| Tensor3::isotropic(h)).collect();
                 Self::new(surface, &tensors)
             }
-            SolutionValues::Tensor(_) | SolutionValues::Vector(_) => {
+            SolutionValues::Tensor(_) | SolutionValues::Vector { .. } => {
                 let help = "save the metric with Dimension 3, as scalars (1 1) or as symmetric tensors (1 3)";
                 Err(Error::metric("neither sizes nor tensors of space", "the metric of a surface", help))
             }

@@ -2,7 +2,7 @@
 
 use super::{Sampled, SurfaceMetric};
 use crate::error::{Error, Result};
-use crate::formats::sol::{Solution, SolutionValues};
+use crate::formats::{Solution, SolutionValues};
 use crate::geometry::{Point3, Tensor3};
 use crate::surface::{Nearest, Surface};
 
@@ -61,6 +61,7 @@ impl Sizes {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::medit::Form;
     use crate::formats::sol;
     use crate::geometry::Vector3;
     use crate::surface::read;
@@ -78,8 +79,10 @@ mod tests {
         ] {
             let field = sizes.field(&surface).unwrap();
             let points = surface.to_mesh().points;
-            let written = sol::write(&sizes.solution(&field, 4.0, &surface, &points).unwrap());
-            let again = Sampled::from_solution(&surface, &sol::read(&written, "a.sol").unwrap()).unwrap();
+            let mut written = Vec::new();
+            let solution = sizes.solution(&field, 4.0, &surface, &points).unwrap();
+            sol::write(&solution, Form::Text, &mut written).unwrap();
+            let again = Sampled::from_solution(&surface, &sol::read(written.as_slice(), "a.sol").unwrap()).unwrap();
             for f in surface.topology().faces() {
                 let place = surface.place(f, [0.2, 0.5, 0.3]);
                 let (found, truth) = (again.at(&place), field.at(&place) * 4.0);

@@ -3,7 +3,7 @@
 use super::bends::bend;
 use super::{Sampled, Sizes, fit_curvatures, grade};
 use crate::error::{Error, Result};
-use crate::formats::sol::{Solution, SolutionValues};
+use crate::formats::{Solution, SolutionValues};
 use crate::geometry::{TangentPlane, Tensor, Tensor3};
 use crate::metric::Bounds;
 use crate::surface::{Curvatures, Surface};
@@ -117,7 +117,7 @@ fn asked(given: &Solution, v: usize) -> Tensor3 {
     match &given.values {
         SolutionValues::Tensor3(entries) => Tensor3::from_disk(entries[v]),
         SolutionValues::Scalar(sizes) => Tensor3::isotropic(sizes[v]),
-        SolutionValues::Vector(_) | SolutionValues::Tensor(_) => Tensor3::IDENTITY,
+        SolutionValues::Vector { .. } | SolutionValues::Tensor(_) => Tensor3::IDENTITY,
     }
 }
 

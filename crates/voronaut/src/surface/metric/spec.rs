@@ -1,9 +1,8 @@
 //! The metric of a surface as a user writes it.
 
 use super::{Bounded, Constant, FLOOR, ImplicitCurvature, Sampled, SurfaceMetric, sampled_curvature};
-use crate::domain::read_text;
 use crate::error::{Error, Result};
-use crate::formats::sol;
+use crate::formats;
 use crate::geometry::Tensor3;
 use crate::metric::{Bounds, MetricSpec, Parameters, Shock, SpaceFormula};
 use crate::surface::Input;
@@ -65,7 +64,7 @@ pub fn field(spec: &Spec, input: &Input, bounds: Bounds) -> Result<Box<dyn Surfa
             }
         }
         Spec::File(path) => {
-            let solution = sol::read(&read_text(path)?, &path.display().to_string())?;
+            let solution = formats::read_solution(path)?;
             Box::new(Sampled::from_solution(&input.surface, &input.spread(&solution)?)?)
         }
     };
