@@ -4,6 +4,7 @@ mod adapt;
 mod args;
 mod certify;
 mod check;
+mod convert;
 mod distance;
 mod dual;
 mod files;
@@ -45,6 +46,7 @@ fn run(arguments: Arguments) -> Result<()> {
         Command::Remesh(args) => remesh::run(&args),
         Command::Metric(args) => nodal::run(&args),
         Command::Loop(args) => adapt::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::Check(args) => check::run(&args),
     }
 }

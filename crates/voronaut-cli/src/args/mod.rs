@@ -7,6 +7,7 @@ pub(crate) use values::{
 };
 
 use crate::adapt::{self, LoopArgs};
+use crate::convert::{self, ConvertArgs};
 use crate::interpolate::{self, InterpolateArgs};
 use crate::nodal::{self, MetricArgs};
 use crate::remesh::{self, RemeshArgs};
@@ -56,6 +57,9 @@ pub(crate) enum Command {
     /// Adapt the mesh of a planar domain to a formula or a solver, again and again
     #[command(after_help = adapt::EXAMPLES)]
     Loop(Box<LoopArgs>),
+    /// Read a file in one format and write it in another
+    #[command(after_help = convert::EXAMPLES, visible_alias = "translate")]
+    Convert(ConvertArgs),
     /// Examine a mesh: validity, quality in a metric, distance to its domain
     #[command(after_help = CHECK_EXAMPLES)]
     Check(CheckArgs),

@@ -36,7 +36,7 @@ impl Domain {
     }
 }
 
-fn check_entries(pslg: &Pslg) -> Result<()> {
+pub(super) fn check_entries(pslg: &Pslg) -> Result<()> {
     if let Some(bad) = pslg.points.iter().position(|p| !p.is_finite()) {
         let help = "every coordinate must be a finite number";
         return Err(Error::domain("a coordinate is not finite", pslg.describe(bad as u32), help));
@@ -60,7 +60,7 @@ fn check_entries(pslg: &Pslg) -> Result<()> {
     Ok(())
 }
 
-fn triangulate(pslg: &Pslg) -> Result<Planar> {
+pub(super) fn triangulate(pslg: &Pslg) -> Result<Planar> {
     let mut planar = delaunay(&pslg.points).map_err(|Duplicate(i, j)| {
         let place = format!("{} and {}", pslg.describe(i), pslg.name(j));
         Error::domain("two points have the same position", place, "merge them into one vertex")

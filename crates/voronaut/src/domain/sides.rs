@@ -2,7 +2,7 @@
 
 use super::{Filling, Pslg, Side};
 use crate::error::{Error, Result};
-use crate::geometry::Point;
+use crate::geometry::{Point, signed_area};
 use crate::planar::{Location, Planar};
 use crate::triangulation::{FaceId, HalfEdge};
 
@@ -36,6 +36,23 @@ impl Areas {
     /// What a face is part of.
     pub(super) fn of(&self, f: FaceId) -> Side {
         self.sides[self.area_of[f.index()] as usize]
+    }
+
+    /// A point inside each bounded area, the centroid of its fattest triangle, and what the area is.
+    pub(super) fn inner_points(&self, planar: &Planar) -> Vec<(Side, Point)> {
+        let mut best = vec![(0.0, Point::default()); self.sides.len()];
+        for f in planar.topology.faces() {
+            let [a, b, c] = planar.triangle(f);
+            let perimeter = a.distance(b) + b.distance(c) + c.distance(a);
+            let radius = signed_area(a, b, c) / perimeter;
+            let known = &mut best[self.area_of[f.index()] as usize];
+            if radius > known.0 {
+                *known = (radius, Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0));
+            }
+        }
+        let outer = self.area_of[far_face(planar).index()] as usize;
+        let bounded = self.sides.iter().zip(best).enumerate().filter(|(area, _)| *area != outer);
+        bounded.map(|(_, (&side, (_, point)))| (side, point)).collect()
     }
 
     fn read_segments(&mut self, pslg: &Pslg, planar: &Planar) -> Result<()> {

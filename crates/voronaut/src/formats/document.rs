@@ -1,6 +1,7 @@
 //! What a file holds: a mesh, and values on it.
 
-use super::SolutionValues;
+use super::{SolutionValues, Solutions};
+use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 
 /// A mesh, and named values on its vertices and triangles.
@@ -28,6 +29,69 @@ pub struct Field {
     pub name: String,
     /// One entry per vertex or triangle.
     pub values: SolutionValues,
+}
+
+impl Fields {
+    /// The solutions of a `.sol` file, which have no names: a tensor is called `metric`, others `solution`, and numbered from the second.
+    pub fn of_solutions(solutions: Solutions) -> Self {
+        Self { vertices: named(solutions.vertices), triangles: named(solutions.triangles) }
+    }
+
+    /// Joins other fields to these.
+    pub fn extend(&mut self, more: Self) {
+        self.vertices.extend(more.vertices);
+        self.triangles.extend(more.triangles);
+    }
+
+    /// What a `.sol` file beside a mesh holds of the fields: their values without names. Vectors that do not have as many components as
+    /// the mesh has coordinates are one scalar for each component.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] of tensors of the plane on a mesh that is not planar, and of those of space that leave the plane of one
+    /// that is.
+    pub fn into_solutions(self, mesh: &Mesh) -> Result<Solutions> {
+        let dimension = if mesh.is_planar() { 2 } else { 3 };
+        let values = |fields: Vec<Field>| {
+            let values = fields.into_iter().map(|field| field.into_solutions(dimension));
+            Ok(values.collect::<Result<Vec<_>>>()?.concat())
+        };
+        Ok(Solutions { dimension, vertices: values(self.vertices)?, triangles: values(self.triangles)? })
+    }
+}
+
+impl Field {
+    fn into_solutions(self, dimension: u8) -> Result<Vec<SolutionValues>> {
+        match self.values {
+            SolutionValues::Vector { components, ref numbers } if components != usize::from(dimension) => {
+                let column = |i| SolutionValues::Scalar(numbers.iter().copied().skip(i).step_by(components).collect());
+                Ok((0..components).map(column).collect())
+            }
+            SolutionValues::Tensor(_) if dimension == 3 => Err(unfit(&self.name, "the plane", "is not planar")),
+            SolutionValues::Tensor3(entries) if dimension == 2 => {
+                let planar = |&[xx, xy, yy, xz, yz, _]: &[f64; 6]| (xz == 0.0 && yz == 0.0).then_some([xx, xy, yy]);
+                let tensors = entries.iter().map(planar).collect::<Option<Vec<_>>>();
+                Ok(vec![SolutionValues::Tensor(tensors.ok_or_else(|| unfit(&self.name, "space", "is planar"))?)])
+            }
+            values => Ok(vec![values]),
+        }
+    }
+}
+
+fn unfit(name: &str, of: &str, mesh: &str) -> Error {
+    let what = format!("the tensors of {of} '{name}' beside a mesh that {mesh}");
+    Error::Unsupported { what, help: "give tensors of the mesh's own dimension".into() }
+}
+
+fn named(values: Vec<SolutionValues>) -> Vec<Field> {
+    let mut counts = [0; 2];
+    let name = |values: SolutionValues| {
+        let is_tensor = matches!(values, SolutionValues::Tensor(_) | SolutionValues::Tensor3(_));
+        let (name, count) = if is_tensor { ("metric", &mut counts[0]) } else { ("solution", &mut counts[1]) };
+        *count += 1;
+        let name = if *count == 1 { name.to_owned() } else { format!("{name}_{count}") };
+        Field { name, values }
+    };
+    values.into_iter().map(name).collect()
 }
 
 impl From<Mesh> for Document {

@@ -1,8 +1,10 @@
 //! `GeoJSON` (RFC 7946): polygons, their coordinates taken as planar.
 
+use super::words::Shortest;
 use crate::error::{Error, Result};
 use crate::geometry::Point;
 use ::geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
+use std::io::{self, Write};
 
 /// The polygons of a file, in its order.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,7 +39,9 @@ pub struct Ring {
 ///
 /// A region's label is the first integer (of 32 bits) among the feature's properties `region`, `ref`, `label` and `id`;
 /// without one it is the number of the feature, from 1. The boundary's label is the property `boundary`, for all rings;
-/// without it outer rings have 1, and the holes 2, 3, ... as they follow each other in the file. Third coordinates are
+/// a list
+/// of integers labels the rings of each polygon in turn; without it outer rings have 1, and the holes 2, 3, ... as they follow each
+/// other in the file. Third coordinates are
 /// passed over. `place` names the text in messages.
 ///
 /// # Errors
@@ -59,6 +63,36 @@ pub fn read(text: &str, place: &str) -> Result<Polygons> {
     Ok(Polygons { polygons: reader.polygons })
 }
 
+/// Writes a `FeatureCollection` that [`read`] turns into the same polygons, if they are numbered in turn: a feature for each, with the
+/// properties `region` and `boundary`, the labels of its rings.
+///
+/// # Errors
+/// What `out` says.
+pub fn write(polygons: &Polygons, out: &mut dyn Write) -> io::Result<()> {
+    out.write_all(b"{\"type\": \"FeatureCollection\", \"features\": [")?;
+    for (i, polygon) in polygons.polygons.iter().enumerate() {
+        let labels: Vec<String> = polygon.rings.iter().map(|ring| ring.label.to_string()).collect();
+        write!(
+            out,
+            "{}\n{{\"type\": \"Feature\", \"properties\": {{\"region\": {}, \"boundary\": [{}]}},\n \
+             \"geometry\": {{\"type\": \"Polygon\", \"coordinates\": [",
+            if i == 0 { "" } else { "," },
+            polygon.region,
+            labels.join(", ")
+        )?;
+        for (j, ring) in polygon.rings.iter().enumerate() {
+            out.write_all(if j == 0 { b"\n  [" } else { b",\n  [" })?;
+            let closed = ring.points.iter().chain(ring.points.first());
+            for (k, p) in closed.enumerate() {
+                write!(out, "{}[{}, {}]", if k == 0 { "" } else { ", " }, Shortest(p.x), Shortest(p.y))?;
+            }
+            out.write_all(b"]")?;
+        }
+        out.write_all(b"]}}")?;
+    }
+    out.write_all(b"\n]}\n")
+}
+
 struct Reader<'a> {
     place: &'a str,
     polygons: Vec<Polygon>,
@@ -71,7 +105,8 @@ struct Labels {
     feature: usize,
     polygons: usize,
     region: i32,
-    boundary: Option<i32>,
+    /// One for all rings, or one for each.
+    boundary: Vec<i32>,
 }
 
 impl Reader<'_> {
@@ -79,7 +114,7 @@ impl Reader<'_> {
         let Some(geometry) = &feature.geometry else { return Ok(()) };
         let region = ["region", "ref", "label", "id"].iter().find_map(|key| integer(feature, key));
         let region = region.unwrap_or_else(|| i32::try_from(number).unwrap_or(i32::MAX));
-        let mut labels = Labels { feature: number, polygons: 0, region, boundary: integer(feature, "boundary") };
+        let mut labels = Labels { feature: number, polygons: 0, region, boundary: boundary(feature) };
         self.read_geometry(geometry, &mut labels)
     }
 
@@ -109,7 +144,8 @@ impl Reader<'_> {
         let mut read = Vec::with_capacity(rings.len());
         for (index, ring) in rings.iter().enumerate() {
             let points = read_ring(ring, &format!("{place}, ring {}", index + 1))?;
-            let label = labels.boundary.unwrap_or_else(|| self.ring_label(index));
+            let own = labels.boundary.get(index).or(labels.boundary.first().filter(|_| labels.boundary.len() == 1));
+            let label = own.copied().unwrap_or_else(|| self.ring_label(index));
             read.push(Ring { points, label });
         }
         let (feature, number, region) = (labels.feature, labels.polygons, labels.region);
@@ -134,9 +170,21 @@ fn features(json: GeoJson) -> Vec<Feature> {
     }
 }
 
+/// The labels of the rings, as far as a feature says them.
+fn boundary(feature: &Feature) -> Vec<i32> {
+    match feature.property("boundary").and_then(serde_json::Value::as_array) {
+        Some(list) => list.iter().map_while(label).collect(),
+        None => integer(feature, "boundary").into_iter().collect(),
+    }
+}
+
 /// A property that is an integer of 32 bits, written as `3` or `3.0`.
 fn integer(feature: &Feature, key: &str) -> Option<i32> {
-    let value = feature.property(key)?.as_f64()?;
+    label(feature.property(key)?)
+}
+
+fn label(value: &serde_json::Value) -> Option<i32> {
+    let value = value.as_f64()?;
     let is_integer = value.fract() == 0.0 && (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&value);
     is_integer.then_some(value as i32)
 }

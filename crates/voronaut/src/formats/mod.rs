@@ -3,6 +3,7 @@
 mod bytes;
 mod document;
 mod files;
+mod losses;
 pub mod geojson;
 pub mod medit;
 pub mod obj;

@@ -1,9 +1,9 @@
 //! Triangle's `.poly` files (Shewchuk): a planar straight-line graph with holes and regions.
 
-use super::words::{At, Row, Rows, Word, error_at, number, whole};
+use super::words::{At, Row, Rows, Shortest, Word, error_at, number, whole};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
-use std::io::BufRead;
+use std::io::{self, BufRead, Write};
 
 /// What a `.poly` file says.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,6 +57,35 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Poly> {
         return Err(error_at(place, row.line, what, "check the counts of holes and regions"));
     }
     Ok(reader.poly)
+}
+
+/// Writes a `.poly` text that [`read`] turns into the same.
+///
+/// # Errors
+/// What `out` says.
+pub fn write(poly: &Poly, out: &mut dyn Write) -> io::Result<()> {
+    let number = |i: usize| i as u64 + u64::from(poly.first);
+    writeln!(out, "# vertices\n{} 2 0 1", poly.points.len())?;
+    for (i, (p, marker)) in poly.points.iter().zip(&poly.point_markers).enumerate() {
+        writeln!(out, "{} {} {} {marker}", number(i), Shortest(p.x), Shortest(p.y))?;
+    }
+    writeln!(out, "# segments\n{} 1", poly.segments.len())?;
+    for (i, (ends, marker)) in poly.segments.iter().zip(&poly.segment_markers).enumerate() {
+        let [a, b] = ends.map(|v| number(v as usize));
+        writeln!(out, "{} {a} {b} {marker}", number(i))?;
+    }
+    writeln!(out, "# holes\n{}", poly.holes.len())?;
+    for (i, p) in poly.holes.iter().enumerate() {
+        writeln!(out, "{} {} {}", number(i), Shortest(p.x), Shortest(p.y))?;
+    }
+    writeln!(out, "# regions\n{}", poly.regions.len())?;
+    for (i, region) in poly.regions.iter().enumerate() {
+        let (p, attribute) = (region.point, Shortest(region.attribute));
+        write!(out, "{} {} {} {attribute}", number(i), Shortest(p.x), Shortest(p.y))?;
+        region.max_area.map_or(Ok(()), |area| write!(out, " {}", Shortest(area)))?;
+        out.write_all(b"\n")?;
+    }
+    Ok(())
 }
 
 struct Reader<'a> {

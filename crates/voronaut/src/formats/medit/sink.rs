@@ -23,6 +23,11 @@ impl Form {
             Form::Text
         }
     }
+
+    /// How the name of a solution's file ends.
+    pub fn solution_ending(self) -> &'static str {
+        if self == Form::Binary { "solb" } else { "sol" }
+    }
 }
 
 /// A file that is being written.

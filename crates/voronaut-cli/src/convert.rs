@@ -1,0 +1,153 @@
+//! `voronaut convert`: from one format to another.
+
+use clap::Args;
+use std::path::{Path, PathBuf};
+use voronaut::domain::{from_mesh, read_pslg, to_mesh, to_poly, to_polygons};
+use voronaut::formats::{self, Document, Fields, Format, Solutions, geojson, poly};
+use voronaut::output;
+use voronaut::{Error, Result};
+
+pub(crate) const EXAMPLES: &str = "\
+IN   a mesh: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply, .stl; a planar domain: .poly, .geojson, rect:..., disk:...; or values:
+     .sol, .solb
+OUT  of the same kinds; a mesh becomes a .poly or .geojson if it is planar, and a domain a mesh of nothing but its own points
+
+Labels, labelled edges, corners and what is required go along as far as OUT has a place for them; what is left out is said. Values of a
+.sol go along with --sol; of a .vtu, .msh or .ply they do anyway. Beside a .mesh they are written to OUT's name ending in .sol.
+
+Examples:
+  voronaut convert wing.msh wing.meshb
+  voronaut convert adapted.mesh adapted.vtu --sol adapted.sol
+  voronaut convert sea.geojson sea.poly
+  voronaut convert metric.sol metric.solb";
+
+#[derive(Debug, Args)]
+pub(crate) struct ConvertArgs {
+    /// What to read
+    #[arg(value_name = "IN")]
+    from: PathBuf,
+    /// What to write
+    #[arg(value_name = "OUT")]
+    to: PathBuf,
+    /// Values at the vertices or triangles of IN that go along
+    #[arg(long, value_name = "FILE")]
+    sol: Option<PathBuf>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Converts a file.
+pub(crate) fn run(args: &ConvertArgs) -> Result<()> {
+    output::demand_directory(&args.to)?;
+    let told = match (Kind::of(&args.from), Kind::of(&args.to)) {
+        (Kind::Values, Kind::Values) => {
+            let values = formats::read_solutions(&args.from)?;
+            output::write_solutions(&values, &args.to)?;
+            format!("{} solutions at vertices, {} at triangles", values.vertices.len(), values.triangles.len())
+        }
+        (Kind::Values, _) | (_, Kind::Values) => {
+            let what = format!("{} and {}: values and a mesh", args.from.display(), args.to.display());
+            let help =
+                "convert values to .sol or .solb, or a mesh with its values: convert IN.mesh OUT.vtu --sol IN.sol";
+            return Err(Error::Unsupported { what, help: help.into() });
+        }
+        (from, Kind::Outline) => outline(args, from)?,
+        (from, Kind::Mesh) => mesh(args, from)?,
+    };
+    if !args.quiet {
+        eprintln!("{}: {told}", args.to.display());
+    }
+    Ok(())
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Mesh,
+    Outline,
+    Values,
+}
+
+impl Kind {
+    /// That of a file by its ending. Shapes are outlines.
+    fn of(path: &Path) -> Self {
+        let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+        match ending.as_deref() {
+            Some("sol" | "solb") => Self::Values,
+            Some("poly" | "geojson" | "json") => Self::Outline,
+            _ if path.to_string_lossy().contains(':') && Format::of_ending(path).is_none() => Self::Outline,
+            _ => Self::Mesh,
+        }
+    }
+}
+
+fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
+    if let Some(sol) = &args.sol {
+        let what = format!("values ({}) in {}", sol.display(), args.to.display());
+        return Err(Error::Unsupported { what, help: "leave out --sol: outlines hold none".into() });
+    }
+    let pslg =
+        if from == Kind::Mesh { from_mesh(&formats::read(&args.from)?.mesh)? } else { read_pslg(&name(&args.from))? };
+    if args.to.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("poly")) {
+        let found = to_poly(&pslg)?;
+        output::write_with(&args.to, |out| poly::write(&found, out))?;
+        let (points, segments) = (found.points.len(), found.segments.len());
+        return Ok(format!(
+            "{points} points, {segments} segments, {} holes, {} regions",
+            found.holes.len(),
+            found.regions.len()
+        ));
+    }
+    let found = to_polygons(&pslg)?;
+    output::write_with(&args.to, |out| geojson::write(&found, out))?;
+    let rings: usize = found.polygons.iter().map(|polygon| polygon.rings.len()).sum();
+    Ok(format!("{} polygons, {rings} rings", found.polygons.len()))
+}
+
+fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
+    let format = Format::from_path(&args.to)?;
+    let Document { mesh, mut fields } = match from {
+        Kind::Mesh => formats::read(&args.from)?,
+        _ => to_mesh(&read_pslg(&name(&args.from))?)?.into(),
+    };
+    if let Some(sol) = &args.sol {
+        let values = formats::read_solutions(sol)?;
+        demand_counts(sol, &values, [mesh.points.len(), mesh.triangles.len()])?;
+        fields.extend(Fields::of_solutions(values));
+    }
+    output::write_document(&mesh, &fields, &args.to)?;
+    let mut told = format!(
+        "{} vertices, {} triangles, {} labelled edges",
+        mesh.points.len(),
+        mesh.triangles.len(),
+        mesh.edges.len()
+    );
+    let mut names = fields.vertices.iter().chain(&fields.triangles).map(|field| field.name.as_str()).peekable();
+    if let (Format::Medit(form), Some(_)) = (format, names.peek()) {
+        let beside = args.to.with_extension(form.solution_ending());
+        output::write_solutions(&fields.clone().into_solutions(&mesh)?, &beside)?;
+        told += &format!("; {} in {}", names.collect::<Vec<_>>().join(", "), beside.display());
+    }
+    let lost = format.lost(&mesh, &fields);
+    if !lost.is_empty() {
+        told += &format!("; left out, for the format has no place for them: {}", lost.join(", "));
+    }
+    Ok(told)
+}
+
+fn demand_counts(file: &Path, values: &Solutions, counts: [usize; 2]) -> Result<()> {
+    let sections = [("vertices", &values.vertices), ("triangles", &values.triangles)];
+    for ((places, solutions), needed) in sections.into_iter().zip(counts) {
+        if let Some(found) =
+            solutions.iter().map(voronaut::formats::SolutionValues::count).find(|&found| found != needed)
+        {
+            let what = format!("{found} values, and the mesh has {needed} {places}");
+            return Err(Error::parse(name(file), what, "give the values that belong to IN"));
+        }
+    }
+    Ok(())
+}
+
+fn name(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}

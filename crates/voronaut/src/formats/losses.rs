@@ -1,0 +1,78 @@
+//! What formats have no place for.
+
+use super::{Fields, Format};
+use crate::mesh::Mesh;
+
+/// What a format keeps of a mesh besides positions and triangles.
+#[derive(Default)]
+struct Kept {
+    point_labels: bool,
+    triangle_labels: bool,
+    edges: bool,
+    edge_labels: bool,
+    /// Corners, ridges, and what is required.
+    marks: bool,
+    /// Beside a `.mesh` they have a file of their own.
+    fields: bool,
+}
+
+impl Format {
+    /// What of a mesh and its fields a file of the format would not hold, in words; empty if nothing is lost.
+    pub fn lost(self, mesh: &Mesh, fields: &Fields) -> Vec<String> {
+        let kept = self.kept();
+        let labels = |labels: &[i32]| labels.iter().filter(|&&label| label != 0).count();
+        let marks =
+            [&mesh.corners, &mesh.ridges, &mesh.required_points, &mesh.required_edges, &mesh.required_triangles];
+        let all = [
+            (kept.point_labels, labels(&mesh.point_labels), "labels of vertices"),
+            (kept.triangle_labels, labels(&mesh.triangle_labels), "labels of triangles"),
+            (kept.edges, mesh.edges.len(), "labelled edges"),
+            (kept.edge_labels || !kept.edges, labels(&mesh.edge_labels), "labels of edges"),
+            (kept.marks, marks.map(Vec::len).into_iter().sum(), "corners, ridges and what is required"),
+            (kept.fields, fields.vertices.len() + fields.triangles.len(), "fields"),
+        ];
+        let lost = all.into_iter().filter(|(kept, count, _)| !kept && *count > 0);
+        lost.map(|(_, count, what)| format!("{count} {what}")).collect()
+    }
+
+    fn kept(self) -> Kept {
+        let all = Kept {
+            point_labels: true,
+            triangle_labels: true,
+            edges: true,
+            edge_labels: true,
+            marks: true,
+            fields: true,
+        };
+        match self {
+            Format::Medit(_) | Format::Vtu => all,
+            Format::Ply => Kept { marks: false, ..all },
+            Format::Obj => Kept { triangle_labels: true, edges: true, ..Kept::default() },
+            Format::Off | Format::Stl => Kept::default(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_lost_is_counted() {
+        let mesh = Mesh {
+            point_labels: vec![0, 3, 0],
+            triangle_labels: vec![1],
+            edges: vec![[0, 1]],
+            edge_labels: vec![5],
+            corners: vec![0, 1],
+            ..Mesh::default()
+        };
+        let lost = |format: Format| format.lost(&mesh, &Fields::default());
+        assert!(lost(Format::Vtu).is_empty());
+        assert_eq!(
+            lost(Format::Obj),
+            ["1 labels of vertices", "1 labels of edges", "2 corners, ridges and what is required"]
+        );
+        assert_eq!(lost(Format::Off).len(), 4);
+    }
+}
