@@ -34,7 +34,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     report.options = json!({
         "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain, "function": args.function, "norm": args.metric_choices.norm.to_string(),
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
-        "smooth_metric": args.metric_choices.smooth_metric, "gradation": args.metric_choices.gradation, "repair": args.damage.repair,
+        "smooth_metric": args.metric_choices.smooth_metric, "tensor_order": args.metric_choices.tensor_order, "gradation": args.metric_choices.gradation, "repair": args.damage.repair,
     });
     if let Err(fault) = fault {
         report.seconds.total = start.elapsed().as_secs_f64();

@@ -170,7 +170,7 @@ fn told<'a, G: Ground<'a>>(
         "options": {
             "domain": args.domain, "metric": args.metric, "out": args.out, "canvas": args.canvas,
             "canvas_size": args.canvas_size, "geodesic": args.geodesic, "background": args.metric_choices.background,
-            "bounds": args.metric_choices.bounds(), "smooth_metric": args.metric_choices.smooth_metric, "gradation": args.metric_choices.gradation, "picture": args.picture,
+            "bounds": args.metric_choices.bounds(), "smooth_metric": args.metric_choices.smooth_metric, "tensor_order": args.metric_choices.tensor_order, "gradation": args.metric_choices.gradation, "picture": args.picture,
             "pixels": args.pixels, "report": args.report, "threads": args.run.threads,
             "repair": args.damage.repair,
         },

@@ -212,7 +212,7 @@ pub(crate) fn options(args: &DualArgs) -> serde_json::Value {
         "canvas": args.canvas, "canvas_size": certify::canvas_size(args),
         "voronoi": args.voronoi, "certify": args.certify, "constants": args.constants, "geodesic": args.geodesic, "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
-        "smooth_metric": args.metric_choices.smooth_metric, "gradation": args.metric_choices.gradation,
+        "smooth_metric": args.metric_choices.smooth_metric, "tensor_order": args.metric_choices.tensor_order, "gradation": args.metric_choices.gradation,
         "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,
         "repair": args.damage.repair,
     })

@@ -112,7 +112,7 @@ pub(crate) fn options(args: &MeshArgs) -> Value {
     let mut options = json!(args.options());
     let more = json!({
         "domain": args.domain, "metric": args.metric, "out": args.out, "background": args.metric_choices.background,
-        "smooth_metric": args.metric_choices.smooth_metric, "gradation": args.metric_choices.gradation,
+        "smooth_metric": args.metric_choices.smooth_metric, "tensor_order": args.metric_choices.tensor_order, "gradation": args.metric_choices.gradation,
         "norm": args.metric_choices.norm.to_string(), "recovery": args.metric_choices.recovery,
         "ar": args.features().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
         "picture": args.outputs.picture, "pixels": args.outputs.pixels, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,

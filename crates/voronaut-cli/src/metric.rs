@@ -24,7 +24,7 @@ pub(crate) fn in_plane(
 /// The metric on a surface that a text names, within limits.
 pub(crate) fn on_surface(text: &str, input: &Input, choices: &MetricChoices) -> Result<Box<dyn SurfaceMetric>> {
     demand_for_surfaces(choices)?;
-    field(&Spec::parse(text)?, input, choices.bounds())
+    field(&Spec::parse(text)?, input, choices.bounds(), choices.tensor_order)
 }
 
 /// Refuses what is not there for metrics on surfaces.

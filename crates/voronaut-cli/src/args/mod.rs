@@ -18,6 +18,7 @@ use voronaut::canvas;
 use voronaut::certificate::Constants;
 use voronaut::diagram;
 use voronaut::dual::Road;
+use voronaut::formats::TensorOrder;
 use voronaut::geodesic::Method;
 use voronaut::geometry::Aabb;
 use voronaut::metric::{Bounds, MOST_SWEEPS, Norm, Recovery};
@@ -361,6 +362,10 @@ pub(crate) struct MetricChoices {
     /// file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
     #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(..=i64::from(MOST_SWEEPS)), allow_negative_numbers = true, default_value_t = SMOOTH_METRIC)]
     pub(crate) smooth_metric: u32,
+    /// In which order tensors in files have their entries: disk (m11 m12 m22 m13 m23 m33, as .sol files have), upper (m11 m12 m13 m22
+    /// m23 m33) or diagonal (m11 m22 m33 m12 m23 m13)
+    #[arg(long, value_name = "ORDER", default_value_t = TensorOrder::default())]
+    pub(crate) tensor_order: TensorOrder,
     /// The mesh on which a .sol metric is given [default: the domain's own]
     #[arg(long, value_name = "MESH")]
     pub(crate) background: Option<PathBuf>,
@@ -428,6 +433,7 @@ impl MetricChoices {
             norm: self.norm,
             recovery: self.recovery,
             smooth_metric: self.smooth_metric,
+            tensor_order: self.tensor_order,
             gradation: self.gradation,
             background: self.background.clone(),
         }

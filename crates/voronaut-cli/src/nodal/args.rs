@@ -4,6 +4,7 @@ use crate::args::{Run, positive};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
+use voronaut::formats::TensorOrder;
 use voronaut::metric::{Norm, Recovery};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -62,6 +63,9 @@ pub(crate) struct MetricArgs {
     /// How second derivatives are recovered from values: fit (a quadratic around each vertex) or l2 (a double projection)
     #[arg(long, value_name = "HOW")]
     pub(crate) recovery: Option<Recovery>,
+    /// In which order tensors in files have their entries: disk (m11 m12 m22, as .sol files have) or diagonal (m11 m22 m12)
+    #[arg(long, value_name = "ORDER", default_value_t = TensorOrder::default())]
+    pub(crate) tensor_order: TensorOrder,
     /// The mesh on which a .sol metric is given, if that is not MESH
     #[arg(long, value_name = "MESH")]
     pub(crate) background: Option<PathBuf>,

@@ -3,11 +3,11 @@
 use super::args::{LimitText, MetricArgs};
 use std::path::Path;
 use voronaut::domain::{Domain, from_mesh};
-use voronaut::formats::{self, SolutionValues};
+use voronaut::formats::{self, SolutionValues, TensorOrder};
 use voronaut::geometry::Tensor;
 use voronaut::mesh::Mesh;
 use voronaut::metric::nodal::{Limit, Limits, Source, implied, isotropic};
-use voronaut::metric::{MetricSpec, Recovery, ScalarField, Snapshot, recover_hessian};
+use voronaut::metric::{MetricSpec, Recovery, ScalarField, Snapshot, read_metric, recover_hessian};
 use voronaut::recipe::{self, GradedAt, MetricOptions};
 use voronaut::{Error, Result};
 
@@ -23,10 +23,10 @@ pub(super) fn source(text: &str, mesh: &Mesh, args: &MetricArgs) -> Result<Sourc
             Ok(Source::Hessian(recover_hessian(mesh, &values, args.recovery.unwrap_or_default())?))
         }
         MetricSpec::Hessian(function) => Ok(Source::Hessian(hessian(&function.into(), mesh, args.recovery)?)),
-        MetricSpec::File(path) if args.background.is_none() => Ok(Source::Metric(own(&path, mesh)?)),
+        MetricSpec::File(path) if args.background.is_none() => Ok(Source::Metric(own(&path, mesh, args.tensor_order)?)),
         spec => {
             let background = args.background.clone().filter(|_| matches!(spec, MetricSpec::File(_)));
-            let options = MetricOptions { background, ..MetricOptions::default() };
+            let options = MetricOptions { background, tensor_order: args.tensor_order, ..MetricOptions::default() };
             let domain = Domain::new(&from_mesh(mesh)?)?;
             let field = recipe::metric(&spec, &domain, None, &options, GradedAt::Scale(1.0))?.field;
             Ok(Source::Metric((0..mesh.points.len() as u32).map(|v| field.at(mesh.point(v))).collect()))
@@ -45,8 +45,8 @@ fn hessian(function: &Snapshot, mesh: &Mesh, recovery: Option<Recovery>) -> Resu
 }
 
 /// A metric of one value for each vertex of the mesh itself.
-fn own(path: &Path, mesh: &Mesh) -> Result<Vec<Tensor>> {
-    match formats::read_solution(path)?.values {
+fn own(path: &Path, mesh: &Mesh, order: TensorOrder) -> Result<Vec<Tensor>> {
+    match read_metric(path, order)?.values {
         SolutionValues::Scalar(sizes) => isotropic(mesh, &sizes),
         SolutionValues::Tensor(entries) => Ok(entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect()),
         SolutionValues::Vector { .. } | SolutionValues::Tensor3(_) => {

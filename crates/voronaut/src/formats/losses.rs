@@ -46,7 +46,7 @@ impl Format {
         };
         match self {
             Format::Medit(_) | Format::Vtu => all,
-            Format::Ply => Kept { marks: false, ..all },
+            Format::Ply => Kept { edges: false, edge_labels: false, marks: false, ..all },
             Format::Obj => Kept { triangle_labels: true, edges: true, ..Kept::default() },
             Format::Off | Format::Stl => Kept::default(),
         }

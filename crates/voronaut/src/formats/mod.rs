@@ -21,4 +21,4 @@ pub use document::{Document, Field, Fields};
 pub use files::{Format, MESH_ENDINGS, open, read, read_solution, read_solutions, read_text};
 pub use geojson::Polygons;
 pub use poly::Poly;
-pub use values::{Solution, SolutionValues, Solutions};
+pub use values::{Solution, SolutionValues, Solutions, TensorOrder};

@@ -28,8 +28,8 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// Writes a mesh as an `.obj` text: vertices in order, triangles in order with a group `region_LABEL` wherever the label changes,
-/// then the labelled edges as lines. Coordinates read back as the same bits; labels of vertices and edges have no place there.
+/// Writes a mesh as an `.obj` text: vertices in order, then the triangles of each region label in a group `region_LABEL`, then the
+/// labelled edges as lines. Coordinates read back as the same bits; labels of vertices and edges have no place there.
 ///
 /// # Errors
 /// What `out` says.
@@ -38,13 +38,16 @@ pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     for [x, y, z] in &mesh.points {
         writeln!(out, "v {} {} {}", Shortest(*x), Shortest(*y), Shortest(*z))?;
     }
+    // One group for each label: many programs make a part of each group they read.
+    let label = |&i: &usize| mesh.triangle_labels.get(i).copied().unwrap_or(0);
+    let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
+    order.sort_by_key(label);
     let mut group = None;
-    for (i, &triangle) in mesh.triangles.iter().enumerate() {
-        let label = mesh.triangle_labels.get(i).copied().unwrap_or(0);
-        if group.replace(label) != Some(label) {
-            writeln!(out, "g region_{label}")?;
+    for i in order {
+        if group.replace(label(&i)) != Some(label(&i)) {
+            writeln!(out, "g region_{}", label(&i))?;
         }
-        let [a, b, c] = triangle.map(|v| u64::from(v) + 1);
+        let [a, b, c] = mesh.triangles[i].map(|v| u64::from(v) + 1);
         writeln!(out, "f {a} {b} {c}")?;
     }
     if !mesh.edges.is_empty() {
@@ -175,14 +178,14 @@ mod tests {
         let mesh = Mesh {
             points: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.0, 1.0, 0.0]],
             point_labels: vec![0; 4],
-            triangles: vec![[0, 1, 2], [0, 2, 3]],
-            triangle_labels: vec![1, -2],
+            triangles: vec![[0, 1, 2], [0, 2, 3], [0, 3, 1]],
+            triangle_labels: vec![1, -2, 1],
             edges: vec![[0, 2]],
             edge_labels: vec![7],
             ..Mesh::default()
         };
         let expected = "# voronaut\nv 0 0 0\nv 1 0 0\nv 1 0.1 0\nv 0 1 0\n\
-                        g region_1\nf 1 2 3\ng region_-2\nf 1 3 4\ng edges\nl 1 3\n";
+                        g region_-2\nf 1 3 4\ng region_1\nf 1 2 3\nf 1 4 2\ng edges\nl 1 3\n";
         let mut out = Vec::new();
         write(&mesh, &mut out).unwrap();
         assert_eq!(String::from_utf8(out).unwrap(), expected);

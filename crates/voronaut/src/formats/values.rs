@@ -1,5 +1,7 @@
 //! Values on vertices and triangles: scalars (sizes), vectors and symmetric tensors (metrics).
 
+use crate::error::{Error, Result};
+
 /// Values on the vertices of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
@@ -111,6 +113,100 @@ impl SolutionValues {
             SolutionValues::Tensor(_) => SolutionValues::Tensor(numbers.as_chunks().0.to_vec()),
             SolutionValues::Tensor3(_) => SolutionValues::Tensor3(numbers.as_chunks().0.to_vec()),
         }
+    }
+}
+
+/// In which order the different entries of a symmetric tensor are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TensorOrder {
+    /// That of `.sol` files, the lower triangle: m11 m12 m22 m13 m23 m33 (in the plane m11 m12 m22).
+    #[default]
+    Disk,
+    /// The upper triangle, as mmg's API and gmsh have it: m11 m12 m13 m22 m23 m33 (in the plane m11 m12 m22).
+    Upper,
+    /// The diagonal first, as VTK and tucanos have it: m11 m22 m33 m12 m23 m13 (in the plane m11 m22 m12).
+    Diagonal,
+}
+
+impl TensorOrder {
+    /// Every order.
+    pub const ALL: [Self; 3] = [Self::Disk, Self::Upper, Self::Diagonal];
+
+    /// The entries' names in order, of tensors of space or of the plane.
+    pub fn entries(self, is_space: bool) -> &'static str {
+        match (self, is_space) {
+            (Self::Disk, true) => "m11 m12 m22 m13 m23 m33",
+            (Self::Upper, true) => "m11 m12 m13 m22 m23 m33",
+            (Self::Diagonal, true) => "m11 m22 m33 m12 m23 m13",
+            (Self::Disk | Self::Upper, false) => "m11 m12 m22",
+            (Self::Diagonal, false) => "m11 m22 m12",
+        }
+    }
+
+    /// Where in this order the entries stand that the order on disk has in turn.
+    fn places(self) -> [usize; 6] {
+        match self {
+            Self::Disk => [0, 1, 2, 3, 4, 5],
+            Self::Upper => [0, 1, 3, 2, 4, 5],
+            Self::Diagonal => [0, 3, 1, 5, 4, 2],
+        }
+    }
+
+    fn planar_places(self) -> [usize; 3] {
+        if self == Self::Diagonal { [0, 2, 1] } else { [0, 1, 2] }
+    }
+}
+
+impl std::fmt::Display for TensorOrder {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Disk => "disk",
+            Self::Upper => "upper",
+            Self::Diagonal => "diagonal",
+        })
+    }
+}
+
+impl std::str::FromStr for TensorOrder {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        Self::ALL.into_iter().find(|order| order.to_string() == text).ok_or_else(|| {
+            let help = "write disk (m11 m12 m22 m13 m23 m33), upper (m11 m12 m13 m22 m23 m33) or diagonal (m11 m22 m33 m12 m23 m13)";
+            Error::parse("tensor order", format!("'{text}' is not an order"), help)
+        })
+    }
+}
+
+impl SolutionValues {
+    /// The same tensors in the order on disk, if these are in another; what is no tensor stays as it is.
+    #[must_use]
+    pub fn from_order(mut self, order: TensorOrder) -> Self {
+        match &mut self {
+            Self::Tensor(entries) => entries.iter_mut().for_each(|e| *e = order.planar_places().map(|i| e[i])),
+            Self::Tensor3(entries) => entries.iter_mut().for_each(|e| *e = order.places().map(|i| e[i])),
+            Self::Scalar(_) | Self::Vector { .. } => {}
+        }
+        self
+    }
+
+    /// The same tensors in another order, if these are in that on disk: undoes [`SolutionValues::from_order`].
+    #[must_use]
+    pub fn to_order(mut self, order: TensorOrder) -> Self {
+        fn moved<const N: usize>(entry: [f64; N], places: [usize; N]) -> [f64; N] {
+            let mut moved = [0.0; N];
+            for (place, value) in places.into_iter().zip(entry) {
+                moved[place] = value;
+            }
+            moved
+        }
+        match &mut self {
+            Self::Tensor(entries) => entries.iter_mut().for_each(|e| *e = moved(*e, order.planar_places())),
+            Self::Tensor3(entries) => entries.iter_mut().for_each(|e| *e = moved(*e, order.places())),
+            Self::Scalar(_) | Self::Vector { .. } => {}
+        }
+        self
     }
 }
 

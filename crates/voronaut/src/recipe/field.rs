@@ -5,12 +5,12 @@ use super::background::{read, smooth_metric};
 use super::graded::{GradedAt, grade_metric};
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::formats::{self, SolutionValues};
+use crate::formats::{SolutionValues, TensorOrder};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::metric::{
     Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Recovered, Recovery, Sampled, ScalarField,
-    Snapshot, rough_complexity,
+    Snapshot, read_metric, rough_complexity,
 };
 use crate::optimise::polishing_norm;
 use crate::quality::interpolation_error;
@@ -33,6 +33,8 @@ pub struct MetricOptions {
     pub smooth_metric: u32,
     /// How fast sizes may grow; `None` for no gradation.
     pub gradation: Option<f64>,
+    /// In which order the tensors of a file have their entries.
+    pub tensor_order: TensorOrder,
     /// The mesh that values in a file belong to; `None` for the domain's own.
     pub background: Option<PathBuf>,
 }
@@ -45,6 +47,7 @@ impl Default for MetricOptions {
             recovery: Recovery::default(),
             smooth_metric: SMOOTH_METRIC,
             gradation: None,
+            tensor_order: TensorOrder::default(),
             background: None,
         }
     }
@@ -100,7 +103,7 @@ pub fn metric(
         }
         return finished(named(spec, domain, options, at)?, domain, None, options, at);
     };
-    let values = formats::read_solution(path)?.values;
+    let values = read_metric(path, options.tensor_order)?.values;
     let mesh = read(background.or(own), path, domain)?;
     let named = match (spec, &values) {
         (MetricSpec::RecoveredHessian(_), SolutionValues::Scalar(values)) => {

@@ -8,6 +8,7 @@ mod parts;
 
 use common::faults;
 use parts::Part;
+use voronaut::formats::TensorOrder;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::recipe::{MeshOptions, mesh_surface};
@@ -40,6 +41,7 @@ fn keeps_distance(name: &str, share: f64) {
         &Spec::parse("uniform").unwrap(),
         &input,
         Bounds { h_max: Some(0.2 * input.diagonal()), ..Bounds::default() },
+        TensorOrder::Disk,
     )
     .unwrap();
     let options = MeshOptions { hausd: Some(hausd), ..MeshOptions::default() };
@@ -60,7 +62,7 @@ fn distances_are_kept_where_they_are_asked_for() {
 fn keeps_features(name: &str, metric: &str, counts: &[usize]) {
     let part = parts::all().into_iter().find(|part| part.name == name).unwrap();
     let input = input(&part);
-    let field = field(&Spec::parse(metric).unwrap(), &input, Bounds::default()).unwrap();
+    let field = field(&Spec::parse(metric).unwrap(), &input, Bounds::default(), TensorOrder::Disk).unwrap();
     for &count in counts {
         let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
         let mesh = mesh_surface(&input, field.as_ref(), &options, &Silent).unwrap().mesh;

@@ -1,6 +1,7 @@
 //! Meshes of surfaces: valid, of the surface's topology, with their vertices on it.
 
 use voronaut::canvas::Kind;
+use voronaut::formats::TensorOrder;
 use voronaut::geometry::Tensor3;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
@@ -22,7 +23,7 @@ impl SurfaceMetric for Scaled<'_> {
 }
 
 fn meshed(input: &Input, metric: &str, options: &MeshOptions) -> (Meshed, f64, f64) {
-    let metric = field(&Spec::parse(metric).unwrap(), input, Bounds::default()).unwrap();
+    let metric = field(&Spec::parse(metric).unwrap(), input, Bounds::default(), TensorOrder::Disk).unwrap();
     let meshed = mesh_surface(input, metric.as_ref(), options, &Silent).unwrap();
     let figures = surface_quality(&meshed.mesh, &input.surface, &Scaled(metric.as_ref(), meshed.metric_scale)).unwrap();
     (meshed, figures.quality.mean, figures.quality.min)

@@ -200,7 +200,8 @@ fn read_head(words: &mut Words<'_>) -> Result<()> {
         return Err(error_at(place, word.line, what, "give a file in one of Medit's formats"));
     }
     let version: i64 = words.whole(at)?;
-    if VERSIONS.contains(&version) {
+    // bamg's manual writes 0, and as text all versions read alike.
+    if version == 0 || VERSIONS.contains(&version) {
         return Ok(());
     }
     let what = format!("MeshVersionFormatted {version} does not exist");

@@ -37,7 +37,7 @@ pub fn read(mut source: impl BufRead, place: &str) -> Result<Document> {
 }
 
 /// Writes a mesh and fields as a `.ply` file in binary form, little-endian, with coordinates and fields as doubles: [`read`] turns it
-/// into the same bits. Labelled edges are an element `edge` if there are some. A field of several components is as many properties
+/// into the same bits. Edges are left out: programs that read the format stop at elements that they do not know. A field of several components is as many properties
 /// `NAME_0`, `NAME_1`, ...
 ///
 /// # Errors
@@ -55,10 +55,6 @@ pub fn write(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()
         mesh.points.len(),
         mesh.triangles.len()
     )?;
-    if !mesh.edges.is_empty() {
-        let count = mesh.edges.len();
-        write!(out, "element edge {count}\nproperty uint vertex1\nproperty uint vertex2\nproperty int label\n")?;
-    }
     out.write_all(b"end_header\n")?;
     let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0).to_le_bytes();
     for (i, point) in mesh.points.iter().enumerate() {
@@ -71,10 +67,6 @@ pub fn write(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()
         out.write_all(triangle.map(u32::to_le_bytes).as_flattened())?;
         out.write_all(&label(&mesh.triangle_labels, i))?;
         write_row(&fields.triangles, i, out)?;
-    }
-    for (i, edge) in mesh.edges.iter().enumerate() {
-        out.write_all(edge.map(u32::to_le_bytes).as_flattened())?;
-        out.write_all(&label(&mesh.edge_labels, i))?;
     }
     Ok(())
 }
@@ -314,8 +306,6 @@ mod tests {
             point_labels: vec![0, -5, i32::MAX],
             triangles: vec![[0, 1, 2], [2, 1, 0]],
             triangle_labels: vec![7, i32::MIN],
-            edges: vec![[0, 2]],
-            edge_labels: vec![3],
             ..Mesh::default()
         };
         let field = |name: &str, values: Vec<f64>| Field { name: name.into(), values: SolutionValues::Scalar(values) };

@@ -2,9 +2,9 @@
 
 use super::{Bounded, Constant, FLOOR, ImplicitCurvature, Sampled, SurfaceMetric, sampled_curvature};
 use crate::error::{Error, Result};
-use crate::formats;
+use crate::formats::TensorOrder;
 use crate::geometry::Tensor3;
-use crate::metric::{Bounds, MetricSpec, Parameters, Shock, SpaceFormula};
+use crate::metric::{Bounds, MetricSpec, Parameters, Shock, SpaceFormula, read_metric};
 use crate::surface::Input;
 use std::path::PathBuf;
 
@@ -47,11 +47,12 @@ impl Spec {
 }
 
 /// The field that a specification names on a surface, within limits. Curvatures are exact where the surface has an
-/// equation, else fitted; a file has one value per vertex of the surface's file.
+/// equation, else fitted; a file has one value per vertex of the surface's file, its
+/// tensors in the order given.
 ///
 /// # Errors
 /// A file is missing or not what it should be; the values are no metric; the limits contradict each other.
-pub fn field(spec: &Spec, input: &Input, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
+pub fn field(spec: &Spec, input: &Input, bounds: Bounds, order: TensorOrder) -> Result<Box<dyn SurfaceMetric>> {
     let field: Box<dyn SurfaceMetric> = match spec {
         Spec::Uniform => Box::new(Constant(Tensor3::IDENTITY)),
         Spec::Shock(shock) => Box::new(*shock),
@@ -64,7 +65,7 @@ pub fn field(spec: &Spec, input: &Input, bounds: Bounds) -> Result<Box<dyn Surfa
             }
         }
         Spec::File(path) => {
-            let solution = formats::read_solution(path)?;
+            let solution = read_metric(path, order)?;
             Box::new(Sampled::from_solution(&input.surface, &input.spread(&solution)?)?)
         }
     };
@@ -116,7 +117,7 @@ mod tests {
             ("shock:phi=0", Some(1.0)),
             ("shock", None),
         ] {
-            let field = field(&Spec::parse(text).unwrap(), &input, Bounds::default()).unwrap();
+            let field = field(&Spec::parse(text).unwrap(), &input, Bounds::default(), TensorOrder::Disk).unwrap();
             let m = plane.restrict(field.at(&place));
             assert!(m.is_positive_definite());
             if let Some(expected) = expected {
@@ -124,7 +125,7 @@ mod tests {
                 assert!(error < 1e-12, "{text}: {m:?}");
             }
             let bounds = Bounds { h_max: Some(0.1), ..Bounds::default() };
-            let bounded = super::field(&Spec::parse(text).unwrap(), &input, bounds).unwrap();
+            let bounded = super::field(&Spec::parse(text).unwrap(), &input, bounds, TensorOrder::Disk).unwrap();
             let sizes = TangentPlane::new(place.normal).restrict(bounded.at(&place)).eigen();
             assert!(sizes.small > 100.0 - 1e-9, "{text}: {sizes:?}");
         }
@@ -133,7 +134,7 @@ mod tests {
     #[test]
     fn shocks_are_thin_across_their_gradient() {
         let input = read("sphere:2", Some(0.5)).unwrap();
-        let field = field(&Spec::parse("shock").unwrap(), &input, Bounds::default()).unwrap();
+        let field = field(&Spec::parse("shock").unwrap(), &input, Bounds::default(), TensorOrder::Disk).unwrap();
         let place = input.surface.place_of(crate::triangulation::VertexId(0)).unwrap();
         let m = field.at(&place);
         assert!(m.xx > 1.0 && m.determinant() > 1.0);
