@@ -114,7 +114,10 @@ pub(super) fn ending(file: &str) -> Option<String> {
 }
 
 /// The surface of a file's mesh, and what was mended of it; errors name the file.
-pub(super) fn of_file(file: &str, mesh: &Mesh, options: RepairOptions) -> Result<(Surface, Mended)> {
+///
+/// # Errors
+/// As for [`read_with`] of what makes no surface.
+pub fn of_file(file: &str, mesh: &Mesh, options: RepairOptions) -> Result<(Surface, Mended)> {
     let made = repaired(mesh, options).and_then(|(mesh, mended)| Ok((Surface::new(&mesh)?, mended)));
     made.map_err(|error| match error {
         Error::Domain { what, place, help } => Error::Domain { what, place: format!("{file}, {place}"), help },

@@ -1,0 +1,116 @@
+//! Sizes for which chords stay close to the curves of a domain.
+
+use super::simplify;
+use crate::domain::{Chain, Domain, Pslg};
+use crate::geometry::{Point, Tensor, Vector};
+use rstar::primitives::{GeomWithData, Line};
+use rstar::RTree;
+
+/// A chord of length h is h^2 / 8 times the curvature away from its curve.
+const SAGITTA: f64 = 8.0;
+
+/// The sizes that curves of a domain ask for: sqrt(8 `hausd` / curvature), as mmg2d has it. Curves are simplified by the same distance
+/// first, so that what is smaller is no bend; a vertex that turns by more than `ar` (degrees) is a corner and none either.
+/// Required segments ask for nothing: they stay as they are.
+pub struct CurveSizes {
+    tree: RTree<Bent>,
+    hausd: f64,
+}
+
+/// A segment with the least size that it asks for.
+type Bent = GeomWithData<Line<[f64; 2]>, f64>;
+
+impl CurveSizes {
+    /// Measures the curves.
+    pub fn new(domain: &Domain, hausd: f64, ar: f64) -> Self {
+        let extent = domain.bounds().extent();
+        let long = extent.x.max(extent.y);
+        let coarse = simplify(domain, &move |_: Point| Tensor::isotropic(long), hausd);
+        let pslg = coarse.pslg();
+        let bent = pslg.chains().iter().filter(|chain| !chain.kind.required).flat_map(|c| bends(pslg, c, hausd, ar)).collect();
+        Self { tree: RTree::bulk_load(bent), hausd }
+    }
+
+    /// Whether no curve bends.
+    pub fn is_empty(&self) -> bool {
+        self.tree.size() == 0
+    }
+
+    /// The metric at a point: the size of every bent segment within `hausd` of it along that segment, and `across` otherwise; `None`
+    /// where there is none.
+    pub fn at(&self, p: Point, across: f64) -> Option<Tensor> {
+        let near = self.tree.locate_within_distance([p.x, p.y], (self.hausd * self.hausd).next_up());
+        near.map(|bent| tensor(bent, across)).reduce(Tensor::intersection)
+    }
+}
+
+fn tensor(bent: &Bent, across: f64) -> Tensor {
+    let [a, b] = [bent.geom().from, bent.geom().to];
+    let along = Vector::new(b[0] - a[0], b[1] - a[1]);
+    let size = bent.data.min(across);
+    Tensor::from_axis(along * (1.0 / along.norm()), 1.0 / (size * size), 1.0 / (across * across))
+}
+
+/// The segments of a curve with the lesser of their ends' sizes, but for those that are straight.
+fn bends(pslg: &Pslg, chain: &Chain, hausd: f64, ar: f64) -> Vec<Bent> {
+    let points: Vec<Point> = chain.vertices.iter().map(|&v| pslg.points[v as usize]).collect();
+    let last = points.len() - 1;
+    let is_loop = chain.vertices[0] == chain.vertices[last] && !pslg.required_points.contains(&chain.vertices[0]);
+    let size = |i: usize| match i {
+        0 if is_loop => curvature([points[last - 1], points[0], points[1]], ar),
+        i if i == last && is_loop => curvature([points[last - 1], points[0], points[1]], ar),
+        i if i == 0 || i == last => 0.0,
+        i => curvature([points[i - 1], points[i], points[i + 1]], ar),
+    };
+    let sizes: Vec<f64> = (0..=last).map(|i| (SAGITTA * hausd / size(i)).sqrt()).collect();
+    let segments = points.windows(2).zip(sizes.windows(2));
+    let bent = segments.map(|(p, h)| Bent::new(Line::new([p[0].x, p[0].y], [p[1].x, p[1].y]), h[0].min(h[1])));
+    bent.filter(|bent| bent.data.is_finite()).collect()
+}
+
+/// The curvature of the circle through three points of a curve; zero where it turns by more than the angle.
+fn curvature([a, b, c]: [Point; 3], ar: f64) -> f64 {
+    let (u, v) = (b - a, c - b);
+    if u.turn(v).to_degrees() > ar {
+        return 0.0;
+    }
+    2.0 * u.cross(v).abs() / (u.norm() * v.norm() * (c - a).norm())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A disc, and a size that is asked for nowhere.
+    fn asked(spec: &str, hausd: f64, p: Point) -> Option<f64> {
+        let domain = Domain::read(spec).unwrap();
+        CurveSizes::new(&domain, hausd, 45.0).at(p, 100.0).map(|m| m.eigen().large.powf(-0.5))
+    }
+
+    #[test]
+    fn circles_have_the_size_of_their_radius() {
+        for (radius, hausd) in [(1.0, 0.01), (1.0, 1e-4), (50.0, 0.1)] {
+            let angle = 0.7_f64;
+            let on = Point::new(radius * angle.cos(), radius * angle.sin());
+            let expected = (8.0 * hausd * radius).sqrt();
+            let found = asked(&format!("disk:0,0,{radius}"), hausd, on).unwrap();
+            assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
+            assert_eq!(asked(&format!("disk:0,0,{radius}"), hausd, Point::new(0.0, 0.0)), None);
+        }
+    }
+
+    #[test]
+    fn along_the_curve_only() {
+        let domain = Domain::read("disk:0,0,1").unwrap();
+        let m = CurveSizes::new(&domain, 0.01, 45.0).at(Point::new(1.0, 0.0), 100.0).unwrap();
+        let [along, across] = [Vector::new(0.0, 1.0), Vector::new(1.0, 0.0)].map(|v| 1.0 / m.length(v));
+        assert!((along / 0.08_f64.sqrt() - 1.0).abs() < 0.05 && across > 1.5, "{along} {across}");
+    }
+
+    #[test]
+    fn corners_and_what_is_straight_ask_for_nothing() {
+        for p in [Point::new(0.0, 0.0), Point::new(0.5, 0.0), Point::new(1.0, 1.0)] {
+            assert_eq!(asked("rect:0,0,1,1", 0.01, p), None, "{p}");
+        }
+    }
+}
