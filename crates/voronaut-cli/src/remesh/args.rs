@@ -81,6 +81,9 @@ pub(crate) struct RemeshArgs {
     /// Keep listed edges inside a region of a planar mesh, required or not
     #[arg(long)]
     pub(crate) opnbdy: bool,
+    /// Sizes at required edges of a planar mesh as elsewhere, even where these are shorter
+    #[arg(long)]
+    pub(crate) nosizreq: bool,
     /// Vertices on the surface, instead of where mesh and surface are closest in the sense of least squares
     #[arg(long)]
     pub(crate) no_fit: bool,
@@ -110,8 +113,6 @@ pub(crate) struct RemeshArgs {
 struct Unused {
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     hgradreq: Option<f64>,
-    #[arg(long)]
-    nosizreq: bool,
     #[arg(long)]
     noinsert: bool,
     #[arg(long)]
@@ -145,8 +146,8 @@ impl RemeshArgs {
         const PLANE: &str = "it does not concern planar meshes";
         let unused = &self.unused;
         let all = [
-            ("-hgradreq", unused.hgradreq.is_some(), REQUIRED),
-            ("-nosizreq", unused.nosizreq, REQUIRED),
+            ("-hgradreq", unused.hgradreq.is_some(), if is_planar { "-hgrad is for all sizes" } else { REQUIRED }),
+            ("-nosizreq", self.nosizreq && !is_planar, REQUIRED),
             ("-noinsert", unused.noinsert, LOCAL),
             ("-noswap", unused.noswap, LOCAL),
             ("-nomove", unused.nomove, LOCAL),

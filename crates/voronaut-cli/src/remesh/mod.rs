@@ -92,7 +92,7 @@ fn in_file(file: &str, error: voronaut::Error) -> voronaut::Error {
 }
 
 fn keep(args: &RemeshArgs) -> Keep {
-    Keep { features: args.features(), curves: args.nosurf, inner_edges: args.opnbdy }
+    Keep { features: args.features(), curves: args.nosurf, inner_edges: args.opnbdy, plain_sizes: args.nosizreq }
 }
 
 /// The values of the metric: of the file named, else of the one next to the input, if there is one. What is named and not there is
@@ -137,7 +137,7 @@ fn as_used(args: &RemeshArgs, sizing: &Sizing, metric_file: Option<&Path>) -> Va
     json!({
         "in": args.input(), "out": args.out(), "sol": metric_file, "hausd": sizing.hausd, "hmin": sizing.h_min,
         "hmax": sizing.h_max, "ar": args.features().ar, "repair": args.damage.repair, "hsiz": args.hsiz, "hgrad": sizing.hgrad,
-        "anisotropic": sizing.anisotropic, "optim": args.optim, "nosurf": args.nosurf, "opnbdy": args.opnbdy,
+        "anisotropic": sizing.anisotropic, "optim": args.optim, "nosurf": args.nosurf, "opnbdy": args.opnbdy, "nosizreq": args.nosizreq,
         "fit": !args.no_fit, "memory": args.memory, "report": args.report, "threads": args.run().threads,
     })
 }

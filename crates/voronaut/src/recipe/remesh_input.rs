@@ -2,6 +2,7 @@
 
 use crate::domain::{Domain, Pslg, from_mesh};
 use crate::error::{Error, Result};
+use crate::geometry::Point;
 use crate::mesh::Mesh;
 use crate::surface::FeatureOptions;
 use std::collections::{HashMap, HashSet};
@@ -15,6 +16,8 @@ pub struct Keep {
     pub curves: bool,
     /// Listed edges inside a region that are not required.
     pub inner_edges: bool,
+    /// Whether sizes at required edges are as elsewhere, and not those of the edges if these are shorter.
+    pub plain_sizes: bool,
 }
 
 /// A planar domain, and the mesh that it comes from if it has triangles.
@@ -31,10 +34,12 @@ pub struct RemeshInput {
     corners: HashSet<Position>,
     required: HashSet<Position>,
     required_edges: HashSet<[Position; 2]>,
+    /// The mean length of the required edges, and of those that are kept, at each of their ends.
+    pub(super) required_lengths: HashMap<Position, f64>,
 }
 
 /// A position to the last bit.
-type Position = [u64; 2];
+pub(super) type Position = [u64; 2];
 
 impl RemeshInput {
     /// From a mesh.
@@ -69,7 +74,7 @@ impl RemeshInput {
     /// # Errors
     /// As of [`Domain::new`].
     pub fn of_graph(mut pslg: Pslg, keep: Keep) -> Result<Self> {
-        let at = |pslg: &Pslg, v: u32| [pslg.points[v as usize].x, pslg.points[v as usize].y].map(f64::to_bits);
+        let at = |pslg: &Pslg, v: u32| position_of(pslg.points[v as usize]);
         let required: HashSet<Position> = pslg.required_points.iter().map(|&v| at(&pslg, v)).collect();
         let is_required = pslg.segments.iter().filter(|segment| segment.required);
         let required_edges = is_required.map(|segment| unordered(segment.ends.map(|v| at(&pslg, v)))).collect();
@@ -79,8 +84,9 @@ impl RemeshInput {
         pslg.required_points.sort_unstable();
         pslg.required_points.dedup();
         pslg.segments.iter_mut().for_each(|segment| segment.required |= keep.curves);
+        let required_lengths = if keep.plain_sizes { HashMap::new() } else { required_lengths(&pslg) };
         let domain = Domain::new(&pslg)?;
-        Ok(Self { domain, keep, given: Mesh::default(), left_out: 0, corners, required, required_edges })
+        Ok(Self { domain, keep, given: Mesh::default(), left_out: 0, corners, required, required_edges, required_lengths })
     }
 
     /// Tells of a mesh of the domain what was asked for by the user, and not only while it was made: corners, required vertices and
@@ -94,7 +100,23 @@ impl RemeshInput {
 }
 
 fn position([x, y, _]: [f64; 3]) -> Position {
-    [x.to_bits(), y.to_bits()]
+    position_of(Point::new(x, y))
+}
+
+pub(super) fn position_of(p: Point) -> Position {
+    [p.x.to_bits(), p.y.to_bits()]
+}
+
+fn required_lengths(pslg: &Pslg) -> HashMap<Position, f64> {
+    let mut sums: HashMap<Position, (f64, f64)> = HashMap::new();
+    for segment in pslg.segments.iter().filter(|segment| segment.required) {
+        let ends = segment.ends.map(|v| pslg.points[v as usize]);
+        for p in ends {
+            let (sum, count) = sums.entry(position_of(p)).or_default();
+            (*sum, *count) = (*sum + ends[0].distance(ends[1]), *count + 1.0);
+        }
+    }
+    sums.into_iter().map(|(p, (sum, count))| (p, sum / count)).collect()
 }
 
 fn unordered<T: Ord>([a, b]: [T; 2]) -> [T; 2] {

@@ -1,18 +1,19 @@
 //! The sizes by which a planar mesh is made anew.
 
-use super::background::sampling;
-use super::remesh_input::RemeshInput;
+use super::background::{BACKGROUND_VERTICES, even};
+use super::remesh_input::{Position, RemeshInput, position_of};
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::formats::sol::{Solution, SolutionValues};
 use crate::geometry::{Point, Tensor};
 use crate::mesh::Mesh;
-use crate::metric::nodal::{Pipeline, Source, implied, isotropic};
+use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, complexity, implied, isotropic};
 use crate::metric::{Bounds, MetricField, Sampled};
 use crate::planar::{Duplicate, delaunay};
 use crate::sampling::CurveSizes;
 use crate::surface::FeatureOptions;
 use crate::surface::metric::Sizing;
+use std::collections::HashMap;
 
 /// What sizes are asked for, besides those of curves and the greatest one.
 #[derive(Clone, Debug)]
@@ -34,8 +35,8 @@ pub struct RemeshSizes {
 }
 
 impl RemeshInput {
-    /// What is asked for, as fine along curves as these need to be within `hausd` ([`CurveSizes`]), within limits, graded
-    /// ([`crate::metric::nodal::grade`]): at the vertices of the mesh, if sizes there are asked for, else at those of a
+    /// What is asked for, as fine along curves as these need to be within `hausd` ([`CurveSizes`]) and at required edges as these are,
+    /// within limits, graded ([`crate::metric::nodal::grade`]): at the vertices of the mesh, if sizes there are asked for, else at those of a
     /// triangulation that is fine enough.
     ///
     /// # Errors
@@ -47,7 +48,8 @@ impl RemeshInput {
             Asked::Nothing | Asked::Own => sizing.anisotropic,
         };
         let ar = self.keep.features.ar.unwrap_or(FeatureOptions::DEFAULT_ANGLE);
-        let making = Making { curves: CurveSizes::new(&self.domain, sizing.hausd, ar), sizing, is_anisotropic };
+        let curves = CurveSizes::new(&self.domain, sizing.hausd, ar);
+        let making = Making { curves, required: &self.required_lengths, sizing, is_anisotropic };
         match asked {
             Asked::Nothing => making.on_background(&self.domain),
             Asked::Own => making.at_vertices(self.given.clone(), Some(self.own(is_anisotropic)?)),
@@ -108,9 +110,15 @@ impl RemeshSizes {
     }
 }
 
+/// Vertices of the triangulation that sizes are made on first, and of the last one at least.
+const FIRST: usize = 4_000;
+/// The last one has so many times the vertices of the mesh, up to [`BACKGROUND_VERTICES`].
+const FINER: f64 = 4.0;
+
 /// What sizes are made of, wherever that is.
 struct Making<'a> {
     curves: CurveSizes,
+    required: &'a HashMap<Position, f64>,
     sizing: &'a Sizing,
     is_anisotropic: bool,
 }
@@ -126,22 +134,28 @@ impl Making<'_> {
         Ok(RemeshSizes { mesh, tensors, is_anisotropic: self.is_anisotropic })
     }
 
-    /// On a triangulation that is even in what comes out: first on one that is even.
+    /// On a triangulation that is even in what comes out, some times as fine as the mesh will be: first on one that is even.
     fn on_background(&self, domain: &Domain) -> Result<RemeshSizes> {
-        let even = |_: Point| Tensor::isotropic(self.sizing.h_max);
-        let first = self.at_vertices(sampling(&even, domain, None)?.into_owned(), None)?;
-        if self.curves.is_empty() {
+        let uniform = Tensor::isotropic(self.sizing.h_max);
+        let first = self.at_vertices(even(&move |_: Point| uniform, domain, FIRST)?, None)?;
+        if self.curves.is_empty() && self.required.is_empty() {
             return Ok(first);
         }
-        self.at_vertices(sampling(&first.field()?, domain, None)?.into_owned(), None)
+        let expected = complexity(&first.mesh, &first.tensors) / COMPLEXITY_PER_VERTEX;
+        let vertices = (FINER * expected).clamp(FIRST as f64, BACKGROUND_VERTICES as f64) as usize;
+        self.at_vertices(even(&first.field()?, domain, vertices)?, None)
     }
 
+    /// What curves and required edges ask for, within the greatest size.
     fn of_curves(&self, p: Point) -> Tensor {
         let most = self.sizing.h_max;
-        match self.curves.at(p, most) {
-            Some(tensor) if self.is_anisotropic => tensor,
-            Some(tensor) => Tensor::isotropic(tensor.eigen().large.powf(-0.5)),
-            None => Tensor::isotropic(most),
+        let required = self.required.get(&position_of(p)).map_or(most, |h| h.min(most));
+        match self.curves.at(p) {
+            Some((h, along)) if self.is_anisotropic => {
+                let bend = Tensor::from_axis(along, 1.0 / (h * h).min(most * most), 1.0 / (most * most));
+                bend.intersection(Tensor::isotropic(required))
+            }
+            found => Tensor::isotropic(found.map_or(required, |(h, _)| h.min(required))),
         }
     }
 }

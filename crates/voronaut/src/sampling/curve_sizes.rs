@@ -36,19 +36,26 @@ impl CurveSizes {
         self.tree.size() == 0
     }
 
-    /// The metric at a point: the size of every bent segment within `hausd` of it along that segment, and `across` otherwise; `None`
-    /// where there is none.
-    pub fn at(&self, p: Point, across: f64) -> Option<Tensor> {
-        let near = self.tree.locate_within_distance([p.x, p.y], (self.hausd * self.hausd).next_up());
-        near.map(|bent| tensor(bent, across)).reduce(Tensor::intersection)
+    /// The least size of the bent segments within `hausd` of a point, and the direction (of length one) that the finest have there;
+    /// `None` where there is none.
+    pub fn at(&self, p: Point) -> Option<(f64, Vector)> {
+        /// At a vertex of a curve both sides count.
+        const ALIKE: f64 = 1.1;
+        let reach = (self.hausd * self.hausd).max(f64::MIN_POSITIVE);
+        let near = || self.tree.locate_within_distance([p.x, p.y], reach);
+        let least = near().map(|bent| bent.data).reduce(f64::min)?;
+        let mut finest = near().filter(|bent| bent.data <= ALIKE * least).map(direction);
+        let first = finest.next()?;
+        let sum = finest.fold(first, |sum, d| sum + d * d.dot(first).signum());
+        let direction = if sum.norm() > 0.5 { sum } else { first };
+        Some((least, direction * (1.0 / direction.norm())))
     }
 }
 
-fn tensor(bent: &Bent, across: f64) -> Tensor {
+fn direction(bent: &Bent) -> Vector {
     let [a, b] = [bent.geom().from, bent.geom().to];
     let along = Vector::new(b[0] - a[0], b[1] - a[1]);
-    let size = bent.data.min(across);
-    Tensor::from_axis(along * (1.0 / along.norm()), 1.0 / (size * size), 1.0 / (across * across))
+    along * (1.0 / along.norm())
 }
 
 /// The segments of a curve with the lesser of their ends' sizes, but for those that are straight.
@@ -84,7 +91,7 @@ mod tests {
     /// A disc, and a size that is asked for nowhere.
     fn asked(spec: &str, hausd: f64, p: Point) -> Option<f64> {
         let domain = Domain::read(spec).unwrap();
-        CurveSizes::new(&domain, hausd, 45.0).at(p, 100.0).map(|m| m.eigen().large.powf(-0.5))
+        CurveSizes::new(&domain, hausd, 45.0).at(p).map(|(h, _)| h)
     }
 
     #[test]
@@ -100,11 +107,13 @@ mod tests {
     }
 
     #[test]
-    fn along_the_curve_only() {
+    fn directions_are_those_of_the_curve() {
         let domain = Domain::read("disk:0,0,1").unwrap();
-        let m = CurveSizes::new(&domain, 0.01, 45.0).at(Point::new(1.0, 0.0), 100.0).unwrap();
-        let [along, across] = [Vector::new(0.0, 1.0), Vector::new(1.0, 0.0)].map(|v| 1.0 / m.length(v));
-        assert!((along / 0.08_f64.sqrt() - 1.0).abs() < 0.05 && across > 1.5, "{along} {across}");
+        let sizes = CurveSizes::new(&domain, 1e-4, 45.0);
+        for (_, (a, b)) in (0..40).zip(domain.boundary()) {
+            let (_, along) = sizes.at(a).unwrap();
+            assert!(along.turn(b - a).min(along.turn(a - b)).to_degrees() < 2.0, "{a}");
+        }
     }
 
     #[test]
