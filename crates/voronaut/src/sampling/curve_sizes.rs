@@ -9,9 +9,10 @@ use rstar::RTree;
 /// A chord of length h is h^2 / 8 times the curvature away from its curve.
 const SAGITTA: f64 = 8.0;
 
-/// The sizes that curves of a domain ask for: sqrt(8 `hausd` / curvature), as mmg2d has it. Curves are simplified by the same distance
-/// first, so that what is smaller is no bend; a vertex that turns by more than `ar` (degrees) is a corner and none either.
-/// Required segments ask for nothing: they stay as they are.
+/// The sizes that curves of a domain ask for: sqrt(8 `hausd` / curvature), as mmg2d has it, but never less than the curves' own
+/// segments, for these are the curve: there is nothing between their ends to be close to. Curves are simplified by the same distance
+/// first, so that what is smaller is no bend; a vertex that turns by more than `ar` (degrees) is a corner and none either. Required
+/// segments ask for nothing: they stay as they are.
 pub struct CurveSizes {
     tree: RTree<Bent>,
     hausd: f64,
@@ -36,19 +37,15 @@ impl CurveSizes {
         self.tree.size() == 0
     }
 
-    /// The least size of the bent segments within `hausd` of a point, and the direction (of length one) that the finest have there;
-    /// `None` where there is none.
+    /// The size of the bent segments within `hausd` of a point, which is at most two as a rule, in the (geometric) mean, and their
+    /// direction (of length one); `None` where there is none.
     pub fn at(&self, p: Point) -> Option<(f64, Vector)> {
-        /// At a vertex of a curve both sides count.
-        const ALIKE: f64 = 1.1;
         let reach = (self.hausd * self.hausd).max(f64::MIN_POSITIVE);
-        let near = || self.tree.locate_within_distance([p.x, p.y], reach);
-        let least = near().map(|bent| bent.data).reduce(f64::min)?;
-        let mut finest = near().filter(|bent| bent.data <= ALIKE * least).map(direction);
-        let first = finest.next()?;
-        let sum = finest.fold(first, |sum, d| sum + d * d.dot(first).signum());
-        let direction = if sum.norm() > 0.5 { sum } else { first };
-        Some((least, direction * (1.0 / direction.norm())))
+        let near: Vec<&Bent> = self.tree.locate_within_distance([p.x, p.y], reach).collect();
+        let first = direction(near.first()?);
+        let sum = near[1..].iter().map(|bent| direction(bent)).fold(first, |sum, d| sum + d * d.dot(first).signum());
+        let logarithms: f64 = near.iter().map(|bent| bent.data.ln()).sum();
+        Some(((logarithms / near.len() as f64).exp(), sum * (1.0 / sum.norm())))
     }
 }
 
@@ -63,15 +60,17 @@ fn bends(pslg: &Pslg, chain: &Chain, hausd: f64, ar: f64) -> Vec<Bent> {
     let points: Vec<Point> = chain.vertices.iter().map(|&v| pslg.points[v as usize]).collect();
     let last = points.len() - 1;
     let is_loop = chain.vertices[0] == chain.vertices[last] && !pslg.required_points.contains(&chain.vertices[0]);
-    let size = |i: usize| match i {
+    let bend = |i: usize| match i % last {
         0 if is_loop => curvature([points[last - 1], points[0], points[1]], ar),
-        i if i == last && is_loop => curvature([points[last - 1], points[0], points[1]], ar),
-        i if i == 0 || i == last => 0.0,
+        0 => 0.0,
         i => curvature([points[i - 1], points[i], points[i + 1]], ar),
     };
-    let sizes: Vec<f64> = (0..=last).map(|i| (SAGITTA * hausd / size(i)).sqrt()).collect();
+    let sizes: Vec<f64> = (0..=last).map(|i| (SAGITTA * hausd / bend(i)).sqrt()).collect();
     let segments = points.windows(2).zip(sizes.windows(2));
-    let bent = segments.map(|(p, h)| Bent::new(Line::new([p[0].x, p[0].y], [p[1].x, p[1].y]), h[0].min(h[1])));
+    let bent = segments.map(|(p, h)| {
+        let size = h[0].min(h[1]).max(p[0].distance(p[1]));
+        Bent::new(Line::new([p[0].x, p[0].y], [p[1].x, p[1].y]), size)
+    });
     bent.filter(|bent| bent.data.is_finite()).collect()
 }
 
