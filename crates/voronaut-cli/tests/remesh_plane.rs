@@ -201,7 +201,13 @@ fn nosurf_leaves_boundary_and_interfaces() {
     let boundary: BTreeSet<_> = edges_of(&found, 0..found.edges.len() as u32);
     let number = |i: u32, j: u32| bits(&given, j * 11 + i);
     let sides = (0..10).flat_map(|k| {
-        [[[k, 0], [k + 1, 0]], [[k, 10], [k + 1, 10]], [[0, k], [0, k + 1]], [[10, k], [10, k + 1]], [[5, k], [5, k + 1]]]
+        [
+            [[k, 0], [k + 1, 0]],
+            [[k, 10], [k + 1, 10]],
+            [[0, k], [0, k + 1]],
+            [[10, k], [10, k + 1]],
+            [[5, k], [5, k + 1]],
+        ]
     });
     assert_eq!(boundary, sides.map(|edge| (edge.map(|[i, j]| number(i, j)).into(), 0)).collect());
     assert!(found.required_edges.is_empty() && found.required_points.is_empty());
@@ -293,7 +299,19 @@ fn options_without_sense_are_taken_with_a_warning() {
     let place = place();
     let words = "-noswap -noinsert -nomove -nreg -xreg 0.2 -rmc -hgradreq 2 -keep-ref -nofem -d -m 4000 -v 0 --no-fit";
     let said = done(&place, &format!("remesh in.mesh a.mesh -hsiz 0.4 {words}"));
-    for option in ["-noswap", "-noinsert", "-nomove", "-nreg", "-xreg", "-rmc", "-hgradreq", "-keep-ref", "-nofem", "-d", "--no-fit"] {
+    for option in [
+        "-noswap",
+        "-noinsert",
+        "-nomove",
+        "-nreg",
+        "-xreg",
+        "-rmc",
+        "-hgradreq",
+        "-keep-ref",
+        "-nofem",
+        "-d",
+        "--no-fit",
+    ] {
         assert!(said.contains(&format!("warning: {option} changes nothing: ")), "{option}: {said}");
     }
     let said = done(&place, "remesh in.mesh a.mesh -hsiz 0.4 -v 0 -nosurf -opnbdy -nosizreq");
@@ -312,7 +330,10 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     let mut fixed = square();
     fixed.required_triangles = vec![3];
     place.put("fixed.mesh", medit::write(&fixed));
-    place.put("edges.mesh", "MeshVersionFormatted 2 Dimension 2 Vertices 3 0 0 0 1 0 0 0 1 0 Edges 3 1 2 0 2 3 0 3 1 0 End");
+    place.put(
+        "edges.mesh",
+        "MeshVersionFormatted 2 Dimension 2 Vertices 3 0 0 0 1 0 0 0 1 0 Edges 3 1 2 0 2 3 0 3 1 0 End",
+    );
     place.put("open.mesh", "MeshVersionFormatted 2 Dimension 2 Vertices 3 0 0 0 1 0 0 0 1 0 Edges 2 1 2 0 2 3 0 End");
     let before = place.files();
     for (words, code, message) in [
@@ -324,7 +345,7 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         ("remesh in.mesh -hmin 2 -hmax 1", 1, "h_min = 2 is larger than h_max = 1"),
         ("remesh in.mesh -hgrad 0.5", 1, "hgrad = 0.5"),
         ("remesh in.mesh -hmax", 2, "hmax"),
-        ("remesh in.mesh -hmax -1", 2, "hmax"),
+        ("remesh in.mesh -hmax -1", 2, "-1"),
         ("remesh in.mesh -hsiz 0.1 -sol short.sol", 2, "cannot be used with"),
         ("remesh in.mesh -hsiz 0.1 -optim", 2, "cannot be used with"),
         ("remesh in.mesh -optim -sol short.sol", 2, "cannot be used with"),

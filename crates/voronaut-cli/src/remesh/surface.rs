@@ -1,8 +1,8 @@
 //! Surfaces made anew, as mmgs does it.
 
 use super::{Made, RemeshArgs, asked, fill_in, limits, options};
-use crate::metric::Scaled;
 use crate::mesh;
+use crate::metric::Scaled;
 use crate::progress::Bar;
 use voronaut::Result;
 use voronaut::output::Report;

@@ -55,8 +55,10 @@ impl RemeshInput {
         }
         let (mesh, left_out) = without_useless_edges(mesh, keep.inner_edges);
         let own = |points: &[u32]| points.iter().map(|&v| position(mesh.points[v as usize])).collect();
-        let required_edges =
-            mesh.required_edges.iter().map(|&e| unordered(mesh.edges[e as usize].map(|v| position(mesh.points[v as usize]))));
+        let required_edges = mesh
+            .required_edges
+            .iter()
+            .map(|&e| unordered(mesh.edges[e as usize].map(|v| position(mesh.points[v as usize]))));
         let input = Self::of_graph(from_mesh(&mesh)?, keep)?;
         let corners: HashSet<Position> = own(&mesh.corners);
         Ok(Self {
@@ -86,7 +88,16 @@ impl RemeshInput {
         pslg.segments.iter_mut().for_each(|segment| segment.required |= keep.curves);
         let required_lengths = if keep.plain_sizes { HashMap::new() } else { required_lengths(&pslg) };
         let domain = Domain::new(&pslg)?;
-        Ok(Self { domain, keep, given: Mesh::default(), left_out: 0, corners, required, required_edges, required_lengths })
+        Ok(Self {
+            domain,
+            keep,
+            given: Mesh::default(),
+            left_out: 0,
+            corners,
+            required,
+            required_edges,
+            required_lengths,
+        })
     }
 
     /// Tells of a mesh of the domain what was asked for by the user, and not only while it was made: corners, required vertices and

@@ -65,7 +65,10 @@ impl RemeshInput {
     fn own(&self, is_anisotropic: bool) -> Result<Vec<Tensor>> {
         if self.given.triangles.is_empty() {
             let help = "leave out -optim, or give a mesh with triangles";
-            return Err(Error::Unsupported { what: "the sizes of a domain without a mesh (-optim)".into(), help: help.into() });
+            return Err(Error::Unsupported {
+                what: "the sizes of a domain without a mesh (-optim)".into(),
+                help: help.into(),
+            });
         }
         let even = |m: Tensor| Tensor::isotropic(m.determinant().powf(-0.25));
         let implied = implied(&self.given)?;
@@ -83,7 +86,8 @@ impl RemeshInput {
             return Ok([1e-3, 2.0].map(|share| share * extent.x.max(extent.y)));
         };
         let mesh = triangulated(&self.given)?;
-        let sizes = metric(&mesh, values)?.into_iter().map(|m| [m.eigen().large, m.eigen().small].map(|x| x.powf(-0.5)));
+        let sizes =
+            metric(&mesh, values)?.into_iter().map(|m| [m.eigen().large, m.eigen().small].map(|x| x.powf(-0.5)));
         let [least, most] = sizes.fold([f64::INFINITY, 0.0], |[a, b]: [f64; 2], [h, g]| [a.min(h), b.max(g)]);
         Ok([0.1 * least, 10.0 * most])
     }
@@ -128,8 +132,7 @@ impl Making<'_> {
         let of_curves = (0..mesh.points.len() as u32).map(|v| self.of_curves(mesh.point(v))).collect();
         let sources: Vec<Source> = given.into_iter().chain([of_curves]).map(Source::Metric).collect();
         let limits = Bounds { h_min: Some(self.sizing.h_min), h_max: Some(self.sizing.h_max), a_max: None };
-        let pipeline =
-            Pipeline { limits: limits.into(), gradation_factor: self.sizing.hgrad, ..Pipeline::default() };
+        let pipeline = Pipeline { limits: limits.into(), gradation_factor: self.sizing.hgrad, ..Pipeline::default() };
         let tensors = pipeline.run(&mesh, &sources)?.tensors;
         Ok(RemeshSizes { mesh, tensors, is_anisotropic: self.is_anisotropic })
     }
@@ -138,9 +141,6 @@ impl Making<'_> {
     fn on_background(&self, domain: &Domain) -> Result<RemeshSizes> {
         let uniform = Tensor::isotropic(self.sizing.h_max);
         let first = self.at_vertices(even(&move |_: Point| uniform, domain, FIRST)?, None)?;
-        if self.curves.is_empty() && self.required.is_empty() {
-            return Ok(first);
-        }
         let expected = complexity(&first.mesh, &first.tensors) / COMPLEXITY_PER_VERTEX;
         let vertices = (FINER * expected).clamp(FIRST as f64, BACKGROUND_VERTICES as f64) as usize;
         self.at_vertices(even(&first.field()?, domain, vertices)?, None)

@@ -3,23 +3,27 @@
 use super::simplify;
 use crate::domain::{Chain, Domain, Pslg};
 use crate::geometry::{Point, Tensor, Vector};
-use rstar::primitives::{GeomWithData, Line};
 use rstar::RTree;
+use rstar::primitives::{GeomWithData, Line};
 
 /// A chord of length h is h^2 / 8 times the curvature away from its curve.
 const SAGITTA: f64 = 8.0;
 
-/// The sizes that curves of a domain ask for: sqrt(8 `hausd` / curvature), as mmg2d has it, but never less than the curves' own
-/// segments, for these are the curve: there is nothing between their ends to be close to. Curves are simplified by the same distance
-/// first, so that what is smaller is no bend; a vertex that turns by more than `ar` (degrees) is a corner and none either. Required
-/// segments ask for nothing: they stay as they are.
+/// The sizes that curves of a domain ask for: sqrt(8 `hausd` / curvature), as mmg2d has it, but never less than about the length of
+/// the curve's own segment, for that is the curve: there is nothing between its ends to be close to. A segment that does not bend asks
+/// for about its length, for it will be an edge, or more than one. Curves are simplified by the same distance first, so that what is
+/// smaller is no bend; a vertex that turns by more than `ar` (degrees) is a corner and none either. Required segments ask for nothing.
 pub struct CurveSizes {
-    tree: RTree<Bent>,
+    tree: RTree<SizedSegment>,
     hausd: f64,
 }
 
-/// A segment with the least size that it asks for.
-type Bent = GeomWithData<Line<[f64; 2]>, f64>;
+/// The size that a segment's length is right for, as a multiple: an edge as long has metric length 0.84, half-way from the least that is
+/// of unit length. With 1 there are a tenth more vertices along a coast, and fewer edges of unit length in the metric given.
+const OWN: f64 = 1.189_207_115_002_721;
+
+/// A segment with the size that it asks for.
+type SizedSegment = GeomWithData<Line<[f64; 2]>, f64>;
 
 impl CurveSizes {
     /// Measures the curves.
@@ -28,20 +32,16 @@ impl CurveSizes {
         let long = extent.x.max(extent.y);
         let coarse = simplify(domain, &move |_: Point| Tensor::isotropic(long), hausd);
         let pslg = coarse.pslg();
-        let bent = pslg.chains().iter().filter(|chain| !chain.kind.required).flat_map(|c| bends(pslg, c, hausd, ar)).collect();
-        Self { tree: RTree::bulk_load(bent), hausd }
+        let sized =
+            pslg.chains().iter().filter(|chain| !chain.kind.required).flat_map(|c| sized(pslg, c, hausd, ar)).collect();
+        Self { tree: RTree::bulk_load(sized), hausd }
     }
 
-    /// Whether no curve bends.
-    pub fn is_empty(&self) -> bool {
-        self.tree.size() == 0
-    }
-
-    /// The size of the bent segments within `hausd` of a point, which is at most two as a rule, in the (geometric) mean, and their
+    /// The size of the segments within `hausd` of a point, which are at most two as a rule, in the (geometric) mean, and their
     /// direction (of length one); `None` where there is none.
     pub fn at(&self, p: Point) -> Option<(f64, Vector)> {
         let reach = (self.hausd * self.hausd).max(f64::MIN_POSITIVE);
-        let near: Vec<&Bent> = self.tree.locate_within_distance([p.x, p.y], reach).collect();
+        let near: Vec<&SizedSegment> = self.tree.locate_within_distance([p.x, p.y], reach).collect();
         let first = direction(near.first()?);
         let sum = near[1..].iter().map(|bent| direction(bent)).fold(first, |sum, d| sum + d * d.dot(first).signum());
         let logarithms: f64 = near.iter().map(|bent| bent.data.ln()).sum();
@@ -49,14 +49,14 @@ impl CurveSizes {
     }
 }
 
-fn direction(bent: &Bent) -> Vector {
+fn direction(bent: &SizedSegment) -> Vector {
     let [a, b] = [bent.geom().from, bent.geom().to];
     let along = Vector::new(b[0] - a[0], b[1] - a[1]);
     along * (1.0 / along.norm())
 }
 
-/// The segments of a curve with the lesser of their ends' sizes, but for those that are straight.
-fn bends(pslg: &Pslg, chain: &Chain, hausd: f64, ar: f64) -> Vec<Bent> {
+/// The segments of a curve with their sizes.
+fn sized(pslg: &Pslg, chain: &Chain, hausd: f64, ar: f64) -> Vec<SizedSegment> {
     let points: Vec<Point> = chain.vertices.iter().map(|&v| pslg.points[v as usize]).collect();
     let last = points.len() - 1;
     let is_loop = chain.vertices[0] == chain.vertices[last] && !pslg.required_points.contains(&chain.vertices[0]);
@@ -67,11 +67,12 @@ fn bends(pslg: &Pslg, chain: &Chain, hausd: f64, ar: f64) -> Vec<Bent> {
     };
     let sizes: Vec<f64> = (0..=last).map(|i| (SAGITTA * hausd / bend(i)).sqrt()).collect();
     let segments = points.windows(2).zip(sizes.windows(2));
-    let bent = segments.map(|(p, h)| {
-        let size = h[0].min(h[1]).max(p[0].distance(p[1]));
-        Bent::new(Line::new([p[0].x, p[0].y], [p[1].x, p[1].y]), size)
+    let found = segments.map(|(p, h)| {
+        let (bend, own) = (h[0].min(h[1]), OWN * p[0].distance(p[1]));
+        let size = if bend.is_finite() { bend.max(own) } else { own };
+        SizedSegment::new(Line::new([p[0].x, p[0].y], [p[1].x, p[1].y]), size)
     });
-    bent.filter(|bent| bent.data.is_finite()).collect()
+    found.collect()
 }
 
 /// The curvature of the circle through three points of a curve; zero where it turns by more than the angle.
@@ -116,9 +117,12 @@ mod tests {
     }
 
     #[test]
-    fn corners_and_what_is_straight_ask_for_nothing() {
-        for p in [Point::new(0.0, 0.0), Point::new(0.5, 0.0), Point::new(1.0, 1.0)] {
-            assert_eq!(asked("rect:0,0,1,1", 0.01, p), None, "{p}");
+    fn what_is_straight_asks_for_its_length() {
+        for (p, expected) in
+            [(Point::new(0.0, 0.5), 1.0), (Point::new(1.0, 0.0), 2.0), (Point::new(0.0, 0.0), 2.0_f64.sqrt())]
+        {
+            let found = asked("rect:0,0,2,1", 0.01, p).unwrap();
+            assert!((found / (OWN * expected) - 1.0).abs() < 1e-12, "{found} at {p}");
         }
     }
 }
