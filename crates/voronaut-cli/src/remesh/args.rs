@@ -29,6 +29,7 @@ const HAUSD: f64 = 0.01;
 const HGRAD: f64 = 1.3;
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "one per option of mmg")]
 pub(crate) struct RemeshArgs {
     /// The planar mesh, or the surface: a .mesh (the ending may be left out); surfaces also .obj, .off, .ply or .stl
     #[arg(value_name = "IN", required_unless_present = "input")]
