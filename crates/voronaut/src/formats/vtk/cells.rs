@@ -3,11 +3,9 @@
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 
-/// The types of cells that this reader and writer know, by VTK's numbers.
+/// The types of cells that this reader and writer know, by VTK's numbers; 1 and 2 are vertices.
 pub(super) mod types {
     pub(in crate::formats::vtk) const EMPTY: u8 = 0;
-    pub(in crate::formats::vtk) const VERTEX: u8 = 1;
-    pub(in crate::formats::vtk) const POLY_VERTEX: u8 = 2;
     pub(crate) const LINE: u8 = 3;
     pub(crate) const POLY_LINE: u8 = 4;
     pub(in crate::formats::vtk) const TRIANGLE: u8 = 5;
@@ -100,14 +98,14 @@ mod tests {
         let mut shapes = Shapes::default();
         for (cell, (kind, vertices)) in [
             (types::TRIANGLE, &[0, 1, 2][..]),
-            (types::VERTEX, &[5]),
+            (1, &[5]),
             (types::QUAD, &[0, 1, 2, 3]),
             (types::POLY_LINE, &[4, 5, 6]),
             (types::POLYGON, &[1, 2, 3, 4, 5]),
             (types::TRIANGLE_STRIP, &[1, 2, 3, 4]),
             (types::PIXEL, &[0, 1, 2, 3]),
             (types::LINE, &[2, 1]),
-            (types::POLY_VERTEX, &[1, 2, 3]),
+            (2, &[1, 2, 3]),
         ]
         .into_iter()
         .enumerate()

@@ -7,6 +7,8 @@ use std::io::{self, BufRead, Read};
 pub(super) struct Characters<R> {
     source: R,
     position: u64,
+    /// So many bytes that come next are known to be ASCII: they are looked at once, however few are taken at a time.
+    ascii: usize,
     /// The characters that are not ASCII and come next, in UTF-8.
     ahead: Vec<u8>,
     /// How many bytes of `ahead` were taken.
@@ -15,7 +17,7 @@ pub(super) struct Characters<R> {
 
 impl<R: BufRead> Characters<R> {
     pub(super) fn new(source: R) -> Self {
-        Self { source, position: 0, ahead: Vec::new(), taken: 0 }
+        Self { source, position: 0, ascii: 0, ahead: Vec::new(), taken: 0 }
     }
 
     /// How many bytes of the file were read.
@@ -59,17 +61,18 @@ impl<R: BufRead> Characters<R> {
 
 impl<R: BufRead> BufRead for Characters<R> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        if self.taken == self.ahead.len() {
-            match self.next_byte()? {
-                Some(lead @ 0x80..) => self.look_ahead(lead)?,
-                _ => {
-                    let found = self.source.fill_buf()?;
-                    let length = found.iter().position(|byte| !byte.is_ascii()).unwrap_or(found.len());
-                    return Ok(&found[..length]);
-                }
+        if self.taken < self.ahead.len() {
+            return Ok(&self.ahead[self.taken..]);
+        }
+        if self.ascii == 0 {
+            let found = self.source.fill_buf()?;
+            self.ascii = found.iter().position(|byte| !byte.is_ascii()).unwrap_or(found.len());
+            if let Some(&lead @ 0x80..) = found.first() {
+                self.look_ahead(lead)?;
+                return Ok(&self.ahead);
             }
         }
-        Ok(&self.ahead[self.taken..])
+        Ok(&self.source.fill_buf()?[..self.ascii])
     }
 
     fn consume(&mut self, count: usize) {
@@ -77,6 +80,7 @@ impl<R: BufRead> BufRead for Characters<R> {
             self.taken += count;
         } else {
             self.source.consume(count);
+            self.ascii -= count;
             self.position += count as u64;
         }
     }

@@ -198,7 +198,7 @@ fn damaged_files() {
         error.to_string()
     };
     for (old, new, expected) in [
-        ("Points=\"3\"", "Points=\"1e18\"", "byte 77: NumberOfPoints=\"1e18\" is not a whole number from 0 to 4294967295"),
+        ("Points=\"3\"", "Points=\"1e18\"", "byte 72: NumberOfPoints=\"1e18\" is not a whole number from 0 to 4294967295"),
         ("Points=\"3\"", "Points=\"4294967295\"", "array 'h' holds 3 numbers, where 4294967295 are needed"),
         ("Cells=\"2\"", "Cells=\"-2\"", "NumberOfCells=\"-2\" is not a whole number from 0 to 4294967295"),
         ("NumberOfCells=\"2\"", "", "a piece without NumberOfCells"),
