@@ -273,18 +273,19 @@ fn appended_arrays_have_to_be_there() {
         let head = std::str::from_utf8(&whole[..raw]).unwrap().replacen(old, new, 1);
         read([head.as_bytes(), &whole[raw..]].concat().as_slice(), "a").unwrap_err().to_string()
     };
+    // Types come first, 8 bytes of size and 5 of cells; then offsets.
     let found = message("offset=\"0\"", "offset=\"1000000\"");
-    assert!(found.contains("array 'label' begins behind the end of the file"), "{found}");
-    let found = message("offset=\"24\"", "offset=\"0\"");
-    assert!(found.contains("array 'corner' begins in another array"), "{found}");
+    assert!(found.contains("array 'types' begins behind the end of the file"), "{found}");
+    let found = message("offset=\"13\"", "offset=\"12\"");
+    assert!(found.contains("array 'offsets' begins in another array"), "{found}");
     assert!(message("\"raw\"", "\"hex\"").contains("AppendedData with the encoding 'hex'"));
     let found = message("\"raw\"", "\"base64\"");
-    assert!(found.contains("array 'label' holds '\\u{10}' at a place where base64 does not have it"), "{found}");
+    assert!(found.contains("array 'types' holds '\\u{5}' at a place where base64 does not have it"), "{found}");
     assert!(message("\n_", "\nx").contains("AppendedData without the '_' that its arrays begin with"));
     let mut lying = whole.clone();
     lying[raw..raw + 8].fill(0xff);
     let found = read(lying.as_slice(), "a").unwrap_err().to_string();
-    assert_eq!(found, format!("a, byte {raw}: array 'label' ends before all is there that its sizes announce"));
+    assert_eq!(found, format!("a, byte {raw}: array 'types' ends before all is there that its sizes announce"));
 }
 
 #[test]

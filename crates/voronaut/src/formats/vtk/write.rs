@@ -53,9 +53,9 @@ impl<'a> Array<'a> {
         Self { tag, bytes, write: Box::new(|out| write_numbers(numbers, out)) }
     }
 
-    /// Where the array behind this one begins, where this one begins at `offset`.
-    fn end(&self, offset: u64) -> u64 {
-        offset + size_of::<u64>() as u64 + self.bytes
+    /// Bytes with the size before the numbers.
+    fn length(&self) -> u64 {
+        size_of::<u64>() as u64 + self.bytes
     }
 }
 
@@ -139,19 +139,21 @@ impl<'a> Grid<'a> {
              <VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
              \x20 <{kind}>\n    <Piece {counts}>\n"
         )?;
-        let mut offset = 0;
+        // The last array stands first: meshio (5.3.5) gives arrays that it has read new offsets and takes the first tag with the
+        // offset it looks for; so tags before that one must be of arrays it has not read.
+        let mut offset: u64 = sections.iter().flat_map(|(_, arrays)| arrays).map(Array::length).sum();
         for (section, arrays) in &sections {
             // Labels are what is shown first.
             let shown = if *section == "CellData" { " Scalars=\"label\"" } else { "" };
             writeln!(out, "      <{section}{shown}>")?;
             for array in arrays {
+                offset -= array.length();
                 writeln!(out, "        {} format=\"appended\" offset=\"{offset}\"/>", array.tag)?;
-                offset = array.end(offset);
             }
             writeln!(out, "      </{section}>")?;
         }
         write!(out, "    </Piece>\n  </{kind}>\n  <AppendedData encoding=\"raw\">\n_")?;
-        for array in sections.into_iter().flat_map(|(_, arrays)| arrays) {
+        for array in sections.into_iter().flat_map(|(_, arrays)| arrays).rev() {
             out.write_all(&array.bytes.to_le_bytes())?;
             (array.write)(out)?;
         }
