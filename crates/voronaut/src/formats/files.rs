@@ -21,12 +21,14 @@ pub enum Format {
     Ply,
     /// Stereolithography `.stl`; written binary: triangles without shared vertices, coordinates rounded to single precision.
     Stl,
-    /// VTK's `.vtu`: triangles, labelled edges, labels and fields.
+    /// VTK's `.vtu`, an unstructured grid: everything a [`Mesh`] holds, and fields.
     Vtu,
+    /// VTK's `.vtp`, polygons: everything a [`Mesh`] holds, and fields.
+    Vtp,
 }
 
 /// Every format, and how names of its files end.
-const ENDINGS: [(&str, Format); 7] = [
+const ENDINGS: [(&str, Format); 8] = [
     ("mesh", Format::Medit(Form::Text)),
     ("meshb", Format::Medit(Form::Binary)),
     ("obj", Format::Obj),
@@ -34,10 +36,11 @@ const ENDINGS: [(&str, Format); 7] = [
     ("ply", Format::Ply),
     ("stl", Format::Stl),
     ("vtu", Format::Vtu),
+    ("vtp", Format::Vtp),
 ];
 
 /// How names of mesh files end, for messages.
-pub const MESH_ENDINGS: &str = ".mesh, .meshb, .obj, .off, .ply, .stl or .vtu";
+pub const MESH_ENDINGS: &str = ".mesh, .meshb, .obj, .off, .ply, .stl, .vtu or .vtp";
 
 impl Format {
     /// The format a file name asks for by its ending, in upper or lower case; `None` of other endings.
@@ -74,7 +77,8 @@ impl Format {
             Format::Off => off::write(mesh, out),
             Format::Ply => ply::write(mesh, fields, out),
             Format::Stl => stl::write(mesh, out),
-            Format::Vtu => vtk::write(mesh, fields, out),
+            Format::Vtu => vtk::write_vtu(mesh, fields, out),
+            Format::Vtp => vtk::write_vtp(mesh, fields, out),
         }
     }
 }
@@ -96,7 +100,7 @@ pub fn read(path: &Path) -> Result<Document> {
         Format::Off => Ok(off::read(source, &place)?.into()),
         Format::Ply => ply::read(source, &place),
         Format::Stl => Ok(stl::read(source, &place)?.into()),
-        Format::Vtu => Err(Error::Unsupported { what: format!("reading {place}"), help: "a helper adds it".into() }),
+        Format::Vtu | Format::Vtp => vtk::read(source, &place),
     }
 }
 

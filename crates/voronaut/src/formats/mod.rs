@@ -14,7 +14,7 @@ pub mod poly;
 pub mod sol;
 pub mod stl;
 mod values;
-pub(crate) mod vtk;
+pub mod vtk;
 mod words;
 
 pub use document::{Document, Field, Fields};

@@ -106,7 +106,7 @@ pub fn write_solutions(solutions: &Solutions, path: &Path) -> Result<()> {
 /// As for [`write_mesh`].
 pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
     match Format::from_path(path)? {
-        Format::Vtu => write(path, &vtu::curved(realisation)),
+        Format::Vtu => write_with(path, |out| vtu::write_curved(realisation, out)),
         _ => write_mesh(&realisation.to_mesh(), path),
     }
 }
@@ -117,7 +117,7 @@ pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
 /// [`Error::Unsupported`] for other endings, [`Error::Io`] where the file cannot be written.
 pub fn write_diagram(canvas: &Mesh, distances: &[f64], path: &Path) -> Result<()> {
     demand_diagram(path)?;
-    write(path, &vtu::diagram(canvas, distances))
+    write_with(path, |out| vtu::write_diagram(canvas, distances, out))
 }
 
 /// Refuses names that do not end like a diagram.
