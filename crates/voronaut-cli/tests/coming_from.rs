@@ -4,8 +4,8 @@ mod common;
 
 use common::{Place, stderr};
 use std::fmt::Write;
-use voronaut::formats::medit;
 use voronaut::mesh::Mesh;
+use voronaut::output::write_mesh;
 use voronaut::output::write_mesh;
 use voronaut::surface::torus;
 
@@ -22,7 +22,8 @@ fn place() -> Place {
     };
     place.put("in.sol", values(&|p| format!("{} 0 {}", 400.0 / (1.0 + p[0]), 100.0), 3));
     place.put("u.sol", values(&|p| (10.0 * (p[0] - p[1])).tanh().to_string(), 1));
-    place.put("in.mesh", medit::write(&Mesh { points: points.clone(), triangles, ..Mesh::default() }));
+    let mesh = Mesh { points: points.clone(), triangles, ..Mesh::default() };
+    write_mesh(&mesh, &place.path().join("in.mesh")).unwrap();
     place.put("domain.geojson", r#"{"type":"Polygon","coordinates":[[[0,0],[1,0],[0.8,0.9],[0.2,1],[0,0]]]}"#);
     let ring = torus(2.0, 0.7, 0.4).unwrap().to_mesh();
     write_mesh(&ring, &place.path().join("part.mesh")).unwrap();

@@ -273,10 +273,7 @@ fn curves_are_as_fine_as_hausd_asks() {
     let expected = [0.05_f64, 0.005].map(|hausd| std::f64::consts::TAU / (8.0 * hausd).sqrt());
     assert!(borders.iter().zip(expected).all(|(n, e)| (0.8..1.5).contains(&(n / e))), "{borders:?} {expected:?}");
     done(&place, "remesh disc.mesh b.mesh -hausd 0.005 -A -q");
-    assert!(matches!(
-        sol::read(place.read("b.sol").as_slice(), "b.sol").unwrap().values,
-        SolutionValues::Tensor(_)
-    ));
+    assert!(matches!(sol::read(place.read("b.sol").as_slice(), "b.sol").unwrap().values, SolutionValues::Tensor(_)));
 }
 
 #[test]

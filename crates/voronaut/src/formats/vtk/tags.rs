@@ -221,10 +221,11 @@ impl<'a, R: BufRead> Tags<'a, R> {
             .into_iter()
             .find(|known| type_name(*known) == kind)
             .ok_or_else(|| Error::Unsupported {
-                what: format!("{} is a VTK file of type '{}'", self.grid.head.place, shortened(&kind)),
-                help: "save it as one file of type UnstructuredGrid (.vtu) or PolyData (.vtp)".into(),
-            })?;
-        let unknown = |what: &str, value: &str| self.error(&format!("{what} '{}'", shortened(value)), "check the tag VTKFile");
+            what: format!("{} is a VTK file of type '{}'", self.grid.head.place, shortened(&kind)),
+            help: "save it as one file of type UnstructuredGrid (.vtu) or PolyData (.vtp)".into(),
+        })?;
+        let unknown =
+            |what: &str, value: &str| self.error(&format!("{what} '{}'", shortened(value)), "check the tag VTKFile");
         let order = match self.attribute(tag, "byte_order")?.as_deref() {
             None | Some("LittleEndian") => Order::Little,
             Some("BigEndian") => Order::Big,
@@ -367,7 +368,11 @@ impl<'a, R: BufRead> Tags<'a, R> {
             return Err(Error::parse(grid.head.place, what, "check that the program that wrote it had finished"));
         }
         if let Some((_, _, array)) = grid.pieces.iter().flat_map(|piece| &piece.appended).next() {
-            return Err(array.error(grid.head, "is in a section AppendedData, which is not there", "the file is cut off"));
+            return Err(array.error(
+                grid.head,
+                "is in a section AppendedData, which is not there",
+                "the file is cut off",
+            ));
         }
         Ok(grid)
     }
