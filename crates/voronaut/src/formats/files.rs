@@ -1,7 +1,7 @@
 //! Mesh files by the endings of their names.
 
 use super::medit::Form;
-use super::{Document, Fields, Solution, Solutions, medit, obj, off, ply, sol, stl, vtk};
+use super::{Document, Fields, Solution, Solutions, gmsh, medit, obj, off, ply, sol, stl, vtk};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use std::fs::File;
@@ -13,6 +13,8 @@ use std::path::Path;
 pub enum Format {
     /// Medit's `.mesh` and `.meshb`: everything a [`Mesh`] holds.
     Medit(Form),
+    /// Gmsh's `.msh`, version 4.1 as text unless asked otherwise: everything a [`Mesh`] holds, and fields.
+    Gmsh(gmsh::Version, Form),
     /// Wavefront's `.obj`: positions, triangles grouped by region label, labelled edges without their labels.
     Obj,
     /// Geomview's `.off` as text: positions and triangles.
@@ -26,9 +28,10 @@ pub enum Format {
 }
 
 /// Every format, and how names of its files end.
-const ENDINGS: [(&str, Format); 7] = [
+const ENDINGS: [(&str, Format); 8] = [
     ("mesh", Format::Medit(Form::Text)),
     ("meshb", Format::Medit(Form::Binary)),
+    ("msh", Format::Gmsh(gmsh::Version::V4_1, Form::Text)),
     ("obj", Format::Obj),
     ("off", Format::Off),
     ("ply", Format::Ply),
@@ -37,7 +40,7 @@ const ENDINGS: [(&str, Format); 7] = [
 ];
 
 /// How names of mesh files end, for messages.
-pub const MESH_ENDINGS: &str = ".mesh, .meshb, .obj, .off, .ply, .stl or .vtu";
+pub const MESH_ENDINGS: &str = ".mesh, .meshb, .msh, .obj, .off, .ply, .stl or .vtu";
 
 impl Format {
     /// The format a file name asks for by its ending, in upper or lower case; `None` of other endings.
@@ -60,7 +63,7 @@ impl Format {
 
     /// Whether the format says which faces and edges belong to curves and regions, and may hold a planar domain.
     pub fn may_be_planar(self) -> bool {
-        matches!(self, Format::Medit(_))
+        matches!(self, Format::Medit(_) | Format::Gmsh(..))
     }
 
     /// Writes a mesh and fields as far as the format can hold them.
@@ -70,6 +73,7 @@ impl Format {
     pub fn write(self, mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()> {
         match self {
             Format::Medit(form) => medit::write(mesh, form, out),
+            Format::Gmsh(version, form) => gmsh::write(mesh, fields, version, form, out),
             Format::Obj => obj::write(mesh, out),
             Format::Off => off::write(mesh, out),
             Format::Ply => ply::write(mesh, fields, out),
@@ -92,6 +96,7 @@ pub fn read(path: &Path) -> Result<Document> {
     let source = open(path)?;
     match format {
         Format::Medit(_) => Ok(medit::read(source, &place)?.into()),
+        Format::Gmsh(..) => gmsh::read(source, &place),
         Format::Obj => Ok(obj::read(source, &place)?.into()),
         Format::Off => Ok(off::read(source, &place)?.into()),
         Format::Ply => ply::read(source, &place),

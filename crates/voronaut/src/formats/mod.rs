@@ -4,6 +4,7 @@ mod bytes;
 mod document;
 mod files;
 pub mod geojson;
+pub mod gmsh;
 pub mod medit;
 pub mod obj;
 pub mod off;
