@@ -33,7 +33,9 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &str) -> Result<()> {
     let zeros = vec![0.0; head.components];
     let numbers: Vec<f64> = rows
         .into_iter()
-        .flat_map(|row| row.map_or(zeros.as_slice(), |row| &found.numbers[row as usize * head.components..][..head.components]))
+        .flat_map(|row| {
+            row.map_or(zeros.as_slice(), |row| &found.numbers[row as usize * head.components..][..head.components])
+        })
         .copied()
         .collect();
     let values = values(numbers, head.components, reader.mesh.is_planar());

@@ -1,6 +1,7 @@
 //! Gmsh's format `.msh` (Geuzaine and Remacle 2009; chapter "File formats" of Gmsh's manual), as text and binary.
 
 mod data;
+mod elements;
 mod groups;
 mod kinds;
 mod reader;
@@ -62,8 +63,9 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
 /// of their groups, those of edges and triangles are not written.
 ///
 /// Fields are `$NodeData` and `$ElementData`; vectors of two numbers get a third, 0; tensors are written row by row with 9 numbers.
-/// Other fields of several numbers are one field `NAME_0`, `NAME_1`, ... each. So that meshio reads fields of triangles, edges and
-/// points have values too: of a triangle at their first vertex, 0 where there is none.
+/// Other fields of several numbers are one field `NAME_0`, `NAME_1`, ... each. So that meshio reads fields of triangles, in
+/// version 4.1 edges and points have values too: of a triangle at their first vertex, 0 where there is none. Of files of version 2.2
+/// Gmsh leaves out vertices without element.
 ///
 /// # Errors
 /// What `out` says; more elements than version 2.2 or fields have tags for.

@@ -42,7 +42,11 @@ impl<'a> Source<'a> {
             [0, 0, 0, 1] => Order::Big,
             _ => {
                 let what = format!("the four bytes {one:?} are not the number 1 in either order");
-                return Err(self.bytes.error_at(self.bytes.position() - 4, what, "the file is damaged: write it again"));
+                return Err(self.bytes.error_at(
+                    self.bytes.position() - 4,
+                    what,
+                    "the file is damaged: write it again",
+                ));
             }
         };
         Ok(())

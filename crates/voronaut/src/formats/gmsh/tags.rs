@@ -28,7 +28,7 @@ impl Tags {
     pub(super) fn new(tags: &[u64]) -> Result<Self, (u64, [u32; 2])> {
         let first = tags.first().copied().unwrap_or(1);
         let count = tags.len();
-        if tags.iter().zip(first..).all(|(&tag, expected)| tag == expected) {
+        if (0..).zip(tags).all(|(entry, tag)| tag.checked_sub(first) == Some(entry)) {
             return Ok(Self { count, index: Index::From(first) });
         }
         let mut sorted: Vec<(u64, u32)> = tags.iter().copied().zip(0..).collect();

@@ -162,7 +162,9 @@ impl<'a> Plan<'a> {
     fn write_elements_4(&self, sink: &mut Sink<'_>) -> io::Result<()> {
         let count: usize = self.parts.iter().map(|part| part.elements.len()).sum();
         sink.line(format_args!("$Elements"))?;
-        [self.parts.len(), count, usize::from(count > 0), count].into_iter().try_for_each(|number| sink.size(number))?;
+        [self.parts.len(), count, usize::from(count > 0), count]
+            .into_iter()
+            .try_for_each(|number| sink.size(number))?;
         sink.end_row()?;
         let mut tag = 0;
         for part in &self.parts {
@@ -224,23 +226,20 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The triangle whose value each element has: meshio reads values of elements only where all elements have one. An edge or a point
-    /// has that of a triangle at its first vertex; `None` where there is none.
+    /// The triangle whose value each element has. Version 4.1: meshio reads values of elements only where all elements have one, so an
+    /// edge or a point has that of a triangle at its first vertex; `None` where there is none. Version 2.2: of triangles alone, for there
+    /// meshio 5.3.5 reads values only where there is nothing else.
     fn triangles_of_elements(&self, version: Version) -> Vec<Option<usize>> {
         let mut at = vec![None; self.mesh.points.len()];
         for (i, triangle) in self.mesh.triangles.iter().enumerate() {
             triangle.iter().for_each(|&v| at[v as usize] = Some(i));
         }
-        let mut of = Vec::new();
-        for part in &self.parts {
-            let times = if version == Version::V2_2 { part.groups_2().len() } else { 1 };
-            for element in &part.elements {
-                let first = self.nodes(part.dimension, element)[0] as usize;
-                let triangle = if part.dimension == 2 { Some(*element as usize) } else { at[first] };
-                of.extend(std::iter::repeat_n(triangle, times));
-            }
-        }
-        of
+        let parts = self.parts.iter().filter(|part| part.dimension == 2 || version == Version::V4_1);
+        let of = |part: &Part, element: &u32| match part.dimension {
+            2 => Some(*element as usize),
+            dimension => at[self.nodes(dimension, element)[0] as usize],
+        };
+        parts.flat_map(|part| part.elements.iter().map(move |element| of(part, element))).collect()
     }
 }
 
