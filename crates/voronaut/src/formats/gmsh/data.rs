@@ -146,7 +146,7 @@ fn values(numbers: Vec<f64>, components: usize, is_planar: bool) -> SolutionValu
         3 if is_planar && rows().all(|row| row[2] == 0.0) => {
             SolutionValues::Vector { components: 2, numbers: rows().flat_map(|row| [row[0], row[1]]).collect() }
         }
-        9 if rows().all(|row| row[1] == row[3] && row[2] == row[6] && row[5] == row[7]) => {
+        9 if rows().all(is_symmetric) => {
             if is_planar && rows().all(|row| row[2] == 0.0 && row[5] == 0.0 && row[8] == 0.0) {
                 return SolutionValues::Tensor(rows().map(|row| [row[0], row[1], row[4]]).collect());
             }
@@ -154,6 +154,11 @@ fn values(numbers: Vec<f64>, components: usize, is_planar: bool) -> SolutionValu
         }
         _ => SolutionValues::Vector { components, numbers },
     }
+}
+
+/// Whether three rows of three numbers are those of a symmetric tensor.
+fn is_symmetric(rows: &[f64]) -> bool {
+    [(1, 3), (2, 6), (5, 7)].into_iter().all(|(upper, lower)| rows[upper] - rows[lower] == 0.0)
 }
 
 /// A field, or a part of one, as Gmsh has them: with 1, 3 or 9 numbers per value.

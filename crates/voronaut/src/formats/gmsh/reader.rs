@@ -238,13 +238,11 @@ impl<'a> Reader<'a> {
     pub(super) fn read_entity(&mut self, at: At<'_>) -> Result<(u8, i32)> {
         let (first, second): (i32, i32) = (self.source.int(at)?, self.source.int(at)?);
         let (dimension, tag) = if self.layout == Layout::Four { (second, first) } else { (first, second) };
-        match dimension {
-            0..=3 => Ok((dimension as u8, tag)),
-            _ => {
-                let what = format!("an entity of dimension {dimension} ({at})");
-                Err(self.source.error(what, format!("check the counts of {}, and the version", at.section)))
-            }
+        if (0..=3).contains(&dimension) {
+            return Ok((dimension as u8, tag));
         }
+        let what = format!("an entity of dimension {dimension} ({at})");
+        Err(self.source.error(what, format!("check the counts of {}, and the version", at.section)))
     }
 
     /// The tag of a node or an element.

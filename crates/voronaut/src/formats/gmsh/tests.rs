@@ -297,6 +297,21 @@ fn binary_files_of_either_order() {
 }
 
 #[test]
+fn nine_numbers_are_a_tensor_if_they_are_symmetric() {
+    let mesh = Mesh { points: vec![[0.0; 3]], ..Mesh::default() };
+    let text = String::from_utf8(written(&mesh, &Fields::default(), Version::V4_1, Form::Text)).unwrap();
+    for (numbers, expected) in [
+        ("1 2 0 2 3 -0 0 0 0", SolutionValues::Tensor(vec![[1.0, 2.0, 3.0]])),
+        ("1 2 0 2 3 0 0 0 4", SolutionValues::Tensor3(vec![[1.0, 2.0, 3.0, 0.0, 0.0, 4.0]])),
+        ("1 2 3 2 4 5 3 5 6", SolutionValues::Tensor3(vec![[1.0, 2.0, 4.0, 3.0, 5.0, 6.0]])),
+        ("1 2 3 4 5 6 7 8 9", SolutionValues::Vector { components: 9, numbers: (1..10).map(f64::from).collect() }),
+    ] {
+        let file = format!("{text}$NodeData\n1\n\"m\"\n0\n3\n0\n9\n1\n1 {numbers}\n$EndNodeData\n");
+        assert_eq!(read(file.as_bytes(), "a.msh").unwrap().fields.vertices[0].values, expected);
+    }
+}
+
+#[test]
 fn errors_say_what_and_where() {
     let (head, nodes) = (FOUR_ONE_HEAD.len(), FOUR_ONE_HEAD.len() + NODES.len());
     let text = [FOUR_ONE_HEAD, NODES, ELEMENTS].concat();

@@ -232,7 +232,9 @@ impl<'a> Plan<'a> {
     fn triangles_of_elements(&self, version: Version) -> Vec<Option<usize>> {
         let mut at = vec![None; self.mesh.points.len()];
         for (i, triangle) in self.mesh.triangles.iter().enumerate() {
-            triangle.iter().for_each(|&v| at[v as usize] = Some(i));
+            for &vertex in triangle {
+                at[vertex as usize] = Some(i);
+            }
         }
         let parts = self.parts.iter().filter(|part| part.dimension == 2 || version == Version::V4_1);
         let of = |part: &Part, element: &u32| match part.dimension {
