@@ -41,8 +41,8 @@ fn sample(z: f64) -> Mesh {
 
 fn fields(is_planar: bool) -> Fields {
     let field = |name: &str, values| Field { name: name.into(), values };
-    let vector = |components, count: i32| {
-        let numbers = (1..=count * components as i32).map(|i| f64::from(i) / 3.0).collect();
+    let vector = |components, count: usize| {
+        let numbers = (1..).take(count * components).map(|i: u32| f64::from(i) / 3.0).collect();
         SolutionValues::Vector { components, numbers }
     };
     let tensors = if is_planar {
