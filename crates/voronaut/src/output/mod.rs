@@ -183,9 +183,17 @@ mod tests {
     fn surfaces_read_back_from_every_format_that_is_read() {
         let directory = tempfile::tempdir().unwrap();
         let mesh = crate::surface::torus(2.0, 0.7, 0.4).unwrap().to_mesh();
-        for (ending, tolerance) in
-            [("mesh", 0.0), ("meshb", 0.0), ("obj", 0.0), ("off", 0.0), ("ply", 0.0), ("stl", 1e-6)]
-        {
+        for (ending, tolerance) in [
+            ("mesh", 0.0),
+            ("meshb", 0.0),
+            ("msh", 0.0),
+            ("vtu", 0.0),
+            ("vtp", 0.0),
+            ("obj", 0.0),
+            ("off", 0.0),
+            ("ply", 0.0),
+            ("stl", 1e-6),
+        ] {
             let path = directory.path().join(format!("torus.{ending}"));
             write_mesh(&mesh, &path).unwrap();
             let again = crate::formats::read(&path).unwrap().mesh;
