@@ -6,7 +6,6 @@ use common::{Place, stderr};
 use std::fmt::Write;
 use voronaut::mesh::Mesh;
 use voronaut::output::write_mesh;
-use voronaut::output::write_mesh;
 use voronaut::surface::torus;
 
 /// The files that the page speaks of.
