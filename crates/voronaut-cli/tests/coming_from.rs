@@ -47,4 +47,6 @@ fn every_command_on_the_page_runs() {
         let output = place.run(&words(command)[1..]);
         assert_eq!(output.status.code(), Some(0), "{command}: {}", stderr(&output));
     }
+    let made = place.files();
+    assert!(made.len() > 20 && made.iter().all(|name| !place.read(name).is_empty()), "{made:?}");
 }

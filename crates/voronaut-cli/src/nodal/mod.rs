@@ -8,7 +8,6 @@ pub(crate) use args::{EXAMPLES, MetricArgs};
 use crate::files;
 use args::{Combine, LimitText};
 use serde_json::{Value, json};
-use std::path::Path;
 use std::time::Instant;
 use voronaut::formats::{self, Solution, SolutionValues};
 use voronaut::mesh::Mesh;
