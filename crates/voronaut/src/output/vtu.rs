@@ -15,10 +15,7 @@ pub(super) fn write_diagram(canvas: &Mesh, distances: &[f64], out: &mut dyn Writ
         triangles: &canvas.triangles,
         lines,
         line: LINE,
-        point_data: vec![
-            Array::new("colour", 1, colours),
-            Array::new("distance", 1, distances.iter().copied()),
-        ],
+        point_data: vec![Array::new("colour", 1, colours), Array::new("distance", 1, distances.iter().copied())],
         cell_data: vec![Array::new("label", 1, cells)],
     };
     grid.write_unstructured(out)

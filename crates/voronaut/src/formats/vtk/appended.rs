@@ -33,7 +33,11 @@ pub(super) fn read(source: &mut dyn BufRead, start: u64, is_raw: bool, grid: &mu
         }
         let missing = offset - section.position;
         if io::copy(&mut (&mut section).take(missing), &mut io::sink()).map_err(io)? < missing {
-            return Err(array.error(head, "begins behind the end of the file", "the file is cut off, or offset is wrong"));
+            return Err(array.error(
+                head,
+                "begins behind the end of the file",
+                "the file is cut off, or offset is wrong",
+            ));
         }
         let stored = if is_raw {
             Stored::read(&mut section, head.layout)
@@ -42,6 +46,9 @@ pub(super) fn read(source: &mut dyn BufRead, start: u64, is_raw: bool, grid: &mu
         };
         array.stored = stored.map_err(|error| misread(&error, &array, head))?;
         grid.pieces[i].arrays.push((of, array));
+    }
+    for piece in &mut grid.pieces {
+        piece.arrays.sort_by_key(|(_, array)| array.tag);
     }
     Ok(())
 }

@@ -99,12 +99,16 @@ impl Assembly<'_> {
         };
         let offsets = self.take(piece, section, "offsets")?;
         let byte = offsets.byte;
-        let fault = |what: String| numbers::error(head, byte, "offsets", &what, "check the cells, and that the file is whole");
+        let fault =
+            |what: String| numbers::error(head, byte, "offsets", &what, "check the cells, and that the file is whole");
         let ends = offsets.into_wholes(count, head)?;
         let mut start = 0;
         for (i, &end) in ends.iter().enumerate() {
             if end < start {
-                return Err(fault(format!("says that cell {} ends at {end}, behind which it begins, at {start}", i + 1)));
+                return Err(fault(format!(
+                    "says that cell {} ends at {end}, behind which it begins, at {start}",
+                    i + 1
+                )));
             }
             start = end;
         }
@@ -128,7 +132,8 @@ impl Assembly<'_> {
         let vertex = |(i, number): (usize, i64)| match u32::try_from(number) {
             Ok(vertex) if u64::from(vertex) < points => Ok(vertex),
             _ => {
-                let what = format!("holds point {number} (number {} of {count}): the piece has {points}, from 0", i + 1);
+                let what =
+                    format!("holds point {number} (number {} of {count}): the piece has {points}, from 0", i + 1);
                 Err(numbers::error(self.head, byte, "connectivity", &what, "correct the cell"))
             }
         };
@@ -191,6 +196,7 @@ fn demand_moderate_cuts(data: &Data, triangles: usize, cells: usize, head: Head<
     if numbers <= ALWAYS || triangles / MOST_PER_CELL < cells {
         return Ok(());
     }
-    let what = format!("{}: {cells} cells are cut into {triangles} triangles, with {numbers} values on them", head.place);
+    let what =
+        format!("{}: {cells} cells are cut into {triangles} triangles, with {numbers} values on them", head.place);
     Err(Error::Limit { what, help: "triangulate the polygons, or remove the data on cells".into() })
 }

@@ -42,7 +42,8 @@ impl<R: BufRead> Base64<R> {
             let value = value(letter).filter(|_| padding == 0);
             padding += usize::from(letter == b'=' && i > 1);
             if value.is_none() && padding == 0 || value.is_none() && letter != b'=' {
-                let what = format!("'{}' at a place where base64 does not have it", char::from(letter).escape_default());
+                let what =
+                    format!("'{}' at a place where base64 does not have it", char::from(letter).escape_default());
                 return Err(io::Error::new(ErrorKind::InvalidData, what));
             }
             bits = bits << 6 | value.unwrap_or(0);

@@ -156,7 +156,13 @@ impl Joined {
             let same = found.remove(&field.name).filter(|same| same.components == field.components);
             let Some(same) = same else {
                 let what = "is not in all pieces, or not with as many components";
-                return Err(super::numbers::error(head, field.byte, &field.name, what, "give all pieces the same arrays"));
+                return Err(super::numbers::error(
+                    head,
+                    field.byte,
+                    &field.name,
+                    what,
+                    "give all pieces the same arrays",
+                ));
             };
             field.numbers.extend(same.numbers);
         }

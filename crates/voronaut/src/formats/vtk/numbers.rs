@@ -39,6 +39,8 @@ pub(super) struct Array {
     pub(super) kind: Kind,
     /// Numbers per entry; `None` where the file does not say.
     pub(super) components: Option<u64>,
+    /// Where its tag is.
+    pub(super) tag: u64,
     /// Where its text or its bytes begin.
     pub(super) byte: u64,
     pub(super) stored: Stored,
@@ -124,7 +126,13 @@ impl Array {
     fn into_bytes(self, count: u64, head: Head<'_>) -> Result<(Kind, Vec<u8>)> {
         let Self { name, kind, byte, stored, .. } = self;
         let bytes = stored.bytes(count.saturating_mul(kind.size())).map_err(|what| {
-            error(head, byte, &name, &what, "check the counts of the piece and of the array, and that the file is whole")
+            error(
+                head,
+                byte,
+                &name,
+                &what,
+                "check the counts of the piece and of the array, and that the file is whole",
+            )
         })?;
         Ok((kind, bytes))
     }
@@ -175,7 +183,7 @@ mod tests {
     const PLAIN: Layout = Layout { order: Order::Big, is_wide: false, is_compressed: false };
 
     fn array(kind: Kind, stored: Stored) -> Array {
-        Array { name: "a".into(), kind, components: None, byte: 5, stored }
+        Array { name: "a".into(), kind, components: None, tag: 0, byte: 5, stored }
     }
 
     #[test]
@@ -210,13 +218,22 @@ mod tests {
         assert_eq!(text(" 1\n-2 ").into_wholes(2, head).unwrap(), [1, -2]);
         for (found, expected) in [
             (text("1 2 3").into_wholes(2, head), "f, byte 5: array 'a' holds more than 2 numbers"),
-            (text("1").into_wholes(1 << 60, head), "f, byte 5: array 'a' holds 1 numbers, where 1152921504606846976 are needed"),
-            (text("1 2.5").into_wholes(2, head), "f, byte 7: array 'a' holds '2.5', which is not a whole number (number 2 of 2)"),
+            (
+                text("1").into_wholes(1 << 60, head),
+                "f, byte 5: array 'a' holds 1 numbers, where 1152921504606846976 are needed",
+            ),
+            (
+                text("1 2.5").into_wholes(2, head),
+                "f, byte 7: array 'a' holds '2.5', which is not a whole number (number 2 of 2)",
+            ),
             (
                 array(Kind::UInt16, Stored::Plain(vec![0; 3])).into_wholes(2, head),
                 "f, byte 5: array 'a' holds 3 bytes, where 4 are needed",
             ),
-            (array(Kind::Float32, Stored::Plain(vec![])).into_wholes(0, head), "f, byte 5: array 'a' holds floating point numbers"),
+            (
+                array(Kind::Float32, Stored::Plain(vec![])).into_wholes(0, head),
+                "f, byte 5: array 'a' holds floating point numbers",
+            ),
         ] {
             let error = found.unwrap_err();
             assert_eq!(error.to_string(), expected);

@@ -147,7 +147,8 @@ mod tests {
 
     #[test]
     fn blocks_in_all_layouts() {
-        for (order, is_wide) in [(Order::Little, false), (Order::Little, true), (Order::Big, false), (Order::Big, true)] {
+        for (order, is_wide) in [(Order::Little, false), (Order::Little, true), (Order::Big, false), (Order::Big, true)]
+        {
             let layout = Layout { order, is_wide, is_compressed: true };
             for (sizes, blocks, expected) in
                 [([4, 2], [&b"abcd"[..], b"ef"], "abcdef"), ([4, 0], [b"abcd", b"efgh"], "abcdefgh")]

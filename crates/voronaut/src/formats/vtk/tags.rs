@@ -60,6 +60,7 @@ pub(super) struct Piece {
     pub(super) points: u64,
     /// As [`CELLS`] has them.
     pub(super) cells: [u64; 5],
+    /// In the order of their tags.
     pub(super) arrays: Vec<(Section, Array)>,
     /// Arrays in the appended section, by where they begin there.
     pub(super) appended: Vec<(u64, Section, Array)>,
@@ -221,10 +222,11 @@ impl<'a, R: BufRead> Tags<'a, R> {
             .into_iter()
             .find(|known| type_name(*known) == kind)
             .ok_or_else(|| Error::Unsupported {
-                what: format!("{} is a VTK file of type '{}'", self.grid.head.place, shortened(&kind)),
-                help: "save it as one file of type UnstructuredGrid (.vtu) or PolyData (.vtp)".into(),
-            })?;
-        let unknown = |what: &str, value: &str| self.error(&format!("{what} '{}'", shortened(value)), "check the tag VTKFile");
+            what: format!("{} is a VTK file of type '{}'", self.grid.head.place, shortened(&kind)),
+            help: "save it as one file of type UnstructuredGrid (.vtu) or PolyData (.vtp)".into(),
+        })?;
+        let unknown =
+            |what: &str, value: &str| self.error(&format!("{what} '{}'", shortened(value)), "check the tag VTKFile");
         let order = match self.attribute(tag, "byte_order")?.as_deref() {
             None | Some("LittleEndian") => Order::Little,
             Some("BigEndian") => Order::Big,
@@ -287,7 +289,8 @@ impl<'a, R: BufRead> Tags<'a, R> {
             })?),
         };
         let format = self.format(&name, tag)?;
-        let array = Array { name, kind, components, byte: self.byte, stored: Stored::Plain(Vec::new()) };
+        let array =
+            Array { name, kind, components, tag: self.byte, byte: self.byte, stored: Stored::Plain(Vec::new()) };
         Ok(Some(Open { section, format, array }))
     }
 
@@ -367,7 +370,11 @@ impl<'a, R: BufRead> Tags<'a, R> {
             return Err(Error::parse(grid.head.place, what, "check that the program that wrote it had finished"));
         }
         if let Some((_, _, array)) = grid.pieces.iter().flat_map(|piece| &piece.appended).next() {
-            return Err(array.error(grid.head, "is in a section AppendedData, which is not there", "the file is cut off"));
+            return Err(array.error(
+                grid.head,
+                "is in a section AppendedData, which is not there",
+                "the file is cut off",
+            ));
         }
         Ok(grid)
     }

@@ -147,7 +147,9 @@ const PIECE: &str = r#"<Piece NumberOfPoints="3" NumberOfCells="2"><PointData>
 <DataArray type="Int32" Name="offsets">3 5</DataArray><DataArray type="UInt8" Name="types">5 3</DataArray></Cells></Piece>"#;
 
 fn file(body: &str) -> String {
-    format!("<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>{body}</UnstructuredGrid></VTKFile>")
+    format!(
+        "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>{body}</UnstructuredGrid></VTKFile>"
+    )
 }
 
 #[test]
@@ -198,14 +200,22 @@ fn damaged_files() {
         error.to_string()
     };
     for (old, new, expected) in [
-        ("Points=\"3\"", "Points=\"1e18\"", "byte 72: NumberOfPoints=\"1e18\" is not a whole number from 0 to 4294967295"),
-        ("Points=\"3\"", "Points=\"4294967295\"", "array 'h' holds 3 numbers, where 4294967295 are needed"),
+        (
+            "Points=\"3\"",
+            "Points=\"1e18\"",
+            "byte 72: NumberOfPoints=\"1e18\" is not a whole number from 0 to 4294967295",
+        ),
+        ("Points=\"3\"", "Points=\"4294967295\"", "array '' holds 9 numbers, where 12884901885 are needed"),
         ("Cells=\"2\"", "Cells=\"-2\"", "NumberOfCells=\"-2\" is not a whole number from 0 to 4294967295"),
         ("NumberOfCells=\"2\"", "", "a piece without NumberOfCells"),
         ("Cells=\"2\"", "Cells=\"1\"", "array 'types' holds more than 1 numbers"),
         ("Components=\"3\"", "Components=\"2\"", "array '' has 2 components, where points have 3"),
         ("Components=\"3\"", "Components=\"many\"", "array '' has 'many' components"),
-        ("Name=\"h\"", "Name=\"h\" NumberOfComponents=\"18446744073709551615\"", "numbers, where 18446744073709551615 are needed"),
+        (
+            "Name=\"h\"",
+            "Name=\"h\" NumberOfComponents=\"18446744073709551615\"",
+            "numbers, where 18446744073709551615 are needed",
+        ),
         ("0 1e0 0<", "0 nan 0<", "array '' holds NaN, which is not finite, as a coordinate of point 3"),
         ("0 1e0 0<", "0 1e0 x<", "array '' holds 'x', which is not a number (number 9 of 9)"),
         ("1 2 3", "1 inf 3", "array 'h' holds inf, which is not finite, in entry 2"),
@@ -215,7 +225,11 @@ fn damaged_files() {
         ("0 1 2 2 0", "0 1 -2 2 0", "array 'connectivity' holds point -2 (number 3 of 5): the piece has 3, from 0"),
         ("0 1 2 2 0", "0 1 2 2", "array 'connectivity' holds 4 numbers, where 5 are needed"),
         ("3 5<", "3 1<", "array 'offsets' says that cell 2 ends at 1, behind which it begins, at 3"),
-        ("3 5<", "3 9000000000000000000<", "array 'connectivity' holds 5 numbers, where 9000000000000000000 are needed"),
+        (
+            "3 5<",
+            "3 9000000000000000000<",
+            "array 'connectivity' holds 5 numbers, where 9000000000000000000 are needed",
+        ),
         ("3 5<", "2 5<", "array 'offsets' gives cell 1 2 vertices: a triangle has 3"),
         (">3 5<", ">3<", "array 'offsets' holds 1 numbers, where 2 are needed"),
         ("5 3<", "5<", "array 'types' holds 1 numbers, where 2 are needed"),

@@ -42,11 +42,7 @@ pub(crate) struct Array<'a> {
 
 impl<'a> Array<'a> {
     /// An array of entries of so many numbers each.
-    pub(crate) fn new<T: Number>(
-        name: &str,
-        components: usize,
-        numbers: impl Iterator<Item = T> + Clone + 'a,
-    ) -> Self {
+    pub(crate) fn new<T: Number>(name: &str, components: usize, numbers: impl Iterator<Item = T> + Clone + 'a) -> Self {
         let bytes = (numbers.clone().count() * T::SIZE) as u64;
         let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
         let tag = format!("<DataArray type=\"{}\" Name=\"{}\"{components}", T::NAME, escaped(name));
@@ -130,8 +126,7 @@ impl<'a> Grid<'a> {
         out: &mut dyn Write,
     ) -> io::Result<()> {
         let points = Array::new("Points", 3, self.points.iter().flatten().copied());
-        let mut sections =
-            vec![("PointData", self.point_data), ("CellData", self.cell_data), ("Points", vec![points])];
+        let mut sections = vec![("PointData", self.point_data), ("CellData", self.cell_data), ("Points", vec![points])];
         sections.extend(cells);
         write!(
             out,
