@@ -110,6 +110,9 @@ fn values_go_along() {
     done(&place, "convert in.sol out.solb");
     done(&place, "convert out.solb out.sol");
 
+    let words =
+        |text: Vec<u8>| String::from_utf8(text).unwrap().split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(words(place.read("out.sol")), words(VALUES.into()));
     assert_eq!(formats::read_solutions(&place.path().join("out.solb")).unwrap(), truth);
     let output = place.run(&["convert", "in.mesh", "out.vtu", "--sol", "short.sol"]);
     assert_eq!(output.status.code(), Some(1));
