@@ -3,6 +3,8 @@
 use clap::Args;
 use std::path::{Path, PathBuf};
 use voronaut::domain::{from_mesh, read_pslg, to_mesh, to_poly, to_polygons};
+use voronaut::formats::gmsh::Version;
+use voronaut::formats::medit::Form;
 use voronaut::formats::{self, Document, Fields, Format, Solutions, geojson, poly};
 use voronaut::output;
 use voronaut::{Error, Result};
@@ -32,6 +34,12 @@ pub(crate) struct ConvertArgs {
     /// Values at the vertices or triangles of IN that go along
     #[arg(long, value_name = "FILE")]
     sol: Option<PathBuf>,
+    /// Version of a .msh: 4.1 or 2.2
+    #[arg(long, value_name = "VERSION", default_value_t = Version::V4_1)]
+    msh_version: Version,
+    /// Write a .msh as a binary file
+    #[arg(long)]
+    binary: bool,
     /// Say nothing but errors
     #[arg(short, long)]
     quiet: bool,
@@ -105,7 +113,10 @@ fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
 }
 
 fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
-    let format = Format::from_path(&args.to)?;
+    let format = match Format::from_path(&args.to)? {
+        Format::Gmsh(..) => Format::Gmsh(args.msh_version, if args.binary { Form::Binary } else { Form::Text }),
+        other => other,
+    };
     let Document { mesh, mut fields } = match from {
         Kind::Mesh => formats::read(&args.from)?,
         _ => to_mesh(&read_pslg(&name(&args.from))?)?.into(),
@@ -115,7 +126,7 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
         demand_counts(sol, &values, [mesh.points.len(), mesh.triangles.len()])?;
         fields.extend(Fields::of_solutions(values));
     }
-    output::write_document(&mesh, &fields, &args.to)?;
+    output::write_with(&args.to, |out| format.write(&mesh, &fields, out))?;
     let mut told = format!(
         "{} vertices, {} triangles, {} labelled edges",
         mesh.points.len(),

@@ -111,13 +111,11 @@ fn other_options_of_mmgs_are_taken_with_a_warning() {
 #[test]
 fn what_is_wrong_is_said_and_nothing_is_written() {
     let place = place();
-    place.put("flat.mesh", "MeshVersionFormatted 2 Dimension 2 Vertices 3 0 0 0 1 0 0 0 1 0 Triangles 1 1 2 3 0 End");
     place.put("short.sol", "MeshVersionFormatted 2 Dimension 3 SolAtVertices 1 1 1 0.5");
     let before = place.files();
     for (words, code, message) in [
         ("remesh", 2, "required"),
         ("remesh none.mesh", 1, "none.mesh"),
-        ("remesh flat.mesh", 1, "not supported: remesh of a planar mesh (flat.mesh)"),
         ("remesh ring.mesh -ls 0.5", 1, "not supported: remesh -ls"),
         ("remesh ring.mesh -wrong", 2, "-w"),
         ("remesh ring.mesh a.mesh b.mesh", 2, "b.mesh"),

@@ -1,36 +1,43 @@
-//! What users of mmgs type.
+//! What users of mmg2d and mmgs type.
 
 use crate::args::{Damage, Run, not_negative, positive};
 use clap::Args;
 use std::path::PathBuf;
-use voronaut::surface::FeatureOptions;
+use voronaut::surface::{FeatureOptions, RepairOptions};
 
 pub(crate) const EXAMPLES: &str = "\
-Options are spelt as mmgs's, with one dash or two. IN.sol next to IN.mesh is the metric if no other is named, as mmgs has it: sizes
-h or tensors 1/h^2 at the vertices of IN, kept where the distance to the surface does not ask for less. OUT is IN.o.mesh if not
-given; the metric that was used is written next to it, OUT.sol, with its values at the vertices of OUT.
+Options are spelt as mmg2d's and mmgs's, with one dash or two. IN.sol next to IN.mesh is the metric if no other is named, as mmg has
+it: sizes h or tensors 1/h^2 at the vertices of IN, kept where the distance to curves or surface does not ask for less. OUT is
+IN.o.mesh if not given; the metric that was used is written next to it, OUT.sol, with its values at the vertices of OUT.
+
+A .mesh of dimension 2, or with z = 0 everywhere, is a planar mesh, as for mmg2d; one without triangles is the boundary of a domain.
+Labels of triangles and edges are kept, and with them the boundary, interfaces between labels, and what is required.
 
 Lengths are those of the file: 0.01, the default of -hausd, is a hundredth of its unit, whatever the size of the part.
 
 Examples:
+  voronaut remesh square.mesh -sol error.sol -hmin 0.001 -hmax 0.2 -hgrad 1.3 out.mesh
+  voronaut remesh square.mesh -hsiz 0.05
+  voronaut remesh square.mesh -optim -nosurf
   voronaut remesh part.mesh
   voronaut remesh part.mesh -hausd 0.001 -hmax 0.1 -out fine.mesh
   voronaut remesh part.mesh thin.mesh -A -hausd 0.001
   voronaut remesh -in part.mesh -sol error.sol -hmin 0.01 -hgrad 1.2 -o adapted.mesh --report run.json";
 
-/// Where mmgs's defaults are the user's expectation.
+/// Where mmg's defaults are the user's expectation.
 const HAUSD: f64 = 0.01;
 const HGRAD: f64 = 1.3;
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "one per option of mmg")]
 pub(crate) struct RemeshArgs {
-    /// The surface: a .mesh (the ending may be left out), .obj, .off, .ply or .stl
+    /// The planar mesh, or the surface: a .mesh (the ending may be left out); surfaces also .obj, .off, .ply or .stl
     #[arg(value_name = "IN", required_unless_present = "input")]
     pub(crate) first: Option<PathBuf>,
     /// The mesh [default: IN.o.mesh]
     #[arg(value_name = "OUT", conflicts_with = "out")]
     pub(crate) second: Option<PathBuf>,
-    /// The surface, named
+    /// The input, named
     #[arg(long = "in", value_name = "IN")]
     input: Option<PathBuf>,
     /// The mesh, named: .mesh, .vtu, .obj, .off, .ply or .stl
@@ -39,65 +46,74 @@ pub(crate) struct RemeshArgs {
     /// Sizes or tensors at the vertices of IN, as -sol or -met
     #[arg(long, visible_alias = "met", value_name = "FILE")]
     pub(crate) sol: Option<PathBuf>,
-    /// How far the mesh may be from the surface
+    /// How far the mesh may be from the surface, or from the curves of a planar domain
     #[arg(long, value_name = "D", value_parser = positive, default_value_t = HAUSD)]
     pub(crate) hausd: f64,
-    /// No size is less [default: a thousandth of the bounding box's diagonal]
+    /// No size is less [default: a thousandth of the extent; of a planar mesh with a metric a tenth of its least]
     #[arg(long, value_name = "H", value_parser = positive)]
     pub(crate) hmin: Option<f64>,
-    /// No size is more [default: the bounding box's diagonal]
+    /// No size is more [default: the bounding box's diagonal; of a planar mesh twice its extent, or ten times a metric's greatest]
     #[arg(long, value_name = "H", value_parser = positive)]
     pub(crate) hmax: Option<f64>,
-    /// The same size everywhere, but where the distance to the surface asks for less
-    #[arg(long, value_name = "H", value_parser = positive, conflicts_with_all = ["sol", "hmax"])]
+    /// The same size everywhere, but where the distance to surface or curves asks for less
+    #[arg(long, value_name = "H", value_parser = positive, conflicts_with_all = ["sol", "hmax", "optim"])]
     pub(crate) hsiz: Option<f64>,
-    /// Edges where the normal turns by more than this angle (degrees) are creases, which are kept
+    /// Edges where the normal turns by more than this angle (degrees) are creases, and curves that do have a corner; both are kept
     #[arg(long, value_name = "DEGREES", value_parser = not_negative, default_value_t = FeatureOptions::DEFAULT_ANGLE)]
     ar: f64,
-    /// Look for no creases by angles
+    /// Look for no creases and corners by angles
     #[arg(long)]
     nr: bool,
     #[command(flatten)]
     pub(crate) damage: Damage,
-    /// Sizes grow from edge to edge by this factor at most; -1: as they will. Sizes that depend on the direction always do
+    /// Sizes grow from edge to edge by this factor at most; -1: as they will. On surfaces those that depend on
+    /// the direction always do
     #[arg(long, value_name = "G", allow_negative_numbers = true, default_value_t = HGRAD)]
     pub(crate) hgrad: f64,
-    /// Sizes that follow the curvature's directions
+    /// Sizes that follow the directions of curvature and curves, or of the planar mesh's own triangles (-optim)
     #[arg(short = 'A')]
     pub(crate) anisotropic: bool,
+    /// The sizes that a planar mesh has
+    #[arg(long, conflicts_with = "sol")]
+    pub(crate) optim: bool,
+    /// Leave the edges of a planar mesh's boundary and interfaces as they are
+    #[arg(long)]
+    pub(crate) nosurf: bool,
+    /// Keep listed edges inside a region of a planar mesh, required or not
+    #[arg(long)]
+    pub(crate) opnbdy: bool,
+    /// Sizes at required edges of a planar mesh as elsewhere, even where these are shorter
+    #[arg(long)]
+    pub(crate) nosizreq: bool,
     /// Vertices on the surface, instead of where mesh and surface are closest in the sense of least squares
     #[arg(long)]
     pub(crate) no_fit: bool,
     /// Megabytes the work may need, as estimated before
     #[arg(short, long, value_name = "MB", value_parser = positive)]
     pub(crate) memory: Option<f64>,
-    /// How much is said, as mmgs's -v N: nothing from 0 down, more from 5 up
+    /// How much is said, as mmg's -v N: nothing from 0 down, more from 5 up
     #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with_all = ["quiet", "verbose"])]
     pub(crate) verbosity: Option<i32>,
     /// Write all figures as JSON
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) unused: Unused,
+    unused: Unused,
     #[command(flatten)]
     run: Run,
 }
 
-/// Options of mmgs that change nothing here.
+/// Options of mmg that change nothing here.
 #[derive(Debug, Args)]
 #[expect(
     clippy::struct_excessive_bools,
     clippy::option_option,
-    reason = "one per option of mmgs, some with a value or none"
+    reason = "one per option of mmg, some with a value or none"
 )]
-#[command(next_help_heading = "Options of mmgs that are accepted, and change nothing")]
-pub(crate) struct Unused {
+#[command(next_help_heading = "Options of mmg that are accepted, and change nothing")]
+struct Unused {
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     hgradreq: Option<f64>,
-    #[arg(long)]
-    nosizreq: bool,
-    #[arg(long)]
-    nosurf: bool,
     #[arg(long)]
     noinsert: bool,
     #[arg(long)]
@@ -105,15 +121,11 @@ pub(crate) struct Unused {
     #[arg(long)]
     nomove: bool,
     #[arg(long)]
-    optim: bool,
-    #[arg(long)]
     nreg: bool,
     #[arg(long, value_name = "X", num_args = 0..=1)]
     xreg: Option<Option<f64>>,
     #[arg(long, value_name = "X", num_args = 0..=1)]
     rmc: Option<Option<f64>>,
-    #[arg(long)]
-    opnbdy: bool,
     #[arg(long)]
     nofem: bool,
     #[arg(long = "keep-ref")]
@@ -124,38 +136,40 @@ pub(crate) struct Unused {
     debug: bool,
 }
 
-impl Unused {
-    /// What was given, and why it changes nothing.
-    pub(crate) fn warnings(&self) -> Vec<String> {
+impl RemeshArgs {
+    /// What was given and changes nothing for a planar mesh, or for a surface, and why.
+    pub(crate) fn warnings(&self, is_planar: bool) -> Vec<String> {
         const LOCAL: &str = "the mesh is made anew, not by local changes";
         const REQUIRED: &str = "sizes at what is required are as those elsewhere";
-        const AS_GIVEN: &str = "the surface is meshed as it is given";
+        const AS_GIVEN: &str = "curves and surfaces are meshed as they are given";
         const LEVEL: &str = "it is for level sets";
-        const FORMAT: &str = "it does not concern surfaces";
+        const SURFACES: &str = "it does not concern surfaces";
+        const PLANE: &str = "it does not concern planar meshes";
+        let unused = &self.unused;
         let all = [
-            ("-hgradreq", self.hgradreq.is_some(), REQUIRED),
-            ("-nosizreq", self.nosizreq, REQUIRED),
-            ("-nosurf", self.nosurf, FORMAT),
-            ("-noinsert", self.noinsert, LOCAL),
-            ("-noswap", self.noswap, LOCAL),
-            ("-nomove", self.nomove, LOCAL),
-            ("-optim", self.optim, LOCAL),
-            ("-nreg", self.nreg, AS_GIVEN),
-            ("-xreg", self.xreg.is_some(), AS_GIVEN),
-            ("-rmc", self.rmc.is_some(), LEVEL),
-            ("-keep-ref", self.keep_ref, LEVEL),
-            ("-opnbdy", self.opnbdy, FORMAT),
-            ("-nofem", self.nofem, FORMAT),
-            ("-3dMedit", self.medit.is_some(), FORMAT),
-            ("-d", self.debug, "--report has the figures"),
+            ("-hgradreq", unused.hgradreq.is_some(), if is_planar { "-hgrad is for all sizes" } else { REQUIRED }),
+            ("-nosizreq", self.nosizreq && !is_planar, REQUIRED),
+            ("-noinsert", unused.noinsert, LOCAL),
+            ("-noswap", unused.noswap, LOCAL),
+            ("-nomove", unused.nomove, LOCAL),
+            ("-nreg", unused.nreg, AS_GIVEN),
+            ("-xreg", unused.xreg.is_some(), AS_GIVEN),
+            ("-rmc", unused.rmc.is_some(), LEVEL),
+            ("-keep-ref", unused.keep_ref, LEVEL),
+            ("-nofem", unused.nofem, if is_planar { LOCAL } else { SURFACES }),
+            ("-3dMedit", unused.medit.is_some(), "planar meshes are read in dimension 2 and 3, and written in 2"),
+            ("-d", unused.debug, "--report has the figures"),
+            ("-nosurf", self.nosurf && !is_planar, SURFACES),
+            ("-opnbdy", self.opnbdy && !is_planar, SURFACES),
+            ("-optim", self.optim && !is_planar, LOCAL),
+            ("--no-fit", self.no_fit && is_planar, PLANE),
+            ("--repair", self.damage.options() != RepairOptions::default() && is_planar, PLANE),
         ];
         let given = all.into_iter().filter(|(_, is_given, _)| *is_given);
         given.map(|(name, _, why)| format!("{name} changes nothing: {why}")).collect()
     }
-}
 
-impl RemeshArgs {
-    /// The surface's file; without an ending that of Medit, as mmgs has it.
+    /// The input's file; without an ending that of Medit, as mmg has it.
     pub(crate) fn input(&self) -> PathBuf {
         with_ending(self.input.as_ref().or(self.first.as_ref()).cloned().unwrap_or_default())
     }
@@ -164,7 +178,10 @@ impl RemeshArgs {
     pub(crate) fn out(&self) -> PathBuf {
         let first = self.first.as_ref().filter(|_| self.input.is_some());
         let named = self.out.as_ref().or(self.second.as_ref()).or(first);
-        named.map_or_else(|| self.input().with_extension("o.mesh"), |out| with_ending(out.clone()))
+        let input = self.input();
+        let is_binary = input.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("meshb"));
+        let ending = if is_binary { "o.meshb" } else { "o.mesh" };
+        named.map_or_else(|| input.with_extension(ending), |out| with_ending(out.clone()))
     }
 
     /// What is kept as creases.

@@ -1,27 +1,29 @@
-//! `voronaut remesh`: meshes of surfaces for users of mmgs, by its options.
+//! `voronaut remesh`: meshes of planar domains and of surfaces for users of mmg2d and mmgs, by their options.
 
 mod args;
+mod plane;
 mod spelling;
+mod surface;
 
 pub(crate) use args::{EXAMPLES, RemeshArgs};
 pub(crate) use spelling::translated;
 
-use crate::metric::Scaled;
-use crate::progress::Bar;
 use crate::{files, mesh, summary};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use voronaut::formats::{self, Format, Solution};
-use voronaut::output::report::{Seconds, Strayed};
+use voronaut::Result;
+use voronaut::domain::read_pslg;
+use voronaut::formats::{self, Format, Solution, TensorOrder};
+use voronaut::mesh::Mesh;
+use voronaut::metric::read_metric;
+use voronaut::output::report::Seconds;
 use voronaut::output::{self, Report};
-use voronaut::quality::{surface_quality, surface_unmet, validity};
-use voronaut::recipe::{self, MeshOptions};
-use voronaut::surface::metric::{Sizes, Sizing};
-use voronaut::surface::{Given, Input, Mended};
-use voronaut::{Error, Result};
+use voronaut::recipe::{Keep, MeshOptions, Meshed, RemeshInput};
+use voronaut::surface::metric::Sizing;
+use voronaut::surface::{Given, Input, Mended, of_file};
 
-/// Remeshes a surface. Nothing is written unless the mesh is valid.
+/// Remeshes a planar domain or a surface. Nothing is written unless the mesh is valid.
 pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     let start = Instant::now();
     let (run, out) = (args.run(), args.out());
@@ -32,85 +34,111 @@ pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
         .flatten()
         .try_for_each(|path| output::demand_directory(path))?;
     files::set_threads(&run)?;
-    args.unused.warnings().iter().for_each(|warning| eprintln!("warning: {warning}"));
-    let (input, mended) = surface(args)?;
-    let input = input.cut(&args.features())?;
-    let metric_file = metric_file(args);
-    let given = metric_file.as_deref().map(|path| input.spread(&read_solution(path)?)).transpose()?;
-    let sizing = sizing(args, &input);
-    let sizes = sizing.sizes(&input.surface, given.as_ref())?;
-    if matches!(sizes, Sizes::Anisotropic(_)) && args.hgrad > 1.0 && !run.quiet {
-        eprintln!("note: sizes that depend on the direction are not graded: -hgrad would make them alike in all");
-    }
-    let field = sizes.field(&input.surface)?;
-    let meshed = {
-        let bar = Bar::new(run.quiet, run.verbose);
-        recipe::mesh_surface(&input, &field, &options(args), &bar)?
+    let given = read(args)?;
+    let is_planar = matches!(given, Read::Plane(_));
+    args.warnings(is_planar).iter().for_each(|warning| eprintln!("warning: {warning}"));
+    let made = match given {
+        Read::Plane(input) => plane::remesh(args, &input)?,
+        Read::Surface(input, mended) => surface::remesh(args, input, &mended)?,
     };
-    let found = validity(&meshed.mesh);
-    found.demand().map_err(mesh::ours)?;
-    let scaled = Scaled { field: &field, factor: meshed.metric_scale };
-    let figures = surface_quality(&meshed.mesh, &input.surface, &scaled)?;
-    let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
-    mesh::fill_in(&mut report, &meshed, as_used(args, &sizing, metric_file.as_deref()));
-    report.unmet = Some(surface_unmet(&meshed.mesh, &input.surface, &scaled)?.figures());
-    report.notes.extend(mended.sentences());
-    report.fidelity = meshed.fidelity.map(|found| Strayed::Surface(found.into()));
-    report.seconds = Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
-    let solution = sizes.solution(&field, meshed.metric_scale, &input.surface, &meshed.mesh.points)?;
-    output::write_mesh(&meshed.mesh, &out)?;
+    let Made { mesh, mut report, solution } = made;
+    report.seconds.total = start.elapsed().as_secs_f64();
+    output::write_mesh(&mesh, &out)?;
     output::write_solution(&solution, &sol_file)?;
     args.report.as_deref().map_or(Ok(()), |path| output::write(path, report.to_json().as_bytes()))?;
     summary::print(&out.display().to_string(), &report, &run);
     Ok(())
 }
 
-fn surface(args: &RemeshArgs) -> Result<(Input, Mended)> {
+/// What comes out.
+struct Made {
+    mesh: Mesh,
+    report: Report,
+    /// The metric that was used at the mesh's vertices.
+    solution: Solution,
+}
+
+/// What goes in.
+#[expect(clippy::large_enum_variant, reason = "there is one, and not for long")]
+enum Read {
+    Plane(RemeshInput),
+    Surface(Input, Mended),
+}
+
+fn read(args: &RemeshArgs) -> Result<Read> {
     let path = args.input();
-    let (given, mended) = Given::read_with(&path.to_string_lossy(), None, args.damage.options())?;
-    match given {
-        Given::Surface(input) => Ok((input, mended)),
-        Given::Plane(_) => {
-            let help = "voronaut mesh IN --metric SIZES.sol meshes it; remesh is for surfaces (mmgs), not yet for the plane (mmg2d)";
-            Err(Error::Unsupported { what: format!("remesh of a planar mesh ({})", path.display()), help: help.into() })
+    let spec = path.to_string_lossy();
+    if let Some(format) = Format::of_ending(&path) {
+        let mesh = formats::read(&path)?.mesh;
+        if format.may_be_planar() && (mesh.triangles.is_empty() || mesh.is_planar()) {
+            return Ok(Read::Plane(RemeshInput::of_mesh(mesh, keep(args)).map_err(|error| in_file(&spec, error))?));
         }
+        let (surface, mended) = of_file(&spec, &mesh, args.damage.options())?;
+        return Ok(Read::Surface(Input::new(surface, None), mended));
+    }
+    match Given::read_with(&spec, None, args.damage.options())? {
+        (Given::Surface(input), mended) => Ok(Read::Surface(input, mended)),
+        (Given::Plane(_), _) => Ok(Read::Plane(RemeshInput::of_graph(read_pslg(&spec)?, keep(args))?)),
     }
 }
 
-/// The file of the metric: the one named, else the one next to the surface, if there is one.
-fn metric_file(args: &RemeshArgs) -> Option<PathBuf> {
-    let own = Some(args.input().with_extension("sol")).filter(|own| args.hsiz.is_none() && own.is_file());
-    args.sol.clone().or(own)
+/// Adds the file to the place of an error of its domain.
+fn in_file(file: &str, error: voronaut::Error) -> voronaut::Error {
+    match error {
+        voronaut::Error::Domain { what, place, help } => {
+            voronaut::Error::Domain { what, place: format!("{file}, {place}"), help }
+        }
+        other => other,
+    }
 }
 
-fn read_solution(path: &Path) -> Result<Solution> {
-    formats::read_solution(path)
+fn keep(args: &RemeshArgs) -> Keep {
+    Keep { features: args.features(), curves: args.nosurf, inner_edges: args.opnbdy, plain_sizes: args.nosizreq }
 }
 
-fn sizing(args: &RemeshArgs, input: &Input) -> Sizing {
-    /// The least size, as a share of the diagonal or of the one size asked for: as with mmgs.
-    const LEAST: [f64; 2] = [1e-3, 0.1];
-    let diagonal = input.diagonal();
-    let h_max = args.hsiz.or(args.hmax).unwrap_or_else(|| diagonal.max(args.hmin.unwrap_or(0.0)));
-    let least = args.hsiz.map_or(LEAST[0] * diagonal, |h| LEAST[1] * h);
+/// The values of the metric: of the file named, else of the one next to the input, if there is one. What is named and not there is
+/// no metric, as mmg has it, with a warning.
+fn asked(args: &RemeshArgs) -> Result<Option<(PathBuf, Solution)>> {
+    let own = ["sol", "solb"].map(|ending| args.input().with_extension(ending)).into_iter().find(|own| own.is_file());
+    let is_there = |path: &PathBuf| {
+        let is_there = path.is_file();
+        if !is_there && args.sol.is_some() {
+            eprintln!("warning: {} not found: sizes are the default ones, as mmg has it", path.display());
+        }
+        is_there
+    };
+    let has_sizes = args.hsiz.is_some() || args.optim;
+    let Some(path) = args.sol.clone().or(own.filter(|_| !has_sizes)).filter(is_there) else { return Ok(None) };
+    let read = read_metric(&path, TensorOrder::Disk)?;
+    Ok(Some((path, read)))
+}
+
+/// Limits that are not given: of two numbers, the least and greatest size there is; one that is given comes first.
+fn limits(args: &RemeshArgs, [least, most]: [f64; 2]) -> [f64; 2] {
+    let h_max = args.hsiz.or(args.hmax).unwrap_or_else(|| most.max(args.hmin.unwrap_or(0.0)));
     let h_min = args.hmin.unwrap_or_else(|| least.min(h_max));
-    Sizing { hausd: args.hausd, h_min, h_max, hgrad: args.gradation(), anisotropic: args.anisotropic }
+    [h_min, h_max]
 }
 
 fn options(args: &RemeshArgs) -> MeshOptions {
-    /// Bytes of a megabyte, as mmgs counts.
+    /// Bytes of a megabyte, as mmg counts.
     const MEGABYTE: f64 = 1_048_576.0;
-    /// Vertices slide less than with `mesh --fit`: lengths of edges count for more here.
-    const STIFFNESS: f64 = 0.5;
     let default = MeshOptions::default();
     let memory_limit = args.memory.map_or(default.memory_limit, |megabytes| (megabytes * MEGABYTE) as u64);
-    MeshOptions { hausd: Some(args.hausd), fit: !args.no_fit, stiffness: STIFFNESS, memory_limit, ..default }
+    MeshOptions { hausd: Some(args.hausd), memory_limit, ..default }
+}
+
+/// The report's parts that are the same for plane and surface.
+fn fill_in(report: &mut Report, meshed: &Meshed, args: &RemeshArgs, sizing: &Sizing, metric_file: Option<&Path>) {
+    mesh::fill_in(report, meshed, as_used(args, sizing, metric_file));
+    report.seconds = Seconds { stages: meshed.seconds.clone(), total: 0.0 };
 }
 
 fn as_used(args: &RemeshArgs, sizing: &Sizing, metric_file: Option<&Path>) -> Value {
     json!({
         "in": args.input(), "out": args.out(), "sol": metric_file, "hausd": sizing.hausd, "hmin": sizing.h_min,
-        "hmax": sizing.h_max, "ar": args.features().ar, "repair": args.damage.repair, "hsiz": args.hsiz, "hgrad": sizing.hgrad, "anisotropic": sizing.anisotropic, "fit": !args.no_fit,
-        "memory": args.memory, "report": args.report, "threads": args.run().threads,
+        "hmax": sizing.h_max, "ar": args.features().ar, "repair": args.damage.repair, "hsiz": args.hsiz, "hgrad": sizing.hgrad,
+        "anisotropic": sizing.anisotropic, "optim": args.optim, "nosurf": args.nosurf, "opnbdy": args.opnbdy, "nosizreq": args.nosizreq,
+        "fit": !args.no_fit, "memory": args.memory, "report": args.report, "threads": args.run().threads,
     })
 }

@@ -1,9 +1,9 @@
-//! From mmgs's spellings to ours: `-hausd 0.1` is `--hausd 0.1`.
+//! From mmg's spellings to ours: `-hausd 0.1` is `--hausd 0.1`.
 
 use std::ffi::OsString;
 use voronaut::{Error, Result};
 
-/// Options with names of several letters that mmgs writes with one dash.
+/// Options with names of several letters that mmg writes with one dash.
 const WORDS: [&str; 24] = [
     "in", "out", "sol", "met", "ar", "nr", "hausd", "hmin", "hmax", "hsiz", "hgrad", "hgradreq", "nosizreq", "nosurf",
     "noinsert", "noswap", "nomove", "optim", "nreg", "xreg", "rmc", "opnbdy", "nofem", "keep-ref",
@@ -23,7 +23,7 @@ pub(crate) fn translated(words: impl IntoIterator<Item = OsString>) -> Result<Ve
     }
     if let Some(word) = MISSING.into_iter().find(|missing| words.iter().any(|word| word == missing)) {
         let help =
-            "leave it out: surfaces are adapted as a whole, by one metric, without level sets or files of parameters";
+            "leave it out: meshes are adapted as a whole, by one metric, without level sets or files of parameters";
         return Err(Error::Unsupported { what: format!("remesh {word}"), help: help.into() });
     }
     let mut result = words[..2].to_vec();
@@ -31,7 +31,7 @@ pub(crate) fn translated(words: impl IntoIterator<Item = OsString>) -> Result<Ve
     while let Some(word) = rest.next() {
         let is_number = |word: &&&OsString| word.to_str().is_some_and(|text| text.parse::<f64>().is_ok());
         match word.to_str() {
-            // mmgs's level of verbosity is a number behind -v, or nothing.
+            // mmg's level of verbosity is a number behind -v, or nothing.
             Some("-v") if rest.peek().is_some_and(|next| is_number(&next)) => result.push("--verbosity".into()),
             Some("-xreg" | "-rmc") if rest.peek().is_some_and(|next| is_number(&next)) => {
                 result.push(format!("-{}", word.display()).into());

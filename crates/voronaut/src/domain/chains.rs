@@ -68,6 +68,24 @@ impl Pslg {
         self.with_chains(&chains)
     }
 
+    /// Vertices where curves end or fork, and those where one turns by more than the angle (degrees), if it is given.
+    pub fn corners(&self, angle: Option<f64>) -> Vec<u32> {
+        let incident = self.incident_segments();
+        let other = |s: u32, v: usize| {
+            let [a, b] = self.segments[s as usize].ends;
+            self.point(if a as usize == v { b } else { a })
+        };
+        let is_corner = |&v: &usize| match incident[v][..] {
+            [] => false,
+            [s, t] => {
+                let turn = (self.points[v] - other(s, v)).turn(other(t, v) - self.points[v]);
+                angle.is_some_and(|angle| turn.to_degrees() > angle)
+            }
+            _ => true,
+        };
+        (0..self.points.len()).filter(is_corner).map(|v| v as u32).collect()
+    }
+
     /// Drops a curve's straight vertices. A closed curve that starts at a node keeps it; any other starts anew at a
     /// corner.
     fn straighten(&self, chain: &mut Chain, starts_at_node: bool) {
@@ -222,6 +240,16 @@ mod tests {
         let clean = pslg.without_straight_vertices();
         let fork = |v: &u32| clean.points[*v as usize] == Point::new(0.5, 0.0);
         assert_eq!(clean.segments.iter().flat_map(|s| s.ends).filter(fork).count(), 3);
+    }
+
+    #[test]
+    fn corners_are_turns_and_forks() {
+        let mut pslg = polygon(&SQUARE, &[1; 8]);
+        assert_eq!(pslg.corners(Some(45.0)), [2, 4, 5, 6]);
+        assert!(pslg.corners(Some(91.0)).is_empty() && pslg.corners(None).is_empty());
+        pslg.points.push(Point::new(0.5, 0.5));
+        pslg.segments.push(Segment { ends: [0, 8], ..pslg.segments[0] });
+        assert_eq!(pslg.corners(None), [0, 8]);
     }
 
     #[test]

@@ -62,6 +62,17 @@ impl<'a> Bytes<'a> {
         if found < count { Err(self.cut_off(at)) } else { Ok(()) }
     }
 
+    /// Appends what follows to `row`, up to the end of a line or so many bytes; false where nothing follows.
+    ///
+    /// # Errors
+    /// [`Error::Io`] of a file that cannot be read.
+    pub(super) fn line(&mut self, most: u64, row: &mut Vec<u8>) -> Result<bool> {
+        let found = (&mut self.source).take(most).read_until(b'\n', row);
+        let found = found.map_err(|source| self.io(source))?;
+        self.position += found as u64;
+        Ok(found > 0)
+    }
+
     /// Whether nothing follows.
     ///
     /// # Errors

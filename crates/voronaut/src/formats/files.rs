@@ -1,11 +1,11 @@
 //! Mesh files by the endings of their names.
 
 use super::medit::Form;
-use super::{Document, Fields, Solution, Solutions, medit, obj, off, ply, sol, stl, vtk};
+use super::{Document, Fields, Solution, Solutions, freefem, gmsh, medit, obj, off, ply, sol, stl, vtk};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use std::fs::File;
-use std::io::{self, BufReader, Read, Write};
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
 
 /// A format of meshes.
@@ -13,6 +13,8 @@ use std::path::Path;
 pub enum Format {
     /// Medit's `.mesh` and `.meshb`: everything a [`Mesh`] holds.
     Medit(Form),
+    /// Gmsh's `.msh`, version 4.1 as text unless asked otherwise; read also that of `FreeFEM`: everything a [`Mesh`] holds, and fields.
+    Gmsh(gmsh::Version, Form),
     /// Wavefront's `.obj`: positions, triangles grouped by region label, labelled edges without their labels.
     Obj,
     /// Geomview's `.off` as text: positions and triangles.
@@ -21,23 +23,27 @@ pub enum Format {
     Ply,
     /// Stereolithography `.stl`; written binary: triangles without shared vertices, coordinates rounded to single precision.
     Stl,
-    /// VTK's `.vtu`: triangles, labelled edges, labels and fields.
+    /// VTK's `.vtu`, an unstructured grid: everything a [`Mesh`] holds, and fields.
     Vtu,
+    /// VTK's `.vtp`, polygons: everything a [`Mesh`] holds, and fields.
+    Vtp,
 }
 
 /// Every format, and how names of its files end.
-const ENDINGS: [(&str, Format); 7] = [
+const ENDINGS: [(&str, Format); 9] = [
     ("mesh", Format::Medit(Form::Text)),
     ("meshb", Format::Medit(Form::Binary)),
+    ("msh", Format::Gmsh(gmsh::Version::V4_1, Form::Text)),
     ("obj", Format::Obj),
     ("off", Format::Off),
     ("ply", Format::Ply),
     ("stl", Format::Stl),
     ("vtu", Format::Vtu),
+    ("vtp", Format::Vtp),
 ];
 
 /// How names of mesh files end, for messages.
-pub const MESH_ENDINGS: &str = ".mesh, .meshb, .obj, .off, .ply, .stl or .vtu";
+pub const MESH_ENDINGS: &str = ".mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl";
 
 impl Format {
     /// The format a file name asks for by its ending, in upper or lower case; `None` of other endings.
@@ -60,7 +66,7 @@ impl Format {
 
     /// Whether the format says which faces and edges belong to curves and regions, and may hold a planar domain.
     pub fn may_be_planar(self) -> bool {
-        matches!(self, Format::Medit(_))
+        matches!(self, Format::Medit(_) | Format::Gmsh(..) | Format::Vtu | Format::Vtp)
     }
 
     /// Writes a mesh and fields as far as the format can hold them.
@@ -70,11 +76,13 @@ impl Format {
     pub fn write(self, mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()> {
         match self {
             Format::Medit(form) => medit::write(mesh, form, out),
+            Format::Gmsh(version, form) => gmsh::write(mesh, fields, version, form, out),
             Format::Obj => obj::write(mesh, out),
             Format::Off => off::write(mesh, out),
             Format::Ply => ply::write(mesh, fields, out),
             Format::Stl => stl::write(mesh, out),
-            Format::Vtu => vtk::write(mesh, fields, out),
+            Format::Vtu => vtk::write_vtu(mesh, fields, out),
+            Format::Vtp => vtk::write_vtp(mesh, fields, out),
         }
     }
 }
@@ -89,15 +97,23 @@ pub fn read(path: &Path) -> Result<Document> {
         let help = format!("give a mesh in a file {MESH_ENDINGS}");
         return Err(Error::parse(place, "the name does not end like that of a mesh that can be read", help));
     };
-    let source = open(path)?;
+    let mut source = open(path)?;
     match format {
         Format::Medit(_) => Ok(medit::read(source, &place)?.into()),
+        Format::Gmsh(..) if begins_with_number(&mut source, path)? => Ok(freefem::read(source, &place)?.into()),
+        Format::Gmsh(..) => gmsh::read(source, &place),
         Format::Obj => Ok(obj::read(source, &place)?.into()),
         Format::Off => Ok(off::read(source, &place)?.into()),
         Format::Ply => ply::read(source, &place),
         Format::Stl => Ok(stl::read(source, &place)?.into()),
-        Format::Vtu => Err(Error::Unsupported { what: format!("reading {place}"), help: "a helper adds it".into() }),
+        Format::Vtu | Format::Vtp => vtk::read(source, &place),
     }
+}
+
+/// Whether a file is `FreeFEM`'s where another of the same ending is Gmsh's.
+fn begins_with_number(source: &mut impl BufRead, path: &Path) -> Result<bool> {
+    let start = source.fill_buf().map_err(|source| Error::Io { path: path.into(), source })?;
+    Ok(start.trim_ascii_start().first().is_some_and(u8::is_ascii_digit))
 }
 
 /// Reads a `.sol` or `.solb` file with one value per vertex.

@@ -1,16 +1,20 @@
 //! What formats have no place for.
 
+use super::gmsh::Version;
 use super::{Fields, Format};
 use crate::mesh::Mesh;
 
 /// What a format keeps of a mesh besides positions and triangles.
 #[derive(Default)]
+#[expect(clippy::struct_excessive_bools, reason = "a table of what is kept")]
 struct Kept {
     point_labels: bool,
     triangle_labels: bool,
     edges: bool,
     edge_labels: bool,
-    /// Corners, ridges, and what is required.
+    /// Corners, and required vertices.
+    vertex_marks: bool,
+    /// Ridges, and required edges and triangles.
     marks: bool,
     /// Beside a `.mesh` they have a file of their own.
     fields: bool,
@@ -21,14 +25,15 @@ impl Format {
     pub fn lost(self, mesh: &Mesh, fields: &Fields) -> Vec<String> {
         let kept = self.kept();
         let labels = |labels: &[i32]| labels.iter().filter(|&&label| label != 0).count();
-        let marks =
-            [&mesh.corners, &mesh.ridges, &mesh.required_points, &mesh.required_edges, &mesh.required_triangles];
+        let of_vertices = [&mesh.corners, &mesh.required_points].map(Vec::len).into_iter().sum();
+        let marks = [&mesh.ridges, &mesh.required_edges, &mesh.required_triangles].map(Vec::len).into_iter().sum();
         let all = [
             (kept.point_labels, labels(&mesh.point_labels), "labels of vertices"),
             (kept.triangle_labels, labels(&mesh.triangle_labels), "labels of triangles"),
             (kept.edges, mesh.edges.len(), "labelled edges"),
             (kept.edge_labels || !kept.edges, labels(&mesh.edge_labels), "labels of edges"),
-            (kept.marks, marks.map(Vec::len).into_iter().sum(), "corners, ridges and what is required"),
+            (kept.vertex_marks, of_vertices, "corners and required vertices"),
+            (kept.marks, marks, "ridges, required edges and triangles"),
             (kept.fields, fields.vertices.len() + fields.triangles.len(), "fields"),
         ];
         let lost = all.into_iter().filter(|(kept, count, _)| !kept && *count > 0);
@@ -41,12 +46,15 @@ impl Format {
             triangle_labels: true,
             edges: true,
             edge_labels: true,
+            vertex_marks: true,
             marks: true,
             fields: true,
         };
         match self {
-            Format::Medit(_) | Format::Vtu => all,
-            Format::Ply => Kept { edges: false, edge_labels: false, marks: false, ..all },
+            Format::Medit(_) | Format::Vtu | Format::Vtp | Format::Gmsh(Version::V4_1, _) => all,
+            // Marks of vertices are kept, of edges and triangles not.
+            Format::Gmsh(Version::V2_2, _) => Kept { marks: false, ..all },
+            Format::Ply => Kept { point_labels: true, triangle_labels: true, fields: true, ..Kept::default() },
             Format::Obj => Kept { triangle_labels: true, edges: true, ..Kept::default() },
             Format::Off | Format::Stl => Kept::default(),
         }
@@ -69,10 +77,7 @@ mod tests {
         };
         let lost = |format: Format| format.lost(&mesh, &Fields::default());
         assert!(lost(Format::Vtu).is_empty());
-        assert_eq!(
-            lost(Format::Obj),
-            ["1 labels of vertices", "1 labels of edges", "2 corners, ridges and what is required"]
-        );
+        assert_eq!(lost(Format::Obj), ["1 labels of vertices", "1 labels of edges", "2 corners and required vertices"]);
         assert_eq!(lost(Format::Off).len(), 4);
     }
 }

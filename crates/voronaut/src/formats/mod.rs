@@ -4,7 +4,9 @@ mod bytes;
 mod document;
 mod files;
 mod losses;
+pub mod freefem;
 pub mod geojson;
+pub mod gmsh;
 pub mod medit;
 pub mod obj;
 pub mod off;
@@ -14,7 +16,7 @@ pub mod poly;
 pub mod sol;
 pub mod stl;
 mod values;
-pub(crate) mod vtk;
+pub mod vtk;
 mod words;
 
 pub use document::{Document, Field, Fields};

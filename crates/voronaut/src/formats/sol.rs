@@ -175,7 +175,8 @@ fn write_sections(dimension: u8, sections: [&[SolutionValues]; 2], form: Form, o
 
 fn write_section(sink: &mut Sink<'_>, dimension: u8, name: &str, values: &[SolutionValues]) -> io::Result<()> {
     let kinds = values.iter().map(|values| kind(values, dimension)).collect::<io::Result<Vec<i32>>>()?;
-    let head: Vec<i32> = std::iter::once(values.len() as i32).chain(kinds).collect();
+    let number = i32::try_from(values.len()).map_err(|_| io::Error::other("more than 2^31 solutions"))?;
+    let head: Vec<i32> = std::iter::once(number).chain(kinds).collect();
     let row = 8 * values.iter().map(SolutionValues::components).sum::<usize>();
     let count = values[0].count();
     sink.section(name, count, row, &head)?;

@@ -62,7 +62,7 @@ pub(super) struct Largest {
 pub(super) struct Shortest(pub(super) f64);
 
 /// Longer lines are refused: a binary file may have no line at all.
-const LONGEST_LINE: u64 = 1 << 24;
+pub(super) const LONGEST_LINE: u64 = 1 << 24;
 
 /// Reads a finite number, with the exponent letter of C (`e`) or Fortran (`d`).
 ///
@@ -294,7 +294,7 @@ impl<'a> Words<'a> {
 }
 
 /// White space of ASCII, with the vertical tab that C counts among it.
-fn is_space(byte: u8) -> bool {
+pub(super) fn is_space(byte: u8) -> bool {
     byte.is_ascii_whitespace() || byte == 0x0b
 }
 

@@ -72,6 +72,11 @@ impl Vector {
         self.dot(self).sqrt()
     }
 
+    /// The angle (radians, 0 to pi) between two directions.
+    pub fn turn(self, other: Vector) -> f64 {
+        self.cross(other).abs().atan2(self.dot(other))
+    }
+
     /// The vector turned by +90 degrees.
     #[must_use]
     pub fn perpendicular(self) -> Vector {

@@ -12,6 +12,8 @@ const DIRECTIONS: usize = 12;
 const GAIN: f64 = 1e-3;
 /// Edges whose metric length has a logarithm of at most this size are well within the unit range.
 const UNIT: f64 = 0.3;
+/// Below this quality lengths do not count: beside an edge that must stay whole and is too long, every way off it may make others worse.
+const POOR: f64 = 0.1;
 /// Moves of one seed.
 const MOVES: usize = 6;
 
@@ -33,7 +35,8 @@ pub fn mend_worst(dual: &mut impl Mending, most: usize) -> usize {
     free.into_iter().filter(|&v| mend(dual, v)).count()
 }
 
-/// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out.
+/// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out, unless
+/// the quality is poor.
 fn mend<M: Mending>(dual: &mut M, v: VertexId) -> bool {
     let topology = dual.topology();
     let ring: Vec<[M::Site; 2]> =
@@ -41,16 +44,16 @@ fn mend<M: Mending>(dual: &mut M, v: VertexId) -> bool {
     let misfit = |dual: &M, a, b| dual.straight_length([a, b]).ln().abs();
     let worst_edge =
         |dual: &M, site: M::Site| ring.iter().flatten().map(|&u| misfit(dual, site, u)).fold(0.0, f64::max);
-    let allowed = worst_edge(dual, dual.site(v)).max(UNIT);
-    let least = |dual: &M, site: M::Site| {
+    let least = |dual: &M, site: M::Site, allowed: f64| {
         let least = ring.iter().map(|&[a, b]| dual.quality([site, a, b])).fold(f64::INFINITY, f64::min);
         if worst_edge(dual, site) > allowed { f64::NEG_INFINITY } else { least }
     };
-    let mut now = least(dual, dual.site(v));
+    let mut now = least(dual, dual.site(v), f64::INFINITY);
     let mut has_moved = false;
     for _ in 0..MOVES {
+        let allowed = if now < POOR { f64::INFINITY } else { worst_edge(dual, dual.site(v)).max(UNIT) };
         let frame = dual.local(v).tensor.cholesky();
-        let trials = trials(frame).filter_map(|by| Some((by, least(dual, dual.site_after(v, by)?))));
+        let trials = trials(frame).filter_map(|by| Some((by, least(dual, dual.site_after(v, by)?, allowed))));
         let Some((by, best)) = trials.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         if best < now + GAIN || !dual.shift_by(v, by) {
             break;

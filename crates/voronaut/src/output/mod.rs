@@ -106,7 +106,7 @@ pub fn write_solutions(solutions: &Solutions, path: &Path) -> Result<()> {
 /// As for [`write_mesh`].
 pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
     match Format::from_path(path)? {
-        Format::Vtu => write(path, &vtu::curved(realisation)),
+        Format::Vtu => write_with(path, |out| vtu::write_curved(realisation, out)),
         _ => write_mesh(&realisation.to_mesh(), path),
     }
 }
@@ -117,7 +117,7 @@ pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
 /// [`Error::Unsupported`] for other endings, [`Error::Io`] where the file cannot be written.
 pub fn write_diagram(canvas: &Mesh, distances: &[f64], path: &Path) -> Result<()> {
     demand_diagram(path)?;
-    write(path, &vtu::diagram(canvas, distances))
+    write_with(path, |out| vtu::write_diagram(canvas, distances, out))
 }
 
 /// Refuses names that do not end like a diagram.
@@ -183,9 +183,17 @@ mod tests {
     fn surfaces_read_back_from_every_format_that_is_read() {
         let directory = tempfile::tempdir().unwrap();
         let mesh = crate::surface::torus(2.0, 0.7, 0.4).unwrap().to_mesh();
-        for (ending, tolerance) in
-            [("mesh", 0.0), ("meshb", 0.0), ("obj", 0.0), ("off", 0.0), ("ply", 0.0), ("stl", 1e-6)]
-        {
+        for (ending, tolerance) in [
+            ("mesh", 0.0),
+            ("meshb", 0.0),
+            ("msh", 0.0),
+            ("vtu", 0.0),
+            ("vtp", 0.0),
+            ("obj", 0.0),
+            ("off", 0.0),
+            ("ply", 0.0),
+            ("stl", 1e-6),
+        ] {
             let path = directory.path().join(format!("torus.{ending}"));
             write_mesh(&mesh, &path).unwrap();
             let again = crate::formats::read(&path).unwrap().mesh;

@@ -49,8 +49,13 @@ fn demand_cover(background: &Mesh, file: &Path, domain: &Domain) -> Result<()> {
 pub(super) fn sampling<'a>(field: &dyn MetricField, domain: &Domain, own: Option<&'a Mesh>) -> Result<Cow<'a, Mesh>> {
     match own {
         Some(mesh) => Ok(Cow::Borrowed(mesh)),
-        None => Ok(Cow::Owned(embedded(&Canvas::straight(domain, field, BACKGROUND_VERTICES)?))),
+        None => Ok(Cow::Owned(even(field, domain, BACKGROUND_VERTICES)?)),
     }
+}
+
+/// A triangulation of the domain that is even in the metric, with so many vertices, and all of the domain's own.
+pub(super) fn even(field: &dyn MetricField, domain: &Domain, vertices: usize) -> Result<Mesh> {
+    Ok(embedded(&Canvas::straight(domain, field, vertices)?))
 }
 
 /// The positions and triangles of a canvas.

@@ -11,6 +11,8 @@ mod on_surface;
 mod patches;
 mod protection;
 mod relaxing;
+mod remesh_input;
+mod remesh_sizes;
 mod seeding;
 mod settle;
 mod stopwatch;
@@ -28,6 +30,8 @@ pub use graded::GradedAt;
 pub use mesher::Mesher;
 pub use on_surface::mesh_surface;
 pub use relaxing::Centroid;
+pub use remesh_input::{Keep, RemeshInput};
+pub use remesh_sizes::{Asked, RemeshSizes};
 pub use seeding::Seeding;
 pub use surface_dual::{surface_dual, surface_mesh};
 

@@ -2,6 +2,7 @@
 //! the metric circumradius is largest, or where the nearest seed is farthest.
 
 mod contract;
+mod curve_sizes;
 mod curves;
 mod farthest;
 mod features;
@@ -11,6 +12,7 @@ mod plan;
 mod protected;
 mod segments;
 
+pub use curve_sizes::CurveSizes;
 pub use curves::simplify;
 pub use farthest::{Farthest, refine_farthest};
 pub use features::{FeatureEdge, FeatureSeed, FeatureSeeds, MeasuredCurves};

@@ -47,8 +47,8 @@ impl Plan {
         let constrained = planar.topology.edges().filter(|&h| planar.topology.constraint(h).is_some());
         let edges: Vec<(HalfEdge, bool)> = constrained.map(|h| (h, required(h))).collect();
         let arcs = edges.par_iter().map(|&(h, _)| planar.ends(h)).map(|[a, b]| MetricArc::new(field, a, b)).collect();
-        // With a count given the integral is only where the search for the scale starts.
-        let integral = if matches!(target, Target::Vertices(_)) { rough_complexity } else { complexity };
+        // Elsewhere the integral is only where the search for scale or count starts.
+        let integral = if matches!(target, Target::Complexity(_)) { complexity } else { rough_complexity };
         let complexity = integral(field, &domain.triangles())?;
         Ok(Self { complexity, edges, arcs, corners: planar.topology.vertex_count(), copies: copies(domain) })
     }

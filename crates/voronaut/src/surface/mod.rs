@@ -49,7 +49,7 @@ pub use march::mesh_implicit;
 pub use measure::Component;
 pub(crate) use nearest::closest_weights;
 pub use nearest::{Closest, Nearest};
-pub use read::{WRITTEN, read, read_with};
+pub use read::{WRITTEN, of_file, read, read_with};
 pub use repair::{Damage, Mend, Mended, RepairOptions, repaired};
 pub use shapes::{chair, sphere, torus};
 

@@ -87,7 +87,10 @@ fn read_implicit(spec: &str, rest: &str, edge: Option<f64>) -> Result<Input> {
 pub const WRITTEN: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .obj, .off, .ply, .stl or .mesh";
 
 /// The surface of a file's mesh, and what was mended of it; errors name the file.
-pub(super) fn of_file(file: &str, mesh: &Mesh, options: RepairOptions) -> Result<(Surface, Mended)> {
+///
+/// # Errors
+/// As for [`read_with`] of what makes no surface.
+pub fn of_file(file: &str, mesh: &Mesh, options: RepairOptions) -> Result<(Surface, Mended)> {
     let made = repaired(mesh, options).and_then(|(mesh, mended)| Ok((Surface::new(&mesh)?, mended)));
     made.map_err(|error| match error {
         Error::Domain { what, place, help } => Error::Domain { what, place: format!("{file}, {place}"), help },

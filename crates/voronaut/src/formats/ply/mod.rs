@@ -44,7 +44,8 @@ pub fn read(mut source: impl BufRead, place: &str) -> Result<Document> {
 /// What `out` says.
 pub fn write(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()> {
     let properties = |fields: &[Field]| {
-        fields.iter().flat_map(columns).map(|name| format!("property double {name}\n")).collect::<String>()
+        let names = fields.iter().flat_map(columns);
+        names.fold(String::new(), |text, name| text + "property double " + &name + "\n")
     };
     let [of_vertices, of_faces] = [&fields.vertices, &fields.triangles].map(|fields| properties(fields));
     write!(
@@ -162,7 +163,7 @@ impl Reader {
                 (Shape::Scalar(kind), Role::Label) => label = source.number(kind)? as i32,
                 (Shape::Scalar(kind), Role::End(end)) => ends[end] = Some(vertex(source.number(kind)?, source)?),
                 (Shape::Scalar(kind), Role::Field(field)) => {
-                    self.push_value(element, field, source.number(kind)?, source)?
+                    self.push_value(element, field, source.number(kind)?, source)?;
                 }
                 (Shape::Scalar(kind), Role::None | Role::Vertices) => drop(source.number(kind)?),
             }

@@ -62,7 +62,11 @@ impl Sizing {
         Ok(Sizes::Isotropic(sizes))
     }
 
-    fn check(&self) -> Result<()> {
+    /// Whether the parameters make sense.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] that names one that does not.
+    pub fn check(&self) -> Result<()> {
         Bounds { h_min: Some(self.h_min), h_max: Some(self.h_max), a_max: None }.check()?;
         let fault = |name: &str, value: f64, help: &str| Err(Error::parse("sizes", format!("{name} = {value}"), help));
         match self.hgrad {
