@@ -2,6 +2,8 @@
 
 use crate::reading::Reader;
 use crate::sample::{Binary, Kind, Sample};
+use voronaut::formats::{Field, Fields, SolutionValues, vtk};
+use voronaut::mesh::Mesh;
 
 pub(crate) fn samples() -> Vec<Sample> {
     let mut samples = vec![stl(), ply(false), ply(true)];
@@ -9,6 +11,8 @@ pub(crate) fn samples() -> Vec<Sample> {
         samples.push(Medit::new(version, big).mesh(if version < 3 { 2 } else { 3 }));
         samples.push(Medit::new(version, big).solutions(if version < 3 { 2 } else { 3 }));
     }
+    samples.extend([gmsh_2(false), gmsh_4(true)]);
+    samples.extend(vtk_files());
     samples
 }
 
@@ -138,7 +142,7 @@ fn ply(big: bool) -> Sample {
     file.raw(b"property float error\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n");
     for (i, [x, y]) in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].into_iter().enumerate() {
         file.f32(x);
-        file.f64(y);
+        file.f64(y.into());
         file.f32(0.5);
         file.byte(255, None);
         file.i32(-7, None);
@@ -154,4 +158,102 @@ fn ply(big: bool) -> Sample {
     file.i32(3, REFERENCE);
     file.i32(0, REFERENCE);
     file.finish(if big { "big.ply" } else { "little.ply" }, Reader::Ply, 0..4)
+}
+
+fn gmsh_2(big: bool) -> Sample {
+    let mut file = Binary::new(big);
+    file.raw(b"$MeshFormat\n2.2 1 8\n");
+    file.i32(1, None);
+    file.raw(b"\n$EndMeshFormat\n$Nodes\n4\n");
+    for (tag, [x, y]) in (1..).zip(SQUARE) {
+        file.i32(tag, None);
+        [x, y, 0.0].into_iter().for_each(|x| file.f64(x));
+    }
+    file.end("$EndNodes");
+    file.raw(b"$Elements\n3\n");
+    for (kind, tag, elements) in [(1, 1, &[[1, 2, 0]][..]), (2, 2, &[[1, 2, 3], [1, 3, 4]])] {
+        [kind, elements.len() as i32].into_iter().for_each(|number| file.i32(number, None));
+        file.i32(2, COUNT);
+        for (tag, element) in (tag..).zip(elements) {
+            [tag, 7, 1].into_iter().for_each(|number| file.i32(number, None));
+            element[..=kind as usize].iter().for_each(|&vertex| file.i32(vertex, REFERENCE));
+        }
+    }
+    file.end("$EndElements");
+    file.finish("2.2-binary.msh", Reader::Gmsh, 1..5)
+}
+
+fn gmsh_4(big: bool) -> Sample {
+    let mut file = Binary::new(big);
+    file.raw(b"$MeshFormat\n4.1 1 8\n");
+    file.i32(1, None);
+    file.raw(b"\n$EndMeshFormat\n$Entities\n");
+    [0, 1, 1, 0].into_iter().for_each(|count| file.i64(count, COUNT));
+    for group in [5, 7] {
+        file.i32(1, None);
+        file.raw(&[0; 6 * 8]);
+        file.i64(1, COUNT);
+        file.i32(group, None);
+        file.i64(0, COUNT);
+    }
+    file.raw(b"\n$EndEntities\n$Nodes\n");
+    [(1, COUNT), (4, COUNT), (1, None), (4, None)].into_iter().for_each(|(number, kind)| file.i64(number, kind));
+    [2, 1, 0].into_iter().for_each(|number| file.i32(number, None));
+    file.i64(4, COUNT);
+    (1..=4).for_each(|tag| file.i64(tag, None));
+    SQUARE.into_iter().flat_map(|[x, y]| [x, y, 0.5]).for_each(|x| file.f64(x));
+    file.end("$EndNodes");
+    file.raw(b"$Elements\n");
+    [(2, COUNT), (3, COUNT), (1, None), (3, None)].into_iter().for_each(|(number, kind)| file.i64(number, kind));
+    for (dimension, tag, elements) in [(1, 1, &[[1, 2, 0]][..]), (2, 2, &[[1, 2, 3], [1, 3, 4]])] {
+        [dimension, 1, dimension].into_iter().for_each(|number| file.i32(number, None));
+        file.i64(elements.len() as i64, COUNT);
+        for (tag, element) in (tag..).zip(elements) {
+            file.i64(tag, None);
+            element[..=dimension as usize].iter().for_each(|&vertex| file.i64(vertex, REFERENCE));
+        }
+    }
+    file.end("$EndElements");
+    file.raw(b"$NodeData\n1\n\"u\"\n1\n0.0\n3\n0\n1\n4\n");
+    for tag in 1..=4 {
+        file.i32(tag, REFERENCE);
+        file.f64(0.5);
+    }
+    file.end("$EndNodeData");
+    file.finish("4.1-binary.msh", Reader::Gmsh, 1..5)
+}
+
+const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.1]];
+
+/// Our own files, and those of other programs.
+fn vtk_files() -> Vec<Sample> {
+    let mesh = Mesh {
+        points: SQUARE.map(|[x, y]| [x, y, 0.0]).into(),
+        point_labels: vec![1, -2, 3, i32::MIN],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        triangle_labels: vec![7, 8],
+        edges: vec![[0, 1]],
+        edge_labels: vec![9],
+        required_edges: vec![0],
+        ..Mesh::default()
+    };
+    let values = SolutionValues::Tensor(vec![[1.0, 0.5, 2.0]; 4]);
+    let fields = Fields { vertices: vec![Field { name: "metric".into(), values }], triangles: Vec::new() };
+    let (mut vtu, mut vtp) = (Vec::new(), Vec::new());
+    vtk::write_vtu(&mesh, &fields, &mut vtu).expect("memory");
+    vtk::write_vtp(&mesh, &fields, &mut vtp).expect("memory");
+    let mut samples = vec![arrays("own.vtu", &vtu), arrays("own.vtp", &vtp)];
+    let zlib = include_bytes!("../data/vtk/vtk-appended-raw-zlib-32-big.vtu");
+    let base64 = include_bytes!("../data/vtk/vtk-appended-base64-zlib-64.vtp");
+    samples.extend([arrays("zlib.vtu", zlib), arrays("base64.vtp", base64)]);
+    let meshio = include_bytes!("../data/vtk/meshio-zlib.vtu");
+    samples.push(Sample::opaque("meshio.vtu", Reader::Vtk, meshio.to_vec(), meshio.trim_ascii_end().len()));
+    samples
+}
+
+/// A file that ends with arrays, behind which nothing matters.
+fn arrays(name: &'static str, file: &[u8]) -> Sample {
+    let end = b"</AppendedData>";
+    let end = file.windows(end.len()).rposition(|window| window == end).expect("the end of the arrays");
+    Sample::opaque(name, Reader::Vtk, file.to_vec(), file[..end].trim_ascii_end().len())
 }

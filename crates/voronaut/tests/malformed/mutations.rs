@@ -1,5 +1,6 @@
 //! Damage done to files.
 
+use crate::reading::Reader;
 use crate::sample::{Cuts, Kind, Mark, Number, Sample, in_order};
 
 /// Every number that matters, replaced by every one that must not stand there; with words on what was done.
@@ -21,7 +22,7 @@ pub(crate) fn lies(sample: &Sample) -> impl Iterator<Item = (String, Vec<u8>)> {
 pub(crate) fn cuts(sample: &Sample) -> impl Iterator<Item = (String, Vec<u8>)> {
     let whole = sample.bytes.trim_ascii_end().len();
     let must_fail = move |length: &usize| match &sample.cuts {
-        Cuts::All => true,
+        Cuts::Bytes(ends) => !ends.contains(length),
         Cuts::Words(ends) => {
             let left = words(&sample.bytes[..*length]);
             !ends.iter().any(|&end| left == end || left == end + 1)
@@ -102,7 +103,10 @@ fn false_counts(truth: i64) -> Vec<i64> {
 
 fn false_references(sample: &Sample) -> Vec<i64> {
     let (first, end) = (sample.references.start, sample.references.end);
-    [HUGE.as_slice(), &[first - 1, end, end + 100, first - 100]].concat()
+    let mut references = [HUGE.as_slice(), &[first - 1, end, end + 100, first - 100]].concat();
+    // There -1 is the last vertex so far.
+    references.retain(|&reference| reference != -1 || sample.reader != Reader::Obj);
+    references
 }
 
 fn words(bytes: &[u8]) -> usize {

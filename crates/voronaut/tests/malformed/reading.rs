@@ -3,15 +3,18 @@
 use crate::sample::Sample;
 use peak_alloc::PeakAlloc;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use voronaut::error::{Error, Result};
-use voronaut::formats::{Document, geojson, medit, obj, off, ply, points, poly, sol, stl};
+use voronaut::formats::{Document, freefem, geojson, gmsh, medit, obj, off, ply, points, poly, sol, stl, vtk};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Only one file is read at a time, for all memory is counted together.
-static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+/// What must be held while files are read: all memory is counted together.
+pub(crate) fn one_at_a_time() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// No file here has more than some thousand bytes; what readers may need for that, with buffers.
 const MOST_MEMORY: usize = 1 << 20;
@@ -21,7 +24,9 @@ const PLACE: &str = "the file";
 /// Which reader a file is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Reader {
+    Freefem,
     Geojson,
+    Gmsh,
     Medit,
     Obj,
     Off,
@@ -30,6 +35,7 @@ pub(crate) enum Reader {
     Poly,
     Sol,
     Stl,
+    Vtk,
 }
 
 /// What came of it.
@@ -46,7 +52,6 @@ pub(crate) enum Outcome {
 
 /// Reads bytes as a sample's format.
 pub(crate) fn read(sample: &Sample, bytes: &[u8]) -> Outcome {
-    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     MEMORY.reset_peak_usage();
     let before = MEMORY.current_usage();
     let found = catch_unwind(AssertUnwindSafe(|| read_as(sample.reader, bytes)));
@@ -70,6 +75,9 @@ fn read_as(reader: Reader, bytes: &[u8]) -> Result<bool> {
         std::str::from_utf8(bytes).map_err(|_| Error::parse(format!("{PLACE}:1"), "no text", help))
     };
     let document = match reader {
+        Reader::Freefem => freefem::read(bytes, PLACE)?.into(),
+        Reader::Gmsh => gmsh::read(bytes, PLACE)?,
+        Reader::Vtk => vtk::read(bytes, PLACE)?,
         Reader::Medit => medit::read(bytes, PLACE)?.into(),
         Reader::Obj => obj::read(bytes, PLACE)?.into(),
         Reader::Off => off::read(bytes, PLACE)?.into(),
@@ -110,11 +118,11 @@ fn is_sound(document: &Document) -> bool {
         && fields.iter().all(|(fields, count)| fields.iter().all(|field| field.values.count() == *count))
 }
 
-/// Whether an error says what to do, and where it is: in which file, and there in which line, byte or feature.
+/// Whether an error says what to do, and where it is: in which file, and if that is malformed, in which line, byte or feature.
 fn is_good(error: &Error) -> bool {
     let place = match error {
         Error::Parse { place, .. } | Error::Domain { place, .. } => place,
-        Error::Unsupported { what, .. } => what,
+        Error::Unsupported { what, .. } => return what.contains(PLACE) && !error.help().is_empty(),
         _ => return false,
     };
     let is_digit = |rest: &str| rest.starts_with(|c: char| c.is_ascii_digit());

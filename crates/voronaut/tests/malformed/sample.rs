@@ -45,9 +45,9 @@ pub(crate) enum Number {
 
 /// Where a file can be cut off so that this must be seen.
 pub(crate) enum Cuts {
-    /// Anywhere.
-    All,
-    /// Where neither so many words are left, nor one more: there the format lets a file end.
+    /// Anywhere but where so many bytes are left: there the format lets a file end.
+    Bytes(Vec<usize>),
+    /// Where neither so many words are left, nor one more.
     Words(Vec<usize>),
 }
 
@@ -70,13 +70,14 @@ impl Sample {
                 None => bytes.extend(c.to_string().bytes()),
             }
         }
-        let cuts = if ends.is_empty() { Cuts::All } else { Cuts::Words(ends) };
+        let cuts = if ends.is_empty() { Cuts::Bytes(ends) } else { Cuts::Words(ends) };
         Self { name, reader, bytes, marks, references, cuts }
     }
 
-    /// A file that must be whole, and of whose parts nothing is known.
-    pub(crate) fn opaque(name: &'static str, reader: Reader, bytes: Vec<u8>) -> Self {
-        Self { name, reader, bytes, marks: Vec::new(), references: 0..0, cuts: Cuts::All }
+    /// A file of whose parts nothing is known, but that its first bytes must all be there.
+    pub(crate) fn opaque(name: &'static str, reader: Reader, bytes: Vec<u8>, needed: usize) -> Self {
+        let cuts = Cuts::Bytes((needed..=bytes.len()).collect());
+        Self { name, reader, bytes, marks: Vec::new(), references: 0..0, cuts }
     }
 }
 
@@ -85,11 +86,12 @@ pub(crate) struct Binary {
     pub(crate) bytes: Vec<u8>,
     pub(crate) marks: Vec<Mark>,
     pub(crate) big: bool,
+    ends: Vec<usize>,
 }
 
 impl Binary {
     pub(crate) fn new(big: bool) -> Self {
-        Self { bytes: Vec::new(), marks: Vec::new(), big }
+        Self { bytes: Vec::new(), marks: Vec::new(), big, ends: Vec::new() }
     }
 
     pub(crate) fn raw(&mut self, bytes: &[u8]) {
@@ -116,9 +118,15 @@ impl Binary {
         self.push(&value.to_le_bytes(), Some(Kind::Coordinate), Number::F64(self.big));
     }
 
-    /// The sample, which must be whole.
+    /// The line that ends a section, behind which the format lets the file end.
+    pub(crate) fn end(&mut self, line: &str) {
+        self.raw(format!("\n{line}\n").as_bytes());
+        self.ends.extend([self.bytes.len() - 1, self.bytes.len()]);
+    }
+
+    /// The sample.
     pub(crate) fn finish(self, name: &'static str, reader: Reader, references: Range<i64>) -> Sample {
-        Sample { name, reader, bytes: self.bytes, marks: self.marks, references, cuts: Cuts::All }
+        Sample { name, reader, bytes: self.bytes, marks: self.marks, references, cuts: Cuts::Bytes(self.ends) }
     }
 
     fn push(&mut self, little: &[u8], kind: Option<Kind>, number: Number) {

@@ -362,11 +362,11 @@ impl<'a, R: BufRead> Tags<'a, R> {
     }
 
     fn finish(self) -> Result<Grid<'a>> {
-        let grid = self.grid;
-        if grid.pieces.is_empty() {
-            let what = format!("no {} with a piece in it", type_name(grid.kind));
-            return Err(Error::parse(grid.head.place, what, "check that the program that wrote it had finished"));
+        if self.grid.pieces.is_empty() {
+            let what = format!("no {} with a piece in it", type_name(self.grid.kind));
+            return Err(self.error(&what, "check that the program that wrote it had finished"));
         }
+        let grid = self.grid;
         if let Some((_, _, array)) = grid.pieces.iter().flat_map(|piece| &piece.appended).next() {
             return Err(array.error(
                 grid.head,

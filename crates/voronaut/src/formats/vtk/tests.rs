@@ -258,10 +258,10 @@ fn what_is_no_such_file() {
         ("\u{89}HDF\r\n\u{1a}\n<", "the file does not begin with the tag VTKFile"),
         ("<VTKFile type=\"ImageData\"/>", "not supported: a is a VTK file of type 'ImageData'"),
         ("<VTKFile type=\"PolyData\"><PolyData>", "a, byte 35: the file ends in the midst of its tags"),
-        ("<VTKFile type=\"PolyData\"><PolyData/></VTKFile>", "a: no PolyData with a piece in it"),
+        ("<VTKFile type=\"PolyData\"><PolyData/></VTKFile>", "a, byte 46: no PolyData with a piece in it"),
         ("<VTKFile type=\"PolyData\" byte_order=\"Middle\"/>", "an unknown byte_order 'Middle'"),
         ("<VTKFile type=\"PolyData\" header_type=\"UInt16\"/>", "an unknown header_type 'UInt16'"),
-        ("", "a: no UnstructuredGrid with a piece in it"),
+        ("", "a, byte 0: no UnstructuredGrid with a piece in it"),
     ] {
         let message = read(text.as_bytes(), "a").unwrap_err().to_string();
         assert!(message.contains(expected), "{message}\n{expected}");
