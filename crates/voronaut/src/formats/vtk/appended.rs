@@ -47,6 +47,9 @@ pub(super) fn read(source: &mut dyn BufRead, start: u64, is_raw: bool, grid: &mu
         array.stored = stored.map_err(|error| misread(&error, &array, head))?;
         grid.pieces[i].arrays.push((of, array));
     }
+    for piece in &mut grid.pieces {
+        piece.arrays.sort_by_key(|(_, array)| array.tag);
+    }
     Ok(())
 }
 

@@ -55,7 +55,7 @@ impl Shapes {
         right?;
         match (kind, vertices) {
             (types::LINE | types::POLY_LINE, _) => {
-                self.edges.extend(vertices.windows(2).map(|ends| [ends[0], ends[1]]))
+                self.edges.extend(vertices.windows(2).map(|ends| [ends[0], ends[1]]));
             }
             (types::TRIANGLE_STRIP, _) => {
                 let turned = |(i, v): (usize, &[u32])| if i % 2 == 0 { [v[0], v[1], v[2]] } else { [v[1], v[0], v[2]] };

@@ -17,11 +17,11 @@ const MARKS: [&str; 3] = ["corner", "required", "ridge"];
 pub(super) struct Data {
     labels: Option<Vec<i32>>,
     marks: HashMap<String, Vec<i64>>,
-    pub(super) fields: Vec<Numbers>,
+    pub(super) fields: Vec<Unsorted>,
 }
 
 /// A field whose type is not yet known.
-pub(super) struct Numbers {
+pub(super) struct Unsorted {
     name: String,
     components: usize,
     numbers: Vec<f64>,
@@ -52,7 +52,7 @@ impl Data {
             } else {
                 let (name, byte) = (array.name.clone(), array.byte);
                 let numbers = array.into_reals(count.saturating_mul(components), head)?;
-                data.fields.push(Numbers { name, components: components as usize, numbers, byte });
+                data.fields.push(Unsorted { name, components: components as usize, numbers, byte });
             }
         }
         Ok(data)
@@ -82,7 +82,7 @@ fn read_labels(array: Array, count: u64, head: Head<'_>) -> Result<Vec<i32>> {
     labels.into_iter().enumerate().map(label).collect()
 }
 
-impl Numbers {
+impl Unsorted {
     /// How many numbers the entries have.
     pub(super) fn components(&self) -> usize {
         self.components
@@ -120,7 +120,7 @@ impl Numbers {
                 let numbers = numbers.as_chunks::<3>().0.iter().flat_map(|v| [v[0], v[1]]).collect();
                 SolutionValues::Vector { components: 2, numbers }
             }
-            9 if !rows().iter().all(|m| m[1] == m[3] && m[2] == m[6] && m[5] == m[7]) => {
+            9 if !rows().iter().all(|m| m[1] - m[3] == 0.0 && m[2] - m[6] == 0.0 && m[5] - m[7] == 0.0) => {
                 SolutionValues::Vector { components, numbers }
             }
             9 if is_planar && rows().iter().all(|m| m[2] == 0.0 && m[5] == 0.0) => {
@@ -136,7 +136,7 @@ impl Numbers {
 /// The fields of all pieces, one behind the other.
 #[derive(Default)]
 pub(super) struct Joined {
-    fields: Vec<Numbers>,
+    fields: Vec<Unsorted>,
     is_begun: bool,
 }
 
@@ -145,12 +145,13 @@ impl Joined {
     ///
     /// # Errors
     /// [`Error::Parse`](crate::Error::Parse) where pieces differ in what they have.
-    pub(super) fn append(&mut self, fields: Vec<Numbers>, head: Head<'_>) -> Result<()> {
+    pub(super) fn append(&mut self, fields: Vec<Unsorted>, head: Head<'_>) -> Result<()> {
         if !std::mem::replace(&mut self.is_begun, true) {
             self.fields = fields;
             return Ok(());
         }
-        let mut found: HashMap<String, Numbers> = fields.into_iter().map(|field| (field.name.clone(), field)).collect();
+        let mut found: HashMap<String, Unsorted> =
+            fields.into_iter().map(|field| (field.name.clone(), field)).collect();
         for field in &mut self.fields {
             let same = found.remove(&field.name).filter(|same| same.components == field.components);
             let Some(same) = same else {

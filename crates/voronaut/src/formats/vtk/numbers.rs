@@ -39,6 +39,8 @@ pub(super) struct Array {
     pub(super) kind: Kind,
     /// Numbers per entry; `None` where the file does not say.
     pub(super) components: Option<u64>,
+    /// Where its tag is.
+    pub(super) tag: u64,
     /// Where its text or its bytes begin.
     pub(super) byte: u64,
     pub(super) stored: Stored,
@@ -181,7 +183,7 @@ mod tests {
     const PLAIN: Layout = Layout { order: Order::Big, is_wide: false, is_compressed: false };
 
     fn array(kind: Kind, stored: Stored) -> Array {
-        Array { name: "a".into(), kind, components: None, byte: 5, stored }
+        Array { name: "a".into(), kind, components: None, tag: 0, byte: 5, stored }
     }
 
     #[test]

@@ -60,6 +60,7 @@ pub(super) struct Piece {
     pub(super) points: u64,
     /// As [`CELLS`] has them.
     pub(super) cells: [u64; 5],
+    /// In the order of their tags.
     pub(super) arrays: Vec<(Section, Array)>,
     /// Arrays in the appended section, by where they begin there.
     pub(super) appended: Vec<(u64, Section, Array)>,
@@ -96,7 +97,7 @@ pub(super) struct Grid<'a> {
 /// # Errors
 /// [`Error::Parse`] with the byte of what is no XML, or not as VTK has it; [`Error::Unsupported`] of other types of files and
 /// compressors; [`Error::Io`] of what cannot be read.
-pub(super) fn read<'a>(source: impl BufRead, place: &'a str) -> Result<Grid<'a>> {
+pub(super) fn read(source: impl BufRead, place: &str) -> Result<Grid<'_>> {
     let layout = Layout { order: Order::Little, is_wide: false, is_compressed: false };
     let grid = Grid { head: Head { place, layout }, kind: Type::UnstructuredGrid, pieces: Vec::new() };
     let xml = Reader::from_reader(Characters::new(source));
@@ -214,7 +215,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
         Ok(())
     }
 
-    /// What the tag VTKFile says.
+    /// What the tag `VTKFile` says.
     fn read_head(&mut self, tag: &BytesStart<'_>) -> Result<()> {
         let kind = self.attribute(tag, "type")?.unwrap_or_default();
         self.grid.kind = [Type::UnstructuredGrid, Type::PolyData]
@@ -262,13 +263,11 @@ impl<'a, R: BufRead> Tags<'a, R> {
     /// An attribute that counts something that the mesh numbers with 32 bits.
     fn count(&self, tag: &BytesStart<'_>, name: &str) -> Result<Option<u64>> {
         let Some(value) = self.attribute(tag, name)? else { return Ok(None) };
-        match value.trim().parse::<u32>() {
-            Ok(count) => Ok(Some(count.into())),
-            Err(_) => {
-                let what = format!("{name}=\"{}\" is not a whole number from 0 to {}", shortened(&value), u32::MAX);
-                Err(self.error(&what, "correct the count"))
-            }
-        }
+        let count = value.trim().parse::<u32>().map_err(|_| {
+            let what = format!("{name}=\"{}\" is not a whole number from 0 to {}", shortened(&value), u32::MAX);
+            self.error(&what, "correct the count")
+        })?;
+        Ok(Some(count.into()))
     }
 
     /// The array of a tag; `None` where nobody needs it.
@@ -288,7 +287,8 @@ impl<'a, R: BufRead> Tags<'a, R> {
             })?),
         };
         let format = self.format(&name, tag)?;
-        let array = Array { name, kind, components, byte: self.byte, stored: Stored::Plain(Vec::new()) };
+        let array =
+            Array { name, kind, components, tag: self.byte, byte: self.byte, stored: Stored::Plain(Vec::new()) };
         Ok(Some(Open { section, format, array }))
     }
 

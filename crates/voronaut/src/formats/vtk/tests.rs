@@ -205,7 +205,7 @@ fn damaged_files() {
             "Points=\"1e18\"",
             "byte 72: NumberOfPoints=\"1e18\" is not a whole number from 0 to 4294967295",
         ),
-        ("Points=\"3\"", "Points=\"4294967295\"", "array 'h' holds 3 numbers, where 4294967295 are needed"),
+        ("Points=\"3\"", "Points=\"4294967295\"", "array '' holds 9 numbers, where 12884901885 are needed"),
         ("Cells=\"2\"", "Cells=\"-2\"", "NumberOfCells=\"-2\" is not a whole number from 0 to 4294967295"),
         ("NumberOfCells=\"2\"", "", "a piece without NumberOfCells"),
         ("Cells=\"2\"", "Cells=\"1\"", "array 'types' holds more than 1 numbers"),

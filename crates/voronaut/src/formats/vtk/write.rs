@@ -32,12 +32,14 @@ macro_rules! numbers {
 
 numbers!(u8: "UInt8", i32: "Int32", i64: "Int64", f64: "Float64");
 
+type WriteOnce<'a> = dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a;
+
 /// An array, and how its numbers are written.
 pub(crate) struct Array<'a> {
     /// Its tag, up to the format.
     tag: String,
     bytes: u64,
-    write: Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>,
+    write: Box<WriteOnce<'a>>,
 }
 
 impl<'a> Array<'a> {
