@@ -22,8 +22,15 @@ fuzz_target!(|input: &[u8]| {
         assert_eq!(sorted.mesh.points, document.mesh.points);
         assert_eq!(sorted.mesh.triangles.len(), document.mesh.triangles.len());
         check_document(&sorted);
-        let text = again(&sorted, Form::Text);
-        assert_same_document(&text, &sorted);
+        let all = [&sorted.fields.vertices, &sorted.fields.triangles];
+        if all
+            .into_iter()
+            .any(|fields| fields.iter().enumerate().any(|(i, a)| fields[..i].iter().any(|b| a.name == b.name)))
+        {
+            // Of the same name and step: such fields get other names each time.
+            return;
+        }
+        assert_same_document(&again(&sorted, Form::Text), &sorted);
         assert_same_document(&again(&sorted, Form::Binary), &sorted);
     }
 });

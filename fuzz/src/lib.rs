@@ -38,9 +38,9 @@ fn check_error(error: &Error) {
     };
     assert!(place.contains(PLACE), "no place: {error}");
     let is_number = |c: char| c.is_ascii_digit();
-    let numbered = [":", ", byte ", ", feature "].iter().any(|mark| {
-        place.split(&format!("{PLACE}{mark}")).skip(1).any(|rest| rest.starts_with(is_number))
-    });
+    let numbered = [":", ", byte ", ", feature "]
+        .iter()
+        .any(|mark| place.split(&format!("{PLACE}{mark}")).skip(1).any(|rest| rest.starts_with(is_number)));
     assert!(numbered || !matches!(error, Error::Parse { .. }), "neither line nor byte: {error}");
 }
 

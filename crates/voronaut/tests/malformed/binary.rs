@@ -116,7 +116,11 @@ impl Medit {
 
     fn finish(mut self, name: &'static str, reader: Reader) -> Sample {
         self.file.i32(54, None);
-        if self.version < 3 { self.file.i32(0, None) } else { self.file.i64(0, None) }
+        if self.version < 3 {
+            self.file.i32(0, None)
+        } else {
+            self.file.i64(0, None)
+        }
         self.file.finish(name, reader, 1..4)
     }
 }
@@ -138,7 +142,9 @@ fn ply(big: bool) -> Sample {
     let order = if big { "big" } else { "little" };
     file.raw(format!("ply\nformat binary_{order}_endian 1.0\n").as_bytes());
     file.raw(b"element vertex 4\nproperty float x\nproperty double y\nproperty float z\nproperty uchar red\nproperty int label\n");
-    file.raw(b"property double u\nelement face 2\nproperty list int int vertex_index\nproperty list uchar short extra\n");
+    file.raw(
+        b"property double u\nelement face 2\nproperty list int int vertex_index\nproperty list uchar short extra\n",
+    );
     file.raw(b"property float error\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n");
     for (i, [x, y]) in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].into_iter().enumerate() {
         file.f32(x);

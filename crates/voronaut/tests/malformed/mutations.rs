@@ -50,7 +50,9 @@ fn text_lies(sample: &Sample, mark: &Mark) -> Vec<Vec<u8>> {
     let text = std::str::from_utf8(&sample.bytes[mark.place.clone()]).expect("text");
     let whole = || text.parse::<i64>().expect("a whole number");
     let numbers = match mark.kind {
-        Kind::Coordinate => return ["nan", "inf", "-inf", "1e999", "x", "--1", "0x1"].map(|x| x.as_bytes().into()).into(),
+        Kind::Coordinate => {
+            return ["nan", "inf", "-inf", "1e999", "x", "--1", "0x1"].map(|x| x.as_bytes().into()).into();
+        }
         Kind::Count => false_counts(whole()),
         Kind::Reference => false_references(sample),
         Kind::Dimension => vec![0, 1, 4, 5 - whole(), -2, 1 << 32],
@@ -129,7 +131,22 @@ impl Dice {
 
 /// Words that mean something somewhere.
 const WORDS: [&str; 16] = [
-    "0", "-1", "1", "3", "4294967295", "4294967296", "1e18", "1e308", "nan", "End", "#", "\n", "\"", "Triangles", ">", "-0",
+    "0",
+    "-1",
+    "1",
+    "3",
+    "4294967295",
+    "4294967296",
+    "1e18",
+    "1e308",
+    "nan",
+    "End",
+    "#",
+    "\n",
+    "\"",
+    "Triangles",
+    ">",
+    "-0",
 ];
 
 /// Flips a bit, puts a byte, a word or a number somewhere, or drops, doubles or swaps parts, lines or words among them.
@@ -162,7 +179,11 @@ fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
         }
         7 => {
             let end = (at + 1 + dice.roll(16)).min(bytes.len());
-            if dice.roll(2) == 0 { drop(bytes.drain(at..end)) } else { bytes.splice(at..at, bytes[at..end].to_vec()).for_each(drop) }
+            if dice.roll(2) == 0 {
+                drop(bytes.drain(at..end))
+            } else {
+                bytes.splice(at..at, bytes[at..end].to_vec()).for_each(drop)
+            }
         }
         _ => {
             let number = [0, 0xff, 0x7f, 0x80][dice.roll(4)];

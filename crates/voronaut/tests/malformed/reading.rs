@@ -86,7 +86,8 @@ fn read_as(reader: Reader, bytes: &[u8]) -> Result<bool> {
         Reader::Sol => {
             let read = sol::read_all(bytes, PLACE)?;
             let all = || read.vertices.iter().chain(&read.triangles);
-            let is_finite = all().all(|values| (0..values.count()).all(|i| values.row(i).iter().all(|x| x.is_finite())));
+            let is_finite =
+                all().all(|values| (0..values.count()).all(|i| values.row(i).iter().all(|x| x.is_finite())));
             return Ok(is_finite && all().next().is_some());
         }
         Reader::Poly => {
@@ -97,7 +98,11 @@ fn read_as(reader: Reader, bytes: &[u8]) -> Result<bool> {
         Reader::Points => {
             let text = text()?;
             let (plane, space) = (points::read(text, PLACE), points::read_in_space(text, PLACE));
-            return Ok(if let Ok(points) = plane { points.iter().all(|p| p.is_finite()) } else { space?.iter().all(|p| p.is_finite()) });
+            return Ok(if let Ok(points) = plane {
+                points.iter().all(|p| p.is_finite())
+            } else {
+                space?.iter().all(|p| p.is_finite())
+            });
         }
         Reader::Geojson => {
             let read = geojson::read(text()?, PLACE)?;

@@ -30,18 +30,23 @@ const PLANE: &str = "MeshVersionFormatted 2\nDimension ^2\nVertices\n!4\n~0 ~0 1
 Edges !3\n@1 @2 5\n@2 @3 6\n@3 @4 6\n;\nTriangles\n!2\n@1 @2 @3 1\n@1 @3 @4 -2147483648\n;\nCorners\n!2\n@2\n@4\n;
 RequiredVertices !2\n@1\n@4\n;RequiredEdges !1\n2\n;Ridges !1\n3\n;RequiredTriangles\n!1\n2\n;End\n";
 
-const SPACE: &str = "MeshVersionFormatted 1\nDimension\n^3\n# in space\nTriangles !2\n@3 @2 @1 6\n@1 @2 @3 7\nNormals 1\n0 0 1
+const SPACE: &str =
+    "MeshVersionFormatted 1\nDimension\n^3\n# in space\nTriangles !2\n@3 @2 @1 6\n@1 @2 @3 7\nNormals 1\n0 0 1
 Quadrilaterals 0\nVertices !3\n~0 ~0 ~0 0\n~0 ~1 ~0 0\n~0 ~0 ~1.25 5\n;";
 
-const TENSORS: &str = "MeshVersionFormatted 2\n\nDimension ^2\n\nSolAtVertices\n!3\n!1 !3\n~1 ~0.5 ~2\n~1.D0 ~0 ~1e-9\n~3 ~0 ~3\n;End\n";
+const TENSORS: &str =
+    "MeshVersionFormatted 2\n\nDimension ^2\n\nSolAtVertices\n!3\n!1 !3\n~1 ~0.5 ~2\n~1.D0 ~0 ~1e-9\n~3 ~0 ~3\n;End\n";
 
-const SEVERAL: &str = "MeshVersionFormatted 2\nDimension\n^3\nSolAtVertices !2\n!3 1 2 3\n~0.5 ~1 ~2 ~3 ~1 ~0 ~1 ~0 ~0 ~1
+const SEVERAL: &str =
+    "MeshVersionFormatted 2\nDimension\n^3\nSolAtVertices !2\n!3 1 2 3\n~0.5 ~1 ~2 ~3 ~1 ~0 ~1 ~0 ~0 ~1
 ~0.25 ~1 ~2 ~3 ~4 ~0 ~4 ~0 ~0 ~4\n;SolAtTriangles\n!2\n!1 1\n~7\n~8\n;End\n";
 
-const OBJ: &str = ";mtllib a.mtl\n;v ~0 ~0 ~0\n;v ~1 ~0 ~0 ;# corner\n;v ~1 ~1 ~0\n;v ~0 ~1e-3 ~0.5\n;vt ;0 0\n;g region_-7
+const OBJ: &str =
+    ";mtllib a.mtl\n;v ~0 ~0 ~0\n;v ~1 ~0 ~0 ;# corner\n;v ~1 ~1 ~0\n;v ~0 ~1e-3 ~0.5\n;vt ;0 0\n;g region_-7
 ;f @1 @2 @3\n;f @1/2/3 @3//1 @4/2\n;g other\n;f @4 @3 @2\n;l @1 @2\n;l @2 @3\n;";
 
-const OFF: &str = "OFF\n!4 !3 0\n~0 ~0 ~0\n~1 ~0 ~0\n~1 ~1 ~0\n~0 ~1 ~0.5\n4 @0 @1 @2 @3 \n!3 @2 @1 @0 # a comment\n!3 @3 @2 @1\n;";
+const OFF: &str =
+    "OFF\n!4 !3 0\n~0 ~0 ~0\n~1 ~0 ~0\n~1 ~1 ~0\n~0 ~1 ~0.5\n4 @0 @1 @2 @3 \n!3 @2 @1 @0 # a comment\n!3 @3 @2 @1\n;";
 
 const PLY: &str = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex !4\nproperty float x\nproperty uchar shade
 property double y\nproperty float z\nproperty double u\nelement face !3\nproperty list uchar int vertex_indices
@@ -53,7 +58,8 @@ const STL: &str = "solid a facet of life\nfacet normal nan 0 1\nouter loop\nvert
 endloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex ~1 ~0 ~0\nvertex ~1 ~1 ~0\nvertex ~-0 ~1 ~0.5\nendloop\nendfacet
 endsolid; life\n;";
 
-const POLY: &str = "# a square\n!4 ^2 !1 !1\n1 ~0 ~0 0.5 1\n2 ~1 ~0 0.5 1\n3 ~1 ~1 0.5 2\n4 ~0 ~1e-1 0.5 0\n!4 !1\n1 @1 @2 1
+const POLY: &str =
+    "# a square\n!4 ^2 !1 !1\n1 ~0 ~0 0.5 1\n2 ~1 ~0 0.5 1\n3 ~1 ~1 0.5 2\n4 ~0 ~1e-1 0.5 0\n!4 !1\n1 @1 @2 1
 2 @2 @3 1\n3 @3 @4 2\n4 @4 @1 -2\n;!1\n1 ~0.5 ~0.5\n;!2\n1 ~0.1 ~0.1 ~7 ~0.5\n2 ~0.2 ~0.2 ~8\n;";
 
 const GEOJSON: &str = "{\"type\": \"FeatureCollection\", \"features\": [
@@ -73,12 +79,14 @@ $Nodes\n!4\n1 ~0 ~0 ~0\n2 ~1 ~0 ~0\n3 ~1 ~1 ~0\n4 ~0 ~1e-1 ~0.5\n$EndNodes\n;$El
 3 2 2 7 1 @1 @2 @3\n4 2 2 8 1 @1 @3 @4\n5 3 !2 8 1 @1 @2 @3 @4\n$EndElements\n;
 $NodeData\n!1\n\"u\"\n!1\n0.0\n!3\n0\n!1\n!4\n@1 ~0.5\n@2 ~0.5\n@3 ~1e-3\n@4 ~0.5\n$EndNodeData\n;";
 
-const GMSH_4: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n!0 !1 !1 !0\n1 0 0 0 1 1 1 !1 5 !0\n1 0 0 0 1 1 1 !1 7 !1 1
+const GMSH_4: &str =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n!0 !1 !1 !0\n1 0 0 0 1 1 1 !1 5 !0\n1 0 0 0 1 1 1 !1 7 !1 1
 $EndEntities\n$Nodes\n!2 !4 1 4\n2 1 0 !1\n1\n~0 ~0 ~0\n2 1 0 !3\n2\n3\n4\n~1 ~0 ~0\n~1 ~1 ~0\n~0 ~1 ~0.5\n$EndNodes\n;
 $Elements\n!2 !4 1 4\n1 1 1 !2\n1 @1 @2\n2 @2 @3\n2 1 2 !2\n3 @1 @2 @3\n4 @1 @3 @4\n$EndElements\n;
 $ElementData\n!1\n\"error\"\n!1\n0.0\n!3\n0\n!3\n!2\n3 ~0.5 ~1 ~2\n4 ~0.5 ~1 ~3\n$EndElementData\n;";
 
-const VTU: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">
+const VTU: &str =
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">
 <UnstructuredGrid>\n<Piece NumberOfPoints=\"!4\" NumberOfCells=\"!3\">\n<PointData>
 <DataArray type=\"Int32\" Name=\"label\" format=\"ascii\">1 1 2 3</DataArray>
 <DataArray type=\"Float64\" Name=\"u\" NumberOfComponents=\"2\" format=\"ascii\">~1 ~2 ~3 ~4 ~5e-1 ~6 ~7 ~8</DataArray>

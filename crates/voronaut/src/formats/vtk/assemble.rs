@@ -53,6 +53,7 @@ impl Assembly<'_> {
             match section {
                 Section::PointData => of_points.push(array),
                 Section::CellData => of_cells.push(array),
+                others if piece.count(others) == 0 => drop(array.into_reals(0, self.head)?),
                 _ => {}
             }
         }

@@ -209,6 +209,7 @@ fn damaged_files() {
         ("Cells=\"2\"", "Cells=\"-2\"", "NumberOfCells=\"-2\" is not a whole number from 0 to 4294967295"),
         ("NumberOfCells=\"2\"", "", "a piece without NumberOfCells"),
         ("Cells=\"2\"", "Cells=\"1\"", "array 'types' holds more than 1 numbers"),
+        ("Cells=\"2\"", "Cells=\"0\"", "array 'connectivity' holds more than 0 numbers"),
         ("Components=\"3\"", "Components=\"2\"", "array '' has 2 components, where points have 3"),
         ("Components=\"3\"", "Components=\"many\"", "array '' has 'many' components"),
         (
