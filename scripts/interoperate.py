@@ -139,8 +139,7 @@ def with_meshio(args, place, name, mesh):
         compare(f"{name}: ours -> meshio .{ending}", truth, found, keeps)
     with contextlib.redirect_stdout(io.StringIO()):
         held = meshio.read(convert(args, mesh, place / f"{name}_ours.vtu"))
-    held.cell_data = {"medit:ref": held.cell_data["label"], "gmsh:physical": held.cell_data["label"]}
-    held.cell_data["gmsh:geometrical"] = held.cell_data["gmsh:physical"]
+    labels = held.cell_data["label"]
     held.point_data = {}
     forms = [("mesh", "medit", {}), ("meshb", "medit", {}), ("msh", "gmsh22", {"binary": False}), ("msh", "gmsh22", {"binary": True}),
              ("msh", "gmsh", {"binary": False}), ("msh", "gmsh", {"binary": True}), ("vtu", "vtu", {"binary": False}),
@@ -149,6 +148,9 @@ def with_meshio(args, place, name, mesh):
              ("stl", "stl", {"binary": False}), ("stl", "stl", {"binary": True})]
     for ending, form, options in forms:
         file = place / f"{name}_meshio.{ending}"
+        # meshio cannot write other data of numpy 2 as text in .msh.
+        names = {"medit": ["medit:ref"], "gmsh": ["gmsh:physical", "gmsh:geometrical"], "gmsh22": ["gmsh:physical", "gmsh:geometrical"]}
+        held.cell_data = {name: labels for name in names.get(form, ["label"])}
         cells = held if KEEPS[ending][1] else meshio.Mesh(held.points, [c for c in held.cells if c.type == "triangle"])
         words = " ".join(f"{key}={value}" for key, value in options.items())
         title = f"{name}: meshio {form} {words} -> ours"
@@ -241,7 +243,8 @@ def with_mmg(args, place, name, mesh):
     if not program.is_file():
         return print(f"{program.name} is not there")
     for ending in ("mesh", "meshb", "msh"):
-        ours = convert(args, mesh, place / f"{name}_ours.{ending}")
+        # mmg 5.8 reads version 2.2 only.
+        ours = convert(args, mesh, place / f"{name}_ours.{ending}", *(["--msh-version", "2.2"] if ending == "msh" else []))
         said = run(program, "-v", "5", ours, "-out", place / f"{name}_mmg.{ending}")
         lines = [line for line in said.splitlines() if "NUMBER OF" in line][:3]
         numbers = {words[2].lower(): int(words[3]) for words in map(str.split, lines) if words[3].isdigit()}
@@ -270,11 +273,11 @@ def from_bamg(args, place):
     compare("square: bamg .mesh -> ours", truth, taken(args, place / "bamg.mesh"), KEEPS["mesh"])
 
 
-def convert(args, mesh, out):
+def convert(args, mesh, out, *options):
     if out.suffix == ".mesh":
         shutil.copy(mesh, out)
     else:
-        run(args.voronaut, "convert", mesh, out, "-q")
+        run(args.voronaut, "convert", mesh, out, "-q", *options)
     return out
 
 

@@ -2,6 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use voronaut::formats::medit::Form;
 use voronaut::formats::ply;
 use voronaut_fuzz::{PLACE, assert_same_document, check_document, read, written};
 
@@ -10,7 +11,9 @@ fuzz_target!(|input: &[u8]| {
     check_document(&document);
     document.mesh.edges.clear();
     document.mesh.edge_labels.clear();
-    let file = written(|out| ply::write(&document.mesh, &document.fields, out));
-    let again = ply::read(file.as_slice(), PLACE).expect("its own file");
-    assert_same_document(&again, &document);
+    for form in [Form::Text, Form::Binary] {
+        let file = written(|out| ply::write(&document.mesh, &document.fields, form, out));
+        let again = ply::read(file.as_slice(), PLACE).expect("its own file");
+        assert_same_document(&again, &document);
+    }
 });

@@ -37,7 +37,7 @@ pub(crate) struct ConvertArgs {
     /// Version of a .msh: 4.1 or 2.2
     #[arg(long, value_name = "VERSION", default_value_t = Version::V4_1)]
     msh_version: Version,
-    /// Write a .msh as a binary file
+    /// Write a .msh or .ply as a binary file
     #[arg(long)]
     binary: bool,
     /// Say nothing but errors
@@ -113,8 +113,10 @@ fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
 }
 
 fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
+    let form = if args.binary { Form::Binary } else { Form::Text };
     let format = match Format::from_path(&args.to)? {
-        Format::Gmsh(..) => Format::Gmsh(args.msh_version, if args.binary { Form::Binary } else { Form::Text }),
+        Format::Gmsh(..) => Format::Gmsh(args.msh_version, form),
+        Format::Ply(_) => Format::Ply(form),
         other => other,
     };
     let Document { mesh, mut fields } = match from {

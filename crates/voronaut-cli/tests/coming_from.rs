@@ -3,9 +3,7 @@
 mod common;
 
 use common::{Place, stderr};
-use std::fmt::Write;
 use voronaut::mesh::Mesh;
-use voronaut::output::write_mesh;
 use voronaut::output::write_mesh;
 use voronaut::surface::torus;
 
@@ -16,9 +14,8 @@ fn place() -> Place {
     let cells = (0..100_u32).map(|k| k % 10 + k / 10 * 11);
     let triangles = cells.flat_map(|a| [[a, a + 1, a + 12], [a, a + 12, a + 11]]).collect();
     let values = |value: &dyn Fn(&[f64; 3]) -> String, kind: u32| {
-        let mut text = format!("MeshVersionFormatted 2 Dimension 2 SolAtVertices 121 1 {kind}\n");
-        points.iter().for_each(|p| writeln!(text, "{}", value(p)).unwrap());
-        text
+        let text = format!("MeshVersionFormatted 2 Dimension 2 SolAtVertices 121 1 {kind}\n");
+        points.iter().fold(text, |text, p| text + &value(p) + "\n")
     };
     place.put("in.sol", values(&|p| format!("{} 0 {}", 400.0 / (1.0 + p[0]), 100.0), 3));
     place.put("u.sol", values(&|p| (10.0 * (p[0] - p[1])).tanh().to_string(), 1));
@@ -48,4 +45,6 @@ fn every_command_on_the_page_runs() {
         let output = place.run(&words(command)[1..]);
         assert_eq!(output.status.code(), Some(0), "{command}: {}", stderr(&output));
     }
+    let made = place.files();
+    assert!(made.len() > 20 && made.iter().all(|name| !place.read(name).is_empty()), "{made:?}");
 }

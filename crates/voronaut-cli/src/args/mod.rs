@@ -67,10 +67,10 @@ pub(crate) enum Command {
 }
 
 const MESH_EXAMPLES: &str = "\
-DOMAIN  a file: .mesh (boundary edges or triangles), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
-        or a surface: .obj, .off, .ply, .stl, .mesh; sphere:r, torus:R,r, chair, 'implicit:EXPR;x0,y0,z0,x1,y1,z1'
+DOMAIN  a file: .mesh, .meshb, .msh, .vtu, .vtp (boundary edges or triangles), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
+        or a surface: .obj, .off, .ply, .stl and the first five; sphere:r, torus:R,r, chair, 'implicit:EXPR;x0,y0,z0,x1,y1,z1'
 METRIC  uniform, uniform:m11,m12,m22, swirl[:nu=3,field=authors], shock[:phi=10,lambda=0.6],
-        'formula:m11; m12; m22' in x and y, boundary:h0=,growth=,aspect=,h_max=, or a file .sol;
+        'formula:m11; m12; m22' in x and y, boundary:h0=,growth=,aspect=,h_max=, or a file .sol or .solb;
         on surfaces: uniform, curvature[:floor=C], shock, 'formula:m11; m12; m22; m13; m23; m33' in x, y, z, or a .sol;
         an eigenvalue 1/h^2 asks for edges of length h along its eigenvector
 
@@ -110,7 +110,7 @@ const CHECK_EXAMPLES: &str = "\
 Exits with 1 if the mesh is not valid; the report is written all the same.
 
 The mesh of a surface (some z is not 0) is held against a surface as DOMAIN: sphere:r, torus:R,r, chair,
-implicit:EXPR;x0,y0,z0,x1,y1,z1, or a file .obj, .off, .ply, .stl or .mesh. METRIC is then uniform, curvature[:floor=C],
+implicit:EXPR;x0,y0,z0,x1,y1,z1, or a file .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl. METRIC is then uniform, curvature[:floor=C],
 shock[:phi=10,lambda=0.6], 'formula:m11; m12; m22; m13; m23; m33' in x, y, z, or a file .sol of the domain's file.
 
 Examples:
@@ -132,7 +132,7 @@ pub(crate) struct MeshArgs {
     /// Integral of sqrt(det M) over the domain; one factor scales the metric to meet it
     #[arg(long, value_name = "C", value_parser = positive)]
     pub(crate) complexity: Option<f64>,
-    /// The mesh file: .mesh, .vtu, .obj, .off, .ply or .stl
+    /// The mesh file: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
@@ -212,7 +212,7 @@ pub(crate) struct DualArgs {
     /// The seeds: a file with a line `x y` for each
     #[arg(long, value_name = "FILE")]
     pub(crate) seeds: PathBuf,
-    /// The dual: .mesh, .vtu, .obj, .off, .ply or .stl
+    /// The dual: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// Write the coloured canvas, with colours and distances: .vtu
@@ -311,7 +311,7 @@ const CANVAS_VERTICES: u32 = 40_000;
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// The mesh: .mesh, .obj, .off, .ply or .stl
+    /// The mesh: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
     pub(crate) mesh: PathBuf,
     /// Measure lengths, shapes and angles in this metric (as for `mesh`)
     #[arg(long)]

@@ -40,10 +40,10 @@ pub(crate) fn run(args: &InterpolateArgs) -> Result<()> {
 
 /// Refuses, before any work, outputs that could not be written.
 fn demand_writable(args: &InterpolateArgs) -> Result<()> {
-    let is_sol = args.out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("sol"));
-    if !is_sol {
+    let ending = args.out.extension().map(std::ffi::OsStr::to_ascii_lowercase);
+    if ending.is_none_or(|ending| ending != "sol" && ending != "solb") {
         let what = format!("{} does not end like a solution file", args.out.display());
-        return Err(Error::Unsupported { what, help: "end the name of OUT in .sol".into() });
+        return Err(Error::Unsupported { what, help: "end the name of OUT in .sol or .solb".into() });
     }
     let out = output::place(&args.out)?;
     let report = args.report.as_deref().map(output::place).transpose()?;

@@ -8,7 +8,6 @@ pub(crate) use args::{EXAMPLES, MetricArgs};
 use crate::files;
 use args::{Combine, LimitText};
 use serde_json::{Value, json};
-use std::path::Path;
 use std::time::Instant;
 use voronaut::formats::{self, Solution, SolutionValues};
 use voronaut::mesh::Mesh;
@@ -44,13 +43,13 @@ pub(crate) fn run(args: &MetricArgs) -> Result<()> {
 }
 
 fn demand_writable(args: &MetricArgs) -> Result<()> {
-    let is_sol = |path: &Path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("sol"));
-    if !is_sol(&args.out) {
-        let what = "the name does not end in .sol";
+    let ending = args.out.extension().map(std::ffi::OsStr::to_ascii_lowercase);
+    if ending.is_none_or(|ending| ending != "sol" && ending != "solb") {
+        let what = "the name does not end in .sol or .solb";
         return Err(Error::parse(
             args.out.display().to_string(),
             what,
-            "metrics at vertices are written to a file .sol",
+            "metrics at vertices are written to a file .sol or .solb",
         ));
     }
     let own = output::place(&args.out)?;

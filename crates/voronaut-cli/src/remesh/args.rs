@@ -31,7 +31,7 @@ const HGRAD: f64 = 1.3;
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "one per option of mmg")]
 pub(crate) struct RemeshArgs {
-    /// The planar mesh, or the surface: a .mesh (the ending may be left out); surfaces also .obj, .off, .ply or .stl
+    /// The planar mesh, or the surface: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl; without an ending .meshb if that is there, else .mesh
     #[arg(value_name = "IN", required_unless_present = "input")]
     pub(crate) first: Option<PathBuf>,
     /// The mesh [default: IN.o.mesh]
@@ -40,7 +40,7 @@ pub(crate) struct RemeshArgs {
     /// The input, named
     #[arg(long = "in", value_name = "IN")]
     input: Option<PathBuf>,
-    /// The mesh, named: .mesh, .vtu, .obj, .off, .ply or .stl
+    /// The mesh, named: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
     #[arg(short, long, value_name = "OUT")]
     out: Option<PathBuf>,
     /// Sizes or tensors at the vertices of IN, as -sol or -met
@@ -171,7 +171,9 @@ impl RemeshArgs {
 
     /// The input's file; without an ending that of Medit, as mmg has it.
     pub(crate) fn input(&self) -> PathBuf {
-        with_ending(self.input.as_ref().or(self.first.as_ref()).cloned().unwrap_or_default())
+        let named = self.input.as_ref().or(self.first.as_ref()).cloned().unwrap_or_default();
+        let binary = named.with_extension("meshb");
+        if named.extension().is_none() && binary.is_file() { binary } else { with_ending(named) }
     }
 
     /// The mesh's file. With -in the first word without an option is OUT.

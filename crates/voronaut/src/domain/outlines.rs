@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn a_hole_that_touches_the_outline_is_a_ring_of_its_own() {
         let text = "7 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 2 1\n6 3 2\n7 1 2\n8 0\n";
-        let touching = text.replace("7 2 0 0", "7 2 0 0").replace("5 2 1", "5 2 0.5").replace("8 0\n", "");
+        let touching = text.replace("5 2 1", "5 2 0.5").replace("8 0\n", "");
         let segments = "7 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n5 1 6\n6 6 7\n7 7 1\n1\n1 1.3 1.5\n";
         let pslg = from_poly(&poly::read(format!("{touching}{segments}").as_bytes(), "a.poly").unwrap()).unwrap();
         let found = to_polygons(&pslg).unwrap();

@@ -43,8 +43,7 @@ pub fn read(spec: &str) -> Result<Pslg> {
 }
 
 /// What users write for a planar domain.
-pub const WRITTEN: &str =
-    "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly or .mesh";
+pub const WRITTEN: &str = "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly, .mesh, .meshb, .msh, .vtu or .vtp";
 
 const SURFACES: [&str; 4] = ["sphere", "torus", "chair", "implicit"];
 

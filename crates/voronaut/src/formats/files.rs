@@ -19,8 +19,8 @@ pub enum Format {
     Obj,
     /// Geomview's `.off` as text: positions and triangles.
     Off,
-    /// Stanford's `.ply`; written binary, little-endian, coordinates as doubles: positions, triangles, edges, labels and fields.
-    Ply,
+    /// Stanford's `.ply`, text unless asked otherwise, coordinates as doubles: positions, triangles, their labels and fields.
+    Ply(Form),
     /// Stereolithography `.stl`; written binary: triangles without shared vertices, coordinates rounded to single precision.
     Stl,
     /// VTK's `.vtu`, an unstructured grid: everything a [`Mesh`] holds, and fields.
@@ -36,7 +36,7 @@ const ENDINGS: [(&str, Format); 9] = [
     ("msh", Format::Gmsh(gmsh::Version::V4_1, Form::Text)),
     ("obj", Format::Obj),
     ("off", Format::Off),
-    ("ply", Format::Ply),
+    ("ply", Format::Ply(Form::Text)),
     ("stl", Format::Stl),
     ("vtu", Format::Vtu),
     ("vtp", Format::Vtp),
@@ -79,7 +79,7 @@ impl Format {
             Format::Gmsh(version, form) => gmsh::write(mesh, fields, version, form, out),
             Format::Obj => obj::write(mesh, out),
             Format::Off => off::write(mesh, out),
-            Format::Ply => ply::write(mesh, fields, out),
+            Format::Ply(form) => ply::write(mesh, fields, form, out),
             Format::Stl => stl::write(mesh, out),
             Format::Vtu => vtk::write_vtu(mesh, fields, out),
             Format::Vtp => vtk::write_vtp(mesh, fields, out),
@@ -104,7 +104,7 @@ pub fn read(path: &Path) -> Result<Document> {
         Format::Gmsh(..) => gmsh::read(source, &place),
         Format::Obj => Ok(obj::read(source, &place)?.into()),
         Format::Off => Ok(off::read(source, &place)?.into()),
-        Format::Ply => ply::read(source, &place),
+        Format::Ply(_) => ply::read(source, &place),
         Format::Stl => Ok(stl::read(source, &place)?.into()),
         Format::Vtu | Format::Vtp => vtk::read(source, &place),
     }

@@ -54,7 +54,7 @@ impl Format {
             Format::Medit(_) | Format::Vtu | Format::Vtp | Format::Gmsh(Version::V4_1, _) => all,
             // Marks of vertices are kept, of edges and triangles not.
             Format::Gmsh(Version::V2_2, _) => Kept { marks: false, ..all },
-            Format::Ply => Kept { point_labels: true, triangle_labels: true, fields: true, ..Kept::default() },
+            Format::Ply(_) => Kept { point_labels: true, triangle_labels: true, fields: true, ..Kept::default() },
             Format::Obj => Kept { triangle_labels: true, edges: true, ..Kept::default() },
             Format::Off | Format::Stl => Kept::default(),
         }

@@ -84,7 +84,7 @@ fn read_implicit(spec: &str, rest: &str, edge: Option<f64>) -> Result<Input> {
 }
 
 /// What users write for a surface.
-pub const WRITTEN: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .obj, .off, .ply, .stl or .mesh";
+pub const WRITTEN: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl";
 
 /// The surface of a file's mesh, and what was mended of it; errors name the file.
 ///

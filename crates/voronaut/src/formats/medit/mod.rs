@@ -285,7 +285,7 @@ mod tests {
                 bytes.reverse();
             }
             file.extend(bytes);
-            file.len() as i64
+            i64::try_from(file.len()).unwrap()
         };
         let integer = |x: i64| if version == 4 { x.to_le_bytes().to_vec() } else { (x as i32).to_le_bytes().to_vec() };
         let position = |x: i64| if version < 3 { (x as i32).to_le_bytes().to_vec() } else { x.to_le_bytes().to_vec() };

@@ -3,7 +3,8 @@
 mod header;
 mod source;
 
-use super::words::Largest;
+use super::medit::Form;
+use super::words::{Largest, Shortest};
 use super::{Document, Field, Fields, SolutionValues};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
@@ -38,13 +39,13 @@ pub fn read(mut source: impl BufRead, place: &str) -> Result<Document> {
     reader.finish(&source)
 }
 
-/// Writes a mesh and fields as a `.ply` file in binary form, little-endian, with coordinates and fields as doubles: [`read`] turns it
-/// into the same bits. Edges are left out: programs that read the format stop at elements that they do not know. A field of several components is as many properties
-/// `NAME_0`, `NAME_1`, ...
+/// Writes a mesh and fields as a `.ply` file, as text or binary (little-endian, coordinates and fields as doubles): [`read`] turns either
+/// into the same bits. Edges are left out: programs that read the format stop at elements that they do not know; and some that do not
+/// mind labels of faces in text fail on them in binary files. A field of several components is as many properties `NAME_0`, `NAME_1`, ...
 ///
 /// # Errors
 /// What `out` says.
-pub fn write(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()> {
+pub fn write(mesh: &Mesh, fields: &Fields, form: Form, out: &mut dyn Write) -> io::Result<()> {
     let properties = |fields: &[Field]| {
         let names = fields.iter().flat_map(columns);
         names.fold(String::new(), |text, name| text + "property double " + &name + "\n")
@@ -52,26 +53,62 @@ pub fn write(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()
     let [of_vertices, of_faces] = [&fields.vertices, &fields.triangles].map(|fields| properties(fields));
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\ncomment voronaut\nelement vertex {}\nproperty double x\nproperty double y\n\
+        "ply\nformat {} 1.0\ncomment voronaut\nelement vertex {}\nproperty double x\nproperty double y\n\
          property double z\nproperty int label\n{of_vertices}element face {}\nproperty list uchar uint vertex_indices\n\
-         property int label\n{of_faces}",
+         property int label\n{of_faces}end_header\n",
+        if form == Form::Text { "ascii" } else { "binary_little_endian" },
         mesh.points.len(),
         mesh.triangles.len()
     )?;
-    out.write_all(b"end_header\n")?;
-    let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0).to_le_bytes();
+    let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0);
+    let row = |fields: &[Field], i: usize| fields.iter().flat_map(|field| field.values.row(i)).copied().collect();
     for (i, point) in mesh.points.iter().enumerate() {
-        out.write_all(point.map(f64::to_le_bytes).as_flattened())?;
-        out.write_all(&label(&mesh.point_labels, i))?;
-        write_row(&fields.vertices, i, out)?;
+        write_vertex(*point, label(&mesh.point_labels, i), row(&fields.vertices, i), form, out)?;
     }
     for (i, triangle) in mesh.triangles.iter().enumerate() {
-        out.write_all(&[3])?;
-        out.write_all(triangle.map(u32::to_le_bytes).as_flattened())?;
-        out.write_all(&label(&mesh.triangle_labels, i))?;
-        write_row(&fields.triangles, i, out)?;
+        write_face(*triangle, label(&mesh.triangle_labels, i), row(&fields.triangles, i), form, out)?;
     }
     Ok(())
+}
+
+fn write_vertex(point: [f64; 3], label: i32, row: Vec<f64>, form: Form, out: &mut dyn Write) -> io::Result<()> {
+    match form {
+        Form::Text => {
+            point.into_iter().try_for_each(|x| write!(out, "{} ", Shortest(x)))?;
+            write!(out, "{label}")?;
+        }
+        Form::Binary => {
+            out.write_all(point.map(f64::to_le_bytes).as_flattened())?;
+            out.write_all(&label.to_le_bytes())?;
+        }
+    }
+    write_row(row, form, out)
+}
+
+fn write_face(triangle: [u32; 3], label: i32, row: Vec<f64>, form: Form, out: &mut dyn Write) -> io::Result<()> {
+    match form {
+        Form::Text => {
+            let [a, b, c] = triangle;
+            write!(out, "3 {a} {b} {c} {label}")?;
+        }
+        Form::Binary => {
+            out.write_all(&[3])?;
+            out.write_all(triangle.map(u32::to_le_bytes).as_flattened())?;
+            out.write_all(&label.to_le_bytes())?;
+        }
+    }
+    write_row(row, form, out)
+}
+
+/// The values of an element, and in text the end of its line.
+fn write_row(row: Vec<f64>, form: Form, out: &mut dyn Write) -> io::Result<()> {
+    match form {
+        Form::Text => {
+            row.into_iter().try_for_each(|x| write!(out, " {}", Shortest(x)))?;
+            out.write_all(b"\n")
+        }
+        Form::Binary => row.into_iter().try_for_each(|x| out.write_all(&x.to_le_bytes())),
+    }
 }
 
 /// What a field's components are called; names have no spaces here.
@@ -81,11 +118,6 @@ fn columns(field: &Field) -> Vec<String> {
         1 => vec![name],
         several => (0..several).map(|i| format!("{name}_{i}")).collect(),
     }
-}
-
-fn write_row(fields: &[Field], i: usize, out: &mut dyn Write) -> io::Result<()> {
-    let numbers = fields.iter().flat_map(|field| field.values.row(i));
-    numbers.map(|x| x.to_le_bytes()).try_for_each(|bytes| out.write_all(&bytes))
 }
 
 /// Properties that are shown, not computed with.
@@ -326,12 +358,15 @@ mod tests {
         let fields = Fields { vertices, triangles: vec![field("error", vec![0.5, 1.5])] };
         let document = Document { mesh, fields };
         let mut out = Vec::new();
-        write(&document.mesh, &document.fields, &mut out).unwrap();
-        assert_eq!(read(out.as_slice(), "a.ply").unwrap(), document);
+        for form in [Form::Text, Form::Binary] {
+            out.clear();
+            write(&document.mesh, &document.fields, form, &mut out).unwrap();
+            assert_eq!(read(out.as_slice(), "a.ply").unwrap(), document);
+        }
         let values = SolutionValues::Tensor(vec![[1.0, 0.5, 2.0]; 3]);
         let tensors = Fields { vertices: vec![Field { name: "my metric".into(), values }], triangles: vec![] };
         out.clear();
-        write(&document.mesh, &tensors, &mut out).unwrap();
+        write(&document.mesh, &tensors, Form::Text, &mut out).unwrap();
         let again = read(out.as_slice(), "a.ply").unwrap();
         let names: Vec<_> = again.fields.vertices.iter().map(|field| field.name.as_str()).collect();
         assert_eq!(names, ["my_metric_0", "my_metric_1", "my_metric_2"]);
