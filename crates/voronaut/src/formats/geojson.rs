@@ -51,14 +51,14 @@ pub struct Ring {
 /// equal consecutive ones, or of a position without two finite coordinates.
 pub fn read(text: &str, place: &str) -> Result<Polygons> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let json = text.parse::<GeoJson>().map_err(|error| malformed(&error, place))?;
+    let json = text.parse::<GeoJson>().map_err(|error| malformed(&error, text, place))?;
     let mut reader = Reader { place, polygons: Vec::new(), holes: 0 };
     for (index, feature) in features(json).iter().enumerate() {
         reader.read_feature(feature, index + 1)?;
     }
     if reader.polygons.is_empty() {
         let help = "give a file with a Polygon or a MultiPolygon";
-        return Err(Error::parse(place, "the file holds no polygon", help));
+        return Err(Error::parse(end_of(text, place), "the file holds no polygon", help));
     }
     Ok(Polygons { polygons: reader.polygons })
 }
@@ -228,10 +228,15 @@ fn read_position(position: &Position, place: impl Fn() -> String) -> Result<Poin
     Err(Error::domain("a coordinate is not finite", format!("{} {point}", place()), "remove or correct the position"))
 }
 
-fn malformed(error: &::geojson::Error, place: &str) -> Error {
+/// The last line, where what is missing would be.
+fn end_of(text: &str, place: &str) -> String {
+    format!("{place}:{}", text.lines().count().max(1))
+}
+
+fn malformed(error: &::geojson::Error, text: &str, place: &str) -> Error {
     let place = match error {
         ::geojson::Error::MalformedGeoJson(json) if json.line() > 0 => format!("{place}:{}", json.line()),
-        _ => place.to_owned(),
+        _ => end_of(text, place),
     };
     let help = "give GeoJSON (RFC 7946) with finite numbers; polygons are lists of rings of [x, y]";
     Error::parse(place, error.to_string(), help)
@@ -319,7 +324,7 @@ mod tests {
         let point = feature("{}", r#"{"type":"Point","coordinates":[0,0]}"#);
         for (text, expected) in [
             (collection(&[feature("{}", &polygon(SQUARE)), point]), "a.geojson, feature 2: a Point where a Polygon"),
-            (collection(&[]), "a.geojson: the file holds no polygon"),
+            (collection(&[]), "a.geojson:1: the file holds no polygon"),
             ("{\n\"type\": 3}".into(), "a.geojson:2: "),
             ("[1, 2".into(), "a.geojson:1: "),
             (polygon("[[0,0],[1,1e999],[1,1],[0,0]]"), "number out of range"),

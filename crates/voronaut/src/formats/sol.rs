@@ -24,7 +24,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Solution> {
     match found.values.pop() {
         Some(values) if found.values.is_empty() => Ok(Solution { dimension: file.dimension, values }),
         _ => {
-            let what = format!("{} solutions per vertex ({place}:{})", found.values.len() + 1, found.position);
+            let what = format!("{} solutions per vertex ({})", found.values.len() + 1, found.place);
             Err(Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() })
         }
     }
@@ -79,7 +79,7 @@ struct Parsed<'a> {
 
 struct Section {
     /// Where its head ends.
-    position: u64,
+    place: String,
     values: Vec<SolutionValues>,
 }
 
@@ -90,8 +90,8 @@ impl<'a> Parsed<'a> {
         let (mut dimension, mut sections, mut before) = (None, [None, None], "the head of the file".to_owned());
         while let Some(name) = source.next_section(&before)? {
             match wanted.iter().position(|wanted| *wanted == name) {
-                _ if name == "Dimension" => dimension = Some(source.dimension()?),
-                Some(i) if sections[i].is_some() => {
+                _ if name == "Dimension" && dimension.is_none() => dimension = Some(source.dimension()?),
+                found if name == "Dimension" || found.is_some_and(|i| sections[i].is_some()) => {
                     return Err(source.error(format!("a second section {name}"), "keep one of them"));
                 }
                 Some(i) => {
@@ -132,11 +132,11 @@ fn read_section(source: &mut Source<'_>, dimension: u8, section: &str) -> Result
             }
         });
     }
-    let position = source.position();
+    let place = source.here();
     for at in At::rows(section, count) {
         values.iter_mut().try_for_each(|values| push(values, source, at))?;
     }
-    Ok(Section { position, values })
+    Ok(Section { place, values })
 }
 
 fn push(values: &mut SolutionValues, source: &mut Source<'_>, at: At<'_>) -> Result<()> {
@@ -276,6 +276,7 @@ mod tests {
             ("SolAtVertices 0\n1 1\nSolAtVertices 0\n1 1", "a.sol:5: a second section SolAtVertices"),
             ("SolAtVertices -1\n1 1", "a.sol:3: '-1' is out of range (the head of SolAtVertices)"),
             ("End", "a.sol:3: the file has no section SolAtVertices"),
+            ("SolAtVertices 0\n1 2\nDimension 3", "a.sol:5: a second section Dimension"),
         ] {
             let error = read(format!("MeshVersionFormatted 2\nDimension 2\n{body}").as_bytes(), "a.sol").unwrap_err();
             assert!(error.to_string().contains(expected), "{error}");

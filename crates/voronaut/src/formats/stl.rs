@@ -87,12 +87,16 @@ fn read_text(mut words: Words<'_>) -> Result<Mesh> {
     let mut facets = 0;
     // Names of solids are any words on their lines.
     let mut name_line = None;
+    let mut is_open = false;
     while let Some(word) = words.next()? {
         if name_line == Some(word.line) {
             continue;
         }
         match word.text.to_ascii_lowercase().as_str() {
-            "solid" | "endsolid" => name_line = Some(word.line),
+            keyword @ ("solid" | "endsolid") => {
+                name_line = Some(word.line);
+                is_open = keyword == "solid";
+            }
             "facet" => {
                 facets += 1;
                 read_facet(&mut words, facets, &mut corners)?;
@@ -102,6 +106,10 @@ fn read_text(mut words: Words<'_>) -> Result<Mesh> {
                 return Err(error_at(place, word.line, what, "check the end of the facet before"));
             }
         }
+    }
+    if is_open {
+        let what = "the text ends without endsolid";
+        return Err(error_at(place, words.line(), what, "the file is cut off: write it again"));
     }
     Ok(corners.into_mesh())
 }
@@ -218,6 +226,7 @@ mod tests {
             assert!(!error.help().is_empty());
             error.to_string()
         };
+        assert_eq!(message(b"solid a\n\nendsolid\nsolid b\n"), "a.stl:4: the text ends without endsolid");
         let whole = binary(&[[[0.0; 3]; 3]; 2]);
         let neither = "(neither text nor a whole binary file)";
         assert_eq!(message(&[]), format!("a.stl, byte 0: the file ends in the head of the file {neither}"));

@@ -180,7 +180,7 @@ impl<'a> Reader<'a> {
         if count == 0 {
             return Ok(());
         }
-        let what = format!("{count} {section} ({}:{})", self.source.place(), self.source.position());
+        let what = format!("{count} {section} ({})", self.source.here());
         Err(Error::Unsupported { what, help: "give a mesh of triangles only: split or remove these elements".into() })
     }
 
@@ -349,7 +349,7 @@ mod tests {
             (104, 4, "a.meshb, byte 108: vertex 4 does not exist: the file lists 3"),
             (104, 0, "a.meshb, byte 108: vertex 0 does not exist (row 1 of 1 of Triangles)"),
             (16, 4, "a.meshb, byte 20: Dimension 4, where 2 or 3 is expected"),
-            (20, 8, "not supported: 3 Tetrahedra"),
+            (20, 8, "not supported: 3 Tetrahedra (a.meshb, byte 32)"),
         ] {
             let message = message(at, number);
             assert!(message.starts_with(expected) || message.contains(expected), "{message}");

@@ -160,19 +160,19 @@ impl<'a> Source<'a> {
         Err(self.error_at(position, what, "check the number, and that the file is whole"))
     }
 
-    /// What messages call the file.
-    pub(in crate::formats) fn place(&self) -> &'a str {
-        match self {
-            Self::Text(words) => words.place(),
-            Self::Binary(binary) => binary.bytes.place(),
-        }
-    }
-
     /// The line of the number read last, or the byte behind it.
     pub(in crate::formats) fn position(&self) -> u64 {
         match self {
             Self::Text(words) => words.line() as u64,
             Self::Binary(binary) => binary.bytes.position(),
+        }
+    }
+
+    /// Where the number read last is, for messages that are no [`Error::Parse`].
+    pub(in crate::formats) fn here(&self) -> String {
+        match self {
+            Self::Text(words) => format!("{}:{}", words.place(), words.line()),
+            Self::Binary(binary) => format!("{}, byte {}", binary.bytes.place(), binary.bytes.position()),
         }
     }
 

@@ -89,10 +89,8 @@ impl Header {
         let mut format = None;
         let mut line = Vec::new();
         while header.next_line(source, &mut line, place)? {
-            let line = std::str::from_utf8(&line).map_err(|_| {
-                let what = format!("the head is no text (line {})", header.lines);
-                Error::parse(place, what, "give a whole .ply file")
-            })?;
+            let no_text = |_| error_at(place, header.lines, "the head is no text", "give a whole .ply file");
+            let line = std::str::from_utf8(&line).map_err(no_text)?;
             let words: Vec<&str> = line.split_whitespace().collect();
             match words[..] {
                 ["ply"] if header.lines == 1 => {}
@@ -145,6 +143,10 @@ impl Header {
         let [name, count] = words else {
             return Err(error_at(place, self.lines, "an element without name and count", "write 'element vertex 8'"));
         };
+        if self.elements.iter().any(|element| element.name == *name) {
+            let what = format!("a second element '{}'", shortened(name));
+            return Err(error_at(place, self.lines, what, "join both elements into one"));
+        }
         let count = whole(place, Word { line: self.lines, text: count }, At::head("the file"))?;
         self.elements.push(Element { name: (*name).into(), count, properties: Vec::new() });
         Ok(())

@@ -4,11 +4,11 @@ mod header;
 mod source;
 
 use super::medit::Form;
-use super::words::Shortest;
+use super::words::{Largest, Shortest};
 use super::{Document, Field, Fields, SolutionValues};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use header::{Element, Header, Property, Shape};
+use header::{Element, Header, Kind, Property, Shape};
 use source::Source;
 use std::io::{self, BufRead, Write};
 
@@ -33,9 +33,10 @@ pub fn read(mut source: impl BufRead, place: &str) -> Result<Document> {
     }
     source.finish()?;
     if !header.elements.iter().any(|element| element.name == "vertex") {
-        return Err(Error::parse(place, "the file has no element vertex", "save the vertices with x, y and z"));
+        let what = "the file has no element vertex";
+        return Err(source.error_at(source.position(), what, "save the vertices with x, y and z"));
     }
-    reader.finish(place)
+    reader.finish(&source)
 }
 
 /// Writes a mesh and fields as a `.ply` file, as text or binary (little-endian, coordinates and fields as doubles): [`read`] turns either
@@ -138,7 +139,7 @@ struct Reader {
     mesh: Mesh,
     vertex_fields: Vec<(String, Vec<f64>)>,
     face_fields: Vec<(String, Vec<f64>)>,
-    has_polygons: bool,
+    largest: Largest,
 }
 
 impl Reader {
@@ -187,14 +188,16 @@ impl Reader {
         for (property, &role) in element.properties.iter().zip(roles) {
             match (property.shape, role) {
                 (Shape::List(counts, kind), _) => {
-                    let list = read_list(source, counts, kind, role == Role::Vertices)?;
+                    let list = self.read_list(source, counts, kind, role == Role::Vertices)?;
                     if role == Role::Vertices {
                         self.push_face(&list, source)?;
                     }
                 }
                 (Shape::Scalar(kind), Role::Coordinate(axis)) => point[axis] = source.number(kind)?,
-                (Shape::Scalar(kind), Role::Label) => label = source.number(kind)? as i32,
-                (Shape::Scalar(kind), Role::End(end)) => ends[end] = Some(vertex(source.number(kind)?, source)?),
+                (Shape::Scalar(kind), Role::Label) => label = whole_label(source.number(kind)?, source)?,
+                (Shape::Scalar(kind), Role::End(end)) => {
+                    ends[end] = Some(self.vertex(source.number(kind)?, source)?);
+                }
                 (Shape::Scalar(kind), Role::Field(field)) => {
                     self.push_value(element, field, source.number(kind)?, source)?;
                 }
@@ -236,50 +239,58 @@ impl Reader {
             let what = format!("a face of {} vertices", polygon.len());
             return Err(source.error(&what, "a face needs three vertices or more"));
         }
-        self.has_polygons |= polygon.len() > 3;
         self.mesh.triangles.extend(polygon[1..].windows(2).map(|pair| [polygon[0], pair[0], pair[1]]));
         Ok(())
     }
 
     /// Faces may stand before the vertices: whether these exist is known at the end.
-    fn finish(self, place: &str) -> Result<Document> {
-        let count = self.mesh.points.len();
-        let mut all = self.mesh.triangles.as_flattened().iter().chain(self.mesh.edges.as_flattened());
-        if let Some(vertex) = all.find(|&&v| v as usize >= count) {
-            let what =
-                format!("a face or edge with vertex {vertex}, which does not exist: the file lists {count}, from 0");
-            return Err(Error::parse(place, what, "check the faces, and that the file is whole"));
+    fn finish(mut self, source: &Source<'_>) -> Result<Document> {
+        let [count, triangles] = [self.mesh.points.len(), self.mesh.triangles.len()];
+        if let Some((number, position)) = self.largest.beyond(count) {
+            let what = format!("vertex {} does not exist: the file lists {count}, from 0", number - 1);
+            return Err(source.error_at(position, what, "check the faces and edges, and that the file is whole"));
         }
+        // Fields of triangles are those of faces only where each face is one.
+        self.face_fields.retain(|(_, values)| values.len() == triangles);
         let fields = |fields: Vec<(String, Vec<f64>)>| {
             fields.into_iter().map(|(name, values)| Field { name, values: SolutionValues::Scalar(values) }).collect()
         };
-        let face_fields = if self.has_polygons { Vec::new() } else { self.face_fields };
-        let fields = Fields { vertices: fields(self.vertex_fields), triangles: fields(face_fields) };
+        let fields = Fields { vertices: fields(self.vertex_fields), triangles: fields(self.face_fields) };
         Ok(Document { mesh: self.mesh, fields })
     }
-}
 
-/// The entries of a list; those of lists that nobody needs are passed over.
-fn read_list(source: &mut Source<'_>, counts: header::Kind, kind: header::Kind, keep: bool) -> Result<Vec<u32>> {
-    let length = source.number(counts)?;
-    if length.is_nan() || length < 0.0 || length.fract() != 0.0 {
-        return Err(source.error(&format!("a list of {length} entries"), "lists begin with their length"));
-    }
-    let mut list = Vec::new();
-    for _ in 0..length as u64 {
-        let value = source.number(kind)?;
-        if keep {
-            list.push(vertex(value, source)?);
+    /// The vertices in a list; the entries of lists that nobody needs are passed over.
+    fn read_list(&mut self, source: &mut Source<'_>, counts: Kind, kind: Kind, keep: bool) -> Result<Vec<u32>> {
+        let length = source.number(counts)?;
+        if length.is_nan() || length < 0.0 || length.fract() != 0.0 {
+            return Err(source.error(&format!("a list of {length} entries"), "lists begin with their length"));
         }
+        let mut list = Vec::new();
+        for _ in 0..length as u64 {
+            let value = source.number(kind)?;
+            if keep {
+                list.push(self.vertex(value, source)?);
+            }
+        }
+        Ok(list)
     }
-    Ok(list)
+
+    fn vertex(&mut self, value: f64, source: &Source<'_>) -> Result<u32> {
+        if (0.0..f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0 {
+            let vertex = value as u32;
+            self.largest.note(u64::from(vertex) + 1, source.position());
+            return Ok(vertex);
+        }
+        Err(source.error(&format!("vertex {value} does not exist"), "number vertices from 0"))
+    }
 }
 
-fn vertex(value: f64, source: &Source<'_>) -> Result<u32> {
-    if (0.0..f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0 {
-        return Ok(value as u32);
+fn whole_label(value: f64, source: &Source<'_>) -> Result<i32> {
+    let label = value as i32;
+    if f64::from(label) == value {
+        return Ok(label);
     }
-    Err(source.error(&format!("vertex {value} does not exist"), "number vertices from 0"))
+    Err(source.error(&format!("the label {value}"), "labels are whole numbers of 32 bits"))
 }
 
 #[cfg(test)]
@@ -376,7 +387,7 @@ mod tests {
             ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n3 0 1 -1", "a.ply:16: vertex -1 does not exist (row 1 of 2 of face)"),
             (
                 "0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n3 0 1 4 0\n3 0 1 2 0",
-                "a.ply: a face or edge with vertex 4, which does not",
+                "a.ply:16: vertex 4 does not exist: the file lists 4, from 0",
             ),
             ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n1e18 0 1", "a.ply:16: the text ends in row 1 of 2 of face"),
             ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n3 0 1 2 0\n3 0 1 2 0\n7", "a.ply:18: the file goes on behind"),
@@ -411,17 +422,18 @@ mod tests {
             ("ply\nformat ascii 1.0\nproperty float x\nend_header\n", "a.ply:3: a property before any element"),
             ("ply\nformat ascii 1.0\nelement vertex -1\nend_header\n", "a.ply:3: '-1' is out of range"),
             ("ply\nformat ascii 1.0\nelement vertex\nend_header\n", "a.ply:3: an element without name and count"),
+            ("ply\nformat ascii 1.0\nelement face 1\nelement face 1\n", "a.ply:4: a second element 'face'"),
             (
                 "ply\nformat ascii 1.0\nelement face 0\nproperty quad q\nend_header\n",
                 "a.ply:4: 'property quad q' is not",
             ),
             ("ply\nformat ascii 1.0\nfoo\nend_header\n", "a.ply:3: 'foo' has no place in the head"),
-            ("ply\nformat ascii 1.0\nelement face 0\nend_header\n", "a.ply: the file has no element vertex"),
+            ("ply\nformat ascii 1.0\nelement face 0\nend_header\n", "a.ply:4: the file has no element vertex"),
         ] {
             let message = message(text.as_bytes());
             assert!(message.starts_with(expected), "{message}");
         }
-        assert!(message(b"ply\nformat ascii 1.0\n\xff\nend_header\n").starts_with("a.ply: the head is no text"));
+        assert!(message(b"ply\nformat ascii 1.0\n\xff\nend_header\n").starts_with("a.ply:3: the head is no text"));
         let bytes = b"ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
         assert_eq!(message(bytes), "not supported: triangle strips (a.ply)");
     }

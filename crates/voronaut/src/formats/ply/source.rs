@@ -64,19 +64,29 @@ impl<'a> Source<'a> {
         if is_at_end {
             return Ok(());
         }
-        Err(self.error_at_last("the file goes on behind the elements it announces", "check the counts in its head"))
+        let what = "the file goes on behind the elements it announces";
+        Err(self.error_at(self.position(), what, "check the counts in its head"))
     }
 
-    /// An error at the number read last.
+    /// The line of the number read last, or the byte behind it.
+    pub(super) fn position(&self) -> u64 {
+        match &self.body {
+            Body::Text(words) => words.line().max(self.lines_before) as u64,
+            Body::Binary(bytes) => bytes.position(),
+        }
+    }
+
+    /// An error at the number read last, with its element and row.
     pub(super) fn error(&self, what: &str, help: &str) -> Error {
         let what = format!("{what} ({})", At { section: &self.element, row: self.row, rows: self.rows });
-        self.error_at_last(what, help)
+        self.error_at(self.position(), what, help)
     }
 
-    fn error_at_last(&self, what: impl Into<String>, help: &str) -> Error {
+    /// An error at a position that [`Source::position`] gave.
+    pub(super) fn error_at(&self, position: u64, what: impl Into<String>, help: &str) -> Error {
         match &self.body {
-            Body::Text(words) => error_at(words.place(), words.line().max(self.lines_before), what, help),
-            Body::Binary(bytes) => bytes.error(what, help),
+            Body::Text(words) => error_at(words.place(), position as usize, what, help),
+            Body::Binary(bytes) => bytes.error_at(position, what, help),
         }
     }
 }

@@ -53,6 +53,7 @@ impl Assembly<'_> {
             match section {
                 Section::PointData => of_points.push(array),
                 Section::CellData => of_cells.push(array),
+                others if piece.count(others) == 0 => drop(array.into_reals(0, self.head)?),
                 _ => {}
             }
         }
@@ -86,22 +87,24 @@ impl Assembly<'_> {
     /// Cells of a section, whose numbers begin with `first`.
     fn read_cells(&self, piece: &mut Piece, section: Section, count: u64, first: u32, to: &mut Shapes) -> Result<()> {
         let head = self.head;
-        let kinds = match section {
+        let (mut kinds, all) = match section {
             Section::Cells => {
                 let kinds = self.take(piece, section, "types")?.into_wholes(count, head)?;
                 refuse_foreign(&kinds, head.place)?;
-                kinds.into_iter().map(|kind| kind as u8).collect()
+                (kinds.into_iter().map(|kind| kind as u8).collect(), types::EMPTY)
             }
             Section::Verts => return Ok(()),
-            Section::Lines => vec![types::POLY_LINE; count as usize],
-            Section::Strips => vec![types::TRIANGLE_STRIP; count as usize],
-            _ => vec![types::POLYGON; count as usize],
+            Section::Lines => (Vec::new(), types::POLY_LINE),
+            Section::Strips => (Vec::new(), types::TRIANGLE_STRIP),
+            _ => (Vec::new(), types::POLYGON),
         };
         let offsets = self.take(piece, section, "offsets")?;
         let byte = offsets.byte;
         let fault =
             |what: String| numbers::error(head, byte, "offsets", &what, "check the cells, and that the file is whole");
         let ends = offsets.into_wholes(count, head)?;
+        // Only now it is known that there are as many cells as the file says.
+        kinds.resize(ends.len(), all);
         let mut start = 0;
         for (i, &end) in ends.iter().enumerate() {
             if end < start {

@@ -1,7 +1,7 @@
 //! Data on points and cells: labels, marks and fields.
 
 use super::numbers::{Array, Head, Kind};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::formats::{Field, SolutionValues};
 use std::collections::{HashMap, HashSet};
 
@@ -32,7 +32,7 @@ impl Data {
     /// Reads arrays that have so many entries each; of those with the same name the first.
     ///
     /// # Errors
-    /// [`Error::Parse`] of an array with more or fewer entries, and of labels out of range.
+    /// [`Error::Parse`](crate::Error::Parse) of an array with more or fewer entries, and of labels out of range.
     pub(super) fn read(arrays: Vec<Array>, count: u64, head: Head<'_>) -> Result<Self> {
         let is_label = |array: &Array| array.kind.is_whole() && array.components.unwrap_or(1) == 1;
         let rank = |array: &Array| LABELS.iter().position(|name| *name == array.name).filter(|_| is_label(array));
@@ -102,7 +102,7 @@ impl Unsorted {
     /// Refuses numbers that are not finite.
     ///
     /// # Errors
-    /// [`Error::Parse`] with array and entry; `entries` says which of the file they are.
+    /// [`Error::Parse`](crate::Error::Parse) with array and entry; `entries` says which of the file they are.
     pub(super) fn check(&self, entries: Option<&[u32]>, head: Head<'_>) -> Result<()> {
         let Some(i) = self.numbers.iter().position(|number| !number.is_finite()) else { return Ok(()) };
         let (row, number) = (i / self.components, self.numbers[i]);
@@ -144,13 +144,12 @@ impl Joined {
     /// Appends those of a piece that is not empty.
     ///
     /// # Errors
-    /// [`Error::Parse`] where pieces differ in what they have.
+    /// [`Error::Parse`](crate::Error::Parse) where pieces differ in what they have.
     pub(super) fn append(&mut self, fields: Vec<Unsorted>, head: Head<'_>) -> Result<()> {
         if !std::mem::replace(&mut self.is_begun, true) {
             self.fields = fields;
             return Ok(());
         }
-        let (here, before) = (fields.len(), self.fields.len());
         let mut found: HashMap<String, Unsorted> =
             fields.into_iter().map(|field| (field.name.clone(), field)).collect();
         for field in &mut self.fields {
@@ -167,9 +166,9 @@ impl Joined {
             };
             field.numbers.extend(same.numbers);
         }
-        if here > before {
-            let what = format!("a piece has {here} fields, where another has {before}");
-            return Err(Error::parse(head.place, what, "give all pieces the same arrays"));
+        if let Some(other) = found.into_values().min_by_key(|field| field.byte) {
+            let what = "is not in all pieces";
+            return Err(super::numbers::error(head, other.byte, &other.name, what, "give all pieces the same arrays"));
         }
         Ok(())
     }

@@ -278,7 +278,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
         let is_data = matches!(section, Section::PointData | Section::CellData);
         let is_known = is_data || section == Section::Points || ["connectivity", "offsets", "types"].contains(&&*name);
         let is_first = step.is_none_or(|step| step.trim() == "0");
-        let Some(kind) = kind.filter(|_| is_known && is_first && !self.is_empty(section)) else { return Ok(None) };
+        let Some(kind) = kind.filter(|_| is_known && is_first) else { return Ok(None) };
         let components = match self.attribute(tag, "NumberOfComponents")?.as_deref().map(str::trim) {
             None | Some("") => None,
             Some(text) => Some(text.parse().map_err(|_| {
@@ -287,6 +287,9 @@ impl<'a, R: BufRead> Tags<'a, R> {
             })?),
         };
         let format = self.format(&name, tag)?;
+        if self.is_empty(section) && matches!(format, Format::Appended(_)) {
+            return Ok(None);
+        }
         let array =
             Array { name, kind, components, tag: self.byte, byte: self.byte, stored: Stored::Plain(Vec::new()) };
         Ok(Some(Open { section, format, array }))
@@ -332,6 +335,9 @@ impl<'a, R: BufRead> Tags<'a, R> {
             return Ok(());
         };
         let text = std::mem::take(&mut self.text);
+        if text.trim().is_empty() && piece.count(section) == 0 {
+            return Ok(());
+        }
         let head = self.grid.head;
         match format {
             Format::Appended(offset) => {
@@ -362,11 +368,11 @@ impl<'a, R: BufRead> Tags<'a, R> {
     }
 
     fn finish(self) -> Result<Grid<'a>> {
-        let grid = self.grid;
-        if grid.pieces.is_empty() {
-            let what = format!("no {} with a piece in it", type_name(grid.kind));
-            return Err(Error::parse(grid.head.place, what, "check that the program that wrote it had finished"));
+        if self.grid.pieces.is_empty() {
+            let what = format!("no {} with a piece in it", type_name(self.grid.kind));
+            return Err(self.error(&what, "check that the program that wrote it had finished"));
         }
+        let grid = self.grid;
         if let Some((_, _, array)) = grid.pieces.iter().flat_map(|piece| &piece.appended).next() {
             return Err(array.error(
                 grid.head,

@@ -209,6 +209,7 @@ fn damaged_files() {
         ("Cells=\"2\"", "Cells=\"-2\"", "NumberOfCells=\"-2\" is not a whole number from 0 to 4294967295"),
         ("NumberOfCells=\"2\"", "", "a piece without NumberOfCells"),
         ("Cells=\"2\"", "Cells=\"1\"", "array 'types' holds more than 1 numbers"),
+        ("Cells=\"2\"", "Cells=\"0\"", "array 'connectivity' holds more than 0 numbers"),
         ("Components=\"3\"", "Components=\"2\"", "array '' has 2 components, where points have 3"),
         ("Components=\"3\"", "Components=\"many\"", "array '' has 'many' components"),
         (
@@ -258,10 +259,10 @@ fn what_is_no_such_file() {
         ("\u{89}HDF\r\n\u{1a}\n<", "the file does not begin with the tag VTKFile"),
         ("<VTKFile type=\"ImageData\"/>", "not supported: a is a VTK file of type 'ImageData'"),
         ("<VTKFile type=\"PolyData\"><PolyData>", "a, byte 35: the file ends in the midst of its tags"),
-        ("<VTKFile type=\"PolyData\"><PolyData/></VTKFile>", "a: no PolyData with a piece in it"),
+        ("<VTKFile type=\"PolyData\"><PolyData/></VTKFile>", "a, byte 46: no PolyData with a piece in it"),
         ("<VTKFile type=\"PolyData\" byte_order=\"Middle\"/>", "an unknown byte_order 'Middle'"),
         ("<VTKFile type=\"PolyData\" header_type=\"UInt16\"/>", "an unknown header_type 'UInt16'"),
-        ("", "a: no UnstructuredGrid with a piece in it"),
+        ("", "a, byte 0: no UnstructuredGrid with a piece in it"),
     ] {
         let message = read(text.as_bytes(), "a").unwrap_err().to_string();
         assert!(message.contains(expected), "{message}\n{expected}");
