@@ -2,10 +2,11 @@
 
 use clap::Args;
 use std::path::{Path, PathBuf};
-use voronaut::domain::{from_mesh, read_pslg, to_mesh, to_poly, to_polygons};
+use voronaut::domain::{Pslg, from_mesh, read_pslg, to_mesh, to_poly, to_polygons};
 use voronaut::formats::gmsh::Version;
 use voronaut::formats::medit::Form;
-use voronaut::formats::{self, Document, Fields, Format, Solutions, geojson, poly};
+use voronaut::formats::{self, Document, Fields, Format, Solutions, geojson, lost_in_outline, poly};
+use voronaut::mesh::Mesh;
 use voronaut::output;
 use voronaut::{Error, Result};
 
@@ -15,7 +16,8 @@ IN   a mesh: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply, .stl; a planar d
 OUT  of the same kinds; a mesh becomes a .poly or .geojson if it is planar, and a domain a mesh of nothing but its own points
 
 Labels, labelled edges, corners and what is required go along as far as OUT has a place for them; what is left out is said. Values of a
-.sol go along with --sol; of a .vtu, .msh or .ply they do anyway. Beside a .mesh they are written to OUT's name ending in .sol.
+.sol go along with --sol; of a .vtu, .msh or .ply they do anyway. Beside a .mesh they are written to OUT's name ending in .sol, which
+`remesh` takes for sizes; a file of that name is replaced.
 
 Examples:
   voronaut convert wing.msh wing.meshb
@@ -48,7 +50,8 @@ pub(crate) struct ConvertArgs {
 /// Converts a file.
 pub(crate) fn run(args: &ConvertArgs) -> Result<()> {
     output::demand_directory(&args.to)?;
-    let told = match (Kind::of(&args.from), Kind::of(&args.to)) {
+    let from = if is_shape(&args.from) { Kind::Outline } else { Kind::of(&args.from) };
+    let told = match (from, Kind::of(&args.to)) {
         (Kind::Values, Kind::Values) => {
             let values = formats::read_solutions(&args.from)?;
             output::write_solutions(&values, &args.to)?;
@@ -77,16 +80,20 @@ enum Kind {
 }
 
 impl Kind {
-    /// That of a file by its ending. Shapes are outlines.
+    /// That of a file by its ending.
     fn of(path: &Path) -> Self {
         let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
         match ending.as_deref() {
             Some("sol" | "solb") => Self::Values,
             Some("poly" | "geojson" | "json") => Self::Outline,
-            _ if path.to_string_lossy().contains(':') && Format::of_ending(path).is_none() => Self::Outline,
             _ => Self::Mesh,
         }
     }
+}
+
+/// Whether a name is none of a file, but a shape such as `disk:0,0,1`.
+fn is_shape(path: &Path) -> bool {
+    path.to_string_lossy().contains(':') && Format::of_ending(path).is_none()
 }
 
 fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
@@ -94,22 +101,40 @@ fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
         let what = format!("values ({}) in {}", sol.display(), args.to.display());
         return Err(Error::Unsupported { what, help: "leave out --sol: outlines hold none".into() });
     }
-    let pslg =
-        if from == Kind::Mesh { from_mesh(&formats::read(&args.from)?.mesh)? } else { read_pslg(&name(&args.from))? };
-    if args.to.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("poly")) {
-        let found = to_poly(&pslg)?;
-        output::write_with(&args.to, |out| poly::write(&found, out))?;
-        let (points, segments) = (found.points.len(), found.segments.len());
-        return Ok(format!(
-            "{points} points, {segments} segments, {} holes, {} regions",
-            found.holes.len(),
-            found.regions.len()
-        ));
-    }
-    let found = to_polygons(&pslg)?;
-    output::write_with(&args.to, |out| geojson::write(&found, out))?;
+    let (pslg, document) = if from == Kind::Mesh {
+        let document = formats::read(&args.from)?;
+        (from_mesh(&document.mesh)?, document)
+    } else {
+        let pslg = read_pslg(&name(&args.from))?;
+        let document = Mesh { point_labels: pslg.point_labels.clone(), ..Mesh::default() }.into();
+        (pslg, document)
+    };
+    let is_poly = args.to.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("poly"));
+    let told = if is_poly { write_poly(&args.to, &pslg)? } else { write_geojson(&args.to, &pslg)? };
+    Ok(with_lost(vec![told], &lost_in_outline(is_poly, &document.mesh, &document.fields)))
+}
+
+fn write_poly(path: &Path, pslg: &Pslg) -> Result<String> {
+    let found = to_poly(pslg)?;
+    output::write_with(path, |out| poly::write(&found, out))?;
+    let [points, segments] = [found.points.len(), found.segments.len()];
+    let [holes, regions] = [found.holes.len(), found.regions.len()];
+    Ok(format!("{points} points, {segments} segments, {holes} holes, {regions} regions"))
+}
+
+fn write_geojson(path: &Path, pslg: &Pslg) -> Result<String> {
+    let found = to_polygons(pslg)?;
+    output::write_with(path, |out| geojson::write(&found, out))?;
     let rings: usize = found.polygons.iter().map(|polygon| polygon.rings.len()).sum();
-    Ok(format!("{} polygons, {rings} rings", found.polygons.len()))
+    Ok(format!("{} polygons, {rings} rings; a ring has the label of its first segment", found.polygons.len()))
+}
+
+/// What was written, and what was not.
+fn with_lost(mut told: Vec<String>, lost: &[String]) -> String {
+    if !lost.is_empty() {
+        told.push(format!("left out, for the format has no place for them: {}", lost.join(", ")));
+    }
+    told.join("; ")
 }
 
 fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
@@ -143,10 +168,7 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
         let names = fields.vertices.iter().chain(&fields.triangles).map(|field| field.name.as_str());
         told.push(format!("{} in {}", names.collect::<Vec<_>>().join(", "), beside.display()));
     }
-    if !lost.is_empty() {
-        told.push(format!("left out, for the format has no place for them: {}", lost.join(", ")));
-    }
-    Ok(told.join("; "))
+    Ok(with_lost(told, &lost))
 }
 
 /// The file that fields go to where the mesh's format has no place for them but has files of values.

@@ -114,8 +114,11 @@ fn values_go_along() {
         |text: Vec<u8>| String::from_utf8(text).unwrap().split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     assert_eq!(words(place.read("out.sol")), words(VALUES.into()));
     assert_eq!(formats::read_solutions(&place.path().join("out.solb")).unwrap(), truth);
-    let output = place.run(&["convert", "in.mesh", "out.vtu", "--sol", "short.sol"]);
+    place.put("short.sol", "MeshVersionFormatted 2 Dimension 2 SolAtVertices 1 1 1 0.5");
+    let output = place.run(&["convert", "in.mesh", "short.vtu", "--sol", "short.sol"]);
     assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("short.sol: 1 values, and the mesh has 6 vertices"), "{}", stderr(&output));
+    assert!(!place.files().contains(&"short.vtu".into()));
 }
 
 #[test]
@@ -123,7 +126,9 @@ fn outlines_become_meshes_and_meshes_outlines() {
     let place = place();
     let area = |name: &str| Domain::new(&read_pslg(place.path().join(name).to_str().unwrap()).unwrap()).unwrap().area();
     let truth = area("in.mesh");
-    done(&place, "convert in.mesh out.poly");
+    let told = done(&place, "convert in.mesh out.poly");
+    let lost = "3 corners and required vertices, 3 ridges, required edges and triangles";
+    assert!(told.ends_with(&format!("no place for them: {lost}\n")), "{told}");
     done(&place, "convert out.poly out.geojson");
     let told = done(&place, "convert out.geojson back.mesh");
     assert!(told.contains("6 vertices, 4 triangles"), "{told}");
@@ -148,6 +153,7 @@ fn what_cannot_be_is_refused() {
         ("convert none.mesh out.vtu", "none.mesh: "),
         ("convert cut.msh out.vtu", "cut.msh:8: "),
         ("convert in.mesh no/where/out.vtu", "no/where"),
+        ("convert in.mesh rect:0,0,1,1", "rect:0,0,1,1 does not end like a mesh file"),
     ] {
         let output = place.run(&words.split_whitespace().collect::<Vec<_>>());
         assert_eq!(output.status.code(), Some(1), "{words}");

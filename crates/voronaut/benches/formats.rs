@@ -8,7 +8,7 @@ use voronaut::formats::{self, Field, Fields, Format, SolutionValues};
 use voronaut::mesh::Mesh;
 use voronaut::output::write_document;
 
-const ENDINGS: [&str; 8] = ["mesh", "meshb", "obj", "off", "ply", "stl", "vtu", "vtp"];
+const ENDINGS: [&str; 9] = ["mesh", "meshb", "msh", "obj", "off", "ply", "stl", "vtu", "vtp"];
 
 fn main() {
     let n = std::env::args().skip(1).find_map(|word| word.parse().ok()).unwrap_or(708);
@@ -17,7 +17,7 @@ fn main() {
     println!("{} vertices, {} triangles", mesh.points.len(), mesh.triangles.len());
     println!("{:>14} {:>10} {:>9} {:>9} {:>9} {:>9}", "", "MB", "write s", "MB/s", "read s", "MB/s");
     for (name, fields) in [("", Fields::default()), (" and fields", fields(&mesh))] {
-        for ending in ENDINGS.iter().filter(|ending| name.is_empty() || ["ply", "vtu", "vtp"].contains(ending)) {
+        for ending in ENDINGS.iter().filter(|ending| name.is_empty() || ["msh", "ply", "vtu", "vtp"].contains(ending)) {
             let path = place.path().join(format!("grid.{ending}"));
             let start = Instant::now();
             write_document(&mesh, &fields, &path).expect("a mesh written");

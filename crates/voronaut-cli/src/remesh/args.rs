@@ -3,6 +3,7 @@
 use crate::args::{Damage, Run, not_negative, positive};
 use clap::Args;
 use std::path::PathBuf;
+use voronaut::formats::TensorOrder;
 use voronaut::surface::{FeatureOptions, RepairOptions};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -46,6 +47,10 @@ pub(crate) struct RemeshArgs {
     /// Sizes or tensors at the vertices of IN, as -sol or -met
     #[arg(long, visible_alias = "met", value_name = "FILE")]
     pub(crate) sol: Option<PathBuf>,
+    /// In which order tensors of -sol have their entries: disk (m11 m12 m22 m13 m23 m33, as mmg's files have), upper (m11 m12 m13 m22 m23
+    /// m33) or diagonal (m11 m22 m33 m12 m23 m13)
+    #[arg(long, value_name = "ORDER", default_value_t = TensorOrder::default())]
+    pub(crate) tensor_order: TensorOrder,
     /// How far the mesh may be from the surface, or from the curves of a planar domain
     #[arg(long, value_name = "D", value_parser = positive, default_value_t = HAUSD)]
     pub(crate) hausd: f64,

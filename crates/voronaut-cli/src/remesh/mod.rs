@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use voronaut::Result;
 use voronaut::domain::read_pslg;
-use voronaut::formats::{self, Format, Solution, TensorOrder};
+use voronaut::formats::{self, Format, Solution};
 use voronaut::mesh::Mesh;
 use voronaut::metric::read_metric;
 use voronaut::output::report::Seconds;
@@ -110,9 +110,10 @@ fn asked(args: &RemeshArgs) -> Result<Option<(PathBuf, Solution)>> {
         }
         is_there
     };
-    let has_sizes = args.hsiz.is_some() || args.optim;
+    // What is next to an outline belongs to another file.
+    let has_sizes = args.hsiz.is_some() || args.optim || Format::of_ending(&args.input()).is_none();
     let Some(path) = args.sol.clone().or(own.filter(|_| !has_sizes)).filter(is_there) else { return Ok(None) };
-    let read = read_metric(&path, TensorOrder::Disk)?;
+    let read = read_metric(&path, args.tensor_order)?;
     Ok(Some((path, read)))
 }
 

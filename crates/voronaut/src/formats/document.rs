@@ -3,6 +3,7 @@
 use super::{SolutionValues, Solutions};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
+use std::collections::HashSet;
 
 /// A mesh, and named values on its vertices and triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,6 +60,20 @@ impl Fields {
     }
 }
 
+/// Names that differ from each other and from those that mean something in a format: others begin with `field_`, and are numbered
+/// where that is taken, too.
+pub(super) fn distinct_names(wanted: impl Iterator<Item = String>, reserved: &[&str]) -> Vec<String> {
+    let mut taken: HashSet<String> = reserved.iter().map(|name| (*name).to_owned()).collect();
+    let distinct = |name: String| {
+        let spare = (1..).map(|n| if n == 1 { format!("field_{name}") } else { format!("field_{name}_{n}") });
+        let given = std::iter::once(name.clone()).filter(|name| !name.is_empty());
+        let found = given.chain(spare).find(|name| !taken.contains(name)).unwrap_or_default();
+        taken.insert(found.clone());
+        found
+    };
+    wanted.map(distinct).collect()
+}
+
 impl Field {
     fn into_solutions(self, dimension: u8) -> Result<Vec<SolutionValues>> {
         match self.values {
@@ -97,5 +112,17 @@ fn named(values: Vec<SolutionValues>) -> Vec<Field> {
 impl From<Mesh> for Document {
     fn from(mesh: Mesh) -> Self {
         Self { mesh, fields: Fields::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_differ() {
+        let wanted = ["u", "", "label", "u", "u", "field_u"].map(str::to_owned);
+        let names = distinct_names(wanted.into_iter(), &["label"]);
+        assert_eq!(names, ["u", "field_", "field_label", "field_u", "field_u_2", "field_field_u"]);
     }
 }

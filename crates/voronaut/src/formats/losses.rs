@@ -20,24 +20,38 @@ struct Kept {
     fields: bool,
 }
 
-impl Format {
-    /// What of a mesh and its fields a file of the format would not hold, in words; empty if nothing is lost.
-    pub fn lost(self, mesh: &Mesh, fields: &Fields) -> Vec<String> {
-        let kept = self.kept();
+/// What a `.poly`, or else a `.geojson`, would not hold of a planar mesh and its fields besides its triangles, in words.
+pub fn lost_in_outline(is_poly: bool, mesh: &Mesh, fields: &Fields) -> Vec<String> {
+    let outline = Kept { triangle_labels: true, edges: true, edge_labels: true, ..Kept::default() };
+    Kept { point_labels: is_poly, ..outline }.lost(mesh, fields)
+}
+
+impl Kept {
+    fn lost(&self, mesh: &Mesh, fields: &Fields) -> Vec<String> {
         let labels = |labels: &[i32]| labels.iter().filter(|&&label| label != 0).count();
         let of_vertices = [&mesh.corners, &mesh.required_points].map(Vec::len).into_iter().sum();
         let marks = [&mesh.ridges, &mesh.required_edges, &mesh.required_triangles].map(Vec::len).into_iter().sum();
         let all = [
-            (kept.point_labels, labels(&mesh.point_labels), "labels of vertices"),
-            (kept.triangle_labels, labels(&mesh.triangle_labels), "labels of triangles"),
-            (kept.edges, mesh.edges.len(), "labelled edges"),
-            (kept.edge_labels || !kept.edges, labels(&mesh.edge_labels), "labels of edges"),
-            (kept.vertex_marks, of_vertices, "corners and required vertices"),
-            (kept.marks, marks, "ridges, required edges and triangles"),
-            (kept.fields, fields.vertices.len() + fields.triangles.len(), "fields"),
+            (self.point_labels, labels(&mesh.point_labels), "labels of vertices"),
+            (self.triangle_labels, labels(&mesh.triangle_labels), "labels of triangles"),
+            (self.edges, mesh.edges.len(), "labelled edges"),
+            (self.edge_labels || !self.edges, labels(&mesh.edge_labels), "labels of edges"),
+            (self.vertex_marks, of_vertices, "corners and required vertices"),
+            (self.marks, marks, "ridges, required edges and triangles"),
+            (self.fields, fields.vertices.len() + fields.triangles.len(), "fields"),
         ];
         let lost = all.into_iter().filter(|(kept, count, _)| !kept && *count > 0);
         lost.map(|(_, count, what)| format!("{count} {what}")).collect()
+    }
+}
+
+impl Format {
+    /// What of a mesh and its fields a file of the format would not hold, in words; empty if nothing is lost.
+    pub fn lost(self, mesh: &Mesh, fields: &Fields) -> Vec<String> {
+        let is_rounded = |x: &f64| f64::from(*x as f32).to_bits() != x.to_bits();
+        let digits = self == Format::Stl && mesh.points.as_flattened().iter().any(is_rounded);
+        let digits = digits.then(|| "digits of coordinates beyond single precision".to_owned());
+        self.kept().lost(mesh, fields).into_iter().chain(digits).collect()
     }
 
     fn kept(self) -> Kept {

@@ -22,5 +22,6 @@ mod words;
 pub use document::{Document, Field, Fields};
 pub use files::{Format, MESH_ENDINGS, open, read, read_solution, read_solutions, read_text};
 pub use geojson::Polygons;
+pub use losses::lost_in_outline;
 pub use poly::Poly;
 pub use values::{Solution, SolutionValues, Solutions, TensorOrder};

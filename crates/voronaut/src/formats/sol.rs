@@ -49,7 +49,7 @@ pub fn read_all(source: impl BufRead, place: &str) -> Result<Solutions> {
 /// Writes a file of version 2 that [`read`] turns into the same solution, to the last bit.
 ///
 /// # Errors
-/// What `out` says; [`io::ErrorKind::InvalidInput`] of vectors whose components are not as many as the dimension.
+/// What `out` says; [`io::ErrorKind::InvalidInput`] of vectors and tensors of another dimension.
 pub fn write(solution: &Solution, form: Form, out: &mut dyn Write) -> io::Result<()> {
     write_sections(solution.dimension, [std::slice::from_ref(&solution.values), &[]], form, out)
 }
@@ -196,7 +196,12 @@ fn kind(values: &SolutionValues, dimension: u8) -> io::Result<i32> {
             let what = format!("vectors of {components} components in a .sol file of dimension {dimension}");
             Err(io::Error::new(io::ErrorKind::InvalidInput, what))
         }
-        SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => Ok(3),
+        SolutionValues::Tensor(_) if dimension == 2 => Ok(3),
+        SolutionValues::Tensor3(_) if dimension == 3 => Ok(3),
+        SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => {
+            let what = format!("tensors of another dimension in a .sol file of dimension {dimension}");
+            Err(io::Error::new(io::ErrorKind::InvalidInput, what))
+        }
     }
 }
 

@@ -26,11 +26,11 @@ pub fn read(mut source: impl BufRead, place: &str) -> Result<Mesh> {
     }
 }
 
-/// Writes triangles as a binary `.stl` file. The format has single precision: corners are rounded, to infinity beyond 3e38, and
+/// Writes triangles as a binary `.stl` file. The format has single precision: corners are rounded, and
 /// those that come to lie on each other are one vertex when the file is read. It has no shared vertices, no labels, no edges.
 ///
 /// # Errors
-/// What `out` says.
+/// What `out` says; [`io::ErrorKind::InvalidInput`] of coordinates beyond 3e38.
 pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     write!(out, "{:HEAD$}", "voronaut")?;
     out.write_all(&(mesh.triangles.len() as u32).to_le_bytes())?;
@@ -39,6 +39,10 @@ pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).unit().unwrap_or_default();
         let numbers = [normal.x, normal.y, normal.z].into_iter().chain(corners.iter().flat_map(|p| p.to_array()));
+        if corners.iter().flat_map(|p| p.to_array()).any(|x| !(x as f32).is_finite()) {
+            let what = "a coordinate beyond 3e38, the range of single precision";
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+        }
         let mut row = [0; TRIANGLE];
         for (bytes, x) in row.as_chunks_mut().0.iter_mut().zip(numbers) {
             *bytes = (x as f32).to_le_bytes();

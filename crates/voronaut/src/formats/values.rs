@@ -102,6 +102,25 @@ impl SolutionValues {
         }
     }
 
+    /// Entries from their numbers in space, so many each, as Gmsh and VTK have them: one is a scalar, nine are the rows of a tensor, if
+    /// all are symmetric, others a vector. On a planar mesh vectors and tensors whose z entries are all 0 are those of the plane.
+    pub(super) fn in_space(numbers: Vec<f64>, components: usize, is_planar: bool) -> Self {
+        let rows = || numbers.chunks_exact(components);
+        let is_symmetric = |m: &[f64]| [(1, 3), (2, 6), (5, 7)].into_iter().all(|(i, j)| m[i] - m[j] == 0.0);
+        match components {
+            1 => SolutionValues::Scalar(numbers),
+            3 if is_planar && rows().all(|row| row[2] == 0.0) => {
+                SolutionValues::Vector { components: 2, numbers: rows().flat_map(|row| [row[0], row[1]]).collect() }
+            }
+            9 if !rows().all(is_symmetric) => SolutionValues::Vector { components, numbers },
+            9 if is_planar && rows().all(|m| m[2] == 0.0 && m[5] == 0.0 && m[8] == 0.0) => {
+                SolutionValues::Tensor(rows().map(|m| [m[0], m[1], m[4]]).collect())
+            }
+            9 => SolutionValues::Tensor3(rows().map(|m| [m[0], m[1], m[4], m[2], m[5], m[8]]).collect()),
+            _ => SolutionValues::Vector { components, numbers },
+        }
+    }
+
     /// Entries of the same type from their numbers, one after the other.
     #[must_use]
     pub fn with_numbers(&self, numbers: &[f64]) -> Self {

@@ -180,16 +180,17 @@ impl<'a> Rows<'a> {
         if self.line == 1 && self.buffer.starts_with(b"\xef\xbb\xbf") {
             self.buffer.drain(..3);
         }
-        if let Err(error) = std::str::from_utf8(&self.buffer) {
-            let what = format!("not a text in UTF-8 (byte {} of the line)", error.valid_up_to() + 1);
-            return Err(error_at(self.place, self.line, what, "save the file as UTF-8 text; it seems to be binary"));
-        }
         if read as u64 == LONGEST_LINE {
             let what = format!("a line of more than {LONGEST_LINE} bytes");
             return Err(error_at(self.place, self.line, what, "check that the file is text, and break its lines"));
         }
+        // Comments may be in any encoding.
         if let Some(end) = self.buffer.iter().position(|&byte| byte == b'#') {
             self.buffer.truncate(end);
+        }
+        if let Err(error) = std::str::from_utf8(&self.buffer) {
+            let what = format!("not a text in UTF-8 (byte {} of the line)", error.valid_up_to() + 1);
+            return Err(error_at(self.place, self.line, what, "save the file as UTF-8 text; it seems to be binary"));
         }
         Ok(read > 0)
     }
@@ -368,6 +369,7 @@ mod tests {
     #[test]
     fn what_is_no_text_is_refused() {
         let message = |bytes: &[u8]| Rows::new(bytes, "f").has_next().unwrap_err().to_string();
+        assert!(!Rows::new(b"# caf\xe9\n".as_slice(), "f").has_next().unwrap());
         assert_eq!(message(b"\n1 2\xff"), "f:2: not a text in UTF-8 (byte 4 of the line)");
         assert_eq!(message(&vec![b'1'; 1 << 25]), "f:1: a line of more than 16777216 bytes");
     }

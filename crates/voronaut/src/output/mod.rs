@@ -111,7 +111,7 @@ pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
     }
 }
 
-/// Writes a coloured canvas as `.vtu`, as a whole or not at all: point data `label` (colour) and `distance`.
+/// Writes a coloured canvas as `.vtu`, as a whole or not at all: point data `colour` and `distance`.
 ///
 /// # Errors
 /// [`Error::Unsupported`] for other endings, [`Error::Io`] where the file cannot be written.

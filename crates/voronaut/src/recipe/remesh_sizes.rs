@@ -162,6 +162,13 @@ impl Making<'_> {
 
 /// A mesh of the same vertices with triangles: its own, else the Delaunay triangulation.
 fn triangulated(mesh: &Mesh) -> Result<Mesh> {
+    if mesh.points.is_empty() {
+        let what = "sizes at the vertices of a domain without a mesh".into();
+        return Err(Error::Unsupported {
+            what,
+            help: "give IN as the mesh that they belong to, such as a .mesh".into(),
+        });
+    }
     if !mesh.triangles.is_empty() {
         return Ok(mesh.clone());
     }

@@ -5,6 +5,7 @@ use crate::domain::{Chain, Domain, Pslg};
 use crate::geometry::{Point, Tensor, Vector};
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Line};
+use std::collections::HashSet;
 
 /// A chord of length h is h^2 / 8 times the curvature away from its curve.
 const SAGITTA: f64 = 8.0;
@@ -32,8 +33,10 @@ impl CurveSizes {
         let long = extent.x.max(extent.y);
         let coarse = simplify(domain, &move |_: Point| Tensor::isotropic(long), hausd);
         let pslg = coarse.pslg();
-        let sized =
-            pslg.chains().iter().filter(|chain| !chain.kind.required).flat_map(|c| sized(pslg, c, hausd, ar)).collect();
+        let required: HashSet<u32> = pslg.required_points.iter().copied().collect();
+        let chains = pslg.chains();
+        let free = chains.iter().filter(|chain| !chain.kind.required);
+        let sized = free.flat_map(|chain| sized(pslg, &required, chain, hausd, ar)).collect();
         Self { tree: RTree::bulk_load(sized), hausd }
     }
 
@@ -56,10 +59,10 @@ fn direction(bent: &SizedSegment) -> Vector {
 }
 
 /// The segments of a curve with their sizes.
-fn sized(pslg: &Pslg, chain: &Chain, hausd: f64, ar: f64) -> Vec<SizedSegment> {
+fn sized(pslg: &Pslg, required: &HashSet<u32>, chain: &Chain, hausd: f64, ar: f64) -> Vec<SizedSegment> {
     let points: Vec<Point> = chain.vertices.iter().map(|&v| pslg.points[v as usize]).collect();
     let last = points.len() - 1;
-    let is_loop = chain.vertices[0] == chain.vertices[last] && !pslg.required_points.contains(&chain.vertices[0]);
+    let is_loop = chain.vertices[0] == chain.vertices[last] && !required.contains(&chain.vertices[0]);
     let bend = |i: usize| match i % last {
         0 if is_loop => curvature([points[last - 1], points[0], points[1]], ar),
         0 => 0.0,

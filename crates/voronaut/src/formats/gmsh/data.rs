@@ -13,6 +13,9 @@ use crate::formats::{Field, SolutionValues};
 pub(super) fn read(reader: &mut Reader<'_>, section: &str) -> Result<()> {
     let start = reader.source.position();
     let head = read_head(reader, section)?;
+    if head.rows == 0 {
+        return Ok(());
+    }
     let found = read_rows(reader, section, &head)?;
     let on_nodes = section == "NodeData";
     let vertices = 0..reader.mesh.points.len() as u32;
@@ -30,6 +33,15 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &str) -> Result<()> {
         let what = format!("{section} '{}' has no values on {missing} {of}", head.name);
         return Err(reader.source.error_at(start, what, "save values everywhere, or remove the section"));
     }
+    // Memory follows the file: values that are not there may be a few.
+    if rows.len() > FEW.max(MOST_FILLED * head.rows as usize) {
+        let what = format!("{section} '{}' has values on {} of {} vertices", head.name, head.rows, rows.len());
+        return Err(reader.source.error_at(
+            start,
+            what,
+            "save values everywhere, or remove vertices that no element uses",
+        ));
+    }
     let zeros = vec![0.0; head.components];
     let numbers: Vec<f64> = rows
         .into_iter()
@@ -38,13 +50,19 @@ pub(super) fn read(reader: &mut Reader<'_>, section: &str) -> Result<()> {
         })
         .copied()
         .collect();
-    let values = values(numbers, head.components, reader.mesh.is_planar());
+    let values = SolutionValues::in_space(numbers, head.components, reader.mesh.is_planar());
     let fields = if on_nodes { &mut reader.fields.vertices } else { &mut reader.fields.triangles };
-    let is_taken = fields.iter().any(|field| field.name == head.name);
-    let name = if is_taken { format!("{}_{}", head.name, head.step) } else { head.name };
+    let is_taken = |name: &str| fields.iter().any(|field| field.name == name);
+    let step = || std::iter::once(format!("{}_{}", head.name, head.step));
+    let mut names = std::iter::once(head.name.clone()).chain(step()).chain((2..).map(|n| format!("{}_{n}", head.name)));
+    let name = names.find(|name| !is_taken(name)).unwrap_or_default();
     fields.push(Field { name, values });
     Ok(())
 }
+
+/// Vertices for each one with a value, beyond [`FEW`].
+const MOST_FILLED: usize = 16;
+const FEW: usize = 1 << 12;
 
 /// What a section says of itself.
 struct Head {
@@ -136,29 +154,6 @@ fn missing(reader: &Reader<'_>, rows: &[Option<u32>], on_nodes: bool) -> usize {
     let mut lacks: Vec<bool> = rows.iter().map(Option::is_none).collect();
     let vertices = reader.mesh.triangles.as_flattened().iter();
     vertices.filter(|&&v| std::mem::take(&mut lacks[v as usize])).count()
-}
-
-/// Values from their numbers: nine are the rows of a tensor, if it is symmetric.
-fn values(numbers: Vec<f64>, components: usize, is_planar: bool) -> SolutionValues {
-    let rows = || numbers.chunks_exact(components);
-    match components {
-        1 => SolutionValues::Scalar(numbers),
-        3 if is_planar && rows().all(|row| row[2] == 0.0) => {
-            SolutionValues::Vector { components: 2, numbers: rows().flat_map(|row| [row[0], row[1]]).collect() }
-        }
-        9 if rows().all(is_symmetric) => {
-            if is_planar && rows().all(|row| row[2] == 0.0 && row[5] == 0.0 && row[8] == 0.0) {
-                return SolutionValues::Tensor(rows().map(|row| [row[0], row[1], row[4]]).collect());
-            }
-            SolutionValues::Tensor3(rows().map(|row| [row[0], row[1], row[4], row[2], row[5], row[8]]).collect())
-        }
-        _ => SolutionValues::Vector { components, numbers },
-    }
-}
-
-/// Whether three rows of three numbers are those of a symmetric tensor.
-fn is_symmetric(rows: &[f64]) -> bool {
-    [(1, 3), (2, 6), (5, 7)].into_iter().all(|(upper, lower)| rows[upper] - rows[lower] == 0.0)
 }
 
 /// A field, or a part of one, as Gmsh has them: with 1, 3 or 9 numbers per value.

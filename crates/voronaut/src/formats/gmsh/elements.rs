@@ -91,7 +91,7 @@ impl Reader<'_> {
         let group = (group != 0).then_some(group);
         if (kind.code, nodes, entity) == (last.code, last.nodes, last.entity)
             && group.is_some_and(|group| !last.groups.contains(&group))
-            && !last.groups.is_empty()
+            && (1..MOST_GROUPS).contains(&last.groups.len())
         {
             last.groups.extend(group);
         } else {
@@ -205,11 +205,16 @@ impl Reader<'_> {
             _ => {
                 let count = if code == QUADRANGLE { 2 } else { 1 };
                 mesh.triangle_labels[index as usize..][..count].fill(label);
-                mark(&mut mesh.required_triangles, Mark::RequiredTriangle);
+                if marks.contains(Mark::RequiredTriangle) {
+                    mesh.required_triangles.extend(index..index + count as u32);
+                }
             }
         }
     }
 }
+
+/// An element repeated more often than this is not taken for one in so many groups.
+const MOST_GROUPS: usize = 256;
 
 fn dimension_of(code: i32) -> u8 {
     match code {

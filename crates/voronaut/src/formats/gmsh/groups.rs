@@ -39,6 +39,7 @@ impl Marks {
 #[derive(Default)]
 pub(super) struct Groups {
     meanings: BTreeMap<(u8, i32), Meaning>,
+    marks: Marks,
 }
 
 enum Meaning {
@@ -51,7 +52,10 @@ impl Groups {
     pub(super) fn name(&mut self, dimension: u8, tag: i32, name: &str) {
         let mark = MARKS.iter().find(|&&(_, of, known)| of == dimension && known == name);
         let meaning = match mark {
-            Some(&(mark, ..)) => Meaning::Mark(mark),
+            Some(&(mark, ..)) => {
+                self.marks.insert(mark);
+                Meaning::Mark(mark)
+            }
             None => match name.strip_prefix(&label_name(dimension)).and_then(|number| number.parse().ok()) {
                 Some(label) if label <= 0 => Meaning::Label(label),
                 _ => return,
@@ -62,7 +66,7 @@ impl Groups {
 
     /// Whether a group is called as a mark.
     pub(super) fn have(&self, mark: Mark) -> bool {
-        self.meanings.values().any(|meaning| matches!(meaning, Meaning::Mark(found) if *found == mark))
+        self.marks.contains(mark)
     }
 
     /// The label and the marks of what belongs to some groups: the first that is no mark, or the first, or else `entity`.

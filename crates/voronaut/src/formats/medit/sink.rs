@@ -10,7 +10,7 @@ use std::path::Path;
 pub enum Form {
     /// `.mesh`, `.sol`.
     Text,
-    /// `.meshb`, `.solb`: libMeshb's, version 2 (version 3 beyond 2 GB), little endian, doubles.
+    /// `.meshb`, `.solb`: libMeshb's, version 2 (3 where a file may have more than 1 GB), little endian, doubles.
     Binary,
 }
 
@@ -40,7 +40,7 @@ pub(in crate::formats) struct Sink<'a> {
     is_first_in_row: bool,
 }
 
-/// Binary files of more bytes need positions of 64 bits; half of what 32 bits could say.
+/// Binary files that may have more bytes get positions of 64 bits; half of what 32 bits could say.
 const NARROW: u64 = 1 << 30;
 
 impl<'a> Sink<'a> {

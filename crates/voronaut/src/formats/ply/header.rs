@@ -54,6 +54,9 @@ pub(super) enum Kind {
     F64,
 }
 
+/// More kinds of elements are in no head.
+const MOST_ELEMENTS: usize = 256;
+
 /// Longer lines are in no head.
 const LONGEST_LINE: u64 = 1 << 16;
 
@@ -143,6 +146,10 @@ impl Header {
         let [name, count] = words else {
             return Err(error_at(place, self.lines, "an element without name and count", "write 'element vertex 8'"));
         };
+        if self.elements.len() >= MOST_ELEMENTS {
+            let what = format!("more than {MOST_ELEMENTS} elements");
+            return Err(error_at(place, self.lines, what, "check that the file is a .ply: they have two or three"));
+        }
         if self.elements.iter().any(|element| element.name == *name) {
             let what = format!("a second element '{}'", shortened(name));
             return Err(error_at(place, self.lines, what, "join both elements into one"));

@@ -3,6 +3,7 @@
 mod header;
 mod source;
 
+use super::document::distinct_names;
 use super::medit::Form;
 use super::words::{Largest, Shortest};
 use super::{Document, Field, Fields, SolutionValues};
@@ -46,10 +47,6 @@ pub fn read(mut source: impl BufRead, place: &str) -> Result<Document> {
 /// # Errors
 /// What `out` says.
 pub fn write(mesh: &Mesh, fields: &Fields, form: Form, out: &mut dyn Write) -> io::Result<()> {
-    let properties = |fields: &[Field]| {
-        let names = fields.iter().flat_map(columns);
-        names.fold(String::new(), |text, name| text + "property double " + &name + "\n")
-    };
     let [of_vertices, of_faces] = [&fields.vertices, &fields.triangles].map(|fields| properties(fields));
     write!(
         out,
@@ -111,13 +108,16 @@ fn write_row(row: Vec<f64>, form: Form, out: &mut dyn Write) -> io::Result<()> {
     }
 }
 
-/// What a field's components are called; names have no spaces here.
-fn columns(field: &Field) -> Vec<String> {
-    let name = field.name.split_whitespace().collect::<Vec<_>>().join("_");
-    match field.values.components() {
-        1 => vec![name],
-        several => (0..several).map(|i| format!("{name}_{i}")).collect(),
-    }
+/// The properties of fields, one for each component; names have no spaces here, and are none that mean something else.
+fn properties(fields: &[Field]) -> String {
+    let name = |field: &Field| field.name.split_whitespace().collect::<Vec<_>>().join("_");
+    let columns = |field: &Field| match field.values.components() {
+        1 => vec![name(field)],
+        several => (0..several).map(|i| format!("{}_{i}", name(field))).collect(),
+    };
+    let names =
+        distinct_names(fields.iter().flat_map(columns), &[["x", "y", "z", "label"].as_slice(), &LOOKS].concat());
+    names.into_iter().fold(String::new(), |text, name| text + "property double " + &name + "\n")
 }
 
 /// Properties that are shown, not computed with.
@@ -153,6 +153,11 @@ impl Reader {
             return Ok(());
         }
         let roles: Vec<Role> = element.properties.iter().map(|property| self.role(&element.name, property)).collect();
+        let lacks = |axis: &usize| element.name == "vertex" && !roles.contains(&Role::Coordinate(*axis));
+        if let Some(axis) = (0..3).find(lacks) {
+            let what = format!("the element vertex has no property {}", ["x", "y", "z"][axis]);
+            return Err(source.error_at(source.position(), what, "save the vertices with x, y and z"));
+        }
         for row in 1..=element.count {
             source.begin(&element.name, row, element.count);
             self.read_row(element, &roles, source)?;
@@ -201,7 +206,7 @@ impl Reader {
                 (Shape::Scalar(kind), Role::Field(field)) => {
                     self.push_value(element, field, source.number(kind)?, source)?;
                 }
-                (Shape::Scalar(kind), Role::None | Role::Vertices) => drop(source.number(kind)?),
+                (Shape::Scalar(kind), Role::None | Role::Vertices) => source.pass(kind)?,
             }
         }
         match element.name.as_str() {
@@ -287,7 +292,7 @@ impl Reader {
 
 fn whole_label(value: f64, source: &Source<'_>) -> Result<i32> {
     let label = value as i32;
-    if f64::from(label) == value {
+    if f64::from(label) - value == 0.0 {
         return Ok(label);
     }
     Err(source.error(&format!("the label {value}"), "labels are whole numbers of 32 bits"))
@@ -370,6 +375,12 @@ mod tests {
         let again = read(out.as_slice(), "a.ply").unwrap();
         let names: Vec<_> = again.fields.vertices.iter().map(|field| field.name.as_str()).collect();
         assert_eq!(names, ["my_metric_0", "my_metric_1", "my_metric_2"]);
+        let clashing = ["x", "label", ""].map(|name| field(name, vec![7.0; 3]));
+        let clashing = Fields { vertices: clashing.to_vec(), triangles: vec![] };
+        out.clear();
+        write(&document.mesh, &clashing, Form::Binary, &mut out).unwrap();
+        let again = read(out.as_slice(), "a.ply").unwrap();
+        assert_eq!((&again.mesh, again.fields.vertices.len()), (&document.mesh, 3));
     }
 
     fn message(bytes: &[u8]) -> String {
@@ -428,6 +439,10 @@ mod tests {
                 "a.ply:4: 'property quad q' is not",
             ),
             ("ply\nformat ascii 1.0\nfoo\nend_header\n", "a.ply:3: 'foo' has no place in the head"),
+            (
+                "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty int y\nend_header\n0 0\n",
+                "a.ply:6: the element vertex has no property z",
+            ),
             ("ply\nformat ascii 1.0\nelement face 0\nend_header\n", "a.ply:4: the file has no element vertex"),
         ] {
             let message = message(text.as_bytes());

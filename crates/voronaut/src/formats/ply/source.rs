@@ -52,6 +52,18 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// Passes over a number, whatever it is.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] where the file ends.
+    pub(super) fn pass(&mut self, kind: Kind) -> Result<()> {
+        let here = At { section: &self.element, row: self.row, rows: self.rows };
+        match &mut self.body {
+            Body::Text(words) => words.expect(here).map(drop),
+            Body::Binary(bytes) => decode(bytes, kind, here).map(drop),
+        }
+    }
+
     /// Whether all was read.
     ///
     /// # Errors

@@ -113,22 +113,7 @@ impl Unsorted {
 
     fn into_field(self, is_planar: bool) -> Field {
         let Self { name, components, numbers, .. } = self;
-        let rows = || numbers.as_chunks::<9>().0;
-        let values = match components {
-            1 => SolutionValues::Scalar(numbers),
-            3 if is_planar && numbers.as_chunks::<3>().0.iter().all(|v| v[2] == 0.0) => {
-                let numbers = numbers.as_chunks::<3>().0.iter().flat_map(|v| [v[0], v[1]]).collect();
-                SolutionValues::Vector { components: 2, numbers }
-            }
-            9 if !rows().iter().all(|m| m[1] - m[3] == 0.0 && m[2] - m[6] == 0.0 && m[5] - m[7] == 0.0) => {
-                SolutionValues::Vector { components, numbers }
-            }
-            9 if is_planar && rows().iter().all(|m| m[2] == 0.0 && m[5] == 0.0) => {
-                SolutionValues::Tensor(rows().iter().map(|m| [m[0], m[1], m[4]]).collect())
-            }
-            9 => SolutionValues::Tensor3(rows().iter().map(|m| [m[0], m[1], m[4], m[2], m[5], m[8]]).collect()),
-            _ => SolutionValues::Vector { components, numbers },
-        };
+        let values = SolutionValues::in_space(numbers, components, is_planar);
         Field { name, values }
     }
 }

@@ -2,6 +2,7 @@
 //! have to be known before.
 
 use super::cells::types;
+use crate::formats::document::distinct_names;
 use crate::formats::{Field, Fields, SolutionValues};
 use crate::mesh::Mesh;
 use std::io::{self, Write};
@@ -198,10 +199,10 @@ fn point_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool) -> Vec<A
             arrays.push(Array::new(name, 1, marks(marked, count).into_iter()));
         }
     }
-    arrays.extend(fields.iter().map(|field| {
+    arrays.extend(fields.iter().zip(names(fields)).map(|(field, name)| {
         let (values, width) = (&field.values, width(&field.values, is_planar));
         let numbers = (0..count * width).map(move |i| number(values, i / width, i % width));
-        Array::new(&field.name, width, numbers)
+        Array::new(&name, width, numbers)
     }));
     arrays
 }
@@ -226,7 +227,7 @@ fn cell_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool, order: Or
             arrays.push(Array::new(name, 1, all));
         }
     }
-    arrays.extend(fields.iter().map(|field| {
+    arrays.extend(fields.iter().zip(names(fields)).map(|(field, name)| {
         let (values, width) = (&field.values, width(&field.values, is_planar));
         let numbers = order.cells().flat_map(move |cell| {
             (0..width).map(move |k| match cell {
@@ -234,9 +235,14 @@ fn cell_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool, order: Or
                 Cell::Edge(_) => f64::NAN,
             })
         });
-        Array::new(&field.name, width, numbers)
+        Array::new(&name, width, numbers)
     }));
     arrays
+}
+
+/// What the arrays of fields are called: not as labels and marks are.
+fn names(fields: &[Field]) -> Vec<String> {
+    distinct_names(fields.iter().map(|field| field.name.clone()), &["label", "corner", "required", "ridge"])
 }
 
 /// Cells in their order.
