@@ -286,9 +286,8 @@ impl Reader {
 }
 
 fn whole_label(value: f64, source: &Source<'_>) -> Result<i32> {
-    let label = value as i32;
-    if f64::from(label) == value {
-        return Ok(label);
+    if value.fract() == 0.0 && (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&value) {
+        return Ok(value as i32);
     }
     Err(source.error(&format!("the label {value}"), "labels are whole numbers of 32 bits"))
 }
