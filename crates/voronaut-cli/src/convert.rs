@@ -128,24 +128,32 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
         demand_counts(sol, &values, [mesh.points.len(), mesh.triangles.len()])?;
         fields.extend(Fields::of_solutions(values));
     }
-    output::write_with(&args.to, |out| format.write(&mesh, &fields, out))?;
-    let mut told = format!(
+    let lost = format.lost(&mesh, &fields);
+    let mut told = vec![format!(
         "{} vertices, {} triangles, {} labelled edges",
         mesh.points.len(),
         mesh.triangles.len(),
         mesh.edges.len()
-    );
-    let mut names = fields.vertices.iter().chain(&fields.triangles).map(|field| field.name.as_str()).peekable();
-    if let (Format::Medit(form), Some(_)) = (format, names.peek()) {
-        let beside = args.to.with_extension(form.solution_ending());
-        output::write_solutions(&fields.clone().into_solutions(&mesh)?, &beside)?;
-        told += &format!("; {} in {}", names.collect::<Vec<_>>().join(", "), beside.display());
+    )];
+    let beside = beside(&args.to, format, &fields);
+    let solutions = beside.as_ref().map(|_| fields.clone().into_solutions(&mesh)).transpose()?;
+    output::write_with(&args.to, |out| format.write(&mesh, &fields, out))?;
+    if let (Some(beside), Some(solutions)) = (beside, solutions) {
+        output::write_solutions(&solutions, &beside)?;
+        let names = fields.vertices.iter().chain(&fields.triangles).map(|field| field.name.as_str());
+        told.push(format!("{} in {}", names.collect::<Vec<_>>().join(", "), beside.display()));
     }
-    let lost = format.lost(&mesh, &fields);
     if !lost.is_empty() {
-        told += &format!("; left out, for the format has no place for them: {}", lost.join(", "));
+        told.push(format!("left out, for the format has no place for them: {}", lost.join(", ")));
     }
-    Ok(told)
+    Ok(told.join("; "))
+}
+
+/// The file that fields go to where the mesh's format has no place for them but has files of values.
+fn beside(mesh: &Path, format: Format, fields: &Fields) -> Option<PathBuf> {
+    let Format::Medit(form) = format else { return None };
+    let is_empty = fields.vertices.is_empty() && fields.triangles.is_empty();
+    (!is_empty).then(|| mesh.with_extension(form.solution_ending()))
 }
 
 fn demand_counts(file: &Path, values: &Solutions, counts: [usize; 2]) -> Result<()> {

@@ -1,4 +1,5 @@
-//! The command line of voronaut. Exit code 0: done; 1: the input or the result is not what was asked; 2: wrong usage.
+//! The command line of voronaut. Exit code 0: done; 1: the input or the result is not what was asked, for which `remesh` has 2, as mmg
+//! has; 2: wrong usage.
 
 mod adapt;
 mod args;
@@ -24,6 +25,7 @@ use std::process::ExitCode;
 use voronaut::Result;
 
 fn main() -> ExitCode {
+    let is_remesh = std::env::args_os().nth(1).is_some_and(|word| word == "remesh");
     let done = remesh::translated(std::env::args_os()).and_then(|words| run(Arguments::parse_from(words)));
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -32,7 +34,7 @@ fn main() -> ExitCode {
             if !error.help().is_empty() {
                 eprintln!("  help: {}", error.help());
             }
-            ExitCode::FAILURE
+            if is_remesh { ExitCode::from(remesh::FAILURE) } else { ExitCode::FAILURE }
         }
     }
 }

@@ -23,6 +23,9 @@ use voronaut::recipe::{Keep, MeshOptions, Meshed, RemeshInput};
 use voronaut::surface::metric::Sizing;
 use voronaut::surface::{Given, Input, Mended, of_file};
 
+/// mmg's exit code where it writes no mesh.
+pub(crate) const FAILURE: u8 = 2;
+
 /// Remeshes a planar domain or a surface. Nothing is written unless the mesh is valid.
 pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     let start = Instant::now();
