@@ -234,7 +234,7 @@ fn a_directory_that_takes_no_files_is_named() {
 
 #[test]
 fn unknown_endings_of_domains_are_answered_with_those_that_work() {
-    domain_refused("a.stl", "solid", &["a.stl", "no triangles"]);
+    domain_refused("a.stl", "solid\nendsolid\n", &["a.stl", "no triangles"]);
     domain_refused("a.xyz", "solid", &["a.xyz", ".geojson, .json, .poly, .mesh, .meshb, .msh, .vtu or .vtp"]);
     words_refused("rect:0,0", "uniform", &["2 numbers where 4 are expected", "rect:x0,y0,x1,y1"]);
     let place = Place::new();

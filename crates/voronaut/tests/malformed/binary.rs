@@ -57,11 +57,11 @@ impl Medit {
         self.dimension(dimension);
         let entries = if dimension == 2 { 3 } else { 6 };
         self.section(62, 2, |own| {
-            [1, 3].into_iter().for_each(|number| own.file.i32(number, COUNT));
+            own.file.i32s(&[1, 3], COUNT);
             (0..2 * entries).for_each(|i| own.real(f64::from(i) / 2.0));
         });
         self.section(64, 1, |own| {
-            [2, 1, 2].into_iter().for_each(|number| own.file.i32(number, COUNT));
+            own.file.i32s(&[2, 1, 2], COUNT);
             (0..=dimension).for_each(|i| own.real(f64::from(i)));
         });
         self.finish("a.solb", Reader::Sol)
@@ -74,19 +74,19 @@ impl Medit {
     fn elements<const N: usize>(&mut self, code: i32, elements: &[[i32; N]]) {
         self.section(code, elements.len(), |own| {
             for element in elements {
-                element.iter().for_each(|&vertex| own.whole(vertex, REFERENCE));
+                own.wholes(element, REFERENCE);
                 own.whole(i32::MIN, None);
             }
         });
     }
 
     fn numbers(&mut self, code: i32, numbers: &[i32], kind: Option<Kind>) {
-        self.section(code, numbers.len(), |own| numbers.iter().for_each(|&number| own.whole(number, kind)));
+        self.section(code, numbers.len(), |own| own.wholes(numbers, kind));
     }
 
     fn section(&mut self, code: i32, rows: usize, body: impl Fn(&mut Self)) {
         self.keyword(code, |own| {
-            own.whole(rows as i32, COUNT);
+            own.whole(small(rows), COUNT);
             body(own);
         });
     }
@@ -99,11 +99,17 @@ impl Medit {
         let size = if self.version < 3 { 4 } else { 8 };
         let next = self.file.bytes.len() + size + trial.file.bytes.len();
         if size == 4 {
-            self.file.i32(next as i32, Some(Kind::Position));
+            self.file.i32(small(next), Some(Kind::Position));
         } else {
-            self.file.i64(next as i64, Some(Kind::Position));
+            self.file.i64(small(next).into(), Some(Kind::Position));
         }
         body(self);
+    }
+
+    fn wholes(&mut self, numbers: &[i32], kind: Option<Kind>) {
+        for &number in numbers {
+            self.whole(number, kind);
+        }
     }
 
     fn whole(&mut self, number: i32, kind: Option<Kind>) {
@@ -116,13 +122,13 @@ impl Medit {
 
     fn finish(mut self, name: &'static str, reader: Reader) -> Sample {
         self.file.i32(54, None);
-        if self.version < 3 {
-            self.file.i32(0, None)
-        } else {
-            self.file.i64(0, None)
-        }
+        self.file.raw(if self.version < 3 { &[0; 4] } else { &[0; 8] });
         self.file.finish(name, reader, 1..4)
     }
+}
+
+fn small(number: usize) -> i32 {
+    number.try_into().expect("a small number")
 }
 
 fn stl() -> Sample {
@@ -131,7 +137,7 @@ fn stl() -> Sample {
     file.i32(2, COUNT);
     for triangle in [[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.5]] {
         file.raw(&[0; 12]);
-        triangle.into_iter().for_each(|x| file.f32(x));
+        file.f32s(&triangle);
         file.raw(&[0; 2]);
     }
     file.finish("b.stl", Reader::Stl, 0..0)
@@ -156,7 +162,7 @@ fn ply(big: bool) -> Sample {
     }
     for face in [[0, 1, 2], [2, 3, 0]] {
         file.i32(3, COUNT);
-        face.into_iter().for_each(|vertex| file.i32(vertex, REFERENCE));
+        file.i32s(&face, REFERENCE);
         file.byte(1, COUNT);
         file.raw(&[0; 2]);
         file.f32(0.5);
@@ -173,16 +179,16 @@ fn gmsh_2(big: bool) -> Sample {
     file.raw(b"\n$EndMeshFormat\n$Nodes\n4\n");
     for (tag, [x, y]) in (1..).zip(SQUARE) {
         file.i32(tag, None);
-        [x, y, 0.0].into_iter().for_each(|x| file.f64(x));
+        file.f64s(&[x, y, 0.0]);
     }
     file.end("$EndNodes");
     file.raw(b"$Elements\n3\n");
     for (kind, tag, elements) in [(1, 1, &[[1, 2, 0]][..]), (2, 2, &[[1, 2, 3], [1, 3, 4]])] {
-        [kind, elements.len() as i32].into_iter().for_each(|number| file.i32(number, None));
+        file.i32s(&[kind, small(elements.len())], None);
         file.i32(2, COUNT);
         for (tag, element) in (tag..).zip(elements) {
-            [tag, 7, 1].into_iter().for_each(|number| file.i32(number, None));
-            element[..=kind as usize].iter().for_each(|&vertex| file.i32(vertex, REFERENCE));
+            file.i32s(&[tag, 7, 1], None);
+            file.i32s(&element[..=kind as usize], REFERENCE);
         }
     }
     file.end("$EndElements");
@@ -194,7 +200,7 @@ fn gmsh_4(big: bool) -> Sample {
     file.raw(b"$MeshFormat\n4.1 1 8\n");
     file.i32(1, None);
     file.raw(b"\n$EndMeshFormat\n$Entities\n");
-    [0, 1, 1, 0].into_iter().for_each(|count| file.i64(count, COUNT));
+    file.i64s(&[0, 1, 1, 0], COUNT);
     for group in [5, 7] {
         file.i32(1, None);
         file.raw(&[0; 6 * 8]);
@@ -203,20 +209,22 @@ fn gmsh_4(big: bool) -> Sample {
         file.i64(0, COUNT);
     }
     file.raw(b"\n$EndEntities\n$Nodes\n");
-    [(1, COUNT), (4, COUNT), (1, None), (4, None)].into_iter().for_each(|(number, kind)| file.i64(number, kind));
-    [2, 1, 0].into_iter().for_each(|number| file.i32(number, None));
+    file.i64s(&[1, 4], COUNT);
+    file.i64s(&[1, 4], None);
+    file.i32s(&[2, 1, 0], None);
     file.i64(4, COUNT);
-    (1..=4).for_each(|tag| file.i64(tag, None));
-    SQUARE.into_iter().flat_map(|[x, y]| [x, y, 0.5]).for_each(|x| file.f64(x));
+    file.i64s(&[1, 2, 3, 4], None);
+    file.f64s(SQUARE.map(|[x, y]| [x, y, 0.5]).as_flattened());
     file.end("$EndNodes");
     file.raw(b"$Elements\n");
-    [(2, COUNT), (3, COUNT), (1, None), (3, None)].into_iter().for_each(|(number, kind)| file.i64(number, kind));
+    file.i64s(&[2, 3], COUNT);
+    file.i64s(&[1, 3], None);
     for (dimension, tag, elements) in [(1, 1, &[[1, 2, 0]][..]), (2, 2, &[[1, 2, 3], [1, 3, 4]])] {
-        [dimension, 1, dimension].into_iter().for_each(|number| file.i32(number, None));
-        file.i64(elements.len() as i64, COUNT);
+        file.i32s(&[dimension, 1, dimension], None);
+        file.i64(small(elements.len()).into(), COUNT);
         for (tag, element) in (tag..).zip(elements) {
             file.i64(tag, None);
-            element[..=dimension as usize].iter().for_each(|&vertex| file.i64(vertex, REFERENCE));
+            file.i64s(&element[..=dimension as usize], REFERENCE);
         }
     }
     file.end("$EndElements");

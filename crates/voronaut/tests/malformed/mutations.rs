@@ -180,9 +180,9 @@ fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
         7 => {
             let end = (at + 1 + dice.roll(16)).min(bytes.len());
             if dice.roll(2) == 0 {
-                drop(bytes.drain(at..end))
+                drop(bytes.drain(at..end));
             } else {
-                bytes.splice(at..at, bytes[at..end].to_vec()).for_each(drop)
+                bytes.splice(at..at, bytes[at..end].to_vec()).for_each(drop);
             }
         }
         _ => {

@@ -106,16 +106,40 @@ impl Binary {
         self.push(&value.to_le_bytes(), kind, Number::I32(value, self.big));
     }
 
+    pub(crate) fn i32s(&mut self, values: &[i32], kind: Option<Kind>) {
+        for &value in values {
+            self.i32(value, kind);
+        }
+    }
+
     pub(crate) fn i64(&mut self, value: i64, kind: Option<Kind>) {
         self.push(&value.to_le_bytes(), kind, Number::I64(value, self.big));
+    }
+
+    pub(crate) fn i64s(&mut self, values: &[i64], kind: Option<Kind>) {
+        for &value in values {
+            self.i64(value, kind);
+        }
     }
 
     pub(crate) fn f32(&mut self, value: f32) {
         self.push(&value.to_le_bytes(), Some(Kind::Coordinate), Number::F32(self.big));
     }
 
+    pub(crate) fn f32s(&mut self, values: &[f32]) {
+        for &value in values {
+            self.f32(value);
+        }
+    }
+
     pub(crate) fn f64(&mut self, value: f64) {
         self.push(&value.to_le_bytes(), Some(Kind::Coordinate), Number::F64(self.big));
+    }
+
+    pub(crate) fn f64s(&mut self, values: &[f64]) {
+        for &value in values {
+            self.f64(value);
+        }
     }
 
     /// The line that ends a section, behind which the format lets the file end.

@@ -383,6 +383,28 @@ mod tests {
         assert_eq!((&again.mesh, again.fields.vertices.len()), (&document.mesh, 3));
     }
 
+    const ONE: &str = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+
+    #[test]
+    fn values_of_faces_that_are_not_one_triangle_each_are_left_out() {
+        let list = "property list uchar int vertex_index\n";
+        for (lists, row, triangles) in [("", "0.5", 0), (list, "0.5 3 0 0 0", 1), (list, "0.5 4 0 0 0 0", 2)] {
+            let text = format!("{ONE}element face 1\nproperty float u\n{lists}end_header\n0 0 0\n{row}\n");
+            let found = read(text.as_bytes(), "a.ply").unwrap();
+            assert_eq!((found.mesh.triangles.len(), found.fields.triangles.len()), (triangles, triangles % 2), "{row}");
+        }
+    }
+
+    #[test]
+    fn labels_are_whole_numbers() {
+        for label in ["0.5", "3e9", "-2147483649"] {
+            let text = format!("{ONE}property double label\nend_header\n0 0 0 {label}\n");
+            assert!(message(text.as_bytes()).starts_with("a.ply:9: the label "), "{label}");
+        }
+        let text = format!("{ONE}property double label\nend_header\n0 0 0 -2147483648\n");
+        assert_eq!(read(text.as_bytes(), "a.ply").unwrap().mesh.point_labels, [i32::MIN]);
+    }
+
     fn message(bytes: &[u8]) -> String {
         let error = read(bytes, "a.ply").unwrap_err();
         assert!(!error.help().is_empty());

@@ -165,6 +165,9 @@ fn pieces_are_joined() {
     let others = [PIECE, &PIECE.replace("Name=\"h\"", "Name=\"k\"")].concat();
     let message = read(file(&others).as_bytes(), "a").unwrap_err().to_string();
     assert!(message.ends_with("array 'h' is not in all pieces, or not with as many components"), "{message}");
+    let more = PIECE.replace("<PointData>", "<PointData><DataArray type=\"Int8\" Name=\"k\">7 8 9</DataArray>");
+    let message = read(file(&[PIECE, &more].concat()).as_bytes(), "a").unwrap_err().to_string();
+    assert!(message.starts_with("a, byte ") && message.ends_with("array 'k' is not in all pieces"), "{message}");
 }
 
 #[test]
