@@ -188,7 +188,11 @@ impl RemeshArgs {
         let input = self.input();
         let is_binary = input.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("meshb"));
         let ending = if is_binary { "o.meshb" } else { "o.mesh" };
-        named.map_or_else(|| input.with_extension(ending), |out| with_ending(out.clone()))
+        match named {
+            Some(out) if out.extension().is_none() && is_binary => out.with_extension("meshb"),
+            Some(out) => with_ending(out.clone()),
+            None => input.with_extension(ending),
+        }
     }
 
     /// What is kept as creases.

@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use voronaut::Result;
 use voronaut::domain::read_pslg;
-use voronaut::formats::{self, Format, Solution};
+use voronaut::formats::gmsh::Version;
+use voronaut::formats::{self, Fields, Format, Solution};
 use voronaut::mesh::Mesh;
 use voronaut::metric::read_metric;
 use voronaut::output::report::Seconds;
@@ -30,7 +31,11 @@ pub(crate) const FAILURE: u8 = 2;
 pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     let start = Instant::now();
     let (run, out) = (args.run(), args.out());
-    Format::from_path(&out)?;
+    let format = match Format::from_path(&out)? {
+        // mmg reads no other version.
+        Format::Gmsh(_, form) => Format::Gmsh(Version::V2_2, form),
+        other => other,
+    };
     let sol_file = out.with_extension("sol");
     [Some(&out), Some(&sol_file), args.report.as_ref()]
         .into_iter()
@@ -46,7 +51,7 @@ pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     };
     let Made { mesh, mut report, solution } = made;
     report.seconds.total = start.elapsed().as_secs_f64();
-    output::write_mesh(&mesh, &out)?;
+    output::write_with(&out, |file| format.write(&mesh, &Fields::default(), file))?;
     output::write_solution(&solution, &sol_file)?;
     args.report.as_deref().map_or(Ok(()), |path| output::write(path, report.to_json().as_bytes()))?;
     summary::print(&out.display().to_string(), &report, &run);
@@ -102,7 +107,11 @@ fn keep(args: &RemeshArgs) -> Keep {
 /// The values of the metric: of the file named, else of the one next to the input, if there is one. What is named and not there is
 /// no metric, as mmg has it, with a warning.
 fn asked(args: &RemeshArgs) -> Result<Option<(PathBuf, Solution)>> {
-    let own = ["sol", "solb"].map(|ending| args.input().with_extension(ending)).into_iter().find(|own| own.is_file());
+    let with =
+        |path: &Path| ["sol", "solb"].map(|ending| path.with_extension(ending)).into_iter().find(|own| own.is_file());
+    let own = with(&args.input());
+    // The ending may be left out.
+    let named = args.sol.clone().map(|path| if path.is_file() { path } else { with(&path).unwrap_or(path) });
     let is_there = |path: &PathBuf| {
         let is_there = path.is_file();
         if !is_there && args.sol.is_some() {
@@ -112,7 +121,7 @@ fn asked(args: &RemeshArgs) -> Result<Option<(PathBuf, Solution)>> {
     };
     // What is next to an outline belongs to another file.
     let has_sizes = args.hsiz.is_some() || args.optim || Format::of_ending(&args.input()).is_none();
-    let Some(path) = args.sol.clone().or(own.filter(|_| !has_sizes)).filter(is_there) else { return Ok(None) };
+    let Some(path) = named.or(own.filter(|_| !has_sizes)).filter(is_there) else { return Ok(None) };
     let read = read_metric(&path, args.tensor_order)?;
     Ok(Some((path, read)))
 }

@@ -26,6 +26,15 @@ pub(crate) fn translated(words: impl IntoIterator<Item = OsString>) -> Result<Ve
             "leave it out: meshes are adapted as a whole, by one metric, without level sets or files of parameters";
         return Err(Error::Unsupported { what: format!("remesh {word}"), help: help.into() });
     }
+    // To clap these were -h, which asks for help, and more.
+    let is_help = |word: &&OsString| {
+        let text = word.to_string_lossy();
+        text.starts_with("-h") && text.len() > 2 && !WORDS.contains(&&text[1..])
+    };
+    if let Some(word) = words.iter().find(is_help) {
+        let what = format!("{} is no option", word.display());
+        return Err(Error::parse("remesh", what, "voronaut remesh --help lists the options: -hmin H, not -hmin=H"));
+    }
     let mut result = words[..2].to_vec();
     let mut rest = words[2..].iter().peekable();
     while let Some(word) = rest.next() {
@@ -73,7 +82,6 @@ mod tests {
             ("v remesh -v a.mesh", "v remesh -v a.mesh"),
             ("v remesh a.mesh -hgrad -1", "v remesh a.mesh --hgrad -1"),
             ("v remesh -xreg a.mesh -rmc 1e-3", "v remesh --xreg=0 a.mesh --rmc 1e-3"),
-            ("v remesh -hello", "v remesh -hello"),
             ("v mesh a.mesh -hausd 0.1", "v mesh a.mesh -hausd 0.1"),
             ("v", "v"),
         ] {
@@ -83,6 +91,10 @@ mod tests {
 
     #[test]
     fn what_there_is_not_is_named() {
+        for text in ["v remesh a.mesh -hmx 1", "v remesh -hmax=1 a.mesh", "v remesh -hello"] {
+            let error = translated(words(text)).unwrap_err();
+            assert!(error.to_string().ends_with("is no option") && !error.help().is_empty(), "{error}");
+        }
         for text in ["v remesh a.mesh -ls 0.5", "v remesh -f a.mmgs a.mesh", "v remesh -nsd 2 a.mesh"] {
             let error = translated(words(text)).unwrap_err();
             assert!(error.to_string().starts_with("not supported: remesh -") && !error.help().is_empty(), "{error}");

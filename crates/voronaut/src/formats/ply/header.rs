@@ -50,6 +50,8 @@ pub(super) enum Kind {
     U16,
     I32,
     U32,
+    I64,
+    U64,
     F32,
     F64,
 }
@@ -63,7 +65,7 @@ const LONGEST_LINE: u64 = 1 << 16;
 /// What programs call the list of a face's vertices.
 pub(super) const VERTEX_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-const KINDS: [(&str, Kind); 16] = [
+const KINDS: [(&str, Kind); 18] = [
     ("char", Kind::I8),
     ("int8", Kind::I8),
     ("uchar", Kind::U8),
@@ -76,6 +78,9 @@ const KINDS: [(&str, Kind); 16] = [
     ("int32", Kind::I32),
     ("uint", Kind::U32),
     ("uint32", Kind::U32),
+    // No types of the format, but meshio writes them.
+    ("int64", Kind::I64),
+    ("uint64", Kind::U64),
     ("float", Kind::F32),
     ("float32", Kind::F32),
     ("double", Kind::F64),

@@ -114,6 +114,8 @@ fn decode(bytes: &mut Bytes<'_>, kind: Kind, at: At<'_>) -> Result<f64> {
         Kind::U16 => short(bytes.array(at)?).into(),
         Kind::I32 => bytes.i32(at)?.into(),
         Kind::U32 => bytes.i32(at)?.cast_unsigned().into(),
+        Kind::I64 => bytes.i64(at)? as f64,
+        Kind::U64 => bytes.i64(at)?.cast_unsigned() as f64,
         // Whether what nobody needs is finite does not matter.
         Kind::F32 => f32::from_bits(bytes.i32(at)?.cast_unsigned()).into(),
         Kind::F64 => f64::from_bits(bytes.i64(at)?.cast_unsigned()),
