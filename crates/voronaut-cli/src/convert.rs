@@ -126,7 +126,7 @@ fn write_geojson(path: &Path, pslg: &Pslg) -> Result<String> {
     let found = to_polygons(pslg)?;
     output::write_with(path, |out| geojson::write(&found, out))?;
     let rings: usize = found.polygons.iter().map(|polygon| polygon.rings.len()).sum();
-    Ok(format!("{} polygons, {rings} rings; a ring has the label of its first segment", found.polygons.len()))
+    Ok(format!("{} polygons, {rings} rings; a ring has one label, that of most of its boundary", found.polygons.len()))
 }
 
 /// What was written, and what was not.

@@ -37,7 +37,8 @@ pub fn to_poly(pslg: &Pslg) -> Result<Poly> {
     Ok(poly)
 }
 
-/// The polygons of a graph, one for each connected part of a region, with a label for each ring: that of its first segment.
+/// The polygons of a graph, one for each connected part of a region, with a label for each ring: that of most of its segments
+/// on the boundary, or else between regions.
 ///
 /// # Errors
 /// As of [`Domain::new`](super::Domain::new).
@@ -182,8 +183,17 @@ impl Outlined {
 
     fn ring(&self, pslg: &Pslg, walk: &[HalfEdge]) -> Ring {
         let topology = &self.planar.topology;
-        let constraint = walk.iter().find_map(|&h| topology.constraint(h));
-        let label = constraint.map_or(0, |constraint| pslg.segments[constraint.0 as usize].label);
+        let is_outer = |h: HalfEdge| topology.twin(h).is_none_or(|t| self.areas.of(t.face()) == Side::Outside);
+        let mut counts: BTreeMap<i32, [usize; 2]> = BTreeMap::new();
+        for &h in walk {
+            if let Some(constraint) = topology.constraint(h) {
+                let count = counts.entry(pslg.segments[constraint.0 as usize].label).or_default();
+                count[usize::from(!is_outer(h))] += 1;
+            }
+        }
+        // Of as many the least.
+        let most = counts.into_iter().rev().max_by_key(|&(_, count)| count);
+        let label = most.map_or(0, |(label, _)| label);
         Ring { points: walk.iter().map(|&h| self.planar.ends(h)[0]).collect(), label }
     }
 }

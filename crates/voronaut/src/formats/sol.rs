@@ -58,7 +58,7 @@ pub fn write(solution: &Solution, form: Form, out: &mut dyn Write) -> io::Result
 /// section has.
 ///
 /// # Errors
-/// As of [`write`].
+/// As of [`write()`].
 ///
 /// # Panics
 /// If a solution has fewer.

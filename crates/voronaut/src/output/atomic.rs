@@ -15,7 +15,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     write_with(path, |out| out.write_all(bytes))
 }
 
-/// As [`write`], of a file that is written piece by piece, and never in memory as a whole.
+/// As [`write()`], of a file that is written piece by piece, and never in memory as a whole.
 ///
 /// # Errors
 /// [`Error::Io`] with the path, of what `fill` says too.

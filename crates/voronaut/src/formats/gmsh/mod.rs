@@ -53,7 +53,7 @@ impl FromStr for Version {
 ///
 /// A label is the tag of the physical group, or else of the entity (0 in version 2 where there is neither). Of several groups it is
 /// the first that is listed: Gmsh lists them in `$Entities`, and in version 2 by repeating elements, which the mesh gets once.
-/// Vertices without element of type 15 have label 0. The groups that [`write`] names mean labels and marks again; other names of groups
+/// Vertices without element of type 15 have label 0. The groups that [`write()`] names mean labels and marks again; other names of groups
 /// are not kept.
 ///
 /// `$NodeData` and `$ElementData` are fields: of 9 numbers a tensor, if it is symmetric (row by row in the file), else a vector.
