@@ -105,12 +105,13 @@ mod tests {
             ("rect:0,0,1", "rect:0,0,1: 3 numbers"),
             ("no/such.mesh", "no/such.mesh: "),
             ("no/such.ply", "no/such.ply: "),
+            ("no/such.msh", "no/such.msh: "),
             ("no/such.poly", "no/such.poly: "),
         ] {
             let error = Given::read(spec, None).unwrap_err();
             assert!(error.to_string().starts_with(expected) && !error.help().is_empty(), "{error}");
         }
-        for spec in ["", "cube:1", "part.msh", "part.step", "mesh"] {
+        for spec in ["", "cube:1", "part.step", "mesh"] {
             let error = Given::read(spec, None).unwrap_err();
             assert!(error.to_string().contains("neither a shape nor a file"), "{error}");
             assert!(error.help().contains(".geojson") && error.help().contains("torus:R,r"), "{}", error.help());

@@ -28,7 +28,7 @@ fn sample(z: f64) -> Document {
     let mut vertices = vec![
         field("u", SolutionValues::Scalar(vec![0.1, f64::MIN_POSITIVE, -1e308, 4.0])),
         field("<a & \"b\">'\u{e9}", SolutionValues::Scalar(vec![1.0; 4])),
-        field("label", SolutionValues::Scalar(vec![0.5; 4])),
+        field("field_label", SolutionValues::Scalar(vec![0.5; 4])),
         field("wind", vector(3)),
         field("slope", vector(2)),
         field("six", vector(6)),
@@ -130,8 +130,9 @@ fn files_of_vtk_and_meshio_in_all_encodings() {
         let [u, metric, wind] = fields.vertices.as_slice() else { panic!("{name}: {:?}", fields.vertices) };
         assert_eq!([&u.name, &metric.name, &wind.name], ["u", "metric", "wind"]);
         assert!(matches!(&u.values, SolutionValues::Scalar(u) if u.len() == 5 && (u[3] - 0.3).abs() < 1e-15));
-        let expected = [1.0, 2.0, 3.0, 4.0, 5.0].map(|i| [i, 0.5, 2.0]).to_vec();
-        assert_eq!(metric.values, SolutionValues::Tensor(expected));
+        // Its zz is 1: not a tensor of the plane.
+        let expected = [1.0, 2.0, 3.0, 4.0, 5.0].map(|i| [i, 0.5, 2.0, 0.0, 0.0, 1.0]).to_vec();
+        assert_eq!(metric.values, SolutionValues::Tensor3(expected));
         assert_eq!(wind.values, SolutionValues::Vector { components: 2, numbers: [1.5, -2.0].repeat(5) });
         let expected = Field { name: "e".into(), values: SolutionValues::Scalar(vec![0.25, 0.25, 0.5]) };
         assert_eq!(fields.triangles, [expected]);
