@@ -3,7 +3,7 @@
 use super::cells::from_frame;
 use crate::dual::{Kind, Mending};
 use crate::geometry::Vector;
-use crate::triangulation::VertexId;
+use crate::triangulation::{HalfEdge, VertexId};
 
 /// Lengths of the moves that are tried (metric length), and directions of each.
 const LENGTHS: [f64; 4] = [0.2, 0.1, 0.05, 0.02];
@@ -12,7 +12,7 @@ const DIRECTIONS: usize = 12;
 const GAIN: f64 = 1e-3;
 /// Edges whose metric length has a logarithm of at most this size are well within the unit range.
 const UNIT: f64 = 0.3;
-/// Below this quality lengths do not count: beside an edge that must stay whole and is too long, every way off it may make others worse.
+/// Below this quality lengths do not count beside an edge that must stay whole and is too long: every way off it may make others worse.
 const POOR: f64 = 0.1;
 /// Moves of one seed.
 const MOVES: usize = 6;
@@ -35,15 +35,21 @@ pub fn mend_worst(dual: &mut impl Mending, most: usize) -> usize {
     free.into_iter().filter(|&v| mend(dual, v)).count()
 }
 
-/// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out, unless
-/// the quality is poor.
+/// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out, unless the quality is poor beside
+/// an edge that must stay whole and is too long.
 fn mend<M: Mending>(dual: &mut M, v: VertexId) -> bool {
     let topology = dual.topology();
     let ring: Vec<[M::Site; 2]> =
         topology.star(v).map(|h| [topology.target(h), topology.apex(h)].map(|u| dual.site(u))).collect();
+    let is_long = |h: HalfEdge| {
+        let ends = [topology.origin(h), topology.target(h)].map(|u| dual.site(u));
+        topology.is_fixed(h) && dual.straight_length(ends).ln() > UNIT
+    };
+    let is_beside = topology.star(v).any(|h| is_long(h.next()));
     let misfit = |dual: &M, a, b| dual.straight_length([a, b]).ln().abs();
     let worst_edge =
         |dual: &M, site: M::Site| ring.iter().flatten().map(|&u| misfit(dual, site, u)).fold(0.0, f64::max);
+    let usual = worst_edge(dual, dual.site(v)).max(UNIT);
     let least = |dual: &M, site: M::Site, allowed: f64| {
         let least = ring.iter().map(|&[a, b]| dual.quality([site, a, b])).fold(f64::INFINITY, f64::min);
         if worst_edge(dual, site) > allowed { f64::NEG_INFINITY } else { least }
@@ -51,7 +57,7 @@ fn mend<M: Mending>(dual: &mut M, v: VertexId) -> bool {
     let mut now = least(dual, dual.site(v), f64::INFINITY);
     let mut has_moved = false;
     for _ in 0..MOVES {
-        let allowed = if now < POOR { f64::INFINITY } else { worst_edge(dual, dual.site(v)).max(UNIT) };
+        let allowed = if is_beside && now < POOR { f64::INFINITY } else { usual };
         let frame = dual.local(v).tensor.cholesky();
         let trials = trials(frame).filter_map(|by| Some((by, least(dual, dual.site_after(v, by)?, allowed))));
         let Some((by, best)) = trials.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };

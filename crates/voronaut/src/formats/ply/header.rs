@@ -56,6 +56,9 @@ pub(super) enum Kind {
     F64,
 }
 
+/// More columns are refused.
+const MOST_PROPERTIES: usize = 1 << 10;
+
 /// More kinds of elements are in no head.
 const MOST_ELEMENTS: usize = 256;
 
@@ -181,6 +184,14 @@ impl Header {
         let Some(element) = self.elements.last_mut() else {
             return Err(error_at(place, self.lines, "a property before any element", "write its element first"));
         };
+        if element.properties.len() >= MOST_PROPERTIES {
+            let what = format!("more than {MOST_PROPERTIES} properties of the element '{}'", shortened(&element.name));
+            return Err(error_at(place, self.lines, what, "save the values in several files"));
+        }
+        if element.properties.iter().any(|property| property.name == **name) {
+            let what = format!("a second property '{}'", shortened(name));
+            return Err(error_at(place, self.lines, what, "give each a name of its own"));
+        }
         element.properties.push(Property { name: (*name).into(), shape });
         Ok(())
     }

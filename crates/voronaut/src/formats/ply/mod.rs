@@ -460,6 +460,10 @@ mod tests {
                 "ply\nformat ascii 1.0\nelement face 0\nproperty quad q\nend_header\n",
                 "a.ply:4: 'property quad q' is not",
             ),
+            (
+                "ply\nformat ascii 1.0\nelement vertex 0\nproperty int u\nproperty int u\nend_header\n",
+                "a.ply:5: a second property 'u'",
+            ),
             ("ply\nformat ascii 1.0\nfoo\nend_header\n", "a.ply:3: 'foo' has no place in the head"),
             (
                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty int y\nend_header\n0 0\n",
