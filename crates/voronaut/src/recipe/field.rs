@@ -207,15 +207,11 @@ fn within_domain<F: MetricField + 'static>(field: F, domain: &Domain, at: Graded
 }
 
 fn sampled(mesh: &Mesh, values: &SolutionValues, place: &str) -> Result<Sampled> {
-    let tensors: Vec<Tensor> = match values {
-        SolutionValues::Tensor(entries) => entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect(),
-        // Of a planar mesh in dimension 3.
-        SolutionValues::Tensor3(entries) => entries.iter().map(|m| Tensor::new(m[0], m[1], m[2])).collect(),
-        SolutionValues::Scalar(_) | SolutionValues::Vector { .. } => {
-            let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
-            return Err(Error::parse(place, "the values are no planar metric", help));
-        }
+    let SolutionValues::Tensor(entries) = values else {
+        let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
+        return Err(Error::parse(place, "the values are no planar metric", help));
     };
+    let tensors: Vec<Tensor> = entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect();
     Sampled::new(mesh, &tensors)
 }
 
