@@ -71,15 +71,15 @@ fn empty_missing_and_binary_files_are_named() {
     for name in ["a.mesh", "a.poly", "a.geojson"] {
         domain_refused(name, "", &[name, "the file is empty", "had finished"]);
         domain_refused(name, " \n\t\n", &[name]);
-        domain_refused(name, &binary, &[name, "not a text in UTF-8 (byte 1)"]);
+        domain_refused(name, &binary, &[name, "not a text in UTF-8 (byte 1"]);
         words_refused(&format!("no/{name}"), "uniform", &[name, "No such file"]);
     }
-    domain_refused("a.mesh", b"\0\0\0\x01\x02", &["a.mesh:1", "not with MeshVersionFormatted"]);
+    domain_refused("a.mesh", b"\0\0\0\x01\x02", &["a.mesh, byte 4: the file ends in the head of the file"]);
     solution_refused("", &["metric.sol: the file is empty"]);
-    solution_refused(&binary, &["metric.sol: not a text in UTF-8 (byte 1)"]);
+    solution_refused(&binary, &["metric.sol:1: not a text in UTF-8 (byte 1 of the line)"]);
     let place = Place::new();
     place.put("a.mesh", &binary);
-    refused(&place, &["check", "a.mesh"], &["a.mesh: not a text"]);
+    refused(&place, &["check", "a.mesh"], &["a.mesh:1: not a text"]);
     refused(&place, &["check", "b.mesh"], &["b.mesh", "No such file"]);
     refused(&place, &["mesh", "rect:0,0,1,1", "--metric", "b.sol", "-o", "out.mesh"], &["b.sol", "No such file"]);
 }
@@ -213,7 +213,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
     let place = Place::new();
     let square = ["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "100", "-o"];
     let with = |words: &[&'static str]| [&square[..], words].concat();
-    for name in ["out.xyz", "out", "out.meshb"] {
+    for name in ["out.xyz", "out", "out.mshx"] {
         refused(&place, &with(&[name]), &[name, "not supported", ".mesh, .meshb, .msh, .vtu"]);
     }
     refused(&place, &with(&["nowhere/out.mesh"]), &["nowhere: No such file or directory"]);
