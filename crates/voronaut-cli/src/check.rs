@@ -14,10 +14,11 @@ use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
 use voronaut::output::Report;
 use voronaut::output::report::Strayed;
 use voronaut::quality::{
-    Unmet, fidelity, interpolation_error, metric_quality, surface_fidelity, surface_quality, surface_unmet, unmet,
-    validity,
+    Meetings, Unmet, fidelity, interpolation_error, metric_quality, surface_fidelity, surface_quality, surface_unmet,
+    unmet, validity, validity_on,
 };
 use voronaut::recipe::GradedAt;
+use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Given, Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 
@@ -28,8 +29,14 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     demand_drawable(args)?;
     files::set_threads(&args.run)?;
     let mesh = formats::read(&args.mesh)?.mesh;
-    let found = validity(&mesh);
+    let read = |spec: &str| Given::read_with(spec, None, args.damage.options());
+    let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();
+    let found = match &given {
+        Some(Given::Surface(input)) => validity_on(&mesh, &Meetings::of(input.whole_mesh())),
+        _ => validity(&mesh),
+    };
     let fault = found.demand();
+    let meets = found.meetings.note();
     let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
     report.options = json!({
         "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain, "function": args.function, "norm": args.metric_choices.norm.to_string(),
@@ -43,9 +50,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
         return Err(fault);
     }
     report.metric_scale = args.metric.is_some().then_some(args.metric_scale.unwrap_or(1.0));
-    let read = |spec: &str| Given::read_with(spec, None, args.damage.options());
-    let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();
-    report.notes.extend(mended.iter().flat_map(Mended::sentences));
+    report.notes.extend(mended.iter().flat_map(Mended::sentences).chain(meets));
     let report = match given {
         Some(Given::Surface(input)) => on_surface(args, &mesh, Some(&input), report, start)?,
         None if !mesh.is_planar() => on_surface(args, &mesh, None, report, start)?,
@@ -124,6 +129,7 @@ fn on_surface(
         let field = metric::on_surface(text, input, &args.metric_choices)?;
         let scaled = Scaled { field: field.as_ref(), factor: args.metric_scale.unwrap_or(1.0) };
         report = report.with_quality(&surface_quality(mesh, &input.surface, &scaled)?);
+        report.curvature = field.curvature_figures();
         report.unmet = Some(surface_unmet(mesh, &input.surface, &scaled)?.figures());
     }
     report.seconds.total = start.elapsed().as_secs_f64();

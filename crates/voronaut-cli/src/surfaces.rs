@@ -15,9 +15,10 @@ use voronaut::geodesic::Method;
 use voronaut::geometry::Point3;
 use voronaut::mesh::Mesh;
 use voronaut::output::{self, Report, Scene, Shade, Stroke, View, report};
-use voronaut::quality::{surface_quality, surface_unmet, validity};
+use voronaut::quality::{Meetings, surface_quality, surface_unmet, validity_on};
 use voronaut::recipe::{self, SeedDual};
 use voronaut::sampling;
+use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Mended, Place};
 use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
@@ -32,14 +33,16 @@ pub(crate) fn mesh(args: &MeshArgs, input: Input, mended: &Mended, start: Instan
         let bar = Bar::new(args.run.quiet, args.run.verbose);
         recipe::mesh_surface(input, metric.as_ref(), &args.options(), &bar)?
     };
-    let found = validity(&meshed.mesh);
+    let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
     found.demand().map_err(crate::mesh::ours)?;
+    let meets = found.meetings.note();
     let scaled = Scaled { field: metric.as_ref(), factor: meshed.metric_scale };
     let figures = surface_quality(&meshed.mesh, &input.surface, &scaled)?;
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     crate::mesh::fill_in(&mut report, &meshed, crate::mesh::options(args));
+    report.curvature = metric.curvature_figures();
     report.unmet = Some(surface_unmet(&meshed.mesh, &input.surface, &scaled)?.figures());
-    report.notes.extend(mended.sentences());
+    report.notes.extend(mended.sentences().chain(meets));
     report.fidelity = meshed.fidelity.map(|found| report::Strayed::Surface(found.into()));
     report.seconds = report::Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
     // Cells are drawn across creases.
@@ -80,7 +83,8 @@ pub(crate) fn dual(args: &DualArgs, input: &Input, mended: &Mended, start: Insta
     let mesh = recipe::surface_mesh(input, &places, triangles);
     stage(&mut stages, "dual");
     stages.extend(seconds);
-    let found = validity(&mesh);
+    let found = validity_on(&mesh, &Meetings::of(input.whole_mesh()));
+    let meets = found.meetings.note();
     let is_valid = found.valid;
     let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
     if is_valid {
@@ -89,7 +93,7 @@ pub(crate) fn dual(args: &DualArgs, input: &Input, mended: &Mended, start: Insta
     report.dual = Some(account);
     report.canvas = Some(canvas.figures());
     report.diagram = Some(report::Diagram { raw_nerve: Some(raw_nerve), ..report::Diagram::of(&diagram) });
-    report.notes.extend(mended.sentences());
+    report.notes.extend(mended.sentences().chain(meets));
     if !is_valid {
         report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
     }

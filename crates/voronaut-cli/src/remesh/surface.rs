@@ -7,7 +7,7 @@ use crate::progress::Bar;
 use voronaut::Result;
 use voronaut::output::Report;
 use voronaut::output::report::Strayed;
-use voronaut::quality::{surface_quality, surface_unmet, validity};
+use voronaut::quality::{Meetings, surface_quality, surface_unmet, validity_on};
 use voronaut::recipe::{self, MeshOptions};
 use voronaut::surface::metric::{Sizes, Sizing};
 use voronaut::surface::{Input, Mended};
@@ -28,14 +28,15 @@ pub(super) fn remesh(args: &RemeshArgs, input: Input, mended: &Mended) -> Result
     let field = sizes.field(&input.surface)?;
     let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args) };
     let meshed = recipe::mesh_surface(&input, &field, &options, &Bar::new(run.quiet, run.verbose))?;
-    let found = validity(&meshed.mesh);
+    let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
     found.demand().map_err(mesh::ours)?;
+    let meets = found.meetings.note();
     let scaled = Scaled { field: &field, factor: meshed.metric_scale };
     let figures = surface_quality(&meshed.mesh, &input.surface, &scaled)?;
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     fill_in(&mut report, &meshed, args, &sizing, metric_file.as_deref());
     report.unmet = Some(surface_unmet(&meshed.mesh, &input.surface, &scaled)?.figures());
-    report.notes.extend(mended.sentences());
+    report.notes.extend(mended.sentences().chain(meets));
     report.fidelity = meshed.fidelity.map(|found| Strayed::Surface(found.into()));
     let solution = sizes.solution(&field, meshed.metric_scale, &input.surface, &meshed.mesh.points)?;
     Ok(Made { mesh: meshed.mesh, report, solution })

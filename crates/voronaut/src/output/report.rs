@@ -12,6 +12,7 @@ use crate::quality::{
     UnmetFigures, Validity, Worst,
 };
 use crate::realisation::{self, Found, Realisation};
+use crate::surface::metric::CurvatureFigures;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
@@ -41,6 +42,9 @@ pub struct Report {
     /// How edge lengths and angles are distributed, with straight and with geodesic edges; only where asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub histograms: Option<Histograms>,
+    /// What bounds made of the curvatures of a mesh, where the metric rests on them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curvature: Option<CurvatureFigures>,
     /// Euclidean distance to the domain's boundary, or to the surface.
     pub fidelity: Option<Strayed>,
     /// The canvas, where one was used.

@@ -9,6 +9,7 @@ mod fidelity;
 mod geodesics;
 mod histogram;
 mod interpolation;
+mod meetings;
 mod metric_quality;
 mod position;
 mod sampled_distance;
@@ -22,16 +23,17 @@ mod unmet;
 mod validity;
 
 pub use crossings::{Crossing, crossing_edges, crossings};
-pub use faults::faulty_triangles;
+pub use faults::{faulty_triangles, faulty_triangles_on};
 pub use fidelity::{Farthest, Fidelity, fidelity};
 pub use histogram::{Both, Histogram, Histograms, histograms};
 pub use interpolation::{Exponent, InterpolationError, interpolation_error};
+pub use meetings::{Excused, Meetings};
 pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};
 pub use position::Position;
 pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
 pub use surface_quality::surface_quality;
 pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet};
-pub use validity::{Fault, Validity, check, validity};
+pub use validity::{Fault, Validity, check, validity, validity_on};
 
 pub(crate) use edges::Edges;
 #[cfg(test)]

@@ -1,36 +1,61 @@
 //! Triangles of a surface that meet each other where they are not neighbours, decided exactly.
 
 use super::contact::{Corners, contact};
-use super::validity::Fault;
-use crate::geometry::Aabb3;
+use super::meetings::Meetings;
+use super::validity::{Fault, longest};
+use crate::geometry::{Aabb3, Point3};
 use crate::mesh::Mesh;
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
-/// The pairs of triangles that have more in common than a vertex or an edge that both name, the smaller number first, in order.
-/// Neighbours that lie flat on each other count. Needs finite positions and triangles that are not flat.
+/// Two triangles that meet, the smaller number first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pair {
+    /// Which.
+    pub(super) triangles: [usize; 2],
+    /// A point that both have, rounded.
+    pub(super) at: Point3,
+}
+
+impl Pair {
+    /// Whether they have a vertex in common, by its number.
+    pub(super) fn are_neighbours(&self, mesh: &Mesh) -> bool {
+        let [t, u] = self.triangles.map(|t| mesh.triangles[t]);
+        t.iter().any(|v| u.contains(v))
+    }
+
+    /// Whether the surface that the mesh is of meets itself there, too.
+    pub(super) fn is_excused(&self, mesh: &Mesh, surface: &Meetings) -> bool {
+        let reach = self.triangles.map(|t| longest(mesh.positions_of(mesh.triangles[t])));
+        surface.excuse(self.at, reach[0].max(reach[1]), self.are_neighbours(mesh))
+    }
+
+    /// What to say of them.
+    pub(super) fn fault(&self) -> Fault {
+        let [i, j] = self.triangles;
+        Fault { what: format!("triangles {} and {} meet", i + 1, j + 1), place: self.at.to_string() }
+    }
+}
+
+/// The pairs of triangles that have more in common than a vertex or an edge that both name, in order. Neighbours that lie flat
+/// on each other count. Needs finite positions and triangles that are not flat.
 ///
 /// Pairs whose boxes meet are found in a tree: O(n log n) where triangles are not much longer than their distance from
 /// those that are no neighbours.
-pub(super) fn self_intersections(mesh: &Mesh) -> Vec<[usize; 2]> {
+pub(super) fn pairs(mesh: &Mesh) -> Vec<Pair> {
     let corners: Vec<Corners> = mesh.triangles.par_iter().map(|&t| corners(mesh, t)).collect();
     let boxes: Vec<AABB<[f64; 3]>> = corners.par_iter().filter_map(bounds).collect();
     let numbered = boxes.iter().zip(0..).map(|(b, i)| GeomWithData::new(Rectangle::from_aabb(*b), i));
     let tree: RTree<GeomWithData<Rectangle<[f64; 3]>, usize>> = RTree::bulk_load(numbered.collect());
     let of_one = |i: usize| {
         let others = tree.locate_in_envelope_intersecting(boxes[i]).map(|other| other.data).filter(|&j| j > i);
-        let mut met: Vec<usize> = others.filter(|&j| contact(&corners[i], &corners[j]).is_some()).collect();
-        met.sort_unstable();
-        met.into_iter().map(|j| [i, j]).collect::<Vec<_>>()
+        let meets = |j| Some(Pair { triangles: [i, j], at: contact(&corners[i], &corners[j])? });
+        let mut met: Vec<Pair> = others.filter_map(meets).collect();
+        met.sort_unstable_by_key(|pair| pair.triangles);
+        met
     };
     (0..boxes.len()).into_par_iter().flat_map_iter(of_one).collect()
-}
-
-/// What to say of a pair of triangles that meet.
-pub(super) fn fault(mesh: &Mesh, [i, j]: [usize; 2]) -> Option<Fault> {
-    let place = contact(&corners(mesh, mesh.triangles[i]), &corners(mesh, mesh.triangles[j]))?;
-    Some(Fault { what: format!("triangles {} and {} meet", i + 1, j + 1), place: place.to_string() })
 }
 
 fn corners(mesh: &Mesh, t: [u32; 3]) -> Corners {

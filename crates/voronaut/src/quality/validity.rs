@@ -4,9 +4,10 @@ use super::contact::is_flat;
 use super::edges::{self, Edges, NONE};
 use super::embedding;
 use super::position::middle;
-use super::self_intersections::{self, self_intersections};
+use super::meetings::{Excused, Meetings};
+use super::self_intersections::pairs;
 use crate::error::{Error, Result};
-use crate::geometry::{Orientation, Point, orientation};
+use crate::geometry::{Orientation, Point, Point3, orientation};
 use crate::mesh::Mesh;
 use rayon::prelude::*;
 use std::fmt;
@@ -47,6 +48,8 @@ pub struct Validity {
     pub euler: isize,
     /// Euclidean area; signed on a planar mesh.
     pub area: f64,
+    /// Of the mesh of a surface that meets itself: pairs of triangles, and of vertices, that meet where it does.
+    pub meetings: Excused,
     /// The first fault, in the order of the checks.
     pub first_fault: Option<Fault>,
 }
@@ -62,11 +65,21 @@ pub struct Fault {
 
 /// Examines a mesh in O(n log n). Never fails: what is wrong is in the answer.
 pub fn validity(mesh: &Mesh) -> Validity {
+    examine(mesh, None)
+}
+
+/// As [`validity`], of the mesh of a surface: it may meet itself where the surface does, within the longest edge there, and
+/// vertices may be at one position ([`Validity::meetings`]).
+pub fn validity_on(mesh: &Mesh, surface: &Meetings) -> Validity {
+    examine(mesh, Some(surface))
+}
+
+fn examine(mesh: &Mesh, surface: Option<&Meetings>) -> Validity {
     let mut found = Validity::default();
     found.examine_numbers(mesh);
     if found.out_of_range == 0 {
         let edges = Edges::of(&mesh.triangles);
-        found.examine_vertices(mesh);
+        found.examine_vertices(mesh, surface);
         found.examine_triangles(mesh);
         found.examine_edges(mesh, &edges);
         if mesh.is_planar() {
@@ -76,7 +89,7 @@ pub fn validity(mesh: &Mesh) -> Validity {
         } else {
             found.examine_fans(mesh, &edges);
             if found.inverted == 0 && found.not_finite == 0 {
-                found.examine_contacts(mesh);
+                found.examine_contacts(mesh, surface);
             }
         }
     }
@@ -158,19 +171,22 @@ impl Validity {
         }
     }
 
-    fn examine_vertices(&mut self, mesh: &Mesh) {
-        let finite = |p: &[f64; 3]| p.iter().all(|x| x.is_finite());
-        let mut sorted: Vec<([u64; 3], u32)> = (0u32..).zip(&mesh.points).map(|(v, p)| (bits(*p), v)).collect();
-        for (v, p) in (1..).zip(&mesh.points).filter(|(_, p)| !finite(p)) {
+    fn examine_vertices(&mut self, mesh: &Mesh, surface: Option<&Meetings>) {
+        for (v, p) in (1..).zip(&mesh.points).filter(|(_, p)| !is_finite(p)) {
             self.not_finite += 1;
             self.fault(format!("vertex {v} is not finite"), format!("({}, {}, {})", p[0], p[1], p[2]));
         }
-        sorted.retain(|&(_, v)| finite(&mesh.points[v as usize]));
-        sorted.par_sort_unstable();
-        for pair in sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+        let duplicates = duplicates(mesh);
+        let reach = if duplicates.is_empty() || surface.is_none() { Vec::new() } else { longest_edges(mesh) };
+        for [v, w] in duplicates {
+            let at_both = || reach[v as usize].max(reach[w as usize]);
+            if surface.is_some_and(|surface| surface.excuse(mesh.position(v), at_both(), false)) {
+                self.meetings.add(mesh.position(v));
+                continue;
+            }
             self.duplicate_vertices += 1;
-            let what = format!("vertices {} and {} are at the same position", pair[0].1 + 1, pair[1].1 + 1);
-            self.fault_at(what, mesh, &[pair[0].1]);
+            let what = format!("vertices {} and {} are at the same position", v + 1, w + 1);
+            self.fault_at(what, mesh, &[v]);
         }
         let mut used = vec![false; mesh.points.len()];
         mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
@@ -220,10 +236,14 @@ impl Validity {
         }
     }
 
-    fn examine_contacts(&mut self, mesh: &Mesh) {
-        let pairs = self_intersections(mesh);
-        self.overlaps = pairs.len();
-        if let Some(fault) = pairs.first().and_then(|&pair| self_intersections::fault(mesh, pair)) {
+    fn examine_contacts(&mut self, mesh: &Mesh, surface: Option<&Meetings>) {
+        for pair in pairs(mesh) {
+            if surface.is_some_and(|surface| pair.is_excused(mesh, surface)) {
+                self.meetings.add(pair.at);
+                continue;
+            }
+            self.overlaps += 1;
+            let fault = pair.fault();
             self.fault(fault.what, fault.place);
         }
     }
@@ -287,6 +307,33 @@ pub(super) fn split_vertices(mesh: &Mesh, edges: &Edges) -> Vec<u32> {
     };
     let is_split = |&v: &u32| corners[v as usize] > 0 && fan(start[v as usize]) < corners[v as usize];
     (0..mesh.points.len() as u32).filter(is_split).collect()
+}
+
+/// Vertices that lie exactly where one with a smaller number lies, behind that one; finite ones.
+pub(super) fn duplicates(mesh: &Mesh) -> Vec<[u32; 2]> {
+    let mut sorted: Vec<([u64; 3], u32)> =
+        (0..).zip(&mesh.points).filter(|(_, p)| is_finite(p)).map(|(v, p)| (bits(*p), v)).collect();
+    sorted.par_sort_unstable();
+    sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]).collect()
+}
+
+fn is_finite(p: &[f64; 3]) -> bool {
+    p.iter().all(|x| x.is_finite())
+}
+
+/// For each vertex the longest edge of its triangles.
+fn longest_edges(mesh: &Mesh) -> Vec<f64> {
+    let mut found = vec![0.0_f64; mesh.points.len()];
+    for &t in &mesh.triangles {
+        let length = longest(mesh.positions_of(t));
+        t.iter().for_each(|&v| found[v as usize] = found[v as usize].max(length));
+    }
+    found
+}
+
+/// The longest edge of a triangle.
+pub(super) fn longest([a, b, c]: [Point3; 3]) -> f64 {
+    a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 
 /// Equal for equal coordinates: 0 and -0 are the same place.

@@ -1,14 +1,14 @@
 //! The main job on a surface.
 
 use super::stopwatch::Stopwatch;
-use super::surface_pass::{Reseed, Setting};
+use super::surface_pass::{Pass, Reseed, Setting};
 use super::{MeshOptions, Meshed, Mesher, Seeding};
 use crate::canvas::{Canvas, Kind};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::optimise::{FitOptions, fit};
 use crate::progress::Progress;
-use crate::quality::{self, SurfaceFidelity};
+use crate::quality::{self, Meetings, SurfaceFidelity};
 use crate::sampling::{MeasuredCurves, demand_memory};
 use crate::surface::metric::{Closer, SurfaceMetric};
 use crate::surface::{Component, Implicit, Input, Surface};
@@ -22,6 +22,8 @@ const MOST_MORE: f64 = 3.0;
 /// A round that brings the distance down by less than this factor is the last: facets of the surface, not the number of
 /// vertices, keep it up.
 const GAIN: f64 = 1.2;
+/// Where the number of vertices misses what was asked for by a greater share, a note says why.
+const COUNT_TOLERANCE: f64 = 0.01;
 /// Where a mesh is none, seeds are put and it is made anew, so often at most.
 const RESEEDINGS: usize = 5;
 
@@ -43,7 +45,8 @@ pub fn mesh_surface(
     let asked = options.hausd.filter(|&hausd| is_open && hausd > 0.0);
     let closer = asked.map(|hausd| Closer::new(metric, input, hausd)).transpose()?;
     let metric = closer.as_ref().map_or(metric, |closer| closer as &dyn SurfaceMetric);
-    let setting = Setting { input, metric, options, progress, curves: MeasuredCurves::new(input, metric) };
+    let (curves, meetings) = (MeasuredCurves::new(input, metric), Meetings::of(input.whole_mesh()));
+    let setting = Setting { input, metric, options, progress, curves, meetings };
     let mut job = Job { setting, watch: Stopwatch::default() };
     let (mut count, mut scale) = job.timed("plan", Job::plan)?;
     let mut last = f64::INFINITY;
@@ -106,16 +109,17 @@ impl Job<'_> {
             let mesh = pass.mesh();
             let faulty = self.timed("check", |job| {
                 job.setting.progress.stage("checking", 1);
-                pass.faulty(&mesh)
+                pass.faulty(&mesh, &job.setting.meetings)
             });
             if faulty.is_empty() || reseed.rounds == RESEEDINGS {
                 break (pass, mesh);
             }
             reseed = pass.reseed(&faulty, reseed);
         };
-        pass.demand(&mesh).map_err(|fault| self.blamed(fault))?;
+        pass.demand(&mesh, &self.setting.meetings)?;
         notes.extend(reseed.note());
         notes.extend(pass.notes());
+        notes.extend(self.count_note(&pass, mesh.points.len()));
         let mesh = self.timed("fit", |job| job.fitted(mesh, pass.settled.fine.as_ref(), &mut notes))?;
         let fidelity = self.timed("check", |job| job.fidelity(&mesh))?;
         let meshed = Meshed {
@@ -131,11 +135,24 @@ impl Job<'_> {
         Ok((meshed, fidelity))
     }
 
-    /// What to say of a mesh that could not be made: where the surface meets itself, that is why.
-    fn blamed(&self, fault: Error) -> Error {
-        let Some(found) = quality::validity(&self.setting.input.whole_mesh()).first_fault else { return fault };
-        let what = format!("the surface meets itself, and so would its mesh: {}", found.what);
-        Error::domain(what, found.place, "remove what meets, or mesh the parts one by one")
+    /// What to say where the mesh has not the number of vertices asked for.
+    fn count_note(&self, pass: &Pass, found: usize) -> Option<String> {
+        let asked = self.setting.options.vertices?;
+        if (found as f64 - asked as f64).abs() <= COUNT_TOLERANCE * asked as f64 {
+            return None;
+        }
+        let on_features = pass.vertices_on_features();
+        let why = if on_features > asked {
+            format!(
+                "{on_features} are on features, which are kept: ask for more, raise the angle from which edges are creases, or \
+                 leave creases out"
+            )
+        } else if found > asked {
+            "fewer do not make a mesh of this surface, or not without folds: ask for more, or for less anisotropy".into()
+        } else {
+            "there is no room for more: ask for fewer".into()
+        };
+        Some(format!("{found} vertices where {asked} were asked for: {why}"))
     }
 
     /// The mesh with its vertices at least-squares positions, if that is asked for; as it was where that would not be valid.
@@ -146,7 +163,7 @@ impl Job<'_> {
         self.setting.progress.stage("fitting", 1);
         let options = FitOptions { stiffness: self.setting.options.stiffness, ..FitOptions::default() };
         let fitted = fit(&mesh, fine.unwrap_or(&self.setting.input.surface), &options)?.mesh;
-        if quality::check(&fitted).is_ok() {
+        if quality::validity_on(&fitted, &self.setting.meetings).valid {
             return Ok(fitted);
         }
         notes.push("vertices are on the surface: least-squares positions would not make a valid mesh".into());
@@ -168,7 +185,8 @@ impl Job<'_> {
         self.setting.progress.stage("planning", 1);
         let (canvas, _) = Canvas::on_surface(Kind::Intrinsic, self.setting.input, self.setting.metric, MEASURING, &[])?;
         let draped = canvas.draped();
-        let (area, chi) = (draped.area(), draped.topology().euler_characteristic() as f64);
+        // Of the surface as it was before it was cut: vertices on its cuts count once.
+        let (area, chi) = (draped.area(), self.setting.input.seams.whole().euler as f64);
         let extra = self.setting.curves.extra();
         let vertices = |factor: f64| 2.0 / 3.0_f64.sqrt() * area * factor + extra * factor.sqrt() + chi;
         let (count, factor) = match (self.setting.options.vertices, self.setting.options.complexity) {

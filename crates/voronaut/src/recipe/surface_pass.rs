@@ -14,7 +14,7 @@ use crate::mesh::Mesh;
 use crate::optimise::{Relaxed, Tangent, mend_worst, relax};
 use crate::output::report;
 use crate::progress::Progress;
-use crate::quality;
+use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
 use crate::sampling::{FeatureSeeds, MeasuredCurves, Seeded, seed_surface, triangulated, triangulated_upright};
 use crate::surface::metric::{Constant, SurfaceMetric};
@@ -40,6 +40,8 @@ pub(super) struct Setting<'a> {
     pub(super) options: &'a MeshOptions,
     pub(super) progress: &'a dyn Progress,
     pub(super) curves: MeasuredCurves<'a>,
+    /// Where the surface meets itself.
+    pub(super) meetings: Meetings,
 }
 
 /// What a pass has come to.
@@ -214,7 +216,7 @@ impl Pass<'_> {
     }
 
     /// The triangles at which it is no mesh, or that are folded over, or whose border is that of no patch.
-    pub(super) fn faulty(&self, mesh: &Mesh) -> Vec<u32> {
+    pub(super) fn faulty(&self, mesh: &Mesh, meetings: &Meetings) -> Vec<u32> {
         let topology = self.dual.topology();
         let features: BTreeSet<[u32; 2]> = self.features.edges.iter().map(|edge| in_order(edge.ends)).collect();
         let strays = |h: HalfEdge| {
@@ -223,7 +225,7 @@ impl Pass<'_> {
         };
         let is_wrong = |f: FaceId| self.dual.is_folded(f) || f.half_edges().into_iter().any(strays);
         let wrong = (0..).zip(topology.faces()).filter(|&(_, f)| is_wrong(f)).map(|(i, _)| i);
-        let faulty: BTreeSet<u32> = quality::faulty_triangles(mesh).into_iter().chain(wrong).collect();
+        let faulty: BTreeSet<u32> = quality::faulty_triangles_on(mesh, meetings).into_iter().chain(wrong).collect();
         faulty.into_iter().collect()
     }
 
@@ -231,10 +233,10 @@ impl Pass<'_> {
     ///
     /// # Errors
     /// [`Error::Mesh`] with the first fault.
-    pub(super) fn demand(&self, mesh: &Mesh) -> Result<()> {
+    pub(super) fn demand(&self, mesh: &Mesh, meetings: &Meetings) -> Result<()> {
         let help = "ask for more vertices (-n); please report this with the input";
         let fault = |what: &str, place: String| Err(Error::Mesh { what: what.into(), place, help: help.into() });
-        let found = quality::validity(mesh);
+        let found = quality::validity_on(mesh, meetings);
         if let Some(found) = found.first_fault {
             return fault(&found.what, found.place);
         }
@@ -277,6 +279,11 @@ impl Pass<'_> {
             density[curve] *= 2;
         }
         Reseed { places, density, rounds: before.rounds + 1 }
+    }
+
+    /// Vertices that features have.
+    pub(super) fn vertices_on_features(&self) -> usize {
+        self.features.seeds.len()
     }
 
     /// What to tell the user.

@@ -9,8 +9,8 @@ use crate::metric::MetricField;
 /// a metric field of the plane whose geodesics are the projections of the surface's. What works in the plane works in a
 /// chart (RR-9103, section 12).
 ///
-/// It is good as far as the surface does not turn away: where its normal is more than [`STEEPEST`] from the chart's, the
-/// field is no metric. A coordinate is lifted to the closest place, not straight up: they differ by third order in its size.
+/// It is good as far as the surface does not turn away: where its normal has a lesser cosine with the chart's than [`STEEPEST`], it
+/// counts as so steep, so that the field is a metric everywhere (at the tip of a spike, in a fold). A coordinate is lifted to the closest place, not straight up: they differ by third order in its size.
 pub struct Chart<'a> {
     input: &'a Input,
     metric: &'a dyn SurfaceMetric,
@@ -42,12 +42,9 @@ impl<'a> Chart<'a> {
         self.input.lift(&self.at, self.at.position + self.plane.lift(u - Point::default()))
     }
 
-    /// The tensor of a place in the coordinates of the chart; not a number where the surface turns away.
+    /// The tensor of a place in the coordinates of the chart.
     pub fn tensor(&self, place: &Place) -> Tensor {
-        let upright = place.normal.dot(self.plane.normal);
-        if upright.is_nan() || upright < STEEPEST {
-            return Tensor::new(f64::NAN, f64::NAN, f64::NAN);
-        }
+        let upright = place.normal.dot(self.plane.normal).max(STEEPEST);
         // The tangents of the surface over the two axes.
         let tangent = |axis: Vector3| axis - self.plane.normal * (axis.dot(place.normal) / upright);
         let [u, v] = [self.plane.u, self.plane.v].map(tangent);

@@ -44,10 +44,10 @@ impl Curvatures {
     }
 
     /// The metric of RR-9103, 15.1: eigenvalues |c| along the principal directions, at least `floor` (positive), so that
-    /// it stays positive definite where the surface is flat. An edge of metric length 1 strays about an eighth of a unit of
+    /// it stays positive definite where the surface is flat, and at most `cap`. An edge of metric length 1 strays about an eighth of a unit of
     /// length from the surface. Across it, where no edge sees anything, the larger of both.
-    pub fn metric(&self, floor: f64) -> Tensor3 {
-        let [most, least] = self.values.map(|c| c.abs().max(floor));
+    pub fn metric(&self, [floor, cap]: [f64; 2]) -> Tensor3 {
+        let [most, least] = self.values.map(|c| c.abs().min(cap).max(floor));
         Tensor3::from_axes([self.axes[0], self.axes[1], self.normal], [most, least, most])
     }
 }
@@ -169,7 +169,7 @@ mod tests {
     #[test]
     fn metrics_stay_positive_definite_on_flat_parts() {
         let c = curvatures(&surface("z - 2*x^2").jet(Point3::default())).unwrap();
-        let m = c.metric(0.25);
+        let m = c.metric([0.25, f64::INFINITY]);
         assert!((m.xx - 4.0).abs() < 1e-14 && (m.yy - 0.25).abs() < 1e-14 && (m.zz - 4.0).abs() < 1e-14, "{m:?}");
         assert!(curvatures(&surface("x^2+y^2-z^2").jet(Point3::default())).is_none(), "a cone's apex has no normal");
     }

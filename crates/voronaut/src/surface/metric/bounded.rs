@@ -1,6 +1,6 @@
 //! Limits on what a field says of tangents.
 
-use super::SurfaceMetric;
+use super::{CurvatureFigures, SurfaceMetric};
 use crate::error::Result;
 use crate::geometry::{TangentPlane, Tensor3};
 use crate::metric::Bounds;
@@ -32,6 +32,10 @@ impl<F: SurfaceMetric> SurfaceMetric for Bounded<F> {
         let tangential = plane.restrict(tensor);
         let clamped = self.bounds.clamp(tangential);
         if clamped == tangential { tensor } else { plane.extend(clamped, clamped.eigen().large) }
+    }
+
+    fn curvature_figures(&self) -> Option<CurvatureFigures> {
+        self.field.curvature_figures()
     }
 }
 

@@ -3,7 +3,9 @@
 use super::{Sampled, SurfaceMetric, fit_curvatures};
 use crate::error::Result;
 use crate::geometry::Tensor3;
-use crate::surface::{Implicit, Place, Surface, curvatures};
+use crate::surface::{Curvatures, Implicit, Place, Surface, curvatures};
+use crate::triangulation::VertexId;
+use rayon::prelude::*;
 
 /// The smallest curvature that counts, unless told otherwise, over the bounding box's diagonal: a radius of ten diagonals
 /// is flat.
@@ -23,19 +25,68 @@ pub struct ImplicitCurvature<I> {
 impl<I: Implicit> SurfaceMetric for ImplicitCurvature<I> {
     fn at(&self, place: &Place) -> Tensor3 {
         let found = curvatures(&self.f.jet(place.position));
-        found.map_or(Tensor3::IDENTITY * f64::NAN, |c| c.metric(self.floor))
+        found.map_or(Tensor3::IDENTITY * f64::NAN, |c| c.metric([self.floor, f64::INFINITY]))
     }
 }
 
 /// The curvature metric of a mesh: from [`fit_curvatures`] at vertices, log-Euclidean between them.
 ///
+/// It is a metric on every surface, bounded by what the triangles can tell: curvatures below `floor` count as that, and those above
+/// 2 / l, l the mean length of the edges at the vertex, as that, for an edge is a chord, and no chord is longer than the diameter of
+/// its circle. (At a fold, a spike or a needle a fit may say anything.) A vertex without a fit gets the mean of its neighbours'
+/// logarithms; the floor, if these have none either.
+///
 /// # Errors
-/// As [`Sampled::new`]: where curvatures are not finite, or `floor` is not positive.
+/// As [`Sampled::new`]: where `floor` is not positive and finite.
 pub fn sampled_curvature(surface: &Surface, floor: f64) -> Result<Sampled> {
     let fitted = fit_curvatures(surface);
-    let tensors: Vec<Tensor3> =
-        fitted.iter().map(|c| c.map_or(Tensor3::IDENTITY * floor, |c| c.metric(floor))).collect();
-    Sampled::new(surface, &tensors)
+    let caps: Vec<f64> = (0..fitted.len() as u32).into_par_iter().map(|v| cap(surface, VertexId(v))).collect();
+    let metric = |(c, cap): (&Option<Curvatures>, &f64)| c.map(|c| c.metric([floor, *cap]));
+    let fits: Vec<Option<Tensor3>> = fitted.iter().zip(&caps).map(metric).collect();
+    let t = surface.topology();
+    let tensor = |v: u32| {
+        let around = || t.star(VertexId(v)).flat_map(|h| [t.target(h), t.apex(h)]).filter_map(|w| fits[w.index()]);
+        fits[v as usize].or_else(|| mean(around())).unwrap_or(Tensor3::IDENTITY * floor)
+    };
+    let tensors: Vec<Tensor3> = (0..fits.len() as u32).map(tensor).collect();
+    let bent = || fitted.iter().zip(&caps).filter_map(|(c, cap)| Some((c.as_ref()?.values.map(f64::abs), *cap)));
+    let figures = CurvatureFigures {
+        floor,
+        floored: bent().filter(|(values, _)| values[1] < floor).count(),
+        capped: bent().filter(|(values, cap)| values[0] > cap.max(floor)).count(),
+        unfitted: t.vertices().filter(|v| fitted[v.index()].is_none()).count(),
+        greatest: bent().map(|(values, cap)| values[0].min(cap).max(floor)).fold(floor, f64::max),
+    };
+    Ok(Sampled::new(surface, &tensors)?.with_figures(figures))
+}
+
+/// What bounds have made of curvatures, in numbers of vertices.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct CurvatureFigures {
+    /// Lesser curvatures count as this one, in units of 1 / length.
+    pub floor: f64,
+    /// Vertices where the lesser curvature is below it.
+    pub floored: usize,
+    /// Vertices where the greater curvature is above what edges there can tell, and counts as that.
+    pub capped: usize,
+    /// Vertices without a fit, which have their neighbours' mean.
+    pub unfitted: usize,
+    /// The greatest curvature in use.
+    pub greatest: f64,
+}
+
+/// The greatest curvature that edges at a vertex can tell; infinite of a vertex without edges.
+fn cap(surface: &Surface, v: VertexId) -> f64 {
+    let t = surface.topology();
+    let ends = t.star(v).flat_map(|h| [t.target(h), t.apex(h)]).map(|w| surface.position(w).distance(surface.position(v)));
+    let (count, sum) = ends.fold((0.0, 0.0), |(count, sum), length| (count + 1.0, sum + length));
+    2.0 * count / sum
+}
+
+/// The log-Euclidean mean.
+fn mean(tensors: impl Iterator<Item = Tensor3>) -> Option<Tensor3> {
+    let (count, sum) = tensors.fold((0.0, Tensor3::default()), |(count, sum), m| (count + 1.0, sum + m.log()));
+    (count > 0.0).then(|| (sum * (1.0 / count)).exp())
 }
 
 #[cfg(test)]

@@ -10,7 +10,8 @@ use rayon::prelude::*;
 /// right to the second order in the length of edges, however irregular the mesh: theirs is a proof, which averages of
 /// normals (Rusinkiewicz 2004) do not have. Noise is not smoothed. With too few neighbours the degree is two, the order one.
 ///
-/// One entry per vertex slot: `None` of vertices without triangles, or where those around have no common side.
+/// One entry per vertex slot: `None` of vertices without triangles, or where those around have no common side or make no finite
+/// fit (needles without height).
 pub fn fit_curvatures(surface: &Surface) -> Vec<Option<Curvatures>> {
     let slots = surface.positions().len() as u32;
     (0..slots).into_par_iter().map(|v| fit(surface, VertexId(v))).collect()
@@ -41,7 +42,8 @@ fn fit(surface: &Surface, v: VertexId) -> Option<Curvatures> {
         system.add(monomials(flat.x, flat.y), height);
     }
     let [_, x, y, xx, xy, yy, ..] = system.solve(terms);
-    Some(curvatures(&plane, [x, y], Tensor::new(2.0 * xx, xy, 2.0 * yy) * (1.0 / size)))
+    let found = curvatures(&plane, [x, y], Tensor::new(2.0 * xx, xy, 2.0 * yy) * (1.0 / size));
+    found.values.iter().all(|value| value.is_finite()).then_some(found)
 }
 
 /// Neighbours and their neighbours, without those on triangles that face away: they are of another sheet.

@@ -29,7 +29,7 @@ mod validate;
 
 pub use bounded::Bounded;
 pub use closer::Closer;
-pub use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
+pub use curvature::{CurvatureFigures, FLOOR, ImplicitCurvature, sampled_curvature};
 pub use fit::fit_curvatures;
 pub use gradation::grade;
 pub use sampled::Sampled;
@@ -49,6 +49,11 @@ use crate::metric::{MetricField, Shock, SpaceFormula};
 pub trait SurfaceMetric: Sync {
     /// The tensor at a place.
     fn at(&self, place: &Place) -> Tensor3;
+
+    /// What bounds made of the curvatures that it rests on, if it rests on those of a mesh.
+    fn curvature_figures(&self) -> Option<CurvatureFigures> {
+        None
+    }
 }
 
 /// Fields of space are fields on every surface.
@@ -62,11 +67,19 @@ impl SurfaceMetric for Box<dyn SurfaceMetric + '_> {
     fn at(&self, place: &Place) -> Tensor3 {
         (**self).at(place)
     }
+
+    fn curvature_figures(&self) -> Option<CurvatureFigures> {
+        (**self).curvature_figures()
+    }
 }
 
 impl SurfaceMetric for &dyn SurfaceMetric {
     fn at(&self, place: &Place) -> Tensor3 {
         (**self).at(place)
+    }
+
+    fn curvature_figures(&self) -> Option<CurvatureFigures> {
+        (**self).curvature_figures()
     }
 }
 

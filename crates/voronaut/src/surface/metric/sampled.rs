@@ -1,6 +1,6 @@
 //! A metric given at the vertices of the surface.
 
-use super::{SurfaceMetric, check_tensor3};
+use super::{CurvatureFigures, SurfaceMetric, check_tensor3};
 use crate::error::{Error, Result};
 use crate::formats::{Solution, SolutionValues};
 use crate::geometry::Tensor3;
@@ -14,6 +14,7 @@ pub struct Sampled {
     logs: Vec<Tensor3>,
     /// Corners, one triple per face slot.
     corners: Vec<[u32; 3]>,
+    figures: Option<CurvatureFigures>,
 }
 
 impl Sampled {
@@ -31,7 +32,13 @@ impl Sampled {
         for f in t.faces() {
             corners[f.index()] = t.corners(f).map(|v| v.0);
         }
-        Ok(Self { logs: tensors.iter().map(|tensor| tensor.log()).collect(), corners })
+        Ok(Self { logs: tensors.iter().map(|tensor| tensor.log()).collect(), corners, figures: None })
+    }
+
+    /// The same field, of curvatures that were bounded so.
+    #[must_use]
+    pub(super) fn with_figures(self, figures: CurvatureFigures) -> Self {
+        Self { figures: Some(figures), ..self }
     }
 
     /// The field of a solution in space: tensors, or sizes h as identity / h^2.
@@ -69,6 +76,10 @@ impl SurfaceMetric for Sampled {
         let corners = self.corners[place.face.index()];
         let weighted = corners.iter().zip(place.weights).map(|(&v, weight)| self.logs[v as usize] * weight);
         weighted.fold(Tensor3::default(), |sum, log| sum + log).exp()
+    }
+
+    fn curvature_figures(&self) -> Option<CurvatureFigures> {
+        self.figures
     }
 }
 
