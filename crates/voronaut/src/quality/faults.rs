@@ -24,7 +24,8 @@ fn faulty(mesh: &Mesh, surface: Option<&Meetings>) -> Vec<u32> {
     let mut faulty: Vec<u32> = (0..mesh.triangles.len() as u32).filter(flat).collect();
     if faulty.is_empty() {
         let of_ours = |pair: &Pair| !surface.is_some_and(|surface| pair.is_excused(mesh, surface));
-        faulty.extend(pairs(mesh).iter().filter(|pair| of_ours(pair)).flat_map(|pair| pair.triangles).map(|t| t as u32));
+        faulty
+            .extend(pairs(mesh).iter().filter(|pair| of_ours(pair)).flat_map(|pair| pair.triangles).map(|t| t as u32));
     }
     let edges = Edges::of(&mesh.triangles);
     for (_, half_edges) in edges.iter().filter(|(_, half_edges)| !edges.is_manifold(half_edges)) {

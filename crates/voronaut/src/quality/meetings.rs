@@ -147,8 +147,14 @@ mod tests {
     fn vertices_may_coincide_where_those_of_the_surface_do() {
         let tetrahedra = |size: f64| Mesh {
             points: vec![
-                [0.0; 3], [size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size],
-                [0.0; 3], [-size, 0.0, 0.0], [0.0, -size, 0.0], [0.0, 0.0, -size],
+                [0.0; 3],
+                [size, 0.0, 0.0],
+                [0.0, size, 0.0],
+                [0.0, 0.0, size],
+                [0.0; 3],
+                [-size, 0.0, 0.0],
+                [0.0, -size, 0.0],
+                [0.0, 0.0, -size],
             ],
             triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2], [4, 5, 6], [4, 7, 5], [5, 7, 6], [4, 6, 7]],
             point_labels: vec![0; 8],

@@ -3,8 +3,8 @@
 use super::contact::is_flat;
 use super::edges::{self, Edges, NONE};
 use super::embedding;
-use super::position::middle;
 use super::meetings::{Excused, Meetings};
+use super::position::middle;
 use super::self_intersections::pairs;
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, Point3, orientation};

@@ -24,8 +24,12 @@ const MOST_MORE: f64 = 3.0;
 const GAIN: f64 = 1.2;
 /// Where the number of vertices misses what was asked for by a greater share, a note says why.
 const COUNT_TOLERANCE: f64 = 0.01;
-/// Where a mesh is none, seeds are put and it is made anew, so often at most.
-const RESEEDINGS: usize = 5;
+/// Where a mesh is none, seeds are put and it is made anew, so often at most;
+const RESEEDINGS: usize = 2;
+/// then it is made of the surface's own triangles, of which more and more are kept, so often at most,
+const ADAPTATIONS: usize = 6;
+/// the last times without relaxation.
+const UNRELAXED: usize = 2;
 
 /// Meshes a surface by a metric: features at unit length, farthest points on the canvas of each patch, relaxed in charts, edges
 /// settled by geodesics on the canvas. Vertices are on the surface. With a number of vertices asked for the metric is scaled
@@ -91,7 +95,7 @@ struct Job<'a> {
     watch: Stopwatch,
 }
 
-impl Job<'_> {
+impl<'a> Job<'a> {
     fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
         let start = Instant::now();
         let result = work(self);
@@ -105,13 +109,13 @@ impl Job<'_> {
         let mut reseed = Reseed::default();
         let mut notes = Vec::new();
         let (pass, mesh) = loop {
-            let pass = self.setting.pass(count, scale, &reseed, &mut self.watch)?;
+            let Some(pass) = self.passed(count, scale, &mut reseed)? else { continue };
             let mesh = pass.mesh();
             let faulty = self.timed("check", |job| {
                 job.setting.progress.stage("checking", 1);
                 pass.faulty(&mesh, &job.setting.meetings)
             });
-            if faulty.is_empty() || reseed.rounds == RESEEDINGS {
+            if faulty.is_empty() || reseed.rounds == RESEEDINGS + ADAPTATIONS {
                 break (pass, mesh);
             }
             reseed = pass.reseed(&faulty, reseed);
@@ -127,12 +131,29 @@ impl Job<'_> {
             metric_scale: pass.dual.factor(),
             dual: pass.settled.account,
             relaxation: pass.relaxed,
-            canvas: Some(pass.settled.figures),
-            diagram: Some(pass.settled.diagram),
+            canvas: pass.settled.figures,
+            diagram: pass.settled.diagram,
             notes,
             ..Meshed::default()
         };
         Ok((meshed, fidelity))
+    }
+
+    /// A pass by what there was before: of seeds on a canvas, or of the surface's own triangles. Nothing where the former finds no
+    /// triangulation, for the latter may.
+    fn passed(&mut self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Option<Pass<'a>>> {
+        if reseed.rounds <= RESEEDINGS {
+            return match self.setting.pass(count, scale, reseed, &mut self.watch) {
+                Err(Error::Domain { .. }) => {
+                    reseed.rounds = RESEEDINGS + 1;
+                    Ok(None)
+                }
+                other => other.map(Some),
+            };
+        }
+        let is_relaxed = reseed.rounds <= RESEEDINGS + ADAPTATIONS - UNRELAXED;
+        let steps = if is_relaxed { self.setting.options.lloyd } else { 0 };
+        self.setting.adapted(count, scale, reseed, steps, &mut self.watch).map(Some)
     }
 
     /// What to say where the mesh has not the number of vertices asked for.
@@ -148,7 +169,8 @@ impl Job<'_> {
                  leave creases out"
             )
         } else if found > asked {
-            "fewer do not make a mesh of this surface, or not without folds: ask for more, or for less anisotropy".into()
+            "fewer do not make a mesh of this surface, or not without folds: ask for more, or for less anisotropy"
+                .into()
         } else {
             "there is no room for more: ask for fewer".into()
         };

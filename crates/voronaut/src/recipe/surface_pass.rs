@@ -16,7 +16,9 @@ use crate::output::report;
 use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
-use crate::sampling::{FeatureSeeds, MeasuredCurves, Seeded, seed_surface, triangulated, triangulated_upright};
+use crate::sampling::{
+    Adapted, FeatureSeeds, MeasuredCurves, Seeded, Wanted, adapted, seed_surface, triangulated, triangulated_upright,
+};
 use crate::surface::metric::{Constant, SurfaceMetric};
 use crate::surface::{Input, Place, Surface, Whole};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
@@ -30,6 +32,8 @@ const PARTS: usize = 4;
 /// Triangles that are mended in the end, as a share of all, and how often.
 const MENDED_SHARE: f64 = 0.02;
 const MENDINGS: usize = 3;
+/// Curves on which contraction ends too early get twice as many seeds, so often at most.
+const DENSER: usize = 12;
 /// Seeds put into faulty triangles are this far from their corners and from each other, as a share of the longest edge.
 const APART: f64 = 0.1;
 
@@ -56,10 +60,12 @@ pub(super) struct Pass<'a> {
 }
 
 /// What came of settling edges.
+#[derive(Default)]
 pub(super) struct Settled {
     pub(super) account: report::Dual,
-    pub(super) figures: CanvasFigures,
-    pub(super) diagram: report::Diagram,
+    /// Of the canvas, where one was made.
+    pub(super) figures: Option<CanvasFigures>,
+    pub(super) diagram: Option<report::Diagram>,
     /// Of an equation's surface that is to be fitted, the canvas.
     pub(super) fine: Option<Surface>,
 }
@@ -71,6 +77,8 @@ pub(super) struct Reseed {
     places: Vec<Place>,
     /// How many times as many seeds as their lengths ask for each curve shall have; one if there is no entry.
     density: Vec<usize>,
+    /// Balls around faulty triangles, where a pass that starts from the surface's own triangles keeps these.
+    held: Vec<(Point3, f64)>,
     /// Passes before.
     pub(super) rounds: usize,
 }
@@ -112,6 +120,62 @@ impl<'a> Setting<'a> {
         Ok(Pass { input: self.input, dual, features, owners, added: seeded.added, relaxed, settled })
     }
 
+    /// A pass that starts from the surface's own triangles instead of a canvas; `steps` of relaxation.
+    ///
+    /// # Errors
+    /// The metric is invalid somewhere; features cannot be kept as they are.
+    pub(super) fn adapted(
+        &self,
+        count: usize,
+        scale: f64,
+        reseed: &mut Reseed,
+        steps: usize,
+        watch: &mut Stopwatch,
+    ) -> Result<Pass<'a>> {
+        let begin = Instant::now();
+        self.progress.stage("adapting the surface", 1);
+        let (features, owners, adapted) = self.started_from_surface(count, scale, reseed)?;
+        watch.add("seed", begin);
+        let begin = Instant::now();
+        let Adapted { places, topology, .. } = adapted;
+        let mut dual = SurfaceDual::new(self.input, self.metric, scale, places, owners.len(), topology)?;
+        let mut relaxed = Relaxed::default();
+        if steps > 0 {
+            dual.unfold();
+            relaxed = self.relax(&mut dual, steps)?;
+        }
+        watch.add("relax", begin);
+        Ok(Pass { input: self.input, dual, features, owners, added: 0, relaxed, settled: Settled::default() })
+    }
+
+    /// Where vertices of a curve cannot be contracted without folds, it gets twice as many seeds.
+    fn started_from_surface(
+        &self,
+        count: usize,
+        scale: f64,
+        reseed: &mut Reseed,
+    ) -> Result<(FeatureSeeds, Vec<u32>, Adapted)> {
+        let curves = &self.input.seams.features.curves;
+        reseed.density.resize(curves.len(), 1);
+        for _ in 0..DENSER {
+            let features = self.curves.sampled(1.0 / scale.sqrt(), self.options.hausd, &reseed.density);
+            let (given, owners) = features.flattened();
+            let total = count.max(features.seeds.len()) + owners.len() - features.seeds.len();
+            let wanted = Wanted { given: &given, factor: scale, count: total, held: &reseed.held };
+            let Some(adapted) = adapted(self.input, self.metric, &wanted) else { break };
+            if adapted.stuck.is_empty() {
+                return Ok((features, owners, adapted));
+            }
+            let stuck: BTreeSet<VertexId> = adapted.stuck.iter().map(|&v| self.input.seams.original(v)).collect();
+            for (curve, density) in curves.iter().zip(&mut reseed.density) {
+                let is_stuck = curve.edges.iter().any(|edge| stuck.contains(&edge.from) || stuck.contains(&edge.to));
+                *density *= if is_stuck { 2 } else { 1 };
+            }
+        }
+        let help = "ask for more vertices, or leave features out";
+        Err(Error::domain("features cannot be kept without folds", "the surface", help))
+    }
+
     fn canvas(&self, count: usize, seeds: &[Place]) -> Result<(Canvas<Draped<'a>>, Vec<VertexId>)> {
         self.progress.stage("canvas", 1);
         let size = self.canvas_size(count);
@@ -137,19 +201,23 @@ impl<'a> Setting<'a> {
         given: &[Place],
         scale: f64,
     ) -> Result<(SurfaceDual<'a>, Relaxed)> {
-        let steps = self.options.lloyd;
-        self.progress.stage("relaxing", steps as u64);
         let mut dual = self.started(canvas, seeds, given, scale)?;
+        let relaxed = self.relax(&mut dual, self.options.lloyd)?;
+        Ok((dual, relaxed))
+    }
+
+    fn relax(&self, dual: &mut SurfaceDual, steps: usize) -> Result<Relaxed> {
+        self.progress.stage("relaxing", steps as u64);
         dual.flip_all();
-        self.fit_scale(&mut dual)?;
+        self.fit_scale(dual)?;
         let mut relaxed = Relaxed::default();
         for part in 0..PARTS {
             let steps = (steps * (part + 1)) / PARTS - (steps * part) / PARTS;
-            relaxed.append(relax(&mut dual, &Tangent, steps, self.progress)?);
-            self.fit_scale(&mut dual)?;
+            relaxed.append(relax(dual, &Tangent, steps, self.progress)?);
+            self.fit_scale(dual)?;
         }
-        mend(&mut dual);
-        Ok((dual, relaxed))
+        mend(dual);
+        Ok(relaxed)
     }
 
     /// The triangulation of the seeds as it is found; where straight edges cannot honour the metric, one that stands upright on
@@ -201,7 +269,7 @@ impl<'a> Setting<'a> {
         let account = report::Dual { blocked_flips: blocked, ..account(&rdt, &nerve, Road::Geodesic) };
         let is_fine = self.options.fit && self.input.implicit.is_some();
         let fine = is_fine.then(|| canvas.draped().to_surface()).transpose()?;
-        Ok(Settled { account, figures: canvas.figures(), diagram: report::Diagram::of(&diagram), fine })
+        Ok(Settled { account, figures: Some(canvas.figures()), diagram: Some(report::Diagram::of(&diagram)), fine })
     }
 }
 
@@ -278,7 +346,12 @@ impl Pass<'_> {
         for curve in curves {
             density[curve] *= 2;
         }
-        Reseed { places, density, rounds: before.rounds + 1 }
+        let mut held = before.held;
+        held.extend(faulty.iter().map(|&t| {
+            let at = triangles[t as usize].map(|v| self.dual.places()[v as usize]);
+            (Point3::weighted(at.map(|place| place.position), [1.0 / 3.0; 3]), reach(at))
+        }));
+        Reseed { places, density, held, rounds: before.rounds + 1 }
     }
 
     /// Vertices that features have.

@@ -1,6 +1,7 @@
 //! Placing seeds: first the boundary and interfaces at unit metric length, then the interior, one seed at a time where
 //! the metric circumradius is largest, or where the nearest seed is farthest.
 
+mod adapted;
 mod contract;
 mod curve_sizes;
 mod curves;
@@ -12,6 +13,7 @@ mod plan;
 mod protected;
 mod segments;
 
+pub use adapted::{Adapted, Wanted, adapted};
 pub use curve_sizes::CurveSizes;
 pub use curves::simplify;
 pub use farthest::{Farthest, refine_farthest};

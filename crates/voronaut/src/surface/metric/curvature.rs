@@ -78,7 +78,8 @@ pub struct CurvatureFigures {
 /// The greatest curvature that edges at a vertex can tell; infinite of a vertex without edges.
 fn cap(surface: &Surface, v: VertexId) -> f64 {
     let t = surface.topology();
-    let ends = t.star(v).flat_map(|h| [t.target(h), t.apex(h)]).map(|w| surface.position(w).distance(surface.position(v)));
+    let ends =
+        t.star(v).flat_map(|h| [t.target(h), t.apex(h)]).map(|w| surface.position(w).distance(surface.position(v)));
     let (count, sum) = ends.fold((0.0, 0.0), |(count, sum), length| (count + 1.0, sum + length));
     2.0 * count / sum
 }
