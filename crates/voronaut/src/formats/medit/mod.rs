@@ -9,8 +9,11 @@ pub use sink::Form;
 pub(super) use sink::Sink;
 pub(super) use source::Source;
 
+use super::Document;
+use super::cutting::cut;
+use super::volumes::{Solid, Volumes};
 use super::words::{At, Largest};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::mesh::Mesh;
 use std::io::{self, BufRead, Write};
 
@@ -18,15 +21,18 @@ use std::io::{self, BufRead, Write};
 /// the orientation of the file.
 ///
 /// Kept are `Vertices`, `Edges`, `Triangles`, `Corners`, `Ridges`, `RequiredVertices`, `RequiredEdges` and
-/// `RequiredTriangles`; all other sections are passed over. Sections come in any order, keywords of text in any case, its `End` may
+/// `RequiredTriangles`. `Quadrilaterals` are cut in two along their better diagonal, behind the triangles, and required like
+/// `RequiredQuadrilaterals`. `Tetrahedra`, `Pyramids`, `Prisms` and `Hexahedra` are left out with a note; where there are neither
+/// triangles nor quadrilaterals the mesh is their boundary, with the labels of the cells, and where labels differ what is between
+/// them. All other sections are passed over. Sections come in any order, keywords of text in any case, its `End` may
 /// be missing. `place` names the file in messages. Memory follows the file, never a count written in it.
 ///
 /// # Errors
 ///
-/// [`Error::Parse`] with the line or the byte of what is not as announced: a file cut off, a count too large or too small,
-/// something that is no finite number, a vertex or edge that does not exist, a section given twice.
-/// [`Error::Unsupported`] of elements other than triangles. [`Error::Io`] of a file that cannot be read.
-pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
+/// [`Error::Parse`](crate::Error::Parse) with the line or the byte of what is not as announced: a file cut off, a count too large or
+/// too small, something that is no finite number, a vertex or edge that does not exist, a section given twice.
+/// [`Error::Io`](crate::Error::Io) of a file that cannot be read.
+pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
     let mut reader = Reader::new(Source::new(source, place)?);
     let mut before = "the head of the file".to_owned();
     while let Some(section) = reader.source.next_section(&before)? {
@@ -67,7 +73,7 @@ pub fn write(mesh: &Mesh, form: Form, out: &mut dyn Write) -> io::Result<()> {
 const MOST_BYTES: u64 = 40;
 
 /// Sections that are read; any other is passed over.
-const SECTIONS: [&str; 9] = [
+const SECTIONS: [&str; 15] = [
     "Dimension",
     "Vertices",
     "Edges",
@@ -77,31 +83,63 @@ const SECTIONS: [&str; 9] = [
     "RequiredVertices",
     "RequiredEdges",
     "RequiredTriangles",
+    "Quadrilaterals",
+    "RequiredQuadrilaterals",
+    "Tetrahedra",
+    "Pyramids",
+    "Prisms",
+    "Hexahedra",
 ];
 
-/// Sections of elements that a triangle mesh cannot hold.
-const FOREIGN: [&str; 5] = ["Quadrilaterals", "Tetrahedra", "Hexahedra", "Prisms", "Pyramids"];
+/// What else programs call these sections in texts.
+const OTHER_NAMES: [(&str, &str); 2] = [("Pentahedra", "Prisms"), ("Hexaedra", "Hexahedra")];
 
 struct Reader<'a> {
     source: Source<'a>,
     mesh: Mesh,
+    quadrilaterals: Vec<[u32; 4]>,
+    quadrilateral_labels: Vec<i32>,
+    required_quadrilaterals: Vec<u32>,
+    volumes: Volumes,
     dimension: Option<u8>,
     seen: Vec<&'static str>,
-    vertices: Largest,
-    edges: Largest,
-    triangles: Largest,
+    /// Of vertices, edges, triangles and quadrilaterals.
+    largest: [Largest; 4],
+}
+
+/// What the file refers to by numbers.
+#[derive(Clone, Copy)]
+enum Of {
+    Vertices,
+    Edges,
+    Triangles,
+    Quadrilaterals,
+}
+
+impl Of {
+    fn name(self) -> &'static str {
+        ["vertex", "edge", "triangle", "quadrilateral"][self as usize]
+    }
 }
 
 impl<'a> Reader<'a> {
     fn new(source: Source<'a>) -> Self {
-        let [vertices, edges, triangles] = <[Largest; 3]>::default();
-        Self { source, mesh: Mesh::default(), dimension: None, seen: vec![], vertices, edges, triangles }
+        Self {
+            source,
+            mesh: Mesh::default(),
+            quadrilaterals: Vec::new(),
+            quadrilateral_labels: Vec::new(),
+            required_quadrilaterals: Vec::new(),
+            volumes: Volumes::default(),
+            dimension: None,
+            seen: Vec::new(),
+            largest: <[Largest; 4]>::default(),
+        }
     }
 
     fn read_section(&mut self, section: &str) -> Result<()> {
-        if FOREIGN.contains(&section) {
-            return self.refuse_elements(section);
-        }
+        let other = OTHER_NAMES.iter().find(|(other, _)| other.eq_ignore_ascii_case(section));
+        let section = other.map_or(section, |(_, name)| name);
         let Some(&name) = SECTIONS.iter().find(|name| **name == section) else {
             return self.source.skip_section(section);
         };
@@ -118,11 +156,21 @@ impl<'a> Reader<'a> {
             "Vertices" => self.read_vertices()?,
             "Edges" => (self.mesh.edges, self.mesh.edge_labels) = self.read_elements(name)?,
             "Triangles" => (self.mesh.triangles, self.mesh.triangle_labels) = self.read_elements(name)?,
-            "Corners" => self.mesh.corners = self.read_numbers(name, "vertex")?,
-            "RequiredVertices" => self.mesh.required_points = self.read_numbers(name, "vertex")?,
-            "Ridges" => self.mesh.ridges = self.read_numbers(name, "edge")?,
-            "RequiredEdges" => self.mesh.required_edges = self.read_numbers(name, "edge")?,
-            _ => self.mesh.required_triangles = self.read_numbers(name, "triangle")?,
+            "Corners" => self.mesh.corners = self.read_numbers(name, Of::Vertices)?,
+            "RequiredVertices" => self.mesh.required_points = self.read_numbers(name, Of::Vertices)?,
+            "Ridges" => self.mesh.ridges = self.read_numbers(name, Of::Edges)?,
+            "RequiredEdges" => self.mesh.required_edges = self.read_numbers(name, Of::Edges)?,
+            "RequiredTriangles" => self.mesh.required_triangles = self.read_numbers(name, Of::Triangles)?,
+            "Quadrilaterals" => {
+                (self.quadrilaterals, self.quadrilateral_labels) = self.read_elements(name)?;
+            }
+            "RequiredQuadrilaterals" => {
+                self.required_quadrilaterals = self.read_numbers(name, Of::Quadrilaterals)?;
+            }
+            "Tetrahedra" => self.read_solids::<4>(name, Solid::Tetrahedron)?,
+            "Pyramids" => self.read_solids::<5>(name, Solid::Pyramid)?,
+            "Prisms" => self.read_solids::<6>(name, Solid::Prism)?,
+            _ => self.read_solids::<8>(name, Solid::Hexahedron)?,
         }
         Ok(())
     }
@@ -147,7 +195,7 @@ impl<'a> Reader<'a> {
         for at in At::rows(section, count) {
             let mut element = [0; N];
             for vertex in &mut element {
-                *vertex = self.reference(at, "vertex")?;
+                *vertex = self.reference(at, Of::Vertices)?;
             }
             elements.push(element);
             labels.push(self.source.whole(at)?);
@@ -155,44 +203,60 @@ impl<'a> Reader<'a> {
         Ok((elements, labels))
     }
 
-    fn read_numbers(&mut self, section: &str, of: &str) -> Result<Vec<u32>> {
+    fn read_solids<const N: usize>(&mut self, section: &str, solid: Solid) -> Result<()> {
+        let (cells, labels) = self.read_elements::<N>(section)?;
+        cells.iter().zip(labels).for_each(|(cell, label)| self.volumes.push(solid, cell, label));
+        Ok(())
+    }
+
+    fn read_numbers(&mut self, section: &str, of: Of) -> Result<Vec<u32>> {
         let count = self.source.count(section)?;
         At::rows(section, count).map(|at| self.reference(at, of)).collect()
     }
 
-    /// A number that refers to a vertex or an edge: from 1 in the file, from 0 in the mesh.
-    fn reference(&mut self, at: At<'_>, of: &str) -> Result<u32> {
+    /// A number that refers to something: from 1 in the file, from 0 in the mesh.
+    fn reference(&mut self, at: At<'_>, of: Of) -> Result<u32> {
         let number: u32 = self.source.whole(at)?;
         if number == 0 {
-            return Err(self.source.error(format!("{of} 0 does not exist ({at})"), "number from 1, as Medit does"));
+            let what = format!("{} 0 does not exist ({at})", of.name());
+            return Err(self.source.error(what, "number from 1, as Medit does"));
         }
-        let largest = match of {
-            "edge" => &mut self.edges,
-            "triangle" => &mut self.triangles,
-            _ => &mut self.vertices,
-        };
-        largest.note(number.into(), self.source.position());
+        self.largest[of as usize].note(number.into(), self.source.position());
         Ok(number - 1)
     }
 
-    fn refuse_elements(&mut self, section: &str) -> Result<()> {
-        let count = self.source.count(section)?;
-        if count == 0 {
-            return Ok(());
-        }
-        let what = format!("{count} {section} ({})", self.source.here());
-        Err(Error::Unsupported { what, help: "give a mesh of triangles only: split or remove these elements".into() })
-    }
-
-    fn finish(self) -> Result<Mesh> {
+    fn finish(mut self) -> Result<Document> {
         if !self.seen.contains(&"Vertices") {
             let what = "the file has no section Vertices";
             return Err(self.source.error(what, "check that the file is a whole Medit mesh"));
         }
-        self.source.check(&self.vertices, "vertex", self.mesh.points.len())?;
-        self.source.check(&self.edges, "edge", self.mesh.edges.len())?;
-        self.source.check(&self.triangles, "triangle", self.mesh.triangles.len())?;
-        Ok(self.mesh)
+        for (of, count) in [
+            (Of::Vertices, self.mesh.points.len()),
+            (Of::Edges, self.mesh.edges.len()),
+            (Of::Triangles, self.mesh.triangles.len()),
+            (Of::Quadrilaterals, self.quadrilaterals.len()),
+        ] {
+            self.source.check(&self.largest[of as usize], of.name(), count)?;
+        }
+        self.cut_quadrilaterals();
+        let note = self.volumes.note(self.mesh.triangles.len());
+        if self.mesh.triangles.is_empty() {
+            let skin = self.volumes.skin(&self.mesh.points);
+            (self.mesh.triangles, self.mesh.triangle_labels) = (skin.triangles, skin.labels);
+        }
+        Ok(Document { notes: note.into_iter().collect(), ..self.mesh.into() })
+    }
+
+    /// Appends the halves of all quadrilaterals to the triangles.
+    fn cut_quadrilaterals(&mut self) {
+        let mesh = &mut self.mesh;
+        let first = mesh.triangles.len() as u32;
+        for (quadrilateral, label) in self.quadrilaterals.iter().zip(&self.quadrilateral_labels) {
+            cut(&mesh.points, quadrilateral, &mut mesh.triangles);
+            mesh.triangle_labels.extend([*label; 2]);
+        }
+        let halves = |i: &u32| [0, 1].map(|half| first + 2 * i + half);
+        mesh.required_triangles.extend(self.required_quadrilaterals.iter().flat_map(halves));
     }
 }
 
@@ -268,7 +332,7 @@ mod tests {
     fn what_is_written_reads_back() {
         for mesh in [sample(0.0), sample(2.5)] {
             for form in [Form::Text, Form::Binary] {
-                assert_eq!(read(written(&mesh, form).as_slice(), "a.mesh").unwrap(), mesh);
+                assert_eq!(read(written(&mesh, form).as_slice(), "a.mesh").unwrap().mesh, mesh);
             }
         }
         let bare = Mesh { points: vec![[1.0, 2.0, 0.0]], ..Mesh::default() };
@@ -319,7 +383,7 @@ mod tests {
     fn binary_files_of_all_versions() {
         for version in 1..=4 {
             for big_endian in [false, true] {
-                let mesh = read(binary(version, big_endian).as_slice(), "a.meshb").unwrap();
+                let mesh = read(binary(version, big_endian).as_slice(), "a.meshb").unwrap().mesh;
                 assert_eq!(mesh.points, [[0.5, 0.0, 0.0], [1.0, 0.25, 0.0], [0.0, 1.0, 0.0]], "{version}");
                 assert_eq!((mesh.point_labels, mesh.triangles), (vec![-1, 2, 3], vec![[0, 1, 2]]));
                 assert_eq!(mesh.triangle_labels, [7]);
@@ -349,7 +413,7 @@ mod tests {
             (104, 4, "a.meshb, byte 108: vertex 4 does not exist: the file lists 3"),
             (104, 0, "a.meshb, byte 108: vertex 0 does not exist (row 1 of 1 of Triangles)"),
             (16, 4, "a.meshb, byte 20: Dimension 4, where 2 or 3 is expected"),
-            (20, 8, "not supported: 3 Tetrahedra (a.meshb, byte 32)"),
+            (20, 8, "a.meshb, byte 40: '1071644672' is out of range"),
         ] {
             let message = message(at, number);
             assert!(message.starts_with(expected) || message.contains(expected), "{message}");
@@ -363,16 +427,43 @@ mod tests {
     #[test]
     fn other_sections_are_passed_over() {
         let body = "Normals 2 0 0 1\n-1.e0 0 .5\nRidges 1 1\nQuadrilaterals\n0\nFuture\n9 9\nEDGES 1 1 2 4\nEnd\nrest";
-        let mesh = read(format!("{HEAD}{body}").as_bytes(), "a.mesh").unwrap();
+        let mesh = read(format!("{HEAD}{body}").as_bytes(), "a.mesh").unwrap().mesh;
         assert_eq!(mesh.point(2), crate::geometry::Point::new(0.0, 1.0));
         assert_eq!((mesh.edges, mesh.edge_labels), (vec![[0, 1]], vec![4]));
         assert_eq!(mesh.point_labels, [1, 2, 3]);
     }
 
+    const CUBE: &str = "MeshVersionFormatted 2 Dimension 3 Vertices 9 0 0 0 1 1 0 0 1 1 1 0 1 0 1 0 1 0 0 1 1 1 0 1 1 \
+                        1 1 1 1 0 1 1 1 5 5 5 5\n";
+
+    #[test]
+    fn quadrilaterals_are_cut_behind_the_triangles() {
+        let body =
+            "RequiredQuadrilaterals 1 2 Quadrilaterals 2 2 3 4 1 8 5 6 7 8 9 Triangles 1 1 2 6 7 RequiredTriangles 1 1";
+        let found = read(format!("{CUBE}{body}").as_bytes(), "a.mesh").unwrap();
+        let mesh = found.mesh;
+        assert_eq!(mesh.triangles, [[0, 1, 5], [2, 3, 0], [2, 0, 1], [4, 5, 6], [4, 6, 7]]);
+        assert_eq!((mesh.triangle_labels, mesh.required_triangles), (vec![7, 8, 8, 9, 9], vec![0, 3, 4]));
+        assert!(found.notes.is_empty());
+    }
+
+    #[test]
+    fn volumes_are_left_out_beside_triangles_and_have_a_boundary_without() {
+        let cells = "Hexahedra 1 1 2 3 4 5 6 7 8 3 Tetrahedra 1 5 6 7 9 4 RequiredTetrahedra 1 1 ";
+        let found = read(format!("{CUBE}{cells}Triangles 1 1 2 3 7 End").as_bytes(), "a.mesh").unwrap();
+        assert_eq!((found.mesh.triangles, found.mesh.points.len()), (vec![[0, 1, 2]], 9));
+        let told = "1 tetrahedron, 1 hexahedron left out: the surface is the 1 triangle that the file lists";
+        assert_eq!(found.notes, [told]);
+        let found = read(format!("{CUBE}{cells}").as_bytes(), "a.mesh").unwrap();
+        assert_eq!(found.mesh.triangles.len(), 16);
+        assert_eq!(found.mesh.triangle_labels.iter().filter(|label| **label == 3).count(), 12);
+        assert!(found.notes[0].starts_with("of 1 tetrahedron, 1 hexahedron the boundary was taken"));
+    }
+
     #[test]
     fn triangles_may_come_before_vertices() {
         let text = "MeshVersionFormatted 1 Dimension 3 Triangles 1 3 2 1 6 Vertices 3 0 0 0 0 1 0 0 0 0 1 0 0";
-        assert_eq!(read(text.as_bytes(), "a.mesh").unwrap().triangles, [[2, 1, 0]]);
+        assert_eq!(read(text.as_bytes(), "a.mesh").unwrap().mesh.triangles, [[2, 1, 0]]);
     }
 
     #[test]
@@ -396,7 +487,12 @@ mod tests {
             ),
             ("Triangles 2\n1 2 3 0\nEnd", "a.mesh:11: 'End' is not a whole number (row 2 of 2 of Triangles)"),
             ("Vertices 0", "a.mesh:9: a second section Vertices"),
-            ("Tetrahedra 1\n1 2 3 4 0", "not supported: 1 Tetrahedra (a.mesh:9)"),
+            ("Tetrahedra 1\n1 2 3 4 0", "a.mesh:10: vertex 4 does not exist: the file lists 3"),
+            ("Hexahedra 1\n1 2 3 1 2 3 1 0", "a.mesh:10: the text ends in row 1 of 1 of Hexahedra"),
+            (
+                "Quadrilaterals 1\n1 2 3 3 0\nRequiredQuadrilaterals 1 2",
+                "a.mesh:11: quadrilateral 2 does not exist: the file lists 1",
+            ),
         ] {
             let message = message(body);
             assert!(message.contains(expected), "{message}");
