@@ -160,7 +160,7 @@ mod tests {
             (types::POLY_LINE, &[4, 5, 6]),
             (types::POLYGON, &[1, 2, 3, 4, 5]),
             (types::TRIANGLE_STRIP, &[1, 2, 3, 4]),
-            (types::PIXEL, &[0, 1, 2, 3]),
+            (types::PIXEL, &[0, 1, 3, 2]),
             (types::LINE, &[2, 1]),
             (2, &[1, 2, 3]),
         ]
@@ -173,13 +173,13 @@ mod tests {
             [0, 1, 2],
             [0, 1, 2],
             [0, 2, 3],
-            [1, 2, 3],
-            [1, 3, 4],
-            [1, 4, 5],
+            [5, 1, 2],
+            [3, 4, 5],
+            [5, 2, 3],
             [1, 2, 3],
             [3, 2, 4],
-            [0, 1, 3],
-            [0, 3, 2],
+            [0, 1, 2],
+            [0, 2, 3],
         ];
         assert_eq!(shapes.triangles, expected);
         assert_eq!(shapes.of_triangles, [0, 2, 2, 4, 4, 4, 5, 5, 6, 6]);
