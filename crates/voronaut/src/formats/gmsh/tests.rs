@@ -231,7 +231,7 @@ fn volumes_have_their_boundary_where_there_are_no_triangles() {
     assert_eq!(found.notes, ["2 tetrahedra left out: the surface is the 1 triangle that the file lists"]);
     let (from, to) = ("2 4 2 3 1 2 1 3 5", "2 4 2 3 1 2 1 3 8");
     let error = read(format!("{head}2\n{cells}$EndElements\n").replace(from, to).as_bytes(), "a.msh").unwrap_err();
-    assert!(error.to_string().starts_with("a.msh:15: node 8 does not exist"), "{error}");
+    assert!(error.to_string().starts_with("a.msh:16: node 8 does not exist"), "{error}");
 }
 
 #[test]

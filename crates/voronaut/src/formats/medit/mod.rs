@@ -488,7 +488,7 @@ mod tests {
             ("Triangles 2\n1 2 3 0\nEnd", "a.mesh:11: 'End' is not a whole number (row 2 of 2 of Triangles)"),
             ("Vertices 0", "a.mesh:9: a second section Vertices"),
             ("Tetrahedra 1\n1 2 3 4 0", "a.mesh:10: vertex 4 does not exist: the file lists 3"),
-            ("Hexahedra 1\n1 2 3 1 2 3 1 0", "a.mesh:10: the text ends in row 1 of 1 of Hexahedra"),
+            ("Hexahedra 1\n1 2 3 1 2 3 1", "a.mesh:10: the text ends in row 1 of 1 of Hexahedra"),
             (
                 "Quadrilaterals 1\n1 2 3 3 0\nRequiredQuadrilaterals 1 2",
                 "a.mesh:11: quadrilateral 2 does not exist: the file lists 1",
