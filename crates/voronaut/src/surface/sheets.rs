@@ -8,6 +8,10 @@ use rayon::prelude::*;
 /// Steps of the search for a point without gradient, which doubles its digits in each.
 const STEPS: usize = 12;
 
+/// How far from the points that are known such a point is looked for, in steps of the grid: where sheets meet at a small angle the grid
+/// does not see them before they are apart.
+const REACH: f64 = 8.0;
+
 /// What counts as zero: of |grad f| and of |f|, in what the second derivatives make of them over a step of the grid. Sheets that
 /// pass each other are farther apart than that, or no arithmetic tells.
 const ZERO: f64 = 1e-9;
@@ -42,7 +46,7 @@ fn on_line(f: &dyn Implicit, p: Point3, step: f64, bounds: Aabb3) -> Option<Poin
 }
 
 /// The nearest point with f = 0 and without gradient where the second derivatives have both signs, by Newton's method on the
-/// gradient across the axis along which it changes least, and that axis. `None` where there is none within a step of the grid.
+/// gradient across the axis along which it changes least, and that axis. `None` where it is not reached.
 fn crossing(f: &dyn Implicit, p: Point3, step: f64) -> Option<(Point3, Vector3)> {
     let mut q = p;
     for _ in 0..STEPS {
@@ -64,7 +68,7 @@ fn crossing(f: &dyn Implicit, p: Point3, step: f64) -> Option<(Point3, Vector3)>
         }
         let way = |i: usize| axes[i] * (-jet.gradient.dot(axes[i]) / values[i]);
         q = q + (way(order[0]) + way(order[1]));
-        if !(q.distance(p) <= step) {
+        if q.distance(p) > REACH * step {
             return None;
         }
     }
