@@ -41,7 +41,7 @@ Quadrilaterals 0\nVertices !3\n~0 ~0 ~0 0\n~0 ~1 ~0 0\n~0 ~0 ~1.25 5\n;";
 
 const VOLUME: &str = "MeshVersionFormatted 2\nDimension ^3\nVertices !5\n~0 ~0 ~0.5 0\n~1 ~0 ~0.5 0\n~0 ~1 ~0.5 0
 ~0 ~0 ~1.5 5\n~0.5 ~0.5 ~-0.5 1\n;Tetrahedra !2\n@1 @2 @3 @4 7\n@1 @3 @2 @5 8\n;Pyramids !1\n@1 @2 @3 @4 @5 9\n;
-RequiredTetrahedra 1 1\n;Quadrilaterals !2\n@1 @2 @3 @4 5\n@5 @4 @3 @2 6\n;RequiredQuadrilaterals !1\n2\n;End\n";
+Quadrilaterals !2\n@1 @2 @3 @4 5\n@5 @4 @3 @2 6\n;RequiredQuadrilaterals !1\n2\n;End\n";
 
 const TENSORS: &str =
     "MeshVersionFormatted 2\n\nDimension ^2\n\nSolAtVertices\n!3\n!1 !3\n~1 ~0.5 ~2\n~1.D0 ~0 ~1e-9\n~3 ~0 ~3\n;End\n";
