@@ -78,7 +78,9 @@ impl Seen {
         let origin = polygon.first().map_or(Point3::default(), position);
         let mut corners: Vec<Vector3> = polygon.iter().map(|v| position(v) - origin).collect();
         let size = corners.iter().map(|c| c.x.abs().max(c.y.abs()).max(c.z.abs())).fold(f64::MIN_POSITIVE, f64::max);
-        corners.iter_mut().for_each(|corner| *corner = *corner * (1.0 / size));
+        for corner in &mut corners {
+            *corner = *corner * (1.0 / size);
+        }
         // Newell's normal: of the polygon's shadows on the coordinate planes it is the areas.
         let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
         let area = pairs.fold(Vector3::new(0.0, 0.0, 0.0), |sum, (&a, &b)| sum + a.cross(b));

@@ -96,7 +96,9 @@ impl<'a> Ears<'a> {
     fn refill(&mut self, first: u32) {
         let found: Vec<u32> = self.left(first).collect();
         self.candidates.clear();
-        found.into_iter().for_each(|i| self.push(i));
+        for i in found {
+            self.push(i);
+        }
     }
 
     fn push(&mut self, i: u32) {
@@ -127,7 +129,7 @@ impl<'a> Ears<'a> {
         let mut blunt = near.filter(|&&j| !self.is_convex[j as usize] && self.changes[j as usize] != GONE);
         !blunt.any(|&j| {
             let p = flat(j);
-            let is_corner = triangle.iter().any(|corner| *corner == p);
+            let is_corner = triangle.contains(&p);
             !is_corner && [[a, b], [b, c], [c, a]].iter().all(|&[from, to]| signed_area(from, to, p) >= 0.0)
         })
     }

@@ -125,8 +125,9 @@ impl Reader<'_> {
                 Ok(())
             }
             other => {
-                let found = FREE_FORM.iter().find(|(keyword, _)| other == Some(keyword));
-                found.into_iter().for_each(|(_, name)| *self.free_form.entry(name).or_default() += 1);
+                if let Some((_, name)) = FREE_FORM.iter().find(|(keyword, _)| other == Some(keyword)) {
+                    *self.free_form.entry(name).or_default() += 1;
+                }
                 Ok(())
             }
         }
