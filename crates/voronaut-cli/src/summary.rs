@@ -21,7 +21,9 @@ pub(crate) fn print(title: &str, report: &Report, run: &Run) {
 /// Says on stderr what is worth knowing, unless told to be quiet.
 pub(crate) fn notes(notes: &[String], is_quiet: bool) {
     if !is_quiet {
-        notes.iter().for_each(|note| eprintln!("note: {note}"));
+        for note in notes {
+            eprintln!("note: {note}");
+        }
     }
 }
 

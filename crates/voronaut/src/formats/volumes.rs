@@ -203,7 +203,9 @@ mod tests {
 
     fn skin_of(points: &[[f64; 3]], cells: &[(Solid, &[u32], i32)]) -> Skin {
         let mut volumes = Volumes::default();
-        cells.iter().for_each(|&(solid, vertices, label)| volumes.push(solid, vertices, label));
+        for &(solid, vertices, label) in cells {
+            volumes.push(solid, vertices, label);
+        }
         volumes.skin(points)
     }
 

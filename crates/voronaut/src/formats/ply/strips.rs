@@ -64,7 +64,7 @@ mod tests {
              element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
         )
         .into_bytes();
-        let count = [strips.len() as i32];
+        let count = [i32::try_from(strips.len()).unwrap()];
         let numbers = count.iter().chain(strips);
         match format {
             "ascii" => {
