@@ -7,7 +7,7 @@ use crate::{files, summary};
 use serde_json::json;
 use std::time::Instant;
 use voronaut::domain::{Domain, from_mesh};
-use voronaut::formats;
+use voronaut::formats::{self, Document};
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     files::demand_writable(None, None, &args.outputs)?;
     demand_drawable(args)?;
     files::set_threads(&args.run)?;
-    let mesh = formats::read(&args.mesh)?.mesh;
+    let Document { mesh, notes, .. } = formats::read(&args.mesh)?;
     let read = |spec: &str| Given::read_with(spec, None, args.damage.options());
     let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();
     let found = match &given {
@@ -38,6 +38,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     let fault = found.demand();
     let meets = found.meetings.note();
     let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
+    report.notes = notes;
     report.options = json!({
         "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain, "function": args.function, "norm": args.metric_choices.norm.to_string(),
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),

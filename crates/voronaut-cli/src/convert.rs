@@ -1,5 +1,6 @@
 //! `voronaut convert`: from one format to another.
 
+use crate::summary;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use voronaut::domain::{Pslg, from_mesh, read_pslg, to_mesh, to_poly, to_polygons};
@@ -109,6 +110,7 @@ fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
         let document = Mesh { point_labels: pslg.point_labels.clone(), ..Mesh::default() }.into();
         (pslg, document)
     };
+    summary::notes(&document.notes, args.quiet);
     let is_poly = args.to.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("poly"));
     let told = if is_poly { write_poly(&args.to, &pslg)? } else { write_geojson(&args.to, &pslg)? };
     Ok(with_lost(vec![told], &lost_in_outline(is_poly, &document.mesh, &document.fields)))
@@ -144,7 +146,7 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
         Format::Ply(_) => Format::Ply(form),
         other => other,
     };
-    let Document { mesh, mut fields } = match from {
+    let Document { mesh, mut fields, notes } = match from {
         Kind::Mesh => formats::read(&args.from)?,
         _ => to_mesh(&read_pslg(&name(&args.from))?)?.into(),
     };
@@ -168,6 +170,7 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
         let names = fields.vertices.iter().chain(&fields.triangles).map(|field| field.name.as_str());
         told.push(format!("{} in {}", names.collect::<Vec<_>>().join(", "), beside.display()));
     }
+    summary::notes(&notes, args.quiet);
     Ok(with_lost(told, &lost))
 }
 

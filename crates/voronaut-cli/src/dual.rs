@@ -84,6 +84,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
         stage("certificate");
     }
     report.notes = notes(&diagram, &report);
+    report.notes.extend(mended.sentences());
     report.options = options(args);
     // Parts of "dual".
     stages.extend(seconds);

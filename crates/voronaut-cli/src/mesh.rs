@@ -45,6 +45,7 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let figures = metric_quality(&meshed.mesh, &scaled)?;
     let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
     fill_in(&mut report, &meshed, options(args));
+    report.notes.extend(mended.sentences());
     let unmet = unmet(&meshed.mesh, &scaled)?;
     report.unmet = Some(unmet.figures());
     report.histograms = files::histograms(&args.outputs, &meshed.mesh, &scaled)?;

@@ -15,8 +15,15 @@ pub(crate) fn print(title: &str, report: &Report, run: &Run) {
     }
     // Whoever closed the other end of a pipe has seen enough.
     let _ = std::io::stdout().write_all(summary(title, report, run.verbose).as_bytes());
-    for note in &report.notes {
-        eprintln!("note: {note}");
+    notes(&report.notes, run.quiet);
+}
+
+/// Says on stderr what is worth knowing, unless told to be quiet.
+pub(crate) fn notes(notes: &[String], is_quiet: bool) {
+    if !is_quiet {
+        for note in notes {
+            eprintln!("note: {note}");
+        }
     }
 }
 

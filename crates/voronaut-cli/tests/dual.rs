@@ -33,7 +33,7 @@ fn runs(place: &Place, words: &[&str]) -> String {
 }
 
 fn mesh(place: &Place, name: &str) -> Mesh {
-    medit::read(place.read(name).as_slice(), name).unwrap()
+    medit::read(place.read(name).as_slice(), name).unwrap().mesh
 }
 
 fn report(place: &Place, name: &str) -> Value {

@@ -17,7 +17,7 @@ fn place() -> Place {
 }
 
 fn mesh(place: &Place, name: &str) -> Mesh {
-    medit::read(place.read(name).as_slice(), name).unwrap()
+    medit::read(place.read(name).as_slice(), name).unwrap().mesh
 }
 
 fn solution(place: &Place, name: &str) -> SolutionValues {

@@ -29,7 +29,7 @@ fn place() -> Place {
 }
 
 fn mesh(place: &Place, name: &str) -> Mesh {
-    medit::read(place.read(name).as_slice(), name).unwrap()
+    medit::read(place.read(name).as_slice(), name).unwrap().mesh
 }
 
 fn sizes(place: &Place, name: &str) -> Vec<f64> {

@@ -77,7 +77,7 @@ fn required_edges_and_vertices_labels_and_regions_stay() {
     let text = "MeshVersionFormatted 2\nDimension 2\nVertices 7\n0 0 1\n1 0 2\n2 0 3\n2 1 4\n1 1 5\n0 1 6\n0.3 0 7\n\
                 Triangles 5\n1 7 6 10\n7 2 6 10\n2 5 6 10\n2 3 4 20\n2 4 5 20\nEdges 3\n2 5 77\n3 4 33\n6 1 44\n\
                 RequiredVertices 1\n7\nRequiredEdges 1\n3\nEnd\n";
-    let raw = medit::read(text.as_bytes(), "two.mesh").unwrap();
+    let raw = medit::read(text.as_bytes(), "two.mesh").unwrap().mesh;
     let domain = Domain::new(&voronaut::domain::from_mesh(&raw).unwrap()).unwrap();
     let (Meshed { mesh, .. }, _) = meshed(&domain, &|_: Point| Tensor::IDENTITY, 400);
     let of = |label: i32| mesh.edge_labels.iter().filter(|&&l| l == label).count();

@@ -67,7 +67,7 @@ pub(crate) enum Command {
 }
 
 const MESH_EXAMPLES: &str = "\
-DOMAIN  a file: .mesh, .meshb, .msh, .vtu, .vtp (boundary edges or triangles), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
+DOMAIN  a file: .mesh, .meshb, .msh, .vtu, .vtp (boundary edges or triangles; of volumes the boundary), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
         or a surface: .obj, .off, .ply, .stl and the first five; sphere:r, torus:R,r, chair, 'implicit:EXPR;x0,y0,z0,x1,y1,z1'
 METRIC  uniform, uniform:m11,m12,m22, swirl[:nu=3,field=authors], shock[:phi=10,lambda=0.6],
         'formula:m11; m12; m22' in x and y, boundary:h0=,growth=,aspect=,h_max=, or a file .sol or .solb;

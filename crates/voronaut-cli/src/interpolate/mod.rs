@@ -8,7 +8,7 @@ pub(crate) use args::{EXAMPLES, InterpolateArgs};
 use crate::files;
 use std::path::Path;
 use std::time::Instant;
-use voronaut::formats::{self, SolutionValues, Solutions};
+use voronaut::formats::{self, Document, SolutionValues, Solutions};
 use voronaut::mesh::Mesh;
 use voronaut::output;
 use voronaut::transfer::{Overshoot, TransferOptions, carry};
@@ -19,7 +19,7 @@ pub(crate) fn run(args: &InterpolateArgs) -> Result<()> {
     let start = Instant::now();
     demand_writable(args)?;
     files::set_threads(&args.run)?;
-    let (old, new) = (planar(&args.old)?, planar(&args.new)?);
+    let (old, new) = (planar(&args.old, args.run.quiet)?, planar(&args.new, args.run.quiet)?);
     let given = formats::read_solutions(&args.field)?;
     demand_counts(args, &given, &old, &new)?;
     let read = start.elapsed().as_secs_f64();
@@ -54,8 +54,9 @@ fn demand_writable(args: &InterpolateArgs) -> Result<()> {
     Ok(())
 }
 
-fn planar(path: &Path) -> Result<Mesh> {
-    let mesh = formats::read(path)?.mesh;
+fn planar(path: &Path, is_quiet: bool) -> Result<Mesh> {
+    let Document { mesh, notes, .. } = formats::read(path)?;
+    crate::summary::notes(&notes, is_quiet);
     if mesh.is_planar() {
         return Ok(mesh);
     }

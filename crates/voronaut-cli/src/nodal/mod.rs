@@ -9,7 +9,7 @@ use crate::files;
 use args::{Combine, LimitText};
 use serde_json::{Value, json};
 use std::time::Instant;
-use voronaut::formats::{self, Solution, SolutionValues};
+use voronaut::formats::{self, Document, Solution, SolutionValues};
 use voronaut::mesh::Mesh;
 use voronaut::metric::nodal::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline};
 use voronaut::output::{self, report};
@@ -27,7 +27,8 @@ pub(crate) fn run(args: &MetricArgs) -> Result<()> {
         limits: sources::limits(args)?,
         gradation_factor: args.gradation,
     };
-    let mesh = formats::read(&args.mesh)?.mesh;
+    let Document { mesh, notes, .. } = formats::read(&args.mesh)?;
+    crate::summary::notes(&notes, args.run.quiet);
     mesh.check_numbers()?;
     let sources = args.metric.iter().map(|text| sources::source(text, &mesh, args)).collect::<Result<Vec<_>>>()?;
     let made = pipeline.run(&mesh, &sources)?;

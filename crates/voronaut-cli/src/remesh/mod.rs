@@ -43,10 +43,14 @@ pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
         .try_for_each(|path| output::demand_directory(path))?;
     files::set_threads(&run)?;
     let given = read(args)?;
-    let is_planar = matches!(given, Read::Plane(_));
+    let is_planar = matches!(given, Read::Plane(..));
     args.warnings(is_planar).iter().for_each(|warning| eprintln!("warning: {warning}"));
     let made = match given {
-        Read::Plane(input) => plane::remesh(args, &input)?,
+        Read::Plane(input, notes) => {
+            let mut made = plane::remesh(args, &input)?;
+            made.report.notes.extend(notes);
+            made
+        }
         Read::Surface(input, mended) => surface::remesh(args, input, &mended)?,
     };
     let Made { mesh, mut report, solution } = made;
@@ -69,7 +73,8 @@ struct Made {
 /// What goes in.
 #[expect(clippy::large_enum_variant, reason = "there is one, and not for long")]
 enum Read {
-    Plane(RemeshInput),
+    /// With what the reader left out.
+    Plane(RemeshInput, Vec<String>),
     Surface(Input, Mended),
 }
 
@@ -77,16 +82,17 @@ fn read(args: &RemeshArgs) -> Result<Read> {
     let path = args.input();
     let spec = path.to_string_lossy();
     if let Some(format) = Format::of_ending(&path) {
-        let mesh = formats::read(&path)?.mesh;
-        if format.may_be_planar() && (mesh.triangles.is_empty() || mesh.is_planar()) {
-            return Ok(Read::Plane(RemeshInput::of_mesh(mesh, keep(args)).map_err(|error| in_file(&spec, error))?));
+        let document = formats::read(&path)?;
+        if format.may_be_planar() && (document.mesh.triangles.is_empty() || document.mesh.is_planar()) {
+            let input = RemeshInput::of_mesh(document.mesh, keep(args)).map_err(|error| in_file(&spec, error))?;
+            return Ok(Read::Plane(input, document.notes));
         }
-        let (surface, mended) = of_file(&spec, &mesh, args.damage.options())?;
+        let (surface, mended) = of_file(&spec, &document, args.damage.options())?;
         return Ok(Read::Surface(Input::new(surface, None), mended));
     }
     match Given::read_with(&spec, None, args.damage.options())? {
         (Given::Surface(input), mended) => Ok(Read::Surface(input, mended)),
-        (Given::Plane(_), _) => Ok(Read::Plane(RemeshInput::of_graph(read_pslg(&spec)?, keep(args))?)),
+        (Given::Plane(_), _) => Ok(Read::Plane(RemeshInput::of_graph(read_pslg(&spec)?, keep(args))?, Vec::new())),
     }
 }
 

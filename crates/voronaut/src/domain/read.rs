@@ -212,10 +212,10 @@ mod tests {
         fn no_text_makes_a_reader_panic(text in soup()) {
             let bytes = text.as_bytes();
             let _ = crate::formats::sol::read(bytes, "a.sol");
-            if let Ok(mesh) = medit::read(bytes, "a.mesh") {
+            if let Ok(formats::Document { mesh, .. }) = medit::read(bytes, "a.mesh") {
                 let mut written = Vec::new();
                 medit::write(&mesh, medit::Form::Text, &mut written).unwrap();
-                prop_assert_eq!(&medit::read(written.as_slice(), "b.mesh").unwrap(), &mesh);
+                prop_assert_eq!(&medit::read(written.as_slice(), "b.mesh").unwrap().mesh, &mesh);
                 let _ = from_mesh::from_mesh(&mesh);
             }
             if let Ok(poly) = poly::read(bytes, "a.poly") {

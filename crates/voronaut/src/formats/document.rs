@@ -1,4 +1,4 @@
-//! What a file holds: a mesh, and values on it.
+//! What a file holds: a mesh, values on it, and what a mesh cannot hold.
 
 use super::{SolutionValues, Solutions};
 use crate::error::{Error, Result};
@@ -12,6 +12,8 @@ pub struct Document {
     pub mesh: Mesh,
     /// The values.
     pub fields: Fields,
+    /// What the file holds and the mesh does not, where that is a surprise: one sentence each, for users.
+    pub notes: Vec<String>,
 }
 
 /// Named values on a mesh.
@@ -111,7 +113,7 @@ fn named(values: Vec<SolutionValues>) -> Vec<Field> {
 
 impl From<Mesh> for Document {
     fn from(mesh: Mesh) -> Self {
-        Self { mesh, fields: Fields::default() }
+        Self { mesh, ..Self::default() }
     }
 }
 

@@ -99,10 +99,10 @@ pub fn read(path: &Path) -> Result<Document> {
     };
     let mut source = open(path)?;
     match format {
-        Format::Medit(_) => Ok(medit::read(source, &place)?.into()),
+        Format::Medit(_) => medit::read(source, &place),
         Format::Gmsh(..) if begins_with_number(&mut source, path)? => Ok(freefem::read(source, &place)?.into()),
         Format::Gmsh(..) => gmsh::read(source, &place),
-        Format::Obj => Ok(obj::read(source, &place)?.into()),
+        Format::Obj => obj::read(source, &place),
         Format::Off => Ok(off::read(source, &place)?.into()),
         Format::Ply(_) => ply::read(source, &place),
         Format::Stl => Ok(stl::read(source, &place)?.into()),

@@ -1,7 +1,9 @@
 //! File formats: bytes to plain structs and back, without domains or metrics.
 
 mod bytes;
+mod cutting;
 mod document;
+mod ears;
 mod files;
 mod losses;
 pub mod freefem;
@@ -16,6 +18,7 @@ pub mod poly;
 pub mod sol;
 pub mod stl;
 mod values;
+mod volumes;
 pub mod vtk;
 mod words;
 

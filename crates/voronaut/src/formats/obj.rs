@@ -1,32 +1,61 @@
 //! Wavefront `.obj`, as far as surfaces go: vertices, polygons, lines.
 
+use super::Document;
+use super::cutting::Polygons;
 use super::words::{At, Largest, Row, Rows, Shortest, Word, error_at, number, whole};
 use crate::error::Result;
 use crate::mesh::Mesh;
+use std::collections::BTreeMap;
 use std::io::{self, BufRead, Write};
 
 /// Reads `v`, `f` and `l` of an `.obj` text.
 ///
-/// Polygons are cut into fans around their first vertex. Faces in a group `region_LABEL` have that label, as our own
-/// writer has it; all others 0. Of `i/j/k` only the vertex i counts; numbers below zero count back from the last vertex
-/// read. Lines become edges with label 0. Texture coordinates, normals, materials and all else are passed over.
+/// Polygons are cut along diagonals that suit them, quadrilaterals along the better one. Faces in a group `region_LABEL` have that
+/// label, as our own writer has it; all others 0. Of `i/j/k` only the vertex i counts; numbers below zero count back from the last
+/// vertex read. Lines become edges with label 0. A row that ends in `\\` goes on in the next one. Points, texture coordinates,
+/// normals, colours, materials and all else are passed over; of free-form curves and surfaces a note says so.
 ///
 /// # Errors
 ///
 /// [`crate::Error::Parse`] with the line of what is no finite number, of a face of fewer than three vertices, and of a vertex
 /// that does not exist.
-pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
-    let mut rows = Rows::new(source, place);
-    let mut reader = Reader { place, mesh: Mesh::default(), label: 0, largest: Largest::default() };
+pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
+    let mut rows = Rows::with_names(source, place, &NAMING);
+    let mut reader = Reader { place, ..Reader::default() };
+    let mut joined = String::new();
     while let Some(row) = rows.next()? {
-        reader.read_row(row)?;
+        let Some(begun) = row.text.trim_end().strip_suffix('\\') else {
+            reader.read_row(row)?;
+            continue;
+        };
+        joined.clear();
+        joined.push_str(begun);
+        let line = row.line;
+        while let Some(more) = rows.next()? {
+            let text = more.text.trim_end();
+            let begun = text.strip_suffix('\\');
+            joined.push(' ');
+            joined.push_str(begun.unwrap_or(text));
+            if begun.is_none() {
+                break;
+            }
+        }
+        reader.read_row(Row { line, text: &joined })?;
     }
-    let Reader { mut mesh, largest, .. } = reader;
-    largest.check("vertex", mesh.points.len(), place)?;
-    mesh.point_labels = vec![0; mesh.points.len()];
-    mesh.edge_labels = vec![0; mesh.edges.len()];
-    Ok(mesh)
+    reader.finish()
 }
+
+/// Rows that name things, in whatever encoding.
+const NAMING: [&str; 5] = ["g", "o", "usemtl", "mtllib", "usemap"];
+
+/// Rows that are a surface or a curve of their own, and what these are called.
+const FREE_FORM: [(&str, &str); 5] = [
+    ("surf", "free-form surfaces"),
+    ("curv", "free-form curves"),
+    ("curv2", "free-form curves"),
+    ("bzp", "Bezier patches"),
+    ("bsp", "B-spline patches"),
+];
 
 /// Writes a mesh as an `.obj` text: vertices in order, then the triangles of each region label in a group `region_LABEL`, then the
 /// labelled edges as lines. Coordinates read back as the same bits; labels of vertices and edges have no place there.
@@ -56,11 +85,15 @@ pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     mesh.edges.iter().try_for_each(|&[a, b]| writeln!(out, "l {} {}", u64::from(a) + 1, u64::from(b) + 1))
 }
 
+#[derive(Default)]
 struct Reader<'a> {
     place: &'a str,
     mesh: Mesh,
+    polygons: Polygons,
+    /// That of the group.
     label: i32,
     largest: Largest,
+    free_form: BTreeMap<&'static str, u64>,
 }
 
 impl Reader<'_> {
@@ -68,15 +101,14 @@ impl Reader<'_> {
         let mut words = row.words();
         match words.next().map(|word| word.text) {
             Some("v") => self.read_vertex(row.line, words),
-            Some("f") => {
+            // Wavefront's programs once wrote fo.
+            Some("f" | "fo") => {
                 let polygon = self.references(words, At::head("f"))?;
-                let [first, rest @ ..] = polygon.as_slice() else { return Err(self.too_short(row.line, 0, "face", 3)) };
-                if rest.len() < 2 {
+                if polygon.len() < 3 {
                     return Err(self.too_short(row.line, polygon.len(), "face", 3));
                 }
-                let fan = rest.windows(2).map(|pair| [*first, pair[0], pair[1]]);
-                self.mesh.triangles.extend(fan);
-                self.mesh.triangle_labels.resize(self.mesh.triangles.len(), self.label);
+                self.polygons.push(&polygon);
+                self.polygons.label(self.label);
                 Ok(())
             }
             Some("l") => {
@@ -92,8 +124,24 @@ impl Reader<'_> {
                 self.label = region.unwrap_or(0);
                 Ok(())
             }
-            _ => Ok(()),
+            other => {
+                if let Some((_, name)) = FREE_FORM.iter().find(|(keyword, _)| other == Some(keyword)) {
+                    *self.free_form.entry(name).or_default() += 1;
+                }
+                Ok(())
+            }
         }
+    }
+
+    /// Faces may refer to vertices below them: whether these exist is known at the end.
+    fn finish(self) -> Result<Document> {
+        let Self { mut mesh, polygons, largest, free_form, place, .. } = self;
+        largest.check("vertex", mesh.points.len(), place)?;
+        (mesh.triangles, mesh.triangle_labels) = polygons.cut(&mesh.points);
+        mesh.point_labels = vec![0; mesh.points.len()];
+        mesh.edge_labels = vec![0; mesh.edges.len()];
+        let notes = free_form.into_iter().map(|(name, count)| format!("{count} {name} left out: only faces are read"));
+        Ok(Document { notes: notes.collect(), ..mesh.into() })
     }
 
     fn read_vertex<'w>(&mut self, line: usize, mut words: impl Iterator<Item = Word<'w>>) -> Result<()> {
@@ -145,11 +193,26 @@ mod tests {
     fn faces_in_all_their_spellings() {
         let text = "mtllib a.mtl\nv 0 0 0 1.0\nv 1 0 0 # corner\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n\
                     g region_-7\nf 1/1/1 2//1 3/4 4\ng other\nf -1 -2 -3\nl 1 2 3\ns off\n";
-        let mesh = read(text.as_bytes(), "a.obj").unwrap();
+        let mesh = read(text.as_bytes(), "a.obj").unwrap().mesh;
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [3, 2, 1]]);
         assert_eq!(mesh.triangle_labels, [-7, -7, 0]);
         assert_eq!(mesh.edges, [[0, 1], [1, 2]]);
         assert_eq!((mesh.points.len(), mesh.point_labels.len(), mesh.edge_labels.len()), (4, 4, 2));
+    }
+
+    #[test]
+    fn what_other_programs_write() {
+        let text = b"o cube\r\nv 0 0 0 0.5 0.5 1\r\nv 1 0 0 \\\r\n 1 1 1\nv 1 1 0\nv 0 1 0\np 1\ng caf\xe9 lid\nusemtl bl\xe4u\n\
+                     f -4/-4 \\\n-3/-3 \\\n -2/1 # the corner\nfo 1 3 4\nsurf 0 1 0 1 1\nsurf 0 1 0 1 2\ncurv 0 1 1 2\nf 5 6 7\n\
+                     v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3 \\";
+        let found = read(text.as_slice(), "a.obj").unwrap();
+        assert_eq!(found.mesh.triangles, [[0, 1, 2], [0, 2, 3], [4, 5, 6], [0, 1, 2]]);
+        assert_eq!(found.mesh.points[1].map(f64::to_bits), [1.0_f64, 0.0, 0.0].map(f64::to_bits));
+        let free_form =
+            ["1 free-form curves left out: only faces are read", "2 free-form surfaces left out: only faces are read"];
+        assert_eq!(found.notes, free_form);
+        let error = read(b"v 0 0 0\nf \xe9 1 1".as_slice(), "a.obj").unwrap_err();
+        assert!(error.to_string().contains("not a text in UTF-8"), "{error}");
     }
 
     #[test]
@@ -166,6 +229,7 @@ mod tests {
             ("v 0 0 0\nf 1 1 99999999999", "a.obj:2: vertex 99999999999 does not exist"),
             ("v 0 0 0\nf 1 1 /2", "a.obj:2: '' is not a whole number"),
             ("f 1.5 1 1", "a.obj:1: '1.5' is not a whole number"),
+            ("v 0 0 0\nf 1 \\\n\n\\\n1", "a.obj:2: a face of 2 vertices"),
         ] {
             let error = read(text.as_bytes(), "a.obj").unwrap_err();
             assert!(error.to_string().starts_with(expected), "{error}");

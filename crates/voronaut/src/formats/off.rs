@@ -1,14 +1,15 @@
 //! Geomview's `.off` in text form.
 
+use super::cutting::cut;
 use super::words::{At, Row, Rows, Shortest, Word, error_at, number, shortened, whole};
 use crate::error::Result;
 use crate::mesh::Mesh;
 use std::io::{self, BufRead, Write};
 
-/// Reads an `.off` text: vertices, and faces cut into fans around their first vertex.
+/// Reads an `.off` text: vertices, and faces, cut along diagonals that suit them, quadrilaterals along the better one.
 ///
 /// The head may be `OFF` or, with more columns, `COFF`, `NOFF` and their like, or missing; what follows the coordinates and
-/// the faces' vertices on their rows (colours, normals) is passed over. Labels are 0. Memory follows the text, never a
+/// the faces' vertices on their rows (colours, normals) is passed over; a row may go on below. Labels are 0. Memory follows the text, never a
 /// count written in it.
 ///
 /// # Errors
@@ -25,8 +26,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
     let mut polygon = Vec::new();
     for at in At::rows("the faces", faces) {
         read_face(&mut rows, at, vertices, &mut polygon)?;
-        let fan = polygon[1..].windows(2).map(|pair| [polygon[0], pair[0], pair[1]]);
-        mesh.triangles.extend(fan);
+        cut(&mesh.points, &polygon, &mut mesh.triangles);
     }
     if let Some(row) = rows.next()? {
         let what = "more rows than the counts in the file announce";
@@ -81,33 +81,40 @@ fn counts<'w>(place: &str, line: usize, mut words: impl Iterator<Item = Word<'w>
 
 fn read_vertex(rows: &mut Rows<'_>, at: At<'_>) -> Result<[f64; 3]> {
     let place = rows.place();
-    let row = next_row(rows, at)?;
-    let mut words = row.words();
-    let mut point = [0.0; 3];
-    for coordinate in &mut point {
-        *coordinate = number(place, word(place, row.line, words.next(), at)?, at)?;
+    let (mut point, mut known) = ([0.0; 3], 0);
+    while known < 3 {
+        for word in next_row(rows, at)?.words().take(3 - known) {
+            point[known] = number(place, word, at)?;
+            known += 1;
+        }
     }
     Ok(point)
 }
 
 fn read_face(rows: &mut Rows<'_>, at: At<'_>, vertices: u64, polygon: &mut Vec<u32>) -> Result<()> {
     let place = rows.place();
-    let row = next_row(rows, at)?;
-    let mut words = row.words();
-    let mut next = || word(place, row.line, words.next(), at);
-    let corners: u64 = whole(place, next()?, at)?;
-    if corners < 3 {
-        let what = format!("a face of {corners} vertices ({at})");
-        return Err(error_at(place, row.line, what, "a face needs three vertices or more"));
-    }
+    let mut corners = None;
     polygon.clear();
-    for _ in 0..corners {
-        let vertex: u32 = whole(place, next()?, at)?;
-        if u64::from(vertex) >= vertices {
-            let what = format!("vertex {vertex} does not exist: the file announces {vertices} ({at})");
-            return Err(error_at(place, row.line, what, "number from 0, and below the count of vertices"));
+    while corners.is_none_or(|corners| (polygon.len() as u64) < corners) {
+        let row = next_row(rows, at)?;
+        let mut words = row.words();
+        let count = match corners {
+            Some(count) => count,
+            None => whole(place, word(place, row.line, words.next(), at)?, at)?,
+        };
+        if count < 3 {
+            let what = format!("a face of {count} vertices ({at})");
+            return Err(error_at(place, row.line, what, "a face needs three vertices or more"));
         }
-        polygon.push(vertex);
+        corners = Some(count);
+        for word in words.take((count - polygon.len() as u64) as usize) {
+            let vertex: u32 = whole(place, word, at)?;
+            if u64::from(vertex) >= vertices {
+                let what = format!("vertex {vertex} does not exist: the file announces {vertices} ({at})");
+                return Err(error_at(place, row.line, what, "number from 0, and below the count of vertices"));
+            }
+            polygon.push(vertex);
+        }
     }
     Ok(())
 }
@@ -135,6 +142,7 @@ mod tests {
             "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 255 0 0\n",
             "COFF 4 1 5 # counts\n\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 0 0 0 0\n0 1 0 9 9 9 9\n4 0 1 2 3",
             "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n",
+            "OFF\n4 1 0\n0 0 0\n1\n0 0\n1 1 0\n0 1 0\n4\n0 \n1\n2 3 255\n",
         ] {
             let mesh = read(text.as_bytes(), "a.off").unwrap();
             assert_eq!(mesh.points[2].map(f64::to_bits), [1.0_f64, 1.0, 0.0].map(f64::to_bits));
@@ -164,12 +172,12 @@ mod tests {
             ("OFF BINARY\n", "a.off:1: 'BINARY' is not a whole number"),
             ("OFF\n3", "a.off:2: the row ends too early (the head of the file)"),
             ("OFF\n9000000000000000000 1 0\n0 0 0", "a.off:3: the text ends in row 2 of 9000000000000000000 of the v"),
-            ("OFF\n1 1 0\n0 0\n", "a.off:3: the row ends too early (row 1 of 1 of the vertices)"),
+            ("OFF\n1 1 0\n0 0\n", "a.off:3: the text ends in row 1 of 1 of the vertices"),
             ("OFF\n1 1 0\n0 0 inf\n", "a.off:3: 'inf' is not a finite number (row 1 of 1 of the vertices)"),
             ("OFF\n1 1 0\n0 0 0\n2 0 0", "a.off:4: a face of 2 vertices (row 1 of 1 of the faces)"),
             ("OFF\n1 1 0\n0 0 0\n3 0 0 1", "a.off:4: vertex 1 does not exist: the file announces 1"),
             ("OFF\n1 1 0\n0 0 0\n3 0 0 -1", "a.off:4: '-1' is out of range"),
-            ("OFF\n1 1 0\n0 0 0\n4000000000 0 0 0", "a.off:4: the row ends too early (row 1 of 1 of the faces)"),
+            ("OFF\n1 1 0\n0 0 0\n4000000000 0 0 0", "a.off:4: the text ends in row 1 of 1 of the faces"),
             ("OFF\n1 1 0\n0 0 0\n3 0 0 0\n1 1 1\n", "a.off:5: more rows than the counts in the file announce"),
             ("OFF\n1 2 0\n0 0 0\n3 0 0 0", "a.off:4: the text ends in row 2 of 2 of the faces"),
         ] {

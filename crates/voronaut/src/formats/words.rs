@@ -23,6 +23,8 @@ pub(super) struct Rows<'a> {
     buffer: Vec<u8>,
     /// Whether the row in the buffer was looked at but not taken.
     is_ahead: bool,
+    /// First words of rows that may be in any encoding.
+    naming: &'static [&'static str],
 }
 
 /// The words of a text, one after the other, whatever the lines they stand on.
@@ -114,7 +116,13 @@ pub(super) fn shortened(word: &str) -> String {
 impl<'a> Rows<'a> {
     /// All rows of a text that messages call `place`; a byte order mark is no part of it.
     pub(super) fn new(source: impl BufRead + 'a, place: &'a str) -> Self {
-        Self { source: Box::new(source), place, line: 0, buffer: Vec::new(), is_ahead: false }
+        Self { source: Box::new(source), place, line: 0, buffer: Vec::new(), is_ahead: false, naming: &[] }
+    }
+
+    /// As [`Rows::new`]; rows that begin with one of these words may be in any encoding, and characters that are not UTF-8 are
+    /// replaced there.
+    pub(super) fn with_names(source: impl BufRead + 'a, place: &'a str, naming: &'static [&'static str]) -> Self {
+        Self { naming, ..Self::new(source, place) }
     }
 
     /// What messages call the text.
@@ -188,10 +196,13 @@ impl<'a> Rows<'a> {
         if let Some(end) = self.buffer.iter().position(|&byte| byte == b'#') {
             self.buffer.truncate(end);
         }
-        if let Err(error) = std::str::from_utf8(&self.buffer) {
+        let Err(error) = std::str::from_utf8(&self.buffer) else { return Ok(read > 0) };
+        let first = self.buffer.split(|&byte| is_space(byte)).find(|word| !word.is_empty());
+        if !self.naming.iter().any(|name| first == Some(name.as_bytes())) {
             let what = format!("not a text in UTF-8 (byte {} of the line)", error.valid_up_to() + 1);
             return Err(error_at(self.place, self.line, what, "save the file as UTF-8 text; it seems to be binary"));
         }
+        self.buffer = String::from_utf8_lossy(&self.buffer).into_owned().into_bytes();
         Ok(read > 0)
     }
 }

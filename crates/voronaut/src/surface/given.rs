@@ -28,26 +28,26 @@ impl Given {
         Ok(Self::read_with(spec, edge, RepairOptions::default())?.0)
     }
 
-    /// As [`Given::read`], and surfaces in files are mended as the options say, with what was mended.
+    /// As [`Given::read`], and surfaces in files are mended as the options say, with what was mended, and what readers left out.
     ///
     /// # Errors
     /// As for [`Given::read`].
     pub fn read_with(spec: &str, edge: Option<f64>, options: RepairOptions) -> Result<(Self, Mended)> {
         let surface = || read_with(spec, edge, options).map(|(input, mended)| (Self::Surface(input), mended));
-        let plane = || Ok((Self::Plane(Domain::read(spec)?), Mended::default()));
+        let plane = |notes: &[String]| Ok((Self::Plane(Domain::read(spec)?), Mended::default().with_notes(notes)));
         let name = spec.split(':').next().unwrap_or_default().trim();
         let path = Path::new(spec);
         let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
         match ending.as_deref() {
             _ if ["sphere", "torus", "chair", "implicit"].contains(&name) => surface(),
-            _ if ["rect", "disk"].contains(&name) => plane(),
-            Some("geojson" | "json" | "poly") => plane(),
+            _ if ["rect", "disk"].contains(&name) => plane(&[]),
+            Some("geojson" | "json" | "poly") => plane(&[]),
             _ if Format::of_ending(path).is_some_and(Format::may_be_planar) => {
-                let mesh = formats::read(path)?.mesh;
-                if mesh.triangles.is_empty() || mesh.is_planar() {
-                    return plane();
+                let document = formats::read(path)?;
+                if document.mesh.triangles.is_empty() || document.mesh.is_planar() {
+                    return plane(&document.notes);
                 }
-                let (surface, mended) = of_file(spec, &mesh, options)?;
+                let (surface, mended) = of_file(spec, &document, options)?;
                 Ok((Self::Surface(Input::new(surface, None)), mended))
             }
             _ if Format::of_ending(path).is_some() => surface(),

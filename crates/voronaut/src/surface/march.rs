@@ -3,6 +3,7 @@
 
 use super::implicit::{Pins, project_pinned};
 use super::remesh::remesh;
+use super::sheets::demand_one_sheet;
 use super::tetrahedra::{Crossings, Grid};
 use super::{Implicit, Surface};
 use crate::error::{Error, Result};
@@ -34,7 +35,8 @@ const ROOT_STEPS: usize = 200;
 /// the box's diagonal.
 ///
 /// # Errors
-/// [`Error::Domain`] of an empty box or edge length, where f has no zero on the grid, is not a number, or jumps across zero;
+/// [`Error::Domain`] of an empty box or edge length, where f has no zero on the grid, is not a number, or jumps across zero, and where
+/// sheets of f = 0 cross in a line;
 /// [`Error::Limit`] of a grid of more than 5e7 points, or more than 1e7 vertices.
 pub fn mesh_implicit(f: &dyn Implicit, bounds: Aabb3, edge: Option<f64>) -> Result<Surface> {
     let extent = bounds.extent();
@@ -55,6 +57,8 @@ pub fn mesh_implicit(f: &dyn Implicit, bounds: Aabb3, edge: Option<f64>) -> Resu
     let [least, most] = grid.range();
     let largest = most.max(-least);
     let zeros: Vec<f64> = edges.map(|&[a, b]| zero(f, &grid, [a, b], largest)).collect::<Result<_>>()?;
+    let on_surface: Vec<Point3> = crossings.edges.iter().zip(&zeros).map(|(edge, &t)| grid.between(*edge, t)).collect();
+    demand_one_sheet(f, &on_surface, grid.step(), bounds)?;
     let tolerance = TOLERANCE * bounds.diagonal();
     let assembled = |near| Surface::new(&assemble(f, &grid, &crossings, &zeros, near, tolerance)?);
     // Moving grid vertices may pinch what is thinner than the grid; without that the mesh is always a surface.
@@ -102,7 +106,7 @@ fn assemble(
     near: f64,
     tolerance: f64,
 ) -> Result<Mesh> {
-    let at = |c: usize| grid.position(crossings.edges[c][0]).lerp(grid.position(crossings.edges[c][1]), zeros[c]);
+    let at = |c: usize| grid.between(crossings.edges[c], zeros[c]);
     let sides = |c: usize| crossings.edges[c].map(|end| grid.sides(end));
     let pins = |[a, b]: [[i8; 3]; 2]| [0, 1, 2].map(|i| a[i] != 0 && a[i] == b[i]);
     // Where Newton's method starts, and where else if that fails; it leaves no side of the box.

@@ -11,6 +11,7 @@
 //! | `input` | a surface with its equation, if it has one; how points come onto it |
 //! | `chart`, `chord` | a part of a surface seen as a part of the plane; the way over a chord |
 //! | `implicit`, `march` | surfaces f(x, y, z) = 0: derivatives, projection, a first mesh by marching tetrahedra |
+//! | `sheets` | lines in which sheets of f = 0 meet |
 //! | `level`, `remesh` | a triangulation on f = 0; better triangles for it, as fine as its curvature asks for |
 //! | `shapes`, `read` | spheres, tori, files: what users write for a surface |
 //! | `given` | a planar domain or a surface: what users write for either |
@@ -35,6 +36,7 @@ mod read;
 mod remesh;
 mod repair;
 mod shapes;
+mod sheets;
 mod tetrahedra;
 
 pub use chart::{Chart, STEEPEST};

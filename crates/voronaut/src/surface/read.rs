@@ -4,9 +4,8 @@ use super::shapes::{CHAIR, chair, sphere, torus};
 use super::{Input, Mended, RepairOptions, Surface, mesh_implicit, repaired};
 use crate::domain::read_numbers;
 use crate::error::{Error, Result};
-use crate::formats::{self, Format};
+use crate::formats::{self, Document, Format};
 use crate::geometry::{Aabb3, Point3};
-use crate::mesh::Mesh;
 use crate::metric::{Expression, Variables};
 use std::path::Path;
 
@@ -29,7 +28,7 @@ pub fn read(spec: &str, edge: Option<f64>) -> Result<Input> {
 /// [`Error::Domain`] of what makes no surface; [`Error::Limit`] of too many triangles.
 pub fn read_with(spec: &str, edge: Option<f64>, options: RepairOptions) -> Result<(Input, Mended)> {
     if Format::of_ending(Path::new(spec)).is_some() && !is_shape(spec) {
-        let (surface, mended) = of_file(spec, &formats::read(Path::new(spec))?.mesh, options)?;
+        let (surface, mended) = of_file(spec, &formats::read(Path::new(spec))?, options)?;
         return Ok((Input::new(surface, None), mended));
     }
     Ok((read_shape(spec, edge)?, Mended::default()))
@@ -86,12 +85,13 @@ fn read_implicit(spec: &str, rest: &str, edge: Option<f64>) -> Result<Input> {
 /// What users write for a surface.
 pub const WRITTEN: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl";
 
-/// The surface of a file's mesh, and what was mended of it; errors name the file.
+/// The surface of a file's mesh, and what was mended of it or left out by its reader; errors name the file.
 ///
 /// # Errors
 /// As for [`read_with`] of what makes no surface.
-pub fn of_file(file: &str, mesh: &Mesh, options: RepairOptions) -> Result<(Surface, Mended)> {
-    let made = repaired(mesh, options).and_then(|(mesh, mended)| Ok((Surface::new(&mesh)?, mended)));
+pub fn of_file(file: &str, document: &Document, options: RepairOptions) -> Result<(Surface, Mended)> {
+    let made = repaired(&document.mesh, options)
+        .and_then(|(mesh, mended)| Ok((Surface::new(&mesh)?, mended.with_notes(&document.notes))));
     made.map_err(|error| match error {
         Error::Domain { what, place, help } => Error::Domain { what, place: format!("{file}, {place}"), help },
         other => other,
@@ -229,8 +229,8 @@ mod tests {
         #[test]
         fn no_file_makes_a_reader_panic(text in soup()) {
             let bytes = text.as_bytes();
-            let ply = ply::read(bytes, "a").map(|document| document.mesh);
-            let found = [obj::read(bytes, "a"), off::read(bytes, "a"), ply, stl::read(bytes, "a")];
+            let [obj, ply] = [obj::read(bytes, "a"), ply::read(bytes, "a")].map(|found| found.map(|found| found.mesh));
+            let found = [obj, off::read(bytes, "a"), ply, stl::read(bytes, "a")];
             for mesh in found.iter().flatten() {
                 let _ = repaired(mesh, RepairOptions { repair: true });
             }

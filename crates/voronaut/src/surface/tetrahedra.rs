@@ -75,6 +75,11 @@ impl Grid {
         self.min + Vector3::new(self.step.x * i as f64, self.step.y * j as f64, self.step.z * k as f64)
     }
 
+    /// A point of the edge between two grid vertices, at a part of its length.
+    pub(super) fn between(&self, [a, b]: [usize; 2], t: f64) -> Point3 {
+        self.position(a).lerp(self.position(b), t)
+    }
+
     /// On which sides of the box a vertex is, along each axis: 1 on the upper one, -1 on the lower one, else 0.
     pub(super) fn sides(&self, vertex: usize) -> [i8; 3] {
         let [nx, ny, nz] = self.cubes;

@@ -6,7 +6,7 @@ use voronaut::formats::{Field, Fields, SolutionValues, vtk};
 use voronaut::mesh::Mesh;
 
 pub(crate) fn samples() -> Vec<Sample> {
-    let mut samples = vec![stl(), ply(false), ply(true)];
+    let mut samples = vec![stl(), ply(false), ply(true), strips(false), strips(true)];
     for (version, big) in [(1, false), (2, false), (2, true), (3, true), (4, false), (4, true)] {
         samples.push(Medit::new(version, big).mesh(if version < 3 { 2 } else { 3 }));
         samples.push(Medit::new(version, big).solutions(if version < 3 { 2 } else { 3 }));
@@ -44,6 +44,8 @@ impl Medit {
         });
         self.elements(5, &[[1, 2], [2, 3], [3, 1]]);
         self.elements(6, &[[1, 2, 3], [3, 2, 1]]);
+        self.elements(7, &[[1, 2, 3, 2]]);
+        self.elements(8, &[[1, 2, 3, 1], [3, 2, 1, 3]]);
         self.numbers(13, &[2], REFERENCE);
         self.numbers(15, &[1, 3], REFERENCE);
         // There are as many edges as vertices, but fewer triangles.
@@ -170,6 +172,20 @@ fn ply(big: bool) -> Sample {
     file.i32(3, REFERENCE);
     file.i32(0, REFERENCE);
     file.finish(if big { "big.ply" } else { "little.ply" }, Reader::Ply, 0..4)
+}
+
+fn strips(big: bool) -> Sample {
+    let mut file = Binary::new(big);
+    let order = if big { "big" } else { "little" };
+    file.raw(format!("ply\nformat binary_{order}_endian 1.0\n").as_bytes());
+    file.raw(b"element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n");
+    file.raw(b"property list int int vertex_indices\nend_header\n");
+    file.f32s(&[0.0, 0.0, 0.5, 1.0, 0.0, 0.5, 1.0, 1.0, 0.5, 0.0, 1.0, 0.5]);
+    file.i32(7, COUNT);
+    file.i32s(&[0, 1, 2], REFERENCE);
+    file.i32(-1, None);
+    file.i32s(&[3, 2, 1], REFERENCE);
+    file.finish(if big { "big strips.ply" } else { "little strips.ply" }, Reader::Ply, 0..4)
 }
 
 fn gmsh_2(big: bool) -> Sample {

@@ -4,13 +4,14 @@ use super::groups::{Mark, Marks};
 use super::kinds::{EDGE, Kind, POINT, QUADRANGLE, TRIANGLE};
 use super::reader::{Layout, Reader};
 use crate::error::{Error, Result};
+use crate::formats::cutting::cut;
 use crate::formats::words::At;
 
 /// An element of the file that is in the mesh.
 #[derive(Default)]
 struct Piece {
     code: i32,
-    nodes: [u32; 4],
+    nodes: Corners,
     entity: i32,
     groups: Vec<i32>,
     /// Which of the mesh's vertices, edges or triangles it is, or begins with.
@@ -28,12 +29,24 @@ impl Reader<'_> {
         };
         self.elements = self.index(&tags, "element", "Elements")?;
         if self.foreign.is_empty() {
+            self.take_skin();
             return Ok(());
         }
         let counts: Vec<String> = self.foreign.iter().map(|(name, count)| format!("{count} {name}")).collect();
         let what = format!("{} ({})", counts.join(", "), self.source.place());
         let help = "give a mesh of straight triangles: in Gmsh mesh in 2 dimensions with Mesh.ElementOrder = 1";
         Err(Error::Unsupported { what, help: help.into() })
+    }
+
+    /// Volumes are left out beside triangles; without them the mesh is their outside.
+    fn take_skin(&mut self) {
+        self.notes.extend(self.volumes.note(self.mesh.triangles.len()));
+        if self.mesh.triangles.is_empty() {
+            let skin = self.volumes.skin(&self.mesh.points);
+            let element = |&cell: &u32| self.volume_elements[cell as usize];
+            self.triangle_elements = skin.cells.iter().map(element).collect();
+            (self.mesh.triangles, self.mesh.triangle_labels) = (skin.triangles, skin.labels);
+        }
     }
 
     fn read_elements_2(&mut self) -> Result<Vec<u64>> {
@@ -99,7 +112,7 @@ impl Reader<'_> {
             *last = Piece { code: kind.code, nodes, entity, groups: group.into_iter().collect(), index };
         }
         let (label, marks) = self.groups.of(dimension_of(kind.code), &last.groups, entity);
-        self.label(kind.code, last.index, label, marks);
+        self.label(kind, last.index, label, marks);
         Ok(())
     }
 
@@ -120,7 +133,7 @@ impl Reader<'_> {
                 tags.push(self.tag(at)?);
                 if let Some(nodes) = self.read_corners(kind, at)? {
                     let index = self.add(kind, nodes, tags.len() as u32 - 1);
-                    self.label(kind.code, index, label, marks);
+                    self.label(kind, index, label, marks);
                 }
             }
         }
@@ -136,9 +149,9 @@ impl Reader<'_> {
         })
     }
 
-    /// The nodes of an element; `None` of one that a triangle mesh cannot hold, which is counted.
-    fn read_corners(&mut self, kind: Kind, at: At<'_>) -> Result<Option<[u32; 4]>> {
-        let mut nodes = [0; 4];
+    /// The nodes of an element; `None` of one of which a triangle mesh can hold nothing, which is counted.
+    fn read_corners(&mut self, kind: Kind, at: At<'_>) -> Result<Option<Corners>> {
+        let mut nodes = Corners::default();
         for i in 0..kind.nodes {
             let tag = self.tag(at)?;
             let Some(node) = self.nodes.find(tag) else {
@@ -149,29 +162,31 @@ impl Reader<'_> {
                 *place = node;
             }
         }
-        if kind.is_flat() {
+        if kind.is_flat() || kind.solid().is_some() {
             return Ok(Some(nodes));
         }
         *self.foreign.entry(kind.name).or_default() += 1;
         Ok(None)
     }
 
-    /// Takes an element into the mesh, and gives the number of the vertex, the edge or the first triangle that it is.
-    fn add(&mut self, kind: Kind, [a, b, c, d]: [u32; 4], element: u32) -> u32 {
+    /// Takes an element in, and gives the number of the vertex, the edge, the first triangle or the cell of a volume that it is.
+    fn add(&mut self, kind: Kind, nodes: Corners, element: u32) -> u32 {
+        if let Some(solid) = kind.solid() {
+            self.volumes.push(solid, &nodes[..kind.nodes], 0);
+            self.volume_elements.push(element);
+            return self.volume_elements.len() as u32 - 1;
+        }
         let mesh = &mut self.mesh;
         match kind.code {
-            POINT => a,
+            POINT => nodes[0],
             EDGE => {
-                mesh.edges.push([a, b]);
+                mesh.edges.push([nodes[0], nodes[1]]);
                 mesh.edge_labels.push(0);
                 mesh.edges.len() as u32 - 1
             }
             _ => {
                 let index = mesh.triangles.len();
-                mesh.triangles.push([a, b, c]);
-                if kind.code == QUADRANGLE {
-                    mesh.triangles.push([a, c, d]);
-                }
+                cut(&mesh.points, &nodes[..kind.nodes], &mut mesh.triangles);
                 mesh.triangle_labels.resize(mesh.triangles.len(), 0);
                 self.triangle_elements.resize(mesh.triangles.len(), element);
                 index as u32
@@ -180,7 +195,10 @@ impl Reader<'_> {
     }
 
     /// Labels and marks what [`Reader::add`] gave.
-    fn label(&mut self, code: i32, index: u32, label: i32, marks: Marks) {
+    fn label(&mut self, kind: Kind, index: u32, label: i32, marks: Marks) {
+        if kind.solid().is_some() {
+            return self.volumes.label(index, label);
+        }
         let all_are_corners = !self.groups.have(Mark::Corner);
         let mesh = &mut self.mesh;
         let mark = |list: &mut Vec<u32>, mark| {
@@ -188,7 +206,7 @@ impl Reader<'_> {
                 list.push(index);
             }
         };
-        match code {
+        match kind.code {
             POINT => {
                 mesh.point_labels[index as usize] = label;
                 mark(&mut mesh.corners, Mark::Corner);
@@ -203,7 +221,7 @@ impl Reader<'_> {
                 mark(&mut mesh.required_edges, Mark::RequiredEdge);
             }
             _ => {
-                let count = if code == QUADRANGLE { 2 } else { 1 };
+                let count = if kind.code == QUADRANGLE { 2 } else { 1 };
                 mesh.triangle_labels[index as usize..][..count].fill(label);
                 if marks.contains(Mark::RequiredTriangle) {
                     mesh.required_triangles.extend(index..index + count as u32);
@@ -212,6 +230,9 @@ impl Reader<'_> {
         }
     }
 }
+
+/// The nodes of an element, and zeros behind them: a hexahedron has most.
+type Corners = [u32; 8];
 
 /// An element repeated more often than this is not taken for one in so many groups.
 const MOST_GROUPS: usize = 256;

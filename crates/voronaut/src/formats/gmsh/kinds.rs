@@ -1,5 +1,7 @@
 //! Gmsh's types of elements.
 
+use crate::formats::volumes::Solid;
+
 /// What is read, and written.
 pub(super) const EDGE: i32 = 1;
 pub(super) const TRIANGLE: i32 = 2;
@@ -28,7 +30,16 @@ impl Kind {
     pub(super) fn is_flat(self) -> bool {
         matches!(self.code, EDGE | TRIANGLE | QUADRANGLE | POINT)
     }
+
+    /// What kind of cell such elements are, if they are cells with straight edges.
+    pub(super) fn solid(self) -> Option<Solid> {
+        SOLIDS.iter().find(|(code, _)| *code == self.code).map(|&(_, solid)| solid)
+    }
 }
+
+/// Cells of volumes, of which the outside may be taken.
+const SOLIDS: [(i32, Solid); 4] =
+    [(4, Solid::Tetrahedron), (5, Solid::Hexahedron), (6, Solid::Prism), (7, Solid::Pyramid)];
 
 const CURVED_EDGES: &str = "curved edges";
 const CURVED_TRIANGLES: &str = "curved triangles";

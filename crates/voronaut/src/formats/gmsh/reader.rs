@@ -5,6 +5,7 @@ use super::groups::Groups;
 use super::source::Source;
 use super::tags::Tags;
 use crate::error::{Error, Result};
+use crate::formats::volumes::Volumes;
 use crate::formats::words::{At, shortened};
 use crate::formats::{Document, Fields};
 use crate::mesh::Mesh;
@@ -33,10 +34,14 @@ pub(super) struct Reader<'a> {
     pub(super) elements: Tags,
     /// The element that each triangle comes from, counted in the order of the file.
     pub(super) triangle_elements: Vec<u32>,
-    /// Elements that a triangle mesh cannot hold.
+    pub(super) volumes: Volumes,
+    /// The element that each cell of a volume is.
+    pub(super) volume_elements: Vec<u32>,
+    /// Elements of which a triangle mesh can hold nothing.
     pub(super) foreign: BTreeMap<&'static str, u64>,
     pub(super) mesh: Mesh,
     pub(super) fields: Fields,
+    pub(super) notes: Vec<String>,
 }
 
 /// Sections that are read once; `NodeData` and `ElementData` are read as often as they come, all others are passed over.
@@ -66,9 +71,12 @@ impl<'a> Reader<'a> {
             nodes: Tags::default(),
             elements: Tags::default(),
             triangle_elements: Vec::new(),
+            volumes: Volumes::default(),
+            volume_elements: Vec::new(),
             foreign: BTreeMap::new(),
             mesh: Mesh::default(),
             fields: Fields::default(),
+            notes: Vec::new(),
         })
     }
 
@@ -87,7 +95,7 @@ impl<'a> Reader<'a> {
             list.sort_unstable();
             list.dedup();
         }
-        Ok(Document { mesh: self.mesh, fields: self.fields })
+        Ok(Document { mesh: self.mesh, fields: self.fields, notes: self.notes })
     }
 
     fn read_section(&mut self, section: &str) -> Result<()> {

@@ -86,7 +86,7 @@ fn what_is_written_reads_back() {
         if version == Version::V2_2 {
             (mesh.ridges, mesh.required_edges, mesh.required_triangles) = Default::default();
         }
-        assert_eq!(again, Document { mesh, fields }, "{version:?} {form:?}");
+        assert_eq!(again, Document { fields, ..mesh.into() }, "{version:?} {form:?}");
     }
 }
 
@@ -205,7 +205,7 @@ fn sparse_tags_quadrangles_and_data_of_some() {
                      $ElementData\n1\n\"e\"\n0\n3\n1\n1\n1\n90 5\n$EndElementData\n\
                      $ElementData\n1\n\"edges\"\n0\n3\n1\n1\n1\n2 5\n$EndElementData\n";
     let text = [FOUR_ONE_HEAD, NODES, skipped, ELEMENTS, nodal, elemental].concat();
-    let Document { mesh, fields } = read(text.as_bytes(), "a.msh").unwrap();
+    let Document { mesh, fields, .. } = read(text.as_bytes(), "a.msh").unwrap();
     assert_eq!((mesh.points.len(), mesh.points[2], mesh.points[4]), (5, [1.0, 1.0, 0.0], [8.0, 8.0, 0.0]));
     assert_eq!((mesh.triangles, mesh.triangle_labels), (vec![[0, 1, 2], [0, 2, 3]], vec![5, 5]));
     assert_eq!((mesh.edges, mesh.edge_labels), (vec![[0, 1], [2, 1]], vec![3, 3]));
@@ -213,6 +213,25 @@ fn sparse_tags_quadrangles_and_data_of_some() {
     assert_eq!(fields.vertices[0].values, SolutionValues::Vector { components: 2, numbers });
     let found: Vec<_> = fields.triangles.iter().map(|field| (field.name.as_str(), field.values.row(1))).collect();
     assert_eq!(found, [("e", [4.0].as_slice()), ("e_1", &[5.0])]);
+}
+
+#[test]
+fn volumes_have_their_boundary_where_there_are_no_triangles() {
+    let points = "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 0 -1\n6 9 9 9\n";
+    let head = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n{points}$EndNodes\n$Elements\n");
+    let data = "$ElementData\n1\n\"e\"\n0\n3\n0\n1\n2\n1 0.5\n2 1.5\n$EndElementData\n";
+    let cells = "1 4 2 7 1 1 2 3 4\n2 4 2 3 1 2 1 3 5\n";
+    let found = read(format!("{head}2\n{cells}$EndElements\n{data}").as_bytes(), "a.msh").unwrap();
+    assert_eq!(found.mesh.triangle_labels, [7, 7, 7, 3, 3, 3, 3]);
+    let values = SolutionValues::Scalar(vec![0.5, 0.5, 0.5, 1.5, 1.5, 1.5, 1.5]);
+    assert_eq!((found.mesh.points.len(), &found.fields.triangles[0].values), (6, &values));
+    assert_eq!(found.notes, ["of 2 tetrahedra the boundary was taken, for the file lists no triangles"]);
+    let found = read(format!("{head}3\n{cells}3 2 2 4 1 1 2 3\n$EndElements\n").as_bytes(), "a.msh").unwrap();
+    assert_eq!((found.mesh.triangles, found.mesh.triangle_labels), (vec![[0, 1, 2]], vec![4]));
+    assert_eq!(found.notes, ["2 tetrahedra left out: the surface is the 1 triangle that the file lists"]);
+    let (from, to) = ("2 4 2 3 1 2 1 3 5", "2 4 2 3 1 2 1 3 8");
+    let error = read(format!("{head}2\n{cells}$EndElements\n").replace(from, to).as_bytes(), "a.msh").unwrap_err();
+    assert!(error.to_string().starts_with("a.msh:16: node 8 does not exist"), "{error}");
 }
 
 #[test]
@@ -289,7 +308,7 @@ fn binary_files_of_either_order() {
     for (version, big_endian) in
         [(Version::V4_1, false), (Version::V4_1, true), (Version::V2_2, false), (Version::V2_2, true)]
     {
-        let Document { mesh, fields } = read(binary(version, big_endian).as_slice(), "a.msh").unwrap();
+        let Document { mesh, fields, .. } = read(binary(version, big_endian).as_slice(), "a.msh").unwrap();
         assert_eq!(bits(&mesh)[2], [1e300, 1.0, 1e300].map(f64::to_bits));
         assert_eq!((mesh.triangles, mesh.triangle_labels), (vec![[2, 1, 0]], vec![30]));
         assert_eq!(fields.triangles, [Field { name: "e".into(), values: SolutionValues::Scalar(vec![2.5]) }]);
@@ -333,7 +352,7 @@ fn errors_say_what_and_where() {
         ("90 70 3 10 11", "90 70 3 10 -1", "a.msh:34: '-1' is out of range (row 1 of 3 of Elements)"),
         ("5 10 3", "90 10 3", "a.msh:37: element 90 is there twice (rows 1 and 3 of Elements)"),
         ("1 3 1 2\n2 70", "1 3 99 2\n2 70", "not supported: elements of type 99 (the head of Elements; a.msh:35)"),
-        ("2 9 3 1", "3 9 4 1", "not supported: 1 tetrahedra (a.msh:37)"),
+        ("2 9 3 1\n90 70 3 10 11", "2 9 8 1\n90 70 3 10", "not supported: 1 curved edges (a.msh:37)"),
         ("5 10 3", "5 10 3\n6 10 3", "a.msh:38: '6' where $EndElements should be: Elements is longer than announced"),
         ("$EndElements\n", "", "a.msh:37: the file ends without $EndElements"),
         ("$EndElements\n", "$EndElements\njunk", "a.msh:39: 'junk' where a section such as $Nodes should begin"),

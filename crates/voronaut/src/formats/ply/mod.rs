@@ -2,12 +2,14 @@
 
 mod header;
 mod source;
+mod strips;
 
+use super::cutting::Polygons;
 use super::document::distinct_names;
 use super::medit::Form;
 use super::words::{Largest, Shortest};
 use super::{Document, Field, Fields, SolutionValues};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::mesh::Mesh;
 use header::{Element, Header, Kind, Property, Shape};
 use source::Source;
@@ -16,21 +18,21 @@ use std::io::{self, BufRead, Write};
 /// Reads a `.ply` file.
 ///
 /// Kept are `x`, `y`, `z` and `label` of the element `vertex`; the lists `vertex_indices` (or `vertex_index`) of the element `face`,
-/// cut into fans around their first vertex, with `label`; `vertex1`, `vertex2` and `label` of the element `edge`. Other properties of
+/// cut along diagonals that suit them, with `label`; the lists of the element `tristrips`, in which -1 ends a strip; `vertex1`, `vertex2` and `label` of the element `edge`. Other properties of
 /// vertices that are one number each are fields, but for normals and colours; of faces they are, where all
 /// faces are triangles. All else is passed over. Memory follows the file, never a count written in it.
 ///
 /// # Errors
 ///
-/// [`Error::Parse`] with the line (in the head and in text) or the byte of what is not as announced: a head that makes no
-/// sense, a file cut off or too long, a coordinate or a field that is not finite, a face of fewer than three vertices, a vertex that
-/// does not exist. [`Error::Unsupported`] of triangle strips. [`Error::Io`] of a file that cannot be read.
+/// [`Error::Parse`](crate::Error::Parse) with the line (in the head and in text) or the byte of what is not as announced: a head that
+/// makes no sense, a file cut off or too long, a coordinate or a field that is not finite, a face of fewer than three vertices, a
+/// vertex that does not exist. [`Error::Io`](crate::Error::Io) of a file that cannot be read.
 pub fn read(mut source: impl BufRead, place: &str) -> Result<Document> {
     let header = Header::read(&mut source, place)?;
     let mut source = Source::new(&header, source, place);
     let mut reader = Reader::default();
     for element in &header.elements {
-        reader.read_element(element, &mut source, place)?;
+        reader.read_element(element, &mut source)?;
     }
     source.finish()?;
     if !header.elements.iter().any(|element| element.name == "vertex") {
@@ -130,6 +132,7 @@ enum Role {
     End(usize),
     Label,
     Vertices,
+    Strips,
     Field(usize),
     None,
 }
@@ -137,17 +140,14 @@ enum Role {
 #[derive(Default)]
 struct Reader {
     mesh: Mesh,
+    polygons: Polygons,
     vertex_fields: Vec<(String, Vec<f64>)>,
     face_fields: Vec<(String, Vec<f64>)>,
     largest: Largest,
 }
 
 impl Reader {
-    fn read_element(&mut self, element: &Element, source: &mut Source<'_>, place: &str) -> Result<()> {
-        if element.name == "tristrips" && element.count > 0 {
-            let what = format!("triangle strips ({place})");
-            return Err(Error::Unsupported { what, help: "save the faces one by one, as element face".into() });
-        }
+    fn read_element(&mut self, element: &Element, source: &mut Source<'_>) -> Result<()> {
         if element.properties.is_empty() {
             // Nothing to read, however many there are.
             return Ok(());
@@ -169,6 +169,7 @@ impl Reader {
         let name = property.name.as_str();
         let fields = match (element, property.shape) {
             ("face", Shape::List(..)) if header::VERTEX_LISTS.contains(&name) => return Role::Vertices,
+            ("tristrips", Shape::List(..)) if header::VERTEX_LISTS.contains(&name) => return Role::Strips,
             (_, Shape::List(..)) => return Role::None,
             ("vertex" | "face" | "edge", _) if name == "label" => return Role::Label,
             ("vertex", _) => &mut self.vertex_fields,
@@ -192,6 +193,7 @@ impl Reader {
         let (mut point, mut ends, mut label) = ([f64::NAN; 3], [None; 2], 0);
         for (property, &role) in element.properties.iter().zip(roles) {
             match (property.shape, role) {
+                (Shape::List(counts, kind), Role::Strips) => self.read_strips(source, counts, kind)?,
                 (Shape::List(counts, kind), _) => {
                     let list = self.read_list(source, counts, kind, role == Role::Vertices)?;
                     if role == Role::Vertices {
@@ -206,7 +208,7 @@ impl Reader {
                 (Shape::Scalar(kind), Role::Field(field)) => {
                     self.push_value(element, field, source.number(kind)?, source)?;
                 }
-                (Shape::Scalar(kind), Role::None | Role::Vertices) => source.pass(kind)?,
+                (Shape::Scalar(kind), Role::None | Role::Vertices | Role::Strips) => source.pass(kind)?,
             }
         }
         match element.name.as_str() {
@@ -217,7 +219,7 @@ impl Reader {
                 self.mesh.points.push(point);
                 self.mesh.point_labels.push(label);
             }
-            "face" => self.mesh.triangle_labels.resize(self.mesh.triangles.len(), label),
+            "face" => self.polygons.label(label),
             "edge" => {
                 let [Some(a), Some(b)] = ends else {
                     return Err(source.error("an edge without its ends", "write the properties vertex1 and vertex2"));
@@ -244,34 +246,32 @@ impl Reader {
             let what = format!("a face of {} vertices", polygon.len());
             return Err(source.error(&what, "a face needs three vertices or more"));
         }
-        self.mesh.triangles.extend(polygon[1..].windows(2).map(|pair| [polygon[0], pair[0], pair[1]]));
+        self.polygons.push(polygon);
         Ok(())
     }
 
     /// Faces may stand before the vertices: whether these exist is known at the end.
     fn finish(mut self, source: &Source<'_>) -> Result<Document> {
-        let [count, triangles] = [self.mesh.points.len(), self.mesh.triangles.len()];
+        let count = self.mesh.points.len();
         if let Some((number, position)) = self.largest.beyond(count) {
             let what = format!("vertex {} does not exist: the file lists {count}, from 0", number - 1);
             return Err(source.error_at(position, what, "check the faces and edges, and that the file is whole"));
         }
+        (self.mesh.triangles, self.mesh.triangle_labels) = self.polygons.cut(&self.mesh.points);
+        let triangles = self.mesh.triangles.len();
         // Fields of triangles are those of faces only where each face is one.
         self.face_fields.retain(|(_, values)| values.len() == triangles);
         let fields = |fields: Vec<(String, Vec<f64>)>| {
             fields.into_iter().map(|(name, values)| Field { name, values: SolutionValues::Scalar(values) }).collect()
         };
         let fields = Fields { vertices: fields(self.vertex_fields), triangles: fields(self.face_fields) };
-        Ok(Document { mesh: self.mesh, fields })
+        Ok(Document { mesh: self.mesh, fields, notes: Vec::new() })
     }
 
     /// The vertices in a list; the entries of lists that nobody needs are passed over.
     fn read_list(&mut self, source: &mut Source<'_>, counts: Kind, kind: Kind, keep: bool) -> Result<Vec<u32>> {
-        let length = source.number(counts)?;
-        if length.is_nan() || length < 0.0 || length.fract() != 0.0 {
-            return Err(source.error(&format!("a list of {length} entries"), "lists begin with their length"));
-        }
         let mut list = Vec::new();
-        for _ in 0..length as u64 {
+        for _ in 0..read_length(source, counts)? {
             let value = source.number(kind)?;
             if keep {
                 list.push(self.vertex(value, source)?);
@@ -288,6 +288,15 @@ impl Reader {
         }
         Err(source.error(&format!("vertex {value} does not exist"), "number vertices from 0"))
     }
+}
+
+/// How many entries a list has.
+fn read_length(source: &mut Source<'_>, counts: Kind) -> Result<u64> {
+    let length = source.number(counts)?;
+    if length.is_nan() || length < 0.0 || length.fract() != 0.0 {
+        return Err(source.error(&format!("a list of {length} entries"), "lists begin with their length"));
+    }
+    Ok(length as u64)
 }
 
 fn whole_label(value: f64, source: &Source<'_>) -> Result<i32> {
@@ -361,7 +370,7 @@ mod tests {
         let field = |name: &str, values: Vec<f64>| Field { name: name.into(), values: SolutionValues::Scalar(values) };
         let vertices = vec![field("u", vec![0.1, 0.2, -1e99]), field("h", vec![1.0; 3])];
         let fields = Fields { vertices, triangles: vec![field("error", vec![0.5, 1.5])] };
-        let document = Document { mesh, fields };
+        let document = Document { fields, ..mesh.into() };
         let mut out = Vec::new();
         for form in [Form::Text, Form::Binary] {
             out.clear();
@@ -475,7 +484,5 @@ mod tests {
             assert!(message.starts_with(expected), "{message}");
         }
         assert!(message(b"ply\nformat ascii 1.0\n\xff\nend_header\n").starts_with("a.ply:3: the head is no text"));
-        let bytes = b"ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
-        assert_eq!(message(bytes), "not supported: triangle strips (a.ply)");
     }
 }

@@ -13,15 +13,20 @@ use crate::mesh::Mesh;
 /// # Errors
 /// As of [`super::read`].
 pub(super) fn assemble(grid: Grid<'_>) -> Result<Document> {
-    let mut assembly =
-        Assembly { head: grid.head, mesh: Mesh::default(), vertices: Joined::default(), triangles: Joined::default() };
+    let mut assembly = Assembly {
+        head: grid.head,
+        mesh: Mesh::default(),
+        vertices: Joined::default(),
+        triangles: Joined::default(),
+        notes: Vec::new(),
+    };
     for piece in grid.pieces {
         assembly.append(piece)?;
     }
-    let Assembly { mesh, vertices, triangles, .. } = assembly;
+    let Assembly { mesh, vertices, triangles, notes, .. } = assembly;
     let is_planar = mesh.is_planar();
     let fields = Fields { vertices: vertices.finish(is_planar), triangles: triangles.finish(is_planar) };
-    Ok(Document { mesh, fields })
+    Ok(Document { mesh, fields, notes })
 }
 
 struct Assembly<'a> {
@@ -29,6 +34,7 @@ struct Assembly<'a> {
     mesh: Mesh,
     vertices: Joined,
     triangles: Joined,
+    notes: Vec<String>,
 }
 
 impl Assembly<'_> {
@@ -45,9 +51,6 @@ impl Assembly<'_> {
             self.read_cells(&mut piece, section, count, cells, &mut shapes)?;
             cells += count as u32;
         }
-        for vertex in shapes.triangles.as_flattened_mut().iter_mut().chain(shapes.edges.as_flattened_mut()) {
-            *vertex += base as u32;
-        }
         let (mut of_points, mut of_cells) = (Vec::new(), Vec::new());
         for (section, array) in std::mem::take(&mut piece.arrays) {
             match section {
@@ -59,7 +62,12 @@ impl Assembly<'_> {
         }
         let count = piece.points;
         self.append_point_data(Data::read(of_points, count, self.head)?, base, count as usize)?;
-        self.append_cells(Data::read(of_cells, cells.into(), self.head)?, shapes, cells as usize)
+        let data = Data::read(of_cells, cells.into(), self.head)?;
+        self.notes.extend(shapes.take_skin(&self.mesh.points[base..], |cell| data.label(cell)));
+        for vertex in shapes.triangles.as_flattened_mut().iter_mut().chain(shapes.edges.as_flattened_mut()) {
+            *vertex += base as u32;
+        }
+        self.append_cells(data, shapes, cells as usize)
     }
 
     fn append_points(&mut self, piece: &mut Piece) -> Result<()> {
@@ -116,10 +124,11 @@ impl Assembly<'_> {
             start = end;
         }
         let vertices = self.read_connectivity(piece, section, start as u64)?;
+        let points = &self.mesh.points[self.mesh.points.len() - piece.points as usize..];
         let mut start = 0;
         for (i, (&end, kind)) in ends.iter().zip(kinds).enumerate() {
             let cell = &vertices[start..end as usize];
-            let pushed = to.push(first + i as u32, kind, cell);
+            let pushed = to.push(first + i as u32, kind, cell, points);
             pushed.map_err(|right| fault(format!("gives cell {} {} vertices: {right}", i + 1, cell.len())))?;
             start = end as usize;
         }

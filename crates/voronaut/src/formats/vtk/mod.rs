@@ -2,8 +2,10 @@
 //!
 //! # What a file holds, and what becomes of it
 //!
-//! - Cells: triangles. Quadrilaterals, polygons and triangle strips are cut into triangles. Lines and polylines are the mesh's
-//!   labelled edges. Vertices are passed over. All others are refused.
+//! - Cells: triangles. Quadrilaterals, polygons and triangle strips are cut into triangles, the former along diagonals that suit
+//!   them. Lines and polylines are the mesh's labelled edges. Vertices are passed over. Tetrahedra, voxels, hexahedra, wedges and
+//!   pyramids are left out with a note; the mesh of a piece that has no flat cells is their boundary, with their labels and values, and
+//!   where labels differ what is between them. All others are refused.
 //! - Labels: whole numbers on points and cells that are called `label`, `medit:ref`, `gmsh:physical`, `CellEntityIds`, `Material` or
 //!   `ref`; where there are several, the first of this list.
 //! - Marks: numbers of type `UInt8` called `corner` and `required` on points, `required` and `ridge` on cells; not 0 where it is so.

@@ -43,7 +43,7 @@ fn sample(z: f64) -> Document {
     if z == 0.0 {
         vertices.push(field("metric", SolutionValues::Tensor([0.0, 1.0, 2.0, 3.0].map(plane).to_vec())));
     }
-    Document { mesh, fields: Fields { vertices, triangles } }
+    Document { fields: Fields { vertices, triangles }, ..mesh.into() }
 }
 
 type Writer = fn(&Mesh, &Fields, &mut dyn Write) -> io::Result<()>;
@@ -121,7 +121,7 @@ fn files_of_vtk_and_meshio_in_all_encodings() {
         ("meshio's zlib", include_bytes!("../../../tests/data/vtk/meshio-zlib.vtu")),
     ];
     for (name, file) in files {
-        let Document { mesh, fields } = read(file, name).unwrap();
+        let Document { mesh, fields, .. } = read(file, name).unwrap();
         let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.5, 0.0]];
         assert_eq!(mesh.points, points, "{name}");
         assert_eq!(mesh.point_labels, [1, 2, 3, 4, 5]);
@@ -137,6 +137,25 @@ fn files_of_vtk_and_meshio_in_all_encodings() {
         let expected = Field { name: "e".into(), values: SolutionValues::Scalar(vec![0.25, 0.25, 0.5]) };
         assert_eq!(fields.triangles, [expected]);
     }
+}
+
+#[test]
+fn volumes_have_their_boundary_where_there_are_no_triangles() {
+    let read_cells = |connectivity: &str, offsets: &str, types: &str, labels: &str| {
+        let piece = format!(
+            r#"<Piece NumberOfPoints="5" NumberOfCells="2"><Points><DataArray type="Float64" NumberOfComponents="3">
+            0 0 0 1 0 0 0 1 0 0 0 1 0 0 -1</DataArray></Points><CellData><DataArray type="Int32" Name="label">{labels}</DataArray>
+            </CellData><Cells><DataArray type="Int32" Name="connectivity">{connectivity}</DataArray><DataArray type="Int32"
+            Name="offsets">{offsets}</DataArray><DataArray type="UInt8" Name="types">{types}</DataArray></Cells></Piece>"#
+        );
+        read(file(&piece).as_bytes(), "a").unwrap()
+    };
+    let found = read_cells("0 1 2 3 0 1 2 4", "4 8", "10 10", "7 3");
+    assert_eq!(found.mesh.triangle_labels, [7, 7, 7, 3, 3, 3, 3]);
+    assert_eq!(found.notes, ["of 2 tetrahedra the boundary was taken, for the file lists no triangles"]);
+    let found = read_cells("0 1 2 3 0 1 2", "4 7", "10 5", "7 3");
+    assert_eq!((found.mesh.triangles, found.mesh.triangle_labels), (vec![[0, 1, 2]], vec![3]));
+    assert_eq!(found.notes, ["1 tetrahedron left out: the surface is the 1 triangle that the file lists"]);
 }
 
 const PIECE: &str = r#"<Piece NumberOfPoints="3" NumberOfCells="2"><PointData>
@@ -238,7 +257,8 @@ fn damaged_files() {
         ("3 5<", "2 5<", "array 'offsets' gives cell 1 2 vertices: a triangle has 3"),
         (">3 5<", ">3<", "array 'offsets' holds 1 numbers, where 2 are needed"),
         ("5 3<", "5<", "array 'types' holds 1 numbers, where 2 are needed"),
-        ("5 3<", "10 10<", "not supported: 2 cells of type 10 (tetrahedra) in a"),
+        ("5 3<", "10 10<", "array 'offsets' gives cell 1 3 vertices: a tetrahedron has 4"),
+        ("5 3<", "42 42<", "not supported: 2 cells of type 42 (polyhedra) in a"),
         ("5 3<", "22 3<", "not supported: 1 cells of type 22 (of higher order or unknown) in a"),
         ("\"UInt8\" Name=\"types\"", "\"Float32\" Name=\"types\"", "array 'types' holds floating point numbers"),
         ("Name=\"types\"", "Name=\"kinds\"", "Cells of a piece without an array 'types' of one component"),

@@ -2,11 +2,13 @@
 
 use serde::Serialize;
 
-/// What was found wrong with a mesh of a surface, and mended or left.
+/// What was found wrong with a mesh of a surface, and mended or left; and what the reader of its file says.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
 pub struct Mended {
     mends: Vec<Mend>,
+    #[serde(skip)]
+    notes: Vec<String>,
 }
 
 /// One kind of damage.
@@ -125,13 +127,19 @@ impl Mended {
         self.mends.iter().find(|mend| mend.kind == kind).map_or(0, |mend| mend.count)
     }
 
-    /// One sentence for each kind, for users: "3 duplicate triangles were dropped (first: triangle 7)".
+    /// As it is, behind what the reader of the file says.
+    pub(in crate::surface) fn with_notes(self, notes: &[String]) -> Self {
+        Self { notes: notes.to_vec(), ..self }
+    }
+
+    /// What the reader of the file says, and one sentence for each kind, for users: "3 duplicate triangles were dropped (first: triangle 7)".
     pub fn sentences(&self) -> impl Iterator<Item = String> + '_ {
-        self.mends.iter().map(|mend| {
+        let mends = self.mends.iter().map(|mend| {
             let [one, many] = mend.kind.words();
             let first = mend.places.first().map(|place| format!(" (first: {place})")).unwrap_or_default();
             format!("{} {}{first}", mend.count, if mend.count == 1 { one } else { many })
-        })
+        });
+        self.notes.iter().cloned().chain(mends)
     }
 
     /// What was found in another look, at what the first one made.
