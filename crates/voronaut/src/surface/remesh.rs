@@ -285,6 +285,7 @@ mod tests {
     use super::*;
     use crate::metric::{Expression, Variables};
     use crate::surface::{curvatures, mesh_implicit};
+    use crate::test_cases::cases;
     use proptest::prelude::*;
 
     /// A surface of known topology: f in the turned coordinates u, v, w (in units of `scale`).
@@ -299,7 +300,7 @@ mod tests {
         Case { equation, euler, borders: 0 }
     }
 
-    fn cases() -> impl Strategy<Value = Case> {
+    fn surfaces() -> impl Strategy<Value = Case> {
         let size = || 0.25..1.0_f64;
         let ball = |x: f64| format!("exp(-4*((u-{x})^2+v^2+w^2))");
         prop_oneof![
@@ -367,10 +368,10 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(48))]
+        #![proptest_config(cases(48))]
         #[test]
         fn smooth_surfaces_come_out_well(
-            case in cases(), angles_of in [0.0..0.4_f64, 0.0..0.4_f64], exponent in -3..=3_i32, steps in 20.0..32.0_f64,
+            case in surfaces(), angles_of in [0.0..0.4_f64, 0.0..0.4_f64], exponent in -3..=3_i32, steps in 20.0..32.0_f64,
         ) {
             let scale = 10.0_f64.powi(exponent);
             // A closed surface may be turned at will; one that leaves the box leaves it by the same sides.

@@ -4,6 +4,7 @@ use super::mass::{areas, dot};
 use super::*;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::{MetricField, Sampled};
+use crate::test_cases::cases;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
@@ -166,7 +167,7 @@ fn a_refinement_has_the_same_field() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+    #![proptest_config(cases(40))]
 
     #[test]
     fn linear_functions_are_reproduced_and_masses_kept(

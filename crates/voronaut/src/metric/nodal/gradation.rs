@@ -6,8 +6,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Tensor, Vector};
 use crate::mesh::Mesh;
 use crate::metric::neighbours::Neighbours;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use rayon::prelude::*;
 
 /// The metric with sizes that grow slowly: along no edge (p, q) does that at q ask for less than what the one at p has grown to.
 /// What it has grown to is that of mixed space (Alauzet 2010): the size h along each of its axes has become h times
@@ -18,9 +17,10 @@ use std::collections::BinaryHeap;
 /// all sizes grow by ln(b) per Euclidean length, and a metric is soon as isotropic as its least size; with t = 0 all grow by
 /// one factor, and it is as anisotropic as before. Neighbouring edges of a unit mesh then differ by about the factor b.
 ///
-/// Metrics are intersected with what their neighbours have grown to, densest first, until nothing changes any more (by a millionth
-/// of its determinant); so the result is nowhere coarser than what was given, obeys the law along every edge (to a millionth), and
-/// graded again is the same to the bit. A uniform metric stays.
+/// In rounds, all vertices at once, each metric is intersected with what its neighbours' metrics of the round before have grown to
+/// ([`Tensor::intersection_with_all`]), until none of them asks for more, by a millionth, than what is there. So the result is
+/// nowhere coarser than what was given, obeys the law along every edge (to a millionth), and graded again is the same to the bit;
+/// it does not depend on how vertices are numbered or on units, but for rounding. A uniform metric stays.
 ///
 /// # Errors
 /// As of [`Sampled::new`](crate::metric::Sampled::new); [`Error::Parse`] unless the factor is finite and at least 1 (then all that
@@ -34,17 +34,18 @@ pub fn grade(mesh: &Mesh, tensors: &[Tensor], gradation_factor: f64) -> Result<V
 
 /// The exponent t of [`grade`]'s mixed space.
 pub const GRADATION_EXPONENT: f64 = 0.125;
-/// What changes a determinant by a smaller share is no change.
+/// What neighbours ask for and is more than what is there by a smaller share is not asked for.
 const SETTLED: f64 = 1e-6;
-/// Updates per vertex after which something is wrong.
+/// Rounds after which something is wrong, beside those that it takes to get across the mesh.
 const PATIENCE: usize = 200;
+/// A round looks at so many vertices one after the other before threads share them.
+const TOGETHER: usize = 256;
 
 /// The law, and where it holds.
 pub(super) struct Gradation<'a> {
     mesh: &'a Mesh,
     around: Neighbours,
     growth: f64,
-    exponent: f64,
 }
 
 impl<'a> Gradation<'a> {
@@ -55,55 +56,63 @@ impl<'a> Gradation<'a> {
             let help = "1.3 lets edges grow by a third from one to the next; leave it out for no gradation";
             return Err(Error::parse("metric gradation", what, help));
         }
-        let around = Neighbours::of(mesh);
-        Ok(Self { mesh, around, growth: gradation_factor.ln(), exponent: GRADATION_EXPONENT })
+        Ok(Self { mesh, around: Neighbours::of(mesh), growth: gradation_factor.ln() })
     }
 
     /// Grades tensors that are within limits, and leaves them there: limits come first, where both cannot be had.
     pub(super) fn apply(&self, tensors: &mut [Tensor], limits: &Limits) -> Result<()> {
-        let mut queue: BinaryHeap<(u64, Reverse<u32>)> = (0..tensors.len()).map(|v| entry(tensors, v)).collect();
-        let mut is_waiting = vec![true; tensors.len()];
-        let mut left = PATIENCE * tensors.len();
-        while let Some((_, Reverse(v))) = queue.pop() {
-            let v = v as usize;
-            if !std::mem::take(&mut is_waiting[v]) {
-                continue;
-            }
-            left = left.checked_sub(1).ok_or_else(|| unsettled(self.growth))?;
-            let from = Source::new(tensors[v]);
-            for &w in self.around.at(v) {
-                let w = w as usize;
-                let grown =
-                    from.grown(self.mesh.point(w as u32) - self.mesh.point(v as u32), self.growth, self.exponent);
-                if let Some(finer) = raised(tensors[w], grown).map(|m| limits.at(w).clamp(m))
-                    && finer.determinant() > tensors[w].determinant() * (1.0 + SETTLED)
-                {
-                    tensors[w] = finer;
-                    is_waiting[w] = true;
-                    queue.push(entry(tensors, w));
-                }
+        let mut sources: Vec<Source> = tensors.par_iter().map(|&m| Source::new(m)).collect();
+        let mut changed: Vec<u32> = (0..tensors.len() as u32).collect();
+        let mut has_changed = vec![true; tensors.len()];
+        let mut left = tensors.len() * (PATIENCE + 2 * self.around.hops());
+        while !changed.is_empty() {
+            let beside = self.around.of_all(&changed);
+            left = left.checked_sub(beside.len()).ok_or_else(|| unsettled(self.growth))?;
+            let next = |&w: &u32| Some((w, self.finer(w, &sources, &has_changed, limits)?));
+            let finer: Vec<(u32, Source)> = beside.par_iter().with_min_len(TOGETHER).filter_map(next).collect();
+            changed.iter().for_each(|&v| has_changed[v as usize] = false);
+            changed = finer.iter().map(|&(w, _)| w).collect();
+            for (w, source) in finer {
+                sources[w as usize] = source;
+                has_changed[w as usize] = true;
             }
         }
+        tensors.iter_mut().zip(sources).for_each(|(tensor, source)| *tensor = source.tensor);
         Ok(())
+    }
+
+    /// What a vertex becomes beside neighbours that have changed; `None` where that is what it was.
+    fn finer(&self, w: u32, sources: &[Source], has_changed: &[bool], limits: &Limits) -> Option<Source> {
+        let own = sources[w as usize].tensor;
+        let most = own * (1.0 + SETTLED);
+        let mut asked = Vec::new();
+        for &v in self.around.at(w as usize).iter().filter(|&&v| has_changed[v as usize]) {
+            let from = &sources[v as usize];
+            // What is not finer here to begin with is not so when it has grown.
+            if !is_above(own, from.tensor) {
+                let grown = from.grown(self.mesh.point(w) - self.mesh.point(v), self.growth);
+                asked.extend((!is_above(most, grown)).then_some(grown));
+            }
+        }
+        if asked.is_empty() {
+            return None;
+        }
+        let finer = limits.at(w as usize).clamp(own.intersection_with_all(&asked));
+        // Without limits it is: limits may take back what neighbours ask for.
+        let is_finer = finer.determinant() > own.determinant() * (1.0 + 0.5 * SETTLED);
+        is_finer.then(|| Source::new(finer))
     }
 }
 
 fn unsettled(growth: f64) -> Error {
-    let what = format!("gradation by the factor {} does not settle: {PATIENCE} updates per vertex", growth.exp());
+    let what = format!("gradation by the factor {} does not settle: {PATIENCE} rounds and more", growth.exp());
     Error::Limit { what, help: "choose a larger factor, or limit the anisotropy".into() }
 }
 
-/// The densest first: by the finest direction vertices would be visited sixteen times as often. Positive numbers have the order of
-/// their bits.
-fn entry(tensors: &[Tensor], v: usize) -> (u64, Reverse<u32>) {
-    (tensors[v].determinant().to_bits(), Reverse(v as u32))
-}
-
-/// The intersection, where that is not the tensor itself.
-fn raised(tensor: Tensor, by: Tensor) -> Option<Tensor> {
-    let rest = tensor + by * -1.0;
-    let is_above = rest.xx >= 0.0 && rest.yy >= 0.0 && rest.determinant() >= 0.0;
-    (!is_above).then(|| tensor.intersection(by))
+/// Whether one tensor is nowhere smaller than another.
+fn is_above(tensor: Tensor, other: Tensor) -> bool {
+    let rest = tensor + other * -1.0;
+    rest.xx >= 0.0 && rest.yy >= 0.0 && rest.determinant() >= 0.0
 }
 
 /// A tensor that others are measured against.
@@ -119,13 +128,15 @@ impl Source {
         Self { tensor, axis: e.axis, eigenvalues: [e.large, e.small] }
     }
 
-    /// What it allows at an offset.
-    fn grown(&self, offset: Vector, growth: f64, exponent: f64) -> Tensor {
-        let all = (growth * self.tensor.length(offset)).ln_1p() * (1.0 - exponent);
+    /// What it allows at an offset. With t an eighth powers are roots, which are faster than logarithms.
+    fn grown(&self, offset: Vector, growth: f64) -> Tensor {
+        const { assert!(GRADATION_EXPONENT == 0.125) };
+        let all = 1.0 + growth * self.tensor.length(offset);
         let distance = growth * offset.norm();
         let [large, small] = self.eigenvalues.map(|value| {
-            let own = if exponent > 0.0 { (distance * value.sqrt()).ln_1p() * exponent } else { 0.0 };
-            value * (-2.0 * (own + all)).exp()
+            let own = 1.0 + distance * value.sqrt();
+            // own^(-2 t) all^(-2 (1 - t))
+            value * (all / own).sqrt().sqrt() / (all * all)
         });
         Tensor::from_axis(self.axis, large, small)
     }
@@ -135,6 +146,7 @@ impl Source {
 mod tests {
     use super::super::test_meshes::{grid, tensors_at};
     use super::*;
+    use crate::test_cases::cases;
     use proptest::prelude::*;
 
     /// The smallest of (v' M v) / (v' N v) over all v.
@@ -163,7 +175,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(cases(64))]
         #[test]
         fn the_law_holds_along_every_edge(given in metrics(64), factor in 1.01..3.0_f64) {
             let mesh = grid(7, 0.4);
