@@ -104,7 +104,12 @@ fn around(disks: &[Disk]) -> Disk {
         if left_out(&far) <= ROUNDING * best.radius {
             break;
         }
-        (best, deciding) = joined(&deciding, far);
+        let (next, decide) = joined(&deciding, far);
+        if best.lifted([far].into_iter()).determinant() <= next.determinant() {
+            // What was left out is rounding, and lifting below is all it takes.
+            break;
+        }
+        (best, deciding) = (next, decide);
     }
     best.lifted(disks.iter().copied())
 }
@@ -121,9 +126,9 @@ fn joined(others: &[Disk], new: Disk) -> (Disk, Vec<Disk>) {
     };
     offer(new, &[new]);
     for (i, &a) in others.iter().enumerate() {
-        offer(around_two(new, a), &[new, a]);
+        offer(around_two([new, a]), &[new, a]);
         for &b in &others[i + 1..] {
-            around_three(new, [a, b]).into_iter().for_each(|disk| offer(disk, &[new, a, b]));
+            around_three([new, a, b]).into_iter().for_each(|disk| offer(disk, &[new, a, b]));
         }
     }
     (best.0, best.1)
@@ -146,16 +151,28 @@ impl Seen {
         Self { offset, larger, power: (distance - larger) * (distance + larger) }
     }
 
+    fn reach(self, direction: Vector) -> f64 {
+        self.offset.dot(direction) - self.larger
+    }
+
     /// By how much the disk is larger that touches the first in this direction, and this one.
     fn swelling(self, direction: Vector) -> f64 {
-        0.5 * self.power / (self.offset.dot(direction) - self.larger)
+        0.5 * self.power / self.reach(direction)
     }
+}
+
+/// The disks from the largest to the smallest: what touches the largest is little larger than that where the others are almost
+/// within it, so that little comes of rounding.
+fn largest_first<const N: usize>(mut disks: [Disk; N]) -> [Disk; N] {
+    disks.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+    disks
 }
 
 /// The disk of least determinant around two, neither within the other. Of those that touch the first in the direction n it has
 /// the determinant d + power r, d that of the first and r = (radius - centre . n) / (offset . n - larger); so r is the least number
 /// for which (centre + r offset) . n = radius + r larger has a solution n of length one.
-fn around_two(first: Disk, second: Disk) -> Disk {
+fn around_two(disks: [Disk; 2]) -> Disk {
+    let [first, second] = largest_first(disks);
     let seen = Seen::from(first, second);
     let half = first.radius * seen.larger - first.centre.dot(seen.offset);
     let determinant = first.determinant().max(0.0);
@@ -168,8 +185,9 @@ fn around_two(first: Disk, second: Disk) -> Disk {
 }
 
 /// The disks that three disks touch from inside: both lead to an equation that is linear in the direction from the first.
-fn around_three(first: Disk, others: [Disk; 2]) -> [Disk; 2] {
-    let [a, b] = others.map(|other| Seen::from(first, other));
+fn around_three(disks: [Disk; 3]) -> [Disk; 2] {
+    let [first, second, third] = largest_first(disks);
+    let [a, b] = [second, third].map(|other| Seen::from(first, other));
     let g = a.offset * b.power - b.offset * a.power;
     let along = b.power * a.larger - a.power * b.larger;
     let length = g.norm();
@@ -178,8 +196,7 @@ fn around_three(first: Disk, others: [Disk; 2]) -> [Disk; 2] {
     [sine, -sine].map(|sine| {
         let direction = unit * cosine + unit.perpendicular() * sine;
         // The one whose denominator is not near zero.
-        let reach = |seen: Seen| seen.offset.dot(direction) - seen.larger;
-        let clearer = if reach(a).abs() * b.power > reach(b).abs() * a.power { a } else { b };
+        let clearer = if a.reach(direction).abs() > b.reach(direction).abs() { a } else { b };
         first.swollen(direction, clearer.swelling(direction))
     })
 }
@@ -306,6 +323,21 @@ mod tests {
         // Folded pairwise it is turned towards the last, and has the larger determinant.
         let folded = strips[0].intersection(strips[1]).intersection(strips[2]);
         assert!(folded.determinant() > 1.01 * 81.0, "{folded:?}");
+    }
+
+    /// What is above both but for rounding comes back but for rounding, whichever of its borders the others touch.
+    #[test]
+    fn what_is_above_all_but_for_rounding_stays() {
+        let a = Tensor::new(4.423_757_466_347_492, 3.763_395_793_429_007_4, 3.273_834_080_057_199);
+        let b = Tensor::new(13.207_671_018_643_483, 10.144_881_017_853_209, 7.848_624_399_985_023);
+        let both = a.intersection(b);
+        assert!(apart(both.intersection_with_all(&[a, b]), both) < 1e-12);
+        assert!(apart(a.intersection_with_all(&[both, b]), both) < 1e-12);
+        // And what is above both but for a little more than that.
+        for share in [1e-13, 1e-11, 1e-9, 1e-7] {
+            let less = both * (1.0 - share);
+            assert!(apart(less.intersection_with_all(&[a, b]), both) < 2.0 * share + 1e-12);
+        }
     }
 
     #[test]

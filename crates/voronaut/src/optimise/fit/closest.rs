@@ -85,6 +85,19 @@ impl<'a> Sheet<'a> {
                 at.flat_map(|(_, v)| self.topology.star(v)).for_each(&mut look);
             }
             if best.face == from {
+                self.topology.corners(from).into_iter().flat_map(|v| self.topology.star(v)).for_each(|h| {
+                    let [a, b, c] = self.triangle(h.face());
+                    let n = (b - a).cross(c - a);
+                    let s = n.dot(p - a);
+                    if s * s < best.square() * n.dot(n) {
+                        let foot = self.foot(h.face(), p);
+                        if h.face() != from && foot.square() < best.square() {
+                            best = foot;
+                        }
+                    }
+                });
+            }
+            if best.face == from {
                 return best;
             }
         }
