@@ -128,7 +128,9 @@ fn joined(others: &[Disk], new: Disk) -> (Disk, Vec<Disk>) {
     for (i, &a) in others.iter().enumerate() {
         offer(around_two([new, a]), &[new, a]);
         for &b in &others[i + 1..] {
-            around_three([new, a, b]).into_iter().for_each(|disk| offer(disk, &[new, a, b]));
+            for disk in around_three([new, a, b]) {
+                offer(disk, &[new, a, b]);
+            }
         }
     }
     (best.0, best.1)

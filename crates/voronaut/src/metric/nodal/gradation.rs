@@ -68,12 +68,16 @@ impl<'a> Gradation<'a> {
         let mut is_asking = vec![false; tensors.len()];
         let mut left = tensors.len() * (PATIENCE + 2 * self.around.hops());
         while let Some(asking) = waiting.next() {
-            asking.iter().for_each(|&v| is_asking[v as usize] = true);
+            for &v in &asking {
+                is_asking[v as usize] = true;
+            }
             let beside = self.around.of_all(&asking);
             left = left.checked_sub(beside.len()).ok_or_else(|| unsettled(self.growth))?;
             let next = |&w: &u32| Some((w, self.finer(w, &sources, &is_asking, limits)?));
             let finer: Vec<(u32, Source)> = beside.par_iter().with_min_len(TOGETHER).filter_map(next).collect();
-            asking.iter().for_each(|&v| is_asking[v as usize] = false);
+            for &v in &asking {
+                is_asking[v as usize] = false;
+            }
             for (w, source) in finer {
                 waiting.add(w, source.tensor);
                 sources[w as usize] = source;

@@ -13,7 +13,7 @@ const MOST_LEVELS: f64 = 16_384.0;
 pub(super) struct Waiting {
     densest: f64,
     levels: Vec<Vec<u32>>,
-    is_waiting: Vec<bool>,
+    still_waits: Vec<bool>,
     first: usize,
 }
 
@@ -21,7 +21,7 @@ impl Waiting {
     /// All vertices.
     pub(super) fn all(tensors: &[Tensor]) -> Self {
         let densest = tensors.iter().map(|m| m.determinant()).fold(0.0, f64::max).ln();
-        let mut all = Self { densest, levels: Vec::new(), is_waiting: vec![false; tensors.len()], first: 0 };
+        let mut all = Self { densest, levels: Vec::new(), still_waits: vec![false; tensors.len()], first: 0 };
         tensors.iter().enumerate().for_each(|(v, &tensor)| all.add(v as u32, tensor));
         all
     }
@@ -33,7 +33,7 @@ impl Waiting {
             self.levels.resize_with(level + 1, Vec::new);
         }
         self.levels[level].push(v);
-        self.is_waiting[v as usize] = true;
+        self.still_waits[v as usize] = true;
         self.first = self.first.min(level);
     }
 
@@ -42,7 +42,7 @@ impl Waiting {
         while self.first < self.levels.len() {
             let mut all = std::mem::take(&mut self.levels[self.first]);
             // Those that were taken from a denser level since.
-            all.retain(|&v| std::mem::take(&mut self.is_waiting[v as usize]));
+            all.retain(|&v| std::mem::take(&mut self.still_waits[v as usize]));
             if !all.is_empty() {
                 return Some(all);
             }
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn any_determinant_has_a_level() {
         let sizes = [1e-150, 1e-70, 1.0, 1e70, 1e150];
-        let mut waiting = Waiting::all(&sizes.map(|h| Tensor::isotropic(h)));
+        let mut waiting = Waiting::all(&sizes.map(Tensor::isotropic));
         let all: Vec<u32> = std::iter::from_fn(|| waiting.next()).flatten().collect();
         assert_eq!(all.len(), sizes.len());
     }
