@@ -109,6 +109,9 @@ pub mod realisation;
 pub mod output;
 pub mod recipe;
 
+#[cfg(test)]
+mod test_cases;
+
 pub use error::{Error, Result};
 
 /// The README's examples are tests.

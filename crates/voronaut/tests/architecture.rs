@@ -161,8 +161,11 @@ fn sources() -> Vec<Source> {
         let name = path.strip_prefix(&root).expect("below the root").to_string_lossy().replace('\\', "/");
         let text = fs::read_to_string(&path).expect("a readable source");
         let (code, test_modules) = without_tests(&without_comments(&text));
-        let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
-        test_files.extend(test_modules.iter().map(|module| format!("{folder}/{module}.rs")));
+        // Modules of `a/mod.rs` are in `a/`, those of `a/b.rs` in `a/b/`, those of the crate at the top.
+        let plain = name.trim_end_matches(".rs");
+        let folder =
+            ["mod", "lib"].iter().find_map(|root| plain.strip_suffix(root)).map_or(format!("{plain}/"), String::from);
+        test_files.extend(test_modules.iter().map(|module| format!("{folder}{module}.rs")));
         all.push(Source { name, text, code });
     }
     all.retain(|source| !test_files.contains(&source.name));

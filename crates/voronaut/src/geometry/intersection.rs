@@ -8,7 +8,7 @@ impl Tensor {
     ///
     /// By simultaneous reduction (Alauzet 2010): there is a basis in which both are diagonal, and there the larger
     /// of each pair of entries counts. It is commutative, and goes along with every linear change of coordinates; it is
-    /// not associative. `self` is positive definite; `other` need not be: where it says nothing, `self` counts. Where one
+    /// not associative: of three or more there is [`Tensor::intersection_with_all`]. `self` is positive definite; `other` need not be: where it says nothing, `self` counts. Where one
     /// is above the other everywhere, the answer is that one, bit for bit.
     #[must_use]
     pub fn intersection(self, other: Tensor) -> Tensor {
@@ -50,13 +50,11 @@ mod tests {
         (d.xx.abs() + d.xy.abs() + d.yy.abs()) / size(a)
     }
 
-    /// The smallest of (v' M v) / (v' N v) over all v.
+    /// The smallest of (v' M v) / (v' N v) over all v: the smaller eigenvalue in coordinates in which N is the identity. (Directions
+    /// that are tried one by one miss the one in which thin ellipses touch.)
     fn least_ratio(m: Tensor, n: Tensor) -> f64 {
-        let directions = (0..720).map(|i| f64::from(i) * std::f64::consts::PI / 720.0);
-        directions
-            .map(|t| Vector::new(t.cos(), t.sin()))
-            .map(|v| m.dot(v, v) / n.dot(v, v))
-            .fold(f64::INFINITY, f64::min)
+        let [a, b, c] = n.cholesky();
+        changed(m, [Vector::new(1.0 / a, 0.0), Vector::new(-b / (a * c), 1.0 / c)]).eigen().small
     }
 
     /// F' M F.
@@ -84,11 +82,12 @@ mod tests {
             let m = a.intersection(b);
             // The smallest multiple of the other that is below neither.
             let up = other * (1.0 / least_ratio(other, a).min(least_ratio(other, b)));
-            prop_assert!(up.determinant() >= m.determinant() * (1.0 - 1e-3), "{m:?} {up:?}");
-            // And what is a little less than the intersection in any direction is below one of both.
+            prop_assert!(up.determinant() >= m.determinant() * (1.0 - 1e-8), "{m:?} {up:?}");
+            // And what is a little less than the intersection in any direction is below one of both: the squares of the shares that
+            // the two directions in which it touches have of any other one add up to one or more.
             let e = other.eigen().axis;
             let less = m + Tensor::from_axis(e, 1.0, 0.0) * (-1e-3 * m.dot(e, e));
-            prop_assert!(least_ratio(less, a).min(least_ratio(less, b)) < 1.0 - 1e-10 || !less.is_positive_definite(), "{less:?}");
+            prop_assert!(least_ratio(less, a).min(least_ratio(less, b)) < 1.0 - 4e-4 || !less.is_positive_definite(), "{less:?}");
         }
 
         #[test]

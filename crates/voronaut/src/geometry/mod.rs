@@ -2,6 +2,7 @@
 
 mod intersection;
 mod jet;
+mod joint;
 mod point;
 mod predicates;
 mod quadrature;

@@ -144,6 +144,7 @@ fn pop<N: Number>(stack: &[N; STACK], top: &mut usize) -> N {
 #[expect(clippy::float_cmp, reason = "exact results are the point")]
 mod tests {
     use super::*;
+    use crate::test_cases::cases;
     use proptest::prelude::*;
 
     fn value(text: &str) -> f64 {
@@ -313,7 +314,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(2000))]
+        #![proptest_config(cases(2000))]
         #[test]
         fn what_is_printed_is_what_is_computed(tree in trees()) {
             let (text, truth) = (tree.print(), tree.value());

@@ -138,6 +138,7 @@ fn cast(axis: usize, p: Point3) -> Point {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_cases::cases;
     use proptest::prelude::*;
 
     fn corners(vertices: [u32; 3], points: [[i64; 3]; 3], scale: f64) -> Corners {
@@ -251,7 +252,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(4000))]
+        #![proptest_config(cases(4000))]
         #[test]
         fn random_triangles_on_a_small_grid(
             p in prop::collection::vec(prop::array::uniform3(0_i64..4), 6), exponent in -60..60,

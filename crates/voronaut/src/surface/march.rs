@@ -30,9 +30,9 @@ const ROOT_STEPS: usize = 200;
 /// A mesh of f = 0 within a box, f < 0 behind it. Watertight but where the surface leaves the box: there it has a
 /// border, in the sides of the box. Edges are about `edge` long, by default 0.9 times a 64th of the box's longest side, and
 /// shorter where the surface bends more than 0.4 along them, down to a 32nd of that. Of a smooth surface no triangle is a
-/// needle, or makes more than 45 degrees with the surface at its corners. What is thinner than the grid is lost, or comes
-/// out as it can; so do creases and other singular places. Vertices are on the surface: |f| / |grad f| is at most 1e-12 of
-/// the box's diagonal.
+/// needle, or makes more than 45 degrees with the surface at its corners. What is thinner than the diagonals of the grid's
+/// cubes, 1.93 edges, is lost, or comes out as it can, with needles and edges across it; so do creases and other singular
+/// places. Vertices are on the surface: |f| / |grad f| is at most 1e-12 of the box's diagonal.
 ///
 /// # Errors
 /// [`Error::Domain`] of an empty box or edge length, where f has no zero on the grid, is not a number, or jumps across zero, and where

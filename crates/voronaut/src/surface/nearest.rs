@@ -104,6 +104,7 @@ pub(crate) fn closest_weights([a, b, c]: [Point3; 3], p: Point3) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::surface::torus;
+    use crate::test_cases::cases;
     use proptest::prelude::*;
 
     /// Distance to a triangle by narrowing both of its coordinates: slow, simple, and of other arithmetic.
@@ -121,7 +122,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(cases(64))]
         #[test]
         fn distance_to_one_triangle(q in prop::array::uniform12(-1.0..1.0)) {
             let [a, b, c, p] = [0, 3, 6, 9].map(|i| Point3::new(q[i], q[i + 1], q[i + 2]));

@@ -285,6 +285,7 @@ mod tests {
     use super::*;
     use crate::metric::{Expression, Variables};
     use crate::surface::{curvatures, mesh_implicit};
+    use crate::test_cases::cases;
     use proptest::prelude::*;
 
     /// A surface of known topology: f in the turned coordinates u, v, w (in units of `scale`).
@@ -299,12 +300,14 @@ mod tests {
         Case { equation, euler, borders: 0 }
     }
 
-    fn cases() -> impl Strategy<Value = Case> {
+    fn surfaces() -> impl Strategy<Value = Case> {
         let size = || 0.25..1.0_f64;
         let ball = |x: f64| format!("exp(-4*((u-{x})^2+v^2+w^2))");
         prop_oneof![
             (size(), size(), size()).prop_map(|(a, b, c)| closed(format!("(u/{a})^2+(v/{b})^2+(w/{c})^2-1"), 2)),
-            (0.12..0.4_f64).prop_map(|r| closed(format!("(sqrt(u^2+v^2)-0.7)^2+w^2-{r}^2"), 0)),
+            // Nothing is promised of what is thinner than the diagonals of the grid's cubes, here 3^(1/2) 3 / 20 / 0.9 at most: an
+            // edge from one side of a tube to the other is where slivers come from.
+            (0.145..0.4_f64).prop_map(|r| closed(format!("(sqrt(u^2+v^2)-0.7)^2+w^2-{r}^2"), 0)),
             (0.05..0.4_f64).prop_map(move |x| closed(format!("0.6-{}-{}", ball(x), ball(-x)), 2)),
             (0.75..0.8_f64).prop_map(move |x| closed(format!("0.6-{}-{}", ball(x), ball(-x)), 4)),
             (2.0..6.0_f64).prop_map(|p| closed(format!("sqrt(u^2+0.01)^{p}+sqrt(v^2+0.01)^{p}+w^2-0.8"), 2)),
@@ -367,10 +370,10 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(48))]
+        #![proptest_config(cases(48))]
         #[test]
         fn smooth_surfaces_come_out_well(
-            case in cases(), angles_of in [0.0..0.4_f64, 0.0..0.4_f64], exponent in -3..=3_i32, steps in 20.0..32.0_f64,
+            case in surfaces(), angles_of in [0.0..0.4_f64, 0.0..0.4_f64], exponent in -3..=3_i32, steps in 20.0..32.0_f64,
         ) {
             let scale = 10.0_f64.powi(exponent);
             // A closed surface may be turned at will; one that leaves the box leaves it by the same sides.

@@ -4,6 +4,7 @@ use super::mass::{areas, dot};
 use super::*;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::{MetricField, Sampled};
+use crate::test_cases::cases;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
@@ -107,6 +108,15 @@ fn worst(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
+/// The least of all heights of triangles.
+fn least_height(mesh: &Mesh) -> f64 {
+    let height = |(t, area): (&[u32; 3], f64)| {
+        let [a, b, c] = mesh.corners_of(*t);
+        2.0 * area / a.distance(b).max(b.distance(c)).max(c.distance(a))
+    };
+    mesh.triangles.iter().zip(areas(mesh)).map(height).fold(f64::INFINITY, f64::min)
+}
+
 /// The mass as a share of the mass of magnitudes.
 fn drift(carried: &Carried, mesh: &Mesh) -> f64 {
     let size = areas(mesh).iter().sum::<f64>() * carried.before[0].max.abs().max(carried.before[0].min.abs());
@@ -166,7 +176,7 @@ fn a_refinement_has_the_same_field() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+    #![proptest_config(cases(40))]
 
     #[test]
     fn linear_functions_are_reproduced_and_masses_kept(
@@ -186,11 +196,15 @@ proptest! {
         new.points.iter_mut().for_each(|p| p[0] = p[0].powi(grade));
         let (old, new) = (place(old), place(new));
         let linear = |p: Point| 1.0 + (slope.0 * p.x + slope.1 * p.y) / scale;
+        // Rounded coordinates move the borders of both meshes, and so much of the thinnest triangle there is not covered; that part
+        // of what the function differs by on it is missing from its load.
+        let size = |mesh: &Mesh| mesh.points.as_flattened().iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let rounding = f64::EPSILON * size(&old) / least_height(&old).min(least_height(&new));
         let fields = [sampled(&old, linear), sampled(&old, |p| rough(p) - 0.5), on_triangles(&old, rough)];
         for (i, carry) in ALL.into_iter().enumerate() {
             let (carried, cover) = carry(&old, &new, &fields).unwrap();
             let error = worst(&carried[0].field.values, &sampled(&new, linear).values);
-            prop_assert!(error < 1e-11 / squeeze, "{error}");
+            prop_assert!(error < 1e-13 + rounding, "{error}, {rounding} of rounding");
             prop_assert!(i == 0 || carried.iter().all(|c| drift(c, &new) < 1e-13), "{carried:?}");
             prop_assert_eq!(cover.outside, 0);
             prop_assert!(cover.areas.is_none_or(|s| s.uncovered == 0.0 && s.left == 0.0 && s.overlapped == 0.0), "{cover:?}");

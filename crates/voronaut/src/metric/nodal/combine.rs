@@ -3,14 +3,15 @@
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 
-/// The intersection of metrics at each vertex: nowhere coarser than any of them
-/// ([`Tensor::intersection`]). Of three or more the order matters a little; they are taken as they come.
+/// The intersection of metrics at each vertex: nowhere coarser than any of them, and the coarsest such
+/// ([`Tensor::intersection_with_all`]), in whatever order they come.
 ///
 /// # Errors
 /// [`Error::Metric`] of no metrics, or of different numbers of tensors.
 pub fn intersect(metrics: &[&[Tensor]]) -> Result<Vec<Tensor>> {
     let first = demand_alike(metrics)?;
-    let at = |v: usize| metrics[1..].iter().fold(first[v], |both, metric| both.intersection(metric[v]));
+    let at =
+        |v: usize| first[v].intersection_with_all(&metrics[1..].iter().map(|metric| metric[v]).collect::<Vec<_>>());
     Ok((0..first.len()).map(at).collect())
 }
 
@@ -51,6 +52,7 @@ fn demand_alike<'a>(metrics: &[&'a [Tensor]]) -> Result<&'a [Tensor]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Vector;
 
     const WIDE: [Tensor; 1] = [Tensor::new(1.0, 0.0, 16.0)];
     const TALL: [Tensor; 1] = [Tensor::new(4.0, 0.0, 1.0)];
@@ -67,6 +69,19 @@ mod tests {
         // A quarter of the logarithms of the first: 4^(3/4), 16^(1/4).
         let found = average(&[&WIDE, &TALL], &[0.5, 1.5]).unwrap()[0];
         assert!(close(found, Tensor::new(8_f64.sqrt(), 0.0, 2.0)));
+    }
+
+    /// Three strips, each turned by 60 degrees: by pairs, one after the other, what comes out is turned towards the last.
+    #[test]
+    fn of_three_none_comes_first() {
+        let strip = |i: f64| {
+            let angle = i * std::f64::consts::FRAC_PI_3;
+            [Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), 9.0, 1.0)]
+        };
+        let [a, b, c] = [0.0, 1.0, 2.0].map(strip);
+        for order in [[&a[..], &b, &c], [&b, &a, &c], [&c, &b, &a]] {
+            assert!(close(intersect(&order).unwrap()[0], Tensor::new(9.0, 0.0, 9.0)));
+        }
     }
 
     #[test]

@@ -24,6 +24,7 @@ mod solve;
 mod spd;
 #[cfg(test)]
 pub(super) mod test_meshes;
+mod waiting;
 
 pub use combine::{average, intersect};
 pub use complexity::{complexity, normalise};

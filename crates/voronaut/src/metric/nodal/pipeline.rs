@@ -161,8 +161,8 @@ impl Stage<'_> {
     }
 
     /// What is missing is a factor on the result: above 1, so that the law of the gradation stays, but where limits are in the way.
-    /// Without it the target could not be met: the order in which gradation goes about a metric jumps with the factor of what it
-    /// is given, and with it, by a little, the complexity.
+    /// Without it the target could not be met: the levels by which gradation goes about a metric jump with the factor of what it is
+    /// given, and with them, by a little, the complexity.
     fn lifted(&self, factor: f64, target: f64) -> Result<Outcome> {
         let graded = self.at(factor)?;
         let times = |x: f64| restrict(&graded.iter().map(|&m| m * x.exp()).collect::<Vec<_>>(), self.limits);

@@ -3,6 +3,7 @@
 use super::super::nodal::test_meshes::grid;
 use super::*;
 use crate::geometry::{Point, Vector};
+use crate::test_cases::cases;
 use proptest::prelude::*;
 
 /// A function with its second derivatives.
@@ -95,7 +96,7 @@ fn quadratic([a, b, c]: [f64; 3]) -> impl Fn(Vector) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(cases(48))]
 
     /// On the image of a square under any map with stretches of up to a thousand, in units of any size.
     #[test]

@@ -64,30 +64,49 @@ impl<'a> Sheet<'a> {
         Foot { face, weights, offset: p - Point3::weighted(corners, weights) }
     }
 
-    /// A closest point among the triangles around: from triangle to triangle while that comes nearer. From inside a triangle
-    /// its neighbours are looked at, from its border those that share an end of the side. It may miss what is near across
-    /// a gap, so the distance is an upper bound.
+    /// A closest point among the triangles around: from triangle to triangle while that comes nearer, until none comes nearer that
+    /// shares a corner with the one that was reached. Beyond a gap or a bulge there may be nearer ones, so the distance is an upper
+    /// bound.
     pub(super) fn descend(&self, start: FaceId, p: Point3) -> Foot {
         let mut best = self.foot(start, p);
-        loop {
-            let from = best.face;
-            let reached = best;
-            let mut look = |h: HalfEdge| {
-                let foot = self.foot(h.face(), p);
-                if h.face() != from && foot.square() < best.square() {
-                    best = foot;
-                }
-            };
-            if reached.is_inside() {
-                from.half_edges().into_iter().filter_map(|h| self.topology.twin(h)).for_each(&mut look);
-            } else {
-                let at = reached.held_by().zip(self.topology.corners(from)).filter(|&(held, _)| held);
-                at.flat_map(|(_, v)| self.topology.star(v)).for_each(&mut look);
-            }
-            if best.face == from {
-                return best;
+        while let Some(nearer) = self.nearer_beside(&best, p).or_else(|| self.nearer_around(&best, p)) {
+            best = nearer;
+        }
+        best
+    }
+
+    /// The nearest, if nearer, across the sides of a triangle that holds its foot inside, or of those that share an end of the side
+    /// that holds it: mostly the way goes on there.
+    fn nearer_beside(&self, foot: &Foot, p: Point3) -> Option<Foot> {
+        let t = self.topology;
+        if foot.is_inside() {
+            return self.nearer(foot, p, foot.face.half_edges().into_iter().filter_map(|h| t.twin(h)));
+        }
+        let held = foot.held_by().zip(t.corners(foot.face)).filter(|&(held, _)| held);
+        self.nearer(foot, p, held.flat_map(|(_, v)| t.star(v)))
+    }
+
+    /// The nearest, if nearer, of all triangles that share a corner with one. Those whose planes are farther than the foot are not.
+    fn nearer_around(&self, foot: &Foot, p: Point3) -> Option<Foot> {
+        let may_be = |h: &HalfEdge| {
+            let corners = self.triangle(h.face());
+            let normal = area_vector(corners);
+            let height = normal.dot(p - corners[0]);
+            height * height < foot.square() * normal.dot(normal)
+        };
+        let around = self.topology.corners(foot.face).into_iter().flat_map(|v| self.topology.star(v));
+        self.nearer(foot, p, around.filter(may_be))
+    }
+
+    fn nearer(&self, foot: &Foot, p: Point3, among: impl Iterator<Item = HalfEdge>) -> Option<Foot> {
+        let mut best = *foot;
+        for h in among.filter(|h| h.face() != foot.face) {
+            let other = self.foot(h.face(), p);
+            if other.square() < best.square() {
+                best = other;
             }
         }
+        (best.face != foot.face).then_some(best)
     }
 
     /// The unit direction along which the distance of a foot changes most: the normal inside a triangle, at its border from
@@ -126,6 +145,7 @@ pub(super) fn area_vector([a, b, c]: [Point3; 3]) -> Vector3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Mesh;
     use crate::surface::{Nearest, torus};
     use proptest::prelude::*;
     use std::f64::consts::TAU;
@@ -151,6 +171,27 @@ mod tests {
             let far = sheet.descend(FaceId(face), p);
             prop_assert!(far.square().sqrt() > truth.distance - 1e-12);
             prop_assert!(far.square() <= sheet.foot(FaceId(face), p).square());
+            let around = surface.topology().corners(far.face).into_iter().flat_map(|v| surface.topology().star(v));
+            for h in around {
+                prop_assert!(sheet.foot(h.face(), p).square() >= far.square() * (1.0 - 1e-12));
+            }
         }
+    }
+
+    /// A fan with one triangle that leans over the one below the point: they share the corner, and what is between them is farther.
+    #[test]
+    fn a_triangle_that_only_shares_a_corner_is_found() {
+        let rim =
+            [[1.0, 0.0, 0.0], [0.5, 0.9, 0.0], [-0.5, 0.9, 0.0], [0.0, 0.4, 0.9], [0.4, 0.0, 0.9], [0.5, -0.9, 0.0]];
+        let points = std::iter::once([0.0; 3]).chain(rim).collect();
+        let triangles = (0..6).map(|i| [0, i + 1, (i + 1) % 6 + 1]).collect();
+        let surface = Surface::new(&Mesh { points, triangles, ..Mesh::default() }).unwrap();
+        let sheet = Sheet::of(&surface);
+        let p = Point3::new(0.17, 0.1, 0.5);
+        let below = FaceId(0);
+        assert!(sheet.foot(below, p).is_inside());
+        assert!(sheet.nearer_beside(&sheet.foot(below, p), p).is_none());
+        let truth = Nearest::new(&surface).closest(&surface, p).unwrap().distance;
+        assert!((sheet.descend(below, p).square().sqrt() - truth).abs() < 1e-14 && truth < 0.1);
     }
 }

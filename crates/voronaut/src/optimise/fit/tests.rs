@@ -4,6 +4,7 @@ use super::{FitOptions, Fitted, fit};
 use crate::geometry::{Point3, Vector3};
 use crate::mesh::Mesh;
 use crate::surface::{Nearest, Surface, sphere, torus};
+use crate::test_cases::cases;
 use proptest::prelude::*;
 
 fn fitted(mesh: &Mesh, surface: &Surface) -> Fitted {
@@ -218,7 +219,7 @@ fn pierced(mesh: &Mesh) -> Vec<(usize, usize)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(cases(96))]
     #[test]
     fn nothing_comes_to_harm(
         push in prop::collection::vec(prop::array::uniform3(-1.0..1.0), 115),

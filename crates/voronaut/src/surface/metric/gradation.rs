@@ -70,6 +70,7 @@ mod tests {
     use super::*;
     use crate::mesh::Mesh;
     use crate::surface::torus;
+    use crate::test_cases::cases;
     use proptest::prelude::*;
 
     /// The torus, its triangles apart but for their positions.
@@ -81,7 +82,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(24))]
+        #![proptest_config(cases(24))]
         #[test]
         fn sizes_obey_the_law_and_no_more(seed in 0..1_000_000_u32, hgrad in 1.0..3.0_f64, spread in 0.1..6.0_f64) {
             let surface = torus(2.0, 0.7, 0.4).unwrap();

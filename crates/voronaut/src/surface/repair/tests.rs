@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::geometry::Point3;
+use crate::test_cases::cases;
 use proptest::prelude::*;
 
 /// The cube of side one, each face n x n squares of two triangles, turned outwards.
@@ -337,7 +338,7 @@ fn what_a_cut_leaves_behind_is_found_in_another_look() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
+    #![proptest_config(cases(512))]
     /// Whatever the triangles of a few vertices at a few places, there is a surface or an error, and repair refuses nothing
     /// but what has no area.
     #[test]

@@ -5,6 +5,7 @@ use super::super::{Limit, grade, normalise};
 use super::*;
 use crate::geometry::Vector;
 use crate::metric::Bounds;
+use crate::test_cases::cases;
 use proptest::prelude::*;
 
 /// Across the line y = x / 3 + 0.4 a layer of this width.
@@ -31,7 +32,7 @@ fn limits() -> impl Strategy<Value = Limits> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(96))]
+    #![proptest_config(cases(96))]
     #[test]
     fn the_complexity_is_met_within_limits_and_graded(
         [a, b] in [hessians(64), hessians(64)],
