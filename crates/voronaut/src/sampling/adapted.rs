@@ -19,6 +19,8 @@ const UPRIGHT: f64 = 0.5;
 const FAIR: f64 = 0.2;
 /// Passes over all that may be contracted, at most: what one does makes room for the next.
 const PASSES: usize = 8;
+/// Vertices with more triangles together are not made one: all would gather at a few.
+const CROWD: usize = 24;
 /// Vertices at most, as a multiple of those wanted and of those of the surface together.
 const MOST: usize = 8;
 
@@ -246,7 +248,7 @@ impl<'a> Work<'a> {
             let before = self.topology.vertex_count();
             let edges: Vec<HalfEdge> = self.topology.edges().collect();
             let mut queue: BinaryHeap<Reverse<(u64, VertexId, VertexId)>> = BinaryHeap::new();
-            queue.extend(edges.into_iter().map(|h| self.entry(h)));
+            queue.extend(edges.into_iter().map(|h| self.ends(h)).map(|[v, w]| self.entry(v, w)));
             while self.topology.vertex_count() > count
                 && let Some(Reverse((_, v, w))) = queue.pop()
             {
@@ -256,9 +258,10 @@ impl<'a> Work<'a> {
                 else {
                     continue;
                 };
+                let link = [v, w].map(|v| self.link(v)).concat();
                 if let Some(kept) = self.contract(h, manner) {
-                    let around: Vec<HalfEdge> = self.topology.star(kept).collect();
-                    queue.extend(around.into_iter().flat_map(|h| [h, h.prev()]).map(|h| self.entry(h)));
+                    let others = link.into_iter().flatten().filter(|&v| v != kept && self.topology.is_vertex(v));
+                    queue.extend(others.map(|other| self.entry(kept, other)));
                 }
             }
             if self.topology.vertex_count() == before || self.topology.vertex_count() <= count {
@@ -268,8 +271,7 @@ impl<'a> Work<'a> {
     }
 
     /// Positive numbers have the order of their bits.
-    fn entry(&self, h: HalfEdge) -> Reverse<(u64, VertexId, VertexId)> {
-        let [v, w] = self.ends(h);
+    fn entry(&self, v: VertexId, w: VertexId) -> Reverse<(u64, VertexId, VertexId)> {
         Reverse((self.length(v, w).to_bits(), v.min(w), v.max(w)))
     }
 
@@ -279,7 +281,8 @@ impl<'a> Work<'a> {
         let t = &self.topology;
         let [v, w] = self.ends(h);
         let may_go = |v: VertexId| self.at(v).may_go() && !t.is_border_vertex(v);
-        if !(may_go(v) || may_go(w)) || !t.can_collapse(h) {
+        let is_crowded = t.star(v).count() + t.star(w).count() > CROWD;
+        if is_crowded || !(may_go(v) || may_go(w)) || !t.can_collapse(h) {
             return None;
         }
         let ways = [(v, w), (w, v)].into_iter().filter(|&(gone, _)| may_go(gone));
@@ -306,6 +309,12 @@ impl<'a> Work<'a> {
             worst = worst.min(quality);
         }
         Some(worst)
+    }
+
+    /// The edges opposite of a vertex.
+    fn link(&self, v: VertexId) -> Vec<[VertexId; 2]> {
+        let t = &self.topology;
+        t.star(v).map(|h| [t.target(h), t.apex(h)]).collect()
     }
 
     /// The triangles around a vertex that stay when it goes to another's place, with that one first.
