@@ -25,7 +25,7 @@ const GAIN: f64 = 1.2;
 /// Where the number of vertices misses what was asked for by a greater share, a note says why.
 const COUNT_TOLERANCE: f64 = 0.01;
 /// Where a mesh is none, seeds are put and it is made anew, so often at most;
-const RESEEDINGS: usize = 2;
+const RESEEDINGS: usize = 5;
 /// then it is made of the surface's own triangles, of which more and more are kept, so often at most,
 const ADAPTATIONS: usize = 6;
 /// the last times without relaxation.

@@ -169,34 +169,38 @@ impl<'a> Work<'a> {
         [self.topology.origin(h), self.topology.target(h)]
     }
 
-    /// Splits edges inside patches in the middle, the longest first, until none is too long. As no edge was flipped, all that is cut
-    /// lies in the surface's own triangles.
+    /// Splits edges inside patches in the middle until none is too long that is the longest of both of its triangles (then
+    /// angles stay bounded, and it ends). As no edge was flipped, all that is cut lies in the surface's own triangles.
     fn split_long(&mut self, most: usize) {
         loop {
-            let is_inside = |h: &HalfEdge| self.topology.twin(*h).is_some();
-            let length = |h: HalfEdge| {
-                let [v, w] = self.ends(h);
-                self.length(v, w)
-            };
-            let inside = self.topology.edges().filter(is_inside).map(|h| (length(h), h));
-            let mut long: Vec<(f64, HalfEdge)> = inside.filter(|(length, _)| *length > LONG).collect();
-            long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+            let edges: Vec<HalfEdge> = self.topology.edges().collect();
             let before = self.topology.vertex_count();
-            for (_, h) in long {
-                // Splits beside it may have cut this slot's edge, or put another one there.
-                let [v, w] = self.ends(h);
-                if self.topology.twin(h).is_none() || self.length(v, w) <= LONG || self.topology.vertex_count() >= most
-                {
-                    continue;
+            for h in edges {
+                if self.topology.vertex_count() < most && self.is_long(h) {
+                    self.split_in_the_middle(h);
                 }
-                let [p, q] = [v, w].map(|v| self.at(v).place);
-                let Some(place) = self.input.lift(&p, p.position.lerp(q.position, 0.5)) else { continue };
-                let vertex = self.vertex(place);
-                self.split(h, vertex);
             }
             if self.topology.vertex_count() == before {
                 return;
             }
+        }
+    }
+
+    fn is_long(&self, h: HalfEdge) -> bool {
+        let of = |h: HalfEdge| {
+            let [v, w] = self.ends(h);
+            self.length(v, w)
+        };
+        let Some(twin) = self.topology.twin(h) else { return false };
+        let length = of(h);
+        length > LONG && [h.next(), h.prev(), twin.next(), twin.prev()].into_iter().all(|other| of(other) <= length)
+    }
+
+    fn split_in_the_middle(&mut self, h: HalfEdge) {
+        let [p, q] = self.ends(h).map(|v| self.at(v).place);
+        if let Some(place) = self.input.lift(&p, p.position.lerp(q.position, 0.5)) {
+            let vertex = self.vertex(place);
+            self.split(h, vertex);
         }
     }
 
