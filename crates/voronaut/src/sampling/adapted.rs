@@ -19,6 +19,8 @@ const UPRIGHT: f64 = 0.5;
 const FAIR: f64 = 0.2;
 /// Passes over all that may be contracted, at most: what one does makes room for the next.
 const PASSES: usize = 8;
+/// Passes over all edges that are too long, at most: each halves them.
+const HALVINGS: usize = 40;
 /// Vertices with more triangles together are not made one: all would gather at a few.
 const CROWD: usize = 24;
 /// Vertices at most, as a multiple of those wanted and of those of the surface together.
@@ -169,13 +171,17 @@ impl<'a> Work<'a> {
         [self.topology.origin(h), self.topology.target(h)]
     }
 
-    /// Splits edges inside patches in the middle until none is too long that is the longest of both of its triangles (then
-    /// angles stay bounded, and it ends). As no edge was flipped, all that is cut lies in the surface's own triangles.
+    /// Splits edges inside patches in the middle, the longest first, until none is too long, but for those of triangles with a
+    /// longer edge on the border: as that stays, fans of ever smaller triangles would grow on it. As no edge was flipped, all that is
+    /// cut lies in the surface's own triangles.
     fn split_long(&mut self, most: usize) {
-        loop {
-            let edges: Vec<HalfEdge> = self.topology.edges().collect();
+        for _ in 0..HALVINGS {
+            let long = self.topology.edges().filter(|&h| self.is_long(h)).map(|h| (self.length_of(h), h));
+            let mut long: Vec<(f64, HalfEdge)> = long.collect();
+            long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
             let before = self.topology.vertex_count();
-            for h in edges {
+            for (_, h) in long {
+                // Splits beside it may have put another edge into this slot.
                 if self.topology.vertex_count() < most && self.is_long(h) {
                     self.split_in_the_middle(h);
                 }
@@ -186,14 +192,17 @@ impl<'a> Work<'a> {
         }
     }
 
+    fn length_of(&self, h: HalfEdge) -> f64 {
+        let [v, w] = self.ends(h);
+        self.length(v, w)
+    }
+
     fn is_long(&self, h: HalfEdge) -> bool {
-        let of = |h: HalfEdge| {
-            let [v, w] = self.ends(h);
-            self.length(v, w)
-        };
-        let Some(twin) = self.topology.twin(h) else { return false };
-        let length = of(h);
-        length > LONG && [h.next(), h.prev(), twin.next(), twin.prev()].into_iter().all(|other| of(other) <= length)
+        let t = &self.topology;
+        let Some(twin) = t.twin(h) else { return false };
+        let length = self.length_of(h);
+        let is_longest = |other: HalfEdge| t.twin(other).is_some() || self.length_of(other) <= length;
+        length > LONG && [h.next(), h.prev(), twin.next(), twin.prev()].into_iter().all(is_longest)
     }
 
     fn split_in_the_middle(&mut self, h: HalfEdge) {
