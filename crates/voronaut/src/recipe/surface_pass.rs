@@ -17,7 +17,8 @@ use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
 use crate::sampling::{
-    Adapted, FeatureSeeds, MeasuredCurves, Seeded, Wanted, adapted, seed_surface, triangulated, triangulated_upright,
+    ALL_VERTICES, Adapted, FeatureSeeds, MeasuredCurves, Seeded, Wanted, adapted, seed_surface, triangulated,
+    triangulated_upright,
 };
 use crate::surface::metric::{Constant, SurfaceMetric};
 use crate::surface::{Input, Place, Surface, Whole};
@@ -32,7 +33,7 @@ const PARTS: usize = 4;
 /// Triangles that are mended in the end, as a share of all, and how often.
 const MENDED_SHARE: f64 = 0.02;
 const MENDINGS: usize = 3;
-/// Curves on which contraction ends too early get twice as many seeds, so often at most.
+/// Curves on which contraction ends too early are kept as they are, and the rest is tried again, so often at most.
 const DENSER: usize = 12;
 /// Seeds put into faulty triangles are this far from their corners and from each other, as a share of the longest edge.
 const APART: f64 = 0.1;
@@ -148,7 +149,7 @@ impl<'a> Setting<'a> {
         Ok(Pass { input: self.input, dual, features, owners, added: 0, relaxed, settled: Settled::default() })
     }
 
-    /// Where vertices of a curve cannot be contracted without folds, it gets twice as many seeds.
+    /// Where vertices of a curve cannot be contracted without folds, all of them become seeds.
     fn started_from_surface(
         &self,
         count: usize,
@@ -169,7 +170,7 @@ impl<'a> Setting<'a> {
             let stuck: BTreeSet<VertexId> = adapted.stuck.iter().map(|&v| self.input.seams.original(v)).collect();
             for (curve, density) in curves.iter().zip(&mut reseed.density) {
                 let is_stuck = curve.edges.iter().any(|edge| stuck.contains(&edge.from) || stuck.contains(&edge.to));
-                *density *= if is_stuck { 2 } else { 1 };
+                *density = if is_stuck { ALL_VERTICES } else { *density };
             }
         }
         let help = "ask for more vertices, or leave features out";
@@ -344,7 +345,7 @@ impl Pass<'_> {
             places.extend(place);
         }
         for curve in curves {
-            density[curve] *= 2;
+            density[curve] = density[curve].saturating_mul(2);
         }
         let mut held = before.held;
         held.extend(faulty.iter().map(|&t| {

@@ -15,6 +15,9 @@ const LEAST_HALVINGS: u32 = 2;
 /// Seeds of a closed curve, and edges of a curve from a stop to itself, at least.
 const LEAST_OF_LOOP: usize = 3;
 
+/// A density of seeds on a curve: all of its vertices.
+pub const ALL_VERTICES: usize = usize::MAX;
+
 /// A surface's feature curves with their metric lengths. Where the metric differs on the two sides of a crease, that counts in
 /// which it is longer.
 pub struct MeasuredCurves<'a> {
@@ -98,7 +101,8 @@ impl<'a> MeasuredCurves<'a> {
 
     /// Seeds at the stops, and along curves about `spacing` (metric) apart; closer where the edges between them would stray
     /// farther than `hausd` (Euclidean) from the curve, and where fewer would make two edges of the mesh one. Of a required curve
-    /// all vertices are seeds. `density` says how many times as many edges each curve shall have; 1 if it says nothing.
+    /// all vertices are seeds. `density` says how many times as many edges each curve shall have; 1 if it says nothing; with
+    /// [`ALL_VERTICES`] all vertices are seeds.
     pub fn sampled(&self, spacing: f64, hausd: Option<f64>, density: &[usize]) -> FeatureSeeds {
         let features = &self.input.seams.features;
         let mut found = FeatureSeeds::default();
@@ -116,8 +120,10 @@ impl<'a> MeasuredCurves<'a> {
             let [a, b] = curve.ends();
             let is_first = joined.insert([a.min(b), a.max(b)], true).is_none();
             let parts = (self.length(i) / spacing).round() as usize;
-            let parts = parts.max(self.least(curve, is_first)) * density.get(i).copied().unwrap_or(1);
-            let stations = self.stations(i, parts, hausd);
+            let density = density.get(i).copied().unwrap_or(1);
+            let parts = parts.max(self.least(curve, is_first)).saturating_mul(density);
+            let keeps_all = curve.mark.is_required || density == ALL_VERTICES;
+            let stations = if keeps_all { at_vertices(curve) } else { self.stations(i, parts, hausd) };
             let inner = stations[1..stations.len() - 1].iter().map(|&station| self.at_station(curve, station));
             let first = found.seeds.len() as u32;
             let [begin, end] = if curve.has_stops { [at[&a], at[&b]] } else { [first; 2] };
@@ -150,9 +156,6 @@ impl<'a> MeasuredCurves<'a> {
     /// Places on a curve, as edges and parameters, that cut it into so many parts or more. First and last are its ends.
     fn stations(&self, curve: usize, parts: usize, hausd: Option<f64>) -> Vec<(usize, f64)> {
         let edges = &self.input.seams.features.curves[curve].edges;
-        if self.input.seams.features.curves[curve].mark.is_required {
-            return (0..edges.len()).map(|i| (i, 0.0)).chain([(edges.len() - 1, 1.0)]).collect();
-        }
         let total = self.length(curve);
         let mut stations: Vec<(usize, f64)> = vec![(0, 0.0)];
         for k in 1..parts {
@@ -219,6 +222,12 @@ impl<'a> MeasuredCurves<'a> {
         }
         places.into_iter().map(|place| self.input.lift(&place, place.position).unwrap_or(place)).collect()
     }
+}
+
+/// All vertices of a curve.
+fn at_vertices(curve: &Curve) -> Vec<(usize, f64)> {
+    let last = curve.edges.len() - 1;
+    (0..=last).map(|i| (i, 0.0)).chain([(last, 1.0)]).collect()
 }
 
 fn measured(input: &Input, metric: &dyn SurfaceMetric, curve: &Curve) -> MeasuredCurve {

@@ -17,7 +17,7 @@ pub use adapted::{Adapted, Wanted, adapted};
 pub use curve_sizes::CurveSizes;
 pub use curves::simplify;
 pub use farthest::{Farthest, refine_farthest};
-pub use features::{FeatureEdge, FeatureSeed, FeatureSeeds, MeasuredCurves};
+pub use features::{ALL_VERTICES, FeatureEdge, FeatureSeed, FeatureSeeds, MeasuredCurves};
 pub(crate) use interior::insert_spaced;
 pub use interior::{Fill, Refined, refine};
 pub use on_surface::{Seeded, seed_surface, triangulated, triangulated_upright};

@@ -32,8 +32,8 @@ impl<I: Implicit> SurfaceMetric for ImplicitCurvature<I> {
 /// The curvature metric of a mesh: from [`fit_curvatures`] at vertices, log-Euclidean between them.
 ///
 /// It is a metric on every surface, bounded by what the triangles can tell: curvatures below `floor` count as that, and those above
-/// 2 / l, l the mean length of the edges at the vertex, as that, for an edge is a chord, and no chord is longer than the diameter of
-/// its circle. (At a fold, a spike or a needle a fit may say anything.) A vertex without a fit gets the mean of its neighbours'
+/// 2 pi / l, l the mean length of the edges at the vertex, as that: no more than a full turn over an edge. (At a fold, a spike or a
+/// needle a fit may say anything.) A vertex without a fit gets the mean of its neighbours'
 /// logarithms; the floor, if these have none either.
 ///
 /// # Errors
@@ -81,7 +81,7 @@ fn cap(surface: &Surface, v: VertexId) -> f64 {
     let ends =
         t.star(v).flat_map(|h| [t.target(h), t.apex(h)]).map(|w| surface.position(w).distance(surface.position(v)));
     let (count, sum) = ends.fold((0.0, 0.0), |(count, sum), length| (count + 1.0, sum + length));
-    2.0 * count / sum
+    std::f64::consts::TAU * count / sum
 }
 
 /// The log-Euclidean mean.
