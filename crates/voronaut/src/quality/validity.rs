@@ -326,7 +326,10 @@ fn longest_edges(mesh: &Mesh) -> Vec<f64> {
     let mut found = vec![0.0_f64; mesh.points.len()];
     for &t in &mesh.triangles {
         let length = longest(mesh.positions_of(t));
-        t.iter().for_each(|&v| found[v as usize] = found[v as usize].max(length));
+        for v in t {
+            let known = &mut found[v as usize];
+            *known = known.max(length);
+        }
     }
     found
 }
