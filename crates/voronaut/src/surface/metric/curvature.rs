@@ -75,7 +75,7 @@ pub struct CurvatureFigures {
     pub greatest: f64,
 }
 
-/// The greatest curvature that edges at a vertex can tell; infinite of a vertex without edges.
+/// The greatest curvature that edges at a vertex can tell; no number of a vertex without edges, which has no fit either.
 fn cap(surface: &Surface, v: VertexId) -> f64 {
     let t = surface.topology();
     let ends =
