@@ -110,7 +110,14 @@ impl<'a> SurfaceDual<'a> {
     /// As for [`SurfaceDual::new`].
     pub fn rescale(&mut self, factor: f64) -> Result<()> {
         self.factor = factor;
+        self.forget_lengths(self.topology().edges().collect());
         self.measure_each(|_, field| LocalMetric::at(field, Point::default()))
+    }
+
+    fn forget_lengths(&mut self, edges: Vec<HalfEdge>) {
+        for h in edges {
+            self.state.topology.set_length(h, f64::NAN);
+        }
     }
 
     /// Flips done so far.
@@ -158,12 +165,34 @@ impl<'a> SurfaceDual<'a> {
         self.input.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()
     }
 
+    /// [`Self::length_between`] its ends, measured before where that takes long.
+    fn edge_length(&self, h: HalfEdge) -> f64 {
+        let measured = self.topology().length(h);
+        if measured.is_nan() {
+            self.length_between(self.topology().origin(h), self.topology().target(h))
+        } else {
+            measured
+        }
+    }
+
+    fn is_rough(&self, h: HalfEdge) -> bool {
+        [self.topology().origin(h), self.topology().target(h)].iter().any(|v| self.state.locals[v.index()].is_rough)
+    }
+
+    fn measure_edge(&mut self, h: HalfEdge) {
+        if self.is_rough(h) {
+            let length = self.chord_length(self.topology().origin(h), self.topology().target(h));
+            self.state.topology.set_length(h, length);
+        }
+    }
+
     /// The in-circle test of an edge with two faces: the sine of the sum of the angles that face it; `None` where lengths
     /// make no triangles.
     fn margin(&self, h: HalfEdge) -> Option<f64> {
-        let [a, b, c, d] = self.quad(h)?;
-        let length = |u, v| self.length_between(u, v);
-        let angles = Angles::from_lengths(length(a, b), [length(a, c), length(b, c)], [length(a, d), length(b, d)]);
+        let t = self.topology().twin(h)?;
+        let length = |h| self.edge_length(h);
+        let angles =
+            Angles::from_lengths(length(h), [length(h.prev()), length(h.next())], [length(t.next()), length(t.prev())]);
         (!angles.is_flat()).then(|| angles.margin())
     }
 
@@ -176,6 +205,7 @@ impl<'a> SurfaceDual<'a> {
 
     /// Flips every edge that the metric wants flipped and the surface allows. Returns the number of flips.
     pub fn flip_all(&mut self) -> u64 {
+        self.measure();
         let edges: Vec<HalfEdge> = self.topology().edges().collect();
         let topology = &self.state.topology;
         let wants = |&h: &HalfEdge| !topology.is_fixed(h) && self.margin(h).is_some_and(|margin| margin < -TIE);
@@ -222,6 +252,13 @@ impl<'a> SurfaceDual<'a> {
         self.topology().edges().filter(wants).count()
     }
 
+    /// How many edges their own lengths want flipped and the surface forbids, and the smallest margin of the others; 1 of none.
+    pub fn unsettled(&self) -> (usize, f64) {
+        let margins = self.topology().edges().filter(|&h| !self.topology().is_fixed(h)).filter_map(|h| self.margin(h));
+        let (blocked, settled): (Vec<f64>, Vec<f64>) = margins.partition(|&margin| margin < -TIE);
+        (blocked.len(), settled.into_iter().fold(1.0, f64::min))
+    }
+
     fn seeds_around(&self, h: HalfEdge) -> Option<Quad> {
         let [a, b, c, d] = self.quad(h)?.map(|v| v.0);
         Some(Quad { a, b, c, d })
@@ -241,6 +278,7 @@ impl<'a> SurfaceDual<'a> {
             flips_of_slot[slot] += 1;
             self.state.topology.flip(h);
             self.flips += 1;
+            self.measure_edge(h);
             stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
         }
         self.flips - before
@@ -445,6 +483,7 @@ impl Moving for SurfaceDual<'_> {
         }
         self.state.places[v.index()] = place;
         self.state.planes[v.index()] = plane.turned(normal);
+        self.forget_lengths(self.topology().star(v).flat_map(|h| [h, h.prev()]).collect());
         true
     }
 
@@ -452,11 +491,11 @@ impl Moving for SurfaceDual<'_> {
         false
     }
 
+    /// Lengths of edges that a rough metric makes slow to measure, where they are not known.
     fn measure(&mut self) {
         let topology = self.topology();
-        let is_rough = |v: VertexId| self.local(v).is_rough;
-        let at_rough = |&h: &HalfEdge| is_rough(topology.origin(h)) || is_rough(topology.target(h));
-        let edges: Vec<HalfEdge> = topology.edges().filter(at_rough).collect();
+        let is_due = |&h: &HalfEdge| topology.length(h).is_nan() && self.is_rough(h);
+        let edges: Vec<HalfEdge> = topology.edges().filter(is_due).collect();
         let length = |&h: &HalfEdge| self.chord_length(topology.origin(h), topology.target(h));
         let lengths: Vec<f64> = edges.par_iter().with_min_len(64).map(length).collect();
         for (h, length) in edges.into_iter().zip(lengths) {
@@ -466,9 +505,7 @@ impl Moving for SurfaceDual<'_> {
 
     fn settle_moves(&mut self) -> Result<u64> {
         self.measure_each(|local, field| local.moved(field, Point::default()))?;
-        let flips = self.flip_all();
-        self.measure();
-        Ok(flips)
+        Ok(self.flip_all())
     }
 
     fn save(&self) -> State {

@@ -11,7 +11,7 @@ use crate::progress::Progress;
 use crate::quality::{self, Meetings, SurfaceFidelity};
 use crate::sampling::{MeasuredCurves, demand_memory};
 use crate::surface::metric::{Closer, SurfaceMetric};
-use crate::surface::{Component, Implicit, Input, Surface};
+use crate::surface::{Component, Implicit, Input};
 use std::time::Instant;
 
 /// Vertices of the canvas on which the surface is measured first.
@@ -24,15 +24,18 @@ const MOST_MORE: f64 = 3.0;
 const GAIN: f64 = 1.2;
 /// Where the number of vertices misses what was asked for by a greater share, a note says why.
 const COUNT_TOLERANCE: f64 = 0.01;
-/// Where a mesh is none, seeds are put and it is made anew, so often at most;
-const RESEEDINGS: usize = 5;
-/// then it is made of the surface's own triangles, of which more and more are kept, so often at most,
-const ADAPTATIONS: usize = 6;
-/// the last times without relaxation.
-const UNRELAXED: usize = 2;
+/// Where a mesh is none, it is made anew, so often at most; more and more of the surface's own triangles are kept,
+const ADAPTATIONS: usize = 8;
+/// with so many steps of relaxation at most after the first time,
+const FEWER_STEPS: usize = 8;
+/// and the last times without.
+const UNRELAXED: usize = 3;
+/// Passes of farthest points, where these are asked for.
+const FARTHEST_PASSES: usize = 5;
 
-/// Meshes a surface by a metric: features at unit length, farthest points on the canvas of each patch, relaxed in charts, edges
-/// settled by geodesics on the canvas. Vertices are on the surface. With a number of vertices asked for the metric is scaled
+/// Meshes a surface by a metric: features at unit length, the surface's own triangles split and contracted to unit edges, relaxed in
+/// charts; with [`Seeding::Farthest`] seeds are farthest points on a canvas, with [`crate::dual::Road::Canvas`] edges are settled by
+/// geodesics on one. Vertices are on the surface. With a number of vertices asked for the metric is scaled
 /// by one factor to meet it. Features are kept if the surface was cut open along them ([`Input::cut`]); else borders only.
 ///
 /// # Errors
@@ -115,7 +118,7 @@ impl<'a> Job<'a> {
                 job.setting.progress.stage("checking", 1);
                 pass.faulty(&mesh, &job.setting.meetings)
             });
-            if faulty.is_empty() || reseed.rounds == RESEEDINGS + ADAPTATIONS {
+            if faulty.is_empty() || reseed.rounds + 1 >= self.farthest_passes() + ADAPTATIONS {
                 break (pass, mesh);
             }
             reseed = pass.reseed(&faulty, reseed);
@@ -124,7 +127,7 @@ impl<'a> Job<'a> {
         notes.extend(reseed.note());
         notes.extend(pass.notes());
         notes.extend(self.count_note(&pass, mesh.points.len()));
-        let mesh = self.timed("fit", |job| job.fitted(mesh, pass.settled.fine.as_ref(), &mut notes))?;
+        let mesh = self.timed("fit", |job| job.fitted(mesh, &mut notes))?;
         let fidelity = self.timed("check", |job| job.fidelity(&mesh))?;
         let meshed = Meshed {
             mesh,
@@ -139,21 +142,30 @@ impl<'a> Job<'a> {
         Ok((meshed, fidelity))
     }
 
-    /// A pass by what there was before: of seeds on a canvas, or of the surface's own triangles. Nothing where the former finds no
-    /// triangulation, for the latter may.
+    /// A pass by what there was before: where farthest points are asked for, of these, as long as that may make a mesh. Nothing where
+    /// they find no triangulation, for the surface's own may.
     fn passed(&mut self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Option<Pass<'a>>> {
-        if reseed.rounds <= RESEEDINGS {
-            return match self.setting.pass(count, scale, reseed, &mut self.watch) {
+        let farthest = self.farthest_passes();
+        if reseed.rounds < farthest {
+            return match self.setting.farthest(count, scale, reseed, &mut self.watch) {
                 Err(Error::Domain { .. }) => {
-                    reseed.rounds = RESEEDINGS + 1;
+                    reseed.rounds = farthest;
                     Ok(None)
                 }
                 other => other.map(Some),
             };
         }
-        let is_relaxed = reseed.rounds <= RESEEDINGS + ADAPTATIONS - UNRELAXED;
-        let steps = if is_relaxed { self.setting.options.lloyd } else { 0 };
+        let lloyd = self.setting.options.lloyd;
+        let steps = match reseed.rounds {
+            0 => Some(lloyd),
+            rounds if rounds + UNRELAXED < farthest + ADAPTATIONS => Some(lloyd.min(FEWER_STEPS)),
+            _ => None,
+        };
         self.setting.adapted(count, scale, reseed, steps, &mut self.watch).map(Some)
+    }
+
+    fn farthest_passes(&self) -> usize {
+        if self.setting.options.seeding == Seeding::Farthest { FARTHEST_PASSES } else { 0 }
     }
 
     /// What to say where the mesh has not the number of vertices asked for.
@@ -178,13 +190,15 @@ impl<'a> Job<'a> {
     }
 
     /// The mesh with its vertices at least-squares positions, if that is asked for; as it was where that would not be valid.
-    fn fitted(&self, mesh: Mesh, fine: Option<&Surface>, notes: &mut Vec<String>) -> Result<Mesh> {
+    fn fitted(&self, mesh: Mesh, notes: &mut Vec<String>) -> Result<Mesh> {
         if !self.setting.options.fit {
             return Ok(mesh);
         }
         self.setting.progress.stage("fitting", 1);
         let options = FitOptions { stiffness: self.setting.options.stiffness, ..FitOptions::default() };
-        let fitted = fit(&mesh, fine.unwrap_or(&self.setting.input.surface), &options)?.mesh;
+        let input = self.setting.input;
+        let fine = input.implicit.as_ref().map(|_| self.setting.fine_surface(mesh.points.len())).transpose()?;
+        let fitted = fit(&mesh, fine.as_ref().unwrap_or(&input.surface), &options)?.mesh;
         if quality::validity_on(&fitted, &self.setting.meetings).valid {
             return Ok(fitted);
         }

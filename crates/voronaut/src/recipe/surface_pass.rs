@@ -17,8 +17,8 @@ use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
 use crate::sampling::{
-    ALL_VERTICES, Adapted, FeatureSeeds, MeasuredCurves, Seeded, Wanted, adapted, seed_surface, triangulated,
-    triangulated_upright,
+    ALL_VERTICES, Adapted, FeatureSeeds, Held, MeasuredCurves, Seeded, Wanted, adapted, exchanged, seed_surface,
+    triangulated, triangulated_upright,
 };
 use crate::surface::metric::{Constant, SurfaceMetric};
 use crate::surface::{Input, Place, Surface, Whole};
@@ -35,8 +35,12 @@ const MENDED_SHARE: f64 = 0.02;
 const MENDINGS: usize = 3;
 /// Curves on which contraction ends too early are kept as they are, and the rest is tried again, so often at most.
 const DENSER: usize = 12;
+/// After so many passes all vertices of the curves that faulty triangles touch are kept.
+const PATIENCE: usize = 4;
 /// Seeds put into faulty triangles are this far from their corners and from each other, as a share of the longest edge.
 const APART: f64 = 0.1;
+/// The surface is kept as far around a faulty triangle as this share of its longest edge, twice as far the second time, and so on.
+const AROUND: f64 = 0.2;
 
 /// What passes are made with.
 pub(super) struct Setting<'a> {
@@ -67,8 +71,6 @@ pub(super) struct Settled {
     /// Of the canvas, where one was made.
     pub(super) figures: Option<CanvasFigures>,
     pub(super) diagram: Option<report::Diagram>,
-    /// Of an equation's surface that is to be fitted, the canvas.
-    pub(super) fine: Option<Surface>,
 }
 
 /// Where the passes before made no mesh.
@@ -78,8 +80,8 @@ pub(super) struct Reseed {
     places: Vec<Place>,
     /// How many times as many seeds as their lengths ask for each curve shall have; one if there is no entry.
     density: Vec<usize>,
-    /// Balls around faulty triangles, where a pass that starts from the surface's own triangles keeps these.
-    held: Vec<(Point3, f64)>,
+    /// Faulty triangles, around which a pass that starts from the surface's own triangles keeps these.
+    held: Vec<Held>,
     /// Passes before.
     pub(super) rounds: usize,
 }
@@ -95,11 +97,17 @@ impl Reseed {
 }
 
 impl<'a> Setting<'a> {
-    /// A pass with so many vertices.
+    /// A pass that starts from farthest points on a canvas.
     ///
     /// # Errors
     /// The metric is invalid somewhere; there are too few vertices for the surface's topology.
-    pub(super) fn pass(&self, count: usize, scale: f64, reseed: &Reseed, watch: &mut Stopwatch) -> Result<Pass<'a>> {
+    pub(super) fn farthest(
+        &self,
+        count: usize,
+        scale: f64,
+        reseed: &Reseed,
+        watch: &mut Stopwatch,
+    ) -> Result<Pass<'a>> {
         let begin = Instant::now();
         let features = self.curves.sampled(1.0 / scale.sqrt(), self.options.hausd, &reseed.density);
         let (mut given, owners) = features.flattened();
@@ -113,15 +121,14 @@ impl<'a> Setting<'a> {
         let seeded = seed_surface(&canvas, &at, count, self.options.geodesic, may_hold, self.progress)?;
         watch.add("seed", begin);
         let begin = Instant::now();
-        let (mut dual, relaxed) = self.relaxed(&canvas, &seeded, &given[..owners.len()], scale)?;
+        let start = self.started(&canvas, &seeded, &given[..owners.len()], scale)?;
+        let (dual, relaxed) = self.relaxed(start, owners.len(), self.options.lloyd)?;
         watch.add("relax", begin);
-        let begin = Instant::now();
-        let settled = self.settle(&mut dual)?;
-        watch.add("settle", begin);
-        Ok(Pass { input: self.input, dual, features, owners, added: seeded.added, relaxed, settled })
+        self.settled(Pass::new(self.input, dual, features, owners, seeded.added, relaxed), watch)
     }
 
-    /// A pass that starts from the surface's own triangles instead of a canvas; `steps` of relaxation.
+    /// A pass that starts from the surface's own triangles, with so many steps of relaxation. Without any, not even of flips, triangles
+    /// are the surface's where they are held.
     ///
     /// # Errors
     /// The metric is invalid somewhere; features cannot be kept as they are.
@@ -130,23 +137,51 @@ impl<'a> Setting<'a> {
         count: usize,
         scale: f64,
         reseed: &mut Reseed,
-        steps: usize,
+        steps: Option<usize>,
         watch: &mut Stopwatch,
     ) -> Result<Pass<'a>> {
         let begin = Instant::now();
-        self.progress.stage("adapting the surface", 1);
+        self.progress.stage("seeding", 1);
         let (features, owners, adapted) = self.started_from_surface(count, scale, reseed)?;
         watch.add("seed", begin);
         let begin = Instant::now();
-        let Adapted { places, topology, .. } = adapted;
-        let mut dual = SurfaceDual::new(self.input, self.metric, scale, places, owners.len(), topology)?;
+        let staying = adapted.staying;
+        let mut dual = self.dual_of(adapted, scale)?;
         let mut relaxed = Relaxed::default();
-        if steps > 0 {
+        if let Some(steps) = steps {
             dual.unfold();
-            relaxed = self.relax(&mut dual, steps)?;
+            (dual, relaxed) = self.relaxed(dual, staying, steps)?;
+        } else {
+            self.fit_scale(&mut dual)?;
         }
         watch.add("relax", begin);
-        Ok(Pass { input: self.input, dual, features, owners, added: 0, relaxed, settled: Settled::default() })
+        let pass = Pass::new(self.input, dual, features, owners, 0, relaxed);
+        if steps.is_some() { self.settled(pass, watch) } else { Ok(pass) }
+    }
+
+    fn dual_of(&self, Adapted { places, staying, topology, .. }: Adapted, scale: f64) -> Result<SurfaceDual<'a>> {
+        SurfaceDual::new(self.input, self.metric, scale, places, staying, topology)
+    }
+
+    /// Relaxed in parts, between which vertices are exchanged; so many of the first stay.
+    fn relaxed(&self, mut dual: SurfaceDual<'a>, staying: usize, steps: usize) -> Result<(SurfaceDual<'a>, Relaxed)> {
+        let mut relaxed = Relaxed::default();
+        self.progress.stage("relaxing", steps as u64);
+        dual.flip_all();
+        self.fit_scale(&mut dual)?;
+        for part in 0..PARTS {
+            let steps = (steps * (part + 1)) / PARTS - (steps * part) / PARTS;
+            if part > 0 && steps > 0 {
+                let factor = dual.factor();
+                let other = exchanged(self.input, self.metric, factor, dual.places(), dual.topology(), staying);
+                dual = self.dual_of(other, factor)?;
+                dual.flip_all();
+            }
+            relaxed.append(relax(&mut dual, &Tangent, steps, self.progress)?);
+            self.fit_scale(&mut dual)?;
+        }
+        mend(&mut dual);
+        Ok((dual, relaxed))
     }
 
     /// Where vertices of a curve cannot be contracted without folds, all of them become seeds.
@@ -194,33 +229,6 @@ impl<'a> Setting<'a> {
         !required.is_empty() && required.binary_search(&canvas.draped().place(v).face).is_ok()
     }
 
-    /// The triangulation of the seeds, relaxed; the first of them are given, and stay.
-    fn relaxed(
-        &self,
-        canvas: &Canvas<Draped>,
-        seeds: &Seeded,
-        given: &[Place],
-        scale: f64,
-    ) -> Result<(SurfaceDual<'a>, Relaxed)> {
-        let mut dual = self.started(canvas, seeds, given, scale)?;
-        let relaxed = self.relax(&mut dual, self.options.lloyd)?;
-        Ok((dual, relaxed))
-    }
-
-    fn relax(&self, dual: &mut SurfaceDual, steps: usize) -> Result<Relaxed> {
-        self.progress.stage("relaxing", steps as u64);
-        dual.flip_all();
-        self.fit_scale(dual)?;
-        let mut relaxed = Relaxed::default();
-        for part in 0..PARTS {
-            let steps = (steps * (part + 1)) / PARTS - (steps * part) / PARTS;
-            relaxed.append(relax(dual, &Tangent, steps, self.progress)?);
-            self.fit_scale(dual)?;
-        }
-        mend(dual);
-        Ok(relaxed)
-    }
-
     /// The triangulation of the seeds as it is found; where straight edges cannot honour the metric, one that stands upright on
     /// the surface and can be flipped towards it.
     fn started(&self, canvas: &Canvas<Draped>, seeds: &Seeded, given: &[Place], scale: f64) -> Result<SurfaceDual<'a>> {
@@ -254,7 +262,17 @@ impl<'a> Setting<'a> {
         Ok(())
     }
 
-    /// Flips by lengths of geodesics on a canvas that has the seeds as vertices.
+    /// Where that is asked for, flips by lengths of geodesics on a canvas that has the seeds as vertices.
+    fn settled(&self, mut pass: Pass<'a>, watch: &mut Stopwatch) -> Result<Pass<'a>> {
+        let begin = Instant::now();
+        pass.settled = match self.options.dual {
+            Road::Canvas => self.settle(&mut pass.dual)?,
+            Road::Geodesic | Road::Both => Settled::by_lengths(&pass.dual),
+        };
+        watch.add("settle", begin);
+        Ok(pass)
+    }
+
     fn settle(&self, dual: &mut SurfaceDual) -> Result<Settled> {
         self.progress.stage("settling edges", 1);
         let (canvas, at) = self.canvas(dual.places().len(), dual.places())?;
@@ -268,9 +286,33 @@ impl<'a> Setting<'a> {
         dual.unfold();
         mend(dual);
         let account = report::Dual { blocked_flips: blocked, ..account(&rdt, &nerve, Road::Geodesic) };
-        let is_fine = self.options.fit && self.input.implicit.is_some();
-        let fine = is_fine.then(|| canvas.draped().to_surface()).transpose()?;
-        Ok(Settled { account, figures: Some(canvas.figures()), diagram: Some(report::Diagram::of(&diagram)), fine })
+        Ok(Settled { account, figures: Some(canvas.figures()), diagram: Some(report::Diagram::of(&diagram)) })
+    }
+
+    /// A canvas of so many seeds as a surface: finer than what an equation was first meshed to.
+    pub(super) fn fine_surface(&self, count: usize) -> Result<Surface> {
+        self.canvas(count, &[])?.0.draped().to_surface()
+    }
+}
+
+impl Settled {
+    fn by_lengths(dual: &SurfaceDual) -> Self {
+        let (blocked_flips, min_margin) = dual.unsettled();
+        let account = report::Dual { min_margin, blocked_flips, ..report::Dual::default() };
+        Self { account, ..Self::default() }
+    }
+}
+
+impl<'a> Pass<'a> {
+    fn new(
+        input: &'a Input,
+        dual: SurfaceDual<'a>,
+        features: FeatureSeeds,
+        owners: Vec<u32>,
+        added: usize,
+        relaxed: Relaxed,
+    ) -> Self {
+        Self { input, dual, features, owners, added, relaxed, settled: Settled::default() }
     }
 }
 
@@ -332,9 +374,13 @@ impl Pass<'_> {
         let mut curves: BTreeSet<usize> = BTreeSet::new();
         for corners in faulty.iter().map(|&t| triangles[t as usize]) {
             let seeds: BTreeSet<u32> = corners.iter().filter_map(|&v| self.owners.get(v as usize).copied()).collect();
-            if seeds.len() == 3 {
+            if seeds.len() == 3 || before.rounds >= PATIENCE {
                 // Between features alone there may be no room for a seed.
-                let touched = self.features.edges.iter().filter(|edge| edge.ends.iter().all(|v| seeds.contains(v)));
+                let touches = |v: &u32| seeds.contains(v);
+                let is_patient = before.rounds < PATIENCE;
+                let touched = self.features.edges.iter().filter(|edge| {
+                    if is_patient { edge.ends.iter().all(touches) } else { edge.ends.iter().any(touches) }
+                });
                 curves.extend(touched.map(|edge| edge.curve));
             }
             let at = corners.map(|v| self.dual.places()[v as usize]);
@@ -345,12 +391,13 @@ impl Pass<'_> {
             places.extend(place);
         }
         for curve in curves {
-            density[curve] = density[curve].saturating_mul(2);
+            density[curve] = if before.rounds < PATIENCE { density[curve].saturating_mul(2) } else { ALL_VERTICES };
         }
         let mut held = before.held;
         held.extend(faulty.iter().map(|&t| {
-            let at = triangles[t as usize].map(|v| self.dual.places()[v as usize]);
-            (Point3::weighted(at.map(|place| place.position), [1.0 / 3.0; 3]), reach(at))
+            let corners = triangles[t as usize].map(|v| self.dual.places()[v as usize]);
+            let around = (before.rounds + 1) as f64 * AROUND * reach(corners);
+            Held { corners: corners.map(|place| place.position), within: around }
         }));
         Reseed { places, density, held, rounds: before.rounds + 1 }
     }

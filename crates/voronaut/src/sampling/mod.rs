@@ -13,7 +13,7 @@ mod plan;
 mod protected;
 mod segments;
 
-pub use adapted::{Adapted, Wanted, adapted};
+pub use adapted::{Adapted, Held, Wanted, adapted, exchanged};
 pub use curve_sizes::CurveSizes;
 pub use curves::simplify;
 pub use farthest::{Farthest, refine_farthest};

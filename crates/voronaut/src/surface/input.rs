@@ -2,6 +2,7 @@
 
 use super::cut::{Seams, cut};
 use super::features::FeatureOptions;
+use super::nearest::closest_weights;
 use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
 use crate::formats::Solution;
@@ -137,27 +138,34 @@ impl Input {
         }
     }
 
-    /// From triangle to triangle as long as that leads nearer to a point.
+    /// From triangle to triangle as long as that leads nearer to a point: across the edges that the closest point lies on, or else
+    /// around its corner.
     fn walk(&self, from: FaceId, p: Point3) -> Place {
         let topology = self.surface.topology();
-        let mut best = self.surface.closest_on(from, p);
+        let mut best = self.reached(from, p);
         for _ in 0..FACES {
             let [ab, bc, ca] = best.face.half_edges();
             let [a, b, c] = best.weights.map(|w| w <= 0.0);
-            // Beside the edges and around the corners that the closest point lies on.
             let across =
                 [(c, ab), (a, bc), (b, ca)].into_iter().filter(|edge| edge.0).filter_map(|e| topology.twin(e.1));
             let corner = [(b && c, ab), (c && a, bc), (a && b, ca)].into_iter().find(|at| at.0).map(|at| at.1);
-            let around = corner.into_iter().flat_map(|h| topology.star(topology.origin(h)));
-            let faces = across.chain(around).map(HalfEdge::face);
-            let distance = |place: &Place| place.position.distance(p);
-            let next = faces.map(|f| self.surface.closest_on(f, p)).min_by(|x, y| distance(x).total_cmp(&distance(y)));
-            match next.filter(|next| distance(next) < distance(&best)) {
+            let around = || corner.into_iter().flat_map(|h| topology.star(topology.origin(h)));
+            let nearer = |h: HalfEdge| Some(self.reached(h.face(), p)).filter(|next| next.square < best.square);
+            let nearest = |x: &Reached, y: &Reached| x.square.total_cmp(&y.square);
+            let next = across.filter_map(nearer).min_by(nearest);
+            match next.or_else(|| around().filter_map(nearer).min_by(nearest)) {
                 Some(next) => best = next,
                 None => break,
             }
         }
-        best
+        self.surface.place(best.face, best.weights)
+    }
+
+    fn reached(&self, face: FaceId, p: Point3) -> Reached {
+        let corners = self.surface.triangle(face);
+        let weights = closest_weights(corners, p);
+        let offset = Point3::weighted(corners, weights) - p;
+        Reached { face, weights, square: offset.dot(offset) }
     }
 
     /// The unit normal of the surface at a place: exact of an equation, else between those of the triangle's corners.
@@ -169,6 +177,14 @@ impl Input {
         let weighted = corners.iter().zip(place.weights).map(|(v, weight)| self.normals[v.index()] * weight);
         weighted.fold(Vector3::default(), |sum, normal| sum + normal).unit().unwrap_or(place.normal)
     }
+}
+
+/// Where a triangle is closest to a point, and the square of the distance.
+#[derive(Clone, Copy)]
+struct Reached {
+    face: FaceId,
+    weights: [f64; 3],
+    square: f64,
 }
 
 #[cfg(test)]

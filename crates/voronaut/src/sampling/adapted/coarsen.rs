@@ -1,0 +1,156 @@
+//! Coarser triangles: vertices contracted onto their neighbours.
+
+use super::UPRIGHT;
+use super::work::Work;
+use crate::triangulation::{HalfEdge, VertexId};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Contraction makes no edge longer than this (metric), as long as there is another way.
+const LONGEST: f64 = 2.0;
+/// New triangles of less quality in the metric have to be better than those before.
+const FAIR: f64 = 0.2;
+/// Passes over all that may be contracted, at most: what one does makes room for the next.
+const PASSES: usize = 8;
+/// Vertices with more triangles together are not made one: all would gather at a few.
+const CROWD: usize = 24;
+
+/// How much a contraction has to look to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Manner {
+    /// Triangles stay upright and fair, edges not too long.
+    Fair,
+    /// Triangles stay upright.
+    Upright,
+}
+
+impl Work<'_> {
+    /// Contracts the vertices of the border that are not given along it.
+    pub(super) fn contract_border(&mut self) {
+        for _ in 0..PASSES {
+            let before = self.vertex_count();
+            for v in self.stuck() {
+                self.contract_along_border(v);
+            }
+            if self.vertex_count() == before {
+                return;
+            }
+        }
+    }
+
+    /// Contracts a vertex of the border onto the neighbour along it with which triangles turn away least.
+    fn contract_along_border(&mut self, v: VertexId) {
+        let t = &self.topology;
+        let out = t.star(v).find(|&h| t.twin(h).is_none());
+        let back = t.star(v).last().map(HalfEdge::prev).filter(|&h| t.twin(h).is_none());
+        let ways = [out, back].into_iter().flatten().filter(|&h| t.can_collapse(h));
+        let worst = |h: HalfEdge| {
+            let to = if t.origin(h) == v { t.target(h) } else { t.origin(h) };
+            self.moved(v, to).map(|after| self.leaning(after)).fold(1.0, f64::min)
+        };
+        let best = ways.map(|h| (worst(h), h)).max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)));
+        let before = t.star(v).map(|h| self.leaning([v, t.target(h), t.apex(h)])).fold(1.0, f64::min);
+        if let Some((after, h)) = best
+            && (after >= UPRIGHT || after >= before)
+        {
+            self.collapse(v, h);
+        }
+    }
+
+    fn collapse(&mut self, gone: VertexId, h: HalfEdge) {
+        if self.topology.origin(h) == gone { self.topology.collapse(h) } else { self.topology.collapse_back(h) }
+    }
+
+    /// Contracts vertices inside patches until so many are left, or no more may be contracted; where many are held, others do not make up
+    /// for these at the cost of shapes.
+    pub(super) fn contract_to(&mut self, count: usize) {
+        self.contract_inside(count, Manner::Fair);
+        self.contract_inside(count + self.held_in_excess(), Manner::Upright);
+    }
+
+    /// Contracts vertices inside patches over their edges, the shortest first, until so many vertices are left.
+    fn contract_inside(&mut self, count: usize, manner: Manner) {
+        for _ in 0..PASSES {
+            if self.vertex_count() <= count {
+                return;
+            }
+            let before = self.vertex_count();
+            let edges: Vec<HalfEdge> = self.topology.edges().collect();
+            let mut queue: BinaryHeap<Reverse<(u64, VertexId, VertexId)>> = BinaryHeap::new();
+            queue.extend(edges.into_iter().map(|h| self.ends(h)).map(|[v, w]| self.entry(v, w)));
+            while self.vertex_count() > count
+                && let Some(Reverse((_, v, w))) = queue.pop()
+            {
+                let t = &self.topology;
+                let is_there = |v| t.is_vertex(v);
+                let Some(h) = (is_there(v) && is_there(w)).then(|| t.find(v, w).or_else(|| t.find(w, v))).flatten()
+                else {
+                    continue;
+                };
+                let link = [v, w].map(|v| self.link(v)).concat();
+                if let Some(kept) = self.contract(h, manner) {
+                    let others = link.into_iter().flatten().filter(|&v| v != kept && self.topology.is_vertex(v));
+                    queue.extend(others.map(|other| self.entry(kept, other)));
+                }
+            }
+            self.flip_all();
+            if self.vertex_count() == before {
+                return;
+            }
+        }
+    }
+
+    /// Positive numbers have the order of their bits.
+    fn entry(&self, v: VertexId, w: VertexId) -> Reverse<(u64, VertexId, VertexId)> {
+        Reverse((self.length(v, w).to_bits(), v.min(w), v.max(w)))
+    }
+
+    /// Contracts one end of an edge onto the other, if that may be: the end with which the worst triangle is the better.
+    /// Returns the end that is left.
+    fn contract(&mut self, h: HalfEdge, manner: Manner) -> Option<VertexId> {
+        let t = &self.topology;
+        let [v, w] = self.ends(h);
+        let may_go = |v: VertexId| self.at(v).may_go() && !t.is_border_vertex(v);
+        let is_crowded = t.star(v).count() + t.star(w).count() > CROWD;
+        if is_crowded || !(may_go(v) || may_go(w)) || !t.can_collapse(h) {
+            return None;
+        }
+        let ways = [(v, w), (w, v)].into_iter().filter(|&(gone, _)| may_go(gone));
+        let allowed = ways.filter_map(|(gone, kept)| Some((self.worth(gone, kept, manner)?, gone, kept)));
+        let (_, gone, kept) = allowed.max_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)))?;
+        self.collapse(gone, h);
+        Some(kept)
+    }
+
+    /// The least quality of the triangles that would be there if a vertex went to the place of a neighbour; nothing if they may not.
+    fn worth(&self, gone: VertexId, kept: VertexId, manner: Manner) -> Option<f64> {
+        let t = &self.topology;
+        let star = || t.star(gone).map(|h| [gone, t.target(h), t.apex(h)]);
+        let upright = star().map(|corners| self.leaning(corners)).fold(1.0, f64::min).min(UPRIGHT);
+        let fair = star().map(|corners| self.quality(corners)).fold(1.0, f64::min).min(FAIR);
+        let mut worst = 1.0_f64;
+        for corners in self.moved(gone, kept) {
+            let quality = self.quality(corners);
+            let is_long = || self.length(corners[0], corners[1]).max(self.length(corners[0], corners[2])) > LONGEST;
+            let leans = self.leaning(corners) < upright || quality <= 0.0;
+            if leans || manner == Manner::Fair && (quality < fair || is_long()) {
+                return None;
+            }
+            worst = worst.min(quality);
+        }
+        Some(worst)
+    }
+
+    /// The edges opposite of a vertex.
+    fn link(&self, v: VertexId) -> Vec<[VertexId; 2]> {
+        let t = &self.topology;
+        t.star(v).map(|h| [t.target(h), t.apex(h)]).collect()
+    }
+
+    /// The triangles around a vertex that stay when it goes to another's place, with that one first.
+    fn moved(&self, gone: VertexId, kept: VertexId) -> impl Iterator<Item = [VertexId; 3]> {
+        let t = &self.topology;
+        let links = t.star(gone).map(|h| [t.target(h), t.apex(h)]);
+        links.filter(move |link| !link.contains(&kept)).map(move |[a, b]| [kept, a, b])
+    }
+}

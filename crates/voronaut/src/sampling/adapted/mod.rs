@@ -1,0 +1,95 @@
+//! The surface's own triangulation, made as fine as a metric asks for: edges split that are too long, vertices contracted that are
+//! too many, edges flipped. Every state is a triangulation of the surface whose triangles stand upright on it, or as upright as those
+//! of the surface itself; so where vertices are held it is the surface.
+
+mod coarsen;
+mod refine;
+mod work;
+
+use crate::geometry::Point3;
+use crate::surface::metric::SurfaceMetric;
+use crate::surface::{Input, Place, closest_weights};
+use crate::triangulation::{Triangulation, VertexId};
+use work::Work;
+
+/// The least cosine between a new triangle's normal and those of the surface at its corners.
+const UPRIGHT: f64 = 0.5;
+/// Edges longer than this (metric: the longest of unit length) are split in exchange for others, one of so many vertices at most.
+const TOO_LONG: f64 = std::f64::consts::SQRT_2;
+const EXCHANGED: usize = 16;
+/// Vertices at most, as a multiple of those wanted and of those of the surface together.
+const MOST: usize = 8;
+
+/// What is wanted of a triangulation.
+pub struct Wanted<'a> {
+    /// Places on the border of patches, or at their vertices, that shall be vertices; the only ones of the border.
+    pub given: &'a [Place],
+    /// The factor on the metric for which edges are of unit length.
+    pub factor: f64,
+    /// Vertices.
+    pub count: usize,
+    /// Near what all vertices of the surface are kept.
+    pub held: &'a [Held],
+}
+
+/// What is near a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Held {
+    /// The triangle.
+    pub corners: [Point3; 3],
+    /// How far (Euclidean) around it.
+    pub within: f64,
+}
+
+impl Held {
+    fn holds(&self, p: Point3) -> bool {
+        Point3::weighted(self.corners, closest_weights(self.corners, p)).distance(p) <= self.within
+    }
+}
+
+/// A triangulation of a surface.
+pub struct Adapted {
+    /// Its vertices: first the given ones, in order, then those that are held.
+    pub places: Vec<Place>,
+    /// How many these are.
+    pub staying: usize,
+    /// How they hang together.
+    pub topology: Triangulation,
+    /// Vertices of the surface on the border of patches that could not be contracted: more places should be given there.
+    pub stuck: Vec<VertexId>,
+}
+
+/// Adapts the triangles of a surface. `None` where two of the given places are one vertex.
+pub fn adapted(input: &Input, metric: &dyn SurfaceMetric, wanted: &Wanted) -> Option<Adapted> {
+    let mut work = Work::new(input, metric, wanted)?;
+    // Large triangles turn over less easily; where the border cannot be had of them, smaller ones may let it go.
+    work.contract_border();
+    work.split_long(MOST * (wanted.count + input.surface.positions().len()));
+    work.contract_border();
+    if work.stuck().is_empty() {
+        work.contract_to(wanted.count);
+    }
+    Some(work.finished())
+}
+
+/// Exchanges vertices of a triangulation of the surface whose first `staying` places stay: edges that are too long are split, and as
+/// many vertices contracted where edges are shortest.
+pub fn exchanged(
+    input: &Input,
+    metric: &dyn SurfaceMetric,
+    factor: f64,
+    places: &[Place],
+    topology: &Triangulation,
+    staying: usize,
+) -> Adapted {
+    let mut work = Work::of(input, metric, factor, topology.clone(), places.to_vec());
+    for (i, vertex) in (0..).zip(&mut work.vertices[..staying]) {
+        vertex.given = Some(i);
+    }
+    work.split_once(TOO_LONG, places.len() / EXCHANGED);
+    work.contract_to(places.len());
+    work.finished()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,103 @@
+//! Finer triangles: edges split and flipped.
+
+use super::UPRIGHT;
+use super::work::{Work, leaning};
+use crate::triangulation::{HalfEdge, VertexId};
+
+/// Edges longer than this (metric) are split: contraction then has vertices to choose from.
+const LONG: f64 = 1.0;
+/// Passes over all edges that are too long, at most: each halves them.
+const HALVINGS: usize = 40;
+/// Margins closer to zero than this are ties; one pass flips the edge in one slot so often at most: in fans, of which long borders are
+/// made at first, it takes as many as they have triangles.
+const TIE: f64 = 1e-9;
+const FLIPS_PER_SLOT: u8 = u8::MAX;
+
+impl Work<'_> {
+    /// Splits edges inside patches in the middle, the longest first, and flips, until none is too long, but for those of triangles with
+    /// a longer edge on the border: as that stays, fans of ever smaller triangles would grow on it.
+    pub(super) fn split_long(&mut self, most: usize) {
+        for _ in 0..HALVINGS {
+            self.flip_all();
+            let before = self.vertex_count();
+            self.split_once(LONG, most.saturating_sub(before));
+            if self.vertex_count() == before {
+                return;
+            }
+        }
+    }
+
+    /// Splits edges longer than so much, no more than so many.
+    pub(super) fn split_once(&mut self, longer: f64, most: usize) {
+        let long = self.topology.edges().filter(|&h| self.is_long(h, longer)).map(|h| (self.length_of(h), h));
+        let mut long: Vec<(f64, HalfEdge)> = long.collect();
+        long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+        let most = self.vertex_count() + most;
+        for (_, h) in long {
+            // Splits beside it may have put another edge into this slot.
+            if self.vertex_count() < most && self.is_long(h, longer) {
+                self.split_in_the_middle(h);
+            }
+        }
+    }
+
+    fn length_of(&self, h: HalfEdge) -> f64 {
+        let [v, w] = self.ends(h);
+        self.length(v, w)
+    }
+
+    fn is_long(&self, h: HalfEdge, longer: f64) -> bool {
+        let t = &self.topology;
+        let Some(twin) = t.twin(h) else { return false };
+        let length = self.length_of(h);
+        let is_longest = |other: HalfEdge| t.twin(other).is_some() || self.length_of(other) <= length;
+        length > longer && [h.next(), h.prev(), twin.next(), twin.prev()].into_iter().all(is_longest)
+    }
+
+    /// Splits an edge in the middle, but not where that would turn a triangle away from the surface.
+    fn split_in_the_middle(&mut self, h: HalfEdge) {
+        let [p, q] = self.ends(h).map(|v| self.at(v).place);
+        let Some(place) = self.input.lift(&p, p.position.lerp(q.position, 0.5)) else { return };
+        let vertex = self.vertex(place);
+        let t = &self.topology;
+        let sides = || [Some(h), t.twin(h)].into_iter().flatten();
+        let halves = |side: HalfEdge| {
+            let [a, b, c] = [t.origin(side), t.target(side), t.apex(side)].map(|v| self.at(v));
+            [[a, &vertex, c], [&vertex, b, c]]
+        };
+        let before = sides().map(|side| self.leaning(t.corners(side.face()))).fold(UPRIGHT, f64::min);
+        if sides().flat_map(halves).all(|corners| leaning(corners) >= before) {
+            self.split(h, vertex);
+        }
+    }
+
+    /// Flips edges that are not Delaunay ([`Work::margin`]), where no triangle turns away from the surface.
+    pub(super) fn flip_all(&mut self) {
+        let mut stack: Vec<HalfEdge> = self.topology.edges().collect();
+        let mut flips_of_slot = vec![0_u8; 3 * self.topology.face_slots()];
+        while let Some(h) = stack.pop() {
+            let Some(twin) = self.topology.twin(h) else { continue };
+            let flips = &mut flips_of_slot[h.min(twin).index()];
+            if *flips < FLIPS_PER_SLOT && self.wants_flip(h, twin) {
+                *flips += 1;
+                self.topology.flip(h);
+                stack.extend([h.next(), h.prev(), twin.next(), twin.prev()]);
+            }
+        }
+    }
+
+    fn wants_flip(&self, h: HalfEdge, twin: HalfEdge) -> bool {
+        let t = &self.topology;
+        let [a, b, c, d] = [t.origin(h), t.target(h), t.apex(h), t.apex(twin)];
+        let joins = |u, v| t.find(u, v).is_some() || t.find(v, u).is_some();
+        let keeps = |v: VertexId| t.star(v).count() > if t.is_border_vertex(v) { 1 } else { 3 };
+        let is_held = self.at(a).is_held && self.at(b).is_held;
+        if c == d || is_held || self.margin([a, b, c, d]) >= -TIE || !keeps(a) || !keeps(b) || joins(c, d) {
+            return false;
+        }
+        let (now, then) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
+        let upright =
+            |pair: [[VertexId; 3]; 2]| pair.map(|corners| self.leaning(corners)).into_iter().fold(1.0, f64::min);
+        then.into_iter().all(|corners| self.quality(corners) > 0.0) && upright(then) >= upright(now).min(UPRIGHT)
+    }
+}

@@ -1,0 +1,216 @@
+//! A triangulation of a surface in the making: its vertices, and what is measured of its triangles.
+
+use super::{Adapted, Wanted};
+use crate::geometry::{Point3, Tensor3, Vector3};
+use crate::surface::metric::SurfaceMetric;
+use crate::surface::{Input, Place};
+use crate::triangulation::{HalfEdge, Triangulation, VertexId};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// A triangulation in the making.
+pub(super) struct Work<'a> {
+    pub(super) input: &'a Input,
+    metric: &'a dyn SurfaceMetric,
+    /// The root of the factor on the metric.
+    root: f64,
+    pub(super) topology: Triangulation,
+    pub(super) vertices: Vec<Vertex>,
+    /// Vertices of the surface that no triangle has.
+    unused: usize,
+}
+
+#[derive(Clone, Copy)]
+pub(super) struct Vertex {
+    pub(super) place: Place,
+    normal: Vector3,
+    tensor: Tensor3,
+    /// The number of the given place that it is.
+    pub(super) given: Option<u32>,
+    /// Whether it stays.
+    pub(super) is_held: bool,
+}
+
+impl Vertex {
+    /// Whether it may be contracted.
+    pub(super) fn may_go(&self) -> bool {
+        self.given.is_none() && !self.is_held
+    }
+}
+
+impl<'a> Work<'a> {
+    pub(super) fn new(input: &'a Input, metric: &'a dyn SurfaceMetric, wanted: &Wanted) -> Option<Self> {
+        let topology = input.surface.topology().clone();
+        let nowhere = input.surface.place(topology.faces().next()?, [1.0, 0.0, 0.0]);
+        let slots = (0..topology.vertex_slots() as u32).map(VertexId);
+        let places: Vec<Place> = slots.map(|v| input.surface.place_of(v).unwrap_or(nowhere)).collect();
+        let mut work = Self::of(input, metric, wanted.factor, topology, places);
+        let is_near = |p: Point3| wanted.held.iter().any(|held| held.holds(p));
+        work.vertices
+            .par_iter_mut()
+            .with_min_len(64)
+            .for_each(|vertex| vertex.is_held = is_near(vertex.place.position));
+        work.put_given(wanted.given)?;
+        Some(work)
+    }
+
+    pub(super) fn of(
+        input: &'a Input,
+        metric: &'a dyn SurfaceMetric,
+        factor: f64,
+        topology: Triangulation,
+        places: Vec<Place>,
+    ) -> Self {
+        let unused = topology.vertex_count() - topology.vertices().count();
+        let mut work = Self { input, metric, root: factor.sqrt(), topology, vertices: Vec::new(), unused };
+        work.vertices = places.into_par_iter().with_min_len(64).map(|place| work.vertex(place)).collect();
+        work
+    }
+
+    /// Makes the given places vertices: those at corners are some already, others cut edges, in their order along these.
+    fn put_given(&mut self, given: &[Place]) -> Option<()> {
+        let mut on_edges: BTreeMap<[VertexId; 2], Vec<(f64, u32)>> = BTreeMap::new();
+        for (i, place) in (0..).zip(given) {
+            let corners = self.topology.corners(place.face);
+            if let Some(k) = (0..3).find(|&k| place.weights[k] >= 1.0) {
+                let vertex = &mut self.vertices[corners[k].index()];
+                if vertex.given.replace(i).is_some() {
+                    return None;
+                }
+                continue;
+            }
+            let least = (0..3).min_by(|&j, &k| place.weights[j].total_cmp(&place.weights[k]))?;
+            let ends = [corners[(least + 1) % 3], corners[(least + 2) % 3]];
+            on_edges.entry(ends).or_default().push((place.weights[(least + 2) % 3], i));
+        }
+        for ([from, to], mut stations) in on_edges {
+            stations.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+            let mut h = self.topology.find(from, to)?;
+            for (_, i) in stations {
+                let vertex = Vertex { given: Some(i), ..self.vertex(given[i as usize]) };
+                h = self.split(h, vertex);
+            }
+        }
+        Some(())
+    }
+
+    pub(super) fn vertex(&self, place: Place) -> Vertex {
+        let (normal, tensor) = (self.input.normal(&place), self.metric.at(&place));
+        Vertex { place, normal, tensor, given: None, is_held: false }
+    }
+
+    pub(super) fn vertex_count(&self) -> usize {
+        self.topology.vertex_count() - self.unused
+    }
+
+    pub(super) fn at(&self, v: VertexId) -> &Vertex {
+        &self.vertices[v.index()]
+    }
+
+    pub(super) fn ends(&self, h: HalfEdge) -> [VertexId; 2] {
+        [self.topology.origin(h), self.topology.target(h)]
+    }
+
+    /// Puts a vertex on an edge; what is left of the edge behind it.
+    pub(super) fn split(&mut self, h: HalfEdge, vertex: Vertex) -> HalfEdge {
+        let v = self.topology.add_vertex();
+        if v.index() >= self.vertices.len() {
+            self.vertices.resize(v.index() + 1, vertex);
+        }
+        self.vertices[v.index()] = vertex;
+        self.topology.split_edge(h, v)
+    }
+
+    /// The metric length of the chord between two vertices: the mean of those in the metrics at its ends.
+    pub(super) fn length(&self, v: VertexId, w: VertexId) -> f64 {
+        let [v, w] = [v, w].map(|v| self.at(v));
+        let chord = w.place.position - v.place.position;
+        0.5 * self.root * (v.tensor.length(chord) + w.tensor.length(chord))
+    }
+
+    pub(super) fn leaning(&self, corners: [VertexId; 3]) -> f64 {
+        leaning(corners.map(|v| self.at(v)))
+    }
+
+    /// Quality in the mean metric of the corners: 1 of an equilateral triangle.
+    pub(super) fn quality(&self, corners: [VertexId; 3]) -> f64 {
+        let [uu, uv, vv] = self.products(corners);
+        3.0_f64.sqrt() * (uu * vv - uv * uv).max(0.0).sqrt() / (uu + vv - uv)
+    }
+
+    /// Area in that metric.
+    fn area(&self, corners: [VertexId; 3]) -> f64 {
+        let [uu, uv, vv] = self.products(corners);
+        0.5 * self.root * self.root * (uu * vv - uv * uv).max(0.0).sqrt()
+    }
+
+    /// Of the two edges at the first corner, in the mean metric of all, without the factor.
+    fn products(&self, [a, b, c]: [VertexId; 3]) -> [f64; 3] {
+        let tensor = self.mean([a, b, c]);
+        let [u, v] = [b, c].map(|other| self.at(other).place.position - self.at(a).place.position);
+        [tensor.dot(u, u), tensor.dot(u, v), tensor.dot(v, v)]
+    }
+
+    /// The sine of the sum of the angles that face an edge a-b from c and d, in the mean metric of the four: negative where it is
+    /// not Delaunay. Lengths that know how the metric changes would not meet the triangle inequality where it changes much.
+    pub(super) fn margin(&self, [a, b, c, d]: [VertexId; 4]) -> f64 {
+        let tensor = self.mean([a, b, c, d]);
+        let facing = |apex: VertexId| {
+            let [u, v] = [a, b].map(|end| self.at(end).place.position - self.at(apex).place.position);
+            let (uu, uv, vv) = (tensor.dot(u, u), tensor.dot(u, v), tensor.dot(v, v));
+            let size = (uu * vv).sqrt().max(f64::MIN_POSITIVE);
+            (uv / size, (uu * vv - uv * uv).max(0.0).sqrt() / size)
+        };
+        let [at_c, at_d] = [c, d].map(facing);
+        at_c.0 * at_d.1 + at_c.1 * at_d.0
+    }
+
+    fn mean<const N: usize>(&self, corners: [VertexId; N]) -> Tensor3 {
+        corners.iter().fold(Tensor3::default(), |sum, &v| sum + self.at(v).tensor) * (1.0 / N as f64)
+    }
+
+    /// How many vertices are held beyond those that the metric asks for where they are: one for two unit triangles, each of the area
+    /// `sqrt(3) / 4`.
+    pub(super) fn held_in_excess(&self) -> usize {
+        let held = self.topology.vertices().filter(|&v| self.at(v).is_held).count();
+        if held == 0 {
+            return 0;
+        }
+        let corners = self.topology.faces().map(|f| self.topology.corners(f));
+        let inside = corners.filter(|corners| corners.iter().all(|&v| self.at(v).is_held));
+        let asked = 2.0 / 3.0_f64.sqrt() * inside.map(|corners| self.area(corners)).sum::<f64>();
+        held.saturating_sub(asked as usize)
+    }
+
+    /// Vertices of the border that are not given.
+    pub(super) fn stuck(&self) -> Vec<VertexId> {
+        let is_extra = |v: &VertexId| self.topology.is_border_vertex(*v) && self.at(*v).given.is_none();
+        self.topology.vertices().filter(is_extra).collect()
+    }
+
+    pub(super) fn finished(self) -> Adapted {
+        let t = &self.topology;
+        let rank = |v: &VertexId| {
+            let vertex = self.at(*v);
+            (vertex.given.unwrap_or(u32::MAX), !vertex.is_held, *v)
+        };
+        let mut order: Vec<VertexId> = t.vertices().collect();
+        order.sort_by_key(rank);
+        let mut number = vec![u32::MAX; t.vertex_slots()];
+        for (i, v) in (0..).zip(&order) {
+            number[v.index()] = i;
+        }
+        let places: Vec<Place> = order.iter().map(|&v| self.at(v).place).collect();
+        let staying = order.iter().filter(|&&v| !self.at(v).may_go()).count();
+        let triangles: Vec<[u32; 3]> = t.faces().map(|f| t.corners(f).map(|v| number[v.index()])).collect();
+        let topology = Triangulation::from_triangles(places.len(), &triangles, &vec![0; triangles.len()]);
+        Adapted { places, staying, topology, stuck: self.stuck() }
+    }
+}
+
+/// The least cosine between a triangle's normal and those of the surface at its corners; -1 without area.
+pub(super) fn leaning(corners: [&Vertex; 3]) -> f64 {
+    let [a, b, c] = corners.map(|corner| corner.place.position);
+    let Some(normal) = (b - a).cross(c - a).unit() else { return -1.0 };
+    corners.iter().map(|corner| corner.normal.dot(normal)).fold(1.0, f64::min)
+}
