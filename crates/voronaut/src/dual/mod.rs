@@ -12,6 +12,7 @@ mod margin;
 mod mending;
 mod moving;
 mod on_surface;
+mod surface_flips;
 mod patch;
 
 pub use consult::{Consultation, Disagreement, Made, Road};

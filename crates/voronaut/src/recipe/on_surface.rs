@@ -73,7 +73,7 @@ pub fn mesh_surface(
         // Distances fall with the square of the edges: with the number of vertices.
         let more = (1.1 * ratio).min(MOST_MORE);
         (count, scale) = ((count as f64 * more).ceil() as usize, scale * more);
-        demand_memory(count as f64, job.setting.canvas_size(count) as f64, options.memory_limit)?;
+        job.demand_memory(count)?;
     }
     unreachable!("the last round returns")
 }
@@ -104,6 +104,12 @@ impl<'a> Job<'a> {
         let result = work(self);
         self.watch.add(stage, start);
         result
+    }
+
+    /// That the work for so many vertices fits into memory.
+    fn demand_memory(&self, count: usize) -> Result<()> {
+        let canvas = if self.setting.needs_canvas() { self.setting.canvas_size(count) } else { 0 };
+        demand_memory(count as f64, canvas as f64, self.setting.options.memory_limit)
     }
 
     /// A mesh with so many vertices, and how far it is from the surface, if that is asked for. Where what comes out is no mesh,
@@ -238,8 +244,7 @@ impl<'a> Job<'a> {
         // Patches with a border have their vertices there.
         let is_closed = |component: &Component| component.borders == 0;
         let least = 4 * self.setting.input.surface.components().into_iter().filter(is_closed).count();
-        let canvas = self.setting.canvas_size(count) as f64;
-        demand_memory(count as f64, canvas, self.setting.options.memory_limit)?;
+        self.demand_memory(count)?;
         let factor = if factor > 0.0 { factor } else { 1.0 };
         Ok((count.max(least), factor))
     }

@@ -1,9 +1,9 @@
 //! One pass over a surface: seeds, their triangulation, relaxed and settled, and one mesh of all patches.
 
-use super::MeshOptions;
 use super::dual::account;
 use super::patches::Patched;
 use super::stopwatch::Stopwatch;
+use super::{MeshOptions, Seeding};
 use crate::canvas::{Canvas, CanvasFigures, Draped};
 use crate::diagram::SurfaceDiagram;
 use crate::dual::{Road, SurfaceDual};
@@ -216,6 +216,11 @@ impl<'a> Setting<'a> {
         self.progress.stage("canvas", 1);
         let size = self.canvas_size(count);
         Canvas::on_surface(self.options.canvas, self.input, self.metric, size, seeds)
+    }
+
+    /// Whether seeding or settling takes a canvas.
+    pub(super) fn needs_canvas(&self) -> bool {
+        self.options.seeding == Seeding::Farthest || self.options.dual == Road::Canvas
     }
 
     /// Canvas vertices for so many seeds.

@@ -25,21 +25,24 @@ enum Manner {
 }
 
 impl Work<'_> {
-    /// Contracts the vertices of the border that are not given along it.
+    /// Contracts the vertices of the border that are not given along it. Where others stand behind a chord of the border, these go first.
     pub(super) fn contract_border(&mut self) {
-        for _ in 0..PASSES {
-            let before = self.vertex_count();
-            for v in self.stuck() {
-                self.contract_along_border(v);
+        for pass in 0..PASSES {
+            let (stuck, before) = (self.stuck(), self.vertex_count());
+            for v in stuck {
+                if !self.contract_along_border(v) && pass > 0 {
+                    self.clear_around(v);
+                }
             }
-            if self.vertex_count() == before {
+            if self.stuck().is_empty() || pass > 0 && self.vertex_count() == before {
                 return;
             }
+            self.flip_all();
         }
     }
 
-    /// Contracts a vertex of the border onto the neighbour along it with which triangles turn away least.
-    fn contract_along_border(&mut self, v: VertexId) {
+    /// Contracts a vertex of the border onto the neighbour along it with which triangles turn away least, if they may.
+    fn contract_along_border(&mut self, v: VertexId) -> bool {
         let t = &self.topology;
         let out = t.star(v).find(|&h| t.twin(h).is_none());
         let back = t.star(v).last().map(HalfEdge::prev).filter(|&h| t.twin(h).is_none());
@@ -50,10 +53,20 @@ impl Work<'_> {
         };
         let best = ways.map(|h| (worst(h), h)).max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)));
         let before = t.star(v).map(|h| self.leaning([v, t.target(h), t.apex(h)])).fold(1.0, f64::min);
-        if let Some((after, h)) = best
-            && (after >= UPRIGHT || after >= before)
-        {
-            self.collapse(v, h);
+        let Some((_, h)) = best.filter(|&(after, _)| after >= before.min(UPRIGHT)) else { return false };
+        self.collapse(v, h);
+        true
+    }
+
+    /// Contracts neighbours of a vertex of the border onto it that are not on the border.
+    fn clear_around(&mut self, v: VertexId) {
+        let around: Vec<VertexId> = self.link(v).into_iter().flatten().collect();
+        for other in around {
+            let t = &self.topology;
+            let is_there = t.is_vertex(other) && !t.is_border_vertex(other);
+            if let Some(h) = is_there.then(|| t.find(other, v)).flatten() {
+                self.contract(h, Manner::Upright);
+            }
         }
     }
 
