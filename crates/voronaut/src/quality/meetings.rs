@@ -40,6 +40,11 @@ impl Meetings {
         self.found().size()
     }
 
+    /// Where one of them is.
+    pub fn first(&self) -> Option<Point3> {
+        self.found().iter().next().map(|met| Point3::from(met.geom().lower()))
+    }
+
     /// Whether the surface meets itself within `reach` of a place: a mesh with edges of that length, whose chords leave the
     /// surface, may then do so there. Neighbours (triangles with a common vertex) may only where neighbours of the surface do: else
     /// any fold beside a place where sheets cross would pass for one of the surface.

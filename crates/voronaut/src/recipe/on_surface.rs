@@ -19,9 +19,10 @@ const MEASURING: usize = 20_000;
 /// Rounds of more vertices for the sake of the distance to the surface at most, and how many times as many at most in one.
 const ROUNDS: usize = 5;
 const MOST_MORE: f64 = 3.0;
-/// A round that brings the distance down by less than this factor is the last: facets of the surface, not the number of
-/// vertices, keep it up.
+/// The second round that brings the distance down by less than this factor, beside the best before, is the last: facets of the surface,
+/// not the number of vertices, keep it up. One may be chance, for a single triangle is what counts.
 const GAIN: f64 = 1.2;
+const IDLE_ROUNDS: usize = 2;
 /// Where the number of vertices misses what was asked for by a greater share, a note says why.
 const COUNT_TOLERANCE: f64 = 0.01;
 /// Where a mesh is none, it is made anew, so often at most; more and more of the surface's own triangles are kept,
@@ -53,15 +54,17 @@ pub fn mesh_surface(
     let closer = asked.map(|hausd| Closer::new(metric, input, hausd)).transpose()?;
     let metric = closer.as_ref().map_or(metric, |closer| closer as &dyn SurfaceMetric);
     let (curves, meetings) = (MeasuredCurves::new(input, metric), Meetings::of(input.whole_mesh()));
+    demand_apart(input, &meetings)?;
     let setting = Setting { input, metric, options, progress, curves, meetings };
     let mut job = Job { setting, watch: Stopwatch::default() };
     let (mut count, mut scale) = job.timed("plan", Job::plan)?;
-    let mut last = f64::INFINITY;
+    let (mut least, mut idle) = (f64::INFINITY, 0);
     for round in 1.. {
         let (mut meshed, fidelity) = job.meshed(count, scale)?;
         let distance = fidelity.as_ref().map_or(0.0, |found| found.both.hausdorff);
         let ratio = options.hausd.map_or(0.0, |most| distance / most.max(f64::MIN_POSITIVE));
-        let is_last = options.vertices.is_some() || round == ROUNDS || last < GAIN * ratio;
+        idle += usize::from(least < GAIN * ratio);
+        let is_last = options.vertices.is_some() || round == ROUNDS || idle == IDLE_ROUNDS;
         if ratio > 1.0 && is_last {
             let most = options.hausd.unwrap_or_default();
             meshed.notes.push(format!("mesh and surface are {distance:.3e} apart where --hausd asks for {most:.3e}"));
@@ -69,7 +72,7 @@ pub fn mesh_surface(
         if ratio <= 1.0 || is_last {
             return Ok(Meshed { fidelity, seconds: job.watch.seconds, ..meshed });
         }
-        last = ratio;
+        least = least.min(ratio);
         // Distances fall with the square of the edges: with the number of vertices.
         let more = (1.1 * ratio).min(MOST_MORE);
         (count, scale) = ((count as f64 * more).ceil() as usize, scale * more);
@@ -91,6 +94,17 @@ fn demand_supported(options: &MeshOptions) -> Result<()> {
         let help = "leave the option out: surfaces are seeded by farthest points".into();
         Err(Error::Unsupported { what: format!("{what} on a surface"), help })
     })
+}
+
+/// The triangles of an equation are ours: where they meet, that is no property of what the user gave.
+fn demand_apart(input: &Input, meetings: &Meetings) -> Result<()> {
+    match input.implicit.as_ref().and_then(|_| meetings.first()) {
+        None => Ok(()),
+        Some(place) => {
+            let help = "give an equation whose sheets stay apart, or shorter edges for its triangles";
+            Err(Error::domain("triangles of f = 0 meet: sheets are too close there", place.to_string(), help))
+        }
+    }
 }
 
 struct Job<'a> {
