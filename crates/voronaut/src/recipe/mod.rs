@@ -75,7 +75,7 @@ pub struct MeshOptions {
     pub centroid: Centroid,
     /// Sweeps of polishing, at most, where the mesh is for a function ([`Aim`]); see [`crate::optimise::polish`].
     pub polish: usize,
-    /// Which road decides on the topology.
+    /// Which road decides on the topology. On a surface it is by lengths unless it is [`Road::Canvas`].
     pub dual: Road,
     /// How distances on the canvas are computed where a diagram settles edges; seeding marches.
     pub geodesic: Method,

@@ -91,7 +91,7 @@ fn demand_supported(options: &MeshOptions) -> Result<()> {
         None
     };
     planar.map_or(Ok(()), |what| {
-        let help = "leave the option out: surfaces are seeded by farthest points".into();
+        let help = "leave the option out: surfaces are seeded from their own triangles, or by farthest points".into();
         Err(Error::Unsupported { what: format!("{what} on a surface"), help })
     })
 }
@@ -127,7 +127,7 @@ impl<'a> Job<'a> {
     }
 
     /// A mesh with so many vertices, and how far it is from the surface, if that is asked for. Where what comes out is no mesh,
-    /// or folded, it is made again with seeds there.
+    /// or folded, it is made again with more of the surface there.
     fn meshed(&mut self, count: usize, scale: f64) -> Result<(Meshed, Option<SurfaceFidelity>)> {
         let mut reseed = Reseed::default();
         let mut notes = Vec::new();

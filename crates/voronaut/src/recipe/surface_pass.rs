@@ -89,10 +89,8 @@ pub(super) struct Reseed {
 impl Reseed {
     /// What to tell the user.
     pub(super) fn note(&self) -> Option<String> {
-        (self.rounds > 0).then(|| {
-            let count = self.places.len();
-            format!("made anew {} times, with {count} seeds where triangles met or folded over", self.rounds)
-        })
+        let count = self.held.len();
+        (count > 0).then(|| format!("made anew {} times, for {count} triangles met or were folded over", self.rounds))
     }
 }
 
@@ -124,7 +122,9 @@ impl<'a> Setting<'a> {
         let start = self.started(&canvas, &seeded, &given[..owners.len()], scale)?;
         let (dual, relaxed) = self.relaxed(start, owners.len(), self.options.lloyd)?;
         watch.add("relax", begin);
-        self.settled(Pass::new(self.input, dual, features, owners, seeded.added, relaxed), watch)
+        let mut pass = self.settled(Pass::new(self.input, dual, features, owners, seeded.added, relaxed), watch)?;
+        pass.settled.figures.get_or_insert_with(|| canvas.figures());
+        Ok(pass)
     }
 
     /// A pass that starts from the surface's own triangles, with so many steps of relaxation. Without any, not even of flips, triangles

@@ -1,12 +1,13 @@
 //! Meshes of surfaces: valid, of the surface's topology, with their vertices on it.
 
 use voronaut::canvas::Kind;
+use voronaut::dual::Road;
 use voronaut::formats::TensorOrder;
 use voronaut::geometry::Tensor3;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::quality::{surface_fidelity, surface_quality, validity};
-use voronaut::recipe::{MeshOptions, Meshed, mesh_surface};
+use voronaut::recipe::{MeshOptions, Meshed, Seeding, mesh_surface};
 use voronaut::surface::metric::{Spec, SurfaceMetric, field};
 use voronaut::surface::{Implicit, Input, Place, read};
 
@@ -64,7 +65,9 @@ fn meshes_are_valid_and_of_the_surface_s_topology() {
 fn any_number_of_threads_and_any_canvas_make_a_mesh() {
     let input = read("torus:2,0.7", None).unwrap();
     for canvas in Kind::ALL {
-        let options = MeshOptions { vertices: Some(600), canvas, lloyd: 4, canvas_size: 20, ..MeshOptions::default() };
+        let (seeding, dual) = (Seeding::Farthest, Road::Canvas);
+        let few = MeshOptions { lloyd: 4, canvas_size: 20, ..MeshOptions::default() };
+        let options = MeshOptions { vertices: Some(600), canvas, seeding, dual, ..few };
         let of_threads = [1, 3].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| meshed(&input, "curvature", &options).0.mesh)
@@ -72,6 +75,13 @@ fn any_number_of_threads_and_any_canvas_make_a_mesh() {
         assert_eq!(of_threads[0], of_threads[1], "{canvas}");
         assert!(validity(&of_threads[0]).valid);
     }
+    let of_threads = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let options = MeshOptions { vertices: Some(600), ..MeshOptions::default() };
+        pool.install(|| meshed(&input, "curvature", &options).0)
+    });
+    assert_eq!(of_threads[0].mesh, of_threads[1].mesh);
+    assert!(of_threads[0].canvas.is_none());
 }
 
 #[test]
