@@ -90,7 +90,7 @@ impl Reseed {
     /// What to tell the user.
     pub(super) fn note(&self) -> Option<String> {
         let count = self.held.len();
-        (count > 0).then(|| format!("made anew {} times, for {count} triangles met or were folded over", self.rounds))
+        (count > 0).then(|| format!("made anew {} times: {count} triangles met or were folded over", self.rounds))
     }
 }
 
