@@ -356,15 +356,22 @@ mod tests {
         Aabb3 { min: Point3::new(-half, -half, -half), max: Point3::new(half, half, half) }
     }
 
-    /// Lengths of edges are between parts of what the curvature asks for, there and where it is largest.
-    fn check_lengths(surface: &Surface, f: &dyn Implicit, edge: f64) {
+    /// Lengths of edges are between parts of what the curvature asks for, there and where it is largest. (Edges from one edge
+    /// of the box to another may be shorter: there the surface cuts a corner off, which may be small.)
+    fn check_lengths(surface: &Surface, f: &dyn Implicit, bounds: Aabb3, edge: f64) {
         let t = surface.topology();
         let asked = |p: Point3| (BEND / curvatures(&f.jet(p)).unwrap().values[0].abs()).clamp(FINEST * edge, edge);
         let finest = surface.positions().iter().map(|&p| asked(p)).fold(edge, f64::min);
+        let sides = bounds.min.to_array().into_iter().zip(bounds.max.to_array());
+        let on_edge =
+            |p: Point3| p.to_array().into_iter().zip(sides.clone()).filter(|(x, (a, b))| x == a || x == b).count() >= 2;
         for h in t.edges() {
             let [p, q] = [t.origin(h), t.target(h)].map(|v| surface.position(v));
             let length = p.distance(q);
-            assert!(length > 0.3 * finest, "{length} where {finest} was the finest");
+            assert!(
+                on_edge(p) && on_edge(q) || length > 0.3 * finest,
+                "{length} where {finest} was the finest, {p} - {q}"
+            );
             assert!(length < 2.0 * asked(p).max(asked(q)), "{length} where {} was asked for", asked(p));
         }
     }
@@ -385,7 +392,7 @@ mod tests {
             prop_assert!(fold < 60.0 && bend < 90.0, "{} {}", fold, bend);
             let [least, narrow] = angles(&surface);
             prop_assert!(least > 2.0 && narrow < 0.01, "{} {}", least, narrow);
-            check_lengths(&surface, &f, edge);
+            check_lengths(&surface, &f, bounds, edge);
             prop_assert_eq!((surface.euler_characteristic(), surface.border_loops().len()), (case.euler, case.borders));
             for &p in surface.positions() {
                 let jet = f.jet(p);
@@ -397,6 +404,27 @@ mod tests {
         }
     }
 
+    /// The last of 19 steps of 0.3 / 19 from -0.15 was beyond 0.15 but for rounding: nothing on that side could move.
+    #[test]
+    fn rounded_grids_do_not_leave_the_box() {
+        let equation = "u^2+v^2-0.4949703542370771*w^2-0.2913594517463995^2";
+        let scale = 10.0_f64.powi(-1);
+        let f = turned(equation, [0.0, 0.157_078_889_634_424_12], scale);
+        let (bounds, edge) = (cube(1.5 * scale), 3.0 * scale / 20.617_434_139_085_58);
+        check_lengths(&mesh_implicit(&f, bounds, Some(edge)).unwrap(), &f, bounds, edge);
+    }
+
+    /// An edge of its border is short: the surface passes near to the corner (-1.5, 1.5, -1.5).
+    #[test]
+    fn a_corner_of_the_box_may_be_cut_off() {
+        let f = turned("u^2+v^2-0.44962*w^2-0.37428^2", [0.37009, 0.39656], 1.0);
+        let (bounds, edge) = (cube(1.5), 3.0 / 25.42836);
+        let surface = mesh_implicit(&f, bounds, Some(edge)).unwrap();
+        check_lengths(&surface, &f, bounds, edge);
+        let corner = Point3::new(-1.5, 1.5, -1.5);
+        assert!(surface.positions().iter().filter(|p| p.distance(corner) < 0.15 * edge).count() == 2);
+    }
+
     #[test]
     fn the_chair_has_no_folds() {
         let surface = crate::surface::chair(None).unwrap();
@@ -404,7 +432,7 @@ mod tests {
         let ([fold, bend], [least, _]) = (folds(&surface, &f), angles(&surface));
         assert!(fold < 30.0 && bend < 45.0 && least > 15.0, "{fold} {bend} {least}");
         assert!(surface.topology().vertex_count() < 20_000);
-        check_lengths(&surface, &f, 0.9 * 12.0 / 64.0);
+        check_lengths(&surface, &f, cube(6.0), 0.9 * 12.0 / 64.0);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 /// Values of a function at the vertices of a grid.
 pub(super) struct Grid {
-    min: Point3,
+    bounds: Aabb3,
     step: Vector3,
     /// Cubes along each axis.
     cubes: [usize; 3],
@@ -46,7 +46,7 @@ impl Grid {
         }
         let cubes = counts.map(|count| count as usize);
         let step = Vector3::new(extent.x / counts[0], extent.y / counts[1], extent.z / counts[2]);
-        let mut grid = Self { min: bounds.min, step, cubes, values: Vec::new() };
+        let mut grid = Self { bounds, step, cubes, values: Vec::new() };
         grid.values = (0..needed as usize).into_par_iter().map(|i| f.value(grid.position(i))).collect();
         match grid.values.iter().position(|value| value.is_nan()) {
             None => Ok(grid),
@@ -68,11 +68,21 @@ impl Grid {
         self.step.x.min(self.step.y).min(self.step.z)
     }
 
-    /// Where a vertex is.
+    /// Where a vertex is; those of the sides are in the sides, exactly: what lands beyond them is outside.
     pub(super) fn position(&self, vertex: usize) -> Point3 {
+        let [low, high] = [self.bounds.min, self.bounds.max].map(Point3::to_array);
+        let (at, cubes) = (self.indices(vertex), self.cubes);
+        let [x, y, z] = [0, 1, 2].map(|i| {
+            let part = at[i] as f64 / cubes[i] as f64;
+            low[i] * (1.0 - part) + high[i] * part
+        });
+        Point3::new(x, y, z)
+    }
+
+    /// The numbers of a vertex along the axes.
+    fn indices(&self, vertex: usize) -> [usize; 3] {
         let [nx, ny, _] = self.cubes;
-        let (i, j, k) = (vertex % (nx + 1), vertex / (nx + 1) % (ny + 1), vertex / ((nx + 1) * (ny + 1)));
-        self.min + Vector3::new(self.step.x * i as f64, self.step.y * j as f64, self.step.z * k as f64)
+        [vertex % (nx + 1), vertex / (nx + 1) % (ny + 1), vertex / ((nx + 1) * (ny + 1))]
     }
 
     /// A point of the edge between two grid vertices, at a part of its length.
@@ -82,9 +92,8 @@ impl Grid {
 
     /// On which sides of the box a vertex is, along each axis: 1 on the upper one, -1 on the lower one, else 0.
     pub(super) fn sides(&self, vertex: usize) -> [i8; 3] {
-        let [nx, ny, nz] = self.cubes;
-        let (i, j, k) = (vertex % (nx + 1), vertex / (nx + 1) % (ny + 1), vertex / ((nx + 1) * (ny + 1)));
-        [(i, nx), (j, ny), (k, nz)].map(|(i, n)| i8::from(i == n) - i8::from(i == 0))
+        let (at, cubes) = (self.indices(vertex), self.cubes);
+        [0, 1, 2].map(|i| i8::from(at[i] == cubes[i]) - i8::from(at[i] == 0))
     }
 
     /// The value at a vertex.
