@@ -55,6 +55,15 @@ fn triangulation_is_blind_to_positions() {
     }
 }
 
+/// Edges that wait for a test after a flip are there only.
+#[test]
+fn lawson_s_flips_are_one_module() {
+    for source in sources().iter().filter(|source| source.name != "triangulation/lawson.rs") {
+        let flips = source.code.contains("topology.flip(");
+        assert!(!(flips && source.code.contains(".pop()")), "{} has a loop of flips of its own", source.name);
+    }
+}
+
 #[test]
 fn the_library_never_prints() {
     for source in &sources() {

@@ -1,7 +1,7 @@
 //! Flips to the intrinsic Delaunay triangulation, by lengths alone (Bobenko and Springborn 2007; Fisher et al. 2007).
 
 use crate::geodesic::Angles;
-use crate::triangulation::{HalfEdge, Triangulation};
+use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation};
 
 /// Margins (sine of the sum of opposite angles) above minus this are ties: flipping them gains nothing.
 const TIE: f64 = 1e-9;
@@ -12,32 +12,38 @@ const FLIPS_PER_SLOT: u8 = 20;
 /// Flips every edge whose two opposite angles sum to more than pi, until none is left. Constraints do not hold edges
 /// back: distances pass through features. Returns the number of flips.
 pub(super) fn to_intrinsic_delaunay(topology: &mut Triangulation) -> u64 {
-    let mut stack: Vec<HalfEdge> = topology.edges().collect();
-    let mut flips_of_slot = vec![0_u8; 3 * topology.face_slots()];
-    let mut flips: u64 = 0;
-    while let Some(h) = stack.pop() {
-        let Some(t) = topology.twin(h).filter(|t| t.face() != h.face()) else { continue };
-        let slot = h.min(t).index();
-        if flips_of_slot[slot] == FLIPS_PER_SLOT {
-            continue;
-        }
-        let quad = Quad::around(topology, h, t);
-        if quad.margin() >= -TIE {
-            continue;
-        }
-        let diagonal = quad.other_diagonal();
-        // By rounding: two vertices of a needle may fall together.
-        if !(diagonal > 0.0 && diagonal.is_finite()) {
-            continue;
-        }
-        topology.clear_constraint(h);
-        topology.flip(h);
-        topology.set_length(h, diagonal);
-        flips_of_slot[slot] += 1;
-        flips += 1;
-        stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
+    let mut lawson = Lawson::default();
+    lawson.queue(topology.edges());
+    lawson.pass(&mut Intrinsic { topology, diagonal: f64::NAN }, Limit::OfSlot(FLIPS_PER_SLOT)).len() as u64
+}
+
+struct Intrinsic<'a> {
+    topology: &'a mut Triangulation,
+    /// The length of what comes of the edge that was looked at last.
+    diagonal: f64,
+}
+
+impl Flipping for Intrinsic<'_> {
+    fn topology(&mut self) -> &mut Triangulation {
+        self.topology
     }
-    flips
+
+    /// Rounding may let two vertices of a needle fall together: then not.
+    fn wants_flip(&mut self, h: HalfEdge) -> bool {
+        let Some(t) = self.topology.twin(h).filter(|t| t.face() != h.face()) else { return false };
+        let quad = Quad::around(self.topology, h, t);
+        if quad.margin() >= -TIE {
+            return false;
+        }
+        self.diagonal = quad.other_diagonal();
+        self.diagonal > 0.0 && self.diagonal.is_finite()
+    }
+
+    fn flip(&mut self, h: HalfEdge) {
+        self.topology.clear_constraint(h);
+        self.topology.flip(h);
+        self.topology.set_length(h, self.diagonal);
+    }
 }
 
 /// The lengths of an edge a-b and of the outer edges of its faces a b c and b a d.

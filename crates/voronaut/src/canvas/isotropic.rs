@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::{MetricField, check_tensor};
 use crate::planar::Planar;
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
 
 /// The size at a point is a sixth of the metric's unit in its finest direction: the authors' choice.
 const SHARE: f64 = 1.0 / 6.0;
@@ -41,8 +41,7 @@ pub(super) fn refine(
 ) -> Result<Planar> {
     let mut refiner =
         Refiner { steiner: Steiner::euclidean(planar), field, sizes: until.sizes, queue: Buckets::default() };
-    let mut edges: Vec<HalfEdge> = refiner.steiner.planar.topology.edges().collect();
-    refiner.steiner.planar.legalise(&mut edges);
+    refiner.steiner.flip_all();
     for f in refiner.steiner.planar.topology.faces().collect::<Vec<_>>() {
         refiner.examine(f)?;
     }
@@ -124,13 +123,13 @@ fn circle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
 
 /// Halves edges, given by their ends, and flips by the Euclidean test; an edge that is gone is passed over.
 pub(super) fn halve(mut planar: Planar, edges: &[[VertexId; 2]], counters: &mut CanvasCounters) -> Planar {
-    let mut stack = Vec::new();
+    let mut lawson = Lawson::default();
     for &[a, b] in edges {
         let Some(h) = planar.topology.find(a, b).or_else(|| planar.topology.find(b, a)) else { continue };
         let [p, q] = planar.ends(h);
         if let Some((v, _)) = planar.insert_on_edge(h, p.midpoint(q)) {
-            stack.extend(planar.topology.star(v).map(HalfEdge::next));
-            planar.legalise(&mut stack);
+            lawson.queue(planar.topology.star(v).map(HalfEdge::next));
+            planar.legalise(&mut lawson);
             counters.splits += 1;
         }
     }
@@ -182,8 +181,9 @@ mod tests {
         let canvas = Canvas::isotropic(&domain, &Shock { phi: 1.0, lambda: 0.6 }, 3000).unwrap();
         assert_eq!(canvas.vertex_count(), 3000);
         let mut planar = canvas.embedded().clone();
-        let mut edges: Vec<HalfEdge> = planar.topology.edges().collect();
-        planar.legalise(&mut edges);
+        let mut lawson = Lawson::default();
+        lawson.queue(planar.topology.edges());
+        planar.legalise(&mut lawson);
         let corners = |p: &Planar| p.topology.faces().map(|f| p.topology.corners(f)).collect::<Vec<_>>();
         assert_eq!(corners(&planar), corners(canvas.embedded()));
         let (ratio, angle) = worst(&canvas, &Shock { phi: 1.0, lambda: 0.6 });

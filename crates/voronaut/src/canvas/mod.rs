@@ -12,6 +12,7 @@ mod consistent;
 mod draped;
 mod extent;
 mod flip;
+mod frozen;
 mod isotropic;
 mod kind;
 mod lengths;

@@ -5,12 +5,13 @@
 
 use super::CanvasCounters;
 use super::buckets::Buckets;
+use super::frozen::{self, Frozen};
 use crate::error::Result;
-use crate::geodesic::{chord, frozen_margin};
+use crate::geodesic::chord;
 use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, check_tensor};
 use crate::planar::Planar;
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
 use rayon::prelude::*;
 
 /// Edges are measured by five evaluations of the field while there are fewer vertices than this, by one from then on:
@@ -18,13 +19,8 @@ use rayon::prelude::*;
 const COARSE: usize = 20_000;
 /// Ends agree on an edge's length if they differ by less than this share of their sum.
 const ALIKE: f64 = 0.05;
-/// The frozen-tensor test must be violated by more than this (sine of the angles' sum) for a flip: tests of neighbouring
-/// quadrilaterals with different tensors contradict each other near zero.
-const CLEARLY: f64 = 1e-2;
 /// A fixed edge that the middle of another sees under an angle with a cosine below this is halved first.
 const CREEPING: f64 = -0.99;
-/// Flips after one split at most; measured was a little more than one in the mean.
-const FLIPS_PER_SPLIT: usize = 64;
 /// Faces no higher than this share of their coordinates are flat.
 const ROUNDING: f64 = 1e-15;
 
@@ -75,7 +71,8 @@ struct Refiner<'a> {
     tensors: Vec<Tensor>,
     field: &'a dyn MetricField,
     queue: Buckets<[VertexId; 2]>,
-    stack: Vec<HalfEdge>,
+    lawson: Lawson,
+    changed: Vec<FaceId>,
 }
 
 impl<'a> Refiner<'a> {
@@ -85,7 +82,7 @@ impl<'a> Refiner<'a> {
         for v in planar.topology.vertices() {
             check_tensor(tensors[v.index()], planar.position(v))?;
         }
-        Ok(Self { planar, tensors, field, queue: Buckets::default(), stack: Vec::new() })
+        Ok(Self { planar, tensors, field, queue: Buckets::default(), lawson: Lawson::default(), changed: Vec::new() })
     }
 
     fn edge(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
@@ -146,35 +143,10 @@ impl<'a> Refiner<'a> {
     }
 
     fn flip_around(&mut self, v: VertexId) -> u64 {
-        let link = self.planar.topology.star(v).map(HalfEdge::next);
-        self.stack.extend(link);
-        let mut flips = 0;
-        while let Some(h) = self.stack.pop() {
-            if self.planar.topology.is_fixed(h) || self.margin(h) > -CLEARLY || !self.planar.is_convex(h) {
-                continue;
-            }
-            let t = self.planar.topology.twin(h).expect("not fixed");
-            self.planar.topology.flip(h);
-            flips += 1;
-            if flips == FLIPS_PER_SPLIT {
-                self.stack.clear();
-                break;
-            }
-            // h now runs from d to c, one of which is v: the other two edges of its two faces face v.
-            let facing = |e: HalfEdge| self.planar.topology.apex(e) == v;
-            let outer = [h.next(), h.prev(), t.next(), t.prev()];
-            self.stack.extend(outer.into_iter().filter(|&e| facing(e)));
-        }
-        flips as u64
-    }
-
-    fn margin(&self, h: HalfEdge) -> f64 {
-        let topology = &self.planar.topology;
-        let t = topology.twin(h).expect("not fixed");
-        let quad = [topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)];
-        let mean = quad.iter().fold(Tensor::default(), |sum, v| sum + self.tensors[v.index()]) * 0.25;
-        let [a, b, c, d] = quad.map(|v| self.planar.position(v));
-        frozen_margin(mean, [a - c, b - c], [b - d, a - d])
+        let Self { planar, tensors, lawson, changed, .. } = self;
+        lawson.queue(planar.topology.star(v).map(HalfEdge::next));
+        changed.clear();
+        lawson.pass(&mut Frozen { planar, tensors, around: Some(v), changed }, frozen::LIMIT).len() as u64
     }
 
     fn enqueue(&mut self, h: HalfEdge) {

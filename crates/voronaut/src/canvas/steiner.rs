@@ -1,20 +1,16 @@
 //! Points put into an embedded triangulation by Delaunay refinement, with care for what is fixed (Ruppert 1995): a point
 //! that would lie in the diametral circle of a fixed edge, or beyond it, is not inserted; the edge is halved instead.
 
+use super::frozen::{self, Frozen};
 use crate::error::Result;
-use crate::geodesic::frozen_margin;
 use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, check_tensor};
 use crate::planar::{Location, Planar};
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
 
 /// Fixed edges shorter than this share of the circle that asks for it are not halved: under a small angle between
 /// two of them halving would go on for long.
 const SHORTEST: f64 = 0.05;
-/// The frozen-tensor test must be violated by more than this (sine of the angles' sum) for a flip.
-const CLEARLY: f64 = 1e-2;
-/// Flips in a metric after one insertion at most: tests with different tensors contradict each other.
-const FLIPS_PER_POINT: usize = 64;
 
 /// What became of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,14 +30,14 @@ pub(super) struct Steiner<'a> {
     field: Option<&'a dyn MetricField>,
     /// One per vertex slot, where there is a metric.
     pub(super) tensors: Vec<Tensor>,
-    stack: Vec<HalfEdge>,
+    lawson: Lawson,
     changed: Vec<FaceId>,
 }
 
 impl<'a> Steiner<'a> {
     /// In the Euclidean plane, from a constrained Delaunay triangulation.
     pub(super) fn euclidean(planar: Planar) -> Self {
-        Self { planar, field: None, tensors: Vec::new(), stack: Vec::new(), changed: Vec::new() }
+        Self { planar, field: None, tensors: Vec::new(), lawson: Lawson::default(), changed: Vec::new() }
     }
 
     /// In a metric, from any triangulation.
@@ -128,40 +124,25 @@ impl<'a> Steiner<'a> {
             self.tensors.resize(self.planar.positions.len(), tensor);
             self.tensors[v.index()] = tensor;
         }
-        self.stack.extend(self.planar.topology.star(v).map(HalfEdge::next));
+        self.lawson.queue(self.planar.topology.star(v).map(HalfEdge::next));
         self.flip();
         self.changed.extend(self.planar.topology.star(v).map(HalfEdge::face));
         Ok(())
     }
 
-    fn flip(&mut self) {
-        if self.field.is_none() {
-            self.planar.legalise(&mut self.stack);
-            return;
-        }
-        let mut flips = 0;
-        while let Some(h) = self.stack.pop() {
-            if self.planar.topology.is_fixed(h) || self.margin(h) > -CLEARLY || !self.planar.is_convex(h) {
-                continue;
-            }
-            let Some(t) = self.planar.topology.twin(h) else { continue };
-            self.planar.topology.flip(h);
-            self.stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
-            self.changed.extend([h.face(), t.face()]);
-            flips += 1;
-            if flips == FLIPS_PER_POINT {
-                self.stack.clear();
-            }
-        }
+    /// Flips every edge that the test wants flipped.
+    pub(super) fn flip_all(&mut self) {
+        self.lawson.queue(self.planar.topology.edges());
+        self.flip();
     }
 
-    fn margin(&self, h: HalfEdge) -> f64 {
-        let topology = &self.planar.topology;
-        let Some(t) = topology.twin(h) else { return 0.0 };
-        let quad = [topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)];
-        let mean = quad.iter().fold(Tensor::default(), |sum, v| sum + self.tensors[v.index()]) * 0.25;
-        let [a, b, c, d] = quad.map(|v| self.planar.position(v));
-        frozen_margin(mean, [a - c, b - c], [b - d, a - d])
+    fn flip(&mut self) {
+        let Self { planar, tensors, lawson, changed, .. } = self;
+        if self.field.is_none() {
+            planar.legalise(lawson);
+        } else {
+            lawson.pass(&mut Frozen { planar, tensors, around: None, changed }, frozen::LIMIT);
+        }
     }
 
     /// Moves a vertex, without flips; says whether it could.
@@ -192,7 +173,7 @@ impl<'a> Steiner<'a> {
             return false;
         }
         let inside: Vec<HalfEdge> = link.iter().filter_map(|&[a, b]| self.planar.topology.find(a, b)).collect();
-        self.stack.extend(inside.iter().flat_map(|h| h.face().half_edges()));
+        self.lawson.queue(inside.iter().flat_map(|h| h.face().half_edges()));
         self.flip();
         for [a, b] in link {
             self.changed.extend(self.planar.topology.find(a, b).map(HalfEdge::face));

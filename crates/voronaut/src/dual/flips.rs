@@ -3,14 +3,13 @@
 use super::margin::pair;
 use super::{Dual, Effort, Margin};
 use crate::geometry::Tensor;
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::{Flipping, HalfEdge, Limit, Triangulation, VertexId};
 
 /// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
 const TIE: f64 = 1e-9;
 
-/// How often one pass flips the edge in one slot: inconsistent tests can make flips go round in a circle, which must
-/// neither last for ever nor keep the rest of the mesh from its flips.
-const FLIPS_PER_SLOT: u8 = 6;
+/// Inconsistent tests can make flips go round in a circle.
+const LIMIT: Limit = Limit::OfSlot(6);
 
 /// A flip may not leave a triangle whose quality is below this if both were better before: where lengths of straight
 /// edges contradict each other, or geodesics bend away from them, it would leave slivers.
@@ -25,17 +24,15 @@ impl Dual<'_> {
             self.flip_all(Effort::Chord);
             self.measure_margins();
         }
-        let edges: Vec<HalfEdge> = self.planar.topology.edges().collect();
-        self.stack.extend(edges);
-        self.flip_stacked(effort);
+        self.lawson.queue(self.planar.topology.edges());
+        self.flip_queued(effort);
         self.counters.flips - before
     }
 
     /// Flips around a vertex and onwards.
     pub fn flip_around(&mut self, v: VertexId, effort: Effort) -> u64 {
-        let star = self.planar.topology.star(v).flat_map(|h| [h, h.next()]);
-        self.stack.extend(star);
-        self.flip_stacked(effort)
+        self.lawson.queue(self.planar.topology.star(v).flat_map(|h| [h, h.next()]));
+        self.flip_queued(effort)
     }
 
     /// Edges that the metric wants flipped and the plane forbids, with their margins, certain or not.
@@ -61,37 +58,17 @@ impl Dual<'_> {
         !self.known.held.is_empty() && self.known.held.contains(&pair(topology.origin(h), topology.target(h)))
     }
 
-    fn flip_stacked(&mut self, effort: Effort) -> u64 {
-        let mut flipped: Vec<HalfEdge> = Vec::new();
-        while let Some(h) = self.stack.pop() {
-            if self.planar.topology.is_fixed(h)
-                || self.is_held(h)
-                || self.margin(h, effort).value >= -TIE
-                || !self.allows_flip(h)
-            {
-                continue;
-            }
-            let slot = self.planar.topology.twin(h).map_or(h, |t| h.min(t));
-            self.flips_of_slot.resize(3 * self.planar.topology.face_slots(), 0);
-            let count = &mut self.flips_of_slot[slot.index()];
-            if *count < FLIPS_PER_SLOT {
-                *count += 1;
-                flipped.push(slot);
-                self.flip(h);
-            }
-        }
-        for slot in &flipped {
-            self.flips_of_slot[slot.index()] = 0;
-        }
-        flipped.len() as u64
+    fn flip_queued(&mut self, effort: Effort) -> u64 {
+        let mut lawson = std::mem::take(&mut self.lawson);
+        let flips = lawson.pass(&mut ByMargin { dual: self, effort }, LIMIT).len() as u64;
+        self.lawson = lawson;
+        flips
     }
 
     /// Whether the plane allows a flip: the quadrilateral is strictly convex, and the flip leaves no straight triangle
     /// that is poor in the metric and poorer than both of before.
     pub(super) fn allows_flip(&self, h: HalfEdge) -> bool {
-        let topology = self.topology();
-        let Some(t) = topology.twin(h).filter(|_| self.planar.is_convex(h)) else { return false };
-        let [a, b, c, d] = [topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)];
+        let Some([a, b, c, d]) = self.topology().quad(h).filter(|_| self.planar.is_convex(h)) else { return false };
         let after = self.shape([d, b, c]).min(self.shape([c, a, d]));
         after > POOR || after > self.shape([a, b, c]).min(self.shape([b, a, d]))
     }
@@ -101,12 +78,28 @@ impl Dual<'_> {
         let tensor = corners.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / 3.0);
         tensor.shape(corners.map(|v| self.position(v)))
     }
+}
+
+/// A dual that flips by margins measured with some effort.
+struct ByMargin<'a, 'b> {
+    dual: &'a mut Dual<'b>,
+    effort: Effort,
+}
+
+impl Flipping for ByMargin<'_, '_> {
+    fn topology(&mut self) -> &mut Triangulation {
+        &mut self.dual.planar.topology
+    }
+
+    fn wants_flip(&mut self, h: HalfEdge) -> bool {
+        let is_held = self.dual.planar.topology.is_fixed(h) || self.dual.is_held(h);
+        !is_held && self.dual.margin(h, self.effort).value < -TIE && self.dual.allows_flip(h)
+    }
 
     fn flip(&mut self, h: HalfEdge) {
-        let t = self.planar.topology.twin(h).expect("not fixed");
-        self.planar.topology.flip(h);
-        self.counters.flips += 1;
-        self.touched.extend([h.face(), t.face()]);
-        self.stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
+        let topology = &mut self.dual.planar.topology;
+        topology.flip(h);
+        self.dual.counters.flips += 1;
+        self.dual.touched.extend([Some(h), topology.twin(h)].into_iter().flatten().map(HalfEdge::face));
     }
 }

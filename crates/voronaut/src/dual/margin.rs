@@ -185,9 +185,8 @@ impl Dual<'_> {
     }
 
     pub(super) fn quad(&self, h: HalfEdge) -> Quad {
-        let topology = self.topology();
-        let t = topology.twin(h).expect("an edge with two faces");
-        Quad { a: topology.origin(h), b: topology.target(h), c: topology.apex(h), d: topology.apex(t) }
+        let [a, b, c, d] = self.topology().quad(h).expect("an edge with two faces");
+        Quad { a, b, c, d }
     }
 
     /// All levels but the last.

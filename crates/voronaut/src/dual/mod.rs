@@ -28,7 +28,7 @@ use crate::geodesic::{LocalMetric, Paths, chord, hermite};
 use crate::geometry::{Point, Readable, Tensor};
 use crate::metric::Scaled;
 use crate::planar::Planar;
-use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Lawson, Triangulation, VertexId};
 use margin::Known;
 use rayon::prelude::*;
 
@@ -60,8 +60,7 @@ pub struct Dual<'a> {
     kinds: Vec<Kind>,
     required: Vec<bool>,
     touched: Vec<FaceId>,
-    stack: Vec<HalfEdge>,
-    flips_of_slot: Vec<u8>,
+    lawson: Lawson,
     known: Known,
     paths: Paths,
     counters: DualCounters,
@@ -83,8 +82,7 @@ impl<'a> Dual<'a> {
             kinds,
             required: domain.pslg().segments.iter().map(|s| s.required).collect(),
             touched: Vec::new(),
-            stack: Vec::new(),
-            flips_of_slot: Vec::new(),
+            lawson: Lawson::default(),
             known: Known::default(),
             paths: Paths::default(),
             counters: DualCounters::default(),
@@ -181,7 +179,6 @@ impl<'a> Dual<'a> {
         self.kinds = old.iter().map(|&v| self.kinds[v.index()]).collect();
         self.planar = planar;
         self.touched.clear();
-        self.flips_of_slot.clear();
         self.known = Known::default();
     }
 

@@ -189,13 +189,6 @@ impl<'a> SurfaceDual<'a> {
         (!angles.is_flat()).then(|| angles.margin())
     }
 
-    /// The ends of an edge, and what is to its left and right.
-    pub(super) fn quad(&self, h: HalfEdge) -> Option<[VertexId; 4]> {
-        let topology = self.topology();
-        let t = topology.twin(h)?;
-        Some([topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)])
-    }
-
     /// Evaluates the metric at a seed that has moved.
     pub(super) fn remeasure(&mut self, v: VertexId) {
         let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);

@@ -4,15 +4,15 @@ use super::Moving;
 use super::on_surface::{FOLDED, SurfaceDual, TIE, UPRIGHT};
 use crate::geodesic::Margin;
 use crate::rdt::Quad;
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Rounds, Triangulation, VertexId, flip_in_rounds};
 use rayon::prelude::*;
 
-/// How often one pass flips the edge in one slot.
-const FLIPS_PER_SLOT: u8 = 6;
+/// Inconsistent tests can make flips go round in a circle.
+const LIMIT: Limit = Limit::OfSlot(6);
 /// A flip may not leave a triangle whose quality is below this if both were better before.
 const POOR: f64 = 0.5;
-/// Flips that unfold, at most, as a multiple of the number of faces.
-const UNFOLDINGS: u64 = 8;
+/// Rounds of flips that unfold, at most.
+const UNFOLDINGS: usize = 64;
 
 impl SurfaceDual<'_> {
     /// Flips every edge that the metric wants flipped and the surface allows. Returns the number of flips.
@@ -21,21 +21,21 @@ impl SurfaceDual<'_> {
         let edges: Vec<HalfEdge> = self.topology().edges().collect();
         let topology = &self.state.topology;
         let wants = |&h: &HalfEdge| !topology.is_fixed(h) && self.margin(h).is_some_and(|margin| margin < -TIE);
-        let stack: Vec<HalfEdge> = edges.into_par_iter().with_min_len(64).filter(wants).collect();
-        self.flip_stacked(stack, Self::margin)
+        let edges = edges.into_par_iter().with_min_len(64).filter(wants).collect();
+        self.flip_by(edges, Self::margin)
     }
 
     /// Flips around a seed and onwards.
     pub(super) fn flip_around(&mut self, v: VertexId) -> u64 {
         let star: Vec<HalfEdge> = self.topology().star(v).flat_map(|h| [h, h.next()]).collect();
-        self.flip_stacked(star, Self::margin)
+        self.flip_by(star, Self::margin)
     }
 
     /// Flips by a test of the caller's: every edge with a certainly negative margin whose flip the surface allows. Returns the
     /// number of flips.
     pub fn settle_by(&mut self, test: impl Fn(&Quad) -> Margin) -> u64 {
         let edges: Vec<HalfEdge> = self.topology().edges().collect();
-        self.flip_stacked(edges, |dual, h| certain(&test(&dual.seeds_around(h)?)))
+        self.flip_by(edges, |dual, h| certain(&test(&dual.seeds_around(h)?)))
     }
 
     /// How many edges a test wants flipped.
@@ -55,28 +55,15 @@ impl SurfaceDual<'_> {
     }
 
     fn seeds_around(&self, h: HalfEdge) -> Option<Quad> {
-        let [a, b, c, d] = self.quad(h)?.map(|v| v.0);
+        let [a, b, c, d] = self.topology().quad(h)?.map(|v| v.0);
         Some(Quad { a, b, c, d })
     }
 
     /// Flips edges and what follows from them as long as a test gives a negative margin and the surface allows it.
-    fn flip_stacked(&mut self, mut stack: Vec<HalfEdge>, margin: impl Fn(&Self, HalfEdge) -> Option<f64>) -> u64 {
-        let mut flips_of_slot = vec![0_u8; 3 * self.topology().face_slots()];
-        let before = self.flips;
-        while let Some(h) = stack.pop() {
-            let Some(t) = self.topology().twin(h).filter(|_| !self.topology().is_fixed(h)) else { continue };
-            let slot = h.min(t).index();
-            let is_wanted = flips_of_slot[slot] < FLIPS_PER_SLOT && margin(self, h).is_some_and(|m| m < -TIE);
-            if !is_wanted || !self.allows_flip(h) {
-                continue;
-            }
-            flips_of_slot[slot] += 1;
-            self.state.topology.flip(h);
-            self.flips += 1;
-            self.measure_edge(h);
-            stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
-        }
-        self.flips - before
+    fn flip_by(&mut self, edges: Vec<HalfEdge>, margin: impl Fn(&Self, HalfEdge) -> Option<f64>) -> u64 {
+        let mut lawson = Lawson::default();
+        lawson.queue(edges);
+        lawson.pass(&mut By { dual: self, margin }, LIMIT).len() as u64
     }
 
     /// Whether a flip leaves a triangulation without doubled edges whose triangles stand upright on the surface, and makes
@@ -94,16 +81,9 @@ impl SurfaceDual<'_> {
         after > POOR || after > before
     }
 
-    /// The triangles of an edge, and those after its flip, if that makes no edge double.
+    /// The triangles of an edge, and those after its flip, if it can be flipped.
     fn flip_of(&self, h: HalfEdge) -> Option<Flip> {
-        let [a, b, c, d] = self.quad(h)?;
-        let topology = self.topology();
-        let joins =
-            |u: VertexId, v: VertexId| topology.star(u).any(|e| topology.target(e) == v || topology.apex(e) == v);
-        let is_lost = |v: &VertexId| topology.star(*v).count() <= if topology.is_border_vertex(*v) { 1 } else { 3 };
-        if c == d || joins(c, d) || [a, b].iter().any(is_lost) {
-            return None;
-        }
+        let [a, b, c, d] = self.topology().quad(h).filter(|_| self.topology().can_flip(h))?;
         Some(Flip { now: [[a, b, c], [b, a, d]], then: [[d, b, c], [c, a, d]] })
     }
 
@@ -121,30 +101,58 @@ impl SurfaceDual<'_> {
     /// Flips edges of triangles that are folded over, whatever the metric says, as long as less of their area leans over.
     /// Returns the number of flips.
     pub fn unfold(&mut self) -> u64 {
-        let is_down = |dual: &Self, f: FaceId| dual.upright(dual.topology().corners(f)) <= FOLDED;
-        let mut stack: Vec<FaceId> = self.topology().faces().filter(|&f| is_down(self, f)).collect();
-        let before = self.flips;
-        let most = before + UNFOLDINGS * self.topology().face_count() as u64;
-        while let Some(f) = stack.pop().filter(|_| self.flips < most) {
-            if !is_down(self, f) {
-                continue;
-            }
-            let better = |&h: &HalfEdge| {
-                let Flip { now, then } = self.flip_of(h).filter(|_| !self.topology().is_fixed(h))?;
-                let [before, after] = [now, then].map(|pair| self.leaning(pair));
-                after.is_better_than(&before).then_some((h, before.area - after.area))
-            };
-            let best = f.half_edges().iter().filter_map(better).max_by(|x, y| x.1.total_cmp(&y.1));
-            if let Some((h, _)) = best {
-                let twin = self.topology().twin(h);
-                self.state.topology.flip(h);
-                self.flips += 1;
-                let around = [Some(h.face()), twin.map(HalfEdge::face)].into_iter().flatten();
-                let beyond = around.clone().flat_map(FaceId::half_edges).filter_map(|e| self.topology().twin(e));
-                stack.extend(beyond.map(HalfEdge::face).chain(around));
-            }
-        }
-        self.flips - before
+        flip_in_rounds(&mut Unfolding { dual: self }, UNFOLDINGS)
+    }
+
+    /// By how much more area leans over after a flip, of an edge of a triangle that is folded over; `None` where it is no better.
+    fn unfolding(&self, h: HalfEdge) -> Option<f64> {
+        let Flip { now, then } = self.flip_of(h)?;
+        let [before, after] = [now, then].map(|pair| self.leaning(pair));
+        (before.upright <= FOLDED && after.is_better_than(&before)).then_some(after.area - before.area)
+    }
+}
+
+struct Unfolding<'a, 'b> {
+    dual: &'a mut SurfaceDual<'b>,
+}
+
+impl Rounds for Unfolding<'_, '_> {
+    fn topology(&self) -> &Triangulation {
+        self.dual.topology()
+    }
+
+    fn wanted(&mut self, edges: &[HalfEdge]) -> Vec<(f64, HalfEdge)> {
+        let dual = &*self.dual;
+        edges.par_iter().with_min_len(64).filter_map(|&h| Some((dual.unfolding(h)?, h))).collect()
+    }
+
+    fn flip(&mut self, h: HalfEdge) -> bool {
+        self.dual.state.topology.flip(h);
+        self.dual.flips += 1;
+        true
+    }
+}
+
+/// A mesh that flips by some margins.
+struct By<'a, 'b, F> {
+    dual: &'a mut SurfaceDual<'b>,
+    margin: F,
+}
+
+impl<'b, F: Fn(&SurfaceDual<'b>, HalfEdge) -> Option<f64>> Flipping for By<'_, 'b, F> {
+    fn topology(&mut self) -> &mut Triangulation {
+        &mut self.dual.state.topology
+    }
+
+    fn wants_flip(&mut self, h: HalfEdge) -> bool {
+        let is_wanted = || (self.margin)(self.dual, h).is_some_and(|margin| margin < -TIE);
+        !self.dual.topology().is_fixed(h) && is_wanted() && self.dual.allows_flip(h)
+    }
+
+    fn flip(&mut self, h: HalfEdge) {
+        self.dual.state.topology.flip(h);
+        self.dual.flips += 1;
+        self.dual.measure_edge(h);
     }
 }
 

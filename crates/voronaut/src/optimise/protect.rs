@@ -11,7 +11,7 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::net::{Ball, Estimate, Memory, Net, Random, Sites, Triangles};
 use crate::progress::Progress;
-use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -46,7 +46,9 @@ const ASKED_OF_GEODESICS: f64 = 1.01;
 /// Shares of the power asked for that are as good as none.
 const LEAST_GAIN: f64 = 1e-6;
 /// Flips after one move, at most: lengths that contradict each other must not make it last for ever.
-const FLIPS: usize = 60;
+const LIMIT: Limit = Limit::OfAll(60);
+/// Margins closer to zero than this are ties.
+const TIE: f64 = 1e-9;
 
 /// How it ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -383,29 +385,26 @@ impl<'a, 'b> Mender<'a, 'b> {
         (self.positions[trial.v.index()], self.locals[trial.v.index()]) = trial.from;
     }
 
-    /// Lawson's flips around a seed by lengths from expansions; returns them in order.
+    /// Flips around a seed; returns them in order.
     fn flip_around(&mut self, v: VertexId) -> Vec<HalfEdge> {
-        let mut stack: Vec<HalfEdge> = self.topology.star(v).flat_map(|h| [h, h.next()]).collect();
-        let mut flips = Vec::new();
-        while let Some(h) = stack.pop() {
-            if flips.len() < FLIPS && self.wants_flip(h) {
-                self.topology.flip(h);
-                flips.push(h);
-                let t = self.topology.twin(h).expect("flipped edges have two faces");
-                stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
-            }
-        }
-        flips
+        let mut lawson = Lawson::default();
+        lawson.queue(self.topology.star(v).flat_map(|h| [h, h.next()]));
+        lawson.pass(self, LIMIT).to_vec()
+    }
+}
+
+impl Flipping for Mender<'_, '_> {
+    fn topology(&mut self) -> &mut Triangulation {
+        &mut self.topology
     }
 
-    fn wants_flip(&self, h: HalfEdge) -> bool {
-        let topology = &self.topology;
-        let Some(t) = topology.twin(h).filter(|_| !topology.is_fixed(h)) else { return false };
-        let [a, b, c, d] = [topology.origin(h), topology.target(h), topology.apex(h), topology.apex(t)];
+    /// By lengths from expansions.
+    fn wants_flip(&mut self, h: HalfEdge) -> bool {
+        let Some([a, b, c, d]) = self.topology.quad(h).filter(|_| self.topology.can_flip(h)) else { return false };
         let length =
             |u: VertexId, v: VertexId| hermite(self.position(u), self.local(u), self.position(v), self.local(v)).value;
         let angles = Angles::from_lengths(length(a, b), [length(a, c), length(b, c)], [length(a, d), length(b, d)]);
-        angles.margin() < -1e-9 && c != d && topology.find(c, d).is_none() && topology.find(d, c).is_none()
+        angles.margin() < -TIE
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Planar;
 use crate::geometry::{Orientation, orientation};
-use crate::triangulation::{Constraint, HalfEdge, VertexId};
+use crate::triangulation::{Constraint, HalfEdge, Lawson, VertexId};
 use std::collections::VecDeque;
 
 /// Edges by their ends: half-edge ids move when a neighbour is flipped.
@@ -82,8 +82,9 @@ impl Planar {
         let edge = self.topology.find(a, end).expect("no edge crosses the segment any more");
         // Held during the flips that restore the Delaunay property around it; the caller names the constraint.
         self.topology.set_constraint(edge, Constraint(0));
-        let mut stack: Vec<HalfEdge> = created.into_iter().filter_map(|[u, v]| self.topology.find(u, v)).collect();
-        self.legalise(&mut stack);
+        let mut lawson = Lawson::default();
+        lawson.queue(created.into_iter().filter_map(|[u, v]| self.topology.find(u, v)));
+        self.legalise(&mut lawson);
         Ok(self.topology.find(a, end).expect("constrained edges are not flipped"))
     }
 

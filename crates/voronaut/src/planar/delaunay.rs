@@ -3,7 +3,7 @@
 use super::order::hilbert_order;
 use super::{Location, Planar};
 use crate::geometry::{Aabb, Point, in_circle};
-use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 
 /// Two input points at the same position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub fn delaunay(points: &[Point]) -> Result<Planar, Duplicate> {
         positions: points.iter().copied().chain(far).collect(),
     };
     let mut face = FaceId(0);
-    let mut stack = Vec::new();
+    let mut lawson = Lawson::default();
     for i in hilbert_order(points) {
         let p = points[i as usize];
         let v = VertexId(i);
@@ -33,31 +33,29 @@ pub fn delaunay(points: &[Point]) -> Result<Planar, Duplicate> {
             Location::Vertex(other) => return Err(Duplicate(other.0.min(i), other.0.max(i))),
             Location::Behind(_) => unreachable!("the far triangle holds every point"),
         }
-        stack.extend(planar.topology.star(v).map(HalfEdge::next));
-        planar.legalise(&mut stack);
+        lawson.queue(planar.topology.star(v).map(HalfEdge::next));
+        planar.legalise(&mut lawson);
         face = planar.topology.start(v).expect("just inserted").face();
     }
     Ok(planar)
 }
 
 impl Planar {
-    /// Lawson's flips in the Euclidean plane from the edges on the stack outwards, until the stack is empty; constrained
-    /// edges stay. What was constrained Delaunay but for these edges is so again.
-    pub fn legalise(&mut self, stack: &mut Vec<HalfEdge>) {
-        while let Some(h) = stack.pop() {
-            if self.topology.is_fixed(h) || !self.violates_in_circle(h) || !self.is_convex(h) {
-                continue;
-            }
-            let t = self.topology.twin(h).expect("not fixed");
-            self.topology.flip(h);
-            stack.extend([h.next(), h.prev(), t.next(), t.prev()]);
-        }
+    /// Lawson's flips in the Euclidean plane from the edges that were queued outwards; constrained edges stay. What was constrained Delaunay but for these edges is so again.
+    pub fn legalise(&mut self, lawson: &mut Lawson) {
+        lawson.pass(self, Limit::None);
+    }
+}
+
+impl Flipping for Planar {
+    fn topology(&mut self) -> &mut Triangulation {
+        &mut self.topology
     }
 
-    fn violates_in_circle(&self, h: HalfEdge) -> bool {
-        let Some(t) = self.topology.twin(h) else { return false };
-        let [a, b, c] = [h, h.next(), h.prev()].map(|e| self.position(self.topology.origin(e)));
-        in_circle(a, b, c, self.position(self.topology.apex(t))) > 0.0
+    fn wants_flip(&mut self, h: HalfEdge) -> bool {
+        let Some(quad) = self.topology.quad(h).filter(|_| !self.topology.is_fixed(h)) else { return false };
+        let [a, b, c, d] = quad.map(|v| self.position(v));
+        in_circle(a, b, c, d) > 0.0 && self.is_convex(h)
     }
 }
 
@@ -85,7 +83,11 @@ mod tests {
     fn assert_delaunay(planar: &Planar) {
         planar.topology.check().unwrap();
         assert!(planar.is_embedded());
-        assert!(planar.topology.edges().all(|h| !planar.violates_in_circle(h)));
+        let is_in_circle = |h: HalfEdge| {
+            let [a, b, c, d] = planar.topology.quad(h)?.map(|v| planar.position(v));
+            Some(in_circle(a, b, c, d) > 0.0)
+        };
+        assert!(planar.topology.edges().all(|h| is_in_circle(h) != Some(true)));
     }
 
     #[test]

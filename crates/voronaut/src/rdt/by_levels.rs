@@ -9,10 +9,7 @@ use rayon::prelude::*;
 impl<J: Judge> Rdt<J> {
     /// The quadrilateral around an edge with two triangles.
     pub(super) fn quad(&self, h: HalfEdge) -> Option<Quad> {
-        let t = self.topology.twin(h)?;
-        let [a, b, c, d] =
-            [self.topology.origin(h), self.topology.target(h), self.topology.apex(h), self.topology.apex(t)]
-                .map(|v| self.seed(v));
+        let [a, b, c, d] = self.topology.quad(h)?.map(|v| self.seed(v));
         Some(Quad { a, b, c, d })
     }
 

@@ -1,9 +1,9 @@
-//! Lawson's flips on a topology, in rounds: tests in parallel, then flips of edges that share no triangle.
+//! Flips on a topology, in rounds, whose tests run in parallel.
 
+use super::Rdt;
 use super::judge::{Judge, LEVELS, RESOLUTION};
-use super::{Rdt, Tested};
 use crate::geodesic::Margin;
-use crate::triangulation::HalfEdge;
+use crate::triangulation::{HalfEdge, Rounds, Triangulation, flip_in_rounds};
 
 /// How often one slot is flipped at most: on a test that is certain, and on one that is not. Tests that contradict each other
 /// must not go on for ever.
@@ -13,55 +13,11 @@ impl<J: Judge> Rdt<J> {
     /// Flips until every test agrees: first on what one tensor says with certainty, so that few geodesics are asked for
     /// that are not going to stay, then on everything.
     pub(super) fn settle(&mut self) {
-        self.flip_rounds(0);
-        self.flips_of_slot.fill(0);
-        self.flip_rounds(LEVELS - 1);
+        for last in [0, LEVELS - 1] {
+            self.flips_of_slot.fill(0);
+            self.counters.flips += flip_in_rounds(&mut UpTo { rdt: self, last }, usize::MAX);
+        }
         self.store_lengths();
-    }
-
-    fn flip_rounds(&mut self, last: usize) {
-        let mut work: Vec<HalfEdge> = self.topology.edges().collect();
-        while !work.is_empty() {
-            self.test(&work, last);
-            let mut wanted: Vec<(HalfEdge, Tested)> =
-                work.iter().filter_map(|&h| Some((h, self.tested[h.index()]?))).collect();
-            wanted.retain(|(_, t)| self.wants_flip(t.margin, last > 0));
-            wanted.sort_by(|a, b| a.1.margin.value.total_cmp(&b.1.margin.value).then(a.0.cmp(&b.0)));
-            work = self.flip_apart(&wanted, last > 0);
-        }
-    }
-
-    /// Flips those edges, in this order, whose triangles no flip before has changed. Returns the edges to test anew.
-    fn flip_apart(&mut self, wanted: &[(HalfEdge, Tested)], is_final: bool) -> Vec<HalfEdge> {
-        let mut changed = vec![false; self.topology.face_slots()];
-        let mut work = Vec::new();
-        for &(h, tested) in wanted {
-            let Some(t) = self.topology.twin(h) else { continue };
-            if changed[h.face().index()] || changed[t.face().index()] {
-                // Its slot may hold another edge by now; whichever it is, it is among the edges of a changed triangle.
-                continue;
-            }
-            let [blocked, circling] = [!self.may_flip(h), self.is_circling(h, tested)];
-            if blocked || circling {
-                self.counters.blocked += u64::from(blocked && is_final);
-                self.counters.circling += u64::from(circling && !blocked && is_final);
-                continue;
-            }
-            self.flips_of_slot[h.index()] += 1;
-            self.topology.flip(h);
-            self.counters.flips += 1;
-            changed[h.face().index()] = true;
-            changed[t.face().index()] = true;
-            work.extend(h.face().half_edges().into_iter().chain(t.face().half_edges()));
-        }
-        let canonical = |h: HalfEdge| self.topology.twin(h).map_or(h, |t| h.min(t));
-        let mut work: Vec<HalfEdge> = work.into_iter().map(canonical).collect();
-        work.sort_unstable();
-        work.dedup();
-        for h in &work {
-            self.tested[h.index()] = None;
-        }
-        work
     }
 
     /// Whether the other diagonal joins two different seeds that no edge joins yet.
@@ -72,9 +28,9 @@ impl<J: Judge> Rdt<J> {
         quad.c != quad.d && t.is_some() && !self.topology.star(c).any(is_there)
     }
 
-    fn is_circling(&self, h: HalfEdge, tested: Tested) -> bool {
-        let limit = FLIPS_PER_SLOT[usize::from(!tested.margin.is_certain())];
-        self.flips_of_slot[h.index()] >= limit
+    fn is_circling(&self, h: HalfEdge) -> bool {
+        let is_certain = self.tested[h.index()].is_some_and(|tested| tested.margin.is_certain());
+        self.flips_of_slot[h.index()] >= FLIPS_PER_SLOT[usize::from(!is_certain)]
     }
 
     /// Puts the lengths that are known on the half-edges.
@@ -91,5 +47,40 @@ impl<J: Judge> Rdt<J> {
     fn wants_flip(&self, margin: Margin, is_final: bool) -> bool {
         let is_followed = is_final && margin.error > RESOLUTION && margin.error <= self.judge.doubt();
         margin.value < 0.0 && (margin.is_certain() || is_followed)
+    }
+}
+
+/// Tests up to a level.
+struct UpTo<'a, J> {
+    rdt: &'a mut Rdt<J>,
+    last: usize,
+}
+
+impl<J: Judge> Rounds for UpTo<'_, J> {
+    fn topology(&self) -> &Triangulation {
+        &self.rdt.topology
+    }
+
+    fn wanted(&mut self, edges: &[HalfEdge]) -> Vec<(f64, HalfEdge)> {
+        self.rdt.test(edges, self.last);
+        let margin = |&h: &HalfEdge| self.rdt.tested[h.index()].map(|tested| (tested.margin, h));
+        let is_wanted = |(margin, _): &(Margin, HalfEdge)| self.rdt.wants_flip(*margin, self.last > 0);
+        edges.iter().filter_map(margin).filter(is_wanted).map(|(margin, h)| (margin.value, h)).collect()
+    }
+
+    fn flip(&mut self, h: HalfEdge) -> bool {
+        let rdt = &mut *self.rdt;
+        let [blocked, circling] = [!rdt.may_flip(h), rdt.is_circling(h)];
+        if blocked || circling {
+            rdt.counters.blocked += u64::from(blocked && self.last > 0);
+            rdt.counters.circling += u64::from(circling && !blocked && self.last > 0);
+            return false;
+        }
+        rdt.flips_of_slot[h.index()] += 1;
+        rdt.topology.flip(h);
+        for e in [Some(h), rdt.topology.twin(h)].into_iter().flatten().flat_map(|side| side.face().half_edges()) {
+            rdt.tested[rdt.topology.canonical(e).index()] = None;
+        }
+        true
     }
 }

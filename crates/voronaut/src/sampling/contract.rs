@@ -138,11 +138,7 @@ impl<'a, 'd> Contraction<'a, 'd> {
     }
 
     fn can_flip(&self, h: HalfEdge) -> bool {
-        let t = &self.topology;
-        let Some(twin) = t.twin(h) else { return false };
-        let [a, b, c, d] = [t.origin(h), t.target(h), t.apex(h), t.apex(twin)];
-        let least = if t.is_border_vertex(a) { 1 } else { 3 };
-        let joins = |u: VertexId, w: VertexId| t.star(u).any(|e| t.target(e) == w || t.apex(e) == w);
-        t.star(a).count() > least && c != d && !joins(c, d) && self.is_upright([d, b, c]) && self.is_upright([c, a, d])
+        let Some([a, b, c, d]) = self.topology.quad(h).filter(|_| self.topology.can_flip(h)) else { return false };
+        self.is_upright([d, b, c]) && self.is_upright([c, a, d])
     }
 }

@@ -7,7 +7,7 @@ use super::level::{Level, Vertex, quality};
 use super::{Implicit, Surface};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3, Vector3};
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 use rayon::prelude::*;
 
 /// Edges times the larger principal curvature should be about this.
@@ -29,6 +29,8 @@ const LOOSE: f64 = 1e-5;
 const ROUNDS: usize = 4;
 /// Passes over all edges within a round, at most.
 const PASSES: usize = 8;
+/// Flips of the edge in one slot, in one pass.
+const FLIPS_PER_SLOT: u8 = 8;
 /// A change may leave triangles so good, whatever was there before.
 const GOOD: f64 = 0.6;
 /// A collapse may leave triangles so good, for smoothing comes after it.
@@ -220,28 +222,25 @@ fn merged(level: &Level, h: HalfEdge) -> Option<Vertex> {
 
 /// Flips edges where that makes the worse of their two triangles better.
 fn flip(level: &mut Level) {
-    for _ in 0..PASSES {
-        let edges: Vec<HalfEdge> = level.topology.edges().collect();
-        if edges.into_iter().filter(|&h| flip_edge(level, h)).count() == 0 {
-            break;
-        }
-    }
+    let mut lawson = Lawson::default();
+    lawson.queue(level.topology.edges());
+    lawson.pass(level, Limit::OfSlot(FLIPS_PER_SLOT));
 }
 
-fn flip_edge(level: &mut Level, h: HalfEdge) -> bool {
-    /// Differences less than this are rounding.
-    const GAIN: f64 = 1e-9;
-    let t = &level.topology;
-    let Some(twin) = t.twin(h) else { return false };
-    let [a, b, c, d] = [t.origin(h), t.target(h), t.apex(h), t.apex(twin)];
-    let at = |v: VertexId| &level.vertices[v.index()];
-    let before = worst([[a, b, c], [b, a, d]].into_iter().map(|face| quality(face.map(at))));
-    let after = worst([[d, c, a], [c, d, b]].into_iter().map(|face| quality(face.map(at))));
-    let better = after > before + GAIN && c != d && t.find(c, d).is_none() && t.find(d, c).is_none();
-    if better {
-        level.topology.flip(h);
+impl Flipping for Level<'_> {
+    fn topology(&mut self) -> &mut Triangulation {
+        &mut self.topology
     }
-    better
+
+    fn wants_flip(&mut self, h: HalfEdge) -> bool {
+        /// Differences less than this are rounding.
+        const GAIN: f64 = 1e-9;
+        let Some([a, b, c, d]) = self.topology.quad(h) else { return false };
+        let at = |v: VertexId| &self.vertices[v.index()];
+        let before = worst([[a, b, c], [b, a, d]].into_iter().map(|face| quality(face.map(at))));
+        let after = worst([[d, c, a], [c, d, b]].into_iter().map(|face| quality(face.map(at))));
+        after > before + GAIN && self.topology.can_flip(h)
+    }
 }
 
 /// Moves vertices towards the middle of their neighbours, on the surface, unless that makes triangles worse.
@@ -363,8 +362,9 @@ mod tests {
         let asked = |p: Point3| (BEND / curvatures(&f.jet(p)).unwrap().values[0].abs()).clamp(FINEST * edge, edge);
         let finest = surface.positions().iter().map(|&p| asked(p)).fold(edge, f64::min);
         let sides = bounds.min.to_array().into_iter().zip(bounds.max.to_array());
-        let on_edge =
-            |p: Point3| p.to_array().into_iter().zip(sides.clone()).filter(|(x, (a, b))| x == a || x == b).count() >= 2;
+        let on_edge = |p: Point3| {
+            p.to_array().into_iter().zip(sides.clone()).filter(|(x, (a, b))| (x - a) * (x - b) >= 0.0).count() >= 2
+        };
         for h in t.edges() {
             let [p, q] = [t.origin(h), t.target(h)].map(|v| surface.position(v));
             let length = p.distance(q);

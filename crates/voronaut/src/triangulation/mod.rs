@@ -5,12 +5,14 @@
 
 mod check;
 mod ids;
+mod lawson;
 mod operations;
 mod renumber;
 mod star;
 
 pub use check::Broken;
 pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
+pub use lawson::{Flipping, Lawson, Limit, Rounds, flip_in_rounds};
 pub use star::Star;
 
 use ids::NONE;
@@ -146,6 +148,23 @@ impl Triangulation {
     pub fn twin(&self, h: HalfEdge) -> Option<HalfEdge> {
         let t = self.twin[h.index()];
         (t != NONE).then_some(HalfEdge(t))
+    }
+
+    /// The side of the edge with the smaller id.
+    pub fn canonical(&self, h: HalfEdge) -> HalfEdge {
+        self.twin(h).map_or(h, |t| h.min(t))
+    }
+
+    /// The ends of an edge, from and to, and what is opposite to it on the left and on the right; `None` at the border.
+    pub fn quad(&self, h: HalfEdge) -> Option<[VertexId; 4]> {
+        let t = self.twin(h)?;
+        Some([self.origin(h), self.target(h), self.apex(h), self.apex(t)])
+    }
+
+    /// Whether an edge has two faces and no constraint, and its flip makes no edge between vertices that one joins already.
+    pub fn can_flip(&self, h: HalfEdge) -> bool {
+        let joins = |u, v| self.star(u).any(|e| self.target(e) == v || self.apex(e) == v);
+        !self.is_fixed(h) && self.quad(h).is_some_and(|[_, _, c, d]| c != d && !joins(c, d))
     }
 
     /// The three vertices of a face, counter-clockwise.

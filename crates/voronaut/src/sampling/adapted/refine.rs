@@ -2,16 +2,16 @@
 
 use super::UPRIGHT;
 use super::work::{Work, leaning};
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 
 /// Edges longer than this (metric) are split: contraction then has vertices to choose from.
 const LONG: f64 = 1.0;
 /// Passes over all edges that are too long, at most: each halves them.
 const HALVINGS: usize = 40;
-/// Margins closer to zero than this are ties; one pass flips the edge in one slot so often at most: in fans, of which long borders are
-/// made at first, it takes as many as they have triangles.
+/// Margins closer to zero than this are ties.
 const TIE: f64 = 1e-9;
-const FLIPS_PER_SLOT: u8 = u8::MAX;
+/// In fans, of which long borders are made at first, a slot has as many flips as they have triangles.
+const LIMIT: Limit = Limit::OfSlot(u8::MAX);
 
 impl Work<'_> {
     /// Splits edges inside patches in the middle, the longest first, and flips, until none is too long, but for those of triangles with
@@ -73,26 +73,21 @@ impl Work<'_> {
 
     /// Flips edges that are not Delaunay ([`Work::margin`]), where no triangle turns away from the surface.
     pub(super) fn flip_all(&mut self) {
-        let mut stack: Vec<HalfEdge> = self.topology.edges().collect();
-        let mut flips_of_slot = vec![0_u8; 3 * self.topology.face_slots()];
-        while let Some(h) = stack.pop() {
-            let Some(twin) = self.topology.twin(h) else { continue };
-            let flips = &mut flips_of_slot[h.min(twin).index()];
-            if *flips < FLIPS_PER_SLOT && self.wants_flip(h, twin) {
-                *flips += 1;
-                self.topology.flip(h);
-                stack.extend([h.next(), h.prev(), twin.next(), twin.prev()]);
-            }
-        }
+        let mut lawson = Lawson::default();
+        lawson.queue(self.topology.edges());
+        lawson.pass(self, LIMIT);
+    }
+}
+
+impl Flipping for Work<'_> {
+    fn topology(&mut self) -> &mut Triangulation {
+        &mut self.topology
     }
 
-    fn wants_flip(&self, h: HalfEdge, twin: HalfEdge) -> bool {
-        let t = &self.topology;
-        let [a, b, c, d] = [t.origin(h), t.target(h), t.apex(h), t.apex(twin)];
-        let joins = |u, v| t.find(u, v).is_some() || t.find(v, u).is_some();
-        let keeps = |v: VertexId| t.star(v).count() > if t.is_border_vertex(v) { 1 } else { 3 };
+    fn wants_flip(&mut self, h: HalfEdge) -> bool {
+        let Some([a, b, c, d]) = self.topology.quad(h) else { return false };
         let is_held = self.at(a).is_held && self.at(b).is_held;
-        if c == d || is_held || self.margin([a, b, c, d]) >= -TIE || !keeps(a) || !keeps(b) || joins(c, d) {
+        if is_held || self.margin([a, b, c, d]) >= -TIE || !self.topology.can_flip(h) {
             return false;
         }
         let (now, then) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
