@@ -65,6 +65,17 @@ fn lawson_s_flips_are_one_module() {
 }
 
 #[test]
+fn levels_of_in_circle_tests_are_climbed_in_one_module() {
+    let all = sources();
+    let mut found = all.iter().filter(|source| source.code.contains("InCircle for"));
+    assert!(found.clone().count() >= 3, "the mesh in the making, seeds in a field and on a surface");
+    for source in all.iter().filter(|source| source.code.contains("in_circle::")) {
+        assert!(!source.code.contains("for level in"), "{} climbs levels by itself", source.name);
+    }
+    assert!(found.all(|source| !source.code.contains("HashMap")), "what is known is kept in one place");
+}
+
+#[test]
 fn the_library_never_prints() {
     for source in &sources() {
         for word in ["print!", "println!", "dbg!", "stdout()", "stderr()"] {

@@ -3,13 +3,13 @@
 //! Each finds what the other cannot: in-circle tests by length are exact where geodesics are short and the field is
 //! smooth; the diagram knows about far seeds, wild fields and walls, to within the size of its canvas.
 
-use super::margin::pair;
+use super::margin::{diagonals, pair};
 use super::patch::Patch;
-use super::{Dual, Effort, Margin};
+use super::{Dual, Effort};
 use crate::canvas::{self, Canvas, CanvasFigures};
 use crate::diagram::{Diagram, NerveTriangle, resolve};
 use crate::error::Result;
-use crate::geodesic::{MarchCounters, Method};
+use crate::geodesic::{MarchCounters, Margin, Method};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::HashSet;
 
@@ -160,7 +160,7 @@ impl Dual<'_> {
         let edges: Vec<HalfEdge> = topology.edges().filter(|&h| !topology.is_fixed(h)).collect();
         let mut uncertain = Vec::new();
         for h in edges {
-            let [ends, _] = self.quad(h).diagonals();
+            let [ends, _] = diagonals(&self.quad(h));
             if !self.is_held(h) || unsure.contains(&ends) {
                 let margin = self.margin(h, Effort::Full);
                 uncertain.extend((!margin.is_certain()).then_some((ends, margin)));
@@ -200,7 +200,7 @@ impl Dual<'_> {
     fn compare(&mut self, road: Road, wanted: &HashSet<[VertexId; 2]>, is_inner: &[bool]) -> Consultation {
         let mut found = Consultation::default();
         for h in self.free_edges().collect::<Vec<_>>() {
-            let [edge, other] = self.quad(h).diagonals();
+            let [edge, other] = diagonals(&self.quad(h));
             if !edge.iter().chain(&other).all(|v| is_inner[v.index()]) {
                 continue;
             }
@@ -222,7 +222,7 @@ impl Dual<'_> {
         let is_missing = |&[u, v]: &[VertexId; 2]| self.topology().find(u, v).is_none();
         let mut missing: Vec<[VertexId; 2]> = wanted.iter().copied().filter(is_missing).collect();
         missing.sort_unstable();
-        self.known.held = wanted;
+        self.held = wanted;
         let mut before = usize::MAX;
         while missing.len() < before {
             before = missing.len();

@@ -1,6 +1,5 @@
 //! Insertion, removal and moves of seeds. Each says whether it was done; what would not be embedded is not done.
 
-use super::margin::Known;
 use super::{Dual, Effort, Kind};
 use crate::geodesic::LocalMetric;
 use crate::geometry::{Point, Vector};
@@ -60,7 +59,7 @@ impl Dual<'_> {
         self.locals.clone_from(&saved.locals);
         self.kinds.clone_from(&saved.kinds);
         self.field.factor = saved.factor;
-        self.known = Known::default();
+        self.forget();
         self.touched.clear();
     }
 
@@ -90,7 +89,7 @@ impl Dual<'_> {
     /// ([`Dual::measure_all`]).
     pub(crate) fn shift(&mut self, v: VertexId, to: Point) -> bool {
         debug_assert!(!matches!(self.kind(v), Kind::Corner(_)), "corners stay");
-        self.known = Known::default();
+        self.forget();
         self.planar.move_vertex(v, to)
     }
 
@@ -112,7 +111,7 @@ impl Dual<'_> {
         let topology = &self.planar.topology;
         let link: Vec<VertexId> = topology.star(v).map(|h| topology.target(h)).collect();
         let removed = self.planar.remove_vertex(v);
-        self.known = Known::default();
+        self.forget();
         for &u in &link {
             self.flip_around(u, Effort::Local);
         }

@@ -1,7 +1,8 @@
 //! Lawson's flips by the metric in-circle test, on a triangulation that stays embedded.
 
 use super::margin::pair;
-use super::{Dual, Effort, Margin};
+use super::{Dual, Effort};
+use crate::geodesic::Margin;
 use crate::geometry::Tensor;
 use crate::triangulation::{Flipping, HalfEdge, Limit, Triangulation, VertexId};
 
@@ -55,7 +56,7 @@ impl Dual<'_> {
 
     pub(super) fn is_held(&self, h: HalfEdge) -> bool {
         let topology = &self.planar.topology;
-        !self.known.held.is_empty() && self.known.held.contains(&pair(topology.origin(h), topology.target(h)))
+        !self.held.is_empty() && self.held.contains(&pair(topology.origin(h), topology.target(h)))
     }
 
     fn flip_queued(&mut self, effort: Effort) -> u64 {

@@ -1,28 +1,16 @@
-//! The filtered in-circle test: each level costs more and errs less, and runs only where the one before it cannot tell.
+//! What the in-circle test of the mesh in the making climbs: a frozen tensor, expansions at the vertices, quadrature along the
+//! chords, geodesics with 4 and with 8 modes.
 
 use super::Dual;
 use crate::geodesic::{
-    Angles, Fineness, Length, PathLength, bent_chord, bowed_chord, chord, frozen_margin, hermite, margin_from_lengths,
+    Angles, Fineness, Length, Margin, PathLength, bent_chord, bowed_chord, chord, frozen_margin, hermite,
 };
 use crate::geometry::Tensor;
+use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested, climb};
 use crate::triangulation::{HalfEdge, VertexId};
-use rayon::prelude::*;
-use std::collections::{HashMap, HashSet};
 
-/// What is known of pairs of seeds, the smaller id first, until a seed moves, comes or goes.
-#[derive(Debug, Default)]
-pub(super) struct Known {
-    /// Lengths of geodesics, and the level at which each was found; `None` where the field is no metric on the way.
-    paths: HashMap<[VertexId; 2], (usize, Option<PathLength>)>,
-    /// Margins with all levels, by the diagonals of quadrilaterals.
-    margins: HashMap<[[VertexId; 2]; 2], Margin>,
-    /// Edges that are not to be flipped.
-    pub(super) held: HashSet<[VertexId; 2]>,
-}
-
-/// Number of levels: frozen tensor, expansions at the vertices, quadrature along the chords, geodesics with 4 and with 8
-/// modes.
-pub const LEVELS: usize = 5;
+/// Number of levels.
+pub(super) const LEVELS: usize = 5;
 /// The first level of geodesics, and how fine they are from there on.
 const FIRST_PATH: usize = 3;
 const PATHS: [Fineness; 2] = [Fineness::COARSEST, Fineness::MIDDLE];
@@ -54,195 +42,156 @@ pub enum Effort {
     Full = 4,
 }
 
-/// The outcome of an in-circle test: the sine of the sum of the two angles that face the edge (see
-/// [`crate::geodesic::Angles`]); negative where the edge should be flipped.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Margin {
-    /// The sine.
-    pub value: f64,
-    /// Estimated error of `value`.
-    pub error: f64,
-    /// The level that settled it.
-    pub level: usize,
+impl Dual<'_> {
+    /// The margin of an edge with two faces.
+    pub fn margin(&mut self, h: HalfEdge, effort: Effort) -> Margin {
+        let quad = self.quad(h);
+        if effort == Effort::Full {
+            return self.test(&[quad])[0].margin;
+        }
+        let by = ByEffort { dual: self, effort };
+        let tested = climb(&by, &quad, 0..effort as usize + 1, &self.tests.lengths, None);
+        let Tested { mut margin, level } = tested.expect("the first level tells of every edge");
+        if effort == Effort::Local && level == 0 {
+            margin.error = 0.0;
+        }
+        self.counters.tests[level] += 1;
+        margin
+    }
+
+    /// Computes the margins of all edges with all levels, in parallel.
+    pub(super) fn measure_margins(&mut self) {
+        let quads: Vec<Quad> = self.free_edges().map(|h| self.quad(h)).collect();
+        self.test(&quads);
+    }
+
+    fn test(&mut self, quads: &[Quad]) -> Vec<Tested> {
+        let mut tests = std::mem::take(&mut self.tests);
+        let found = tests.test(&ByEffort { dual: self, effort: Effort::Full }, quads, LEVELS - 1);
+        for (sum, count) in self.counters.tests.iter_mut().zip(std::mem::take(&mut tests.counters).tests) {
+            *sum += count;
+        }
+        self.tests = tests;
+        found.into_iter().map(|tested| tested.expect("the first level tells of every edge")).collect()
+    }
+
+    pub(super) fn quad(&self, h: HalfEdge) -> Quad {
+        let [a, b, c, d] = self.topology().quad(h).expect("an edge with two faces").map(|v| v.0);
+        Quad { a, b, c, d }
+    }
 }
 
-impl Margin {
-    /// Whether the sign is settled.
-    pub fn is_certain(&self) -> bool {
-        self.value.abs() > self.error
-    }
-
-    /// The one that errs less.
-    fn or_better(self, other: Self) -> Self {
-        if other.error < self.error { other } else { self }
-    }
-}
-
-/// The four corners of the two faces at an edge a-b: c to the left, d to the right of a -> b.
-pub(super) struct Quad {
-    a: VertexId,
-    b: VertexId,
-    c: VertexId,
-    d: VertexId,
-}
-
-impl Quad {
-    /// The two diagonals, that of the edge first.
-    pub(super) fn diagonals(&self) -> [[VertexId; 2]; 2] {
-        [pair(self.a, self.b), pair(self.c, self.d)]
-    }
-
-    /// The five edges whose lengths make the test.
-    fn sides(&self) -> [[VertexId; 2]; 5] {
-        let Quad { a, b, c, d } = *self;
-        [pair(a, b), pair(a, c), pair(b, c), pair(a, d), pair(b, d)]
-    }
+/// The two diagonals of a quadrilateral, that of the edge first, each with its smaller end first.
+pub(super) fn diagonals(&Quad { a, b, c, d }: &Quad) -> [[VertexId; 2]; 2] {
+    [pair(VertexId(a), VertexId(b)), pair(VertexId(c), VertexId(d))]
 }
 
 pub(super) fn pair(u: VertexId, v: VertexId) -> [VertexId; 2] {
     [u.min(v), u.max(v)]
 }
 
-impl Dual<'_> {
-    /// The margin of an edge with two faces.
-    pub fn margin(&mut self, h: HalfEdge, effort: Effort) -> Margin {
-        if effort == Effort::Full {
-            return self.full_margin(self.quad(h));
-        }
-        let margin = self.cheap_margin(&self.quad(h), effort);
-        self.counters.tests[margin.level] += 1;
-        margin
+/// A dual, tested with some effort.
+struct ByEffort<'a, 'b> {
+    dual: &'a Dual<'b>,
+    effort: Effort,
+}
+
+impl InCircle for ByEffort<'_, '_> {
+    /// Expansions tell nothing of long quadrilaterals, nor at rough vertices.
+    fn may_tell(&self, quad: &Quad, level: usize, _lengths: &Lengths, _known: Option<Tested>) -> bool {
+        let is_rough = |i: u32| self.dual.local(VertexId(i)).is_rough;
+        level != 1 || !self.is_long(quad) && ![quad.a, quad.b, quad.c, quad.d].into_iter().any(is_rough)
     }
 
-    fn full_margin(&mut self, quad: Quad) -> Margin {
-        if let Some(&margin) = self.known.margins.get(&quad.diagonals()) {
-            return margin;
-        }
-        self.measure_quads(&[quad])[0]
-    }
-
-    /// Computes the margins of all edges with all levels, in parallel.
-    pub(super) fn measure_margins(&mut self) {
-        let quads: Vec<Quad> = self.free_edges().map(|h| self.quad(h)).collect();
-        self.measure_quads(&quads);
-    }
-
-    /// Margins with all levels, level by level, so that the geodesics of each are solved for in parallel. They are kept.
-    fn measure_quads(&mut self, quads: &[Quad]) -> Vec<Margin> {
-        let cheap = |quad: &Quad| self.cheap_margin(quad, Effort::Full);
-        let mut margins: Vec<Margin> = quads.par_iter().with_min_len(64).map(cheap).collect();
-        for level in FIRST_PATH..LEVELS {
-            let open: Vec<usize> = (0..quads.len()).filter(|&i| !margins[i].is_certain()).collect();
-            self.solve_for(open.iter().flat_map(|&i| quads[i].sides()).collect(), level);
-            for i in open {
-                margins[i] = self.by_paths(&quads[i], level).map_or(margins[i], |found| margins[i].or_better(found));
-            }
-        }
-        for (quad, margin) in quads.iter().zip(&margins) {
-            self.counters.tests[margin.level] += 1;
-            self.known.margins.insert(quad.diagonals(), *margin);
-        }
-        margins
-    }
-
-    fn solve_for(&mut self, mut sides: Vec<[VertexId; 2]>, level: usize) {
-        sides.retain(|side| self.known.paths.get(side).is_none_or(|known| known.0 < level));
-        sides.sort_unstable();
-        sides.dedup();
-        let solve = |&side: &[VertexId; 2]| self.solve(side, level);
-        let solved: Vec<(usize, Option<PathLength>)> = sides.par_iter().with_min_len(8).map(solve).collect();
-        self.known.paths.extend(sides.into_iter().zip(solved));
+    fn is_by_lengths(&self, level: usize) -> bool {
+        level >= FIRST_PATH
     }
 
     /// The geodesic between two seeds. Where the field has kinks, one bow says as much as polynomials, and finer ones do
     /// not help; they are tried only where the bow is large.
-    fn solve(&self, [u, v]: [VertexId; 2], level: usize) -> (usize, Option<PathLength>) {
-        let [p, q] = [u, v].map(|v| self.position(v));
+    fn solve(&self, i: u32, j: u32, level: usize) -> Option<Known> {
+        let dual = self.dual;
+        let [p, q] = [i, j].map(|i| dual.position(VertexId(i)));
+        let known = |length, level| Some(Known { length, level, is_vetoed: false });
         let mut bowed = None;
-        if level == FIRST_PATH && (self.local(u).is_rough || self.local(v).is_rough) {
-            let (value, straight) = (bowed_chord(&self.field, p, q), chord(&self.field, p, q));
+        if level == FIRST_PATH && [i, j].iter().any(|&i| dual.local(VertexId(i)).is_rough) {
+            let (value, straight) = (bowed_chord(&dual.field, p, q), chord(&dual.field, p, q));
             let saving = straight / value - 1.0;
-            bowed = Some(PathLength { value, error: KINKS + OF_BOW * saving, curvature: [0.0; 2] });
+            let length = PathLength { value, error: KINKS + OF_BOW * saving, curvature: [0.0; 2] };
             if saving < STRAIGHT {
-                return (LEVELS, bowed);
+                return known(length, LEVELS);
             }
+            bowed = Some(length);
         }
-        let path = self.paths.length(&self.field, p, q, PATHS[level - FIRST_PATH]);
+        let path = dual.paths.length(&dual.field, p, q, PATHS[level - FIRST_PATH]);
         match (path, bowed) {
-            (Some(path), Some(bowed)) if path.error > bowed.error => (LEVELS, Some(bowed)),
-            (None, Some(bowed)) => (LEVELS, Some(bowed)),
-            (path, _) => (level, path),
+            (Some(path), Some(bowed)) if path.error > bowed.error => known(bowed, LEVELS),
+            (None, Some(bowed)) => known(bowed, LEVELS),
+            (path, _) => known(path?, level),
         }
     }
 
-    /// The margin from the geodesics that are known; `None` where one is not, or none can be found, or they make no
-    /// triangles.
-    fn by_paths(&self, quad: &Quad, level: usize) -> Option<Margin> {
-        let [ab, ac, bc, ad, bd] = quad.sides().map(|side| self.known.paths.get(&side).and_then(|known| known.1));
-        let found = margin_from_lengths(&[ab?, ac?, bc?, ad?, bd?]);
-        let (value, error) = (found.value, found.error);
-        error.is_finite().then_some(Margin { value, error, level })
+    /// Lengths that make no triangles do not tell. While seeds still move it is left at that.
+    fn margin(&self, quad: &Quad, level: usize, lengths: &Lengths) -> Margin {
+        match level {
+            0 => self.frozen(quad),
+            FIRST_PATH.. => quad.margin(lengths),
+            _ => self.by_lengths(quad, level).unwrap_or_else(|| {
+                let error = if self.effort == Effort::Local { 0.0 } else { UNKNOWN };
+                Margin { error, ..self.frozen(quad) }
+            }),
+        }
     }
 
-    pub(super) fn quad(&self, h: HalfEdge) -> Quad {
-        let [a, b, c, d] = self.topology().quad(h).expect("an edge with two faces");
-        Quad { a, b, c, d }
+    /// Below geodesics a level stands in place of the one before it.
+    fn prefers(&self, found: Tested, known: Tested) -> bool {
+        found.level < FIRST_PATH || found.margin.error < known.margin.error
+    }
+}
+
+impl ByEffort<'_, '_> {
+    fn tensors(&self, quad: &Quad) -> ([Tensor; 4], Tensor) {
+        let tensors = [quad.a, quad.b, quad.c, quad.d].map(|i| self.dual.local(VertexId(i)).tensor);
+        (tensors, tensors.iter().fold(Tensor::default(), |sum, &t| sum + t) * 0.25)
     }
 
-    /// All levels but the last.
-    fn cheap_margin(&self, quad: &Quad, effort: Effort) -> Margin {
-        let (mut margin, is_long) = self.frozen(quad);
-        if effort == Effort::Full && margin.error > FROZEN {
-            margin.error = UNKNOWN;
-        }
-        let expands = !is_long && ![quad.a, quad.b, quad.c, quad.d].iter().any(|&v| self.local(v).is_rough);
-        if !expands && effort == Effort::Local {
-            return Margin { error: 0.0, ..margin };
-        }
-        for level in if expands { 1 } else { 2 }..=(effort as usize).min(FIRST_PATH - 1) {
-            if margin.is_certain() {
-                break;
-            }
-            match self.by_lengths(quad, level) {
-                Some(better) => margin = better,
-                // Lengths that make no triangles: this level cannot tell. While seeds still move it is left at that.
-                None => margin.error = if effort == Effort::Local { 0.0 } else { UNKNOWN },
-            }
-        }
-        margin
+    /// Whether the quadrilateral is [`LONG`].
+    fn is_long(&self, quad: &Quad) -> bool {
+        let [a, b, c, d] = [quad.a, quad.b, quad.c, quad.d].map(|i| self.dual.position(VertexId(i)));
+        let (_, mean) = self.tensors(quad);
+        mean.length(b - a).min(mean.length(d - c)) > LONG
     }
 
-    /// Level 0, the mean tensor of the four corners, its error from how much the corners' tensors differ; and whether
-    /// the quadrilateral is [`LONG`].
-    fn frozen(&self, quad: &Quad) -> (Margin, bool) {
-        let [a, b, c, d] = [quad.a, quad.b, quad.c, quad.d].map(|v| self.position(v));
-        let tensors = [quad.a, quad.b, quad.c, quad.d].map(|v| self.local(v).tensor);
-        let mean = tensors.iter().fold(Tensor::default(), |sum, &t| sum + t) * 0.25;
+    /// The mean tensor of the four corners, its error from how much the corners' tensors differ.
+    fn frozen(&self, quad: &Quad) -> Margin {
+        let [a, b, c, d] = [quad.a, quad.b, quad.c, quad.d].map(|i| self.dual.position(VertexId(i)));
+        let (tensors, mean) = self.tensors(quad);
         let value = frozen_margin(mean, [a - c, b - c], [b - d, a - d]);
         let spread = |v| {
             let reference = mean.dot(v, v);
             tensors.iter().map(|t| (t.dot(v, v) / reference - 1.0).abs()).fold(0.0, f64::max)
         };
-        let is_long = mean.length(b - a).min(mean.length(d - c)) > LONG;
-        (Margin { value, error: spread(b - a).max(spread(d - c)), level: 0 }, is_long)
+        let error = spread(b - a).max(spread(d - c));
+        Margin { value, error: if self.effort == Effort::Full && error > FROZEN { UNKNOWN } else { error } }
     }
 
-    /// The margin from five lengths; `None` where they make no triangles, and the level before has to do.
+    /// The margin from five lengths; `None` where they make no triangles.
     fn by_lengths(&self, quad: &Quad, level: usize) -> Option<Margin> {
-        let length = |u: VertexId, v: VertexId| self.length_between(u, v, level);
-        let Quad { a, b, c, d } = *quad;
-        let (ab, ac, bc, ad, bd) = (length(a, b), length(a, c), length(b, c), length(a, d), length(b, d));
+        let &Quad { a, b, c, d } = quad;
+        let [ab, ac, bc, ad, bd] =
+            [(a, b), (a, c), (b, c), (a, d), (b, d)].map(|(i, j)| self.length_between(i, j, level));
         let relative = [ab, ac, bc, ad, bd].iter().map(|l| l.error).fold(0.0, f64::max);
         let angles = Angles::from_lengths(ab.value, [ac.value, bc.value], [ad.value, bd.value]);
-        (!angles.is_flat()).then(|| Margin { value: angles.margin(), error: angles.error(relative), level })
+        (!angles.is_flat()).then(|| Margin { value: angles.margin(), error: angles.error(relative) })
     }
 
-    fn length_between(&self, u: VertexId, v: VertexId, level: usize) -> Length {
-        let (p, q) = (self.position(u), self.position(v));
+    fn length_between(&self, i: u32, j: u32, level: usize) -> Length {
+        let [u, v] = [i, j].map(VertexId);
+        let (p, q) = (self.dual.position(u), self.dual.position(v));
         if level == 1 {
-            hermite(p, self.local(u), q, self.local(v))
+            hermite(p, self.dual.local(u), q, self.dual.local(v))
         } else {
-            bent_chord(&self.field, p, self.local(u), q, self.local(v))
+            bent_chord(&self.dual.field, p, self.dual.local(u), q, self.dual.local(v))
         }
     }
 }

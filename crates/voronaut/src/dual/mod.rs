@@ -17,7 +17,7 @@ mod patch;
 
 pub use consult::{Consultation, Disagreement, Made, Road};
 pub use edit::Saved;
-pub use margin::{Effort, LEVELS, Margin};
+pub use margin::Effort;
 pub use mending::Mending;
 pub use moving::Moving;
 pub use on_surface::SurfaceDual;
@@ -26,11 +26,13 @@ use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, Paths, chord, hermite};
 use crate::geometry::{Point, Readable, Tensor};
+use crate::in_circle::Tests;
 use crate::metric::Scaled;
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, Lawson, Triangulation, VertexId};
-use margin::Known;
+use margin::LEVELS;
 use rayon::prelude::*;
+use std::collections::HashSet;
 
 /// What holds a vertex in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +48,7 @@ pub enum Kind {
 /// Work counters; deterministic.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DualCounters {
-    /// In-circle tests settled at each level of [`LEVELS`].
+    /// In-circle tests settled at each level.
     pub tests: [u64; LEVELS],
     /// Flips done.
     pub flips: u64,
@@ -61,7 +63,10 @@ pub struct Dual<'a> {
     required: Vec<bool>,
     touched: Vec<FaceId>,
     lawson: Lawson,
-    known: Known,
+    /// What is known of edges, until a seed moves, comes or goes.
+    tests: Tests,
+    /// Edges that are not to be flipped, until then.
+    held: HashSet<[VertexId; 2]>,
     paths: Paths,
     counters: DualCounters,
     fault: Option<(Point, Tensor)>,
@@ -83,7 +88,8 @@ impl<'a> Dual<'a> {
             required: domain.pslg().segments.iter().map(|s| s.required).collect(),
             touched: Vec::new(),
             lawson: Lawson::default(),
-            known: Known::default(),
+            tests: Tests::default(),
+            held: HashSet::new(),
             paths: Paths::default(),
             counters: DualCounters::default(),
             fault: None,
@@ -179,7 +185,13 @@ impl<'a> Dual<'a> {
         self.kinds = old.iter().map(|&v| self.kinds[v.index()]).collect();
         self.planar = planar;
         self.touched.clear();
-        self.known = Known::default();
+        self.forget();
+    }
+
+    /// Forgets what is known of edges.
+    fn forget(&mut self) {
+        self.tests = Tests::default();
+        self.held.clear();
     }
 
     /// Evaluates the metric at every vertex, in parallel.
@@ -193,7 +205,7 @@ impl<'a> Dual<'a> {
     }
 
     fn measure_each(&mut self, measure: impl Fn(&LocalMetric, &Scaled, Point) -> LocalMetric + Sync) {
-        self.known = Known::default();
+        self.forget();
         let field = self.field;
         let (topology, positions) = (&self.planar.topology, &self.planar.positions);
         self.locals.par_iter_mut().enumerate().with_min_len(256).for_each(|(v, local)| {
@@ -233,7 +245,7 @@ impl<'a> Dual<'a> {
 
     /// The metric around a point; where it is not valid that is noted, and the Euclidean metric serves instead.
     fn measure(&mut self, p: Point) -> LocalMetric {
-        self.known = Known::default();
+        self.forget();
         let local = LocalMetric::at(&self.field, p);
         self.vetted(p, local)
     }

@@ -3,7 +3,7 @@
 use super::Moving;
 use super::on_surface::{FOLDED, SurfaceDual, TIE, UPRIGHT};
 use crate::geodesic::Margin;
-use crate::rdt::Quad;
+use crate::in_circle::Quad;
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Rounds, Triangulation, VertexId, flip_in_rounds};
 use rayon::prelude::*;
 

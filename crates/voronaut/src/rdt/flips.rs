@@ -1,8 +1,8 @@
 //! Flips on a topology, in rounds, whose tests run in parallel.
 
-use super::Rdt;
-use super::judge::{Judge, LEVELS, RESOLUTION};
+use super::{Judge, Rdt};
 use crate::geodesic::Margin;
+use crate::in_circle::{LEVELS, Quad, RESOLUTION};
 use crate::triangulation::{HalfEdge, Rounds, Triangulation, flip_in_rounds};
 
 /// How often one slot is flipped at most: on a test that is certain, and on one that is not. Tests that contradict each other
@@ -17,6 +17,8 @@ impl<J: Judge> Rdt<J> {
             self.flips_of_slot.fill(0);
             self.counters.flips += flip_in_rounds(&mut UpTo { rdt: self, last }, usize::MAX);
         }
+        let found = self.memory.tests.counters;
+        (self.counters.tests, self.counters.paths, self.counters.vetoed) = (found.tests, found.paths, found.vetoed);
         self.store_lengths();
     }
 
@@ -28,8 +30,8 @@ impl<J: Judge> Rdt<J> {
         quad.c != quad.d && t.is_some() && !self.topology.star(c).any(is_there)
     }
 
-    fn is_circling(&self, h: HalfEdge) -> bool {
-        let is_certain = self.tested[h.index()].is_some_and(|tested| tested.margin.is_certain());
+    fn is_circling(&self, h: HalfEdge, last: usize) -> bool {
+        let is_certain = self.tested(h, last).is_some_and(|tested| tested.margin.is_certain());
         self.flips_of_slot[h.index()] >= FLIPS_PER_SLOT[usize::from(!is_certain)]
     }
 
@@ -62,15 +64,16 @@ impl<J: Judge> Rounds for UpTo<'_, J> {
     }
 
     fn wanted(&mut self, edges: &[HalfEdge]) -> Vec<(f64, HalfEdge)> {
-        self.rdt.test(edges, self.last);
-        let margin = |&h: &HalfEdge| self.rdt.tested[h.index()].map(|tested| (tested.margin, h));
-        let is_wanted = |(margin, _): &(Margin, HalfEdge)| self.rdt.wants_flip(*margin, self.last > 0);
-        edges.iter().filter_map(margin).filter(is_wanted).map(|(margin, h)| (margin.value, h)).collect()
+        let (rdt, last) = (&mut *self.rdt, self.last);
+        let (edges, quads): (Vec<HalfEdge>, Vec<Quad>) = edges.iter().filter_map(|&h| Some((h, rdt.quad(h)?))).unzip();
+        let found = rdt.memory.tests.test(&rdt.judge, &quads, last);
+        let margins = edges.into_iter().zip(found).filter_map(|(h, tested)| Some((tested?.margin, h)));
+        margins.filter(|(margin, _)| rdt.wants_flip(*margin, last > 0)).map(|(margin, h)| (margin.value, h)).collect()
     }
 
     fn flip(&mut self, h: HalfEdge) -> bool {
         let rdt = &mut *self.rdt;
-        let [blocked, circling] = [!rdt.may_flip(h), rdt.is_circling(h)];
+        let [blocked, circling] = [!rdt.may_flip(h), rdt.is_circling(h, self.last)];
         if blocked || circling {
             rdt.counters.blocked += u64::from(blocked && self.last > 0);
             rdt.counters.circling += u64::from(circling && !blocked && self.last > 0);
@@ -78,9 +81,6 @@ impl<J: Judge> Rounds for UpTo<'_, J> {
         }
         rdt.flips_of_slot[h.index()] += 1;
         rdt.topology.flip(h);
-        for e in [Some(h), rdt.topology.twin(h)].into_iter().flatten().flat_map(|side| side.face().half_edges()) {
-            rdt.tested[rdt.topology.canonical(e).index()] = None;
-        }
         true
     }
 }

@@ -1,12 +1,12 @@
 //! Seeds of the plane in a metric field.
 
-use super::judge::{Judge, Lengths, Quad};
 use super::site::{self, Site};
-use super::{Known, Trust};
+use super::{Judge, Trust};
 use crate::geodesic::{
     Fineness, Margin, PathLength, Paths, circumradius, frozen_margin, hermite, margin_by_power, margin_from_lengths,
 };
 use crate::geometry::{Point, Tensor, Vector};
+use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested};
 use crate::metric::MetricField;
 use rayon::prelude::*;
 
@@ -76,23 +76,25 @@ impl Judge for InField<'_> {
         (1..outline.len()).map(|i| arm(i).cross(arm(i + 1))).sum::<f64>() > 0.0
     }
 
+    fn doubt(&self) -> f64 {
+        self.trust.doubt
+    }
+}
+
+impl InCircle for InField<'_> {
     fn is_by_lengths(&self, level: usize) -> bool {
         (FIRST_PATH..=LAST_PATH).contains(&level)
     }
 
-    fn doubt(&self) -> f64 {
-        self.trust.doubt
-    }
-
     /// Finer lengths cannot add where curvature is what they leave open, nor a circle with finer spokes where none was found.
-    fn may_tell(&self, quad: &Quad, level: usize, lengths: &Lengths, settled: Option<usize>) -> bool {
+    fn may_tell(&self, quad: &Quad, level: usize, lengths: &Lengths, known: Option<Tested>) -> bool {
         match level {
             FROZEN..=FIRST_PATH | CIRCUMCENTRE => true,
             ..=LAST_PATH => quad.lengths(lengths).is_none_or(|lengths| {
                 let exact = margin_from_lengths(&lengths.map(|length| PathLength { error: 0.0, ..length }));
                 exact.error < 0.5 * margin_from_lengths(&lengths).error
             }),
-            _ => settled == Some(CIRCUMCENTRE),
+            _ => known.is_some_and(|known| known.level == CIRCUMCENTRE),
         }
     }
 
@@ -100,9 +102,7 @@ impl Judge for InField<'_> {
         match level {
             FROZEN => self.frozen(quad),
             EXPANSIONS => self.by_expansions(quad),
-            FIRST_PATH..=LAST_PATH => {
-                quad.lengths(lengths).map_or(Margin::UNKNOWN, |lengths| margin_from_lengths(&lengths))
-            }
+            FIRST_PATH..=LAST_PATH => quad.margin(lengths),
             _ => self.by_power(quad, level, lengths),
         }
     }

@@ -5,7 +5,6 @@
 //! growing degree, and at last the circumcentre itself. Nothing is embedded, so that nothing keeps an edge from being
 //! flipped; how the triangulation is drawn is for others to say. It ends where the triangles it started from end.
 
-mod by_levels;
 mod fill;
 mod flips;
 mod in_field;
@@ -16,13 +15,14 @@ mod site;
 mod start;
 
 pub use in_field::InField;
-pub use judge::{Judge, LEVELS, Lengths, Quad};
+pub use judge::Judge;
 pub use memory::Memory;
 pub use on_surface::OnSurface;
 pub use start::Start;
 
 use crate::geodesic::{Margin, PathLength};
 use crate::geometry::Point;
+use crate::in_circle::{LEVELS, Lengths, Quad, Tested};
 use crate::metric::MetricField;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 use std::collections::HashSet;
@@ -97,29 +97,11 @@ pub struct Rdt<J> {
     judge: J,
     topology: Triangulation,
     seed_of: Vec<u32>,
-    lengths: Lengths,
     memory: Memory,
-    tested: Vec<Option<Tested>>,
     flips_of_slot: Vec<u8>,
     started_with: Vec<[u32; 2]>,
     dropped: Vec<[u32; 3]>,
     counters: RdtCounters,
-}
-
-/// The best length known between two seeds.
-#[derive(Clone, Copy)]
-pub struct Known {
-    length: PathLength,
-    /// The level at which it was found.
-    level: usize,
-    /// It is the reference's.
-    is_vetoed: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Tested {
-    margin: Margin,
-    level: usize,
 }
 
 impl<'a> Rdt<InField<'a>> {
@@ -185,7 +167,7 @@ impl<J: Judge> Rdt<J> {
         topology: Triangulation,
         seed_of: Vec<u32>,
         mut counters: RdtCounters,
-        mut memory: Memory,
+        memory: Memory,
     ) -> Self {
         counters.split = (seed_of.len() - seeds) as u64;
         let mut used = vec![false; seeds];
@@ -196,9 +178,7 @@ impl<J: Judge> Rdt<J> {
             judge,
             topology,
             seed_of,
-            lengths: std::mem::take(&mut memory.lengths),
             memory,
-            tested: vec![None; slots],
             flips_of_slot: vec![0; slots],
             started_with: Vec::new(),
             dropped: Vec::new(),
@@ -256,7 +236,7 @@ impl<J: Judge> Rdt<J> {
     pub fn margin_of(&self, quad: &Quad) -> Margin {
         let level = (0..LEVELS).rev().find(|&level| self.judge.is_by_lengths(level)).unwrap_or(0);
         let known = |&(i, j): &(u32, u32)| {
-            let found = self.lengths.get(&(i, j)).copied().or_else(|| self.judge.solve(i, j, level));
+            let found = self.memory.tests.lengths.get(&(i, j)).copied().or_else(|| self.judge.solve(i, j, level));
             found.map(|found| ((i, j), found))
         };
         let lengths: Lengths = quad.pairs().iter().filter_map(known).collect();
@@ -270,12 +250,28 @@ impl<J: Judge> Rdt<J> {
 
     /// The best length known between two seeds; `None` where no test needed one.
     pub fn length(&self, i: u32, j: u32) -> Option<PathLength> {
-        self.lengths.get(&(i.min(j), i.max(j))).map(|known| known.length)
+        self.memory.tests.lengths.get(&(i.min(j), i.max(j))).map(|known| known.length)
+    }
+
+    /// What was found, for [`Rdt::again`].
+    pub fn into_memory(self) -> Memory {
+        self.memory
+    }
+
+    /// The quadrilateral around an edge with two triangles.
+    fn quad(&self, h: HalfEdge) -> Option<Quad> {
+        let [a, b, c, d] = self.topology.quad(h)?.map(|v| self.seed(v));
+        Some(Quad { a, b, c, d })
+    }
+
+    /// What is known of an edge, with all levels up to and including `last`.
+    fn tested(&self, h: HalfEdge, last: usize) -> Option<Tested> {
+        self.memory.tests.known(&self.quad(h)?, last)
     }
 
     fn edge(&self, h: HalfEdge) -> Edge {
         let topology = &self.topology;
-        let tested = self.tested[h.index()];
+        let tested = self.tested(h, LEVELS - 1);
         Edge {
             ends: [topology.origin(h), topology.target(h)].map(|v| self.seed(v)),
             apexes: [Some(h), topology.twin(h)].map(|side| side.map(|e| self.seed(topology.apex(e)))),

@@ -1,11 +1,11 @@
 //! Seeds on a surface: lengths are those of geodesics pulled taut on the canvas.
 
-use super::Known;
-use super::judge::{Judge, Lengths, Quad};
+use super::Judge;
 use crate::canvas::{Canvas, Draped, metric_area};
 use crate::diagram::SurfaceDiagram;
 use crate::geodesic::{Margin, PathLength, circumradius, margin_from_lengths};
 use crate::geometry::{Point3, TangentPlane, Vector};
+use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested};
 use crate::triangulation::{FaceId, Triangulation, VertexId};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -73,7 +73,13 @@ impl Judge for OnSurface<'_> {
         true
     }
 
-    fn may_tell(&self, _quad: &Quad, level: usize, _lengths: &Lengths, _settled: Option<usize>) -> bool {
+    fn doubt(&self) -> f64 {
+        DOUBT
+    }
+}
+
+impl InCircle for OnSurface<'_> {
+    fn may_tell(&self, _quad: &Quad, level: usize, _lengths: &Lengths, _known: Option<Tested>) -> bool {
         level == TAUT
     }
 
@@ -93,10 +99,6 @@ impl Judge for OnSurface<'_> {
         let bends = || [quad.a, quad.b, quad.c, quad.d].map(|i| self.curvature[i as usize]).into_iter();
         let curvature = [bends().fold(f64::INFINITY, f64::min), bends().fold(f64::NEG_INFINITY, f64::max)];
         margin_from_lengths(&lengths.map(|length| PathLength { curvature, ..length }))
-    }
-
-    fn doubt(&self) -> f64 {
-        DOUBT
     }
 }
 

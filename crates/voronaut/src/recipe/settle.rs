@@ -3,8 +3,9 @@
 use super::MeshOptions;
 use crate::canvas::CanvasFigures;
 use crate::domain::Domain;
-use crate::dual::{Consultation, Disagreement, Dual, Effort, Margin};
+use crate::dual::{Consultation, Disagreement, Dual, Effort};
 use crate::error::Result;
+use crate::geodesic::Margin;
 use crate::output::report;
 use crate::progress::Progress;
 use crate::triangulation::VertexId;
@@ -51,7 +52,7 @@ fn account(dual: &mut Dual, domain: &Domain, found: Consultation) -> report::Dua
         error: d.margin.error,
         settled_by: d.settled_by,
     };
-    let uncertain = |(edge, Margin { value: margin, error, .. }): ([VertexId; 2], Margin)| {
+    let uncertain = |(edge, Margin { value: margin, error }): ([VertexId; 2], Margin)| {
         let edge = ends(edge);
         report::UncertainEdge { edge, margin, error }
     };
