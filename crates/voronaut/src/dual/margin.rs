@@ -3,7 +3,7 @@
 
 use super::Dual;
 use crate::geodesic::{
-    Angles, Fineness, Length, Margin, PathLength, bent_chord, bowed_chord, chord, frozen_margin, hermite,
+    Fineness, Length, Margin, PathLength, bent_chord, bowed_chord, chord, frozen_margin, hermite, margin_of_estimates,
 };
 use crate::geometry::Tensor;
 use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested, climb};
@@ -26,7 +26,7 @@ const FROZEN: f64 = 0.3;
 const UNKNOWN: f64 = 1.0;
 
 /// Relative error of a bowed chord: of its quadrature across kinks, and as a share of what the bow saves.
-const KINKS: f64 = 0.005;
+pub(super) const KINKS: f64 = 0.005;
 const OF_BOW: f64 = 0.25;
 /// A bow that saves less than this share of the chord is small.
 const STRAIGHT: f64 = 0.02;
@@ -136,10 +136,11 @@ impl InCircle for ByEffort<'_, '_> {
         match level {
             0 => self.frozen(quad),
             FIRST_PATH.. => quad.margin(lengths),
-            _ => self.by_lengths(quad, level).unwrap_or_else(|| {
-                let error = if self.effort == Effort::Local { 0.0 } else { UNKNOWN };
-                Margin { error, ..self.frozen(quad) }
-            }),
+            _ => {
+                let found = self.by_lengths(quad, level);
+                let unknown = if self.effort == Effort::Local { 0.0 } else { UNKNOWN };
+                if found.error.is_finite() { found } else { Margin { error: unknown, ..self.frozen(quad) } }
+            }
         }
     }
 
@@ -175,14 +176,9 @@ impl ByEffort<'_, '_> {
         Margin { value, error: if self.effort == Effort::Full && error > FROZEN { UNKNOWN } else { error } }
     }
 
-    /// The margin from five lengths; `None` where they make no triangles.
-    fn by_lengths(&self, quad: &Quad, level: usize) -> Option<Margin> {
-        let &Quad { a, b, c, d } = quad;
-        let [ab, ac, bc, ad, bd] =
-            [(a, b), (a, c), (b, c), (a, d), (b, d)].map(|(i, j)| self.length_between(i, j, level));
-        let relative = [ab, ac, bc, ad, bd].iter().map(|l| l.error).fold(0.0, f64::max);
-        let angles = Angles::from_lengths(ab.value, [ac.value, bc.value], [ad.value, bd.value]);
-        (!angles.is_flat()).then(|| Margin { value: angles.margin(), error: angles.error(relative) })
+    fn by_lengths(&self, &Quad { a, b, c, d }: &Quad, level: usize) -> Margin {
+        let pairs = [(a, b), (a, c), (b, c), (a, d), (b, d)];
+        margin_of_estimates(pairs.map(|(i, j)| self.length_between(i, j, level)))
     }
 
     fn length_between(&self, i: u32, j: u32, level: usize) -> Length {

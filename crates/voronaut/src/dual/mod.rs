@@ -13,6 +13,7 @@ mod mending;
 mod moving;
 mod on_surface;
 mod surface_flips;
+mod surface_margin;
 mod patch;
 
 pub use consult::{Consultation, Disagreement, Made, Road};

@@ -6,7 +6,7 @@
 
 use super::{Kind, Moving};
 use crate::error::{Error, Result};
-use crate::geodesic::{Angles, LocalMetric, hermite_between};
+use crate::geodesic::LocalMetric;
 use crate::geometry::{Point, Point3, TangentPlane, Vector, Vector3};
 use crate::metric::Scaled;
 use crate::surface::metric::SurfaceMetric;
@@ -25,9 +25,9 @@ const STEEP: f64 = 0.8;
 
 /// The Riemannian Delaunay triangulation of seeds on a surface, with straight edges in space: the mesh in the making.
 pub struct SurfaceDual<'a> {
-    input: &'a Input,
-    metric: &'a dyn SurfaceMetric,
-    factor: f64,
+    pub(super) input: &'a Input,
+    pub(super) metric: &'a dyn SurfaceMetric,
+    pub(super) factor: f64,
     pub(super) state: State,
     pub(super) flips: u64,
 }
@@ -36,9 +36,9 @@ pub struct SurfaceDual<'a> {
 #[derive(Clone)]
 pub struct State {
     pub(super) topology: Triangulation,
-    places: Vec<Place>,
+    pub(super) places: Vec<Place>,
     planes: Vec<TangentPlane>,
-    locals: Vec<LocalMetric>,
+    pub(super) locals: Vec<LocalMetric>,
     kinds: Vec<Kind>,
 }
 
@@ -139,54 +139,6 @@ impl<'a> SurfaceDual<'a> {
                 Err(Error::metric(what, self.state.places[i].position.to_string(), help))
             }
         }
-    }
-
-    /// Metric length of the geodesic between two seeds, estimated from both ends; where the metric is rough, by Simpson's rule.
-    pub fn length_between(&self, u: VertexId, v: VertexId) -> f64 {
-        let ends = [u, v].map(|w| &self.state.locals[w.index()]);
-        if ends.iter().any(|local| local.is_rough) {
-            return self.chord_length(u, v);
-        }
-        hermite_between(ends, [self.offset(u, v), -self.offset(v, u)]).value
-    }
-
-    fn chord_length(&self, u: VertexId, v: VertexId) -> f64 {
-        let [p, q] = [u, v].map(|w| &self.state.places[w.index()]);
-        let tensors = [p, q].map(|place| self.metric.at(place));
-        let middle = self.input.lift(p, p.position.lerp(q.position, 0.5));
-        let middle = middle.map_or(tensors, |place| [self.metric.at(&place); 2]);
-        self.input.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()
-    }
-
-    /// [`Self::length_between`] its ends, measured before where that takes long.
-    fn edge_length(&self, h: HalfEdge) -> f64 {
-        let measured = self.topology().length(h);
-        if measured.is_nan() {
-            self.length_between(self.topology().origin(h), self.topology().target(h))
-        } else {
-            measured
-        }
-    }
-
-    fn is_rough(&self, h: HalfEdge) -> bool {
-        [self.topology().origin(h), self.topology().target(h)].iter().any(|v| self.state.locals[v.index()].is_rough)
-    }
-
-    pub(super) fn measure_edge(&mut self, h: HalfEdge) {
-        if self.is_rough(h) {
-            let length = self.chord_length(self.topology().origin(h), self.topology().target(h));
-            self.state.topology.set_length(h, length);
-        }
-    }
-
-    /// The in-circle test of an edge with two faces: the sine of the sum of the angles that face it; `None` where lengths
-    /// make no triangles.
-    pub(super) fn margin(&self, h: HalfEdge) -> Option<f64> {
-        let t = self.topology().twin(h)?;
-        let length = |h| self.edge_length(h);
-        let angles =
-            Angles::from_lengths(length(h), [length(h.prev()), length(h.next())], [length(t.next()), length(t.prev())]);
-        (!angles.is_flat()).then(|| angles.margin())
     }
 
     /// Evaluates the metric at a seed that has moved.
@@ -321,9 +273,9 @@ impl Moving for SurfaceDual<'_> {
     /// Lengths of edges that a rough metric makes slow to measure, where they are not known.
     fn measure(&mut self) {
         let topology = self.topology();
-        let is_due = |&h: &HalfEdge| topology.length(h).is_nan() && self.is_rough(h);
+        let is_due = |&h: &HalfEdge| topology.length(h).is_nan() && self.is_rough(self.ends(h));
         let edges: Vec<HalfEdge> = topology.edges().filter(is_due).collect();
-        let length = |&h: &HalfEdge| self.chord_length(topology.origin(h), topology.target(h));
+        let length = |&h: &HalfEdge| self.chord_length(self.ends(h));
         let lengths: Vec<f64> = edges.par_iter().with_min_len(64).map(length).collect();
         for (h, length) in edges.into_iter().zip(lengths) {
             self.state.topology.set_length(h, length);

@@ -20,7 +20,7 @@ impl SurfaceDual<'_> {
         self.measure();
         let edges: Vec<HalfEdge> = self.topology().edges().collect();
         let topology = &self.state.topology;
-        let wants = |&h: &HalfEdge| !topology.is_fixed(h) && self.margin(h).is_some_and(|margin| margin < -TIE);
+        let wants = |&h: &HalfEdge| !topology.is_fixed(h) && self.margin(h).value < -TIE;
         let edges = edges.into_par_iter().with_min_len(64).filter(wants).collect();
         self.flip_by(edges, Self::margin)
     }
@@ -35,32 +35,32 @@ impl SurfaceDual<'_> {
     /// number of flips.
     pub fn settle_by(&mut self, test: impl Fn(&Quad) -> Margin) -> u64 {
         let edges: Vec<HalfEdge> = self.topology().edges().collect();
-        self.flip_by(edges, |dual, h| certain(&test(&dual.seeds_around(h)?)))
+        self.flip_by(edges, |dual, h| certain(dual.seeds_around(h).map(|quad| test(&quad))))
     }
 
     /// How many edges a test wants flipped.
     pub fn disagreeing(&self, test: impl Fn(&Quad) -> Margin) -> usize {
         let wants = |&h: &HalfEdge| {
-            let margin = self.seeds_around(h).and_then(|quad| certain(&test(&quad)));
-            !self.topology().is_fixed(h) && margin.is_some_and(|value| value < -TIE)
+            !self.topology().is_fixed(h) && certain(self.seeds_around(h).map(|quad| test(&quad))).value < -TIE
         };
         self.topology().edges().filter(wants).count()
     }
 
     /// How many edges their own lengths want flipped and the surface forbids, and the smallest margin of the others; 1 of none.
     pub fn unsettled(&self) -> (usize, f64) {
-        let margins = self.topology().edges().filter(|&h| !self.topology().is_fixed(h)).filter_map(|h| self.margin(h));
-        let (blocked, settled): (Vec<f64>, Vec<f64>) = margins.partition(|&margin| margin < -TIE);
+        let margins = self.topology().edges().filter(|&h| !self.topology().is_fixed(h)).map(|h| self.margin(h));
+        let known = margins.filter(|margin| margin.error.is_finite()).map(|margin| margin.value);
+        let (blocked, settled): (Vec<f64>, Vec<f64>) = known.partition(|&margin| margin < -TIE);
         (blocked.len(), settled.into_iter().fold(1.0, f64::min))
     }
 
-    fn seeds_around(&self, h: HalfEdge) -> Option<Quad> {
+    pub(super) fn seeds_around(&self, h: HalfEdge) -> Option<Quad> {
         let [a, b, c, d] = self.topology().quad(h)?.map(|v| v.0);
         Some(Quad { a, b, c, d })
     }
 
     /// Flips edges and what follows from them as long as a test gives a negative margin and the surface allows it.
-    fn flip_by(&mut self, edges: Vec<HalfEdge>, margin: impl Fn(&Self, HalfEdge) -> Option<f64>) -> u64 {
+    fn flip_by(&mut self, edges: Vec<HalfEdge>, margin: impl Fn(&Self, HalfEdge) -> Margin) -> u64 {
         let mut lawson = Lawson::default();
         lawson.queue(edges);
         lawson.pass(&mut By { dual: self, margin }, LIMIT).len() as u64
@@ -139,14 +139,13 @@ struct By<'a, 'b, F> {
     margin: F,
 }
 
-impl<'b, F: Fn(&SurfaceDual<'b>, HalfEdge) -> Option<f64>> Flipping for By<'_, 'b, F> {
+impl<'b, F: Fn(&SurfaceDual<'b>, HalfEdge) -> Margin> Flipping for By<'_, 'b, F> {
     fn topology(&mut self) -> &mut Triangulation {
         &mut self.dual.state.topology
     }
 
     fn wants_flip(&mut self, h: HalfEdge) -> bool {
-        let is_wanted = || (self.margin)(self.dual, h).is_some_and(|margin| margin < -TIE);
-        !self.dual.topology().is_fixed(h) && is_wanted() && self.dual.allows_flip(h)
+        !self.dual.topology().is_fixed(h) && (self.margin)(self.dual, h).value < -TIE && self.dual.allows_flip(h)
     }
 
     fn flip(&mut self, h: HalfEdge) {
@@ -178,7 +177,7 @@ impl Leaning {
     }
 }
 
-/// The value of a margin whose sign is certain.
-fn certain(margin: &Margin) -> Option<f64> {
-    margin.is_certain().then_some(margin.value)
+/// A margin if its sign is certain.
+fn certain(margin: Option<Margin>) -> Margin {
+    margin.filter(Margin::is_certain).unwrap_or(Margin::UNKNOWN)
 }

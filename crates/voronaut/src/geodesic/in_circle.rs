@@ -4,6 +4,8 @@
 //! at most pi (in the flat model space; DESIGN.md, "In-circle tests"). The *margin* is the sine of that sum: positive
 //! where the edge is Delaunay, zero for four points on a circle, negative where it must flip.
 
+use super::length::Length;
+use super::predicate::Margin;
 use crate::geometry::{Tensor, Vector};
 
 /// The margin of the edge a-b with one tensor for the whole quadrilateral. Vectors run from c to a, c to b, d to b
@@ -13,6 +15,15 @@ pub fn frozen_margin(tensor: Tensor, [ca, cb]: [Vector; 2], [db, da]: [Vector; 2
     let at_c = Angles::normalised(tensor.dot(ca, cb), root * ca.cross(cb));
     let at_d = Angles::normalised(tensor.dot(db, da), root * db.cross(da));
     at_c.0 * at_d.1 + at_c.1 * at_d.0
+}
+
+/// The margin of the edge a-b from estimates of the lengths of a-b, a-c, b-c, a-d and b-d, with the error that theirs make to
+/// first order; [`Margin::UNKNOWN`] where they make no triangles.
+pub fn margin_of_estimates(lengths: [Length; 5]) -> Margin {
+    let [ab, ac, bc, ad, bd] = lengths.map(|length| length.value);
+    let relative = lengths.iter().map(|length| length.error).fold(0.0, f64::max);
+    let angles = Angles::from_lengths(ab, [ac, bc], [ad, bd]);
+    if angles.is_flat() { Margin::UNKNOWN } else { Margin { value: angles.margin(), error: angles.error(relative) } }
 }
 
 /// The angles at the two ends of a diagonal, from five metric lengths.

@@ -42,7 +42,7 @@ pub use curve::Curve;
 pub use dijkstra::Dijkstra;
 pub use graph::{Graph, Sight};
 pub use heat::Heat;
-pub use in_circle::{Angles, circumradius, frozen_margin};
+pub use in_circle::{Angles, circumradius, frozen_margin, margin_of_estimates};
 pub use jet::gauss_curvature;
 pub use karcher::karcher_mean;
 pub use konukoglu::Konukoglu;
