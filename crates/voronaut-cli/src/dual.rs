@@ -51,7 +51,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
         begin = Instant::now();
     };
     stage("read");
-    let road = Road::from(args.dual);
+    let road = args.dual;
     let canvas = canvas(args, &domain, metric.as_ref(), &file)?;
     let is_riemannian = args.voronoi == Kind::Riemannian;
     stage("canvas");
@@ -119,7 +119,7 @@ fn canvas(args: &DualArgs, domain: &Domain, metric: &dyn MetricField, file: &See
     sampling::demand_memory(seeds.len() as f64, size as f64, args.memory_limit())?;
     let canvas = Canvas::new(args.canvas, domain, metric, size)?;
     file.demand_inside(&canvas)?;
-    if args.voronoi == Kind::Riemannian && Road::from(args.dual) == Road::Canvas {
+    if args.voronoi == Kind::Riemannian && args.dual == Road::Canvas {
         return Ok(resolve(canvas, metric, seeds, RESOLVE_ROUNDS)?.canvas);
     }
     Ok(canvas)
@@ -211,7 +211,7 @@ pub(crate) fn options(args: &DualArgs) -> serde_json::Value {
     json!({
         "domain": args.domain, "metric": args.metric, "seeds": args.seeds, "out": args.out, "diagram": args.diagram,
         "canvas": args.canvas, "canvas_size": certify::canvas_size(args),
-        "voronoi": args.voronoi, "certify": args.certify, "constants": args.constants, "geodesic": args.geodesic, "dual": Road::from(args.dual), "edges": args.edges.name(), "strict": args.strict,
+        "voronoi": args.voronoi, "certify": args.certify, "constants": args.constants, "geodesic": args.geodesic, "dual": args.dual, "edges": args.edges.name(), "strict": args.strict,
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
         "smooth_metric": args.metric_choices.smooth_metric, "tensor_order": args.metric_choices.tensor_order, "gradation": args.metric_choices.gradation,
         "picture": args.outputs.picture, "histograms": args.outputs.histograms, "report": args.outputs.report, "threads": args.run.threads,

@@ -10,7 +10,6 @@ use std::path::Path;
 use std::time::Instant;
 use voronaut::canvas::{self, Canvas};
 use voronaut::diagram::{Kind, SurfaceDiagram};
-use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::Point3;
 use voronaut::mesh::Mesh;
@@ -79,7 +78,7 @@ pub(crate) fn dual(args: &DualArgs, input: &Input, mended: &Mended, start: Insta
     stage(&mut stages, "canvas");
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, args.geodesic)?;
     stage(&mut stages, "diagram");
-    let SeedDual { triangles, account, seconds, raw_nerve, .. } = recipe::surface_dual(&diagram, Road::from(args.dual));
+    let SeedDual { triangles, account, seconds, raw_nerve, .. } = recipe::surface_dual(&diagram, args.dual);
     let mesh = recipe::surface_mesh(input, &places, triangles);
     stage(&mut stages, "dual");
     stages.extend(seconds);

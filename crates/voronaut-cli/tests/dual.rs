@@ -452,5 +452,5 @@ fn what_only_geodesics_have_is_refused_of_other_diagrams() {
         assert!(!output.status.success() && said.contains("straight distances"), "{more:?}: {said}");
     }
     let output = place.run(&dual(&["--metric", "swirl", "--voronoi", "power"]));
-    assert!(stderr(&output).contains("no such diagram"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("no such Voronoi diagram"), "{}", stderr(&output));
 }

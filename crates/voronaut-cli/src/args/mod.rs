@@ -3,7 +3,7 @@
 mod values;
 
 pub(crate) use values::{
-    CanvasSize, Coordinates, Dual, EdgesOut, Show, default_memory_limit, in_bytes, not_negative, positive,
+    CanvasSize, Coordinates, EdgesOut, Show, default_memory_limit, in_bytes, not_negative, positive,
 };
 
 use crate::adapt::{self, LoopArgs};
@@ -166,9 +166,9 @@ pub(crate) struct MeshArgs {
     /// most; 0 for the metric's unit mesh. Not with limits on the metric
     #[arg(long, value_name = "SWEEPS", default_value_t = MeshOptions::default().polish)]
     pub(crate) polish: usize,
-    /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
-    #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(MeshOptions::default().dual))]
-    pub(crate) dual: Dual,
+    /// What decides on the edges: geodesic (their lengths), canvas (the diagram on one) or both (the diagram where lengths cannot)
+    #[arg(long, value_name = "ROAD", default_value_t = MeshOptions::default().dual)]
+    pub(crate) dual: Road,
     /// How distances on the canvas are computed where the diagram decides: march, stvd[:window=8], dijkstra or konukoglu
     #[arg(long, value_name = "METHOD", default_value_t = MeshOptions::default().geodesic)]
     pub(crate) geodesic: Method,
@@ -218,9 +218,9 @@ pub(crate) struct DualArgs {
     /// Write the coloured canvas, with colours and distances: .vtu
     #[arg(long, value_name = "FILE")]
     pub(crate) diagram: Option<PathBuf>,
-    /// What decides on the edges: lengths of geodesics, the diagram on a canvas, or the diagram where lengths cannot
-    #[arg(long, value_enum, value_name = "ROAD", default_value_t = Dual::from(Road::default()))]
-    pub(crate) dual: Dual,
+    /// What decides on the edges: geodesic (their lengths), canvas (the diagram on one) or both (the diagram where lengths cannot)
+    #[arg(long, value_name = "ROAD", default_value_t = Road::default())]
+    pub(crate) dual: Road,
     /// Which Voronoi diagram: riemannian, or, by straight distances, du-wang (in the metric of the place) or labelle-shewchuk (in
     /// that of the seed). Of these two OUT has the nerve as the canvas shows it, whatever --dual says; --show cells has their
     /// orphans in red
@@ -470,7 +470,7 @@ impl MeshArgs {
             lloyd: self.lloyd,
             centroid: self.centroid,
             polish: self.polish,
-            dual: self.dual.into(),
+            dual: self.dual,
             geodesic: self.geodesic,
             seeding: self.seeding,
             protection: self.protection,

@@ -3,7 +3,6 @@
 use clap::ValueEnum;
 use std::fmt;
 use voronaut::canvas::VERTICES_PER_SEED;
-use voronaut::dual::Road;
 use voronaut::geometry::{Aabb, Point, Point3};
 use voronaut::recipe::MeshOptions;
 
@@ -45,17 +44,6 @@ pub(crate) enum EdgesOut {
     Geodesic,
 }
 
-/// [`Road`], as it is typed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Dual {
-    /// Lengths of geodesics
-    Geodesic,
-    /// The nerve of the diagram
-    Canvas,
-    /// Lengths, and the diagram where they cannot decide
-    Both,
-}
-
 /// How fine the canvas of a dual is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CanvasSize {
@@ -86,26 +74,6 @@ impl EdgesOut {
         match self {
             EdgesOut::Straight => "straight",
             EdgesOut::Geodesic => "geodesic",
-        }
-    }
-}
-
-impl From<Dual> for Road {
-    fn from(typed: Dual) -> Self {
-        match typed {
-            Dual::Geodesic => Road::Geodesic,
-            Dual::Canvas => Road::Canvas,
-            Dual::Both => Road::Both,
-        }
-    }
-}
-
-impl From<Road> for Dual {
-    fn from(road: Road) -> Self {
-        match road {
-            Road::Geodesic => Dual::Geodesic,
-            Road::Canvas => Dual::Canvas,
-            Road::Both => Dual::Both,
         }
     }
 }

@@ -1,14 +1,11 @@
 //! The formulas of RR-9103's conditions, corrected and as printed. Pure functions of a net's figures.
 
 use serde::Serialize;
-use std::fmt;
-use std::str::FromStr;
 
-use crate::error::{Error, Result};
+use crate::error::named;
 
 /// Which formulas: those derived in `docs/guarantees.md`, or the report's own, to compare.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Constants {
     /// With the report's errors corrected.
     #[default]
@@ -17,25 +14,7 @@ pub enum Constants {
     Printed,
 }
 
-impl fmt::Display for Constants {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(if *self == Constants::Corrected { "corrected" } else { "printed" })
-    }
-}
-
-impl FromStr for Constants {
-    type Err = Error;
-
-    /// # Errors
-    /// [`Error::Parse`] of any other name.
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "corrected" => Ok(Constants::Corrected),
-            "printed" => Ok(Constants::Printed),
-            _ => Err(Error::parse(format!("constants {name}"), "no such constants", "choose corrected or printed")),
-        }
-    }
-}
+named!(Constants, "constants", [Corrected = "corrected", Printed = "printed"]);
 
 /// A power-protected net (RR-9103, sections 3.3 and 3.4), in lengths of one metric.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

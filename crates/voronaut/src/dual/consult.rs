@@ -8,14 +8,13 @@ use super::patch::Patch;
 use super::{Dual, Effort};
 use crate::canvas::{self, Canvas, CanvasFigures};
 use crate::diagram::{Diagram, NerveTriangle, resolve};
-use crate::error::Result;
+use crate::error::{Result, named};
 use crate::geodesic::{MarchCounters, Margin, Method};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::HashSet;
 
 /// Which road decides on the topology (`--dual`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Road {
     /// In-circle tests by lengths of geodesics.
     Geodesic,
@@ -25,6 +24,8 @@ pub enum Road {
     #[default]
     Both,
 }
+
+named!(Road, "dual", [Geodesic = "geodesic", Canvas = "canvas", Both = "both"]);
 
 impl Road {
     /// How many of so many seeds a diagram has at most.

@@ -3,14 +3,11 @@
 use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job, Seeding};
 use crate::canvas::Canvas;
 use crate::dual::Dual;
-use crate::error::{Error, Result};
+use crate::error::{Result, named};
 use crate::optimise::{Cells, OnCanvas, Relaxed, exchange, meet_blocked_flips, mend_worst, relax};
-use std::fmt;
-use std::str::FromStr;
 
 /// The centroids that relaxation moves seeds to; its names are those users type.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Centroid {
     /// `tangent`: of cells in the tangent planes at the seeds.
     #[default]
@@ -21,38 +18,14 @@ pub enum Centroid {
     Weighted,
 }
 
+named!(Centroid, "centroid", [Tangent = "tangent", Canvas = "canvas", Weighted = "weighted"]);
+
 /// Relaxation goes in so many parts.
 const PARTS: usize = 4;
 /// Triangles that are mended in the end, as a share of all.
 const MENDED_SHARE: f64 = 0.002;
 /// Relative error of the energy that tangent planes give, where all seeds are rough.
 const ROUGH_DOUBT: f64 = 0.03;
-
-impl Centroid {
-    /// The names, in order.
-    const NAMES: [(&'static str, Self); 3] =
-        [("tangent", Self::Tangent), ("canvas", Self::Canvas), ("weighted", Self::Weighted)];
-}
-
-impl fmt::Display for Centroid {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let name = Self::NAMES.iter().find(|(_, centroid)| centroid == self).map_or("", |(name, _)| name);
-        f.write_str(name)
-    }
-}
-
-impl FromStr for Centroid {
-    type Err = Error;
-
-    /// # Errors
-    /// [`Error::Parse`] of another name.
-    fn from_str(name: &str) -> Result<Self> {
-        let found = Self::NAMES.iter().find(|(known, _)| *known == name).map(|&(_, centroid)| centroid);
-        found.ok_or_else(|| {
-            Error::parse(format!("centroid {name}"), "no such centroid", "choose tangent, canvas or weighted")
-        })
-    }
-}
 
 impl Job<'_> {
     /// Relaxes in four parts, with an exchange of seeds before each but the first.

@@ -5,16 +5,13 @@ use crate::canvas::{self, Canvas};
 use crate::diagram::Diagram;
 use crate::domain::Domain;
 use crate::dual::Dual;
-use crate::error::{Error, Result};
+use crate::error::{Result, named};
 use crate::geometry::Point;
 use crate::output::report;
 use crate::sampling::{demand_memory, refine_farthest};
-use std::fmt;
-use std::str::FromStr;
 
 /// How the interior is seeded, once the boundary is sampled at unit length; its names are those users type.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Seeding {
     /// `sizing`: at the circumcentre of the face whose metric circumradius is largest.
     #[default]
@@ -25,32 +22,7 @@ pub enum Seeding {
     Protected,
 }
 
-impl fmt::Display for Seeding {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Seeding::Sizing => "sizing",
-            Seeding::Farthest => "farthest",
-            Seeding::Protected => "protected",
-        })
-    }
-}
-
-impl FromStr for Seeding {
-    type Err = Error;
-
-    /// # Errors
-    /// [`Error::Parse`] of any other name.
-    fn from_str(name: &str) -> Result<Self> {
-        match name {
-            "sizing" => Ok(Seeding::Sizing),
-            "farthest" => Ok(Seeding::Farthest),
-            "protected" => Ok(Seeding::Protected),
-            _ => {
-                Err(Error::parse(format!("seeding {name}"), "no such seeding", "choose sizing, farthest or protected"))
-            }
-        }
-    }
-}
+named!(Seeding, "seeding", [Sizing = "sizing", Farthest = "farthest", Protected = "protected"]);
 
 impl Job<'_> {
     /// The canvas of the domain, if seeding or relaxing needs one: it does not depend on the metric's factor, so one serves all

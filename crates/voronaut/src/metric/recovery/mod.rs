@@ -6,15 +6,12 @@ mod projection;
 mod stencil;
 
 use super::sampled::check_background;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, named};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
-use std::fmt;
-use std::str::FromStr;
 
 /// How second derivatives are recovered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Recovery {
     /// A double L2 projection (with lumped masses, extrapolated to the border).
     L2,
@@ -23,34 +20,7 @@ pub enum Recovery {
     Fit,
 }
 
-impl fmt::Display for Recovery {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Recovery::L2 => "l2",
-            Recovery::Fit => "fit",
-        })
-    }
-}
-
-impl FromStr for Recovery {
-    type Err = Error;
-
-    /// `l2` or `fit`.
-    ///
-    /// # Errors
-    /// [`Error::Parse`] of anything else.
-    fn from_str(text: &str) -> Result<Self> {
-        match text {
-            "l2" => Ok(Recovery::L2),
-            "fit" => Ok(Recovery::Fit),
-            _ => Err(Error::parse(
-                format!("recovery {text}"),
-                "no such way to recover a Hessian (l2, fit)",
-                "choose l2 or fit",
-            )),
-        }
-    }
-}
+named!(Recovery, "recovery", [L2 = "l2", Fit = "fit"]);
 
 /// The second derivatives, at the vertices of a planar mesh, of a function given by its values there: symmetric, and
 /// indefinite where the function is a saddle.

@@ -1,5 +1,9 @@
 //! The library's error: what went wrong, where, and what to do about it.
 
+mod named;
+
+pub(crate) use named::{named, unknown};
+
 use std::path::PathBuf;
 
 /// The result of every fallible function of this crate.
