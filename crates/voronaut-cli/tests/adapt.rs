@@ -1,8 +1,6 @@
 //! `voronaut loop`: to a formula and through a solver; and `hessian:` metrics of the other commands.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 
 fn json(place: &Place, name: &str) -> Value {

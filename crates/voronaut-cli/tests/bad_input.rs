@@ -1,8 +1,6 @@
 //! Every kind of bad input: the exit code, what is wrong and where, what to do about it, and no file left behind.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 
 const SQUARE: &str = "MeshVersionFormatted 2\nDimension 2\nVertices 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n\
                       Triangles 2\n1 2 3 1\n1 3 4 1\nEnd\n";

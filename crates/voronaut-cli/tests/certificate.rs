@@ -1,8 +1,6 @@
 //! `dual --certify`, `--constants`, `--canvas-size certified` and `--show certificate`: said, reported, refused.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::fmt::Write;
 

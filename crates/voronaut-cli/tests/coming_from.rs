@@ -1,8 +1,6 @@
 //! Every command of ours in docs/coming-from.md runs.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use voronaut::mesh::Mesh;
 use voronaut::output::write_mesh;
 use voronaut::surface::torus;

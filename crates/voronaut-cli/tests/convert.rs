@@ -1,8 +1,6 @@
 //! `convert`: from every format to every other, and what goes along.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use voronaut::domain::{Domain, read_pslg};
 use voronaut::formats::{self, SolutionValues};
 use voronaut::mesh::Mesh;

@@ -1,8 +1,6 @@
 //! `voronaut distance`: every method, files and figures, faults by their names.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 
 const METHODS: [&str; 6] = ["march", "stvd", "dijkstra", "konukoglu", "lbr", "heat"];

@@ -1,8 +1,6 @@
 //! `voronaut dual`, and `voronaut mesh` on a canvas: seeds kept, exact duals, faults by their place, complete reports.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use voronaut::formats::medit;

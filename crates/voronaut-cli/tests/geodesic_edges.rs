@@ -1,8 +1,6 @@
 //! `voronaut dual --edges`: what the files hold, what is counted, what `--strict` refuses.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::fmt::Write as _;
 

@@ -1,9 +1,7 @@
 //! The good paths: every input and output format, labels and regions carried, reports complete, results the same for
 //! any number of threads.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::collections::BTreeSet;
 

@@ -1,8 +1,6 @@
 //! `--histograms` and `--smooth-metric`: drawn, reported, refused.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 
 fn runs(place: &Place, words: &[&str]) {

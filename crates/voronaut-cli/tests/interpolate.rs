@@ -1,8 +1,6 @@
 //! `interpolate`: files, figures and messages.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::fmt::Write as _;
 use voronaut::formats::{SolutionValues, Solutions, sol};

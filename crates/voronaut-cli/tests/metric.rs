@@ -1,8 +1,6 @@
 //! `voronaut metric`: sources, limits, figures, faults by their names; and --gradation of the other commands.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::fmt::Write;
 

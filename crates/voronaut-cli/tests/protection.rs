@@ -1,8 +1,6 @@
 //! `--seeding protected`, `--protection`, `--picking-radius`, `--net` and `--show protection`: done, reported, refused.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 
 const SQUARE: [&str; 8] = ["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "200", "-o", "a.mesh"];

@@ -1,8 +1,6 @@
 //! `remesh`: mmgs's options, files and exit codes.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 use voronaut::formats::{SolutionValues, medit, sol};
 use voronaut::mesh::Mesh;

@@ -1,8 +1,6 @@
 //! `remesh` of planar meshes: mmg2d's options, files and exit codes.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use voronaut::formats::{SolutionValues, medit, sol};

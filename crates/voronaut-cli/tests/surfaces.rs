@@ -1,8 +1,6 @@
 //! Surfaces: `check` of their meshes (every format, faults, distances to a surface, figures in a metric on it), `mesh`, `dual`.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 use voronaut::mesh::Mesh;
 use voronaut::output::write_mesh;

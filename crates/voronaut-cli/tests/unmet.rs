@@ -1,8 +1,6 @@
 //! Where the metric is not met: counted, explained, drawn, refused.
 
-mod common;
-
-use common::{Place, stderr};
+use crate::common::{Place, stderr};
 use serde_json::Value;
 
 fn stdout(place: &Place, words: &[&str]) -> String {

@@ -1,6 +1,6 @@
 //! Surfaces before anything happens to them.
 
-use crate::random::Random;
+use super::random::Random;
 use std::collections::HashMap;
 use voronaut::formats;
 use voronaut::mesh::Mesh;

@@ -1,6 +1,6 @@
 //! What happens to surfaces on their way.
 
-use crate::random::Random;
+use super::random::Random;
 use voronaut::mesh::Mesh;
 
 /// What was done to a mesh.

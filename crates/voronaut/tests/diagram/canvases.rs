@@ -1,7 +1,7 @@
 //! One set of seeds on canvases of each kind (RR-9103, Figure 7).
 
-use crate::common::square;
-use crate::{WAVES, lattice, sorted, truth};
+use super::common::square;
+use super::{WAVES, lattice, sorted, truth};
 use std::collections::BTreeSet;
 use voronaut::canvas::{Canvas, Kind};
 use voronaut::diagram::{Diagram, RESOLVE_ROUNDS, resolve};

@@ -1,6 +1,6 @@
 //! Distances and duals in a domain with holes, against shortest paths around their corners.
 
-use crate::common::{halton, vertices};
+use super::common::{halton, vertices};
 use std::collections::{BTreeMap, BTreeSet};
 use voronaut::canvas::Canvas;
 use voronaut::diagram::Diagram;

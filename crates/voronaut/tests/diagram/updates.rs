@@ -1,6 +1,6 @@
 //! Local insertion, removal and moves against recomputation, and the work they take.
 
-use crate::common::{halton, square, vertices};
+use super::common::{halton, square, vertices};
 use voronaut::canvas::Canvas;
 use voronaut::diagram::Diagram;
 use voronaut::domain::{Domain, from_geojson, from_poly};

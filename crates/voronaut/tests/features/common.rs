@@ -1,7 +1,7 @@
 //! Whether the mesh of a part has the part's features: by what the generator of parts knows of them, and by nothing of the
 //! library but its validity and its closest points.
 
-use super::parts::{Chain, Features, Part, beside, sides};
+use crate::parts::{Chain, Features, Part, beside, sides};
 use std::collections::{BTreeMap, BTreeSet};
 use voronaut::geometry::Point3;
 use voronaut::mesh::Mesh;

@@ -1,7 +1,7 @@
 //! The checker finds what is wrong, and nothing where nothing is; parts are what they are said to be.
 
 use super::common::faults;
-use super::parts::{self, Part};
+use crate::parts::{self, Part};
 use voronaut::mesh::Mesh;
 use voronaut::quality::validity;
 use voronaut::surface::Surface;

@@ -1,6 +1,6 @@
 //! Errors against closed forms on canvases of 1,000, 4,000 and 16,000 vertices.
 
-use crate::cases::{Case, half_plane, turning};
+use super::cases::{Case, half_plane, turning};
 use voronaut::canvas::Canvas;
 use voronaut::diagram::Distances;
 use voronaut::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Method, Sources, Stvd};

@@ -1,7 +1,7 @@
 //! Errors on surfaces against closed forms, on canvases of 4,000 and 16,000 vertices of every kind.
 
-use crate::cases::relative_errors;
-use crate::grounds::{Board, Ground, great_circle, relaxed, sheet, sphere, stretched_sphere, wavy};
+use super::cases::relative_errors;
+use super::grounds::{Board, Ground, great_circle, relaxed, sheet, sphere, stretched_sphere, wavy};
 use voronaut::canvas::Kind;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Point, Point3};

@@ -1,6 +1,6 @@
 //! What every mesh must be, whatever was asked: compared with the drawing, not with the mesher's own idea of it.
 
-use crate::domains::Drawn;
+use super::domains::Drawn;
 use std::collections::{BTreeMap, HashSet};
 use voronaut::domain::{Domain, Pslg, Segment};
 use voronaut::geometry::Point;

@@ -1,7 +1,7 @@
 //! Random domains, valid by construction, of the shapes that break meshers. Each is drawn in a box of about unit size
 //! and then turned, scaled and moved.
 
-use crate::random::{Random, polar};
+use super::random::{Random, polar};
 use std::f64::consts::TAU;
 use voronaut::domain::{Filling, Pslg, Segment, Side};
 use voronaut::geometry::{Point, Vector};

@@ -1,7 +1,7 @@
 //! Random metrics of the kinds that break meshers, in the frame in which the domain was drawn.
 
-use crate::domains::Placement;
-use crate::random::Random;
+use super::domains::Placement;
+use super::random::Random;
 use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor, Vector};
 use voronaut::metric::{Boundary, BoundarySizes, MetricField};

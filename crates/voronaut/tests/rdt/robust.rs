@@ -1,6 +1,6 @@
 //! Starts that are poor, ties, holes, threads, and metrics without a closed form.
 
-use crate::models::{Model, Random, SQUARE, check, pulled_back, straight_delaunay};
+use super::models::{Model, Random, SQUARE, check, pulled_back, straight_delaunay};
 use voronaut::canvas::Canvas;
 use voronaut::diagram::Diagram;
 use voronaut::domain::{Domain, rect};

@@ -1,6 +1,6 @@
 //! Karcher means on surfaces where they are known, and the grids made of them.
 
-use crate::{realised, seeds};
+use super::{realised, seeds};
 use voronaut::geodesic::{Fineness, Paths, karcher_mean};
 use voronaut::geometry::{Point, Tensor};
 use voronaut::metric::MetricField;

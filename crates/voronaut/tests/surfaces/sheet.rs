@@ -1,6 +1,6 @@
 //! On a sheet that unrolls into the plane the Riemannian Delaunay triangulation is that of the unrolled seeds.
 
-use crate::random::Random;
+use super::random::Random;
 use crate::wavy::Wavy;
 use std::collections::HashSet;
 use voronaut::canvas::{Canvas, Kind, size_for};

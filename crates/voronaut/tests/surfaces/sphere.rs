@@ -1,6 +1,6 @@
 //! On a sphere with its own metric the Riemannian Delaunay triangulation is the convex hull.
 
-use crate::random::Random;
+use super::random::Random;
 use std::collections::HashSet;
 use voronaut::canvas::{Canvas, Kind};
 use voronaut::diagram::SurfaceDiagram;

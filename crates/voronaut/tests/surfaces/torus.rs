@@ -1,6 +1,6 @@
 //! The dual of seeds on a torus is one.
 
-use crate::random::Random;
+use super::random::Random;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use voronaut::canvas::{Canvas, Kind, size_for};

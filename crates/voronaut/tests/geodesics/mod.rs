@@ -5,8 +5,6 @@ mod cases;
 mod grounds;
 mod ladder;
 mod surfaces;
-#[path = "../wavy/mod.rs"]
-mod wavy;
 
 use grounds::{FROM, Ground, great_circle, planar, points, relaxed, sphere, square, stretched_sphere};
 use voronaut::canvas::{Canvas, Draped, Kind};

@@ -6,5 +6,3 @@ mod random;
 mod sheet;
 mod sphere;
 mod torus;
-#[path = "../wavy/mod.rs"]
-mod wavy;

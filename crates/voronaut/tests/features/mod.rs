@@ -3,11 +3,9 @@
 mod common;
 mod mutations;
 mod required;
-#[path = "../parts/mod.rs"]
-mod parts;
 
+use crate::parts::Part;
 use common::faults;
-use parts::Part;
 use voronaut::formats::TensorOrder;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
@@ -34,7 +32,7 @@ fn distance(part: &Part, surface: &Surface, count: usize, metric: &str) -> f64 {
 
 /// Meshes a part with all that a distance asks for.
 fn keeps_distance(name: &str, share: f64) {
-    let part = parts::all().into_iter().find(|part| part.name == name).unwrap();
+    let part = crate::parts::all().into_iter().find(|part| part.name == name).unwrap();
     let input = input(&part);
     let hausd = share * input.diagonal();
     let field = field(
@@ -60,7 +58,7 @@ fn distances_are_kept_where_they_are_asked_for() {
 
 /// Meshes a part with every number of vertices and checks all that is known of it.
 fn keeps_features(name: &str, metric: &str, counts: &[usize]) {
-    let part = parts::all().into_iter().find(|part| part.name == name).unwrap();
+    let part = crate::parts::all().into_iter().find(|part| part.name == name).unwrap();
     let input = input(&part);
     let field = field(&Spec::parse(metric).unwrap(), &input, Bounds::default(), TensorOrder::Disk).unwrap();
     for &count in counts {

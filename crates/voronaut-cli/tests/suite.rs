@@ -1,0 +1,20 @@
+//! All tests of the program, in one: one to link, and all cores are busy.
+
+mod adapt;
+mod bad_input;
+mod certificate;
+mod coming_from;
+mod common;
+mod convert;
+mod distance;
+mod dual;
+mod geodesic_edges;
+mod good_input;
+mod histograms;
+mod interpolate;
+mod metric;
+mod protection;
+mod remesh;
+mod remesh_plane;
+mod surfaces;
+mod unmet;

@@ -1,0 +1,24 @@
+//! All tests of what is public, in one program: one to link, and all cores are busy. Those that measure memory are apart
+//! (`malformed`).
+
+mod architecture;
+mod certificate;
+mod damage;
+mod diagram;
+mod farthest;
+mod features;
+mod foreign;
+mod geodesics;
+mod interpolation;
+mod net;
+mod parts;
+mod random_domains;
+mod rdt;
+mod realisation;
+mod relaxation;
+mod roads;
+mod star_set;
+mod surfaces;
+mod threads;
+mod unit_meshes;
+mod wavy;
