@@ -1,4 +1,4 @@
-//! All tests of the program, in one: one to link, and all cores are busy.
+//! All tests of the program, in one, for there is one to link then.
 
 mod adapt;
 mod bad_input;

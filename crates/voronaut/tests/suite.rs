@@ -1,5 +1,4 @@
-//! All tests of what is public, in one program: one to link, and all cores are busy. Those that measure memory are apart
-//! (`malformed`).
+//! All tests of what is public, in one program, for there is one to link then. Those that measure memory are apart (`malformed`).
 
 mod architecture;
 mod certificate;

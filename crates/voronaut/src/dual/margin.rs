@@ -47,7 +47,8 @@ impl Dual<'_> {
     pub fn margin(&mut self, h: HalfEdge, effort: Effort) -> Margin {
         let quad = self.quad(h);
         if effort == Effort::Full {
-            return self.test(&[quad])[0].margin;
+            let known = self.tests.known(&quad, LEVELS - 1);
+            return known.unwrap_or_else(|| self.test(&[quad])[0]).margin;
         }
         let by = ByEffort { dual: self, effort };
         let tested = climb(&by, &quad, 0..effort as usize + 1, &self.tests.lengths, None);
