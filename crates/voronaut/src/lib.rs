@@ -80,7 +80,7 @@
 //! # Where to look
 //!
 //! The modules below stand in the order of the flow of data, and each uses only those above it: `ARCHITECTURE.md` in the
-//! repository has the map and the invariants, `DESIGN.md` the reasons with measurements. Errors say what is wrong and
+//! repository has the map and the invariants, `DESIGN.md` the reasons, `docs/measurements.md` the figures. Errors say what is wrong and
 //! where; [`Error::help`] says what to do about it.
 
 // In the order of the flow of data; each module uses only those above it (held by tests/architecture.rs).

@@ -53,10 +53,9 @@ fn both(domain: &Domain, field: &dyn MetricField, seeds: &[Point]) -> SeedDual {
 
 /// The dual of few seeds, cells many units wide, is the nerve on a canvas twice as fine, but where it says that it is not
 /// sure.
-fn few(domain: &Domain, field: &dyn MetricField, seeds: &[Point], canvas_size: usize) {
+fn few(domain: &Domain, field: &dyn MetricField, fine: &Canvas, seeds: &[Point]) {
     let found = both(domain, field, seeds);
-    let canvas = Canvas::intrinsic(domain, field, canvas_size).unwrap();
-    let nerve = Diagram::new(&canvas, field, seeds).unwrap().sharp_nerve();
+    let nerve = Diagram::new(fine, field, seeds).unwrap().sharp_nerve();
     let fine = counted(nerve.triangles.iter().map(|t| t.colours));
     let ours = counted(found.triangles.iter().copied());
     let [lost, new] = [missing(&fine, &ours), missing(&ours, &fine)];
@@ -73,15 +72,19 @@ fn few(domain: &Domain, field: &dyn MetricField, seeds: &[Point], canvas_size: u
 
 #[test]
 fn few_seeds_of_the_swirl_have_the_nerve_of_a_finer_canvas() {
+    let (domain, field) = (square(2.0), Swirl::default());
+    let fine = Canvas::intrinsic(&domain, &field, 250_000).unwrap();
     for count in [12, 30] {
-        few(&square(2.0), &Swirl::default(), &scattered(count, 1.9, 1), 250_000);
+        few(&domain, &field, &fine, &scattered(count, 1.9, 1));
     }
 }
 
 #[test]
 fn few_seeds_of_the_shock_have_the_nerve_of_a_finer_canvas() {
+    let (domain, field) = (square(1.0), Shock::default());
+    let fine = Canvas::intrinsic(&domain, &field, 250_000).unwrap();
     for count in [12, 30] {
-        few(&square(1.0), &Shock::default(), &scattered(count, 0.95, 1), 250_000);
+        few(&domain, &field, &fine, &scattered(count, 0.95, 1));
     }
 }
 

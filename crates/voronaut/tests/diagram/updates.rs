@@ -91,7 +91,7 @@ fn four_thousand_seeds_leave_no_orphans_and_change_as_if_made_anew() {
         let mut diagram = Diagram::new(&canvas, field, &seeds).unwrap();
         assert_eq!((seeds.len(), diagram.orphans().len()), (4000, 0));
         let point = |i: u32| Point::new(half * (2.0 * halton(i).0 - 1.0), half * (2.0 * halton(i).1 - 1.0));
-        for i in 0..200_u32 {
+        for i in 0..100_u32 {
             diagram.insert(point(1 + i)).unwrap();
             diagram.remove(i * 20 + 3);
             diagram.move_to(i * 20 + 7, point(5000 + i)).unwrap();

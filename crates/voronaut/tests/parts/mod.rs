@@ -18,6 +18,7 @@ mod shapes;
 
 pub(crate) use chains::{Chain, Features, beside, sides};
 
+use std::sync::OnceLock;
 use voronaut::mesh::Mesh;
 
 /// A surface and the features that it is known to have, whether its file tells of them or not.
@@ -59,15 +60,19 @@ impl Part {
     }
 }
 
-/// Every part of the table above.
+/// Every part of the table above, made once.
 pub(crate) fn all() -> Vec<Part> {
-    vec![
-        shapes::cube(8),
-        shapes::cube(8).plain("cube_plain"),
-        Part::new("bracket", bracket::even(), bracket::CURVATURE).listed(),
-        Part::new("bracket_cad", bracket::cad(), bracket::CURVATURE),
-        shapes::patch(),
-        shapes::two(),
-        shapes::blade(),
-    ]
+    static ALL: OnceLock<Vec<Part>> = OnceLock::new();
+    let made = || {
+        vec![
+            shapes::cube(8),
+            shapes::cube(8).plain("cube_plain"),
+            Part::new("bracket", bracket::even(), bracket::CURVATURE).listed(),
+            Part::new("bracket_cad", bracket::cad(), bracket::CURVATURE),
+            shapes::patch(),
+            shapes::two(),
+            shapes::blade(),
+        ]
+    };
+    ALL.get_or_init(made).clone()
 }

@@ -67,7 +67,7 @@ fn any_number_of_threads_and_any_canvas_make_a_mesh() {
     for canvas in Kind::ALL {
         let (seeding, dual) = (Seeding::Farthest, Road::Canvas);
         let few = MeshOptions { lloyd: 4, canvas_size: 20, ..MeshOptions::default() };
-        let options = MeshOptions { vertices: Some(600), canvas, seeding, dual, ..few };
+        let options = MeshOptions { vertices: Some(300), canvas, seeding, dual, ..few };
         let of_threads = [1, 3].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| meshed(&input, "curvature", &options).0.mesh)
@@ -77,7 +77,7 @@ fn any_number_of_threads_and_any_canvas_make_a_mesh() {
     }
     let of_threads = [1, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let options = MeshOptions { vertices: Some(600), ..MeshOptions::default() };
+        let options = MeshOptions { vertices: Some(300), ..MeshOptions::default() };
         pool.install(|| meshed(&input, "curvature", &options).0)
     });
     assert_eq!(of_threads[0].mesh, of_threads[1].mesh);

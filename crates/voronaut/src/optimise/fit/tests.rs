@@ -219,7 +219,7 @@ fn pierced(mesh: &Mesh) -> Vec<(usize, usize)> {
 }
 
 proptest! {
-    #![proptest_config(cases(96))]
+    #![proptest_config(cases(32))]
     #[test]
     fn nothing_comes_to_harm(
         push in prop::collection::vec(prop::array::uniform3(-1.0..1.0), 115),
