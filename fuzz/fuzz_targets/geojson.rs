@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use voronaut::formats::geojson;
+use voronaut_io::geojson;
 use voronaut_fuzz::{PLACE, read, written};
 
 fuzz_target!(|input: &[u8]| {

@@ -2,8 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use voronaut::formats::medit::Form;
-use voronaut::formats::{Document, freefem, gmsh};
+use voronaut_io::medit::Form;
+use voronaut_io::{Document, freefem, gmsh};
 use voronaut_fuzz::{PLACE, assert_same_document, check_document, check_mesh, read, written};
 
 fuzz_target!(|input: &[u8]| {

@@ -2,8 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use voronaut::formats::Document;
-use voronaut::formats::medit::{self, Form};
+use voronaut_io::Document;
+use voronaut_io::medit::{self, Form};
 use voronaut_fuzz::{PLACE, assert_same, check_mesh, read, written};
 
 fuzz_target!(|input: &[u8]| {

@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use voronaut::formats::points;
+use voronaut_io::points;
 use voronaut_fuzz::{PLACE, read};
 
 fuzz_target!(|input: &[u8]| {

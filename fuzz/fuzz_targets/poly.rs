@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use voronaut::formats::poly;
+use voronaut_io::poly;
 use voronaut_fuzz::{PLACE, read, written};
 
 fuzz_target!(|input: &[u8]| {

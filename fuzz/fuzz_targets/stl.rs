@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use voronaut::formats::stl;
+use voronaut_io::stl;
 use voronaut_fuzz::{PLACE, assert_same, check_mesh, read, written};
 
 fuzz_target!(|input: &[u8]| {

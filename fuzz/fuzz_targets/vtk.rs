@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use voronaut::formats::vtk;
+use voronaut_io::vtk;
 use voronaut_fuzz::{PLACE, assert_same_document, check_document, read, written};
 
 fuzz_target!(|input: &[u8]| {

@@ -2,7 +2,8 @@
 
 use peak_alloc::PeakAlloc;
 use voronaut::error::{Error, Result};
-use voronaut::formats::{Document, Field, Fields, SolutionValues};
+use voronaut::mesh::SolutionValues;
+use voronaut_io::{Document, Field, Fields};
 use voronaut::mesh::Mesh;
 
 #[global_allocator]

@@ -1,26 +1,69 @@
 //! `voronaut check`: examines a mesh that is there.
 
-use crate::args::{CheckArgs, Show};
+use crate::fields::{self, Scaled};
 use crate::files::{Drawn, MeshFile};
-use crate::metric::{self, Scaled};
+use crate::options::{Damage, MetricChoices, Outputs, Run, Show, positive};
 use crate::{files, summary};
+use clap::Args;
 use serde_json::json;
+use std::path::PathBuf;
 use std::time::Instant;
 use voronaut::domain::{Domain, from_mesh};
-use voronaut::formats::{self, Document};
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
-use voronaut::output::Report;
-use voronaut::output::report::Strayed;
 use voronaut::quality::{
     Meetings, Unmet, fidelity, interpolation_error, metric_quality, surface_fidelity, surface_quality, surface_unmet,
     unmet, validity, validity_on,
 };
 use voronaut::recipe::GradedAt;
 use voronaut::surface::metric::SurfaceMetric;
-use voronaut::surface::{Given, Implicit, Input, Mended, Surface};
+use voronaut::surface::{Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
+use voronaut_io::Document;
+use voronaut_io::Given;
+use voronaut_io::Report;
+use voronaut_io::Strayed;
+
+pub(crate) const EXAMPLES: &str = "\
+Exits with 1 if the mesh is not valid; the report is written all the same.
+
+The mesh of a surface (some z is not 0) is held against a surface as DOMAIN: sphere:r, torus:R,r, chair,
+implicit:EXPR;x0,y0,z0,x1,y1,z1, or a file .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl. METRIC is then uniform, curvature[:floor=C],
+shock[:phi=10,lambda=0.6], 'formula:m11; m12; m22; m13; m23; m33' in x, y, z, or a file .sol of the domain's file.
+
+Examples:
+  voronaut check plate.mesh
+  voronaut check cow.ply --domain spot.obj --metric curvature --metric-scale 310 --report check.json
+  voronaut check swirl.mesh --metric swirl --metric-scale 1873.2 --report check.json
+  voronaut check adapted.mesh --metric wing.sol --background wing.mesh --domain wing.mesh";
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    /// The mesh: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
+    pub(crate) mesh: PathBuf,
+    /// Measure lengths, shapes and angles in this metric (as for `mesh`)
+    #[arg(long)]
+    pub(crate) metric: Option<String>,
+    /// A factor on the metric tensor, such as `metric_scale` of a report
+    #[arg(long, value_name = "FACTOR", value_parser = positive, requires = "metric")]
+    pub(crate) metric_scale: Option<f64>,
+    /// In the plane: measure the error of linear interpolation of this function of x and y, in the L^p norm of --norm
+    #[arg(long, value_name = "EXPR")]
+    pub(crate) function: Option<String>,
+    /// Measure the distance to the boundary of this domain (as for `mesh`), or to this surface [default of a metric on a surface:
+    /// the mesh itself]
+    #[arg(long)]
+    pub(crate) domain: Option<String>,
+    #[command(flatten)]
+    pub(crate) metric_choices: MetricChoices,
+    #[command(flatten)]
+    pub(crate) outputs: Outputs,
+    #[command(flatten)]
+    pub(crate) damage: Damage,
+    #[command(flatten)]
+    pub(crate) run: Run,
+}
 
 /// Examines a mesh. The report is written for any mesh; figures in a metric and pictures are for valid ones.
 pub(crate) fn run(args: &CheckArgs) -> Result<()> {
@@ -28,7 +71,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     files::demand_writable(None, None, &args.outputs)?;
     demand_drawable(args)?;
     files::set_threads(&args.run)?;
-    let Document { mesh, notes, .. } = formats::read(&args.mesh)?;
+    let Document { mesh, notes, .. } = voronaut_io::read(&args.mesh)?;
     let read = |spec: &str| Given::read_with(spec, None, args.damage.options());
     let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();
     let found = match &given {
@@ -127,7 +170,7 @@ fn on_surface(
             own = Input::new(Surface::new(mesh)?, None);
             &own
         };
-        let field = metric::on_surface(text, input, &args.metric_choices)?;
+        let field = fields::on_surface(text, input, &args.metric_choices)?;
         let scaled = Scaled { field: field.as_ref(), factor: args.metric_scale.unwrap_or(1.0) };
         report = report.with_quality(&surface_quality(mesh, &input.surface, &scaled)?);
         report.curvature = field.curvature_figures();
@@ -147,7 +190,7 @@ fn demand_for_surfaces(args: &CheckArgs) -> Result<()> {
     ];
     match refused.into_iter().find(|(is_asked, ..)| *is_asked) {
         Some((_, what, help)) => Err(Error::Unsupported { what: what.into(), help: help.into() }),
-        None => metric::demand_for_surfaces(&args.metric_choices),
+        None => fields::demand_for_surfaces(&args.metric_choices),
     }
 }
 
@@ -163,6 +206,6 @@ fn planar_metric(args: &CheckArgs, text: &str, mesh: &Mesh, domain: Option<&Doma
         &own
     };
     let scale = args.metric_scale.unwrap_or(1.0);
-    let metric = metric::in_plane(text, domain, file, &args.metric_choices, GradedAt::Scale(scale))?.field;
+    let metric = fields::in_plane(text, domain, file, &args.metric_choices, GradedAt::Scale(scale))?.field;
     Ok(Box::new(move |p: Point| metric.at(p) * scale))
 }

@@ -3,13 +3,14 @@
 use crate::summary;
 use clap::Args;
 use std::path::{Path, PathBuf};
-use voronaut::domain::{Pslg, from_mesh, read_pslg, to_mesh, to_poly, to_polygons};
-use voronaut::formats::gmsh::Version;
-use voronaut::formats::medit::Form;
-use voronaut::formats::{self, Document, Fields, Format, Solutions, geojson, lost_in_outline, poly};
+use voronaut::domain::{Pslg, from_mesh, to_mesh, to_poly, to_polygons};
 use voronaut::mesh::Mesh;
-use voronaut::output;
+use voronaut::mesh::Solutions;
 use voronaut::{Error, Result};
+use voronaut_io::gmsh::Version;
+use voronaut_io::medit::Form;
+use voronaut_io::read_pslg;
+use voronaut_io::{Document, Fields, Format, geojson, lost_in_outline, poly};
 
 pub(crate) const EXAMPLES: &str = "\
 IN   a mesh: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply, .stl; a planar domain: .poly, .geojson, rect:..., disk:...; or values:
@@ -50,12 +51,12 @@ pub(crate) struct ConvertArgs {
 
 /// Converts a file.
 pub(crate) fn run(args: &ConvertArgs) -> Result<()> {
-    output::demand_directory(&args.to)?;
+    voronaut_io::demand_directory(&args.to)?;
     let from = if is_shape(&args.from) { Kind::Outline } else { Kind::of(&args.from) };
     let told = match (from, Kind::of(&args.to)) {
         (Kind::Values, Kind::Values) => {
-            let values = formats::read_solutions(&args.from)?;
-            output::write_solutions(&values, &args.to)?;
+            let values = voronaut_io::read_solutions(&args.from)?;
+            voronaut_io::write_solutions(&values, &args.to)?;
             format!("{} solutions at vertices, {} at triangles", values.vertices.len(), values.triangles.len())
         }
         (Kind::Values, _) | (_, Kind::Values) => {
@@ -103,7 +104,7 @@ fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
         return Err(Error::Unsupported { what, help: "leave out --sol: outlines hold none".into() });
     }
     let (pslg, document) = if from == Kind::Mesh {
-        let document = formats::read(&args.from)?;
+        let document = voronaut_io::read(&args.from)?;
         (from_mesh(&document.mesh)?, document)
     } else {
         let pslg = read_pslg(&name(&args.from))?;
@@ -118,7 +119,7 @@ fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
 
 fn write_poly(path: &Path, pslg: &Pslg) -> Result<String> {
     let found = to_poly(pslg)?;
-    output::write_with(path, |out| poly::write(&found, out))?;
+    voronaut_io::write_with(path, |out| poly::write(&found, out))?;
     let [points, segments] = [found.points.len(), found.segments.len()];
     let [holes, regions] = [found.holes.len(), found.regions.len()];
     Ok(format!("{points} points, {segments} segments, {holes} holes, {regions} regions"))
@@ -126,7 +127,7 @@ fn write_poly(path: &Path, pslg: &Pslg) -> Result<String> {
 
 fn write_geojson(path: &Path, pslg: &Pslg) -> Result<String> {
     let found = to_polygons(pslg)?;
-    output::write_with(path, |out| geojson::write(&found, out))?;
+    voronaut_io::write_with(path, |out| geojson::write(&found, out))?;
     let rings: usize = found.polygons.iter().map(|polygon| polygon.rings.len()).sum();
     Ok(format!("{} polygons, {rings} rings; a ring has one label, that of most of its boundary", found.polygons.len()))
 }
@@ -147,11 +148,11 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
         other => other,
     };
     let Document { mesh, mut fields, notes } = match from {
-        Kind::Mesh => formats::read(&args.from)?,
+        Kind::Mesh => voronaut_io::read(&args.from)?,
         _ => to_mesh(&read_pslg(&name(&args.from))?)?.into(),
     };
     if let Some(sol) = &args.sol {
-        let values = formats::read_solutions(sol)?;
+        let values = voronaut_io::read_solutions(sol)?;
         demand_counts(sol, &values, [mesh.points.len(), mesh.triangles.len()])?;
         fields.extend(Fields::of_solutions(values));
     }
@@ -164,9 +165,9 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
     )];
     let beside = beside(&args.to, format, &fields);
     let solutions = beside.as_ref().map(|_| fields.clone().into_solutions(&mesh)).transpose()?;
-    output::write_with(&args.to, |out| format.write(&mesh, &fields, out))?;
+    voronaut_io::write_with(&args.to, |out| format.write(&mesh, &fields, out))?;
     if let (Some(beside), Some(solutions)) = (beside, solutions) {
-        output::write_solutions(&solutions, &beside)?;
+        voronaut_io::write_solutions(&solutions, &beside)?;
         let names = fields.vertices.iter().chain(&fields.triangles).map(|field| field.name.as_str());
         told.push(format!("{} in {}", names.collect::<Vec<_>>().join(", "), beside.display()));
     }
@@ -184,8 +185,7 @@ fn beside(mesh: &Path, format: Format, fields: &Fields) -> Option<PathBuf> {
 fn demand_counts(file: &Path, values: &Solutions, counts: [usize; 2]) -> Result<()> {
     let sections = [("vertices", &values.vertices), ("triangles", &values.triangles)];
     for ((places, solutions), needed) in sections.into_iter().zip(counts) {
-        if let Some(found) =
-            solutions.iter().map(voronaut::formats::SolutionValues::count).find(|&found| found != needed)
+        if let Some(found) = solutions.iter().map(voronaut::mesh::SolutionValues::count).find(|&found| found != needed)
         {
             let what = format!("{found} values, and the mesh has {needed} {places}");
             return Err(Error::parse(name(file), what, "give the values that belong to IN"));

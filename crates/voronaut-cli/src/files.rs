@@ -1,19 +1,20 @@
 //! The files a run writes: tried before the work, written after it.
 
-use crate::args::{Outputs, Run, Show};
+use crate::options::{Outputs, Run, Show};
 use std::collections::BTreeMap;
 use std::path::Path;
 use voronaut::certificate::Certificate;
 use voronaut::diagram::{Cells, Diagram};
-use voronaut::formats::Format;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::net::Net;
-use voronaut::output::{self, Layers, Picture, PictureFormat, Protection, Report};
 use voronaut::quality::{self, Histograms, Unmet};
 use voronaut::realisation::{Grid, Realisation};
 use voronaut::{Error, Result};
+use voronaut_draw::{Layers, Picture, PictureFormat, Protection};
+use voronaut_io::Format;
+use voronaut_io::Report;
 
 /// Pieces per side in which pictures show a Riemannian triangle.
 const PIECES: usize = 4;
@@ -23,11 +24,11 @@ const PIECES: usize = 4;
 pub(crate) fn demand_writable(mesh: Option<&Path>, more: Option<&Path>, outputs: &Outputs) -> Result<()> {
     mesh.map(Format::from_path).transpose()?;
     outputs.picture.as_deref().map(PictureFormat::from_path).transpose()?;
-    outputs.histograms.as_deref().map(output::demand_histograms).transpose()?;
+    outputs.histograms.as_deref().map(demand_histograms).transpose()?;
     let files = [mesh, more, outputs.picture.as_deref(), outputs.histograms.as_deref(), outputs.report.as_deref()];
     let mut seen = Vec::new();
     for file in files.into_iter().flatten() {
-        let place = output::place(file)?;
+        let place = voronaut_io::place(file)?;
         if seen.contains(&place) {
             let what = "two outputs have the same name";
             return Err(Error::parse(file.display().to_string(), what, "give each output a name of its own"));
@@ -157,19 +158,19 @@ pub(crate) fn write(
     let picture = outputs.picture.as_deref().map(|path| Ok((path, draw(outputs, mesh, metric, drawn)?))).transpose()?;
     match mesh_file {
         MeshFile::None => {}
-        MeshFile::Straight(path) => output::write_mesh(mesh, path)?,
-        MeshFile::Geodesic(path, realisation) => output::write_realisation(realisation, path)?,
+        MeshFile::Straight(path) => voronaut_io::write_mesh(mesh, path)?,
+        MeshFile::Geodesic(path, realisation) => voronaut_io::write_realisation(realisation, path)?,
     }
-    picture.map(|(path, svg)| output::write_picture(&svg, path)).transpose()?;
+    picture.map(|(path, svg)| write_picture(&svg, path)).transpose()?;
     if let (Some(path), Some(found)) = (&outputs.histograms, &report.histograms) {
-        output::write(path, output::histograms_svg(found).as_bytes())?;
+        voronaut_io::write(path, voronaut_draw::histograms_svg(found).as_bytes())?;
     }
     write_report(outputs, report)
 }
 
 /// Writes the report, if asked for.
 pub(crate) fn write_report(outputs: &Outputs, report: &Report) -> Result<()> {
-    outputs.report.as_deref().map_or(Ok(()), |path| output::write(path, report.to_json().as_bytes()))
+    outputs.report.as_deref().map_or(Ok(()), |path| voronaut_io::write(path, report.to_json().as_bytes()))
 }
 
 /// Uses so many threads from now on.
@@ -189,5 +190,19 @@ fn draw(outputs: &Outputs, mesh: &Mesh, metric: Option<&dyn MetricField>, drawn:
         window: outputs.window,
         ..Picture::default()
     };
-    output::svg_with(mesh, metric, &picture, &drawn.layers())
+    voronaut_draw::svg_with(mesh, metric, &picture, &drawn.layers())
+}
+
+/// Refuses names that do not end like a drawing of histograms.
+fn demand_histograms(path: &Path) -> Result<()> {
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg")) {
+        return Ok(());
+    }
+    let what = format!("histograms in {}", path.display());
+    Err(Error::Unsupported { what, help: "end the name of the histograms in .svg".into() })
+}
+
+/// Writes a picture in the format its name ends in, as a whole or not at all.
+pub(crate) fn write_picture(svg: &str, path: &Path) -> Result<()> {
+    voronaut_io::write(path, &voronaut_draw::picture_bytes(svg, path)?)
 }

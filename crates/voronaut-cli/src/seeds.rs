@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 use std::path::Path;
 use voronaut::canvas::Canvas;
-use voronaut::formats::points;
-use voronaut::formats::read_text;
 use voronaut::geometry::{Point, Point3};
 use voronaut::surface::{Input, Place};
 use voronaut::{Error, Result};
+use voronaut_io::points;
+use voronaut_io::read_text;
 
 /// The seeds of a file, in order.
 pub(crate) struct SeedFile {

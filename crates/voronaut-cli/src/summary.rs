@@ -1,12 +1,12 @@
 //! What a run says when it is done: one screen on stdout.
 
-use crate::args::Run;
-use crate::certify;
+use crate::dual::certify;
+use crate::options::Run;
 use std::fmt::Write as _;
 use std::io::Write as _;
-use voronaut::output::Report;
-use voronaut::output::report::Strayed;
 use voronaut::quality::{Cause, CauseFigures, Deviation, Farthest, Position, Spot, SurfaceFidelity};
+use voronaut_io::Report;
+use voronaut_io::Strayed;
 
 /// Prints the figures of a report unless told to be quiet, and its notes on stderr.
 pub(crate) fn print(title: &str, report: &Report, run: &Run) {

@@ -1,131 +1,37 @@
-//! `voronaut mesh` and `voronaut dual` on a surface.
+//! What `mesh` and `dual` have in common on surfaces: what is refused, drawn and written.
 
-use crate::args::{CanvasSize, DualArgs, EdgesOut, MeshArgs, Outputs, Show};
 use crate::files;
-use crate::metric::{self, Scaled};
-use crate::progress::Bar;
-use crate::seeds::SeedFile;
-use crate::summary;
+use crate::options::{Outputs, Show};
 use std::path::Path;
-use std::time::Instant;
-use voronaut::canvas::{self, Canvas};
-use voronaut::diagram::{Kind, SurfaceDiagram};
-use voronaut::geodesic::Method;
+use voronaut::diagram::SurfaceDiagram;
 use voronaut::geometry::Point3;
 use voronaut::mesh::Mesh;
-use voronaut::output::{self, Report, Scene, Shade, Stroke, View, report};
-use voronaut::quality::{Meetings, surface_quality, surface_unmet, validity_on};
-use voronaut::recipe::{self, SeedDual};
-use voronaut::sampling;
-use voronaut::surface::metric::SurfaceMetric;
-use voronaut::surface::{Input, Mended, Place};
+use voronaut::surface::{Input, Place};
 use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
+use voronaut_draw::{Scene, Shade, Stroke, View};
+use voronaut_io::Report;
 
-/// Meshes a surface. Nothing is written unless the mesh is valid.
-pub(crate) fn mesh(args: &MeshArgs, input: Input, mended: &Mended, start: Instant) -> Result<()> {
-    demand_supported(&args.outputs)?;
-    let whole = args.outputs.picture.is_some().then(|| Input::new(input.surface.clone(), input.implicit.clone()));
-    let input = &input.cut(&args.features())?;
-    let metric = metric::on_surface(&args.metric, input, &args.metric_choices)?;
-    let meshed = {
-        let bar = Bar::new(args.run.quiet, args.run.verbose);
-        recipe::mesh_surface(input, metric.as_ref(), &args.options(), &bar)?
-    };
-    let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
-    found.demand().map_err(crate::mesh::ours)?;
-    let meets = found.meetings.note();
-    let scaled = Scaled { field: metric.as_ref(), factor: meshed.metric_scale };
-    let figures = surface_quality(&meshed.mesh, &input.surface, &scaled)?;
-    let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(&figures);
-    crate::mesh::fill_in(&mut report, &meshed, crate::mesh::options(args));
-    report.curvature = metric.curvature_figures();
-    report.unmet = Some(surface_unmet(&meshed.mesh, &input.surface, &scaled)?.figures());
-    report.notes.extend(mended.sentences().chain(meets));
-    report.fidelity = meshed.fidelity.map(|found| report::Strayed::Surface(found.into()));
-    report.seconds = report::Seconds { stages: meshed.seconds.clone(), total: start.elapsed().as_secs_f64() };
-    // Cells are drawn across creases.
-    let picture = args.outputs.picture.as_deref().zip(whole.as_ref()).map(|(path, whole)| {
-        let metric = metric::on_surface(&args.metric, whole, &args.metric_choices)?;
-        let places = places(whole, &meshed.mesh)?;
-        let size = canvas::size_for(places.len(), args.canvas_size);
-        let (canvas, at) = Canvas::on_surface(args.canvas, whole, metric.as_ref(), size, &places)?;
-        let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March)?;
-        Ok::<_, Error>((path, drawn(&args.outputs, &diagram, &meshed.mesh)?))
-    });
-    write(picture.transpose()?, &args.outputs, &meshed.mesh, &args.out, &report)?;
-    summary::print(&args.out.display().to_string(), &report, &args.run);
-    Ok(())
-}
-
-/// The dual of seeds on a surface.
-pub(crate) fn dual(args: &DualArgs, input: &Input, mended: &Mended, start: Instant) -> Result<()> {
-    demand_supported(&args.outputs)?;
-    demand_dual(args)?;
-    let metric = metric::on_surface(&args.metric, input, &args.metric_choices)?;
-    let (file, seeds) = SeedFile::read_in_space(&args.seeds)?;
-    let places = file.on_surface(input, &seeds)?;
-    let mut stages = vec![("read", start.elapsed().as_secs_f64())];
-    let mut begin = Instant::now();
-    let mut stage = |stages: &mut Vec<_>, name: &'static str| {
-        stages.push((name, begin.elapsed().as_secs_f64()));
-        begin = Instant::now();
-    };
-    let CanvasSize::PerSeed(per_seed) = args.canvas_size else { return Err(unsupported("--canvas-size certified")) };
-    let size = canvas::size_for(places.len(), per_seed);
-    sampling::demand_memory(places.len() as f64, size as f64, args.memory_limit())?;
-    let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), size, &places)?;
-    stage(&mut stages, "canvas");
-    let diagram = SurfaceDiagram::on_surface(&canvas, &at, args.geodesic)?;
-    stage(&mut stages, "diagram");
-    let SeedDual { triangles, account, seconds, raw_nerve, .. } = recipe::surface_dual(&diagram, args.dual);
-    let mesh = recipe::surface_mesh(input, &places, triangles);
-    stage(&mut stages, "dual");
-    stages.extend(seconds);
-    let found = validity_on(&mesh, &Meetings::of(input.whole_mesh()));
-    let meets = found.meetings.note();
-    let is_valid = found.valid;
-    let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
-    if is_valid {
-        report = report.with_quality(&surface_quality(&mesh, &input.surface, metric.as_ref())?);
-    }
-    report.dual = Some(account);
-    report.canvas = Some(canvas.figures());
-    report.diagram = Some(report::Diagram { raw_nerve: Some(raw_nerve), ..report::Diagram::of(&diagram) });
-    report.notes.extend(mended.sentences().chain(meets));
-    if !is_valid {
-        report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
-    }
-    report.options = crate::dual::options(args);
-    report.seconds = report::Seconds { stages, total: start.elapsed().as_secs_f64() };
-    if args.strict {
-        report.validity.demand().or_else(|fault| files::write_report(&args.outputs, &report).and(Err(fault)))?;
-    }
-    let picture = args.outputs.picture.as_deref().map(|path| Ok((path, drawn(&args.outputs, &diagram, &mesh)?)));
-    let picture = picture.transpose()?;
-    let written = if args.edges == EdgesOut::Geodesic { with_geodesics(&diagram, &mesh) } else { mesh };
-    write(picture, &args.outputs, &written, &args.out, &report)?;
-    if let Some(path) = &args.diagram {
-        let (canvas, distances) = diagram.to_coloured_surface();
-        output::write_diagram(&canvas, &distances, path)?;
-    }
-    summary::print(&args.out.display().to_string(), &report, &args.run);
-    Ok(())
-}
-
-fn write(picture: Option<(&Path, String)>, outputs: &Outputs, mesh: &Mesh, out: &Path, report: &Report) -> Result<()> {
-    output::write_mesh(mesh, out)?;
-    picture.map(|(path, svg)| output::write_picture(&svg, path)).transpose()?;
+/// Writes a mesh, a picture of it and the report, each if it is wanted.
+pub(crate) fn write(
+    picture: Option<(&Path, String)>,
+    outputs: &Outputs,
+    mesh: &Mesh,
+    out: &Path,
+    report: &Report,
+) -> Result<()> {
+    voronaut_io::write_mesh(mesh, out)?;
+    picture.map(|(path, svg)| files::write_picture(&svg, path)).transpose()?;
     files::write_report(outputs, report)
 }
 
 /// The vertices of a mesh on the surface.
-fn places(input: &Input, mesh: &Mesh) -> Result<Vec<Place>> {
+pub(crate) fn places(input: &Input, mesh: &Mesh) -> Result<Vec<Place>> {
     mesh.points.iter().map(|&p| input.closest(p.into())).collect()
 }
 
 /// A mesh, the cells of its vertices, its edges as geodesics.
-fn drawn(outputs: &Outputs, diagram: &SurfaceDiagram, mesh: &Mesh) -> Result<String> {
+pub(crate) fn drawn(outputs: &Outputs, diagram: &SurfaceDiagram, mesh: &Mesh) -> Result<String> {
     let shows = |what| outputs.show.contains(&what);
     let draped = diagram.canvas().draped();
     let is_of_canvas = shows(Show::Cells) || shows(Show::Geodesics);
@@ -138,7 +44,7 @@ fn drawn(outputs: &Outputs, diagram: &SurfaceDiagram, mesh: &Mesh) -> Result<Str
         scene = scene.with(edges.iter().map(|ends| ends.map(|v| mesh.position(v)).to_vec()), Stroke::Edge);
     }
     let view = View { pixels: outputs.pixels, ..View::of(draped.input().surface.bounds()) };
-    output::draw_surface(&scene, &view)
+    voronaut_draw::draw_surface(&scene, &view)
 }
 
 fn coloured(diagram: &SurfaceDiagram, are_cells: bool) -> Scene {
@@ -168,7 +74,7 @@ fn geodesic(diagram: &SurfaceDiagram, ends: [u32; 2]) -> Option<Vec<Point3>> {
 
 /// A mesh with the points of its geodesic edges behind the seeds, and their segments as edges, labelled with the number of the
 /// edge from 1.
-fn with_geodesics(diagram: &SurfaceDiagram, mesh: &Mesh) -> Mesh {
+pub(crate) fn with_geodesics(diagram: &SurfaceDiagram, mesh: &Mesh) -> Mesh {
     let mut all = Mesh { edges: Vec::new(), edge_labels: Vec::new(), ..mesh.clone() };
     for (label, ends) in (1..).zip(edges(mesh)) {
         let Some(points) = geodesic(diagram, ends) else { continue };
@@ -187,7 +93,7 @@ fn with_geodesics(diagram: &SurfaceDiagram, mesh: &Mesh) -> Mesh {
 }
 
 /// Refuses what is not there for surfaces.
-fn demand_supported(outputs: &Outputs) -> Result<()> {
+pub(crate) fn demand_supported(outputs: &Outputs) -> Result<()> {
     let is_shown = |show: &Show| matches!(show, Show::Mesh | Show::Cells | Show::Geodesics);
     let refused = [
         (outputs.histograms.is_some(), "--histograms"),
@@ -197,15 +103,6 @@ fn demand_supported(outputs: &Outputs) -> Result<()> {
     refused.into_iter().find(|refused| refused.0).map_or(Ok(()), |(_, what)| Err(unsupported(what)))
 }
 
-fn demand_dual(args: &DualArgs) -> Result<()> {
-    let refused = [
-        (args.voronoi != Kind::Riemannian, "--voronoi"),
-        (args.certify, "--certify"),
-        (matches!(args.canvas_size, CanvasSize::Certified), "--canvas-size certified"),
-    ];
-    refused.into_iter().find(|refused| refused.0).map_or(Ok(()), |(_, what)| Err(unsupported(what)))
-}
-
-fn unsupported(what: &str) -> Error {
+pub(crate) fn unsupported(what: &str) -> Error {
     Error::Unsupported { what: format!("{what} on a surface"), help: format!("leave out {what}") }
 }

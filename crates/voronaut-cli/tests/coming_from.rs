@@ -2,8 +2,8 @@
 
 use crate::common::{Place, stderr};
 use voronaut::mesh::Mesh;
-use voronaut::output::write_mesh;
 use voronaut::surface::torus;
+use voronaut_io::write_mesh;
 
 /// The files that the page speaks of.
 fn place() -> Place {

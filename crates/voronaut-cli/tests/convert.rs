@@ -1,9 +1,10 @@
 //! `convert`: from every format to every other, and what goes along.
 
 use crate::common::{Place, stderr};
-use voronaut::domain::{Domain, read_pslg};
-use voronaut::formats::{self, SolutionValues};
+use voronaut::domain::Domain;
 use voronaut::mesh::Mesh;
+use voronaut::mesh::SolutionValues;
+use voronaut_io::read_pslg;
 
 /// A rectangle of regions 5 and 6 (-6 where labels may be negative) with labelled sides, a labelled interface, corners and what is required.
 const PLANE: &str = "MeshVersionFormatted 2\nDimension 2\nVertices 6\n0 0 1\n1.1 0 2\n2 0.1 0\n2 1 0\n1 1 0\n0 1 4\nEdges 7\n1 2 1\n2 3 1\n\
@@ -27,7 +28,7 @@ fn done(place: &Place, words: &str) -> String {
 }
 
 fn mesh(place: &Place, name: &str) -> Mesh {
-    formats::read(&place.path().join(name)).unwrap().mesh
+    voronaut_io::read(&place.path().join(name)).unwrap().mesh
 }
 
 #[test]
@@ -96,12 +97,12 @@ fn what_is_left_out_is_said() {
 #[test]
 fn values_go_along() {
     let place = place();
-    let truth = formats::read_solutions(&place.path().join("in.sol")).unwrap();
+    let truth = voronaut_io::read_solutions(&place.path().join("in.sol")).unwrap();
     for way in [["a.vtu", "a.mesh", "a.sol"], ["b.msh", "b.meshb", "b.solb"], ["c.vtp", "c.mesh", "c.sol"]] {
         done(&place, &format!("convert in.mesh {} --sol in.sol", way[0]));
         let told = done(&place, &format!("convert {} {}", way[0], way[1]));
         assert!(told.contains("metric") && told.contains(&format!(" in {}", way[2])), "{told}");
-        let again = formats::read_solutions(&place.path().join(way[2])).unwrap();
+        let again = voronaut_io::read_solutions(&place.path().join(way[2])).unwrap();
         let find = |wanted: &SolutionValues| again.vertices.iter().chain(&again.triangles).any(|found| found == wanted);
         assert!(truth.vertices.iter().all(find), "{again:?}");
         // Gmsh's triangles are sorted by label and mark, and their values with them.
@@ -113,7 +114,7 @@ fn values_go_along() {
     let words =
         |text: Vec<u8>| String::from_utf8(text).unwrap().split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     assert_eq!(words(place.read("out.sol")), words(VALUES.into()));
-    assert_eq!(formats::read_solutions(&place.path().join("out.solb")).unwrap(), truth);
+    assert_eq!(voronaut_io::read_solutions(&place.path().join("out.solb")).unwrap(), truth);
     place.put("short.sol", "MeshVersionFormatted 2 Dimension 2 SolAtVertices 1 1 1 0.5");
     let output = place.run(&["convert", "in.mesh", "short.vtu", "--sol", "short.sol"]);
     assert_eq!(output.status.code(), Some(1));

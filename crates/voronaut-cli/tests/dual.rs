@@ -3,10 +3,10 @@
 use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::collections::BTreeSet;
-use voronaut::formats::medit;
 use voronaut::geometry::{Point, Vector};
 use voronaut::mesh::Mesh;
 use voronaut::planar::delaunay;
+use voronaut_io::medit;
 
 /// Random points between two corners, the same on every machine.
 fn scattered(count: usize, low: f64, high: f64, salt: u64) -> Vec<Point> {

@@ -23,7 +23,7 @@ fn round_trip(place: &Place, domain: &str, metric: &str, count: &str) -> [Value;
 /// Labels of the edges and of the triangles in `out.mesh`.
 fn labels(place: &Place) -> [BTreeSet<i32>; 2] {
     let text = String::from_utf8(place.read("out.mesh")).unwrap();
-    let mesh = voronaut::formats::medit::read(text.as_bytes(), "out.mesh").unwrap().mesh;
+    let mesh = voronaut_io::medit::read(text.as_bytes(), "out.mesh").unwrap().mesh;
     [mesh.edge_labels, mesh.triangle_labels].map(BTreeSet::from_iter)
 }
 

@@ -3,9 +3,10 @@
 use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::fmt::Write as _;
-use voronaut::formats::{SolutionValues, Solutions, sol};
 use voronaut::mesh::Mesh;
-use voronaut::output::write_mesh;
+use voronaut::mesh::{SolutionValues, Solutions};
+use voronaut_io::sol;
+use voronaut_io::write_mesh;
 
 /// The unit square in n x n squares, each cut in two.
 fn square(n: u32) -> Mesh {

@@ -2,10 +2,11 @@
 
 use crate::common::{Place, stderr};
 use serde_json::Value;
-use voronaut::formats::{SolutionValues, medit, sol};
 use voronaut::mesh::Mesh;
-use voronaut::output::write_mesh;
+use voronaut::mesh::SolutionValues;
 use voronaut::surface::torus;
+use voronaut_io::write_mesh;
+use voronaut_io::{medit, sol};
 
 /// A directory with a torus of radii 2 and 0.7 in `ring.mesh`.
 fn place() -> Place {

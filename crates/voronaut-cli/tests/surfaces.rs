@@ -3,8 +3,8 @@
 use crate::common::{Place, stderr};
 use serde_json::Value;
 use voronaut::mesh::Mesh;
-use voronaut::output::write_mesh;
 use voronaut::surface::{sphere, torus};
+use voronaut_io::write_mesh;
 
 fn put(place: &Place, name: &str, mesh: &Mesh) {
     write_mesh(mesh, &place.path().join(name)).unwrap();

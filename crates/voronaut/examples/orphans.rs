@@ -25,11 +25,11 @@ use voronaut::geometry::{Aabb, Orientation, Point, orientation};
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::net::Random;
-use voronaut::output::{self, Layers, Picture};
 use voronaut::progress::Silent;
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, MeshOptions};
 use voronaut::triangulation::VertexId;
+use voronaut_draw::{Layers, Picture};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
@@ -54,7 +54,7 @@ impl Scene {
     fn new(metric: &str) -> Outcome<Self> {
         let is_swirl = metric.starts_with("swirl");
         let shape = if is_swirl { "rect:-2,-2,2,2" } else { "rect:-1,-1,1,1" };
-        let domain = Domain::read(shape)?;
+        let domain = Domain::shape(shape)?;
         let field = recipe::metric_named(metric, &domain)?;
         Ok(Self { name: metric.into(), is_swirl, domain, field })
     }
@@ -133,12 +133,12 @@ fn picture(scene: &Scene, count: usize, file: &Path) -> Outcome<()> {
         let what = Picture { mesh: false, width: PIXELS, window, ..Picture::default() };
         // No witnesses are drawn, but all three are as pale as if some were.
         let layers = Layers { cells: Some(&cells), witnesses: Some([&[], &[]]), ..Layers::default() };
-        let part = output::svg_with(&Mesh::default(), None, &what, &layers)?;
+        let part = voronaut_draw::svg_with(&Mesh::default(), None, &what, &layers)?;
         parts += &part.replacen("<svg ", &format!("<svg x=\"{}\" ", place as u32 * (PIXELS + GAP)), 1);
     }
     let size = format!("width=\"{}\" height=\"{PIXELS}\"", 3 * PIXELS + 2 * GAP);
     let svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" {size}>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{parts}</svg>\n"
     );
-    Ok(output::write_picture(&svg, file)?)
+    Ok(voronaut_io::write(file, &voronaut_draw::picture_bytes(&svg, file)?)?)
 }

@@ -12,7 +12,7 @@
 mod parts;
 
 use std::path::Path;
-use voronaut::output::write_mesh;
+use voronaut_io::write_mesh;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let Some(directory) = std::env::args().nth(1) else { return Err("give the directory to write into".into()) };

@@ -5,23 +5,24 @@
 //! should be: a *unit mesh* has edges of metric length one. This crate makes unit meshes. What it returns is always a
 //! valid mesh; what the metric asked for and could not be had is counted, not hidden.
 //!
-//! # From a polygon to a drawn mesh
+//! # From a polygon to a measured mesh
 //!
 //! A [`Domain`](domain::Domain) is a polygon with holes, regions and labels, validated once and for all. It comes from
-//! a file, from a shape, or from a graph of points and segments:
+//! rings, from a shape, or from a graph of points and segments (files are read by the crate `voronaut-io`):
 //!
 //! ```
-//! use voronaut::domain::{Domain, from_geojson};
-//! use voronaut::formats::geojson;
+//! use voronaut::domain::{Domain, Polygon, Polygons, Ring, from_polygons};
+//! use voronaut::geometry::Point;
 //!
-//! let text = r#"{ "type": "Polygon", "coordinates": [
-//!     [[0, 0], [4, 0], [4, 2], [0, 2], [0, 0]],
-//!     [[1, 0.5], [2, 0.5], [2, 1.5], [1, 1.5], [1, 0.5]]
-//! ] }"#;
-//! let polygons = geojson::read(text, "plate with a hole")?;
-//! let plate = Domain::new(&from_geojson(&polygons)?)?;
-//! assert_eq!(plate.area(), 7.0);
-//! # assert_eq!(Domain::read("rect:0,0,4,2")?.area(), 8.0);
+//! let ring = |x0, y0, x1, y1, label| Ring {
+//!     points: vec![Point::new(x0, y0), Point::new(x1, y0), Point::new(x1, y1), Point::new(x0, y1)],
+//!     label,
+//! };
+//! let rings = vec![ring(0.0, 0.0, 4.0, 2.0, 1), ring(1.0, 0.5, 2.0, 1.5, 2)];
+//! let polygons = vec![Polygon { feature: 1, number: 1, region: 1, rings }];
+//! let plate_with_a_hole = Domain::new(&from_polygons(&Polygons { polygons })?)?;
+//! assert_eq!(plate_with_a_hole.area(), 7.0);
+//! assert_eq!(Domain::shape("rect:0,0,4,2")?.area(), 8.0);
 //! # Ok::<(), voronaut::Error>(())
 //! ```
 //!
@@ -31,7 +32,7 @@
 //!
 //! ```
 //! # use voronaut::domain::Domain;
-//! # let plate = Domain::read("rect:0,0,4,2")?;
+//! # let plate = Domain::shape("rect:0,0,4,2")?;
 //! use voronaut::geometry::{Point, Tensor};
 //! use voronaut::progress::Silent;
 //! use voronaut::recipe::{self, MeshOptions};
@@ -47,13 +48,13 @@
 //! ```
 //!
 //! The metric was scaled by one factor, [`Meshed::metric_scale`](recipe::Meshed::metric_scale), to meet that number. In
-//! the scaled metric the mesh can be measured, and drawn:
+//! the scaled metric the mesh can be measured (`voronaut-draw` draws it):
 //!
 //! ```
 //! # use voronaut::domain::Domain;
 //! # use voronaut::geometry::{Point, Tensor};
 //! # use voronaut::{progress::Silent, recipe::{self, MeshOptions}};
-//! # let plate = Domain::read("rect:0,0,4,2")?;
+//! # let plate = Domain::shape("rect:0,0,4,2")?;
 //! # let metric = |p: Point| {
 //! #     let across = 0.05 + 0.2 * (p.y - 1.0).abs();
 //! #     Tensor::new(1.0 / (0.5 * 0.5), 0.0, 1.0 / (across * across))
@@ -61,7 +62,6 @@
 //! # let options = MeshOptions { vertices: Some(400), ..MeshOptions::default() };
 //! # let meshed = recipe::mesh(&plate, &metric, &options, &Silent)?;
 //! use voronaut::metric::Scaled;
-//! use voronaut::output::{self, Picture};
 //! use voronaut::quality::{metric_quality, validity};
 //!
 //! let unit = Scaled { field: &metric, factor: meshed.metric_scale };
@@ -69,11 +69,6 @@
 //! let figures = metric_quality(&meshed.mesh, &unit)?;
 //! assert!(figures.metric_edge_length.unit_fraction > 0.8);
 //!
-//! let picture = Picture { ellipses: true, ..Picture::default() };
-//! let svg = output::svg(&meshed.mesh, Some(&unit), &picture)?;
-//! let file = std::env::temp_dir().join(format!("voronaut-tour-{}.svg", std::process::id()));
-//! output::write_picture(&svg, &file)?;
-//! # std::fs::remove_file(&file).expect("just written");
 //! # Ok::<(), voronaut::Error>(())
 //! ```
 //!
@@ -90,7 +85,6 @@ pub mod geometry;
 pub mod mesh;
 pub mod triangulation;
 pub mod planar;
-pub mod formats;
 pub mod domain;
 pub mod metric;
 pub mod transfer;
@@ -107,7 +101,7 @@ pub mod sampling;
 pub mod optimise;
 pub mod quality;
 pub mod realisation;
-pub mod output;
+pub mod figures;
 pub mod recipe;
 
 #[cfg(test)]

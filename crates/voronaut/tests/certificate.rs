@@ -146,7 +146,7 @@ fn demand_witnesses(case: &Case) {
 
 #[test]
 fn what_is_certified_in_a_uniform_metric_is_the_exact_dual() {
-    let square = Domain::read("rect:0,0,1,1").unwrap();
+    let square = Domain::shape("rect:0,0,1,1").unwrap();
     let mut random = Random(2026);
     let (mut certified, mut compared) = (0, 0);
     for round in 0..500 {
@@ -185,7 +185,7 @@ fn turning(scale: f64) -> impl Fn(Point) -> Tensor + Sync {
 #[test]
 fn a_protected_net_passes_in_a_turning_metric_and_says_what_it_takes() {
     use Outcome::{Fails, Holds};
-    let (square, field) = (Domain::read("rect:0,0,1,1").unwrap(), turning(26.0));
+    let (square, field) = (Domain::shape("rect:0,0,1,1").unwrap(), turning(26.0));
     let map = Map([26.0 * 1.5_f64.sqrt(), 0.0, 26.0]);
     let seeds = lattice(map, 0.02, &mut Random(5));
     let canvas = Canvas::intrinsic(&square, &field, 30_000).unwrap();
@@ -208,7 +208,7 @@ fn a_protected_net_passes_in_a_turning_metric_and_says_what_it_takes() {
 
 #[test]
 fn random_seeds_are_not_certified_and_their_nerve_on_a_coarse_canvas_is_wrong() {
-    let square = Domain::read("rect:0,0,1,1").unwrap();
+    let square = Domain::shape("rect:0,0,1,1").unwrap();
     let mut random = Random(11);
     let map = Map([40.0, 5.0, 40.0]);
     let seeds: Vec<Point> = (0..1500).map(|_| Point::new(random.next(), random.next())).collect();
@@ -225,7 +225,7 @@ fn random_seeds_are_not_certified_and_their_nerve_on_a_coarse_canvas_is_wrong() 
 
 #[test]
 fn without_covered_seeds_nothing_holds() {
-    let square = Domain::read("rect:0,0,1,1").unwrap();
+    let square = Domain::shape("rect:0,0,1,1").unwrap();
     let map = Map([4.0, 0.0, 4.0]);
     let seeds = lattice(map, 0.0, &mut Random(3));
     let canvas = Canvas::intrinsic(&square, &Uniform(map.metric()), 2000).unwrap();
@@ -239,7 +239,7 @@ fn without_covered_seeds_nothing_holds() {
 fn a_curved_metric_has_its_convexity_radius_and_loops_that_are_not_excluded() {
     // A sphere of radius 1, by stereographic projection, within 1.5 radians of a pole: K = 1, and more than pi of it.
     let sphere = |p: Point| Tensor::isotropic(0.5 * (1.0 + p.x * p.x + p.y * p.y));
-    let disk = Domain::read("disk:0,0,0.93").unwrap();
+    let disk = Domain::shape("disk:0,0,0.93").unwrap();
     let seeds: Vec<Point> = lattice(Map([14.0, 0.0, 14.0]), 0.02, &mut Random(9))
         .into_iter()
         .map(|p| Point::new(1.8 * p.x - 0.9, 1.8 * p.y - 0.9))
@@ -258,7 +258,7 @@ fn a_curved_metric_has_its_convexity_radius_and_loops_that_are_not_excluded() {
 
 #[test]
 fn a_certified_canvas_makes_the_certificate_hold_or_is_refused() {
-    let (square, field) = (Domain::read("rect:0,0,1,1").unwrap(), turning(26.0));
+    let (square, field) = (Domain::shape("rect:0,0,1,1").unwrap(), turning(26.0));
     let seeds = lattice(Map([26.0 * 1.5_f64.sqrt(), 0.0, 26.0]), 0.02, &mut Random(5));
     let with = |seeds: &[Point], limit: u64| {
         recipe::certified_canvas(Kind::Intrinsic, &square, &field, seeds, Constants::Corrected, limit)

@@ -5,7 +5,6 @@ use voronaut::canvas::Canvas;
 use voronaut::diagram::Diagram;
 use voronaut::domain::Domain;
 use voronaut::dual::Dual;
-use voronaut::formats::poly;
 use voronaut::geometry::{Point, Tensor};
 use voronaut::metric::{MetricField, Scaled, Shock, Swirl, Uniform};
 use voronaut::progress::Silent;
@@ -13,6 +12,7 @@ use voronaut::quality::metric_quality;
 use voronaut::recipe::{self, MeshOptions, Meshed, Seeding};
 use voronaut::sampling::{Farthest, Fill, Plan, Target, refine_farthest, sample_segments};
 use voronaut::triangulation::VertexId;
+use voronaut_io::poly;
 
 fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize, more: &MeshOptions) -> Meshed {
     let options = MeshOptions { vertices: Some(vertices), seeding: Seeding::Farthest, ..more.clone() };
@@ -21,7 +21,7 @@ fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize, more: &Mesh
 
 #[test]
 fn the_heap_gives_what_a_scan_gives() {
-    let domain = Domain::read("rect:-1,-1,1,1").unwrap();
+    let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
     let field = Swirl::default();
     let canvas = Canvas::intrinsic(&domain, &field, 3000).unwrap();
     let mut diagram = Diagram::new(&canvas, &field, &[Point::new(0.1, 0.2)]).unwrap();
@@ -36,7 +36,7 @@ fn the_heap_gives_what_a_scan_gives() {
 
 #[test]
 fn seeds_are_as_far_apart_as_any_point_is_from_them() {
-    let domain = Domain::read("rect:0,0,1,1").unwrap();
+    let domain = Domain::shape("rect:0,0,1,1").unwrap();
     let field = Uniform::default();
     let options = MeshOptions { lloyd: 0, ..MeshOptions::default() };
     let meshed = meshed(&domain, &field, 600, &options);
@@ -63,7 +63,7 @@ fn touching_holes() -> Domain {
 #[test]
 fn the_count_is_met_on_any_canvas_and_domain() {
     let holes = touching_holes();
-    let disk = Domain::read("disk:0.3,0.1,1").unwrap();
+    let disk = Domain::shape("disk:0.3,0.1,1").unwrap();
     for (domain, canvas_size) in [(&holes, 1), (&holes, 100), (&disk, 20)] {
         for field in [&Swirl::default() as &dyn MetricField, &Shock { phi: 10.0, lambda: 0.06 }] {
             let options = MeshOptions { canvas_size, lloyd: 3, ..MeshOptions::default() };
@@ -74,14 +74,14 @@ fn the_count_is_met_on_any_canvas_and_domain() {
 
 #[test]
 fn more_seeds_than_canvas_vertices_are_found_otherwise() {
-    let domain = Domain::read("rect:0,0,1,1").unwrap();
+    let domain = Domain::shape("rect:0,0,1,1").unwrap();
     let options = MeshOptions { canvas_size: 1, lloyd: 0, ..MeshOptions::default() };
     assert_eq!(meshed(&domain, &Uniform::default(), 30_000, &options).mesh.points.len(), 30_000);
 }
 
 #[test]
 fn metrics_used_as_they_are_decide_the_count() {
-    let domain = Domain::read("rect:0,0,1,1").unwrap();
+    let domain = Domain::shape("rect:0,0,1,1").unwrap();
     let options = MeshOptions { seeding: Seeding::Farthest, ..MeshOptions::default() };
     let field = |_: Point| Tensor::isotropic(0.05);
     let found = recipe::mesh(&domain, &field, &options, &Silent).unwrap().mesh.points.len();
@@ -91,7 +91,7 @@ fn metrics_used_as_they_are_decide_the_count() {
 
 #[test]
 fn a_canvas_beyond_the_memory_limit_is_refused() {
-    let domain = Domain::read("rect:0,0,1,1").unwrap();
+    let domain = Domain::shape("rect:0,0,1,1").unwrap();
     let options = MeshOptions { vertices: Some(100_000), memory_limit: 1 << 30, ..MeshOptions::default() };
     let with = |seeding| MeshOptions { seeding, lloyd: 0, ..options.clone() };
     let refused = recipe::mesh(&domain, &Uniform::default(), &with(Seeding::Farthest), &Silent);
@@ -102,7 +102,7 @@ fn a_canvas_beyond_the_memory_limit_is_refused() {
 
 #[test]
 fn work_grows_no_faster_than_n_log_n() {
-    let domain = Domain::read("rect:-2,-2,2,2").unwrap();
+    let domain = Domain::shape("rect:-2,-2,2,2").unwrap();
     let field = Swirl::default();
     let work = |seeds: usize| {
         let plan = Plan::new(&domain, &field, Target::Vertices(seeds)).unwrap();
@@ -126,7 +126,7 @@ fn work_grows_no_faster_than_n_log_n() {
 
 #[test]
 fn no_seed_is_reached_by_no_front() {
-    let domain = Domain::read("rect:0,0,1,1").unwrap();
+    let domain = Domain::shape("rect:0,0,1,1").unwrap();
     let field = Uniform::default();
     let canvas = Canvas::intrinsic(&domain, &field, 50).unwrap();
     let diagram = Diagram::new(&canvas, &field, &[]).unwrap();

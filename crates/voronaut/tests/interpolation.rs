@@ -3,9 +3,9 @@
 
 use std::sync::OnceLock;
 use voronaut::domain::Domain;
-use voronaut::formats::SolutionValues;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
+use voronaut::mesh::SolutionValues;
 use voronaut::metric::{Expression, Norm, ScalarField, Snapshot, Variables};
 use voronaut::progress::Silent;
 use voronaut::quality::{check, interpolation_error};
@@ -23,7 +23,7 @@ fn function(text: &str) -> Snapshot {
 }
 
 fn square() -> Domain {
-    Domain::read("rect:0,0,1,1").unwrap()
+    Domain::shape("rect:0,0,1,1").unwrap()
 }
 
 fn made(metric: &PlanarMetric, vertices: usize, polish: usize, norm: Norm) -> Meshed {

@@ -77,9 +77,9 @@ fn demand_protected(meshed: &Meshed, vertices: usize) {
 
 #[test]
 fn protected_seeds_are_and_the_raw_nerve_is_their_dual() {
-    let square = Domain::read("rect:0,0,1,1").unwrap();
+    let square = Domain::shape("rect:0,0,1,1").unwrap();
     let layer = |p: Point| Tensor::new(1.0, 0.0, 1.0 / (0.5 + 0.6 * (p.y - 0.4 * p.x).powi(2)).powi(2));
-    let disk = Domain::read("disk:0,0,1").unwrap();
+    let disk = Domain::shape("disk:0,0,1").unwrap();
     let cases: [(&Domain, &dyn MetricField, usize, usize); 3] =
         [(&square, &Uniform::default(), 301, 0), (&disk, &layer, 251, 40), (&square, &layer, 277, 0)];
     for (domain, field, vertices, lloyd) in cases {
@@ -99,7 +99,7 @@ fn protected_seeds_are_and_the_raw_nerve_is_their_dual() {
 
 #[test]
 fn protected_seeds_do_not_depend_on_threads() {
-    let domain = Domain::read("rect:0,0,1,1").unwrap();
+    let domain = Domain::shape("rect:0,0,1,1").unwrap();
     let field = |p: Point| Tensor::new(1.0, 0.0, 1.0 / (0.5 + 0.6 * (p.y - 0.4 * p.x).powi(2)).powi(2));
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -12,7 +12,7 @@ fn field(text: &str, domain: &Domain) -> Box<dyn MetricField> {
 }
 
 fn relaxed(domain: &str, metric: &dyn MetricField, vertices: usize, lloyd: usize, centroid: Centroid) -> Meshed {
-    let domain = Domain::read(domain).unwrap();
+    let domain = Domain::shape(domain).unwrap();
     let options = MeshOptions { vertices: Some(vertices), lloyd, centroid, canvas_size: 40, ..MeshOptions::default() };
     recipe::mesh(&domain, metric, &options, &Silent).unwrap()
 }
@@ -20,7 +20,7 @@ fn relaxed(domain: &str, metric: &dyn MetricField, vertices: usize, lloyd: usize
 /// Some steps on the square of side 2; few where a diagram is made in each.
 fn of_spec(metric: &str, centroid: Centroid) -> Meshed {
     let square = "rect:-1,-1,1,1";
-    let field = field(metric, &Domain::read(square).unwrap());
+    let field = field(metric, &Domain::shape(square).unwrap());
     let steps = if centroid == Centroid::Tangent { 20 } else { 8 };
     relaxed(square, field.as_ref(), 1000, steps, centroid)
 }

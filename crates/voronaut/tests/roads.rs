@@ -24,7 +24,7 @@ fn scattered(count: u64, half: f64, salt: u64) -> Vec<Point> {
 }
 
 fn square(half: f64) -> Domain {
-    Domain::read(&format!("rect:{},{},{half},{half}", -half, -half)).unwrap()
+    Domain::shape(&format!("rect:{},{},{half},{half}", -half, -half)).unwrap()
 }
 
 /// Triangles without their turn, each as often as it is there.

@@ -1,16 +1,16 @@
 //! Star sets as canvases: against affine Delaunay triangulations, on shapes with holes, by laws of scale and threads.
 
 use voronaut::canvas::{Canvas, StarSet};
-use voronaut::domain::{Domain, from_geojson};
-use voronaut::formats::geojson;
+use voronaut::domain::{Domain, from_polygons};
 use voronaut::geometry::{Point, Tensor, in_circle, signed_area};
 use voronaut::metric::{Shock, Swirl, Uniform};
 use voronaut::triangulation::VertexId;
+use voronaut_io::geojson;
 
 fn plate() -> Domain {
     let text = r#"{ "type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 2], [0, 2], [0, 0]],
         [[1, 0.5], [2, 0.5], [2, 1.5], [1, 1.5], [1, 0.5]]] }"#;
-    Domain::new(&from_geojson(&geojson::read(text, "plate").unwrap()).unwrap()).unwrap()
+    Domain::new(&from_polygons(&geojson::read(text, "plate").unwrap()).unwrap()).unwrap()
 }
 
 fn framed(tensor: Tensor, p: Point) -> Point {
@@ -38,7 +38,7 @@ fn euclidean_area(canvas: &Canvas) -> f64 {
 
 #[test]
 fn in_a_uniform_metric_stars_are_those_of_the_affine_delaunay_triangulation() {
-    let domain = Domain::read("rect:0,0,2,1").unwrap();
+    let domain = Domain::shape("rect:0,0,2,1").unwrap();
     for tensor in [Tensor::isotropic(1.0), Tensor::new(30.0, 5.0, 1.0), Tensor::new(1.0, 9.0, 100.0)] {
         let canvas = Canvas::star_set(&domain, &Uniform(tensor), 600).unwrap();
         let figures = *stars(&canvas).figures();
@@ -81,7 +81,7 @@ fn stars_keep_to_the_domain_and_neighbours_are_reciprocal() {
 fn an_affine_map_takes_star_sets_to_star_sets() {
     // Powers of two: the map is exact.
     let make = |sx: f64, sy: f64| {
-        let domain = Domain::read(&format!("rect:0,0,{},{sy}", 2.0 * sx)).unwrap();
+        let domain = Domain::shape(&format!("rect:0,0,{},{sy}", 2.0 * sx)).unwrap();
         let field = move |p: Point| {
             let (x, y) = (p.x / sx, p.y / sy);
             Tensor::new((4.0 + x) / (sx * sx), 0.5 * y / (sx * sy), (1.0 + 8.0 * y * y) / (sy * sy))
@@ -98,7 +98,7 @@ fn an_affine_map_takes_star_sets_to_star_sets() {
 
 #[test]
 fn threads_do_not_change_a_star() {
-    let domain = Domain::read("rect:-2,-2,2,2").unwrap();
+    let domain = Domain::shape("rect:-2,-2,2,2").unwrap();
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| Canvas::star_set(&domain, &Swirl::default(), 6000).unwrap())
@@ -111,7 +111,7 @@ fn threads_do_not_change_a_star() {
 
 #[test]
 fn inconsistencies_fall_with_size() {
-    let domain = Domain::read("rect:-2,-2,2,2").unwrap();
+    let domain = Domain::shape("rect:-2,-2,2,2").unwrap();
     let share = |vertices| {
         let canvas = Canvas::star_set(&domain, &Swirl::default(), vertices).unwrap();
         let figures = stars(&canvas).figures();
@@ -124,6 +124,6 @@ fn inconsistencies_fall_with_size() {
 #[test]
 fn a_metric_that_is_none_is_an_error() {
     let field = |p: Point| Tensor::isotropic(if p.x > 0.5 { f64::NAN } else { 1.0 });
-    let error = Canvas::star_set(&Domain::read("rect:0,0,1,1").unwrap(), &field, 100).unwrap_err();
+    let error = Canvas::star_set(&Domain::shape("rect:0,0,1,1").unwrap(), &field, 100).unwrap_err();
     assert!(error.to_string().starts_with("invalid metric"), "{error}");
 }

@@ -1,4 +1,4 @@
-//! All tests of what is public, in one program, for there is one to link then. Those that measure memory are apart (`malformed`).
+//! All tests of what is public, in one program, for there is one to link then.
 
 mod architecture;
 mod certificate;
@@ -6,7 +6,6 @@ mod damage;
 mod diagram;
 mod farthest;
 mod features;
-mod foreign;
 mod geodesics;
 mod interpolation;
 mod net;

@@ -13,7 +13,7 @@ fn mesh_with(threads: usize, domain: &Domain, metric: &dyn MetricField) -> Meshe
 
 #[test]
 fn threads_do_not_change_a_bit_of_the_mesh() {
-    let domain = Domain::read("rect:-2,-2,2,2").expect("a rectangle");
+    let domain = Domain::shape("rect:-2,-2,2,2").expect("a rectangle");
     let smooth = Shock { phi: 1.0, lambda: 0.6 };
     for metric in [&smooth as &dyn MetricField, &Swirl::default()] {
         let one = mesh_with(1, &domain, metric);

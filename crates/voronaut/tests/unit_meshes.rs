@@ -1,12 +1,12 @@
 //! The main job against what is known: unit meshes of metrics with known answers, and laws that any mesher obeys.
 
 use voronaut::domain::Domain;
-use voronaut::formats::medit;
 use voronaut::geometry::{Point, Tensor};
 use voronaut::metric::MetricField;
 use voronaut::progress::Silent;
 use voronaut::quality::{MetricQuality, check, metric_quality, validity};
 use voronaut::recipe::{MeshOptions, Meshed, mesh, metric_named};
+use voronaut_io::medit;
 
 fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize) -> (Meshed, MetricQuality) {
     let options = MeshOptions { vertices: Some(vertices), ..MeshOptions::default() };
@@ -23,7 +23,7 @@ fn named(spec: &str, domain: &Domain) -> Box<dyn MetricField> {
 
 #[test]
 fn the_shock_is_met_better_than_by_peers() {
-    let square = Domain::read("rect:-1,-1,1,1").unwrap();
+    let square = Domain::shape("rect:-1,-1,1,1").unwrap();
     let (meshed, quality) = meshed(&square, named("shock:phi=1,lambda=0.6", &square).as_ref(), 4000);
     assert_eq!(meshed.mesh.points.len(), 4000);
     // bamg: 0.988, 0.944, 0.16; mmg2d: 0.970, 0.930, 0.28 (measured before this project began).
@@ -34,7 +34,7 @@ fn the_shock_is_met_better_than_by_peers() {
 #[test]
 fn a_uniform_metric_gives_nearly_equilateral_triangles_at_every_scale() {
     for scale in [1e-9, 1.0, 1e9] {
-        let domain = Domain::read(&format!("rect:0,0,{scale},{}", 0.5 * scale)).unwrap();
+        let domain = Domain::shape(&format!("rect:0,0,{scale},{}", 0.5 * scale)).unwrap();
         let (meshed, quality) = meshed(&domain, &|_: Point| Tensor::IDENTITY, 600);
         assert_eq!(meshed.mesh.points.len(), 600);
         assert!(quality.metric_edge_length.unit_fraction > 0.995);
@@ -49,8 +49,8 @@ fn a_uniform_metric_gives_nearly_equilateral_triangles_at_every_scale() {
 #[test]
 fn pulling_domain_and_metric_through_a_stretch_changes_nothing() {
     // A power of two, so that coordinates stretch without rounding.
-    let square = Domain::read("rect:0,0,1,1").unwrap();
-    let stretched = Domain::read("rect:0,0,64,1").unwrap();
+    let square = Domain::shape("rect:0,0,1,1").unwrap();
+    let stretched = Domain::shape("rect:0,0,64,1").unwrap();
     let (plain, quality) = meshed(&square, &|_: Point| Tensor::IDENTITY, 500);
     let (pulled, pulled_quality) = meshed(&stretched, &|_: Point| Tensor::new(1.0 / 4096.0, 0.0, 1.0), 500);
     assert_eq!(plain.mesh.points.len(), pulled.mesh.points.len());
@@ -63,7 +63,7 @@ fn pulling_domain_and_metric_through_a_stretch_changes_nothing() {
 
 #[test]
 fn complexity_and_count_are_two_names_of_one_scale() {
-    let domain = Domain::read("rect:0,0,1,1").unwrap();
+    let domain = Domain::shape("rect:0,0,1,1").unwrap();
     let options = MeshOptions { complexity: Some(2000.0), ..MeshOptions::default() };
     let by_complexity = mesh(&domain, &|_: Point| Tensor::IDENTITY, &options, &Silent).unwrap();
     let count = by_complexity.mesh.points.len();
@@ -94,7 +94,7 @@ fn required_edges_and_vertices_labels_and_regions_stay() {
 
 #[test]
 fn curves_are_simplified_only_within_hausd() {
-    let sea = Domain::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/aegean.geojson")).unwrap();
+    let sea = Domain::shape(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/aegean.geojson")).unwrap();
     let options = MeshOptions { vertices: Some(2000), hausd: Some(5.0), lloyd: 4, ..MeshOptions::default() };
     let Meshed { mesh, .. } = mesh(&sea, &|_: Point| Tensor::IDENTITY, &options, &Silent).unwrap();
     assert_eq!(mesh.points.len(), 2000);
@@ -106,7 +106,7 @@ fn curves_are_simplified_only_within_hausd() {
 
 #[test]
 fn a_metric_that_is_none_somewhere_is_refused_with_the_place() {
-    let square = Domain::read("rect:-1,-1,1,1").unwrap();
+    let square = Domain::shape("rect:-1,-1,1,1").unwrap();
     let field = |p: Point| Tensor::new(p.x, 0.0, 1.0);
     let options = MeshOptions { vertices: Some(100), ..MeshOptions::default() };
     let error = mesh(&square, &field, &options, &Silent).unwrap_err();

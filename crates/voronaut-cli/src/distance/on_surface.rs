@@ -1,17 +1,18 @@
 //! Distances on a surface.
 
-use super::{Asked, Made, levels, seconds, told};
-use crate::args::{Coordinates, DistanceArgs};
-use crate::metric;
+use super::args::DistanceArgs;
+use super::told::{Asked, Made, levels, seconds, told};
+use crate::fields;
+use crate::options::Coordinates;
 use std::time::Instant;
 use voronaut::canvas::{Canvas, Way};
 use voronaut::diagram::SurfaceDistances;
 use voronaut::geometry::{Aabb3, Point3};
 use voronaut::mesh::Mesh;
-use voronaut::output::{self, Scene, Stroke, View};
 use voronaut::surface::{Input, Place};
 use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
+use voronaut_draw::{Scene, Stroke, View};
 
 /// The distances on a canvas that has the points, moved onto the surface, as vertices.
 pub(super) fn run(args: &DistanceArgs, input: &Input, start: Instant) -> Result<Made> {
@@ -20,7 +21,7 @@ pub(super) fn run(args: &DistanceArgs, input: &Input, start: Instant) -> Result<
     let from: Vec<usize> = from.collect::<Result<_>>()?;
     let to = args.to.as_ref().map(|p| on_surface("--to", p, input)).transpose()?;
     let to = to.map(|place| add(place, &mut places));
-    let metric = metric::on_surface(&args.metric, input, &args.metric_choices)?;
+    let metric = fields::on_surface(&args.metric, input, &args.metric_choices)?;
     let read = start.elapsed().as_secs_f64();
     let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), args.canvas_size as usize, &places)?;
     let made = start.elapsed().as_secs_f64();
@@ -76,5 +77,5 @@ fn draw(args: &DistanceArgs, found: &SurfaceDistances, seeds: Vec<Point3>, path:
         .with(lines, Stroke::Level)
         .with(path.map(|path| path.points.clone()), Stroke::Geodesic)
         .with(seeds.into_iter().map(|seed| vec![seed]), Stroke::Seed);
-    output::draw_surface(&scene, &View { pixels: args.pixels, ..View::of(bounds) })
+    voronaut_draw::draw_surface(&scene, &View { pixels: args.pixels, ..View::of(bounds) })
 }

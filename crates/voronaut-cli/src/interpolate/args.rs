@@ -1,6 +1,6 @@
 //! What users type to carry a solution over.
 
-use crate::args::Run;
+use crate::options::Run;
 use clap::Args;
 use std::path::PathBuf;
 

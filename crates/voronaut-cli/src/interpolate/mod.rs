@@ -8,11 +8,11 @@ pub(crate) use args::{EXAMPLES, InterpolateArgs};
 use crate::files;
 use std::path::Path;
 use std::time::Instant;
-use voronaut::formats::{self, Document, SolutionValues, Solutions};
 use voronaut::mesh::Mesh;
-use voronaut::output;
+use voronaut::mesh::{SolutionValues, Solutions};
 use voronaut::transfer::{Overshoot, TransferOptions, carry};
 use voronaut::{Error, Result};
+use voronaut_io::Document;
 
 /// Carries all fields of a file to another mesh.
 pub(crate) fn run(args: &InterpolateArgs) -> Result<()> {
@@ -20,19 +20,19 @@ pub(crate) fn run(args: &InterpolateArgs) -> Result<()> {
     demand_writable(args)?;
     files::set_threads(&args.run)?;
     let (old, new) = (planar(&args.old, args.run.quiet)?, planar(&args.new, args.run.quiet)?);
-    let given = formats::read_solutions(&args.field)?;
+    let given = voronaut_io::read_solutions(&args.field)?;
     demand_counts(args, &given, &old, &new)?;
     let read = start.elapsed().as_secs_f64();
     let overshoot = if args.overshoot { Overshoot::Kept } else { Overshoot::Spread };
     let options = TransferOptions { conservative: args.conservative, overshoot, linear_tensors: args.linear_tensors };
     let (solutions, carried, cover) = carry(&old, &new, &given, options)?;
     let done = start.elapsed().as_secs_f64();
-    output::write_solutions(&solutions, &args.out)?;
+    voronaut_io::write_solutions(&solutions, &args.out)?;
     let dimension = usize::from(given.dimension);
     let seconds = [read, done - read, start.elapsed().as_secs_f64() - done];
     if let Some(file) = &args.report {
         let told = told::report(args, [&old, &new], dimension, &carried, &cover, seconds);
-        output::write(file, format!("{told:#}\n").as_bytes())?;
+        voronaut_io::write(file, format!("{told:#}\n").as_bytes())?;
     }
     told::print(args, dimension, &carried, &cover);
     Ok(())
@@ -45,8 +45,8 @@ fn demand_writable(args: &InterpolateArgs) -> Result<()> {
         let what = format!("{} does not end like a solution file", args.out.display());
         return Err(Error::Unsupported { what, help: "end the name of OUT in .sol or .solb".into() });
     }
-    let out = output::place(&args.out)?;
-    let report = args.report.as_deref().map(output::place).transpose()?;
+    let out = voronaut_io::place(&args.out)?;
+    let report = args.report.as_deref().map(voronaut_io::place).transpose()?;
     if report.is_some_and(|report| report == out) {
         let what = "two outputs have the same name";
         return Err(Error::parse(args.out.display().to_string(), what, "give each output a name of its own"));
@@ -55,7 +55,7 @@ fn demand_writable(args: &InterpolateArgs) -> Result<()> {
 }
 
 fn planar(path: &Path, is_quiet: bool) -> Result<Mesh> {
-    let Document { mesh, notes, .. } = formats::read(path)?;
+    let Document { mesh, notes, .. } = voronaut_io::read(path)?;
     crate::summary::notes(&notes, is_quiet);
     if mesh.is_planar() {
         return Ok(mesh);

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use voronaut::mesh::Mesh;
-use voronaut::output::report;
 use voronaut::transfer::{Carried, Cover, Extent, Kind, Place};
+use voronaut_io::Seconds;
 
 /// The report. Of metrics there is no `mass`: they are no densities.
 pub(super) fn report(
@@ -22,8 +22,8 @@ pub(super) fn report(
     json!({
         "old": old, "new": new, "method": method(args), "cover": cover,
         "fields": carried.iter().map(|carried| field(carried, dimension)).collect::<Vec<Value>>(),
-        "seconds": report::Seconds { stages, total: read + carry + write },
-        "peak_memory_bytes": report::peak_memory_bytes(), "version": env!("CARGO_PKG_VERSION"),
+        "seconds": Seconds { stages, total: read + carry + write },
+        "peak_memory_bytes": voronaut_io::peak_memory_bytes(), "version": env!("CARGO_PKG_VERSION"),
         "options": {
             "old": args.old, "new": args.new, "field": args.field, "out": args.out, "conservative": args.conservative,
             "overshoot": args.overshoot, "linear_tensors": args.linear_tensors, "report": args.report,

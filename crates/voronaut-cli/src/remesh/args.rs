@@ -1,9 +1,9 @@
 //! What users of mmg2d and mmgs type.
 
-use crate::args::{Damage, Run, not_negative, positive};
+use crate::options::{Damage, Run, not_negative, positive};
 use clap::Args;
 use std::path::PathBuf;
-use voronaut::formats::TensorOrder;
+use voronaut::mesh::TensorOrder;
 use voronaut::surface::{FeatureOptions, RepairOptions};
 
 pub(crate) const EXAMPLES: &str = "\

@@ -13,16 +13,18 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use voronaut::Result;
-use voronaut::domain::read_pslg;
-use voronaut::formats::gmsh::Version;
-use voronaut::formats::{self, Fields, Format, Solution};
 use voronaut::mesh::Mesh;
-use voronaut::metric::read_metric;
-use voronaut::output::report::Seconds;
-use voronaut::output::{self, Report};
+use voronaut::mesh::Solution;
 use voronaut::recipe::{Keep, MeshOptions, Meshed, RemeshInput};
 use voronaut::surface::metric::Sizing;
-use voronaut::surface::{Given, Input, Mended, of_file};
+use voronaut::surface::{Input, Mended};
+use voronaut_io::Report;
+use voronaut_io::Seconds;
+use voronaut_io::gmsh::Version;
+use voronaut_io::read_metric;
+use voronaut_io::read_pslg;
+use voronaut_io::{Fields, Format};
+use voronaut_io::{Given, of_document};
 
 /// mmg's exit code where it writes no mesh.
 pub(crate) const FAILURE: u8 = 2;
@@ -40,7 +42,7 @@ pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     [Some(&out), Some(&sol_file), args.report.as_ref()]
         .into_iter()
         .flatten()
-        .try_for_each(|path| output::demand_directory(path))?;
+        .try_for_each(|path| voronaut_io::demand_directory(path))?;
     files::set_threads(&run)?;
     let given = read(args)?;
     let is_planar = matches!(given, Read::Plane(..));
@@ -55,9 +57,9 @@ pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     };
     let Made { mesh, mut report, solution } = made;
     report.seconds.total = start.elapsed().as_secs_f64();
-    output::write_with(&out, |file| format.write(&mesh, &Fields::default(), file))?;
-    output::write_solution(&solution, &sol_file)?;
-    args.report.as_deref().map_or(Ok(()), |path| output::write(path, report.to_json().as_bytes()))?;
+    voronaut_io::write_with(&out, |file| format.write(&mesh, &Fields::default(), file))?;
+    voronaut_io::write_solution(&solution, &sol_file)?;
+    args.report.as_deref().map_or(Ok(()), |path| voronaut_io::write(path, report.to_json().as_bytes()))?;
     summary::print(&out.display().to_string(), &report, &run);
     Ok(())
 }
@@ -82,12 +84,12 @@ fn read(args: &RemeshArgs) -> Result<Read> {
     let path = args.input();
     let spec = path.to_string_lossy();
     if let Some(format) = Format::of_ending(&path) {
-        let document = formats::read(&path)?;
+        let document = voronaut_io::read(&path)?;
         if format.may_be_planar() && (document.mesh.triangles.is_empty() || document.mesh.is_planar()) {
             let input = RemeshInput::of_mesh(document.mesh, keep(args)).map_err(|error| in_file(&spec, error))?;
             return Ok(Read::Plane(input, document.notes));
         }
-        let (surface, mended) = of_file(&spec, &document, args.damage.options())?;
+        let (surface, mended) = of_document(&spec, &document, args.damage.options())?;
         return Ok(Read::Surface(Input::new(surface, None), mended));
     }
     match Given::read_with(&spec, None, args.damage.options())? {

@@ -4,11 +4,11 @@ use super::{Made, RemeshArgs, asked, fill_in, limits, options};
 use crate::mesh;
 use crate::progress::Bar;
 use voronaut::Result;
-use voronaut::output::Report;
-use voronaut::output::report::Strayed;
 use voronaut::quality::{fidelity, metric_quality, unmet, validity};
 use voronaut::recipe::{self, Asked, RemeshInput};
 use voronaut::surface::metric::Sizing;
+use voronaut_io::Report;
+use voronaut_io::Strayed;
 
 /// A valid mesh of the domain.
 pub(super) fn remesh(args: &RemeshArgs, input: &RemeshInput) -> Result<Made> {

@@ -1,16 +1,16 @@
 //! Surfaces made anew, as mmgs does it.
 
 use super::{Made, RemeshArgs, asked, fill_in, limits, options};
+use crate::fields::Scaled;
 use crate::mesh;
-use crate::metric::Scaled;
 use crate::progress::Bar;
 use voronaut::Result;
-use voronaut::output::Report;
-use voronaut::output::report::Strayed;
 use voronaut::quality::{Meetings, surface_quality, surface_unmet, validity_on};
 use voronaut::recipe::{self, MeshOptions};
 use voronaut::surface::metric::{Sizes, Sizing};
 use voronaut::surface::{Input, Mended};
+use voronaut_io::Report;
+use voronaut_io::Strayed;
 
 /// A valid mesh of the surface.
 pub(super) fn remesh(args: &RemeshArgs, input: Input, mended: &Mended) -> Result<Made> {

@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn a_simplex_that_one_star_loses_is_counted_once_and_comes_back() {
-        let square = Domain::read("rect:0,0,1,1").unwrap();
+        let square = Domain::shape("rect:0,0,1,1").unwrap();
         let metric = Uniform(Tensor::isotropic(1.0));
         let mut stars = Stars::new(Steiner::metric(square.planar().clone(), &metric).unwrap());
         let first = stars.steiner.planar.topology.vertices().next().unwrap();

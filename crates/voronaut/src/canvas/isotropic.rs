@@ -163,7 +163,7 @@ mod tests {
         for (spec, field) in
             [("rect:-1,-1,1,1", &shock as &dyn MetricField), ("rect:0,0,3,1", &turned), ("disk:0,0,1", &shock)]
         {
-            let domain = Domain::read(spec).unwrap();
+            let domain = Domain::shape(spec).unwrap();
             let canvas = Canvas::isotropic_sized(&domain, field, 0.5).unwrap();
             let (ratio, angle) = worst(&canvas, field);
             assert!(ratio <= 0.5, "{spec}: {ratio}");
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn it_is_delaunay_with_as_many_vertices_as_asked_for() {
-        let domain = Domain::read("rect:-1,-1,1,1").unwrap();
+        let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
         let canvas = Canvas::isotropic(&domain, &Shock { phi: 1.0, lambda: 0.6 }, 3000).unwrap();
         assert_eq!(canvas.vertex_count(), 3000);
         let mut planar = canvas.embedded().clone();
@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn scaling_domain_and_metric_together_changes_nothing() {
         let make = |scale: f64| {
-            let domain = Domain::read(&format!("rect:0,0,{},{scale}", 2.0 * scale)).unwrap();
+            let domain = Domain::shape(&format!("rect:0,0,{},{scale}", 2.0 * scale)).unwrap();
             let field = move |p: Point| {
                 let x = p.x / scale;
                 Tensor::new(1.0 + 8.0 * x * x, 0.5, 1.0) * (1.0 / (scale * scale))
@@ -208,10 +208,8 @@ mod tests {
     #[test]
     fn small_angles_of_the_domain_are_survived() {
         // A needle of a third of a degree, and a notch as thin.
-        let spec =
-            r#"{ "type": "Polygon", "coordinates": [[[0, 0], [3, 0.009], [3, 1], [1.5, 0.02], [0, 1], [0, 0]]] }"#;
-        let polygons = crate::formats::geojson::read(spec, "needle").unwrap();
-        let domain = Domain::new(&crate::domain::from_geojson(&polygons).unwrap()).unwrap();
+        let outline = [[0.0, 0.0], [3.0, 0.009], [3.0, 1.0], [1.5, 0.02], [0.0, 1.0]];
+        let domain = crate::test_cases::plate(&[&outline]);
         let field = Uniform(Tensor::isotropic(1.0));
         let canvas = Canvas::isotropic_sized(&domain, &field, 0.5).unwrap();
         assert!(canvas.vertex_count() < 3000, "{}", canvas.vertex_count());
@@ -221,7 +219,7 @@ mod tests {
 
     #[test]
     fn refining_an_isotropic_canvas_keeps_its_vertices_and_kind() {
-        let domain = Domain::read("rect:0,0,1,1").unwrap();
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
         let field = Uniform(Tensor::new(9.0, 0.0, 1.0));
         let canvas = Canvas::isotropic(&domain, &field, 200).unwrap();
         let refined = canvas.refined(&field, &[VertexId(7)]).unwrap();

@@ -308,7 +308,7 @@ mod tests {
     }
 
     fn refined(field: &dyn MetricField) -> Planar {
-        let square = Domain::read("rect:0,0,1,1").unwrap();
+        let square = Domain::shape("rect:0,0,1,1").unwrap();
         let planar = refine::refine(square.planar().clone(), field, 400, &mut CanvasCounters::default()).unwrap();
         crate::canvas::renumbered(&planar)
     }

@@ -168,7 +168,7 @@ mod tests {
     use crate::geometry::Tensor3;
     use crate::mesh::Mesh;
     use crate::surface::metric::Constant;
-    use crate::surface::{Input, Surface, read};
+    use crate::surface::{Input, Surface};
 
     const UNIFORM: Constant = Constant(Tensor3::IDENTITY);
 
@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn edges_of_stars_are_as_long_as_arcs_over_them() {
-        let input = read("sphere:1", None).unwrap();
+        let input = Input::shape("sphere:1", None).unwrap();
         let (canvas, _) = Canvas::on_surface(Kind::StarSet, &input, &UNIFORM, 4000, &[]).unwrap();
         let (graph, draped) = (canvas.surface_graph(), canvas.draped());
         let mut worst: f64 = 0.0;
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn vertices_see_each_other_by_rotations() {
-        let input = read("sphere:1", None).unwrap();
+        let input = Input::shape("sphere:1", None).unwrap();
         let (canvas, _) = Canvas::on_surface(Kind::StarSet, &input, &UNIFORM, 2_000, &[]).unwrap();
         let (graph, draped) = (canvas.surface_graph(), canvas.draped());
         let sight = graph.sight();

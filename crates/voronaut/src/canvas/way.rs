@@ -73,7 +73,7 @@ mod tests {
     use crate::geometry::Point;
     use crate::mesh::Mesh;
     use crate::surface::metric::Constant;
-    use crate::surface::{Input, Surface, read};
+    use crate::surface::{Input, Surface};
 
     /// A strip one wide and two long, folded upwards in the middle.
     fn folded() -> Input {
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn ways_on_a_sphere_are_great_circles() {
-        let (input, metric) = (read("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
+        let (input, metric) = (Input::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
         let seeds = [(1.0, 0.3, 0.2), (-0.4, 0.9, 0.1), (0.2, -0.5, -1.0)].map(|(x, y, z)| {
             let p = Point3::default() + (Point3::new(x, y, z) - Point3::default()).unit().unwrap();
             input.closest(p).unwrap()

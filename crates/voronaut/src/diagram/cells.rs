@@ -297,7 +297,7 @@ mod tests {
 
     #[test]
     fn borders_of_a_flat_metric_are_bisectors() {
-        let domain = Domain::read("rect:0,0,2,1").unwrap();
+        let domain = Domain::shape("rect:0,0,2,1").unwrap();
         let seeds = [Point::new(0.5, 0.52), Point::new(1.5, 0.48)];
         let uniform = |_: Point| crate::geometry::Tensor::IDENTITY;
         let cells = Cells::of_seeds(&domain, &uniform, &seeds, 2000).unwrap();

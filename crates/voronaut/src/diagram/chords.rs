@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn all_kinds_agree_in_a_uniform_metric() {
-        let domain = Domain::read("rect:-2,-2,2,2").unwrap();
+        let domain = Domain::shape("rect:-2,-2,2,2").unwrap();
         let uniform = |_: Point| Tensor::new(9.0, 2.0, 1.0);
         let canvas = Canvas::intrinsic(&domain, &uniform, 6000).unwrap();
         let seeds = seeds_of(&plate_with_hole(), 50);
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn metrics_that_are_none_at_a_seed_are_refused() {
-        let domain = Domain::read("rect:0,0,1,1").unwrap();
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
         let seed = Point::new(0.3, 0.4);
         let pierced = |p: Point| if p == seed { Tensor::new(1.0, 2.0, 1.0) } else { Tensor::IDENTITY };
         let canvas = Canvas::intrinsic(&domain, &pierced, 100).unwrap();

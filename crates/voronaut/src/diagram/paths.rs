@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn geodesics_of_the_half_plane_have_their_length() {
-        let domain = Domain::read("rect:-2,0.5,2,3").unwrap();
+        let domain = Domain::shape("rect:-2,0.5,2,3").unwrap();
         let field = |p: Point| Tensor::isotropic(p.y);
         let canvas = Canvas::intrinsic(&domain, &field, 6000).unwrap();
         let seeds: Vec<Point> =

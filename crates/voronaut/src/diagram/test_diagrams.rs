@@ -1,16 +1,13 @@
 //! A domain and seeds for the tests of this module.
 
-use crate::domain::{Domain, from_geojson};
-use crate::formats::geojson;
+use crate::domain::Domain;
 use crate::geometry::Point;
+use crate::test_cases::plate;
 
 /// A square from (-2, -2) to (2, 2) with a square hole from (-0.5, -0.5) to (0.5, 0.5).
 pub(super) fn plate_with_hole() -> Domain {
-    let text = r#"{ "type": "Polygon", "coordinates": [
-        [[-2, -2], [2, -2], [2, 2], [-2, 2], [-2, -2]],
-        [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5]]
-    ] }"#;
-    Domain::new(&from_geojson(&geojson::read(text, "plate").unwrap()).unwrap()).unwrap()
+    let square = |half: f64| [[-half, -half], [half, -half], [half, half], [-half, half]];
+    plate(&[&square(2.0), &square(0.5)])
 }
 
 /// So many seeds along the additive sequence of the plastic number, those outside the plate's hole.

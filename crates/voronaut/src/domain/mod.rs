@@ -4,25 +4,24 @@ mod assemble;
 mod build;
 mod chains;
 mod distinct;
-mod from_geojson;
 mod from_mesh;
-mod from_poly;
 mod outlines;
+mod poly;
+mod polygons;
 mod pslg;
-mod read;
 mod shapes;
 mod sides;
+mod written;
 
 pub use chains::Chain;
-pub use from_geojson::from_geojson;
 pub use from_mesh::from_mesh;
-pub use from_poly::from_poly;
 pub use outlines::{to_mesh, to_poly, to_polygons};
+pub use poly::{Poly, PolyRegion, from_poly};
+pub use polygons::{Polygon, Polygons, Ring, from_polygons};
 pub use pslg::{Filling, Pslg, Segment, Side};
-pub use read::{WRITTEN, read as read_pslg, read_numbers};
 pub use shapes::{disk, rect};
+pub use written::{SHAPES, read_numbers, shape};
 
-use crate::error::Result;
 use crate::geometry::{Aabb, Point};
 use crate::planar::Planar;
 
@@ -40,14 +39,6 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// Reads and validates a domain: a file by its ending, or a shape such as `rect:0,0,2,1` (see [`read_pslg`]).
-    ///
-    /// # Errors
-    /// What [`read_pslg`] and [`Domain::new`] refuse.
-    pub fn read(spec: &str) -> Result<Self> {
-        Self::new(&read_pslg(spec)?)
-    }
-
     /// The graph: corners and segments, without the vertices in the middle of straight runs.
     pub fn pslg(&self) -> &Pslg {
         &self.pslg

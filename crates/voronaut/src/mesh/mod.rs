@@ -2,8 +2,10 @@
 //! a point is.
 
 mod locate;
+mod solution;
 
 pub use locate::{Located, Locator};
+pub use solution::{Solution, SolutionValues, Solutions, TensorOrder};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3};

@@ -3,7 +3,6 @@
 use super::{BoundarySizes, Expression, Formula, Shock, Swirl, SwirlField, Uniform, Variables};
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
-use std::path::{Path, PathBuf};
 
 /// What a METRIC text says. Parameters left out have the defaults of the field's own type.
 #[derive(Clone, Debug)]
@@ -20,10 +19,6 @@ pub enum MetricSpec {
     Boundary(BoundarySizes),
     /// `hessian:EXPR`: of the second derivatives of a function of x and y.
     Hessian(Expression),
-    /// `hessian:FILE.sol`: of those recovered from a solution, one number per vertex of a mesh.
-    RecoveredHessian(PathBuf),
-    /// A `.sol` or `.solb` file of tensors or sizes.
-    File(PathBuf),
 }
 
 impl MetricSpec {
@@ -46,7 +41,7 @@ impl MetricSpec {
             "boundary" => boundary(&Parameters::read("boundary", parameters, &["h0", "growth", "aspect", "h_max"])?),
             "curvature" => Err(unsupported("metric curvature", "it is for surfaces; in the plane use another metric")),
             "hessian" => hessian(parameters.unwrap_or_default()),
-            _ => file(text),
+            _ => Err(Error::parse("metric", format!("`{text}` is not a metric"), METRICS)),
         }
     }
 }
@@ -110,24 +105,8 @@ fn boundary(parameters: &Parameters) -> Result<MetricSpec> {
     Ok(MetricSpec::Boundary(sizes))
 }
 
-/// A file where the text ends as one, else a function.
 fn hessian(text: &str) -> Result<MetricSpec> {
-    match ending(text).as_deref() {
-        Some("sol" | "solb") => Ok(MetricSpec::RecoveredHessian(text.into())),
-        _ => Ok(MetricSpec::Hessian(Expression::parse_named(text, Variables::Plane, "metric hessian")?)),
-    }
-}
-
-fn ending(text: &str) -> Option<String> {
-    Path::new(text).extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase)
-}
-
-fn file(text: &str) -> Result<MetricSpec> {
-    let path = Path::new(text);
-    match ending(text).as_deref() {
-        Some("sol" | "solb") => Ok(MetricSpec::File(path.into())),
-        _ => Err(Error::parse("metric", format!("`{text}` is not a metric"), METRICS)),
-    }
+    Ok(MetricSpec::Hessian(Expression::parse_named(text, Variables::Plane, "metric hessian")?))
 }
 
 fn unsupported(what: &str, help: &str) -> Error {
@@ -240,18 +219,10 @@ mod tests {
     }
 
     #[test]
-    fn hessians_are_of_functions_or_of_files() {
+    fn hessians_are_of_functions() {
         assert!(matches!(parse("hessian:tanh(40*(y-0.5))"), MetricSpec::Hessian(_)));
-        assert!(matches!(parse("hessian:u.sol"), MetricSpec::RecoveredHessian(path) if path == Path::new("u.sol")));
         let error = MetricSpec::parse("hessian:x + z").unwrap_err().to_string();
         assert!(error.starts_with("metric hessian, column 5: z is not a variable"), "{error}");
-    }
-
-    #[test]
-    fn files_are_known_by_their_ending() {
-        for text in ["metric.sol", "a dir/swirl.SOL", "C:\\data\\m.sol", "../uniform.sol", "a.solb"] {
-            assert!(matches!(parse(text), MetricSpec::File(path) if path == Path::new(text)), "{text}");
-        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// All edges of a triangle list. Half-edge `3 t + i` runs from corner `i` of triangle `t` to its next corner.
-pub(crate) struct Edges<'a> {
+pub struct Edges<'a> {
     triangles: &'a [[u32; 3]],
     /// (smaller vertex, larger vertex) in one number, and the half-edge; sorted.
     sorted: Vec<(u64, u32)>,
@@ -14,7 +14,7 @@ pub(crate) struct Edges<'a> {
 
 impl<'a> Edges<'a> {
     /// Finds the edges of the triangles, in O(n log n).
-    pub(crate) fn of(triangles: &'a [[u32; 3]]) -> Self {
+    pub fn of(triangles: &'a [[u32; 3]]) -> Self {
         let mut sorted: Vec<(u64, u32)> = (0..3 * triangles.len() as u32)
             .into_par_iter()
             .map(|half_edge| {
@@ -27,7 +27,7 @@ impl<'a> Edges<'a> {
     }
 
     /// Each edge once, as its two vertices (smaller first) and its half-edges, in increasing order.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = ([u32; 2], &[(u64, u32)])> {
+    pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], &[(u64, u32)])> {
         self.sorted.chunk_by(|a, b| a.0 == b.0).map(|group| ([(group[0].0 >> 32) as u32, group[0].0 as u32], group))
     }
 
@@ -37,12 +37,12 @@ impl<'a> Edges<'a> {
     }
 
     /// The two vertices of a half-edge, in its direction.
-    pub(crate) fn ends(&self, half_edge: u32) -> [u32; 2] {
+    pub fn ends(&self, half_edge: u32) -> [u32; 2] {
         ends(self.triangles, half_edge)
     }
 
     /// Whether two vertices share an edge.
-    pub(crate) fn contains(&self, a: u32, b: u32) -> bool {
+    pub fn contains(&self, a: u32, b: u32) -> bool {
         self.sorted.binary_search_by_key(&key(a, b), |entry| entry.0).is_ok()
     }
 
@@ -70,7 +70,7 @@ impl<'a> Edges<'a> {
     }
 
     /// The half-edges of edges with a single triangle, in the direction of that triangle, in edge order.
-    pub(crate) fn boundary(&self) -> Vec<u32> {
+    pub fn boundary(&self) -> Vec<u32> {
         self.iter().filter(|(_, half_edges)| half_edges.len() == 1).map(|(_, half_edges)| half_edges[0].1).collect()
     }
 }

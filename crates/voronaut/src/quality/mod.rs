@@ -35,6 +35,4 @@ pub use surface_quality::surface_quality;
 pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet};
 pub use validity::{Fault, Validity, check, validity, validity_on};
 
-pub(crate) use edges::Edges;
-#[cfg(test)]
-pub(crate) use test_meshes::{grid, mesh};
+pub use edges::Edges;

@@ -207,7 +207,7 @@ impl Normals {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::{Input, read, sphere, torus};
+    use crate::surface::{Input, sphere, torus};
 
     fn close(a: f64, b: f64, tolerance: f64) {
         assert!((a - b).abs() <= tolerance * b.abs(), "{a} is not {b}");
@@ -250,7 +250,7 @@ mod tests {
 
     #[test]
     fn an_icosahedron_in_its_sphere_in_closed_form() {
-        let input = read("sphere:2", Some(0.25)).unwrap();
+        let input = Input::shape("sphere:2", Some(0.25)).unwrap();
         let mesh = sphere(2.0, 4.0).unwrap().to_mesh();
         let found = surface_fidelity(&mesh, &input.surface, implicit(&input)).unwrap();
         // Circumradius 2, inradius of the icosahedron; the same from both sides.
@@ -302,7 +302,7 @@ mod tests {
     #[test]
     fn distances_are_to_the_equation_not_to_its_mesh() {
         // A fine mesh of the true torus, held against a coarse first mesh with the equation.
-        let input = read("torus:2,0.7", Some(0.4)).unwrap();
+        let input = Input::shape("torus:2,0.7", Some(0.4)).unwrap();
         let mesh = torus(2.0, 0.7, 0.15).unwrap().to_mesh();
         let exact = surface_fidelity(&mesh, &input.surface, implicit(&input)).unwrap();
         let by_mesh = surface_fidelity(&mesh, &input.surface, None).unwrap();
@@ -336,7 +336,7 @@ mod tests {
 
     #[test]
     fn faults_are_errors_and_threads_do_not_matter() {
-        let input = read("torus:2,0.7", Some(0.4)).unwrap();
+        let input = Input::shape("torus:2,0.7", Some(0.4)).unwrap();
         assert!(surface_fidelity(&Mesh::default(), &input.surface, None).is_err());
         let mesh = torus(2.0, 0.7, 0.5).unwrap().to_mesh();
         let mut broken = mesh.clone();

@@ -5,9 +5,9 @@ use super::{
 };
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::formats::{SolutionValues, Solutions};
 use crate::geometry::Point;
 use crate::mesh::Mesh;
+use crate::mesh::{SolutionValues, Solutions};
 use crate::metric::{Expression, ScalarField, Snapshot, Uniform};
 use crate::progress::Progress;
 use crate::transfer::{Carried, Cover, TransferOptions, carry};

@@ -2,10 +2,10 @@
 
 use crate::diagram::{Diagram, Ground, Kind, Nerve, NerveTriangle};
 use crate::dual::Road;
+use crate::figures;
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::net::{Net, Triangles};
-use crate::output::report;
 use crate::planar::Location;
 use crate::rdt::{Edge, Judge, Rdt, Start, Trust};
 use crate::triangulation::HalfEdge;
@@ -30,9 +30,9 @@ pub struct SeedDual {
     /// The triangles of the exact dual: what in-circle tests make of the nerve, whatever the road.
     pub exact: Vec<[u32; 3]>,
     /// What canvas faces of three colours alone have of it; of a star set, simplices of stars.
-    pub raw_nerve: report::RawNerve,
+    pub raw_nerve: figures::RawNerve,
     /// How the edges were settled. Margins are those by lengths; edges are numbered by their seeds.
-    pub account: report::Dual,
+    pub account: figures::Dual,
     /// Wall time of the nerve and of the in-circle tests.
     pub seconds: Vec<(&'static str, f64)>,
 }
@@ -75,17 +75,17 @@ fn as_read(diagram: &Diagram) -> SeedDual {
         triangles: nerve.triangles.iter().map(|t| t.colours).collect(),
         nerve,
         exact: Vec::new(),
-        raw_nerve: report::RawNerve::default(),
-        account: report::Dual { min_margin: 1.0, ..report::Dual::default() },
+        raw_nerve: figures::RawNerve::default(),
+        account: figures::Dual { min_margin: 1.0, ..figures::Dual::default() },
         seconds: vec![("nerve", start.elapsed().as_secs_f64())],
     }
 }
 
-pub(super) fn compared<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, exact: &[[u32; 3]]) -> report::RawNerve {
+pub(super) fn compared<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, exact: &[[u32; 3]]) -> figures::RawNerve {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
     let exact: HashSet<[u32; 3]> = exact.iter().map(turned).collect();
     let raw: HashSet<[u32; 3]> = diagram.witnesses_of_triangles().into_iter().map(|witness| witness.0).collect();
-    report::RawNerve {
+    figures::RawNerve {
         triangles: raw.len(),
         missing: exact.difference(&raw).count(),
         extra: raw.difference(&exact).count(),
@@ -120,7 +120,7 @@ pub(super) fn left_out(rdt: &Rdt<impl Judge>, nerve: &Nerve) -> Vec<[u32; 3]> {
     rdt.dropped().iter().copied().filter(|t| sure.contains(t)).collect()
 }
 
-pub(super) fn account(rdt: &Rdt<impl Judge>, nerve: &Nerve, road: Road) -> report::Dual {
+pub(super) fn account(rdt: &Rdt<impl Judge>, nerve: &Nerve, road: Road) -> figures::Dual {
     let edges = rdt.edges();
     let of_nerve: HashSet<[u32; 2]> = nerve.sides(|_| true).collect();
     let unsure: HashSet<[u32; 2]> = nerve.sides(|t| t.fourth.is_some_and(|(_, gap)| gap < NERVE_ERROR)).collect();
@@ -129,11 +129,11 @@ pub(super) fn account(rdt: &Rdt<impl Judge>, nerve: &Nerve, road: Road) -> repor
         Road::Canvas => unsure.contains(&sorted(edge.ends)),
         Road::Both => edge.is_uncertain() && unsure.contains(&sorted(edge.ends)),
     };
-    let uncertain_edges: Vec<report::UncertainEdge> = edges.iter().filter(is_open).map(uncertain).collect();
+    let uncertain_edges: Vec<figures::UncertainEdge> = edges.iter().filter(is_open).map(uncertain).collect();
     let differing = rdt.disagreements().into_iter().map(|edge| disagreement(&edge, &of_nerve, road));
     let tested = edges.iter().filter(|edge| edge.margin.is_some());
     let values = tested.clone().filter(|edge| !edge.is_uncertain()).filter_map(|edge| edge.margin.map(|m| m.value));
-    report::Dual {
+    figures::Dual {
         geodesic_tests: rdt.counters().tests.to_vec(),
         uncertain: uncertain_edges.len(),
         min_margin: values.fold(1.0, f64::min),
@@ -141,21 +141,21 @@ pub(super) fn account(rdt: &Rdt<impl Judge>, nerve: &Nerve, road: Road) -> repor
         compared: tested.count(),
         disagreements: differing.collect(),
         uncertain_edges,
-        ..report::Dual::default()
+        ..figures::Dual::default()
     }
 }
 
-fn uncertain(edge: &Edge) -> report::UncertainEdge {
+fn uncertain(edge: &Edge) -> figures::UncertainEdge {
     let (margin, error) = edge.margin.map_or((0.0, f64::INFINITY), |m| (m.value, m.error));
-    report::UncertainEdge { edge: edge.ends, margin, error }
+    figures::UncertainEdge { edge: edge.ends, margin, error }
 }
 
-fn disagreement(edge: &Edge, of_nerve: &HashSet<[u32; 2]>, road: Road) -> report::Disagreement {
+fn disagreement(edge: &Edge, of_nerve: &HashSet<[u32; 2]>, road: Road) -> figures::Disagreement {
     let (margin, error) = edge.margin.map_or((0.0, f64::INFINITY), |m| (m.value, m.error));
     let other = if let [Some(c), Some(d)] = edge.apexes { Some(sorted([c, d])) } else { None };
     let settled_by = if road == Road::Canvas { Road::Canvas } else { Road::Geodesic };
     let instead = other.filter(|other| of_nerve.contains(other));
-    report::Disagreement { edge: edge.ends, instead, margin, error, settled_by }
+    figures::Disagreement { edge: edge.ends, instead, margin, error, settled_by }
 }
 
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {

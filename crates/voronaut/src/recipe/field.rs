@@ -1,20 +1,19 @@
 //! From what the user says of a metric to the field itself, with its files read.
 
 use super::Aim;
-use super::background::{read, smooth_metric};
+use super::background::smooth_metric;
 use super::graded::{GradedAt, grade_metric};
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::formats::{SolutionValues, TensorOrder};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
+use crate::mesh::SolutionValues;
 use crate::metric::{
     Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Recovered, Recovery, Sampled, ScalarField,
-    Snapshot, read_metric, rough_complexity,
+    Snapshot, rough_complexity,
 };
 use crate::optimise::polishing_norm;
 use crate::quality::interpolation_error;
-use std::path::{Path, PathBuf};
 
 /// Sweeps of smoothing (`--smooth-metric`, TOML key and Python keyword `smooth_metric`) unless told otherwise.
 pub const SMOOTH_METRIC: u32 = 0;
@@ -33,10 +32,6 @@ pub struct MetricOptions {
     pub smooth_metric: u32,
     /// How fast sizes may grow; `None` for no gradation.
     pub gradation: Option<f64>,
-    /// In which order the tensors of a file have their entries.
-    pub tensor_order: TensorOrder,
-    /// The mesh that values in a file belong to; `None` for the domain's own.
-    pub background: Option<PathBuf>,
 }
 
 impl Default for MetricOptions {
@@ -47,8 +42,6 @@ impl Default for MetricOptions {
             recovery: Recovery::default(),
             smooth_metric: SMOOTH_METRIC,
             gradation: None,
-            tensor_order: TensorOrder::default(),
-            background: None,
         }
     }
 }
@@ -82,41 +75,31 @@ impl PlanarMetric {
 /// direction, longer edges would gain nothing, and make a metric that no straight edges can honour.
 const LONGEST: f64 = 1.0 / 3.0;
 
-/// The field that a specification names on a domain. `own` is the file that the domain comes from; `at` the multiple of the metric
-/// in which edges are to have length one, for gradation.
+/// The field that a specification names on a domain; `at` is the multiple of the metric in which edges are to have length one, for
+/// gradation.
 ///
 /// # Errors
-/// A file is missing or not what it should be; the values are no metric; the limits contradict each other; as of
-/// [`crate::metric::smoothed`] and [`crate::metric::nodal::Pipeline::run`].
-pub fn metric(
-    spec: &MetricSpec,
+/// The limits contradict each other; as of [`crate::metric::smoothed`] and [`crate::metric::nodal::Pipeline::run`].
+pub fn metric(spec: &MetricSpec, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
+    finished(named(spec, domain, options, at)?, domain, None, options, at)
+}
+
+/// The field of sizes or tensors at the vertices of a mesh.
+///
+/// # Errors
+/// As of [`metric()`]; there is not one value per vertex; the values are no metric in the plane.
+pub fn metric_of_values(
+    mesh: &Mesh,
+    values: &SolutionValues,
     domain: &Domain,
-    own: Option<&Path>,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
-    let background = options.background.as_deref();
-    let (MetricSpec::File(path) | MetricSpec::RecoveredHessian(path)) = spec else {
-        if let Some(mesh) = background {
-            let what = "only a .sol metric is given on a background mesh";
-            return Err(Error::parse(format!("background {}", mesh.display()), what, "leave the background out"));
-        }
-        return finished(named(spec, domain, options, at)?, domain, None, options, at);
+    let field = match values {
+        SolutionValues::Scalar(sizes) => Sampled::sizes(mesh, sizes)?,
+        _ => sampled(mesh, values)?,
     };
-    let values = read_metric(path, options.tensor_order)?.values;
-    let mesh = read(background.or(own), path, domain)?;
-    let named = match (spec, &values) {
-        (MetricSpec::RecoveredHessian(_), SolutionValues::Scalar(values)) => {
-            recovered(&mesh, values, domain, options, at)?
-        }
-        (MetricSpec::RecoveredHessian(_), _) => {
-            let help = "give one number (type 1) per vertex";
-            return Err(Error::parse(path.display().to_string(), "the values are no scalars", help));
-        }
-        (_, SolutionValues::Scalar(sizes)) => PlanarMetric::plain(Sampled::sizes(&mesh, sizes)?),
-        _ => PlanarMetric::plain(sampled(&mesh, &values, &path.display().to_string())?),
-    };
-    finished(named, domain, Some(&mesh), options, at)
+    finished(PlanarMetric::plain(field), domain, Some(mesh), options, at)
 }
 
 /// The metric that a solver's solution on a mesh of the domain asks for: that of its recovered second derivatives, if it is a
@@ -133,7 +116,7 @@ pub fn metric_of_solution(
 ) -> Result<PlanarMetric> {
     let named = match values {
         SolutionValues::Scalar(values) => recovered(mesh, values, domain, options, at)?,
-        _ => PlanarMetric::plain(sampled(mesh, values, "the solution")?),
+        _ => PlanarMetric::plain(sampled(mesh, values)?),
     };
     finished(named, domain, Some(mesh), options, at)
 }
@@ -156,7 +139,7 @@ pub fn metric_of_function(
 /// # Errors
 /// As of [`MetricSpec::parse`] and [`metric`].
 pub fn metric_named(text: &str, domain: &Domain) -> Result<Box<dyn MetricField>> {
-    let made = metric(&MetricSpec::parse(text)?, domain, None, &MetricOptions::default(), GradedAt::Scale(1.0))?;
+    let made = metric(&MetricSpec::parse(text)?, domain, &MetricOptions::default(), GradedAt::Scale(1.0))?;
     Ok(made.field)
 }
 
@@ -168,9 +151,6 @@ fn named(spec: &MetricSpec, domain: &Domain, options: &MetricOptions, at: Graded
         MetricSpec::Formula(field) => PlanarMetric::plain(field.clone()),
         MetricSpec::Boundary(sizes) => PlanarMetric::plain(Boundary::new(&domain.boundary(), *sizes)?),
         MetricSpec::Hessian(function) => return optimal(&function.clone().into(), domain, options, at),
-        MetricSpec::File(path) | MetricSpec::RecoveredHessian(path) => {
-            unreachable!("{} is read with its mesh", path.display())
-        }
     })
 }
 
@@ -206,10 +186,10 @@ fn within_domain<F: MetricField + 'static>(field: F, domain: &Domain, at: Graded
     Ok((Bounded::new(field, Bounds { h_max, ..Bounds::default() })?, scale))
 }
 
-fn sampled(mesh: &Mesh, values: &SolutionValues, place: &str) -> Result<Sampled> {
+fn sampled(mesh: &Mesh, values: &SolutionValues) -> Result<Sampled> {
     let SolutionValues::Tensor(entries) = values else {
         let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
-        return Err(Error::parse(place, "the values are no planar metric", help));
+        return Err(Error::parse("the solution", "the values are no planar metric", help));
     };
     let tensors: Vec<Tensor> = entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect();
     Sampled::new(mesh, &tensors)

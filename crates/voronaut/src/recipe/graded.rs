@@ -78,7 +78,7 @@ mod tests {
     }
 
     fn jump(at: GradedAt, factor: f64) -> Box<dyn MetricField> {
-        let domain = Domain::read("rect:0,0,1,1").unwrap();
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
         grade_metric(Box::new(jumping), &domain, None, Some(factor), at).unwrap()
     }
 
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn without_a_factor_nothing_happens() {
-        let domain = Domain::read("rect:0,0,1,1").unwrap();
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
         let same = grade_metric(Box::new(jumping), &domain, None, None, GradedAt::Complexity(9.0)).unwrap();
         assert_eq!(same.at(Point::new(0.25, 0.123)), jumping(Point::new(0.25, 0.123)));
         assert_eq!(GradedAt::of(None, Some(7.0)), GradedAt::Complexity(7.0));

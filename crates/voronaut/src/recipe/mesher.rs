@@ -5,9 +5,9 @@ use crate::canvas::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 use crate::domain::Domain;
 use crate::dual::{Dual, Kind};
 use crate::error::{Error, Result, named};
+use crate::figures;
 use crate::metric::{MetricField, Scaled, Steadied};
 use crate::optimise::Relaxed;
-use crate::output::report;
 use crate::progress::Progress;
 use crate::quality;
 use crate::sampling::demand_memory;
@@ -108,7 +108,7 @@ fn agreed(job: &mut Job, start: &Start, scaled: &Scaled, unit: usize) -> Result<
         mesh,
         metric_scale: scaled.factor,
         relaxation: start.relaxation.clone(),
-        star_set: Some(report::StarSet { figures: found.figures, counters: found.counters }),
+        star_set: Some(figures::StarSet { figures: found.figures, counters: found.counters }),
         ..Meshed::default()
     })
 }
@@ -131,7 +131,7 @@ mod tests {
 
     fn mesh(domain: &str, field: &dyn MetricField, vertices: usize) -> Result<Meshed> {
         let options = MeshOptions { mesher: Mesher::StarSet, vertices: Some(vertices), ..MeshOptions::default() };
-        recipe::mesh(&Domain::read(domain).unwrap(), field, &options, &Silent)
+        recipe::mesh(&Domain::shape(domain).unwrap(), field, &options, &Silent)
     }
 
     #[test]

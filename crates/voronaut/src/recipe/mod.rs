@@ -25,6 +25,7 @@ pub use certified::{certified_canvas, certify};
 pub use dual::{SeedDual, dual, net};
 pub use field::{
     MetricOptions, PlanarMetric, SMOOTH_METRIC, metric, metric_named, metric_of_function, metric_of_solution,
+    metric_of_values,
 };
 pub use graded::GradedAt;
 pub use mesher::Mesher;
@@ -39,12 +40,12 @@ use crate::canvas::{self, Canvas, CanvasFigures};
 use crate::domain::Domain;
 use crate::dual::{Dual, Kind, Road};
 use crate::error::Result;
+use crate::figures;
 use crate::geodesic::Method;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Norm, ScalarField, Scaled};
 use crate::net::Net;
 use crate::optimise::{FitOptions, Polished, Relaxed, polish};
-use crate::output::report;
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{
@@ -135,7 +136,7 @@ pub struct Meshed {
     /// The factor on the metric tensor for which the mesh is a unit mesh (1 where the metric was used as it is).
     pub metric_scale: f64,
     /// How its edges were settled.
-    pub dual: report::Dual,
+    pub dual: figures::Dual,
     /// How the seeds were relaxed.
     pub relaxation: Relaxed,
     /// How the error of interpolation was lowered, where the mesh is for a function.
@@ -143,15 +144,15 @@ pub struct Meshed {
     /// The canvas, where one was made: that of the seeding, or where edges were settled by one.
     pub canvas: Option<CanvasFigures>,
     /// The diagram on it.
-    pub diagram: Option<report::Diagram>,
+    pub diagram: Option<figures::Diagram>,
     /// The vertices as a net, by their numbers in the mesh, where it was asked for.
     pub net: Option<Net>,
     /// How protection went, with [`Seeding::Protected`].
-    pub protection: Option<report::Protection>,
+    pub protection: Option<figures::Protection>,
     /// How far the mesh of a surface is from it, where [`MeshOptions::hausd`] or [`MeshOptions::fit`] asked for it.
     pub fidelity: Option<SurfaceFidelity>,
     /// The star set that became the mesh, with [`Mesher::StarSet`].
-    pub star_set: Option<report::StarSet>,
+    pub star_set: Option<figures::StarSet>,
     /// Wall time per stage, in order.
     pub seconds: Vec<(&'static str, f64)>,
     /// What could not be met, in words for the user; empty when all was.
@@ -255,7 +256,7 @@ struct Job<'a> {
     options: &'a MeshOptions,
     progress: &'a dyn Progress,
     canvas: Option<CanvasFigures>,
-    diagram: Option<report::Diagram>,
+    diagram: Option<figures::Diagram>,
     watch: Stopwatch,
     notes: Vec<String>,
 }
@@ -426,31 +427,28 @@ fn mean_free_edge(dual: &Dual) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::from_poly;
-    use crate::formats::poly;
     use crate::geometry::{Point, Tensor};
     use crate::progress::Silent;
+    use crate::test_cases::plate;
 
     fn meshed(domain: &Domain, vertices: Option<usize>) -> Meshed {
         let options = MeshOptions { vertices, ..MeshOptions::default() };
         mesh(domain, &|_: Point| Tensor::isotropic(0.01), &options, &Silent).unwrap()
     }
 
-    /// A square with two holes that share a corner.
-    const TOUCHING: &str = "11 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 1 2\n6 1.5 1.5\n7 2 2\n8 1.5 2.5\n\
-                            9 2.5 1.5\n10 3 2\n11 2.5 2.5\n12 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n5 5 6\n6 6 7\n\
-                            7 7 8\n8 8 5\n9 7 9\n10 9 10\n11 10 11\n12 11 7\n2\n1 1.5 2\n2 2.5 2\n";
-
     #[test]
     fn holes_that_touch_cost_no_vertex() {
-        let domain =
-            Domain::new(&from_poly(&poly::read(TOUCHING.as_bytes(), "touching.poly").unwrap()).unwrap()).unwrap();
+        // They share a corner.
+        let holes =
+            [&[[1.0, 2.0], [1.5, 1.5], [2.0, 2.0], [1.5, 2.5]], &[[2.0, 2.0], [2.5, 1.5], [3.0, 2.0], [2.5, 2.5]]];
+        let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+        let domain = plate(&[&square, holes[0], holes[1]]);
         assert_eq!(meshed(&domain, Some(200)).mesh.points.len(), 200);
     }
 
     #[test]
     fn a_metric_that_is_used_as_it_is_is_not_scaled() {
-        let strip = Domain::read("rect:0,0,1,1e-3").unwrap();
+        let strip = Domain::shape("rect:0,0,1,1e-3").unwrap();
         assert_eq!(meshed(&strip, None).metric_scale.to_bits(), 1.0_f64.to_bits());
     }
 }

@@ -6,10 +6,10 @@ use crate::diagram::{Diagram, RESOLVE_ROUNDS, resolve};
 use crate::domain::Domain;
 use crate::dual::{Dual, Road};
 use crate::error::Result;
+use crate::figures;
 use crate::geometry::Point;
 use crate::net::{Ball, Net};
 use crate::optimise::{Ending, Protected, measured, protect};
-use crate::output::report;
 
 impl Job<'_> {
     /// With [`Seeding::Protected`], moves seeds until their simplices are protected.
@@ -20,7 +20,7 @@ impl Job<'_> {
         &mut self,
         domain: &Domain,
         dual: &mut Dual,
-    ) -> Result<Option<(Protected, report::CanvasNerve)>> {
+    ) -> Result<Option<(Protected, figures::CanvasNerve)>> {
         if self.options.seeding != Seeding::Protected {
             return Ok(None);
         }
@@ -40,7 +40,7 @@ impl Job<'_> {
         self.progress.stage("comparing with a canvas", 1);
         let nerve = self.timed("raw_nerve", |job| job.raw_nerve(domain, dual))?;
         if nerve.nerve.missing + nerve.nerve.extra > 0 {
-            let report::RawNerve { missing, extra, .. } = nerve.nerve;
+            let figures::RawNerve { missing, extra, .. } = nerve.nerve;
             self.notes.push(format!(
                 "the nerve on a canvas lacks {missing} triangles of the exact dual and has {extra} others"
             ));
@@ -50,7 +50,7 @@ impl Job<'_> {
 
     /// The nerve of the vertices on a canvas that is refined where it does not tell Voronoi vertices apart, held against the
     /// exact dual. (Where the domain touches itself in points, of the vertices there only one counts.)
-    fn raw_nerve(&self, domain: &Domain, dual: &Dual) -> Result<report::CanvasNerve> {
+    fn raw_nerve(&self, domain: &Domain, dual: &Dual) -> Result<figures::CanvasNerve> {
         let number = dual.numbering(domain);
         let mut seeds: Vec<(u32, Point)> =
             dual.topology().vertices().map(|v| (number[v.index()], dual.position(v))).collect();
@@ -63,7 +63,7 @@ impl Job<'_> {
         let diagram = Diagram::new(&resolved.canvas, field, &seeds)?;
         let nerve = super::dual(&diagram, field, Road::Both).raw_nerve;
         let canvas_vertices = resolved.canvas.vertex_count();
-        Ok(report::CanvasNerve { canvas_vertices, rounds: resolved.rounds, unwitnessed: resolved.unwitnessed, nerve })
+        Ok(figures::CanvasNerve { canvas_vertices, rounds: resolved.rounds, unwitnessed: resolved.unwitnessed, nerve })
     }
 
     /// The net of the mesh's vertices, by their numbers in the mesh, where it is wanted, and how protection went.
@@ -71,8 +71,8 @@ impl Job<'_> {
         &mut self,
         domain: &Domain,
         dual: &Dual,
-        protected: Option<(Protected, report::CanvasNerve)>,
-    ) -> (Option<Net>, Option<report::Protection>) {
+        protected: Option<(Protected, figures::CanvasNerve)>,
+    ) -> (Option<Net>, Option<figures::Protection>) {
         let account = protected.as_ref().map(|(protected, nerve)| self.account(protected, *nerve));
         let net = match protected {
             Some((protected, _)) => protected.net,
@@ -83,9 +83,9 @@ impl Job<'_> {
         (Some(numbered(net, &number)), account)
     }
 
-    fn account(&self, protected: &Protected, raw_nerve: report::CanvasNerve) -> report::Protection {
+    fn account(&self, protected: &Protected, raw_nerve: figures::CanvasNerve) -> figures::Protection {
         let [before, after] = protected.unprotected;
-        report::Protection {
+        figures::Protection {
             asked: self.options.protection,
             ending: protected.ending,
             rounds: protected.rounds,

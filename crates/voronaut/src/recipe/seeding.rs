@@ -6,8 +6,8 @@ use crate::diagram::Diagram;
 use crate::domain::Domain;
 use crate::dual::Dual;
 use crate::error::{Result, named};
+use crate::figures;
 use crate::geometry::Point;
-use crate::output::report;
 use crate::sampling::{demand_memory, refine_farthest};
 
 /// How the interior is seeded, once the boundary is sampled at unit length; its names are those users type.
@@ -50,7 +50,7 @@ impl Job<'_> {
         let seeds: Vec<Point> = dual.topology().vertices().map(|v| dual.position(v)).collect();
         let mut diagram = Diagram::roughly_of_vertices(canvas, self.field, &seeds)?;
         refine_farthest(dual, &mut diagram, self.fill(count), self.progress);
-        self.diagram = Some(report::Diagram::of(&diagram));
+        self.diagram = Some(figures::Diagram::of(&diagram));
         Ok(())
     }
 }

@@ -5,8 +5,8 @@ use crate::canvas::CanvasFigures;
 use crate::domain::Domain;
 use crate::dual::{Consultation, Disagreement, Dual, Effort};
 use crate::error::Result;
+use crate::figures;
 use crate::geodesic::Margin;
-use crate::output::report;
 use crate::progress::Progress;
 use crate::triangulation::VertexId;
 
@@ -25,7 +25,7 @@ pub(super) fn settle(
     let found = dual.consult_diagram(options.dual, options.canvas, options.canvas_size, options.geodesic)?;
     let made = found.made;
     let canvas = made.map(|m| m.canvas);
-    let diagram = made.map(|m| report::Diagram {
+    let diagram = made.map(|m| figures::Diagram {
         orphans: m.orphans,
         orphan_components: m.orphan_components,
         raw_nerve: None,
@@ -37,15 +37,15 @@ pub(super) fn settle(
 /// What the report says of the last pass.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Settled {
-    pub(super) dual: report::Dual,
+    pub(super) dual: figures::Dual,
     pub(super) canvas: Option<CanvasFigures>,
-    pub(super) diagram: Option<report::Diagram>,
+    pub(super) diagram: Option<figures::Diagram>,
 }
 
-fn account(dual: &mut Dual, domain: &Domain, found: Consultation) -> report::Dual {
+fn account(dual: &mut Dual, domain: &Domain, found: Consultation) -> figures::Dual {
     let number = dual.numbering(domain);
     let ends = |edge: [VertexId; 2]| edge.map(|v| number[v.index()]);
-    let disagreement = |d: Disagreement| report::Disagreement {
+    let disagreement = |d: Disagreement| figures::Disagreement {
         edge: ends(d.edge),
         instead: d.instead.map(ends),
         margin: d.margin.value,
@@ -54,9 +54,9 @@ fn account(dual: &mut Dual, domain: &Domain, found: Consultation) -> report::Dua
     };
     let uncertain = |(edge, Margin { value: margin, error }): ([VertexId; 2], Margin)| {
         let edge = ends(edge);
-        report::UncertainEdge { edge, margin, error }
+        figures::UncertainEdge { edge, margin, error }
     };
-    report::Dual {
+    figures::Dual {
         min_margin: dual.smallest_margin(Effort::Full).unwrap_or(0.0),
         blocked_flips: dual.blocked_flips(Effort::Full).len() + found.impossible.len(),
         geodesic_tests: dual.counters().tests.to_vec(),
@@ -64,6 +64,6 @@ fn account(dual: &mut Dual, domain: &Domain, found: Consultation) -> report::Dua
         disagreements: found.disagreements.into_iter().map(disagreement).collect(),
         uncertain: found.uncertain.len(),
         uncertain_edges: found.uncertain.into_iter().map(uncertain).collect(),
-        ..report::Dual::default()
+        ..figures::Dual::default()
     }
 }

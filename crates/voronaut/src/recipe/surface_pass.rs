@@ -8,11 +8,11 @@ use crate::canvas::{Canvas, CanvasFigures, Draped};
 use crate::diagram::SurfaceDiagram;
 use crate::dual::{Road, SurfaceDual};
 use crate::error::{Error, Result};
+use crate::figures;
 use crate::geodesic::Method;
 use crate::geometry::{Point3, Tensor3};
 use crate::mesh::Mesh;
 use crate::optimise::{Relaxed, Tangent, mend_worst, relax};
-use crate::output::report;
 use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
@@ -67,10 +67,10 @@ pub(super) struct Pass<'a> {
 /// What came of settling edges.
 #[derive(Default)]
 pub(super) struct Settled {
-    pub(super) account: report::Dual,
+    pub(super) account: figures::Dual,
     /// Of the canvas, where one was made.
     pub(super) figures: Option<CanvasFigures>,
-    pub(super) diagram: Option<report::Diagram>,
+    pub(super) diagram: Option<figures::Diagram>,
 }
 
 /// Where the passes before made no mesh.
@@ -290,8 +290,8 @@ impl<'a> Setting<'a> {
         let blocked = dual.disagreeing(|quad| rdt.margin_of(quad));
         dual.unfold();
         mend(dual);
-        let account = report::Dual { blocked_flips: blocked, ..account(&rdt, &nerve, Road::Geodesic) };
-        Ok(Settled { account, figures: Some(canvas.figures()), diagram: Some(report::Diagram::of(&diagram)) })
+        let account = figures::Dual { blocked_flips: blocked, ..account(&rdt, &nerve, Road::Geodesic) };
+        Ok(Settled { account, figures: Some(canvas.figures()), diagram: Some(figures::Diagram::of(&diagram)) })
     }
 
     /// A canvas of so many seeds as a surface: finer than what an equation was first meshed to.
@@ -303,7 +303,7 @@ impl<'a> Setting<'a> {
 impl Settled {
     fn by_lengths(dual: &SurfaceDual) -> Self {
         let (blocked_flips, min_margin) = dual.unsettled();
-        let account = report::Dual { min_margin, blocked_flips, ..report::Dual::default() };
+        let account = figures::Dual { min_margin, blocked_flips, ..figures::Dual::default() };
         Self { account, ..Self::default() }
     }
 }

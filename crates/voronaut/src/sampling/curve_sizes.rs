@@ -93,7 +93,7 @@ mod tests {
 
     /// A disc, and a size that is asked for nowhere.
     fn asked(spec: &str, hausd: f64, p: Point) -> Option<f64> {
-        let domain = Domain::read(spec).unwrap();
+        let domain = Domain::shape(spec).unwrap();
         CurveSizes::new(&domain, hausd, 45.0).at(p).map(|(h, _)| h)
     }
 
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn directions_are_those_of_the_curve() {
-        let domain = Domain::read("disk:0,0,1").unwrap();
+        let domain = Domain::shape("disk:0,0,1").unwrap();
         let sizes = CurveSizes::new(&domain, 1e-4, 45.0);
         for (_, (a, b)) in (0..40).zip(domain.boundary()) {
             let (_, along) = sizes.at(a).unwrap();

@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn a_circle_is_cut_at_unit_length_or_finer_where_the_tolerance_asks() {
-        let domain = Domain::read("disk:0,0,1").unwrap();
+        let domain = Domain::shape("disk:0,0,1").unwrap();
         let size = |h: f64| move |_: Point| Tensor::isotropic(h);
         let sides = |h: f64, tolerance: f64| simplify(&domain, &size(h), tolerance).boundary().len();
         assert_eq!(sides(0.1, 1.0), 63);
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn corners_of_a_square_stay_within_a_small_tolerance() {
-        let square = Domain::read("rect:0,0,1,1").unwrap();
+        let square = Domain::shape("rect:0,0,1,1").unwrap();
         assert_eq!(simplify(&square, &|_: Point| Tensor::isotropic(100.0), 0.01).boundary().len(), 4);
     }
 }

@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn walls_face_to_face_are_cut_in_little_time() {
-        let domain = Domain::read("rect:0,0,1,1e-6").unwrap();
+        let domain = Domain::shape("rect:0,0,1,1e-6").unwrap();
         let field = |_: Point| Tensor::isotropic(1e-4);
         let plan = Plan::new(&domain, &field, crate::sampling::Target::Metric).unwrap();
         let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();

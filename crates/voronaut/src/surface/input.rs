@@ -5,9 +5,9 @@ use super::features::FeatureOptions;
 use super::nearest::closest_weights;
 use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
-use crate::formats::Solution;
 use crate::geometry::{Point3, Vector3};
 use crate::mesh::Mesh;
+use crate::mesh::Solution;
 use crate::metric::Expression;
 use crate::triangulation::{FaceId, HalfEdge};
 use std::sync::OnceLock;
@@ -190,12 +190,12 @@ struct Reached {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::read;
+    use crate::surface::Input;
 
     #[test]
     fn points_come_onto_the_surface_from_near_places() {
         for spec in ["sphere:2", "torus:2,0.5"] {
-            let exact = read(spec, Some(0.2)).unwrap();
+            let exact = Input::shape(spec, Some(0.2)).unwrap();
             let mesh = Input::new(exact.surface.clone(), None);
             let nearest = Nearest::new(&exact.surface);
             for v in exact.surface.topology().vertices().step_by(7) {
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn points_far_off_are_refused() {
-        let sphere = read("sphere:1", None).unwrap();
+        let sphere = Input::shape("sphere:1", None).unwrap();
         assert!(sphere.closest(Point3::new(0.0, 0.0, 1.01)).is_ok());
         for p in [Point3::new(0.0, 0.0, 1.1), Point3::default(), Point3::new(f64::NAN, 0.0, 1.0)] {
             assert!(sphere.closest(p).unwrap_err().to_string().contains("a point off the surface"));

@@ -13,8 +13,7 @@
 //! | `implicit`, `march` | surfaces f(x, y, z) = 0: derivatives, projection, a first mesh by marching tetrahedra |
 //! | `sheets` | lines in which sheets of f = 0 meet |
 //! | `level`, `remesh` | a triangulation on f = 0; better triangles for it, as fine as its curvature asks for |
-//! | `shapes`, `read` | spheres, tori, files: what users write for a surface |
-//! | `given` | a planar domain or a surface: what users write for either |
+//! | `shapes`, `written` | spheres, tori, chairs, and how users write them |
 //! | [`metric`] | metric fields on surfaces, curvature among them |
 
 mod build;
@@ -23,7 +22,6 @@ mod chord;
 mod curves;
 mod cut;
 mod features;
-mod given;
 mod implicit;
 mod input;
 mod level;
@@ -32,28 +30,27 @@ mod measure;
 pub mod metric;
 mod nearest;
 mod orient;
-mod read;
 mod remesh;
 mod repair;
 mod shapes;
 mod sheets;
 mod tetrahedra;
+mod written;
 
 pub use chart::{Chart, STEEPEST};
 pub use chord::Chord;
 pub use curves::{Curve, CurveEdge, Curves};
 pub use cut::{Seams, Whole};
 pub use features::{FeatureOptions, Mark};
-pub use given::Given;
 pub use implicit::{Curvatures, Implicit, closest_zero, curvatures, project};
 pub use input::{Input, OFF_SURFACE};
 pub use march::mesh_implicit;
 pub use measure::Component;
 pub(crate) use nearest::closest_weights;
 pub use nearest::{Closest, Nearest};
-pub use read::{WRITTEN, of_file, read, read_with};
 pub use repair::{Damage, Mend, Mended, RepairOptions, repaired};
 pub use shapes::{chair, sphere, torus};
+pub use written::{SHAPES, shape};
 
 use crate::geometry::{Point3, Vector3};
 use crate::triangulation::{Constraint, FaceId, Triangulation, VertexId};

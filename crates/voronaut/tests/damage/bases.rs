@@ -2,7 +2,6 @@
 
 use super::random::Random;
 use std::collections::HashMap;
-use voronaut::formats;
 use voronaut::mesh::Mesh;
 
 /// A closed or bordered surface without damage.
@@ -13,8 +12,8 @@ pub(crate) fn base(random: &mut Random) -> Mesh {
         1 => grid(2 * n, n + 3, true, |u, v| round(3.0 + v.cos(), u, v.sin())),
         2 => sphere(n),
         3 => grid(n + 2, n + 2, false, |u, v| [u, v, 0.3 * (2.0 * u).sin() * v]),
-        4 => formats::read(data("spot.obj").as_ref()).expect("a mesh").mesh,
-        _ => formats::read(data("bob_small.obj").as_ref()).expect("a mesh").mesh,
+        4 => voronaut_io::read(data("spot.obj").as_ref()).expect("a mesh").mesh,
+        _ => voronaut_io::read(data("bob_small.obj").as_ref()).expect("a mesh").mesh,
     }
 }
 

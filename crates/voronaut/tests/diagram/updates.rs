@@ -3,13 +3,13 @@
 use super::common::{halton, square, vertices};
 use voronaut::canvas::Canvas;
 use voronaut::diagram::Diagram;
-use voronaut::domain::{Domain, from_geojson, from_poly};
-use voronaut::formats::{geojson, poly};
+use voronaut::domain::{Domain, from_poly, from_polygons};
 use voronaut::geometry::{Point, Tensor};
 use voronaut::metric::{MetricField, Shock, Swirl, Uniform};
 use voronaut::progress::Silent;
 use voronaut::recipe::{MeshOptions, mesh};
 use voronaut::triangulation::VertexId;
+use voronaut_io::{geojson, poly};
 
 fn assert_as_made_anew(diagram: &Diagram, field: &dyn MetricField) {
     let canvas = diagram.canvas();
@@ -122,7 +122,7 @@ fn work_is_linear_in_the_canvas() {
 fn removal_leaves_nothing_where_edges_lead_around_a_hole_and_back() {
     let text = r#"{"type":"Polygon","coordinates":[[[-1,-1],[1,-1],[1,1],[-1,1],[-1,-1]],
         [[-0.02,-0.02],[-0.02,0.02],[0.02,0.02],[0.02,-0.02],[-0.02,-0.02]]]}"#;
-    let domain = Domain::new(&from_geojson(&geojson::read(text, "ring").unwrap()).unwrap()).unwrap();
+    let domain = Domain::new(&from_polygons(&geojson::read(text, "ring").unwrap()).unwrap()).unwrap();
     let mut loops = 0;
     for i in 0..200_u32 {
         let (angle, aspect) = (0.1 * f64::from(i), 3.0 + f64::from(i % 40));

@@ -6,7 +6,6 @@ mod required;
 
 use crate::parts::Part;
 use common::faults;
-use voronaut::formats::TensorOrder;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::recipe::{MeshOptions, mesh_surface};
@@ -39,7 +38,6 @@ fn keeps_distance(name: &str, share: f64) {
         &Spec::parse("uniform").unwrap(),
         &input,
         Bounds { h_max: Some(0.2 * input.diagonal()), ..Bounds::default() },
-        TensorOrder::Disk,
     )
     .unwrap();
     let options = MeshOptions { hausd: Some(hausd), ..MeshOptions::default() };
@@ -60,7 +58,7 @@ fn distances_are_kept_where_they_are_asked_for() {
 fn keeps_features(name: &str, metric: &str, counts: &[usize]) {
     let part = crate::parts::all().into_iter().find(|part| part.name == name).unwrap();
     let input = input(&part);
-    let field = field(&Spec::parse(metric).unwrap(), &input, Bounds::default(), TensorOrder::Disk).unwrap();
+    let field = field(&Spec::parse(metric).unwrap(), &input, Bounds::default()).unwrap();
     for &count in counts {
         let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
         let mesh = mesh_surface(&input, field.as_ref(), &options, &Silent).unwrap().mesh;

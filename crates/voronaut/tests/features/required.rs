@@ -2,8 +2,8 @@
 
 use crate::parts;
 use std::collections::BTreeSet;
-use voronaut::formats::{Solution, SolutionValues, TensorOrder};
 use voronaut::mesh::Mesh;
+use voronaut::mesh::{Solution, SolutionValues};
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::quality::{check, surface_quality};
@@ -36,7 +36,7 @@ fn required_vertices_edges_and_triangles_stay_to_the_last_bit() {
     (mesh.edges, mesh.edge_labels, mesh.required_edges) = (vec![[a, b], [b, c]], vec![7, 7], vec![0, 1]);
     mesh.required_points = vec![mesh.triangles[third as usize][0]];
     let input = cut(&mesh);
-    let metric = field(&Spec::parse("uniform").unwrap(), &input, Bounds::default(), TensorOrder::Disk).unwrap();
+    let metric = field(&Spec::parse("uniform").unwrap(), &input, Bounds::default()).unwrap();
     let options = MeshOptions { vertices: Some(400), ..MeshOptions::default() };
     let made = mesh_surface(&input, metric.as_ref(), &options, &Silent).unwrap().mesh;
     check(&made).unwrap();

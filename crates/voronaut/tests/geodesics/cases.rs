@@ -27,7 +27,7 @@ const NEAR: f64 = 0.05;
 impl Case {
     /// The domain of the case.
     pub(crate) fn domain(&self) -> Domain {
-        Domain::read(&self.domain).unwrap()
+        Domain::shape(&self.domain).unwrap()
     }
 
     /// Greatest and mean relative error over the vertices that are reached, with known distance, and not near the source.

@@ -9,8 +9,8 @@ use voronaut::domain::Domain;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Point, Point3, Tensor3, Vector3};
 use voronaut::metric::MetricField;
+use voronaut::surface::Input;
 use voronaut::surface::metric::SurfaceMetric;
-use voronaut::surface::{Input, read};
 use voronaut::triangulation::VertexId;
 
 /// A domain or a surface, with a metric.
@@ -44,7 +44,7 @@ fn in_space(p: Point) -> Point3 {
 
 /// A square around the origin.
 pub(crate) fn square(half: f64, field: impl MetricField + Send + 'static) -> Ground {
-    let domain = Domain::read(&format!("rect:{},{},{half},{half}", -half, -half)).unwrap();
+    let domain = Domain::shape(&format!("rect:{},{},{half},{half}", -half, -half)).unwrap();
     planar(domain, field, &points(half))
 }
 
@@ -70,7 +70,7 @@ fn on_sphere() -> impl Iterator<Item = Point3> {
 
 /// The unit sphere with its own metric.
 pub(crate) fn sphere() -> Ground {
-    on_surface("sphere", read("sphere:1", Some(0.3)).unwrap(), Tensor3::IDENTITY, on_sphere().collect())
+    on_surface("sphere", Input::shape("sphere:1", Some(0.3)).unwrap(), Tensor3::IDENTITY, on_sphere().collect())
 }
 
 /// The point of the unit sphere that a point of the [`stretched_sphere`] is mapped to.
@@ -80,7 +80,7 @@ pub(crate) fn relaxed(p: Point3) -> Point3 {
 
 /// An ellipsoid that a linear map takes to the unit sphere, with the metric that makes distances those of the images.
 pub(crate) fn stretched_sphere() -> Ground {
-    let input = read("implicit:(x/4+0.2*y)^2+y^2+z^2-1;-5,-1.1,-1.1,5,1.1,1.1", Some(0.4)).unwrap();
+    let input = Input::shape("implicit:(x/4+0.2*y)^2+y^2+z^2-1;-5,-1.1,-1.1,5,1.1,1.1", Some(0.4)).unwrap();
     let metric = Tensor3 { xx: 1.0 / 16.0, xy: 0.05, yy: 1.04, ..Tensor3::IDENTITY };
     let stretched = |p: Point3| Point3::new(4.0 * (p.x - 0.2 * p.y), p.y, p.z);
     on_surface("stretched sphere", input, metric, on_sphere().map(stretched).collect())

@@ -10,13 +10,13 @@ use grounds::{FROM, Ground, great_circle, planar, points, relaxed, sphere, squar
 use voronaut::canvas::{Canvas, Draped, Kind};
 use voronaut::diagram::{self, Diagram, Distances, SurfaceDiagram, SurfaceDistances};
 use voronaut::domain::{Domain, from_poly};
-use voronaut::formats::poly;
 use voronaut::geodesic::{Method, STVD_WINDOW};
 use voronaut::geometry::{Point, Point3, Tensor, Tensor3};
 use voronaut::metric::Swirl;
+use voronaut::surface::Input;
 use voronaut::surface::metric::Constant;
-use voronaut::surface::read;
 use voronaut::triangulation::VertexId;
+use voronaut_io::poly;
 
 /// By how much distances by a method may err, as a share, on the canvases of these tests.
 fn tolerance(method: Method) -> f64 {
@@ -170,8 +170,8 @@ fn changed_as_made_anew<'a, G: diagram::Ground<'a>>(
 
 #[test]
 fn diagrams_by_every_method_change_as_if_made_anew() {
-    let (square, swirl) = (Domain::read("rect:-2,-2,2,2").unwrap(), Swirl::default());
-    let (sphere, uniform) = (read("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
+    let (square, swirl) = (Domain::shape("rect:-2,-2,2,2").unwrap(), Swirl::default());
+    let (sphere, uniform) = (Input::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
     let seed = |i: u32| Point::new((1.7 * f64::from(i)).sin() * 1.9, (2.3 * f64::from(i)).cos() * 1.9);
     for kind in Kind::ALL {
         let flat = Canvas::new(kind, &square, &swirl, 1500).unwrap();
@@ -197,7 +197,7 @@ fn diagrams_by_every_method_change_as_if_made_anew() {
 
 #[test]
 fn points_outside_the_domain_are_refused() {
-    let (domain, swirl) = (Domain::read("rect:-1,-1,1,1").unwrap(), Swirl::default());
+    let (domain, swirl) = (Domain::shape("rect:-1,-1,1,1").unwrap(), Swirl::default());
     let canvas = Canvas::intrinsic(&domain, &swirl, 300).unwrap();
     for method in Method::ALL {
         let error = Distances::new(&canvas, &swirl, &[Point::new(3.0, 0.0)], method).err().unwrap();
@@ -205,7 +205,7 @@ fn points_outside_the_domain_are_refused() {
         let found = Distances::new(&canvas, &swirl, &[Point::new(0.3, 0.1)], method).unwrap();
         assert!(found.at(Point::new(3.0, 0.0)).is_none() && found.path(Point::new(3.0, 0.0)).is_err());
     }
-    let (sphere, uniform) = (read("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
+    let (sphere, uniform) = (Input::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
     let (round, _): (Canvas<Draped>, _) = Canvas::on_surface(Kind::Intrinsic, &sphere, &uniform, 1500, &[]).unwrap();
     let nowhere = VertexId(round.vertex_count() as u32);
     for method in Method::ALL {

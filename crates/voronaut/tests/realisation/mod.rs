@@ -22,7 +22,7 @@ pub(crate) fn seeds(count: usize, low: Point, high: Point) -> Vec<Point> {
 }
 
 pub(crate) fn realised(domain: &str, field: &dyn MetricField, seeds: &[Point], canvas: usize) -> Realisation {
-    let domain = Domain::read(domain).unwrap();
+    let domain = Domain::shape(domain).unwrap();
     let canvas = Canvas::intrinsic(&domain, field, canvas).unwrap();
     let diagram = Diagram::new(&canvas, field, seeds).unwrap();
     let dual = recipe::dual(&diagram, field, Road::Both);
@@ -98,7 +98,7 @@ fn edges_of_uniform_metrics_are_segments() {
 fn swirl_and_shock_are_embedded_although_straight_edges_are_not() {
     for (domain, metric, half) in [("rect:-2,-2,2,2", "swirl", 2.0), ("rect:-1,-1,1,1", "shock:phi=1,lambda=0.6", 1.0)]
     {
-        let field = recipe::metric_named(metric, &Domain::read(domain).unwrap()).unwrap();
+        let field = recipe::metric_named(metric, &Domain::shape(domain).unwrap()).unwrap();
         // The centre of the swirl is singular, and edges of the seeds around run together there.
         let mut seeds = seeds(280, Point::new(-half, -half), Point::new(half, half));
         seeds.extend((0..20).map(|i| {
@@ -133,8 +133,8 @@ fn edges_are_led_around_a_hole() {
     let text = r#"{ "type": "Polygon", "coordinates": [
         [[-2, -2], [2, -2], [2, 2], [-2, 2], [-2, -2]], [[-1, -0.1], [1, -0.1], [1, 0.1], [-1, 0.1], [-1, -0.1]]
     ] }"#;
-    let polygons = voronaut::formats::geojson::read(text, "plate").unwrap();
-    let domain = Domain::new(&voronaut::domain::from_geojson(&polygons).unwrap()).unwrap();
+    let polygons = voronaut_io::geojson::read(text, "plate").unwrap();
+    let domain = Domain::new(&voronaut::domain::from_polygons(&polygons).unwrap()).unwrap();
     let field = |_: Point| Tensor::IDENTITY;
     let seeds = [(-0.2, -0.6), (-0.1, 0.7), (1.9, -1.9), (-1.9, 1.9)].map(|(x, y)| Point::new(x, y));
     let canvas = Canvas::intrinsic(&domain, &field, 4000).unwrap();

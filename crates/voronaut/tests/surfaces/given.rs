@@ -1,13 +1,12 @@
 //! Surfaces as the world has them: the smallest of each kind that was once refused, or meshed badly.
 
-use voronaut::formats::TensorOrder;
 use voronaut::mesh::Mesh;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::quality::{Meetings, surface_quality, validity_on};
 use voronaut::recipe::{MeshOptions, Meshed, mesh_surface};
 use voronaut::surface::metric::{Spec, field};
-use voronaut::surface::{FeatureOptions, Input, RepairOptions, Surface, read, repaired};
+use voronaut::surface::{FeatureOptions, Input, RepairOptions, Surface, repaired};
 
 fn input(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Input {
     let mesh = Mesh { points, triangle_labels: vec![0; triangles.len()], triangles, ..Mesh::default() };
@@ -16,7 +15,7 @@ fn input(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Input {
 
 /// Meshes by a metric; the mesh meets itself where the surface does at most.
 fn meshed(input: &Input, metric: &str, count: usize) -> Meshed {
-    let field = field(&Spec::parse(metric).unwrap(), input, Bounds::default(), TensorOrder::Disk).unwrap();
+    let field = field(&Spec::parse(metric).unwrap(), input, Bounds::default()).unwrap();
     let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
     let meshed = mesh_surface(input, field.as_ref(), &options, &Silent).unwrap();
     let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
@@ -30,7 +29,7 @@ fn two_triangles_become_unit_triangles() {
     let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 1.0, 0.0]];
     let input = input(points, vec![[0, 1, 2], [1, 3, 2]]);
     let found = meshed(&input, "uniform", 1000);
-    let metric = field(&Spec::Uniform, &input, Bounds::default(), TensorOrder::Disk).unwrap();
+    let metric = field(&Spec::Uniform, &input, Bounds::default()).unwrap();
     let quality = surface_quality(&found.mesh, &input.surface, metric.as_ref()).unwrap().quality;
     assert!(found.mesh.points.len() == 1000 && quality.mean > 0.95 && quality.min > 0.4, "{quality:?}");
 }
@@ -75,9 +74,7 @@ fn labelled_square(labels: u32) -> Input {
 fn labels_do_not_change_the_number_of_vertices() {
     let count = |labels: u32| {
         let input = labelled_square(labels);
-        let field =
-            field(&Spec::parse("formula:400;0;400;0;0;400").unwrap(), &input, Bounds::default(), TensorOrder::Disk)
-                .unwrap();
+        let field = field(&Spec::parse("formula:400;0;400;0;0;400").unwrap(), &input, Bounds::default()).unwrap();
         mesh_surface(&input, field.as_ref(), &MeshOptions::default(), &Silent).unwrap().mesh.points.len()
     };
     let [one, many] = [1, 4].map(count);
@@ -118,7 +115,7 @@ fn cubes_that_share_an_edge_or_a_corner_are_meshed_once_repaired() {
 /// Two balls pushed into each other: the mesh meets itself where they do.
 #[test]
 fn what_meets_itself_is_meshed_and_told() {
-    let ball = read("sphere:1", Some(0.3)).unwrap().surface.to_mesh();
+    let ball = Input::shape("sphere:1", Some(0.3)).unwrap().surface.to_mesh();
     let n = ball.points.len() as u32;
     let points =
         ball.points.iter().copied().chain(ball.points.iter().map(|p| [p[0] + 1.2, p[1] + 0.01, p[2]])).collect();
@@ -132,8 +129,8 @@ fn what_meets_itself_is_meshed_and_told() {
 /// Sheets through one point, which triangles cannot keep apart.
 #[test]
 fn an_equation_whose_triangles_meet_is_refused_with_the_place() {
-    let input = read("implicit:(x^2+y^2-z^2)*z;-1,-1,-1,1,1,1", None).unwrap();
-    let field = field(&Spec::Uniform, &input, Bounds::default(), TensorOrder::Disk).unwrap();
+    let input = Input::shape("implicit:(x^2+y^2-z^2)*z;-1,-1,-1,1,1,1", None).unwrap();
+    let field = field(&Spec::Uniform, &input, Bounds::default()).unwrap();
     let error = mesh_surface(&input, field.as_ref(), &MeshOptions::default(), &Silent).unwrap_err();
     assert!(error.to_string().contains("triangles of f = 0 meet"), "{error}");
 }

@@ -2,14 +2,19 @@
 
 use voronaut::canvas::Kind;
 use voronaut::dual::Road;
-use voronaut::formats::TensorOrder;
 use voronaut::geometry::Tensor3;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::quality::{surface_fidelity, surface_quality, validity};
 use voronaut::recipe::{MeshOptions, Meshed, Seeding, mesh_surface};
 use voronaut::surface::metric::{Spec, SurfaceMetric, field};
-use voronaut::surface::{Implicit, Input, Place, read};
+use voronaut::surface::{Implicit, Input, Place, RepairOptions};
+use voronaut_io::read_surface;
+
+/// A shape or a file.
+fn read(spec: &str) -> Input {
+    read_surface(spec, None, RepairOptions::default()).unwrap().0
+}
 
 fn data(name: &str) -> String {
     format!("{}/../../data/{name}", env!("CARGO_MANIFEST_DIR"))
@@ -24,7 +29,7 @@ impl SurfaceMetric for Scaled<'_> {
 }
 
 fn meshed(input: &Input, metric: &str, options: &MeshOptions) -> (Meshed, f64, f64) {
-    let metric = field(&Spec::parse(metric).unwrap(), input, Bounds::default(), TensorOrder::Disk).unwrap();
+    let metric = field(&Spec::parse(metric).unwrap(), input, Bounds::default()).unwrap();
     let meshed = mesh_surface(input, metric.as_ref(), options, &Silent).unwrap();
     let figures = surface_quality(&meshed.mesh, &input.surface, &Scaled(metric.as_ref(), meshed.metric_scale)).unwrap();
     (meshed, figures.quality.mean, figures.quality.min)
@@ -43,7 +48,7 @@ fn meshes_are_valid_and_of_the_surface_s_topology() {
         ("implicit:z-0.2*sin(3*x);-1,-1,-1,1,1,1", "uniform", 300, [0.9, 0.2]),
         ("implicit:(x^2+y^2+z^2-1)*((x-3)^2+y^2+z^2-0.25);-2,-2,-2,4,2,2", "uniform", 300, [0.95, 0.5]),
     ] {
-        let input = read(spec, None).unwrap();
+        let input = read(spec);
         let (meshed, mean, min) =
             meshed(&input, metric, &MeshOptions { vertices: Some(count), ..MeshOptions::default() });
         let mesh = &meshed.mesh;
@@ -63,7 +68,7 @@ fn meshes_are_valid_and_of_the_surface_s_topology() {
 
 #[test]
 fn any_number_of_threads_and_any_canvas_make_a_mesh() {
-    let input = read("torus:2,0.7", None).unwrap();
+    let input = read("torus:2,0.7");
     for canvas in Kind::ALL {
         let (seeding, dual) = (Seeding::Farthest, Road::Canvas);
         let few = MeshOptions { lloyd: 4, canvas_size: 20, ..MeshOptions::default() };
@@ -86,7 +91,7 @@ fn any_number_of_threads_and_any_canvas_make_a_mesh() {
 
 #[test]
 fn fitting_brings_spot_nearer_and_keeps_shapes() {
-    let input = read(&data("spot.obj"), None).unwrap();
+    let input = read(&data("spot.obj"));
     let of = |fit: bool| {
         let options = MeshOptions { vertices: Some(1020), fit, ..MeshOptions::default() };
         let (meshed, mean, min) = meshed(&input, "curvature", &options);
@@ -102,7 +107,7 @@ fn fitting_brings_spot_nearer_and_keeps_shapes() {
 
 #[test]
 fn a_distance_asks_for_more_vertices_unless_their_number_is_given() {
-    let input = read("sphere:1", None).unwrap();
+    let input = read("sphere:1");
     let options = MeshOptions { complexity: Some(60.0), hausd: Some(5e-3), ..MeshOptions::default() };
     let (found, ..) = meshed(&input, "uniform", &options);
     let distance = found.fidelity.unwrap().both.hausdorff;

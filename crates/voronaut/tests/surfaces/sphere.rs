@@ -9,7 +9,7 @@ use voronaut::geodesic::Method;
 use voronaut::geometry::{Point3, Tensor3};
 use voronaut::recipe;
 use voronaut::surface::metric::Constant;
-use voronaut::surface::{Place, read};
+use voronaut::surface::{Input, Place};
 use voronaut::triangulation::smallest_first;
 
 /// Random points of the unit sphere.
@@ -34,7 +34,7 @@ fn farthest_out(seeds: &[Point3], [a, b, c]: [u32; 3]) -> f64 {
 }
 
 fn dual_of(seeds: &[Point3], per_seed: usize) -> Vec<[u32; 3]> {
-    let input = read("sphere:1", None).unwrap();
+    let input = Input::shape("sphere:1", None).unwrap();
     let metric = Constant(Tensor3::IDENTITY);
     let places: Vec<Place> = seeds.iter().map(|&p| input.closest(p).unwrap()).collect();
     let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, per_seed * seeds.len(), &places).unwrap();

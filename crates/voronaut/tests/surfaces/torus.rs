@@ -10,11 +10,11 @@ use voronaut::geodesic::Method;
 use voronaut::geometry::{Point3, Tensor3};
 use voronaut::recipe::surface_dual;
 use voronaut::surface::metric::Constant;
-use voronaut::surface::{Place, read};
+use voronaut::surface::{Input, Place};
 
 #[test]
 fn duals_on_a_torus_are_closed_with_characteristic_zero() {
-    let (input, metric) = (read("torus:2,0.7", None).unwrap(), Constant(Tensor3::IDENTITY));
+    let (input, metric) = (Input::shape("torus:2,0.7", None).unwrap(), Constant(Tensor3::IDENTITY));
     let mut random = Random(88_172_645_463_325_252);
     let mut seed = || {
         let (around, across) = (TAU * random.next(), TAU * random.next());

@@ -3,7 +3,7 @@ use super::*;
 use crate::geometry::Tensor3;
 use crate::mesh::Mesh;
 use crate::surface::metric::Constant;
-use crate::surface::{Surface, read};
+use crate::surface::{Input, Surface};
 
 fn metric(edge: f64) -> Constant {
     Constant(Tensor3::IDENTITY * edge.powi(-2))
@@ -25,7 +25,7 @@ fn corners(places: &[Place], topology: &Triangulation) -> Vec<[[u64; 3]; 3]> {
 #[test]
 fn the_number_is_met_and_triangles_stand_upright() {
     for (spec, edge, count) in [("sphere:1", 0.4, 100), ("torus:2,0.7", 0.3, 400), ("sphere:1", 0.05, 6000)] {
-        let input = read(spec, Some(0.15)).unwrap();
+        let input = Input::shape(spec, Some(0.15)).unwrap();
         let found = of(&input, edge, count, &[]);
         assert_eq!(found.places.len(), count, "{spec}");
         assert_eq!(found.topology.euler_characteristic(), input.surface.euler_characteristic());
@@ -39,7 +39,7 @@ fn the_number_is_met_and_triangles_stand_upright() {
 
 #[test]
 fn where_all_is_held_it_is_the_surface() {
-    let input = read("torus:2,0.7", Some(0.4)).unwrap();
+    let input = Input::shape("torus:2,0.7", Some(0.4)).unwrap();
     let found = of(&input, 5.0, 10, &[Held { corners: [Point3::default(); 3], within: 10.0 }]);
     let all = input.surface.topology();
     let places: Vec<Place> = all.vertices().map(|v| input.surface.place_of(v).unwrap()).collect();
@@ -49,7 +49,7 @@ fn where_all_is_held_it_is_the_surface() {
 
 #[test]
 fn points_of_no_triangle_do_not_count() {
-    let mesh = read("sphere:1", Some(0.3)).unwrap().surface.to_mesh();
+    let mesh = Input::shape("sphere:1", Some(0.3)).unwrap().surface.to_mesh();
     let points = mesh.points.iter().copied().chain((0..200).map(|i| [f64::from(i), 9.0, 9.0])).collect();
     let input = Input::new(Surface::new(&Mesh { points, ..mesh }).unwrap(), None);
     assert_eq!(of(&input, 0.5, 60, &[]).places.len(), 60);
@@ -57,7 +57,7 @@ fn points_of_no_triangle_do_not_count() {
 
 #[test]
 fn exchange_keeps_the_number_and_what_stays() {
-    let input = read("sphere:1", Some(0.3)).unwrap();
+    let input = Input::shape("sphere:1", Some(0.3)).unwrap();
     let start = of(&input, 0.5, 60, &[]);
     // Edges are far too long in this metric.
     let found = exchanged(&input, &metric(0.1), 1.0, &start.places, &start.topology, 5);

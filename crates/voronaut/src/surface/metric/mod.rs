@@ -35,7 +35,7 @@ pub use gradation::grade;
 pub use sampled::Sampled;
 pub use sizes::Sizes;
 pub use sizing::{SAGITTA, Sizing};
-pub use spec::{Spec, field};
+pub use spec::{Spec, field, field_of_values};
 pub use validate::check_tensor3;
 
 use super::Place;

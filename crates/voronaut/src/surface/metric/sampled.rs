@@ -2,8 +2,8 @@
 
 use super::{CurvatureFigures, SurfaceMetric, check_tensor3};
 use crate::error::{Error, Result};
-use crate::formats::{Solution, SolutionValues};
 use crate::geometry::Tensor3;
+use crate::mesh::{Solution, SolutionValues};
 use crate::surface::{Place, Surface};
 
 /// Tensors at the vertices of a surface; inside triangles the log-Euclidean interpolation (Arsigny 2006), exp of the linear

@@ -2,8 +2,8 @@
 
 use super::{Sampled, SurfaceMetric};
 use crate::error::{Error, Result};
-use crate::formats::{Solution, SolutionValues};
 use crate::geometry::{Point3, Tensor3};
+use crate::mesh::{Solution, SolutionValues};
 use crate::surface::{Nearest, Surface};
 
 /// What is asked for at the vertices of a surface, one entry per vertex slot.
@@ -61,15 +61,13 @@ impl Sizes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::medit::Form;
-    use crate::formats::sol;
     use crate::geometry::Vector3;
-    use crate::surface::read;
+    use crate::surface::Input;
 
-    /// What is written at the vertices of a surface reads back as the field that it was.
+    /// The values at the vertices of a surface are the field that it was.
     #[test]
-    fn solutions_read_back_as_the_same_field() {
-        let surface = read("torus:2,0.7", Some(0.5)).unwrap().surface;
+    fn solutions_are_the_same_field() {
+        let surface = Input::shape("torus:2,0.7", Some(0.5)).unwrap().surface;
         let count = surface.positions().len();
         let tilted =
             |i: usize| Tensor3::square(Vector3::new(0.6, 0.8 * (i as f64).cos(), 0.1)) * 3.0 + Tensor3::IDENTITY;
@@ -79,10 +77,8 @@ mod tests {
         ] {
             let field = sizes.field(&surface).unwrap();
             let points = surface.to_mesh().points;
-            let mut written = Vec::new();
             let solution = sizes.solution(&field, 4.0, &surface, &points).unwrap();
-            sol::write(&solution, Form::Text, &mut written).unwrap();
-            let again = Sampled::from_solution(&surface, &sol::read(written.as_slice(), "a.sol").unwrap()).unwrap();
+            let again = Sampled::from_solution(&surface, &solution).unwrap();
             for f in surface.topology().faces() {
                 let place = surface.place(f, [0.2, 0.5, 0.3]);
                 let (found, truth) = (again.at(&place), field.at(&place) * 4.0);

@@ -3,8 +3,8 @@
 use super::bends::bend;
 use super::{Sampled, Sizes, fit_curvatures, grade};
 use crate::error::{Error, Result};
-use crate::formats::{Solution, SolutionValues};
 use crate::geometry::{TangentPlane, Tensor, Tensor3};
+use crate::mesh::{Solution, SolutionValues};
 use crate::metric::Bounds;
 use crate::surface::{Curvatures, Surface};
 use crate::triangulation::VertexId;

@@ -2,11 +2,10 @@
 
 use super::{Bounded, Constant, FLOOR, ImplicitCurvature, Sampled, SurfaceMetric, sampled_curvature};
 use crate::error::{Error, Result};
-use crate::formats::TensorOrder;
 use crate::geometry::Tensor3;
-use crate::metric::{Bounds, MetricSpec, Parameters, Shock, SpaceFormula, read_metric};
+use crate::mesh::Solution;
+use crate::metric::{Bounds, MetricSpec, Parameters, Shock, SpaceFormula};
 use crate::surface::Input;
-use std::path::PathBuf;
 
 /// What a METRIC text says of a surface.
 #[derive(Clone, Debug)]
@@ -19,8 +18,6 @@ pub enum Spec {
     Formula(SpaceFormula),
     /// `curvature` or `curvature:floor=C`: curvatures below C (1 / length) count as C.
     Curvature(Option<f64>),
-    /// A `.sol` file of tensors or sizes.
-    File(PathBuf),
 }
 
 impl Spec {
@@ -36,10 +33,9 @@ impl Spec {
             "formula" => Ok(Self::Formula(SpaceFormula::parse(parameters.unwrap_or_default())?)),
             "curvature" => curvature(&Parameters::read("curvature", parameters, &["floor"])?),
             "uniform" | "swirl" | "boundary" | "hessian" => Err(planar(text)),
-            // Shocks and files are written as in the plane.
+            // Shocks are written as in the plane.
             _ => match MetricSpec::parse(text)? {
                 MetricSpec::Shock(shock) => Ok(Self::Shock(shock)),
-                MetricSpec::File(path) => Ok(Self::File(path)),
                 _ => Err(planar(text)),
             },
         }
@@ -47,12 +43,11 @@ impl Spec {
 }
 
 /// The field that a specification names on a surface, within limits. Curvatures are exact where the surface has an
-/// equation, else fitted; a file has one value per vertex of the surface's file, its
-/// tensors in the order given.
+/// equation, else fitted.
 ///
 /// # Errors
-/// A file is missing or not what it should be; the values are no metric; the limits contradict each other.
-pub fn field(spec: &Spec, input: &Input, bounds: Bounds, order: TensorOrder) -> Result<Box<dyn SurfaceMetric>> {
+/// The limits contradict each other; no curvature could be fitted.
+pub fn field(spec: &Spec, input: &Input, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
     let field: Box<dyn SurfaceMetric> = match spec {
         Spec::Uniform => Box::new(Constant(Tensor3::IDENTITY)),
         Spec::Shock(shock) => Box::new(*shock),
@@ -64,11 +59,19 @@ pub fn field(spec: &Spec, input: &Input, bounds: Bounds, order: TensorOrder) -> 
                 None => Box::new(sampled_curvature(&input.surface, floor)?),
             }
         }
-        Spec::File(path) => {
-            let solution = read_metric(path, order)?;
-            Box::new(Sampled::from_solution(&input.surface, &input.spread(&solution)?)?)
-        }
     };
+    within(field, bounds)
+}
+
+/// The field of values at the vertices that a surface had before it was cut, within limits.
+///
+/// # Errors
+/// There is not one value per vertex; the values are no metric; the limits contradict each other.
+pub fn field_of_values(solution: &Solution, input: &Input, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
+    within(Box::new(Sampled::from_solution(&input.surface, &input.spread(solution)?)?), bounds)
+}
+
+fn within(field: Box<dyn SurfaceMetric>, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
     if bounds == Bounds::default() { Ok(field) } else { Ok(Box::new(Bounded::new(field, bounds)?)) }
 }
 
@@ -95,16 +98,11 @@ fn planar(text: &str) -> Error {
 mod tests {
     use super::*;
     use crate::geometry::TangentPlane;
-    use crate::surface::read;
-    use std::io::Write;
+    use crate::surface::Input;
 
     #[test]
     fn every_metric_has_a_field() {
-        let input = read("sphere:2", Some(0.5)).unwrap();
-        let mut file = tempfile::Builder::new().suffix(".sol").tempfile().unwrap();
-        let count = input.surface.positions().len();
-        let rows = "4 0 4 0 0 4\n".repeat(count);
-        write!(file, "MeshVersionFormatted 2 Dimension 3 SolAtVertices {count} 1 3\n{rows}").unwrap();
+        let input = Input::shape("sphere:2", Some(0.5)).unwrap();
         let place = input.surface.place_of(crate::triangulation::VertexId(7)).unwrap();
         let normal = (place.position - crate::geometry::Point3::default()) * 0.5;
         let plane = TangentPlane::new(normal);
@@ -113,11 +111,10 @@ mod tests {
             ("curvature", Some(0.5)),
             ("curvature:floor=3", Some(3.0)),
             ("formula:9; 0; 9; 0; 0; 9", Some(9.0)),
-            (file.path().to_str().unwrap(), Some(4.0)),
             ("shock:phi=0", Some(1.0)),
             ("shock", None),
         ] {
-            let field = field(&Spec::parse(text).unwrap(), &input, Bounds::default(), TensorOrder::Disk).unwrap();
+            let field = field(&Spec::parse(text).unwrap(), &input, Bounds::default()).unwrap();
             let m = plane.restrict(field.at(&place));
             assert!(m.is_positive_definite());
             if let Some(expected) = expected {
@@ -125,7 +122,7 @@ mod tests {
                 assert!(error < 1e-12, "{text}: {m:?}");
             }
             let bounds = Bounds { h_max: Some(0.1), ..Bounds::default() };
-            let bounded = super::field(&Spec::parse(text).unwrap(), &input, bounds, TensorOrder::Disk).unwrap();
+            let bounded = super::field(&Spec::parse(text).unwrap(), &input, bounds).unwrap();
             let sizes = TangentPlane::new(place.normal).restrict(bounded.at(&place)).eigen();
             assert!(sizes.small > 100.0 - 1e-9, "{text}: {sizes:?}");
         }
@@ -133,8 +130,8 @@ mod tests {
 
     #[test]
     fn shocks_are_thin_across_their_gradient() {
-        let input = read("sphere:2", Some(0.5)).unwrap();
-        let field = field(&Spec::parse("shock").unwrap(), &input, Bounds::default(), TensorOrder::Disk).unwrap();
+        let input = Input::shape("sphere:2", Some(0.5)).unwrap();
+        let field = field(&Spec::parse("shock").unwrap(), &input, Bounds::default()).unwrap();
         let place = input.surface.place_of(crate::triangulation::VertexId(0)).unwrap();
         let m = field.at(&place);
         assert!(m.xx > 1.0 && m.determinant() > 1.0);

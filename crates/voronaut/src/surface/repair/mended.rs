@@ -128,7 +128,8 @@ impl Mended {
     }
 
     /// As it is, behind what the reader of the file says.
-    pub(in crate::surface) fn with_notes(self, notes: &[String]) -> Self {
+    #[must_use]
+    pub fn with_notes(self, notes: &[String]) -> Self {
         Self { notes: notes.to_vec(), ..self }
     }
 

@@ -1,0 +1,56 @@
+//! Metrics from what is typed, in the plane and on surfaces.
+
+use crate::options::MetricChoices;
+use std::path::Path;
+use voronaut::domain::Domain;
+use voronaut::geometry::Tensor3;
+use voronaut::recipe::{GradedAt, PlanarMetric};
+use voronaut::surface::metric::SurfaceMetric;
+use voronaut::surface::{Input, Place};
+use voronaut::{Error, Result};
+use voronaut_io::{MetricFiles, MetricSource, surface_metric};
+
+/// The metric in the plane that a text names. `own` is what the domain was read from; `at` the multiple in which edges have length one.
+pub(crate) fn in_plane(
+    text: &str,
+    domain: &Domain,
+    own: &str,
+    choices: &MetricChoices,
+    at: GradedAt,
+) -> Result<PlanarMetric> {
+    let (own, background) = (Some(Path::new(own)), choices.background.as_deref());
+    let files = MetricFiles { own, background, order: choices.tensor_order };
+    files.metric(&MetricSource::parse(text)?, domain, &choices.options(), at)
+}
+
+/// The metric on a surface that a text names, within limits.
+pub(crate) fn on_surface(text: &str, input: &Input, choices: &MetricChoices) -> Result<Box<dyn SurfaceMetric>> {
+    demand_for_surfaces(choices)?;
+    surface_metric(text, input, choices.bounds(), choices.tensor_order)
+}
+
+/// Refuses what is not there for metrics on surfaces.
+pub(crate) fn demand_for_surfaces(choices: &MetricChoices) -> Result<()> {
+    let (what, help) = if choices.smooth_metric > 0 {
+        ("smoothing of a metric on a surface", "leave out --smooth-metric")
+    } else if choices.gradation.is_some() {
+        ("gradation of a metric on a surface", "leave out --gradation; sizes of `remesh` are graded, by -hgrad")
+    } else if choices.background.is_some() {
+        ("a background mesh for a metric on a surface", "give the file that the values belong to as the domain")
+    } else {
+        return Ok(());
+    };
+    Err(Error::Unsupported { what: what.into(), help: help.into() })
+}
+
+/// A metric on a surface times a factor.
+pub(crate) struct Scaled<'a> {
+    pub(crate) field: &'a dyn SurfaceMetric,
+    pub(crate) factor: f64,
+}
+
+impl SurfaceMetric for Scaled<'_> {
+    fn at(&self, place: &Place) -> Tensor3 {
+        self.field.at(place) * self.factor
+    }
+}

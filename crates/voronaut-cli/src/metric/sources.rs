@@ -1,0 +1,86 @@
+//! Metrics at the vertices of a mesh, from texts and files.
+
+use super::args::{LimitText, MetricArgs};
+use std::path::Path;
+use voronaut::domain::{Domain, from_mesh};
+use voronaut::geometry::Tensor;
+use voronaut::mesh::Mesh;
+use voronaut::mesh::{SolutionValues, TensorOrder};
+use voronaut::metric::nodal::{Limit, Limits, Source, implied, isotropic};
+use voronaut::metric::{MetricSpec, Recovery, ScalarField, Snapshot, recover_hessian};
+use voronaut::recipe::{GradedAt, MetricOptions};
+use voronaut::{Error, Result};
+use voronaut_io::{MetricFiles, MetricSource, read_metric};
+
+/// What a METRIC text says at the vertices.
+pub(super) fn source(text: &str, mesh: &Mesh, args: &MetricArgs) -> Result<Source> {
+    let text = text.trim();
+    if text == "implied" {
+        return Ok(Source::Metric(implied(mesh)?));
+    }
+    let given = MetricSource::parse(text)?;
+    match given {
+        MetricSource::Hessian(path) => {
+            let values = scalars(&path, "a Hessian is recovered from a scalar solution")?;
+            Ok(Source::Hessian(recover_hessian(mesh, &values, args.recovery.unwrap_or_default())?))
+        }
+        MetricSource::Named(MetricSpec::Hessian(function)) => {
+            Ok(Source::Hessian(hessian(&function.into(), mesh, args.recovery)?))
+        }
+        MetricSource::File(path) if args.background.is_none() => {
+            Ok(Source::Metric(own(&path, mesh, args.tensor_order)?))
+        }
+        _ => {
+            let background = args.background.as_deref().filter(|_| matches!(given, MetricSource::File(_)));
+            let files = MetricFiles { own: None, background, order: args.tensor_order };
+            let domain = Domain::new(&from_mesh(mesh)?)?;
+            let field = files.metric(&given, &domain, &MetricOptions::default(), GradedAt::Scale(1.0))?.field;
+            Ok(Source::Metric((0..mesh.points.len() as u32).map(|v| field.at(mesh.point(v))).collect()))
+        }
+    }
+}
+
+/// Second derivatives of a function: exact, or recovered from its values.
+fn hessian(function: &Snapshot, mesh: &Mesh, recovery: Option<Recovery>) -> Result<Vec<Tensor>> {
+    let points = (0..mesh.points.len() as u32).map(|v| mesh.point(v));
+    if let Some(recovery) = recovery {
+        let values: Vec<f64> = points.map(|p| function.value(p)).collect();
+        return recover_hessian(mesh, &values, recovery);
+    }
+    Ok(points.map(|p| function.second_derivatives(p)).collect())
+}
+
+/// A metric of one value for each vertex of the mesh itself.
+fn own(path: &Path, mesh: &Mesh, order: TensorOrder) -> Result<Vec<Tensor>> {
+    match read_metric(path, order)?.values {
+        SolutionValues::Scalar(sizes) => isotropic(mesh, &sizes),
+        SolutionValues::Tensor(entries) => Ok(entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect()),
+        SolutionValues::Vector { .. } | SolutionValues::Tensor3(_) => {
+            let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
+            Err(Error::parse(path.display().to_string(), "the values are no planar metric", help))
+        }
+    }
+}
+
+/// One number per vertex from a file.
+fn scalars(path: &Path, need: &str) -> Result<Vec<f64>> {
+    let place = path.display().to_string();
+    match voronaut_io::read_solution(path)?.values {
+        SolutionValues::Scalar(values) => Ok(values),
+        _ => Err(Error::parse(
+            place,
+            format!("the values are no scalars; {need}"),
+            "write one number (type 1) per vertex",
+        )),
+    }
+}
+
+/// The limits, with their files read.
+pub(super) fn limits(args: &MetricArgs) -> Result<Limits> {
+    let limit = |text: &Option<LimitText>| match text {
+        None => Ok(None),
+        Some(LimitText::Number(value)) => Ok(Some(Limit::Number(*value))),
+        Some(LimitText::File(path)) => Ok(Some(Limit::Field(scalars(path, "a limit is one number per vertex")?))),
+    };
+    Ok(Limits { h_min: limit(&args.h_min)?, h_max: limit(&args.h_max)?, a_max: limit(&args.a_max)? })
+}

@@ -1,0 +1,120 @@
+//! What users type for more than one command.
+
+mod values;
+
+pub(crate) use values::{
+    CanvasSize, Coordinates, EdgesOut, Show, canvas_size, coordinates, default_memory_limit, in_bytes, not_negative,
+    positive,
+};
+
+use clap::{Args, value_parser};
+use std::path::PathBuf;
+use values::window;
+use voronaut::geometry::Aabb;
+use voronaut::mesh::TensorOrder;
+use voronaut::metric::{Bounds, MOST_SWEEPS, Norm, Recovery};
+use voronaut::recipe::{MetricOptions, SMOOTH_METRIC};
+use voronaut::surface::RepairOptions;
+use voronaut_draw::Picture;
+
+#[derive(Debug, Args)]
+pub(crate) struct MetricChoices {
+    /// Least Euclidean size the metric may ask for
+    #[arg(long, value_name = "H", value_parser = positive)]
+    h_min: Option<f64>,
+    /// Greatest Euclidean size the metric may ask for
+    #[arg(long, value_name = "H", value_parser = positive)]
+    h_max: Option<f64>,
+    /// With hessian metrics: p of the L^p norm in which the error of linear interpolation is to be least: 1, 2, 4, ... or inf
+    #[arg(long, value_name = "P", default_value_t = Norm::default())]
+    pub(crate) norm: Norm,
+    /// With hessian:FILE.sol: how second derivatives are recovered, by a quadratic around each vertex (fit) or a double projection
+    /// (l2)
+    #[arg(long, value_name = "HOW", default_value_t = Recovery::default())]
+    pub(crate) recovery: Recovery,
+    /// Greatest ratio of the two sizes at a point, at least 1
+    #[arg(long, value_name = "RATIO", value_parser = positive)]
+    a_max: Option<f64>,
+    /// Sizes of neighbouring edges differ by about this factor at most, such as 1.3; in the plane, sampled on a background as
+    /// --smooth-metric has it [default: no gradation]
+    #[arg(long, value_name = "FACTOR", value_parser = positive)]
+    pub(crate) gradation: Option<f64>,
+    /// Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a .sol
+    /// file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
+    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(..=i64::from(MOST_SWEEPS)), allow_negative_numbers = true, default_value_t = SMOOTH_METRIC)]
+    pub(crate) smooth_metric: u32,
+    /// In which order tensors in files have their entries: disk (m11 m12 m22 m13 m23 m33, as .sol files have), upper (m11 m12 m13 m22
+    /// m23 m33) or diagonal (m11 m22 m33 m12 m23 m13)
+    #[arg(long, value_name = "ORDER", default_value_t = TensorOrder::default())]
+    pub(crate) tensor_order: TensorOrder,
+    /// The mesh on which a .sol metric is given [default: the domain's own]
+    #[arg(long, value_name = "MESH")]
+    pub(crate) background: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Damage {
+    /// Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that meet in a
+    /// point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
+    #[arg(long)]
+    pub(crate) repair: bool,
+}
+
+impl Damage {
+    /// What may be done to the meshes of surfaces.
+    pub(crate) fn options(&self) -> RepairOptions {
+        RepairOptions { repair: self.repair }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Outputs {
+    /// Draw a picture: .svg or .png
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
+    /// What the picture shows
+    #[arg(long, value_delimiter = ',', default_value = "mesh", requires = "picture")]
+    pub(crate) show: Vec<Show>,
+    /// Pixels of the picture's longer side
+    #[arg(long, value_name = "PIXELS", default_value_t = Picture::default().width, value_parser = value_parser!(u32).range(16..=16_000), requires = "picture")]
+    pub(crate) pixels: u32,
+    /// What the picture is cut to: x0,y0,x1,y1 [default: everything]
+    #[arg(long, value_name = "BOX", value_parser = window, allow_hyphen_values = true, requires = "picture")]
+    pub(crate) window: Option<Aabb>,
+    /// Draw how metric edge lengths and angles are distributed, with straight and with geodesic edges: .svg
+    #[arg(long, value_name = "FILE", requires = "metric")]
+    pub(crate) histograms: Option<PathBuf>,
+    /// Write all figures as JSON
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Run {
+    /// Threads to use [default: all]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..))]
+    pub(crate) threads: Option<u16>,
+    /// Say nothing but errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Say more: stages, counters
+    #[arg(short, long)]
+    pub(crate) verbose: bool,
+}
+
+impl MetricChoices {
+    pub(crate) fn bounds(&self) -> Bounds {
+        Bounds { h_min: self.h_min, h_max: self.h_max, a_max: self.a_max }
+    }
+
+    /// What is asked of a metric in the plane.
+    pub(crate) fn options(&self) -> MetricOptions {
+        MetricOptions {
+            bounds: self.bounds(),
+            norm: self.norm,
+            recovery: self.recovery,
+            smooth_metric: self.smooth_metric,
+            gradation: self.gradation,
+        }
+    }
+}

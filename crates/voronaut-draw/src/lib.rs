@@ -1,0 +1,89 @@
+//! Pictures of voronaut's meshes, as SVG and PNG.
+
+mod cells;
+mod colours;
+mod ellipses;
+mod frame;
+mod histogram;
+mod image;
+mod letters;
+mod palette;
+#[cfg(feature = "png")]
+mod png;
+mod protection;
+mod scene;
+mod simplify;
+mod strokes;
+mod svg;
+#[cfg(test)]
+mod test_meshes;
+mod unmet;
+
+pub use cells::Layers;
+pub use histogram::histograms_svg;
+#[cfg(feature = "png")]
+pub use png::render_png;
+pub use protection::Protection;
+pub use scene::{Fill, Scene, SceneLine, SceneTriangle, Stroke, View, draw_surface};
+pub use svg::{Picture, Shade, svg, svg_with};
+
+use std::path::Path;
+use voronaut::{Error, Result};
+
+/// Formats of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// Vector.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl PictureFormat {
+    /// The format a file name asks for by its ending, in upper or lower case.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`], with the endings that work.
+    pub fn from_path(path: &Path) -> Result<Self> {
+        let png = cfg!(feature = "png");
+        match ending(path).as_str() {
+            "svg" => Ok(PictureFormat::Svg),
+            "png" if png => Ok(PictureFormat::Png),
+            _ => {
+                let what = format!("{} does not end like a picture", path.display());
+                let help = if png { "end the name of the picture in .svg or .png" } else { "end it in .svg" };
+                Err(Error::Unsupported { what, help: help.into() })
+            }
+        }
+    }
+}
+
+/// The bytes of a picture made by [`svg`] or [`draw_surface`] in the format that a file name ends in.
+///
+/// # Errors
+/// [`Error::Unsupported`] for other endings, [`Error::Limit`] for too many pixels.
+pub fn picture_bytes(svg: &str, path: &Path) -> Result<Vec<u8>> {
+    match PictureFormat::from_path(path)? {
+        PictureFormat::Svg => Ok(svg.as_bytes().to_vec()),
+        #[cfg(feature = "png")]
+        PictureFormat::Png => render_png(svg),
+        #[cfg(not(feature = "png"))]
+        PictureFormat::Png => unreachable!("from_path knows no png without the feature"),
+    }
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_name_formats() {
+        let format = |name: &str| PictureFormat::from_path(Path::new(name));
+        assert_eq!(format("a.SVG").unwrap(), PictureFormat::Svg);
+        assert!(format("a.gif").unwrap_err().help().contains(".svg"));
+    }
+}

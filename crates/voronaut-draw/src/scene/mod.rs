@@ -1,0 +1,160 @@
+//! Pictures of surfaces in space: shaded triangles as pixels, lines on them as vectors, cut where they are hidden.
+//!
+//! | module | what it is |
+//! |---|---|
+//! | `view` | from where a scene is seen; from space to pixels |
+//! | `depth` | which triangle is nearest, at nine samples per pixel |
+//! | `light` | from samples to shaded pixels |
+//! | `visible` | what of a line is in front |
+//! | `draw` | the picture: an image, and lines over it |
+//! | `faces` | scenes of meshes and of surfaces |
+//! | `levels` | scenes of values |
+//! | `coloured`, `borders` | scenes of coloured canvases: cells with smooth borders |
+
+mod borders;
+mod coloured;
+mod depth;
+mod draw;
+mod faces;
+mod levels;
+mod light;
+#[cfg(all(test, feature = "png"))]
+mod tests;
+mod view;
+mod visible;
+
+pub use draw::draw_surface;
+pub use view::View;
+
+use super::colours::{self, Cell, Tint};
+use voronaut::geometry::{Point3, Vector3};
+
+/// Triangles and lines in space, to be drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// What hides and is hidden.
+    pub triangles: Vec<SceneTriangle>,
+    /// Lines on the triangles or elsewhere; those of one point are dots.
+    pub lines: Vec<SceneLine>,
+}
+
+/// A triangle of a scene. Its front is where its corners are counter-clockwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneTriangle {
+    /// Where its corners are.
+    pub corners: [Point3; 3],
+    /// Unit normals at its corners, for a smooth shade; without them the triangle is flat.
+    pub normals: Option<[Vector3; 3]>,
+    /// Its colour.
+    pub fill: Fill,
+}
+
+/// The colour of a triangle, before light falls on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fill {
+    /// That of a surface without any.
+    Plain,
+    /// That of a cell.
+    Cell {
+        /// Which of the palette's hues; any number.
+        hue: usize,
+        /// A variation that is seen only beside another; any number.
+        shade: usize,
+    },
+    /// A hue for each region, strong at 1 and pale at 0.
+    Level {
+        /// The number of the region.
+        region: usize,
+        /// From 0 to 1.
+        share: f64,
+    },
+    /// From pale (1) to warm (0).
+    Quality(f64),
+}
+
+/// A polyline of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneLine {
+    /// Its points in order; a single one is a dot.
+    pub points: Vec<Point3>,
+    /// How it is drawn.
+    pub stroke: Stroke,
+}
+
+/// How a line is drawn. Those that come later here lie over those before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stroke {
+    /// Between cells: white.
+    Cell,
+    /// A line of equal value: thin.
+    Level,
+    /// An edge of a mesh: thin.
+    Edge,
+    /// A border or a feature of a surface.
+    Border,
+    /// A geodesic edge: the thickest.
+    Geodesic,
+    /// A seed, as a line of one point.
+    Seed,
+}
+
+impl Scene {
+    /// The scene with more lines in it.
+    #[must_use]
+    pub fn with(mut self, lines: impl IntoIterator<Item = Vec<Point3>>, stroke: Stroke) -> Self {
+        self.lines.extend(lines.into_iter().map(|points| SceneLine { points, stroke }));
+        self
+    }
+
+    /// All points, of triangles and of lines.
+    fn points(&self) -> impl Iterator<Item = Point3> {
+        let corners = self.triangles.iter().flat_map(|triangle| triangle.corners);
+        corners.chain(self.lines.iter().flat_map(|line| line.points.iter().copied()))
+    }
+}
+
+impl Fill {
+    fn colour(self) -> String {
+        match self {
+            Fill::Plain => colours::SURFACE.into(),
+            Fill::Cell { hue, shade } => {
+                Cell { hue: hue % Cell::HUES, shade: shade % Cell::SHADES, tint: Tint::Full }.fill()
+            }
+            Fill::Level { region, share } => colours::fill(region, share.clamp(0.0, 1.0)),
+            Fill::Quality(quality) => colours::quality_fill(quality),
+        }
+    }
+}
+
+impl Stroke {
+    const ALL: [Stroke; 6] =
+        [Stroke::Cell, Stroke::Level, Stroke::Edge, Stroke::Border, Stroke::Geodesic, Stroke::Seed];
+
+    fn ink(self) -> &'static str {
+        match self {
+            Stroke::Cell => colours::CELL_BORDER,
+            Stroke::Level => colours::GRID,
+            Stroke::Edge => colours::EDGE,
+            Stroke::Border => colours::BOUNDARY,
+            Stroke::Geodesic => colours::GEODESIC,
+            Stroke::Seed => colours::SEED,
+        }
+    }
+
+    /// Whether it is thinner where the surface is seen from the side, for many may crowd there.
+    fn is_thinned(self) -> bool {
+        !matches!(self, Stroke::Border | Stroke::Seed)
+    }
+
+    /// Its width as a share of the length of typical lines, and at most, in pixels.
+    fn width(self) -> [f64; 2] {
+        match self {
+            Stroke::Cell => [0.045, 1.2],
+            Stroke::Level => [1.0, 0.8],
+            Stroke::Edge => [0.05, 1.0],
+            Stroke::Border => [1.0, 1.6],
+            Stroke::Geodesic => [0.06, 1.9],
+            Stroke::Seed => [0.0, 4.2],
+        }
+    }
+}

@@ -1,0 +1,324 @@
+//! Meshes as Gmsh's sections.
+
+use super::Version;
+use super::data::Column;
+use super::groups::{Mark, Marks, Numbering};
+use super::kinds::{EDGE, POINT, TRIANGLE};
+use super::sink::Sink;
+use crate::Fields;
+use crate::medit::Form;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{self, Write};
+use voronaut::mesh::Mesh;
+
+/// Writes a mesh and fields.
+pub(super) fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &mut dyn Write) -> io::Result<()> {
+    let plan = Plan::new(mesh);
+    let name = if version == Version::V4_1 { "4.1" } else { "2.2" };
+    let mut sink = Sink::new(name, form, out)?;
+    plan.write_names(&mut sink)?;
+    match version {
+        Version::V4_1 => plan.write_4(&mut sink)?,
+        Version::V2_2 => plan.write_2(form, &mut sink)?,
+    }
+    for column in fields.vertices.iter().flat_map(Column::of) {
+        write_data("NodeData", &column, (0..mesh.points.len()).map(Some), &mut sink)?;
+    }
+    let rows = if fields.triangles.is_empty() { Vec::new() } else { plan.triangles_of_elements(version) };
+    for column in fields.triangles.iter().flat_map(Column::of) {
+        write_data("ElementData", &column, rows.iter().copied(), &mut sink)?;
+    }
+    Ok(())
+}
+
+/// Which elements a mesh becomes, and in what order: triangles, edges, points, each by label and marks.
+struct Plan<'a> {
+    mesh: &'a Mesh,
+    parts: Vec<Part>,
+    groups: [Numbering; 3],
+}
+
+/// The elements of an entity: those of one dimension with the same label and marks.
+struct Part {
+    dimension: u8,
+    /// The tag of the entity.
+    entity: i32,
+    /// The physical groups of the entity.
+    groups: Vec<i32>,
+    /// Vertices, edges or triangles.
+    elements: Vec<u32>,
+}
+
+impl<'a> Plan<'a> {
+    fn new(mesh: &'a Mesh) -> Self {
+        let sorted = [sort_triangles(mesh), sort_edges(mesh), sort_points(mesh)];
+        let mut groups = [2, 1, 0].map(|dimension| {
+            Numbering::new(dimension, sorted[2 - usize::from(dimension)].keys().map(|&(label, _)| label))
+        });
+        let mut parts: Vec<Part> = Vec::new();
+        for (sorted, numbering) in sorted.into_iter().zip(&groups) {
+            for (entity, ((label, marks), elements)) in (1..).zip(sorted) {
+                let groups = numbering.tags(label, marks);
+                parts.push(Part { dimension: numbering.dimension(), entity, groups, elements });
+            }
+        }
+        for numbering in &mut groups {
+            let of = |part: &&Part| part.dimension == numbering.dimension();
+            let used: BTreeSet<i32> = parts.iter().filter(of).flat_map(|part| part.groups.iter().copied()).collect();
+            // Where points are no corners the group of corners is there to say so, even if it is empty.
+            let is_point = numbering.dimension() == 0 && !used.is_empty();
+            let corners = numbering.mark(Mark::Corner).filter(|_| is_point);
+            numbering.keep(|tag| used.contains(&tag) || corners == Some(tag));
+        }
+        Self { mesh, parts, groups }
+    }
+
+    fn write_names(&self, sink: &mut Sink<'_>) -> io::Result<()> {
+        let count: usize = self.groups.iter().map(|numbering| numbering.names.len()).sum();
+        if count == 0 {
+            return Ok(());
+        }
+        sink.line(format_args!("$PhysicalNames\n{count}"))?;
+        for numbering in self.groups.iter().rev() {
+            for (tag, name) in &numbering.names {
+                sink.line(format_args!("{} {tag} \"{name}\"", numbering.dimension()))?;
+            }
+        }
+        sink.line(format_args!("$EndPhysicalNames"))
+    }
+
+    fn write_4(&self, sink: &mut Sink<'_>) -> io::Result<()> {
+        let count = |dimension: u8| self.parts.iter().filter(|part| part.dimension == dimension).count();
+        sink.line(format_args!("$Entities"))?;
+        // Nodes have to belong to something.
+        let is_bare = self.parts.is_empty();
+        for count in [count(0), count(1), count(2) + usize::from(is_bare), 0] {
+            sink.size(count)?;
+        }
+        sink.end_row()?;
+        for dimension in 0..3 {
+            for part in self.parts.iter().filter(|part| part.dimension == dimension) {
+                self.write_entity(part, sink)?;
+            }
+        }
+        if is_bare {
+            self.write_entity(&Part { dimension: 2, entity: 1, groups: vec![], elements: vec![] }, sink)?;
+        }
+        sink.end_section("Entities")?;
+        self.write_nodes_4(sink)?;
+        self.write_elements_4(sink)
+    }
+
+    fn write_entity(&self, part: &Part, sink: &mut Sink<'_>) -> io::Result<()> {
+        sink.int(part.entity)?;
+        let [lower, upper] = self.bounds(part);
+        let numbers = if part.dimension == 0 { lower.to_vec() } else { [lower, upper].concat() };
+        numbers.into_iter().try_for_each(|x| sink.number(x))?;
+        sink.size(part.groups.len())?;
+        part.groups.iter().try_for_each(|&tag| sink.int(tag))?;
+        if part.dimension > 0 {
+            sink.size(0)?;
+        }
+        sink.end_row()
+    }
+
+    /// The smallest box around the elements of an entity.
+    fn bounds(&self, part: &Part) -> [[f64; 3]; 2] {
+        let vertices = || part.elements.iter().flat_map(|element| self.nodes(part.dimension, element));
+        let position = |&v: &u32| self.mesh.points[v as usize];
+        let first = vertices().next().map(position).unwrap_or_default();
+        let [mut lower, mut upper] = [first; 2];
+        for point in vertices().map(position) {
+            for i in 0..3 {
+                (lower[i], upper[i]) = (lower[i].min(point[i]), upper[i].max(point[i]));
+            }
+        }
+        [lower, upper]
+    }
+
+    fn write_nodes_4(&self, sink: &mut Sink<'_>) -> io::Result<()> {
+        let count = self.mesh.points.len();
+        sink.line(format_args!("$Nodes"))?;
+        let blocks = usize::from(count > 0);
+        [blocks, count, blocks, count].into_iter().try_for_each(|number| sink.size(number))?;
+        sink.end_row()?;
+        if count > 0 {
+            let dimension = self.parts.first().map_or(2, |part| part.dimension);
+            [i32::from(dimension), 1, 0].into_iter().try_for_each(|number| sink.int(number))?;
+            sink.size(count)?;
+            sink.end_row()?;
+            for tag in 1..=count {
+                sink.size(tag)?;
+                sink.end_row()?;
+            }
+        }
+        for point in &self.mesh.points {
+            point.iter().try_for_each(|&x| sink.number(x))?;
+            sink.end_row()?;
+        }
+        sink.end_section("Nodes")
+    }
+
+    fn write_elements_4(&self, sink: &mut Sink<'_>) -> io::Result<()> {
+        let count: usize = self.parts.iter().map(|part| part.elements.len()).sum();
+        sink.line(format_args!("$Elements"))?;
+        [self.parts.len(), count, usize::from(count > 0), count]
+            .into_iter()
+            .try_for_each(|number| sink.size(number))?;
+        sink.end_row()?;
+        let mut tag = 0;
+        for part in &self.parts {
+            let head = [part.dimension.into(), part.entity, kind(part.dimension)];
+            head.into_iter().try_for_each(|number| sink.int(number))?;
+            sink.size(part.elements.len())?;
+            sink.end_row()?;
+            for element in &part.elements {
+                tag += 1;
+                sink.size(tag)?;
+                self.nodes(part.dimension, element).iter().try_for_each(|&v| sink.size(v as usize + 1))?;
+                sink.end_row()?;
+            }
+        }
+        sink.end_section("Elements")
+    }
+
+    fn write_2(&self, form: Form, sink: &mut Sink<'_>) -> io::Result<()> {
+        sink.line(format_args!("$Nodes\n{}", self.mesh.points.len()))?;
+        for (tag, point) in (1..).zip(&self.mesh.points) {
+            sink.narrow(tag)?;
+            point.iter().try_for_each(|&x| sink.number(x))?;
+            sink.end_row()?;
+        }
+        sink.end_section("Nodes")?;
+        let count: usize = self.parts.iter().map(Part::count_2).sum();
+        sink.line(format_args!("$Elements\n{count}"))?;
+        let mut tag = 0;
+        for part in &self.parts {
+            if form == Form::Binary {
+                sink.int(kind(part.dimension))?;
+                sink.narrow(part.count_2())?;
+                sink.int(2)?;
+            }
+            for element in &part.elements {
+                for &group in part.groups_2() {
+                    tag += 1;
+                    sink.narrow(tag)?;
+                    if form == Form::Text {
+                        sink.int(kind(part.dimension))?;
+                        sink.int(2)?;
+                    }
+                    sink.int(group)?;
+                    sink.int(part.entity)?;
+                    self.nodes(part.dimension, element).iter().try_for_each(|&v| sink.narrow(v as usize + 1))?;
+                    sink.end_row()?;
+                }
+            }
+        }
+        sink.end_section("Elements")
+    }
+
+    /// The vertices of a vertex, an edge or a triangle.
+    fn nodes<'b>(&'b self, dimension: u8, element: &'b u32) -> &'b [u32] {
+        match dimension {
+            0 => std::slice::from_ref(element),
+            1 => &self.mesh.edges[*element as usize],
+            _ => &self.mesh.triangles[*element as usize],
+        }
+    }
+
+    /// The triangle whose value each element has. Version 4.1: meshio reads values of elements only where all elements have one, so an
+    /// edge or a point has that of a triangle at its first vertex; `None` where there is none. Version 2.2: of triangles alone, for there
+    /// meshio 5.3.5 reads values only where there is nothing else.
+    fn triangles_of_elements(&self, version: Version) -> Vec<Option<usize>> {
+        let mut at = vec![None; self.mesh.points.len()];
+        for (i, triangle) in self.mesh.triangles.iter().enumerate() {
+            for &vertex in triangle {
+                at[vertex as usize] = Some(i);
+            }
+        }
+        let parts = self.parts.iter().filter(|part| part.dimension == 2 || version == Version::V4_1);
+        let of = |part: &Part, element: &u32| match part.dimension {
+            2 => Some(*element as usize),
+            dimension => at[self.nodes(dimension, element)[0] as usize],
+        };
+        parts.flat_map(|part| part.elements.iter().map(move |element| of(part, element))).collect()
+    }
+}
+
+impl Part {
+    /// The groups for which version 2.2 has the elements, once each. Those of marks are left out but for points, so that edges and
+    /// triangles are there once.
+    fn groups_2(&self) -> &[i32] {
+        if self.dimension == 0 { &self.groups } else { &self.groups[..self.groups.len().min(1)] }
+    }
+
+    /// How many elements it is in version 2.2.
+    fn count_2(&self) -> usize {
+        self.groups_2().len() * self.elements.len()
+    }
+}
+
+/// Elements by label and marks, each list in the order of the mesh.
+type Sorted = BTreeMap<(i32, Marks), Vec<u32>>;
+
+fn sort_triangles(mesh: &Mesh) -> Sorted {
+    let marks = marks(mesh.triangles.len(), &[(Mark::RequiredTriangle, &mesh.required_triangles)]);
+    sort(&mesh.triangle_labels, marks)
+}
+
+fn sort_edges(mesh: &Mesh) -> Sorted {
+    let lists = [(Mark::Ridge, mesh.ridges.as_slice()), (Mark::RequiredEdge, &mesh.required_edges)];
+    sort(&mesh.edge_labels, marks(mesh.edges.len(), &lists))
+}
+
+/// Vertices without label and marks need no elements.
+fn sort_points(mesh: &Mesh) -> Sorted {
+    let lists = [(Mark::Corner, mesh.corners.as_slice()), (Mark::RequiredVertex, &mesh.required_points)];
+    let mut sorted = sort(&mesh.point_labels, marks(mesh.points.len(), &lists));
+    sorted.remove(&(0, Marks::default()));
+    sorted
+}
+
+fn marks(count: usize, lists: &[(Mark, &[u32])]) -> Vec<Marks> {
+    let mut marks = vec![Marks::default(); count];
+    for (mark, list) in lists {
+        list.iter().for_each(|&i| marks[i as usize].insert(*mark));
+    }
+    marks
+}
+
+fn sort(labels: &[i32], marks: Vec<Marks>) -> Sorted {
+    let mut sorted = Sorted::new();
+    let labels = labels.iter().copied().chain(std::iter::repeat(0));
+    for (i, key) in (0..).zip(labels.zip(marks)) {
+        sorted.entry(key).or_default().push(i);
+    }
+    sorted
+}
+
+/// The type of elements of a dimension.
+fn kind(dimension: u8) -> i32 {
+    match dimension {
+        0 => POINT,
+        1 => EDGE,
+        _ => TRIANGLE,
+    }
+}
+
+/// Writes values of nodes or elements, zeros where there is no `row`.
+fn write_data(
+    section: &str,
+    column: &Column<'_>,
+    rows: impl ExactSizeIterator<Item = Option<usize>>,
+    sink: &mut Sink<'_>,
+) -> io::Result<()> {
+    let (name, components, count) = (&column.name, column.components, rows.len());
+    sink.line(format_args!("${section}\n1\n\"{name}\"\n1\n0\n3\n0\n{components}\n{count}"))?;
+    for (tag, row) in (1..).zip(rows) {
+        sink.narrow(tag)?;
+        let numbers = row.map_or([0.0; 9], |row| column.row(row));
+        numbers[..components].iter().try_for_each(|&x| sink.number(x))?;
+        sink.end_row()?;
+    }
+    sink.end_section(section)
+}

@@ -1,0 +1,189 @@
+//! Geomview's `.off` in text form.
+
+use super::cutting::cut;
+use super::words::{At, Row, Rows, Shortest, Word, error_at, number, shortened, whole};
+use std::io::{self, BufRead, Write};
+use voronaut::Result;
+use voronaut::mesh::Mesh;
+
+/// Reads an `.off` text: vertices, and faces, cut along diagonals that suit them, quadrilaterals along the better one.
+///
+/// The head may be `OFF` or, with more columns, `COFF`, `NOFF` and their like, or missing; what follows the coordinates and
+/// the faces' vertices on their rows (colours, normals) is passed over; a row may go on below. Labels are 0. Memory follows the text, never a
+/// count written in it.
+///
+/// # Errors
+///
+/// [`voronaut::Error::Parse`] with the line of another head, of what is no finite number, of a row that is too short or
+/// missing, of rows left over, and of a vertex that does not exist.
+pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
+    let mut rows = Rows::new(source, place);
+    let [vertices, faces] = read_counts(&mut rows)?;
+    let mut mesh = Mesh::default();
+    for at in At::rows("the vertices", vertices) {
+        mesh.points.push(read_vertex(&mut rows, at)?);
+    }
+    let mut polygon = Vec::new();
+    for at in At::rows("the faces", faces) {
+        read_face(&mut rows, at, vertices, &mut polygon)?;
+        cut(&mesh.points, &polygon, &mut mesh.triangles);
+    }
+    if let Some(row) = rows.next()? {
+        let what = "more rows than the counts in the file announce";
+        return Err(error_at(place, row.line, what, "check the counts of vertices and faces"));
+    }
+    mesh.point_labels = vec![0; mesh.points.len()];
+    mesh.triangle_labels = vec![0; mesh.triangles.len()];
+    Ok(mesh)
+}
+
+/// Writes vertices and triangles as an `.off` text that [`read`] turns into the same; labels and edges have no place there.
+///
+/// # Errors
+/// What `out` says.
+pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "OFF\n{} {} 0", mesh.points.len(), mesh.triangles.len())?;
+    for [x, y, z] in &mesh.points {
+        writeln!(out, "{} {} {}", Shortest(*x), Shortest(*y), Shortest(*z))?;
+    }
+    mesh.triangles.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
+}
+
+/// Dialects whose vertices begin with their three coordinates.
+const HEADS: [&str; 7] = ["OFF", "COFF", "NOFF", "CNOFF", "STOFF", "STCOFF", "STNOFF"];
+
+fn read_counts(rows: &mut Rows<'_>) -> Result<[u64; 2]> {
+    let (place, at) = (rows.place(), At::head("the file"));
+    let row = next_row(rows, at)?;
+    let mut words = row.words().peekable();
+    let first = words.peek().map_or("", |word| word.text);
+    if !first.starts_with(|c: char| c.is_ascii_digit()) {
+        if !HEADS.iter().any(|head| head.eq_ignore_ascii_case(first)) {
+            let what = format!("the file begins with '{}', not with OFF", shortened(first));
+            return Err(error_at(place, row.line, what, "give a file in the text form of .off"));
+        }
+        words.next();
+    }
+    if words.peek().is_some() {
+        return counts(place, row.line, words);
+    }
+    drop(words);
+    let row = next_row(rows, at)?;
+    counts(place, row.line, row.words())
+}
+
+/// Vertices and faces; a count of edges may follow and means nothing.
+fn counts<'w>(place: &str, line: usize, mut words: impl Iterator<Item = Word<'w>>) -> Result<[u64; 2]> {
+    let at = At::head("the file");
+    let mut count = || whole(place, word(place, line, words.next(), at)?, at);
+    Ok([count()?, count()?])
+}
+
+fn read_vertex(rows: &mut Rows<'_>, at: At<'_>) -> Result<[f64; 3]> {
+    let place = rows.place();
+    let (mut point, mut known) = ([0.0; 3], 0);
+    while known < 3 {
+        for word in next_row(rows, at)?.words().take(3 - known) {
+            point[known] = number(place, word, at)?;
+            known += 1;
+        }
+    }
+    Ok(point)
+}
+
+fn read_face(rows: &mut Rows<'_>, at: At<'_>, vertices: u64, polygon: &mut Vec<u32>) -> Result<()> {
+    let place = rows.place();
+    let mut corners = None;
+    polygon.clear();
+    while corners.is_none_or(|corners| (polygon.len() as u64) < corners) {
+        let row = next_row(rows, at)?;
+        let mut words = row.words();
+        let count = match corners {
+            Some(count) => count,
+            None => whole(place, word(place, row.line, words.next(), at)?, at)?,
+        };
+        if count < 3 {
+            let what = format!("a face of {count} vertices ({at})");
+            return Err(error_at(place, row.line, what, "a face needs three vertices or more"));
+        }
+        corners = Some(count);
+        for word in words.take((count - polygon.len() as u64) as usize) {
+            let vertex: u32 = whole(place, word, at)?;
+            if u64::from(vertex) >= vertices {
+                let what = format!("vertex {vertex} does not exist: the file announces {vertices} ({at})");
+                return Err(error_at(place, row.line, what, "number from 0, and below the count of vertices"));
+            }
+            polygon.push(vertex);
+        }
+    }
+    Ok(())
+}
+
+fn next_row<'r>(rows: &'r mut Rows<'_>, at: At<'_>) -> Result<Row<'r>> {
+    if rows.has_next()? {
+        return Ok(rows.next()?.expect("a row was seen"));
+    }
+    let help = format!("the file is cut off, or the count of {} is too large", at.section);
+    Err(error_at(rows.place(), rows.line(), format!("the text ends in {at}"), help))
+}
+
+fn word<'w>(place: &str, line: usize, word: Option<Word<'w>>, at: At<'_>) -> Result<Word<'w>> {
+    let help = "write all numbers of a vertex or a face on one row";
+    word.ok_or_else(|| error_at(place, line, format!("the row ends too early ({at})"), help))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dialects() {
+        for text in [
+            "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 255 0 0\n",
+            "COFF 4 1 5 # counts\n\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 0 0 0 0\n0 1 0 9 9 9 9\n4 0 1 2 3",
+            "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n",
+            "OFF\n4 1 0\n0 0 0\n1\n0 0\n1 1 0\n0 1 0\n4\n0 \n1\n2 3 255\n",
+        ] {
+            let mesh = read(text.as_bytes(), "a.off").unwrap();
+            assert_eq!(mesh.points[2].map(f64::to_bits), [1.0_f64, 1.0, 0.0].map(f64::to_bits));
+            assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+        }
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let mesh = Mesh {
+            points: vec![[0.1, -1e-300, 1e22], [1.0 / 3.0, 0.0, -2.5], [0.0, 1.0, f64::MIN_POSITIVE]],
+            point_labels: vec![0; 3],
+            triangles: vec![[0, 1, 2], [2, 1, 0]],
+            triangle_labels: vec![0; 2],
+            ..Mesh::default()
+        };
+        let mut out = Vec::new();
+        write(&mesh, &mut out).unwrap();
+        assert_eq!(read(out.as_slice(), "a.off").unwrap(), mesh);
+    }
+
+    #[test]
+    fn errors_say_what_and_where() {
+        for (text, expected) in [
+            ("", "a.off:1: the text ends in the head of the file"),
+            ("solid\n", "a.off:1: the file begins with 'solid', not with OFF"),
+            ("OFF BINARY\n", "a.off:1: 'BINARY' is not a whole number"),
+            ("OFF\n3", "a.off:2: the row ends too early (the head of the file)"),
+            ("OFF\n9000000000000000000 1 0\n0 0 0", "a.off:3: the text ends in row 2 of 9000000000000000000 of the v"),
+            ("OFF\n1 1 0\n0 0\n", "a.off:3: the text ends in row 1 of 1 of the vertices"),
+            ("OFF\n1 1 0\n0 0 inf\n", "a.off:3: 'inf' is not a finite number (row 1 of 1 of the vertices)"),
+            ("OFF\n1 1 0\n0 0 0\n2 0 0", "a.off:4: a face of 2 vertices (row 1 of 1 of the faces)"),
+            ("OFF\n1 1 0\n0 0 0\n3 0 0 1", "a.off:4: vertex 1 does not exist: the file announces 1"),
+            ("OFF\n1 1 0\n0 0 0\n3 0 0 -1", "a.off:4: '-1' is out of range"),
+            ("OFF\n1 1 0\n0 0 0\n4000000000 0 0 0", "a.off:4: the text ends in row 1 of 1 of the faces"),
+            ("OFF\n1 1 0\n0 0 0\n3 0 0 0\n1 1 1\n", "a.off:5: more rows than the counts in the file announce"),
+            ("OFF\n1 2 0\n0 0 0\n3 0 0 0", "a.off:4: the text ends in row 2 of 2 of the faces"),
+        ] {
+            let error = read(text.as_bytes(), "a.off").unwrap_err();
+            assert!(error.to_string().starts_with(expected), "{error}");
+            assert!(!error.help().is_empty());
+        }
+    }
+}

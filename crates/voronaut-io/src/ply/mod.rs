@@ -1,0 +1,489 @@
+//! Stanford's `.ply`, as text and binary in both byte orders.
+
+mod header;
+mod source;
+mod strips;
+
+use super::cutting::Polygons;
+use super::document::distinct_names;
+use super::medit::Form;
+use super::words::{Largest, Shortest};
+use super::{Document, Field, Fields};
+use header::{Element, Header, Kind, Property, Shape};
+use source::Source;
+use std::io::{self, BufRead, Write};
+use voronaut::Result;
+use voronaut::mesh::Mesh;
+use voronaut::mesh::SolutionValues;
+
+/// Reads a `.ply` file.
+///
+/// Kept are `x`, `y`, `z` and `label` of the element `vertex`; the lists `vertex_indices` (or `vertex_index`) of the element `face`,
+/// cut along diagonals that suit them, with `label`; the lists of the element `tristrips`, in which -1 ends a strip; `vertex1`, `vertex2` and `label` of the element `edge`. Other properties of
+/// vertices that are one number each are fields, but for normals and colours; of faces they are, where all
+/// faces are triangles. All else is passed over. Memory follows the file, never a count written in it.
+///
+/// # Errors
+///
+/// [`Error::Parse`](voronaut::Error::Parse) with the line (in the head and in text) or the byte of what is not as announced: a head that
+/// makes no sense, a file cut off or too long, a coordinate or a field that is not finite, a face of fewer than three vertices, a
+/// vertex that does not exist. [`Error::Io`](voronaut::Error::Io) of a file that cannot be read.
+pub fn read(mut source: impl BufRead, place: &str) -> Result<Document> {
+    let header = Header::read(&mut source, place)?;
+    let mut source = Source::new(&header, source, place);
+    let mut reader = Reader::default();
+    for element in &header.elements {
+        reader.read_element(element, &mut source)?;
+    }
+    source.finish()?;
+    if !header.elements.iter().any(|element| element.name == "vertex") {
+        let what = "the file has no element vertex";
+        return Err(source.error_at(source.position(), what, "save the vertices with x, y and z"));
+    }
+    reader.finish(&source)
+}
+
+/// Writes a mesh and fields as a `.ply` file, as text or binary (little-endian, coordinates and fields as doubles): [`read`] turns either
+/// into the same bits. Edges are left out: programs that read the format stop at elements that they do not know; and some that do not
+/// mind labels of faces in text fail on them in binary files. A field of several components is as many properties `NAME_0`, `NAME_1`, ...
+///
+/// # Errors
+/// What `out` says.
+pub fn write(mesh: &Mesh, fields: &Fields, form: Form, out: &mut dyn Write) -> io::Result<()> {
+    let [of_vertices, of_faces] = [&fields.vertices, &fields.triangles].map(|fields| properties(fields));
+    write!(
+        out,
+        "ply\nformat {} 1.0\ncomment voronaut\nelement vertex {}\nproperty double x\nproperty double y\n\
+         property double z\nproperty int label\n{of_vertices}element face {}\nproperty list uchar uint vertex_indices\n\
+         property int label\n{of_faces}end_header\n",
+        if form == Form::Text { "ascii" } else { "binary_little_endian" },
+        mesh.points.len(),
+        mesh.triangles.len()
+    )?;
+    let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0);
+    let row = |fields: &[Field], i: usize| fields.iter().flat_map(|field| field.values.row(i)).copied().collect();
+    for (i, point) in mesh.points.iter().enumerate() {
+        write_vertex(*point, label(&mesh.point_labels, i), row(&fields.vertices, i), form, out)?;
+    }
+    for (i, triangle) in mesh.triangles.iter().enumerate() {
+        write_face(*triangle, label(&mesh.triangle_labels, i), row(&fields.triangles, i), form, out)?;
+    }
+    Ok(())
+}
+
+fn write_vertex(point: [f64; 3], label: i32, row: Vec<f64>, form: Form, out: &mut dyn Write) -> io::Result<()> {
+    match form {
+        Form::Text => {
+            point.into_iter().try_for_each(|x| write!(out, "{} ", Shortest(x)))?;
+            write!(out, "{label}")?;
+        }
+        Form::Binary => {
+            out.write_all(point.map(f64::to_le_bytes).as_flattened())?;
+            out.write_all(&label.to_le_bytes())?;
+        }
+    }
+    write_row(row, form, out)
+}
+
+fn write_face(triangle: [u32; 3], label: i32, row: Vec<f64>, form: Form, out: &mut dyn Write) -> io::Result<()> {
+    match form {
+        Form::Text => {
+            let [a, b, c] = triangle;
+            write!(out, "3 {a} {b} {c} {label}")?;
+        }
+        Form::Binary => {
+            out.write_all(&[3])?;
+            out.write_all(triangle.map(u32::to_le_bytes).as_flattened())?;
+            out.write_all(&label.to_le_bytes())?;
+        }
+    }
+    write_row(row, form, out)
+}
+
+/// The values of an element, and in text the end of its line.
+fn write_row(row: Vec<f64>, form: Form, out: &mut dyn Write) -> io::Result<()> {
+    match form {
+        Form::Text => {
+            row.into_iter().try_for_each(|x| write!(out, " {}", Shortest(x)))?;
+            out.write_all(b"\n")
+        }
+        Form::Binary => row.into_iter().try_for_each(|x| out.write_all(&x.to_le_bytes())),
+    }
+}
+
+/// The properties of fields, one for each component; names have no spaces here, and are none that mean something else.
+fn properties(fields: &[Field]) -> String {
+    let name = |field: &Field| field.name.split_whitespace().collect::<Vec<_>>().join("_");
+    let columns = |field: &Field| match field.values.components() {
+        1 => vec![name(field)],
+        several => (0..several).map(|i| format!("{}_{i}", name(field))).collect(),
+    };
+    let names =
+        distinct_names(fields.iter().flat_map(columns), &[["x", "y", "z", "label"].as_slice(), &LOOKS].concat());
+    names.into_iter().fold(String::new(), |text, name| text + "property double " + &name + "\n")
+}
+
+/// Properties that are shown, not computed with.
+const LOOKS: [&str; 7] = ["nx", "ny", "nz", "red", "green", "blue", "alpha"];
+
+/// What a property means.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Role {
+    Coordinate(usize),
+    End(usize),
+    Label,
+    Vertices,
+    Strips,
+    Field(usize),
+    None,
+}
+
+#[derive(Default)]
+struct Reader {
+    mesh: Mesh,
+    polygons: Polygons,
+    vertex_fields: Vec<(String, Vec<f64>)>,
+    face_fields: Vec<(String, Vec<f64>)>,
+    largest: Largest,
+}
+
+impl Reader {
+    fn read_element(&mut self, element: &Element, source: &mut Source<'_>) -> Result<()> {
+        if element.properties.is_empty() {
+            // Nothing to read, however many there are.
+            return Ok(());
+        }
+        let roles: Vec<Role> = element.properties.iter().map(|property| self.role(&element.name, property)).collect();
+        let lacks = |axis: &usize| element.name == "vertex" && !roles.contains(&Role::Coordinate(*axis));
+        if let Some(axis) = (0..3).find(lacks) {
+            let what = format!("the element vertex has no property {}", ["x", "y", "z"][axis]);
+            return Err(source.error_at(source.position(), what, "save the vertices with x, y and z"));
+        }
+        for row in 1..=element.count {
+            source.begin(&element.name, row, element.count);
+            self.read_row(element, &roles, source)?;
+        }
+        Ok(())
+    }
+
+    fn role(&mut self, element: &str, property: &Property) -> Role {
+        let name = property.name.as_str();
+        let fields = match (element, property.shape) {
+            ("face", Shape::List(..)) if header::VERTEX_LISTS.contains(&name) => return Role::Vertices,
+            ("tristrips", Shape::List(..)) if header::VERTEX_LISTS.contains(&name) => return Role::Strips,
+            (_, Shape::List(..)) => return Role::None,
+            ("vertex" | "face" | "edge", _) if name == "label" => return Role::Label,
+            ("vertex", _) => &mut self.vertex_fields,
+            ("face", _) => &mut self.face_fields,
+            ("edge", _) => {
+                return ["vertex1", "vertex2"].iter().position(|end| *end == name).map_or(Role::None, Role::End);
+            }
+            _ => return Role::None,
+        };
+        match ["x", "y", "z"].iter().position(|axis| *axis == name) {
+            Some(axis) if element == "vertex" => Role::Coordinate(axis),
+            _ if LOOKS.contains(&name) => Role::None,
+            _ => {
+                fields.push((name.to_owned(), Vec::new()));
+                Role::Field(fields.len() - 1)
+            }
+        }
+    }
+
+    fn read_row(&mut self, element: &Element, roles: &[Role], source: &mut Source<'_>) -> Result<()> {
+        let (mut point, mut ends, mut label) = ([f64::NAN; 3], [None; 2], 0);
+        for (property, &role) in element.properties.iter().zip(roles) {
+            match (property.shape, role) {
+                (Shape::List(counts, kind), Role::Strips) => self.read_strips(source, counts, kind)?,
+                (Shape::List(counts, kind), _) => {
+                    let list = self.read_list(source, counts, kind, role == Role::Vertices)?;
+                    if role == Role::Vertices {
+                        self.push_face(&list, source)?;
+                    }
+                }
+                (Shape::Scalar(kind), Role::Coordinate(axis)) => point[axis] = source.number(kind)?,
+                (Shape::Scalar(kind), Role::Label) => label = whole_label(source.number(kind)?, source)?,
+                (Shape::Scalar(kind), Role::End(end)) => {
+                    ends[end] = Some(self.vertex(source.number(kind)?, source)?);
+                }
+                (Shape::Scalar(kind), Role::Field(field)) => {
+                    self.push_value(element, field, source.number(kind)?, source)?;
+                }
+                (Shape::Scalar(kind), Role::None | Role::Vertices | Role::Strips) => source.pass(kind)?,
+            }
+        }
+        match element.name.as_str() {
+            "vertex" => {
+                if !point.iter().all(|x| x.is_finite()) {
+                    return Err(source.error("a coordinate is not finite", "remove or correct the vertex"));
+                }
+                self.mesh.points.push(point);
+                self.mesh.point_labels.push(label);
+            }
+            "face" => self.polygons.label(label),
+            "edge" => {
+                let [Some(a), Some(b)] = ends else {
+                    return Err(source.error("an edge without its ends", "write the properties vertex1 and vertex2"));
+                };
+                self.mesh.edges.push([a, b]);
+                self.mesh.edge_labels.push(label);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn push_value(&mut self, element: &Element, field: usize, value: f64, source: &Source<'_>) -> Result<()> {
+        if !value.is_finite() {
+            return Err(source.error("a value is not finite", "remove or correct it"));
+        }
+        let fields = if element.name == "vertex" { &mut self.vertex_fields } else { &mut self.face_fields };
+        fields[field].1.push(value);
+        Ok(())
+    }
+
+    fn push_face(&mut self, polygon: &[u32], source: &Source<'_>) -> Result<()> {
+        if polygon.len() < 3 {
+            let what = format!("a face of {} vertices", polygon.len());
+            return Err(source.error(&what, "a face needs three vertices or more"));
+        }
+        self.polygons.push(polygon);
+        Ok(())
+    }
+
+    /// Faces may stand before the vertices: whether these exist is known at the end.
+    fn finish(mut self, source: &Source<'_>) -> Result<Document> {
+        let count = self.mesh.points.len();
+        if let Some((number, position)) = self.largest.beyond(count) {
+            let what = format!("vertex {} does not exist: the file lists {count}, from 0", number - 1);
+            return Err(source.error_at(position, what, "check the faces and edges, and that the file is whole"));
+        }
+        (self.mesh.triangles, self.mesh.triangle_labels) = self.polygons.cut(&self.mesh.points);
+        let triangles = self.mesh.triangles.len();
+        // Fields of triangles are those of faces only where each face is one.
+        self.face_fields.retain(|(_, values)| values.len() == triangles);
+        let fields = |fields: Vec<(String, Vec<f64>)>| {
+            fields.into_iter().map(|(name, values)| Field { name, values: SolutionValues::Scalar(values) }).collect()
+        };
+        let fields = Fields { vertices: fields(self.vertex_fields), triangles: fields(self.face_fields) };
+        Ok(Document { mesh: self.mesh, fields, notes: Vec::new() })
+    }
+
+    /// The vertices in a list; the entries of lists that nobody needs are passed over.
+    fn read_list(&mut self, source: &mut Source<'_>, counts: Kind, kind: Kind, keep: bool) -> Result<Vec<u32>> {
+        let mut list = Vec::new();
+        for _ in 0..read_length(source, counts)? {
+            let value = source.number(kind)?;
+            if keep {
+                list.push(self.vertex(value, source)?);
+            }
+        }
+        Ok(list)
+    }
+
+    fn vertex(&mut self, value: f64, source: &Source<'_>) -> Result<u32> {
+        if (0.0..f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0 {
+            let vertex = value as u32;
+            self.largest.note(u64::from(vertex) + 1, source.position());
+            return Ok(vertex);
+        }
+        Err(source.error(&format!("vertex {value} does not exist"), "number vertices from 0"))
+    }
+}
+
+/// How many entries a list has.
+fn read_length(source: &mut Source<'_>, counts: Kind) -> Result<u64> {
+    let length = source.number(counts)?;
+    if length.is_nan() || length < 0.0 || length.fract() != 0.0 {
+        return Err(source.error(&format!("a list of {length} entries"), "lists begin with their length"));
+    }
+    Ok(length as u64)
+}
+
+fn whole_label(value: f64, source: &Source<'_>) -> Result<i32> {
+    let label = value as i32;
+    if f64::from(label) - value == 0.0 {
+        return Ok(label);
+    }
+    Err(source.error(&format!("the label {value}"), "labels are whole numbers of 32 bits"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEAD: &str = "comment by hand\nobj_info none\nelement vertex 4\nproperty float x\nproperty uchar shade\nproperty \
+                        double y\nproperty float z\nelement face 2\nproperty list uchar int vertex_indices\nproperty list \
+                        ushort short extra\nelement nothing 4000000000\n";
+
+    fn text(body: &str) -> Vec<u8> {
+        format!("ply\nformat ascii 1.0\n{HEAD}end_header\n{body}").into_bytes()
+    }
+
+    const BODY: &str = "0 9 0 0\n1 9 0 0\n1 9 1 0\n0 9 1 0.5\n4 0 1 2 3 1 -7\n3 2 1 0 0\n";
+
+    fn binary(big: bool) -> Vec<u8> {
+        let order = |bytes: &mut Vec<u8>, mut value: Vec<u8>| {
+            if big {
+                value.reverse();
+            }
+            bytes.extend(value);
+        };
+        let name = if big { "big" } else { "little" };
+        let mut bytes = format!("ply\r\nformat binary_{name}_endian 1.0\r\n{HEAD}end_header\n").into_bytes();
+        for [x, y, z] in [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.5_f32]] {
+            order(&mut bytes, x.to_le_bytes().into());
+            bytes.push(9);
+            order(&mut bytes, f64::from(y).to_le_bytes().into());
+            order(&mut bytes, z.to_le_bytes().into());
+        }
+        for (face, extra) in [(vec![0_i32, 1, 2, 3], vec![-7_i16]), (vec![2, 1, 0], vec![])] {
+            bytes.push(face.len() as u8);
+            for v in face {
+                order(&mut bytes, v.to_le_bytes().into());
+            }
+            order(&mut bytes, (extra.len() as u16).to_le_bytes().into());
+            for v in extra {
+                order(&mut bytes, v.to_le_bytes().into());
+            }
+        }
+        bytes
+    }
+
+    #[test]
+    fn text_and_both_byte_orders_say_the_same() {
+        let mesh = read(text(BODY).as_slice(), "a.ply").unwrap().mesh;
+        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [2, 1, 0]]);
+        assert_eq!(mesh.points[3].map(f64::to_bits), [0.0_f64, 1.0, 0.5].map(f64::to_bits));
+        assert_eq!(read(binary(false).as_slice(), "a.ply").unwrap().mesh, mesh);
+        assert_eq!(read(binary(true).as_slice(), "a.ply").unwrap().mesh, mesh);
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let mesh = Mesh {
+            points: vec![[0.1, -1e-300, 1e22], [1.0 / 3.0, 0.0, -2.5], [0.0, 1.0, f64::MIN_POSITIVE]],
+            point_labels: vec![0, -5, i32::MAX],
+            triangles: vec![[0, 1, 2], [2, 1, 0]],
+            triangle_labels: vec![7, i32::MIN],
+            ..Mesh::default()
+        };
+        let field = |name: &str, values: Vec<f64>| Field { name: name.into(), values: SolutionValues::Scalar(values) };
+        let vertices = vec![field("u", vec![0.1, 0.2, -1e99]), field("h", vec![1.0; 3])];
+        let fields = Fields { vertices, triangles: vec![field("error", vec![0.5, 1.5])] };
+        let document = Document { fields, ..mesh.into() };
+        let mut out = Vec::new();
+        for form in [Form::Text, Form::Binary] {
+            out.clear();
+            write(&document.mesh, &document.fields, form, &mut out).unwrap();
+            assert_eq!(read(out.as_slice(), "a.ply").unwrap(), document);
+        }
+        let values = SolutionValues::Tensor(vec![[1.0, 0.5, 2.0]; 3]);
+        let tensors = Fields { vertices: vec![Field { name: "my metric".into(), values }], triangles: vec![] };
+        out.clear();
+        write(&document.mesh, &tensors, Form::Text, &mut out).unwrap();
+        let again = read(out.as_slice(), "a.ply").unwrap();
+        let names: Vec<_> = again.fields.vertices.iter().map(|field| field.name.as_str()).collect();
+        assert_eq!(names, ["my_metric_0", "my_metric_1", "my_metric_2"]);
+        let clashing = ["x", "label", ""].map(|name| field(name, vec![7.0; 3]));
+        let clashing = Fields { vertices: clashing.to_vec(), triangles: vec![] };
+        out.clear();
+        write(&document.mesh, &clashing, Form::Binary, &mut out).unwrap();
+        let again = read(out.as_slice(), "a.ply").unwrap();
+        assert_eq!((&again.mesh, again.fields.vertices.len()), (&document.mesh, 3));
+    }
+
+    const ONE: &str = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+
+    #[test]
+    fn values_of_faces_that_are_not_one_triangle_each_are_left_out() {
+        let list = "property list uchar int vertex_index\n";
+        for (lists, row, triangles) in [("", "0.5", 0), (list, "0.5 3 0 0 0", 1), (list, "0.5 4 0 0 0 0", 2)] {
+            let text = format!("{ONE}element face 1\nproperty float u\n{lists}end_header\n0 0 0\n{row}\n");
+            let found = read(text.as_bytes(), "a.ply").unwrap();
+            assert_eq!((found.mesh.triangles.len(), found.fields.triangles.len()), (triangles, triangles % 2), "{row}");
+        }
+    }
+
+    #[test]
+    fn labels_are_whole_numbers() {
+        for label in ["0.5", "3e9", "-2147483649"] {
+            let text = format!("{ONE}property double label\nend_header\n0 0 0 {label}\n");
+            assert!(message(text.as_bytes()).starts_with("a.ply:9: the label "), "{label}");
+        }
+        let text = format!("{ONE}property double label\nend_header\n0 0 0 -2147483648\n");
+        assert_eq!(read(text.as_bytes(), "a.ply").unwrap().mesh.point_labels, [i32::MIN]);
+    }
+
+    fn message(bytes: &[u8]) -> String {
+        let error = read(bytes, "a.ply").unwrap_err();
+        assert!(!error.help().is_empty());
+        error.to_string()
+    }
+
+    #[test]
+    fn errors_in_the_body_say_what_and_where() {
+        for (body, expected) in [
+            (&BODY[..9], "a.ply:16: the text ends in row 2 of 4 of vertex"),
+            ("0 9 0 nan", "a.ply:15: 'nan' is not a finite number (row 1 of 4 of vertex)"),
+            ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n2 0 1 0", "a.ply:16: a face of 2 vertices (row 1 of 2 of face)"),
+            ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n3 0 1 -1", "a.ply:16: vertex -1 does not exist (row 1 of 2 of face)"),
+            (
+                "0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n3 0 1 4 0\n3 0 1 2 0",
+                "a.ply:16: vertex 4 does not exist: the file lists 4, from 0",
+            ),
+            ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n1e18 0 1", "a.ply:16: the text ends in row 1 of 2 of face"),
+            ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n3 0 1 2 0\n3 0 1 2 0\n7", "a.ply:18: the file goes on behind"),
+            ("0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0\n-1", "a.ply:16: a list of -1 entries (row 1 of 2 of face)"),
+        ] {
+            let message = message(&text(body));
+            assert!(message.starts_with(expected), "{message}");
+        }
+        let whole = binary(true);
+        let first = whole.len() - 2 - 13 - 4 - 17 - 4 * 17;
+        assert_eq!(
+            message(&whole[..first + 20]),
+            format!("a.ply, byte {}: the file ends in row 2 of 4 of vertex", first + 17)
+        );
+        let mut bad = whole;
+        bad[first + 17..first + 21].copy_from_slice(&f32::NAN.to_be_bytes());
+        assert_eq!(
+            message(&bad),
+            format!("a.ply, byte {}: a coordinate is not finite (row 2 of 4 of vertex)", first + 34)
+        );
+    }
+
+    #[test]
+    fn errors_in_the_head_name_their_line() {
+        for (text, expected) in [
+            ("", "a.ply:1: the file does not begin with ply"),
+            ("plywood\n", "a.ply:1: the file does not begin with ply"),
+            ("ply\nformat ascii 1.0\nelement vertex 1\n", "a.ply:3: the head has no end_header"),
+            ("ply\nformat ascii 2.0\nend_header\n", "a.ply:2: format 'ascii 2.0' is not known"),
+            ("ply\nformat\nend_header\n", "a.ply:2: format '' is not known"),
+            ("ply\nelement vertex 0\nend_header\n", "a.ply:3: the head has no line format"),
+            ("ply\nformat ascii 1.0\nproperty float x\nend_header\n", "a.ply:3: a property before any element"),
+            ("ply\nformat ascii 1.0\nelement vertex -1\nend_header\n", "a.ply:3: '-1' is out of range"),
+            ("ply\nformat ascii 1.0\nelement vertex\nend_header\n", "a.ply:3: an element without name and count"),
+            ("ply\nformat ascii 1.0\nelement face 1\nelement face 1\n", "a.ply:4: a second element 'face'"),
+            (
+                "ply\nformat ascii 1.0\nelement face 0\nproperty quad q\nend_header\n",
+                "a.ply:4: 'property quad q' is not",
+            ),
+            (
+                "ply\nformat ascii 1.0\nelement vertex 0\nproperty int u\nproperty int u\nend_header\n",
+                "a.ply:5: a second property 'u'",
+            ),
+            ("ply\nformat ascii 1.0\nfoo\nend_header\n", "a.ply:3: 'foo' has no place in the head"),
+            (
+                "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty int y\nend_header\n0 0\n",
+                "a.ply:6: the element vertex has no property z",
+            ),
+            ("ply\nformat ascii 1.0\nelement face 0\nend_header\n", "a.ply:4: the file has no element vertex"),
+        ] {
+            let message = message(text.as_bytes());
+            assert!(message.starts_with(expected), "{message}");
+        }
+        assert!(message(b"ply\nformat ascii 1.0\n\xff\nend_header\n").starts_with("a.ply:3: the head is no text"));
+    }
+}

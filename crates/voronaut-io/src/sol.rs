@@ -1,0 +1,300 @@
+//! Medit's formats for values on vertices and triangles, `.sol` as text and `.solb` as binary files: scalars (sizes), vectors and
+//! symmetric tensors (metrics).
+
+use super::medit::{Form, Sink, Source};
+use super::words::At;
+use std::io::{self, BufRead, Write};
+use voronaut::mesh::{Solution, SolutionValues, Solutions};
+use voronaut::{Error, Result};
+
+/// Reads the section `SolAtVertices` of a file, text or binary, with one value per vertex; other sections are passed over.
+///
+/// `place` names the file in messages. Memory follows the file, never a count written in it.
+///
+/// # Errors
+///
+/// [`Error::Parse`] with the line or the byte of what is not as announced: a file cut off, more or fewer values than
+/// announced, something that is no finite number. [`Error::Unsupported`] of several values per vertex. [`Error::Io`] of a file
+/// that cannot be read.
+pub fn read(source: impl BufRead, place: &str) -> Result<Solution> {
+    let mut file = Parsed::read(source, place, &SECTIONS[..1])?;
+    let Some(mut found) = file.sections[0].take() else {
+        return Err(file.missing("", "save the values on vertices, in a section SolAtVertices"));
+    };
+    match found.values.pop() {
+        Some(values) if found.values.is_empty() => Ok(Solution { dimension: file.dimension, values }),
+        _ => {
+            let what = format!("{} solutions per vertex ({})", found.values.len() + 1, found.place);
+            Err(Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() })
+        }
+    }
+}
+
+/// Reads the sections `SolAtVertices` and `SolAtTriangles` of a file, with any number of values per vertex or triangle;
+/// other sections are passed over.
+///
+/// # Errors
+///
+/// As for [`read`]; neither of the sections is there.
+pub fn read_all(source: impl BufRead, place: &str) -> Result<Solutions> {
+    let mut file = Parsed::read(source, place, &SECTIONS)?;
+    let [vertices, triangles] = [0, 1].map(|i| file.sections[i].take());
+    if vertices.is_none() && triangles.is_none() {
+        return Err(file.missing(", nor SolAtTriangles", "save values in one of these sections"));
+    }
+    let values = |found: Option<Section>| found.map_or_else(Vec::new, |found| found.values);
+    Ok(Solutions { dimension: file.dimension, vertices: values(vertices), triangles: values(triangles) })
+}
+
+/// Writes a file of version 2 that [`read`] turns into the same solution, to the last bit.
+///
+/// # Errors
+/// What `out` says; [`io::ErrorKind::InvalidInput`] of vectors and tensors of another dimension.
+pub fn write(solution: &Solution, form: Form, out: &mut dyn Write) -> io::Result<()> {
+    write_sections(solution.dimension, [std::slice::from_ref(&solution.values), &[]], form, out)
+}
+
+/// Writes a file of version 2 that [`read_all`] turns into the same solutions, as many entries each as the first of their
+/// section has.
+///
+/// # Errors
+/// As of [`write()`].
+///
+/// # Panics
+/// If a solution has fewer.
+pub fn write_all(solutions: &Solutions, form: Form, out: &mut dyn Write) -> io::Result<()> {
+    write_sections(solutions.dimension, [&solutions.vertices, &solutions.triangles], form, out)
+}
+
+/// Sections that are read; any other is passed over.
+const SECTIONS: [&str; 2] = ["SolAtVertices", "SolAtTriangles"];
+
+/// What is read of a file.
+struct Parsed<'a> {
+    source: Source<'a>,
+    dimension: u8,
+    /// In the order of [`SECTIONS`].
+    sections: [Option<Section>; 2],
+}
+
+struct Section {
+    /// Where its head ends.
+    place: String,
+    values: Vec<SolutionValues>,
+}
+
+impl<'a> Parsed<'a> {
+    /// Reads the sections that are wanted.
+    fn read(source: impl BufRead + 'a, place: &'a str, wanted: &[&str]) -> Result<Self> {
+        let mut source = Source::new(source, place)?;
+        let (mut dimension, mut sections, mut before) = (None, [None, None], "the head of the file".to_owned());
+        while let Some(name) = source.next_section(&before)? {
+            match wanted.iter().position(|wanted| *wanted == name) {
+                _ if name == "Dimension" && dimension.is_none() => dimension = Some(source.dimension()?),
+                found if name == "Dimension" || found.is_some_and(|i| sections[i].is_some()) => {
+                    return Err(source.error(format!("a second section {name}"), "keep one of them"));
+                }
+                Some(i) => {
+                    let dimension = source.known_dimension(dimension, &name)?;
+                    sections[i] = Some(read_section(&mut source, dimension, &name)?);
+                }
+                None => source.skip_section(&name)?,
+            }
+            before = name;
+        }
+        Ok(Self { source, dimension: dimension.unwrap_or_default(), sections })
+    }
+
+    fn missing(&self, more: &str, help: &str) -> Error {
+        self.source.error(format!("the file has no section SolAtVertices{more}"), help)
+    }
+}
+
+fn read_section(source: &mut Source<'_>, dimension: u8, section: &str) -> Result<Section> {
+    let head = At::head(section);
+    let count = source.count(section)?;
+    let solutions: u64 = source.short(head)?;
+    if solutions == 0 {
+        let help = "write how many solutions there are, then the type of each: '1 1' for a scalar";
+        return Err(source.error(format!("no solution in {section}"), help));
+    }
+    let mut values = Vec::new();
+    for _ in 0..solutions {
+        let kind: i64 = source.short(head)?;
+        values.push(match (kind, dimension) {
+            (1, _) => SolutionValues::Scalar(Vec::new()),
+            (2, _) => SolutionValues::Vector { components: dimension.into(), numbers: Vec::new() },
+            (3, 2) => SolutionValues::Tensor(Vec::new()),
+            (3, _) => SolutionValues::Tensor3(Vec::new()),
+            _ => {
+                let help = "write 1 for scalars, 2 for vectors, 3 for symmetric tensors";
+                return Err(source.error(format!("the type of the values is {kind}"), help));
+            }
+        });
+    }
+    let place = source.here();
+    for at in At::rows(section, count) {
+        values.iter_mut().try_for_each(|values| push(values, source, at))?;
+    }
+    Ok(Section { place, values })
+}
+
+fn push(values: &mut SolutionValues, source: &mut Source<'_>, at: At<'_>) -> Result<()> {
+    match values {
+        SolutionValues::Scalar(entries) => entries.push(source.number(at)?),
+        SolutionValues::Vector { components, numbers } => {
+            for _ in 0..*components {
+                numbers.push(source.number(at)?);
+            }
+        }
+        SolutionValues::Tensor(entries) => entries.push(row(source, at)?),
+        SolutionValues::Tensor3(entries) => entries.push(row(source, at)?),
+    }
+    Ok(())
+}
+
+fn row<const N: usize>(source: &mut Source<'_>, at: At<'_>) -> Result<[f64; N]> {
+    let mut row = [0.0; N];
+    for value in &mut row {
+        *value = source.number(at)?;
+    }
+    Ok(row)
+}
+
+fn write_sections(dimension: u8, sections: [&[SolutionValues]; 2], form: Form, out: &mut dyn Write) -> io::Result<()> {
+    let size = |values: &SolutionValues| 8 * values.components() as u64 * values.count() as u64;
+    let bytes = sections.into_iter().flatten().map(size).sum();
+    let mut sink = Sink::new(form, dimension, bytes, out)?;
+    for (name, values) in SECTIONS.into_iter().zip(sections) {
+        if !values.is_empty() {
+            write_section(&mut sink, dimension, name, values)?;
+        }
+    }
+    sink.finish()
+}
+
+fn write_section(sink: &mut Sink<'_>, dimension: u8, name: &str, values: &[SolutionValues]) -> io::Result<()> {
+    let kinds = values.iter().map(|values| kind(values, dimension)).collect::<io::Result<Vec<i32>>>()?;
+    let number = i32::try_from(values.len()).map_err(|_| io::Error::other("more than 2^31 solutions"))?;
+    let head: Vec<i32> = std::iter::once(number).chain(kinds).collect();
+    let row = 8 * values.iter().map(SolutionValues::components).sum::<usize>();
+    let count = values[0].count();
+    sink.section(name, count, row, &head)?;
+    for i in 0..count {
+        values.iter().flat_map(|values| values.row(i)).try_for_each(|&value| sink.number(value))?;
+        sink.end_row()?;
+    }
+    Ok(())
+}
+
+/// The number by which the format calls the type.
+fn kind(values: &SolutionValues, dimension: u8) -> io::Result<i32> {
+    match values {
+        SolutionValues::Scalar(_) => Ok(1),
+        SolutionValues::Vector { components, .. } if *components == usize::from(dimension) => Ok(2),
+        SolutionValues::Vector { components, .. } => {
+            let what = format!("vectors of {components} components in a .sol file of dimension {dimension}");
+            Err(io::Error::new(io::ErrorKind::InvalidInput, what))
+        }
+        SolutionValues::Tensor(_) if dimension == 2 => Ok(3),
+        SolutionValues::Tensor3(_) if dimension == 3 => Ok(3),
+        SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => {
+            let what = format!("tensors of another dimension in a .sol file of dimension {dimension}");
+            Err(io::Error::new(io::ErrorKind::InvalidInput, what))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_reads_back() {
+        for (dimension, values) in [
+            (2, SolutionValues::Scalar(vec![0.1, 1e-20, 3.0])),
+            (3, SolutionValues::Vector { components: 3, numbers: vec![1.0, -2.0, 1.0 / 3.0] }),
+            (2, SolutionValues::Tensor(vec![[1.0, 0.5, 1e40], [2.0, 0.0, 2.0]])),
+            (3, SolutionValues::Tensor3(vec![[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]])),
+            (2, SolutionValues::Tensor(vec![])),
+        ] {
+            let solution = Solution { dimension, values };
+            for form in [Form::Text, Form::Binary] {
+                let mut out = Vec::new();
+                write(&solution, form, &mut out).unwrap();
+                assert_eq!(read(out.as_slice(), "a.sol").unwrap(), solution);
+            }
+        }
+    }
+
+    fn written(all: &Solutions, form: Form) -> Vec<u8> {
+        let mut out = Vec::new();
+        write_all(all, form, &mut out).unwrap();
+        out
+    }
+
+    #[test]
+    fn vectors_have_as_many_components_as_the_dimension() {
+        let values = SolutionValues::Vector { components: 3, numbers: vec![1.0; 3] };
+        let error = write(&Solution { dimension: 2, values }, Form::Text, &mut Vec::new()).unwrap_err();
+        assert_eq!(error.to_string(), "vectors of 3 components in a .sol file of dimension 2");
+    }
+
+    #[test]
+    fn several_solutions_read_back() {
+        let scalars = || SolutionValues::Scalar(vec![0.5, -1e-9]);
+        let vectors = SolutionValues::Vector { components: 2, numbers: vec![1.0, 2.0, 0.1, 1.0 / 3.0] };
+        let tensors = SolutionValues::Tensor(vec![[1.0, 0.5, 2.0], [3.0, -0.5, 2.0]]);
+        let triangles = vec![SolutionValues::Scalar(vec![7.0])];
+        let all = Solutions { dimension: 2, vertices: vec![scalars(), vectors, tensors, scalars()], triangles };
+        let text = String::from_utf8(written(&all, Form::Text)).unwrap();
+        assert!(text.contains("SolAtVertices\n2\n4 1 2 3 1\n0.5 1 2 1 0.5 2 0.5\n"), "{text}");
+        for form in [Form::Text, Form::Binary] {
+            assert_eq!(read_all(written(&all, form).as_slice(), "a.sol").unwrap(), all);
+        }
+        let cells = Solutions { vertices: vec![], ..all };
+        assert_eq!(read_all(written(&cells, Form::Text).as_slice(), "a.sol").unwrap(), cells);
+    }
+
+    #[test]
+    fn files_of_other_programs() {
+        let text = "MeshVersionFormatted 2\n\nDimension\n2\nSolAtTriangles 1\n1 1\n7\n\nSolAtVertices\n2\n1 3 \n1.D0 0 1\n2 0 2\n";
+        let solution = read(text.as_bytes(), "a.sol").unwrap();
+        assert_eq!(solution.values, SolutionValues::Tensor(vec![[1.0, 0.0, 1.0], [2.0, 0.0, 2.0]]));
+    }
+
+    #[test]
+    fn errors_say_what_and_where() {
+        for (body, expected) in [
+            ("SolAtVertices 2\n1 1\n0.5", "a.sol:5: the text ends in row 2 of 2 of SolAtVertices"),
+            ("SolAtVertices 900000000000000000\n1 3\n1 0 1", "a.sol:5: the text ends in row 2 of 900000000000000000"),
+            (
+                "SolAtVertices 1\n1 1\n0.5\n0.7\nEnd",
+                "a.sol:6: '0.7' where the next section should begin: SolAtVertices is longer",
+            ),
+            ("SolAtVertices 2\n1 1\n0.5\nEnd", "a.sol:6: 'End' is not a number (row 2 of 2 of SolAtVertices)"),
+            ("SolAtVertices 1\n1 3\n1 NaN 1", "a.sol:5: 'NaN' is not a finite number (row 1 of 1 of SolAtVertices)"),
+            ("SolAtVertices 1\n2 1 3\n1 1 0 1", "not supported: 2 solutions per vertex (a.sol:4)"),
+            ("SolAtVertices 900000000000000000\n0", "a.sol:4: no solution in SolAtVertices"),
+            ("SolAtVertices 1\n3 1 2 4\n1", "a.sol:4: the type of the values is 4"),
+            ("SolAtVertices 1\n1 4\n1", "a.sol:4: the type of the values is 4"),
+            ("SolAtVertices 0\n1 1\nSolAtVertices 0\n1 1", "a.sol:5: a second section SolAtVertices"),
+            ("SolAtVertices -1\n1 1", "a.sol:3: '-1' is out of range (the head of SolAtVertices)"),
+            ("End", "a.sol:3: the file has no section SolAtVertices"),
+            ("SolAtVertices 0\n1 2\nDimension 3", "a.sol:5: a second section Dimension"),
+        ] {
+            let error = read(format!("MeshVersionFormatted 2\nDimension 2\n{body}").as_bytes(), "a.sol").unwrap_err();
+            assert!(error.to_string().contains(expected), "{error}");
+            assert!(!error.help().is_empty());
+        }
+        for (body, expected) in [
+            ("End", "a.sol:3: the file has no section SolAtVertices, nor SolAtTriangles"),
+            ("SolAtTriangles 2\n2 1 2\n1 2 3\n4 5", "a.sol:6: the text ends in row 2 of 2 of SolAtTriangles"),
+            ("SolAtTriangles 0\n1 1\nSolAtTriangles 0\n1 1", "a.sol:5: a second section SolAtTriangles"),
+        ] {
+            let error =
+                read_all(format!("MeshVersionFormatted 2\nDimension 2\n{body}").as_bytes(), "a.sol").unwrap_err();
+            assert!(error.to_string().contains(expected) && !error.help().is_empty(), "{error}");
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! Stereolithography `.stl`, as text and binary: triangles without shared vertices.
+
+use super::bytes::{Bytes, Order};
+use super::words::{At, Words, error_at, shortened};
+use std::collections::HashMap;
+use std::io::{self, BufRead, Write};
+use voronaut::mesh::Mesh;
+use voronaut::{Error, Result};
+
+/// Reads an `.stl` file. Corners with exactly the same coordinates become one vertex, in the order of the file (the
+/// format has no other way to say that triangles are neighbours); nothing else is joined. Normals, names and attributes
+/// are passed over, labels are 0.
+///
+/// A file is text if it begins with `solid` and goes on as text, else binary. Memory follows the file, never a count written in it.
+///
+/// # Errors
+///
+/// [`Error::Parse`] with the line or the byte of what is not as announced: a file cut off or longer than its count of triangles, a
+/// coordinate that is no finite number, words out of place. [`Error::Io`] of a file that cannot be read.
+pub fn read(mut source: impl BufRead, place: &str) -> Result<Mesh> {
+    let start = source.fill_buf().map_err(|source| Error::Io { path: place.into(), source })?;
+    if is_text(start) {
+        read_text(Words::new(source, place))
+    } else {
+        read_binary(Bytes::new(source, 0, Order::Little, place))
+    }
+}
+
+/// Writes triangles as a binary `.stl` file. The format has single precision: corners are rounded, and
+/// those that come to lie on each other are one vertex when the file is read. It has no shared vertices, no labels, no edges.
+///
+/// # Errors
+/// What `out` says; [`io::ErrorKind::InvalidInput`] of coordinates beyond 3e38.
+pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+    write!(out, "{:HEAD$}", "voronaut")?;
+    out.write_all(&(mesh.triangles.len() as u32).to_le_bytes())?;
+    for &triangle in &mesh.triangles {
+        let corners = mesh.positions_of(triangle);
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).unit().unwrap_or_default();
+        let numbers = [normal.x, normal.y, normal.z].into_iter().chain(corners.iter().flat_map(|p| p.to_array()));
+        if corners.iter().flat_map(|p| p.to_array()).any(|x| !(x as f32).is_finite()) {
+            let what = "a coordinate beyond 3e38, the range of single precision";
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+        }
+        let mut row = [0; TRIANGLE];
+        for (bytes, x) in row.as_chunks_mut().0.iter_mut().zip(numbers) {
+            *bytes = (x as f32).to_le_bytes();
+        }
+        out.write_all(&row)?;
+    }
+    Ok(())
+}
+
+/// The head of a binary file: 80 bytes of anything. The number of triangles follows.
+const HEAD: usize = 80;
+/// A binary triangle: normal, three corners, an attribute of two bytes.
+const TRIANGLE: usize = 50;
+
+/// Whether a file that begins like this is text. Heads of binary files may begin with `solid`, too, but have zeros or numbers soon.
+fn is_text(start: &[u8]) -> bool {
+    let start = start.trim_ascii_start();
+    let seen = &start[..start.len().min(2 * (HEAD + TRIANGLE))];
+    let is_readable = |byte: &u8| !byte.is_ascii_control() || byte.is_ascii_whitespace();
+    start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) && seen.iter().all(is_readable)
+}
+
+fn read_binary(mut bytes: Bytes<'_>) -> Result<Mesh> {
+    let head = At::head("the file (neither text nor a whole binary file)");
+    bytes.skip(HEAD as u64, head)?;
+    let count = u64::from(bytes.i32(head)?.cast_unsigned());
+    let mut corners = Corners::default();
+    for at in At::rows("the triangles", count) {
+        // Some programs write nan for the normals of thin triangles; nobody needs them.
+        bytes.skip(12, at)?;
+        for _ in 0..3 {
+            corners.push([bytes.f32(at)?, bytes.f32(at)?, bytes.f32(at)?]);
+        }
+        bytes.array::<2>(at)?;
+    }
+    if bytes.is_at_end()? {
+        return Ok(corners.into_mesh());
+    }
+    let what = format!("the file goes on behind the {count} triangles that it announces");
+    Err(bytes.error(what, "give an .stl file as text ('solid ...') or binary; this one may be damaged"))
+}
+
+fn read_text(mut words: Words<'_>) -> Result<Mesh> {
+    let place = words.place();
+    let mut corners = Corners::default();
+    let mut facets = 0;
+    // Names of solids are any words on their lines.
+    let mut name_line = None;
+    let mut is_open = false;
+    while let Some(word) = words.next()? {
+        if name_line == Some(word.line) {
+            continue;
+        }
+        match word.text.to_ascii_lowercase().as_str() {
+            keyword @ ("solid" | "endsolid") => {
+                name_line = Some(word.line);
+                is_open = keyword == "solid";
+            }
+            "facet" => {
+                facets += 1;
+                read_facet(&mut words, facets, &mut corners)?;
+            }
+            _ => {
+                let what = format!("'{}' where a facet or endsolid should be", shortened(word.text));
+                return Err(error_at(place, word.line, what, "check the end of the facet before"));
+            }
+        }
+    }
+    if is_open {
+        let what = "the text ends without endsolid";
+        return Err(error_at(place, words.line(), what, "the file is cut off: write it again"));
+    }
+    Ok(corners.into_mesh())
+}
+
+fn read_facet(words: &mut Words<'_>, number: u64, corners: &mut Corners) -> Result<()> {
+    let at = At { section: "the facets", row: number, rows: number };
+    expect_word(words, "normal", at)?;
+    for _ in 0..3 {
+        // Some programs write nan for the normals of thin triangles; nobody needs them.
+        words.expect(at)?;
+    }
+    expect_word(words, "outer", at)?;
+    expect_word(words, "loop", at)?;
+    for _ in 0..3 {
+        expect_word(words, "vertex", at)?;
+        corners.push([words.number(at)?, words.number(at)?, words.number(at)?]);
+    }
+    expect_word(words, "endloop", at)?;
+    expect_word(words, "endfacet", at)
+}
+
+fn expect_word(words: &mut Words<'_>, expected: &str, at: At<'_>) -> Result<()> {
+    let place = words.place();
+    let word = words.expect(at)?;
+    if word.text.eq_ignore_ascii_case(expected) {
+        return Ok(());
+    }
+    let what = format!("'{}' where '{expected}' should be ({at})", shortened(word.text));
+    Err(error_at(place, word.line, what, "write facets as 'facet normal', 'outer loop', three times 'vertex'"))
+}
+
+/// Corners joined into vertices as they come.
+#[derive(Default)]
+struct Corners {
+    known: HashMap<[u64; 3], u32>,
+    points: Vec<[f64; 3]>,
+    vertices: Vec<u32>,
+}
+
+impl Corners {
+    fn push(&mut self, point: [f64; 3]) {
+        // Adding zero makes -0 equal to 0 in its bits, too.
+        let key = point.map(|x| (x + 0.0).to_bits());
+        let vertex = *self.known.entry(key).or_insert_with(|| {
+            self.points.push(point);
+            self.points.len() as u32 - 1
+        });
+        self.vertices.push(vertex);
+    }
+
+    fn into_mesh(self) -> Mesh {
+        let (triangles, _) = self.vertices.as_chunks::<3>();
+        Mesh {
+            point_labels: vec![0; self.points.len()],
+            points: self.points,
+            triangle_labels: vec![0; triangles.len()],
+            triangles: triangles.to_vec(),
+            ..Mesh::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "solid a facet of life\n facet normal nan 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   \
+                        vertex 0 1 0\n  endloop\n endfacet\nfacet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\n\
+                        vertex -0 1 0\nendloop\nendfacet\nendsolid a facet of life\n";
+
+    fn binary(triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
+        let mut bytes = b"solid, says a binary file".to_vec();
+        bytes.resize(80, b' ');
+        bytes.extend((triangles.len() as u32).to_le_bytes());
+        for triangle in triangles {
+            bytes.extend([0; 12]);
+            bytes.extend(triangle.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+            bytes.extend([0; 2]);
+        }
+        bytes
+    }
+
+    #[test]
+    fn text_and_binary_say_the_same() {
+        let mesh = read(TEXT.as_bytes(), "a.stl").unwrap();
+        assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
+        let [a, b, c, d] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        assert_eq!(read(binary(&[[a, b, c], [b, d, c]]).as_slice(), "a.stl").unwrap(), mesh);
+    }
+
+    #[test]
+    fn what_is_written_has_the_same_triangles() {
+        let mesh = Mesh {
+            points: vec![[0.1, 0.0, 0.5], [1.0 / 3.0, 2.0, -2.5], [0.0, 1e7, 3.0], [7.0, 8.0, 9.0]],
+            triangles: vec![[3, 1, 2], [2, 1, 0]],
+            ..Mesh::default()
+        };
+        let mut out = Vec::new();
+        write(&mesh, &mut out).unwrap();
+        let again = read(out.as_slice(), "a.stl").unwrap();
+        assert_eq!((again.points.len(), again.triangles.len()), (4, 2));
+        for (found, truth) in again.triangles.iter().zip(&mesh.triangles) {
+            let rounded = mesh.positions_of(*truth).map(|p| p.to_array().map(|x| f64::from(x as f32).to_bits()));
+            assert_eq!(again.positions_of(*found).map(|p| p.to_array().map(f64::to_bits)), rounded);
+        }
+        let normal = &out[HEAD + 4 + TRIANGLE..][..12];
+        assert!(normal.iter().any(|&byte| byte != 0), "normals are written");
+    }
+
+    #[test]
+    fn errors_say_what_and_where() {
+        let message = |bytes: &[u8]| {
+            let error = read(bytes, "a.stl").unwrap_err();
+            assert!(!error.help().is_empty());
+            error.to_string()
+        };
+        assert_eq!(message(b"solid a\n\nendsolid\nsolid b\n"), "a.stl:4: the text ends without endsolid");
+        let whole = binary(&[[[0.0; 3]; 3]; 2]);
+        let neither = "(neither text nor a whole binary file)";
+        assert_eq!(message(&[]), format!("a.stl, byte 0: the file ends in the head of the file {neither}"));
+        assert!(message(b"solid x\nfacet normal 0 0 1 inner").starts_with("a.stl:2: 'inner' where 'outer' should be"));
+        let cut = &whole[..whole.len() - 1];
+        assert_eq!(message(cut), "a.stl, byte 182: the file ends in row 2 of 2 of the triangles");
+        let more = [&whole, [0].as_slice()].concat();
+        assert_eq!(message(&more), "a.stl, byte 184: the file goes on behind the 2 triangles that it announces");
+        let mut lying = whole;
+        lying[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+        assert_eq!(message(&lying), "a.stl, byte 184: the file ends in row 3 of 4294967295 of the triangles");
+        let bad = binary(&[[[0.0; 3]; 3], [[0.0, f32::NAN, 0.0]; 3]]);
+        assert_eq!(message(&bad), "a.stl, byte 150: NaN is not a finite number (row 2 of 2 of the triangles)");
+        for (from, to, expected) in [
+            ("vertex 1 1 0", "vertex 1 1", "a.stl:13: 'vertex' is not a number (row 2 of 2 of the facets)"),
+            ("endloop\nendfacet\nends", "", "a.stl:14: 'olid' where 'endloop' should be"),
+            ("endsolid", "facets", "a.stl:16: 'facets' where a facet or endsolid should be"),
+            ("vertex -0", "vertex inf", "a.stl:13: 'inf' is not a finite number"),
+        ] {
+            assert!(message(TEXT.replace(from, to).as_bytes()).starts_with(expected), "{expected}");
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! A mesh and fields from the pieces of a file.
+
+use super::cells::{Shapes, refuse_foreign, types};
+use super::data::{Data, Joined};
+use super::numbers::{self, Array, Head};
+use super::tags::{CELLS, Grid, Piece, Section};
+use crate::{Document, Fields};
+use voronaut::mesh::Mesh;
+use voronaut::{Error, Result};
+
+/// Joins the pieces of a file.
+///
+/// # Errors
+/// As of [`super::read`].
+pub(super) fn assemble(grid: Grid<'_>) -> Result<Document> {
+    let mut assembly = Assembly {
+        head: grid.head,
+        mesh: Mesh::default(),
+        vertices: Joined::default(),
+        triangles: Joined::default(),
+        notes: Vec::new(),
+    };
+    for piece in grid.pieces {
+        assembly.append(piece)?;
+    }
+    let Assembly { mesh, vertices, triangles, notes, .. } = assembly;
+    let is_planar = mesh.is_planar();
+    let fields = Fields { vertices: vertices.finish(is_planar), triangles: triangles.finish(is_planar) };
+    Ok(Document { mesh, fields, notes })
+}
+
+struct Assembly<'a> {
+    head: Head<'a>,
+    mesh: Mesh,
+    vertices: Joined,
+    triangles: Joined,
+    notes: Vec<String>,
+}
+
+impl Assembly<'_> {
+    fn append(&mut self, mut piece: Piece) -> Result<()> {
+        let base = self.mesh.points.len();
+        if base as u64 + piece.points > u32::MAX.into() || piece.count(Section::CellData) > u32::MAX.into() {
+            let what = format!("more than {} points or cells", u32::MAX);
+            return Err(self.error(&piece, &what, "give a smaller mesh"));
+        }
+        self.append_points(&mut piece)?;
+        let mut shapes = Shapes::default();
+        let mut cells = 0;
+        for ((_, section), count) in CELLS.into_iter().zip(piece.cells).filter(|(_, count)| *count > 0) {
+            self.read_cells(&mut piece, section, count, cells, &mut shapes)?;
+            cells += count as u32;
+        }
+        let (mut of_points, mut of_cells) = (Vec::new(), Vec::new());
+        for (section, array) in std::mem::take(&mut piece.arrays) {
+            match section {
+                Section::PointData => of_points.push(array),
+                Section::CellData => of_cells.push(array),
+                others if piece.count(others) == 0 => drop(array.into_reals(0, self.head)?),
+                _ => {}
+            }
+        }
+        let count = piece.points;
+        self.append_point_data(Data::read(of_points, count, self.head)?, base, count as usize)?;
+        let data = Data::read(of_cells, cells.into(), self.head)?;
+        self.notes.extend(shapes.take_skin(&self.mesh.points[base..], |cell| data.label(cell)));
+        for vertex in shapes.triangles.as_flattened_mut().iter_mut().chain(shapes.edges.as_flattened_mut()) {
+            *vertex += base as u32;
+        }
+        self.append_cells(data, shapes, cells as usize)
+    }
+
+    fn append_points(&mut self, piece: &mut Piece) -> Result<()> {
+        let (head, count) = (self.head, piece.points);
+        if count == 0 {
+            return Ok(());
+        }
+        let Some(array) = piece.take(Section::Points, None) else {
+            return Err(self.error(piece, "a piece without the array of its points", "check that the file is whole"));
+        };
+        if array.components.unwrap_or(3) != 3 {
+            let what = format!("has {} components, where points have 3", array.components.unwrap_or(3));
+            return Err(array.error(head, &what, "write three coordinates, the third 0 in the plane"));
+        }
+        let (name, byte) = (array.name.clone(), array.byte);
+        let numbers = array.into_reals(3 * count, head)?;
+        if let Some(i) = numbers.iter().position(|number| !number.is_finite()) {
+            let what = format!("holds {}, which is not finite, as a coordinate of point {}", numbers[i], i / 3 + 1);
+            return Err(numbers::error(head, byte, &name, &what, "remove or correct the point"));
+        }
+        self.mesh.points.extend_from_slice(numbers.as_chunks().0);
+        Ok(())
+    }
+
+    /// Cells of a section, whose numbers begin with `first`.
+    fn read_cells(&self, piece: &mut Piece, section: Section, count: u64, first: u32, to: &mut Shapes) -> Result<()> {
+        let head = self.head;
+        let (mut kinds, all) = match section {
+            Section::Cells => {
+                let kinds = self.take(piece, section, "types")?.into_wholes(count, head)?;
+                refuse_foreign(&kinds, head.place)?;
+                (kinds.into_iter().map(|kind| kind as u8).collect(), types::EMPTY)
+            }
+            Section::Verts => return Ok(()),
+            Section::Lines => (Vec::new(), types::POLY_LINE),
+            Section::Strips => (Vec::new(), types::TRIANGLE_STRIP),
+            _ => (Vec::new(), types::POLYGON),
+        };
+        let offsets = self.take(piece, section, "offsets")?;
+        let byte = offsets.byte;
+        let fault =
+            |what: String| numbers::error(head, byte, "offsets", &what, "check the cells, and that the file is whole");
+        let ends = offsets.into_wholes(count, head)?;
+        // Only now it is known that there are as many cells as the file says.
+        kinds.resize(ends.len(), all);
+        let mut start = 0;
+        for (i, &end) in ends.iter().enumerate() {
+            if end < start {
+                return Err(fault(format!(
+                    "says that cell {} ends at {end}, behind which it begins, at {start}",
+                    i + 1
+                )));
+            }
+            start = end;
+        }
+        let vertices = self.read_connectivity(piece, section, start as u64)?;
+        let points = &self.mesh.points[self.mesh.points.len() - piece.points as usize..];
+        let mut start = 0;
+        for (i, (&end, kind)) in ends.iter().zip(kinds).enumerate() {
+            let cell = &vertices[start..end as usize];
+            let pushed = to.push(first + i as u32, kind, cell, points);
+            pushed.map_err(|right| fault(format!("gives cell {} {} vertices: {right}", i + 1, cell.len())))?;
+            start = end as usize;
+        }
+        Ok(())
+    }
+
+    fn read_connectivity(&self, piece: &mut Piece, section: Section, count: u64) -> Result<Vec<u32>> {
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let array = self.take(piece, section, "connectivity")?;
+        let (byte, points) = (array.byte, piece.points);
+        let vertex = |(i, number): (usize, i64)| match u32::try_from(number) {
+            Ok(vertex) if u64::from(vertex) < points => Ok(vertex),
+            _ => {
+                let what =
+                    format!("holds point {number} (number {} of {count}): the piece has {points}, from 0", i + 1);
+                Err(numbers::error(self.head, byte, "connectivity", &what, "correct the cell"))
+            }
+        };
+        array.into_wholes(count, self.head)?.into_iter().enumerate().map(vertex).collect()
+    }
+
+    fn take(&self, piece: &mut Piece, section: Section, name: &str) -> Result<Array> {
+        let array = piece.take(section, Some(name)).filter(|array| array.components.unwrap_or(1) == 1);
+        array.ok_or_else(|| {
+            let what = format!("{section:?} of a piece without an array '{name}' of one component");
+            self.error(piece, &what, "check that the file is whole, and that a VTK program wrote it")
+        })
+    }
+
+    fn append_point_data(&mut self, data: Data, base: usize, count: usize) -> Result<()> {
+        self.mesh.point_labels.extend((0..count).map(|i| data.label(i)));
+        self.mesh.corners.extend(data.marked("corner", base, 0..count));
+        self.mesh.required_points.extend(data.marked("required", base, 0..count));
+        if count == 0 {
+            return Ok(());
+        }
+        data.fields.iter().try_for_each(|field| field.check(None, self.head))?;
+        self.vertices.append(data.fields, self.head)
+    }
+
+    fn append_cells(&mut self, mut data: Data, shapes: Shapes, cells: usize) -> Result<()> {
+        let (triangles, edges) = (self.mesh.triangles.len(), self.mesh.edges.len());
+        let of = |cells: &[u32]| cells.iter().map(|&cell| cell as usize).collect::<Vec<_>>().into_iter();
+        let (of_triangles, of_edges) = (of(&shapes.of_triangles), of(&shapes.of_edges));
+        self.mesh.triangle_labels.extend(of_triangles.clone().map(|cell| data.label(cell)));
+        self.mesh.edge_labels.extend(of_edges.clone().map(|cell| data.label(cell)));
+        self.mesh.required_triangles.extend(data.marked("required", triangles, of_triangles));
+        self.mesh.required_edges.extend(data.marked("required", edges, of_edges.clone()));
+        self.mesh.ridges.extend(data.marked("ridge", edges, of_edges));
+        self.mesh.triangles.extend(shapes.triangles);
+        self.mesh.edges.extend(shapes.edges);
+        if shapes.of_triangles.is_empty() {
+            return Ok(());
+        }
+        demand_moderate_cuts(&data, shapes.of_triangles.len(), cells, self.head)?;
+        for field in &mut data.fields {
+            field.select(&shapes.of_triangles);
+            field.check(Some(&shapes.of_triangles), self.head)?;
+        }
+        self.triangles.append(data.fields, self.head)
+    }
+
+    fn error(&self, piece: &Piece, what: &str, help: &str) -> Error {
+        Error::parse(format!("{}, byte {}", self.head.place, piece.byte), what, help)
+    }
+}
+
+/// Refuses fields whose values would take far more memory than the file: of polygons with many vertices, each triangle of which
+/// repeats all numbers.
+fn demand_moderate_cuts(data: &Data, triangles: usize, cells: usize, head: Head<'_>) -> Result<()> {
+    const ALWAYS: usize = 1 << 24;
+    const MOST_PER_CELL: usize = 64;
+    let components = data.fields.iter().fold(0_usize, |sum, field| sum.saturating_add(field.components()));
+    let numbers = components.saturating_mul(triangles);
+    if numbers <= ALWAYS || triangles / MOST_PER_CELL < cells {
+        return Ok(());
+    }
+    let what =
+        format!("{}: {cells} cells are cut into {triangles} triangles, with {numbers} values on them", head.place);
+    Err(Error::Limit { what, help: "triangulate the polygons, or remove the data on cells".into() })
+}

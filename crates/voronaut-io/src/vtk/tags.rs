@@ -1,0 +1,436 @@
+//! What the tags of a file say: its pieces, and the arrays of each.
+
+use super::appended;
+use super::base64::Base64;
+use super::characters::Characters;
+use super::numbers::{Array, Head, Kind};
+use super::stored::{Layout, Stored};
+use crate::bytes::Order;
+use crate::words::shortened;
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use std::io::{BufRead, ErrorKind};
+use voronaut::{Error, Result};
+
+/// The two types of files that are read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Type {
+    /// `.vtu`
+    UnstructuredGrid,
+    /// `.vtp`
+    PolyData,
+}
+
+/// Where in a piece an array is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Section {
+    PointData,
+    CellData,
+    Points,
+    /// Of an unstructured grid.
+    Cells,
+    Verts,
+    Lines,
+    Polys,
+    Strips,
+}
+
+const SECTIONS: [(&str, Section); 8] = [
+    ("PointData", Section::PointData),
+    ("CellData", Section::CellData),
+    ("Points", Section::Points),
+    ("Cells", Section::Cells),
+    ("Verts", Section::Verts),
+    ("Lines", Section::Lines),
+    ("Polys", Section::Polys),
+    ("Strips", Section::Strips),
+];
+
+/// Cells, in the order that their data have.
+pub(super) const CELLS: [(&str, Section); 5] = [
+    ("NumberOfCells", Section::Cells),
+    ("NumberOfVerts", Section::Verts),
+    ("NumberOfLines", Section::Lines),
+    ("NumberOfPolys", Section::Polys),
+    ("NumberOfStrips", Section::Strips),
+];
+
+/// A part of the mesh: points, cells, and their arrays.
+pub(super) struct Piece {
+    pub(super) points: u64,
+    /// As [`CELLS`] has them.
+    pub(super) cells: [u64; 5],
+    /// In the order of their tags.
+    pub(super) arrays: Vec<(Section, Array)>,
+    /// Arrays in the appended section, by where they begin there.
+    pub(super) appended: Vec<(u64, Section, Array)>,
+    /// Where its tag is.
+    pub(super) byte: u64,
+}
+
+impl Piece {
+    /// How many entries the arrays of a section have; vertices of cells are as many or more.
+    pub(super) fn count(&self, section: Section) -> u64 {
+        match section {
+            Section::PointData | Section::Points => self.points,
+            Section::CellData => self.cells.iter().sum(),
+            cells => CELLS.iter().zip(self.cells).find(|((_, known), _)| *known == cells).map_or(0, |(_, count)| count),
+        }
+    }
+
+    /// Takes an array out.
+    pub(super) fn take(&mut self, section: Section, name: Option<&str>) -> Option<Array> {
+        let is_it = |(of, array): &(Section, Array)| *of == section && name.is_none_or(|name| array.name == name);
+        self.arrays.iter().position(is_it).map(|i| self.arrays.remove(i).1)
+    }
+}
+
+/// A file, its arrays not yet looked at.
+pub(super) struct Grid<'a> {
+    pub(super) head: Head<'a>,
+    pub(super) kind: Type,
+    pub(super) pieces: Vec<Piece>,
+}
+
+/// Reads the tags of a file and the arrays that are between or behind them. Memory follows the file.
+///
+/// # Errors
+/// [`Error::Parse`] with the byte of what is no XML, or not as VTK has it; [`Error::Unsupported`] of other types of files and
+/// compressors; [`Error::Io`] of what cannot be read.
+pub(super) fn read(source: impl BufRead, place: &str) -> Result<Grid<'_>> {
+    let layout = Layout { order: Order::Little, is_wide: false, is_compressed: false };
+    let grid = Grid { head: Head { place, layout }, kind: Type::UnstructuredGrid, pieces: Vec::new() };
+    let xml = Reader::from_reader(Characters::new(source));
+    let mut tags = Tags { xml, grid, open: Vec::new(), array: None, compressor: None, text: String::new(), byte: 0 };
+    let mut buffer = Vec::new();
+    while tags.read_event(&mut buffer)? {
+        buffer.clear();
+    }
+    tags.finish()
+}
+
+/// An element that is open.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Element {
+    File,
+    Grid,
+    Piece,
+    Section(Section),
+    Array,
+    /// Passed over.
+    Other,
+}
+
+/// An array whose element is open.
+struct Open {
+    section: Section,
+    format: Format,
+    array: Array,
+}
+
+#[derive(Clone, Copy)]
+enum Format {
+    Text,
+    Binary,
+    /// From this byte on.
+    Appended(u64),
+}
+
+struct Tags<'a, R> {
+    xml: Reader<Characters<R>>,
+    grid: Grid<'a>,
+    open: Vec<Element>,
+    array: Option<Open>,
+    /// By which binary arrays are compressed.
+    compressor: Option<String>,
+    text: String,
+    /// Where the event that is looked at begins.
+    byte: u64,
+}
+
+impl<'a, R: BufRead> Tags<'a, R> {
+    /// Reads a tag or a text; false at the end of what matters.
+    fn read_event(&mut self, buffer: &mut Vec<u8>) -> Result<bool> {
+        self.byte = self.xml.get_ref().position();
+        let event = self.xml.read_event_into(buffer).map_err(|error| self.misread(&error))?;
+        match event {
+            Event::Start(tag) if self.open.as_slice() == [Element::File] && tag.name().0 == "AppendedData" => {
+                self.read_appended(&tag)?;
+                return Ok(false);
+            }
+            Event::Start(tag) => self.open(&tag)?,
+            Event::Empty(tag) => {
+                self.open(&tag)?;
+                self.close()?;
+            }
+            Event::End(_) => self.close()?,
+            Event::Text(text) => self.add(&text.into_inner())?,
+            Event::CData(text) => self.add(&text.into_inner())?,
+            Event::GeneralRef(_) if self.open.last() == Some(&Element::Array) => {
+                return Err(self.error("an '&' among the numbers of an array", "write numbers only"));
+            }
+            Event::Eof if self.open.is_empty() => return Ok(false),
+            Event::Eof => return Err(self.error("the file ends in the midst of its tags", "the file is cut off")),
+            _ => {}
+        }
+        Ok(true)
+    }
+
+    fn add(&mut self, text: &str) -> Result<()> {
+        if self.open.is_empty() && !text.trim().is_empty() {
+            return Err(self.no_vtk());
+        }
+        if self.open.last() == Some(&Element::Array) {
+            if let Some(open) = self.array.as_mut().filter(|_| self.text.is_empty()) {
+                open.array.byte = self.byte;
+            }
+            self.text.push_str(text);
+        }
+        Ok(())
+    }
+
+    fn open(&mut self, tag: &BytesStart<'_>) -> Result<()> {
+        let name = tag.name().0;
+        let element = match (self.open.last(), SECTIONS.iter().find(|(known, _)| *known == name)) {
+            (None, _) if name == "VTKFile" && self.grid.pieces.is_empty() => {
+                self.read_head(tag)?;
+                Element::File
+            }
+            (None, _) => return Err(self.no_vtk()),
+            (Some(Element::File), _) if name == type_name(self.grid.kind) => Element::Grid,
+            (Some(Element::Grid), _) if name == "Piece" => {
+                let piece = self.piece(tag)?;
+                self.grid.pieces.push(piece);
+                Element::Piece
+            }
+            (Some(Element::Piece), Some(&(_, section))) => Element::Section(section),
+            (Some(&Element::Section(section)), _) if name == "DataArray" => {
+                self.array = self.array(section, tag)?;
+                self.text.clear();
+                if self.array.is_some() { Element::Array } else { Element::Other }
+            }
+            _ => Element::Other,
+        };
+        self.open.push(element);
+        Ok(())
+    }
+
+    /// What the tag `VTKFile` says.
+    fn read_head(&mut self, tag: &BytesStart<'_>) -> Result<()> {
+        let kind = self.attribute(tag, "type")?.unwrap_or_default();
+        self.grid.kind = [Type::UnstructuredGrid, Type::PolyData]
+            .into_iter()
+            .find(|known| type_name(*known) == kind)
+            .ok_or_else(|| Error::Unsupported {
+            what: format!("{} is a VTK file of type '{}'", self.grid.head.place, shortened(&kind)),
+            help: "save it as one file of type UnstructuredGrid (.vtu) or PolyData (.vtp)".into(),
+        })?;
+        let unknown =
+            |what: &str, value: &str| self.error(&format!("{what} '{}'", shortened(value)), "check the tag VTKFile");
+        let order = match self.attribute(tag, "byte_order")?.as_deref() {
+            None | Some("LittleEndian") => Order::Little,
+            Some("BigEndian") => Order::Big,
+            Some(other) => return Err(unknown("an unknown byte_order", other)),
+        };
+        let is_wide = match self.attribute(tag, "header_type")?.as_deref() {
+            None | Some("UInt32") => false,
+            Some("UInt64") => true,
+            Some(other) => return Err(unknown("an unknown header_type", other)),
+        };
+        self.compressor = self.attribute(tag, "compressor")?.filter(|name| !name.is_empty());
+        self.grid.head.layout = Layout { order, is_wide, is_compressed: self.compressor.is_some() };
+        Ok(())
+    }
+
+    fn piece(&self, tag: &BytesStart<'_>) -> Result<Piece> {
+        let needed = |name: &str| {
+            let help = "check that a VTK program wrote the file";
+            self.count(tag, name)?.ok_or_else(|| self.error(&format!("a piece without {name}"), help))
+        };
+        let points = needed("NumberOfPoints")?;
+        let mut cells = [0; 5];
+        match self.grid.kind {
+            Type::UnstructuredGrid => cells[0] = needed(CELLS[0].0)?,
+            Type::PolyData => {
+                for (count, (name, _)) in cells.iter_mut().zip(CELLS).skip(1) {
+                    *count = self.count(tag, name)?.unwrap_or(0);
+                }
+            }
+        }
+        Ok(Piece { points, cells, arrays: Vec::new(), appended: Vec::new(), byte: self.byte })
+    }
+
+    /// An attribute that counts something that the mesh numbers with 32 bits.
+    fn count(&self, tag: &BytesStart<'_>, name: &str) -> Result<Option<u64>> {
+        let Some(value) = self.attribute(tag, name)? else { return Ok(None) };
+        let count = value.trim().parse::<u32>().map_err(|_| {
+            let what = format!("{name}=\"{}\" is not a whole number from 0 to {}", shortened(&value), u32::MAX);
+            self.error(&what, "correct the count")
+        })?;
+        Ok(Some(count.into()))
+    }
+
+    /// The array of a tag; `None` where nobody needs it.
+    fn array(&self, section: Section, tag: &BytesStart<'_>) -> Result<Option<Open>> {
+        let name = self.attribute(tag, "Name")?.unwrap_or_default();
+        let step = self.attribute(tag, "TimeStep")?;
+        let kind = Kind::of_name(&self.attribute(tag, "type")?.unwrap_or_default());
+        let is_data = matches!(section, Section::PointData | Section::CellData);
+        let is_known = is_data || section == Section::Points || ["connectivity", "offsets", "types"].contains(&&*name);
+        let is_first = step.is_none_or(|step| step.trim() == "0");
+        let Some(kind) = kind.filter(|_| is_known && is_first) else { return Ok(None) };
+        let components = match self.attribute(tag, "NumberOfComponents")?.as_deref().map(str::trim) {
+            None | Some("") => None,
+            Some(text) => Some(text.parse().map_err(|_| {
+                let what = format!("array '{}' has '{}' components", shortened(&name), shortened(text));
+                self.error(&what, "correct NumberOfComponents")
+            })?),
+        };
+        let format = self.format(&name, tag)?;
+        if self.is_empty(section) && matches!(format, Format::Appended(_)) {
+            return Ok(None);
+        }
+        let array =
+            Array { name, kind, components, tag: self.byte, byte: self.byte, stored: Stored::Plain(Vec::new()) };
+        Ok(Some(Open { section, format, array }))
+    }
+
+    /// Whether the arrays of a section of the last piece have no entries.
+    fn is_empty(&self, section: Section) -> bool {
+        self.grid.pieces.last().is_none_or(|piece| piece.count(section) == 0)
+    }
+
+    fn format(&self, array: &str, tag: &BytesStart<'_>) -> Result<Format> {
+        let format = self.attribute(tag, "format")?;
+        let compressor = self.compressor.as_ref().filter(|name| *name != "vtkZLibDataCompressor");
+        match (format.as_deref(), compressor) {
+            (None | Some("ascii"), _) => Ok(Format::Text),
+            (_, Some(compressor)) => {
+                let what = format!("{} is compressed by '{}'", self.grid.head.place, shortened(compressor));
+                let help = "save it uncompressed, or compressed by zlib (ParaView: Compressor Type ZLib or None)";
+                Err(Error::Unsupported { what, help: help.into() })
+            }
+            (Some("binary"), _) => Ok(Format::Binary),
+            (Some("appended"), _) => {
+                let offset = self.attribute(tag, "offset")?.unwrap_or_default();
+                let offset = offset.trim().parse().map_err(|_| {
+                    let what = format!("array '{}' has the offset '{}'", shortened(array), shortened(&offset));
+                    self.error(&what, "arrays in the section AppendedData have the attribute offset, in bytes")
+                })?;
+                Ok(Format::Appended(offset))
+            }
+            (Some(other), _) => {
+                let what = format!("array '{}' has the format '{}'", shortened(array), shortened(other));
+                Err(self.error(&what, "formats are ascii, binary and appended"))
+            }
+        }
+    }
+
+    fn close(&mut self) -> Result<()> {
+        if self.open.pop() != Some(Element::Array) {
+            return Ok(());
+        }
+        let (Some(Open { section, format, mut array }), Some(piece)) = (self.array.take(), self.grid.pieces.last_mut())
+        else {
+            return Ok(());
+        };
+        let text = std::mem::take(&mut self.text);
+        if text.trim().is_empty() && piece.count(section) == 0 {
+            return Ok(());
+        }
+        let head = self.grid.head;
+        match format {
+            Format::Appended(offset) => {
+                piece.appended.push((offset, section, array));
+                return Ok(());
+            }
+            Format::Text => array.stored = Stored::Text(text),
+            Format::Binary => {
+                let stored = Stored::read(&mut Base64::new(text.as_bytes()), head.layout);
+                array.stored = stored.map_err(|error| misread(&error, &array, head))?;
+            }
+        }
+        piece.arrays.push((section, array));
+        Ok(())
+    }
+
+    fn read_appended(&mut self, tag: &BytesStart<'_>) -> Result<()> {
+        let is_raw = match self.attribute(tag, "encoding")?.as_deref() {
+            Some("raw") => true,
+            None | Some("base64") => false,
+            Some(other) => {
+                let what = format!("AppendedData with the encoding '{}'", shortened(other));
+                return Err(self.error(&what, "encodings are raw and base64"));
+            }
+        };
+        let start = self.xml.get_ref().position();
+        appended::read(self.xml.get_mut().source(), start, is_raw, &mut self.grid)
+    }
+
+    fn finish(self) -> Result<Grid<'a>> {
+        if self.grid.pieces.is_empty() {
+            let what = format!("no {} with a piece in it", type_name(self.grid.kind));
+            return Err(self.error(&what, "check that the program that wrote it had finished"));
+        }
+        let grid = self.grid;
+        if let Some((_, _, array)) = grid.pieces.iter().flat_map(|piece| &piece.appended).next() {
+            return Err(array.error(
+                grid.head,
+                "is in a section AppendedData, which is not there",
+                "the file is cut off",
+            ));
+        }
+        Ok(grid)
+    }
+
+    /// The value of an attribute.
+    fn attribute(&self, tag: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
+        // Looking for names given twice takes long where there are many.
+        for attribute in tag.attributes().with_checks(false) {
+            let attribute = attribute.map_err(|error| self.misread(&error.into()))?;
+            if attribute.key.0 == name {
+                let value = quick_xml::escape::unescape(&attribute.value);
+                return value.map(|value| Some(value.into_owned())).map_err(|error| self.misread(&error.into()));
+            }
+        }
+        Ok(None)
+    }
+
+    fn no_vtk(&self) -> Error {
+        let help = "give a VTK file in its XML form (.vtu or .vtp), not in its legacy form";
+        self.error("the file does not begin with the tag VTKFile", help)
+    }
+
+    fn misread(&self, error: &quick_xml::Error) -> Error {
+        match error {
+            quick_xml::Error::Io(source) => {
+                let source = std::io::Error::new(source.kind(), source.to_string());
+                Error::Io { path: self.grid.head.place.into(), source }
+            }
+            _ if self.open.is_empty() => self.no_vtk(),
+            error => self.error(&error.to_string(), "check that the file is whole, and that a VTK program wrote it"),
+        }
+    }
+
+    fn error(&self, what: &str, help: &str) -> Error {
+        Error::parse(format!("{}, byte {}", self.grid.head.place, self.byte), what, help)
+    }
+}
+
+/// Why the bytes of an array could not be read.
+pub(super) fn misread(error: &std::io::Error, array: &Array, head: Head<'_>) -> Error {
+    match error.kind() {
+        ErrorKind::UnexpectedEof => {
+            array.error(head, "ends before all is there that its sizes announce", "the file is cut off or damaged")
+        }
+        ErrorKind::InvalidData => array.error(head, &format!("holds {error}"), "the file is damaged"),
+        kind => Error::Io { path: head.place.into(), source: std::io::Error::new(kind, error.to_string()) },
+    }
+}
+
+fn type_name(kind: Type) -> &'static str {
+    match kind {
+        Type::UnstructuredGrid => "UnstructuredGrid",
+        Type::PolyData => "PolyData",
+    }
+}

@@ -1,0 +1,183 @@
+//! Invariants of ARCHITECTURE.md that can be held by reading the sources of all crates.
+
+mod circles;
+mod reading;
+
+use reading::{
+    Source, contains_path, contains_word, everywhere, functions, modules, sources, used_modules, without_comments,
+    without_tests,
+};
+use std::fs;
+use std::path::Path;
+
+/// No function is longer, in lines from its signature to its closing brace.
+const LONGEST_FUNCTION: usize = 80;
+/// Nine functions in ten are no longer than this.
+const LONG_FUNCTION: usize = 25;
+/// No file is longer, tests included.
+const LONGEST_FILE: usize = 500;
+
+#[test]
+fn modules_use_only_those_above_them() {
+    let all = sources("voronaut");
+    let order = modules(&all);
+    let rank = |module: &str| order.iter().position(|name| name == module);
+    for source in all.iter().filter(|source| source.module() != "lib") {
+        let own = rank(source.module()).unwrap_or_else(|| panic!("{} is not declared in lib.rs", source.name));
+        for used in used_modules(&source.code) {
+            let used_rank = rank(&used).unwrap_or_else(|| panic!("{}: crate::{used} is no module", source.name));
+            assert!(used_rank <= own, "{} uses {used}, which stands below {} in lib.rs", source.name, source.module());
+        }
+    }
+}
+
+#[test]
+fn triangulation_is_blind_to_positions() {
+    for source in sources("voronaut").iter().filter(|source| source.module() == "triangulation") {
+        for word in ["geometry", "Point", "Vector", "f64, f64", "position"] {
+            assert!(!source.code.contains(word), "{} mentions {word}", source.name);
+        }
+    }
+}
+
+/// Edges that wait for a test after a flip are there only.
+#[test]
+fn lawson_s_flips_are_one_module() {
+    for source in sources("voronaut").iter().filter(|source| source.name != "triangulation/lawson.rs") {
+        let flips = source.code.contains("topology.flip(");
+        assert!(!(flips && source.code.contains(".pop()")), "{} has a loop of flips of its own", source.name);
+    }
+}
+
+#[test]
+fn levels_of_in_circle_tests_are_climbed_in_one_module() {
+    let all = sources("voronaut");
+    let mut found = all.iter().filter(|source| source.code.contains("InCircle for"));
+    assert!(found.clone().count() >= 3, "the mesh in the making, seeds in a field and on a surface");
+    for source in all.iter().filter(|source| source.code.contains("in_circle::")) {
+        assert!(!source.code.contains("for level in"), "{} climbs levels by itself", source.name);
+    }
+    assert!(found.all(|source| !source.code.contains("HashMap")), "what is known is kept in one place");
+}
+
+#[test]
+fn libraries_never_print() {
+    for source in libraries() {
+        for word in ["print!", "println!", "dbg!", "stdout()", "stderr()"] {
+            assert!(!source.code.contains(word), "{} has {word}", source.name);
+        }
+    }
+}
+
+/// The mathematics are blind to files, and so are pictures; formats are bytes and structs.
+#[test]
+fn files_are_opened_by_two_modules_of_io() {
+    let opening = ["voronaut-io/files.rs", "voronaut-io/whole.rs", "voronaut-io/report.rs"];
+    for source in libraries().iter().filter(|source| !opening.contains(&source.name.as_str())) {
+        for word in ["std::fs", "fs::", "File::", "OpenOptions", "tempfile"] {
+            assert!(!contains_path(&source.code, word), "{} has {word}", source.name);
+        }
+    }
+}
+
+#[test]
+fn nothing_global_decides() {
+    for source in libraries() {
+        for word in ["static ", "thread_local!", "env::var", "SystemTime", "current_num_threads"] {
+            assert!(!contains_word(&source.code, word), "{} has {word}", source.name);
+        }
+    }
+}
+
+#[test]
+fn no_files_use_each_other_in_a_circle() {
+    for name in ["voronaut", "voronaut-io", "voronaut-draw", "voronaut-cli"] {
+        assert_eq!(circles::circles(&sources(name)), Vec::<Vec<String>>::new(), "of {name}");
+    }
+}
+
+#[test]
+fn functions_fit_a_screen() {
+    let all = everywhere();
+    let mut lengths: Vec<(usize, String)> = all.iter().flat_map(functions).collect();
+    lengths.sort();
+    let (longest, name) = &lengths[lengths.len() - 1];
+    assert!(*longest <= LONGEST_FUNCTION, "{name} has {longest} lines");
+    let long = lengths[lengths.len() * 9 / 10].0;
+    assert!(long <= LONG_FUNCTION, "one function in ten has more than {long} lines");
+}
+
+#[test]
+fn files_are_one_idea_each() {
+    for source in &everywhere() {
+        let lines = source.text.lines().count();
+        assert!(lines <= LONGEST_FILE, "{} has {lines} lines", source.name);
+        assert!(source.text.starts_with("//!"), "{} does not begin by saying what it is", source.name);
+    }
+}
+
+#[test]
+fn every_cited_work_is_in_the_bibliography() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let read = |name: &str| fs::read_to_string(root.join(name)).expect("a readable document");
+    let bibliography = read("references.bib");
+    let entries: Vec<&str> = bibliography.split("\n@").collect();
+    let documents = [
+        "DESIGN.md",
+        "ARCHITECTURE.md",
+        "README.md",
+        "docs/coming-from.md",
+        "docs/guarantees.md",
+        "docs/guide.md",
+        "docs/measurements.md",
+    ]
+    .map(|name| (name.to_string(), read(name)));
+    let texts = everywhere().into_iter().map(|source| (source.name, source.text)).chain(documents);
+    let mut cited = 0;
+    for (file, text) in texts {
+        for (author, year) in citations(&text) {
+            let is_it = |entry: &&str| entry.contains(&author) && entry.contains(&format!("year = {{{year}}}"));
+            assert!(entries.iter().any(is_it), "{file}: no entry for {author} {year}");
+            cited += 1;
+        }
+    }
+    assert!(cited > 5, "citations are written as they were");
+}
+
+/// The crates that others build upon.
+fn libraries() -> Vec<Source> {
+    everywhere().into_iter().filter(|source| !source.name.starts_with("voronaut-cli/")).collect()
+}
+
+/// Name and year of what is cited as `Name 1999`, `Name and Other 1999` or `Name et al. 1999`.
+fn citations(text: &str) -> Vec<(String, String)> {
+    let bare = |word: &str| word.trim_matches(|c: char| !c.is_alphanumeric()).to_string();
+    let words: Vec<String> = text
+        .split_whitespace()
+        .filter(|word| !word.starts_with("//"))
+        .map(bare)
+        .filter(|w| w != "et" && w != "al")
+        .collect();
+    let is_year = |word: &str| word.len() == 4 && (word.starts_with("19") || word.starts_with("20"));
+    let cited = words.windows(2).filter(|pair| {
+        is_year(&pair[1]) && pair[1].chars().all(|c| c.is_ascii_digit()) && pair[0].starts_with(char::is_uppercase)
+    });
+    // Bibliographies write accents as commands: the part of a name before the first of them is enough.
+    let plain = |name: &str| name.chars().take_while(char::is_ascii).collect::<String>();
+    cited.map(|pair| (plain(&pair[0]), pair[1].clone())).collect()
+}
+
+#[test]
+fn the_reader_of_sources_reads() {
+    let text = "/// fn doc() {}\nfn a() { b(\"}{ // \\\" \"); c('}'); d('\\''); } // crate::x\n#[cfg(test)]\nmod t { use \
+                crate::y; }\n#[cfg(test)]\nmod whole;\nfn e<'a>() {\n}\n";
+    let (code, files) = without_tests(&without_comments(text));
+    assert_eq!(files, ["whole"]);
+    let source = Source { name: "s.rs".into(), text: text.into(), code };
+    assert_eq!(functions(&source), [(1, "s.rs: a".to_string()), (2, "s.rs: e".to_string())]);
+    assert!(used_modules(&source.code).is_empty());
+    assert_eq!(
+        used_modules("use crate::{mesh::{Mesh, X}, Error, metric}; crate::dual::f()"),
+        ["mesh", "error", "metric", "dual"]
+    );
+}
