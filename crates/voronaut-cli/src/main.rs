@@ -7,6 +7,7 @@ mod distance;
 mod dual;
 mod fields;
 mod files;
+mod flags;
 mod interpolate;
 mod r#loop;
 mod mesh;
@@ -30,7 +31,7 @@ fn main() -> ExitCode {
         Err(error) => {
             eprintln!("error: {error}");
             if !error.help().is_empty() {
-                eprintln!("  help: {}", error.help());
+                eprintln!("  help: {}", flags::flagged(error.help()));
             }
             if is_remesh { ExitCode::from(remesh::FAILURE) } else { ExitCode::FAILURE }
         }
@@ -95,6 +96,16 @@ mod tests {
     use super::*;
     use clap::CommandFactory;
     use voronaut::recipe::MeshOptions;
+
+    #[test]
+    fn what_libraries_speak_of_are_flags() {
+        let program = Arguments::command();
+        let flags: Vec<_> = program.get_subcommands().flat_map(clap::Command::get_arguments).collect();
+        for name in flags::PARAMETERS {
+            let is_it = |argument: &&clap::Arg| argument.get_long() == Some(&name.replace('_', "-"));
+            assert!(flags.iter().any(is_it), "{name}");
+        }
+    }
 
     #[test]
     fn definitions_are_consistent() {

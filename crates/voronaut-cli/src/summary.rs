@@ -1,6 +1,7 @@
 //! What a run says when it is done: one screen on stdout.
 
 use crate::dual::certify;
+use crate::flags::flagged;
 use crate::options::Run;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -22,7 +23,7 @@ pub(crate) fn print(title: &str, report: &Report, run: &Run) {
 pub(crate) fn notes(notes: &[String], is_quiet: bool) {
     if !is_quiet {
         for note in notes {
-            eprintln!("note: {note}");
+            eprintln!("note: {}", flagged(note));
         }
     }
 }
@@ -45,7 +46,7 @@ pub(crate) fn print_distance(title: &str, told: &serde_json::Value, run: &Run) {
     line("seconds", &told["seconds"]["total"]);
     let _ = std::io::stdout().write_all(text.as_bytes());
     for note in told["notes"].as_array().into_iter().flatten().filter_map(|note| note.as_str()) {
-        eprintln!("note: {note}");
+        eprintln!("note: {}", flagged(note));
     }
     if let Some(count) = told["unreached"].as_u64().filter(|&count| count > 0) {
         eprintln!("note: {count} canvas vertices are not reached: infinite in the file");

@@ -1,6 +1,6 @@
 //! Triangles of a simple polygon by cutting off its ears (Meisters 1975), those of the best shape first.
 
-use super::cutting::Seen;
+use super::seen::Seen;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use voronaut::geometry::signed_area;

@@ -15,6 +15,7 @@ mod given;
 mod losses;
 mod metric;
 mod report;
+mod seen;
 mod surface;
 mod volumes;
 mod whole;

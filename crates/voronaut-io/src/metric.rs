@@ -86,7 +86,7 @@ impl MetricFiles<'_> {
         let values = read_metric(path, self.order)?.values;
         let is_mesh = |p: &&Path| Format::of_ending(p).is_some_and(Format::may_be_planar);
         let Some(file) = self.background.or(self.own).filter(is_mesh) else {
-            let help = "name the mesh that the values belong to: --background FILE.mesh";
+            let help = "name the mesh that the values belong to: `background=FILE.mesh`";
             return Err(Error::parse(path.display().to_string(), "a .sol file needs a .mesh it belongs to", help));
         };
         let mesh = read(file)?.mesh;
@@ -160,7 +160,7 @@ fn demand_order(values: &SolutionValues, order: TensorOrder, place: &str) -> Res
     let entries = |order: TensorOrder| order.entries(matches!(values, SolutionValues::Tensor3(_)));
     let (read, meant) = (entries(order), entries(fitting));
     let what = format!("the tensor is not positive definite in the order {read}, and all are in the order {meant}");
-    let help = format!("the file seems to be in that order: say so (--tensor-order {fitting}), or write it as {read}");
+    let help = format!("the file seems to be in that order: say so (`tensor_order={fitting}`), or write it as {read}");
     Err(Error::metric(what, format!("{place}, entry {}", bad + 1), help))
 }
 
@@ -245,7 +245,7 @@ mod tests {
             "invalid metric: the tensor is not positive definite in the order m11 m12 m22, and all are in the order \
              m11 m22 m12 at a.sol, entry 2"
         );
-        assert!(error.help().contains("--tensor-order diagonal"), "{}", error.help());
+        assert!(error.help().contains("`tensor_order=diagonal`"), "{}", error.help());
         let never = SolutionValues::Tensor(vec![[1.0, -2.0, 1.0]]);
         assert!(demand_order(&never, TensorOrder::Disk, "a.sol").is_ok(), "left to who samples it");
     }

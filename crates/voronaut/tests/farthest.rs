@@ -95,7 +95,7 @@ fn a_canvas_beyond_the_memory_limit_is_refused() {
     let options = MeshOptions { vertices: Some(100_000), memory_limit: 1 << 30, ..MeshOptions::default() };
     let with = |seeding| MeshOptions { seeding, lloyd: 0, ..options.clone() };
     let refused = recipe::mesh(&domain, &Uniform::default(), &with(Seeding::Farthest), &Silent);
-    assert!(matches!(&refused, Err(error @ Error::Limit { .. }) if error.help().contains("--canvas-size")));
+    assert!(matches!(&refused, Err(error @ Error::Limit { .. }) if error.help().contains("`canvas_size`")));
     assert!("protected".parse::<Seeding>().is_ok() && "nearest".parse::<Seeding>().is_err());
     assert_eq!("farthest".parse::<Seeding>().unwrap().to_string(), "farthest");
 }

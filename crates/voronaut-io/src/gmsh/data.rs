@@ -6,59 +6,62 @@ use crate::words::At;
 use voronaut::mesh::SolutionValues;
 use voronaut::{Error, Result};
 
-/// Reads a section as a field; values on elements that are no triangles are passed over.
-///
-/// # Errors
-/// [`Error::Parse`] of what is not as announced, of a node or an element that does not exist or has two values, and of a triangle
-/// or one of its vertices without value. [`Error::Unsupported`] of more than 9 numbers per value.
-pub(super) fn read(reader: &mut Reader<'_>, section: &str) -> Result<()> {
-    let start = reader.source.position();
-    let head = read_head(reader, section)?;
-    if head.rows == 0 {
-        return Ok(());
+impl Reader<'_> {
+    /// Reads a section as a field; values on elements that are no triangles are passed over.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] of what is not as announced, of a node or an element that does not exist or has two values, and of a triangle
+    /// or one of its vertices without value. [`Error::Unsupported`] of more than 9 numbers per value.
+    pub(super) fn read_data(&mut self, section: &str) -> Result<()> {
+        let start = self.source.position();
+        let head = read_head(self, section)?;
+        if head.rows == 0 {
+            return Ok(());
+        }
+        let found = read_rows(self, section, &head)?;
+        let on_nodes = section == "NodeData";
+        let vertices = 0..self.mesh.points.len() as u32;
+        let rows: Vec<Option<u32>> = if on_nodes {
+            vertices.map(|v| found.row(v)).collect()
+        } else {
+            self.triangle_elements.iter().map(|&element| found.row(element)).collect()
+        };
+        if rows.iter().all(Option::is_none) {
+            return Ok(());
+        }
+        let missing = missing(self, &rows, on_nodes);
+        if missing > 0 {
+            let of = if on_nodes { "vertices of triangles" } else { "triangles" };
+            let what = format!("{section} '{}' has no values on {missing} {of}", head.name);
+            return Err(self.source.error_at(start, what, "save values everywhere, or remove the section"));
+        }
+        // Memory follows the file: values that are not there may be a few.
+        if rows.len() > FEW.max(MOST_FILLED * head.rows as usize) {
+            let what = format!("{section} '{}' has values on {} of {} vertices", head.name, head.rows, rows.len());
+            return Err(self.source.error_at(
+                start,
+                what,
+                "save values everywhere, or remove vertices that no element uses",
+            ));
+        }
+        let zeros = vec![0.0; head.components];
+        let numbers: Vec<f64> = rows
+            .into_iter()
+            .flat_map(|row| {
+                row.map_or(zeros.as_slice(), |row| &found.numbers[row as usize * head.components..][..head.components])
+            })
+            .copied()
+            .collect();
+        let values = SolutionValues::in_space(numbers, head.components, self.mesh.is_planar());
+        let fields = if on_nodes { &mut self.fields.vertices } else { &mut self.fields.triangles };
+        let is_taken = |name: &str| fields.iter().any(|field| field.name == name);
+        let step = || std::iter::once(format!("{}_{}", head.name, head.step));
+        let mut names =
+            std::iter::once(head.name.clone()).chain(step()).chain((2..).map(|n| format!("{}_{n}", head.name)));
+        let name = names.find(|name| !is_taken(name)).unwrap_or_default();
+        fields.push(Field { name, values });
+        Ok(())
     }
-    let found = read_rows(reader, section, &head)?;
-    let on_nodes = section == "NodeData";
-    let vertices = 0..reader.mesh.points.len() as u32;
-    let rows: Vec<Option<u32>> = if on_nodes {
-        vertices.map(|v| found.row(v)).collect()
-    } else {
-        reader.triangle_elements.iter().map(|&element| found.row(element)).collect()
-    };
-    if rows.iter().all(Option::is_none) {
-        return Ok(());
-    }
-    let missing = missing(reader, &rows, on_nodes);
-    if missing > 0 {
-        let of = if on_nodes { "vertices of triangles" } else { "triangles" };
-        let what = format!("{section} '{}' has no values on {missing} {of}", head.name);
-        return Err(reader.source.error_at(start, what, "save values everywhere, or remove the section"));
-    }
-    // Memory follows the file: values that are not there may be a few.
-    if rows.len() > FEW.max(MOST_FILLED * head.rows as usize) {
-        let what = format!("{section} '{}' has values on {} of {} vertices", head.name, head.rows, rows.len());
-        return Err(reader.source.error_at(
-            start,
-            what,
-            "save values everywhere, or remove vertices that no element uses",
-        ));
-    }
-    let zeros = vec![0.0; head.components];
-    let numbers: Vec<f64> = rows
-        .into_iter()
-        .flat_map(|row| {
-            row.map_or(zeros.as_slice(), |row| &found.numbers[row as usize * head.components..][..head.components])
-        })
-        .copied()
-        .collect();
-    let values = SolutionValues::in_space(numbers, head.components, reader.mesh.is_planar());
-    let fields = if on_nodes { &mut reader.fields.vertices } else { &mut reader.fields.triangles };
-    let is_taken = |name: &str| fields.iter().any(|field| field.name == name);
-    let step = || std::iter::once(format!("{}_{}", head.name, head.step));
-    let mut names = std::iter::once(head.name.clone()).chain(step()).chain((2..).map(|n| format!("{}_{n}", head.name)));
-    let name = names.find(|name| !is_taken(name)).unwrap_or_default();
-    fields.push(Field { name, values });
-    Ok(())
 }
 
 /// Vertices for each one with a value, beyond [`FEW`].

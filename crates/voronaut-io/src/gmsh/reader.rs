@@ -1,6 +1,5 @@
 //! Gmsh's sections, read in turn into a mesh.
 
-use super::data;
 use super::groups::Groups;
 use super::source::Source;
 use super::tags::Tags;
@@ -102,7 +101,7 @@ impl<'a> Reader<'a> {
         match section {
             "NodeData" | "ElementData" => {
                 self.demand_nodes(section)?;
-                data::read(self, section)?;
+                self.read_data(section)?;
                 return self.source.end_section(section);
             }
             "PartitionedEntities" => return Err(unsupported("a mesh in partitions", &self.source)),

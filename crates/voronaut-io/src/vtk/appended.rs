@@ -1,8 +1,8 @@
 //! The section of a file where arrays stand one after the other, behind all tags.
 
 use super::base64::Base64;
+use super::grid::{Grid, misread};
 use super::stored::Stored;
-use super::tags::{Grid, misread};
 use std::io::{self, BufRead, ErrorKind, Read};
 use voronaut::{Error, Result};
 

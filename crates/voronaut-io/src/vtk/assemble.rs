@@ -2,8 +2,8 @@
 
 use super::cells::{Shapes, refuse_foreign, types};
 use super::data::{Data, Joined};
+use super::grid::{CELLS, Grid, Piece, Section};
 use super::numbers::{self, Array, Head};
-use super::tags::{CELLS, Grid, Piece, Section};
 use crate::{Document, Fields};
 use voronaut::mesh::Mesh;
 use voronaut::{Error, Result};

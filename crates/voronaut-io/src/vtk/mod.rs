@@ -22,6 +22,7 @@ mod base64;
 mod cells;
 mod characters;
 mod data;
+mod grid;
 mod numbers;
 mod stored;
 mod tags;

@@ -26,7 +26,7 @@ const HOPELESS: f64 = 0.1;
 /// Rounds in a row that leave no fewer inconsistent simplices than one before are so many at most.
 const PATIENCE: usize = 3;
 /// What to do where stars do not come to agree.
-pub const NEEDS_MORE: &str = "star sets need far more vertices where the metric turns fast: use --mesher voronoi";
+pub const NEEDS_MORE: &str = "star sets need far more vertices where the metric turns fast: use `mesher=voronoi`";
 
 /// When and how far to refine.
 #[derive(Clone, Copy, Debug)]
@@ -350,7 +350,7 @@ fn not_meshed(what: &str, place: String) -> Error {
     Error::Mesh {
         what: what.into(),
         place,
-        help: "use --mesher voronoi, which never depends on stars that agree".into(),
+        help: "use `mesher=voronoi`, which never depends on stars that agree".into(),
     }
 }
 

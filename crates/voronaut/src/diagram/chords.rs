@@ -3,32 +3,12 @@
 
 use super::Seed;
 use super::ground::{Flat, Straight};
+use super::kind::Chords;
 use super::nearest::{Nearest, Site};
 use crate::geodesic::{Label, MarchCounters, Propagation};
 use crate::geometry::Point;
-use crate::metric::MetricField;
 use crate::triangulation::VertexId;
 use rayon::prelude::*;
-
-/// Which tensor a chord is measured with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Chords {
-    /// That at the seed (Labelle and Shewchuk).
-    InMetricOfSeed,
-    /// That at the place whose distance it is (Du and Wang).
-    InMetricOfPlace,
-}
-
-impl Chords {
-    /// The distance of a place from a seed.
-    fn measured(self, field: &dyn MetricField, seed: Point, place: Point) -> f64 {
-        let frozen_at = match self {
-            Chords::InMetricOfSeed => seed,
-            Chords::InMetricOfPlace => place,
-        };
-        field.at(frozen_at).length(place - seed)
-    }
-}
 
 impl<'a> Straight<'a, Flat<'a>> for Chords {
     fn length(&self, ground: Flat, seed: Point, place: Point) -> f64 {

@@ -1,6 +1,6 @@
 //! What a diagram lies on: a canvas of the plane or of a surface, with the metric it was made with.
 
-use super::chords::Chords;
+use super::kind::Chords;
 use super::lattice;
 use super::seeds::{self, Care, Start};
 use super::{Measure, Seed, SurfaceDiagram};

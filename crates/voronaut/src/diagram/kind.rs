@@ -1,6 +1,8 @@
 //! Which diagram.
 
 use crate::error::named;
+use crate::geometry::Point;
+use crate::metric::MetricField;
 
 /// By what distance a place is given to its nearest seed; its names are those users type (`--voronoi`).
 ///
@@ -19,3 +21,23 @@ pub enum Kind {
 }
 
 named!(Kind, "Voronoi diagram", [Riemannian = "riemannian", DuWang = "du-wang", LabelleShewchuk = "labelle-shewchuk"]);
+
+/// Which tensor a chord is measured with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chords {
+    /// That at the seed (Labelle and Shewchuk).
+    InMetricOfSeed,
+    /// That at the place whose distance it is (Du and Wang).
+    InMetricOfPlace,
+}
+
+impl Chords {
+    /// The distance of a place from a seed.
+    pub(super) fn measured(self, field: &dyn MetricField, seed: Point, place: Point) -> f64 {
+        let frozen_at = match self {
+            Chords::InMetricOfSeed => seed,
+            Chords::InMetricOfPlace => place,
+        };
+        field.at(frozen_at).length(place - seed)
+    }
+}

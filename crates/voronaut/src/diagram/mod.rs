@@ -45,8 +45,8 @@ use crate::geodesic::{Geodesic, Label, MarchCounters, Marching, Method, NO_COLOU
 use crate::geometry::Point;
 use crate::metric::{MetricField, check_field};
 use crate::triangulation::VertexId;
-use chords::Chords;
 use ground::{Straight as _, solver};
+use kind::Chords;
 use overlap::Overlap;
 use seeds::{Care, Start};
 use std::sync::OnceLock;

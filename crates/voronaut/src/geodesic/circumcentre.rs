@@ -1,8 +1,8 @@
 //! The in-circle test by its definition: a point equally far from three seeds, and how far the fourth is from it.
 
+use super::in_circle::Margin;
 use super::in_circle::opposite;
 use super::path::{Fineness, Paths, Solved};
-use super::predicate::Margin;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 

@@ -1,7 +1,6 @@
 //! A geodesic between two points as a curve: polynomials that can be evaluated anywhere, and drawn.
 
 use super::jet::Frame;
-use super::path::PathLength;
 use super::rule::modes_at;
 use crate::geometry::{Point, Vector};
 use crate::metric::MetricField;
@@ -9,6 +8,17 @@ use crate::metric::MetricField;
 /// Segments of a drawn curve at least, and how often each is halved at most.
 const FEWEST: usize = 4;
 const HALVINGS: u32 = 6;
+
+/// The length of a geodesic, and the curvature that its surroundings have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathLength {
+    /// Metric length: of a local minimum, which need not be the shortest path, and which knows no domain.
+    pub value: f64,
+    /// Estimated relative error (not a bound).
+    pub error: f64,
+    /// The Gauss curvature of the field along the path: least and greatest at its quadrature points.
+    pub curvature: [f64; 2],
+}
 
 /// A geodesic, found by [`Paths::curve`](super::Paths::curve).
 #[derive(Clone, Debug)]

@@ -159,7 +159,7 @@ fn factor(n: usize, entries: impl Iterator<Item = (usize, usize, f64)>) -> Resul
     let matrix = SparseColMat::try_new_from_triplets(n, n, &entries).ok();
     matrix.and_then(|matrix| matrix.sp_cholesky(Side::Lower).ok()).ok_or_else(|| Error::Unsupported {
         what: "heat on this canvas, whose matrix is not positive definite by rounding".into(),
-        help: "use another method, such as march, or limit the metric (--a-max)".into(),
+        help: "use another method, such as march, or limit the metric (`a_max`)".into(),
     })
 }
 

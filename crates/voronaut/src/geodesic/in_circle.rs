@@ -5,8 +5,30 @@
 //! where the edge is Delaunay, zero for four points on a circle, negative where it must flip.
 
 use super::length::Length;
-use super::predicate::Margin;
 use crate::geometry::{Tensor, Vector};
+
+/// The outcome of an in-circle test: the sine of the sum of the two angles that face an edge, were the surface flat;
+/// positive where the edge is Delaunay.
+///
+/// That is the power of the fourth seed with respect to the circle through the other three, times twice the area of
+/// their triangle, over the product of the four outer edges; so understood it has a meaning on any surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Margin {
+    /// The sine.
+    pub value: f64,
+    /// Estimated error of `value` (not a bound); infinite where the test could not tell.
+    pub error: f64,
+}
+
+impl Margin {
+    /// What a test says that could not tell.
+    pub const UNKNOWN: Self = Self { value: 0.0, error: f64::INFINITY };
+
+    /// Whether the sign is settled.
+    pub fn is_certain(&self) -> bool {
+        self.value.abs() > self.error
+    }
+}
 
 /// The margin of the edge a-b with one tensor for the whole quadrilateral. Vectors run from c to a, c to b, d to b
 /// and d to a; the triangles a b c and b a d are counter-clockwise.

@@ -1,6 +1,7 @@
 //! The logarithm map of a metric field: which way a geodesic sets out.
 
-use super::path::{Fineness, PathLength, Paths};
+use super::curve::PathLength;
+use super::path::{Fineness, Paths};
 use crate::geometry::{Point, Vector};
 use crate::metric::MetricField;
 

@@ -4,7 +4,7 @@
 //! vector. For a smooth field the error falls exponentially with their number, and the change of the length from one
 //! number to its double, with the change before, tells how large it still is.
 
-use super::curve::{Curve, Guess};
+use super::curve::{Curve, Guess, PathLength};
 use super::jet::{Frame, Jet};
 use super::rule::Rule;
 use crate::geometry::{Point, Tensor, Vector};
@@ -39,17 +39,6 @@ impl Fineness {
     pub fn next(self) -> Option<Self> {
         (self < Self::FINEST).then_some(Self(self.0 + 1))
     }
-}
-
-/// The length of a geodesic, and the curvature that its surroundings have.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathLength {
-    /// Metric length: of a local minimum, which need not be the shortest path, and which knows no domain.
-    pub value: f64,
-    /// Estimated relative error (not a bound).
-    pub error: f64,
-    /// The Gauss curvature of the field along the path: least and greatest at its quadrature points.
-    pub curvature: [f64; 2],
 }
 
 /// Solves for geodesics; keeps tables only, so that threads can share it.

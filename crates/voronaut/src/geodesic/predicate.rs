@@ -1,7 +1,7 @@
 //! In-circle tests that know how far they can be trusted.
 
-use super::in_circle::opposite;
-use super::path::PathLength;
+use super::curve::PathLength;
+use super::in_circle::{Margin, opposite};
 
 /// Curvature's share in the margin's error, per area: of how much it varies, of the margin itself, of its square.
 const VARYING: f64 = 1.0;
@@ -11,29 +11,6 @@ const SECOND_ORDER: f64 = 0.5;
 const BENT: f64 = 4.0;
 /// Rounding of positions and tensors, in the margin.
 const ROUNDING: f64 = 1e-12;
-
-/// The outcome of an in-circle test: the sine of the sum of the two angles that face an edge, were the surface flat;
-/// positive where the edge is Delaunay.
-///
-/// That is the power of the fourth seed with respect to the circle through the other three, times twice the area of
-/// their triangle, over the product of the four outer edges; so understood it has a meaning on any surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Margin {
-    /// The sine.
-    pub value: f64,
-    /// Estimated error of `value` (not a bound); infinite where the test could not tell.
-    pub error: f64,
-}
-
-impl Margin {
-    /// What a test says that could not tell.
-    pub const UNKNOWN: Self = Self { value: 0.0, error: f64::INFINITY };
-
-    /// Whether the sign is settled.
-    pub fn is_certain(&self) -> bool {
-        self.value.abs() > self.error
-    }
-}
 
 /// The margin of the edge a-b between the triangles a b c and b a d from the lengths of a-b, a-c, b-c, a-d and b-d.
 ///

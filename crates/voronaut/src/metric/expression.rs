@@ -1,20 +1,10 @@
 //! Expressions in x, y and z: compiled once to a flat program that runs without allocating.
 
-use super::number::{Binary, Number, Unary};
+use super::number::Number;
+use super::operation::{Op, STACK, Variables};
 use super::parser::Parser;
 use crate::error::Result;
 use crate::geometry::{Jet3, Point3};
-
-/// Which variables an expression may use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Variables {
-    /// x and y.
-    Plane,
-    /// x, y and z.
-    Space,
-    /// x, y and the time t, which takes the place of z.
-    Motion,
-}
 
 /// A compiled expression. From loosest to tightest:
 ///
@@ -102,30 +92,6 @@ impl Expression {
         }
         value
     }
-}
-
-/// Values an expression may keep waiting, such as the three 1 in `1 + (1 + (1 + x))`.
-pub(super) const STACK: usize = 64;
-
-/// One instruction; operands come from the stack, the result goes there.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Op {
-    Constant(f64),
-    X,
-    Y,
-    Z,
-    Negate,
-    Square,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Call1(&'static Unary),
-    Call2(&'static Binary),
-    Jump(u32),
-    /// Takes the condition off the stack.
-    JumpIfZero(u32),
 }
 
 // The compiler of `parser` keeps the height below STACK; the remainder spares the bounds check.

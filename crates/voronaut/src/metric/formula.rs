@@ -1,7 +1,8 @@
 //! A metric field from the formulas of its entries.
 
 use super::MetricField;
-use super::expression::{Expression, Variables};
+use super::expression::Expression;
+use super::operation::Variables;
 use super::parser::error_at;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3, Tensor, Tensor3};

@@ -1,7 +1,7 @@
 //! The names and operators of expressions, each declared once.
 
-use super::expression::Op;
 use super::number::{Binary, Unary};
+use super::operation::Op;
 
 /// How many arguments a function takes, and what it does with them.
 pub(super) enum Function {

@@ -95,6 +95,17 @@ impl std::ops::Add for Moments {
     }
 }
 
+/// A tangent vector in the orthonormal frame that a tensor's Cholesky factor makes.
+pub(super) fn to_frame([a, b, c]: [f64; 3], v: Vector) -> Vector {
+    Vector::new(a * v.x + b * v.y, c * v.y)
+}
+
+/// The inverse of [`to_frame`].
+pub(super) fn from_frame([a, b, c]: [f64; 3], w: Vector) -> Vector {
+    let y = w.y / c;
+    Vector::new((w.x - b * y) / a, y)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,7 +5,6 @@ use super::on_canvas::OnCanvas;
 use super::tangent::tangent_moments;
 use crate::dual::{Dual, Moving};
 use crate::error::Result;
-use crate::geometry::Vector;
 use crate::triangulation::VertexId;
 
 /// The cells that relaxation works with.
@@ -58,15 +57,4 @@ impl CellsOf<Dual<'_>> for Cells<'_> {
     fn lower_energy(&self) -> bool {
         !matches!(self, Cells::Weighted(_))
     }
-}
-
-/// A tangent vector in the orthonormal frame that a tensor's Cholesky factor makes.
-pub(super) fn to_frame([a, b, c]: [f64; 3], v: Vector) -> Vector {
-    Vector::new(a * v.x + b * v.y, c * v.y)
-}
-
-/// The inverse of [`to_frame`].
-pub(super) fn from_frame([a, b, c]: [f64; 3], w: Vector) -> Vector {
-    let y = w.y / c;
-    Vector::new((w.x - b * y) / a, y)
 }

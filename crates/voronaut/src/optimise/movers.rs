@@ -1,7 +1,8 @@
 //! The seeds that can move, the energy, and its gradient.
 
 use super::cell::Moments;
-use super::cells::{CellsOf, from_frame};
+use super::cell::from_frame;
+use super::cells::CellsOf;
 use super::quasi_newton::{Memory, dot};
 use crate::dual::{Kind, Moving};
 use crate::error::Result;

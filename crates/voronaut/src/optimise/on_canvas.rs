@@ -1,7 +1,6 @@
 //! Cells of the diagram on a canvas.
 
-use super::cell::Moments;
-use super::cells::to_frame;
+use super::cell::{Moments, to_frame};
 use crate::canvas::Canvas;
 use crate::diagram::Diagram;
 use crate::dual::Dual;

@@ -1,7 +1,6 @@
 //! Cells in the tangent planes at their seeds.
 
-use super::cell::{Cell, Moments};
-use super::cells::to_frame;
+use super::cell::{Cell, Moments, to_frame};
 use crate::dual::{Kind, Moving};
 use crate::geometry::Vector;
 use crate::triangulation::{HalfEdge, VertexId};

@@ -1,6 +1,6 @@
 //! The worst triangles: a few seeds move to where the worst triangle around them is best.
 
-use super::cells::from_frame;
+use super::cell::from_frame;
 use crate::dual::{Kind, Mending};
 use crate::geometry::Vector;
 use crate::triangulation::{HalfEdge, VertexId};

@@ -1,8 +1,8 @@
 //! Where a surface meets itself, and where its meshes may therefore do so.
 
+use super::coincident::{duplicates, longest};
 use super::position::Position;
 use super::self_intersections::{Pair, pairs};
-use super::validity::duplicates;
 use crate::geometry::Point3;
 use crate::mesh::Mesh;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -27,6 +27,14 @@ pub struct Excused {
     pub count: usize,
     /// The first of them.
     pub first: Option<Position>,
+}
+
+impl Pair {
+    /// Whether the surface that the mesh is of meets itself there, too.
+    pub(super) fn is_excused(&self, mesh: &Mesh, surface: &Meetings) -> bool {
+        let reach = self.triangles.map(|t| longest(mesh.positions_of(mesh.triangles[t])));
+        surface.excuse(self.at, reach[0].max(reach[1]), self.are_neighbours(mesh))
+    }
 }
 
 impl Meetings {

@@ -202,7 +202,7 @@ pub(super) fn vertex_logarithms(mesh: &Mesh, metric: &dyn MetricField) -> Result
 
 pub(super) fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {
     let m = metric.at(p);
-    let help = "mend the metric there, or give bounds on it (--h-min, --h-max, --a-max)";
+    let help = "mend the metric there, or give bounds on it (`h_min`, `h_max`, `a_max`)";
     let what = || format!("({}, {}, {}) is not positive definite", m.xx, m.xy, m.yy);
     if m.is_positive_definite() { Ok(m) } else { Err(Error::metric(what(), p.to_string(), help)) }
 }

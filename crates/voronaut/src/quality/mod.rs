@@ -1,9 +1,11 @@
 //! What a mesh is worth: valid or not, good or not in a metric, close or not to its domain.
 
+mod coincident;
 mod contact;
 mod crossings;
 mod edges;
 mod embedding;
+mod fault;
 mod faults;
 mod fidelity;
 mod geodesics;
@@ -23,6 +25,7 @@ mod unmet;
 mod validity;
 
 pub use crossings::{Crossing, crossing_edges, crossings};
+pub use fault::Fault;
 pub use faults::{faulty_triangles, faulty_triangles_on};
 pub use fidelity::{Farthest, Fidelity, fidelity};
 pub use histogram::{Both, Histogram, Histograms, histograms};
@@ -33,6 +36,6 @@ pub use position::Position;
 pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
 pub use surface_quality::surface_quality;
 pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet};
-pub use validity::{Fault, Validity, check, validity, validity_on};
+pub use validity::{Validity, check, validity, validity_on};
 
 pub use edges::Edges;

@@ -1,8 +1,7 @@
 //! Triangles of a surface that meet each other where they are not neighbours, decided exactly.
 
 use super::contact::{Corners, contact};
-use super::meetings::Meetings;
-use super::validity::{Fault, longest};
+use super::fault::Fault;
 use crate::geometry::{Aabb3, Point3};
 use crate::mesh::Mesh;
 use rayon::prelude::*;
@@ -23,12 +22,6 @@ impl Pair {
     pub(super) fn are_neighbours(&self, mesh: &Mesh) -> bool {
         let [t, u] = self.triangles.map(|t| mesh.triangles[t]);
         t.iter().any(|v| u.contains(v))
-    }
-
-    /// Whether the surface that the mesh is of meets itself there, too.
-    pub(super) fn is_excused(&self, mesh: &Mesh, surface: &Meetings) -> bool {
-        let reach = self.triangles.map(|t| longest(mesh.positions_of(mesh.triangles[t])));
-        surface.excuse(self.at, reach[0].max(reach[1]), self.are_neighbours(mesh))
     }
 
     /// What to say of them.

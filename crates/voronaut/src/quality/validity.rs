@@ -1,16 +1,17 @@
 //! Whether a mesh is a mesh: by counting and by exact predicates, never by a tolerance.
 
+use super::coincident::{duplicates, is_finite, longest};
 use super::contact::is_flat;
 use super::edges::{self, Edges, NONE};
 use super::embedding;
+use super::fault::Fault;
 use super::meetings::{Excused, Meetings};
 use super::position::middle;
 use super::self_intersections::pairs;
 use crate::error::{Error, Result};
-use crate::geometry::{Orientation, Point, Point3, orientation};
+use crate::geometry::{Orientation, Point, orientation};
 use crate::mesh::Mesh;
 use rayon::prelude::*;
-use std::fmt;
 
 /// What was found in a mesh. `valid` means: at least one triangle, every figure marked (fault) is zero.
 ///
@@ -54,15 +55,6 @@ pub struct Validity {
     pub first_fault: Option<Fault>,
 }
 
-/// What is wrong, and where.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Fault {
-    /// What, with numbers from 1 as in files.
-    pub what: String,
-    /// Coordinates, or an entry of an array.
-    pub place: String,
-}
-
 /// Examines a mesh in O(n log n). Never fails: what is wrong is in the answer.
 pub fn validity(mesh: &Mesh) -> Validity {
     examine(mesh, None)
@@ -103,12 +95,6 @@ fn examine(mesh: &Mesh, surface: Option<&Meetings>) -> Validity {
 /// [`Error::Mesh`] with the first fault of a mesh that is not valid.
 pub fn check(mesh: &Mesh) -> Result<()> {
     validity(mesh).demand()
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} at {}", self.what, self.place)
-    }
 }
 
 impl Validity {
@@ -309,18 +295,6 @@ pub(super) fn split_vertices(mesh: &Mesh, edges: &Edges) -> Vec<u32> {
     (0..mesh.points.len() as u32).filter(is_split).collect()
 }
 
-/// Vertices that lie exactly where one with a smaller number lies, behind that one; finite ones.
-pub(super) fn duplicates(mesh: &Mesh) -> Vec<[u32; 2]> {
-    let mut sorted: Vec<([u64; 3], u32)> =
-        (0..).zip(&mesh.points).filter(|(_, p)| is_finite(p)).map(|(v, p)| (bits(*p), v)).collect();
-    sorted.par_sort_unstable();
-    sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]).collect()
-}
-
-fn is_finite(p: &[f64; 3]) -> bool {
-    p.iter().all(|x| x.is_finite())
-}
-
 /// For each vertex the longest edge of its triangles.
 fn longest_edges(mesh: &Mesh) -> Vec<f64> {
     let mut found = vec![0.0_f64; mesh.points.len()];
@@ -332,16 +306,6 @@ fn longest_edges(mesh: &Mesh) -> Vec<f64> {
         }
     }
     found
-}
-
-/// The longest edge of a triangle.
-pub(super) fn longest([a, b, c]: [Point3; 3]) -> f64 {
-    a.distance(b).max(b.distance(c)).max(c.distance(a))
-}
-
-/// Equal for equal coordinates: 0 and -0 are the same place.
-fn bits(p: [f64; 3]) -> [u64; 3] {
-    p.map(|x| (x + 0.0).to_bits())
 }
 
 fn planar_area(mesh: &Mesh, triangle: [u32; 3]) -> f64 {

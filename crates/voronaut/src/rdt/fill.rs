@@ -1,6 +1,6 @@
 //! Holes of a few sides, cut into triangles: roughly right will do, for flips follow.
 
-use super::start::Sides;
+use super::sides::Sides;
 
 /// A polygon, counter-clockwise, to be filled.
 pub(super) struct Outline<'a, 'b> {

@@ -12,6 +12,7 @@ mod judge;
 mod memory;
 mod on_surface;
 mod site;
+mod sides;
 mod start;
 
 pub use in_field::InField;

@@ -153,7 +153,7 @@ impl Work<'_> {
                 "there is no solution number {number} on the vertices: the solver wrote {}",
                 found.vertices.len()
             );
-            Error::parse("the solver's file", what, "choose another with --field, or write it in SolAtVertices")
+            Error::parse("the solver's file", what, "choose another `field`, or write it in SolAtVertices")
         })
     }
 }

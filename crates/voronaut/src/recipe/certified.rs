@@ -73,7 +73,7 @@ fn too_fine(size: f64, most: f64) -> Error {
         "a canvas without edges longer than {:.3e} in the metric needs more than {most:.3e} vertices",
         2.0 * size
     );
-    Error::Limit { what, help: "raise --memory-limit, or give --canvas-size a number".into() }
+    Error::Limit { what, help: "raise `memory_limit`, or give `canvas_size` a number".into() }
 }
 
 fn hopeless(certificate: &Certificate) -> Error {
@@ -83,7 +83,7 @@ fn hopeless(certificate: &Certificate) -> Error {
     let why = missed
         .map(|condition| format!("{}: {:.3e} against {:.3e}", condition.what, condition.measured, condition.limit));
     let what = format!("no canvas is certified for these seeds: {}", doubt.or(why).unwrap_or_default());
-    let help = "see --certify for all figures; take more seeds, better protected (mesh --seeding protected), or give \
-                --canvas-size a number";
+    let help = "see `certify` for all figures; take more seeds, better protected (mesh with `seeding=protected`), or give \
+                `canvas_size` a number";
     Error::Limit { what, help: help.into() }
 }

@@ -4,7 +4,7 @@ use super::{Job, MeshOptions, Meshed};
 use crate::canvas::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 use crate::domain::Domain;
 use crate::dual::{Dual, Kind};
-use crate::error::{Error, Result, named};
+use crate::error::{Error, Result};
 use crate::figures;
 use crate::metric::{MetricField, Scaled, Steadied};
 use crate::optimise::Relaxed;
@@ -12,19 +12,6 @@ use crate::progress::Progress;
 use crate::quality;
 use crate::sampling::demand_memory;
 use crate::triangulation::VertexId;
-
-/// What makes the mesh; its names are those users type (`--mesher`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mesher {
-    /// `voronoi`: the dual of a Riemannian Voronoi diagram, always embedded.
-    #[default]
-    Voronoi,
-    /// `starset`: Delaunay stars, each in its vertex's own metric, refined until they agree. The metric's scale is met,
-    /// not the number of vertices; where the metric turns fast it takes many more.
-    StarSet,
-}
-
-named!(Mesher, "mesher", [Voronoi = "voronoi", StarSet = "starset"]);
 
 /// The metric turns by about so much over a unit of the sampling: the first with which stars come to agree.
 const TURNS: [f64; 5] = [1.4, 1.2, 1.0, 0.7, 0.5];
@@ -128,6 +115,7 @@ mod tests {
     use crate::metric::{Shock, Uniform};
     use crate::progress::Silent;
     use crate::recipe;
+    use crate::recipe::Mesher;
 
     fn mesh(domain: &str, field: &dyn MetricField, vertices: usize) -> Result<Meshed> {
         let options = MeshOptions { mesher: Mesher::StarSet, vertices: Some(vertices), ..MeshOptions::default() };
@@ -167,6 +155,6 @@ mod tests {
         let error = mesh("rect:-1,-1,1,1", &Shock { phi: 10.0, lambda: 0.6 }, 100).unwrap_err();
         assert!(error.to_string().contains(": stars need about "), "{error}");
         assert!(error.to_string().ends_with(" vertices to agree, where a unit mesh has 100"), "{error}");
-        assert!(error.help().contains("--mesher voronoi"), "{}", error.help());
+        assert!(error.help().contains("`mesher=voronoi`"), "{}", error.help());
     }
 }

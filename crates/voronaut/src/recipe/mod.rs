@@ -8,6 +8,7 @@ mod field;
 mod graded;
 mod mesher;
 mod on_surface;
+mod options;
 mod patches;
 mod protection;
 mod relaxing;
@@ -28,24 +29,21 @@ pub use field::{
     metric_of_values,
 };
 pub use graded::GradedAt;
-pub use mesher::Mesher;
 pub use on_surface::mesh_surface;
-pub use relaxing::Centroid;
+pub use options::{Centroid, MeshOptions, Mesher, Seeding};
 pub use remesh_input::{Keep, RemeshInput};
 pub use remesh_sizes::{Asked, RemeshSizes};
-pub use seeding::Seeding;
 pub use surface_dual::{surface_dual, surface_mesh};
 
-use crate::canvas::{self, Canvas, CanvasFigures};
+use crate::canvas::{Canvas, CanvasFigures};
 use crate::domain::Domain;
-use crate::dual::{Dual, Kind, Road};
+use crate::dual::{Dual, Kind};
 use crate::error::Result;
 use crate::figures;
-use crate::geodesic::Method;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Norm, ScalarField, Scaled};
 use crate::net::Net;
-use crate::optimise::{FitOptions, Polished, Relaxed, polish};
+use crate::optimise::{Polished, Relaxed, polish};
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{
@@ -53,75 +51,6 @@ use crate::sampling::{
 };
 use std::time::Instant;
 use stopwatch::Stopwatch;
-
-/// What the mesher may be told; every parameter has one name (flag, TOML key, Python keyword) and one default.
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct MeshOptions {
-    /// Vertices the mesh should have; the metric is scaled by one factor to meet it.
-    pub vertices: Option<usize>,
-    /// Target of the integral of sqrt(det M); the metric is scaled to meet it.
-    pub complexity: Option<f64>,
-    /// How far (Euclidean) mesh edges may stray from the boundary; `None`: the domain's own tolerance. Of a surface: how far
-    /// mesh and surface may be from each other; where that asks for more vertices, and no number is given, there are more.
-    pub hausd: Option<f64>,
-    /// Of a surface: whether vertices are moved off it, to where mesh and surface are closest in the sense of least squares.
-    pub fit: bool,
-    /// How stiffly these vertices are held where they were; see [`FitOptions`].
-    pub stiffness: f64,
-    /// What makes the mesh. The options below are for [`Mesher::Voronoi`], but for the memory limit.
-    pub mesher: Mesher,
-    /// Steps of Riemannian Lloyd relaxation, at most: it ends where it stalls.
-    pub lloyd: usize,
-    /// The centroids that it moves seeds to.
-    pub centroid: Centroid,
-    /// Sweeps of polishing, at most, where the mesh is for a function ([`Aim`]); see [`crate::optimise::polish`].
-    pub polish: usize,
-    /// Which road decides on the topology. On a surface it is by lengths unless it is [`Road::Canvas`].
-    pub dual: Road,
-    /// How distances on the canvas are computed where a diagram settles edges; seeding marches.
-    pub geodesic: Method,
-    /// How the interior is seeded.
-    pub seeding: Seeding,
-    /// With [`Seeding::Protected`], the power protection asked of every interior simplex, as a share of epsilon, the
-    /// greatest circumradius.
-    pub protection: f64,
-    /// With [`Seeding::Protected`], the radius of the ball around a circumcentre in which a seed is picked, as a share of
-    /// the circumradius.
-    pub picking_radius: f64,
-    /// Whether the net of the mesh's vertices is measured ([`Meshed::net`]); with [`Seeding::Protected`] it always is.
-    pub net: bool,
-    /// Which canvas, where one is used: for seeding and relaxing, and to settle edges.
-    pub canvas: canvas::Kind,
-    /// Canvas vertices per seed, where a canvas is used.
-    pub canvas_size: u32,
-    /// Limit on the memory the work is estimated to need, in bytes.
-    pub memory_limit: u64,
-}
-
-impl Default for MeshOptions {
-    fn default() -> Self {
-        Self {
-            vertices: None,
-            complexity: None,
-            hausd: None,
-            fit: false,
-            stiffness: FitOptions::default().stiffness,
-            mesher: Mesher::default(),
-            lloyd: 40,
-            centroid: Centroid::default(),
-            polish: 20,
-            dual: Road::default(),
-            geodesic: Method::default(),
-            seeding: Seeding::default(),
-            protection: 0.2,
-            picking_radius: 0.3,
-            net: false,
-            canvas: canvas::Kind::default(),
-            canvas_size: canvas::VERTICES_PER_SEED,
-            memory_limit: 16 << 30,
-        }
-    }
-}
 
 /// A function is polished for that has at least this share of the error to which it is known.
 const KNOWN: f64 = 0.5;
@@ -299,7 +228,7 @@ impl<'a> Job<'a> {
         if plan.corners() > count && self.options.vertices.is_some() {
             let (count, corners) = (count - plan.copies(), plan.corners() - plan.copies());
             self.notes.push(format!(
-                "{count} vertices were asked for, but the domain's own corners are {corners}: simplify with --hausd"
+                "{count} vertices were asked for, but the domain's own corners are {corners}: simplify with `hausd`"
             ));
         }
         Ok((simplified, plan, count, scale))

@@ -67,7 +67,7 @@ pub fn mesh_surface(
         let is_last = options.vertices.is_some() || round == ROUNDS || idle == IDLE_ROUNDS;
         if ratio > 1.0 && is_last {
             let most = options.hausd.unwrap_or_default();
-            meshed.notes.push(format!("mesh and surface are {distance:.3e} apart where --hausd asks for {most:.3e}"));
+            meshed.notes.push(format!("mesh and surface are {distance:.3e} apart where `hausd` asks for {most:.3e}"));
         }
         if ratio <= 1.0 || is_last {
             return Ok(Meshed { fidelity, seconds: job.watch.seconds, ..meshed });

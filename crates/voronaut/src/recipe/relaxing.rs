@@ -1,24 +1,11 @@
 //! How seeds are relaxed.
 
-use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job, Seeding};
+use super::options::{Centroid, Seeding};
+use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job};
 use crate::canvas::Canvas;
 use crate::dual::Dual;
-use crate::error::{Result, named};
+use crate::error::Result;
 use crate::optimise::{Cells, OnCanvas, Relaxed, exchange, meet_blocked_flips, mend_worst, relax};
-
-/// The centroids that relaxation moves seeds to; its names are those users type.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Centroid {
-    /// `tangent`: of cells in the tangent planes at the seeds.
-    #[default]
-    Tangent,
-    /// `canvas`: of the diagram's cells, through the logarithm map. Slower; for few seeds in wild metrics.
-    Canvas,
-    /// `weighted`: the report's equation 9 on the diagram's cells, to compare.
-    Weighted,
-}
-
-named!(Centroid, "centroid", [Tangent = "tangent", Canvas = "canvas", Weighted = "weighted"]);
 
 /// Relaxation goes in so many parts.
 const PARTS: usize = 4;

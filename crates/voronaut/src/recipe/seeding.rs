@@ -1,28 +1,15 @@
 //! How the interior is seeded.
 
-use super::{Centroid, Job};
+use super::Job;
+use super::options::{Centroid, Seeding};
 use crate::canvas::{self, Canvas};
 use crate::diagram::Diagram;
 use crate::domain::Domain;
 use crate::dual::Dual;
-use crate::error::{Result, named};
+use crate::error::Result;
 use crate::figures;
 use crate::geometry::Point;
 use crate::sampling::{demand_memory, refine_farthest};
-
-/// How the interior is seeded, once the boundary is sampled at unit length; its names are those users type.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Seeding {
-    /// `sizing`: at the circumcentre of the face whose metric circumradius is largest.
-    #[default]
-    Sizing,
-    /// `farthest`: at the canvas vertex that is farthest, in geodesic distance, from all seeds so far. Needs a canvas.
-    Farthest,
-    /// `protected`: as `sizing`, with seeds put where they leave every simplex power-protected; then moved until that is so.
-    Protected,
-}
-
-named!(Seeding, "seeding", [Sizing = "sizing", Farthest = "farthest", Protected = "protected"]);
 
 impl Job<'_> {
     /// The canvas of the domain, if seeding or relaxing needs one: it does not depend on the metric's factor, so one serves all

@@ -350,7 +350,7 @@ impl Pass<'_> {
     /// # Errors
     /// [`Error::Mesh`] with the first fault.
     pub(super) fn demand(&self, mesh: &Mesh, meetings: &Meetings) -> Result<()> {
-        let help = "ask for more vertices (-n); please report this with the input";
+        let help = "ask for more `vertices`; please report this with the input";
         let fault = |what: &str, place: String| Err(Error::Mesh { what: what.into(), place, help: help.into() });
         let found = quality::validity_on(mesh, meetings);
         if let Some(found) = found.first_fault {

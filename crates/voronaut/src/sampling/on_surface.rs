@@ -88,7 +88,7 @@ pub fn triangulated_upright(mut diagram: SurfaceDiagram) -> Result<Seeded> {
     let (_, left) = contracted(&diagram);
     let place =
         left.first().map_or_else(|| "the surface".to_owned(), |&v| diagram.canvas().draped().position(v).to_string());
-    let help = "ask for more vertices (-n), or a finer canvas (--canvas-size)";
+    let help = "ask for more `vertices`, or a finer canvas (`canvas_size`)";
     Err(Error::domain("too few vertices for a mesh of the surface's topology", place, help))
 }
 

@@ -136,12 +136,12 @@ pub fn demand_memory(vertices: f64, canvas: f64, limit: u64) -> Result<()> {
     let mib = |bytes: f64| format!("{:.0} MiB", bytes / f64::from(1 << 20));
     let (needed, limit) = (mib(needed), mib(limit as f64));
     let (and_canvas, coarser) = if canvas > 0.0 {
-        (format!(" and {canvas:.3e} of a canvas"), ", fewer canvas vertices per seed (--canvas-size)")
+        (format!(" and {canvas:.3e} of a canvas"), ", fewer canvas vertices per seed (`canvas_size`)")
     } else {
         (String::new(), "")
     };
     let work = format!("about {vertices:.3e} vertices{and_canvas}");
     let what = format!("{work} are estimated to need {needed} of memory; the limit is {limit}");
-    let help = format!("ask for fewer vertices (-n){coarser}, a coarser metric (--h-min), or raise --memory-limit");
+    let help = format!("ask for fewer `vertices`{coarser}, a coarser metric (`h_min`), or raise `memory_limit`");
     Err(Error::Limit { what, help })
 }

@@ -93,6 +93,6 @@ fn turn(triangles: &mut [[u32; 3]], component: &[usize], turned: &[Option<bool>]
 /// The error of a surface without two sides.
 pub(super) fn one_sided(place: String) -> Error {
     let help =
-        "only two-sided surfaces can be meshed: cut this one open (--repair does), or correct the triangles there";
+        "only two-sided surfaces can be meshed: cut this one open (`repair` does), or correct the triangles there";
     Error::domain("a one-sided surface: its triangles cannot all turn the same way", place, help)
 }

@@ -80,6 +80,19 @@ fn files_are_opened_by_two_modules_of_io() {
     }
 }
 
+/// Parameters have the library's names in what it says; the program shows its flags for them.
+#[test]
+fn no_library_names_a_flag() {
+    for source in libraries() {
+        let words = source.text.lines().filter(|line| !line.trim_start().starts_with("//"));
+        let named = |line: &&str| {
+            line.match_indices("--")
+                .any(|(at, _)| line[at + 2..].starts_with(|c: char| c.is_ascii_lowercase()) && line[..at].contains('"'))
+        };
+        assert_eq!(words.clone().find(named), None, "in {}", source.name);
+    }
+}
+
 #[test]
 fn nothing_global_decides() {
     for source in libraries() {

@@ -114,5 +114,5 @@ fn a_distance_asks_for_more_vertices_unless_their_number_is_given() {
     assert!(distance <= 5e-3 && found.mesh.points.len() > 200 && found.notes.is_empty(), "{distance}");
     let few = MeshOptions { vertices: Some(80), hausd: Some(5e-3), ..MeshOptions::default() };
     let (found, ..) = meshed(&input, "uniform", &few);
-    assert!(found.mesh.points.len() == 80 && found.notes[0].contains("--hausd asks for"), "{:?}", found.notes);
+    assert!(found.mesh.points.len() == 80 && found.notes[0].contains("`hausd` asks for"), "{:?}", found.notes);
 }

@@ -1,6 +1,6 @@
 //! The metric of principal curvatures.
 
-use super::{Sampled, SurfaceMetric, fit_curvatures};
+use super::{CurvatureFigures, Sampled, SurfaceMetric, fit_curvatures};
 use crate::error::Result;
 use crate::geometry::Tensor3;
 use crate::surface::{Curvatures, Implicit, Place, Surface, curvatures};
@@ -58,21 +58,6 @@ pub fn sampled_curvature(surface: &Surface, floor: f64) -> Result<Sampled> {
         greatest: bent().map(|(values, cap)| values[0].min(cap).max(floor)).fold(floor, f64::max),
     };
     Ok(Sampled::new(surface, &tensors)?.with_figures(figures))
-}
-
-/// What bounds have made of curvatures, in numbers of vertices.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct CurvatureFigures {
-    /// Lesser curvatures count as this one, in units of 1 / length.
-    pub floor: f64,
-    /// Vertices where the lesser curvature is below it.
-    pub floored: usize,
-    /// Vertices where the greater curvature is above what edges there can tell, and counts as that.
-    pub capped: usize,
-    /// Vertices without a fit, which have their neighbours' mean.
-    pub unfitted: usize,
-    /// The greatest curvature in use.
-    pub greatest: f64,
 }
 
 /// The greatest curvature that edges at a vertex can tell; no number of a vertex without edges, which has no fit either.

@@ -29,7 +29,7 @@ mod validate;
 
 pub use bounded::Bounded;
 pub use closer::Closer;
-pub use curvature::{CurvatureFigures, FLOOR, ImplicitCurvature, sampled_curvature};
+pub use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub use fit::fit_curvatures;
 pub use gradation::grade;
 pub use sampled::Sampled;
@@ -105,4 +105,19 @@ impl SurfaceMetric for SpaceFormula {
     fn at(&self, place: &Place) -> Tensor3 {
         self.tensor(place.position)
     }
+}
+
+/// What bounds have made of curvatures, in numbers of vertices.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct CurvatureFigures {
+    /// Lesser curvatures count as this one, in units of 1 / length.
+    pub floor: f64,
+    /// Vertices where the lesser curvature is below it.
+    pub floored: usize,
+    /// Vertices where the greater curvature is above what edges there can tell, and counts as that.
+    pub capped: usize,
+    /// Vertices without a fit, which have their neighbours' mean.
+    pub unfitted: usize,
+    /// The greatest curvature in use.
+    pub greatest: f64,
 }

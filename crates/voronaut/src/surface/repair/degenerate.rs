@@ -31,7 +31,7 @@ pub(super) fn drop_degenerate(work: &mut Work) -> Result<()> {
     let Some(first) = marked.iter().position(|&marked| marked) else { return Ok(()) };
     if !work.options.repair {
         let what = format!("triangle {} has no area", work.number(first));
-        let help = "remove it and join its neighbours, or run again with --repair";
+        let help = "remove it and join its neighbours, or run again with `repair`";
         return Err(Error::domain(what, work.triangles[first].map(|v| work.vertex(v)).join(", "), help));
     }
     (0..marked.len()).filter(|&t| marked[t]).for_each(|t| work.note_triangle(Damage::Degenerate, t));

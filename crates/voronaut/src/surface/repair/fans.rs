@@ -76,7 +76,7 @@ fn demand_fans(work: &mut Work, fans: &Classes) -> Result<()> {
     for same in keys.chunk_by(|a, b| a[0] == b[0]).filter(|same| same.len() > 1) {
         let place = work.vertex(same[0][0]);
         if !work.options.repair {
-            let help = "split the vertex, one for each group of neighbouring triangles, or run again with --repair";
+            let help = "split the vertex, one for each group of neighbouring triangles, or run again with `repair`";
             return Err(Error::domain("triangles that meet in a point only", place, help));
         }
         work.mended.add(Damage::Point, || place);

@@ -94,7 +94,7 @@ fn cut_edge(work: &mut Work, twins: &mut Twins, ends: [u32; 2], sides: &[Side]) 
     if !work.options.repair {
         let [s, t, u] = [0, 1, 2].map(|i| work.number(sides[i].triangle as usize));
         let what = format!("an edge of {} triangles (among them {s}, {t} and {u})", sides.len());
-        let help = "leave at most two triangles at every edge, or run again with --repair";
+        let help = "leave at most two triangles at every edge, or run again with `repair`";
         return Err(Error::domain(what, place, help));
     }
     work.mended.add(Damage::Edge, || place);

@@ -102,8 +102,8 @@ impl Damage {
             ],
             Self::Closed => ["small hole was closed", "small holes were closed"],
             Self::Open => [
-                "small hole was left open (--repair closes what looks like damage)",
-                "small holes were left open (--repair closes what looks like damage)",
+                "small hole was left open (`repair` closes what looks like damage)",
+                "small holes were left open (`repair` closes what looks like damage)",
             ],
             Self::Listed => [
                 "listed edge was dropped: no triangle has it, or it is there twice",

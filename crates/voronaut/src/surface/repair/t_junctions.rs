@@ -31,7 +31,7 @@ pub(super) fn close(work: &mut Work) -> Result<bool> {
         if !work.options.repair {
             let number = work.number(first.triangle);
             let what = format!("a T-junction: a vertex inside an edge of triangle {number}, which does not have it");
-            let help = "split the triangle there, or run again with --repair";
+            let help = "split the triangle there, or run again with `repair`";
             return Err(Error::domain(what, work.vertex(first.inside[0]), help));
         }
         let mut is_touched = vec![false; work.triangles.len()];

@@ -45,7 +45,7 @@ fn tried(mesh: &Mesh, repair: bool) -> Result<(Surface, Mended)> {
 
 fn refusal(mesh: &Mesh) -> String {
     let error = tried(mesh, false).unwrap_err();
-    assert!(error.help().contains("--repair"), "{}", error.help());
+    assert!(error.help().contains("`repair`"), "{}", error.help());
     error.to_string()
 }
 

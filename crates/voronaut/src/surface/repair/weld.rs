@@ -25,7 +25,7 @@ pub(super) fn drop_not_finite(work: &mut Work) -> Result<()> {
     let Some(first) = marked.iter().position(|&marked| marked) else { return Ok(()) };
     if !work.options.repair {
         let at = work.triangles[first].into_iter().find(|&v| !is_finite(v)).unwrap_or_default();
-        let help = "correct the vertex, or run again with --repair: its triangles are dropped then";
+        let help = "correct the vertex, or run again with `repair`: its triangles are dropped then";
         return Err(Error::domain("a coordinate is not finite", work.vertex(at), help));
     }
     for t in (0..marked.len()).filter(|&t| marked[t]) {

@@ -1,0 +1,49 @@
+//! Parameters by the names that users type. The libraries call them by their own, in backquotes: `canvas_size`, `mesher=voronoi`.
+
+/// Those that the libraries speak of.
+pub(crate) const PARAMETERS: [&str; 17] = [
+    "a_max",
+    "background",
+    "canvas_size",
+    "certify",
+    "field",
+    "h_max",
+    "h_min",
+    "hausd",
+    "linear_tensors",
+    "memory_limit",
+    "mesher",
+    "metric",
+    "repair",
+    "seeding",
+    "smooth_metric",
+    "tensor_order",
+    "vertices",
+];
+
+/// The text with each of these as its flag: `--canvas-size`, `--mesher voronoi`. Other words in backquotes stay as they are.
+pub(crate) fn flagged(text: &str) -> String {
+    let mut out = String::new();
+    for (i, part) in text.split('`').enumerate() {
+        let (name, value) = part.split_once('=').map_or((part, None), |(name, value)| (name, Some(value)));
+        let flag = name.replace('_', "-");
+        match value {
+            _ if i % 2 == 0 => out.push_str(part),
+            _ if !PARAMETERS.contains(&name) => out.extend(["`", part, "`"]),
+            Some(value) => out.extend(["--", &flag, " ", value]),
+            None => out.extend(["--", &flag]),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_are_flags_and_other_words_stay() {
+        let text = "raise `canvas_size`, or use `mesher=voronoi`; `x` is no value of `canvas_sizes`";
+        assert_eq!(flagged(text), "raise --canvas-size, or use --mesher voronoi; `x` is no value of `canvas_sizes`");
+    }
+}

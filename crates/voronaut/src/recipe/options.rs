@@ -1,0 +1,117 @@
+//! What the mesher may be told.
+
+use crate::canvas;
+use crate::dual::Road;
+use crate::error::named;
+use crate::geodesic::Method;
+use crate::optimise::FitOptions;
+
+/// What the mesher may be told; every parameter has one name (flag, TOML key, Python keyword) and one default.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct MeshOptions {
+    /// Vertices the mesh should have; the metric is scaled by one factor to meet it.
+    pub vertices: Option<usize>,
+    /// Target of the integral of sqrt(det M); the metric is scaled to meet it.
+    pub complexity: Option<f64>,
+    /// How far (Euclidean) mesh edges may stray from the boundary; `None`: the domain's own tolerance. Of a surface: how far
+    /// mesh and surface may be from each other; where that asks for more vertices, and no number is given, there are more.
+    pub hausd: Option<f64>,
+    /// Of a surface: whether vertices are moved off it, to where mesh and surface are closest in the sense of least squares.
+    pub fit: bool,
+    /// How stiffly these vertices are held where they were; see [`FitOptions`].
+    pub stiffness: f64,
+    /// What makes the mesh. The options below are for [`Mesher::Voronoi`], but for the memory limit.
+    pub mesher: Mesher,
+    /// Steps of Riemannian Lloyd relaxation, at most: it ends where it stalls.
+    pub lloyd: usize,
+    /// The centroids that it moves seeds to.
+    pub centroid: Centroid,
+    /// Sweeps of polishing, at most, where the mesh is for a function ([`Aim`]); see [`crate::optimise::polish`].
+    pub polish: usize,
+    /// Which road decides on the topology. On a surface it is by lengths unless it is [`Road::Canvas`].
+    pub dual: Road,
+    /// How distances on the canvas are computed where a diagram settles edges; seeding marches.
+    pub geodesic: Method,
+    /// How the interior is seeded.
+    pub seeding: Seeding,
+    /// With [`Seeding::Protected`], the power protection asked of every interior simplex, as a share of epsilon, the
+    /// greatest circumradius.
+    pub protection: f64,
+    /// With [`Seeding::Protected`], the radius of the ball around a circumcentre in which a seed is picked, as a share of
+    /// the circumradius.
+    pub picking_radius: f64,
+    /// Whether the net of the mesh's vertices is measured ([`Meshed::net`]); with [`Seeding::Protected`] it always is.
+    pub net: bool,
+    /// Which canvas, where one is used: for seeding and relaxing, and to settle edges.
+    pub canvas: canvas::Kind,
+    /// Canvas vertices per seed, where a canvas is used.
+    pub canvas_size: u32,
+    /// Limit on the memory the work is estimated to need, in bytes.
+    pub memory_limit: u64,
+}
+
+impl Default for MeshOptions {
+    fn default() -> Self {
+        Self {
+            vertices: None,
+            complexity: None,
+            hausd: None,
+            fit: false,
+            stiffness: FitOptions::default().stiffness,
+            mesher: Mesher::default(),
+            lloyd: 40,
+            centroid: Centroid::default(),
+            polish: 20,
+            dual: Road::default(),
+            geodesic: Method::default(),
+            seeding: Seeding::default(),
+            protection: 0.2,
+            picking_radius: 0.3,
+            net: false,
+            canvas: canvas::Kind::default(),
+            canvas_size: canvas::VERTICES_PER_SEED,
+            memory_limit: 16 << 30,
+        }
+    }
+}
+
+/// How the interior is seeded, once the boundary is sampled at unit length; its names are those users type.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Seeding {
+    /// `sizing`: at the circumcentre of the face whose metric circumradius is largest.
+    #[default]
+    Sizing,
+    /// `farthest`: at the canvas vertex that is farthest, in geodesic distance, from all seeds so far. Needs a canvas.
+    Farthest,
+    /// `protected`: as `sizing`, with seeds put where they leave every simplex power-protected; then moved until that is so.
+    Protected,
+}
+
+named!(Seeding, "seeding", [Sizing = "sizing", Farthest = "farthest", Protected = "protected"]);
+
+/// The centroids that relaxation moves seeds to; its names are those users type.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Centroid {
+    /// `tangent`: of cells in the tangent planes at the seeds.
+    #[default]
+    Tangent,
+    /// `canvas`: of the diagram's cells, through the logarithm map. Slower; for few seeds in wild metrics.
+    Canvas,
+    /// `weighted`: the report's equation 9 on the diagram's cells, to compare.
+    Weighted,
+}
+
+named!(Centroid, "centroid", [Tangent = "tangent", Canvas = "canvas", Weighted = "weighted"]);
+
+/// What makes the mesh; its names are those users type (`--mesher`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mesher {
+    /// `voronoi`: the dual of a Riemannian Voronoi diagram, always embedded.
+    #[default]
+    Voronoi,
+    /// `starset`: Delaunay stars, each in its vertex's own metric, refined until they agree. The metric's scale is met,
+    /// not the number of vertices; where the metric turns fast it takes many more.
+    StarSet,
+}
+
+named!(Mesher, "mesher", [Voronoi = "voronoi", StarSet = "starset"]);
