@@ -94,7 +94,7 @@ fn required_edges_and_vertices_labels_and_regions_stay() {
 
 #[test]
 fn curves_are_simplified_only_within_hausd() {
-    let sea = Domain::shape(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/aegean.geojson")).unwrap();
+    let sea = voronaut_io::read_domain(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/aegean.geojson")).unwrap();
     let options = MeshOptions { vertices: Some(2000), hausd: Some(5.0), lloyd: 4, ..MeshOptions::default() };
     let Meshed { mesh, .. } = mesh(&sea, &|_: Point| Tensor::IDENTITY, &options, &Silent).unwrap();
     assert_eq!(mesh.points.len(), 2000);

@@ -19,6 +19,7 @@ use voronaut::figures;
 use voronaut::geodesic::Method;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
+use voronaut::net::Net;
 use voronaut::quality::{crossing_edges, metric_quality, validity};
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, GradedAt, MeshOptions, SeedDual};
@@ -31,14 +32,7 @@ use voronaut_io::Seconds;
 /// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
 pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let start = Instant::now();
-    args.diagram.as_deref().map(voronaut_io::demand_diagram).transpose()?;
-    files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs)?;
-    args.geodesic.demand_diagrams()?;
-    demand_geodesics(args)?;
-    if args.outputs.show.contains(&Show::Unmet) {
-        let what = "a picture of where a metric is not met by seeds that are given".into();
-        return Err(Error::Unsupported { what, help: "give the mesh of the dual to voronaut check".into() });
-    }
+    demand(args)?;
     files::set_threads(&args.run)?;
     let bounds = args.metric_choices.bounds();
     bounds.check()?;
@@ -99,19 +93,46 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     if args.strict {
         demand_embedded(args, &report).or_else(|fault| files::write_report(&args.outputs, &report).and(Err(fault)))?;
     }
-    let drawn = Drawn::from_diagram(&args.outputs, &diagram, &mesh, metric.as_ref(), curved.as_ref());
-    let drawn = drawn.with_net(&args.outputs, net.as_ref(), MeshOptions::default().protection);
+    write(args, &diagram, &mesh, metric.as_ref(), curved.as_ref(), net.as_ref(), &report)?;
+    summary::print(&args.out.display().to_string(), &report, &args.run);
+    Ok(())
+}
+
+/// What can be refused before the work.
+fn demand(args: &DualArgs) -> Result<()> {
+    args.diagram.as_deref().map(voronaut_io::demand_diagram).transpose()?;
+    files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs)?;
+    args.geodesic.demand_diagrams()?;
+    demand_geodesics(args)?;
+    if args.outputs.show.contains(&Show::Unmet) {
+        let what = "a picture of where a metric is not met by seeds that are given".into();
+        return Err(Error::Unsupported { what, help: "give the mesh of the dual to voronaut check".into() });
+    }
+    Ok(())
+}
+
+/// Writes all that is asked for.
+fn write(
+    args: &DualArgs,
+    diagram: &Diagram,
+    mesh: &Mesh,
+    metric: &dyn MetricField,
+    curved: Option<&Realisation>,
+    net: Option<&Net>,
+    report: &Report,
+) -> Result<()> {
+    let drawn = Drawn::from_diagram(&args.outputs, diagram, mesh, metric, curved);
+    let drawn = drawn.with_net(&args.outputs, net, MeshOptions::default().protection);
     let drawn = drawn.with_certificate(&args.outputs, report.certificate.as_ref());
-    let file = match &curved {
+    let file = match curved {
         Some(curved) if args.edges == EdgesOut::Geodesic => MeshFile::Geodesic(&args.out, curved),
         _ => MeshFile::Straight(&args.out),
     };
-    files::write(&file, &args.outputs, &mesh, Some(metric.as_ref()), &report, &drawn)?;
+    files::write(&file, &args.outputs, mesh, Some(metric), report, &drawn)?;
     if let Some(path) = &args.diagram {
         let (canvas, distances) = diagram.to_coloured_canvas();
         voronaut_io::write_diagram(&canvas, &distances, path)?;
     }
-    summary::print(&args.out.display().to_string(), &report, &args.run);
     Ok(())
 }
 

@@ -26,11 +26,12 @@ const HOPELESS: f64 = 0.1;
 /// Rounds in a row that leave no fewer inconsistent simplices than one before are so many at most.
 const PATIENCE: usize = 3;
 /// What to do where stars do not come to agree.
-pub const NEEDS_MORE: &str = "star sets need far more vertices where the metric turns fast: use `mesher=voronoi`";
+pub(crate) const NEEDS_MORE: &str =
+    "star sets need far more vertices where the metric turns fast: use `mesher=voronoi`";
 
 /// When and how far to refine.
 #[derive(Clone, Copy, Debug)]
-pub struct Consistency {
+pub(crate) struct Consistency {
     /// The greatest circumradius of a simplex, in the metric of a vertex.
     pub radius: f64,
     /// Refinement is given up at so many vertices.
@@ -39,7 +40,7 @@ pub struct Consistency {
 
 /// A consistent star set as a triangulation, and what it took.
 #[derive(Clone, Debug)]
-pub struct Consistent {
+pub(crate) struct Consistent {
     /// The triangles, with the constraints and regions of the domain. Vertices that it started from keep their ids. Each triangle is
     /// counter-clockwise; that none overlap is for the caller to check.
     pub planar: Planar,
@@ -72,7 +73,7 @@ pub struct PickCounters {
 /// [`Error::Metric`]; [`Error::Limit`] with a place where stars disagree when there are too many vertices, too many
 /// inconsistencies to begin with, or no fewer after some rounds;
 /// [`Error::Mesh`] where rounding leaves no room to refine, or the stars agree and are no triangulation.
-pub fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) -> Result<Consistent> {
+pub(crate) fn consistent(start: Planar, field: &dyn MetricField, asked: Consistency) -> Result<Consistent> {
     let stars = Stars::new(Steiner::metric(start, field)?);
     let (large, thin, counters) = (Buckets::default(), Buckets::default(), PickCounters::default());
     let mut picker = Picker { stars, asked, large, thin, counters, quiet: Quiet::default(), random: 1 };
@@ -355,4 +356,4 @@ fn not_meshed(what: &str, place: String) -> Error {
 }
 
 /// A circumradius that simplices of a relaxed unit mesh keep below: the mean is 0.6.
-pub const UNIT_RADIUS: f64 = 1.0;
+pub(crate) const UNIT_RADIUS: f64 = 1.0;

@@ -331,7 +331,7 @@ impl<'s> Draped<'s> {
     }
 
     /// The input's triangle that a face lies in.
-    pub fn home(&self, f: FaceId) -> FaceId {
+    pub(crate) fn home(&self, f: FaceId) -> FaceId {
         FaceId(self.topology.region(f).cast_unsigned())
     }
 

@@ -7,7 +7,7 @@ use crate::surface::Surface;
 use crate::triangulation::{FaceId, Triangulation, VertexId};
 
 /// The metric area of a face with its lengths.
-pub fn metric_area(topology: &Triangulation, f: FaceId) -> f64 {
+pub(crate) fn metric_area(topology: &Triangulation, f: FaceId) -> f64 {
     let [a, b, c] = f.half_edges().map(|h| topology.length(h));
     0.25 * ((a + b + c) * (a + b - c) * (a - b + c) * (b + c - a)).max(0.0).sqrt()
 }
@@ -22,7 +22,7 @@ impl Draped<'_> {
     ///
     /// # Errors
     /// [`Error::Domain`](crate::Error::Domain) of faces without area.
-    pub fn to_surface(&self) -> Result<Surface> {
+    pub(crate) fn to_surface(&self) -> Result<Surface> {
         Surface::new(&Mesh {
             points: (0..self.topology.vertex_slots() as u32).map(|v| self.position(VertexId(v)).to_array()).collect(),
             triangles: self.topology.faces().map(|f| self.topology.corners(f).map(|v| v.0)).collect(),

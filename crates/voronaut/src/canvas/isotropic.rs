@@ -13,7 +13,7 @@ use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
 const SHARE: f64 = 1.0 / 6.0;
 
 /// The size (Euclidean) that the metric asks of an isotropic canvas at a point: 1 / (6 sqrt(largest eigenvalue)).
-pub fn isotropic_size(tensor: Tensor) -> f64 {
+pub(crate) fn isotropic_size(tensor: Tensor) -> f64 {
     SHARE / tensor.eigen().large.sqrt()
 }
 

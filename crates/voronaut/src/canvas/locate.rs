@@ -46,7 +46,7 @@ impl Canvas {
     }
 
     /// [`Canvas::locate`] for a point that is near a face.
-    pub fn locate_from(&self, near: FaceId, p: Point) -> Option<Location> {
+    pub(crate) fn locate_from(&self, near: FaceId, p: Point) -> Option<Location> {
         let Finder { bounds: Some(bounds), rounding, .. } = &self.embedded.finder else { return None };
         let is_between = |x: f64, low: f64, high: f64| x >= low - rounding && x <= high + rounding;
         if !is_between(p.x, bounds.min.x, bounds.max.x) || !is_between(p.y, bounds.min.y, bounds.max.y) {

@@ -27,12 +27,13 @@ mod surface_stars;
 mod way;
 
 pub use border::Border;
-pub use consistent::{Consistency, Consistent, NEEDS_MORE, PickCounters, UNIT_RADIUS, consistent};
+pub use consistent::PickCounters;
+pub(crate) use consistent::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 pub use draped::Draped;
-pub use extent::metric_area;
-pub use isotropic::isotropic_size;
+pub(crate) use extent::metric_area;
 pub use kind::Kind;
-pub use star_set::{StarFigures, StarSet};
+pub use star_set::StarFigures;
+pub use star_set::StarSet;
 pub use way::Way;
 
 use crate::domain::Domain;
@@ -49,9 +50,9 @@ use rayon::prelude::*;
 /// Canvas vertices per seed (`--canvas-size`) unless told otherwise.
 pub const VERTICES_PER_SEED: u32 = 60;
 /// Vertices of a canvas at least: the cells of a few seeds are large, and so is what the metric does within them.
-pub const LEAST_VERTICES: usize = 150_000;
+pub(crate) const LEAST_VERTICES: usize = 150_000;
 /// So many seeds are few.
-pub const FEW_SEEDS: usize = 300;
+pub(crate) const FEW_SEEDS: usize = 300;
 /// Bytes that a canvas vertex costs at the peak, with a diagram on the canvas: measured 0.44 to 0.55 kB, with a reserve.
 pub const BYTES_PER_VERTEX: f64 = 700.0;
 
@@ -175,7 +176,7 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub fn intrinsic_from(planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+    pub(crate) fn intrinsic_from(planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         Self::from_planar(Kind::Intrinsic, planar, field, vertices)
     }
 
@@ -197,7 +198,7 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub fn isotropic_sized(domain: &Domain, field: &dyn MetricField, sizes: f64) -> Result<Self> {
+    pub(crate) fn isotropic_sized(domain: &Domain, field: &dyn MetricField, sizes: f64) -> Result<Self> {
         let mut counters = CanvasCounters::default();
         let until = Until { vertices: usize::MAX, sizes };
         let planar = isotropic::refine(domain.planar().clone(), field, until, &mut counters)?;
@@ -228,7 +229,7 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::new`].
-    pub fn from_planar(kind: Kind, planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+    pub(crate) fn from_planar(kind: Kind, planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         let mut counters = CanvasCounters::default();
         let planar = match kind {
             Kind::Intrinsic => refine::refine(planar, field, vertices, &mut counters)?,

@@ -45,7 +45,7 @@ impl<'s> Canvas<Draped<'s>> {
     ///
     /// # Errors
     /// [`Error::Metric`] where that is not positive definite at a vertex.
-    pub fn remeasured(&self, metric: &'s dyn SurfaceMetric) -> Result<Self> {
+    pub(crate) fn remeasured(&self, metric: &'s dyn SurfaceMetric) -> Result<Self> {
         let (mut counters, mut draped) = (CanvasCounters::default(), self.embedded.in_metric(metric)?);
         draped.settle_lengths(&mut counters)?;
         Ok(Self::flipped(draped, self.kind, counters))

@@ -141,7 +141,7 @@ impl Sight for OnSurface {
 impl Canvas<Draped<'_>> {
     /// The vertices with their tensors, each in a frame of its tangent plane, and the edges of [`Canvas::draped`], of a star
     /// set those of its stars, with lengths along the surface, for methods that know no triangles.
-    pub fn surface_graph(&self) -> Graph {
+    pub(crate) fn surface_graph(&self) -> Graph {
         let draped = self.draped();
         let topology = draped.topology();
         let vertices = || (0..self.vertex_count() as u32).into_par_iter().with_min_len(1024).map(VertexId);

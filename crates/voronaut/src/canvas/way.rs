@@ -36,7 +36,7 @@ impl Draped<'_> {
     /// The way that crosses edges at these places, straight between them: by its ends and shares, as [`Way::on`]. Its length
     /// is taken along the surface, onto which its points are moved where it has an equation. `None` where that fails, or there is
     /// no such edge.
-    pub fn way_along(&self, on: Vec<([VertexId; 2], f64)>) -> Option<Way> {
+    pub(crate) fn way_along(&self, on: Vec<([VertexId; 2], f64)>) -> Option<Way> {
         let place = |&([a, b], t): &([VertexId; 2], f64)| {
             if a == b {
                 return Some(*self.place(a));
@@ -57,7 +57,7 @@ impl Draped<'_> {
 
     /// The metric length between two near vertices, the same in both directions: of the edge if they have one, else of the
     /// chord, on an equation's surface of what lies over it.
-    pub fn length_between(&self, a: VertexId, b: VertexId) -> f64 {
+    pub(crate) fn length_between(&self, a: VertexId, b: VertexId) -> f64 {
         let topology = self.topology();
         let edge = topology.find(a, b).or_else(|| topology.find(b, a));
         let ends = [a.min(b), a.max(b)];

@@ -35,14 +35,14 @@ impl Figures {
 
     /// How far a vertex of a Voronoi cell is at least from the edges that do not end there, in a uniform metric (Lemma
     /// 9.5; its statement has 8 where its proof gives 4): delta^2 mu sqrt(1 - (mu / 2 epsilon)^2) / (4 epsilon^2).
-    pub fn separation(&self) -> f64 {
+    pub(crate) fn separation(&self) -> f64 {
         self.delta.powi(2) * self.mu / (4.0 * self.epsilon.powi(2)) * self.sine_of_corner()
     }
 
     /// The diameter below which a convex set meets only cells that have a Voronoi vertex in common, in a uniform metric
     /// (`docs/guarantees.md`, Lemma A): the separation, and two thirds of mu, below which it cannot meet three sides of
     /// one cell.
-    pub fn resolution(&self) -> f64 {
+    pub(crate) fn resolution(&self) -> f64 {
         self.separation().min(2.0 / 3.0 * self.mu)
     }
 
@@ -54,7 +54,7 @@ impl Figures {
 impl Constants {
     /// The sizing field that Theorem 9.1 asks of a canvas, in the metric, which is uniform: no edge is longer than 2
     /// `s0`.
-    pub fn uniform_size(self, net: &Figures) -> f64 {
+    pub(crate) fn uniform_size(self, net: &Figures) -> f64 {
         match self {
             Constants::Corrected => 0.5 * net.resolution(),
             Constants::Printed => 0.5 * net.separation(),
@@ -82,7 +82,7 @@ impl Constants {
     }
 
     /// The greatest distortion with which there is such a size; 1 where there is none even without distortion.
-    pub fn distortion_allowed(self, net: &Figures) -> f64 {
+    pub(crate) fn distortion_allowed(self, net: &Figures) -> f64 {
         let (mut low, mut high) = (1.0, 2.0);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -92,7 +92,7 @@ impl Constants {
     }
 
     /// What lambda^2 must exceed for straight edges (Lemma 11.2).
-    pub fn straightness(self, psi: f64) -> f64 {
+    pub(crate) fn straightness(self, psi: f64) -> f64 {
         let tube = (psi.powi(2) - psi.powi(-2)).max(0.0).sqrt();
         match self {
             Constants::Corrected => 4.0 * psi.powi(3) * tube,
@@ -111,7 +111,7 @@ pub fn slack(net: &Figures, psi: f64, error: f64) -> f64 {
 /// How far the circumcentres of a Delaunay triangle are apart in the metric and in a uniform one (Lemma 5.13, erratum),
 /// in the latter: the least fixed point of chi = eta / sin(asin(mu'' / (2 (psi epsilon + chi))) / 2). `None` where
 /// there is none.
-pub fn centre_shift(net: &Figures, psi: f64) -> Option<f64> {
+pub(crate) fn centre_shift(net: &Figures, psi: f64) -> Option<f64> {
     let reach = psi * net.epsilon;
     let square = (net.mu / psi).powi(2) - ((psi - 1.0 / psi) * net.epsilon).powi(2);
     if square <= 0.0 {
@@ -135,7 +135,7 @@ pub fn centre_shift(net: &Figures, psi: f64) -> Option<f64> {
 }
 
 /// The net in the uniform metric of a cell's seed (Lemmas 5.2 and 5.15, erratum); `None` where protection is lost.
-pub fn frozen(net: &Figures, psi: f64) -> Option<Figures> {
+pub(crate) fn frozen(net: &Figures, psi: f64) -> Option<Figures> {
     let shift = centre_shift(net, psi)?;
     let far = net.epsilon.hypot(net.delta) / psi + psi * net.epsilon;
     let square = (net.delta / psi).powi(2) - slack(net, psi, 0.0) - 2.0 * shift * far;

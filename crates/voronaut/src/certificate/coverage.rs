@@ -16,7 +16,7 @@ const DEPTH: [f64; 2] = [2.0, 5.0];
 
 /// Seeds by their distance from the border.
 #[derive(Clone, Debug)]
-pub struct Coverage {
+pub(crate) struct Coverage {
     /// Metric distance of each seed from the border, by marching, less half the longest canvas edge there.
     pub depths: Vec<f64>,
     /// Seeds farther from the border than any point is from its seed: their cells end at other cells.
@@ -44,7 +44,7 @@ impl Coverage {
     }
 
     /// Number of covered seeds.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.covered.iter().filter(|&&covered| covered).count()
     }
 }

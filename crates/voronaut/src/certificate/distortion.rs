@@ -19,7 +19,7 @@ pub fn distortion(g: Tensor, h: Tensor) -> f64 {
 /// An estimate of the greatest distortion between the tensor at a point and those within a distance of it, measured
 /// with that tensor: the largest of 576 samples, times the root of the largest ratio of two neighbouring ones. No
 /// bound: a field may do what it likes between samples.
-pub fn distortion_around(field: &dyn MetricField, p: Point, radius: f64) -> f64 {
+pub(crate) fn distortion_around(field: &dyn MetricField, p: Point, radius: f64) -> f64 {
     let centre = field.at(p);
     let [u, v] = frame(centre);
     let sample = |circle: usize, place: usize| {

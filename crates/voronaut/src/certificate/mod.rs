@@ -13,14 +13,19 @@ mod theorems;
 mod verdict;
 mod walk;
 
-pub use constants::{Constants, Figures, centre_shift, frozen, slack};
+pub use constants::{Constants, Figures, slack};
 pub use convexity::Convexity;
-pub use coverage::Coverage;
-pub use distortion::{distortion, distortion_around};
-pub use sizing::{Area, Cost, longest_edge, sized_canvas};
-pub use theorems::{Evidence, verdicts};
+pub(crate) use coverage::Coverage;
+pub use distortion::distortion;
+pub(crate) use distortion::distortion_around;
+pub use sizing::Cost;
+pub use sizing::longest_edge;
+pub(crate) use sizing::{Area, sized_canvas};
+pub use theorems::Evidence;
+pub use theorems::verdicts;
 pub use verdict::{Condition, Outcome, Verdict};
-pub use walk::{Found, Walks, walk};
+pub use walk::Walks;
+pub use walk::{Found, walk};
 
 use crate::diagram::Diagram;
 use crate::geodesic::{Fineness, Paths};

@@ -20,14 +20,14 @@ pub struct Cost {
 
 /// The area of a domain in the metric, and in the isotropic metrics of the greater eigenvalues.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Area {
+pub(crate) struct Area {
     intrinsic: f64,
     isotropic: f64,
 }
 
 impl Area {
     /// From the faces of a canvas, with one tensor in each.
-    pub fn of(canvas: &Canvas, field: &dyn MetricField) -> Self {
+    pub(crate) fn of(canvas: &Canvas, field: &dyn MetricField) -> Self {
         let planar = canvas.embedded();
         let triangles: Vec<[Point; 3]> = planar.topology.faces().map(|f| planar.triangle(f)).collect();
         let measured = |&[a, b, c]: &[Point; 3]| {
@@ -41,7 +41,7 @@ impl Area {
     }
 
     /// What a canvas with a sizing field costs.
-    pub fn cost(&self, size: f64) -> Cost {
+    pub(crate) fn cost(&self, size: f64) -> Cost {
         let per_vertex = 2.0 * size * size;
         Cost { intrinsic: self.intrinsic / per_vertex, isotropic: self.isotropic / per_vertex }
     }
@@ -74,7 +74,7 @@ pub(super) fn half_longest(diagram: &Diagram, is_picked: impl Fn(u32) -> bool) -
 ///
 /// # Errors
 /// As for [`Canvas::intrinsic`].
-pub fn sized_canvas(
+pub(crate) fn sized_canvas(
     domain: &Domain,
     field: &dyn MetricField,
     size: f64,

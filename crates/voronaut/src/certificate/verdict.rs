@@ -45,7 +45,7 @@ impl Condition {
     }
 
     /// A fact: it is so, or it is not.
-    pub fn fact(what: &'static str, is_so: bool) -> Self {
+    pub(crate) fn fact(what: &'static str, is_so: bool) -> Self {
         let factor = if is_so { 0.0 } else { f64::INFINITY };
         Self { what, measured: f64::from(u8::from(is_so)), limit: 1.0, factor, holds: is_so }
     }

@@ -8,12 +8,8 @@
 use super::Diagram;
 use super::envelope::{Near, meeting};
 use super::overlap::Overlap;
-use crate::canvas::Canvas;
-use crate::domain::Domain;
-use crate::error::Result;
 use crate::geodesic::NO_COLOUR;
 use crate::geometry::Point;
-use crate::metric::MetricField;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use rayon::prelude::*;
 
@@ -45,15 +41,6 @@ pub struct Outline {
 }
 
 impl Cells {
-    /// The cells of seeds of which no diagram is at hand, on a canvas of about so many vertices.
-    ///
-    /// # Errors
-    /// As for [`Canvas::intrinsic`] and [`Diagram::new`].
-    pub fn of_seeds(domain: &Domain, field: &dyn MetricField, seeds: &[Point], vertices: usize) -> Result<Self> {
-        let canvas = Canvas::intrinsic(domain, field, vertices)?;
-        Ok(Diagram::new(&canvas, field, seeds)?.to_cells())
-    }
-
     /// Whether a cell has a part without its seed.
     pub fn has_orphans(&self) -> bool {
         self.outlines.iter().flatten().any(|outline| outline.is_orphan)
@@ -274,7 +261,11 @@ fn chains(pieces: &mut [Piece]) -> Vec<(u32, Vec<u32>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::canvas::Canvas;
     use crate::diagram::test_diagrams::{plate_with_hole, seeds_of};
+    use crate::domain::Domain;
+    use crate::error::Result;
+    use crate::metric::MetricField;
     use crate::metric::Swirl;
 
     fn area(points: &[Point]) -> f64 {
@@ -282,11 +273,16 @@ mod tests {
         points.iter().zip(next).map(|(p, q)| 0.5 * (p.x * q.y - q.x * p.y)).sum()
     }
 
+    fn of_seeds(domain: &Domain, field: &dyn MetricField, seeds: &[Point], vertices: usize) -> Result<Cells> {
+        let canvas = Canvas::intrinsic(domain, field, vertices)?;
+        Ok(Diagram::new(&canvas, field, seeds)?.to_cells())
+    }
+
     #[test]
     fn outlines_cover_the_domain_once() {
         let domain = plate_with_hole();
         let seeds = seeds_of(&domain, 40);
-        let cells = Cells::of_seeds(&domain, &Swirl::default(), &seeds, 4000).unwrap();
+        let cells = of_seeds(&domain, &Swirl::default(), &seeds, 4000).unwrap();
         let areas: Vec<f64> = cells.outlines.iter().map(|c| c.iter().map(|o| area(&o.points)).sum()).collect();
         assert!(areas.iter().all(|&a| a > 0.0), "{areas:?}");
         assert!((areas.iter().sum::<f64>() - domain.area()).abs() < 1e-9 * domain.area());
@@ -300,7 +296,7 @@ mod tests {
         let domain = Domain::shape("rect:0,0,2,1").unwrap();
         let seeds = [Point::new(0.5, 0.52), Point::new(1.5, 0.48)];
         let uniform = |_: Point| crate::geometry::Tensor::IDENTITY;
-        let cells = Cells::of_seeds(&domain, &uniform, &seeds, 2000).unwrap();
+        let cells = of_seeds(&domain, &uniform, &seeds, 2000).unwrap();
         let outline = &cells.outlines[0][0];
         assert_eq!(outline.corners.len(), 2, "the bisector's ends");
         let on_bisector = outline.points.iter().filter(|p| p.distance(seeds[0]) > p.distance(seeds[1]) - 1e-6);

@@ -10,7 +10,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// every cell is a disc it has the topology of the canvas. It may have several edges between two seeds: their cells
     /// meet several times. A cell that is no disc has several fans of faces, each but the first with a vertex of its own behind
     /// those of the seeds; the list has the seeds of these.
-    pub fn glued_nerve(&self) -> (Triangulation, Vec<u32>) {
+    pub(crate) fn glued_nerve(&self) -> (Triangulation, Vec<u32>) {
         let topology = self.ground.topology();
         let colours = |f: FaceId| topology.corners(f).map(|v| self.label(v).colour);
         let is_triangle = |[a, b, c]: [u32; 3]| a != b && b != c && c != a && ![a, b, c].contains(&NO_COLOUR);

@@ -32,10 +32,13 @@ pub use cells::{Cells, Outline};
 pub use distances::Distances;
 pub use ground::{Flat, Ground};
 pub use kind::Kind;
-pub use nerve::{Nerve, NerveEdge, NerveTriangle};
+pub use nerve::Nerve;
+pub use nerve::NerveEdge;
+pub use nerve::NerveTriangle;
 pub use passes::Passes;
 pub use paths::Paths;
-pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
+pub use resolve::Resolved;
+pub use resolve::{RESOLVE_ROUNDS, resolve};
 pub use surface_distances::SurfaceDistances;
 pub use witnesses::Witnesses;
 
@@ -102,7 +105,7 @@ impl<'a> Diagram<'a> {
     ///
     /// # Errors
     /// As for [`Diagram::by_method`].
-    pub fn of_vertices_by(
+    pub(crate) fn of_vertices_by(
         canvas: &'a Canvas,
         field: &'a dyn MetricField,
         vertices: &[Point],
@@ -117,7 +120,11 @@ impl<'a> Diagram<'a> {
     ///
     /// # Errors
     /// As for [`Diagram::new`].
-    pub fn roughly_of_vertices(canvas: &'a Canvas, field: &'a dyn MetricField, vertices: &[Point]) -> Result<Self> {
+    pub(crate) fn roughly_of_vertices(
+        canvas: &'a Canvas,
+        field: &'a dyn MetricField,
+        vertices: &[Point],
+    ) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, vertices, true, Care::Quick)?;
         Ok(Self::from_starts(canvas, field, vertices, starts, Box::new(Marching::on(canvas.topology()))))
     }
@@ -254,7 +261,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// Inserts a seed at a canvas vertex into a diagram made by [`Diagram::roughly_of_vertices`]; returns its colour.
-    pub fn insert_roughly(&mut self, v: VertexId) -> u32 {
+    pub(crate) fn insert_roughly(&mut self, v: VertexId) -> u32 {
         self.insert_with(v, Care::Quick)
     }
 

@@ -8,7 +8,7 @@ use crate::triangulation::VertexId;
 impl Domain {
     /// A triangulation of the domain as a mesh: vertices in the order of their ids, pinched vertices joined again, the
     /// domain's labels on triangles, edges and corners. `corner` tells which point of the graph a vertex is.
-    pub fn mesh_of(&self, planar: &Planar, corner: impl Fn(VertexId) -> Option<u32>) -> Mesh {
+    pub(crate) fn mesh_of(&self, planar: &Planar, corner: impl Fn(VertexId) -> Option<u32>) -> Mesh {
         let (mut mesh, number) = self.numbered_points(planar, corner);
         for f in planar.topology.faces() {
             mesh.triangles.push(planar.topology.corners(f).map(|v| number[v.index()]));

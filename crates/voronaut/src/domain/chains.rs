@@ -34,7 +34,7 @@ impl Pslg {
     /// The same graph with other vertices along its curves. Points that no curve uses any more are dropped, but for
     /// required ones.
     #[must_use]
-    pub fn with_chains(&self, chains: &[Chain]) -> Pslg {
+    pub(crate) fn with_chains(&self, chains: &[Chain]) -> Pslg {
         let mut kept = vec![false; self.points.len()];
         self.required_points.iter().for_each(|&v| kept[v as usize] = true);
         chains.iter().flat_map(|c| &c.vertices).for_each(|&v| kept[v as usize] = true);
@@ -59,7 +59,7 @@ impl Pslg {
     /// Drops the vertices in the middle of straight runs: those that lie on the chord to within the rounding of the
     /// coordinates.
     #[must_use]
-    pub fn without_straight_vertices(&self) -> Pslg {
+    pub(crate) fn without_straight_vertices(&self) -> Pslg {
         let is_node = self.nodes(&self.incident_segments());
         let mut chains = self.chains();
         for chain in &mut chains {

@@ -20,7 +20,7 @@ pub use poly::{Poly, PolyRegion, from_poly};
 pub use polygons::{Polygon, Polygons, Ring, from_polygons};
 pub use pslg::{Filling, Pslg, Segment, Side};
 pub use shapes::{disk, rect};
-pub use written::{SHAPES, read_numbers, shape};
+pub use written::{read_numbers, shape};
 
 use crate::geometry::{Aabb, Point};
 use crate::planar::Planar;

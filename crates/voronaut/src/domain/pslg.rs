@@ -77,7 +77,7 @@ impl Pslg {
     }
 
     /// How to name a segment in a message: by its two ends.
-    pub fn describe_segment(&self, segment: u32) -> String {
+    pub(crate) fn describe_segment(&self, segment: u32) -> String {
         let [a, b] = self.segments[segment as usize].ends;
         format!("{} - {}", self.describe(a), self.describe(b))
     }

@@ -7,7 +7,7 @@ use crate::geometry::Point;
 /// What users write for surfaces that need no file.
 const SURFACES: [&str; 4] = ["sphere", "torus", "chair", "implicit"];
 /// How shapes are written, for messages.
-pub const SHAPES: &str = "rect:x0,y0,x1,y1 or disk:cx,cy,r";
+pub(crate) const SHAPES: &str = "rect:x0,y0,x1,y1 or disk:cx,cy,r";
 
 impl Domain {
     /// The shape that a text names: `rect:x0,y0,x1,y1` or `disk:cx,cy,r`.

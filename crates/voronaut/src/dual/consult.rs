@@ -29,7 +29,7 @@ named!(Road, "dual", [Geodesic = "geodesic", Canvas = "canvas", Both = "both"]);
 
 impl Road {
     /// How many of so many seeds a diagram has at most.
-    pub fn seeds_asked(self, seeds: usize) -> usize {
+    pub(crate) fn seeds_asked(self, seeds: usize) -> usize {
         match self {
             Road::Geodesic => 0,
             Road::Canvas => seeds,
@@ -76,7 +76,7 @@ pub struct Disagreement {
 
 /// What came of asking the diagram.
 #[derive(Clone, Debug, Default)]
-pub struct Consultation {
+pub(crate) struct Consultation {
     /// Edges on which the two roads were compared.
     pub compared: usize,
     /// Those on which they differ.
@@ -109,7 +109,7 @@ impl Dual<'_> {
     ///
     /// # Errors
     /// The metric is not positive definite somewhere around these edges; the method does not drive diagrams.
-    pub fn consult_diagram(
+    pub(crate) fn consult_diagram(
         &mut self,
         road: Road,
         canvas: canvas::Kind,

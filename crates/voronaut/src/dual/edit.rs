@@ -7,7 +7,7 @@ use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 /// Seeds, edges and the metric at the seeds, with its factor.
-pub struct Saved {
+pub(crate) struct Saved {
     planar: Planar,
     locals: Vec<LocalMetric>,
     kinds: Vec<Kind>,
@@ -23,7 +23,7 @@ impl Saved {
 
 impl Dual<'_> {
     /// Puts a free seed strictly inside a face.
-    pub fn insert_in_face(&mut self, f: FaceId, p: Point) -> Option<VertexId> {
+    pub(crate) fn insert_in_face(&mut self, f: FaceId, p: Point) -> Option<VertexId> {
         let v = self.planar.insert_in_face(f, p)?;
         self.settle(v, Kind::Free);
         Some(v)
@@ -31,7 +31,7 @@ impl Dual<'_> {
 
     /// Puts a seed on an edge: a curve's if the edge is constrained, else a free one. Returns it and the half-edge from
     /// it to the old target of h. The edge of a required segment stays whole.
-    pub fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<(VertexId, HalfEdge)> {
+    pub(crate) fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<(VertexId, HalfEdge)> {
         if self.planar.topology.constraint(h).is_some_and(|c| self.required[c.0 as usize]) {
             return None;
         }

@@ -18,7 +18,7 @@ const POOR: f64 = 0.5;
 
 impl Dual<'_> {
     /// Flips every edge that the metric wants flipped and the plane allows. Returns the number of flips.
-    pub fn flip_all(&mut self, effort: Effort) -> u64 {
+    pub(crate) fn flip_all(&mut self, effort: Effort) -> u64 {
         let before = self.counters.flips;
         if effort == Effort::Full {
             // Cheap flips first: few margins are then left to be measured one by one.
@@ -31,7 +31,7 @@ impl Dual<'_> {
     }
 
     /// Flips around a vertex and onwards.
-    pub fn flip_around(&mut self, v: VertexId, effort: Effort) -> u64 {
+    pub(crate) fn flip_around(&mut self, v: VertexId, effort: Effort) -> u64 {
         self.lawson.queue(self.planar.topology.star(v).flat_map(|h| [h, h.next()]));
         self.flip_queued(effort)
     }

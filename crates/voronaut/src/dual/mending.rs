@@ -7,7 +7,7 @@ use crate::surface::Place;
 use crate::triangulation::VertexId;
 
 /// Seeds of which one at a time is tried elsewhere.
-pub trait Mending: Moving {
+pub(crate) trait Mending: Moving {
     /// A place with what the metric is there.
     type Site: Copy;
 
@@ -26,7 +26,7 @@ pub trait Mending: Moving {
 
 /// A point and the logarithm of the tensor there.
 #[derive(Clone, Copy)]
-pub struct Site {
+pub(crate) struct Site {
     at: Point,
     log: Tensor,
 }
@@ -60,7 +60,7 @@ impl Mending for Dual<'_> {
 
 /// A place of a surface and the logarithm of the tensor there.
 #[derive(Clone, Copy)]
-pub struct SurfaceSite {
+pub(crate) struct SurfaceSite {
     place: Place,
     log: Tensor3,
 }

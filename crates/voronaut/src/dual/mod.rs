@@ -16,12 +16,14 @@ mod surface_flips;
 mod surface_margin;
 mod patch;
 
-pub use consult::{Consultation, Disagreement, Made, Road};
-pub use edit::Saved;
+pub(crate) use consult::Consultation;
+pub use consult::Disagreement;
+pub use consult::{Made, Road};
+pub(crate) use edit::Saved;
 pub use margin::Effort;
-pub use mending::Mending;
-pub use moving::Moving;
-pub use on_surface::SurfaceDual;
+pub(crate) use mending::Mending;
+pub(crate) use moving::Moving;
+pub(crate) use on_surface::SurfaceDual;
 
 use crate::domain::Domain;
 use crate::error::{Error, Result};
@@ -122,7 +124,7 @@ impl<'a> Dual<'a> {
     }
 
     /// Multiplies the metric by another factor instead; seeds and edges stay.
-    pub fn rescale(&mut self, factor: f64) {
+    pub(crate) fn rescale(&mut self, factor: f64) {
         self.field.factor = factor;
         self.measure_all();
     }
@@ -164,7 +166,7 @@ impl<'a> Dual<'a> {
     }
 
     /// The faces that changed since the last call, some of them perhaps several times or removed.
-    pub fn take_touched(&mut self) -> Vec<FaceId> {
+    pub(crate) fn take_touched(&mut self) -> Vec<FaceId> {
         std::mem::take(&mut self.touched)
     }
 
@@ -180,7 +182,7 @@ impl<'a> Dual<'a> {
     }
 
     /// Numbers vertices and faces along a Hilbert curve; ids change. Passes over all seeds are then fast for any size.
-    pub fn reorder(&mut self) {
+    pub(crate) fn reorder(&mut self) {
         let (planar, old) = self.planar.reordered();
         self.locals = old.iter().map(|&v| self.locals[v.index()]).collect();
         self.kinds = old.iter().map(|&v| self.kinds[v.index()]).collect();

@@ -8,7 +8,7 @@ use crate::triangulation::{Triangulation, VertexId};
 
 /// Seeds that can move, with their triangulation. Vectors at a seed are in its own coordinates: those of the plane, or of a
 /// chart there.
-pub trait Moving: Sync {
+pub(crate) trait Moving: Sync {
     /// Seeds, edges, and the metric at the seeds, to come back to.
     type Saved;
 

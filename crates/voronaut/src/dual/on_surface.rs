@@ -24,7 +24,7 @@ pub(super) const FOLDED: f64 = 1e-6;
 const STEEP: f64 = 0.8;
 
 /// The Riemannian Delaunay triangulation of seeds on a surface, with straight edges in space: the mesh in the making.
-pub struct SurfaceDual<'a> {
+pub(crate) struct SurfaceDual<'a> {
     pub(super) input: &'a Input,
     pub(super) metric: &'a dyn SurfaceMetric,
     pub(super) factor: f64,
@@ -34,7 +34,7 @@ pub struct SurfaceDual<'a> {
 
 /// What moves and flips change.
 #[derive(Clone)]
-pub struct State {
+pub(crate) struct State {
     pub(super) topology: Triangulation,
     pub(super) places: Vec<Place>,
     planes: Vec<TangentPlane>,
@@ -48,7 +48,7 @@ impl<'a> SurfaceDual<'a> {
     ///
     /// # Errors
     /// [`Error::Metric`] where the metric is not positive definite at a seed.
-    pub fn new(
+    pub(crate) fn new(
         input: &'a Input,
         metric: &'a dyn SurfaceMetric,
         factor: f64,
@@ -68,32 +68,32 @@ impl<'a> SurfaceDual<'a> {
     }
 
     /// Topology: vertex i is seed i.
-    pub fn topology(&self) -> &Triangulation {
+    pub(crate) fn topology(&self) -> &Triangulation {
         &self.state.topology
     }
 
     /// The triangles by their seeds.
-    pub fn triangles(&self) -> Vec<[u32; 3]> {
+    pub(crate) fn triangles(&self) -> Vec<[u32; 3]> {
         self.topology().faces().map(|f| self.topology().corners(f).map(|v| v.0)).collect()
     }
 
     /// Where the seeds are.
-    pub fn places(&self) -> &[Place] {
+    pub(crate) fn places(&self) -> &[Place] {
         &self.state.places
     }
 
     /// The surface.
-    pub fn input(&self) -> &'a Input {
+    pub(crate) fn input(&self) -> &'a Input {
         self.input
     }
 
     /// Its metric, not scaled.
-    pub fn metric(&self) -> &'a dyn SurfaceMetric {
+    pub(crate) fn metric(&self) -> &'a dyn SurfaceMetric {
         self.metric
     }
 
     /// The factor on the metric.
-    pub fn factor(&self) -> f64 {
+    pub(crate) fn factor(&self) -> f64 {
         self.factor
     }
 
@@ -101,7 +101,7 @@ impl<'a> SurfaceDual<'a> {
     ///
     /// # Errors
     /// As for [`SurfaceDual::new`].
-    pub fn rescale(&mut self, factor: f64) -> Result<()> {
+    pub(crate) fn rescale(&mut self, factor: f64) -> Result<()> {
         self.factor = factor;
         self.forget_lengths(self.topology().edges().collect());
         self.measure_each(|_, field| LocalMetric::at(field, Point::default()))
@@ -111,11 +111,6 @@ impl<'a> SurfaceDual<'a> {
         for h in edges {
             self.state.topology.set_length(h, f64::NAN);
         }
-    }
-
-    /// Flips done so far.
-    pub fn flips(&self) -> u64 {
-        self.flips
     }
 
     pub(super) fn position(&self, v: VertexId) -> Point3 {
@@ -159,13 +154,13 @@ impl<'a> SurfaceDual<'a> {
     }
 
     /// How many triangles do not stand upright on the surface.
-    pub fn downright(&self) -> usize {
+    pub(crate) fn downright(&self) -> usize {
         let is_down = |&f: &FaceId| self.upright(self.topology().corners(f)) < UPRIGHT;
         self.topology().faces().filter(is_down).count()
     }
 
     /// Whether a triangle faces away from the mean of the surface's normals at its corners.
-    pub fn is_folded(&self, f: FaceId) -> bool {
+    pub(crate) fn is_folded(&self, f: FaceId) -> bool {
         let corners = self.topology().corners(f);
         let [a, b, c] = corners.map(|v| self.position(v));
         let mean = corners.iter().fold(Vector3::default(), |sum, v| sum + self.state.planes[v.index()].normal);
@@ -173,20 +168,20 @@ impl<'a> SurfaceDual<'a> {
     }
 
     /// The least cosine between the normal of a triangle and those of the surface at its corners.
-    pub fn upright(&self, corners: [VertexId; 3]) -> f64 {
+    pub(crate) fn upright(&self, corners: [VertexId; 3]) -> f64 {
         let normals = corners.map(|v| self.state.planes[v.index()].normal);
         upright(corners.map(|v| self.position(v)), normals)
     }
 
     /// Quality of a triangle by its lengths: 1 of an equilateral one.
-    pub fn shape(&self, [a, b, c]: [VertexId; 3]) -> f64 {
+    pub(crate) fn shape(&self, [a, b, c]: [VertexId; 3]) -> f64 {
         let [x, y, z] = [(a, b), (b, c), (c, a)].map(|(u, v)| self.length_between(u, v));
         let square = (x + y + z) * (x + y - z) * (x - y + z) * (y + z - x);
         3.0_f64.sqrt() * square.max(0.0).sqrt() / (x * x + y * y + z * z)
     }
 
     /// The geometric mean of the lengths of edges that are free to be as long as the metric wants: not between seeds that stay.
-    pub fn mean_length(&self) -> f64 {
+    pub(crate) fn mean_length(&self) -> f64 {
         let stays = |v: VertexId| self.state.kinds[v.index()] != Kind::Free;
         let is_free = |h: &HalfEdge| !stays(self.topology().origin(*h)) || !stays(self.topology().target(*h));
         let mut edges: Vec<HalfEdge> = self.topology().edges().filter(is_free).collect();

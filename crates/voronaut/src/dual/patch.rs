@@ -40,7 +40,7 @@ impl Dual<'_> {
     }
 
     /// The triangles within some rings of neighbours around seeds, with the mesh's ids.
-    pub fn part_around(&self, seeds: &[VertexId], rings: usize) -> Planar {
+    pub(crate) fn part_around(&self, seeds: &[VertexId], rings: usize) -> Planar {
         let mut inside = vec![false; self.topology().vertex_slots()];
         for v in seeds {
             inside[v.index()] = true;

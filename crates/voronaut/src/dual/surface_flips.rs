@@ -16,7 +16,7 @@ const UNFOLDINGS: usize = 64;
 
 impl SurfaceDual<'_> {
     /// Flips every edge that the metric wants flipped and the surface allows. Returns the number of flips.
-    pub fn flip_all(&mut self) -> u64 {
+    pub(crate) fn flip_all(&mut self) -> u64 {
         self.measure();
         let edges: Vec<HalfEdge> = self.topology().edges().collect();
         let topology = &self.state.topology;
@@ -33,13 +33,13 @@ impl SurfaceDual<'_> {
 
     /// Flips by a test of the caller's: every edge with a certainly negative margin whose flip the surface allows. Returns the
     /// number of flips.
-    pub fn settle_by(&mut self, test: impl Fn(&Quad) -> Margin) -> u64 {
+    pub(crate) fn settle_by(&mut self, test: impl Fn(&Quad) -> Margin) -> u64 {
         let edges: Vec<HalfEdge> = self.topology().edges().collect();
         self.flip_by(edges, |dual, h| certain(dual.seeds_around(h).map(|quad| test(&quad))))
     }
 
     /// How many edges a test wants flipped.
-    pub fn disagreeing(&self, test: impl Fn(&Quad) -> Margin) -> usize {
+    pub(crate) fn disagreeing(&self, test: impl Fn(&Quad) -> Margin) -> usize {
         let wants = |&h: &HalfEdge| {
             !self.topology().is_fixed(h) && certain(self.seeds_around(h).map(|quad| test(&quad))).value < -TIE
         };
@@ -47,7 +47,7 @@ impl SurfaceDual<'_> {
     }
 
     /// How many edges their own lengths want flipped and the surface forbids, and the smallest margin of the others; 1 of none.
-    pub fn unsettled(&self) -> (usize, f64) {
+    pub(crate) fn unsettled(&self) -> (usize, f64) {
         let margins = self.topology().edges().filter(|&h| !self.topology().is_fixed(h)).map(|h| self.margin(h));
         let known = margins.filter(|margin| margin.error.is_finite()).map(|margin| margin.value);
         let (blocked, settled): (Vec<f64>, Vec<f64>) = known.partition(|&margin| margin < -TIE);
@@ -100,7 +100,7 @@ impl SurfaceDual<'_> {
 
     /// Flips edges of triangles that are folded over, whatever the metric says, as long as less of their area leans over.
     /// Returns the number of flips.
-    pub fn unfold(&mut self) -> u64 {
+    pub(crate) fn unfold(&mut self) -> u64 {
         flip_in_rounds(&mut Unfolding { dual: self }, UNFOLDINGS)
     }
 

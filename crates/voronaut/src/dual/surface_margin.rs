@@ -10,7 +10,7 @@ use crate::triangulation::{HalfEdge, VertexId};
 
 impl SurfaceDual<'_> {
     /// Metric length of the geodesic between two seeds.
-    pub fn length_between(&self, u: VertexId, v: VertexId) -> f64 {
+    pub(crate) fn length_between(&self, u: VertexId, v: VertexId) -> f64 {
         self.estimate([u, v]).value
     }
 

@@ -37,12 +37,12 @@ const STEADY: f64 = 0.25;
 /// Where the metric varies little from end to end and across, tensors are interpolated from five, and the error is of
 /// fourth order in the length; else the field is evaluated wherever it is needed, 21 times at least, and the length is
 /// that of some path, never more than the chord's.
-pub fn bowed_chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
+pub(crate) fn bowed_chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
     bowed_between(field, [p, q], [field.at(p), field.at(q)])
 }
 
 /// [`bowed_chord`] where the tensors at both ends are known.
-pub fn bowed_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [Tensor; 2]) -> f64 {
+pub(crate) fn bowed_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [Tensor; 2]) -> f64 {
     let d = q - p;
     let middle = p.midpoint(q);
     let tensor = field.at(middle);

@@ -47,7 +47,7 @@ pub fn margin_by_power(
 
 /// A circle of the metric: all points at one geodesic distance from its centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circle {
+pub(crate) struct Circle {
     /// The centre; it may lie outside any domain.
     pub centre: Point,
     /// The squared radius.
@@ -59,7 +59,12 @@ pub struct Circle {
 impl Circle {
     /// The circle through three points, its centre found by Newton steps on three geodesic distances. `None` where
     /// there is none to be found: the points are nearly on a geodesic, or paths to them are not resolved.
-    pub fn around(paths: &Paths, field: &dyn MetricField, corners: [Point; 3], fineness: Fineness) -> Option<Self> {
+    pub(crate) fn around(
+        paths: &Paths,
+        field: &dyn MetricField,
+        corners: [Point; 3],
+        fineness: Fineness,
+    ) -> Option<Self> {
         // Coarse geodesics lead near the centre.
         let [a, b, c] = corners;
         let flat = flat_centre(field.at(a + ((b - a) + (c - a)) * (1.0 / 3.0)), corners)?;
@@ -68,7 +73,7 @@ impl Circle {
     }
 
     /// [`Circle::around`] with the finest paths from the first step on: finds some circles that coarse paths lead away from.
-    pub fn around_carefully(paths: &Paths, field: &dyn MetricField, corners: [Point; 3]) -> Option<Self> {
+    pub(crate) fn around_carefully(paths: &Paths, field: &dyn MetricField, corners: [Point; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let flat = flat_centre(field.at(a + ((b - a) + (c - a)) * (1.0 / 3.0)), corners)?;
         Self::from_centre(paths, field, corners, flat, Fineness::FINEST, 0)
@@ -76,7 +81,7 @@ impl Circle {
 
     /// The circle through three points whose centre damped Newton steps reach from a place: of the points where three
     /// lengths of geodesics are equal, one near that place. `None` where there is none, or paths are not resolved.
-    pub fn near(paths: &Paths, field: &dyn MetricField, corners: [Point; 3], start: Point) -> Option<Self> {
+    pub(crate) fn near(paths: &Paths, field: &dyn MetricField, corners: [Point; 3], start: Point) -> Option<Self> {
         let (mut fineness, mut now) = (Fineness::MIDDLE, None);
         let mut from = start;
         loop {
@@ -93,7 +98,7 @@ impl Circle {
 
     /// The power of a point: its squared geodesic distance from the centre, less the squared radius; negative inside.
     /// `None` where no path to the point is found.
-    pub fn power(&self, paths: &Paths, field: &dyn MetricField, p: Point, fineness: Fineness) -> Option<f64> {
+    pub(crate) fn power(&self, paths: &Paths, field: &dyn MetricField, p: Point, fineness: Fineness) -> Option<f64> {
         paths.length(field, self.centre, p, fineness).map(|length| length.value.powi(2) - self.square)
     }
 

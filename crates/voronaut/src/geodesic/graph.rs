@@ -57,7 +57,7 @@ impl Graph {
     /// of what the tensors at their ends say of a straight line.
     ///
     /// Tensors are as many as lists of neighbours, and these are places in them.
-    pub fn seen_by(sight: Arc<dyn Sight>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
+    pub(crate) fn seen_by(sight: Arc<dyn Sight>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
         assert!(tensors.len() == neighbours.len(), "an entry for each vertex");
         let named = neighbours.iter().enumerate().flat_map(|(v, list)| list.iter().map(move |&u| (v as u32, u)));
         let mut pairs: Vec<(u32, u32)> = named.filter(|(v, u)| v != u).flat_map(|(v, u)| [(v, u), (u, v)]).collect();
@@ -82,7 +82,7 @@ impl Graph {
 
     /// The same graph with other lengths of its edges (metric, positive, the same in both directions).
     #[must_use]
-    pub fn with_lengths(mut self, length: impl Fn(VertexId, VertexId) -> f64 + Sync) -> Self {
+    pub(crate) fn with_lengths(mut self, length: impl Fn(VertexId, VertexId) -> f64 + Sync) -> Self {
         let of_vertex = |v: VertexId| self.neighbours(v).iter().map(move |&u| (v, u));
         let vertices = (0..self.tensors.len() as u32).into_par_iter().with_min_len(1024).map(VertexId);
         self.lengths = vertices.flat_map_iter(of_vertex).map(|(v, u)| length(v, u)).collect();
@@ -115,7 +115,7 @@ impl Graph {
     }
 
     /// Number of pairs of neighbours.
-    pub fn edge_count(&self) -> usize {
+    pub(crate) fn edge_count(&self) -> usize {
         self.neighbours.len() / 2
     }
 

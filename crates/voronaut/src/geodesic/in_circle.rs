@@ -32,7 +32,7 @@ impl Margin {
 
 /// The margin of the edge a-b with one tensor for the whole quadrilateral. Vectors run from c to a, c to b, d to b
 /// and d to a; the triangles a b c and b a d are counter-clockwise.
-pub fn frozen_margin(tensor: Tensor, [ca, cb]: [Vector; 2], [db, da]: [Vector; 2]) -> f64 {
+pub(crate) fn frozen_margin(tensor: Tensor, [ca, cb]: [Vector; 2], [db, da]: [Vector; 2]) -> f64 {
     let root = tensor.determinant().max(0.0).sqrt();
     let at_c = Angles::normalised(tensor.dot(ca, cb), root * ca.cross(cb));
     let at_d = Angles::normalised(tensor.dot(db, da), root * db.cross(da));
@@ -41,7 +41,7 @@ pub fn frozen_margin(tensor: Tensor, [ca, cb]: [Vector; 2], [db, da]: [Vector; 2
 
 /// The margin of the edge a-b from estimates of the lengths of a-b, a-c, b-c, a-d and b-d, with the error that theirs make to
 /// first order; [`Margin::UNKNOWN`] where they make no triangles.
-pub fn margin_of_estimates(lengths: [Length; 5]) -> Margin {
+pub(crate) fn margin_of_estimates(lengths: [Length; 5]) -> Margin {
     let [ab, ac, bc, ad, bd] = lengths.map(|length| length.value);
     let relative = lengths.iter().map(|length| length.error).fold(0.0, f64::max);
     let angles = Angles::from_lengths(ab, [ac, bc], [ad, bd]);
@@ -58,7 +58,7 @@ pub struct Angles {
 
 impl Angles {
     /// From the lengths of the edge and of the other two edges of each of its triangles.
-    pub fn from_lengths(edge: f64, [ac, bc]: [f64; 2], [ad, bd]: [f64; 2]) -> Self {
+    pub(crate) fn from_lengths(edge: f64, [ac, bc]: [f64; 2], [ad, bd]: [f64; 2]) -> Self {
         let (c, area_c) = opposite(edge, ac, bc);
         let (d, area_d) = opposite(edge, ad, bd);
         let sensitivity = |a: f64, b: f64, area: f64| edge * (edge + a + b) / (2.0 * area.max(f64::MIN_POSITIVE));

@@ -117,7 +117,7 @@ fn determinant([a, b, c]: [[f64; 3]; 3]) -> f64 {
 
 /// The Gauss curvature of a field at p, in whose units of length the differences are taken over a few hundredths.
 /// Ten places around must be in the field's range; where it is no metric the result may be NaN.
-pub fn gauss_curvature(field: &dyn MetricField, p: Point) -> f64 {
+pub(crate) fn gauss_curvature(field: &dyn MetricField, p: Point) -> f64 {
     // Steps of a sixteenth of a unit.
     let frame = Frame::at(p, field.at(p), 0.0625 / STEP);
     let x = Vector::default();

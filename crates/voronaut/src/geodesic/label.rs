@@ -4,7 +4,7 @@ use crate::triangulation::{HalfEdge, VertexId};
 use std::cmp::Ordering;
 
 /// The colour of a vertex that no source reaches.
-pub const NO_COLOUR: u32 = u32::MAX;
+pub(crate) const NO_COLOUR: u32 = u32::MAX;
 
 /// Distance to the nearest source, the source's colour, and what the distance was computed from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Label {
 
 /// What a distance was computed from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Support {
+pub(crate) enum Support {
     /// No source reaches the vertex.
     Nothing,
     /// A source beside the vertex, or one that distances lead straight from.
@@ -57,7 +57,7 @@ impl Label {
     }
 
     /// What the distance was computed from.
-    pub fn support(&self) -> Support {
+    pub(crate) fn support(&self) -> Support {
         match self.support {
             NOTHING => Support::Nothing,
             SOURCE => Support::Source,

@@ -18,7 +18,7 @@ const SIGHT: i64 = 2;
 /// obtuse superbase), so that angles between them are acute and one pass suffices, however anisotropic the metric. First order
 /// where the metric varies little within a stencil; that is about as many nodes wide as the metric is anisotropic, and where it
 /// leaves the domain or the metric turns within it distances are poor, and nodes may not be reached at all.
-pub struct Lattice<'a> {
+pub(crate) struct Lattice<'a> {
     field: &'a dyn MetricField,
     obstacles: &'a dyn Obstacles,
     origin: Point,
@@ -43,7 +43,7 @@ struct Stencil {
 impl<'a> Lattice<'a> {
     /// A grid of about so many nodes over a rectangle. `is_inside` tells of many points which are in the domain, and
     /// obstacles which straight ways leave it.
-    pub fn new(
+    pub(crate) fn new(
         bounds: Aabb,
         nodes: usize,
         field: &'a dyn MetricField,
@@ -63,13 +63,8 @@ impl<'a> Lattice<'a> {
         lattice
     }
 
-    /// Number of nodes in the domain.
-    pub fn node_count(&self) -> usize {
-        self.stencils.iter().flatten().count()
-    }
-
     /// The distances of points of the domain from the nearest source; infinite where no node beside them is reached.
-    pub fn distances(&self, sources: &[Point], at: &[Point]) -> Vec<f64> {
+    pub(crate) fn distances(&self, sources: &[Point], at: &[Point]) -> Vec<f64> {
         let values = self.march(sources);
         at.par_iter().map(|&p| self.sample(&values, p)).collect()
     }

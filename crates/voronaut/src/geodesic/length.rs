@@ -17,12 +17,12 @@ pub struct Length {
 ///
 /// Speed along the chord by cubic Hermite interpolation, less the share that the geodesic saves by bending: it leaves
 /// the chord with the acceleration r, the part of Gamma(d, d) across the chord, and d^2 = L^2 - |r|^2 / 12.
-pub fn hermite(p: Point, at_p: &LocalMetric, q: Point, at_q: &LocalMetric) -> Length {
+pub(crate) fn hermite(p: Point, at_p: &LocalMetric, q: Point, at_q: &LocalMetric) -> Length {
     hermite_between([at_p, at_q], [q - p, q - p])
 }
 
 /// [`hermite`] where each end has coordinates of its own: the chord from the first to the second as each sees it.
-pub fn hermite_between(ends: [&LocalMetric; 2], chords: [Vector; 2]) -> Length {
+pub(crate) fn hermite_between(ends: [&LocalMetric; 2], chords: [Vector; 2]) -> Length {
     let speed = |i: usize| {
         let (local, d) = (ends[i], chords[i]);
         let speed = local.tensor.length(d).max(f64::MIN_POSITIVE);
@@ -39,7 +39,13 @@ pub fn hermite_between(ends: [&LocalMetric; 2], chords: [Vector; 2]) -> Length {
 
 /// Length of the geodesic p-q from quadrature along the chord, less what it saves by bending (see [`hermite`]). The
 /// error is a third of that saving: the next term of its series is smaller by the square of the turn.
-pub fn bent_chord(field: &dyn MetricField, p: Point, at_p: &LocalMetric, q: Point, at_q: &LocalMetric) -> Length {
+pub(crate) fn bent_chord(
+    field: &dyn MetricField,
+    p: Point,
+    at_p: &LocalMetric,
+    q: Point,
+    at_q: &LocalMetric,
+) -> Length {
     let bent = less_bending(chord(field, p, q), [at_p, at_q], [q - p, q - p]);
     Length { value: bent.value, error: bent.error / 3.0 }
 }
@@ -70,7 +76,7 @@ pub(super) const GAUSS: [(f64, f64); 5] = [
 ];
 
 /// Length of the straight segment p-q by five-point Gauss quadrature of sqrt(d' M d).
-pub fn chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
+pub(crate) fn chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
     let d = q - p;
     GAUSS.iter().map(|&(t, weight)| weight * field.at(p.lerp(q, t)).length(d)).sum()
 }
@@ -78,7 +84,8 @@ pub fn chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
 /// Length of the geodesic p-q: a path of `segments` segments from the chord, its energy minimised by damped Newton
 /// steps, its length then summed by quadrature. It finds *a* geodesic, knows no holes, and never returns more than
 /// the chord's length. The error is the difference to the path of half as many segments.
-pub fn path_energy(field: &dyn MetricField, p: Point, q: Point, segments: usize) -> Length {
+#[cfg(test)]
+fn path_energy(field: &dyn MetricField, p: Point, q: Point, segments: usize) -> Length {
     let straight = chord(field, p, q);
     let coarse = relaxed_length(field, p, q, (segments / 2).max(2), CONVERGED).min(straight);
     let fine = relaxed_length(field, p, q, segments.max(4), CONVERGED).min(straight);
@@ -87,6 +94,7 @@ pub fn path_energy(field: &dyn MetricField, p: Point, q: Point, segments: usize)
 
 const NEWTON_STEPS: usize = 12;
 /// A Newton step that gains no more than this share of the energy is the last.
+#[cfg(test)]
 const CONVERGED: f64 = 1e-12;
 
 /// Length of the path from the chord whose energy is minimised until a step gains no more than the share `settled`.

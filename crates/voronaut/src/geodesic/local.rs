@@ -88,13 +88,13 @@ impl LocalMetric {
     }
 
     /// The derivative of the tensor along a vector.
-    pub fn derivative_along(&self, v: Vector) -> Tensor {
+    pub(crate) fn derivative_along(&self, v: Vector) -> Tensor {
         self.derivative[0] * v.x + self.derivative[1] * v.y
     }
 
     /// Gamma(v, v), the Christoffel symbols of the second kind applied twice to a vector: a geodesic that leaves with
     /// velocity v has the coordinate acceleration -Gamma(v, v).
-    pub fn christoffel(&self, v: Vector) -> Vector {
+    pub(crate) fn christoffel(&self, v: Vector) -> Vector {
         let along = self.derivative_along(v).apply(v);
         let gradient = Vector::new(self.derivative[0].dot(v, v), self.derivative[1].dot(v, v));
         self.tensor.inverse().apply(along - gradient * 0.5)

@@ -29,9 +29,9 @@ pub struct Fineness(u8);
 
 impl Fineness {
     /// Four modes: polynomials of degree five.
-    pub const COARSEST: Self = Self(1);
+    pub(crate) const COARSEST: Self = Self(1);
     /// Eight modes.
-    pub const MIDDLE: Self = Self(2);
+    pub(crate) const MIDDLE: Self = Self(2);
     /// Sixteen modes.
     pub const FINEST: Self = Self(STAGES.len() as u8 - 1);
 

@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-12;
 /// triangle with its sides by K area / 3 each (Legendre's theorem), so that the four points are on a circle when the
 /// two flat angles sum to pi + K area / 6, the area that of both triangles. The error has a share for what K varies.
 /// [`Margin::UNKNOWN`] where lengths make no triangle.
-pub fn margin_from_lengths(lengths: &[PathLength; 5]) -> Margin {
+pub(crate) fn margin_from_lengths(lengths: &[PathLength; 5]) -> Margin {
     let [ab, ac, bc, ad, bd] = lengths.map(|l| l.value);
     let (at_c, area_c) = opposite(ab, ac, bc);
     let (at_d, area_d) = opposite(ab, ad, bd);

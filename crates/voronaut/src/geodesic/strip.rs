@@ -16,7 +16,7 @@ const SWITCHES_PER_FACE: usize = 16;
 
 /// A locally shortest path between two vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Taut {
+pub(crate) struct Taut {
     /// Its metric length.
     pub length: f64,
     /// The edges that it crosses, in order, each by its side on the face that the path leaves, and where: the share of the
@@ -32,7 +32,7 @@ pub struct Taut {
 ///
 /// A vertex passed on one side may hide a shorter path on the other (across a hole, or behind a peak); between near vertices
 /// on a fine triangulation this is the shortest path.
-pub fn taut(topology: &Triangulation, from: VertexId, to: VertexId) -> Option<Taut> {
+pub(crate) fn taut(topology: &Triangulation, from: VertexId, to: VertexId) -> Option<Taut> {
     if from == to {
         return Some(Taut::default());
     }

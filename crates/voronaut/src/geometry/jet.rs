@@ -29,7 +29,7 @@ impl Jet3 {
     }
 
     /// Whether all derivatives vanish.
-    pub fn is_constant(&self) -> bool {
+    pub(crate) fn is_constant(&self) -> bool {
         self.gradient == Vector3::default() && self.hessian == Tensor3::default()
     }
 
@@ -46,7 +46,7 @@ impl Jet3 {
 
     /// g(f, h): g's value there, and its derivatives by the first, the second, and then by both twice (11, 12, 22).
     #[must_use]
-    pub fn chain2(self, other: Self, value: f64, first: [f64; 2], second: [f64; 3]) -> Self {
+    pub(crate) fn chain2(self, other: Self, value: f64, first: [f64; 2], second: [f64; 3]) -> Self {
         if other.is_constant() {
             return self.chain(value, [first[0], second[0]]);
         }

@@ -15,7 +15,7 @@ impl Tensor {
     /// Folding that over three or more is another thing: what is above two of them is not what is left when one is done first.
     /// `self` is positive definite; the others need not be: where they say nothing, `self` counts.
     #[must_use]
-    pub fn intersection_with_all(self, others: &[Tensor]) -> Tensor {
+    pub(crate) fn intersection_with_all(self, others: &[Tensor]) -> Tensor {
         let all: Vec<Tensor> = std::iter::once(self).chain(others.iter().copied()).collect();
         let disks = seen_from(self, &all);
         let outer: Vec<Tensor> = (0..all.len()).filter(|&i| !is_within_another(&disks, i)).map(|i| all[i]).collect();

@@ -12,10 +12,14 @@ mod tensor3;
 mod tree;
 
 pub use jet::Jet3;
-pub use point::{Aabb, Point, Readable, Vector};
-pub use predicates::{Orientation, in_circle, orientation, segment_intersection, signed_area, signed_volume};
+pub(crate) use point::Readable;
+pub use point::{Aabb, Point, Vector};
+pub(crate) use predicates::segment_intersection;
+pub use predicates::{Orientation, in_circle, orientation, signed_area, signed_volume};
 pub(crate) use quadrature::{Node, combine, radon};
 pub use space::{Aabb3, Point3, Vector3};
-pub use tensor::{Eigen, Tensor};
-pub use tensor3::{Eigen3, TangentPlane, Tensor3};
+pub use tensor::Eigen;
+pub use tensor::Tensor;
+pub use tensor3::Eigen3;
+pub use tensor3::{TangentPlane, Tensor3};
 pub(crate) use tree::BoxTree;

@@ -92,7 +92,7 @@ impl fmt::Display for Point {
 
 /// A number as messages show it: all its digits, with an exponent where plain digits would be a row of zeros.
 #[derive(Clone, Copy, Debug)]
-pub struct Readable(pub f64);
+pub(crate) struct Readable(pub f64);
 
 impl fmt::Display for Readable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -45,7 +45,7 @@ pub fn signed_volume(a: Point3, b: Point3, c: Point3, d: Point3) -> f64 {
 }
 
 /// Where the lines through a-b and c-d meet (rounded): for messages, never for decisions.
-pub fn segment_intersection(a: Point, b: Point, c: Point, d: Point) -> Point {
+pub(crate) fn segment_intersection(a: Point, b: Point, c: Point, d: Point) -> Point {
     let (u, v) = (b - a, d - c);
     let denominator = u.cross(v);
     if denominator == 0.0 {

@@ -100,7 +100,7 @@ impl Tensor {
 
     /// The symmetric tensor with the same axes and each eigenvalue mapped by `f`.
     #[must_use]
-    pub fn map_eigenvalues(self, f: impl Fn(f64) -> f64) -> Tensor {
+    pub(crate) fn map_eigenvalues(self, f: impl Fn(f64) -> f64) -> Tensor {
         let e = self.eigen();
         Tensor::from_axis(e.axis, f(e.large), f(e.small))
     }
@@ -123,7 +123,7 @@ impl Tensor {
     }
 
     /// Log-Euclidean mean: exp of the weighted sum of logarithms. Weights sum to one.
-    pub fn log_mean(weighted: impl IntoIterator<Item = (Tensor, f64)>) -> Tensor {
+    pub(crate) fn log_mean(weighted: impl IntoIterator<Item = (Tensor, f64)>) -> Tensor {
         weighted.into_iter().fold(Tensor::default(), |sum, (tensor, weight)| sum + tensor.log() * weight).exp()
     }
 

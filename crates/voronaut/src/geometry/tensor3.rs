@@ -65,13 +65,13 @@ impl Tensor3 {
     }
 
     /// u v' + v u'.
-    pub fn symmetric_product(u: Vector3, v: Vector3) -> Self {
+    pub(crate) fn symmetric_product(u: Vector3, v: Vector3) -> Self {
         let (xy, xz, yz) = (u.x * v.y + u.y * v.x, u.x * v.z + u.z * v.x, u.y * v.z + u.z * v.y);
         Self::from_disk([2.0 * u.x * v.x, xy, 2.0 * u.y * v.y, xz, yz, 2.0 * u.z * v.z])
     }
 
     /// The tensor with these eigenvalues along these axes, which are perpendicular units.
-    pub fn from_axes(axes: [Vector3; 3], values: [f64; 3]) -> Self {
+    pub(crate) fn from_axes(axes: [Vector3; 3], values: [f64; 3]) -> Self {
         axes.into_iter().zip(values).fold(Self::default(), |sum, (axis, value)| sum + Self::square(axis) * value)
     }
 
@@ -138,7 +138,7 @@ impl Tensor3 {
 
     /// The symmetric tensor with the same axes and each eigenvalue mapped by `f`.
     #[must_use]
-    pub fn map_eigenvalues(self, f: impl Fn(f64) -> f64) -> Tensor3 {
+    pub(crate) fn map_eigenvalues(self, f: impl Fn(f64) -> f64) -> Tensor3 {
         let Eigen3 { values, axes } = self.eigen();
         Tensor3::from_axes(axes, values.map(f))
     }
@@ -216,7 +216,7 @@ impl TangentPlane {
     }
 
     /// The vector of space with these coordinates in the plane.
-    pub fn lift(&self, v: Vector) -> Vector3 {
+    pub(crate) fn lift(&self, v: Vector) -> Vector3 {
         self.u * v.x + self.v * v.y
     }
 }

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 /// Where the margin is known this well and still may be zero, four seeds count as being on a circle.
-pub const RESOLUTION: f64 = 1e-9;
+pub(crate) const RESOLUTION: f64 = 1e-9;
 /// No test has more levels.
 pub const LEVELS: usize = 7;
 
@@ -95,7 +95,7 @@ pub trait InCircle: Sync {
 }
 
 /// Climbs some levels, as far as it must, without asking for lengths. Returns the best that is known then.
-pub fn climb(
+pub(crate) fn climb(
     by: &(impl InCircle + ?Sized),
     quad: &Quad,
     levels: Range<usize>,

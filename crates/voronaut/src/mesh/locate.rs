@@ -7,7 +7,7 @@ use crate::geometry::{Aabb, BoxTree, Point, Vector};
 /// The triangles of a planar mesh, ready for searches by any number of threads. Triangles may be oriented either way, overlap, or
 /// have no area.
 #[derive(Clone, Debug)]
-pub struct Locator {
+pub(crate) struct Locator {
     /// In the order of `tree`, once for each piece.
     pieces: Vec<Piece>,
     tree: BoxTree,
@@ -15,7 +15,7 @@ pub struct Locator {
 
 /// The point of a mesh that is nearest to a point: the point itself, if it is in the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Located {
+pub(crate) struct Located {
     /// A triangle that holds the nearest point, by its number from 0.
     pub triangle: u32,
     /// Barycentric coordinates there of the nearest point: none is negative, their sum is one.
@@ -46,7 +46,7 @@ impl Locator {
     ///
     /// # Errors
     /// [`Error::Domain`] where the mesh has no triangles, is not planar, not finite, or refers to vertices it does not have.
-    pub fn new(mesh: &Mesh, name: &str) -> Result<Self> {
+    pub(crate) fn new(mesh: &Mesh, name: &str) -> Result<Self> {
         Self::check(mesh, name)?;
         let corners: Vec<[Point; 3]> = mesh.triangles.iter().map(|&t| mesh.corners_of(t)).collect();
         let mut found: Vec<(Aabb, u32)> = Vec::new();
@@ -67,7 +67,7 @@ impl Locator {
     ///
     /// # Errors
     /// As for [`Locator::new`].
-    pub fn check(mesh: &Mesh, name: &str) -> Result<()> {
+    pub(crate) fn check(mesh: &Mesh, name: &str) -> Result<()> {
         if mesh.triangles.is_empty() {
             return Err(Error::domain(
                 "no triangles",
@@ -93,7 +93,7 @@ impl Locator {
     }
 
     /// The point of the mesh that is nearest to `p`; `None` where `p` is not finite.
-    pub fn locate(&self, p: Point) -> Option<Located> {
+    pub(crate) fn locate(&self, p: Point) -> Option<Located> {
         if !p.is_finite() {
             // No box is farther than another: all would be looked into.
             return None;
@@ -114,7 +114,7 @@ impl Locator {
 
     /// Puts into `found` the numbers, ascending, of all triangles that meet the triangle `corners`, and of some that only pass
     /// near it.
-    pub fn near(&self, corners: [Point; 3], found: &mut Vec<u32>) {
+    pub(crate) fn near(&self, corners: [Point; 3], found: &mut Vec<u32>) {
         found.clear();
         cut(corners, PIECES_OF_QUERY, &mut |piece| {
             self.tree.overlapping(&piece, |position| found.push(self.pieces[position].triangle));

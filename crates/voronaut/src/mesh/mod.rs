@@ -4,7 +4,7 @@
 mod locate;
 mod solution;
 
-pub use locate::{Located, Locator};
+pub(crate) use locate::{Located, Locator};
 pub use solution::{Solution, SolutionValues, Solutions, TensorOrder};
 
 use crate::error::{Error, Result};

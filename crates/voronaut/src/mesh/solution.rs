@@ -123,7 +123,7 @@ impl SolutionValues {
 
     /// Entries of the same type from their numbers, one after the other.
     #[must_use]
-    pub fn with_numbers(&self, numbers: &[f64]) -> Self {
+    pub(crate) fn with_numbers(&self, numbers: &[f64]) -> Self {
         match self {
             SolutionValues::Scalar(_) => SolutionValues::Scalar(numbers.to_vec()),
             &SolutionValues::Vector { components, .. } => {

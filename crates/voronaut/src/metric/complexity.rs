@@ -28,7 +28,7 @@ pub fn complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f
 ///
 /// # Errors
 /// As [`complexity`], for tensors and triangles that are not valid, and where the value is not finite.
-pub fn rough_complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f64> {
+pub(crate) fn rough_complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f64> {
     let Integral { total, worst, .. } = adapt(field, triangles, ROUGH_TOLERANCE, MAX_EVALUATIONS >> 4)?;
     settle(total, 0.0, worst.as_ref())
 }

@@ -55,7 +55,7 @@ impl Expression {
 
     /// The value at a point with its first and second derivatives, exact but for rounding. Where an expression jumps or
     /// has a kink (comparisons, `if`, `abs`, `min`, `max`) they are those of one side.
-    pub fn jet(&self, p: Point3) -> Jet3 {
+    pub(crate) fn jet(&self, p: Point3) -> Jet3 {
         self.run(Jet3::coordinates(p.x, p.y, p.z))
     }
 

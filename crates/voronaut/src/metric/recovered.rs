@@ -16,7 +16,7 @@ pub(super) const FLOOR: f64 = 1e-4;
 ///
 /// Outside the mesh the value is that at the nearest point.
 #[derive(Clone, Debug)]
-pub struct Recovered {
+pub(crate) struct Recovered {
     values: Vec<f64>,
     hessians: Vec<Tensor>,
     mesh: Mesh,
@@ -28,7 +28,7 @@ impl Recovered {
     ///
     /// # Errors
     /// As for [`recover_hessian`].
-    pub fn new(mesh: &Mesh, values: &[f64], recovery: Recovery) -> Result<Self> {
+    pub(crate) fn new(mesh: &Mesh, values: &[f64], recovery: Recovery) -> Result<Self> {
         let hessians = recover_hessian(mesh, values, recovery)?;
         let locator = Locator::new(mesh, "the mesh of the solution")?;
         Ok(Self { values: values.to_vec(), hessians, mesh: mesh.clone(), locator })
@@ -38,7 +38,7 @@ impl Recovered {
     ///
     /// # Errors
     /// [`Error::Metric`] where all are zero.
-    pub fn metric(&self, norm: Norm) -> Result<Sampled> {
+    pub(crate) fn metric(&self, norm: Norm) -> Result<Sampled> {
         let size = self.mean_size();
         let floor = FLOOR * size;
         if size > self.rounding() && floor > 0.0 {
@@ -47,11 +47,6 @@ impl Recovered {
         }
         let help = "its interpolation is exact on any mesh: use another metric, such as uniform";
         Err(Error::metric("the solution's second derivatives vanish everywhere", "the whole mesh", help))
-    }
-
-    /// The mesh of the solution.
-    pub fn mesh(&self) -> &Mesh {
-        &self.mesh
     }
 
     /// Second derivatives that rounding of the values alone could make up.

@@ -12,7 +12,7 @@ const STEP: f64 = 0.05;
 /// A factor leaves the shape of a tensor as it is, and Delaunay triangles in it. The turn from M to N is half the
 /// logarithm of the ratio of the eigenvalues of M^-1 N: that of Boissonnat et al.'s distortion, without change of size.
 #[derive(Clone, Copy)]
-pub struct Steadied<'a> {
+pub(crate) struct Steadied<'a> {
     /// The field, in units of the wanted edge length.
     pub field: &'a dyn MetricField,
     /// How much it may turn; positive.

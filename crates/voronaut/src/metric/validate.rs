@@ -9,7 +9,7 @@ use crate::geometry::{Point, Readable, Tensor};
 ///
 /// # Errors
 /// [`Error::Metric`].
-pub fn check_tensor(tensor: Tensor, p: Point) -> Result<()> {
+pub(crate) fn check_tensor(tensor: Tensor, p: Point) -> Result<()> {
     check_tensor_at(tensor, || p.to_string())
 }
 
@@ -17,7 +17,7 @@ pub fn check_tensor(tensor: Tensor, p: Point) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::Metric`].
-pub fn check_field(field: &dyn MetricField, mut points: impl Iterator<Item = Point>) -> Result<()> {
+pub(crate) fn check_field(field: &dyn MetricField, mut points: impl Iterator<Item = Point>) -> Result<()> {
     points.try_for_each(|p| check_tensor(field.at(p), p))
 }
 

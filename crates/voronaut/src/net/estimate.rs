@@ -12,7 +12,7 @@ const STEPS: usize = 6;
 const RESIDUE: f64 = 1e-3;
 
 /// Triangulated seeds with the metric around each, in units of about an edge.
-pub trait Sites {
+pub(crate) trait Sites {
     /// The metric field.
     fn field(&self) -> &dyn MetricField;
     /// The triangulation.
@@ -54,23 +54,23 @@ struct Around {
 }
 
 /// Power protection of a triangulation's simplices, estimated: a few dozen evaluations of the field a triangle.
-pub struct Estimate<'a, S: Sites + ?Sized>(pub &'a S);
+pub(crate) struct Estimate<'a, S: Sites + ?Sized>(pub &'a S);
 
 impl<S: Sites + ?Sized> Estimate<'_, S> {
     /// By how much simplices miss a power `asked` of all seeds near them, each as a share of it (above one where the
     /// triangle is not Delaunay), summed over interior triangles and border edges among faces.
-    pub fn shortfall(&self, faces: &[FaceId], asked: impl Fn(VertexId) -> f64) -> f64 {
+    pub(crate) fn shortfall(&self, faces: &[FaceId], asked: impl Fn(VertexId) -> f64) -> f64 {
         faces.iter().map(|&f| self.of_face(f, None, &asked)).sum()
     }
 
     /// By how much the seed's own triangles miss a power `asked`, and those others among faces that have too little of it
     /// because of this seed.
-    pub fn shortfall_of(&self, v: VertexId, faces: &[FaceId], asked: f64) -> f64 {
+    pub(crate) fn shortfall_of(&self, v: VertexId, faces: &[FaceId], asked: f64) -> f64 {
         faces.iter().map(|&f| self.of_face(f, Some(v), &|_| asked)).sum()
     }
 
     /// The faces at a seed and at its neighbours, each once, in order.
-    pub fn around(&self, v: VertexId) -> Vec<FaceId> {
+    pub(crate) fn around(&self, v: VertexId) -> Vec<FaceId> {
         let mut faces: Vec<FaceId> =
             self.neighbours(&[v]).into_iter().chain([v]).flat_map(|u| self.faces_at(u)).collect();
         faces.sort_unstable();
@@ -79,13 +79,13 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
     }
 
     /// The interior triangles and border edges, by a face that has them, that miss a power `asked`.
-    pub fn short_faces(&self, asked: f64) -> Vec<FaceId> {
+    pub(crate) fn short_faces(&self, asked: f64) -> Vec<FaceId> {
         let is_short = |&f: &FaceId| self.of_face(f, None, &|_| asked) > 0.0;
         self.0.topology().faces().filter(is_short).collect()
     }
 
     /// The circumcentre of a face, and the squared radius.
-    pub fn circle(&self, f: FaceId) -> Option<(Point, f64)> {
+    pub(crate) fn circle(&self, f: FaceId) -> Option<(Point, f64)> {
         self.of_triangle(self.0.topology().corners(f)).map(|circle| (circle.centre, circle.square))
     }
 

@@ -9,9 +9,9 @@ mod measure;
 mod on_canvas;
 mod random;
 
-pub use estimate::{Estimate, Sites};
+pub(crate) use estimate::{Estimate, Sites};
 pub use measure::Memory;
-pub use on_canvas::circles_on_canvas;
+pub(crate) use on_canvas::circles_on_canvas;
 pub use random::Random;
 
 use crate::geodesic::Paths;
@@ -94,12 +94,17 @@ impl Net {
 
     /// [`Net::measure`] of seeds of which most are where they were when the memory was written: what depends on no seed that
     /// has moved is not measured again. The memory is of one field and one domain.
-    pub fn measure_again(field: &dyn MetricField, found: &Triangles, memory: &mut Memory) -> Self {
+    pub(crate) fn measure_again(field: &dyn MetricField, found: &Triangles, memory: &mut Memory) -> Self {
         Self::measure_beside(field, found, &[], memory)
     }
 
     /// [`Net::measure_again`] where some circles are known from a canvas ([`circles_on_canvas`]).
-    pub fn measure_beside(field: &dyn MetricField, found: &Triangles, known: &[Ball<3>], memory: &mut Memory) -> Self {
+    pub(crate) fn measure_beside(
+        field: &dyn MetricField,
+        found: &Triangles,
+        known: &[Ball<3>],
+        memory: &mut Memory,
+    ) -> Self {
         let paths = Paths::default();
         let measure = measure::Measure::new(&paths, field, found);
         let of_canvas: HashSet<[u32; 3]> = known.iter().map(|ball| turned(ball.corners)).collect();
@@ -119,7 +124,12 @@ impl Net {
     }
 
     /// The circles of some of the triangles, and of the border edges, and nothing else: neither epsilon nor mu.
-    pub fn measure_some(field: &dyn MetricField, found: &Triangles, wanted: &[[u32; 3]], memory: &mut Memory) -> Self {
+    pub(crate) fn measure_some(
+        field: &dyn MetricField,
+        found: &Triangles,
+        wanted: &[[u32; 3]],
+        memory: &mut Memory,
+    ) -> Self {
         let paths = Paths::default();
         let measure = measure::Measure::new(&paths, field, found);
         let (triangles, unknown) = measure.triangles(wanted, memory);
@@ -144,7 +154,7 @@ impl Net {
     }
 
     /// The power protection of the edges at the border; infinite where there are none.
-    pub fn border_delta(&self) -> f64 {
+    pub(crate) fn border_delta(&self) -> f64 {
         self.border.iter().map(Ball::protection).fold(f64::INFINITY, f64::min)
     }
 

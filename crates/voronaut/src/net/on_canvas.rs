@@ -13,7 +13,11 @@ use crate::metric::MetricField;
 ///
 /// # Errors
 /// A seed is outside the canvas's domain.
-pub fn circles_on_canvas(canvas: &Canvas, field: &dyn MetricField, seeds: &[(u32, Point)]) -> Result<Vec<Ball<3>>> {
+pub(crate) fn circles_on_canvas(
+    canvas: &Canvas,
+    field: &dyn MetricField,
+    seeds: &[(u32, Point)],
+) -> Result<Vec<Ball<3>>> {
     let places: Vec<Point> = seeds.iter().map(|seed| seed.1).collect();
     let diagram = Diagram::new(canvas, field, &places)?;
     let nerve = diagram.sharp_nerve();

@@ -11,7 +11,7 @@ pub struct Cell {
 
 /// Moments of a cell about its seed, in the tangent plane there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moments {
+pub(crate) struct Moments {
     /// Area.
     pub mass: f64,
     /// The integral of the position vector.
@@ -22,26 +22,26 @@ pub struct Moments {
 
 impl Cell {
     /// Starts again with a square of this half-width.
-    pub fn reset(&mut self, half_width: f64) {
+    pub(crate) fn reset(&mut self, half_width: f64) {
         let w = half_width;
         self.corners.clear();
         self.corners.extend([(-w, -w), (w, -w), (w, w), (-w, w)].map(|(x, y)| Vector::new(x, y)));
     }
 
     /// Keeps what lies nearer to the origin than to another seed.
-    pub fn cut_by_bisector(&mut self, seed: Vector) {
+    pub(crate) fn cut_by_bisector(&mut self, seed: Vector) {
         self.cut(seed, 0.5 * seed.dot(seed));
     }
 
     /// Keeps what lies on the origin's side of the line through two points.
-    pub fn cut_by_line(&mut self, a: Vector, b: Vector) {
+    pub(crate) fn cut_by_line(&mut self, a: Vector, b: Vector) {
         let normal = (a - b).perpendicular();
         let offset = normal.dot(a);
         if offset > 0.0 { self.cut(normal, offset) } else { self.cut(-normal, -offset) }
     }
 
     /// Keeps what lies to the left of a vector from the origin.
-    pub fn keep_left_of(&mut self, direction: Vector) {
+    pub(crate) fn keep_left_of(&mut self, direction: Vector) {
         self.cut(-direction.perpendicular(), 0.0);
     }
 
@@ -67,7 +67,7 @@ impl Cell {
     }
 
     /// The cell's moments about the origin.
-    pub fn moments(&self) -> Moments {
+    pub(crate) fn moments(&self) -> Moments {
         let mut moments = Moments::default();
         for (i, &p) in self.corners.iter().enumerate() {
             let q = self.corners[(i + 1) % self.corners.len()];
@@ -82,7 +82,8 @@ impl Cell {
 
 impl Moments {
     /// The centroid; the origin where the cell has no area.
-    pub fn centroid(&self) -> Vector {
+    #[cfg(test)]
+    fn centroid(&self) -> Vector {
         let mean = self.first * (1.0 / self.mass);
         if self.mass > 0.0 && mean.norm().is_finite() { mean } else { Vector::default() }
     }

@@ -20,7 +20,7 @@ pub enum Cells<'a> {
 }
 
 /// Where the moments of the cells of a triangulation's seeds come from.
-pub trait CellsOf<M> {
+pub(crate) trait CellsOf<M> {
     /// The moments of every seed's cell about the seed, in order of the vertices' ids; tangent vectors are in the
     /// orthonormal frame of the Cholesky factor of the tensor there.
     ///

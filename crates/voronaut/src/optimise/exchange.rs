@@ -12,7 +12,7 @@ const SHORT: f64 = 0.66;
 /// Removes free seeds at edges that are too short, shortest first and no two of them neighbours, at most `most`; then
 /// inserts where circumradii are largest until there are as many vertices as `fill` says again. Returns how many seeds
 /// were removed.
-pub fn exchange(dual: &mut Dual, fill: Fill, most: usize) -> usize {
+pub(crate) fn exchange(dual: &mut Dual, fill: Fill, most: usize) -> usize {
     let removed = remove_crowded(dual, most, SHORT);
     let excess = dual.vertex_count().saturating_sub(fill.count());
     let removed = removed + if excess > 0 { remove_crowded(dual, excess, f64::INFINITY) } else { 0 };
@@ -54,7 +54,7 @@ fn nearest_two(dual: &Dual, v: VertexId) -> f64 {
 
 /// Puts a seed at the middle of each edge whose flip the metric certainly wants and the plane forbids, worst first and
 /// at most `most` of them. Returns how many.
-pub fn meet_blocked_flips(dual: &mut Dual, most: usize) -> usize {
+pub(crate) fn meet_blocked_flips(dual: &mut Dual, most: usize) -> usize {
     let mut blocked = dual.blocked_flips(Effort::Local);
     blocked.retain(|(_, margin)| margin.is_certain());
     blocked.sort_by(|a, b| a.1.value.total_cmp(&b.1.value).then(a.0.cmp(&b.0)));

@@ -62,7 +62,7 @@ impl Relaxed {
 ///
 /// # Errors
 /// The metric is found invalid at a seed.
-pub fn relax<M: Moving>(
+pub(crate) fn relax<M: Moving>(
     dual: &mut M,
     cells: &impl CellsOf<M>,
     steps: usize,

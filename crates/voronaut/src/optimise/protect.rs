@@ -85,7 +85,7 @@ pub struct Protected {
 ///
 /// # Errors
 /// The metric is found invalid at a seed.
-pub fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<Protected> {
+pub(crate) fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<Protected> {
     dual.reorder();
     let mut mender = Mender::new(dual, share);
     let (mut best, mut since) = (usize::MAX, 0);

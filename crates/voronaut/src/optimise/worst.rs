@@ -22,7 +22,7 @@ const MOVES: usize = 6;
 /// how many seeds moved.
 ///
 /// Relaxation equalises cells, of which a triangle beside the tip of a cape knows little. The energy may rise a little.
-pub fn mend_worst(dual: &mut impl Mending, most: usize) -> usize {
+pub(crate) fn mend_worst(dual: &mut impl Mending, most: usize) -> usize {
     let mut found: Vec<(f64, [VertexId; 3])> = Vec::new();
     for face in dual.topology().faces() {
         let corners = dual.topology().corners(face);

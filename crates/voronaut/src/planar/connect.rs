@@ -40,7 +40,7 @@ impl Planar {
 
     /// The edges that the straight line between two vertices crosses, from the first vertex on. `None` where they are
     /// joined already, and where the line passes through another vertex or leaves the triangulation.
-    pub fn edges_between(&self, a: VertexId, b: VertexId) -> Option<Vec<HalfEdge>> {
+    pub(crate) fn edges_between(&self, a: VertexId, b: VertexId) -> Option<Vec<HalfEdge>> {
         let (p, q) = (self.position(a), self.position(b));
         let side = |v: VertexId| orientation(p, q, self.position(v));
         let is_ahead = |h: &HalfEdge| {

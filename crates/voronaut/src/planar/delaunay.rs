@@ -42,7 +42,7 @@ pub fn delaunay(points: &[Point]) -> Result<Planar, Duplicate> {
 
 impl Planar {
     /// Lawson's flips in the Euclidean plane from the edges that were queued outwards; constrained edges stay. What was constrained Delaunay but for these edges is so again.
-    pub fn legalise(&mut self, lawson: &mut Lawson) {
+    pub(crate) fn legalise(&mut self, lawson: &mut Lawson) {
         lawson.pass(self, Limit::None);
     }
 }

@@ -8,9 +8,10 @@ mod operations;
 mod order;
 
 pub use constrain::Crossing;
-pub use delaunay::{Duplicate, delaunay};
+pub use delaunay::Duplicate;
+pub use delaunay::delaunay;
 pub use locate::Location;
-pub use order::hilbert_order;
+pub(crate) use order::hilbert_order;
 
 use crate::geometry::{Orientation, Point, orientation, signed_area};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
@@ -42,7 +43,7 @@ impl Planar {
 
     /// The face at a vertex that the straight way to a point enters (one of two where that is along an edge); `None` where
     /// it leaves the triangulation.
-    pub fn face_towards(&self, v: VertexId, p: Point) -> Option<FaceId> {
+    pub(crate) fn face_towards(&self, v: VertexId, p: Point) -> Option<FaceId> {
         let at = self.position(v);
         let is_left = |a: VertexId, b: Point| orientation(at, self.position(a), b) != Orientation::Right;
         let holds = |h: &HalfEdge| {
@@ -68,7 +69,7 @@ impl Planar {
 
     /// The positions of the two neighbours along the constraint that a vertex is in the middle of; `None` where there are
     /// none.
-    pub fn neighbours_on_segment(&self, v: VertexId) -> Option<[Point; 2]> {
+    pub(crate) fn neighbours_on_segment(&self, v: VertexId) -> Option<[Point; 2]> {
         let topology = &self.topology;
         let mut ends = topology.star(v).flat_map(|h| {
             let ahead = topology.is_fixed(h).then(|| topology.target(h));

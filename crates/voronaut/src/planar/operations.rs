@@ -6,7 +6,7 @@ use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 impl Planar {
     /// Puts a vertex strictly inside a face. `None` if rounding put the point on or beyond the face's edges.
-    pub fn insert_in_face(&mut self, f: FaceId, p: Point) -> Option<VertexId> {
+    pub(crate) fn insert_in_face(&mut self, f: FaceId, p: Point) -> Option<VertexId> {
         let [a, b, c] = self.triangle(f);
         let inside = [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| is_left(u, v, p));
         inside.then(|| {
@@ -18,7 +18,7 @@ impl Planar {
 
     /// Puts a vertex on an edge (or where rounding put it, next to the edge). `None` if one of the new triangles would
     /// not be counter-clockwise. See [`crate::triangulation::Triangulation::split_edge`] for the half-edges.
-    pub fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<(VertexId, HalfEdge)> {
+    pub(crate) fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<(VertexId, HalfEdge)> {
         let fits = |side: HalfEdge| {
             let [a, b] = self.ends(side);
             let c = self.position(self.topology.apex(side));
@@ -31,7 +31,7 @@ impl Planar {
     }
 
     /// Moves a vertex if all its faces stay counter-clockwise; says whether it did.
-    pub fn move_vertex(&mut self, v: VertexId, to: Point) -> bool {
+    pub(crate) fn move_vertex(&mut self, v: VertexId, to: Point) -> bool {
         let topology = &self.topology;
         let fits = topology.star(v).all(|h| {
             let a = self.position(topology.target(h));
@@ -46,7 +46,7 @@ impl Planar {
 
     /// Removes an interior vertex that no constraint touches: flips its edges away until three are left. Says whether
     /// it could; where it could not, the vertex stays, with fewer edges.
-    pub fn remove_vertex(&mut self, v: VertexId) -> bool {
+    pub(crate) fn remove_vertex(&mut self, v: VertexId) -> bool {
         if self.topology.is_border_vertex(v) || self.topology.star(v).any(|h| self.topology.is_fixed(h)) {
             return false;
         }

@@ -7,7 +7,7 @@ use crate::triangulation::{Constraint, HalfEdge, Triangulation, VertexId};
 impl Planar {
     /// The same triangulation with vertices and faces numbered along a Hilbert curve, without dead slots or lengths;
     /// and for each new vertex its old id.
-    pub fn reordered(&self) -> (Planar, Vec<VertexId>) {
+    pub(crate) fn reordered(&self) -> (Planar, Vec<VertexId>) {
         let living: Vec<VertexId> = self.topology.vertices().collect();
         let points: Vec<Point> = living.iter().map(|&v| self.position(v)).collect();
         let old: Vec<VertexId> = hilbert_order(&points).into_iter().map(|i| living[i as usize]).collect();
@@ -31,7 +31,7 @@ impl Planar {
 }
 
 /// Indices of the points along a Hilbert curve on a 65,536 x 65,536 grid: neighbours in the order are near in the plane.
-pub fn hilbert_order(points: &[Point]) -> Vec<u32> {
+pub(crate) fn hilbert_order(points: &[Point]) -> Vec<u32> {
     let Some(bounds) = Aabb::of(points.iter().copied()) else { return Vec::new() };
     let extent = bounds.extent();
     let scale = 65_535.0 / extent.x.max(extent.y).max(f64::MIN_POSITIVE);

@@ -7,23 +7,14 @@ use super::self_intersections::{Pair, pairs};
 use super::validity::split_vertices;
 use crate::mesh::Mesh;
 
-/// The triangles of a surface's mesh that are flat, have an edge or a vertex that is not manifold, or meet another one; in order.
-/// [`validity`](super::validity()) says what is wrong with the mesh; this says where it has to be made anew.
-pub fn faulty_triangles(mesh: &Mesh) -> Vec<u32> {
-    faulty(mesh, None)
-}
-
-/// As [`faulty_triangles`], of the mesh of a surface, which may meet itself where that does
-/// ([`validity_on`](super::validity_on())).
-pub fn faulty_triangles_on(mesh: &Mesh, surface: &Meetings) -> Vec<u32> {
-    faulty(mesh, Some(surface))
-}
-
-fn faulty(mesh: &Mesh, surface: Option<&Meetings>) -> Vec<u32> {
+/// The triangles of a surface's mesh that are flat, have an edge or a vertex that is not manifold, or meet another one where the
+/// surface does not meet itself; in order. [`validity_on`](super::validity_on()) says what is wrong with the mesh; this says where
+/// it has to be made anew.
+pub(crate) fn faulty_triangles(mesh: &Mesh, surface: &Meetings) -> Vec<u32> {
     let flat = |t: &u32| is_flat(mesh.positions_of(mesh.triangles[*t as usize]));
     let mut faulty: Vec<u32> = (0..mesh.triangles.len() as u32).filter(flat).collect();
     if faulty.is_empty() {
-        let of_ours = |pair: &Pair| !surface.is_some_and(|surface| pair.is_excused(mesh, surface));
+        let of_ours = |pair: &Pair| !pair.is_excused(mesh, surface);
         faulty
             .extend(pairs(mesh).iter().filter(|pair| of_ours(pair)).flat_map(|pair| pair.triangles).map(|t| t as u32));
     }

@@ -18,7 +18,7 @@ mod start;
 pub use in_field::InField;
 pub use judge::Judge;
 pub use memory::Memory;
-pub use on_surface::OnSurface;
+pub(crate) use on_surface::OnSurface;
 pub use start::Start;
 
 use crate::geodesic::{Margin, PathLength};
@@ -63,7 +63,7 @@ pub struct Edge {
 
 impl Edge {
     /// Whether there was a test, and it could not tell.
-    pub fn is_uncertain(&self) -> bool {
+    pub(crate) fn is_uncertain(&self) -> bool {
         self.margin.is_some_and(|margin| !margin.is_certain())
     }
 }
@@ -134,7 +134,7 @@ impl<'a> Rdt<InField<'a>> {
 
 impl<J: Judge> Rdt<J> {
     /// The triangulation of the seeds, so many, that a judge knows, from a start.
-    pub fn judged(judge: J, seeds: usize, start: &Start) -> Self {
+    pub(crate) fn judged(judge: J, seeds: usize, start: &Start) -> Self {
         let mut counters = RdtCounters::default();
         let triangles = start.triangulated(&judge, &mut counters);
         Self::settled(judge, seeds, start, &triangles, counters, Memory::default())
@@ -142,7 +142,7 @@ impl<J: Judge> Rdt<J> {
 
     /// The triangulation of the seeds, so many, that a judge knows, from one that may have doubled edges: vertices are seeds,
     /// those behind them copies of the seeds in the list.
-    pub fn from_glued(judge: J, seeds: usize, topology: Triangulation, copies: &[u32]) -> Self {
+    pub(crate) fn from_glued(judge: J, seeds: usize, topology: Triangulation, copies: &[u32]) -> Self {
         let seed_of = (0..seeds as u32).chain(copies.iter().copied()).collect();
         Self::of_topology(judge, seeds, topology, seed_of, RdtCounters::default(), Memory::default())
     }
@@ -196,7 +196,7 @@ impl<J: Judge> Rdt<J> {
     }
 
     /// The triangles of the start that it could not hold beside the others, smallest seed first.
-    pub fn dropped(&self) -> &[[u32; 3]] {
+    pub(crate) fn dropped(&self) -> &[[u32; 3]] {
         &self.dropped
     }
 
@@ -228,13 +228,8 @@ impl<J: Judge> Rdt<J> {
         tested.min_by(|a, b| value(a).total_cmp(&value(b)))
     }
 
-    /// What knows the seeds.
-    pub fn judge(&self) -> &J {
-        &self.judge
-    }
-
     /// The in-circle test of any four seeds around an edge by the lengths known, or found for it.
-    pub fn margin_of(&self, quad: &Quad) -> Margin {
+    pub(crate) fn margin_of(&self, quad: &Quad) -> Margin {
         let level = (0..LEVELS).rev().find(|&level| self.judge.is_by_lengths(level)).unwrap_or(0);
         let known = |&(i, j): &(u32, u32)| {
             let found = self.memory.tests.lengths.get(&(i, j)).copied().or_else(|| self.judge.solve(i, j, level));
@@ -255,7 +250,7 @@ impl<J: Judge> Rdt<J> {
     }
 
     /// What was found, for [`Rdt::again`].
-    pub fn into_memory(self) -> Memory {
+    pub(crate) fn into_memory(self) -> Memory {
         self.memory
     }
 

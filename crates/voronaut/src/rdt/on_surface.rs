@@ -21,7 +21,7 @@ const OF_EQUATION: f64 = 1e-6;
 const DOUBT: f64 = 0.5;
 
 /// Seeds of a diagram on a surface. Lengths between them are those of geodesics pulled taut on the canvas, and curvatures the mean over their cells.
-pub struct OnSurface<'a> {
+pub(crate) struct OnSurface<'a> {
     canvas: &'a Canvas<Draped<'a>>,
     seeds: Vec<VertexId>,
     planes: Vec<TangentPlane>,
@@ -31,16 +31,11 @@ pub struct OnSurface<'a> {
 
 impl<'a> OnSurface<'a> {
     /// The seeds of a diagram, none of which was removed.
-    pub fn new(diagram: &SurfaceDiagram<'a>) -> Self {
+    pub(crate) fn new(diagram: &SurfaceDiagram<'a>) -> Self {
         let canvas = diagram.canvas();
         let seeds: Vec<VertexId> = (0..diagram.colours() as u32).filter_map(|colour| diagram.seed(colour)).collect();
         let planes = seeds.par_iter().map(|&v| canvas.draped().plane(v)).collect();
         Self { canvas, planes, curvature: curvatures(diagram, seeds.len()), seeds }
-    }
-
-    /// The canvas vertices that are the seeds.
-    pub fn seeds(&self) -> &[VertexId] {
-        &self.seeds
     }
 
     fn position(&self, i: u32) -> Point3 {

@@ -8,7 +8,7 @@ use crate::metric::{MetricField, smoothed};
 use std::borrow::Cow;
 
 /// Vertices of the background on which a metric is smoothed or graded that has none of its own.
-pub const BACKGROUND_VERTICES: usize = 40_000;
+pub(crate) const BACKGROUND_VERTICES: usize = 40_000;
 
 /// A mesh to sample a field on: its own, or a triangulation of the domain with [`BACKGROUND_VERTICES`] (and all of the domain's
 /// own) that is even in the metric.

@@ -341,7 +341,7 @@ impl Pass<'_> {
         };
         let is_wrong = |f: FaceId| self.dual.is_folded(f) || f.half_edges().into_iter().any(strays);
         let wrong = (0..).zip(topology.faces()).filter(|&(_, f)| is_wrong(f)).map(|(i, _)| i);
-        let faulty: BTreeSet<u32> = quality::faulty_triangles_on(mesh, meetings).into_iter().chain(wrong).collect();
+        let faulty: BTreeSet<u32> = quality::faulty_triangles(mesh, meetings).into_iter().chain(wrong).collect();
         faulty.into_iter().collect()
     }
 
@@ -350,7 +350,7 @@ impl Pass<'_> {
     /// # Errors
     /// [`Error::Mesh`] with the first fault.
     pub(super) fn demand(&self, mesh: &Mesh, meetings: &Meetings) -> Result<()> {
-        let help = "ask for more `vertices`; please report this with the input";
+        let help = "ask for more vertices (`vertices`); please report this with the input";
         let fault = |what: &str, place: String| Err(Error::Mesh { what: what.into(), place, help: help.into() });
         let found = quality::validity_on(mesh, meetings);
         if let Some(found) = found.first_fault {

@@ -14,7 +14,7 @@ const SAGITTA: f64 = 8.0;
 /// the curve's own segment, for that is the curve: there is nothing between its ends to be close to. A segment that does not bend asks
 /// for about its length, for it will be an edge, or more than one. Curves are simplified by the same distance first, so that what is
 /// smaller is no bend; a vertex that turns by more than `ar` (degrees) is a corner and none either. Required segments ask for nothing.
-pub struct CurveSizes {
+pub(crate) struct CurveSizes {
     tree: RTree<SizedSegment>,
     hausd: f64,
 }
@@ -28,7 +28,7 @@ type SizedSegment = GeomWithData<Line<[f64; 2]>, f64>;
 
 impl CurveSizes {
     /// Measures the curves.
-    pub fn new(domain: &Domain, hausd: f64, ar: f64) -> Self {
+    pub(crate) fn new(domain: &Domain, hausd: f64, ar: f64) -> Self {
         let extent = domain.bounds().extent();
         let long = extent.x.max(extent.y);
         let coarse = simplify(domain, &move |_: Point| Tensor::isotropic(long), hausd);
@@ -42,7 +42,7 @@ impl CurveSizes {
 
     /// The size of the segments within `hausd` of a point, which are at most two as a rule, in the (geometric) mean, and their
     /// direction (of length one); `None` where there is none.
-    pub fn at(&self, p: Point) -> Option<(f64, Vector)> {
+    pub(crate) fn at(&self, p: Point) -> Option<(f64, Vector)> {
         let reach = (self.hausd * self.hausd).max(f64::MIN_POSITIVE);
         let near: Vec<&SizedSegment> = self.tree.locate_within_distance([p.x, p.y], reach).collect();
         let first = direction(near.first()?);

@@ -16,11 +16,11 @@ const LEAST_HALVINGS: u32 = 2;
 const LEAST_OF_LOOP: usize = 3;
 
 /// A density of seeds on a curve: all of its vertices.
-pub const ALL_VERTICES: usize = usize::MAX;
+pub(crate) const ALL_VERTICES: usize = usize::MAX;
 
 /// A surface's feature curves with their metric lengths. Where the metric differs on the two sides of a crease, that counts in
 /// which it is longer.
-pub struct MeasuredCurves<'a> {
+pub(crate) struct MeasuredCurves<'a> {
     input: &'a Input,
     curves: Vec<MeasuredCurve>,
 }
@@ -43,7 +43,7 @@ struct Piece {
 
 /// A seed on a feature.
 #[derive(Clone, Debug)]
-pub struct FeatureSeed {
+pub(crate) struct FeatureSeed {
     /// Where it is on each side of the feature: one place per patch there, or several where a patch meets itself. All have one
     /// position.
     pub places: Vec<Place>,
@@ -53,7 +53,7 @@ pub struct FeatureSeed {
 
 /// Seeds on all features, and the edges between them.
 #[derive(Clone, Debug, Default)]
-pub struct FeatureSeeds {
+pub(crate) struct FeatureSeeds {
     /// The seeds.
     pub seeds: Vec<FeatureSeed>,
     /// The edges that the mesh shall have, by their seeds, and what they are.
@@ -64,7 +64,7 @@ pub struct FeatureSeeds {
 
 /// An edge that the mesh shall have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FeatureEdge {
+pub(crate) struct FeatureEdge {
     /// Its seeds.
     pub ends: [u32; 2],
     /// What it is.
@@ -75,7 +75,7 @@ pub struct FeatureEdge {
 
 impl FeatureSeeds {
     /// All places, those of each seed one after the other, and for each the seed that it belongs to.
-    pub fn flattened(&self) -> (Vec<Place>, Vec<u32>) {
+    pub(crate) fn flattened(&self) -> (Vec<Place>, Vec<u32>) {
         let each = (0..).zip(&self.seeds).flat_map(|(i, seed)| seed.places.iter().map(move |place| (*place, i)));
         each.unzip()
     }
@@ -83,7 +83,7 @@ impl FeatureSeeds {
 
 impl<'a> MeasuredCurves<'a> {
     /// Measures the curves of a surface's seams.
-    pub fn new(input: &'a Input, metric: &dyn SurfaceMetric) -> Self {
+    pub(crate) fn new(input: &'a Input, metric: &dyn SurfaceMetric) -> Self {
         let curves = input.seams.features.curves.par_iter().map(|curve| measured(input, metric, curve)).collect();
         Self { input, curves }
     }
@@ -94,7 +94,7 @@ impl<'a> MeasuredCurves<'a> {
 
     /// How many vertices curves add to those that the areas of the patches ask for, in terms of the root of the factor on the metric:
     /// half the border's length, and of creases what the metrics of their two sides differ by.
-    pub fn extra(&self) -> f64 {
+    pub(crate) fn extra(&self) -> f64 {
         let of = |(i, curve): (usize, &MeasuredCurve)| self.length(i) - 0.5 * (curve.sides[0] + curve.sides[1]);
         self.curves.iter().enumerate().map(of).sum()
     }
@@ -103,7 +103,7 @@ impl<'a> MeasuredCurves<'a> {
     /// farther than `hausd` (Euclidean) from the curve, and where fewer would make two edges of the mesh one. Of a required curve
     /// all vertices are seeds. `density` says how many times as many edges each curve shall have; 1 if it says nothing; with
     /// [`ALL_VERTICES`] all vertices are seeds.
-    pub fn sampled(&self, spacing: f64, hausd: Option<f64>, density: &[usize]) -> FeatureSeeds {
+    pub(crate) fn sampled(&self, spacing: f64, hausd: Option<f64>, density: &[usize]) -> FeatureSeeds {
         let features = &self.input.seams.features;
         let mut found = FeatureSeeds::default();
         let mut at: BTreeMap<VertexId, u32> = BTreeMap::new();

@@ -30,7 +30,7 @@ pub struct Seeded<'a> {
 /// # Errors
 /// [`crate::Error::Unsupported`] of a method that drives no diagrams; [`crate::Error::Domain`] where so many rounds of seeds make
 /// no triangulation.
-pub fn seed_surface<'a>(
+pub(crate) fn seed_surface<'a>(
     canvas: &'a Canvas<Draped<'a>>,
     given: &[VertexId],
     count: usize,
@@ -70,7 +70,7 @@ pub fn triangulated(diagram: SurfaceDiagram) -> Result<Seeded> {
 ///
 /// # Errors
 /// As for [`seed_surface`].
-pub fn triangulated_upright(mut diagram: SurfaceDiagram) -> Result<Seeded> {
+pub(crate) fn triangulated_upright(mut diagram: SurfaceDiagram) -> Result<Seeded> {
     let before = diagram.colours();
     for round in 0..ROUNDS {
         let (triangles, left) = contracted(&diagram);
@@ -88,7 +88,7 @@ pub fn triangulated_upright(mut diagram: SurfaceDiagram) -> Result<Seeded> {
     let (_, left) = contracted(&diagram);
     let place =
         left.first().map_or_else(|| "the surface".to_owned(), |&v| diagram.canvas().draped().position(v).to_string());
-    let help = "ask for more `vertices`, or a finer canvas (`canvas_size`)";
+    let help = "ask for more vertices (`vertices`), or a finer canvas (`canvas_size`)";
     Err(Error::domain("too few vertices for a mesh of the surface's topology", place, help))
 }
 

@@ -80,7 +80,7 @@ impl Plan {
 
     /// The largest scale for which no more than `count` vertices are expected; where the corners alone are more, the
     /// scale at which the metric asks for no vertex beside them.
-    pub fn scale_for(&self, count: f64) -> f64 {
+    pub(crate) fn scale_for(&self, count: f64) -> f64 {
         let mut low = count * UNIT_TRIANGLE / self.complexity;
         while self.expected_vertices(low) > count {
             if self.expected_vertices(low) <= self.corners as f64 {
@@ -142,6 +142,7 @@ pub fn demand_memory(vertices: f64, canvas: f64, limit: u64) -> Result<()> {
     };
     let work = format!("about {vertices:.3e} vertices{and_canvas}");
     let what = format!("{work} are estimated to need {needed} of memory; the limit is {limit}");
-    let help = format!("ask for fewer `vertices`{coarser}, a coarser metric (`h_min`), or raise `memory_limit`");
+    let help =
+        format!("ask for fewer vertices (`vertices`){coarser}, a coarser metric (`h_min`), or raise `memory_limit`");
     Err(Error::Limit { what, help })
 }

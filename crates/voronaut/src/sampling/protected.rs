@@ -19,7 +19,7 @@ const RESERVE: f64 = 0.01;
 
 /// What is asked of places for seeds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Picking {
+pub(crate) struct Picking {
     /// The power protection that simplices shall have, as a share of the circumradius of the worst of them.
     pub protection: f64,
     /// The radius of the picking region, as a share of the circumradius.
@@ -28,7 +28,7 @@ pub struct Picking {
 
 /// How refinement went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Picked {
+pub(crate) struct Picked {
     /// Seeds for size.
     pub refined: Refined,
     /// Seeds for simplices that lacked protection.
@@ -42,7 +42,7 @@ pub struct Picked {
 /// [`refine`](super::refine) with places picked. Most seeds go by size, where the circumradius is largest; then come seeds
 /// for simplices that lack protection, largest first, as far as valid places for them exist; the rest goes by size again.
 /// It ends where [`refine`](super::refine) does. Deterministic.
-pub fn refine_protected(dual: &mut Dual, fill: Fill, picking: Picking, progress: &dyn Progress) -> Picked {
+pub(crate) fn refine_protected(dual: &mut Dual, fill: Fill, picking: Picking, progress: &dyn Progress) -> Picked {
     let mut picker = Picker { picking, random: Random::new(fill.count() as u64), picked: Picked::default() };
     let by_size = (fill.count() as f64 * (1.0 - RESERVE)) as usize;
     let first = match fill {

@@ -34,7 +34,7 @@ impl MetricArc {
     }
 
     /// The parameter at which a share (0..=1) of the metric length is behind.
-    pub fn parameter(&self, share: f64) -> f64 {
+    pub(crate) fn parameter(&self, share: f64) -> f64 {
         let target = share * self.length();
         let i = self.breaks.partition_point(|&(_, l)| l < target).clamp(1, self.breaks.len() - 1);
         let ((t0, l0), (t1, l1)) = (self.breaks[i - 1], self.breaks[i]);

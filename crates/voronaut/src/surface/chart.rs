@@ -11,7 +11,7 @@ use crate::metric::MetricField;
 ///
 /// It is good as far as the surface does not turn away: where its normal has a lesser cosine with the chart's than [`STEEPEST`], it
 /// counts as so steep, so that the field is a metric everywhere (at the tip of a spike, in a fold). A coordinate is lifted to the closest place, not straight up: they differ by third order in its size.
-pub struct Chart<'a> {
+pub(crate) struct Chart<'a> {
     input: &'a Input,
     metric: &'a dyn SurfaceMetric,
     at: Place,
@@ -19,31 +19,31 @@ pub struct Chart<'a> {
 }
 
 /// The least cosine of the angle between the normals of a chart and of the surface in it.
-pub const STEEPEST: f64 = 0.2;
+pub(crate) const STEEPEST: f64 = 0.2;
 
 impl<'a> Chart<'a> {
     /// The chart at a place, along a unit vector.
-    pub fn new(input: &'a Input, metric: &'a dyn SurfaceMetric, at: Place, normal: Vector3) -> Self {
+    pub(crate) fn new(input: &'a Input, metric: &'a dyn SurfaceMetric, at: Place, normal: Vector3) -> Self {
         Self::in_plane(input, metric, at, TangentPlane::new(normal))
     }
 
     /// The chart at a place in the coordinates of a plane.
-    pub fn in_plane(input: &'a Input, metric: &'a dyn SurfaceMetric, at: Place, plane: TangentPlane) -> Self {
+    pub(crate) fn in_plane(input: &'a Input, metric: &'a dyn SurfaceMetric, at: Place, plane: TangentPlane) -> Self {
         Self { input, metric, at, plane }
     }
 
     /// The coordinates of a point.
-    pub fn flatten(&self, p: Point3) -> Point {
+    pub(crate) fn flatten(&self, p: Point3) -> Point {
         Point::default() + self.plane.flatten(p - self.at.position)
     }
 
     /// The place with these coordinates; `None` where the surface cannot be reached.
-    pub fn place(&self, u: Point) -> Option<Place> {
+    pub(crate) fn place(&self, u: Point) -> Option<Place> {
         self.input.lift(&self.at, self.at.position + self.plane.lift(u - Point::default()))
     }
 
     /// The tensor of a place in the coordinates of the chart.
-    pub fn tensor(&self, place: &Place) -> Tensor {
+    pub(crate) fn tensor(&self, place: &Place) -> Tensor {
         let upright = place.normal.dot(self.plane.normal).max(STEEPEST);
         // The tangents of the surface over the two axes.
         let tangent = |axis: Vector3| axis - self.plane.normal * (axis.dot(place.normal) / upright);

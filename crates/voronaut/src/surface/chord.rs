@@ -4,7 +4,7 @@ use super::{Input, Place};
 use crate::geometry::{Tensor3, Vector3};
 
 /// A chord of the surface, and what lies over it.
-pub struct Chord {
+pub(crate) struct Chord {
     /// The direction of the surface over the middle.
     pub along: Vector3,
     /// The direction across the chord that the surface bulges in, as long as the chord.
@@ -18,7 +18,7 @@ pub struct Chord {
 impl Chord {
     /// The metric length of the way over the chord by Simpson's rule, with the mean of two tensors in the middle: on an
     /// equation's surface along the cubic that the tangent planes at both ends make, of fourth order in the chord's length.
-    pub fn simpson(&self, middle: [Tensor3; 2]) -> f64 {
+    pub(crate) fn simpson(&self, middle: [Tensor3; 2]) -> f64 {
         let [m, n] = middle.map(|tensor| tensor.length(self.along));
         (self.at[0] + 2.0 * (m + n) + self.at[1]) / 6.0
     }
@@ -26,7 +26,7 @@ impl Chord {
 
 impl Input {
     /// The chord between two different places, with the metric there; on a surface of triangles it is the way itself.
-    pub fn chord(&self, [p, q]: [&Place; 2], [m, n]: [Tensor3; 2]) -> Chord {
+    pub(crate) fn chord(&self, [p, q]: [&Place; 2], [m, n]: [Tensor3; 2]) -> Chord {
         let e = q.position - p.position;
         let (up, [slope_p, slope_q]) = self.slopes(p, q, e);
         let at = [m.length(e + up * slope_p), n.length(e + up * slope_q)];

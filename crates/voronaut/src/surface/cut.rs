@@ -66,17 +66,17 @@ impl Seams {
     }
 
     /// How many vertices there were before.
-    pub fn vertices_before(&self) -> usize {
+    pub(crate) fn vertices_before(&self) -> usize {
         self.copies.len()
     }
 
     /// The numbers that all vertices had before.
-    pub fn originals(&self) -> Vec<u32> {
+    pub(crate) fn originals(&self) -> Vec<u32> {
         self.originals.iter().map(|v| v.0).collect()
     }
 
     /// The number that a vertex had before.
-    pub fn original(&self, v: VertexId) -> VertexId {
+    pub(crate) fn original(&self, v: VertexId) -> VertexId {
         self.originals[v.index()]
     }
 }

@@ -101,7 +101,7 @@ pub(super) fn project_pinned(f: &dyn Implicit, p: Point3, pins: Pins, reach: f64
 
 /// A point of f = 0 that is closest to `p` as far as steps along the surface tell, from where [`project`] takes `start`: the
 /// rest of the way is across it, to 1e-3 of the distance. `None` where `project` finds nothing from `start`.
-pub fn closest_zero(f: &dyn Implicit, p: Point3, start: Point3, reach: f64, tolerance: f64) -> Option<Point3> {
+pub(crate) fn closest_zero(f: &dyn Implicit, p: Point3, start: Point3, reach: f64, tolerance: f64) -> Option<Point3> {
     /// Across enough: its effect on the distance is half the square.
     const ACROSS: f64 = 1e-3;
     let mut q = project(f, start, reach, tolerance)?;

@@ -35,7 +35,7 @@ const REACH: f64 = 0.25;
 /// The faces passed in search of a closest point, at most.
 const FACES: usize = 4096;
 /// A point this far from the surface, as a share of the diagonal, is not meant to be on it.
-pub const OFF_SURFACE: f64 = 1e-2;
+pub(crate) const OFF_SURFACE: f64 = 1e-2;
 
 impl Input {
     /// A surface with its equation, if it has one, on which its vertices are.
@@ -75,7 +75,7 @@ impl Input {
     }
 
     /// Whether a place is on the border, or so near to it (barycentric).
-    pub fn is_at_border(&self, place: &Place, near: f64) -> bool {
+    pub(crate) fn is_at_border(&self, place: &Place, near: f64) -> bool {
         let t = self.surface.topology();
         let [ab, bc, ca] = place.face.half_edges();
         let beside = [(bc, 0), (ca, 1), (ab, 2)].into_iter();
@@ -128,7 +128,7 @@ impl Input {
 
     /// The place of the surface that a point near a place is nearest to: found from triangle to triangle or, on an equation's
     /// surface, by Newton's method, with the given place's triangle. `None` where the latter leads nowhere.
-    pub fn lift(&self, near: &Place, p: Point3) -> Option<Place> {
+    pub(crate) fn lift(&self, near: &Place, p: Point3) -> Option<Place> {
         match &self.implicit {
             Some(f) => {
                 let position = project(f, p, REACH * self.diagonal, ON_SURFACE * self.diagonal)?;

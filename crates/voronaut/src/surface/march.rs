@@ -38,7 +38,7 @@ const ROOT_STEPS: usize = 200;
 /// [`Error::Domain`] of an empty box or edge length, where f has no zero on the grid, is not a number, or jumps across zero, and where
 /// sheets of f = 0 cross in a line;
 /// [`Error::Limit`] of a grid of more than 5e7 points, or more than 1e7 vertices.
-pub fn mesh_implicit(f: &dyn Implicit, bounds: Aabb3, edge: Option<f64>) -> Result<Surface> {
+pub(crate) fn mesh_implicit(f: &dyn Implicit, bounds: Aabb3, edge: Option<f64>) -> Result<Surface> {
     let extent = bounds.extent();
     if !(extent.x > 0.0 && extent.y > 0.0 && extent.z > 0.0 && bounds.diagonal().is_finite()) {
         let place = format!("{} - {}", bounds.min, bounds.max);

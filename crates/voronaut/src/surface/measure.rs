@@ -24,7 +24,7 @@ impl Component {
 
 impl Surface {
     /// The triangle's normal with the length of twice its area, to the side from which it is counter-clockwise.
-    pub fn area_vector(&self, f: FaceId) -> Vector3 {
+    pub(crate) fn area_vector(&self, f: FaceId) -> Vector3 {
         let [a, b, c] = self.triangle(f);
         (b - a).cross(c - a)
     }

@@ -37,20 +37,24 @@ mod sheets;
 mod tetrahedra;
 mod written;
 
-pub use chart::{Chart, STEEPEST};
-pub use chord::Chord;
-pub use curves::{Curve, CurveEdge, Curves};
-pub use cut::{Seams, Whole};
+pub(crate) use chart::Chart;
+pub use curves::CurveEdge;
+pub use curves::{Curve, Curves};
+pub use cut::Seams;
+pub use cut::Whole;
 pub use features::{FeatureOptions, Mark};
-pub use implicit::{Curvatures, Implicit, closest_zero, curvatures, project};
-pub use input::{Input, OFF_SURFACE};
-pub use march::mesh_implicit;
+pub use implicit::Curvatures;
+pub(crate) use implicit::closest_zero;
+pub use implicit::{Implicit, curvatures, project};
+pub use input::Input;
+pub(crate) use march::mesh_implicit;
 pub use measure::Component;
+pub use nearest::Closest;
+pub use nearest::Nearest;
 pub(crate) use nearest::closest_weights;
-pub use nearest::{Closest, Nearest};
-pub use repair::{Damage, Mend, Mended, RepairOptions, repaired};
+pub use repair::{Damage, Mended, RepairOptions, repaired};
 pub use shapes::{chair, sphere, torus};
-pub use written::{SHAPES, shape};
+pub use written::shape;
 
 use crate::geometry::{Point3, Vector3};
 use crate::triangulation::{Constraint, FaceId, Triangulation, VertexId};
@@ -142,7 +146,7 @@ impl Surface {
     }
 
     /// The place of a triangle that is closest to a point.
-    pub fn closest_on(&self, face: FaceId, p: Point3) -> Place {
+    pub(crate) fn closest_on(&self, face: FaceId, p: Point3) -> Place {
         self.place(face, nearest::closest_weights(self.triangle(face), p))
     }
 

@@ -8,7 +8,7 @@ use crate::geometry::{Aabb3, Point3};
 use crate::metric::{Expression, Variables};
 
 /// How surfaces that need no file are written, for messages.
-pub const SHAPES: &str = "sphere:r, torus:R,r, chair or implicit:EXPR;x0,y0,z0,x1,y1,z1";
+pub(crate) const SHAPES: &str = "sphere:r, torus:R,r, chair or implicit:EXPR;x0,y0,z0,x1,y1,z1";
 /// Edges of shapes are this part of their diagonal, unless told otherwise.
 const DEFAULT_EDGE: f64 = 1.0 / 64.0;
 

@@ -57,7 +57,7 @@ impl HalfEdge {
 
     /// The previous half-edge of the face.
     #[must_use]
-    pub fn prev(self) -> HalfEdge {
+    pub(crate) fn prev(self) -> HalfEdge {
         HalfEdge(if self.0.is_multiple_of(3) { self.0 + 2 } else { self.0 - 1 })
     }
 }

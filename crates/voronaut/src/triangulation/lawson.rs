@@ -4,7 +4,7 @@
 use super::{HalfEdge, Triangulation};
 
 /// A triangulation whose edges are flipped one after the other.
-pub trait Flipping {
+pub(crate) trait Flipping {
     /// What flips change.
     fn topology(&mut self) -> &mut Triangulation;
 
@@ -35,7 +35,7 @@ pub enum Limit {
 
 /// Room for a pass of flips, used again by the next.
 #[derive(Clone, Debug, Default)]
-pub struct Lawson {
+pub(crate) struct Lawson {
     stack: Vec<HalfEdge>,
     flipped: Vec<HalfEdge>,
     /// How often the slots in `counted` were flipped.
@@ -45,13 +45,13 @@ pub struct Lawson {
 
 impl Lawson {
     /// Puts edges on the stack of those to look at.
-    pub fn queue(&mut self, edges: impl IntoIterator<Item = HalfEdge>) {
+    pub(crate) fn queue(&mut self, edges: impl IntoIterator<Item = HalfEdge>) {
         self.stack.extend(edges);
     }
 
     /// Flips edges of the stack, and what follows from them, the last one first, until none is left or the limit is reached.
     /// Returns the edges that were flipped, in order.
-    pub fn pass(&mut self, mesh: &mut impl Flipping, limit: Limit) -> &[HalfEdge] {
+    pub(crate) fn pass(&mut self, mesh: &mut impl Flipping, limit: Limit) -> &[HalfEdge] {
         self.flipped.clear();
         self.counted.drain(..).for_each(|slot| self.flips_of_slot[slot] = 0);
         while let Some(h) = self.stack.pop() {
@@ -85,7 +85,7 @@ impl Lawson {
 }
 
 /// A triangulation whose edges are flipped in rounds.
-pub trait Rounds {
+pub(crate) trait Rounds {
     /// What flips change.
     fn topology(&self) -> &Triangulation;
 
@@ -97,7 +97,7 @@ pub trait Rounds {
 }
 
 /// Flips edges, and what follows from them, in rounds, so many at most, until no edge is wanted. Returns the number of flips.
-pub fn flip_in_rounds(mesh: &mut impl Rounds, rounds: usize) -> u64 {
+pub(crate) fn flip_in_rounds(mesh: &mut impl Rounds, rounds: usize) -> u64 {
     let mut flips = 0;
     let mut edges: Vec<HalfEdge> = mesh.topology().edges().collect();
     for _ in 0..rounds {

@@ -12,7 +12,8 @@ mod star;
 
 pub use check::Broken;
 pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
-pub use lawson::{Flipping, Lawson, Limit, Rounds, flip_in_rounds};
+pub use lawson::Limit;
+pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_in_rounds};
 pub use star::Star;
 
 use ids::NONE;
@@ -40,7 +41,7 @@ impl Triangulation {
     /// Two triangles that traverse an edge in opposite directions become neighbours. The caller guarantees that no
     /// edge is traversed twice in the same direction and that the triangles around each vertex form one fan;
     /// [`Triangulation::check`] tells.
-    pub fn from_triangles(vertex_count: usize, triangles: &[[u32; 3]], regions: &[i32]) -> Self {
+    pub(crate) fn from_triangles(vertex_count: usize, triangles: &[[u32; 3]], regions: &[i32]) -> Self {
         let mut result = Self { start: vec![NONE; vertex_count], ..Self::default() };
         for (triangle, &region) in triangles.iter().zip(regions) {
             result.push_face(triangle.map(VertexId), region);
@@ -55,7 +56,7 @@ impl Triangulation {
     /// Builds the structure from counter-clockwise triangles that are glued as told: half-edge `3 i + k` is side k of triangle i,
     /// and a twin names this one back. Edges may be doubled; vertices may have several fans
     /// ([`Triangulation::split_pinched_vertices`]).
-    pub fn glued(vertex_count: usize, triangles: &[[u32; 3]], twins: &[Option<u32>]) -> Self {
+    pub(crate) fn glued(vertex_count: usize, triangles: &[[u32; 3]], twins: &[Option<u32>]) -> Self {
         let mut result = Self { start: vec![NONE; vertex_count], ..Self::default() };
         for triangle in triangles {
             result.push_face(triangle.map(VertexId), 0);
@@ -85,7 +86,7 @@ impl Triangulation {
     }
 
     /// Number of vertex slots; some may be dead.
-    pub fn vertex_slots(&self) -> usize {
+    pub(crate) fn vertex_slots(&self) -> usize {
         self.start.len()
     }
 
@@ -100,7 +101,7 @@ impl Triangulation {
     }
 
     /// Number of face slots; some may be dead.
-    pub fn face_slots(&self) -> usize {
+    pub(crate) fn face_slots(&self) -> usize {
         self.region.len()
     }
 
@@ -120,12 +121,12 @@ impl Triangulation {
     }
 
     /// Whether the slot holds a vertex of some face.
-    pub fn is_vertex(&self, v: VertexId) -> bool {
+    pub(crate) fn is_vertex(&self, v: VertexId) -> bool {
         self.start[v.index()] != NONE
     }
 
     /// Whether the slot holds a face.
-    pub fn is_face(&self, f: FaceId) -> bool {
+    pub(crate) fn is_face(&self, f: FaceId) -> bool {
         self.origin[3 * f.index()] != VertexId(NONE)
     }
 
@@ -151,7 +152,7 @@ impl Triangulation {
     }
 
     /// The side of the edge with the smaller id.
-    pub fn canonical(&self, h: HalfEdge) -> HalfEdge {
+    pub(crate) fn canonical(&self, h: HalfEdge) -> HalfEdge {
         self.twin(h).map_or(h, |t| h.min(t))
     }
 
@@ -162,7 +163,7 @@ impl Triangulation {
     }
 
     /// Whether an edge has two faces and no constraint, and its flip makes no edge between vertices that one joins already.
-    pub fn can_flip(&self, h: HalfEdge) -> bool {
+    pub(crate) fn can_flip(&self, h: HalfEdge) -> bool {
         let joins = |u, v| self.star(u).any(|e| self.target(e) == v || self.apex(e) == v);
         !self.is_fixed(h) && self.quad(h).is_some_and(|[_, _, c, d]| c != d && !joins(c, d))
     }
@@ -186,13 +187,13 @@ impl Triangulation {
     }
 
     /// The constraint that the edge is part of.
-    pub fn constraint(&self, h: HalfEdge) -> Option<Constraint> {
+    pub(crate) fn constraint(&self, h: HalfEdge) -> Option<Constraint> {
         let c = self.constraint[h.index()];
         (c != NONE).then_some(Constraint(c))
     }
 
     /// Marks the edge as part of a constraint, on both sides.
-    pub fn set_constraint(&mut self, h: HalfEdge, constraint: Constraint) {
+    pub(crate) fn set_constraint(&mut self, h: HalfEdge, constraint: Constraint) {
         self.constraint[h.index()] = constraint.0;
         if let Some(t) = self.twin(h) {
             self.constraint[t.index()] = constraint.0;
@@ -200,7 +201,7 @@ impl Triangulation {
     }
 
     /// Takes the edge out of its constraint, on both sides.
-    pub fn clear_constraint(&mut self, h: HalfEdge) {
+    pub(crate) fn clear_constraint(&mut self, h: HalfEdge) {
         self.set_constraint(h, Constraint(NONE));
     }
 
@@ -215,7 +216,7 @@ impl Triangulation {
     }
 
     /// Sets the label of the region a face lies in.
-    pub fn set_region(&mut self, f: FaceId, region: i32) {
+    pub(crate) fn set_region(&mut self, f: FaceId, region: i32) {
         self.region[f.index()] = region;
     }
 
@@ -231,7 +232,7 @@ impl Triangulation {
     }
 
     /// Whether the vertex lies on the border.
-    pub fn is_border_vertex(&self, v: VertexId) -> bool {
+    pub(crate) fn is_border_vertex(&self, v: VertexId) -> bool {
         self.start(v).is_some_and(|h| self.twin(h).is_none())
     }
 

@@ -6,7 +6,7 @@ use super::{FaceId, HalfEdge, Triangulation, VertexId};
 
 impl Triangulation {
     /// A new vertex that belongs to no face yet.
-    pub fn add_vertex(&mut self) -> VertexId {
+    pub(crate) fn add_vertex(&mut self) -> VertexId {
         self.free_vertices.pop().unwrap_or_else(|| {
             self.start.push(NONE);
             VertexId(self.start.len() as u32 - 1)
@@ -47,7 +47,7 @@ impl Triangulation {
     }
 
     /// Puts a vertex inside a face: three faces instead of one. The face's own edges keep their slots' lengths.
-    pub fn split_face(&mut self, f: FaceId, v: VertexId) {
+    pub(crate) fn split_face(&mut self, f: FaceId, v: VertexId) {
         let [ab, bc, ca] = f.half_edges();
         let [a, b, c] = self.corners(f);
         let region = self.region(f);
@@ -70,7 +70,7 @@ impl Triangulation {
 
     /// Puts a vertex on an edge; both halves inherit the constraint. Returns the half-edge from the new vertex to the
     /// old target; `h` itself now ends at the new vertex.
-    pub fn split_edge(&mut self, h: HalfEdge, v: VertexId) -> HalfEdge {
+    pub(crate) fn split_edge(&mut self, h: HalfEdge, v: VertexId) -> HalfEdge {
         let twin = self.twin(h);
         let constraint = self.constraint[h.index()];
         let lower = self.halve(h, v);
@@ -111,7 +111,7 @@ impl Triangulation {
     ///
     /// # Panics
     /// If the vertex has not three faces, or lies on the border.
-    pub fn remove_degree_three(&mut self, v: VertexId) {
+    pub(crate) fn remove_degree_three(&mut self, v: VertexId) {
         let spokes: Vec<HalfEdge> = self.star(v).collect();
         assert!(spokes.len() == 3 && !self.is_border_vertex(v), "only an interior vertex of degree three");
         let links = [spokes[0], spokes[1], spokes[2]].map(HalfEdge::next);
@@ -133,7 +133,7 @@ impl Triangulation {
     /// Whether [`Triangulation::collapse`] keeps every vertex in one fan and makes no edge double: the ends of the edge
     /// have no common neighbours but the apexes of its faces, and no apex would be left with two faces or none; an
     /// inner edge has no more than one end on the border (the link condition; Dey et al. 1999).
-    pub fn can_collapse(&self, h: HalfEdge) -> bool {
+    pub(crate) fn can_collapse(&self, h: HalfEdge) -> bool {
         let (a, b, twin) = (self.origin(h), self.target(h), self.twin(h));
         if a == b || twin.is_some() && self.is_border_vertex(a) && self.is_border_vertex(b) {
             return false;
@@ -159,12 +159,12 @@ impl Triangulation {
 
     /// Removes the origin of an edge: its edges end at the edge's target instead, and the faces of the edge vanish.
     /// Lengths of all edges at the target become NaN. The caller owes [`Triangulation::can_collapse`].
-    pub fn collapse(&mut self, h: HalfEdge) {
+    pub(crate) fn collapse(&mut self, h: HalfEdge) {
         self.merge(h, self.target(h));
     }
 
     /// Removes the target of an edge, as [`Triangulation::collapse`] does its origin.
-    pub fn collapse_back(&mut self, h: HalfEdge) {
+    pub(crate) fn collapse_back(&mut self, h: HalfEdge) {
         self.merge(h, self.origin(h));
     }
 
@@ -203,7 +203,7 @@ impl Triangulation {
     }
 
     /// Removes faces; edges between a removed and a kept face become border. Vertices left without a face are freed.
-    pub fn retain_faces(&mut self, keep: impl Fn(FaceId) -> bool) {
+    pub(crate) fn retain_faces(&mut self, keep: impl Fn(FaceId) -> bool) {
         let doomed: Vec<FaceId> = self.faces().filter(|&f| !keep(f)).collect();
         for &f in &doomed {
             for h in f.half_edges() {
@@ -228,7 +228,7 @@ impl Triangulation {
 
     /// Gives every fan of faces around a vertex its own vertex, so that no vertex joins two parts of the border only
     /// by itself. Returns pairs (new vertex, the vertex that it was split from).
-    pub fn split_pinched_vertices(&mut self) -> Vec<(VertexId, VertexId)> {
+    pub(crate) fn split_pinched_vertices(&mut self) -> Vec<(VertexId, VertexId)> {
         let mut fans = vec![false; self.origin.len()];
         let mut copies = Vec::new();
         for v in self.vertices().collect::<Vec<_>>() {

@@ -83,10 +83,14 @@ impl House {
             _ => return None,
         }
         full.extend(rest.cloned());
+        // What is handed on may be handed on again.
         for _ in 0..8 {
-            let Some((name, before)) = full.split_last() else { break };
-            let Some(next) = self.handed_on.get(&(before.to_vec(), name.clone())) else { break };
-            full.clone_from(next);
+            let next = (1..=full.len()).find_map(|n| {
+                let to = self.handed_on.get(&(full[..n - 1].to_vec(), full[n - 1].clone()))?;
+                Some([to, &full[n..]].concat())
+            });
+            let Some(next) = next.filter(|next| *next != full) else { break };
+            full = next;
         }
         Some(full)
     }

@@ -35,7 +35,7 @@ pub fn grade(mesh: &Mesh, tensors: &[Tensor], gradation_factor: f64) -> Result<V
 }
 
 /// The exponent t of [`grade`]'s mixed space.
-pub const GRADATION_EXPONENT: f64 = 0.125;
+pub(crate) const GRADATION_EXPONENT: f64 = 0.125;
 /// What neighbours ask for and is more than what is there by a smaller share is not asked for.
 const SETTLED: f64 = 1e-6;
 /// Rounds after which something is wrong, beside those that it takes to get across the mesh.

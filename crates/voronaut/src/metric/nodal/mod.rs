@@ -28,11 +28,12 @@ mod waiting;
 
 pub use combine::{average, intersect};
 pub use complexity::{complexity, normalise};
-pub use gradation::{GRADATION_EXPONENT, grade};
+pub use gradation::grade;
 pub use implied::{implied, isotropic};
-pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, MET, Outcome, Pipeline, Source, Touched};
+pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source, Touched};
 pub use restrict::{Limit, Limits, restrict};
-pub use spd::{LEAST_SHARE, absolute, enforce_spd};
+pub use spd::absolute;
+pub(crate) use spd::enforce_spd;
 
 use super::sampled::{check_background, check_count};
 use super::validate::check_tensor_at;

@@ -26,7 +26,7 @@ use crate::metric::Norm;
 pub struct Pipeline {
     /// The norm whose error Hessians are to make least.
     pub norm: Norm,
-    /// The integral of sqrt(det M) that comes out, to a relative error of [`MET`].
+    /// The integral of sqrt(det M) that comes out, to a relative error of a millionth.
     pub target_complexity: Option<f64>,
     /// What several sources become.
     pub combination: Combination,
@@ -82,7 +82,8 @@ pub struct Touched {
 }
 
 /// How well a target is met, as a share of it.
-pub const MET: f64 = 1e-6;
+#[cfg(test)]
+const MET: f64 = 1e-6;
 /// What the search for the factor aims at.
 const AIM: f64 = 1e-9;
 /// What it aims at where there is a gradation: then the rest, of twice that at most, is a factor on what was graded.

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 
 /// The floor of [`enforce_spd`], as a share of the greatest absolute eigenvalue.
-pub const LEAST_SHARE: f64 = 1e-6;
+pub(crate) const LEAST_SHARE: f64 = 1e-6;
 
 /// The tensor with the same axes and the absolute values of the eigenvalues, at least `floor` each (which is positive): the
 /// metric in which the error of linear interpolation is the same in all directions.
@@ -20,7 +20,7 @@ pub fn absolute(hessian: Tensor, floor: f64) -> Tensor {
 ///
 /// # Errors
 /// [`Error::Metric`] with the number of a Hessian that is not finite.
-pub fn enforce_spd(hessians: &[Tensor]) -> Result<Vec<Tensor>> {
+pub(crate) fn enforce_spd(hessians: &[Tensor]) -> Result<Vec<Tensor>> {
     let is_finite = |h: &Tensor| h.xx.is_finite() && h.xy.is_finite() && h.yy.is_finite();
     if let Some(v) = hessians.iter().position(|h| !is_finite(h)) {
         let Tensor { xx, xy, yy } = hessians[v];

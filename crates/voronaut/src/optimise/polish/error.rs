@@ -7,7 +7,7 @@ use crate::metric::{Norm, ScalarField};
 const LARGEST_EXPONENT: f64 = 8.0;
 
 /// The norm that polishing goes by where this one is asked for: L^8 for all above.
-pub fn polishing_norm(norm: Norm) -> Norm {
+pub(crate) fn polishing_norm(norm: Norm) -> Norm {
     Norm::new(norm.exponent().min(LARGEST_EXPONENT)).unwrap_or(norm)
 }
 

@@ -16,7 +16,7 @@ use crate::metric::{Norm, ScalarField};
 use crate::planar::Planar;
 use crate::progress::Progress;
 use crate::triangulation::VertexId;
-pub use error::polishing_norm;
+pub(crate) use error::polishing_norm;
 use error::{Objective, Place};
 use rayon::prelude::*;
 

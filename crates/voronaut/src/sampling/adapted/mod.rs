@@ -74,7 +74,7 @@ pub fn adapted(input: &Input, metric: &dyn SurfaceMetric, wanted: &Wanted) -> Op
 
 /// Exchanges vertices of a triangulation of the surface whose first `staying` places stay: edges that are too long are split, and as
 /// many vertices contracted where edges are shortest.
-pub fn exchanged(
+pub(crate) fn exchanged(
     input: &Input,
     metric: &dyn SurfaceMetric,
     factor: f64,

@@ -8,7 +8,7 @@ use crate::surface::{Input, Place};
 /// The intersection, in the tangent planes, of a field with the sizes that keep a mesh within a distance of the surface
 /// ([`Sizing`], along the principal directions); what it says of the normal becomes the larger tangential eigenvalue where
 /// they are less.
-pub struct Closer<'a> {
+pub(crate) struct Closer<'a> {
     field: &'a dyn SurfaceMetric,
     sizes: Sampled,
 }
@@ -21,7 +21,7 @@ impl<'a> Closer<'a> {
     ///
     /// # Errors
     /// As [`Sizing::sizes`].
-    pub fn new(field: &'a dyn SurfaceMetric, input: &Input, hausd: f64) -> Result<Self> {
+    pub(crate) fn new(field: &'a dyn SurfaceMetric, input: &Input, hausd: f64) -> Result<Self> {
         let [h_min, h_max] = LIMITS.map(|share| share * input.diagonal());
         let sizing = Sizing { hausd, h_min, h_max, hgrad: None, anisotropic: true };
         let sizes = sizing.sizes(&input.surface, None)?.field(&input.surface)?;
@@ -45,7 +45,8 @@ impl SurfaceMetric for Closer<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::metric::{Constant, SAGITTA};
+    use crate::surface::metric::Constant;
+    use crate::surface::metric::sizing::SAGITTA;
     use crate::surface::{Input, torus};
 
     #[test]

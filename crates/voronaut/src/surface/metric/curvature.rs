@@ -9,13 +9,13 @@ use rayon::prelude::*;
 
 /// The smallest curvature that counts, unless told otherwise, over the bounding box's diagonal: a radius of ten diagonals
 /// is flat.
-pub const FLOOR: f64 = 0.1;
+pub(crate) const FLOOR: f64 = 0.1;
 
 /// The curvature metric of RR-9103, 15.1, of a surface f = 0, from exact derivatives of f at the place, which is on the
 /// surface or near it (then of the level surface there); see [`Curvatures::metric`](crate::surface::Curvatures::metric).
 /// Where grad f = 0 (a cone's apex) there are no curvatures: the value there is not finite.
 #[derive(Clone, Debug)]
-pub struct ImplicitCurvature<I> {
+pub(crate) struct ImplicitCurvature<I> {
     /// f.
     pub f: I,
     /// Smaller curvatures count as this; positive, in units of 1 / length.
@@ -38,7 +38,7 @@ impl<I: Implicit> SurfaceMetric for ImplicitCurvature<I> {
 ///
 /// # Errors
 /// As [`Sampled::new`]: where `floor` is not positive and finite.
-pub fn sampled_curvature(surface: &Surface, floor: f64) -> Result<Sampled> {
+pub(crate) fn sampled_curvature(surface: &Surface, floor: f64) -> Result<Sampled> {
     let fitted = fit_curvatures(surface);
     let caps: Vec<f64> = (0..fitted.len() as u32).into_par_iter().map(|v| cap(surface, VertexId(v))).collect();
     let metric = |(c, cap): (&Option<Curvatures>, &f64)| c.map(|c| c.metric([floor, *cap]));

@@ -13,7 +13,7 @@ use std::collections::{BinaryHeap, HashMap};
 ///
 /// Vertices at equal positions, as they are where a surface was cut, end with equal sizes. `hgrad` is at least 1 (then all
 /// that hangs together has one size); sizes are positive, and finite where there are triangles.
-pub fn grade(surface: &Surface, sizes: &mut [f64], hgrad: f64) {
+pub(crate) fn grade(surface: &Surface, sizes: &mut [f64], hgrad: f64) {
     let growth = hgrad.ln();
     let copies = Copies::of(surface);
     // Positive numbers have the order of their bits.

@@ -28,15 +28,15 @@ mod spec;
 mod validate;
 
 pub use bounded::Bounded;
-pub use closer::Closer;
-pub use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
+pub(crate) use closer::Closer;
+pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub use fit::fit_curvatures;
-pub use gradation::grade;
+pub(crate) use gradation::grade;
 pub use sampled::Sampled;
 pub use sizes::Sizes;
-pub use sizing::{SAGITTA, Sizing};
+pub use sizing::Sizing;
 pub use spec::{Spec, field, field_of_values};
-pub use validate::check_tensor3;
+pub(crate) use validate::check_tensor3;
 
 use super::Place;
 use crate::geometry::{Point, Point3, Tensor3};

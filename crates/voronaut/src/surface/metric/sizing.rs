@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// Measured on a sphere and a torus, vertices on them: mesh and surface are 0.9 `hausd` apart with c = 4, and 0.74 and 0.69 with 3,
 /// which leaves room for what curvatures at vertices do not tell. With 2.5
 /// distances come out below mmgs's for the same `hausd` (`scripts/compare_mmgs.py`), which are about 0.65 of what is asked for.
-pub const SAGITTA: f64 = 2.5;
+pub(crate) const SAGITTA: f64 = 2.5;
 
 /// What sizes are to be made of.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use crate::geometry::{Readable, Tensor3};
 ///
 /// # Errors
 /// [`Error::Metric`].
-pub fn check_tensor3(tensor: Tensor3, place: impl FnOnce() -> String) -> Result<()> {
+pub(crate) fn check_tensor3(tensor: Tensor3, place: impl FnOnce() -> String) -> Result<()> {
     if tensor.is_positive_definite() {
         return Ok(());
     }

@@ -13,7 +13,7 @@ pub struct Mended {
 
 /// One kind of damage.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Mend {
+pub(crate) struct Mend {
     /// Which.
     pub kind: Damage,
     /// How often.
@@ -117,11 +117,6 @@ impl Damage {
 const PLACES: usize = 3;
 
 impl Mended {
-    /// All that was found, in the order in which it was looked for.
-    pub fn mends(&self) -> &[Mend] {
-        &self.mends
-    }
-
     /// How often a kind of damage was found.
     pub fn count(&self, kind: Damage) -> usize {
         self.mends.iter().find(|mend| mend.kind == kind).map_or(0, |mend| mend.count)

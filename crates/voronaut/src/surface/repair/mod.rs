@@ -30,7 +30,7 @@ mod work;
 #[cfg(test)]
 mod tests;
 
-pub use mended::{Damage, Mend, Mended};
+pub use mended::{Damage, Mended};
 
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
