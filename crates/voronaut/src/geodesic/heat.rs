@@ -3,11 +3,8 @@
 use super::label::Sources;
 use crate::error::{Error, Result};
 use crate::geometry::Vector;
+use crate::sparse::{Cholesky, Elimination, Symmetric};
 use crate::triangulation::{FaceId, Triangulation, VertexId};
-use faer::Side;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::Llt;
-use faer::sparse::{SparseColMat, Triplet};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
@@ -20,8 +17,6 @@ const LENGTHENINGS: u32 = 8;
 /// Faces are taken to be no flatter than this share of their base.
 const FLATTEST: f64 = 1e-6;
 
-type Factor = Llt<usize, f64>;
-
 /// The heat method (Crane 2013) on a triangulation, by its metric lengths alone: with M = F' F the isotropic method on faces
 /// stretched by F. The matrices are factored once and serve for any sources.
 ///
@@ -31,10 +26,11 @@ pub struct Heat<'a> {
     canvas: &'a Triangulation,
     /// Metric area that belongs to each vertex.
     mass: Vec<f64>,
-    stiffness: Vec<(usize, usize, f64)>,
+    stiffness: Symmetric,
     time: f64,
-    flow: Factor,
-    poisson: Factor,
+    elimination: Elimination,
+    flow: Cholesky,
+    poisson: Cholesky,
     /// The connected part that each vertex belongs to, by its first vertex.
     part: Vec<usize>,
 }
@@ -46,26 +42,19 @@ impl<'a> Heat<'a> {
     /// [`Error::Unsupported`] where one is not positive definite by rounding.
     pub fn on(canvas: &'a Triangulation) -> Result<Self> {
         let n = canvas.vertex_slots();
-        let (mut mass, mut stiffness) = (vec![0.0; n], Vec::new());
-        for f in canvas.faces() {
-            let face = Face::of(canvas, f);
-            for i in 0..3 {
-                mass[face.corners[i]] += face.area / 3.0;
-                for j in 0..3 {
-                    let value = face.area * face.slopes[i].dot(face.slopes[j]);
-                    stiffness.push((face.corners[i], face.corners[j], value));
-                }
-            }
-        }
+        let (mass, stiffness) = matrices(canvas);
         let edges = canvas.edges().count().max(1) as f64;
         let mean = canvas.edges().map(|h| canvas.length(h)).sum::<f64>() / edges;
         let time = (EDGES * mean).powi(2);
         let part = parts(canvas);
         // One vertex of each part is held: sources and sinks of its flow balance, so that nothing flows there.
-        let grounds = (0..n).filter(|&v| part[v] == v).map(|v| (v, v, 1.0));
-        let poisson = factor(n, stiffness.iter().copied().chain(grounds))?;
-        let flow = factor(n, flow(&mass, &stiffness, time))?;
-        Ok(Self { canvas, mass, stiffness, time, flow, poisson, part })
+        let grounds: Vec<f64> = (0..n).map(|v| if part[v] == v { 1.0 } else { 0.0 }).collect();
+        let elimination = Elimination::of(&stiffness);
+        let (flow, poisson) = rayon::join(
+            || factor(&flow(&mass, &stiffness, time), &elimination),
+            || factor(&stiffness.clone().plus_diagonal(&grounds), &elimination),
+        );
+        Ok(Self { canvas, mass, stiffness, time, elimination, flow: flow?, poisson: poisson?, part })
     }
 
     /// The distance of each vertex from the nearest source; infinite in parts without one.
@@ -82,7 +71,7 @@ impl<'a> Heat<'a> {
                 balance[v] += face.area * direction.dot(slope);
             }
         }
-        let mut distances = solve(&self.poisson, &balance);
+        let mut distances = self.poisson.solve(&balance);
         self.shift(sources, &mut distances);
         Ok(distances)
     }
@@ -92,7 +81,7 @@ impl<'a> Heat<'a> {
     fn heat(&self, sources: &Sources) -> Result<Vec<f64>> {
         let nearest: Vec<(usize, f64)> = starts(sources).collect();
         let mut time = self.time;
-        let mut longer: Option<Factor> = None;
+        let mut longer: Option<Cholesky> = None;
         let lone = lone(sources);
         for _ in 0..LENGTHENINGS {
             let mut start = vec![0.0; self.mass.len()];
@@ -100,7 +89,7 @@ impl<'a> Heat<'a> {
                 let area = if lone.contains(&v) { PI * time } else { self.mass[v] };
                 start[v] = area * (-distance * distance / time).exp();
             }
-            let heat = solve(longer.as_ref().unwrap_or(&self.flow), &start);
+            let heat = longer.as_ref().unwrap_or(&self.flow).solve(&start);
             let most = heat.iter().copied().fold(0.0, f64::max);
             let is_warm =
                 |v: usize| heat[v] > LEAST_HEAT * most || !nearest.iter().any(|&(u, _)| self.part[u] == self.part[v]);
@@ -108,7 +97,7 @@ impl<'a> Heat<'a> {
                 return Ok(heat);
             }
             time *= 4.0;
-            longer = Some(factor(self.mass.len(), flow(&self.mass, &self.stiffness, time))?);
+            longer = Some(factor(&flow(&self.mass, &self.stiffness, time), &self.elimination)?);
         }
         Err(Error::Unsupported {
             what: "heat on a canvas so long that it vanishes on the way".into(),
@@ -149,24 +138,33 @@ fn starts(sources: &Sources) -> impl Iterator<Item = (usize, f64)> + '_ {
     sources.vertices().map(|v| (v.index(), sources.nearest(v).distance))
 }
 
-fn flow(mass: &[f64], stiffness: &[(usize, usize, f64)], time: f64) -> impl Iterator<Item = (usize, usize, f64)> {
-    let capacity = mass.iter().enumerate().map(move |(v, &mass)| (v, v, mass / time));
-    stiffness.iter().copied().chain(capacity)
+/// The area of each vertex, and the integrals of products of gradients of hat functions.
+fn matrices(canvas: &Triangulation) -> (Vec<f64>, Symmetric) {
+    let (mut mass, mut stiffness) = (vec![0.0; canvas.vertex_slots()], Vec::new());
+    for f in canvas.faces() {
+        let face = Face::of(canvas, f);
+        for i in 0..3 {
+            mass[face.corners[i]] += face.area / 3.0;
+            for j in 0..3 {
+                let value = face.area * face.slopes[i].dot(face.slopes[j]);
+                stiffness.push((face.corners[i] as u32, face.corners[j] as u32, value));
+            }
+        }
+    }
+    let stiffness = Symmetric::from_triplets(mass.len(), &stiffness);
+    (mass, stiffness)
 }
 
-fn factor(n: usize, entries: impl Iterator<Item = (usize, usize, f64)>) -> Result<Factor> {
-    let entries: Vec<Triplet<usize, usize, f64>> = entries.map(|(i, j, value)| Triplet::new(i, j, value)).collect();
-    let matrix = SparseColMat::try_new_from_triplets(n, n, &entries).ok();
-    matrix.and_then(|matrix| matrix.sp_cholesky(Side::Lower).ok()).ok_or_else(|| Error::Unsupported {
+fn flow(mass: &[f64], stiffness: &Symmetric, time: f64) -> Symmetric {
+    let capacity: Vec<f64> = mass.iter().map(|mass| mass / time).collect();
+    stiffness.clone().plus_diagonal(&capacity)
+}
+
+fn factor(matrix: &Symmetric, elimination: &Elimination) -> Result<Cholesky> {
+    Cholesky::of(matrix, elimination).ok_or_else(|| Error::Unsupported {
         what: "heat on this canvas, whose matrix is not positive definite by rounding".into(),
         help: "use another method, such as march, or limit the metric (`a_max`)".into(),
     })
-}
-
-fn solve(factor: &Factor, right: &[f64]) -> Vec<f64> {
-    let right = faer::Mat::from_fn(right.len(), 1, |i, _| right[i]);
-    let found = factor.solve(&right);
-    (0..found.nrows()).map(|i| found[(i, 0)]).collect()
 }
 
 /// A face laid out flat.

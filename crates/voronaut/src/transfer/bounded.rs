@@ -1,6 +1,7 @@
 //! Values brought back into bounds; what they lose is gained nearby.
 
-use super::mass::{MassMatrix, dot};
+use super::mass::MassMatrix;
+use crate::sparse::dot;
 
 /// Sweeps that spread what is out of bounds to the neighbours, before the little that is left goes everywhere.
 const SWEEPS: usize = 50;

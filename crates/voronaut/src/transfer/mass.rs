@@ -1,6 +1,7 @@
 //! The mass matrix of linear elements, and what is integrated with it.
 
 use crate::mesh::Mesh;
+use crate::sparse::{conjugate_gradients, dot};
 use rayon::prelude::*;
 
 /// Areas of all triangles, of either orientation.
@@ -27,8 +28,6 @@ pub(super) struct MassMatrix<'a> {
 /// With Jacobi's preconditioner the eigenvalues are between 1/2 and 2, whatever the mesh (Wathen 1987): each step of conjugate
 /// gradients takes the error to a third, forty of them to rounding.
 const STEPS: usize = 60;
-/// The share of the first residual that is rounding.
-const ROUNDING: f64 = 1e-16;
 
 impl<'a> MassMatrix<'a> {
     pub(super) fn new(mesh: &'a Mesh, areas: &'a [f64]) -> Self {
@@ -73,35 +72,8 @@ impl<'a> MassMatrix<'a> {
     /// Solves for the values with these loads, from a first guess, which stays at vertices without area.
     pub(super) fn solve(&self, loads: &[f64], guess: Vec<f64>) -> Vec<f64> {
         let diagonal: Vec<f64> = self.lumped.iter().map(|m| 0.5 * m).collect();
-        let scaled = |r: &[f64]| -> Vec<f64> {
-            r.iter().zip(&diagonal).map(|(r, d)| if *d > 0.0 { r / d } else { 0.0 }).collect()
-        };
-        let mut values = guess;
-        let mut residual: Vec<f64> = loads.iter().zip(self.times(&values)).map(|(b, a)| b - a).collect();
-        let mut direction = scaled(&residual);
-        let mut square = dot(&residual, &direction);
-        let enough = dot(loads, &scaled(loads)) * ROUNDING * ROUNDING;
-        for _ in 0..STEPS {
-            if square <= enough {
-                break;
-            }
-            let image = self.times(&direction);
-            let step = square / dot(&direction, &image);
-            values.iter_mut().zip(&direction).for_each(|(x, d)| *x += step * d);
-            residual.iter_mut().zip(&image).for_each(|(r, a)| *r -= step * a);
-            let better = scaled(&residual);
-            let next = dot(&residual, &better);
-            let share = next / square;
-            direction.iter_mut().zip(&better).for_each(|(d, z)| *d = z + share * *d);
-            square = next;
-        }
-        values
+        conjugate_gradients(|values| self.times(values), &diagonal, loads, guess, STEPS)
     }
-}
-
-/// In order: the sum does not depend on threads.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The share of their magnitude by which values have to change so that their weighted sum is `target`.

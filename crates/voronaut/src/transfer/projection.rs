@@ -3,10 +3,11 @@
 use super::bounded::bounded;
 use super::cover::Cover;
 use super::loads::{Loads, Old, Rows};
-use super::mass::{MassMatrix, areas, balance, dot, share_missing};
+use super::mass::{MassMatrix, areas, balance, share_missing};
 use super::{Field, Kind, Overshoot, Place};
 use crate::error::Result;
 use crate::mesh::{Locator, Mesh};
+use crate::sparse::dot;
 
 /// All fields on the new mesh; metrics as they were interpolated.
 pub(super) fn project(

@@ -1,9 +1,10 @@
 //! Laws of transfer: what comes back, what is kept, how errors fall.
 
-use super::mass::{areas, dot};
+use super::mass::areas;
 use super::*;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::{MetricField, Sampled};
+use crate::sparse::dot;
 use crate::test_cases::cases;
 use proptest::prelude::*;
 use std::f64::consts::TAU;

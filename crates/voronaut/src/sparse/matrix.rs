@@ -1,0 +1,111 @@
+//! Symmetric matrices, by compressed rows.
+
+use std::ops::Range;
+
+/// A symmetric matrix of which only some entries are kept, by compressed rows: both halves, columns rising, and the whole
+/// diagonal, zeros too.
+#[derive(Clone, Debug)]
+pub(crate) struct Symmetric {
+    /// Row i is from `starts[i]` to `starts[i + 1]`.
+    starts: Vec<usize>,
+    columns: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl Symmetric {
+    /// The matrix of `size` rows with these entries: row, column, value. Entries of one place are summed, in order. The upper
+    /// half is the mirror image of the lower one: entries there (row < column) are not read.
+    ///
+    /// # Panics
+    /// Of an entry in the lower half beyond the last row.
+    pub(crate) fn from_triplets(size: usize, entries: &[(u32, u32, f64)]) -> Self {
+        let diagonal = || (0..size as u32).map(|i| (i, i, 0.0));
+        let all = || diagonal().chain(entries.iter().copied().filter(|&(i, j, _)| i >= j).flat_map(with_mirror_image));
+        let mut ends = vec![0; size];
+        all().for_each(|(i, ..)| ends[i as usize] += 1);
+        // Ends of rows are their starts until they are filled.
+        let mut count = 0;
+        for end in &mut ends {
+            count += std::mem::replace(end, count);
+        }
+        let mut rows = vec![(0, 0.0); count];
+        for (i, j, value) in all() {
+            rows[ends[i as usize]] = (j, value);
+            ends[i as usize] += 1;
+        }
+        Self::summed(&mut rows, &ends)
+    }
+
+    /// Rows that end there, of columns and values in any order.
+    fn summed(rows: &mut [(u32, f64)], ends: &[usize]) -> Self {
+        let mut matrix = Self { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+        let mut start = 0;
+        for &end in ends {
+            let row = &mut rows[start..end];
+            row.sort_by_key(|&(column, _)| column);
+            for same in row.chunk_by(|a, b| a.0 == b.0) {
+                matrix.columns.push(same[0].0);
+                matrix.values.push(same.iter().map(|&(_, value)| value).sum());
+            }
+            matrix.starts.push(matrix.columns.len());
+            start = end;
+        }
+        matrix
+    }
+
+    /// The matrix with something added to its diagonal.
+    ///
+    /// # Panics
+    /// Unless there is a number for each row.
+    #[must_use]
+    pub(crate) fn plus_diagonal(mut self, added: &[f64]) -> Self {
+        assert_eq!(added.len(), self.size(), "a number for each row");
+        for (i, value) in added.iter().enumerate() {
+            let at = self.place_of_diagonal(i);
+            self.values[at] += value;
+        }
+        self
+    }
+
+    /// The number of rows.
+    pub(crate) fn size(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// The diagonal.
+    pub(crate) fn diagonal(&self) -> Vec<f64> {
+        (0..self.size()).map(|i| self.diagonal_at(i)).collect()
+    }
+
+    pub(super) fn diagonal_at(&self, i: usize) -> f64 {
+        self.values[self.place_of_diagonal(i)]
+    }
+
+    /// Columns and values of a row, columns rising.
+    pub(crate) fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        self.neighbours(i).iter().zip(&self.values[self.range(i)]).map(|(&j, &value)| (j as usize, value))
+    }
+
+    /// The columns of a row, rising; its own among them.
+    pub(crate) fn neighbours(&self, i: usize) -> &[u32] {
+        &self.columns[self.range(i)]
+    }
+
+    /// The matrix times a vector.
+    pub(crate) fn times(&self, vector: &[f64]) -> Vec<f64> {
+        (0..self.size()).map(|i| self.row(i).map(|(j, value)| value * vector[j]).sum()).collect()
+    }
+
+    fn range(&self, i: usize) -> Range<usize> {
+        self.starts[i]..self.starts[i + 1]
+    }
+
+    fn place_of_diagonal(&self, i: usize) -> usize {
+        self.starts[i] + self.neighbours(i).partition_point(|&j| (j as usize) < i)
+    }
+}
+
+/// One after the other, so that both halves are sums in the same order.
+fn with_mirror_image((i, j, value): (u32, u32, f64)) -> impl Iterator<Item = (u32, u32, f64)> {
+    std::iter::once((i, j, value)).chain((i != j).then_some((j, i, value)))
+}
