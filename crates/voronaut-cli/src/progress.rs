@@ -2,42 +2,48 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::time::Instant;
 use voronaut::progress::Progress;
 
 /// Shows the current stage on stderr if that is a terminal; says each stage in a line of its own if verbose.
 pub(crate) struct Bar {
-    bar: ProgressBar,
+    line: ProgressBar,
     verbose: bool,
+    start: Instant,
 }
 
 impl Bar {
     pub(crate) fn new(quiet: bool, verbose: bool) -> Self {
         let shown = !quiet && std::io::stderr().is_terminal();
-        let bar = if shown { ProgressBar::new(0) } else { ProgressBar::hidden() };
+        let line = if shown { ProgressBar::new(0) } else { ProgressBar::hidden() };
         if let Ok(style) = ProgressStyle::with_template("{msg:<16} {bar:40} {percent:>3} %  {elapsed}") {
-            bar.set_style(style.progress_chars("━╸ "));
+            line.set_style(style.progress_chars("━╸ "));
         }
-        Self { bar, verbose }
+        Self { line, verbose, start: Instant::now() }
     }
 }
 
 impl Progress for Bar {
     fn stage(&self, name: &'static str, total: u64) {
-        self.bar.set_length(total);
-        self.bar.set_position(0);
-        self.bar.set_message(name);
+        self.line.set_length(total);
+        self.line.set_position(0);
+        self.line.set_message(name);
         if self.verbose {
-            self.bar.suspend(|| eprintln!("{name} ({total})"));
+            self.line.suspend(|| eprintln!("{name} ({total})"));
         }
     }
 
     fn done(&self, units: u64) {
-        self.bar.inc(units);
+        self.line.inc(units);
+    }
+
+    fn seconds(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
     }
 }
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.bar.finish_and_clear();
+        self.line.finish_and_clear();
     }
 }

@@ -109,7 +109,7 @@ fn rows(begin: &str, diagram: &Diagram, field: &dyn MetricField) {
     if diagram.kind() != Kind::Riemannian {
         return row("", &nerve, "");
     }
-    let settled = recipe::dual(diagram, field, Road::default()).triangles;
+    let settled = recipe::dual(diagram, field, Road::default(), &Silent).triangles;
     for (what, triangles) in [("", nerve), (", settled", settled)] {
         row(what, &triangles, &Realisation::new(diagram, field, &triangles).open().to_string());
     }

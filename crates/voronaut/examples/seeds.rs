@@ -7,6 +7,7 @@ use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::geometry::Point;
 use voronaut::metric::Swirl;
+use voronaut::progress::Silent;
 use voronaut::recipe;
 
 fn main() -> voronaut::Result<()> {
@@ -19,7 +20,7 @@ fn main() -> voronaut::Result<()> {
     let metric = Swirl::default();
     let canvas = Canvas::intrinsic(&square, &metric, size_for(seeds.len(), 60))?;
     let diagram = Diagram::new(&canvas, &metric, &seeds)?;
-    let dual = recipe::dual(&diagram, &metric, Road::Both);
+    let dual = recipe::dual(&diagram, &metric, Road::Both, &Silent);
     let (triangles, account) = (dual.triangles.len(), &dual.account);
     println!("{triangles} triangles, {} uncertain edges, least margin {:.3}", account.uncertain, account.min_margin);
     for [a, b, c] in dual.triangles.iter().take(5) {

@@ -6,6 +6,11 @@ pub trait Progress: Sync {
     fn stage(&self, name: &'static str, total: u64);
     /// So many more units of the current stage are done.
     fn done(&self, units: u64);
+    /// What a clock says, in seconds from any moment on: times of stages are differences of it. The library reads no clock by
+    /// itself; without one all times are zero.
+    fn seconds(&self) -> f64 {
+        0.0
+    }
 }
 
 /// Progress that nobody watches.

@@ -10,6 +10,7 @@ use voronaut::geometry::{Point, Tensor, Vector};
 use voronaut::metric::{MetricField, Uniform};
 use voronaut::net::{Ball, Net};
 use voronaut::planar::delaunay;
+use voronaut::progress::Silent;
 use voronaut::recipe;
 
 /// Numbers from 0 to 1, the same on every machine.
@@ -125,7 +126,7 @@ fn uniform(map: Map, seeds: &[Point], canvas: &Canvas) -> Case {
 /// Seeds in any metric, as the program certifies them.
 fn varied(field: &dyn MetricField, seeds: &[Point], canvas: &Canvas) -> Case {
     let diagram = Diagram::new(canvas, field, seeds).unwrap();
-    let dual = recipe::dual(&diagram, field, Road::Both);
+    let dual = recipe::dual(&diagram, field, Road::Both, &Silent);
     let net = recipe::net(&diagram, field, &dual.exact);
     let certificate = Certificate::new(&diagram, field, &dual.exact, &net, Constants::Corrected);
     compared(&diagram, certificate, dual.exact)

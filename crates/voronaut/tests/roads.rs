@@ -7,6 +7,7 @@ use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::geometry::Point;
 use voronaut::metric::{MetricField, Shock, Swirl};
+use voronaut::progress::Silent;
 use voronaut::recipe::{self, SeedDual};
 
 /// A number in 0..1 from two, the same on every machine.
@@ -48,7 +49,7 @@ fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 
 fn both(domain: &Domain, field: &dyn MetricField, seeds: &[Point]) -> SeedDual {
     let canvas = Canvas::intrinsic(domain, field, size_for(seeds.len(), 60)).unwrap();
-    recipe::dual(&Diagram::new(&canvas, field, seeds).unwrap(), field, Road::Both)
+    recipe::dual(&Diagram::new(&canvas, field, seeds).unwrap(), field, Road::Both, &Silent)
 }
 
 /// The dual of few seeds, cells many units wide, is the nerve on a canvas twice as fine, but where it says that it is not
@@ -109,7 +110,7 @@ fn many(name: &str, domain: &Domain, field: &dyn MetricField, seeds: &[Point]) {
     let nerve = counted(diagram.sharp_nerve().triangles.iter().map(|t| t.colours));
     let of_nerve: BTreeSet<[u32; 2]> = nerve.keys().flat_map(|&t| sides(t)).collect();
     for road in [Road::Geodesic, Road::Both] {
-        let found = recipe::dual(&diagram, field, road);
+        let found = recipe::dual(&diagram, field, road, &Silent);
         let lengths = counted(found.triangles.iter().copied());
         let differ = missing(&lengths, &nerve).len();
         let listed: BTreeSet<[u32; 2]> = found

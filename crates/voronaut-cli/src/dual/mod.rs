@@ -8,6 +8,7 @@ pub(crate) use args::{DualArgs, EXAMPLES};
 
 use crate::files::{Drawn, MeshFile};
 use crate::options::{CanvasSize, EdgesOut, Show};
+use crate::progress::Bar;
 use crate::seeds::SeedFile;
 use crate::{fields, files, summary};
 use std::time::Instant;
@@ -59,7 +60,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let diagram = Diagram::of_kind(args.voronoi, &canvas, metric.as_ref(), seeds, args.geodesic)?;
     stage("diagram");
     let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
-        recipe::dual(&diagram, metric.as_ref(), road);
+        recipe::dual(&diagram, metric.as_ref(), road, &Bar::new(args.run.quiet, args.run.verbose));
     let mesh = diagram.to_mesh(triangles, &nerve, &domain);
     account.crossing_edges = Some(crossing_edges(&mesh).len());
     stage("dual");

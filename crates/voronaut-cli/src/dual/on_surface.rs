@@ -2,6 +2,7 @@
 
 use super::args::DualArgs;
 use crate::options::{CanvasSize, EdgesOut};
+use crate::progress::Bar;
 use crate::seeds::SeedFile;
 use crate::{fields, files, summary, surfaces};
 use std::time::Instant;
@@ -37,7 +38,8 @@ pub(super) fn run(args: &DualArgs, input: &Input, mended: &Mended, start: Instan
     stage(&mut stages, "canvas");
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, args.geodesic)?;
     stage(&mut stages, "diagram");
-    let SeedDual { triangles, account, seconds, raw_nerve, .. } = recipe::surface_dual(&diagram, args.dual);
+    let SeedDual { triangles, account, seconds, raw_nerve, .. } =
+        recipe::surface_dual(&diagram, args.dual, &Bar::new(args.run.quiet, args.run.verbose));
     let mesh = recipe::surface_mesh(input, &places, triangles);
     stage(&mut stages, "dual");
     stages.extend(seconds);

@@ -9,6 +9,7 @@ use crate::dual::Road;
 use crate::error::{Error, Result};
 use crate::geometry::Point;
 use crate::metric::MetricField;
+use crate::progress::Silent;
 use crate::sampling::demand_memory;
 
 /// Canvases are made so much finer than what they are asked for, so that errors of distances have room.
@@ -64,7 +65,7 @@ pub fn certified_canvas(
 
 fn on(canvas: &Canvas, field: &dyn MetricField, seeds: &[Point], constants: Constants) -> Result<Certificate> {
     let diagram = Diagram::new(canvas, field, seeds)?;
-    let SeedDual { exact, .. } = dual(&diagram, field, Road::Both);
+    let SeedDual { exact, .. } = dual(&diagram, field, Road::Both, &Silent);
     Ok(certify(&diagram, field, &exact, constants))
 }
 

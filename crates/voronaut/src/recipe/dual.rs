@@ -7,10 +7,10 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::net::{Net, Triangles};
 use crate::planar::Location;
+use crate::progress::Progress;
 use crate::rdt::{Edge, Judge, Rdt, Start, Trust};
 use crate::triangulation::HalfEdge;
 use std::collections::HashSet;
-use std::time::Instant;
 
 /// Lengths found from the metric alone may differ by this share from those on the canvas, through whose vertices ways lead:
 /// more says that they are of another way.
@@ -33,7 +33,7 @@ pub struct SeedDual {
     pub raw_nerve: figures::RawNerve,
     /// How the edges were settled. Margins are those by lengths; edges are numbered by their seeds.
     pub account: figures::Dual,
-    /// Wall time of the nerve and of the in-circle tests.
+    /// Time of the nerve and of the in-circle tests, by the clock of who watches.
     pub seconds: Vec<(&'static str, f64)>,
 }
 
@@ -41,14 +41,15 @@ pub struct SeedDual {
 /// lengths of geodesics make of it, or, with both, as far as these are sure and agree with distances on the canvas. Of a
 /// diagram that is not Riemannian there is one road, its nerve as canvas faces of three colours have it, nothing mended, and
 /// nothing exact to compare with.
-pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road) -> SeedDual {
+pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road, progress: &dyn Progress) -> SeedDual {
+    let start = progress.seconds();
     if diagram.kind() != Kind::Riemannian {
-        return as_read(diagram);
+        let read = as_read(diagram);
+        return SeedDual { seconds: vec![("nerve", progress.seconds() - start)], ..read };
     }
-    let start = Instant::now();
     let nerve = diagram.sharp_nerve();
     let passes = diagram.passes();
-    let nerve_seconds = start.elapsed().as_secs_f64();
+    let read = progress.seconds();
     let seeds: Vec<_> = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default()).collect();
     let reference = |i: u32, j: u32| passes.distance(i, j).map(|distance| (distance, CANVAS_ERROR * distance));
     let trust = match road {
@@ -56,7 +57,7 @@ pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road) -> SeedDual 
         Road::Canvas | Road::Both => Trust { reference: Some(&reference), doubt: DOUBT },
     };
     let rdt = Rdt::new(field, &seeds, &Start::from_nerve(&nerve), trust);
-    let seconds = vec![("nerve", nerve_seconds), ("tests", start.elapsed().as_secs_f64() - nerve_seconds)];
+    let seconds = vec![("nerve", read - start), ("tests", progress.seconds() - read)];
     let account = account(&rdt, &nerve, road);
     let triangles = match road {
         Road::Canvas => nerve.triangles.iter().map(|t| t.colours).collect(),
@@ -69,7 +70,6 @@ pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road) -> SeedDual 
 }
 
 fn as_read(diagram: &Diagram) -> SeedDual {
-    let start = Instant::now();
     let nerve = diagram.nerve();
     SeedDual {
         triangles: nerve.triangles.iter().map(|t| t.colours).collect(),
@@ -77,7 +77,7 @@ fn as_read(diagram: &Diagram) -> SeedDual {
         exact: Vec::new(),
         raw_nerve: figures::RawNerve::default(),
         account: figures::Dual { min_margin: 1.0, ..figures::Dual::default() },
-        seconds: vec![("nerve", start.elapsed().as_secs_f64())],
+        seconds: Vec::new(),
     }
 }
 

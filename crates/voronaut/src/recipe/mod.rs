@@ -49,7 +49,6 @@ use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{
     Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, sample_segments, simplify,
 };
-use std::time::Instant;
 use stopwatch::Stopwatch;
 
 /// A function is polished for that has at least this share of the error to which it is known.
@@ -82,7 +81,7 @@ pub struct Meshed {
     pub fidelity: Option<SurfaceFidelity>,
     /// The star set that became the mesh, with [`Mesher::StarSet`].
     pub star_set: Option<figures::StarSet>,
-    /// Wall time per stage, in order.
+    /// Seconds per stage, in order, by the clock of [`Progress::seconds`].
     pub seconds: Vec<(&'static str, f64)>,
     /// What could not be met, in words for the user; empty when all was.
     pub notes: Vec<String>,
@@ -196,9 +195,9 @@ impl<'a> Job<'a> {
     }
 
     fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
-        let start = Instant::now();
+        let start = self.progress.seconds();
         let result = work(self);
-        self.watch.add(stage, start);
+        self.watch.add(stage, self.progress.seconds() - start);
         result
     }
 

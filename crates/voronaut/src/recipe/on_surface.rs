@@ -12,7 +12,6 @@ use crate::quality::{self, Meetings, SurfaceFidelity};
 use crate::sampling::{MeasuredCurves, demand_memory};
 use crate::surface::metric::{Closer, SurfaceMetric};
 use crate::surface::{Component, Implicit, Input};
-use std::time::Instant;
 
 /// Vertices of the canvas on which the surface is measured first.
 const MEASURING: usize = 20_000;
@@ -114,9 +113,9 @@ struct Job<'a> {
 
 impl<'a> Job<'a> {
     fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
-        let start = Instant::now();
+        let start = self.setting.progress.seconds();
         let result = work(self);
-        self.watch.add(stage, start);
+        self.watch.add(stage, self.setting.progress.seconds() - start);
         result
     }
 

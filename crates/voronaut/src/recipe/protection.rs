@@ -61,7 +61,7 @@ impl Job<'_> {
         let size = canvas::size_for(seeds.len(), self.options.canvas_size);
         let resolved = resolve(Canvas::intrinsic(domain, field, size)?, field, &seeds, RESOLVE_ROUNDS)?;
         let diagram = Diagram::new(&resolved.canvas, field, &seeds)?;
-        let nerve = super::dual(&diagram, field, Road::Both).raw_nerve;
+        let nerve = super::dual(&diagram, field, Road::Both, self.progress).raw_nerve;
         let canvas_vertices = resolved.canvas.vertex_count();
         Ok(figures::CanvasNerve { canvas_vertices, rounds: resolved.rounds, unwitnessed: resolved.unwitnessed, nerve })
     }

@@ -5,18 +5,18 @@ use crate::diagram::SurfaceDiagram;
 use crate::dual::Road;
 use crate::geometry::Point3;
 use crate::mesh::Mesh;
+use crate::progress::Progress;
 use crate::rdt::{OnSurface, Rdt};
 use crate::surface::{Input, Place};
-use std::time::Instant;
 
 /// The dual of a diagram's seeds on a surface, by the road that is asked for; see [`super::dual()`].
-pub fn surface_dual(diagram: &SurfaceDiagram, road: Road) -> SeedDual {
-    let start = Instant::now();
+pub fn surface_dual(diagram: &SurfaceDiagram, road: Road, progress: &dyn Progress) -> SeedDual {
+    let start = progress.seconds();
     let nerve = diagram.sharp_nerve();
-    let nerve_seconds = start.elapsed().as_secs_f64();
+    let read = progress.seconds();
     let (glued, copies) = diagram.glued_nerve();
     let rdt = Rdt::from_glued(OnSurface::new(diagram), diagram.colours(), glued, &copies);
-    let seconds = vec![("nerve", nerve_seconds), ("tests", start.elapsed().as_secs_f64() - nerve_seconds)];
+    let seconds = vec![("nerve", read - start), ("tests", progress.seconds() - read)];
     let triangles = match road {
         Road::Canvas => nerve.triangles.iter().map(|t| t.colours).collect(),
         Road::Geodesic => rdt.triangles(),

@@ -24,7 +24,6 @@ use crate::surface::metric::{Constant, SurfaceMetric};
 use crate::surface::{Input, Place, Surface, Whole};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use std::collections::BTreeSet;
-use std::time::Instant;
 
 /// Canvas vertices at least, however few the seeds.
 const LEAST_CANVAS: usize = 20_000;
@@ -106,22 +105,22 @@ impl<'a> Setting<'a> {
         reseed: &Reseed,
         watch: &mut Stopwatch,
     ) -> Result<Pass<'a>> {
-        let begin = Instant::now();
+        let begin = self.progress.seconds();
         let features = self.curves.sampled(1.0 / scale.sqrt(), self.options.hausd, &reseed.density);
         let (mut given, owners) = features.flattened();
         given.extend(&reseed.places);
         let count = count.max(features.seeds.len()) + owners.len() - features.seeds.len();
         let (canvas, at) = self.canvas(count, &given)?;
-        watch.add("canvas", begin);
-        let begin = Instant::now();
+        watch.add("canvas", self.progress.seconds() - begin);
+        let begin = self.progress.seconds();
         self.progress.stage("seeding", count as u64);
         let may_hold = |v: VertexId| !self.is_required(&canvas, v);
         let seeded = seed_surface(&canvas, &at, count, self.options.geodesic, may_hold, self.progress)?;
-        watch.add("seed", begin);
-        let begin = Instant::now();
+        watch.add("seed", self.progress.seconds() - begin);
+        let begin = self.progress.seconds();
         let start = self.started(&canvas, &seeded, &given[..owners.len()], scale)?;
         let (dual, relaxed) = self.relaxed(start, owners.len(), self.options.lloyd)?;
-        watch.add("relax", begin);
+        watch.add("relax", self.progress.seconds() - begin);
         let mut pass = self.settled(Pass::new(self.input, dual, features, owners, seeded.added, relaxed), watch)?;
         pass.settled.figures.get_or_insert_with(|| canvas.figures());
         Ok(pass)
@@ -140,11 +139,11 @@ impl<'a> Setting<'a> {
         steps: Option<usize>,
         watch: &mut Stopwatch,
     ) -> Result<Pass<'a>> {
-        let begin = Instant::now();
+        let begin = self.progress.seconds();
         self.progress.stage("seeding", 1);
         let (features, owners, adapted) = self.started_from_surface(count, scale, reseed)?;
-        watch.add("seed", begin);
-        let begin = Instant::now();
+        watch.add("seed", self.progress.seconds() - begin);
+        let begin = self.progress.seconds();
         let staying = adapted.staying;
         let mut dual = self.dual_of(adapted, scale)?;
         let mut relaxed = Relaxed::default();
@@ -154,7 +153,7 @@ impl<'a> Setting<'a> {
         } else {
             self.fit_scale(&mut dual)?;
         }
-        watch.add("relax", begin);
+        watch.add("relax", self.progress.seconds() - begin);
         let pass = Pass::new(self.input, dual, features, owners, 0, relaxed);
         if steps.is_some() { self.settled(pass, watch) } else { Ok(pass) }
     }
@@ -269,12 +268,12 @@ impl<'a> Setting<'a> {
 
     /// Where that is asked for, flips by lengths of geodesics on a canvas that has the seeds as vertices.
     fn settled(&self, mut pass: Pass<'a>, watch: &mut Stopwatch) -> Result<Pass<'a>> {
-        let begin = Instant::now();
+        let begin = self.progress.seconds();
         pass.settled = match self.options.dual {
             Road::Canvas => self.settle(&mut pass.dual)?,
             Road::Geodesic | Road::Both => Settled::by_lengths(&pass.dual),
         };
-        watch.add("settle", begin);
+        watch.add("settle", self.progress.seconds() - begin);
         Ok(pass)
     }
 

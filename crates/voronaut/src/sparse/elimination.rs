@@ -46,7 +46,8 @@ impl Elimination {
     }
 
     /// The number of entries of the factor.
-    pub(crate) fn entries(&self) -> usize {
+    #[cfg(test)]
+    pub(super) fn entries(&self) -> usize {
         self.starts[self.order.len()] + self.order.len()
     }
 

@@ -73,7 +73,8 @@ impl Symmetric {
     }
 
     /// The diagonal.
-    pub(crate) fn diagonal(&self) -> Vec<f64> {
+    #[cfg(test)]
+    pub(super) fn diagonal(&self) -> Vec<f64> {
         (0..self.size()).map(|i| self.diagonal_at(i)).collect()
     }
 
@@ -92,7 +93,8 @@ impl Symmetric {
     }
 
     /// The matrix times a vector.
-    pub(crate) fn times(&self, vector: &[f64]) -> Vec<f64> {
+    #[cfg(test)]
+    pub(super) fn times(&self, vector: &[f64]) -> Vec<f64> {
         (0..self.size()).map(|i| self.row(i).map(|(j, value)| value * vector[j]).sum()).collect()
     }
 

@@ -102,6 +102,14 @@ fn nothing_global_decides() {
     }
 }
 
+/// Times are those of who watches ([`voronaut::progress::Progress::seconds`]).
+#[test]
+fn libraries_read_no_clock() {
+    for source in libraries() {
+        assert!(!contains_word(&source.code, "Instant"), "{} reads a clock", source.name);
+    }
+}
+
 #[test]
 fn no_files_use_each_other_in_a_circle() {
     for name in ["voronaut", "voronaut-io", "voronaut-draw", "voronaut-cli"] {

@@ -10,6 +10,7 @@ use voronaut::dual::Road;
 use voronaut::geodesic::Polyline;
 use voronaut::geometry::{Point, Tensor};
 use voronaut::metric::MetricField;
+use voronaut::progress::Silent;
 use voronaut::quality::{Validity, validity};
 use voronaut::realisation::{Found, Realisation};
 use voronaut::recipe;
@@ -25,7 +26,7 @@ pub(crate) fn realised(domain: &str, field: &dyn MetricField, seeds: &[Point], c
     let domain = Domain::shape(domain).unwrap();
     let canvas = Canvas::intrinsic(&domain, field, canvas).unwrap();
     let diagram = Diagram::new(&canvas, field, seeds).unwrap();
-    let dual = recipe::dual(&diagram, field, Road::Both);
+    let dual = recipe::dual(&diagram, field, Road::Both, &Silent);
     Realisation::new(&diagram, field, &dual.triangles)
 }
 

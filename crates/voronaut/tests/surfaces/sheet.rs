@@ -9,6 +9,7 @@ use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Point, Tensor3};
 use voronaut::planar::{Planar, delaunay};
+use voronaut::progress::Silent;
 use voronaut::recipe::surface_dual;
 use voronaut::surface::Place;
 use voronaut::surface::metric::Constant;
@@ -61,7 +62,7 @@ fn duals_on_a_sheet_are_delaunay_unrolled() {
     for kind in Kind::ALL {
         let (canvas, at) = Canvas::on_surface(kind, &input, &metric, size_for(SEEDS, 60), &places).unwrap();
         let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
-        let dual = surface_dual(&diagram, Road::Geodesic);
+        let dual = surface_dual(&diagram, Road::Geodesic, &Silent);
         let found: HashSet<[u32; 3]> = dual.triangles.iter().copied().map(smallest_first).collect();
         let missing: Vec<_> = truth.iter().filter(|t| !found.contains(&t.0)).collect();
         let wrong = missing.iter().filter(|t| t.1 > MARGIN).count();

@@ -7,6 +7,7 @@ use voronaut::diagram::SurfaceDiagram;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Point3, Tensor3};
+use voronaut::progress::Silent;
 use voronaut::recipe;
 use voronaut::surface::metric::Constant;
 use voronaut::surface::{Input, Place};
@@ -40,7 +41,7 @@ fn dual_of(seeds: &[Point3], per_seed: usize) -> Vec<[u32; 3]> {
     let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, per_seed * seeds.len(), &places).unwrap();
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
     assert_eq!(diagram.orphans().len(), 0);
-    recipe::surface_dual(&diagram, Road::Both).triangles
+    recipe::surface_dual(&diagram, Road::Both, &Silent).triangles
 }
 
 #[test]

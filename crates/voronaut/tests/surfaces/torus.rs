@@ -8,6 +8,7 @@ use voronaut::diagram::SurfaceDiagram;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Point3, Tensor3};
+use voronaut::progress::Silent;
 use voronaut::recipe::surface_dual;
 use voronaut::surface::metric::Constant;
 use voronaut::surface::{Input, Place};
@@ -25,7 +26,7 @@ fn duals_on_a_torus_are_closed_with_characteristic_zero() {
     let (canvas, at) =
         Canvas::on_surface(Kind::Intrinsic, &input, &metric, size_for(places.len(), 60), &places).unwrap();
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
-    let triangles = surface_dual(&diagram, Road::Geodesic).triangles;
+    let triangles = surface_dual(&diagram, Road::Geodesic, &Silent).triangles;
     let mut sides: HashMap<[u32; 2], u32> = HashMap::new();
     for [a, b, c] in &triangles {
         for side in [[*a, *b], [*b, *c], [*c, *a]] {
