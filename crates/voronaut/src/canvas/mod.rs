@@ -56,8 +56,8 @@ pub(crate) const FEW_SEEDS: usize = 300;
 /// Bytes that a canvas vertex costs at the peak, with a diagram on the canvas: measured 0.44 to 0.55 kB, with a reserve.
 pub const BYTES_PER_VERTEX: f64 = 700.0;
 
-/// Vertices of a canvas for so many seeds: `per_seed` for each, and [`LEAST_VERTICES`] at least for up to
-/// [`FEW_SEEDS`], from where on that least falls with their number.
+/// Vertices of a canvas for so many seeds: `per_seed` for each, and `LEAST_VERTICES` at least for up to
+/// `FEW_SEEDS`, from where on that least falls with their number.
 pub fn size_for(seeds: usize, per_seed: u32) -> usize {
     let least = LEAST_VERTICES / seeds.div_ceil(FEW_SEEDS).max(1);
     seeds.saturating_mul(per_seed as usize).max(least)
@@ -99,7 +99,7 @@ pub struct CanvasFigures {
 /// straight edges in the plane or in the triangles of a surface; and the one that distances travel on, whose edges are known
 /// by metric length alone. Edges of the second that flips have made are not straight in the domain; nothing needs them to
 /// be, for points are located, refinement is done and paths are drawn in the first. Chords of both have the metric length of
-/// a straight segment ([`crate::geodesic::chord`]) or, if flipped, of the straight line through flattened triangles.
+/// a straight segment (`crate::geodesic::chord`) or, if flipped, of the straight line through flattened triangles.
 #[derive(Debug)]
 pub struct Canvas<E = InPlane> {
     embedded: E,
@@ -181,7 +181,7 @@ impl Canvas {
     }
 
     /// The isotropic canvas (RR-9103, section 6.2) with so many vertices: a Euclidean Delaunay triangulation, refined at the
-    /// circumcentre of the face whose circumradius is largest beside [`isotropic_size`] there. Its triangles are obtuse in the
+    /// circumcentre of the face whose circumradius is largest beside `isotropic_size` there. Its triangles are obtuse in the
     /// metric, so that distances that need triangles travel on the intrinsic Delaunay triangulation of its vertices.
     ///
     /// It has more vertices only if the domain itself has, or where lengths had to be repaired.
@@ -192,7 +192,7 @@ impl Canvas {
         Self::new(Kind::Isotropic, domain, field, vertices)
     }
 
-    /// [`Canvas::isotropic`] with as many vertices as it takes until no circumradius exceeds so many [`isotropic_size`]s
+    /// [`Canvas::isotropic`] with as many vertices as it takes until no circumradius exceeds so many `isotropic_size`s
     /// (at its circumcentre), but for faces that rounding or a small angle of the domain leaves no way to cut. The authors
     /// use 1.
     ///

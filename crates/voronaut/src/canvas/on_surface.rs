@@ -14,7 +14,7 @@ impl<'s> Canvas<Draped<'s>> {
     /// vertices, which are returned: one for each, in order.
     ///
     /// The surface's triangles are halved at their longest edges: longest in the metric or, of an isotropic canvas, beside
-    /// [`isotropic_size`](super::isotropic_size). On an equation's surface new vertices are moved onto f = 0. Lengths are
+    /// `isotropic_size`. On an equation's surface new vertices are moved onto f = 0. Lengths are
     /// taken along the surface; the flips that follow are those of the plane.
     ///
     /// # Errors

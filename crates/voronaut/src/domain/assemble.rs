@@ -18,7 +18,7 @@ impl Domain {
         mesh
     }
 
-    /// The number in [`Domain::mesh_of`] of each vertex by id; `u32::MAX` of those that are none.
+    /// The number in `Domain::mesh_of` of each vertex by id; `u32::MAX` of those that are none.
     pub fn numbering(&self, planar: &Planar, corner: impl Fn(VertexId) -> Option<u32>) -> Vec<u32> {
         self.numbered_points(planar, corner).1
     }

@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::triangulation::VertexId;
 
 impl Dual<'_> {
-    /// The mesh, by [`Domain::mesh_of`].
+    /// The mesh, by `Domain::mesh_of`.
     pub fn to_mesh(&self, domain: &Domain) -> Mesh {
         domain.mesh_of(self.planar(), |v| self.corner(v))
     }

@@ -154,7 +154,7 @@ impl<'a> Dual<'a> {
         &self.counters
     }
 
-    /// Metric length of an edge: estimated from its ends ([`hermite`]), or, where the metric is rough, by quadrature
+    /// Metric length of an edge: estimated from its ends (`hermite`), or, where the metric is rough, by quadrature
     /// along the chord.
     pub fn edge_length(&self, h: HalfEdge) -> f64 {
         let (u, v) = (self.topology().origin(h), self.topology().target(h));

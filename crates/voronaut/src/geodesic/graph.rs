@@ -46,7 +46,7 @@ pub struct Graph {
 impl Graph {
     /// A graph of vertices of the plane at these (Euclidean) positions with the metric there, in the units of the metric field.
     ///
-    /// As for [`Graph::seen_by`]; positions are as many as tensors.
+    /// As for `Graph::seen_by`; positions are as many as tensors.
     pub fn new(positions: Vec<Point>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
         assert!(positions.len() == tensors.len(), "an entry for each vertex");
         Self::seen_by(Arc::new(InPlane(positions)), tensors, neighbours)

@@ -11,7 +11,7 @@ pub(crate) const NO_COLOUR: u32 = u32::MAX;
 pub struct Label {
     /// Metric distance; infinite where no source reaches.
     pub distance: f64,
-    /// Colour of the source; [`NO_COLOUR`] where none reaches.
+    /// Colour of the source; `NO_COLOUR` where none reaches.
     pub colour: u32,
     pub(super) support: u32,
 }

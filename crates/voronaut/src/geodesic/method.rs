@@ -19,7 +19,7 @@ pub enum Method {
     Dijkstra,
     /// `konukoglu`: recursive anisotropic fast marching ([`Konukoglu`](super::Konukoglu)).
     Konukoglu,
-    /// `lbr`: FM-LBR on a Cartesian grid of its own ([`Lattice`](super::Lattice)); distances only.
+    /// `lbr`: FM-LBR on a Cartesian grid of its own (`Lattice`); distances only.
     Lbr,
     /// `heat`: the heat method ([`Heat`](super::Heat)); distances only.
     Heat,

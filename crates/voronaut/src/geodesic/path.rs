@@ -23,7 +23,7 @@ const ROUNDING: f64 = 2e-11;
 /// is more than this much smaller may be so by chance.
 const RATIOS: (f64, f64) = (0.02, 0.7);
 
-/// How fine a path is, from [`Fineness::COARSEST`] to [`Fineness::FINEST`]: each has twice the modes of the one before.
+/// How fine a path is, from `Fineness::COARSEST` to [`Fineness::FINEST`]: each has twice the modes of the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Fineness(u8);
 

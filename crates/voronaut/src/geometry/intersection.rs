@@ -8,7 +8,7 @@ impl Tensor {
     ///
     /// By simultaneous reduction (Alauzet 2010): there is a basis in which both are diagonal, and there the larger
     /// of each pair of entries counts. It is commutative, and goes along with every linear change of coordinates; it is
-    /// not associative: of three or more there is [`Tensor::intersection_with_all`]. `self` is positive definite; `other` need not be: where it says nothing, `self` counts. Where one
+    /// not associative: of three or more there is `Tensor::intersection_with_all`. `self` is positive definite; `other` need not be: where it says nothing, `self` counts. Where one
     /// is above the other everywhere, the answer is that one, bit for bit.
     #[must_use]
     pub fn intersection(self, other: Tensor) -> Tensor {

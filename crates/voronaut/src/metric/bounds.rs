@@ -43,7 +43,7 @@ impl Bounds {
     /// to at most `a_max` times the shorter one (and so stays in range).
     ///
     /// A tensor within the limits comes back bit for bit, and so does one that is not positive definite: limits must
-    /// not hide an invalid metric from [`check_tensor`](super::check_tensor).
+    /// not hide an invalid metric from `check_tensor`.
     #[must_use]
     pub fn clamp(&self, tensor: Tensor) -> Tensor {
         if !tensor.is_positive_definite() {

@@ -9,7 +9,7 @@ use crate::geometry::{Point, Point3, Tensor, Tensor3};
 
 /// The field ((m11, m12), (m12, m22)) of three expressions in x and y; see [`Expression`] for what they may hold.
 ///
-/// The values are those of the expressions, whatever they are: [`check_tensor`](super::check_tensor) says where they
+/// The values are those of the expressions, whatever they are: `check_tensor` says where they
 /// make no metric.
 #[derive(Clone, Debug)]
 pub struct Formula {

@@ -13,12 +13,12 @@
 //! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits |
 //! | [`smoothed()`] | `--smooth-metric` | another field, averaged over neighbours on a background mesh |
 //! | [`Scaled`] | `-n`, `--complexity` | another field times a factor |
-//! | [`Steadied`] | `--mesher starset` | another field, finer where it turns |
+//! | `Steadied` | `--mesher starset` | another field, finer where it turns |
 //!
 //! [`nodal`] has metrics at the vertices of a mesh, and what adapters do with them; [`recover_hessian`] what they come from.
 //!
-//! [`MetricSpec`] reads the second column; [`complexity()`] integrates sqrt(det M); [`check_tensor`] and
-//! [`check_field`] tell whether values are a metric. Fields do not check their own values: whoever uses a tensor does.
+//! [`MetricSpec`] reads the second column; [`complexity()`] integrates sqrt(det M); `check_tensor` and
+//! `check_field` tell whether values are a metric. Fields do not check their own values: whoever uses a tensor does.
 
 mod analytic;
 mod boundary;
@@ -55,7 +55,7 @@ pub use formula::SpaceFormula;
 pub use hessian::Hessian;
 pub use norm::Norm;
 pub use operation::Variables;
-pub(crate) use recovered::Recovered;
+pub use recovered::Recovered;
 pub use recovery::{Recovery, recover_hessian};
 pub use sampled::Sampled;
 pub use scalar::{ScalarField, Snapshot};

@@ -5,7 +5,7 @@ use crate::geometry::{Point, Tensor};
 
 /// The field `factor` M: metric lengths grow by sqrt(factor), the complexity (see [`complexity`](super::complexity()))
 /// by `factor`. The factor is positive and finite; any other gives tensors that
-/// [`check_tensor`](super::check_tensor) rejects.
+/// `check_tensor` rejects.
 #[derive(Clone, Copy)]
 pub struct Scaled<'a> {
     /// The field M.

@@ -1,7 +1,7 @@
 //! What a set of seeds is as a net (RR-9103, sections 3.1 and 3.4): how well it covers a domain (epsilon), how far its
 //! seeds are apart (mu), and how far every Delaunay circle is from holding a fourth seed (delta, the power protection).
 //!
-//! [`Net::measure`] is exact up to the error of geodesics. [`Estimate`] is the cheap version for seeds that come, go and
+//! [`Net::measure`] is exact up to the error of geodesics. `Estimate` is the cheap version for seeds that come, go and
 //! move: the same figures from expansions of the metric ([`LocalMetric`](crate::geodesic::LocalMetric)).
 
 mod estimate;
@@ -58,7 +58,7 @@ pub struct Net {
     pub unmeasured: usize,
     /// The triangles among them.
     pub unknown: Vec<[u32; 3]>,
-    /// Triangles whose circles geodesics did not find and distances on a canvas did ([`circles_on_canvas`]).
+    /// Triangles whose circles geodesics did not find and distances on a canvas did (`circles_on_canvas`).
     pub by_canvas: usize,
     /// Lengths, of those that mu and powers are from, for which chords stand in where geodesics are not resolved: these are
     /// no shorter than the lengths. Lengths that a memory knew are not counted again.

@@ -114,7 +114,7 @@ impl<'a> Rdt<InField<'a>> {
         Self::again(field, seeds, start, trust, Memory::default())
     }
 
-    /// [`Rdt::new`] of seeds of which most are where they were when the memory was written ([`Rdt::into_memory`]): what depends
+    /// [`Rdt::new`] of seeds of which most are where they were when the memory was written (`Rdt::into_memory`): what depends
     /// on no seed that has moved is not tested again.
     pub fn again(
         field: &'a dyn MetricField,

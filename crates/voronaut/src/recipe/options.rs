@@ -26,7 +26,7 @@ pub struct MeshOptions {
     pub lloyd: usize,
     /// The centroids that it moves seeds to.
     pub centroid: Centroid,
-    /// Sweeps of polishing, at most, where the mesh is for a function ([`Aim`]); see [`crate::optimise::polish`].
+    /// Sweeps of polishing, at most, where the mesh is for a function ([`Aim`](super::Aim)); see [`crate::optimise::polish`].
     pub polish: usize,
     /// Which road decides on the topology. On a surface it is by lengths unless it is [`Road::Canvas`].
     pub dual: Road,
@@ -40,7 +40,7 @@ pub struct MeshOptions {
     /// With [`Seeding::Protected`], the radius of the ball around a circumcentre in which a seed is picked, as a share of
     /// the circumradius.
     pub picking_radius: f64,
-    /// Whether the net of the mesh's vertices is measured ([`Meshed::net`]); with [`Seeding::Protected`] it always is.
+    /// Whether the net of the mesh's vertices is measured ([`Meshed::net`](super::Meshed::net)); with [`Seeding::Protected`] it always is.
     pub net: bool,
     /// Which canvas, where one is used: for seeding and relaxing, and to settle edges.
     pub canvas: canvas::Kind,

@@ -35,7 +35,7 @@ pub struct RemeshSizes {
 }
 
 impl RemeshInput {
-    /// What is asked for, as fine along curves as these need to be within `hausd` ([`CurveSizes`]) and at required edges as these are,
+    /// What is asked for, as fine along curves as these need to be within `hausd` (`CurveSizes`) and at required edges as these are,
     /// within limits, graded ([`crate::metric::nodal::grade`]): at the vertices of the mesh, if sizes there are asked for, else at those of a
     /// triangulation that is fine enough.
     ///

@@ -56,7 +56,7 @@ pub(crate) fn seed_surface<'a>(
 /// The triangulation of a diagram's seeds; adds seeds if it must.
 ///
 /// # Errors
-/// As for [`seed_surface`].
+/// As for `seed_surface`.
 pub fn triangulated(diagram: SurfaceDiagram) -> Result<Seeded> {
     let (dual, poor) = surface_triangulation(&diagram);
     if poor.is_empty() {

@@ -81,7 +81,7 @@ pub fn torus(ring: f64, tube: f64, edge: f64) -> Result<Surface> {
 /// The chair of RR-9103, k = 5, a = 0.95, b = 0.8, with edges of about `edge` (by default a 64th of 12).
 ///
 /// # Errors
-/// As for [`mesh_implicit`].
+/// As for `mesh_implicit`.
 pub fn chair(edge: Option<f64>) -> Result<Surface> {
     let corner = |s: f64| Point3::new(s, s, s);
     let f = Expression::parse(CHAIR, Variables::Space)?;

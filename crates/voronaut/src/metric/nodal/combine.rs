@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 
 /// The intersection of metrics at each vertex: nowhere coarser than any of them, and the coarsest such
-/// ([`Tensor::intersection_with_all`]), in whatever order they come.
+/// (`Tensor::intersection_with_all`), in whatever order they come.
 ///
 /// # Errors
 /// [`Error::Metric`] of no metrics, or of different numbers of tensors.

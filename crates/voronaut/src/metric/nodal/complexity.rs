@@ -18,7 +18,7 @@ pub fn complexity(mesh: &Mesh, tensors: &[Tensor]) -> f64 {
 }
 
 /// The metric that is optimal for linear interpolation in an L^p norm (Loseille and Alauzet 2011), of given Hessians and of
-/// a given complexity, which it has but for rounding: det(|H|)^(-1 / (2p + 2)) |H|, [`enforce_spd`] being |H|, times one factor.
+/// a given complexity, which it has but for rounding: det(|H|)^(-1 / (2p + 2)) |H|, `enforce_spd` being |H|, times one factor.
 ///
 /// # Errors
 /// As of [`Sampled::new`](crate::metric::Sampled::new); [`Error::Parse`] of a target that is not positive and finite.

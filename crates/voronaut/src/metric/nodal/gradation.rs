@@ -14,11 +14,11 @@ use rayon::prelude::*;
 ///
 /// > (1 + ln(b) |pq| / h)^t (1 + ln(b) l)^(1 - t),
 ///
-/// |pq| the Euclidean and l the metric length of the edge at p, b the `gradation_factor`, t [`GRADATION_EXPONENT`]. With t = 1
+/// |pq| the Euclidean and l the metric length of the edge at p, b the `gradation_factor`, t `GRADATION_EXPONENT`. With t = 1
 /// all sizes grow by ln(b) per Euclidean length, and a metric is soon as isotropic as its least size; with t = 0 all grow by
 /// one factor, and it is as anisotropic as before. Neighbouring edges of a unit mesh then differ by about the factor b.
 ///
-/// In rounds each metric is intersected with all at once of what neighbours have grown to ([`Tensor::intersection_with_all`]), until
+/// In rounds each metric is intersected with all at once of what neighbours have grown to (`Tensor::intersection_with_all`), until
 /// none asks for more, by a millionth, than what is there. A round is asked for by the densest that are left, by levels of density
 /// and not one by one, for the result would depend on which of two comes first. So it is nowhere coarser than what was given, obeys
 /// the law along every edge (to a millionth), and graded again is the same to the bit; it does not depend, but for rounding, on units

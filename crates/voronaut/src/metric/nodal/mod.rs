@@ -6,7 +6,7 @@
 //! | operation | what it is |
 //! |---|---|
 //! | [`recover_hessian`](super::recover_hessian) | second derivatives of a solution |
-//! | [`enforce_spd`] | their absolute values, with a floor |
+//! | `enforce_spd` | their absolute values, with a floor |
 //! | [`normalise`] | the metric that is optimal in an L^p norm, of a complexity |
 //! | [`intersect`], [`average`] | one metric of several |
 //! | [`implied`] | the metric in which a mesh is as even as can be |

@@ -95,7 +95,7 @@ impl Pipeline {
     /// The metric that comes out at the vertices of a mesh.
     ///
     /// # Errors
-    /// As of [`Sampled::new`](crate::metric::Sampled::new), [`super::enforce_spd`], [`intersect`], [`average`], [`restrict`] and
+    /// As of [`Sampled::new`](crate::metric::Sampled::new), `super::enforce_spd`, [`intersect`], [`average`], [`restrict`] and
     /// [`super::grade`]; [`Error::Parse`] of a target that is no complexity; [`Error::Limit`] of one that limits forbid.
     pub fn run(&self, mesh: &Mesh, sources: &[Source]) -> Result<Outcome> {
         self.target_complexity.map_or(Ok(()), demand_target)?;

@@ -6,14 +6,14 @@
 //! | [`Constant`] | `uniform` | the surface's own lengths |
 //! | [`Shock`] | `shock:phi=10,lambda=0.6` | thin across the shock of RR-9103, 15.2, in space |
 //! | [`SpaceFormula`] | `formula:m11; m12; m22; m13; m23; m33` | six expressions in x, y, z |
-//! | [`ImplicitCurvature`] | `curvature`, of an equation | principal curvatures, exact (RR-9103, 15.1) |
+//! | `ImplicitCurvature` | `curvature`, of an equation | principal curvatures, exact (RR-9103, 15.1) |
 //! | [`Sampled`] | `curvature`, of a file | principal curvatures at vertices, fitted ([`fit_curvatures`]) |
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at vertices, log-Euclidean between them |
 //! | [`Sampled`] | what `remesh` makes | sizes at vertices for a distance to the surface, graded ([`Sizing`]) |
-//! | [`Closer`] | `--hausd` | another field, finer where a distance to the surface asks for it |
+//! | `Closer` | `--hausd` | another field, finer where a distance to the surface asks for it |
 //! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits, in the tangent plane |
 //!
-//! [`Spec`] reads the second column, [`field`] makes the field; [`check_tensor3`] tells whether a value is a metric.
+//! [`Spec`] reads the second column, [`field`] makes the field; `check_tensor3` tells whether a value is a metric.
 
 mod bends;
 mod bounded;

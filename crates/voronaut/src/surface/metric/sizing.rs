@@ -26,7 +26,7 @@ pub struct Sizing {
     pub h_min: f64,
     /// No size is more, and flat parts have this one.
     pub h_max: f64,
-    /// Between neighbouring edges sizes grow by this factor at most, by [`grade`]; `None`: as they will. Sizes that depend on
+    /// Between neighbouring edges sizes grow by this factor at most, by `grade`; `None`: as they will. Sizes that depend on
     /// the direction are left as they are: gradation would make them alike in all.
     pub hgrad: Option<f64>,
     /// Whether sizes follow the principal directions.
@@ -34,7 +34,7 @@ pub struct Sizing {
 }
 
 impl Sizing {
-    /// The sizes of a surface: sqrt([`SAGITTA`] hausd / c) of the larger principal curvature c, and of that of borders and fixed
+    /// The sizes of a surface: sqrt(`SAGITTA` hausd / c) of the larger principal curvature c, and of that of borders and fixed
     /// edges; anisotropic, of both along their directions. Given sizes or tensors, one per vertex slot, are kept where they are
     /// less (of tensors the [intersection](Tensor::intersection), then anisotropic). Limits come next, gradation last.
     ///
