@@ -393,8 +393,7 @@ fn threads_do_not_change_a_byte() {
 fn canvases_are_chosen_and_named_in_the_report() {
     let place = Place::new();
     place.put("seeds.txt", seed_file(&scattered(12, 0.1, 0.9, 5)));
-    let seeds = ["--metric", "uniform", "--seeds", "seeds.txt", "--canvas-size", "1000"];
-    let base = [&["dual", "rect:0,0,1,1", "-o", "d.mesh", "-q"][..], &seeds].concat();
+    let base = ["dual", "rect:0,0,1,1", "--metric", "uniform", "--seeds", "seeds.txt", "-o", "d.mesh", "-q"];
     runs(&place, &[&base[..], &["--canvas", "isotropic", "--report", "r.json"]].concat());
     assert_eq!(report(&place, "r.json")["canvas"]["kind"], "isotropic");
     for method in ["march", "stvd", "dijkstra", "konukoglu"] {

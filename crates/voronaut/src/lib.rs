@@ -81,7 +81,7 @@
 // In the order of the flow of data; each module uses only those above it (held by tests/architecture.rs).
 pub mod error;
 pub mod progress;
-pub mod sparse;
+mod sparse;
 pub mod geometry;
 pub mod mesh;
 pub mod triangulation;

@@ -70,7 +70,7 @@ fn collect(folder: &Path, paths: &mut Vec<PathBuf>) {
 /// The modules that lib.rs declares, in its order.
 pub(super) fn modules(all: &[Source]) -> Vec<String> {
     let lib = all.iter().find(|source| source.name == "lib.rs").expect("lib.rs");
-    let declared = lib.code.lines().filter_map(|line| line.trim().strip_prefix("pub mod "));
+    let declared = lib.code.lines().filter_map(|line| line.trim().trim_start_matches("pub ").strip_prefix("mod "));
     declared.map(|rest| rest.trim_end_matches(';').to_string()).collect()
 }
 
