@@ -1,7 +1,7 @@
 //! What holds of every reader, whatever it is given.
 
 use peak_alloc::PeakAlloc;
-use voronaut::error::{Error, Result};
+use voronaut::{Error, Result};
 use voronaut::mesh::SolutionValues;
 use voronaut_io::{Document, Field, Fields};
 use voronaut::mesh::Mesh;

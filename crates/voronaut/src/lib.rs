@@ -79,7 +79,7 @@
 //! where; [`Error::help`] says what to do about it.
 
 // In the order of the flow of data; each module uses only those above it (held by tests/architecture.rs).
-pub mod error;
+mod error;
 pub mod progress;
 mod sparse;
 pub mod geometry;

@@ -4,7 +4,7 @@ use crate::sample::Sample;
 use peak_alloc::PeakAlloc;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use voronaut::error::{Error, Result};
+use voronaut::{Error, Result};
 use voronaut_io::{Document, freefem, geojson, gmsh, medit, obj, off, ply, points, poly, sol, stl, vtk};
 
 #[global_allocator]

@@ -110,6 +110,20 @@ fn libraries_read_no_clock() {
     }
 }
 
+/// A module that is public hands nothing on by another name.
+#[test]
+fn public_names_are_exported_once() {
+    for source in libraries() {
+        let lines = || source.code.lines().map(str::trim);
+        let public: Vec<&str> =
+            lines().filter_map(|line| line.strip_prefix("pub mod ")).map(|rest| rest.trim_end_matches(';')).collect();
+        let handed_on = lines().filter_map(|line| line.strip_prefix("pub use ")?.split("::").next());
+        for module in handed_on {
+            assert!(!public.contains(&module), "{}: names of {module} are public twice", source.name);
+        }
+    }
+}
+
 #[test]
 fn no_files_use_each_other_in_a_circle() {
     for name in ["voronaut", "voronaut-io", "voronaut-draw", "voronaut-cli"] {
