@@ -20,10 +20,7 @@ use voronaut::recipe::GradedAt;
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
-use voronaut_io::Document;
-use voronaut_io::Given;
-use voronaut_io::Report;
-use voronaut_io::Strayed;
+use voronaut_io::{Document, Given, Report, Strayed};
 
 pub(crate) const EXAMPLES: &str = "\
 Exits with 1 if the mesh is not valid; the report is written all the same.

@@ -4,13 +4,11 @@ use crate::summary;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use voronaut::domain::{Pslg, from_mesh, to_mesh, to_poly, to_polygons};
-use voronaut::mesh::Mesh;
-use voronaut::mesh::Solutions;
+use voronaut::mesh::{Mesh, Solutions};
 use voronaut::{Error, Result};
 use voronaut_io::gmsh::Version;
 use voronaut_io::medit::Form;
-use voronaut_io::read_pslg;
-use voronaut_io::{Document, Fields, Format, geojson, lost_in_outline, poly};
+use voronaut_io::{Document, Fields, Format, geojson, lost_in_outline, poly, read_pslg};
 
 pub(crate) const EXAMPLES: &str = "\
 IN   a mesh: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply, .stl; a planar domain: .poly, .geojson, rect:..., disk:...; or values:

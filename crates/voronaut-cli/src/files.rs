@@ -13,8 +13,7 @@ use voronaut::quality::{self, Histograms, Unmet};
 use voronaut::realisation::{Grid, Realisation};
 use voronaut::{Error, Result};
 use voronaut_draw::{Layers, Picture, PictureFormat, Protection};
-use voronaut_io::Format;
-use voronaut_io::Report;
+use voronaut_io::{Format, Report};
 
 /// Pieces per side in which pictures show a Riemannian triangle.
 const PIECES: usize = 4;

@@ -1,7 +1,7 @@
 //! Parameters by the names that users type. The libraries call them by their own, in backquotes: `canvas_size`, `mesher=voronoi`.
 
 /// Those that the libraries speak of.
-pub(crate) const PARAMETERS: [&str; 17] = [
+pub(crate) const PARAMETERS: [&str; 15] = [
     "a_max",
     "background",
     "canvas_size",
@@ -13,10 +13,8 @@ pub(crate) const PARAMETERS: [&str; 17] = [
     "linear_tensors",
     "memory_limit",
     "mesher",
-    "metric",
     "repair",
     "seeding",
-    "smooth_metric",
     "tensor_order",
     "vertices",
 ];

@@ -6,8 +6,7 @@ use voronaut::canvas::Canvas;
 use voronaut::geometry::{Point, Point3};
 use voronaut::surface::{Input, Place};
 use voronaut::{Error, Result};
-use voronaut_io::points;
-use voronaut_io::read_text;
+use voronaut_io::{points, read_text};
 
 /// The seeds of a file, in order.
 pub(crate) struct SeedFile {

@@ -6,8 +6,7 @@ use crate::options::Run;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use voronaut::quality::{Cause, CauseFigures, Deviation, Farthest, Position, Spot, SurfaceFidelity};
-use voronaut_io::Report;
-use voronaut_io::Strayed;
+use voronaut_io::{Report, Strayed};
 
 /// Prints the figures of a report unless told to be quiet, and its notes on stderr.
 pub(crate) fn print(title: &str, report: &Report, run: &Run) {

@@ -2,8 +2,7 @@
 
 use crate::common::{Place, stderr};
 use voronaut::domain::Domain;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::SolutionValues;
+use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut_io::read_pslg;
 
 /// A rectangle of regions 5 and 6 (-6 where labels may be negative) with labelled sides, a labelled interface, corners and what is required.

@@ -3,10 +3,8 @@
 use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::fmt::Write as _;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::{SolutionValues, Solutions};
-use voronaut_io::sol;
-use voronaut_io::write_mesh;
+use voronaut::mesh::{Mesh, SolutionValues, Solutions};
+use voronaut_io::{sol, write_mesh};
 
 /// The unit square in n x n squares, each cut in two.
 fn square(n: u32) -> Mesh {

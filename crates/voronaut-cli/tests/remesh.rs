@@ -2,11 +2,9 @@
 
 use crate::common::{Place, stderr};
 use serde_json::Value;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::SolutionValues;
+use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut::surface::torus;
-use voronaut_io::write_mesh;
-use voronaut_io::{medit, sol};
+use voronaut_io::{medit, sol, write_mesh};
 
 /// A directory with a torus of radii 2 and 0.7 in `ring.mesh`.
 fn place() -> Place {

@@ -3,10 +3,8 @@
 use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use voronaut::mesh::Mesh;
-use voronaut::mesh::SolutionValues;
-use voronaut_io::write_mesh;
-use voronaut_io::{medit, sol};
+use voronaut::mesh::{Mesh, SolutionValues};
+use voronaut_io::{medit, sol, write_mesh};
 
 /// The unit square in cells of a tenth; triangles left of x = 0.5 have label 1, others 2.
 fn square() -> Mesh {

@@ -4,10 +4,8 @@
 //! bytes) per second, of files in the directory for temporary files.
 
 use std::time::Instant;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::SolutionValues;
-use voronaut_io::write_document;
-use voronaut_io::{Field, Fields, Format};
+use voronaut::mesh::{Mesh, SolutionValues};
+use voronaut_io::{Field, Fields, Format, write_document};
 
 const ENDINGS: [&str; 9] = ["mesh", "meshb", "msh", "obj", "off", "ply", "stl", "vtu", "vtp"];
 

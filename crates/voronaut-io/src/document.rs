@@ -1,8 +1,7 @@
 //! What a file holds: a mesh, values on it, and what a mesh cannot hold.
 
 use std::collections::HashSet;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::{SolutionValues, Solutions};
+use voronaut::mesh::{Mesh, SolutionValues, Solutions};
 use voronaut::{Error, Result};
 
 /// A mesh, and named values on its vertices and triangles.

@@ -5,8 +5,7 @@ use super::{Document, Fields, freefem, gmsh, medit, obj, off, ply, sol, stl, vtk
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::{Solution, Solutions};
+use voronaut::mesh::{Mesh, Solution, Solutions};
 use voronaut::{Error, Result};
 
 /// A format of meshes.

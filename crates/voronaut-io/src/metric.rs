@@ -69,7 +69,7 @@ impl MetricFiles<'_> {
             }
             (MetricSource::File(path), _) => {
                 let (values, mesh) = self.read(path, domain)?;
-                recipe::metric_of_values(&mesh, &values, domain, options, at).map_err(|error| in_file(path, error))
+                recipe::metric_of_values(&mesh, &values, &path.display().to_string(), domain, options, at)
             }
             (MetricSource::Hessian(path), _) => {
                 let (values, mesh) = self.read(path, domain)?;
@@ -122,14 +122,6 @@ pub fn read_metric(path: &Path, order: TensorOrder) -> Result<Solution> {
 fn is_solution(text: &str) -> bool {
     let ending = Path::new(text).extension().and_then(|ending| ending.to_str());
     ending.is_some_and(|ending| ["sol", "solb"].iter().any(|known| known.eq_ignore_ascii_case(ending)))
-}
-
-/// Adds the file to the place of values that are no metric of the plane.
-fn in_file(path: &Path, error: Error) -> Error {
-    match error {
-        Error::Parse { what, help, .. } => Error::Parse { place: path.display().to_string(), what, help },
-        other => other,
-    }
 }
 
 /// How far a domain may reach beyond its background mesh, as a share of the mesh's extent: curves are meshed by chords.
@@ -234,6 +226,28 @@ mod tests {
         let place = input.surface.place_of(VertexId(7)).unwrap();
         let m = TangentPlane::new(place.normal).restrict(field.at(&place));
         assert!((m.xx - 4.0).abs() + m.xy.abs() + (m.yy - 4.0).abs() < 1e-12, "{m:?}");
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_be_it_the_file_or_an_option() {
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let [mesh, sizes, vectors] = ["a.mesh", "sizes.sol", "vectors.sol"].map(|name| folder.path().join(name));
+        let square =
+            "MeshVersionFormatted 2 Dimension 2 Vertices 4 0 0 0 1 0 0 1 1 0 0 1 0 Triangles 2 1 2 3 1 1 3 4 1 End";
+        std::fs::write(&mesh, square).unwrap();
+        let head = "MeshVersionFormatted 2 Dimension 2 SolAtVertices 4 1";
+        std::fs::write(&sizes, format!("{head} 1 1 1 1 1 End")).unwrap();
+        std::fs::write(&vectors, format!("{head} 2 1 1 1 1 1 1 1 1 End")).unwrap();
+        let files = MetricFiles { own: Some(&mesh), ..MetricFiles::default() };
+        let told = |values: &Path, gradation| {
+            let options = MetricOptions { gradation: Some(gradation), ..MetricOptions::default() };
+            let made = files.metric(&MetricSource::File(values.into()), &domain, &options, GradedAt::Scale(1.0));
+            made.map(|_| ()).unwrap_err().to_string()
+        };
+        assert!(told(&sizes, 0.5).starts_with("metric gradation: "), "{}", told(&sizes, 0.5));
+        let place = vectors.display().to_string();
+        assert!(told(&vectors, 1.3).starts_with(&place), "{}", told(&vectors, 1.3));
     }
 
     #[test]

@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 use voronaut::domain::{Domain, from_mesh};
-use voronaut::mesh::Mesh;
-use voronaut::mesh::SolutionValues;
+use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut::surface::Surface;
 
 /// A file of `tests/data/medit`, whose README says what wrote it.

@@ -68,7 +68,6 @@
 //! assert!(validity(&meshed.mesh).valid);
 //! let figures = metric_quality(&meshed.mesh, &unit)?;
 //! assert!(figures.metric_edge_length.unit_fraction > 0.8);
-//!
 //! # Ok::<(), voronaut::Error>(())
 //! ```
 //!
@@ -78,7 +77,7 @@
 //! repository has the map and the invariants, `DESIGN.md` the reasons, `docs/measurements.md` the figures. Errors say what is wrong and
 //! where; [`Error::help`] says what to do about it.
 
-// In the order of the flow of data; each module uses only those above it (held by tests/architecture.rs).
+// In the order of the flow of data; each module uses only those above it (held by tests/architecture).
 mod error;
 pub mod progress;
 mod sparse;

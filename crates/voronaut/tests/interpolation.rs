@@ -4,8 +4,7 @@
 use std::sync::OnceLock;
 use voronaut::domain::Domain;
 use voronaut::geometry::Point;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::SolutionValues;
+use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut::metric::{Expression, Norm, ScalarField, Snapshot, Variables};
 use voronaut::progress::Silent;
 use voronaut::quality::{check, interpolation_error};

@@ -24,11 +24,8 @@ use voronaut::net::Net;
 use voronaut::quality::{crossing_edges, metric_quality, validity};
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, GradedAt, MeshOptions, SeedDual};
-use voronaut::sampling;
-use voronaut::{Error, Result};
-use voronaut_io::Given;
-use voronaut_io::Report;
-use voronaut_io::Seconds;
+use voronaut::{Error, Result, sampling};
+use voronaut_io::{Given, Report, Seconds};
 
 /// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
 pub(crate) fn run(args: &DualArgs) -> Result<()> {

@@ -18,8 +18,7 @@ use voronaut::metric::{Expression, Variables};
 use voronaut::quality::validity;
 use voronaut::recipe::{self, Source, Step};
 use voronaut::{Error, Result};
-use voronaut_io::Format;
-use voronaut_io::Given;
+use voronaut_io::{Format, Given};
 
 /// Adapts, and writes the last mesh, or all.
 pub(crate) fn run(args: &LoopArgs) -> Result<()> {

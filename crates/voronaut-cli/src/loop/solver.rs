@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::{SolutionValues, Solutions};
+use voronaut::mesh::{Mesh, SolutionValues, Solutions};
 use voronaut::{Error, Result};
 use voronaut_io::sol;
 

@@ -20,9 +20,7 @@ use voronaut::metric::MetricField;
 use voronaut::quality::{interpolation_error, metric_quality, unmet, validity};
 use voronaut::recipe::{self, Aim, GradedAt};
 use voronaut::{Error, Result};
-use voronaut_io::Given;
-use voronaut_io::Report;
-use voronaut_io::Seconds;
+use voronaut_io::{Given, Report, Seconds};
 
 /// Meshes a domain. Nothing is written unless the mesh is valid.
 pub(crate) fn run(args: &MeshArgs) -> Result<()> {

@@ -13,18 +13,13 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use voronaut::Result;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::Solution;
+use voronaut::mesh::{Mesh, Solution};
 use voronaut::recipe::{Keep, MeshOptions, Meshed, RemeshInput};
 use voronaut::surface::metric::Sizing;
 use voronaut::surface::{Input, Mended};
-use voronaut_io::Report;
-use voronaut_io::Seconds;
 use voronaut_io::gmsh::Version;
-use voronaut_io::read_metric;
-use voronaut_io::read_pslg;
-use voronaut_io::{Fields, Format};
-use voronaut_io::{Given, of_document};
+use voronaut_io::{Fields, Format, Given, of_document, read_metric, read_pslg};
+use voronaut_io::{Report, Seconds};
 
 /// mmg's exit code where it writes no mesh.
 pub(crate) const FAILURE: u8 = 2;

@@ -7,8 +7,7 @@ use voronaut::Result;
 use voronaut::quality::{fidelity, metric_quality, unmet, validity};
 use voronaut::recipe::{self, Asked, RemeshInput};
 use voronaut::surface::metric::Sizing;
-use voronaut_io::Report;
-use voronaut_io::Strayed;
+use voronaut_io::{Report, Strayed};
 
 /// A valid mesh of the domain.
 pub(super) fn remesh(args: &RemeshArgs, input: &RemeshInput) -> Result<Made> {

@@ -9,8 +9,7 @@ use voronaut::quality::{Meetings, surface_quality, surface_unmet, validity_on};
 use voronaut::recipe::{self, MeshOptions};
 use voronaut::surface::metric::{Sizes, Sizing};
 use voronaut::surface::{Input, Mended};
-use voronaut_io::Report;
-use voronaut_io::Strayed;
+use voronaut_io::{Report, Strayed};
 
 /// A valid mesh of the surface.
 pub(super) fn remesh(args: &RemeshArgs, input: Input, mended: &Mended) -> Result<Made> {

@@ -13,8 +13,7 @@ use header::{Element, Header, Kind, Property, Shape};
 use source::Source;
 use std::io::{self, BufRead, Write};
 use voronaut::Result;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::SolutionValues;
+use voronaut::mesh::{Mesh, SolutionValues};
 
 /// Reads a `.ply` file.
 ///

@@ -5,8 +5,7 @@ use super::cells::types;
 use crate::document::distinct_names;
 use crate::{Field, Fields};
 use std::io::{self, Write};
-use voronaut::mesh::Mesh;
-use voronaut::mesh::SolutionValues;
+use voronaut::mesh::{Mesh, SolutionValues};
 
 /// A type of numbers that arrays are written of, least byte first.
 pub(crate) trait Number: Copy {

@@ -2,8 +2,7 @@
 
 use crate::reading::Reader;
 use crate::sample::{Binary, Kind, Sample};
-use voronaut::mesh::Mesh;
-use voronaut::mesh::SolutionValues;
+use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut_io::{Field, Fields, vtk};
 
 pub(crate) fn samples() -> Vec<Sample> {

@@ -71,7 +71,7 @@ pub(crate) fn read(sample: &Sample, bytes: &[u8]) -> Outcome {
 /// Whether what was read is sound.
 fn read_as(reader: Reader, bytes: &[u8]) -> Result<bool> {
     let text = || {
-        let help = "readers of whole texts get no others: formats::read_text";
+        let help = "readers of whole texts get no others: read_text";
         std::str::from_utf8(bytes).map_err(|_| Error::parse(format!("{PLACE}:1"), "no text", help))
     };
     let document = match reader {

@@ -293,9 +293,8 @@ fn excess(tensor: Tensor, [a, b]: [Vector; 2], [c, d]: [Vector; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canvas::CanvasCounters;
-    use crate::canvas::refine;
     use crate::canvas::star_set::Stars;
+    use crate::canvas::{CanvasCounters, refine};
     use crate::domain::Domain;
     use crate::geometry::Point;
     use crate::metric::MetricField;

@@ -265,8 +265,7 @@ mod tests {
     use crate::diagram::test_diagrams::{plate_with_hole, seeds_of};
     use crate::domain::Domain;
     use crate::error::Result;
-    use crate::metric::MetricField;
-    use crate::metric::Swirl;
+    use crate::metric::{MetricField, Swirl};
 
     fn area(points: &[Point]) -> f64 {
         let next = points.iter().cycle().skip(1);

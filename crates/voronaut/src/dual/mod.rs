@@ -17,8 +17,7 @@ mod surface_margin;
 mod patch;
 
 pub(crate) use consult::Consultation;
-pub use consult::Disagreement;
-pub use consult::{Made, Road};
+pub use consult::{Disagreement, Made, Road};
 pub(crate) use edit::Saved;
 pub use margin::Effort;
 pub(crate) use mending::Mending;

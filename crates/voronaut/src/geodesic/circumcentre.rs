@@ -1,7 +1,6 @@
 //! The in-circle test by its definition: a point equally far from three seeds, and how far the fourth is from it.
 
-use super::in_circle::Margin;
-use super::in_circle::opposite;
+use super::in_circle::{Margin, opposite};
 use super::path::{Fineness, Paths, Solved};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;

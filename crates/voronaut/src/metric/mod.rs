@@ -50,8 +50,7 @@ pub use bounds::{Bounded, Bounds};
 pub use complexity::complexity;
 pub(crate) use complexity::rough_complexity;
 pub use expression::Expression;
-pub use formula::Formula;
-pub use formula::SpaceFormula;
+pub use formula::{Formula, SpaceFormula};
 pub use hessian::Hessian;
 pub use norm::Norm;
 pub use operation::Variables;
@@ -64,8 +63,7 @@ pub use smoothed::{MOST_SWEEPS, smoothed};
 pub use spec::MetricSpec;
 pub(crate) use spec::Parameters;
 pub(crate) use steadied::Steadied;
-pub(crate) use validate::check_tensor_at;
-pub(crate) use validate::{check_field, check_tensor};
+pub(crate) use validate::{check_field, check_tensor, check_tensor_at};
 
 use crate::geometry::{Point, Tensor};
 

@@ -1,7 +1,6 @@
 //! The seeds that can move, the energy, and its gradient.
 
-use super::cell::Moments;
-use super::cell::from_frame;
+use super::cell::{Moments, from_frame};
 use super::cells::CellsOf;
 use super::quasi_newton::{Memory, dot};
 use crate::dual::{Kind, Moving};

@@ -6,8 +6,7 @@ use super::{
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geometry::Point;
-use crate::mesh::Mesh;
-use crate::mesh::{SolutionValues, Solutions};
+use crate::mesh::{Mesh, SolutionValues, Solutions};
 use crate::metric::{Expression, ScalarField, Snapshot, Uniform};
 use crate::progress::Progress;
 use crate::transfer::{Carried, Cover, TransferOptions, carry};

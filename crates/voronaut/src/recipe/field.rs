@@ -6,8 +6,7 @@ use super::graded::{GradedAt, grade_metric};
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
-use crate::mesh::Mesh;
-use crate::mesh::SolutionValues;
+use crate::mesh::{Mesh, SolutionValues};
 use crate::metric::{
     Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Recovered, Recovery, Sampled, ScalarField,
     Snapshot, rough_complexity,
@@ -84,20 +83,21 @@ pub fn metric(spec: &MetricSpec, domain: &Domain, options: &MetricOptions, at: G
     finished(named(spec, domain, options, at)?, domain, None, options, at)
 }
 
-/// The field of sizes or tensors at the vertices of a mesh.
+/// The field of sizes or tensors at the vertices of a mesh; `place` names the values in messages.
 ///
 /// # Errors
 /// As of [`metric()`]; there is not one value per vertex; the values are no metric in the plane.
 pub fn metric_of_values(
     mesh: &Mesh,
     values: &SolutionValues,
+    place: &str,
     domain: &Domain,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
     let field = match values {
         SolutionValues::Scalar(sizes) => Sampled::sizes(mesh, sizes)?,
-        _ => sampled(mesh, values)?,
+        _ => sampled(mesh, values, place)?,
     };
     finished(PlanarMetric::plain(field), domain, Some(mesh), options, at)
 }
@@ -116,7 +116,7 @@ pub fn metric_of_solution(
 ) -> Result<PlanarMetric> {
     let named = match values {
         SolutionValues::Scalar(values) => recovered(mesh, values, domain, options, at)?,
-        _ => PlanarMetric::plain(sampled(mesh, values)?),
+        _ => PlanarMetric::plain(sampled(mesh, values, "the solution")?),
     };
     finished(named, domain, Some(mesh), options, at)
 }
@@ -186,10 +186,10 @@ fn within_domain<F: MetricField + 'static>(field: F, domain: &Domain, at: Graded
     Ok((Bounded::new(field, Bounds { h_max, ..Bounds::default() })?, scale))
 }
 
-fn sampled(mesh: &Mesh, values: &SolutionValues) -> Result<Sampled> {
+fn sampled(mesh: &Mesh, values: &SolutionValues, place: &str) -> Result<Sampled> {
     let SolutionValues::Tensor(entries) = values else {
         let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
-        return Err(Error::parse("the solution", "the values are no planar metric", help));
+        return Err(Error::parse(place, "the values are no planar metric", help));
     };
     let tensors: Vec<Tensor> = entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect();
     Sampled::new(mesh, &tensors)

@@ -13,9 +13,8 @@ mod plan;
 mod protected;
 mod segments;
 
-pub use adapted::Adapted;
-pub use adapted::Wanted;
 pub(crate) use adapted::exchanged;
+pub use adapted::{Adapted, Wanted};
 pub use adapted::{Held, adapted};
 pub(crate) use curve_sizes::CurveSizes;
 pub use curves::simplify;
@@ -24,10 +23,8 @@ pub(crate) use features::{ALL_VERTICES, FeatureEdge, FeatureSeeds, MeasuredCurve
 pub use interior::Refined;
 pub(crate) use interior::insert_spaced;
 pub use interior::{Fill, refine};
-pub use on_surface::Seeded;
-pub use on_surface::triangulated;
+pub use on_surface::{Seeded, triangulated};
 pub(crate) use on_surface::{seed_surface, triangulated_upright};
 pub use plan::{Plan, Target, demand_memory};
 pub(crate) use protected::{Picking, refine_protected};
-pub use segments::MetricArc;
-pub use segments::sample_segments;
+pub use segments::{MetricArc, sample_segments};

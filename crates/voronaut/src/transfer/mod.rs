@@ -23,8 +23,7 @@ mod solutions;
 #[cfg(test)]
 mod tests;
 
-pub use cover::Cover;
-pub use cover::Shares;
+pub use cover::{Cover, Shares};
 pub use field::{Carried, Extent, Field, Kind, Place};
 pub use solutions::{TransferOptions, carry};
 

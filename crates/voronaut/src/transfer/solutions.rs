@@ -2,8 +2,7 @@
 
 use super::{Carried, Cover, Field, Kind, Overshoot, Place, conservative, interpolate};
 use crate::error::{Error, Result};
-use crate::mesh::Mesh;
-use crate::mesh::{SolutionValues, Solutions};
+use crate::mesh::{Mesh, SolutionValues, Solutions};
 
 /// How solutions are carried; every parameter has one name (flag, TOML key, Python keyword).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

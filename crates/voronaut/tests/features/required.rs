@@ -2,8 +2,7 @@
 
 use crate::parts;
 use std::collections::BTreeSet;
-use voronaut::mesh::Mesh;
-use voronaut::mesh::{Solution, SolutionValues};
+use voronaut::mesh::{Mesh, Solution, SolutionValues};
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::quality::{check, surface_quality};

@@ -10,7 +10,7 @@ use voronaut::geometry::{Point, Tensor};
 pub(crate) struct Case {
     /// What it is called in tables.
     pub(crate) name: &'static str,
-    /// As [`Domain::read`] takes it.
+    /// As [`Domain::shape`] takes it.
     pub(crate) domain: String,
     /// The metric.
     pub(crate) metric: Box<dyn Fn(Point) -> Tensor + Sync>,
