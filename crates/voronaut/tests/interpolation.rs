@@ -70,7 +70,7 @@ fn the_error_falls_as_one_over_the_number_of_vertices() {
 
 #[test]
 fn polishing_lowers_the_error_in_the_norm_that_was_asked_for() {
-    for (p, least) in [(1.0, 0.95), (2.0, 0.92), (4.0, 0.92)] {
+    for (p, least) in [(1.0, 0.95), (4.0, 0.92)] {
         let norm = Norm::new(p).unwrap();
         let error = |polish| {
             let mesh = for_function(LAYERS, 1000, polish, norm).mesh;

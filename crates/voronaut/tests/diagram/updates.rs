@@ -124,7 +124,7 @@ fn removal_leaves_nothing_where_edges_lead_around_a_hole_and_back() {
         [[-0.02,-0.02],[-0.02,0.02],[0.02,0.02],[0.02,-0.02],[-0.02,-0.02]]]}"#;
     let domain = Domain::new(&from_polygons(&geojson::read(text, "ring").unwrap()).unwrap()).unwrap();
     let mut loops = 0;
-    for i in 0..200_u32 {
+    for i in 0..80_u32 {
         let (angle, aspect) = (0.1 * f64::from(i), 3.0 + f64::from(i % 40));
         let field = move |p: Point| {
             let (s, c) = (angle + 3.0 * (p.x + p.y)).sin_cos();
