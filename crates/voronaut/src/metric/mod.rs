@@ -52,6 +52,7 @@ pub(crate) use complexity::rough_complexity;
 pub use expression::Expression;
 pub use formula::{Formula, SpaceFormula};
 pub use hessian::Hessian;
+pub(crate) use neighbours::Neighbours;
 pub use norm::Norm;
 pub use operation::Variables;
 pub use recovered::Recovered;
