@@ -7,7 +7,7 @@ use crate::progress::Bar;
 use voronaut::Result;
 use voronaut::quality::{Meetings, surface_quality, surface_unmet, validity_on};
 use voronaut::recipe::{self, MeshOptions};
-use voronaut::surface::metric::{Sizes, Sizing};
+use voronaut::surface::metric::Sizing;
 use voronaut::surface::{Input, Mended};
 use voronaut_io::{Report, Strayed};
 

@@ -132,7 +132,8 @@ impl<E> Canvas<E> {
     }
 
     /// Which canvas it is; one by [`Canvas::straight`] counts as intrinsic.
-    pub fn kind(&self) -> Kind {
+    #[cfg(test)]
+    pub(crate) fn kind(&self) -> Kind {
         self.kind
     }
 
@@ -187,7 +188,8 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub fn isotropic(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+    #[cfg(test)]
+    pub(crate) fn isotropic(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         Self::new(Kind::Isotropic, domain, field, vertices)
     }
 

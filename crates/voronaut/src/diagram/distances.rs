@@ -47,7 +47,7 @@ impl<'a, G: Ground<'a>> Distances<'a, G> {
     }
 
     /// How they were computed.
-    pub fn method(&self) -> Method {
+    pub(crate) fn method(&self) -> Method {
         self.method
     }
 

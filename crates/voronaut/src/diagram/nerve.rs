@@ -69,7 +69,10 @@ impl Nerve {
     }
 
     /// The sides of those triangles that a test picks, the smaller colour first; those of two such triangles twice.
-    pub fn sides<'a>(&'a self, pick: impl Fn(&NerveTriangle) -> bool + 'a) -> impl Iterator<Item = [u32; 2]> + 'a {
+    pub(crate) fn sides<'a>(
+        &'a self,
+        pick: impl Fn(&NerveTriangle) -> bool + 'a,
+    ) -> impl Iterator<Item = [u32; 2]> + 'a {
         let picked = self.triangles.iter().filter(move |t| pick(t)).map(|t| t.colours);
         picked.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).map(|[a, b]| [a.min(b), a.max(b)])
     }

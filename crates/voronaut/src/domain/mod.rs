@@ -50,7 +50,7 @@ impl Domain {
     }
 
     /// For each vertex slot of [`Domain::planar`] the point of the graph that it stands for.
-    pub fn sources(&self) -> &[Option<u32>] {
+    pub(crate) fn sources(&self) -> &[Option<u32>] {
         &self.sources
     }
 
@@ -62,7 +62,7 @@ impl Domain {
     }
 
     /// Triangles that cover the domain exactly.
-    pub fn triangles(&self) -> Vec<[Point; 3]> {
+    pub(crate) fn triangles(&self) -> Vec<[Point; 3]> {
         self.planar.topology.faces().map(|f| self.planar.triangle(f)).collect()
     }
 

@@ -44,7 +44,7 @@ pub enum Effort {
 
 impl Dual<'_> {
     /// The margin of an edge with two faces.
-    pub fn margin(&mut self, h: HalfEdge, effort: Effort) -> Margin {
+    pub(crate) fn margin(&mut self, h: HalfEdge, effort: Effort) -> Margin {
         let quad = self.quad(h);
         if effort == Effort::Full {
             let known = self.tests.known(&quad, LEVELS - 1);

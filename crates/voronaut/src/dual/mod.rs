@@ -108,12 +108,12 @@ impl<'a> Dual<'a> {
     }
 
     /// The embedded triangulation.
-    pub fn planar(&self) -> &Planar {
+    pub(crate) fn planar(&self) -> &Planar {
         &self.planar
     }
 
     /// The metric field, in units of the wanted edge length.
-    pub fn field(&self) -> Scaled<'a> {
+    pub(crate) fn field(&self) -> Scaled<'a> {
         self.field
     }
 
@@ -139,23 +139,23 @@ impl<'a> Dual<'a> {
     }
 
     /// The metric around a vertex.
-    pub fn local(&self, v: VertexId) -> &LocalMetric {
+    pub(crate) fn local(&self, v: VertexId) -> &LocalMetric {
         &self.locals[v.index()]
     }
 
     /// What holds a vertex.
-    pub fn kind(&self, v: VertexId) -> Kind {
+    pub(crate) fn kind(&self, v: VertexId) -> Kind {
         self.kinds[v.index()]
     }
 
     /// Work counters since the beginning.
-    pub fn counters(&self) -> &DualCounters {
+    pub(crate) fn counters(&self) -> &DualCounters {
         &self.counters
     }
 
     /// Metric length of an edge: estimated from its ends (`hermite`), or, where the metric is rough, by quadrature
     /// along the chord.
-    pub fn edge_length(&self, h: HalfEdge) -> f64 {
+    pub(crate) fn edge_length(&self, h: HalfEdge) -> f64 {
         let (u, v) = (self.topology().origin(h), self.topology().target(h));
         let (p, q) = (self.position(u), self.position(v));
         if self.local(u).is_rough || self.local(v).is_rough {
@@ -173,7 +173,7 @@ impl<'a> Dual<'a> {
     ///
     /// # Errors
     /// [`Error::Metric`] with the first place where it is not positive definite and finite.
-    pub fn verdict(&self) -> Result<()> {
+    pub(crate) fn verdict(&self) -> Result<()> {
         let Some((p, t)) = self.fault else { return Ok(()) };
         let [xx, xy, yy] = [t.xx, t.xy, t.yy].map(Readable);
         let what = format!("the tensor {xx}, {xy}, {yy} is not finite and positive definite");

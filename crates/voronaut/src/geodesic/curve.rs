@@ -35,7 +35,7 @@ impl Curve {
     }
 
     /// Its length, with the error of that.
-    pub fn length(&self) -> PathLength {
+    pub(crate) fn length(&self) -> PathLength {
         self.length
     }
 
@@ -52,7 +52,7 @@ impl Curve {
 
     /// The curve as a polyline, end points included. Its sagittas, measured with the tensor at the place, are at most this
     /// share of its length, unless that took more than 256 segments.
-    pub fn polyline(&self, field: &dyn MetricField, tolerance: f64) -> Vec<Point> {
+    pub(crate) fn polyline(&self, field: &dyn MetricField, tolerance: f64) -> Vec<Point> {
         let mut points = vec![self.ends[0]];
         for i in 0..FEWEST {
             let [from, to] = [i, i + 1].map(|k| k as f64 / FEWEST as f64);

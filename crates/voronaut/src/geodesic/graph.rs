@@ -105,7 +105,7 @@ impl Graph {
     }
 
     /// The metric at a vertex, in its frame.
-    pub fn tensor(&self, v: VertexId) -> Tensor {
+    pub(crate) fn tensor(&self, v: VertexId) -> Tensor {
         self.tensors[v.index()]
     }
 
@@ -120,7 +120,7 @@ impl Graph {
     }
 
     /// Metric length of the edge between two vertices; infinite if they are not neighbours.
-    pub fn length(&self, a: VertexId, b: VertexId) -> f64 {
+    pub(crate) fn length(&self, a: VertexId, b: VertexId) -> f64 {
         let place = self.neighbours(a).binary_search(&b);
         place.map_or(f64::INFINITY, |i| self.lengths[self.first[a.index()] as usize + i])
     }

@@ -17,7 +17,13 @@ pub struct Logarithm {
 
 impl Paths {
     /// The logarithm of q at p, of the geodesic that [`Paths::length`] finds. `None` where that finds none or where p is q.
-    pub fn logarithm(&self, field: &dyn MetricField, p: Point, q: Point, fineness: Fineness) -> Option<Logarithm> {
+    pub(crate) fn logarithm(
+        &self,
+        field: &dyn MetricField,
+        p: Point,
+        q: Point,
+        fineness: Fineness,
+    ) -> Option<Logarithm> {
         let solved = self.solve(field, p, q, fineness)?;
         // Half the squared length falls fastest, in the tensor at p, where p moves along the geodesic (Gauss's lemma).
         let velocity = -field.at(p).inverse().apply(solved.pull);

@@ -105,7 +105,7 @@ impl Propagation {
     }
 
     /// Work since the beginning.
-    pub fn counters(&self) -> &MarchCounters {
+    pub(crate) fn counters(&self) -> &MarchCounters {
         &self.counters
     }
 }

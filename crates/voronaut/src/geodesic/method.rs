@@ -52,7 +52,7 @@ impl Method {
     }
 
     /// The name without parameters.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Method::March => "march",
             Method::Stvd { .. } => "stvd",

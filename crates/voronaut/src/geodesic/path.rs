@@ -36,7 +36,7 @@ impl Fineness {
     pub const FINEST: Self = Self(STAGES.len() as u8 - 1);
 
     /// Twice the modes; `None` of the finest.
-    pub fn next(self) -> Option<Self> {
+    pub(crate) fn next(self) -> Option<Self> {
         (self < Self::FINEST).then_some(Self(self.0 + 1))
     }
 }

@@ -49,12 +49,12 @@ impl Tensor {
     }
 
     /// M v.
-    pub fn apply(self, v: Vector) -> Vector {
+    pub(crate) fn apply(self, v: Vector) -> Vector {
         Vector::new(self.xx * v.x + self.xy * v.y, self.xy * v.x + self.yy * v.y)
     }
 
     /// u' M v.
-    pub fn dot(self, u: Vector, v: Vector) -> f64 {
+    pub(crate) fn dot(self, u: Vector, v: Vector) -> f64 {
         u.dot(self.apply(v))
     }
 
@@ -64,7 +64,7 @@ impl Tensor {
     }
 
     /// Determinant, without the cancellation of `xx yy - xy^2` where one eigenvalue is tiny.
-    pub fn determinant(self) -> f64 {
+    pub(crate) fn determinant(self) -> f64 {
         let product = self.xy * self.xy;
         let rounding = self.xy.mul_add(self.xy, -product);
         self.xx.mul_add(self.yy, -product) - rounding
@@ -72,7 +72,7 @@ impl Tensor {
 
     /// The inverse; the caller knows that the tensor is not singular.
     #[must_use]
-    pub fn inverse(self) -> Tensor {
+    pub(crate) fn inverse(self) -> Tensor {
         let d = self.determinant();
         Tensor::new(self.yy / d, -self.xy / d, self.xx / d)
     }
@@ -107,13 +107,13 @@ impl Tensor {
 
     /// Matrix logarithm of a positive definite tensor.
     #[must_use]
-    pub fn log(self) -> Tensor {
+    pub(crate) fn log(self) -> Tensor {
         self.map_eigenvalues(f64::ln)
     }
 
     /// Matrix exponential of a symmetric tensor; positive definite.
     #[must_use]
-    pub fn exp(self) -> Tensor {
+    pub(crate) fn exp(self) -> Tensor {
         // Not through `map_eigenvalues`: a logarithm is no metric, and its smaller eigenvalue may be negative.
         let mean = 0.5 * (self.xx + self.yy);
         let half_difference = 0.5 * (self.xx - self.yy);
@@ -136,7 +136,7 @@ impl Tensor {
 
     /// 4 sqrt(3) times the area of a straight triangle over the sum of its squared edges, all in this metric: 1 of an equilateral
     /// one, negative of one that is clockwise.
-    pub fn shape(self, [a, b, c]: [Point; 3]) -> f64 {
+    pub(crate) fn shape(self, [a, b, c]: [Point; 3]) -> f64 {
         let squares: f64 = [b - a, c - b, a - c].iter().map(|&e| self.dot(e, e)).sum();
         2.0 * 3.0_f64.sqrt() * signed_area(a, b, c) * self.determinant().max(0.0).sqrt() / squares
     }

@@ -23,7 +23,7 @@ impl Hessian {
     /// # Errors
     /// [`Error::Metric`] where a second derivative is not finite, or where all are zero; [`Error::Domain`] of triangles that are
     /// not finite.
-    pub fn new(function: Snapshot, norm: Norm, domain: &[[Point; 3]]) -> Result<Self> {
+    pub(crate) fn new(function: Snapshot, norm: Norm, domain: &[[Point; 3]]) -> Result<Self> {
         let (mut sum, mut total) = (0.0, 0.0);
         for ([a, b, c], _) in start(domain)? {
             let middle = Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0);

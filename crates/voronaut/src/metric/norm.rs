@@ -31,7 +31,7 @@ impl Norm {
     }
 
     /// The exponent p.
-    pub fn exponent(self) -> f64 {
+    pub(crate) fn exponent(self) -> f64 {
         self.0
     }
 
@@ -39,7 +39,7 @@ impl Norm {
     /// whose unit meshes have, of all with as many vertices, the least L^p error of linear interpolation (Loseille and
     /// Alauzet 2011, in two dimensions). With p infinite, |H| itself.
     #[must_use]
-    pub fn weighted(self, absolute: Tensor) -> Tensor {
+    pub(crate) fn weighted(self, absolute: Tensor) -> Tensor {
         if self.0.is_infinite() {
             return absolute;
         }

@@ -28,7 +28,7 @@ impl Recovered {
     ///
     /// # Errors
     /// As for [`recover_hessian`].
-    pub fn new(mesh: &Mesh, values: &[f64], recovery: Recovery) -> Result<Self> {
+    pub(crate) fn new(mesh: &Mesh, values: &[f64], recovery: Recovery) -> Result<Self> {
         let hessians = recover_hessian(mesh, values, recovery)?;
         let locator = Locator::new(mesh, "the mesh of the solution")?;
         Ok(Self { values: values.to_vec(), hessians, mesh: mesh.clone(), locator })
@@ -38,7 +38,7 @@ impl Recovered {
     ///
     /// # Errors
     /// [`Error::Metric`] where all are zero.
-    pub fn metric(&self, norm: Norm) -> Result<Sampled> {
+    pub(crate) fn metric(&self, norm: Norm) -> Result<Sampled> {
         let size = self.mean_size();
         let floor = FLOOR * size;
         if size > self.rounding() && floor > 0.0 {

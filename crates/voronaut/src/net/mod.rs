@@ -157,11 +157,6 @@ impl Net {
     pub(crate) fn border_delta(&self) -> f64 {
         self.border.iter().map(Ball::protection).fold(f64::INFINITY, f64::min)
     }
-
-    /// How many interior triangles are less protected than by a share of epsilon.
-    pub fn unprotected(&self, share: f64) -> usize {
-        self.interior().filter(|ball| ball.protection() < share * self.epsilon).count()
-    }
 }
 
 /// The seeds that share a triangle with each of so many seeds, in order.

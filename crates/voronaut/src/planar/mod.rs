@@ -58,7 +58,7 @@ impl Planar {
     }
 
     /// Whether the edge has two faces that form a strictly convex quadrilateral: a flip keeps the embedding.
-    pub fn is_convex(&self, h: HalfEdge) -> bool {
+    pub(crate) fn is_convex(&self, h: HalfEdge) -> bool {
         let Some(t) = self.topology.twin(h) else { return false };
         let [a, b] = self.ends(h);
         let c = self.position(self.topology.apex(h));

@@ -116,7 +116,7 @@ impl<'a> Rdt<InField<'a>> {
 
     /// [`Rdt::new`] of seeds of which most are where they were when the memory was written (`Rdt::into_memory`): what depends
     /// on no seed that has moved is not tested again.
-    pub fn again(
+    pub(crate) fn again(
         field: &'a dyn MetricField,
         seeds: &[Point],
         start: &Start,
@@ -207,7 +207,7 @@ impl<J: Judge> Rdt<J> {
     }
 
     /// The seed of a vertex of the topology.
-    pub fn seed(&self, v: VertexId) -> u32 {
+    pub(crate) fn seed(&self, v: VertexId) -> u32 {
         self.seed_of[v.index()]
     }
 

@@ -32,7 +32,7 @@ impl Grid {
     }
 
     /// Whether all its straight pieces are counter-clockwise, so that the map is one-to-one as far as it shows.
-    pub fn is_embedded(&self) -> bool {
+    pub(crate) fn is_embedded(&self) -> bool {
         let is_left = |a, b, c| orientation(a, b, c) == Orientation::Left;
         let n = self.sides;
         (0..n).all(|i| {

@@ -29,7 +29,7 @@ pub enum Fill {
 
 impl Fill {
     /// The number.
-    pub fn count(self) -> usize {
+    pub(crate) fn count(self) -> usize {
         let (Fill::Exactly(count) | Fill::AtMost(count)) = self;
         count
     }

@@ -54,17 +54,17 @@ impl Plan {
     }
 
     /// Vertices of the domain itself, with copies: no mesh has fewer.
-    pub fn corners(&self) -> usize {
+    pub(crate) fn corners(&self) -> usize {
         self.corners
     }
 
     /// Vertices that are there twice while meshing, and joined in the mesh: where the domain touches itself in a point.
-    pub fn copies(&self) -> usize {
+    pub(crate) fn copies(&self) -> usize {
         self.copies
     }
 
     /// Vertices on the boundary and interfaces when the metric is multiplied by `scale`.
-    pub fn boundary_vertices(&self, scale: f64) -> f64 {
+    pub(crate) fn boundary_vertices(&self, scale: f64) -> f64 {
         let cuts = |(arc, &(_, required)): (&MetricArc, &(HalfEdge, bool))| {
             if required { 0.0 } else { pieces(arc.length() * scale.sqrt()) as f64 - 1.0 }
         };
@@ -73,7 +73,7 @@ impl Plan {
 
     /// Expected vertices of the unit mesh of the metric times `scale`: half its triangles plus half its boundary
     /// (Euler), with all triangles equilateral.
-    pub fn expected_vertices(&self, scale: f64) -> f64 {
+    pub(crate) fn expected_vertices(&self, scale: f64) -> f64 {
         let boundary = self.boundary_vertices(scale);
         boundary.max(0.5 * scale * self.complexity / UNIT_TRIANGLE + 0.5 * boundary)
     }

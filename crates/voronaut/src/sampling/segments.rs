@@ -21,7 +21,7 @@ const MAX_DEPTH: u32 = 16;
 
 impl MetricArc {
     /// Measures the segment a-b, with pieces as fine as the field needs.
-    pub fn new(field: &dyn MetricField, a: Point, b: Point) -> Self {
+    pub(crate) fn new(field: &dyn MetricField, a: Point, b: Point) -> Self {
         let mut arc = Self { breaks: vec![(0.0, 0.0)] };
         let whole = chord(field, a, b);
         arc.measure(&|t0, t1| chord(field, a.lerp(b, t0), a.lerp(b, t1)), (0.0, 1.0), whole, MAX_DEPTH);
@@ -29,7 +29,7 @@ impl MetricArc {
     }
 
     /// Metric length of the whole segment.
-    pub fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.breaks[self.breaks.len() - 1].1
     }
 

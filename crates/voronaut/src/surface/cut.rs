@@ -56,12 +56,12 @@ impl Seams {
     }
 
     /// The numbers that a vertex of the surface before has now.
-    pub fn copies(&self, v: VertexId) -> &[VertexId] {
+    pub(crate) fn copies(&self, v: VertexId) -> &[VertexId] {
         &self.copies[v.index()]
     }
 
     /// The topology of the surface before.
-    pub fn whole(&self) -> Whole {
+    pub(crate) fn whole(&self) -> Whole {
         self.whole
     }
 

@@ -46,7 +46,7 @@ impl Curvatures {
     /// The metric of RR-9103, 15.1: eigenvalues |c| along the principal directions, at least `floor` (positive), so that
     /// it stays positive definite where the surface is flat, and at most `cap`. An edge of metric length 1 strays about an eighth of a unit of
     /// length from the surface. Across it, where no edge sees anything, the larger of both.
-    pub fn metric(&self, [floor, cap]: [f64; 2]) -> Tensor3 {
+    pub(crate) fn metric(&self, [floor, cap]: [f64; 2]) -> Tensor3 {
         let [most, least] = self.values.map(|c| c.abs().min(cap).max(floor));
         Tensor3::from_axes([self.axes[0], self.axes[1], self.normal], [most, least, most])
     }

@@ -28,7 +28,7 @@ impl VertexId {
 
 impl FaceId {
     /// As an array index.
-    pub fn index(self) -> usize {
+    pub(crate) fn index(self) -> usize {
         self.0 as usize
     }
 
@@ -40,7 +40,7 @@ impl FaceId {
 
 impl HalfEdge {
     /// As an array index.
-    pub fn index(self) -> usize {
+    pub(crate) fn index(self) -> usize {
         self.0 as usize
     }
 
@@ -51,7 +51,7 @@ impl HalfEdge {
 
     /// The next half-edge of the face, counter-clockwise.
     #[must_use]
-    pub fn next(self) -> HalfEdge {
+    pub(crate) fn next(self) -> HalfEdge {
         HalfEdge(if self.0 % 3 == 2 { self.0 - 2 } else { self.0 + 1 })
     }
 

@@ -91,7 +91,7 @@ impl Triangulation {
     }
 
     /// Number of living vertices.
-    pub fn vertex_count(&self) -> usize {
+    pub(crate) fn vertex_count(&self) -> usize {
         self.start.len() - self.free_vertices.len()
     }
 
@@ -157,7 +157,7 @@ impl Triangulation {
     }
 
     /// The ends of an edge, from and to, and what is opposite to it on the left and on the right; `None` at the border.
-    pub fn quad(&self, h: HalfEdge) -> Option<[VertexId; 4]> {
+    pub(crate) fn quad(&self, h: HalfEdge) -> Option<[VertexId; 4]> {
         let t = self.twin(h)?;
         Some([self.origin(h), self.target(h), self.apex(h), self.apex(t)])
     }
@@ -179,7 +179,7 @@ impl Triangulation {
     }
 
     /// Sets the metric length of the edge, on both sides.
-    pub fn set_length(&mut self, h: HalfEdge, length: f64) {
+    pub(crate) fn set_length(&mut self, h: HalfEdge, length: f64) {
         self.length[h.index()] = length;
         if let Some(t) = self.twin(h) {
             self.length[t.index()] = length;
@@ -221,7 +221,7 @@ impl Triangulation {
     }
 
     /// Some half-edge that leaves the vertex; at the border the one whose right side is the border.
-    pub fn start(&self, v: VertexId) -> Option<HalfEdge> {
+    pub(crate) fn start(&self, v: VertexId) -> Option<HalfEdge> {
         let h = self.start[v.index()];
         (h != NONE).then_some(HalfEdge(h))
     }
@@ -237,13 +237,13 @@ impl Triangulation {
     }
 
     /// Vertices minus edges plus faces.
-    pub fn euler_characteristic(&self) -> isize {
+    pub(crate) fn euler_characteristic(&self) -> isize {
         let [v, e] = [self.vertices().count(), self.edges().count()].map(usize::cast_signed);
         v - e + self.face_count().cast_signed()
     }
 
     /// The closed curves of the border, each as its half-edges in order, the faces on their left.
-    pub fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
+    pub(crate) fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
         let mut seen = vec![false; 3 * self.face_slots()];
         let mut loops = Vec::new();
         for start in self.edges().filter(|&h| self.twin(h).is_none()) {
@@ -263,7 +263,7 @@ impl Triangulation {
     }
 
     /// The half-edge from a to b, if a face has it (the first of several).
-    pub fn find(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
+    pub(crate) fn find(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
         self.star(a).find(|&h| self.target(h) == b)
     }
 }

@@ -71,7 +71,8 @@ fn gradation_is_one_law() {
         assert_eq!(holders(word), [law], "{word}");
     }
     assert_eq!(holders("hgrad.ln()"), [""; 0]);
-    let users = ["metric/nodal/gradation.rs", "metric/nodal/pipeline.rs", "surface/metric/sizing.rs", "surface/remesh.rs"];
+    let users =
+        ["metric/nodal/gradation.rs", "metric/nodal/pipeline.rs", "surface/metric/sizing.rs", "surface/remesh.rs"];
     assert_eq!(holders("Gradation::new("), users, "whoever grades");
 }
 

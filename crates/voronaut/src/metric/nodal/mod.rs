@@ -29,7 +29,7 @@ mod waiting;
 pub use combine::{average, intersect};
 pub use complexity::{complexity, normalise};
 pub use gradation::grade;
-pub(crate) use gradation::{Gradation, Connection};
+pub(crate) use gradation::{Connection, Gradation};
 pub use implied::{implied, isotropic};
 pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source, Touched};
 pub use restrict::{Limit, Limits, restrict};

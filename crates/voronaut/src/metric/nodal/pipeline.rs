@@ -101,7 +101,8 @@ impl Pipeline {
         self.target_complexity.map_or(Ok(()), demand_target)?;
         self.limits.check(mesh.points.len())?;
         let combined = self.combine(mesh, sources)?;
-        let gradation = self.gradation_factor.map(|factor| Gradation::new(FlatConnection::of(mesh), factor)).transpose()?;
+        let gradation =
+            self.gradation_factor.map(|factor| Gradation::new(FlatConnection::of(mesh), factor)).transpose()?;
         let stage = Stage { mesh, combined: &combined, limits: &self.limits, gradation };
         let Some(target) = self.target_complexity else { return stage.outcome(1.0, stage.at(1.0)?) };
         // Gradation is dear, and its result may be lifted.

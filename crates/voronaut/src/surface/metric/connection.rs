@@ -129,7 +129,11 @@ mod tests {
         let surface = torus(2.0, 0.7, 0.4).unwrap();
         let of = |surface: &Surface| {
             let thin = |p: &Point3| {
-                if p.x > 2.6 { plane(*p).restrict(crate::geometry::Tensor3::square(Vector3::new(0.0, 99.0, 9.0))) } else { Tensor::default() }
+                if p.x > 2.6 {
+                    plane(*p).restrict(crate::geometry::Tensor3::square(Vector3::new(0.0, 99.0, 9.0)))
+                } else {
+                    Tensor::default()
+                }
             };
             let given: Vec<Tensor> = surface.positions().iter().map(|p| thin(p) + Tensor::isotropic(5.0)).collect();
             graded(surface, &given, 1.3)
@@ -137,7 +141,10 @@ mod tests {
         let (whole, apart) = (of(&surface), of(&soup(&surface)));
         for (i, &v) in surface.to_mesh().triangles.iter().flatten().enumerate() {
             let (one, other) = (apart[i], whole[v as usize]);
-            assert!((one.xx / other.xx - 1.0).abs() < 1e-4 && (one.yy / other.yy - 1.0).abs() < 1e-4, "{one:?} {other:?}");
+            assert!(
+                (one.xx / other.xx - 1.0).abs() < 1e-4 && (one.yy / other.yy - 1.0).abs() < 1e-4,
+                "{one:?} {other:?}"
+            );
         }
         assert!(whole.iter().any(|m| m.anisotropy() > 5.0) && whole.iter().all(|m| m.eigen().small > 1.0 / 25.0));
     }

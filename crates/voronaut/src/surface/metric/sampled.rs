@@ -22,7 +22,7 @@ impl Sampled {
     ///
     /// # Errors
     /// [`Error::Metric`] where numbers of tensors and vertices differ, or that of a vertex of a triangle is no metric.
-    pub fn new(surface: &Surface, tensors: &[Tensor3]) -> Result<Self> {
+    pub(crate) fn new(surface: &Surface, tensors: &[Tensor3]) -> Result<Self> {
         check_count(surface, tensors.len())?;
         let t = surface.topology();
         for v in t.vertices() {

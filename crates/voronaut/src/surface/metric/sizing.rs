@@ -79,7 +79,7 @@ impl Sizing {
     ///
     /// # Errors
     /// [`Error::Parse`] that names one that does not.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         Bounds { h_min: Some(self.h_min), h_max: Some(self.h_max), a_max: None }.check()?;
         let fault = |name: &str, value: f64, help: &str| Err(Error::parse("sizes", format!("{name} = {value}"), help));
         match self.hgrad {
@@ -109,7 +109,14 @@ impl Sizing {
         sizes.fold(self.h_max, f64::min).max(self.h_min)
     }
 
-    fn tensor(&self, surface: &Surface, v: usize, c: &Curvatures, plane: &TangentPlane, asked: Option<Tensor3>) -> Tensor {
+    fn tensor(
+        &self,
+        surface: &Surface,
+        v: usize,
+        c: &Curvatures,
+        plane: &TangentPlane,
+        asked: Option<Tensor3>,
+    ) -> Tensor {
         let eigenvalue = |size: f64| 1.0 / (size * size);
         let [along, across] = c.values.map(|c| eigenvalue(self.of_curvature(c)));
         let of_surface = Tensor::from_axis(plane.flatten(c.axes[0]), along, across);

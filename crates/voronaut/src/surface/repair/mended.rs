@@ -118,7 +118,7 @@ const PLACES: usize = 3;
 
 impl Mended {
     /// How often a kind of damage was found.
-    pub fn count(&self, kind: Damage) -> usize {
+    pub(crate) fn count(&self, kind: Damage) -> usize {
         self.mends.iter().find(|mend| mend.kind == kind).map_or(0, |mend| mend.count)
     }
 
