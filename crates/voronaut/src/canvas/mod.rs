@@ -32,7 +32,8 @@ pub(crate) use consistent::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 pub use draped::Draped;
 pub(crate) use extent::metric_area;
 pub use kind::Kind;
-pub use star_set::{StarFigures, StarSet};
+pub use star_set::StarFigures;
+pub use star_set::StarSet;
 pub use way::Way;
 
 use crate::domain::Domain;

@@ -18,9 +18,11 @@ pub use convexity::Convexity;
 pub(crate) use coverage::Coverage;
 pub use distortion::distortion;
 pub(crate) use distortion::distortion_around;
+pub use sizing::Cost;
+pub use sizing::longest_edge;
 pub(crate) use sizing::{Area, sized_canvas};
-pub use sizing::{Cost, longest_edge};
-pub use theorems::{Evidence, verdicts};
+pub use theorems::Evidence;
+pub use theorems::verdicts;
 pub use verdict::{Condition, Outcome, Verdict};
 pub use walk::{Found, Walks, walk};
 

@@ -33,7 +33,7 @@ const STRAIGHT: f64 = 0.02;
 
 /// How far up the levels a test may climb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effort {
+pub(crate) enum Effort {
     /// To lengths from the expansions at the vertices: no evaluation of the field.
     Local = 1,
     /// To quadrature along the chords.

@@ -17,9 +17,10 @@ mod surface_margin;
 mod patch;
 
 pub(crate) use consult::Consultation;
-pub use consult::{Disagreement, Made, Road};
+pub use consult::Disagreement;
+pub use consult::{Made, Road};
 pub(crate) use edit::Saved;
-pub use margin::Effort;
+pub(crate) use margin::Effort;
 pub(crate) use mending::Mending;
 pub(crate) use moving::Moving;
 pub(crate) use on_surface::SurfaceDual;
@@ -49,7 +50,7 @@ pub enum Kind {
 
 /// Work counters; deterministic.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct DualCounters {
+pub(crate) struct DualCounters {
     /// In-circle tests settled at each level.
     pub tests: [u64; LEVELS],
     /// Flips done.

@@ -18,7 +18,7 @@ const RING_RADIUS: f64 = 0.5;
 /// expansion at a point describes it. There the tensor is the mean over a ball about a unit wide, and the derivatives
 /// are those of the best linear fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LocalMetric {
+pub(crate) struct LocalMetric {
     /// The tensor M.
     pub tensor: Tensor,
     /// dM/dx and dM/dy.

@@ -7,7 +7,7 @@ use crate::metric::MetricField;
 
 /// See [`Paths::logarithm`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Logarithm {
+pub(crate) struct Logarithm {
     /// The velocity at p of the geodesic that arrives at q after the time 1: in the tensor at p it is as long as the geodesic,
     /// up to errors.
     pub velocity: Vector,

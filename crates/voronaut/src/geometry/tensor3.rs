@@ -22,7 +22,7 @@ pub struct Tensor3 {
 
 /// Eigenvalues in descending order, and unit eigenvectors in the same order, perpendicular to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eigen3 {
+pub(crate) struct Eigen3 {
     /// From the largest down.
     pub values: [f64; 3],
     /// One of each value.

@@ -120,7 +120,7 @@ fn is_settled(known: Option<Tested>) -> bool {
 
 /// What was done. Deterministic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TestCounters {
+pub(crate) struct TestCounters {
     /// Tests settled at each level.
     pub tests: [u64; LEVELS],
     /// Lengths solved for.
@@ -131,7 +131,7 @@ pub struct TestCounters {
 
 /// Lengths and outcomes that are known. They are of one [`InCircle`].
 #[derive(Clone, Debug, Default)]
-pub struct Tests {
+pub(crate) struct Tests {
     /// Lengths, by their ends.
     pub lengths: Lengths,
     /// Outcomes, and the last level that they are from.

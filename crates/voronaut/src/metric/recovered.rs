@@ -16,7 +16,7 @@ pub(super) const FLOOR: f64 = 1e-4;
 ///
 /// Outside the mesh the value is that at the nearest point.
 #[derive(Clone, Debug)]
-pub struct Recovered {
+pub(crate) struct Recovered {
     values: Vec<f64>,
     hessians: Vec<Tensor>,
     mesh: Mesh,

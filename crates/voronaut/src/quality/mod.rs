@@ -24,18 +24,23 @@ mod test_meshes;
 mod unmet;
 mod validity;
 
-pub use crossings::{Crossing, crossing_edges, crossings};
+pub use crossings::Crossing;
+pub use crossings::{crossing_edges, crossings};
 pub use fault::Fault;
 pub(crate) use faults::faulty_triangles;
 pub use fidelity::{Farthest, Fidelity, fidelity};
 pub use histogram::{Both, Histogram, Histograms, histograms};
-pub use interpolation::{Exponent, InterpolationError, interpolation_error};
-pub use meetings::{Excused, Meetings};
+pub use interpolation::Exponent;
+pub use interpolation::{InterpolationError, interpolation_error};
+pub use meetings::Excused;
+pub use meetings::Meetings;
 pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};
 pub use position::Position;
-pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
+pub use surface_fidelity::NormalDeviation;
+pub use surface_fidelity::{Deviation, SurfaceFidelity, surface_fidelity};
 pub use surface_quality::surface_quality;
-pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet};
+pub use unmet::WorstEdge;
+pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, surface_unmet, unmet};
 pub use validity::{Validity, check, validity, validity_on};
 
 pub use edges::Edges;

@@ -7,7 +7,8 @@ mod regions;
 mod simplices;
 mod untangle;
 
-pub use edge::{Found, GeodesicEdge};
+pub use edge::Found;
+pub use edge::GeodesicEdge;
 pub use simplices::Grid;
 
 use crate::diagram::Diagram;

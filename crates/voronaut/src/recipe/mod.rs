@@ -31,7 +31,8 @@ pub use graded::GradedAt;
 pub use on_surface::mesh_surface;
 pub use options::{Centroid, MeshOptions, Mesher, Seeding};
 pub use remesh_input::{Keep, RemeshInput};
-pub use remesh_sizes::{Asked, RemeshSizes};
+pub use remesh_sizes::Asked;
+pub use remesh_sizes::RemeshSizes;
 pub use surface_dual::{surface_dual, surface_mesh};
 
 use crate::canvas::{Canvas, CanvasFigures};

@@ -13,9 +13,10 @@ mod plan;
 mod protected;
 mod segments;
 
+pub use adapted::Held;
+pub use adapted::adapted;
 pub(crate) use adapted::exchanged;
 pub use adapted::{Adapted, Wanted};
-pub use adapted::{Held, adapted};
 pub(crate) use curve_sizes::CurveSizes;
 pub use curves::simplify;
 pub use farthest::{Farthest, refine_farthest};
@@ -23,8 +24,9 @@ pub(crate) use features::{ALL_VERTICES, FeatureEdge, FeatureSeeds, MeasuredCurve
 pub use interior::Refined;
 pub(crate) use interior::insert_spaced;
 pub use interior::{Fill, refine};
-pub use on_surface::{Seeded, triangulated};
+pub(crate) use on_surface::{Seeded, triangulated};
 pub(crate) use on_surface::{seed_surface, triangulated_upright};
 pub use plan::{Plan, Target, demand_memory};
 pub(crate) use protected::{Picking, refine_protected};
-pub use segments::{MetricArc, sample_segments};
+pub use segments::MetricArc;
+pub use segments::sample_segments;

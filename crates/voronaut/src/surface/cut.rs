@@ -26,7 +26,7 @@ pub struct Seams {
 
 /// The topology of a surface before it was cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Whole {
+pub(crate) struct Whole {
     /// Vertices minus edges plus triangles.
     pub euler: isize,
     /// How many closed curves its border consists of.
