@@ -106,6 +106,8 @@ pub mod recipe;
 
 #[cfg(test)]
 mod test_cases;
+#[cfg(test)]
+mod tests;
 
 pub use error::{Error, Result};
 

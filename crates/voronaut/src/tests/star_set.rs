@@ -1,16 +1,14 @@
 //! Star sets as canvases: against affine Delaunay triangulations, on shapes with holes, by laws of scale and threads.
 
-use voronaut::canvas::{Canvas, StarSet};
-use voronaut::domain::{Domain, from_polygons};
-use voronaut::geometry::{Point, Tensor, in_circle, signed_area};
-use voronaut::metric::{Shock, Swirl, Uniform};
-use voronaut::triangulation::VertexId;
-use voronaut_io::geojson;
+use crate::canvas::{Canvas, StarSet};
+use crate::domain::Domain;
+use crate::geometry::{Point, Tensor, in_circle, signed_area};
+use crate::metric::{Shock, Swirl, Uniform};
+use crate::test_cases::plate;
+use crate::triangulation::VertexId;
 
-fn plate() -> Domain {
-    let text = r#"{ "type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 2], [0, 2], [0, 0]],
-        [[1, 0.5], [2, 0.5], [2, 1.5], [1, 1.5], [1, 0.5]]] }"#;
-    Domain::new(&from_polygons(&geojson::read(text, "plate").unwrap()).unwrap()).unwrap()
+fn holed() -> Domain {
+    plate(&[&[[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]], &[[1.0, 0.5], [2.0, 0.5], [2.0, 1.5], [1.0, 1.5]]])
 }
 
 fn framed(tensor: Tensor, p: Point) -> Point {
@@ -56,7 +54,7 @@ fn in_a_uniform_metric_stars_are_those_of_the_affine_delaunay_triangulation() {
 
 #[test]
 fn stars_keep_to_the_domain_and_neighbours_are_reciprocal() {
-    let domain = plate();
+    let domain = holed();
     let field = Shock { phi: 10.0, lambda: 0.6 };
     let canvas = Canvas::star_set(&domain, &field, 2000).unwrap();
     let figures = stars(&canvas).figures();

@@ -1,17 +1,17 @@
 //! What the suite runs on: the plane or a surface with a metric and some places, canvases of it, and what is found on these.
 
-use crate::wavy::Wavy;
+use crate::Result;
+use crate::canvas::{Canvas, Draped, Kind};
+use crate::diagram::{Distances, SurfaceDistances};
+use crate::domain::Domain;
+use crate::geodesic::Method;
+use crate::geometry::{Point, Point3, Tensor3, Vector3};
+use crate::metric::MetricField;
+use crate::surface::Input;
+use crate::surface::metric::SurfaceMetric;
+use crate::tests::wavy::Wavy;
+use crate::triangulation::VertexId;
 use std::sync::Arc;
-use voronaut::Result;
-use voronaut::canvas::{Canvas, Draped, Kind};
-use voronaut::diagram::{Distances, SurfaceDistances};
-use voronaut::domain::Domain;
-use voronaut::geodesic::Method;
-use voronaut::geometry::{Point, Point3, Tensor3, Vector3};
-use voronaut::metric::MetricField;
-use voronaut::surface::Input;
-use voronaut::surface::metric::SurfaceMetric;
-use voronaut::triangulation::VertexId;
 
 /// A domain or a surface, with a metric.
 #[derive(Clone)]
@@ -109,13 +109,13 @@ pub(crate) fn surfaces() -> [Ground; 4] {
 struct Times<M>(M, f64);
 
 impl SurfaceMetric for Times<Arc<dyn SurfaceMetric + Send + Sync>> {
-    fn at(&self, place: &voronaut::surface::Place) -> Tensor3 {
+    fn at(&self, place: &crate::surface::Place) -> Tensor3 {
         self.0.at(place) * self.1
     }
 }
 
 impl MetricField for Times<Arc<dyn MetricField + Send + Sync>> {
-    fn at(&self, p: Point) -> voronaut::geometry::Tensor {
+    fn at(&self, p: Point) -> crate::geometry::Tensor {
         self.0.at(p) * self.1
     }
 }

@@ -1,13 +1,13 @@
 //! Nets against closed forms, and seeds that are power-protected because it was asked for.
 
-use voronaut::canvas::Canvas;
-use voronaut::diagram::{Diagram, resolve};
-use voronaut::domain::Domain;
-use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::{MetricField, Scaled, Uniform};
-use voronaut::net::{Net, Triangles};
-use voronaut::progress::Silent;
-use voronaut::recipe::{self, MeshOptions, Meshed, Seeding};
+use crate::canvas::Canvas;
+use crate::diagram::{Diagram, resolve};
+use crate::domain::Domain;
+use crate::geometry::{Point, Tensor};
+use crate::metric::{MetricField, Scaled, Uniform};
+use crate::net::{Net, Triangles};
+use crate::progress::Silent;
+use crate::recipe::{self, MeshOptions, Meshed, Seeding};
 
 /// Two right angles and a fourth seed: the circle of the first three is around (0.5, 0.5).
 const SEEDS: [(f64, f64); 4] = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.1, 1.05)];
@@ -90,7 +90,7 @@ fn protected_seeds_are_and_the_raw_nerve_is_their_dual() {
         let canvas =
             resolve(Canvas::intrinsic(domain, &unit, 20 * vertices).unwrap(), &unit, &seeds, 8).unwrap().canvas;
         let diagram = Diagram::new(&canvas, &unit, &seeds).unwrap();
-        let raw = recipe::dual(&diagram, &unit, voronaut::dual::Road::Both, &Silent).raw_nerve;
+        let raw = recipe::dual(&diagram, &unit, crate::dual::Road::Both, &Silent).raw_nerve;
         assert_eq!((raw.missing, raw.extra), (0, 0), "{raw:?}");
         let interior = meshed.net.unwrap().interior().count();
         assert_eq!(raw.triangles, interior);

@@ -1,8 +1,8 @@
 //! A wavy sheet of triangles, which unrolls into a rectangle: every distance on it is known to rounding.
 
-use voronaut::geometry::{Point, Point3};
-use voronaut::mesh::Mesh;
-use voronaut::surface::{Input, Surface};
+use crate::geometry::{Point, Point3};
+use crate::mesh::Mesh;
+use crate::surface::{Input, Surface};
 
 /// z = 0.2 sin(3 x) over the square from -1 to 1, sampled on a grid: flat between columns of vertices.
 pub(crate) struct Wavy {

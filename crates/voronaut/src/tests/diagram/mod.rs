@@ -5,16 +5,16 @@ mod common;
 mod holes;
 mod updates;
 
+use crate::canvas::Canvas;
+use crate::diagram::{Diagram, resolve};
+use crate::domain::{Domain, rect};
+use crate::geodesic::{Geodesic, Marching, Sources, Wave};
+use crate::geometry::{Orientation, Point, Tensor, Vector, orientation};
+use crate::metric::{MetricField, Shock, Uniform};
+use crate::planar::delaunay;
+use crate::triangulation::VertexId;
 use common::{halton, square, vertices};
 use std::collections::BTreeSet;
-use voronaut::canvas::Canvas;
-use voronaut::diagram::{Diagram, resolve};
-use voronaut::domain::{Domain, rect};
-use voronaut::geodesic::{Geodesic, Marching, Sources, Wave};
-use voronaut::geometry::{Orientation, Point, Tensor, Vector, orientation};
-use voronaut::metric::{MetricField, Shock, Uniform};
-use voronaut::planar::delaunay;
-use voronaut::triangulation::VertexId;
 
 /// Seeds in the square [-half, half]^2, no two images closer than `spacing`.
 fn spaced(half: f64, tries: u32, spacing: f64, image: &dyn Fn(Point) -> Point) -> Vec<Point> {

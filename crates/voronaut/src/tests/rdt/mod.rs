@@ -4,9 +4,9 @@
 mod models;
 mod robust;
 
+use crate::geometry::{Point, Tensor};
+use crate::metric::MetricField;
 use models::{Map, Model, SQUARE, pulled_back, run};
-use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::MetricField;
 
 #[test]
 fn uniform() {

@@ -1,17 +1,17 @@
 //! Certificates: what is certified is so, and random seeds are not certified.
 
+use crate::canvas::{Canvas, Kind};
+use crate::certificate::{Certificate, Constants, Outcome};
+use crate::diagram::Diagram;
+use crate::domain::Domain;
+use crate::dual::Road;
+use crate::geometry::{Point, Tensor, Vector};
+use crate::metric::{MetricField, Uniform};
+use crate::net::{Ball, Net};
+use crate::planar::delaunay;
+use crate::progress::Silent;
+use crate::recipe;
 use std::collections::BTreeSet;
-use voronaut::canvas::{Canvas, Kind};
-use voronaut::certificate::{Certificate, Constants, Outcome};
-use voronaut::diagram::Diagram;
-use voronaut::domain::Domain;
-use voronaut::dual::Road;
-use voronaut::geometry::{Point, Tensor, Vector};
-use voronaut::metric::{MetricField, Uniform};
-use voronaut::net::{Ball, Net};
-use voronaut::planar::delaunay;
-use voronaut::progress::Silent;
-use voronaut::recipe;
 
 /// Numbers from 0 to 1, the same on every machine.
 struct Random(u64);

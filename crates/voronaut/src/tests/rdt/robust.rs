@@ -1,13 +1,13 @@
 //! Starts that are poor, ties, holes, threads, and metrics without a closed form.
 
 use super::models::{Model, Random, SQUARE, check, pulled_back, straight_delaunay};
-use voronaut::canvas::Canvas;
-use voronaut::diagram::Diagram;
-use voronaut::domain::{Domain, rect};
-use voronaut::geodesic::{Fineness, Margin, Paths, margin_by_power};
-use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::{Formula, MetricField, Scaled, Shock, Swirl};
-use voronaut::rdt::{Edge, Rdt, Start, Trust};
+use crate::canvas::Canvas;
+use crate::diagram::Diagram;
+use crate::domain::{Domain, rect};
+use crate::geodesic::{Fineness, Margin, Paths, margin_by_power};
+use crate::geometry::{Point, Tensor};
+use crate::metric::{Formula, MetricField, Scaled, Shock, Swirl};
+use crate::rdt::{Edge, Rdt, Start, Trust};
 
 /// Seeds at unit spacing in a metric, by throwing darts with the tensor halfway.
 fn darts(field: &dyn MetricField, [low, high]: [Point; 2], tries: usize) -> Vec<Point> {

@@ -2,9 +2,9 @@
 
 use super::common::square;
 use super::{WAVES, lattice, sorted, truth};
+use crate::canvas::{Canvas, Kind};
+use crate::diagram::{Diagram, RESOLVE_ROUNDS, resolve};
 use std::collections::BTreeSet;
-use voronaut::canvas::{Canvas, Kind};
-use voronaut::diagram::{Diagram, RESOLVE_ROUNDS, resolve};
 
 #[test]
 fn protected_seeds_have_the_same_nerve_on_every_canvas() {

@@ -1,17 +1,17 @@
 //! On a sphere with its own metric the Riemannian Delaunay triangulation is the convex hull.
 
 use super::random::Random;
+use crate::canvas::{Canvas, Kind};
+use crate::diagram::SurfaceDiagram;
+use crate::dual::Road;
+use crate::geodesic::Method;
+use crate::geometry::{Point3, Tensor3};
+use crate::progress::Silent;
+use crate::recipe;
+use crate::surface::metric::Constant;
+use crate::surface::{Input, Place};
+use crate::triangulation::smallest_first;
 use std::collections::HashSet;
-use voronaut::canvas::{Canvas, Kind};
-use voronaut::diagram::SurfaceDiagram;
-use voronaut::dual::Road;
-use voronaut::geodesic::Method;
-use voronaut::geometry::{Point3, Tensor3};
-use voronaut::progress::Silent;
-use voronaut::recipe;
-use voronaut::surface::metric::Constant;
-use voronaut::surface::{Input, Place};
-use voronaut::triangulation::smallest_first;
 
 /// Random points of the unit sphere.
 fn seeds(count: usize) -> Vec<Point3> {

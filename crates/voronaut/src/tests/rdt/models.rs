@@ -1,13 +1,13 @@
 //! Surfaces in which circles are known in closed form, and what a triangulation of seeds is worth beside them.
 
+use crate::canvas::Canvas;
+use crate::diagram::Diagram;
+use crate::domain::{Domain, rect};
+use crate::geometry::{Point, Tensor, Vector};
+use crate::metric::MetricField;
+use crate::planar::{Planar, delaunay};
+use crate::rdt::{Edge, Rdt, Start, Trust};
 use std::collections::{BTreeMap, BTreeSet};
-use voronaut::canvas::Canvas;
-use voronaut::diagram::Diagram;
-use voronaut::domain::{Domain, rect};
-use voronaut::geometry::{Point, Tensor, Vector};
-use voronaut::metric::MetricField;
-use voronaut::planar::{Planar, delaunay};
-use voronaut::rdt::{Edge, Rdt, Start, Trust};
 
 /// A generator of even numbers in [0, 1): splitmix64.
 pub(crate) struct Random(pub(crate) u64);

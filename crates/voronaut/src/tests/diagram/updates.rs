@@ -1,15 +1,15 @@
 //! Local insertion, removal and moves against recomputation, and the work they take.
 
 use super::common::{halton, square, vertices};
-use voronaut::canvas::Canvas;
-use voronaut::diagram::Diagram;
-use voronaut::domain::{Domain, from_poly, from_polygons};
-use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::{MetricField, Shock, Swirl, Uniform};
-use voronaut::progress::Silent;
-use voronaut::recipe::{MeshOptions, mesh};
-use voronaut::triangulation::VertexId;
-use voronaut_io::{geojson, poly};
+use crate::canvas::Canvas;
+use crate::diagram::Diagram;
+use crate::domain::Domain;
+use crate::geometry::{Point, Tensor};
+use crate::metric::{MetricField, Shock, Swirl, Uniform};
+use crate::progress::Silent;
+use crate::recipe::{MeshOptions, mesh};
+use crate::test_cases::plate;
+use crate::triangulation::VertexId;
 
 fn assert_as_made_anew(diagram: &Diagram, field: &dyn MetricField) {
     let canvas = diagram.canvas();
@@ -120,9 +120,8 @@ fn work_is_linear_in_the_canvas() {
 
 #[test]
 fn removal_leaves_nothing_where_edges_lead_around_a_hole_and_back() {
-    let text = r#"{"type":"Polygon","coordinates":[[[-1,-1],[1,-1],[1,1],[-1,1],[-1,-1]],
-        [[-0.02,-0.02],[-0.02,0.02],[0.02,0.02],[0.02,-0.02],[-0.02,-0.02]]]}"#;
-    let domain = Domain::new(&from_polygons(&geojson::read(text, "ring").unwrap()).unwrap()).unwrap();
+    let square = |half: f64| [[-half, -half], [half, -half], [half, half], [-half, half]];
+    let domain = plate(&[&square(1.0), &square(0.02)]);
     let mut loops = 0;
     for i in 0..80_u32 {
         let (angle, aspect) = (0.1 * f64::from(i), 3.0 + f64::from(i % 40));
@@ -148,10 +147,11 @@ fn removal_leaves_nothing_where_edges_lead_around_a_hole_and_back() {
 #[test]
 fn a_seed_where_holes_touch_belongs_to_both_sides() {
     // Two holes from wall to wall but for the point in which they touch.
-    let ring = "11 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 1 2\n6 1.5 1.5\n7 2 2\n8 1.5 2.5\n9 2.5 1.5\n10 3 2\n\
-                11 2.5 2.5\n12 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n5 5 6\n6 6 7\n7 7 8\n8 8 5\n9 7 9\n10 9 10\n\
-                11 10 11\n12 11 7\n2\n1 1.5 2\n2 2.5 2\n";
-    let domain = Domain::new(&from_poly(&poly::read(ring.as_bytes(), "touching.poly").unwrap()).unwrap()).unwrap();
+    let domain = plate(&[
+        &[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]],
+        &[[1.0, 2.0], [1.5, 1.5], [2.0, 2.0], [1.5, 2.5]],
+        &[[2.0, 2.0], [2.5, 1.5], [3.0, 2.0], [2.5, 2.5]],
+    ]);
     let field = Uniform::default();
     let canvas = Canvas::intrinsic(&domain, &field, 4000).unwrap();
     let touching = Point::new(2.0, 2.0);

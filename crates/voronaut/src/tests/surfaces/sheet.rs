@@ -1,19 +1,19 @@
 //! On a sheet that unrolls into the plane the Riemannian Delaunay triangulation is that of the unrolled seeds.
 
 use super::random::Random;
-use crate::wavy::Wavy;
+use crate::canvas::{Canvas, Kind, size_for};
+use crate::diagram::SurfaceDiagram;
+use crate::dual::Road;
+use crate::geodesic::Method;
+use crate::geometry::{Point, Tensor3};
+use crate::planar::{Planar, delaunay};
+use crate::progress::Silent;
+use crate::recipe::surface_dual;
+use crate::surface::Place;
+use crate::surface::metric::Constant;
+use crate::tests::wavy::Wavy;
+use crate::triangulation::{FaceId, HalfEdge, smallest_first};
 use std::collections::HashSet;
-use voronaut::canvas::{Canvas, Kind, size_for};
-use voronaut::diagram::SurfaceDiagram;
-use voronaut::dual::Road;
-use voronaut::geodesic::Method;
-use voronaut::geometry::{Point, Tensor3};
-use voronaut::planar::{Planar, delaunay};
-use voronaut::progress::Silent;
-use voronaut::recipe::surface_dual;
-use voronaut::surface::Place;
-use voronaut::surface::metric::Constant;
-use voronaut::triangulation::{FaceId, HalfEdge, smallest_first};
 
 const SEEDS: usize = 2000;
 /// Sines of the angle by which four seeds miss lying on a circle, below which flips are forgiven.

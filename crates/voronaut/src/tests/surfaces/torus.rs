@@ -1,17 +1,17 @@
 //! The dual of seeds on a torus is one.
 
 use super::random::Random;
+use crate::canvas::{Canvas, Kind, size_for};
+use crate::diagram::SurfaceDiagram;
+use crate::dual::Road;
+use crate::geodesic::Method;
+use crate::geometry::{Point3, Tensor3};
+use crate::progress::Silent;
+use crate::recipe::surface_dual;
+use crate::surface::metric::Constant;
+use crate::surface::{Input, Place};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
-use voronaut::canvas::{Canvas, Kind, size_for};
-use voronaut::diagram::SurfaceDiagram;
-use voronaut::dual::Road;
-use voronaut::geodesic::Method;
-use voronaut::geometry::{Point3, Tensor3};
-use voronaut::progress::Silent;
-use voronaut::recipe::surface_dual;
-use voronaut::surface::metric::Constant;
-use voronaut::surface::{Input, Place};
 
 #[test]
 fn duals_on_a_torus_are_closed_with_characteristic_zero() {

@@ -6,17 +6,17 @@ mod grounds;
 mod ladder;
 mod surfaces;
 
+use crate::canvas::{Canvas, Draped, Kind};
+use crate::diagram::{self, Diagram, Distances, SurfaceDiagram, SurfaceDistances};
+use crate::domain::Domain;
+use crate::geodesic::{Method, STVD_WINDOW};
+use crate::geometry::{Point, Point3, Tensor, Tensor3};
+use crate::metric::Swirl;
+use crate::surface::Input;
+use crate::surface::metric::Constant;
+use crate::test_cases::plate;
+use crate::triangulation::VertexId;
 use grounds::{FROM, Ground, great_circle, planar, points, relaxed, sphere, square, stretched_sphere};
-use voronaut::canvas::{Canvas, Draped, Kind};
-use voronaut::diagram::{self, Diagram, Distances, SurfaceDiagram, SurfaceDistances};
-use voronaut::domain::{Domain, from_poly};
-use voronaut::geodesic::{Method, STVD_WINDOW};
-use voronaut::geometry::{Point, Point3, Tensor, Tensor3};
-use voronaut::metric::Swirl;
-use voronaut::surface::Input;
-use voronaut::surface::metric::Constant;
-use voronaut::triangulation::VertexId;
-use voronaut_io::poly;
 
 /// By how much distances by a method may err, as a share, on the canvases of these tests.
 fn tolerance(method: Method) -> f64 {
@@ -88,9 +88,7 @@ type Mapped = (Ground, Ground, fn(Point3, Point3) -> f64);
 fn mapped_square() -> Mapped {
     let image = |p: Point| Point::new(4.0 * p.x + p.y, p.y);
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| image(Point::new(x, y)));
-    let [a, b, c, d] = corners.map(|p| format!("{} {}", p.x, p.y));
-    let text = format!("4 2 0 0\n1 {a}\n2 {b}\n3 {c}\n4 {d}\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n");
-    let mapped = Domain::new(&from_poly(&poly::read(text.as_bytes(), "image").unwrap()).unwrap()).unwrap();
+    let mapped = plate(&[&corners.map(|p| [p.x, p.y])]);
     let images: Vec<Point> = points(1.0).into_iter().map(image).collect();
     let there = planar(mapped, |_: Point| Tensor::IDENTITY, &images);
     (square(1.0, |_: Point| Tensor::new(16.0, 4.0, 2.0)), there, Point3::distance)

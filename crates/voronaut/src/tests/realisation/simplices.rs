@@ -1,9 +1,9 @@
 //! Karcher means on surfaces where they are known, and the grids made of them.
 
 use super::{realised, seeds};
-use voronaut::geodesic::{Fineness, Paths, karcher_mean};
-use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::MetricField;
+use crate::geodesic::{Fineness, Paths, karcher_mean};
+use crate::geometry::{Point, Tensor};
+use crate::metric::MetricField;
 
 fn mean(field: &dyn MetricField, corners: [Point; 3], weights: [f64; 3]) -> Point {
     karcher_mean(&Paths::default(), field, corners, weights, Fineness::FINEST).expect("a mean")

@@ -1,14 +1,14 @@
 //! The two roads to the dual of given seeds, lengths of geodesics and the nerve on a canvas, held against each other.
 
+use crate::canvas::{Canvas, size_for};
+use crate::diagram::Diagram;
+use crate::domain::Domain;
+use crate::dual::Road;
+use crate::geometry::Point;
+use crate::metric::{MetricField, Shock, Swirl};
+use crate::progress::Silent;
+use crate::recipe::{self, SeedDual};
 use std::collections::{BTreeMap, BTreeSet};
-use voronaut::canvas::{Canvas, size_for};
-use voronaut::diagram::Diagram;
-use voronaut::domain::Domain;
-use voronaut::dual::Road;
-use voronaut::geometry::Point;
-use voronaut::metric::{MetricField, Shock, Swirl};
-use voronaut::progress::Silent;
-use voronaut::recipe::{self, SeedDual};
 
 /// A number in 0..1 from two, the same on every machine.
 fn hashed(i: u64, salt: u64) -> f64 {

@@ -1,11 +1,11 @@
 //! What relaxation promises: the energy never rises, its minimum is known, and boundaries stay where they are.
 
-use voronaut::domain::Domain;
-use voronaut::geometry::{Point, Tensor};
-use voronaut::mesh::Mesh;
-use voronaut::metric::MetricField;
-use voronaut::progress::Silent;
-use voronaut::recipe::{self, Centroid, MeshOptions, Meshed};
+use crate::domain::Domain;
+use crate::geometry::{Point, Tensor};
+use crate::mesh::Mesh;
+use crate::metric::MetricField;
+use crate::progress::Silent;
+use crate::recipe::{self, Centroid, MeshOptions, Meshed};
 
 fn field(text: &str, domain: &Domain) -> Box<dyn MetricField> {
     recipe::metric_named(text, domain).unwrap()

@@ -1,13 +1,13 @@
 //! Distances and duals in a domain with holes, against shortest paths around their corners.
 
 use super::common::{halton, vertices};
+use crate::canvas::Canvas;
+use crate::diagram::Diagram;
+use crate::domain::{Domain, Filling, Pslg, Segment, Side, rect};
+use crate::geometry::{Point, Tensor};
+use crate::metric::Uniform;
+use crate::planar::delaunay;
 use std::collections::{BTreeMap, BTreeSet};
-use voronaut::canvas::Canvas;
-use voronaut::diagram::Diagram;
-use voronaut::domain::{Domain, Filling, Pslg, Segment, Side, rect};
-use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::Uniform;
-use voronaut::planar::delaunay;
 
 /// A rectangle with two holes that leave a passage of 0.02 between them.
 fn passage() -> (Domain, Vec<Vec<Point>>) {

@@ -1,9 +1,9 @@
 //! What several of the tests need.
 
-use voronaut::canvas::Canvas;
-use voronaut::domain::{Domain, rect};
-use voronaut::geometry::Point;
-use voronaut::triangulation::VertexId;
+use crate::canvas::Canvas;
+use crate::domain::{Domain, rect};
+use crate::geometry::Point;
+use crate::triangulation::VertexId;
 
 /// A quasi-random sequence in the unit square (Halton, bases 2 and 3, a little shaken).
 pub(crate) fn halton(i: u32) -> (f64, f64) {

@@ -1,11 +1,11 @@
 //! Errors against closed forms on canvases of 1,000, 4,000 and 16,000 vertices.
 
 use super::cases::{Case, half_plane, turning};
-use voronaut::canvas::Canvas;
-use voronaut::diagram::Distances;
-use voronaut::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Method, Sources, Stvd};
-use voronaut::geometry::{Point, Tensor, Vector};
-use voronaut::triangulation::VertexId;
+use crate::canvas::Canvas;
+use crate::diagram::Distances;
+use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Method, Sources, Stvd};
+use crate::geometry::{Point, Tensor, Vector};
+use crate::triangulation::VertexId;
 
 /// The same metric everywhere.
 fn uniform() -> Case {

@@ -2,10 +2,10 @@
 
 use super::cases::relative_errors;
 use super::grounds::{Board, Ground, great_circle, relaxed, sheet, sphere, stretched_sphere, wavy};
-use voronaut::canvas::Kind;
-use voronaut::geodesic::Method;
-use voronaut::geometry::{Point, Point3};
-use voronaut::triangulation::VertexId;
+use crate::canvas::Kind;
+use crate::geodesic::Method;
+use crate::geometry::{Point, Point3};
+use crate::triangulation::VertexId;
 
 /// The exact distance between two points.
 type Exact = Box<dyn Fn(Point3, Point3) -> f64>;

@@ -3,17 +3,18 @@
 
 mod simplices;
 
-use voronaut::canvas::Canvas;
-use voronaut::diagram::Diagram;
-use voronaut::domain::Domain;
-use voronaut::dual::Road;
-use voronaut::geodesic::Polyline;
-use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::MetricField;
-use voronaut::progress::Silent;
-use voronaut::quality::{Validity, validity};
-use voronaut::realisation::{Found, Realisation};
-use voronaut::recipe;
+use crate::canvas::Canvas;
+use crate::diagram::Diagram;
+use crate::domain::Domain;
+use crate::dual::Road;
+use crate::geodesic::Polyline;
+use crate::geometry::{Point, Tensor};
+use crate::metric::MetricField;
+use crate::progress::Silent;
+use crate::quality::{Validity, validity};
+use crate::realisation::{Found, Realisation};
+use crate::recipe;
+use crate::test_cases::plate;
 
 /// So many points along the additive sequence of the plastic number, in a rectangle.
 pub(crate) fn seeds(count: usize, low: Point, high: Point) -> Vec<Point> {
@@ -121,21 +122,20 @@ fn swirl_and_shock_are_embedded_although_straight_edges_are_not() {
 
 /// How often straight edges would cross.
 fn straight_crossings(found: &Realisation) -> usize {
-    let mesh = voronaut::mesh::Mesh {
+    let mesh = crate::mesh::Mesh {
         points: found.seeds.iter().map(|p| [p.x, p.y, 0.0]).collect(),
         triangles: found.triangles.clone(),
-        ..voronaut::mesh::Mesh::default()
+        ..crate::mesh::Mesh::default()
     };
-    voronaut::quality::crossing_edges(&mesh).len()
+    crate::quality::crossing_edges(&mesh).len()
 }
 
 #[test]
 fn edges_are_led_around_a_hole() {
-    let text = r#"{ "type": "Polygon", "coordinates": [
-        [[-2, -2], [2, -2], [2, 2], [-2, 2], [-2, -2]], [[-1, -0.1], [1, -0.1], [1, 0.1], [-1, 0.1], [-1, -0.1]]
-    ] }"#;
-    let polygons = voronaut_io::geojson::read(text, "plate").unwrap();
-    let domain = Domain::new(&voronaut::domain::from_polygons(&polygons).unwrap()).unwrap();
+    let domain = plate(&[
+        &[[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]],
+        &[[-1.0, -0.1], [1.0, -0.1], [1.0, 0.1], [-1.0, 0.1]],
+    ]);
     let field = |_: Point| Tensor::IDENTITY;
     let seeds = [(-0.2, -0.6), (-0.1, 0.7), (1.9, -1.9), (-1.9, 1.9)].map(|(x, y)| Point::new(x, y));
     let canvas = Canvas::intrinsic(&domain, &field, 4000).unwrap();

@@ -1,0 +1,13 @@
+//! Tests of several modules at once that see more than is public.
+
+mod certificate;
+mod diagram;
+mod geodesics;
+mod net;
+mod realisation;
+mod relaxation;
+mod roads;
+mod rdt;
+mod star_set;
+mod surfaces;
+mod wavy;
