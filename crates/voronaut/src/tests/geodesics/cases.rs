@@ -1,10 +1,10 @@
 //! Metrics whose distances from a point are known. The benchmark `methods` measures on them, too.
 
-use crate::canvas::Canvas;
-use crate::diagram::Distances;
-use crate::domain::Domain;
-use crate::geometry::{Point, Tensor};
 use std::f64::consts::PI;
+use voronaut::canvas::Canvas;
+use voronaut::diagram::Distances;
+use voronaut::domain::Domain;
+use voronaut::geometry::{Point, Tensor};
 
 /// A metric on a domain, and its distances from a point.
 pub(crate) struct Case {
