@@ -118,7 +118,7 @@ pub struct InPlane {
 
 impl<E> Canvas<E> {
     /// What distances travel on: vertices, faces, metric lengths.
-    pub fn topology(&self) -> &Triangulation {
+    pub(crate) fn topology(&self) -> &Triangulation {
         &self.topology
     }
 
@@ -128,7 +128,7 @@ impl<E> Canvas<E> {
     }
 
     /// The stars, if it is a star set.
-    pub fn stars(&self) -> Option<&StarSet> {
+    pub(crate) fn stars(&self) -> Option<&StarSet> {
         self.stars.as_ref()
     }
 
@@ -166,7 +166,7 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub fn straight(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+    pub(crate) fn straight(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         let mut counters = CanvasCounters::default();
         let planar = refine::refine(domain.planar().clone(), field, vertices, &mut counters)?;
         Self::unflipped(renumbered(&planar), field, Kind::Intrinsic, counters)
@@ -215,7 +215,7 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub fn star_set(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+    pub(crate) fn star_set(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         Self::new(Kind::StarSet, domain, field, vertices)
     }
 
@@ -247,7 +247,7 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub fn refined(&self, field: &dyn MetricField, around: &[VertexId]) -> Result<Self> {
+    pub(crate) fn refined(&self, field: &dyn MetricField, around: &[VertexId]) -> Result<Self> {
         let topology = &self.embedded.planar.topology;
         // At the border the last edge of a star is known only by the face before it.
         let edges = around.iter().flat_map(|&v| topology.star(v)).flat_map(|h| [h, h.prev()]);
@@ -293,7 +293,7 @@ impl Canvas {
 
     /// The vertices with their tensors and the edges of [`Canvas::embedded`], of a star set those of its stars, with lengths of
     /// geodesics, for methods that know no triangles. `field` is the one that the canvas was made with.
-    pub fn graph(&self, field: &dyn MetricField) -> Graph {
+    pub(crate) fn graph(&self, field: &dyn MetricField) -> Graph {
         let topology = &self.embedded.planar.topology;
         let tensors = self.embedded.planar.positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
         let of_edges = || {

@@ -164,12 +164,12 @@ impl Certificate {
     }
 
     /// The verdict on a theorem, by its number.
-    pub fn verdict(&self, theorem: &str) -> Option<&Verdict> {
+    pub(crate) fn verdict(&self, theorem: &str) -> Option<&Verdict> {
         self.verdicts.iter().find(|verdict| verdict.theorem == theorem)
     }
 
     /// Whether the verdicts are about this triangle: all its seeds are covered.
-    pub fn covers(&self, triangle: [u32; 3]) -> bool {
+    pub(crate) fn covers(&self, triangle: [u32; 3]) -> bool {
         triangle.iter().all(|i| self.cells.binary_search_by_key(i, |cell| cell.seed).is_ok())
     }
 }

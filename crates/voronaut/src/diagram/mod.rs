@@ -96,7 +96,7 @@ impl<'a> Diagram<'a> {
     ///
     /// # Errors
     /// As for [`Diagram::new`].
-    pub fn of_vertices(canvas: &'a Canvas, field: &'a dyn MetricField, vertices: &[Point]) -> Result<Self> {
+    pub(crate) fn of_vertices(canvas: &'a Canvas, field: &'a dyn MetricField, vertices: &[Point]) -> Result<Self> {
         Self::of_vertices_by(canvas, field, vertices, Method::March)
     }
 
@@ -132,7 +132,7 @@ impl<'a> Diagram<'a> {
     ///
     /// # Errors
     /// As for [`Diagram::new`].
-    pub fn with_solver(
+    pub(crate) fn with_solver(
         canvas: &'a Canvas,
         field: &'a dyn MetricField,
         seeds: &[Point],
@@ -146,7 +146,12 @@ impl<'a> Diagram<'a> {
     ///
     /// # Errors
     /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams.
-    pub fn by_method(canvas: &'a Canvas, field: &'a dyn MetricField, seeds: &[Point], method: Method) -> Result<Self> {
+    pub(crate) fn by_method(
+        canvas: &'a Canvas,
+        field: &'a dyn MetricField,
+        seeds: &[Point],
+        method: Method,
+    ) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Full)?;
         Ok(Self::from_starts(canvas, field, seeds, starts, solver(Flat { canvas, field }, method)?))
     }
@@ -193,7 +198,7 @@ impl<'a> Diagram<'a> {
     }
 
     /// The canvas.
-    pub fn canvas(&self) -> &'a Canvas {
+    pub(crate) fn canvas(&self) -> &'a Canvas {
         self.ground.canvas
     }
 
@@ -228,7 +233,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     ///
     /// # Errors
     /// [`Error::Domain`] outside the domain, on a surface of what is no canvas vertex; the diagram is as before.
-    pub fn insert(&mut self, at: G::Place) -> Result<u32> {
+    pub(crate) fn insert(&mut self, at: G::Place) -> Result<u32> {
         let colour = self.seeds.len() as u32;
         let starts = self.ground.starts(at)?;
         self.seeds.push(None);
@@ -240,7 +245,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     ///
     /// # Errors
     /// [`Error::Domain`] where there is no such seed, or it would leave the domain; the diagram is as before.
-    pub fn move_to(&mut self, colour: u32, to: G::Place) -> Result<()> {
+    pub(crate) fn move_to(&mut self, colour: u32, to: G::Place) -> Result<()> {
         if self.seed(colour).is_none() {
             let help = "colours are those that insertions returned and removals have not ended";
             return Err(Error::domain("no such seed", format!("colour {colour}"), help));
@@ -273,7 +278,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// Removes a seed; its neighbours' fronts fill its cell. Says whether there was one.
-    pub fn remove(&mut self, colour: u32) -> bool {
+    pub(crate) fn remove(&mut self, colour: u32) -> bool {
         let changed = self.lift(colour);
         self.mend(&changed);
         !changed.is_empty()
@@ -285,12 +290,12 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// Number of colours given so far, those of removed seeds among them.
-    pub fn colours(&self) -> usize {
+    pub(crate) fn colours(&self) -> usize {
         self.seeds.len()
     }
 
     /// Metric distance (that of the diagram's kind) from a canvas vertex to its seed; infinite where no seed reaches.
-    pub fn distance(&self, v: VertexId) -> f64 {
+    pub(crate) fn distance(&self, v: VertexId) -> f64 {
         self.label(v).distance
     }
 
@@ -301,7 +306,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// The canvas vertex that the distance came from, the nearer to the seed of two; `None` beside the seed.
-    pub fn parent(&self, v: VertexId) -> Option<VertexId> {
+    pub(crate) fn parent(&self, v: VertexId) -> Option<VertexId> {
         let topology = self.ground.topology();
         match self.label(v).support() {
             Support::Nothing | Support::Source => None,
@@ -318,7 +323,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// Colour, distance and support of a canvas vertex.
-    pub fn label(&self, v: VertexId) -> &Label {
+    pub(crate) fn label(&self, v: VertexId) -> &Label {
         self.propagation.label(v)
     }
 

@@ -41,7 +41,7 @@ impl Curve {
 
     /// The point at a share t of its length, from 0 to 1. Where it lies is known less well than how long the curve is, to
     /// about 1e-6 of the chord (1e-5 where the field turns around over it), since the field's derivatives are differences.
-    pub fn at(&self, t: f64) -> Point {
+    pub(crate) fn at(&self, t: f64) -> Point {
         if t <= 0.0 || t >= 1.0 {
             return self.ends[usize::from(t > 0.5)];
         }

@@ -16,7 +16,7 @@ pub struct Dijkstra {
 
 impl Dijkstra {
     /// On a graph.
-    pub fn on(graph: Graph) -> Self {
+    pub(crate) fn on(graph: Graph) -> Self {
         Self { graph }
     }
 }

@@ -47,7 +47,7 @@ impl Graph {
     /// A graph of vertices of the plane at these (Euclidean) positions with the metric there, in the units of the metric field.
     ///
     /// As for `Graph::seen_by`; positions are as many as tensors.
-    pub fn new(positions: Vec<Point>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
+    pub(crate) fn new(positions: Vec<Point>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
         assert!(positions.len() == tensors.len(), "an entry for each vertex");
         Self::seen_by(Arc::new(InPlane(positions)), tensors, neighbours)
     }
@@ -90,17 +90,17 @@ impl Graph {
     }
 
     /// Number of vertices.
-    pub fn vertex_count(&self) -> usize {
+    pub(crate) fn vertex_count(&self) -> usize {
         self.tensors.len()
     }
 
     /// All vertices, in order.
-    pub fn vertices(&self) -> impl Iterator<Item = VertexId> {
+    pub(crate) fn vertices(&self) -> impl Iterator<Item = VertexId> {
         (0..self.tensors.len() as u32).map(VertexId)
     }
 
     /// How its vertices see each other.
-    pub fn sight(&self) -> &dyn Sight {
+    pub(crate) fn sight(&self) -> &dyn Sight {
         self.sight.as_ref()
     }
 
@@ -110,7 +110,7 @@ impl Graph {
     }
 
     /// The neighbours of a vertex, by their numbers.
-    pub fn neighbours(&self, v: VertexId) -> &[VertexId] {
+    pub(crate) fn neighbours(&self, v: VertexId) -> &[VertexId] {
         &self.neighbours[self.first[v.index()] as usize..self.first[v.index() + 1] as usize]
     }
 

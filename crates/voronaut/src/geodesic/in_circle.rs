@@ -25,7 +25,7 @@ impl Margin {
     pub(crate) const UNKNOWN: Self = Self { value: 0.0, error: f64::INFINITY };
 
     /// Whether the sign is settled.
-    pub fn is_certain(&self) -> bool {
+    pub(crate) fn is_certain(&self) -> bool {
         self.value.abs() > self.error
     }
 }

@@ -25,7 +25,7 @@ pub struct Konukoglu {
 
 impl Konukoglu {
     /// On a graph.
-    pub fn on(graph: Graph) -> Self {
+    pub(crate) fn on(graph: Graph) -> Self {
         Self { graph }
     }
 }

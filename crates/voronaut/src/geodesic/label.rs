@@ -97,12 +97,12 @@ struct Record {
 
 impl Sources {
     /// No sources on a canvas with so many vertices.
-    pub fn new(vertices: usize) -> Self {
+    pub(crate) fn new(vertices: usize) -> Self {
         Self { first: vec![NOTHING; vertices], ..Self::default() }
     }
 
     /// Adds a start at a vertex.
-    pub fn add(&mut self, v: VertexId, distance: f64, colour: u32) {
+    pub(crate) fn add(&mut self, v: VertexId, distance: f64, colour: u32) {
         let record = Record { distance, colour, next: self.first[v.index()] };
         let slot = self.free.pop().unwrap_or(self.records.len() as u32);
         if slot as usize == self.records.len() {

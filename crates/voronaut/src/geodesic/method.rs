@@ -34,7 +34,7 @@ impl Method {
         [Self::March, Self::Stvd { window: STVD_WINDOW }, Self::Dijkstra, Self::Konukoglu, Self::Lbr, Self::Heat];
 
     /// Whether it gives every vertex the colour of its source, so that diagrams can be made by it.
-    pub fn drives_diagrams(self) -> bool {
+    pub(crate) fn drives_diagrams(self) -> bool {
         !matches!(self, Self::Lbr | Self::Heat)
     }
 

@@ -33,7 +33,7 @@ impl Fineness {
     /// Eight modes.
     pub(crate) const MIDDLE: Self = Self(2);
     /// Sixteen modes.
-    pub const FINEST: Self = Self(STAGES.len() as u8 - 1);
+    pub(crate) const FINEST: Self = Self(STAGES.len() as u8 - 1);
 
     /// Twice the modes; `None` of the finest.
     pub(crate) fn next(self) -> Option<Self> {
@@ -65,13 +65,13 @@ impl Paths {
     ///
     /// Two to four Newton steps a stage, 7 evaluations of the field at each of its quadrature points: at the coarsest
     /// about 150 evaluations in all.
-    pub fn length(&self, field: &dyn MetricField, p: Point, q: Point, fineness: Fineness) -> Option<PathLength> {
+    pub(crate) fn length(&self, field: &dyn MetricField, p: Point, q: Point, fineness: Fineness) -> Option<PathLength> {
         self.solve(field, p, q, fineness).map(|solved| solved.length)
     }
 
     /// The geodesic itself, with [`Paths::length`]'s length. With a path given it is the one that this path contracts to,
     /// as far as so many modes can follow it.
-    pub fn curve(
+    pub(crate) fn curve(
         &self,
         field: &dyn MetricField,
         [p, q]: [Point; 2],

@@ -40,7 +40,7 @@ pub struct Polyline {
 
 impl Polyline {
     /// The metric length of a path of straight segments, by five-point Gauss quadrature on each.
-    pub fn length_of(field: &dyn MetricField, path: &[Point]) -> f64 {
+    pub(crate) fn length_of(field: &dyn MetricField, path: &[Point]) -> f64 {
         path.windows(2).map(|w| chord(field, w[0], w[1])).sum()
     }
 }

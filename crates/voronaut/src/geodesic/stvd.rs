@@ -28,7 +28,7 @@ pub struct Stvd {
 impl Stvd {
     /// On a graph, with a window of so many edges, at least one; with one it is Dijkstra's method with another rule for the
     /// lengths of edges.
-    pub fn on(graph: Graph, window: usize) -> Self {
+    pub(crate) fn on(graph: Graph, window: usize) -> Self {
         let roots = graph.vertices().map(|v| graph.tensor(v).map_eigenvalues(f64::sqrt)).collect();
         Self { graph, roots, window: window.max(1) }
     }

@@ -43,7 +43,7 @@ impl Tensor {
     }
 
     /// The tensor with eigenvalue `along` for the unit vector `axis` and `across` for the one perpendicular to it.
-    pub fn from_axis(axis: Vector, along: f64, across: f64) -> Self {
+    pub(crate) fn from_axis(axis: Vector, along: f64, across: f64) -> Self {
         let (x, y, d) = (axis.x, axis.y, along - across);
         Self::new(across + d * x * x, d * x * y, across + d * y * y)
     }
@@ -128,7 +128,7 @@ impl Tensor {
     }
 
     /// The rows (a, b), (0, c) of the upper triangular F with F' F = M: F v is v in an orthonormal frame.
-    pub fn cholesky(self) -> [f64; 3] {
+    pub(crate) fn cholesky(self) -> [f64; 3] {
         let a = self.xx.sqrt();
         let b = self.xy / a;
         [a, b, (self.determinant() / self.xx).max(0.0).sqrt()]

@@ -42,7 +42,7 @@ pub struct TangentPlane {
 
 impl Tensor3 {
     /// The identity: Euclidean length.
-    pub const IDENTITY: Tensor3 = Tensor3::from_disk([1.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
+    pub(crate) const IDENTITY: Tensor3 = Tensor3::from_disk([1.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
 
     /// The tensor with entries m11 m12 m22 m13 m23 m33: the order of Medit's `.sol` files.
     pub const fn from_disk([xx, xy, yy, xz, yz, zz]: [f64; 6]) -> Self {

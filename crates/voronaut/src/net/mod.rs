@@ -88,7 +88,7 @@ impl Net {
     ///
     /// For every triangle all seeds are asked that share an edge with one of its corners: a seed in its circle need not
     /// be opposite to one of its sides. Distances know of no holes.
-    pub fn measure(field: &dyn MetricField, found: &Triangles) -> Self {
+    pub(crate) fn measure(field: &dyn MetricField, found: &Triangles) -> Self {
         Self::measure_again(field, found, &mut Memory::default())
     }
 
@@ -144,12 +144,12 @@ impl Net {
     }
 
     /// mu / epsilon: 1 of seeds as even as can be.
-    pub fn lambda(&self) -> f64 {
+    pub(crate) fn lambda(&self) -> f64 {
         self.mu / self.epsilon
     }
 
     /// The power protection of the interior triangles: that of the least protected; infinite where there are none.
-    pub fn delta(&self) -> f64 {
+    pub(crate) fn delta(&self) -> f64 {
         self.interior().map(Ball::protection).fold(f64::INFINITY, f64::min)
     }
 

@@ -110,7 +110,7 @@ impl<'a> Rdt<InField<'a>> {
     ///
     /// The field may measure in any unit, and seeds may be denser here than there: the scale of a cell is taken from the
     /// start's edges. A seed where the field is no metric is left out.
-    pub fn new(field: &'a dyn MetricField, seeds: &[Point], start: &Start, trust: Trust<'a>) -> Self {
+    pub(crate) fn new(field: &'a dyn MetricField, seeds: &[Point], start: &Start, trust: Trust<'a>) -> Self {
         Self::again(field, seeds, start, trust, Memory::default())
     }
 
@@ -191,7 +191,7 @@ impl<J: Judge> Rdt<J> {
     }
 
     /// The triangles, counter-clockwise, by the numbers of their seeds.
-    pub fn triangles(&self) -> Vec<[u32; 3]> {
+    pub(crate) fn triangles(&self) -> Vec<[u32; 3]> {
         self.topology.faces().map(|f| self.topology.corners(f).map(|v| self.seed(v))).collect()
     }
 
@@ -202,7 +202,7 @@ impl<J: Judge> Rdt<J> {
 
     /// The topology; its vertices are numbered like the seeds, but for copies where [`RdtCounters::split`] is not zero.
     /// Edges whose length was needed carry it.
-    pub fn topology(&self) -> &Triangulation {
+    pub(crate) fn topology(&self) -> &Triangulation {
         &self.topology
     }
 
@@ -212,18 +212,18 @@ impl<J: Judge> Rdt<J> {
     }
 
     /// All edges with their margins.
-    pub fn edges(&self) -> Vec<Edge> {
+    pub(crate) fn edges(&self) -> Vec<Edge> {
         self.topology.edges().map(|h| self.edge(h)).collect()
     }
 
     /// The edges that the start did not have: where the start and the in-circle tests disagree.
-    pub fn disagreements(&self) -> Vec<Edge> {
+    pub(crate) fn disagreements(&self) -> Vec<Edge> {
         let is_new = |e: &Edge| self.started_with.binary_search(&sorted(e.ends)).is_err();
         self.edges().into_iter().filter(is_new).collect()
     }
 
     /// The smallest margin of all edges; `None` where no edge has two triangles.
-    pub fn smallest_margin(&self) -> Option<Edge> {
+    pub(crate) fn smallest_margin(&self) -> Option<Edge> {
         let tested = self.edges().into_iter().filter(|e| e.margin.is_some());
         tested.min_by(|a, b| value(a).total_cmp(&value(b)))
     }
@@ -240,12 +240,12 @@ impl<J: Judge> Rdt<J> {
     }
 
     /// What was done.
-    pub fn counters(&self) -> &RdtCounters {
+    pub(crate) fn counters(&self) -> &RdtCounters {
         &self.counters
     }
 
     /// The best length known between two seeds; `None` where no test needed one.
-    pub fn length(&self, i: u32, j: u32) -> Option<PathLength> {
+    pub(crate) fn length(&self, i: u32, j: u32) -> Option<PathLength> {
         self.memory.tests.lengths.get(&(i.min(j), i.max(j))).map(|known| known.length)
     }
 

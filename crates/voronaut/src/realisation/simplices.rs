@@ -17,7 +17,7 @@ pub struct Grid {
 
 impl Grid {
     /// The point with j/n of the second corner and i/n of the third; i + j is at most n.
-    pub fn at(&self, j: usize, i: usize) -> Point {
+    pub(crate) fn at(&self, j: usize, i: usize) -> Point {
         // Rows before this one have n + 1, n, ... points.
         self.points[i * (2 * self.sides + 3 - i) / 2 + j]
     }

@@ -33,7 +33,7 @@ impl FaceId {
     }
 
     /// The three half-edges of the face, counter-clockwise.
-    pub fn half_edges(self) -> [HalfEdge; 3] {
+    pub(crate) fn half_edges(self) -> [HalfEdge; 3] {
         [3 * self.0, 3 * self.0 + 1, 3 * self.0 + 2].map(HalfEdge)
     }
 }
@@ -45,7 +45,7 @@ impl HalfEdge {
     }
 
     /// The face on the left.
-    pub fn face(self) -> FaceId {
+    pub(crate) fn face(self) -> FaceId {
         FaceId(self.0 / 3)
     }
 

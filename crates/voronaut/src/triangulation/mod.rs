@@ -141,7 +141,7 @@ impl Triangulation {
     }
 
     /// The vertex opposite to a half-edge in its face.
-    pub fn apex(&self, h: HalfEdge) -> VertexId {
+    pub(crate) fn apex(&self, h: HalfEdge) -> VertexId {
         self.origin[h.prev().index()]
     }
 
@@ -174,7 +174,7 @@ impl Triangulation {
     }
 
     /// Metric length of the edge; NaN where not known.
-    pub fn length(&self, h: HalfEdge) -> f64 {
+    pub(crate) fn length(&self, h: HalfEdge) -> f64 {
         self.length[h.index()]
     }
 
@@ -227,7 +227,7 @@ impl Triangulation {
     }
 
     /// The half-edges that leave a vertex, counter-clockwise; at the border from one end of the fan to the other.
-    pub fn star(&self, v: VertexId) -> Star<'_> {
+    pub(crate) fn star(&self, v: VertexId) -> Star<'_> {
         Star::new(self, v)
     }
 
