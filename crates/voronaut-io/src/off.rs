@@ -41,7 +41,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
 ///
 /// # Errors
 /// What `out` says.
-pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "OFF\n{} {} 0", mesh.points.len(), mesh.triangles.len())?;
     for [x, y, z] in &mesh.points {
         writeln!(out, "{} {} {}", Shortest(*x), Shortest(*y), Shortest(*z))?;

@@ -31,7 +31,7 @@ pub fn read(mut source: impl BufRead, place: &str) -> Result<Mesh> {
 ///
 /// # Errors
 /// What `out` says; [`io::ErrorKind::InvalidInput`] of coordinates beyond 3e38.
-pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     write!(out, "{:HEAD$}", "voronaut")?;
     out.write_all(&(mesh.triangles.len() as u32).to_le_bytes())?;
     for &triangle in &mesh.triangles {

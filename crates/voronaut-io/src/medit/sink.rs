@@ -16,7 +16,7 @@ pub enum Form {
 
 impl Form {
     /// That of a solution's file: binary if its name ends in `.solb`.
-    pub fn of_solution(path: &Path) -> Self {
+    pub(crate) fn of_solution(path: &Path) -> Self {
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("solb")) {
             Form::Binary
         } else {

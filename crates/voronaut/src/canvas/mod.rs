@@ -181,20 +181,7 @@ impl Canvas {
         Self::from_planar(Kind::Intrinsic, planar, field, vertices)
     }
 
-    /// The isotropic canvas (RR-9103, section 6.2) with so many vertices: a Euclidean Delaunay triangulation, refined at the
-    /// circumcentre of the face whose circumradius is largest beside `isotropic_size` there. Its triangles are obtuse in the
-    /// metric, so that distances that need triangles travel on the intrinsic Delaunay triangulation of its vertices.
-    ///
-    /// It has more vertices only if the domain itself has, or where lengths had to be repaired.
-    ///
-    /// # Errors
-    /// As for [`Canvas::intrinsic`].
-    #[cfg(test)]
-    pub(crate) fn isotropic(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::new(Kind::Isotropic, domain, field, vertices)
-    }
-
-    /// [`Canvas::isotropic`] with as many vertices as it takes until no circumradius exceeds so many `isotropic_size`s
+    /// The isotropic one of [`Canvas::new`] with as many vertices as it takes until no circumradius exceeds so many `isotropic_size`s
     /// (at its circumcentre), but for faces that rounding or a small angle of the domain leaves no way to cut. The authors
     /// use 1.
     ///
@@ -207,22 +194,18 @@ impl Canvas {
         Self::measured(renumbered(&planar), field, Kind::Isotropic, counters)
     }
 
-    /// The star set (RR-9103, section 7) with so many vertices, even in the metric: its graph are the Delaunay stars of the
-    /// vertices, each in its vertex's own metric. Distances that need triangles travel on the intrinsic Delaunay
-    /// triangulation of the same vertices.
+    /// The canvas of a kind with so many vertices, even in the metric. It has more only if the domain itself has, or where
+    /// lengths had to be repaired.
     ///
-    /// It has more vertices only if the domain itself has, or where lengths had to be repaired.
+    /// - Intrinsic: as [`Canvas::intrinsic`].
+    /// - Isotropic (RR-9103, section 6.2): a Euclidean Delaunay triangulation, refined at the circumcentre of the face whose
+    ///   circumradius is largest beside `isotropic_size` there. Its triangles are obtuse in the metric, so that distances that
+    ///   need triangles travel on the intrinsic Delaunay triangulation of its vertices.
+    /// - Star set (RR-9103, section 7): its graph are the Delaunay stars of the vertices, each in its vertex's own metric.
+    ///   Distances that need triangles travel as on the isotropic one.
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub(crate) fn star_set(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::new(Kind::StarSet, domain, field, vertices)
-    }
-
-    /// The canvas of a kind, by [`Canvas::intrinsic`], [`Canvas::isotropic`] or [`Canvas::star_set`].
-    ///
-    /// # Errors
-    /// As for these.
     pub fn new(kind: Kind, domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         Self::from_planar(kind, domain.planar().clone(), field, vertices)
     }

@@ -103,7 +103,7 @@ impl Constants {
 
 /// The slack omega of squared distances (Lemma 5.5, erratum): d'(p)^2 - d'(q)^2 where the computed distance of p is no
 /// greater than that of q, and d(p) no more than epsilon + 2 `error`.
-pub fn slack(net: &Figures, psi: f64, error: f64) -> f64 {
+pub(crate) fn slack(net: &Figures, psi: f64, error: f64) -> f64 {
     let reach = net.epsilon + 2.0 * error;
     (psi.powi(2) - psi.powi(-2)) * reach.powi(2) + 4.0 * error * reach / psi.powi(2)
 }

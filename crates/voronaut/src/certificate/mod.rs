@@ -13,7 +13,7 @@ mod theorems;
 mod verdict;
 mod walk;
 
-pub use constants::{Constants, Figures, slack};
+pub use constants::{Constants, Figures};
 pub use convexity::Convexity;
 pub(crate) use coverage::Coverage;
 pub use distortion::distortion;
@@ -24,7 +24,8 @@ pub(crate) use sizing::{Area, sized_canvas};
 pub use theorems::Evidence;
 pub use theorems::verdicts;
 pub use verdict::{Condition, Outcome, Verdict};
-pub use walk::{Found, Walks, walk};
+pub use walk::Found;
+pub use walk::{Walks, walk};
 
 use crate::diagram::Diagram;
 use crate::geodesic::{Fineness, Paths};
@@ -169,7 +170,7 @@ impl Certificate {
     }
 
     /// Whether the verdicts are about this triangle: all its seeds are covered.
-    pub(crate) fn covers(&self, triangle: [u32; 3]) -> bool {
+    pub fn covers(&self, triangle: [u32; 3]) -> bool {
         triangle.iter().all(|i| self.cells.binary_search_by_key(i, |cell| cell.seed).is_ok())
     }
 }

@@ -95,16 +95,8 @@ impl<'a> Diagram<'a> {
     /// in one place as the domain has fans there, in order, each belongs to one fan. (Elsewhere a seed belongs to all.)
     ///
     /// # Errors
-    /// As for [`Diagram::new`].
-    pub(crate) fn of_vertices(canvas: &'a Canvas, field: &'a dyn MetricField, vertices: &[Point]) -> Result<Self> {
-        Self::of_vertices_by(canvas, field, vertices, Method::March)
-    }
-
-    /// [`Diagram::of_vertices`] by one of the methods.
-    ///
-    /// # Errors
     /// As for [`Diagram::by_method`].
-    pub(crate) fn of_vertices_by(
+    pub(crate) fn of_vertices(
         canvas: &'a Canvas,
         field: &'a dyn MetricField,
         vertices: &[Point],
@@ -233,7 +225,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     ///
     /// # Errors
     /// [`Error::Domain`] outside the domain, on a surface of what is no canvas vertex; the diagram is as before.
-    pub(crate) fn insert(&mut self, at: G::Place) -> Result<u32> {
+    pub fn insert(&mut self, at: G::Place) -> Result<u32> {
         let colour = self.seeds.len() as u32;
         let starts = self.ground.starts(at)?;
         self.seeds.push(None);
@@ -245,7 +237,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     ///
     /// # Errors
     /// [`Error::Domain`] where there is no such seed, or it would leave the domain; the diagram is as before.
-    pub(crate) fn move_to(&mut self, colour: u32, to: G::Place) -> Result<()> {
+    pub fn move_to(&mut self, colour: u32, to: G::Place) -> Result<()> {
         if self.seed(colour).is_none() {
             let help = "colours are those that insertions returned and removals have not ended";
             return Err(Error::domain("no such seed", format!("colour {colour}"), help));
@@ -278,7 +270,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// Removes a seed; its neighbours' fronts fill its cell. Says whether there was one.
-    pub(crate) fn remove(&mut self, colour: u32) -> bool {
+    pub fn remove(&mut self, colour: u32) -> bool {
         let changed = self.lift(colour);
         self.mend(&changed);
         !changed.is_empty()

@@ -24,12 +24,12 @@ impl<'a> Diagram<'a> {
     ///
     /// # Errors
     /// [`Error::Domain`] of a point outside the domain, or one that no seed reaches.
-    pub(crate) fn path(&self, from: Point) -> Result<Vec<Point>> {
+    pub fn path(&self, from: Point) -> Result<Vec<Point>> {
         self.paths().path(from)
     }
 
     /// What all paths need: distances computed anew around every cell.
-    pub(crate) fn paths(&self) -> Paths<'_, 'a> {
+    pub fn paths(&self) -> Paths<'_, 'a> {
         Paths { diagram: self, overlap: self.overlap(), border: Border::of(self.ground.canvas) }
     }
 }
@@ -39,7 +39,7 @@ impl Paths<'_, '_> {
     ///
     /// # Errors
     /// As there.
-    pub(crate) fn path(&self, from: Point) -> Result<Vec<Point>> {
+    pub fn path(&self, from: Point) -> Result<Vec<Point>> {
         let nearest = self.nearest(from).ok_or_else(|| {
             let help = "take a point of the domain, of a part of it that holds a seed";
             Error::domain("no seed reaches the point", from.to_string(), help)
@@ -51,7 +51,7 @@ impl Paths<'_, '_> {
     ///
     /// # Errors
     /// As for [`Diagram::path`].
-    pub(crate) fn geodesic(&self, from: Point) -> Result<Polyline> {
+    pub fn geodesic(&self, from: Point) -> Result<Polyline> {
         Ok(straighten(self.diagram.ground.field, &self.path(from)?, &self.border))
     }
 
@@ -60,7 +60,7 @@ impl Paths<'_, '_> {
     /// Each is made of the two paths down from a canvas vertex that has the least sum of distances to both, straightened;
     /// of the straight segment between the seeds where no vertex knows of both. `None` where that leaves the domain, too,
     /// or one of them is no seed.
-    pub(crate) fn geodesics(&self, pairs: &[[u32; 2]]) -> Vec<Option<Polyline>> {
+    pub fn geodesics(&self, pairs: &[[u32; 2]]) -> Vec<Option<Polyline>> {
         let passes = self.diagram.passes();
         let join = |&[a, b]: &[u32; 2]| {
             let pass = passes.vertex(a, b);

@@ -7,7 +7,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// How the vertices of a graph see each other. Each has a frame of its own: that of the plane, or one of its tangent plane.
-pub trait Sight: Send + Sync {
+pub(crate) trait Sight: Send + Sync {
     /// The straight line from one vertex to another, in the frame of the first of the three.
     fn line(&self, seen_from: VertexId, from: VertexId, to: VertexId) -> Vector;
     /// A tensor in the frame of the second vertex, turned to that of the first.

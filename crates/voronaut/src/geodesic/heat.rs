@@ -22,7 +22,7 @@ const FLATTEST: f64 = 1e-6;
 ///
 /// It gives a smoothed distance to the nearest of all sources, of whatever colour, and no parents: it does not drive
 /// diagrams. Borders are insulated. On a canvas that is not intrinsic Delaunay cotangents are negative and heat may be too.
-pub struct Heat<'a> {
+pub(crate) struct Heat<'a> {
     canvas: &'a Triangulation,
     /// Metric area that belongs to each vertex.
     mass: Vec<f64>,

@@ -26,7 +26,7 @@ pub enum Method {
 }
 
 /// The window of [`Method::Stvd`] unless told otherwise: that of the report's authors.
-pub const STVD_WINDOW: usize = 8;
+pub(crate) const STVD_WINDOW: usize = 8;
 
 impl Method {
     /// All methods, those with a parameter at its default.

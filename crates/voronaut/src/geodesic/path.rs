@@ -25,7 +25,7 @@ const RATIOS: (f64, f64) = (0.02, 0.7);
 
 /// How fine a path is, from `Fineness::COARSEST` to [`Fineness::FINEST`]: each has twice the modes of the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Fineness(u8);
+pub(crate) struct Fineness(u8);
 
 impl Fineness {
     /// Four modes: polynomials of degree five.
@@ -43,7 +43,7 @@ impl Fineness {
 
 /// Solves for geodesics; keeps tables only, so that threads can share it.
 #[derive(Clone, Debug)]
-pub struct Paths {
+pub(crate) struct Paths {
     rules: Vec<Rule>,
 }
 

@@ -18,7 +18,7 @@ use crate::triangulation::VertexId;
 /// The least may be less than the distance at a. As every other method, this one says then that x is not nearer than a.
 /// Labels are mended by making them anew: they depend on the order of work.
 #[derive(Clone, Debug)]
-pub struct Stvd {
+pub(crate) struct Stvd {
     graph: Graph,
     /// The symmetric square roots F of the tensors: F' F = M.
     roots: Vec<Tensor>,

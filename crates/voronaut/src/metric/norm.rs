@@ -17,7 +17,7 @@ impl Default for Norm {
 
 impl Norm {
     /// The greatest error counts, however small the place.
-    pub(crate) const INFINITY: Self = Self(f64::INFINITY);
+    pub const INFINITY: Self = Self(f64::INFINITY);
 
     /// The norm of an exponent.
     ///

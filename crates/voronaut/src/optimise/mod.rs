@@ -18,7 +18,8 @@ mod tangent;
 mod worst;
 
 pub use cell::Cell;
-pub use cells::{Cells, Tangent};
+pub use cells::Cells;
+pub(crate) use cells::Tangent;
 pub(crate) use exchange::{exchange, meet_blocked_flips};
 pub use fit::Fitted;
 pub use fit::Misfit;
@@ -29,7 +30,7 @@ pub use on_canvas::OnCanvas;
 pub(crate) use polish::polishing_norm;
 pub use polish::{Polished, polish};
 pub use protect::Ending;
-pub use protect::Protected;
+pub(crate) use protect::Protected;
 pub(crate) use protect::protect;
 pub use survey::measured;
 pub(crate) use worst::mend_worst;

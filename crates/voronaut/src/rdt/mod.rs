@@ -15,8 +15,8 @@ mod site;
 mod sides;
 mod start;
 
-pub use in_field::InField;
-pub use judge::Judge;
+pub(crate) use in_field::InField;
+pub(crate) use judge::Judge;
 pub use memory::Memory;
 pub(crate) use on_surface::OnSurface;
 pub use start::Start;
@@ -34,7 +34,7 @@ pub type Reference<'a> = &'a (dyn Fn(u32, u32) -> Option<(f64, f64)> + Sync);
 
 /// How far in-circle tests are followed.
 #[derive(Clone, Copy)]
-pub struct Trust<'a> {
+pub(crate) struct Trust<'a> {
     /// What geodesics are held against. Where they do not agree no test is made, and the start stays as it is.
     pub reference: Option<Reference<'a>>,
     /// The greatest error of a margin whose sign is followed although it is not certain. Above, the start stays as it is.
@@ -70,7 +70,7 @@ impl Edge {
 
 /// What was done. Deterministic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RdtCounters {
+pub(crate) struct RdtCounters {
     /// Triangles of the start left out because others claimed one of their sides, or their corners were not three seeds.
     pub dropped: u64,
     /// Triangles put into small holes of the start.
@@ -94,7 +94,7 @@ pub struct RdtCounters {
 }
 
 /// See the [module](self).
-pub struct Rdt<J> {
+pub(crate) struct Rdt<J> {
     judge: J,
     topology: Triangulation,
     seed_of: Vec<u32>,
@@ -222,12 +222,6 @@ impl<J: Judge> Rdt<J> {
         self.edges().into_iter().filter(is_new).collect()
     }
 
-    /// The smallest margin of all edges; `None` where no edge has two triangles.
-    pub(crate) fn smallest_margin(&self) -> Option<Edge> {
-        let tested = self.edges().into_iter().filter(|e| e.margin.is_some());
-        tested.min_by(|a, b| value(a).total_cmp(&value(b)))
-    }
-
     /// The in-circle test of any four seeds around an edge by the lengths known, or found for it.
     pub(crate) fn margin_of(&self, quad: &Quad) -> Margin {
         let level = (0..LEVELS).rev().find(|&level| self.judge.is_by_lengths(level)).unwrap_or(0);
@@ -302,10 +296,6 @@ fn missing(wanted: &[[u32; 3]], found: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
     let found: HashSet<[u32; 3]> = found.iter().map(turned).collect();
     wanted.iter().map(turned).filter(|t| !found.contains(t)).collect()
-}
-
-fn value(edge: &Edge) -> f64 {
-    edge.margin.map_or(f64::INFINITY, |margin| margin.value)
 }
 
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {

@@ -11,10 +11,11 @@ mod renumber;
 mod star;
 
 pub use check::Broken;
-pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
+pub use ids::{Constraint, VertexId};
+pub use ids::{FaceId, HalfEdge};
 pub use lawson::Limit;
 pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_in_rounds};
-pub use star::Star;
+pub(crate) use star::Star;
 
 use ids::NONE;
 
@@ -269,7 +270,7 @@ impl Triangulation {
 }
 
 /// The same cycle of three, its smallest member first.
-pub fn smallest_first<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [T; 3] {
+pub(crate) fn smallest_first<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [T; 3] {
     if a < b && a < c {
         [a, b, c]
     } else if b < c {

@@ -9,7 +9,7 @@ mod surfaces;
 use crate::canvas::{Canvas, Draped, Kind};
 use crate::diagram::{self, Diagram, Distances, SurfaceDiagram, SurfaceDistances};
 use crate::domain::Domain;
-use crate::geodesic::{Method, STVD_WINDOW};
+use crate::geodesic::Method;
 use crate::geometry::{Point, Point3, Tensor, Tensor3};
 use crate::metric::Swirl;
 use crate::surface::Input;
@@ -216,5 +216,5 @@ fn points_outside_the_domain_are_refused() {
             assert_eq!(error.help(), "use one of march, stvd, dijkstra, konukoglu, heat");
         }
     }
-    assert_eq!(Method::Stvd { window: STVD_WINDOW }.to_string(), "stvd");
+    assert_eq!("stvd:window=8".parse::<Method>().unwrap().to_string(), "stvd");
 }
