@@ -8,7 +8,7 @@ use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree, RTreeObject};
 
 /// The sides of a canvas's border, and the corners around which paths can bend.
-pub struct Border<'a> {
+pub(crate) struct Border<'a> {
     canvas: &'a Canvas,
     sides: RTree<Side>,
     corners: RTree<GeomWithData<[f64; 2], ()>>,

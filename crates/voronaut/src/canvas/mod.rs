@@ -26,14 +26,13 @@ mod steiner;
 mod surface_stars;
 mod way;
 
-pub use border::Border;
+pub(crate) use border::Border;
 pub use consistent::PickCounters;
 pub(crate) use consistent::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 pub use draped::Draped;
 pub(crate) use extent::metric_area;
 pub use kind::Kind;
-pub use star_set::StarFigures;
-pub use star_set::StarSet;
+pub use star_set::{StarFigures, StarSet};
 pub use way::Way;
 
 use crate::domain::Domain;

@@ -32,12 +32,9 @@ pub use cells::{Cells, Outline};
 pub use distances::Distances;
 pub use ground::{Flat, Ground};
 pub use kind::Kind;
-pub use nerve::Nerve;
-pub use nerve::{NerveEdge, NerveTriangle};
-pub use passes::Passes;
+pub use nerve::{Nerve, NerveEdge, NerveTriangle};
 pub use paths::Paths;
-pub use resolve::Resolved;
-pub use resolve::{RESOLVE_ROUNDS, resolve};
+pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
 pub use surface_distances::SurfaceDistances;
 pub use witnesses::Witnesses;
 

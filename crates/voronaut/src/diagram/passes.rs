@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 /// For pairs of seeds whose cells, with their surroundings, have canvas vertices in common: the vertex with the least sum of
 /// distances to both.
-pub struct Passes {
+pub(crate) struct Passes {
     best: HashMap<[u32; 2], (f64, VertexId)>,
 }
 

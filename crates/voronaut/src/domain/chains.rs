@@ -5,7 +5,7 @@ use crate::geometry::{Point, signed_area};
 
 /// A run of segments with one label and one pair of sides; its inner vertices belong to no other segment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chain {
+pub(crate) struct Chain {
     /// Vertices in order; a closed curve ends with the vertex it starts with.
     pub vertices: Vec<u32>,
     /// The segments' label, sides and so on; `ends` is that of the first segment.

@@ -13,14 +13,15 @@ mod shapes;
 mod sides;
 mod written;
 
-pub use chains::Chain;
+pub(crate) use chains::Chain;
 pub use from_mesh::from_mesh;
 pub use outlines::{to_mesh, to_poly, to_polygons};
 pub use poly::{Poly, PolyRegion, from_poly};
 pub use polygons::{Polygon, Polygons, Ring, from_polygons};
 pub use pslg::{Filling, Pslg, Segment, Side};
-pub use shapes::{disk, rect};
-pub use written::{read_numbers, shape};
+pub(crate) use shapes::{disk, rect};
+pub(crate) use written::read_numbers;
+pub use written::shape;
 
 use crate::geometry::{Aabb, Point};
 use crate::planar::Planar;

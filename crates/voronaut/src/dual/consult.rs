@@ -91,7 +91,7 @@ pub(crate) struct Consultation {
 
 /// A canvas and a diagram that were made, and what they cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Made {
+pub(crate) struct Made {
     /// The canvas.
     pub canvas: CanvasFigures,
     /// Canvas vertices cut off from their cells.

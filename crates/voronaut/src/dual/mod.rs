@@ -16,9 +16,8 @@ mod surface_flips;
 mod surface_margin;
 mod patch;
 
-pub(crate) use consult::Consultation;
-pub use consult::Disagreement;
-pub use consult::{Made, Road};
+pub(crate) use consult::{Consultation, Made};
+pub use consult::{Disagreement, Road};
 pub(crate) use edit::Saved;
 pub(crate) use margin::Effort;
 pub(crate) use mending::Mending;

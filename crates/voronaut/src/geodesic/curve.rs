@@ -11,7 +11,7 @@ const HALVINGS: u32 = 6;
 
 /// The length of a geodesic, and the curvature that its surroundings have.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathLength {
+pub(crate) struct PathLength {
     /// Metric length: of a local minimum, which need not be the shortest path, and which knows no domain.
     pub value: f64,
     /// Estimated relative error (not a bound).

@@ -10,7 +10,7 @@ use crate::triangulation::VertexId;
 ///
 /// Labels are mended as in [`Marching`](super::Marching): by work on what has changed, with the result of making them anew.
 #[derive(Clone, Debug)]
-pub struct Dijkstra {
+pub(crate) struct Dijkstra {
     graph: Graph,
 }
 

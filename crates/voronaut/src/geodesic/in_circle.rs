@@ -101,7 +101,7 @@ pub(super) fn opposite(edge: f64, a: f64, b: f64) -> ((f64, f64), f64) {
 }
 
 /// The circumradius of a flat triangle with these sides; infinite where they make none.
-pub fn circumradius(a: f64, b: f64, c: f64) -> f64 {
+pub(crate) fn circumradius(a: f64, b: f64, c: f64) -> f64 {
     a * b * c / (4.0 * opposite(a, b, c).1)
 }
 

@@ -19,7 +19,7 @@ const CORRECTION: f64 = 1e-6;
 ///
 /// Labels are mended by making them anew.
 #[derive(Clone, Debug)]
-pub struct Konukoglu {
+pub(crate) struct Konukoglu {
     graph: Graph,
 }
 

@@ -8,7 +8,7 @@ pub(crate) const NO_COLOUR: u32 = u32::MAX;
 
 /// Distance to the nearest source, the source's colour, and what the distance was computed from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Label {
+pub(crate) struct Label {
     /// Metric distance; infinite where no source reaches.
     pub distance: f64,
     /// Colour of the source; `NO_COLOUR` where none reaches.
@@ -82,7 +82,7 @@ impl Label {
 
 /// Where distances start: vertices with the distance of a source beside them.
 #[derive(Clone, Debug, Default)]
-pub struct Sources {
+pub(crate) struct Sources {
     first: Vec<u32>,
     records: Vec<Record>,
     free: Vec<u32>,

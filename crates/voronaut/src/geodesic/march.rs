@@ -26,7 +26,7 @@ use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
 /// Fast marching on a triangulation with waves of one shape.
 #[derive(Clone, Copy, Debug)]
-pub struct Marching<'a> {
+pub(crate) struct Marching<'a> {
     canvas: &'a Triangulation,
     /// The shape of fronts within a face.
     wave: Wave,

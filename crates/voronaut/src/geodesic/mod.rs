@@ -36,36 +36,30 @@ mod tension;
 mod update;
 
 pub(crate) use bow::{bowed_between, bowed_chord};
-pub(crate) use circumcentre::Circle;
-pub(crate) use circumcentre::margin_by_power;
-pub(crate) use circumcentre::{equalising_step, flat_centre};
+pub(crate) use circumcentre::{Circle, equalising_step, flat_centre, margin_by_power};
 pub use curve::Curve;
-pub use curve::PathLength;
-pub use dijkstra::Dijkstra;
+pub(crate) use curve::PathLength;
+pub(crate) use dijkstra::Dijkstra;
 pub use graph::Graph;
 pub(crate) use graph::Sight;
 pub(crate) use heat::Heat;
-pub use in_circle::Margin;
-pub use in_circle::{Angles, circumradius};
-pub(crate) use in_circle::{frozen_margin, margin_of_estimates};
+pub use in_circle::{Angles, Margin};
+pub(crate) use in_circle::{circumradius, frozen_margin, margin_of_estimates};
 pub(crate) use jet::gauss_curvature;
 pub(crate) use karcher::karcher_mean;
-pub use konukoglu::Konukoglu;
-pub use label::Label;
-pub use label::Sources;
-pub(crate) use label::{NO_COLOUR, Support};
+pub(crate) use konukoglu::Konukoglu;
+pub(crate) use label::{Label, NO_COLOUR, Sources, Support};
 pub(crate) use lattice::Lattice;
-pub(crate) use length::Length;
-pub(crate) use length::{bent_chord, chord, hermite, hermite_between};
+pub(crate) use length::{Length, bent_chord, chord, hermite, hermite_between};
 pub(crate) use local::LocalMetric;
 pub(crate) use logarithm::Logarithm;
-pub use march::Marching;
+pub(crate) use march::Marching;
 pub use march::Propagation;
 pub use method::Method;
 pub(crate) use path::{Fineness, Paths};
 pub(crate) use predicate::margin_from_lengths;
-pub use straighten::Obstacles;
-pub use straighten::{Open, Polyline, straighten};
+pub use straighten::Polyline;
+pub(crate) use straighten::{Obstacles, Open, straighten};
 pub(crate) use strip::taut;
 pub(crate) use stvd::Stvd;
 pub(crate) use update::Wave;
@@ -73,7 +67,7 @@ pub(crate) use update::Wave;
 use crate::triangulation::VertexId;
 
 /// A solver of distances on a canvas, with which it was made.
-pub trait Geodesic: Sync {
+pub(crate) trait Geodesic: Sync {
     /// Distance to, and colour of, the nearest source of every vertex.
     fn propagate(&self, sources: &Sources) -> Propagation;
 
@@ -89,7 +83,7 @@ pub trait Geodesic: Sync {
 }
 
 /// Distances from one source on one part of a canvas after the other, without regard for other sources.
-pub trait Patches {
+pub(crate) trait Patches {
     /// The distance of each vertex of the patch from the source that has the given distances from some vertices; infinite
     /// where it is not reached within the patch.
     fn distances(&mut self, patch: &[VertexId], starts: &[(VertexId, f64)]) -> Vec<f64>;

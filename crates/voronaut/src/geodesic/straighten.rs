@@ -6,7 +6,7 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 
 /// What a path may not cross: the border of its domain.
-pub trait Obstacles: Sync {
+pub(crate) trait Obstacles: Sync {
     /// Whether the straight segment p-q leaves the domain by more than rounding.
     fn bars(&self, p: Point, q: Point) -> bool;
 
@@ -17,7 +17,7 @@ pub trait Obstacles: Sync {
 
 /// No obstacles.
 #[derive(Clone, Copy, Debug)]
-pub struct Open;
+pub(crate) struct Open;
 
 impl Obstacles for Open {
     fn bars(&self, _: Point, _: Point) -> bool {
@@ -64,7 +64,7 @@ const HALVINGS: usize = 6;
 /// and the number of segments doubled until the length has settled: its relative error is then about 1e-4, less where
 /// the metric is smooth. Where obstacles leave no room for a step the path stays as it is. The result is never longer than
 /// the path given.
-pub fn straighten(field: &dyn MetricField, path: &[Point], obstacles: &dyn Obstacles) -> Polyline {
+pub(crate) fn straighten(field: &dyn MetricField, path: &[Point], obstacles: &dyn Obstacles) -> Polyline {
     let given = Polyline { points: path.to_vec(), length: Polyline::length_of(field, path) };
     if path.len() < 2 || !energy(field, path).is_finite() {
         return given;

@@ -9,11 +9,11 @@ use std::ops::Range;
 /// Where the margin is known this well and still may be zero, four seeds count as being on a circle.
 pub(crate) const RESOLUTION: f64 = 1e-9;
 /// No test has more levels.
-pub const LEVELS: usize = 7;
+pub(crate) const LEVELS: usize = 7;
 
 /// The four seeds around an edge a-b: c to the left, d to the right of a -> b.
 #[derive(Clone, Copy, Debug)]
-pub struct Quad {
+pub(crate) struct Quad {
     /// One end.
     pub a: u32,
     /// The other.
@@ -53,7 +53,7 @@ impl Quad {
 
 /// The best length known between two seeds.
 #[derive(Clone, Copy, Debug)]
-pub struct Known {
+pub(crate) struct Known {
     /// The length.
     pub length: PathLength,
     /// The level at which it was found; higher levels look for a better one.
@@ -63,11 +63,11 @@ pub struct Known {
 }
 
 /// The best lengths known, by their ends, the smaller first.
-pub type Lengths = HashMap<(u32, u32), Known>;
+pub(crate) type Lengths = HashMap<(u32, u32), Known>;
 
 /// The outcome of a test, and the level that settled it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tested {
+pub(crate) struct Tested {
     /// The outcome.
     pub margin: Margin,
     /// The level.
@@ -75,7 +75,7 @@ pub struct Tested {
 }
 
 /// What knows seeds and the metric between them.
-pub trait InCircle: Sync {
+pub(crate) trait InCircle: Sync {
     /// Whether a level can add to what is known of an edge so far.
     fn may_tell(&self, quad: &Quad, level: usize, lengths: &Lengths, known: Option<Tested>) -> bool;
 

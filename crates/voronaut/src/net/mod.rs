@@ -10,7 +10,7 @@ mod on_canvas;
 mod random;
 
 pub(crate) use estimate::{Estimate, Sites};
-pub use measure::Memory;
+pub(crate) use measure::Memory;
 pub(crate) use on_canvas::circles_on_canvas;
 pub use random::Random;
 
@@ -72,7 +72,7 @@ pub struct Net {
 
 /// A triangulation of seeds whose circles are asked for.
 #[derive(Clone, Copy)]
-pub struct Triangles<'a> {
+pub(crate) struct Triangles<'a> {
     /// The seeds.
     pub seeds: &'a [Point],
     /// Riemannian Delaunay triangles by their seeds, counter-clockwise.

@@ -8,8 +8,7 @@ mod operations;
 mod order;
 
 pub use constrain::Crossing;
-pub use delaunay::Duplicate;
-pub use delaunay::delaunay;
+pub use delaunay::{Duplicate, delaunay};
 pub use locate::Location;
 pub(crate) use order::hilbert_order;
 

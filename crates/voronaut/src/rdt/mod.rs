@@ -17,7 +17,7 @@ mod start;
 
 pub(crate) use in_field::InField;
 pub(crate) use judge::Judge;
-pub use memory::Memory;
+pub(crate) use memory::Memory;
 pub(crate) use on_surface::OnSurface;
 pub use start::Start;
 
@@ -30,7 +30,7 @@ use std::collections::HashSet;
 
 /// Distances on a canvas, held against geodesics found from the metric alone, which may not be the shortest and know no
 /// holes: of two seeds, their distance and an absolute bound on its error; `None` where it is not known.
-pub type Reference<'a> = &'a (dyn Fn(u32, u32) -> Option<(f64, f64)> + Sync);
+pub(crate) type Reference<'a> = &'a (dyn Fn(u32, u32) -> Option<(f64, f64)> + Sync);
 
 /// How far in-circle tests are followed.
 #[derive(Clone, Copy)]
@@ -50,7 +50,7 @@ impl Default for Trust<'_> {
 
 /// An edge of the triangulation with its in-circle test.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge {
+pub(crate) struct Edge {
     /// The seeds at its ends.
     pub ends: [u32; 2],
     /// The seeds opposite to it: to its left, and to its right, if there is a triangle there.

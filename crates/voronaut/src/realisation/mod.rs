@@ -7,8 +7,7 @@ mod regions;
 mod simplices;
 mod untangle;
 
-pub use edge::Found;
-pub use edge::GeodesicEdge;
+pub use edge::{Found, GeodesicEdge};
 pub use simplices::Grid;
 
 use crate::diagram::Diagram;

@@ -20,8 +20,10 @@ mod stopwatch;
 mod surface_dual;
 mod surface_pass;
 
-pub use adapt::{LoopOptions, Solver, Source, Step, adapt};
-pub use certified::{certified_canvas, certify};
+pub(crate) use adapt::Solver;
+pub use adapt::{LoopOptions, Source, Step, adapt};
+pub use certified::certified_canvas;
+pub(crate) use certified::certify;
 pub use dual::{SeedDual, dual, net};
 pub use field::{
     MetricOptions, PlanarMetric, SMOOTH_METRIC, metric, metric_named, metric_of_function, metric_of_solution,
@@ -31,8 +33,7 @@ pub use graded::GradedAt;
 pub use on_surface::mesh_surface;
 pub use options::{Centroid, MeshOptions, Mesher, Seeding};
 pub use remesh_input::{Keep, RemeshInput};
-pub use remesh_sizes::Asked;
-pub use remesh_sizes::RemeshSizes;
+pub use remesh_sizes::{Asked, RemeshSizes};
 pub use surface_dual::{surface_dual, surface_mesh};
 
 use crate::canvas::{Canvas, CanvasFigures};

@@ -40,7 +40,7 @@ const MOST_PASSES: usize = 100;
 
 /// How refinement went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Refined {
+pub(crate) struct Refined {
     /// Seeds put at circumcentres.
     pub circumcentres: usize,
     /// Constrained edges split because a circumcentre encroached on them.
@@ -52,7 +52,7 @@ pub struct Refined {
 }
 
 /// Inserts seeds until the dual has as many vertices as asked for.
-pub fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Refined {
+pub(crate) fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Refined {
     refine_with(dual, fill, progress, &mut |dual, place, (centre, _)| insert_spaced(dual, place, centre))
 }
 

@@ -55,7 +55,7 @@ impl Curvatures {
 /// The principal curvatures of the level surface of f through a point, with grad f as normal: the eigenvalues of
 /// P (H / |grad f|) P in the tangent plane (RR-9103, 15.1; as printed H is multiplied by |grad f|: for a sphere of radius
 /// R that gives 4 R, not 1 / R). `None` where the gradient is zero or not finite.
-pub fn curvatures(jet: &Jet3) -> Option<Curvatures> {
+pub(crate) fn curvatures(jet: &Jet3) -> Option<Curvatures> {
     let normal = jet.gradient.unit()?;
     let plane = TangentPlane::new(normal);
     let shape = plane.restrict(jet.hessian) * (1.0 / jet.gradient.norm());
@@ -67,7 +67,7 @@ const STEPS: usize = 50;
 
 /// The point of f = 0 that Newton's method along the gradient reaches from `p`, with |f| / |grad f| at most `tolerance`
 /// (a length); `None` where it goes farther than `reach` from `p`, or finds no gradient.
-pub fn project(f: &dyn Implicit, p: Point3, reach: f64, tolerance: f64) -> Option<Point3> {
+pub(crate) fn project(f: &dyn Implicit, p: Point3, reach: f64, tolerance: f64) -> Option<Point3> {
     project_pinned(f, p, Pins::default(), reach, tolerance)
 }
 

@@ -11,8 +11,7 @@ mod renumber;
 mod star;
 
 pub use check::Broken;
-pub use ids::{Constraint, VertexId};
-pub use ids::{FaceId, HalfEdge};
+pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
 pub use lawson::Limit;
 pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_in_rounds};
 pub(crate) use star::Star;

@@ -27,14 +27,13 @@ pub(super) mod test_meshes;
 mod waiting;
 
 pub use combine::{average, intersect};
-pub use complexity::complexity;
-pub use complexity::normalise;
+pub use complexity::{complexity, normalise};
 pub use gradation::grade;
 pub(crate) use gradation::{Connection, Gradation};
 pub use implied::{implied, isotropic};
-pub use pipeline::Touched;
-pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source};
-pub use restrict::{Limit, Limits, restrict};
+pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source, Touched};
+pub(crate) use restrict::restrict;
+pub use restrict::{Limit, Limits};
 pub use spd::absolute;
 pub(crate) use spd::enforce_spd;
 
