@@ -2,10 +2,7 @@
 
 mod architecture;
 mod damage;
-mod farthest;
-mod features;
 mod interpolation;
-mod parts;
 mod random_domains;
 mod surfaces;
 mod threads;

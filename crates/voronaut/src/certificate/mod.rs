@@ -16,12 +16,11 @@ mod walk;
 pub use constants::{Constants, Figures};
 pub use convexity::Convexity;
 pub(crate) use coverage::Coverage;
-pub(crate) use distortion::{distortion, distortion_around};
+pub(crate) use distortion::distortion_around;
 pub(crate) use sizing::{Area, sized_canvas};
 pub use sizing::{Cost, longest_edge};
 pub use theorems::{Evidence, verdicts};
 pub use verdict::{Condition, Outcome, Verdict};
-pub(crate) use walk::walk;
 pub use walk::{Found, Walks};
 
 use crate::diagram::Diagram;

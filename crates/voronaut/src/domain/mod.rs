@@ -19,7 +19,8 @@ pub use outlines::{to_mesh, to_poly, to_polygons};
 pub use poly::{Poly, PolyRegion, from_poly};
 pub use polygons::{Polygon, Polygons, Ring, from_polygons};
 pub use pslg::{Filling, Pslg, Segment, Side};
-pub(crate) use shapes::{disk, rect};
+#[cfg(test)]
+pub(crate) use shapes::rect;
 pub(crate) use written::read_numbers;
 pub use written::shape;
 

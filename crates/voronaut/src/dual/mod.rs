@@ -16,7 +16,7 @@ mod surface_flips;
 mod surface_margin;
 mod patch;
 
-pub(crate) use consult::{Consultation, Made};
+pub(crate) use consult::Consultation;
 pub use consult::{Disagreement, Road};
 pub(crate) use edit::Saved;
 pub(crate) use margin::Effort;

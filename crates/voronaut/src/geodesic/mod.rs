@@ -59,7 +59,7 @@ pub use method::Method;
 pub(crate) use path::{Fineness, Paths};
 pub(crate) use predicate::margin_from_lengths;
 pub use straighten::Polyline;
-pub(crate) use straighten::{Obstacles, Open, straighten};
+pub(crate) use straighten::{Obstacles, straighten};
 pub(crate) use strip::taut;
 pub(crate) use stvd::Stvd;
 pub(crate) use update::Wave;

@@ -15,20 +15,6 @@ pub(crate) trait Obstacles: Sync {
     fn corner_between(&self, from: [Point; 2], to: [Point; 2]) -> Option<Point>;
 }
 
-/// No obstacles.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Open;
-
-impl Obstacles for Open {
-    fn bars(&self, _: Point, _: Point) -> bool {
-        false
-    }
-
-    fn corner_between(&self, _: [Point; 2], _: [Point; 2]) -> Option<Point> {
-        None
-    }
-}
-
 /// A polyline near a geodesic.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polyline {
@@ -258,6 +244,19 @@ impl Band<'_> {
 mod tests {
     use super::*;
     use crate::geometry::Tensor;
+
+    /// No obstacles.
+    struct Open;
+
+    impl Obstacles for Open {
+        fn bars(&self, _: Point, _: Point) -> bool {
+            false
+        }
+
+        fn corner_between(&self, _: [Point; 2], _: [Point; 2]) -> Option<Point> {
+            None
+        }
+    }
 
     fn zigzag(p: Point, q: Point, width: f64) -> Vec<Point> {
         let across = (q - p).perpendicular() * width;

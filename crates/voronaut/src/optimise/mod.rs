@@ -21,7 +21,7 @@ pub use cell::Cell;
 pub use cells::Cells;
 pub(crate) use cells::Tangent;
 pub(crate) use exchange::{exchange, meet_blocked_flips};
-pub(crate) use fit::{FitOptions, Fitted, Misfit, fit};
+pub(crate) use fit::{FitOptions, fit};
 pub use lloyd::Relaxed;
 pub(crate) use lloyd::relax;
 pub use on_canvas::OnCanvas;

@@ -20,10 +20,8 @@ mod stopwatch;
 mod surface_dual;
 mod surface_pass;
 
-pub(crate) use adapt::Solver;
 pub use adapt::{LoopOptions, Source, Step, adapt};
 pub use certified::certified_canvas;
-pub(crate) use certified::certify;
 pub use dual::{SeedDual, dual, net};
 pub use field::{
     MetricOptions, PlanarMetric, SMOOTH_METRIC, metric, metric_named, metric_of_function, metric_of_solution,

@@ -19,7 +19,7 @@ pub(crate) use curves::simplify;
 pub use farthest::{Farthest, refine_farthest};
 pub(crate) use features::{ALL_VERTICES, FeatureEdge, FeatureSeeds, MeasuredCurves};
 pub use interior::Fill;
-pub(crate) use interior::{Refined, insert_spaced, refine};
+pub(crate) use interior::{insert_spaced, refine};
 pub(crate) use on_surface::{Seeded, seed_surface, triangulated, triangulated_upright};
 pub use plan::{Plan, Target, demand_memory};
 pub(crate) use protected::{Picking, refine_protected};

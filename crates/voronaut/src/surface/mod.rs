@@ -49,8 +49,8 @@ pub(crate) use march::mesh_implicit;
 pub use measure::Component;
 pub(crate) use nearest::closest_weights;
 pub use nearest::{Closest, Nearest};
-pub(crate) use repair::Damage;
 pub use repair::{Mended, RepairOptions, repaired};
+#[cfg(test)]
 pub(crate) use shapes::chair;
 pub use shapes::{sphere, torus};
 pub use written::shape;

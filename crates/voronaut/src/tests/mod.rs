@@ -2,8 +2,11 @@
 
 mod certificate;
 mod diagram;
+mod farthest;
+mod features;
 mod geodesics;
 mod net;
+mod parts;
 mod realisation;
 mod relaxation;
 mod roads;

@@ -32,8 +32,7 @@ pub use gradation::grade;
 pub(crate) use gradation::{Connection, Gradation};
 pub use implied::{implied, isotropic};
 pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source, Touched};
-pub(crate) use restrict::restrict;
-pub use restrict::{Limit, Limits};
+pub use restrict::{Limit, Limits, restrict};
 pub use spd::absolute;
 pub(crate) use spd::enforce_spd;
 

@@ -4,13 +4,13 @@ mod common;
 mod mutations;
 mod required;
 
-use crate::parts::Part;
+use crate::metric::Bounds;
+use crate::progress::Silent;
+use crate::recipe::{MeshOptions, mesh_surface};
+use crate::surface::metric::{Spec, field};
+use crate::surface::{FeatureOptions, Input, Surface};
+use crate::tests::parts::Part;
 use common::faults;
-use voronaut::metric::Bounds;
-use voronaut::progress::Silent;
-use voronaut::recipe::{MeshOptions, mesh_surface};
-use voronaut::surface::metric::{Spec, field};
-use voronaut::surface::{FeatureOptions, Input, Surface};
 
 /// What is meshed: the part with its features. The only place where these tests say how that is done.
 fn input(part: &Part) -> Input {
@@ -31,7 +31,7 @@ fn distance(part: &Part, surface: &Surface, count: usize, metric: &str) -> f64 {
 
 /// Meshes a part with all that a distance asks for.
 fn keeps_distance(name: &str, share: f64) {
-    let part = crate::parts::all().into_iter().find(|part| part.name == name).unwrap();
+    let part = crate::tests::parts::all().into_iter().find(|part| part.name == name).unwrap();
     let input = input(&part);
     let hausd = share * input.diagonal();
     let field = field(
@@ -56,7 +56,7 @@ fn distances_are_kept_where_they_are_asked_for() {
 
 /// Meshes a part with every number of vertices and checks all that is known of it.
 fn keeps_features(name: &str, metric: &str, counts: &[usize]) {
-    let part = crate::parts::all().into_iter().find(|part| part.name == name).unwrap();
+    let part = crate::tests::parts::all().into_iter().find(|part| part.name == name).unwrap();
     let input = input(&part);
     let field = field(&Spec::parse(metric).unwrap(), &input, Bounds::default()).unwrap();
     for &count in counts {

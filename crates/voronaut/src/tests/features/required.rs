@@ -1,14 +1,14 @@
 //! What the user marks stays: vertices, edges and triangles that are required, and sizes given at the vertices of the file.
 
-use crate::parts;
+use crate::mesh::{Mesh, Solution, SolutionValues};
+use crate::metric::Bounds;
+use crate::progress::Silent;
+use crate::quality::{check, surface_quality};
+use crate::recipe::{MeshOptions, mesh_surface};
+use crate::surface::metric::{Sampled, Spec, field};
+use crate::surface::{FeatureOptions, Input, Surface};
+use crate::tests::parts;
 use std::collections::BTreeSet;
-use voronaut::mesh::{Mesh, Solution, SolutionValues};
-use voronaut::metric::Bounds;
-use voronaut::progress::Silent;
-use voronaut::quality::{check, surface_quality};
-use voronaut::recipe::{MeshOptions, mesh_surface};
-use voronaut::surface::metric::{Sampled, Spec, field};
-use voronaut::surface::{FeatureOptions, Input, Surface};
 
 fn cube() -> Mesh {
     parts::all().into_iter().find(|part| part.name == "cube").unwrap().mesh

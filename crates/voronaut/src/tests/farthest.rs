@@ -1,18 +1,17 @@
 //! Farthest-point refinement: the heap against a scan, the count, holes in the way, work.
 
-use voronaut::Error;
-use voronaut::canvas::Canvas;
-use voronaut::diagram::Diagram;
-use voronaut::domain::Domain;
-use voronaut::dual::Dual;
-use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::{MetricField, Scaled, Shock, Swirl, Uniform};
-use voronaut::progress::Silent;
-use voronaut::quality::metric_quality;
-use voronaut::recipe::{self, MeshOptions, Meshed, Seeding};
-use voronaut::sampling::{Farthest, Fill, Plan, Target, refine_farthest, sample_segments};
-use voronaut::triangulation::VertexId;
-use voronaut_io::poly;
+use crate::Error;
+use crate::canvas::Canvas;
+use crate::diagram::Diagram;
+use crate::domain::{Domain, Poly, from_poly};
+use crate::dual::Dual;
+use crate::geometry::{Point, Tensor};
+use crate::metric::{MetricField, Scaled, Shock, Swirl, Uniform};
+use crate::progress::Silent;
+use crate::quality::metric_quality;
+use crate::recipe::{self, MeshOptions, Meshed, Seeding};
+use crate::sampling::{Farthest, Fill, Plan, Target, refine_farthest, sample_segments};
+use crate::triangulation::VertexId;
 
 fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize, more: &MeshOptions) -> Meshed {
     let options = MeshOptions { vertices: Some(vertices), seeding: Seeding::Farthest, ..more.clone() };
@@ -53,11 +52,18 @@ fn seeds_are_as_far_apart_as_any_point_is_from_them() {
 
 /// Two holes that share a corner, and an inner segment.
 fn touching_holes() -> Domain {
-    let text = "13 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 1 2\n6 1.5 1.5\n7 2 2\n8 1.5 2.5\n9 2.5 1.5\n10 3 2\n\
-                11 2.5 2.5\n12 0.5 0.5\n13 3.5 0.7\n13 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n5 5 6\n6 6 7\n7 7 8\n8 8 5\n\
-                9 7 9\n10 9 10\n11 10 11\n12 11 7\n13 12 13\n2\n1 1.5 2\n2 2.5 2\n";
-    let from_poly = voronaut::domain::from_poly(&poly::read(text.as_bytes(), "holes.poly").unwrap()).unwrap();
-    Domain::new(&from_poly).unwrap()
+    let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)];
+    let left = [(1.0, 2.0), (1.5, 1.5), (2.0, 2.0), (1.5, 2.5)];
+    let right = [(2.5, 1.5), (3.0, 2.0), (2.5, 2.5), (0.5, 0.5), (3.5, 0.7)];
+    let points = [&corners[..], &left, &right].concat().into_iter().map(|(x, y)| Point::new(x, y)).collect();
+    let ring = |ids: [u32; 4]| [[ids[0], ids[1]], [ids[1], ids[2]], [ids[2], ids[3]], [ids[3], ids[0]]];
+    let mut segments = [ring([0, 1, 2, 3]), ring([4, 5, 6, 7]), ring([6, 8, 9, 10])].concat();
+    segments.push([11, 12]);
+    let holes = vec![Point::new(1.5, 2.0), Point::new(2.5, 2.0)];
+    let none = |count: usize| vec![0; count];
+    let (point_markers, segment_markers) = (none(13), none(segments.len()));
+    let poly = Poly { points, point_markers, first: 1, segments, segment_markers, holes, regions: Vec::new() };
+    Domain::new(&from_poly(&poly).unwrap()).unwrap()
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! Whether the mesh of a part has the part's features: by what the generator of parts knows of them, and by nothing of the
 //! library but its validity and its closest points.
 
-use crate::parts::{Chain, Features, Part, beside, sides};
+use crate::geometry::Point3;
+use crate::mesh::Mesh;
+use crate::quality::validity;
+use crate::surface::{Nearest, Surface};
+use crate::tests::parts::{Chain, Features, Part, beside, sides};
 use std::collections::{BTreeMap, BTreeSet};
-use voronaut::geometry::Point3;
-use voronaut::mesh::Mesh;
-use voronaut::quality::validity;
-use voronaut::surface::{Nearest, Surface};
 
 /// Vertices are on chains to this share of the diagonal.
 const ON_CHAIN: f64 = 1e-9;
