@@ -138,7 +138,7 @@ impl<E> Canvas<E> {
     }
 
     /// How the canvas came about.
-    pub fn counters(&self) -> &CanvasCounters {
+    pub(crate) fn counters(&self) -> &CanvasCounters {
         &self.counters
     }
 

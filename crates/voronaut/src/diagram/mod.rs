@@ -249,7 +249,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// Inserts a seed at a canvas vertex; returns its colour.
-    pub fn insert_at_vertex(&mut self, v: VertexId) -> u32 {
+    pub(crate) fn insert_at_vertex(&mut self, v: VertexId) -> u32 {
         self.insert_with(v, Care::Full)
     }
 
@@ -317,12 +317,12 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// Work of the solver since the beginning.
-    pub fn counters(&self) -> &MarchCounters {
+    pub(crate) fn counters(&self) -> &MarchCounters {
         self.propagation.counters()
     }
 
     /// The canvas vertex farthest from its seed, and its distance: where farthest-point refinement puts the next seed.
-    pub fn farthest(&self) -> Option<(VertexId, f64)> {
+    pub(crate) fn farthest(&self) -> Option<(VertexId, f64)> {
         let vertices = (0..self.vertex_count() as u32).map(VertexId);
         vertices.map(|v| (v, self.distance(v))).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
     }

@@ -79,7 +79,7 @@ impl<'a> Dual<'a> {
     ///
     /// # Errors
     /// The metric is not positive definite at a corner.
-    pub fn new(domain: &Domain, field: Scaled<'a>) -> Result<Self> {
+    pub(crate) fn new(domain: &Domain, field: Scaled<'a>) -> Result<Self> {
         let planar = domain.planar().clone();
         let kinds = domain.sources().iter().map(|s| s.map_or(Kind::Free, Kind::Corner)).collect();
         let mut dual = Self {
@@ -103,7 +103,7 @@ impl<'a> Dual<'a> {
     }
 
     /// Topology.
-    pub fn topology(&self) -> &Triangulation {
+    pub(crate) fn topology(&self) -> &Triangulation {
         &self.planar.topology
     }
 
@@ -129,12 +129,12 @@ impl<'a> Dual<'a> {
     }
 
     /// Number of vertices.
-    pub fn vertex_count(&self) -> usize {
+    pub(crate) fn vertex_count(&self) -> usize {
         self.planar.topology.vertex_count()
     }
 
     /// Position of a vertex.
-    pub fn position(&self, v: VertexId) -> Point {
+    pub(crate) fn position(&self, v: VertexId) -> Point {
         self.planar.position(v)
     }
 

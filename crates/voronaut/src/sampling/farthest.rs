@@ -44,14 +44,14 @@ pub struct Farthest {
 
 impl Farthest {
     /// The vertices that may become seeds, as `accept` says.
-    pub fn new<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, accept: impl Fn(VertexId) -> bool) -> Self {
+    pub(crate) fn new<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, accept: impl Fn(VertexId) -> bool) -> Self {
         let vertices = (0..diagram.vertex_count() as u32).map(VertexId).filter(|&v| accept(v));
         Self { heap: vertices.map(|of| Entry { value: diagram.distance(of), of }).collect() }
     }
 
     /// Takes out the farthest vertex, with its distance; `None` where none is left that is no seed itself. Between
     /// [`Farthest::new`] and this seeds may have been inserted into the diagram, not removed.
-    pub fn pop<'a, G: Ground<'a>>(&mut self, diagram: &Diagram<'a, G>) -> Option<(VertexId, f64)> {
+    pub(crate) fn pop<'a, G: Ground<'a>>(&mut self, diagram: &Diagram<'a, G>) -> Option<(VertexId, f64)> {
         loop {
             let mut first = self.heap.peek_mut()?;
             let now = diagram.distance(first.of);

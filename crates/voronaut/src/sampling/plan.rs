@@ -41,7 +41,7 @@ impl Plan {
     ///
     /// # Errors
     /// The metric is not positive definite somewhere, or its complexity not finite.
-    pub fn new(domain: &Domain, field: &dyn MetricField, target: Target) -> Result<Self> {
+    pub(crate) fn new(domain: &Domain, field: &dyn MetricField, target: Target) -> Result<Self> {
         let planar = domain.planar();
         let required = |h| planar.topology.constraint(h).is_some_and(|c| domain.pslg().segments[c.0 as usize].required);
         let constrained = planar.topology.edges().filter(|&h| planar.topology.constraint(h).is_some());
@@ -104,7 +104,7 @@ impl Plan {
     /// # Errors
     /// [`Error::Limit`] where the mesh is estimated to need more memory than `memory_limit` bytes, or more vertices
     /// than ids can number.
-    pub fn start(&self, target: Target, memory_limit: u64) -> Result<(usize, f64)> {
+    pub(crate) fn start(&self, target: Target, memory_limit: u64) -> Result<(usize, f64)> {
         let (count, scale) = match target {
             Target::Vertices(n) => ((n + self.copies) as f64, self.scale_for((n + self.copies) as f64)),
             Target::Complexity(c) => (self.expected_vertices(c / self.complexity), c / self.complexity),

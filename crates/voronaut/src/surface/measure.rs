@@ -50,7 +50,7 @@ impl Surface {
     }
 
     /// The sum of the triangles' areas.
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         self.topology.faces().map(|f| 0.5 * self.area_vector(f).norm()).sum()
     }
 

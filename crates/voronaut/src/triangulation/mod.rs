@@ -106,7 +106,7 @@ impl Triangulation {
     }
 
     /// All living vertices that belong to a face, in order of their ids.
-    pub fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+    pub(crate) fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
         (0..self.start.len() as u32).map(VertexId).filter(|&v| self.is_vertex(v))
     }
 
