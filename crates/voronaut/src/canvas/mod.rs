@@ -138,6 +138,7 @@ impl<E> Canvas<E> {
     }
 
     /// How the canvas came about.
+    #[cfg(test)]
     pub(crate) fn counters(&self) -> &CanvasCounters {
         &self.counters
     }
@@ -269,7 +270,7 @@ impl Canvas {
     }
 
     /// The same vertices, triangulated in the plane.
-    pub fn embedded(&self) -> &Planar {
+    pub(crate) fn embedded(&self) -> &Planar {
         &self.embedded.planar
     }
 

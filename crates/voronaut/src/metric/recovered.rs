@@ -115,7 +115,7 @@ mod tests {
             assert!((found.value(p) - f(p)).abs() < 1e-9, "{p}");
         }
         // Second derivatives ((6, -1), (-1, 1)), positive definite.
-        let m = found.metric(Norm::INFINITY).unwrap().at(Point::new(0.4, 0.7));
+        let m = found.metric(Norm::new(f64::INFINITY).unwrap()).unwrap().at(Point::new(0.4, 0.7));
         assert!((m.xx - 6.0).abs() + (m.xy + 1.0).abs() + (m.yy - 1.0).abs() < 1e-7, "{m:?}");
     }
 

@@ -72,7 +72,7 @@ impl Farthest {
 /// Seeds are inserted with rough starts (`Diagram::insert_roughly`).
 ///
 /// A vertex at which the plane allows no seed (rounding) is passed over. Returns the number of seeds.
-pub fn refine_farthest(dual: &mut Dual, diagram: &mut Diagram, fill: Fill, progress: &dyn Progress) -> usize {
+pub(crate) fn refine_farthest(dual: &mut Dual, diagram: &mut Diagram, fill: Fill, progress: &dyn Progress) -> usize {
     let canvas = diagram.canvas();
     let topology = &canvas.embedded().topology;
     let is_free = |v: VertexId| topology.star(v).all(|h| !topology.is_fixed(h) && !topology.is_fixed(h.prev()));

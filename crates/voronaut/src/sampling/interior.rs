@@ -20,7 +20,7 @@ const FAR: f64 = 2.5;
 
 /// How many vertices refinement goes for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fill {
+pub(crate) enum Fill {
     /// This many, if need be by halving the longest edges where no circumcentre can be had.
     Exactly(usize),
     /// This many, or fewer where the metric leaves no room.

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// What the size of the mesh should follow from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Target {
+pub(crate) enum Target {
     /// This many vertices; the metric is scaled to that.
     Vertices(usize),
     /// This integral of sqrt(det M); the metric is scaled to that.
@@ -25,7 +25,7 @@ const UNIT_TRIANGLE: f64 = 0.433_012_701_892_219_3;
 const BYTES_PER_VERTEX: f64 = 1200.0;
 
 /// A domain measured by a metric.
-pub struct Plan {
+pub(crate) struct Plan {
     /// The integral of sqrt(det M).
     pub complexity: f64,
     /// One half-edge of every constrained edge of the domain's triangulation, and whether it must stay whole.

@@ -8,7 +8,7 @@ use crate::triangulation::{HalfEdge, VertexId};
 
 /// Metric length along a straight segment, as a piecewise linear function of the parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MetricArc {
+pub(crate) struct MetricArc {
     /// Breakpoints (parameter in 0..=1, metric length from the start), both increasing.
     breaks: Vec<(f64, f64)>,
 }
@@ -66,7 +66,7 @@ pub(super) fn pieces(length: f64) -> usize {
 /// under the unscaled field, in order, and `scale` the field's factor. Required segments stay whole.
 ///
 /// A cut that rounding would make invalid is left out. Returns the number of new vertices.
-pub fn sample_segments(dual: &mut Dual, edges: &[(HalfEdge, bool)], arcs: &[MetricArc], scale: f64) -> usize {
+pub(crate) fn sample_segments(dual: &mut Dual, edges: &[(HalfEdge, bool)], arcs: &[MetricArc], scale: f64) -> usize {
     let before = dual.vertex_count();
     let ends: Vec<_> = edges.iter().map(|&(h, _)| [dual.topology().origin(h), dual.topology().target(h)]).collect();
     for ((&(_, required), arc), [from, to]) in edges.iter().zip(arcs).zip(ends) {

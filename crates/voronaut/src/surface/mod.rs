@@ -47,8 +47,7 @@ pub(crate) use implicit::{closest_zero, curvatures, project};
 pub use input::Input;
 pub(crate) use march::mesh_implicit;
 pub use measure::Component;
-pub(crate) use nearest::closest_weights;
-pub use nearest::{Closest, Nearest};
+pub(crate) use nearest::{Nearest, closest_weights};
 pub use repair::{Mended, RepairOptions, repaired};
 #[cfg(test)]
 pub(crate) use shapes::chair;

@@ -7,13 +7,13 @@ use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
 /// The triangles of a surface in a tree of boxes: one search costs about the logarithm of their number.
 #[derive(Clone, Debug)]
-pub struct Nearest {
+pub(crate) struct Nearest {
     tree: RTree<Triangle>,
 }
 
 /// What of a surface is closest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closest {
+pub(crate) struct Closest {
     /// The closest point, and where on the surface it is.
     pub place: Place,
     /// Its distance.
