@@ -80,6 +80,7 @@
 // In the order of the flow of data; each module uses only those above it (held by tests/architecture).
 mod error;
 pub mod progress;
+mod parallel;
 mod sparse;
 pub mod geometry;
 pub mod mesh;

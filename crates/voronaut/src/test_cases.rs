@@ -12,6 +12,11 @@ pub(crate) fn plate(rings: &[&[[f64; 2]]]) -> Domain {
     Domain::new(&from_polygons(&Polygons { polygons: vec![polygon] }).unwrap()).unwrap()
 }
 
+/// What comes out on so many threads.
+pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
+}
+
 /// What a property test runs with that needs so many cases; where the environment names a number, as in `PROPTEST_CASES=10000`,
 /// that one counts. (`Config::with_cases` knows nothing of it.)
 pub(crate) fn cases(count: u32) -> Config {

@@ -10,9 +10,9 @@ use crate::error::{Error, Result};
 use crate::geodesic::{bowed_between, bowed_chord};
 use crate::geometry::Tensor;
 use crate::metric::{MetricField, check_tensor};
+use crate::parallel::prelude::*;
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
-use rayon::prelude::*;
 
 /// An edge longer than the other two of its face together, by more than this share of them, is split; less is
 /// curvature, and the edge is shortened.

@@ -40,11 +40,11 @@ use crate::error::Result;
 use crate::geodesic::{Graph, bowed_chord};
 use crate::geometry::Point;
 use crate::metric::MetricField;
+use crate::parallel::prelude::*;
 use crate::planar::{Planar, hilbert_order};
 use crate::triangulation::{Triangulation, VertexId};
 use isotropic::Until;
 use locate::Finder;
-use rayon::prelude::*;
 
 /// Canvas vertices per seed (`--canvas-size`) unless told otherwise.
 pub const VERTICES_PER_SEED: u32 = 60;

@@ -10,9 +10,9 @@ use crate::error::Result;
 use crate::geodesic::chord;
 use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, check_tensor};
+use crate::parallel::prelude::*;
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
-use rayon::prelude::*;
 
 /// Edges are measured by five evaluations of the field while there are fewer vertices than this, by one from then on:
 /// long edges may hide in their middle what their ends do not tell.

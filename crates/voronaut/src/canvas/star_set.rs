@@ -6,9 +6,9 @@ use super::{CanvasCounters, refine, renumbered};
 use crate::error::Result;
 use crate::geometry::Point;
 use crate::metric::MetricField;
+use crate::parallel::prelude::*;
 use crate::planar::Planar;
 use crate::triangulation::{HalfEdge, VertexId};
-use rayon::prelude::*;
 use std::collections::HashSet;
 
 /// The share of the vertices that the embedded triangulation is refined to before stars are.

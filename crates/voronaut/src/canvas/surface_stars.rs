@@ -6,9 +6,9 @@ use super::star::{Finder, Spoke, Star, circle};
 use super::{Canvas, StarFigures, StarSet};
 use crate::geodesic::{Graph, Sight};
 use crate::geometry::{Orientation, Point, Point3, TangentPlane, Tensor, Vector, orientation};
+use crate::parallel::prelude::*;
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
-use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 

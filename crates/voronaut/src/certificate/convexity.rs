@@ -6,8 +6,8 @@ use crate::geodesic::{Fineness, Paths, gauss_curvature};
 use crate::geometry::{Point, Vector};
 use crate::metric::{MetricField, Scaled};
 use crate::net::Net;
+use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
-use rayon::prelude::*;
 use serde::Serialize;
 use std::f64::consts::PI;
 

@@ -28,8 +28,8 @@ use crate::geodesic::{Fineness, Paths};
 use crate::geometry::{Point, Tensor};
 use crate::metric::MetricField;
 use crate::net::{Ball, Net, neighbours};
+use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// The radius of the neighbourhood U of Theorem 9.10 in epsilons: nothing that the proof of the theorem speaks of is

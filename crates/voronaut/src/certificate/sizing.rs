@@ -6,7 +6,7 @@ use crate::domain::Domain;
 use crate::error::Result;
 use crate::geometry::{Point, Vector};
 use crate::metric::MetricField;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use serde::Serialize;
 
 /// Vertices that a canvas would take, estimated: half its triangles, each with an area of s0^2.

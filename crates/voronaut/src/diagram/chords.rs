@@ -7,8 +7,8 @@ use super::kind::Chords;
 use super::nearest::{Nearest, Site};
 use crate::geodesic::{Label, MarchCounters, Propagation};
 use crate::geometry::Point;
+use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 
 impl<'a> Straight<'a, Flat<'a>> for Chords {
     fn length(&self, ground: Flat, seed: Point, place: Point) -> f64 {
@@ -127,8 +127,7 @@ mod tests {
         let seeds = seeds_of(&domain, 200);
         for (kind, _) in RIVALS {
             let colours = |threads| {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                pool.install(|| {
+                crate::test_cases::on_threads(threads, || {
                     let diagram = Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap();
                     vertices(&canvas).map(|v| *diagram.label(v)).collect::<Vec<_>>()
                 })

@@ -8,8 +8,8 @@
 use super::nerve::{Nerve, NerveEdge, NerveTriangle};
 use super::overlap::Overlap;
 use super::{Diagram, Ground};
+use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, HalfEdge, VertexId, smallest_first};
-use rayon::prelude::*;
 
 /// A Voronoi vertex this far (barycentric) outside a face still counts: it may lie on the edge.
 const ON_EDGE: f64 = 1e-9;

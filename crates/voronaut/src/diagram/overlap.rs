@@ -6,8 +6,8 @@
 use super::ground::Straight as _;
 use super::{Diagram, Ground, Measure, Seed};
 use crate::geodesic::NO_COLOUR;
+use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 
 /// Rings of canvas vertices around a cell.
 const RINGS: usize = 3;

@@ -7,8 +7,8 @@ use crate::canvas::Border;
 use crate::error::{Error, Result};
 use crate::geodesic::{Obstacles, Polyline, straighten};
 use crate::geometry::Point;
+use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 
 /// Diagrams with the distances of every cell and its surroundings, from which any number of paths are traced.
 pub struct Paths<'d, 'a> {

@@ -5,9 +5,9 @@ use crate::error::{Error, Result};
 use crate::geodesic::bowed_chord;
 use crate::geometry::{Orientation, Point, orientation};
 use crate::metric::MetricField;
+use crate::parallel::prelude::*;
 use crate::planar::{Location, Planar};
 use crate::triangulation::{HalfEdge, VertexId};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A canvas vertex in sight of a seed, and the metric length of the geodesic between them.

@@ -30,10 +30,10 @@ use crate::geodesic::{LocalMetric, Paths, chord, hermite};
 use crate::geometry::{Point, Readable, Tensor};
 use crate::in_circle::Tests;
 use crate::metric::Scaled;
+use crate::parallel::prelude::*;
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, Lawson, Triangulation, VertexId};
 use margin::LEVELS;
-use rayon::prelude::*;
 use std::collections::HashSet;
 
 /// What holds a vertex in its place.

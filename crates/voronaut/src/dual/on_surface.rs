@@ -9,10 +9,10 @@ use crate::error::{Error, Result};
 use crate::geodesic::LocalMetric;
 use crate::geometry::{Point, Point3, TangentPlane, Vector, Vector3};
 use crate::metric::Scaled;
+use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
-use rayon::prelude::*;
 
 /// Margins closer to zero than this are ties.
 pub(super) const TIE: f64 = 1e-9;

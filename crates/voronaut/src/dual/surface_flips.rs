@@ -4,8 +4,8 @@ use super::Moving;
 use super::on_surface::{FOLDED, SurfaceDual, TIE, UPRIGHT};
 use crate::geodesic::Margin;
 use crate::in_circle::Quad;
+use crate::parallel::prelude::*;
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Rounds, Triangulation, VertexId, flip_in_rounds};
-use rayon::prelude::*;
 
 /// Inconsistent tests can make flips go round in a circle.
 const LIMIT: Limit = Limit::OfSlot(6);

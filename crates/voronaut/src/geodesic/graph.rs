@@ -1,8 +1,8 @@
 //! What methods that know no triangles travel on: vertices with a tensor each, and who is whose neighbour.
 
 use crate::geometry::{Point, Tensor, Vector};
+use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 use std::fmt;
 use std::sync::Arc;
 

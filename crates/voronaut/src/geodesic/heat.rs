@@ -50,7 +50,7 @@ impl<'a> Heat<'a> {
         // One vertex of each part is held: sources and sinks of its flow balance, so that nothing flows there.
         let grounds: Vec<f64> = (0..n).map(|v| if part[v] == v { 1.0 } else { 0.0 }).collect();
         let elimination = Elimination::of(&stiffness);
-        let (flow, poisson) = rayon::join(
+        let (flow, poisson) = crate::parallel::join(
             || factor(&flow(&mass, &stiffness, time), &elimination),
             || factor(&stiffness.clone().plus_diagonal(&grounds), &elimination),
         );

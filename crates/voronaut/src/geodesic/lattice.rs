@@ -5,7 +5,7 @@ use super::simplex::crossing;
 use super::straighten::Obstacles;
 use crate::geometry::{Aabb, Point, Tensor, Vector};
 use crate::metric::MetricField;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 

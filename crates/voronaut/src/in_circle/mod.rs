@@ -2,7 +2,7 @@
 //! before it cannot tell. What the levels are is for an [`InCircle`] to say; lengths and outcomes are kept.
 
 use crate::geodesic::{Margin, PathLength, margin_from_lengths};
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
 

@@ -4,7 +4,7 @@ use super::MetricField;
 use super::validate::check_tensor;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, combine, radon};
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// The integral of sqrt(det M) over triangles that do not overlap, to a relative error of about 1e-4 of the total.
 ///
@@ -354,8 +354,8 @@ mod tests {
     fn threads_do_not_change_a_bit() {
         let triangles = rectangle(-1.0, -1.0, 1.0, 1.0);
         let with = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| complexity(&Shock { phi: 10.0, lambda: 0.01 }, &triangles)).unwrap()
+            crate::test_cases::on_threads(threads, || complexity(&Shock { phi: 10.0, lambda: 0.01 }, &triangles))
+                .unwrap()
         };
         assert_eq!(with(1).to_bits(), with(3).to_bits());
     }

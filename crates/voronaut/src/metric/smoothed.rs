@@ -5,7 +5,7 @@ use super::{MetricField, Sampled};
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Sweeps at most. On a background of 40,000 vertices so many smooth over a quarter of the domain's width: what is left of a
 /// field then is about its mean.
@@ -128,10 +128,7 @@ mod tests {
         let tensors: Vec<Tensor> = (0..mesh.points.len() as u32).map(|v| turning(mesh.point(v))).collect();
         let (none, sampled) = (smoothed(&turning, &mesh, 0).unwrap(), Sampled::new(&mesh, &tensors).unwrap());
         assert!(points().all(|p| none.at(p) == sampled.at(p)));
-        let with = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| smoothed(&turning, &mesh, 7).unwrap())
-        };
+        let with = |threads| crate::test_cases::on_threads(threads, || smoothed(&turning, &mesh, 7).unwrap());
         let (one, three) = (with(1), with(3));
         assert!(points().all(|p| one.at(p) == three.at(p)));
     }

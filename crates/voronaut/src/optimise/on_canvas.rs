@@ -8,8 +8,8 @@ use crate::error::Result;
 use crate::geodesic::{LocalMetric, Support};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
+use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 
 /// A canvas, and the metric area that each of its vertices stands for.
 pub struct OnCanvas<'a> {

@@ -10,9 +10,9 @@ use crate::geodesic::{Angles, LocalMetric, hermite};
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::net::{Ball, Estimate, Memory, Net, Random, Sites, Triangles};
+use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::triangulation::{FaceId, Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Rounds of measuring with geodesics and moving seeds, at most.

@@ -3,8 +3,8 @@
 use super::cell::{Cell, Moments, to_frame};
 use crate::dual::{Kind, Moving};
 use crate::geometry::Vector;
+use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, VertexId};
-use rayon::prelude::*;
 
 /// The moments of every seed's cell, cut in the tangent plane at the seed: by bisectors with its neighbours, which are seen through
 /// the second-order logarithm map, and by the domain's segments. Tangent vectors are in the orthonormal frame of

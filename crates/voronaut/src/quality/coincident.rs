@@ -2,7 +2,7 @@
 
 use crate::geometry::Point3;
 use crate::mesh::Mesh;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Vertices that lie exactly where one with a smaller number lies, behind that one; finite ones.
 pub(super) fn duplicates(mesh: &Mesh) -> Vec<[u32; 2]> {

@@ -4,7 +4,7 @@ use super::edges::Edges;
 use super::segments::{Piece, Segments};
 use crate::geometry::{Aabb, Orientation, Point, orientation};
 use crate::mesh::Mesh;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Two polylines that meet elsewhere than at a common point of both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,6 +1,6 @@
 //! The edges of a triangle list, found by sorting: no hashing, the same order on every machine.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// No half-edge on the other side.
 pub(crate) const NONE: u32 = u32::MAX;

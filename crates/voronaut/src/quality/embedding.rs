@@ -11,7 +11,7 @@ use super::fault::Fault;
 use super::segments::{Piece, Segments};
 use crate::geometry::{Aabb, Orientation, Point, orientation};
 use crate::mesh::Mesh;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// The faults of the first of the three conditions that does not hold; empty if the mesh is embedded.
 /// Needs finite positions, manifold edges and counter-clockwise triangles.

@@ -6,7 +6,7 @@ use super::metric_quality::{EdgeLengths, angle, collect, demand_planar, mean_ten
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// A figure of the mesh with straight edges, and the same with geodesic edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -230,10 +230,7 @@ mod tests {
         let nan = |_: Point| Tensor::new(f64::NAN, 0.0, 1.0);
         assert!(matches!(histograms(&grid(2, 2), &nan), Err(crate::Error::Metric { .. })));
         let metric = |p: Point| Tensor::new(1.0 + p.x * p.x, 0.3, 2.0 + p.y.sin());
-        let with = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| histograms(&grid(20, 20), &metric).unwrap())
-        };
+        let with = |threads| crate::test_cases::on_threads(threads, || histograms(&grid(20, 20), &metric).unwrap());
         assert_eq!(with(1), with(3));
     }
 }

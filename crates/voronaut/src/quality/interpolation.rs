@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Node, Point, combine, radon};
 use crate::mesh::Mesh;
 use crate::metric::{Norm, ScalarField};
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use std::fmt;
 
 /// Each triangle is cut into so many times so many parts, with a rule of degree 5 on each.

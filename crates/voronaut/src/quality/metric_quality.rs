@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3, Tensor, Vector};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// The figures of a mesh in a metric field. They do not change when mesh and metric are pulled back by the same
@@ -345,10 +345,7 @@ mod tests {
     #[test]
     fn any_number_of_threads_gives_the_same_bits() {
         let metric = |p: Point| Tensor::new(1.0 + p.x * p.x, 0.3, 2.0 + p.y.sin());
-        let with = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| metric_quality(&grid(70, 70), &metric).unwrap())
-        };
+        let with = |threads| crate::test_cases::on_threads(threads, || metric_quality(&grid(70, 70), &metric).unwrap());
         assert_eq!(with(1), with(5));
     }
 }

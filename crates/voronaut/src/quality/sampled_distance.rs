@@ -2,7 +2,7 @@
 //! greatest distance may be.
 
 use crate::geometry::Point3;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// A point of the triangles' side, and its distance to the other side.
 #[derive(Clone, Copy, Debug)]

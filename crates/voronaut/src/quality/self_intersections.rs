@@ -4,7 +4,7 @@ use super::contact::{Corners, contact};
 use super::fault::Fault;
 use crate::geometry::{Aabb3, Point3};
 use crate::mesh::Mesh;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 

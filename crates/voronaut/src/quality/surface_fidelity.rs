@@ -6,8 +6,8 @@ use super::sampled_distance::{Sample, Sampled, sample};
 use crate::error::Result;
 use crate::geometry::{Point3, Vector3};
 use crate::mesh::Mesh;
+use crate::parallel::prelude::*;
 use crate::surface::{Implicit, Nearest, Surface, closest_zero};
-use rayon::prelude::*;
 
 /// Euclidean distances between a mesh and a surface, and angles between their normals.
 ///
@@ -345,8 +345,9 @@ mod tests {
         broken.triangles[0][0] = u32::MAX;
         assert!(surface_fidelity(&broken, &input.surface, None).is_err());
         let with = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| surface_fidelity(&mesh, &input.surface, implicit(&input)).unwrap())
+            crate::test_cases::on_threads(threads, || {
+                surface_fidelity(&mesh, &input.surface, implicit(&input)).unwrap()
+            })
         };
         assert_eq!(with(1), with(3));
     }

@@ -250,10 +250,8 @@ mod tests {
         let broken = surface_quality(&broken, &surface, &Constant(Tensor3::IDENTITY));
         assert!(matches!(broken, Err(crate::Error::Mesh { .. })));
         let field = |p: Point3| Tensor3::from_disk([2.0 + p.x.sin(), 0.1, 2.0, 0.1, 0.1, 1.0 + p.y * p.y]);
-        let with = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| surface_quality(&mesh, &surface, &field).unwrap())
-        };
+        let with =
+            |threads| crate::test_cases::on_threads(threads, || surface_quality(&mesh, &surface, &field).unwrap());
         assert_eq!(with(1), with(3));
     }
 }

@@ -11,7 +11,7 @@ use super::self_intersections::pairs;
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, orientation};
 use crate::mesh::Mesh;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// What was found in a mesh. `valid` means: at least one triangle, every figure marked (fault) is zero.
 ///

@@ -8,7 +8,7 @@ use crate::geodesic::{
 use crate::geometry::{Point, Tensor, Vector};
 use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested};
 use crate::metric::MetricField;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 const FROZEN: usize = 0;
 const EXPANSIONS: usize = 1;

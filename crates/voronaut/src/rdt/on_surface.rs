@@ -6,8 +6,8 @@ use crate::diagram::SurfaceDiagram;
 use crate::geodesic::{Margin, PathLength, circumradius, margin_from_lengths};
 use crate::geometry::{Point3, TangentPlane, Vector};
 use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested};
+use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, Triangulation, VertexId};
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// The level at which geodesics are pulled taut: the only one.

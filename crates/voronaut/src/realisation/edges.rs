@@ -7,7 +7,7 @@ use crate::diagram::Diagram;
 use crate::geodesic::{Curve, Fineness, Obstacles, Paths, Polyline};
 use crate::geometry::Point;
 use crate::metric::MetricField;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Sagittas of drawn curves, as a share of their lengths.
 const SAGITTA: f64 = 5e-4;

@@ -5,7 +5,7 @@ use super::edge::GeodesicEdge;
 use crate::geometry::{Orientation, Point, Tensor, orientation};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 impl Realisation {
     /// Vertices of a mesh that holds all seeds, then the inner points of all edges: the number of an edge's first one.

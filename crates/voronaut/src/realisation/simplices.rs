@@ -4,7 +4,7 @@ use super::Realisation;
 use crate::geodesic::{Fineness, Paths, karcher_mean};
 use crate::geometry::{Orientation, Point, orientation};
 use crate::metric::MetricField;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// A Riemannian triangle in pieces: the images of barycentric coordinates that are multiples of 1/n.
 #[derive(Clone, Debug, PartialEq)]

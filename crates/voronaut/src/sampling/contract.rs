@@ -2,8 +2,8 @@
 
 use crate::diagram::SurfaceDiagram;
 use crate::geometry::Vector3;
+use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
-use rayon::prelude::*;
 
 /// The least cosine between a triangle's normal and those of the surface at its corners.
 const UPRIGHT: f64 = 0.2;

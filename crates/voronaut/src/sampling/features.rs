@@ -1,10 +1,10 @@
 //! Seeds on the features of a surface: at stops, and along curves at even metric length.
 
 use crate::geometry::Point3;
+use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Curve, CurveEdge, Input, Mark, Place};
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// The length of an edge of a curve is known when halving it changes it by no more than this share,

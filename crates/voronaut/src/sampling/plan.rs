@@ -5,8 +5,8 @@ use crate::canvas;
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::metric::{MetricField, complexity, rough_complexity};
+use crate::parallel::prelude::*;
 use crate::triangulation::HalfEdge;
-use rayon::prelude::*;
 
 /// What the size of the mesh should follow from.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,8 @@ use super::{Implicit, Surface, curvatures};
 use crate::error::Result;
 use crate::geometry::{Aabb3, Point3, Vector3};
 use crate::mesh::Mesh;
+use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
-use rayon::prelude::*;
 
 /// A vertex of the triangulation.
 #[derive(Clone, Copy, Debug, Default)]

@@ -9,7 +9,7 @@ use super::{Implicit, Surface};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3};
 use crate::mesh::Mesh;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use std::collections::HashMap;
 
 /// Grid steps along the longest side of the box unless an edge length is asked for.

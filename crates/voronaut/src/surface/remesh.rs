@@ -9,8 +9,8 @@ use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3, Tensor, Vector, Vector3};
 use crate::metric::Neighbours;
 use crate::metric::nodal::{Connection, Gradation, Limits};
+use crate::parallel::prelude::*;
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
-use rayon::prelude::*;
 
 /// Edges times the larger principal curvature should be about this.
 const BEND: f64 = 0.4;
@@ -453,8 +453,7 @@ mod tests {
     #[test]
     fn any_number_of_threads_gives_the_same_bits() {
         let mesh = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| crate::surface::chair(Some(0.4)).unwrap().to_mesh())
+            crate::test_cases::on_threads(threads, || crate::surface::chair(Some(0.4)).unwrap().to_mesh())
         };
         assert_eq!(mesh(1), mesh(3));
     }

@@ -3,7 +3,7 @@
 use super::Implicit;
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Eigen3, Point3, Vector3};
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Steps of the search for a point without gradient, which doubles its digits in each.
 const STEPS: usize = 12;

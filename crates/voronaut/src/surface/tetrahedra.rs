@@ -3,7 +3,7 @@
 use super::Implicit;
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3, Vector3};
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use std::collections::HashMap;
 
 /// Values of a function at the vertices of a grid.

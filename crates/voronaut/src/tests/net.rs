@@ -101,10 +101,7 @@ fn protected_seeds_are_and_the_raw_nerve_is_their_dual() {
 fn protected_seeds_do_not_depend_on_threads() {
     let domain = Domain::shape("rect:0,0,1,1").unwrap();
     let field = |p: Point| Tensor::new(1.0, 0.0, 1.0 / (0.5 + 0.6 * (p.y - 0.4 * p.x).powi(2)).powi(2));
-    let with = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| protected(&domain, &field, 200, 2))
-    };
+    let with = |threads: usize| crate::test_cases::on_threads(threads, || protected(&domain, &field, 200, 2));
     let [one, three] = [1, 3].map(with);
     assert_eq!((&one.mesh, &one.net, &one.protection), (&three.mesh, &three.net, &three.protection));
 }

@@ -98,8 +98,7 @@ fn an_affine_map_takes_star_sets_to_star_sets() {
 fn threads_do_not_change_a_star() {
     let domain = Domain::shape("rect:-2,-2,2,2").unwrap();
     let with = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Canvas::new(Kind::StarSet, &domain, &Swirl::default(), 6000).unwrap())
+        crate::test_cases::on_threads(threads, || Canvas::new(Kind::StarSet, &domain, &Swirl::default(), 6000).unwrap())
     };
     let (one, two) = (with(1), with(2));
     assert_eq!(one.embedded().positions, two.embedded().positions);

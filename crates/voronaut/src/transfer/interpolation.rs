@@ -4,7 +4,7 @@ use super::cover::Cover;
 use super::{Field, Place};
 use crate::geometry::{Aabb, Point};
 use crate::mesh::{Located, Locator, Mesh};
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Points farther from the old mesh than this share of its extent are outside it, not on its border.
 const ROUNDING: f64 = 1e-9;

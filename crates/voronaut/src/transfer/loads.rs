@@ -6,7 +6,7 @@ use super::interpolation::mean;
 use super::mass::areas;
 use crate::geometry::Point;
 use crate::mesh::{Located, Locator, Mesh};
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Values of several components, row by row.
 pub(super) struct Rows {

@@ -1,8 +1,8 @@
 //! The mass matrix of linear elements, and what is integrated with it.
 
 use crate::mesh::Mesh;
+use crate::parallel::prelude::*;
 use crate::sparse::{conjugate_gradients, dot};
-use rayon::prelude::*;
 
 /// Areas of all triangles, of either orientation.
 pub(super) fn areas(mesh: &Mesh) -> Vec<f64> {

@@ -410,10 +410,8 @@ fn threads_do_not_change_a_bit() {
     let (old, new) = (square(30, 0.3, 0.4), square(27, 0.3, 2.0));
     let fields = [sampled(&old, rough), on_triangles(&old, rough)];
     for carry in ALL {
-        let [one, three] = [1, 3].map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| carry(&old, &new, &fields).unwrap())
-        });
+        let [one, three] =
+            [1, 3].map(|threads| crate::test_cases::on_threads(threads, || carry(&old, &new, &fields).unwrap()));
         assert_eq!(one, three);
     }
 }

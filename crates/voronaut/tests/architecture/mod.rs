@@ -78,6 +78,16 @@ fn gradation_is_one_law() {
     assert_eq!(holders("Gradation::new("), users, "whoever grades");
 }
 
+/// So that the mathematics can do without threads.
+#[test]
+fn threads_are_one_module() {
+    for source in sources("voronaut").iter().filter(|source| source.module() != "parallel") {
+        for word in ["rayon", "std::thread"] {
+            assert!(!contains_path(&source.code, word), "{} has {word}", source.name);
+        }
+    }
+}
+
 #[test]
 fn libraries_never_print() {
     for source in libraries() {

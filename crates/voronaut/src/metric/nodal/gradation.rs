@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Tensor, Vector};
 use crate::mesh::Mesh;
 use crate::metric::neighbours::Neighbours;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// The metric with sizes that grow slowly: along no edge (p, q) does that at q ask for less than what the one at p has grown to.
 /// What it has grown to is that of mixed space (Alauzet 2010): the size h along each of its axes has become h times
@@ -331,10 +331,7 @@ mod tests {
             let angle = 40.0 * (p.x + p.y * p.y);
             Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), 1e4 / (0.01 + p.x), 1e2)
         });
-        let graded = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| grade(&mesh, &given, 1.2).unwrap())
-        };
+        let graded = |threads: usize| crate::test_cases::on_threads(threads, || grade(&mesh, &given, 1.2).unwrap());
         assert_eq!(graded(1), graded(3));
     }
 

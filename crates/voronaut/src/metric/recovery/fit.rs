@@ -5,7 +5,7 @@ use super::least_squares::solve;
 use super::stencil::{Frame, Rings};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// The Hessian of the quadratic through the value at a vertex that fits the values around it best: exact for quadratics.
 pub(super) fn fit(mesh: &Mesh, values: &[f64]) -> Vec<Tensor> {

@@ -5,7 +5,7 @@ use super::least_squares::solve;
 use super::stencil::{Frame, Rings};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// The double L2 projection with lumped masses: gradients of triangles averaged to the vertices by area, differentiated, and
 /// averaged again. At the border the first averages are of one side only and wrong by a share of the edge's length, the second

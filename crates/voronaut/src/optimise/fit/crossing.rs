@@ -2,8 +2,8 @@
 
 use super::closest::Sheet;
 use crate::geometry::{Aabb3, Point3};
+use crate::parallel::prelude::*;
 use crate::triangulation::FaceId;
-use rayon::prelude::*;
 use robust::{Coord3D, orient3d};
 use rstar::{AABB, RTree, RTreeObject};
 

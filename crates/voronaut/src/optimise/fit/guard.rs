@@ -3,8 +3,8 @@
 use super::closest::Sheet;
 use super::crossing::crossings;
 use crate::geometry::{Point3, Vector3};
+use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, VertexId};
-use rayon::prelude::*;
 
 /// What a mesh was like before anything moved, and the surface below it.
 pub(super) struct Guard<'a> {

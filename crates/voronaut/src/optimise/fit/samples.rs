@@ -2,9 +2,9 @@
 
 use super::closest::{Foot, Sheet, area_vector};
 use crate::geometry::{Point3, Vector3};
+use crate::parallel::prelude::*;
 use crate::surface::{Nearest, Surface};
 use crate::triangulation::{FaceId, VertexId};
-use rayon::prelude::*;
 
 /// A point of the surface, and the part of the surface's area that it stands for.
 #[derive(Clone, Copy)]

@@ -148,10 +148,7 @@ fn rotations_and_scales_change_nothing() {
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let (surface, mesh) = (torus(2.0, 0.7, 0.3).unwrap(), torus(2.0, 0.7, 0.8).unwrap().to_mesh());
-    let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| fitted(&mesh, &surface))
-    };
+    let with = |threads| crate::test_cases::on_threads(threads, || fitted(&mesh, &surface));
     let one = with(1);
     assert_eq!(one, with(2));
     assert_eq!(one, with(5));

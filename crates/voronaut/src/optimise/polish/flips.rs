@@ -2,8 +2,8 @@
 
 use super::error::Place;
 use super::{Work, is_allowed};
+use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, Rounds, Triangulation, VertexId, flip_in_rounds};
-use rayon::prelude::*;
 
 /// Rounds of flips in a sweep, at most: the next sweep has more.
 const ROUNDS: usize = 8;

@@ -13,12 +13,12 @@ use crate::dual::{Dual, Kind};
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::metric::{Norm, ScalarField};
+use crate::parallel::prelude::*;
 use crate::planar::Planar;
 use crate::progress::Progress;
 use crate::triangulation::VertexId;
 pub(crate) use error::polishing_norm;
 use error::{Objective, Place};
-use rayon::prelude::*;
 
 /// It ends when a sweep lowers the error by less than this share.
 const STALLED: f64 = 5e-4;

@@ -4,8 +4,8 @@ use super::colours::colours;
 use super::error::Place;
 use super::{Freedom, Work, is_allowed};
 use crate::geometry::{Point, Vector};
+use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 
 /// Step of the differences that derivatives are taken by, as a share of the neighbours' mean distance.
 const STEP: f64 = 0.03;

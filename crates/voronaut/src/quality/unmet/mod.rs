@@ -14,11 +14,11 @@ use crate::error::Result;
 use crate::geometry::{Point, Point3, Vector};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
+use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{FeatureOptions, Surface};
 use density::Density;
 use forced::Forced;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 

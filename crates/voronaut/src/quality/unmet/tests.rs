@@ -171,9 +171,6 @@ fn faults_are_errors_and_threads_do_not_matter() {
     assert!(matches!(unmet(&grid(4, 4), &bad), Err(crate::Error::Metric { .. })));
     assert!(matches!(unmet(&mesh(&[[0.0, 0.0]], &[[0, 1, 2]]), &UNIT), Err(crate::Error::Mesh { .. })));
     let (wild, metric) = waves(4.0);
-    let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| unmet(&wild, &metric).unwrap())
-    };
+    let with = |threads| crate::test_cases::on_threads(threads, || unmet(&wild, &metric).unwrap());
     assert_eq!(with(1), with(3));
 }

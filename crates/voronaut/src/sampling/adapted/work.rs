@@ -2,10 +2,10 @@
 
 use super::{Adapted, Wanted};
 use crate::geometry::{Point3, Tensor3, Vector3};
+use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Place};
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A triangulation in the making.

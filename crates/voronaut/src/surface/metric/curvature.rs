@@ -3,9 +3,9 @@
 use super::{CurvatureFigures, Sampled, SurfaceMetric, fit_curvatures};
 use crate::error::Result;
 use crate::geometry::Tensor3;
+use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Implicit, Place, Surface, curvatures};
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 
 /// The smallest curvature that counts, unless told otherwise, over the bounding box's diagonal: a radius of ten diagonals
 /// is flat.

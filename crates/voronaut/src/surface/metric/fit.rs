@@ -1,9 +1,9 @@
 //! Principal curvatures at the vertices of a mesh.
 
 use crate::geometry::{Point3, TangentPlane, Tensor};
+use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Surface};
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 
 /// Principal curvatures at every vertex by fitting a polynomial of degree three over the tangent plane to the vertices of
 /// its two rings of neighbours (Cazals and Pouget 2005, "jets"). Where vertices are on a smooth surface, curvatures are

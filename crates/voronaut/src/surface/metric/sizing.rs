@@ -8,9 +8,9 @@ use crate::geometry::{TangentPlane, Tensor, Tensor3, Vector3};
 use crate::mesh::{Solution, SolutionValues};
 use crate::metric::Bounds;
 use crate::metric::nodal::{Gradation, Limits};
+use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Surface};
 use crate::triangulation::VertexId;
-use rayon::prelude::*;
 
 /// c in h = sqrt(c hausd / curvature), the size that keeps unit meshes within `hausd` of a surface. An edge of length h alone is
 /// an eighth of h^2 times the curvature away, an equilateral triangle a sixth; but edges of unit meshes are up to a third longer.

@@ -203,8 +203,7 @@ fn distances_converge_in_the_half_plane() {
 fn threads_do_not_change_a_bit() {
     let domain = square(2.0);
     let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
+        crate::test_cases::on_threads(threads, || {
             let field = Shock::default();
             let canvas = Canvas::intrinsic(&domain, &field, 5000).unwrap();
             let seeds: Vec<Point> =

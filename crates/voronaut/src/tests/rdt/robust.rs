@@ -150,8 +150,7 @@ fn threads_do_not_change_a_bit() {
     let seeds = darts(&field, SQUARE, 5000);
     let start = straight_delaunay(&seeds);
     let of = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let rdt = pool.install(|| Rdt::new(&field, &seeds, &start, Trust::default()));
+        let rdt = crate::test_cases::on_threads(threads, || Rdt::new(&field, &seeds, &start, Trust::default()));
         (rdt.triangles(), rdt.edges(), *rdt.counters())
     };
     let one = of(1);
