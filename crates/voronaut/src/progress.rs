@@ -1,4 +1,6 @@
-//! Progress of long work, told to whoever wants to show it. The library itself never prints.
+//! Progress of long work, told to whoever wants to show it, who may stop it. The library itself never prints.
+
+use crate::error::{Error, Result};
 
 /// Told about progress; called from one thread at a time.
 pub trait Progress: Sync {
@@ -10,6 +12,30 @@ pub trait Progress: Sync {
     /// itself; without one all times are zero.
     fn seconds(&self) -> f64 {
         0.0
+    }
+    /// Whether to stop: asked whenever a stage begins and every so many units of work, which then ends in
+    /// [`Error::Stopped`]. A deadline is an answer by the clock.
+    fn is_stopped(&self) -> bool {
+        false
+    }
+}
+
+impl dyn Progress + '_ {
+    /// [`Progress::stage`], unless the work is to stop.
+    pub(crate) fn begin(&self, name: &'static str, total: u64) -> Result<()> {
+        self.go_on()?;
+        self.stage(name, total);
+        Ok(())
+    }
+
+    /// [`Progress::done`], unless the work is to stop.
+    pub(crate) fn advance(&self, units: u64) -> Result<()> {
+        self.done(units);
+        self.go_on()
+    }
+
+    fn go_on(&self) -> Result<()> {
+        if self.is_stopped() { Err(Error::Stopped) } else { Ok(()) }
     }
 }
 

@@ -69,6 +69,9 @@ pub enum Error {
         /// What to do.
         help: String,
     },
+    /// The work was to stop: [`Progress::is_stopped`](crate::progress::Progress::is_stopped).
+    #[error("stopped before the end")]
+    Stopped,
     /// Something that a later version will do.
     #[error("not supported: {what}")]
     Unsupported {
@@ -84,6 +87,7 @@ impl Error {
     pub fn help(&self) -> &str {
         match self {
             Error::Io { .. } => "check the path and its permissions",
+            Error::Stopped => "give it more time",
             Error::Parse { help, .. }
             | Error::Domain { help, .. }
             | Error::Metric { help, .. }

@@ -1,6 +1,7 @@
 //! Exchanging seeds: removing those that crowd, adding where edges are too long, at a given number of vertices.
 
 use crate::dual::{Dual, Effort, Kind};
+use crate::error::Result;
 use crate::planar::Location;
 use crate::progress::Silent;
 use crate::sampling::{Fill, insert_spaced, refine};
@@ -12,12 +13,12 @@ const SHORT: f64 = 0.66;
 /// Removes free seeds at edges that are too short, shortest first and no two of them neighbours, at most `most`; then
 /// inserts where circumradii are largest until there are as many vertices as `fill` says again. Returns how many seeds
 /// were removed.
-pub(crate) fn exchange(dual: &mut Dual, fill: Fill, most: usize) -> usize {
+pub(crate) fn exchange(dual: &mut Dual, fill: Fill, most: usize) -> Result<usize> {
     let removed = remove_crowded(dual, most, SHORT);
     let excess = dual.vertex_count().saturating_sub(fill.count());
     let removed = removed + if excess > 0 { remove_crowded(dual, excess, f64::INFINITY) } else { 0 };
-    refine(dual, fill, &Silent);
-    removed
+    refine(dual, fill, &Silent)?;
+    Ok(removed)
 }
 
 fn remove_crowded(dual: &mut Dual, most: usize, shorter_than: f64) -> usize {

@@ -80,7 +80,7 @@ pub(crate) fn relax<M: Moving>(
     for _ in 0..steps {
         let before = descent.state.energy;
         let done = descent.step(dual)?;
-        progress.done(1);
+        progress.advance(1)?;
         let is_small = cells.lower_energy() && before - descent.state.energy < STALLED * before;
         small = if is_small { small + 1 } else { 0 };
         if !done || small == IN_A_ROW {

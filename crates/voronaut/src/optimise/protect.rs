@@ -111,7 +111,7 @@ pub(crate) fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> R
         }
         mender.is_wide = since >= WIDER && since % 2 == 0;
         mender.mend(&bad, round, epsilon);
-        progress.done(1);
+        progress.advance(1)?;
     }
     dual.verdict()?;
     Ok(found.expect("the first round measures"))

@@ -85,10 +85,10 @@ fn most(unit: usize) -> usize {
 
 /// Moves and refines until stars agree.
 fn agreed(job: &mut Job, start: &Start, scaled: &Scaled, unit: usize) -> Result<Meshed> {
-    job.progress.stage("stars", 1);
+    job.progress.begin("stars", 1)?;
     let asked = Consistency { radius: UNIT_RADIUS, most: most(unit) };
     let found = job.timed("stars", |_| consistent(start.dual.planar().clone(), scaled, asked))?;
-    job.progress.stage("checking", 1);
+    job.progress.begin("checking", 1)?;
     let mesh = start.domain.mesh_of(&found.planar, |v| corner(&start.dual, v));
     job.timed("check", |_| quality::check(&mesh))?;
     Ok(Meshed {

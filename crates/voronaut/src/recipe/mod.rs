@@ -210,7 +210,7 @@ impl<'a> Job<'a> {
 
     /// The domain with its curves simplified as allowed, its plan, and the count and scale to start from.
     fn plan(&mut self, domain: &Domain) -> Result<(Domain, Plan, usize, f64)> {
-        self.progress.stage("planning", 1);
+        self.progress.begin("planning", 1)?;
         let tolerance = self.options.hausd.unwrap_or(domain.pslg().tolerance);
         let mut plan = Plan::new(domain, self.field, self.target())?;
         let (mut count, mut scale) = plan.start(self.target(), self.options.memory_limit)?;
@@ -248,13 +248,13 @@ impl<'a> Job<'a> {
         mut scale: f64,
     ) -> Result<Dual<'a>> {
         for round in 1.. {
-            self.progress.stage("seeding", count as u64);
+            self.progress.begin("seeding", count as u64)?;
             let mut dual = Dual::new(domain, Scaled { field: self.field, factor: scale })?;
             sample_segments(&mut dual, &plan.edges, &plan.arcs, scale);
             if let Some(canvas) = canvas.filter(|_| self.options.seeding == Seeding::Farthest) {
                 self.seed_farthest(canvas, &mut dual, count)?;
             }
-            self.refine(&mut dual, count);
+            self.refine(&mut dual, count)?;
             dual.verdict()?;
             let mean = mean_free_edge(&dual);
             if round == ROUNDS || (mean - 1.0).abs() < SCALE_TOLERANCE {
@@ -276,14 +276,15 @@ impl<'a> Job<'a> {
     }
 
     /// Fills the interior. Places are picked for protection only if no relaxation is going to move the seeds.
-    fn refine(&self, dual: &mut Dual, count: usize) {
+    fn refine(&self, dual: &mut Dual, count: usize) -> Result<()> {
         let (fill, options) = (self.fill(count), self.options);
         if options.seeding == Seeding::Protected && options.lloyd == 0 {
             let picking = Picking { protection: options.protection, radius: options.picking_radius };
-            refine_protected(dual, fill, picking, self.progress);
+            refine_protected(dual, fill, picking, self.progress)?;
         } else {
-            refine(dual, fill, self.progress);
+            refine(dual, fill, self.progress)?;
         }
+        Ok(())
     }
 
     fn note_shortfall(&mut self, dual: &Dual, plan: &Plan, count: usize) {
@@ -319,12 +320,12 @@ impl<'a> Job<'a> {
 
     fn polish(&self, dual: &mut Dual, aim: Aim) -> Result<Polished> {
         let sweeps = self.options.polish;
-        self.progress.stage("polishing", sweeps as u64);
+        self.progress.begin("polishing", sweeps as u64)?;
         polish(dual, aim.function, aim.norm, sweeps, self.progress)
     }
 
     fn finish(&self, domain: &Domain, dual: &Dual) -> Result<Mesh> {
-        self.progress.stage("checking", 1);
+        self.progress.begin("checking", 1)?;
         let mesh = dual.to_mesh(domain);
         quality::check(&mesh)?;
         Ok(mesh)

@@ -134,9 +134,9 @@ impl<'a> Job<'a> {
             let Some(pass) = self.passed(count, scale, &mut reseed)? else { continue };
             let mesh = pass.mesh();
             let faulty = self.timed("check", |job| {
-                job.setting.progress.stage("checking", 1);
-                pass.faulty(&mesh, &job.setting.meetings)
-            });
+                job.setting.progress.begin("checking", 1)?;
+                Ok(pass.faulty(&mesh, &job.setting.meetings))
+            })?;
             if faulty.is_empty() || reseed.rounds + 1 >= self.farthest_passes() + ADAPTATIONS {
                 break (pass, mesh);
             }
@@ -213,7 +213,7 @@ impl<'a> Job<'a> {
         if !self.setting.options.fit {
             return Ok(mesh);
         }
-        self.setting.progress.stage("fitting", 1);
+        self.setting.progress.begin("fitting", 1)?;
         let options = FitOptions { stiffness: self.setting.options.stiffness, ..FitOptions::default() };
         let input = self.setting.input;
         let fine = input.implicit.as_ref().map(|_| self.setting.fine_surface(mesh.points.len())).transpose()?;
@@ -237,7 +237,7 @@ impl<'a> Job<'a> {
     ///
     /// A triangulation with V vertices has 2 (V - chi) - B faces, B of its edges on the border; each has the area sqrt(3) / 4.
     fn plan(&mut self) -> Result<(usize, f64)> {
-        self.setting.progress.stage("planning", 1);
+        self.setting.progress.begin("planning", 1)?;
         let (canvas, _) = Canvas::on_surface(Kind::Intrinsic, self.setting.input, self.setting.metric, MEASURING, &[])?;
         let draped = canvas.draped();
         // Of the surface as it was before it was cut: vertices on its cuts count once.

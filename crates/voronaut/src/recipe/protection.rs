@@ -24,7 +24,7 @@ impl Job<'_> {
         if self.options.seeding != Seeding::Protected {
             return Ok(None);
         }
-        self.progress.stage("protecting", 1);
+        self.progress.begin("protecting", 1)?;
         let protected = self.timed("protect", |job| protect(dual, job.options.protection, job.progress))?;
         let left = protected.unprotected[1];
         if protected.ending != Ending::Protected {
@@ -37,7 +37,7 @@ impl Job<'_> {
                 "{unknown} simplices have no circle that geodesics find: whether they are protected is unknown"
             ));
         }
-        self.progress.stage("comparing with a canvas", 1);
+        self.progress.begin("comparing with a canvas", 1)?;
         let nerve = self.timed("raw_nerve", |job| job.raw_nerve(domain, dual))?;
         if nerve.nerve.missing + nerve.nerve.extra > 0 {
             let figures::RawNerve { missing, extra, .. } = nerve.nerve;

@@ -22,7 +22,7 @@ impl Job<'_> {
     pub(super) fn relax(&mut self, dual: &mut Dual, canvas: Option<&Canvas>) -> Result<Relaxed> {
         dual.reorder();
         let steps = self.options.lloyd;
-        self.progress.stage("relaxing", steps as u64);
+        self.progress.begin("relaxing", steps as u64)?;
         let cells = match (self.options.centroid, canvas) {
             (Centroid::Canvas, Some(canvas)) => Cells::Canvas(OnCanvas::new(canvas, self.field)),
             (Centroid::Weighted, Some(canvas)) => Cells::Weighted(OnCanvas::new(canvas, self.field)),
@@ -56,7 +56,7 @@ impl Job<'_> {
         let before = dual.saved();
         self.fit_scale(dual);
         let met = meet_blocked_flips(dual, most(BLOCKED_SHARE));
-        exchange(dual, self.fill(count), most(EXCHANGED_SHARE).max(met));
+        exchange(dual, self.fill(count), most(EXCHANGED_SHARE).max(met))?;
         let Some(&energy) = relaxed.energy.last() else { return Ok(false) };
         let step = relax(dual, cells, 1, self.progress)?;
         let doubt = if self.options.centroid == Centroid::Tangent { ROUGH_DOUBT * rough_share(dual) } else { 0.0 };

@@ -23,7 +23,7 @@ impl Job<'_> {
         }
         let size = canvas::size_for(seeds, self.options.canvas_size);
         demand_memory(seeds as f64, size as f64, self.options.memory_limit)?;
-        self.progress.stage("canvas", 1);
+        self.progress.begin("canvas", 1)?;
         let canvas = self.timed("canvas", |job| Canvas::new(job.options.canvas, domain, job.field, size))?;
         self.canvas = Some(canvas.figures());
         Ok(Some(canvas))
@@ -36,7 +36,7 @@ impl Job<'_> {
     pub(super) fn seed_farthest(&mut self, canvas: &Canvas, dual: &mut Dual, count: usize) -> Result<()> {
         let seeds: Vec<Point> = dual.topology().vertices().map(|v| dual.position(v)).collect();
         let mut diagram = Diagram::roughly_of_vertices(canvas, self.field, &seeds)?;
-        refine_farthest(dual, &mut diagram, self.fill(count), self.progress);
+        refine_farthest(dual, &mut diagram, self.fill(count), self.progress)?;
         self.diagram = Some(figures::Diagram::of(&diagram));
         Ok(())
     }

@@ -20,7 +20,7 @@ pub(super) fn settle(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Settled> {
-    progress.stage("settling edges", 1);
+    progress.begin("settling edges", 1)?;
     dual.flip_all(Effort::Full);
     let found = dual.consult_diagram(options.dual, options.canvas, options.canvas_size, options.geodesic)?;
     let made = found.made;

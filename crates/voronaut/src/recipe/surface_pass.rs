@@ -113,7 +113,7 @@ impl<'a> Setting<'a> {
         let (canvas, at) = self.canvas(count, &given)?;
         watch.add("canvas", self.progress.seconds() - begin);
         let begin = self.progress.seconds();
-        self.progress.stage("seeding", count as u64);
+        self.progress.begin("seeding", count as u64)?;
         let may_hold = |v: VertexId| !self.is_required(&canvas, v);
         let seeded = seed_surface(&canvas, &at, count, self.options.geodesic, may_hold, self.progress)?;
         watch.add("seed", self.progress.seconds() - begin);
@@ -140,7 +140,7 @@ impl<'a> Setting<'a> {
         watch: &mut Stopwatch,
     ) -> Result<Pass<'a>> {
         let begin = self.progress.seconds();
-        self.progress.stage("seeding", 1);
+        self.progress.begin("seeding", 1)?;
         let (features, owners, adapted) = self.started_from_surface(count, scale, reseed)?;
         watch.add("seed", self.progress.seconds() - begin);
         let begin = self.progress.seconds();
@@ -165,7 +165,7 @@ impl<'a> Setting<'a> {
     /// Relaxed in parts, between which vertices are exchanged; so many of the first stay.
     fn relaxed(&self, mut dual: SurfaceDual<'a>, staying: usize, steps: usize) -> Result<(SurfaceDual<'a>, Relaxed)> {
         let mut relaxed = Relaxed::default();
-        self.progress.stage("relaxing", steps as u64);
+        self.progress.begin("relaxing", steps as u64)?;
         dual.flip_all();
         self.fit_scale(&mut dual)?;
         for part in 0..PARTS {
@@ -212,7 +212,7 @@ impl<'a> Setting<'a> {
     }
 
     fn canvas(&self, count: usize, seeds: &[Place]) -> Result<(Canvas<Draped<'a>>, Vec<VertexId>)> {
-        self.progress.stage("canvas", 1);
+        self.progress.begin("canvas", 1)?;
         let size = self.canvas_size(count);
         Canvas::on_surface(self.options.canvas, self.input, self.metric, size, seeds)
     }
@@ -278,7 +278,7 @@ impl<'a> Setting<'a> {
     }
 
     fn settle(&self, dual: &mut SurfaceDual) -> Result<Settled> {
-        self.progress.stage("settling edges", 1);
+        self.progress.begin("settling edges", 1)?;
         let (canvas, at) = self.canvas(dual.places().len(), dual.places())?;
         let diagram = SurfaceDiagram::on_surface(&canvas, &at, self.options.geodesic)?;
         let triangles = dual.triangles();

@@ -4,6 +4,7 @@
 use super::interior::{Fill, SPACING};
 use crate::diagram::{Diagram, Ground};
 use crate::dual::Dual;
+use crate::error::Result;
 use crate::geometry::{Orientation, Point, orientation};
 use crate::metric::MetricField;
 use crate::planar::Location;
@@ -72,7 +73,12 @@ impl Farthest {
 /// Seeds are inserted with rough starts (`Diagram::insert_roughly`).
 ///
 /// A vertex at which the plane allows no seed (rounding) is passed over. Returns the number of seeds.
-pub(crate) fn refine_farthest(dual: &mut Dual, diagram: &mut Diagram, fill: Fill, progress: &dyn Progress) -> usize {
+pub(crate) fn refine_farthest(
+    dual: &mut Dual,
+    diagram: &mut Diagram,
+    fill: Fill,
+    progress: &dyn Progress,
+) -> Result<usize> {
     let canvas = diagram.canvas();
     let topology = &canvas.embedded().topology;
     let is_free = |v: VertexId| topology.star(v).all(|h| !topology.is_fixed(h) && !topology.is_fixed(h.prev()));
@@ -88,12 +94,12 @@ pub(crate) fn refine_farthest(dual: &mut Dual, diagram: &mut Diagram, fill: Fill
             seeds.push(seed);
         }
         if seeds.len() - before >= reported + 256 {
-            progress.done((seeds.len() - before - reported) as u64);
+            progress.advance((seeds.len() - before - reported) as u64)?;
             reported = seeds.len() - before;
         }
     }
     dual.take_touched();
-    dual.vertex_count() - before
+    Ok(dual.vertex_count() - before)
 }
 
 /// Puts a free seed where it can be had.

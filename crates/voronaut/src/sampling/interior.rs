@@ -1,6 +1,7 @@
 //! The interior: seeds one at a time at the circumcentre of the face whose metric circumradius is largest.
 
 use crate::dual::{Dual, Kind};
+use crate::error::Result;
 use crate::geodesic::chord;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
@@ -52,7 +53,7 @@ pub(crate) struct Refined {
 }
 
 /// Inserts seeds until the dual has as many vertices as asked for.
-pub(crate) fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Refined {
+pub(crate) fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Result<Refined> {
     refine_with(dual, fill, progress, &mut |dual, place, (centre, _)| insert_spaced(dual, place, centre))
 }
 
@@ -60,7 +61,7 @@ pub(crate) fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Re
 pub(super) type Steiner<'a> = &'a mut dyn FnMut(&mut Dual, Location, (Point, f64)) -> bool;
 
 /// [`refine`], with the seeds for circumcentres put where `steiner` says.
-pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, steiner: Steiner) -> Refined {
+pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, steiner: Steiner) -> Result<Refined> {
     let count = fill.count();
     let mut refiner = Refiner { queue: BinaryHeap::new(), refined: Refined::default(), steiner };
     dual.take_touched();
@@ -76,11 +77,11 @@ pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, 
             }
         }
         if dual.vertex_count() >= reported + 256 {
-            progress.done((dual.vertex_count() - reported) as u64);
+            progress.advance((dual.vertex_count() - reported) as u64)?;
             reported = dual.vertex_count();
         }
     }
-    refiner.refined
+    Ok(refiner.refined)
 }
 
 /// A face by its metric circumradius; stale once the face has changed.

@@ -46,7 +46,7 @@ pub(crate) fn seed_surface<'a>(
         let Some((v, _)) = farthest.pop(&diagram) else { break };
         diagram.insert_at_vertex(v);
         if diagram.colours() >= reported + 256 {
-            progress.done((diagram.colours() - reported) as u64);
+            progress.advance((diagram.colours() - reported) as u64)?;
             reported = diagram.colours();
         }
     }

@@ -3,6 +3,7 @@
 
 use super::interior::{Fill, Refined, encroached_edge, insert_spaced, is_crowded, refine_with};
 use crate::dual::Dual;
+use crate::error::Result;
 use crate::geometry::{Point, Vector};
 use crate::metric::MetricField;
 use crate::net::{Estimate, Random};
@@ -42,7 +43,12 @@ pub(crate) struct Picked {
 /// [`refine`](super::refine) with places picked. Most seeds go by size, where the circumradius is largest; then come seeds
 /// for simplices that lack protection, largest first, as far as valid places for them exist; the rest goes by size again.
 /// It ends where [`refine`](super::refine) does. Deterministic.
-pub(crate) fn refine_protected(dual: &mut Dual, fill: Fill, picking: Picking, progress: &dyn Progress) -> Picked {
+pub(crate) fn refine_protected(
+    dual: &mut Dual,
+    fill: Fill,
+    picking: Picking,
+    progress: &dyn Progress,
+) -> Result<Picked> {
     let mut picker = Picker { picking, random: Random::new(fill.count() as u64), picked: Picked::default() };
     let by_size = (fill.count() as f64 * (1.0 - RESERVE)) as usize;
     let first = match fill {
@@ -52,10 +58,10 @@ pub(crate) fn refine_protected(dual: &mut Dual, fill: Fill, picking: Picking, pr
     let refine = |dual: &mut Dual, picker: &mut Picker, fill| {
         refine_with(dual, fill, progress, &mut |dual, place, circle| picker.insert(dual, place, circle))
     };
-    refine(dual, &mut picker, first);
+    refine(dual, &mut picker, first)?;
     picker.protect(dual, fill.count());
-    picker.picked.refined = refine(dual, &mut picker, fill);
-    picker.picked
+    picker.picked.refined = refine(dual, &mut picker, fill)?;
+    Ok(picker.picked)
 }
 
 struct Picker {

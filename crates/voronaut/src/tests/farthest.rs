@@ -118,7 +118,7 @@ fn work_grows_no_faster_than_n_log_n() {
         sample_segments(&mut dual, &plan.edges, &plan.arcs, factor);
         let border: Vec<Point> = dual.topology().vertices().map(|v| dual.position(v)).collect();
         let mut diagram = Diagram::new(&canvas, &field, &border).unwrap();
-        refine_farthest(&mut dual, &mut diagram, Fill::Exactly(count), &Silent);
+        refine_farthest(&mut dual, &mut diagram, Fill::Exactly(count), &Silent).unwrap();
         assert_eq!(dual.vertex_count(), seeds);
         let (march, canvas) = (diagram.counters(), canvas.counters());
         let diagram = march.settled + march.crossings + march.reconsidered;

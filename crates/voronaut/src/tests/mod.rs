@@ -12,5 +12,6 @@ mod relaxation;
 mod roads;
 mod rdt;
 mod star_set;
+mod stopping;
 mod surfaces;
 mod wavy;

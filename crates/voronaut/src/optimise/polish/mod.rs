@@ -65,7 +65,7 @@ pub(crate) fn polish(
         polished.moves += work.move_all();
         let before = polished.error.last().copied().unwrap_or_default();
         polished.error.push(work.norm());
-        progress.done(1);
+        progress.advance(1)?;
         if work.norm() > (1.0 - STALLED) * before {
             break;
         }
