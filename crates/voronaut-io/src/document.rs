@@ -93,6 +93,14 @@ impl Field {
     }
 }
 
+/// A mesh whose vertices, triangles and edges have the label 0 where they have none.
+pub(super) fn labelled(mut mesh: Mesh) -> Mesh {
+    mesh.point_labels.resize(mesh.points.len(), 0);
+    mesh.triangle_labels.resize(mesh.triangles.len(), 0);
+    mesh.edge_labels.resize(mesh.edges.len(), 0);
+    mesh
+}
+
 fn unfit(name: &str, of: &str, mesh: &str) -> Error {
     let what = format!("the tensors of {of} '{name}' beside a mesh that {mesh}");
     Error::Unsupported { what, help: "give tensors of the mesh's own dimension".into() }

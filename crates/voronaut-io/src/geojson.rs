@@ -1,6 +1,6 @@
 //! `GeoJSON` (RFC 7946): polygons, their coordinates taken as planar.
 
-use super::words::Shortest;
+use super::codec::Shortest;
 use ::geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
 use std::io::{self, Write};
 use voronaut::domain::{Polygon, Polygons, Ring};

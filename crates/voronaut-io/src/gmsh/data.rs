@@ -1,8 +1,9 @@
 //! Values on nodes and elements: the sections `$NodeData` and `$ElementData`.
 
 use super::reader::Reader;
+use super::sections::{INT, REAL};
 use crate::Field;
-use crate::words::At;
+use crate::codec::At;
 use voronaut::mesh::SolutionValues;
 use voronaut::{Error, Result};
 
@@ -13,7 +14,7 @@ impl Reader<'_> {
     /// [`Error::Parse`] of what is not as announced, of a node or an element that does not exist or has two values, and of a triangle
     /// or one of its vertices without value. [`Error::Unsupported`] of more than 9 numbers per value.
     pub(super) fn read_data(&mut self, section: &str) -> Result<()> {
-        let start = self.source.position();
+        let start = self.source.place();
         let head = read_head(self, section)?;
         if head.rows == 0 {
             return Ok(());
@@ -33,32 +34,19 @@ impl Reader<'_> {
         if missing > 0 {
             let of = if on_nodes { "vertices of triangles" } else { "triangles" };
             let what = format!("{section} '{}' has no values on {missing} {of}", head.name);
-            return Err(self.source.error_at(start, what, "save values everywhere, or remove the section"));
+            return Err(start.error(what, "save values everywhere, or remove the section"));
         }
         // Memory follows the file: values that are not there may be a few.
         if rows.len() > FEW.max(MOST_FILLED * head.rows as usize) {
             let what = format!("{section} '{}' has values on {} of {} vertices", head.name, head.rows, rows.len());
-            return Err(self.source.error_at(
-                start,
-                what,
-                "save values everywhere, or remove vertices that no element uses",
-            ));
+            return Err(start.error(what, "save values everywhere, or remove vertices that no element uses"));
         }
-        let zeros = vec![0.0; head.components];
-        let numbers: Vec<f64> = rows
-            .into_iter()
-            .flat_map(|row| {
-                row.map_or(zeros.as_slice(), |row| &found.numbers[row as usize * head.components..][..head.components])
-            })
-            .copied()
-            .collect();
+        let numbers = rows.into_iter().flat_map(|row| found.values(row, head.components)).collect();
         let values = SolutionValues::in_space(numbers, head.components, self.mesh.is_planar());
         let fields = if on_nodes { &mut self.fields.vertices } else { &mut self.fields.triangles };
-        let is_taken = |name: &str| fields.iter().any(|field| field.name == name);
-        let step = || std::iter::once(format!("{}_{}", head.name, head.step));
-        let mut names =
-            std::iter::once(head.name.clone()).chain(step()).chain((2..).map(|n| format!("{}_{n}", head.name)));
-        let name = names.find(|name| !is_taken(name)).unwrap_or_default();
+        let numbered = |n| format!("{}_{n}", head.name);
+        let mut names = [head.name.clone(), numbered(head.step)].into_iter().chain((2..).map(numbered));
+        let name = names.find(|name| fields.iter().all(|field| field.name != *name)).unwrap_or_default();
         fields.push(Field { name, values });
         Ok(())
     }
@@ -90,6 +78,11 @@ impl Rows {
         let row = *self.of.get(entry as usize)?;
         (row != NONE).then_some(row)
     }
+
+    /// The numbers of a row, zeros where there is none.
+    fn values(&self, row: Option<u32>, components: usize) -> impl Iterator<Item = f64> {
+        (0..components).map(move |i| row.map_or(0.0, |row| self.numbers[row as usize * components + i]))
+    }
 }
 
 fn read_head(reader: &mut Reader<'_>, section: &str) -> Result<Head> {
@@ -97,16 +90,16 @@ fn read_head(reader: &mut Reader<'_>, section: &str) -> Result<Head> {
     const MOST: u64 = 9;
     let (source, at) = (&mut reader.source, At::head(section));
     let mut name = None;
-    for _ in 0..source.text::<u64>(at)? {
-        let text = source.rest_of_line(at)?;
+    for _ in 0..source.word(at)?.whole::<u64>(at)? {
+        let text = source.rest_of_row(at)?;
         name.get_or_insert_with(|| text.trim_matches('"').to_owned());
     }
-    for _ in 0..source.text::<u64>(at)? {
-        source.text_word(at)?;
+    for _ in 0..source.word(at)?.whole::<u64>(at)? {
+        source.word(at)?;
     }
     let mut integers = [None; 3];
-    for i in 0..source.text::<u64>(at)? {
-        let integer: i64 = source.text(at)?;
+    for i in 0..source.word(at)?.whole::<u64>(at)? {
+        let integer: i64 = source.word(at)?.whole(at)?;
         if let Some(place) = integers.get_mut(i as usize) {
             *place = Some(integer);
         }
@@ -135,7 +128,7 @@ fn read_rows(reader: &mut Reader<'_>, section: &str, head: &Head) -> Result<Rows
     for at in At::rows(section, head.rows) {
         let source = &mut reader.source;
         // Of 32 bits in all versions.
-        let tag: u32 = source.int(at)?;
+        let tag: u32 = source.whole(INT, at)?;
         let Some(entry) = tags.find(tag.into()) else {
             let what = format!("{of} {tag} does not exist ({at})");
             return Err(source.error(what, format!("check the tag, and that the {of}s are all there")));
@@ -144,7 +137,7 @@ fn read_rows(reader: &mut Reader<'_>, section: &str, head: &Head) -> Result<Rows
             return Err(source.error(format!("{of} {tag} has two values ({at})"), "remove one of them"));
         }
         for _ in 0..head.components {
-            found.numbers.push(source.number(at)?);
+            found.numbers.push(source.number(REAL, at)?);
         }
     }
     Ok(found)

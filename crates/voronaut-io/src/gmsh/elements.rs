@@ -3,8 +3,9 @@
 use super::groups::{Mark, Marks};
 use super::kinds::{EDGE, Kind, POINT, QUADRANGLE, TRIANGLE};
 use super::reader::{Layout, Reader};
+use super::sections::{INT, SIZE};
+use crate::codec::At;
 use crate::cutting::cut;
-use crate::words::At;
 use voronaut::{Error, Result};
 
 /// An element of the file that is in the mesh.
@@ -50,31 +51,26 @@ impl Reader<'_> {
     }
 
     fn read_elements_2(&mut self) -> Result<Vec<u64>> {
-        let section = "Elements";
-        let count = self.source.text(At::head(section))?;
         let (mut tags, mut last) = (Vec::new(), Piece::default());
-        for at in At::rows(section, count) {
+        for at in self.text_rows("Elements")? {
             tags.push(self.tag(at)?);
             let kind = self.read_kind(at)?;
-            let attributes = self.source.int(at)?;
+            let attributes = self.source.whole(INT, at)?;
             self.read_element_2(kind, attributes, &mut last, tags.len() as u32 - 1, at)?;
         }
         Ok(tags)
     }
 
     fn read_binary_elements_2(&mut self) -> Result<Vec<u64>> {
-        let section = "Elements";
-        let total = self.source.text(At::head(section))?;
+        let (section, at) = ("Elements", At::head("Elements"));
+        let total = self.source.word(at)?.whole(at)?;
         let (mut tags, mut last) = (Vec::new(), Piece::default());
         while (tags.len() as u64) < total {
-            let done = tags.len() as u64;
-            let at = At { section, row: done + 1, rows: total };
+            let at = At { section, row: tags.len() as u64 + 1, rows: total };
             let kind = self.read_kind(at)?;
-            let count = self.source.int::<u32>(at)?.into();
-            let attributes = self.source.int(at)?;
-            self.demand_room(section, done, count, total)?;
-            for row in done + 1..=done + count {
-                let at = At { section, row, rows: total };
+            let count = self.source.whole::<u32>(INT, at)?.into();
+            let attributes = self.source.whole(INT, at)?;
+            for at in self.block(section, tags.len(), count, total)? {
                 tags.push(self.tag(at)?);
                 self.read_element_2(kind, attributes, &mut last, tags.len() as u32 - 1, at)?;
             }
@@ -94,7 +90,7 @@ impl Reader<'_> {
     ) -> Result<()> {
         let mut known = [0; 2];
         for i in 0..attributes as usize {
-            let attribute: i32 = self.source.int(at)?;
+            let attribute: i32 = self.source.whole(INT, at)?;
             if let Some(place) = known.get_mut(i) {
                 *place = attribute;
             }
@@ -126,10 +122,8 @@ impl Reader<'_> {
             let kind = self.read_kind(at)?;
             let groups = self.entities.get(&(dimension, entity)).map(Vec::as_slice).unwrap_or_default();
             let (label, marks) = self.groups.of(dimension, groups, entity);
-            let (before, count) = (tags.len() as u64, self.source.size(at)?);
-            self.demand_room(section, before, count, total)?;
-            for row in before + 1..=before + count {
-                let at = At { section, row, rows: total };
+            let count = self.source.whole(SIZE, at)?;
+            for at in self.block(section, tags.len(), count, total)? {
                 tags.push(self.tag(at)?);
                 if let Some(nodes) = self.read_corners(kind, at)? {
                     let index = self.add(kind, nodes, tags.len() as u32 - 1);
@@ -137,12 +131,12 @@ impl Reader<'_> {
                 }
             }
         }
-        self.demand_all(section, tags.len() as u64, total)?;
+        self.demand_all(section, tags.len(), total)?;
         Ok(tags)
     }
 
     fn read_kind(&mut self, at: At<'_>) -> Result<Kind> {
-        let code = self.source.int(at)?;
+        let code = self.source.whole(INT, at)?;
         Kind::of(code).ok_or_else(|| {
             let what = format!("elements of type {code} ({at}; {})", self.source.place());
             Error::Unsupported { what, help: "give a mesh of straight triangles, edges and points".into() }

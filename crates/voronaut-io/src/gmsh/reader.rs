@@ -1,10 +1,10 @@
 //! Gmsh's sections, read in turn into a mesh.
 
 use super::groups::Groups;
-use super::source::Source;
+use super::sections::{INT, REAL, SIZE, end_section, next_section, read_one, skip_section};
 use super::tags::Tags;
+use crate::codec::{At, Source, shortened};
 use crate::volumes::Volumes;
-use crate::words::{At, shortened};
 use crate::{Document, Fields};
 use std::collections::BTreeMap;
 use voronaut::mesh::Mesh;
@@ -53,10 +53,10 @@ impl<'a> Reader<'a> {
     /// [`Error::Parse`] of what is none; [`Error::Unsupported`] of versions but 2 to 2.2, 4.0 and 4.1.
     pub(super) fn new(mut source: Source<'a>) -> Result<Self> {
         loop {
-            match source.next_section()?.as_deref() {
+            match next_section(&mut source)?.as_deref() {
                 Some("MeshFormat") => break,
                 Some("NOD") => return Err(unsupported("version 1", &source)),
-                Some(other) => source.skip_section(other)?,
+                Some(other) => skip_section(&mut source, other)?,
                 None => return Err(source.error("the file has no section MeshFormat", "give a file that Gmsh wrote")),
             }
         }
@@ -81,7 +81,7 @@ impl<'a> Reader<'a> {
 
     /// Reads the sections behind the head.
     pub(super) fn read(mut self) -> Result<Document> {
-        while let Some(section) = self.source.next_section()? {
+        while let Some(section) = next_section(&mut self.source)? {
             self.read_section(&section)?;
         }
         if !self.seen.contains(&"Nodes") {
@@ -102,14 +102,14 @@ impl<'a> Reader<'a> {
             "NodeData" | "ElementData" => {
                 self.demand_nodes(section)?;
                 self.read_data(section)?;
-                return self.source.end_section(section);
+                return end_section(&mut self.source, section);
             }
             "PartitionedEntities" => return Err(unsupported("a mesh in partitions", &self.source)),
             "ParametricNodes" => return Err(unsupported("nodes with parameters in version 2", &self.source)),
             _ => {}
         }
         let Some(&name) = SECTIONS.iter().find(|name| **name == section) else {
-            return self.source.skip_section(section);
+            return skip_section(&mut self.source, section);
         };
         if self.seen.contains(&name) {
             return Err(self.source.error(format!("a second section {name}"), "join both sections into one"));
@@ -121,7 +121,7 @@ impl<'a> Reader<'a> {
             "Nodes" => self.read_nodes()?,
             _ => self.read_elements()?,
         }
-        self.source.end_section(name)
+        end_section(&mut self.source, name)
     }
 
     /// Refuses elements before nodes, values before nodes, and elements behind values.
@@ -133,17 +133,14 @@ impl<'a> Reader<'a> {
         } else {
             return Ok(());
         };
-        Err(self
-            .source
-            .error(what, "save the mesh with its values, in the order Nodes, Elements, NodeData, ElementData"))
+        let help = "save the mesh with its values, in the order Nodes, Elements, NodeData, ElementData";
+        Err(self.source.error(what, help))
     }
 
     fn read_names(&mut self) -> Result<()> {
-        let section = "PhysicalNames";
-        let count = self.source.text(At::head(section))?;
-        for at in At::rows(section, count) {
-            let (dimension, tag) = (self.source.text(at)?, self.source.text(at)?);
-            let name = self.source.rest_of_line(at)?;
+        for at in self.text_rows("PhysicalNames")? {
+            let (dimension, tag) = (self.source.word(at)?.whole(at)?, self.source.word(at)?.whole(at)?);
+            let name = self.source.rest_of_row(at)?;
             self.groups.name(dimension, tag, name.trim_matches('"'));
         }
         Ok(())
@@ -151,23 +148,23 @@ impl<'a> Reader<'a> {
 
     fn read_entities(&mut self) -> Result<()> {
         let (section, source) = ("Entities", &mut self.source);
-        let mut counts = [0; 4];
+        let (mut counts, at) = ([0; 4], At::head(section));
         for count in &mut counts {
-            *count = source.size(At::head(section))?;
+            *count = source.whole(SIZE, at)?;
         }
         for (dimension, count) in (0..).zip(counts) {
             for at in At::rows(section, count) {
-                let tag = source.int(at)?;
+                let tag = source.whole(INT, at)?;
                 let ends = if dimension == 0 && self.layout == Layout::FourOne { 1 } else { 2 };
-                source.skip_numbers(3 * ends, at)?;
+                source.skip(3 * ends, REAL, at)?;
                 let mut groups = Vec::new();
-                for _ in 0..source.size(at)? {
+                for _ in 0..source.whole::<u64>(SIZE, at)? {
                     // A negative tag turns the entity round.
-                    groups.push(source.int::<i32>(at)?.saturating_abs());
+                    groups.push(source.whole::<i32>(INT, at)?.saturating_abs());
                 }
-                let bounds = if dimension == 0 { 0 } else { source.size(at)? };
+                let bounds = if dimension == 0 { 0 } else { source.whole(SIZE, at)? };
                 for _ in 0..bounds {
-                    source.int::<i32>(at)?;
+                    source.whole::<i32>(INT, at)?;
                 }
                 if !groups.is_empty() {
                     self.entities.insert((dimension, tag), groups);
@@ -185,9 +182,8 @@ impl<'a> Reader<'a> {
     }
 
     fn read_nodes_2(&mut self) -> Result<Vec<u64>> {
-        let section = "Nodes";
-        let (count, mut tags) = (self.source.text(At::head(section))?, Vec::new());
-        for at in At::rows(section, count) {
+        let mut tags = Vec::new();
+        for at in self.text_rows("Nodes")? {
             tags.push(self.tag(at)?);
             self.read_point(0, at)?;
         }
@@ -201,49 +197,52 @@ impl<'a> Reader<'a> {
         for _ in 0..blocks {
             let at = At::head(section);
             let (dimension, _) = self.read_entity(at)?;
-            let is_parametric = self.source.int::<i32>(at)? != 0;
+            let is_parametric = self.source.whole::<i32>(INT, at)? != 0;
             let parameters = if is_parametric { u64::from(dimension) } else { 0 };
-            let count = self.source.size(at)?;
-            let before = tags.len() as u64;
-            self.demand_room(section, before, count, total)?;
-            let rows = || (before + 1..=before + count).map(|row| At { section, row, rows: total });
+            let count = self.source.whole(SIZE, at)?;
+            let rows = self.block(section, tags.len(), count, total)?;
             if self.layout == Layout::FourOne {
-                for at in rows() {
+                for at in rows.clone() {
                     tags.push(self.tag(at)?);
                 }
             }
-            for at in rows() {
+            for at in rows {
                 if self.layout == Layout::Four {
                     tags.push(self.tag(at)?);
                 }
                 self.read_point(parameters, at)?;
             }
         }
-        self.demand_all(section, tags.len() as u64, total)?;
+        self.demand_all(section, tags.len(), total)?;
         Ok(tags)
     }
 
     fn read_point(&mut self, parameters: u64, at: At<'_>) -> Result<()> {
         let source = &mut self.source;
-        self.mesh.points.push([source.number(at)?, source.number(at)?, source.number(at)?]);
-        source.skip_numbers(parameters, at)
+        self.mesh.points.push(source.numbers(REAL, at)?);
+        source.skip(parameters, REAL, at)
+    }
+
+    /// All rows of a section that begins with their number on a line of text.
+    pub(super) fn text_rows<'s>(&mut self, section: &'s str) -> Result<impl Iterator<Item = At<'s>> + use<'s>> {
+        let at = At::head(section);
+        Ok(At::rows(section, self.source.word(at)?.whole(at)?))
     }
 
     /// The numbers of blocks and of rows of a section of version 4.
     pub(super) fn read_totals(&mut self, section: &str) -> Result<(u64, u64)> {
         let at = At::head(section);
-        let totals = (self.source.size(at)?, self.source.size(at)?);
+        let totals = (self.source.whole(SIZE, at)?, self.source.whole(SIZE, at)?);
         if self.layout == Layout::FourOne {
             // The least and the greatest tag.
-            self.source.size(at)?;
-            self.source.size(at)?;
+            let _: [u64; 2] = [self.source.whole(SIZE, at)?, self.source.whole(SIZE, at)?];
         }
         Ok(totals)
     }
 
     /// Dimension and tag of the entity of a block.
     pub(super) fn read_entity(&mut self, at: At<'_>) -> Result<(u8, i32)> {
-        let (first, second): (i32, i32) = (self.source.int(at)?, self.source.int(at)?);
+        let (first, second): (i32, i32) = (self.source.whole(INT, at)?, self.source.whole(INT, at)?);
         let (dimension, tag) = if self.layout == Layout::Four { (second, first) } else { (first, second) };
         if (0..=3).contains(&dimension) {
             return Ok((dimension as u8, tag));
@@ -254,21 +253,29 @@ impl<'a> Reader<'a> {
 
     /// The tag of a node or an element.
     pub(super) fn tag(&mut self, at: At<'_>) -> Result<u64> {
-        if self.layout == Layout::FourOne { self.source.size(at) } else { Ok(self.source.int::<u32>(at)?.into()) }
+        let is_wide = self.layout == Layout::FourOne;
+        if is_wide { self.source.whole(SIZE, at) } else { Ok(self.source.whole::<u32>(INT, at)?.into()) }
     }
 
-    /// Refuses a block of `count` rows behind `done` where there are `total`.
-    pub(super) fn demand_room(&self, section: &str, done: u64, count: u64, total: u64) -> Result<()> {
+    /// The rows of a block of so many behind `done` others; refuses more than `total` in all.
+    pub(super) fn block<'s>(
+        &self,
+        section: &'s str,
+        done: usize,
+        count: u64,
+        total: u64,
+    ) -> Result<impl Iterator<Item = At<'s>> + Clone + use<'s>> {
+        let done = done as u64;
         if count <= total.saturating_sub(done) {
-            return Ok(());
+            return Ok((done + 1..=done + count).map(move |row| At { section, row, rows: total }));
         }
         let what = format!("a block of {count} behind {done} others, where {section} announces {total} in all");
         Err(self.source.error(what, format!("check the counts of {section}")))
     }
 
     /// Refuses blocks that hold `done` rows where there are `total`.
-    pub(super) fn demand_all(&self, section: &str, done: u64, total: u64) -> Result<()> {
-        if done == total {
+    pub(super) fn demand_all(&self, section: &str, done: usize, total: u64) -> Result<()> {
+        if done as u64 == total {
             return Ok(());
         }
         let what = format!("{section} announces {total}, and its blocks hold {done}");
@@ -288,7 +295,7 @@ impl<'a> Reader<'a> {
 /// Reads the section that opens a file: version, form, and the size of numbers.
 fn read_format(source: &mut Source<'_>) -> Result<Layout> {
     let at = At::head("MeshFormat");
-    let version = source.text_word(at)?.to_owned();
+    let version = source.word(at)?.text.to_owned();
     let layout = match version.as_str() {
         "2" | "2.0" | "2.1" | "2.2" => Layout::Two,
         "4" | "4.0" => Layout::Four,
@@ -301,20 +308,19 @@ fn read_format(source: &mut Source<'_>) -> Result<Layout> {
             return Err(source.error(what, "save the file as version 4.1"));
         }
     };
-    let (form, size): (u32, u32) = (source.text(at)?, source.text(at)?);
+    let (form, size): (u32, u32) = (source.word(at)?.whole(at)?, source.word(at)?.whole(at)?);
     if form > 1 {
-        return Err(
-            source.error(format!("form {form}, where 0 (text) or 1 (binary) is expected"), "save the file again")
-        );
+        let what = format!("form {form}, where 0 (text) or 1 (binary) is expected");
+        return Err(source.error(what, "save the file again"));
     }
     if size != 8 {
         let what = format!("numbers of {size} bytes, where 8 are expected");
         return Err(source.error(what, "save the file on a machine of 64 bits, or correct the data-size"));
     }
     if form == 1 {
-        source.read_one()?;
+        read_one(source)?;
     }
-    source.end_section("MeshFormat")?;
+    end_section(source, "MeshFormat")?;
     Ok(layout)
 }
 
