@@ -27,21 +27,17 @@ pub fn read_pslg(spec: &str) -> Result<Pslg> {
     }
     let path = Path::new(spec);
     let format = Format::of_ending(path);
-    match ending(path).as_deref() {
-        Some("geojson" | "json") => {
-            let polygons = geojson::read(&read_text(path)?, spec)?;
-            from_polygons(&polygons).map_err(|error| in_file(spec, error))
+    let pslg = match ending(path).as_deref() {
+        Some("geojson" | "json") => from_polygons(&geojson::read(&read_text(path)?, spec)?),
+        Some("poly") => from_poly(&poly::read(open(path)?, spec)?),
+        _ if format.is_some_and(Format::may_be_planar) => from_mesh(&read(path)?.mesh),
+        Some(ending) if format.is_some() => {
+            let what = format!("a .{ending} file as planar domain ({spec})");
+            return Err(Error::Unsupported { what, help: format!("give {DOMAINS}") });
         }
-        Some("poly") => from_poly(&poly::read(open(path)?, spec)?).map_err(|error| in_file(spec, error)),
-        _ if format.is_some_and(Format::may_be_planar) => {
-            from_mesh(&read(path)?.mesh).map_err(|error| in_file(spec, error))
-        }
-        Some(ending) if format.is_some() => Err(Error::Unsupported {
-            what: format!("a .{ending} file as planar domain ({spec})"),
-            help: format!("give {DOMAINS}"),
-        }),
-        _ => Err(neither(spec, DOMAINS)),
-    }
+        _ => return Err(neither(spec, DOMAINS)),
+    };
+    pslg.map_err(|error| in_file(spec, error))
 }
 
 /// What users write for a planar domain, for messages.

@@ -20,29 +20,26 @@ use voronaut::mesh::Mesh;
 ///
 /// [`voronaut::Error::Parse`] with the line of what is no finite number, of a face of fewer than three vertices, and of a vertex
 /// that does not exist.
-pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
-    let mut source = Source::with_names(source, place, &NAMING);
-    let (mut reader, mut joined) = (Reader::default(), String::new());
+pub fn read(source: impl BufRead, file: &str) -> Result<Document> {
+    let mut source = Source::with_names(source, file, &NAMING);
+    let (mut reader, mut joined, mut begin) = (Reader::default(), String::new(), None);
     while let Some(row) = source.next_row()? {
-        let Some(begun) = row.text.trim_end().strip_suffix('\\') else {
-            reader.read_row(row)?;
-            continue;
-        };
-        joined.clear();
-        joined.push_str(begun);
-        let place = source.place();
-        while let Some(more) = source.next_row()? {
-            let text = more.text.trim_end();
-            let begun = text.strip_suffix('\\');
-            joined.push(' ');
-            joined.push_str(begun.unwrap_or(text));
-            if begun.is_none() {
-                break;
-            }
+        let text = row.text.trim_end();
+        let begun = text.strip_suffix('\\');
+        joined.push_str(begun.unwrap_or(text));
+        joined.push(' ');
+        let is_whole = begun.is_none();
+        let place = *begin.get_or_insert(source.place());
+        if is_whole {
+            reader.read_row(Row { place, text: &joined })?;
+            begin = None;
+            joined.clear();
         }
+    }
+    if let Some(place) = begin {
         reader.read_row(Row { place, text: &joined })?;
     }
-    reader.finish(place)
+    reader.finish(file)
 }
 
 /// Rows that name things, in whatever encoding.

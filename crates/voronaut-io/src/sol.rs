@@ -18,16 +18,14 @@ use voronaut::{Error, Result};
 /// that cannot be read.
 pub fn read(source: impl BufRead, place: &str) -> Result<Solution> {
     let mut file = Parsed::read(source, place, &SECTIONS[..1])?;
-    let Some(mut found) = file.sections[0].take() else {
+    let Some((place, values)) = file.sections[0].take() else {
         return Err(file.missing("", "save the values on vertices, in a section SolAtVertices"));
     };
-    match found.values.pop() {
-        Some(values) if found.values.is_empty() => Ok(Solution { dimension: file.dimension(), values }),
-        _ => {
-            let what = format!("{} solutions per vertex ({})", found.values.len() + 1, found.place);
-            Err(Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() })
-        }
-    }
+    let [values] = <[SolutionValues; 1]>::try_from(values).map_err(|values| {
+        let what = format!("{} solutions per vertex ({place})", values.len());
+        Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() }
+    })?;
+    Ok(Solution { dimension: file.dimension(), values })
 }
 
 /// Reads the sections `SolAtVertices` and `SolAtTriangles` of a file, with any number of values per vertex or triangle;
@@ -42,8 +40,8 @@ pub fn read_all(source: impl BufRead, place: &str) -> Result<Solutions> {
     if vertices.is_none() && triangles.is_none() {
         return Err(file.missing(", nor SolAtTriangles", "save values in one of these sections"));
     }
-    let values = |found: Option<Section>| found.map_or_else(Vec::new, |found| found.values);
-    Ok(Solutions { dimension: file.dimension(), vertices: values(vertices), triangles: values(triangles) })
+    let [vertices, triangles] = [vertices, triangles].map(|found| found.map_or_else(Vec::new, |(_, values)| values));
+    Ok(Solutions { dimension: file.dimension(), vertices, triangles })
 }
 
 /// Writes a file of version 2 that [`read`] turns into the same solution, to the last bit.
@@ -76,11 +74,8 @@ struct Parsed<'a> {
     sections: [Option<Section>; 2],
 }
 
-struct Section {
-    /// Where its head ends.
-    place: String,
-    values: Vec<SolutionValues>,
-}
+/// Where its head ends, and its values.
+type Section = (String, Vec<SolutionValues>);
 
 impl<'a> Parsed<'a> {
     /// Reads the sections that are wanted.
@@ -134,7 +129,7 @@ fn read_section(from: &mut Sections<'_>, section: &str) -> Result<Section> {
     for at in At::rows(section, count) {
         values.iter_mut().try_for_each(|values| push(values, from, at))?;
     }
-    Ok(Section { place, values })
+    Ok((place, values))
 }
 
 fn push(values: &mut SolutionValues, from: &mut Sections<'_>, at: At<'_>) -> Result<()> {

@@ -1,5 +1,6 @@
 //! Values on nodes and elements: the sections `$NodeData` and `$ElementData`.
 
+use super::blocks::Blocks;
 use super::reader::Reader;
 use super::sections::{INT, REAL};
 use crate::Field;
@@ -7,19 +8,19 @@ use crate::codec::At;
 use voronaut::mesh::SolutionValues;
 use voronaut::{Error, Result};
 
-impl Reader<'_> {
+impl Reader {
     /// Reads a section as a field; values on elements that are no triangles are passed over.
     ///
     /// # Errors
     /// [`Error::Parse`] of what is not as announced, of a node or an element that does not exist or has two values, and of a triangle
     /// or one of its vertices without value. [`Error::Unsupported`] of more than 9 numbers per value.
-    pub(super) fn read_data(&mut self, section: &str) -> Result<()> {
-        let start = self.source.place();
-        let head = read_head(self, section)?;
+    pub(super) fn read_data(&mut self, section: &str, from: &mut Blocks<'_>) -> Result<()> {
+        let start = from.source.place();
+        let head = read_head(from, section)?;
         if head.rows == 0 {
             return Ok(());
         }
-        let found = read_rows(self, section, &head)?;
+        let found = read_rows(self, section, &head, from)?;
         let on_nodes = section == "NodeData";
         let vertices = 0..self.mesh.points.len() as u32;
         let rows: Vec<Option<u32>> = if on_nodes {
@@ -85,10 +86,10 @@ impl Rows {
     }
 }
 
-fn read_head(reader: &mut Reader<'_>, section: &str) -> Result<Head> {
+fn read_head(from: &mut Blocks<'_>, section: &str) -> Result<Head> {
     /// Gmsh's own are 1, 3 and 9.
     const MOST: u64 = 9;
-    let (source, at) = (&mut reader.source, At::head(section));
+    let (source, at) = (&mut from.source, At::head(section));
     let mut name = None;
     for _ in 0..source.word(at)?.whole::<u64>(at)? {
         let text = source.rest_of_row(at)?;
@@ -121,12 +122,12 @@ fn read_head(reader: &mut Reader<'_>, section: &str) -> Result<Head> {
     Ok(Head { name, step, components: components as usize, rows })
 }
 
-fn read_rows(reader: &mut Reader<'_>, section: &str, head: &Head) -> Result<Rows> {
+fn read_rows(reader: &Reader, section: &str, head: &Head, from: &mut Blocks<'_>) -> Result<Rows> {
     let of = if section == "NodeData" { "node" } else { "element" };
     let tags = if section == "NodeData" { &reader.nodes } else { &reader.elements };
     let mut found = Rows { numbers: Vec::new(), of: vec![NONE; tags.len()] };
     for at in At::rows(section, head.rows) {
-        let source = &mut reader.source;
+        let source = &mut from.source;
         // Of 32 bits in all versions.
         let tag: u32 = source.whole(INT, at)?;
         let Some(entry) = tags.find(tag.into()) else {
@@ -144,7 +145,7 @@ fn read_rows(reader: &mut Reader<'_>, section: &str, head: &Head) -> Result<Rows
 }
 
 /// On how many triangles, or vertices of triangles, there is no value.
-fn missing(reader: &Reader<'_>, rows: &[Option<u32>], on_nodes: bool) -> usize {
+fn missing(reader: &Reader, rows: &[Option<u32>], on_nodes: bool) -> usize {
     if !on_nodes {
         return rows.iter().filter(|row| row.is_none()).count();
     }
@@ -158,38 +159,24 @@ pub(super) struct Column<'a> {
     pub(super) name: String,
     /// How many numbers a value has.
     pub(super) components: usize,
-    values: &'a SolutionValues,
-    /// The only component of the field that it is, where the field has more than Gmsh knows.
-    only: Option<usize>,
+    field: &'a Field,
+    /// Which of the field's numbers is the first.
+    first: usize,
 }
 
 impl<'a> Column<'a> {
     /// A field as columns: one, or one per component where Gmsh knows no values of so many numbers.
     pub(super) fn of(field: &'a Field) -> Vec<Self> {
-        let (values, name) = (&field.values, field.name.replace(['"', '\n', '\r'], "'"));
-        let components = match values {
-            SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => 9,
-            _ if values.components() == 2 => 3,
-            _ => values.components(),
-        };
+        let (components, name) = (field.width(true), field.name.replace(['"', '\n', '\r'], "'"));
         if matches!(components, 1 | 3 | 9) {
-            return vec![Self { name, components, values, only: None }];
+            return vec![Self { name, components, field, first: 0 }];
         }
-        let part = |c| Self { name: format!("{name}_{c}"), components: 1, values, only: Some(c) };
+        let part = |first| Self { name: format!("{name}_{first}"), components: 1, field, first };
         (0..components).map(part).collect()
     }
 
-    /// The numbers of entry `i`, and zeros behind them.
-    pub(super) fn row(&self, i: usize) -> [f64; 9] {
-        match (self.values, self.values.row(i)) {
-            (SolutionValues::Tensor(_), &[xx, xy, yy]) => [xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, 0.0],
-            (SolutionValues::Tensor3(_), &[xx, xy, yy, xz, yz, zz]) => [xx, xy, xz, xy, yy, yz, xz, yz, zz],
-            (_, numbers) => {
-                let numbers = self.only.map_or(numbers, |c| &numbers[c..=c]);
-                let mut row = [0.0; 9];
-                row[..numbers.len()].copy_from_slice(numbers);
-                row
-            }
-        }
+    /// The numbers of an entry, zeros where there is none.
+    pub(super) fn row(&self, entry: Option<usize>) -> impl Iterator<Item = f64> {
+        (self.first..self.first + self.components).map(move |k| entry.map_or(0.0, |i| self.field.number(i, k)))
     }
 }

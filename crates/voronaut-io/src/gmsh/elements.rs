@@ -1,8 +1,9 @@
 //! Gmsh's elements: triangles, edges and points of the mesh, with their labels and marks.
 
+use super::blocks::{Blocks, Layout};
 use super::groups::{Mark, Marks};
 use super::kinds::{EDGE, Kind, POINT, QUADRANGLE, TRIANGLE};
-use super::reader::{Layout, Reader};
+use super::reader::Reader;
 use super::sections::{INT, SIZE};
 use crate::codec::At;
 use crate::cutting::cut;
@@ -10,7 +11,7 @@ use voronaut::{Error, Result};
 
 /// An element of the file that is in the mesh.
 #[derive(Default)]
-struct Piece {
+pub(super) struct Piece {
     code: i32,
     nodes: Corners,
     entity: i32,
@@ -19,22 +20,22 @@ struct Piece {
     index: u32,
 }
 
-impl Reader<'_> {
+impl Reader {
     /// Reads the section, behind its name.
-    pub(super) fn read_elements(&mut self) -> Result<()> {
-        self.demand_nodes("Elements")?;
-        let tags = match (self.layout, self.source.is_binary()) {
-            (Layout::Two, false) => self.read_elements_2()?,
-            (Layout::Two, true) => self.read_binary_elements_2()?,
-            _ => self.read_elements_4()?,
+    pub(super) fn read_elements(&mut self, from: &mut Blocks<'_>) -> Result<()> {
+        self.demand_nodes("Elements", from)?;
+        let tags = match (from.layout, from.source.is_binary()) {
+            (Layout::Two, false) => self.read_elements_2(from)?,
+            (Layout::Two, true) => self.read_binary_elements_2(from)?,
+            _ => self.read_elements_4(from)?,
         };
-        self.elements = self.index(&tags, "element", "Elements")?;
+        self.elements = from.index(&tags, "element", "Elements")?;
         if self.foreign.is_empty() {
             self.take_skin();
             return Ok(());
         }
         let counts: Vec<String> = self.foreign.iter().map(|(name, count)| format!("{count} {name}")).collect();
-        let what = format!("{} ({})", counts.join(", "), self.source.place());
+        let what = format!("{} ({})", counts.join(", "), from.source.place());
         let help = "give a mesh of straight triangles: in Gmsh mesh in 2 dimensions with Mesh.ElementOrder = 1";
         Err(Error::Unsupported { what, help: help.into() })
     }
@@ -44,35 +45,34 @@ impl Reader<'_> {
         self.notes.extend(self.volumes.note(self.mesh.triangles.len()));
         if self.mesh.triangles.is_empty() {
             let skin = self.volumes.skin(&self.mesh.points);
-            let element = |&cell: &u32| self.volume_elements[cell as usize];
-            self.triangle_elements = skin.cells.iter().map(element).collect();
+            self.triangle_elements = skin.elements;
             (self.mesh.triangles, self.mesh.triangle_labels) = (skin.triangles, skin.labels);
         }
     }
 
-    fn read_elements_2(&mut self) -> Result<Vec<u64>> {
-        let (mut tags, mut last) = (Vec::new(), Piece::default());
-        for at in self.text_rows("Elements")? {
-            tags.push(self.tag(at)?);
-            let kind = self.read_kind(at)?;
-            let attributes = self.source.whole(INT, at)?;
-            self.read_element_2(kind, attributes, &mut last, tags.len() as u32 - 1, at)?;
+    fn read_elements_2(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
+        let mut tags = Vec::new();
+        for at in from.text_rows("Elements")? {
+            tags.push(from.tag(at)?);
+            let kind = read_kind(from, at)?;
+            let attributes = from.source.whole(INT, at)?;
+            self.read_element_2(kind, attributes, tags.len() as u32 - 1, from, at)?;
         }
         Ok(tags)
     }
 
-    fn read_binary_elements_2(&mut self) -> Result<Vec<u64>> {
+    fn read_binary_elements_2(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
         let (section, at) = ("Elements", At::head("Elements"));
-        let total = self.source.word(at)?.whole(at)?;
-        let (mut tags, mut last) = (Vec::new(), Piece::default());
+        let total = from.source.word(at)?.whole(at)?;
+        let mut tags = Vec::new();
         while (tags.len() as u64) < total {
             let at = At { section, row: tags.len() as u64 + 1, rows: total };
-            let kind = self.read_kind(at)?;
-            let count = self.source.whole::<u32>(INT, at)?.into();
-            let attributes = self.source.whole(INT, at)?;
-            for at in self.block(section, tags.len(), count, total)? {
-                tags.push(self.tag(at)?);
-                self.read_element_2(kind, attributes, &mut last, tags.len() as u32 - 1, at)?;
+            let kind = read_kind(from, at)?;
+            let count = from.source.whole::<u32>(INT, at)?.into();
+            let attributes = from.source.whole(INT, at)?;
+            for at in from.block(section, tags.len(), count, total)? {
+                tags.push(from.tag(at)?);
+                self.read_element_2(kind, attributes, tags.len() as u32 - 1, from, at)?;
             }
         }
         Ok(tags)
@@ -84,73 +84,66 @@ impl Reader<'_> {
         &mut self,
         kind: Kind,
         attributes: u32,
-        last: &mut Piece,
         element: u32,
+        from: &mut Blocks<'_>,
         at: At<'_>,
     ) -> Result<()> {
         let mut known = [0; 2];
         for i in 0..attributes as usize {
-            let attribute: i32 = self.source.whole(INT, at)?;
+            let attribute: i32 = from.source.whole(INT, at)?;
             if let Some(place) = known.get_mut(i) {
                 *place = attribute;
             }
         }
         let [group, entity] = known;
-        let Some(nodes) = self.read_corners(kind, at)? else { return Ok(()) };
+        let Some(nodes) = self.read_corners(kind, from, at)? else { return Ok(()) };
         let group = (group != 0).then_some(group);
+        let last = &mut self.last;
         if (kind.code, nodes, entity) == (last.code, last.nodes, last.entity)
             && group.is_some_and(|group| !last.groups.contains(&group))
             && (1..MOST_GROUPS).contains(&last.groups.len())
         {
             last.groups.extend(group);
         } else {
-            let index = self.add(kind, nodes, element);
-            *last = Piece { code: kind.code, nodes, entity, groups: group.into_iter().collect(), index };
+            let (code, index) = (kind.code, self.add(kind, nodes, element));
+            self.last = Piece { code, nodes, entity, groups: group.into_iter().collect(), index };
         }
-        let (label, marks) = self.groups.of(dimension_of(kind.code), &last.groups, entity);
-        self.label(kind, last.index, label, marks);
+        let (label, marks) = self.groups.of(dimension_of(kind.code), &self.last.groups, entity);
+        self.label(kind, self.last.index, label, marks);
         Ok(())
     }
 
-    fn read_elements_4(&mut self) -> Result<Vec<u64>> {
+    fn read_elements_4(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
         let section = "Elements";
-        let (blocks, total) = self.read_totals(section)?;
+        let (blocks, total) = from.read_totals(section)?;
         let mut tags = Vec::new();
         for _ in 0..blocks {
             let at = At::head(section);
-            let (dimension, entity) = self.read_entity(at)?;
-            let kind = self.read_kind(at)?;
+            let (dimension, entity) = from.read_entity(at)?;
+            let kind = read_kind(from, at)?;
             let groups = self.entities.get(&(dimension, entity)).map(Vec::as_slice).unwrap_or_default();
             let (label, marks) = self.groups.of(dimension, groups, entity);
-            let count = self.source.whole(SIZE, at)?;
-            for at in self.block(section, tags.len(), count, total)? {
-                tags.push(self.tag(at)?);
-                if let Some(nodes) = self.read_corners(kind, at)? {
+            let count = from.source.whole(SIZE, at)?;
+            for at in from.block(section, tags.len(), count, total)? {
+                tags.push(from.tag(at)?);
+                if let Some(nodes) = self.read_corners(kind, from, at)? {
                     let index = self.add(kind, nodes, tags.len() as u32 - 1);
                     self.label(kind, index, label, marks);
                 }
             }
         }
-        self.demand_all(section, tags.len(), total)?;
+        from.demand_all(section, tags.len(), total)?;
         Ok(tags)
     }
 
-    fn read_kind(&mut self, at: At<'_>) -> Result<Kind> {
-        let code = self.source.whole(INT, at)?;
-        Kind::of(code).ok_or_else(|| {
-            let what = format!("elements of type {code} ({at}; {})", self.source.place());
-            Error::Unsupported { what, help: "give a mesh of straight triangles, edges and points".into() }
-        })
-    }
-
     /// The nodes of an element; `None` of one of which a triangle mesh can hold nothing, which is counted.
-    fn read_corners(&mut self, kind: Kind, at: At<'_>) -> Result<Option<Corners>> {
+    fn read_corners(&mut self, kind: Kind, from: &mut Blocks<'_>, at: At<'_>) -> Result<Option<Corners>> {
         let mut nodes = Corners::default();
         for i in 0..kind.nodes {
-            let tag = self.tag(at)?;
+            let tag = from.tag(at)?;
             let Some(node) = self.nodes.find(tag) else {
                 let help = "check the tag, and that the section Nodes is whole";
-                return Err(self.source.error(format!("node {tag} does not exist ({at})"), help));
+                return Err(from.source.error(format!("node {tag} does not exist ({at})"), help));
             };
             if let Some(place) = nodes.get_mut(i) {
                 *place = node;
@@ -166,9 +159,7 @@ impl Reader<'_> {
     /// Takes an element in, and gives the number of the vertex, the edge, the first triangle or the cell of a volume that it is.
     fn add(&mut self, kind: Kind, nodes: Corners, element: u32) -> u32 {
         if let Some(solid) = kind.solid() {
-            self.volumes.push(solid, &nodes[..kind.nodes], 0);
-            self.volume_elements.push(element);
-            return self.volume_elements.len() as u32 - 1;
+            return self.volumes.push(solid, &nodes[..kind.nodes], 0, element);
         }
         let mesh = &mut self.mesh;
         match kind.code {
@@ -223,6 +214,14 @@ impl Reader<'_> {
             }
         }
     }
+}
+
+fn read_kind(from: &mut Blocks<'_>, at: At<'_>) -> Result<Kind> {
+    let code = from.source.whole(INT, at)?;
+    Kind::of(code).ok_or_else(|| {
+        let what = format!("elements of type {code} ({at}; {})", from.source.place());
+        Error::Unsupported { what, help: "give a mesh of straight triangles, edges and points".into() }
+    })
 }
 
 /// The nodes of an element, and zeros behind them: a hexahedron has most.

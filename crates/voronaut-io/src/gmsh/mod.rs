@@ -1,5 +1,6 @@
 //! Gmsh's format `.msh` (Geuzaine and Remacle 2009; chapter "File formats" of Gmsh's manual), as text and binary.
 
+mod blocks;
 mod data;
 mod elements;
 mod groups;
@@ -11,6 +12,7 @@ mod writer;
 
 use super::codec::{Form, Source};
 use super::{Document, Fields};
+use blocks::Blocks;
 use reader::Reader;
 use std::fmt;
 use std::io::{self, BufRead, Write};
@@ -70,7 +72,7 @@ impl FromStr for Version {
 /// [`Error::Unsupported`] of other versions, of curved elements with their numbers, of
 /// meshes in partitions. [`Error::Io`] of a file that cannot be read.
 pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
-    Reader::new(Source::verbatim(source, place))?.read()
+    Reader::default().read(Blocks::new(Source::verbatim(source, place))?)
 }
 
 /// Writes a mesh and fields as a file that [`read`] turns into the same vertices, to the last bit, and the same triangles and

@@ -7,6 +7,7 @@ use super::kinds::{EDGE, POINT, TRIANGLE};
 use super::sections::{begin, write_end};
 use crate::Fields;
 use crate::codec::{Form, Sink};
+use crate::document::labels;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use voronaut::mesh::Mesh;
@@ -51,11 +52,11 @@ struct Part {
 impl<'a> Plan<'a> {
     fn new(mesh: &'a Mesh) -> Self {
         let required = (Mark::RequiredTriangle, mesh.required_triangles.as_slice());
-        let triangles = sort(mesh.triangles.len(), &mesh.triangle_labels, &[required]);
+        let triangles = sort(mesh.triangles.len(), labels(&mesh.triangle_labels), &[required]);
         let marked = [(Mark::Ridge, mesh.ridges.as_slice()), (Mark::RequiredEdge, &mesh.required_edges)];
-        let edges = sort(mesh.edges.len(), &mesh.edge_labels, &marked);
+        let edges = sort(mesh.edges.len(), labels(&mesh.edge_labels), &marked);
         let marked = [(Mark::Corner, mesh.corners.as_slice()), (Mark::RequiredVertex, &mesh.required_points)];
-        let mut points = sort(mesh.points.len(), &mesh.point_labels, &marked);
+        let mut points = sort(mesh.points.len(), labels(&mesh.point_labels), &marked);
         // Vertices without label and marks need no elements.
         points.remove(&(0, Marks::default()));
         let sorted = [triangles, edges, points];
@@ -245,13 +246,12 @@ impl Part {
 type Sorted = BTreeMap<(i32, Marks), Vec<u32>>;
 
 /// So many elements, some of which have marks.
-fn sort(count: usize, labels: &[i32], marked: &[(Mark, &[u32])]) -> Sorted {
+fn sort(count: usize, labels: impl Iterator<Item = i32>, marked: &[(Mark, &[u32])]) -> Sorted {
     let mut marks = vec![Marks::default(); count];
     for (mark, list) in marked {
         list.iter().for_each(|&i| marks[i as usize].insert(*mark));
     }
     let mut sorted = Sorted::new();
-    let labels = labels.iter().copied().chain(std::iter::repeat(0));
     for (i, key) in (0..).zip(labels.zip(marks)) {
         sorted.entry(key).or_default().push(i);
     }
@@ -274,9 +274,8 @@ fn write_data(
     demand_tags(count)?;
     sink.line(format_args!("${section}\n1\n\"{name}\"\n1\n0\n3\n0\n{components}\n{count}"))?;
     for (tag, row) in (1_i32..).zip(rows) {
-        let numbers = row.map_or([0.0; 9], |row| column.row(row));
         sink.put(tag)?;
-        sink.row(numbers[..components].iter().copied())?;
+        sink.row(column.row(row))?;
     }
     write_end(section, sink)
 }

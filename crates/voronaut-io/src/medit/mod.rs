@@ -12,6 +12,7 @@ pub(super) use writer::Writer;
 use super::Document;
 use super::codec::{At, Largest};
 use super::cutting::cut;
+use super::document::labels;
 use super::volumes::{Solid, Volumes};
 use keywords::SECTIONS;
 use std::io::{self, BufRead, Write};
@@ -169,7 +170,9 @@ impl Reader {
 
     fn read_solids<const N: usize>(&mut self, section: &str, solid: Solid, from: &mut Sections<'_>) -> Result<()> {
         let (cells, labels) = self.read_elements::<N>(section, from)?;
-        cells.iter().zip(labels).for_each(|(cell, label)| self.volumes.push(solid, cell, label));
+        for (cell, label) in cells.iter().zip(labels) {
+            self.volumes.push(solid, cell, label, 0);
+        }
         Ok(())
     }
 
@@ -238,10 +241,6 @@ fn write_elements<const N: usize>(
         writer.sink.row([label])?;
     }
     Ok(())
-}
-
-fn labels(labels: &[i32]) -> impl Iterator<Item = i32> {
-    labels.iter().copied().chain(std::iter::repeat(0))
 }
 
 #[cfg(test)]

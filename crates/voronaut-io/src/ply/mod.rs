@@ -5,7 +5,7 @@ mod strips;
 
 use super::codec::{At, Form, Kind, Largest, Sink, Source};
 use super::cutting::Polygons;
-use super::document::distinct_names;
+use super::document::{distinct_names, labels};
 use super::{Document, Field, Fields};
 use header::{Element, Property, Shape};
 use std::io::{self, BufRead, Write};
@@ -59,16 +59,15 @@ pub fn write(mesh: &Mesh, fields: &Fields, form: Form, out: &mut dyn Write) -> i
         mesh.points.len(),
         mesh.triangles.len()
     ))?;
-    let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0);
-    for (i, point) in mesh.points.iter().enumerate() {
+    for (i, (point, label)) in mesh.points.iter().zip(labels(&mesh.point_labels)).enumerate() {
         sink.put_all(*point)?;
-        sink.put(label(&mesh.point_labels, i))?;
+        sink.put(label)?;
         sink.row(fields.vertices.iter().flat_map(|field| field.values.row(i)).copied())?;
     }
-    for (i, triangle) in mesh.triangles.iter().enumerate() {
+    for (i, (triangle, label)) in mesh.triangles.iter().zip(labels(&mesh.triangle_labels)).enumerate() {
         sink.put(3_u8)?;
         sink.put_all(*triangle)?;
-        sink.put(label(&mesh.triangle_labels, i))?;
+        sink.put(label)?;
         sink.row(fields.triangles.iter().flat_map(|field| field.values.row(i)).copied())?;
     }
     Ok(())
@@ -107,8 +106,8 @@ enum Role {
 struct Reader {
     mesh: Mesh,
     polygons: Polygons,
-    vertex_fields: Vec<(String, Vec<f64>)>,
-    face_fields: Vec<(String, Vec<f64>)>,
+    /// Name and values of properties of vertices and of faces.
+    fields: [Vec<(String, Vec<f64>)>; 2],
     largest: Largest,
 }
 
@@ -134,8 +133,8 @@ impl Reader {
             ("tristrips", Shape::List(..)) if header::VERTEX_LISTS.contains(&name) => return Role::Strips,
             (_, Shape::List(..)) => return Role::None,
             ("vertex" | "face" | "edge", _) if name == "label" => return Role::Label,
-            ("vertex", _) => &mut self.vertex_fields,
-            ("face", _) => &mut self.face_fields,
+            ("vertex", _) => &mut self.fields[0],
+            ("face", _) => &mut self.fields[1],
             ("edge", _) => {
                 return ["vertex1", "vertex2"].iter().position(|end| *end == name).map_or(Role::None, Role::End);
             }
@@ -173,8 +172,7 @@ impl Reader {
                 Role::Field(_) if !value.is_finite() => {
                     return Err(fault("a value is not finite", "remove or correct it", source, at));
                 }
-                Role::Field(field) if element.name == "vertex" => self.vertex_fields[field].1.push(value),
-                Role::Field(field) => self.face_fields[field].1.push(value),
+                Role::Field(field) => self.fields[usize::from(element.name == "face")][field].1.push(value),
                 Role::Vertices | Role::Strips | Role::None => {}
             }
         }
@@ -241,12 +239,10 @@ impl Reader {
         (self.mesh.triangles, self.mesh.triangle_labels) = self.polygons.cut(&self.mesh.points);
         let triangles = self.mesh.triangles.len();
         // Fields of triangles are those of faces only where each face is one.
-        self.face_fields.retain(|(_, values)| values.len() == triangles);
-        let fields = |fields: Vec<(String, Vec<f64>)>| {
-            fields.into_iter().map(|(name, values)| Field { name, values: SolutionValues::Scalar(values) }).collect()
-        };
-        let fields = Fields { vertices: fields(self.vertex_fields), triangles: fields(self.face_fields) };
-        Ok(Document { mesh: self.mesh, fields, notes: Vec::new() })
+        self.fields[1].retain(|(_, values)| values.len() == triangles);
+        let field = |(name, values)| Field { name, values: SolutionValues::Scalar(values) };
+        let [vertices, triangles] = self.fields.map(|fields| fields.into_iter().map(field).collect());
+        Ok(Document { mesh: self.mesh, fields: Fields { vertices, triangles }, notes: Vec::new() })
     }
 
     fn vertex(&mut self, value: f64, source: &Source<'_>, at: At<'_>) -> Result<u32> {

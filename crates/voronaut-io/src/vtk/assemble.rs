@@ -18,10 +18,9 @@ pub(super) fn assemble(grid: Grid<'_>) -> Result<Document> {
     for piece in grid.pieces {
         assembly.append(piece)?;
     }
-    let Assembly { mesh, vertices, triangles, notes, .. } = assembly;
-    let is_planar = mesh.is_planar();
-    let fields = Fields { vertices: vertices.finish(is_planar), triangles: triangles.finish(is_planar) };
-    Ok(Document { mesh, fields, notes })
+    let is_planar = assembly.mesh.is_planar();
+    let [vertices, triangles] = [assembly.vertices, assembly.triangles].map(|joined| joined.finish(is_planar));
+    Ok(Document { mesh: assembly.mesh, fields: Fields { vertices, triangles }, notes: assembly.notes })
 }
 
 #[derive(Default)]
@@ -43,9 +42,9 @@ impl<'a> Assembly<'a> {
         self.append_points(&mut piece)?;
         let mut shapes = Shapes::default();
         let mut cells = 0;
-        for ((_, section), count) in CELLS.into_iter().zip(piece.cells).filter(|(_, count)| *count > 0) {
-            self.read_cells(&mut piece, section, count, cells, &mut shapes)?;
-            cells += count as u32;
+        for (_, section) in CELLS {
+            self.read_cells(&mut piece, section, cells, &mut shapes)?;
+            cells += piece.count(section) as u32;
         }
         let (mut of_points, mut of_cells) = (Vec::new(), Vec::new());
         for (section, mut array) in std::mem::take(&mut piece.arrays) {
@@ -88,14 +87,11 @@ impl<'a> Assembly<'a> {
     }
 
     /// Cells of a section, whose numbers begin with `first`.
-    fn read_cells(
-        &self,
-        piece: &mut Piece<'a>,
-        section: Section,
-        count: u64,
-        first: u32,
-        to: &mut Shapes,
-    ) -> Result<()> {
+    fn read_cells(&self, piece: &mut Piece<'a>, section: Section, first: u32, to: &mut Shapes) -> Result<()> {
+        let count = piece.count(section);
+        if count == 0 {
+            return Ok(());
+        }
         let (mut kinds, all) = match section {
             Section::Cells => {
                 let kinds = self.take(piece, section, "types")?.take_wholes(count)?;
@@ -112,24 +108,18 @@ impl<'a> Assembly<'a> {
         let fault = |what: String| offsets.error(&what, "check the cells, and that the file is whole");
         // Only now it is known that there are as many cells as the file says.
         kinds.resize(ends.len(), all);
-        let mut start = 0;
-        for (i, &end) in ends.iter().enumerate() {
-            if end < start {
-                return Err(fault(format!(
-                    "says that cell {} ends at {end}, behind which it begins, at {start}",
-                    i + 1
-                )));
-            }
-            start = end;
+        let starts = || std::iter::once(0).chain(ends.iter().copied());
+        let mut cells = starts().zip(&ends).enumerate();
+        if let Some((i, (start, end))) = cells.find(|(_, (start, end))| *end < start) {
+            let what = format!("says that cell {} ends at {end}, behind which it begins, at {start}", i + 1);
+            return Err(fault(what));
         }
-        let vertices = self.read_connectivity(piece, section, start as u64)?;
+        let vertices = self.read_connectivity(piece, section, ends.last().copied().unwrap_or(0) as u64)?;
         let points = &self.mesh.points[self.mesh.points.len() - piece.points as usize..];
-        let mut start = 0;
-        for (i, (&end, kind)) in ends.iter().zip(kinds).enumerate() {
-            let cell = &vertices[start..end as usize];
+        for (i, ((start, &end), kind)) in starts().zip(&ends).zip(kinds).enumerate() {
+            let cell = &vertices[start as usize..end as usize];
             let pushed = to.push(first + i as u32, kind, cell, points);
             pushed.map_err(|right| fault(format!("gives cell {} {} vertices: {right}", i + 1, cell.len())))?;
-            start = end as usize;
         }
         Ok(())
     }
@@ -202,7 +192,7 @@ impl<'a> Assembly<'a> {
 fn demand_moderate_cuts(data: &Data<'_>, triangles: usize, cells: usize, file: &str) -> Result<()> {
     const ALWAYS: usize = 1 << 24;
     const MOST_PER_CELL: usize = 64;
-    let components = data.fields.iter().fold(0_usize, |sum, field| sum.saturating_add(field.components()));
+    let components = data.fields.iter().fold(0_usize, |sum, field| sum.saturating_add(field.components));
     let numbers = components.saturating_mul(triangles);
     if numbers <= ALWAYS || triangles / MOST_PER_CELL < cells {
         return Ok(());

@@ -26,7 +26,8 @@ pub(super) struct Data<'a> {
 pub(super) struct Unsorted<'a> {
     /// Its numbers are taken out.
     array: Array<'a>,
-    components: usize,
+    /// How many numbers the entries have.
+    pub(super) components: usize,
     numbers: Vec<f64>,
 }
 
@@ -83,11 +84,6 @@ fn read_labels(mut array: Array<'_>, count: u64) -> Result<Vec<i32>> {
 }
 
 impl Unsorted<'_> {
-    /// How many numbers the entries have.
-    pub(super) fn components(&self) -> usize {
-        self.components
-    }
-
     /// Keeps these entries, in this order.
     pub(super) fn select(&mut self, entries: &[u32]) {
         let is_all = entries.iter().enumerate().all(|(i, &entry)| i == entry as usize);
@@ -109,11 +105,6 @@ impl Unsorted<'_> {
         let entry = entries.map_or(row, |entries| entries[row] as usize) + 1;
         let what = format!("holds {number}, which is not finite, in entry {entry}");
         Err(self.array.error(&what, "correct or remove the array"))
-    }
-
-    fn into_field(self, is_planar: bool) -> Field {
-        let values = SolutionValues::in_space(self.numbers, self.components, is_planar);
-        Field { name: self.array.name, values }
     }
 }
 
@@ -152,6 +143,9 @@ impl<'a> Joined<'a> {
 
     /// The fields; in a planar mesh what has no third coordinate is planar.
     pub(super) fn finish(self, is_planar: bool) -> Vec<Field> {
-        self.fields.into_iter().map(|field| field.into_field(is_planar)).collect()
+        let values = |field: Unsorted<'_>| SolutionValues::in_space(field.numbers, field.components, is_planar);
+        let named =
+            |mut field: Unsorted<'_>| Field { name: std::mem::take(&mut field.array.name), values: values(field) };
+        self.fields.into_iter().map(named).collect()
     }
 }

@@ -12,6 +12,13 @@ pub(super) enum Type {
     PolyData,
 }
 
+impl Type {
+    /// What its tag is called.
+    pub(super) fn name(self) -> &'static str {
+        if self == Type::PolyData { "PolyData" } else { "UnstructuredGrid" }
+    }
+}
+
 /// Where in a piece an array is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Section {

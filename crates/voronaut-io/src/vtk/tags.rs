@@ -117,7 +117,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
                 Element::File
             }
             (None, _) => return Err(self.no_vtk()),
-            (Some(Element::File), _) if name == type_name(self.grid.kind) => Element::Grid,
+            (Some(Element::File), _) if name == self.grid.kind.name() => Element::Grid,
             (Some(Element::Grid), _) if name == "Piece" => {
                 let piece = self.piece(tag)?;
                 self.grid.pieces.push(piece);
@@ -138,10 +138,8 @@ impl<'a, R: BufRead> Tags<'a, R> {
     /// What the tag `VTKFile` says.
     fn read_head(&mut self, tag: &BytesStart<'_>) -> Result<()> {
         let kind = self.attribute(tag, "type")?.unwrap_or_default();
-        self.grid.kind = [Type::UnstructuredGrid, Type::PolyData]
-            .into_iter()
-            .find(|known| type_name(*known) == kind)
-            .ok_or_else(|| Error::Unsupported {
+        let known = [Type::UnstructuredGrid, Type::PolyData].into_iter().find(|known| known.name() == kind);
+        self.grid.kind = known.ok_or_else(|| Error::Unsupported {
             what: format!("{} is a VTK file of type '{}'", self.grid.file, shortened(&kind)),
             help: "save it as one file of type UnstructuredGrid (.vtu) or PolyData (.vtp)".into(),
         })?;
@@ -288,7 +286,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
 
     fn finish(self) -> Result<Grid<'a>> {
         if self.grid.pieces.is_empty() {
-            let what = format!("no {} with a piece in it", type_name(self.grid.kind));
+            let what = format!("no {} with a piece in it", self.grid.kind.name());
             return Err(self.error(&what, "check that the program that wrote it had finished"));
         }
         let grid = self.grid;
@@ -329,12 +327,5 @@ impl<'a, R: BufRead> Tags<'a, R> {
 
     fn error(&self, what: &str, help: &str) -> Error {
         Place::byte(self.grid.file, self.byte).error(what, help)
-    }
-}
-
-fn type_name(kind: Type) -> &'static str {
-    match kind {
-        Type::UnstructuredGrid => "UnstructuredGrid",
-        Type::PolyData => "PolyData",
     }
 }

@@ -3,11 +3,11 @@
 
 use super::cells::types;
 use crate::codec::Number;
-use crate::document::distinct_names;
+use crate::document::{distinct_names, labels};
 use crate::{Field, Fields};
 use std::io::{self, Write};
 use std::ops::Range;
-use voronaut::mesh::{Mesh, SolutionValues};
+use voronaut::mesh::Mesh;
 
 type WriteOnce<'a> = dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a;
 
@@ -145,11 +145,6 @@ fn connections<'a>(cells: impl Iterator<Item = &'a [u32]> + Clone + 'a) -> Vec<A
     vec![Array::new("connectivity", 1, vertices), Array::new("offsets", 1, ends)]
 }
 
-/// So many labels, 0 where there are none.
-pub(crate) fn labels(labels: &[i32], count: usize) -> impl Iterator<Item = i32> + Clone {
-    labels.iter().copied().chain(std::iter::repeat(0)).take(count)
-}
-
 /// Which cells come first.
 #[derive(Clone, Copy)]
 pub(super) enum First {
@@ -175,7 +170,7 @@ fn point_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool) -> Vec<A
     let count = mesh.points.len();
     let marked = [("corner", &mesh.corners), ("required", &mesh.required_points)];
     let marked = marked.map(|(name, marked)| (name, marked.iter().map(|&i| i as usize).collect()));
-    let label = Array::new("label", 1, labels(&mesh.point_labels, count));
+    let label = Array::new("label", 1, labels(&mesh.point_labels).take(count));
     let fields = field_arrays(fields, is_planar, (0..count).map(Some));
     std::iter::once(label).chain(mark_arrays(marked, count)).chain(fields).collect()
 }
@@ -217,10 +212,9 @@ fn field_arrays<'a>(
     let names =
         distinct_names(fields.iter().map(|field| field.name.clone()), &["label", "corner", "required", "ridge"]);
     fields.iter().zip(names).map(move |(field, name)| {
-        let (values, width) = (&field.values, width(&field.values, is_planar));
-        let row = move |entry: Option<usize>| {
-            (0..width).map(move |k| entry.map_or(f64::NAN, |entry| number(values, entry, k)))
-        };
+        let width = field.width(is_planar);
+        let row =
+            move |entry: Option<usize>| (0..width).map(move |k| entry.map_or(f64::NAN, |entry| field.number(entry, k)));
         Array::new(&name, width, entries.clone().flat_map(row))
     })
 }
@@ -244,26 +238,4 @@ impl Order {
             if triangles.contains(&i) { Cell::Triangle(i - triangles.start) } else { Cell::Edge(i - edges.start) }
         })
     }
-}
-
-/// Numbers of an entry in the file: tensors are whole matrices, and vectors of a plane get a third coordinate, for VTK has but
-/// vectors of three.
-fn width(values: &SolutionValues, is_planar: bool) -> usize {
-    match values {
-        SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => 9,
-        SolutionValues::Vector { components: 2, .. } if is_planar => 3,
-        others => others.components(),
-    }
-}
-
-/// Number `k` of entry `i` in the file.
-fn number(values: &SolutionValues, i: usize, k: usize) -> f64 {
-    const IN_SPACE: [usize; 9] = [0, 1, 3, 1, 2, 4, 3, 4, 5];
-    const IN_PLANE: [usize; 9] = [0, 1, 3, 1, 2, 3, 3, 3, 3];
-    let place = match values {
-        SolutionValues::Tensor(_) => IN_PLANE[k],
-        SolutionValues::Tensor3(_) => IN_SPACE[k],
-        _ => k,
-    };
-    values.row(i).get(place).copied().unwrap_or(0.0)
 }
