@@ -3,7 +3,7 @@
 use super::Document;
 use super::codec::{At, Largest, Place, Row, Shortest, Source, Word};
 use super::cutting::Polygons;
-use super::document::labelled;
+use super::document::{labelled, labels};
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Write};
 use voronaut::Result;
@@ -65,16 +65,13 @@ pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "v {} {} {}", Shortest(*x), Shortest(*y), Shortest(*z))?;
     }
     // One group for each label: many programs make a part of each group they read.
-    let label = |&i: &usize| mesh.triangle_labels.get(i).copied().unwrap_or(0);
-    let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
-    order.sort_by_key(label);
-    let mut group = None;
-    for i in order {
-        if group.replace(label(&i)) != Some(label(&i)) {
-            writeln!(out, "g region_{}", label(&i))?;
+    let mut sorted: Vec<(i32, [u32; 3])> = labels(&mesh.triangle_labels).zip(mesh.triangles.iter().copied()).collect();
+    sorted.sort_by_key(|&(label, _)| label);
+    for group in sorted.chunk_by(|(one, _), (other, _)| one == other) {
+        writeln!(out, "g region_{}", group[0].0)?;
+        for [a, b, c] in group.iter().map(|(_, triangle)| triangle.map(|v| u64::from(v) + 1)) {
+            writeln!(out, "f {a} {b} {c}")?;
         }
-        let [a, b, c] = mesh.triangles[i].map(|v| u64::from(v) + 1);
-        writeln!(out, "f {a} {b} {c}")?;
     }
     if !mesh.edges.is_empty() {
         out.write_all(b"g edges\n")?;

@@ -7,7 +7,8 @@ use std::ops::Range;
 use std::str::FromStr;
 use voronaut::{Error, Result};
 
-/// A file, as far as it is read. It is text until [`Source::be_binary`] is called. Only a line and a buffer of it are in memory.
+/// A file, as far as it is read. It is text until [`Source::be_binary`] is called, and lines can be read of it after that, too: some
+/// formats have both. Only a line and a buffer of it are in memory.
 pub(crate) struct Source<'a> {
     from: Box<dyn BufRead + 'a>,
     file: &'a str,
@@ -95,7 +96,7 @@ impl<'a> Source<'a> {
         self.from.fill_buf().map_err(|source| Error::Io { path: self.file.into(), source })
     }
 
-    /// Whether nothing follows but blanks and comments, or in a binary file nothing at all.
+    /// Whether nothing follows but blanks and comments, or in a binary file nothing at all. What follows in a text is read.
     ///
     /// # Errors
     /// As of [`Source::next_row`].
@@ -245,26 +246,17 @@ impl<'a> Source<'a> {
         if found < count { Err(self.cut_off(at)) } else { Ok(()) }
     }
 
-    /// So many bytes.
-    ///
-    /// # Errors
-    /// As of [`Source::skip`].
-    pub(crate) fn bytes(&mut self, to: &mut [u8], at: At<'_>) -> Result<()> {
-        match self.from.read_exact(to) {
+    fn bits(&mut self, order: Order, kind: Kind, at: At<'_>) -> Result<u64> {
+        let mut found = [0; 8];
+        let bytes = &mut found[..kind.size()];
+        match self.from.read_exact(bytes) {
             Ok(()) => {
-                self.byte += to.len() as u64;
-                Ok(())
+                self.byte += bytes.len() as u64;
+                Ok(order.bits(bytes))
             }
             Err(source) if source.kind() == ErrorKind::UnexpectedEof => Err(self.cut_off(at)),
             Err(source) => Err(Error::Io { path: self.file.into(), source }),
         }
-    }
-
-    fn bits(&mut self, order: Order, kind: Kind, at: At<'_>) -> Result<u64> {
-        let mut found = [0; 8];
-        let bytes = &mut found[..kind.size()];
-        self.bytes(bytes, at)?;
-        Ok(order.bits(bytes))
     }
 
     /// Reads on to the next word, and whether there is one.

@@ -20,14 +20,11 @@ impl Reader {
         if head.rows == 0 {
             return Ok(());
         }
-        let found = read_rows(self, section, &head, from)?;
+        let (numbers, mut rows) = read_rows(self, section, &head, from)?;
         let on_nodes = section == "NodeData";
-        let vertices = 0..self.mesh.points.len() as u32;
-        let rows: Vec<Option<u32>> = if on_nodes {
-            vertices.map(|v| found.row(v)).collect()
-        } else {
-            self.triangle_elements.iter().map(|&element| found.row(element)).collect()
-        };
+        if !on_nodes {
+            rows = self.triangle_elements.iter().map(|&element| rows[element as usize]).collect();
+        }
         if rows.iter().all(Option::is_none) {
             return Ok(());
         }
@@ -42,7 +39,11 @@ impl Reader {
             let what = format!("{section} '{}' has values on {} of {} vertices", head.name, head.rows, rows.len());
             return Err(start.error(what, "save values everywhere, or remove vertices that no element uses"));
         }
-        let numbers = rows.into_iter().flat_map(|row| found.values(row, head.components)).collect();
+        let zeros = vec![0.0; head.components];
+        let values = |row: Option<u32>| {
+            row.map_or(zeros.as_slice(), |row| &numbers[row as usize * zeros.len()..][..zeros.len()])
+        };
+        let numbers = rows.into_iter().flat_map(values).copied().collect();
         let values = SolutionValues::in_space(numbers, head.components, self.mesh.is_planar());
         let fields = if on_nodes { &mut self.fields.vertices } else { &mut self.fields.triangles };
         let numbered = |n| format!("{}_{n}", head.name);
@@ -65,26 +66,8 @@ struct Head {
     rows: u64,
 }
 
-/// The rows of a section.
-struct Rows {
-    numbers: Vec<f64>,
-    /// The row of each node or element; [`NONE`] where there is none.
-    of: Vec<u32>,
-}
-
-const NONE: u32 = u32::MAX;
-
-impl Rows {
-    fn row(&self, entry: u32) -> Option<u32> {
-        let row = *self.of.get(entry as usize)?;
-        (row != NONE).then_some(row)
-    }
-
-    /// The numbers of a row, zeros where there is none.
-    fn values(&self, row: Option<u32>, components: usize) -> impl Iterator<Item = f64> {
-        (0..components).map(move |i| row.map_or(0.0, |row| self.numbers[row as usize * components + i]))
-    }
-}
+/// The numbers of all rows of a section, and the row of each node or element, where there is one.
+type Rows = (Vec<f64>, Vec<Option<u32>>);
 
 fn read_head(from: &mut Blocks<'_>, section: &str) -> Result<Head> {
     /// Gmsh's own are 1, 3 and 9.
@@ -125,7 +108,7 @@ fn read_head(from: &mut Blocks<'_>, section: &str) -> Result<Head> {
 fn read_rows(reader: &Reader, section: &str, head: &Head, from: &mut Blocks<'_>) -> Result<Rows> {
     let of = if section == "NodeData" { "node" } else { "element" };
     let tags = if section == "NodeData" { &reader.nodes } else { &reader.elements };
-    let mut found = Rows { numbers: Vec::new(), of: vec![NONE; tags.len()] };
+    let (mut numbers, mut rows) = (Vec::new(), vec![None; tags.len()]);
     for at in At::rows(section, head.rows) {
         let source = &mut from.source;
         // Of 32 bits in all versions.
@@ -134,14 +117,14 @@ fn read_rows(reader: &Reader, section: &str, head: &Head, from: &mut Blocks<'_>)
             let what = format!("{of} {tag} does not exist ({at})");
             return Err(source.error(what, format!("check the tag, and that the {of}s are all there")));
         };
-        if std::mem::replace(&mut found.of[entry as usize], (at.row - 1) as u32) != NONE {
+        if rows[entry as usize].replace((at.row - 1) as u32).is_some() {
             return Err(source.error(format!("{of} {tag} has two values ({at})"), "remove one of them"));
         }
         for _ in 0..head.components {
-            found.numbers.push(source.number(REAL, at)?);
+            numbers.push(source.number(REAL, at)?);
         }
     }
-    Ok(found)
+    Ok((numbers, rows))
 }
 
 /// On how many triangles, or vertices of triangles, there is no value.

@@ -184,33 +184,24 @@ impl Reader {
         if kind.solid().is_some() {
             return self.volumes.label(index, label);
         }
-        let all_are_corners = !self.groups.have(Mark::Corner);
         let mesh = &mut self.mesh;
-        let mark = |list: &mut Vec<u32>, mark| {
-            if marks.contains(mark) {
-                list.push(index);
-            }
+        let (labels, count) = match kind.code {
+            POINT => (&mut mesh.point_labels, 1),
+            EDGE => (&mut mesh.edge_labels, 1),
+            _ => (&mut mesh.triangle_labels, if kind.code == QUADRANGLE { 2 } else { 1 }),
         };
-        match kind.code {
-            POINT => {
-                mesh.point_labels[index as usize] = label;
-                mark(&mut mesh.corners, Mark::Corner);
-                mark(&mut mesh.required_points, Mark::RequiredVertex);
-                if all_are_corners {
-                    mesh.corners.push(index);
-                }
-            }
-            EDGE => {
-                mesh.edge_labels[index as usize] = label;
-                mark(&mut mesh.ridges, Mark::Ridge);
-                mark(&mut mesh.required_edges, Mark::RequiredEdge);
-            }
-            _ => {
-                let count = if kind.code == QUADRANGLE { 2 } else { 1 };
-                mesh.triangle_labels[index as usize..][..count].fill(label);
-                if marks.contains(Mark::RequiredTriangle) {
-                    mesh.required_triangles.extend(index..index + count as u32);
-                }
+        labels[index as usize..][..count as usize].fill(label);
+        // All points are, where no group says which.
+        let is_corner = kind.code == POINT && !self.groups.have(Mark::Corner);
+        for (mark, list) in [
+            (Mark::Corner, &mut mesh.corners),
+            (Mark::RequiredVertex, &mut mesh.required_points),
+            (Mark::Ridge, &mut mesh.ridges),
+            (Mark::RequiredEdge, &mut mesh.required_edges),
+            (Mark::RequiredTriangle, &mut mesh.required_triangles),
+        ] {
+            if marks.contains(mark) || is_corner && mark == Mark::Corner {
+                list.extend(index..index + count);
             }
         }
     }

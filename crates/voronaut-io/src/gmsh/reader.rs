@@ -9,8 +9,8 @@ use crate::codec::At;
 use crate::volumes::Volumes;
 use crate::{Document, Fields};
 use std::collections::BTreeMap;
-use voronaut::mesh::Mesh;
 use voronaut::Result;
+use voronaut::mesh::Mesh;
 
 /// What a file holds, as far as it is read.
 #[derive(Default)]

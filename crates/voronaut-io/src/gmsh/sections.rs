@@ -18,16 +18,16 @@ pub(super) const REAL: Kind = Kind::Float(8);
 /// [`Error::Parse`](voronaut::Error::Parse) where it is none in either order, or not there.
 pub(super) fn read_one(source: &mut Source<'_>) -> Result<()> {
     source.be_binary(Order::Little);
-    let (place, mut one) = (source.place(), [0; 4]);
-    source.bytes(&mut one, At::head("MeshFormat"))?;
-    source.be_binary(match one {
-        [1, 0, 0, 0] => Order::Little,
-        [0, 0, 0, 1] => Order::Big,
-        _ => {
-            let what = format!("the four bytes {one:?} are not the number 1 in either order");
+    let place = source.place();
+    let one: i32 = source.whole(INT, At::head("MeshFormat"))?;
+    match one.to_le_bytes() {
+        [1, 0, 0, 0] => {}
+        [0, 0, 0, 1] => source.be_binary(Order::Big),
+        bytes => {
+            let what = format!("the four bytes {bytes:?} are not the number 1 in either order");
             return Err(place.error(what, "the file is damaged: write it again"));
         }
-    });
+    }
     Ok(())
 }
 

@@ -35,7 +35,7 @@ pub(super) fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, 
 struct Plan<'a> {
     mesh: &'a Mesh,
     parts: Vec<Part>,
-    groups: [Numbering; 3],
+    groups: Vec<Numbering>,
 }
 
 /// The elements of an entity: those of one dimension with the same label and marks.
@@ -59,24 +59,18 @@ impl<'a> Plan<'a> {
         let mut points = sort(mesh.points.len(), labels(&mesh.point_labels), &marked);
         // Vertices without label and marks need no elements.
         points.remove(&(0, Marks::default()));
-        let sorted = [triangles, edges, points];
-        let mut groups = [2, 1, 0].map(|dimension| {
-            Numbering::new(dimension, sorted[2 - usize::from(dimension)].keys().map(|&(label, _)| label))
-        });
-        let mut parts: Vec<Part> = Vec::new();
-        for (sorted, numbering) in sorted.into_iter().zip(&groups) {
+        let (mut parts, mut groups): (Vec<Part>, Vec<Numbering>) = (Vec::new(), Vec::new());
+        for (dimension, sorted) in [(2, triangles), (1, edges), (0, points)] {
+            let mut numbering = Numbering::new(dimension, sorted.keys().map(|&(label, _)| label));
+            let first = parts.len();
             for (entity, ((label, marks), elements)) in (1..).zip(sorted) {
-                let groups = numbering.tags(label, marks);
-                parts.push(Part { dimension: numbering.dimension(), entity, groups, elements });
+                parts.push(Part { dimension, entity, groups: numbering.tags(label, marks), elements });
             }
-        }
-        for numbering in &mut groups {
-            let of = |part: &&Part| part.dimension == numbering.dimension();
-            let used: BTreeSet<i32> = parts.iter().filter(of).flat_map(|part| part.groups.iter().copied()).collect();
+            let used: BTreeSet<i32> = parts[first..].iter().flat_map(|part| part.groups.iter().copied()).collect();
             // Where points are no corners the group of corners is there to say so, even if it is empty.
-            let is_point = numbering.dimension() == 0 && !used.is_empty();
-            let corners = numbering.mark(Mark::Corner).filter(|_| is_point);
+            let corners = numbering.mark(Mark::Corner).filter(|_| !used.is_empty());
             numbering.keep(|tag| used.contains(&tag) || corners == Some(tag));
+            groups.push(numbering);
         }
         Self { mesh, parts, groups }
     }
@@ -128,15 +122,11 @@ impl<'a> Plan<'a> {
     /// The smallest box around the elements of an entity.
     fn bounds(&self, part: &Part) -> [[f64; 3]; 2] {
         let vertices = || part.elements.iter().flat_map(|element| self.nodes(part.dimension, element));
-        let position = |&v: &u32| self.mesh.points[v as usize];
-        let first = vertices().next().map(position).unwrap_or_default();
-        let [mut lower, mut upper] = [first; 2];
-        for point in vertices().map(position) {
-            for i in 0..3 {
-                (lower[i], upper[i]) = (lower[i].min(point[i]), upper[i].max(point[i]));
-            }
-        }
-        [lower, upper]
+        let extreme = |of: fn(f64, f64) -> f64| {
+            let points = vertices().map(|&v| self.mesh.points[v as usize]);
+            points.reduce(|a, b| [0, 1, 2].map(|i| of(a[i], b[i]))).unwrap_or_default()
+        };
+        [extreme(f64::min), extreme(f64::max)]
     }
 
     fn write_nodes_4(&self, sink: &mut Sink<'_>) -> io::Result<()> {

@@ -110,10 +110,7 @@ impl Unsorted<'_> {
 
 /// The fields of all pieces, one behind the other.
 #[derive(Default)]
-pub(super) struct Joined<'a> {
-    fields: Vec<Unsorted<'a>>,
-    is_begun: bool,
-}
+pub(super) struct Joined<'a>(Option<Vec<Unsorted<'a>>>);
 
 impl<'a> Joined<'a> {
     /// Appends those of a piece that is not empty.
@@ -122,13 +119,13 @@ impl<'a> Joined<'a> {
     /// [`Error::Parse`](voronaut::Error::Parse) where pieces differ in what they have.
     pub(super) fn append(&mut self, fields: Vec<Unsorted<'a>>) -> Result<()> {
         const HELP: &str = "give all pieces the same arrays";
-        if !std::mem::replace(&mut self.is_begun, true) {
-            self.fields = fields;
+        let Some(known) = &mut self.0 else {
+            self.0 = Some(fields);
             return Ok(());
-        }
+        };
         let mut found: HashMap<String, Unsorted<'_>> =
             fields.into_iter().map(|field| (field.array.name.clone(), field)).collect();
-        for field in &mut self.fields {
+        for field in known {
             let same = found.remove(&field.array.name).filter(|same| same.components == field.components);
             let Some(same) = same else {
                 return Err(field.array.error("is not in all pieces, or not with as many components", HELP));
@@ -146,6 +143,6 @@ impl<'a> Joined<'a> {
         let values = |field: Unsorted<'_>| SolutionValues::in_space(field.numbers, field.components, is_planar);
         let named =
             |mut field: Unsorted<'_>| Field { name: std::mem::take(&mut field.array.name), values: values(field) };
-        self.fields.into_iter().map(named).collect()
+        self.0.into_iter().flatten().map(named).collect()
     }
 }

@@ -42,11 +42,7 @@ enum Element {
 }
 
 /// An array whose element is open.
-struct Open<'a> {
-    section: Section,
-    format: Format,
-    array: Array<'a>,
-}
+type Open<'a> = (Section, Format, Array<'a>);
 
 #[derive(Clone, Copy)]
 enum Format {
@@ -101,8 +97,8 @@ impl<'a, R: BufRead> Tags<'a, R> {
             return Err(self.no_vtk());
         }
         if self.open.last() == Some(&Element::Array) {
-            if let Some(open) = self.array.as_mut().filter(|_| self.text.is_empty()) {
-                open.array.byte = self.byte;
+            if let Some((.., array)) = self.array.as_mut().filter(|_| self.text.is_empty()) {
+                array.byte = self.byte;
             }
             self.text.push_str(text);
         }
@@ -205,17 +201,13 @@ impl<'a, R: BufRead> Tags<'a, R> {
             })?),
         };
         let format = self.format(&name, tag)?;
-        if self.is_empty(section) && matches!(format, Format::Appended(_)) {
+        let is_empty = self.grid.pieces.last().is_none_or(|piece| piece.count(section) == 0);
+        if is_empty && matches!(format, Format::Appended(_)) {
             return Ok(None);
         }
         let (file, order, tag, stored) = (self.grid.file, self.grid.layout.order, self.byte, Stored::Plain(Vec::new()));
         let array = Array { file, order, name, kind, components, tag, byte: tag, stored };
-        Ok(Some(Open { section, format, array }))
-    }
-
-    /// Whether the arrays of a section of the last piece have no entries.
-    fn is_empty(&self, section: Section) -> bool {
-        self.grid.pieces.last().is_none_or(|piece| piece.count(section) == 0)
+        Ok(Some((section, format, array)))
     }
 
     fn format(&self, array: &str, tag: &BytesStart<'_>) -> Result<Format> {
@@ -248,8 +240,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
         if self.open.pop() != Some(Element::Array) {
             return Ok(());
         }
-        let (Some(Open { section, format, mut array }), Some(piece)) = (self.array.take(), self.grid.pieces.last_mut())
-        else {
+        let (Some((section, format, mut array)), Some(piece)) = (self.array.take(), self.grid.pieces.last_mut()) else {
             return Ok(());
         };
         let text = std::mem::take(&mut self.text);
@@ -289,11 +280,10 @@ impl<'a, R: BufRead> Tags<'a, R> {
             let what = format!("no {} with a piece in it", self.grid.kind.name());
             return Err(self.error(&what, "check that the program that wrote it had finished"));
         }
-        let grid = self.grid;
-        if let Some((_, _, array)) = grid.pieces.iter().flat_map(|piece| &piece.appended).next() {
+        if let Some((_, _, array)) = self.grid.pieces.iter().flat_map(|piece| &piece.appended).next() {
             return Err(array.error("is in a section AppendedData, which is not there", "the file is cut off"));
         }
-        Ok(grid)
+        Ok(self.grid)
     }
 
     /// The value of an attribute.

@@ -6,7 +6,6 @@ use crate::codec::Number;
 use crate::document::{distinct_names, labels};
 use crate::{Field, Fields};
 use std::io::{self, Write};
-use std::ops::Range;
 use voronaut::mesh::Mesh;
 
 type WriteOnce<'a> = dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a;
@@ -154,15 +153,10 @@ pub(super) enum First {
 
 /// A mesh with all it holds, and fields; its edges as lines.
 pub(super) fn grid<'a>(mesh: &'a Mesh, fields: &'a Fields, first: First) -> Grid<'a> {
-    let (triangles, edges) = (mesh.triangles.len(), mesh.edges.len());
-    let order = match first {
-        First::Triangles => Order { triangles: 0..triangles, edges: triangles..triangles + edges },
-        First::Lines => Order { triangles: edges..edges + triangles, edges: 0..edges },
-    };
     let lines = mesh.edges.iter().map(<[u32; 2]>::as_slice).collect();
     let is_planar = mesh.is_planar();
     let point_data = point_data(mesh, &fields.vertices, is_planar);
-    let cell_data = cell_data(mesh, &fields.triangles, is_planar, &order);
+    let cell_data = cell_data(mesh, &fields.triangles, is_planar, first);
     Grid { points: &mesh.points, triangles: &mesh.triangles, lines, line: types::LINE, point_data, cell_data }
 }
 
@@ -175,18 +169,25 @@ fn point_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool) -> Vec<A
     std::iter::once(label).chain(mark_arrays(marked, count)).chain(fields).collect()
 }
 
-fn cell_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool, order: &Order) -> Vec<Array<'a>> {
+fn cell_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool, first: First) -> Vec<Array<'a>> {
+    let (triangles, edges) = (mesh.triangles.len(), mesh.edges.len());
+    let (first_triangle, first_edge) = match first {
+        First::Triangles => (0, triangles),
+        First::Lines => (edges, 0),
+    };
+    let count = triangles + edges;
+    // The triangle that each cell is, or else none.
+    let triangles = (0..count).map(move |cell| cell.checked_sub(first_triangle).filter(|&i| i < triangles));
     let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0);
-    let labels = order.cells().map(move |cell| match cell {
-        Cell::Triangle(i) => label(&mesh.triangle_labels, i),
-        Cell::Edge(i) => label(&mesh.edge_labels, i),
+    let labels = triangles.clone().enumerate().map(move |(cell, triangle)| match triangle {
+        Some(i) => label(&mesh.triangle_labels, i),
+        None => label(&mesh.edge_labels, cell - first_edge),
     });
-    let triangles = order.cells().map(|cell| if let Cell::Triangle(i) = cell { Some(i) } else { None });
-    let required = mesh.required_triangles.iter().map(|&i| order.triangles.start + i as usize);
-    let of_edges = |marked: &[u32]| marked.iter().map(|&i| order.edges.start + i as usize).collect::<Vec<_>>();
+    let required = mesh.required_triangles.iter().map(|&i| first_triangle + i as usize);
+    let of_edges = |marked: &[u32]| marked.iter().map(|&i| first_edge + i as usize).collect::<Vec<_>>();
     let required = required.chain(of_edges(&mesh.required_edges)).collect();
     let marked = [("required", required), ("ridge", of_edges(&mesh.ridges))];
-    let marks = mark_arrays(marked, order.cells().count());
+    let marks = mark_arrays(marked, count);
     let fields = field_arrays(fields, is_planar, triangles);
     std::iter::once(Array::new("label", 1, labels)).chain(marks).chain(fields).collect()
 }
@@ -217,25 +218,4 @@ fn field_arrays<'a>(
             move |entry: Option<usize>| (0..width).map(move |k| entry.map_or(f64::NAN, |entry| field.number(entry, k)));
         Array::new(&name, width, entries.clone().flat_map(row))
     })
-}
-
-/// Where among the cells the triangles are, and where the edges.
-struct Order {
-    triangles: Range<usize>,
-    edges: Range<usize>,
-}
-
-#[derive(Clone, Copy)]
-enum Cell {
-    Triangle(usize),
-    Edge(usize),
-}
-
-impl Order {
-    fn cells(&self) -> impl Iterator<Item = Cell> + Clone + use<> {
-        let (triangles, edges) = (self.triangles.clone(), self.edges.clone());
-        (0..triangles.end.max(edges.end)).map(move |i| {
-            if triangles.contains(&i) { Cell::Triangle(i - triangles.start) } else { Cell::Edge(i - edges.start) }
-        })
-    }
 }
