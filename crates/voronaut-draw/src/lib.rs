@@ -22,9 +22,9 @@ mod unmet;
 pub use cells::Layers;
 pub use histogram::histograms_svg;
 #[cfg(feature = "png")]
-pub use png::render_png;
+pub(crate) use png::render_png;
 pub use protection::Protection;
-pub use scene::{Fill, Scene, SceneLine, SceneTriangle, Stroke, View, draw_surface};
+pub use scene::{Fill, Scene, Stroke, View, draw_surface};
 pub use svg::{Picture, Shade, svg, svg_with};
 
 use std::path::Path;

@@ -14,7 +14,7 @@ const LIMIT: f64 = 1e8;
 ///
 /// # Errors
 /// [`Error::Parse`] where the text is no SVG, [`Error::Limit`] for more than 10^8 pixels.
-pub fn render_png(svg: &str) -> Result<Vec<u8>> {
+pub(crate) fn render_png(svg: &str) -> Result<Vec<u8>> {
     let fault = |what: String| Error::parse("picture", what, "write the picture as .svg");
     let images = Arc::default();
     let options = Options { image_href_resolver: resolver(&images), ..Options::default() };

@@ -41,7 +41,7 @@ pub fn read_pslg(spec: &str) -> Result<Pslg> {
 }
 
 /// What users write for a planar domain, for messages.
-pub const DOMAINS: &str = "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly, .mesh, .meshb, .msh, .vtu or .vtp";
+pub(crate) const DOMAINS: &str = "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly, .mesh, .meshb, .msh, .vtu or .vtp";
 
 #[cfg(test)]
 mod tests {

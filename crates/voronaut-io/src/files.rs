@@ -43,7 +43,7 @@ const ENDINGS: [(&str, Format); 9] = [
 ];
 
 /// How names of mesh files end, for messages.
-pub const MESH_ENDINGS: &str = ".mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl";
+pub(crate) const MESH_ENDINGS: &str = ".mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl";
 
 impl Format {
     /// The format a file name asks for by its ending, in upper or lower case; `None` of other endings.

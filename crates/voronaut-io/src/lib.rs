@@ -35,13 +35,15 @@ pub mod stl;
 pub mod vtk;
 
 pub use document::{Document, Field, Fields};
-pub use domain::{DOMAINS, read_domain, read_pslg};
-pub use files::{Format, MESH_ENDINGS, open, read, read_solution, read_solutions, read_text};
+pub(crate) use domain::DOMAINS;
+pub use domain::{read_domain, read_pslg};
+pub use files::{Format, open, read, read_solution, read_solutions, read_text};
 pub use given::Given;
 pub use losses::lost_in_outline;
 pub use metric::{MetricFiles, MetricSource, read_metric, surface_metric};
 pub use report::{Report, Seconds, Strayed, peak_memory_bytes};
-pub use surface::{SURFACES, of_document, read_surface};
+pub(crate) use surface::SURFACES;
+pub use surface::{of_document, read_surface};
 pub use whole::{demand_directory, place, write, write_with};
 pub use write::{
     demand_diagram, write_diagram, write_document, write_mesh, write_realisation, write_solution, write_solutions,

@@ -59,7 +59,7 @@ const FREE_FORM: [(&str, &str); 5] = [
 ///
 /// # Errors
 /// What `out` says.
-pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(b"# voronaut\n")?;
     for [x, y, z] in &mesh.points {
         writeln!(out, "v {} {} {}", Shortest(*x), Shortest(*y), Shortest(*z))?;

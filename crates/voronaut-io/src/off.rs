@@ -40,7 +40,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
 ///
 /// # Errors
 /// What `out` says.
-pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     let mut sink = Sink::new(Form::Text, out);
     sink.line(format_args!("OFF\n{} {} 0", mesh.points.len(), mesh.triangles.len()))?;
     mesh.points.iter().try_for_each(|point| sink.row(*point))?;

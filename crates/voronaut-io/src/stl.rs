@@ -31,7 +31,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
 ///
 /// # Errors
 /// What `out` says; [`io::ErrorKind::InvalidInput`] of coordinates beyond 3e38.
-pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     write!(out, "{:HEAD$}", "voronaut")?;
     let mut sink = Sink::new(Form::Binary, out);
     sink.put(mesh.triangles.len() as u32)?;

@@ -3,7 +3,7 @@
 //!
 //! Timings are read by people, never asserted; errors are, in `tests/geodesics`.
 
-#[path = "../tests/geodesics/cases.rs"]
+#[path = "../src/tests/geodesics/cases.rs"]
 mod cases;
 
 use cases::{Case, half_plane, turning};

@@ -4,11 +4,11 @@
 //! cargo run --release --example parts -- DIRECTORY
 //! ```
 //!
-//! They are what `tests/features` meshes; the table in `tests/parts/mod.rs` says what each of them is.
+//! They are what the tests of features mesh; the table in `src/tests/parts/mod.rs` says what each of them is.
 
 // The checker of features uses the rest.
 #[allow(dead_code, unused_imports)]
-#[path = "../tests/parts/mod.rs"]
+#[path = "../src/tests/parts/mod.rs"]
 mod parts;
 
 use std::path::Path;

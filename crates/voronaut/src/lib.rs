@@ -104,8 +104,13 @@ pub mod realisation;
 pub mod figures;
 pub mod recipe;
 
+// Cases that benchmarks share name the library.
+#[cfg(test)]
+extern crate self as voronaut;
 #[cfg(test)]
 mod test_cases;
+#[cfg(test)]
+mod tests;
 
 pub use error::{Error, Result};
 

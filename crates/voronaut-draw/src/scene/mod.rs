@@ -33,14 +33,14 @@ use voronaut::geometry::{Point3, Vector3};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// What hides and is hidden.
-    pub triangles: Vec<SceneTriangle>,
+    pub(crate) triangles: Vec<SceneTriangle>,
     /// Lines on the triangles or elsewhere; those of one point are dots.
-    pub lines: Vec<SceneLine>,
+    pub(crate) lines: Vec<SceneLine>,
 }
 
 /// A triangle of a scene. Its front is where its corners are counter-clockwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SceneTriangle {
+pub(crate) struct SceneTriangle {
     /// Where its corners are.
     pub corners: [Point3; 3],
     /// Unit normals at its corners, for a smooth shade; without them the triangle is flat.
@@ -74,7 +74,7 @@ pub enum Fill {
 
 /// A polyline of a scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SceneLine {
+pub(crate) struct SceneLine {
     /// Its points in order; a single one is a dot.
     pub points: Vec<Point3>,
     /// How it is drawn.

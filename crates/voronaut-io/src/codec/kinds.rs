@@ -14,7 +14,7 @@ pub enum Form {
 
 impl Form {
     /// That of a solution's file: binary if its name ends in `.solb`.
-    pub fn of_solution(path: &Path) -> Self {
+    pub(crate) fn of_solution(path: &Path) -> Self {
         let is_binary = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("solb"));
         if is_binary { Form::Binary } else { Form::Text }
     }

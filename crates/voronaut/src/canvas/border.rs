@@ -8,7 +8,7 @@ use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree, RTreeObject};
 
 /// The sides of a canvas's border, and the corners around which paths can bend.
-pub struct Border<'a> {
+pub(crate) struct Border<'a> {
     canvas: &'a Canvas,
     sides: RTree<Side>,
     corners: RTree<GeomWithData<[f64; 2], ()>>,
@@ -34,7 +34,7 @@ const ROUNDING: f64 = 1e-10;
 
 impl<'a> Border<'a> {
     /// The border of a canvas; work in proportion to its faces.
-    pub fn of(canvas: &'a Canvas) -> Self {
+    pub(crate) fn of(canvas: &'a Canvas) -> Self {
         let embedded = canvas.embedded();
         let topology = &embedded.topology;
         let borders = || topology.faces().flat_map(FaceId::half_edges).filter(|&h| topology.twin(h).is_none());

@@ -311,7 +311,7 @@ impl<'s> Draped<'s> {
     }
 
     /// The tangent plane at a vertex, of a surface of triangles that of the mean normal.
-    pub fn plane(&self, v: VertexId) -> TangentPlane {
+    pub(crate) fn plane(&self, v: VertexId) -> TangentPlane {
         TangentPlane::new(self.input.normal(&self.places[v.index()]))
     }
 
@@ -321,7 +321,7 @@ impl<'s> Draped<'s> {
     }
 
     /// Its metric.
-    pub fn metric(&self) -> &'s dyn SurfaceMetric {
+    pub(crate) fn metric(&self) -> &'s dyn SurfaceMetric {
         self.metric
     }
 
@@ -336,7 +336,7 @@ impl<'s> Draped<'s> {
     }
 
     /// Where a vertex is.
-    pub fn place(&self, v: VertexId) -> &Place {
+    pub(crate) fn place(&self, v: VertexId) -> &Place {
         &self.places[v.index()]
     }
 
@@ -346,7 +346,7 @@ impl<'s> Draped<'s> {
     }
 
     /// The metric at a vertex.
-    pub fn tensor(&self, v: VertexId) -> Tensor3 {
+    pub(crate) fn tensor(&self, v: VertexId) -> Tensor3 {
         self.tensors[v.index()]
     }
 

@@ -14,7 +14,7 @@ pub(crate) fn metric_area(topology: &Triangulation, f: FaceId) -> f64 {
 
 impl Draped<'_> {
     /// The metric area: the integral of sqrt(det M) over the surface.
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         self.topology.faces().map(|f| metric_area(&self.topology, f)).sum()
     }
 

@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn it_is_delaunay_with_as_many_vertices_as_asked_for() {
         let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
-        let canvas = Canvas::isotropic(&domain, &Shock { phi: 1.0, lambda: 0.6 }, 3000).unwrap();
+        let canvas = Canvas::new(Kind::Isotropic, &domain, &Shock { phi: 1.0, lambda: 0.6 }, 3000).unwrap();
         assert_eq!(canvas.vertex_count(), 3000);
         let mut planar = canvas.embedded().clone();
         let mut lawson = Lawson::default();
@@ -198,7 +198,7 @@ mod tests {
                 let x = p.x / scale;
                 Tensor::new(1.0 + 8.0 * x * x, 0.5, 1.0) * (1.0 / (scale * scale))
             };
-            Canvas::isotropic(&domain, &field, 800).unwrap()
+            Canvas::new(Kind::Isotropic, &domain, &field, 800).unwrap()
         };
         let (one, large) = (make(1.0), make(64.0));
         let scaled: Vec<Point> = one.embedded().positions.iter().map(|p| Point::new(64.0 * p.x, 64.0 * p.y)).collect();
@@ -221,7 +221,7 @@ mod tests {
     fn refining_an_isotropic_canvas_keeps_its_vertices_and_kind() {
         let domain = Domain::shape("rect:0,0,1,1").unwrap();
         let field = Uniform(Tensor::new(9.0, 0.0, 1.0));
-        let canvas = Canvas::isotropic(&domain, &field, 200).unwrap();
+        let canvas = Canvas::new(Kind::Isotropic, &domain, &field, 200).unwrap();
         let refined = canvas.refined(&field, &[VertexId(7)]).unwrap();
         assert!(refined.kind() == Kind::Isotropic && refined.vertex_count() > 201);
         assert_eq!(refined.embedded().positions[..200], canvas.embedded().positions[..]);

@@ -73,7 +73,7 @@ impl Canvas {
 
     /// The corners of the embedded face that holds a point, with its barycentric coordinates where they are not zero; `None`
     /// outside the domain.
-    pub fn weights(&self, p: Point) -> Option<Vec<(VertexId, f64)>> {
+    pub(crate) fn weights(&self, p: Point) -> Option<Vec<(VertexId, f64)>> {
         let f = match self.locate(p)? {
             Location::Vertex(v) => return Some(vec![(v, 1.0)]),
             Location::Face(f) => f,
@@ -88,7 +88,7 @@ impl Canvas {
 
     /// The vertices at the position of a vertex, in order: more than one where the domain touches itself in a point, one
     /// for each fan of faces.
-    pub fn copies(&self, v: VertexId) -> Vec<VertexId> {
+    pub(crate) fn copies(&self, v: VertexId) -> Vec<VertexId> {
         self.embedded.finder.copies.get(&key(self.position(v))).map_or_else(|| vec![v], Clone::clone)
     }
 

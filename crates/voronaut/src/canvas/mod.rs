@@ -26,7 +26,7 @@ mod steiner;
 mod surface_stars;
 mod way;
 
-pub use border::Border;
+pub(crate) use border::Border;
 pub use consistent::PickCounters;
 pub(crate) use consistent::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 pub use draped::Draped;
@@ -117,7 +117,7 @@ pub struct InPlane {
 
 impl<E> Canvas<E> {
     /// What distances travel on: vertices, faces, metric lengths.
-    pub fn topology(&self) -> &Triangulation {
+    pub(crate) fn topology(&self) -> &Triangulation {
         &self.topology
     }
 
@@ -127,17 +127,19 @@ impl<E> Canvas<E> {
     }
 
     /// The stars, if it is a star set.
-    pub fn stars(&self) -> Option<&StarSet> {
+    pub(crate) fn stars(&self) -> Option<&StarSet> {
         self.stars.as_ref()
     }
 
     /// Which canvas it is; one by [`Canvas::straight`] counts as intrinsic.
-    pub fn kind(&self) -> Kind {
+    #[cfg(test)]
+    pub(crate) fn kind(&self) -> Kind {
         self.kind
     }
 
     /// How the canvas came about.
-    pub fn counters(&self) -> &CanvasCounters {
+    #[cfg(test)]
+    pub(crate) fn counters(&self) -> &CanvasCounters {
         &self.counters
     }
 
@@ -164,7 +166,7 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub fn straight(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+    pub(crate) fn straight(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         let mut counters = CanvasCounters::default();
         let planar = refine::refine(domain.planar().clone(), field, vertices, &mut counters)?;
         Self::unflipped(renumbered(&planar), field, Kind::Intrinsic, counters)
@@ -179,19 +181,7 @@ impl Canvas {
         Self::from_planar(Kind::Intrinsic, planar, field, vertices)
     }
 
-    /// The isotropic canvas (RR-9103, section 6.2) with so many vertices: a Euclidean Delaunay triangulation, refined at the
-    /// circumcentre of the face whose circumradius is largest beside `isotropic_size` there. Its triangles are obtuse in the
-    /// metric, so that distances that need triangles travel on the intrinsic Delaunay triangulation of its vertices.
-    ///
-    /// It has more vertices only if the domain itself has, or where lengths had to be repaired.
-    ///
-    /// # Errors
-    /// As for [`Canvas::intrinsic`].
-    pub fn isotropic(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::new(Kind::Isotropic, domain, field, vertices)
-    }
-
-    /// [`Canvas::isotropic`] with as many vertices as it takes until no circumradius exceeds so many `isotropic_size`s
+    /// The isotropic one of [`Canvas::new`] with as many vertices as it takes until no circumradius exceeds so many `isotropic_size`s
     /// (at its circumcentre), but for faces that rounding or a small angle of the domain leaves no way to cut. The authors
     /// use 1.
     ///
@@ -204,22 +194,18 @@ impl Canvas {
         Self::measured(renumbered(&planar), field, Kind::Isotropic, counters)
     }
 
-    /// The star set (RR-9103, section 7) with so many vertices, even in the metric: its graph are the Delaunay stars of the
-    /// vertices, each in its vertex's own metric. Distances that need triangles travel on the intrinsic Delaunay
-    /// triangulation of the same vertices.
+    /// The canvas of a kind with so many vertices, even in the metric. It has more only if the domain itself has, or where
+    /// lengths had to be repaired.
     ///
-    /// It has more vertices only if the domain itself has, or where lengths had to be repaired.
+    /// - Intrinsic: as [`Canvas::intrinsic`].
+    /// - Isotropic (RR-9103, section 6.2): a Euclidean Delaunay triangulation, refined at the circumcentre of the face whose
+    ///   circumradius is largest beside `isotropic_size` there. Its triangles are obtuse in the metric, so that distances that
+    ///   need triangles travel on the intrinsic Delaunay triangulation of its vertices.
+    /// - Star set (RR-9103, section 7): its graph are the Delaunay stars of the vertices, each in its vertex's own metric.
+    ///   Distances that need triangles travel as on the isotropic one.
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub fn star_set(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::new(Kind::StarSet, domain, field, vertices)
-    }
-
-    /// The canvas of a kind, by [`Canvas::intrinsic`], [`Canvas::isotropic`] or [`Canvas::star_set`].
-    ///
-    /// # Errors
-    /// As for these.
     pub fn new(kind: Kind, domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         Self::from_planar(kind, domain.planar().clone(), field, vertices)
     }
@@ -244,7 +230,7 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub fn refined(&self, field: &dyn MetricField, around: &[VertexId]) -> Result<Self> {
+    pub(crate) fn refined(&self, field: &dyn MetricField, around: &[VertexId]) -> Result<Self> {
         let topology = &self.embedded.planar.topology;
         // At the border the last edge of a star is known only by the face before it.
         let edges = around.iter().flat_map(|&v| topology.star(v)).flat_map(|h| [h, h.prev()]);
@@ -284,13 +270,13 @@ impl Canvas {
     }
 
     /// The same vertices, triangulated in the plane.
-    pub fn embedded(&self) -> &Planar {
+    pub(crate) fn embedded(&self) -> &Planar {
         &self.embedded.planar
     }
 
     /// The vertices with their tensors and the edges of [`Canvas::embedded`], of a star set those of its stars, with lengths of
     /// geodesics, for methods that know no triangles. `field` is the one that the canvas was made with.
-    pub fn graph(&self, field: &dyn MetricField) -> Graph {
+    pub(crate) fn graph(&self, field: &dyn MetricField) -> Graph {
         let topology = &self.embedded.planar.topology;
         let tensors = self.embedded.planar.positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
         let of_edges = || {

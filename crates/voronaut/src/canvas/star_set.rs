@@ -84,7 +84,7 @@ impl StarSet {
     }
 
     /// The neighbours of every vertex, in order: those in its star and those in whose star it is.
-    pub fn neighbours(&self) -> Vec<Vec<u32>> {
+    pub(crate) fn neighbours(&self) -> Vec<Vec<u32>> {
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.stars.len()];
         for (v, star) in (0..).zip(&self.stars) {
             for u in star.iter().flat_map(|spoke| spoke.ends) {
@@ -100,12 +100,12 @@ impl StarSet {
     }
 
     /// The simplices of the star of a vertex, each by its other two vertices, counter-clockwise.
-    pub fn star(&self, v: VertexId) -> impl Iterator<Item = [VertexId; 2]> + '_ {
+    pub(crate) fn star(&self, v: VertexId) -> impl Iterator<Item = [VertexId; 2]> + '_ {
         self.stars[v.index()].iter().map(|spoke| spoke.ends)
     }
 
     /// The star set in numbers.
-    pub fn figures(&self) -> &StarFigures {
+    pub(crate) fn figures(&self) -> &StarFigures {
         &self.figures
     }
 }

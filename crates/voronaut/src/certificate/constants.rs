@@ -29,7 +29,7 @@ pub struct Figures {
 
 impl Figures {
     /// mu / epsilon.
-    pub fn lambda(&self) -> f64 {
+    pub(crate) fn lambda(&self) -> f64 {
         self.mu / self.epsilon
     }
 
@@ -63,7 +63,7 @@ impl Constants {
 
     /// The Euclidean length that is no longer than one of the metric, in any direction (Theorem 9.9). The report has
     /// the square root of the least eigenvalue where it is one over that of the greatest.
-    pub fn alpha(self, [small, large]: [f64; 2]) -> f64 {
+    pub(crate) fn alpha(self, [small, large]: [f64; 2]) -> f64 {
         match self {
             Constants::Corrected => 1.0 / large.sqrt(),
             Constants::Printed => small.sqrt(),
@@ -73,7 +73,7 @@ impl Constants {
     /// The sizing field, in the metric, that Theorem 9.10 asks of a canvas around a cell within whose surroundings
     /// tensors are distorted by no more than `psi`; with distances that are wrong by no more than `error` (section
     /// 9.4). `None` where no canvas is fine enough: the net must be better, or denser.
-    pub fn size(self, net: &Figures, psi: f64, error: f64) -> Option<f64> {
+    pub(crate) fn size(self, net: &Figures, psi: f64, error: f64) -> Option<f64> {
         let size = match self {
             Constants::Corrected => corrected_size(net, psi, error)?,
             Constants::Printed => printed_size(net, psi * (1.0 + error / net.epsilon))?,
@@ -103,7 +103,7 @@ impl Constants {
 
 /// The slack omega of squared distances (Lemma 5.5, erratum): d'(p)^2 - d'(q)^2 where the computed distance of p is no
 /// greater than that of q, and d(p) no more than epsilon + 2 `error`.
-pub fn slack(net: &Figures, psi: f64, error: f64) -> f64 {
+pub(crate) fn slack(net: &Figures, psi: f64, error: f64) -> f64 {
     let reach = net.epsilon + 2.0 * error;
     (psi.powi(2) - psi.powi(-2)) * reach.powi(2) + 4.0 * error * reach / psi.powi(2)
 }

@@ -33,7 +33,7 @@ pub struct Convexity {
 
 impl Convexity {
     /// Why short geodesic loops are not excluded.
-    pub fn doubt(&self) -> Option<String> {
+    pub(crate) fn doubt(&self) -> Option<String> {
         if self.holes > 0 {
             return Some(format!(
                 "the injectivity radius: geodesic loops around {} holes are not excluded",

@@ -9,7 +9,7 @@ const PLACES: usize = 48;
 
 /// psi: the metrics of two tensors measure no vector longer than this times what the other does. At least 1; infinite where
 /// one of them is no metric.
-pub fn distortion(g: Tensor, h: Tensor) -> f64 {
+pub(crate) fn distortion(g: Tensor, h: Tensor) -> f64 {
     let [u, v] = frame(g);
     let eigen = Tensor::new(h.dot(u, u), h.dot(u, v), h.dot(v, v)).eigen();
     let is_metric = eigen.small > 0.0 && eigen.large.is_finite();

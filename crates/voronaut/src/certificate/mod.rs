@@ -13,16 +13,15 @@ mod theorems;
 mod verdict;
 mod walk;
 
-pub use constants::{Constants, Figures, slack};
+pub use constants::{Constants, Figures};
 pub use convexity::Convexity;
 pub(crate) use coverage::Coverage;
-pub use distortion::distortion;
 pub(crate) use distortion::distortion_around;
 pub(crate) use sizing::{Area, sized_canvas};
 pub use sizing::{Cost, longest_edge};
 pub use theorems::{Evidence, verdicts};
 pub use verdict::{Condition, Outcome, Verdict};
-pub use walk::{Found, Walks, walk};
+pub use walk::{Found, Walks};
 
 use crate::diagram::Diagram;
 use crate::geodesic::{Fineness, Paths};
@@ -162,7 +161,7 @@ impl Certificate {
     }
 
     /// The verdict on a theorem, by its number.
-    pub fn verdict(&self, theorem: &str) -> Option<&Verdict> {
+    pub(crate) fn verdict(&self, theorem: &str) -> Option<&Verdict> {
         self.verdicts.iter().find(|verdict| verdict.theorem == theorem)
     }
 

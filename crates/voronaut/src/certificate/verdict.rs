@@ -32,14 +32,14 @@ pub struct Condition {
 
 impl Condition {
     /// `measured < limit`, both not negative.
-    pub fn below(what: &'static str, measured: f64, limit: f64) -> Self {
+    pub(crate) fn below(what: &'static str, measured: f64, limit: f64) -> Self {
         let factor = if measured == 0.0 && limit > 0.0 { 0.0 } else { measured / limit };
         let holds = measured < limit;
         Self { what, measured, limit, factor: if limit > 0.0 { factor } else { f64::INFINITY }, holds }
     }
 
     /// `measured > limit`, both not negative.
-    pub fn above(what: &'static str, measured: f64, limit: f64) -> Self {
+    pub(crate) fn above(what: &'static str, measured: f64, limit: f64) -> Self {
         let inverse = Self::below(what, limit, measured);
         Self { measured, limit, ..inverse }
     }
@@ -92,7 +92,7 @@ impl Verdict {
     }
 
     /// Whether the theorem's conclusion is guaranteed.
-    pub fn holds(&self) -> bool {
+    pub(crate) fn holds(&self) -> bool {
         self.outcome == Outcome::Holds
     }
 }

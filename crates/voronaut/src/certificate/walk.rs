@@ -58,7 +58,7 @@ pub struct Found {
 ///
 /// On an intrinsic canvas, whose faces are not those of the plane, the walk starts in the first face with three or else
 /// two of the colours around the corners of the plane's.
-pub fn walk(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<Found> {
+pub(crate) fn walk(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<Found> {
     let first = start(diagram, colours, at)?;
     let found = colours_of(diagram, first);
     let Some(&missing) = colours.iter().find(|colour| !found.contains(colour)) else {

@@ -47,7 +47,7 @@ impl<'a, G: Ground<'a>> Distances<'a, G> {
     }
 
     /// How they were computed.
-    pub fn method(&self) -> Method {
+    pub(crate) fn method(&self) -> Method {
         self.method
     }
 
@@ -57,7 +57,7 @@ impl<'a, G: Ground<'a>> Distances<'a, G> {
     }
 
     /// The vertex that a vertex has its distance from, where the method knows one: it is nearer.
-    pub fn parent(&self, v: VertexId) -> Option<VertexId> {
+    pub(crate) fn parent(&self, v: VertexId) -> Option<VertexId> {
         self.parents.get(v.index()).copied().flatten()
     }
 

@@ -32,7 +32,7 @@ impl<const N: usize> Near<N> {
 impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// The nerve of the cells with their borders drawn within canvas faces: exact on a flat canvas, where
     /// [`Diagram::nerve`] needs witnesses among whole faces. Distances are computed anew around every cell.
-    pub fn sharp_nerve(&self) -> Nerve {
+    pub(crate) fn sharp_nerve(&self) -> Nerve {
         let overlap = self.overlap();
         let topology = self.ground.topology();
         let faces: Vec<FaceId> = topology.faces().collect();

@@ -33,7 +33,6 @@ pub use distances::Distances;
 pub use ground::{Flat, Ground};
 pub use kind::Kind;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle};
-pub use passes::Passes;
 pub use paths::Paths;
 pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
 pub use surface_distances::SurfaceDistances;
@@ -93,16 +92,8 @@ impl<'a> Diagram<'a> {
     /// in one place as the domain has fans there, in order, each belongs to one fan. (Elsewhere a seed belongs to all.)
     ///
     /// # Errors
-    /// As for [`Diagram::new`].
-    pub fn of_vertices(canvas: &'a Canvas, field: &'a dyn MetricField, vertices: &[Point]) -> Result<Self> {
-        Self::of_vertices_by(canvas, field, vertices, Method::March)
-    }
-
-    /// [`Diagram::of_vertices`] by one of the methods.
-    ///
-    /// # Errors
     /// As for [`Diagram::by_method`].
-    pub(crate) fn of_vertices_by(
+    pub(crate) fn of_vertices(
         canvas: &'a Canvas,
         field: &'a dyn MetricField,
         vertices: &[Point],
@@ -130,7 +121,7 @@ impl<'a> Diagram<'a> {
     ///
     /// # Errors
     /// As for [`Diagram::new`].
-    pub fn with_solver(
+    pub(crate) fn with_solver(
         canvas: &'a Canvas,
         field: &'a dyn MetricField,
         seeds: &[Point],
@@ -144,7 +135,12 @@ impl<'a> Diagram<'a> {
     ///
     /// # Errors
     /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams.
-    pub fn by_method(canvas: &'a Canvas, field: &'a dyn MetricField, seeds: &[Point], method: Method) -> Result<Self> {
+    pub(crate) fn by_method(
+        canvas: &'a Canvas,
+        field: &'a dyn MetricField,
+        seeds: &[Point],
+        method: Method,
+    ) -> Result<Self> {
         let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Full)?;
         Ok(Self::from_starts(canvas, field, seeds, starts, solver(Flat { canvas, field }, method)?))
     }
@@ -191,7 +187,7 @@ impl<'a> Diagram<'a> {
     }
 
     /// The canvas.
-    pub fn canvas(&self) -> &'a Canvas {
+    pub(crate) fn canvas(&self) -> &'a Canvas {
         self.ground.canvas
     }
 
@@ -253,7 +249,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// Inserts a seed at a canvas vertex; returns its colour.
-    pub fn insert_at_vertex(&mut self, v: VertexId) -> u32 {
+    pub(crate) fn insert_at_vertex(&mut self, v: VertexId) -> u32 {
         self.insert_with(v, Care::Full)
     }
 
@@ -283,12 +279,12 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// Number of colours given so far, those of removed seeds among them.
-    pub fn colours(&self) -> usize {
+    pub(crate) fn colours(&self) -> usize {
         self.seeds.len()
     }
 
     /// Metric distance (that of the diagram's kind) from a canvas vertex to its seed; infinite where no seed reaches.
-    pub fn distance(&self, v: VertexId) -> f64 {
+    pub(crate) fn distance(&self, v: VertexId) -> f64 {
         self.label(v).distance
     }
 
@@ -299,7 +295,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// The canvas vertex that the distance came from, the nearer to the seed of two; `None` beside the seed.
-    pub fn parent(&self, v: VertexId) -> Option<VertexId> {
+    pub(crate) fn parent(&self, v: VertexId) -> Option<VertexId> {
         let topology = self.ground.topology();
         match self.label(v).support() {
             Support::Nothing | Support::Source => None,
@@ -316,17 +312,17 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     /// Colour, distance and support of a canvas vertex.
-    pub fn label(&self, v: VertexId) -> &Label {
+    pub(crate) fn label(&self, v: VertexId) -> &Label {
         self.propagation.label(v)
     }
 
     /// Work of the solver since the beginning.
-    pub fn counters(&self) -> &MarchCounters {
+    pub(crate) fn counters(&self) -> &MarchCounters {
         self.propagation.counters()
     }
 
     /// The canvas vertex farthest from its seed, and its distance: where farthest-point refinement puts the next seed.
-    pub fn farthest(&self) -> Option<(VertexId, f64)> {
+    pub(crate) fn farthest(&self) -> Option<(VertexId, f64)> {
         let vertices = (0..self.vertex_count() as u32).map(VertexId);
         vertices.map(|v| (v, self.distance(v))).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
     }

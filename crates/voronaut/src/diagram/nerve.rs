@@ -69,7 +69,10 @@ impl Nerve {
     }
 
     /// The sides of those triangles that a test picks, the smaller colour first; those of two such triangles twice.
-    pub fn sides<'a>(&'a self, pick: impl Fn(&NerveTriangle) -> bool + 'a) -> impl Iterator<Item = [u32; 2]> + 'a {
+    pub(crate) fn sides<'a>(
+        &'a self,
+        pick: impl Fn(&NerveTriangle) -> bool + 'a,
+    ) -> impl Iterator<Item = [u32; 2]> + 'a {
         let picked = self.triangles.iter().filter(move |t| pick(t)).map(|t| t.colours);
         picked.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).map(|[a, b]| [a.min(b), a.max(b)])
     }
@@ -84,7 +87,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// The triangles of the nerve as the report reads them off the canvas (Figure 7), with a witness each: a canvas simplex
     /// with vertices of three colours, which are turned and sorted as in [`Nerve::triangles`]. Of a star set they are the
     /// simplices of any star, which where stars disagree may exclude each other; else the faces.
-    pub fn witnesses_of_triangles(&self) -> Vec<([u32; 3], [VertexId; 3])> {
+    pub(crate) fn witnesses_of_triangles(&self) -> Vec<([u32; 3], [VertexId; 3])> {
         let coloured = |simplex| Some((self.three_colours(simplex)?, simplex));
         let mut found: Vec<([u32; 3], [VertexId; 3])> = match self.ground.stars() {
             None => {

@@ -7,7 +7,7 @@ use crate::triangulation::{Triangulation, VertexId};
 impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// Canvas vertices that canvas edges of their colour do not connect to their seed (to a vertex of its colour in its
     /// sight), in order. Fronts leave none but where a cell is thinner than the canvas is fine.
-    pub fn orphans(&self) -> Vec<VertexId> {
+    pub(crate) fn orphans(&self) -> Vec<VertexId> {
         let mut all = self.orphan_components().concat();
         all.sort_unstable();
         all

@@ -19,7 +19,7 @@ impl Domain {
     }
 
     /// The number in `Domain::mesh_of` of each vertex by id; `u32::MAX` of those that are none.
-    pub fn numbering(&self, planar: &Planar, corner: impl Fn(VertexId) -> Option<u32>) -> Vec<u32> {
+    pub(crate) fn numbering(&self, planar: &Planar, corner: impl Fn(VertexId) -> Option<u32>) -> Vec<u32> {
         self.numbered_points(planar, corner).1
     }
 

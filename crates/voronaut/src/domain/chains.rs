@@ -5,7 +5,7 @@ use crate::geometry::{Point, signed_area};
 
 /// A run of segments with one label and one pair of sides; its inner vertices belong to no other segment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chain {
+pub(crate) struct Chain {
     /// Vertices in order; a closed curve ends with the vertex it starts with.
     pub vertices: Vec<u32>,
     /// The segments' label, sides and so on; `ends` is that of the first segment.
@@ -15,7 +15,7 @@ pub struct Chain {
 impl Pslg {
     /// Cuts the segments into curves. A curve ends where segments fork or end, where label or sides change, at
     /// required points, and at both ends of required segments.
-    pub fn chains(&self) -> Vec<Chain> {
+    pub(crate) fn chains(&self) -> Vec<Chain> {
         let incident = self.incident_segments();
         let is_node = self.nodes(&incident);
         let mut used = vec![false; self.segments.len()];
@@ -69,7 +69,7 @@ impl Pslg {
     }
 
     /// Vertices where curves end or fork, and those where one turns by more than the angle (degrees), if it is given.
-    pub fn corners(&self, angle: Option<f64>) -> Vec<u32> {
+    pub(crate) fn corners(&self, angle: Option<f64>) -> Vec<u32> {
         let incident = self.incident_segments();
         let other = |s: u32, v: usize| {
             let [a, b] = self.segments[s as usize].ends;

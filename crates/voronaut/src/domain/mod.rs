@@ -13,14 +13,16 @@ mod shapes;
 mod sides;
 mod written;
 
-pub use chains::Chain;
+pub(crate) use chains::Chain;
 pub use from_mesh::from_mesh;
 pub use outlines::{to_mesh, to_poly, to_polygons};
 pub use poly::{Poly, PolyRegion, from_poly};
 pub use polygons::{Polygon, Polygons, Ring, from_polygons};
 pub use pslg::{Filling, Pslg, Segment, Side};
-pub use shapes::{disk, rect};
-pub use written::{read_numbers, shape};
+#[cfg(test)]
+pub(crate) use shapes::rect;
+pub(crate) use written::read_numbers;
+pub use written::shape;
 
 use crate::geometry::{Aabb, Point};
 use crate::planar::Planar;
@@ -50,7 +52,7 @@ impl Domain {
     }
 
     /// For each vertex slot of [`Domain::planar`] the point of the graph that it stands for.
-    pub fn sources(&self) -> &[Option<u32>] {
+    pub(crate) fn sources(&self) -> &[Option<u32>] {
         &self.sources
     }
 
@@ -62,7 +64,7 @@ impl Domain {
     }
 
     /// Triangles that cover the domain exactly.
-    pub fn triangles(&self) -> Vec<[Point; 3]> {
+    pub(crate) fn triangles(&self) -> Vec<[Point; 3]> {
         self.planar.topology.faces().map(|f| self.planar.triangle(f)).collect()
     }
 

@@ -67,7 +67,7 @@ pub struct Pslg {
 
 impl Pslg {
     /// The name of a point in the input.
-    pub fn name(&self, point: u32) -> String {
+    pub(crate) fn name(&self, point: u32) -> String {
         self.names.get(point as usize).map_or_else(|| format!("vertex {}", point + 1), Clone::clone)
     }
 

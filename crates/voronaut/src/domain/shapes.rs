@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_2;
 /// # Errors
 ///
 /// [`Error::Domain`] unless the coordinates and the extent are finite, and `min` is less than `max` in both.
-pub fn rect(min: Point, max: Point) -> Result<Pslg> {
+pub(crate) fn rect(min: Point, max: Point) -> Result<Pslg> {
     let extent = max - min;
     if !(extent.x.is_finite() && extent.y.is_finite()) {
         return Err(shape_error("a rectangle whose coordinates or extent are not finite", min, max));
@@ -30,7 +30,7 @@ pub fn rect(min: Point, max: Point) -> Result<Pslg> {
 ///
 /// [`Error::Domain`] unless centre and radius are finite, the radius is positive, and large enough beside the centre's
 /// coordinates to tell neighbouring vertices apart.
-pub fn disk(centre: Point, radius: f64) -> Result<Pslg> {
+pub(crate) fn disk(centre: Point, radius: f64) -> Result<Pslg> {
     if !(radius > 0.0 && radius.is_finite() && centre.is_finite()) {
         let place = format!("centre {centre}, radius {radius}");
         let help = "give a finite centre and a positive, finite radius";

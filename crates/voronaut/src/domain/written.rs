@@ -41,7 +41,7 @@ pub fn shape(spec: &str) -> Option<Result<Pslg>> {
 ///
 /// # Errors
 /// [`Error::Parse`] of more, fewer, or what is no number.
-pub fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Result<[f64; N]> {
+pub(crate) fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Result<[f64; N]> {
     let error = |what: String| Error::parse(spec, what, format!("write {usage}"));
     let words: Vec<_> = numbers.split(',').map(str::trim).collect();
     if words.len() != N {

@@ -7,12 +7,12 @@ use crate::triangulation::VertexId;
 
 impl Dual<'_> {
     /// The mesh, by `Domain::mesh_of`.
-    pub fn to_mesh(&self, domain: &Domain) -> Mesh {
+    pub(crate) fn to_mesh(&self, domain: &Domain) -> Mesh {
         domain.mesh_of(self.planar(), |v| self.corner(v))
     }
 
     /// The number in [`Dual::to_mesh`] of each vertex by id; `u32::MAX` of those that are none.
-    pub fn numbering(&self, domain: &Domain) -> Vec<u32> {
+    pub(crate) fn numbering(&self, domain: &Domain) -> Vec<u32> {
         domain.numbering(self.planar(), |v| self.corner(v))
     }
 

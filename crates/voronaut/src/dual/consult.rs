@@ -91,7 +91,7 @@ pub(crate) struct Consultation {
 
 /// A canvas and a diagram that were made, and what they cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Made {
+pub(crate) struct Made {
     /// The canvas.
     pub canvas: CanvasFigures,
     /// Canvas vertices cut off from their cells.
@@ -136,7 +136,7 @@ impl Dual<'_> {
         if road == Road::Canvas {
             canvas = resolve(canvas, &field, &seeds, ROUNDS)?.canvas;
         }
-        let diagram = Diagram::of_vertices_by(&canvas, &field, &seeds, method)?;
+        let diagram = Diagram::of_vertices(&canvas, &field, &seeds, method)?;
         let nerve = diagram.sharp_nerve();
         let sides = nerve.sides(|_| true).map(|[i, j]| pair(ids[i as usize], ids[j as usize]));
         let wanted: HashSet<[VertexId; 2]> = sides.filter(|s| s.iter().all(|v| is_inner[v.index()])).collect();

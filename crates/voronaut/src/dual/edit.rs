@@ -104,7 +104,7 @@ impl Dual<'_> {
     }
 
     /// Removes a free seed.
-    pub fn remove(&mut self, v: VertexId) -> bool {
+    pub(crate) fn remove(&mut self, v: VertexId) -> bool {
         if self.kind(v) != Kind::Free {
             return false;
         }

@@ -37,14 +37,14 @@ impl Dual<'_> {
     }
 
     /// Edges that the metric wants flipped and the plane forbids, with their margins, certain or not.
-    pub fn blocked_flips(&mut self, effort: Effort) -> Vec<(HalfEdge, Margin)> {
+    pub(crate) fn blocked_flips(&mut self, effort: Effort) -> Vec<(HalfEdge, Margin)> {
         let forbidden: Vec<HalfEdge> = self.free_edges().filter(|&h| !self.allows_flip(h)).collect();
         let with_margin = forbidden.into_iter().map(|h| (h, self.margin(h, effort)));
         with_margin.filter(|(_, margin)| margin.value < -TIE).collect()
     }
 
     /// The smallest margin among all edges that are not constrained; `None` of none.
-    pub fn smallest_margin(&mut self, effort: Effort) -> Option<f64> {
+    pub(crate) fn smallest_margin(&mut self, effort: Effort) -> Option<f64> {
         let edges: Vec<HalfEdge> = self.free_edges().collect();
         edges.into_iter().map(|h| self.margin(h, effort).value).reduce(f64::min)
     }

@@ -33,7 +33,7 @@ const STRAIGHT: f64 = 0.02;
 
 /// How far up the levels a test may climb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effort {
+pub(crate) enum Effort {
     /// To lengths from the expansions at the vertices: no evaluation of the field.
     Local = 1,
     /// To quadrature along the chords.
@@ -44,7 +44,7 @@ pub enum Effort {
 
 impl Dual<'_> {
     /// The margin of an edge with two faces.
-    pub fn margin(&mut self, h: HalfEdge, effort: Effort) -> Margin {
+    pub(crate) fn margin(&mut self, h: HalfEdge, effort: Effort) -> Margin {
         let quad = self.quad(h);
         if effort == Effort::Full {
             let known = self.tests.known(&quad, LEVELS - 1);

@@ -17,9 +17,9 @@ mod surface_margin;
 mod patch;
 
 pub(crate) use consult::Consultation;
-pub use consult::{Disagreement, Made, Road};
+pub use consult::{Disagreement, Road};
 pub(crate) use edit::Saved;
-pub use margin::Effort;
+pub(crate) use margin::Effort;
 pub(crate) use mending::Mending;
 pub(crate) use moving::Moving;
 pub(crate) use on_surface::SurfaceDual;
@@ -49,7 +49,7 @@ pub enum Kind {
 
 /// Work counters; deterministic.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct DualCounters {
+pub(crate) struct DualCounters {
     /// In-circle tests settled at each level.
     pub tests: [u64; LEVELS],
     /// Flips done.
@@ -79,7 +79,7 @@ impl<'a> Dual<'a> {
     ///
     /// # Errors
     /// The metric is not positive definite at a corner.
-    pub fn new(domain: &Domain, field: Scaled<'a>) -> Result<Self> {
+    pub(crate) fn new(domain: &Domain, field: Scaled<'a>) -> Result<Self> {
         let planar = domain.planar().clone();
         let kinds = domain.sources().iter().map(|s| s.map_or(Kind::Free, Kind::Corner)).collect();
         let mut dual = Self {
@@ -103,17 +103,17 @@ impl<'a> Dual<'a> {
     }
 
     /// Topology.
-    pub fn topology(&self) -> &Triangulation {
+    pub(crate) fn topology(&self) -> &Triangulation {
         &self.planar.topology
     }
 
     /// The embedded triangulation.
-    pub fn planar(&self) -> &Planar {
+    pub(crate) fn planar(&self) -> &Planar {
         &self.planar
     }
 
     /// The metric field, in units of the wanted edge length.
-    pub fn field(&self) -> Scaled<'a> {
+    pub(crate) fn field(&self) -> Scaled<'a> {
         self.field
     }
 
@@ -129,33 +129,33 @@ impl<'a> Dual<'a> {
     }
 
     /// Number of vertices.
-    pub fn vertex_count(&self) -> usize {
+    pub(crate) fn vertex_count(&self) -> usize {
         self.planar.topology.vertex_count()
     }
 
     /// Position of a vertex.
-    pub fn position(&self, v: VertexId) -> Point {
+    pub(crate) fn position(&self, v: VertexId) -> Point {
         self.planar.position(v)
     }
 
     /// The metric around a vertex.
-    pub fn local(&self, v: VertexId) -> &LocalMetric {
+    pub(crate) fn local(&self, v: VertexId) -> &LocalMetric {
         &self.locals[v.index()]
     }
 
     /// What holds a vertex.
-    pub fn kind(&self, v: VertexId) -> Kind {
+    pub(crate) fn kind(&self, v: VertexId) -> Kind {
         self.kinds[v.index()]
     }
 
     /// Work counters since the beginning.
-    pub fn counters(&self) -> &DualCounters {
+    pub(crate) fn counters(&self) -> &DualCounters {
         &self.counters
     }
 
     /// Metric length of an edge: estimated from its ends (`hermite`), or, where the metric is rough, by quadrature
     /// along the chord.
-    pub fn edge_length(&self, h: HalfEdge) -> f64 {
+    pub(crate) fn edge_length(&self, h: HalfEdge) -> f64 {
         let (u, v) = (self.topology().origin(h), self.topology().target(h));
         let (p, q) = (self.position(u), self.position(v));
         if self.local(u).is_rough || self.local(v).is_rough {
@@ -173,7 +173,7 @@ impl<'a> Dual<'a> {
     ///
     /// # Errors
     /// [`Error::Metric`] with the first place where it is not positive definite and finite.
-    pub fn verdict(&self) -> Result<()> {
+    pub(crate) fn verdict(&self) -> Result<()> {
         let Some((p, t)) = self.fault else { return Ok(()) };
         let [xx, xy, yy] = [t.xx, t.xy, t.yy].map(Readable);
         let what = format!("the tensor {xx}, {xy}, {yy} is not finite and positive definite");

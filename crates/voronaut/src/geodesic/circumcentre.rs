@@ -24,7 +24,7 @@ const RESIDUE_LEFT: f64 = 1e-5;
 ///
 /// This is the definition, on any surface; no curvature enters. [`Margin::UNKNOWN`] where no centre is found, as may be
 /// for triangles that are nearly straight: of the two, a b c should be the larger.
-pub fn margin_by_power(
+pub(crate) fn margin_by_power(
     paths: &Paths,
     field: &dyn MetricField,
     [a, b, c, d]: [Point; 4],

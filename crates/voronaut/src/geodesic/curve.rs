@@ -11,7 +11,7 @@ const HALVINGS: u32 = 6;
 
 /// The length of a geodesic, and the curvature that its surroundings have.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathLength {
+pub(crate) struct PathLength {
     /// Metric length: of a local minimum, which need not be the shortest path, and which knows no domain.
     pub value: f64,
     /// Estimated relative error (not a bound).
@@ -35,13 +35,13 @@ impl Curve {
     }
 
     /// Its length, with the error of that.
-    pub fn length(&self) -> PathLength {
+    pub(crate) fn length(&self) -> PathLength {
         self.length
     }
 
     /// The point at a share t of its length, from 0 to 1. Where it lies is known less well than how long the curve is, to
     /// about 1e-6 of the chord (1e-5 where the field turns around over it), since the field's derivatives are differences.
-    pub fn at(&self, t: f64) -> Point {
+    pub(crate) fn at(&self, t: f64) -> Point {
         if t <= 0.0 || t >= 1.0 {
             return self.ends[usize::from(t > 0.5)];
         }
@@ -52,7 +52,7 @@ impl Curve {
 
     /// The curve as a polyline, end points included. Its sagittas, measured with the tensor at the place, are at most this
     /// share of its length, unless that took more than 256 segments.
-    pub fn polyline(&self, field: &dyn MetricField, tolerance: f64) -> Vec<Point> {
+    pub(crate) fn polyline(&self, field: &dyn MetricField, tolerance: f64) -> Vec<Point> {
         let mut points = vec![self.ends[0]];
         for i in 0..FEWEST {
             let [from, to] = [i, i + 1].map(|k| k as f64 / FEWEST as f64);

@@ -10,13 +10,13 @@ use crate::triangulation::VertexId;
 ///
 /// Labels are mended as in [`Marching`](super::Marching): by work on what has changed, with the result of making them anew.
 #[derive(Clone, Debug)]
-pub struct Dijkstra {
+pub(crate) struct Dijkstra {
     graph: Graph,
 }
 
 impl Dijkstra {
     /// On a graph.
-    pub fn on(graph: Graph) -> Self {
+    pub(crate) fn on(graph: Graph) -> Self {
         Self { graph }
     }
 }

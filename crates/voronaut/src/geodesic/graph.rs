@@ -7,7 +7,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// How the vertices of a graph see each other. Each has a frame of its own: that of the plane, or one of its tangent plane.
-pub trait Sight: Send + Sync {
+pub(crate) trait Sight: Send + Sync {
     /// The straight line from one vertex to another, in the frame of the first of the three.
     fn line(&self, seen_from: VertexId, from: VertexId, to: VertexId) -> Vector;
     /// A tensor in the frame of the second vertex, turned to that of the first.
@@ -47,7 +47,7 @@ impl Graph {
     /// A graph of vertices of the plane at these (Euclidean) positions with the metric there, in the units of the metric field.
     ///
     /// As for `Graph::seen_by`; positions are as many as tensors.
-    pub fn new(positions: Vec<Point>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
+    pub(crate) fn new(positions: Vec<Point>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
         assert!(positions.len() == tensors.len(), "an entry for each vertex");
         Self::seen_by(Arc::new(InPlane(positions)), tensors, neighbours)
     }
@@ -90,27 +90,27 @@ impl Graph {
     }
 
     /// Number of vertices.
-    pub fn vertex_count(&self) -> usize {
+    pub(crate) fn vertex_count(&self) -> usize {
         self.tensors.len()
     }
 
     /// All vertices, in order.
-    pub fn vertices(&self) -> impl Iterator<Item = VertexId> {
+    pub(crate) fn vertices(&self) -> impl Iterator<Item = VertexId> {
         (0..self.tensors.len() as u32).map(VertexId)
     }
 
     /// How its vertices see each other.
-    pub fn sight(&self) -> &dyn Sight {
+    pub(crate) fn sight(&self) -> &dyn Sight {
         self.sight.as_ref()
     }
 
     /// The metric at a vertex, in its frame.
-    pub fn tensor(&self, v: VertexId) -> Tensor {
+    pub(crate) fn tensor(&self, v: VertexId) -> Tensor {
         self.tensors[v.index()]
     }
 
     /// The neighbours of a vertex, by their numbers.
-    pub fn neighbours(&self, v: VertexId) -> &[VertexId] {
+    pub(crate) fn neighbours(&self, v: VertexId) -> &[VertexId] {
         &self.neighbours[self.first[v.index()] as usize..self.first[v.index() + 1] as usize]
     }
 
@@ -120,7 +120,7 @@ impl Graph {
     }
 
     /// Metric length of the edge between two vertices; infinite if they are not neighbours.
-    pub fn length(&self, a: VertexId, b: VertexId) -> f64 {
+    pub(crate) fn length(&self, a: VertexId, b: VertexId) -> f64 {
         let place = self.neighbours(a).binary_search(&b);
         place.map_or(f64::INFINITY, |i| self.lengths[self.first[a.index()] as usize + i])
     }

@@ -22,7 +22,7 @@ const FLATTEST: f64 = 1e-6;
 ///
 /// It gives a smoothed distance to the nearest of all sources, of whatever colour, and no parents: it does not drive
 /// diagrams. Borders are insulated. On a canvas that is not intrinsic Delaunay cotangents are negative and heat may be too.
-pub struct Heat<'a> {
+pub(crate) struct Heat<'a> {
     canvas: &'a Triangulation,
     /// Metric area that belongs to each vertex.
     mass: Vec<f64>,
@@ -40,7 +40,7 @@ impl<'a> Heat<'a> {
     ///
     /// # Errors
     /// [`Error::Unsupported`] where one is not positive definite by rounding.
-    pub fn on(canvas: &'a Triangulation) -> Result<Self> {
+    pub(crate) fn on(canvas: &'a Triangulation) -> Result<Self> {
         let n = canvas.vertex_slots();
         let (mass, stiffness) = matrices(canvas);
         let edges = canvas.edges().count().max(1) as f64;
@@ -61,7 +61,7 @@ impl<'a> Heat<'a> {
     ///
     /// # Errors
     /// As for [`Heat::on`], where the time had to be made longer.
-    pub fn distances(&self, sources: &Sources) -> Result<Vec<f64>> {
+    pub(crate) fn distances(&self, sources: &Sources) -> Result<Vec<f64>> {
         let heat = self.heat(sources)?;
         let mut balance = vec![0.0; self.mass.len()];
         for f in self.canvas.faces() {

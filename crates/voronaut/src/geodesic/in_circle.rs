@@ -22,10 +22,10 @@ pub struct Margin {
 
 impl Margin {
     /// What a test says that could not tell.
-    pub const UNKNOWN: Self = Self { value: 0.0, error: f64::INFINITY };
+    pub(crate) const UNKNOWN: Self = Self { value: 0.0, error: f64::INFINITY };
 
     /// Whether the sign is settled.
-    pub fn is_certain(&self) -> bool {
+    pub(crate) fn is_certain(&self) -> bool {
         self.value.abs() > self.error
     }
 }
@@ -70,18 +70,18 @@ impl Angles {
     }
 
     /// The margin: the sine of the sum of the two angles.
-    pub fn margin(&self) -> f64 {
+    pub(crate) fn margin(&self) -> f64 {
         self.margin
     }
 
     /// Whether one of the triangles is nearly flat (height below a twentieth of the base), or its lengths break the
     /// triangle inequality, as those of chords may: its angles then say nothing.
-    pub fn is_flat(&self) -> bool {
+    pub(crate) fn is_flat(&self) -> bool {
         self.flatness < 0.025
     }
 
     /// A first-order bound on the margin's error, of lengths with this relative error.
-    pub fn error(&self, relative: f64) -> f64 {
+    pub(crate) fn error(&self, relative: f64) -> f64 {
         self.sensitivity * relative
     }
 
@@ -101,7 +101,7 @@ pub(super) fn opposite(edge: f64, a: f64, b: f64) -> ((f64, f64), f64) {
 }
 
 /// The circumradius of a flat triangle with these sides; infinite where they make none.
-pub fn circumradius(a: f64, b: f64, c: f64) -> f64 {
+pub(crate) fn circumradius(a: f64, b: f64, c: f64) -> f64 {
     a * b * c / (4.0 * opposite(a, b, c).1)
 }
 

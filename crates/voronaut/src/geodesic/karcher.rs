@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-9;
 /// beyond.
 ///
 /// `None` where the weights are none, the field is no metric on the way, or the steps lead nowhere.
-pub fn karcher_mean(
+pub(crate) fn karcher_mean(
     paths: &Paths,
     field: &dyn MetricField,
     corners: [Point; 3],

@@ -19,13 +19,13 @@ const CORRECTION: f64 = 1e-6;
 ///
 /// Labels are mended by making them anew.
 #[derive(Clone, Debug)]
-pub struct Konukoglu {
+pub(crate) struct Konukoglu {
     graph: Graph,
 }
 
 impl Konukoglu {
     /// On a graph.
-    pub fn on(graph: Graph) -> Self {
+    pub(crate) fn on(graph: Graph) -> Self {
         Self { graph }
     }
 }

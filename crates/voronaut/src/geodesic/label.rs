@@ -8,7 +8,7 @@ pub(crate) const NO_COLOUR: u32 = u32::MAX;
 
 /// Distance to the nearest source, the source's colour, and what the distance was computed from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Label {
+pub(crate) struct Label {
     /// Metric distance; infinite where no source reaches.
     pub distance: f64,
     /// Colour of the source; `NO_COLOUR` where none reaches.
@@ -38,7 +38,7 @@ const KINDS: u32 = 3;
 
 impl Label {
     /// The label of a vertex that no source reaches.
-    pub const FAR: Label = Label { distance: f64::INFINITY, colour: NO_COLOUR, support: NOTHING };
+    pub(crate) const FAR: Label = Label { distance: f64::INFINITY, colour: NO_COLOUR, support: NOTHING };
 
     pub(super) fn new(distance: f64, colour: u32, support: Support) -> Self {
         let support = match support {
@@ -82,7 +82,7 @@ impl Label {
 
 /// Where distances start: vertices with the distance of a source beside them.
 #[derive(Clone, Debug, Default)]
-pub struct Sources {
+pub(crate) struct Sources {
     first: Vec<u32>,
     records: Vec<Record>,
     free: Vec<u32>,
@@ -97,12 +97,12 @@ struct Record {
 
 impl Sources {
     /// No sources on a canvas with so many vertices.
-    pub fn new(vertices: usize) -> Self {
+    pub(crate) fn new(vertices: usize) -> Self {
         Self { first: vec![NOTHING; vertices], ..Self::default() }
     }
 
     /// Adds a start at a vertex.
-    pub fn add(&mut self, v: VertexId, distance: f64, colour: u32) {
+    pub(crate) fn add(&mut self, v: VertexId, distance: f64, colour: u32) {
         let record = Record { distance, colour, next: self.first[v.index()] };
         let slot = self.free.pop().unwrap_or(self.records.len() as u32);
         if slot as usize == self.records.len() {
@@ -114,7 +114,7 @@ impl Sources {
     }
 
     /// Removes all starts of a colour at a vertex.
-    pub fn remove(&mut self, v: VertexId, colour: u32) {
+    pub(crate) fn remove(&mut self, v: VertexId, colour: u32) {
         let kept: Vec<(f64, u32)> = self.at(v).filter(|&(_, c)| c != colour).collect();
         let mut slot = std::mem::replace(&mut self.first[v.index()], NOTHING);
         while slot != NOTHING {
@@ -127,7 +127,7 @@ impl Sources {
     }
 
     /// The starts at a vertex: distance and colour.
-    pub fn at(&self, v: VertexId) -> impl Iterator<Item = (f64, u32)> + '_ {
+    pub(crate) fn at(&self, v: VertexId) -> impl Iterator<Item = (f64, u32)> + '_ {
         let record = move |slot: u32| (slot != NOTHING).then(|| self.records[slot as usize]);
         let chain = std::iter::successors(record(self.first[v.index()]), move |r| record(r.next));
         chain.map(|r| (r.distance, r.colour))
@@ -140,7 +140,7 @@ impl Sources {
     }
 
     /// The vertices that have a start.
-    pub fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+    pub(crate) fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
         (0..self.first.len() as u32).map(VertexId).filter(|v| self.first[v.index()] != NOTHING)
     }
 }

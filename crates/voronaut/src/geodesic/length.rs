@@ -6,7 +6,7 @@ use crate::metric::MetricField;
 
 /// A length and an estimate (not a bound) of its relative error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Length {
+pub(crate) struct Length {
     /// Metric length.
     pub value: f64,
     /// Estimated relative error.

@@ -18,7 +18,7 @@ const RING_RADIUS: f64 = 0.5;
 /// expansion at a point describes it. There the tensor is the mean over a ball about a unit wide, and the derivatives
 /// are those of the best linear fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LocalMetric {
+pub(crate) struct LocalMetric {
     /// The tensor M.
     pub tensor: Tensor,
     /// dM/dx and dM/dy.
@@ -31,7 +31,7 @@ impl LocalMetric {
     /// Evaluates the field at p and, for the derivatives, at four points a quarter of a metric unit away along the
     /// tensor's axes; at eight more where it is rough. Where the field is no metric at one of the points around p (a
     /// field may end with the domain) the derivative counts as zero.
-    pub fn at(field: &dyn MetricField, p: Point) -> Self {
+    pub(crate) fn at(field: &dyn MetricField, p: Point) -> Self {
         let tensor = field.at(p);
         let (found, second) = Self::expanded(field, p, tensor);
         if second > ROUGH { Self::averaged(field, p, tensor) } else { found }
@@ -40,7 +40,7 @@ impl LocalMetric {
     /// [`LocalMetric::at`] at a point that a seed has moved to: rough if the seed was so before. So understood it
     /// depends continuously on the point.
     #[must_use]
-    pub fn moved(&self, field: &dyn MetricField, p: Point) -> Self {
+    pub(crate) fn moved(&self, field: &dyn MetricField, p: Point) -> Self {
         let tensor = field.at(p);
         if self.is_rough { Self::averaged(field, p, tensor) } else { Self::expanded(field, p, tensor).0 }
     }
@@ -102,12 +102,12 @@ impl LocalMetric {
 
     /// The logarithm map to second order: the initial velocity of the geodesic that reaches p + d at time one,
     /// d + Gamma(d, d) / 2. Where the correction is large (kinks, edges far too long) it is cut to a third of d.
-    pub fn log(&self, d: Vector) -> Vector {
+    pub(crate) fn log(&self, d: Vector) -> Vector {
         d + self.bounded_correction(d)
     }
 
     /// The exponential map to second order: v - Gamma(v, v) / 2, cut like [`LocalMetric::log`].
-    pub fn exp(&self, v: Vector) -> Vector {
+    pub(crate) fn exp(&self, v: Vector) -> Vector {
         v - self.bounded_correction(v)
     }
 

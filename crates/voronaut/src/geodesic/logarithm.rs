@@ -7,7 +7,7 @@ use crate::metric::MetricField;
 
 /// See [`Paths::logarithm`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Logarithm {
+pub(crate) struct Logarithm {
     /// The velocity at p of the geodesic that arrives at q after the time 1: in the tensor at p it is as long as the geodesic,
     /// up to errors.
     pub velocity: Vector,
@@ -17,7 +17,13 @@ pub struct Logarithm {
 
 impl Paths {
     /// The logarithm of q at p, of the geodesic that [`Paths::length`] finds. `None` where that finds none or where p is q.
-    pub fn logarithm(&self, field: &dyn MetricField, p: Point, q: Point, fineness: Fineness) -> Option<Logarithm> {
+    pub(crate) fn logarithm(
+        &self,
+        field: &dyn MetricField,
+        p: Point,
+        q: Point,
+        fineness: Fineness,
+    ) -> Option<Logarithm> {
         let solved = self.solve(field, p, q, fineness)?;
         // Half the squared length falls fastest, in the tensor at p, where p moves along the geodesic (Gauss's lemma).
         let velocity = -field.at(p).inverse().apply(solved.pull);

@@ -26,7 +26,7 @@ use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
 /// Fast marching on a triangulation with waves of one shape.
 #[derive(Clone, Copy, Debug)]
-pub struct Marching<'a> {
+pub(crate) struct Marching<'a> {
     canvas: &'a Triangulation,
     /// The shape of fronts within a face.
     wave: Wave,
@@ -34,13 +34,13 @@ pub struct Marching<'a> {
 
 impl<'a> Marching<'a> {
     /// With circular waves.
-    pub fn on(canvas: &'a Triangulation) -> Self {
+    pub(crate) fn on(canvas: &'a Triangulation) -> Self {
         Self { canvas, wave: Wave::default() }
     }
 
     /// With waves of another shape.
     #[must_use]
-    pub fn with_wave(self, wave: Wave) -> Self {
+    pub(crate) fn with_wave(self, wave: Wave) -> Self {
         Self { wave, ..self }
     }
 }
@@ -95,17 +95,17 @@ impl Propagation {
     }
 
     /// The label of a vertex.
-    pub fn label(&self, v: VertexId) -> &Label {
+    pub(crate) fn label(&self, v: VertexId) -> &Label {
         &self.labels[v.index()]
     }
 
     /// All labels, by vertex.
-    pub fn labels(&self) -> &[Label] {
+    pub(crate) fn labels(&self) -> &[Label] {
         &self.labels
     }
 
     /// Work since the beginning.
-    pub fn counters(&self) -> &MarchCounters {
+    pub(crate) fn counters(&self) -> &MarchCounters {
         &self.counters
     }
 }

@@ -26,7 +26,7 @@ pub enum Method {
 }
 
 /// The window of [`Method::Stvd`] unless told otherwise: that of the report's authors.
-pub const STVD_WINDOW: usize = 8;
+pub(crate) const STVD_WINDOW: usize = 8;
 
 impl Method {
     /// All methods, those with a parameter at its default.
@@ -34,7 +34,7 @@ impl Method {
         [Self::March, Self::Stvd { window: STVD_WINDOW }, Self::Dijkstra, Self::Konukoglu, Self::Lbr, Self::Heat];
 
     /// Whether it gives every vertex the colour of its source, so that diagrams can be made by it.
-    pub fn drives_diagrams(self) -> bool {
+    pub(crate) fn drives_diagrams(self) -> bool {
         !matches!(self, Self::Lbr | Self::Heat)
     }
 
@@ -52,7 +52,7 @@ impl Method {
     }
 
     /// The name without parameters.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Method::March => "march",
             Method::Stvd { .. } => "stvd",

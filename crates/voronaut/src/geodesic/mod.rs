@@ -36,38 +36,38 @@ mod tension;
 mod update;
 
 pub(crate) use bow::{bowed_between, bowed_chord};
-pub(crate) use circumcentre::Circle;
-pub use circumcentre::margin_by_power;
-pub(crate) use circumcentre::{equalising_step, flat_centre};
-pub use curve::{Curve, PathLength};
-pub use dijkstra::Dijkstra;
-pub use graph::{Graph, Sight};
-pub use heat::Heat;
-pub use in_circle::{Angles, Margin, circumradius};
-pub(crate) use in_circle::{frozen_margin, margin_of_estimates};
+pub(crate) use circumcentre::{Circle, equalising_step, flat_centre, margin_by_power};
+pub use curve::Curve;
+pub(crate) use curve::PathLength;
+pub(crate) use dijkstra::Dijkstra;
+pub use graph::Graph;
+pub(crate) use graph::Sight;
+pub(crate) use heat::Heat;
+pub use in_circle::{Angles, Margin};
+pub(crate) use in_circle::{circumradius, frozen_margin, margin_of_estimates};
 pub(crate) use jet::gauss_curvature;
-pub use karcher::karcher_mean;
-pub use konukoglu::Konukoglu;
-pub use label::{Label, Sources};
-pub(crate) use label::{NO_COLOUR, Support};
+pub(crate) use karcher::karcher_mean;
+pub(crate) use konukoglu::Konukoglu;
+pub(crate) use label::{Label, NO_COLOUR, Sources, Support};
 pub(crate) use lattice::Lattice;
-pub use length::Length;
-pub(crate) use length::{bent_chord, chord, hermite, hermite_between};
-pub use local::LocalMetric;
-pub use logarithm::Logarithm;
-pub use march::{Marching, Propagation};
-pub use method::{Method, STVD_WINDOW};
-pub use path::{Fineness, Paths};
+pub(crate) use length::{Length, bent_chord, chord, hermite, hermite_between};
+pub(crate) use local::LocalMetric;
+pub(crate) use logarithm::Logarithm;
+pub(crate) use march::Marching;
+pub use march::Propagation;
+pub use method::Method;
+pub(crate) use path::{Fineness, Paths};
 pub(crate) use predicate::margin_from_lengths;
-pub use straighten::{Obstacles, Open, Polyline, straighten};
+pub use straighten::Polyline;
+pub(crate) use straighten::{Obstacles, straighten};
 pub(crate) use strip::taut;
-pub use stvd::Stvd;
-pub use update::Wave;
+pub(crate) use stvd::Stvd;
+pub(crate) use update::Wave;
 
 use crate::triangulation::VertexId;
 
 /// A solver of distances on a canvas, with which it was made.
-pub trait Geodesic: Sync {
+pub(crate) trait Geodesic: Sync {
     /// Distance to, and colour of, the nearest source of every vertex.
     fn propagate(&self, sources: &Sources) -> Propagation;
 
@@ -83,7 +83,7 @@ pub trait Geodesic: Sync {
 }
 
 /// Distances from one source on one part of a canvas after the other, without regard for other sources.
-pub trait Patches {
+pub(crate) trait Patches {
     /// The distance of each vertex of the patch from the source that has the given distances from some vertices; infinite
     /// where it is not reached within the patch.
     fn distances(&mut self, patch: &[VertexId], starts: &[(VertexId, f64)]) -> Vec<f64>;

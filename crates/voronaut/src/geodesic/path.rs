@@ -25,7 +25,7 @@ const RATIOS: (f64, f64) = (0.02, 0.7);
 
 /// How fine a path is, from `Fineness::COARSEST` to [`Fineness::FINEST`]: each has twice the modes of the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Fineness(u8);
+pub(crate) struct Fineness(u8);
 
 impl Fineness {
     /// Four modes: polynomials of degree five.
@@ -33,17 +33,17 @@ impl Fineness {
     /// Eight modes.
     pub(crate) const MIDDLE: Self = Self(2);
     /// Sixteen modes.
-    pub const FINEST: Self = Self(STAGES.len() as u8 - 1);
+    pub(crate) const FINEST: Self = Self(STAGES.len() as u8 - 1);
 
     /// Twice the modes; `None` of the finest.
-    pub fn next(self) -> Option<Self> {
+    pub(crate) fn next(self) -> Option<Self> {
         (self < Self::FINEST).then_some(Self(self.0 + 1))
     }
 }
 
 /// Solves for geodesics; keeps tables only, so that threads can share it.
 #[derive(Clone, Debug)]
-pub struct Paths {
+pub(crate) struct Paths {
     rules: Vec<Rule>,
 }
 
@@ -65,13 +65,13 @@ impl Paths {
     ///
     /// Two to four Newton steps a stage, 7 evaluations of the field at each of its quadrature points: at the coarsest
     /// about 150 evaluations in all.
-    pub fn length(&self, field: &dyn MetricField, p: Point, q: Point, fineness: Fineness) -> Option<PathLength> {
+    pub(crate) fn length(&self, field: &dyn MetricField, p: Point, q: Point, fineness: Fineness) -> Option<PathLength> {
         self.solve(field, p, q, fineness).map(|solved| solved.length)
     }
 
     /// The geodesic itself, with [`Paths::length`]'s length. With a path given it is the one that this path contracts to,
     /// as far as so many modes can follow it.
-    pub fn curve(
+    pub(crate) fn curve(
         &self,
         field: &dyn MetricField,
         [p, q]: [Point; 2],

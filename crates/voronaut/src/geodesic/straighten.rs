@@ -6,27 +6,13 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 
 /// What a path may not cross: the border of its domain.
-pub trait Obstacles: Sync {
+pub(crate) trait Obstacles: Sync {
     /// Whether the straight segment p-q leaves the domain by more than rounding.
     fn bars(&self, p: Point, q: Point) -> bool;
 
     /// A corner around which a path can bend that a segment sweeps over on its way from one place to another: the one
     /// nearest to where it was.
     fn corner_between(&self, from: [Point; 2], to: [Point; 2]) -> Option<Point>;
-}
-
-/// No obstacles.
-#[derive(Clone, Copy, Debug)]
-pub struct Open;
-
-impl Obstacles for Open {
-    fn bars(&self, _: Point, _: Point) -> bool {
-        false
-    }
-
-    fn corner_between(&self, _: [Point; 2], _: [Point; 2]) -> Option<Point> {
-        None
-    }
 }
 
 /// A polyline near a geodesic.
@@ -40,7 +26,7 @@ pub struct Polyline {
 
 impl Polyline {
     /// The metric length of a path of straight segments, by five-point Gauss quadrature on each.
-    pub fn length_of(field: &dyn MetricField, path: &[Point]) -> f64 {
+    pub(crate) fn length_of(field: &dyn MetricField, path: &[Point]) -> f64 {
         path.windows(2).map(|w| chord(field, w[0], w[1])).sum()
     }
 }
@@ -64,7 +50,7 @@ const HALVINGS: usize = 6;
 /// and the number of segments doubled until the length has settled: its relative error is then about 1e-4, less where
 /// the metric is smooth. Where obstacles leave no room for a step the path stays as it is. The result is never longer than
 /// the path given.
-pub fn straighten(field: &dyn MetricField, path: &[Point], obstacles: &dyn Obstacles) -> Polyline {
+pub(crate) fn straighten(field: &dyn MetricField, path: &[Point], obstacles: &dyn Obstacles) -> Polyline {
     let given = Polyline { points: path.to_vec(), length: Polyline::length_of(field, path) };
     if path.len() < 2 || !energy(field, path).is_finite() {
         return given;
@@ -258,6 +244,19 @@ impl Band<'_> {
 mod tests {
     use super::*;
     use crate::geometry::Tensor;
+
+    /// No obstacles.
+    struct Open;
+
+    impl Obstacles for Open {
+        fn bars(&self, _: Point, _: Point) -> bool {
+            false
+        }
+
+        fn corner_between(&self, _: [Point; 2], _: [Point; 2]) -> Option<Point> {
+            None
+        }
+    }
 
     fn zigzag(p: Point, q: Point, width: f64) -> Vec<Point> {
         let across = (q - p).perpendicular() * width;

@@ -18,7 +18,7 @@ use crate::triangulation::VertexId;
 /// The least may be less than the distance at a. As every other method, this one says then that x is not nearer than a.
 /// Labels are mended by making them anew: they depend on the order of work.
 #[derive(Clone, Debug)]
-pub struct Stvd {
+pub(crate) struct Stvd {
     graph: Graph,
     /// The symmetric square roots F of the tensors: F' F = M.
     roots: Vec<Tensor>,
@@ -28,7 +28,7 @@ pub struct Stvd {
 impl Stvd {
     /// On a graph, with a window of so many edges, at least one; with one it is Dijkstra's method with another rule for the
     /// lengths of edges.
-    pub fn on(graph: Graph, window: usize) -> Self {
+    pub(crate) fn on(graph: Graph, window: usize) -> Self {
         let roots = graph.vertices().map(|v| graph.tensor(v).map_eigenvalues(f64::sqrt)).collect();
         Self { graph, roots, window: window.max(1) }
     }

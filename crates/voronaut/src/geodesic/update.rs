@@ -6,7 +6,7 @@
 
 /// The shape that a front is taken to have within a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Wave {
+pub(crate) enum Wave {
     /// A circle around a virtual source, laid out on the other side of the edge (Novotni and Klein 2002): exact on a flat
     /// canvas.
     #[default]

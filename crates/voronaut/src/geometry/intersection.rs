@@ -11,7 +11,7 @@ impl Tensor {
     /// not associative: of three or more there is `Tensor::intersection_with_all`. `self` is positive definite; `other` need not be: where it says nothing, `self` counts. Where one
     /// is above the other everywhere, the answer is that one, bit for bit.
     #[must_use]
-    pub fn intersection(self, other: Tensor) -> Tensor {
+    pub(crate) fn intersection(self, other: Tensor) -> Tensor {
         // F' F = self: in the coordinates F v `self` is the identity.
         let [a, b, c] = self.cholesky();
         let (p, q) = (Vector::new(1.0 / a, 0.0), Vector::new(-b / (a * c), 1.0 / c));

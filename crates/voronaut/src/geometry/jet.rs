@@ -17,12 +17,12 @@ pub struct Jet3 {
 
 impl Jet3 {
     /// A function that is the same everywhere.
-    pub fn constant(value: f64) -> Self {
+    pub(crate) fn constant(value: f64) -> Self {
         Self { value, ..Self::default() }
     }
 
     /// The coordinates x, y and z as functions.
-    pub fn coordinates(x: f64, y: f64, z: f64) -> [Self; 3] {
+    pub(crate) fn coordinates(x: f64, y: f64, z: f64) -> [Self; 3] {
         let axes = [Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 1.0, 0.0), Vector3::new(0.0, 0.0, 1.0)];
         let values = [x, y, z];
         std::array::from_fn(|i| Self { value: values[i], gradient: axes[i], hessian: Tensor3::default() })
@@ -35,7 +35,7 @@ impl Jet3 {
 
     /// g(f): g's value at f, and its first and second derivative there.
     #[must_use]
-    pub fn chain(self, value: f64, [first, second]: [f64; 2]) -> Self {
+    pub(crate) fn chain(self, value: f64, [first, second]: [f64; 2]) -> Self {
         if self.is_constant() {
             // Also where g has no derivative, as sqrt at zero.
             return Self::constant(value);

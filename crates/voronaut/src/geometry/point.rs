@@ -73,7 +73,7 @@ impl Vector {
     }
 
     /// The angle (radians, 0 to pi) between two directions.
-    pub fn turn(self, other: Vector) -> f64 {
+    pub(crate) fn turn(self, other: Vector) -> f64 {
         self.cross(other).abs().atan2(self.dot(other))
     }
 
@@ -180,12 +180,12 @@ impl Aabb {
     }
 
     /// Whether the boxes have a point in common, if only of their borders.
-    pub fn meets(&self, other: &Aabb) -> bool {
+    pub(crate) fn meets(&self, other: &Aabb) -> bool {
         self.min.x <= other.max.x && other.min.x <= self.max.x && self.min.y <= other.max.y && other.min.y <= self.max.y
     }
 
     /// The middle of the box.
-    pub fn centre(&self) -> Point {
+    pub(crate) fn centre(&self) -> Point {
         self.min.midpoint(self.max)
     }
 }

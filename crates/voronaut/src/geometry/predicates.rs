@@ -33,13 +33,13 @@ pub fn signed_area(a: Point, b: Point, c: Point) -> f64 {
 }
 
 /// Positive when d lies strictly inside the circle through the counter-clockwise a, b, c; exact sign.
-pub fn in_circle(a: Point, b: Point, c: Point, d: Point) -> f64 {
+pub(crate) fn in_circle(a: Point, b: Point, c: Point, d: Point) -> f64 {
     robust::incircle(coord(a), coord(b), coord(c), coord(d))
 }
 
 /// Six times the signed volume of the tetrahedron a, b, c, d, positive where a, b, c look clockwise from d; the sign is
 /// exact, zero for four points of one plane, the value rounded.
-pub fn signed_volume(a: Point3, b: Point3, c: Point3, d: Point3) -> f64 {
+pub(crate) fn signed_volume(a: Point3, b: Point3, c: Point3, d: Point3) -> f64 {
     let coord = |p: Point3| Coord3D { x: p.x, y: p.y, z: p.z };
     robust::orient3d(coord(a), coord(b), coord(c), coord(d))
 }

@@ -58,7 +58,7 @@ impl Point3 {
     }
 
     /// The point of a triangle with these barycentric coordinates, which sum to one.
-    pub fn weighted([a, b, c]: [Point3; 3], [_, s, t]: [f64; 3]) -> Point3 {
+    pub(crate) fn weighted([a, b, c]: [Point3; 3], [_, s, t]: [f64; 3]) -> Point3 {
         a + (b - a) * s + (c - a) * t
     }
 
@@ -127,7 +127,7 @@ impl Aabb3 {
     }
 
     /// The length of the diagonal.
-    pub fn diagonal(&self) -> f64 {
+    pub(crate) fn diagonal(&self) -> f64 {
         self.extent().norm()
     }
 }

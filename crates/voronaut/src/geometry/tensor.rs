@@ -43,18 +43,18 @@ impl Tensor {
     }
 
     /// The tensor with eigenvalue `along` for the unit vector `axis` and `across` for the one perpendicular to it.
-    pub fn from_axis(axis: Vector, along: f64, across: f64) -> Self {
+    pub(crate) fn from_axis(axis: Vector, along: f64, across: f64) -> Self {
         let (x, y, d) = (axis.x, axis.y, along - across);
         Self::new(across + d * x * x, d * x * y, across + d * y * y)
     }
 
     /// M v.
-    pub fn apply(self, v: Vector) -> Vector {
+    pub(crate) fn apply(self, v: Vector) -> Vector {
         Vector::new(self.xx * v.x + self.xy * v.y, self.xy * v.x + self.yy * v.y)
     }
 
     /// u' M v.
-    pub fn dot(self, u: Vector, v: Vector) -> f64 {
+    pub(crate) fn dot(self, u: Vector, v: Vector) -> f64 {
         u.dot(self.apply(v))
     }
 
@@ -64,7 +64,7 @@ impl Tensor {
     }
 
     /// Determinant, without the cancellation of `xx yy - xy^2` where one eigenvalue is tiny.
-    pub fn determinant(self) -> f64 {
+    pub(crate) fn determinant(self) -> f64 {
         let product = self.xy * self.xy;
         let rounding = self.xy.mul_add(self.xy, -product);
         self.xx.mul_add(self.yy, -product) - rounding
@@ -72,7 +72,7 @@ impl Tensor {
 
     /// The inverse; the caller knows that the tensor is not singular.
     #[must_use]
-    pub fn inverse(self) -> Tensor {
+    pub(crate) fn inverse(self) -> Tensor {
         let d = self.determinant();
         Tensor::new(self.yy / d, -self.xy / d, self.xx / d)
     }
@@ -107,13 +107,13 @@ impl Tensor {
 
     /// Matrix logarithm of a positive definite tensor.
     #[must_use]
-    pub fn log(self) -> Tensor {
+    pub(crate) fn log(self) -> Tensor {
         self.map_eigenvalues(f64::ln)
     }
 
     /// Matrix exponential of a symmetric tensor; positive definite.
     #[must_use]
-    pub fn exp(self) -> Tensor {
+    pub(crate) fn exp(self) -> Tensor {
         // Not through `map_eigenvalues`: a logarithm is no metric, and its smaller eigenvalue may be negative.
         let mean = 0.5 * (self.xx + self.yy);
         let half_difference = 0.5 * (self.xx - self.yy);
@@ -128,7 +128,7 @@ impl Tensor {
     }
 
     /// The rows (a, b), (0, c) of the upper triangular F with F' F = M: F v is v in an orthonormal frame.
-    pub fn cholesky(self) -> [f64; 3] {
+    pub(crate) fn cholesky(self) -> [f64; 3] {
         let a = self.xx.sqrt();
         let b = self.xy / a;
         [a, b, (self.determinant() / self.xx).max(0.0).sqrt()]
@@ -136,7 +136,7 @@ impl Tensor {
 
     /// 4 sqrt(3) times the area of a straight triangle over the sum of its squared edges, all in this metric: 1 of an equilateral
     /// one, negative of one that is clockwise.
-    pub fn shape(self, [a, b, c]: [Point; 3]) -> f64 {
+    pub(crate) fn shape(self, [a, b, c]: [Point; 3]) -> f64 {
         let squares: f64 = [b - a, c - b, a - c].iter().map(|&e| self.dot(e, e)).sum();
         2.0 * 3.0_f64.sqrt() * signed_area(a, b, c) * self.determinant().max(0.0).sqrt() / squares
     }

@@ -22,7 +22,7 @@ pub struct Tensor3 {
 
 /// Eigenvalues in descending order, and unit eigenvectors in the same order, perpendicular to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eigen3 {
+pub(crate) struct Eigen3 {
     /// From the largest down.
     pub values: [f64; 3],
     /// One of each value.
@@ -42,7 +42,7 @@ pub struct TangentPlane {
 
 impl Tensor3 {
     /// The identity: Euclidean length.
-    pub const IDENTITY: Tensor3 = Tensor3::from_disk([1.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
+    pub(crate) const IDENTITY: Tensor3 = Tensor3::from_disk([1.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
 
     /// The tensor with entries m11 m12 m22 m13 m23 m33: the order of Medit's `.sol` files.
     pub const fn from_disk([xx, xy, yy, xz, yz, zz]: [f64; 6]) -> Self {
@@ -55,12 +55,12 @@ impl Tensor3 {
     }
 
     /// The tensor that asks for Euclidean size `h` in every direction: identity / h^2.
-    pub fn isotropic(h: f64) -> Self {
+    pub(crate) fn isotropic(h: f64) -> Self {
         Self::IDENTITY * (1.0 / (h * h))
     }
 
     /// v v'.
-    pub fn square(v: Vector3) -> Self {
+    pub(crate) fn square(v: Vector3) -> Self {
         Self::from_disk([v.x * v.x, v.x * v.y, v.y * v.y, v.x * v.z, v.y * v.z, v.z * v.z])
     }
 
@@ -76,7 +76,7 @@ impl Tensor3 {
     }
 
     /// M v.
-    pub fn apply(self, v: Vector3) -> Vector3 {
+    pub(crate) fn apply(self, v: Vector3) -> Vector3 {
         Vector3::new(
             self.xx * v.x + self.xy * v.y + self.xz * v.z,
             self.xy * v.x + self.yy * v.y + self.yz * v.z,
@@ -85,17 +85,18 @@ impl Tensor3 {
     }
 
     /// u' M v.
-    pub fn dot(self, u: Vector3, v: Vector3) -> f64 {
+    pub(crate) fn dot(self, u: Vector3, v: Vector3) -> f64 {
         u.dot(self.apply(v))
     }
 
     /// Metric length of a vector: sqrt(v' M v).
-    pub fn length(self, v: Vector3) -> f64 {
+    pub(crate) fn length(self, v: Vector3) -> f64 {
         self.dot(v, v).max(0.0).sqrt()
     }
 
     /// Determinant; it cancels where eigenvalues differ by more than about 1e8.
-    pub fn determinant(self) -> f64 {
+    #[cfg(test)]
+    pub(crate) fn determinant(self) -> f64 {
         let minor = Tensor::new(self.yy, self.yz, self.zz).determinant();
         let second = self.xy * self.zz - self.yz * self.xz;
         let third = self.xy * self.yz - self.yy * self.xz;
@@ -103,7 +104,7 @@ impl Tensor3 {
     }
 
     /// Whether all entries are finite.
-    pub fn is_finite(self) -> bool {
+    pub(crate) fn is_finite(self) -> bool {
         self.to_disk().iter().all(|entry| entry.is_finite())
     }
 
@@ -119,7 +120,7 @@ impl Tensor3 {
 
     /// Eigenvalues and axes by Jacobi's rotations (Golub and Van Loan 2013, section 8.5): any symmetric tensor with
     /// finite entries, each eigenvalue to about 1e-16 of the largest.
-    pub fn eigen(self) -> Eigen3 {
+    pub(crate) fn eigen(self) -> Eigen3 {
         let mut m = [[self.xx, self.xy, self.xz], [self.xy, self.yy, self.yz], [self.xz, self.yz, self.zz]];
         let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         for _ in 0..SWEEPS {
@@ -145,14 +146,14 @@ impl Tensor3 {
 
     /// Matrix logarithm of a positive definite tensor.
     #[must_use]
-    pub fn log(self) -> Tensor3 {
+    pub(crate) fn log(self) -> Tensor3 {
         self.map_eigenvalues(f64::ln)
     }
 
     /// Matrix exponential of a symmetric tensor; positive definite. By Taylor's series and squaring (Moler and Van Loan 2003),
     /// which is many times as fast as by eigenvalues: metric fields on surfaces live by it.
     #[must_use]
-    pub fn exp(self) -> Tensor3 {
+    pub(crate) fn exp(self) -> Tensor3 {
         let mean = (self.xx + self.yy + self.zz) / 3.0;
         let deviation = self + Tensor3::IDENTITY * -mean;
         let size = deviation.to_disk().into_iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
@@ -190,7 +191,7 @@ impl TangentPlane {
 
     /// This plane with its axes after the smallest rotation that takes its normal to another (Rodrigues); not the opposite one.
     #[must_use]
-    pub fn turned(&self, normal: Vector3) -> Self {
+    pub(crate) fn turned(&self, normal: Vector3) -> Self {
         let sum = self.normal + normal;
         let turn = |v: Vector3| v - sum * (v.dot(sum) / (1.0 + self.normal.dot(normal)));
         Self { u: turn(self.u), v: turn(self.v), normal }
@@ -203,7 +204,7 @@ impl TangentPlane {
     }
 
     /// The tensor of space that is `m` in the plane and has the eigenvalue `along_normal` across it.
-    pub fn extend(&self, m: Tensor, along_normal: f64) -> Tensor3 {
+    pub(crate) fn extend(&self, m: Tensor, along_normal: f64) -> Tensor3 {
         Tensor3::square(self.u) * m.xx
             + Tensor3::symmetric_product(self.u, self.v) * m.xy
             + Tensor3::square(self.v) * m.yy
@@ -211,7 +212,7 @@ impl TangentPlane {
     }
 
     /// A vector's part in the plane, in the plane's coordinates.
-    pub fn flatten(&self, v: Vector3) -> Vector {
+    pub(crate) fn flatten(&self, v: Vector3) -> Vector {
         Vector::new(v.dot(self.u), v.dot(self.v))
     }
 

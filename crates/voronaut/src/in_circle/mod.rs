@@ -9,11 +9,11 @@ use std::ops::Range;
 /// Where the margin is known this well and still may be zero, four seeds count as being on a circle.
 pub(crate) const RESOLUTION: f64 = 1e-9;
 /// No test has more levels.
-pub const LEVELS: usize = 7;
+pub(crate) const LEVELS: usize = 7;
 
 /// The four seeds around an edge a-b: c to the left, d to the right of a -> b.
 #[derive(Clone, Copy, Debug)]
-pub struct Quad {
+pub(crate) struct Quad {
     /// One end.
     pub a: u32,
     /// The other.
@@ -26,13 +26,13 @@ pub struct Quad {
 
 impl Quad {
     /// The pairs a-b, a-c, b-c, a-d, b-d.
-    pub fn pairs(&self) -> [(u32, u32); 5] {
+    pub(crate) fn pairs(&self) -> [(u32, u32); 5] {
         let Quad { a, b, c, d } = *self;
         [(a, b), (a, c), (b, c), (a, d), (b, d)].map(|(i, j): (u32, u32)| (i.min(j), i.max(j)))
     }
 
     /// The five lengths, if they are known and of geodesics: ways around holes make no triangles that a test could use.
-    pub fn lengths(&self, known: &Lengths) -> Option<[PathLength; 5]> {
+    pub(crate) fn lengths(&self, known: &Lengths) -> Option<[PathLength; 5]> {
         let length = |pair| known.get(&pair).filter(|known| !known.is_vetoed).map(|known| known.length);
         let found = self.pairs().map(length);
         let [Some(ab), Some(ac), Some(bc), Some(ad), Some(bd)] = found else { return None };
@@ -40,7 +40,7 @@ impl Quad {
     }
 
     /// The margin by the lengths that are known.
-    pub fn margin(&self, known: &Lengths) -> Margin {
+    pub(crate) fn margin(&self, known: &Lengths) -> Margin {
         self.lengths(known).map_or(Margin::UNKNOWN, |lengths| margin_from_lengths(&lengths))
     }
 
@@ -53,7 +53,7 @@ impl Quad {
 
 /// The best length known between two seeds.
 #[derive(Clone, Copy, Debug)]
-pub struct Known {
+pub(crate) struct Known {
     /// The length.
     pub length: PathLength,
     /// The level at which it was found; higher levels look for a better one.
@@ -63,11 +63,11 @@ pub struct Known {
 }
 
 /// The best lengths known, by their ends, the smaller first.
-pub type Lengths = HashMap<(u32, u32), Known>;
+pub(crate) type Lengths = HashMap<(u32, u32), Known>;
 
 /// The outcome of a test, and the level that settled it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tested {
+pub(crate) struct Tested {
     /// The outcome.
     pub margin: Margin,
     /// The level.
@@ -75,7 +75,7 @@ pub struct Tested {
 }
 
 /// What knows seeds and the metric between them.
-pub trait InCircle: Sync {
+pub(crate) trait InCircle: Sync {
     /// Whether a level can add to what is known of an edge so far.
     fn may_tell(&self, quad: &Quad, level: usize, lengths: &Lengths, known: Option<Tested>) -> bool;
 
@@ -120,7 +120,7 @@ fn is_settled(known: Option<Tested>) -> bool {
 
 /// What was done. Deterministic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TestCounters {
+pub(crate) struct TestCounters {
     /// Tests settled at each level.
     pub tests: [u64; LEVELS],
     /// Lengths solved for.
@@ -131,7 +131,7 @@ pub struct TestCounters {
 
 /// Lengths and outcomes that are known. They are of one [`InCircle`].
 #[derive(Clone, Debug, Default)]
-pub struct Tests {
+pub(crate) struct Tests {
     /// Lengths, by their ends.
     pub lengths: Lengths,
     /// Outcomes, and the last level that they are from.
@@ -142,19 +142,19 @@ pub struct Tests {
 
 impl Tests {
     /// The outcome for an edge, with all levels up to and including `last`; `None` where it was not tested.
-    pub fn known(&self, quad: &Quad, last: usize) -> Option<Tested> {
+    pub(crate) fn known(&self, quad: &Quad, last: usize) -> Option<Tested> {
         self.outcomes.get(&quad.key()).filter(|outcome| outcome.1 >= last).map(|outcome| outcome.0)
     }
 
     /// Forgets what depends on other seeds than these.
-    pub fn keep(&mut self, is_there: impl Fn(u32) -> bool) {
+    pub(crate) fn keep(&mut self, is_there: impl Fn(u32) -> bool) {
         self.lengths.retain(|&(i, j), _| is_there(i) && is_there(j));
         self.outcomes.retain(|quad, _| quad.iter().all(|&i| is_there(i)));
     }
 
     /// Tests edges with all levels up to and including `last`: in parallel, level by level, so that lengths are solved for in
     /// parallel, too, each once.
-    pub fn test(&mut self, by: &impl InCircle, quads: &[Quad], last: usize) -> Vec<Option<Tested>> {
+    pub(crate) fn test(&mut self, by: &impl InCircle, quads: &[Quad], last: usize) -> Vec<Option<Tested>> {
         let mut found: Vec<Option<Tested>> = quads.iter().map(|quad| self.known(quad, last)).collect();
         let new: Vec<usize> = (0..quads.len()).filter(|&i| found[i].is_none()).collect();
         let (mut open, mut level) = (new.clone(), 0);

@@ -17,7 +17,7 @@ impl Solution {
     /// # Panics
     /// If there is no such vertex.
     #[must_use]
-    pub fn of_vertices(&self, vertices: &[u32]) -> Self {
+    pub(crate) fn of_vertices(&self, vertices: &[u32]) -> Self {
         fn taken<T: Clone>(entries: &[T], vertices: &[u32]) -> Vec<T> {
             vertices.iter().map(|&v| entries[v as usize].clone()).collect()
         }
@@ -34,7 +34,7 @@ impl Solution {
     }
 
     /// How many vertices it has entries of.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.values.count()
     }
 }

@@ -69,7 +69,7 @@ impl Uniform {
     ///
     /// # Errors
     /// [`Error::Metric`].
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         check_tensor_at(self.0, || "every point".into())
     }
 }
@@ -79,7 +79,7 @@ impl Swirl {
     ///
     /// # Errors
     /// [`Error::Parse`].
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         require(self.nu.is_finite(), "metric swirl", "nu", self.nu, "finite")
     }
 }
@@ -89,7 +89,7 @@ impl Shock {
     ///
     /// # Errors
     /// [`Error::Parse`] that names the parameter.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         let place = "metric shock";
         require(self.phi.is_finite() && self.phi >= 0.0, place, "phi", self.phi, "finite and at least 0")?;
         require(self.lambda.is_finite() && self.lambda > 0.0, place, "lambda", self.lambda, "finite and positive")

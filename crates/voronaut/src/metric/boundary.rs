@@ -57,7 +57,7 @@ impl BoundarySizes {
     ///
     /// # Errors
     /// [`Error::Parse`] that names the parameter.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         let Self { h0, growth, aspect, h_max } = *self;
         let place = "metric boundary";
         require(h0.is_finite() && h0 > 0.0, place, "h0", h0, "finite and positive")?;

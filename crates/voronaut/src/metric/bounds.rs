@@ -45,7 +45,7 @@ impl Bounds {
     /// A tensor within the limits comes back bit for bit, and so does one that is not positive definite: limits must
     /// not hide an invalid metric from `check_tensor`.
     #[must_use]
-    pub fn clamp(&self, tensor: Tensor) -> Tensor {
+    pub(crate) fn clamp(&self, tensor: Tensor) -> Tensor {
         if !tensor.is_positive_definite() {
             return tensor;
         }

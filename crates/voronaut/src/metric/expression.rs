@@ -49,7 +49,7 @@ impl Expression {
     }
 
     /// The value at a point; z is not used by expressions of the plane, and is the time of those with one.
-    pub fn at(&self, x: f64, y: f64, z: f64) -> f64 {
+    pub(crate) fn at(&self, x: f64, y: f64, z: f64) -> f64 {
         self.run([x, y, z])
     }
 

@@ -46,13 +46,13 @@ impl SpaceFormula {
     ///
     /// # Errors
     /// [`Error::Parse`] with the column and the place shown.
-    pub fn parse(text: &str) -> Result<Self> {
+    pub(crate) fn parse(text: &str) -> Result<Self> {
         let names = ["m11", "m12", "m22", "m13", "m23", "m33"];
         Ok(Self { entries: entries(text, names, "six", Variables::Space)? })
     }
 
     /// The tensor at a point.
-    pub fn tensor(&self, p: Point3) -> Tensor3 {
+    pub(crate) fn tensor(&self, p: Point3) -> Tensor3 {
         Tensor3::from_disk(self.entries.each_ref().map(|entry| entry.at(p.x, p.y, p.z)))
     }
 }

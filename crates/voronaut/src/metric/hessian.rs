@@ -23,7 +23,7 @@ impl Hessian {
     /// # Errors
     /// [`Error::Metric`] where a second derivative is not finite, or where all are zero; [`Error::Domain`] of triangles that are
     /// not finite.
-    pub fn new(function: Snapshot, norm: Norm, domain: &[[Point; 3]]) -> Result<Self> {
+    pub(crate) fn new(function: Snapshot, norm: Norm, domain: &[[Point; 3]]) -> Result<Self> {
         let (mut sum, mut total) = (0.0, 0.0);
         for ([a, b, c], _) in start(domain)? {
             let middle = Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0);
@@ -75,14 +75,14 @@ mod tests {
         let text = "4*(0.6*x + 0.8*y)^2 - (0.8*x - 0.6*y)^2";
         let truth = Tensor::from_axis(crate::geometry::Vector::new(0.6, 0.8), 8.0, 2.0);
         for p in [Point::new(0.1, 0.9), Point::new(0.5, 0.5)] {
-            assert_close(hessian(text, Norm::INFINITY).unwrap().at(p), truth);
+            assert_close(hessian(text, Norm::new(f64::INFINITY).unwrap()).unwrap().at(p), truth);
             assert_close(hessian(text, Norm::default()).unwrap().at(p), truth * 16.0_f64.powf(-1.0 / 6.0));
         }
     }
 
     #[test]
     fn what_says_nothing_gets_the_floor() {
-        let field = hessian("x^2 / 2", Norm::INFINITY).unwrap();
+        let field = hessian("x^2 / 2", Norm::new(f64::INFINITY).unwrap()).unwrap();
         assert_close(field.at(Point::new(0.3, 0.3)), Tensor::new(1.0, 0.0, FLOOR));
     }
 

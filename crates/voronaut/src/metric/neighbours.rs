@@ -3,29 +3,38 @@
 use crate::mesh::Mesh;
 
 /// The neighbours of every vertex in ascending order, one list after the other.
-pub(super) struct Neighbours {
+pub(crate) struct Neighbours {
     starts: Vec<usize>,
     lists: Vec<u32>,
 }
 
 impl Neighbours {
     /// Of a mesh whose numbers are valid.
-    pub(super) fn of(mesh: &Mesh) -> Self {
-        let both_ways = |&[a, b, c]: &[u32; 3]| [[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]];
-        let mut pairs: Vec<[u32; 2]> = mesh.triangles.iter().flat_map(both_ways).collect();
+    pub(crate) fn of(mesh: &Mesh) -> Self {
+        Self::of_triangles(mesh.points.len(), mesh.triangles.iter().copied(), [])
+    }
+
+    /// Of so many vertices: those that share a triangle, and more pairs.
+    pub(crate) fn of_triangles(
+        count: usize,
+        triangles: impl IntoIterator<Item = [u32; 3]>,
+        more: impl IntoIterator<Item = [u32; 2]>,
+    ) -> Self {
+        let edges = triangles.into_iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).chain(more);
+        let mut pairs: Vec<[u32; 2]> = edges.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
         pairs.sort_unstable();
         pairs.dedup();
-        let starts = (0..=mesh.points.len()).map(|v| pairs.partition_point(|pair| (pair[0] as usize) < v)).collect();
+        let starts = (0..=count).map(|v| pairs.partition_point(|pair| (pair[0] as usize) < v)).collect();
         Self { starts, lists: pairs.iter().map(|pair| pair[1]).collect() }
     }
 
     /// Of one vertex; none where it has no triangle.
-    pub(super) fn at(&self, v: usize) -> &[u32] {
+    pub(crate) fn at(&self, v: usize) -> &[u32] {
         &self.lists[self.starts[v]..self.starts[v + 1]]
     }
 
     /// Of any of these vertices, in ascending order.
-    pub(super) fn of_all(&self, vertices: &[u32]) -> Vec<u32> {
+    pub(crate) fn of_all(&self, vertices: &[u32]) -> Vec<u32> {
         let mut is_beside = vec![false; self.count()];
         let mut all = Vec::new();
         self.tell(vertices, &mut is_beside, |w| all.push(w));
@@ -35,7 +44,7 @@ impl Neighbours {
 
     /// The rounds in which word gets from the first vertex of a piece of the mesh to all of that piece, one edge a round; of all
     /// pieces the most. No two vertices of a piece are more than twice as many edges apart.
-    pub(super) fn hops(&self) -> usize {
+    pub(crate) fn hops(&self) -> usize {
         let mut hears = vec![false; self.count()];
         let mut most = 0;
         for first in 0..self.count() {

@@ -16,7 +16,7 @@ pub(super) const FLOOR: f64 = 1e-4;
 ///
 /// Outside the mesh the value is that at the nearest point.
 #[derive(Clone, Debug)]
-pub struct Recovered {
+pub(crate) struct Recovered {
     values: Vec<f64>,
     hessians: Vec<Tensor>,
     mesh: Mesh,
@@ -28,7 +28,7 @@ impl Recovered {
     ///
     /// # Errors
     /// As for [`recover_hessian`].
-    pub fn new(mesh: &Mesh, values: &[f64], recovery: Recovery) -> Result<Self> {
+    pub(crate) fn new(mesh: &Mesh, values: &[f64], recovery: Recovery) -> Result<Self> {
         let hessians = recover_hessian(mesh, values, recovery)?;
         let locator = Locator::new(mesh, "the mesh of the solution")?;
         Ok(Self { values: values.to_vec(), hessians, mesh: mesh.clone(), locator })
@@ -38,7 +38,7 @@ impl Recovered {
     ///
     /// # Errors
     /// [`Error::Metric`] where all are zero.
-    pub fn metric(&self, norm: Norm) -> Result<Sampled> {
+    pub(crate) fn metric(&self, norm: Norm) -> Result<Sampled> {
         let size = self.mean_size();
         let floor = FLOOR * size;
         if size > self.rounding() && floor > 0.0 {
@@ -115,7 +115,7 @@ mod tests {
             assert!((found.value(p) - f(p)).abs() < 1e-9, "{p}");
         }
         // Second derivatives ((6, -1), (-1, 1)), positive definite.
-        let m = found.metric(Norm::INFINITY).unwrap().at(Point::new(0.4, 0.7));
+        let m = found.metric(Norm::new(f64::INFINITY).unwrap()).unwrap().at(Point::new(0.4, 0.7));
         assert!((m.xx - 6.0).abs() + (m.xy + 1.0).abs() + (m.yy - 1.0).abs() < 1e-7, "{m:?}");
     }
 

@@ -44,7 +44,7 @@ impl Sampled {
     ///
     /// # Errors
     /// As [`Sampled::new`]; [`Error::Metric`] where a size is not positive and finite.
-    pub fn sizes(background: &Mesh, sizes: &[f64]) -> Result<Self> {
+    pub(crate) fn sizes(background: &Mesh, sizes: &[f64]) -> Result<Self> {
         check_count(background, "sizes", sizes.len())?;
         if let Some(i) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) {
             let what = format!("the size h = {} is not positive and finite", sizes[i]);

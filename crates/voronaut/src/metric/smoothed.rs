@@ -24,7 +24,7 @@ const KEPT: f64 = 0.5;
 /// # Errors
 /// [`Error::Limit`] for more than [`MOST_SWEEPS`]; as for [`Sampled::new`] where the background is not what it should be or
 /// the field is no metric at one of its vertices.
-pub fn smoothed(field: &dyn MetricField, background: &Mesh, sweeps: u32) -> Result<Sampled> {
+pub(crate) fn smoothed(field: &dyn MetricField, background: &Mesh, sweeps: u32) -> Result<Sampled> {
     if sweeps > MOST_SWEEPS {
         let what = format!("{sweeps} sweeps of smoothing; the limit is {MOST_SWEEPS}");
         let help = "smooth less: K sweeps reach over half the square root of K edges of the background";

@@ -22,7 +22,7 @@ const SETTLED: f64 = 1e-8;
 
 /// Circles of triangles that were measured, with the seeds that they depend on.
 #[derive(Clone, Debug, Default)]
-pub struct Memory(HashMap<[u32; 3], Remembered>);
+pub(crate) struct Memory(HashMap<[u32; 3], Remembered>);
 
 #[derive(Clone, Debug)]
 struct Remembered {

@@ -10,7 +10,7 @@ mod on_canvas;
 mod random;
 
 pub(crate) use estimate::{Estimate, Sites};
-pub use measure::Memory;
+pub(crate) use measure::Memory;
 pub(crate) use on_canvas::circles_on_canvas;
 pub use random::Random;
 
@@ -72,7 +72,7 @@ pub struct Net {
 
 /// A triangulation of seeds whose circles are asked for.
 #[derive(Clone, Copy)]
-pub struct Triangles<'a> {
+pub(crate) struct Triangles<'a> {
     /// The seeds.
     pub seeds: &'a [Point],
     /// Riemannian Delaunay triangles by their seeds, counter-clockwise.
@@ -88,7 +88,7 @@ impl Net {
     ///
     /// For every triangle all seeds are asked that share an edge with one of its corners: a seed in its circle need not
     /// be opposite to one of its sides. Distances know of no holes.
-    pub fn measure(field: &dyn MetricField, found: &Triangles) -> Self {
+    pub(crate) fn measure(field: &dyn MetricField, found: &Triangles) -> Self {
         Self::measure_again(field, found, &mut Memory::default())
     }
 
@@ -144,23 +144,18 @@ impl Net {
     }
 
     /// mu / epsilon: 1 of seeds as even as can be.
-    pub fn lambda(&self) -> f64 {
+    pub(crate) fn lambda(&self) -> f64 {
         self.mu / self.epsilon
     }
 
     /// The power protection of the interior triangles: that of the least protected; infinite where there are none.
-    pub fn delta(&self) -> f64 {
+    pub(crate) fn delta(&self) -> f64 {
         self.interior().map(Ball::protection).fold(f64::INFINITY, f64::min)
     }
 
     /// The power protection of the edges at the border; infinite where there are none.
     pub(crate) fn border_delta(&self) -> f64 {
         self.border.iter().map(Ball::protection).fold(f64::INFINITY, f64::min)
-    }
-
-    /// How many interior triangles are less protected than by a share of epsilon.
-    pub fn unprotected(&self, share: f64) -> usize {
-        self.interior().filter(|ball| ball.protection() < share * self.epsilon).count()
     }
 }
 

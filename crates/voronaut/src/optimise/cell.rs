@@ -61,11 +61,6 @@ impl Cell {
         std::mem::swap(&mut self.corners, &mut self.scratch);
     }
 
-    /// The cell's corners, counter-clockwise.
-    pub fn corners(&self) -> &[Vector] {
-        &self.corners
-    }
-
     /// The cell's moments about the origin.
     pub(crate) fn moments(&self) -> Moments {
         let mut moments = Moments::default();

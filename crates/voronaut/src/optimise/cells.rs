@@ -33,7 +33,7 @@ pub(crate) trait CellsOf<M> {
 }
 
 /// The cells of [`Cells::Tangent`], on surfaces, too.
-pub struct Tangent;
+pub(crate) struct Tangent;
 
 impl<M: Moving> CellsOf<M> for Tangent {
     fn moments(&self, dual: &M) -> Result<Vec<(VertexId, Moments)>> {

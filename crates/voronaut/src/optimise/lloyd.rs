@@ -40,7 +40,7 @@ pub struct Relaxed {
 
 impl Relaxed {
     /// What came after this.
-    pub fn append(&mut self, next: Relaxed) {
+    pub(crate) fn append(&mut self, next: Relaxed) {
         // What happened in between counts as part of the first step.
         let is_first = self.energy.is_empty();
         self.energy.extend(next.energy.into_iter().skip(usize::from(!is_first)));

@@ -20,7 +20,7 @@ pub struct OnCanvas<'a> {
 
 impl<'a> OnCanvas<'a> {
     /// Each vertex stands for a third of its faces, flat with their metric lengths.
-    pub fn new(canvas: &'a Canvas, field: &dyn MetricField) -> Self {
+    pub(crate) fn new(canvas: &'a Canvas, field: &dyn MetricField) -> Self {
         let topology = canvas.topology();
         let mut areas = vec![0.0; canvas.vertex_count()];
         for face in topology.faces() {

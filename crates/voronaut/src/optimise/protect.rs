@@ -64,7 +64,7 @@ pub enum Ending {
 
 /// What was done, and the net that is left.
 #[derive(Clone, Debug)]
-pub struct Protected {
+pub(crate) struct Protected {
     /// Why it ended.
     pub ending: Ending,
     /// Rounds of moves.

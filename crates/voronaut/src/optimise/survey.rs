@@ -115,7 +115,7 @@ fn border_of(topology: &Triangulation) -> Vec<[u32; 2]> {
 }
 
 /// The Riemannian Delaunay triangulation of a dual's seeds, measured.
-pub fn measured(dual: &Dual) -> Net {
+pub(crate) fn measured(dual: &Dual) -> Net {
     let seeds: Vec<Point> = (0..dual.topology().vertex_slots() as u32).map(|v| dual.position(VertexId(v))).collect();
     Survey::default().take(dual, &seeds, dual.topology()).0
 }

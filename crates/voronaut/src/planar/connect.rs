@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 impl Planar {
     /// Flips away every edge between two vertices, so that they are joined by one. `None`, and nothing is changed, where
     /// `Planar::edges_between` finds no way. Whether the edges may be flipped is for the caller to ask before.
-    pub fn connect(&mut self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
+    pub(crate) fn connect(&mut self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
         let ends = |h| [self.topology.origin(h), self.topology.target(h)];
         let mut crossed: VecDeque<[VertexId; 2]> = self.edges_between(a, b)?.into_iter().map(ends).collect();
         // A round flips at least one of the crossed edges (Sloan 1993), which bounds the rounds.

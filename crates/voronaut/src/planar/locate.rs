@@ -23,7 +23,7 @@ impl Planar {
     /// constrained edges, else only at the border.
     ///
     /// In a domain with holes [`Location::Behind`] says only that the straight way is barred.
-    pub fn walk(&self, from: FaceId, to: Point, confined: bool) -> Location {
+    pub(crate) fn walk(&self, from: FaceId, to: Point, confined: bool) -> Location {
         let start = centroid(self.triangle(from));
         let mut entered: Option<HalfEdge> = None;
         let mut face = from;

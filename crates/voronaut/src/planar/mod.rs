@@ -26,7 +26,7 @@ pub struct Planar {
 
 impl Planar {
     /// The position of a vertex.
-    pub fn position(&self, v: VertexId) -> Point {
+    pub(crate) fn position(&self, v: VertexId) -> Point {
         self.positions[v.index()]
     }
 
@@ -36,7 +36,7 @@ impl Planar {
     }
 
     /// The positions of a half-edge's ends.
-    pub fn ends(&self, h: HalfEdge) -> [Point; 2] {
+    pub(crate) fn ends(&self, h: HalfEdge) -> [Point; 2] {
         [self.position(self.topology.origin(h)), self.position(self.topology.target(h))]
     }
 
@@ -53,12 +53,12 @@ impl Planar {
     }
 
     /// The Euclidean area of all faces.
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         self.topology.faces().map(|f| self.triangle(f)).map(|[a, b, c]| 0.5 * signed_area(a, b, c)).sum()
     }
 
     /// Whether the edge has two faces that form a strictly convex quadrilateral: a flip keeps the embedding.
-    pub fn is_convex(&self, h: HalfEdge) -> bool {
+    pub(crate) fn is_convex(&self, h: HalfEdge) -> bool {
         let Some(t) = self.topology.twin(h) else { return false };
         let [a, b] = self.ends(h);
         let c = self.position(self.topology.apex(h));
@@ -81,7 +81,7 @@ impl Planar {
     }
 
     /// Whether every face is counter-clockwise.
-    pub fn is_embedded(&self) -> bool {
+    pub(crate) fn is_embedded(&self) -> bool {
         self.topology.faces().map(|f| self.triangle(f)).all(|[a, b, c]| orientation(a, b, c) == Orientation::Left)
     }
 }

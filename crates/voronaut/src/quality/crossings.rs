@@ -18,7 +18,7 @@ pub struct Crossing {
 /// All places where two of these polylines meet, in order: pairs of segments that have a point in common that is not an end
 /// of both, by exact predicates. Polylines that share a seed, or bend around the same corner, do not cross there; those
 /// that run along each other do. A polyline is not held against itself. Points that are not finite meet nothing.
-pub fn crossings<P: AsRef<[Point]> + Sync>(paths: &[P]) -> Vec<Crossing> {
+pub(crate) fn crossings<P: AsRef<[Point]> + Sync>(paths: &[P]) -> Vec<Crossing> {
     let mut origins = Vec::new();
     let mut pieces = Vec::new();
     for (path, points) in (0..).zip(paths) {

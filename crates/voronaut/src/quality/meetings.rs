@@ -44,12 +44,13 @@ impl Meetings {
     }
 
     /// How many there are.
-    pub fn count(&self) -> usize {
+    #[cfg(test)]
+    pub(crate) fn count(&self) -> usize {
         self.found().size()
     }
 
     /// Where one of them is.
-    pub fn first(&self) -> Option<Point3> {
+    pub(crate) fn first(&self) -> Option<Point3> {
         self.found().iter().next().map(|met| Point3::from(met.geom().lower()))
     }
 

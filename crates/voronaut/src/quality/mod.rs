@@ -24,7 +24,8 @@ mod test_meshes;
 mod unmet;
 mod validity;
 
-pub use crossings::{Crossing, crossing_edges, crossings};
+pub(crate) use crossings::crossings;
+pub use crossings::{Crossing, crossing_edges};
 pub use fault::Fault;
 pub(crate) use faults::faulty_triangles;
 pub use fidelity::{Farthest, Fidelity, fidelity};

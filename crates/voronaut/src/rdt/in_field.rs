@@ -27,7 +27,7 @@ const OF_SPREAD: f64 = 0.5;
 const OF_EXPANSION: (f64, f64) = (1.0, 5e-4);
 
 /// Seeds of the plane in a metric field, with what levels of tests need of them.
-pub struct InField<'a> {
+pub(crate) struct InField<'a> {
     field: &'a dyn MetricField,
     trust: Trust<'a>,
     paths: Paths,

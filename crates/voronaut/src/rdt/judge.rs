@@ -4,7 +4,7 @@ use crate::geometry::Vector;
 use crate::in_circle::InCircle;
 
 /// Seeds of the plane in a metric field, or of a surface.
-pub trait Judge: InCircle {
+pub(crate) trait Judge: InCircle {
     /// Whether there is such a seed, and a metric there.
     fn is_seed(&self, i: u32) -> bool;
     /// The direction of a seed seen from another, in a frame there.

@@ -5,7 +5,7 @@ use crate::in_circle::{TestCounters, Tests};
 
 /// What a triangulation has found. It is of one field and one [`Trust`](super::Trust).
 #[derive(Clone, Default)]
-pub struct Memory {
+pub(crate) struct Memory {
     seeds: Vec<Point>,
     pub(super) tests: Tests,
 }

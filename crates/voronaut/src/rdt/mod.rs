@@ -15,9 +15,9 @@ mod site;
 mod sides;
 mod start;
 
-pub use in_field::InField;
-pub use judge::Judge;
-pub use memory::Memory;
+pub(crate) use in_field::InField;
+pub(crate) use judge::Judge;
+pub(crate) use memory::Memory;
 pub(crate) use on_surface::OnSurface;
 pub use start::Start;
 
@@ -30,11 +30,11 @@ use std::collections::HashSet;
 
 /// Distances on a canvas, held against geodesics found from the metric alone, which may not be the shortest and know no
 /// holes: of two seeds, their distance and an absolute bound on its error; `None` where it is not known.
-pub type Reference<'a> = &'a (dyn Fn(u32, u32) -> Option<(f64, f64)> + Sync);
+pub(crate) type Reference<'a> = &'a (dyn Fn(u32, u32) -> Option<(f64, f64)> + Sync);
 
 /// How far in-circle tests are followed.
 #[derive(Clone, Copy)]
-pub struct Trust<'a> {
+pub(crate) struct Trust<'a> {
     /// What geodesics are held against. Where they do not agree no test is made, and the start stays as it is.
     pub reference: Option<Reference<'a>>,
     /// The greatest error of a margin whose sign is followed although it is not certain. Above, the start stays as it is.
@@ -50,7 +50,7 @@ impl Default for Trust<'_> {
 
 /// An edge of the triangulation with its in-circle test.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge {
+pub(crate) struct Edge {
     /// The seeds at its ends.
     pub ends: [u32; 2],
     /// The seeds opposite to it: to its left, and to its right, if there is a triangle there.
@@ -70,7 +70,7 @@ impl Edge {
 
 /// What was done. Deterministic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RdtCounters {
+pub(crate) struct RdtCounters {
     /// Triangles of the start left out because others claimed one of their sides, or their corners were not three seeds.
     pub dropped: u64,
     /// Triangles put into small holes of the start.
@@ -94,7 +94,7 @@ pub struct RdtCounters {
 }
 
 /// See the [module](self).
-pub struct Rdt<J> {
+pub(crate) struct Rdt<J> {
     judge: J,
     topology: Triangulation,
     seed_of: Vec<u32>,
@@ -110,13 +110,13 @@ impl<'a> Rdt<InField<'a>> {
     ///
     /// The field may measure in any unit, and seeds may be denser here than there: the scale of a cell is taken from the
     /// start's edges. A seed where the field is no metric is left out.
-    pub fn new(field: &'a dyn MetricField, seeds: &[Point], start: &Start, trust: Trust<'a>) -> Self {
+    pub(crate) fn new(field: &'a dyn MetricField, seeds: &[Point], start: &Start, trust: Trust<'a>) -> Self {
         Self::again(field, seeds, start, trust, Memory::default())
     }
 
     /// [`Rdt::new`] of seeds of which most are where they were when the memory was written (`Rdt::into_memory`): what depends
     /// on no seed that has moved is not tested again.
-    pub fn again(
+    pub(crate) fn again(
         field: &'a dyn MetricField,
         seeds: &[Point],
         start: &Start,
@@ -191,7 +191,7 @@ impl<J: Judge> Rdt<J> {
     }
 
     /// The triangles, counter-clockwise, by the numbers of their seeds.
-    pub fn triangles(&self) -> Vec<[u32; 3]> {
+    pub(crate) fn triangles(&self) -> Vec<[u32; 3]> {
         self.topology.faces().map(|f| self.topology.corners(f).map(|v| self.seed(v))).collect()
     }
 
@@ -202,30 +202,24 @@ impl<J: Judge> Rdt<J> {
 
     /// The topology; its vertices are numbered like the seeds, but for copies where [`RdtCounters::split`] is not zero.
     /// Edges whose length was needed carry it.
-    pub fn topology(&self) -> &Triangulation {
+    pub(crate) fn topology(&self) -> &Triangulation {
         &self.topology
     }
 
     /// The seed of a vertex of the topology.
-    pub fn seed(&self, v: VertexId) -> u32 {
+    pub(crate) fn seed(&self, v: VertexId) -> u32 {
         self.seed_of[v.index()]
     }
 
     /// All edges with their margins.
-    pub fn edges(&self) -> Vec<Edge> {
+    pub(crate) fn edges(&self) -> Vec<Edge> {
         self.topology.edges().map(|h| self.edge(h)).collect()
     }
 
     /// The edges that the start did not have: where the start and the in-circle tests disagree.
-    pub fn disagreements(&self) -> Vec<Edge> {
+    pub(crate) fn disagreements(&self) -> Vec<Edge> {
         let is_new = |e: &Edge| self.started_with.binary_search(&sorted(e.ends)).is_err();
         self.edges().into_iter().filter(is_new).collect()
-    }
-
-    /// The smallest margin of all edges; `None` where no edge has two triangles.
-    pub fn smallest_margin(&self) -> Option<Edge> {
-        let tested = self.edges().into_iter().filter(|e| e.margin.is_some());
-        tested.min_by(|a, b| value(a).total_cmp(&value(b)))
     }
 
     /// The in-circle test of any four seeds around an edge by the lengths known, or found for it.
@@ -240,12 +234,12 @@ impl<J: Judge> Rdt<J> {
     }
 
     /// What was done.
-    pub fn counters(&self) -> &RdtCounters {
+    pub(crate) fn counters(&self) -> &RdtCounters {
         &self.counters
     }
 
     /// The best length known between two seeds; `None` where no test needed one.
-    pub fn length(&self, i: u32, j: u32) -> Option<PathLength> {
+    pub(crate) fn length(&self, i: u32, j: u32) -> Option<PathLength> {
         self.memory.tests.lengths.get(&(i.min(j), i.max(j))).map(|known| known.length)
     }
 
@@ -302,10 +296,6 @@ fn missing(wanted: &[[u32; 3]], found: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
     let found: HashSet<[u32; 3]> = found.iter().map(turned).collect();
     wanted.iter().map(turned).filter(|t| !found.contains(t)).collect()
-}
-
-fn value(edge: &Edge) -> f64 {
-    edge.margin.map_or(f64::INFINITY, |margin| margin.value)
 }
 
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {

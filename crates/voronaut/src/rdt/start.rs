@@ -22,7 +22,7 @@ pub struct Start {
 
 impl Start {
     /// The triangles of a nerve, best [`sharp`](crate::diagram::Diagram::sharp_nerve).
-    pub fn from_nerve(nerve: &Nerve) -> Self {
+    pub(crate) fn from_nerve(nerve: &Nerve) -> Self {
         Self {
             triangles: nerve.triangles.iter().map(|t| t.colours).collect(),
             at_border: nerve.edges.iter().filter(|e| e.border.is_some()).map(|e| e.colours).collect(),

@@ -32,7 +32,7 @@ impl Realisation {
     }
 
     /// The number of the edge between two seeds.
-    pub fn edge_between(&self, a: u32, b: u32) -> Option<usize> {
+    pub(crate) fn edge_between(&self, a: u32, b: u32) -> Option<usize> {
         self.edges.binary_search_by_key(&[a.min(b), a.max(b)], |edge| edge.ends).ok()
     }
 

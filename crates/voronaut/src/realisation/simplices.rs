@@ -17,7 +17,7 @@ pub struct Grid {
 
 impl Grid {
     /// The point with j/n of the second corner and i/n of the third; i + j is at most n.
-    pub fn at(&self, j: usize, i: usize) -> Point {
+    pub(crate) fn at(&self, j: usize, i: usize) -> Point {
         // Rows before this one have n + 1, n, ... points.
         self.points[i * (2 * self.sides + 3 - i) / 2 + j]
     }
@@ -32,7 +32,7 @@ impl Grid {
     }
 
     /// Whether all its straight pieces are counter-clockwise, so that the map is one-to-one as far as it shows.
-    pub fn is_embedded(&self) -> bool {
+    pub(crate) fn is_embedded(&self) -> bool {
         let is_left = |a, b, c| orientation(a, b, c) == Orientation::Left;
         let n = self.sides;
         (0..n).all(|i| {

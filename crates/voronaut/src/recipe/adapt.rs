@@ -28,7 +28,7 @@ pub struct LoopOptions {
 }
 
 /// A user's solver: from the number of the step, a mesh and solutions there to start from (`None` at first) to solutions there.
-pub type Solver<'a> = dyn FnMut(usize, &Mesh, Option<&Solutions>) -> Result<Solutions> + 'a;
+pub(crate) type Solver<'a> = dyn FnMut(usize, &Mesh, Option<&Solutions>) -> Result<Solutions> + 'a;
 
 /// What the meshes are for.
 pub enum Source<'a> {

@@ -18,7 +18,12 @@ const RESERVE: f64 = 0.9;
 const ROUNDS: usize = 3;
 
 /// The certificate of a diagram whose exact dual is known.
-pub fn certify(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]], constants: Constants) -> Certificate {
+pub(crate) fn certify(
+    diagram: &Diagram,
+    field: &dyn MetricField,
+    exact: &[[u32; 3]],
+    constants: Constants,
+) -> Certificate {
     Certificate::new(diagram, field, exact, &net(diagram, field, exact), constants)
 }
 

@@ -20,8 +20,8 @@ mod stopwatch;
 mod surface_dual;
 mod surface_pass;
 
-pub use adapt::{LoopOptions, Solver, Source, Step, adapt};
-pub use certified::{certified_canvas, certify};
+pub use adapt::{LoopOptions, Source, Step, adapt};
+pub use certified::certified_canvas;
 pub use dual::{SeedDual, dual, net};
 pub use field::{
     MetricOptions, PlanarMetric, SMOOTH_METRIC, metric, metric_named, metric_of_function, metric_of_solution,

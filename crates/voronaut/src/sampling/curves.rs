@@ -10,7 +10,7 @@ use rstar::{AABB, RTree};
 /// The domain with fewer vertices along its curves: about one per unit of metric length, more where an edge would
 /// stray farther than `tolerance` (Euclidean) from the vertices that it skips. Ends of curves stay, loops keep at
 /// least three vertices, and where simplified curves would meet, they are kept finer, if need be as they were.
-pub fn simplify(domain: &Domain, field: &dyn MetricField, tolerance: f64) -> Domain {
+pub(crate) fn simplify(domain: &Domain, field: &dyn MetricField, tolerance: f64) -> Domain {
     let pslg = domain.pslg();
     let chains = pslg.chains();
     let neighbours = Neighbours::new(pslg);

@@ -44,14 +44,14 @@ pub struct Farthest {
 
 impl Farthest {
     /// The vertices that may become seeds, as `accept` says.
-    pub fn new<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, accept: impl Fn(VertexId) -> bool) -> Self {
+    pub(crate) fn new<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, accept: impl Fn(VertexId) -> bool) -> Self {
         let vertices = (0..diagram.vertex_count() as u32).map(VertexId).filter(|&v| accept(v));
         Self { heap: vertices.map(|of| Entry { value: diagram.distance(of), of }).collect() }
     }
 
     /// Takes out the farthest vertex, with its distance; `None` where none is left that is no seed itself. Between
     /// [`Farthest::new`] and this seeds may have been inserted into the diagram, not removed.
-    pub fn pop<'a, G: Ground<'a>>(&mut self, diagram: &Diagram<'a, G>) -> Option<(VertexId, f64)> {
+    pub(crate) fn pop<'a, G: Ground<'a>>(&mut self, diagram: &Diagram<'a, G>) -> Option<(VertexId, f64)> {
         loop {
             let mut first = self.heap.peek_mut()?;
             let now = diagram.distance(first.of);
@@ -72,7 +72,7 @@ impl Farthest {
 /// Seeds are inserted with rough starts (`Diagram::insert_roughly`).
 ///
 /// A vertex at which the plane allows no seed (rounding) is passed over. Returns the number of seeds.
-pub fn refine_farthest(dual: &mut Dual, diagram: &mut Diagram, fill: Fill, progress: &dyn Progress) -> usize {
+pub(crate) fn refine_farthest(dual: &mut Dual, diagram: &mut Diagram, fill: Fill, progress: &dyn Progress) -> usize {
     let canvas = diagram.canvas();
     let topology = &canvas.embedded().topology;
     let is_free = |v: VertexId| topology.star(v).all(|h| !topology.is_fixed(h) && !topology.is_fixed(h.prev()));

@@ -20,7 +20,7 @@ const FAR: f64 = 2.5;
 
 /// How many vertices refinement goes for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fill {
+pub(crate) enum Fill {
     /// This many, if need be by halving the longest edges where no circumcentre can be had.
     Exactly(usize),
     /// This many, or fewer where the metric leaves no room.
@@ -29,7 +29,7 @@ pub enum Fill {
 
 impl Fill {
     /// The number.
-    pub fn count(self) -> usize {
+    pub(crate) fn count(self) -> usize {
         let (Fill::Exactly(count) | Fill::AtMost(count)) = self;
         count
     }
@@ -40,7 +40,7 @@ const MOST_PASSES: usize = 100;
 
 /// How refinement went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Refined {
+pub(crate) struct Refined {
     /// Seeds put at circumcentres.
     pub circumcentres: usize,
     /// Constrained edges split because a circumcentre encroached on them.
@@ -52,7 +52,7 @@ pub struct Refined {
 }
 
 /// Inserts seeds until the dual has as many vertices as asked for.
-pub fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Refined {
+pub(crate) fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Refined {
     refine_with(dual, fill, progress, &mut |dual, place, (centre, _)| insert_spaced(dual, place, centre))
 }
 

@@ -14,7 +14,7 @@ use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 const ROUNDS: usize = 10;
 
 /// Seeds of a surface, with a triangulation of the surface.
-pub struct Seeded<'a> {
+pub(crate) struct Seeded<'a> {
     /// The diagram on the canvas.
     pub diagram: SurfaceDiagram<'a>,
     /// The triangles by their colours: those of the Riemannian Delaunay triangulation where that is one of the surface, else
@@ -57,7 +57,7 @@ pub(crate) fn seed_surface<'a>(
 ///
 /// # Errors
 /// As for `seed_surface`.
-pub fn triangulated(diagram: SurfaceDiagram) -> Result<Seeded> {
+pub(crate) fn triangulated(diagram: SurfaceDiagram) -> Result<Seeded> {
     let (dual, poor) = surface_triangulation(&diagram);
     if poor.is_empty() {
         return Ok(Seeded { triangles: dual.triangles(), diagram, added: 0 });

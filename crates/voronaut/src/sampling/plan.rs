@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// What the size of the mesh should follow from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Target {
+pub(crate) enum Target {
     /// This many vertices; the metric is scaled to that.
     Vertices(usize),
     /// This integral of sqrt(det M); the metric is scaled to that.
@@ -25,7 +25,7 @@ const UNIT_TRIANGLE: f64 = 0.433_012_701_892_219_3;
 const BYTES_PER_VERTEX: f64 = 1200.0;
 
 /// A domain measured by a metric.
-pub struct Plan {
+pub(crate) struct Plan {
     /// The integral of sqrt(det M).
     pub complexity: f64,
     /// One half-edge of every constrained edge of the domain's triangulation, and whether it must stay whole.
@@ -41,7 +41,7 @@ impl Plan {
     ///
     /// # Errors
     /// The metric is not positive definite somewhere, or its complexity not finite.
-    pub fn new(domain: &Domain, field: &dyn MetricField, target: Target) -> Result<Self> {
+    pub(crate) fn new(domain: &Domain, field: &dyn MetricField, target: Target) -> Result<Self> {
         let planar = domain.planar();
         let required = |h| planar.topology.constraint(h).is_some_and(|c| domain.pslg().segments[c.0 as usize].required);
         let constrained = planar.topology.edges().filter(|&h| planar.topology.constraint(h).is_some());
@@ -54,17 +54,17 @@ impl Plan {
     }
 
     /// Vertices of the domain itself, with copies: no mesh has fewer.
-    pub fn corners(&self) -> usize {
+    pub(crate) fn corners(&self) -> usize {
         self.corners
     }
 
     /// Vertices that are there twice while meshing, and joined in the mesh: where the domain touches itself in a point.
-    pub fn copies(&self) -> usize {
+    pub(crate) fn copies(&self) -> usize {
         self.copies
     }
 
     /// Vertices on the boundary and interfaces when the metric is multiplied by `scale`.
-    pub fn boundary_vertices(&self, scale: f64) -> f64 {
+    pub(crate) fn boundary_vertices(&self, scale: f64) -> f64 {
         let cuts = |(arc, &(_, required)): (&MetricArc, &(HalfEdge, bool))| {
             if required { 0.0 } else { pieces(arc.length() * scale.sqrt()) as f64 - 1.0 }
         };
@@ -73,7 +73,7 @@ impl Plan {
 
     /// Expected vertices of the unit mesh of the metric times `scale`: half its triangles plus half its boundary
     /// (Euler), with all triangles equilateral.
-    pub fn expected_vertices(&self, scale: f64) -> f64 {
+    pub(crate) fn expected_vertices(&self, scale: f64) -> f64 {
         let boundary = self.boundary_vertices(scale);
         boundary.max(0.5 * scale * self.complexity / UNIT_TRIANGLE + 0.5 * boundary)
     }
@@ -104,7 +104,7 @@ impl Plan {
     /// # Errors
     /// [`Error::Limit`] where the mesh is estimated to need more memory than `memory_limit` bytes, or more vertices
     /// than ids can number.
-    pub fn start(&self, target: Target, memory_limit: u64) -> Result<(usize, f64)> {
+    pub(crate) fn start(&self, target: Target, memory_limit: u64) -> Result<(usize, f64)> {
         let (count, scale) = match target {
             Target::Vertices(n) => ((n + self.copies) as f64, self.scale_for((n + self.copies) as f64)),
             Target::Complexity(c) => (self.expected_vertices(c / self.complexity), c / self.complexity),

@@ -8,7 +8,7 @@ use crate::triangulation::{HalfEdge, VertexId};
 
 /// Metric length along a straight segment, as a piecewise linear function of the parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MetricArc {
+pub(crate) struct MetricArc {
     /// Breakpoints (parameter in 0..=1, metric length from the start), both increasing.
     breaks: Vec<(f64, f64)>,
 }
@@ -21,7 +21,7 @@ const MAX_DEPTH: u32 = 16;
 
 impl MetricArc {
     /// Measures the segment a-b, with pieces as fine as the field needs.
-    pub fn new(field: &dyn MetricField, a: Point, b: Point) -> Self {
+    pub(crate) fn new(field: &dyn MetricField, a: Point, b: Point) -> Self {
         let mut arc = Self { breaks: vec![(0.0, 0.0)] };
         let whole = chord(field, a, b);
         arc.measure(&|t0, t1| chord(field, a.lerp(b, t0), a.lerp(b, t1)), (0.0, 1.0), whole, MAX_DEPTH);
@@ -29,7 +29,7 @@ impl MetricArc {
     }
 
     /// Metric length of the whole segment.
-    pub fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.breaks[self.breaks.len() - 1].1
     }
 
@@ -66,7 +66,7 @@ pub(super) fn pieces(length: f64) -> usize {
 /// under the unscaled field, in order, and `scale` the field's factor. Required segments stay whole.
 ///
 /// A cut that rounding would make invalid is left out. Returns the number of new vertices.
-pub fn sample_segments(dual: &mut Dual, edges: &[(HalfEdge, bool)], arcs: &[MetricArc], scale: f64) -> usize {
+pub(crate) fn sample_segments(dual: &mut Dual, edges: &[(HalfEdge, bool)], arcs: &[MetricArc], scale: f64) -> usize {
     let before = dual.vertex_count();
     let ends: Vec<_> = edges.iter().map(|&(h, _)| [dual.topology().origin(h), dual.topology().target(h)]).collect();
     for ((&(_, required), arc), [from, to]) in edges.iter().zip(arcs).zip(ends) {

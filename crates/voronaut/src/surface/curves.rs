@@ -41,12 +41,12 @@ pub struct CurveEdge {
 
 impl Curve {
     /// The first vertex and the last.
-    pub fn ends(&self) -> [VertexId; 2] {
+    pub(crate) fn ends(&self) -> [VertexId; 2] {
         [self.edges[0].from, self.edges[self.edges.len() - 1].to]
     }
 
     /// Whether only one triangle has each edge.
-    pub fn is_border(&self) -> bool {
+    pub(crate) fn is_border(&self) -> bool {
         self.edges[0].sides.contains(&None)
     }
 }
@@ -62,7 +62,7 @@ impl CurveEdge {
     }
 
     /// Where it begins and ends in space.
-    pub fn positions(&self, surface: &Surface) -> [Point3; 2] {
+    pub(crate) fn positions(&self, surface: &Surface) -> [Point3; 2] {
         [self.from, self.to].map(|v| surface.position(v))
     }
 
@@ -73,7 +73,7 @@ impl CurveEdge {
 
     /// The place with this parameter, from 0 at the beginning to 1 at the end, in the triangle on each side. All have the same
     /// position to the bit.
-    pub fn places(&self, surface: &Surface, t: f64) -> Vec<Place> {
+    pub(crate) fn places(&self, surface: &Surface, t: f64) -> Vec<Place> {
         let [a, b] = self.positions(surface);
         let position = a.lerp(b, t);
         let on = |(side, t): (Option<HalfEdge>, f64)| {
@@ -94,7 +94,7 @@ impl Surface {
     /// Its features as curves, cut at stops: where one ends, forks, bends by more than the angle of the options, where marks
     /// change, at corners and required vertices of the input and at the ends of required edges. Creases of fewer than five
     /// edges that end inside a patch do not count, unless the input lists them.
-    pub fn curves(&self, options: &FeatureOptions) -> Curves {
+    pub(crate) fn curves(&self, options: &FeatureOptions) -> Curves {
         let found = self.topology.edges().filter_map(|h| Some((h, self.feature(h, options)?)));
         let edges: Vec<(CurveEdge, Mark)> = found.map(|(h, mark)| (CurveEdge::of(self, h), mark)).collect();
         let mut at: Vec<Vec<usize>> = vec![Vec::new(); self.positions.len()];

@@ -26,7 +26,7 @@ pub struct Seams {
 
 /// The topology of a surface before it was cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Whole {
+pub(crate) struct Whole {
     /// Vertices minus edges plus triangles.
     pub euler: isize,
     /// How many closed curves its border consists of.
@@ -56,12 +56,12 @@ impl Seams {
     }
 
     /// The numbers that a vertex of the surface before has now.
-    pub fn copies(&self, v: VertexId) -> &[VertexId] {
+    pub(crate) fn copies(&self, v: VertexId) -> &[VertexId] {
         &self.copies[v.index()]
     }
 
     /// The topology of the surface before.
-    pub fn whole(&self) -> Whole {
+    pub(crate) fn whole(&self) -> Whole {
         self.whole
     }
 

@@ -40,7 +40,7 @@ impl Surface {
     }
 
     /// What the input says of an edge, and what its triangles do; `None` of an edge that is no feature.
-    pub fn feature(&self, h: HalfEdge, options: &FeatureOptions) -> Option<Mark> {
+    pub(crate) fn feature(&self, h: HalfEdge, options: &FeatureOptions) -> Option<Mark> {
         let t = &self.topology;
         let listed = t.constraint(h).map(|Constraint(i)| self.marks[i as usize]);
         let is_required = [Some(h), t.twin(h)].into_iter().flatten().any(|side| self.is_required(side));

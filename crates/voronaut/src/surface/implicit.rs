@@ -46,7 +46,7 @@ impl Curvatures {
     /// The metric of RR-9103, 15.1: eigenvalues |c| along the principal directions, at least `floor` (positive), so that
     /// it stays positive definite where the surface is flat, and at most `cap`. An edge of metric length 1 strays about an eighth of a unit of
     /// length from the surface. Across it, where no edge sees anything, the larger of both.
-    pub fn metric(&self, [floor, cap]: [f64; 2]) -> Tensor3 {
+    pub(crate) fn metric(&self, [floor, cap]: [f64; 2]) -> Tensor3 {
         let [most, least] = self.values.map(|c| c.abs().min(cap).max(floor));
         Tensor3::from_axes([self.axes[0], self.axes[1], self.normal], [most, least, most])
     }
@@ -55,7 +55,7 @@ impl Curvatures {
 /// The principal curvatures of the level surface of f through a point, with grad f as normal: the eigenvalues of
 /// P (H / |grad f|) P in the tangent plane (RR-9103, 15.1; as printed H is multiplied by |grad f|: for a sphere of radius
 /// R that gives 4 R, not 1 / R). `None` where the gradient is zero or not finite.
-pub fn curvatures(jet: &Jet3) -> Option<Curvatures> {
+pub(crate) fn curvatures(jet: &Jet3) -> Option<Curvatures> {
     let normal = jet.gradient.unit()?;
     let plane = TangentPlane::new(normal);
     let shape = plane.restrict(jet.hessian) * (1.0 / jet.gradient.norm());
@@ -67,7 +67,7 @@ const STEPS: usize = 50;
 
 /// The point of f = 0 that Newton's method along the gradient reaches from `p`, with |f| / |grad f| at most `tolerance`
 /// (a length); `None` where it goes farther than `reach` from `p`, or finds no gradient.
-pub fn project(f: &dyn Implicit, p: Point3, reach: f64, tolerance: f64) -> Option<Point3> {
+pub(crate) fn project(f: &dyn Implicit, p: Point3, reach: f64, tolerance: f64) -> Option<Point3> {
     project_pinned(f, p, Pins::default(), reach, tolerance)
 }
 

@@ -168,7 +168,7 @@ impl Input {
     }
 
     /// The unit normal of the surface at a place: exact of an equation, else between those of the triangle's corners.
-    pub fn normal(&self, place: &Place) -> Vector3 {
+    pub(crate) fn normal(&self, place: &Place) -> Vector3 {
         if self.implicit.is_some() {
             return place.normal;
         }

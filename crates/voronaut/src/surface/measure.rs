@@ -43,14 +43,14 @@ impl Surface {
     }
 
     /// The angle of a half-edge's triangle at its origin, in radians.
-    pub fn angle(&self, h: HalfEdge) -> f64 {
+    pub(crate) fn angle(&self, h: HalfEdge) -> f64 {
         let at = self.position(self.topology.origin(h));
         let [u, v] = [self.topology.target(h), self.topology.apex(h)].map(|v| self.position(v) - at);
         u.cross(v).norm().atan2(u.dot(v))
     }
 
     /// The sum of the triangles' areas.
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         self.topology.faces().map(|f| 0.5 * self.area_vector(f).norm()).sum()
     }
 

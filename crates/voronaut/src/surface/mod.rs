@@ -39,18 +39,19 @@ mod written;
 
 pub(crate) use chart::Chart;
 pub use curves::{Curve, CurveEdge, Curves};
-pub use cut::{Seams, Whole};
+pub use cut::Seams;
+pub(crate) use cut::Whole;
 pub use features::{FeatureOptions, Mark};
-pub use implicit::Curvatures;
-pub(crate) use implicit::closest_zero;
-pub use implicit::{Implicit, curvatures, project};
+pub use implicit::{Curvatures, Implicit};
+pub(crate) use implicit::{closest_zero, curvatures, project};
 pub use input::Input;
 pub(crate) use march::mesh_implicit;
 pub use measure::Component;
-pub(crate) use nearest::closest_weights;
-pub use nearest::{Closest, Nearest};
-pub use repair::{Damage, Mended, RepairOptions, repaired};
-pub use shapes::{chair, sphere, torus};
+pub(crate) use nearest::{Nearest, closest_weights};
+pub use repair::{Mended, RepairOptions, repaired};
+#[cfg(test)]
+pub(crate) use shapes::chair;
+pub use shapes::{sphere, torus};
 pub use written::shape;
 
 use crate::geometry::{Point3, Vector3};
@@ -103,27 +104,28 @@ impl Surface {
     }
 
     /// One label per vertex slot; 0 for none.
-    pub fn point_labels(&self) -> &[i32] {
+    pub(crate) fn point_labels(&self) -> &[i32] {
         &self.point_labels
     }
 
     /// What the input says of a fixed edge.
-    pub fn mark(&self, constraint: Constraint) -> Mark {
+    pub(crate) fn mark(&self, constraint: Constraint) -> Mark {
         self.marks[constraint.0 as usize]
     }
 
     /// Vertices that the input marks as corners, in order.
-    pub fn corners(&self) -> &[VertexId] {
+    #[cfg(test)]
+    pub(crate) fn corners(&self) -> &[VertexId] {
         &self.corners
     }
 
     /// Vertices that the input marks as required, in order.
-    pub fn required_points(&self) -> &[VertexId] {
+    pub(crate) fn required_points(&self) -> &[VertexId] {
         &self.required_points
     }
 
     /// Triangles that the input marks as required, in order.
-    pub fn required_triangles(&self) -> &[FaceId] {
+    pub(crate) fn required_triangles(&self) -> &[FaceId] {
         &self.required_triangles
     }
 
@@ -138,7 +140,7 @@ impl Surface {
     }
 
     /// The place with these barycentric coordinates in a triangle.
-    pub fn place(&self, face: FaceId, weights: [f64; 3]) -> Place {
+    pub(crate) fn place(&self, face: FaceId, weights: [f64; 3]) -> Place {
         Place { position: Point3::weighted(self.triangle(face), weights), face, weights, normal: self.normal(face) }
     }
 

@@ -7,13 +7,13 @@ use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
 /// The triangles of a surface in a tree of boxes: one search costs about the logarithm of their number.
 #[derive(Clone, Debug)]
-pub struct Nearest {
+pub(crate) struct Nearest {
     tree: RTree<Triangle>,
 }
 
 /// What of a surface is closest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closest {
+pub(crate) struct Closest {
     /// The closest point, and where on the surface it is.
     pub place: Place,
     /// Its distance.
@@ -28,19 +28,19 @@ struct Triangle {
 
 impl Nearest {
     /// Puts all triangles of a surface into a tree.
-    pub fn new(surface: &Surface) -> Self {
+    pub(crate) fn new(surface: &Surface) -> Self {
         let triangles = surface.topology().faces().map(|face| Triangle { corners: surface.triangle(face), face });
         Self { tree: RTree::bulk_load(triangles.collect()) }
     }
 
     /// Puts triangles of no surface into a tree: for distances alone.
-    pub fn of(triangles: impl Iterator<Item = [Point3; 3]>) -> Self {
+    pub(crate) fn of(triangles: impl Iterator<Item = [Point3; 3]>) -> Self {
         let triangles = triangles.zip(0..).map(|(corners, i)| Triangle { corners, face: FaceId(i) });
         Self { tree: RTree::bulk_load(triangles.collect()) }
     }
 
     /// The distance of `p` to the closest triangle. `None` without triangles, or where `p` is not finite.
-    pub fn distance(&self, p: Point3) -> Option<f64> {
+    pub(crate) fn distance(&self, p: Point3) -> Option<f64> {
         if !p.is_finite() {
             return None;
         }
@@ -50,7 +50,7 @@ impl Nearest {
 
     /// The point of the surface that is closest to `p`; of several, one. `surface` is the one the tree was made of.
     /// `None` where `p` is not finite.
-    pub fn closest(&self, surface: &Surface, p: Point3) -> Option<Closest> {
+    pub(crate) fn closest(&self, surface: &Surface, p: Point3) -> Option<Closest> {
         if !p.is_finite() {
             return None;
         }

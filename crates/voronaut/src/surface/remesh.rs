@@ -6,7 +6,9 @@ use super::implicit::unpinned;
 use super::level::{Level, Vertex, quality};
 use super::{Implicit, Surface};
 use crate::error::{Error, Result};
-use crate::geometry::{Aabb3, Point3, Vector3};
+use crate::geometry::{Aabb3, Point3, Tensor, Vector, Vector3};
+use crate::metric::Neighbours;
+use crate::metric::nodal::{Connection, Gradation, Limits};
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 use rayon::prelude::*;
 
@@ -53,7 +55,7 @@ const MOST_VERTICES: usize = 10_000_000;
 pub(super) fn remesh(surface: &Surface, f: &dyn Implicit, bounds: Aabb3, edge: f64, tolerance: f64) -> Result<Surface> {
     let mut level = Level::new(surface, f, bounds, LOOSE * edge);
     for round in 0..ROUNDS {
-        grade(&mut level, edge);
+        grade(&mut level, edge)?;
         split(&mut level, edge, round == 0)?;
         collapse(&mut level);
         flip(&mut level);
@@ -65,24 +67,37 @@ pub(super) fn remesh(surface: &Surface, f: &dyn Implicit, bounds: Aabb3, edge: f
 }
 
 /// Sizes by curvature, and then such that they grow slowly.
-fn grade(level: &mut Level, edge: f64) {
-    for vertex in &mut level.vertices {
-        vertex.size = (BEND / vertex.curvature).clamp(FINEST * edge, edge);
+fn grade(level: &mut Level, edge: f64) -> Result<()> {
+    let size = |vertex: &Vertex| (BEND / vertex.curvature).clamp(FINEST * edge, edge);
+    let mut sizes: Vec<Tensor> = level.vertices.iter().map(|vertex| Tensor::isotropic(size(vertex))).collect();
+    let t = &level.topology;
+    let around = Neighbours::of_triangles(sizes.len(), t.faces().map(|f| t.corners(f).map(|v| v.0)), []);
+    let gradation = Gradation::new(Lengths { vertices: &level.vertices, around }, GRADATION.exp())?;
+    gradation.apply(&mut sizes, &Limits::default())?;
+    for (vertex, size) in level.vertices.iter_mut().zip(sizes) {
+        vertex.size = 1.0 / size.xx.sqrt();
     }
-    let edges: Vec<HalfEdge> = level.topology.edges().collect();
-    let relax = |level: &mut Level, h: HalfEdge| {
-        let [v, w] = [level.topology.origin(h), level.topology.target(h)].map(VertexId::index);
-        let grown = GRADATION * level.length(h);
-        let [a, b] = [v, w].map(|i| level.vertices[i].size);
-        (level.vertices[v].size, level.vertices[w].size) = (a.min(b + grown), b.min(a + grown));
-        a > b + grown || b > a + grown
-    };
-    for _ in 0..PASSES {
-        let forth = edges.iter().filter(|&&h| relax(level, h)).count();
-        let back = edges.iter().rev().filter(|&&h| relax(level, h)).count();
-        if forth + back == 0 {
-            break;
-        }
+    Ok(())
+}
+
+/// Sizes that are the same in all directions need no planes.
+struct Lengths<'a> {
+    vertices: &'a [Vertex],
+    around: Neighbours,
+}
+
+impl Connection for Lengths<'_> {
+    fn around(&self) -> &Neighbours {
+        &self.around
+    }
+
+    fn offset(&self, v: u32, w: u32) -> Vector {
+        let [a, b] = [v, w].map(|v| self.vertices[v as usize].position);
+        Vector::new(a.distance(b), 0.0)
+    }
+
+    fn transported(&self, _: u32, _: u32, tensor: Tensor) -> Tensor {
+        tensor
     }
 }
 

@@ -82,7 +82,7 @@ pub fn torus(ring: f64, tube: f64, edge: f64) -> Result<Surface> {
 ///
 /// # Errors
 /// As for `mesh_implicit`.
-pub fn chair(edge: Option<f64>) -> Result<Surface> {
+pub(crate) fn chair(edge: Option<f64>) -> Result<Surface> {
     let corner = |s: f64| Point3::new(s, s, s);
     let f = Expression::parse(CHAIR, Variables::Space)?;
     mesh_implicit(&f, Aabb3 { min: corner(-CHAIR_BOX), max: corner(CHAIR_BOX) }, edge)

@@ -28,30 +28,30 @@ impl VertexId {
 
 impl FaceId {
     /// As an array index.
-    pub fn index(self) -> usize {
+    pub(crate) fn index(self) -> usize {
         self.0 as usize
     }
 
     /// The three half-edges of the face, counter-clockwise.
-    pub fn half_edges(self) -> [HalfEdge; 3] {
+    pub(crate) fn half_edges(self) -> [HalfEdge; 3] {
         [3 * self.0, 3 * self.0 + 1, 3 * self.0 + 2].map(HalfEdge)
     }
 }
 
 impl HalfEdge {
     /// As an array index.
-    pub fn index(self) -> usize {
+    pub(crate) fn index(self) -> usize {
         self.0 as usize
     }
 
     /// The face on the left.
-    pub fn face(self) -> FaceId {
+    pub(crate) fn face(self) -> FaceId {
         FaceId(self.0 / 3)
     }
 
     /// The next half-edge of the face, counter-clockwise.
     #[must_use]
-    pub fn next(self) -> HalfEdge {
+    pub(crate) fn next(self) -> HalfEdge {
         HalfEdge(if self.0 % 3 == 2 { self.0 - 2 } else { self.0 + 1 })
     }
 

@@ -14,7 +14,7 @@ pub use check::Broken;
 pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
 pub use lawson::Limit;
 pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_in_rounds};
-pub use star::Star;
+pub(crate) use star::Star;
 
 use ids::NONE;
 
@@ -91,7 +91,7 @@ impl Triangulation {
     }
 
     /// Number of living vertices.
-    pub fn vertex_count(&self) -> usize {
+    pub(crate) fn vertex_count(&self) -> usize {
         self.start.len() - self.free_vertices.len()
     }
 
@@ -106,7 +106,7 @@ impl Triangulation {
     }
 
     /// All living vertices that belong to a face, in order of their ids.
-    pub fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+    pub(crate) fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
         (0..self.start.len() as u32).map(VertexId).filter(|&v| self.is_vertex(v))
     }
 
@@ -141,7 +141,7 @@ impl Triangulation {
     }
 
     /// The vertex opposite to a half-edge in its face.
-    pub fn apex(&self, h: HalfEdge) -> VertexId {
+    pub(crate) fn apex(&self, h: HalfEdge) -> VertexId {
         self.origin[h.prev().index()]
     }
 
@@ -157,7 +157,7 @@ impl Triangulation {
     }
 
     /// The ends of an edge, from and to, and what is opposite to it on the left and on the right; `None` at the border.
-    pub fn quad(&self, h: HalfEdge) -> Option<[VertexId; 4]> {
+    pub(crate) fn quad(&self, h: HalfEdge) -> Option<[VertexId; 4]> {
         let t = self.twin(h)?;
         Some([self.origin(h), self.target(h), self.apex(h), self.apex(t)])
     }
@@ -174,12 +174,12 @@ impl Triangulation {
     }
 
     /// Metric length of the edge; NaN where not known.
-    pub fn length(&self, h: HalfEdge) -> f64 {
+    pub(crate) fn length(&self, h: HalfEdge) -> f64 {
         self.length[h.index()]
     }
 
     /// Sets the metric length of the edge, on both sides.
-    pub fn set_length(&mut self, h: HalfEdge, length: f64) {
+    pub(crate) fn set_length(&mut self, h: HalfEdge, length: f64) {
         self.length[h.index()] = length;
         if let Some(t) = self.twin(h) {
             self.length[t.index()] = length;
@@ -221,13 +221,13 @@ impl Triangulation {
     }
 
     /// Some half-edge that leaves the vertex; at the border the one whose right side is the border.
-    pub fn start(&self, v: VertexId) -> Option<HalfEdge> {
+    pub(crate) fn start(&self, v: VertexId) -> Option<HalfEdge> {
         let h = self.start[v.index()];
         (h != NONE).then_some(HalfEdge(h))
     }
 
     /// The half-edges that leave a vertex, counter-clockwise; at the border from one end of the fan to the other.
-    pub fn star(&self, v: VertexId) -> Star<'_> {
+    pub(crate) fn star(&self, v: VertexId) -> Star<'_> {
         Star::new(self, v)
     }
 
@@ -237,13 +237,13 @@ impl Triangulation {
     }
 
     /// Vertices minus edges plus faces.
-    pub fn euler_characteristic(&self) -> isize {
+    pub(crate) fn euler_characteristic(&self) -> isize {
         let [v, e] = [self.vertices().count(), self.edges().count()].map(usize::cast_signed);
         v - e + self.face_count().cast_signed()
     }
 
     /// The closed curves of the border, each as its half-edges in order, the faces on their left.
-    pub fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
+    pub(crate) fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
         let mut seen = vec![false; 3 * self.face_slots()];
         let mut loops = Vec::new();
         for start in self.edges().filter(|&h| self.twin(h).is_none()) {
@@ -263,13 +263,13 @@ impl Triangulation {
     }
 
     /// The half-edge from a to b, if a face has it (the first of several).
-    pub fn find(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
+    pub(crate) fn find(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
         self.star(a).find(|&h| self.target(h) == b)
     }
 }
 
 /// The same cycle of three, its smallest member first.
-pub fn smallest_first<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [T; 3] {
+pub(crate) fn smallest_first<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [T; 3] {
     if a < b && a < c {
         [a, b, c]
     } else if b < c {

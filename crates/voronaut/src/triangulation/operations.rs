@@ -27,7 +27,7 @@ impl Triangulation {
     ///
     /// (drawn with h from a to b, faces a b c and b a d). The new edge's length is NaN. The caller owes an edge with
     /// two different faces and no constraint; outer edges of the two may be glued to each other.
-    pub fn flip(&mut self, h: HalfEdge) {
+    pub(crate) fn flip(&mut self, h: HalfEdge) {
         let t = self.twin(h).expect("a border edge has one face and cannot be flipped");
         debug_assert!(!self.is_fixed(h), "a constrained edge cannot be flipped");
         let (c, d) = (self.apex(h), self.apex(t));

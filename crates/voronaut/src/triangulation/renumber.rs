@@ -7,7 +7,7 @@ impl Triangulation {
     /// The same triangulation, its vertices in the given order and its faces in the order in which the stars of those
     /// vertices meet them. Dead slots are gone. The caller lists every living vertex once.
     #[must_use]
-    pub fn renumbered(&self, order: &[VertexId]) -> Self {
+    pub(crate) fn renumbered(&self, order: &[VertexId]) -> Self {
         let mut vertex = vec![NONE; self.vertex_slots()];
         for (new, old) in order.iter().enumerate() {
             vertex[old.index()] = new as u32;

@@ -4,7 +4,7 @@ use super::{HalfEdge, Triangulation, VertexId};
 
 /// The half-edges that leave a vertex, counter-clockwise. See [`Triangulation::star`].
 #[derive(Clone)]
-pub struct Star<'a> {
+pub(crate) struct Star<'a> {
     triangulation: &'a Triangulation,
     first: Option<HalfEdge>,
     next: Option<HalfEdge>,

@@ -60,6 +60,22 @@ fn levels_of_in_circle_tests_are_climbed_in_one_module() {
     assert!(found.all(|source| !source.code.contains("HashMap")), "what is known is kept in one place");
 }
 
+/// In the plane and on surfaces; what differs is how tangent planes hang together.
+#[test]
+fn gradation_is_one_law() {
+    let (all, law) = (sources("voronaut"), "metric/nodal/gradation.rs");
+    let holders = |word: &str| -> Vec<String> {
+        all.iter().filter(|source| source.code.contains(word)).map(|source| source.name.clone()).collect()
+    };
+    for word in ["GRADATION_EXPONENT:", "fn grown(", "gradation_factor.ln()"] {
+        assert_eq!(holders(word), [law], "{word}");
+    }
+    assert_eq!(holders("hgrad.ln()"), [""; 0]);
+    let users =
+        ["metric/nodal/gradation.rs", "metric/nodal/pipeline.rs", "surface/metric/sizing.rs", "surface/remesh.rs"];
+    assert_eq!(holders("Gradation::new("), users, "whoever grades");
+}
+
 #[test]
 fn libraries_never_print() {
     for source in libraries() {

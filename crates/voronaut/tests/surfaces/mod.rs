@@ -1,8 +1,4 @@
-//! Diagrams, duals and meshes on surfaces, against what is known in closed form.
+//! Meshes of surfaces.
 
 mod given;
 mod meshes;
-mod random;
-mod sheet;
-mod sphere;
-mod torus;

@@ -1,4 +1,4 @@
-//! Metrics that change slowly.
+//! Metrics that change slowly: the one law, in the plane and on surfaces.
 
 use super::check;
 use super::restrict::Limits;
@@ -30,7 +30,7 @@ use rayon::prelude::*;
 pub fn grade(mesh: &Mesh, tensors: &[Tensor], gradation_factor: f64) -> Result<Vec<Tensor>> {
     check(mesh, tensors)?;
     let mut graded = tensors.to_vec();
-    Gradation::new(mesh, gradation_factor)?.apply(&mut graded, &Limits::default())?;
+    Gradation::new(FlatConnection::of(mesh), gradation_factor)?.apply(&mut graded, &Limits::default())?;
     Ok(graded)
 }
 
@@ -43,35 +43,78 @@ const PATIENCE: usize = 200;
 /// A round looks at so many vertices one after the other before threads share them.
 const TOGETHER: usize = 256;
 
-/// The law, and where it holds.
-pub(super) struct Gradation<'a> {
+/// Tangent planes at vertices, and how they hang together (in the terms of the field, a discrete connection).
+pub(crate) trait Connection: Sync {
+    /// Who is beside whom.
+    fn around(&self) -> &Neighbours;
+
+    /// The way from a vertex to a neighbour, of the length of their edge, in the plane of the first.
+    fn offset(&self, v: u32, w: u32) -> Vector;
+
+    /// A tensor in the plane of the first vertex, transported into that of its neighbour.
+    fn transported(&self, v: u32, w: u32, tensor: Tensor) -> Tensor;
+}
+
+/// The edges of a planar mesh: all tangent planes are one.
+pub(super) struct FlatConnection<'a> {
     mesh: &'a Mesh,
     around: Neighbours,
+}
+
+impl<'a> FlatConnection<'a> {
+    pub(super) fn of(mesh: &'a Mesh) -> Self {
+        Self { mesh, around: Neighbours::of(mesh) }
+    }
+}
+
+impl Connection for FlatConnection<'_> {
+    fn around(&self) -> &Neighbours {
+        &self.around
+    }
+
+    fn offset(&self, v: u32, w: u32) -> Vector {
+        self.mesh.point(w) - self.mesh.point(v)
+    }
+
+    fn transported(&self, _: u32, _: u32, tensor: Tensor) -> Tensor {
+        tensor
+    }
+}
+
+/// The law ([`grade`]), and where it holds.
+pub(crate) struct Gradation<C> {
+    connection: C,
     growth: f64,
 }
 
-impl<'a> Gradation<'a> {
-    /// On a planar mesh.
-    pub(super) fn new(mesh: &'a Mesh, gradation_factor: f64) -> Result<Self> {
+impl<C: Connection> Gradation<C> {
+    /// Of vertices that hang together so.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] unless the factor is finite and at least 1.
+    pub(crate) fn new(connection: C, gradation_factor: f64) -> Result<Self> {
         if !(gradation_factor >= 1.0 && gradation_factor.is_finite()) {
             let what = format!("gradation_factor = {gradation_factor} is not at least 1");
             let help = "1.3 lets edges grow by a third from one to the next; leave it out for no gradation";
             return Err(Error::parse("metric gradation", what, help));
         }
-        Ok(Self { mesh, around: Neighbours::of(mesh), growth: gradation_factor.ln() })
+        Ok(Self { connection, growth: gradation_factor.ln() })
     }
 
     /// Grades tensors that are within limits, and leaves them there: limits come first, where both cannot be had.
-    pub(super) fn apply(&self, tensors: &mut [Tensor], limits: &Limits) -> Result<()> {
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where it does not settle.
+    pub(crate) fn apply(&self, tensors: &mut [Tensor], limits: &Limits) -> Result<()> {
         let mut sources: Vec<Source> = tensors.par_iter().map(|&m| Source::new(m)).collect();
         let mut waiting = Waiting::all(tensors);
         let mut is_asking = vec![false; tensors.len()];
-        let mut left = tensors.len() * (PATIENCE + 2 * self.around.hops());
+        let mut left = tensors.len() * (PATIENCE + 2 * self.connection.around().hops());
         while let Some(asking) = waiting.next() {
             for &v in &asking {
                 is_asking[v as usize] = true;
             }
-            let beside = self.around.of_all(&asking);
+            let beside = self.connection.around().of_all(&asking);
             left = left.checked_sub(beside.len()).ok_or_else(|| unsettled(self.growth))?;
             let next = |&w: &u32| Some((w, self.finer(w, &sources, &is_asking, limits)?));
             let finer: Vec<(u32, Source)> = beside.par_iter().with_min_len(TOGETHER).filter_map(next).collect();
@@ -92,11 +135,11 @@ impl<'a> Gradation<'a> {
         let own = sources[w as usize].tensor;
         let most = own * (1.0 + SETTLED);
         let mut asked = Vec::new();
-        for &v in self.around.at(w as usize).iter().filter(|&&v| is_asking[v as usize]) {
+        for &v in self.connection.around().at(w as usize).iter().filter(|&&v| is_asking[v as usize]) {
             let from = &sources[v as usize];
             // What is not finer here to begin with is not so when it has grown.
-            if !is_above(own, from.tensor) {
-                let grown = from.grown(self.mesh.point(w) - self.mesh.point(v), self.growth);
+            if !is_above(own, self.connection.transported(v, w, from.tensor)) {
+                let grown = self.connection.transported(v, w, from.grown(self.connection.offset(v, w), self.growth));
                 asked.extend((!is_above(most, grown)).then_some(grown));
             }
         }

@@ -29,11 +29,11 @@ mod waiting;
 pub use combine::{average, intersect};
 pub use complexity::{complexity, normalise};
 pub use gradation::grade;
+pub(crate) use gradation::{Connection, Gradation};
 pub use implied::{implied, isotropic};
 pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source, Touched};
 pub use restrict::{Limit, Limits, restrict};
-pub use spd::absolute;
-pub(crate) use spd::enforce_spd;
+pub(crate) use spd::{absolute, enforce_spd};
 
 use super::sampled::{check_background, check_count};
 use super::validate::check_tensor_at;

@@ -45,7 +45,7 @@ impl Limits {
     ///
     /// # Errors
     /// [`Error::Parse`] that names the parameter, and the vertex of a field.
-    pub fn check(&self, vertices: usize) -> Result<()> {
+    pub(crate) fn check(&self, vertices: usize) -> Result<()> {
         for (name, limit) in [("h_min", &self.h_min), ("h_max", &self.h_max), ("a_max", &self.a_max)] {
             let Some(Limit::Field(values)) = limit else { continue };
             if values.len() != vertices {
@@ -66,7 +66,7 @@ impl Limits {
     }
 
     /// The limits at a vertex.
-    pub fn at(&self, v: usize) -> Bounds {
+    pub(crate) fn at(&self, v: usize) -> Bounds {
         let number = |limit: &Option<Limit>| limit.as_ref().map(|limit| limit.at(v));
         Bounds { h_min: number(&self.h_min), h_max: number(&self.h_max), a_max: number(&self.a_max) }
     }

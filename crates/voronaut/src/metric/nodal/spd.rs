@@ -9,7 +9,7 @@ pub(crate) const LEAST_SHARE: f64 = 1e-6;
 /// The tensor with the same axes and the absolute values of the eigenvalues, at least `floor` each (which is positive): the
 /// metric in which the error of linear interpolation is the same in all directions.
 #[must_use]
-pub fn absolute(hessian: Tensor, floor: f64) -> Tensor {
+pub(crate) fn absolute(hessian: Tensor, floor: f64) -> Tensor {
     hessian.map_eigenvalues(|value| value.abs().max(floor))
 }
 

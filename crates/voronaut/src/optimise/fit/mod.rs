@@ -27,7 +27,7 @@ use system::{Anchors, System};
 
 /// How [`fit`] works.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FitOptions {
+pub(crate) struct FitOptions {
     /// Steps at most: closest points are found, then positions solved for.
     pub steps: usize,
     /// Samples of the surface per triangle of the mesh, beside the surface's vertices; one at least.
@@ -45,7 +45,7 @@ impl Default for FitOptions {
 
 /// A mesh that was fitted to a surface.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fitted {
+pub(crate) struct Fitted {
     /// The mesh with other positions.
     pub mesh: Mesh,
     /// How far mesh and surface were apart.
@@ -62,7 +62,7 @@ pub struct Fitted {
 
 /// Euclidean distances between a mesh and a surface, both ways, at samples of both.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Misfit {
+pub(crate) struct Misfit {
     /// Square root of the mean of both directions' mean square distances, each over the area.
     pub rms: f64,
     /// The greatest distance at a sample: a lower bound of the Hausdorff distance.
@@ -83,7 +83,7 @@ pub struct Misfit {
 ///
 /// # Errors
 /// As [`Surface::new`], of a mesh that is no surface.
-pub fn fit(mesh: &Mesh, surface: &Surface, options: &FitOptions) -> Result<Fitted> {
+pub(crate) fn fit(mesh: &Mesh, surface: &Surface, options: &FitOptions) -> Result<Fitted> {
     let start = Surface::new(mesh)?;
     let samples = Samples::new(surface, options.samples.max(1) * start.topology().face_count());
     let first = samples.assign(surface, &start);

@@ -47,7 +47,7 @@ pub struct Polished {
 ///
 /// # Errors
 /// [`Error::Metric`] where the function is not finite at a vertex, or the metric no metric at one that has moved.
-pub fn polish(
+pub(crate) fn polish(
     dual: &mut Dual,
     function: &dyn ScalarField,
     norm: Norm,

@@ -21,7 +21,7 @@ const EXCHANGED: usize = 16;
 const MOST: usize = 8;
 
 /// What is wanted of a triangulation.
-pub struct Wanted<'a> {
+pub(crate) struct Wanted<'a> {
     /// Places on the border of patches, or at their vertices, that shall be vertices; the only ones of the border.
     pub given: &'a [Place],
     /// The factor on the metric for which edges are of unit length.
@@ -34,7 +34,7 @@ pub struct Wanted<'a> {
 
 /// What is near a triangle.
 #[derive(Clone, Copy, Debug)]
-pub struct Held {
+pub(crate) struct Held {
     /// The triangle.
     pub corners: [Point3; 3],
     /// How far (Euclidean) around it.
@@ -48,7 +48,7 @@ impl Held {
 }
 
 /// A triangulation of a surface.
-pub struct Adapted {
+pub(crate) struct Adapted {
     /// Its vertices: first the given ones, in order, then those that are held.
     pub places: Vec<Place>,
     /// How many these are.
@@ -60,7 +60,7 @@ pub struct Adapted {
 }
 
 /// Adapts the triangles of a surface. `None` where two of the given places are one vertex.
-pub fn adapted(input: &Input, metric: &dyn SurfaceMetric, wanted: &Wanted) -> Option<Adapted> {
+pub(crate) fn adapted(input: &Input, metric: &dyn SurfaceMetric, wanted: &Wanted) -> Option<Adapted> {
     let mut work = Work::new(input, metric, wanted)?;
     // Large triangles turn over less easily; where the border cannot be had of them, smaller ones may let it go.
     work.contract_border();

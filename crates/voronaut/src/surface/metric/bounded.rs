@@ -19,7 +19,7 @@ impl<F: SurfaceMetric> Bounded<F> {
     ///
     /// # Errors
     /// As [`Bounds::check`].
-    pub fn new(field: F, bounds: Bounds) -> Result<Self> {
+    pub(crate) fn new(field: F, bounds: Bounds) -> Result<Self> {
         bounds.check()?;
         Ok(Self { field, bounds })
     }

@@ -22,7 +22,7 @@ impl Sampled {
     ///
     /// # Errors
     /// [`Error::Metric`] where numbers of tensors and vertices differ, or that of a vertex of a triangle is no metric.
-    pub fn new(surface: &Surface, tensors: &[Tensor3]) -> Result<Self> {
+    pub(crate) fn new(surface: &Surface, tensors: &[Tensor3]) -> Result<Self> {
         check_count(surface, tensors.len())?;
         let t = surface.topology();
         for v in t.vertices() {
@@ -45,7 +45,7 @@ impl Sampled {
     ///
     /// # Errors
     /// As [`Sampled::new`]; [`Error::Metric`] of a size that is not positive and finite, and of vectors or planar tensors.
-    pub fn from_solution(surface: &Surface, solution: &Solution) -> Result<Self> {
+    pub(crate) fn from_solution(surface: &Surface, solution: &Solution) -> Result<Self> {
         match &solution.values {
             SolutionValues::Tensor3(entries) => {
                 let tensors: Vec<Tensor3> = entries.iter().map(|&entries| Tensor3::from_disk(entries)).collect();

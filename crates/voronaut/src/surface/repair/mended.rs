@@ -25,7 +25,7 @@ pub(crate) struct Mend {
 /// Kinds of damage, in the order in which they are looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Damage {
+pub(crate) enum Damage {
     /// Triangles at a vertex whose coordinates are not finite: dropped (with repair).
     NotFinite,
     /// Vertices at the place of another: joined to it.
@@ -118,7 +118,7 @@ const PLACES: usize = 3;
 
 impl Mended {
     /// How often a kind of damage was found.
-    pub fn count(&self, kind: Damage) -> usize {
+    pub(crate) fn count(&self, kind: Damage) -> usize {
         self.mends.iter().find(|mend| mend.kind == kind).map_or(0, |mend| mend.count)
     }
 

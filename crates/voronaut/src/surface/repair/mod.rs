@@ -30,7 +30,8 @@ mod work;
 #[cfg(test)]
 mod tests;
 
-pub use mended::{Damage, Mended};
+pub(crate) use mended::Damage;
+pub use mended::Mended;
 
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
