@@ -3,22 +3,11 @@
 use super::blocks::{Blocks, Layout};
 use super::groups::{Mark, Marks};
 use super::kinds::{EDGE, Kind, POINT, QUADRANGLE, TRIANGLE};
-use super::reader::Reader;
+use super::reader::{Corners, Piece, Reader};
 use super::sections::{INT, SIZE};
 use crate::codec::At;
 use crate::cutting::cut;
 use voronaut::{Error, Result};
-
-/// An element of the file that is in the mesh.
-#[derive(Default)]
-pub(super) struct Piece {
-    code: i32,
-    nodes: Corners,
-    entity: i32,
-    groups: Vec<i32>,
-    /// Which of the mesh's vertices, edges or triangles it is, or begins with.
-    index: u32,
-}
 
 impl Reader {
     /// Reads the section, behind its name.
@@ -214,9 +203,6 @@ fn read_kind(from: &mut Blocks<'_>, at: At<'_>) -> Result<Kind> {
         Error::Unsupported { what, help: "give a mesh of straight triangles, edges and points".into() }
     })
 }
-
-/// The nodes of an element, and zeros behind them: a hexahedron has most.
-type Corners = [u32; 8];
 
 /// An element repeated more often than this is not taken for one in so many groups.
 const MOST_GROUPS: usize = 256;

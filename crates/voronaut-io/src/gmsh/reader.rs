@@ -1,7 +1,6 @@
 //! Gmsh's sections, read in turn into a mesh.
 
 use super::blocks::{Blocks, Layout, unsupported};
-use super::elements::Piece;
 use super::groups::Groups;
 use super::sections::{INT, REAL, SIZE, end_section, next_section, skip_section};
 use super::tags::Tags;
@@ -32,6 +31,20 @@ pub(super) struct Reader {
     pub(super) fields: Fields,
     pub(super) notes: Vec<String>,
 }
+
+/// An element of the file that is in the mesh.
+#[derive(Default)]
+pub(super) struct Piece {
+    pub(super) code: i32,
+    pub(super) nodes: Corners,
+    pub(super) entity: i32,
+    pub(super) groups: Vec<i32>,
+    /// Which of the mesh's vertices, edges or triangles it is, or begins with.
+    pub(super) index: u32,
+}
+
+/// The nodes of an element, and zeros behind them: a hexahedron has most.
+pub(super) type Corners = [u32; 8];
 
 /// Sections that are read once; `NodeData` and `ElementData` are read as often as they come, all others are passed over.
 const SECTIONS: [&str; 4] = ["PhysicalNames", "Entities", "Nodes", "Elements"];
