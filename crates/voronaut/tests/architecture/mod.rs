@@ -16,6 +16,8 @@ const LONGEST_FUNCTION: usize = 80;
 const LONG_FUNCTION: usize = 25;
 /// No file is longer, tests included.
 const LONGEST_FILE: usize = 500;
+/// Functions, types, traits and constants of the three libraries that others may use.
+const MOST_PUBLIC: usize = 600;
 
 #[test]
 fn modules_use_only_those_above_them() {
@@ -145,6 +147,19 @@ fn no_files_use_each_other_in_a_circle() {
     for name in ["voronaut", "voronaut-io", "voronaut-draw", "voronaut-cli"] {
         assert_eq!(circles::circles(&sources(name)), Vec::<Vec<String>>::new(), "of {name}");
     }
+}
+
+/// What users need; everything else is the libraries' own.
+#[test]
+fn little_is_public() {
+    let kinds = ["fn", "const", "struct", "enum", "trait", "type"];
+    let is_public = |line: &&str| {
+        line.trim_start()
+            .strip_prefix("pub ")
+            .is_some_and(|rest| kinds.iter().any(|&kind| rest.split(' ').next() == Some(kind)))
+    };
+    let public: usize = libraries().iter().map(|source| source.code.lines().filter(is_public).count()).sum();
+    assert!(public > 300 && public <= MOST_PUBLIC, "{public} public items");
 }
 
 #[test]

@@ -49,10 +49,13 @@ pub(super) fn sources(name: &str) -> Vec<Source> {
         let plain = name.trim_end_matches(".rs");
         let folder =
             ["mod", "lib"].iter().find_map(|root| plain.strip_suffix(root)).map_or(format!("{plain}/"), String::from);
-        test_files.extend(test_modules.iter().map(|module| format!("{folder}{module}.rs")));
+        test_files.extend(test_modules.iter().map(|module| format!("{folder}{module}")));
         all.push(Source { name, text, code });
     }
-    all.retain(|source| !test_files.contains(&source.name));
+    let is_of = |name: &str, module: &String| {
+        name.strip_prefix(module.as_str()).is_some_and(|rest| rest == ".rs" || rest.starts_with('/'))
+    };
+    all.retain(|source: &Source| !test_files.iter().any(|module| is_of(&source.name, module)));
     all
 }
 

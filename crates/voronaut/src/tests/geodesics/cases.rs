@@ -5,6 +5,7 @@ use voronaut::canvas::Canvas;
 use voronaut::diagram::Distances;
 use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor};
+use voronaut::triangulation::VertexId;
 
 /// A metric on a domain, and its distances from a point.
 pub(crate) struct Case {
