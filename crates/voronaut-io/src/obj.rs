@@ -25,12 +25,11 @@ pub fn read(source: impl BufRead, file: &str) -> Result<Document> {
     let (mut reader, mut joined, mut begin) = (Reader::default(), String::new(), None);
     while let Some(row) = source.next_row()? {
         let text = row.text.trim_end();
-        let begun = text.strip_suffix('\\');
-        joined.push_str(begun.unwrap_or(text));
+        let goes_on = text.ends_with('\\');
+        joined.push_str(text.strip_suffix('\\').unwrap_or(text));
         joined.push(' ');
-        let is_whole = begun.is_none();
         let place = *begin.get_or_insert(source.place());
-        if is_whole {
+        if !goes_on {
             reader.read_row(Row { place, text: &joined })?;
             begin = None;
             joined.clear();

@@ -6,9 +6,9 @@ use std::path::Path;
 /// How a file is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// `.mesh`, `.sol`.
+    /// Words on lines: `.mesh`, `.sol`.
     Text,
-    /// `.meshb`, `.solb`: libMeshb's, version 2 (3 where a file may have more than 1 GB), little endian, doubles.
+    /// Bytes, little endian, with doubles. `.meshb`, `.solb`: libMeshb's, version 2 (3 where a file may have more than 1 GB).
     Binary,
 }
 
