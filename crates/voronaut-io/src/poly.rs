@@ -47,24 +47,24 @@ pub fn write(poly: &Poly, out: &mut dyn Write) -> io::Result<()> {
     let number = |i: usize| i as u64 + u64::from(poly.first);
     sink.line(format_args!("# vertices\n{} 2 0 1", poly.points.len()))?;
     for (i, (p, marker)) in poly.points.iter().zip(&poly.point_markers).enumerate() {
-        sink.put(number(i))?;
-        sink.put_all([p.x, p.y])?;
+        sink.put(number(i));
+        sink.put_all([p.x, p.y]);
         sink.row([*marker])?;
     }
     sink.line(format_args!("# segments\n{} 1", poly.segments.len()))?;
     for (i, (ends, marker)) in poly.segments.iter().zip(&poly.segment_markers).enumerate() {
-        sink.put_all([number(i), number(ends[0] as usize), number(ends[1] as usize)])?;
+        sink.put_all([number(i), number(ends[0] as usize), number(ends[1] as usize)]);
         sink.row([*marker])?;
     }
     sink.line(format_args!("# holes\n{}", poly.holes.len()))?;
     for (i, p) in poly.holes.iter().enumerate() {
-        sink.put(number(i))?;
+        sink.put(number(i));
         sink.row([p.x, p.y])?;
     }
     sink.line(format_args!("# regions\n{}", poly.regions.len()))?;
     for (i, region) in poly.regions.iter().enumerate() {
-        sink.put(number(i))?;
-        sink.put_all([region.point.x, region.point.y, region.attribute])?;
+        sink.put(number(i));
+        sink.put_all([region.point.x, region.point.y, region.attribute]);
         sink.row(region.max_area)?;
     }
     Ok(())

@@ -34,7 +34,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
 pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     write!(out, "{:HEAD$}", "voronaut")?;
     let mut sink = Sink::new(Form::Binary, out);
-    sink.put(mesh.triangles.len() as u32)?;
+    sink.row([mesh.triangles.len() as u32])?;
     for &triangle in &mesh.triangles {
         let corners = mesh.positions_of(triangle);
         let [a, b, c] = corners;
@@ -44,8 +44,8 @@ pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
             let what = "a coordinate beyond 3e38, the range of single precision";
             return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
         }
-        sink.put_all(numbers.map(|x| x as f32))?;
-        sink.put_all([0_u8; 2])?;
+        sink.put_all(numbers.map(|x| x as f32));
+        sink.row([0_u8; 2])?;
     }
     Ok(())
 }

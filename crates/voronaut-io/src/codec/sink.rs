@@ -5,13 +5,14 @@ use std::convert::identity;
 use std::fmt;
 use std::io::{self, Write};
 
-/// A file that is being written.
+/// A file that is being written, row by row.
 pub(crate) struct Sink<'a> {
     out: &'a mut dyn Write,
     form: Form,
-    /// Bytes of numbers so far.
+    /// The numbers since the last row ended.
+    row: Vec<u8>,
+    /// Bytes of all numbers so far.
     written: u64,
-    is_first_in_row: bool,
 }
 
 /// A type of numbers that are written, in binary files with the least byte first.
@@ -19,9 +20,9 @@ pub(crate) trait Number: Copy {
     /// What it is in binary files.
     const KIND: Kind;
 
-    fn write_bytes(self, out: &mut dyn Write) -> io::Result<()>;
+    fn put_bytes(self, to: &mut Vec<u8>);
 
-    fn write_word(self, out: &mut dyn Write) -> io::Result<()>;
+    fn put_word(self, to: &mut Vec<u8>);
 }
 
 /// A number in the shortest form that reads back as itself; huge and tiny ones with an exponent.
@@ -32,12 +33,12 @@ macro_rules! numbers {
         impl Number for $number {
             const KIND: Kind = $kind;
 
-            fn write_bytes(self, out: &mut dyn Write) -> io::Result<()> {
-                out.write_all(&self.to_le_bytes())
+            fn put_bytes(self, to: &mut Vec<u8>) {
+                to.extend_from_slice(&self.to_le_bytes());
             }
 
-            fn write_word(self, out: &mut dyn Write) -> io::Result<()> {
-                write!(out, "{}", $word(self))
+            fn put_word(self, to: &mut Vec<u8>) {
+                write!(to, "{}", $word(self)).expect("memory takes all");
             }
         }
     )*};
@@ -56,7 +57,7 @@ numbers! {
 impl<'a> Sink<'a> {
     /// A file in which nothing is yet.
     pub(crate) fn new(form: Form, out: &'a mut dyn Write) -> Self {
-        Self { out, form, written: 0, is_first_in_row: true }
+        Self { out, form, row: Vec::new(), written: 0 }
     }
 
     pub(crate) fn is_binary(&self) -> bool {
@@ -68,37 +69,43 @@ impl<'a> Sink<'a> {
         self.written
     }
 
-    /// A line of text, be the file binary or not.
+    /// Ends the row, and then a line of text, be the file binary or not.
     pub(crate) fn line(&mut self, line: fmt::Arguments<'_>) -> io::Result<()> {
+        self.end_row()?;
         writeln!(self.out, "{line}")
     }
 
-    /// The next number; in text a word of the row.
-    pub(crate) fn put<T: Number>(&mut self, number: T) -> io::Result<()> {
+    /// The next number of the row; in text a word.
+    pub(crate) fn put<T: Number>(&mut self, number: T) {
         if self.is_binary() {
             self.written += T::KIND.size() as u64;
-            return number.write_bytes(self.out);
+            return number.put_bytes(&mut self.row);
         }
-        if !std::mem::take(&mut self.is_first_in_row) {
-            self.out.write_all(b" ")?;
+        if !self.row.is_empty() {
+            self.row.push(b' ');
         }
-        number.write_word(self.out)
+        number.put_word(&mut self.row);
     }
 
-    /// The next numbers, one by one.
-    pub(crate) fn put_all<T: Number>(&mut self, numbers: impl IntoIterator<Item = T>) -> io::Result<()> {
-        numbers.into_iter().try_for_each(|number| self.put(number))
+    /// The next numbers of the row, one by one.
+    pub(crate) fn put_all<T: Number>(&mut self, numbers: impl IntoIterator<Item = T>) {
+        numbers.into_iter().for_each(|number| self.put(number));
     }
 
-    /// The next numbers, and the end of a row behind them.
+    /// The last numbers of the row.
     pub(crate) fn row<T: Number>(&mut self, numbers: impl IntoIterator<Item = T>) -> io::Result<()> {
-        self.put_all(numbers)?;
+        self.put_all(numbers);
         self.end_row()
     }
 
-    /// Ends a row, if something is in it; in binary files rows have no ends.
+    /// Ends the row, with which its numbers are written: in text as a line, if there are any.
     pub(crate) fn end_row(&mut self) -> io::Result<()> {
-        if std::mem::replace(&mut self.is_first_in_row, true) { Ok(()) } else { self.out.write_all(b"\n") }
+        if !(self.row.is_empty() || self.is_binary()) {
+            self.row.push(b'\n');
+        }
+        self.out.write_all(&self.row)?;
+        self.row.clear();
+        Ok(())
     }
 }
 
@@ -128,7 +135,7 @@ mod tests {
             let mut out = Vec::new();
             let mut sink = Sink::new(form, &mut out);
             sink.line(format_args!("head")).unwrap();
-            sink.put(7_u8).unwrap();
+            sink.put(7_u8);
             sink.row([0.5, 1e20]).unwrap();
             sink.end_row().unwrap();
             sink.row([-1_i32]).unwrap();

@@ -82,7 +82,7 @@ pub(super) fn begin(version: Version, form: Form, out: &mut dyn Write) -> io::Re
     let mut sink = Sink::new(form, out);
     sink.line(format_args!("$MeshFormat\n{version} {} 8", i32::from(sink.is_binary())))?;
     if sink.is_binary() {
-        sink.put(1_i32)?;
+        sink.put(1_i32);
     }
     write_end("MeshFormat", &mut sink)?;
     Ok(sink)

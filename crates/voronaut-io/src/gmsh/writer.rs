@@ -110,11 +110,11 @@ impl<'a> Plan<'a> {
 
     fn write_entity(&self, part: &Part, sink: &mut Sink<'_>) -> io::Result<()> {
         let ([lower, upper], is_point) = (self.bounds(part), part.dimension == 0);
-        sink.put(part.entity)?;
-        sink.put_all(lower)?;
-        sink.put_all(upper.into_iter().filter(|_| !is_point))?;
-        sink.put(part.groups.len() as u64)?;
-        sink.put_all(part.groups.iter().copied())?;
+        sink.put(part.entity);
+        sink.put_all(lower);
+        sink.put_all(upper.into_iter().filter(|_| !is_point));
+        sink.put(part.groups.len() as u64);
+        sink.put_all(part.groups.iter().copied());
         // No entities bound it.
         sink.row(Some(0_u64).filter(|_| !is_point))
     }
@@ -136,7 +136,7 @@ impl<'a> Plan<'a> {
         sink.row([blocks, count, blocks, count])?;
         if count > 0 {
             let dimension = self.parts.first().map_or(2, |part| part.dimension);
-            sink.put_all([i32::from(dimension), 1, 0])?;
+            sink.put_all([i32::from(dimension), 1, 0]);
             sink.row([count])?;
             (1..=count).try_for_each(|tag| sink.row([tag]))?;
         }
@@ -150,10 +150,10 @@ impl<'a> Plan<'a> {
         sink.row([self.parts.len() as u64, count, u64::from(count > 0), count])?;
         let mut tags = 1_u64..;
         for part in &self.parts {
-            sink.put_all([part.dimension.into(), part.entity, kind(part.dimension)])?;
+            sink.put_all([part.dimension.into(), part.entity, kind(part.dimension)]);
             sink.row([part.elements.len() as u64])?;
             for (element, tag) in part.elements.iter().zip(&mut tags) {
-                sink.put(tag)?;
+                sink.put(tag);
                 sink.row(self.nodes(part.dimension, element).iter().map(|&v| u64::from(v) + 1))?;
             }
         }
@@ -166,7 +166,7 @@ impl<'a> Plan<'a> {
         demand_tags(self.mesh.points.len())?;
         sink.line(format_args!("$Nodes\n{}", self.mesh.points.len()))?;
         for (tag, point) in (1_i32..).zip(&self.mesh.points) {
-            sink.put(tag)?;
+            sink.put(tag);
             sink.row(*point)?;
         }
         write_end("Nodes", sink)?;
@@ -174,16 +174,16 @@ impl<'a> Plan<'a> {
         let mut tag = 0;
         for part in &self.parts {
             if sink.is_binary() {
-                sink.put_all([kind(part.dimension), (part.count_2() as u32).cast_signed(), 2])?;
+                sink.put_all([kind(part.dimension), (part.count_2() as u32).cast_signed(), 2]);
             }
             for element in &part.elements {
                 for &group in part.groups_2() {
                     tag += 1;
-                    sink.put(tag)?;
+                    sink.put(tag);
                     if !sink.is_binary() {
-                        sink.put_all([kind(part.dimension), 2])?;
+                        sink.put_all([kind(part.dimension), 2]);
                     }
-                    sink.put_all([group, part.entity])?;
+                    sink.put_all([group, part.entity]);
                     sink.row(self.nodes(part.dimension, element).iter().map(|v| v + 1))?;
                 }
             }
@@ -264,7 +264,7 @@ fn write_data(
     demand_tags(count)?;
     sink.line(format_args!("${section}\n1\n\"{name}\"\n1\n0\n3\n0\n{components}\n{count}"))?;
     for (tag, row) in (1_i32..).zip(rows) {
-        sink.put(tag)?;
+        sink.put(tag);
         sink.row(column.row(row))?;
     }
     write_end(section, sink)

@@ -55,7 +55,7 @@ pub fn write(mesh: &Mesh, form: Form, out: &mut dyn Write) -> io::Result<()> {
     let row = 8 * usize::from(coordinates) + 4;
     writer.section("Vertices", mesh.points.len(), row, &[])?;
     for (point, label) in mesh.points.iter().zip(labels(&mesh.point_labels)) {
-        writer.sink.put_all(point[..usize::from(coordinates)].iter().copied())?;
+        writer.sink.put_all(point[..usize::from(coordinates)].iter().copied());
         writer.sink.row([label])?;
     }
     write_elements(&mut writer, "Edges", &mesh.edges, &mesh.edge_labels)?;
@@ -237,7 +237,7 @@ fn write_elements<const N: usize>(
     }
     writer.section(name, elements.len(), 4 * N + 4, &[])?;
     for (element, label) in elements.iter().zip(labels(element_labels)) {
-        writer.sink.put_all(element.map(|vertex| vertex + 1))?;
+        writer.sink.put_all(element.map(|vertex| vertex + 1));
         writer.sink.row([label])?;
     }
     Ok(())

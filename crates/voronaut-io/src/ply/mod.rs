@@ -60,14 +60,14 @@ pub fn write(mesh: &Mesh, fields: &Fields, form: Form, out: &mut dyn Write) -> i
         mesh.triangles.len()
     ))?;
     for (i, (point, label)) in mesh.points.iter().zip(labels(&mesh.point_labels)).enumerate() {
-        sink.put_all(*point)?;
-        sink.put(label)?;
+        sink.put_all(*point);
+        sink.put(label);
         sink.row(fields.vertices.iter().flat_map(|field| field.values.row(i)).copied())?;
     }
     for (i, (triangle, label)) in mesh.triangles.iter().zip(labels(&mesh.triangle_labels)).enumerate() {
-        sink.put(3_u8)?;
-        sink.put_all(*triangle)?;
-        sink.put(label)?;
+        sink.put(3_u8);
+        sink.put_all(*triangle);
+        sink.put(label);
         sink.row(fields.triangles.iter().flat_map(|field| field.values.row(i)).copied())?;
     }
     Ok(())

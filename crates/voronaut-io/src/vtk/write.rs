@@ -43,7 +43,7 @@ fn write_numbers<T: Number>(numbers: impl Iterator<Item = T>, out: &mut dyn Writ
     const CHUNK: usize = 1 << 16;
     let mut bytes = Vec::with_capacity(CHUNK + T::KIND.size());
     for number in numbers {
-        number.write_bytes(&mut bytes)?;
+        number.put_bytes(&mut bytes);
         if bytes.len() >= CHUNK {
             out.write_all(&bytes)?;
             bytes.clear();
