@@ -25,7 +25,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Solution> {
         let what = format!("{} solutions per vertex ({place})", values.len());
         Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() }
     })?;
-    Ok(Solution { dimension: file.dimension(), values })
+    Ok(Solution { dimension: file.from.dimension.unwrap_or_default(), values })
 }
 
 /// Reads the sections `SolAtVertices` and `SolAtTriangles` of a file, with any number of values per vertex or triangle;
@@ -41,7 +41,7 @@ pub fn read_all(source: impl BufRead, place: &str) -> Result<Solutions> {
         return Err(file.missing(", nor SolAtTriangles", "save values in one of these sections"));
     }
     let [vertices, triangles] = [vertices, triangles].map(|found| found.map_or_else(Vec::new, |(_, values)| values));
-    Ok(Solutions { dimension: file.dimension(), vertices, triangles })
+    Ok(Solutions { dimension: file.from.dimension.unwrap_or_default(), vertices, triangles })
 }
 
 /// Writes a file of version 2 that [`read`] turns into the same solution, to the last bit.
@@ -92,10 +92,6 @@ impl<'a> Parsed<'a> {
             }
         }
         Ok(Self { from, sections })
-    }
-
-    fn dimension(&self) -> u8 {
-        self.from.dimension.unwrap_or_default()
     }
 
     fn missing(&self, more: &str, help: &str) -> Error {

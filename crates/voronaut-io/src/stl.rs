@@ -153,8 +153,8 @@ impl Corners {
     }
 
     fn into_mesh(self) -> Mesh {
-        let (triangles, _) = self.vertices.as_chunks::<3>();
-        labelled(Mesh { points: self.points, triangles: triangles.to_vec(), ..Mesh::default() })
+        let triangles = self.vertices.as_chunks().0.to_vec();
+        labelled(Mesh { points: self.points, triangles, ..Mesh::default() })
     }
 }
 

@@ -36,8 +36,7 @@ impl<'a> Blocks<'a> {
                 None => return Err(source.error("the file has no section MeshFormat", "give a file that Gmsh wrote")),
             }
         }
-        let layout = read_format(&mut source)?;
-        Ok(Self { source, layout })
+        Ok(Self { layout: read_format(&mut source)?, source })
     }
 
     /// All rows of a section that begins with their number on a line of text.

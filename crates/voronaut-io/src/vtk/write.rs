@@ -186,8 +186,7 @@ fn cell_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool, first: Fi
     let required = mesh.required_triangles.iter().map(|&i| first_triangle + i as usize);
     let of_edges = |marked: &[u32]| marked.iter().map(|&i| first_edge + i as usize).collect::<Vec<_>>();
     let required = required.chain(of_edges(&mesh.required_edges)).collect();
-    let marked = [("required", required), ("ridge", of_edges(&mesh.ridges))];
-    let marks = mark_arrays(marked, count);
+    let marks = mark_arrays([("required", required), ("ridge", of_edges(&mesh.ridges))], count);
     let fields = field_arrays(fields, is_planar, triangles);
     std::iter::once(Array::new("label", 1, labels)).chain(marks).chain(fields).collect()
 }
