@@ -1,6 +1,7 @@
 //! What VTK's `.vtu` files hold besides meshes: coloured canvases, and duals with geodesic edges.
 
-use crate::vtk::{Array, Grid, LINE, POLY_LINE, labels};
+use crate::document::labels;
+use crate::vtk::{Array, Grid, LINE, POLY_LINE};
 use std::io::{self, Write};
 use voronaut::mesh::Mesh;
 use voronaut::realisation::Realisation;
@@ -8,8 +9,9 @@ use voronaut::realisation::Realisation;
 /// Writes a canvas with its distances: point data `colour` and `distance`.
 pub(super) fn write_diagram(canvas: &Mesh, distances: &[f64], out: &mut dyn Write) -> io::Result<()> {
     let lines: Vec<&[u32]> = canvas.edges.iter().map(<[u32; 2]>::as_slice).collect();
-    let cells = labels(&canvas.triangle_labels, canvas.triangles.len()).chain(labels(&canvas.edge_labels, lines.len()));
-    let colours = labels(&canvas.point_labels, canvas.points.len());
+    let cells = labels(&canvas.triangle_labels).take(canvas.triangles.len());
+    let cells = cells.chain(labels(&canvas.edge_labels).take(lines.len()));
+    let colours = labels(&canvas.point_labels).take(canvas.points.len());
     let grid = Grid {
         points: &canvas.points,
         triangles: &canvas.triangles,

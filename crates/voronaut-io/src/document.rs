@@ -76,6 +76,28 @@ pub(super) fn distinct_names(wanted: impl Iterator<Item = String>, reserved: &[&
 }
 
 impl Field {
+    /// How many numbers an entry has in space: tensors are whole matrices, and vectors of a plane have a third coordinate, for Gmsh and
+    /// VTK have but vectors of three.
+    pub(super) fn width(&self, is_planar: bool) -> usize {
+        match &self.values {
+            SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => 9,
+            SolutionValues::Vector { components: 2, .. } if is_planar => 3,
+            others => others.components(),
+        }
+    }
+
+    /// Number `k` of entry `i` in space.
+    pub(super) fn number(&self, i: usize, k: usize) -> f64 {
+        const IN_SPACE: [usize; 9] = [0, 1, 3, 1, 2, 4, 3, 4, 5];
+        const IN_PLANE: [usize; 9] = [0, 1, 3, 1, 2, 3, 3, 3, 3];
+        let place = match &self.values {
+            SolutionValues::Tensor(_) => IN_PLANE[k],
+            SolutionValues::Tensor3(_) => IN_SPACE[k],
+            _ => k,
+        };
+        self.values.row(i).get(place).copied().unwrap_or(0.0)
+    }
+
     fn into_solutions(self, dimension: u8) -> Result<Vec<SolutionValues>> {
         match self.values {
             SolutionValues::Vector { components, ref numbers } if components != usize::from(dimension) => {
@@ -91,6 +113,19 @@ impl Field {
             values => Ok(vec![values]),
         }
     }
+}
+
+/// Labels, and 0 for ever behind them: where some are missing that is what they are.
+pub(super) fn labels(labels: &[i32]) -> impl Iterator<Item = i32> + Clone {
+    labels.iter().copied().chain(std::iter::repeat(0))
+}
+
+/// A mesh whose vertices, triangles and edges have the label 0 where they have none.
+pub(super) fn labelled(mut mesh: Mesh) -> Mesh {
+    mesh.point_labels.resize(mesh.points.len(), 0);
+    mesh.triangle_labels.resize(mesh.triangles.len(), 0);
+    mesh.edge_labels.resize(mesh.edges.len(), 0);
+    mesh
 }
 
 fn unfit(name: &str, of: &str, mesh: &str) -> Error {

@@ -1,5 +1,6 @@
 //! A planar domain from what users write for it: a shape, or a file.
 
+use super::files::{ending, in_file, neither};
 use super::{Format, geojson, open, poly, read, read_text};
 use std::path::Path;
 use voronaut::domain::{self, Domain, Pslg, from_mesh, from_poly, from_polygons};
@@ -25,40 +26,22 @@ pub fn read_pslg(spec: &str) -> Result<Pslg> {
         return shape;
     }
     let path = Path::new(spec);
-    let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
     let format = Format::of_ending(path);
-    match ending.as_deref() {
-        Some("geojson" | "json") => {
-            let polygons = geojson::read(&read_text(path)?, spec)?;
-            from_polygons(&polygons).map_err(|error| in_file(spec, error))
+    let pslg = match ending(path).as_deref() {
+        Some("geojson" | "json") => from_polygons(&geojson::read(&read_text(path)?, spec)?),
+        Some("poly") => from_poly(&poly::read(open(path)?, spec)?),
+        _ if format.is_some_and(Format::may_be_planar) => from_mesh(&read(path)?.mesh),
+        Some(ending) if format.is_some() => {
+            let what = format!("a .{ending} file as planar domain ({spec})");
+            return Err(Error::Unsupported { what, help: format!("give {DOMAINS}") });
         }
-        Some("poly") => from_poly(&poly::read(open(path)?, spec)?).map_err(|error| in_file(spec, error)),
-        _ if format.is_some_and(Format::may_be_planar) => {
-            from_mesh(&read(path)?.mesh).map_err(|error| in_file(spec, error))
-        }
-        Some(ending) if format.is_some() => Err(Error::Unsupported {
-            what: format!("a .{ending} file as planar domain ({spec})"),
-            help: format!("give {DOMAINS}"),
-        }),
-        _ => Err(Error::parse(
-            spec,
-            "neither a shape nor a file with an ending that is known",
-            format!("give {DOMAINS}"),
-        )),
-    }
+        _ => return Err(neither(spec, DOMAINS)),
+    };
+    pslg.map_err(|error| in_file(spec, error))
 }
 
 /// What users write for a planar domain, for messages.
 pub(crate) const DOMAINS: &str = "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly, .mesh, .meshb, .msh, .vtu or .vtp";
-
-/// Adds the file to the place of an error of its domain.
-fn in_file(file: &str, error: Error) -> Error {
-    match error {
-        Error::Domain { what, place, help } => Error::Domain { what, place: format!("{file}, {place}"), help },
-        Error::Unsupported { what, help } => Error::Unsupported { what: format!("{what} in {file}"), help },
-        other => other,
-    }
-}
 
 #[cfg(test)]
 mod tests {

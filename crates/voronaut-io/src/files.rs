@@ -1,6 +1,6 @@
 //! Mesh files by the endings of their names.
 
-use super::medit::Form;
+use super::codec::Form;
 use super::{Document, Fields, freefem, gmsh, medit, obj, off, ply, sol, stl, vtk};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
@@ -48,9 +48,8 @@ pub(crate) const MESH_ENDINGS: &str = ".mesh, .meshb, .msh, .vtu, .vtp, .obj, .o
 impl Format {
     /// The format a file name asks for by its ending, in upper or lower case; `None` of other endings.
     pub fn of_ending(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_str()?;
-        let known = ENDINGS.iter().find(|(known, _)| known.eq_ignore_ascii_case(ending));
-        known.map(|&(_, format)| format)
+        let ending = ending(path)?;
+        ENDINGS.iter().find(|(known, _)| *known == ending).map(|&(_, format)| format)
     }
 
     /// The format a file name asks for by its ending, in upper or lower case.
@@ -107,6 +106,25 @@ pub fn read(path: &Path) -> Result<Document> {
         Format::Ply(_) => ply::read(source, &place),
         Format::Stl => Ok(stl::read(source, &place)?.into()),
         Format::Vtu | Format::Vtp => vtk::read(source, &place),
+    }
+}
+
+/// How a name ends, in lower case.
+pub(super) fn ending(path: &Path) -> Option<String> {
+    Some(path.extension()?.to_str()?.to_ascii_lowercase())
+}
+
+/// What is wrong with a text that should be a shape or the name of a file of a kind.
+pub(super) fn neither(spec: &str, kinds: &str) -> Error {
+    Error::parse(spec, "neither a shape nor a file with an ending that is known", format!("give {kinds}"))
+}
+
+/// Adds the file to the place of an error of what it holds.
+pub(super) fn in_file(file: &str, error: Error) -> Error {
+    match error {
+        Error::Domain { what, place, help } => Error::Domain { what, place: format!("{file}, {place}"), help },
+        Error::Unsupported { what, help } => Error::Unsupported { what: format!("{what} in {file}"), help },
+        other => other,
     }
 }
 

@@ -1,6 +1,6 @@
 //! `FreeFEM`'s planar meshes, `.msh` as text, which bamg writes, too (`-omsh`): counts, then vertices, triangles and edges with labels.
 
-use super::words::{At, Words, error_at};
+use super::codec::{At, Source};
 use std::io::BufRead;
 use voronaut::Result;
 use voronaut::mesh::Mesh;
@@ -11,38 +11,38 @@ use voronaut::mesh::Mesh;
 /// # Errors
 /// [`Error::Parse`](voronaut::Error::Parse) with the line of what is not as announced, or not there.
 pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
-    let mut words = Words::new(source, place);
-    let mut count = || words.whole::<u64>(At::head("the file"));
+    let (mut source, head) = (Source::new(source, place), At::head("the file"));
+    let mut count = || source.word(head)?.whole(head);
     let [vertices, triangles, edges] = [count()?, count()?, count()?];
     let mut mesh = Mesh::default();
     for at in At::rows("the vertices", vertices) {
-        mesh.points.push([words.number(at)?, words.number(at)?, 0.0]);
-        mesh.point_labels.push(words.whole(at)?);
+        mesh.points.push([source.word(at)?.number(at)?, source.word(at)?.number(at)?, 0.0]);
+        mesh.point_labels.push(source.word(at)?.whole(at)?);
     }
     for at in At::rows("the triangles", triangles) {
-        mesh.triangles.push(references(&mut words, vertices, at)?);
-        mesh.triangle_labels.push(words.whole(at)?);
+        mesh.triangles.push(references(&mut source, vertices, at)?);
+        mesh.triangle_labels.push(source.word(at)?.whole(at)?);
     }
     for at in At::rows("the edges", edges) {
-        mesh.edges.push(references(&mut words, vertices, at)?);
-        mesh.edge_labels.push(words.whole(at)?);
+        mesh.edges.push(references(&mut source, vertices, at)?);
+        mesh.edge_labels.push(source.word(at)?.whole(at)?);
     }
-    if words.next()?.is_none() {
+    if source.is_at_end()? {
         return Ok(mesh);
     }
     let help = "check the counts in the first row; files of Gmsh begin with $MeshFormat";
-    Err(error_at(place, words.line(), "more numbers than the counts in the file announce", help))
+    Err(source.error("more numbers than the counts in the file announce", help))
 }
 
 /// Vertices of an element, from 0.
-fn references<const N: usize>(words: &mut Words<'_>, vertices: u64, at: At<'_>) -> Result<[u32; N]> {
+fn references<const N: usize>(source: &mut Source<'_>, vertices: u64, at: At<'_>) -> Result<[u32; N]> {
     let mut element = [0; N];
     for vertex in &mut element {
-        let number: u32 = words.whole(at)?;
+        let word = source.word(at)?;
+        let number: u32 = word.whole(at)?;
         if number == 0 || u64::from(number) > vertices {
-            let what = format!("vertex {number} does not exist ({at})");
             let help = format!("this file has {vertices} vertices, numbered from 1");
-            return Err(error_at(words.place(), words.line(), what, help));
+            return Err(word.place.error(format!("vertex {number} does not exist ({at})"), help));
         }
         *vertex = number - 1;
     }

@@ -1,6 +1,6 @@
 //! `GeoJSON` (RFC 7946): polygons, their coordinates taken as planar.
 
-use super::words::Shortest;
+use super::codec::Shortest;
 use ::geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
 use std::io::{self, Write};
 use voronaut::domain::{Polygon, Polygons, Ring};
@@ -44,25 +44,25 @@ pub fn write(polygons: &Polygons, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(b"{\"type\": \"FeatureCollection\", \"features\": [")?;
     for (i, polygon) in polygons.polygons.iter().enumerate() {
         let labels: Vec<String> = polygon.rings.iter().map(|ring| ring.label.to_string()).collect();
+        let rings: Vec<String> = polygon.rings.iter().map(written).collect();
         write!(
             out,
             "{}\n{{\"type\": \"Feature\", \"properties\": {{\"region\": {}, \"boundary\": [{}]}},\n \
-             \"geometry\": {{\"type\": \"Polygon\", \"coordinates\": [",
+             \"geometry\": {{\"type\": \"Polygon\", \"coordinates\": [{}]}}}}",
             if i == 0 { "" } else { "," },
             polygon.region,
-            labels.join(", ")
+            labels.join(", "),
+            rings.join(",")
         )?;
-        for (j, ring) in polygon.rings.iter().enumerate() {
-            out.write_all(if j == 0 { b"\n  [" } else { b",\n  [" })?;
-            let closed = ring.points.iter().chain(ring.points.first());
-            for (k, p) in closed.enumerate() {
-                write!(out, "{}[{}, {}]", if k == 0 { "" } else { ", " }, Shortest(p.x), Shortest(p.y))?;
-            }
-            out.write_all(b"]")?;
-        }
-        out.write_all(b"]}}")?;
     }
     out.write_all(b"\n]}\n")
+}
+
+/// A ring as it is written, on a line of its own.
+fn written(ring: &Ring) -> String {
+    let closed = ring.points.iter().chain(ring.points.first());
+    let positions: Vec<String> = closed.map(|p| format!("[{}, {}]", Shortest(p.x), Shortest(p.y))).collect();
+    format!("\n  [{}]", positions.join(", "))
 }
 
 struct Reader<'a> {

@@ -1,11 +1,12 @@
 //! What the user writes for a domain, which may lie in the plane or be a surface.
 
+use super::files::{ending, neither};
 use super::surface::of_document;
 use super::{DOMAINS, Format, SURFACES, read, read_domain, read_surface};
 use std::path::Path;
+use voronaut::Result;
 use voronaut::domain::Domain;
 use voronaut::surface::{Input, Mended, RepairOptions};
-use voronaut::{Error, Result};
 
 /// A domain: of the plane, or a surface in space.
 #[derive(Debug)]
@@ -37,8 +38,7 @@ impl Given {
         let plane = |notes: &[String]| Ok((Self::Plane(read_domain(spec)?), Mended::default().with_notes(notes)));
         let name = spec.split(':').next().unwrap_or_default().trim();
         let path = Path::new(spec);
-        let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
-        match ending.as_deref() {
+        match ending(path).as_deref() {
             _ if ["sphere", "torus", "chair", "implicit"].contains(&name) => surface(),
             _ if ["rect", "disk"].contains(&name) => plane(&[]),
             Some("geojson" | "json" | "poly") => plane(&[]),
@@ -51,10 +51,7 @@ impl Given {
                 Ok((Self::Surface(Input::new(surface, None)), mended))
             }
             _ if Format::of_ending(path).is_some() => surface(),
-            _ => {
-                let help = format!("give {DOMAINS}; or {SURFACES}");
-                Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", help))
-            }
+            _ => Err(neither(spec, &format!("{DOMAINS}; or {SURFACES}"))),
         }
     }
 }

@@ -4,7 +4,7 @@
 //! nothing of files: messages name the line or the byte. [`read`], [`read_domain`], [`read_surface`] and [`Given`] open files by
 //! what users write; [`write_mesh`] and its like leave a file there as a whole or not at all.
 
-mod bytes;
+mod codec;
 mod curved;
 mod cutting;
 mod document;
@@ -19,7 +19,6 @@ mod seen;
 mod surface;
 mod volumes;
 mod whole;
-mod words;
 mod write;
 
 pub mod freefem;

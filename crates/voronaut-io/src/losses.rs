@@ -4,75 +4,69 @@ use super::gmsh::Version;
 use super::{Fields, Format};
 use voronaut::mesh::Mesh;
 
-/// What a format keeps of a mesh besides positions and triangles.
-#[derive(Default)]
-#[expect(clippy::struct_excessive_bools, reason = "a table of what is kept")]
-struct Kept {
-    point_labels: bool,
-    triangle_labels: bool,
-    edges: bool,
-    edge_labels: bool,
+/// What a mesh and its fields hold besides positions and triangles.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    PointLabels,
+    TriangleLabels,
+    Edges,
+    EdgeLabels,
     /// Corners, and required vertices.
-    vertex_marks: bool,
+    VertexMarks,
     /// Ridges, and required edges and triangles.
-    marks: bool,
+    Marks,
     /// Beside a `.mesh` they have a file of their own.
-    fields: bool,
+    Fields,
 }
 
 /// What a `.poly`, or else a `.geojson`, would not hold of a planar mesh and its fields besides its triangles, in words.
 pub fn lost_in_outline(is_poly: bool, mesh: &Mesh, fields: &Fields) -> Vec<String> {
-    let outline = Kept { triangle_labels: true, edges: true, edge_labels: true, ..Kept::default() };
-    Kept { point_labels: is_poly, ..outline }.lost(mesh, fields)
-}
-
-impl Kept {
-    fn lost(&self, mesh: &Mesh, fields: &Fields) -> Vec<String> {
-        let labels = |labels: &[i32]| labels.iter().filter(|&&label| label != 0).count();
-        let of_vertices = [&mesh.corners, &mesh.required_points].map(Vec::len).into_iter().sum();
-        let marks = [&mesh.ridges, &mesh.required_edges, &mesh.required_triangles].map(Vec::len).into_iter().sum();
-        let all = [
-            (self.point_labels, labels(&mesh.point_labels), "labels of vertices"),
-            (self.triangle_labels, labels(&mesh.triangle_labels), "labels of triangles"),
-            (self.edges, mesh.edges.len(), "labelled edges"),
-            (self.edge_labels || !self.edges, labels(&mesh.edge_labels), "labels of edges"),
-            (self.vertex_marks, of_vertices, "corners and required vertices"),
-            (self.marks, marks, "ridges, required edges and triangles"),
-            (self.fields, fields.vertices.len() + fields.triangles.len(), "fields"),
-        ];
-        let lost = all.into_iter().filter(|(kept, count, _)| !kept && *count > 0);
-        lost.map(|(_, count, what)| format!("{count} {what}")).collect()
-    }
+    let outline = [Part::TriangleLabels, Part::Edges, Part::EdgeLabels, Part::PointLabels];
+    lost(if is_poly { &outline } else { &outline[..3] }, mesh, fields)
 }
 
 impl Format {
     /// What of a mesh and its fields a file of the format would not hold, in words; empty if nothing is lost.
     pub fn lost(self, mesh: &Mesh, fields: &Fields) -> Vec<String> {
+        let kept: &[Part] = match self {
+            // Marks of vertices are kept, of edges and triangles not.
+            Format::Gmsh(Version::V2_2, _) => &[
+                Part::PointLabels,
+                Part::TriangleLabels,
+                Part::Edges,
+                Part::EdgeLabels,
+                Part::VertexMarks,
+                Part::Fields,
+            ],
+            Format::Medit(_) | Format::Vtu | Format::Vtp | Format::Gmsh(Version::V4_1, _) => return Vec::new(),
+            Format::Ply(_) => &[Part::PointLabels, Part::TriangleLabels, Part::Fields],
+            Format::Obj => &[Part::TriangleLabels, Part::Edges],
+            Format::Off | Format::Stl => &[],
+        };
         let is_rounded = |x: &f64| f64::from(*x as f32).to_bits() != x.to_bits();
         let digits = self == Format::Stl && mesh.points.as_flattened().iter().any(is_rounded);
         let digits = digits.then(|| "digits of coordinates beyond single precision".to_owned());
-        self.kept().lost(mesh, fields).into_iter().chain(digits).collect()
+        lost(kept, mesh, fields).into_iter().chain(digits).collect()
     }
+}
 
-    fn kept(self) -> Kept {
-        let all = Kept {
-            point_labels: true,
-            triangle_labels: true,
-            edges: true,
-            edge_labels: true,
-            vertex_marks: true,
-            marks: true,
-            fields: true,
-        };
-        match self {
-            Format::Medit(_) | Format::Vtu | Format::Vtp | Format::Gmsh(Version::V4_1, _) => all,
-            // Marks of vertices are kept, of edges and triangles not.
-            Format::Gmsh(Version::V2_2, _) => Kept { marks: false, ..all },
-            Format::Ply(_) => Kept { point_labels: true, triangle_labels: true, fields: true, ..Kept::default() },
-            Format::Obj => Kept { triangle_labels: true, edges: true, ..Kept::default() },
-            Format::Off | Format::Stl => Kept::default(),
-        }
-    }
+fn lost(kept: &[Part], mesh: &Mesh, fields: &Fields) -> Vec<String> {
+    let labels = |labels: &[i32]| labels.iter().filter(|&&label| label != 0).count();
+    let of_vertices = mesh.corners.len() + mesh.required_points.len();
+    let marks = mesh.ridges.len() + mesh.required_edges.len() + mesh.required_triangles.len();
+    let all = [
+        (Part::PointLabels, labels(&mesh.point_labels), "labels of vertices"),
+        (Part::TriangleLabels, labels(&mesh.triangle_labels), "labels of triangles"),
+        (Part::Edges, mesh.edges.len(), "labelled edges"),
+        (Part::EdgeLabels, labels(&mesh.edge_labels), "labels of edges"),
+        (Part::VertexMarks, of_vertices, "corners and required vertices"),
+        (Part::Marks, marks, "ridges, required edges and triangles"),
+        (Part::Fields, fields.vertices.len() + fields.triangles.len(), "fields"),
+    ];
+    // Where edges are lost so are their labels, which goes without saying.
+    let is_said = |part| part != Part::EdgeLabels || kept.contains(&Part::Edges);
+    let lost = all.into_iter().filter(|&(part, count, _)| count > 0 && !kept.contains(&part) && is_said(part));
+    lost.map(|(_, count, what)| format!("{count} {what}")).collect()
 }
 
 #[cfg(test)]

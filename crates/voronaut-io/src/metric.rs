@@ -1,5 +1,6 @@
 //! Metrics as users write them: named, or values in a file, in whichever order a program writes the entries of a tensor.
 
+use super::files::ending;
 use super::{Format, read, read_solution};
 use std::path::{Path, PathBuf};
 use voronaut::domain::Domain;
@@ -120,8 +121,7 @@ pub fn read_metric(path: &Path, order: TensorOrder) -> Result<Solution> {
 }
 
 fn is_solution(text: &str) -> bool {
-    let ending = Path::new(text).extension().and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| ["sol", "solb"].iter().any(|known| known.eq_ignore_ascii_case(ending)))
+    matches!(ending(Path::new(text)).as_deref(), Some("sol" | "solb"))
 }
 
 /// How far a domain may reach beyond its background mesh, as a share of the mesh's extent: curves are meshed by chords.

@@ -1,8 +1,9 @@
 //! Wavefront `.obj`, as far as surfaces go: vertices, polygons, lines.
 
 use super::Document;
+use super::codec::{At, Largest, Place, Row, Shortest, Source, Word};
 use super::cutting::Polygons;
-use super::words::{At, Largest, Row, Rows, Shortest, Word, error_at, number, whole};
+use super::document::{labelled, labels};
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Write};
 use voronaut::Result;
@@ -19,30 +20,25 @@ use voronaut::mesh::Mesh;
 ///
 /// [`voronaut::Error::Parse`] with the line of what is no finite number, of a face of fewer than three vertices, and of a vertex
 /// that does not exist.
-pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
-    let mut rows = Rows::with_names(source, place, &NAMING);
-    let mut reader = Reader { place, ..Reader::default() };
-    let mut joined = String::new();
-    while let Some(row) = rows.next()? {
-        let Some(begun) = row.text.trim_end().strip_suffix('\\') else {
-            reader.read_row(row)?;
-            continue;
-        };
-        joined.clear();
-        joined.push_str(begun);
-        let line = row.line;
-        while let Some(more) = rows.next()? {
-            let text = more.text.trim_end();
-            let begun = text.strip_suffix('\\');
-            joined.push(' ');
-            joined.push_str(begun.unwrap_or(text));
-            if begun.is_none() {
-                break;
-            }
+pub fn read(source: impl BufRead, file: &str) -> Result<Document> {
+    let mut source = Source::with_names(source, file, &NAMING);
+    let (mut reader, mut joined, mut begin) = (Reader::default(), String::new(), None);
+    while let Some(row) = source.next_row()? {
+        let text = row.text.trim_end();
+        let goes_on = text.ends_with('\\');
+        joined.push_str(text.strip_suffix('\\').unwrap_or(text));
+        joined.push(' ');
+        let place = *begin.get_or_insert(source.place());
+        if !goes_on {
+            reader.read_row(Row { place, text: &joined })?;
+            begin = None;
+            joined.clear();
         }
-        reader.read_row(Row { line, text: &joined })?;
     }
-    reader.finish()
+    if let Some(place) = begin {
+        reader.read_row(Row { place, text: &joined })?;
+    }
+    reader.finish(file)
 }
 
 /// Rows that name things, in whatever encoding.
@@ -68,16 +64,13 @@ pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "v {} {} {}", Shortest(*x), Shortest(*y), Shortest(*z))?;
     }
     // One group for each label: many programs make a part of each group they read.
-    let label = |&i: &usize| mesh.triangle_labels.get(i).copied().unwrap_or(0);
-    let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
-    order.sort_by_key(label);
-    let mut group = None;
-    for i in order {
-        if group.replace(label(&i)) != Some(label(&i)) {
-            writeln!(out, "g region_{}", label(&i))?;
+    let mut sorted: Vec<(i32, [u32; 3])> = labels(&mesh.triangle_labels).zip(mesh.triangles.iter().copied()).collect();
+    sorted.sort_by_key(|&(label, _)| label);
+    for group in sorted.chunk_by(|(one, _), (other, _)| one == other) {
+        writeln!(out, "g region_{}", group[0].0)?;
+        for [a, b, c] in group.iter().map(|(_, triangle)| triangle.map(|v| u64::from(v) + 1)) {
+            writeln!(out, "f {a} {b} {c}")?;
         }
-        let [a, b, c] = mesh.triangles[i].map(|v| u64::from(v) + 1);
-        writeln!(out, "f {a} {b} {c}")?;
     }
     if !mesh.edges.is_empty() {
         out.write_all(b"g edges\n")?;
@@ -86,8 +79,7 @@ pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
 }
 
 #[derive(Default)]
-struct Reader<'a> {
-    place: &'a str,
+struct Reader {
     mesh: Mesh,
     polygons: Polygons,
     /// That of the group.
@@ -96,26 +88,22 @@ struct Reader<'a> {
     free_form: BTreeMap<&'static str, u64>,
 }
 
-impl Reader<'_> {
+impl Reader {
     fn read_row(&mut self, row: Row<'_>) -> Result<()> {
         let mut words = row.words();
         match words.next().map(|word| word.text) {
-            Some("v") => self.read_vertex(row.line, words),
+            Some("v") => self.read_vertex(row.place, words),
             // Wavefront's programs once wrote fo.
             Some("f" | "fo") => {
                 let polygon = self.references(words, At::head("f"))?;
-                if polygon.len() < 3 {
-                    return Err(self.too_short(row.line, polygon.len(), "face", 3));
-                }
+                demand_length(row.place, polygon.len(), "face", 3)?;
                 self.polygons.push(&polygon);
                 self.polygons.label(self.label);
                 Ok(())
             }
             Some("l") => {
                 let line = self.references(words, At::head("l"))?;
-                if line.len() < 2 {
-                    return Err(self.too_short(row.line, line.len(), "line", 2));
-                }
+                demand_length(row.place, line.len(), "line", 2)?;
                 self.mesh.edges.extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
                 Ok(())
             }
@@ -134,23 +122,19 @@ impl Reader<'_> {
     }
 
     /// Faces may refer to vertices below them: whether these exist is known at the end.
-    fn finish(self) -> Result<Document> {
-        let Self { mut mesh, polygons, largest, free_form, place, .. } = self;
-        largest.check("vertex", mesh.points.len(), place)?;
+    fn finish(self, file: &str) -> Result<Document> {
+        let Self { mut mesh, polygons, largest, free_form, .. } = self;
+        largest.check("vertex", mesh.points.len(), file)?;
         (mesh.triangles, mesh.triangle_labels) = polygons.cut(&mesh.points);
-        mesh.point_labels = vec![0; mesh.points.len()];
-        mesh.edge_labels = vec![0; mesh.edges.len()];
         let notes = free_form.into_iter().map(|(name, count)| format!("{count} {name} left out: only faces are read"));
-        Ok(Document { notes: notes.collect(), ..mesh.into() })
+        Ok(Document { notes: notes.collect(), ..labelled(mesh).into() })
     }
 
-    fn read_vertex<'w>(&mut self, line: usize, mut words: impl Iterator<Item = Word<'w>>) -> Result<()> {
+    fn read_vertex<'w>(&mut self, place: Place<'_>, mut words: impl Iterator<Item = Word<'w>>) -> Result<()> {
         let mut point = [0.0; 3];
         for coordinate in &mut point {
-            let word = words.next().ok_or_else(|| {
-                error_at(self.place, line, "a vertex with fewer than three coordinates", "write v x y z")
-            })?;
-            *coordinate = number(self.place, word, At::head("v"))?;
+            let missing = || place.error("a vertex with fewer than three coordinates", "write v x y z");
+            *coordinate = words.next().ok_or_else(missing)?.number(At::head("v"))?;
         }
         self.mesh.points.push(point);
         Ok(())
@@ -163,26 +147,28 @@ impl Reader<'_> {
     /// A vertex, numbered from 0.
     fn reference(&mut self, word: Word<'_>, at: At<'_>) -> Result<u32> {
         let text = word.text.split('/').next().unwrap_or_default();
-        let number: i64 = whole(self.place, Word { text, ..word }, at)?;
+        let number: i64 = Word { text, ..word }.whole(at)?;
         let known = i64::try_from(self.mesh.points.len()).unwrap_or(i64::MAX);
         let absolute = if number < 0 { known + 1 + number } else { number };
         match u32::try_from(absolute) {
             Ok(absolute) if absolute > 0 => {
-                self.largest.note(absolute.into(), word.line as u64);
+                self.largest.note(absolute.into(), word.place);
                 Ok(absolute - 1)
             }
             _ => {
                 let what = format!("vertex {number} does not exist: {known} are listed above");
                 let help = "number from 1, or from -1 back from the last vertex above";
-                Err(error_at(self.place, word.line, what, help))
+                Err(word.place.error(what, help))
             }
         }
     }
+}
 
-    fn too_short(&self, line: usize, found: usize, of: &str, needed: usize) -> voronaut::Error {
-        let what = format!("a {of} of {found} vertices");
-        error_at(self.place, line, what, format!("a {of} needs {needed} vertices or more"))
+fn demand_length(place: Place<'_>, found: usize, of: &str, needed: usize) -> Result<()> {
+    if found >= needed {
+        return Ok(());
     }
+    Err(place.error(format!("a {of} of {found} vertices"), format!("a {of} needs {needed} vertices or more")))
 }
 
 #[cfg(test)]

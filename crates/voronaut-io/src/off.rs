@@ -1,7 +1,8 @@
 //! Geomview's `.off` in text form.
 
+use super::codec::{At, Form, Place, Sink, Source, Word, shortened};
 use super::cutting::cut;
-use super::words::{At, Row, Rows, Shortest, Word, error_at, number, shortened, whole};
+use super::document::labelled;
 use std::io::{self, BufRead, Write};
 use voronaut::Result;
 use voronaut::mesh::Mesh;
@@ -17,24 +18,22 @@ use voronaut::mesh::Mesh;
 /// [`voronaut::Error::Parse`] with the line of another head, of what is no finite number, of a row that is too short or
 /// missing, of rows left over, and of a vertex that does not exist.
 pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
-    let mut rows = Rows::new(source, place);
-    let [vertices, faces] = read_counts(&mut rows)?;
+    let mut source = Source::new(source, place);
+    let [vertices, faces] = read_counts(&mut source)?;
     let mut mesh = Mesh::default();
     for at in At::rows("the vertices", vertices) {
-        mesh.points.push(read_vertex(&mut rows, at)?);
+        mesh.points.push(read_vertex(&mut source, at)?);
     }
     let mut polygon = Vec::new();
     for at in At::rows("the faces", faces) {
-        read_face(&mut rows, at, vertices, &mut polygon)?;
+        read_face(&mut source, at, vertices, &mut polygon)?;
         cut(&mesh.points, &polygon, &mut mesh.triangles);
     }
-    if let Some(row) = rows.next()? {
+    if let Some(row) = source.next_row()? {
         let what = "more rows than the counts in the file announce";
-        return Err(error_at(place, row.line, what, "check the counts of vertices and faces"));
+        return Err(row.place.error(what, "check the counts of vertices and faces"));
     }
-    mesh.point_labels = vec![0; mesh.points.len()];
-    mesh.triangle_labels = vec![0; mesh.triangles.len()];
-    Ok(mesh)
+    Ok(labelled(mesh))
 }
 
 /// Writes vertices and triangles as an `.off` text that [`read`] turns into the same; labels and edges have no place there.
@@ -42,76 +41,72 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
 /// # Errors
 /// What `out` says.
 pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
-    writeln!(out, "OFF\n{} {} 0", mesh.points.len(), mesh.triangles.len())?;
-    for [x, y, z] in &mesh.points {
-        writeln!(out, "{} {} {}", Shortest(*x), Shortest(*y), Shortest(*z))?;
-    }
-    mesh.triangles.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
+    let mut sink = Sink::new(Form::Text, out);
+    sink.line(format_args!("OFF\n{} {} 0", mesh.points.len(), mesh.triangles.len()))?;
+    mesh.points.iter().try_for_each(|point| sink.row(*point))?;
+    mesh.triangles.iter().try_for_each(|&[a, b, c]| sink.row([3, a, b, c]))
 }
 
 /// Dialects whose vertices begin with their three coordinates.
 const HEADS: [&str; 7] = ["OFF", "COFF", "NOFF", "CNOFF", "STOFF", "STCOFF", "STNOFF"];
 
-fn read_counts(rows: &mut Rows<'_>) -> Result<[u64; 2]> {
-    let (place, at) = (rows.place(), At::head("the file"));
-    let row = next_row(rows, at)?;
+fn read_counts(source: &mut Source<'_>) -> Result<[u64; 2]> {
+    let at = At::head("the file");
+    let row = source.row(at)?;
     let mut words = row.words().peekable();
     let first = words.peek().map_or("", |word| word.text);
     if !first.starts_with(|c: char| c.is_ascii_digit()) {
         if !HEADS.iter().any(|head| head.eq_ignore_ascii_case(first)) {
             let what = format!("the file begins with '{}', not with OFF", shortened(first));
-            return Err(error_at(place, row.line, what, "give a file in the text form of .off"));
+            return Err(row.place.error(what, "give a file in the text form of .off"));
         }
         words.next();
     }
     if words.peek().is_some() {
-        return counts(place, row.line, words);
+        return counts(words, row.place, at);
     }
     drop(words);
-    let row = next_row(rows, at)?;
-    counts(place, row.line, row.words())
+    let row = source.row(at)?;
+    counts(row.words(), row.place, at)
 }
 
 /// Vertices and faces; a count of edges may follow and means nothing.
-fn counts<'w>(place: &str, line: usize, mut words: impl Iterator<Item = Word<'w>>) -> Result<[u64; 2]> {
-    let at = At::head("the file");
-    let mut count = || whole(place, word(place, line, words.next(), at)?, at);
+fn counts<'w>(mut words: impl Iterator<Item = Word<'w>>, place: Place<'_>, at: At<'_>) -> Result<[u64; 2]> {
+    let mut count = || expect(words.next(), place, at)?.whole(at);
     Ok([count()?, count()?])
 }
 
-fn read_vertex(rows: &mut Rows<'_>, at: At<'_>) -> Result<[f64; 3]> {
-    let place = rows.place();
+fn read_vertex(source: &mut Source<'_>, at: At<'_>) -> Result<[f64; 3]> {
     let (mut point, mut known) = ([0.0; 3], 0);
     while known < 3 {
-        for word in next_row(rows, at)?.words().take(3 - known) {
-            point[known] = number(place, word, at)?;
+        for word in source.row(at)?.words().take(3 - known) {
+            point[known] = word.number(at)?;
             known += 1;
         }
     }
     Ok(point)
 }
 
-fn read_face(rows: &mut Rows<'_>, at: At<'_>, vertices: u64, polygon: &mut Vec<u32>) -> Result<()> {
-    let place = rows.place();
+fn read_face(source: &mut Source<'_>, at: At<'_>, vertices: u64, polygon: &mut Vec<u32>) -> Result<()> {
     let mut corners = None;
     polygon.clear();
     while corners.is_none_or(|corners| (polygon.len() as u64) < corners) {
-        let row = next_row(rows, at)?;
+        let row = source.row(at)?;
         let mut words = row.words();
         let count = match corners {
             Some(count) => count,
-            None => whole(place, word(place, row.line, words.next(), at)?, at)?,
+            None => expect(words.next(), row.place, at)?.whole(at)?,
         };
         if count < 3 {
             let what = format!("a face of {count} vertices ({at})");
-            return Err(error_at(place, row.line, what, "a face needs three vertices or more"));
+            return Err(row.place.error(what, "a face needs three vertices or more"));
         }
         corners = Some(count);
         for word in words.take((count - polygon.len() as u64) as usize) {
-            let vertex: u32 = whole(place, word, at)?;
+            let vertex: u32 = word.whole(at)?;
             if u64::from(vertex) >= vertices {
                 let what = format!("vertex {vertex} does not exist: the file announces {vertices} ({at})");
-                return Err(error_at(place, row.line, what, "number from 0, and below the count of vertices"));
+                return Err(row.place.error(what, "number from 0, and below the count of vertices"));
             }
             polygon.push(vertex);
         }
@@ -119,17 +114,9 @@ fn read_face(rows: &mut Rows<'_>, at: At<'_>, vertices: u64, polygon: &mut Vec<u
     Ok(())
 }
 
-fn next_row<'r>(rows: &'r mut Rows<'_>, at: At<'_>) -> Result<Row<'r>> {
-    if rows.has_next()? {
-        return Ok(rows.next()?.expect("a row was seen"));
-    }
-    let help = format!("the file is cut off, or the count of {} is too large", at.section);
-    Err(error_at(rows.place(), rows.line(), format!("the text ends in {at}"), help))
-}
-
-fn word<'w>(place: &str, line: usize, word: Option<Word<'w>>, at: At<'_>) -> Result<Word<'w>> {
+fn expect<'w>(word: Option<Word<'w>>, place: Place<'_>, at: At<'_>) -> Result<Word<'w>> {
     let help = "write all numbers of a vertex or a face on one row";
-    word.ok_or_else(|| error_at(place, line, format!("the row ends too early ({at})"), help))
+    word.ok_or_else(|| place.error(format!("the row ends too early ({at})"), help))
 }
 
 #[cfg(test)]

@@ -1,28 +1,31 @@
 //! Lists of points: a line `x y` (or `x y z`) each; empty lines and what follows `#` say nothing.
 
+use super::codec::Place;
+use voronaut::Result;
 use voronaut::geometry::{Point, Point3};
-use voronaut::{Error, Result};
 
 /// Reads planar points; a third coordinate must be 0. `name` is the file's, for messages.
 ///
 /// # Errors
-/// [`Error::Parse`] with the line that is no point.
+/// [`Error::Parse`](voronaut::Error::Parse) with the line that is no point.
 pub fn read(text: &str, name: &str) -> Result<Vec<Point>> {
-    let help = "write two numbers, x y, on each line";
-    rows(text).map(|(number, row)| point(row).ok_or_else(|| fault(name, number, row, help))).collect()
+    let point = |numbers: &[f64]| match *numbers {
+        [x, y] | [x, y, 0.0] => Some(Point::new(x, y)).filter(|p| p.is_finite()),
+        _ => None,
+    };
+    parse(text, name, "write two numbers, x y, on each line", point)
 }
 
 /// Reads points of space. `name` is the file's, for messages.
 ///
 /// # Errors
-/// [`Error::Parse`] with the line that is no point.
+/// [`Error::Parse`](voronaut::Error::Parse) with the line that is no point.
 pub fn read_in_space(text: &str, name: &str) -> Result<Vec<Point3>> {
-    let help = "write three numbers, x y z, on each line";
-    let point = |row: &str| match numbers(row)?[..] {
+    let point = |numbers: &[f64]| match *numbers {
         [x, y, z] => Some(Point3::new(x, y, z)).filter(|p| p.is_finite()),
         _ => None,
     };
-    rows(text).map(|(number, row)| point(row).ok_or_else(|| fault(name, number, row, help))).collect()
+    parse(text, name, "write three numbers, x y z, on each line", point)
 }
 
 /// The line of each point of a text that [`read`] reads, from 1.
@@ -36,21 +39,15 @@ fn rows(text: &str) -> impl Iterator<Item = (usize, &str)> {
     (1..).zip(rows).filter(|(_, row)| !row.is_empty())
 }
 
-fn point(line: &str) -> Option<Point> {
-    let p = match numbers(line)?[..] {
-        [x, y] | [x, y, 0.0] => Point::new(x, y),
-        _ => return None,
+fn parse<T>(text: &str, name: &str, help: &str, point: impl Fn(&[f64]) -> Option<T>) -> Result<Vec<T>> {
+    let read = |(line, row): (usize, &str)| {
+        let numbers = row.split_whitespace().map(|word| word.parse().ok()).collect::<Option<Vec<f64>>>();
+        numbers.and_then(|numbers| point(&numbers)).ok_or_else(|| {
+            let shown: String = row.chars().take(40).collect();
+            Place::line(name, line).error(format!("'{shown}' is no point"), help)
+        })
     };
-    p.is_finite().then_some(p)
-}
-
-fn numbers(line: &str) -> Option<Vec<f64>> {
-    line.split_whitespace().map(|word| word.parse().ok()).collect()
-}
-
-fn fault(name: &str, line: usize, text: &str, help: &str) -> Error {
-    let shown: String = text.chars().take(40).collect();
-    Error::parse(format!("{name}:{line}"), format!("'{shown}' is no point"), help)
+    rows(text).map(read).collect()
 }
 
 #[cfg(test)]

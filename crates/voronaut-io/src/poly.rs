@@ -1,10 +1,11 @@
 //! Triangle's `.poly` files (Shewchuk): a planar straight-line graph with holes and regions.
 
-use super::words::{At, Row, Rows, Shortest, Word, error_at, number, whole};
+use super::codec::{At, Form, Row, Sink, Source, Word};
 use std::io::{self, BufRead, Write};
+use std::ops::RangeInclusive;
+use voronaut::Result;
 use voronaut::domain::{Poly, PolyRegion};
 use voronaut::geometry::Point;
-use voronaut::{Error, Result};
 
 /// Reads a `.poly` text with its vertices inline, numbered from 0 or 1. Vertex attributes are passed over.
 ///
@@ -13,21 +14,28 @@ use voronaut::{Error, Result};
 ///
 /// # Errors
 ///
-/// [`Error::Parse`] with the line of what is not as announced: a text cut off, rows with too many or too few columns,
+/// [`Error::Parse`](voronaut::Error::Parse) with the line of what is not as announced: a text cut off, rows with too many or too few columns,
 /// numbers out of turn, something that is no finite number, an end that is no vertex, no vertices inline, a dimension
 /// other than 2.
 pub fn read(source: impl BufRead, place: &str) -> Result<Poly> {
-    let mut rows = Rows::new(source, place);
-    let mut reader = Reader { place, line: 1, poly: Poly::default() };
-    reader.read_vertices(&mut rows)?;
-    reader.read_segments(&mut rows)?;
-    reader.read_holes(&mut rows)?;
-    reader.read_regions(&mut rows)?;
-    if let Some(row) = rows.next()? {
-        let what = "more rows than the counts in the file announce";
-        return Err(error_at(place, row.line, what, "check the counts of holes and regions"));
+    let (mut source, mut poly) = (Source::new(source, place), Poly::default());
+    read_vertices(&mut source, &mut poly)?;
+    read_segments(&mut source, &mut poly)?;
+    for at in At::rows("holes", read_count(&mut source, "holes")?) {
+        let row = columns(source.row(at)?, at, 3..=3)?;
+        poly.holes.push(point(&row, at)?);
     }
-    Ok(reader.poly)
+    for at in At::rows("regions", read_count(&mut source, "regions")?) {
+        let row = columns(source.row(at)?, at, 4..=5)?;
+        let (point, attribute) = (point(&row, at)?, row[3].number(at)?);
+        let max_area = row.get(4).map(|word| word.number(at)).transpose()?;
+        poly.regions.push(PolyRegion { point, attribute, max_area });
+    }
+    if let Some(row) = source.next_row()? {
+        let what = "more rows than the counts in the file announce";
+        return Err(row.place.error(what, "check the counts of holes and regions"));
+    }
+    Ok(poly)
 }
 
 /// Writes a `.poly` text that [`read`] turns into the same.
@@ -35,174 +43,130 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Poly> {
 /// # Errors
 /// What `out` says.
 pub fn write(poly: &Poly, out: &mut dyn Write) -> io::Result<()> {
+    let mut sink = Sink::new(Form::Text, out);
     let number = |i: usize| i as u64 + u64::from(poly.first);
-    writeln!(out, "# vertices\n{} 2 0 1", poly.points.len())?;
+    sink.line(format_args!("# vertices\n{} 2 0 1", poly.points.len()))?;
     for (i, (p, marker)) in poly.points.iter().zip(&poly.point_markers).enumerate() {
-        writeln!(out, "{} {} {} {marker}", number(i), Shortest(p.x), Shortest(p.y))?;
+        sink.put(number(i));
+        sink.put_all([p.x, p.y]);
+        sink.row([*marker])?;
     }
-    writeln!(out, "# segments\n{} 1", poly.segments.len())?;
+    sink.line(format_args!("# segments\n{} 1", poly.segments.len()))?;
     for (i, (ends, marker)) in poly.segments.iter().zip(&poly.segment_markers).enumerate() {
-        let [a, b] = ends.map(|v| number(v as usize));
-        writeln!(out, "{} {a} {b} {marker}", number(i))?;
+        sink.put_all([number(i), number(ends[0] as usize), number(ends[1] as usize)]);
+        sink.row([*marker])?;
     }
-    writeln!(out, "# holes\n{}", poly.holes.len())?;
+    sink.line(format_args!("# holes\n{}", poly.holes.len()))?;
     for (i, p) in poly.holes.iter().enumerate() {
-        writeln!(out, "{} {} {}", number(i), Shortest(p.x), Shortest(p.y))?;
+        sink.put(number(i));
+        sink.row([p.x, p.y])?;
     }
-    writeln!(out, "# regions\n{}", poly.regions.len())?;
+    sink.line(format_args!("# regions\n{}", poly.regions.len()))?;
     for (i, region) in poly.regions.iter().enumerate() {
-        let (p, attribute) = (region.point, Shortest(region.attribute));
-        write!(out, "{} {} {} {attribute}", number(i), Shortest(p.x), Shortest(p.y))?;
-        region.max_area.map_or(Ok(()), |area| write!(out, " {}", Shortest(area)))?;
-        out.write_all(b"\n")?;
+        sink.put(number(i));
+        sink.put_all([region.point.x, region.point.y, region.attribute]);
+        sink.row(region.max_area)?;
     }
     Ok(())
 }
 
-struct Reader<'a> {
-    place: &'a str,
-    line: usize,
-    poly: Poly,
+fn read_vertices(source: &mut Source<'_>, poly: &mut Poly) -> Result<()> {
+    let [count, dimension, attributes, markers] = read_head(source, "vertices", 4)?;
+    if let Some(dimension) = dimension.filter(|&dimension| dimension != 2) {
+        let help = "give a planar .poly file; TetGen's three-dimensional ones are another format";
+        return Err(source.error(format!("the vertices have dimension {dimension}, not 2"), help));
+    }
+    if count == Some(0) {
+        let help = "inline the vertices: put the content of the .node file here, in place of this row";
+        return Err(source.error("the file holds no vertices: they are in a .node file", help));
+    }
+    // A row of a text holds fewer columns than this; the sum below must not overflow.
+    let attributes = attributes.unwrap_or(0).min(1 << 40) as usize;
+    let width = 3 + attributes + marker_columns(source, markers)?;
+    for at in At::rows("vertices", count.unwrap_or(0)) {
+        let row = columns(source.row(at)?, at, width..=width)?;
+        check_vertex_number(row[0], poly, at)?;
+        poly.points.push(point(&row, at)?);
+        poly.point_markers.push(marker(row.get(3 + attributes), at)?);
+    }
+    Ok(())
 }
 
-impl Reader<'_> {
-    fn read_vertices(&mut self, rows: &mut Rows<'_>) -> Result<()> {
-        let head = self.head(rows, "vertices", 4)?;
-        let [count, dimension, attributes, markers] = head;
-        if dimension.unwrap_or(2) != 2 {
-            let what = format!("the vertices have dimension {}, not 2", dimension.unwrap_or(2));
-            return Err(
-                self.error(what, "give a planar .poly file; TetGen's three-dimensional ones are another format")
-            );
-        }
-        if count == Some(0) {
-            let help = "inline the vertices: put the content of the .node file here, in place of this row";
-            return Err(self.error("the file holds no vertices: they are in a .node file", help));
-        }
-        // A row of a text holds fewer columns than this; the sum below must not overflow.
-        let attributes = attributes.unwrap_or(0).min(1 << 40) as usize;
-        let columns = 3 + attributes + self.marker_columns(markers)?;
-        for at in At::rows("vertices", count.unwrap_or(0)) {
-            let row = self.row(rows, at, columns, columns)?;
-            self.check_vertex_number(row[0], at)?;
-            self.poly.points.push(self.point(&row[1..3], at)?);
-            self.poly.point_markers.push(self.marker(row.get(3 + attributes), at)?);
-        }
-        Ok(())
+fn read_segments(source: &mut Source<'_>, poly: &mut Poly) -> Result<()> {
+    let [count, markers] = read_head(source, "segments", 2)?;
+    let width = 3 + marker_columns(source, markers)?;
+    for at in At::rows("segments", count.unwrap_or(0)) {
+        let row = columns(source.row(at)?, at, width..=width)?;
+        poly.segments.push([vertex(row[1], poly, at)?, vertex(row[2], poly, at)?]);
+        poly.segment_markers.push(marker(row.get(3), at)?);
     }
+    Ok(())
+}
 
-    fn read_segments(&mut self, rows: &mut Rows<'_>) -> Result<()> {
-        let [count, markers] = self.head(rows, "segments", 2)?;
-        let columns = 3 + self.marker_columns(markers)?;
-        for at in At::rows("segments", count.unwrap_or(0)) {
-            let row = self.row(rows, at, columns, columns)?;
-            let ends = [self.vertex(row[1], at)?, self.vertex(row[2], at)?];
-            self.poly.segments.push(ends);
-            self.poly.segment_markers.push(self.marker(row.get(3), at)?);
-        }
-        Ok(())
+/// The counts that open a list; those at the end of the row may be missing.
+fn read_head<const N: usize>(source: &mut Source<'_>, section: &str, most: usize) -> Result<[Option<u64>; N]> {
+    let at = At::head(section);
+    let mut counts = [None; N];
+    for (count, word) in counts.iter_mut().zip(columns(source.row(at)?, at, 1..=most)?) {
+        *count = Some(word.whole(at)?);
     }
+    Ok(counts)
+}
 
-    fn read_holes(&mut self, rows: &mut Rows<'_>) -> Result<()> {
-        let [count] = self.optional_head(rows, "holes")?;
-        for at in At::rows("holes", count) {
-            let row = self.row(rows, at, 3, 3)?;
-            self.poly.holes.push(self.point(&row[1..3], at)?);
-        }
-        Ok(())
+/// The count that opens a list which may be missing altogether.
+fn read_count(source: &mut Source<'_>, section: &str) -> Result<u64> {
+    let at = At::head(section);
+    source.next_row()?.map_or(Ok(0), |row| columns(row, at, 1..=1)?[0].whole(at))
+}
+
+/// The words of a row, which has to have so many.
+fn columns<'r>(row: Row<'r>, at: At<'_>, expected: RangeInclusive<usize>) -> Result<Vec<Word<'r>>> {
+    let words: Vec<_> = row.words().collect();
+    if expected.contains(&words.len()) {
+        return Ok(words);
     }
+    let (least, most) = expected.into_inner();
+    let expected = if least == most { least.to_string() } else { format!("{least} to {most}") };
+    let what = format!("{} columns where {expected} are expected ({at})", words.len());
+    let help = format!("check the counts (of rows, attributes, markers) in the row that opens the {}", at.section);
+    Err(row.place.error(what, help))
+}
 
-    fn read_regions(&mut self, rows: &mut Rows<'_>) -> Result<()> {
-        let [count] = self.optional_head(rows, "regions")?;
-        for at in At::rows("regions", count) {
-            let row = self.row(rows, at, 4, 5)?;
-            let point = self.point(&row[1..3], at)?;
-            let attribute = number(self.place, row[3], at)?;
-            let max_area = row.get(4).map(|&word| number(self.place, word, at)).transpose()?;
-            self.poly.regions.push(PolyRegion { point, attribute, max_area });
-        }
-        Ok(())
+fn check_vertex_number(word: Word<'_>, poly: &mut Poly, at: At<'_>) -> Result<()> {
+    let number: u64 = word.whole(at)?;
+    if at.row == 1 && number <= 1 {
+        poly.first = number as u32;
     }
-
-    /// The counts that open a list; those at the end of the row may be missing.
-    fn head<const N: usize>(&mut self, rows: &mut Rows<'_>, section: &str, columns: usize) -> Result<[Option<u64>; N]> {
-        let at = At::head(section);
-        let row = self.row(rows, at, 1, columns)?;
-        let mut counts = [None; N];
-        for (count, &word) in counts.iter_mut().zip(&row) {
-            *count = Some(whole(self.place, word, at)?);
-        }
-        Ok(counts)
+    let expected = at.row - 1 + u64::from(poly.first);
+    if number == expected {
+        return Ok(());
     }
+    let what = format!("vertex {number} where vertex {expected} is expected ({at})");
+    Err(word.place.error(what, "number the vertices in turn, from 0 or from 1"))
+}
 
-    /// The count that opens a list which may be missing altogether.
-    fn optional_head(&mut self, rows: &mut Rows<'_>, section: &str) -> Result<[u64; 1]> {
-        if !rows.has_next()? {
-            return Ok([0]);
-        }
-        Ok(self.head::<1>(rows, section, 1)?.map(Option::unwrap_or_default))
-    }
+fn vertex(word: Word<'_>, poly: &Poly, at: At<'_>) -> Result<u32> {
+    let number: u32 = word.whole(at)?;
+    let count = poly.points.len();
+    number.checked_sub(poly.first).filter(|&vertex| (vertex as usize) < count).ok_or_else(|| {
+        let help = format!("this file has {count} vertices, numbered from {}", poly.first);
+        word.place.error(format!("vertex {number} does not exist ({at})"), help)
+    })
+}
 
-    /// The words of the next row, which has to have between `least` and `most` columns.
-    fn row<'r>(&mut self, rows: &'r mut Rows<'_>, at: At<'_>, least: usize, most: usize) -> Result<Vec<Word<'r>>> {
-        let Some(row) = rows.next()? else {
-            let help = format!("the file is cut off, or the count of {} is too large", at.section);
-            return Err(self.error(format!("the text ends in {at}"), help));
-        };
-        self.line = row.line;
-        let words: Vec<_> = Row::words(row).collect();
-        if (least..=most).contains(&words.len()) {
-            return Ok(words);
-        }
-        let expected = if least == most { least.to_string() } else { format!("{least} to {most}") };
-        let what = format!("{} columns where {expected} are expected ({at})", words.len());
-        let help = format!("check the counts (of rows, attributes, markers) in the row that opens the {}", at.section);
-        Err(self.error(what, help))
-    }
+/// The point of a row, behind its number.
+fn point(row: &[Word<'_>], at: At<'_>) -> Result<Point> {
+    Ok(Point::new(row[1].number(at)?, row[2].number(at)?))
+}
 
-    fn check_vertex_number(&mut self, word: Word<'_>, at: At<'_>) -> Result<()> {
-        let number: u64 = whole(self.place, word, at)?;
-        if at.row == 1 && number <= 1 {
-            self.poly.first = number as u32;
-        }
-        let expected = at.row - 1 + u64::from(self.poly.first);
-        if number == expected {
-            return Ok(());
-        }
-        let what = format!("vertex {number} where vertex {expected} is expected ({at})");
-        Err(self.error(what, "number the vertices in turn, from 0 or from 1"))
-    }
+fn marker(word: Option<&Word<'_>>, at: At<'_>) -> Result<i32> {
+    word.map_or(Ok(0), |word| word.whole(at))
+}
 
-    fn vertex(&self, word: Word<'_>, at: At<'_>) -> Result<u32> {
-        let number: u32 = whole(self.place, word, at)?;
-        let count = self.poly.points.len();
-        match number.checked_sub(self.poly.first) {
-            Some(vertex) if (vertex as usize) < count => Ok(vertex),
-            _ => {
-                let help = format!("this file has {count} vertices, numbered from {}", self.poly.first);
-                Err(self.error(format!("vertex {number} does not exist ({at})"), help))
-            }
-        }
-    }
-
-    fn point(&self, words: &[Word<'_>], at: At<'_>) -> Result<Point> {
-        Ok(Point::new(number(self.place, words[0], at)?, number(self.place, words[1], at)?))
-    }
-
-    fn marker(&self, word: Option<&Word<'_>>, at: At<'_>) -> Result<i32> {
-        word.map_or(Ok(0), |&word| whole(self.place, word, at))
-    }
-
-    fn marker_columns(&self, markers: Option<u64>) -> Result<usize> {
-        match markers.unwrap_or(0) {
-            0 => Ok(0),
-            1 => Ok(1),
-            more => Err(self.error(format!("{more} boundary markers per row"), "give 0 or 1")),
-        }
-    }
-
-    fn error(&self, what: impl Into<String>, help: impl Into<String>) -> Error {
-        error_at(self.place, self.line, what, help)
+fn marker_columns(source: &Source<'_>, markers: Option<u64>) -> Result<usize> {
+    match markers.unwrap_or(0) {
+        more @ 0..=1 => Ok(more as usize),
+        more => Err(source.error(format!("{more} boundary markers per row"), "give 0 or 1")),
     }
 }
 

@@ -1,8 +1,8 @@
 //! Medit's formats for values on vertices and triangles, `.sol` as text and `.solb` as binary files: scalars (sizes), vectors and
 //! symmetric tensors (metrics).
 
-use super::medit::{Form, Sink, Source};
-use super::words::At;
+use super::codec::{At, Form};
+use super::medit::{Sections, Writer};
 use std::io::{self, BufRead, Write};
 use voronaut::mesh::{Solution, SolutionValues, Solutions};
 use voronaut::{Error, Result};
@@ -18,16 +18,14 @@ use voronaut::{Error, Result};
 /// that cannot be read.
 pub fn read(source: impl BufRead, place: &str) -> Result<Solution> {
     let mut file = Parsed::read(source, place, &SECTIONS[..1])?;
-    let Some(mut found) = file.sections[0].take() else {
+    let Some((place, values)) = file.sections[0].take() else {
         return Err(file.missing("", "save the values on vertices, in a section SolAtVertices"));
     };
-    match found.values.pop() {
-        Some(values) if found.values.is_empty() => Ok(Solution { dimension: file.dimension, values }),
-        _ => {
-            let what = format!("{} solutions per vertex ({})", found.values.len() + 1, found.place);
-            Err(Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() })
-        }
-    }
+    let [values] = <[SolutionValues; 1]>::try_from(values).map_err(|values| {
+        let what = format!("{} solutions per vertex ({place})", values.len());
+        Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() }
+    })?;
+    Ok(Solution { dimension: file.from.dimension.unwrap_or_default(), values })
 }
 
 /// Reads the sections `SolAtVertices` and `SolAtTriangles` of a file, with any number of values per vertex or triangle;
@@ -42,8 +40,8 @@ pub fn read_all(source: impl BufRead, place: &str) -> Result<Solutions> {
     if vertices.is_none() && triangles.is_none() {
         return Err(file.missing(", nor SolAtTriangles", "save values in one of these sections"));
     }
-    let values = |found: Option<Section>| found.map_or_else(Vec::new, |found| found.values);
-    Ok(Solutions { dimension: file.dimension, vertices: values(vertices), triangles: values(triangles) })
+    let [vertices, triangles] = [vertices, triangles].map(|found| found.map_or_else(Vec::new, |(_, values)| values));
+    Ok(Solutions { dimension: file.from.dimension.unwrap_or_default(), vertices, triangles })
 }
 
 /// Writes a file of version 2 that [`read`] turns into the same solution, to the last bit.
@@ -71,56 +69,47 @@ const SECTIONS: [&str; 2] = ["SolAtVertices", "SolAtTriangles"];
 
 /// What is read of a file.
 struct Parsed<'a> {
-    source: Source<'a>,
-    dimension: u8,
+    from: Sections<'a>,
     /// In the order of [`SECTIONS`].
     sections: [Option<Section>; 2],
 }
 
-struct Section {
-    /// Where its head ends.
-    place: String,
-    values: Vec<SolutionValues>,
-}
+/// Where its head ends, and its values.
+type Section = (String, Vec<SolutionValues>);
 
 impl<'a> Parsed<'a> {
     /// Reads the sections that are wanted.
     fn read(source: impl BufRead + 'a, place: &'a str, wanted: &[&str]) -> Result<Self> {
-        let mut source = Source::new(source, place)?;
-        let (mut dimension, mut sections, mut before) = (None, [None, None], "the head of the file".to_owned());
-        while let Some(name) = source.next_section(&before)? {
+        let (mut from, mut sections) = (Sections::new(source, place)?, [None, None]);
+        while let Some(name) = from.next_section()? {
             match wanted.iter().position(|wanted| *wanted == name) {
-                _ if name == "Dimension" && dimension.is_none() => dimension = Some(source.dimension()?),
+                _ if name == "Dimension" && from.dimension.is_none() => from.read_dimension()?,
                 found if name == "Dimension" || found.is_some_and(|i| sections[i].is_some()) => {
-                    return Err(source.error(format!("a second section {name}"), "keep one of them"));
+                    return Err(from.source.error(format!("a second section {name}"), "keep one of them"));
                 }
-                Some(i) => {
-                    let dimension = source.known_dimension(dimension, &name)?;
-                    sections[i] = Some(read_section(&mut source, dimension, &name)?);
-                }
-                None => source.skip_section(&name)?,
+                Some(i) => sections[i] = Some(read_section(&mut from, &name)?),
+                None => from.skip_section()?,
             }
-            before = name;
         }
-        Ok(Self { source, dimension: dimension.unwrap_or_default(), sections })
+        Ok(Self { from, sections })
     }
 
     fn missing(&self, more: &str, help: &str) -> Error {
-        self.source.error(format!("the file has no section SolAtVertices{more}"), help)
+        self.from.source.error(format!("the file has no section SolAtVertices{more}"), help)
     }
 }
 
-fn read_section(source: &mut Source<'_>, dimension: u8, section: &str) -> Result<Section> {
-    let head = At::head(section);
-    let count = source.count(section)?;
-    let solutions: u64 = source.short(head)?;
+fn read_section(from: &mut Sections<'_>, section: &str) -> Result<Section> {
+    let (head, dimension) = (At::head(section), from.known_dimension()?);
+    let count = from.count()?;
+    let solutions: u64 = from.short(head)?;
     if solutions == 0 {
         let help = "write how many solutions there are, then the type of each: '1 1' for a scalar";
-        return Err(source.error(format!("no solution in {section}"), help));
+        return Err(from.source.error(format!("no solution in {section}"), help));
     }
     let mut values = Vec::new();
     for _ in 0..solutions {
-        let kind: i64 = source.short(head)?;
+        let kind: i64 = from.short(head)?;
         values.push(match (kind, dimension) {
             (1, _) => SolutionValues::Scalar(Vec::new()),
             (2, _) => SolutionValues::Vector { components: dimension.into(), numbers: Vec::new() },
@@ -128,81 +117,65 @@ fn read_section(source: &mut Source<'_>, dimension: u8, section: &str) -> Result
             (3, _) => SolutionValues::Tensor3(Vec::new()),
             _ => {
                 let help = "write 1 for scalars, 2 for vectors, 3 for symmetric tensors";
-                return Err(source.error(format!("the type of the values is {kind}"), help));
+                return Err(from.source.error(format!("the type of the values is {kind}"), help));
             }
         });
     }
-    let place = source.here();
+    let place = from.source.place().to_string();
     for at in At::rows(section, count) {
-        values.iter_mut().try_for_each(|values| push(values, source, at))?;
+        values.iter_mut().try_for_each(|values| push(values, from, at))?;
     }
-    Ok(Section { place, values })
+    Ok((place, values))
 }
 
-fn push(values: &mut SolutionValues, source: &mut Source<'_>, at: At<'_>) -> Result<()> {
+fn push(values: &mut SolutionValues, from: &mut Sections<'_>, at: At<'_>) -> Result<()> {
     match values {
-        SolutionValues::Scalar(entries) => entries.push(source.number(at)?),
+        SolutionValues::Scalar(entries) => entries.push(from.number(at)?),
         SolutionValues::Vector { components, numbers } => {
             for _ in 0..*components {
-                numbers.push(source.number(at)?);
+                numbers.push(from.number(at)?);
             }
         }
-        SolutionValues::Tensor(entries) => entries.push(row(source, at)?),
-        SolutionValues::Tensor3(entries) => entries.push(row(source, at)?),
+        SolutionValues::Tensor(entries) => entries.push(from.numbers(at)?),
+        SolutionValues::Tensor3(entries) => entries.push(from.numbers(at)?),
     }
     Ok(())
-}
-
-fn row<const N: usize>(source: &mut Source<'_>, at: At<'_>) -> Result<[f64; N]> {
-    let mut row = [0.0; N];
-    for value in &mut row {
-        *value = source.number(at)?;
-    }
-    Ok(row)
 }
 
 fn write_sections(dimension: u8, sections: [&[SolutionValues]; 2], form: Form, out: &mut dyn Write) -> io::Result<()> {
     let size = |values: &SolutionValues| 8 * values.components() as u64 * values.count() as u64;
     let bytes = sections.into_iter().flatten().map(size).sum();
-    let mut sink = Sink::new(form, dimension, bytes, out)?;
+    let mut writer = Writer::new(form, dimension, bytes, out)?;
     for (name, values) in SECTIONS.into_iter().zip(sections) {
         if !values.is_empty() {
-            write_section(&mut sink, dimension, name, values)?;
+            write_section(&mut writer, dimension, name, values)?;
         }
     }
-    sink.finish()
+    writer.finish()
 }
 
-fn write_section(sink: &mut Sink<'_>, dimension: u8, name: &str, values: &[SolutionValues]) -> io::Result<()> {
+fn write_section(writer: &mut Writer<'_>, dimension: u8, name: &str, values: &[SolutionValues]) -> io::Result<()> {
     let kinds = values.iter().map(|values| kind(values, dimension)).collect::<io::Result<Vec<i32>>>()?;
     let number = i32::try_from(values.len()).map_err(|_| io::Error::other("more than 2^31 solutions"))?;
     let head: Vec<i32> = std::iter::once(number).chain(kinds).collect();
     let row = 8 * values.iter().map(SolutionValues::components).sum::<usize>();
     let count = values[0].count();
-    sink.section(name, count, row, &head)?;
-    for i in 0..count {
-        values.iter().flat_map(|values| values.row(i)).try_for_each(|&value| sink.number(value))?;
-        sink.end_row()?;
-    }
-    Ok(())
+    writer.section(name, count, row, &head)?;
+    (0..count).try_for_each(|i| writer.sink.row(values.iter().flat_map(|values| values.row(i)).copied()))
 }
 
 /// The number by which the format calls the type.
 fn kind(values: &SolutionValues, dimension: u8) -> io::Result<i32> {
-    match values {
-        SolutionValues::Scalar(_) => Ok(1),
-        SolutionValues::Vector { components, .. } if *components == usize::from(dimension) => Ok(2),
-        SolutionValues::Vector { components, .. } => {
-            let what = format!("vectors of {components} components in a .sol file of dimension {dimension}");
-            Err(io::Error::new(io::ErrorKind::InvalidInput, what))
-        }
-        SolutionValues::Tensor(_) if dimension == 2 => Ok(3),
-        SolutionValues::Tensor3(_) if dimension == 3 => Ok(3),
-        SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => {
-            let what = format!("tensors of another dimension in a .sol file of dimension {dimension}");
-            Err(io::Error::new(io::ErrorKind::InvalidInput, what))
-        }
-    }
+    let what = match values {
+        SolutionValues::Scalar(_) => return Ok(1),
+        SolutionValues::Vector { components, .. } if *components == usize::from(dimension) => return Ok(2),
+        SolutionValues::Tensor(_) if dimension == 2 => return Ok(3),
+        SolutionValues::Tensor3(_) if dimension == 3 => return Ok(3),
+        SolutionValues::Vector { components, .. } => format!("vectors of {components} components"),
+        SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => "tensors of another dimension".to_owned(),
+    };
+    let what = format!("{what} in a .sol file of dimension {dimension}");
+    Err(io::Error::new(io::ErrorKind::InvalidInput, what))
 }
 
 #[cfg(test)]

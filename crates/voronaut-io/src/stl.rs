@@ -1,11 +1,11 @@
 //! Stereolithography `.stl`, as text and binary: triangles without shared vertices.
 
-use super::bytes::{Bytes, Order};
-use super::words::{At, Words, error_at, shortened};
+use super::codec::{At, Form, Kind, Order, Sink, Source};
+use super::document::labelled;
 use std::collections::HashMap;
 use std::io::{self, BufRead, Write};
+use voronaut::Result;
 use voronaut::mesh::Mesh;
-use voronaut::{Error, Result};
 
 /// Reads an `.stl` file. Corners with exactly the same coordinates become one vertex, in the order of the file (the
 /// format has no other way to say that triangles are neighbours); nothing else is joined. Normals, names and attributes
@@ -15,15 +15,15 @@ use voronaut::{Error, Result};
 ///
 /// # Errors
 ///
-/// [`Error::Parse`] with the line or the byte of what is not as announced: a file cut off or longer than its count of triangles, a
-/// coordinate that is no finite number, words out of place. [`Error::Io`] of a file that cannot be read.
-pub fn read(mut source: impl BufRead, place: &str) -> Result<Mesh> {
-    let start = source.fill_buf().map_err(|source| Error::Io { path: place.into(), source })?;
-    if is_text(start) {
-        read_text(Words::new(source, place))
-    } else {
-        read_binary(Bytes::new(source, 0, Order::Little, place))
+/// [`Error::Parse`](voronaut::Error::Parse) with the line or the byte of what is not as announced: a file cut off or longer than its count of triangles, a
+/// coordinate that is no finite number, words out of place. [`Error::Io`](voronaut::Error::Io) of a file that cannot be read.
+pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
+    let mut source = Source::new(source, place);
+    if is_text(source.ahead()?) {
+        return read_text(source);
     }
+    source.be_binary(Order::Little);
+    read_binary(source)
 }
 
 /// Writes triangles as a binary `.stl` file. The format has single precision: corners are rounded, and
@@ -33,7 +33,8 @@ pub fn read(mut source: impl BufRead, place: &str) -> Result<Mesh> {
 /// What `out` says; [`io::ErrorKind::InvalidInput`] of coordinates beyond 3e38.
 pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     write!(out, "{:HEAD$}", "voronaut")?;
-    out.write_all(&(mesh.triangles.len() as u32).to_le_bytes())?;
+    let mut sink = Sink::new(Form::Binary, out);
+    sink.row([mesh.triangles.len() as u32])?;
     for &triangle in &mesh.triangles {
         let corners = mesh.positions_of(triangle);
         let [a, b, c] = corners;
@@ -43,11 +44,8 @@ pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
             let what = "a coordinate beyond 3e38, the range of single precision";
             return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
         }
-        let mut row = [0; TRIANGLE];
-        for (bytes, x) in row.as_chunks_mut().0.iter_mut().zip(numbers) {
-            *bytes = (x as f32).to_le_bytes();
-        }
-        out.write_all(&row)?;
+        sink.put_all(numbers.map(|x| x as f32));
+        sink.row([0_u8; 2])?;
     }
     Ok(())
 }
@@ -65,84 +63,74 @@ fn is_text(start: &[u8]) -> bool {
     start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) && seen.iter().all(is_readable)
 }
 
-fn read_binary(mut bytes: Bytes<'_>) -> Result<Mesh> {
+fn read_binary(mut source: Source<'_>) -> Result<Mesh> {
     let head = At::head("the file (neither text nor a whole binary file)");
-    bytes.skip(HEAD as u64, head)?;
-    let count = u64::from(bytes.i32(head)?.cast_unsigned());
+    source.skip_bytes(HEAD as u64, head)?;
+    let count = source.whole(Kind::Unsigned(4), head)?;
     let mut corners = Corners::default();
     for at in At::rows("the triangles", count) {
         // Some programs write nan for the normals of thin triangles; nobody needs them.
-        bytes.skip(12, at)?;
+        source.skip(3, Kind::Float(4), at)?;
         for _ in 0..3 {
-            corners.push([bytes.f32(at)?, bytes.f32(at)?, bytes.f32(at)?]);
+            corners.push(source.numbers(Kind::Float(4), at)?);
         }
-        bytes.array::<2>(at)?;
+        source.skip(1, Kind::Unsigned(2), at)?;
     }
-    if bytes.is_at_end()? {
+    if source.is_at_end()? {
         return Ok(corners.into_mesh());
     }
     let what = format!("the file goes on behind the {count} triangles that it announces");
-    Err(bytes.error(what, "give an .stl file as text ('solid ...') or binary; this one may be damaged"))
+    Err(source.error(what, "give an .stl file as text ('solid ...') or binary; this one may be damaged"))
 }
 
-fn read_text(mut words: Words<'_>) -> Result<Mesh> {
-    let place = words.place();
-    let mut corners = Corners::default();
-    let mut facets = 0;
-    // Names of solids are any words on their lines.
-    let mut name_line = None;
-    let mut is_open = false;
-    while let Some(word) = words.next()? {
-        if name_line == Some(word.line) {
-            continue;
-        }
+fn read_text(mut source: Source<'_>) -> Result<Mesh> {
+    let (mut corners, mut facets, mut is_open) = (Corners::default(), 0, false);
+    while let Some(word) = source.next_word()? {
         match word.text.to_ascii_lowercase().as_str() {
             keyword @ ("solid" | "endsolid") => {
-                name_line = Some(word.line);
                 is_open = keyword == "solid";
+                // Names of solids are any words on their lines.
+                source.skip_row();
             }
             "facet" => {
                 facets += 1;
-                read_facet(&mut words, facets, &mut corners)?;
+                read_facet(&mut source, facets, &mut corners)?;
             }
             _ => {
-                let what = format!("'{}' where a facet or endsolid should be", shortened(word.text));
-                return Err(error_at(place, word.line, what, "check the end of the facet before"));
+                let what = format!("'{}' where a facet or endsolid should be", word.quoted());
+                return Err(word.place.error(what, "check the end of the facet before"));
             }
         }
     }
     if is_open {
-        let what = "the text ends without endsolid";
-        return Err(error_at(place, words.line(), what, "the file is cut off: write it again"));
+        return Err(source.error("the text ends without endsolid", "the file is cut off: write it again"));
     }
     Ok(corners.into_mesh())
 }
 
-fn read_facet(words: &mut Words<'_>, number: u64, corners: &mut Corners) -> Result<()> {
+fn read_facet(source: &mut Source<'_>, number: u64, corners: &mut Corners) -> Result<()> {
     let at = At { section: "the facets", row: number, rows: number };
-    expect_word(words, "normal", at)?;
+    expect(source, &["normal"], at)?;
+    // Some programs write nan for the normals of thin triangles; nobody needs them.
+    source.skip(3, Kind::Float(4), at)?;
+    expect(source, &["outer", "loop"], at)?;
     for _ in 0..3 {
-        // Some programs write nan for the normals of thin triangles; nobody needs them.
-        words.expect(at)?;
+        expect(source, &["vertex"], at)?;
+        corners.push(source.numbers(Kind::Float(4), at)?);
     }
-    expect_word(words, "outer", at)?;
-    expect_word(words, "loop", at)?;
-    for _ in 0..3 {
-        expect_word(words, "vertex", at)?;
-        corners.push([words.number(at)?, words.number(at)?, words.number(at)?]);
-    }
-    expect_word(words, "endloop", at)?;
-    expect_word(words, "endfacet", at)
+    expect(source, &["endloop", "endfacet"], at)
 }
 
-fn expect_word(words: &mut Words<'_>, expected: &str, at: At<'_>) -> Result<()> {
-    let place = words.place();
-    let word = words.expect(at)?;
-    if word.text.eq_ignore_ascii_case(expected) {
-        return Ok(());
+fn expect(source: &mut Source<'_>, words: &[&str], at: At<'_>) -> Result<()> {
+    for expected in words {
+        let word = source.word(at)?;
+        if !word.text.eq_ignore_ascii_case(expected) {
+            let what = format!("'{}' where '{expected}' should be ({at})", word.quoted());
+            let help = "write facets as 'facet normal', 'outer loop', three times 'vertex'";
+            return Err(word.place.error(what, help));
+        }
     }
-    let what = format!("'{}' where '{expected}' should be ({at})", shortened(word.text));
-    Err(error_at(place, word.line, what, "write facets as 'facet normal', 'outer loop', three times 'vertex'"))
+    Ok(())
 }
 
 /// Corners joined into vertices as they come.
@@ -165,14 +153,8 @@ impl Corners {
     }
 
     fn into_mesh(self) -> Mesh {
-        let (triangles, _) = self.vertices.as_chunks::<3>();
-        Mesh {
-            point_labels: vec![0; self.points.len()],
-            points: self.points,
-            triangle_labels: vec![0; triangles.len()],
-            triangles: triangles.to_vec(),
-            ..Mesh::default()
-        }
+        let triangles = self.vertices.as_chunks().0.to_vec();
+        labelled(Mesh { points: self.points, triangles, ..Mesh::default() })
     }
 }
 

@@ -1,24 +1,25 @@
 //! A surface from what users write for it: a shape, an equation, or a file.
 
+use super::files::{in_file, neither};
 use super::{Document, Format, read};
 use std::path::Path;
+use voronaut::Result;
 use voronaut::surface::{self, Input, Mended, RepairOptions, Surface, repaired};
-use voronaut::{Error, Result};
 
 /// Reads a surface: `sphere:r`, `torus:R,r`, `chair`, `implicit:EXPR;x0,y0,z0,x1,y1,z1`, with edges about as long as `edge`, or a
 /// file `.mesh`, `.meshb`, `.msh`, `.vtu`, `.vtp`, `.obj`, `.off`, `.ply` or `.stl`, mended as the options say ([`repaired`]), with
 /// what was mended.
 ///
 /// # Errors
-/// [`Error::Io`] of a file that cannot be read; [`Error::Parse`] of a text that is not what its format asks for;
-/// [`Error::Domain`] of what makes no surface; [`Error::Limit`] of too many triangles.
+/// [`Error::Io`](voronaut::Error::Io) of a file that cannot be read; [`Error::Parse`](voronaut::Error::Parse) of a text that is not what
+/// its format asks for; [`Error::Domain`](voronaut::Error::Domain) of what makes no surface; [`Error::Limit`](voronaut::Error::Limit) of
+/// too many triangles.
 pub fn read_surface(spec: &str, edge: Option<f64>, options: RepairOptions) -> Result<(Input, Mended)> {
     if let Some(shape) = surface::shape(spec, edge) {
         return Ok((shape?, Mended::default()));
     }
     if Format::of_ending(Path::new(spec)).is_none() {
-        let help = format!("give {SURFACES}");
-        return Err(Error::parse(spec, "neither a shape nor a file with an ending that is known", help));
+        return Err(neither(spec, SURFACES));
     }
     let (surface, mended) = of_document(spec, &read(Path::new(spec))?, options)?;
     Ok((Input::new(surface, None), mended))
@@ -34,10 +35,7 @@ pub(crate) const SURFACES: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,
 pub fn of_document(file: &str, document: &Document, options: RepairOptions) -> Result<(Surface, Mended)> {
     let made = repaired(&document.mesh, options)
         .and_then(|(mesh, mended)| Ok((Surface::new(&mesh)?, mended.with_notes(&document.notes))));
-    made.map_err(|error| match error {
-        Error::Domain { what, place, help } => Error::Domain { what, place: format!("{file}, {place}"), help },
-        other => other,
-    })
+    made.map_err(|error| in_file(file, error))
 }
 
 #[cfg(test)]

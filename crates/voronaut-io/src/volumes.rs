@@ -18,6 +18,8 @@ pub(super) struct Volumes {
     solids: Vec<Solid>,
     vertices: Vec<u32>,
     labels: Vec<i32>,
+    /// What the file counts each as.
+    elements: Vec<u32>,
 }
 
 /// The triangles between a volume and what is not in it, and between its parts.
@@ -25,8 +27,8 @@ pub(super) struct Volumes {
 pub(super) struct Skin {
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) labels: Vec<i32>,
-    /// The cell that each triangle is from, in the order in which they were pushed.
-    pub(super) cells: Vec<u32>,
+    /// The element that each triangle is from.
+    pub(super) elements: Vec<u32>,
 }
 
 /// A side of a cell.
@@ -71,11 +73,13 @@ impl Solid {
 }
 
 impl Volumes {
-    /// A cell with as many vertices as its kind has.
-    pub(super) fn push(&mut self, solid: Solid, vertices: &[u32], label: i32) {
+    /// A cell with as many vertices as its kind has, that the file counts as an element. The number of the cell.
+    pub(super) fn push(&mut self, solid: Solid, vertices: &[u32], label: i32, element: u32) -> u32 {
         self.solids.push(solid);
         self.vertices.extend(vertices);
         self.labels.push(label);
+        self.elements.push(element);
+        self.solids.len() as u32 - 1
     }
 
     /// Gives a cell another label.
@@ -83,8 +87,9 @@ impl Volumes {
         self.labels[cell as usize] = label;
     }
 
-    fn is_empty(&self) -> bool {
-        self.solids.is_empty()
+    /// Gives all cells the labels of their elements.
+    pub(super) fn relabel(&mut self, label: impl Fn(usize) -> i32) {
+        self.labels = self.elements.iter().map(|&element| label(element as usize)).collect();
     }
 
     /// What to tell of the cells beside `listed` triangles of the file; nothing where there are none.
@@ -96,7 +101,7 @@ impl Volumes {
             several => Some(format!("{several} {many}")),
         });
         let told = told.collect::<Vec<_>>().join(", ");
-        (!self.is_empty()).then(|| match listed {
+        (!self.solids.is_empty()).then(|| match listed {
             0 => format!("of {told} the boundary was taken, for the file lists no triangles"),
             1 => format!("{told} left out: the surface is the 1 triangle that the file lists"),
             _ => format!("{told} left out: the surface is the {listed} triangles that the file lists"),
@@ -122,7 +127,7 @@ impl Volumes {
             let polygon = distinct(self.solids[cell].sides()[side.number as usize], corners);
             cut(points, &turned_away(points, polygon, corners), &mut skin.triangles);
             skin.labels.resize(skin.triangles.len(), self.labels[cell]);
-            skin.cells.resize(skin.triangles.len(), side.cell);
+            skin.elements.resize(skin.triangles.len(), self.elements[cell]);
         }
         skin
     }
@@ -204,7 +209,7 @@ mod tests {
     fn skin_of(points: &[[f64; 3]], cells: &[(Solid, &[u32], i32)]) -> Skin {
         let mut volumes = Volumes::default();
         for &(solid, vertices, label) in cells {
-            volumes.push(solid, vertices, label);
+            volumes.push(solid, vertices, label, volumes.solids.len() as u32);
         }
         volumes.skin(points)
     }
@@ -235,22 +240,22 @@ mod tests {
         let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
         let cells = |second| [(Solid::Tetrahedron, &[0, 1, 2, 3][..], 7), (Solid::Tetrahedron, &[0, 1, 2, 4], second)];
         let same = skin_of(&points, &cells(7));
-        assert_eq!((same.triangles.len(), same.cells), (6, vec![0, 0, 0, 1, 1, 1]));
+        assert_eq!((same.triangles.len(), same.elements), (6, vec![0, 0, 0, 1, 1, 1]));
         let apart = skin_of(&points, &cells(3));
-        assert_eq!((apart.labels, apart.cells), (vec![7, 7, 7, 3, 3, 3, 3], vec![0, 0, 0, 1, 1, 1, 1]));
+        assert_eq!((apart.labels, apart.elements), (vec![7, 7, 7, 3, 3, 3, 3], vec![0, 0, 0, 1, 1, 1, 1]));
     }
 
     #[test]
     fn what_is_left_out_is_told() {
         let mut volumes = Volumes::default();
         assert_eq!(volumes.note(4), None);
-        volumes.push(Solid::Tetrahedron, &[0, 1, 2, 3], 0);
+        volumes.push(Solid::Tetrahedron, &[0, 1, 2, 3], 0, 0);
         assert_eq!(
             volumes.note(0).unwrap(),
             "of 1 tetrahedron the boundary was taken, for the file lists no triangles"
         );
-        volumes.push(Solid::Prism, &[0, 1, 2, 3, 4, 5], 0);
-        volumes.push(Solid::Prism, &[0, 1, 2, 3, 4, 5], 0);
+        volumes.push(Solid::Prism, &[0, 1, 2, 3, 4, 5], 0, 0);
+        volumes.push(Solid::Prism, &[0, 1, 2, 3, 4, 5], 0, 0);
         let told = "1 tetrahedron, 2 prisms left out: the surface is the 9 triangles that the file lists";
         assert_eq!(volumes.note(9).unwrap(), told);
     }

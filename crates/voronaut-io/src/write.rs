@@ -1,6 +1,7 @@
 //! What is written, by the endings of names.
 
-use super::medit::Form;
+use super::codec::Form;
+use super::files::ending;
 use super::{Fields, Format, curved, sol, write_with};
 use std::path::Path;
 use voronaut::mesh::{Mesh, Solution, Solutions};
@@ -67,7 +68,7 @@ pub fn write_diagram(canvas: &Mesh, distances: &[f64], path: &Path) -> Result<()
 /// # Errors
 /// [`Error::Unsupported`] for other endings than `.vtu`.
 pub fn demand_diagram(path: &Path) -> Result<()> {
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vtu")) {
+    if ending(path).as_deref() == Some("vtu") {
         return Ok(());
     }
     let what = format!("a diagram in {}", path.display());

@@ -1,31 +1,30 @@
 //! Values on nodes and elements: the sections `$NodeData` and `$ElementData`.
 
+use super::blocks::Blocks;
 use super::reader::Reader;
+use super::sections::{INT, REAL};
 use crate::Field;
-use crate::words::At;
+use crate::codec::At;
 use voronaut::mesh::SolutionValues;
 use voronaut::{Error, Result};
 
-impl Reader<'_> {
+impl Reader {
     /// Reads a section as a field; values on elements that are no triangles are passed over.
     ///
     /// # Errors
     /// [`Error::Parse`] of what is not as announced, of a node or an element that does not exist or has two values, and of a triangle
     /// or one of its vertices without value. [`Error::Unsupported`] of more than 9 numbers per value.
-    pub(super) fn read_data(&mut self, section: &str) -> Result<()> {
-        let start = self.source.position();
-        let head = read_head(self, section)?;
+    pub(super) fn read_data(&mut self, section: &str, from: &mut Blocks<'_>) -> Result<()> {
+        let start = from.source.place();
+        let head = read_head(from, section)?;
         if head.rows == 0 {
             return Ok(());
         }
-        let found = read_rows(self, section, &head)?;
+        let (numbers, mut rows) = read_rows(self, section, &head, from)?;
         let on_nodes = section == "NodeData";
-        let vertices = 0..self.mesh.points.len() as u32;
-        let rows: Vec<Option<u32>> = if on_nodes {
-            vertices.map(|v| found.row(v)).collect()
-        } else {
-            self.triangle_elements.iter().map(|&element| found.row(element)).collect()
-        };
+        if !on_nodes {
+            rows = self.triangle_elements.iter().map(|&element| rows[element as usize]).collect();
+        }
         if rows.iter().all(Option::is_none) {
             return Ok(());
         }
@@ -33,32 +32,23 @@ impl Reader<'_> {
         if missing > 0 {
             let of = if on_nodes { "vertices of triangles" } else { "triangles" };
             let what = format!("{section} '{}' has no values on {missing} {of}", head.name);
-            return Err(self.source.error_at(start, what, "save values everywhere, or remove the section"));
+            return Err(start.error(what, "save values everywhere, or remove the section"));
         }
         // Memory follows the file: values that are not there may be a few.
         if rows.len() > FEW.max(MOST_FILLED * head.rows as usize) {
             let what = format!("{section} '{}' has values on {} of {} vertices", head.name, head.rows, rows.len());
-            return Err(self.source.error_at(
-                start,
-                what,
-                "save values everywhere, or remove vertices that no element uses",
-            ));
+            return Err(start.error(what, "save values everywhere, or remove vertices that no element uses"));
         }
         let zeros = vec![0.0; head.components];
-        let numbers: Vec<f64> = rows
-            .into_iter()
-            .flat_map(|row| {
-                row.map_or(zeros.as_slice(), |row| &found.numbers[row as usize * head.components..][..head.components])
-            })
-            .copied()
-            .collect();
+        let values = |row: Option<u32>| {
+            row.map_or(zeros.as_slice(), |row| &numbers[row as usize * zeros.len()..][..zeros.len()])
+        };
+        let numbers = rows.into_iter().flat_map(values).copied().collect();
         let values = SolutionValues::in_space(numbers, head.components, self.mesh.is_planar());
         let fields = if on_nodes { &mut self.fields.vertices } else { &mut self.fields.triangles };
-        let is_taken = |name: &str| fields.iter().any(|field| field.name == name);
-        let step = || std::iter::once(format!("{}_{}", head.name, head.step));
-        let mut names =
-            std::iter::once(head.name.clone()).chain(step()).chain((2..).map(|n| format!("{}_{n}", head.name)));
-        let name = names.find(|name| !is_taken(name)).unwrap_or_default();
+        let numbered = |n| format!("{}_{n}", head.name);
+        let mut names = [head.name.clone(), numbered(head.step)].into_iter().chain((2..).map(numbered));
+        let name = names.find(|name| fields.iter().all(|field| field.name != *name)).unwrap_or_default();
         fields.push(Field { name, values });
         Ok(())
     }
@@ -76,37 +66,24 @@ struct Head {
     rows: u64,
 }
 
-/// The rows of a section.
-struct Rows {
-    numbers: Vec<f64>,
-    /// The row of each node or element; [`NONE`] where there is none.
-    of: Vec<u32>,
-}
+/// The numbers of all rows of a section, and the row of each node or element, where there is one.
+type Rows = (Vec<f64>, Vec<Option<u32>>);
 
-const NONE: u32 = u32::MAX;
-
-impl Rows {
-    fn row(&self, entry: u32) -> Option<u32> {
-        let row = *self.of.get(entry as usize)?;
-        (row != NONE).then_some(row)
-    }
-}
-
-fn read_head(reader: &mut Reader<'_>, section: &str) -> Result<Head> {
+fn read_head(from: &mut Blocks<'_>, section: &str) -> Result<Head> {
     /// Gmsh's own are 1, 3 and 9.
     const MOST: u64 = 9;
-    let (source, at) = (&mut reader.source, At::head(section));
+    let (source, at) = (&mut from.source, At::head(section));
     let mut name = None;
-    for _ in 0..source.text::<u64>(at)? {
-        let text = source.rest_of_line(at)?;
+    for _ in 0..source.word(at)?.whole::<u64>(at)? {
+        let text = source.rest_of_row(at)?;
         name.get_or_insert_with(|| text.trim_matches('"').to_owned());
     }
-    for _ in 0..source.text::<u64>(at)? {
-        source.text_word(at)?;
+    for _ in 0..source.word(at)?.whole::<u64>(at)? {
+        source.word(at)?;
     }
     let mut integers = [None; 3];
-    for i in 0..source.text::<u64>(at)? {
-        let integer: i64 = source.text(at)?;
+    for i in 0..source.word(at)?.whole::<u64>(at)? {
+        let integer: i64 = source.word(at)?.whole(at)?;
         if let Some(place) = integers.get_mut(i as usize) {
             *place = Some(integer);
         }
@@ -128,30 +105,30 @@ fn read_head(reader: &mut Reader<'_>, section: &str) -> Result<Head> {
     Ok(Head { name, step, components: components as usize, rows })
 }
 
-fn read_rows(reader: &mut Reader<'_>, section: &str, head: &Head) -> Result<Rows> {
+fn read_rows(reader: &Reader, section: &str, head: &Head, from: &mut Blocks<'_>) -> Result<Rows> {
     let of = if section == "NodeData" { "node" } else { "element" };
     let tags = if section == "NodeData" { &reader.nodes } else { &reader.elements };
-    let mut found = Rows { numbers: Vec::new(), of: vec![NONE; tags.len()] };
+    let (mut numbers, mut rows) = (Vec::new(), vec![None; tags.len()]);
     for at in At::rows(section, head.rows) {
-        let source = &mut reader.source;
+        let source = &mut from.source;
         // Of 32 bits in all versions.
-        let tag: u32 = source.int(at)?;
+        let tag: u32 = source.whole(INT, at)?;
         let Some(entry) = tags.find(tag.into()) else {
             let what = format!("{of} {tag} does not exist ({at})");
             return Err(source.error(what, format!("check the tag, and that the {of}s are all there")));
         };
-        if std::mem::replace(&mut found.of[entry as usize], (at.row - 1) as u32) != NONE {
+        if rows[entry as usize].replace((at.row - 1) as u32).is_some() {
             return Err(source.error(format!("{of} {tag} has two values ({at})"), "remove one of them"));
         }
         for _ in 0..head.components {
-            found.numbers.push(source.number(at)?);
+            numbers.push(source.number(REAL, at)?);
         }
     }
-    Ok(found)
+    Ok((numbers, rows))
 }
 
 /// On how many triangles, or vertices of triangles, there is no value.
-fn missing(reader: &Reader<'_>, rows: &[Option<u32>], on_nodes: bool) -> usize {
+fn missing(reader: &Reader, rows: &[Option<u32>], on_nodes: bool) -> usize {
     if !on_nodes {
         return rows.iter().filter(|row| row.is_none()).count();
     }
@@ -165,38 +142,24 @@ pub(super) struct Column<'a> {
     pub(super) name: String,
     /// How many numbers a value has.
     pub(super) components: usize,
-    values: &'a SolutionValues,
-    /// The only component of the field that it is, where the field has more than Gmsh knows.
-    only: Option<usize>,
+    field: &'a Field,
+    /// Which of the field's numbers is the first.
+    first: usize,
 }
 
 impl<'a> Column<'a> {
     /// A field as columns: one, or one per component where Gmsh knows no values of so many numbers.
     pub(super) fn of(field: &'a Field) -> Vec<Self> {
-        let (values, name) = (&field.values, field.name.replace(['"', '\n', '\r'], "'"));
-        let components = match values {
-            SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => 9,
-            _ if values.components() == 2 => 3,
-            _ => values.components(),
-        };
+        let (components, name) = (field.width(true), field.name.replace(['"', '\n', '\r'], "'"));
         if matches!(components, 1 | 3 | 9) {
-            return vec![Self { name, components, values, only: None }];
+            return vec![Self { name, components, field, first: 0 }];
         }
-        let part = |c| Self { name: format!("{name}_{c}"), components: 1, values, only: Some(c) };
+        let part = |first| Self { name: format!("{name}_{first}"), components: 1, field, first };
         (0..components).map(part).collect()
     }
 
-    /// The numbers of entry `i`, and zeros behind them.
-    pub(super) fn row(&self, i: usize) -> [f64; 9] {
-        match (self.values, self.values.row(i)) {
-            (SolutionValues::Tensor(_), &[xx, xy, yy]) => [xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, 0.0],
-            (SolutionValues::Tensor3(_), &[xx, xy, yy, xz, yz, zz]) => [xx, xy, xz, xy, yy, yz, xz, yz, zz],
-            (_, numbers) => {
-                let numbers = self.only.map_or(numbers, |c| &numbers[c..=c]);
-                let mut row = [0.0; 9];
-                row[..numbers.len()].copy_from_slice(numbers);
-                row
-            }
-        }
+    /// The numbers of an entry, zeros where there is none.
+    pub(super) fn row(&self, entry: Option<usize>) -> impl Iterator<Item = f64> {
+        (self.first..self.first + self.components).map(move |k| entry.map_or(0.0, |i| self.field.number(i, k)))
     }
 }

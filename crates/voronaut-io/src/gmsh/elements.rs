@@ -1,39 +1,30 @@
 //! Gmsh's elements: triangles, edges and points of the mesh, with their labels and marks.
 
+use super::blocks::{Blocks, Layout};
 use super::groups::{Mark, Marks};
 use super::kinds::{EDGE, Kind, POINT, QUADRANGLE, TRIANGLE};
-use super::reader::{Layout, Reader};
+use super::reader::{Corners, Piece, Reader};
+use super::sections::{INT, SIZE};
+use crate::codec::At;
 use crate::cutting::cut;
-use crate::words::At;
 use voronaut::{Error, Result};
 
-/// An element of the file that is in the mesh.
-#[derive(Default)]
-struct Piece {
-    code: i32,
-    nodes: Corners,
-    entity: i32,
-    groups: Vec<i32>,
-    /// Which of the mesh's vertices, edges or triangles it is, or begins with.
-    index: u32,
-}
-
-impl Reader<'_> {
+impl Reader {
     /// Reads the section, behind its name.
-    pub(super) fn read_elements(&mut self) -> Result<()> {
-        self.demand_nodes("Elements")?;
-        let tags = match (self.layout, self.source.is_binary()) {
-            (Layout::Two, false) => self.read_elements_2()?,
-            (Layout::Two, true) => self.read_binary_elements_2()?,
-            _ => self.read_elements_4()?,
+    pub(super) fn read_elements(&mut self, from: &mut Blocks<'_>) -> Result<()> {
+        self.demand_nodes("Elements", from)?;
+        let tags = match (from.layout, from.source.is_binary()) {
+            (Layout::Two, false) => self.read_elements_2(from)?,
+            (Layout::Two, true) => self.read_binary_elements_2(from)?,
+            _ => self.read_elements_4(from)?,
         };
-        self.elements = self.index(&tags, "element", "Elements")?;
+        self.elements = from.index(&tags, "element", "Elements")?;
         if self.foreign.is_empty() {
             self.take_skin();
             return Ok(());
         }
         let counts: Vec<String> = self.foreign.iter().map(|(name, count)| format!("{count} {name}")).collect();
-        let what = format!("{} ({})", counts.join(", "), self.source.place());
+        let what = format!("{} ({})", counts.join(", "), from.source.place());
         let help = "give a mesh of straight triangles: in Gmsh mesh in 2 dimensions with Mesh.ElementOrder = 1";
         Err(Error::Unsupported { what, help: help.into() })
     }
@@ -43,40 +34,34 @@ impl Reader<'_> {
         self.notes.extend(self.volumes.note(self.mesh.triangles.len()));
         if self.mesh.triangles.is_empty() {
             let skin = self.volumes.skin(&self.mesh.points);
-            let element = |&cell: &u32| self.volume_elements[cell as usize];
-            self.triangle_elements = skin.cells.iter().map(element).collect();
+            self.triangle_elements = skin.elements;
             (self.mesh.triangles, self.mesh.triangle_labels) = (skin.triangles, skin.labels);
         }
     }
 
-    fn read_elements_2(&mut self) -> Result<Vec<u64>> {
-        let section = "Elements";
-        let count = self.source.text(At::head(section))?;
-        let (mut tags, mut last) = (Vec::new(), Piece::default());
-        for at in At::rows(section, count) {
-            tags.push(self.tag(at)?);
-            let kind = self.read_kind(at)?;
-            let attributes = self.source.int(at)?;
-            self.read_element_2(kind, attributes, &mut last, tags.len() as u32 - 1, at)?;
+    fn read_elements_2(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
+        let mut tags = Vec::new();
+        for at in from.text_rows("Elements")? {
+            tags.push(from.tag(at)?);
+            let kind = read_kind(from, at)?;
+            let attributes = from.source.whole(INT, at)?;
+            self.read_element_2(kind, attributes, tags.len() as u32 - 1, from, at)?;
         }
         Ok(tags)
     }
 
-    fn read_binary_elements_2(&mut self) -> Result<Vec<u64>> {
-        let section = "Elements";
-        let total = self.source.text(At::head(section))?;
-        let (mut tags, mut last) = (Vec::new(), Piece::default());
+    fn read_binary_elements_2(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
+        let (section, at) = ("Elements", At::head("Elements"));
+        let total = from.source.word(at)?.whole(at)?;
+        let mut tags = Vec::new();
         while (tags.len() as u64) < total {
-            let done = tags.len() as u64;
-            let at = At { section, row: done + 1, rows: total };
-            let kind = self.read_kind(at)?;
-            let count = self.source.int::<u32>(at)?.into();
-            let attributes = self.source.int(at)?;
-            self.demand_room(section, done, count, total)?;
-            for row in done + 1..=done + count {
-                let at = At { section, row, rows: total };
-                tags.push(self.tag(at)?);
-                self.read_element_2(kind, attributes, &mut last, tags.len() as u32 - 1, at)?;
+            let at = At { section, row: tags.len() as u64 + 1, rows: total };
+            let kind = read_kind(from, at)?;
+            let count = from.source.whole::<u32>(INT, at)?.into();
+            let attributes = from.source.whole(INT, at)?;
+            for at in from.block(section, tags.len(), count, total)? {
+                tags.push(from.tag(at)?);
+                self.read_element_2(kind, attributes, tags.len() as u32 - 1, from, at)?;
             }
         }
         Ok(tags)
@@ -88,75 +73,66 @@ impl Reader<'_> {
         &mut self,
         kind: Kind,
         attributes: u32,
-        last: &mut Piece,
         element: u32,
+        from: &mut Blocks<'_>,
         at: At<'_>,
     ) -> Result<()> {
         let mut known = [0; 2];
         for i in 0..attributes as usize {
-            let attribute: i32 = self.source.int(at)?;
+            let attribute: i32 = from.source.whole(INT, at)?;
             if let Some(place) = known.get_mut(i) {
                 *place = attribute;
             }
         }
         let [group, entity] = known;
-        let Some(nodes) = self.read_corners(kind, at)? else { return Ok(()) };
+        let Some(nodes) = self.read_corners(kind, from, at)? else { return Ok(()) };
         let group = (group != 0).then_some(group);
+        let last = &mut self.last;
         if (kind.code, nodes, entity) == (last.code, last.nodes, last.entity)
             && group.is_some_and(|group| !last.groups.contains(&group))
             && (1..MOST_GROUPS).contains(&last.groups.len())
         {
             last.groups.extend(group);
         } else {
-            let index = self.add(kind, nodes, element);
-            *last = Piece { code: kind.code, nodes, entity, groups: group.into_iter().collect(), index };
+            let (code, index) = (kind.code, self.add(kind, nodes, element));
+            self.last = Piece { code, nodes, entity, groups: group.into_iter().collect(), index };
         }
-        let (label, marks) = self.groups.of(dimension_of(kind.code), &last.groups, entity);
-        self.label(kind, last.index, label, marks);
+        let (label, marks) = self.groups.of(dimension_of(kind.code), &self.last.groups, entity);
+        self.label(kind, self.last.index, label, marks);
         Ok(())
     }
 
-    fn read_elements_4(&mut self) -> Result<Vec<u64>> {
+    fn read_elements_4(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
         let section = "Elements";
-        let (blocks, total) = self.read_totals(section)?;
+        let (blocks, total) = from.read_totals(section)?;
         let mut tags = Vec::new();
         for _ in 0..blocks {
             let at = At::head(section);
-            let (dimension, entity) = self.read_entity(at)?;
-            let kind = self.read_kind(at)?;
+            let (dimension, entity) = from.read_entity(at)?;
+            let kind = read_kind(from, at)?;
             let groups = self.entities.get(&(dimension, entity)).map(Vec::as_slice).unwrap_or_default();
             let (label, marks) = self.groups.of(dimension, groups, entity);
-            let (before, count) = (tags.len() as u64, self.source.size(at)?);
-            self.demand_room(section, before, count, total)?;
-            for row in before + 1..=before + count {
-                let at = At { section, row, rows: total };
-                tags.push(self.tag(at)?);
-                if let Some(nodes) = self.read_corners(kind, at)? {
+            let count = from.source.whole(SIZE, at)?;
+            for at in from.block(section, tags.len(), count, total)? {
+                tags.push(from.tag(at)?);
+                if let Some(nodes) = self.read_corners(kind, from, at)? {
                     let index = self.add(kind, nodes, tags.len() as u32 - 1);
                     self.label(kind, index, label, marks);
                 }
             }
         }
-        self.demand_all(section, tags.len() as u64, total)?;
+        from.demand_all(section, tags.len(), total)?;
         Ok(tags)
     }
 
-    fn read_kind(&mut self, at: At<'_>) -> Result<Kind> {
-        let code = self.source.int(at)?;
-        Kind::of(code).ok_or_else(|| {
-            let what = format!("elements of type {code} ({at}; {})", self.source.place());
-            Error::Unsupported { what, help: "give a mesh of straight triangles, edges and points".into() }
-        })
-    }
-
     /// The nodes of an element; `None` of one of which a triangle mesh can hold nothing, which is counted.
-    fn read_corners(&mut self, kind: Kind, at: At<'_>) -> Result<Option<Corners>> {
+    fn read_corners(&mut self, kind: Kind, from: &mut Blocks<'_>, at: At<'_>) -> Result<Option<Corners>> {
         let mut nodes = Corners::default();
         for i in 0..kind.nodes {
-            let tag = self.tag(at)?;
+            let tag = from.tag(at)?;
             let Some(node) = self.nodes.find(tag) else {
                 let help = "check the tag, and that the section Nodes is whole";
-                return Err(self.source.error(format!("node {tag} does not exist ({at})"), help));
+                return Err(from.source.error(format!("node {tag} does not exist ({at})"), help));
             };
             if let Some(place) = nodes.get_mut(i) {
                 *place = node;
@@ -172,9 +148,7 @@ impl Reader<'_> {
     /// Takes an element in, and gives the number of the vertex, the edge, the first triangle or the cell of a volume that it is.
     fn add(&mut self, kind: Kind, nodes: Corners, element: u32) -> u32 {
         if let Some(solid) = kind.solid() {
-            self.volumes.push(solid, &nodes[..kind.nodes], 0);
-            self.volume_elements.push(element);
-            return self.volume_elements.len() as u32 - 1;
+            return self.volumes.push(solid, &nodes[..kind.nodes], 0, element);
         }
         let mesh = &mut self.mesh;
         match kind.code {
@@ -199,40 +173,36 @@ impl Reader<'_> {
         if kind.solid().is_some() {
             return self.volumes.label(index, label);
         }
-        let all_are_corners = !self.groups.have(Mark::Corner);
         let mesh = &mut self.mesh;
-        let mark = |list: &mut Vec<u32>, mark| {
-            if marks.contains(mark) {
-                list.push(index);
-            }
+        let (labels, count) = match kind.code {
+            POINT => (&mut mesh.point_labels, 1),
+            EDGE => (&mut mesh.edge_labels, 1),
+            _ => (&mut mesh.triangle_labels, if kind.code == QUADRANGLE { 2 } else { 1 }),
         };
-        match kind.code {
-            POINT => {
-                mesh.point_labels[index as usize] = label;
-                mark(&mut mesh.corners, Mark::Corner);
-                mark(&mut mesh.required_points, Mark::RequiredVertex);
-                if all_are_corners {
-                    mesh.corners.push(index);
-                }
-            }
-            EDGE => {
-                mesh.edge_labels[index as usize] = label;
-                mark(&mut mesh.ridges, Mark::Ridge);
-                mark(&mut mesh.required_edges, Mark::RequiredEdge);
-            }
-            _ => {
-                let count = if kind.code == QUADRANGLE { 2 } else { 1 };
-                mesh.triangle_labels[index as usize..][..count].fill(label);
-                if marks.contains(Mark::RequiredTriangle) {
-                    mesh.required_triangles.extend(index..index + count as u32);
-                }
+        labels[index as usize..][..count as usize].fill(label);
+        // All points are, where no group says which.
+        let is_corner = kind.code == POINT && !self.groups.have(Mark::Corner);
+        for (mark, list) in [
+            (Mark::Corner, &mut mesh.corners),
+            (Mark::RequiredVertex, &mut mesh.required_points),
+            (Mark::Ridge, &mut mesh.ridges),
+            (Mark::RequiredEdge, &mut mesh.required_edges),
+            (Mark::RequiredTriangle, &mut mesh.required_triangles),
+        ] {
+            if marks.contains(mark) || is_corner && mark == Mark::Corner {
+                list.extend(index..index + count);
             }
         }
     }
 }
 
-/// The nodes of an element, and zeros behind them: a hexahedron has most.
-type Corners = [u32; 8];
+fn read_kind(from: &mut Blocks<'_>, at: At<'_>) -> Result<Kind> {
+    let code = from.source.whole(INT, at)?;
+    Kind::of(code).ok_or_else(|| {
+        let what = format!("elements of type {code} ({at}; {})", from.source.place());
+        Error::Unsupported { what, help: "give a mesh of straight triangles, edges and points".into() }
+    })
+}
 
 /// An element repeated more often than this is not taken for one in so many groups.
 const MOST_GROUPS: usize = 256;

@@ -22,7 +22,26 @@ pub(super) struct Kind {
 impl Kind {
     /// The type that files call `code`; `None` of others.
     pub(super) fn of(code: i32) -> Option<Self> {
-        let &(code, nodes, name) = KINDS.iter().find(|(known, ..)| *known == code)?;
+        let nodes = match code {
+            36 => 16,
+            92 => 64,
+            93 => 125,
+            _ => *NODES.get(usize::try_from(code).ok()?.checked_sub(1)?)?,
+        };
+        let name = match code {
+            EDGE => "edges",
+            TRIANGLE => "triangles",
+            QUADRANGLE => "quadrangles",
+            POINT => "points",
+            4 => "tetrahedra",
+            5 => "hexahedra",
+            6 => "prisms",
+            7 => "pyramids",
+            8 | 26..=28 => "curved edges",
+            9 | 20..=25 => "curved triangles",
+            10 | 16 | 36 => "curved quadrangles",
+            _ => "curved volume elements",
+        };
         Some(Self { code, nodes, name })
     }
 
@@ -41,45 +60,6 @@ impl Kind {
 const SOLIDS: [(i32, Solid); 4] =
     [(4, Solid::Tetrahedron), (5, Solid::Hexahedron), (6, Solid::Prism), (7, Solid::Pyramid)];
 
-const CURVED_EDGES: &str = "curved edges";
-const CURVED_TRIANGLES: &str = "curved triangles";
-const CURVED_QUADRANGLES: &str = "curved quadrangles";
-const VOLUMES: &str = "curved volume elements";
-
-/// Code, nodes and name, after "Node ordering" and "MSH file format" of Gmsh's manual.
-const KINDS: [(i32, usize, &str); 34] = [
-    (EDGE, 2, "edges"),
-    (TRIANGLE, 3, "triangles"),
-    (QUADRANGLE, 4, "quadrangles"),
-    (4, 4, "tetrahedra"),
-    (5, 8, "hexahedra"),
-    (6, 6, "prisms"),
-    (7, 5, "pyramids"),
-    (8, 3, CURVED_EDGES),
-    (9, 6, CURVED_TRIANGLES),
-    (10, 9, CURVED_QUADRANGLES),
-    (11, 10, VOLUMES),
-    (12, 27, VOLUMES),
-    (13, 18, VOLUMES),
-    (14, 14, VOLUMES),
-    (POINT, 1, "points"),
-    (16, 8, CURVED_QUADRANGLES),
-    (17, 20, VOLUMES),
-    (18, 15, VOLUMES),
-    (19, 13, VOLUMES),
-    (20, 9, CURVED_TRIANGLES),
-    (21, 10, CURVED_TRIANGLES),
-    (22, 12, CURVED_TRIANGLES),
-    (23, 15, CURVED_TRIANGLES),
-    (24, 15, CURVED_TRIANGLES),
-    (25, 21, CURVED_TRIANGLES),
-    (26, 4, CURVED_EDGES),
-    (27, 5, CURVED_EDGES),
-    (28, 6, CURVED_EDGES),
-    (29, 20, VOLUMES),
-    (30, 35, VOLUMES),
-    (31, 56, VOLUMES),
-    (36, 16, CURVED_QUADRANGLES),
-    (92, 64, VOLUMES),
-    (93, 125, VOLUMES),
-];
+/// How many nodes elements of types 1 to 31 have, after "Node ordering" and "MSH file format" of Gmsh's manual.
+const NODES: [usize; 31] =
+    [2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20, 35, 56];

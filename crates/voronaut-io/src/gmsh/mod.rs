@@ -1,19 +1,19 @@
 //! Gmsh's format `.msh` (Geuzaine and Remacle 2009; chapter "File formats" of Gmsh's manual), as text and binary.
 
+mod blocks;
 mod data;
 mod elements;
 mod groups;
 mod kinds;
 mod reader;
-mod sink;
-mod source;
+mod sections;
 mod tags;
 mod writer;
 
-use super::medit::Form;
+use super::codec::{Form, Source};
 use super::{Document, Fields};
+use blocks::Blocks;
 use reader::Reader;
-use source::Source;
 use std::fmt;
 use std::io::{self, BufRead, Write};
 use std::str::FromStr;
@@ -39,9 +39,11 @@ impl FromStr for Version {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let all = [Self::V2_2, Self::V4_1];
-        let unknown = || Error::parse("version of .msh", format!("'{text}' is not written"), "write 4.1 or 2.2");
-        all.into_iter().find(|version| version.to_string() == text).ok_or_else(unknown)
+        match text {
+            "2.2" => Ok(Self::V2_2),
+            "4.1" => Ok(Self::V4_1),
+            _ => Err(Error::parse("version of .msh", format!("'{text}' is not written"), "write 4.1 or 2.2")),
+        }
     }
 }
 
@@ -70,7 +72,7 @@ impl FromStr for Version {
 /// [`Error::Unsupported`] of other versions, of curved elements with their numbers, of
 /// meshes in partitions. [`Error::Io`] of a file that cannot be read.
 pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
-    Reader::new(Source::new(source, place))?.read()
+    Reader::default().read(Blocks::new(Source::verbatim(source, place))?)
 }
 
 /// Writes a mesh and fields as a file that [`read`] turns into the same vertices, to the last bit, and the same triangles and

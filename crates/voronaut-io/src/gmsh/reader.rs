@@ -1,41 +1,30 @@
 //! Gmsh's sections, read in turn into a mesh.
 
+use super::blocks::{Blocks, Layout, unsupported};
 use super::groups::Groups;
-use super::source::Source;
+use super::sections::{INT, REAL, SIZE, end_section, next_section, skip_section};
 use super::tags::Tags;
+use crate::codec::At;
 use crate::volumes::Volumes;
-use crate::words::{At, shortened};
 use crate::{Document, Fields};
 use std::collections::BTreeMap;
+use voronaut::Result;
 use voronaut::mesh::Mesh;
-use voronaut::{Error, Result};
 
-/// How the sections of a file are laid out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Layout {
-    /// Versions 2 to 2.2: elements with their tags.
-    Two,
-    /// Version 4.0: blocks of entities.
-    Four,
-    /// Version 4.1: blocks of entities, tags in 64 bits.
-    FourOne,
-}
-
-/// A file, as far as it is read.
-pub(super) struct Reader<'a> {
-    pub(super) source: Source<'a>,
-    pub(super) layout: Layout,
+/// What a file holds, as far as it is read.
+#[derive(Default)]
+pub(super) struct Reader {
     seen: Vec<&'static str>,
     pub(super) groups: Groups,
     /// The physical groups of entities, by dimension and tag.
     pub(super) entities: BTreeMap<(u8, i32), Vec<i32>>,
     pub(super) nodes: Tags,
     pub(super) elements: Tags,
+    /// The element that was read last.
+    pub(super) last: Piece,
     /// The element that each triangle comes from, counted in the order of the file.
     pub(super) triangle_elements: Vec<u32>,
     pub(super) volumes: Volumes,
-    /// The element that each cell of a volume is.
-    pub(super) volume_elements: Vec<u32>,
     /// Elements of which a triangle mesh can hold nothing.
     pub(super) foreign: BTreeMap<&'static str, u64>,
     pub(super) mesh: Mesh,
@@ -43,50 +32,35 @@ pub(super) struct Reader<'a> {
     pub(super) notes: Vec<String>,
 }
 
+/// An element of the file that is in the mesh.
+#[derive(Default)]
+pub(super) struct Piece {
+    pub(super) code: i32,
+    pub(super) nodes: Corners,
+    pub(super) entity: i32,
+    pub(super) groups: Vec<i32>,
+    /// Which of the mesh's vertices, edges or triangles it is, or begins with.
+    pub(super) index: u32,
+}
+
+/// The nodes of an element, and zeros behind them: a hexahedron has most.
+pub(super) type Corners = [u32; 8];
+
 /// Sections that are read once; `NodeData` and `ElementData` are read as often as they come, all others are passed over.
 const SECTIONS: [&str; 4] = ["PhysicalNames", "Entities", "Nodes", "Elements"];
 
-impl<'a> Reader<'a> {
-    /// Reads the head of a file.
+impl Reader {
+    /// Reads the sections behind the head.
     ///
     /// # Errors
-    /// [`Error::Parse`] of what is none; [`Error::Unsupported`] of versions but 2 to 2.2, 4.0 and 4.1.
-    pub(super) fn new(mut source: Source<'a>) -> Result<Self> {
-        loop {
-            match source.next_section()?.as_deref() {
-                Some("MeshFormat") => break,
-                Some("NOD") => return Err(unsupported("version 1", &source)),
-                Some(other) => source.skip_section(other)?,
-                None => return Err(source.error("the file has no section MeshFormat", "give a file that Gmsh wrote")),
-            }
-        }
-        let layout = read_format(&mut source)?;
-        Ok(Self {
-            source,
-            layout,
-            seen: Vec::new(),
-            groups: Groups::default(),
-            entities: BTreeMap::new(),
-            nodes: Tags::default(),
-            elements: Tags::default(),
-            triangle_elements: Vec::new(),
-            volumes: Volumes::default(),
-            volume_elements: Vec::new(),
-            foreign: BTreeMap::new(),
-            mesh: Mesh::default(),
-            fields: Fields::default(),
-            notes: Vec::new(),
-        })
-    }
-
-    /// Reads the sections behind the head.
-    pub(super) fn read(mut self) -> Result<Document> {
-        while let Some(section) = self.source.next_section()? {
-            self.read_section(&section)?;
+    /// As of [`super::read`].
+    pub(super) fn read(mut self, mut from: Blocks<'_>) -> Result<Document> {
+        while let Some(section) = next_section(&mut from.source)? {
+            self.read_section(&section, &mut from)?;
         }
         if !self.seen.contains(&"Nodes") {
             let what = "the file has no section Nodes";
-            return Err(self.source.error(what, "save the mesh with the views; check that the file is whole"));
+            return Err(from.source.error(what, "save the mesh with the views; check that the file is whole"));
         }
         let mesh = &mut self.mesh;
         let marked = [&mut mesh.corners, &mut mesh.required_points, &mut mesh.ridges, &mut mesh.required_edges];
@@ -97,35 +71,35 @@ impl<'a> Reader<'a> {
         Ok(Document { mesh: self.mesh, fields: self.fields, notes: self.notes })
     }
 
-    fn read_section(&mut self, section: &str) -> Result<()> {
+    fn read_section(&mut self, section: &str, from: &mut Blocks<'_>) -> Result<()> {
         match section {
             "NodeData" | "ElementData" => {
-                self.demand_nodes(section)?;
-                self.read_data(section)?;
-                return self.source.end_section(section);
+                self.demand_nodes(section, from)?;
+                self.read_data(section, from)?;
+                return end_section(&mut from.source, section);
             }
-            "PartitionedEntities" => return Err(unsupported("a mesh in partitions", &self.source)),
-            "ParametricNodes" => return Err(unsupported("nodes with parameters in version 2", &self.source)),
+            "PartitionedEntities" => return Err(unsupported("a mesh in partitions", &from.source)),
+            "ParametricNodes" => return Err(unsupported("nodes with parameters in version 2", &from.source)),
             _ => {}
         }
         let Some(&name) = SECTIONS.iter().find(|name| **name == section) else {
-            return self.source.skip_section(section);
+            return skip_section(&mut from.source, section);
         };
         if self.seen.contains(&name) {
-            return Err(self.source.error(format!("a second section {name}"), "join both sections into one"));
+            return Err(from.source.error(format!("a second section {name}"), "join both sections into one"));
         }
         self.seen.push(name);
         match name {
-            "PhysicalNames" => self.read_names()?,
-            "Entities" => self.read_entities()?,
-            "Nodes" => self.read_nodes()?,
-            _ => self.read_elements()?,
+            "PhysicalNames" => self.read_names(from)?,
+            "Entities" => self.read_entities(from)?,
+            "Nodes" => self.read_nodes(from)?,
+            _ => self.read_elements(from)?,
         }
-        self.source.end_section(name)
+        end_section(&mut from.source, name)
     }
 
     /// Refuses elements before nodes, values before nodes, and elements behind values.
-    pub(super) fn demand_nodes(&self, section: &str) -> Result<()> {
+    pub(super) fn demand_nodes(&self, section: &str, from: &Blocks<'_>) -> Result<()> {
         let what = if !self.seen.contains(&"Nodes") {
             format!("{section} comes before Nodes")
         } else if section == "Elements" && !(self.fields.vertices.is_empty() && self.fields.triangles.is_empty()) {
@@ -133,41 +107,38 @@ impl<'a> Reader<'a> {
         } else {
             return Ok(());
         };
-        Err(self
-            .source
-            .error(what, "save the mesh with its values, in the order Nodes, Elements, NodeData, ElementData"))
+        let help = "save the mesh with its values, in the order Nodes, Elements, NodeData, ElementData";
+        Err(from.source.error(what, help))
     }
 
-    fn read_names(&mut self) -> Result<()> {
-        let section = "PhysicalNames";
-        let count = self.source.text(At::head(section))?;
-        for at in At::rows(section, count) {
-            let (dimension, tag) = (self.source.text(at)?, self.source.text(at)?);
-            let name = self.source.rest_of_line(at)?;
+    fn read_names(&mut self, from: &mut Blocks<'_>) -> Result<()> {
+        for at in from.text_rows("PhysicalNames")? {
+            let (dimension, tag) = (from.source.word(at)?.whole(at)?, from.source.word(at)?.whole(at)?);
+            let name = from.source.rest_of_row(at)?;
             self.groups.name(dimension, tag, name.trim_matches('"'));
         }
         Ok(())
     }
 
-    fn read_entities(&mut self) -> Result<()> {
-        let (section, source) = ("Entities", &mut self.source);
-        let mut counts = [0; 4];
+    fn read_entities(&mut self, from: &mut Blocks<'_>) -> Result<()> {
+        let (section, layout, source) = ("Entities", from.layout, &mut from.source);
+        let (mut counts, at) = ([0; 4], At::head(section));
         for count in &mut counts {
-            *count = source.size(At::head(section))?;
+            *count = source.whole(SIZE, at)?;
         }
         for (dimension, count) in (0..).zip(counts) {
             for at in At::rows(section, count) {
-                let tag = source.int(at)?;
-                let ends = if dimension == 0 && self.layout == Layout::FourOne { 1 } else { 2 };
-                source.skip_numbers(3 * ends, at)?;
+                let tag = source.whole(INT, at)?;
+                let ends = if dimension == 0 && layout == Layout::FourOne { 1 } else { 2 };
+                source.skip(3 * ends, REAL, at)?;
                 let mut groups = Vec::new();
-                for _ in 0..source.size(at)? {
+                for _ in 0..source.whole::<u64>(SIZE, at)? {
                     // A negative tag turns the entity round.
-                    groups.push(source.int::<i32>(at)?.saturating_abs());
+                    groups.push(source.whole::<i32>(INT, at)?.saturating_abs());
                 }
-                let bounds = if dimension == 0 { 0 } else { source.size(at)? };
+                let bounds: u64 = if dimension == 0 { 0 } else { source.whole(SIZE, at)? };
                 for _ in 0..bounds {
-                    source.int::<i32>(at)?;
+                    source.whole::<i32>(INT, at)?;
                 }
                 if !groups.is_empty() {
                     self.entities.insert((dimension, tag), groups);
@@ -177,148 +148,52 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn read_nodes(&mut self) -> Result<()> {
-        let tags = if self.layout == Layout::Two { self.read_nodes_2()? } else { self.read_nodes_4()? };
-        self.nodes = self.index(&tags, "node", "Nodes")?;
+    fn read_nodes(&mut self, from: &mut Blocks<'_>) -> Result<()> {
+        let tags = if from.layout == Layout::Two { self.read_nodes_2(from)? } else { self.read_nodes_4(from)? };
+        self.nodes = from.index(&tags, "node", "Nodes")?;
         self.mesh.point_labels = vec![0; tags.len()];
         Ok(())
     }
 
-    fn read_nodes_2(&mut self) -> Result<Vec<u64>> {
-        let section = "Nodes";
-        let (count, mut tags) = (self.source.text(At::head(section))?, Vec::new());
-        for at in At::rows(section, count) {
-            tags.push(self.tag(at)?);
-            self.read_point(0, at)?;
+    fn read_nodes_2(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
+        let mut tags = Vec::new();
+        for at in from.text_rows("Nodes")? {
+            tags.push(from.tag(at)?);
+            self.read_point(0, from, at)?;
         }
         Ok(tags)
     }
 
-    fn read_nodes_4(&mut self) -> Result<Vec<u64>> {
+    fn read_nodes_4(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
         let section = "Nodes";
-        let (blocks, total) = self.read_totals(section)?;
+        let (blocks, total) = from.read_totals(section)?;
         let mut tags = Vec::new();
         for _ in 0..blocks {
             let at = At::head(section);
-            let (dimension, _) = self.read_entity(at)?;
-            let is_parametric = self.source.int::<i32>(at)? != 0;
+            let (dimension, _) = from.read_entity(at)?;
+            let is_parametric = from.source.whole::<i32>(INT, at)? != 0;
             let parameters = if is_parametric { u64::from(dimension) } else { 0 };
-            let count = self.source.size(at)?;
-            let before = tags.len() as u64;
-            self.demand_room(section, before, count, total)?;
-            let rows = || (before + 1..=before + count).map(|row| At { section, row, rows: total });
-            if self.layout == Layout::FourOne {
-                for at in rows() {
-                    tags.push(self.tag(at)?);
+            let count = from.source.whole(SIZE, at)?;
+            let rows = from.block(section, tags.len(), count, total)?;
+            if from.layout == Layout::FourOne {
+                for at in rows.clone() {
+                    tags.push(from.tag(at)?);
                 }
             }
-            for at in rows() {
-                if self.layout == Layout::Four {
-                    tags.push(self.tag(at)?);
+            for at in rows {
+                if from.layout == Layout::Four {
+                    tags.push(from.tag(at)?);
                 }
-                self.read_point(parameters, at)?;
+                self.read_point(parameters, from, at)?;
             }
         }
-        self.demand_all(section, tags.len() as u64, total)?;
+        from.demand_all(section, tags.len(), total)?;
         Ok(tags)
     }
 
-    fn read_point(&mut self, parameters: u64, at: At<'_>) -> Result<()> {
-        let source = &mut self.source;
-        self.mesh.points.push([source.number(at)?, source.number(at)?, source.number(at)?]);
-        source.skip_numbers(parameters, at)
+    fn read_point(&mut self, parameters: u64, from: &mut Blocks<'_>, at: At<'_>) -> Result<()> {
+        let source = &mut from.source;
+        self.mesh.points.push(source.numbers(REAL, at)?);
+        source.skip(parameters, REAL, at)
     }
-
-    /// The numbers of blocks and of rows of a section of version 4.
-    pub(super) fn read_totals(&mut self, section: &str) -> Result<(u64, u64)> {
-        let at = At::head(section);
-        let totals = (self.source.size(at)?, self.source.size(at)?);
-        if self.layout == Layout::FourOne {
-            // The least and the greatest tag.
-            self.source.size(at)?;
-            self.source.size(at)?;
-        }
-        Ok(totals)
-    }
-
-    /// Dimension and tag of the entity of a block.
-    pub(super) fn read_entity(&mut self, at: At<'_>) -> Result<(u8, i32)> {
-        let (first, second): (i32, i32) = (self.source.int(at)?, self.source.int(at)?);
-        let (dimension, tag) = if self.layout == Layout::Four { (second, first) } else { (first, second) };
-        if (0..=3).contains(&dimension) {
-            return Ok((dimension as u8, tag));
-        }
-        let what = format!("an entity of dimension {dimension} ({at})");
-        Err(self.source.error(what, format!("check the counts of {}, and the version", at.section)))
-    }
-
-    /// The tag of a node or an element.
-    pub(super) fn tag(&mut self, at: At<'_>) -> Result<u64> {
-        if self.layout == Layout::FourOne { self.source.size(at) } else { Ok(self.source.int::<u32>(at)?.into()) }
-    }
-
-    /// Refuses a block of `count` rows behind `done` where there are `total`.
-    pub(super) fn demand_room(&self, section: &str, done: u64, count: u64, total: u64) -> Result<()> {
-        if count <= total.saturating_sub(done) {
-            return Ok(());
-        }
-        let what = format!("a block of {count} behind {done} others, where {section} announces {total} in all");
-        Err(self.source.error(what, format!("check the counts of {section}")))
-    }
-
-    /// Refuses blocks that hold `done` rows where there are `total`.
-    pub(super) fn demand_all(&self, section: &str, done: u64, total: u64) -> Result<()> {
-        if done == total {
-            return Ok(());
-        }
-        let what = format!("{section} announces {total}, and its blocks hold {done}");
-        Err(self.source.error(what, "check the counts of the blocks, and that the file is whole"))
-    }
-
-    /// The entries of all tags; refuses one that is there twice.
-    pub(super) fn index(&self, tags: &[u64], of: &str, section: &str) -> Result<Tags> {
-        Tags::new(tags).map_err(|(tag, [first, second])| {
-            let (first, second) = (u64::from(first) + 1, u64::from(second) + 1);
-            let what = format!("{of} {tag} is there twice (rows {first} and {second} of {section})");
-            self.source.error(what, format!("give each {of} a tag of its own"))
-        })
-    }
-}
-
-/// Reads the section that opens a file: version, form, and the size of numbers.
-fn read_format(source: &mut Source<'_>) -> Result<Layout> {
-    let at = At::head("MeshFormat");
-    let version = source.text_word(at)?.to_owned();
-    let layout = match version.as_str() {
-        "2" | "2.0" | "2.1" | "2.2" => Layout::Two,
-        "4" | "4.0" => Layout::Four,
-        "4.1" => Layout::FourOne,
-        _ if version.parse::<f64>().is_ok() => {
-            return Err(unsupported(&format!("version {}", shortened(&version)), source));
-        }
-        _ => {
-            let what = format!("'{}' is not a version of the format", shortened(&version));
-            return Err(source.error(what, "save the file as version 4.1"));
-        }
-    };
-    let (form, size): (u32, u32) = (source.text(at)?, source.text(at)?);
-    if form > 1 {
-        return Err(
-            source.error(format!("form {form}, where 0 (text) or 1 (binary) is expected"), "save the file again")
-        );
-    }
-    if size != 8 {
-        let what = format!("numbers of {size} bytes, where 8 are expected");
-        return Err(source.error(what, "save the file on a machine of 64 bits, or correct the data-size"));
-    }
-    if form == 1 {
-        source.read_one()?;
-    }
-    source.end_section("MeshFormat")?;
-    Ok(layout)
-}
-
-fn unsupported(what: &str, source: &Source<'_>) -> Error {
-    let what = format!("{what} of Gmsh's format ({})", source.place());
-    Error::Unsupported { what, help: "save the mesh as version 4.1 or 2.2, as a whole and without parameters".into() }
 }

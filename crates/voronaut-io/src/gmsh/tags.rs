@@ -4,20 +4,10 @@
 #[derive(Default)]
 pub(super) struct Tags {
     count: usize,
-    index: Index,
-}
-
-enum Index {
-    /// Tags that follow each other.
-    From(u64),
-    /// Any others: each with its entry, sorted.
-    Sorted(Vec<(u64, u32)>),
-}
-
-impl Default for Index {
-    fn default() -> Self {
-        Index::From(1)
-    }
+    /// The first tag, if they follow each other.
+    first: u64,
+    /// If they do not, each with its entry, sorted.
+    sorted: Vec<(u64, u32)>,
 }
 
 impl Tags {
@@ -26,16 +16,15 @@ impl Tags {
     /// # Errors
     /// A tag that occurs twice, and its first two entries.
     pub(super) fn new(tags: &[u64]) -> Result<Self, (u64, [u32; 2])> {
-        let first = tags.first().copied().unwrap_or(1);
-        let count = tags.len();
+        let (count, first) = (tags.len(), tags.first().copied().unwrap_or(1));
         if (0..).zip(tags).all(|(entry, tag)| tag.checked_sub(first) == Some(entry)) {
-            return Ok(Self { count, index: Index::From(first) });
+            return Ok(Self { count, first, sorted: Vec::new() });
         }
         let mut sorted: Vec<(u64, u32)> = tags.iter().copied().zip(0..).collect();
         sorted.sort_unstable();
         match sorted.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             Some(pair) => Err((pair[0].0, [pair[0].1, pair[1].1])),
-            None => Ok(Self { count, index: Index::Sorted(sorted) }),
+            None => Ok(Self { count, first, sorted }),
         }
     }
 
@@ -46,16 +35,12 @@ impl Tags {
 
     /// The entry of a tag, from 0.
     pub(super) fn find(&self, tag: u64) -> Option<u32> {
-        match &self.index {
-            &Index::From(first) => {
-                let entry = tag.checked_sub(first)?;
-                (entry < self.count as u64).then_some(entry as u32)
-            }
-            Index::Sorted(sorted) => {
-                let found = sorted.binary_search_by_key(&tag, |&(tag, _)| tag).ok()?;
-                Some(sorted[found].1)
-            }
+        if self.sorted.is_empty() {
+            let entry = tag.checked_sub(self.first)?;
+            return (entry < self.count as u64).then_some(entry as u32);
         }
+        let found = self.sorted.binary_search_by_key(&tag, |&(tag, _)| tag).ok()?;
+        Some(self.sorted[found].1)
     }
 }
 

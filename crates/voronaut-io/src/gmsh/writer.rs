@@ -4,9 +4,10 @@ use super::Version;
 use super::data::Column;
 use super::groups::{Mark, Marks, Numbering};
 use super::kinds::{EDGE, POINT, TRIANGLE};
-use super::sink::Sink;
+use super::sections::{begin, write_end};
 use crate::Fields;
-use crate::medit::Form;
+use crate::codec::{Form, Sink};
+use crate::document::labels;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 use voronaut::mesh::Mesh;
@@ -14,12 +15,11 @@ use voronaut::mesh::Mesh;
 /// Writes a mesh and fields.
 pub(super) fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &mut dyn Write) -> io::Result<()> {
     let plan = Plan::new(mesh);
-    let name = if version == Version::V4_1 { "4.1" } else { "2.2" };
-    let mut sink = Sink::new(name, form, out)?;
+    let mut sink = begin(version, form, out)?;
     plan.write_names(&mut sink)?;
     match version {
         Version::V4_1 => plan.write_4(&mut sink)?,
-        Version::V2_2 => plan.write_2(form, &mut sink)?,
+        Version::V2_2 => plan.write_2(&mut sink)?,
     }
     for column in fields.vertices.iter().flat_map(Column::of) {
         write_data("NodeData", &column, (0..mesh.points.len()).map(Some), &mut sink)?;
@@ -35,7 +35,7 @@ pub(super) fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, 
 struct Plan<'a> {
     mesh: &'a Mesh,
     parts: Vec<Part>,
-    groups: [Numbering; 3],
+    groups: Vec<Numbering>,
 }
 
 /// The elements of an entity: those of one dimension with the same label and marks.
@@ -51,24 +51,26 @@ struct Part {
 
 impl<'a> Plan<'a> {
     fn new(mesh: &'a Mesh) -> Self {
-        let sorted = [sort_triangles(mesh), sort_edges(mesh), sort_points(mesh)];
-        let mut groups = [2, 1, 0].map(|dimension| {
-            Numbering::new(dimension, sorted[2 - usize::from(dimension)].keys().map(|&(label, _)| label))
-        });
-        let mut parts: Vec<Part> = Vec::new();
-        for (sorted, numbering) in sorted.into_iter().zip(&groups) {
+        let required = (Mark::RequiredTriangle, mesh.required_triangles.as_slice());
+        let triangles = sort(mesh.triangles.len(), labels(&mesh.triangle_labels), &[required]);
+        let marked = [(Mark::Ridge, mesh.ridges.as_slice()), (Mark::RequiredEdge, &mesh.required_edges)];
+        let edges = sort(mesh.edges.len(), labels(&mesh.edge_labels), &marked);
+        let marked = [(Mark::Corner, mesh.corners.as_slice()), (Mark::RequiredVertex, &mesh.required_points)];
+        let mut points = sort(mesh.points.len(), labels(&mesh.point_labels), &marked);
+        // Vertices without label and marks need no elements.
+        points.remove(&(0, Marks::default()));
+        let (mut parts, mut groups): (Vec<Part>, Vec<Numbering>) = (Vec::new(), Vec::new());
+        for (dimension, sorted) in [(2, triangles), (1, edges), (0, points)] {
+            let mut numbering = Numbering::new(dimension, sorted.keys().map(|&(label, _)| label));
+            let first = parts.len();
             for (entity, ((label, marks), elements)) in (1..).zip(sorted) {
-                let groups = numbering.tags(label, marks);
-                parts.push(Part { dimension: numbering.dimension(), entity, groups, elements });
+                parts.push(Part { dimension, entity, groups: numbering.tags(label, marks), elements });
             }
-        }
-        for numbering in &mut groups {
-            let of = |part: &&Part| part.dimension == numbering.dimension();
-            let used: BTreeSet<i32> = parts.iter().filter(of).flat_map(|part| part.groups.iter().copied()).collect();
+            let used: BTreeSet<i32> = parts[first..].iter().flat_map(|part| part.groups.iter().copied()).collect();
             // Where points are no corners the group of corners is there to say so, even if it is empty.
-            let is_point = numbering.dimension() == 0 && !used.is_empty();
-            let corners = numbering.mark(Mark::Corner).filter(|_| is_point);
+            let corners = numbering.mark(Mark::Corner).filter(|_| !used.is_empty());
             numbering.keep(|tag| used.contains(&tag) || corners == Some(tag));
+            groups.push(numbering);
         }
         Self { mesh, parts, groups }
     }
@@ -88,14 +90,11 @@ impl<'a> Plan<'a> {
     }
 
     fn write_4(&self, sink: &mut Sink<'_>) -> io::Result<()> {
-        let count = |dimension: u8| self.parts.iter().filter(|part| part.dimension == dimension).count();
+        let count = |dimension: u8| self.parts.iter().filter(|part| part.dimension == dimension).count() as u64;
         sink.line(format_args!("$Entities"))?;
         // Nodes have to belong to something.
         let is_bare = self.parts.is_empty();
-        for count in [count(0), count(1), count(2) + usize::from(is_bare), 0] {
-            sink.size(count)?;
-        }
-        sink.end_row()?;
+        sink.row([count(0), count(1), count(2) + u64::from(is_bare), 0])?;
         for dimension in 0..3 {
             for part in self.parts.iter().filter(|part| part.dimension == dimension) {
                 self.write_entity(part, sink)?;
@@ -104,117 +103,92 @@ impl<'a> Plan<'a> {
         if is_bare {
             self.write_entity(&Part { dimension: 2, entity: 1, groups: vec![], elements: vec![] }, sink)?;
         }
-        sink.end_section("Entities")?;
+        write_end("Entities", sink)?;
         self.write_nodes_4(sink)?;
         self.write_elements_4(sink)
     }
 
     fn write_entity(&self, part: &Part, sink: &mut Sink<'_>) -> io::Result<()> {
-        sink.int(part.entity)?;
-        let [lower, upper] = self.bounds(part);
-        let numbers = if part.dimension == 0 { lower.to_vec() } else { [lower, upper].concat() };
-        numbers.into_iter().try_for_each(|x| sink.number(x))?;
-        sink.size(part.groups.len())?;
-        part.groups.iter().try_for_each(|&tag| sink.int(tag))?;
-        if part.dimension > 0 {
-            sink.size(0)?;
-        }
-        sink.end_row()
+        let ([lower, upper], is_point) = (self.bounds(part), part.dimension == 0);
+        sink.put(part.entity);
+        sink.put_all(lower);
+        sink.put_all(upper.into_iter().filter(|_| !is_point));
+        sink.put(part.groups.len() as u64);
+        sink.put_all(part.groups.iter().copied());
+        // No entities bound it.
+        sink.row(Some(0_u64).filter(|_| !is_point))
     }
 
     /// The smallest box around the elements of an entity.
     fn bounds(&self, part: &Part) -> [[f64; 3]; 2] {
         let vertices = || part.elements.iter().flat_map(|element| self.nodes(part.dimension, element));
-        let position = |&v: &u32| self.mesh.points[v as usize];
-        let first = vertices().next().map(position).unwrap_or_default();
-        let [mut lower, mut upper] = [first; 2];
-        for point in vertices().map(position) {
-            for i in 0..3 {
-                (lower[i], upper[i]) = (lower[i].min(point[i]), upper[i].max(point[i]));
-            }
-        }
-        [lower, upper]
+        let extreme = |of: fn(f64, f64) -> f64| {
+            let points = vertices().map(|&v| self.mesh.points[v as usize]);
+            points.reduce(|a, b| [0, 1, 2].map(|i| of(a[i], b[i]))).unwrap_or_default()
+        };
+        [extreme(f64::min), extreme(f64::max)]
     }
 
     fn write_nodes_4(&self, sink: &mut Sink<'_>) -> io::Result<()> {
-        let count = self.mesh.points.len();
+        let count = self.mesh.points.len() as u64;
+        let blocks = u64::from(count > 0);
         sink.line(format_args!("$Nodes"))?;
-        let blocks = usize::from(count > 0);
-        [blocks, count, blocks, count].into_iter().try_for_each(|number| sink.size(number))?;
-        sink.end_row()?;
+        sink.row([blocks, count, blocks, count])?;
         if count > 0 {
             let dimension = self.parts.first().map_or(2, |part| part.dimension);
-            [i32::from(dimension), 1, 0].into_iter().try_for_each(|number| sink.int(number))?;
-            sink.size(count)?;
-            sink.end_row()?;
-            for tag in 1..=count {
-                sink.size(tag)?;
-                sink.end_row()?;
-            }
+            sink.put_all([i32::from(dimension), 1, 0]);
+            sink.row([count])?;
+            (1..=count).try_for_each(|tag| sink.row([tag]))?;
         }
-        for point in &self.mesh.points {
-            point.iter().try_for_each(|&x| sink.number(x))?;
-            sink.end_row()?;
-        }
-        sink.end_section("Nodes")
+        self.mesh.points.iter().try_for_each(|point| sink.row(*point))?;
+        write_end("Nodes", sink)
     }
 
     fn write_elements_4(&self, sink: &mut Sink<'_>) -> io::Result<()> {
-        let count: usize = self.parts.iter().map(|part| part.elements.len()).sum();
+        let count = self.parts.iter().map(|part| part.elements.len() as u64).sum();
         sink.line(format_args!("$Elements"))?;
-        [self.parts.len(), count, usize::from(count > 0), count]
-            .into_iter()
-            .try_for_each(|number| sink.size(number))?;
-        sink.end_row()?;
-        let mut tag = 0;
+        sink.row([self.parts.len() as u64, count, u64::from(count > 0), count])?;
+        let mut tags = 1_u64..;
         for part in &self.parts {
-            let head = [part.dimension.into(), part.entity, kind(part.dimension)];
-            head.into_iter().try_for_each(|number| sink.int(number))?;
-            sink.size(part.elements.len())?;
-            sink.end_row()?;
-            for element in &part.elements {
-                tag += 1;
-                sink.size(tag)?;
-                self.nodes(part.dimension, element).iter().try_for_each(|&v| sink.size(v as usize + 1))?;
-                sink.end_row()?;
+            sink.put_all([part.dimension.into(), part.entity, kind(part.dimension)]);
+            sink.row([part.elements.len() as u64])?;
+            for (element, tag) in part.elements.iter().zip(&mut tags) {
+                sink.put(tag);
+                sink.row(self.nodes(part.dimension, element).iter().map(|&v| u64::from(v) + 1))?;
             }
         }
-        sink.end_section("Elements")
+        write_end("Elements", sink)
     }
 
-    fn write_2(&self, form: Form, sink: &mut Sink<'_>) -> io::Result<()> {
+    fn write_2(&self, sink: &mut Sink<'_>) -> io::Result<()> {
+        let count = self.parts.iter().map(Part::count_2).sum();
+        demand_tags(count)?;
+        demand_tags(self.mesh.points.len())?;
         sink.line(format_args!("$Nodes\n{}", self.mesh.points.len()))?;
-        for (tag, point) in (1..).zip(&self.mesh.points) {
-            sink.narrow(tag)?;
-            point.iter().try_for_each(|&x| sink.number(x))?;
-            sink.end_row()?;
+        for (tag, point) in (1_i32..).zip(&self.mesh.points) {
+            sink.put(tag);
+            sink.row(*point)?;
         }
-        sink.end_section("Nodes")?;
-        let count: usize = self.parts.iter().map(Part::count_2).sum();
+        write_end("Nodes", sink)?;
         sink.line(format_args!("$Elements\n{count}"))?;
         let mut tag = 0;
         for part in &self.parts {
-            if form == Form::Binary {
-                sink.int(kind(part.dimension))?;
-                sink.narrow(part.count_2())?;
-                sink.int(2)?;
+            if sink.is_binary() {
+                sink.put_all([kind(part.dimension), (part.count_2() as u32).cast_signed(), 2]);
             }
             for element in &part.elements {
                 for &group in part.groups_2() {
                     tag += 1;
-                    sink.narrow(tag)?;
-                    if form == Form::Text {
-                        sink.int(kind(part.dimension))?;
-                        sink.int(2)?;
+                    sink.put(tag);
+                    if !sink.is_binary() {
+                        sink.put_all([kind(part.dimension), 2]);
                     }
-                    sink.int(group)?;
-                    sink.int(part.entity)?;
-                    self.nodes(part.dimension, element).iter().try_for_each(|&v| sink.narrow(v as usize + 1))?;
-                    sink.end_row()?;
+                    sink.put_all([group, part.entity]);
+                    sink.row(self.nodes(part.dimension, element).iter().map(|v| v + 1))?;
                 }
             }
         }
-        sink.end_section("Elements")
+        write_end("Elements", sink)
     }
 
     /// The vertices of a vertex, an edge or a triangle.
@@ -261,35 +235,13 @@ impl Part {
 /// Elements by label and marks, each list in the order of the mesh.
 type Sorted = BTreeMap<(i32, Marks), Vec<u32>>;
 
-fn sort_triangles(mesh: &Mesh) -> Sorted {
-    let marks = marks(mesh.triangles.len(), &[(Mark::RequiredTriangle, &mesh.required_triangles)]);
-    sort(&mesh.triangle_labels, marks)
-}
-
-fn sort_edges(mesh: &Mesh) -> Sorted {
-    let lists = [(Mark::Ridge, mesh.ridges.as_slice()), (Mark::RequiredEdge, &mesh.required_edges)];
-    sort(&mesh.edge_labels, marks(mesh.edges.len(), &lists))
-}
-
-/// Vertices without label and marks need no elements.
-fn sort_points(mesh: &Mesh) -> Sorted {
-    let lists = [(Mark::Corner, mesh.corners.as_slice()), (Mark::RequiredVertex, &mesh.required_points)];
-    let mut sorted = sort(&mesh.point_labels, marks(mesh.points.len(), &lists));
-    sorted.remove(&(0, Marks::default()));
-    sorted
-}
-
-fn marks(count: usize, lists: &[(Mark, &[u32])]) -> Vec<Marks> {
+/// So many elements, some of which have marks.
+fn sort(count: usize, labels: impl Iterator<Item = i32>, marked: &[(Mark, &[u32])]) -> Sorted {
     let mut marks = vec![Marks::default(); count];
-    for (mark, list) in lists {
+    for (mark, list) in marked {
         list.iter().for_each(|&i| marks[i as usize].insert(*mark));
     }
-    marks
-}
-
-fn sort(labels: &[i32], marks: Vec<Marks>) -> Sorted {
     let mut sorted = Sorted::new();
-    let labels = labels.iter().copied().chain(std::iter::repeat(0));
     for (i, key) in (0..).zip(labels.zip(marks)) {
         sorted.entry(key).or_default().push(i);
     }
@@ -298,11 +250,7 @@ fn sort(labels: &[i32], marks: Vec<Marks>) -> Sorted {
 
 /// The type of elements of a dimension.
 fn kind(dimension: u8) -> i32 {
-    match dimension {
-        0 => POINT,
-        1 => EDGE,
-        _ => TRIANGLE,
-    }
+    [POINT, EDGE, TRIANGLE][usize::from(dimension)]
 }
 
 /// Writes values of nodes or elements, zeros where there is no `row`.
@@ -313,12 +261,16 @@ fn write_data(
     sink: &mut Sink<'_>,
 ) -> io::Result<()> {
     let (name, components, count) = (&column.name, column.components, rows.len());
+    demand_tags(count)?;
     sink.line(format_args!("${section}\n1\n\"{name}\"\n1\n0\n3\n0\n{components}\n{count}"))?;
-    for (tag, row) in (1..).zip(rows) {
-        sink.narrow(tag)?;
-        let numbers = row.map_or([0.0; 9], |row| column.row(row));
-        numbers[..components].iter().try_for_each(|&x| sink.number(x))?;
-        sink.end_row()?;
+    for (tag, row) in (1_i32..).zip(rows) {
+        sink.put(tag);
+        sink.row(column.row(row))?;
     }
-    sink.end_section(section)
+    write_end(section, sink)
+}
+
+fn demand_tags(count: usize) -> io::Result<()> {
+    let what = "more than 2^31 nodes or elements, for which Gmsh has no tags";
+    i32::try_from(count).map(drop).map_err(|_| io::Error::other(what))
 }

@@ -1,7 +1,7 @@
-//! The sections of Medit's files that matter here, and their numbers in binary ones.
+//! The sections of Medit's files that matter here, and their numbers in binary ones, as libMeshb has them.
 
-/// Code and name, as libMeshb has them.
-pub(super) const KEYWORDS: [(i32, &str); 24] = [
+/// Sections of meshes that are read.
+pub(super) const SECTIONS: [(i32, &str); 15] = [
     (3, "Dimension"),
     (4, "Vertices"),
     (5, "Edges"),
@@ -16,9 +16,13 @@ pub(super) const KEYWORDS: [(i32, &str); 24] = [
     (16, "RequiredEdges"),
     (17, "RequiredTriangles"),
     (18, "RequiredQuadrilaterals"),
+    (49, "Pyramids"),
+];
+
+/// Others whose names are known.
+const OTHERS: [(i32, &str); 9] = [
     (19, "TangentAtEdgeVertices"),
     (20, "NormalAtVertices"),
-    (49, "Pyramids"),
     (54, "End"),
     (59, "Tangents"),
     (60, "Normals"),
@@ -28,10 +32,15 @@ pub(super) const KEYWORDS: [(i32, &str); 24] = [
     (66, "SolAtTetrahedra"),
 ];
 
-/// The code of a section of the list.
+/// Code and name of all that are known.
+pub(super) fn keywords() -> impl Iterator<Item = (i32, &'static str)> {
+    SECTIONS.into_iter().chain(OTHERS)
+}
+
+/// The code of a section that is known.
 ///
 /// # Panics
-/// If it is not in the list.
+/// If it is not.
 pub(super) fn code_of(name: &str) -> i32 {
-    KEYWORDS.iter().find(|(_, known)| *known == name).expect("a section of the list").0
+    keywords().find(|(_, known)| *known == name).expect("a section of the list").0
 }

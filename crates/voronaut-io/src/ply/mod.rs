@@ -1,19 +1,17 @@
 //! Stanford's `.ply`, as text and binary in both byte orders.
 
 mod header;
-mod source;
 mod strips;
 
+use super::codec::{At, Form, Kind, Largest, Sink, Source};
 use super::cutting::Polygons;
-use super::document::distinct_names;
-use super::medit::Form;
-use super::words::{Largest, Shortest};
+use super::document::{distinct_names, labels};
 use super::{Document, Field, Fields};
-use header::{Element, Header, Kind, Property, Shape};
-use source::Source;
+use header::{Element, Property, Shape};
 use std::io::{self, BufRead, Write};
-use voronaut::Result;
+use strips::Strip;
 use voronaut::mesh::{Mesh, SolutionValues};
+use voronaut::{Error, Result};
 
 /// Reads a `.ply` file.
 ///
@@ -27,19 +25,21 @@ use voronaut::mesh::{Mesh, SolutionValues};
 /// [`Error::Parse`](voronaut::Error::Parse) with the line (in the head and in text) or the byte of what is not as announced: a head that
 /// makes no sense, a file cut off or too long, a coordinate or a field that is not finite, a face of fewer than three vertices, a
 /// vertex that does not exist. [`Error::Io`](voronaut::Error::Io) of a file that cannot be read.
-pub fn read(mut source: impl BufRead, place: &str) -> Result<Document> {
-    let header = Header::read(&mut source, place)?;
-    let mut source = Source::new(&header, source, place);
+pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
+    let mut source = Source::verbatim(source, place);
+    let elements = header::read(&mut source)?;
     let mut reader = Reader::default();
-    for element in &header.elements {
+    for element in &elements {
         reader.read_element(element, &mut source)?;
     }
-    source.finish()?;
-    if !header.elements.iter().any(|element| element.name == "vertex") {
-        let what = "the file has no element vertex";
-        return Err(source.error_at(source.position(), what, "save the vertices with x, y and z"));
+    if !source.is_at_end()? {
+        let what = "the file goes on behind the elements it announces";
+        return Err(source.error(what, "check the counts in its head"));
     }
-    reader.finish(&source)
+    if !elements.iter().any(|element| element.name == "vertex") {
+        return Err(source.error("the file has no element vertex", "save the vertices with x, y and z"));
+    }
+    reader.finish(place)
 }
 
 /// Writes a mesh and fields as a `.ply` file, as text or binary (little-endian, coordinates and fields as doubles): [`read`] turns either
@@ -50,64 +50,27 @@ pub fn read(mut source: impl BufRead, place: &str) -> Result<Document> {
 /// What `out` says.
 pub fn write(mesh: &Mesh, fields: &Fields, form: Form, out: &mut dyn Write) -> io::Result<()> {
     let [of_vertices, of_faces] = [&fields.vertices, &fields.triangles].map(|fields| properties(fields));
-    write!(
-        out,
-        "ply\nformat {} 1.0\ncomment voronaut\nelement vertex {}\nproperty double x\nproperty double y\n\
+    let name = if form == Form::Text { "ascii" } else { "binary_little_endian" };
+    let mut sink = Sink::new(form, out);
+    sink.line(format_args!(
+        "ply\nformat {name} 1.0\ncomment voronaut\nelement vertex {}\nproperty double x\nproperty double y\n\
          property double z\nproperty int label\n{of_vertices}element face {}\nproperty list uchar uint vertex_indices\n\
-         property int label\n{of_faces}end_header\n",
-        if form == Form::Text { "ascii" } else { "binary_little_endian" },
+         property int label\n{of_faces}end_header",
         mesh.points.len(),
         mesh.triangles.len()
-    )?;
-    let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0);
-    let row = |fields: &[Field], i: usize| fields.iter().flat_map(|field| field.values.row(i)).copied().collect();
-    for (i, point) in mesh.points.iter().enumerate() {
-        write_vertex(*point, label(&mesh.point_labels, i), row(&fields.vertices, i), form, out)?;
+    ))?;
+    for (i, (point, label)) in mesh.points.iter().zip(labels(&mesh.point_labels)).enumerate() {
+        sink.put_all(*point);
+        sink.put(label);
+        sink.row(fields.vertices.iter().flat_map(|field| field.values.row(i)).copied())?;
     }
-    for (i, triangle) in mesh.triangles.iter().enumerate() {
-        write_face(*triangle, label(&mesh.triangle_labels, i), row(&fields.triangles, i), form, out)?;
+    for (i, (triangle, label)) in mesh.triangles.iter().zip(labels(&mesh.triangle_labels)).enumerate() {
+        sink.put(3_u8);
+        sink.put_all(*triangle);
+        sink.put(label);
+        sink.row(fields.triangles.iter().flat_map(|field| field.values.row(i)).copied())?;
     }
     Ok(())
-}
-
-fn write_vertex(point: [f64; 3], label: i32, row: Vec<f64>, form: Form, out: &mut dyn Write) -> io::Result<()> {
-    match form {
-        Form::Text => {
-            point.into_iter().try_for_each(|x| write!(out, "{} ", Shortest(x)))?;
-            write!(out, "{label}")?;
-        }
-        Form::Binary => {
-            out.write_all(point.map(f64::to_le_bytes).as_flattened())?;
-            out.write_all(&label.to_le_bytes())?;
-        }
-    }
-    write_row(row, form, out)
-}
-
-fn write_face(triangle: [u32; 3], label: i32, row: Vec<f64>, form: Form, out: &mut dyn Write) -> io::Result<()> {
-    match form {
-        Form::Text => {
-            let [a, b, c] = triangle;
-            write!(out, "3 {a} {b} {c} {label}")?;
-        }
-        Form::Binary => {
-            out.write_all(&[3])?;
-            out.write_all(triangle.map(u32::to_le_bytes).as_flattened())?;
-            out.write_all(&label.to_le_bytes())?;
-        }
-    }
-    write_row(row, form, out)
-}
-
-/// The values of an element, and in text the end of its line.
-fn write_row(row: Vec<f64>, form: Form, out: &mut dyn Write) -> io::Result<()> {
-    match form {
-        Form::Text => {
-            row.into_iter().try_for_each(|x| write!(out, " {}", Shortest(x)))?;
-            out.write_all(b"\n")
-        }
-        Form::Binary => row.into_iter().try_for_each(|x| out.write_all(&x.to_le_bytes())),
-    }
 }
 
 /// The properties of fields, one for each component; names have no spaces here, and are none that mean something else.
@@ -125,6 +88,8 @@ fn properties(fields: &[Field]) -> String {
 /// Properties that are shown, not computed with.
 const LOOKS: [&str; 7] = ["nx", "ny", "nz", "red", "green", "blue", "alpha"];
 
+const AXES: [&str; 3] = ["x", "y", "z"];
+
 /// What a property means.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Role {
@@ -141,8 +106,8 @@ enum Role {
 struct Reader {
     mesh: Mesh,
     polygons: Polygons,
-    vertex_fields: Vec<(String, Vec<f64>)>,
-    face_fields: Vec<(String, Vec<f64>)>,
+    /// Name and values of properties of vertices and of faces.
+    fields: [Vec<(String, Vec<f64>)>; 2],
     largest: Largest,
 }
 
@@ -155,14 +120,10 @@ impl Reader {
         let roles: Vec<Role> = element.properties.iter().map(|property| self.role(&element.name, property)).collect();
         let lacks = |axis: &usize| element.name == "vertex" && !roles.contains(&Role::Coordinate(*axis));
         if let Some(axis) = (0..3).find(lacks) {
-            let what = format!("the element vertex has no property {}", ["x", "y", "z"][axis]);
-            return Err(source.error_at(source.position(), what, "save the vertices with x, y and z"));
+            let what = format!("the element vertex has no property {}", AXES[axis]);
+            return Err(source.error(what, "save the vertices with x, y and z"));
         }
-        for row in 1..=element.count {
-            source.begin(&element.name, row, element.count);
-            self.read_row(element, &roles, source)?;
-        }
-        Ok(())
+        At::rows(&element.name, element.count).try_for_each(|at| self.read_row(element, &roles, source, at))
     }
 
     fn role(&mut self, element: &str, property: &Property) -> Role {
@@ -172,14 +133,14 @@ impl Reader {
             ("tristrips", Shape::List(..)) if header::VERTEX_LISTS.contains(&name) => return Role::Strips,
             (_, Shape::List(..)) => return Role::None,
             ("vertex" | "face" | "edge", _) if name == "label" => return Role::Label,
-            ("vertex", _) => &mut self.vertex_fields,
-            ("face", _) => &mut self.face_fields,
+            ("vertex", _) => &mut self.fields[0],
+            ("face", _) => &mut self.fields[1],
             ("edge", _) => {
                 return ["vertex1", "vertex2"].iter().position(|end| *end == name).map_or(Role::None, Role::End);
             }
             _ => return Role::None,
         };
-        match ["x", "y", "z"].iter().position(|axis| *axis == name) {
+        match AXES.iter().position(|axis| *axis == name) {
             Some(axis) if element == "vertex" => Role::Coordinate(axis),
             _ if LOOKS.contains(&name) => Role::None,
             _ => {
@@ -189,32 +150,36 @@ impl Reader {
         }
     }
 
-    fn read_row(&mut self, element: &Element, roles: &[Role], source: &mut Source<'_>) -> Result<()> {
+    fn read_row(&mut self, element: &Element, roles: &[Role], source: &mut Source<'_>, at: At<'_>) -> Result<()> {
         let (mut point, mut ends, mut label) = ([f64::NAN; 3], [None; 2], 0);
         for (property, &role) in element.properties.iter().zip(roles) {
-            match (property.shape, role) {
-                (Shape::List(counts, kind), Role::Strips) => self.read_strips(source, counts, kind)?,
-                (Shape::List(counts, kind), _) => {
-                    let list = self.read_list(source, counts, kind, role == Role::Vertices)?;
-                    if role == Role::Vertices {
-                        self.push_face(&list, source)?;
-                    }
+            let kind = match property.shape {
+                Shape::Scalar(kind) => kind,
+                Shape::List(counts, kind) => {
+                    self.read_list(role, counts, kind, source, at)?;
+                    continue;
                 }
-                (Shape::Scalar(kind), Role::Coordinate(axis)) => point[axis] = source.number(kind)?,
-                (Shape::Scalar(kind), Role::Label) => label = whole_label(source.number(kind)?, source)?,
-                (Shape::Scalar(kind), Role::End(end)) => {
-                    ends[end] = Some(self.vertex(source.number(kind)?, source)?);
+            };
+            if role == Role::None {
+                source.skip(1, kind, at)?;
+                continue;
+            }
+            let value = source.any_number(kind, at)?;
+            match role {
+                Role::Coordinate(axis) => point[axis] = value,
+                Role::Label => label = whole_label(value, source, at)?,
+                Role::End(end) => ends[end] = Some(self.vertex(value, source, at)?),
+                Role::Field(_) if !value.is_finite() => {
+                    return Err(fault("a value is not finite", "remove or correct it", source, at));
                 }
-                (Shape::Scalar(kind), Role::Field(field)) => {
-                    self.push_value(element, field, source.number(kind)?, source)?;
-                }
-                (Shape::Scalar(kind), Role::None | Role::Vertices | Role::Strips) => source.pass(kind)?,
+                Role::Field(field) => self.fields[usize::from(element.name == "face")][field].1.push(value),
+                Role::Vertices | Role::Strips | Role::None => {}
             }
         }
         match element.name.as_str() {
             "vertex" => {
                 if !point.iter().all(|x| x.is_finite()) {
-                    return Err(source.error("a coordinate is not finite", "remove or correct the vertex"));
+                    return Err(fault("a coordinate is not finite", "remove or correct the vertex", source, at));
                 }
                 self.mesh.points.push(point);
                 self.mesh.point_labels.push(label);
@@ -222,7 +187,8 @@ impl Reader {
             "face" => self.polygons.label(label),
             "edge" => {
                 let [Some(a), Some(b)] = ends else {
-                    return Err(source.error("an edge without its ends", "write the properties vertex1 and vertex2"));
+                    let help = "write the properties vertex1 and vertex2";
+                    return Err(fault("an edge without its ends", help, source, at));
                 };
                 self.mesh.edges.push([a, b]);
                 self.mesh.edge_labels.push(label);
@@ -232,79 +198,74 @@ impl Reader {
         Ok(())
     }
 
-    fn push_value(&mut self, element: &Element, field: usize, value: f64, source: &Source<'_>) -> Result<()> {
-        if !value.is_finite() {
-            return Err(source.error("a value is not finite", "remove or correct it"));
+    /// Reads a list: a face, strips, or what nobody needs.
+    fn read_list(&mut self, role: Role, counts: Kind, kind: Kind, source: &mut Source<'_>, at: At<'_>) -> Result<()> {
+        let length = source.any_number(counts, at)?;
+        if length.is_nan() || length < 0.0 || length.fract() != 0.0 {
+            return Err(fault(&format!("a list of {length} entries"), "lists begin with their length", source, at));
         }
-        let fields = if element.name == "vertex" { &mut self.vertex_fields } else { &mut self.face_fields };
-        fields[field].1.push(value);
-        Ok(())
-    }
-
-    fn push_face(&mut self, polygon: &[u32], source: &Source<'_>) -> Result<()> {
-        if polygon.len() < 3 {
-            let what = format!("a face of {} vertices", polygon.len());
-            return Err(source.error(&what, "a face needs three vertices or more"));
+        let (mut face, mut strip) = (Vec::new(), Strip::default());
+        for _ in 0..length as u64 {
+            let value = source.any_number(kind, at)?;
+            match role {
+                Role::Vertices => face.push(self.vertex(value, source, at)?),
+                Role::Strips if value + 1.0 == 0.0 => std::mem::take(&mut strip).demand_triangles(source, at)?,
+                Role::Strips => {
+                    if let Some(triangle) = strip.with(self.vertex(value, source, at)?) {
+                        self.polygons.push(&triangle);
+                    }
+                }
+                _ => {}
+            }
         }
-        self.polygons.push(polygon);
+        strip.demand_triangles(source, at)?;
+        if role == Role::Vertices {
+            if face.len() < 3 {
+                let what = format!("a face of {} vertices", face.len());
+                return Err(fault(&what, "a face needs three vertices or more", source, at));
+            }
+            self.polygons.push(&face);
+        }
         Ok(())
     }
 
     /// Faces may stand before the vertices: whether these exist is known at the end.
-    fn finish(mut self, source: &Source<'_>) -> Result<Document> {
+    fn finish(mut self, file: &str) -> Result<Document> {
         let count = self.mesh.points.len();
-        if let Some((number, position)) = self.largest.beyond(count) {
+        if let Some((number, place)) = self.largest.beyond(count, file) {
             let what = format!("vertex {} does not exist: the file lists {count}, from 0", number - 1);
-            return Err(source.error_at(position, what, "check the faces and edges, and that the file is whole"));
+            return Err(place.error(what, "check the faces and edges, and that the file is whole"));
         }
         (self.mesh.triangles, self.mesh.triangle_labels) = self.polygons.cut(&self.mesh.points);
         let triangles = self.mesh.triangles.len();
         // Fields of triangles are those of faces only where each face is one.
-        self.face_fields.retain(|(_, values)| values.len() == triangles);
-        let fields = |fields: Vec<(String, Vec<f64>)>| {
-            fields.into_iter().map(|(name, values)| Field { name, values: SolutionValues::Scalar(values) }).collect()
-        };
-        let fields = Fields { vertices: fields(self.vertex_fields), triangles: fields(self.face_fields) };
-        Ok(Document { mesh: self.mesh, fields, notes: Vec::new() })
+        self.fields[1].retain(|(_, values)| values.len() == triangles);
+        let field = |(name, values)| Field { name, values: SolutionValues::Scalar(values) };
+        let [vertices, triangles] = self.fields.map(|fields| fields.into_iter().map(field).collect());
+        Ok(Document { mesh: self.mesh, fields: Fields { vertices, triangles }, notes: Vec::new() })
     }
 
-    /// The vertices in a list; the entries of lists that nobody needs are passed over.
-    fn read_list(&mut self, source: &mut Source<'_>, counts: Kind, kind: Kind, keep: bool) -> Result<Vec<u32>> {
-        let mut list = Vec::new();
-        for _ in 0..read_length(source, counts)? {
-            let value = source.number(kind)?;
-            if keep {
-                list.push(self.vertex(value, source)?);
-            }
-        }
-        Ok(list)
-    }
-
-    fn vertex(&mut self, value: f64, source: &Source<'_>) -> Result<u32> {
+    fn vertex(&mut self, value: f64, source: &Source<'_>, at: At<'_>) -> Result<u32> {
         if (0.0..f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0 {
             let vertex = value as u32;
-            self.largest.note(u64::from(vertex) + 1, source.position());
+            self.largest.note(u64::from(vertex) + 1, source.place());
             return Ok(vertex);
         }
-        Err(source.error(&format!("vertex {value} does not exist"), "number vertices from 0"))
+        Err(fault(&format!("vertex {value} does not exist"), "number vertices from 0", source, at))
     }
 }
 
-/// How many entries a list has.
-fn read_length(source: &mut Source<'_>, counts: Kind) -> Result<u64> {
-    let length = source.number(counts)?;
-    if length.is_nan() || length < 0.0 || length.fract() != 0.0 {
-        return Err(source.error(&format!("a list of {length} entries"), "lists begin with their length"));
-    }
-    Ok(length as u64)
-}
-
-fn whole_label(value: f64, source: &Source<'_>) -> Result<i32> {
+fn whole_label(value: f64, source: &Source<'_>, at: At<'_>) -> Result<i32> {
     let label = value as i32;
     if f64::from(label) - value == 0.0 {
         return Ok(label);
     }
-    Err(source.error(&format!("the label {value}"), "labels are whole numbers of 32 bits"))
+    Err(fault(&format!("the label {value}"), "labels are whole numbers of 32 bits", source, at))
+}
+
+/// An error at the number read last, with its element and row.
+fn fault(what: &str, help: &str, source: &Source<'_>, at: At<'_>) -> Error {
+    source.error(format!("{what} ({at})"), help)
 }
 
 #[cfg(test)]

@@ -1,41 +1,19 @@
 //! Triangle strips: each vertex behind the first two makes a triangle with the two before it.
 
-use super::header::Kind;
-use super::source::Source;
-use super::{Reader, read_length};
+use super::fault;
+use crate::codec::{At, Source};
 use voronaut::Result;
 
 /// The strip that is read.
 #[derive(Default)]
-struct Strip {
+pub(super) struct Strip {
     length: u64,
     last: [u32; 2],
 }
 
-impl Reader {
-    /// Reads the strips of a list, each of which but the last ends with -1.
-    ///
-    /// # Errors
-    /// [`Error::Parse`](voronaut::Error::Parse) of a list that is cut off, of entries that number no vertex, and of strips of one vertex or
-    /// two.
-    pub(super) fn read_strips(&mut self, source: &mut Source<'_>, counts: Kind, kind: Kind) -> Result<()> {
-        let mut strip = Strip::default();
-        for _ in 0..read_length(source, counts)? {
-            let entry = source.number(kind)?;
-            if entry + 1.0 == 0.0 {
-                std::mem::take(&mut strip).demand_triangles(source)?;
-            } else {
-                let vertex = self.vertex(entry, source)?;
-                strip.with(vertex).into_iter().for_each(|triangle| self.polygons.push(&triangle));
-            }
-        }
-        strip.demand_triangles(source)
-    }
-}
-
 impl Strip {
     /// The triangle that a vertex adds, turned like the first. Those with a vertex twice are none: with them programs join strips.
-    fn with(&mut self, vertex: u32) -> Option<[u32; 3]> {
+    pub(super) fn with(&mut self, vertex: u32) -> Option<[u32; 3]> {
         let [a, b] = self.last;
         self.last = [b, vertex];
         self.length += 1;
@@ -43,12 +21,16 @@ impl Strip {
         is_triangle.then_some(if self.length % 2 == 1 { [a, b, vertex] } else { [b, a, vertex] })
     }
 
-    fn demand_triangles(&self, source: &Source<'_>) -> Result<()> {
+    /// Refuses the end of a strip that is none.
+    ///
+    /// # Errors
+    /// [`Error::Parse`](voronaut::Error::Parse) of strips of one vertex or two.
+    pub(super) fn demand_triangles(&self, source: &Source<'_>, at: At<'_>) -> Result<()> {
         if !matches!(self.length, 1 | 2) {
             return Ok(());
         }
         let what = format!("a strip of {} vertices", self.length);
-        Err(source.error(&what, "a strip needs three vertices or more"))
+        Err(fault(&what, "a strip needs three vertices or more", source, at))
     }
 }
 

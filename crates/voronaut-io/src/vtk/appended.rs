@@ -1,8 +1,9 @@
 //! The section of a file where arrays stand one after the other, behind all tags.
 
 use super::base64::Base64;
-use super::grid::{Grid, misread};
+use super::grid::Grid;
 use super::stored::Stored;
+use crate::codec::Place;
 use std::io::{self, BufRead, ErrorKind, Read};
 use voronaut::{Error, Result};
 
@@ -11,13 +12,13 @@ use voronaut::{Error, Result};
 /// # Errors
 /// [`Error::Parse`] where an array is not there as a whole, or begins in another; [`Error::Io`] of what cannot be read.
 pub(super) fn read(source: &mut dyn BufRead, start: u64, is_raw: bool, grid: &mut Grid<'_>) -> Result<()> {
-    let head = grid.head;
-    let io = |source| Error::Io { path: head.place.into(), source };
+    let (file, layout) = (grid.file, grid.layout);
+    let io = |source| Error::Io { path: file.into(), source };
     let mut section = Counted { source, position: 0 };
     let mark = section.bytes_to_mark().map_err(io)?;
     let Some(before) = mark else {
         let what = "AppendedData without the '_' that its arrays begin with";
-        return Err(Error::parse(format!("{}, byte {start}", head.place), what, "the file is cut off or damaged"));
+        return Err(Place::byte(file, start).error(what, "the file is cut off or damaged"));
     };
     let start = start + before;
     let mut wanted = Vec::new();
@@ -29,22 +30,18 @@ pub(super) fn read(source: &mut dyn BufRead, start: u64, is_raw: bool, grid: &mu
     for (offset, i, of, mut array) in wanted {
         array.byte = start.saturating_add(offset);
         if offset < section.position {
-            return Err(array.error(head, "begins in another array", "check the attribute offset"));
+            return Err(array.error("begins in another array", "check the attribute offset"));
         }
         let missing = offset - section.position;
         if io::copy(&mut (&mut section).take(missing), &mut io::sink()).map_err(io)? < missing {
-            return Err(array.error(
-                head,
-                "begins behind the end of the file",
-                "the file is cut off, or offset is wrong",
-            ));
+            return Err(array.error("begins behind the end of the file", "the file is cut off, or offset is wrong"));
         }
         let stored = if is_raw {
-            Stored::read(&mut section, head.layout)
+            Stored::read(&mut section, layout)
         } else {
-            Stored::read(&mut Base64::new(&mut section), head.layout)
+            Stored::read(&mut Base64::new(&mut section), layout)
         };
-        array.stored = stored.map_err(|error| misread(&error, &array, head))?;
+        array.stored = stored.map_err(|error| array.misread(&error))?;
         grid.pieces[i].arrays.push((of, array));
     }
     for piece in &mut grid.pieces {

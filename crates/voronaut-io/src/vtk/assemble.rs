@@ -3,7 +3,8 @@
 use super::cells::{Shapes, refuse_foreign, types};
 use super::data::{Data, Joined};
 use super::grid::{CELLS, Grid, Piece, Section};
-use super::numbers::{self, Array, Head};
+use super::numbers::Array;
+use crate::codec::Place;
 use crate::{Document, Fields};
 use voronaut::mesh::Mesh;
 use voronaut::{Error, Result};
@@ -13,32 +14,26 @@ use voronaut::{Error, Result};
 /// # Errors
 /// As of [`super::read`].
 pub(super) fn assemble(grid: Grid<'_>) -> Result<Document> {
-    let mut assembly = Assembly {
-        head: grid.head,
-        mesh: Mesh::default(),
-        vertices: Joined::default(),
-        triangles: Joined::default(),
-        notes: Vec::new(),
-    };
+    let mut assembly = Assembly { file: grid.file, ..Assembly::default() };
     for piece in grid.pieces {
         assembly.append(piece)?;
     }
-    let Assembly { mesh, vertices, triangles, notes, .. } = assembly;
-    let is_planar = mesh.is_planar();
-    let fields = Fields { vertices: vertices.finish(is_planar), triangles: triangles.finish(is_planar) };
-    Ok(Document { mesh, fields, notes })
+    let is_planar = assembly.mesh.is_planar();
+    let [vertices, triangles] = [assembly.vertices, assembly.triangles].map(|joined| joined.finish(is_planar));
+    Ok(Document { mesh: assembly.mesh, fields: Fields { vertices, triangles }, notes: assembly.notes })
 }
 
+#[derive(Default)]
 struct Assembly<'a> {
-    head: Head<'a>,
+    file: &'a str,
     mesh: Mesh,
-    vertices: Joined,
-    triangles: Joined,
+    vertices: Joined<'a>,
+    triangles: Joined<'a>,
     notes: Vec<String>,
 }
 
-impl Assembly<'_> {
-    fn append(&mut self, mut piece: Piece) -> Result<()> {
+impl<'a> Assembly<'a> {
+    fn append(&mut self, mut piece: Piece<'a>) -> Result<()> {
         let base = self.mesh.points.len();
         if base as u64 + piece.points > u32::MAX.into() || piece.count(Section::CellData) > u32::MAX.into() {
             let what = format!("more than {} points or cells", u32::MAX);
@@ -47,22 +42,22 @@ impl Assembly<'_> {
         self.append_points(&mut piece)?;
         let mut shapes = Shapes::default();
         let mut cells = 0;
-        for ((_, section), count) in CELLS.into_iter().zip(piece.cells).filter(|(_, count)| *count > 0) {
-            self.read_cells(&mut piece, section, count, cells, &mut shapes)?;
-            cells += count as u32;
+        for (_, section) in CELLS {
+            self.read_cells(&mut piece, section, cells, &mut shapes)?;
+            cells += piece.count(section) as u32;
         }
         let (mut of_points, mut of_cells) = (Vec::new(), Vec::new());
-        for (section, array) in std::mem::take(&mut piece.arrays) {
+        for (section, mut array) in std::mem::take(&mut piece.arrays) {
             match section {
                 Section::PointData => of_points.push(array),
                 Section::CellData => of_cells.push(array),
-                others if piece.count(others) == 0 => drop(array.into_reals(0, self.head)?),
+                others if piece.count(others) == 0 => drop(array.take_reals(0)?),
                 _ => {}
             }
         }
         let count = piece.points;
-        self.append_point_data(Data::read(of_points, count, self.head)?, base, count as usize)?;
-        let data = Data::read(of_cells, cells.into(), self.head)?;
+        self.append_point_data(Data::read(of_points, count)?, base, count as usize)?;
+        let data = Data::read(of_cells, cells.into())?;
         self.notes.extend(shapes.take_skin(&self.mesh.points[base..], |cell| data.label(cell)));
         for vertex in shapes.triangles.as_flattened_mut().iter_mut().chain(shapes.edges.as_flattened_mut()) {
             *vertex += base as u32;
@@ -70,35 +65,37 @@ impl Assembly<'_> {
         self.append_cells(data, shapes, cells as usize)
     }
 
-    fn append_points(&mut self, piece: &mut Piece) -> Result<()> {
-        let (head, count) = (self.head, piece.points);
+    fn append_points(&mut self, piece: &mut Piece<'a>) -> Result<()> {
+        let count = piece.points;
         if count == 0 {
             return Ok(());
         }
-        let Some(array) = piece.take(Section::Points, None) else {
+        let Some(mut array) = piece.take(Section::Points, None) else {
             return Err(self.error(piece, "a piece without the array of its points", "check that the file is whole"));
         };
         if array.components.unwrap_or(3) != 3 {
             let what = format!("has {} components, where points have 3", array.components.unwrap_or(3));
-            return Err(array.error(head, &what, "write three coordinates, the third 0 in the plane"));
+            return Err(array.error(&what, "write three coordinates, the third 0 in the plane"));
         }
-        let (name, byte) = (array.name.clone(), array.byte);
-        let numbers = array.into_reals(3 * count, head)?;
+        let numbers = array.take_reals(3 * count)?;
         if let Some(i) = numbers.iter().position(|number| !number.is_finite()) {
             let what = format!("holds {}, which is not finite, as a coordinate of point {}", numbers[i], i / 3 + 1);
-            return Err(numbers::error(head, byte, &name, &what, "remove or correct the point"));
+            return Err(array.error(&what, "remove or correct the point"));
         }
         self.mesh.points.extend_from_slice(numbers.as_chunks().0);
         Ok(())
     }
 
     /// Cells of a section, whose numbers begin with `first`.
-    fn read_cells(&self, piece: &mut Piece, section: Section, count: u64, first: u32, to: &mut Shapes) -> Result<()> {
-        let head = self.head;
+    fn read_cells(&self, piece: &mut Piece<'a>, section: Section, first: u32, to: &mut Shapes) -> Result<()> {
+        let count = piece.count(section);
+        if count == 0 {
+            return Ok(());
+        }
         let (mut kinds, all) = match section {
             Section::Cells => {
-                let kinds = self.take(piece, section, "types")?.into_wholes(count, head)?;
-                refuse_foreign(&kinds, head.place)?;
+                let kinds = self.take(piece, section, "types")?.take_wholes(count)?;
+                refuse_foreign(&kinds, self.file)?;
                 (kinds.into_iter().map(|kind| kind as u8).collect(), types::EMPTY)
             }
             Section::Verts => return Ok(()),
@@ -106,53 +103,45 @@ impl Assembly<'_> {
             Section::Strips => (Vec::new(), types::TRIANGLE_STRIP),
             _ => (Vec::new(), types::POLYGON),
         };
-        let offsets = self.take(piece, section, "offsets")?;
-        let byte = offsets.byte;
-        let fault =
-            |what: String| numbers::error(head, byte, "offsets", &what, "check the cells, and that the file is whole");
-        let ends = offsets.into_wholes(count, head)?;
+        let mut offsets = self.take(piece, section, "offsets")?;
+        let ends = offsets.take_wholes(count)?;
+        let fault = |what: String| offsets.error(&what, "check the cells, and that the file is whole");
         // Only now it is known that there are as many cells as the file says.
         kinds.resize(ends.len(), all);
-        let mut start = 0;
-        for (i, &end) in ends.iter().enumerate() {
-            if end < start {
-                return Err(fault(format!(
-                    "says that cell {} ends at {end}, behind which it begins, at {start}",
-                    i + 1
-                )));
-            }
-            start = end;
+        let starts = || std::iter::once(0).chain(ends.iter().copied());
+        let mut cells = starts().zip(&ends).enumerate();
+        if let Some((i, (start, end))) = cells.find(|(_, (start, end))| *end < start) {
+            let what = format!("says that cell {} ends at {end}, behind which it begins, at {start}", i + 1);
+            return Err(fault(what));
         }
-        let vertices = self.read_connectivity(piece, section, start as u64)?;
+        let vertices = self.read_connectivity(piece, section, ends.last().copied().unwrap_or(0) as u64)?;
         let points = &self.mesh.points[self.mesh.points.len() - piece.points as usize..];
-        let mut start = 0;
-        for (i, (&end, kind)) in ends.iter().zip(kinds).enumerate() {
-            let cell = &vertices[start..end as usize];
+        for (i, ((start, &end), kind)) in starts().zip(&ends).zip(kinds).enumerate() {
+            let cell = &vertices[start as usize..end as usize];
             let pushed = to.push(first + i as u32, kind, cell, points);
             pushed.map_err(|right| fault(format!("gives cell {} {} vertices: {right}", i + 1, cell.len())))?;
-            start = end as usize;
         }
         Ok(())
     }
 
-    fn read_connectivity(&self, piece: &mut Piece, section: Section, count: u64) -> Result<Vec<u32>> {
+    fn read_connectivity(&self, piece: &mut Piece<'a>, section: Section, count: u64) -> Result<Vec<u32>> {
         if count == 0 {
             return Ok(Vec::new());
         }
-        let array = self.take(piece, section, "connectivity")?;
-        let (byte, points) = (array.byte, piece.points);
+        let mut array = self.take(piece, section, "connectivity")?;
+        let (numbers, points) = (array.take_wholes(count)?, piece.points);
         let vertex = |(i, number): (usize, i64)| match u32::try_from(number) {
             Ok(vertex) if u64::from(vertex) < points => Ok(vertex),
             _ => {
                 let what =
                     format!("holds point {number} (number {} of {count}): the piece has {points}, from 0", i + 1);
-                Err(numbers::error(self.head, byte, "connectivity", &what, "correct the cell"))
+                Err(array.error(&what, "correct the cell"))
             }
         };
-        array.into_wholes(count, self.head)?.into_iter().enumerate().map(vertex).collect()
+        numbers.into_iter().enumerate().map(vertex).collect()
     }
 
-    fn take(&self, piece: &mut Piece, section: Section, name: &str) -> Result<Array> {
+    fn take(&self, piece: &mut Piece<'a>, section: Section, name: &str) -> Result<Array<'a>> {
         let array = piece.take(section, Some(name)).filter(|array| array.components.unwrap_or(1) == 1);
         array.ok_or_else(|| {
             let what = format!("{section:?} of a piece without an array '{name}' of one component");
@@ -160,18 +149,18 @@ impl Assembly<'_> {
         })
     }
 
-    fn append_point_data(&mut self, data: Data, base: usize, count: usize) -> Result<()> {
+    fn append_point_data(&mut self, data: Data<'a>, base: usize, count: usize) -> Result<()> {
         self.mesh.point_labels.extend((0..count).map(|i| data.label(i)));
         self.mesh.corners.extend(data.marked("corner", base, 0..count));
         self.mesh.required_points.extend(data.marked("required", base, 0..count));
         if count == 0 {
             return Ok(());
         }
-        data.fields.iter().try_for_each(|field| field.check(None, self.head))?;
-        self.vertices.append(data.fields, self.head)
+        data.fields.iter().try_for_each(|field| field.check(None))?;
+        self.vertices.append(data.fields)
     }
 
-    fn append_cells(&mut self, mut data: Data, shapes: Shapes, cells: usize) -> Result<()> {
+    fn append_cells(&mut self, mut data: Data<'a>, shapes: Shapes, cells: usize) -> Result<()> {
         let (triangles, edges) = (self.mesh.triangles.len(), self.mesh.edges.len());
         let of = |cells: &[u32]| cells.iter().map(|&cell| cell as usize).collect::<Vec<_>>().into_iter();
         let (of_triangles, of_edges) = (of(&shapes.of_triangles), of(&shapes.of_edges));
@@ -185,30 +174,29 @@ impl Assembly<'_> {
         if shapes.of_triangles.is_empty() {
             return Ok(());
         }
-        demand_moderate_cuts(&data, shapes.of_triangles.len(), cells, self.head)?;
+        demand_moderate_cuts(&data, shapes.of_triangles.len(), cells, self.file)?;
         for field in &mut data.fields {
             field.select(&shapes.of_triangles);
-            field.check(Some(&shapes.of_triangles), self.head)?;
+            field.check(Some(&shapes.of_triangles))?;
         }
-        self.triangles.append(data.fields, self.head)
+        self.triangles.append(data.fields)
     }
 
-    fn error(&self, piece: &Piece, what: &str, help: &str) -> Error {
-        Error::parse(format!("{}, byte {}", self.head.place, piece.byte), what, help)
+    fn error(&self, piece: &Piece<'_>, what: &str, help: &str) -> Error {
+        Place::byte(self.file, piece.byte).error(what, help)
     }
 }
 
 /// Refuses fields whose values would take far more memory than the file: of polygons with many vertices, each triangle of which
 /// repeats all numbers.
-fn demand_moderate_cuts(data: &Data, triangles: usize, cells: usize, head: Head<'_>) -> Result<()> {
+fn demand_moderate_cuts(data: &Data<'_>, triangles: usize, cells: usize, file: &str) -> Result<()> {
     const ALWAYS: usize = 1 << 24;
     const MOST_PER_CELL: usize = 64;
-    let components = data.fields.iter().fold(0_usize, |sum, field| sum.saturating_add(field.components()));
+    let components = data.fields.iter().fold(0_usize, |sum, field| sum.saturating_add(field.components));
     let numbers = components.saturating_mul(triangles);
     if numbers <= ALWAYS || triangles / MOST_PER_CELL < cells {
         return Ok(());
     }
-    let what =
-        format!("{}: {cells} cells are cut into {triangles} triangles, with {numbers} values on them", head.place);
+    let what = format!("{file}: {cells} cells are cut into {triangles} triangles, with {numbers} values on them");
     Err(Error::Limit { what, help: "triangulate the polygons, or remove the data on cells".into() })
 }

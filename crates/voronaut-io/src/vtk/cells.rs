@@ -35,8 +35,6 @@ pub(super) struct Shapes {
     /// The cell of each edge.
     pub(super) of_edges: Vec<u32>,
     pub(super) volumes: Volumes,
-    /// The cell that each of the volumes is.
-    pub(super) of_volumes: Vec<u32>,
 }
 
 impl Shapes {
@@ -52,18 +50,10 @@ impl Shapes {
         vertices: &[u32],
         points: &[[f64; 3]],
     ) -> std::result::Result<(), &'static str> {
-        if let Some((solid, right)) = solid(kind) {
-            return self.push_solid(cell, kind, vertices, solid, right);
+        let (least, most, right) = right(kind);
+        if !(least..=most).contains(&vertices.len()) {
+            return Err(right);
         }
-        let right = match kind {
-            types::LINE if vertices.len() != 2 => Err("a line has 2"),
-            types::POLY_LINE if vertices.len() < 2 => Err("a polyline has 2 or more"),
-            types::TRIANGLE if vertices.len() != 3 => Err("a triangle has 3"),
-            types::PIXEL | types::QUAD if vertices.len() != 4 => Err("a quadrilateral has 4"),
-            types::POLYGON | types::TRIANGLE_STRIP if vertices.len() < 3 => Err("polygons and strips have 3 or more"),
-            _ => Ok(()),
-        };
-        right?;
         match (kind, vertices) {
             (types::LINE | types::POLY_LINE, _) => {
                 self.edges.extend(vertices.windows(2).map(|ends| [ends[0], ends[1]]));
@@ -74,6 +64,13 @@ impl Shapes {
             }
             (types::PIXEL, &[a, b, c, d]) => cut(points, &[a, b, d, c], &mut self.triangles),
             (types::TRIANGLE | types::POLYGON | types::QUAD, _) => cut(points, vertices, &mut self.triangles),
+            (types::TETRAHEDRON, _) => drop(self.volumes.push(Solid::Tetrahedron, vertices, 0, cell)),
+            (types::VOXEL, &[a, b, c, d, e, f, g, h]) => {
+                self.volumes.push(Solid::Hexahedron, &[a, b, d, c, e, f, h, g], 0, cell);
+            }
+            (types::HEXAHEDRON, _) => drop(self.volumes.push(Solid::Hexahedron, vertices, 0, cell)),
+            (types::WEDGE, _) => drop(self.volumes.push(Solid::Prism, vertices, 0, cell)),
+            (types::PYRAMID, _) => drop(self.volumes.push(Solid::Pyramid, vertices, 0, cell)),
             _ => {}
         }
         self.of_edges.resize(self.edges.len(), cell);
@@ -81,49 +78,32 @@ impl Shapes {
         Ok(())
     }
 
-    fn push_solid(
-        &mut self,
-        cell: u32,
-        kind: u8,
-        vertices: &[u32],
-        solid: Solid,
-        right: &'static str,
-    ) -> std::result::Result<(), &'static str> {
-        if vertices.len() != solid.vertices() {
-            return Err(right);
-        }
-        match (kind, vertices) {
-            (types::VOXEL, &[a, b, c, d, e, f, g, h]) => self.volumes.push(solid, &[a, b, d, c, e, f, h, g], 0),
-            _ => self.volumes.push(solid, vertices, 0),
-        }
-        self.of_volumes.push(cell);
-        Ok(())
-    }
-
     /// The outside of the volumes as triangles, where there are no others; `label` is that of a cell. What to tell of it.
     pub(super) fn take_skin(&mut self, points: &[[f64; 3]], label: impl Fn(usize) -> i32) -> Option<String> {
         let note = self.volumes.note(self.triangles.len());
         if self.triangles.is_empty() {
-            for (i, &cell) in (0..).zip(&self.of_volumes) {
-                self.volumes.label(i, label(cell as usize));
-            }
+            self.volumes.relabel(label);
             let skin = self.volumes.skin(points);
-            self.of_triangles = skin.cells.iter().map(|&cell| self.of_volumes[cell as usize]).collect();
-            self.triangles = skin.triangles;
+            (self.triangles, self.of_triangles) = (skin.triangles, skin.elements);
         }
         note
     }
 }
 
-/// What kind of cell a type is, and how many vertices it has; `None` of those that are flat.
-fn solid(kind: u8) -> Option<(Solid, &'static str)> {
+/// How many vertices a cell of a type has, at least and at most, and how messages say so.
+fn right(kind: u8) -> (usize, usize, &'static str) {
     match kind {
-        types::TETRAHEDRON => Some((Solid::Tetrahedron, "a tetrahedron has 4")),
-        types::VOXEL => Some((Solid::Hexahedron, "a voxel has 8")),
-        types::HEXAHEDRON => Some((Solid::Hexahedron, "a hexahedron has 8")),
-        types::WEDGE => Some((Solid::Prism, "a wedge has 6")),
-        types::PYRAMID => Some((Solid::Pyramid, "a pyramid has 5")),
-        _ => None,
+        types::LINE => (2, 2, "a line has 2"),
+        types::POLY_LINE => (2, usize::MAX, "a polyline has 2 or more"),
+        types::TRIANGLE => (3, 3, "a triangle has 3"),
+        types::PIXEL | types::QUAD => (4, 4, "a quadrilateral has 4"),
+        types::POLYGON | types::TRIANGLE_STRIP => (3, usize::MAX, "polygons and strips have 3 or more"),
+        types::TETRAHEDRON => (4, 4, "a tetrahedron has 4"),
+        types::VOXEL => (8, 8, "a voxel has 8"),
+        types::HEXAHEDRON => (8, 8, "a hexahedron has 8"),
+        types::WEDGE => (6, 6, "a wedge has 6"),
+        types::PYRAMID => (5, 5, "a pyramid has 5"),
+        _ => (0, usize::MAX, ""),
     }
 }
 

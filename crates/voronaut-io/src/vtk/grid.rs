@@ -1,8 +1,7 @@
 //! The pieces of a file, and the arrays of each.
 
-use super::numbers::{Array, Head};
-use std::io::ErrorKind;
-use voronaut::Error;
+use super::numbers::Array;
+use super::stored::Layout;
 
 /// The two types of files that are read.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -11,6 +10,13 @@ pub(super) enum Type {
     UnstructuredGrid,
     /// `.vtp`
     PolyData,
+}
+
+impl Type {
+    /// What its tag is called.
+    pub(super) fn name(self) -> &'static str {
+        if self == Type::PolyData { "PolyData" } else { "UnstructuredGrid" }
+    }
 }
 
 /// Where in a piece an array is.
@@ -49,19 +55,19 @@ pub(super) const CELLS: [(&str, Section); 5] = [
 ];
 
 /// A part of the mesh: points, cells, and their arrays.
-pub(super) struct Piece {
+pub(super) struct Piece<'a> {
     pub(super) points: u64,
     /// As [`CELLS`] has them.
     pub(super) cells: [u64; 5],
     /// In the order of their tags.
-    pub(super) arrays: Vec<(Section, Array)>,
+    pub(super) arrays: Vec<(Section, Array<'a>)>,
     /// Arrays in the appended section, by where they begin there.
-    pub(super) appended: Vec<(u64, Section, Array)>,
+    pub(super) appended: Vec<(u64, Section, Array<'a>)>,
     /// Where its tag is.
     pub(super) byte: u64,
 }
 
-impl Piece {
+impl<'a> Piece<'a> {
     /// How many entries the arrays of a section have; vertices of cells are as many or more.
     pub(super) fn count(&self, section: Section) -> u64 {
         match section {
@@ -72,26 +78,17 @@ impl Piece {
     }
 
     /// Takes an array out.
-    pub(super) fn take(&mut self, section: Section, name: Option<&str>) -> Option<Array> {
-        let is_it = |(of, array): &(Section, Array)| *of == section && name.is_none_or(|name| array.name == name);
+    pub(super) fn take(&mut self, section: Section, name: Option<&str>) -> Option<Array<'a>> {
+        let is_it = |(of, array): &(Section, Array<'_>)| *of == section && name.is_none_or(|name| array.name == name);
         self.arrays.iter().position(is_it).map(|i| self.arrays.remove(i).1)
     }
 }
 
 /// A file, its arrays not yet looked at.
 pub(super) struct Grid<'a> {
-    pub(super) head: Head<'a>,
+    /// What messages call it.
+    pub(super) file: &'a str,
+    pub(super) layout: Layout,
     pub(super) kind: Type,
-    pub(super) pieces: Vec<Piece>,
-}
-
-/// Why the bytes of an array could not be read.
-pub(super) fn misread(error: &std::io::Error, array: &Array, head: Head<'_>) -> Error {
-    match error.kind() {
-        ErrorKind::UnexpectedEof => {
-            array.error(head, "ends before all is there that its sizes announce", "the file is cut off or damaged")
-        }
-        ErrorKind::InvalidData => array.error(head, &format!("holds {error}"), "the file is damaged"),
-        kind => Error::Io { path: head.place.into(), source: std::io::Error::new(kind, error.to_string()) },
-    }
+    pub(super) pieces: Vec<Piece<'a>>,
 }

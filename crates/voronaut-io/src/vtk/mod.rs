@@ -31,7 +31,7 @@ mod tests;
 mod write;
 
 pub(crate) use cells::types::{LINE, POLY_LINE};
-pub(crate) use write::{Array, Grid, labels};
+pub(crate) use write::{Array, Grid};
 
 use super::{Document, Fields};
 use std::io::{self, BufRead, Write};

@@ -1,6 +1,6 @@
 //! The bytes of an array as a file holds them: text, plain or compressed in blocks.
 
-use crate::bytes::Order;
+use crate::codec::Order;
 use flate2::read::ZlibDecoder;
 use std::io::{self, ErrorKind, Read};
 
@@ -109,10 +109,7 @@ fn size(source: &mut dyn Read, layout: Layout) -> io::Result<u64> {
     let mut bytes = [0; 8];
     let width = if layout.is_wide { 8 } else { 4 };
     source.read_exact(&mut bytes[..width])?;
-    if layout.order == Order::Big {
-        bytes[..width].reverse();
-    }
-    Ok(u64::from_le_bytes(bytes))
+    Ok(layout.order.bits(&bytes[..width]))
 }
 
 fn exactly(source: &mut dyn Read, count: u64) -> io::Result<Vec<u8>> {

@@ -3,11 +3,10 @@
 use super::appended;
 use super::base64::Base64;
 use super::characters::Characters;
-use super::grid::{CELLS, Grid, Piece, SECTIONS, Section, Type, misread};
-use super::numbers::{Array, Head, Kind};
+use super::grid::{CELLS, Grid, Piece, SECTIONS, Section, Type};
+use super::numbers::Array;
 use super::stored::{Layout, Stored};
-use crate::bytes::Order;
-use crate::words::shortened;
+use crate::codec::{Kind, Order, Place, shortened};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::io::BufRead;
@@ -20,7 +19,7 @@ use voronaut::{Error, Result};
 /// compressors; [`Error::Io`] of what cannot be read.
 pub(super) fn read(source: impl BufRead, place: &str) -> Result<Grid<'_>> {
     let layout = Layout { order: Order::Little, is_wide: false, is_compressed: false };
-    let grid = Grid { head: Head { place, layout }, kind: Type::UnstructuredGrid, pieces: Vec::new() };
+    let grid = Grid { file: place, layout, kind: Type::UnstructuredGrid, pieces: Vec::new() };
     let xml = Reader::from_reader(Characters::new(source));
     let mut tags = Tags { xml, grid, open: Vec::new(), array: None, compressor: None, text: String::new(), byte: 0 };
     let mut buffer = Vec::new();
@@ -43,11 +42,7 @@ enum Element {
 }
 
 /// An array whose element is open.
-struct Open {
-    section: Section,
-    format: Format,
-    array: Array,
-}
+type Open<'a> = (Section, Format, Array<'a>);
 
 #[derive(Clone, Copy)]
 enum Format {
@@ -61,7 +56,7 @@ struct Tags<'a, R> {
     xml: Reader<Characters<R>>,
     grid: Grid<'a>,
     open: Vec<Element>,
-    array: Option<Open>,
+    array: Option<Open<'a>>,
     /// By which binary arrays are compressed.
     compressor: Option<String>,
     text: String,
@@ -102,8 +97,8 @@ impl<'a, R: BufRead> Tags<'a, R> {
             return Err(self.no_vtk());
         }
         if self.open.last() == Some(&Element::Array) {
-            if let Some(open) = self.array.as_mut().filter(|_| self.text.is_empty()) {
-                open.array.byte = self.byte;
+            if let Some((.., array)) = self.array.as_mut().filter(|_| self.text.is_empty()) {
+                array.byte = self.byte;
             }
             self.text.push_str(text);
         }
@@ -118,7 +113,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
                 Element::File
             }
             (None, _) => return Err(self.no_vtk()),
-            (Some(Element::File), _) if name == type_name(self.grid.kind) => Element::Grid,
+            (Some(Element::File), _) if name == self.grid.kind.name() => Element::Grid,
             (Some(Element::Grid), _) if name == "Piece" => {
                 let piece = self.piece(tag)?;
                 self.grid.pieces.push(piece);
@@ -139,11 +134,9 @@ impl<'a, R: BufRead> Tags<'a, R> {
     /// What the tag `VTKFile` says.
     fn read_head(&mut self, tag: &BytesStart<'_>) -> Result<()> {
         let kind = self.attribute(tag, "type")?.unwrap_or_default();
-        self.grid.kind = [Type::UnstructuredGrid, Type::PolyData]
-            .into_iter()
-            .find(|known| type_name(*known) == kind)
-            .ok_or_else(|| Error::Unsupported {
-            what: format!("{} is a VTK file of type '{}'", self.grid.head.place, shortened(&kind)),
+        let known = [Type::UnstructuredGrid, Type::PolyData].into_iter().find(|known| known.name() == kind);
+        self.grid.kind = known.ok_or_else(|| Error::Unsupported {
+            what: format!("{} is a VTK file of type '{}'", self.grid.file, shortened(&kind)),
             help: "save it as one file of type UnstructuredGrid (.vtu) or PolyData (.vtp)".into(),
         })?;
         let unknown =
@@ -159,11 +152,11 @@ impl<'a, R: BufRead> Tags<'a, R> {
             Some(other) => return Err(unknown("an unknown header_type", other)),
         };
         self.compressor = self.attribute(tag, "compressor")?.filter(|name| !name.is_empty());
-        self.grid.head.layout = Layout { order, is_wide, is_compressed: self.compressor.is_some() };
+        self.grid.layout = Layout { order, is_wide, is_compressed: self.compressor.is_some() };
         Ok(())
     }
 
-    fn piece(&self, tag: &BytesStart<'_>) -> Result<Piece> {
+    fn piece(&self, tag: &BytesStart<'_>) -> Result<Piece<'a>> {
         let needed = |name: &str| {
             let help = "check that a VTK program wrote the file";
             self.count(tag, name)?.ok_or_else(|| self.error(&format!("a piece without {name}"), help))
@@ -192,7 +185,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
     }
 
     /// The array of a tag; `None` where nobody needs it.
-    fn array(&self, section: Section, tag: &BytesStart<'_>) -> Result<Option<Open>> {
+    fn array(&self, section: Section, tag: &BytesStart<'_>) -> Result<Option<Open<'a>>> {
         let name = self.attribute(tag, "Name")?.unwrap_or_default();
         let step = self.attribute(tag, "TimeStep")?;
         let kind = Kind::of_name(&self.attribute(tag, "type")?.unwrap_or_default());
@@ -208,17 +201,13 @@ impl<'a, R: BufRead> Tags<'a, R> {
             })?),
         };
         let format = self.format(&name, tag)?;
-        if self.is_empty(section) && matches!(format, Format::Appended(_)) {
+        let is_empty = self.grid.pieces.last().is_none_or(|piece| piece.count(section) == 0);
+        if is_empty && matches!(format, Format::Appended(_)) {
             return Ok(None);
         }
-        let array =
-            Array { name, kind, components, tag: self.byte, byte: self.byte, stored: Stored::Plain(Vec::new()) };
-        Ok(Some(Open { section, format, array }))
-    }
-
-    /// Whether the arrays of a section of the last piece have no entries.
-    fn is_empty(&self, section: Section) -> bool {
-        self.grid.pieces.last().is_none_or(|piece| piece.count(section) == 0)
+        let (file, order, tag, stored) = (self.grid.file, self.grid.layout.order, self.byte, Stored::Plain(Vec::new()));
+        let array = Array { file, order, name, kind, components, tag, byte: tag, stored };
+        Ok(Some((section, format, array)))
     }
 
     fn format(&self, array: &str, tag: &BytesStart<'_>) -> Result<Format> {
@@ -227,7 +216,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
         match (format.as_deref(), compressor) {
             (None | Some("ascii"), _) => Ok(Format::Text),
             (_, Some(compressor)) => {
-                let what = format!("{} is compressed by '{}'", self.grid.head.place, shortened(compressor));
+                let what = format!("{} is compressed by '{}'", self.grid.file, shortened(compressor));
                 let help = "save it uncompressed, or compressed by zlib (ParaView: Compressor Type ZLib or None)";
                 Err(Error::Unsupported { what, help: help.into() })
             }
@@ -251,15 +240,13 @@ impl<'a, R: BufRead> Tags<'a, R> {
         if self.open.pop() != Some(Element::Array) {
             return Ok(());
         }
-        let (Some(Open { section, format, mut array }), Some(piece)) = (self.array.take(), self.grid.pieces.last_mut())
-        else {
+        let (Some((section, format, mut array)), Some(piece)) = (self.array.take(), self.grid.pieces.last_mut()) else {
             return Ok(());
         };
         let text = std::mem::take(&mut self.text);
         if text.trim().is_empty() && piece.count(section) == 0 {
             return Ok(());
         }
-        let head = self.grid.head;
         match format {
             Format::Appended(offset) => {
                 piece.appended.push((offset, section, array));
@@ -267,8 +254,8 @@ impl<'a, R: BufRead> Tags<'a, R> {
             }
             Format::Text => array.stored = Stored::Text(text),
             Format::Binary => {
-                let stored = Stored::read(&mut Base64::new(text.as_bytes()), head.layout);
-                array.stored = stored.map_err(|error| misread(&error, &array, head))?;
+                let stored = Stored::read(&mut Base64::new(text.as_bytes()), self.grid.layout);
+                array.stored = stored.map_err(|error| array.misread(&error))?;
             }
         }
         piece.arrays.push((section, array));
@@ -290,18 +277,13 @@ impl<'a, R: BufRead> Tags<'a, R> {
 
     fn finish(self) -> Result<Grid<'a>> {
         if self.grid.pieces.is_empty() {
-            let what = format!("no {} with a piece in it", type_name(self.grid.kind));
+            let what = format!("no {} with a piece in it", self.grid.kind.name());
             return Err(self.error(&what, "check that the program that wrote it had finished"));
         }
-        let grid = self.grid;
-        if let Some((_, _, array)) = grid.pieces.iter().flat_map(|piece| &piece.appended).next() {
-            return Err(array.error(
-                grid.head,
-                "is in a section AppendedData, which is not there",
-                "the file is cut off",
-            ));
+        if let Some((_, _, array)) = self.grid.pieces.iter().flat_map(|piece| &piece.appended).next() {
+            return Err(array.error("is in a section AppendedData, which is not there", "the file is cut off"));
         }
-        Ok(grid)
+        Ok(self.grid)
     }
 
     /// The value of an attribute.
@@ -326,7 +308,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
         match error {
             quick_xml::Error::Io(source) => {
                 let source = std::io::Error::new(source.kind(), source.to_string());
-                Error::Io { path: self.grid.head.place.into(), source }
+                Error::Io { path: self.grid.file.into(), source }
             }
             _ if self.open.is_empty() => self.no_vtk(),
             error => self.error(&error.to_string(), "check that the file is whole, and that a VTK program wrote it"),
@@ -334,13 +316,6 @@ impl<'a, R: BufRead> Tags<'a, R> {
     }
 
     fn error(&self, what: &str, help: &str) -> Error {
-        Error::parse(format!("{}, byte {}", self.grid.head.place, self.byte), what, help)
-    }
-}
-
-fn type_name(kind: Type) -> &'static str {
-    match kind {
-        Type::UnstructuredGrid => "UnstructuredGrid",
-        Type::PolyData => "PolyData",
+        Place::byte(self.grid.file, self.byte).error(what, help)
     }
 }

@@ -2,36 +2,11 @@
 //! have to be known before.
 
 use super::cells::types;
-use crate::document::distinct_names;
+use crate::codec::Number;
+use crate::document::{distinct_names, labels};
 use crate::{Field, Fields};
 use std::io::{self, Write};
-use voronaut::mesh::{Mesh, SolutionValues};
-
-/// A type of numbers that arrays are written of, least byte first.
-pub(crate) trait Number: Copy {
-    /// What VTK calls it.
-    const NAME: &str;
-    /// In bytes.
-    const SIZE: usize;
-
-    /// Appends its bytes.
-    fn put(self, bytes: &mut Vec<u8>);
-}
-
-macro_rules! numbers {
-    ($($number:ty: $name:literal),*) => {$(
-        impl Number for $number {
-            const NAME: &str = $name;
-            const SIZE: usize = size_of::<$number>();
-
-            fn put(self, bytes: &mut Vec<u8>) {
-                bytes.extend_from_slice(&self.to_le_bytes());
-            }
-        }
-    )*};
-}
-
-numbers!(u8: "UInt8", i32: "Int32", i64: "Int64", f64: "Float64");
+use voronaut::mesh::Mesh;
 
 type WriteOnce<'a> = dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a;
 
@@ -46,9 +21,9 @@ pub(crate) struct Array<'a> {
 impl<'a> Array<'a> {
     /// An array of entries of so many numbers each.
     pub(crate) fn new<T: Number>(name: &str, components: usize, numbers: impl Iterator<Item = T> + Clone + 'a) -> Self {
-        let bytes = (numbers.clone().count() * T::SIZE) as u64;
+        let bytes = (numbers.clone().count() * T::KIND.size()) as u64;
         let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
-        let tag = format!("<DataArray type=\"{}\" Name=\"{}\"{components}", T::NAME, escaped(name));
+        let tag = format!("<DataArray type=\"{}\" Name=\"{}\"{components}", T::KIND, escaped(name));
         Self { tag, bytes, write: Box::new(|out| write_numbers(numbers, out)) }
     }
 
@@ -66,9 +41,9 @@ fn escaped(name: &str) -> String {
 
 fn write_numbers<T: Number>(numbers: impl Iterator<Item = T>, out: &mut dyn Write) -> io::Result<()> {
     const CHUNK: usize = 1 << 16;
-    let mut bytes = Vec::with_capacity(CHUNK + T::SIZE);
+    let mut bytes = Vec::with_capacity(CHUNK + T::KIND.size());
     for number in numbers {
-        number.put(&mut bytes);
+        number.put_bytes(&mut bytes);
         if bytes.len() >= CHUNK {
             out.write_all(&bytes)?;
             bytes.clear();
@@ -169,11 +144,6 @@ fn connections<'a>(cells: impl Iterator<Item = &'a [u32]> + Clone + 'a) -> Vec<A
     vec![Array::new("connectivity", 1, vertices), Array::new("offsets", 1, ends)]
 }
 
-/// So many labels, 0 where there are none.
-pub(crate) fn labels(labels: &[i32], count: usize) -> impl Iterator<Item = i32> + Clone {
-    labels.iter().copied().chain(std::iter::repeat(0)).take(count)
-}
-
 /// Which cells come first.
 #[derive(Clone, Copy)]
 pub(super) enum First {
@@ -183,120 +153,68 @@ pub(super) enum First {
 
 /// A mesh with all it holds, and fields; its edges as lines.
 pub(super) fn grid<'a>(mesh: &'a Mesh, fields: &'a Fields, first: First) -> Grid<'a> {
-    let order = Order { triangles: mesh.triangles.len(), edges: mesh.edges.len(), first };
     let lines = mesh.edges.iter().map(<[u32; 2]>::as_slice).collect();
     let is_planar = mesh.is_planar();
     let point_data = point_data(mesh, &fields.vertices, is_planar);
-    let cell_data = cell_data(mesh, &fields.triangles, is_planar, order);
+    let cell_data = cell_data(mesh, &fields.triangles, is_planar, first);
     Grid { points: &mesh.points, triangles: &mesh.triangles, lines, line: types::LINE, point_data, cell_data }
 }
 
 fn point_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool) -> Vec<Array<'a>> {
     let count = mesh.points.len();
-    let mut arrays = vec![Array::new("label", 1, labels(&mesh.point_labels, count))];
-    for (name, marked) in [("corner", &mesh.corners), ("required", &mesh.required_points)] {
-        if !marked.is_empty() {
-            arrays.push(Array::new(name, 1, marks(marked, count).into_iter()));
-        }
-    }
-    arrays.extend(fields.iter().zip(names(fields)).map(|(field, name)| {
-        let (values, width) = (&field.values, width(&field.values, is_planar));
-        let numbers = (0..count * width).map(move |i| number(values, i / width, i % width));
-        Array::new(&name, width, numbers)
-    }));
-    arrays
+    let marked = [("corner", &mesh.corners), ("required", &mesh.required_points)];
+    let marked = marked.map(|(name, marked)| (name, marked.iter().map(|&i| i as usize).collect()));
+    let label = Array::new("label", 1, labels(&mesh.point_labels).take(count));
+    let fields = field_arrays(fields, is_planar, (0..count).map(Some));
+    std::iter::once(label).chain(mark_arrays(marked, count)).chain(fields).collect()
 }
 
-fn cell_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool, order: Order) -> Vec<Array<'a>> {
-    let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0);
-    let labels = order.cells().map(move |cell| match cell {
-        Cell::Triangle(i) => label(&mesh.triangle_labels, i),
-        Cell::Edge(i) => label(&mesh.edge_labels, i),
-    });
-    let mut arrays = vec![Array::new("label", 1, labels)];
-    let none = &Vec::new();
-    for (name, of_triangles, of_edges) in
-        [("required", &mesh.required_triangles, &mesh.required_edges), ("ridge", none, &mesh.ridges)]
-    {
-        if !(of_triangles.is_empty() && of_edges.is_empty()) {
-            let (of_triangles, of_edges) = (marks(of_triangles, order.triangles), marks(of_edges, order.edges));
-            let all = order.cells().map(move |cell| match cell {
-                Cell::Triangle(i) => of_triangles[i],
-                Cell::Edge(i) => of_edges[i],
-            });
-            arrays.push(Array::new(name, 1, all));
-        }
-    }
-    arrays.extend(fields.iter().zip(names(fields)).map(|(field, name)| {
-        let (values, width) = (&field.values, width(&field.values, is_planar));
-        let numbers = order.cells().flat_map(move |cell| {
-            (0..width).map(move |k| match cell {
-                Cell::Triangle(i) => number(values, i, k),
-                Cell::Edge(_) => f64::NAN,
-            })
-        });
-        Array::new(&name, width, numbers)
-    }));
-    arrays
-}
-
-/// What the arrays of fields are called: not as labels and marks are.
-fn names(fields: &[Field]) -> Vec<String> {
-    distinct_names(fields.iter().map(|field| field.name.clone()), &["label", "corner", "required", "ridge"])
-}
-
-/// Cells in their order.
-#[derive(Clone, Copy)]
-struct Order {
-    triangles: usize,
-    edges: usize,
-    first: First,
-}
-
-#[derive(Clone, Copy)]
-enum Cell {
-    Triangle(usize),
-    Edge(usize),
-}
-
-impl Order {
-    fn cells(self) -> impl Iterator<Item = Cell> + Clone {
-        (0..self.triangles + self.edges).map(move |i| match self.first {
-            First::Triangles if i < self.triangles => Cell::Triangle(i),
-            First::Triangles => Cell::Edge(i - self.triangles),
-            First::Lines if i < self.edges => Cell::Edge(i),
-            First::Lines => Cell::Triangle(i - self.edges),
-        })
-    }
-}
-
-/// 1 of those that are listed, 0 of others.
-fn marks(listed: &[u32], count: usize) -> Vec<u8> {
-    let mut marks = vec![0; count];
-    for &i in listed {
-        marks[i as usize] = 1;
-    }
-    marks
-}
-
-/// Numbers of an entry in the file: tensors are whole matrices, and vectors of a plane get a third coordinate, for VTK has but
-/// vectors of three.
-fn width(values: &SolutionValues, is_planar: bool) -> usize {
-    match values {
-        SolutionValues::Tensor(_) | SolutionValues::Tensor3(_) => 9,
-        SolutionValues::Vector { components: 2, .. } if is_planar => 3,
-        others => others.components(),
-    }
-}
-
-/// Number `k` of entry `i` in the file.
-fn number(values: &SolutionValues, i: usize, k: usize) -> f64 {
-    const IN_SPACE: [usize; 9] = [0, 1, 3, 1, 2, 4, 3, 4, 5];
-    const IN_PLANE: [usize; 9] = [0, 1, 3, 1, 2, 3, 3, 3, 3];
-    let place = match values {
-        SolutionValues::Tensor(_) => IN_PLANE[k],
-        SolutionValues::Tensor3(_) => IN_SPACE[k],
-        _ => k,
+fn cell_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool, first: First) -> Vec<Array<'a>> {
+    let (triangles, edges) = (mesh.triangles.len(), mesh.edges.len());
+    let (first_triangle, first_edge) = match first {
+        First::Triangles => (0, triangles),
+        First::Lines => (edges, 0),
     };
-    values.row(i).get(place).copied().unwrap_or(0.0)
+    let count = triangles + edges;
+    // The triangle that each cell is, or else none.
+    let triangles = (0..count).map(move |cell| cell.checked_sub(first_triangle).filter(|&i| i < triangles));
+    let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0);
+    let labels = triangles.clone().enumerate().map(move |(cell, triangle)| match triangle {
+        Some(i) => label(&mesh.triangle_labels, i),
+        None => label(&mesh.edge_labels, cell - first_edge),
+    });
+    let required = mesh.required_triangles.iter().map(|&i| first_triangle + i as usize);
+    let of_edges = |marked: &[u32]| marked.iter().map(|&i| first_edge + i as usize).collect::<Vec<_>>();
+    let required = required.chain(of_edges(&mesh.required_edges)).collect();
+    let marks = mark_arrays([("required", required), ("ridge", of_edges(&mesh.ridges))], count);
+    let fields = field_arrays(fields, is_planar, triangles);
+    std::iter::once(Array::new("label", 1, labels)).chain(marks).chain(fields).collect()
+}
+
+/// Arrays that are 1 at what is listed and 0 elsewhere, where anything is.
+fn mark_arrays(marked: [(&str, Vec<usize>); 2], count: usize) -> impl Iterator<Item = Array<'_>> {
+    marked.into_iter().filter(|(_, listed)| !listed.is_empty()).map(move |(name, listed)| {
+        let mut marks = vec![0_u8; count];
+        for i in listed {
+            marks[i] = 1;
+        }
+        Array::new(name, 1, marks.into_iter())
+    })
+}
+
+/// The arrays of fields, by the entry that each point or cell has there; NaN where it has none.
+fn field_arrays<'a>(
+    fields: &'a [Field],
+    is_planar: bool,
+    entries: impl Iterator<Item = Option<usize>> + Clone + 'a,
+) -> impl Iterator<Item = Array<'a>> {
+    // Names are not those of labels and marks.
+    let names =
+        distinct_names(fields.iter().map(|field| field.name.clone()), &["label", "corner", "required", "ridge"]);
+    fields.iter().zip(names).map(move |(field, name)| {
+        let width = field.width(is_planar);
+        let row =
+            move |entry: Option<usize>| (0..width).map(move |k| entry.map_or(f64::NAN, |entry| field.number(entry, k)));
+        Array::new(&name, width, entries.clone().flat_map(row))
+    })
 }

@@ -1,0 +1,149 @@
+//! What files are written by: one number after the other, as words or as bytes.
+
+use super::kinds::{Form, Kind};
+use std::convert::identity;
+use std::fmt;
+use std::io::{self, Write};
+
+/// A file that is being written, row by row.
+pub(crate) struct Sink<'a> {
+    out: &'a mut dyn Write,
+    form: Form,
+    /// The numbers since the last row ended.
+    row: Vec<u8>,
+    /// Bytes of all numbers so far.
+    written: u64,
+}
+
+/// A type of numbers that are written, in binary files with the least byte first.
+pub(crate) trait Number: Copy {
+    /// What it is in binary files.
+    const KIND: Kind;
+
+    fn put_bytes(self, to: &mut Vec<u8>);
+
+    fn put_word(self, to: &mut Vec<u8>);
+}
+
+/// A number in the shortest form that reads back as itself; huge and tiny ones with an exponent.
+pub(crate) struct Shortest(pub(crate) f64);
+
+macro_rules! numbers {
+    ($($number:ty, $kind:expr, $word:path;)*) => {$(
+        impl Number for $number {
+            const KIND: Kind = $kind;
+
+            fn put_bytes(self, to: &mut Vec<u8>) {
+                to.extend_from_slice(&self.to_le_bytes());
+            }
+
+            fn put_word(self, to: &mut Vec<u8>) {
+                write!(to, "{}", $word(self)).expect("memory takes all");
+            }
+        }
+    )*};
+}
+
+numbers! {
+    u8, Kind::Unsigned(1), identity;
+    i32, Kind::Signed(4), identity;
+    u32, Kind::Unsigned(4), identity;
+    i64, Kind::Signed(8), identity;
+    u64, Kind::Unsigned(8), identity;
+    f32, Kind::Float(4), identity;
+    f64, Kind::Float(8), Shortest;
+}
+
+impl<'a> Sink<'a> {
+    /// A file in which nothing is yet.
+    pub(crate) fn new(form: Form, out: &'a mut dyn Write) -> Self {
+        Self { out, form, row: Vec::new(), written: 0 }
+    }
+
+    pub(crate) fn is_binary(&self) -> bool {
+        self.form == Form::Binary
+    }
+
+    /// How many bytes the numbers of a binary file have so far.
+    pub(crate) fn written(&self) -> u64 {
+        self.written
+    }
+
+    /// Ends the row, and then a line of text, be the file binary or not.
+    pub(crate) fn line(&mut self, line: fmt::Arguments<'_>) -> io::Result<()> {
+        self.end_row()?;
+        writeln!(self.out, "{line}")
+    }
+
+    /// The next number of the row; in text a word.
+    pub(crate) fn put<T: Number>(&mut self, number: T) {
+        if self.is_binary() {
+            self.written += T::KIND.size() as u64;
+            return number.put_bytes(&mut self.row);
+        }
+        if !self.row.is_empty() {
+            self.row.push(b' ');
+        }
+        number.put_word(&mut self.row);
+    }
+
+    /// The next numbers of the row, one by one.
+    pub(crate) fn put_all<T: Number>(&mut self, numbers: impl IntoIterator<Item = T>) {
+        numbers.into_iter().for_each(|number| self.put(number));
+    }
+
+    /// The last numbers of the row.
+    pub(crate) fn row<T: Number>(&mut self, numbers: impl IntoIterator<Item = T>) -> io::Result<()> {
+        self.put_all(numbers);
+        self.end_row()
+    }
+
+    /// Ends the row, with which its numbers are written: in text as a line, if there are any.
+    pub(crate) fn end_row(&mut self) -> io::Result<()> {
+        if !(self.row.is_empty() || self.is_binary()) {
+            self.row.push(b'\n');
+        }
+        self.out.write_all(&self.row)?;
+        self.row.clear();
+        Ok(())
+    }
+}
+
+impl fmt::Display for Shortest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size == 0.0 || (1e-5..1e16).contains(&size) { write!(f, "{}", self.0) } else { write!(f, "{:e}", self.0) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shortest_form_reads_back() {
+        for value in [0.0, -0.0, 1.0, 0.1, 1e300, 5e-324, -1.0 / 3.0, 123_456_789.123_456_79] {
+            let text = Shortest(value).to_string();
+            assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits(), "{text}");
+            assert!(text.len() < 26, "{text}");
+        }
+    }
+
+    #[test]
+    fn rows_are_lines_in_text_only() {
+        let written = |form| {
+            let mut out = Vec::new();
+            let mut sink = Sink::new(form, &mut out);
+            sink.line(format_args!("head")).unwrap();
+            sink.put(7_u8);
+            sink.row([0.5, 1e20]).unwrap();
+            sink.end_row().unwrap();
+            sink.row([-1_i32]).unwrap();
+            assert_eq!(sink.written(), if form == Form::Binary { 21 } else { 0 });
+            out
+        };
+        assert_eq!(written(Form::Text), b"head\n7 0.5 1e20\n-1\n");
+        let numbers = [&[7], 0.5_f64.to_le_bytes().as_slice(), &1e20_f64.to_le_bytes(), &[0xff; 4]].concat();
+        assert_eq!(written(Form::Binary), [b"head\n", numbers.as_slice()].concat());
+    }
+}
