@@ -91,7 +91,7 @@ pub mod metric;
 pub mod transfer;
 pub mod surface;
 pub mod geodesic;
-pub mod in_circle;
+mod in_circle;
 pub mod canvas;
 pub mod diagram;
 pub mod rdt;

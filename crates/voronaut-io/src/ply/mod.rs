@@ -22,9 +22,9 @@ use voronaut::{Error, Result};
 ///
 /// # Errors
 ///
-/// [`Error::Parse`](voronaut::Error::Parse) with the line (in the head and in text) or the byte of what is not as announced: a head that
+/// [`Error::Parse`] with the line (in the head and in text) or the byte of what is not as announced: a head that
 /// makes no sense, a file cut off or too long, a coordinate or a field that is not finite, a face of fewer than three vertices, a
-/// vertex that does not exist. [`Error::Io`](voronaut::Error::Io) of a file that cannot be read.
+/// vertex that does not exist. [`Error::Io`] of a file that cannot be read.
 pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
     let mut source = Source::verbatim(source, place);
     let elements = header::read(&mut source)?;

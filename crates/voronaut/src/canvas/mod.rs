@@ -1,7 +1,7 @@
 //! The canvas (RR-9103, sections 6.2 and 7): the discretised domain on which distances travel.
 //!
-//! Solvers see only [`Canvas::topology`], vertices, faces, edges with metric lengths, never positions, or the graph of
-//! [`Canvas::graph`]. What is drawn, or found by its coordinates, uses [`Canvas::embedded`], the triangulation of the plane
+//! Solvers see only `Canvas::topology`, vertices, faces, edges with metric lengths, never positions, or the graph of
+//! `Canvas::graph`. What is drawn, or found by its coordinates, uses `Canvas::embedded`, the triangulation of the plane
 //! from which the lengths were taken. All have the same vertices. Kinds of canvas differ in where these are, and a star set
 //! in its graph.
 

@@ -36,7 +36,7 @@ pub struct Outline {
     pub points: Vec<Point>,
     /// Which of them are corners, where three cells meet or two at the border of the domain; increasing.
     pub corners: Vec<u32>,
-    /// Whether it bounds an orphan: a part of the cell without the seed ([`Diagram::orphans`]).
+    /// Whether it bounds an orphan: a part of the cell without the seed (`Diagram::orphans`).
     pub is_orphan: bool,
 }
 
@@ -48,7 +48,7 @@ impl Cells {
 }
 
 impl Diagram<'_> {
-    /// The outlines of all cells. Distances are computed anew around every cell, as for [`Diagram::sharp_nerve`]; a
+    /// The outlines of all cells. Distances are computed anew around every cell, as for `Diagram::sharp_nerve`; a
     /// canvas vertex belongs to the cell that is nearest by these.
     pub fn to_cells(&self) -> Cells {
         let cutter = Cutter::new(self);

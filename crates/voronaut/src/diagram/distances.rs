@@ -91,7 +91,7 @@ impl<'a> Distances<'a> {
     /// Distances by a method from points of the domain.
     ///
     /// # Errors
-    /// [`crate::Error::Domain`] of a point outside the domain; as for [`Heat::on`].
+    /// [`crate::Error::Domain`] of a point outside the domain; [`crate::Error::Unsupported`] where rounding leaves heat no factor.
     pub fn new(canvas: &'a Canvas, field: &'a dyn MetricField, from: &[Point], method: Method) -> Result<Self> {
         Self::by_method(Flat { canvas, field }, from, method)
     }

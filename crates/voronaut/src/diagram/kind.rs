@@ -8,7 +8,7 @@ use crate::metric::MetricField;
 ///
 /// The last two measure along the straight segment, with one tensor for all of it: what they call near may be far on the
 /// way, and in a domain with holes or bays they see through walls. Their cells may fall into parts of which only one holds
-/// the seed ([`super::Diagram::orphans`]).
+/// the seed (`Diagram::orphans`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
     /// `riemannian`: by the geodesic distance, along the canvas.

@@ -148,7 +148,7 @@ impl<'a> Diagram<'a> {
     /// The diagram of a kind; a method is for the Riemannian one.
     ///
     /// # Errors
-    /// As for [`Diagram::by_method`]; [`Error::Metric`] where the metric is not positive definite at a seed.
+    /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams; [`Error::Metric`] where the metric is not positive definite at a seed.
     pub fn of_kind(
         kind: Kind,
         canvas: &'a Canvas,

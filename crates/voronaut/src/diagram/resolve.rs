@@ -19,7 +19,7 @@ pub struct Resolved {
     pub canvas: Canvas,
     /// Rounds of refinement.
     pub rounds: u32,
-    /// Places that are left: three cells that meet ([`Diagram::sharp_nerve`]) without a simplex of three colours of their
+    /// Places that are left: three cells that meet (`Diagram::sharp_nerve`) without a simplex of three colours of their
     /// own, and simplices of three colours whose cells do not meet.
     pub unwitnessed: usize,
 }
@@ -27,8 +27,8 @@ pub struct Resolved {
 /// Rounds of [`resolve`] after which the nerve of protected seeds is as a rule witnessed.
 pub const RESOLVE_ROUNDS: u32 = 8;
 
-/// Refines a canvas until its simplices with three colours ([`Diagram::witnesses_of_triangles`]) are the nerve of the seeds'
-/// cells as drawn within faces ([`Diagram::sharp_nerve`]), each alone in its face: around the places where they are not,
+/// Refines a canvas until its simplices with three colours (`Diagram::witnesses_of_triangles`) are the nerve of the seeds'
+/// cells as drawn within faces (`Diagram::sharp_nerve`), each alone in its face: around the places where they are not,
 /// again and again. Ends when there are no such places, after so many rounds, or when the simplices there are tiny beside
 /// the cells.
 ///

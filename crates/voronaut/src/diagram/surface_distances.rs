@@ -16,8 +16,8 @@ impl<'a> SurfaceDistances<'a> {
     /// Distances by a method from vertices of a surface's canvas, which was made with them.
     ///
     /// # Errors
-    /// [`Error::Domain`] of what is no canvas vertex; [`Error::Unsupported`] of [`Method::Lbr`]; as for
-    /// [`Heat::on`](crate::geodesic::Heat::on).
+    /// [`Error::Domain`] of what is no canvas vertex; [`Error::Unsupported`] of [`Method::Lbr`];
+    /// [`Error::Unsupported`] where rounding leaves heat no factor.
     pub fn on_surface(canvas: &'a Canvas<Draped<'a>>, from: &[VertexId], method: Method) -> Result<Self> {
         Self::by_method(canvas, from, method)
     }

@@ -20,7 +20,7 @@ pub(crate) struct PathLength {
     pub curvature: [f64; 2],
 }
 
-/// A geodesic, found by [`Paths::curve`](super::Paths::curve).
+/// A geodesic, found by `Paths::curve`.
 #[derive(Clone, Debug)]
 pub struct Curve {
     ends: [Point; 2],

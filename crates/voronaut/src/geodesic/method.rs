@@ -7,21 +7,21 @@ use std::str::FromStr;
 /// How distances are computed (`--geodesic`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// `march`: fast marching by lengths on the intrinsic canvas ([`Marching`](super::Marching)).
+    /// `march`: fast marching by lengths on the intrinsic canvas (`Marching`).
     #[default]
     March,
-    /// `stvd`, or `stvd:window=8`: short-term vector Dijkstra ([`Stvd`](super::Stvd)).
+    /// `stvd`, or `stvd:window=8`: short-term vector Dijkstra (`Stvd`).
     Stvd {
         /// How many edges count as one straight piece.
         window: usize,
     },
-    /// `dijkstra`: along the edges of the canvas ([`Dijkstra`](super::Dijkstra)).
+    /// `dijkstra`: along the edges of the canvas (`Dijkstra`).
     Dijkstra,
-    /// `konukoglu`: recursive anisotropic fast marching ([`Konukoglu`](super::Konukoglu)).
+    /// `konukoglu`: recursive anisotropic fast marching (`Konukoglu`).
     Konukoglu,
     /// `lbr`: FM-LBR on a Cartesian grid of its own (`Lattice`); distances only.
     Lbr,
-    /// `heat`: the heat method ([`Heat`](super::Heat)); distances only.
+    /// `heat`: the heat method (`Heat`); distances only.
     Heat,
 }
 

@@ -1,7 +1,7 @@
 //! Geodesics of a metric field.
 //!
 //! From the metric alone: local expansions, lengths of short paths, in-circle tests. On a canvas: distances to the nearest
-//! of many sources, by solvers that share one interface, [`Geodesic`]. Each is made on what it travels on: [`Marching`] on a
+//! of many sources, by solvers that share one interface, `Geodesic`. Each is made on what it travels on: `Marching` on a
 //! triangulation with metric lengths, without positions; the others on a [`Graph`], which every kind of canvas gives.
 
 mod bow;

@@ -77,7 +77,7 @@ impl Boundary {
     /// The field around these segments.
     ///
     /// # Errors
-    /// As [`BoundarySizes::check`]; [`Error::Domain`] of no segment, or of one that is not finite.
+    /// [`Error::Parse`] of sizes that make no sense; [`Error::Domain`] of no segment, or of one that is not finite.
     pub fn new(segments: &[(Point, Point)], sizes: BoundarySizes) -> Result<Self> {
         sizes.check()?;
         if segments.is_empty() {

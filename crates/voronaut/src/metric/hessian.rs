@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
 
 /// The metric in which a unit mesh has the least L^p error of linear interpolation of a function (Loseille and Alauzet 2011): its
-/// Hessian's absolute value ([`Norm::weighted`]), from exact derivatives. It is defined up to a factor: scale it to a number of
+/// Hessian's absolute value (`Norm::weighted`), from exact derivatives. It is defined up to a factor: scale it to a number of
 /// vertices or a complexity.
 #[derive(Clone, Debug)]
 pub struct Hessian {

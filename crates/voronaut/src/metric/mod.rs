@@ -8,10 +8,10 @@
 //! | [`Formula`] | `formula:m11; m12; m22` | three expressions in x and y |
 //! | [`Boundary`] | `boundary:h0=0.01,growth=1.2,aspect=1,h_max=inf` | layers along the boundary |
 //! | [`Hessian`] | `hessian:EXPR` | optimal for the interpolation of a function |
-//! | [`Recovered`] | `hessian:FILE.sol` | the same, for a solution at the vertices of a mesh |
+//! | `Recovered` | `hessian:FILE.sol` | the same, for a solution at the vertices of a mesh |
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at the vertices of a mesh, log-Euclidean between them |
 //! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits |
-//! | [`smoothed()`] | `--smooth-metric` | another field, averaged over neighbours on a background mesh |
+//! | `smoothed()` | `--smooth-metric` | another field, averaged over neighbours on a background mesh |
 //! | [`Scaled`] | `-n`, `--complexity` | another field times a factor |
 //! | `Steadied` | `--mesher starset` | another field, finer where it turns |
 //!

@@ -1,6 +1,6 @@
 //! Circles and powers by geodesics.
 
-use super::{Ball, Triangles};
+use super::{Ball, Simplices};
 use crate::geodesic::{Circle, Fineness, Paths, chord, flat_centre};
 use crate::geometry::Point;
 use crate::metric::MetricField;
@@ -37,7 +37,7 @@ struct Remembered {
 pub(super) struct Measure<'a> {
     paths: &'a Paths,
     field: &'a dyn MetricField,
-    found: &'a Triangles<'a>,
+    found: &'a Simplices<'a>,
     neighbours: Vec<Vec<u32>>,
     is_at_border: Vec<bool>,
     /// Lengths for which a chord stood in.
@@ -45,7 +45,7 @@ pub(super) struct Measure<'a> {
 }
 
 impl<'a> Measure<'a> {
-    pub(super) fn new(paths: &'a Paths, field: &'a dyn MetricField, found: &'a Triangles<'a>) -> Self {
+    pub(super) fn new(paths: &'a Paths, field: &'a dyn MetricField, found: &'a Simplices<'a>) -> Self {
         let neighbours = super::neighbours(found.seeds.len(), found.triangles.iter().copied());
         let mut is_at_border = vec![false; found.seeds.len()];
         found.border.iter().flatten().for_each(|&i| is_at_border[i as usize] = true);

@@ -1,8 +1,8 @@
 //! What a set of seeds is as a net (RR-9103, sections 3.1 and 3.4): how well it covers a domain (epsilon), how far its
 //! seeds are apart (mu), and how far every Delaunay circle is from holding a fourth seed (delta, the power protection).
 //!
-//! [`Net::measure`] is exact up to the error of geodesics. `Estimate` is the cheap version for seeds that come, go and
-//! move: the same figures from expansions of the metric ([`LocalMetric`](crate::geodesic::LocalMetric)).
+//! `Net::measure` is exact up to the error of geodesics. `Estimate` is the cheap version for seeds that come, go and
+//! move: the same figures from expansions of the metric (`LocalMetric`).
 
 mod estimate;
 mod measure;
@@ -72,7 +72,7 @@ pub struct Net {
 
 /// A triangulation of seeds whose circles are asked for.
 #[derive(Clone, Copy)]
-pub(crate) struct Triangles<'a> {
+pub(crate) struct Simplices<'a> {
     /// The seeds.
     pub seeds: &'a [Point],
     /// Riemannian Delaunay triangles by their seeds, counter-clockwise.
@@ -88,20 +88,20 @@ impl Net {
     ///
     /// For every triangle all seeds are asked that share an edge with one of its corners: a seed in its circle need not
     /// be opposite to one of its sides. Distances know of no holes.
-    pub(crate) fn measure(field: &dyn MetricField, found: &Triangles) -> Self {
+    pub(crate) fn measure(field: &dyn MetricField, found: &Simplices) -> Self {
         Self::measure_again(field, found, &mut Memory::default())
     }
 
     /// [`Net::measure`] of seeds of which most are where they were when the memory was written: what depends on no seed that
     /// has moved is not measured again. The memory is of one field and one domain.
-    pub(crate) fn measure_again(field: &dyn MetricField, found: &Triangles, memory: &mut Memory) -> Self {
+    pub(crate) fn measure_again(field: &dyn MetricField, found: &Simplices, memory: &mut Memory) -> Self {
         Self::measure_beside(field, found, &[], memory)
     }
 
     /// [`Net::measure_again`] where some circles are known from a canvas ([`circles_on_canvas`]).
     pub(crate) fn measure_beside(
         field: &dyn MetricField,
-        found: &Triangles,
+        found: &Simplices,
         known: &[Ball<3>],
         memory: &mut Memory,
     ) -> Self {
@@ -126,7 +126,7 @@ impl Net {
     /// The circles of some of the triangles, and of the border edges, and nothing else: neither epsilon nor mu.
     pub(crate) fn measure_some(
         field: &dyn MetricField,
-        found: &Triangles,
+        found: &Simplices,
         wanted: &[[u32; 3]],
         memory: &mut Memory,
     ) -> Self {

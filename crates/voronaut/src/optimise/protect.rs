@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::geodesic::{Angles, LocalMetric, hermite};
 use crate::geometry::Point;
 use crate::metric::MetricField;
-use crate::net::{Ball, Estimate, Memory, Net, Random, Sites, Triangles};
+use crate::net::{Ball, Estimate, Memory, Net, Random, Simplices, Sites};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::triangulation::{FaceId, Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
@@ -349,7 +349,7 @@ impl<'a, 'b> Mender<'a, 'b> {
         let triangles = corners_of(topology, wide.into_iter());
         let own = corners_of(topology, faces.iter().copied());
         let is_inside = |seed: u32, p: Point| self.is_inside(VertexId(seed), p);
-        let found = Triangles { seeds: &self.positions, triangles: &triangles, border: &border, is_inside: &is_inside };
+        let found = Simplices { seeds: &self.positions, triangles: &triangles, border: &border, is_inside: &is_inside };
         let net = Net::measure_some(self.dual.scaled_field(), &found, &own, memory);
         let powers = net.interior().map(|ball| ball.power).chain(net.border.iter().map(|ball| ball.power));
         net.unmeasured as f64 + powers.map(|power| (1.0 - power / asked).max(0.0)).sum::<f64>()

@@ -3,7 +3,7 @@
 use super::region::Region;
 use crate::dual::Dual;
 use crate::geometry::Point;
-use crate::net::{Ball, Memory, Net, Sites, Triangles};
+use crate::net::{Ball, Memory, Net, Simplices, Sites};
 use crate::rdt::{self, Rdt, Start, Trust};
 use crate::triangulation::{FaceId, Triangulation, VertexId};
 
@@ -100,7 +100,7 @@ impl Survey {
 fn measure(dual: &Dual, seeds: &[Point], triangles: &[[u32; 3]], known: &[Ball<3>], memory: &mut Memory) -> Net {
     let border = border_of(dual.topology());
     let is_inside = |seed: u32, p: Point| dual.is_inside(VertexId(seed), p);
-    let found = Triangles { seeds, triangles, border: &border, is_inside: &is_inside };
+    let found = Simplices { seeds, triangles, border: &border, is_inside: &is_inside };
     Net::measure_beside(dual.scaled_field(), &found, known, memory)
 }
 

@@ -55,7 +55,7 @@ const ANGLES: (f64, f64) = (3.0, 177.0);
 
 /// Measures the edges and angles of a planar mesh in a metric, in parallel; the same bits for any number of threads.
 ///
-/// Geodesics are found from the metric alone ([`Paths::logarithm`](crate::geodesic::Paths::logarithm), from the chord on),
+/// Geodesics are found from the metric alone (`Paths::logarithm`, from the chord on),
 /// some 500 evaluations of the field for each edge, or a few thousand where it has kinks. They know no domain but on its border: the edges of one triangle
 /// that [`Mesh::edges`] has. A mesh without triangles has empty histograms.
 ///

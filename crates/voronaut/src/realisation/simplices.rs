@@ -45,7 +45,7 @@ impl Grid {
 
 impl Realisation {
     /// The triangles in n by n pieces: sides are the edges as drawn, at equal metric lengths, and points inside are
-    /// [`karcher_mean`]s. `None` where there are none, or pieces turn over: the triangle is too large for its curvature,
+    /// `karcher_mean`s. `None` where there are none, or pieces turn over: the triangle is too large for its curvature,
     /// or leads around a hole.
     pub fn grids(&self, field: &dyn MetricField, sides: usize) -> Vec<Option<Grid>> {
         let paths = Paths::default();

@@ -5,7 +5,7 @@ use crate::dual::Road;
 use crate::figures;
 use crate::geometry::Point;
 use crate::metric::MetricField;
-use crate::net::{Net, Triangles};
+use crate::net::{Net, Simplices};
 use crate::planar::Location;
 use crate::progress::Progress;
 use crate::rdt::{Edge, Judge, Rdt, Start, Trust};
@@ -106,7 +106,7 @@ pub fn net(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]]) -> Ne
     let sees = |from, p| !matches!(canvas.embedded().walk(from, p, false), Location::Behind(_));
     let is_inside = |seed: u32, p: Point| face(seed).is_some_and(|from| sees(from, p));
     let mut net =
-        Net::measure(field, &Triangles { seeds: &seeds, triangles: exact, border: &[], is_inside: &is_inside });
+        Net::measure(field, &Simplices { seeds: &seeds, triangles: exact, border: &[], is_inside: &is_inside });
     let farthest = diagram.farthest().map_or(0.0, |(_, distance)| distance);
     net.epsilon = if farthest.is_finite() { net.epsilon.max(farthest) } else { net.epsilon };
     net

@@ -78,7 +78,7 @@ const LONGEST: f64 = 1.0 / 3.0;
 /// gradation.
 ///
 /// # Errors
-/// The limits contradict each other; as of [`crate::metric::smoothed`] and [`crate::metric::nodal::Pipeline::run`].
+/// The limits contradict each other; smoothing asks for too many sweeps; as of [`crate::metric::nodal::Pipeline::run`].
 pub fn metric(spec: &MetricSpec, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
     finished(named(spec, domain, options, at)?, domain, None, options, at)
 }

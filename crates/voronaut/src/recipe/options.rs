@@ -18,7 +18,7 @@ pub struct MeshOptions {
     pub hausd: Option<f64>,
     /// Of a surface: whether vertices are moved off it, to where mesh and surface are closest in the sense of least squares.
     pub fit: bool,
-    /// How stiffly these vertices are held where they were; see [`FitOptions`].
+    /// How stiffly these vertices are held where they were; see `FitOptions`.
     pub stiffness: f64,
     /// What makes the mesh. The options below are for [`Mesher::Voronoi`], but for the memory limit.
     pub mesher: Mesher,
@@ -26,7 +26,7 @@ pub struct MeshOptions {
     pub lloyd: usize,
     /// The centroids that it moves seeds to.
     pub centroid: Centroid,
-    /// Sweeps of polishing, at most, where the mesh is for a function ([`Aim`](super::Aim)); see [`crate::optimise::polish`].
+    /// Sweeps of polishing, at most, where the mesh is for a function ([`Aim`](super::Aim)); see `polish`.
     pub polish: usize,
     /// Which road decides on the topology. On a surface it is by lengths unless it is [`Road::Canvas`].
     pub dual: Road,

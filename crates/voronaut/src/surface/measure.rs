@@ -60,12 +60,12 @@ impl Surface {
         Aabb3::of(used).expect("a surface has at least one triangle")
     }
 
-    /// [`Triangulation::euler_characteristic`](crate::triangulation::Triangulation::euler_characteristic).
+    /// `Triangulation::euler_characteristic`.
     pub fn euler_characteristic(&self) -> isize {
         self.topology.euler_characteristic()
     }
 
-    /// [`Triangulation::border_loops`](crate::triangulation::Triangulation::border_loops).
+    /// `Triangulation::border_loops`.
     pub fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
         self.topology.border_loops()
     }

@@ -95,7 +95,7 @@ fn net_by_hand(map: Map, seeds: &[Point], farthest: f64) -> (Net, Vec<[u32; 3]>)
         |t: &[u32; 3]| [(0, 1), (1, 2), (2, 0)].map(|(i, j)| images[t[i] as usize].distance(images[t[j] as usize]));
     let mu = exact.iter().flat_map(apart).fold(f64::INFINITY, f64::min);
     let epsilon = triangles.iter().filter(|ball| ball.is_interior).map(|ball| ball.radius).fold(farthest, f64::max);
-    (Net { triangles, mu, epsilon, ..Net::default() }, exact)
+    (Net { triangles, epsilon, mu, ..Net::default() }, exact)
 }
 
 struct Case {

@@ -5,7 +5,7 @@ use crate::diagram::{Diagram, resolve};
 use crate::domain::Domain;
 use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, Scaled, Uniform};
-use crate::net::{Net, Triangles};
+use crate::net::{Net, Simplices};
 use crate::progress::Silent;
 use crate::recipe::{self, MeshOptions, Meshed, Seeding};
 
@@ -13,7 +13,7 @@ use crate::recipe::{self, MeshOptions, Meshed, Seeding};
 const SEEDS: [(f64, f64); 4] = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.1, 1.05)];
 
 fn net_of(field: &dyn MetricField, seeds: &[Point], triangles: &[[u32; 3]]) -> Net {
-    let found = Triangles { seeds, triangles, border: &[], is_inside: &|_, _| true };
+    let found = Simplices { seeds, triangles, border: &[], is_inside: &|_, _| true };
     Net::measure(field, &found)
 }
 

@@ -53,7 +53,7 @@ fn of_triangle([a, b, c]: [Point; 3]) -> Tensor {
 /// The metric of one size per vertex: identity / h^2.
 ///
 /// # Errors
-/// As of [`Sampled::sizes`](crate::metric::Sampled::sizes).
+/// [`Error::Metric`](crate::Error::Metric) of a size that is not positive and finite, or of more or fewer than vertices.
 pub fn isotropic(mesh: &Mesh, sizes: &[f64]) -> Result<Vec<Tensor>> {
     check_background(mesh)?;
     check_count(mesh, "sizes", sizes.len())?;

@@ -80,10 +80,10 @@ fn fault(error: &Error) -> String {
     }
 }
 
-/// Metrics within limits, by [`Bounds::clamp`] at each vertex: sizes first, then the longer one by the anisotropy.
+/// Metrics within limits, by `Bounds::clamp` at each vertex: sizes first, then the longer one by the anisotropy.
 ///
 /// # Errors
-/// As of [`Limits::check`].
+/// [`Error::Parse`] of limits that contradict each other, or are no sizes.
 pub fn restrict(tensors: &[Tensor], limits: &Limits) -> Result<Vec<Tensor>> {
     limits.check(tensors.len())?;
     Ok(tensors.iter().enumerate().map(|(v, &tensor)| limits.at(v).clamp(tensor)).collect())

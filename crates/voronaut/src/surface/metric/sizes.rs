@@ -19,7 +19,7 @@ impl Sizes {
     /// The field of these values, log-Euclidean (geometric, of sizes) between vertices.
     ///
     /// # Errors
-    /// As [`Sampled::new`].
+    /// [`Error::Metric`] where numbers of values and vertices differ, or one is no metric.
     pub fn field(&self, surface: &Surface) -> Result<Sampled> {
         match self {
             Self::Isotropic(sizes) => {

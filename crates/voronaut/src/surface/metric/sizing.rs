@@ -38,12 +38,12 @@ pub struct Sizing {
 impl Sizing {
     /// The sizes of a surface: sqrt(`SAGITTA` hausd / c) of the larger principal curvature c, and of that of borders and fixed
     /// edges; anisotropic, of both along their directions. Given sizes or tensors, one per vertex slot, are kept where they are
-    /// less (of tensors the [intersection](Tensor::intersection), then anisotropic). Limits come next, gradation last.
+    /// less (of tensors the intersection, then anisotropic). Limits come next, gradation last.
     ///
     /// A surface may be cut along its features: what is said is of each side's own.
     ///
     /// # Errors
-    /// [`Error::Parse`] that names a parameter out of range; as [`Sampled::from_solution`] of what is given.
+    /// [`Error::Parse`] that names a parameter out of range; [`Error::Metric`] where what is given is not one metric, or size, for each vertex.
     pub fn sizes(&self, surface: &Surface, given: Option<&Solution>) -> Result<Sizes> {
         self.check()?;
         if let Some(given) = given {
