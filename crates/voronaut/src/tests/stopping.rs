@@ -46,7 +46,7 @@ fn stops(least: u64, job: impl Fn(&dyn Progress) -> Result<()>) {
 #[test]
 fn planar_meshes() {
     let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
-    for (seeding, least) in [(Seeding::Sizing, 40), (Seeding::Protected, 41)] {
+    for (seeding, least) in [(Seeding::Sizing, 20), (Seeding::Protected, 22)] {
         let options = MeshOptions { vertices: Some(300), seeding, ..MeshOptions::default() };
         stops(least, |progress| recipe::mesh(&domain, &Swirl::default(), &options, progress).map(drop));
     }

@@ -33,7 +33,7 @@ impl Case {
 
     /// Greatest and mean relative error over the vertices that are reached, with known distance, and not near the source.
     pub(crate) fn errors(&self, canvas: &Canvas, found: &Distances) -> [f64; 2] {
-        let pairs = (0..).map(|v| canvas.position(VertexId(v))).zip(found.values());
+        let pairs = found.values().iter().zip(0..).map(|(d, v)| (canvas.position(VertexId(v)), d));
         let known: Vec<(f64, f64)> = pairs.filter_map(|(p, &d)| Some((d, (self.exact)(p)?))).collect();
         relative_errors(&known)
     }
