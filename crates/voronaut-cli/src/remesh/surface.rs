@@ -7,7 +7,7 @@ use crate::progress::Bar;
 use voronaut::Result;
 use voronaut::quality::{Meetings, surface_quality, surface_unmet, validity_on};
 use voronaut::recipe::{self, MeshOptions};
-use voronaut::surface::metric::Sizing;
+use voronaut::surface::metric::{Sizes, Sizing};
 use voronaut::surface::{Input, Mended};
 use voronaut_io::{Report, Strayed};
 
@@ -21,6 +21,9 @@ pub(super) fn remesh(args: &RemeshArgs, input: Input, mended: &Mended) -> Result
     let given = given.map(|given| input.spread(&given)).transpose()?;
     let sizing = sizing(args, &input);
     let sizes = sizing.sizes(&input.surface, given.as_ref())?;
+    if matches!(sizes, Sizes::Anisotropic(_)) && args.hgrad > 1.0 && !run.quiet {
+        eprintln!("note: sizes that depend on the direction are not graded: -hgrad would make them alike in all");
+    }
     let field = sizes.field(&input.surface)?;
     let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args) };
     let meshed = recipe::mesh_surface(&input, &field, &options, &Bar::new(run.quiet, run.verbose))?;

@@ -6,9 +6,9 @@ use super::implicit::unpinned;
 use super::level::{Level, Vertex, quality};
 use super::{Implicit, Surface};
 use crate::error::{Error, Result};
-use crate::geometry::{Aabb3, Point3, Tensor, Vector, Vector3};
+use crate::geometry::{Aabb3, Point3, Vector3};
 use crate::metric::Neighbours;
-use crate::metric::nodal::{Connection, Gradation, Limits};
+use crate::metric::nodal::Gradation;
 use crate::parallel::prelude::*;
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 
@@ -69,36 +69,15 @@ pub(super) fn remesh(surface: &Surface, f: &dyn Implicit, bounds: Aabb3, edge: f
 /// Sizes by curvature, and then such that they grow slowly.
 fn grade(level: &mut Level, edge: f64) -> Result<()> {
     let size = |vertex: &Vertex| (BEND / vertex.curvature).clamp(FINEST * edge, edge);
-    let mut sizes: Vec<Tensor> = level.vertices.iter().map(|vertex| Tensor::isotropic(size(vertex))).collect();
+    let mut sizes: Vec<f64> = level.vertices.iter().map(size).collect();
     let t = &level.topology;
     let around = Neighbours::of_triangles(sizes.len(), t.faces().map(|f| t.corners(f).map(|v| v.0)), []);
-    let gradation = Gradation::new(Lengths { vertices: &level.vertices, around }, GRADATION.exp())?;
-    gradation.apply(&mut sizes, &Limits::default())?;
-    for (vertex, size) in level.vertices.iter_mut().zip(sizes) {
-        vertex.size = 1.0 / size.xx.sqrt();
-    }
+    let position = |v: u32| level.vertices[v as usize].position;
+    let gradation = Gradation::of_sizes(around, |v, w| position(v).distance(position(w)), GRADATION.exp())?;
+    gradation.apply_to_sizes(&mut sizes)?;
+    drop(gradation);
+    level.vertices.iter_mut().zip(sizes).for_each(|(vertex, size)| vertex.size = size);
     Ok(())
-}
-
-/// Sizes that are the same in all directions need no planes.
-struct Lengths<'a> {
-    vertices: &'a [Vertex],
-    around: Neighbours,
-}
-
-impl Connection for Lengths<'_> {
-    fn around(&self) -> &Neighbours {
-        &self.around
-    }
-
-    fn offset(&self, v: u32, w: u32) -> Vector {
-        let [a, b] = [v, w].map(|v| self.vertices[v as usize].position);
-        Vector::new(a.distance(b), 0.0)
-    }
-
-    fn transported(&self, _: u32, _: u32, tensor: Tensor) -> Tensor {
-        tensor
-    }
 }
 
 /// An edge's length, in the mean size of its ends.

@@ -62,7 +62,7 @@ fn levels_of_in_circle_tests_are_climbed_in_one_module() {
     assert!(found.all(|source| !source.code.contains("HashMap")), "what is known is kept in one place");
 }
 
-/// In the plane and on surfaces; what differs is how tangent planes hang together.
+/// In the plane, on surfaces and on those that an equation makes.
 #[test]
 fn gradation_is_one_law() {
     let (all, law) = (sources("voronaut"), "metric/nodal/gradation.rs");
@@ -73,9 +73,8 @@ fn gradation_is_one_law() {
         assert_eq!(holders(word), [law], "{word}");
     }
     assert_eq!(holders("hgrad.ln()"), [""; 0]);
-    let users =
-        ["metric/nodal/gradation.rs", "metric/nodal/pipeline.rs", "surface/metric/sizing.rs", "surface/remesh.rs"];
-    assert_eq!(holders("Gradation::new("), users, "whoever grades");
+    assert_eq!(holders("Gradation::on("), [law, "metric/nodal/pipeline.rs"]);
+    assert_eq!(holders("Gradation::of_sizes("), ["surface/metric/gradation.rs", "surface/remesh.rs"]);
 }
 
 /// So that the mathematics can do without threads.

@@ -30,7 +30,7 @@ use crate::parallel::prelude::*;
 pub fn grade(mesh: &Mesh, tensors: &[Tensor], gradation_factor: f64) -> Result<Vec<Tensor>> {
     check(mesh, tensors)?;
     let mut graded = tensors.to_vec();
-    Gradation::new(FlatConnection::of(mesh), gradation_factor)?.apply(&mut graded, &Limits::default())?;
+    Gradation::on(mesh, gradation_factor)?.apply(&mut graded, &Limits::default())?;
     Ok(graded)
 }
 
@@ -43,78 +43,69 @@ const PATIENCE: usize = 200;
 /// A round looks at so many vertices one after the other before threads share them.
 const TOGETHER: usize = 256;
 
-/// Tangent planes at vertices, and how they hang together (in the terms of the field, a discrete connection).
-pub(crate) trait Connection: Sync {
-    /// Who is beside whom.
-    fn around(&self) -> &Neighbours;
-
-    /// The way from a vertex to a neighbour, of the length of their edge, in the plane of the first.
-    fn offset(&self, v: u32, w: u32) -> Vector;
-
-    /// A tensor in the plane of the first vertex, transported into that of its neighbour.
-    fn transported(&self, v: u32, w: u32, tensor: Tensor) -> Tensor;
-}
-
-/// The edges of a planar mesh: all tangent planes are one.
-pub(super) struct FlatConnection<'a> {
-    mesh: &'a Mesh,
-    around: Neighbours,
-}
-
-impl<'a> FlatConnection<'a> {
-    pub(super) fn of(mesh: &'a Mesh) -> Self {
-        Self { mesh, around: Neighbours::of(mesh) }
-    }
-}
-
-impl Connection for FlatConnection<'_> {
-    fn around(&self) -> &Neighbours {
-        &self.around
-    }
-
-    fn offset(&self, v: u32, w: u32) -> Vector {
-        self.mesh.point(w) - self.mesh.point(v)
-    }
-
-    fn transported(&self, _: u32, _: u32, tensor: Tensor) -> Tensor {
-        tensor
-    }
-}
-
 /// The law ([`grade`]), and where it holds.
-pub(crate) struct Gradation<C> {
-    connection: C,
+pub(crate) struct Gradation<'a> {
+    around: Neighbours,
+    /// The way from a vertex to a neighbour.
+    offset: Box<dyn Fn(u32, u32) -> Vector + Sync + 'a>,
     growth: f64,
 }
 
-impl<C: Connection> Gradation<C> {
-    /// Of vertices that hang together so.
+impl<'a> Gradation<'a> {
+    /// On a planar mesh.
     ///
     /// # Errors
     /// [`Error::Parse`] unless the factor is finite and at least 1.
-    pub(crate) fn new(connection: C, gradation_factor: f64) -> Result<Self> {
+    pub(super) fn on(mesh: &'a Mesh, gradation_factor: f64) -> Result<Self> {
+        Self::new(Neighbours::of(mesh), move |v, w| mesh.point(w) - mesh.point(v), gradation_factor)
+    }
+
+    /// Of sizes that are the same in all directions, wherever vertices are: only lengths count.
+    ///
+    /// # Errors
+    /// As of [`Gradation::on`].
+    pub(crate) fn of_sizes(
+        around: Neighbours,
+        length: impl Fn(u32, u32) -> f64 + Sync + 'a,
+        gradation_factor: f64,
+    ) -> Result<Self> {
+        Self::new(around, move |v, w| Vector::new(length(v, w), 0.0), gradation_factor)
+    }
+
+    fn new(around: Neighbours, offset: impl Fn(u32, u32) -> Vector + Sync + 'a, gradation_factor: f64) -> Result<Self> {
         if !(gradation_factor >= 1.0 && gradation_factor.is_finite()) {
             let what = format!("gradation_factor = {gradation_factor} is not at least 1");
             let help = "1.3 lets edges grow by a third from one to the next; leave it out for no gradation";
             return Err(Error::parse("metric gradation", what, help));
         }
-        Ok(Self { connection, growth: gradation_factor.ln() })
+        Ok(Self { around, offset: Box::new(offset), growth: gradation_factor.ln() })
+    }
+
+    /// [`Gradation::apply`] to sizes.
+    ///
+    /// # Errors
+    /// As there.
+    pub(crate) fn apply_to_sizes(&self, sizes: &mut [f64]) -> Result<()> {
+        let mut tensors: Vec<Tensor> = sizes.iter().map(|&h| Tensor::isotropic(h)).collect();
+        self.apply(&mut tensors, &Limits::default())?;
+        sizes.iter_mut().zip(tensors).for_each(|(h, tensor)| *h = 1.0 / tensor.xx.sqrt());
+        Ok(())
     }
 
     /// Grades tensors that are within limits, and leaves them there: limits come first, where both cannot be had.
     ///
     /// # Errors
     /// [`Error::Limit`] where it does not settle.
-    pub(crate) fn apply(&self, tensors: &mut [Tensor], limits: &Limits) -> Result<()> {
+    pub(super) fn apply(&self, tensors: &mut [Tensor], limits: &Limits) -> Result<()> {
         let mut sources: Vec<Source> = tensors.par_iter().map(|&m| Source::new(m)).collect();
         let mut waiting = Waiting::all(tensors);
         let mut is_asking = vec![false; tensors.len()];
-        let mut left = tensors.len() * (PATIENCE + 2 * self.connection.around().hops());
+        let mut left = tensors.len() * (PATIENCE + 2 * self.around.hops());
         while let Some(asking) = waiting.next() {
             for &v in &asking {
                 is_asking[v as usize] = true;
             }
-            let beside = self.connection.around().of_all(&asking);
+            let beside = self.around.of_all(&asking);
             left = left.checked_sub(beside.len()).ok_or_else(|| unsettled(self.growth))?;
             let next = |&w: &u32| Some((w, self.finer(w, &sources, &is_asking, limits)?));
             let finer: Vec<(u32, Source)> = beside.par_iter().with_min_len(TOGETHER).filter_map(next).collect();
@@ -135,11 +126,11 @@ impl<C: Connection> Gradation<C> {
         let own = sources[w as usize].tensor;
         let most = own * (1.0 + SETTLED);
         let mut asked = Vec::new();
-        for &v in self.connection.around().at(w as usize).iter().filter(|&&v| is_asking[v as usize]) {
+        for &v in self.around.at(w as usize).iter().filter(|&&v| is_asking[v as usize]) {
             let from = &sources[v as usize];
             // What is not finer here to begin with is not so when it has grown.
-            if !is_above(own, self.connection.transported(v, w, from.tensor)) {
-                let grown = self.connection.transported(v, w, from.grown(self.connection.offset(v, w), self.growth));
+            if !is_above(own, from.tensor) {
+                let grown = from.grown((self.offset)(v, w), self.growth);
                 asked.extend((!is_above(most, grown)).then_some(grown));
             }
         }

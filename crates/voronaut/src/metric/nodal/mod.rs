@@ -28,8 +28,8 @@ mod waiting;
 
 pub use combine::{average, intersect};
 pub use complexity::{complexity, normalise};
+pub(crate) use gradation::Gradation;
 pub use gradation::grade;
-pub(crate) use gradation::{Connection, Gradation};
 pub use implied::{implied, isotropic};
 pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source, Touched};
 pub use restrict::{Limit, Limits, restrict};

@@ -1,7 +1,7 @@
 //! Metrics at vertices from solutions and other metrics, in one documented order.
 
 use super::complexity::{complexity, demand_target, scaled_to, weighted};
-use super::gradation::{FlatConnection, Gradation};
+use super::gradation::Gradation;
 use super::restrict::{Limits, restrict};
 use super::solve::{Root, root};
 use super::{average, check, intersect};
@@ -101,8 +101,7 @@ impl Pipeline {
         self.target_complexity.map_or(Ok(()), demand_target)?;
         self.limits.check(mesh.points.len())?;
         let combined = self.combine(mesh, sources)?;
-        let gradation =
-            self.gradation_factor.map(|factor| Gradation::new(FlatConnection::of(mesh), factor)).transpose()?;
+        let gradation = self.gradation_factor.map(|factor| Gradation::on(mesh, factor)).transpose()?;
         let stage = Stage { mesh, combined: &combined, limits: &self.limits, gradation };
         let Some(target) = self.target_complexity else { return stage.outcome(1.0, stage.at(1.0)?) };
         // Gradation is dear, and its result may be lifted.
@@ -144,7 +143,7 @@ struct Stage<'a> {
     mesh: &'a Mesh,
     combined: &'a [Tensor],
     limits: &'a Limits,
-    gradation: Option<Gradation<FlatConnection<'a>>>,
+    gradation: Option<Gradation<'a>>,
 }
 
 impl Stage<'_> {

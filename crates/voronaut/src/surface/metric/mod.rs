@@ -18,9 +18,9 @@
 mod bends;
 mod bounded;
 mod closer;
-mod connection;
 mod curvature;
 mod fit;
+mod gradation;
 mod sampled;
 mod sizes;
 mod sizing;
@@ -31,6 +31,7 @@ pub use bounded::Bounded;
 pub(crate) use closer::Closer;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub use fit::fit_curvatures;
+pub(crate) use gradation::grade;
 pub use sampled::Sampled;
 pub use sizes::Sizes;
 pub use sizing::Sizing;

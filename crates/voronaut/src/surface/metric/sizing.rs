@@ -1,13 +1,11 @@
 //! The sizes that keep a mesh close to its surface.
 
 use super::bends::bend;
-use super::connection::SurfaceConnection;
-use super::{Sampled, Sizes, fit_curvatures};
+use super::{Sampled, Sizes, fit_curvatures, grade};
 use crate::error::{Error, Result};
-use crate::geometry::{TangentPlane, Tensor, Tensor3, Vector3};
+use crate::geometry::{TangentPlane, Tensor, Tensor3};
 use crate::mesh::{Solution, SolutionValues};
 use crate::metric::Bounds;
-use crate::metric::nodal::{Gradation, Limits};
 use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Surface};
 use crate::triangulation::VertexId;
@@ -29,7 +27,8 @@ pub struct Sizing {
     /// No size is more, and flat parts have this one.
     pub h_max: f64,
     /// Between neighbouring edges sizes grow by this factor at most, by the law of [`grade`](crate::metric::nodal::grade);
-    /// `None`: as they will.
+    /// `None`: as they will. Sizes that depend on the direction are left as they are: directions turn where a surface is
+    /// curved, on the way around a vertex, and gradation would make sizes alike in all.
     pub hgrad: Option<f64>,
     /// Whether sizes follow the principal directions.
     pub anisotropic: bool,
@@ -50,36 +49,25 @@ impl Sizing {
             Sampled::from_solution(surface, given)?;
         }
         let curvatures = fit_curvatures(surface);
-        // What has no curvature has no triangle, and no direction.
-        let normal = |c: &Option<Curvatures>| c.as_ref().map_or(Vector3::new(0.0, 0.0, 1.0), |c| c.normal);
-        let planes: Vec<TangentPlane> = curvatures.par_iter().map(|c| TangentPlane::new(normal(c))).collect();
+        let asked = |v: usize| given.map(|given| asked(given, v));
         let is_tensor = given.is_some_and(|given| matches!(given.values, SolutionValues::Tensor3(_)));
-        let is_anisotropic = self.anisotropic || is_tensor;
-        let tensor = |v: usize| {
-            let (curvatures, asked) = (curvatures[v].as_ref(), given.map(|given| asked(given, v)));
-            match curvatures {
-                Some(c) if is_anisotropic => self.tensor(surface, v, c, &planes[v], asked),
-                _ => Tensor::isotropic(self.size(surface, v, curvatures, asked)),
-            }
-        };
-        let mut tensors: Vec<Tensor> = (0..curvatures.len()).into_par_iter().map(tensor).collect();
-        if let Some(hgrad) = self.hgrad {
-            let connection = SurfaceConnection::of(surface, &planes);
-            Gradation::new(connection, hgrad)?.apply(&mut tensors, &Limits::default())?;
+        let slots = (0..curvatures.len()).into_par_iter();
+        if self.anisotropic || is_tensor {
+            let tensor = |v: usize| self.tensor(surface, v, curvatures[v].as_ref(), asked(v));
+            return Ok(Sizes::Anisotropic(slots.map(tensor).collect()));
         }
-        Ok(if is_anisotropic {
-            let extend = |(plane, tensor): (&TangentPlane, &Tensor)| plane.extend(*tensor, tensor.eigen().large);
-            Sizes::Anisotropic(planes.iter().zip(&tensors).map(extend).collect())
-        } else {
-            Sizes::Isotropic(tensors.iter().map(|tensor| 1.0 / tensor.xx.sqrt()).collect())
-        })
+        let mut sizes: Vec<f64> = slots.map(|v| self.size(surface, v, curvatures[v].as_ref(), asked(v))).collect();
+        if let Some(hgrad) = self.hgrad {
+            grade(surface, &mut sizes, hgrad)?;
+        }
+        Ok(Sizes::Isotropic(sizes))
     }
 
     /// Whether the parameters make sense.
     ///
     /// # Errors
     /// [`Error::Parse`] that names one that does not.
-    pub(crate) fn check(&self) -> Result<()> {
+    pub fn check(&self) -> Result<()> {
         Bounds { h_min: Some(self.h_min), h_max: Some(self.h_max), a_max: None }.check()?;
         let fault = |name: &str, value: f64, help: &str| Err(Error::parse("sizes", format!("{name} = {value}"), help));
         match self.hgrad {
@@ -109,14 +97,9 @@ impl Sizing {
         sizes.fold(self.h_max, f64::min).max(self.h_min)
     }
 
-    fn tensor(
-        &self,
-        surface: &Surface,
-        v: usize,
-        c: &Curvatures,
-        plane: &TangentPlane,
-        asked: Option<Tensor3>,
-    ) -> Tensor {
+    fn tensor(&self, surface: &Surface, v: usize, curvatures: Option<&Curvatures>, asked: Option<Tensor3>) -> Tensor3 {
+        let Some(c) = curvatures else { return Tensor3::isotropic(self.h_max) };
+        let plane = TangentPlane::new(c.normal);
         let eigenvalue = |size: f64| 1.0 / (size * size);
         let [along, across] = c.values.map(|c| eigenvalue(self.of_curvature(c)));
         let of_surface = Tensor::from_axis(plane.flatten(c.axes[0]), along, across);
@@ -129,7 +112,8 @@ impl Sizing {
         let asked = asked.map(|tensor| plane.restrict(tensor));
         let all = [of_curve, asked].into_iter().flatten().fold(of_surface, Tensor::intersection);
         let limits = Bounds { h_min: Some(self.h_min), h_max: Some(self.h_max), a_max: None };
-        limits.clamp(all)
+        let tensor = limits.clamp(all);
+        plane.extend(tensor, tensor.eigen().large)
     }
 }
 
