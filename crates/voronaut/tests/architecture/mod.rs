@@ -77,6 +77,17 @@ fn gradation_is_one_law() {
     assert_eq!(holders("Gradation::of_sizes("), ["surface/metric/gradation.rs", "surface/remesh.rs"]);
 }
 
+/// Text or bytes: formats say what numbers mean, the codec how they are read.
+#[test]
+fn numbers_are_made_of_bytes_in_one_module_of_io() {
+    let all = sources("voronaut-io");
+    for source in all.iter().filter(|source| source.module() != "codec") {
+        for word in ["from_le_bytes", "from_be_bytes", "from_ne_bytes"] {
+            assert!(!contains_word(&source.code, word), "{} has {word}", source.name);
+        }
+    }
+}
+
 /// So that the mathematics can do without threads.
 #[test]
 fn threads_are_one_module() {
