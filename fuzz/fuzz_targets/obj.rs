@@ -2,13 +2,13 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use voronaut_io::{Document, obj};
+use voronaut_io::{Document, Fields, Format, obj};
 use voronaut_fuzz::{PLACE, assert_same, check_mesh, read, written};
 
 fuzz_target!(|input: &[u8]| {
     let Some(Document { mut mesh, .. }) = read(input, || obj::read(input, PLACE)) else { return };
     check_mesh(&mesh);
-    let file = written(|out| obj::write(&mesh, out));
+    let file = written(|out| Format::Obj.write(&mesh, &Fields::default(), out));
     let again = obj::read(file.as_slice(), PLACE).expect("its own file").mesh;
     let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
     order.sort_by_key(|&i| mesh.triangle_labels[i]);

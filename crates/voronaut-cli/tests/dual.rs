@@ -303,7 +303,7 @@ fn labels_of_the_border_are_carried() {
             12 => p.x.min(q.x) > 3.8,
             13 => p.y.min(q.y) > 1.8,
             14 => p.x.max(q.x) < 0.2,
-            _ => p.midpoint(q).distance(Point::new(0.75, 0.75)) < 0.6,
+            _ => p.lerp(q, 0.5).distance(Point::new(0.75, 0.75)) < 0.6,
         };
         assert!(is_near, "{label}: {p} {q}");
     }

@@ -48,7 +48,7 @@ pub fn read_all(source: impl BufRead, place: &str) -> Result<Solutions> {
 ///
 /// # Errors
 /// What `out` says; [`io::ErrorKind::InvalidInput`] of vectors and tensors of another dimension.
-pub(crate) fn write(solution: &Solution, form: Form, out: &mut dyn Write) -> io::Result<()> {
+pub fn write(solution: &Solution, form: Form, out: &mut dyn Write) -> io::Result<()> {
     write_sections(solution.dimension, [std::slice::from_ref(&solution.values), &[]], form, out)
 }
 
@@ -60,7 +60,7 @@ pub(crate) fn write(solution: &Solution, form: Form, out: &mut dyn Write) -> io:
 ///
 /// # Panics
 /// If a solution has fewer.
-pub(crate) fn write_all(solutions: &Solutions, form: Form, out: &mut dyn Write) -> io::Result<()> {
+pub fn write_all(solutions: &Solutions, form: Form, out: &mut dyn Write) -> io::Result<()> {
     write_sections(solutions.dimension, [&solutions.vertices, &solutions.triangles], form, out)
 }
 

@@ -18,16 +18,6 @@ pub struct Paths<'d, 'a> {
 }
 
 impl<'a> Diagram<'a> {
-    /// The way from a point of the domain to its nearest seed, by descent on the canvas: a polyline within the domain that
-    /// begins at the point and ends at the seed, as good as the canvas is fine. [`Paths::geodesic`] has it straight. Where
-    /// many are wanted, [`Diagram::paths`] does the work that they share once.
-    ///
-    /// # Errors
-    /// [`Error::Domain`] of a point outside the domain, or one that no seed reaches.
-    pub fn path(&self, from: Point) -> Result<Vec<Point>> {
-        self.paths().path(from)
-    }
-
     /// What all paths need: distances computed anew around every cell.
     pub fn paths(&self) -> Paths<'_, 'a> {
         Paths { diagram: self, overlap: self.overlap(), border: Border::of(self.ground.canvas) }
@@ -35,10 +25,11 @@ impl<'a> Diagram<'a> {
 }
 
 impl Paths<'_, '_> {
-    /// See [`Diagram::path`].
+    /// The way from a point of the domain to its nearest seed, by descent on the canvas: a polyline within the domain that
+    /// begins at the point and ends at the seed, as good as the canvas is fine. [`Paths::geodesic`] has it straight.
     ///
     /// # Errors
-    /// As there.
+    /// [`Error::Domain`] of a point outside the domain, or one that no seed reaches.
     pub fn path(&self, from: Point) -> Result<Vec<Point>> {
         let nearest = self.nearest(from).ok_or_else(|| {
             let help = "take a point of the domain, of a part of it that holds a seed";
@@ -50,7 +41,7 @@ impl Paths<'_, '_> {
     /// The geodesic from a point to its nearest seed: its path, straightened.
     ///
     /// # Errors
-    /// As for [`Diagram::path`].
+    /// As for [`Paths::path`].
     pub fn geodesic(&self, from: Point) -> Result<Polyline> {
         Ok(straighten(self.diagram.ground.field, &self.path(from)?, &self.border))
     }
@@ -131,7 +122,7 @@ mod tests {
             assert!(straight.length <= Polyline::length_of(&swirl, &path) * (1.0 + 1e-12));
             assert!(straight.points.windows(2).all(|w| !paths.border.bars(w[0], w[1])), "{from}");
         }
-        assert!(diagram.path(Point::new(0.0, 0.0)).is_err(), "in the hole");
+        assert!(paths.path(Point::new(0.0, 0.0)).is_err(), "in the hole");
     }
 
     #[test]

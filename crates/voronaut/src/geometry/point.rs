@@ -35,7 +35,7 @@ impl Point {
 
     /// The midpoint of two points.
     #[must_use]
-    pub fn midpoint(self, other: Point) -> Point {
+    pub(crate) fn midpoint(self, other: Point) -> Point {
         Point::new(0.5 * self.x + 0.5 * other.x, 0.5 * self.y + 0.5 * other.y)
     }
 

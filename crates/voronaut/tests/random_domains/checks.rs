@@ -44,7 +44,7 @@ fn segments_not_covered(drawn: &Drawn, mesh: &Mesh) -> Option<String> {
         // An edge may pass a vertex in the middle of a straight run.
         let lies_on_segments = |segments: &[[Point; 2]]| {
             let tolerance = 8.0 * f64::EPSILON * reach;
-            [p, q, p.midpoint(q)].iter().all(|&x| segments.iter().any(|&s| distance(s, x) <= tolerance))
+            [p, q, p.lerp(q, 0.5)].iter().all(|&x| segments.iter().any(|&s| distance(s, x) <= tolerance))
         };
         let Some((segments, _)) = of_label.get(label) else { return Some(format!("label {label} is new")) };
         if !lies_on_segments(segments) {

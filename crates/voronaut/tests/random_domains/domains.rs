@@ -355,7 +355,7 @@ fn regions(random: &mut Random, sketch: &mut Sketch) {
         sketch.segments.extend(ends);
         let [a, b] = [below[0], above[1]].map(|v| sketch.points[v as usize]);
         let [c, d] = [below[1], above[0]].map(|v| sketch.points[v as usize]);
-        let centre = a.midpoint(b).midpoint(c.midpoint(d));
+        let centre = a.lerp(b, 0.5).lerp(c.lerp(d, 0.5), 0.5);
         sketch.regions.push((centre, label));
     }
     for row in &rows {
