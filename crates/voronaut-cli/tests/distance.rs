@@ -61,9 +61,23 @@ fn diagrams_are_driven_by_methods_that_can() {
     let place = Place::new();
     place.put("seeds.txt", "0.3 0.3\n1.5 0.4\n0.9 0.8\n1.2 0.2\n");
     let dual = ["dual", "rect:0,0,2,1", "--metric", "uniform", "--seeds", "seeds.txt", "-o", "out.mesh", "-q"];
-    let mesh = ["mesh", "rect:0,0,2,1", "--metric", "uniform", "-n", "60", "--dual", "canvas", "-o", "out.mesh", "-q"];
+    let mesh = [
+        "mesh",
+        "rect:0,0,2,1",
+        "--metric",
+        "uniform",
+        "-n",
+        "60",
+        "--dual",
+        "canvas",
+        "--canvas-size",
+        "4",
+        "-o",
+        "out.mesh",
+        "-q",
+    ];
     for method in ["march", "stvd:window=4", "dijkstra", "konukoglu"] {
-        for words in [&[&dual[..], &["--canvas-size", "20"]].concat(), &mesh[..]] {
+        for words in [&[&dual[..], &["--canvas-size", "4"]].concat(), &mesh[..]] {
             let more = ["--geodesic", method, "--report", "out.json"];
             let output = place.run(&[words, &more].concat());
             assert!(output.status.success(), "{method}: {}", stderr(&output));
@@ -107,7 +121,7 @@ fn distances_on_surfaces_are_great_circles() {
     let methods = METHODS.iter().filter(|&&method| method != "lbr");
     for (canvas, method) in methods.flat_map(|&method| canvases.map(|canvas| (canvas, method))) {
         let words = ["distance", "sphere:2", "--metric", "uniform", "--from", "2,0,0", "--from", "0,0,-2.01"];
-        let more = ["--to", "0,1.2,1.6", "-o", "out.vtu", "--canvas-size", "6000", "--geodesic", method];
+        let more = ["--to", "0,1.2,1.6", "-o", "out.vtu", "--canvas-size", "3000", "--geodesic", method];
         let files = ["--canvas", canvas, "--report", "out.json", "--picture", "out.svg", "--pixels", "200"];
         let output = place.run(&[&words[..], &more, &files].concat());
         assert!(output.status.success(), "{method} on {canvas}: {}", stderr(&output));

@@ -4,7 +4,7 @@ use crate::common::{Place, stderr};
 use serde_json::Value;
 use std::fmt::Write as _;
 
-const SHOCK: [&str; 4] = ["dual", "rect:-1,-1,1,1", "--metric", "shock:phi=1,lambda=0.6"];
+const SHOCK: [&str; 6] = ["dual", "rect:-1,-1,1,1", "--metric", "shock:phi=1,lambda=0.6", "--canvas-size", "12"];
 const COUNT: usize = 120;
 
 /// A place with seeds whose dual does not embed with straight edges.

@@ -15,7 +15,8 @@ fn runs(place: &Place, words: &[&str]) -> Value {
 fn protected_meshes_say_how_protected_they_are() {
     let place = Place::new();
     for lloyd in ["0", "40"] {
-        let made = runs(&place, &[&SQUARE[..], &["--seeding", "protected", "--lloyd", lloyd]].concat());
+        let made =
+            runs(&place, &[&SQUARE[..], &["--seeding", "protected", "--lloyd", lloyd, "--canvas-size", "20"]].concat());
         let (net, protection) = (&made["net"], &made["protection"]);
         assert_eq!(made["vertices"], 200);
         assert!(net["delta_over_epsilon"].as_f64().unwrap() >= 0.2, "{net}");
@@ -24,14 +25,25 @@ fn protected_meshes_say_how_protected_they_are() {
         assert_eq!((&protection["ending"], &protection["unprotected"]), (&"protected".into(), &0.into()));
         let nerve = &protection["raw_nerve"];
         assert_eq!((&nerve["missing"], &nerve["extra"], &nerve["triangles"]), (&0.into(), &0.into(), &net["interior"]));
-        assert!(nerve["canvas_vertices"].as_u64().unwrap() > 200 * 60);
+        assert!(nerve["canvas_vertices"].as_u64().unwrap() > 200 * 20);
     }
 }
 
 #[test]
 fn what_is_asked_for_is_in_the_report() {
     let place = Place::new();
-    let more = ["--seeding", "protected", "--lloyd", "0", "--protection", "0.1", "--picking-radius", "0.2"];
+    let more = [
+        "--seeding",
+        "protected",
+        "--canvas-size",
+        "5",
+        "--lloyd",
+        "0",
+        "--protection",
+        "0.1",
+        "--picking-radius",
+        "0.2",
+    ];
     let made = runs(&place, &[&SQUARE[..], &more].concat());
     assert_eq!((&made["protection"]["asked"], &made["options"]["picking_radius"]), (&0.1.into(), &0.2.into()));
     assert_eq!(made["options"]["seeding"], "protected");

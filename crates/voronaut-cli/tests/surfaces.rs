@@ -184,6 +184,8 @@ fn a_sphere_is_meshed_and_the_dual_of_its_vertices_is_the_mesh() {
         "d.obj",
         "--report",
         "d.json",
+        "--canvas-size",
+        "10",
     ]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let sides = |file: &str| {

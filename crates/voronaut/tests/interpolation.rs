@@ -34,9 +34,12 @@ fn made(metric: &PlanarMetric, vertices: usize, polish: usize, norm: Norm) -> Me
 }
 
 fn for_function(text: &str, vertices: usize, polish: usize, norm: Norm) -> Meshed {
+    made(&metric_for(text, vertices, norm), vertices, polish, norm)
+}
+
+fn metric_for(text: &str, vertices: usize, norm: Norm) -> PlanarMetric {
     let options = MetricOptions { norm, ..MetricOptions::default() };
-    let metric = metric_of_function(&function(text), &square(), &options, GradedAt::of(Some(vertices), None)).unwrap();
-    made(&metric, vertices, polish, norm)
+    metric_of_function(&function(text), &square(), &options, GradedAt::of(Some(vertices), None)).unwrap()
 }
 
 /// The mesh for the layers with 2,000 vertices, made once.
@@ -72,8 +75,9 @@ fn the_error_falls_as_one_over_the_number_of_vertices() {
 fn polishing_lowers_the_error_in_the_norm_that_was_asked_for() {
     for (p, least) in [(1.0, 0.95), (4.0, 0.92)] {
         let norm = Norm::new(p).unwrap();
+        let metric = metric_for(LAYERS, 500, norm);
         let error = |polish| {
-            let mesh = for_function(LAYERS, 1000, polish, norm).mesh;
+            let mesh = made(&metric, 500, polish, norm).mesh;
             interpolation_error(&mesh, &function(LAYERS), norm).unwrap().norm
         };
         let (before, after) = (error(0), error(20));

@@ -48,17 +48,17 @@ use locate::Finder;
 
 /// Canvas vertices per seed (`--canvas-size`) unless told otherwise.
 pub const VERTICES_PER_SEED: u32 = 60;
-/// Vertices of a canvas at least: the cells of a few seeds are large, and so is what the metric does within them.
-pub(crate) const LEAST_VERTICES: usize = 150_000;
+/// Seeds that a canvas is made for at least: the cells of a few are large, and so is what the metric does within them.
+pub(crate) const LEAST_SEEDS: usize = 2500;
 /// So many seeds are few.
 pub(crate) const FEW_SEEDS: usize = 300;
 /// Bytes that a canvas vertex costs at the peak, with a diagram on the canvas: measured 0.44 to 0.55 kB, with a reserve.
 pub const BYTES_PER_VERTEX: f64 = 700.0;
 
-/// Vertices of a canvas for so many seeds: `per_seed` for each, and `LEAST_VERTICES` at least for up to
-/// `FEW_SEEDS`, from where on that least falls with their number.
+/// Vertices of a canvas for so many seeds: `per_seed` for each; up to `FEW_SEEDS` of them count as `LEAST_SEEDS`, and from there on
+/// that least falls with their number.
 pub fn size_for(seeds: usize, per_seed: u32) -> usize {
-    let least = LEAST_VERTICES / seeds.div_ceil(FEW_SEEDS).max(1);
+    let least = LEAST_SEEDS.saturating_mul(per_seed as usize) / seeds.div_ceil(FEW_SEEDS).max(1);
     seeds.saturating_mul(per_seed as usize).max(least)
 }
 

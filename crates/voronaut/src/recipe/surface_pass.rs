@@ -25,8 +25,8 @@ use crate::surface::{Input, Place, Surface, Whole};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use std::collections::BTreeSet;
 
-/// Canvas vertices at least, however few the seeds.
-const LEAST_CANVAS: usize = 20_000;
+/// Seeds that a canvas is made for at least.
+const LEAST_SEEDS: usize = 334;
 /// Relaxation goes in so many parts, the factor on the metric made fit between them.
 const PARTS: usize = 4;
 /// Triangles that are mended in the end, as a share of all, and how often.
@@ -224,7 +224,7 @@ impl<'a> Setting<'a> {
 
     /// Canvas vertices for so many seeds.
     pub(super) fn canvas_size(&self, count: usize) -> usize {
-        count.saturating_mul(self.options.canvas_size as usize).max(LEAST_CANVAS)
+        count.max(LEAST_SEEDS).saturating_mul(self.options.canvas_size as usize)
     }
 
     /// Whether a canvas vertex lies in a required triangle.

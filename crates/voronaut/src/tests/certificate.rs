@@ -150,7 +150,7 @@ fn what_is_certified_in_a_uniform_metric_is_the_exact_dual() {
     let square = Domain::shape("rect:0,0,1,1").unwrap();
     let mut random = Random(2026);
     let (mut certified, mut compared) = (0, 0);
-    for round in 0..160 {
+    for round in 0..60 {
         // Every fourth is Euclidean.
         let map = if round % 4 == 0 {
             Map([15.0, 0.0, 15.0])
@@ -171,7 +171,7 @@ fn what_is_certified_in_a_uniform_metric_is_the_exact_dual() {
             compared += found.exact.len();
         }
     }
-    assert!(certified > 48 && certified < 144, "{certified} of 160 certified");
+    assert!(certified > 18 && certified < 54, "{certified} of 60 certified");
     assert!(compared > 5 * certified, "{compared} triangles in {certified} cases");
 }
 

@@ -62,8 +62,13 @@ fn the_least_power_need_not_be_that_of_an_opposite_seed() {
 }
 
 fn protected(domain: &Domain, field: &dyn MetricField, vertices: usize, lloyd: usize) -> Meshed {
-    let options =
-        MeshOptions { vertices: Some(vertices), lloyd, seeding: Seeding::Protected, ..MeshOptions::default() };
+    let options = MeshOptions {
+        vertices: Some(vertices),
+        lloyd,
+        seeding: Seeding::Protected,
+        canvas_size: 10,
+        ..MeshOptions::default()
+    };
     recipe::mesh(domain, field, &options, &Silent).unwrap()
 }
 
@@ -81,14 +86,13 @@ fn protected_seeds_are_and_the_raw_nerve_is_their_dual() {
     let layer = |p: Point| Tensor::new(1.0, 0.0, 1.0 / (0.5 + 0.6 * (p.y - 0.4 * p.x).powi(2)).powi(2));
     let disk = Domain::shape("disk:0,0,1").unwrap();
     let cases: [(&Domain, &dyn MetricField, usize, usize); 3] =
-        [(&square, &Uniform::default(), 301, 0), (&disk, &layer, 251, 40), (&square, &layer, 277, 0)];
+        [(&square, &Uniform::default(), 151, 0), (&disk, &layer, 121, 40), (&square, &layer, 137, 0)];
     for (domain, field, vertices, lloyd) in cases {
         let meshed = protected(domain, field, vertices, lloyd);
         demand_protected(&meshed, vertices);
         let unit = Scaled { field, factor: meshed.metric_scale };
         let seeds: Vec<Point> = meshed.mesh.points.iter().map(|p| Point::new(p[0], p[1])).collect();
-        let canvas =
-            resolve(Canvas::intrinsic(domain, &unit, 20 * vertices).unwrap(), &unit, &seeds, 8).unwrap().canvas;
+        let canvas = resolve(Canvas::intrinsic(domain, &unit, 6000).unwrap(), &unit, &seeds, 8).unwrap().canvas;
         let diagram = Diagram::new(&canvas, &unit, &seeds).unwrap();
         let raw = recipe::dual(&diagram, &unit, crate::dual::Road::Both, &Silent).raw_nerve;
         assert_eq!((raw.missing, raw.extra), (0, 0), "{raw:?}");

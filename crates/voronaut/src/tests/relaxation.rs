@@ -13,7 +13,7 @@ fn field(text: &str, domain: &Domain) -> Box<dyn MetricField> {
 
 fn relaxed(domain: &str, metric: &dyn MetricField, vertices: usize, lloyd: usize, centroid: Centroid) -> Meshed {
     let domain = Domain::shape(domain).unwrap();
-    let options = MeshOptions { vertices: Some(vertices), lloyd, centroid, canvas_size: 40, ..MeshOptions::default() };
+    let options = MeshOptions { vertices: Some(vertices), lloyd, centroid, canvas_size: 20, ..MeshOptions::default() };
     recipe::mesh(&domain, metric, &options, &Silent).unwrap()
 }
 
@@ -21,8 +21,8 @@ fn relaxed(domain: &str, metric: &dyn MetricField, vertices: usize, lloyd: usize
 fn of_spec(metric: &str, centroid: Centroid) -> Meshed {
     let square = "rect:-1,-1,1,1";
     let field = field(metric, &Domain::shape(square).unwrap());
-    let steps = if centroid == Centroid::Tangent { 20 } else { 8 };
-    relaxed(square, field.as_ref(), 1000, steps, centroid)
+    let steps = if centroid == Centroid::Tangent { 20 } else { 6 };
+    relaxed(square, field.as_ref(), 500, steps, centroid)
 }
 
 fn rises(meshed: &Meshed) -> usize {

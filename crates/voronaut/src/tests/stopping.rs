@@ -2,7 +2,7 @@
 
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::metric::{Bounds, Expression, Norm, Snapshot, Swirl, Uniform, Variables};
+use crate::metric::{Bounds, Expression, MetricField, Norm, Snapshot, Swirl, Uniform, Variables};
 use crate::progress::Progress;
 use crate::recipe::{self, Aim, MeshOptions, Seeding};
 use crate::surface::Input;
@@ -46,9 +46,10 @@ fn stops(least: u64, job: impl Fn(&dyn Progress) -> Result<()>) {
 #[test]
 fn planar_meshes() {
     let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
-    for (seeding, least) in [(Seeding::Sizing, 20), (Seeding::Protected, 22)] {
-        let options = MeshOptions { vertices: Some(300), seeding, ..MeshOptions::default() };
-        stops(least, |progress| recipe::mesh(&domain, &Swirl::default(), &options, progress).map(drop));
+    let metrics: [&dyn MetricField; 2] = [&Swirl::default(), &Uniform::default()];
+    for (metric, seeding, least) in [(metrics[0], Seeding::Sizing, 20), (metrics[1], Seeding::Protected, 22)] {
+        let options = MeshOptions { vertices: Some(300), seeding, canvas_size: 3, ..MeshOptions::default() };
+        stops(least, |progress| recipe::mesh(&domain, metric, &options, progress).map(drop));
     }
 }
 

@@ -43,8 +43,8 @@ fn meshes_are_valid_and_of_the_surface_s_topology() {
         ("torus:2,0.7", "curvature", 400, [0.93, 0.5]),
         (&data("spot.obj"), "curvature", 220, [0.85, 0.2]),
         (&data("bob_small.obj"), "curvature", 220, [0.9, 0.4]),
-        ("chair", "curvature", 600, [0.88, 0.2]),
-        ("sphere:1", "shock:phi=1", 500, [0.85, 0.05]),
+        ("chair", "curvature", 400, [0.88, 0.2]),
+        ("sphere:1", "shock:phi=1", 400, [0.85, 0.05]),
         ("implicit:z-0.2*sin(3*x);-1,-1,-1,1,1,1", "uniform", 300, [0.9, 0.2]),
         ("implicit:(x^2+y^2+z^2-1)*((x-3)^2+y^2+z^2-0.25);-2,-2,-2,4,2,2", "uniform", 300, [0.95, 0.5]),
     ] {
@@ -71,8 +71,8 @@ fn any_number_of_threads_and_any_canvas_make_a_mesh() {
     let input = read("torus:2,0.7");
     for canvas in Kind::ALL {
         let (seeding, dual) = (Seeding::Farthest, Road::Canvas);
-        let few = MeshOptions { lloyd: 4, canvas_size: 20, ..MeshOptions::default() };
-        let options = MeshOptions { vertices: Some(300), canvas, seeding, dual, ..few };
+        let few = MeshOptions { lloyd: 2, canvas_size: 20, ..MeshOptions::default() };
+        let options = MeshOptions { vertices: Some(150), canvas, seeding, dual, ..few };
         let of_threads = [1, 3].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| meshed(&input, "curvature", &options).0.mesh)

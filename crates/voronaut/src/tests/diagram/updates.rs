@@ -84,18 +84,18 @@ fn sized_seeds(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Vec
 }
 
 #[test]
-fn four_thousand_seeds_leave_no_orphans_and_change_as_if_made_anew() {
+fn two_thousand_seeds_leave_no_orphans_and_change_as_if_made_anew() {
     for (field, half) in [(&Swirl::default() as &dyn MetricField, 2.0), (&Shock::default(), 1.0)] {
         let domain = square(half);
-        let seeds = sized_seeds(&domain, field, 4000);
+        let seeds = sized_seeds(&domain, field, 2000);
         let canvas = Canvas::intrinsic(&domain, field, 25 * seeds.len()).unwrap();
         let mut diagram = Diagram::new(&canvas, field, &seeds).unwrap();
-        assert_eq!((seeds.len(), diagram.orphans().len()), (4000, 0));
+        assert_eq!((seeds.len(), diagram.orphans().len()), (2000, 0));
         let point = |i: u32| Point::new(half * (2.0 * halton(i).0 - 1.0), half * (2.0 * halton(i).1 - 1.0));
         for i in 0..100_u32 {
             diagram.insert(point(1 + i)).unwrap();
-            diagram.remove(i * 20 + 3);
-            diagram.move_to(i * 20 + 7, point(5000 + i)).unwrap();
+            diagram.remove(i * 19 + 3);
+            diagram.move_to(i * 19 + 7, point(3000 + i)).unwrap();
         }
         assert_as_made_anew(&diagram, field);
         assert_eq!(diagram.orphans().len(), 0);
@@ -106,7 +106,7 @@ fn four_thousand_seeds_leave_no_orphans_and_change_as_if_made_anew() {
 fn work_is_linear_in_the_canvas() {
     let domain = square(2.0);
     let field = Swirl::default();
-    let per_vertex = [1000, 5000, 20_000].map(|seeds: u32| {
+    let per_vertex = [1000, 4000, 10_000].map(|seeds: u32| {
         let canvas = Canvas::intrinsic(&domain, &field, 6 * seeds as usize).unwrap();
         let at = |i| Point::new(4.0 * halton(i).0 - 2.0, 4.0 * halton(i).1 - 2.0);
         let points: Vec<Point> = (1..=seeds).map(at).collect();
@@ -124,8 +124,8 @@ fn removal_leaves_nothing_where_edges_lead_around_a_hole_and_back() {
     let square = |half: f64| [[-half, -half], [half, -half], [half, half], [-half, half]];
     let domain = plate(&[&square(1.0), &square(0.02)]);
     let mut loops = 0;
-    for i in 0..80_u32 {
-        let (angle, aspect) = (0.1 * f64::from(i), 3.0 + f64::from(i % 40));
+    for i in 0..40_u32 {
+        let (angle, aspect) = (0.2 * f64::from(i), 3.0 + f64::from(i % 40));
         let field = move |p: Point| {
             let (s, c) = (angle + 3.0 * (p.x + p.y)).sin_cos();
             let k = aspect * aspect;

@@ -74,9 +74,8 @@ fn methods_converge_as_theory_says() {
 #[test]
 fn marching_and_heat_are_accurate_at_any_anisotropy() {
     let mut faults = Vec::new();
-    for case in [2.0, 10.0, 40.0].into_iter().flat_map(|anisotropy| [turning(anisotropy, 0.5), half_plane(anisotropy)])
-    {
-        let canvases = [10_201, 40_804].map(|n| Canvas::intrinsic(&case.domain(), &case.metric, n).unwrap());
+    for case in [2.0, 40.0].into_iter().flat_map(|anisotropy| [turning(anisotropy, 0.5), half_plane(anisotropy)]) {
+        let canvases = [5000, 20_000].map(|n| Canvas::intrinsic(&case.domain(), &case.metric, n).unwrap());
         let [march, heat] =
             [Method::March, Method::Heat].map(|method| canvases.each_ref().map(|canvas| errors(&case, canvas, method)));
         println!("{}: march {march:.5?}, heat {heat:.5?}", case.name);

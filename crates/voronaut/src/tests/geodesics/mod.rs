@@ -44,7 +44,7 @@ fn distances_are_symmetric_and_obey_the_triangle_inequality() {
         Tensor::new(1.0 + slope * slope, slope, 1.0)
     };
     for (ground, kind) in grounds(square(2.0, turning)) {
-        let board = ground.board(kind, 6000);
+        let board = ground.board(kind, 3000);
         for method in ground.methods() {
             let (d, tolerance) = (board.table(method), 0.5 * tolerance(method));
             let method = format!("{method} on {kind} of {}", ground.name);
@@ -65,7 +65,7 @@ fn scaling_the_metric_scales_distances() {
     let factors = [1.0, 2.0_f64.powi(30), 2.0_f64.powi(-30)];
     for (ground, kind) in grounds(square(2.0, Swirl::default())) {
         let grounds = factors.map(|factor| ground.times(factor));
-        let boards = grounds.each_ref().map(|ground| ground.board(kind, 1500));
+        let boards = grounds.each_ref().map(|ground| ground.board(kind, 700));
         for method in ground.methods() {
             let method_on = format!("{method} on {kind} of {}", ground.name);
             let [unit, large, small] = [0, 1, 2].map(|k| {
@@ -172,8 +172,8 @@ fn diagrams_by_every_method_change_as_if_made_anew() {
     let (sphere, uniform) = (Input::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
     let seed = |i: u32| Point::new((1.7 * f64::from(i)).sin() * 1.9, (2.3 * f64::from(i)).cos() * 1.9);
     for kind in Kind::ALL {
-        let flat = Canvas::new(kind, &square, &swirl, 1500).unwrap();
-        let (round, _) = Canvas::on_surface(kind, &sphere, &uniform, 1500, &[]).unwrap();
+        let flat = Canvas::new(kind, &square, &swirl, 700).unwrap();
+        let (round, _) = Canvas::on_surface(kind, &sphere, &uniform, 700, &[]).unwrap();
         let vertex = |i: u32| VertexId(7919 * i % round.vertex_count() as u32);
         for method in Method::ALL.into_iter().filter(|method| method.drives_diagrams()) {
             let name = format!("{method} on {kind}");

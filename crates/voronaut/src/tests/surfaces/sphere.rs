@@ -46,7 +46,7 @@ fn dual_of(seeds: &[Point3], per_seed: usize) -> Vec<[u32; 3]> {
 
 #[test]
 fn the_dual_of_random_seeds_is_the_convex_hull() {
-    for (count, per_seed) in [(3000, 60), (3000, 20), (300, 60), (40, 60)] {
+    for (count, per_seed) in [(3000, 20), (300, 60), (40, 60)] {
         let seeds = seeds(count);
         let triangles = dual_of(&seeds, per_seed);
         let distinct: HashSet<[u32; 3]> = triangles.iter().map(|&t| smallest_first(t)).collect();
