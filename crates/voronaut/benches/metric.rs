@@ -1,8 +1,6 @@
 //! How long one evaluation of each metric field takes, and the integral of sqrt(det M):
 //! `cargo bench -p voronaut --bench metric`. Timings are read by people, never asserted.
 
-use rstar::primitives::Line;
-use rstar::{PointDistance, RTree};
 use std::hint::black_box;
 use std::time::Instant;
 use voronaut::geometry::{Point, Tensor};
@@ -78,16 +76,9 @@ fn fields() {
     }
 }
 
-/// Boundaries, and the nearest segment by a general R-tree to compare with (the distance alone, no tensor).
 fn boundaries() {
     for count in [400, 8_000, 100_000] {
         report(&format!("boundary of {count}"), &boundary(count));
-        let lines = coast(count).into_iter().map(|(a, b)| Line::new([a.x, a.y], [b.x, b.y])).collect();
-        let tree = RTree::bulk_load(lines);
-        report("... rstar, distance only", &|p: Point| {
-            let q = [p.x, p.y];
-            Tensor::isotropic(tree.nearest_neighbor(q).map_or(1.0, |line| line.distance_2(&q)))
-        });
     }
 }
 

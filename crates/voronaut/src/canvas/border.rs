@@ -2,16 +2,14 @@
 
 use super::Canvas;
 use crate::geodesic::Obstacles;
-use crate::geometry::{Aabb, Orientation, Point, orientation};
+use crate::geometry::{Aabb, Bounds, BoxTree, Orientation, Point, orientation, widened};
 use crate::triangulation::{FaceId, HalfEdge};
-use rstar::primitives::GeomWithData;
-use rstar::{AABB, RTree, RTreeObject};
 
 /// The sides of a canvas's border, and the corners around which paths can bend.
 pub(crate) struct Border<'a> {
     canvas: &'a Canvas,
-    sides: RTree<Side>,
-    corners: RTree<GeomWithData<[f64; 2], ()>>,
+    sides: BoxTree<Side, 2>,
+    corners: BoxTree<Point, 2>,
     /// Distances below this are rounding.
     rounding: f64,
 }
@@ -20,13 +18,6 @@ pub(crate) struct Border<'a> {
 struct Side {
     from: Point,
     to: Point,
-}
-
-impl RTreeObject for Side {
-    type Envelope = AABB<[f64; 2]>;
-    fn envelope(&self) -> Self::Envelope {
-        AABB::from_corners([self.from.x, self.from.y], [self.to.x, self.to.y])
-    }
 }
 
 /// Rounding, as a share of the domain's extent.
@@ -38,10 +29,11 @@ impl<'a> Border<'a> {
         let embedded = canvas.embedded();
         let topology = &embedded.topology;
         let borders = || topology.faces().flat_map(FaceId::half_edges).filter(|&h| topology.twin(h).is_none());
-        let sides = borders().map(|h| Side { from: embedded.ends(h)[0], to: embedded.ends(h)[1] }).collect();
-        let corners = borders().filter_map(|h| reflex(canvas, h)).map(|p| GeomWithData::new([p.x, p.y], ())).collect();
+        let side = |[from, to]: [Point; 2]| (around([from, to]), Side { from, to });
+        let sides = BoxTree::new(borders().map(|h| side(embedded.ends(h))));
+        let corners = BoxTree::new(borders().filter_map(|h| reflex(canvas, h)).map(|p| (around([p, p]), p)));
         let extent = Aabb::of(embedded.positions.iter().copied()).map_or(0.0, |b| b.extent().norm());
-        Self { canvas, sides: RTree::bulk_load(sides), corners: RTree::bulk_load(corners), rounding: ROUNDING * extent }
+        Self { canvas, sides, corners, rounding: ROUNDING * extent }
     }
 
     /// How far left of a side a point lies.
@@ -61,6 +53,10 @@ impl<'a> Border<'a> {
     }
 }
 
+fn around([p, q]: [Point; 2]) -> Bounds<2> {
+    [[p.x.min(q.x), p.y.min(q.y)], [p.x.max(q.x), p.y.max(q.y)]]
+}
+
 /// The start of a side of the border if the domain's angle there is more than straight.
 fn reflex(canvas: &Canvas, h: HalfEdge) -> Option<Point> {
     let topology = &canvas.embedded().topology;
@@ -74,11 +70,9 @@ fn reflex(canvas: &Canvas, h: HalfEdge) -> Option<Point> {
 impl Obstacles for Border<'_> {
     fn bars(&self, p: Point, q: Point) -> bool {
         // Wide enough to notice the side that a segment starts just outside of: step by step it would walk away.
-        let wide = 2.0 * self.rounding;
-        let envelope =
-            AABB::from_corners([p.x.min(q.x) - wide, p.y.min(q.y) - wide], [p.x.max(q.x) + wide, p.y.max(q.y) + wide]);
+        let near = widened(around([p, q]), 2.0 * self.rounding);
         let mut is_near = false;
-        for side in self.sides.locate_in_envelope_intersecting(envelope) {
+        for side in self.sides.meeting(near) {
             if self.crosses(side, p, q) {
                 return true;
             }
@@ -91,23 +85,19 @@ impl Obstacles for Border<'_> {
             let t = ((middle - side.from).dot(along) / along.dot(along)).clamp(0.0, 1.0);
             middle.distance(side.from + along * t) <= self.rounding
         };
-        is_near
-            && self.canvas.locate(middle).is_none()
-            && !self.sides.locate_in_envelope_intersecting(envelope).any(is_beside)
+        is_near && self.canvas.locate(middle).is_none() && !self.sides.meeting(near).any(is_beside)
     }
 
     fn corner_between(&self, from: [Point; 2], to: [Point; 2]) -> Option<Point> {
         let bounds = Aabb::of(from.into_iter().chain(to))?;
-        let envelope = AABB::from_corners([bounds.min.x, bounds.min.y], [bounds.max.x, bounds.max.y]);
         let holds = |[a, b, c]: [Point; 3], p: Point| {
             let sides = [(a, b), (b, c), (c, a)].map(|(u, v)| (v - u).cross(p - u));
             sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0)
         };
         let swept =
             [[from[0], from[1], to[1]], [from[0], to[1], to[0]], [from[0], from[1], to[0]], [from[1], to[1], to[0]]];
-        let corners = self.corners.locate_in_envelope_intersecting(envelope);
-        let points = corners.map(|corner| Point::new(corner.geom()[0], corner.geom()[1]));
-        let inside = points.filter(|&p| swept.iter().any(|&triangle| holds(triangle, p)));
+        let inside =
+            self.corners.meeting(bounds.into()).copied().filter(|&p| swept.iter().any(|&triangle| holds(triangle, p)));
         let height = |p: Point| (from[1] - from[0]).cross(p - from[0]).abs();
         inside.min_by(|&p, &q| height(p).total_cmp(&height(q)).then(p.x.total_cmp(&q.x)).then(p.y.total_cmp(&q.y)))
     }

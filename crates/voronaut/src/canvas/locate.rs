@@ -1,10 +1,9 @@
 //! Finding the face of the embedded triangulation that holds a point, in any domain.
 
 use super::Canvas;
-use crate::geometry::{Aabb, Orientation, Point, Vector, orientation};
+use crate::geometry::{Aabb, BoxTree, Orientation, Point, orientation, widened};
 use crate::planar::{Location, Planar, hilbert_order};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
-use rstar::{AABB, RTree, RTreeObject};
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
@@ -15,7 +14,7 @@ const ROUNDING: f64 = 1e-14;
 #[derive(Debug)]
 pub(super) struct Finder {
     anchors: Vec<VertexId>,
-    tree: OnceLock<RTree<Boxed>>,
+    tree: OnceLock<BoxTree<FaceId, 2>>,
     /// Vertices that share their position with others, by position: the fans of pinched vertices.
     copies: HashMap<[u64; 2], Vec<VertexId>>,
     /// What holds the domain; far from it predicates overflow.
@@ -102,11 +101,10 @@ impl Canvas {
 
     /// Looks at all faces whose boxes hold the point. The tree is made when it is first needed.
     fn search(&self, p: Point) -> Option<Location> {
-        let tree = self.embedded.finder.tree.get_or_init(|| RTree::bulk_load(boxes(&self.embedded.planar)));
-        let d = Vector::new(1.0, 1.0) * self.embedded.finder.rounding;
-        let around = AABB::from_corners([p.x - d.x, p.y - d.y], [p.x + d.x, p.y + d.y]);
+        let tree = self.embedded.finder.tree.get_or_init(|| boxes(&self.embedded.planar));
+        let around = widened([[p.x, p.y]; 2], self.embedded.finder.rounding);
         let topology = &self.embedded.planar.topology;
-        let near = || tree.locate_in_envelope_intersecting(around).map(|boxed| boxed.face);
+        let near = || tree.meeting(around).copied();
         let holds = |f: &FaceId| {
             let [a, b, c] = self.embedded.planar.triangle(*f);
             [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, p) != Orientation::Right)
@@ -123,19 +121,6 @@ impl Canvas {
         let d = b - a;
         let foot = a.lerp(b, ((p - a).dot(d) / d.dot(d)).clamp(0.0, 1.0));
         foot.distance(p) <= self.embedded.finder.rounding
-    }
-}
-
-#[derive(Debug)]
-struct Boxed {
-    face: FaceId,
-    envelope: AABB<[f64; 2]>,
-}
-
-impl RTreeObject for Boxed {
-    type Envelope = AABB<[f64; 2]>;
-    fn envelope(&self) -> Self::Envelope {
-        self.envelope
     }
 }
 
@@ -159,10 +144,6 @@ fn copies(planar: &Planar) -> HashMap<[u64; 2], Vec<VertexId>> {
     at
 }
 
-fn boxes(planar: &Planar) -> Vec<Boxed> {
-    let boxed = |face: FaceId| {
-        let corners = planar.triangle(face).map(|p| [p.x, p.y]);
-        Boxed { face, envelope: AABB::from_points(&corners) }
-    };
-    planar.topology.faces().map(boxed).collect()
+fn boxes(planar: &Planar) -> BoxTree<FaceId, 2> {
+    BoxTree::new(planar.topology.faces().filter_map(|face| Some((Aabb::of(planar.triangle(face))?.into(), face))))
 }

@@ -21,4 +21,4 @@ pub use space::{Aabb3, Point3, Vector3};
 pub use tensor::{Eigen, Tensor};
 pub(crate) use tensor3::Eigen3;
 pub use tensor3::{TangentPlane, Tensor3};
-pub(crate) use tree::BoxTree;
+pub(crate) use tree::{Bounds, BoxTree, widened};

@@ -179,11 +179,6 @@ impl Aabb {
         self.max - self.min
     }
 
-    /// Whether the boxes have a point in common, if only of their borders.
-    pub(crate) fn meets(&self, other: &Aabb) -> bool {
-        self.min.x <= other.max.x && other.min.x <= self.max.x && self.min.y <= other.max.y && other.min.y <= self.max.y
-    }
-
     /// The middle of the box.
     pub(crate) fn centre(&self) -> Point {
         self.min.midpoint(self.max)

@@ -1,21 +1,26 @@
-//! A static binary tree of boxes: which of many segments or triangles is nearest to a point.
+//! A static binary tree of boxes: which of many points, segments or triangles are near a place.
 //!
-//! Flat, built once, read by any number of threads without allocating; half the time of a general R-tree's nearest
-//! neighbour on the boundaries it is used for, and ties come with the same search.
+//! Flat, built once, read by any number of threads without allocating; what is found first of several that are equally near
+//! depends on the items alone.
 
-use super::{Aabb, Point};
+use super::{Aabb, Aabb3};
 
-/// Boxes of numbered items; the items of a leaf have consecutive *positions* in [`BoxTree::new`]'s order.
+/// Items in boxes of so many dimensions.
 #[derive(Clone, Debug)]
-pub(crate) struct BoxTree {
+pub(crate) struct BoxTree<T, const D: usize> {
+    /// Those of a leaf stand beside each other.
+    items: Vec<(Bounds<D>, T)>,
     /// In depth-first order: the first child of an inner node follows it.
-    nodes: Vec<Node>,
+    nodes: Vec<Node<D>>,
 }
+
+/// The least and the largest coordinates.
+pub(crate) type Bounds<const D: usize> = [[f64; D]; 2];
 
 /// A box, and either items (`count > 0`) from position `next`, or a second child at `next`.
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    bounds: Aabb,
+struct Node<const D: usize> {
+    bounds: Bounds<D>,
     next: u32,
     count: u32,
 }
@@ -26,41 +31,64 @@ const LEAF: usize = 4;
 /// Median splits halve the items, so that 2^32 of them are at most this deep.
 const MAX_DEPTH: usize = 32;
 
-impl BoxTree {
-    /// The tree, and the item at each position. Callers store their items in that order.
-    pub(crate) fn new(boxes: &[Aabb]) -> (Self, Vec<u32>) {
+impl<T, const D: usize> BoxTree<T, D> {
+    /// The tree of items, each with a box that holds it.
+    pub(crate) fn new(items: impl IntoIterator<Item = (Bounds<D>, T)>) -> Self {
+        let mut items: Vec<Option<(Bounds<D>, T)>> = items.into_iter().map(Some).collect();
+        let boxes: Vec<Bounds<D>> = items.iter().flatten().map(|item| item.0).collect();
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         let mut nodes = Vec::with_capacity(boxes.len());
         if !boxes.is_empty() {
-            build(boxes, &mut order, 0, &mut nodes);
+            build(&boxes, &mut order, 0, &mut nodes);
         }
-        (Self { nodes }, order)
+        Self { items: order.into_iter().filter_map(|i| items[i as usize].take()).collect(), nodes }
     }
 
-    /// Calls `visit` with the positions of all items whose box meets `bounds`, and of some others near them.
-    pub(crate) fn overlapping(&self, bounds: &Aabb, mut visit: impl FnMut(usize)) {
+    /// The box of all; `None` of no item.
+    pub(crate) fn bounds(&self) -> Option<Bounds<D>> {
+        self.nodes.first().map(|root| root.bounds)
+    }
+
+    /// The items whose boxes have a point in common with a box, if only of their borders.
+    pub(crate) fn meeting(&self, bounds: Bounds<D>) -> impl Iterator<Item = &T> {
         let mut pending = [0; MAX_DEPTH + 1];
         let mut count = usize::from(!self.nodes.is_empty());
-        while count > 0 {
-            count -= 1;
-            let index = pending[count];
-            let node = &self.nodes[index];
-            if !node.bounds.meets(bounds) {
-                continue;
-            }
-            if node.count > 0 {
-                (node.next..node.next + node.count).for_each(|item| visit(item as usize));
-            } else {
+        let leaves = std::iter::from_fn(move || {
+            while count > 0 {
+                count -= 1;
+                let index: usize = pending[count];
+                let node = &self.nodes[index];
+                if !meet(&node.bounds, &bounds) {
+                    continue;
+                }
+                if node.count > 0 {
+                    return Some(self.leaf(node));
+                }
                 pending[count] = node.next as usize;
                 pending[count + 1] = index + 1;
                 count += 2;
             }
-        }
+            None
+        });
+        leaves.flatten().filter(move |(own, _)| meet(own, &bounds)).map(|(_, item)| item)
     }
 
-    /// Calls `visit` with the positions of all items whose box is nearer to `p` than the bound, nearer boxes first.
-    /// `visit` returns the new bound, a squared distance; it starts at infinity.
-    pub(crate) fn search(&self, p: Point, mut visit: impl FnMut(usize) -> f64) {
+    /// The item with the least squared distance from `p`, of several the first that is met; `None` of no item.
+    pub(crate) fn nearest(&self, p: [f64; D], square: impl Fn(&T) -> f64) -> Option<&T> {
+        let mut best: Option<(f64, &T)> = None;
+        self.search(p, |item| {
+            let (found, least) = (square(item), best.map_or(f64::INFINITY, |b| b.0));
+            if found < least || best.is_none() {
+                best = Some((found, item));
+            }
+            found.min(least)
+        });
+        best.map(|b| b.1)
+    }
+
+    /// Calls `visit` with all items whose box is nearer to `p` than the bound, nearer boxes first. `visit` returns the new
+    /// bound, a squared distance; it starts at infinity.
+    pub(crate) fn search<'a>(&'a self, p: [f64; D], mut visit: impl FnMut(&'a T) -> f64) {
         let mut pending = [(0, 0.0); MAX_DEPTH];
         let mut count = usize::from(!self.nodes.is_empty());
         let mut bound = f64::INFINITY;
@@ -73,9 +101,7 @@ impl BoxTree {
             loop {
                 let node = &self.nodes[index];
                 if node.count > 0 {
-                    for item in node.next..node.next + node.count {
-                        bound = visit(item as usize);
-                    }
+                    self.leaf(node).iter().for_each(|(_, item)| bound = visit(item));
                     break;
                 }
                 let first = (index + 1, squared_distance(&self.nodes[index + 1].bounds, p));
@@ -92,34 +118,62 @@ impl BoxTree {
             }
         }
     }
+
+    fn leaf(&self, node: &Node<D>) -> &[(Bounds<D>, T)] {
+        &self.items[node.next as usize..(node.next + node.count) as usize]
+    }
 }
 
-fn build(boxes: &[Aabb], order: &mut [u32], position: usize, nodes: &mut Vec<Node>) {
-    let bounds = Aabb::of(order.iter().flat_map(|&i| [boxes[i as usize].min, boxes[i as usize].max]))
-        .expect("a node holds at least one item");
+impl From<Aabb> for Bounds<2> {
+    fn from(Aabb { min, max }: Aabb) -> Self {
+        [[min.x, min.y], [max.x, max.y]]
+    }
+}
+
+impl From<Aabb3> for Bounds<3> {
+    fn from(Aabb3 { min, max }: Aabb3) -> Self {
+        [min.to_array(), max.to_array()]
+    }
+}
+
+/// What is within so much of a box.
+pub(crate) fn widened<const D: usize>([low, high]: Bounds<D>, by: f64) -> Bounds<D> {
+    [low.map(|x| x - by), high.map(|x| x + by)]
+}
+
+fn build<const D: usize>(boxes: &[Bounds<D>], order: &mut [u32], position: usize, nodes: &mut Vec<Node<D>>) {
+    let bounds = order.iter().map(|&i| boxes[i as usize]).reduce(union).expect("a node holds at least one item");
     let index = nodes.len();
     if order.len() <= LEAF {
         nodes.push(Node { bounds, next: position as u32, count: order.len() as u32 });
         return;
     }
     nodes.push(Node { bounds, next: 0, count: 0 });
-    let extent = bounds.extent();
-    let key = |i: &u32| {
-        let centre = boxes[*i as usize].centre();
-        if extent.x > extent.y { centre.x } else { centre.y }
+    let extent = |k: &usize| bounds[1][*k] - bounds[0][*k];
+    let longest = (0..D).max_by(|j, k| extent(j).total_cmp(&extent(k))).unwrap_or(0);
+    let middle_of = |i: &u32| {
+        let [low, high] = boxes[*i as usize].map(|corner| corner[longest]);
+        0.5 * low + 0.5 * high
     };
     let middle = order.len() / 2;
-    order.select_nth_unstable_by(middle, |i, j| key(i).total_cmp(&key(j)).then(i.cmp(j)));
+    order.select_nth_unstable_by(middle, |i, j| middle_of(i).total_cmp(&middle_of(j)).then(i.cmp(j)));
     let (lower, upper) = order.split_at_mut(middle);
     build(boxes, lower, position, nodes);
     nodes[index].next = nodes.len() as u32;
     build(boxes, upper, position + middle, nodes);
 }
 
-fn squared_distance(bounds: &Aabb, p: Point) -> f64 {
-    let x = (bounds.min.x - p.x).max(p.x - bounds.max.x).max(0.0);
-    let y = (bounds.min.y - p.y).max(p.y - bounds.max.y).max(0.0);
-    x * x + y * y
+fn union<const D: usize>(a: Bounds<D>, b: Bounds<D>) -> Bounds<D> {
+    [std::array::from_fn(|k| a[0][k].min(b[0][k])), std::array::from_fn(|k| a[1][k].max(b[1][k]))]
+}
+
+fn meet<const D: usize>([a_low, a_high]: &Bounds<D>, [b_low, b_high]: &Bounds<D>) -> bool {
+    (0..D).all(|k| a_low[k] <= b_high[k] && b_low[k] <= a_high[k])
+}
+
+fn squared_distance<const D: usize>([low, high]: &Bounds<D>, p: [f64; D]) -> f64 {
+    let outside = |k: usize| (low[k] - p[k]).max(p[k] - high[k]).max(0.0);
+    (0..D).map(|k| outside(k) * outside(k)).sum()
 }
 
 #[cfg(test)]
@@ -128,56 +182,56 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    proptest! {
-        #[test]
-        fn finds_the_nearest_of_many_points(
-            points in prop::collection::vec((-1.0..1.0, -1.0..1.0), 1..200),
-            query in (-2.0..2.0, -2.0..2.0),
-        ) {
-            let points: Vec<Point> = points.into_iter().map(|(x, y)| Point::new(x, y)).collect();
-            let boxes: Vec<Aabb> = points.iter().map(|&p| Aabb { min: p, max: p }).collect();
-            let (tree, order) = BoxTree::new(&boxes);
-            let p = Point::new(query.0, query.1);
-            let mut best = f64::INFINITY;
-            tree.search(p, |position| {
-                best = best.min((points[order[position] as usize] - p).dot(points[order[position] as usize] - p));
-                best
-            });
-            let truth = points.iter().map(|&q| (q - p).dot(q - p)).fold(f64::INFINITY, f64::min);
-            prop_assert_eq!(best, truth);
-        }
+    fn square<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
+        (0..D).map(|k| (p[k] - q[k]) * (p[k] - q[k])).sum()
     }
 
     proptest! {
         #[test]
-        fn finds_all_boxes_that_overlap_one(
+        fn finds_the_nearest_of_many_points(
+            points in prop::collection::vec(prop::array::uniform3(-1.0..1.0), 1..200),
+            p in prop::array::uniform3(-2.0..2.0),
+        ) {
+            let tree = BoxTree::new(points.iter().map(|&q| ([q, q], q)));
+            let found = *tree.nearest(p, |&q| square(p, q)).unwrap();
+            let truth = points.iter().map(|&q| square(p, q)).fold(f64::INFINITY, f64::min);
+            prop_assert_eq!(square(p, found), truth);
+        }
+
+        #[test]
+        fn finds_the_boxes_that_meet_one(
             corners in prop::collection::vec((-1.0..1.0, -1.0..1.0, 0.0..0.3, 0.0..0.3), 1..200),
         ) {
-            let boxed = |(x, y, w, h)| Aabb { min: Point::new(x, y), max: Point::new(x + w, y + h) };
-            let boxes: Vec<Aabb> = corners.into_iter().map(boxed).collect();
-            let (tree, order) = BoxTree::new(&boxes);
-            let mut seen = vec![0; boxes.len()];
-            tree.overlapping(&boxes[0], |position| seen[order[position] as usize] += 1);
-            prop_assert!(boxes.iter().zip(&seen).all(|(b, &count)| count == 1 || count == 0 && !b.meets(&boxes[0])));
+            let boxes: Vec<Bounds<2>> = corners.into_iter().map(|(x, y, w, h)| [[x, y], [x + w, y + h]]).collect();
+            let tree = BoxTree::new(boxes.iter().copied().zip(0..));
+            let mut seen: Vec<usize> = tree.meeting(boxes[0]).copied().collect();
+            seen.sort_unstable();
+            let truth: Vec<usize> = (0..boxes.len()).filter(|&i| meet(&boxes[i], &boxes[0])).collect();
+            prop_assert_eq!(seen, truth);
         }
     }
 
     #[test]
     fn an_empty_tree_has_no_items() {
-        let (tree, order) = BoxTree::new(&[]);
-        tree.search(Point::default(), |_| panic!("no item to visit"));
-        assert!(order.is_empty());
+        let tree: BoxTree<(), 2> = BoxTree::new([]);
+        assert!(tree.nearest([0.0; 2], |()| 0.0).is_none() && tree.bounds().is_none());
+        assert_eq!(tree.meeting([[-1.0; 2], [1.0; 2]]).count(), 0);
     }
 
     #[test]
     fn many_equal_boxes_are_split_all_the_same() {
-        let same = Aabb { min: Point::new(1.0, 1.0), max: Point::new(2.0, 2.0) };
-        let (tree, order) = BoxTree::new(&[same; 100]);
-        let mut seen = vec![false; order.len()];
-        tree.search(Point::default(), |position| {
-            seen[position] = true;
+        let tree = BoxTree::new([[[1.0, 1.0], [2.0, 2.0]]; 100].into_iter().zip(0..));
+        let mut seen = vec![false; 100];
+        tree.search([0.0; 2], |&i: &usize| {
+            seen[i] = true;
             f64::INFINITY
         });
         assert!(seen.iter().all(|&s| s));
+    }
+
+    #[test]
+    fn distances_beyond_numbers_are_found_all_the_same() {
+        let tree = BoxTree::new([([[1e300; 2]; 2], 7)]);
+        assert_eq!(tree.nearest([0.0; 2], |_| f64::INFINITY), Some(&7));
     }
 }

@@ -8,9 +8,7 @@ use crate::geometry::{Aabb, BoxTree, Point, Vector};
 /// have no area.
 #[derive(Clone, Debug)]
 pub(crate) struct Locator {
-    /// In the order of `tree`, once for each piece.
-    pieces: Vec<Piece>,
-    tree: BoxTree,
+    pieces: BoxTree<Piece, 2>,
 }
 
 /// The point of a mesh that is nearest to a point: the point itself, if it is in the mesh.
@@ -54,13 +52,9 @@ impl Locator {
         for (i, &triangle) in corners.iter().enumerate() {
             cut(triangle, most, &mut |piece| found.push((piece, i as u32)));
         }
-        let boxes: Vec<Aabb> = found.iter().map(|&(piece, _)| piece).collect();
-        let (tree, order) = BoxTree::new(&boxes);
-        let piece = |&position: &u32| {
-            let (_, triangle) = found[position as usize];
-            Piece { corners: corners[triangle as usize], triangle }
-        };
-        Ok(Self { pieces: order.iter().map(piece).collect(), tree })
+        let boxed =
+            |(piece, triangle): (Aabb, u32)| (piece.into(), Piece { corners: corners[triangle as usize], triangle });
+        Ok(Self { pieces: BoxTree::new(found.into_iter().map(boxed)) })
     }
 
     /// Whether a mesh is planar, finite, and has triangles of vertices that exist; `name` is what messages call it.
@@ -98,18 +92,18 @@ impl Locator {
             // No box is farther than another: all would be looked into.
             return None;
         }
-        let mut best = f64::INFINITY;
-        let mut found = None;
-        self.tree.search(p, |position| {
-            let piece = &self.pieces[position];
-            let (square, weights) = nearest_point(piece.corners, p);
-            if square < best {
-                best = square;
-                found = Some(Located { triangle: piece.triangle, weights, distance: square.sqrt() });
-            }
-            best
-        });
-        found
+        let at = [p.x, p.y];
+        let located = |piece: &Piece, (square, weights): (f64, [f64; 3])| Located {
+            triangle: piece.triangle,
+            weights,
+            distance: square.sqrt(),
+        };
+        // Mostly a triangle holds the point, and no distance is asked for.
+        let mut around = self.pieces.meeting([at, at]);
+        around.find_map(|piece| Some(located(piece, (0.0, weights_within(piece.corners, p)?)))).or_else(|| {
+            let piece = self.pieces.nearest(at, |piece| nearest_point(piece.corners, p).0)?;
+            Some(located(piece, nearest_point(piece.corners, p)))
+        })
     }
 
     /// Puts into `found` the numbers, ascending, of all triangles that meet the triangle `corners`, and of some that only pass
@@ -117,7 +111,7 @@ impl Locator {
     pub(crate) fn near(&self, corners: [Point; 3], found: &mut Vec<u32>) {
         found.clear();
         cut(corners, PIECES_OF_QUERY, &mut |piece| {
-            self.tree.overlapping(&piece, |position| found.push(self.pieces[position].triangle));
+            found.extend(self.pieces.meeting(piece.into()).map(|piece| piece.triangle));
         });
         found.sort_unstable();
         found.dedup();
@@ -182,13 +176,18 @@ fn padded(b: Aabb) -> Aabb {
     Aabb { min: b.min - by, max: b.max + by }
 }
 
+/// The barycentric coordinates of `p` in a triangle of either orientation that holds it.
+fn weights_within([a, b, c]: [Point; 3], p: Point) -> Option<[f64; 3]> {
+    let areas = [(b - p).cross(c - p), (c - p).cross(a - p), (a - p).cross(b - p)];
+    let total: f64 = areas.iter().sum();
+    (total != 0.0 && areas.iter().all(|area| area * total >= 0.0)).then(|| areas.map(|area| area / total))
+}
+
 /// Squared distance of `p` to a triangle of either orientation, even without area, and the barycentric coordinates
 /// of the nearest point.
 fn nearest_point([a, b, c]: [Point; 3], p: Point) -> (f64, [f64; 3]) {
-    let areas = [(b - p).cross(c - p), (c - p).cross(a - p), (a - p).cross(b - p)];
-    let total: f64 = areas.iter().sum();
-    if total != 0.0 && areas.iter().all(|area| area * total >= 0.0) {
-        return (0.0, areas.map(|area| area / total));
+    if let Some(weights) = weights_within([a, b, c], p) {
+        return (0.0, weights);
     }
     let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
     for (i, (start, end)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {

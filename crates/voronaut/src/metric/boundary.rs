@@ -29,8 +29,7 @@ pub struct BoundarySizes {
 pub struct Boundary {
     sizes: BoundarySizes,
     /// In the order of `tree`.
-    segments: Vec<Segment>,
-    tree: BoxTree,
+    tree: BoxTree<Segment, 2>,
     /// The largest absolute coordinate.
     reach: f64,
 }
@@ -93,10 +92,9 @@ impl Boundary {
             return Err(Error::domain("a coordinate is not finite", place, "check the coordinates of the domain"));
         }
         let boxes: Vec<Aabb> = segments.iter().filter_map(|&(a, b)| Aabb::of([a, b])).collect();
-        let (tree, order) = BoxTree::new(&boxes);
-        let segments: Vec<Segment> = order.iter().map(|&i| Segment::new(segments[i as usize])).collect();
+        let tree = BoxTree::new(boxes.iter().map(|&b| b.into()).zip(segments.iter().copied().map(Segment::new)));
         let reach = boxes.iter().flat_map(|b| [b.min, b.max]).map(largest).fold(0.0, f64::max);
-        Ok(Self { sizes, segments, tree, reach })
+        Ok(Self { sizes, tree, reach })
     }
 
     /// Distance to the boundary, and the mean of n n' over the segments that are that near.
@@ -104,8 +102,7 @@ impl Boundary {
         let tolerance = TIE * (self.reach + largest(p));
         let (mut distance, mut bound) = (f64::INFINITY, f64::INFINITY);
         let (mut sum, mut count) = (Tensor::default(), 0);
-        self.tree.search(p, |position| {
-            let segment = &self.segments[position];
+        self.tree.search([p.x, p.y], |segment| {
             let (offset, inside) = segment.offset(p);
             if offset.dot(offset) <= bound {
                 let d = offset.norm();

@@ -3,10 +3,8 @@
 use super::coincident::{duplicates, longest};
 use super::position::Position;
 use super::self_intersections::{Pair, pairs};
-use crate::geometry::Point3;
+use crate::geometry::{Bounds, BoxTree, Point3, widened};
 use crate::mesh::Mesh;
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
 use std::sync::OnceLock;
 
 /// The places where a surface meets itself: pairs of its triangles that have more in common than a vertex or an edge of
@@ -14,11 +12,15 @@ use std::sync::OnceLock;
 #[derive(Debug)]
 pub struct Meetings {
     surface: Mesh,
-    found: OnceLock<RTree<Met>>,
+    found: OnceLock<BoxTree<Met, 3>>,
 }
 
-/// The box in which two triangles meet (that of either cut with that of the other), and whether these are neighbours.
-type Met = GeomWithData<Rectangle<[f64; 3]>, bool>;
+/// Where two triangles meet: the least coordinates of the box of either cut with that of the other, and whether they are neighbours.
+#[derive(Debug)]
+struct Met {
+    least: Point3,
+    are_neighbours: bool,
+}
 
 /// Places where a mesh meets itself and may, for the surface that it is a mesh of does so there.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
@@ -46,38 +48,40 @@ impl Meetings {
     /// How many there are.
     #[cfg(test)]
     pub(crate) fn count(&self) -> usize {
-        self.found().size()
+        self.all().count()
     }
 
     /// Where one of them is.
     pub(crate) fn first(&self) -> Option<Point3> {
-        self.found().iter().next().map(|met| Point3::from(met.geom().lower()))
+        self.all().next().map(|met| met.least)
     }
 
     /// Whether the surface meets itself within `reach` of a place: a mesh with edges of that length, whose chords leave the
     /// surface, may then do so there. Neighbours (triangles with a common vertex) may only where neighbours of the surface do: else
     /// any fold beside a place where sheets cross would pass for one of the surface.
     pub(super) fn excuse(&self, at: Point3, reach: f64, are_neighbours: bool) -> bool {
-        let around = [-reach, reach].map(|r| at.to_array().map(|x| x + r));
-        let near = AABB::from_corners(around[0], around[1]);
-        let mut met = self.found().locate_in_envelope_intersecting(near);
-        met.any(|met| !are_neighbours || met.data)
+        let mut met = self.found().meeting(widened([at.to_array(); 2], reach));
+        met.any(|met| !are_neighbours || met.are_neighbours)
     }
 
-    fn found(&self) -> &RTree<Met> {
+    fn all(&self) -> impl Iterator<Item = &Met> {
+        self.found().meeting([[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]])
+    }
+
+    fn found(&self) -> &BoxTree<Met, 3> {
         self.found.get_or_init(|| {
             let mesh = &self.surface;
             let crossing = pairs(mesh).into_iter().map(|pair| meeting(mesh, &pair));
             let touching = duplicates(mesh).into_iter().map(|[v, _]| {
                 let at = mesh.points[v as usize];
-                Met::new(Rectangle::from_aabb(AABB::from_point(at)), false)
+                ([at; 2], Met { least: at.into(), are_neighbours: false })
             });
-            RTree::bulk_load(crossing.chain(touching).collect())
+            BoxTree::new(crossing.chain(touching))
         })
     }
 }
 
-fn meeting(mesh: &Mesh, pair: &Pair) -> Met {
+fn meeting(mesh: &Mesh, pair: &Pair) -> (Bounds<3>, Met) {
     let [t, u] = pair.triangles.map(|t| mesh.triangles[t]);
     let bounds = |t: [u32; 3], pick: fn(f64, f64) -> f64| {
         let [a, b, c] = t.map(|v| mesh.points[v as usize]);
@@ -85,7 +89,7 @@ fn meeting(mesh: &Mesh, pair: &Pair) -> Met {
     };
     let [low, high] = [[t, u].map(|t| bounds(t, f64::min)), [t, u].map(|t| bounds(t, f64::max))];
     let both = [[0, 1, 2].map(|k| low[0][k].max(low[1][k])), [0, 1, 2].map(|k| high[0][k].min(high[1][k]))];
-    Met::new(Rectangle::from_corners(both[0], both[1]), pair.are_neighbours(mesh))
+    (both, Met { least: both[0].into(), are_neighbours: pair.are_neighbours(mesh) })
 }
 
 impl Excused {

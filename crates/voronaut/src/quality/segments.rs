@@ -1,7 +1,6 @@
-//! Straight segments in an R-tree.
+//! Straight segments by place.
 
-use crate::geometry::{Aabb, Point};
-use rstar::{AABB, PointDistance, RTree, RTreeObject};
+use crate::geometry::{Aabb, BoxTree, Point};
 
 /// A segment with a number to know it by.
 pub(crate) struct Piece {
@@ -19,44 +18,31 @@ impl Piece {
     }
 }
 
-impl RTreeObject for Piece {
-    type Envelope = AABB<[f64; 2]>;
-    fn envelope(&self) -> Self::Envelope {
-        AABB::from_corners([self.a.x, self.a.y], [self.b.x, self.b.y])
-    }
-}
-
-impl PointDistance for Piece {
-    fn distance_2(&self, &[x, y]: &[f64; 2]) -> f64 {
-        let away = Point::new(x, y) - self.nearest(Point::new(x, y));
-        away.dot(away)
-    }
-}
-
 /// Segments that can be searched by place.
 pub(crate) struct Segments {
-    tree: RTree<Piece>,
+    tree: BoxTree<Piece, 2>,
 }
 
 impl Segments {
     /// An index of the pieces; all coordinates are finite.
     pub(crate) fn new(pieces: Vec<Piece>) -> Self {
-        Self { tree: RTree::bulk_load(pieces) }
+        let boxed = |piece: Piece| Some((Aabb::of([piece.a, piece.b])?.into(), piece));
+        Self { tree: BoxTree::new(pieces.into_iter().filter_map(boxed)) }
     }
 
     /// The pieces whose bounding box meets a box (both closed).
     pub(crate) fn meeting(&self, bounds: Aabb) -> impl Iterator<Item = &Piece> {
-        let Aabb { min, max } = bounds;
-        self.tree.locate_in_envelope_intersecting(AABB::from_corners([min.x, min.y], [max.x, max.y]))
+        self.tree.meeting(bounds.into())
     }
 
     /// The largest coordinate x of any piece.
     pub(crate) fn right_end(&self) -> f64 {
-        self.tree.root().envelope().upper()[0]
+        self.tree.bounds().map_or(f64::NEG_INFINITY, |bounds| bounds[1][0])
     }
 
     /// Euclidean distance from a point to the nearest piece; `None` where there is no piece.
     pub(crate) fn distance(&self, p: Point) -> Option<f64> {
-        self.tree.nearest_neighbor([p.x, p.y]).map(|piece| piece.nearest(p).distance(p))
+        let away = |piece: &Piece| p - piece.nearest(p);
+        self.tree.nearest([p.x, p.y], |piece| away(piece).dot(away(piece))).map(|piece| away(piece).norm())
     }
 }

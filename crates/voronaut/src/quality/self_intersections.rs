@@ -2,11 +2,9 @@
 
 use super::contact::{Corners, contact};
 use super::fault::Fault;
-use crate::geometry::{Aabb3, Point3};
+use crate::geometry::{Aabb3, Bounds, BoxTree, Point3};
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
 
 /// Two triangles that meet, the smaller number first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,11 +36,11 @@ impl Pair {
 /// those that are no neighbours.
 pub(super) fn pairs(mesh: &Mesh) -> Vec<Pair> {
     let corners: Vec<Corners> = mesh.triangles.par_iter().map(|&t| corners(mesh, t)).collect();
-    let boxes: Vec<AABB<[f64; 3]>> = corners.par_iter().filter_map(bounds).collect();
-    let numbered = boxes.iter().zip(0..).map(|(b, i)| GeomWithData::new(Rectangle::from_aabb(*b), i));
-    let tree: RTree<GeomWithData<Rectangle<[f64; 3]>, usize>> = RTree::bulk_load(numbered.collect());
+    let boxes: Vec<Bounds<3>> =
+        corners.par_iter().filter_map(|corners| Some(Aabb3::of(corners.points)?.into())).collect();
+    let tree = BoxTree::new(boxes.iter().copied().zip(0..));
     let of_one = |i: usize| {
-        let others = tree.locate_in_envelope_intersecting(boxes[i]).map(|other| other.data).filter(|&j| j > i);
+        let others = tree.meeting(boxes[i]).copied().filter(|&j| j > i);
         let meets = |j| Some(Pair { triangles: [i, j], at: contact(&corners[i], &corners[j])? });
         let mut met: Vec<Pair> = others.filter_map(meets).collect();
         met.sort_unstable_by_key(|pair| pair.triangles);
@@ -53,11 +51,6 @@ pub(super) fn pairs(mesh: &Mesh) -> Vec<Pair> {
 
 fn corners(mesh: &Mesh, t: [u32; 3]) -> Corners {
     Corners { vertices: t, points: mesh.positions_of(t) }
-}
-
-fn bounds(corners: &Corners) -> Option<AABB<[f64; 3]>> {
-    let bounds = Aabb3::of(corners.points)?;
-    Some(AABB::from_corners(bounds.min.to_array(), bounds.max.to_array()))
 }
 
 #[cfg(test)]

@@ -1,10 +1,9 @@
 //! Sizes for which chords stay close to the curves of a domain.
 
+use super::curves::distance_to_segment;
 use super::simplify;
 use crate::domain::{Chain, Domain, Pslg};
-use crate::geometry::{Point, Tensor, Vector};
-use rstar::RTree;
-use rstar::primitives::{GeomWithData, Line};
+use crate::geometry::{Aabb, BoxTree, Point, Tensor, Vector, widened};
 use std::collections::HashSet;
 
 /// A chord of length h is h^2 / 8 times the curvature away from its curve.
@@ -15,7 +14,7 @@ const SAGITTA: f64 = 8.0;
 /// for about its length, for it will be an edge, or more than one. Curves are simplified by the same distance first, so that what is
 /// smaller is no bend; a vertex that turns by more than `ar` (degrees) is a corner and none either. Required segments ask for nothing.
 pub(crate) struct CurveSizes {
-    tree: RTree<SizedSegment>,
+    segments: BoxTree<SizedSegment, 2>,
     hausd: f64,
 }
 
@@ -24,7 +23,10 @@ pub(crate) struct CurveSizes {
 const OWN: f64 = 1.189_207_115_002_721;
 
 /// A segment with the size that it asks for.
-type SizedSegment = GeomWithData<Line<[f64; 2]>, f64>;
+struct SizedSegment {
+    ends: [Point; 2],
+    size: f64,
+}
 
 impl CurveSizes {
     /// Measures the curves.
@@ -36,25 +38,27 @@ impl CurveSizes {
         let required: HashSet<u32> = pslg.required_points.iter().copied().collect();
         let chains = pslg.chains();
         let free = chains.iter().filter(|chain| !chain.kind.required);
-        let sized = free.flat_map(|chain| sized(pslg, &required, chain, hausd, ar)).collect();
-        Self { tree: RTree::bulk_load(sized), hausd }
+        let sized = free.flat_map(|chain| sized(pslg, &required, chain, hausd, ar));
+        let boxed = |one: SizedSegment| Some((Aabb::of(one.ends)?.into(), one));
+        Self { segments: BoxTree::new(sized.filter_map(boxed)), hausd }
     }
 
     /// The size of the segments within `hausd` of a point, which are at most two as a rule, in the (geometric) mean, and their
     /// direction (of length one); `None` where there is none.
     pub(crate) fn at(&self, p: Point) -> Option<(f64, Vector)> {
-        let reach = (self.hausd * self.hausd).max(f64::MIN_POSITIVE);
-        let near: Vec<&SizedSegment> = self.tree.locate_within_distance([p.x, p.y], reach).collect();
+        let reach = self.hausd.max(f64::MIN_POSITIVE.sqrt());
+        let around = self.segments.meeting(widened([[p.x, p.y]; 2], reach));
+        let near: Vec<&SizedSegment> =
+            around.filter(|bent| distance_to_segment(p, bent.ends[0], bent.ends[1]) <= reach).collect();
         let first = direction(near.first()?);
         let sum = near[1..].iter().map(|bent| direction(bent)).fold(first, |sum, d| sum + d * d.dot(first).signum());
-        let logarithms: f64 = near.iter().map(|bent| bent.data.ln()).sum();
+        let logarithms: f64 = near.iter().map(|bent| bent.size.ln()).sum();
         Some(((logarithms / near.len() as f64).exp(), sum * (1.0 / sum.norm())))
     }
 }
 
 fn direction(bent: &SizedSegment) -> Vector {
-    let [a, b] = [bent.geom().from, bent.geom().to];
-    let along = Vector::new(b[0] - a[0], b[1] - a[1]);
+    let along = bent.ends[1] - bent.ends[0];
     along * (1.0 / along.norm())
 }
 
@@ -73,7 +77,7 @@ fn sized(pslg: &Pslg, required: &HashSet<u32>, chain: &Chain, hausd: f64, ar: f6
     let found = segments.map(|(p, h)| {
         let (bend, own) = (h[0].min(h[1]), OWN * p[0].distance(p[1]));
         let size = if bend.is_finite() { bend.max(own) } else { own };
-        SizedSegment::new(Line::new([p[0].x, p[0].y], [p[1].x, p[1].y]), size)
+        SizedSegment { ends: [p[0], p[1]], size }
     });
     found.collect()
 }

@@ -2,10 +2,8 @@
 
 use crate::domain::{Chain, Domain, Pslg};
 use crate::geodesic::chord;
-use crate::geometry::{Aabb, Orientation, Point, orientation};
+use crate::geometry::{Aabb, BoxTree, Orientation, Point, orientation};
 use crate::metric::MetricField;
-use rstar::primitives::GeomWithData;
-use rstar::{AABB, RTree};
 
 /// The domain with fewer vertices along its curves: about one per unit of metric length, more where an edge would
 /// stray farther than `tolerance` (Euclidean) from the vertices that it skips. Ends of curves stay, loops keep at
@@ -44,23 +42,18 @@ fn thin(pslg: &Pslg, chain: &Chain, field: &dyn MetricField, tolerance: f64, nei
 }
 
 /// All vertices of the domain, to see which of them a chord would leave on its other side.
-struct Neighbours(RTree<GeomWithData<[f64; 2], u32>>);
+struct Neighbours(BoxTree<(Point, u32), 2>);
 
 impl Neighbours {
     fn new(pslg: &Pslg) -> Self {
-        let entries = pslg.points.iter().enumerate().map(|(i, p)| GeomWithData::new([p.x, p.y], i as u32)).collect();
-        Self(RTree::bulk_load(entries))
+        Self(BoxTree::new((0..).zip(&pslg.points).map(|(i, &p)| ([[p.x, p.y]; 2], (p, i)))))
     }
 
     /// Whether a vertex that is not part of the run lies between the run and its chord (de Berg, van Kreveld and
     /// Schirra 1998): the chord would change on which side of the curve that vertex is.
     fn any_between(&self, run: &[Point], vertices: &[u32]) -> bool {
         let Some(bounds) = Aabb::of(run.iter().copied()).filter(|_| run.len() > 2) else { return false };
-        let envelope = AABB::from_corners([bounds.min.x, bounds.min.y], [bounds.max.x, bounds.max.y]);
-        self.0.locate_in_envelope(envelope).any(|entry| {
-            let [x, y] = *entry.geom();
-            !vertices.contains(&entry.data) && is_inside(run, Point::new(x, y))
-        })
+        self.0.meeting(bounds.into()).any(|(p, i)| !vertices.contains(i) && is_inside(run, *p))
     }
 }
 
@@ -117,7 +110,7 @@ fn keep_within(
     }
 }
 
-fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
+pub(super) fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
     let d = b - a;
     let t = ((p - a).dot(d) / d.dot(d)).clamp(0.0, 1.0);
     if t.is_nan() { p.distance(a) } else { p.distance(a.lerp(b, t)) }

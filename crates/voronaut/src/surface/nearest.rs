@@ -1,14 +1,13 @@
 //! The closest point of a surface.
 
 use super::{Place, Surface};
-use crate::geometry::{Aabb3, Point3};
+use crate::geometry::{Aabb3, BoxTree, Point3};
 use crate::triangulation::FaceId;
-use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
 /// The triangles of a surface in a tree of boxes: one search costs about the logarithm of their number.
 #[derive(Clone, Debug)]
 pub(crate) struct Nearest {
-    tree: RTree<Triangle>,
+    tree: BoxTree<Triangle, 3>,
 }
 
 /// What of a surface is closest to a point.
@@ -29,14 +28,16 @@ struct Triangle {
 impl Nearest {
     /// Puts all triangles of a surface into a tree.
     pub(crate) fn new(surface: &Surface) -> Self {
-        let triangles = surface.topology().faces().map(|face| Triangle { corners: surface.triangle(face), face });
-        Self { tree: RTree::bulk_load(triangles.collect()) }
+        Self::numbered(surface.topology().faces().map(|face| Triangle { corners: surface.triangle(face), face }))
     }
 
     /// Puts triangles of no surface into a tree: for distances alone.
     pub(crate) fn of(triangles: impl Iterator<Item = [Point3; 3]>) -> Self {
-        let triangles = triangles.zip(0..).map(|(corners, i)| Triangle { corners, face: FaceId(i) });
-        Self { tree: RTree::bulk_load(triangles.collect()) }
+        Self::numbered(triangles.zip(0..).map(|(corners, i)| Triangle { corners, face: FaceId(i) }))
+    }
+
+    fn numbered(triangles: impl Iterator<Item = Triangle>) -> Self {
+        Self { tree: BoxTree::new(triangles.filter_map(|t| Some((Aabb3::of(t.corners)?.into(), t)))) }
     }
 
     /// The distance of `p` to the closest triangle. `None` without triangles, or where `p` is not finite.
@@ -44,7 +45,7 @@ impl Nearest {
         if !p.is_finite() {
             return None;
         }
-        let corners = self.tree.nearest_neighbor(p.to_array())?.corners;
+        let corners = self.nearest(p)?.corners;
         Some(Point3::weighted(corners, closest_weights(corners, p)).distance(p))
     }
 
@@ -54,26 +55,14 @@ impl Nearest {
         if !p.is_finite() {
             return None;
         }
-        let found = self.tree.nearest_neighbor(p.to_array())?;
+        let found = self.nearest(p)?;
         let place = surface.place(found.face, closest_weights(found.corners, p));
         Some(Closest { place, distance: place.position.distance(p) })
     }
-}
 
-impl RTreeObject for Triangle {
-    type Envelope = AABB<[f64; 3]>;
-
-    fn envelope(&self) -> Self::Envelope {
-        let bounds = Aabb3::of(self.corners).expect("three corners");
-        AABB::from_corners(bounds.min.to_array(), bounds.max.to_array())
-    }
-}
-
-impl PointDistance for Triangle {
-    fn distance_2(&self, &p: &[f64; 3]) -> f64 {
-        let p = Point3::from(p);
-        let offset = Point3::weighted(self.corners, closest_weights(self.corners, p)) - p;
-        offset.dot(offset)
+    fn nearest(&self, p: Point3) -> Option<&Triangle> {
+        let offset = |t: &Triangle| Point3::weighted(t.corners, closest_weights(t.corners, p)) - p;
+        self.tree.nearest(p.to_array(), |t| offset(t).dot(offset(t)))
     }
 }
 

@@ -1,37 +1,20 @@
 //! Triangles in space that cross each other.
 
 use super::closest::Sheet;
-use crate::geometry::{Aabb3, Point3};
+use crate::geometry::{Aabb3, Bounds, BoxTree, Point3};
 use crate::parallel::prelude::*;
 use crate::triangulation::FaceId;
 use robust::{Coord3D, orient3d};
-use rstar::{AABB, RTree, RTreeObject};
-
-struct Boxed {
-    envelope: AABB<[f64; 3]>,
-    face: FaceId,
-}
-
-impl RTreeObject for Boxed {
-    type Envelope = AABB<[f64; 3]>;
-
-    fn envelope(&self) -> Self::Envelope {
-        self.envelope
-    }
-}
 
 /// All pairs of triangles of which an edge of one passes through the inside of the other, by exact predicates, in order, the
 /// smaller number first; only pairs of which one at least is `asked` for. What lies in one plane, or only touches, does not
 /// cross.
 pub(super) fn crossings(sheet: &Sheet, asked: impl Fn(FaceId) -> bool + Sync) -> Vec<[FaceId; 2]> {
-    let boxed = |face: FaceId| {
-        let bounds = Aabb3::of(sheet.triangle(face)).expect("three corners");
-        Boxed { envelope: AABB::from_corners(bounds.min.to_array(), bounds.max.to_array()), face }
-    };
+    let bounds = |f: FaceId| -> Bounds<3> { Aabb3::of(sheet.triangle(f)).expect("three corners").into() };
     let faces: Vec<FaceId> = sheet.topology.faces().collect();
-    let tree = RTree::bulk_load(faces.iter().map(|&f| boxed(f)).collect());
+    let tree = BoxTree::new(faces.iter().map(|&f| (bounds(f), f)));
     let of_one = |&f: &FaceId| {
-        let near = tree.locate_in_envelope_intersecting(boxed(f).envelope).map(|other| other.face);
+        let near = tree.meeting(bounds(f)).copied();
         // Of two that are asked for, the smaller one looks.
         let others = near.filter(|&g| if asked(g) { f < g } else { f != g });
         others.filter(|&g| cross(sheet, f, g)).map(|g| [f.min(g), f.max(g)]).collect::<Vec<_>>()

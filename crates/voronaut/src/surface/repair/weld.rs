@@ -3,9 +3,8 @@
 use super::mended::Damage;
 use super::work::Work;
 use crate::error::{Error, Result};
+use crate::geometry::{BoxTree, widened};
 use crate::surface::orient::sides;
-use rstar::RTree;
-use rstar::primitives::GeomWithData;
 use std::collections::HashMap;
 
 /// Vertices on borders this close, as a share of the diagonal, are at one place.
@@ -74,18 +73,15 @@ fn join_near(work: &mut Work) {
     }
     let mut places: Vec<u32> = reach.keys().copied().collect();
     places.sort_unstable();
-    let point = |&v: &u32| GeomWithData::new(work.position(v).to_array(), v);
-    let tree = RTree::bulk_load(places.iter().map(point).collect());
+    let at = |v: u32| [work.position(v).to_array(); 2];
+    let tree = BoxTree::new(places.iter().map(|&v| (at(v), v)));
     let mut pairs = Vec::new();
     for v in places {
-        let p = work.position(v).to_array();
+        let distance = |other: u32| work.position(other).distance(work.position(v));
+        let near = tree.meeting(widened(at(v), reach[&v])).copied().filter(|&other| distance(other) <= reach[&v]);
         // By number of results capped, not of those looked at: within the reach there are hardly ever two.
-        for other in tree.locate_within_distance(p, reach[&v] * reach[&v]).take(NEIGHBOURS) {
-            let most = reach[&other.data];
-            if other.data < v && work.position(other.data).distance(work.position(v)) <= most {
-                pairs.push([other.data, v]);
-            }
-        }
+        let found = near.take(NEIGHBOURS).filter(|&other| other < v && distance(other) <= reach[&other]);
+        pairs.extend(found.map(|other| [other, v]));
     }
     for [v, w] in pairs {
         work.places.join(v, w);
