@@ -55,7 +55,7 @@ pub(super) enum Size {
 }
 
 impl<'s> Draped<'s> {
-    /// The triangles of the input.
+    /// The triangles of the input; edges are to be measured.
     ///
     /// # Errors
     /// [`Error::Metric`] where the metric is not positive definite at a vertex.
@@ -72,9 +72,7 @@ impl<'s> Draped<'s> {
         };
         let unused = input.surface.place(topology.faces().next().expect("a surface has triangles"), [1.0, 0.0, 0.0]);
         let places: Vec<Place> = (0..slots).into_par_iter().map(|v| place(v).unwrap_or(unused)).collect();
-        let mut draped = Self { input, metric, topology, places, tensors: Vec::new() }.in_metric(metric)?;
-        draped.measure_all(Along::Straight);
-        Ok(draped)
+        Self { input, metric, topology, places, tensors: Vec::new() }.in_metric(metric)
     }
 
     /// The same triangulation in another metric; edges are to be measured.
@@ -89,11 +87,15 @@ impl<'s> Draped<'s> {
         Ok(Self { metric, tensors, ..self.clone() })
     }
 
-    /// Halves the largest edge, again and again, until there are so many vertices.
+    /// Halves the largest edge, again and again, until there are so many vertices. Edges are then to be measured.
     ///
     /// # Errors
     /// The metric is not positive definite at a new vertex.
     pub(super) fn refine(&mut self, size: Size, vertices: usize, counters: &mut CanvasCounters) -> Result<()> {
+        if self.topology.vertex_count() >= vertices {
+            return Ok(());
+        }
+        self.measure_all(Along::Straight);
         let mut queue: Buckets<[VertexId; 2]> = Buckets::default();
         let enqueue = |draped: &Self, queue: &mut Buckets<_>, h: HalfEdge| {
             queue.push(draped.size_of(h, size), [draped.topology.origin(h), draped.topology.target(h)]);

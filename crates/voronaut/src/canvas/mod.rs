@@ -30,7 +30,7 @@ pub(crate) use border::Border;
 pub use consistent::PickCounters;
 pub(crate) use consistent::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 pub use draped::Draped;
-pub(crate) use extent::metric_area;
+pub(crate) use extent::{area_of_surface, metric_area};
 pub use kind::Kind;
 pub use star_set::{StarFigures, StarSet};
 pub use way::Way;
@@ -309,5 +309,17 @@ fn renumbered(planar: &Planar) -> Planar {
     Planar {
         topology: planar.topology.renumbered(&old),
         positions: order.iter().map(|&i| positions[i as usize]).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::size_for;
+
+    #[test]
+    fn few_seeds_count_as_many_and_every_number_for_each_counts() {
+        assert_eq!([1, 300, 301, 10_000].map(|seeds| size_for(seeds, 60)), [150_000, 150_000, 75_000, 600_000]);
+        assert_eq!([1, 300, 301, 10_000].map(|seeds| size_for(seeds, 4)), [10_000, 10_000, 5000, 40_000]);
+        assert_eq!(size_for(1, u32::MAX), 2500 * u32::MAX as usize);
     }
 }

@@ -87,12 +87,8 @@ impl Mending for SurfaceDual<'_> {
     fn quality(&self, corners: [SurfaceSite; 3]) -> f64 {
         let [a, b, c] = corners.map(|site| site.place.position);
         let tensor = (corners.iter().fold(Tensor3::default(), |sum, site| sum + site.log) * (1.0 / 3.0)).exp();
-        let (u, v) = (b - a, c - a);
-        let (uu, uv, vv) = (tensor.dot(u, u), tensor.dot(u, v), tensor.dot(v, v));
-        let doubled = (uu * vv - uv * uv).max(0.0).sqrt();
-        let normal = u.cross(v);
+        let (normal, quality) = ((b - a).cross(c - a), tensor.shape([a, b, c]));
         let is_upright = corners.iter().all(|site| site.place.normal.dot(normal) > 0.0);
-        let quality = 3.0_f64.sqrt() * doubled / (uu + vv - uv);
         if is_upright { quality } else { -quality }
     }
 

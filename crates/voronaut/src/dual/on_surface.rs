@@ -7,7 +7,7 @@
 use super::{Kind, Moving};
 use crate::error::{Error, Result};
 use crate::geodesic::LocalMetric;
-use crate::geometry::{Point, Point3, TangentPlane, Vector, Vector3};
+use crate::geometry::{Point, Point3, TangentPlane, Tensor3, Vector, Vector3};
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
@@ -20,6 +20,10 @@ pub(super) const TIE: f64 = 1e-9;
 pub(super) const UPRIGHT: f64 = 0.3;
 /// Triangles with this cosine or less are folded over, or flat.
 pub(super) const FOLDED: f64 = 1e-6;
+/// A triangle is flat if its height is so small a part of an edge.
+const FLAT: f64 = 1e-9;
+/// Seeds that have moved by less than this (metric) since the metric was measured there keep what was found.
+const STILL: f64 = 0.05;
 /// Slopes of the surface over a chord that tell its length; steeper ones count as this.
 const STEEP: f64 = 0.8;
 
@@ -39,7 +43,15 @@ pub(crate) struct State {
     pub(super) places: Vec<Place>,
     planes: Vec<TangentPlane>,
     pub(super) locals: Vec<LocalMetric>,
+    pub(super) measured: Vec<Measured>,
     kinds: Vec<Kind>,
+}
+
+/// Where the metric of a seed was measured, and what it is there, not scaled.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Measured {
+    at: Point3,
+    pub(super) tensor: Tensor3,
 }
 
 impl<'a> SurfaceDual<'a> {
@@ -60,10 +72,15 @@ impl<'a> SurfaceDual<'a> {
         let stays = |v: u32| (v as usize) < staying || topology.is_border_vertex(VertexId(v));
         let kind = |v: u32| if stays(v) { Kind::Corner(v) } else { Kind::Free };
         let kinds = (0..places.len() as u32).map(kind).collect();
-        let locals = vec![LocalMetric::default(); places.len()];
-        let mut dual =
-            Self { input, metric, factor, state: State { topology, places, planes, locals, kinds }, flips: 0 };
-        dual.measure_each(|_, field| LocalMetric::at(field, Point::default()))?;
+        let (locals, measured) = (vec![LocalMetric::default(); places.len()], vec![Measured::default(); places.len()]);
+        let mut dual = Self {
+            input,
+            metric,
+            factor,
+            state: State { topology, places, planes, locals, measured, kinds },
+            flips: 0,
+        };
+        dual.measure_all()?;
         Ok(dual)
     }
 
@@ -104,7 +121,11 @@ impl<'a> SurfaceDual<'a> {
     pub(crate) fn rescale(&mut self, factor: f64) -> Result<()> {
         self.factor = factor;
         self.forget_lengths(self.topology().edges().collect());
-        self.measure_each(|_, field| LocalMetric::at(field, Point::default()))
+        self.measure_all()
+    }
+
+    fn measure_all(&mut self) -> Result<()> {
+        self.measure_each(|_, _| true, |_, field| LocalMetric::at(field, Point::default()))
     }
 
     fn forget_lengths(&mut self, edges: Vec<HalfEdge>) {
@@ -117,15 +138,22 @@ impl<'a> SurfaceDual<'a> {
         self.state.places[v.index()].position
     }
 
-    fn measure_each(&mut self, measure: impl Fn(&LocalMetric, &Scaled) -> LocalMetric + Sync) -> Result<()> {
+    /// Evaluates the metric at seeds that are due, by the metric there and how far in the tangent plane they have moved.
+    fn measure_each(
+        &mut self,
+        is_due: impl Fn(&LocalMetric, Vector) -> bool + Sync,
+        measure: impl Fn(&LocalMetric, &Scaled) -> LocalMetric + Sync,
+    ) -> Result<()> {
         let (input, metric, factor) = (self.input, self.metric, self.factor);
-        let State { places, planes, locals, .. } = &mut self.state;
-        locals.par_iter_mut().zip(places.as_slice()).zip(planes.as_slice()).with_min_len(64).for_each(
-            |((local, at), plane)| {
+        let State { places, planes, locals, measured, .. } = &mut self.state;
+        let seeds = locals.par_iter_mut().zip(measured).zip(places.as_slice()).zip(planes.as_slice());
+        seeds.with_min_len(64).for_each(|(((local, measured), at), plane)| {
+            if is_due(local, plane.flatten(at.position - measured.at)) {
                 let chart = Chart::in_plane(input, metric, *at, *plane);
                 *local = measure(local, &Scaled { field: &chart, factor });
-            },
-        );
+                *measured = Measured { at: at.position, tensor: metric.at(at) };
+            }
+        });
         match self.state.locals.iter().position(|local| !local.tensor.is_positive_definite()) {
             None => Ok(()),
             Some(i) => {
@@ -144,6 +172,7 @@ impl<'a> SurfaceDual<'a> {
             self.state.locals[v.index()].moved(&Scaled { field: &chart, factor: self.factor }, Point::default());
         if local.tensor.is_positive_definite() {
             self.state.locals[v.index()] = local;
+            self.state.measured[v.index()] = Measured { at: at.position, tensor: self.metric.at(&at) };
         }
     }
 
@@ -194,8 +223,13 @@ impl<'a> SurfaceDual<'a> {
     }
 }
 
+/// The least cosine of a triangle's normal with others; 0 of a triangle that is flat but for rounding.
 fn upright([a, b, c]: [Point3; 3], normals: [Vector3; 3]) -> f64 {
-    let normal = (b - a).cross(c - a).unit().unwrap_or_default();
+    let normal = (b - a).cross(c - a);
+    if normal.norm() <= FLAT * (b - a).norm().max((c - a).norm()).powi(2) {
+        return 0.0;
+    }
+    let normal = normal.unit().unwrap_or_default();
     normals.iter().map(|n| n.dot(normal)).fold(1.0, f64::min)
 }
 
@@ -278,7 +312,8 @@ impl Moving for SurfaceDual<'_> {
     }
 
     fn settle_moves(&mut self) -> Result<u64> {
-        self.measure_each(|local, field| local.moved(field, Point::default()))?;
+        let is_due = |local: &LocalMetric, by: Vector| local.tensor.length(by) >= STILL;
+        self.measure_each(is_due, |local, field| local.moved(field, Point::default()))?;
         Ok(self.flip_all())
     }
 

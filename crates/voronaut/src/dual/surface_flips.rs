@@ -1,7 +1,7 @@
 //! Flips of the mesh in the making: by its own lengths, by a test of the caller's, and away from folds.
 
-use super::Moving;
 use super::on_surface::{FOLDED, SurfaceDual, TIE, UPRIGHT};
+use super::{Mending, Moving};
 use crate::geodesic::Margin;
 use crate::in_circle::Quad;
 use crate::parallel::prelude::*;
@@ -11,8 +11,10 @@ use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Rounds, Triangulat
 const LIMIT: Limit = Limit::OfSlot(6);
 /// A flip may not leave a triangle whose quality is below this if both were better before.
 const POOR: f64 = 0.5;
-/// Rounds of flips that unfold, at most.
-const UNFOLDINGS: usize = 64;
+/// Triangles below this quality are nearly flat.
+const NEARLY_FLAT: f64 = 0.2;
+/// Rounds of flips that unfold or round off, at most.
+const ROUNDS: usize = 64;
 
 impl SurfaceDual<'_> {
     /// Flips every edge that the metric wants flipped and the surface allows. Returns the number of flips.
@@ -101,7 +103,24 @@ impl SurfaceDual<'_> {
     /// Flips edges of triangles that are folded over, whatever the metric says, as long as less of their area leans over.
     /// Returns the number of flips.
     pub(crate) fn unfold(&mut self) -> u64 {
-        flip_in_rounds(&mut Unfolding { dual: self }, UNFOLDINGS)
+        flip_in_rounds(&mut Improving { dual: self, by: Self::unfolding }, ROUNDS)
+    }
+
+    /// Flips edges of triangles that are nearly flat, as those of a mesh are measured, whatever lengths say, as long as the worse of
+    /// the two gets better. Returns the number of flips.
+    pub(crate) fn round_off(&mut self) -> u64 {
+        flip_in_rounds(&mut Improving { dual: self, by: Self::rounding }, ROUNDS)
+    }
+
+    /// The quality of the worse triangle of an edge, where it is poor and better after a flip.
+    fn rounding(&self, h: HalfEdge) -> Option<f64> {
+        let Flip { now, then } = self.flip_of(h)?;
+        let worse = |pair: [[VertexId; 3]; 2]| {
+            pair.map(|corners| self.quality(corners.map(|v| self.site(v)))).into_iter().fold(1.0, f64::min)
+        };
+        let before = worse(now);
+        let may_flip = || self.leaning(then).upright >= self.leaning(now).upright.min(UPRIGHT);
+        (before < NEARLY_FLAT && worse(then) > before && may_flip()).then_some(before)
     }
 
     /// By how much more area leans over after a flip, of an edge of a triangle that is folded over; `None` where it is no better.
@@ -112,18 +131,20 @@ impl SurfaceDual<'_> {
     }
 }
 
-struct Unfolding<'a, 'b> {
+/// A mesh whose edges are flipped where a number says so, the least first.
+struct Improving<'a, 'b> {
     dual: &'a mut SurfaceDual<'b>,
+    by: fn(&SurfaceDual<'b>, HalfEdge) -> Option<f64>,
 }
 
-impl Rounds for Unfolding<'_, '_> {
+impl Rounds for Improving<'_, '_> {
     fn topology(&self) -> &Triangulation {
         self.dual.topology()
     }
 
     fn wanted(&mut self, edges: &[HalfEdge]) -> Vec<(f64, HalfEdge)> {
-        let dual = &*self.dual;
-        edges.par_iter().with_min_len(64).filter_map(|&h| Some((dual.unfolding(h)?, h))).collect()
+        let (dual, by) = (&*self.dual, self.by);
+        edges.par_iter().with_min_len(64).filter_map(|&h| Some((by(dual, h)?, h))).collect()
     }
 
     fn flip(&mut self, h: HalfEdge) -> bool {
@@ -180,4 +201,29 @@ impl Leaning {
 /// A margin if its sign is certain.
 fn certain(margin: Option<Margin>) -> Margin {
     margin.filter(Margin::is_certain).unwrap_or(Margin::UNKNOWN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point3, Tensor3};
+    use crate::mesh::Mesh;
+    use crate::surface::metric::Constant;
+    use crate::surface::{Input, Surface};
+
+    #[test]
+    fn what_is_nearly_flat_is_rounded_off() {
+        let corners = vec![[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [3.0, 3.0, 0.0], [-3.0, 3.0, 0.0]];
+        let sheet = Mesh { points: corners, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
+        let (input, metric) = (Input::new(Surface::new(&sheet).unwrap(), None), Constant(Tensor3::IDENTITY));
+        // The third is above the middle of the edge between the first two by next to nothing.
+        let seeds = [(-1.0, 0.0), (1.0, 0.0), (0.0, 1e-6), (0.0, 2.0), (0.0, -2.0)];
+        let places = seeds.map(|(x, y)| input.closest(Point3::new(x, y, 0.0)).unwrap()).to_vec();
+        let triangles = [[0, 1, 2], [0, 2, 3], [2, 1, 3], [0, 4, 1]];
+        let topology = Triangulation::from_triangles(5, &triangles, &[0; 4]);
+        let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
+        assert_eq!((dual.round_off(), dual.round_off()), (1, 0));
+        let least = dual.triangles().into_iter().map(|t| dual.quality(t.map(|v| dual.site(VertexId(v)))));
+        assert!(least.fold(1.0, f64::min) > 0.5);
+    }
 }

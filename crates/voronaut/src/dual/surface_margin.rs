@@ -28,7 +28,7 @@ impl SurfaceDual<'_> {
 
     pub(super) fn chord_length(&self, ends: [VertexId; 2]) -> f64 {
         let [p, q] = ends.map(|w| &self.state.places[w.index()]);
-        let tensors = [p, q].map(|place| self.metric.at(place));
+        let tensors = ends.map(|w| self.state.measured[w.index()].tensor);
         let middle = self.input.lift(p, p.position.lerp(q.position, 0.5));
         let middle = middle.map_or(tensors, |place| [self.metric.at(&place); 2]);
         self.input.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()

@@ -1,6 +1,6 @@
 //! Symmetric 3 x 3 tensors: the metric M of space, of which a surface sees what lies in its tangent planes.
 
-use super::{Tensor, Vector, Vector3};
+use super::{Point3, Tensor, Vector, Vector3};
 use std::ops::{Add, Mul};
 
 /// The symmetric matrix ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)); a metric when positive definite.
@@ -87,6 +87,18 @@ impl Tensor3 {
     /// u' M v.
     pub(crate) fn dot(self, u: Vector3, v: Vector3) -> f64 {
         u.dot(self.apply(v))
+    }
+
+    /// Metric area of the parallelogram of two vectors.
+    pub(crate) fn area(self, u: Vector3, v: Vector3) -> f64 {
+        let mixed = self.dot(u, v);
+        (self.dot(u, u) * self.dot(v, v) - mixed * mixed).max(0.0).sqrt()
+    }
+
+    /// Quality of a triangle in this metric: 1 of an equilateral one, 0 without area.
+    pub(crate) fn shape(self, [a, b, c]: [Point3; 3]) -> f64 {
+        let (u, v) = (b - a, c - a);
+        3.0_f64.sqrt() * self.area(u, v) / (self.dot(u, u) + self.dot(v, v) - self.dot(u, v))
     }
 
     /// Metric length of a vector: sqrt(v' M v).

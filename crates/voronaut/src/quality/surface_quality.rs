@@ -61,7 +61,7 @@ impl<'a> Field<'a> {
         let place = self.nearest.closest(self.surface, p).ok_or_else(not_finite)?.place;
         let tensor = self.metric.at(&place);
         check_tensor3(tensor, || place.position.to_string())?;
-        Ok(Seen { tensor, normal: place.normal })
+        Ok(Seen { tensor, normal: self.surface.normal_at(&place) })
     }
 
     /// The metric around a place, as the tangent plane there sees it, and a vector in it, of its own length; `None` where the

@@ -3,7 +3,7 @@
 use super::stopwatch::Stopwatch;
 use super::surface_pass::{Pass, Reseed, Setting};
 use super::{MeshOptions, Meshed, Mesher, Seeding};
-use crate::canvas::{Canvas, Kind};
+use crate::canvas::area_of_surface;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::optimise::{FitOptions, fit};
@@ -13,7 +13,7 @@ use crate::sampling::{MeasuredCurves, demand_memory};
 use crate::surface::metric::{Closer, SurfaceMetric};
 use crate::surface::{Component, Implicit, Input};
 
-/// Vertices of the canvas on which the surface is measured first.
+/// Vertices of the triangles on which the surface is measured first.
 const MEASURING: usize = 20_000;
 /// Rounds of more vertices for the sake of the distance to the surface at most, and how many times as many at most in one.
 const ROUNDS: usize = 5;
@@ -238,10 +238,9 @@ impl<'a> Job<'a> {
     /// A triangulation with V vertices has 2 (V - chi) - B faces, B of its edges on the border; each has the area sqrt(3) / 4.
     fn plan(&mut self) -> Result<(usize, f64)> {
         self.setting.progress.begin("planning", 1)?;
-        let (canvas, _) = Canvas::on_surface(Kind::Intrinsic, self.setting.input, self.setting.metric, MEASURING, &[])?;
-        let draped = canvas.draped();
+        let area = area_of_surface(self.setting.input, self.setting.metric, MEASURING)?;
         // Of the surface as it was before it was cut: vertices on its cuts count once.
-        let (area, chi) = (draped.area(), self.setting.input.seams.whole().euler as f64);
+        let chi = self.setting.input.seams.whole().euler as f64;
         let extra = self.setting.curves.extra();
         let vertices = |factor: f64| 2.0 / 3.0_f64.sqrt() * area * factor + extra * factor.sqrt() + chi;
         let (count, factor) = match (self.setting.options.vertices, self.setting.options.complexity) {

@@ -437,6 +437,8 @@ fn reach(at: [Place; 3]) -> f64 {
 fn mend(dual: &mut SurfaceDual) {
     let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
     for _ in 0..MENDINGS {
+        dual.round_off();
         mend_worst(dual, poor);
     }
+    dual.round_off();
 }

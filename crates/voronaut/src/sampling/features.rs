@@ -111,19 +111,22 @@ impl<'a> MeasuredCurves<'a> {
             at.insert(v, found.seeds.len() as u32);
             found.seeds.push(FeatureSeed { stop: Some(v), ..self.at_vertex(v) });
         }
-        let mut joined: BTreeMap<[VertexId; 2], bool> = BTreeMap::new();
+        let shortest = self.shortest_between();
         for (i, curve) in features.curves.iter().enumerate() {
             if self.is_slit(curve) && curve.edges.len() == 1 {
                 found.loose += 1;
                 continue;
             }
             let [a, b] = curve.ends();
-            let is_first = joined.insert([a.min(b), a.max(b)], true).is_none();
+            let is_shortest = shortest.get(&in_order([a, b])) == Some(&i);
             let parts = (self.length(i) / spacing).round() as usize;
             let density = density.get(i).copied().unwrap_or(1);
-            let parts = parts.max(self.least(curve, is_first)).saturating_mul(density);
-            let keeps_all = curve.mark.is_required || density == ALL_VERTICES;
-            let stations = if keeps_all { at_vertices(curve) } else { self.stations(i, parts, hausd) };
+            let least = self.least(curve, is_shortest);
+            let stations = match parts.max(least).saturating_mul(density) {
+                _ if curve.mark.is_required || density == ALL_VERTICES => at_vertices(curve),
+                2 if parts < 2 => self.refined(i, &self.at_bulge(i), hausd),
+                parts => self.refined(i, &self.stations(i, parts), hausd),
+            };
             let inner = stations[1..stations.len() - 1].iter().map(|&station| self.at_station(curve, station));
             let first = found.seeds.len() as u32;
             let [begin, end] = if curve.has_stops { [at[&a], at[&b]] } else { [first; 2] };
@@ -137,13 +140,25 @@ impl<'a> MeasuredCurves<'a> {
         found
     }
 
+    /// Of the curves with the same ends the shortest (Euclidean): those that bulge more are not to become one edge with it.
+    fn shortest_between(&self) -> BTreeMap<[VertexId; 2], usize> {
+        let mut shortest: BTreeMap<[VertexId; 2], (f64, usize)> = BTreeMap::new();
+        for (i, curve) in self.input.seams.features.curves.iter().enumerate() {
+            let edges = curve.edges.iter().map(|edge| edge.positions(&self.input.surface));
+            let length = edges.map(|[a, b]| a.distance(b)).sum();
+            let least = shortest.entry(in_order(curve.ends())).or_insert((length, i));
+            *least = if length < least.0 { (length, i) } else { *least };
+        }
+        shortest.into_iter().map(|(ends, (_, i))| (ends, i)).collect()
+    }
+
     /// The number of edges that a curve needs for the mesh to be one.
-    fn least(&self, curve: &Curve, is_first: bool) -> usize {
+    fn least(&self, curve: &Curve, is_shortest: bool) -> usize {
         let [a, b] = curve.ends();
         match () {
             () if a == b => LEAST_OF_LOOP,
             // A slit without a seed between its ends would have two edges between them.
-            () if self.is_slit(curve) || !is_first => 2,
+            () if self.is_slit(curve) || !is_shortest => 2,
             () => 1,
         }
     }
@@ -154,7 +169,7 @@ impl<'a> MeasuredCurves<'a> {
     }
 
     /// Places on a curve, as edges and parameters, that cut it into so many parts or more. First and last are its ends.
-    fn stations(&self, curve: usize, parts: usize, hausd: Option<f64>) -> Vec<(usize, f64)> {
+    fn stations(&self, curve: usize, parts: usize) -> Vec<(usize, f64)> {
         let edges = &self.input.seams.features.curves[curve].edges;
         let total = self.length(curve);
         let mut stations: Vec<(usize, f64)> = vec![(0, 0.0)];
@@ -162,10 +177,23 @@ impl<'a> MeasuredCurves<'a> {
             stations.push(self.station(curve, total * k as f64 / parts as f64));
         }
         stations.push((edges.len() - 1, 1.0));
-        match hausd {
-            None => stations,
-            Some(most) => self.refined(curve, &stations, most),
-        }
+        stations
+    }
+
+    /// The ends of a curve and its middle; or, where that is much nearer to the chord between the ends, the vertex farthest from it.
+    fn at_bulge(&self, curve: usize) -> Vec<(usize, f64)> {
+        let edges = &self.input.seams.features.curves[curve].edges;
+        let last = edges.len() - 1;
+        let at = |(edge, t): (usize, f64)| {
+            let [a, b]: [Point3; 2] = edges[edge].positions(&self.input.surface);
+            a.lerp(b, t)
+        };
+        let chord = [at((0, 0.0)), at((last, 1.0))];
+        let bulge = |station: (usize, f64)| distance_to_segment(at(station), chord);
+        let middle = self.station(curve, 0.5 * self.length(curve));
+        let farthest = (1..=last).map(|i| (i, 0.0)).max_by(|&x, &y| bulge(x).total_cmp(&bulge(y)));
+        let inner = farthest.filter(|&station| bulge(station) > 2.0 * bulge(middle)).unwrap_or(middle);
+        vec![(0, 0.0), inner, (last, 1.0)]
     }
 
     /// Where a curve has this length behind it.
@@ -178,7 +206,8 @@ impl<'a> MeasuredCurves<'a> {
     }
 
     /// The stations, and between them vertices of the curve, so that no chord strays farther (Douglas and Peucker 1973).
-    fn refined(&self, curve: usize, stations: &[(usize, f64)], most: f64) -> Vec<(usize, f64)> {
+    fn refined(&self, curve: usize, stations: &[(usize, f64)], most: Option<f64>) -> Vec<(usize, f64)> {
+        let Some(most) = most else { return stations.to_vec() };
         let edges = &self.input.seams.features.curves[curve].edges;
         let surface = &self.input.surface;
         let at = |(edge, t): (usize, f64)| {
@@ -265,6 +294,10 @@ fn speeds(input: &Input, metric: &dyn SurfaceMetric, edge: &CurveEdge, t: f64) -
         *speed = metric.at(&place).length(b - a);
     }
     speeds
+}
+
+fn in_order([a, b]: [VertexId; 2]) -> [VertexId; 2] {
+    [a.min(b), a.max(b)]
 }
 
 fn distance_to_segment(p: Point3, [a, b]: [Point3; 2]) -> f64 {

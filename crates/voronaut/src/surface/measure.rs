@@ -1,8 +1,11 @@
 //! Size and shape of a surface: area, normals, components, borders, genus.
 
-use super::Surface;
+use super::{Place, Surface};
 use crate::geometry::{Aabb3, Vector3};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
+
+/// A place whose weight (barycentric) at a corner is less is on the side opposite.
+const ON_SIDE: f64 = 1e-9;
 
 /// A connected part of a surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,6 +43,21 @@ impl Surface {
     pub fn vertex_normal(&self, v: VertexId) -> Option<Vector3> {
         let weighted = self.topology.star(v).map(|h| self.normal(h.face()) * self.angle(h));
         weighted.fold(Vector3::default(), |sum, normal| sum + normal).unit()
+    }
+
+    /// The unit normal at a place: that of its triangle, on an edge the mean of both, at a vertex [`Surface::vertex_normal`].
+    pub(crate) fn normal_at(&self, place: &Place) -> Vector3 {
+        let own = self.normal(place.face);
+        let is_off = place.weights.map(|weight| weight < ON_SIDE);
+        let corners = place.face.half_edges();
+        match (0..3).filter(|&k| is_off[k]).collect::<Vec<usize>>()[..] {
+            [k] => {
+                let across = self.topology.twin(corners[(k + 1) % 3]).map(|h| self.normal(h.face()));
+                across.and_then(|other| (own + other).unit()).unwrap_or(own)
+            }
+            [j, k] => self.vertex_normal(self.topology.origin(corners[3 - j - k])).unwrap_or(own),
+            _ => own,
+        }
     }
 
     /// The angle of a half-edge's triangle at its origin, in radians.

@@ -134,3 +134,17 @@ fn an_equation_whose_triangles_meet_is_refused_with_the_place() {
     let error = mesh_surface(&input, field.as_ref(), &MeshOptions::default(), &Silent).unwrap_err();
     assert!(error.to_string().contains("triangles of f = 0 meet"), "{error}");
 }
+
+/// A cliff of one triangle: two creases between the same corners, one straight, one over the top. Sampled coarsely they were one line,
+/// with triangles of no area between.
+#[test]
+fn a_patch_between_two_creases_keeps_its_area() {
+    let points = [[-3.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 0.05, 1.0], [-6.0, 10.0, 0.0], [6.0, 10.0, 0.0]];
+    let points = [&points[..], &[[-6.0, -10.0, 0.0], [6.0, -10.0, 0.0]]].concat();
+    let triangles = vec![[0, 1, 2], [0, 2, 3], [2, 4, 3], [1, 4, 2], [0, 5, 1], [5, 6, 1]];
+    let input = input(points, triangles).cut(&FeatureOptions::default()).unwrap();
+    let found = meshed(&input, "uniform", 14).mesh;
+    let metric = field(&Spec::Uniform, &input, Bounds::default()).unwrap();
+    let quality = surface_quality(&found, &input.surface, metric.as_ref()).unwrap().quality;
+    assert!(quality.min > 0.1 && found.points.iter().any(|p| p[2] > 0.5), "{quality:?}");
+}

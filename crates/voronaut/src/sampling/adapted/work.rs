@@ -134,21 +134,13 @@ impl<'a> Work<'a> {
 
     /// Quality in the mean metric of the corners: 1 of an equilateral triangle.
     pub(super) fn quality(&self, corners: [VertexId; 3]) -> f64 {
-        let [uu, uv, vv] = self.products(corners);
-        3.0_f64.sqrt() * (uu * vv - uv * uv).max(0.0).sqrt() / (uu + vv - uv)
+        self.mean(corners).shape(corners.map(|v| self.at(v).place.position))
     }
 
     /// Area in that metric.
     fn area(&self, corners: [VertexId; 3]) -> f64 {
-        let [uu, uv, vv] = self.products(corners);
-        0.5 * self.root * self.root * (uu * vv - uv * uv).max(0.0).sqrt()
-    }
-
-    /// Of the two edges at the first corner, in the mean metric of all, without the factor.
-    fn products(&self, [a, b, c]: [VertexId; 3]) -> [f64; 3] {
-        let tensor = self.mean([a, b, c]);
-        let [u, v] = [b, c].map(|other| self.at(other).place.position - self.at(a).place.position);
-        [tensor.dot(u, u), tensor.dot(u, v), tensor.dot(v, v)]
+        let [a, b, c] = corners.map(|v| self.at(v).place.position);
+        0.5 * self.root * self.root * self.mean(corners).area(b - a, c - a)
     }
 
     /// The sine of the sum of the angles that face an edge a-b from c and d, in the mean metric of the four: negative where it is
