@@ -10,7 +10,6 @@ use voronaut::surface::{Input, Mended, RepairOptions};
 
 /// A domain: of the plane, or a surface in space.
 #[derive(Debug)]
-#[expect(clippy::large_enum_variant, reason = "a program has one, and not for long")]
 pub enum Given {
     /// A planar domain.
     Plane(Domain),

@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn many_equal_boxes_are_split_all_the_same() {
         let tree = BoxTree::new([[[1.0, 1.0], [2.0, 2.0]]; 100].into_iter().zip(0..));
-        let mut seen = vec![false; 100];
+        let mut seen = [false; 100];
         tree.search([0.0; 2], |&i: &usize| {
             seen[i] = true;
             f64::INFINITY
