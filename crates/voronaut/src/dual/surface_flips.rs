@@ -12,7 +12,7 @@ const LIMIT: Limit = Limit::OfSlot(6);
 /// A flip may not leave a triangle whose quality is below this if both were better before.
 const POOR: f64 = 0.5;
 /// Triangles below this quality are nearly flat.
-const NEARLY_FLAT: f64 = 0.2;
+const NEARLY_FLAT: f64 = 0.05;
 /// Rounds of flips that unfold or round off, at most.
 const ROUNDS: usize = 64;
 
