@@ -42,7 +42,10 @@ impl Segments {
 
     /// Euclidean distance from a point to the nearest piece; `None` where there is no piece.
     pub(crate) fn distance(&self, p: Point) -> Option<f64> {
-        let away = |piece: &Piece| p - piece.nearest(p);
-        self.tree.nearest([p.x, p.y], |piece| away(piece).dot(away(piece))).map(|piece| away(piece).norm())
+        let nearest = self.tree.nearest([p.x, p.y], |piece| {
+            let away = p - piece.nearest(p);
+            away.dot(away)
+        });
+        nearest.map(|piece| piece.nearest(p).distance(p))
     }
 }

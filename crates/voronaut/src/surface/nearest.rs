@@ -61,8 +61,10 @@ impl Nearest {
     }
 
     fn nearest(&self, p: Point3) -> Option<&Triangle> {
-        let offset = |t: &Triangle| Point3::weighted(t.corners, closest_weights(t.corners, p)) - p;
-        self.tree.nearest(p.to_array(), |t| offset(t).dot(offset(t)))
+        self.tree.nearest(p.to_array(), |t| {
+            let offset = Point3::weighted(t.corners, closest_weights(t.corners, p)) - p;
+            offset.dot(offset)
+        })
     }
 }
 
