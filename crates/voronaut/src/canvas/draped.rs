@@ -72,19 +72,11 @@ impl<'s> Draped<'s> {
         };
         let unused = input.surface.place(topology.faces().next().expect("a surface has triangles"), [1.0, 0.0, 0.0]);
         let places: Vec<Place> = (0..slots).into_par_iter().map(|v| place(v).unwrap_or(unused)).collect();
-        Self { input, metric, topology, places, tensors: Vec::new() }.in_metric(metric)
-    }
-
-    /// The same triangulation in another metric; edges are to be measured.
-    ///
-    /// # Errors
-    /// [`Error::Metric`] where the metric is not positive definite at a vertex.
-    pub(super) fn in_metric(&self, metric: &'s dyn SurfaceMetric) -> Result<Self> {
-        let tensors: Vec<Tensor3> = self.places.par_iter().with_min_len(256).map(|place| metric.at(place)).collect();
-        for v in self.topology.vertices() {
-            check_tensor3(tensors[v.index()], || self.position(v).to_string())?;
+        let tensors: Vec<Tensor3> = places.par_iter().with_min_len(256).map(|place| metric.at(place)).collect();
+        for v in topology.vertices() {
+            check_tensor3(tensors[v.index()], || places[v.index()].position.to_string())?;
         }
-        Ok(Self { metric, tensors, ..self.clone() })
+        Ok(Self { input, metric, topology, places, tensors })
     }
 
     /// Halves the largest edge, again and again, until there are so many vertices. Edges are then to be measured.

@@ -41,16 +41,6 @@ impl<'s> Canvas<Draped<'s>> {
         Ok((Self::flipped(draped.renumbered(&order), kind, counters), at))
     }
 
-    /// The same vertices with lengths in another metric.
-    ///
-    /// # Errors
-    /// [`Error::Metric`] where that is not positive definite at a vertex.
-    pub(crate) fn remeasured(&self, metric: &'s dyn SurfaceMetric) -> Result<Self> {
-        let (mut counters, mut draped) = (CanvasCounters::default(), self.embedded.in_metric(metric)?);
-        draped.settle_lengths(&mut counters)?;
-        Ok(Self::flipped(draped, self.kind, counters))
-    }
-
     fn flipped(embedded: Draped<'s>, kind: Kind, mut counters: CanvasCounters) -> Self {
         let mut topology = embedded.topology.clone();
         counters.flips = flip::to_intrinsic_delaunay(&mut topology);

@@ -4,24 +4,19 @@
 //! removals and flips, each of which keeps it embedded. Edges are flipped by the metric in-circle test
 //! ([`flips`](self)); a flip that the metric wants and the plane forbids is *blocked*.
 
-mod assemble;
 mod consult;
 mod edit;
-mod flips;
 mod margin;
-mod mending;
 mod moving;
 mod on_surface;
 mod surface_flips;
-mod surface_margin;
 mod patch;
 
 pub(crate) use consult::Consultation;
 pub use consult::{Disagreement, Road};
 pub(crate) use edit::Saved;
 pub(crate) use margin::Effort;
-pub(crate) use mending::Mending;
-pub(crate) use moving::Moving;
+pub(crate) use moving::{Mending, Moving};
 pub(crate) use on_surface::SurfaceDual;
 
 use crate::domain::Domain;

@@ -182,12 +182,6 @@ impl<'a> SurfaceDual<'a> {
         self.input.lift(&at, at.position + plane.lift(by))
     }
 
-    /// How many triangles do not stand upright on the surface.
-    pub(crate) fn downright(&self) -> usize {
-        let is_down = |&f: &FaceId| self.upright(self.topology().corners(f)) < UPRIGHT;
-        self.topology().faces().filter(is_down).count()
-    }
-
     /// Whether a triangle faces away from the mean of the surface's normals at its corners.
     pub(crate) fn is_folded(&self, f: FaceId) -> bool {
         let corners = self.topology().corners(f);

@@ -1,10 +1,10 @@
 //! Relaxation: seeds move so that the energy of centroidal Voronoi tessellations falls (Lloyd 1982; Du, Faber and
 //! Gunzburger 1999).
 
-use super::cells::CellsOf;
+use super::cell::CellsOf;
 use super::movers::{State, is_rough_around};
 use super::quasi_newton::Memory;
-use super::rest::Rest;
+use super::survey::Rest;
 use crate::dual::Moving;
 use crate::error::Result;
 use crate::geometry::Vector;

@@ -2,7 +2,6 @@
 //! too short or too long. On surfaces: vertices of a finished mesh moved to where it is closest to the surface (`fit`).
 
 mod cell;
-mod cells;
 mod exchange;
 mod fit;
 mod lloyd;
@@ -11,16 +10,11 @@ mod on_canvas;
 mod polish;
 mod protect;
 mod quasi_newton;
-mod region;
-mod rest;
 mod survey;
-mod tangent;
-mod worst;
 
-pub use cell::Cell;
-pub use cells::Cells;
-pub(crate) use cells::Tangent;
-pub(crate) use exchange::{exchange, meet_blocked_flips};
+pub(crate) use cell::Tangent;
+pub use cell::{Cell, Cells};
+pub(crate) use exchange::{exchange, meet_blocked_flips, mend_worst};
 pub(crate) use fit::{FitOptions, fit};
 pub use lloyd::Relaxed;
 pub(crate) use lloyd::relax;
@@ -30,4 +24,3 @@ pub(crate) use polish::{polish, polishing_norm};
 pub use protect::Ending;
 pub(crate) use protect::{Protected, protect};
 pub(crate) use survey::measured;
-pub(crate) use worst::mend_worst;

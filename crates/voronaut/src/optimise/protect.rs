@@ -2,7 +2,7 @@
 //! around those that are not, as in the algorithms of Boissonnat et al. 2014 and, for constraints in general, Moser and
 //! Tardos 2010.
 
-use super::region::Region;
+use super::movers::Region;
 use super::survey::{Survey, corners_of};
 use crate::dual::{Dual, Kind};
 use crate::error::Result;

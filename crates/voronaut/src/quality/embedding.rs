@@ -7,8 +7,8 @@
 //!    point is the winding number of the whole boundary around it, and it changes only at the boundary.
 
 use super::edges::Edges;
-use super::fault::Fault;
-use super::segments::{Piece, Segments};
+use super::faults::Fault;
+use super::faults::{Piece, Segments};
 use crate::geometry::{Aabb, Orientation, Point, orientation};
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;

@@ -1,7 +1,7 @@
 //! How far the boundary of a mesh strays from that of its domain.
 
 use super::edges::Edges;
-use super::segments::{Piece, Segments};
+use super::faults::{Piece, Segments};
 use crate::geometry::Point;
 use crate::mesh::Mesh;
 

@@ -1,7 +1,7 @@
 //! Where a surface meets itself, and where its meshes may therefore do so.
 
-use super::coincident::{duplicates, longest};
-use super::position::Position;
+use super::faults::Position;
+use super::faults::{duplicates, longest};
 use super::self_intersections::{Pair, pairs};
 use crate::geometry::{Bounds, BoxTree, Point3, widened};
 use crate::mesh::Mesh;

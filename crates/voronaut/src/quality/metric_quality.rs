@@ -1,7 +1,7 @@
 //! Lengths, shapes and angles of a mesh in a metric.
 
 use super::edges::Edges;
-use super::position::{Position, middle};
+use super::faults::{Position, middle};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3, Tensor, Vector};
 use crate::mesh::Mesh;

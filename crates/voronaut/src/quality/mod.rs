@@ -1,21 +1,16 @@
 //! What a mesh is worth: valid or not, good or not in a metric, close or not to its domain.
 
-mod coincident;
 mod contact;
-mod crossings;
 mod edges;
 mod embedding;
-mod fault;
 mod faults;
-mod fidelity;
 mod geodesics;
 mod histogram;
 mod interpolation;
 mod meetings;
 mod metric_quality;
-mod position;
+mod fidelity;
 mod sampled_distance;
-mod segments;
 mod self_intersections;
 mod surface_fidelity;
 mod surface_quality;
@@ -24,16 +19,15 @@ mod test_meshes;
 mod unmet;
 mod validity;
 
-pub(crate) use crossings::crossings;
-pub use crossings::{Crossing, crossing_edges};
-pub use fault::Fault;
 pub(crate) use faults::faulty_triangles;
+pub use faults::{Fault, Position};
 pub use fidelity::{Farthest, Fidelity, fidelity};
 pub use histogram::{Both, Histogram, Histograms, histograms};
 pub use interpolation::{Exponent, InterpolationError, interpolation_error};
 pub use meetings::{Excused, Meetings};
 pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};
-pub use position::Position;
+pub(crate) use self_intersections::crossings;
+pub use self_intersections::{Crossing, crossing_edges};
 pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
 pub use surface_quality::surface_quality;
 pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet};

@@ -1,7 +1,7 @@
 //! How far the mesh of a surface strays from it: in distance, and in direction.
 
+use super::faults::Position;
 use super::metric_quality::{Spot, demand_vertices, fault, spot};
-use super::position::Position;
 use super::sampled_distance::{Sample, Sampled, sample};
 use crate::error::Result;
 use crate::geometry::{Point3, Vector3};

@@ -1,7 +1,7 @@
 //! Lengths, shapes and angles of the mesh of a surface in a metric on that surface.
 
+use super::faults::Position;
 use super::metric_quality::{GAUSS, MetricQuality, Shape, collect, demand_vertices, fault, figures};
-use super::position::Position;
 use crate::error::Result;
 use crate::geometry::{Point, Point3, TangentPlane, Tensor, Tensor3, Vector, Vector3};
 use crate::mesh::Mesh;

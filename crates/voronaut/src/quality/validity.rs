@@ -1,12 +1,12 @@
 //! Whether a mesh is a mesh: by counting and by exact predicates, never by a tolerance.
 
-use super::coincident::{duplicates, is_finite, longest};
 use super::contact::is_flat;
 use super::edges::{self, Edges, NONE};
 use super::embedding;
-use super::fault::Fault;
+use super::faults::Fault;
+use super::faults::middle;
+use super::faults::{duplicates, is_finite, longest};
 use super::meetings::{Excused, Meetings};
-use super::position::middle;
 use super::self_intersections::pairs;
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, orientation};

@@ -1,18 +1,23 @@
 //! From what the user says of a metric to the field itself, with its files read.
+//!
+//! Meshes that metrics are sampled on to be smoothed or graded.
+//!
+//! A metric on a domain, graded.
 
 use super::Aim;
-use super::background::smooth_metric;
-use super::graded::{GradedAt, grade_metric};
+use crate::canvas::Canvas;
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::mesh::{Mesh, SolutionValues};
+use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, complexity};
 use crate::metric::{
     Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Recovered, Recovery, Sampled, ScalarField,
-    Snapshot, rough_complexity,
+    Snapshot, rough_complexity, smoothed,
 };
 use crate::optimise::polishing_norm;
 use crate::quality::interpolation_error;
+use std::borrow::Cow;
 
 /// Sweeps of smoothing (`--smooth-metric`, TOML key and Python keyword `smooth_metric`) unless told otherwise.
 pub const SMOOTH_METRIC: u32 = 0;
@@ -217,4 +222,160 @@ fn finished(
     let field = grade_metric(field, domain, own, options.gradation, at)?;
     let is_free = options.bounds == Bounds::default() && options.smooth_metric == 0 && options.gradation.is_none();
     Ok(PlanarMetric { field, function: function.filter(|_| is_free), known_to, scale })
+}
+
+/// Vertices of the background on which a metric is smoothed or graded that has none of its own.
+pub(crate) const BACKGROUND_VERTICES: usize = 40_000;
+
+/// A mesh to sample a field on: its own, or a triangulation of the domain with [`BACKGROUND_VERTICES`] (and all of the domain's
+/// own) that is even in the metric.
+pub(super) fn sampling<'a>(field: &dyn MetricField, domain: &Domain, own: Option<&'a Mesh>) -> Result<Cow<'a, Mesh>> {
+    match own {
+        Some(mesh) => Ok(Cow::Borrowed(mesh)),
+        None => Ok(Cow::Owned(even(field, domain, BACKGROUND_VERTICES)?)),
+    }
+}
+
+/// A triangulation of the domain that is even in the metric, with so many vertices, and all of the domain's own.
+pub(super) fn even(field: &dyn MetricField, domain: &Domain, vertices: usize) -> Result<Mesh> {
+    Ok(embedded(&Canvas::straight(domain, field, vertices)?))
+}
+
+/// The positions and triangles of a canvas.
+fn embedded(canvas: &Canvas) -> Mesh {
+    let planar = canvas.embedded();
+    Mesh {
+        points: planar.positions.iter().map(|p| [p.x, p.y, 0.0]).collect(),
+        triangles: planar.topology.faces().map(|face| planar.topology.corners(face).map(|v| v.0)).collect(),
+        ..Mesh::default()
+    }
+}
+
+/// The field after so many sweeps of smoothing ([`smoothed`]), on its own mesh or one of [`sampling`]. With no sweeps, the field as it
+/// is, to the bit.
+///
+/// On the latter, K sweeps smooth with a standard deviation of about sqrt(K) / 400 of the domain's width in the metric, or half the
+/// square root of K N / 40,000 edges of a mesh that has N vertices.
+///
+/// # Errors
+/// As for [`smoothed`].
+pub(super) fn smooth_metric(
+    field: Box<dyn MetricField>,
+    domain: &Domain,
+    own: Option<&Mesh>,
+    sweeps: u32,
+) -> Result<Box<dyn MetricField>> {
+    if sweeps == 0 {
+        return Ok(field);
+    }
+    Ok(Box::new(smoothed(field.as_ref(), sampling(field.as_ref(), domain, own)?.as_ref(), sweeps)?))
+}
+
+/// In which multiple of a metric edges are to have length one, when it is graded: gradation is a law between neighbouring
+/// edges, and scaling a metric changes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GradedAt {
+    /// In the metric times this factor.
+    Scale(f64),
+    /// In the multiple that has this complexity when it is graded.
+    Complexity(f64),
+}
+
+impl GradedAt {
+    /// For a mesh of so many vertices, or of a complexity; else for the metric as it is.
+    pub fn of(vertices: Option<usize>, complexity: Option<f64>) -> Self {
+        let asked = vertices.map(|count| COMPLEXITY_PER_VERTEX * count as f64).or(complexity);
+        asked.map_or(GradedAt::Scale(1.0), GradedAt::Complexity)
+    }
+}
+
+/// The field graded ([`crate::metric::nodal::grade`]) at the vertices of a background: its own mesh if it is a `.sol` file, else a
+/// triangulation of the domain as for smoothing, but even in the graded metric. Without a factor, the field as it is, to the bit.
+/// What comes back is in the units of the field given, whatever multiple was graded.
+///
+/// # Errors
+/// As of [`Pipeline::run`]; the background is missing or no mesh.
+pub(super) fn grade_metric(
+    field: Box<dyn MetricField>,
+    domain: &Domain,
+    own: Option<&Mesh>,
+    gradation_factor: Option<f64>,
+    at: GradedAt,
+) -> Result<Box<dyn MetricField>> {
+    let Some(factor) = gradation_factor else { return Ok(field) };
+    let sampled = graded(field.as_ref(), sampling(field.as_ref(), domain, own)?.as_ref(), factor, at)?;
+    if own.is_some() {
+        return Ok(Box::new(sampled));
+    }
+    // The metric as it was is coarse where it is to be finer; what was made of it there has a background that is fine enough.
+    let mesh = sampling(&sampled, domain, None)?;
+    Ok(Box::new(graded(field.as_ref(), mesh.as_ref(), factor, at)?))
+}
+
+/// The field graded at the vertices of a mesh, in its own units.
+fn graded(field: &dyn MetricField, mesh: &Mesh, factor: f64, at: GradedAt) -> Result<Sampled> {
+    let (scale, target_complexity) = match at {
+        GradedAt::Scale(scale) => (scale, None),
+        GradedAt::Complexity(target) => (1.0, Some(target)),
+    };
+    let vertices = 0..mesh.points.len() as u32;
+    let given: Vec<Tensor> = vertices.map(|v| field.at(mesh.point(v)) * scale).collect();
+    // Refuses what is no metric before it is scaled.
+    Sampled::new(mesh, &given)?;
+    let own = complexity(mesh, &given);
+    let pipeline = Pipeline { target_complexity, gradation_factor: Some(factor), ..Pipeline::default() };
+    let made = pipeline.run(mesh, &[Source::Metric(given)])?;
+    let back = 1.0 / (scale * made.factor * target_complexity.map_or(1.0, |target| target / own));
+    let tensors: Vec<Tensor> = made.tensors.iter().map(|&tensor| tensor * back).collect();
+    Sampled::new(mesh, &tensors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point, Vector};
+
+    /// Sizes that jump by a thousand, across and along.
+    fn jumping(p: Point) -> Tensor {
+        if p.x < 0.5 { Tensor::new(1e6, 0.0, 1e4) } else { Tensor::new(1.0, 0.0, 1.0) }
+    }
+
+    fn jump(at: GradedAt, factor: f64) -> Box<dyn MetricField> {
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        grade_metric(Box::new(jumping), &domain, None, Some(factor), at).unwrap()
+    }
+
+    #[test]
+    fn sizes_grow_by_the_factor_and_not_more() {
+        let field = jump(GradedAt::Scale(1.0), 1.3);
+        let size = |x: f64| 1.0 / field.at(Point::new(x, 0.5)).length(Vector::new(1.0, 0.0));
+        assert!((size(0.2) / 1e-3 - 1.0).abs() < 1e-6);
+        // Across: 0.001 + ln(1.3) d, for both factors of the law are the same there; ways over edges of even triangles are up to
+        // 2 / sqrt(3) as long as straight ones, and between vertices logarithms are linear.
+        for d in [0.1, 0.3] {
+            let expected = 1e-3 + 1.3_f64.ln() * d;
+            let ratio = size(0.5 + d) / expected;
+            assert!(ratio > 0.9 && ratio < 1.3, "{d}: {ratio}");
+        }
+    }
+
+    #[test]
+    fn what_is_graded_is_the_metric_of_the_mesh() {
+        // With a hundredth of the vertices edges are ten times as long, and so is the way over which they grow.
+        let [coarse, fine] = [3e3, 3e5].map(|target| jump(GradedAt::Complexity(target), 1.3));
+        let at = |field: &dyn MetricField, x| field.at(Point::new(x, 0.5)).xx;
+        assert!(
+            (at(coarse.as_ref(), 0.2) / 1e6 - 1.0).abs() < 1e-6 && (at(fine.as_ref(), 0.2) / 1e6 - 1.0).abs() < 1e-6
+        );
+        assert!(at(coarse.as_ref(), 0.7) > 10.0 * at(fine.as_ref(), 0.7));
+    }
+
+    #[test]
+    fn without_a_factor_nothing_happens() {
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        let same = grade_metric(Box::new(jumping), &domain, None, None, GradedAt::Complexity(9.0)).unwrap();
+        assert_eq!(same.at(Point::new(0.25, 0.123)), jumping(Point::new(0.25, 0.123)));
+        assert_eq!(GradedAt::of(None, Some(7.0)), GradedAt::Complexity(7.0));
+        assert_eq!(GradedAt::of(None, None), GradedAt::Scale(1.0));
+    }
 }

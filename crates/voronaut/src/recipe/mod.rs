@@ -1,38 +1,28 @@
 //! The main job as one function: from a domain and a metric to a valid unit mesh.
 
 mod adapt;
-mod background;
 mod certified;
 mod dual;
 mod field;
-mod graded;
 mod mesher;
 mod on_surface;
 mod options;
 mod patches;
 mod protection;
-mod relaxing;
 mod remesh_input;
-mod remesh_sizes;
-mod seeding;
 mod settle;
-mod stopwatch;
-mod surface_dual;
 mod surface_pass;
 
 pub use adapt::{LoopOptions, Source, Step, adapt};
 pub use certified::certified_canvas;
-pub use dual::{SeedDual, dual, net};
+pub use dual::{SeedDual, dual, net, surface_dual, surface_mesh};
 pub use field::{
-    MetricOptions, PlanarMetric, SMOOTH_METRIC, metric, metric_named, metric_of_function, metric_of_solution,
+    GradedAt, MetricOptions, PlanarMetric, SMOOTH_METRIC, metric, metric_named, metric_of_function, metric_of_solution,
     metric_of_values,
 };
-pub use graded::GradedAt;
 pub use on_surface::mesh_surface;
 pub use options::{Centroid, MeshOptions, Mesher, Seeding};
-pub use remesh_input::{Keep, RemeshInput};
-pub use remesh_sizes::{Asked, RemeshSizes};
-pub use surface_dual::{surface_dual, surface_mesh};
+pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
 
 use crate::canvas::{Canvas, CanvasFigures};
 use crate::domain::Domain;
@@ -48,7 +38,7 @@ use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{
     Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, sample_segments, simplify,
 };
-use stopwatch::Stopwatch;
+use settle::Stopwatch;
 
 /// A function is polished for that has at least this share of the error to which it is known.
 const KNOWN: f64 = 0.5;

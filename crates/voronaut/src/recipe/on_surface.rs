@@ -1,6 +1,6 @@
 //! The main job on a surface.
 
-use super::stopwatch::Stopwatch;
+use super::settle::Stopwatch;
 use super::surface_pass::{Pass, Reseed, Setting};
 use super::{MeshOptions, Meshed, Mesher, Seeding};
 use crate::canvas::area_of_surface;
@@ -165,22 +165,20 @@ impl<'a> Job<'a> {
     /// they find no triangulation, for the surface's own may.
     fn passed(&mut self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Option<Pass<'a>>> {
         let farthest = self.farthest_passes();
-        if reseed.rounds < farthest {
-            return match self.setting.farthest(count, scale, reseed, &mut self.watch) {
-                Err(Error::Domain { .. }) => {
-                    reseed.rounds = farthest;
-                    Ok(None)
-                }
-                other => other.map(Some),
-            };
-        }
+        let is_farthest = reseed.rounds < farthest;
         let lloyd = self.setting.options.lloyd;
-        let steps = match reseed.rounds {
+        let steps = match reseed.rounds.saturating_sub(farthest) {
             0 => Some(lloyd),
-            rounds if rounds + UNRELAXED < farthest + ADAPTATIONS => Some(lloyd.min(FEWER_STEPS)),
+            rounds if rounds + UNRELAXED < ADAPTATIONS => Some(lloyd.min(FEWER_STEPS)),
             _ => None,
         };
-        self.setting.adapted(count, scale, reseed, steps, &mut self.watch).map(Some)
+        match self.setting.pass(count, scale, reseed, (is_farthest, steps), &mut self.watch) {
+            Err(Error::Domain { .. }) if is_farthest => {
+                reseed.rounds = farthest;
+                Ok(None)
+            }
+            other => other.map(Some),
+        }
     }
 
     fn farthest_passes(&self) -> usize {

@@ -2,27 +2,24 @@
 
 use super::dual::account;
 use super::patches::Patched;
-use super::stopwatch::Stopwatch;
+use super::settle::Stopwatch;
 use super::{MeshOptions, Seeding};
 use crate::canvas::{Canvas, CanvasFigures, Draped};
 use crate::diagram::SurfaceDiagram;
 use crate::dual::{Road, SurfaceDual};
 use crate::error::{Error, Result};
 use crate::figures;
-use crate::geodesic::Method;
-use crate::geometry::{Point3, Tensor3};
 use crate::mesh::Mesh;
 use crate::optimise::{Relaxed, Tangent, mend_worst, relax};
 use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
 use crate::sampling::{
-    ALL_VERTICES, Adapted, FeatureSeeds, Held, MeasuredCurves, Seeded, Wanted, adapted, exchanged, seed_surface,
-    triangulated, triangulated_upright,
+    ALL_VERTICES, Adapted, FeatureSeeds, Held, MeasuredCurves, Wanted, adapted, contracted, exchanged, fill_farthest,
 };
-use crate::surface::metric::{Constant, SurfaceMetric};
+use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Place, Surface, Whole};
-use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::BTreeSet;
 
 /// Seeds that a canvas is made for at least.
@@ -36,8 +33,6 @@ const MENDINGS: usize = 3;
 const DENSER: usize = 12;
 /// After so many passes all vertices of the curves that faulty triangles touch are kept.
 const PATIENCE: usize = 4;
-/// Seeds put into faulty triangles are this far from their corners and from each other, as a share of the longest edge.
-const APART: f64 = 0.1;
 /// The surface is kept as far around a faulty triangle as this share of its longest edge, twice as far the second time, and so on.
 const AROUND: f64 = 0.2;
 
@@ -58,7 +53,6 @@ pub(super) struct Pass<'a> {
     pub(super) dual: SurfaceDual<'a>,
     features: FeatureSeeds,
     owners: Vec<u32>,
-    added: usize,
     pub(super) relaxed: Relaxed,
     pub(super) settled: Settled,
 }
@@ -75,8 +69,6 @@ pub(super) struct Settled {
 /// Where the passes before made no mesh.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Reseed {
-    /// Places that shall be seeds.
-    places: Vec<Place>,
     /// How many times as many seeds as their lengths ask for each curve shall have; one if there is no entry.
     density: Vec<usize>,
     /// Faulty triangles, around which a pass that starts from the surface's own triangles keeps these.
@@ -93,55 +85,38 @@ impl Reseed {
     }
 }
 
-impl<'a> Setting<'a> {
-    /// A pass that starts from farthest points on a canvas.
-    ///
-    /// # Errors
-    /// The metric is invalid somewhere; there are too few vertices for the surface's topology.
-    pub(super) fn farthest(
-        &self,
-        count: usize,
-        scale: f64,
-        reseed: &Reseed,
-        watch: &mut Stopwatch,
-    ) -> Result<Pass<'a>> {
-        let begin = self.progress.seconds();
-        let features = self.curves.sampled(1.0 / scale.sqrt(), self.options.hausd, &reseed.density);
-        let (mut given, owners) = features.flattened();
-        given.extend(&reseed.places);
-        let count = count.max(features.seeds.len()) + owners.len() - features.seeds.len();
-        let (canvas, at) = self.canvas(count, &given)?;
-        watch.add("canvas", self.progress.seconds() - begin);
-        let begin = self.progress.seconds();
-        self.progress.begin("seeding", count as u64)?;
-        let may_hold = |v: VertexId| !self.is_required(&canvas, v);
-        let seeded = seed_surface(&canvas, &at, count, self.options.geodesic, may_hold, self.progress)?;
-        watch.add("seed", self.progress.seconds() - begin);
-        let begin = self.progress.seconds();
-        let start = self.started(&canvas, &seeded, &given[..owners.len()], scale)?;
-        let (dual, relaxed) = self.relaxed(start, owners.len(), self.options.lloyd)?;
-        watch.add("relax", self.progress.seconds() - begin);
-        let mut pass = self.settled(Pass::new(self.input, dual, features, owners, seeded.added, relaxed), watch)?;
-        pass.settled.figures.get_or_insert_with(|| canvas.figures());
-        Ok(pass)
-    }
+/// Seeds before they are relaxed.
+struct Started {
+    features: FeatureSeeds,
+    /// Of the places on features, which come first, the seed that each belongs to.
+    owners: Vec<u32>,
+    adapted: Adapted,
+    /// Where one was made.
+    canvas: Option<CanvasFigures>,
+}
 
-    /// A pass that starts from the surface's own triangles, with so many steps of relaxation. Without any, not even of flips, triangles
-    /// are the surface's where they are held.
+impl<'a> Setting<'a> {
+    /// A pass that starts from farthest points on a canvas, or from the surface's own triangles, with so many steps of relaxation.
+    /// Without any, not even of flips, triangles are the surface's where they are held.
     ///
     /// # Errors
     /// The metric is invalid somewhere; features cannot be kept as they are.
-    pub(super) fn adapted(
+    pub(super) fn pass(
         &self,
         count: usize,
         scale: f64,
         reseed: &mut Reseed,
-        steps: Option<usize>,
+        (is_farthest, steps): (bool, Option<usize>),
         watch: &mut Stopwatch,
     ) -> Result<Pass<'a>> {
         let begin = self.progress.seconds();
-        self.progress.begin("seeding", 1)?;
-        let (features, owners, adapted) = self.started_from_surface(count, scale, reseed)?;
+        self.progress.begin("seeding", count as u64)?;
+        let started = if is_farthest {
+            self.started_from_canvas(count, scale, reseed)
+        } else {
+            self.started_from_surface(count, scale, reseed)
+        };
+        let Started { features, owners, adapted, canvas } = started?;
         watch.add("seed", self.progress.seconds() - begin);
         let begin = self.progress.seconds();
         let staying = adapted.staying;
@@ -154,8 +129,11 @@ impl<'a> Setting<'a> {
             self.fit_scale(&mut dual)?;
         }
         watch.add("relax", self.progress.seconds() - begin);
-        let pass = Pass::new(self.input, dual, features, owners, 0, relaxed);
-        if steps.is_some() { self.settled(pass, watch) } else { Ok(pass) }
+        let begin = self.progress.seconds();
+        let mut settled = if steps.is_some() { self.settled(&mut dual)? } else { Settled::default() };
+        watch.add("settle", self.progress.seconds() - begin);
+        settled.figures = settled.figures.or(canvas);
+        Ok(Pass { input: self.input, dual, features, owners, relaxed, settled })
     }
 
     fn dual_of(&self, Adapted { places, staying, topology, .. }: Adapted, scale: f64) -> Result<SurfaceDual<'a>> {
@@ -183,23 +161,47 @@ impl<'a> Setting<'a> {
         Ok((dual, relaxed))
     }
 
-    /// Where vertices of a curve cannot be contracted without folds, all of them become seeds.
-    fn started_from_surface(
-        &self,
-        count: usize,
-        scale: f64,
-        reseed: &mut Reseed,
-    ) -> Result<(FeatureSeeds, Vec<u32>, Adapted)> {
+    /// Farthest points on a canvas whose triangles are contracted onto them.
+    fn started_from_canvas(&self, count: usize, scale: f64, reseed: &Reseed) -> Result<Started> {
+        let (features, given, owners, total) = self.featured(count, scale, reseed);
+        let (canvas, at) = self.canvas(total, &given)?;
+        let mut diagram = SurfaceDiagram::on_surface(&canvas, &at, self.options.geodesic)?;
+        let draped = canvas.draped();
+        let required = self.input.surface.required_triangles();
+        let may_hold = |v: VertexId| {
+            !draped.topology().is_border_vertex(v) && required.binary_search(&draped.place(v).face).is_err()
+        };
+        fill_farthest(&mut diagram, total, 0.0, may_hold, self.progress, |diagram, v| {
+            diagram.insert_at_vertex(v);
+        })?;
+        let seeds: Vec<VertexId> = (0..diagram.colours() as u32).filter_map(|colour| diagram.seed(colour)).collect();
+        let slots = (0..draped.topology().vertex_slots() as u32).map(VertexId);
+        let triangles = (draped.topology().clone(), slots.map(|v| *draped.place(v)).collect());
+        let adapted = contracted(self.input, self.metric, scale, triangles, &seeds, owners.len());
+        if adapted.stuck.is_empty() {
+            return Ok(Started { features, owners, adapted, canvas: Some(canvas.figures()) });
+        }
+        Err(no_features())
+    }
+
+    /// Seeds on features, their places, the seed that each place belongs to, and how many places there are to be.
+    fn featured(&self, count: usize, scale: f64, reseed: &Reseed) -> (FeatureSeeds, Vec<Place>, Vec<u32>, usize) {
+        let features = self.curves.sampled(1.0 / scale.sqrt(), self.options.hausd, &reseed.density);
+        let (given, owners) = features.flattened();
+        let total = count.max(features.seeds.len()) + owners.len() - features.seeds.len();
+        (features, given, owners, total)
+    }
+
+    /// The surface's own triangles, adapted. Where vertices of a curve cannot be contracted without folds, all of them become seeds.
+    fn started_from_surface(&self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Started> {
         let curves = &self.input.seams.features.curves;
         reseed.density.resize(curves.len(), 1);
         for _ in 0..DENSER {
-            let features = self.curves.sampled(1.0 / scale.sqrt(), self.options.hausd, &reseed.density);
-            let (given, owners) = features.flattened();
-            let total = count.max(features.seeds.len()) + owners.len() - features.seeds.len();
+            let (features, given, owners, total) = self.featured(count, scale, reseed);
             let wanted = Wanted { given: &given, factor: scale, count: total, held: &reseed.held };
             let Some(adapted) = adapted(self.input, self.metric, &wanted) else { break };
             if adapted.stuck.is_empty() {
-                return Ok((features, owners, adapted));
+                return Ok(Started { features, owners, adapted, canvas: None });
             }
             let stuck: BTreeSet<VertexId> = adapted.stuck.iter().map(|&v| self.input.seams.original(v)).collect();
             for (curve, density) in curves.iter().zip(&mut reseed.density) {
@@ -207,8 +209,7 @@ impl<'a> Setting<'a> {
                 *density = if is_stuck { ALL_VERTICES } else { *density };
             }
         }
-        let help = "ask for more vertices, or leave features out";
-        Err(Error::domain("features cannot be kept without folds", "the surface", help))
+        Err(no_features())
     }
 
     fn canvas(&self, count: usize, seeds: &[Place]) -> Result<(Canvas<Draped<'a>>, Vec<VertexId>)> {
@@ -227,37 +228,6 @@ impl<'a> Setting<'a> {
         count.max(LEAST_SEEDS).saturating_mul(self.options.canvas_size as usize)
     }
 
-    /// Whether a canvas vertex lies in a required triangle.
-    fn is_required(&self, canvas: &Canvas<Draped>, v: VertexId) -> bool {
-        let required = self.input.surface.required_triangles();
-        !required.is_empty() && required.binary_search(&canvas.draped().place(v).face).is_ok()
-    }
-
-    /// The triangulation of the seeds as it is found; where straight edges cannot honour the metric, one that stands upright on
-    /// the surface and can be flipped towards it.
-    fn started(&self, canvas: &Canvas<Draped>, seeds: &Seeded, given: &[Place], scale: f64) -> Result<SurfaceDual<'a>> {
-        let at: Vec<VertexId> = (0..seeds.diagram.colours() as u32).filter_map(|i| seeds.diagram.seed(i)).collect();
-        let inside = at[given.len()..].iter().map(|&v| *canvas.draped().place(v));
-        let places: Vec<Place> = given.iter().copied().chain(inside).collect();
-        let unfolded = |triangles: &[[u32; 3]]| {
-            let topology = Triangulation::from_triangles(places.len(), triangles, &vec![0; triangles.len()]);
-            let mut dual = SurfaceDual::new(self.input, self.metric, scale, places.clone(), given.len(), topology)?;
-            dual.unfold();
-            Ok::<_, Error>(dual)
-        };
-        let mut best = unfolded(&seeds.triangles)?;
-        if best.downright() > 0 {
-            let own = Constant(Tensor3::IDENTITY);
-            let canvas = canvas.remeasured(&own)?;
-            for triangulation in [triangulated, triangulated_upright] {
-                let seeded = triangulation(SurfaceDiagram::on_surface(&canvas, &at, Method::March)?)?;
-                let other = if seeded.added == 0 { unfolded(&seeded.triangles)? } else { continue };
-                best = if other.downright() < best.downright() { other } else { best };
-            }
-        }
-        Ok(best)
-    }
-
     fn fit_scale(&self, dual: &mut SurfaceDual) -> Result<()> {
         if self.options.vertices.is_some() {
             let mean = dual.mean_length();
@@ -267,14 +237,13 @@ impl<'a> Setting<'a> {
     }
 
     /// Where that is asked for, flips by lengths of geodesics on a canvas that has the seeds as vertices.
-    fn settled(&self, mut pass: Pass<'a>, watch: &mut Stopwatch) -> Result<Pass<'a>> {
-        let begin = self.progress.seconds();
-        pass.settled = match self.options.dual {
-            Road::Canvas => self.settle(&mut pass.dual)?,
-            Road::Geodesic | Road::Both => Settled::by_lengths(&pass.dual),
-        };
-        watch.add("settle", self.progress.seconds() - begin);
-        Ok(pass)
+    fn settled(&self, dual: &mut SurfaceDual) -> Result<Settled> {
+        if self.options.dual == Road::Canvas {
+            return self.settle(dual);
+        }
+        let (blocked_flips, min_margin) = dual.unsettled();
+        let account = figures::Dual { min_margin, blocked_flips, ..figures::Dual::default() };
+        Ok(Settled { account, ..Settled::default() })
     }
 
     fn settle(&self, dual: &mut SurfaceDual) -> Result<Settled> {
@@ -296,27 +265,6 @@ impl<'a> Setting<'a> {
     /// A canvas of so many seeds as a surface: finer than what an equation was first meshed to.
     pub(super) fn fine_surface(&self, count: usize) -> Result<Surface> {
         self.canvas(count, &[])?.0.draped().to_surface()
-    }
-}
-
-impl Settled {
-    fn by_lengths(dual: &SurfaceDual) -> Self {
-        let (blocked_flips, min_margin) = dual.unsettled();
-        let account = figures::Dual { min_margin, blocked_flips, ..figures::Dual::default() };
-        Self { account, ..Self::default() }
-    }
-}
-
-impl<'a> Pass<'a> {
-    fn new(
-        input: &'a Input,
-        dual: SurfaceDual<'a>,
-        features: FeatureSeeds,
-        owners: Vec<u32>,
-        added: usize,
-        relaxed: Relaxed,
-    ) -> Self {
-        Self { input, dual, features, owners, added, relaxed, settled: Settled::default() }
     }
 }
 
@@ -369,11 +317,10 @@ impl Pass<'_> {
         Ok(())
     }
 
-    /// What to do differently: a seed in each faulty triangle inside a patch, more seeds on the curves that one touches.
+    /// What to do differently: more of the surface kept around faulty triangles, more seeds on the curves that one touches.
     pub(super) fn reseed(&self, faulty: &[u32], before: Reseed) -> Reseed {
         let mut density = before.density;
         density.resize(self.input.seams.features.curves.len(), 1);
-        let mut places = before.places;
         let triangles = self.dual.triangles();
         let mut curves: BTreeSet<usize> = BTreeSet::new();
         for corners in faulty.iter().map(|&t| triangles[t as usize]) {
@@ -387,12 +334,6 @@ impl Pass<'_> {
                 });
                 curves.extend(touched.map(|edge| edge.curve));
             }
-            let at = corners.map(|v| self.dual.places()[v as usize]);
-            let middle = Point3::weighted(at.map(|place| place.position), [1.0 / 3.0; 3]);
-            let apart = |other: &Place, place: &Place| other.position.distance(place.position) > APART * reach(at);
-            let place =
-                self.input.lift(&at[0], middle).filter(|place| at.iter().chain(&places).all(|p| apart(p, place)));
-            places.extend(place);
         }
         for curve in curves {
             density[curve] = if before.rounds < PATIENCE { density[curve].saturating_mul(2) } else { ALL_VERTICES };
@@ -403,7 +344,7 @@ impl Pass<'_> {
             let around = (before.rounds + 1) as f64 * AROUND * reach(corners);
             Held { corners: corners.map(|place| place.position), within: around }
         }));
-        Reseed { places, density, held, rounds: before.rounds + 1 }
+        Reseed { density, held, rounds: before.rounds + 1 }
     }
 
     /// Vertices that features have.
@@ -415,12 +356,16 @@ impl Pass<'_> {
     pub(super) fn notes(&self) -> Vec<String> {
         let folded = self.dual.topology().faces().filter(|&f| self.dual.is_folded(f)).count();
         let told = [
-            (self.added, "vertices were added where fewer do not make the surface"),
             (self.features.loose, "single feature edges inside a patch: only their ends are kept"),
             (folded, "triangles face away from the surface: straight edges cannot honour the metric there"),
         ];
         told.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect()
     }
+}
+
+fn no_features() -> Error {
+    let help = "ask for more vertices, or leave features out";
+    Error::domain("features cannot be kept without folds", "the surface", help)
 }
 
 fn in_order([a, b]: [u32; 2]) -> [u32; 2] {

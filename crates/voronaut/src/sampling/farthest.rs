@@ -66,6 +66,32 @@ impl Farthest {
     }
 }
 
+/// Inserts seeds into a diagram, each at the canvas vertex that is farthest from all seeds and that `insert` accepts (it says whether it
+/// did), until there are so many, or none is left that is farther than `least`. `may_hold` says which vertices may be seeds.
+///
+/// # Errors
+/// Only that of being told to stop.
+pub(crate) fn fill_farthest<'a, G: Ground<'a>>(
+    diagram: &mut Diagram<'a, G>,
+    count: usize,
+    least: f64,
+    may_hold: impl Fn(VertexId) -> bool,
+    progress: &dyn Progress,
+    mut insert: impl FnMut(&mut Diagram<'a, G>, VertexId),
+) -> Result<()> {
+    let mut farthest = Farthest::new(diagram, may_hold);
+    let mut reported = diagram.colours();
+    while diagram.colours() < count {
+        let Some((v, _)) = farthest.pop(diagram).filter(|&(_, distance)| distance >= least) else { break };
+        insert(diagram, v);
+        if diagram.colours() >= reported + 256 {
+            progress.advance((diagram.colours() - reported) as u64)?;
+            reported = diagram.colours();
+        }
+    }
+    Ok(())
+}
+
 /// Inserts seeds into a dual whose vertices are, in order of their ids, the seeds of the diagram, and into that diagram:
 /// each at the canvas vertex inside the domain, on no segment, that is farthest from all seeds. Ends when the dual has
 /// as many vertices as asked for, when there is no such vertex, or, with [`Fill::AtMost`], when all are nearer than the
@@ -82,22 +108,16 @@ pub(crate) fn refine_farthest(
     let canvas = diagram.canvas();
     let topology = &canvas.embedded().topology;
     let is_free = |v: VertexId| topology.star(v).all(|h| !topology.is_fixed(h) && !topology.is_fixed(h.prev()));
-    let mut farthest = Farthest::new(diagram, is_free);
     let mut seeds: Vec<VertexId> = dual.topology().vertices().collect();
     let least = if matches!(fill, Fill::AtMost(_)) { SPACING / dual.field().factor.sqrt() } else { 0.0 };
-    let (before, mut reported) = (dual.vertex_count(), 0);
-    while dual.vertex_count() < fill.count() {
-        let Some((v, _)) = farthest.pop(diagram).filter(|&(_, distance)| distance >= least) else { break };
+    let before = dual.vertex_count();
+    fill_farthest(diagram, fill.count(), least, is_free, progress, |diagram, v| {
         let near = diagram.colour(v).map_or(seeds[0], |colour| seeds[colour as usize]);
         if let Some(seed) = insert(dual, near, canvas.position(v)) {
             diagram.insert_roughly(v);
             seeds.push(seed);
         }
-        if seeds.len() - before >= reported + 256 {
-            progress.advance((seeds.len() - before - reported) as u64)?;
-            reported = seeds.len() - before;
-        }
-    }
+    })?;
     dual.take_touched();
     Ok(dual.vertex_count() - before)
 }

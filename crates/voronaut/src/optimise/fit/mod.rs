@@ -7,8 +7,6 @@
 //! | `system` | the linear system of a step |
 //! | `guard`, `crossing` | moves shortened until no triangle folds, becomes a sliver, or crosses another |
 
-mod closest;
-mod crossing;
 mod guard;
 mod samples;
 mod system;
@@ -20,9 +18,8 @@ use crate::geometry::{Point3, Vector3};
 use crate::mesh::Mesh;
 use crate::surface::Surface;
 use crate::triangulation::VertexId;
-use closest::Sheet;
 use guard::Guard;
-use samples::{Assignment, Samples};
+use samples::{Assignment, Samples, Sheet};
 use system::{Anchors, System};
 
 /// How [`fit`] works.

@@ -4,9 +4,6 @@
 //! against the scale on which the Hessian changes (Loseille and Alauzet 2011). Real triangles are neither, and where the
 //! function is saddle-shaped longer ones are as good. The last tenth is gained on the error itself.
 
-mod colours;
-mod error;
-mod flips;
 mod moves;
 
 use crate::dual::{Dual, Kind};
@@ -17,8 +14,8 @@ use crate::parallel::prelude::*;
 use crate::planar::Planar;
 use crate::progress::Progress;
 use crate::triangulation::VertexId;
-pub(crate) use error::polishing_norm;
-use error::{Objective, Place};
+pub(crate) use moves::polishing_norm;
+use moves::{Objective, Place};
 
 /// It ends when a sweep lowers the error by less than this share.
 const STALLED: f64 = 5e-4;

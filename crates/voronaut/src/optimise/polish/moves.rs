@@ -1,11 +1,16 @@
 //! Moves that lower the error.
+//!
+//! Vertices in groups without edges between them: those of a group can move at once.
+//!
+//! The error of linear interpolation on a triangle.
+//!
+//! Flips that lower the error.
 
-use super::colours::colours;
-use super::error::Place;
 use super::{Freedom, Work, is_allowed};
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Node, Point, Vector, combine, radon, signed_area};
+use crate::metric::{Norm, ScalarField};
 use crate::parallel::prelude::*;
-use crate::triangulation::VertexId;
+use crate::triangulation::{HalfEdge, Rounds, Triangulation, VertexId, flip_in_rounds};
 
 /// Step of the differences that derivatives are taken by, as a share of the neighbours' mean distance.
 const STEP: f64 = 0.03;
@@ -125,9 +130,150 @@ fn descent([gx, gy]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Option<[f64; 2]> {
     step.iter().all(|s| s.is_finite()).then_some(step)
 }
 
+/// The vertices that can move, by colour: greedily, in the order of their ids.
+pub(super) fn colours(topology: &Triangulation, freedoms: &[Freedom]) -> Vec<Vec<VertexId>> {
+    const NONE: u16 = u16::MAX;
+    let mut colour = vec![NONE; topology.vertex_slots()];
+    let mut groups: Vec<Vec<VertexId>> = Vec::new();
+    let mut is_taken: Vec<bool> = Vec::new();
+    for v in topology.vertices().filter(|v| freedoms[v.index()] != Freedom::None) {
+        is_taken.clear();
+        is_taken.resize(groups.len() + 1, false);
+        for u in topology.star(v).flat_map(|h| [topology.target(h), topology.apex(h)]) {
+            if let Some(taken) = is_taken.get_mut(usize::from(colour[u.index()])) {
+                *taken = true;
+            }
+        }
+        let free = is_taken.iter().position(|taken| !taken).unwrap_or(groups.len());
+        if free == groups.len() {
+            groups.push(Vec::new());
+        }
+        colour[v.index()] = free as u16;
+        groups[free].push(v);
+    }
+    groups
+}
+
+/// A greater exponent counts as this one: powers of errors would differ by too much to be added.
+const LARGEST_EXPONENT: f64 = 8.0;
+
+/// The norm that polishing goes by where this one is asked for: L^8 for all above.
+pub(crate) fn polishing_norm(norm: Norm) -> Norm {
+    Norm::new(norm.exponent().min(LARGEST_EXPONENT)).unwrap_or(norm)
+}
+
+/// What is to be made small: the integral of |f - its linear interpolation|^p, in a unit of its own for f.
+#[derive(Clone, Copy)]
+pub(super) struct Objective<'a> {
+    function: &'a dyn ScalarField,
+    exponent: f64,
+    unit: f64,
+    nodes: [Node; 7],
+}
+
+/// A vertex, as errors see it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) at: Point,
+    pub(super) value: f64,
+}
+
+impl<'a> Objective<'a> {
+    /// Errors are measured in shares of `unit`, which is positive.
+    pub(super) fn new(function: &'a dyn ScalarField, norm: Norm, unit: f64) -> Self {
+        Self { function, exponent: polishing_norm(norm).exponent(), unit, nodes: radon() }
+    }
+
+    /// A point with the function's value there.
+    pub(super) fn place(&self, at: Point) -> Place {
+        Place { at, value: self.function.value(at) }
+    }
+
+    /// The triangle's share, by seven values of the function; infinite of a triangle that is not counter-clockwise.
+    ///
+    /// Three values in the middles of the edges would not do: minimised, they find places where the function meets its
+    /// interpolation there and nowhere else.
+    pub(super) fn of(&self, [a, b, c]: [Place; 3]) -> f64 {
+        let area = 0.5 * signed_area(a.at, b.at, c.at);
+        if area <= 0.0 {
+            return f64::INFINITY;
+        }
+        let share = |&([u, v, w], weight): &Node| {
+            let p = combine([u, v, w], [a.at, b.at, c.at]);
+            let error = (self.function.value(p) - (u * a.value + v * b.value + w * c.value)) / self.unit;
+            weight * self.power(error)
+        };
+        area * self.nodes.iter().map(share).sum::<f64>()
+    }
+
+    fn power(&self, error: f64) -> f64 {
+        // Exact on purpose: the default, and the fast one.
+        #[expect(clippy::float_cmp)]
+        let is_square = self.exponent == 2.0;
+        if is_square { error * error } else { error.abs().powf(self.exponent) }
+    }
+
+    /// The norm of the error from the sum of all shares.
+    pub(super) fn norm(&self, sum: f64) -> f64 {
+        self.unit * sum.powf(1.0 / self.exponent)
+    }
+}
+
+/// Rounds of flips in a sweep, at most: the next sweep has more.
+const ROUNDS: usize = 8;
+/// A flip gains this share of the two triangles' error at least.
+const GAIN: f64 = 1e-9;
+
+impl Work<'_> {
+    /// Flips until no edge gains by it; the greatest gains first. Returns how many flips.
+    pub(super) fn flip_all(&mut self) -> u64 {
+        flip_in_rounds(self, ROUNDS)
+    }
+
+    /// By how much a flip would lower the error; `None` where it would not, or may not be.
+    fn gain(&self, h: HalfEdge) -> Option<f64> {
+        let [a, b, c, d] = self.planar.topology.quad(h).filter(|_| !self.planar.topology.is_fixed(h))?;
+        let of = |vertices: [VertexId; 3]| self.objective.of(self.places_of(vertices));
+        let (old, new) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
+        if !self.planar.is_convex(h) {
+            return None;
+        }
+        let before: f64 = old.into_iter().map(of).sum();
+        let gain = before - new.into_iter().map(of).sum::<f64>();
+        if gain.is_nan() || gain <= GAIN * before {
+            return None;
+        }
+        let least = |faces: [[VertexId; 3]; 2]| {
+            faces.into_iter().map(|f| self.shape(f, self.places_of(f))).fold(f64::INFINITY, f64::min)
+        };
+        is_allowed(least(old), least(new)).then_some(gain)
+    }
+
+    fn places_of(&self, vertices: [VertexId; 3]) -> [Place; 3] {
+        vertices.map(|v| self.place(v))
+    }
+}
+
+impl Rounds for Work<'_> {
+    fn topology(&self) -> &Triangulation {
+        &self.planar.topology
+    }
+
+    fn wanted(&mut self, edges: &[HalfEdge]) -> Vec<(f64, HalfEdge)> {
+        edges.par_iter().with_min_len(64).filter_map(|&h| Some((-self.gain(h)?, h))).collect()
+    }
+
+    fn flip(&mut self, h: HalfEdge) -> bool {
+        self.planar.topology.flip(h);
+        true
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Point;
+    use crate::planar::delaunay;
 
     #[test]
     fn the_minimum_of_a_quadratic_is_found_at_once() {
@@ -144,5 +290,26 @@ mod tests {
         assert!(x - 2.0 * y < 0.0, "{x} {y}");
         assert_eq!(descent([1.0, f64::NAN], [1.0, 0.0, 1.0]), None);
         assert_eq!(descent([0.0, 0.0], [0.0, 0.0, 0.0]), None);
+    }
+
+    #[test]
+    fn no_edge_is_inside_a_group_and_no_vertex_is_forgotten() {
+        let at = |i: u32| Point::new((f64::from(i) * 0.618).fract(), (f64::from(i) * 0.414).fract());
+        let points: Vec<Point> = (0..500).map(at).collect();
+        let planar = delaunay(&points).unwrap();
+        let mut freedoms = vec![Freedom::All; planar.topology.vertex_slots()];
+        freedoms[7] = Freedom::None;
+        let groups = colours(&planar.topology, &freedoms);
+        let mut group = vec![usize::MAX; planar.topology.vertex_slots()];
+        for (i, all) in groups.iter().enumerate() {
+            for v in all {
+                group[v.index()] = i;
+            }
+        }
+        let ends = |h| [planar.topology.origin(h), planar.topology.target(h)].map(|v| group[v.index()]);
+        assert!(planar.topology.edges().map(ends).all(|[a, b]| a != b));
+        let has_none = |v: &VertexId| group[v.index()] == usize::MAX;
+        assert_eq!(planar.topology.vertices().filter(has_none).collect::<Vec<_>>(), [VertexId(7)]);
+        assert!(groups.len() <= 12, "{}", groups.len());
     }
 }

@@ -1,9 +1,17 @@
 //! Edges whose length is given by what has to be kept: borders, features, corners, required edges.
+//!
+//! How dense the vertices of a mesh are around an edge, for its metric.
+//!
+//! Whether straight edges can have unit length where a metric turns.
 
-use super::{Edges, is_unit};
-use crate::geometry::Point3;
+use super::super::metric_quality::edge_length;
+use super::{Around, Edges, RANGE, is_unit};
+use crate::geodesic::bowed_chord;
+use crate::geometry::{Point, Point3, Vector};
 use crate::mesh::Mesh;
+use crate::metric::MetricField;
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_3;
 
 /// How what has to be kept bears on an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,4 +113,97 @@ fn marked(mesh: &Mesh, vertices: impl Iterator<Item = u32>) -> Vec<bool> {
     let mut marks = vec![false; mesh.points.len()];
     vertices.for_each(|v| marks.get_mut(v as usize).map_or((), |mark| *mark = true));
     marks
+}
+
+/// The edges of a mesh and the logarithms of their metric lengths, by vertices.
+pub(super) struct Density<'a> {
+    ends: &'a [[u32; 2]],
+    logarithms: Vec<f64>,
+    /// Of each edge whether it tells of the density.
+    tells: Vec<bool>,
+    /// The edges at each vertex, one vertex after the other, and where each vertex's begin.
+    at: Vec<u32>,
+    first: Vec<u32>,
+}
+
+impl<'a> Density<'a> {
+    /// Of edges with these lengths; those that do not tell are left out.
+    pub(super) fn of(vertices: usize, ends: &'a [[u32; 2]], lengths: &[f64], tells: impl Fn(usize) -> bool) -> Self {
+        let mut first = vec![0_u32; vertices + 1];
+        for &v in ends.as_flattened() {
+            first[v as usize + 1] += 1;
+        }
+        for v in 0..vertices {
+            first[v + 1] += first[v];
+        }
+        let mut next = first.clone();
+        let mut at = vec![0_u32; 2 * ends.len()];
+        for (e, pair) in ends.iter().enumerate() {
+            for &v in pair {
+                at[next[v as usize] as usize] = e as u32;
+                next[v as usize] += 1;
+            }
+        }
+        let logarithms = lengths.iter().map(|length| length.ln()).collect();
+        Self { ends, logarithms, tells: (0..ends.len()).map(tells).collect(), at, first }
+    }
+
+    /// Whether an edge's length is what it is because of the density around: of the edges at its ends and at their neighbours
+    /// the logarithms of lengths spread (standard deviation) no more than those of unit edges may, their mean is the greater
+    /// part of the edge's own, and what is left of that is in the range of unit edges.
+    pub(super) fn explains(&self, edge: usize) -> bool {
+        let patch = self.patch(edge);
+        let count = patch.len() as f64;
+        let mean = patch.iter().map(|&e| self.logarithms[e as usize]).sum::<f64>() / count;
+        let variance = patch.iter().map(|&e| (self.logarithms[e as usize] - mean).powi(2)).sum::<f64>() / count;
+        let own = self.logarithms[edge];
+        variance <= RANGE * RANGE && (own - mean).abs() <= RANGE && mean / own >= 0.5
+    }
+
+    /// The edges at the ends of an edge and at their neighbours that tell, in order.
+    fn patch(&self, edge: usize) -> Vec<u32> {
+        let around = |v: u32| &self.at[self.first[v as usize] as usize..self.first[v as usize + 1] as usize];
+        let mut vertices: Vec<u32> =
+            self.ends[edge].iter().flat_map(|&v| around(v)).flat_map(|&e| self.ends[e as usize]).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let mut edges: Vec<u32> = vertices.into_iter().flat_map(|v| around(v).iter().copied()).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges.retain(|&e| self.tells[e as usize]);
+        edges
+    }
+}
+
+/// From the middle of a unit triangle to its corners.
+const FRAC_1_SQRT_3: f64 = 0.577_350_269_189_625_8;
+
+/// So many ways to lay a triangle around a point are tried, evenly turned against each other.
+const TURNS: u32 = 6;
+
+/// Whether no unit triangle of the metric at the origin, laid around it in any of [`TURNS`] ways, has straight edges that are
+/// unit edges of the metric as it varies. Edges along which there is no metric do not count as failures: it may end with the domain.
+pub(super) fn straight_edges_fail(field: &dyn MetricField) -> bool {
+    let frame = field.at(Point::default()).cholesky();
+    let is_unit = |p: Point, q: Point| edge_length([p, q], field).map_or(true, is_unit);
+    let third = 2.0 * FRAC_PI_3;
+    let fits = |turn: u32| {
+        let first = third * f64::from(turn) / f64::from(TURNS);
+        let [a, b, c] = [0.0, 1.0, 2.0].map(|i| tip(frame, FRAC_1_SQRT_3, first + third * i));
+        is_unit(a, b) && is_unit(b, c) && is_unit(c, a)
+    };
+    !(0..TURNS).any(fits)
+}
+
+/// Whether an edge is long, and its geodesic is shorter by the greater part of that, by logarithms.
+pub(super) fn bends(around: &Around, length: f64) -> bool {
+    let [p, q] = [Point::default() - around.half, Point::default() + around.half];
+    let geodesic = bowed_chord(around.field.as_ref(), p, q);
+    length > 1.0 && length > geodesic * length.sqrt()
+}
+
+/// The tip of a vector from the origin whose length is given in the metric of a tensor, by its Cholesky factor.
+fn tip([a, b, c]: [f64; 3], length: f64, angle: f64) -> Point {
+    let (sin, cos) = angle.sin_cos();
+    Point::default() + (Vector::new(1.0 / a, 0.0) * cos + Vector::new(-b / (a * c), 1.0 / c) * sin) * length
 }

@@ -1,14 +1,12 @@
 //! Where the metric was not met, and why: the edges of a mesh that are no unit edges, each with its cause.
 
-mod density;
 mod forced;
-mod straight;
 #[cfg(test)]
 mod tests;
 
 use super::edges::Edges;
+use super::faults::{Position, middle};
 use super::metric_quality::{collect, demand_planar, demand_vertices, edge_length};
-use super::position::{Position, middle};
 use super::surface_quality::Field;
 use crate::error::Result;
 use crate::geometry::{Point, Point3, Vector};
@@ -17,8 +15,7 @@ use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{FeatureOptions, Surface};
-use density::Density;
-use forced::Forced;
+use forced::{Density, Forced};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -200,7 +197,9 @@ fn find<'a>(
     let density = Density::of(mesh.points.len(), &ends, &lengths, |e| forced[e] == Forced::No);
     let turns = |e: usize| {
         let around = around(ends[e]);
-        around.is_some_and(|around| straight::fails(around.field.as_ref()) || straight::bends(&around, lengths[e]))
+        around.is_some_and(|around| {
+            forced::straight_edges_fail(around.field.as_ref()) || forced::bends(&around, lengths[e])
+        })
     };
     let cause = |e: usize| match () {
         () if forced[e] == Forced::Kept => Cause::Boundary,

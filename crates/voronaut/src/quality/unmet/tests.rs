@@ -111,15 +111,15 @@ fn straight_edges_fail_where_a_metric_changes_within_a_unit() {
     // than sqrt 2 for h = 0.5. For h = 1.7 one edge of each of the six triangles has length 1.99 or more (summed elsewhere).
     let half_plane = |h: f64| move |p: Point| Tensor::isotropic(h * (1.0 + p.y));
     for (h, fails) in [(0.01, false), (0.5, false), (1.7, true)] {
-        assert_eq!(straight::fails(&half_plane(h)), fails, "{h}");
+        assert_eq!(forced::straight_edges_fail(&half_plane(h)), fails, "{h}");
     }
     for anisotropy in [1.0, 1e3, 1e6] {
         let m = Tensor::from_axis(Vector::new(0.6, 0.8), 1.0, anisotropy * anisotropy);
-        assert!(!straight::fails(&move |_: Point| m), "{anisotropy}");
+        assert!(!forced::straight_edges_fail(&move |_: Point| m), "{anisotropy}");
     }
     // Outside the domain a metric need not be one.
     let ends = |p: Point| if p.x > 0.2 { Tensor::isotropic(f64::NAN) } else { Tensor::IDENTITY };
-    assert!(!straight::fails(&ends));
+    assert!(!forced::straight_edges_fail(&ends));
 }
 
 /// The Euclidean plane under waves, and the lattice in it whose geodesic edges all have length 1.

@@ -72,6 +72,29 @@ pub(crate) fn adapted(input: &Input, metric: &dyn SurfaceMetric, wanted: &Wanted
     Some(work.finished())
 }
 
+/// What is left of a triangulation of the surface when vertices are contracted onto as many as are `kept`: onto these, as far as
+/// triangles stand upright. The first of them, so many, stay and come first.
+pub(crate) fn contracted(
+    input: &Input,
+    metric: &dyn SurfaceMetric,
+    factor: f64,
+    (topology, places): (Triangulation, Vec<Place>),
+    kept: &[VertexId],
+    staying: usize,
+) -> Adapted {
+    let mut work = Work::of(input, metric, factor, topology, places);
+    for (i, v) in (0..).zip(kept) {
+        work.vertices[v.index()].given = Some(i);
+    }
+    work.contract_border();
+    work.contract_to(kept.len());
+    for v in &kept[staying..] {
+        work.vertices[v.index()].given = None;
+    }
+    work.contract_to(kept.len());
+    work.finished()
+}
+
 /// Exchanges vertices of a triangulation of the surface whose first `staying` places stay: edges that are too long are split, and as
 /// many vertices contracted where edges are shortest.
 pub(crate) fn exchanged(
