@@ -26,17 +26,9 @@ impl Dual<'_> {
                 inside[topology.apex(side).index()] = true;
             }
         }
-        let mut is_inner = inside.clone();
-        for ring in 1..=RINGS {
-            self.grow(&mut inside);
-            if ring == RINGS - 1 {
-                is_inner.clone_from(&inside);
-            }
-        }
-        while self.close_fans(&mut inside) {}
-        let mut planar = self.planar().clone();
-        planar.topology.retain_faces(|f| self.is_in(f, &inside));
-        Patch { planar, is_inner }
+        (1..RINGS).for_each(|_| self.grow(&mut inside));
+        let is_inner = inside.clone();
+        Patch { planar: self.part(inside, 1), is_inner }
     }
 
     /// The triangles within some rings of neighbours around seeds, with the mesh's ids.
@@ -45,6 +37,11 @@ impl Dual<'_> {
         for v in seeds {
             inside[v.index()] = true;
         }
+        self.part(inside, rings)
+    }
+
+    /// The triangles at these vertices and within some rings around them.
+    fn part(&self, mut inside: Vec<bool>, rings: usize) -> Planar {
         (0..rings).for_each(|_| self.grow(&mut inside));
         while self.close_fans(&mut inside) {}
         let mut planar = self.planar().clone();

@@ -7,7 +7,7 @@ use super::margin::KINKS;
 use super::on_surface::{FOLDED, SurfaceDual, TIE, UPRIGHT};
 use super::{Mending, Moving};
 use crate::geodesic::{Length, Margin, hermite_between, margin_of_estimates};
-use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested, climb};
+use crate::in_circle::Quad;
 use crate::parallel::prelude::*;
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Rounds, Triangulation, VertexId, flip_in_rounds};
 
@@ -252,51 +252,7 @@ impl SurfaceDual<'_> {
 
     /// The in-circle test of an edge; [`Margin::UNKNOWN`] of one with a single face, and where lengths make no triangles.
     pub(super) fn margin(&self, h: HalfEdge) -> Margin {
-        let tested = self.seeds_around(h).and_then(|quad| climb(self, &quad, 0..1, &Lengths::new(), None));
-        tested.map_or(Margin::UNKNOWN, |tested| tested.margin)
-    }
-}
-
-impl InCircle for SurfaceDual<'_> {
-    fn may_tell(&self, _quad: &Quad, level: usize, _lengths: &Lengths, _known: Option<Tested>) -> bool {
-        level == 0
-    }
-
-    fn is_by_lengths(&self, _level: usize) -> bool {
-        false
-    }
-
-    fn solve(&self, _i: u32, _j: u32, _level: usize) -> Option<Known> {
-        None
-    }
-
-    fn margin(&self, &Quad { a, b, c, d }: &Quad, _level: usize, _lengths: &Lengths) -> Margin {
-        let [a, b, c, d] = [a, b, c, d].map(VertexId);
+        let Some([a, b, c, d]) = self.topology().quad(h) else { return Margin::UNKNOWN };
         margin_of_estimates([[a, b], [c, a], [b, c], [a, d], [d, b]].map(|ends| self.estimate(ends)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::{Point3, Tensor3};
-    use crate::mesh::Mesh;
-    use crate::surface::metric::Constant;
-    use crate::surface::{Input, Surface};
-
-    #[test]
-    fn what_is_nearly_flat_is_rounded_off() {
-        let corners = vec![[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [3.0, 3.0, 0.0], [-3.0, 3.0, 0.0]];
-        let sheet = Mesh { points: corners, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
-        let (input, metric) = (Input::new(Surface::new(&sheet).unwrap(), None), Constant(Tensor3::IDENTITY));
-        // The third is above the middle of the edge between the first two by next to nothing.
-        let seeds = [(-1.0, 0.0), (1.0, 0.0), (0.0, 1e-6), (0.0, 2.0), (0.0, -2.0)];
-        let places = seeds.map(|(x, y)| input.closest(Point3::new(x, y, 0.0)).unwrap()).to_vec();
-        let triangles = [[0, 1, 2], [0, 2, 3], [2, 1, 3], [0, 4, 1]];
-        let topology = Triangulation::from_triangles(5, &triangles, &[0; 4]);
-        let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
-        assert_eq!((dual.round_off(), dual.round_off()), (1, 0));
-        let least = dual.triangles().into_iter().map(|t| dual.quality(t.map(|v| dual.site(VertexId(v)))));
-        assert!(least.fold(1.0, f64::min) > 0.5);
     }
 }

@@ -62,14 +62,23 @@ pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road, progress: &d
     };
     let rdt = Rdt::new(field, &seeds, &Start::from_nerve(&nerve), trust);
     let seconds = vec![("nerve", read - start), ("tests", progress.seconds() - read)];
-    let account = account(&rdt, &nerve, road);
+    by_road(diagram, nerve, &rdt, road, seconds)
+}
+
+fn by_road<'a, G: Ground<'a>>(
+    diagram: &Diagram<'a, G>,
+    nerve: Nerve,
+    rdt: &Rdt<impl Judge>,
+    road: Road,
+    seconds: Vec<(&'static str, f64)>,
+) -> SeedDual {
+    let exact = rdt.triangles();
     let triangles = match road {
         Road::Canvas => nerve.triangles.iter().map(|t| t.colours).collect(),
-        Road::Geodesic => rdt.triangles(),
-        Road::Both => rdt.triangles().into_iter().chain(left_out(&rdt, &nerve)).collect(),
+        Road::Geodesic => exact.clone(),
+        Road::Both => exact.iter().copied().chain(left_out(rdt, &nerve)).collect(),
     };
-    let exact = rdt.triangles();
-    let raw_nerve = compared(diagram, &exact);
+    let (account, raw_nerve) = (account(rdt, &nerve, road), compared(diagram, &exact));
     SeedDual { triangles, nerve, exact, raw_nerve, account, seconds }
 }
 
@@ -85,7 +94,7 @@ fn as_read(diagram: &Diagram) -> SeedDual {
     }
 }
 
-pub(super) fn compared<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, exact: &[[u32; 3]]) -> figures::RawNerve {
+fn compared<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, exact: &[[u32; 3]]) -> figures::RawNerve {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
     let exact: HashSet<[u32; 3]> = exact.iter().map(turned).collect();
     let raw: HashSet<[u32; 3]> = diagram.witnesses_of_triangles().into_iter().map(|witness| witness.0).collect();
@@ -118,7 +127,7 @@ pub fn net(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]]) -> Ne
 
 /// Triangles of the nerve that no triangulation could hold beside the others, and of which it is sure: cells that touch
 /// in two places.
-pub(super) fn left_out(rdt: &Rdt<impl Judge>, nerve: &Nerve) -> Vec<[u32; 3]> {
+fn left_out(rdt: &Rdt<impl Judge>, nerve: &Nerve) -> Vec<[u32; 3]> {
     let is_sure = |t: &NerveTriangle| t.fourth.is_none_or(|(_, gap)| gap >= NERVE_ERROR);
     let sure: HashSet<[u32; 3]> = nerve.triangles.iter().filter(|t| is_sure(t)).map(|t| t.colours).collect();
     rdt.dropped().iter().copied().filter(|t| sure.contains(t)).collect()
@@ -174,15 +183,7 @@ pub fn surface_dual(diagram: &SurfaceDiagram, road: Road, progress: &dyn Progres
     let (glued, copies) = diagram.glued_nerve();
     let rdt = Rdt::from_glued(OnSurface::new(diagram), diagram.colours(), glued, &copies);
     let seconds = vec![("nerve", read - start), ("tests", progress.seconds() - read)];
-    let triangles = match road {
-        Road::Canvas => nerve.triangles.iter().map(|t| t.colours).collect(),
-        Road::Geodesic => rdt.triangles(),
-        Road::Both => rdt.triangles().into_iter().chain(left_out(&rdt, &nerve)).collect(),
-    };
-    let account = account(&rdt, &nerve, road);
-    let exact = rdt.triangles();
-    let raw_nerve = compared(diagram, &exact);
-    SeedDual { triangles, nerve, exact, raw_nerve, account, seconds }
+    by_road(diagram, nerve, &rdt, road, seconds)
 }
 
 /// Triangles of seeds on a surface as a mesh: vertex i is seed i, with the region labels of the surface.

@@ -1,7 +1,7 @@
 //! The interior by farthest points (RR-9103, section 13): seeds one at a time at the canvas vertex that is farthest, in
 //! geodesic distance, from all seeds so far.
 
-use super::interior::{Fill, SPACING};
+use super::interior::{Entry, Fill, SPACING};
 use crate::diagram::{Diagram, Ground};
 use crate::dual::Dual;
 use crate::error::Result;
@@ -10,28 +10,8 @@ use crate::metric::MetricField;
 use crate::planar::Location;
 use crate::progress::Progress;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
-use std::cmp::Ordering;
 use std::collections::binary_heap::PeekMut;
 use std::collections::{BTreeSet, BinaryHeap};
-
-/// A number and what it belongs to; the greatest number first, of equal ones the smallest id.
-#[derive(Clone, Copy, PartialEq)]
-struct Entry<T> {
-    value: f64,
-    of: T,
-}
-
-impl<T: Ord> Eq for Entry<T> {}
-impl<T: Ord> PartialOrd for Entry<T> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl<T: Ord> Ord for Entry<T> {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.value.total_cmp(&other.value).then(other.of.cmp(&self.of))
-    }
-}
 
 /// The canvas vertices of a diagram by their distance from the seeds, farthest first, while seeds are inserted.
 ///

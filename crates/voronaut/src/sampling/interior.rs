@@ -39,21 +39,8 @@ impl Fill {
 /// Passes over all edges to halve the longest, each up to an eighth of them; more means that rounding forbids most.
 const MOST_PASSES: usize = 100;
 
-/// How refinement went.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Refined {
-    /// Seeds put at circumcentres.
-    pub circumcentres: usize,
-    /// Constrained edges split because a circumcentre encroached on them.
-    pub encroached: usize,
-    /// Seeds put at centroids, where the circumcentre was too near to other seeds.
-    pub centroids: usize,
-    /// Edges halved because no circumcentre could be had.
-    pub halved: usize,
-}
-
 /// Inserts seeds until the dual has as many vertices as asked for.
-pub(crate) fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Result<Refined> {
+pub(crate) fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Result<()> {
     refine_with(dual, fill, progress, &mut |dual, place, (centre, _)| insert_spaced(dual, place, centre))
 }
 
@@ -61,9 +48,9 @@ pub(crate) fn refine(dual: &mut Dual, fill: Fill, progress: &dyn Progress) -> Re
 pub(super) type Steiner<'a> = &'a mut dyn FnMut(&mut Dual, Location, (Point, f64)) -> bool;
 
 /// [`refine`], with the seeds for circumcentres put where `steiner` says.
-pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, steiner: Steiner) -> Result<Refined> {
+pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, steiner: Steiner) -> Result<()> {
     let count = fill.count();
-    let mut refiner = Refiner { queue: BinaryHeap::new(), refined: Refined::default(), steiner };
+    let mut refiner = Refiner { queue: BinaryHeap::new(), steiner };
     dual.take_touched();
     let faces: Vec<FaceId> = dual.topology().faces().collect();
     refiner.enqueue(dual, faces);
@@ -81,35 +68,31 @@ pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, 
             reported = dual.vertex_count();
         }
     }
-    Ok(refiner.refined)
+    Ok(())
 }
 
-/// A face by its metric circumradius; stale once the face has changed.
-struct Entry {
-    radius: f64,
-    face: FaceId,
+/// A number and what it belongs to; the greatest number first, of equal ones the smallest id.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Entry<T> {
+    pub(super) value: f64,
+    pub(super) of: T,
 }
 
-impl PartialEq for Entry {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Entry {}
-impl PartialOrd for Entry {
+impl<T: Ord> Eq for Entry<T> {}
+impl<T: Ord> PartialOrd for Entry<T> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
-impl Ord for Entry {
+impl<T: Ord> Ord for Entry<T> {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.radius.total_cmp(&other.radius).then(other.face.cmp(&self.face))
+        self.value.total_cmp(&other.value).then(other.of.cmp(&self.of))
     }
 }
 
 struct Refiner<'a> {
-    queue: BinaryHeap<Entry>,
-    refined: Refined,
+    /// Faces by their metric circumradius; stale once a face has changed.
+    queue: BinaryHeap<Entry<FaceId>>,
     steiner: Steiner<'a>,
 }
 
@@ -117,14 +100,14 @@ impl Refiner<'_> {
     fn enqueue(&mut self, dual: &Dual, faces: Vec<FaceId>) {
         for face in faces {
             if dual.topology().is_face(face) {
-                self.queue.push(Entry { radius: circumcircle(dual, face).1, face });
+                self.queue.push(Entry { value: circumcircle(dual, face).1, of: face });
             }
         }
     }
 
     /// Takes the worst face and inserts a seed for it, if one can be had. False when no face is left.
     fn improve_worst(&mut self, dual: &mut Dual) -> bool {
-        while let Some(Entry { radius, face }) = self.queue.pop() {
+        while let Some(Entry { value: radius, of: face }) = self.queue.pop() {
             if !dual.topology().is_face(face) {
                 continue;
             }
@@ -154,16 +137,13 @@ impl Refiner<'_> {
         }
         let centroid = centroid(dual.planar().triangle(face));
         if insert_spaced(dual, Location::Face(face), centroid) {
-            self.refined.centroids += 1;
             return true;
         }
         let longest = face.half_edges().into_iter().max_by(|&g, &h| chord_of(dual, g).total_cmp(&chord_of(dual, h)));
-        let halved = longest.is_some_and(|h| {
+        longest.is_some_and(|h| {
             let [a, b] = dual.planar().ends(h);
             split_if_long(dual, h) || insert_spaced(dual, Location::Edge(h), a.midpoint(b))
-        });
-        self.refined.halved += usize::from(halved);
-        halved
+        })
     }
 
     fn insert_at_circumcentre(&mut self, dual: &mut Dual, face: FaceId, (centre, radius): (Point, f64)) -> bool {
@@ -173,14 +153,10 @@ impl Refiner<'_> {
             Location::Edge(h) | Location::Behind(h) => Some(h).filter(|&h| dual.topology().is_fixed(h)),
             Location::Vertex(_) => None,
         };
-        if let Some(h) = encroached {
-            let split = split_if_long(dual, h);
-            self.refined.encroached += usize::from(split);
-            return split;
+        match encroached {
+            Some(h) => split_if_long(dual, h),
+            None => (self.steiner)(dual, place, (centre, radius)),
         }
-        let inserted = (self.steiner)(dual, place, (centre, radius));
-        self.refined.circumcentres += usize::from(inserted);
-        inserted
     }
 
     /// Halves the longest edges of all, for when every face is as good as its circumcentre can make it and vertices
@@ -199,7 +175,6 @@ impl Refiner<'_> {
             let edge = dual.topology().find(a, b).or_else(|| dual.topology().find(b, a));
             done += usize::from(edge.is_some_and(|h| halve(dual, h)));
         }
-        self.refined.halved += done;
         let touched = dual.take_touched();
         self.enqueue(dual, touched);
         done > 0

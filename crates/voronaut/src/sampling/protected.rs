@@ -1,7 +1,7 @@
 //! The interior by the protection criterion (RR-9103, section 13): seeds near circumcentres, where they leave no simplex
 //! without power protection.
 
-use super::interior::{Fill, Refined, encroached_edge, insert_spaced, is_crowded, refine_with};
+use super::interior::{Fill, encroached_edge, insert_spaced, is_crowded, refine_with};
 use crate::dual::Dual;
 use crate::error::Result;
 use crate::geometry::{Point, Vector};
@@ -27,29 +27,11 @@ pub(crate) struct Picking {
     pub radius: f64,
 }
 
-/// How refinement went.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Picked {
-    /// Seeds for size.
-    pub refined: Refined,
-    /// Seeds for simplices that lacked protection.
-    pub protecting: usize,
-    /// Seeds in places that leave every simplex around protected, among both.
-    pub valid: usize,
-    /// Seeds at circumcentres although they leave a simplex unprotected: no better place was found.
-    pub invalid: usize,
-}
-
 /// [`refine`](super::refine) with places picked. Most seeds go by size, where the circumradius is largest; then come seeds
 /// for simplices that lack protection, largest first, as far as valid places for them exist; the rest goes by size again.
 /// It ends where [`refine`](super::refine) does. Deterministic.
-pub(crate) fn refine_protected(
-    dual: &mut Dual,
-    fill: Fill,
-    picking: Picking,
-    progress: &dyn Progress,
-) -> Result<Picked> {
-    let mut picker = Picker { picking, random: Random::new(fill.count() as u64), picked: Picked::default() };
+pub(crate) fn refine_protected(dual: &mut Dual, fill: Fill, picking: Picking, progress: &dyn Progress) -> Result<()> {
+    let mut picker = Picker { picking, random: Random::new(fill.count() as u64) };
     let by_size = (fill.count() as f64 * (1.0 - RESERVE)) as usize;
     let first = match fill {
         Fill::Exactly(_) => Fill::Exactly(by_size),
@@ -60,14 +42,12 @@ pub(crate) fn refine_protected(
     };
     refine(dual, &mut picker, first)?;
     picker.protect(dual, fill.count());
-    picker.picked.refined = refine(dual, &mut picker, fill)?;
-    Ok(picker.picked)
+    refine(dual, &mut picker, fill)
 }
 
 struct Picker {
     picking: Picking,
     random: Random,
-    picked: Picked,
 }
 
 impl Picker {
@@ -82,14 +62,9 @@ impl Picker {
             return false;
         }
         let near = dual.topology().corners(face)[0];
-        if self.pick_valid(dual, place, (centre, radius)).is_some() {
-            self.picked.valid += 1;
-            return true;
-        }
-        // The tries may have left other faces there.
-        let inserted = place_from(dual, near, centre).is_some_and(|p| insert_spaced(dual, p, centre));
-        self.picked.invalid += usize::from(inserted);
-        inserted
+        // The tries may leave other faces there.
+        self.pick_valid(dual, place, (centre, radius)).is_some()
+            || place_from(dual, near, centre).is_some_and(|p| insert_spaced(dual, p, centre))
     }
 
     /// Seeds for the simplices that lack protection, as far as there are valid places.
@@ -109,10 +84,9 @@ impl Picker {
             if dual.vertex_count() >= count {
                 return;
             }
-            let Some(place) = place_from(dual, near, centre) else { continue };
-            let picked = self.pick_valid(dual, place, (centre, radius)).is_some();
-            self.picked.protecting += usize::from(picked);
-            self.picked.valid += usize::from(picked);
+            if let Some(place) = place_from(dual, near, centre) {
+                self.pick_valid(dual, place, (centre, radius));
+            }
         }
     }
 
