@@ -1,5 +1,6 @@
 //! Which mesher; and the local Delaunay algorithm as one (RR-9103, section 7.1), to compare.
 
+use super::settle::Stopwatch;
 use super::{Job, MeshOptions, Meshed};
 use crate::canvas::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 use crate::domain::Domain;
@@ -33,7 +34,8 @@ pub(super) fn by_stars(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
-    let mut job = Job::new(field, options, progress);
+    let watch = Stopwatch::new(progress);
+    let mut job = Job::new(field, options, &watch);
     let start = sampled(&mut job, domain, None)?;
     let (scaled, unit) = (start.dual.field(), start.dual.vertex_count());
     let mut meshed = agreed(&mut job, &start, &scaled, unit);
@@ -44,17 +46,17 @@ pub(super) fn by_stars(
         let steadied = Steadied { field: &scaled, most };
         let lloyd = options.lloyd.min(LLOYD);
         let as_it_is = MeshOptions { vertices: None, complexity: None, lloyd, ..options.clone() };
-        let mut steady = Job { watch: job.watch, notes: job.notes, ..Job::new(&steadied, &as_it_is, progress) };
+        let mut steady = Job { notes: job.notes, ..Job::new(&steadied, &as_it_is, &watch) };
         let start = sampled(&mut steady, domain, Some(unit))?;
         meshed = agreed(&mut steady, &start, &scaled, unit);
-        (job.watch, job.notes) = (steady.watch, steady.notes);
+        job.notes = steady.notes;
     }
     let mut meshed = meshed?;
     let got = meshed.mesh.points.len();
     if let Some(asked) = options.vertices.filter(|&asked| asked != got) {
         job.notes.push(format!("{asked} vertices set the scale of the metric; stars that agree took {got}"));
     }
-    (meshed.seconds, meshed.notes) = (job.watch.seconds, job.notes);
+    (meshed.seconds, meshed.notes) = (watch.seconds(), job.notes);
     Ok(meshed)
 }
 
@@ -67,15 +69,15 @@ struct Start<'a> {
 
 /// Relaxed seeds; where the size of a unit mesh is given, an error if they are too many beside that.
 fn sampled<'a>(job: &mut Job<'a>, domain: &Domain, unit: Option<usize>) -> Result<Start<'a>> {
-    let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
+    let (domain, plan, count, scale) = job.watch.time("plan", || job.plan(domain))?;
     let unit = unit.unwrap_or(count);
     if count > most(unit) {
         let what = format!("stars need about {count} vertices to agree, where a unit mesh has {unit}");
         return Err(Error::Limit { what, help: NEEDS_MORE.into() });
     }
     demand_memory(count as f64, most(unit) as f64, job.options.memory_limit)?;
-    let mut dual = job.timed("seed", |job| job.seed(&domain, None, &plan, count, scale))?;
-    let relaxation = job.timed("relax", |job| job.relax(&mut dual, None))?;
+    let mut dual = job.watch.time("seed", || job.seed(&domain, None, &plan, count, scale))?;
+    let relaxation = job.watch.time("relax", || job.relax(&mut dual, None))?;
     Ok(Start { domain, dual, relaxation })
 }
 
@@ -87,10 +89,10 @@ fn most(unit: usize) -> usize {
 fn agreed(job: &mut Job, start: &Start, scaled: &Scaled, unit: usize) -> Result<Meshed> {
     job.progress.begin("stars", 1)?;
     let asked = Consistency { radius: UNIT_RADIUS, most: most(unit) };
-    let found = job.timed("stars", |_| consistent(start.dual.planar().clone(), scaled, asked))?;
+    let found = job.watch.time("stars", || consistent(start.dual.planar().clone(), scaled, asked))?;
     job.progress.begin("checking", 1)?;
     let mesh = start.domain.mesh_of(&found.planar, |v| corner(&start.dual, v));
-    job.timed("check", |_| quality::check(&mesh))?;
+    job.watch.time("check", || quality::check(&mesh))?;
     Ok(Meshed {
         mesh,
         metric_scale: scaled.factor,

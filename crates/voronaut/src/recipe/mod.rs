@@ -127,29 +127,30 @@ pub fn mesh_for(
         return mesher::by_stars(domain, field, options, progress);
     }
     options.geodesic.demand_diagrams()?;
-    let mut job = Job::new(field, options, progress);
-    let (domain, plan, count, scale) = job.timed("plan", |job| job.plan(domain))?;
+    let watch = Stopwatch::new(progress);
+    let mut job = Job::new(field, options, &watch);
+    let (domain, plan, count, scale) = watch.time("plan", || job.plan(domain))?;
     let asked = if options.seeding == Seeding::Protected { count } else { options.dual.seeds_asked(count) };
     let on_canvas = asked as f64 * f64::from(options.canvas_size);
     demand_memory(count as f64, on_canvas, options.memory_limit)?;
     let canvas = job.canvas(&domain, count)?;
-    let mut dual = job.timed("seed", |job| job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
-    let relaxation = job.timed("relax", |job| job.relax(&mut dual, canvas.as_ref()))?;
+    let mut dual = watch.time("seed", || job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
+    let relaxation = watch.time("relax", || job.relax(&mut dual, canvas.as_ref()))?;
     let protected = job.protect(&domain, &mut dual)?;
     let aim = aim.map(|aim| job.is_to_be_polished(&mut dual, aim).map(|is| is.then_some(aim))).transpose()?.flatten();
     let settled = if aim.is_some() {
         // Polishing decides on the edges.
         settle::Settled::default()
     } else {
-        job.timed("settle", |job| settle::settle(&mut dual, &domain, job.options, job.progress))?
+        watch.time("settle", || settle::settle(&mut dual, &domain, job.options, job.progress))?
     };
-    let polished = aim.map(|aim| job.timed("polish", |job| job.polish(&mut dual, aim))).transpose()?;
-    let mesh = job.timed("check", |job| job.finish(&domain, &dual))?;
+    let polished = aim.map(|aim| watch.time("polish", || job.polish(&mut dual, aim))).transpose()?;
+    let mesh = watch.time("check", || job.finish(&domain, &dual))?;
     let (net, protection) = job.net(&domain, &dual, protected);
     let settle::Settled { dual: account, canvas, diagram } = settled;
     let (canvas, diagram) = (job.canvas.or(canvas), job.diagram.or(diagram));
     let metric_scale = dual.field().factor;
-    let (seconds, notes) = (job.watch.seconds, job.notes);
+    let (seconds, notes) = (watch.seconds(), job.notes);
     let star_set = None;
     Ok(Meshed {
         mesh,
@@ -174,20 +175,13 @@ struct Job<'a> {
     progress: &'a dyn Progress,
     canvas: Option<CanvasFigures>,
     diagram: Option<figures::Diagram>,
-    watch: Stopwatch,
+    watch: &'a Stopwatch<'a>,
     notes: Vec<String>,
 }
 
 impl<'a> Job<'a> {
-    fn new(field: &'a dyn MetricField, options: &'a MeshOptions, progress: &'a dyn Progress) -> Self {
-        Self { field, options, progress, canvas: None, diagram: None, watch: Stopwatch::default(), notes: Vec::new() }
-    }
-
-    fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
-        let start = self.progress.seconds();
-        let result = work(self);
-        self.watch.add(stage, self.progress.seconds() - start);
-        result
+    fn new(field: &'a dyn MetricField, options: &'a MeshOptions, watch: &'a Stopwatch<'a>) -> Self {
+        Self { field, options, progress: watch.progress, canvas: None, diagram: None, watch, notes: Vec::new() }
     }
 
     fn target(&self) -> Target {

@@ -54,12 +54,11 @@ pub fn mesh_surface(
     let metric = closer.as_ref().map_or(metric, |closer| closer as &dyn SurfaceMetric);
     let (curves, meetings) = (MeasuredCurves::new(input, metric), Meetings::of(input.whole_mesh()));
     demand_apart(input, &meetings)?;
-    let setting = Setting { input, metric, options, progress, curves, meetings };
-    let mut job = Job { setting, watch: Stopwatch::default() };
-    let (mut count, mut scale) = job.timed("plan", Job::plan)?;
+    let setting = Setting { input, metric, options, progress, curves, meetings, watch: Stopwatch::new(progress) };
+    let (mut count, mut scale) = setting.watch.time("plan", || setting.plan())?;
     let (mut least, mut idle) = (f64::INFINITY, 0);
     for round in 1.. {
-        let (mut meshed, fidelity) = job.meshed(count, scale)?;
+        let (mut meshed, fidelity) = setting.meshed(count, scale)?;
         let distance = fidelity.as_ref().map_or(0.0, |found| found.both.hausdorff);
         let ratio = options.hausd.map_or(0.0, |most| distance / most.max(f64::MIN_POSITIVE));
         idle += usize::from(least < GAIN * ratio);
@@ -69,13 +68,13 @@ pub fn mesh_surface(
             meshed.notes.push(format!("mesh and surface are {distance:.3e} apart where `hausd` asks for {most:.3e}"));
         }
         if ratio <= 1.0 || is_last {
-            return Ok(Meshed { fidelity, seconds: job.watch.seconds, ..meshed });
+            return Ok(Meshed { fidelity, seconds: setting.watch.seconds(), ..meshed });
         }
         least = least.min(ratio);
         // Distances fall with the square of the edges: with the number of vertices.
         let more = (1.1 * ratio).min(MOST_MORE);
         (count, scale) = ((count as f64 * more).ceil() as usize, scale * more);
-        job.demand_memory(count)?;
+        setting.demand_memory(count)?;
     }
     unreachable!("the last round returns")
 }
@@ -106,48 +105,36 @@ fn demand_apart(input: &Input, meetings: &Meetings) -> Result<()> {
     }
 }
 
-struct Job<'a> {
-    setting: Setting<'a>,
-    watch: Stopwatch,
-}
-
-impl<'a> Job<'a> {
-    fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
-        let start = self.setting.progress.seconds();
-        let result = work(self);
-        self.watch.add(stage, self.setting.progress.seconds() - start);
-        result
-    }
-
+impl<'a> Setting<'a> {
     /// That the work for so many vertices fits into memory.
     fn demand_memory(&self, count: usize) -> Result<()> {
-        let canvas = if self.setting.needs_canvas() { self.setting.canvas_size(count) } else { 0 };
-        demand_memory(count as f64, canvas as f64, self.setting.options.memory_limit)
+        let canvas = if self.needs_canvas() { self.canvas_size(count) } else { 0 };
+        demand_memory(count as f64, canvas as f64, self.options.memory_limit)
     }
 
     /// A mesh with so many vertices, and how far it is from the surface, if that is asked for. Where what comes out is no mesh,
     /// or folded, it is made again with more of the surface there.
-    fn meshed(&mut self, count: usize, scale: f64) -> Result<(Meshed, Option<SurfaceFidelity>)> {
+    fn meshed(&self, count: usize, scale: f64) -> Result<(Meshed, Option<SurfaceFidelity>)> {
         let mut reseed = Reseed::default();
         let mut notes = Vec::new();
         let (pass, mesh) = loop {
             let Some(pass) = self.passed(count, scale, &mut reseed)? else { continue };
             let mesh = pass.mesh();
-            let faulty = self.timed("check", |job| {
-                job.setting.progress.begin("checking", 1)?;
-                Ok(pass.faulty(&mesh, &job.setting.meetings))
+            let faulty = self.watch.time("check", || {
+                self.progress.begin("checking", 1)?;
+                Ok(pass.faulty(&mesh, &self.meetings))
             })?;
             if faulty.is_empty() || reseed.rounds + 1 >= self.farthest_passes() + ADAPTATIONS {
                 break (pass, mesh);
             }
             reseed = pass.reseed(&faulty, reseed);
         };
-        pass.demand(&mesh, &self.setting.meetings)?;
+        pass.demand(&mesh, &self.meetings)?;
         notes.extend(reseed.note());
         notes.extend(pass.notes());
         notes.extend(self.count_note(&pass, mesh.points.len()));
-        let mesh = self.timed("fit", |job| job.fitted(mesh, &mut notes))?;
-        let fidelity = self.timed("check", |job| job.fidelity(&mesh))?;
+        let mesh = self.watch.time("fit", || self.fitted(mesh, &mut notes))?;
+        let fidelity = self.watch.time("check", || self.fidelity(&mesh))?;
         let meshed = Meshed {
             mesh,
             metric_scale: pass.dual.factor(),
@@ -163,16 +150,16 @@ impl<'a> Job<'a> {
 
     /// A pass by what there was before: where farthest points are asked for, of these, as long as that may make a mesh. Nothing where
     /// they find no triangulation, for the surface's own may.
-    fn passed(&mut self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Option<Pass<'a>>> {
+    fn passed(&self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Option<Pass<'a>>> {
         let farthest = self.farthest_passes();
         let is_farthest = reseed.rounds < farthest;
-        let lloyd = self.setting.options.lloyd;
+        let lloyd = self.options.lloyd;
         let steps = match reseed.rounds.saturating_sub(farthest) {
             0 => Some(lloyd),
             rounds if rounds + UNRELAXED < ADAPTATIONS => Some(lloyd.min(FEWER_STEPS)),
             _ => None,
         };
-        match self.setting.pass(count, scale, reseed, (is_farthest, steps), &mut self.watch) {
+        match self.pass(count, scale, reseed, is_farthest, steps) {
             Err(Error::Domain { .. }) if is_farthest => {
                 reseed.rounds = farthest;
                 Ok(None)
@@ -182,12 +169,12 @@ impl<'a> Job<'a> {
     }
 
     fn farthest_passes(&self) -> usize {
-        if self.setting.options.seeding == Seeding::Farthest { FARTHEST_PASSES } else { 0 }
+        if self.options.seeding == Seeding::Farthest { FARTHEST_PASSES } else { 0 }
     }
 
     /// What to say where the mesh has not the number of vertices asked for.
     fn count_note(&self, pass: &Pass, found: usize) -> Option<String> {
-        let asked = self.setting.options.vertices?;
+        let asked = self.options.vertices?;
         if (found as f64 - asked as f64).abs() <= COUNT_TOLERANCE * asked as f64 {
             return None;
         }
@@ -208,15 +195,15 @@ impl<'a> Job<'a> {
 
     /// The mesh with its vertices at least-squares positions, if that is asked for; as it was where that would not be valid.
     fn fitted(&self, mesh: Mesh, notes: &mut Vec<String>) -> Result<Mesh> {
-        if !self.setting.options.fit {
+        if !self.options.fit {
             return Ok(mesh);
         }
-        self.setting.progress.begin("fitting", 1)?;
-        let options = FitOptions { stiffness: self.setting.options.stiffness, ..FitOptions::default() };
-        let input = self.setting.input;
-        let fine = input.implicit.as_ref().map(|_| self.setting.fine_surface(mesh.points.len())).transpose()?;
+        self.progress.begin("fitting", 1)?;
+        let options = FitOptions { stiffness: self.options.stiffness, ..FitOptions::default() };
+        let input = self.input;
+        let fine = input.implicit.as_ref().map(|_| self.fine_surface(mesh.points.len())).transpose()?;
         let fitted = fit(&mesh, fine.as_ref().unwrap_or(&input.surface), &options)?.mesh;
-        if quality::validity_on(&fitted, &self.setting.meetings).valid {
+        if quality::validity_on(&fitted, &self.meetings).valid {
             return Ok(fitted);
         }
         notes.push("vertices are on the surface: least-squares positions would not make a valid mesh".into());
@@ -224,24 +211,24 @@ impl<'a> Job<'a> {
     }
 
     fn fidelity(&self, mesh: &Mesh) -> Result<Option<SurfaceFidelity>> {
-        if self.setting.options.hausd.is_none() && !self.setting.options.fit {
+        if self.options.hausd.is_none() && !self.options.fit {
             return Ok(None);
         }
-        let implicit = self.setting.input.implicit.as_ref().map(|f| f as &dyn Implicit);
-        quality::surface_fidelity(mesh, &self.setting.input.surface, implicit).map(Some)
+        let implicit = self.input.implicit.as_ref().map(|f| f as &dyn Implicit);
+        quality::surface_fidelity(mesh, &self.input.surface, implicit).map(Some)
     }
 
     /// The number of vertices, and the factor on the metric for which edges then are of unit length.
     ///
     /// A triangulation with V vertices has 2 (V - chi) - B faces, B of its edges on the border; each has the area sqrt(3) / 4.
-    fn plan(&mut self) -> Result<(usize, f64)> {
-        self.setting.progress.begin("planning", 1)?;
-        let area = area_of_surface(self.setting.input, self.setting.metric, MEASURING)?;
+    fn plan(&self) -> Result<(usize, f64)> {
+        self.progress.begin("planning", 1)?;
+        let area = area_of_surface(self.input, self.metric, MEASURING)?;
         // Of the surface as it was before it was cut: vertices on its cuts count once.
-        let chi = self.setting.input.seams.whole().euler as f64;
-        let extra = self.setting.curves.extra();
+        let chi = self.input.seams.whole().euler as f64;
+        let extra = self.curves.extra();
         let vertices = |factor: f64| 2.0 / 3.0_f64.sqrt() * area * factor + extra * factor.sqrt() + chi;
-        let (count, factor) = match (self.setting.options.vertices, self.setting.options.complexity) {
+        let (count, factor) = match (self.options.vertices, self.options.complexity) {
             (Some(count), _) => {
                 // The square root of the factor by the quadratic formula.
                 let (a, b, c) = (2.0 / 3.0_f64.sqrt() * area, extra, chi - count as f64);
@@ -253,7 +240,7 @@ impl<'a> Job<'a> {
         };
         // Patches with a border have their vertices there.
         let is_closed = |component: &Component| component.borders == 0;
-        let least = 4 * self.setting.input.surface.components().into_iter().filter(is_closed).count();
+        let least = 4 * self.input.surface.components().into_iter().filter(is_closed).count();
         self.demand_memory(count)?;
         let factor = if factor > 0.0 { factor } else { 1.0 };
         Ok((count.max(least), factor))

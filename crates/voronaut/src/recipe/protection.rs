@@ -25,7 +25,7 @@ impl Job<'_> {
             return Ok(None);
         }
         self.progress.begin("protecting", 1)?;
-        let protected = self.timed("protect", |job| protect(dual, job.options.protection, job.progress))?;
+        let protected = self.watch.time("protect", || protect(dual, self.options.protection, self.progress))?;
         let left = protected.unprotected[1];
         if protected.ending != Ending::Protected {
             let asked = self.options.protection;
@@ -38,7 +38,7 @@ impl Job<'_> {
             ));
         }
         self.progress.begin("comparing with a canvas", 1)?;
-        let nerve = self.timed("raw_nerve", |job| job.raw_nerve(domain, dual))?;
+        let nerve = self.watch.time("raw_nerve", || self.raw_nerve(domain, dual))?;
         if nerve.nerve.missing + nerve.nerve.extra > 0 {
             let figures::RawNerve { missing, extra, .. } = nerve.nerve;
             self.notes.push(format!(
@@ -76,7 +76,7 @@ impl Job<'_> {
         let account = protected.as_ref().map(|(protected, nerve)| self.account(protected, *nerve));
         let net = match protected {
             Some((protected, _)) => protected.net,
-            None if self.options.net => self.timed("net", |_| measured(dual)),
+            None if self.options.net => self.watch.time("net", || measured(dual)),
             None => return (None, None),
         };
         let number = dual.numbering(domain);

@@ -20,6 +20,7 @@ use crate::progress::Progress;
 use crate::sampling::{demand_memory, refine_farthest};
 use crate::triangulation::VertexId;
 use crate::{canvas, figures};
+use std::cell::RefCell;
 
 /// Flips by the most careful tests, asks the diagram where the road says so, and tells what came of it.
 ///
@@ -166,7 +167,7 @@ impl Job<'_> {
         let size = canvas::size_for(seeds, self.options.canvas_size);
         demand_memory(seeds as f64, size as f64, self.options.memory_limit)?;
         self.progress.begin("canvas", 1)?;
-        let canvas = self.timed("canvas", |job| Canvas::new(job.options.canvas, domain, job.field, size))?;
+        let canvas = self.watch.time("canvas", || Canvas::new(self.options.canvas, domain, self.field, size))?;
         self.canvas = Some(canvas.figures());
         Ok(Some(canvas))
     }
@@ -184,18 +185,33 @@ impl Job<'_> {
     }
 }
 
-/// Stages in the order in which they first began, with the seconds spent in each.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Stopwatch {
-    pub(super) seconds: Vec<(&'static str, f64)>,
+/// Stages in the order in which they first began, with the seconds spent in each by the clock of who watches.
+pub(super) struct Stopwatch<'a> {
+    pub(super) progress: &'a dyn Progress,
+    seconds: RefCell<Vec<(&'static str, f64)>>,
 }
 
-impl Stopwatch {
-    /// Adds the time that a stage took.
-    pub(super) fn add(&mut self, stage: &'static str, took: f64) {
-        match self.seconds.iter_mut().find(|(name, _)| *name == stage) {
+impl<'a> Stopwatch<'a> {
+    /// Nothing has begun.
+    pub(super) fn new(progress: &'a dyn Progress) -> Self {
+        Self { progress, seconds: RefCell::default() }
+    }
+
+    /// Does the work, whose time the stage takes.
+    pub(super) fn time<T>(&self, stage: &'static str, work: impl FnOnce() -> T) -> T {
+        let start = self.progress.seconds();
+        let result = work();
+        let took = self.progress.seconds() - start;
+        let mut seconds = self.seconds.borrow_mut();
+        match seconds.iter_mut().find(|(name, _)| *name == stage) {
             Some((_, seconds)) => *seconds += took,
-            None => self.seconds.push((stage, took)),
+            None => seconds.push((stage, took)),
         }
+        result
+    }
+
+    /// All stages so far.
+    pub(super) fn seconds(&self) -> Vec<(&'static str, f64)> {
+        self.seconds.borrow().clone()
     }
 }

@@ -45,6 +45,7 @@ pub(super) struct Setting<'a> {
     pub(super) curves: MeasuredCurves<'a>,
     /// Where the surface meets itself.
     pub(super) meetings: Meetings,
+    pub(super) watch: Stopwatch<'a>,
 }
 
 /// What a pass has come to.
@@ -106,32 +107,21 @@ impl<'a> Setting<'a> {
         count: usize,
         scale: f64,
         reseed: &mut Reseed,
-        (is_farthest, steps): (bool, Option<usize>),
-        watch: &mut Stopwatch,
+        is_farthest: bool,
+        steps: Option<usize>,
     ) -> Result<Pass<'a>> {
-        let begin = self.progress.seconds();
         self.progress.begin("seeding", count as u64)?;
-        let started = if is_farthest {
-            self.started_from_canvas(count, scale, reseed)
-        } else {
-            self.started_from_surface(count, scale, reseed)
-        };
+        let started = self.watch.time("seed", || {
+            if is_farthest {
+                self.started_from_canvas(count, scale, reseed)
+            } else {
+                self.started_from_surface(count, scale, reseed)
+            }
+        });
         let Started { features, owners, adapted, canvas } = started?;
-        watch.add("seed", self.progress.seconds() - begin);
-        let begin = self.progress.seconds();
-        let staying = adapted.staying;
-        let mut dual = self.dual_of(adapted, scale)?;
-        let mut relaxed = Relaxed::default();
-        if let Some(steps) = steps {
-            dual.unfold();
-            (dual, relaxed) = self.relaxed(dual, staying, steps)?;
-        } else {
-            self.fit_scale(&mut dual)?;
-        }
-        watch.add("relax", self.progress.seconds() - begin);
-        let begin = self.progress.seconds();
-        let mut settled = if steps.is_some() { self.settled(&mut dual)? } else { Settled::default() };
-        watch.add("settle", self.progress.seconds() - begin);
+        let (mut dual, relaxed) = self.watch.time("relax", || self.relaxed(adapted, scale, steps))?;
+        let settle = || if steps.is_some() { self.settled(&mut dual) } else { Ok(Settled::default()) };
+        let mut settled = self.watch.time("settle", settle)?;
         settled.figures = settled.figures.or(canvas);
         Ok(Pass { input: self.input, dual, features, owners, relaxed, settled })
     }
@@ -140,9 +130,15 @@ impl<'a> Setting<'a> {
         SurfaceDual::new(self.input, self.metric, scale, places, staying, topology)
     }
 
-    /// Relaxed in parts, between which vertices are exchanged; so many of the first stay.
-    fn relaxed(&self, mut dual: SurfaceDual<'a>, staying: usize, steps: usize) -> Result<(SurfaceDual<'a>, Relaxed)> {
-        let mut relaxed = Relaxed::default();
+    /// In the metric whose factor is fit; with steps, relaxed in parts, between which vertices are exchanged.
+    fn relaxed(&self, adapted: Adapted, scale: f64, steps: Option<usize>) -> Result<(SurfaceDual<'a>, Relaxed)> {
+        let staying = adapted.staying;
+        let (mut dual, mut relaxed) = (self.dual_of(adapted, scale)?, Relaxed::default());
+        let Some(steps) = steps else {
+            self.fit_scale(&mut dual)?;
+            return Ok((dual, relaxed));
+        };
+        dual.unfold();
         self.progress.begin("relaxing", steps as u64)?;
         dual.flip_all();
         self.fit_scale(&mut dual)?;
