@@ -79,19 +79,24 @@ pub fn mesh_surface(
     unreachable!("the last round returns")
 }
 
+/// Refuses what is of the plane only.
 fn demand_supported(options: &MeshOptions) -> Result<()> {
     options.geodesic.demand_diagrams()?;
-    let planar = if options.mesher == Mesher::StarSet {
-        Some("the star-set mesher")
-    } else if options.seeding == Seeding::Protected {
-        Some("protected seeding")
-    } else {
-        None
-    };
-    planar.map_or(Ok(()), |what| {
-        let help = "leave the option out: surfaces are seeded from their own triangles, or by farthest points".into();
-        Err(Error::Unsupported { what: format!("{what} on a surface"), help })
-    })
+    let default = MeshOptions::default();
+    let planar = [
+        (options.mesher == Mesher::StarSet, "the star-set mesher", "mesher"),
+        (options.seeding == Seeding::Protected, "protected seeding", "seeding"),
+        (options.centroid != default.centroid, "relaxation to centroids on a canvas", "centroid"),
+        (options.polish != default.polish, "polishing", "polish"),
+        (options.net, "the net of the vertices", "net"),
+    ];
+    match planar.into_iter().find(|(is_asked, ..)| *is_asked) {
+        None => Ok(()),
+        Some((_, what, option)) => {
+            let help = format!("leave out `{option}`, which is for the plane");
+            Err(Error::Unsupported { what: format!("{what} on a surface"), help })
+        }
+    }
 }
 
 /// The triangles of an equation are ours: where they meet, that is no property of what the user gave.
