@@ -39,15 +39,12 @@ impl<'a> Blocks<'a> {
         Ok(Self { layout: read_format(&mut source)?, source })
     }
 
-    /// All rows of a section that begins with their number on a line of text.
-    pub(super) fn text_rows<'s>(&mut self, section: &'s str) -> Result<impl Iterator<Item = At<'s>> + use<'s>> {
-        let at = At::head(section);
-        Ok(At::rows(section, self.source.word(at)?.whole(at)?))
-    }
-
-    /// The numbers of blocks and of rows of a section of version 4.
+    /// The numbers of blocks and of rows of a section; in version 2 it is one block, and the number of rows is text in all files.
     pub(super) fn read_totals(&mut self, section: &str) -> Result<(u64, u64)> {
         let at = At::head(section);
+        if self.layout == Layout::Two {
+            return Ok((1, self.source.word(at)?.whole(at)?));
+        }
         let totals = (self.source.whole(SIZE, at)?, self.source.whole(SIZE, at)?);
         if self.layout == Layout::FourOne {
             // The least and the greatest tag.

@@ -2,21 +2,32 @@
 
 use crate::volumes::Solid;
 
-/// What is read, and written.
+/// What is written.
 pub(super) const EDGE: i32 = 1;
 pub(super) const TRIANGLE: i32 = 2;
-pub(super) const QUADRANGLE: i32 = 3;
 pub(super) const POINT: i32 = 15;
 
 /// A type of elements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy)]
 pub(super) struct Kind {
     /// What files call it.
     pub(super) code: i32,
     /// How many nodes an element has.
     pub(super) nodes: usize,
-    /// For messages.
-    pub(super) name: &'static str,
+    pub(super) shape: Shape,
+}
+
+/// What a triangle mesh makes of elements of a type.
+#[derive(Clone, Copy)]
+pub(super) enum Shape {
+    Point,
+    Edge,
+    /// A triangle, or a quadrangle that is cut in two.
+    Face,
+    /// A cell with straight edges, of which the outside may be taken.
+    Solid(Solid),
+    /// Nothing: what such elements are called.
+    Foreign(&'static str),
 }
 
 impl Kind {
@@ -28,37 +39,31 @@ impl Kind {
             93 => 125,
             _ => *NODES.get(usize::try_from(code).ok()?.checked_sub(1)?)?,
         };
-        let name = match code {
-            EDGE => "edges",
-            TRIANGLE => "triangles",
-            QUADRANGLE => "quadrangles",
-            POINT => "points",
-            4 => "tetrahedra",
-            5 => "hexahedra",
-            6 => "prisms",
-            7 => "pyramids",
-            8 | 26..=28 => "curved edges",
-            9 | 20..=25 => "curved triangles",
-            10 | 16 | 36 => "curved quadrangles",
-            _ => "curved volume elements",
+        let shape = match code {
+            POINT => Shape::Point,
+            EDGE => Shape::Edge,
+            TRIANGLE | 3 => Shape::Face,
+            4 => Shape::Solid(Solid::Tetrahedron),
+            5 => Shape::Solid(Solid::Hexahedron),
+            6 => Shape::Solid(Solid::Prism),
+            7 => Shape::Solid(Solid::Pyramid),
+            8 | 26..=28 => Shape::Foreign("curved edges"),
+            9 | 20..=25 => Shape::Foreign("curved triangles"),
+            10 | 16 | 36 => Shape::Foreign("curved quadrangles"),
+            _ => Shape::Foreign("curved volume elements"),
         };
-        Some(Self { code, nodes, name })
+        Some(Self { code, nodes, shape })
     }
 
-    /// Whether a triangle mesh can hold such elements, cut in two or not.
-    pub(super) fn is_flat(self) -> bool {
-        matches!(self.code, EDGE | TRIANGLE | QUADRANGLE | POINT)
-    }
-
-    /// What kind of cell such elements are, if they are cells with straight edges.
-    pub(super) fn solid(self) -> Option<Solid> {
-        SOLIDS.iter().find(|(code, _)| *code == self.code).map(|&(_, solid)| solid)
+    pub(super) fn dimension(self) -> u8 {
+        match self.shape {
+            Shape::Point => 0,
+            Shape::Edge => 1,
+            Shape::Face => 2,
+            Shape::Solid(_) | Shape::Foreign(_) => 3,
+        }
     }
 }
-
-/// Cells of volumes, of which the outside may be taken.
-const SOLIDS: [(i32, Solid); 4] =
-    [(4, Solid::Tetrahedron), (5, Solid::Hexahedron), (6, Solid::Prism), (7, Solid::Pyramid)];
 
 /// How many nodes elements of types 1 to 31 have, after "Node ordering" and "MSH file format" of Gmsh's manual.
 const NODES: [usize; 31] =

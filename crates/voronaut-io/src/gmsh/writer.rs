@@ -2,13 +2,13 @@
 
 use super::Version;
 use super::data::Column;
-use super::groups::{Mark, Marks, Numbering};
+use super::groups::{MARKS, Marks, Numbering};
 use super::kinds::{EDGE, POINT, TRIANGLE};
 use super::sections::{begin, write_end};
 use crate::Fields;
 use crate::codec::{Form, Sink};
-use crate::document::labels;
-use std::collections::{BTreeMap, BTreeSet};
+use crate::document::{labels, marked};
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use voronaut::mesh::Mesh;
 
@@ -51,25 +51,19 @@ struct Part {
 
 impl<'a> Plan<'a> {
     fn new(mesh: &'a Mesh) -> Self {
-        let required = (Mark::RequiredTriangle, mesh.required_triangles.as_slice());
-        let triangles = sort(mesh.triangles.len(), labels(&mesh.triangle_labels), &[required]);
-        let marked = [(Mark::Ridge, mesh.ridges.as_slice()), (Mark::RequiredEdge, &mesh.required_edges)];
-        let edges = sort(mesh.edges.len(), labels(&mesh.edge_labels), &marked);
-        let marked = [(Mark::Corner, mesh.corners.as_slice()), (Mark::RequiredVertex, &mesh.required_points)];
-        let mut points = sort(mesh.points.len(), labels(&mesh.point_labels), &marked);
-        // Vertices without label and marks need no elements.
-        points.remove(&(0, Marks::default()));
         let (mut parts, mut groups): (Vec<Part>, Vec<Numbering>) = (Vec::new(), Vec::new());
-        for (dimension, sorted) in [(2, triangles), (1, edges), (0, points)] {
+        for (dimension, count, labels) in [
+            (2, mesh.triangles.len(), &mesh.triangle_labels),
+            (1, mesh.edges.len(), &mesh.edge_labels),
+            (0, mesh.points.len(), &mesh.point_labels),
+        ] {
+            let sorted = sort(mesh, dimension, count, labels);
             let mut numbering = Numbering::new(dimension, sorted.keys().map(|&(label, _)| label));
             let first = parts.len();
             for (entity, ((label, marks), elements)) in (1..).zip(sorted) {
                 parts.push(Part { dimension, entity, groups: numbering.tags(label, marks), elements });
             }
-            let used: BTreeSet<i32> = parts[first..].iter().flat_map(|part| part.groups.iter().copied()).collect();
-            // Where points are no corners the group of corners is there to say so, even if it is empty.
-            let corners = numbering.mark(Mark::Corner).filter(|_| !used.is_empty());
-            numbering.keep(|tag| used.contains(&tag) || corners == Some(tag));
+            numbering.keep_used(&parts[first..].iter().flat_map(|part| part.groups.iter().copied()).collect());
             groups.push(numbering);
         }
         Self { mesh, parts, groups }
@@ -83,7 +77,7 @@ impl<'a> Plan<'a> {
         sink.line(format_args!("$PhysicalNames\n{count}"))?;
         for numbering in self.groups.iter().rev() {
             for (tag, name) in &numbering.names {
-                sink.line(format_args!("{} {tag} \"{name}\"", numbering.dimension()))?;
+                sink.line(format_args!("{} {tag} \"{name}\"", numbering.dimension))?;
             }
         }
         sink.line(format_args!("$EndPhysicalNames"))
@@ -235,15 +229,19 @@ impl Part {
 /// Elements by label and marks, each list in the order of the mesh.
 type Sorted = BTreeMap<(i32, Marks), Vec<u32>>;
 
-/// So many elements, some of which have marks.
-fn sort(count: usize, labels: impl Iterator<Item = i32>, marked: &[(Mark, &[u32])]) -> Sorted {
+/// All elements of a dimension, but for vertices without label and marks, which need none.
+fn sort(mesh: &Mesh, dimension: u8, count: usize, given: &[i32]) -> Sorted {
     let mut marks = vec![Marks::default(); count];
-    for (mark, list) in marked {
-        list.iter().for_each(|&i| marks[i as usize].insert(*mark));
+    for (mark, (list, (of, _))) in marked(mesh).into_iter().zip(MARKS).enumerate() {
+        if of == dimension {
+            list.iter().for_each(|&i| marks[i as usize].insert(mark));
+        }
     }
     let mut sorted = Sorted::new();
-    for (i, key) in (0..).zip(labels.zip(marks)) {
-        sorted.entry(key).or_default().push(i);
+    for (i, key) in (0..).zip(labels(given).zip(marks)) {
+        if dimension > 0 || key != (0, Marks::default()) {
+            sorted.entry(key).or_default().push(i);
+        }
     }
     sorted
 }
