@@ -29,10 +29,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
         read_face(&mut source, at, vertices, &mut polygon)?;
         cut(&mesh.points, &polygon, &mut mesh.triangles);
     }
-    if let Some(row) = source.next_row()? {
-        let what = "more rows than the counts in the file announce";
-        return Err(row.place.error(what, "check the counts of vertices and faces"));
-    }
+    source.demand_end("more rows than the counts in the file announce", "check the counts of vertices and faces")?;
     Ok(labelled(mesh))
 }
 
@@ -103,12 +100,7 @@ fn read_face(source: &mut Source<'_>, at: At<'_>, vertices: u64, polygon: &mut V
         }
         corners = Some(count);
         for word in words.take((count - polygon.len() as u64) as usize) {
-            let vertex: u32 = word.whole(at)?;
-            if u64::from(vertex) >= vertices {
-                let what = format!("vertex {vertex} does not exist: the file announces {vertices} ({at})");
-                return Err(row.place.error(what, "number from 0, and below the count of vertices"));
-            }
-            polygon.push(vertex);
+            polygon.push(word.vertex(0, vertices, at)?);
         }
     }
     Ok(())
@@ -162,7 +154,7 @@ mod tests {
             ("OFF\n1 1 0\n0 0\n", "a.off:3: the text ends in row 1 of 1 of the vertices"),
             ("OFF\n1 1 0\n0 0 inf\n", "a.off:3: 'inf' is not a finite number (row 1 of 1 of the vertices)"),
             ("OFF\n1 1 0\n0 0 0\n2 0 0", "a.off:4: a face of 2 vertices (row 1 of 1 of the faces)"),
-            ("OFF\n1 1 0\n0 0 0\n3 0 0 1", "a.off:4: vertex 1 does not exist: the file announces 1"),
+            ("OFF\n1 1 0\n0 0 0\n3 0 0 1", "a.off:4: vertex 1 does not exist (row 1 of 1 of the faces)"),
             ("OFF\n1 1 0\n0 0 0\n3 0 0 -1", "a.off:4: '-1' is out of range"),
             ("OFF\n1 1 0\n0 0 0\n4000000000 0 0 0", "a.off:4: the text ends in row 1 of 1 of the faces"),
             ("OFF\n1 1 0\n0 0 0\n3 0 0 0\n1 1 1\n", "a.off:5: more rows than the counts in the file announce"),

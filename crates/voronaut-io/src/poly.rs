@@ -31,10 +31,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Poly> {
         let max_area = row.get(4).map(|word| word.number(at)).transpose()?;
         poly.regions.push(PolyRegion { point, attribute, max_area });
     }
-    if let Some(row) = source.next_row()? {
-        let what = "more rows than the counts in the file announce";
-        return Err(row.place.error(what, "check the counts of holes and regions"));
-    }
+    source.demand_end("more rows than the counts in the file announce", "check the counts of holes and regions")?;
     Ok(poly)
 }
 
@@ -97,7 +94,8 @@ fn read_segments(source: &mut Source<'_>, poly: &mut Poly) -> Result<()> {
     let width = 3 + marker_columns(source, markers)?;
     for at in At::rows("segments", count.unwrap_or(0)) {
         let row = columns(source.row(at)?, at, width..=width)?;
-        poly.segments.push([vertex(row[1], poly, at)?, vertex(row[2], poly, at)?]);
+        let end = |word: Word<'_>| word.vertex(poly.first, poly.points.len() as u64, at);
+        poly.segments.push([end(row[1])?, end(row[2])?]);
         poly.segment_markers.push(marker(row.get(3), at)?);
     }
     Ok(())
@@ -143,15 +141,6 @@ fn check_vertex_number(word: Word<'_>, poly: &mut Poly, at: At<'_>) -> Result<()
     }
     let what = format!("vertex {number} where vertex {expected} is expected ({at})");
     Err(word.place.error(what, "number the vertices in turn, from 0 or from 1"))
-}
-
-fn vertex(word: Word<'_>, poly: &Poly, at: At<'_>) -> Result<u32> {
-    let number: u32 = word.whole(at)?;
-    let count = poly.points.len();
-    number.checked_sub(poly.first).filter(|&vertex| (vertex as usize) < count).ok_or_else(|| {
-        let help = format!("this file has {count} vertices, numbered from {}", poly.first);
-        word.place.error(format!("vertex {number} does not exist ({at})"), help)
-    })
 }
 
 /// The point of a row, behind its number.

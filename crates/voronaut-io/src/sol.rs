@@ -130,10 +130,10 @@ fn read_section(from: &mut Sections<'_>, section: &str) -> Result<Section> {
 
 fn push(values: &mut SolutionValues, from: &mut Sections<'_>, at: At<'_>) -> Result<()> {
     match values {
-        SolutionValues::Scalar(entries) => entries.push(from.number(at)?),
+        SolutionValues::Scalar(entries) => entries.extend(from.numbers::<1>(at)?),
         SolutionValues::Vector { components, numbers } => {
             for _ in 0..*components {
-                numbers.push(from.number(at)?);
+                numbers.extend(from.numbers::<1>(at)?);
             }
         }
         SolutionValues::Tensor(entries) => entries.push(from.numbers(at)?),

@@ -110,6 +110,18 @@ impl Word<'_> {
         })
     }
 
+    /// A vertex, from 0, of a file that has so many, numbered from `first`.
+    ///
+    /// # Errors
+    /// As of [`Word::whole`]; [`Error::Parse`] of a vertex that does not exist.
+    pub(crate) fn vertex(self, first: u32, count: u64, at: At<'_>) -> Result<u32> {
+        let number: u32 = self.whole(at)?;
+        number.checked_sub(first).filter(|&vertex| u64::from(vertex) < count).ok_or_else(|| {
+            let help = format!("this file has {count} vertices, numbered from {first}");
+            self.place.error(format!("vertex {number} does not exist ({at})"), help)
+        })
+    }
+
     /// The word as messages quote it.
     pub(crate) fn quoted(self) -> String {
         shortened(self.text)

@@ -104,6 +104,14 @@ impl<'a> Source<'a> {
         if self.is_binary() { Ok(self.ahead()?.is_empty()) } else { Ok(!self.advance()?) }
     }
 
+    /// Refuses what stands behind all that the file announces.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] where anything does; as of [`Source::is_at_end`].
+    pub(crate) fn demand_end(&mut self, what: &str, help: &str) -> Result<()> {
+        if self.is_at_end()? { Ok(()) } else { Err(self.error(what, help)) }
+    }
+
     /// Reads on to the end of a line, or so many bytes, whatever they are; false where nothing follows.
     ///
     /// # Errors
@@ -314,7 +322,9 @@ impl<'a> Source<'a> {
         Err(self.error(what, "save the file as UTF-8 text; it seems to be binary"))
     }
 
-    fn whole_row(&self) -> Row<'_> {
+    /// The line that was read last, of which nothing is left then.
+    fn whole_row(&mut self) -> Row<'_> {
+        self.skip_row();
         Row { place: self.place(), text: std::str::from_utf8(&self.row).unwrap_or("\u{fffd}") }
     }
 

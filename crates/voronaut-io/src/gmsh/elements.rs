@@ -147,7 +147,7 @@ impl Reader {
                 self.triangle_elements.resize(mesh.triangles.len(), element);
                 index as u32
             }
-            Shape::Solid(solid) => self.volumes.push(solid, nodes, 0, element),
+            Shape::Solid => self.volumes.push(nodes, 0, element),
             Shape::Point | Shape::Foreign(_) => nodes[0],
         }
     }
@@ -159,7 +159,7 @@ impl Reader {
             Shape::Point => (&mut mesh.point_labels, 1),
             Shape::Edge => (&mut mesh.edge_labels, 1),
             Shape::Face => (&mut mesh.triangle_labels, kind.nodes - 2),
-            Shape::Solid(_) | Shape::Foreign(_) => return self.volumes.label(index, label),
+            Shape::Solid | Shape::Foreign(_) => return self.volumes.label(index, label),
         };
         labels[index as usize..][..count].fill(label);
         // All points are, where no group says which.

@@ -1,7 +1,5 @@
 //! Gmsh's types of elements.
 
-use crate::volumes::Solid;
-
 /// What is written.
 pub(super) const EDGE: i32 = 1;
 pub(super) const TRIANGLE: i32 = 2;
@@ -25,7 +23,7 @@ pub(super) enum Shape {
     /// A triangle, or a quadrangle that is cut in two.
     Face,
     /// A cell with straight edges, of which the outside may be taken.
-    Solid(Solid),
+    Solid,
     /// Nothing: what such elements are called.
     Foreign(&'static str),
 }
@@ -43,10 +41,7 @@ impl Kind {
             POINT => Shape::Point,
             EDGE => Shape::Edge,
             TRIANGLE | 3 => Shape::Face,
-            4 => Shape::Solid(Solid::Tetrahedron),
-            5 => Shape::Solid(Solid::Hexahedron),
-            6 => Shape::Solid(Solid::Prism),
-            7 => Shape::Solid(Solid::Pyramid),
+            4..=7 => Shape::Solid,
             8 | 26..=28 => Shape::Foreign("curved edges"),
             9 | 20..=25 => Shape::Foreign("curved triangles"),
             10 | 16 | 36 => Shape::Foreign("curved quadrangles"),
@@ -60,7 +55,7 @@ impl Kind {
             Shape::Point => 0,
             Shape::Edge => 1,
             Shape::Face => 2,
-            Shape::Solid(_) | Shape::Foreign(_) => 3,
+            Shape::Solid | Shape::Foreign(_) => 3,
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Medit's files as a sequence of sections, each a keyword and numbers: as text, and in libMeshb's binary form.
 
-use super::keywords::{code_of, keywords};
 use crate::codec::{At, Kind, Order, Source};
 use std::io::BufRead;
 use std::str::FromStr;
@@ -52,7 +51,7 @@ impl<'a> Sections<'a> {
     /// Passes over the rest of the section.
     ///
     /// # Errors
-    /// As of [`Sections::number`].
+    /// As of [`Sections::numbers`].
     pub(crate) fn skip_section(&mut self) -> Result<()> {
         if self.source.is_binary() {
             let Some(next) = self.next else { return Ok(()) };
@@ -90,14 +89,6 @@ impl<'a> Sections<'a> {
     /// As of [`Sections::whole`].
     pub(crate) fn short<T: TryFrom<i64> + FromStr>(&mut self, at: At<'_>) -> Result<T> {
         self.source.whole(Kind::Signed(4), at)
-    }
-
-    /// The next finite number.
-    ///
-    /// # Errors
-    /// As of [`Sections::whole`].
-    pub(crate) fn number(&mut self, at: At<'_>) -> Result<f64> {
-        Ok(self.numbers::<1>(at)?[0])
     }
 
     /// The next finite numbers.
@@ -143,7 +134,7 @@ impl<'a> Sections<'a> {
             return Ok(None);
         }
         if is_keyword(word.text) {
-            let known = keywords().find(|(_, name)| name.eq_ignore_ascii_case(word.text));
+            let known = KEYWORDS.into_iter().find(|(_, name)| name.eq_ignore_ascii_case(word.text));
             return Ok(Some(known.map_or(word.text, |(_, name)| name).to_owned()));
         }
         let before = &self.section;
@@ -177,9 +168,48 @@ impl<'a> Sections<'a> {
                 return Err(source.error(what, "the file is damaged: write it again"));
             }
         };
-        let known = keywords().find(|(known, _)| *known == code);
+        let known = KEYWORDS.into_iter().find(|(known, _)| *known == code);
         Ok(Some(known.map_or_else(|| format!("section {code}"), |(_, name)| name.to_owned())))
     }
+}
+
+/// The sections that matter here, and their numbers in binary files, as libMeshb has them: first [`READ`] sections of meshes that
+/// are read, then others whose names are known.
+pub(super) const KEYWORDS: [(i32, &str); 24] = [
+    (3, "Dimension"),
+    (4, "Vertices"),
+    (5, "Edges"),
+    (6, "Triangles"),
+    (7, "Quadrilaterals"),
+    (8, "Tetrahedra"),
+    (9, "Prisms"),
+    (10, "Hexahedra"),
+    (13, "Corners"),
+    (14, "Ridges"),
+    (15, "RequiredVertices"),
+    (16, "RequiredEdges"),
+    (17, "RequiredTriangles"),
+    (18, "RequiredQuadrilaterals"),
+    (49, "Pyramids"),
+    (19, "TangentAtEdgeVertices"),
+    (20, "NormalAtVertices"),
+    (54, "End"),
+    (59, "Tangents"),
+    (60, "Normals"),
+    (62, "SolAtVertices"),
+    (63, "SolAtEdges"),
+    (64, "SolAtTriangles"),
+    (66, "SolAtTetrahedra"),
+];
+
+pub(super) const READ: usize = 15;
+
+/// The code of a section that is known.
+///
+/// # Panics
+/// If it is not.
+pub(super) fn code_of(name: &str) -> i32 {
+    KEYWORDS.iter().find(|(_, known)| *known == name).expect("a section of the list").0
 }
 
 const VERSIONS: std::ops::RangeInclusive<i64> = 1..=4;

@@ -1,6 +1,6 @@
 //! Medit's files from a sequence of sections: as text, and in libMeshb's binary form.
 
-use super::keywords::code_of;
+use super::sections::code_of;
 use crate::codec::{Form, Sink};
 use std::io::{self, Write};
 

@@ -32,10 +32,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
     for element in &elements {
         reader.read_element(element, &mut source)?;
     }
-    if !source.is_at_end()? {
-        let what = "the file goes on behind the elements it announces";
-        return Err(source.error(what, "check the counts in its head"));
-    }
+    source.demand_end("the file goes on behind the elements it announces", "check the counts in its head")?;
     if !elements.iter().any(|element| element.name == "vertex") {
         return Err(source.error("the file has no element vertex", "save the vertices with x, y and z"));
     }
