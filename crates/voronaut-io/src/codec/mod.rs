@@ -13,4 +13,4 @@ pub use kinds::Form;
 pub(crate) use kinds::{Kind, Order};
 pub(crate) use places::{At, Largest, Place, Row, Word, shortened};
 pub(crate) use sink::{Number, Shortest, Sink};
-pub(crate) use source::Source;
+pub(crate) use source::{Counted, Source};
