@@ -1,6 +1,6 @@
 //! Geomview's `.off` in text form.
 
-use super::codec::{At, Form, Place, Sink, Source, Word, shortened};
+use super::codec::{At, Form, Kind, Place, Sink, Source, Word, shortened};
 use super::cutting::cut;
 use super::document::labelled;
 use std::io::{self, BufRead, Write};
@@ -22,12 +22,11 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
     let [vertices, faces] = read_counts(&mut source)?;
     let mut mesh = Mesh::default();
     for at in At::rows("the vertices", vertices) {
-        mesh.points.push(read_vertex(&mut source, at)?);
+        mesh.points.push(source.numbers(Kind::Float(8), at)?);
+        source.skip_row();
     }
-    let mut polygon = Vec::new();
     for at in At::rows("the faces", faces) {
-        read_face(&mut source, at, vertices, &mut polygon)?;
-        cut(&mesh.points, &polygon, &mut mesh.triangles);
+        cut(&mesh.points, &read_face(&mut source, at, vertices)?, &mut mesh.triangles);
     }
     source.demand_end("more rows than the counts in the file announce", "check the counts of vertices and faces")?;
     Ok(labelled(mesh))
@@ -73,37 +72,16 @@ fn counts<'w>(mut words: impl Iterator<Item = Word<'w>>, place: Place<'_>, at: A
     Ok([count()?, count()?])
 }
 
-fn read_vertex(source: &mut Source<'_>, at: At<'_>) -> Result<[f64; 3]> {
-    let (mut point, mut known) = ([0.0; 3], 0);
-    while known < 3 {
-        for word in source.row(at)?.words().take(3 - known) {
-            point[known] = word.number(at)?;
-            known += 1;
-        }
+/// The vertices of a face.
+fn read_face(source: &mut Source<'_>, at: At<'_>, vertices: u64) -> Result<Vec<u32>> {
+    let word = source.word(at)?;
+    let (place, count) = (word.place, word.whole::<u64>(at)?);
+    if count < 3 {
+        return Err(place.error(format!("a face of {count} vertices ({at})"), "a face needs three vertices or more"));
     }
-    Ok(point)
-}
-
-fn read_face(source: &mut Source<'_>, at: At<'_>, vertices: u64, polygon: &mut Vec<u32>) -> Result<()> {
-    let mut corners = None;
-    polygon.clear();
-    while corners.is_none_or(|corners| (polygon.len() as u64) < corners) {
-        let row = source.row(at)?;
-        let mut words = row.words();
-        let count = match corners {
-            Some(count) => count,
-            None => expect(words.next(), row.place, at)?.whole(at)?,
-        };
-        if count < 3 {
-            let what = format!("a face of {count} vertices ({at})");
-            return Err(row.place.error(what, "a face needs three vertices or more"));
-        }
-        corners = Some(count);
-        for word in words.take((count - polygon.len() as u64) as usize) {
-            polygon.push(word.vertex(0, vertices, at)?);
-        }
-    }
-    Ok(())
+    let face = (0..count).map(|_| source.word(at)?.vertex(0, vertices, at)).collect();
+    source.skip_row();
+    face
 }
 
 fn expect<'w>(word: Option<Word<'w>>, place: Place<'_>, at: At<'_>) -> Result<Word<'w>> {

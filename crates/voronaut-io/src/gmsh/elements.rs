@@ -1,10 +1,9 @@
 //! Gmsh's elements: triangles, edges and points of the mesh, with their labels and marks.
 
-use super::blocks::{Blocks, Layout};
+use super::blocks::{Blocks, INT, Layout, SIZE};
 use super::groups::{CORNER, Marks};
 use super::kinds::{Kind, POINT, Shape};
 use super::reader::{Corners, Piece, Reader};
-use super::sections::{INT, SIZE};
 use crate::codec::At;
 use crate::cutting::cut;
 use crate::document::marked_mut;

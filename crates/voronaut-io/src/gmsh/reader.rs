@@ -1,8 +1,7 @@
 //! Gmsh's sections, read in turn into a mesh.
 
-use super::blocks::{Blocks, Layout, unsupported};
+use super::blocks::{Blocks, INT, Layout, REAL, SIZE, end_section, next_section, skip_section, unsupported};
 use super::groups::Groups;
-use super::sections::{INT, REAL, SIZE, end_section, next_section, skip_section};
 use super::tags::Tags;
 use crate::codec::At;
 use crate::document::marked_mut;

@@ -4,7 +4,6 @@ use super::Version;
 use super::data::Column;
 use super::groups::{MARKS, Marks, Numbering};
 use super::kinds::{EDGE, POINT, TRIANGLE};
-use super::sections::{begin, write_end};
 use crate::Fields;
 use crate::codec::{Form, Sink};
 use crate::document::{labels, marked};
@@ -12,8 +11,23 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use voronaut::mesh::Mesh;
 
-/// Writes a mesh and fields.
-pub(super) fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &mut dyn Write) -> io::Result<()> {
+/// Writes a mesh and fields as a file that [`read`](super::read) turns into the same vertices, to the last bit, and the same triangles and
+/// edges, sorted by label.
+///
+/// Triangles come first, then edges, then the vertices with a label or a mark as elements of type 15, each with a physical group and an
+/// entity per label and marks. The group's tag is the label. Gmsh has no tags below 1: such a label has the least tag that
+/// is no label, and the group is named `triangle label -3`, `edge label 0` or `vertex label -1`. Marks are groups as well: `corners`,
+/// `required vertices`, `ridges`, `required edges` and `required triangles`. In version 2.2, where Gmsh repeats elements for each
+/// of their groups, those of edges and triangles are not written.
+///
+/// Fields are `$NodeData` and `$ElementData`; vectors of two numbers get a third, 0; tensors are written row by row with 9 numbers.
+/// Other fields of several numbers are one field `NAME_0`, `NAME_1`, ... each. So that meshio reads fields of triangles, in
+/// version 4.1 edges and points have values too: of a triangle at their first vertex, 0 where there is none. Of files of version 2.2
+/// Gmsh leaves out vertices without element.
+///
+/// # Errors
+/// What `out` says; more elements than version 2.2 or fields have tags for.
+pub fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &mut dyn Write) -> io::Result<()> {
     let plan = Plan::new(mesh);
     let mut sink = begin(version, form, out)?;
     plan.write_names(&mut sink)?;
@@ -271,4 +285,24 @@ fn write_data(
 fn demand_tags(count: usize) -> io::Result<()> {
     let what = "more than 2^31 nodes or elements, for which Gmsh has no tags";
     i32::try_from(count).map(drop).map_err(|_| io::Error::other(what))
+}
+
+/// Begins to write a file.
+fn begin(version: Version, form: Form, out: &mut dyn Write) -> io::Result<Sink<'_>> {
+    let mut sink = Sink::new(form, out);
+    sink.line(format_args!("$MeshFormat\n{version} {} 8", i32::from(sink.is_binary())))?;
+    if sink.is_binary() {
+        sink.put(1_i32);
+    }
+    write_end("MeshFormat", &mut sink)?;
+    Ok(sink)
+}
+
+/// Writes the line that ends a section.
+fn write_end(section: &str, sink: &mut Sink<'_>) -> io::Result<()> {
+    if sink.is_binary() {
+        // Behind the bytes of a block a line begins.
+        sink.line(format_args!(""))?;
+    }
+    sink.line(format_args!("$End{section}"))
 }
