@@ -4,7 +4,6 @@ mod blocks;
 mod data;
 mod elements;
 mod groups;
-mod kinds;
 mod reader;
 mod tags;
 mod writer;

@@ -2,8 +2,8 @@
 
 use super::Version;
 use super::data::Column;
+use super::elements::{EDGE, POINT, TRIANGLE};
 use super::groups::{MARKS, Marks, Numbering};
-use super::kinds::{EDGE, POINT, TRIANGLE};
 use crate::Fields;
 use crate::codec::{Form, Sink};
 use crate::document::{labels, marked};
@@ -248,7 +248,9 @@ fn sort(mesh: &Mesh, dimension: u8, count: usize, given: &[i32]) -> Sorted {
     let mut marks = vec![Marks::default(); count];
     for (mark, (list, (of, _))) in marked(mesh).into_iter().zip(MARKS).enumerate() {
         if of == dimension {
-            list.iter().for_each(|&i| marks[i as usize].insert(mark));
+            for &i in list {
+                marks[i as usize].insert(mark);
+            }
         }
     }
     let mut sorted = Sorted::new();

@@ -2,12 +2,10 @@
 //! refine, bamg and `FreeFEM`.
 
 mod sections;
-mod writer;
 
 pub use super::codec::Form;
-pub(super) use sections::Sections;
 use sections::{KEYWORDS, READ};
-pub(super) use writer::Writer;
+pub(super) use sections::{Sections, Writer};
 
 use super::Document;
 use super::codec::{At, Largest};

@@ -16,7 +16,6 @@
 //!   they stay nine numbers. Six numbers stay six: VTK's order of a symmetric tensor, XX YY ZZ XY YZ XZ, is not Medit's, and nothing
 //!   tells whether they are one.
 
-mod appended;
 mod assemble;
 mod base64;
 mod cells;

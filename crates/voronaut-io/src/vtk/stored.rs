@@ -19,7 +19,7 @@ pub(super) enum Stored {
     Plain(Vec<u8>),
     /// Blocks that are compressed by zlib, one behind the other: how many bytes each has compressed and uncompressed.
     Blocks(Vec<[u64; 2]>, Vec<u8>),
-    /// In the section AppendedData, which is not yet read, from this byte on.
+    /// In the section `AppendedData`, which is not yet read, from this byte on.
     Appended(u64),
 }
 

@@ -1,14 +1,12 @@
 //! What the tags of a file say: its pieces, and the arrays of each.
 
-use super::appended;
 use super::base64::Base64;
 use super::characters::Characters;
 use super::grid::{Array, CELLS, Grid, Piece, SECTIONS};
 use super::stored::{Layout, Stored};
-use crate::codec::{Kind, Order, Place, shortened};
-use quick_xml::Reader;
+use crate::codec::{Counted, Kind, Order, Place, shortened};
 use quick_xml::events::{BytesStart, Event};
-use std::io::BufRead;
+use std::io::{self, BufRead, ErrorKind, Read};
 use voronaut::{Error, Result};
 
 /// Reads the tags of a file and the arrays that are between or behind them. Memory follows the file.
@@ -19,7 +17,7 @@ use voronaut::{Error, Result};
 pub(super) fn read(source: impl BufRead, place: &str) -> Result<Grid<'_>> {
     let layout = Layout { order: Order::Little, is_wide: false, is_compressed: false };
     let grid = Grid { file: place, layout, pieces: Vec::new() };
-    let xml = Reader::from_reader(Characters::new(source));
+    let xml = quick_xml::Reader::from_reader(Characters::new(source));
     let (open, text, mut buffer) = (Vec::new(), String::new(), Vec::new());
     let mut tags = Tags { xml, grid, kind: UNSTRUCTURED, open, array: None, compressor: None, text, byte: 0 };
     tags.xml.config_mut().expand_empty_elements = true;
@@ -37,7 +35,7 @@ const PIECE: &str = "Piece";
 const ARRAY: &str = "DataArray";
 
 struct Tags<'a, R> {
-    xml: Reader<Characters<R>>,
+    xml: quick_xml::Reader<Characters<R>>,
     grid: Grid<'a>,
     /// The type of the file, one of [`KINDS`].
     kind: &'static str,
@@ -239,7 +237,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
 
     fn read_appended(&mut self, tag: &BytesStart<'_>) -> Result<()> {
         let is_raw = self.choice(tag, "encoding", [("base64", false), ("raw", true)])?;
-        appended::read(self.xml.get_mut().source(), is_raw, &mut self.grid)
+        read_appended(self.xml.get_mut().source(), is_raw, &mut self.grid)
     }
 
     fn finish(self) -> Result<Grid<'a>> {
@@ -275,7 +273,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
     fn misread(&self, error: &quick_xml::Error) -> Error {
         match error {
             quick_xml::Error::Io(source) => {
-                let source = std::io::Error::new(source.kind(), source.to_string());
+                let source = io::Error::new(source.kind(), source.to_string());
                 Error::Io { path: self.grid.file.into(), source }
             }
             _ if self.open.is_empty() => self.no_vtk(),
@@ -285,5 +283,52 @@ impl<'a, R: BufRead> Tags<'a, R> {
 
     fn error(&self, what: &str, help: &str) -> Error {
         Place::byte(self.grid.file, self.byte).error(what, help)
+    }
+}
+
+/// Reads the arrays that tags refer to, which stand one after the other behind all tags, in one pass.
+///
+/// # Errors
+/// [`Error::Parse`] where an array is not there as a whole, or begins in another; [`Error::Io`] of what cannot be read.
+fn read_appended(section: &mut Counted<impl BufRead>, is_raw: bool, grid: &mut Grid<'_>) -> Result<()> {
+    let (file, layout, begin) = (grid.file, grid.layout, section.position());
+    let io = |source| Error::Io { path: file.into(), source };
+    if !passes_mark(section).map_err(io)? {
+        let what = "AppendedData without the '_' that its arrays begin with";
+        return Err(Place::byte(file, begin).error(what, "the file is cut off or damaged"));
+    }
+    let start = section.position();
+    let arrays = grid.pieces.iter_mut().flat_map(|piece| &mut piece.arrays);
+    let mut wanted: Vec<_> = arrays.filter(|array| matches!(array.stored, Stored::Appended(_))).collect();
+    for array in &mut wanted {
+        if let Stored::Appended(offset) = array.stored {
+            array.byte = start.saturating_add(offset);
+        }
+    }
+    wanted.sort_by_key(|array| array.byte);
+    for array in wanted {
+        let Some(missing) = array.byte.checked_sub(section.position()) else {
+            return Err(array.error("begins in another array", "check the attribute offset"));
+        };
+        if io::copy(&mut section.take(missing), &mut io::sink()).map_err(io)? < missing {
+            return Err(array.error("begins behind the end of the file", "the file is cut off, or offset is wrong"));
+        }
+        let stored =
+            if is_raw { Stored::read(section, layout) } else { Stored::read(&mut Base64::new(&mut *section), layout) };
+        array.stored = stored.map_err(|error| array.misread(&error))?;
+    }
+    Ok(())
+}
+
+/// Reads on to behind the mark that the arrays begin with, and whether there is one.
+fn passes_mark(section: &mut impl Read) -> io::Result<bool> {
+    loop {
+        let mut byte = [0];
+        match section.read_exact(&mut byte) {
+            Ok(()) if byte == *b"_" => return Ok(true),
+            Ok(()) if byte[0].is_ascii_whitespace() => {}
+            Err(error) if error.kind() != ErrorKind::UnexpectedEof => return Err(error),
+            _ => return Ok(false),
+        }
     }
 }
