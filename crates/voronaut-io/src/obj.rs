@@ -124,7 +124,7 @@ impl Reader {
     /// Faces may refer to vertices below them: whether these exist is known at the end.
     fn finish(self, file: &str) -> Result<Document> {
         let Self { mut mesh, polygons, largest, free_form, .. } = self;
-        largest.check("vertex", mesh.points.len(), file)?;
+        largest.check("vertex", 1, mesh.points.len(), file)?;
         (mesh.triangles, mesh.triangle_labels) = polygons.cut(&mesh.points);
         let notes = free_form.into_iter().map(|(name, count)| format!("{count} {name} left out: only faces are read"));
         Ok(Document { notes: notes.collect(), ..labelled(mesh).into() })
@@ -152,7 +152,7 @@ impl Reader {
         let absolute = if number < 0 { known + 1 + number } else { number };
         match u32::try_from(absolute) {
             Ok(absolute) if absolute > 0 => {
-                self.largest.note(absolute.into(), word.place);
+                self.largest.note(absolute - 1, word.place);
                 Ok(absolute - 1)
             }
             _ => {

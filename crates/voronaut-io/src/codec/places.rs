@@ -44,13 +44,9 @@ pub(crate) struct At<'a> {
     pub(crate) rows: u64,
 }
 
-/// The largest number that referred to something so far: whether that exists is known once the file is read.
+/// The last entry, from 0, that something referred to so far: whether it exists is known once the file is read.
 #[derive(Default)]
-pub(crate) struct Largest {
-    /// Counted from 1.
-    number: u64,
-    spot: Option<Spot>,
-}
+pub(crate) struct Largest(Option<(u32, Spot)>);
 
 impl<'a> Place<'a> {
     /// A line, counted from 1.
@@ -165,27 +161,21 @@ impl fmt::Display for At<'_> {
 }
 
 impl Largest {
-    /// A reference, counted from 1.
-    pub(crate) fn note(&mut self, number: u64, place: Place<'_>) {
-        if number > self.number {
-            *self = Self { number, spot: Some(place.spot) };
+    /// A reference to an entry, from 0.
+    pub(crate) fn note(&mut self, entry: u32, place: Place<'_>) {
+        if self.0.is_none_or(|(largest, _)| entry > largest) {
+            self.0 = Some((entry, place.spot));
         }
     }
 
-    /// Whether all that was referred to exists; else the number, and where it stands.
-    pub(crate) fn beyond<'f>(&self, count: usize, file: &'f str) -> Option<(u64, Place<'f>)> {
-        let spot = self.spot.filter(|_| self.number > count as u64)?;
-        Some((self.number, Place { file, spot }))
-    }
-
-    /// Whether all that was referred to exists.
+    /// Whether all that was referred to exists; the file counts from `first`.
     ///
     /// # Errors
-    /// [`Error::Parse`] where the largest number stands.
-    pub(crate) fn check(&self, of: &str, count: usize, file: &str) -> Result<()> {
-        let Some((number, place)) = self.beyond(count, file) else { return Ok(()) };
-        let what = format!("{of} {number} does not exist: the file lists {count}");
-        Err(place.error(what, "check the number, and that the file is whole"))
+    /// [`Error::Parse`] where the last entry is referred to.
+    pub(crate) fn check(&self, of: &str, first: u64, count: usize, file: &str) -> Result<()> {
+        let Some((entry, spot)) = self.0.filter(|&(entry, _)| entry as usize >= count) else { return Ok(()) };
+        let what = format!("{of} {} does not exist: the file lists {count}, from {first}", u64::from(entry) + first);
+        Err(Place { file, spot }.error(what, "check the number, and that the file is whole"))
     }
 }
 

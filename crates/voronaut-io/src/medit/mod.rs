@@ -186,7 +186,7 @@ impl Reader {
             let what = format!("{} 0 does not exist ({at})", of.name());
             return Err(from.source.error(what, "number from 1, as Medit does"));
         }
-        self.largest[of as usize].note(number.into(), from.source.place());
+        self.largest[of as usize].note(number - 1, from.source.place());
         Ok(number - 1)
     }
 
@@ -201,7 +201,7 @@ impl Reader {
             (Of::Triangles, self.mesh.triangles.len()),
             (Of::Quadrilaterals, self.quadrilaterals.0.len()),
         ] {
-            self.largest[of as usize].check(of.name(), count, from.source.file())?;
+            self.largest[of as usize].check(of.name(), 1, count, from.source.file())?;
         }
         self.cut_quadrilaterals();
         let note = self.volumes.note(self.mesh.triangles.len());
