@@ -20,7 +20,6 @@ pub(super) fn read(source: impl BufRead, place: &str) -> Result<Grid<'_>> {
     let xml = quick_xml::Reader::from_reader(Characters::new(source));
     let (open, text, mut buffer) = (Vec::new(), String::new(), Vec::new());
     let mut tags = Tags { xml, grid, kind: UNSTRUCTURED, open, array: None, compressor: None, text, byte: 0 };
-    tags.xml.config_mut().expand_empty_elements = true;
     while tags.read_event(&mut buffer)? {
         buffer.clear();
     }
@@ -61,6 +60,10 @@ impl<'a, R: BufRead> Tags<'a, R> {
                 return Ok(false);
             }
             Event::Start(tag) => self.open(&tag)?,
+            Event::Empty(tag) => {
+                self.open(&tag)?;
+                self.close()?;
+            }
             Event::End(_) => self.close()?,
             Event::Text(text) => self.add(&text.into_inner())?,
             Event::CData(text) => self.add(&text.into_inner())?,
