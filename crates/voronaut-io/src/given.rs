@@ -74,7 +74,7 @@ pub fn read_surface(spec: &str, edge: Option<f64>, options: RepairOptions) -> Re
 }
 
 /// What users write for a surface, for messages.
-pub(crate) const SURFACES: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl";
+const SURFACES: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl";
 
 /// The surface that a file holds, which messages name, mended as the options say ([`repaired`]), with what was mended.
 ///
