@@ -1,6 +1,6 @@
 //! Geomview's `.off` in text form.
 
-use super::codec::{At, Form, Kind, Place, Sink, Source, Word, shortened};
+use super::codec::{At, Form, Kind, Place, Sink, Source, Text, shortened};
 use super::cutting::cut;
 use super::document::labelled;
 use std::io::{self, BufRead, Write};
@@ -67,7 +67,7 @@ fn read_counts(source: &mut Source<'_>) -> Result<[u64; 2]> {
 }
 
 /// Vertices and faces; a count of edges may follow and means nothing.
-fn counts<'w>(mut words: impl Iterator<Item = Word<'w>>, place: Place<'_>, at: At<'_>) -> Result<[u64; 2]> {
+fn counts<'w>(mut words: impl Iterator<Item = Text<'w>>, place: Place<'_>, at: At<'_>) -> Result<[u64; 2]> {
     let mut count = || expect(words.next(), place, at)?.whole(at);
     Ok([count()?, count()?])
 }
@@ -84,7 +84,7 @@ fn read_face(source: &mut Source<'_>, at: At<'_>, vertices: u64) -> Result<Vec<u
     face
 }
 
-fn expect<'w>(word: Option<Word<'w>>, place: Place<'_>, at: At<'_>) -> Result<Word<'w>> {
+fn expect<'w>(word: Option<Text<'w>>, place: Place<'_>, at: At<'_>) -> Result<Text<'w>> {
     let help = "write all numbers of a vertex or a face on one row";
     word.ok_or_else(|| place.error(format!("the row ends too early ({at})"), help))
 }

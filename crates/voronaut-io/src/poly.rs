@@ -1,6 +1,6 @@
 //! Triangle's `.poly` files (Shewchuk): a planar straight-line graph with holes and regions.
 
-use super::codec::{At, Form, Row, Sink, Source, Word};
+use super::codec::{At, Form, Sink, Source, Text};
 use std::io::{self, BufRead, Write};
 use std::ops::RangeInclusive;
 use voronaut::Result;
@@ -94,7 +94,7 @@ fn read_segments(source: &mut Source<'_>, poly: &mut Poly) -> Result<()> {
     let width = 3 + marker_columns(source, markers)?;
     for at in At::rows("segments", count.unwrap_or(0)) {
         let row = columns(source.row(at)?, at, width..=width)?;
-        let end = |word: Word<'_>| word.vertex(poly.first, poly.points.len() as u64, at);
+        let end = |word: Text<'_>| word.vertex(poly.first, poly.points.len() as u64, at);
         poly.segments.push([end(row[1])?, end(row[2])?]);
         poly.segment_markers.push(marker(row.get(3), at)?);
     }
@@ -118,7 +118,7 @@ fn read_count(source: &mut Source<'_>, section: &str) -> Result<u64> {
 }
 
 /// The words of a row, which has to have so many.
-fn columns<'r>(row: Row<'r>, at: At<'_>, expected: RangeInclusive<usize>) -> Result<Vec<Word<'r>>> {
+fn columns<'r>(row: Text<'r>, at: At<'_>, expected: RangeInclusive<usize>) -> Result<Vec<Text<'r>>> {
     let words: Vec<_> = row.words().collect();
     if expected.contains(&words.len()) {
         return Ok(words);
@@ -130,7 +130,7 @@ fn columns<'r>(row: Row<'r>, at: At<'_>, expected: RangeInclusive<usize>) -> Res
     Err(row.place.error(what, help))
 }
 
-fn check_vertex_number(word: Word<'_>, poly: &mut Poly, at: At<'_>) -> Result<()> {
+fn check_vertex_number(word: Text<'_>, poly: &mut Poly, at: At<'_>) -> Result<()> {
     let number: u64 = word.whole(at)?;
     if at.row == 1 && number <= 1 {
         poly.first = number as u32;
@@ -144,11 +144,11 @@ fn check_vertex_number(word: Word<'_>, poly: &mut Poly, at: At<'_>) -> Result<()
 }
 
 /// The point of a row, behind its number.
-fn point(row: &[Word<'_>], at: At<'_>) -> Result<Point> {
+fn point(row: &[Text<'_>], at: At<'_>) -> Result<Point> {
     Ok(Point::new(row[1].number(at)?, row[2].number(at)?))
 }
 
-fn marker(word: Option<&Word<'_>>, at: At<'_>) -> Result<i32> {
+fn marker(word: Option<&Text<'_>>, at: At<'_>) -> Result<i32> {
     word.map_or(Ok(0), |word| word.whole(at))
 }
 

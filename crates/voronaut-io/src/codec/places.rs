@@ -19,18 +19,11 @@ enum Spot {
     Byte(u64),
 }
 
-/// A line that holds something, without its comment.
+/// A word, or a line that holds something, without its comment; and where it stands.
 #[derive(Clone, Copy)]
-pub(crate) struct Row<'a> {
+pub(crate) struct Text<'a> {
     pub(crate) place: Place<'a>,
     /// Neither empty nor blank.
-    pub(crate) text: &'a str,
-}
-
-/// A word and where it stands.
-#[derive(Clone, Copy)]
-pub(crate) struct Word<'a> {
-    pub(crate) place: Place<'a>,
     pub(crate) text: &'a str,
 }
 
@@ -74,14 +67,12 @@ impl fmt::Display for Place<'_> {
     }
 }
 
-impl<'a> Row<'a> {
-    /// The words of the row.
-    pub(crate) fn words(self) -> impl Iterator<Item = Word<'a>> {
-        self.text.split_whitespace().map(move |text| Word { place: self.place, text })
+impl<'a> Text<'a> {
+    /// The words of a row.
+    pub(crate) fn words(self) -> impl Iterator<Item = Text<'a>> {
+        self.text.split_whitespace().map(move |text| Text { place: self.place, text })
     }
-}
 
-impl Word<'_> {
     /// A finite number, with the exponent letter of C (`e`) or Fortran (`d`).
     ///
     /// # Errors
@@ -109,7 +100,7 @@ impl Word<'_> {
     /// A vertex, from 0, of a file that has so many, numbered from `first`.
     ///
     /// # Errors
-    /// As of [`Word::whole`]; [`Error::Parse`] of a vertex that does not exist.
+    /// As of [`Text::whole`]; [`Error::Parse`] of a vertex that does not exist.
     pub(crate) fn vertex(self, first: u32, count: u64, at: At<'_>) -> Result<u32> {
         let number: u32 = self.whole(at)?;
         number.checked_sub(first).filter(|&vertex| u64::from(vertex) < count).ok_or_else(|| {
@@ -185,7 +176,7 @@ mod tests {
 
     #[test]
     fn numbers_of_all_dialects() {
-        let read = |text| Word { place: Place::line("f", 3), text }.number(At::head("Vertices"));
+        let read = |text| Text { place: Place::line("f", 3), text }.number(At::head("Vertices"));
         for (text, value) in [("1.D0", 1.0), ("-2.5d-3", -2.5e-3), ("1e-3", 1e-3), (".5", 0.5), ("+7", 7.0)] {
             assert_eq!(read(text).unwrap().to_bits(), f64::to_bits(value), "{text}");
         }

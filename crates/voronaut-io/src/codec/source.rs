@@ -1,7 +1,7 @@
 //! What files are read by: rows, words or bytes, one after the other.
 
 use super::kinds::{Kind, Order};
-use super::places::{At, Place, Row, Word};
+use super::places::{At, Place, Text};
 use std::io::{self, BufRead, ErrorKind, Read};
 use std::ops::Range;
 use std::str::FromStr;
@@ -132,7 +132,7 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// [`Error::Io`] of a text that cannot be read; [`Error::Parse`] of a line that is too long, or not UTF-8.
-    pub(crate) fn next_row(&mut self) -> Result<Option<Row<'_>>> {
+    pub(crate) fn next_row(&mut self) -> Result<Option<Text<'_>>> {
         Ok(if self.next_line()? { Some(self.whole_row()) } else { None })
     }
 
@@ -140,7 +140,7 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// [`Error::Parse`] with section and row where the text ends; as of [`Source::next_row`].
-    pub(crate) fn row(&mut self, at: At<'_>) -> Result<Row<'_>> {
+    pub(crate) fn row(&mut self, at: At<'_>) -> Result<Text<'_>> {
         if self.next_line()? { Ok(self.whole_row()) } else { Err(self.cut_off(at)) }
     }
 
@@ -148,16 +148,16 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// As of [`Source::next_row`].
-    pub(crate) fn next_word(&mut self) -> Result<Option<Word<'_>>> {
-        Ok(if self.advance()? { Some(self.last_word()) } else { None })
+    pub(crate) fn next_word(&mut self) -> Result<Option<Text<'_>>> {
+        Ok(if self.advance()? { Some(self.text(self.word.clone())) } else { None })
     }
 
     /// The next word, which has to be there.
     ///
     /// # Errors
     /// As of [`Source::row`].
-    pub(crate) fn word(&mut self, at: At<'_>) -> Result<Word<'_>> {
-        if self.advance()? { Ok(self.last_word()) } else { Err(self.cut_off(at)) }
+    pub(crate) fn word(&mut self, at: At<'_>) -> Result<Text<'_>> {
+        if self.advance()? { Ok(self.text(self.word.clone())) } else { Err(self.cut_off(at)) }
     }
 
     /// Leaves the word that was read last to be read again.
@@ -316,14 +316,13 @@ impl<'a> Source<'a> {
     }
 
     /// The line that was read last, of which nothing is left then.
-    fn whole_row(&mut self) -> Row<'_> {
+    fn whole_row(&mut self) -> Text<'_> {
         self.skip_row();
-        Row { place: self.place(), text: std::str::from_utf8(&self.row).unwrap_or("\u{fffd}") }
+        self.text(0..self.row.len())
     }
 
-    fn last_word(&self) -> Word<'_> {
-        let text = std::str::from_utf8(&self.row[self.word.clone()]).unwrap_or("\u{fffd}");
-        Word { place: self.place(), text }
+    fn text(&self, part: Range<usize>) -> Text<'_> {
+        Text { place: self.place(), text: std::str::from_utf8(&self.row[part]).unwrap_or("\u{fffd}") }
     }
 
     fn cut_off(&self, at: At<'_>) -> Error {
@@ -387,7 +386,7 @@ mod tests {
     #[test]
     fn words_know_their_lines() {
         let mut words = Source::new("\u{feff}a b # c\n\n#\r\n  d\n\n#".as_bytes(), "f");
-        let told = |word: Option<Word<'_>>| word.map(|word| format!("{} {}", word.place, word.text));
+        let told = |word: Option<Text<'_>>| word.map(|word| format!("{} {}", word.place, word.text));
         for expected in [Some("f:1 a"), Some("f:1 b"), Some("f:4 d"), None, None] {
             assert_eq!(told(words.next_word().unwrap()).as_deref(), expected);
             words.unread();

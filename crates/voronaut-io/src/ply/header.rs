@@ -1,6 +1,6 @@
 //! The head of a `.ply` file: which elements follow, of which properties.
 
-use crate::codec::{At, Kind, Order, Place, Source, Word, shortened};
+use crate::codec::{At, Kind, Order, Place, Source, Text, shortened};
 use voronaut::Result;
 
 /// So many rows of the same properties.
@@ -100,7 +100,7 @@ fn push_element(elements: &mut Vec<Element>, words: &[&str], place: Place<'_>) -
     if elements.iter().any(|element| element.name == name) {
         return Err(place.error(format!("a second element '{}'", shortened(name)), "join both elements into one"));
     }
-    let count = Word { place, text: count }.whole(At::head("the file"))?;
+    let count = Text { place, text: count }.whole(At::head("the file"))?;
     elements.push(Element { name: name.into(), count, properties: Vec::new() });
     Ok(())
 }
