@@ -1,7 +1,6 @@
 //! Polygons in space cut into triangles along diagonals that suit them.
 
-use super::ears::Ears;
-use super::seen::Seen;
+use super::ears::{Ears, Seen};
 
 /// Polygons of a file whose vertices may come behind them.
 #[derive(Default)]

@@ -120,6 +120,17 @@ pub(super) fn labels(labels: &[i32]) -> impl Iterator<Item = i32> + Clone {
     labels.iter().copied().chain(std::iter::repeat(0))
 }
 
+/// What is marked in a mesh: corners, required vertices, ridges, required edges, required triangles.
+pub(super) fn marked(mesh: &Mesh) -> [&[u32]; 5] {
+    [&mesh.corners, &mesh.required_points, &mesh.ridges, &mesh.required_edges, &mesh.required_triangles]
+}
+
+/// As [`marked`], to be changed.
+pub(super) fn marked_mut(mesh: &mut Mesh) -> [&mut Vec<u32>; 5] {
+    let Mesh { corners, required_points, ridges, required_edges, required_triangles, .. } = mesh;
+    [corners, required_points, ridges, required_edges, required_triangles]
+}
+
 /// A mesh whose vertices, triangles and edges have the label 0 where they have none.
 pub(super) fn labelled(mut mesh: Mesh) -> Mesh {
     mesh.point_labels.resize(mesh.points.len(), 0);

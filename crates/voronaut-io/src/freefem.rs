@@ -27,24 +27,16 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
         mesh.edges.push(references(&mut source, vertices, at)?);
         mesh.edge_labels.push(source.word(at)?.whole(at)?);
     }
-    if source.is_at_end()? {
-        return Ok(mesh);
-    }
     let help = "check the counts in the first row; files of Gmsh begin with $MeshFormat";
-    Err(source.error("more numbers than the counts in the file announce", help))
+    source.demand_end("more numbers than the counts in the file announce", help)?;
+    Ok(mesh)
 }
 
 /// Vertices of an element, from 0.
 fn references<const N: usize>(source: &mut Source<'_>, vertices: u64, at: At<'_>) -> Result<[u32; N]> {
     let mut element = [0; N];
     for vertex in &mut element {
-        let word = source.word(at)?;
-        let number: u32 = word.whole(at)?;
-        if number == 0 || u64::from(number) > vertices {
-            let help = format!("this file has {vertices} vertices, numbered from 1");
-            return Err(word.place.error(format!("vertex {number} does not exist ({at})"), help));
-        }
-        *vertex = number - 1;
+        *vertex = source.word(at)?.vertex(1, vertices, at)?;
     }
     Ok(element)
 }

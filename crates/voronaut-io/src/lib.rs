@@ -5,7 +5,6 @@
 //! what users write; [`write_mesh`] and its like leave a file there as a whole or not at all.
 
 mod codec;
-mod curved;
 mod cutting;
 mod document;
 mod domain;
@@ -15,8 +14,6 @@ mod given;
 mod losses;
 mod metric;
 mod report;
-mod seen;
-mod surface;
 mod volumes;
 mod whole;
 mod write;
@@ -38,12 +35,10 @@ pub use document::{Document, Field, Fields};
 pub(crate) use domain::DOMAINS;
 pub use domain::{read_domain, read_pslg};
 pub use files::{Format, open, read, read_solution, read_solutions, read_text};
-pub use given::Given;
+pub use given::{Given, of_document, read_surface};
 pub use losses::lost_in_outline;
 pub use metric::{MetricFiles, MetricSource, read_metric, surface_metric};
 pub use report::{Report, Seconds, Strayed, peak_memory_bytes};
-pub(crate) use surface::SURFACES;
-pub use surface::{of_document, read_surface};
 pub use whole::{demand_directory, place, write, write_with};
 pub use write::{
     demand_diagram, write_diagram, write_document, write_mesh, write_realisation, write_solution, write_solutions,

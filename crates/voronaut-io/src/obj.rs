@@ -1,7 +1,7 @@
 //! Wavefront `.obj`, as far as surfaces go: vertices, polygons, lines.
 
 use super::Document;
-use super::codec::{At, Largest, Place, Row, Shortest, Source, Word};
+use super::codec::{At, Largest, Place, Shortest, Source, Text};
 use super::cutting::Polygons;
 use super::document::{labelled, labels};
 use std::collections::BTreeMap;
@@ -30,13 +30,13 @@ pub fn read(source: impl BufRead, file: &str) -> Result<Document> {
         joined.push(' ');
         let place = *begin.get_or_insert(source.place());
         if !goes_on {
-            reader.read_row(Row { place, text: &joined })?;
+            reader.read_row(Text { place, text: &joined })?;
             begin = None;
             joined.clear();
         }
     }
     if let Some(place) = begin {
-        reader.read_row(Row { place, text: &joined })?;
+        reader.read_row(Text { place, text: &joined })?;
     }
     reader.finish(file)
 }
@@ -89,7 +89,7 @@ struct Reader {
 }
 
 impl Reader {
-    fn read_row(&mut self, row: Row<'_>) -> Result<()> {
+    fn read_row(&mut self, row: Text<'_>) -> Result<()> {
         let mut words = row.words();
         match words.next().map(|word| word.text) {
             Some("v") => self.read_vertex(row.place, words),
@@ -124,13 +124,13 @@ impl Reader {
     /// Faces may refer to vertices below them: whether these exist is known at the end.
     fn finish(self, file: &str) -> Result<Document> {
         let Self { mut mesh, polygons, largest, free_form, .. } = self;
-        largest.check("vertex", mesh.points.len(), file)?;
+        largest.check("vertex", 1, mesh.points.len(), file)?;
         (mesh.triangles, mesh.triangle_labels) = polygons.cut(&mesh.points);
         let notes = free_form.into_iter().map(|(name, count)| format!("{count} {name} left out: only faces are read"));
         Ok(Document { notes: notes.collect(), ..labelled(mesh).into() })
     }
 
-    fn read_vertex<'w>(&mut self, place: Place<'_>, mut words: impl Iterator<Item = Word<'w>>) -> Result<()> {
+    fn read_vertex<'w>(&mut self, place: Place<'_>, mut words: impl Iterator<Item = Text<'w>>) -> Result<()> {
         let mut point = [0.0; 3];
         for coordinate in &mut point {
             let missing = || place.error("a vertex with fewer than three coordinates", "write v x y z");
@@ -140,19 +140,19 @@ impl Reader {
         Ok(())
     }
 
-    fn references<'w>(&mut self, words: impl Iterator<Item = Word<'w>>, at: At<'_>) -> Result<Vec<u32>> {
+    fn references<'w>(&mut self, words: impl Iterator<Item = Text<'w>>, at: At<'_>) -> Result<Vec<u32>> {
         words.map(|word| self.reference(word, at)).collect()
     }
 
     /// A vertex, numbered from 0.
-    fn reference(&mut self, word: Word<'_>, at: At<'_>) -> Result<u32> {
+    fn reference(&mut self, word: Text<'_>, at: At<'_>) -> Result<u32> {
         let text = word.text.split('/').next().unwrap_or_default();
-        let number: i64 = Word { text, ..word }.whole(at)?;
+        let number: i64 = Text { text, ..word }.whole(at)?;
         let known = i64::try_from(self.mesh.points.len()).unwrap_or(i64::MAX);
         let absolute = if number < 0 { known + 1 + number } else { number };
         match u32::try_from(absolute) {
             Ok(absolute) if absolute > 0 => {
-                self.largest.note(absolute.into(), word.place);
+                self.largest.note(absolute - 1, word.place);
                 Ok(absolute - 1)
             }
             _ => {

@@ -1,6 +1,6 @@
 //! Geomview's `.off` in text form.
 
-use super::codec::{At, Form, Place, Sink, Source, Word, shortened};
+use super::codec::{At, Form, Kind, Place, Sink, Source, Text, shortened};
 use super::cutting::cut;
 use super::document::labelled;
 use std::io::{self, BufRead, Write};
@@ -22,17 +22,13 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
     let [vertices, faces] = read_counts(&mut source)?;
     let mut mesh = Mesh::default();
     for at in At::rows("the vertices", vertices) {
-        mesh.points.push(read_vertex(&mut source, at)?);
+        mesh.points.push(source.numbers(Kind::Float(8), at)?);
+        source.skip_row();
     }
-    let mut polygon = Vec::new();
     for at in At::rows("the faces", faces) {
-        read_face(&mut source, at, vertices, &mut polygon)?;
-        cut(&mesh.points, &polygon, &mut mesh.triangles);
+        cut(&mesh.points, &read_face(&mut source, at, vertices)?, &mut mesh.triangles);
     }
-    if let Some(row) = source.next_row()? {
-        let what = "more rows than the counts in the file announce";
-        return Err(row.place.error(what, "check the counts of vertices and faces"));
-    }
+    source.demand_end("more rows than the counts in the file announce", "check the counts of vertices and faces")?;
     Ok(labelled(mesh))
 }
 
@@ -71,50 +67,24 @@ fn read_counts(source: &mut Source<'_>) -> Result<[u64; 2]> {
 }
 
 /// Vertices and faces; a count of edges may follow and means nothing.
-fn counts<'w>(mut words: impl Iterator<Item = Word<'w>>, place: Place<'_>, at: At<'_>) -> Result<[u64; 2]> {
+fn counts<'w>(mut words: impl Iterator<Item = Text<'w>>, place: Place<'_>, at: At<'_>) -> Result<[u64; 2]> {
     let mut count = || expect(words.next(), place, at)?.whole(at);
     Ok([count()?, count()?])
 }
 
-fn read_vertex(source: &mut Source<'_>, at: At<'_>) -> Result<[f64; 3]> {
-    let (mut point, mut known) = ([0.0; 3], 0);
-    while known < 3 {
-        for word in source.row(at)?.words().take(3 - known) {
-            point[known] = word.number(at)?;
-            known += 1;
-        }
+/// The vertices of a face.
+fn read_face(source: &mut Source<'_>, at: At<'_>, vertices: u64) -> Result<Vec<u32>> {
+    let word = source.word(at)?;
+    let (place, count) = (word.place, word.whole::<u64>(at)?);
+    if count < 3 {
+        return Err(place.error(format!("a face of {count} vertices ({at})"), "a face needs three vertices or more"));
     }
-    Ok(point)
+    let face = (0..count).map(|_| source.word(at)?.vertex(0, vertices, at)).collect();
+    source.skip_row();
+    face
 }
 
-fn read_face(source: &mut Source<'_>, at: At<'_>, vertices: u64, polygon: &mut Vec<u32>) -> Result<()> {
-    let mut corners = None;
-    polygon.clear();
-    while corners.is_none_or(|corners| (polygon.len() as u64) < corners) {
-        let row = source.row(at)?;
-        let mut words = row.words();
-        let count = match corners {
-            Some(count) => count,
-            None => expect(words.next(), row.place, at)?.whole(at)?,
-        };
-        if count < 3 {
-            let what = format!("a face of {count} vertices ({at})");
-            return Err(row.place.error(what, "a face needs three vertices or more"));
-        }
-        corners = Some(count);
-        for word in words.take((count - polygon.len() as u64) as usize) {
-            let vertex: u32 = word.whole(at)?;
-            if u64::from(vertex) >= vertices {
-                let what = format!("vertex {vertex} does not exist: the file announces {vertices} ({at})");
-                return Err(row.place.error(what, "number from 0, and below the count of vertices"));
-            }
-            polygon.push(vertex);
-        }
-    }
-    Ok(())
-}
-
-fn expect<'w>(word: Option<Word<'w>>, place: Place<'_>, at: At<'_>) -> Result<Word<'w>> {
+fn expect<'w>(word: Option<Text<'w>>, place: Place<'_>, at: At<'_>) -> Result<Text<'w>> {
     let help = "write all numbers of a vertex or a face on one row";
     word.ok_or_else(|| place.error(format!("the row ends too early ({at})"), help))
 }
@@ -162,7 +132,7 @@ mod tests {
             ("OFF\n1 1 0\n0 0\n", "a.off:3: the text ends in row 1 of 1 of the vertices"),
             ("OFF\n1 1 0\n0 0 inf\n", "a.off:3: 'inf' is not a finite number (row 1 of 1 of the vertices)"),
             ("OFF\n1 1 0\n0 0 0\n2 0 0", "a.off:4: a face of 2 vertices (row 1 of 1 of the faces)"),
-            ("OFF\n1 1 0\n0 0 0\n3 0 0 1", "a.off:4: vertex 1 does not exist: the file announces 1"),
+            ("OFF\n1 1 0\n0 0 0\n3 0 0 1", "a.off:4: vertex 1 does not exist (row 1 of 1 of the faces)"),
             ("OFF\n1 1 0\n0 0 0\n3 0 0 -1", "a.off:4: '-1' is out of range"),
             ("OFF\n1 1 0\n0 0 0\n4000000000 0 0 0", "a.off:4: the text ends in row 1 of 1 of the faces"),
             ("OFF\n1 1 0\n0 0 0\n3 0 0 0\n1 1 1\n", "a.off:5: more rows than the counts in the file announce"),

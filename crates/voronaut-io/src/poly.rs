@@ -1,6 +1,6 @@
 //! Triangle's `.poly` files (Shewchuk): a planar straight-line graph with holes and regions.
 
-use super::codec::{At, Form, Row, Sink, Source, Word};
+use super::codec::{At, Form, Sink, Source, Text};
 use std::io::{self, BufRead, Write};
 use std::ops::RangeInclusive;
 use voronaut::Result;
@@ -31,10 +31,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Poly> {
         let max_area = row.get(4).map(|word| word.number(at)).transpose()?;
         poly.regions.push(PolyRegion { point, attribute, max_area });
     }
-    if let Some(row) = source.next_row()? {
-        let what = "more rows than the counts in the file announce";
-        return Err(row.place.error(what, "check the counts of holes and regions"));
-    }
+    source.demand_end("more rows than the counts in the file announce", "check the counts of holes and regions")?;
     Ok(poly)
 }
 
@@ -97,7 +94,8 @@ fn read_segments(source: &mut Source<'_>, poly: &mut Poly) -> Result<()> {
     let width = 3 + marker_columns(source, markers)?;
     for at in At::rows("segments", count.unwrap_or(0)) {
         let row = columns(source.row(at)?, at, width..=width)?;
-        poly.segments.push([vertex(row[1], poly, at)?, vertex(row[2], poly, at)?]);
+        let end = |word: Text<'_>| word.vertex(poly.first, poly.points.len() as u64, at);
+        poly.segments.push([end(row[1])?, end(row[2])?]);
         poly.segment_markers.push(marker(row.get(3), at)?);
     }
     Ok(())
@@ -120,7 +118,7 @@ fn read_count(source: &mut Source<'_>, section: &str) -> Result<u64> {
 }
 
 /// The words of a row, which has to have so many.
-fn columns<'r>(row: Row<'r>, at: At<'_>, expected: RangeInclusive<usize>) -> Result<Vec<Word<'r>>> {
+fn columns<'r>(row: Text<'r>, at: At<'_>, expected: RangeInclusive<usize>) -> Result<Vec<Text<'r>>> {
     let words: Vec<_> = row.words().collect();
     if expected.contains(&words.len()) {
         return Ok(words);
@@ -132,7 +130,7 @@ fn columns<'r>(row: Row<'r>, at: At<'_>, expected: RangeInclusive<usize>) -> Res
     Err(row.place.error(what, help))
 }
 
-fn check_vertex_number(word: Word<'_>, poly: &mut Poly, at: At<'_>) -> Result<()> {
+fn check_vertex_number(word: Text<'_>, poly: &mut Poly, at: At<'_>) -> Result<()> {
     let number: u64 = word.whole(at)?;
     if at.row == 1 && number <= 1 {
         poly.first = number as u32;
@@ -145,21 +143,12 @@ fn check_vertex_number(word: Word<'_>, poly: &mut Poly, at: At<'_>) -> Result<()
     Err(word.place.error(what, "number the vertices in turn, from 0 or from 1"))
 }
 
-fn vertex(word: Word<'_>, poly: &Poly, at: At<'_>) -> Result<u32> {
-    let number: u32 = word.whole(at)?;
-    let count = poly.points.len();
-    number.checked_sub(poly.first).filter(|&vertex| (vertex as usize) < count).ok_or_else(|| {
-        let help = format!("this file has {count} vertices, numbered from {}", poly.first);
-        word.place.error(format!("vertex {number} does not exist ({at})"), help)
-    })
-}
-
 /// The point of a row, behind its number.
-fn point(row: &[Word<'_>], at: At<'_>) -> Result<Point> {
+fn point(row: &[Text<'_>], at: At<'_>) -> Result<Point> {
     Ok(Point::new(row[1].number(at)?, row[2].number(at)?))
 }
 
-fn marker(word: Option<&Word<'_>>, at: At<'_>) -> Result<i32> {
+fn marker(word: Option<&Text<'_>>, at: At<'_>) -> Result<i32> {
     word.map_or(Ok(0), |word| word.whole(at))
 }
 

@@ -17,15 +17,13 @@ use voronaut::{Error, Result};
 /// announced, something that is no finite number. [`Error::Unsupported`] of several values per vertex. [`Error::Io`] of a file
 /// that cannot be read.
 pub fn read(source: impl BufRead, place: &str) -> Result<Solution> {
-    let mut file = Parsed::read(source, place, &SECTIONS[..1])?;
-    let Some((place, values)) = file.sections[0].take() else {
-        return Err(file.missing("", "save the values on vertices, in a section SolAtVertices"));
-    };
+    let help = "save the values on vertices, in a section SolAtVertices";
+    let (dimension, [(place, values), _]) = read_sections(source, place, &SECTIONS[..1], help)?;
     let [values] = <[SolutionValues; 1]>::try_from(values).map_err(|values| {
         let what = format!("{} solutions per vertex ({place})", values.len());
         Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() }
     })?;
-    Ok(Solution { dimension: file.from.dimension.unwrap_or_default(), values })
+    Ok(Solution { dimension, values })
 }
 
 /// Reads the sections `SolAtVertices` and `SolAtTriangles` of a file, with any number of values per vertex or triangle;
@@ -35,13 +33,9 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Solution> {
 ///
 /// As for [`read`]; neither of the sections is there.
 pub fn read_all(source: impl BufRead, place: &str) -> Result<Solutions> {
-    let mut file = Parsed::read(source, place, &SECTIONS)?;
-    let [vertices, triangles] = [0, 1].map(|i| file.sections[i].take());
-    if vertices.is_none() && triangles.is_none() {
-        return Err(file.missing(", nor SolAtTriangles", "save values in one of these sections"));
-    }
-    let [vertices, triangles] = [vertices, triangles].map(|found| found.map_or_else(Vec::new, |(_, values)| values));
-    Ok(Solutions { dimension: file.from.dimension.unwrap_or_default(), vertices, triangles })
+    let help = "save values in one of these sections";
+    let (dimension, [(_, vertices), (_, triangles)]) = read_sections(source, place, &SECTIONS, help)?;
+    Ok(Solutions { dimension, vertices, triangles })
 }
 
 /// Writes a file of version 2 that [`read`] turns into the same solution, to the last bit.
@@ -67,36 +61,26 @@ pub fn write_all(solutions: &Solutions, form: Form, out: &mut dyn Write) -> io::
 /// Sections that are read; any other is passed over.
 const SECTIONS: [&str; 2] = ["SolAtVertices", "SolAtTriangles"];
 
-/// What is read of a file.
-struct Parsed<'a> {
-    from: Sections<'a>,
-    /// In the order of [`SECTIONS`].
-    sections: [Option<Section>; 2],
-}
-
-/// Where its head ends, and its values.
+/// Where the head of a section ends, and its values.
 type Section = (String, Vec<SolutionValues>);
 
-impl<'a> Parsed<'a> {
-    /// Reads the sections that are wanted.
-    fn read(source: impl BufRead + 'a, place: &'a str, wanted: &[&str]) -> Result<Self> {
-        let (mut from, mut sections) = (Sections::new(source, place)?, [None, None]);
-        while let Some(name) = from.next_section()? {
-            match wanted.iter().position(|wanted| *wanted == name) {
-                _ if name == "Dimension" && from.dimension.is_none() => from.read_dimension()?,
-                found if name == "Dimension" || found.is_some_and(|i| sections[i].is_some()) => {
-                    return Err(from.source.error(format!("a second section {name}"), "keep one of them"));
-                }
-                Some(i) => sections[i] = Some(read_section(&mut from, &name)?),
-                None => from.skip_section()?,
+/// Reads the dimension and the sections that are wanted, in the order of [`SECTIONS`]; one of them has to be there.
+fn read_sections(source: impl BufRead, place: &str, wanted: &[&str], help: &str) -> Result<(u8, [Section; 2])> {
+    let (mut from, mut sections) = (Sections::new(source, place)?, [None, None]);
+    while let Some(name) = from.next_section()? {
+        match wanted.iter().position(|wanted| *wanted == name) {
+            _ if name == "Dimension" && from.dimension.is_none() => from.read_dimension()?,
+            found if name == "Dimension" || found.is_some_and(|i| sections[i].is_some()) => {
+                return Err(from.source.error(format!("a second section {name}"), "keep one of them"));
             }
+            Some(i) => sections[i] = Some(read_section(&mut from, &name)?),
+            None => from.skip_section()?,
         }
-        Ok(Self { from, sections })
     }
-
-    fn missing(&self, more: &str, help: &str) -> Error {
-        self.from.source.error(format!("the file has no section SolAtVertices{more}"), help)
+    if sections.iter().all(Option::is_none) {
+        return Err(from.source.error(format!("the file has no section {}", wanted.join(", nor ")), help));
     }
+    Ok((from.dimension.unwrap_or_default(), sections.map(Option::unwrap_or_default)))
 }
 
 fn read_section(from: &mut Sections<'_>, section: &str) -> Result<Section> {
@@ -130,10 +114,10 @@ fn read_section(from: &mut Sections<'_>, section: &str) -> Result<Section> {
 
 fn push(values: &mut SolutionValues, from: &mut Sections<'_>, at: At<'_>) -> Result<()> {
     match values {
-        SolutionValues::Scalar(entries) => entries.push(from.number(at)?),
+        SolutionValues::Scalar(entries) => entries.extend(from.numbers::<1>(at)?),
         SolutionValues::Vector { components, numbers } => {
             for _ in 0..*components {
-                numbers.push(from.number(at)?);
+                numbers.extend(from.numbers::<1>(at)?);
             }
         }
         SolutionValues::Tensor(entries) => entries.push(from.numbers(at)?),

@@ -76,11 +76,9 @@ fn read_binary(mut source: Source<'_>) -> Result<Mesh> {
         }
         source.skip(1, Kind::Unsigned(2), at)?;
     }
-    if source.is_at_end()? {
-        return Ok(corners.into_mesh());
-    }
     let what = format!("the file goes on behind the {count} triangles that it announces");
-    Err(source.error(what, "give an .stl file as text ('solid ...') or binary; this one may be damaged"))
+    source.demand_end(&what, "give an .stl file as text ('solid ...') or binary; this one may be damaged")?;
+    Ok(corners.into_mesh())
 }
 
 fn read_text(mut source: Source<'_>) -> Result<Mesh> {

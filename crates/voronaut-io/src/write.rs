@@ -1,8 +1,11 @@
 //! What is written, by the endings of names.
 
 use super::codec::Form;
+use super::document::labels;
 use super::files::ending;
-use super::{Fields, Format, curved, sol, write_with};
+use super::vtk::{Array, Grid, LINE, POLY_LINE};
+use super::{Fields, Format, sol, write_with};
+use std::io::{self, Write};
 use std::path::Path;
 use voronaut::mesh::{Mesh, Solution, Solutions};
 use voronaut::realisation::Realisation;
@@ -49,7 +52,7 @@ pub fn write_solutions(solutions: &Solutions, path: &Path) -> Result<()> {
 /// As for [`write_mesh`].
 pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
     match Format::from_path(path)? {
-        Format::Vtu => write_with(path, |out| curved::write_curved(realisation, out)),
+        Format::Vtu => write_with(path, |out| write_curved(realisation, out)),
         _ => write_mesh(&realisation.to_mesh(), path),
     }
 }
@@ -60,7 +63,7 @@ pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
 /// [`Error::Unsupported`] for other endings, [`Error::Io`] where the file cannot be written.
 pub fn write_diagram(canvas: &Mesh, distances: &[f64], path: &Path) -> Result<()> {
     demand_diagram(path)?;
-    write_with(path, |out| curved::write_diagram(canvas, distances, out))
+    write_with(path, |out| write_canvas(canvas, distances, out))
 }
 
 /// Refuses names that do not end like a diagram.
@@ -73,6 +76,48 @@ pub fn demand_diagram(path: &Path) -> Result<()> {
     }
     let what = format!("a diagram in {}", path.display());
     Err(Error::Unsupported { what, help: "end the name of the diagram in .vtu".into() })
+}
+
+/// Writes a canvas with its distances: point data `colour` and `distance`.
+fn write_canvas(canvas: &Mesh, distances: &[f64], out: &mut dyn Write) -> io::Result<()> {
+    let lines: Vec<&[u32]> = canvas.edges.iter().map(<[u32; 2]>::as_slice).collect();
+    let cells = labels(&canvas.triangle_labels).take(canvas.triangles.len());
+    let cells = cells.chain(labels(&canvas.edge_labels).take(lines.len()));
+    let colours = labels(&canvas.point_labels).take(canvas.points.len());
+    let grid = Grid {
+        points: &canvas.points,
+        triangles: &canvas.triangles,
+        lines,
+        line: LINE,
+        point_data: vec![Array::new("colour", 1, colours), Array::new("distance", 1, distances.iter().copied())],
+        cell_data: vec![Array::new("label", 1, cells)],
+    };
+    grid.write_unstructured(out)
+}
+
+/// Writes a realisation as a `.vtu` file: the triangles that its regions are cut into, then its edges as polyline cells; cell
+/// data `label`, `seeds` and `length`.
+fn write_curved(realisation: &Realisation, out: &mut dyn Write) -> io::Result<()> {
+    let (mesh, lines) = (realisation.to_mesh(), realisation.lines());
+    let edges = &realisation.edges;
+    let cells = mesh.triangle_labels.iter().copied().chain((1..).take(edges.len()));
+    let of_triangles = mesh.triangle_labels.iter().map(|&label| realisation.triangles[label as usize - 1]);
+    let seeds = of_triangles.map(|t| t.map(u32::cast_signed));
+    let seeds = seeds.chain(edges.iter().map(|e| [e.ends[0].cast_signed(), e.ends[1].cast_signed(), -1]));
+    let lengths = mesh.triangles.iter().map(|_| 0.0).chain(edges.iter().map(|e| e.length));
+    let grid = Grid {
+        points: &mesh.points,
+        triangles: &mesh.triangles,
+        lines: lines.iter().map(Vec::as_slice).collect(),
+        line: POLY_LINE,
+        point_data: vec![Array::new("label", 1, mesh.point_labels.iter().copied())],
+        cell_data: vec![
+            Array::new("label", 1, cells),
+            Array::new("seeds", 3, seeds.flatten()),
+            Array::new("length", 1, lengths),
+        ],
+    };
+    grid.write_unstructured(out)
 }
 
 #[cfg(test)]

@@ -19,18 +19,11 @@ enum Spot {
     Byte(u64),
 }
 
-/// A line that holds something, without its comment.
+/// A word, or a line that holds something, without its comment; and where it stands.
 #[derive(Clone, Copy)]
-pub(crate) struct Row<'a> {
+pub(crate) struct Text<'a> {
     pub(crate) place: Place<'a>,
     /// Neither empty nor blank.
-    pub(crate) text: &'a str,
-}
-
-/// A word and where it stands.
-#[derive(Clone, Copy)]
-pub(crate) struct Word<'a> {
-    pub(crate) place: Place<'a>,
     pub(crate) text: &'a str,
 }
 
@@ -44,13 +37,9 @@ pub(crate) struct At<'a> {
     pub(crate) rows: u64,
 }
 
-/// The largest number that referred to something so far: whether that exists is known once the file is read.
+/// The last entry, from 0, that something referred to so far: whether it exists is known once the file is read.
 #[derive(Default)]
-pub(crate) struct Largest {
-    /// Counted from 1.
-    number: u64,
-    spot: Option<Spot>,
-}
+pub(crate) struct Largest(Option<(u32, Spot)>);
 
 impl<'a> Place<'a> {
     /// A line, counted from 1.
@@ -78,14 +67,12 @@ impl fmt::Display for Place<'_> {
     }
 }
 
-impl<'a> Row<'a> {
-    /// The words of the row.
-    pub(crate) fn words(self) -> impl Iterator<Item = Word<'a>> {
-        self.text.split_whitespace().map(move |text| Word { place: self.place, text })
+impl<'a> Text<'a> {
+    /// The words of a row.
+    pub(crate) fn words(self) -> impl Iterator<Item = Text<'a>> {
+        self.text.split_whitespace().map(move |text| Text { place: self.place, text })
     }
-}
 
-impl Word<'_> {
     /// A finite number, with the exponent letter of C (`e`) or Fortran (`d`).
     ///
     /// # Errors
@@ -107,6 +94,18 @@ impl Word<'_> {
             let digits = self.text.strip_prefix(['+', '-']).unwrap_or(self.text);
             let is_whole = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
             self.misread(if is_whole { "is out of range" } else { "is not a whole number" }, at)
+        })
+    }
+
+    /// A vertex, from 0, of a file that has so many, numbered from `first`.
+    ///
+    /// # Errors
+    /// As of [`Text::whole`]; [`Error::Parse`] of a vertex that does not exist.
+    pub(crate) fn vertex(self, first: u32, count: u64, at: At<'_>) -> Result<u32> {
+        let number: u32 = self.whole(at)?;
+        number.checked_sub(first).filter(|&vertex| u64::from(vertex) < count).ok_or_else(|| {
+            let help = format!("this file has {count} vertices, numbered from {first}");
+            self.place.error(format!("vertex {number} does not exist ({at})"), help)
         })
     }
 
@@ -153,27 +152,21 @@ impl fmt::Display for At<'_> {
 }
 
 impl Largest {
-    /// A reference, counted from 1.
-    pub(crate) fn note(&mut self, number: u64, place: Place<'_>) {
-        if number > self.number {
-            *self = Self { number, spot: Some(place.spot) };
+    /// A reference to an entry, from 0.
+    pub(crate) fn note(&mut self, entry: u32, place: Place<'_>) {
+        if self.0.is_none_or(|(largest, _)| entry > largest) {
+            self.0 = Some((entry, place.spot));
         }
     }
 
-    /// Whether all that was referred to exists; else the number, and where it stands.
-    pub(crate) fn beyond<'f>(&self, count: usize, file: &'f str) -> Option<(u64, Place<'f>)> {
-        let spot = self.spot.filter(|_| self.number > count as u64)?;
-        Some((self.number, Place { file, spot }))
-    }
-
-    /// Whether all that was referred to exists.
+    /// Whether all that was referred to exists; the file counts from `first`.
     ///
     /// # Errors
-    /// [`Error::Parse`] where the largest number stands.
-    pub(crate) fn check(&self, of: &str, count: usize, file: &str) -> Result<()> {
-        let Some((number, place)) = self.beyond(count, file) else { return Ok(()) };
-        let what = format!("{of} {number} does not exist: the file lists {count}");
-        Err(place.error(what, "check the number, and that the file is whole"))
+    /// [`Error::Parse`] where the last entry is referred to.
+    pub(crate) fn check(&self, of: &str, first: u64, count: usize, file: &str) -> Result<()> {
+        let Some((entry, spot)) = self.0.filter(|&(entry, _)| entry as usize >= count) else { return Ok(()) };
+        let what = format!("{of} {} does not exist: the file lists {count}, from {first}", u64::from(entry) + first);
+        Err(Place { file, spot }.error(what, "check the number, and that the file is whole"))
     }
 }
 
@@ -183,7 +176,7 @@ mod tests {
 
     #[test]
     fn numbers_of_all_dialects() {
-        let read = |text| Word { place: Place::line("f", 3), text }.number(At::head("Vertices"));
+        let read = |text| Text { place: Place::line("f", 3), text }.number(At::head("Vertices"));
         for (text, value) in [("1.D0", 1.0), ("-2.5d-3", -2.5e-3), ("1e-3", 1e-3), (".5", 0.5), ("+7", 7.0)] {
             assert_eq!(read(text).unwrap().to_bits(), f64::to_bits(value), "{text}");
         }

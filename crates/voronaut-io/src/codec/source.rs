@@ -1,8 +1,8 @@
 //! What files are read by: rows, words or bytes, one after the other.
 
 use super::kinds::{Kind, Order};
-use super::places::{At, Place, Row, Word};
-use std::io::{BufRead, ErrorKind, Read};
+use super::places::{At, Place, Text};
+use std::io::{self, BufRead, ErrorKind, Read};
 use std::ops::Range;
 use std::str::FromStr;
 use voronaut::{Error, Result};
@@ -10,7 +10,7 @@ use voronaut::{Error, Result};
 /// A file, as far as it is read. It is text until [`Source::be_binary`] is called, and lines can be read of it after that, too: some
 /// formats have both. Only a line and a buffer of it are in memory.
 pub(crate) struct Source<'a> {
-    from: Box<dyn BufRead + 'a>,
+    from: Counted<Box<dyn BufRead + 'a>>,
     file: &'a str,
     /// Which byte of a number comes first, if numbers are binary.
     order: Option<Order>,
@@ -18,8 +18,6 @@ pub(crate) struct Source<'a> {
     is_verbatim: bool,
     /// First words of rows that may be in any encoding.
     naming: &'static [&'static str],
-    /// How many bytes were read.
-    byte: u64,
     /// The line that was read last, counted from 1.
     line: usize,
     /// That line, without its comment.
@@ -34,8 +32,8 @@ const LONGEST_LINE: u64 = 1 << 24;
 impl<'a> Source<'a> {
     /// A text that messages call `file`. Comments (from `#` to the end of the line), blank lines and a byte order mark are no part of it.
     pub(crate) fn new(from: impl BufRead + 'a, file: &'a str) -> Self {
-        let (from, row) = (Box::new(from), Vec::new());
-        Self { from, file, order: None, is_verbatim: false, naming: &[], byte: 0, line: 0, row, word: 0..0 }
+        let (from, row) = (Counted::new(Box::new(from) as Box<dyn BufRead>), Vec::new());
+        Self { from, file, order: None, is_verbatim: false, naming: &[], line: 0, row, word: 0..0 }
     }
 
     /// As [`Source::new`]; rows that begin with one of these words may be in any encoding, and characters that are not UTF-8 are
@@ -70,12 +68,12 @@ impl<'a> Source<'a> {
 
     /// How many bytes were read.
     pub(crate) fn position(&self) -> u64 {
-        self.byte
+        self.from.position
     }
 
     /// What was read last: its line, or of a binary file the byte behind it.
     pub(crate) fn place(&self) -> Place<'a> {
-        if self.is_binary() { self.place_of(self.byte) } else { Place::line(self.file, self.line.max(1)) }
+        if self.is_binary() { self.place_of(self.position()) } else { Place::line(self.file, self.line.max(1)) }
     }
 
     /// A byte of the file.
@@ -104,6 +102,14 @@ impl<'a> Source<'a> {
         if self.is_binary() { Ok(self.ahead()?.is_empty()) } else { Ok(!self.advance()?) }
     }
 
+    /// Refuses what stands behind all that the file announces.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] where anything does; as of [`Source::is_at_end`].
+    pub(crate) fn demand_end(&mut self, what: &str, help: &str) -> Result<()> {
+        if self.is_at_end()? { Ok(()) } else { Err(self.error(what, help)) }
+    }
+
     /// Reads on to the end of a line, or so many bytes, whatever they are; false where nothing follows.
     ///
     /// # Errors
@@ -113,7 +119,6 @@ impl<'a> Source<'a> {
         self.word = 0..0;
         let found = (&mut self.from).take(most).read_until(b'\n', &mut self.row);
         let found = found.map_err(|source| Error::Io { path: self.file.into(), source })?;
-        self.byte += found as u64;
         self.line += usize::from(self.row.ends_with(b"\n"));
         Ok(found > 0)
     }
@@ -127,7 +132,7 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// [`Error::Io`] of a text that cannot be read; [`Error::Parse`] of a line that is too long, or not UTF-8.
-    pub(crate) fn next_row(&mut self) -> Result<Option<Row<'_>>> {
+    pub(crate) fn next_row(&mut self) -> Result<Option<Text<'_>>> {
         Ok(if self.next_line()? { Some(self.whole_row()) } else { None })
     }
 
@@ -135,7 +140,7 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// [`Error::Parse`] with section and row where the text ends; as of [`Source::next_row`].
-    pub(crate) fn row(&mut self, at: At<'_>) -> Result<Row<'_>> {
+    pub(crate) fn row(&mut self, at: At<'_>) -> Result<Text<'_>> {
         if self.next_line()? { Ok(self.whole_row()) } else { Err(self.cut_off(at)) }
     }
 
@@ -143,16 +148,16 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// As of [`Source::next_row`].
-    pub(crate) fn next_word(&mut self) -> Result<Option<Word<'_>>> {
-        Ok(if self.advance()? { Some(self.last_word()) } else { None })
+    pub(crate) fn next_word(&mut self) -> Result<Option<Text<'_>>> {
+        Ok(if self.advance()? { Some(self.text(self.word.clone())) } else { None })
     }
 
     /// The next word, which has to be there.
     ///
     /// # Errors
     /// As of [`Source::row`].
-    pub(crate) fn word(&mut self, at: At<'_>) -> Result<Word<'_>> {
-        if self.advance()? { Ok(self.last_word()) } else { Err(self.cut_off(at)) }
+    pub(crate) fn word(&mut self, at: At<'_>) -> Result<Text<'_>> {
+        if self.advance()? { Ok(self.text(self.word.clone())) } else { Err(self.cut_off(at)) }
     }
 
     /// Leaves the word that was read last to be read again.
@@ -198,7 +203,7 @@ impl<'a> Source<'a> {
         if value.is_finite() {
             return Ok(value);
         }
-        let place = self.place_of(self.byte - kind.size() as u64);
+        let place = self.place_of(self.position() - kind.size() as u64);
         let what = format!("{value} is not a finite number ({at})");
         Err(place.error(what, "correct the number, and check that the file is whole"))
     }
@@ -240,9 +245,8 @@ impl<'a> Source<'a> {
     /// # Errors
     /// As of [`Source::skip`].
     pub(crate) fn skip_bytes(&mut self, count: u64, at: At<'_>) -> Result<()> {
-        let found = std::io::copy(&mut (&mut self.from).take(count), &mut std::io::sink());
+        let found = io::copy(&mut (&mut self.from).take(count), &mut io::sink());
         let found = found.map_err(|source| Error::Io { path: self.file.into(), source })?;
-        self.byte += found;
         if found < count { Err(self.cut_off(at)) } else { Ok(()) }
     }
 
@@ -250,10 +254,7 @@ impl<'a> Source<'a> {
         let mut found = [0; 8];
         let bytes = &mut found[..kind.size()];
         match self.from.read_exact(bytes) {
-            Ok(()) => {
-                self.byte += bytes.len() as u64;
-                Ok(order.bits(bytes))
-            }
+            Ok(()) => Ok(order.bits(bytes)),
             Err(source) if source.kind() == ErrorKind::UnexpectedEof => Err(self.cut_off(at)),
             Err(source) => Err(Error::Io { path: self.file.into(), source }),
         }
@@ -314,19 +315,62 @@ impl<'a> Source<'a> {
         Err(self.error(what, "save the file as UTF-8 text; it seems to be binary"))
     }
 
-    fn whole_row(&self) -> Row<'_> {
-        Row { place: self.place(), text: std::str::from_utf8(&self.row).unwrap_or("\u{fffd}") }
+    /// The line that was read last, of which nothing is left then.
+    fn whole_row(&mut self) -> Text<'_> {
+        self.skip_row();
+        self.text(0..self.row.len())
     }
 
-    fn last_word(&self) -> Word<'_> {
-        let text = std::str::from_utf8(&self.row[self.word.clone()]).unwrap_or("\u{fffd}");
-        Word { place: self.place(), text }
+    fn text(&self, part: Range<usize>) -> Text<'_> {
+        Text { place: self.place(), text: std::str::from_utf8(&self.row[part]).unwrap_or("\u{fffd}") }
     }
 
     fn cut_off(&self, at: At<'_>) -> Error {
         let what = if self.is_binary() || self.is_verbatim { "file" } else { "text" };
         let help = format!("the file is cut off, or the count of {} is too large", at.section);
         self.error(format!("the {what} ends in {at}"), help)
+    }
+}
+
+/// What is read of, and how many bytes were.
+pub(crate) struct Counted<R> {
+    from: R,
+    position: u64,
+}
+
+impl<R> Counted<R> {
+    pub(crate) fn new(from: R) -> Self {
+        Self { from, position: 0 }
+    }
+
+    pub(crate) fn position(&self) -> u64 {
+        self.position
+    }
+}
+
+impl<R: Read> Read for Counted<R> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        let count = self.from.read(out)?;
+        self.position += count as u64;
+        Ok(count)
+    }
+
+    /// Where not all is there, nothing counts as read.
+    fn read_exact(&mut self, out: &mut [u8]) -> io::Result<()> {
+        self.from.read_exact(out)?;
+        self.position += out.len() as u64;
+        Ok(())
+    }
+}
+
+impl<R: BufRead> BufRead for Counted<R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.from.fill_buf()
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.position += count as u64;
+        self.from.consume(count);
     }
 }
 
@@ -342,7 +386,7 @@ mod tests {
     #[test]
     fn words_know_their_lines() {
         let mut words = Source::new("\u{feff}a b # c\n\n#\r\n  d\n\n#".as_bytes(), "f");
-        let told = |word: Option<Word<'_>>| word.map(|word| format!("{} {}", word.place, word.text));
+        let told = |word: Option<Text<'_>>| word.map(|word| format!("{} {}", word.place, word.text));
         for expected in [Some("f:1 a"), Some("f:1 b"), Some("f:4 d"), None, None] {
             assert_eq!(told(words.next_word().unwrap()).as_deref(), expected);
             words.unread();

@@ -1,9 +1,15 @@
-//! The head of Gmsh's files, and the rows and blocks that their sections are made of.
+//! Gmsh's files as sections of text, with blocks of numbers in them that are text as well, or binary.
 
-use super::sections::{INT, SIZE, end_section, next_section, read_one, skip_section};
 use super::tags::Tags;
-use crate::codec::{At, Source, shortened};
+use crate::codec::{At, Kind, Order, Source, shortened};
 use voronaut::{Error, Result};
+
+/// Numbers in blocks: types, dimensions, tags in versions 2 and 4.0.
+pub(super) const INT: Kind = Kind::Signed(4);
+/// Counts, and tags in version 4.1.
+pub(super) const SIZE: Kind = Kind::Signed(8);
+/// Coordinates and values.
+pub(super) const REAL: Kind = Kind::Float(8);
 
 /// How the sections of a file are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,15 +45,12 @@ impl<'a> Blocks<'a> {
         Ok(Self { layout: read_format(&mut source)?, source })
     }
 
-    /// All rows of a section that begins with their number on a line of text.
-    pub(super) fn text_rows<'s>(&mut self, section: &'s str) -> Result<impl Iterator<Item = At<'s>> + use<'s>> {
-        let at = At::head(section);
-        Ok(At::rows(section, self.source.word(at)?.whole(at)?))
-    }
-
-    /// The numbers of blocks and of rows of a section of version 4.
+    /// The numbers of blocks and of rows of a section; in version 2 it is one block, and the number of rows is text in all files.
     pub(super) fn read_totals(&mut self, section: &str) -> Result<(u64, u64)> {
         let at = At::head(section);
+        if self.layout == Layout::Two {
+            return Ok((1, self.source.word(at)?.whole(at)?));
+        }
         let totals = (self.source.whole(SIZE, at)?, self.source.whole(SIZE, at)?);
         if self.layout == Layout::FourOne {
             // The least and the greatest tag.
@@ -138,6 +141,71 @@ fn read_format(source: &mut Source<'_>) -> Result<Layout> {
     }
     end_section(source, "MeshFormat")?;
     Ok(layout)
+}
+
+/// Reads the number 1 behind the head of a binary file, which tells the order of bytes of all others.
+///
+/// # Errors
+/// [`Error::Parse`] where it is none in either order, or not there.
+fn read_one(source: &mut Source<'_>) -> Result<()> {
+    source.be_binary(Order::Little);
+    let place = source.place();
+    let one: i32 = source.whole(INT, At::head("MeshFormat"))?;
+    match one.to_le_bytes() {
+        [1, 0, 0, 0] => {}
+        [0, 0, 0, 1] => source.be_binary(Order::Big),
+        bytes => {
+            let what = format!("the four bytes {bytes:?} are not the number 1 in either order");
+            return Err(place.error(what, "the file is damaged: write it again"));
+        }
+    }
+    Ok(())
+}
+
+/// The name of the next section, without its `$`; `None` at the end of the file.
+///
+/// # Errors
+/// [`Error::Parse`] of anything else that stands between sections.
+pub(super) fn next_section(source: &mut Source<'_>) -> Result<Option<String>> {
+    let Some(word) = source.next_word()? else { return Ok(None) };
+    if let Some(name) = word.text.strip_prefix('$').filter(|name| !name.starts_with("End")) {
+        return Ok(Some(name.to_owned()));
+    }
+    let what = format!("'{}' where a section such as $Nodes should begin", word.quoted());
+    Err(word.place.error(what, "give a file that Gmsh wrote; remove what stands between its sections"))
+}
+
+/// Reads the line that ends a section.
+///
+/// # Errors
+/// [`Error::Parse`] of anything else: the section is longer than announced.
+pub(super) fn end_section(source: &mut Source<'_>, section: &str) -> Result<()> {
+    let Some(word) = source.next_word()? else {
+        let what = format!("the file ends without $End{section}");
+        return Err(source.error(what, "the file is cut off: write it again"));
+    };
+    if word.text.strip_prefix("$End") == Some(section) {
+        return Ok(());
+    }
+    let what = format!("'{}' where $End{section} should be: {section} is longer than announced", word.quoted());
+    Err(word.place.error(what, format!("check the counts of {section}, and the version of the file")))
+}
+
+/// Passes over the rest of a section, whatever it holds.
+///
+/// # Errors
+/// [`Error::Parse`] where the file ends before the section.
+pub(super) fn skip_section(source: &mut Source<'_>, section: &str) -> Result<()> {
+    /// Of lines, so that a binary block without ends of lines does not pile up in memory.
+    const CHUNK: u64 = 1 << 16;
+    let (start, end) = (source.place(), format!("$End{section}"));
+    while source.read_line(CHUNK)? {
+        if source.line().trim_ascii() == end.as_bytes() {
+            source.skip_row();
+            return Ok(());
+        }
+    }
+    Err(start.error(format!("${section}, which begins here, has no {end}"), "the file is cut off: write it again"))
 }
 
 /// An error about what the format has and this library does not read.

@@ -1,8 +1,7 @@
 //! Values on nodes and elements: the sections `$NodeData` and `$ElementData`.
 
-use super::blocks::Blocks;
+use super::blocks::{Blocks, INT, REAL};
 use super::reader::Reader;
-use super::sections::{INT, REAL};
 use crate::Field;
 use crate::codec::At;
 use voronaut::mesh::SolutionValues;

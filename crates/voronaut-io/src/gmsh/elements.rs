@@ -1,23 +1,19 @@
 //! Gmsh's elements: triangles, edges and points of the mesh, with their labels and marks.
 
-use super::blocks::{Blocks, Layout};
-use super::groups::{Mark, Marks};
-use super::kinds::{EDGE, Kind, POINT, QUADRANGLE, TRIANGLE};
+use super::blocks::{Blocks, INT, Layout, SIZE};
+use super::groups::{CORNER, Marks};
 use super::reader::{Corners, Piece, Reader};
-use super::sections::{INT, SIZE};
 use crate::codec::At;
 use crate::cutting::cut;
+use crate::document::marked_mut;
 use voronaut::{Error, Result};
 
 impl Reader {
     /// Reads the section, behind its name.
     pub(super) fn read_elements(&mut self, from: &mut Blocks<'_>) -> Result<()> {
         self.demand_nodes("Elements", from)?;
-        let tags = match (from.layout, from.source.is_binary()) {
-            (Layout::Two, false) => self.read_elements_2(from)?,
-            (Layout::Two, true) => self.read_binary_elements_2(from)?,
-            _ => self.read_elements_4(from)?,
-        };
+        let is_two = from.layout == Layout::Two;
+        let tags = if is_two { self.read_elements_2(from)? } else { self.read_elements_4(from)? };
         self.elements = from.index(&tags, "element", "Elements")?;
         if self.foreign.is_empty() {
             self.take_skin();
@@ -39,28 +35,18 @@ impl Reader {
         }
     }
 
+    /// In text each element is a block of its own, with its tag in front.
     fn read_elements_2(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
-        let mut tags = Vec::new();
-        for at in from.text_rows("Elements")? {
-            tags.push(from.tag(at)?);
-            let kind = read_kind(from, at)?;
-            let attributes = from.source.whole(INT, at)?;
-            self.read_element_2(kind, attributes, tags.len() as u32 - 1, from, at)?;
-        }
-        Ok(tags)
-    }
-
-    fn read_binary_elements_2(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
-        let (section, at) = ("Elements", At::head("Elements"));
-        let total = from.source.word(at)?.whole(at)?;
-        let mut tags = Vec::new();
+        let (section, is_text, mut tags) = ("Elements", !from.source.is_binary(), Vec::new());
+        let (_, total) = from.read_totals(section)?;
         while (tags.len() as u64) < total {
             let at = At { section, row: tags.len() as u64 + 1, rows: total };
+            let first = if is_text { Some(from.tag(at)?) } else { None };
             let kind = read_kind(from, at)?;
-            let count = from.source.whole::<u32>(INT, at)?.into();
+            let count = if is_text { 1 } else { from.source.whole::<u32>(INT, at)?.into() };
             let attributes = from.source.whole(INT, at)?;
             for at in from.block(section, tags.len(), count, total)? {
-                tags.push(from.tag(at)?);
+                tags.push(first.map_or_else(|| from.tag(at), Ok)?);
                 self.read_element_2(kind, attributes, tags.len() as u32 - 1, from, at)?;
             }
         }
@@ -97,7 +83,7 @@ impl Reader {
             let (code, index) = (kind.code, self.add(kind, nodes, element));
             self.last = Piece { code, nodes, entity, groups: group.into_iter().collect(), index };
         }
-        let (label, marks) = self.groups.of(dimension_of(kind.code), &self.last.groups, entity);
+        let (label, marks) = self.groups.of(kind.dimension(), &self.last.groups, entity);
         self.label(kind, self.last.index, label, marks);
         Ok(())
     }
@@ -138,59 +124,47 @@ impl Reader {
                 *place = node;
             }
         }
-        if kind.is_flat() || kind.solid().is_some() {
-            return Ok(Some(nodes));
-        }
-        *self.foreign.entry(kind.name).or_default() += 1;
+        let Shape::Foreign(name) = kind.shape else { return Ok(Some(nodes)) };
+        *self.foreign.entry(name).or_default() += 1;
         Ok(None)
     }
 
     /// Takes an element in, and gives the number of the vertex, the edge, the first triangle or the cell of a volume that it is.
     fn add(&mut self, kind: Kind, nodes: Corners, element: u32) -> u32 {
-        if let Some(solid) = kind.solid() {
-            return self.volumes.push(solid, &nodes[..kind.nodes], 0, element);
-        }
-        let mesh = &mut self.mesh;
-        match kind.code {
-            POINT => nodes[0],
-            EDGE => {
+        let (mesh, nodes) = (&mut self.mesh, &nodes[..kind.nodes]);
+        match kind.shape {
+            Shape::Edge => {
                 mesh.edges.push([nodes[0], nodes[1]]);
                 mesh.edge_labels.push(0);
                 mesh.edges.len() as u32 - 1
             }
-            _ => {
+            Shape::Face => {
                 let index = mesh.triangles.len();
-                cut(&mesh.points, &nodes[..kind.nodes], &mut mesh.triangles);
+                cut(&mesh.points, nodes, &mut mesh.triangles);
                 mesh.triangle_labels.resize(mesh.triangles.len(), 0);
                 self.triangle_elements.resize(mesh.triangles.len(), element);
                 index as u32
             }
+            Shape::Solid => self.volumes.push(nodes, 0, element),
+            Shape::Point | Shape::Foreign(_) => nodes[0],
         }
     }
 
     /// Labels and marks what [`Reader::add`] gave.
     fn label(&mut self, kind: Kind, index: u32, label: i32, marks: Marks) {
-        if kind.solid().is_some() {
-            return self.volumes.label(index, label);
-        }
         let mesh = &mut self.mesh;
-        let (labels, count) = match kind.code {
-            POINT => (&mut mesh.point_labels, 1),
-            EDGE => (&mut mesh.edge_labels, 1),
-            _ => (&mut mesh.triangle_labels, if kind.code == QUADRANGLE { 2 } else { 1 }),
+        let (labels, count) = match kind.shape {
+            Shape::Point => (&mut mesh.point_labels, 1),
+            Shape::Edge => (&mut mesh.edge_labels, 1),
+            Shape::Face => (&mut mesh.triangle_labels, kind.nodes - 2),
+            Shape::Solid | Shape::Foreign(_) => return self.volumes.label(index, label),
         };
-        labels[index as usize..][..count as usize].fill(label);
+        labels[index as usize..][..count].fill(label);
         // All points are, where no group says which.
-        let is_corner = kind.code == POINT && !self.groups.have(Mark::Corner);
-        for (mark, list) in [
-            (Mark::Corner, &mut mesh.corners),
-            (Mark::RequiredVertex, &mut mesh.required_points),
-            (Mark::Ridge, &mut mesh.ridges),
-            (Mark::RequiredEdge, &mut mesh.required_edges),
-            (Mark::RequiredTriangle, &mut mesh.required_triangles),
-        ] {
-            if marks.contains(mark) || is_corner && mark == Mark::Corner {
-                list.extend(index..index + count);
+        let is_corner = kind.code == POINT && !self.groups.marks.contains(CORNER);
+        for (mark, list) in marked_mut(mesh).into_iter().enumerate() {
+            if marks.contains(mark) || is_corner && mark == CORNER {
+                list.extend((index..).take(count));
             }
         }
     }
@@ -207,11 +181,66 @@ fn read_kind(from: &mut Blocks<'_>, at: At<'_>) -> Result<Kind> {
 /// An element repeated more often than this is not taken for one in so many groups.
 const MOST_GROUPS: usize = 256;
 
-fn dimension_of(code: i32) -> u8 {
-    match code {
-        POINT => 0,
-        EDGE => 1,
-        TRIANGLE | QUADRANGLE => 2,
-        _ => 3,
+/// What is written.
+pub(super) const EDGE: i32 = 1;
+pub(super) const TRIANGLE: i32 = 2;
+pub(super) const POINT: i32 = 15;
+
+/// A type of elements.
+#[derive(Clone, Copy)]
+struct Kind {
+    /// What files call it.
+    code: i32,
+    /// How many nodes an element has.
+    nodes: usize,
+    shape: Shape,
+}
+
+/// What a triangle mesh makes of elements of a type.
+#[derive(Clone, Copy)]
+enum Shape {
+    Point,
+    Edge,
+    /// A triangle, or a quadrangle that is cut in two.
+    Face,
+    /// A cell with straight edges, of which the outside may be taken.
+    Solid,
+    /// Nothing: what such elements are called.
+    Foreign(&'static str),
+}
+
+impl Kind {
+    /// The type that files call `code`; `None` of others.
+    fn of(code: i32) -> Option<Self> {
+        let nodes = match code {
+            36 => 16,
+            92 => 64,
+            93 => 125,
+            _ => *NODES.get(usize::try_from(code).ok()?.checked_sub(1)?)?,
+        };
+        let shape = match code {
+            POINT => Shape::Point,
+            EDGE => Shape::Edge,
+            TRIANGLE | 3 => Shape::Face,
+            4..=7 => Shape::Solid,
+            8 | 26..=28 => Shape::Foreign("curved edges"),
+            9 | 20..=25 => Shape::Foreign("curved triangles"),
+            10 | 16 | 36 => Shape::Foreign("curved quadrangles"),
+            _ => Shape::Foreign("curved volume elements"),
+        };
+        Some(Self { code, nodes, shape })
+    }
+
+    fn dimension(self) -> u8 {
+        match self.shape {
+            Shape::Point => 0,
+            Shape::Edge => 1,
+            Shape::Face => 2,
+            Shape::Solid | Shape::Foreign(_) => 3,
+        }
     }
 }
+
+/// How many nodes elements of types 1 to 31 have, after "Node ordering" and "MSH file format" of Gmsh's manual.
+const NODES: [usize; 31] =
+    [2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20, 35, 56];

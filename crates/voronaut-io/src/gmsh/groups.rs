@@ -1,37 +1,26 @@
 //! Physical groups: Gmsh's sets of points, curves, surfaces. A mesh's labels are their tags, and its marks are groups with names.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// What a mesh says about some vertices, edges or triangles beside their labels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Mark {
-    Corner,
-    RequiredVertex,
-    Ridge,
-    RequiredEdge,
-    RequiredTriangle,
-}
+/// What a mesh marks, in the order of [`marked`](crate::document::marked): the dimension of what has the mark, and the name of its
+/// physical group.
+pub(super) const MARKS: [(u8, &str); 5] =
+    [(0, "corners"), (0, "required vertices"), (1, "ridges"), (1, "required edges"), (2, "required triangles")];
 
-/// A set of marks.
+/// The place of corners in [`MARKS`].
+pub(super) const CORNER: usize = 0;
+
+/// A set of marks, by their places in [`MARKS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Marks(u8);
 
-/// Each mark, the dimension of what has it, and the name of its physical group.
-pub(super) const MARKS: [(Mark, u8, &str); 5] = [
-    (Mark::Corner, 0, "corners"),
-    (Mark::RequiredVertex, 0, "required vertices"),
-    (Mark::Ridge, 1, "ridges"),
-    (Mark::RequiredEdge, 1, "required edges"),
-    (Mark::RequiredTriangle, 2, "required triangles"),
-];
-
 impl Marks {
-    pub(super) fn insert(&mut self, mark: Mark) {
-        self.0 |= 1 << mark as u8;
+    pub(super) fn insert(&mut self, mark: usize) {
+        self.0 |= 1 << mark;
     }
 
-    pub(super) fn contains(self, mark: Mark) -> bool {
-        self.0 & (1 << mark as u8) != 0
+    pub(super) fn contains(self, mark: usize) -> bool {
+        self.0 & (1 << mark) != 0
     }
 }
 
@@ -39,20 +28,21 @@ impl Marks {
 #[derive(Default)]
 pub(super) struct Groups {
     meanings: BTreeMap<(u8, i32), Meaning>,
-    marks: Marks,
+    /// Those that have a group.
+    pub(super) marks: Marks,
 }
 
 enum Meaning {
     Label(i32),
-    Mark(Mark),
+    Mark(usize),
 }
 
 impl Groups {
     /// Notes a group's name.
     pub(super) fn name(&mut self, dimension: u8, tag: i32, name: &str) {
-        let mark = MARKS.iter().find(|&&(_, of, known)| of == dimension && known == name);
+        let mark = MARKS.iter().position(|known| *known == (dimension, name));
         let meaning = match mark {
-            Some(&(mark, ..)) => {
+            Some(mark) => {
                 self.marks.insert(mark);
                 Meaning::Mark(mark)
             }
@@ -62,11 +52,6 @@ impl Groups {
             },
         };
         self.meanings.insert((dimension, tag), meaning);
-    }
-
-    /// Whether a group is called as a mark.
-    pub(super) fn have(&self, mark: Mark) -> bool {
-        self.marks.contains(mark)
     }
 
     /// The label and the marks of what belongs to some groups: the first that is no mark, or the first, or else `entity`.
@@ -85,9 +70,10 @@ impl Groups {
 
 /// The tags of the groups of one dimension that is written, with the names of those that need one.
 pub(super) struct Numbering {
-    dimension: u8,
+    pub(super) dimension: u8,
     labels: BTreeMap<i32, i32>,
-    marks: Vec<(Mark, i32)>,
+    /// With their tags.
+    marks: Vec<(usize, i32)>,
     /// Tag and name of groups with names.
     pub(super) names: Vec<(i32, String)>,
 }
@@ -105,17 +91,12 @@ impl Numbering {
             names.push((*tag, format!("{}{label}", label_name(dimension))));
         }
         let mut marks = Vec::new();
-        for &(mark, _, name) in MARKS.iter().filter(|(_, of, _)| *of == dimension) {
+        for (mark, (_, name)) in MARKS.iter().enumerate().filter(|(_, (of, _))| *of == dimension) {
             let tag = free.next().unwrap_or(i32::MAX);
             marks.push((mark, tag));
-            names.push((tag, name.to_owned()));
+            names.push((tag, (*name).to_owned()));
         }
         Self { dimension, labels, marks, names }
-    }
-
-    /// The dimension of the groups.
-    pub(super) fn dimension(&self) -> u8 {
-        self.dimension
     }
 
     /// The tags of a label and of marks.
@@ -125,14 +106,11 @@ impl Numbering {
         label.into_iter().chain(marks).collect()
     }
 
-    /// The tag of a mark.
-    pub(super) fn mark(&self, mark: Mark) -> Option<i32> {
-        self.marks.iter().find(|(known, _)| *known == mark).map(|&(_, tag)| tag)
-    }
-
-    /// Leaves out names of groups that are not used.
-    pub(super) fn keep(&mut self, used: impl Fn(i32) -> bool) {
-        self.names.retain(|(tag, _)| used(*tag));
+    /// Leaves out names of groups that no element uses. Where points are no corners the group of corners is there to say so, even if
+    /// it is empty.
+    pub(super) fn keep_used(&mut self, used: &BTreeSet<i32>) {
+        let corners = self.marks.iter().find(|&&(mark, _)| mark == CORNER && !used.is_empty());
+        self.names.retain(|(tag, _)| used.contains(tag) || corners.is_some_and(|(_, of_corners)| of_corners == tag));
     }
 }
 

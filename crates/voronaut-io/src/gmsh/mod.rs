@@ -4,20 +4,19 @@ mod blocks;
 mod data;
 mod elements;
 mod groups;
-mod kinds;
 mod reader;
-mod sections;
 mod tags;
 mod writer;
 
-use super::codec::{Form, Source};
-use super::{Document, Fields};
+pub use writer::write;
+
+use super::Document;
+use super::codec::Source;
 use blocks::Blocks;
 use reader::Reader;
 use std::fmt;
-use std::io::{self, BufRead, Write};
+use std::io::BufRead;
 use std::str::FromStr;
-use voronaut::mesh::Mesh;
 use voronaut::{Error, Result};
 
 /// A version of the format that is written.
@@ -73,26 +72,6 @@ impl FromStr for Version {
 /// meshes in partitions. [`Error::Io`] of a file that cannot be read.
 pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
     Reader::default().read(Blocks::new(Source::verbatim(source, place))?)
-}
-
-/// Writes a mesh and fields as a file that [`read`] turns into the same vertices, to the last bit, and the same triangles and
-/// edges, sorted by label.
-///
-/// Triangles come first, then edges, then the vertices with a label or a mark as elements of type 15, each with a physical group and an
-/// entity per label and marks. The group's tag is the label. Gmsh has no tags below 1: such a label has the least tag that
-/// is no label, and the group is named `triangle label -3`, `edge label 0` or `vertex label -1`. Marks are groups as well: `corners`,
-/// `required vertices`, `ridges`, `required edges` and `required triangles`. In version 2.2, where Gmsh repeats elements for each
-/// of their groups, those of edges and triangles are not written.
-///
-/// Fields are `$NodeData` and `$ElementData`; vectors of two numbers get a third, 0; tensors are written row by row with 9 numbers.
-/// Other fields of several numbers are one field `NAME_0`, `NAME_1`, ... each. So that meshio reads fields of triangles, in
-/// version 4.1 edges and points have values too: of a triangle at their first vertex, 0 where there is none. Of files of version 2.2
-/// Gmsh leaves out vertices without element.
-///
-/// # Errors
-/// What `out` says; more elements than version 2.2 or fields have tags for.
-pub fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &mut dyn Write) -> io::Result<()> {
-    writer::write(mesh, fields, version, form, out)
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Gmsh's sections, read in turn into a mesh.
 
-use super::blocks::{Blocks, Layout, unsupported};
+use super::blocks::{Blocks, INT, Layout, REAL, SIZE, end_section, next_section, skip_section, unsupported};
 use super::groups::Groups;
-use super::sections::{INT, REAL, SIZE, end_section, next_section, skip_section};
 use super::tags::Tags;
 use crate::codec::At;
+use crate::document::marked_mut;
 use crate::volumes::Volumes;
 use crate::{Document, Fields};
 use std::collections::BTreeMap;
@@ -62,9 +62,7 @@ impl Reader {
             let what = "the file has no section Nodes";
             return Err(from.source.error(what, "save the mesh with the views; check that the file is whole"));
         }
-        let mesh = &mut self.mesh;
-        let marked = [&mut mesh.corners, &mut mesh.required_points, &mut mesh.ridges, &mut mesh.required_edges];
-        for list in marked.into_iter().chain([&mut mesh.required_triangles]) {
+        for list in marked_mut(&mut self.mesh) {
             list.sort_unstable();
             list.dedup();
         }
@@ -112,7 +110,8 @@ impl Reader {
     }
 
     fn read_names(&mut self, from: &mut Blocks<'_>) -> Result<()> {
-        for at in from.text_rows("PhysicalNames")? {
+        let head = At::head("PhysicalNames");
+        for at in At::rows(head.section, from.source.word(head)?.whole(head)?) {
             let (dimension, tag) = (from.source.word(at)?.whole(at)?, from.source.word(at)?.whole(at)?);
             let name = from.source.rest_of_row(at)?;
             self.groups.name(dimension, tag, name.trim_matches('"'));
@@ -149,51 +148,33 @@ impl Reader {
     }
 
     fn read_nodes(&mut self, from: &mut Blocks<'_>) -> Result<()> {
-        let tags = if from.layout == Layout::Two { self.read_nodes_2(from)? } else { self.read_nodes_4(from)? };
-        self.nodes = from.index(&tags, "node", "Nodes")?;
-        self.mesh.point_labels = vec![0; tags.len()];
-        Ok(())
-    }
-
-    fn read_nodes_2(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
-        let mut tags = Vec::new();
-        for at in from.text_rows("Nodes")? {
-            tags.push(from.tag(at)?);
-            self.read_point(0, from, at)?;
-        }
-        Ok(tags)
-    }
-
-    fn read_nodes_4(&mut self, from: &mut Blocks<'_>) -> Result<Vec<u64>> {
-        let section = "Nodes";
+        let (section, layout, mut tags) = ("Nodes", from.layout, Vec::new());
         let (blocks, total) = from.read_totals(section)?;
-        let mut tags = Vec::new();
         for _ in 0..blocks {
-            let at = At::head(section);
-            let (dimension, _) = from.read_entity(at)?;
-            let is_parametric = from.source.whole::<i32>(INT, at)? != 0;
-            let parameters = if is_parametric { u64::from(dimension) } else { 0 };
-            let count = from.source.whole(SIZE, at)?;
+            let (mut parameters, mut count, at) = (0, total, At::head(section));
+            if layout != Layout::Two {
+                let (dimension, _) = from.read_entity(at)?;
+                let is_parametric = from.source.whole::<i32>(INT, at)? != 0;
+                parameters = if is_parametric { dimension.into() } else { 0 };
+                count = from.source.whole(SIZE, at)?;
+            }
             let rows = from.block(section, tags.len(), count, total)?;
-            if from.layout == Layout::FourOne {
+            if layout == Layout::FourOne {
                 for at in rows.clone() {
                     tags.push(from.tag(at)?);
                 }
             }
             for at in rows {
-                if from.layout == Layout::Four {
+                if layout != Layout::FourOne {
                     tags.push(from.tag(at)?);
                 }
-                self.read_point(parameters, from, at)?;
+                self.mesh.points.push(from.source.numbers(REAL, at)?);
+                from.source.skip(parameters, REAL, at)?;
             }
         }
         from.demand_all(section, tags.len(), total)?;
-        Ok(tags)
-    }
-
-    fn read_point(&mut self, parameters: u64, from: &mut Blocks<'_>, at: At<'_>) -> Result<()> {
-        let source = &mut from.source;
-        self.mesh.points.push(source.numbers(REAL, at)?);
-        source.skip(parameters, REAL, at)
+        self.nodes = from.index(&tags, "node", section)?;
+        self.mesh.point_labels = vec![0; tags.len()];
+        Ok(())
     }
 }

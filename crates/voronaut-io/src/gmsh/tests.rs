@@ -1,8 +1,9 @@
 //! Files that are written and read back, files of other programs, and damaged ones.
 
 use super::*;
-use crate::Field;
-use voronaut::mesh::SolutionValues;
+use crate::codec::Form;
+use crate::{Field, Fields};
+use voronaut::mesh::{Mesh, SolutionValues};
 
 /// One square in two regions: labelled points, curves and surfaces, two views. Written by Gmsh 4.15.2 through its Python module (but for
 /// 4.0 binary, which Gmsh does not write).

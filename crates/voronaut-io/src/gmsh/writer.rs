@@ -2,18 +2,32 @@
 
 use super::Version;
 use super::data::Column;
-use super::groups::{Mark, Marks, Numbering};
-use super::kinds::{EDGE, POINT, TRIANGLE};
-use super::sections::{begin, write_end};
+use super::elements::{EDGE, POINT, TRIANGLE};
+use super::groups::{MARKS, Marks, Numbering};
 use crate::Fields;
 use crate::codec::{Form, Sink};
-use crate::document::labels;
-use std::collections::{BTreeMap, BTreeSet};
+use crate::document::{labels, marked};
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use voronaut::mesh::Mesh;
 
-/// Writes a mesh and fields.
-pub(super) fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &mut dyn Write) -> io::Result<()> {
+/// Writes a mesh and fields as a file that [`read`](super::read) turns into the same vertices, to the last bit, and the same triangles and
+/// edges, sorted by label.
+///
+/// Triangles come first, then edges, then the vertices with a label or a mark as elements of type 15, each with a physical group and an
+/// entity per label and marks. The group's tag is the label. Gmsh has no tags below 1: such a label has the least tag that
+/// is no label, and the group is named `triangle label -3`, `edge label 0` or `vertex label -1`. Marks are groups as well: `corners`,
+/// `required vertices`, `ridges`, `required edges` and `required triangles`. In version 2.2, where Gmsh repeats elements for each
+/// of their groups, those of edges and triangles are not written.
+///
+/// Fields are `$NodeData` and `$ElementData`; vectors of two numbers get a third, 0; tensors are written row by row with 9 numbers.
+/// Other fields of several numbers are one field `NAME_0`, `NAME_1`, ... each. So that meshio reads fields of triangles, in
+/// version 4.1 edges and points have values too: of a triangle at their first vertex, 0 where there is none. Of files of version 2.2
+/// Gmsh leaves out vertices without element.
+///
+/// # Errors
+/// What `out` says; more elements than version 2.2 or fields have tags for.
+pub fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &mut dyn Write) -> io::Result<()> {
     let plan = Plan::new(mesh);
     let mut sink = begin(version, form, out)?;
     plan.write_names(&mut sink)?;
@@ -51,25 +65,19 @@ struct Part {
 
 impl<'a> Plan<'a> {
     fn new(mesh: &'a Mesh) -> Self {
-        let required = (Mark::RequiredTriangle, mesh.required_triangles.as_slice());
-        let triangles = sort(mesh.triangles.len(), labels(&mesh.triangle_labels), &[required]);
-        let marked = [(Mark::Ridge, mesh.ridges.as_slice()), (Mark::RequiredEdge, &mesh.required_edges)];
-        let edges = sort(mesh.edges.len(), labels(&mesh.edge_labels), &marked);
-        let marked = [(Mark::Corner, mesh.corners.as_slice()), (Mark::RequiredVertex, &mesh.required_points)];
-        let mut points = sort(mesh.points.len(), labels(&mesh.point_labels), &marked);
-        // Vertices without label and marks need no elements.
-        points.remove(&(0, Marks::default()));
         let (mut parts, mut groups): (Vec<Part>, Vec<Numbering>) = (Vec::new(), Vec::new());
-        for (dimension, sorted) in [(2, triangles), (1, edges), (0, points)] {
+        for (dimension, count, labels) in [
+            (2, mesh.triangles.len(), &mesh.triangle_labels),
+            (1, mesh.edges.len(), &mesh.edge_labels),
+            (0, mesh.points.len(), &mesh.point_labels),
+        ] {
+            let sorted = sort(mesh, dimension, count, labels);
             let mut numbering = Numbering::new(dimension, sorted.keys().map(|&(label, _)| label));
             let first = parts.len();
             for (entity, ((label, marks), elements)) in (1..).zip(sorted) {
                 parts.push(Part { dimension, entity, groups: numbering.tags(label, marks), elements });
             }
-            let used: BTreeSet<i32> = parts[first..].iter().flat_map(|part| part.groups.iter().copied()).collect();
-            // Where points are no corners the group of corners is there to say so, even if it is empty.
-            let corners = numbering.mark(Mark::Corner).filter(|_| !used.is_empty());
-            numbering.keep(|tag| used.contains(&tag) || corners == Some(tag));
+            numbering.keep_used(&parts[first..].iter().flat_map(|part| part.groups.iter().copied()).collect());
             groups.push(numbering);
         }
         Self { mesh, parts, groups }
@@ -83,7 +91,7 @@ impl<'a> Plan<'a> {
         sink.line(format_args!("$PhysicalNames\n{count}"))?;
         for numbering in self.groups.iter().rev() {
             for (tag, name) in &numbering.names {
-                sink.line(format_args!("{} {tag} \"{name}\"", numbering.dimension()))?;
+                sink.line(format_args!("{} {tag} \"{name}\"", numbering.dimension))?;
             }
         }
         sink.line(format_args!("$EndPhysicalNames"))
@@ -235,15 +243,21 @@ impl Part {
 /// Elements by label and marks, each list in the order of the mesh.
 type Sorted = BTreeMap<(i32, Marks), Vec<u32>>;
 
-/// So many elements, some of which have marks.
-fn sort(count: usize, labels: impl Iterator<Item = i32>, marked: &[(Mark, &[u32])]) -> Sorted {
+/// All elements of a dimension, but for vertices without label and marks, which need none.
+fn sort(mesh: &Mesh, dimension: u8, count: usize, given: &[i32]) -> Sorted {
     let mut marks = vec![Marks::default(); count];
-    for (mark, list) in marked {
-        list.iter().for_each(|&i| marks[i as usize].insert(*mark));
+    for (mark, (list, (of, _))) in marked(mesh).into_iter().zip(MARKS).enumerate() {
+        if of == dimension {
+            for &i in list {
+                marks[i as usize].insert(mark);
+            }
+        }
     }
     let mut sorted = Sorted::new();
-    for (i, key) in (0..).zip(labels.zip(marks)) {
-        sorted.entry(key).or_default().push(i);
+    for (i, key) in (0..).zip(labels(given).zip(marks)) {
+        if dimension > 0 || key != (0, Marks::default()) {
+            sorted.entry(key).or_default().push(i);
+        }
     }
     sorted
 }
@@ -273,4 +287,24 @@ fn write_data(
 fn demand_tags(count: usize) -> io::Result<()> {
     let what = "more than 2^31 nodes or elements, for which Gmsh has no tags";
     i32::try_from(count).map(drop).map_err(|_| io::Error::other(what))
+}
+
+/// Begins to write a file.
+fn begin(version: Version, form: Form, out: &mut dyn Write) -> io::Result<Sink<'_>> {
+    let mut sink = Sink::new(form, out);
+    sink.line(format_args!("$MeshFormat\n{version} {} 8", i32::from(sink.is_binary())))?;
+    if sink.is_binary() {
+        sink.put(1_i32);
+    }
+    write_end("MeshFormat", &mut sink)?;
+    Ok(sink)
+}
+
+/// Writes the line that ends a section.
+fn write_end(section: &str, sink: &mut Sink<'_>) -> io::Result<()> {
+    if sink.is_binary() {
+        // Behind the bytes of a block a line begins.
+        sink.line(format_args!(""))?;
+    }
+    sink.line(format_args!("$End{section}"))
 }

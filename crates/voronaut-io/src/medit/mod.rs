@@ -1,20 +1,17 @@
 //! Medit's formats for meshes (Frey, INRIA RT-0253; libMeshb): `.mesh` as text and `.meshb` as binary files, those of mmg,
 //! refine, bamg and `FreeFEM`.
 
-mod keywords;
 mod sections;
-mod writer;
 
 pub use super::codec::Form;
-pub(super) use sections::Sections;
-pub(super) use writer::Writer;
+use sections::{KEYWORDS, READ};
+pub(super) use sections::{Sections, Writer};
 
 use super::Document;
 use super::codec::{At, Largest};
 use super::cutting::cut;
-use super::document::labels;
-use super::volumes::{Solid, Volumes};
-use keywords::SECTIONS;
+use super::document::{labels, marked, marked_mut};
+use super::volumes::Volumes;
 use std::io::{self, BufRead, Write};
 use voronaut::Result;
 use voronaut::mesh::Mesh;
@@ -60,13 +57,7 @@ pub fn write(mesh: &Mesh, form: Form, out: &mut dyn Write) -> io::Result<()> {
     }
     write_elements(&mut writer, "Edges", &mesh.edges, &mesh.edge_labels)?;
     write_elements(&mut writer, "Triangles", &mesh.triangles, &mesh.triangle_labels)?;
-    for (name, numbers) in [
-        ("Corners", &mesh.corners),
-        ("RequiredVertices", &mesh.required_points),
-        ("Ridges", &mesh.ridges),
-        ("RequiredEdges", &mesh.required_edges),
-        ("RequiredTriangles", &mesh.required_triangles),
-    ] {
+    for ((name, _), numbers) in MARKS.into_iter().zip(marked(mesh)) {
         if !numbers.is_empty() {
             writer.section(name, numbers.len(), 4, &[])?;
             numbers.iter().try_for_each(|number| writer.sink.row([number + 1]))?;
@@ -80,6 +71,15 @@ const MOST_BYTES: u64 = 40;
 
 /// What else programs call some sections in texts.
 const OTHER_NAMES: [(&str, &str); 2] = [("Pentahedra", "Prisms"), ("Hexaedra", "Hexahedra")];
+
+/// The sections of what is marked, in the order of [`marked`], and what they number.
+const MARKS: [(&str, Of); 5] = [
+    ("Corners", Of::Vertices),
+    ("RequiredVertices", Of::Vertices),
+    ("Ridges", Of::Edges),
+    ("RequiredEdges", Of::Edges),
+    ("RequiredTriangles", Of::Triangles),
+];
 
 #[derive(Default)]
 struct Reader {
@@ -114,7 +114,7 @@ impl Reader {
     fn read_section(&mut self, section: &str, from: &mut Sections<'_>) -> Result<()> {
         let other = OTHER_NAMES.iter().find(|(other, _)| other.eq_ignore_ascii_case(section));
         let section = other.map_or(section, |(_, name)| name);
-        let Some((_, name)) = SECTIONS.into_iter().find(|(_, name)| *name == section) else {
+        let Some(&(_, name)) = KEYWORDS[..READ].iter().find(|(_, name)| *name == section) else {
             return from.skip_section();
         };
         if self.seen.contains(&name) {
@@ -127,18 +127,17 @@ impl Reader {
             "Edges" => (self.mesh.edges, self.mesh.edge_labels) = self.read_elements(name, from)?,
             "Triangles" => (self.mesh.triangles, self.mesh.triangle_labels) = self.read_elements(name, from)?,
             "Quadrilaterals" => self.quadrilaterals = self.read_elements(name, from)?,
-            "Corners" => self.mesh.corners = self.read_numbers(name, Of::Vertices, from)?,
-            "RequiredVertices" => self.mesh.required_points = self.read_numbers(name, Of::Vertices, from)?,
-            "Ridges" => self.mesh.ridges = self.read_numbers(name, Of::Edges, from)?,
-            "RequiredEdges" => self.mesh.required_edges = self.read_numbers(name, Of::Edges, from)?,
-            "RequiredTriangles" => self.mesh.required_triangles = self.read_numbers(name, Of::Triangles, from)?,
             "RequiredQuadrilaterals" => {
                 self.required_quadrilaterals = self.read_numbers(name, Of::Quadrilaterals, from)?;
             }
-            "Tetrahedra" => self.read_solids::<4>(name, Solid::Tetrahedron, from)?,
-            "Pyramids" => self.read_solids::<5>(name, Solid::Pyramid, from)?,
-            "Prisms" => self.read_solids::<6>(name, Solid::Prism, from)?,
-            _ => self.read_solids::<8>(name, Solid::Hexahedron, from)?,
+            "Tetrahedra" => self.read_solids::<4>(name, from)?,
+            "Pyramids" => self.read_solids::<5>(name, from)?,
+            "Prisms" => self.read_solids::<6>(name, from)?,
+            "Hexahedra" => self.read_solids::<8>(name, from)?,
+            _ => {
+                let mark = MARKS.iter().position(|(known, _)| *known == name).expect("all others are marks");
+                *marked_mut(&mut self.mesh)[mark] = self.read_numbers(name, MARKS[mark].1, from)?;
+            }
         }
         Ok(())
     }
@@ -147,8 +146,8 @@ impl Reader {
         let dimension = from.known_dimension()?;
         let count = from.count()?;
         for at in At::rows("Vertices", count) {
-            let (x, y) = (from.number(at)?, from.number(at)?);
-            let z = if dimension == 3 { from.number(at)? } else { 0.0 };
+            let [x, y] = from.numbers(at)?;
+            let [z] = if dimension == 3 { from.numbers(at)? } else { [0.0] };
             self.mesh.points.push([x, y, z]);
             self.mesh.point_labels.push(from.whole(at)?);
         }
@@ -168,10 +167,10 @@ impl Reader {
         Ok((elements, labels))
     }
 
-    fn read_solids<const N: usize>(&mut self, section: &str, solid: Solid, from: &mut Sections<'_>) -> Result<()> {
+    fn read_solids<const N: usize>(&mut self, section: &str, from: &mut Sections<'_>) -> Result<()> {
         let (cells, labels) = self.read_elements::<N>(section, from)?;
         for (cell, label) in cells.iter().zip(labels) {
-            self.volumes.push(solid, cell, label, 0);
+            self.volumes.push(cell, label, 0);
         }
         Ok(())
     }
@@ -187,7 +186,7 @@ impl Reader {
             let what = format!("{} 0 does not exist ({at})", of.name());
             return Err(from.source.error(what, "number from 1, as Medit does"));
         }
-        self.largest[of as usize].note(number.into(), from.source.place());
+        self.largest[of as usize].note(number - 1, from.source.place());
         Ok(number - 1)
     }
 
@@ -202,7 +201,7 @@ impl Reader {
             (Of::Triangles, self.mesh.triangles.len()),
             (Of::Quadrilaterals, self.quadrilaterals.0.len()),
         ] {
-            self.largest[of as usize].check(of.name(), count, from.source.file())?;
+            self.largest[of as usize].check(of.name(), 1, count, from.source.file())?;
         }
         self.cut_quadrilaterals();
         let note = self.volumes.note(self.mesh.triangles.len());

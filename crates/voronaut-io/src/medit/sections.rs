@@ -1,8 +1,7 @@
 //! Medit's files as a sequence of sections, each a keyword and numbers: as text, and in libMeshb's binary form.
 
-use super::keywords::{code_of, keywords};
-use crate::codec::{At, Kind, Order, Source};
-use std::io::BufRead;
+use crate::codec::{At, Form, Kind, Order, Sink, Source};
+use std::io::{self, BufRead, Write};
 use std::str::FromStr;
 use voronaut::Result;
 
@@ -52,7 +51,7 @@ impl<'a> Sections<'a> {
     /// Passes over the rest of the section.
     ///
     /// # Errors
-    /// As of [`Sections::number`].
+    /// As of [`Sections::numbers`].
     pub(crate) fn skip_section(&mut self) -> Result<()> {
         if self.source.is_binary() {
             let Some(next) = self.next else { return Ok(()) };
@@ -90,14 +89,6 @@ impl<'a> Sections<'a> {
     /// As of [`Sections::whole`].
     pub(crate) fn short<T: TryFrom<i64> + FromStr>(&mut self, at: At<'_>) -> Result<T> {
         self.source.whole(Kind::Signed(4), at)
-    }
-
-    /// The next finite number.
-    ///
-    /// # Errors
-    /// As of [`Sections::whole`].
-    pub(crate) fn number(&mut self, at: At<'_>) -> Result<f64> {
-        Ok(self.numbers::<1>(at)?[0])
     }
 
     /// The next finite numbers.
@@ -143,7 +134,7 @@ impl<'a> Sections<'a> {
             return Ok(None);
         }
         if is_keyword(word.text) {
-            let known = keywords().find(|(_, name)| name.eq_ignore_ascii_case(word.text));
+            let known = KEYWORDS.into_iter().find(|(_, name)| name.eq_ignore_ascii_case(word.text));
             return Ok(Some(known.map_or(word.text, |(_, name)| name).to_owned()));
         }
         let before = &self.section;
@@ -177,9 +168,48 @@ impl<'a> Sections<'a> {
                 return Err(source.error(what, "the file is damaged: write it again"));
             }
         };
-        let known = keywords().find(|(known, _)| *known == code);
+        let known = KEYWORDS.into_iter().find(|(known, _)| *known == code);
         Ok(Some(known.map_or_else(|| format!("section {code}"), |(_, name)| name.to_owned())))
     }
+}
+
+/// The sections that matter here, and their numbers in binary files, as libMeshb has them: first [`READ`] sections of meshes that
+/// are read, then others whose names are known.
+pub(super) const KEYWORDS: [(i32, &str); 24] = [
+    (3, "Dimension"),
+    (4, "Vertices"),
+    (5, "Edges"),
+    (6, "Triangles"),
+    (7, "Quadrilaterals"),
+    (8, "Tetrahedra"),
+    (9, "Prisms"),
+    (10, "Hexahedra"),
+    (13, "Corners"),
+    (14, "Ridges"),
+    (15, "RequiredVertices"),
+    (16, "RequiredEdges"),
+    (17, "RequiredTriangles"),
+    (18, "RequiredQuadrilaterals"),
+    (49, "Pyramids"),
+    (19, "TangentAtEdgeVertices"),
+    (20, "NormalAtVertices"),
+    (54, "End"),
+    (59, "Tangents"),
+    (60, "Normals"),
+    (62, "SolAtVertices"),
+    (63, "SolAtEdges"),
+    (64, "SolAtTriangles"),
+    (66, "SolAtTetrahedra"),
+];
+
+pub(super) const READ: usize = 15;
+
+/// The code of a section that is known.
+///
+/// # Panics
+/// If it is not.
+fn code_of(name: &str) -> i32 {
+    KEYWORDS.iter().find(|(_, known)| *known == name).expect("a section of the list").0
 }
 
 const VERSIONS: std::ops::RangeInclusive<i64> = 1..=4;
@@ -218,6 +248,64 @@ fn read_binary_head(source: &mut Source<'_>, order: Order) -> Result<i64> {
 
 fn is_keyword(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_alphabetic())
+}
+
+/// A file that is being written.
+pub(crate) struct Writer<'a> {
+    /// Where the numbers of a section go.
+    pub(crate) sink: Sink<'a>,
+    /// Whether positions have 64 bits.
+    is_wide: bool,
+}
+
+/// Binary files that may have more bytes get positions of 64 bits; half of what 32 bits could say.
+const NARROW: u64 = 1 << 30;
+
+impl<'a> Writer<'a> {
+    /// Writes the head of a file, which will have `bytes` bytes if it is binary, at most.
+    pub(crate) fn new(form: Form, dimension: u8, bytes: u64, out: &'a mut dyn Write) -> io::Result<Self> {
+        let mut writer = Self { sink: Sink::new(form, out), is_wide: bytes > NARROW };
+        if writer.sink.is_binary() {
+            writer.sink.put_all([1, if writer.is_wide { 3 } else { 2 }]);
+            writer.keyword("Dimension", 4);
+            writer.sink.put(i32::from(dimension));
+        } else {
+            writer.sink.line(format_args!("MeshVersionFormatted 2\n\nDimension {dimension}"))?;
+        }
+        Ok(writer)
+    }
+
+    /// Begins a section of so many rows, of so many bytes each if it is binary, behind `head` numbers of 32 bits.
+    pub(crate) fn section(&mut self, name: &str, rows: usize, bytes: usize, head: &[i32]) -> io::Result<()> {
+        if self.sink.is_binary() {
+            self.keyword(name, 4 + 4 * head.len() as u64 + rows as u64 * bytes as u64);
+            let rows = i32::try_from(rows).map_err(|_| io::Error::other("more than 2^31 rows in a binary section"))?;
+            self.sink.put(rows);
+        } else {
+            self.sink.line(format_args!("\n{name}\n{rows}"))?;
+        }
+        self.sink.row(head.iter().copied())
+    }
+
+    /// Ends the file.
+    pub(crate) fn finish(mut self) -> io::Result<()> {
+        if !self.sink.is_binary() {
+            return self.sink.line(format_args!("\nEnd"));
+        }
+        self.sink.put(code_of("End"));
+        self.position(0);
+        self.sink.end_row()
+    }
+
+    /// Begins a binary section with so many bytes behind its keyword and the position of the next.
+    fn keyword(&mut self, name: &str, bytes: u64) {
+        self.sink.put(code_of(name));
+        self.position(self.sink.written() + if self.is_wide { 8 } else { 4 } + bytes);
+    }
+
+    fn position(&mut self, byte: u64) {
+        if self.is_wide { self.sink.put(byte) } else { self.sink.put(byte as u32) }
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The head of a `.ply` file: which elements follow, of which properties.
 
-use crate::codec::{At, Kind, Order, Place, Source, Word, shortened};
+use crate::codec::{At, Kind, Order, Place, Source, Text, shortened};
 use voronaut::Result;
 
 /// So many rows of the same properties.
@@ -77,17 +77,9 @@ const LONGEST_LINE: u64 = 1 << 16;
 const FORMATS: [(&str, Option<Order>); 3] =
     [("ascii", None), ("binary_little_endian", Some(Order::Little)), ("binary_big_endian", Some(Order::Big))];
 
-/// The first names that types had; others say the number of bits.
-const KINDS: [(&str, Kind); 8] = [
-    ("char", Kind::Signed(1)),
-    ("uchar", Kind::Unsigned(1)),
-    ("short", Kind::Signed(2)),
-    ("ushort", Kind::Unsigned(2)),
-    ("int", Kind::Signed(4)),
-    ("uint", Kind::Unsigned(4)),
-    ("float", Kind::Float(4)),
-    ("double", Kind::Float(8)),
-];
+/// The first names that types had, in the order of [`Kind::all`]: whole numbers of 64 bits had none. Later names say the number of
+/// bits.
+const KINDS: [&str; 10] = ["char", "uchar", "short", "ushort", "int", "uint", "", "", "float", "double"];
 
 fn read_format(words: &[&str], place: Place<'_>) -> Result<Option<Order>> {
     let found = FORMATS.iter().find(|(name, _)| words == [name, "1.0"]);
@@ -108,7 +100,7 @@ fn push_element(elements: &mut Vec<Element>, words: &[&str], place: Place<'_>) -
     if elements.iter().any(|element| element.name == name) {
         return Err(place.error(format!("a second element '{}'", shortened(name)), "join both elements into one"));
     }
-    let count = Word { place, text: count }.whole(At::head("the file"))?;
+    let count = Text { place, text: count }.whole(At::head("the file"))?;
     elements.push(Element { name: name.into(), count, properties: Vec::new() });
     Ok(())
 }
@@ -141,6 +133,6 @@ fn push_property(elements: &mut [Element], words: &[&str], place: Place<'_>) -> 
 
 /// The type of a name. Of those with bits, 64 are none of the format, but meshio writes them.
 fn kind(name: &str) -> Option<Kind> {
-    let sized = || Kind::all().find(|kind| kind.to_string().to_lowercase() == name);
-    KINDS.iter().find(|(known, _)| *known == name).map(|&(_, kind)| kind).or_else(sized)
+    let mut named = Kind::all().zip(KINDS);
+    named.find(|(kind, first)| name == *first || name == kind.to_string().to_lowercase()).map(|(kind, _)| kind)
 }

@@ -32,10 +32,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
     for element in &elements {
         reader.read_element(element, &mut source)?;
     }
-    if !source.is_at_end()? {
-        let what = "the file goes on behind the elements it announces";
-        return Err(source.error(what, "check the counts in its head"));
-    }
+    source.demand_end("the file goes on behind the elements it announces", "check the counts in its head")?;
     if !elements.iter().any(|element| element.name == "vertex") {
         return Err(source.error("the file has no element vertex", "save the vertices with x, y and z"));
     }
@@ -231,11 +228,7 @@ impl Reader {
 
     /// Faces may stand before the vertices: whether these exist is known at the end.
     fn finish(mut self, file: &str) -> Result<Document> {
-        let count = self.mesh.points.len();
-        if let Some((number, place)) = self.largest.beyond(count, file) {
-            let what = format!("vertex {} does not exist: the file lists {count}, from 0", number - 1);
-            return Err(place.error(what, "check the faces and edges, and that the file is whole"));
-        }
+        self.largest.check("vertex", 0, self.mesh.points.len(), file)?;
         (self.mesh.triangles, self.mesh.triangle_labels) = self.polygons.cut(&self.mesh.points);
         let triangles = self.mesh.triangles.len();
         // Fields of triangles are those of faces only where each face is one.
@@ -248,7 +241,7 @@ impl Reader {
     fn vertex(&mut self, value: f64, source: &Source<'_>, at: At<'_>) -> Result<u32> {
         if (0.0..f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0 {
             let vertex = value as u32;
-            self.largest.note(u64::from(vertex) + 1, source.place());
+            self.largest.note(vertex, source.place());
             return Ok(vertex);
         }
         Err(fault(&format!("vertex {value} does not exist"), "number vertices from 0", source, at))

@@ -2,8 +2,7 @@
 
 use super::cells::{Shapes, refuse_foreign, types};
 use super::data::{Data, Joined};
-use super::grid::{CELLS, Grid, Piece, Section};
-use super::numbers::Array;
+use super::grid::{Array, CELLS, Grid, Piece};
 use crate::codec::Place;
 use crate::{Document, Fields};
 use voronaut::mesh::Mesh;
@@ -35,22 +34,22 @@ struct Assembly<'a> {
 impl<'a> Assembly<'a> {
     fn append(&mut self, mut piece: Piece<'a>) -> Result<()> {
         let base = self.mesh.points.len();
-        if base as u64 + piece.points > u32::MAX.into() || piece.count(Section::CellData) > u32::MAX.into() {
+        if base as u64 + piece.points > u32::MAX.into() || piece.count("CellData") > u32::MAX.into() {
             let what = format!("more than {} points or cells", u32::MAX);
             return Err(self.error(&piece, &what, "give a smaller mesh"));
         }
         self.append_points(&mut piece)?;
         let mut shapes = Shapes::default();
         let mut cells = 0;
-        for (_, section) in CELLS {
+        for section in CELLS {
             self.read_cells(&mut piece, section, cells, &mut shapes)?;
             cells += piece.count(section) as u32;
         }
         let (mut of_points, mut of_cells) = (Vec::new(), Vec::new());
-        for (section, mut array) in std::mem::take(&mut piece.arrays) {
-            match section {
-                Section::PointData => of_points.push(array),
-                Section::CellData => of_cells.push(array),
+        for mut array in std::mem::take(&mut piece.arrays) {
+            match array.section {
+                "PointData" => of_points.push(array),
+                "CellData" => of_cells.push(array),
                 others if piece.count(others) == 0 => drop(array.take_reals(0)?),
                 _ => {}
             }
@@ -70,7 +69,7 @@ impl<'a> Assembly<'a> {
         if count == 0 {
             return Ok(());
         }
-        let Some(mut array) = piece.take(Section::Points, None) else {
+        let Some(mut array) = piece.take("Points", None) else {
             return Err(self.error(piece, "a piece without the array of its points", "check that the file is whole"));
         };
         if array.components.unwrap_or(3) != 3 {
@@ -87,20 +86,20 @@ impl<'a> Assembly<'a> {
     }
 
     /// Cells of a section, whose numbers begin with `first`.
-    fn read_cells(&self, piece: &mut Piece<'a>, section: Section, first: u32, to: &mut Shapes) -> Result<()> {
+    fn read_cells(&self, piece: &mut Piece<'a>, section: &str, first: u32, to: &mut Shapes) -> Result<()> {
         let count = piece.count(section);
         if count == 0 {
             return Ok(());
         }
         let (mut kinds, all) = match section {
-            Section::Cells => {
+            "Cells" => {
                 let kinds = self.take(piece, section, "types")?.take_wholes(count)?;
                 refuse_foreign(&kinds, self.file)?;
                 (kinds.into_iter().map(|kind| kind as u8).collect(), types::EMPTY)
             }
-            Section::Verts => return Ok(()),
-            Section::Lines => (Vec::new(), types::POLY_LINE),
-            Section::Strips => (Vec::new(), types::TRIANGLE_STRIP),
+            "Verts" => return Ok(()),
+            "Lines" => (Vec::new(), types::POLY_LINE),
+            "Strips" => (Vec::new(), types::TRIANGLE_STRIP),
             _ => (Vec::new(), types::POLYGON),
         };
         let mut offsets = self.take(piece, section, "offsets")?;
@@ -124,7 +123,7 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    fn read_connectivity(&self, piece: &mut Piece<'a>, section: Section, count: u64) -> Result<Vec<u32>> {
+    fn read_connectivity(&self, piece: &mut Piece<'a>, section: &str, count: u64) -> Result<Vec<u32>> {
         if count == 0 {
             return Ok(Vec::new());
         }
@@ -141,10 +140,10 @@ impl<'a> Assembly<'a> {
         numbers.into_iter().enumerate().map(vertex).collect()
     }
 
-    fn take(&self, piece: &mut Piece<'a>, section: Section, name: &str) -> Result<Array<'a>> {
+    fn take(&self, piece: &mut Piece<'a>, section: &str, name: &str) -> Result<Array<'a>> {
         let array = piece.take(section, Some(name)).filter(|array| array.components.unwrap_or(1) == 1);
         array.ok_or_else(|| {
-            let what = format!("{section:?} of a piece without an array '{name}' of one component");
+            let what = format!("{section} of a piece without an array '{name}' of one component");
             self.error(piece, &what, "check that the file is whole, and that a VTK program wrote it")
         })
     }

@@ -1,7 +1,7 @@
 //! Cells of VTK as triangles and edges.
 
 use crate::cutting::cut;
-use crate::volumes::{Solid, Volumes};
+use crate::volumes::Volumes;
 use std::collections::BTreeMap;
 use voronaut::{Error, Result};
 
@@ -64,13 +64,10 @@ impl Shapes {
             }
             (types::PIXEL, &[a, b, c, d]) => cut(points, &[a, b, d, c], &mut self.triangles),
             (types::TRIANGLE | types::POLYGON | types::QUAD, _) => cut(points, vertices, &mut self.triangles),
-            (types::TETRAHEDRON, _) => drop(self.volumes.push(Solid::Tetrahedron, vertices, 0, cell)),
             (types::VOXEL, &[a, b, c, d, e, f, g, h]) => {
-                self.volumes.push(Solid::Hexahedron, &[a, b, d, c, e, f, h, g], 0, cell);
+                self.volumes.push(&[a, b, d, c, e, f, h, g], 0, cell);
             }
-            (types::HEXAHEDRON, _) => drop(self.volumes.push(Solid::Hexahedron, vertices, 0, cell)),
-            (types::WEDGE, _) => drop(self.volumes.push(Solid::Prism, vertices, 0, cell)),
-            (types::PYRAMID, _) => drop(self.volumes.push(Solid::Pyramid, vertices, 0, cell)),
+            (types::TETRAHEDRON.., _) => drop(self.volumes.push(vertices, 0, cell)),
             _ => {}
         }
         self.of_edges.resize(self.edges.len(), cell);

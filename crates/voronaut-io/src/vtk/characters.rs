@@ -1,12 +1,12 @@
 //! Text for the parser of XML: UTF-8 as it is, other bytes as characters of Latin-1.
 
+use crate::codec::Counted;
 use std::io::{self, BufRead, Read};
 
 /// A file whose bytes that are no UTF-8 are taken for Latin-1: VTK writes the names of arrays as it got them, whatever their
 /// encoding. Never reads further than it is asked to, for raw bytes may follow.
 pub(super) struct Characters<R> {
-    source: R,
-    position: u64,
+    source: Counted<R>,
     /// So many bytes that come next are known to be ASCII: they are looked at once, however few are taken at a time.
     ascii: usize,
     /// The characters that are not ASCII and come next, in UTF-8.
@@ -17,16 +17,16 @@ pub(super) struct Characters<R> {
 
 impl<R: BufRead> Characters<R> {
     pub(super) fn new(source: R) -> Self {
-        Self { source, position: 0, ascii: 0, ahead: Vec::new(), taken: 0 }
+        Self { source: Counted::new(source), ascii: 0, ahead: Vec::new(), taken: 0 }
     }
 
     /// How many bytes of the file were read.
     pub(super) fn position(&self) -> u64 {
-        self.position
+        self.source.position()
     }
 
     /// The file behind what was read.
-    pub(super) fn source(&mut self) -> &mut R {
+    pub(super) fn source(&mut self) -> &mut Counted<R> {
         &mut self.source
     }
 
@@ -36,7 +36,6 @@ impl<R: BufRead> Characters<R> {
 
     fn take_byte(&mut self, byte: u8, into: &mut Vec<u8>) {
         self.source.consume(1);
-        self.position += 1;
         into.push(byte);
     }
 
@@ -81,7 +80,6 @@ impl<R: BufRead> BufRead for Characters<R> {
         } else {
             self.source.consume(count);
             self.ascii -= count;
-            self.position += count as u64;
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Data on points and cells: labels, marks and fields.
 
-use super::numbers::Array;
+use super::grid::Array;
 use crate::Field;
 use crate::codec::Kind;
 use std::collections::{HashMap, HashSet};

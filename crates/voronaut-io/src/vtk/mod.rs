@@ -16,14 +16,12 @@
 //!   they stay nine numbers. Six numbers stay six: VTK's order of a symmetric tensor, XX YY ZZ XY YZ XZ, is not Medit's, and nothing
 //!   tells whether they are one.
 
-mod appended;
 mod assemble;
 mod base64;
 mod cells;
 mod characters;
 mod data;
 mod grid;
-mod numbers;
 mod stored;
 mod tags;
 #[cfg(test)]
@@ -66,7 +64,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
 /// # Errors
 /// What `out` says.
 pub fn write_vtu(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()> {
-    write::grid(mesh, fields, write::First::Triangles).write_unstructured(out)
+    write::grid(mesh, fields, [0, mesh.triangles.len()]).write_unstructured(out)
 }
 
 /// As [`write_vtu`], as a `.vtp` file: edges as lines, then triangles as polygons.
@@ -74,5 +72,5 @@ pub fn write_vtu(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Resul
 /// # Errors
 /// What `out` says.
 pub fn write_vtp(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()> {
-    write::grid(mesh, fields, write::First::Lines).write_poly_data(out)
+    write::grid(mesh, fields, [mesh.edges.len(), 0]).write_poly_data(out)
 }

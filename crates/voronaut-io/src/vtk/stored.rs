@@ -17,18 +17,10 @@ pub(super) struct Layout {
 pub(super) enum Stored {
     Text(String),
     Plain(Vec<u8>),
-    Blocks(Blocks),
-}
-
-/// Compressed by zlib, in blocks that are of one size but for the last.
-pub(super) struct Blocks {
-    /// In bytes, uncompressed.
-    size: u64,
-    /// Of the last block, uncompressed; 0 where it is as large as the others.
-    last: u64,
-    /// Of each block, compressed.
-    lengths: Vec<u64>,
-    data: Vec<u8>,
+    /// Blocks that are compressed by zlib, one behind the other: how many bytes each has compressed and uncompressed.
+    Blocks(Vec<[u64; 2]>, Vec<u8>),
+    /// In the section `AppendedData`, which is not yet read, from this byte on.
+    Appended(u64),
 }
 
 impl Stored {
@@ -44,14 +36,15 @@ impl Stored {
         if length == 0 {
             return Ok(Self::Plain(Vec::new()));
         }
+        // The last block is as large as the others where its size is 0.
         let (block, last) = (size(source, layout)?, size(source, layout)?);
-        let mut lengths = Vec::new();
-        for _ in 0..length {
-            lengths.push(size(source, layout)?);
+        let (mut sizes, mut all) = (Vec::new(), 0_u64);
+        for i in 1..=length {
+            let compressed = size(source, layout)?;
+            sizes.push([compressed, if i == length && last != 0 { last } else { block }]);
+            all = all.checked_add(compressed).ok_or(ErrorKind::UnexpectedEof)?;
         }
-        let all = lengths.iter().try_fold(0_u64, |sum, &length| sum.checked_add(length));
-        let data = exactly(source, all.ok_or(ErrorKind::UnexpectedEof)?)?;
-        Ok(Self::Blocks(Blocks { size: block, last, lengths, data }))
+        Ok(Self::Blocks(sizes, exactly(source, all)?))
     }
 
     /// The bytes of a binary array, of which so many are `needed`: no more are decompressed.
@@ -60,48 +53,35 @@ impl Stored {
     /// What is wrong: other sizes, or what zlib did not write.
     pub(super) fn bytes(self, needed: u64) -> Result<Vec<u8>, String> {
         let held = match &self {
-            Self::Text(text) => text.len() as u128,
             Self::Plain(bytes) => bytes.len() as u128,
-            Self::Blocks(blocks) => blocks.total(),
+            Self::Blocks(sizes, _) => sizes.iter().map(|[_, size]| u128::from(*size)).sum(),
+            Self::Text(_) | Self::Appended(_) => 0,
         };
         if held != u128::from(needed) {
             return Err(format!("holds {held} bytes, where {needed} are needed"));
         }
         match self {
-            Self::Text(text) => Ok(text.into_bytes()),
             Self::Plain(bytes) => Ok(bytes),
-            Self::Blocks(blocks) => blocks.decompress(),
+            Self::Blocks(sizes, data) => decompressed(&sizes, &data),
+            Self::Text(_) | Self::Appended(_) => Ok(Vec::new()),
         }
     }
 }
 
-impl Blocks {
-    /// Bytes uncompressed.
-    fn total(&self) -> u128 {
-        let before = self.lengths.len() as u128 - 1;
-        before * u128::from(self.size) + u128::from(self.size_of(self.lengths.len() - 1))
-    }
-
-    fn size_of(&self, block: usize) -> u64 {
-        if block + 1 == self.lengths.len() && self.last != 0 { self.last } else { self.size }
-    }
-
-    fn decompress(self) -> Result<Vec<u8>, String> {
-        let (mut bytes, mut rest) = (Vec::new(), self.data.as_slice());
-        for (i, &length) in self.lengths.iter().enumerate() {
-            let (block, size) = (format!("block {} of {}", i + 1, self.lengths.len()), self.size_of(i));
-            let (compressed, others) = rest.split_at(length as usize);
-            rest = others;
-            let before = bytes.len() as u64;
-            // One byte more shows that there are too many.
-            let read = ZlibDecoder::new(compressed).take(size.saturating_add(1)).read_to_end(&mut bytes);
-            read.map_err(|error| format!("does not decompress in {block}: {error}"))?;
-            if bytes.len() as u64 - before != size {
-                return Err(format!("does not decompress to {size} bytes in {block}"));
-            }
+fn decompressed(sizes: &[[u64; 2]], mut data: &[u8]) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    for (i, &[length, size]) in (1..).zip(sizes) {
+        let (block, before) = (format!("block {i} of {}", sizes.len()), bytes.len() as u64);
+        let (compressed, others) = data.split_at(length as usize);
+        data = others;
+        // One byte more shows that there are too many.
+        let read = ZlibDecoder::new(compressed).take(size.saturating_add(1)).read_to_end(&mut bytes);
+        read.map_err(|error| format!("does not decompress in {block}: {error}"))?;
+        if bytes.len() as u64 - before != size {
+            return Err(format!("does not decompress to {size} bytes in {block}"));
         }
-        Ok(bytes)
     }
+    Ok(bytes)
 }
 
 /// A size of the head of an array.

@@ -318,7 +318,7 @@ fn appended_arrays_have_to_be_there() {
     assert!(found.contains("array 'types' begins behind the end of the file"), "{found}");
     let found = message("offset=\"13\"", "offset=\"12\"");
     assert!(found.contains("array 'offsets' begins in another array"), "{found}");
-    assert!(message("\"raw\"", "\"hex\"").contains("AppendedData with the encoding 'hex'"));
+    assert!(message("\"raw\"", "\"hex\"").contains("an unknown encoding 'hex'"));
     let found = message("\"raw\"", "\"base64\"");
     assert!(found.contains("array 'types' holds '\\u{5}' at a place where base64 does not have it"), "{found}");
     assert!(message("\n_", "\nx").contains("AppendedData without the '_' that its arrays begin with"));

@@ -144,15 +144,8 @@ fn connections<'a>(cells: impl Iterator<Item = &'a [u32]> + Clone + 'a) -> Vec<A
     vec![Array::new("connectivity", 1, vertices), Array::new("offsets", 1, ends)]
 }
 
-/// Which cells come first.
-#[derive(Clone, Copy)]
-pub(super) enum First {
-    Triangles,
-    Lines,
-}
-
-/// A mesh with all it holds, and fields; its edges as lines.
-pub(super) fn grid<'a>(mesh: &'a Mesh, fields: &'a Fields, first: First) -> Grid<'a> {
+/// A mesh with all it holds, and fields; its edges as lines. `first`: the cells that the first triangle and the first edge are.
+pub(super) fn grid<'a>(mesh: &'a Mesh, fields: &'a Fields, first: [usize; 2]) -> Grid<'a> {
     let lines = mesh.edges.iter().map(<[u32; 2]>::as_slice).collect();
     let is_planar = mesh.is_planar();
     let point_data = point_data(mesh, &fields.vertices, is_planar);
@@ -169,13 +162,9 @@ fn point_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool) -> Vec<A
     std::iter::once(label).chain(mark_arrays(marked, count)).chain(fields).collect()
 }
 
-fn cell_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool, first: First) -> Vec<Array<'a>> {
-    let (triangles, edges) = (mesh.triangles.len(), mesh.edges.len());
-    let (first_triangle, first_edge) = match first {
-        First::Triangles => (0, triangles),
-        First::Lines => (edges, 0),
-    };
-    let count = triangles + edges;
+fn cell_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool, first: [usize; 2]) -> Vec<Array<'a>> {
+    let ([first_triangle, first_edge], triangles) = (first, mesh.triangles.len());
+    let count = triangles + mesh.edges.len();
     // The triangle that each cell is, or else none.
     let triangles = (0..count).map(move |cell| cell.checked_sub(first_triangle).filter(|&i| i < triangles));
     let label = |labels: &[i32], i: usize| labels.get(i).copied().unwrap_or(0);
