@@ -1,5 +1,6 @@
 //! Points, tensors and exact predicates: the vocabulary of everything below.
 
+mod contact;
 mod intersection;
 mod jet;
 mod joint;
@@ -11,6 +12,7 @@ mod tensor;
 mod tensor3;
 mod tree;
 
+pub(crate) use contact::{Corners, contact, is_flat};
 pub use jet::Jet3;
 pub(crate) use point::Readable;
 pub use point::{Aabb, Point, Vector};

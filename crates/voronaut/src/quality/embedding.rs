@@ -7,14 +7,14 @@
 //!    point is the winding number of the whole boundary around it, and it changes only at the boundary.
 
 use super::edges::Edges;
-use super::faults::Fault;
-use super::faults::{Piece, Segments};
+use super::faults::{Fault, Piece, Segments};
+use super::self_intersections::meet;
 use crate::geometry::{Aabb, Orientation, Point, orientation};
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 
 /// The faults of the first of the three conditions that does not hold; empty if the mesh is embedded.
-/// Needs finite positions, manifold edges and counter-clockwise triangles.
+/// Needs finite positions, no two vertices at one, manifold edges and counter-clockwise triangles.
 pub(super) fn overlaps(mesh: &Mesh, edges: &Edges) -> Vec<Fault> {
     let mut boundary: Vec<[u32; 2]> = edges.boundary().into_iter().map(|half_edge| edges.ends(half_edge)).collect();
     boundary.sort_unstable();
@@ -81,45 +81,13 @@ fn touching_edges(mesh: &Mesh, boundary: &[[u32; 2]], segments: &Segments) -> Ve
     let touched = |(i, &edge): (usize, &[u32; 2])| {
         let bounds = Aabb::of(edge.map(|v| mesh.point(v)))?;
         let others = segments.meeting(bounds).map(|piece| piece.id as usize).filter(|&other| other > i);
-        let other = others.filter(|&other| touch(mesh, edge, boundary[other])).min()?;
+        let ends = |edge: [u32; 2]| edge.map(|v| mesh.point(v));
+        let other = others.filter(|&other| meet(ends(edge), ends(boundary[other]))).min()?;
         let [[a, b], [c, d]] = [edge, boundary[other]].map(|edge| edge.map(|v| v + 1));
         let what = format!("boundary edges {a} {b} and {c} {d} cross or touch");
         Some(Fault { what, place: mesh.point(edge[0]).midpoint(mesh.point(edge[1])).to_string() })
     };
     boundary.par_iter().enumerate().filter_map(touched).collect()
-}
-
-/// Whether two edges whose bounding boxes meet have a point in common that is no shared vertex.
-fn touch(mesh: &Mesh, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> bool {
-    let p = |v| mesh.point(v);
-    if let Some((shared, [u, w])) = shared_vertex([a, b], [c, d]) {
-        let [shared, u, w] = [shared, u, w].map(p);
-        let same_side = u.x > shared.x && w.x > shared.x
-            || u.x < shared.x && w.x < shared.x
-            || u.y > shared.y && w.y > shared.y
-            || u.y < shared.y && w.y < shared.y;
-        return same_side && orientation(shared, u, w) == Orientation::Collinear;
-    }
-    let apart = |a: Point, b: Point, c: Point, d: Point| {
-        let (left, right) = (orientation(a, b, c), orientation(a, b, d));
-        left == right && left != Orientation::Collinear
-    };
-    !apart(p(a), p(b), p(c), p(d)) && !apart(p(c), p(d), p(a), p(b))
-}
-
-/// The vertex that two edges share, and the other end of each.
-fn shared_vertex([a, b]: [u32; 2], [c, d]: [u32; 2]) -> Option<(u32, [u32; 2])> {
-    if a == c {
-        Some((a, [b, d]))
-    } else if a == d {
-        Some((a, [b, c]))
-    } else if b == c {
-        Some((b, [a, d]))
-    } else if b == d {
-        Some((b, [a, c]))
-    } else {
-        None
-    }
 }
 
 /// Connected pieces of the boundary that lie on triangles which are not theirs. Just right of a piece's rightmost

@@ -8,12 +8,11 @@
 //!
 //! Straight segments by place.
 
-use super::contact::is_flat;
 use super::edges::Edges;
 use super::meetings::Meetings;
 use super::self_intersections::{Pair, pairs};
 use super::validity::split_vertices;
-use crate::geometry::{Aabb, BoxTree, Point, Point3};
+use crate::geometry::{Aabb, BoxTree, Point, Point3, is_flat};
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use std::fmt;

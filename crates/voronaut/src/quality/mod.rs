@@ -1,6 +1,5 @@
 //! What a mesh is worth: valid or not, good or not in a metric, close or not to its domain.
 
-mod contact;
 mod edges;
 mod embedding;
 mod faults;

@@ -2,10 +2,9 @@
 //!
 //! Lines in the plane that cross, decided exactly.
 
-use super::contact::{Corners, contact};
 use super::edges::Edges;
 use super::faults::{Fault, Piece, Segments};
-use crate::geometry::{Aabb, Aabb3, Bounds, BoxTree, Orientation, Point, Point3, orientation};
+use crate::geometry::{Aabb, Aabb3, Bounds, BoxTree, Corners, Orientation, Point, Point3, contact, orientation};
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 
@@ -103,11 +102,15 @@ pub fn crossing_edges(mesh: &Mesh) -> Vec<[[u32; 2]; 2]> {
     pairs.filter(|[e, f]| !e.iter().any(|v| f.contains(v))).collect()
 }
 
-/// Whether two segments whose bounding boxes meet have a point in common that is not an end of both.
-fn meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
+/// Whether two segments whose bounding boxes meet have a point in common that is not an end of both, exactly.
+pub(super) fn meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     let shared = [(a, b, c, d), (a, b, d, c), (b, a, c, d), (b, a, d, c)].into_iter().find(|s| s.0 == s.2);
     if let Some((at, p, _, q)) = shared {
-        return orientation(at, p, q) == Orientation::Collinear && (p - at).dot(q - at) > 0.0;
+        let same_side = p.x > at.x && q.x > at.x
+            || p.x < at.x && q.x < at.x
+            || p.y > at.y && q.y > at.y
+            || p.y < at.y && q.y < at.y;
+        return same_side && orientation(at, p, q) == Orientation::Collinear;
     }
     let apart = |a: Point, b: Point, c: Point, d: Point| {
         let (left, right) = (orientation(a, b, c), orientation(a, b, d));

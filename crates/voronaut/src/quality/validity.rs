@@ -1,15 +1,12 @@
 //! Whether a mesh is a mesh: by counting and by exact predicates, never by a tolerance.
 
-use super::contact::is_flat;
 use super::edges::{self, Edges, NONE};
 use super::embedding;
-use super::faults::Fault;
-use super::faults::middle;
-use super::faults::{duplicates, is_finite, longest};
+use super::faults::{Fault, duplicates, is_finite, longest, middle};
 use super::meetings::{Excused, Meetings};
 use super::self_intersections::pairs;
 use crate::error::{Error, Result};
-use crate::geometry::{Orientation, Point, orientation};
+use crate::geometry::{Orientation, Point, is_flat, orientation};
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 

@@ -1,12 +1,9 @@
 //! Moves of vertices shortened until no triangle comes to harm.
-//!
-//! Triangles in space that cross each other.
 
 use super::samples::Sheet;
-use crate::geometry::{Aabb3, Bounds, BoxTree, Point3, Vector3};
+use crate::geometry::{Aabb3, Bounds, BoxTree, Corners, Point3, Vector3, contact};
 use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, VertexId};
-use robust::{Coord3D, orient3d};
 
 /// What a mesh was like before anything moved, and the surface below it.
 pub(super) struct Guard<'a> {
@@ -111,9 +108,8 @@ fn shape(surface: &Sheet, mesh: &Sheet, f: FaceId, below: FaceId) -> Shape {
     Shape { quality, facing: own.dot(other), below }
 }
 
-/// All pairs of triangles of which an edge of one passes through the inside of the other, by exact predicates, in order, the
-/// smaller number first; only pairs of which one at least is `asked` for. What lies in one plane, or only touches, does not
-/// cross.
+/// All pairs of triangles that meet, exactly ([`contact`]), in order, the smaller number first; only pairs of which one at least is
+/// `asked` for.
 pub(super) fn crossings(sheet: &Sheet, asked: impl Fn(FaceId) -> bool + Sync) -> Vec<[FaceId; 2]> {
     let bounds = |f: FaceId| -> Bounds<3> { Aabb3::of(sheet.triangle(f)).expect("three corners").into() };
     let faces: Vec<FaceId> = sheet.topology.faces().collect();
@@ -122,40 +118,17 @@ pub(super) fn crossings(sheet: &Sheet, asked: impl Fn(FaceId) -> bool + Sync) ->
         let near = tree.meeting(bounds(f)).copied();
         // Of two that are asked for, the smaller one looks.
         let others = near.filter(|&g| if asked(g) { f < g } else { f != g });
-        others.filter(|&g| cross(sheet, f, g)).map(|g| [f.min(g), f.max(g)]).collect::<Vec<_>>()
+        let own = corners(sheet, f);
+        let met = others.filter(|&g| contact(&own, &corners(sheet, g)).is_some());
+        met.map(|g| [f.min(g), f.max(g)]).collect::<Vec<_>>()
     };
     let mut all: Vec<_> = faces.par_iter().filter(|&&f| asked(f)).flat_map_iter(of_one).collect();
     all.sort_unstable();
     all
 }
 
-fn cross(sheet: &Sheet, f: FaceId, g: FaceId) -> bool {
-    pierces(sheet, f, g) || pierces(sheet, g, f)
-}
-
-/// Whether an edge of f passes through the inside of g; edges with an end in common with g do not.
-fn pierces(sheet: &Sheet, f: FaceId, g: FaceId) -> bool {
-    let taken = sheet.topology.corners(g);
-    let through = sheet.triangle(g);
-    f.half_edges().into_iter().any(|h| {
-        let ends = [sheet.topology.origin(h), sheet.topology.target(h)];
-        !ends.iter().any(|v| taken.contains(v)) && passes(ends.map(|v| sheet.positions[v.index()]), through)
-    })
-}
-
-fn passes([p, q]: [Point3; 2], [a, b, c]: [Point3; 3]) -> bool {
-    if side(a, b, c, p) * side(a, b, c, q) >= 0.0 {
-        return false;
-    }
-    let turns = [[a, b], [b, c], [c, a]].map(|[u, v]| side(p, q, u, v));
-    turns.iter().all(|&t| t > 0.0) || turns.iter().all(|&t| t < 0.0)
-}
-
-/// 1 or -1 by the side of the plane of a, b and c on which d is, 0 if on it: exact.
-fn side(a: Point3, b: Point3, c: Point3, d: Point3) -> f64 {
-    let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D { x: p.x, y: p.y, z: p.z });
-    let value = orient3d(a, b, c, d);
-    if value == 0.0 { 0.0 } else { value.signum() }
+fn corners(sheet: &Sheet, f: FaceId) -> Corners {
+    Corners { vertices: sheet.topology.corners(f).map(|v| v.0), points: sheet.triangle(f) }
 }
 
 #[cfg(test)]
@@ -207,9 +180,9 @@ mod tests {
         let with = |other: [[f64; 3]; 3]| count(&[ground, other].concat(), &[[0, 1, 2], [3, 4, 5]]);
         assert_eq!(with([[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), 1, "an edge through it");
         assert_eq!(with([[1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 0.5]]), 1, "and its edge through the other");
-        assert_eq!(with([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), 0, "touches it");
+        assert_eq!(with([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), 1, "touches it");
         assert_eq!(with([[1.0, 1.0, 1e-300], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]]), 0, "is above it");
-        assert_eq!(with([[1.0, 1.0, 0.0], [5.0, 1.0, 0.0], [5.0, 5.0, 0.0]]), 0, "lies in its plane");
+        assert_eq!(with([[1.0, 1.0, 0.0], [5.0, 1.0, 0.0], [5.0, 5.0, 0.0]]), 1, "lies on it in its plane");
         let fan = |other: [f64; 3], another: [f64; 3]| {
             count(&[&ground[..], &[other, another]].concat(), &[[0, 1, 2], [0, 3, 4]])
         };

@@ -1,17 +1,17 @@
 //! Whether two triangles in space meet where they should not, by exact predicates.
 
-use crate::geometry::{Orientation, Point, Point3, orientation, signed_area, signed_volume};
+use super::{Orientation, Point, Point3, orientation, signed_area, signed_volume};
 
 /// A triangle that is not flat, by the numbers and the positions of its corners.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Corners {
-    pub(super) vertices: [u32; 3],
-    pub(super) points: [Point3; 3],
+pub(crate) struct Corners {
+    pub(crate) vertices: [u32; 3],
+    pub(crate) points: [Point3; 3],
 }
 
 /// A point (rounded) that two triangles, as closed sets, have in common beyond the vertex or the edge that they share by
 /// its numbers; `None` where there is none. Whether there is one is exact. Triangles with the same three vertices meet.
-pub(super) fn contact(t: &Corners, u: &Corners) -> Option<Point3> {
+pub(crate) fn contact(t: &Corners, u: &Corners) -> Option<Point3> {
     let shared = |a: &Corners, b: &Corners| a.vertices.map(|v| b.vertices.contains(&v));
     let (of_t, of_u) = (shared(t, u), shared(u, t));
     match of_t.iter().filter(|&&is_shared| is_shared).count() {
@@ -23,7 +23,7 @@ pub(super) fn contact(t: &Corners, u: &Corners) -> Option<Point3> {
 }
 
 /// Whether three points lie on one line, exactly: their shadows on all three coordinate planes do.
-pub(super) fn is_flat(triangle: [Point3; 3]) -> bool {
+pub(crate) fn is_flat(triangle: [Point3; 3]) -> bool {
     shadow(triangle).is_none()
 }
 
