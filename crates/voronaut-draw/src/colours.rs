@@ -108,9 +108,9 @@ pub(super) fn fill(region: usize, level: f64) -> String {
     oklch(0.98 - 0.28 * level, 0.012 + 0.098 * level, hue)
 }
 
-/// A fill for quality: 1 (best) is almost white, 0 a warm red.
-pub(super) fn quality_fill(quality: f64) -> String {
-    let bad = (1.0 - quality).clamp(0.0, 1.0);
+/// A fill for how much protection there is: 1 (much) is almost white, 0 a warm red.
+pub(super) fn protection_fill(level: f64) -> String {
+    let bad = (1.0 - level).clamp(0.0, 1.0);
     oklch(0.985 - 0.335 * bad, 0.006 + 0.154 * bad, 85.0 - 55.0 * bad)
 }
 

@@ -5,13 +5,12 @@ mod colours;
 mod ellipses;
 mod frame;
 mod histogram;
-mod image;
 mod letters;
 mod palette;
 #[cfg(feature = "png")]
 mod png;
-mod protection;
 mod scene;
+mod shades;
 mod simplify;
 mod strokes;
 mod svg;
@@ -22,10 +21,10 @@ mod unmet;
 pub use cells::Layers;
 pub use histogram::histograms_svg;
 #[cfg(feature = "png")]
-pub(crate) use png::render_png;
-pub use protection::Protection;
-pub use scene::{Fill, Scene, Stroke, View, draw_surface};
-pub use svg::{Picture, Shade, svg, svg_with};
+pub(crate) use png::{data_url, render_png};
+pub use scene::{Scene, Stroke, View, draw_surface};
+pub use shades::Protection;
+pub use svg::{Picture, svg_with};
 
 use std::path::Path;
 use voronaut::{Error, Result};
@@ -58,7 +57,7 @@ impl PictureFormat {
     }
 }
 
-/// The bytes of a picture made by [`svg`] or [`draw_surface`] in the format that a file name ends in.
+/// The bytes of a picture made by [`svg_with`] or [`draw_surface`] in the format that a file name ends in.
 ///
 /// # Errors
 /// [`Error::Unsupported`] for other endings, [`Error::Limit`] for too many pixels.
@@ -70,6 +69,13 @@ pub fn picture_bytes(svg: &str, path: &Path) -> Result<Vec<u8>> {
         #[cfg(not(feature = "png"))]
         PictureFormat::Png => unreachable!("from_path knows no png without the feature"),
     }
+}
+
+/// Refuses images of pixels: the library was built without PNG.
+#[cfg(not(feature = "png"))]
+pub(crate) fn data_url(_: &[[u8; 3]], _: u32) -> Result<String> {
+    let what = "a picture of a surface, for this build knows no PNG".into();
+    Err(Error::Unsupported { what, help: "build with the feature png".into() })
 }
 
 fn ending(path: &Path) -> String {

@@ -59,11 +59,9 @@ pub(super) fn legend(svg: &mut String, unmet: &Unmet, frame: &Frame) {
         for (row, is_short) in [(2, true), (3, false)] {
             let [x, y] = place(column, row);
             let swatch = [x, x + 12.0 * unit].map(|x| frame.quanta_at([x, y - 2.0 * unit]));
-            let (ink, thick) = (colours::cause(cause as usize, is_short), frame.quanta(2.4 * unit));
             let mut line = PathData::default();
             line.polyline(&swatch, false);
-            let _ =
-                writeln!(svg, r#"<path fill="none" stroke="{ink}" stroke-width="{thick:.1}" d="{}"/>"#, line.text());
+            line.draw(svg, &frame.paint(["none", &colours::cause(cause as usize, is_short)], 2.4 * unit));
             let (count, what) = if is_short { (found.short, "too short") } else { (found.long, "too long") };
             let says = format!("{:.1} % {what}", 100.0 * share_of(count, found));
             letters::write(&mut words, &says, [x + 16.0 * unit, y], unit, frame);
@@ -71,7 +69,7 @@ pub(super) fn legend(svg: &mut String, unmet: &Unmet, frame: &Frame) {
     }
     let (ink, thick) = (colours::TEXT, frame.quanta(0.75 * unit));
     let style = r#"fill="none" stroke-linecap="round" stroke-linejoin="round""#;
-    let _ = writeln!(svg, r#"<path {style} stroke="{ink}" stroke-width="{thick:.1}" d="{}"/>"#, words.text());
+    words.draw(svg, &format!(r#"{style} stroke="{ink}" stroke-width="{thick:.1}""#));
 }
 
 /// A count of a cause's edges as a share of all edges of the mesh.

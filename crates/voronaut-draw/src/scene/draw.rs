@@ -2,12 +2,10 @@
 
 use super::super::frame::PathData;
 use super::super::simplify::simplify;
-use super::depth::DepthMap;
 use super::light::Bodies;
 use super::view::{Camera, View};
 use super::visible::Screen;
-use super::{Scene, Stroke};
-use std::fmt::Write;
+use super::{Pen, Scene, Stroke};
 use voronaut::Result;
 
 /// Lines are straightened by at most so many pixels.
@@ -32,18 +30,12 @@ const THINNEST: f64 = 0.25;
 /// pixels, [`Error::Unsupported`](voronaut::Error::Unsupported) if the library was built without PNG.
 pub fn draw_surface(scene: &Scene, view: &View) -> Result<String> {
     let camera = Camera::new(scene, view)?;
-    let size = camera.frame.size();
-    let mut map = DepthMap::new(size);
-    let bodies = Bodies::new(scene, &camera, &mut map);
-    let [width, height] = size;
-    let [w, h] = size.map(|side| camera.frame.quanta(side).round());
-    let image = super::super::image::data_url(&bodies.pixels(&map), width as u32)?;
-    let mut text = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {w} {h}\">\n\
-         <image width=\"{w}\" height=\"{h}\" href=\"{image}\"/>\n\
-         <g fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n"
-    );
-    let screen = Screen { map: &map, bodies: &bodies, touch: TOUCH * width.max(height) };
+    let [width, height] = camera.frame.size();
+    let bodies = Bodies::new(scene, &camera);
+    let image = crate::data_url(&bodies.pixels(), width as u32)?;
+    let mut text = camera.frame.paper(0.0, "image", &format!("href=\"{image}\""));
+    text.push_str("<g fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n");
+    let screen = Screen { bodies: &bodies, touch: TOUCH * width.max(height) };
     for stroke in Stroke::ALL {
         lines(&mut text, scene, stroke, &screen, &camera);
     }
@@ -54,14 +46,14 @@ pub fn draw_surface(scene: &Scene, view: &View) -> Result<String> {
 /// The lines with a stroke: one path of those that lie where the surface faces the eye, others for those where it does
 /// less and less, which are thinner.
 fn lines(text: &mut String, scene: &Scene, stroke: Stroke, screen: &Screen, camera: &Camera) {
-    let frame = &camera.frame;
+    let (frame, pen) = (&camera.frame, stroke.pen());
     let of_stroke = scene.lines.iter().filter(|line| line.stroke == stroke);
     let placed: Vec<Vec<[f64; 3]>> =
         of_stroke.filter_map(|line| line.points.iter().map(|&p| camera.place(p)).collect()).collect();
     let mut paths: [PathData; THINNER.len()] = Default::default();
     for part in placed.iter().flat_map(|line| screen.visible(line)) {
         let class =
-            if stroke.is_thinned() { THINNER.iter().filter(|&&share| FULL * part.facing < share).count() } else { 0 };
+            if pen.is_thinned { THINNER.iter().filter(|&&share| FULL * part.facing < share).count() } else { 0 };
         let path = &mut paths[class.min(THINNER.len() - 1)];
         let points: Vec<[i64; 2]> = part.points.iter().map(|&p| frame.quanta_at(p)).collect();
         match points[..] {
@@ -69,21 +61,19 @@ fn lines(text: &mut String, scene: &Scene, stroke: Stroke, screen: &Screen, came
             _ => path.polyline(&simplify(&points, &[], false, frame.quanta(TOLERANCE)), false),
         }
     }
-    let width = frame.quanta(width(stroke, &placed));
+    let width = frame.quanta(width(&pen, &placed));
     for (path, share) in paths.iter().zip(THINNER).filter(|(path, _)| !path.text().is_empty()) {
-        let (ink, width) = (stroke.ink(), width * share);
-        let _ = writeln!(text, r#"<path stroke="{ink}" stroke-width="{width:.1}" d="{}"/>"#, path.text());
+        path.draw(text, &format!(r#"stroke="{}" stroke-width="{:.1}""#, pen.ink, width * share));
     }
 }
 
 /// The width of lines in pixels: the finer the mesh they make, the thinner.
-fn width(stroke: Stroke, lines: &[Vec<[f64; 3]>]) -> f64 {
-    let [share, most] = stroke.width();
+fn width(pen: &Pen, lines: &[Vec<[f64; 3]>]) -> f64 {
     let length = |line: &Vec<[f64; 3]>| line.windows(2).map(|ends| distance(ends[0], ends[1])).sum::<f64>();
     let mut lengths: Vec<f64> = lines.iter().map(length).collect();
     lengths.sort_unstable_by(f64::total_cmp);
     let typical = lengths.get(lengths.len() / 2).copied().unwrap_or(0.0);
-    if share > 0.0 { (share * typical).clamp(THINNEST, most) } else { most }
+    if pen.share > 0.0 { (pen.share * typical).clamp(THINNEST, pen.widest) } else { pen.widest }
 }
 
 fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {

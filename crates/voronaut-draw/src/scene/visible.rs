@@ -1,6 +1,6 @@
 //! What of a line is in front.
 
-use super::depth::{DepthMap, SAMPLES};
+use super::depth::SAMPLES;
 use super::light::Bodies;
 
 /// Lines are looked at every so many pixels.
@@ -29,7 +29,6 @@ struct Sample {
 
 /// The bodies that hide lines.
 pub(super) struct Screen<'a> {
-    pub(super) map: &'a DepthMap,
     pub(super) bodies: &'a Bodies,
     /// How far behind a surface a line may be, in pixels, and still be on it.
     pub(super) touch: f64,
@@ -71,7 +70,7 @@ impl Screen<'_> {
 
     fn sample(&self, [x, y, depth]: [f64; 3], along: f64) -> Sample {
         let [column, row] = [x, y].map(|pixels| pixels * SAMPLES as f64);
-        let nearest = self.map.at(column, row);
+        let nearest = self.bodies.map.at(column, row);
         let before =
             nearest.map_or(f64::NEG_INFINITY, |id| self.bodies.facet(id).depth(column, row) / SAMPLES as f64 - depth);
         let facing = nearest.filter(|_| before.abs() <= self.touch).map(|id| self.bodies.facing(id));
