@@ -3,23 +3,40 @@
 use crate::dual::certify;
 use crate::flags::flagged;
 use crate::options::Run;
-use std::fmt::Write as _;
+use serde_json::Value;
 use std::io::Write as _;
+use std::path::Path;
 use voronaut::quality::{Cause, CauseFigures, Deviation, Farthest, Position, Spot, SurfaceFidelity};
 use voronaut_io::{Report, Strayed};
 
+/// How wide the names of figures are.
+const WIDTH: usize = 12;
+
+/// A name and a text for each line.
+type Lines = Vec<(String, String)>;
+
 /// Prints the figures of a report unless told to be quiet, and its notes on stderr.
-pub(crate) fn print(title: &str, report: &Report, run: &Run) {
-    if run.quiet {
-        return;
+pub(crate) fn print(title: &Path, report: &Report, run: &Run) {
+    if !run.quiet {
+        say(&title.display().to_string(), WIDTH, summary(report, run.verbose));
+        notes(&report.notes, false);
     }
+}
+
+/// Prints a title, and lines of a name, so wide, and a text.
+pub(crate) fn say(title: &str, width: usize, lines: Lines) {
+    let lines = lines.into_iter().map(|(name, text)| format!("  {name:<width$} {text}\n"));
+    out(&format!("{title}\n{}", lines.collect::<String>()));
+}
+
+/// Prints a text.
+pub(crate) fn out(text: &str) {
     // Whoever closed the other end of a pipe has seen enough.
-    let _ = std::io::stdout().write_all(summary(title, report, run.verbose).as_bytes());
-    notes(&report.notes, run.quiet);
+    let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
 /// Says on stderr what is worth knowing, unless told to be quiet.
-pub(crate) fn notes(notes: &[String], is_quiet: bool) {
+pub(crate) fn notes<'a>(notes: impl IntoIterator<Item = &'a String>, is_quiet: bool) {
     if !is_quiet {
         for note in notes {
             eprintln!("note: {}", flagged(note));
@@ -28,23 +45,20 @@ pub(crate) fn notes(notes: &[String], is_quiet: bool) {
 }
 
 /// Prints what a run of `distance` has found, from its report, unless told to be quiet.
-pub(crate) fn print_distance(title: &str, told: &serde_json::Value, run: &Run) {
+pub(crate) fn print_distance(title: &Path, told: &Value, run: &Run) {
     if run.quiet {
         return;
     }
-    let mut text = format!("{title}\n");
-    let mut line = |name: &str, value: &serde_json::Value| {
-        if !value.is_null() {
-            let _ = writeln!(text, "  {name:<12} {value}");
-        }
-    };
-    line("distance", &told["distance"]);
-    line("path", &told["path_length"]);
-    line("farthest", &told["farthest"]);
-    line("canvas", &told["canvas"]["vertices"]);
-    line("seconds", &told["seconds"]["total"]);
-    let _ = std::io::stdout().write_all(text.as_bytes());
-    for note in told["notes"].as_array().into_iter().flatten().filter_map(|note| note.as_str()) {
+    let all = [
+        ("distance", &told["distance"]),
+        ("path", &told["path_length"]),
+        ("farthest", &told["farthest"]),
+        ("canvas", &told["canvas"]["vertices"]),
+        ("seconds", &told["seconds"]["total"]),
+    ];
+    let known = all.into_iter().filter(|(_, value)| !value.is_null());
+    say(&title.display().to_string(), WIDTH, known.map(|(name, value)| (name.into(), value.to_string())).collect());
+    for note in told["notes"].as_array().into_iter().flatten().filter_map(Value::as_str) {
         eprintln!("note: {}", flagged(note));
     }
     if let Some(count) = told["unreached"].as_u64().filter(|&count| count > 0) {
@@ -53,35 +67,28 @@ pub(crate) fn print_distance(title: &str, told: &serde_json::Value, run: &Run) {
 }
 
 /// Prints what a run of `metric` has made, from its report, unless told to be quiet.
-pub(crate) fn print_metric(title: &str, told: &serde_json::Value, run: &Run) {
+pub(crate) fn print_metric(title: &Path, told: &Value, run: &Run) {
     if run.quiet {
         return;
     }
-    let number = |value: &serde_json::Value| format!("{:.4e}", value.as_f64().unwrap_or(f64::NAN));
+    let number = |value: &Value| format!("{:.4e}", value.as_f64().unwrap_or(f64::NAN));
     let touched = |name: &str| format!("{name} {}", told["touched"][name]);
     let limits = ["h_min", "h_max", "a_max", "gradation"].map(touched).join(", ");
-    let mut text = format!("{title}\n");
-    for (name, value) in [
-        (
-            "complexity",
-            format!("{}   (a unit mesh of about {} vertices)", told["complexity"], told["expected_vertices"]),
-        ),
+    let (complexity, vertices) = (&told["complexity"], &told["expected_vertices"]);
+    let lines = [
+        ("complexity", format!("{complexity}   (a unit mesh of about {vertices} vertices)")),
         ("sizes", format!("{} to {}", number(&told["size"]["min"]), number(&told["size"]["max"]))),
         ("anisotropy", format!("{} at most", number(&told["anisotropy"]["max"]))),
         ("factor", format!("{}   (on the combined metric)", told["factor"])),
         ("touched", format!("of {} vertices: {limits}", told["vertices"])),
         ("time", format!("{:.2} s", told["seconds"]["total"].as_f64().unwrap_or(0.0))),
-    ] {
-        let _ = writeln!(text, "  {name:<12} {value}");
-    }
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    ];
+    say(&title.display().to_string(), WIDTH, lines.map(|(name, text)| (name.into(), text)).to_vec());
 }
 
-fn summary(title: &str, report: &Report, verbose: bool) -> String {
-    let mut text = format!("{title}\n");
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "  {name:<12} {value}");
-    };
+fn summary(report: &Report, verbose: bool) -> Lines {
+    let mut lines = Lines::new();
+    let mut line = |name: &str, value: String| lines.push((name.into(), value));
     line("vertices", report.vertices.to_string());
     line("triangles", report.triangles.to_string());
     line("valid", valid(report));
@@ -107,9 +114,7 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
             line("from domain", distance(fidelity.domain_to_mesh));
         }
         Some(Strayed::Surface(fidelity)) => {
-            for (name, value) in surface_lines(fidelity) {
-                line(name, value);
-            }
+            surface_lines(fidelity).into_iter().for_each(|(name, value)| line(name, value));
         }
         None => {}
     }
@@ -137,13 +142,11 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
         report.seconds.stages.iter().for_each(|(name, time)| line(name, format!("{time:.2} s")));
     }
     if let Some(certificate) = &report.certificate {
-        for (name, value) in certify::lines(certificate) {
-            line(&name, value);
-        }
+        certify::lines(certificate).into_iter().for_each(|(name, value)| line(&name, value));
     }
     let memory = report.peak_memory_bytes.map(|bytes| format!(", {} MB at most", bytes / 1_000_000));
     line("time", format!("{:.2} s{}", report.seconds.total, memory.unwrap_or_default()));
-    text
+    lines
 }
 
 /// How many edges are not of unit length, and why; nothing where there are none.

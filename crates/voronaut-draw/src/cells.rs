@@ -18,24 +18,24 @@ const BORDER: Pen = Pen { widest: 1.1, share: 0.09, thinnest: 1.1 / 64.0 };
 const DOT: Pen = Pen { widest: 4.2, share: 0.34, thinnest: 4.2 / 64.0 };
 
 /// What of a diagram a picture shows besides a mesh.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Layers<'a> {
+#[derive(Clone, Debug, Default)]
+pub struct Layers {
     /// Cells, as filled regions under everything else, with dots at the seeds; orphans in red over paler ones.
-    pub cells: Option<&'a Cells>,
+    pub cells: Option<Cells>,
     /// Canvas faces that witness Voronoi vertices (red) and Voronoi edges (grey); cells are paler then.
-    pub witnesses: Option<[&'a [[Point; 3]]; 2]>,
+    pub witnesses: Option<[Vec<[Point; 3]>; 2]>,
     /// Polylines drawn over the cells, such as the geodesic edges of the dual.
-    pub geodesics: &'a [Vec<Point>],
+    pub geodesics: Vec<Vec<Point>>,
     /// Triangles by their power protection, instead of their size.
-    pub protection: Option<&'a Protection>,
+    pub protection: Option<Protection>,
     /// Triangles by a value at the mesh's points, from strong (the least) to pale, instead of their size.
-    pub values: Option<&'a [f64]>,
+    pub values: Option<Vec<f64>>,
     /// Fainter polylines under those, such as lines of equal barycentric coordinates in Riemannian triangles.
-    pub grids: &'a [Vec<Point>],
+    pub grids: Vec<Vec<Point>>,
     /// Cells by a factor, 1 where conditions just hold, instead of colours that differ; those without one are grey.
-    pub factors: Option<&'a BTreeMap<u32, f64>>,
+    pub factors: Option<BTreeMap<u32, f64>>,
     /// The edges that are not of unit length by cause, over a paler mesh, with a legend below it.
-    pub unmet: Option<&'a Unmet>,
+    pub unmet: Option<Unmet>,
 }
 
 /// The cells, coloured so that neighbours differ: one SVG path per colour and width of line.
@@ -90,7 +90,7 @@ pub(super) fn seeds(svg: &mut String, cells: &Cells, frame: &Frame) {
 }
 
 /// Canvas faces: those that witness Voronoi edges in grey, those that witness Voronoi vertices in red, over them.
-pub(super) fn witnesses(svg: &mut String, [vertices, edges]: [&[[Point; 3]]; 2], frame: &Frame) {
+pub(super) fn witnesses(svg: &mut String, [vertices, edges]: &[Vec<[Point; 3]>; 2], frame: &Frame) {
     for (faces, paint) in [(edges, colours::EDGE_WITNESS), (vertices, colours::VERTEX_WITNESS)] {
         let mut path = PathData::default();
         for face in faces {

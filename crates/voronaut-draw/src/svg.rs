@@ -41,30 +41,25 @@ impl Default for Picture {
 ///
 /// # Errors
 /// [`Error::Unsupported`] for ellipses without a metric, [`Error::Metric`] where it is not positive definite.
-pub fn svg_with(
-    mesh: &Mesh,
-    metric: Option<&dyn MetricField>,
-    picture: &Picture,
-    layers: &Layers<'_>,
-) -> Result<String> {
+pub fn svg_with(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture, layers: &Layers) -> Result<String> {
     let (triangles, labels) = shades::drawable(mesh);
     let edges = Edges::of(&triangles);
     let heights: Vec<f64> = triangles.iter().map(|&t| least_height(mesh, t)).collect();
-    let frame = frame(mesh, &triangles, &heights, *picture, layers.cells);
+    let frame = frame(mesh, &triangles, &heights, *picture, layers.cells.as_ref());
     let pixels: Vec<f64> = heights.iter().map(|&height| frame.pixels(height)).collect();
 
-    let below = layers.unmet.map_or(0.0, |_| unmet::legend_height(&frame));
+    let below = layers.unmet.as_ref().map_or(0.0, |_| unmet::legend_height(&frame));
     let mut text = frame.paper(below, "rect", "fill=\"#fff\"");
-    if let Some(found) = layers.cells {
+    if let Some(found) = &layers.cells {
         let has_lines = picture.mesh || picture.ellipses || !layers.geodesics.is_empty();
         let tint = if has_lines { Tint::Soft } else { Tint::Full };
         let is_ground = layers.witnesses.is_some() || found.has_orphans();
-        match layers.factors {
+        match &layers.factors {
             Some(factors) => cells::factors(&mut text, found, factors, &frame),
             None => cells::cells(&mut text, found, &frame, if is_ground { Tint::Pale } else { tint }),
         }
     } else {
-        let fills = match (layers.protection, layers.values) {
+        let fills = match (&layers.protection, &layers.values) {
             (Some(protection), _) => triangles.iter().map(|&t| protection.fill(t)).collect(),
             (None, Some(values)) => shades::value_fills(&triangles, values),
             (None, None) if picture.mesh && layers.unmet.is_none() => {
@@ -74,12 +69,12 @@ pub fn svg_with(
         };
         fill(&mut text, mesh, &frame, &triangles, &fills);
     }
-    if let Some(faces) = layers.witnesses {
+    if let Some(faces) = &layers.witnesses {
         cells::witnesses(&mut text, faces, &frame);
     }
     if picture.mesh {
         let sides = if layers.cells.is_some() { 1 } else { 2 };
-        let opacity = layers.unmet.map_or(1.0, |_| unmet::PALE);
+        let opacity = layers.unmet.as_ref().map_or(1.0, |_| unmet::PALE);
         let _ = writeln!(text, r#"<g stroke-opacity="{opacity}">"#);
         strokes::edges_of(&mut text, mesh, &edges, sides, &pixels, &frame);
         text.push_str("</g>\n");
@@ -88,20 +83,20 @@ pub fn svg_with(
         let is_faint = picture.mesh || layers.cells.is_some();
         ellipses::ellipses(&mut text, mesh, &edges, metric.ok_or_else(no_metric)?, &frame, is_faint)?;
     }
-    let thickness = layers.cells.map_or(10.0, |found| cells::typical(found, &frame)[0]);
+    let thickness = layers.cells.as_ref().map_or(10.0, |found| cells::typical(found, &frame)[0]);
     if !layers.grids.is_empty() {
-        cells::grids(&mut text, layers.grids, thickness, &frame);
+        cells::grids(&mut text, &layers.grids, thickness, &frame);
     }
     if !layers.geodesics.is_empty() {
-        cells::geodesics(&mut text, layers.geodesics, thickness, &frame);
+        cells::geodesics(&mut text, &layers.geodesics, thickness, &frame);
     }
-    if let Some(found) = layers.cells {
+    if let Some(found) = &layers.cells {
         cells::seeds(&mut text, found, &frame);
         cells::border(&mut text, found, &frame);
     } else {
         strokes::boundary(&mut text, mesh, &edges, &frame);
     }
-    if let Some(found) = layers.unmet {
+    if let Some(found) = &layers.unmet {
         unmet::edges(&mut text, mesh, &edges, found, &pixels, &frame);
         unmet::legend(&mut text, found, &frame);
     }

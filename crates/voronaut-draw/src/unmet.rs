@@ -87,7 +87,7 @@ mod tests {
 
     /// How many paths have the colour of each cause, for what is too short and too long: one is the legend's.
     fn paths(found: &Unmet) -> [[usize; 2]; 4] {
-        let layers = Layers { unmet: Some(found), ..Layers::default() };
+        let layers = Layers { unmet: Some(found.clone()), ..Layers::default() };
         let text = svg_with(&grid(4, 4), None, &Picture::default(), &layers).unwrap();
         assert!(text.ends_with("</svg>\n") && !text.contains("NaN"));
         let group = |cause: usize, is_short: bool| {

@@ -1,6 +1,6 @@
 //! What users of `voronaut distance` type.
 
-use crate::options::{Coordinates, Damage, MetricChoices, Run, coordinates, default_memory_limit, in_bytes, positive};
+use crate::options::{Coordinates, Damage, Memory, MetricChoices, Run, coordinates};
 use clap::{Args, value_parser};
 use std::path::PathBuf;
 use voronaut::canvas;
@@ -44,18 +44,14 @@ pub(crate) struct DistanceArgs {
     /// Vertices of the canvas, in all
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = CANVAS_VERTICES)]
     pub(crate) canvas_size: u32,
-    /// Refuse work that is estimated to need more memory than this
-    #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
-    memory_limit: f64,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
     /// Draw the distances, lines of equal distance and the path: .svg or .png
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: Option<PathBuf>,
     /// Pixels of the picture's longer side
     #[arg(long, value_name = "PIXELS", default_value_t = Picture::default().width, value_parser = value_parser!(u32).range(16..=16_000), requires = "picture")]
     pub(crate) pixels: u32,
-    /// Write all figures as JSON
-    #[arg(long, value_name = "FILE")]
-    pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) metric_choices: MetricChoices,
     #[command(flatten)]
@@ -66,10 +62,3 @@ pub(crate) struct DistanceArgs {
 
 /// Vertices of the canvas of `distance`: marching errs by about a thousandth then, in half a second.
 const CANVAS_VERTICES: u32 = 40_000;
-
-impl DistanceArgs {
-    /// In bytes.
-    pub(crate) fn memory_limit(&self) -> u64 {
-        in_bytes(self.memory_limit)
-    }
-}

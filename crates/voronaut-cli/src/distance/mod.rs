@@ -1,61 +1,68 @@
 //! `voronaut distance`: how far every point is from given ones, and the way back.
 
 mod args;
-mod on_surface;
-mod told;
 
 pub(crate) use args::{DistanceArgs, EXAMPLES};
 
-use crate::options::{Coordinates, Outputs};
-use crate::{fields, files};
-use std::time::Instant;
-use told::{Asked, Made, levels, seconds, told};
-use voronaut::canvas::{BYTES_PER_VERTEX, Canvas};
-use voronaut::diagram::Distances;
+use crate::options::Coordinates;
+use crate::progress::Stages;
+use crate::{fields, files, summary};
+use serde_json::{Value, json};
+use voronaut::canvas::{BYTES_PER_VERTEX, Canvas, CanvasFigures, Way};
+use voronaut::diagram::{Distances, Ground, SurfaceDistances};
 use voronaut::domain::Domain;
 use voronaut::geodesic::Polyline;
-use voronaut::geometry::Point;
+use voronaut::geometry::{Aabb3, Point, Point3};
+use voronaut::mesh::Mesh;
 use voronaut::recipe::GradedAt;
+use voronaut::surface::{Input, Place};
+use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
-use voronaut_draw::{Layers, Picture};
-use voronaut_io::Given;
+use voronaut_draw::{Layers, Picture, PictureFormat, Scene, Stroke, View};
+use voronaut_io::{Format, Given};
+
+/// What is written.
+struct Made {
+    mesh: Mesh,
+    distances: Vec<f64>,
+    picture: Option<String>,
+    told: Value,
+}
 
 /// Writes the distance field on the canvas, and the path if there is one.
 pub(crate) fn run(args: &DistanceArgs) -> Result<()> {
-    let start = Instant::now();
+    let stages = Stages::start();
     voronaut_io::demand_diagram(&args.out)?;
-    files::demand_writable(Some(&args.out), None, &outputs(args))?;
-    files::set_threads(&args.run)?;
+    Format::from_path(&args.out)?;
+    args.picture.as_deref().map(PictureFormat::from_path).transpose()?;
+    files::demand_apart([Some(args.out.as_path()), args.picture.as_deref(), args.run.report.as_deref()])?;
+    args.run.set_threads()?;
     args.metric_choices.bounds().check()?;
     demand_memory(args)?;
     let (given, mended) = Given::read_with(&args.domain, None, args.damage.options())?;
     let mut made = match given {
-        Given::Plane(domain) => in_plane(args, &domain, start)?,
-        Given::Surface(input) => on_surface::run(args, &input, start)?,
+        Given::Plane(domain) => in_plane(args, &domain, stages)?,
+        Given::Surface(input) => on_surface(args, &input, stages)?,
     };
     made.told["notes"] = mended.sentences().collect();
     voronaut_io::write_diagram(&made.mesh, &made.distances, &args.out)?;
-    if let (Some(file), Some(svg)) = (&args.picture, &made.picture) {
-        files::write_picture(svg, file)?;
-    }
-    if let Some(file) = &args.report {
-        voronaut_io::write(file, format!("{:#}\n", made.told).as_bytes())?;
-    }
-    crate::summary::print_distance(&args.out.display().to_string(), &made.told, &args.run);
+    files::write_picture(made.picture, args.picture.as_deref())?;
+    args.run.write_report(&format!("{:#}\n", made.told))?;
+    summary::print_distance(&args.out, &made.told, &args.run);
     Ok(())
 }
 
-fn in_plane(args: &DistanceArgs, domain: &Domain, start: Instant) -> Result<Made> {
+fn in_plane(args: &DistanceArgs, domain: &Domain, mut stages: Stages) -> Result<Made> {
     let from = args.from.iter().map(|p| flat("--from", p)).collect::<Result<Vec<Point>>>()?;
-    let to = args.to.iter().map(|p| flat("--to", p)).next().transpose()?;
+    let to = args.to.as_ref().map(|p| flat("--to", p)).transpose()?;
     let at = GradedAt::Scale(1.0);
     let metric = fields::in_plane(&args.metric, domain, &args.domain, &args.metric_choices, at)?.field;
-    let read = start.elapsed().as_secs_f64();
+    stages.end("read");
     let canvas = Canvas::new(args.canvas, domain, metric.as_ref(), args.canvas_size as usize)?;
     demand_inside(&from, to, &canvas)?;
-    let made = start.elapsed().as_secs_f64();
+    stages.end("canvas");
     let found = Distances::new(&canvas, metric.as_ref(), &from, args.geodesic)?;
-    let solved = start.elapsed().as_secs_f64();
+    stages.end("distances");
     let path = to.map(|to| found.path(to)).transpose()?;
     let asked = Asked {
         from: from.iter().map(|p| vec![p.x, p.y]).collect(),
@@ -63,8 +70,39 @@ fn in_plane(args: &DistanceArgs, domain: &Domain, start: Instant) -> Result<Made
         distance: to.and_then(|p| found.at(p)),
         path: path.as_ref().map(|path| (path.length, path.points.len())),
     };
-    let told = told(args, &found, &asked, &canvas.figures(), &seconds(&[read, made, solved], start));
+    let told = told(args, &found, &asked, &canvas.figures(), stages);
     let picture = args.picture.as_ref().map(|_| draw(args, &found, path.as_ref())).transpose()?;
+    let (mesh, distances) = found.to_mesh(path.as_ref());
+    Ok(Made { mesh, distances, picture, told })
+}
+
+/// The distances on a canvas that has the points, moved onto the surface, as vertices.
+fn on_surface(args: &DistanceArgs, input: &Input, mut stages: Stages) -> Result<Made> {
+    let mut places: Vec<Place> = Vec::new();
+    let from = args.from.iter().map(|p| Ok(add(on_it("--from", p, input)?, &mut places)));
+    let from: Vec<usize> = from.collect::<Result<_>>()?;
+    let to = args.to.as_ref().map(|p| on_it("--to", p, input)).transpose()?;
+    let to = to.map(|place| add(place, &mut places));
+    let metric = fields::on_surface(&args.metric, input, &args.metric_choices)?;
+    stages.end("read");
+    let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), args.canvas_size as usize, &places)?;
+    stages.end("canvas");
+    let from: Vec<VertexId> = from.into_iter().map(|i| at[i]).collect();
+    let to = to.map(|i| at[i]);
+    let found = SurfaceDistances::on_surface(&canvas, &from, args.geodesic)?;
+    stages.end("distances");
+    let path = to.map(|to| found.path(to)).transpose()?;
+    let position = |&v: &VertexId| canvas.draped().position(v);
+    let written = |v: &VertexId| position(v).to_array().to_vec();
+    let asked = Asked {
+        from: from.iter().map(written).collect(),
+        to: to.as_ref().map(written),
+        distance: to.map(|to| found.values()[to.index()]),
+        path: path.as_ref().map(|path| (path.length, path.points.len())),
+    };
+    let told = told(args, &found, &asked, &canvas.figures(), stages);
+    let seeds = from.iter().map(position).collect();
+    let picture = args.picture.as_ref().map(|_| draw_on(args, &found, seeds, path.as_ref())).transpose()?;
     let (mesh, distances) = found.to_mesh(path.as_ref());
     Ok(Made { mesh, distances, picture, told })
 }
@@ -80,21 +118,32 @@ fn flat(name: &str, p: &Coordinates) -> Result<Point> {
     }
 }
 
-/// What is written beside the field.
-fn outputs(args: &DistanceArgs) -> Outputs {
-    Outputs {
-        picture: args.picture.clone(),
-        show: Vec::new(),
-        pixels: args.pixels,
-        window: None,
-        histograms: None,
-        report: args.report.clone(),
+/// The place of the surface that is meant.
+fn on_it(name: &str, p: &Coordinates, input: &Input) -> Result<Place> {
+    match *p {
+        Coordinates::Space(p) => input.closest(p).map_err(|error| match error {
+            Error::Domain { what, help, .. } => Error::Domain { what, place: format!("{name} {p}"), help },
+            other => other,
+        }),
+        Coordinates::Plane(p) => {
+            let help = "write three numbers, X,Y,Z; two are for planar domains";
+            Err(Error::parse(format!("{name} {p}"), "a point of the plane, and the domain is a surface", help))
+        }
     }
+}
+
+/// The number of a place among others, which it joins if it is new.
+fn add(place: Place, places: &mut Vec<Place>) -> usize {
+    let known = places.iter().position(|other| other.position == place.position);
+    known.unwrap_or_else(|| {
+        places.push(place);
+        places.len() - 1
+    })
 }
 
 fn demand_memory(args: &DistanceArgs) -> Result<()> {
     let needed = f64::from(args.canvas_size) * BYTES_PER_VERTEX;
-    if needed <= args.memory_limit() as f64 {
+    if needed <= args.memory.bytes() as f64 {
         return Ok(());
     }
     let what =
@@ -103,20 +152,75 @@ fn demand_memory(args: &DistanceArgs) -> Result<()> {
 }
 
 fn demand_inside(from: &[Point], to: Option<Point>, canvas: &Canvas) -> Result<()> {
-    let named = from.iter().map(|&p| ("--from", p)).chain(to.map(|p| ("--to", p)));
-    for (name, p) in named {
-        if canvas.locate(p).is_none() {
-            return Err(Error::domain("a point outside the domain", format!("{name} {p}"), "move it into the domain"));
+    let mut named = from.iter().map(|&p| ("--from", p)).chain(to.map(|p| ("--to", p)));
+    match named.find(|(_, p)| canvas.locate(*p).is_none()) {
+        None => Ok(()),
+        Some((name, p)) => {
+            Err(Error::domain("a point outside the domain", format!("{name} {p}"), "move it into the domain"))
         }
     }
-    Ok(())
+}
+
+/// Where distances start, and what was found of the point that was asked for: its distance, the path's length and points.
+struct Asked {
+    from: Vec<Vec<f64>>,
+    to: Option<Vec<f64>>,
+    distance: Option<f64>,
+    path: Option<(f64, usize)>,
+}
+
+/// The report: `distance` and `path_length` to the point that was asked for, both null without one.
+fn told<'a, G: Ground<'a>>(
+    args: &DistanceArgs,
+    found: &Distances<'a, G>,
+    asked: &Asked,
+    canvas: &CanvasFigures,
+    mut stages: Stages,
+) -> Value {
+    stages.end("path");
+    let reached = found.values().iter().filter(|d| d.is_finite());
+    let unreached = found.values().len() - reached.clone().count();
+    json!({
+        "from": asked.from, "to": asked.to,
+        "distance": asked.distance.filter(|d| d.is_finite()),
+        "path_length": asked.path.map(|path| path.0), "path_points": asked.path.map(|path| path.1),
+        "farthest": reached.copied().fold(0.0, f64::max), "unreached": unreached,
+        "geodesic": args.geodesic, "canvas": canvas, "counters": found.counters(),
+        "seconds": stages.seconds(Vec::new()), "peak_memory_bytes": voronaut_io::peak_memory_bytes(), "version": env!("CARGO_PKG_VERSION"),
+        "options": {
+            "domain": args.domain, "metric": args.metric, "out": args.out, "canvas": args.canvas,
+            "canvas_size": args.canvas_size, "geodesic": args.geodesic, "background": args.metric_choices.background,
+            "bounds": args.metric_choices.bounds(), "smooth_metric": args.metric_choices.smooth_metric, "tensor_order": args.metric_choices.tensor_order, "gradation": args.metric_choices.gradation, "picture": args.picture,
+            "pixels": args.pixels, "report": args.run.report, "threads": args.run.threads,
+            "repair": args.damage.repair,
+        },
+    })
+}
+
+/// The levels of lines of equal distance in a picture.
+fn levels(values: &[f64]) -> Vec<f64> {
+    const ISOLINES: u32 = 20;
+    let most = values.iter().copied().filter(|d| d.is_finite()).fold(0.0, f64::max);
+    (1..ISOLINES).map(|i| most * f64::from(i) / f64::from(ISOLINES)).collect()
 }
 
 fn draw(args: &DistanceArgs, found: &Distances, path: Option<&Polyline>) -> Result<String> {
     let (mesh, values) = found.to_mesh(None);
-    let lines: Vec<Vec<Point>> = found.isolines(&levels(&values)).into_iter().map(|piece| piece.to_vec()).collect();
-    let geodesics: Vec<Vec<Point>> = path.iter().map(|path| path.points.clone()).collect();
-    let layers = Layers { values: Some(&values), grids: &lines, geodesics: &geodesics, ..Layers::default() };
+    let grids = found.isolines(&levels(&values)).into_iter().map(|piece| piece.to_vec()).collect();
+    let geodesics = path.iter().map(|path| path.points.clone()).collect();
+    let layers = Layers { values: Some(values), grids, geodesics, ..Layers::default() };
     let picture = Picture { mesh: false, width: args.pixels, ..Picture::default() };
     voronaut_draw::svg_with(&mesh, None, &picture, &layers)
+}
+
+fn draw_on(args: &DistanceArgs, found: &SurfaceDistances, seeds: Vec<Point3>, path: Option<&Way>) -> Result<String> {
+    let (mesh, values) = found.to_mesh(None);
+    let points: Vec<Point3> = mesh.points.iter().copied().map(Point3::from).collect();
+    let Some(bounds) = Aabb3::of(points.iter().copied()) else { return Ok(String::new()) };
+    let lines = found.isolines(&levels(&values)).into_iter().map(|piece| piece.to_vec());
+    let scene = Scene::of_values(&points, &mesh.triangles, &values)
+        .with(lines, Stroke::Level)
+        .with(path.map(|path| path.points.clone()), Stroke::Geodesic)
+        .with(seeds.into_iter().map(|seed| vec![seed]), Stroke::Seed);
+    voronaut_draw::draw_surface(&scene, &View { pixels: args.pixels, ..View::of(bounds) })
 }

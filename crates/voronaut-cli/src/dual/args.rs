@@ -1,10 +1,7 @@
 //! What users of `voronaut dual` type.
 
-use crate::options::{
-    CanvasSize, Damage, EdgesOut, MetricChoices, Outputs, Run, Show, canvas_size, default_memory_limit, in_bytes,
-    positive,
-};
-use clap::Args;
+use crate::options::{CanvasSize, Damage, EdgesOut, Memory, MetricChoices, Outputs, Run, Show, canvas_size};
+use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use voronaut::canvas;
@@ -68,9 +65,8 @@ pub(crate) struct DualArgs {
     /// The formulas of these theorems: corrected, or printed (with the report's errors, to compare)
     #[arg(long, value_name = "WHICH", default_value_t = Constants::default())]
     pub(crate) constants: Constants,
-    /// Refuse work that is estimated to need more memory than this
-    #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
-    memory_limit: f64,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
     /// Exit with 1 if what OUT would hold is not embedded: straight triangles inverted, edges that cross
     #[arg(long)]
     pub(crate) strict: bool,
@@ -85,29 +81,24 @@ pub(crate) struct DualArgs {
 }
 
 impl DualArgs {
-    /// In bytes.
-    pub(crate) fn memory_limit(&self) -> u64 {
-        in_bytes(self.memory_limit)
-    }
-
     /// Whether the seeds are to be certified: where that is asked for, or a canvas or a picture needs it.
     pub(super) fn is_certified(&self) -> bool {
-        self.certify || self.canvas_size == CanvasSize::Certified || self.outputs.show.contains(&Show::Certificate)
+        self.certify || self.canvas_size == CanvasSize::Certified || self.outputs.shows(Show::Certificate)
     }
 
     /// All options, as used.
     pub(super) fn as_used(&self) -> Value {
-        let canvas_size: Value = match self.canvas_size {
-            CanvasSize::PerSeed(count) => count.into(),
-            CanvasSize::Certified => "certified".into(),
+        let canvas_size = match self.canvas_size {
+            CanvasSize::PerSeed(count) => json!(count),
+            CanvasSize::Certified => json!("certified"),
         };
         json!({
             "domain": self.domain, "metric": self.metric, "seeds": self.seeds, "out": self.out, "diagram": self.diagram,
             "canvas": self.canvas, "canvas_size": canvas_size,
-            "voronoi": self.voronoi, "certify": self.certify, "constants": self.constants, "geodesic": self.geodesic, "dual": self.dual, "edges": self.edges.name(), "strict": self.strict,
+            "voronoi": self.voronoi, "certify": self.certify, "constants": self.constants, "geodesic": self.geodesic, "dual": self.dual, "edges": self.edges.to_possible_value().map(|value| value.get_name().to_string()), "strict": self.strict,
             "background": self.metric_choices.background, "bounds": self.metric_choices.bounds(),
             "smooth_metric": self.metric_choices.smooth_metric, "tensor_order": self.metric_choices.tensor_order, "gradation": self.metric_choices.gradation,
-            "picture": self.outputs.picture, "histograms": self.outputs.histograms, "report": self.outputs.report, "threads": self.run.threads,
+            "picture": self.outputs.picture, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
             "repair": self.damage.repair,
         })
     }

@@ -2,149 +2,183 @@
 
 mod args;
 pub(crate) mod certify;
-mod on_surface;
 
 pub(crate) use args::{DualArgs, EXAMPLES};
 
-use crate::files::{Drawn, MeshFile};
-use crate::options::{CanvasSize, EdgesOut, Show};
-use crate::progress::Bar;
+use crate::options::{CanvasSize, EdgesOut, Show, refuse};
+use crate::progress::{Bar, Stages};
 use crate::seeds::SeedFile;
-use crate::{fields, files, summary};
-use std::time::Instant;
+use crate::{fields, files, pictures};
 use voronaut::canvas::{self, Canvas};
-use voronaut::diagram::{Diagram, Kind, RESOLVE_ROUNDS, resolve};
+use voronaut::diagram::{Diagram, Kind, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
 use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::figures;
 use voronaut::geodesic::Method;
+use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
-use voronaut::net::Net;
-use voronaut::quality::{crossing_edges, metric_quality, validity};
+use voronaut::quality::{
+    Meetings, MetricQuality, Validity, crossing_edges, metric_quality, surface_quality, validity, validity_on,
+};
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, GradedAt, MeshOptions, SeedDual};
+use voronaut::surface::{Input, Mended};
 use voronaut::{Error, Result, sampling};
-use voronaut_io::{Given, Report, Seconds};
+use voronaut_draw::Layers;
+use voronaut_io::{Given, Report};
 
 /// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
 pub(crate) fn run(args: &DualArgs) -> Result<()> {
-    let start = Instant::now();
+    let stages = Stages::start();
     demand(args)?;
-    files::set_threads(&args.run)?;
-    let bounds = args.metric_choices.bounds();
-    bounds.check()?;
+    args.run.set_threads()?;
+    args.metric_choices.bounds().check()?;
     let (given, mended) = Given::read_with(&args.domain, None, args.damage.options())?;
-    let domain = match given {
-        Given::Surface(input) => return on_surface::run(args, &input, &mended, start),
-        Given::Plane(domain) => domain,
-    };
+    match given {
+        Given::Surface(input) => on_surface(args, &input, &mended, stages),
+        Given::Plane(domain) => in_plane(args, &domain, &mended, stages),
+    }
+}
+
+fn in_plane(args: &DualArgs, domain: &Domain, mended: &Mended, mut stages: Stages) -> Result<()> {
+    let outputs = &args.outputs;
     let at = GradedAt::Scale(1.0);
-    let metric = fields::in_plane(&args.metric, &domain, &args.domain, &args.metric_choices, at)?.field;
+    let metric = fields::in_plane(&args.metric, domain, &args.domain, &args.metric_choices, at)?.field;
+    let metric = metric.as_ref();
     let file = SeedFile::read(&args.seeds)?;
-    let seeds = &file.seeds;
-    let mut stages = Vec::new();
-    let mut begin = start;
-    let mut stage = |name: &'static str| {
-        stages.push((name, begin.elapsed().as_secs_f64()));
-        begin = Instant::now();
-    };
-    stage("read");
-    let road = args.dual;
-    let canvas = canvas(args, &domain, metric.as_ref(), &file)?;
+    stages.end("read");
+    let canvas = canvas(args, domain, metric, &file)?;
     let is_riemannian = args.voronoi == Kind::Riemannian;
-    stage("canvas");
-    let diagram = Diagram::of_kind(args.voronoi, &canvas, metric.as_ref(), seeds, args.geodesic)?;
-    stage("diagram");
+    stages.end("canvas");
+    let diagram = Diagram::of_kind(args.voronoi, &canvas, metric, &file.seeds, args.geodesic)?;
+    stages.end("diagram");
     let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
-        recipe::dual(&diagram, metric.as_ref(), road, &Bar::new(args.run.quiet, args.run.verbose));
-    let mesh = diagram.to_mesh(triangles, &nerve, &domain);
+        recipe::dual(&diagram, metric, args.dual, &Bar::new(&args.run));
+    let mesh = diagram.to_mesh(triangles, &nerve, domain);
     account.crossing_edges = Some(crossing_edges(&mesh).len());
-    stage("dual");
-    let is_curved = args.edges == EdgesOut::Geodesic || Drawn::has_geodesics(&args.outputs);
-    let curved = is_curved.then(|| Realisation::new(&diagram, metric.as_ref(), &mesh.triangles));
+    stages.end("dual");
+    let is_curved = args.edges == EdgesOut::Geodesic || outputs.have_geodesics();
+    let curved = is_curved.then(|| Realisation::new(&diagram, metric, &mesh.triangles));
     account.geodesics = curved.as_ref().map(figures::Geodesics::of);
     if is_curved {
-        stage("geodesics");
+        stages.end("geodesics");
     }
-    let mut report = reported(&mesh, metric.as_ref(), account)?;
-    report.histograms = files::histograms(&args.outputs, &mesh, metric.as_ref())?;
+    let mut report = reported(args, &mesh, validity(&mesh), || metric_quality(&mesh, metric))?;
+    report.dual = Some(account);
+    report.histograms = files::histograms(outputs, &mesh, metric)?;
     report.canvas = Some(canvas.figures());
     report.diagram =
         Some(figures::Diagram { raw_nerve: is_riemannian.then_some(raw_nerve), ..figures::Diagram::of(&diagram) });
-    let is_measured = is_riemannian && (Drawn::needs_net(&args.outputs) || args.is_certified());
-    let net = is_measured.then(|| recipe::net(&diagram, metric.as_ref(), &exact));
+    let is_measured = args.run.report.is_some() || outputs.shows(Show::Protection) || args.is_certified();
+    let net = (is_riemannian && is_measured).then(|| recipe::net(&diagram, metric, &exact));
     report.net = net.as_ref().map(figures::NetFigures::of);
     if net.is_some() {
-        stage("net");
+        stages.end("net");
     }
-    report.certificate = certify::certificate(args, &diagram, metric.as_ref(), &exact, net.as_ref());
+    report.certificate = certify::certificate(args, &diagram, metric, &exact, net.as_ref());
     if report.certificate.is_some() {
-        stage("certificate");
+        stages.end("certificate");
     }
     report.notes = notes(&diagram, &report);
     report.notes.extend(mended.sentences());
-    report.options = args.as_used();
     // Parts of "dual".
-    stages.extend(seconds);
-    report.seconds = Seconds { stages, total: start.elapsed().as_secs_f64() };
-    if args.strict {
-        demand_embedded(args, &report).or_else(|fault| files::write_report(&args.outputs, &report).and(Err(fault)))?;
+    report.seconds = stages.seconds(seconds);
+    demand_embedded(args, &report)?;
+    let certificate = report.certificate.as_ref().filter(|_| outputs.shows(Show::Certificate));
+    let layers = Layers {
+        protection: pictures::protection(outputs, net.as_ref(), MeshOptions::default().protection),
+        factors: certificate.map(|found| found.cells.iter().map(|cell| (cell.seed, cell.factor)).collect()),
+        ..pictures::layers(outputs, &diagram, metric, curved.as_ref())
+    };
+    let picture = pictures::in_plane(outputs, &mesh, Some(metric), &layers)?;
+    match curved.filter(|_| args.edges == EdgesOut::Geodesic) {
+        Some(curved) => voronaut_io::write_realisation(&curved, &args.out)?,
+        None => voronaut_io::write_mesh(&mesh, &args.out)?,
     }
-    write(args, &diagram, &mesh, metric.as_ref(), curved.as_ref(), net.as_ref(), &report)?;
-    summary::print(&args.out.display().to_string(), &report, &args.run);
-    Ok(())
+    finish(args, picture, &report, || diagram.to_coloured_canvas())
+}
+
+/// The dual of seeds on a surface.
+fn on_surface(args: &DualArgs, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
+    let refused = [
+        (args.voronoi != Kind::Riemannian, "--voronoi"),
+        (args.certify, "--certify"),
+        (args.canvas_size == CanvasSize::Certified, "--canvas-size certified"),
+    ];
+    pictures::demand_of_surfaces(&args.outputs, &refused)?;
+    let metric = fields::on_surface(&args.metric, input, &args.metric_choices)?;
+    let places = SeedFile::read_in_space(&args.seeds)?.on_surface(input)?;
+    stages.end("read");
+    let size = canvas_vertices(args, places.len())?.unwrap_or_default();
+    let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), size, &places)?;
+    stages.end("canvas");
+    let diagram = SurfaceDiagram::on_surface(&canvas, &at, args.geodesic)?;
+    stages.end("diagram");
+    let SeedDual { triangles, account, seconds, raw_nerve, .. } =
+        recipe::surface_dual(&diagram, args.dual, &Bar::new(&args.run));
+    let mesh = recipe::surface_mesh(input, &places, triangles);
+    stages.end("dual");
+    let found = validity_on(&mesh, &Meetings::of(input.whole_mesh()));
+    let meets = found.meetings.note();
+    let mut report = reported(args, &mesh, found, || surface_quality(&mesh, &input.surface, metric.as_ref()))?;
+    report.dual = Some(account);
+    report.canvas = Some(canvas.figures());
+    report.diagram = Some(figures::Diagram { raw_nerve: Some(raw_nerve), ..figures::Diagram::of(&diagram) });
+    report.notes.extend(mended.sentences().chain(meets));
+    if !report.validity.valid {
+        report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
+    }
+    report.seconds = stages.seconds(seconds);
+    demand_embedded(args, &report)?;
+    let is_drawn = args.outputs.picture.is_some();
+    let picture = is_drawn.then(|| pictures::on_surface(&args.outputs, &diagram, &mesh)).transpose()?;
+    let written = if args.edges == EdgesOut::Geodesic { pictures::with_geodesics(&diagram, &mesh) } else { mesh };
+    voronaut_io::write_mesh(&written, &args.out)?;
+    finish(args, picture, &report, || diagram.to_coloured_surface())
 }
 
 /// What can be refused before the work.
 fn demand(args: &DualArgs) -> Result<()> {
     args.diagram.as_deref().map(voronaut_io::demand_diagram).transpose()?;
-    files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs)?;
+    files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs, &args.run)?;
     args.geodesic.demand_diagrams()?;
     demand_geodesics(args)?;
-    if args.outputs.show.contains(&Show::Unmet) {
-        let what = "a picture of where a metric is not met by seeds that are given".into();
-        return Err(Error::Unsupported { what, help: "give the mesh of the dual to voronaut check".into() });
-    }
-    Ok(())
+    let what = "a picture of where a metric is not met by seeds that are given";
+    refuse([(args.outputs.shows(Show::Unmet), what, "give the mesh of the dual to voronaut check")])
 }
 
-/// Writes all that is asked for.
-fn write(
+/// Writes what is beside the dual.
+fn finish(
     args: &DualArgs,
-    diagram: &Diagram,
-    mesh: &Mesh,
-    metric: &dyn MetricField,
-    curved: Option<&Realisation>,
-    net: Option<&Net>,
+    picture: Option<String>,
     report: &Report,
+    coloured: impl FnOnce() -> (Mesh, Vec<f64>),
 ) -> Result<()> {
-    let drawn = Drawn::from_diagram(&args.outputs, diagram, mesh, metric, curved);
-    let drawn = drawn.with_net(&args.outputs, net, MeshOptions::default().protection);
-    let drawn = drawn.with_certificate(&args.outputs, report.certificate.as_ref());
-    let file = match curved {
-        Some(curved) if args.edges == EdgesOut::Geodesic => MeshFile::Geodesic(&args.out, curved),
-        _ => MeshFile::Straight(&args.out),
-    };
-    files::write(&file, &args.outputs, mesh, Some(metric), report, &drawn)?;
     if let Some(path) = &args.diagram {
-        let (canvas, distances) = diagram.to_coloured_canvas();
+        let (canvas, distances) = coloured();
         voronaut_io::write_diagram(&canvas, &distances, path)?;
     }
-    Ok(())
+    files::finish(&args.out, &args.outputs, picture, report, &args.run)
+}
+
+/// Vertices of the canvas of so many seeds; `None`: as many as its certificate asks for.
+fn canvas_vertices(args: &DualArgs, seeds: usize) -> Result<Option<usize>> {
+    let CanvasSize::PerSeed(per_seed) = args.canvas_size else { return Ok(None) };
+    let size = canvas::size_for(seeds, per_seed);
+    sampling::demand_memory(seeds as f64, size as f64, args.memory.bytes())?;
+    Ok(Some(size))
 }
 
 /// The canvas that is asked for, in whose domain all seeds are.
-fn canvas(args: &DualArgs, domain: &Domain, metric: &dyn MetricField, file: &SeedFile) -> Result<Canvas> {
+fn canvas(args: &DualArgs, domain: &Domain, metric: &dyn MetricField, file: &SeedFile<Point>) -> Result<Canvas> {
     let seeds = &file.seeds;
-    let CanvasSize::PerSeed(per_seed) = args.canvas_size else {
-        file.demand_inside(&Canvas::new(args.canvas, domain, metric, 0)?)?;
-        return recipe::certified_canvas(args.canvas, domain, metric, seeds, args.constants, args.memory_limit());
-    };
-    let size = canvas::size_for(seeds.len(), per_seed);
-    sampling::demand_memory(seeds.len() as f64, size as f64, args.memory_limit())?;
-    let canvas = Canvas::new(args.canvas, domain, metric, size)?;
+    let size = canvas_vertices(args, seeds.len())?;
+    let canvas = Canvas::new(args.canvas, domain, metric, size.unwrap_or_default())?;
     file.demand_inside(&canvas)?;
+    if size.is_none() {
+        return recipe::certified_canvas(args.canvas, domain, metric, seeds, args.constants, args.memory.bytes());
+    }
     if args.voronoi == Kind::Riemannian && args.dual == Road::Canvas {
         return Ok(resolve(canvas, metric, seeds, RESOLVE_ROUNDS)?.canvas);
     }
@@ -153,45 +187,54 @@ fn canvas(args: &DualArgs, domain: &Domain, metric: &dyn MetricField, file: &See
 
 /// Refuses what only the Riemannian diagram has where another is asked for.
 fn demand_geodesics(args: &DualArgs) -> Result<()> {
-    let shows_protection = args.outputs.show.contains(&Show::Protection);
-    let what = match () {
-        () if args.voronoi == Kind::Riemannian => return Ok(()),
-        () if args.edges == EdgesOut::Geodesic => "--edges geodesic",
-        () if Drawn::has_geodesics(&args.outputs) => "--show geodesics or triangles",
-        () if shows_protection => "--show protection",
-        () if args.is_certified() => "--certify",
-        () if args.canvas_size == CanvasSize::Certified => "--canvas-size certified",
-        () if args.geodesic != Method::default() => "--geodesic",
-        () => return Ok(()),
-    };
-    let help = format!("leave out {what}, or --voronoi");
-    Err(Error::Unsupported { what: format!("{what} with a diagram that measures straight distances"), help })
+    let all = [
+        (args.edges == EdgesOut::Geodesic, "--edges geodesic"),
+        (args.outputs.have_geodesics(), "--show geodesics or triangles"),
+        (args.outputs.shows(Show::Protection), "--show protection"),
+        (args.is_certified(), "--certify"),
+        (args.geodesic != Method::default(), "--geodesic"),
+    ];
+    let is_other = args.voronoi != Kind::Riemannian;
+    refuse(all.map(|(is_asked, what)| {
+        let help = format!("leave out {what}, or --voronoi");
+        (is_other && is_asked, format!("{what} with a diagram that measures straight distances"), help)
+    }))
 }
 
 /// The figures of the dual with straight edges, in the metric only where it is valid.
-fn reported(mesh: &Mesh, metric: &dyn MetricField, account: figures::Dual) -> Result<Report> {
-    let found = validity(mesh);
+fn reported(
+    args: &DualArgs,
+    mesh: &Mesh,
+    found: Validity,
+    quality: impl FnOnce() -> Result<MetricQuality>,
+) -> Result<Report> {
     let is_valid = found.valid;
     let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
     if is_valid {
-        report = report.with_quality(&metric_quality(mesh, metric)?);
+        report = report.with_quality(&quality()?);
     }
-    report.dual = Some(account);
+    report.options = args.as_used();
     Ok(report)
 }
 
-/// Refuses what OUT would hold if it is not embedded.
+/// Refuses, if that is asked for, what OUT would hold if it is not embedded, with the report.
 fn demand_embedded(args: &DualArgs, report: &Report) -> Result<()> {
-    let dual = report.dual.as_ref();
-    if args.edges == EdgesOut::Straight {
-        report.validity.demand()?;
-        let crossing = dual.and_then(|dual| dual.crossing_edges).unwrap_or(0);
-        return demand_none(crossing, "pairs of straight edges cross", args);
+    if args.strict {
+        embedded(args, report).or_else(|fault| args.run.write_report(&report.to_json()).and(Err(fault)))?;
     }
-    let geodesics = dual.and_then(|dual| dual.geodesics.as_ref());
-    let [crossing, open] = geodesics.map_or([0; 2], |found| [found.crossing_geodesics, found.open_regions]);
-    demand_none(crossing, "pairs of geodesic edges meet elsewhere than at seeds", args)?;
-    demand_none(open, "triangles of geodesic edges bound no region", args)
+    Ok(())
+}
+
+fn embedded(args: &DualArgs, report: &Report) -> Result<()> {
+    let dual = report.dual.as_ref();
+    if let Some(found) = dual.and_then(|dual| dual.geodesics.as_ref()).filter(|_| args.edges == EdgesOut::Geodesic) {
+        let crossing = "pairs of geodesic edges meet elsewhere than at seeds";
+        demand_none(found.crossing_geodesics, crossing, args)?;
+        return demand_none(found.open_regions, "triangles of geodesic edges bound no region", args);
+    }
+    report.validity.demand()?;
+    let crossing = dual.and_then(|dual| dual.crossing_edges).unwrap_or(0);
+    demand_none(crossing, "pairs of straight edges cross", args)
 }
 
 fn demand_none(count: usize, what: &str, args: &DualArgs) -> Result<()> {
@@ -207,27 +250,27 @@ fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {
     if report.triangles == 0 {
         notes.push("there are no triangles: no three cells meet in the domain".into());
     }
-    let mut note = |count: usize, what: &str| {
-        if count > 0 {
-            notes.push(format!("{count} {what}"));
-        }
-    };
-    note(
-        report.validity.inverted,
-        "straight triangles come out inverted: the dual does not embed with straight edges and these seeds",
-    );
-    let orphans = report.diagram.as_ref().map_or(0, |diagram| diagram.orphan_components);
-    note(orphans, "orphans: parts of cells that do not hang together with their seeds");
-    if let Some(dual) = &report.dual {
-        note(dual.crossing_edges.unwrap_or(0), "pairs of straight edges cross");
-        if let Some(found) = &dual.geodesics {
-            note(found.crossing_geodesics, "pairs of geodesic edges meet elsewhere than at seeds");
-            note(found.open_regions, "triangles of geodesic edges bound no region, and have none in the file");
-        }
-    }
-    let empty = diagram.cell_sizes().iter().filter(|&&size| size == 0).count();
-    if empty > 0 {
-        notes.push(format!("{empty} seeds have no canvas vertex in their cell: raise --canvas-size"));
-    }
+    let dual = report.dual.as_ref();
+    let [crossing, open] = dual
+        .and_then(|dual| dual.geodesics.as_ref())
+        .map_or([0; 2], |found| [found.crossing_geodesics, found.open_regions]);
+    let counts = [
+        (
+            report.validity.inverted,
+            "straight triangles come out inverted: the dual does not embed with straight edges and these seeds",
+        ),
+        (
+            report.diagram.as_ref().map_or(0, |diagram| diagram.orphan_components),
+            "orphans: parts of cells that do not hang together with their seeds",
+        ),
+        (dual.and_then(|dual| dual.crossing_edges).unwrap_or(0), "pairs of straight edges cross"),
+        (crossing, "pairs of geodesic edges meet elsewhere than at seeds"),
+        (open, "triangles of geodesic edges bound no region, and have none in the file"),
+        (
+            diagram.cell_sizes().iter().filter(|&&size| size == 0).count(),
+            "seeds have no canvas vertex in their cell: raise --canvas-size",
+        ),
+    ];
+    notes.extend(counts.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")));
     notes
 }

@@ -38,9 +38,6 @@ pub(crate) struct InterpolateArgs {
     /// Symmetric tensors are no metrics (stresses, Hessians): carry each entry for itself
     #[arg(long)]
     pub(crate) linear_tensors: bool,
-    /// Write all figures as JSON
-    #[arg(long, value_name = "FILE")]
-    pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) run: Run,
 }

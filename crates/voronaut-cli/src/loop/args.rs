@@ -1,6 +1,6 @@
 //! What users of `voronaut loop` type.
 
-use crate::options::{MetricChoices, Run, default_memory_limit, not_negative, positive};
+use crate::options::{Memory, MetricChoices, Run, finite, not_negative, positive};
 use clap::{Args, value_parser};
 use std::path::PathBuf;
 use voronaut::recipe::{LoopOptions, MeshOptions};
@@ -67,12 +67,8 @@ pub(crate) struct LoopArgs {
     /// Sweeps in which the error of linear interpolation itself is lowered, at most
     #[arg(long, value_name = "SWEEPS", default_value_t = MeshOptions::default().polish)]
     pub(crate) polish: usize,
-    /// Refuse work that is estimated to need more memory than this
-    #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
-    pub(crate) memory_limit: f64,
-    /// Write all figures as JSON
-    #[arg(long, value_name = "FILE")]
-    pub(crate) report: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
     #[command(flatten)]
     pub(crate) run: Run,
 }
@@ -102,11 +98,8 @@ impl TransferArgs {
 pub(crate) struct Times(pub(crate) [f64; 2]);
 
 fn times(text: &str) -> Result<Times, String> {
-    let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[first, last]) if first.is_finite() && last.is_finite() => Ok(Times([first, last])),
-        _ => Err("not two times T0,T1".into()),
-    }
+    let times = finite(text).and_then(|numbers| numbers.try_into().ok());
+    times.map(Times).ok_or_else(|| "not two times T0,T1".into())
 }
 
 impl LoopArgs {
@@ -121,7 +114,7 @@ impl LoopArgs {
                 hausd: self.hausd,
                 lloyd: self.lloyd,
                 polish: self.polish,
-                memory_limit: crate::options::in_bytes(self.memory_limit),
+                memory_limit: self.memory.bytes(),
                 ..MeshOptions::default()
             },
             transfer: self.transfer.options(),

@@ -6,8 +6,9 @@ mod told;
 
 pub(crate) use args::{EXAMPLES, LoopArgs};
 
+use crate::account::ours;
 use crate::files;
-use crate::mesh::ours;
+use crate::options::refuse;
 use crate::progress::Bar;
 use solver::Shell;
 use std::path::{Path, PathBuf};
@@ -24,16 +25,16 @@ use voronaut_io::{Format, Given};
 pub(crate) fn run(args: &LoopArgs) -> Result<()> {
     let start = Instant::now();
     demand_writable(args)?;
-    files::set_threads(&args.run)?;
+    args.run.set_threads()?;
     args.metric_choices.bounds().check()?;
     let domain = match Given::read(&args.domain, None)? {
         Given::Plane(domain) => domain,
         Given::Surface(_) => {
             let help = "give a planar domain: Dimension 2, or a shape such as rect:0,0,1,1";
-            return Err(Error::Unsupported { what: "a loop on a surface".into(), help: help.into() });
+            return refuse([(true, "a loop on a surface", help)]);
         }
     };
-    let bar = Bar::new(args.run.quiet, args.run.verbose);
+    let bar = Bar::new(&args.run);
     let mut told = Told::new(args, start);
     let mut each = |step: &Step| {
         validity(&step.meshed.mesh).demand().map_err(ours)?;
@@ -56,10 +57,7 @@ pub(crate) fn run(args: &LoopArgs) -> Result<()> {
         recipe::adapt(&domain, source, &options, &bar, &mut each)?;
     }
     drop(bar);
-    if let Some(file) = &args.report {
-        voronaut_io::write(file, format!("{:#}\n", told.report()).as_bytes())?;
-    }
-    Ok(())
+    args.run.write_report(&format!("{:#}\n", told.report()))
 }
 
 /// The function that is followed.
@@ -80,20 +78,9 @@ fn function(args: &LoopArgs) -> Result<Expression> {
 /// Refuses, before any work, outputs that could not be written.
 fn demand_writable(args: &LoopArgs) -> Result<()> {
     Format::from_path(&args.out)?;
-    if args.metric_choices.background.is_some() {
-        let what = "a background mesh for a loop".into();
-        return Err(Error::Unsupported { what, help: "leave out --background: each mesh is the next one's".into() });
-    }
-    let mut places = vec![voronaut_io::place(&args.out)?, voronaut_io::place(&args.out.with_extension("sol"))?];
-    if let Some(file) = &args.report {
-        places.push(voronaut_io::place(file)?);
-    }
-    places.sort();
-    if places.windows(2).any(|two| two[0] == two[1]) {
-        let what = "two outputs have the same name";
-        return Err(Error::parse(args.out.display().to_string(), what, "give each output a name of its own"));
-    }
-    Ok(())
+    let help = "leave out --background: each mesh is the next one's";
+    refuse([(args.metric_choices.background.is_some(), "a background mesh for a loop", help)])?;
+    files::demand_apart([Some(args.out.as_path()), Some(&args.out.with_extension("sol")), args.run.report.as_deref()])
 }
 
 /// The file of a step's mesh.

@@ -1,8 +1,8 @@
 //! What is said of the steps of a loop.
 
 use super::LoopArgs;
+use crate::summary;
 use serde_json::{Value, json};
-use std::io::Write as _;
 use std::time::Instant;
 use voronaut::mesh::Mesh;
 use voronaut::recipe::Step;
@@ -33,12 +33,10 @@ impl<'a> Told<'a> {
             let error = error.map_or(String::new(), |error| format!(", error {error:.3e}"));
             let drift = drift.map_or(String::new(), |drift| format!(", masses kept to {drift:.1e}"));
             let (count, border) = (mesh.points.len(), step.boundary_vertices);
-            let line = format!(
+            summary::out(&format!(
                 "step {:>3}: {time}{count} vertices, {border} on the boundary{error}{drift}, {seconds:.2} s\n",
                 step.number
-            );
-            // Whoever closed the other end of a pipe has seen enough.
-            let _ = std::io::stdout().write_all(line.as_bytes());
+            ));
             step.meshed.notes.iter().for_each(|note| eprintln!("note: step {}: {note}", step.number));
         }
         self.steps.push(json!({

@@ -1,8 +1,6 @@
 //! What users of `voronaut mesh` type.
 
-use crate::options::{
-    Damage, MetricChoices, Outputs, Run, Show, default_memory_limit, in_bytes, not_negative, positive,
-};
+use crate::options::{Damage, Memory, MetricChoices, Outputs, Run, Show, not_negative, positive};
 use clap::{Args, value_parser};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -100,9 +98,8 @@ pub(crate) struct MeshArgs {
     /// Canvas vertices per seed, where a canvas is used
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = MeshOptions::default().canvas_size)]
     pub(crate) canvas_size: u32,
-    /// Refuse work that is estimated to need more memory than this
-    #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
-    pub(crate) memory_limit: f64,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
     #[command(flatten)]
     pub(crate) outputs: Outputs,
     #[command(flatten)]
@@ -132,10 +129,10 @@ impl MeshArgs {
             seeding: self.seeding,
             protection: self.protection,
             picking_radius: self.picking_radius,
-            net: self.net || self.outputs.show.contains(&Show::Protection),
+            net: self.net || self.outputs.shows(Show::Protection),
             canvas: self.canvas,
             canvas_size: self.canvas_size,
-            memory_limit: in_bytes(self.memory_limit),
+            memory_limit: self.memory.bytes(),
         }
     }
 
@@ -148,7 +145,7 @@ impl MeshArgs {
             "smooth_metric": self.metric_choices.smooth_metric, "tensor_order": self.metric_choices.tensor_order, "gradation": self.metric_choices.gradation,
             "norm": self.metric_choices.norm.to_string(), "recovery": self.metric_choices.recovery,
             "ar": self.features().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
-            "picture": self.outputs.picture, "pixels": self.outputs.pixels, "histograms": self.outputs.histograms, "report": self.outputs.report, "threads": self.run.threads,
+            "picture": self.outputs.picture, "pixels": self.outputs.pixels, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
             "repair": self.damage.repair,
         });
         if let (Value::Object(options), Value::Object(more)) = (&mut options, more) {

@@ -69,9 +69,6 @@ pub(crate) struct MetricArgs {
     /// The mesh on which a .sol metric is given, if that is not MESH
     #[arg(long, value_name = "MESH")]
     pub(crate) background: Option<PathBuf>,
-    /// Write all figures as JSON
-    #[arg(long, value_name = "FILE")]
-    pub(crate) report: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) run: Run,
 }

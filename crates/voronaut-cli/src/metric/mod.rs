@@ -5,7 +5,7 @@ mod sources;
 
 pub(crate) use args::{EXAMPLES, MetricArgs};
 
-use crate::files;
+use crate::{files, summary};
 use args::{Combine, LimitText};
 use serde_json::{Value, json};
 use std::time::Instant;
@@ -17,8 +17,8 @@ use voronaut_io::Document;
 /// Makes the metric and writes it.
 pub(crate) fn run(args: &MetricArgs) -> Result<()> {
     let start = Instant::now();
-    demand_writable(args)?;
-    files::set_threads(&args.run)?;
+    files::demand_solution(&args.out, &args.run)?;
+    args.run.set_threads()?;
     let pipeline = Pipeline {
         norm: args.norm,
         target_complexity: args.complexity,
@@ -27,38 +27,15 @@ pub(crate) fn run(args: &MetricArgs) -> Result<()> {
         gradation_factor: args.gradation,
     };
     let Document { mesh, notes, .. } = voronaut_io::read(&args.mesh)?;
-    crate::summary::notes(&notes, args.run.quiet);
+    summary::notes(&notes, args.run.quiet);
     mesh.check_numbers()?;
     let sources = args.metric.iter().map(|text| sources::source(text, &mesh, args)).collect::<Result<Vec<_>>>()?;
     let made = pipeline.run(&mesh, &sources)?;
-    let figures = Figures::of(&made);
     let values = SolutionValues::Tensor(made.tensors.iter().map(|m| [m.xx, m.xy, m.yy]).collect());
     voronaut_io::write_solution(&Solution { dimension: 2, values }, &args.out)?;
-    let told = told(args, &mesh, &made, &figures, start.elapsed().as_secs_f64());
-    if let Some(file) = &args.report {
-        voronaut_io::write(file, format!("{told:#}\n").as_bytes())?;
-    }
-    crate::summary::print_metric(&args.out.display().to_string(), &told, &args.run);
-    Ok(())
-}
-
-fn demand_writable(args: &MetricArgs) -> Result<()> {
-    let ending = args.out.extension().map(std::ffi::OsStr::to_ascii_lowercase);
-    if ending.is_none_or(|ending| ending != "sol" && ending != "solb") {
-        let what = "the name does not end in .sol or .solb";
-        return Err(Error::parse(
-            args.out.display().to_string(),
-            what,
-            "metrics at vertices are written to a file .sol or .solb",
-        ));
-    }
-    let own = voronaut_io::place(&args.out)?;
-    if let Some(file) = &args.report
-        && voronaut_io::place(file)? == own
-    {
-        let what = "two outputs have the same name";
-        return Err(Error::parse(file.display().to_string(), what, "give each output a name of its own"));
-    }
+    let told = told(args, &mesh, &made, start.elapsed().as_secs_f64());
+    args.run.write_report(&format!("{told:#}\n"))?;
+    summary::print_metric(&args.out, &told, &args.run);
     Ok(())
 }
 
@@ -74,40 +51,23 @@ fn combination(args: &MetricArgs) -> Result<Combination> {
     }
 }
 
-/// Sizes of a metric at its vertices.
-struct Figures {
-    least: f64,
-    greatest: f64,
-    anisotropy: f64,
-}
-
-impl Figures {
-    fn of(made: &Outcome) -> Self {
-        let none = Self { least: f64::INFINITY, greatest: 0.0, anisotropy: 1.0 };
-        made.tensors.iter().fold(none, |found, tensor| {
-            let e = tensor.eigen();
-            Self {
-                least: found.least.min(e.large.powf(-0.5)),
-                greatest: found.greatest.max(e.small.powf(-0.5)),
-                anisotropy: found.anisotropy.max(tensor.anisotropy()),
-            }
-        })
-    }
-}
-
-fn told(args: &MetricArgs, mesh: &Mesh, made: &Outcome, figures: &Figures, seconds: f64) -> Value {
+fn told(args: &MetricArgs, mesh: &Mesh, made: &Outcome, seconds: f64) -> Value {
+    let eigen = || made.tensors.iter().map(|m| m.eigen());
+    let least = eigen().map(|e| e.large.powf(-0.5)).fold(f64::INFINITY, f64::min);
+    let greatest = eigen().map(|e| e.small.powf(-0.5)).fold(0.0, f64::max);
+    let anisotropy = made.tensors.iter().map(|m| m.anisotropy()).fold(1.0, f64::max);
     let limit = |text: &Option<LimitText>| text.as_ref().map(LimitText::as_used);
     json!({
         "vertices": mesh.points.len(), "triangles": mesh.triangles.len(),
         "complexity": made.complexity, "expected_vertices": (made.complexity / COMPLEXITY_PER_VERTEX).round() as u64,
-        "size": { "min": figures.least, "max": figures.greatest }, "anisotropy": { "max": figures.anisotropy },
+        "size": { "min": least, "max": greatest }, "anisotropy": { "max": anisotropy },
         "factor": made.factor, "touched": made.touched,
         "seconds": { "total": seconds }, "peak_memory_bytes": voronaut_io::peak_memory_bytes(), "version": env!("CARGO_PKG_VERSION"),
         "options": {
             "mesh": args.mesh, "metric": args.metric, "out": args.out, "norm": args.norm.to_string(),
             "combine": format!("{:?}", args.combine).to_lowercase(), "weights": args.weights, "complexity": args.complexity,
             "h_min": limit(&args.h_min), "h_max": limit(&args.h_max), "a_max": limit(&args.a_max),
-            "gradation": args.gradation, "recovery": args.recovery, "background": args.background, "report": args.report,
+            "gradation": args.gradation, "recovery": args.recovery, "background": args.background, "report": args.run.report,
             "threads": args.run.threads,
         },
     })
