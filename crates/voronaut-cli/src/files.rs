@@ -7,7 +7,6 @@ use voronaut::mesh::{Mesh, SolutionValues, Solutions};
 use voronaut::metric::MetricField;
 use voronaut::quality::{self, Histograms};
 use voronaut::{Error, Result};
-use voronaut_draw::PictureFormat;
 use voronaut_io::{Format, Report};
 
 /// Refuses, before any work, outputs that could not be written: endings, directories, one name used twice. `more` is
@@ -15,7 +14,7 @@ use voronaut_io::{Format, Report};
 pub(crate) fn demand_writable(mesh: Option<&Path>, more: Option<&Path>, outputs: &Outputs, run: &Run) -> Result<()> {
     let (picture, histograms) = (outputs.picture.as_deref(), outputs.histograms.as_deref());
     mesh.map(Format::from_path).transpose()?;
-    picture.map(PictureFormat::from_path).transpose()?;
+    picture.map(voronaut_draw::is_png).transpose()?;
     if let Some(path) = histograms.filter(|path| !ends_in(path, &["svg"])) {
         let what = format!("histograms in {}", path.display());
         return Err(Error::Unsupported { what, help: "end the name of the histograms in .svg".into() });

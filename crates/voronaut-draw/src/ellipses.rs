@@ -1,6 +1,7 @@
 //! The metric as ellipses: its balls around a well-spaced subset of the vertices.
 
-use super::frame::{Frame, PathData};
+use super::frame::PathData;
+use super::strokes::Sheet;
 use super::{colours, palette};
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -21,14 +22,8 @@ const SPACING: f64 = 2.1;
 ///
 /// # Errors
 /// [`Error::Metric`] where the metric is not positive definite at a vertex.
-pub(super) fn ellipses(
-    svg: &mut String,
-    mesh: &Mesh,
-    edges: &Edges,
-    metric: &dyn MetricField,
-    frame: &Frame,
-    faint: bool,
-) -> Result<()> {
+pub(super) fn ellipses(svg: &mut String, sheet: &Sheet, metric: &dyn MetricField, faint: bool) -> Result<()> {
+    let Sheet { mesh, edges, frame, .. } = *sheet;
     let tensors = tensors(mesh, edges, metric)?;
     let radius = (mesh.points.len() as f64 / (SPACING * SPACING * LIMIT)).sqrt().max(1.0);
     let mut path = PathData::default();

@@ -2,7 +2,7 @@
 
 use super::colours;
 use super::frame::{Frame, PathData};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use voronaut::mesh::Mesh;
 use voronaut::quality::Edges;
@@ -49,43 +49,55 @@ impl Pen {
     }
 }
 
-/// One SVG path per class of line width: all edges between at least so many triangles; `heights` holds each triangle's
-/// least height in pixels.
-pub(super) fn edges_of(svg: &mut String, mesh: &Mesh, edges: &Edges, sides: usize, heights: &[f64], frame: &Frame) {
-    let inner = edges.iter().filter(|(_, half_edges)| half_edges.len() >= sides);
-    lines(svg, mesh, inner, INNER, colours::EDGE, heights, frame);
+/// A mesh on paper.
+pub(super) struct Sheet<'a> {
+    pub(super) mesh: &'a Mesh,
+    /// Of the triangles that are drawn.
+    pub(super) edges: &'a Edges<'a>,
+    /// The least height of each of these triangles, in pixels.
+    pub(super) heights: &'a [f64],
+    pub(super) frame: &'a Frame,
 }
 
-/// The same of some edges, by a pen, for the height of the flatter triangle at each, and in a colour.
-pub(super) fn lines<'a>(
-    svg: &mut String,
-    mesh: &Mesh,
-    edges: impl Iterator<Item = ([u32; 2], &'a [(u64, u32)])>,
-    pen: Pen,
-    ink: &str,
-    heights: &[f64],
-    frame: &Frame,
-) {
-    let mut classes: BTreeMap<usize, PathData> = BTreeMap::new();
-    for (ends, half_edges) in edges {
-        let height = half_edges.iter().map(|&(_, h)| heights[h as usize / 3]).fold(f64::INFINITY, f64::min);
-        let path = classes.entry(pen.class(height)).or_default();
-        path.polyline(&ends.map(|v| frame.place(mesh.point(v))), false);
+impl Sheet<'_> {
+    /// One SVG path per class of line width: all edges between at least so many triangles.
+    pub(super) fn edges_of(&self, svg: &mut String, sides: usize) {
+        let inner = self.edges.iter().filter(|(_, half_edges)| half_edges.len() >= sides);
+        self.lines(svg, inner, INNER, colours::EDGE);
     }
-    pen.draw(svg, &classes, ink, frame);
-}
 
-/// Boundary edges and labelled edges, stronger than the rest; thinner where the boundary itself is fine.
-pub(super) fn boundary(svg: &mut String, mesh: &Mesh, edges: &Edges, frame: &Frame) {
-    let labelled = mesh.edges.iter().copied().filter(|&[a, b]| edges.contains(a, b));
-    let boundary = edges.boundary().into_iter().map(|h| edges.ends(h));
-    let mut all: Vec<[u32; 2]> = boundary.chain(labelled).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-    all.sort_unstable();
-    all.dedup();
-    let mut path = PathData::default();
-    for ends in all {
-        path.polyline(&ends.map(|v| frame.place(mesh.point(v))), false);
+    /// The same of some edges, by a pen, for the height of the flatter triangle at each, and in a colour.
+    pub(super) fn lines<'e>(
+        &self,
+        svg: &mut String,
+        edges: impl Iterator<Item = ([u32; 2], &'e [(u64, u32)])>,
+        pen: Pen,
+        ink: &str,
+    ) {
+        let mut classes: BTreeMap<usize, PathData> = BTreeMap::new();
+        for (ends, half_edges) in edges {
+            let heights = half_edges.iter().map(|&(_, h)| self.heights[h as usize / 3]);
+            let path = classes.entry(pen.class(heights.fold(f64::INFINITY, f64::min))).or_default();
+            path.polyline(&self.place(ends), false);
+        }
+        pen.draw(svg, &classes, ink, self.frame);
     }
-    let (ink, width) = (colours::BOUNDARY, frame.quanta(BOUNDARY_WIDTH));
-    path.draw(svg, &format!(r#"fill="none" stroke-linecap="round" stroke="{ink}" stroke-width="{width:.1}""#));
+
+    /// Boundary edges and labelled edges, stronger than the rest.
+    pub(super) fn boundary(&self, svg: &mut String) {
+        let labelled = self.mesh.edges.iter().copied().filter(|&[a, b]| self.edges.contains(a, b));
+        let boundary = self.edges.boundary().into_iter().map(|h| self.edges.ends(h));
+        let all: BTreeSet<[u32; 2]> = boundary.chain(labelled).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        let mut path = PathData::default();
+        for ends in all {
+            path.polyline(&self.place(ends), false);
+        }
+        let (ink, width) = (colours::BOUNDARY, self.frame.quanta(BOUNDARY_WIDTH));
+        path.draw(svg, &format!(r#"fill="none" stroke-linecap="round" stroke="{ink}" stroke-width="{width:.1}""#));
+    }
+
+    /// Corners of a triangle or ends of an edge, in quanta.
+    pub(super) fn place<const N: usize>(&self, vertices: [u32; N]) -> [[i64; 2]; N] {
+        vertices.map(|v| self.frame.place(self.mesh.point(v)))
+    }
 }

@@ -3,7 +3,8 @@
 use super::cells::{self, Layers};
 use super::colours::Tint;
 use super::frame::{Frame, PathData};
-use super::{colours, ellipses, shades, strokes, unmet};
+use super::strokes::Sheet;
+use super::{colours, ellipses, shades, unmet};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use voronaut::diagram::Cells;
@@ -47,6 +48,7 @@ pub fn svg_with(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture
     let heights: Vec<f64> = triangles.iter().map(|&t| least_height(mesh, t)).collect();
     let frame = frame(mesh, &triangles, &heights, *picture, layers.cells.as_ref());
     let pixels: Vec<f64> = heights.iter().map(|&height| frame.pixels(height)).collect();
+    let sheet = Sheet { mesh, edges: &edges, heights: &pixels, frame: &frame };
 
     let below = layers.unmet.as_ref().map_or(0.0, |_| unmet::legend_height(&frame));
     let mut text = frame.paper(below, "rect", "fill=\"#fff\"");
@@ -67,7 +69,7 @@ pub fn svg_with(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture
             }
             (None, None) => vec![colours::DOMAIN.to_string(); triangles.len()],
         };
-        fill(&mut text, mesh, &frame, &triangles, &fills);
+        fill(&mut text, &sheet, &triangles, &fills);
     }
     if let Some(faces) = &layers.witnesses {
         cells::witnesses(&mut text, faces, &frame);
@@ -76,12 +78,12 @@ pub fn svg_with(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture
         let sides = if layers.cells.is_some() { 1 } else { 2 };
         let opacity = layers.unmet.as_ref().map_or(1.0, |_| unmet::PALE);
         let _ = writeln!(text, r#"<g stroke-opacity="{opacity}">"#);
-        strokes::edges_of(&mut text, mesh, &edges, sides, &pixels, &frame);
+        sheet.edges_of(&mut text, sides);
         text.push_str("</g>\n");
     }
     if picture.ellipses {
         let is_faint = picture.mesh || layers.cells.is_some();
-        ellipses::ellipses(&mut text, mesh, &edges, metric.ok_or_else(no_metric)?, &frame, is_faint)?;
+        ellipses::ellipses(&mut text, &sheet, metric.ok_or_else(no_metric)?, is_faint)?;
     }
     let thickness = layers.cells.as_ref().map_or(10.0, |found| cells::typical(found, &frame)[0]);
     if !layers.grids.is_empty() {
@@ -94,10 +96,10 @@ pub fn svg_with(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture
         cells::seeds(&mut text, found, &frame);
         cells::border(&mut text, found, &frame);
     } else {
-        strokes::boundary(&mut text, mesh, &edges, &frame);
+        sheet.boundary(&mut text);
     }
     if let Some(found) = &layers.unmet {
-        unmet::edges(&mut text, mesh, &edges, found, &pixels, &frame);
+        unmet::edges(&mut text, &sheet, found);
         unmet::legend(&mut text, found, &frame);
     }
     text.push_str("</svg>\n");
@@ -126,12 +128,12 @@ fn no_metric() -> Error {
 }
 
 /// One path per colour. Each is also stroked a little, or the background would shine through between neighbours.
-fn fill(text: &mut String, mesh: &Mesh, frame: &Frame, triangles: &[[u32; 3]], colours: &[String]) {
+fn fill(text: &mut String, sheet: &Sheet, triangles: &[[u32; 3]], colours: &[String]) {
     let mut paths: BTreeMap<&str, PathData> = BTreeMap::new();
     for (&triangle, colour) in triangles.iter().zip(colours) {
-        paths.entry(colour).or_default().polyline(&triangle.map(|v| frame.place(mesh.point(v))), true);
+        paths.entry(colour).or_default().polyline(&sheet.place(triangle), true);
     }
-    let _ = writeln!(text, r#"<g stroke-width="{:.1}" stroke-linejoin="round">"#, frame.quanta(0.4));
+    let _ = writeln!(text, r#"<g stroke-width="{:.1}" stroke-linejoin="round">"#, sheet.frame.quanta(0.4));
     for (colour, path) in paths {
         path.draw(text, &format!(r#"fill="{colour}" stroke="{colour}""#));
     }

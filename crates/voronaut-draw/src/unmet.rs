@@ -1,11 +1,10 @@
 //! The edges that are not of unit length, over a mesh, and a legend of their causes.
 
 use super::frame::{Frame, PathData};
-use super::strokes::{self, Pen};
+use super::strokes::{Pen, Sheet};
 use super::{colours, letters};
 use std::fmt::Write;
-use voronaut::mesh::Mesh;
-use voronaut::quality::{Cause, CauseFigures, Edges, Unmet};
+use voronaut::quality::{Cause, CauseFigures, Unmet};
 
 /// Edges of a cause: wider than those of the mesh, and never too thin to be seen; those of the boundary wider than that, too.
 /// In pixels.
@@ -20,17 +19,16 @@ const COLUMNS: [f64; 2] = [0.02, 0.245];
 /// How opaque the mesh is under these edges.
 pub(super) const PALE: f64 = 0.3;
 
-/// Edges by cause, the too long ones light, the too short ones, which are small, dark and over them; `heights` holds each
-/// triangle's least height in pixels.
-pub(super) fn edges(svg: &mut String, mesh: &Mesh, edges: &Edges, unmet: &Unmet, heights: &[f64], frame: &Frame) {
-    let all: Vec<_> = edges.iter().collect();
+/// Edges by cause, the too long ones light, the too short ones, which are small, dark and over them.
+pub(super) fn edges(svg: &mut String, sheet: &Sheet, unmet: &Unmet) {
+    let all: Vec<_> = sheet.edges.iter().collect();
     for is_short in [false, true] {
         for cause in Cause::ALL {
             let found = unmet.edges.iter().filter(|edge| edge.cause == cause && edge.is_short() == is_short);
             let found = found.filter_map(|edge| all.binary_search_by_key(&edge.edge, |(ends, _)| *ends).ok());
             let ink = colours::cause(cause as usize, is_short);
             let pen = if cause == Cause::Boundary { KEPT_PEN } else { PEN };
-            strokes::lines(svg, mesh, found.map(|i| all[i]), pen, &ink, heights, frame);
+            sheet.lines(svg, found.map(|i| all[i]), pen, &ink);
         }
     }
 }

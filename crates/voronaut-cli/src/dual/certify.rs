@@ -1,6 +1,6 @@
 //! `voronaut dual --certify`: the certificate, and how it is told.
 
-use super::args::DualArgs;
+use super::DualArgs;
 use voronaut::certificate::{Certificate, Condition, Outcome, Verdict};
 use voronaut::diagram::Diagram;
 use voronaut::metric::MetricField;

@@ -117,15 +117,10 @@ pub(crate) fn canvas_size(text: &str) -> Result<CanvasSize, String> {
 }
 
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("not a positive number".into()),
-    }
+    not_negative(text).ok().filter(|&value| value > 0.0).ok_or_else(|| "not a positive number".into())
 }
 
 pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
-        _ => Err("not a number from 0 up".into()),
-    }
+    let value = text.parse().ok().filter(|value: &f64| value.is_finite() && *value >= 0.0);
+    value.ok_or_else(|| "not a number from 0 up".into())
 }

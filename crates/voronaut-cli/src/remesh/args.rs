@@ -100,9 +100,9 @@ pub(crate) struct RemeshArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with_all = ["quiet", "verbose"])]
     pub(crate) verbosity: Option<i32>,
     #[command(flatten)]
-    unused: Unused,
-    #[command(flatten)]
     run: Run,
+    #[command(flatten)]
+    unused: Unused,
 }
 
 /// Options of mmg that change nothing here.

@@ -5,8 +5,7 @@
 //! | `view` | from where a scene is seen; from space to pixels |
 //! | `depth` | which triangle is nearest, at nine samples per pixel |
 //! | `light` | from samples to shaded pixels |
-//! | `visible` | what of a line is in front |
-//! | `draw` | the picture: an image, and lines over it |
+//! | `draw` | the picture: an image, and lines over it as far as they are in front |
 //! | `faces` | scenes of meshes, and of values on surfaces |
 //! | `coloured`, `borders` | scenes of coloured canvases: cells with smooth borders |
 
@@ -19,7 +18,6 @@ mod light;
 #[cfg(all(test, feature = "png"))]
 mod tests;
 mod view;
-mod visible;
 
 pub use draw::draw_surface;
 pub use view::View;
