@@ -1,6 +1,6 @@
 //! Cells of a diagram, their witnesses, and geodesics between seeds.
 
-use super::colours::{self, Cell, Tint};
+use super::colours::{self, Tint};
 use super::frame::{Frame, PathData};
 use super::palette;
 use super::shades::Protection;
@@ -40,11 +40,11 @@ pub struct Layers {
 
 /// The cells, coloured so that neighbours differ: one SVG path per colour and width of line.
 pub(super) fn cells(svg: &mut String, cells: &Cells, frame: &Frame, tint: Tint) {
-    let hues = palette::colour(cells.outlines.len(), &cells.neighbours, Cell::HUES, Cell::likeness);
+    let hues = palette::colour(cells.outlines.len(), &cells.neighbours, colours::HUES, colours::likeness);
     let ink = if tint == Tint::Pale { colours::PALE_BORDER } else { colours::CELL_BORDER };
     svg.push_str("<g stroke-linejoin=\"round\">\n");
     for ((class, (hue, shade)), path) in regions(cells, frame, |i| (hues[i], shade(i))) {
-        path.draw(svg, &frame.paint([&Cell { hue, shade, tint }.fill(), ink], BORDER.width(class)));
+        path.draw(svg, &frame.paint([&colours::cell(hue, shade, tint), ink], BORDER.width(class)));
     }
     svg.push_str("</g>\n");
     // Orphans over the cells, so that even the smallest is seen.
@@ -152,7 +152,7 @@ pub(super) fn typical(cells: &Cells, frame: &Frame) -> [f64; 2] {
 
 /// A little variation within a hue, the same for a seed at every run.
 fn shade(i: usize) -> usize {
-    (0.618_034 * i as f64 * Cell::SHADES as f64) as usize % Cell::SHADES
+    (0.618_034 * i as f64 * colours::SHADES as f64) as usize % colours::SHADES
 }
 
 fn place(points: &[Point], corners: &[u32], is_closed: bool, frame: &Frame) -> Vec<[i64; 2]> {

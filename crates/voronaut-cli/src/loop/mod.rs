@@ -67,8 +67,15 @@ pub(crate) struct LoopArgs {
     /// Which of the solver's solutions on vertices the mesh is for, from 1
     #[arg(long, value_name = "I", default_value_t = 1, value_parser = value_parser!(u32).range(1..))]
     pub(crate) field: u32,
-    #[command(flatten)]
-    pub(crate) transfer: TransferArgs,
+    /// Carry solutions by interpolation, which is fast and lets integrals drift, instead of keeping them
+    #[arg(long)]
+    interpolate: bool,
+    /// Let values carried next to a front be beyond those on both its sides, for the least L2 distance
+    #[arg(long, conflicts_with = "interpolate")]
+    overshoot: bool,
+    /// Symmetric tensors are no metrics: carry each entry for itself
+    #[arg(long)]
+    linear_tensors: bool,
     #[command(flatten)]
     pub(crate) metric_choices: MetricChoices,
     /// How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]
@@ -84,26 +91,6 @@ pub(crate) struct LoopArgs {
     pub(crate) memory: Memory,
     #[command(flatten)]
     pub(crate) run: Run,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct TransferArgs {
-    /// Carry solutions by interpolation, which is fast and lets integrals drift, instead of keeping them
-    #[arg(long)]
-    pub(crate) interpolate: bool,
-    /// Let values carried next to a front be beyond those on both its sides, for the least L2 distance
-    #[arg(long, conflicts_with = "interpolate")]
-    pub(crate) overshoot: bool,
-    /// Symmetric tensors are no metrics: carry each entry for itself
-    #[arg(long)]
-    pub(crate) linear_tensors: bool,
-}
-
-impl TransferArgs {
-    fn options(&self) -> TransferOptions {
-        let overshoot = if self.overshoot { Overshoot::Kept } else { Overshoot::Spread };
-        TransferOptions { conservative: !self.interpolate, overshoot, linear_tensors: self.linear_tensors }
-    }
 }
 
 fn times(text: &str) -> std::result::Result<[f64; 2], String> {
@@ -125,7 +112,11 @@ impl LoopArgs {
                 memory_limit: self.memory.bytes(),
                 ..MeshOptions::default()
             },
-            transfer: self.transfer.options(),
+            transfer: TransferOptions {
+                conservative: !self.interpolate,
+                overshoot: if self.overshoot { Overshoot::Kept } else { Overshoot::Spread },
+                linear_tensors: self.linear_tensors,
+            },
         }
     }
 }
@@ -259,7 +250,7 @@ impl<'a> Told<'a> {
                 "out": args.out, "every": args.every, "time": args.time, "field": args.field,
                 "norm": metric.norm.to_string(), "recovery": metric.recovery, "h_min": metric.bounds.h_min,
                 "h_max": metric.bounds.h_max, "a_max": metric.bounds.a_max, "smooth_metric": metric.smooth_metric,
-                "gradation": metric.gradation, "conservative": transfer.conservative, "overshoot": args.transfer.overshoot,
+                "gradation": metric.gradation, "conservative": transfer.conservative, "overshoot": args.overshoot,
                 "linear_tensors": transfer.linear_tensors, "mesh": options.mesh, "threads": args.run.threads,
             },
         })

@@ -1,7 +1,6 @@
 //! Scenes of coloured canvases: cells that are cut out of triangles.
 
-use super::super::colours::Cell;
-use super::super::palette;
+use super::super::{colours, palette};
 use super::borders::Borders;
 use super::{Fill, Scene, SceneTriangle, Stroke, existing};
 use voronaut::geometry::{Point3, Vector3};
@@ -87,7 +86,7 @@ impl Fills {
         let mut neighbours: Vec<[u32; 2]> = borders.edges().iter().filter_map(|&ends| pair(ends)).collect();
         neighbours.sort_unstable();
         neighbours.dedup();
-        let hues = palette::colour(used.len(), &neighbours, Cell::HUES, Cell::likeness);
+        let hues = palette::colour(used.len(), &neighbours, colours::HUES, colours::likeness);
         Self { used, hues }
     }
 

@@ -2,10 +2,10 @@
 
 use super::super::frame::PathData;
 use super::super::simplify::simplify;
-use super::{Pen, Scene, Stroke};
 use super::depth::SAMPLES;
 use super::light::Bodies;
 use super::view::{Camera, View};
+use super::{Pen, Scene, Stroke};
 use voronaut::Result;
 
 /// Lines are straightened by at most so many pixels.

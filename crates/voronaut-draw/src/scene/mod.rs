@@ -22,7 +22,7 @@ mod view;
 pub use draw::draw_surface;
 pub use view::View;
 
-use super::colours::{self, Cell, Tint};
+use super::colours::{self, Tint};
 use voronaut::geometry::{Point3, Vector3};
 
 /// Triangles and lines in space, to be drawn.
@@ -111,9 +111,7 @@ impl Fill {
     fn colour(self) -> String {
         match self {
             Fill::Plain => colours::SURFACE.into(),
-            Fill::Cell { hue, shade } => {
-                Cell { hue: hue % Cell::HUES, shade: shade % Cell::SHADES, tint: Tint::Full }.fill()
-            }
+            Fill::Cell { hue, shade } => colours::cell(hue, shade, Tint::Full),
             Fill::Level { region, share } => colours::fill(region, share.clamp(0.0, 1.0)),
         }
     }

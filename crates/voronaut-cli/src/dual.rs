@@ -1,7 +1,5 @@
 //! `voronaut dual`: diagram and dual of the seeds given.
 
-pub(crate) mod certify;
-
 use crate::options::{CanvasSize, Damage, EdgesOut, Memory, MetricChoices, Outputs, Run, Show, canvas_size, refuse};
 use crate::progress::{Bar, Stages};
 use crate::seeds::SeedFile;
@@ -10,7 +8,7 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use voronaut::canvas::{self, Canvas};
-use voronaut::certificate::Constants;
+use voronaut::certificate::{Certificate, Constants};
 use voronaut::diagram::{self, Diagram, Kind, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
 use voronaut::domain::Domain;
 use voronaut::dual::Road;
@@ -172,7 +170,8 @@ fn in_plane(args: &DualArgs, domain: &Domain, mended: &Mended, mut stages: Stage
     if net.is_some() {
         stages.end("net");
     }
-    report.certificate = certify::certificate(args, &diagram, metric, &exact, net.as_ref());
+    let certified = net.as_ref().filter(|_| args.is_certified());
+    report.certificate = certified.map(|net| Certificate::new(&diagram, metric, &exact, net, args.constants));
     if report.certificate.is_some() {
         stages.end("certificate");
     }
