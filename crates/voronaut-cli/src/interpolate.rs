@@ -154,14 +154,9 @@ impl Told<'_> {
     }
 
     fn field(&self, carried: &Carried) -> Value {
-        let extents = |all: &[Extent]| {
-            let mut all = json!(all);
-            for extent in all.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
-                if carried.field.kind == Kind::Metric {
-                    extent.remove("mass");
-                }
-            }
-            all
+        let extents = |all: &[Extent]| match carried.field.kind {
+            Kind::Metric => all.iter().map(|extent| json!({ "min": extent.min, "max": extent.max })).collect(),
+            Kind::Linear(_) => json!(all),
         };
         json!({
             "at": place(carried), "kind": self.kind(carried), "components": carried.field.components(),

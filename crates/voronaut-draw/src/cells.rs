@@ -3,7 +3,7 @@
 use super::colours::{self, Tint};
 use super::frame::{Frame, PathData};
 use super::palette;
-use super::shades::Protection;
+use super::shades::{Protection, in_order};
 use super::simplify::simplify;
 use super::strokes::{Pen, ROUND, ROUND_JOINS};
 use std::collections::BTreeMap;
@@ -145,8 +145,7 @@ fn thickness(outlines: &[Outline], frame: &Frame) -> f64 {
 
 /// The thickness that half of the cells reach, and that which one in fifty does not, in pixels.
 pub(super) fn typical(cells: &Cells, frame: &Frame) -> [f64; 2] {
-    let mut all: Vec<f64> = cells.outlines.iter().filter(|c| !c.is_empty()).map(|c| thickness(c, frame)).collect();
-    all.sort_unstable_by(f64::total_cmp);
+    let all = in_order(cells.outlines.iter().filter(|c| !c.is_empty()).map(|c| thickness(c, frame)));
     [2, 50].map(|part| all.get(all.len() / part).copied().unwrap_or(1.0))
 }
 

@@ -59,14 +59,20 @@ pub(super) fn sizes(areas: impl Iterator<Item = f64>, labels: &[i32]) -> Vec<(us
     regions.sort_unstable();
     regions.dedup();
     let sizes: Vec<f64> = areas.map(f64::ln).collect();
-    let mut sorted: Vec<f64> = sizes.iter().copied().filter(|size| size.is_finite()).collect();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied().unwrap_or(0.0);
+    let finite = in_order(sizes.iter().copied().filter(|size| size.is_finite()));
+    let at = |share: f64| finite.get((share * finite.len() as f64) as usize).copied().unwrap_or(0.0);
     let (low, high) = (at(0.01), at(0.99));
     let missing = (4.0_f64.ln() - (high - low)).max(0.0);
     let [low, high] = [low - 0.5 * missing, high + 0.5 * missing];
     let share = |size: f64| ((high - size) / (high - low)).clamp(0.0, 1.0);
     labels.iter().zip(sizes).map(|(label, size)| (regions.binary_search(label).unwrap_or(0), share(size))).collect()
+}
+
+/// Numbers from the least to the greatest.
+pub(super) fn in_order(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut numbers: Vec<f64> = numbers.collect();
+    numbers.sort_unstable_by(f64::total_cmp);
+    numbers
 }
 
 /// The fill of each triangle by what [`sizes`] says of it.

@@ -118,7 +118,12 @@ fn frame(mesh: &Mesh, triangles: &[[u32; 3]], heights: &[f64], picture: Picture,
     // Lines between cells and along triangles are drawn: both tell how fine the paper must be.
     let coarse = Frame::new(bounds, width, |_| 1.0);
     let thin = cells.map_or(f64::INFINITY, |found| cells::typical(found, &coarse)[1]);
-    let drawn = if picture.mesh || cells.is_none() { low_percentile(heights) } else { f64::INFINITY };
+    let drawn = if picture.mesh || cells.is_none() {
+        let heights = shades::in_order(heights.iter().copied().filter(|height| *height > 0.0));
+        heights.get(heights.len() / 50).copied().unwrap_or(1.0)
+    } else {
+        f64::INFINITY
+    };
     Frame::new(bounds, width, |scale| thin.min(scale * drawn))
 }
 
@@ -138,12 +143,6 @@ fn fill(text: &mut String, sheet: &Sheet, triangles: &[[u32; 3]], colours: &[Str
         path.draw(text, &format!(r#"fill="{colour}" stroke="{colour}""#));
     }
     text.push_str("</g>\n");
-}
-
-fn low_percentile(heights: &[f64]) -> f64 {
-    let mut sorted: Vec<f64> = heights.iter().copied().filter(|height| *height > 0.0).collect();
-    sorted.sort_unstable_by(f64::total_cmp);
-    sorted.get(sorted.len() / 50).copied().unwrap_or(1.0)
 }
 
 fn double_area(mesh: &Mesh, triangle: [u32; 3]) -> f64 {

@@ -1,6 +1,7 @@
 //! The picture of a scene: an image of its triangles, and its lines over it, as far as they are in front.
 
 use super::super::frame::PathData;
+use super::super::shades::in_order;
 use super::super::simplify::simplify;
 use super::depth::SAMPLES;
 use super::light::Bodies;
@@ -70,8 +71,7 @@ fn lines(text: &mut String, scene: &Scene, stroke: Stroke, screen: &Screen, came
 /// The width of lines in pixels: the finer the mesh they make, the thinner.
 fn width(pen: &Pen, lines: &[Vec<[f64; 3]>]) -> f64 {
     let length = |line: &Vec<[f64; 3]>| line.windows(2).map(|ends| distance(ends[0], ends[1])).sum::<f64>();
-    let mut lengths: Vec<f64> = lines.iter().map(length).collect();
-    lengths.sort_unstable_by(f64::total_cmp);
+    let lengths = in_order(lines.iter().map(length));
     let typical = lengths.get(lengths.len() / 2).copied().unwrap_or(0.0);
     if pen.share > 0.0 { (pen.share * typical).clamp(THINNEST, pen.widest) } else { pen.widest }
 }
