@@ -58,20 +58,21 @@ pub(crate) fn on_surface(
 
 /// The parts that are the same for plane and surface, and the options as used.
 fn report(meshed: &Meshed, found: Validity, figures: &MetricQuality, options: Value) -> Report {
-    let mut report = Report::new(found, meshed.mesh.points.len(), meshed.mesh.triangles.len()).with_quality(figures);
-    report.star_set = meshed.star_set;
-    if meshed.star_set.is_none() {
-        report.dual = Some(meshed.dual.clone());
-        report.relaxation = Some(meshed.relaxation.clone());
-        report.polished.clone_from(&meshed.polished);
+    let is_voronoi = meshed.star_set.is_none();
+    let (vertices, triangles) = (meshed.mesh.points.len(), meshed.mesh.triangles.len());
+    Report {
+        star_set: meshed.star_set,
+        dual: is_voronoi.then(|| meshed.dual.clone()),
+        relaxation: is_voronoi.then(|| meshed.relaxation.clone()),
+        polished: meshed.polished.clone().filter(|_| is_voronoi),
+        canvas: meshed.canvas.clone(),
+        diagram: meshed.diagram.clone(),
+        metric_scale: Some(meshed.metric_scale),
+        net: meshed.net.as_ref().map(NetFigures::of),
+        protection: meshed.protection,
+        notes: meshed.notes.clone(),
+        seconds: Seconds { stages: meshed.seconds.clone(), total: 0.0 },
+        options,
+        ..Report::new(found, vertices, triangles).with_quality(figures)
     }
-    report.canvas.clone_from(&meshed.canvas);
-    report.diagram.clone_from(&meshed.diagram);
-    report.metric_scale = Some(meshed.metric_scale);
-    report.net = meshed.net.as_ref().map(NetFigures::of);
-    report.protection = meshed.protection;
-    report.notes.clone_from(&meshed.notes);
-    report.seconds = Seconds { stages: meshed.seconds.clone(), total: 0.0 };
-    report.options = options;
-    report
 }

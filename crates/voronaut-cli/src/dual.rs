@@ -345,27 +345,22 @@ fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {
     if report.triangles == 0 {
         notes.push("there are no triangles: no three cells meet in the domain".into());
     }
+    let mut note = |count: usize, what: &str| {
+        if count > 0 {
+            notes.push(format!("{count} {what}"));
+        }
+    };
+    let inverted = "straight triangles come out inverted: the dual does not embed with straight edges and these seeds";
+    note(report.validity.inverted, inverted);
+    let orphans = report.diagram.as_ref().map_or(0, |diagram| diagram.orphan_components);
+    note(orphans, "orphans: parts of cells that do not hang together with their seeds");
     let dual = report.dual.as_ref();
-    let [crossing, open] = dual
-        .and_then(|dual| dual.geodesics.as_ref())
-        .map_or([0; 2], |found| [found.crossing_geodesics, found.open_regions]);
-    let counts = [
-        (
-            report.validity.inverted,
-            "straight triangles come out inverted: the dual does not embed with straight edges and these seeds",
-        ),
-        (
-            report.diagram.as_ref().map_or(0, |diagram| diagram.orphan_components),
-            "orphans: parts of cells that do not hang together with their seeds",
-        ),
-        (dual.and_then(|dual| dual.crossing_edges).unwrap_or(0), "pairs of straight edges cross"),
-        (crossing, "pairs of geodesic edges meet elsewhere than at seeds"),
-        (open, "triangles of geodesic edges bound no region, and have none in the file"),
-        (
-            diagram.cell_sizes().iter().filter(|&&size| size == 0).count(),
-            "seeds have no canvas vertex in their cell: raise --canvas-size",
-        ),
-    ];
-    notes.extend(counts.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")));
+    note(dual.and_then(|dual| dual.crossing_edges).unwrap_or(0), "pairs of straight edges cross");
+    if let Some(found) = dual.and_then(|dual| dual.geodesics.as_ref()) {
+        note(found.crossing_geodesics, "pairs of geodesic edges meet elsewhere than at seeds");
+        note(found.open_regions, "triangles of geodesic edges bound no region, and have none in the file");
+    }
+    let empty = diagram.cell_sizes().iter().filter(|&&size| size == 0).count();
+    note(empty, "seeds have no canvas vertex in their cell: raise --canvas-size");
     notes
 }

@@ -114,7 +114,7 @@ fn summary(report: &Report, verbose: bool) -> Lines {
             line("from domain", distance(fidelity.domain_to_mesh));
         }
         Some(Strayed::Surface(fidelity)) => {
-            surface_lines(fidelity).into_iter().for_each(|(name, value)| line(name, value));
+            surface_lines(fidelity, &mut line);
         }
         None => {}
     }
@@ -142,7 +142,7 @@ fn summary(report: &Report, verbose: bool) -> Lines {
         report.seconds.stages.iter().for_each(|(name, time)| line(name, format!("{time:.2} s")));
     }
     if let Some(certificate) = &report.certificate {
-        certificate_lines(certificate).into_iter().for_each(|(name, value)| line(&name, value));
+        certificate_lines(certificate, &mut line);
     }
     let memory = report.peak_memory_bytes.map(|bytes| format!(", {} MB at most", bytes / 1_000_000));
     line("time", format!("{:.2} s{}", report.seconds.total, memory.unwrap_or_default()));
@@ -177,21 +177,17 @@ fn valid(report: &Report) -> String {
 }
 
 /// How far the mesh of a surface strays from it.
-fn surface_lines(found: &SurfaceFidelity) -> [(&'static str, String); 4] {
+fn surface_lines(found: &SurfaceFidelity, mut line: impl FnMut(&str, String)) {
     let side = |side: Deviation| {
         let (most, share, rms) = (side.hausdorff, 100.0 * side.hausdorff_share, side.rms);
         format!("{most:.3e} at most ({share:.2e} % of the diagonal), rms {rms:.3e}, at {}", position(side.at))
     };
-    let vertices = found.vertex_to_surface;
-    let normals = found.normal_deviation;
-    let deviation =
-        format!("{:.2} deg mean, {:.2} deg at {}", normals.mean, normals.max.value, position(normals.max.at));
-    [
-        ("to surface", side(found.mesh_to_surface)),
-        ("from surface", side(found.surface_to_mesh)),
-        ("vertices", format!("off by {:.3e} at most, at {}", vertices.value, position(vertices.at))),
-        ("normals", format!("{deviation}; {} triangles folded over", found.folded)),
-    ]
+    line("to surface", side(found.mesh_to_surface));
+    line("from surface", side(found.surface_to_mesh));
+    let (vertices, normals) = (found.vertex_to_surface, found.normal_deviation);
+    line("vertices", format!("off by {:.3e} at most, at {}", vertices.value, position(vertices.at)));
+    let (mean, most, at) = (normals.mean, normals.max.value, position(normals.max.at));
+    line("normals", format!("{mean:.2} deg mean, {most:.2} deg at {at}; {} triangles folded over", found.folded));
 }
 
 fn place(spot: Spot) -> String {
@@ -208,33 +204,17 @@ fn distance(farthest: Option<Farthest>) -> String {
         .map_or("nothing to measure".into(), |far| format!("{:.3e} at ({}, {})", far.distance, far.at[0], far.at[1]))
 }
 
-/// A certificate in lines of a name and a text: what was measured, then the theorems.
-fn certificate_lines(found: &Certificate) -> Lines {
-    let net = &found.net;
-    let (covered, left) = (found.covered, found.border_not_covered);
-    let mut lines = vec![
-        (
-            "covered".into(),
-            format!("{covered} seeds; {left} are within {:.3e} of the border: not covered", found.border_distance),
-        ),
-        (
-            "net".into(),
-            format!(
-                "epsilon {:.3e}, mu {:.3e}, delta {:.3e} (lambda {:.3}, delta/epsilon {:.3})",
-                net.epsilon,
-                net.mu,
-                net.delta,
-                found.lambda,
-                net.delta / net.epsilon
-            ),
-        ),
-        ("distortion".into(), format!("psi0 - 1 = {:.3e} (sampled within 6 epsilon)", found.psi - 1.0)),
-        (
-            "sizes".into(),
-            format!("half the longest canvas edge {:.3e}; distances err by {:.1e}", found.size, found.distance_error),
-        ),
-    ];
-    lines.extend(found.verdicts.iter().map(|verdict| (verdict.theorem.to_string(), told(verdict))));
+/// A certificate: what was measured, then the theorems.
+fn certificate_lines(found: &Certificate, mut line: impl FnMut(&str, String)) {
+    let (covered, left, border) = (found.covered, found.border_not_covered, found.border_distance);
+    line("covered", format!("{covered} seeds; {left} are within {border:.3e} of the border: not covered"));
+    let (epsilon, mu, delta, lambda) = (found.net.epsilon, found.net.mu, found.net.delta, found.lambda);
+    let ratios = format!("lambda {lambda:.3}, delta/epsilon {:.3}", delta / epsilon);
+    line("net", format!("epsilon {epsilon:.3e}, mu {mu:.3e}, delta {delta:.3e} ({ratios})"));
+    line("distortion", format!("psi0 - 1 = {:.3e} (sampled within 6 epsilon)", found.psi - 1.0));
+    let (size, error) = (found.size, found.distance_error);
+    line("sizes", format!("half the longest canvas edge {size:.3e}; distances err by {error:.1e}"));
+    found.verdicts.iter().for_each(|verdict| line(&verdict.theorem.to_string(), told(verdict)));
     let asked = match (found.asked_size, found.asked_canvas) {
         (Some(size), Some(cost)) => {
             let (intrinsic, isotropic) = (cost.intrinsic, cost.isotropic);
@@ -242,15 +222,10 @@ fn certificate_lines(found: &Certificate) -> Lines {
         }
         _ => "no canvas would do: the net must be denser, or better protected".into(),
     };
-    lines.push(("to certify".into(), asked));
+    line("to certify", asked);
     let walks = &found.walks;
-    let (ended, started) = (walks.found, walks.started);
-    let (mean, most) = (walks.mean_steps, walks.max_steps);
-    lines.push((
-        "walks".into(),
-        format!("{ended} of {started} Voronoi vertices witnessed, {mean:.2} steps ({most} at most)"),
-    ));
-    lines
+    let (ended, started, mean, most) = (walks.found, walks.started, walks.mean_steps, walks.max_steps);
+    line("walks", format!("{ended} of {started} Voronoi vertices witnessed, {mean:.2} steps ({most} at most)"));
 }
 
 fn told(verdict: &Verdict) -> String {
