@@ -48,10 +48,8 @@ pub(super) fn cells(svg: &mut String, cells: &Cells, frame: &Frame, tint: Tint) 
     }
     svg.push_str("</g>\n");
     // Orphans over the cells, so that even the smallest is seen.
-    let mut path = PathData::default();
-    for orphan in cells.outlines.iter().flatten().filter(|outline| outline.is_orphan) {
-        path.polyline(&place(&orphan.points, &orphan.corners, true, frame), true);
-    }
+    let orphans = cells.outlines.iter().flatten().filter(|outline| outline.is_orphan);
+    let path = PathData::of(orphans.map(|orphan| place(&orphan.points, &orphan.corners, true, frame)), true);
     if !path.text().is_empty() {
         path.draw(svg, &(frame.paint(colours::ORPHAN, 0.5) + ROUND_JOINS));
     }
@@ -92,38 +90,24 @@ pub(super) fn seeds(svg: &mut String, cells: &Cells, frame: &Frame) {
 /// Canvas faces: those that witness Voronoi edges in grey, those that witness Voronoi vertices in red, over them.
 pub(super) fn witnesses(svg: &mut String, [vertices, edges]: &[Vec<[Point; 3]>; 2], frame: &Frame) {
     for (faces, paint) in [(edges, colours::EDGE_WITNESS), (vertices, colours::VERTEX_WITNESS)] {
-        let mut path = PathData::default();
-        for face in faces {
-            path.polyline(&face.map(|p| frame.place(p)), true);
-        }
+        let path = PathData::of(faces.iter().map(|face| face.map(|p| frame.place(p))), true);
         path.draw(svg, &(frame.paint(paint, 0.35) + ROUND_JOINS));
     }
 }
 
-/// Polylines over the cells, as wide as typical cells of this thickness (pixels) bear.
-pub(super) fn geodesics(svg: &mut String, lines: &[Vec<Point>], thickness: f64, frame: &Frame) {
-    polylines(svg, lines, ((0.12 * thickness).clamp(0.25, 1.3), colours::GEODESIC), frame);
-}
-
-/// Polylines under geodesics, fainter than they.
-pub(super) fn grids(svg: &mut String, lines: &[Vec<Point>], thickness: f64, frame: &Frame) {
-    polylines(svg, lines, ((0.05 * thickness).clamp(0.1, 0.6), colours::GRID), frame);
-}
-
-fn polylines(svg: &mut String, lines: &[Vec<Point>], (width, ink): (f64, &str), frame: &Frame) {
-    let mut path = PathData::default();
-    for line in lines {
-        path.polyline(&place(line, &[], false, frame), false);
+/// Polylines over the cells, geodesics over fainter ones, as wide as typical cells of this thickness (pixels) bear.
+pub(super) fn polylines(svg: &mut String, layers: &Layers, thickness: f64, frame: &Frame) {
+    let grids = (&layers.grids, (0.05 * thickness).clamp(0.1, 0.6), colours::GRID);
+    let geodesics = (&layers.geodesics, (0.12 * thickness).clamp(0.25, 1.3), colours::GEODESIC);
+    for (lines, width, ink) in [grids, geodesics].into_iter().filter(|(lines, ..)| !lines.is_empty()) {
+        let path = PathData::of(lines.iter().map(|line| place(line, &[], false, frame)), false);
+        path.draw(svg, &(frame.paint(["none", ink], width) + ROUND));
     }
-    path.draw(svg, &(frame.paint(["none", ink], width) + ROUND));
 }
 
 /// The border of the domain and its features.
 pub(super) fn border(svg: &mut String, cells: &Cells, frame: &Frame) {
-    let mut path = PathData::default();
-    for line in &cells.border {
-        path.polyline(&place(line, &[], true, frame), true);
-    }
+    let mut path = PathData::of(cells.border.iter().map(|line| place(line, &[], true, frame)), true);
     for piece in &cells.features {
         path.polyline(&piece.map(|p| frame.place(p)), false);
     }

@@ -89,6 +89,13 @@ pub(super) struct PathData {
 }
 
 impl PathData {
+    /// Straight lines through points, all closed or none.
+    pub(super) fn of<P: AsRef<[[i64; 2]]>>(lines: impl IntoIterator<Item = P>, closed: bool) -> Self {
+        let mut path = Self::default();
+        lines.into_iter().for_each(|points| path.polyline(points.as_ref(), closed));
+        path
+    }
+
     /// Adds straight lines through points; a closed one returns to its first point.
     pub(super) fn polyline(&mut self, points: &[[i64; 2]], closed: bool) {
         self.text.push('m');

@@ -88,10 +88,7 @@ impl Sheet<'_> {
         let labelled = self.mesh.edges.iter().copied().filter(|&[a, b]| self.edges.contains(a, b));
         let boundary = self.edges.boundary().into_iter().map(|h| self.edges.ends(h));
         let all: BTreeSet<[u32; 2]> = boundary.chain(labelled).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        let mut path = PathData::default();
-        for ends in all {
-            path.polyline(&self.place(ends), false);
-        }
+        let path = PathData::of(all.into_iter().map(|ends| self.place(ends)), false);
         let (ink, width) = (colours::BOUNDARY, self.frame.quanta(BOUNDARY_WIDTH));
         path.draw(svg, &format!(r#"fill="none" stroke-linecap="round" stroke="{ink}" stroke-width="{width:.1}""#));
     }

@@ -86,12 +86,7 @@ pub fn svg_with(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture
         ellipses::ellipses(&mut text, &sheet, metric.ok_or_else(no_metric)?, is_faint)?;
     }
     let thickness = layers.cells.as_ref().map_or(10.0, |found| cells::typical(found, &frame)[0]);
-    if !layers.grids.is_empty() {
-        cells::grids(&mut text, &layers.grids, thickness, &frame);
-    }
-    if !layers.geodesics.is_empty() {
-        cells::geodesics(&mut text, &layers.geodesics, thickness, &frame);
-    }
+    cells::polylines(&mut text, layers, thickness, &frame);
     if let Some(found) = &layers.cells {
         cells::seeds(&mut text, found, &frame);
         cells::border(&mut text, found, &frame);

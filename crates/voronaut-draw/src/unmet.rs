@@ -57,9 +57,8 @@ pub(super) fn legend(svg: &mut String, unmet: &Unmet, frame: &Frame) {
         for (row, is_short) in [(2, true), (3, false)] {
             let [x, y] = place(column, row);
             let swatch = [x, x + 12.0 * unit].map(|x| frame.quanta_at([x, y - 2.0 * unit]));
-            let mut line = PathData::default();
-            line.polyline(&swatch, false);
-            line.draw(svg, &frame.paint(["none", &colours::cause(cause as usize, is_short)], 2.4 * unit));
+            PathData::of([swatch], false)
+                .draw(svg, &frame.paint(["none", &colours::cause(cause as usize, is_short)], 2.4 * unit));
             let (count, what) = if is_short { (found.short, "too short") } else { (found.long, "too long") };
             let says = format!("{:.1} % {what}", 100.0 * share_of(count, found));
             letters::write(&mut words, &says, [x + 16.0 * unit, y], unit, frame);
