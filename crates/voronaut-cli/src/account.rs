@@ -52,7 +52,7 @@ pub(crate) fn on_surface(
     report.curvature = metric.curvature_figures();
     report.unmet = Some(surface_unmet(&meshed.mesh, &input.surface, &scaled)?.figures());
     report.notes.extend(mended.sentences().chain(meets));
-    report.fidelity = meshed.fidelity.clone().map(|found| Strayed::Surface(found.into()));
+    report.fidelity = meshed.fidelity.map(|found| Strayed::Surface(found.into()));
     Ok(report)
 }
 
@@ -65,7 +65,7 @@ fn report(meshed: &Meshed, found: Validity, figures: &MetricQuality, options: Va
         dual: is_voronoi.then(|| meshed.dual.clone()),
         relaxation: is_voronoi.then(|| meshed.relaxation.clone()),
         polished: meshed.polished.clone().filter(|_| is_voronoi),
-        canvas: meshed.canvas.clone(),
+        canvas: meshed.canvas,
         diagram: meshed.diagram.clone(),
         metric_scale: Some(meshed.metric_scale),
         net: meshed.net.as_ref().map(NetFigures::of),

@@ -214,7 +214,7 @@ fn certificate_lines(found: &Certificate, mut line: impl FnMut(&str, String)) {
     line("distortion", format!("psi0 - 1 = {:.3e} (sampled within 6 epsilon)", found.psi - 1.0));
     let (size, error) = (found.size, found.distance_error);
     line("sizes", format!("half the longest canvas edge {size:.3e}; distances err by {error:.1e}"));
-    found.verdicts.iter().for_each(|verdict| line(&verdict.theorem.to_string(), told(verdict)));
+    found.verdicts.iter().for_each(|verdict| line(verdict.theorem, told(verdict)));
     let asked = match (found.asked_size, found.asked_canvas) {
         (Some(size), Some(cost)) => {
             let (intrinsic, isotropic) = (cost.intrinsic, cost.isotropic);

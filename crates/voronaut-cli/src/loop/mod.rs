@@ -67,15 +67,8 @@ pub(crate) struct LoopArgs {
     /// Which of the solver's solutions on vertices the mesh is for, from 1
     #[arg(long, value_name = "I", default_value_t = 1, value_parser = value_parser!(u32).range(1..))]
     pub(crate) field: u32,
-    /// Carry solutions by interpolation, which is fast and lets integrals drift, instead of keeping them
-    #[arg(long)]
-    interpolate: bool,
-    /// Let values carried next to a front be beyond those on both its sides, for the least L2 distance
-    #[arg(long, conflicts_with = "interpolate")]
-    overshoot: bool,
-    /// Symmetric tensors are no metrics: carry each entry for itself
-    #[arg(long)]
-    linear_tensors: bool,
+    #[command(flatten)]
+    transfer: TransferArgs,
     #[command(flatten)]
     pub(crate) metric_choices: MetricChoices,
     /// How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]
@@ -91,6 +84,19 @@ pub(crate) struct LoopArgs {
     pub(crate) memory: Memory,
     #[command(flatten)]
     pub(crate) run: Run,
+}
+
+#[derive(Debug, Args)]
+struct TransferArgs {
+    /// Carry solutions by interpolation, which is fast and lets integrals drift, instead of keeping them
+    #[arg(long)]
+    interpolate: bool,
+    /// Let values carried next to a front be beyond those on both its sides, for the least L2 distance
+    #[arg(long, conflicts_with = "interpolate")]
+    overshoot: bool,
+    /// Symmetric tensors are no metrics: carry each entry for itself
+    #[arg(long)]
+    linear_tensors: bool,
 }
 
 fn times(text: &str) -> std::result::Result<[f64; 2], String> {
@@ -113,9 +119,9 @@ impl LoopArgs {
                 ..MeshOptions::default()
             },
             transfer: TransferOptions {
-                conservative: !self.interpolate,
-                overshoot: if self.overshoot { Overshoot::Kept } else { Overshoot::Spread },
-                linear_tensors: self.linear_tensors,
+                conservative: !self.transfer.interpolate,
+                overshoot: if self.transfer.overshoot { Overshoot::Kept } else { Overshoot::Spread },
+                linear_tensors: self.transfer.linear_tensors,
             },
         }
     }
@@ -250,7 +256,7 @@ impl<'a> Told<'a> {
                 "out": args.out, "every": args.every, "time": args.time, "field": args.field,
                 "norm": metric.norm.to_string(), "recovery": metric.recovery, "h_min": metric.bounds.h_min,
                 "h_max": metric.bounds.h_max, "a_max": metric.bounds.a_max, "smooth_metric": metric.smooth_metric,
-                "gradation": metric.gradation, "conservative": transfer.conservative, "overshoot": args.overshoot,
+                "gradation": metric.gradation, "conservative": transfer.conservative, "overshoot": args.transfer.overshoot,
                 "linear_tensors": transfer.linear_tensors, "mesh": options.mesh, "threads": args.run.threads,
             },
         })
