@@ -17,7 +17,7 @@ use voronaut::surface::{Input, Place};
 use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
 use voronaut_draw::{Layers, Picture, Scene, Stroke, View};
-use voronaut_io::{Format, Given};
+use voronaut_io::Given;
 
 pub(crate) const EXAMPLES: &str = "\
 DOMAIN and METRIC are as for `mesh`, or a surface and a metric on it as for `check`; the metric is used as it is. Points near a
@@ -87,7 +87,6 @@ struct Made {
 pub(crate) fn run(args: &DistanceArgs) -> Result<()> {
     let stages = Stages::start();
     voronaut_io::demand_diagram(&args.out)?;
-    Format::from_path(&args.out)?;
     args.picture.as_deref().map(voronaut_draw::is_png).transpose()?;
     files::demand_apart([Some(args.out.as_path()), args.picture.as_deref(), args.run.report.as_deref()])?;
     args.run.set_threads()?;

@@ -16,7 +16,7 @@ pub(super) const ROUND: &str = r#" stroke-linejoin="round" stroke-linecap="round
 pub(super) struct Pen {
     /// The widest line, in pixels.
     pub(super) widest: f64,
-    /// Width of a line as a share of how thick it is what it bounds.
+    /// Width of a line as a share of the thickness of what it bounds.
     pub(super) share: f64,
     /// The thinnest line, in pixels.
     pub(super) thinnest: f64,
