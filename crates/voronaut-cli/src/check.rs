@@ -1,9 +1,8 @@
 //! `voronaut check`: examines a mesh that is there.
 
 use crate::fields::{self, Scaled};
-use crate::files::{Drawn, MeshFile};
-use crate::options::{Damage, MetricChoices, Outputs, Run, Show, positive};
-use crate::{files, summary};
+use crate::options::{Damage, MetricChoices, Outputs, Run, Show, positive, refuse};
+use crate::{files, pictures};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
@@ -13,13 +12,14 @@ use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
 use voronaut::quality::{
-    Meetings, Unmet, fidelity, interpolation_error, metric_quality, surface_fidelity, surface_quality, surface_unmet,
-    unmet, validity, validity_on,
+    Meetings, fidelity, interpolation_error, metric_quality, surface_fidelity, surface_quality, surface_unmet, unmet,
+    validity, validity_on,
 };
 use voronaut::recipe::GradedAt;
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
+use voronaut_draw::Layers;
 use voronaut_io::{Document, Given, Report, Strayed};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -65,9 +65,9 @@ pub(crate) struct CheckArgs {
 /// Examines a mesh. The report is written for any mesh; figures in a metric and pictures are for valid ones.
 pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     let start = Instant::now();
-    files::demand_writable(None, None, &args.outputs)?;
+    files::demand_writable(None, None, &args.outputs, &args.run)?;
     demand_drawable(args)?;
-    files::set_threads(&args.run)?;
+    args.run.set_threads()?;
     let Document { mesh, notes, .. } = voronaut_io::read(&args.mesh)?;
     let read = |spec: &str| Given::read_with(spec, None, args.damage.options());
     let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();
@@ -86,74 +86,63 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     });
     if let Err(fault) = fault {
         report.seconds.total = start.elapsed().as_secs_f64();
-        files::write_report(&args.outputs, &report)?;
-        summary::print(&args.mesh.display().to_string(), &report, &args.run);
+        files::finish(&args.mesh, &args.outputs, None, &report, &args.run)?;
         return Err(fault);
     }
     report.metric_scale = args.metric.is_some().then_some(args.metric_scale.unwrap_or(1.0));
     report.notes.extend(mended.iter().flat_map(Mended::sentences).chain(meets));
-    let report = match given {
-        Some(Given::Surface(input)) => on_surface(args, &mesh, Some(&input), report, start)?,
-        None if !mesh.is_planar() => on_surface(args, &mesh, None, report, start)?,
-        Some(Given::Plane(domain)) => in_plane(args, &mesh, Some(&domain), report, start)?,
-        None => in_plane(args, &mesh, None, report, start)?,
+    let picture = match given {
+        Some(Given::Surface(input)) => on_surface(args, &mesh, Some(&input), &mut report)?,
+        None if !mesh.is_planar() => on_surface(args, &mesh, None, &mut report)?,
+        Some(Given::Plane(domain)) => in_plane(args, &mesh, Some(&domain), &mut report)?,
+        None => in_plane(args, &mesh, None, &mut report)?,
     };
-    summary::print(&args.mesh.display().to_string(), &report, &args.run);
-    Ok(())
+    report.seconds.total = start.elapsed().as_secs_f64();
+    files::finish(&args.mesh, &args.outputs, picture, &report, &args.run)
 }
 
 /// Refuses pictures of what a mesh that is only checked does not have.
 fn demand_drawable(args: &CheckArgs) -> Result<()> {
-    let (what, help) = match () {
-        () if Drawn::is_wanted(&args.outputs) || args.outputs.show.contains(&Show::Protection) => {
-            ("a picture of cells of a mesh that is only checked", "give its vertices to voronaut dual as seeds")
-        }
-        () if args.metric.is_none() && args.outputs.show.contains(&Show::Unmet) => {
-            ("a picture of where a metric is not met, without a metric", "give the --metric")
-        }
-        () => return Ok(()),
-    };
-    Err(Error::Unsupported { what: what.into(), help: help.into() })
+    let outputs = &args.outputs;
+    refuse([
+        (
+            outputs.need_diagram() || outputs.shows(Show::Protection),
+            "a picture of cells of a mesh that is only checked",
+            "give its vertices to voronaut dual as seeds",
+        ),
+        (
+            args.metric.is_none() && outputs.shows(Show::Unmet),
+            "a picture of where a metric is not met, without a metric",
+            "give the --metric",
+        ),
+    ])
 }
 
-/// Measures a planar mesh and writes what was found.
-fn in_plane(
-    args: &CheckArgs,
-    mesh: &Mesh,
-    domain: Option<&Domain>,
-    mut report: Report,
-    start: Instant,
-) -> Result<Report> {
+/// Measures a planar mesh, and draws it if that is asked for.
+fn in_plane(args: &CheckArgs, mesh: &Mesh, domain: Option<&Domain>, report: &mut Report) -> Result<Option<String>> {
     if !mesh.is_planar() {
         let what = format!("{} is not planar (z = 0), its domain is", args.mesh.display());
         return Err(Error::Unsupported { what, help: "give the surface that it is a mesh of as --domain".into() });
     }
+    let mut layers = Layers::default();
     let metric = args.metric.as_deref().map(|text| planar_metric(args, text, mesh, domain)).transpose()?;
-    if let Some(metric) = &metric {
-        report = report.with_quality(&metric_quality(mesh, metric.as_ref())?);
-        report.histograms = files::histograms(&args.outputs, mesh, metric.as_ref())?;
+    if let Some(metric) = metric.as_deref() {
+        *report = std::mem::take(report).with_quality(&metric_quality(mesh, metric)?);
+        report.histograms = files::histograms(&args.outputs, mesh, metric)?;
+        let unmet = unmet(mesh, metric)?;
+        report.unmet = Some(unmet.figures());
+        layers.unmet = Some(unmet).filter(|_| args.outputs.shows(Show::Unmet));
     }
-    let unmet = metric.as_ref().map(|metric| unmet(mesh, metric.as_ref())).transpose()?;
-    report.unmet = unmet.as_ref().map(Unmet::figures);
     if let Some(text) = &args.function {
         let function = Snapshot::from(Expression::parse(text, Variables::Plane)?);
         report.interpolation = Some(interpolation_error(mesh, &function, args.metric_choices.norm)?);
     }
     report.fidelity = domain.map(|domain| Strayed::Boundary(fidelity(mesh, &domain.boundary())));
-    report.seconds.total = start.elapsed().as_secs_f64();
-    let drawn = Drawn::default().with_unmet(&args.outputs, unmet);
-    files::write(&MeshFile::None, &args.outputs, mesh, metric.as_deref(), &report, &drawn)?;
-    Ok(report)
+    pictures::in_plane(&args.outputs, mesh, metric.as_deref(), &layers)
 }
 
-/// Measures the mesh of a surface, of its own triangles if no other is given, and writes what was found.
-fn on_surface(
-    args: &CheckArgs,
-    mesh: &Mesh,
-    given: Option<&Input>,
-    mut report: Report,
-    start: Instant,
-) -> Result<Report> {
+/// Measures the mesh of a surface, of its own triangles if no other is given; there is no picture of it.
+fn on_surface(args: &CheckArgs, mesh: &Mesh, given: Option<&Input>, report: &mut Report) -> Result<Option<String>> {
     demand_for_surfaces(args)?;
     if let Some(Input { surface, implicit, .. }) = given {
         let implicit = implicit.as_ref().map(|f| f as &dyn Implicit);
@@ -169,26 +158,21 @@ fn on_surface(
         };
         let field = fields::on_surface(text, input, &args.metric_choices)?;
         let scaled = Scaled { field: field.as_ref(), factor: args.metric_scale.unwrap_or(1.0) };
-        report = report.with_quality(&surface_quality(mesh, &input.surface, &scaled)?);
+        *report = std::mem::take(report).with_quality(&surface_quality(mesh, &input.surface, &scaled)?);
         report.curvature = field.curvature_figures();
         report.unmet = Some(surface_unmet(mesh, &input.surface, &scaled)?.figures());
     }
-    report.seconds.total = start.elapsed().as_secs_f64();
-    files::write_report(&args.outputs, &report)?;
-    Ok(report)
+    Ok(None)
 }
 
 /// Refuses what is not there for surfaces.
 fn demand_for_surfaces(args: &CheckArgs) -> Result<()> {
-    let refused = [
+    refuse([
         (args.outputs.picture.is_some(), "a picture of the mesh of a surface", "leave out --picture"),
         (args.outputs.histograms.is_some(), "histograms of the mesh of a surface", "leave out --histograms"),
         (args.function.is_some(), "interpolation on the mesh of a surface", "leave out --function"),
-    ];
-    match refused.into_iter().find(|(is_asked, ..)| *is_asked) {
-        Some((_, what, help)) => Err(Error::Unsupported { what: what.into(), help: help.into() }),
-        None => fields::demand_for_surfaces(&args.metric_choices),
-    }
+    ])?;
+    fields::demand_for_surfaces(&args.metric_choices)
 }
 
 /// The metric, times its factor. A `.sol` file belongs to the background mesh, else to the domain's, else to the mesh.

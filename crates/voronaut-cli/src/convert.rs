@@ -1,10 +1,11 @@
 //! `voronaut convert`: from one format to another.
 
+use crate::files::{self, Miscounted};
 use crate::summary;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use voronaut::domain::{Pslg, from_mesh, to_mesh, to_poly, to_polygons};
-use voronaut::mesh::{Mesh, Solutions};
+use voronaut::mesh::Mesh;
 use voronaut::{Error, Result};
 use voronaut_io::gmsh::Version;
 use voronaut_io::medit::Form;
@@ -151,7 +152,10 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
     };
     if let Some(sol) = &args.sol {
         let values = voronaut_io::read_solutions(sol)?;
-        demand_counts(sol, &values, [mesh.points.len(), mesh.triangles.len()])?;
+        if let Some(Miscounted { found, needed, places, .. }) = files::miscounted(&values, &mesh) {
+            let what = format!("{found} values, and the mesh has {needed} {places}");
+            return Err(Error::parse(name(sol), what, "give the values that belong to IN"));
+        }
         fields.extend(Fields::of_solutions(values));
     }
     let lost = format.lost(&mesh, &fields);
@@ -178,18 +182,6 @@ fn beside(mesh: &Path, format: Format, fields: &Fields) -> Option<PathBuf> {
     let Format::Medit(form) = format else { return None };
     let is_empty = fields.vertices.is_empty() && fields.triangles.is_empty();
     (!is_empty).then(|| mesh.with_extension(form.solution_ending()))
-}
-
-fn demand_counts(file: &Path, values: &Solutions, counts: [usize; 2]) -> Result<()> {
-    let sections = [("vertices", &values.vertices), ("triangles", &values.triangles)];
-    for ((places, solutions), needed) in sections.into_iter().zip(counts) {
-        if let Some(found) = solutions.iter().map(voronaut::mesh::SolutionValues::count).find(|&found| found != needed)
-        {
-            let what = format!("{found} values, and the mesh has {needed} {places}");
-            return Err(Error::parse(name(file), what, "give the values that belong to IN"));
-        }
-    }
-    Ok(())
 }
 
 fn name(path: &Path) -> String {

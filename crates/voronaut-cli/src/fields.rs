@@ -1,13 +1,13 @@
 //! Metrics from what is typed, in the plane and on surfaces.
 
-use crate::options::MetricChoices;
+use crate::options::{MetricChoices, refuse};
 use std::path::Path;
+use voronaut::Result;
 use voronaut::domain::Domain;
 use voronaut::geometry::Tensor3;
 use voronaut::recipe::{GradedAt, PlanarMetric};
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Place};
-use voronaut::{Error, Result};
 use voronaut_io::{MetricFiles, MetricSource, surface_metric};
 
 /// The metric in the plane that a text names. `own` is what the domain was read from; `at` the multiple in which edges have length one.
@@ -31,16 +31,19 @@ pub(crate) fn on_surface(text: &str, input: &Input, choices: &MetricChoices) -> 
 
 /// Refuses what is not there for metrics on surfaces.
 pub(crate) fn demand_for_surfaces(choices: &MetricChoices) -> Result<()> {
-    let (what, help) = if choices.smooth_metric > 0 {
-        ("smoothing of a metric on a surface", "leave out --smooth-metric")
-    } else if choices.gradation.is_some() {
-        ("gradation of a metric on a surface", "leave out --gradation; sizes of `remesh` are graded, by -hgrad")
-    } else if choices.background.is_some() {
-        ("a background mesh for a metric on a surface", "give the file that the values belong to as the domain")
-    } else {
-        return Ok(());
-    };
-    Err(Error::Unsupported { what: what.into(), help: help.into() })
+    refuse([
+        (choices.smooth_metric > 0, "smoothing of a metric on a surface", "leave out --smooth-metric"),
+        (
+            choices.gradation.is_some(),
+            "gradation of a metric on a surface",
+            "leave out --gradation; sizes of `remesh` are graded, by -hgrad",
+        ),
+        (
+            choices.background.is_some(),
+            "a background mesh for a metric on a surface",
+            "give the file that the values belong to as the domain",
+        ),
+    ])
 }
 
 /// A metric on a surface times a factor.

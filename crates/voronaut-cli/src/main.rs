@@ -1,6 +1,7 @@
 //! The command line of voronaut. Exit code 0: done; 1: the input or the result is not what was asked, for which `remesh` has 2, as mmg
 //! has; 2: wrong usage.
 
+mod account;
 mod check;
 mod convert;
 mod distance;
@@ -13,11 +14,11 @@ mod r#loop;
 mod mesh;
 mod metric;
 mod options;
+mod pictures;
 mod progress;
 mod remesh;
 mod seeds;
 mod summary;
-mod surfaces;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

@@ -1,9 +1,11 @@
-//! A progress bar on a terminal.
+//! How far a run is: a progress bar on a terminal, and the times of its stages.
 
+use crate::options::Run;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Instant;
 use voronaut::progress::Progress;
+use voronaut_io::Seconds;
 
 /// Shows the current stage on stderr if that is a terminal; says each stage in a line of its own if verbose.
 pub(crate) struct Bar {
@@ -13,13 +15,13 @@ pub(crate) struct Bar {
 }
 
 impl Bar {
-    pub(crate) fn new(quiet: bool, verbose: bool) -> Self {
-        let shown = !quiet && std::io::stderr().is_terminal();
+    pub(crate) fn new(run: &Run) -> Self {
+        let shown = !run.quiet && std::io::stderr().is_terminal();
         let line = if shown { ProgressBar::new(0) } else { ProgressBar::hidden() };
         if let Ok(style) = ProgressStyle::with_template("{msg:<16} {bar:40} {percent:>3} %  {elapsed}") {
             line.set_style(style.progress_chars("━╸ "));
         }
-        Self { line, verbose, start: Instant::now() }
+        Self { line, verbose: run.verbose, start: Instant::now() }
     }
 }
 
@@ -45,5 +47,30 @@ impl Progress for Bar {
 impl Drop for Bar {
     fn drop(&mut self) {
         self.line.finish_and_clear();
+    }
+}
+
+/// The stages of a run, each from the end of the one before.
+pub(crate) struct Stages {
+    start: Instant,
+    last: Instant,
+    ended: Vec<(&'static str, f64)>,
+}
+
+impl Stages {
+    pub(crate) fn start() -> Self {
+        let start = Instant::now();
+        Self { start, last: start, ended: Vec::new() }
+    }
+
+    pub(crate) fn end(&mut self, name: &'static str) {
+        self.ended.push((name, self.last.elapsed().as_secs_f64()));
+        self.last = Instant::now();
+    }
+
+    /// The times of all stages, then of parts of them, and in total.
+    pub(crate) fn seconds(mut self, parts: Vec<(&'static str, f64)>) -> Seconds {
+        self.ended.extend(parts);
+        Seconds { stages: self.ended, total: self.start.elapsed().as_secs_f64() }
     }
 }

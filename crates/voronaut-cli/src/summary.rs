@@ -1,25 +1,42 @@
 //! What a run says when it is done: one screen on stdout.
 
-use crate::dual::certify;
 use crate::flags::flagged;
 use crate::options::Run;
-use std::fmt::Write as _;
+use serde_json::Value;
 use std::io::Write as _;
+use std::path::Path;
+use voronaut::certificate::{Certificate, Condition, Outcome, Verdict};
 use voronaut::quality::{Cause, CauseFigures, Deviation, Farthest, Position, Spot, SurfaceFidelity};
 use voronaut_io::{Report, Strayed};
 
+/// How wide the names of figures are.
+const WIDTH: usize = 12;
+
+/// A name and a text for each line.
+type Lines = Vec<(String, String)>;
+
 /// Prints the figures of a report unless told to be quiet, and its notes on stderr.
-pub(crate) fn print(title: &str, report: &Report, run: &Run) {
-    if run.quiet {
-        return;
+pub(crate) fn print(title: &Path, report: &Report, run: &Run) {
+    if !run.quiet {
+        say(&title.display().to_string(), WIDTH, summary(report, run.verbose));
+        notes(&report.notes, false);
     }
+}
+
+/// Prints a title, and lines of a name, so wide, and a text.
+pub(crate) fn say(title: &str, width: usize, lines: Lines) {
+    let lines = lines.into_iter().map(|(name, text)| format!("  {name:<width$} {text}\n"));
+    out(&format!("{title}\n{}", lines.collect::<String>()));
+}
+
+/// Prints a text.
+pub(crate) fn out(text: &str) {
     // Whoever closed the other end of a pipe has seen enough.
-    let _ = std::io::stdout().write_all(summary(title, report, run.verbose).as_bytes());
-    notes(&report.notes, run.quiet);
+    let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
 /// Says on stderr what is worth knowing, unless told to be quiet.
-pub(crate) fn notes(notes: &[String], is_quiet: bool) {
+pub(crate) fn notes<'a>(notes: impl IntoIterator<Item = &'a String>, is_quiet: bool) {
     if !is_quiet {
         for note in notes {
             eprintln!("note: {}", flagged(note));
@@ -28,23 +45,20 @@ pub(crate) fn notes(notes: &[String], is_quiet: bool) {
 }
 
 /// Prints what a run of `distance` has found, from its report, unless told to be quiet.
-pub(crate) fn print_distance(title: &str, told: &serde_json::Value, run: &Run) {
+pub(crate) fn print_distance(title: &Path, told: &Value, run: &Run) {
     if run.quiet {
         return;
     }
-    let mut text = format!("{title}\n");
-    let mut line = |name: &str, value: &serde_json::Value| {
-        if !value.is_null() {
-            let _ = writeln!(text, "  {name:<12} {value}");
-        }
-    };
-    line("distance", &told["distance"]);
-    line("path", &told["path_length"]);
-    line("farthest", &told["farthest"]);
-    line("canvas", &told["canvas"]["vertices"]);
-    line("seconds", &told["seconds"]["total"]);
-    let _ = std::io::stdout().write_all(text.as_bytes());
-    for note in told["notes"].as_array().into_iter().flatten().filter_map(|note| note.as_str()) {
+    let all = [
+        ("distance", &told["distance"]),
+        ("path", &told["path_length"]),
+        ("farthest", &told["farthest"]),
+        ("canvas", &told["canvas"]["vertices"]),
+        ("seconds", &told["seconds"]["total"]),
+    ];
+    let known = all.into_iter().filter(|(_, value)| !value.is_null());
+    say(&title.display().to_string(), WIDTH, known.map(|(name, value)| (name.into(), value.to_string())).collect());
+    for note in told["notes"].as_array().into_iter().flatten().filter_map(Value::as_str) {
         eprintln!("note: {}", flagged(note));
     }
     if let Some(count) = told["unreached"].as_u64().filter(|&count| count > 0) {
@@ -53,35 +67,28 @@ pub(crate) fn print_distance(title: &str, told: &serde_json::Value, run: &Run) {
 }
 
 /// Prints what a run of `metric` has made, from its report, unless told to be quiet.
-pub(crate) fn print_metric(title: &str, told: &serde_json::Value, run: &Run) {
+pub(crate) fn print_metric(title: &Path, told: &Value, run: &Run) {
     if run.quiet {
         return;
     }
-    let number = |value: &serde_json::Value| format!("{:.4e}", value.as_f64().unwrap_or(f64::NAN));
+    let number = |value: &Value| format!("{:.4e}", value.as_f64().unwrap_or(f64::NAN));
     let touched = |name: &str| format!("{name} {}", told["touched"][name]);
     let limits = ["h_min", "h_max", "a_max", "gradation"].map(touched).join(", ");
-    let mut text = format!("{title}\n");
-    for (name, value) in [
-        (
-            "complexity",
-            format!("{}   (a unit mesh of about {} vertices)", told["complexity"], told["expected_vertices"]),
-        ),
+    let (complexity, vertices) = (&told["complexity"], &told["expected_vertices"]);
+    let lines = [
+        ("complexity", format!("{complexity}   (a unit mesh of about {vertices} vertices)")),
         ("sizes", format!("{} to {}", number(&told["size"]["min"]), number(&told["size"]["max"]))),
         ("anisotropy", format!("{} at most", number(&told["anisotropy"]["max"]))),
         ("factor", format!("{}   (on the combined metric)", told["factor"])),
         ("touched", format!("of {} vertices: {limits}", told["vertices"])),
         ("time", format!("{:.2} s", told["seconds"]["total"].as_f64().unwrap_or(0.0))),
-    ] {
-        let _ = writeln!(text, "  {name:<12} {value}");
-    }
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    ];
+    say(&title.display().to_string(), WIDTH, lines.map(|(name, text)| (name.into(), text)).to_vec());
 }
 
-fn summary(title: &str, report: &Report, verbose: bool) -> String {
-    let mut text = format!("{title}\n");
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "  {name:<12} {value}");
-    };
+fn summary(report: &Report, verbose: bool) -> Lines {
+    let mut lines = Lines::new();
+    let mut line = |name: &str, value: String| lines.push((name.into(), value));
     line("vertices", report.vertices.to_string());
     line("triangles", report.triangles.to_string());
     line("valid", valid(report));
@@ -107,9 +114,7 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
             line("from domain", distance(fidelity.domain_to_mesh));
         }
         Some(Strayed::Surface(fidelity)) => {
-            for (name, value) in surface_lines(fidelity) {
-                line(name, value);
-            }
+            surface_lines(fidelity, &mut line);
         }
         None => {}
     }
@@ -137,13 +142,11 @@ fn summary(title: &str, report: &Report, verbose: bool) -> String {
         report.seconds.stages.iter().for_each(|(name, time)| line(name, format!("{time:.2} s")));
     }
     if let Some(certificate) = &report.certificate {
-        for (name, value) in certify::lines(certificate) {
-            line(&name, value);
-        }
+        certificate_lines(certificate, &mut line);
     }
     let memory = report.peak_memory_bytes.map(|bytes| format!(", {} MB at most", bytes / 1_000_000));
     line("time", format!("{:.2} s{}", report.seconds.total, memory.unwrap_or_default()));
-    text
+    lines
 }
 
 /// How many edges are not of unit length, and why; nothing where there are none.
@@ -174,21 +177,17 @@ fn valid(report: &Report) -> String {
 }
 
 /// How far the mesh of a surface strays from it.
-fn surface_lines(found: &SurfaceFidelity) -> [(&'static str, String); 4] {
+fn surface_lines(found: &SurfaceFidelity, mut line: impl FnMut(&str, String)) {
     let side = |side: Deviation| {
         let (most, share, rms) = (side.hausdorff, 100.0 * side.hausdorff_share, side.rms);
         format!("{most:.3e} at most ({share:.2e} % of the diagonal), rms {rms:.3e}, at {}", position(side.at))
     };
-    let vertices = found.vertex_to_surface;
-    let normals = found.normal_deviation;
-    let deviation =
-        format!("{:.2} deg mean, {:.2} deg at {}", normals.mean, normals.max.value, position(normals.max.at));
-    [
-        ("to surface", side(found.mesh_to_surface)),
-        ("from surface", side(found.surface_to_mesh)),
-        ("vertices", format!("off by {:.3e} at most, at {}", vertices.value, position(vertices.at))),
-        ("normals", format!("{deviation}; {} triangles folded over", found.folded)),
-    ]
+    line("to surface", side(found.mesh_to_surface));
+    line("from surface", side(found.surface_to_mesh));
+    let (vertices, normals) = (found.vertex_to_surface, found.normal_deviation);
+    line("vertices", format!("off by {:.3e} at most, at {}", vertices.value, position(vertices.at)));
+    let (mean, most, at) = (normals.mean, normals.max.value, position(normals.max.at));
+    line("normals", format!("{mean:.2} deg mean, {most:.2} deg at {at}; {} triangles folded over", found.folded));
 }
 
 fn place(spot: Spot) -> String {
@@ -203,4 +202,49 @@ fn position(at: Position) -> String {
 fn distance(farthest: Option<Farthest>) -> String {
     farthest
         .map_or("nothing to measure".into(), |far| format!("{:.3e} at ({}, {})", far.distance, far.at[0], far.at[1]))
+}
+
+/// A certificate: what was measured, then the theorems.
+fn certificate_lines(found: &Certificate, mut line: impl FnMut(&str, String)) {
+    let (covered, left, border) = (found.covered, found.border_not_covered, found.border_distance);
+    line("covered", format!("{covered} seeds; {left} are within {border:.3e} of the border: not covered"));
+    let (epsilon, mu, delta, lambda) = (found.net.epsilon, found.net.mu, found.net.delta, found.lambda);
+    let ratios = format!("lambda {lambda:.3}, delta/epsilon {:.3}", delta / epsilon);
+    line("net", format!("epsilon {epsilon:.3e}, mu {mu:.3e}, delta {delta:.3e} ({ratios})"));
+    line("distortion", format!("psi0 - 1 = {:.3e} (sampled within 6 epsilon)", found.psi - 1.0));
+    let (size, error) = (found.size, found.distance_error);
+    line("sizes", format!("half the longest canvas edge {size:.3e}; distances err by {error:.1e}"));
+    found.verdicts.iter().for_each(|verdict| line(verdict.theorem, told(verdict)));
+    let asked = match (found.asked_size, found.asked_canvas) {
+        (Some(size), Some(cost)) => {
+            let (intrinsic, isotropic) = (cost.intrinsic, cost.isotropic);
+            format!("s0 = {size:.3e}: about {intrinsic:.1e} canvas vertices (isotropic {isotropic:.1e})")
+        }
+        _ => "no canvas would do: the net must be denser, or better protected".into(),
+    };
+    line("to certify", asked);
+    let walks = &found.walks;
+    let (ended, started, mean, most) = (walks.found, walks.started, walks.mean_steps, walks.max_steps);
+    line("walks", format!("{ended} of {started} Voronoi vertices witnessed, {mean:.2} steps ({most} at most)"));
+}
+
+fn told(verdict: &Verdict) -> String {
+    let outcome = match verdict.outcome {
+        Outcome::Holds => format!("holds: {} (factor {:.3})", verdict.says, verdict.factor),
+        Outcome::Fails => format!("fails: {}", verdict.says),
+        Outcome::NotMeasured => {
+            let why = verdict.not_measured.as_deref().unwrap_or_default();
+            return format!("not measured: {why}");
+        }
+    };
+    let missed: Vec<String> = verdict.conditions.iter().filter(|c| !c.holds).map(missed).collect();
+    [&[outcome][..], &missed].concat().join("\n                 ")
+}
+
+fn missed(condition: &Condition) -> String {
+    let Condition { what, measured, limit, factor, .. } = condition;
+    if factor.is_finite() {
+        return format!("not so: {what}: {measured:.3e} against {limit:.3e}, by {factor:.3}");
+    }
+    format!("not so: {what}")
 }

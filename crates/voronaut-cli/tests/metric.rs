@@ -140,7 +140,7 @@ fn faults_are_named() {
     fails(&and(&["--report", "out.sol"]), 1, "two outputs have the same name");
     fails(&and(&["-o", "out.vtu"]), 2, "cannot be used multiple times");
     let output = place.run(&["metric", "square.mesh", "--metric", "uniform", "-o", "out.vtu"]);
-    assert!(stderr(&output).contains("the name does not end in .sol"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("does not end like a solution file"), "{}", stderr(&output));
 }
 
 #[test]

@@ -38,17 +38,6 @@ pub(super) const RULE: &str = "#dfe3ea";
 pub(super) const AXIS: &str = "#6b7486";
 pub(super) const TEXT: &str = "#14213d";
 
-/// The colour of a cell.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cell {
-    /// Which of the hues: neighbours have different ones.
-    pub(super) hue: usize,
-    /// A variation that the eye notices only beside another.
-    pub(super) shade: usize,
-    /// How much stands over it.
-    pub(super) tint: Tint,
-}
-
 /// How strong the colours of cells are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tint {
@@ -71,34 +60,32 @@ const CELLS: [[f64; 3]; 7] = [
     [0.73, 0.085, 15.0],
 ];
 
-impl Cell {
-    /// Number of hues.
-    pub(super) const HUES: usize = CELLS.len();
-    /// Number of shades of each.
-    pub(super) const SHADES: usize = 3;
+/// Number of hues of cells, and of shades of each: variations that the eye notices only beside another.
+pub(super) const HUES: usize = CELLS.len();
+pub(super) const SHADES: usize = 3;
 
-    pub(super) fn fill(self) -> String {
-        let [lightness, chroma, hue] = CELLS[self.hue];
-        let lightness = lightness + 0.022 * (self.shade as f64 - 1.0);
-        // From the colour itself towards white, with less of its contrast.
-        let [middle, contrast, strength] = match self.tint {
-            Tint::Full => [0.79, 1.0, 1.0],
-            Tint::Soft => [0.86, 0.65, 0.72],
-            Tint::Pale => [0.94, 0.2, 0.3],
-        };
-        oklch(middle + contrast * (lightness - 0.79), strength * chroma, hue)
-    }
+/// The fill of a cell by its hue, its shade, and how much stands over it; hues and shades go round.
+pub(super) fn cell(hue: usize, shade: usize, tint: Tint) -> String {
+    let [lightness, chroma, hue] = CELLS[hue % HUES];
+    let lightness = lightness + 0.022 * ((shade % SHADES) as f64 - 1.0);
+    // From the colour itself towards white, with less of its contrast.
+    let [middle, contrast, strength] = match tint {
+        Tint::Full => [0.79, 1.0, 1.0],
+        Tint::Soft => [0.86, 0.65, 0.72],
+        Tint::Pale => [0.94, 0.2, 0.3],
+    };
+    oklch(middle + contrast * (lightness - 0.79), strength * chroma, hue)
+}
 
-    /// How like two hues are: large for near ones.
-    pub(super) fn likeness(a: usize, b: usize) -> f64 {
-        let [x, y] = [a, b].map(|i| {
-            let [lightness, chroma, hue] = CELLS[i];
-            let angle = hue.to_radians();
-            [lightness, chroma * angle.cos(), chroma * angle.sin()]
-        });
-        let square: f64 = x.iter().zip(y).map(|(u, v)| (u - v) * (u - v)).sum();
-        0.005 / (0.005 + square)
-    }
+/// How like two hues are: large for near ones.
+pub(super) fn likeness(a: usize, b: usize) -> f64 {
+    let [x, y] = [a, b].map(|i| {
+        let [lightness, chroma, hue] = CELLS[i];
+        let angle = hue.to_radians();
+        [lightness, chroma * angle.cos(), chroma * angle.sin()]
+    });
+    let square: f64 = x.iter().zip(y).map(|(u, v)| (u - v) * (u - v)).sum();
+    0.005 / (0.005 + square)
 }
 
 /// A soft fill: `level` from 0 (palest) to 1 (strongest), a hue of its own for each region (0 for the first).
@@ -108,9 +95,9 @@ pub(super) fn fill(region: usize, level: f64) -> String {
     oklch(0.98 - 0.28 * level, 0.012 + 0.098 * level, hue)
 }
 
-/// A fill for quality: 1 (best) is almost white, 0 a warm red.
-pub(super) fn quality_fill(quality: f64) -> String {
-    let bad = (1.0 - quality).clamp(0.0, 1.0);
+/// A fill for how much protection there is: 1 (much) is almost white, 0 a warm red.
+pub(super) fn protection_fill(level: f64) -> String {
+    let bad = (1.0 - level).clamp(0.0, 1.0);
     oklch(0.985 - 0.335 * bad, 0.006 + 0.154 * bad, 85.0 - 55.0 * bad)
 }
 
@@ -178,10 +165,10 @@ mod tests {
 
     #[test]
     fn hues_of_cells_are_told_apart() {
-        for a in 0..Cell::HUES {
+        for a in 0..HUES {
             for b in 0..a {
-                let [fill, other] = [a, b].map(|hue| Cell { hue, shade: 1, tint: Tint::Soft }.fill());
-                assert!(fill != other && Cell::likeness(a, b) < Cell::likeness(a, a));
+                let [fill, other] = [a, b].map(|hue| cell(hue, 1, Tint::Soft));
+                assert!(fill != other && likeness(a, b) < likeness(a, a));
             }
         }
     }

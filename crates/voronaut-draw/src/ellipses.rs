@@ -1,7 +1,8 @@
 //! The metric as ellipses: its balls around a well-spaced subset of the vertices.
 
-use super::colours;
-use super::frame::{Frame, PathData};
+use super::frame::PathData;
+use super::strokes::Sheet;
+use super::{colours, palette};
 use std::collections::VecDeque;
 use std::fmt::Write;
 use voronaut::geometry::Tensor;
@@ -21,14 +22,8 @@ const SPACING: f64 = 2.1;
 ///
 /// # Errors
 /// [`Error::Metric`] where the metric is not positive definite at a vertex.
-pub(super) fn ellipses(
-    svg: &mut String,
-    mesh: &Mesh,
-    edges: &Edges,
-    metric: &dyn MetricField,
-    frame: &Frame,
-    faint: bool,
-) -> Result<()> {
+pub(super) fn ellipses(svg: &mut String, sheet: &Sheet, metric: &dyn MetricField, faint: bool) -> Result<()> {
+    let Sheet { mesh, edges, frame, .. } = *sheet;
     let tensors = tensors(mesh, edges, metric)?;
     let radius = (mesh.points.len() as f64 / (SPACING * SPACING * LIMIT)).sqrt().max(1.0);
     let mut path = PathData::default();
@@ -69,7 +64,8 @@ struct Packing<'a> {
     mesh: &'a Mesh,
     tensors: &'a [Option<Tensor>],
     distance: f64,
-    neighbours: Neighbours,
+    /// Of each vertex, in increasing order.
+    neighbours: Vec<Vec<u32>>,
     /// Vertices that cannot become centres but lead to others.
     avoided: Vec<bool>,
     covered: Vec<bool>,
@@ -88,7 +84,7 @@ impl<'a> Packing<'a> {
         if (0..count).all(|v| avoided[v] || tensors[v].is_none()) {
             avoided.fill(false);
         }
-        let neighbours = Neighbours::of(edges, count);
+        let neighbours = palette::adjacency(count, edges.iter().map(|(ends, _)| ends));
         let (covered, seen_from) = (vec![false; count], vec![u32::MAX; count]);
         Self { mesh, tensors, distance, neighbours, avoided, covered, seen_from, rim: VecDeque::new() }
     }
@@ -102,7 +98,7 @@ impl<'a> Packing<'a> {
                     continue;
                 }
                 if self.avoided[v as usize] {
-                    self.rim.extend(self.neighbours.of_vertex(v));
+                    self.rim.extend(&self.neighbours[v as usize]);
                 } else {
                     centres.push(v);
                     self.cover(v);
@@ -116,7 +112,7 @@ impl<'a> Packing<'a> {
     fn cover(&mut self, centre: u32) {
         let mut ball = vec![centre];
         while let Some(v) = ball.pop() {
-            for &u in self.neighbours.of_vertex(v) {
+            for &u in &self.neighbours[v as usize] {
                 if std::mem::replace(&mut self.seen_from[u as usize], centre) == centre {
                     continue;
                 }
@@ -130,28 +126,5 @@ impl<'a> Packing<'a> {
                 }
             }
         }
-    }
-}
-
-/// The neighbours of each vertex, in increasing order.
-struct Neighbours {
-    starts: Vec<usize>,
-    targets: Vec<u32>,
-}
-
-impl Neighbours {
-    fn of(edges: &Edges, vertices: usize) -> Self {
-        let mut directed: Vec<[u32; 2]> = edges.iter().flat_map(|([a, b], _)| [[a, b], [b, a]]).collect();
-        directed.sort_unstable();
-        let mut starts = vec![0; vertices + 1];
-        for &[a, _] in &directed {
-            starts[a as usize + 1] += 1;
-        }
-        (0..vertices).for_each(|v| starts[v + 1] += starts[v]);
-        Self { starts, targets: directed.into_iter().map(|[_, b]| b).collect() }
-    }
-
-    fn of_vertex(&self, v: u32) -> &[u32] {
-        &self.targets[self.starts[v as usize]..self.starts[v as usize + 1]]
     }
 }

@@ -36,6 +36,23 @@ impl Frame {
         [extent.x, extent.y].map(|side| (side * self.scale + 2.0 * self.margin).ceil())
     }
 
+    /// The beginning of an SVG: the paper, with so many pixels below the frame, and on all of it an element with these attributes,
+    /// such as a white `rect`.
+    pub(super) fn paper(&self, below: f64, ground: &str, attributes: &str) -> String {
+        let [width, height] = self.size();
+        let height = height + below;
+        let [w, h] = [width, height].map(|side| self.quanta(side).round());
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {w} {h}\">\n\
+             <{ground} width=\"{w}\" height=\"{h}\" {attributes}/>\n"
+        )
+    }
+
+    /// The attributes of a path with a fill and an ink, whose line has a width in pixels.
+    pub(super) fn paint(&self, [fill, ink]: [&str; 2], width: f64) -> String {
+        format!(r#"fill="{fill}" stroke="{ink}" stroke-width="{:.1}""#, self.quanta(width))
+    }
+
     /// Quanta for a length in pixels.
     pub(super) fn quanta(&self, pixels: f64) -> f64 {
         pixels / self.quantum
@@ -72,6 +89,13 @@ pub(super) struct PathData {
 }
 
 impl PathData {
+    /// Straight lines through points, all closed or none.
+    pub(super) fn of<P: AsRef<[[i64; 2]]>>(lines: impl IntoIterator<Item = P>, closed: bool) -> Self {
+        let mut path = Self::default();
+        lines.into_iter().for_each(|points| path.polyline(points.as_ref(), closed));
+        path
+    }
+
     /// Adds straight lines through points; a closed one returns to its first point.
     pub(super) fn polyline(&mut self, points: &[[i64; 2]], closed: bool) {
         self.text.push('m');
@@ -101,6 +125,11 @@ impl PathData {
             self.step(target);
         }
         self.text.push('z');
+    }
+
+    /// Writes the path so far with these attributes.
+    pub(super) fn draw(&self, svg: &mut String, attributes: &str) {
+        let _ = writeln!(svg, r#"<path {attributes} d="{}"/>"#, self.text);
     }
 
     /// The data so far.

@@ -46,12 +46,10 @@ struct Panel<'a> {
     /// What the horizontal axis ends with; it begins with 0.
     end: f64,
     ticks: Vec<(f64, String)>,
-    /// The range that is wanted, if it is one.
-    shaded: Option<[f64; 2]>,
-    /// Values that are wanted, with their names.
+    /// Values that are wanted, with their names; of several the range between the first and the last is.
     marks: Vec<(f64, &'static str)>,
     /// What the legend says of either.
-    legend: Both<String>,
+    legend: [String; 2],
 }
 
 fn lengths(found: &Histograms) -> Panel<'_> {
@@ -64,6 +62,7 @@ fn lengths(found: &Histograms) -> Panel<'_> {
     let says = |mean: f64, std: f64, unit: f64| {
         format!("mean {mean:.3}, standard deviation {std:.3}, {:.1} % unit", 100.0 * unit)
     };
+    let (mean, std, unit) = (histogram.mean, histogram.std, found.unit_fraction);
     Panel {
         left: LEFT[0],
         title: "Metric edge lengths",
@@ -71,18 +70,15 @@ fn lengths(found: &Histograms) -> Panel<'_> {
         histogram,
         end: last + width,
         ticks,
-        shaded: Some([FRAC_1_SQRT_2, SQRT_2]),
         marks: vec![(FRAC_1_SQRT_2, "1/\u{221a}2"), (1.0, "1"), (SQRT_2, "\u{221a}2")],
-        legend: Both {
-            straight: says(histogram.mean.straight, histogram.std.straight, found.unit_fraction.straight),
-            geodesic: says(histogram.mean.geodesic, histogram.std.geodesic, found.unit_fraction.geodesic),
-        },
+        legend: [says(mean.straight, std.straight, unit.straight), says(mean.geodesic, std.geodesic, unit.geodesic)],
     }
 }
 
 fn angles(found: &Histograms) -> Panel<'_> {
     let histogram = &found.angle;
     let says = |mean: f64, std: f64| format!("mean {mean:.1}\u{b0}, standard deviation {std:.1}\u{b0}");
+    let (mean, std) = (histogram.mean, histogram.std);
     Panel {
         left: LEFT[1],
         title: "Angles in the metric",
@@ -90,12 +86,8 @@ fn angles(found: &Histograms) -> Panel<'_> {
         histogram,
         end: 180.0,
         ticks: (0..=6).map(|i| (f64::from(30 * i), (30 * i).to_string())).collect(),
-        shaded: None,
         marks: vec![(60.0, "60\u{b0}")],
-        legend: Both {
-            straight: says(histogram.mean.straight, histogram.std.straight),
-            geodesic: says(histogram.mean.geodesic, histogram.std.geodesic),
-        },
+        legend: [says(mean.straight, std.straight), says(mean.geodesic, std.geodesic)],
     }
 }
 
@@ -117,8 +109,7 @@ impl Panel<'_> {
         let step = round_step(greatest / STEPS);
         let top = (greatest / step).ceil() * step;
         self.background(text, top, step);
-        let [fill, _] = STRAIGHT;
-        let _ = writeln!(text, "<path d=\"{}\" fill=\"{fill}\"/>", self.outline(&straight, top));
+        let _ = writeln!(text, "<path d=\"{}\" fill=\"{}\"/>", self.outline(&straight, top), STRAIGHT[0]);
         let [fill, ink] = CURVED;
         let outline = self.outline(&geodesic, top);
         let style = format!("fill=\"{fill}\" fill-opacity=\"0.08\" stroke=\"{ink}\" stroke-width=\"1.8\"");
@@ -135,12 +126,11 @@ impl Panel<'_> {
     /// Shading, and lines at round shares with their names.
     fn background(&self, text: &mut String, top: f64, step: f64) {
         let ([right, bottom], left) = ([self.left + PANEL[0], TOP + PANEL[1]], self.left);
-        if let Some([from, to]) = self.shaded.map(|range| range.map(|value| self.x(value))) {
-            let (width, height, fill) = (to - from, PANEL[1], WANTED[0]);
-            let _ = writeln!(
-                text,
-                "<rect x=\"{from:.1}\" y=\"{TOP}\" width=\"{width:.1}\" height=\"{height}\" fill=\"{fill}\"/>"
-            );
+        if let [first, .., last] = self.marks[..] {
+            let [from, to] = [first, last].map(|(value, _)| self.x(value));
+            let (width, height) = (to - from, PANEL[1]);
+            let place = format!("x=\"{from:.1}\" y=\"{TOP}\" width=\"{width:.1}\" height=\"{height}\"");
+            let _ = writeln!(text, "<rect {place} fill=\"{}\"/>", WANTED[0]);
         }
         for i in 0..=(top / step).round() as u32 {
             let share = f64::from(i) * step;
@@ -199,17 +189,12 @@ impl Panel<'_> {
 
     fn legend(&self, text: &mut String) {
         words(text, [self.left, 30.0], "font-size=\"18\" font-weight=\"bold\"", self.title);
-        let rows =
-            [("straight", &self.legend.straight, STRAIGHT, "1"), ("geodesic", &self.legend.geodesic, CURVED, "0.08")];
-        for (row, (name, says, [fill, ink], opacity)) in rows.into_iter().enumerate() {
+        let rows = [("straight", STRAIGHT, "1"), ("geodesic", CURVED, "0.08")];
+        for (row, ((name, [fill, ink], opacity), says)) in rows.into_iter().zip(&self.legend).enumerate() {
             let y = 56.0 + 22.0 * row as f64;
-            let _ = writeln!(
-                text,
-                "<rect x=\"{}\" y=\"{}\" width=\"20\" height=\"12\" fill=\"{fill}\" fill-opacity=\"{opacity}\" \
-                 stroke=\"{ink}\" stroke-width=\"1.5\"/>",
-                self.left + 1.0,
-                y - 11.0
-            );
+            let place = format!("x=\"{}\" y=\"{}\" width=\"20\" height=\"12\"", self.left + 1.0, y - 11.0);
+            let style = format!("fill=\"{fill}\" fill-opacity=\"{opacity}\" stroke=\"{ink}\" stroke-width=\"1.5\"");
+            let _ = writeln!(text, "<rect {place} {style}/>");
             words(text, [self.left + 30.0, y], "", &format!("{name}: {says}"));
         }
     }

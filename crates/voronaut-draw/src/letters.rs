@@ -14,19 +14,23 @@ const BASE: f64 = 2.0;
 pub(super) fn write(path: &mut PathData, words: &str, [x, y]: [f64; 2], unit: f64, frame: &Frame) {
     let mut left = x;
     for letter in words.chars() {
-        for line in strokes(letter).split_whitespace() {
-            let digits: Vec<f64> = line.chars().filter_map(|digit| digit.to_digit(10)).map(f64::from).collect();
-            let at = |p: &[f64]| frame.quanta_at([left + unit * p[0], y - unit * (p[1] - BASE)]);
-            let points: Vec<[i64; 2]> = digits.chunks_exact(2).map(at).collect();
-            path.polyline(&points, false);
+        for line in lines(letter) {
+            let at = |p: &[f64; 2]| frame.quanta_at([left + unit * p[0], y - unit * (p[1] - BASE)]);
+            path.polyline(&line.iter().map(at).collect::<Vec<_>>(), false);
         }
         left += unit * advance(letter);
     }
 }
 
 fn advance(letter: char) -> f64 {
-    let columns = strokes(letter).split_whitespace().flat_map(|line| line.chars().step_by(2));
-    columns.filter_map(|digit| digit.to_digit(10)).max().map_or(SPACE, f64::from) + GAP
+    lines(letter).flatten().map(|p| p[0]).reduce(f64::max).unwrap_or(SPACE) + GAP
+}
+
+/// The points of the lines of a letter: right and up.
+fn lines(letter: char) -> impl Iterator<Item = Vec<[f64; 2]>> {
+    let digit = |byte: u8| f64::from(byte - b'0');
+    let points = move |line: &str| line.as_bytes().chunks_exact(2).map(|p| [digit(p[0]), digit(p[1])]).collect();
+    strokes(letter).split(' ').filter(|line| !line.is_empty()).map(points)
 }
 
 /// The lines of a letter, each the digits of its points: right and up. Small letters are four units high.

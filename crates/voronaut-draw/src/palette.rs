@@ -13,7 +13,7 @@ pub(super) fn colour(
     classes: usize,
     likeness: impl Fn(usize, usize) -> f64,
 ) -> Vec<usize> {
-    let around = adjacency(count, neighbours);
+    let around = adjacency(count, neighbours.iter().copied());
     let mut class: Vec<Option<usize>> = vec![None; count];
     let mut taken = vec![0_u64; count];
     let mut used = vec![0_usize; classes];
@@ -40,9 +40,10 @@ pub(super) fn colour(
     class.into_iter().map(Option::unwrap_or_default).collect()
 }
 
-fn adjacency(count: usize, neighbours: &[[u32; 2]]) -> Vec<Vec<u32>> {
+/// The neighbours of each of `count` cells; in increasing order if pairs are, the smaller first.
+pub(super) fn adjacency(count: usize, neighbours: impl Iterator<Item = [u32; 2]>) -> Vec<Vec<u32>> {
     let mut around = vec![Vec::new(); count];
-    for &[a, b] in neighbours {
+    for [a, b] in neighbours {
         around[a as usize].push(b);
         around[b as usize].push(a);
     }

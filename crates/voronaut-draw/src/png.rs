@@ -1,4 +1,4 @@
-//! SVG to PNG.
+//! SVG to PNG, and PNGs within an SVG.
 
 use resvg::tiny_skia::{IntSize, Pixmap, PixmapPaint, Transform};
 use resvg::usvg::{ImageHrefResolver, Options, Tree};
@@ -37,18 +37,35 @@ pub(crate) fn render_png(svg: &str) -> Result<Vec<u8>> {
     pixels.encode_png().map_err(|error| fault(error.to_string()))
 }
 
-/// Encodes opaque pixels, row by row, as the bytes of a PNG file.
+/// Opaque pixels, row by row, as the address of a PNG that holds them.
 ///
 /// # Errors
 /// [`Error::Limit`] where there are none.
-pub(super) fn encode(pixels: &[[u8; 3]], [width, height]: [u32; 2]) -> Result<Vec<u8>> {
+pub(super) fn data_url(pixels: &[[u8; 3]], width: u32) -> Result<String> {
+    let height = (pixels.len() as u32).checked_div(width).unwrap_or(0);
     let fault = || Error::Limit {
         what: format!("an image of {width} x {height} pixels"),
         help: "give the picture another width".into(),
     };
     let bytes = pixels.iter().flat_map(|&[r, g, b]| [r, g, b, u8::MAX]).collect();
     let size = IntSize::from_wh(width, height).ok_or_else(fault)?;
-    Pixmap::from_vec(bytes, size).and_then(|pixmap| pixmap.encode_png().ok()).ok_or_else(fault)
+    let png = Pixmap::from_vec(bytes, size).and_then(|pixmap| pixmap.encode_png().ok()).ok_or_else(fault)?;
+    Ok(format!("data:image/png;base64,{}", base64(&png)))
+}
+
+/// Bytes as text: three bytes as four characters (RFC 4648).
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let three = [0, 1, 2].map(|i| u32::from(group.get(i).copied().unwrap_or(0)));
+        let number = three[0] << 16 | three[1] << 8 | three[2];
+        for digit in 0..4 {
+            let value = number >> (18 - 6 * digit) & 63;
+            text.push(if digit <= group.len() { char::from(DIGITS[value as usize]) } else { '=' });
+        }
+    }
+    text
 }
 
 /// Keeps the images of an SVG, and opens no files. resvg draws images only with a feature that brings decoders of formats
@@ -74,5 +91,11 @@ mod tests {
         assert!(render_png(&svg("8")).unwrap().starts_with(b"\x89PNG"));
         assert!(matches!(render_png(&svg("100000")), Err(Error::Limit { .. })));
         assert!(matches!(render_png("no picture"), Err(Error::Parse { .. })));
+    }
+
+    #[test]
+    fn base64_is_that_of_its_definition() {
+        let texts = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|text| base64(text.as_bytes()));
+        assert_eq!(texts, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
     }
 }

@@ -1,17 +1,22 @@
-//! The edges of a mesh as lines whose width follows the local size, so that fine parts stay crisp.
+//! Lines whose width follows the local size, so that fine parts stay crisp; of the edges of a mesh, and of its boundary.
 
 use super::colours;
 use super::frame::{Frame, PathData};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use voronaut::mesh::Mesh;
 use voronaut::quality::Edges;
 
-/// How wide lines are that follow the local size.
+/// Attributes of lines that are round where they turn, and there and at their ends.
+pub(super) const ROUND_JOINS: &str = r#" stroke-linejoin="round""#;
+pub(super) const ROUND: &str = r#" stroke-linejoin="round" stroke-linecap="round""#;
+
+/// How wide lines are that follow the local size. Widths come in classes, each 1/sqrt 2 of the one before.
 #[derive(Clone, Copy)]
 pub(super) struct Pen {
     /// The widest line, in pixels.
     pub(super) widest: f64,
-    /// Width of a line as a share of the height of the flatter triangle at the edge.
+    /// Width of a line as a share of the thickness of what it bounds.
     pub(super) share: f64,
     /// The thinnest line, in pixels.
     pub(super) thinnest: f64,
@@ -22,52 +27,74 @@ const INNER: Pen = Pen { widest: 0.8, share: 0.085, thinnest: 0.025 };
 /// Width of boundary and interfaces, in pixels.
 const BOUNDARY_WIDTH: f64 = 1.3;
 
-/// One SVG path per class of line width: all edges between at least so many triangles; `heights` holds each triangle's
-/// least height in pixels.
-pub(super) fn edges_of(svg: &mut String, mesh: &Mesh, edges: &Edges, sides: usize, heights: &[f64], frame: &Frame) {
-    let inner = edges.iter().filter(|(_, half_edges)| half_edges.len() >= sides);
-    lines(svg, mesh, inner, INNER, colours::EDGE, heights, frame);
+impl Pen {
+    /// The class of a line that bounds what is so many pixels thick.
+    pub(super) fn class(self, thickness: f64) -> usize {
+        let class = |width: f64| (2.0 * (self.widest / width).log2()).round();
+        class(self.share * thickness).clamp(0.0, class(self.thinnest)) as usize
+    }
+
+    /// The width of a class, in pixels.
+    pub(super) fn width(self, class: usize) -> f64 {
+        self.widest * 0.5_f64.powf(0.5 * class as f64)
+    }
+
+    /// Draws paths by their classes.
+    pub(super) fn draw(self, svg: &mut String, classes: &BTreeMap<usize, PathData>, ink: &str, frame: &Frame) {
+        let _ = writeln!(svg, r#"<g fill="none" stroke="{ink}" stroke-linecap="round">"#);
+        for (&class, path) in classes {
+            path.draw(svg, &format!(r#"stroke-width="{:.1}""#, frame.quanta(self.width(class))));
+        }
+        svg.push_str("</g>\n");
+    }
 }
 
-/// The same of some edges, by a pen and in a colour. Widths come in classes, each 1/sqrt 2 of the one before.
-pub(super) fn lines<'a>(
-    svg: &mut String,
-    mesh: &Mesh,
-    edges: impl Iterator<Item = ([u32; 2], &'a [(u64, u32)])>,
-    pen: Pen,
-    ink: &str,
-    heights: &[f64],
-    frame: &Frame,
-) {
-    let class_of = |width: f64| (2.0 * (pen.widest / width).log2()).round();
-    let last = class_of(pen.thinnest);
-    let mut classes = vec![PathData::default(); last as usize + 1];
-    for ([a, b], half_edges) in edges {
-        let height = half_edges.iter().map(|&(_, h)| heights[h as usize / 3]).fold(f64::INFINITY, f64::min);
-        let class = class_of(pen.share * height).clamp(0.0, last);
-        classes[class as usize].polyline(&[a, b].map(|v| frame.place(mesh.point(v))), false);
-    }
-    let _ = writeln!(svg, r#"<g fill="none" stroke="{ink}" stroke-linecap="round">"#);
-    for (class, path) in classes.iter().enumerate().filter(|(_, path)| !path.text().is_empty()) {
-        let width = frame.quanta(pen.widest * 0.5_f64.powf(0.5 * class as f64));
-        let _ = writeln!(svg, r#"<path stroke-width="{width:.1}" d="{}"/>"#, path.text());
-    }
-    svg.push_str("</g>\n");
+/// A mesh on paper.
+pub(super) struct Sheet<'a> {
+    pub(super) mesh: &'a Mesh,
+    /// Of the triangles that are drawn.
+    pub(super) edges: &'a Edges<'a>,
+    /// The least height of each of these triangles, in pixels.
+    pub(super) heights: &'a [f64],
+    pub(super) frame: &'a Frame,
 }
 
-/// Boundary edges and labelled edges, stronger than the rest; thinner where the boundary itself is fine.
-pub(super) fn boundary(svg: &mut String, mesh: &Mesh, edges: &Edges, frame: &Frame) {
-    let labelled = mesh.edges.iter().copied().filter(|&[a, b]| edges.contains(a, b));
-    let boundary = edges.boundary().into_iter().map(|h| edges.ends(h));
-    let mut all: Vec<[u32; 2]> = boundary.chain(labelled).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-    all.sort_unstable();
-    all.dedup();
-    let mut path = PathData::default();
-    for [a, b] in all {
-        path.polyline(&[a, b].map(|v| frame.place(mesh.point(v))), false);
+impl Sheet<'_> {
+    /// One SVG path per class of line width: all edges between at least so many triangles.
+    pub(super) fn edges_of(&self, svg: &mut String, sides: usize) {
+        let inner = self.edges.iter().filter(|(_, half_edges)| half_edges.len() >= sides);
+        self.lines(svg, inner, INNER, colours::EDGE);
     }
-    let width = frame.quanta(BOUNDARY_WIDTH);
-    let ink = colours::BOUNDARY;
-    let style = r#"fill="none" stroke-linecap="round""#;
-    let _ = writeln!(svg, r#"<path {style} stroke="{ink}" stroke-width="{width:.1}" d="{}"/>"#, path.text());
+
+    /// The same of some edges, by a pen, for the height of the flatter triangle at each, and in a colour.
+    pub(super) fn lines<'e>(
+        &self,
+        svg: &mut String,
+        edges: impl Iterator<Item = ([u32; 2], &'e [(u64, u32)])>,
+        pen: Pen,
+        ink: &str,
+    ) {
+        let mut classes: BTreeMap<usize, PathData> = BTreeMap::new();
+        for (ends, half_edges) in edges {
+            let heights = half_edges.iter().map(|&(_, h)| self.heights[h as usize / 3]);
+            let path = classes.entry(pen.class(heights.fold(f64::INFINITY, f64::min))).or_default();
+            path.polyline(&self.place(ends), false);
+        }
+        pen.draw(svg, &classes, ink, self.frame);
+    }
+
+    /// Boundary edges and labelled edges, stronger than the rest.
+    pub(super) fn boundary(&self, svg: &mut String) {
+        let labelled = self.mesh.edges.iter().copied().filter(|&[a, b]| self.edges.contains(a, b));
+        let boundary = self.edges.boundary().into_iter().map(|h| self.edges.ends(h));
+        let all: BTreeSet<[u32; 2]> = boundary.chain(labelled).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        let path = PathData::of(all.into_iter().map(|ends| self.place(ends)), false);
+        let (ink, width) = (colours::BOUNDARY, self.frame.quanta(BOUNDARY_WIDTH));
+        path.draw(svg, &format!(r#"fill="none" stroke-linecap="round" stroke="{ink}" stroke-width="{width:.1}""#));
+    }
+
+    /// Corners of a triangle or ends of an edge, in quanta.
+    pub(super) fn place<const N: usize>(&self, vertices: [u32; N]) -> [[i64; 2]; N] {
+        vertices.map(|v| self.frame.place(self.mesh.point(v)))
+    }
 }

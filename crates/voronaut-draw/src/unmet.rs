@@ -1,11 +1,10 @@
 //! The edges that are not of unit length, over a mesh, and a legend of their causes.
 
 use super::frame::{Frame, PathData};
-use super::strokes::{self, Pen};
+use super::strokes::{Pen, Sheet};
 use super::{colours, letters};
 use std::fmt::Write;
-use voronaut::mesh::Mesh;
-use voronaut::quality::{Cause, CauseFigures, Edges, Unmet};
+use voronaut::quality::{Cause, CauseFigures, Unmet};
 
 /// Edges of a cause: wider than those of the mesh, and never too thin to be seen; those of the boundary wider than that, too.
 /// In pixels.
@@ -20,17 +19,16 @@ const COLUMNS: [f64; 2] = [0.02, 0.245];
 /// How opaque the mesh is under these edges.
 pub(super) const PALE: f64 = 0.3;
 
-/// Edges by cause, the too long ones light, the too short ones, which are small, dark and over them; `heights` holds each
-/// triangle's least height in pixels.
-pub(super) fn edges(svg: &mut String, mesh: &Mesh, edges: &Edges, unmet: &Unmet, heights: &[f64], frame: &Frame) {
-    let all: Vec<_> = edges.iter().collect();
+/// Edges by cause, the too long ones light, the too short ones, which are small, dark and over them.
+pub(super) fn edges(svg: &mut String, sheet: &Sheet, unmet: &Unmet) {
+    let all: Vec<_> = sheet.edges.iter().collect();
     for is_short in [false, true] {
         for cause in Cause::ALL {
             let found = unmet.edges.iter().filter(|edge| edge.cause == cause && edge.is_short() == is_short);
             let found = found.filter_map(|edge| all.binary_search_by_key(&edge.edge, |(ends, _)| *ends).ok());
             let ink = colours::cause(cause as usize, is_short);
             let pen = if cause == Cause::Boundary { KEPT_PEN } else { PEN };
-            strokes::lines(svg, mesh, found.map(|i| all[i]), pen, &ink, heights, frame);
+            sheet.lines(svg, found.map(|i| all[i]), pen, &ink);
         }
     }
 }
@@ -59,11 +57,8 @@ pub(super) fn legend(svg: &mut String, unmet: &Unmet, frame: &Frame) {
         for (row, is_short) in [(2, true), (3, false)] {
             let [x, y] = place(column, row);
             let swatch = [x, x + 12.0 * unit].map(|x| frame.quanta_at([x, y - 2.0 * unit]));
-            let (ink, thick) = (colours::cause(cause as usize, is_short), frame.quanta(2.4 * unit));
-            let mut line = PathData::default();
-            line.polyline(&swatch, false);
-            let _ =
-                writeln!(svg, r#"<path fill="none" stroke="{ink}" stroke-width="{thick:.1}" d="{}"/>"#, line.text());
+            PathData::of([swatch], false)
+                .draw(svg, &frame.paint(["none", &colours::cause(cause as usize, is_short)], 2.4 * unit));
             let (count, what) = if is_short { (found.short, "too short") } else { (found.long, "too long") };
             let says = format!("{:.1} % {what}", 100.0 * share_of(count, found));
             letters::write(&mut words, &says, [x + 16.0 * unit, y], unit, frame);
@@ -71,7 +66,7 @@ pub(super) fn legend(svg: &mut String, unmet: &Unmet, frame: &Frame) {
     }
     let (ink, thick) = (colours::TEXT, frame.quanta(0.75 * unit));
     let style = r#"fill="none" stroke-linecap="round" stroke-linejoin="round""#;
-    let _ = writeln!(svg, r#"<path {style} stroke="{ink}" stroke-width="{thick:.1}" d="{}"/>"#, words.text());
+    words.draw(svg, &format!(r#"{style} stroke="{ink}" stroke-width="{thick:.1}""#));
 }
 
 /// A count of a cause's edges as a share of all edges of the mesh.
@@ -89,7 +84,7 @@ mod tests {
 
     /// How many paths have the colour of each cause, for what is too short and too long: one is the legend's.
     fn paths(found: &Unmet) -> [[usize; 2]; 4] {
-        let layers = Layers { unmet: Some(found), ..Layers::default() };
+        let layers = Layers { unmet: Some(found.clone()), ..Layers::default() };
         let text = svg_with(&grid(4, 4), None, &Picture::default(), &layers).unwrap();
         assert!(text.ends_with("</svg>\n") && !text.contains("NaN"));
         let group = |cause: usize, is_short: bool| {

@@ -132,7 +132,7 @@ fn picture(scene: &Scene, count: usize, file: &Path) -> Outcome<()> {
         let cells = Diagram::of_kind(kind, &canvas, scene.field(), &seeds, Method::March)?.to_cells();
         let what = Picture { mesh: false, width: PIXELS, window, ..Picture::default() };
         // No witnesses are drawn, but all three are as pale as if some were.
-        let layers = Layers { cells: Some(&cells), witnesses: Some([&[], &[]]), ..Layers::default() };
+        let layers = Layers { cells: Some(cells), witnesses: Some([Vec::new(), Vec::new()]), ..Layers::default() };
         let part = voronaut_draw::svg_with(&Mesh::default(), None, &what, &layers)?;
         parts += &part.replacen("<svg ", &format!("<svg x=\"{}\" ", place as u32 * (PIXELS + GAP)), 1);
     }

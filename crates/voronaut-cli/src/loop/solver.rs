@@ -1,8 +1,9 @@
 //! A user's solver, run by the shell on files of its own directory.
 
+use crate::files::{self, Miscounted};
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use voronaut::mesh::{Mesh, SolutionValues, Solutions};
+use voronaut::mesh::{Mesh, Solutions};
 use voronaut::{Error, Result};
 use voronaut_io::sol;
 
@@ -24,7 +25,10 @@ impl Shell {
         }
         let place = std::path::absolute(std::env::temp_dir()).unwrap_or_else(|_| std::env::temp_dir());
         let directory = place.join(format!("voronaut-loop-{}", std::process::id()));
-        std::fs::create_dir(&directory).map_err(|error| failed(&directory, &error))?;
+        std::fs::create_dir(&directory).map_err(|error| {
+            let what = format!("cannot be made: {error}");
+            Error::parse(directory.display().to_string(), what, "set TMPDIR to a directory to write to")
+        })?;
         Ok(Self { command: command.into(), directory })
     }
 
@@ -54,7 +58,10 @@ impl Shell {
             return Err(Error::parse("solver", format!("step {step}: `{text}` wrote no solution"), help));
         }
         let found = sol::read_all(voronaut_io::open(&out_file)?, &format!("the solver's {{out}} of step {step}"))?;
-        demand_counts(step, &found, mesh)?;
+        if let Some(Miscounted { section, found, needed, places }) = files::miscounted(&found, mesh) {
+            let what = format!("step {step}: {section} has {found} entries, and the mesh {needed} {places}");
+            return Err(Error::parse("solver", what, "write one entry for each, in the order of the mesh file"));
+        }
         Ok(found)
     }
 }
@@ -75,26 +82,4 @@ fn run(step: usize, text: &str) -> Result<()> {
         Err(error) => format!("step {step}: `{text}` cannot be run: {error}"),
     };
     Err(Error::parse("solver", what, "run the command by hand on a mesh of its own; its messages are above"))
-}
-
-fn demand_counts(step: usize, found: &Solutions, mesh: &Mesh) -> Result<()> {
-    let sections = [
-        ("SolAtVertices", &found.vertices, mesh.points.len(), "vertices"),
-        ("SolAtTriangles", &found.triangles, mesh.triangles.len(), "triangles"),
-    ];
-    for (section, values, needed, places) in sections {
-        if let Some(count) = values.first().map(SolutionValues::count).filter(|&count| count != needed) {
-            let what = format!("step {step}: {section} has {count} entries, and the mesh {needed} {places}");
-            return Err(Error::parse("solver", what, "write one entry for each, in the order of the mesh file"));
-        }
-    }
-    Ok(())
-}
-
-fn failed(path: &Path, error: &std::io::Error) -> Error {
-    Error::parse(
-        path.display().to_string(),
-        format!("cannot be made: {error}"),
-        "set TMPDIR to a directory to write to",
-    )
 }

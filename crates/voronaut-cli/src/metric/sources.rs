@@ -1,6 +1,6 @@
 //! Metrics at the vertices of a mesh, from texts and files.
 
-use super::args::{LimitText, MetricArgs};
+use super::{LimitText, MetricArgs};
 use std::path::Path;
 use voronaut::domain::{Domain, from_mesh};
 use voronaut::geometry::Tensor;

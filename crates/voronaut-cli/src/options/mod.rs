@@ -3,18 +3,18 @@
 mod values;
 
 pub(crate) use values::{
-    CanvasSize, Coordinates, EdgesOut, Show, canvas_size, coordinates, default_memory_limit, in_bytes, not_negative,
-    positive,
+    CanvasSize, Coordinates, EdgesOut, Show, canvas_size, coordinates, finite, not_negative, positive,
 };
 
 use clap::{Args, value_parser};
 use std::path::PathBuf;
-use values::window;
+use values::{GIB, default_memory_limit, window};
 use voronaut::geometry::Aabb;
 use voronaut::mesh::TensorOrder;
 use voronaut::metric::{Bounds, MOST_SWEEPS, Norm, Recovery};
 use voronaut::recipe::{MetricOptions, SMOOTH_METRIC};
 use voronaut::surface::RepairOptions;
+use voronaut::{Error, Result};
 use voronaut_draw::Picture;
 
 #[derive(Debug, Args)]
@@ -84,13 +84,42 @@ pub(crate) struct Outputs {
     /// Draw how metric edge lengths and angles are distributed, with straight and with geodesic edges: .svg
     #[arg(long, value_name = "FILE", requires = "metric")]
     pub(crate) histograms: Option<PathBuf>,
-    /// Write all figures as JSON
-    #[arg(long, value_name = "FILE")]
-    pub(crate) report: Option<PathBuf>,
+}
+
+impl Outputs {
+    pub(crate) fn shows(&self, what: Show) -> bool {
+        self.show.contains(&what)
+    }
+
+    /// Whether the picture, if there is one, needs a diagram.
+    pub(crate) fn need_diagram(&self) -> bool {
+        self.show.iter().any(|show| show.is_of_diagram())
+    }
+
+    /// Whether the picture, if there is one, shows a mesh with geodesic edges.
+    pub(crate) fn have_geodesics(&self) -> bool {
+        self.shows(Show::Geodesics) || self.shows(Show::Triangles)
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Memory {
+    /// Refuse work that is estimated to need more memory than this
+    #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
+    memory_limit: f64,
+}
+
+impl Memory {
+    pub(crate) fn bytes(&self) -> u64 {
+        (self.memory_limit * GIB) as u64
+    }
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct Run {
+    /// Write all figures as JSON
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
     /// Threads to use [default: all]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..))]
     pub(crate) threads: Option<u16>,
@@ -100,6 +129,29 @@ pub(crate) struct Run {
     /// Say more: stages, counters
     #[arg(short, long)]
     pub(crate) verbose: bool,
+}
+
+impl Run {
+    /// Uses so many threads from now on.
+    pub(crate) fn set_threads(&self) -> Result<()> {
+        let Some(threads) = self.threads else { return Ok(()) };
+        let built = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global();
+        let help = "ask for fewer threads";
+        built.map_err(|error| Error::Limit { what: format!("{threads} threads: {error}"), help: help.into() })
+    }
+
+    /// Writes the report, if asked for.
+    pub(crate) fn write_report(&self, text: &str) -> Result<()> {
+        self.report.as_deref().map_or(Ok(()), |path| voronaut_io::write(path, text.as_bytes()))
+    }
+}
+
+/// Refuses what is not there: the first of these, of which each has whether it is asked for, what it is, and what to do.
+pub(crate) fn refuse<W: Into<String>, H: Into<String>>(all: impl IntoIterator<Item = (bool, W, H)>) -> Result<()> {
+    match all.into_iter().find(|(is_asked, ..)| *is_asked) {
+        Some((_, what, help)) => Err(Error::Unsupported { what: what.into(), help: help.into() }),
+        None => Ok(()),
+    }
 }
 
 impl MetricChoices {

@@ -68,36 +68,26 @@ impl fmt::Display for CanvasSize {
     }
 }
 
-impl EdgesOut {
-    /// As it is typed.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            EdgesOut::Straight => "straight",
-            EdgesOut::Geodesic => "geodesic",
-        }
-    }
-}
-
 /// Bytes of a gibibyte.
-const GIB: f64 = 1_073_741_824.0;
+pub(super) const GIB: f64 = 1_073_741_824.0;
 
-/// Gibibytes in bytes.
-pub(crate) fn in_bytes(gibibytes: f64) -> u64 {
-    (gibibytes * GIB) as u64
+pub(super) fn default_memory_limit() -> f64 {
+    MeshOptions::default().memory_limit as f64 / GIB
 }
 
-pub(crate) fn default_memory_limit() -> f64 {
-    MeshOptions::default().memory_limit as f64 / GIB
+/// A list of finite numbers; `None` where one is not.
+pub(crate) fn finite(text: &str) -> Option<Vec<f64>> {
+    let number = |word: &str| word.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    text.split(',').map(number).collect()
 }
 
 /// A box by two of its corners.
 pub(super) fn window(text: &str) -> Result<Aabb, String> {
-    let numbers: Vec<f64> = text.split(',').map_while(|word| word.trim().parse().ok()).collect();
-    let corners = match numbers[..] {
-        [x0, y0, x1, y1] if text.split(',').count() == 4 => [Point::new(x0, y0), Point::new(x1, y1)],
-        _ => return Err("not four numbers x0,y0,x1,y1".into()),
+    let Some(&[x0, y0, x1, y1]) = finite(text).as_deref() else {
+        return Err("not four finite numbers x0,y0,x1,y1".into());
     };
     let has_room = |b: &Aabb| b.extent().x > 0.0 && b.extent().y > 0.0 && b.extent().norm().is_finite();
+    let corners = [Point::new(x0, y0), Point::new(x1, y1)];
     Aabb::of(corners).filter(has_room).ok_or_else(|| "the box is empty or not finite".into())
 }
 
@@ -111,10 +101,9 @@ pub(crate) enum Coordinates {
 }
 
 pub(crate) fn coordinates(text: &str) -> Result<Coordinates, String> {
-    let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[x, y]) if Point::new(x, y).is_finite() => Ok(Coordinates::Plane(Point::new(x, y))),
-        Some(&[x, y, z]) if Point3::new(x, y, z).is_finite() => Ok(Coordinates::Space(Point3::new(x, y, z))),
+    match finite(text).as_deref() {
+        Some(&[x, y]) => Ok(Coordinates::Plane(Point::new(x, y))),
+        Some(&[x, y, z]) => Ok(Coordinates::Space(Point3::new(x, y, z))),
         _ => Err("not a point: write two numbers, X,Y, or on a surface three, X,Y,Z".into()),
     }
 }
@@ -128,15 +117,10 @@ pub(crate) fn canvas_size(text: &str) -> Result<CanvasSize, String> {
 }
 
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("not a positive number".into()),
-    }
+    not_negative(text).ok().filter(|&value| value > 0.0).ok_or_else(|| "not a positive number".into())
 }
 
 pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
-        _ => Err("not a number from 0 up".into()),
-    }
+    let value = text.parse().ok().filter(|value: &f64| value.is_finite() && *value >= 0.0);
+    value.ok_or_else(|| "not a number from 0 up".into())
 }

@@ -99,13 +99,10 @@ pub(crate) struct RemeshArgs {
     /// How much is said, as mmg's -v N: nothing from 0 down, more from 5 up
     #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with_all = ["quiet", "verbose"])]
     pub(crate) verbosity: Option<i32>,
-    /// Write all figures as JSON
-    #[arg(long, value_name = "FILE")]
-    pub(crate) report: Option<PathBuf>,
-    #[command(flatten)]
-    unused: Unused,
     #[command(flatten)]
     run: Run,
+    #[command(flatten)]
+    unused: Unused,
 }
 
 /// Options of mmg that change nothing here.
@@ -203,6 +200,7 @@ impl RemeshArgs {
     /// Threads, and how much is said.
     pub(crate) fn run(&self) -> Run {
         Run {
+            report: self.run.report.clone(),
             threads: self.run.threads,
             quiet: self.run.quiet || self.verbosity.is_some_and(|n| n <= 0),
             verbose: self.run.verbose || self.verbosity.is_some_and(|n| n >= 5),

@@ -1,25 +1,24 @@
 //! `voronaut remesh`: meshes of planar domains and of surfaces for users of mmg2d and mmgs, by their options.
 
 mod args;
-mod plane;
 mod spelling;
-mod surface;
 
 pub(crate) use args::{EXAMPLES, RemeshArgs};
 pub(crate) use spelling::translated;
 
-use crate::{files, mesh, summary};
+use crate::progress::Bar;
+use crate::{account, summary};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use voronaut::Result;
 use voronaut::mesh::{Mesh, Solution};
-use voronaut::recipe::{Keep, MeshOptions, Meshed, RemeshInput};
-use voronaut::surface::metric::Sizing;
+use voronaut::quality::fidelity;
+use voronaut::recipe::{self, Asked, Keep, MeshOptions, RemeshInput};
+use voronaut::surface::metric::{Sizes, Sizing};
 use voronaut::surface::{Input, Mended};
 use voronaut_io::gmsh::Version;
-use voronaut_io::{Fields, Format, Given, of_document, read_metric, read_pslg};
-use voronaut_io::{Report, Seconds};
+use voronaut_io::{Fields, Format, Given, Report, Strayed, of_document, read_metric, read_pslg};
 
 /// mmg's exit code where it writes no mesh.
 pub(crate) const FAILURE: u8 = 2;
@@ -34,28 +33,23 @@ pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
         other => other,
     };
     let sol_file = out.with_extension("sol");
-    [Some(&out), Some(&sol_file), args.report.as_ref()]
-        .into_iter()
-        .flatten()
-        .try_for_each(|path| voronaut_io::demand_directory(path))?;
-    files::set_threads(&run)?;
+    let files = [Some(&out), Some(&sol_file), run.report.as_ref()];
+    files.into_iter().flatten().try_for_each(|path| voronaut_io::demand_directory(path))?;
+    run.set_threads()?;
     let given = read(args)?;
     let is_planar = matches!(given, Read::Plane(..));
     args.warnings(is_planar).iter().for_each(|warning| eprintln!("warning: {warning}"));
-    let made = match given {
-        Read::Plane(input, notes) => {
-            let mut made = plane::remesh(args, &input)?;
-            made.report.notes.extend(notes);
-            made
-        }
-        Read::Surface(input, mended) => surface::remesh(args, input, &mended)?,
+    let bar = Bar::new(&run);
+    let Made { mesh, mut report, solution } = match given {
+        Read::Plane(input, notes) => in_plane(args, &input, notes, &bar)?,
+        Read::Surface(input, mended) => on_surface(args, input, &mended, &bar)?,
     };
-    let Made { mesh, mut report, solution } = made;
+    drop(bar);
     report.seconds.total = start.elapsed().as_secs_f64();
     voronaut_io::write_with(&out, |file| format.write(&mesh, &Fields::default(), file))?;
     voronaut_io::write_solution(&solution, &sol_file)?;
-    args.report.as_deref().map_or(Ok(()), |path| voronaut_io::write(path, report.to_json().as_bytes()))?;
-    summary::print(&out.display().to_string(), &report, &run);
+    run.write_report(&report.to_json())?;
+    summary::print(&out, &report, &run);
     Ok(())
 }
 
@@ -65,6 +59,55 @@ struct Made {
     report: Report,
     /// The metric that was used at the mesh's vertices.
     solution: Solution,
+}
+
+/// A valid mesh of a planar domain, as mmg2d does it; with what the reader left out.
+fn in_plane(args: &RemeshArgs, input: &RemeshInput, left_out: Vec<String>, bar: &Bar) -> Result<Made> {
+    let (metric_file, given) = asked(args)?.unzip();
+    let asked = match given {
+        Some(given) => Asked::Values(given.values),
+        None if args.optim => Asked::Own,
+        None => Asked::Nothing,
+    };
+    let sizing = sizing(args, args.hsiz.map_or_else(|| input.default_limits(&asked), |h| Ok([0.1 * h, h]))?);
+    let sizes = input.sizes(&asked, &sizing)?;
+    let field = sizes.field()?;
+    let mut meshed = recipe::mesh(&input.domain, &field, &options(args), bar)?;
+    input.mark(&mut meshed.mesh);
+    let used = as_used(args, &sizing, metric_file.as_deref());
+    let (mut report, _) = account::in_plane(&meshed, &field, used)?;
+    report.fidelity = Some(Strayed::Boundary(fidelity(&meshed.mesh, &input.domain.boundary())));
+    if input.left_out > 0 {
+        let why = "inside a region and not required (-opnbdy keeps them), or no triangle's";
+        report.notes.push(format!("{} edges of the list are left out: {why}", input.left_out));
+    }
+    report.notes.extend(left_out);
+    let solution = sizes.solution(&field, &meshed.mesh.points);
+    Ok(Made { mesh: meshed.mesh, report, solution })
+}
+
+/// A valid mesh of a surface, as mmgs does it.
+fn on_surface(args: &RemeshArgs, input: Input, mended: &Mended, bar: &Bar) -> Result<Made> {
+    /// Vertices slide less than with `mesh --fit`: lengths of edges count for more here.
+    const STIFFNESS: f64 = 0.5;
+    /// The least size, as a share of the diagonal or of the one size asked for: as with mmgs.
+    const LEAST: [f64; 2] = [1e-3, 0.1];
+    let input = input.cut(&args.features())?;
+    let (metric_file, given) = asked(args)?.unzip();
+    let given = given.map(|given| input.spread(&given)).transpose()?;
+    let diagonal = input.diagonal();
+    let sizing = sizing(args, [args.hsiz.map_or(LEAST[0] * diagonal, |h| LEAST[1] * h), diagonal]);
+    let sizes = sizing.sizes(&input.surface, given.as_ref())?;
+    if matches!(sizes, Sizes::Anisotropic(_)) && args.hgrad > 1.0 && !args.run().quiet {
+        eprintln!("note: sizes that depend on the direction are not graded: -hgrad would make them alike in all");
+    }
+    let field = sizes.field(&input.surface)?;
+    let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args) };
+    let meshed = recipe::mesh_surface(&input, &field, &options, bar)?;
+    let used = as_used(args, &sizing, metric_file.as_deref());
+    let report = account::on_surface(&meshed, &input, mended, &field, used)?;
+    let solution = sizes.solution(&field, meshed.metric_scale, &input.surface, &meshed.mesh.points)?;
+    Ok(Made { mesh: meshed.mesh, report, solution })
 }
 
 /// What goes in.
@@ -129,11 +172,11 @@ fn asked(args: &RemeshArgs) -> Result<Option<(PathBuf, Solution)>> {
     Ok(Some((path, read)))
 }
 
-/// Limits that are not given: of two numbers, the least and greatest size there is; one that is given comes first.
-fn limits(args: &RemeshArgs, [least, most]: [f64; 2]) -> [f64; 2] {
+/// Sizes as they are asked for. Limits that are not given are the least and greatest size there is; one that is given comes first.
+fn sizing(args: &RemeshArgs, [least, most]: [f64; 2]) -> Sizing {
     let h_max = args.hsiz.or(args.hmax).unwrap_or_else(|| most.max(args.hmin.unwrap_or(0.0)));
     let h_min = args.hmin.unwrap_or_else(|| least.min(h_max));
-    [h_min, h_max]
+    Sizing { hausd: args.hausd, h_min, h_max, hgrad: args.gradation(), anisotropic: args.anisotropic }
 }
 
 fn options(args: &RemeshArgs) -> MeshOptions {
@@ -144,17 +187,11 @@ fn options(args: &RemeshArgs) -> MeshOptions {
     MeshOptions { hausd: Some(args.hausd), memory_limit, ..default }
 }
 
-/// The report's parts that are the same for plane and surface.
-fn fill_in(report: &mut Report, meshed: &Meshed, args: &RemeshArgs, sizing: &Sizing, metric_file: Option<&Path>) {
-    mesh::fill_in(report, meshed, as_used(args, sizing, metric_file));
-    report.seconds = Seconds { stages: meshed.seconds.clone(), total: 0.0 };
-}
-
 fn as_used(args: &RemeshArgs, sizing: &Sizing, metric_file: Option<&Path>) -> Value {
     json!({
         "in": args.input(), "out": args.out(), "sol": metric_file, "hausd": sizing.hausd, "hmin": sizing.h_min,
         "hmax": sizing.h_max, "ar": args.features().ar, "repair": args.damage.repair, "hsiz": args.hsiz, "hgrad": sizing.hgrad,
         "anisotropic": sizing.anisotropic, "optim": args.optim, "nosurf": args.nosurf, "opnbdy": args.opnbdy, "nosizreq": args.nosizreq,
-        "fit": !args.no_fit, "memory": args.memory, "report": args.report, "threads": args.run().threads,
+        "fit": !args.no_fit, "memory": args.memory, "report": args.run().report, "threads": args.run().threads,
     })
 }

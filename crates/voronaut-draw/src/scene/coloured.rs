@@ -1,9 +1,8 @@
 //! Scenes of coloured canvases: cells that are cut out of triangles.
 
-use super::super::colours::Cell;
-use super::super::palette;
+use super::super::{colours, palette};
 use super::borders::Borders;
-use super::{Fill, Scene, SceneTriangle, Stroke};
+use super::{Fill, Scene, SceneTriangle, Stroke, existing};
 use voronaut::geometry::{Point3, Vector3};
 
 /// A corner of a piece of a triangle.
@@ -18,8 +17,7 @@ impl Scene {
     /// Triangles of several colours are cut: edges between two colours near their middles, so that the lines are as
     /// straight as the colours allow. Triangles with vertices that do not exist are left out.
     pub fn of_canvas(positions: &[Point3], triangles: &[[u32; 3]], colours: &[Option<u32>]) -> Self {
-        let exists = |v: &u32| (*v as usize) < positions.len() && (*v as usize) < colours.len();
-        let triangles: Vec<[u32; 3]> = triangles.iter().copied().filter(|t| t.iter().all(exists)).collect();
+        let triangles = existing(triangles, positions.len().min(colours.len()));
         let borders = Borders::new(positions, &triangles, colours);
         let normals = normals(positions, &triangles);
         let fills = Fills::new(colours, &borders);
@@ -88,7 +86,7 @@ impl Fills {
         let mut neighbours: Vec<[u32; 2]> = borders.edges().iter().filter_map(|&ends| pair(ends)).collect();
         neighbours.sort_unstable();
         neighbours.dedup();
-        let hues = palette::colour(used.len(), &neighbours, Cell::HUES, Cell::likeness);
+        let hues = palette::colour(used.len(), &neighbours, colours::HUES, colours::likeness);
         Self { used, hues }
     }
 

@@ -1,13 +1,12 @@
-//! The picture of a scene: an image of its triangles, and its lines over it.
+//! The picture of a scene: an image of its triangles, and its lines over it, as far as they are in front.
 
 use super::super::frame::PathData;
+use super::super::shades::in_order;
 use super::super::simplify::simplify;
-use super::depth::DepthMap;
+use super::depth::SAMPLES;
 use super::light::Bodies;
 use super::view::{Camera, View};
-use super::visible::Screen;
-use super::{Scene, Stroke};
-use std::fmt::Write;
+use super::{Pen, Scene, Stroke};
 use voronaut::Result;
 
 /// Lines are straightened by at most so many pixels.
@@ -32,18 +31,12 @@ const THINNEST: f64 = 0.25;
 /// pixels, [`Error::Unsupported`](voronaut::Error::Unsupported) if the library was built without PNG.
 pub fn draw_surface(scene: &Scene, view: &View) -> Result<String> {
     let camera = Camera::new(scene, view)?;
-    let size = camera.frame.size();
-    let mut map = DepthMap::new(size);
-    let bodies = Bodies::new(scene, &camera, &mut map);
-    let [width, height] = size;
-    let [w, h] = size.map(|side| camera.frame.quanta(side).round());
-    let image = super::super::image::data_url(&bodies.pixels(&map), width as u32)?;
-    let mut text = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {w} {h}\">\n\
-         <image width=\"{w}\" height=\"{h}\" href=\"{image}\"/>\n\
-         <g fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n"
-    );
-    let screen = Screen { map: &map, bodies: &bodies, touch: TOUCH * width.max(height) };
+    let [width, height] = camera.frame.size();
+    let bodies = Bodies::new(scene, &camera);
+    let image = crate::data_url(&bodies.pixels(), width as u32)?;
+    let mut text = camera.frame.paper(0.0, "image", &format!("href=\"{image}\""));
+    text.push_str("<g fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n");
+    let screen = Screen { bodies: &bodies, touch: TOUCH * width.max(height) };
     for stroke in Stroke::ALL {
         lines(&mut text, scene, stroke, &screen, &camera);
     }
@@ -54,14 +47,14 @@ pub fn draw_surface(scene: &Scene, view: &View) -> Result<String> {
 /// The lines with a stroke: one path of those that lie where the surface faces the eye, others for those where it does
 /// less and less, which are thinner.
 fn lines(text: &mut String, scene: &Scene, stroke: Stroke, screen: &Screen, camera: &Camera) {
-    let frame = &camera.frame;
+    let (frame, pen) = (&camera.frame, stroke.pen());
     let of_stroke = scene.lines.iter().filter(|line| line.stroke == stroke);
     let placed: Vec<Vec<[f64; 3]>> =
         of_stroke.filter_map(|line| line.points.iter().map(|&p| camera.place(p)).collect()).collect();
     let mut paths: [PathData; THINNER.len()] = Default::default();
     for part in placed.iter().flat_map(|line| screen.visible(line)) {
         let class =
-            if stroke.is_thinned() { THINNER.iter().filter(|&&share| FULL * part.facing < share).count() } else { 0 };
+            if pen.is_thinned { THINNER.iter().filter(|&&share| FULL * part.facing < share).count() } else { 0 };
         let path = &mut paths[class.min(THINNER.len() - 1)];
         let points: Vec<[i64; 2]> = part.points.iter().map(|&p| frame.quanta_at(p)).collect();
         match points[..] {
@@ -69,23 +62,109 @@ fn lines(text: &mut String, scene: &Scene, stroke: Stroke, screen: &Screen, came
             _ => path.polyline(&simplify(&points, &[], false, frame.quanta(TOLERANCE)), false),
         }
     }
-    let width = frame.quanta(width(stroke, &placed));
+    let width = frame.quanta(width(&pen, &placed));
     for (path, share) in paths.iter().zip(THINNER).filter(|(path, _)| !path.text().is_empty()) {
-        let (ink, width) = (stroke.ink(), width * share);
-        let _ = writeln!(text, r#"<path stroke="{ink}" stroke-width="{width:.1}" d="{}"/>"#, path.text());
+        path.draw(text, &format!(r#"stroke="{}" stroke-width="{:.1}""#, pen.ink, width * share));
     }
 }
 
 /// The width of lines in pixels: the finer the mesh they make, the thinner.
-fn width(stroke: Stroke, lines: &[Vec<[f64; 3]>]) -> f64 {
-    let [share, most] = stroke.width();
+fn width(pen: &Pen, lines: &[Vec<[f64; 3]>]) -> f64 {
     let length = |line: &Vec<[f64; 3]>| line.windows(2).map(|ends| distance(ends[0], ends[1])).sum::<f64>();
-    let mut lengths: Vec<f64> = lines.iter().map(length).collect();
-    lengths.sort_unstable_by(f64::total_cmp);
+    let lengths = in_order(lines.iter().map(length));
     let typical = lengths.get(lengths.len() / 2).copied().unwrap_or(0.0);
-    if share > 0.0 { (share * typical).clamp(THINNEST, most) } else { most }
+    if pen.share > 0.0 { (pen.share * typical).clamp(THINNEST, pen.widest) } else { pen.widest }
 }
 
 fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
     p.iter().zip(q).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
+}
+
+/// Lines are looked at every so many pixels.
+const STEP: f64 = 0.4;
+/// What of a line is seen over a shorter length, in pixels, while the rest is hidden, is not drawn.
+const SHORTEST: f64 = 1.6;
+/// What is hidden over a shorter length, between two parts that are seen, is drawn.
+const GAP: f64 = 1.0;
+
+/// A part of a line that is seen.
+struct Part {
+    /// Its points in pixels.
+    points: Vec<[f64; 2]>,
+    /// How much the surface it lies on faces the eye, as the mean cosine; 1 of lines elsewhere.
+    facing: f64,
+}
+
+/// A point of a line in pixels, how far along it is, whether it is seen, and how much what it lies on faces the eye.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    at: [f64; 2],
+    along: f64,
+    is_seen: bool,
+    facing: Option<f64>,
+}
+
+/// The bodies that hide lines.
+struct Screen<'a> {
+    bodies: &'a Bodies,
+    /// How far behind a surface a line may be, in pixels, and still be on it.
+    touch: f64,
+}
+
+impl Screen<'_> {
+    /// The parts of a line that are seen.
+    fn visible(&self, line: &[[f64; 3]]) -> Vec<Part> {
+        let mut samples = self.samples(line);
+        heal(&mut samples);
+        let is_whole = samples.iter().all(|sample| sample.is_seen);
+        let is_long = |run: &[Sample]| is_whole || run[run.len() - 1].along - run[0].along >= SHORTEST;
+        let runs = samples.chunk_by(|a, b| a.is_seen == b.is_seen).filter(|run| run[0].is_seen && is_long(run));
+        let facing = |run: &[Sample]| {
+            let known: Vec<f64> = run.iter().filter_map(|sample| sample.facing).collect();
+            if known.is_empty() { 1.0 } else { known.iter().sum::<f64>() / known.len() as f64 }
+        };
+        let part = |run: &[Sample]| Part { points: run.iter().map(|sample| sample.at).collect(), facing: facing(run) };
+        runs.map(part).collect()
+    }
+
+    fn samples(&self, line: &[[f64; 3]]) -> Vec<Sample> {
+        let Some(&first) = line.first() else { return Vec::new() };
+        let mut samples = vec![self.sample(first, 0.0)];
+        let mut before = 0.0;
+        for ends in line.windows(2) {
+            let [p, q] = [ends[0], ends[1]];
+            let length = (q[0] - p[0]).hypot(q[1] - p[1]);
+            let steps = (length / STEP).ceil().max(1.0);
+            for step in 1..=steps as u32 {
+                let t = f64::from(step) / steps;
+                let at = [0, 1, 2].map(|i| p[i] + t * (q[i] - p[i]));
+                samples.push(self.sample(at, before + t * length));
+            }
+            before += length;
+        }
+        samples
+    }
+
+    fn sample(&self, [x, y, depth]: [f64; 3], along: f64) -> Sample {
+        let [column, row] = [x, y].map(|pixels| pixels * SAMPLES as f64);
+        let nearest = self.bodies.map.at(column, row);
+        let before =
+            nearest.map_or(f64::NEG_INFINITY, |id| self.bodies.facet(id).depth(column, row) / SAMPLES as f64 - depth);
+        let facing = nearest.filter(|_| before.abs() <= self.touch).map(|id| self.bodies.facing(id));
+        Sample { at: [x, y], along, is_seen: before <= self.touch, facing }
+    }
+}
+
+/// Closes gaps that are only those between samples of the map.
+fn heal(samples: &mut [Sample]) {
+    let hidden = |sample: &Sample| !sample.is_seen;
+    let mut start = 0;
+    while let Some(from) = samples[start..].iter().position(hidden).map(|offset| start + offset) {
+        let to = samples[from..].iter().position(|sample| sample.is_seen).map_or(samples.len(), |offset| from + offset);
+        let is_between = from > 0 && to < samples.len();
+        if is_between && samples[to].along - samples[from - 1].along < GAP {
+            samples[from..to].iter_mut().for_each(|sample| sample.is_seen = true);
+        }
+        start = to;
+    }
 }

@@ -1,72 +1,69 @@
-//! Scenes of meshes and of surfaces.
+//! Scenes of meshes, and of values on surfaces.
 
-use super::super::svg::{Shade, spread};
-use super::{Fill, Scene, SceneTriangle, Stroke};
+use super::super::shades::{self, BANDS};
+use super::coloured::normals;
+use super::{Fill, Scene, SceneTriangle, Stroke, existing};
 use voronaut::geometry::Point3;
 use voronaut::mesh::Mesh;
 use voronaut::quality::Edges;
-use voronaut::surface::Surface;
 
 impl Scene {
-    /// The triangles of a mesh, flat, with all edges; its border and its labelled edges are stronger. Triangles with
-    /// vertices that do not exist are left out.
-    pub fn of_mesh(mesh: &Mesh, shade: Shade) -> Self {
-        let exists = |v: &u32| (*v as usize) < mesh.points.len();
-        let labels = mesh.triangle_labels.iter().copied().chain(std::iter::repeat(0));
-        let (used, labels): (Vec<[u32; 3]>, Vec<i32>) =
-            mesh.triangles.iter().copied().zip(labels).filter(|(triangle, _)| triangle.iter().all(exists)).unzip();
+    /// The triangles of a mesh, flat, by their size, with all edges; its border and its labelled edges are stronger. Triangles with
+    /// vertices that do not exist or are not finite are left out.
+    pub fn of_mesh(mesh: &Mesh) -> Self {
+        let (used, labels) = shades::drawable(mesh);
         let at = |v: u32| Point3::from(mesh.points[v as usize]);
         let corners: Vec<[Point3; 3]> = used.iter().map(|triangle| triangle.map(at)).collect();
-        let fills = fills(&corners, &labels, shade);
-        let triangles =
-            corners.iter().zip(fills).map(|(&corners, fill)| SceneTriangle { corners, normals: None, fill });
+        let double_areas = corners.iter().map(|&[a, b, c]| (b - a).cross(c - a).norm());
+        let fills = shades::sizes(double_areas, &labels);
+        let triangle = |(&corners, (region, share)): (&[Point3; 3], (usize, f64))| SceneTriangle {
+            corners,
+            normals: None,
+            fill: Fill::Level { region, share },
+        };
         let edges = Edges::of(&used);
         let (inner, mut border): (Vec<_>, Vec<_>) = edges.iter().partition(|(_, half_edges)| half_edges.len() > 1);
         border.extend(mesh.edges.iter().filter(|[a, b]| edges.contains(*a, *b)).map(|&ends| (ends, [].as_slice())));
         let line = |(ends, _): ([u32; 2], &[(u64, u32)])| ends.map(at).to_vec();
-        Self { triangles: triangles.collect(), lines: Vec::new() }
+        Self { triangles: corners.iter().zip(fills).map(triangle).collect(), lines: Vec::new() }
             .with(inner.into_iter().map(line), Stroke::Edge)
             .with(border.into_iter().map(line), Stroke::Border)
     }
 
-    /// A surface without a mesh: plain and smooth, with its borders and fixed edges.
-    pub fn of_surface(surface: &Surface) -> Self {
-        let topology = surface.topology();
-        let triangle = |f| {
-            let flat = surface.normal(f);
-            let normals = topology.corners(f).map(|v| surface.vertex_normal(v).unwrap_or(flat));
-            SceneTriangle { corners: surface.triangle(f), normals: Some(normals), fill: Fill::Plain }
+    /// A surface whose vertices have values from 0 up, smooth: each triangle by the mean of its corners, the less, the
+    /// stronger; plain where that is not finite. Triangles with vertices that do not exist are left out.
+    pub fn of_values(positions: &[Point3], triangles: &[[u32; 3]], values: &[f64]) -> Self {
+        let triangles = existing(triangles, positions.len().min(values.len()));
+        let normals = normals(positions, &triangles);
+        let most = values.iter().copied().filter(|value| value.is_finite()).fold(f64::MIN_POSITIVE, f64::max);
+        let fill = |t: [u32; 3]| {
+            let mean = t.iter().map(|&v| values[v as usize] / 3.0).sum::<f64>() / most;
+            let share = ((1.0 - mean) * BANDS).round() / BANDS;
+            if mean.is_finite() { Fill::Level { region: 0, share } } else { Fill::Plain }
         };
-        let is_line = |h: &_| topology.twin(*h).is_none() || topology.is_fixed(*h);
-        let line = |h| vec![surface.position(topology.origin(h)), surface.position(topology.target(h))];
-        let lines: Vec<Vec<Point3>> = topology.edges().filter(is_line).map(line).collect();
-        Self { triangles: topology.faces().map(triangle).collect(), lines: Vec::new() }.with(lines, Stroke::Border)
+        let triangle = |&t: &[u32; 3]| SceneTriangle {
+            corners: t.map(|v| positions[v as usize]),
+            normals: Some(t.map(|v| normals[v as usize])),
+            fill: fill(t),
+        };
+        Self { triangles: triangles.iter().map(triangle).collect(), lines: Vec::new() }
     }
 }
 
-/// The fill of each triangle, by its Euclidean size (and its region) or its Euclidean shape.
-fn fills(corners: &[[Point3; 3]], labels: &[i32], shade: Shade) -> Vec<Fill> {
-    if shade == Shade::Quality {
-        return corners.iter().map(|&corners| Fill::Quality(shape(corners))).collect();
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn less_is_stronger_and_what_is_not_reached_is_plain() {
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
+        let fills = |values: &[f64]| -> Vec<Fill> {
+            let triangles = [[0, 1, 2], [0, 2, 3], [0, 1, 9]];
+            Scene::of_values(&points, &triangles, values).triangles.iter().map(|triangle| triangle.fill).collect()
+        };
+        let level = |share: f64| Fill::Level { region: 0, share };
+        assert_eq!(fills(&[0.0, 0.0, 0.0, 3.0]), [level(1.0), level(27.0 / 40.0)]);
+        assert_eq!(fills(&[2.0, 2.0, 2.0, f64::INFINITY]), [level(0.0), Fill::Plain]);
+        assert_eq!(fills(&[0.0; 4]), [level(1.0); 2]);
     }
-    let mut regions = labels.to_vec();
-    regions.sort_unstable();
-    regions.dedup();
-    let sizes: Vec<f64> = corners.iter().map(|&corners| double_area(corners).ln()).collect();
-    let [low, high] = spread(&sizes);
-    let fill = |(label, size): (&i32, &f64)| Fill::Level {
-        region: regions.binary_search(label).unwrap_or(0),
-        share: ((high - size) / (high - low)).clamp(0.0, 1.0),
-    };
-    labels.iter().zip(&sizes).map(fill).collect()
-}
-
-fn double_area([a, b, c]: [Point3; 3]) -> f64 {
-    (b - a).cross(c - a).norm()
-}
-
-/// Euclidean 4 sqrt 3 A / (sum of squared sides).
-fn shape([a, b, c]: [Point3; 3]) -> f64 {
-    let squares: f64 = [b - a, c - b, a - c].iter().map(|side| side.dot(*side)).sum();
-    if squares > 0.0 { 2.0 * 3.0_f64.sqrt() * double_area([a, b, c]) / squares } else { 0.0 }
 }

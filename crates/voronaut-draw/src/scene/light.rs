@@ -33,12 +33,15 @@ struct Lit {
 
 /// The triangles of a scene, ready for the light.
 pub(super) struct Bodies {
+    /// Which of them is nearest where.
+    pub(super) map: DepthMap,
     lit: Vec<Lit>,
 }
 
 impl Bodies {
-    /// Takes the triangles of a scene that are finite, and enters them into the map.
-    pub(super) fn new(scene: &Scene, camera: &Camera, map: &mut DepthMap) -> Self {
+    /// Takes the triangles of a scene that are finite.
+    pub(super) fn new(scene: &Scene, camera: &Camera) -> Self {
+        let mut map = DepthMap::new(camera.frame.size());
         let mut lit = Vec::with_capacity(scene.triangles.len());
         for triangle in &scene.triangles {
             let [Some(a), Some(b), Some(c)] = triangle.corners.map(|p| camera.place(p)) else { continue };
@@ -53,7 +56,7 @@ impl Bodies {
                 .map_or([flat; 3], |normals| normals.map(|n| seen(camera.turn(n).unit().unwrap_or(flat))));
             lit.push(Lit { facet, facing: flat.z, normals, colour: colours::decode(&triangle.fill.colour()) });
         }
-        Self { lit }
+        Self { map, lit }
     }
 
     /// The triangle with a number of the map.
@@ -68,20 +71,21 @@ impl Bodies {
 
     /// Red, green and blue of each pixel, row by row; white where nothing is. What is seen of more than the other is
     /// taken for the front, so that surfaces turned inside out look like others.
-    pub(super) fn pixels(&self, map: &DepthMap) -> Vec<[u8; 3]> {
+    pub(super) fn pixels(&self) -> Vec<[u8; 3]> {
+        let map = &self.map;
         let seen = || map.nearest.par_iter().filter(|&&id| id != NONE);
         let fronts = seen().filter(|&&id| self.facet(id).is_front()).count();
         let front = 2 * fronts >= seen().count();
         let columns = map.width / SAMPLES;
-        let at = |pixel: usize| self.pixel(map, [pixel % columns, pixel / columns], front);
+        let at = |pixel: usize| self.pixel([pixel % columns, pixel / columns], front);
         (0..columns * (map.height / SAMPLES)).into_par_iter().map(at).collect()
     }
 
-    fn pixel(&self, map: &DepthMap, [column, row]: [usize; 2], front: bool) -> [u8; 3] {
+    fn pixel(&self, [column, row]: [usize; 2], front: bool) -> [u8; 3] {
         let mut sum = [0.0; 3];
         for sample in 0..SAMPLES * SAMPLES {
             let [x, y] = [column * SAMPLES + sample % SAMPLES, row * SAMPLES + sample / SAMPLES];
-            let light = match map.nearest[y * map.width + x] {
+            let light = match self.map.nearest[y * self.map.width + x] {
                 NONE => [1.0; 3],
                 id => self.lit[id as usize].at(x as f64 + 0.5, y as f64 + 0.5, front),
             };

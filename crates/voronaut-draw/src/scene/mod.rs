@@ -5,10 +5,8 @@
 //! | `view` | from where a scene is seen; from space to pixels |
 //! | `depth` | which triangle is nearest, at nine samples per pixel |
 //! | `light` | from samples to shaded pixels |
-//! | `visible` | what of a line is in front |
-//! | `draw` | the picture: an image, and lines over it |
-//! | `faces` | scenes of meshes and of surfaces |
-//! | `levels` | scenes of values |
+//! | `draw` | the picture: an image, and lines over it as far as they are in front |
+//! | `faces` | scenes of meshes, and of values on surfaces |
 //! | `coloured`, `borders` | scenes of coloured canvases: cells with smooth borders |
 
 mod borders;
@@ -16,17 +14,15 @@ mod coloured;
 mod depth;
 mod draw;
 mod faces;
-mod levels;
 mod light;
 #[cfg(all(test, feature = "png"))]
 mod tests;
 mod view;
-mod visible;
 
 pub use draw::draw_surface;
 pub use view::View;
 
-use super::colours::{self, Cell, Tint};
+use super::colours::{self, Tint};
 use voronaut::geometry::{Point3, Vector3};
 
 /// Triangles and lines in space, to be drawn.
@@ -51,7 +47,7 @@ pub(crate) struct SceneTriangle {
 
 /// The colour of a triangle, before light falls on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fill {
+pub(crate) enum Fill {
     /// That of a surface without any.
     Plain,
     /// That of a cell.
@@ -68,8 +64,6 @@ pub enum Fill {
         /// From 0 to 1.
         share: f64,
     },
-    /// From pale (1) to warm (0).
-    Quality(f64),
 }
 
 /// A polyline of a scene.
@@ -117,11 +111,8 @@ impl Fill {
     fn colour(self) -> String {
         match self {
             Fill::Plain => colours::SURFACE.into(),
-            Fill::Cell { hue, shade } => {
-                Cell { hue: hue % Cell::HUES, shade: shade % Cell::SHADES, tint: Tint::Full }.fill()
-            }
+            Fill::Cell { hue, shade } => colours::cell(hue, shade, Tint::Full),
             Fill::Level { region, share } => colours::fill(region, share.clamp(0.0, 1.0)),
-            Fill::Quality(quality) => colours::quality_fill(quality),
         }
     }
 }
@@ -130,31 +121,30 @@ impl Stroke {
     const ALL: [Stroke; 6] =
         [Stroke::Cell, Stroke::Level, Stroke::Edge, Stroke::Border, Stroke::Geodesic, Stroke::Seed];
 
-    fn ink(self) -> &'static str {
-        match self {
-            Stroke::Cell => colours::CELL_BORDER,
-            Stroke::Level => colours::GRID,
-            Stroke::Edge => colours::EDGE,
-            Stroke::Border => colours::BOUNDARY,
-            Stroke::Geodesic => colours::GEODESIC,
-            Stroke::Seed => colours::SEED,
-        }
+    fn pen(self) -> Pen {
+        let (ink, share, widest, is_thinned) = match self {
+            Stroke::Cell => (colours::CELL_BORDER, 0.045, 1.2, true),
+            Stroke::Level => (colours::GRID, 1.0, 0.8, true),
+            Stroke::Edge => (colours::EDGE, 0.05, 1.0, true),
+            Stroke::Border => (colours::BOUNDARY, 1.0, 1.6, false),
+            Stroke::Geodesic => (colours::GEODESIC, 0.06, 1.9, true),
+            Stroke::Seed => (colours::SEED, 0.0, 4.2, false),
+        };
+        Pen { ink, share, widest, is_thinned }
     }
+}
 
-    /// Whether it is thinner where the surface is seen from the side, for many may crowd there.
-    fn is_thinned(self) -> bool {
-        !matches!(self, Stroke::Border | Stroke::Seed)
-    }
-
+/// What a stroke is drawn with.
+struct Pen {
+    ink: &'static str,
     /// Its width as a share of the length of typical lines, and at most, in pixels.
-    fn width(self) -> [f64; 2] {
-        match self {
-            Stroke::Cell => [0.045, 1.2],
-            Stroke::Level => [1.0, 0.8],
-            Stroke::Edge => [0.05, 1.0],
-            Stroke::Border => [1.0, 1.6],
-            Stroke::Geodesic => [0.06, 1.9],
-            Stroke::Seed => [0.0, 4.2],
-        }
-    }
+    share: f64,
+    widest: f64,
+    /// Whether it is thinner where the surface is seen from the side, for many may crowd there.
+    is_thinned: bool,
+}
+
+/// The triangles whose vertices are among the first `count`.
+fn existing(triangles: &[[u32; 3]], count: usize) -> Vec<[u32; 3]> {
+    triangles.iter().copied().filter(|t| t.iter().all(|&v| (v as usize) < count)).collect()
 }

@@ -1,7 +1,7 @@
 //! Pictures of scenes as wholes.
 
 use super::*;
-use crate::{Shade, render_png};
+use crate::render_png;
 use resvg::tiny_skia::Pixmap;
 use voronaut::Result;
 use voronaut::mesh::Mesh;
@@ -18,9 +18,16 @@ fn line(points: &[[f64; 3]]) -> Vec<Point3> {
     points.iter().copied().map(Point3::from).collect()
 }
 
+/// A surface, plain and smooth.
+fn plain(surface: &Surface) -> Scene {
+    let topology = surface.topology();
+    let triangles: Vec<[u32; 3]> = topology.faces().map(|f| topology.corners(f).map(|v| v.0)).collect();
+    Scene::of_canvas(surface.positions(), &triangles, &vec![None; surface.positions().len()])
+}
+
 /// A sphere with some lines.
 fn sphere_and(lines: &[&[[f64; 3]]]) -> Result<String> {
-    draw_surface(&Scene::of_surface(&sphere()).with(lines.iter().map(|points| line(points)), Stroke::Edge), &FRONT)
+    draw_surface(&plain(&sphere()).with(lines.iter().map(|points| line(points)), Stroke::Edge), &FRONT)
 }
 
 /// The text behind the image, whose letters might be anything.
@@ -79,18 +86,16 @@ fn half_of_the_edges_of_a_body_are_seen() {
     let points = surface.positions().iter().map(|p| p.to_array()).collect();
     let triangles = topology.faces().map(|f| topology.corners(f).map(|v| v.0)).collect();
     let mesh = Mesh { points, triangles, ..Mesh::default() };
-    for shade in [Shade::Size, Shade::Quality] {
-        let share = paths(&draw_surface(&Scene::of_mesh(&mesh, shade), &FRONT).unwrap()).len() as f64
-            / topology.edges().count() as f64;
-        // All in front, those of the outline, and nothing else.
-        assert!((0.5..0.57).contains(&share), "{share}");
-    }
+    let seen = paths(&draw_surface(&Scene::of_mesh(&mesh), &FRONT).unwrap()).len();
+    let share = seen as f64 / topology.edges().count() as f64;
+    // All in front, those of the outline, and nothing else.
+    assert!((0.5..0.57).contains(&share), "{share}");
 }
 
 #[test]
 fn dots_are_seen_or_not() {
     let dots = |z: f64| {
-        let scene = Scene::of_surface(&sphere()).with([line(&[[0.1, 0.2, z]])], Stroke::Seed);
+        let scene = plain(&sphere()).with([line(&[[0.1, 0.2, z]])], Stroke::Seed);
         vectors(&draw_surface(&scene, &FRONT).unwrap()).matches("h0").count()
     };
     assert_eq!([dots(1.0), dots(0.5), dots(-1.0)], [1, 0, 0]);
@@ -111,20 +116,20 @@ fn nothing_and_nonsense_are_drawn_as_nothing() {
     for pixels in [0, 1, 100] {
         assert!(draw_surface(&Scene::default(), &View { pixels, ..FRONT }).unwrap().ends_with("</svg>\n"));
     }
-    let scene = Scene::of_surface(&sphere());
+    let scene = plain(&sphere());
     let mut more = scene.clone();
     for bad in [f64::NAN, f64::INFINITY, 1e300] {
         let corners = [[0.0, 0.0, 2.0], [1.0, bad, 2.0], [0.0, 1.0, 2.0]].map(Point3::from);
-        more.triangles.push(SceneTriangle { corners, normals: None, fill: Fill::Quality(bad) });
+        more.triangles.push(SceneTriangle { corners, normals: None, fill: Fill::Level { region: 0, share: bad } });
         more = more.with([corners.to_vec(), Vec::new()], Stroke::Edge);
     }
     assert_eq!(draw_surface(&more, &FRONT).unwrap(), draw_surface(&scene, &FRONT).unwrap());
     // Normals and fills that are none do not hurt.
     let normals = Some([Vector3::new(f64::NAN, 0.0, 0.0), Vector3::default(), Vector3::new(1e300, 0.0, 1e300)]);
-    more.triangles.iter_mut().for_each(|t| (t.normals, t.fill) = (normals, Fill::Quality(f64::NAN)));
+    more.triangles.iter_mut().for_each(|t| (t.normals, t.fill) = (normals, Fill::Level { region: 0, share: f64::NAN }));
     assert!(!vectors(&draw_surface(&more, &FRONT).unwrap()).contains("NaN"));
     let mesh = Mesh { points: vec![[f64::NAN; 3]; 2], triangles: vec![[0, 1, 0], [0, 1, 7]], ..Mesh::default() };
-    assert!(paths(&draw_surface(&Scene::of_mesh(&mesh, Shade::Size), &FRONT).unwrap()).is_empty());
+    assert!(paths(&draw_surface(&Scene::of_mesh(&mesh), &FRONT).unwrap()).is_empty());
     let canvas =
         Scene::of_canvas(&[Point3::new(f64::NAN, 0.0, 0.0); 3], &[[0, 1, 2], [0, 0, 1]], &[Some(1), None, Some(7)]);
     assert!(paths(&draw_surface(&canvas, &FRONT).unwrap()).is_empty());
@@ -133,8 +138,7 @@ fn nothing_and_nonsense_are_drawn_as_nothing() {
 #[test]
 fn scale_does_not_matter() {
     let draw = |scale: f64| {
-        let mut scene =
-            Scene::of_surface(&sphere()).with([line(&[[-2.0, 0.0, 0.0], [2.0, 0.5, 0.0]])], Stroke::Geodesic);
+        let mut scene = plain(&sphere()).with([line(&[[-2.0, 0.0, 0.0], [2.0, 0.5, 0.0]])], Stroke::Geodesic);
         let grow = |p: &mut Point3| *p = Point3::default() + (*p - Point3::default()) * scale;
         scene.triangles.iter_mut().flat_map(|t| &mut t.corners).for_each(grow);
         scene.lines.iter_mut().flat_map(|l| &mut l.points).for_each(grow);
@@ -158,7 +162,7 @@ fn backs_are_told_from_fronts_and_bodies_may_be_inside_out() {
     let [front, back] = [colour(&drawn, 60, 340), colour(&drawn, 360, 40)];
     assert!(front[2] > back[2] + 30, "{front:?} {back:?}");
 
-    let scene = Scene::of_surface(&sphere());
+    let scene = plain(&sphere());
     let mut turned = scene.clone();
     turned.triangles.iter_mut().for_each(|t| {
         t.corners.swap(1, 2);

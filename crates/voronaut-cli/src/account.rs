@@ -1,0 +1,78 @@
+//! What is reported of any mesh that we made.
+
+use crate::fields::Scaled;
+use serde_json::Value;
+use voronaut::figures::NetFigures;
+use voronaut::metric::MetricField;
+use voronaut::quality::{
+    Meetings, MetricQuality, Unmet, Validity, metric_quality, surface_quality, surface_unmet, unmet, validity,
+    validity_on,
+};
+use voronaut::recipe::Meshed;
+use voronaut::surface::metric::SurfaceMetric;
+use voronaut::surface::{Input, Mended};
+use voronaut::{Error, Result};
+use voronaut_io::{Report, Seconds, Strayed};
+
+/// A mesh of ours that is not valid is our fault, not the user's.
+pub(crate) fn ours(error: Error) -> Error {
+    match error {
+        Error::Mesh { what, place, .. } => {
+            let help = "this is a fault of voronaut: nothing was written; please report it with the input";
+            Error::Mesh { what, place, help: help.into() }
+        }
+        other => other,
+    }
+}
+
+/// The report of a planar mesh, which has to be valid, in a metric; and its edges that are not of unit length.
+pub(crate) fn in_plane(meshed: &Meshed, metric: &dyn MetricField, options: Value) -> Result<(Report, Unmet)> {
+    let found = validity(&meshed.mesh);
+    found.demand().map_err(ours)?;
+    let mut report = report(meshed, found, &metric_quality(&meshed.mesh, metric)?, options);
+    let unmet = unmet(&meshed.mesh, metric)?;
+    report.unmet = Some(unmet.figures());
+    Ok((report, unmet))
+}
+
+/// The report of the mesh of a surface, which has to be valid, in a metric that is still to be scaled.
+pub(crate) fn on_surface(
+    meshed: &Meshed,
+    input: &Input,
+    mended: &Mended,
+    metric: &dyn SurfaceMetric,
+    options: Value,
+) -> Result<Report> {
+    let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
+    found.demand().map_err(ours)?;
+    let meets = found.meetings.note();
+    let scaled = Scaled { field: metric, factor: meshed.metric_scale };
+    let figures = surface_quality(&meshed.mesh, &input.surface, &scaled)?;
+    let mut report = report(meshed, found, &figures, options);
+    report.curvature = metric.curvature_figures();
+    report.unmet = Some(surface_unmet(&meshed.mesh, &input.surface, &scaled)?.figures());
+    report.notes.extend(mended.sentences().chain(meets));
+    report.fidelity = meshed.fidelity.map(|found| Strayed::Surface(found.into()));
+    Ok(report)
+}
+
+/// The parts that are the same for plane and surface, and the options as used.
+fn report(meshed: &Meshed, found: Validity, figures: &MetricQuality, options: Value) -> Report {
+    let is_voronoi = meshed.star_set.is_none();
+    let (vertices, triangles) = (meshed.mesh.points.len(), meshed.mesh.triangles.len());
+    Report {
+        star_set: meshed.star_set,
+        dual: is_voronoi.then(|| meshed.dual.clone()),
+        relaxation: is_voronoi.then(|| meshed.relaxation.clone()),
+        polished: meshed.polished.clone().filter(|_| is_voronoi),
+        canvas: meshed.canvas,
+        diagram: meshed.diagram.clone(),
+        metric_scale: Some(meshed.metric_scale),
+        net: meshed.net.as_ref().map(NetFigures::of),
+        protection: meshed.protection,
+        notes: meshed.notes.clone(),
+        seconds: Seconds { stages: meshed.seconds.clone(), total: 0.0 },
+        options,
+        ..Report::new(found, vertices, triangles).with_quality(figures)
+    }
+}

@@ -1,0 +1,366 @@
+//! `voronaut dual`: diagram and dual of the seeds given.
+
+use crate::options::{CanvasSize, Damage, EdgesOut, Memory, MetricChoices, Outputs, Run, Show, canvas_size, refuse};
+use crate::progress::{Bar, Stages};
+use crate::seeds::SeedFile;
+use crate::{fields, files, pictures};
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use voronaut::canvas::{self, Canvas};
+use voronaut::certificate::{Certificate, Constants};
+use voronaut::diagram::{self, Diagram, Kind, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
+use voronaut::domain::Domain;
+use voronaut::dual::Road;
+use voronaut::figures;
+use voronaut::geodesic::Method;
+use voronaut::geometry::Point;
+use voronaut::mesh::Mesh;
+use voronaut::metric::MetricField;
+use voronaut::quality::{
+    Meetings, MetricQuality, Validity, crossing_edges, metric_quality, surface_quality, validity, validity_on,
+};
+use voronaut::realisation::Realisation;
+use voronaut::recipe::{self, GradedAt, MeshOptions, SeedDual};
+use voronaut::sampling;
+use voronaut::surface::{Input, Mended};
+use voronaut::{Error, Result};
+use voronaut_draw::Layers;
+use voronaut_io::{Given, Report};
+
+pub(crate) const EXAMPLES: &str = "\
+Line i of FILE, `x y` (of a surface `x y z`, on it or near), is seed and vertex i. DOMAIN and METRIC are as for `mesh`; the metric is used as it is.
+
+With --edges geodesic OUT holds the seeds first, then the points of the geodesics; edges are their segments (in a .vtu one
+polyline cell for each), labelled with the number of the edge, and triangles cut up the region of each Riemannian triangle,
+labelled with its number, both from 1. Lengths are in the report and in the .vtu.
+
+Examples:
+  voronaut dual rect:-2,-2,2,2 --metric swirl --seeds seeds.txt -o dual.mesh
+  voronaut dual rect:-2,-2,2,2 --metric swirl --seeds seeds.txt -o rdt.vtu --edges geodesic --picture rdt.png --show geodesics
+  voronaut dual sea.geojson --metric boundary:h0=2 --seeds ports.txt -o dual.vtu --diagram cells.vtu --report run.json";
+
+#[derive(Debug, Args)]
+pub(crate) struct DualArgs {
+    /// The domain: a file or a shape
+    pub(crate) domain: String,
+    /// The metric in which distances are measured
+    #[arg(long)]
+    pub(crate) metric: String,
+    /// The seeds: a file with a line `x y` for each
+    #[arg(long, value_name = "FILE")]
+    pub(crate) seeds: PathBuf,
+    /// The dual: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) out: PathBuf,
+    /// Write the coloured canvas, with colours and distances: .vtu
+    #[arg(long, value_name = "FILE")]
+    pub(crate) diagram: Option<PathBuf>,
+    /// What decides on the edges: geodesic (their lengths), canvas (the diagram on one) or both (the diagram where lengths cannot)
+    #[arg(long, value_name = "ROAD", default_value_t = Road::default())]
+    pub(crate) dual: Road,
+    /// Which Voronoi diagram: riemannian, or, by straight distances, du-wang (in the metric of the place) or labelle-shewchuk (in
+    /// that of the seed). Of these two OUT has the nerve as the canvas shows it, whatever --dual says; --show cells has their
+    /// orphans in red
+    #[arg(long, value_name = "WHICH", default_value_t = diagram::Kind::default())]
+    pub(crate) voronoi: diagram::Kind,
+    /// How distances on the canvas are computed: march, stvd[:window=8], dijkstra or konukoglu
+    #[arg(long, value_name = "METHOD", default_value_t = Method::default())]
+    pub(crate) geodesic: Method,
+    /// How OUT has the edges: straight, or as the geodesics that they are (polylines, with the regions between them)
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = EdgesOut::Straight)]
+    pub(crate) edges: EdgesOut,
+    /// What distances travel on: intrinsic (even in the metric), isotropic (Euclidean Delaunay, as fine as the metric's finest
+    /// direction) or starset (even in the metric; methods on graphs travel along Delaunay stars, each in its own metric)
+    #[arg(long, value_name = "WHICH", default_value_t = canvas::Kind::default())]
+    pub(crate) canvas: canvas::Kind,
+    /// Canvas vertices per seed, of which up to 300 count as 2,500; or certified: as many as the theorems ask for
+    #[arg(long, value_name = "N", value_parser = canvas_size, default_value_t = CanvasSize::default())]
+    pub(crate) canvas_size: CanvasSize,
+    /// Say which of the report's theorems hold of these seeds and this canvas, by how much others miss, and what it would take
+    #[arg(long)]
+    pub(crate) certify: bool,
+    /// The formulas of these theorems: corrected, or printed (with the report's errors, to compare)
+    #[arg(long, value_name = "WHICH", default_value_t = Constants::default())]
+    pub(crate) constants: Constants,
+    #[command(flatten)]
+    pub(crate) memory: Memory,
+    /// Exit with 1 if what OUT would hold is not embedded: straight triangles inverted, edges that cross
+    #[arg(long)]
+    pub(crate) strict: bool,
+    #[command(flatten)]
+    pub(crate) metric_choices: MetricChoices,
+    #[command(flatten)]
+    pub(crate) outputs: Outputs,
+    #[command(flatten)]
+    pub(crate) damage: Damage,
+    #[command(flatten)]
+    pub(crate) run: Run,
+}
+
+impl DualArgs {
+    /// Whether the seeds are to be certified: where that is asked for, or a canvas or a picture needs it.
+    pub(super) fn is_certified(&self) -> bool {
+        self.certify || self.canvas_size == CanvasSize::Certified || self.outputs.shows(Show::Certificate)
+    }
+
+    /// All options, as used.
+    pub(super) fn as_used(&self) -> Value {
+        let canvas_size = match self.canvas_size {
+            CanvasSize::PerSeed(count) => json!(count),
+            CanvasSize::Certified => json!("certified"),
+        };
+        json!({
+            "domain": self.domain, "metric": self.metric, "seeds": self.seeds, "out": self.out, "diagram": self.diagram,
+            "canvas": self.canvas, "canvas_size": canvas_size,
+            "voronoi": self.voronoi, "certify": self.certify, "constants": self.constants, "geodesic": self.geodesic, "dual": self.dual, "edges": self.edges.to_possible_value().map(|value| value.get_name().to_string()), "strict": self.strict,
+            "background": self.metric_choices.background, "bounds": self.metric_choices.bounds(),
+            "smooth_metric": self.metric_choices.smooth_metric, "tensor_order": self.metric_choices.tensor_order, "gradation": self.metric_choices.gradation,
+            "picture": self.outputs.picture, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
+            "repair": self.damage.repair,
+        })
+    }
+}
+
+/// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
+pub(crate) fn run(args: &DualArgs) -> Result<()> {
+    let stages = Stages::start();
+    demand(args)?;
+    args.run.set_threads()?;
+    args.metric_choices.bounds().check()?;
+    let (given, mended) = Given::read_with(&args.domain, None, args.damage.options())?;
+    match given {
+        Given::Surface(input) => on_surface(args, &input, &mended, stages),
+        Given::Plane(domain) => in_plane(args, &domain, &mended, stages),
+    }
+}
+
+fn in_plane(args: &DualArgs, domain: &Domain, mended: &Mended, mut stages: Stages) -> Result<()> {
+    let outputs = &args.outputs;
+    let at = GradedAt::Scale(1.0);
+    let metric = fields::in_plane(&args.metric, domain, &args.domain, &args.metric_choices, at)?.field;
+    let metric = metric.as_ref();
+    let file = SeedFile::read(&args.seeds)?;
+    stages.end("read");
+    let canvas = canvas(args, domain, metric, &file)?;
+    let is_riemannian = args.voronoi == Kind::Riemannian;
+    stages.end("canvas");
+    let diagram = Diagram::of_kind(args.voronoi, &canvas, metric, &file.seeds, args.geodesic)?;
+    stages.end("diagram");
+    let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
+        recipe::dual(&diagram, metric, args.dual, &Bar::new(&args.run));
+    let mesh = diagram.to_mesh(triangles, &nerve, domain);
+    account.crossing_edges = Some(crossing_edges(&mesh).len());
+    stages.end("dual");
+    let is_curved = args.edges == EdgesOut::Geodesic || outputs.have_geodesics();
+    let curved = is_curved.then(|| Realisation::new(&diagram, metric, &mesh.triangles));
+    account.geodesics = curved.as_ref().map(figures::Geodesics::of);
+    if is_curved {
+        stages.end("geodesics");
+    }
+    let mut report = reported(args, &mesh, validity(&mesh), || metric_quality(&mesh, metric))?;
+    report.dual = Some(account);
+    report.histograms = files::histograms(outputs, &mesh, metric)?;
+    report.canvas = Some(canvas.figures());
+    report.diagram =
+        Some(figures::Diagram { raw_nerve: is_riemannian.then_some(raw_nerve), ..figures::Diagram::of(&diagram) });
+    let is_measured = args.run.report.is_some() || outputs.shows(Show::Protection) || args.is_certified();
+    let net = (is_riemannian && is_measured).then(|| recipe::net(&diagram, metric, &exact));
+    report.net = net.as_ref().map(figures::NetFigures::of);
+    if net.is_some() {
+        stages.end("net");
+    }
+    let certified = net.as_ref().filter(|_| args.is_certified());
+    report.certificate = certified.map(|net| Certificate::new(&diagram, metric, &exact, net, args.constants));
+    if report.certificate.is_some() {
+        stages.end("certificate");
+    }
+    report.notes = notes(&diagram, &report);
+    report.notes.extend(mended.sentences());
+    // Parts of "dual".
+    report.seconds = stages.seconds(seconds);
+    demand_embedded(args, &report)?;
+    let certificate = report.certificate.as_ref().filter(|_| outputs.shows(Show::Certificate));
+    let layers = Layers {
+        protection: pictures::protection(outputs, net.as_ref(), MeshOptions::default().protection),
+        factors: certificate.map(|found| found.cells.iter().map(|cell| (cell.seed, cell.factor)).collect()),
+        ..pictures::layers(outputs, &diagram, metric, curved.as_ref())
+    };
+    let picture = pictures::in_plane(outputs, &mesh, Some(metric), &layers)?;
+    match curved.filter(|_| args.edges == EdgesOut::Geodesic) {
+        Some(curved) => voronaut_io::write_realisation(&curved, &args.out)?,
+        None => voronaut_io::write_mesh(&mesh, &args.out)?,
+    }
+    finish(args, picture, &report, || diagram.to_coloured_canvas())
+}
+
+/// The dual of seeds on a surface.
+fn on_surface(args: &DualArgs, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
+    let refused = [
+        (args.voronoi != Kind::Riemannian, "--voronoi"),
+        (args.certify, "--certify"),
+        (args.canvas_size == CanvasSize::Certified, "--canvas-size certified"),
+    ];
+    pictures::demand_of_surfaces(&args.outputs, &refused)?;
+    let metric = fields::on_surface(&args.metric, input, &args.metric_choices)?;
+    let places = SeedFile::read_in_space(&args.seeds)?.on_surface(input)?;
+    stages.end("read");
+    let size = canvas_vertices(args, places.len())?.unwrap_or_default();
+    let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), size, &places)?;
+    stages.end("canvas");
+    let diagram = SurfaceDiagram::on_surface(&canvas, &at, args.geodesic)?;
+    stages.end("diagram");
+    let SeedDual { triangles, account, seconds, raw_nerve, .. } =
+        recipe::surface_dual(&diagram, args.dual, &Bar::new(&args.run));
+    let mesh = recipe::surface_mesh(input, &places, triangles);
+    stages.end("dual");
+    let found = validity_on(&mesh, &Meetings::of(input.whole_mesh()));
+    let meets = found.meetings.note();
+    let mut report = reported(args, &mesh, found, || surface_quality(&mesh, &input.surface, metric.as_ref()))?;
+    report.dual = Some(account);
+    report.canvas = Some(canvas.figures());
+    report.diagram = Some(figures::Diagram { raw_nerve: Some(raw_nerve), ..figures::Diagram::of(&diagram) });
+    report.notes.extend(mended.sentences().chain(meets));
+    if !report.validity.valid {
+        report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
+    }
+    report.seconds = stages.seconds(seconds);
+    demand_embedded(args, &report)?;
+    let is_drawn = args.outputs.picture.is_some();
+    let picture = is_drawn.then(|| pictures::on_surface(&args.outputs, &diagram, &mesh)).transpose()?;
+    let written = if args.edges == EdgesOut::Geodesic { pictures::with_geodesics(&diagram, &mesh) } else { mesh };
+    voronaut_io::write_mesh(&written, &args.out)?;
+    finish(args, picture, &report, || diagram.to_coloured_surface())
+}
+
+/// What can be refused before the work.
+fn demand(args: &DualArgs) -> Result<()> {
+    args.diagram.as_deref().map(voronaut_io::demand_diagram).transpose()?;
+    files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs, &args.run)?;
+    args.geodesic.demand_diagrams()?;
+    demand_geodesics(args)?;
+    let what = "a picture of where a metric is not met by seeds that are given";
+    refuse([(args.outputs.shows(Show::Unmet), what, "give the mesh of the dual to voronaut check")])
+}
+
+/// Writes what is beside the dual.
+fn finish(
+    args: &DualArgs,
+    picture: Option<String>,
+    report: &Report,
+    coloured: impl FnOnce() -> (Mesh, Vec<f64>),
+) -> Result<()> {
+    if let Some(path) = &args.diagram {
+        let (canvas, distances) = coloured();
+        voronaut_io::write_diagram(&canvas, &distances, path)?;
+    }
+    files::finish(&args.out, &args.outputs, picture, report, &args.run)
+}
+
+/// Vertices of the canvas of so many seeds; `None`: as many as its certificate asks for.
+fn canvas_vertices(args: &DualArgs, seeds: usize) -> Result<Option<usize>> {
+    let CanvasSize::PerSeed(per_seed) = args.canvas_size else { return Ok(None) };
+    let size = canvas::size_for(seeds, per_seed);
+    sampling::demand_memory(seeds as f64, size as f64, args.memory.bytes())?;
+    Ok(Some(size))
+}
+
+/// The canvas that is asked for, in whose domain all seeds are.
+fn canvas(args: &DualArgs, domain: &Domain, metric: &dyn MetricField, file: &SeedFile<Point>) -> Result<Canvas> {
+    let seeds = &file.seeds;
+    let size = canvas_vertices(args, seeds.len())?;
+    let canvas = Canvas::new(args.canvas, domain, metric, size.unwrap_or_default())?;
+    file.demand_inside(&canvas)?;
+    if size.is_none() {
+        return recipe::certified_canvas(args.canvas, domain, metric, seeds, args.constants, args.memory.bytes());
+    }
+    if args.voronoi == Kind::Riemannian && args.dual == Road::Canvas {
+        return Ok(resolve(canvas, metric, seeds, RESOLVE_ROUNDS)?.canvas);
+    }
+    Ok(canvas)
+}
+
+/// Refuses what only the Riemannian diagram has where another is asked for.
+fn demand_geodesics(args: &DualArgs) -> Result<()> {
+    let all = [
+        (args.edges == EdgesOut::Geodesic, "--edges geodesic"),
+        (args.outputs.have_geodesics(), "--show geodesics or triangles"),
+        (args.outputs.shows(Show::Protection), "--show protection"),
+        (args.is_certified(), "--certify"),
+        (args.geodesic != Method::default(), "--geodesic"),
+    ];
+    let is_other = args.voronoi != Kind::Riemannian;
+    refuse(all.map(|(is_asked, what)| {
+        let help = format!("leave out {what}, or --voronoi");
+        (is_other && is_asked, format!("{what} with a diagram that measures straight distances"), help)
+    }))
+}
+
+/// The figures of the dual with straight edges, in the metric only where it is valid.
+fn reported(
+    args: &DualArgs,
+    mesh: &Mesh,
+    found: Validity,
+    quality: impl FnOnce() -> Result<MetricQuality>,
+) -> Result<Report> {
+    let is_valid = found.valid;
+    let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
+    if is_valid {
+        report = report.with_quality(&quality()?);
+    }
+    report.options = args.as_used();
+    Ok(report)
+}
+
+/// Refuses, if that is asked for, what OUT would hold if it is not embedded, with the report.
+fn demand_embedded(args: &DualArgs, report: &Report) -> Result<()> {
+    if args.strict {
+        embedded(args, report).or_else(|fault| args.run.write_report(&report.to_json()).and(Err(fault)))?;
+    }
+    Ok(())
+}
+
+fn embedded(args: &DualArgs, report: &Report) -> Result<()> {
+    let dual = report.dual.as_ref();
+    if let Some(found) = dual.and_then(|dual| dual.geodesics.as_ref()).filter(|_| args.edges == EdgesOut::Geodesic) {
+        let crossing = "pairs of geodesic edges meet elsewhere than at seeds";
+        demand_none(found.crossing_geodesics, crossing, args)?;
+        return demand_none(found.open_regions, "triangles of geodesic edges bound no region", args);
+    }
+    report.validity.demand()?;
+    let crossing = dual.and_then(|dual| dual.crossing_edges).unwrap_or(0);
+    demand_none(crossing, "pairs of straight edges cross", args)
+}
+
+fn demand_none(count: usize, what: &str, args: &DualArgs) -> Result<()> {
+    if count == 0 {
+        return Ok(());
+    }
+    let help = "add seeds where the metric changes fast, or leave out --strict";
+    Err(Error::Mesh { what: format!("{count} {what}"), place: args.out.display().to_string(), help: help.into() })
+}
+
+fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {
+    let mut notes = Vec::new();
+    if report.triangles == 0 {
+        notes.push("there are no triangles: no three cells meet in the domain".into());
+    }
+    let mut note = |count: usize, what: &str| {
+        if count > 0 {
+            notes.push(format!("{count} {what}"));
+        }
+    };
+    let inverted = "straight triangles come out inverted: the dual does not embed with straight edges and these seeds";
+    note(report.validity.inverted, inverted);
+    let orphans = report.diagram.as_ref().map_or(0, |diagram| diagram.orphan_components);
+    note(orphans, "orphans: parts of cells that do not hang together with their seeds");
+    let dual = report.dual.as_ref();
+    note(dual.and_then(|dual| dual.crossing_edges).unwrap_or(0), "pairs of straight edges cross");
+    if let Some(found) = dual.and_then(|dual| dual.geodesics.as_ref()) {
+        note(found.crossing_geodesics, "pairs of geodesic edges meet elsewhere than at seeds");
+        note(found.open_regions, "triangles of geodesic edges bound no region, and have none in the file");
+    }
+    let empty = diagram.cell_sizes().iter().filter(|&&size| size == 0).count();
+    note(empty, "seeds have no canvas vertex in their cell: raise --canvas-size");
+    notes
+}

@@ -1,0 +1,125 @@
+//! Pictures of meshes and diagrams, of the plane and of surfaces, as far as they are asked for.
+
+use crate::options::{Outputs, Show, refuse};
+use voronaut::Result;
+use voronaut::diagram::{Diagram, SurfaceDiagram};
+use voronaut::geometry::Point3;
+use voronaut::mesh::Mesh;
+use voronaut::metric::MetricField;
+use voronaut::net::Net;
+use voronaut::quality::Edges;
+use voronaut::realisation::{Grid, Realisation};
+use voronaut::triangulation::VertexId;
+use voronaut_draw::{Layers, Picture, Protection, Scene, Stroke, View};
+
+/// Pieces per side in which pictures show a Riemannian triangle.
+const PIECES: usize = 4;
+
+/// What the picture shows of a diagram, and of the mesh with geodesic edges.
+pub(crate) fn layers(
+    outputs: &Outputs,
+    diagram: &Diagram,
+    field: &dyn MetricField,
+    curved: Option<&Realisation>,
+) -> Layers {
+    if !outputs.need_diagram() {
+        return Layers::default();
+    }
+    let witnesses = outputs.shows(Show::Witnesses).then(|| {
+        let found = diagram.witnesses();
+        [diagram.corners_of(&found.vertices), diagram.corners_of(&found.edges)]
+    });
+    let mut layers = Layers { cells: Some(diagram.to_cells()), witnesses, ..Layers::default() };
+    if let Some(found) = curved.filter(|_| outputs.have_geodesics()) {
+        layers.geodesics = found.edges.iter().map(|edge| edge.points.clone()).collect();
+        if outputs.shows(Show::Triangles) {
+            let grids = found.grids(field, PIECES);
+            layers.grids = grids.iter().flatten().flat_map(Grid::lines).collect();
+        }
+    }
+    layers
+}
+
+/// Triangles by the protection of a net, of which so much was asked for, if the picture shows that.
+pub(crate) fn protection(outputs: &Outputs, net: Option<&Net>, asked: f64) -> Option<Protection> {
+    net.filter(|_| outputs.shows(Show::Protection)).map(|net| Protection::new(net, asked))
+}
+
+/// A planar mesh, if there is to be a picture of it.
+pub(crate) fn in_plane(
+    outputs: &Outputs,
+    mesh: &Mesh,
+    metric: Option<&dyn MetricField>,
+    layers: &Layers,
+) -> Result<Option<String>> {
+    let picture = Picture {
+        mesh: [Show::Mesh, Show::Protection, Show::Unmet].into_iter().any(|show| outputs.shows(show)),
+        ellipses: outputs.shows(Show::Ellipses),
+        width: outputs.pixels,
+        window: outputs.window,
+    };
+    outputs.picture.as_ref().map(|_| voronaut_draw::svg_with(mesh, metric, &picture, layers)).transpose()
+}
+
+/// The mesh of a surface, the cells of its vertices, its edges as geodesics.
+pub(crate) fn on_surface(outputs: &Outputs, diagram: &SurfaceDiagram, mesh: &Mesh) -> Result<String> {
+    let is_of_canvas = outputs.shows(Show::Cells) || outputs.shows(Show::Geodesics);
+    let mut scene = if is_of_canvas { coloured(diagram, outputs.shows(Show::Cells)) } else { Scene::of_mesh(mesh) };
+    let edges = Edges::of(&mesh.triangles);
+    let edges = edges.iter().map(|(ends, _)| ends);
+    if outputs.shows(Show::Geodesics) {
+        scene = scene.with(edges.filter_map(|ends| geodesic(diagram, ends)), Stroke::Geodesic);
+    } else if outputs.shows(Show::Mesh) && is_of_canvas {
+        scene = scene.with(edges.map(|ends| ends.map(|v| mesh.position(v)).to_vec()), Stroke::Edge);
+    }
+    let view = View { pixels: outputs.pixels, ..View::of(diagram.canvas().draped().input().surface.bounds()) };
+    voronaut_draw::draw_surface(&scene, &view)
+}
+
+fn coloured(diagram: &SurfaceDiagram, are_cells: bool) -> Scene {
+    let draped = diagram.canvas().draped();
+    let vertices = || (0..diagram.vertex_count() as u32).map(VertexId);
+    let positions: Vec<Point3> = vertices().map(|v| draped.position(v)).collect();
+    let topology = draped.topology();
+    let triangles: Vec<[u32; 3]> = topology.faces().map(|f| topology.corners(f).map(|v| v.0)).collect();
+    let colours: Vec<Option<u32>> = vertices().map(|v| diagram.colour(v).filter(|_| are_cells)).collect();
+    Scene::of_canvas(&positions, &triangles, &colours)
+}
+
+/// The points of the geodesic between two seeds.
+fn geodesic(diagram: &SurfaceDiagram, ends: [u32; 2]) -> Option<Vec<Point3>> {
+    let [from, to] = ends.map(|colour| diagram.seed(colour));
+    diagram.canvas().draped().geodesic(from?, to?).map(|way| way.points)
+}
+
+/// A mesh with the points of its geodesic edges behind the seeds, and their segments as edges, labelled with the number of the
+/// edge from 1.
+pub(crate) fn with_geodesics(diagram: &SurfaceDiagram, mesh: &Mesh) -> Mesh {
+    let mut all = Mesh { edges: Vec::new(), edge_labels: Vec::new(), ..mesh.clone() };
+    for (label, (ends, _)) in (1..).zip(Edges::of(&mesh.triangles).iter()) {
+        let Some(points) = geodesic(diagram, ends) else { continue };
+        let mut before = ends[0];
+        for p in &points[1..points.len() - 1] {
+            all.points.push(p.to_array());
+            all.point_labels.push(0);
+            let here = all.points.len() as u32 - 1;
+            all.edges.push([before, here]);
+            before = here;
+        }
+        all.edges.push([before, ends[1]]);
+        all.edge_labels.resize(all.edges.len(), label);
+    }
+    all
+}
+
+/// Refuses what there is no picture of on surfaces, and what else is asked for that is not there, by name.
+pub(crate) fn demand_of_surfaces(outputs: &Outputs, more: &[(bool, &str)]) -> Result<()> {
+    let is_shown = |show: &Show| matches!(show, Show::Mesh | Show::Cells | Show::Geodesics);
+    let own = [
+        (outputs.histograms.is_some(), "--histograms"),
+        (outputs.window.is_some(), "--window"),
+        (!outputs.show.iter().all(is_shown), "--show of anything but mesh, cells and geodesics"),
+    ];
+    let all = own.iter().chain(more);
+    refuse(all.map(|&(is_asked, what)| (is_asked, format!("{what} on a surface"), format!("leave out {what}"))))
+}
