@@ -191,7 +191,16 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
 }
 
 fn in_plane(args: &MeshArgs, domain: &Domain, mended: &Mended, start: Instant) -> Result<Made> {
-    refuse([(args.fit, "--fit in the plane", "leave out --fit: it is for surfaces")])?;
+    refuse([
+        (args.fit, "--fit in the plane", "leave out --fit: it is for surfaces"),
+        (args.nr, "--nr in the plane", "leave out --nr: it is for surfaces"),
+        (
+            !args.nr && args.features() != FeatureOptions::default(),
+            "--ar in the plane",
+            "leave out --ar: it is for surfaces",
+        ),
+        (args.damage.repair, "--repair in the plane", "leave out --repair: it is for surfaces"),
+    ])?;
     let (outputs, options) = (&args.outputs, args.options());
     let at = GradedAt::of(options.vertices, args.complexity);
     let made = fields::in_plane(&args.metric, domain, &args.domain, &args.metric_choices, at)?;
@@ -233,7 +242,12 @@ fn on_surface(args: &MeshArgs, input: Input, mended: &Mended, start: Instant) ->
     let input = &input.cut(&args.features())?;
     let metric = fields::on_surface(&args.metric, input, &args.metric_choices)?;
     let meshed = recipe::mesh_surface(input, metric.as_ref(), &args.options(), &Bar::new(&args.run))?;
-    let mut report = account::on_surface(&meshed, input, mended, metric.as_ref(), args.as_used())?;
+    let mut used = args.as_used();
+    if args.dual == Road::Both {
+        // Lengths decide, unless it is the canvas.
+        used["dual"] = json!(Road::Geodesic);
+    }
+    let mut report = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
     report.seconds.total = start.elapsed().as_secs_f64();
     let picture = whole.map(|whole| drawn_on(args, &whole, &meshed.mesh)).transpose()?;
     Ok(Made { mesh: meshed.mesh, report, picture })

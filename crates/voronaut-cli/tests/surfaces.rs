@@ -208,15 +208,24 @@ fn what_surfaces_do_not_have_is_refused_before_anything_is_written() {
     place.put("off.txt", "0 0 1\n0 0 1.5\n");
     place.put("flat.txt", "0 1\n");
     let mesh = ["mesh", "sphere:1", "--metric", "uniform", "-n", "60", "-o", "s.obj"];
+    let plate = ["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "60", "-o", "s.obj"];
     let dual = |seeds: &'static str| ["dual", "sphere:1", "--metric", "uniform", "--seeds", seeds, "-o", "d.obj"];
     for (words, expected) in [
         ([&mesh[..], &["--seeding", "protected"]].concat(), "protected seeding on a surface"),
         ([&mesh[..], &["--mesher", "starset"]].concat(), "the star-set mesher on a surface"),
+        ([&mesh[..], &["--centroid", "canvas"]].concat(), "relaxation to centroids on a canvas on a surface"),
+        ([&mesh[..], &["--polish", "5"]].concat(), "polishing on a surface"),
+        ([&mesh[..], &["--net"]].concat(), "leave out --net, which is for the plane"),
+        ([&mesh[..], &["--smooth-metric", "2"]].concat(), "smoothing of a metric on a surface"),
+        ([&mesh[..], &["--gradation", "1.3"]].concat(), "gradation of a metric on a surface"),
         ([&mesh[..], &["--histograms", "h.svg"]].concat(), "--histograms on a surface"),
         ([&dual("off.txt")[..], &["--certify"]].concat(), "--certify on a surface"),
         (dual("off.txt").to_vec(), "off.txt:2: the seed (0, 0, 1.5) is off the surface"),
         (dual("flat.txt").to_vec(), "flat.txt:1: '0 1' is no point"),
-        (vec!["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "60", "--fit", "-o", "s.obj"], "--fit in the plane"),
+        ([&plate[..], &["--fit"]].concat(), "--fit in the plane"),
+        ([&plate[..], &["--ar", "30"]].concat(), "--ar in the plane"),
+        ([&plate[..], &["--nr"]].concat(), "--nr in the plane"),
+        ([&plate[..], &["--repair"]].concat(), "--repair in the plane"),
     ] {
         let before = place.files();
         let output = place.run(&words);

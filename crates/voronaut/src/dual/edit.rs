@@ -1,8 +1,5 @@
-//! Insertion, removal and moves of seeds. Each says whether it was done; what would not be embedded is not done.
-//!
-//! From the dual to the mesh that leaves the program.
-//!
-//! Lawson's flips by the metric in-circle test, on a triangulation that stays embedded.
+//! Seeds come, go and move, edges are flipped (Lawson) by the metric in-circle test, and the mesh leaves the program. Each verb says whether
+//! it was done; what would not be embedded is not done.
 
 use super::margin::pair;
 use super::{Dual, Effort, Kind};

@@ -1,6 +1,5 @@
-//! What relaxation asks of a triangulation whose seeds it moves, in the plane or on a surface.
-//!
-//! What mending the worst triangles asks of a triangulation: how good triangles and edges are as a mesh's are measured.
+//! What relaxation asks of a triangulation whose seeds it moves, in the plane or on a surface; and what mending its worst triangles asks:
+//! how good triangles and edges are as a mesh's are measured.
 
 use super::{Dual, Effort, Kind, Saved, SurfaceDual};
 use crate::error::Result;

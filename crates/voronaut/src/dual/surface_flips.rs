@@ -1,7 +1,5 @@
-//! Flips of the mesh in the making: by its own lengths, by a test of the caller's, and away from folds.
-//!
-//! What the in-circle test of a surface mesh in the making knows: lengths from the expansions at both ends; where the metric is
-//! rough, by Simpson's rule.
+//! Flips of the mesh in the making on a surface: by its own lengths, by a test of the caller's, and away from folds. Lengths are
+//! from the expansions at both ends; where the metric is rough, by Simpson's rule.
 
 use super::margin::KINKS;
 use super::on_surface::{FOLDED, SurfaceDual, TIE, UPRIGHT};

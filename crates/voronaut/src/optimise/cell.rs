@@ -1,8 +1,4 @@
-//! The Voronoi cell of a seed in the tangent plane at the seed.
-//!
-//! Where the moments of the cells come from.
-//!
-//! Cells in the tangent planes at their seeds.
+//! The Voronoi cell of a seed in the tangent plane there, its moments, and where relaxation takes these from.
 
 use super::on_canvas::OnCanvas;
 use crate::dual::{Dual, Kind, Moving};

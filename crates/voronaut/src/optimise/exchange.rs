@@ -1,6 +1,5 @@
-//! Exchanging seeds: removing those that crowd, adding where edges are too long, at a given number of vertices.
-//!
-//! The worst triangles: a few seeds move to where the worst triangle around them is best.
+//! Seeds that change places: those that crowd go and others come where edges are too long, at a given number of vertices; and a few
+//! move to where the worst triangle around them is best.
 
 use super::cell::from_frame;
 use crate::dual::{Dual, Effort, Kind, Mending};

@@ -1,6 +1,5 @@
-//! The seeds that can move, the energy, and its gradient.
-//!
-//! Where geodesics are not resolved: seeds whose triangles and circles a diagram on a canvas around them decides on.
+//! The seeds that can move, the energy, and its gradient; and regions where geodesics are not resolved, whose triangles and circles a
+//! diagram on a canvas decides on.
 
 use super::cell::{CellsOf, Moments, from_frame};
 use super::quasi_newton::{Memory, dot};

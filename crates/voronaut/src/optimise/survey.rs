@@ -1,6 +1,5 @@
-//! The Riemannian Delaunay triangulation of a dual's seeds, which straight edges need not follow, and its net.
-//!
-//! Which seeds rest while others are relaxed.
+//! The Riemannian Delaunay triangulation of a dual's seeds, which straight edges need not follow, and its net; and which seeds
+//! rest while others are relaxed.
 
 use super::movers::{Region, State};
 use crate::dual::{Dual, Moving};

@@ -1,12 +1,5 @@
-//! The triangles at which the mesh of a surface is none.
-//!
-//! What is wrong with a mesh, and where.
-//!
-//! Places in reports.
-//!
-//! Vertices at one position, and how long edges are.
-//!
-//! Straight segments by place.
+//! What is wrong with a mesh, and where: faults and their places, vertices at one position, segments to be found by place, and the triangles
+//! at which the mesh of a surface is none.
 
 use super::edges::Edges;
 use super::meetings::Meetings;

@@ -1,6 +1,4 @@
-//! Triangles of a surface that meet each other where they are not neighbours, decided exactly.
-//!
-//! Lines in the plane that cross, decided exactly.
+//! Triangles of a surface that meet where they are not neighbours, and lines in the plane that cross, decided exactly.
 
 use super::edges::Edges;
 use super::faults::{Fault, Piece, Segments};

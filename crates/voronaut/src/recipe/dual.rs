@@ -1,6 +1,4 @@
-//! The dual of given seeds: none is added, none moved.
-//!
-//! The dual of seeds on a surface.
+//! The dual of given seeds, in the plane or on a surface: none is added, none moved.
 
 use crate::diagram::{Diagram, Ground, Kind, Nerve, NerveTriangle, SurfaceDiagram};
 use crate::dual::Road;

@@ -1,8 +1,4 @@
-//! From what the user says of a metric to the field itself, with its files read.
-//!
-//! Meshes that metrics are sampled on to be smoothed or graded.
-//!
-//! A metric on a domain, graded.
+//! From what the user says of a metric to the field itself: limits, then smoothing and gradation on a mesh that it is sampled on.
 
 use super::Aim;
 use crate::canvas::Canvas;

@@ -1,6 +1,4 @@
-//! A planar mesh that is to be made anew: its domain, and what of it is to be there again.
-//!
-//! The sizes by which a planar mesh is made anew.
+//! A planar mesh that is to be made anew: its domain, what of it is to be there again, and the sizes by which it is made.
 
 use super::field::{BACKGROUND_VERTICES, even};
 use crate::domain::{Domain, Pslg, from_mesh};

@@ -1,10 +1,5 @@
-//! The last pass: which edges the mesh has, by both roads, and how sure that is.
-//!
-//! How seeds are relaxed.
-//!
-//! How the interior is seeded.
-//!
-//! Time per stage, by the clock of who watches.
+//! Steps of the main job in the plane: seeding on a canvas, relaxing, and the last pass, which decides on the edges by both roads and
+//! says how sure that is. And the time that steps take.
 
 use super::options::{Centroid, Seeding};
 use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job, MeshOptions};

@@ -1,6 +1,5 @@
-//! Simplifying curves within a distance: which of the input's vertices the mesh keeps.
-//!
-//! Sizes for which chords stay close to the curves of a domain.
+//! Curves of a domain simplified within a distance, which tells what of the input's vertices the mesh keeps; and sizes for which
+//! chords stay as close to them.
 
 use crate::domain::{Chain, Domain, Pslg};
 use crate::geodesic::chord;

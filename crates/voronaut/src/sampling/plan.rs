@@ -1,6 +1,5 @@
-//! How fine the metric must be for a mesh of so many vertices, and what that mesh will need.
-//!
-//! Segments of the boundary and of interfaces, sampled at unit metric length.
+//! How fine the metric must be for a mesh of so many vertices, and what that mesh will need; the boundary and interfaces are then
+//! sampled at unit metric length.
 
 use crate::canvas;
 use crate::domain::Domain;

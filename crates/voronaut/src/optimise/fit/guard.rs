@@ -1,4 +1,4 @@
-//! Moves of vertices shortened until no triangle comes to harm.
+//! Moves of vertices shortened until no triangle comes to harm, or to meet another one.
 
 use super::samples::Sheet;
 use crate::geometry::{Aabb3, Bounds, BoxTree, Corners, Point3, Vector3, contact};

@@ -2,10 +2,9 @@
 //!
 //! | module | what it is |
 //! |---|---|
-//! | `closest` | closest points on triangles whose vertices move |
-//! | `samples` | samples of surface and mesh, and how far they are from the other |
+//! | `samples` | samples of surface and mesh, and the closest points of the other |
 //! | `system` | the linear system of a step |
-//! | `guard`, `crossing` | moves shortened until no triangle folds, becomes a sliver, or crosses another |
+//! | `guard` | moves shortened until no triangle folds, becomes a sliver, or meets another |
 
 mod guard;
 mod samples;

@@ -1,6 +1,5 @@
-//! Samples of a surface and of its mesh, and the closest point of the other for each.
-//!
-//! Closest points on triangles whose vertices move, found from a triangle nearby.
+//! Samples of a surface and of its mesh, and the closest point of the other for each: on triangles whose vertices move it is found
+//! from a triangle nearby.
 
 use crate::geometry::{Point3, Vector3};
 use crate::parallel::prelude::*;

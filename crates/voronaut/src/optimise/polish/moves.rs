@@ -1,10 +1,5 @@
-//! Moves that lower the error.
-//!
-//! Vertices in groups without edges between them: those of a group can move at once.
-//!
-//! The error of linear interpolation on a triangle.
-//!
-//! Flips that lower the error.
+//! The error of linear interpolation on a triangle, and the moves and flips that lower it. Vertices move in groups without edges between
+//! them: those of a group can move at once.
 
 use super::{Freedom, Work, is_allowed};
 use crate::geometry::{Node, Point, Vector, combine, radon, signed_area};

@@ -1,8 +1,5 @@
-//! Edges whose length is given by what has to be kept: borders, features, corners, required edges.
-//!
-//! How dense the vertices of a mesh are around an edge, for its metric.
-//!
-//! Whether straight edges can have unit length where a metric turns.
+//! Why an edge cannot be of unit length: what has to be kept (borders, features, corners, required edges), how dense vertices are
+//! around it, or a metric that turns too fast for straight edges.
 
 use super::super::metric_quality::edge_length;
 use super::{Around, Edges, RANGE, is_unit};
