@@ -28,7 +28,7 @@ impl<'a> Border<'a> {
     pub(crate) fn of(canvas: &'a Canvas) -> Self {
         let embedded = canvas.embedded();
         let topology = &embedded.topology;
-        let borders = || topology.faces().flat_map(FaceId::half_edges).filter(|&h| topology.twin(h).is_none());
+        let borders = || topology.borders();
         let side = |[from, to]: [Point; 2]| (around([from, to]), Side { from, to });
         let sides = BoxTree::new(borders().map(|h| side(embedded.ends(h))));
         let corners = BoxTree::new(borders().filter_map(|h| reflex(canvas, h)).map(|p| (around([p, p]), p)));

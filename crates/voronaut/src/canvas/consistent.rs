@@ -339,8 +339,8 @@ fn union(stars: &Stars) -> Result<Planar> {
     let mut topology = Triangulation::from_triangles(embedded.positions.len(), &triangles, &regions);
     for h in embedded.topology.edges() {
         let Some(constraint) = embedded.topology.constraint(h) else { continue };
-        let [a, b] = [embedded.topology.origin(h), embedded.topology.target(h)];
-        let found: Option<HalfEdge> = topology.find(a, b).or_else(|| topology.find(b, a));
+        let [a, b] = embedded.topology.ends(h);
+        let found: Option<HalfEdge> = topology.edge_between(a, b);
         let missing = || not_meshed("no star has an edge of the domain", embedded.position(a).to_string());
         topology.set_constraint(found.ok_or_else(missing)?, constraint);
     }

@@ -37,7 +37,7 @@ impl Flipping for Frozen<'_> {
     }
 
     fn flip(&mut self, h: HalfEdge) {
-        self.changed.extend([Some(h), self.planar.topology.twin(h)].into_iter().flatten().map(HalfEdge::face));
+        self.changed.extend(self.planar.topology.sides(h).map(HalfEdge::face));
         self.planar.topology.flip(h);
     }
 

@@ -125,7 +125,7 @@ fn circle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
 pub(super) fn halve(mut planar: Planar, edges: &[[VertexId; 2]], counters: &mut CanvasCounters) -> Planar {
     let mut lawson = Lawson::default();
     for &[a, b] in edges {
-        let Some(h) = planar.topology.find(a, b).or_else(|| planar.topology.find(b, a)) else { continue };
+        let Some(h) = planar.topology.edge_between(a, b) else { continue };
         let [p, q] = planar.ends(h);
         if let Some((v, _)) = planar.insert_on_edge(h, p.midpoint(q)) {
             lawson.queue(planar.topology.star(v).map(HalfEdge::next));

@@ -131,7 +131,7 @@ fn key(p: Point) -> [u64; 2] {
 
 fn copies(planar: &Planar) -> HashMap<[u64; 2], Vec<VertexId>> {
     let topology = &planar.topology;
-    let borders = topology.faces().flat_map(FaceId::half_edges).filter(|&h| topology.twin(h).is_none());
+    let borders = topology.borders();
     let mut at: HashMap<[u64; 2], Vec<VertexId>> = HashMap::new();
     // A vertex starts one side of the border.
     for v in borders.map(|h| topology.origin(h)) {

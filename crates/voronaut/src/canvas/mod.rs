@@ -234,7 +234,7 @@ impl Canvas {
         let topology = &self.embedded.planar.topology;
         // At the border the last edge of a star is known only by the face before it.
         let edges = around.iter().flat_map(|&v| topology.star(v)).flat_map(|h| [h, h.prev()]);
-        let ends = |h| [topology.origin(h), topology.target(h)];
+        let ends = |h| topology.ends(h);
         let mut edges: Vec<[VertexId; 2]> = edges.map(ends).map(|[a, b]| [a.min(b), a.max(b)]).collect();
         edges.sort_unstable();
         edges.dedup();
@@ -287,7 +287,7 @@ impl Canvas {
             neighbours
         };
         let neighbours = self.stars.as_ref().map_or_else(of_edges, StarSet::neighbours);
-        let known = |a, b| topology.find(a, b).or_else(|| topology.find(b, a)).map(|h| topology.length(h));
+        let known = |a, b| topology.edge_between(a, b).map(|h| topology.length(h));
         // One order, so that the length is the same in both directions.
         let measured = |a: VertexId, b: VertexId| bowed_chord(field, self.position(a.min(b)), self.position(a.max(b)));
         Graph::new(self.embedded.planar.positions.clone(), tensors, &neighbours)

@@ -87,14 +87,14 @@ impl<'a> Refiner<'a> {
 
     fn edge(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
         let topology = &self.planar.topology;
-        topology.find(a, b).or_else(|| topology.find(b, a))
+        topology.edge_between(a, b)
     }
 
     /// Halves an edge, or first the fixed edge beside it that its middle encroaches: else new vertices creep ever closer
     /// to a border that they see under a small angle.
     fn split(&mut self, h: HalfEdge, counters: &mut CanvasCounters) -> Result<()> {
         let Some(fixed) = self.encroached(h) else { return self.halve(h, counters) };
-        let [a, b] = [self.planar.topology.origin(h), self.planar.topology.target(h)];
+        let [a, b] = self.planar.topology.ends(h);
         self.halve(fixed, counters)?;
         if let Some(h) = self.edge(a, b) {
             self.enqueue(h);
@@ -116,7 +116,7 @@ impl<'a> Refiner<'a> {
             let (u, v) = (a - middle, b - middle);
             topology.is_fixed(*e) && tensor.dot(u, v) < CREEPING * tensor.length(u) * tensor.length(v)
         };
-        [Some(h), topology.twin(h)].into_iter().flatten().flat_map(|side| [side.next(), side.prev()]).find(is_near)
+        topology.sides(h).flat_map(|side| [side.next(), side.prev()]).find(is_near)
     }
 
     /// Halves an edge, flips around the new vertex, and queues the edges there. An edge whose middle rounding has put
@@ -150,7 +150,7 @@ impl<'a> Refiner<'a> {
     }
 
     fn enqueue(&mut self, h: HalfEdge) {
-        let ends = [self.planar.topology.origin(h), self.planar.topology.target(h)];
+        let ends = self.planar.topology.ends(h);
         let [p, q] = self.planar.ends(h);
         let length =
             if self.planar.positions.len() < COARSE { chord(self.field, p, q) } else { self.simpson(ends, p, q) };

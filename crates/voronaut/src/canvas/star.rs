@@ -185,7 +185,7 @@ impl<'a> Finder<'a> {
         let planar = self.planar;
         while let Some(f) = self.faces.pop() {
             for h in f.half_edges() {
-                let [w, to] = [planar.topology.origin(h), planar.topology.target(h)];
+                let [w, to] = planar.topology.ends(h);
                 let (a, b) = (self.at(w), self.at(to));
                 let is_taken = [vertices, self.stamp].contains(&self.seen_vertices[w.index()]);
                 if !is_taken && (a - centre).dot(a - centre) <= square {
@@ -241,8 +241,7 @@ impl<'a> Finder<'a> {
     fn sees_far(&self, a: VertexId, b: VertexId) -> bool {
         let topology = &self.planar.topology;
         let is_free = |crossed: Vec<HalfEdge>| !crossed.into_iter().any(|h| topology.is_fixed(h));
-        topology.find(a, b).or_else(|| topology.find(b, a)).is_some()
-            || self.planar.edges_between(a, b).is_some_and(is_free)
+        topology.edge_between(a, b).is_some() || self.planar.edges_between(a, b).is_some_and(is_free)
     }
 }
 

@@ -220,7 +220,7 @@ impl<'a> Stars<'a> {
     pub(super) fn changed_by(&self, new: VertexId) -> Vec<VertexId> {
         let topology = &self.steiner.planar.topology;
         let p = self.steiner.planar.position(new);
-        let ring = |v: VertexId| topology.star(v).flat_map(|h| [topology.target(h), topology.apex(h)]);
+        let ring = |v: VertexId| topology.around(v);
         let mut changed = vec![new];
         let mut seen: HashSet<VertexId> = HashSet::from([new]);
         let mut next: Vec<(VertexId, u8)> = ring(new).map(|v| (v, 0)).collect();

@@ -69,11 +69,11 @@ impl<'a> Steiner<'a> {
         self.added(v)?;
         let encroached = self.planar.topology.star(v).map(HalfEdge::next).find(|&h| self.is_encroached(h, p, radius));
         let Some(h) = encroached else { return Ok(Placed::Inserted(v)) };
-        let [a, b] = [self.planar.topology.origin(h), self.planar.topology.target(h)];
+        let [a, b] = self.planar.topology.ends(h);
         if !self.take_out(v) {
             return Ok(Placed::Inserted(v));
         }
-        match self.planar.topology.find(a, b).or_else(|| self.planar.topology.find(b, a)) {
+        match self.planar.topology.edge_between(a, b) {
             Some(h) => self.halve(h, radius),
             None => Ok(Placed::Refused),
         }
@@ -167,8 +167,7 @@ impl<'a> Steiner<'a> {
     /// Removes a vertex that was just inserted, and flips as before; says whether it could.
     pub(super) fn take_out(&mut self, v: VertexId) -> bool {
         let topology = &self.planar.topology;
-        let link: Vec<[VertexId; 2]> =
-            topology.star(v).map(HalfEdge::next).map(|h| [topology.origin(h), topology.target(h)]).collect();
+        let link: Vec<[VertexId; 2]> = topology.star(v).map(HalfEdge::next).map(|h| topology.ends(h)).collect();
         if !self.planar.remove_vertex(v) {
             return false;
         }

@@ -123,7 +123,7 @@ fn depths(diagram: &Diagram, field: &dyn MetricField) -> Vec<f64> {
         sources.add(topology.target(h), 0.0, 0);
     }
     let half = borders.iter().map(|&h| 0.5 * topology.length(h)).fold(0.0, f64::max);
-    let found = Marching::on(topology).with_wave(Wave::Plane).propagate(&sources);
+    let found = Marching { canvas: topology, wave: Wave::Plane }.propagate(&sources);
     let seeds = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default());
     seeds.map(|p| (depth_of(canvas, field, p, |v| found.label(v).distance) - half).max(0.0)).collect()
 }

@@ -59,7 +59,7 @@ pub(super) fn half_longest(diagram: &Diagram, is_picked: impl Fn(u32) -> bool) -
     let topology = canvas.topology();
     let mut longest = [0.0_f64; 2];
     for h in topology.edges() {
-        let ends = [topology.origin(h), topology.target(h)];
+        let ends = topology.ends(h);
         if ends.iter().all(|&v| diagram.colour(v).is_some_and(&is_picked)) {
             let euclidean = canvas.position(ends[0]).distance(canvas.position(ends[1]));
             longest = [longest[0].max(topology.length(h)), longest[1].max(euclidean)];

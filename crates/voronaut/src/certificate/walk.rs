@@ -81,7 +81,7 @@ fn between(diagram: &Diagram, mut door: HalfEdge, missing: u32) -> Option<(FaceI
     for steps in 1..=topology.face_count() {
         let entry = topology.twin(door)?;
         let third = diagram.label(topology.apex(entry)).colour;
-        let [from, to] = [topology.origin(entry), topology.target(entry)].map(|v| diagram.label(v).colour);
+        let [from, to] = topology.ends(entry).map(|v| diagram.label(v).colour);
         if third == missing {
             return Some((entry.face(), steps));
         }

@@ -119,7 +119,7 @@ impl Descent<'_> {
         let Some(down) = self.direction(f, p) else { return self.lowest(embedded.topology.corners(f)) };
         let leads_out = |h: HalfEdge| (embedded.ends(h)[1] - embedded.ends(h)[0]).cross(down) <= 0.0;
         if let Some(h) = entered.filter(|&h| leads_out(h)) {
-            return self.lowest([embedded.topology.origin(h), embedded.topology.target(h)]);
+            return self.lowest(embedded.topology.ends(h));
         }
         let others = f.half_edges().into_iter().filter(|&h| Some(h) != entered);
         let exits = others.filter_map(|h| self.exit(p, down, h).map(|(s, t)| (s, t, h)));

@@ -120,7 +120,7 @@ impl<'a> Distances<'a> {
     /// Metric length of a side of a face.
     fn side(&self, v: VertexId, u: VertexId) -> f64 {
         let topology = self.ground.embedded();
-        topology.find(v, u).or_else(|| topology.find(u, v)).map_or(0.0, |h| topology.length(h))
+        topology.edge_between(v, u).map_or(0.0, |h| topology.length(h))
     }
 
     /// The way from a point of the domain to the nearest of the given points: with [`Method::March`] the geodesic

@@ -188,7 +188,7 @@ pub(super) fn solver<'a, G: Ground<'a>>(ground: G, method: Method) -> Result<Box
     Ok(match method {
         Method::March | Method::Lbr | Method::Heat => Box::new(Marching::on(ground.topology())),
         Method::Stvd { window } => Box::new(Stvd::on(ground.graph(), window)),
-        Method::Dijkstra => Box::new(Dijkstra::on(ground.graph())),
-        Method::Konukoglu => Box::new(Konukoglu::on(ground.graph())),
+        Method::Dijkstra => Box::new(Dijkstra(ground.graph())),
+        Method::Konukoglu => Box::new(Konukoglu(ground.graph())),
     })
 }

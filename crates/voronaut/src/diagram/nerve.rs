@@ -128,7 +128,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     fn bicoloured_edges(&self) -> Vec<NerveEdge> {
         let topology = self.ground.topology();
         let between = |h: HalfEdge| {
-            let [a, b] = [topology.origin(h), topology.target(h)].map(|v| self.label(v).colour);
+            let [a, b] = topology.ends(h).map(|v| self.label(v).colour);
             let border = topology.twin(h).is_none().then_some(h);
             (a != b && a != NO_COLOUR && b != NO_COLOUR).then(|| NerveEdge {
                 colours: [a.min(b), a.max(b)],

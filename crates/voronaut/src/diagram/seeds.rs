@@ -129,11 +129,11 @@ fn around(planar: &Planar, location: Location) -> (Vec<HalfEdge>, Vec<VertexId>)
         Location::Vertex(v) => topology.star(v).map(HalfEdge::next).collect(),
         Location::Face(f) => f.half_edges().to_vec(),
         Location::Edge(h) | Location::Behind(h) => {
-            let sides = [Some(h), topology.twin(h)].into_iter().flatten();
+            let sides = topology.sides(h);
             sides.flat_map(|side| [side.next(), side.prev()]).collect()
         }
     };
-    let mut near: Vec<VertexId> = rim.iter().flat_map(|&h| [topology.origin(h), topology.target(h)]).collect();
+    let mut near: Vec<VertexId> = rim.iter().flat_map(|&h| topology.ends(h)).collect();
     if let Location::Vertex(v) = location {
         near.push(v);
     }

@@ -52,7 +52,7 @@ impl Unfolding<'_> {
     fn on_edge(&self, at: At) -> OnEdge {
         match at {
             At::Vertex(v) => ([v, v], 0.0),
-            At::Edge(h, t) => ([self.topology.origin(h), self.topology.target(h)], t),
+            At::Edge(h, t) => (self.topology.ends(h), t),
         }
     }
 
@@ -81,7 +81,7 @@ impl Unfolding<'_> {
     fn cross(&self, h: HalfEdge, t: f64) -> Option<At> {
         let (end, apex, down) = self.layout(h);
         if !(down.y > 0.0 && down.x.is_finite() && down.y.is_finite()) {
-            return self.lowest([self.topology.origin(h), self.topology.target(h)]);
+            return self.lowest(self.topology.ends(h));
         }
         let p = Point::new(t * end.x, 0.0);
         let is_right = down.cross(apex - p) > 0.0;

@@ -63,13 +63,8 @@ impl Graph {
         let mut pairs: Vec<(u32, u32)> = named.filter(|(v, u)| v != u).flat_map(|(v, u)| [(v, u), (u, v)]).collect();
         pairs.sort_unstable();
         pairs.dedup();
-        let mut first = vec![0; tensors.len() + 1];
-        for &(v, _) in &pairs {
-            first[v as usize + 1] += 1;
-        }
-        for v in 0..tensors.len() {
-            first[v + 1] += first[v];
-        }
+        let first = |v: usize| pairs.partition_point(|pair| (pair.0 as usize) < v) as u32;
+        let first = (0..=tensors.len()).map(first).collect();
         let straight = |&(v, u): &(u32, u32)| {
             let ends = [VertexId(v), VertexId(u)];
             let said_by = |end: VertexId| tensors[end.index()].length(sight.line(end, ends[0], ends[1]));

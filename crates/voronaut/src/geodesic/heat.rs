@@ -1,6 +1,7 @@
 //! Distances from heat: let it flow for a short time, follow its gradient at unit speed.
 
 use super::label::Sources;
+use super::update::layout;
 use crate::error::{Error, Result};
 use crate::geometry::Vector;
 use crate::sparse::{Cholesky, Elimination, Symmetric};
@@ -178,8 +179,8 @@ struct Face {
 impl Face {
     fn of(canvas: &Triangulation, f: FaceId) -> Self {
         let [base, to_end, to_start] = f.half_edges().map(|h| canvas.length(h));
-        let x = 0.5 * (base + (to_start - to_end) * (to_start + to_end) / base);
-        let y = ((to_start - x) * (to_start + x)).max(0.0).sqrt().max(FLATTEST * base);
+        let (x, height) = layout(base, to_start, to_end);
+        let y = height.max(FLATTEST * base);
         let area = 0.5 * base * y;
         // Across the side opposite to each corner, divided by twice the area.
         let sides = [Vector::new(x - base, y), Vector::new(-x, -y), Vector::new(base, 0.0)];

@@ -327,7 +327,7 @@ mod tests {
     fn in_space(places: &[Place], triangles: &[[u32; 3]]) -> Triangulation {
         let mut topology = Triangulation::from_triangles(places.len(), triangles, &vec![0; triangles.len()]);
         for h in topology.edges().collect::<Vec<_>>() {
-            let [a, b] = [topology.origin(h), topology.target(h)].map(|v| places[v.index()]);
+            let [a, b] = topology.ends(h).map(|v| places[v.index()]);
             topology.set_length(h, distance(a, b));
         }
         topology.check().unwrap();
@@ -360,7 +360,7 @@ mod tests {
             let found = taut(&topology, from, to).unwrap();
             assert!((found.length / distance(p, q) - 1.0).abs() < 1e-12, "{from:?} {to:?} {found:?}");
             for (h, share) in found.crossings {
-                let [a, b] = [topology.origin(h), topology.target(h)].map(|v| places[v.index()]);
+                let [a, b] = topology.ends(h).map(|v| places[v.index()]);
                 let on = [0, 1, 2].map(|i| a[i] + share * (b[i] - a[i]));
                 assert!((distance(p, on) + distance(on, q) - found.length).abs() < 1e-9, "{from:?} {to:?}");
             }

@@ -98,7 +98,7 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
         let topology = self.0.topology();
         let corners = topology.corners(f);
         let of_border = |h: HalfEdge| {
-            let ends = [topology.origin(h), topology.target(h)];
+            let ends = topology.ends(h);
             self.middle(ends).map_or(0.0, |circle| self.missing(&circle, &ends, only, asked))
         };
         let sides = f.half_edges().into_iter().filter(|&h| topology.twin(h).is_none());
@@ -132,7 +132,7 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
     fn neighbours(&self, corners: &[VertexId]) -> Vec<VertexId> {
         let topology = self.0.topology();
         // At the border the last neighbour is the apex of the last face.
-        let around = |&v: &VertexId| topology.star(v).flat_map(|h| [topology.target(h), topology.apex(h)]);
+        let around = |&v: &VertexId| topology.around(v);
         let mut found: Vec<VertexId> = corners.iter().flat_map(around).filter(|v| !corners.contains(v)).collect();
         found.sort_unstable();
         found.dedup();

@@ -263,7 +263,7 @@ impl<J: Judge> Rdt<J> {
         let topology = &self.topology;
         let tested = self.tested(h, LEVELS - 1);
         Edge {
-            ends: [topology.origin(h), topology.target(h)].map(|v| self.seed(v)),
+            ends: topology.ends(h).map(|v| self.seed(v)),
             apexes: [Some(h), topology.twin(h)].map(|side| side.map(|e| self.seed(topology.apex(e)))),
             margin: tested.map(|t| t.margin),
             level: tested.map_or(0, |t| t.level),
@@ -273,7 +273,7 @@ impl<J: Judge> Rdt<J> {
     /// The ends of all edges, the smaller first, sorted.
     fn pairs(&self) -> Vec<[u32; 2]> {
         let topology = &self.topology;
-        let ends = |h| sorted([topology.origin(h), topology.target(h)].map(|v| self.seed(v)));
+        let ends = |h| sorted(topology.ends(h).map(|v| self.seed(v)));
         let mut pairs: Vec<[u32; 2]> = topology.edges().map(ends).collect();
         pairs.sort_unstable();
         pairs

@@ -117,8 +117,8 @@ fn a_fixed_window_does_not_converge() {
         };
         let solvers: [Box<dyn Geodesic>; 3] = [
             Box::new(Stvd::on(graph.clone(), 8)),
-            Box::new(Konukoglu::on(graph.clone())),
-            Box::new(Dijkstra::on(graph.clone())),
+            Box::new(Konukoglu(graph.clone())),
+            Box::new(Dijkstra(graph.clone())),
         ];
         for (solver, found) in solvers.iter().zip(&mut found) {
             let labels = solver.propagate(&sources);
