@@ -1,6 +1,6 @@
 //! Flips to the intrinsic Delaunay triangulation, by lengths alone (Bobenko and Springborn 2007; Fisher et al. 2007).
 
-use crate::geodesic::Angles;
+use crate::geodesic::{Angles, layout};
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation};
 
 /// Margins (sine of the sum of opposite angles) above minus this are ties: flipping them gains nothing.
@@ -67,16 +67,10 @@ impl Quad {
 
     /// The length from c to d in the quadrilateral laid out flat, a at the origin and b on the x axis.
     fn other_diagonal(&self) -> f64 {
-        let (cx, cy) = apex(self.ab, self.ac, self.bc);
-        let (dx, dy) = apex(self.ab, self.ad, self.bd);
+        let (cx, cy) = layout(self.ab, self.ac, self.bc);
+        let (dx, dy) = layout(self.ab, self.ad, self.bd);
         (cx - dx).hypot(cy + dy)
     }
-}
-
-/// The apex (x, y) of a triangle over the base from (0, 0) to (base, 0), y >= 0, at these distances from its ends.
-fn apex(base: f64, from_start: f64, from_end: f64) -> (f64, f64) {
-    let x = 0.5 * (base + (from_start - from_end) * (from_start + from_end) / base);
-    (x, ((from_start - x) * (from_start + x)).max(0.0).sqrt())
 }
 
 #[cfg(test)]

@@ -96,8 +96,7 @@ impl Refiner<'_> {
 /// The metric is not positive definite at the centroid either.
 pub(super) fn sizes(field: &dyn MetricField, triangle: [Point; 3]) -> Result<Option<f64>> {
     let Some((centre, radius)) = circle(triangle) else { return Ok(None) };
-    let [a, b, c] = triangle;
-    let centroid = a + ((b - a) + (c - a)) * (1.0 / 3.0);
+    let centroid = Point::centroid(triangle);
     let is_near = centre.distance(centroid) <= radius_of_view(triangle);
     let mut tensor = if is_near { field.at(centre) } else { field.at(centroid) };
     if is_near && !tensor.is_positive_definite() {

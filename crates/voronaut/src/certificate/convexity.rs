@@ -73,8 +73,9 @@ pub(super) fn convexity(
     let most = found.iter().map(|s| s.0).fold(0.0, |a: f64, b: f64| if b > a || b.is_nan() { b } else { a });
     let total =
         stride as f64 * found.iter().map(|&(k, area)| if k.is_nan() { k } else { k.max(0.0) * area }).sum::<f64>();
-    let euler = topology.vertex_count() + topology.face_count();
-    let holes = (topology.edges().count() + components(topology)).saturating_sub(euler);
+    let parts = topology.parts();
+    let parts = topology.vertices().filter(|v| parts[v.index()] == v.index()).count();
+    let holes = parts.cast_signed().saturating_sub(topology.euler_characteristic()).max(0).cast_unsigned();
     let radius = if most > FLAT {
         unit * 0.5 * PI / most.sqrt()
     } else if most.is_nan() {
@@ -83,22 +84,6 @@ pub(super) fn convexity(
         f64::INFINITY
     };
     Convexity { curvature: most / unit.powi(2), total, holes, radius, bend: bend(diagram, field, net, coverage) }
-}
-
-/// Parts of the domain that do not touch.
-fn components(topology: &Triangulation) -> usize {
-    let mut seen = vec![false; topology.face_slots()];
-    let mut count = 0;
-    for first in topology.faces() {
-        let mut stack = vec![first];
-        count += usize::from(!seen[first.index()]);
-        while let Some(f) = stack.pop() {
-            if !std::mem::replace(&mut seen[f.index()], true) {
-                stack.extend(f.half_edges().into_iter().filter_map(|h| topology.twin(h)).map(HalfEdge::face));
-            }
-        }
-    }
-    count
 }
 
 /// Curvatures (in units of the sampling) that differences may show of a flat metric.

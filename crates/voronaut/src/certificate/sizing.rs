@@ -31,7 +31,7 @@ impl Area {
         let planar = canvas.embedded();
         let triangles: Vec<[Point; 3]> = planar.topology.faces().map(|f| planar.triangle(f)).collect();
         let measured = |&[a, b, c]: &[Point; 3]| {
-            let tensor = field.at(a + ((b - a) + (c - a)) * (1.0 / 3.0));
+            let tensor = field.at(Point::centroid([a, b, c]));
             let area = 0.5 * Vector::cross(b - a, c - a);
             [area * tensor.determinant().max(0.0).sqrt(), area * tensor.eigen().large]
         };

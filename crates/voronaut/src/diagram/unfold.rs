@@ -2,6 +2,7 @@
 //! in each face as it lies unfolded. In the plane of a face with its metric lengths the metric is Euclidean, so that what is
 //! M^-1 grad d in [`descend`](super::descend) is the gradient itself.
 
+use crate::geodesic::layout;
 use crate::geometry::{Point, Vector};
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
@@ -68,8 +69,7 @@ impl Unfolding<'_> {
     /// The face of a half-edge laid out with its origin at zero and its target on the axis: target, apex, the way down.
     fn layout(&self, h: HalfEdge) -> (Point, Point, Vector) {
         let [base, to_end, to_start] = [h, h.next(), h.prev()].map(|h| self.topology.length(h));
-        let x = 0.5 * (base + (to_start - to_end) * (to_start + to_end) / base);
-        let y = ((to_start - x) * (to_start + x)).max(0.0).sqrt();
+        let (x, y) = layout(base, to_start, to_end);
         let ends = [self.topology.origin(h), self.topology.target(h), self.topology.apex(h)];
         let [a, b, c] = ends.map(|v| self.distances[v.index()]);
         let along = (b - a) / base;

@@ -1,6 +1,7 @@
 //! A geodesic between two points as a curve: polynomials that can be evaluated anywhere, and drawn.
 
 use super::jet::Frame;
+use super::length::reached;
 use super::rule::modes_at;
 use crate::geometry::{Point, Vector};
 use crate::metric::MetricField;
@@ -90,11 +91,7 @@ pub(super) struct Guess {
 impl Guess {
     /// A polyline from the frame's (0, 0) to (1, 0).
     pub(super) fn new(field: &dyn MetricField, frame: &Frame, path: &[Point]) -> Self {
-        let mut reached = vec![0.0];
-        for w in path.windows(2) {
-            let step = field.at(w[0].midpoint(w[1])).length(w[1] - w[0]);
-            reached.push(reached[reached.len() - 1] + step);
-        }
+        let reached = reached(field, path);
         let total = reached[reached.len() - 1];
         let shares = reached.iter().map(|r| r / total).collect();
         Self { shares, places: path.iter().map(|&p| frame.vector(p - path[0])).collect() }

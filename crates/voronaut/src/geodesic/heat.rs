@@ -47,7 +47,7 @@ impl<'a> Heat<'a> {
         let edges = canvas.edges().count().max(1) as f64;
         let mean = canvas.edges().map(|h| canvas.length(h)).sum::<f64>() / edges;
         let time = (EDGES * mean).powi(2);
-        let part = parts(canvas);
+        let part = canvas.parts();
         // One vertex of each part is held: sources and sinks of its flow balance, so that nothing flows there.
         let grounds: Vec<f64> = (0..n).map(|v| if part[v] == v { 1.0 } else { 0.0 }).collect();
         let elimination = Elimination::of(&stiffness);
@@ -197,22 +197,6 @@ impl Face {
         let length = gradient.norm();
         (length > 0.0 && length.is_finite()).then(|| -gradient * (1.0 / length))
     }
-}
-
-/// The connected part of every vertex, named by its first vertex.
-fn parts(canvas: &Triangulation) -> Vec<usize> {
-    let mut part = vec![usize::MAX; canvas.vertex_slots()];
-    for first in 0..part.len() {
-        let mut stack = vec![first];
-        while let Some(v) = stack.pop() {
-            if part[v] == usize::MAX {
-                part[v] = first;
-                let star = canvas.star(VertexId(v as u32));
-                stack.extend(star.flat_map(|h| [canvas.target(h), canvas.apex(h)]).map(VertexId::index));
-            }
-        }
-    }
-    part
 }
 
 #[cfg(test)]

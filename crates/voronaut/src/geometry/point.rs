@@ -33,6 +33,11 @@ impl Point {
         self + (other - self) * t
     }
 
+    /// The centroid of a triangle.
+    pub(crate) fn centroid([a, b, c]: [Point; 3]) -> Point {
+        a + ((b - a) + (c - a)) * (1.0 / 3.0)
+    }
+
     /// The midpoint of two points.
     #[must_use]
     pub(crate) fn midpoint(self, other: Point) -> Point {

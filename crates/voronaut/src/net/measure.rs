@@ -158,8 +158,7 @@ impl<'a> Measure<'a> {
     /// Whether the circumcentre with one tensor is in the domain.
     fn seems_interior(&self, corners: [u32; 3]) -> bool {
         let points = corners.map(|i| self.seed(i));
-        let middle = points[0] + ((points[1] - points[0]) + (points[2] - points[0])) * (1.0 / 3.0);
-        let centre = flat_centre(self.field.at(middle), points);
+        let centre = flat_centre(self.field.at(Point::centroid(points)), points);
         centre.is_some_and(|centre| (self.found.is_inside)(corners[0], centre))
     }
 

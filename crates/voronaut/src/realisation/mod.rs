@@ -1,13 +1,12 @@
 //! The Riemannian Delaunay triangulation as it lies in the plane (Rouxel-Labbé et al. 2017, section 10): geodesic edges as
 //! polylines, and the triangles between them.
 
-mod edge;
 mod edges;
 mod regions;
 mod simplices;
 mod untangle;
 
-pub use edge::{Found, GeodesicEdge};
+pub use edges::{Found, GeodesicEdge};
 pub use simplices::Grid;
 
 use crate::diagram::Diagram;

@@ -269,6 +269,21 @@ impl Triangulation {
         v - e + self.face_count().cast_signed()
     }
 
+    /// The connected part that each vertex slot belongs to, by the first vertex of it.
+    pub(crate) fn parts(&self) -> Vec<usize> {
+        let mut part = vec![usize::MAX; self.vertex_slots()];
+        for first in 0..part.len() {
+            let mut stack = vec![first];
+            while let Some(v) = stack.pop() {
+                if part[v] == usize::MAX {
+                    part[v] = first;
+                    stack.extend(self.around(VertexId(v as u32)).map(VertexId::index));
+                }
+            }
+        }
+        part
+    }
+
     /// The closed curves of the border, each as its half-edges in order, the faces on their left.
     pub(crate) fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
         let mut seen = vec![false; 3 * self.face_slots()];
