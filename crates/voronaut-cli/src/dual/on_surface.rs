@@ -68,7 +68,7 @@ pub(super) fn run(args: &DualArgs, input: &Input, mended: &Mended, start: Instan
     let written = if args.edges == EdgesOut::Geodesic { surfaces::with_geodesics(&diagram, &mesh) } else { mesh };
     surfaces::write(picture, &args.outputs, &written, &args.out, &report)?;
     if let Some(path) = &args.diagram {
-        let (canvas, distances) = diagram.to_coloured_surface();
+        let (canvas, distances) = diagram.to_coloured_canvas();
         voronaut_io::write_diagram(&canvas, &distances, path)?;
     }
     summary::print(&args.out.display().to_string(), &report, &args.run);

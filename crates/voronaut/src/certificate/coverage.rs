@@ -86,7 +86,7 @@ pub(super) fn inner_net(
 
 /// How far a canvas vertex of a complete cell is from its seed at most.
 fn farthest(coverage: &Coverage, diagram: &Diagram) -> f64 {
-    let vertices = (0..diagram.canvas().vertex_count() as u32).map(VertexId);
+    let vertices = diagram.vertices();
     let is_inner = |v: &VertexId| diagram.colour(*v).is_some_and(|i| coverage.complete[i as usize]);
     vertices.filter(is_inner).map(|v| diagram.distance(v)).fold(0.0, f64::max)
 }

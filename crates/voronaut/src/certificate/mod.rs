@@ -224,7 +224,7 @@ fn uniform(diagram: &Diagram, field: &dyn MetricField) -> Option<[f64; 2]> {
 fn distance_error(diagram: &Diagram, field: &dyn MetricField, net: &Net, coverage: &Coverage) -> f64 {
     let neighbours = neighbours(coverage.covered.len(), net.triangles.iter().map(|ball| ball.corners));
     let canvas = diagram.canvas();
-    let vertices = (0..canvas.vertex_count() as u32).map(VertexId);
+    let vertices = diagram.vertices();
     let is_covered = |v: &VertexId| diagram.colour(*v).is_some_and(|i| coverage.covered[i as usize]);
     let all: Vec<VertexId> = vertices.filter(is_covered).collect();
     let paths = Paths::default();

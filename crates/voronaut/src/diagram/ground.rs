@@ -1,15 +1,15 @@
 //! What a diagram lies on: a canvas of the plane or of a surface, with the metric it was made with.
 
 use super::kind::Chords;
-use super::lattice;
 use super::seeds::{self, Care, Start};
 use super::{Measure, Seed, SurfaceDiagram};
-use crate::canvas::{Canvas, Draped, StarSet};
+use crate::canvas::{Border, Canvas, Draped, StarSet};
 use crate::error::{Error, Result};
-use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Marching, Method, Propagation, Stvd};
-use crate::geometry::Point;
+use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Propagation, Stvd};
+use crate::geometry::{Aabb, Point};
 use crate::metric::MetricField;
-use crate::triangulation::{Triangulation, VertexId};
+use crate::planar::Location;
+use crate::triangulation::{FaceId, Triangulation, VertexId};
 use std::convert::Infallible;
 
 /// A canvas with its metric. All that a diagram knows of the plane or of a surface it knows through this.
@@ -27,6 +27,10 @@ pub trait Ground<'a>: Copy + Send + Sync {
     fn stars(&self) -> Option<&'a StarSet>;
     /// Where a canvas vertex is.
     fn place(&self, v: VertexId) -> Self::Place;
+    /// The coordinates of a canvas vertex.
+    fn coordinates(&self, v: VertexId) -> [f64; 3];
+    /// The label that the domain or the surface has where a face of [`Ground::embedded`] is.
+    fn region(&self, f: FaceId) -> i32;
     /// What methods without triangles travel on.
     fn graph(&self) -> Graph;
     /// The starts of a seed.
@@ -83,24 +87,49 @@ impl<'a> Ground<'a> for Flat<'a> {
         self.canvas.position(v)
     }
 
+    fn coordinates(&self, v: VertexId) -> [f64; 3] {
+        let Point { x, y } = self.canvas.position(v);
+        [x, y, 0.0]
+    }
+
+    fn region(&self, f: FaceId) -> i32 {
+        self.embedded().region(f)
+    }
+
     fn graph(&self) -> Graph {
         self.canvas.graph(self.field)
     }
 
     fn starts(&self, seed: Point) -> Result<Vec<Start>> {
-        seeds::starts(self.canvas, self.field, seed)
+        let location = self.canvas.locate(seed).ok_or_else(|| seeds::outside(seed.to_string()))?;
+        Ok(seeds::starts_in(*self, seed, &seeds::places(self.canvas, location), Care::Full))
     }
 
     fn starts_of_all(&self, seeds: &[Point], are_vertices: bool, care: Care) -> Result<Vec<Vec<Start>>> {
-        seeds::starts_of_all(self.canvas, self.field, seeds, are_vertices, care)
+        seeds::starts_of_all(*self, seeds, are_vertices, care)
     }
 
     fn starts_at_vertex(&self, v: VertexId, care: Care) -> Vec<Start> {
-        seeds::starts_at_vertex(self.canvas, self.field, v, care)
+        seeds::starts_in(*self, self.place(v), &seeds::places(self.canvas, Location::Vertex(v)), care)
     }
 
+    /// By [`Lattice`] on as many nodes as the canvas has vertices; vertices in sight of a point have the length of the way
+    /// there.
     fn on_lattice(&self, from: &[Point], starts: &[Vec<Start>]) -> Result<Vec<f64>> {
-        Ok(lattice::distances(self.canvas, self.field, from, starts))
+        let Flat { canvas, field } = *self;
+        let positions = &canvas.embedded().positions;
+        let Some(bounds) = Aabb::of(positions.iter().copied()) else { return Ok(Vec::new()) };
+        let extent = bounds.extent();
+        // What of the box is outside the domain costs no nodes.
+        let nodes = positions.len() as f64 * (extent.x * extent.y / canvas.embedded().area()).min(100.0);
+        let border = Border::of(canvas);
+        let is_inside = |points: &[Point]| canvas.locate_all(points).iter().map(Option::is_some).collect();
+        let mut values = Lattice::new(bounds, nodes as usize, field, is_inside, &border).distances(from, positions);
+        for start in starts.iter().flatten() {
+            let value = &mut values[start.vertex.index()];
+            *value = value.min(start.distance);
+        }
+        Ok(values)
     }
 }
 
@@ -123,6 +152,14 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
 
     fn place(&self, v: VertexId) -> VertexId {
         v
+    }
+
+    fn coordinates(&self, v: VertexId) -> [f64; 3] {
+        self.draped().position(v).to_array()
+    }
+
+    fn region(&self, f: FaceId) -> i32 {
+        self.draped().input().surface.topology().region(self.draped().home(f))
     }
 
     fn graph(&self) -> Graph {
@@ -168,9 +205,7 @@ impl<'a> SurfaceDiagram<'a> {
     /// # Errors
     /// [`Error::Domain`] of a seed that is no canvas vertex; [`Error::Unsupported`] of a method that does not drive diagrams.
     pub fn on_surface(canvas: &'a Canvas<Draped<'a>>, seeds: &[VertexId], method: Method) -> Result<Self> {
-        method.demand_diagrams()?;
-        let starts = canvas.starts_of_all(seeds, false, Care::Full)?;
-        Ok(Self::made(canvas, seeds, starts, Measure::Ways(solver(canvas, method)?)))
+        Self::of_seeds(canvas, seeds, false, Care::Full, Measure::Ways(solver(canvas, method)?))
     }
 
     /// The canvas.
