@@ -25,9 +25,14 @@ pub(crate) struct Quad {
 }
 
 impl Quad {
+    /// The four seeds.
+    pub(crate) fn seeds(&self) -> [u32; 4] {
+        [self.a, self.b, self.c, self.d]
+    }
+
     /// The pairs a-b, a-c, b-c, a-d, b-d.
     pub(crate) fn pairs(&self) -> [(u32, u32); 5] {
-        let Quad { a, b, c, d } = *self;
+        let [a, b, c, d] = self.seeds();
         [(a, b), (a, c), (b, c), (a, d), (b, d)].map(|(i, j): (u32, u32)| (i.min(j), i.max(j)))
     }
 
@@ -46,7 +51,7 @@ impl Quad {
 
     /// The same for the edge in both directions.
     fn key(&self) -> [u32; 4] {
-        let Quad { a, b, c, d } = *self;
+        let [a, b, c, d] = self.seeds();
         if a < b { [a, b, c, d] } else { [b, a, d, c] }
     }
 }
