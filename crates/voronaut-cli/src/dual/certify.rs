@@ -3,19 +3,17 @@
 use super::args::DualArgs;
 use voronaut::certificate::{Certificate, Condition, Outcome, Verdict};
 use voronaut::diagram::Diagram;
-use voronaut::metric::MetricField;
 use voronaut::net::Net;
 
 /// The certificate, if it is wanted and the net was measured.
 pub(crate) fn certificate(
     args: &DualArgs,
     diagram: &Diagram,
-    metric: &dyn MetricField,
     exact: &[[u32; 3]],
     net: Option<&Net>,
 ) -> Option<Certificate> {
     let net = net.filter(|_| args.is_certified())?;
-    Some(Certificate::new(diagram, metric, exact, net, args.constants))
+    Some(Certificate::new(diagram, exact, net, args.constants))
 }
 
 /// A certificate in lines of a name and a text: what was measured, then the theorems.

@@ -78,7 +78,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     if net.is_some() {
         stage("net");
     }
-    report.certificate = certify::certificate(args, &diagram, metric.as_ref(), &exact, net.as_ref());
+    report.certificate = certify::certificate(args, &diagram, &exact, net.as_ref());
     if report.certificate.is_some() {
         stage("certificate");
     }

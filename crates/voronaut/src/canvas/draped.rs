@@ -108,7 +108,7 @@ impl<'s> Draped<'s> {
             let Some(h) = self.topology.edge_between(a, b) else { continue };
             let Some(v) = self.halve(h)? else { continue };
             counters.splits += 1;
-            for h in self.spokes(v) {
+            for h in self.topology.spokes(v) {
                 enqueue(self, &mut queue, h);
             }
         }
@@ -267,17 +267,10 @@ impl<'s> Draped<'s> {
     }
 
     fn measure_around(&mut self, v: VertexId) {
-        for h in self.spokes(v) {
+        for h in self.topology.spokes(v) {
             let length = self.length_of(h, Along::Straight);
             self.topology.set_length(h, length);
         }
-    }
-
-    /// A half-edge of every edge at a vertex.
-    fn spokes(&self, v: VertexId) -> Vec<HalfEdge> {
-        let star: Vec<HalfEdge> = self.topology.star(v).collect();
-        let last = star.last().map(|h| h.prev()).filter(|&h| self.topology.twin(h).is_none());
-        star.into_iter().chain(last).collect()
     }
 
     /// The metric length of an edge along the surface: by Simpson's rule, on an equation's surface along the cubic that its

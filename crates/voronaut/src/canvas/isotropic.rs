@@ -2,9 +2,10 @@
 
 use super::CanvasCounters;
 use super::buckets::Buckets;
+use super::star::centre;
 use super::steiner::{Placed, Steiner};
 use crate::error::Result;
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, check_tensor};
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
@@ -112,12 +113,8 @@ fn radius_of_view([a, b, c]: [Point; 3]) -> f64 {
 }
 
 /// Centre and radius of a triangle's Euclidean circle; `None` where it is flat but for rounding.
-fn circle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
-    let (u, v) = (b - a, c - a);
-    let (uu, vv, twice) = (u.dot(u), v.dot(v), 2.0 * u.cross(v));
-    let to_centre = Vector::new(v.y * uu - u.y * vv, u.x * vv - v.x * uu) * (1.0 / twice);
-    let centre = a + to_centre;
-    (twice > 0.0 && centre.is_finite()).then(|| (centre, to_centre.norm()))
+fn circle(triangle: [Point; 3]) -> Option<(Point, f64)> {
+    centre(triangle).map(|(centre, square)| (centre, square.sqrt()))
 }
 
 /// Halves edges, given by their ends, and flips by the Euclidean test; an edge that is gone is passed over.
@@ -140,6 +137,7 @@ mod tests {
     use super::*;
     use crate::canvas::{Canvas, Kind};
     use crate::domain::Domain;
+    use crate::geometry::Vector;
     use crate::metric::{Shock, Uniform};
 
     /// Angles of a triangle at most and at least (degrees), Euclidean.

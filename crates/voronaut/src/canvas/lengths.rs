@@ -169,6 +169,12 @@ fn shorten(topology: &mut Triangulation) -> u64 {
     shortened
 }
 
+/// The metric area of a face with its lengths.
+pub(crate) fn metric_area(topology: &Triangulation, f: FaceId) -> f64 {
+    let [a, b, c] = f.half_edges().map(|h| topology.length(h));
+    0.25 * ((a + b + c) * (a + b - c) * (a - b + c) * (b + c - a)).max(0.0).sqrt()
+}
+
 /// The longest edge of a face, and by what share it exceeds the sum of the others.
 fn longest(topology: &Triangulation, f: FaceId) -> (HalfEdge, f64) {
     let length = |h: HalfEdge| topology.length(h);

@@ -6,7 +6,7 @@
 
 use crate::geometry::{Orientation, Point, Tensor, Vector, in_circle, orientation, signed_area};
 use crate::planar::Planar;
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// Circles are searched with this share more of their squared radius: their centres are rounded.
 const SLACK: f64 = 1e-9;
@@ -19,6 +19,12 @@ pub(super) type Star = Vec<Spoke>;
 pub(super) struct Spoke {
     pub(super) ends: [VertexId; 2],
     pub(super) region: i32,
+}
+
+/// The star of a vertex in a triangulation as it is.
+pub(super) fn as_it_is(topology: &Triangulation, v: VertexId) -> Star {
+    let spoke = |h| Spoke { ends: [topology.target(h), topology.apex(h)], region: topology.region(h.face()) };
+    topology.star(v).map(spoke).collect()
 }
 
 /// Centre (in the plane) and radius (in the metric) of a triangle's circle in one tensor; `None` where it is flat.
@@ -271,8 +277,8 @@ fn sectors(planar: &Planar, v: VertexId) -> Vec<Sector> {
     sectors
 }
 
-/// Centre and squared radius of a triangle's circle in the frame; `None` where it is flat.
-fn centre([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
+/// Centre and squared radius of a triangle's Euclidean circle; `None` where it is flat but for rounding.
+pub(super) fn centre([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
     let (u, v) = (b - a, c - a);
     let (uu, vv, twice) = (u.dot(u), v.dot(v), 2.0 * u.cross(v));
     let to_centre = Vector::new(v.y * uu - u.y * vv, u.x * vv - v.x * uu) * (1.0 / twice);
@@ -281,8 +287,6 @@ fn centre([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
 }
 
 fn square_distance(p: Point, a: Point, b: Point) -> f64 {
-    let along = b - a;
-    let t = ((p - a).dot(along) / along.dot(along)).clamp(0.0, 1.0);
-    let off = p - (a + along * t);
+    let off = p - p.nearest_between(a, b);
     off.dot(off)
 }

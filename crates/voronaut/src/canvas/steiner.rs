@@ -1,7 +1,7 @@
 //! Points put into an embedded triangulation by Delaunay refinement, with care for what is fixed (Ruppert 1995): a point
 //! that would lie in the diametral circle of a fixed edge, or beyond it, is not inserted; the edge is halved instead.
 
-use super::frozen::{self, Frozen};
+use super::flip::{FROZEN_LIMIT, Frozen};
 use crate::error::Result;
 use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, check_tensor};
@@ -141,7 +141,7 @@ impl<'a> Steiner<'a> {
         if self.field.is_none() {
             planar.legalise(lawson);
         } else {
-            lawson.pass(&mut Frozen { planar, tensors, around: None, changed }, frozen::LIMIT);
+            lawson.pass(&mut Frozen { planar, tensors, around: None, changed }, FROZEN_LIMIT);
         }
     }
 

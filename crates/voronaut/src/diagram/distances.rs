@@ -1,8 +1,7 @@
 //! Distances from given points by any of the methods, and the ways back.
 
-use super::descend::Descent;
+use super::descend::{At, Descent};
 use super::seeds::{Care, Start};
-use super::unfold::{OnEdge, Unfolding};
 use super::{Diagram, Flat, Ground, Measure, solver};
 use crate::canvas::{Border, Canvas, Draped, Way};
 use crate::error::{Error, Result};
@@ -11,6 +10,9 @@ use crate::geometry::{Point, Point3};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::triangulation::{FaceId, VertexId};
+
+/// A place on an edge: its ends, and the share of the way from the first to the second; a vertex twice for that.
+type OnEdge = ([VertexId; 2], f64);
 
 /// The distance of every canvas vertex from the nearest of given places: of the plane, or a [`SurfaceDistances`].
 pub struct Distances<'a, G: Ground<'a> = Flat<'a>> {
@@ -52,6 +54,12 @@ impl<'a, G: Ground<'a>> Distances<'a, G> {
     /// The vertex that a vertex has its distance from, where the method knows one: it is nearer.
     pub(crate) fn parent(&self, v: VertexId) -> Option<VertexId> {
         self.parents.get(v.index()).copied().flatten()
+    }
+
+    /// What goes down these distances.
+    fn descend<T>(&self, go: impl FnOnce(&Descent<'_, G>) -> T) -> T {
+        let distance = |v: VertexId| self.values[v.index()];
+        go(&Descent { ground: self.ground, distance: &distance, parent: &|v| self.parent(v) })
     }
 
     /// The lines of equal distance at these distances: pieces within embedded canvas faces, by where they begin and end.
@@ -128,10 +136,7 @@ impl<'a> Distances<'a> {
         let Flat { canvas, field } = self.ground;
         let seeds: Vec<(Point, &[Start])> =
             self.from.iter().zip(&self.starts).map(|(&at, starts)| (at, starts.as_slice())).collect();
-        let distance = |v: VertexId| self.values[v.index()];
-        let parent = |v: VertexId| self.parent(v);
-        let descent = Descent { canvas, field, seeds: &seeds, distance: &distance, parent: &parent };
-        let points = descent.trace(to)?;
+        let points = self.descend(|descent| descent.polyline(to, &seeds))?;
         if self.method == Method::March {
             return Ok(straighten(field, &points, &Border::of(canvas)));
         }
@@ -179,15 +184,33 @@ impl<'a> SurfaceDistances<'a> {
             let back = std::iter::successors(Some(to), |&v| self.parent(v)).last();
             back.filter(|last| self.from.contains(last)).and_then(|last| draped.geodesic(to, last))
         } else {
-            let parent = |v: VertexId| self.parent(v);
-            let (topology, distances) = (draped.topology(), &self.values);
-            let down = Unfolding { topology, sources: &self.from, distances, parent: &parent };
-            down.trace(to).and_then(|on| draped.way_along(on))
+            self.descend(|descent| draped.way_along(self.down(descent, to)?))
         };
         way.ok_or_else(|| {
             let help = "take a point of the surface that is reached, or a finer canvas";
             Error::domain("no way from there", draped.position(to).to_string(), help)
         })
+    }
+
+    /// From a vertex down to a corner of a face that is one of the given vertices.
+    fn down(&self, descent: &Descent<'_, &'a Canvas<Draped<'a>>>, from: VertexId) -> Option<Vec<OnEdge>> {
+        let topology = self.ground.embedded();
+        let is_given = |v: &VertexId| self.from.contains(v);
+        let (way, end) = descent.trace(At::Vertex(from), |at| match at {
+            At::Vertex(v) => Some(v).filter(is_given),
+            At::Face(_, f, _) => topology.corners(f).into_iter().find(is_given),
+        })?;
+        let on_edge = |at: At| match at {
+            At::Vertex(v) => ([v, v], 0.0),
+            At::Face(p, f, entered) => {
+                let h = entered.unwrap_or(f.half_edges()[0]);
+                let [a, b, _] = descent.corners(h);
+                (topology.ends(h), a.distance(p) / a.distance(b))
+            }
+        };
+        let mut on: Vec<OnEdge> = way.into_iter().chain([At::Vertex(end)]).map(on_edge).collect();
+        on.dedup();
+        Some(on)
     }
 
     /// The distance of a point of an edge, interpolated as in flat space.

@@ -5,8 +5,8 @@ use super::seeds::{self, Care, Start};
 use super::{Measure, Seed, SurfaceDiagram};
 use crate::canvas::{Border, Canvas, Draped, StarSet};
 use crate::error::{Error, Result};
-use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Propagation, Stvd};
-use crate::geometry::{Aabb, Point};
+use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Propagation, Stvd, layout};
+use crate::geometry::{Aabb, Point, Tensor};
 use crate::metric::MetricField;
 use crate::planar::Location;
 use crate::triangulation::{FaceId, Triangulation, VertexId};
@@ -31,6 +31,10 @@ pub trait Ground<'a>: Copy + Send + Sync {
     fn coordinates(&self, v: VertexId) -> [f64; 3];
     /// The label that the domain or the surface has where a face of [`Ground::embedded`] is.
     fn region(&self, f: FaceId) -> i32;
+    /// The corners of a face of [`Ground::embedded`], laid out in the plane.
+    fn triangle(&self, f: FaceId) -> [Point; 3];
+    /// The metric at a place of a face, as that is laid out.
+    fn metric(&self, at: Point) -> Tensor;
     /// What methods without triangles travel on.
     fn graph(&self) -> Graph;
     /// The starts of a seed.
@@ -94,6 +98,14 @@ impl<'a> Ground<'a> for Flat<'a> {
 
     fn region(&self, f: FaceId) -> i32 {
         self.embedded().region(f)
+    }
+
+    fn triangle(&self, f: FaceId) -> [Point; 3] {
+        self.canvas.embedded().triangle(f)
+    }
+
+    fn metric(&self, at: Point) -> Tensor {
+        self.field.at(at)
     }
 
     fn graph(&self) -> Graph {
@@ -160,6 +172,17 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
 
     fn region(&self, f: FaceId) -> i32 {
         self.draped().input().surface.topology().region(self.draped().home(f))
+    }
+
+    /// By its metric lengths, in which the metric is Euclidean.
+    fn triangle(&self, f: FaceId) -> [Point; 3] {
+        let [base, to_end, to_start] = f.half_edges().map(|h| self.embedded().length(h));
+        let (x, y) = layout(base, to_start, to_end);
+        [Point::default(), Point::new(base, 0.0), Point::new(x, y)]
+    }
+
+    fn metric(&self, _at: Point) -> Tensor {
+        Tensor::IDENTITY
     }
 
     fn graph(&self) -> Graph {

@@ -21,7 +21,6 @@ mod resolve;
 mod seeds;
 #[cfg(test)]
 mod test_diagrams;
-mod unfold;
 
 pub use cells::{Cells, Outline};
 pub use distances::{Distances, SurfaceDistances};
@@ -153,13 +152,20 @@ impl<'a> Diagram<'a> {
             Kind::DuWang => Chords::InMetricOfPlace,
             Kind::LabelleShewchuk => Chords::InMetricOfSeed,
         };
+        let ground = Flat { canvas, field };
+        let starts = ground.starts_of_all(seeds, false, Care::Quick)?;
         check_field(field, seeds.iter().copied())?;
-        Self::of_seeds(Flat { canvas, field }, seeds, false, Care::Quick, Measure::Chords(chords))
+        Ok(Self::made(ground, seeds, starts, Measure::Chords(chords)))
     }
 
     /// The canvas.
     pub(crate) fn canvas(&self) -> &'a Canvas {
         self.ground.canvas
+    }
+
+    /// The metric that it was made with.
+    pub(crate) fn field(&self) -> &'a dyn MetricField {
+        self.ground.field
     }
 
     /// By what distance its cells are the nearest places.

@@ -30,12 +30,14 @@ pub enum Found {
     Parted,
 }
 
-/// An edge as a geodesic.
-#[derive(Clone, Debug, PartialEq)]
+/// An edge as a geodesic, as reports have it but for its points.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct GeodesicEdge {
-    /// Its seeds, smaller first.
+    /// Its seeds, smaller first, numbered from 0.
+    #[serde(rename = "edge")]
     pub ends: [u32; 2],
     /// The geodesic from the first to the second, as a polyline.
+    #[serde(skip)]
     pub points: Vec<Point>,
     /// Metric length of the geodesic.
     pub length: f64,
