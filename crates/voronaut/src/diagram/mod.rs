@@ -231,11 +231,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
             return Err(Error::domain("no such seed", format!("colour {colour}"), help));
         }
         let starts = self.ground.starts(to)?;
-        let changed = self.lift(colour);
-        self.sources_of(colour, &starts);
-        let all: Vec<VertexId> = changed.into_iter().chain(starts.iter().map(|s| s.vertex)).collect();
-        self.seeds[colour as usize] = Some(Seed { at: to, starts });
-        self.mend(&all);
+        self.place(colour, to, starts);
         Ok(())
     }
 
@@ -335,17 +331,15 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         sizes
     }
 
+    /// Puts a seed in a place, from where it was if it was anywhere.
     fn place(&mut self, colour: u32, at: G::Place, starts: Vec<Start>) {
-        self.sources_of(colour, &starts);
-        let changed: Vec<VertexId> = starts.iter().map(|s| s.vertex).collect();
+        let mut changed = self.lift(colour);
+        for s in &starts {
+            self.sources.add(s.vertex, s.distance, colour);
+            changed.push(s.vertex);
+        }
         self.seeds[colour as usize] = Some(Seed { at, starts });
         self.mend(&changed);
-    }
-
-    fn sources_of(&mut self, colour: u32, starts: &[Start]) {
-        for s in starts {
-            self.sources.add(s.vertex, s.distance, colour);
-        }
     }
 
     /// Takes a seed's starts away; returns the vertices that had them.

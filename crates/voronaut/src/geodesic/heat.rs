@@ -128,7 +128,7 @@ impl<'a> Heat<'a> {
 fn lone(sources: &Sources) -> BTreeSet<usize> {
     let mut of_colour: BTreeMap<u32, Option<usize>> = BTreeMap::new();
     for v in sources.vertices() {
-        for (_, colour) in sources.at(v) {
+        for &(_, colour) in sources.at(v) {
             of_colour.entry(colour).and_modify(|only| *only = None).or_insert(Some(v.index()));
         }
     }

@@ -4,7 +4,7 @@
 //! vector. For a smooth field the error falls exponentially with their number, and the change of the length from one
 //! number to its double, with the change before, tells how large it still is.
 
-use super::curve::{Curve, Guess, PathLength};
+use super::curve::{Curve, PathLength, modes_near};
 use super::jet::{Frame, Jet};
 use super::rule::Rule;
 use crate::geometry::{Point, Tensor, Vector};
@@ -89,9 +89,8 @@ impl Paths {
         fineness: Fineness,
     ) -> Option<Curve> {
         let frame = Frame::along(field, p, q)?;
-        let guess = near.map(|path| Guess::new(field, &frame, path));
         let mut path = Path { field, frame, modes: Vec::new() };
-        let solved = self.climb(&mut path, fineness, guess.as_ref())?;
+        let solved = self.climb(&mut path, fineness, near)?;
         Some(Curve::new([p, q], frame, path.modes, solved.length))
     }
 
@@ -115,18 +114,18 @@ impl Paths {
     }
 
     /// Relaxes a path, with more modes from stage to stage.
-    fn climb(&self, path: &mut Path, fineness: Fineness, guess: Option<&Guess>) -> Option<Solved> {
+    fn climb(&self, path: &mut Path, fineness: Fineness, near: Option<&[Point]>) -> Option<Solved> {
         let frame = path.frame;
         let mut before = f64::NAN;
         let mut change = f64::NAN;
         let mut error = f64::NAN;
         let mut last = None;
         // Few modes would lose what is particular to a path that is given.
-        let first = usize::from(guess.is_some());
+        let first = usize::from(near.is_some());
         for (stage, rule) in self.rules[..=fineness.0 as usize].iter().enumerate().skip(first) {
             path.modes.resize(STAGES[stage].0, Vector::default());
-            if let Some(guess) = guess.filter(|_| stage == first) {
-                path.modes = guess.modes(path.modes.len());
+            if let Some(near) = near.filter(|_| stage == first) {
+                path.modes = modes_near(path.field, &frame, near, path.modes.len());
             }
             let relaxed = path.relax(rule, RESIDUE[stage.min(1)])?;
             // The first stage is held against the chord, or the path given.
@@ -135,13 +134,13 @@ impl Paths {
             let ratio = if change > 0.0 { now / change } else { 0.0 };
             let unresolved = ratio > RATIOS.1;
             error = if unresolved { 2.0 * now } else { now * (ratio / (1.0 - ratio)).max(RATIOS.0) };
-            error += relaxed.residue + ROUNDING;
+            error += relaxed.system.residue + ROUNDING;
             (before, change) = (relaxed.length, now);
             last = Some(relaxed);
         }
         let last = last?;
-        let length = PathLength { value: last.length, error, curvature: last.curvature };
-        (error.is_finite() && last.length > 0.0).then(|| Solved { length, pull: frame.covector(last.pull) })
+        let length = PathLength { value: last.length, error, curvature: last.system.curvature };
+        (error.is_finite() && last.length > 0.0).then(|| Solved { length, pull: frame.covector(last.system.pull) })
     }
 }
 
@@ -155,10 +154,8 @@ struct Relaxed {
     length: f64,
     /// Length of the path that the relaxation began with.
     chord: f64,
-    /// Relative error of the length that further steps would remove.
-    residue: f64,
-    curvature: [f64; 2],
-    pull: Vector,
+    /// As it ended.
+    system: System,
 }
 
 /// A path at the points of a rule.
@@ -208,9 +205,7 @@ impl Path<'_> {
             }
             system = System::new(self, rule, &samples);
         }
-        let length = samples.length(rule);
-        let curvature = system.curvature;
-        Some(Relaxed { length, chord, residue: system.residue, curvature, pull: system.pull })
+        Some(Relaxed { length: samples.length(rule), chord, system })
     }
 
     /// The path a share of the step further whose energy is lower.
@@ -246,6 +241,7 @@ struct System {
     frozen: Vec<f64>,
     curvature: [f64; 2],
     pull: Vector,
+    /// Relative error of the length that further steps would remove.
     residue: f64,
 }
 

@@ -59,7 +59,13 @@ pub(crate) fn straighten(field: &dyn MetricField, path: &[Point], obstacles: &dy
     if points.len() < 2 {
         return given;
     }
-    let mut band = Band { field, obstacles, pinned: pins(points.len()), points, damping: 0.0 };
+    let mut band = Band {
+        field,
+        obstacles,
+        pinned: (0..points.len()).map(|i| i == 0 || i + 1 == points.len()).collect(),
+        points,
+        damping: 0.0,
+    };
     let mut best = given;
     for level in 0..DOUBLINGS {
         band.relax();
@@ -94,10 +100,6 @@ fn resample(field: &dyn MetricField, path: &[Point], obstacles: &dyn Obstacles) 
     }
     points.dedup();
     points
-}
-
-fn pins(count: usize) -> Vec<bool> {
-    (0..count).map(|i| i == 0 || i + 1 == count).collect()
 }
 
 /// A path under tension.
