@@ -11,7 +11,7 @@ use crate::geometry::{Point3, TangentPlane, Tensor3};
 use crate::parallel::prelude::*;
 use crate::surface::metric::{SurfaceMetric, check_tensor3};
 use crate::surface::{Chart, Input, Place};
-use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId, distinct};
 use std::collections::BTreeMap;
 
 /// Tensors at the ends of an edge say the same of it, and of what is across it, if they differ by no more than this share.
@@ -191,11 +191,7 @@ impl<'s> Draped<'s> {
             return vec![home];
         }
         let input = self.input.surface.topology();
-        let mut homes: Vec<FaceId> =
-            input.corners(home).into_iter().flat_map(|v| input.star(v)).map(HalfEdge::face).collect();
-        homes.sort_unstable();
-        homes.dedup();
-        homes
+        distinct(input.corners(home).into_iter().flat_map(|v| input.star(v)).map(HalfEdge::face))
     }
 
     /// The distance of a point to a face, with the weights of the closest one; on a plane face that holds it zero but for

@@ -39,7 +39,7 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::planar::{Planar, hilbert_order};
-use crate::triangulation::{Triangulation, VertexId};
+use crate::triangulation::{Triangulation, VertexId, distinct};
 use isotropic::Until;
 use locate::Finder;
 
@@ -256,9 +256,7 @@ impl Canvas {
         // At the border the last edge of a star is known only by the face before it.
         let edges = around.iter().flat_map(|&v| topology.star(v)).flat_map(|h| [h, h.prev()]);
         let ends = |h| topology.ends(h);
-        let mut edges: Vec<[VertexId; 2]> = edges.map(ends).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let edges = distinct(edges.map(ends).map(|[a, b]| [a.min(b), a.max(b)]));
         let mut counters = self.counters;
         let embedded = match self.kind {
             Kind::Isotropic => isotropic::halve(self.embedded.planar.clone(), &edges, &mut counters),

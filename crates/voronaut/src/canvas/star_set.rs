@@ -8,7 +8,7 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::planar::Planar;
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::{HalfEdge, VertexId, distinct};
 use std::collections::HashSet;
 
 /// The share of the vertices that the embedded triangulation is refined to before stars are.
@@ -191,9 +191,7 @@ impl<'a> Stars<'a> {
     /// Finds the stars of new vertices, and those that they change.
     pub(super) fn mend(&mut self, new: &[VertexId]) -> Vec<VertexId> {
         self.make_room();
-        let mut dirty: Vec<VertexId> = new.iter().flat_map(|&v| self.changed_by(v)).collect();
-        dirty.sort_unstable();
-        dirty.dedup();
+        let dirty = distinct(new.iter().flat_map(|&v| self.changed_by(v)));
         self.update(&dirty);
         dirty
     }
@@ -227,9 +225,7 @@ impl<'a> Stars<'a> {
                 next.extend(ring(v).chain(mine).filter(|u| !seen.contains(u)).map(|u| (u, idle)));
             }
         }
-        changed.sort_unstable();
-        changed.dedup();
-        changed
+        distinct(changed)
     }
 
     /// Whether the star of v has the simplex v a b.

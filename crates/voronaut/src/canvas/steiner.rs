@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, check_tensor};
 use crate::planar::{Location, Planar};
-use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId, distinct};
 
 /// Fixed edges shorter than this share of the circle that asks for it are not halved: under a small angle between
 /// two of them halving would go on for long.
@@ -82,11 +82,7 @@ impl<'a> Steiner<'a> {
     /// The faces that are new since this was asked last, and those around the last new vertex.
     pub(super) fn take_changed(&mut self) -> Vec<FaceId> {
         let topology = &self.planar.topology;
-        let mut changed = std::mem::take(&mut self.changed);
-        changed.retain(|&f| topology.is_face(f));
-        changed.sort_unstable();
-        changed.dedup();
-        changed
+        distinct(std::mem::take(&mut self.changed).into_iter().filter(|&f| topology.is_face(f)))
     }
 
     fn tensor_at(&self, p: Point) -> Tensor {

@@ -11,7 +11,7 @@ use super::overlap::Overlap;
 use crate::geodesic::NO_COLOUR;
 use crate::geometry::Point;
 use crate::parallel::prelude::*;
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, VertexId, distinct};
 
 /// The cells of a diagram as plain data, in the user's coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -231,10 +231,7 @@ impl<'d, 'a> Cutter<'d, 'a> {
         let topology = &self.diagram.ground.canvas.embedded().topology;
         let ends = topology.edges().map(|h| topology.ends(h).map(|v| self.colour(v)));
         let border = ends.filter(|&[a, b]| a != b && a != NO_COLOUR && b != NO_COLOUR);
-        let mut pairs: Vec<[u32; 2]> = border.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
-        pairs
+        distinct(border.map(|[a, b]| [a.min(b), a.max(b)]))
     }
 }
 

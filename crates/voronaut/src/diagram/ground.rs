@@ -2,12 +2,11 @@
 
 use super::kind::Chords;
 use super::seeds::{self, Care, Start};
-use super::{Measure, Seed, SurfaceDiagram};
+use super::{Flat, Measure, Seed, SurfaceDiagram};
 use crate::canvas::{Border, Canvas, Draped, StarSet};
 use crate::error::{Error, Result};
 use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Propagation, Stvd, layout};
 use crate::geometry::{Aabb, Point, Tensor};
-use crate::metric::MetricField;
 use crate::planar::Location;
 use crate::triangulation::{FaceId, Triangulation, VertexId};
 use std::convert::Infallible;
@@ -62,13 +61,6 @@ pub trait Straight<'a, G: Ground<'a>> {
     fn length(&self, ground: G, seed: G::Place, place: G::Place) -> f64;
     /// Every canvas vertex with its nearest seed.
     fn propagate(&self, ground: G, seeds: &[Option<Seed<G::Place>>]) -> Propagation;
-}
-
-/// A canvas of the plane.
-#[derive(Clone, Copy)]
-pub struct Flat<'a> {
-    pub(super) canvas: &'a Canvas,
-    pub(super) field: &'a dyn MetricField,
 }
 
 impl<'a> Ground<'a> for Flat<'a> {

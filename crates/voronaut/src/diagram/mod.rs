@@ -6,6 +6,7 @@
 
 mod assemble;
 mod cells;
+mod chords;
 mod descend;
 mod distances;
 mod envelope;
@@ -24,7 +25,7 @@ mod test_diagrams;
 
 pub use cells::{Cells, Outline};
 pub use distances::{Distances, SurfaceDistances};
-pub use ground::{Flat, Ground};
+pub use ground::Ground;
 pub use kind::Kind;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle, Witnesses};
 pub use paths::Paths;
@@ -51,6 +52,13 @@ pub struct Diagram<'a, G: Ground<'a> = Flat<'a>> {
     sources: Sources,
     propagation: Propagation,
     overlap: OnceLock<Overlap>,
+}
+
+/// A canvas of the plane.
+#[derive(Clone, Copy)]
+pub struct Flat<'a> {
+    canvas: &'a Canvas,
+    field: &'a dyn MetricField,
 }
 
 /// The diagram of seeds on a surface.

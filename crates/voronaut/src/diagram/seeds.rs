@@ -7,7 +7,7 @@ use crate::geodesic::bowed_chord;
 use crate::geometry::{Orientation, Point, orientation};
 use crate::parallel::prelude::*;
 use crate::planar::{Location, Planar};
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::{HalfEdge, VertexId, distinct};
 use std::collections::BTreeMap;
 
 /// A canvas vertex in sight of a seed, and the metric length of the geodesic between them.
@@ -80,16 +80,13 @@ pub(super) fn starts_in(ground: Flat, seed: Point, places: &[Location], care: Ca
 
 fn starts_at(Flat { canvas, field }: Flat, seed: Point, location: Location, care: Care) -> Vec<Start> {
     let planar = canvas.embedded();
-    let (rim, mut near) = around(planar, location);
+    let (rim, near) = around(planar, location);
     let mut far = Vec::new();
     for h in rim {
         let [right, left] = planar.ends(h);
         look(planar, seed, h, [right, left], SIGHT, &mut far);
     }
-    near.sort_unstable();
-    near.dedup();
-    far.sort_unstable();
-    far.dedup();
+    let (near, mut far) = (distinct(near), distinct(far));
     far.retain(|v| near.binary_search(v).is_err());
     let geodesic = |vertex: VertexId| Start { vertex, distance: bowed_chord(field, seed, planar.position(vertex)) };
     if care == Care::Full {

@@ -2,7 +2,7 @@
 
 use crate::geometry::{Point, Tensor, Vector};
 use crate::parallel::prelude::*;
-use crate::triangulation::VertexId;
+use crate::triangulation::{VertexId, distinct};
 use std::fmt;
 use std::sync::Arc;
 
@@ -67,9 +67,7 @@ impl Graph {
         pairs: impl IntoIterator<Item = [VertexId; 2]>,
     ) -> Self {
         let named = pairs.into_iter().map(|[a, b]| (a.0, b.0)).filter(|(v, u)| v != u);
-        let mut pairs: Vec<(u32, u32)> = named.flat_map(|(v, u)| [(v, u), (u, v)]).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
+        let pairs = distinct(named.flat_map(|(v, u)| [(v, u), (u, v)]));
         let first = |v: usize| pairs.partition_point(|pair| (pair.0 as usize) < v) as u32;
         let first = (0..=tensors.len()).map(first).collect();
         let straight = |&(v, u): &(u32, u32)| {

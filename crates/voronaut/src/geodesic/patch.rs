@@ -1,3 +1,5 @@
+//! Distances from one source on a part of the canvas, without regard for other sources.
+
 use super::front::Front;
 use super::update::Crossing;
 use super::{Label, Patches};

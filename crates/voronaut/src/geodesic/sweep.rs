@@ -73,7 +73,9 @@ impl Step for Dijkstra {
 impl Rule for Dijkstra {
     fn spread(&self, labels: &[Label], v: VertexId, mut offer: impl FnMut(VertexId, Label)) -> u64 {
         let neighbours = self.0.neighbours(v);
-        neighbours.iter().for_each(|&x| offer(x, self.carry(labels, v, x)));
+        for &x in neighbours {
+            offer(x, self.carry(labels, v, x));
+        }
         neighbours.len() as u64
     }
 

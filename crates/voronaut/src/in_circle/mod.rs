@@ -3,6 +3,7 @@
 
 use crate::geodesic::{Margin, PathLength, margin_from_lengths};
 use crate::parallel::prelude::*;
+use crate::triangulation::distinct;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -193,9 +194,7 @@ impl Tests {
     fn solve_for(&mut self, by: &impl InCircle, quads: &[Quad], level: usize) {
         let is_lacking =
             |pair: &(u32, u32)| self.lengths.get(pair).is_none_or(|known| known.level < level && !known.is_vetoed);
-        let mut pairs: Vec<(u32, u32)> = quads.iter().flat_map(Quad::pairs).filter(is_lacking).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
+        let pairs = distinct(quads.iter().flat_map(Quad::pairs).filter(is_lacking));
         let solved: Vec<Option<Known>> =
             pairs.par_iter().with_min_len(8).map(|&(i, j)| by.solve(i, j, level)).collect();
         self.counters.paths += pairs.len() as u64;

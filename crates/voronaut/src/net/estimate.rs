@@ -5,7 +5,7 @@ use crate::geodesic::{LocalMetric, chord, equalising_step, flat_centre, hermite}
 use crate::geometry::{Point, Tensor};
 use crate::metric::MetricField;
 use crate::planar::Location;
-use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId, distinct};
 
 /// Newton steps at most to a circumcentre, and the residue (share of the squared radius) at which they end.
 const STEPS: usize = 6;
@@ -71,11 +71,8 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
 
     /// The faces at a seed and at its neighbours, each once, in order.
     pub(crate) fn around(&self, v: VertexId) -> Vec<FaceId> {
-        let mut faces: Vec<FaceId> =
-            self.neighbours(&[v]).into_iter().chain([v]).flat_map(|u| self.faces_at(u)).collect();
-        faces.sort_unstable();
-        faces.dedup();
-        faces
+        let star = |u| self.0.topology().star(u).map(HalfEdge::face);
+        distinct(self.neighbours(&[v]).into_iter().chain([v]).flat_map(star))
     }
 
     /// The interior triangles and border edges, by a face that has them, that miss a power `asked`.
@@ -87,10 +84,6 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
     /// The circumcentre of a face, and the squared radius.
     pub(crate) fn circle(&self, f: FaceId) -> Option<(Point, f64)> {
         self.of_triangle(self.0.topology().corners(f)).map(|circle| (circle.centre, circle.square))
-    }
-
-    fn faces_at(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
-        self.0.topology().star(v).map(HalfEdge::face)
     }
 
     /// Of a face's triangle and those of its sides that lie on the border.
@@ -133,10 +126,7 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
         let topology = self.0.topology();
         // At the border the last neighbour is the apex of the last face.
         let around = |&v: &VertexId| topology.around(v);
-        let mut found: Vec<VertexId> = corners.iter().flat_map(around).filter(|v| !corners.contains(v)).collect();
-        found.sort_unstable();
-        found.dedup();
-        found
+        distinct(corners.iter().flat_map(around).filter(|v| !corners.contains(v)))
     }
 
     fn power(&self, circle: &Around, v: VertexId) -> f64 {

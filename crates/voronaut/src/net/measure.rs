@@ -5,6 +5,7 @@ use crate::geodesic::{Circle, Fineness, Paths, chord, flat_centre};
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
+use crate::triangulation::distinct;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -178,11 +179,8 @@ impl<'a> Measure<'a> {
 
     /// The seeds that share an edge with a corner and are none, in order.
     fn around(&self, corners: &[u32]) -> Vec<u32> {
-        let mut around: Vec<u32> = corners.iter().flat_map(|&i| self.neighbours[i as usize].iter().copied()).collect();
-        around.sort_unstable();
-        around.dedup();
-        around.retain(|i| !corners.contains(i));
-        around
+        let around = corners.iter().flat_map(|&i| self.neighbours[i as usize].iter().copied());
+        distinct(around.filter(|i| !corners.contains(i)))
     }
 
     /// The least power of a seed that shares an edge with a corner, nearest chords first.

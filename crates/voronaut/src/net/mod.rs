@@ -16,7 +16,7 @@ pub use random::Random;
 
 use crate::geometry::Point;
 use crate::metric::MetricField;
-use crate::triangulation::smallest_first;
+use crate::triangulation::{distinct, smallest_first};
 use measure::Measure;
 use std::collections::HashSet;
 
@@ -150,16 +150,12 @@ impl Net {
 
 /// The seeds that share a triangle with each of so many seeds, in order.
 pub(crate) fn neighbours(seeds: usize, triangles: impl Iterator<Item = [u32; 3]>) -> Vec<Vec<u32>> {
-    let mut neighbours = vec![Vec::new(); seeds];
+    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); seeds];
     for [a, b, c] in triangles {
         for [i, j] in [[a, b], [b, c], [c, a]] {
             neighbours[i as usize].push(j);
             neighbours[j as usize].push(i);
         }
     }
-    for list in &mut neighbours {
-        list.sort_unstable();
-        list.dedup();
-    }
-    neighbours
+    neighbours.into_iter().map(distinct).collect()
 }

@@ -21,7 +21,7 @@ use crate::geometry::{Point, Vector};
 use crate::in_circle::{InCircle, LEVELS, Lengths, Quad, TestCounters, Tested, Tests};
 use crate::metric::MetricField;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId, smallest_first};
-use start::Filled;
+use start::Prepared;
 use std::collections::HashSet;
 
 /// What a triangulation of seeds knows of where they are: seeds of the plane in a metric field, or of a surface.
@@ -172,8 +172,8 @@ impl<J: Judge> Rdt<J> {
         Self::of_topology(judge, seeds, topology, seed_of, Memory::default())
     }
 
-    fn settled(judge: J, seeds: usize, start: &Start, filled: Filled, memory: Memory) -> Self {
-        let Filled { triangles, dropped, filled } = filled;
+    fn settled(judge: J, seeds: usize, start: &Start, filled: Prepared, memory: Memory) -> Self {
+        let Prepared { triangles, dropped, filled } = filled;
         let mut topology = Triangulation::from_triangles(seeds, &triangles, &vec![0; triangles.len()]);
         let seed_of = split(&mut topology, seeds);
         let mut rdt = Self::of_topology(judge, seeds, topology, seed_of, memory);

@@ -20,7 +20,7 @@ pub struct Start {
 }
 
 /// A start with small holes filled, and how that went: as [`RdtCounters`](super::RdtCounters) has it.
-pub(super) struct Filled {
+pub(super) struct Prepared {
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) dropped: u64,
     pub(super) filled: u64,
@@ -36,7 +36,7 @@ impl Start {
     }
 
     /// Triangles in which no oriented side occurs twice, with small holes filled.
-    pub(super) fn triangulated(&self, judge: &dyn Judge) -> Filled {
+    pub(super) fn triangulated(&self, judge: &dyn Judge) -> Prepared {
         let mut sides = Sides::new(judge);
         let mut candidates: Vec<[u32; 3]> = self.triangles.iter().copied().filter(|&t| sides.are_seeds(t)).collect();
         // Those with the smallest circles first: of two that claim a side the Delaunay one, mostly.
@@ -53,7 +53,7 @@ impl Start {
             dropped += sides.remove_along(&defects);
         }
         self.fill_holes(&mut sides, &mut filled);
-        Filled { triangles: sides.triangles(), dropped, filled }
+        Prepared { triangles: sides.triangles(), dropped, filled }
     }
 
     /// Fills what can be filled; returns the holes that cannot.

@@ -1,6 +1,7 @@
 //! Edges of a dual as geodesics: of the ways that are found, the shortest that stays in the domain.
 
 use super::untangle::untangle;
+use super::{Found, GeodesicEdge};
 use crate::canvas::Border;
 use crate::diagram::Diagram;
 use crate::geodesic::{Curve, Fineness, Obstacles, Paths, Polyline};
@@ -16,53 +17,6 @@ const VAGUE: f64 = 1e-4;
 const CLEAR: f64 = 1e-7;
 /// Relative error of the length of a straightened path; ten times more was seen at a singular point.
 const OF_TRACED: f64 = 2e-4;
-
-/// How an edge was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Found {
-    /// As a polynomial, from the metric alone; it stays in the domain.
-    Smooth,
-    /// On the canvas, straightened.
-    Traced,
-    /// One of either kind, moved aside (by 2e-5 of its way) from the way of another edge that it crossed, as far as they run
-    /// together.
-    Parted,
-}
-
-/// An edge as a geodesic, as reports have it but for its points.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct GeodesicEdge {
-    /// Its seeds, smaller first, numbered from 0.
-    #[serde(rename = "edge")]
-    pub ends: [u32; 2],
-    /// The geodesic from the first to the second, as a polyline.
-    #[serde(skip)]
-    pub points: Vec<Point>,
-    /// Metric length of the geodesic.
-    pub length: f64,
-    /// Estimated relative error of the length (not a bound); how much shorter another way may be is not in it.
-    pub error: f64,
-    /// How it was found.
-    pub found: Found,
-}
-
-impl AsRef<[Point]> for GeodesicEdge {
-    fn as_ref(&self) -> &[Point] {
-        &self.points
-    }
-}
-
-impl GeodesicEdge {
-    /// Its points from one of its seeds on.
-    pub(super) fn from(&self, seed: u32) -> Vec<Point> {
-        let mut points = self.points.clone();
-        if self.ends[0] != seed {
-            points.reverse();
-        }
-        points
-    }
-}
 
 /// The geodesics between pairs of seeds. A pair for which there is no way at all has the straight segment, with an infinite
 /// error.

@@ -1,7 +1,6 @@
 //! Riemannian triangles as regions of the plane: what lies between three geodesics, cut into straight triangles.
 
-use super::Realisation;
-use super::edges::GeodesicEdge;
+use super::{GeodesicEdge, Realisation};
 use crate::geometry::{Orientation, Point, Tensor, orientation};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;

@@ -4,7 +4,7 @@
 //! swirl) they can run together for a good part of their length, with less between them than the error of a straightened
 //! path, and their polylines cross. Then both take the way of the shorter one there, and the other a little to the side.
 
-use super::edges::{Found, GeodesicEdge};
+use super::{Found, GeodesicEdge};
 use crate::geodesic::{Obstacles, Polyline};
 use crate::geometry::{Orientation, Point, orientation, segment_intersection};
 use crate::metric::MetricField;
