@@ -171,7 +171,7 @@ fn in_plane(args: &DualArgs, domain: &Domain, mended: &Mended, mut stages: Stage
         stages.end("net");
     }
     let certified = net.as_ref().filter(|_| args.is_certified());
-    report.certificate = certified.map(|net| Certificate::new(&diagram, metric, &exact, net, args.constants));
+    report.certificate = certified.map(|net| Certificate::new(&diagram, &exact, net, args.constants));
     if report.certificate.is_some() {
         stages.end("certificate");
     }
@@ -230,7 +230,7 @@ fn on_surface(args: &DualArgs, input: &Input, mended: &Mended, mut stages: Stage
     let picture = is_drawn.then(|| pictures::on_surface(&args.outputs, &diagram, &mesh)).transpose()?;
     let written = if args.edges == EdgesOut::Geodesic { pictures::with_geodesics(&diagram, &mesh) } else { mesh };
     voronaut_io::write_mesh(&written, &args.out)?;
-    finish(args, picture, &report, || diagram.to_coloured_surface())
+    finish(args, picture, &report, || diagram.to_coloured_canvas())
 }
 
 /// What can be refused before the work.

@@ -6,7 +6,7 @@ use crate::dual::Road;
 use crate::geodesic::MarchCounters;
 use crate::net::Net;
 use crate::optimise::Ending;
-use crate::realisation::{self, Found, Realisation};
+use crate::realisation::{Found, GeodesicEdge, Realisation};
 use serde::Serialize;
 
 /// A consistent star set. Deterministic.
@@ -180,31 +180,14 @@ pub struct Geodesics {
     pub geodesic_edges: Vec<GeodesicEdge>,
 }
 
-/// An edge as a geodesic. Vertices are numbered from 0.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GeodesicEdge {
-    /// Its ends.
-    pub edge: [u32; 2],
-    /// Metric length.
-    pub length: f64,
-    /// Estimated relative error of the length.
-    pub error: f64,
-    /// How it was found.
-    pub found: Found,
-}
-
 impl Geodesics {
     /// Of a realisation.
     pub fn of(realisation: &Realisation) -> Self {
-        let edge = |e: &realisation::GeodesicEdge| {
-            let (length, error) = (e.length, e.error);
-            GeodesicEdge { edge: e.ends, length, error, found: e.found }
-        };
         Self {
             crossing_geodesics: realisation.crossing.len(),
             parted_geodesics: realisation.edges.iter().filter(|e| e.found == Found::Parted).count(),
             open_regions: realisation.open(),
-            geodesic_edges: realisation.edges.iter().map(edge).collect(),
+            geodesic_edges: realisation.edges.clone(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::Canvas;
 use crate::geodesic::Obstacles;
 use crate::geometry::{Aabb, Bounds, BoxTree, Orientation, Point, orientation, widened};
-use crate::triangulation::{FaceId, HalfEdge};
+use crate::triangulation::HalfEdge;
 
 /// The sides of a canvas's border, and the corners around which paths can bend.
 pub(crate) struct Border<'a> {
@@ -28,7 +28,7 @@ impl<'a> Border<'a> {
     pub(crate) fn of(canvas: &'a Canvas) -> Self {
         let embedded = canvas.embedded();
         let topology = &embedded.topology;
-        let borders = || topology.faces().flat_map(FaceId::half_edges).filter(|&h| topology.twin(h).is_none());
+        let borders = || topology.borders();
         let side = |[from, to]: [Point; 2]| (around([from, to]), Side { from, to });
         let sides = BoxTree::new(borders().map(|h| side(embedded.ends(h))));
         let corners = BoxTree::new(borders().filter_map(|h| reflex(canvas, h)).map(|p| (around([p, p]), p)));
@@ -80,11 +80,7 @@ impl Obstacles for Border<'_> {
         }
         // A segment that starts on the border crosses nothing on its way out.
         let middle = p.midpoint(q);
-        let is_beside = |side: &Side| {
-            let along = side.to - side.from;
-            let t = ((middle - side.from).dot(along) / along.dot(along)).clamp(0.0, 1.0);
-            middle.distance(side.from + along * t) <= self.rounding
-        };
+        let is_beside = |side: &Side| middle.distance(middle.nearest_between(side.from, side.to)) <= self.rounding;
         is_near && self.canvas.locate(middle).is_none() && !self.sides.meeting(near).any(is_beside)
     }
 

@@ -107,11 +107,6 @@ fn all_vertices(stars: &Stars) -> Vec<VertexId> {
 /// A simplex of the star of its first vertex.
 type Simplex = (VertexId, [VertexId; 2]);
 
-enum Fault {
-    Large(f64),
-    Thin(f64),
-}
-
 struct Picker<'a> {
     stars: Stars<'a>,
     asked: Consistency,
@@ -123,14 +118,18 @@ struct Picker<'a> {
 }
 
 impl Picker<'_> {
-    /// Queues what is large or thin in some stars.
+    /// Queues what is large in some stars, by how large it is, or thin, by how thin.
     fn note(&mut self, dirty: &[VertexId]) {
         for &v in dirty {
             for &Spoke { ends, .. } in &self.stars.by_vertex[v.index()] {
-                match self.fault(v, ends) {
-                    Some(Fault::Large(radius)) => self.large.push(radius, (v, ends)),
-                    Some(Fault::Thin(ratio)) => self.thin.push(ratio, (v, ends)),
-                    None => {}
+                let Some((_, radius)) = self.stars.circle(v, ends) else { continue };
+                let tensor = self.stars.steiner.tensors[v.index()];
+                let [p, q, r] = [v, ends[0], ends[1]].map(|u| self.stars.steiner.planar.position(u));
+                let shortest = tensor.length(q - p).min(tensor.length(r - q)).min(tensor.length(p - r));
+                if radius > self.asked.radius {
+                    self.large.push(radius, (v, ends));
+                } else if radius > RATIO * shortest {
+                    self.thin.push(radius / shortest, (v, ends));
                 }
             }
         }
@@ -296,19 +295,6 @@ impl Picker<'_> {
         (change.after, change.after.cast_signed() - change.before.cast_signed())
     }
 
-    /// How large a simplex is if it is too large, and how thin if too thin.
-    fn fault(&self, v: VertexId, ends: [VertexId; 2]) -> Option<Fault> {
-        let (_, radius) = self.stars.circle(v, ends)?;
-        let tensor = self.stars.steiner.tensors[v.index()];
-        let [p, q, r] = [v, ends[0], ends[1]].map(|u| self.stars.steiner.planar.position(u));
-        let shortest = tensor.length(q - p).min(tensor.length(r - q)).min(tensor.length(p - r));
-        if radius > self.asked.radius {
-            Some(Fault::Large(radius))
-        } else {
-            (radius > RATIO * shortest).then_some(Fault::Thin(radius / shortest))
-        }
-    }
-
     /// A point of the unit disk, evenly distributed.
     fn in_disk(&mut self) -> (f64, f64) {
         let mut next = || {
@@ -339,8 +325,8 @@ fn union(stars: &Stars) -> Result<Planar> {
     let mut topology = Triangulation::from_triangles(embedded.positions.len(), &triangles, &regions);
     for h in embedded.topology.edges() {
         let Some(constraint) = embedded.topology.constraint(h) else { continue };
-        let [a, b] = [embedded.topology.origin(h), embedded.topology.target(h)];
-        let found: Option<HalfEdge> = topology.find(a, b).or_else(|| topology.find(b, a));
+        let [a, b] = embedded.topology.ends(h);
+        let found: Option<HalfEdge> = topology.edge_between(a, b);
         let missing = || not_meshed("no star has an edge of the domain", embedded.position(a).to_string());
         topology.set_constraint(found.ok_or_else(missing)?, constraint);
     }

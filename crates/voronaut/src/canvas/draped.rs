@@ -11,7 +11,7 @@ use crate::geometry::{Point3, TangentPlane, Tensor3};
 use crate::parallel::prelude::*;
 use crate::surface::metric::{SurfaceMetric, check_tensor3};
 use crate::surface::{Chart, Input, Place};
-use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId, distinct};
 use std::collections::BTreeMap;
 
 /// Tensors at the ends of an edge say the same of it, and of what is across it, if they differ by no more than this share.
@@ -90,17 +90,17 @@ impl<'s> Draped<'s> {
         self.measure_all(Along::Straight);
         let mut queue: Buckets<[VertexId; 2]> = Buckets::default();
         let enqueue = |draped: &Self, queue: &mut Buckets<_>, h: HalfEdge| {
-            queue.push(draped.size_of(h, size), [draped.topology.origin(h), draped.topology.target(h)]);
+            queue.push(draped.size_of(h, size), draped.topology.ends(h));
         };
         for h in self.topology.edges().collect::<Vec<_>>() {
             enqueue(self, &mut queue, h);
         }
         while self.topology.vertex_count() < vertices {
             let Some([a, b]) = queue.pop() else { break };
-            let Some(h) = self.topology.find(a, b).or_else(|| self.topology.find(b, a)) else { continue };
+            let Some(h) = self.topology.edge_between(a, b) else { continue };
             let Some(v) = self.halve(h)? else { continue };
             counters.splits += 1;
-            for h in self.spokes(v) {
+            for h in self.topology.spokes(v) {
                 enqueue(self, &mut queue, h);
             }
         }
@@ -160,7 +160,7 @@ impl<'s> Draped<'s> {
         let faces = at_home.get(&seed.face).into_iter().flatten();
         let borders = faces.flat_map(|f| f.half_edges()).filter(|&h| self.topology.twin(h).is_none());
         let distance = |h: HalfEdge| {
-            let [a, b] = [self.topology.origin(h), self.topology.target(h)].map(|v| self.position(v));
+            let [a, b] = self.topology.ends(h).map(|v| self.position(v));
             let t = ((seed.position - a).dot(b - a) / (b - a).dot(b - a)).clamp(0.0, 1.0);
             (a.lerp(b, t).distance(seed.position), t)
         };
@@ -183,11 +183,7 @@ impl<'s> Draped<'s> {
             return vec![home];
         }
         let input = self.input.surface.topology();
-        let mut homes: Vec<FaceId> =
-            input.corners(home).into_iter().flat_map(|v| input.star(v)).map(HalfEdge::face).collect();
-        homes.sort_unstable();
-        homes.dedup();
-        homes
+        distinct(input.corners(home).into_iter().flat_map(|v| input.star(v)).map(HalfEdge::face))
     }
 
     /// The distance of a point to a face, with the weights of the closest one; on a plane face that holds it zero but for
@@ -233,7 +229,7 @@ impl<'s> Draped<'s> {
 
     /// The middle of an edge, on the surface.
     fn middle(&self, h: HalfEdge) -> Option<Place> {
-        let [a, b] = [self.topology.origin(h), self.topology.target(h)];
+        let [a, b] = self.topology.ends(h);
         let p = self.position(a).lerp(self.position(b), 0.5);
         match self.input.implicit {
             Some(_) => self.input.lift(&self.places[a.index()], p),
@@ -245,7 +241,7 @@ impl<'s> Draped<'s> {
         match size {
             Size::Metric => self.topology.length(h),
             Size::Isotropic => {
-                let [a, b] = [self.topology.origin(h), self.topology.target(h)];
+                let [a, b] = self.topology.ends(h);
                 let finest = |v: VertexId| isotropic_size(self.plane(v).restrict(self.tensors[v.index()]));
                 self.position(a).distance(self.position(b)) / finest(a).min(finest(b))
             }
@@ -259,24 +255,17 @@ impl<'s> Draped<'s> {
     }
 
     fn measure_around(&mut self, v: VertexId) {
-        for h in self.spokes(v) {
+        for h in self.topology.spokes(v) {
             let length = self.length_of(h, Along::Straight);
             self.topology.set_length(h, length);
         }
-    }
-
-    /// A half-edge of every edge at a vertex.
-    fn spokes(&self, v: VertexId) -> Vec<HalfEdge> {
-        let star: Vec<HalfEdge> = self.topology.star(v).collect();
-        let last = star.last().map(|h| h.prev()).filter(|&h| self.topology.twin(h).is_none());
-        star.into_iter().chain(last).collect()
     }
 
     /// The metric length of an edge along the surface: by Simpson's rule, on an equation's surface along the cubic that its
     /// tangent planes at the ends make (which is of fourth order); if it may bow, where the metric differs much along the edge,
     /// that of the best bow in the chart at the middle.
     fn length_of(&self, h: HalfEdge, along: Along) -> f64 {
-        let ends = [self.topology.origin(h), self.topology.target(h)];
+        let ends = self.topology.ends(h);
         let [p, q] = ends.map(|v| &self.places[v.index()]);
         let tensors = ends.map(|v| self.tensors[v.index()]);
         let chord = self.input.chord([p, q], tensors);
@@ -366,7 +355,7 @@ impl Measured for Draped<'_> {
 
     fn halve(&mut self, h: HalfEdge) -> Result<Option<VertexId>> {
         let Some(place) = self.middle(h) else { return Ok(None) };
-        let faces = [Some(h), self.topology.twin(h)].into_iter().flatten().map(HalfEdge::face);
+        let faces = self.topology.sides(h).map(HalfEdge::face);
         if faces.flat_map(|f| self.topology.corners(f)).any(|v| self.position(v) == place.position) {
             return Ok(None);
         }
@@ -382,11 +371,11 @@ impl Measured for Draped<'_> {
             let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
             (b - a).cross(c - a).norm() <= FLAT * longest * longest
         };
-        [Some(h), self.topology.twin(h)].into_iter().flatten().any(|side| is_flat(side.face()))
+        self.topology.sides(h).any(|side| is_flat(side.face()))
     }
 
     fn place_of(&self, h: HalfEdge) -> String {
-        let [p, q] = [self.topology.origin(h), self.topology.target(h)].map(|v| self.position(v));
+        let [p, q] = self.topology.ends(h).map(|v| self.position(v));
         format!("{p} - {q}")
     }
 }

@@ -1,7 +1,10 @@
-//! Flips to the intrinsic Delaunay triangulation, by lengths alone (Bobenko and Springborn 2007; Fisher et al. 2007).
+//! Flips to the intrinsic Delaunay triangulation, by lengths alone (Bobenko and Springborn 2007; Fisher et al. 2007); and of an
+//! embedded triangulation by one tensor for each quadrilateral, the mean of its corners'.
 
-use crate::geodesic::Angles;
-use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation};
+use crate::geodesic::{Angles, frozen_margin, layout};
+use crate::geometry::Tensor;
+use crate::planar::Planar;
+use crate::triangulation::{FaceId, Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 
 /// Margins (sine of the sum of opposite angles) above minus this are ties: flipping them gains nothing.
 const TIE: f64 = 1e-9;
@@ -67,16 +70,51 @@ impl Quad {
 
     /// The length from c to d in the quadrilateral laid out flat, a at the origin and b on the x axis.
     fn other_diagonal(&self) -> f64 {
-        let (cx, cy) = apex(self.ab, self.ac, self.bc);
-        let (dx, dy) = apex(self.ab, self.ad, self.bd);
+        let (cx, cy) = layout(self.ab, self.ac, self.bc);
+        let (dx, dy) = layout(self.ab, self.ad, self.bd);
         (cx - dx).hypot(cy + dy)
     }
 }
 
-/// The apex (x, y) of a triangle over the base from (0, 0) to (base, 0), y >= 0, at these distances from its ends.
-fn apex(base: f64, from_start: f64, from_end: f64) -> (f64, f64) {
-    let x = 0.5 * (base + (from_start - from_end) * (from_start + from_end) / base);
-    (x, ((from_start - x) * (from_start + x)).max(0.0).sqrt())
+/// The test must be violated by more than this (sine of the angles' sum) for a flip: tests of neighbouring quadrilaterals with
+/// different tensors contradict each other near zero.
+const CLEARLY: f64 = 1e-2;
+/// Flips after one insertion at most; measured was a little more than one in the mean.
+pub(super) const FROZEN_LIMIT: Limit = Limit::OfAll(64);
+
+/// A triangulation that flips by the tensors at its vertices.
+pub(super) struct Frozen<'a> {
+    pub(super) planar: &'a mut Planar,
+    /// One per vertex slot.
+    pub(super) tensors: &'a [Tensor],
+    /// Only edges opposite to this vertex follow.
+    pub(super) around: Option<VertexId>,
+    /// Faces that were flipped are added here.
+    pub(super) changed: &'a mut Vec<FaceId>,
+}
+
+impl Flipping for Frozen<'_> {
+    fn topology(&mut self) -> &mut Triangulation {
+        &mut self.planar.topology
+    }
+
+    fn wants_flip(&mut self, h: HalfEdge) -> bool {
+        let Some(quad) = self.planar.topology.quad(h).filter(|_| !self.planar.topology.is_fixed(h)) else {
+            return false;
+        };
+        let mean = quad.iter().fold(Tensor::default(), |sum, v| sum + self.tensors[v.index()]) * 0.25;
+        let [a, b, c, d] = quad.map(|v| self.planar.position(v));
+        frozen_margin(mean, [a - c, b - c], [b - d, a - d]) <= -CLEARLY && self.planar.is_convex(h)
+    }
+
+    fn flip(&mut self, h: HalfEdge) {
+        self.changed.extend(self.planar.topology.sides(h).map(HalfEdge::face));
+        self.planar.topology.flip(h);
+    }
+
+    fn follows(&self, h: HalfEdge) -> bool {
+        self.around.is_none_or(|v| self.planar.topology.apex(h) == v)
+    }
 }
 
 #[cfg(test)]

@@ -2,9 +2,10 @@
 
 use super::CanvasCounters;
 use super::buckets::Buckets;
+use super::star::centre;
 use super::steiner::{Placed, Steiner};
 use crate::error::Result;
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, check_tensor};
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
@@ -96,8 +97,7 @@ impl Refiner<'_> {
 /// The metric is not positive definite at the centroid either.
 pub(super) fn sizes(field: &dyn MetricField, triangle: [Point; 3]) -> Result<Option<f64>> {
     let Some((centre, radius)) = circle(triangle) else { return Ok(None) };
-    let [a, b, c] = triangle;
-    let centroid = a + ((b - a) + (c - a)) * (1.0 / 3.0);
+    let centroid = Point::centroid(triangle);
     let is_near = centre.distance(centroid) <= radius_of_view(triangle);
     let mut tensor = if is_near { field.at(centre) } else { field.at(centroid) };
     if is_near && !tensor.is_positive_definite() {
@@ -113,19 +113,15 @@ fn radius_of_view([a, b, c]: [Point; 3]) -> f64 {
 }
 
 /// Centre and radius of a triangle's Euclidean circle; `None` where it is flat but for rounding.
-fn circle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
-    let (u, v) = (b - a, c - a);
-    let (uu, vv, twice) = (u.dot(u), v.dot(v), 2.0 * u.cross(v));
-    let to_centre = Vector::new(v.y * uu - u.y * vv, u.x * vv - v.x * uu) * (1.0 / twice);
-    let centre = a + to_centre;
-    (twice > 0.0 && centre.is_finite()).then(|| (centre, to_centre.norm()))
+fn circle(triangle: [Point; 3]) -> Option<(Point, f64)> {
+    centre(triangle).map(|(centre, square)| (centre, square.sqrt()))
 }
 
 /// Halves edges, given by their ends, and flips by the Euclidean test; an edge that is gone is passed over.
 pub(super) fn halve(mut planar: Planar, edges: &[[VertexId; 2]], counters: &mut CanvasCounters) -> Planar {
     let mut lawson = Lawson::default();
     for &[a, b] in edges {
-        let Some(h) = planar.topology.find(a, b).or_else(|| planar.topology.find(b, a)) else { continue };
+        let Some(h) = planar.topology.edge_between(a, b) else { continue };
         let [p, q] = planar.ends(h);
         if let Some((v, _)) = planar.insert_on_edge(h, p.midpoint(q)) {
             lawson.queue(planar.topology.star(v).map(HalfEdge::next));
@@ -141,6 +137,7 @@ mod tests {
     use super::*;
     use crate::canvas::{Canvas, Kind};
     use crate::domain::Domain;
+    use crate::geometry::Vector;
     use crate::metric::{Shock, Uniform};
 
     /// Angles of a triangle at most and at least (degrees), Euclidean.

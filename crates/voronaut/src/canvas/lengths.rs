@@ -87,7 +87,7 @@ pub(super) fn measure(planar: &mut Planar, field: &dyn MetricField, counters: &m
     let lengths: Vec<f64> = if edges.len() > planar.positions.len() {
         // Each vertex ends some six edges.
         let tensors: Vec<Tensor> = planar.positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
-        let ends = |h| [planar.topology.origin(h), planar.topology.target(h)].map(|v| tensors[v.index()]);
+        let ends = |h| planar.topology.ends(h).map(|v| tensors[v.index()]);
         edges.par_iter().with_min_len(1024).map(|&h| bowed_between(field, planar.ends(h), ends(h))).collect()
     } else {
         edges.par_iter().with_min_len(1024).map(|&h| geodesic(planar, field, h)).collect()
@@ -167,6 +167,12 @@ fn shorten(topology: &mut Triangulation) -> u64 {
         }
     }
     shortened
+}
+
+/// The metric area of a face with its lengths.
+pub(crate) fn metric_area(topology: &Triangulation, f: FaceId) -> f64 {
+    let [a, b, c] = f.half_edges().map(|h| topology.length(h));
+    0.25 * ((a + b + c) * (a + b - c) * (a - b + c) * (b + c - a)).max(0.0).sqrt()
 }
 
 /// The longest edge of a face, and by what share it exceeds the sum of the others.

@@ -73,11 +73,11 @@ impl Canvas {
     /// The corners of the embedded face that holds a point, with its barycentric coordinates where they are not zero; `None`
     /// outside the domain.
     pub(crate) fn weights(&self, p: Point) -> Option<Vec<(VertexId, f64)>> {
-        let f = match self.locate(p)? {
-            Location::Vertex(v) => return Some(vec![(v, 1.0)]),
-            Location::Face(f) => f,
-            Location::Edge(h) | Location::Behind(h) => h.face(),
-        };
+        let location = self.locate(p)?;
+        if let Location::Vertex(v) = location {
+            return Some(vec![(v, 1.0)]);
+        }
+        let f = self.face_of(location)?;
         let [a, b, c] = self.embedded.planar.triangle(f);
         let areas = [(b, c), (c, a), (a, b)].map(|(u, v)| (u - p).cross(v - p).max(0.0));
         let sum: f64 = areas.iter().sum();
@@ -91,7 +91,8 @@ impl Canvas {
         self.embedded.finder.copies.get(&key(self.position(v))).map_or_else(|| vec![v], Clone::clone)
     }
 
-    fn face_of(&self, location: Location) -> Option<FaceId> {
+    /// The face of the embedded triangulation at a place, one of several.
+    pub(crate) fn face_of(&self, location: Location) -> Option<FaceId> {
         match location {
             Location::Face(f) => Some(f),
             Location::Edge(h) | Location::Behind(h) => Some(h.face()),
@@ -118,9 +119,7 @@ impl Canvas {
     /// Whether a point lies, but for rounding, on an edge.
     fn is_beside(&self, h: HalfEdge, p: Point) -> bool {
         let [a, b] = self.embedded.planar.ends(h);
-        let d = b - a;
-        let foot = a.lerp(b, ((p - a).dot(d) / d.dot(d)).clamp(0.0, 1.0));
-        foot.distance(p) <= self.embedded.finder.rounding
+        p.nearest_between(a, b).distance(p) <= self.embedded.finder.rounding
     }
 }
 
@@ -131,7 +130,7 @@ fn key(p: Point) -> [u64; 2] {
 
 fn copies(planar: &Planar) -> HashMap<[u64; 2], Vec<VertexId>> {
     let topology = &planar.topology;
-    let borders = topology.faces().flat_map(FaceId::half_edges).filter(|&h| topology.twin(h).is_none());
+    let borders = topology.borders();
     let mut at: HashMap<[u64; 2], Vec<VertexId>> = HashMap::new();
     // A vertex starts one side of the border.
     for v in borders.map(|h| topology.origin(h)) {

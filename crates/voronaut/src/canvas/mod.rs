@@ -10,11 +10,8 @@ mod border;
 mod buckets;
 mod consistent;
 mod draped;
-mod extent;
 mod flip;
-mod frozen;
 mod isotropic;
-mod kind;
 mod lengths;
 mod locate;
 mod on_surface;
@@ -30,21 +27,36 @@ pub(crate) use border::Border;
 pub use consistent::PickCounters;
 pub(crate) use consistent::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 pub use draped::Draped;
-pub(crate) use extent::{area_of_surface, metric_area};
-pub use kind::Kind;
+pub(crate) use lengths::metric_area;
+pub(crate) use on_surface::area_of_surface;
 pub use star_set::{StarFigures, StarSet};
 pub use way::Way;
 
 use crate::domain::Domain;
-use crate::error::Result;
+use crate::error::{Result, named};
 use crate::geodesic::{Graph, bowed_chord};
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::planar::{Planar, hilbert_order};
-use crate::triangulation::{Triangulation, VertexId};
+use crate::triangulation::{Triangulation, VertexId, distinct};
 use isotropic::Until;
 use locate::Finder;
+
+/// The discretisation that distances travel on; its names are those users type (`--canvas`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    /// `intrinsic`: refined evenly in the metric, geodesic edge lengths, flipped by lengths alone.
+    #[default]
+    Intrinsic,
+    /// `isotropic`: a Euclidean Delaunay triangulation as fine everywhere as the metric is in its finest direction.
+    Isotropic,
+    /// `starset`: even in the metric, with the Delaunay stars of the vertices, each in its vertex's own metric, as the graph
+    /// that methods without triangles travel on.
+    StarSet,
+}
+
+named!(Kind, "canvas", [Intrinsic = "intrinsic", Isotropic = "isotropic", StarSet = "starset"]);
 
 /// Canvas vertices per seed (`--canvas-size`) unless told otherwise.
 pub const VERTICES_PER_SEED: u32 = 60;
@@ -143,6 +155,15 @@ impl<E> Canvas<E> {
         &self.counters
     }
 
+    /// The pairs of vertices that methods on graphs travel between: the edges of an embedded triangulation, of a star set those
+    /// of its stars.
+    fn pairs<'a>(&'a self, embedded: &'a Triangulation) -> Box<dyn Iterator<Item = [VertexId; 2]> + 'a> {
+        match &self.stars {
+            Some(stars) => Box::new(stars.pairs()),
+            None => Box::new(embedded.edges().map(|h| embedded.ends(h))),
+        }
+    }
+
     /// The canvas in numbers.
     pub fn figures(&self) -> CanvasFigures {
         let stars = self.stars.as_ref().map(|stars| *stars.figures());
@@ -234,10 +255,8 @@ impl Canvas {
         let topology = &self.embedded.planar.topology;
         // At the border the last edge of a star is known only by the face before it.
         let edges = around.iter().flat_map(|&v| topology.star(v)).flat_map(|h| [h, h.prev()]);
-        let ends = |h| [topology.origin(h), topology.target(h)];
-        let mut edges: Vec<[VertexId; 2]> = edges.map(ends).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let ends = |h| topology.ends(h);
+        let edges = distinct(edges.map(ends).map(|[a, b]| [a.min(b), a.max(b)]));
         let mut counters = self.counters;
         let embedded = match self.kind {
             Kind::Isotropic => isotropic::halve(self.embedded.planar.clone(), &edges, &mut counters),
@@ -279,18 +298,10 @@ impl Canvas {
     pub(crate) fn graph(&self, field: &dyn MetricField) -> Graph {
         let topology = &self.embedded.planar.topology;
         let tensors = self.embedded.planar.positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
-        let of_edges = || {
-            let mut neighbours = vec![Vec::new(); self.vertex_count()];
-            for h in topology.edges() {
-                neighbours[topology.origin(h).index()].push(topology.target(h).0);
-            }
-            neighbours
-        };
-        let neighbours = self.stars.as_ref().map_or_else(of_edges, StarSet::neighbours);
-        let known = |a, b| topology.find(a, b).or_else(|| topology.find(b, a)).map(|h| topology.length(h));
+        let known = |a, b| topology.edge_between(a, b).map(|h| topology.length(h));
         // One order, so that the length is the same in both directions.
         let measured = |a: VertexId, b: VertexId| bowed_chord(field, self.position(a.min(b)), self.position(a.max(b)));
-        Graph::new(self.embedded.planar.positions.clone(), tensors, &neighbours)
+        Graph::new(self.embedded.planar.positions.clone(), tensors, self.pairs(topology))
             .with_lengths(|a, b| known(a, b).unwrap_or_else(|| measured(a, b)))
     }
 

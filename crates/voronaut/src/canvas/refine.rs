@@ -5,7 +5,7 @@
 
 use super::CanvasCounters;
 use super::buckets::Buckets;
-use super::frozen::{self, Frozen};
+use super::flip::{FROZEN_LIMIT, Frozen};
 use crate::error::Result;
 use crate::geodesic::chord;
 use crate::geometry::{Point, Tensor};
@@ -40,7 +40,7 @@ pub(super) fn refine(
     }
     while refiner.planar.topology.vertex_count() < vertices {
         let Some([a, b]) = refiner.queue.pop() else { break };
-        if let Some(h) = refiner.edge(a, b) {
+        if let Some(h) = refiner.planar.topology.edge_between(a, b) {
             refiner.split(h, counters)?;
         }
     }
@@ -59,7 +59,7 @@ pub(super) fn halve(
 ) -> Result<Planar> {
     let mut refiner = Refiner::new(planar, field)?;
     for &[a, b] in edges {
-        if let Some(h) = refiner.edge(a, b) {
+        if let Some(h) = refiner.planar.topology.edge_between(a, b) {
             refiner.split(h, counters)?;
         }
     }
@@ -85,18 +85,13 @@ impl<'a> Refiner<'a> {
         Ok(Self { planar, tensors, field, queue: Buckets::default(), lawson: Lawson::default(), changed: Vec::new() })
     }
 
-    fn edge(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
-        let topology = &self.planar.topology;
-        topology.find(a, b).or_else(|| topology.find(b, a))
-    }
-
     /// Halves an edge, or first the fixed edge beside it that its middle encroaches: else new vertices creep ever closer
     /// to a border that they see under a small angle.
     fn split(&mut self, h: HalfEdge, counters: &mut CanvasCounters) -> Result<()> {
         let Some(fixed) = self.encroached(h) else { return self.halve(h, counters) };
-        let [a, b] = [self.planar.topology.origin(h), self.planar.topology.target(h)];
+        let [a, b] = self.planar.topology.ends(h);
         self.halve(fixed, counters)?;
-        if let Some(h) = self.edge(a, b) {
+        if let Some(h) = self.planar.topology.edge_between(a, b) {
             self.enqueue(h);
         }
         Ok(())
@@ -116,7 +111,7 @@ impl<'a> Refiner<'a> {
             let (u, v) = (a - middle, b - middle);
             topology.is_fixed(*e) && tensor.dot(u, v) < CREEPING * tensor.length(u) * tensor.length(v)
         };
-        [Some(h), topology.twin(h)].into_iter().flatten().flat_map(|side| [side.next(), side.prev()]).find(is_near)
+        topology.sides(h).flat_map(|side| [side.next(), side.prev()]).find(is_near)
     }
 
     /// Halves an edge, flips around the new vertex, and queues the edges there. An edge whose middle rounding has put
@@ -134,9 +129,7 @@ impl<'a> Refiner<'a> {
         self.tensors[v.index()] = tensor;
         counters.splits += 1;
         counters.planar_flips += self.flip_around(v);
-        let star: Vec<HalfEdge> = self.planar.topology.star(v).collect();
-        let last = star.last().map(|h| h.prev()).filter(|&h| self.planar.topology.twin(h).is_none());
-        for h in star.into_iter().chain(last) {
+        for h in self.planar.topology.spokes(v) {
             self.enqueue(h);
         }
         Ok(())
@@ -146,11 +139,11 @@ impl<'a> Refiner<'a> {
         let Self { planar, tensors, lawson, changed, .. } = self;
         lawson.queue(planar.topology.star(v).map(HalfEdge::next));
         changed.clear();
-        lawson.pass(&mut Frozen { planar, tensors, around: Some(v), changed }, frozen::LIMIT).len() as u64
+        lawson.pass(&mut Frozen { planar, tensors, around: Some(v), changed }, FROZEN_LIMIT).len() as u64
     }
 
     fn enqueue(&mut self, h: HalfEdge) {
-        let ends = [self.planar.topology.origin(h), self.planar.topology.target(h)];
+        let ends = self.planar.topology.ends(h);
         let [p, q] = self.planar.ends(h);
         let length =
             if self.planar.positions.len() < COARSE { chord(self.field, p, q) } else { self.simpson(ends, p, q) };

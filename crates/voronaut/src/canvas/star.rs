@@ -6,7 +6,7 @@
 
 use crate::geometry::{Orientation, Point, Tensor, Vector, in_circle, orientation, signed_area};
 use crate::planar::Planar;
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// Circles are searched with this share more of their squared radius: their centres are rounded.
 const SLACK: f64 = 1e-9;
@@ -19,6 +19,12 @@ pub(super) type Star = Vec<Spoke>;
 pub(super) struct Spoke {
     pub(super) ends: [VertexId; 2],
     pub(super) region: i32,
+}
+
+/// The star of a vertex in a triangulation as it is.
+pub(super) fn as_it_is(topology: &Triangulation, v: VertexId) -> Star {
+    let spoke = |h| Spoke { ends: [topology.target(h), topology.apex(h)], region: topology.region(h.face()) };
+    topology.star(v).map(spoke).collect()
 }
 
 /// Centre (in the plane) and radius (in the metric) of a triangle's circle in one tensor; `None` where it is flat.
@@ -185,7 +191,7 @@ impl<'a> Finder<'a> {
         let planar = self.planar;
         while let Some(f) = self.faces.pop() {
             for h in f.half_edges() {
-                let [w, to] = [planar.topology.origin(h), planar.topology.target(h)];
+                let [w, to] = planar.topology.ends(h);
                 let (a, b) = (self.at(w), self.at(to));
                 let is_taken = [vertices, self.stamp].contains(&self.seen_vertices[w.index()]);
                 if !is_taken && (a - centre).dot(a - centre) <= square {
@@ -241,8 +247,7 @@ impl<'a> Finder<'a> {
     fn sees_far(&self, a: VertexId, b: VertexId) -> bool {
         let topology = &self.planar.topology;
         let is_free = |crossed: Vec<HalfEdge>| !crossed.into_iter().any(|h| topology.is_fixed(h));
-        topology.find(a, b).or_else(|| topology.find(b, a)).is_some()
-            || self.planar.edges_between(a, b).is_some_and(is_free)
+        topology.edge_between(a, b).is_some() || self.planar.edges_between(a, b).is_some_and(is_free)
     }
 }
 
@@ -272,8 +277,8 @@ fn sectors(planar: &Planar, v: VertexId) -> Vec<Sector> {
     sectors
 }
 
-/// Centre and squared radius of a triangle's circle in the frame; `None` where it is flat.
-fn centre([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
+/// Centre and squared radius of a triangle's Euclidean circle; `None` where it is flat but for rounding.
+pub(super) fn centre([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
     let (u, v) = (b - a, c - a);
     let (uu, vv, twice) = (u.dot(u), v.dot(v), 2.0 * u.cross(v));
     let to_centre = Vector::new(v.y * uu - u.y * vv, u.x * vv - v.x * uu) * (1.0 / twice);
@@ -282,8 +287,6 @@ fn centre([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
 }
 
 fn square_distance(p: Point, a: Point, b: Point) -> f64 {
-    let along = b - a;
-    let t = ((p - a).dot(along) / along.dot(along)).clamp(0.0, 1.0);
-    let off = p - (a + along * t);
+    let off = p - p.nearest_between(a, b);
     off.dot(off)
 }

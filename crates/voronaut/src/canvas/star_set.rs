@@ -1,6 +1,6 @@
 //! Star sets (RR-9103, section 7): the Delaunay star of every vertex in its own metric, whether or not the stars agree.
 
-use super::star::{Finder, Star, circle};
+use super::star::{Finder, Spoke, Star, as_it_is, circle};
 use super::steiner::{Placed, Steiner};
 use super::{CanvasCounters, refine, renumbered};
 use crate::error::Result;
@@ -8,7 +8,7 @@ use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::planar::Planar;
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::{HalfEdge, VertexId, distinct};
 use std::collections::HashSet;
 
 /// The share of the vertices that the embedded triangulation is refined to before stars are.
@@ -83,20 +83,10 @@ impl StarSet {
         Self { stars, figures }
     }
 
-    /// The neighbours of every vertex, in order: those in its star and those in whose star it is.
-    pub(crate) fn neighbours(&self) -> Vec<Vec<u32>> {
-        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); self.stars.len()];
-        for (v, star) in (0..).zip(&self.stars) {
-            for u in star.iter().flat_map(|spoke| spoke.ends) {
-                neighbours[v as usize].push(u.0);
-                neighbours[u.index()].push(v);
-            }
-        }
-        for list in &mut neighbours {
-            list.sort_unstable();
-            list.dedup();
-        }
-        neighbours
+    /// Every vertex with those in its star.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
+        let vertices = (0..self.stars.len() as u32).map(VertexId);
+        vertices.flat_map(|v| self.star(v).flatten().map(move |u| [v, u]))
     }
 
     /// The simplices of the star of a vertex, each by its other two vertices, counter-clockwise.
@@ -145,16 +135,9 @@ impl<'a> Stars<'a> {
         let mut unsettled = 0;
         for (&v, star) in dirty.iter().zip(found) {
             unsettled += usize::from(star.is_none());
-            self.by_vertex[v.index()] = star.unwrap_or_else(|| self.embedded(v));
+            self.by_vertex[v.index()] = star.unwrap_or_else(|| as_it_is(&steiner.planar.topology, v));
         }
         unsettled
-    }
-
-    fn embedded(&self, v: VertexId) -> Star {
-        let topology = &self.steiner.planar.topology;
-        let spoke =
-            |h| super::star::Spoke { ends: [topology.target(h), topology.apex(h)], region: topology.region(h.face()) };
-        topology.star(v).map(spoke).collect()
     }
 
     /// The circle of a simplex of v's star, in v's metric.
@@ -208,9 +191,7 @@ impl<'a> Stars<'a> {
     /// Finds the stars of new vertices, and those that they change.
     pub(super) fn mend(&mut self, new: &[VertexId]) -> Vec<VertexId> {
         self.make_room();
-        let mut dirty: Vec<VertexId> = new.iter().flat_map(|&v| self.changed_by(v)).collect();
-        dirty.sort_unstable();
-        dirty.dedup();
+        let dirty = distinct(new.iter().flat_map(|&v| self.changed_by(v)));
         self.update(&dirty);
         dirty
     }
@@ -220,7 +201,7 @@ impl<'a> Stars<'a> {
     pub(super) fn changed_by(&self, new: VertexId) -> Vec<VertexId> {
         let topology = &self.steiner.planar.topology;
         let p = self.steiner.planar.position(new);
-        let ring = |v: VertexId| topology.star(v).flat_map(|h| [topology.target(h), topology.apex(h)]);
+        let ring = |v: VertexId| topology.around(v);
         let mut changed = vec![new];
         let mut seen: HashSet<VertexId> = HashSet::from([new]);
         let mut next: Vec<(VertexId, u8)> = ring(new).map(|v| (v, 0)).collect();
@@ -229,7 +210,7 @@ impl<'a> Stars<'a> {
             if !seen.insert(v) {
                 continue;
             }
-            let holds = |spoke: &super::star::Spoke| {
+            let holds = |spoke: &Spoke| {
                 let centre = self.circle(v, spoke.ends);
                 centre.is_some_and(|(c, r)| self.steiner.tensors[v.index()].length(p - c) <= r * (1.0 + 1e-9))
             };
@@ -244,9 +225,7 @@ impl<'a> Stars<'a> {
                 next.extend(ring(v).chain(mine).filter(|u| !seen.contains(u)).map(|u| (u, idle)));
             }
         }
-        changed.sort_unstable();
-        changed.dedup();
-        changed
+        distinct(changed)
     }
 
     /// Whether the star of v has the simplex v a b.

@@ -1,12 +1,12 @@
 //! Points put into an embedded triangulation by Delaunay refinement, with care for what is fixed (Ruppert 1995): a point
 //! that would lie in the diametral circle of a fixed edge, or beyond it, is not inserted; the edge is halved instead.
 
-use super::frozen::{self, Frozen};
+use super::flip::{FROZEN_LIMIT, Frozen};
 use crate::error::Result;
 use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, check_tensor};
 use crate::planar::{Location, Planar};
-use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId, distinct};
 
 /// Fixed edges shorter than this share of the circle that asks for it are not halved: under a small angle between
 /// two of them halving would go on for long.
@@ -69,11 +69,11 @@ impl<'a> Steiner<'a> {
         self.added(v)?;
         let encroached = self.planar.topology.star(v).map(HalfEdge::next).find(|&h| self.is_encroached(h, p, radius));
         let Some(h) = encroached else { return Ok(Placed::Inserted(v)) };
-        let [a, b] = [self.planar.topology.origin(h), self.planar.topology.target(h)];
+        let [a, b] = self.planar.topology.ends(h);
         if !self.take_out(v) {
             return Ok(Placed::Inserted(v));
         }
-        match self.planar.topology.find(a, b).or_else(|| self.planar.topology.find(b, a)) {
+        match self.planar.topology.edge_between(a, b) {
             Some(h) => self.halve(h, radius),
             None => Ok(Placed::Refused),
         }
@@ -82,11 +82,7 @@ impl<'a> Steiner<'a> {
     /// The faces that are new since this was asked last, and those around the last new vertex.
     pub(super) fn take_changed(&mut self) -> Vec<FaceId> {
         let topology = &self.planar.topology;
-        let mut changed = std::mem::take(&mut self.changed);
-        changed.retain(|&f| topology.is_face(f));
-        changed.sort_unstable();
-        changed.dedup();
-        changed
+        distinct(std::mem::take(&mut self.changed).into_iter().filter(|&f| topology.is_face(f)))
     }
 
     fn tensor_at(&self, p: Point) -> Tensor {
@@ -141,7 +137,7 @@ impl<'a> Steiner<'a> {
         if self.field.is_none() {
             planar.legalise(lawson);
         } else {
-            lawson.pass(&mut Frozen { planar, tensors, around: None, changed }, frozen::LIMIT);
+            lawson.pass(&mut Frozen { planar, tensors, around: None, changed }, FROZEN_LIMIT);
         }
     }
 
@@ -167,8 +163,7 @@ impl<'a> Steiner<'a> {
     /// Removes a vertex that was just inserted, and flips as before; says whether it could.
     pub(super) fn take_out(&mut self, v: VertexId) -> bool {
         let topology = &self.planar.topology;
-        let link: Vec<[VertexId; 2]> =
-            topology.star(v).map(HalfEdge::next).map(|h| [topology.origin(h), topology.target(h)]).collect();
+        let link: Vec<[VertexId; 2]> = topology.star(v).map(HalfEdge::next).map(|h| topology.ends(h)).collect();
         if !self.planar.remove_vertex(v) {
             return false;
         }

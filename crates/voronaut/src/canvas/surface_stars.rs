@@ -2,7 +2,7 @@
 //! without triangles travel on.
 
 use super::draped::Draped;
-use super::star::{Finder, Spoke, Star, circle};
+use super::star::{Finder, Spoke, Star, as_it_is, circle};
 use super::{Canvas, StarFigures, StarSet};
 use crate::geodesic::{Graph, Sight};
 use crate::geometry::{Orientation, Point, Point3, TangentPlane, Tensor, Vector, orientation};
@@ -43,12 +43,7 @@ fn star(draped: &Draped, v: VertexId) -> (Star, f64, bool) {
         let named = |spoke: &Spoke| Spoke { ends: spoke.ends.map(|u| patch.names[u.index()]), ..*spoke };
         Some((star.iter().map(named).collect(), radius, true))
     });
-    let topology = &draped.topology;
-    let embedded = || {
-        let spoke = |h| Spoke { ends: [topology.target(h), topology.apex(h)], region: topology.region(h.face()) };
-        (topology.star(v).map(spoke).collect(), 0.0, false)
-    };
-    found.unwrap_or_else(embedded)
+    found.unwrap_or_else(|| (as_it_is(&draped.topology, v), 0.0, false))
 }
 
 /// Some rings of faces around a vertex, in its tangent plane; the vertex comes first.
@@ -64,17 +59,13 @@ impl Patch {
         let faces = faces_around(topology, v)?;
         let mut names = vec![v];
         let mut number: HashMap<VertexId, u32> = HashMap::from([(v, 0)]);
-        let triangles: Vec<[u32; 3]> = faces
-            .iter()
-            .map(|&f| {
-                topology.corners(f).map(|w| {
-                    *number.entry(w).or_insert_with(|| {
-                        names.push(w);
-                        names.len() as u32 - 1
-                    })
-                })
+        let mut number_of = |w: VertexId| {
+            *number.entry(w).or_insert_with(|| {
+                names.push(w);
+                names.len() as u32 - 1
             })
-            .collect();
+        };
+        let triangles: Vec<[u32; 3]> = faces.iter().map(|&f| topology.corners(f).map(&mut number_of)).collect();
         let origin = draped.position(v);
         let flat = |u: &VertexId| Point::default() + plane.flatten(draped.position(*u) - origin);
         let positions: Vec<Point> = names.iter().map(flat).collect();
@@ -143,20 +134,11 @@ impl Canvas<Draped<'_>> {
     /// set those of its stars, with lengths along the surface, for methods that know no triangles.
     pub(crate) fn surface_graph(&self) -> Graph {
         let draped = self.draped();
-        let topology = draped.topology();
         let vertices = || (0..self.vertex_count() as u32).into_par_iter().with_min_len(1024).map(VertexId);
         let planes: Vec<TangentPlane> = vertices().map(|v| draped.plane(v)).collect();
         let tensors = vertices().map(|v| planes[v.index()].restrict(draped.tensor(v))).collect();
-        let of_edges = || {
-            let mut neighbours = vec![Vec::new(); self.vertex_count()];
-            for h in topology.edges() {
-                neighbours[topology.origin(h).index()].push(topology.target(h).0);
-            }
-            neighbours
-        };
-        let neighbours = self.stars().map_or_else(of_edges, StarSet::neighbours);
-        let positions: Vec<Point3> = (0..self.vertex_count() as u32).map(|v| draped.position(VertexId(v))).collect();
-        Graph::seen_by(Arc::new(OnSurface { positions, planes }), tensors, &neighbours)
+        let positions: Vec<Point3> = vertices().map(|v| draped.position(v)).collect();
+        Graph::seen_by(Arc::new(OnSurface { positions, planes }), tensors, self.pairs(draped.topology()))
             .with_lengths(|a, b| draped.length_between(a, b))
     }
 }

@@ -25,7 +25,7 @@ impl Draped<'_> {
     pub fn geodesic(&self, from: VertexId, to: VertexId) -> Option<Way> {
         let found = taut(self.topology(), from, to)?;
         let topology = self.topology();
-        let inner = found.crossings.iter().map(|&(h, t)| ([topology.origin(h), topology.target(h)], t));
+        let inner = found.crossings.iter().map(|&(h, t)| (topology.ends(h), t));
         let on: Vec<([VertexId; 2], f64)> =
             [([from, from], 0.0)].into_iter().chain(inner).chain([([to, to], 0.0)]).collect();
         let way = self.way_along(on)?;
@@ -45,7 +45,7 @@ impl Draped<'_> {
             if self.input().implicit.is_some() {
                 return self.input().lift(self.place(a), p);
             }
-            let h = self.topology().find(a, b).or_else(|| self.topology().find(b, a))?;
+            let h = self.topology().edge_between(a, b)?;
             Some(self.input().surface.closest_on(self.home(h.face()), p))
         };
         let places: Vec<Place> = on.iter().map(place).collect::<Option<_>>()?;
@@ -59,7 +59,7 @@ impl Draped<'_> {
     /// chord, on an equation's surface of what lies over it.
     pub(crate) fn length_between(&self, a: VertexId, b: VertexId) -> f64 {
         let topology = self.topology();
-        let edge = topology.find(a, b).or_else(|| topology.find(b, a));
+        let edge = topology.edge_between(a, b);
         let ends = [a.min(b), a.max(b)];
         let chord = || self.between(ends.map(|v| self.place(v)), ends.map(|v| self.tensor(v)));
         edge.map_or_else(chord, |h| topology.length(h))

@@ -7,7 +7,7 @@ use crate::geometry::{Point, Vector};
 use crate::metric::{MetricField, Scaled};
 use crate::net::Net;
 use crate::parallel::prelude::*;
-use crate::triangulation::{HalfEdge, Triangulation, VertexId};
+use crate::triangulation::VertexId;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -49,14 +49,8 @@ impl Convexity {
 }
 
 /// Samples the curvature over differences of a few hundredths of `unit`, a length of the metric.
-pub(super) fn convexity(
-    diagram: &Diagram,
-    field: &dyn MetricField,
-    net: &Net,
-    coverage: &Coverage,
-    unit: f64,
-) -> Convexity {
-    let canvas = diagram.canvas();
+pub(super) fn convexity(diagram: &Diagram, net: &Net, coverage: &Coverage, unit: f64) -> Convexity {
+    let (canvas, field) = (diagram.canvas(), diagram.field());
     let planar = canvas.embedded();
     let topology = &planar.topology;
     let scaled = Scaled { field, factor: unit.powi(-2) };
@@ -73,8 +67,9 @@ pub(super) fn convexity(
     let most = found.iter().map(|s| s.0).fold(0.0, |a: f64, b: f64| if b > a || b.is_nan() { b } else { a });
     let total =
         stride as f64 * found.iter().map(|&(k, area)| if k.is_nan() { k } else { k.max(0.0) * area }).sum::<f64>();
-    let euler = topology.vertex_count() + topology.face_count();
-    let holes = (topology.edges().count() + components(topology)).saturating_sub(euler);
+    let parts = topology.parts();
+    let parts = topology.vertices().filter(|v| parts[v.index()] == v.index()).count();
+    let holes = parts.cast_signed().saturating_sub(topology.euler_characteristic()).max(0).cast_unsigned();
     let radius = if most > FLAT {
         unit * 0.5 * PI / most.sqrt()
     } else if most.is_nan() {
@@ -82,23 +77,7 @@ pub(super) fn convexity(
     } else {
         f64::INFINITY
     };
-    Convexity { curvature: most / unit.powi(2), total, holes, radius, bend: bend(diagram, field, net, coverage) }
-}
-
-/// Parts of the domain that do not touch.
-fn components(topology: &Triangulation) -> usize {
-    let mut seen = vec![false; topology.face_slots()];
-    let mut count = 0;
-    for first in topology.faces() {
-        let mut stack = vec![first];
-        count += usize::from(!seen[first.index()]);
-        while let Some(f) = stack.pop() {
-            if !std::mem::replace(&mut seen[f.index()], true) {
-                stack.extend(f.half_edges().into_iter().filter_map(|h| topology.twin(h)).map(HalfEdge::face));
-            }
-        }
-    }
-    count
+    Convexity { curvature: most / unit.powi(2), total, holes, radius, bend: bend(diagram, net, coverage) }
 }
 
 /// Curvatures (in units of the sampling) that differences may show of a flat metric.
@@ -108,12 +87,12 @@ fn area([a, b, c]: [Point; 3]) -> f64 {
     0.5 * Vector::cross(b - a, c - a)
 }
 
-fn bend(diagram: &Diagram, field: &dyn MetricField, net: &Net, coverage: &Coverage) -> f64 {
+fn bend(diagram: &Diagram, net: &Net, coverage: &Coverage) -> f64 {
     let paths = Paths::default();
     let seed = |i: u32| diagram.seed(i).unwrap_or_default();
     let of_triangle = |corners: [u32; 3]| {
         let [a, b, c] = corners.map(seed);
-        let length = |(p, q)| paths.length(field, p, q, Fineness::COARSEST).map(|l| (l.value, l.error));
+        let length = |(p, q)| paths.length(diagram.field(), p, q, Fineness::COARSEST).map(|l| (l.value, l.error));
         let mut sides = [(a, b), (b, c), (c, a)].map(|side| length(side).unwrap_or((f64::NAN, 0.0)));
         sides.sort_unstable_by(|x, y| x.0.total_cmp(&y.0));
         let error: f64 = sides.iter().map(|side| side.0 * side.1).sum();

@@ -1,11 +1,9 @@
 //! How far seeds are from the border, and which of them the theorems, whose domain has none, speak of.
 
 use super::constants::Figures;
-use crate::canvas::Canvas;
 use crate::diagram::Diagram;
 use crate::geodesic::{Geodesic, Marching, Sources, Wave, chord};
 use crate::geometry::Point;
-use crate::metric::MetricField;
 use crate::net::Net;
 use crate::triangulation::{HalfEdge, VertexId};
 use std::collections::{HashMap, HashSet};
@@ -30,8 +28,8 @@ pub(crate) struct Coverage {
 impl Coverage {
     /// Of the seeds of a diagram; `longest` is the longest edge of its canvas, for points are as far from canvas
     /// vertices. Before [`Coverage::cover`] no seed is covered.
-    pub(super) fn new(diagram: &Diagram, field: &dyn MetricField, net: &Net, longest: f64) -> Self {
-        let depths = depths(diagram, field);
+    pub(super) fn new(diagram: &Diagram, net: &Net, longest: f64) -> Self {
+        let depths = depths(diagram);
         let complete: Vec<bool> = depths.iter().map(|&depth| depth > net.epsilon + longest).collect();
         let covered = vec![false; depths.len()];
         Self { depths, complete, covered, least: f64::INFINITY }
@@ -86,7 +84,7 @@ pub(super) fn inner_net(
 
 /// How far a canvas vertex of a complete cell is from its seed at most.
 fn farthest(coverage: &Coverage, diagram: &Diagram) -> f64 {
-    let vertices = (0..diagram.canvas().vertex_count() as u32).map(VertexId);
+    let vertices = diagram.vertices();
     let is_inner = |v: &VertexId| diagram.colour(*v).is_some_and(|i| coverage.complete[i as usize]);
     vertices.filter(is_inner).map(|v| diagram.distance(v)).fold(0.0, f64::max)
 }
@@ -113,7 +111,7 @@ fn open_stars(coverage: &Coverage, exact: &[[u32; 3]]) -> usize {
     complete.filter(|&i| !is_closed(i)).count()
 }
 
-fn depths(diagram: &Diagram, field: &dyn MetricField) -> Vec<f64> {
+fn depths(diagram: &Diagram) -> Vec<f64> {
     let canvas = diagram.canvas();
     let topology = canvas.topology();
     let borders: Vec<HalfEdge> = topology.edges().filter(|&h| topology.twin(h).is_none()).collect();
@@ -123,13 +121,14 @@ fn depths(diagram: &Diagram, field: &dyn MetricField) -> Vec<f64> {
         sources.add(topology.target(h), 0.0, 0);
     }
     let half = borders.iter().map(|&h| 0.5 * topology.length(h)).fold(0.0, f64::max);
-    let found = Marching::on(topology).with_wave(Wave::Plane).propagate(&sources);
+    let found = Marching { canvas: topology, wave: Wave::Plane }.propagate(&sources);
     let seeds = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default());
-    seeds.map(|p| (depth_of(canvas, field, p, |v| found.label(v).distance) - half).max(0.0)).collect()
+    seeds.map(|p| (depth_of(diagram, p, |v| found.label(v).distance) - half).max(0.0)).collect()
 }
 
 /// What the distances at the corners around a point leave it at least.
-fn depth_of(canvas: &Canvas, field: &dyn MetricField, p: Point, at: impl Fn(VertexId) -> f64) -> f64 {
+fn depth_of(diagram: &Diagram, p: Point, at: impl Fn(VertexId) -> f64) -> f64 {
+    let (canvas, field) = (diagram.canvas(), diagram.field());
     let corners = canvas.weights(p).unwrap_or_default();
     corners.into_iter().map(|(v, _)| at(v) - chord(field, p, canvas.position(v))).fold(0.0, f64::max)
 }

@@ -19,14 +19,13 @@ pub(crate) use coverage::Coverage;
 pub(crate) use distortion::distortion_around;
 pub(crate) use sizing::{Area, sized_canvas};
 pub use sizing::{Cost, longest_edge};
-pub use theorems::{Evidence, verdicts};
+pub use theorems::Evidence;
 pub use verdict::{Condition, Outcome, Verdict};
 pub use walk::{Found, Walks};
 
 use crate::diagram::Diagram;
 use crate::geodesic::{Fineness, Paths};
 use crate::geometry::{Point, Tensor};
-use crate::metric::MetricField;
 use crate::net::{Ball, Net, neighbours};
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
@@ -102,42 +101,36 @@ pub struct Cell {
 impl Certificate {
     /// Certifies a diagram on a canvas that is a triangulation. `net` is that of its seeds, with epsilon that of the
     /// whole domain, from the triangles of the exact dual (`recipe::net`).
-    pub fn new(
-        diagram: &Diagram,
-        field: &dyn MetricField,
-        exact: &[[u32; 3]],
-        net: &Net,
-        constants: Constants,
-    ) -> Self {
+    pub fn new(diagram: &Diagram, exact: &[[u32; 3]], net: &Net, constants: Constants) -> Self {
         let longest = longest_edge(diagram.canvas());
-        let mut coverage = Coverage::new(diagram, field, net, longest);
+        let mut coverage = Coverage::new(diagram, net, longest);
         let (inner, open) = coverage::inner_net(&coverage, diagram, net, exact);
         coverage.cover(net, longest, &inner);
         let none = || (coverage.count() == 0).then(|| format!("no seed is {:.3e} from the border", coverage.least));
-        let cells = cells(diagram, field, net, &coverage, &inner);
+        let cells = cells(diagram, net, &coverage, &inner);
         let psi = cells.iter().map(|cell| cell.psi).reduce(f64::max).unwrap_or(f64::NAN);
         let [size, euclidean_size] = sizing::half_longest(diagram, |i| coverage.complete[i as usize]);
         let evidence = Evidence {
             constants,
             net: inner,
             psi,
-            uniform: uniform(diagram, field),
+            uniform: uniform(diagram),
             size,
             euclidean_size,
-            distance_error: distance_error(diagram, field, net, &coverage),
-            convexity: convexity::convexity(diagram, field, net, &coverage, inner.epsilon),
+            distance_error: distance_error(diagram, net, &coverage),
+            convexity: convexity::convexity(diagram, net, &coverage, inner.epsilon),
             doubt: open.or_else(none),
         };
         let is_walked = |ball: &&Ball<3>| ball.corners.iter().any(|&i| coverage.covered[i as usize]);
         let walks = Walks::of(diagram, net.triangles.iter().filter(is_walked));
-        Self::of(&evidence, &coverage, walks, cells, Area::of(diagram.canvas(), field))
+        Self::of(&evidence, &coverage, walks, cells, Area::of(diagram.canvas(), diagram.field()))
     }
 
     fn of(evidence: &Evidence, coverage: &Coverage, walks: Walks, mut cells: Vec<Cell>, area: Area) -> Self {
         for cell in &mut cells {
             cell.factor = factor(cell, evidence);
         }
-        let verdicts = verdicts(evidence);
+        let verdicts = evidence.verdicts();
         let asked_size = verdicts.iter().find(|verdict| verdict.theorem == "9.4").and_then(|verdict| verdict.size);
         let covered = coverage.count();
         Self {
@@ -179,7 +172,8 @@ fn factor(cell: &Cell, evidence: &Evidence) -> f64 {
     size.map_or(of_psi.max(1.0), |size| of_psi.max(evidence.size / size))
 }
 
-fn cells(diagram: &Diagram, field: &dyn MetricField, net: &Net, coverage: &Coverage, inner: &Figures) -> Vec<Cell> {
+fn cells(diagram: &Diagram, net: &Net, coverage: &Coverage, inner: &Figures) -> Vec<Cell> {
+    let field = diagram.field();
     let mut around = vec![Vec::new(); coverage.covered.len()];
     for ball in &net.triangles {
         ball.corners.iter().for_each(|&i| around[i as usize].push(*ball));
@@ -207,7 +201,8 @@ fn cells(diagram: &Diagram, field: &dyn MetricField, net: &Net, coverage: &Cover
 }
 
 /// The eigenvalues of the tensor if it is the same at all canvas vertices.
-fn uniform(diagram: &Diagram, field: &dyn MetricField) -> Option<[f64; 2]> {
+fn uniform(diagram: &Diagram) -> Option<[f64; 2]> {
+    let field = diagram.field();
     let positions = &diagram.canvas().embedded().positions;
     let first = field.at(*positions.first()?);
     let scale = first.xx + first.yy;
@@ -221,10 +216,11 @@ fn uniform(diagram: &Diagram, field: &dyn MetricField) -> Option<[f64; 2]> {
 
 /// How far canvas distances are from lengths of geodesics at most, or beyond those to the seeds of neighbouring cells, with the
 /// errors of these, at samples of the covered cells; NaN where there are none, or geodesics are not found.
-fn distance_error(diagram: &Diagram, field: &dyn MetricField, net: &Net, coverage: &Coverage) -> f64 {
+fn distance_error(diagram: &Diagram, net: &Net, coverage: &Coverage) -> f64 {
+    let field = diagram.field();
     let neighbours = neighbours(coverage.covered.len(), net.triangles.iter().map(|ball| ball.corners));
     let canvas = diagram.canvas();
-    let vertices = (0..canvas.vertex_count() as u32).map(VertexId);
+    let vertices = diagram.vertices();
     let is_covered = |v: &VertexId| diagram.colour(*v).is_some_and(|i| coverage.covered[i as usize]);
     let all: Vec<VertexId> = vertices.filter(is_covered).collect();
     let paths = Paths::default();

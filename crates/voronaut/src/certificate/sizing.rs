@@ -31,7 +31,7 @@ impl Area {
         let planar = canvas.embedded();
         let triangles: Vec<[Point; 3]> = planar.topology.faces().map(|f| planar.triangle(f)).collect();
         let measured = |&[a, b, c]: &[Point; 3]| {
-            let tensor = field.at(a + ((b - a) + (c - a)) * (1.0 / 3.0));
+            let tensor = field.at(Point::centroid([a, b, c]));
             let area = 0.5 * Vector::cross(b - a, c - a);
             [area * tensor.determinant().max(0.0).sqrt(), area * tensor.eigen().large]
         };
@@ -59,7 +59,7 @@ pub(super) fn half_longest(diagram: &Diagram, is_picked: impl Fn(u32) -> bool) -
     let topology = canvas.topology();
     let mut longest = [0.0_f64; 2];
     for h in topology.edges() {
-        let ends = [topology.origin(h), topology.target(h)];
+        let ends = topology.ends(h);
         if ends.iter().all(|&v| diagram.colour(v).is_some_and(&is_picked)) {
             let euclidean = canvas.position(ends[0]).distance(canvas.position(ends[1]));
             longest = [longest[0].max(topology.length(h)), longest[1].max(euclidean)];

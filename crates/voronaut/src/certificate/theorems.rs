@@ -34,130 +34,110 @@ const EDGE: &str = "half the longest canvas edge is below s0";
 /// squares.
 const CERTAIN: f64 = 1e-3;
 
-/// Verdicts on Theorems 9.1, 9.9 and 9.10, on section 9.4, on Theorem 10.20 and Lemma 11.2, in this order.
-pub fn verdicts(evidence: &Evidence) -> Vec<Verdict> {
-    let embedded = geodesic_dual(evidence);
-    let straight = straight_dual(evidence, &embedded);
-    vec![euclidean(evidence), uniform(evidence), arbitrary(evidence), with_errors(evidence), embedded, straight]
-}
-
 /// Whether two eigenvalues are the same but for rounding.
 fn is_round([small, large]: [f64; 2]) -> bool {
     large - small <= 1e-9 * large
 }
 
-fn protected(evidence: &Evidence) -> Condition {
-    let least = CERTAIN * evidence.net.epsilon;
-    Condition::above("the net is power-protected: delta above a thousandth of epsilon", evidence.net.delta, least)
-}
+impl Evidence {
+    /// Verdicts on Theorems 9.1, 9.9 and 9.10, on section 9.4, on Theorem 10.20 and Lemma 11.2, in this order.
+    pub fn verdicts(&self) -> Vec<Verdict> {
+        let embedded = self.geodesic_dual();
+        let straight = self.straight_dual(&embedded);
+        let arbitrary = self.nerve("9.10", NERVE, 0.0, vec![]);
+        vec![self.euclidean(), self.of_uniform(), arbitrary, self.with_errors(), embedded, straight]
+    }
 
-fn euclidean(evidence: &Evidence) -> Verdict {
-    let is_euclidean = evidence.uniform.is_some_and(is_round);
-    let size = evidence.constants.uniform_size(&evidence.net);
-    let conditions = vec![
-        Condition::fact("the metric is Euclidean, but for scale", is_euclidean),
-        protected(evidence),
-        Condition::below(EDGE, evidence.size, size),
-    ];
-    Verdict::new("9.1", NERVE, conditions, evidence.doubt.clone()).asking(size)
-}
+    fn protected(&self) -> Condition {
+        let what = "the net is power-protected: delta above a thousandth of epsilon";
+        Condition::above(what, self.net.delta, CERTAIN * self.net.epsilon)
+    }
 
-fn uniform(evidence: &Evidence) -> Verdict {
-    let size = evidence.constants.uniform_size(&evidence.net);
-    let edge = match (evidence.constants, evidence.uniform) {
-        // The report bounds Euclidean lengths.
-        (Constants::Printed, Some(eigenvalues)) => {
-            let limit = evidence.constants.alpha(eigenvalues) * size;
-            Condition::below(
-                "half the longest canvas edge (Euclidean) is below alpha s0",
-                evidence.euclidean_size,
-                limit,
-            )
+    fn euclidean(&self) -> Verdict {
+        let size = self.constants.uniform_size(&self.net);
+        let conditions = vec![
+            Condition::fact("the metric is Euclidean, but for scale", self.uniform.is_some_and(is_round)),
+            self.protected(),
+            Condition::below(EDGE, self.size, size),
+        ];
+        Verdict::new("9.1", NERVE, conditions, self.doubt.clone()).asking(size)
+    }
+
+    fn of_uniform(&self) -> Verdict {
+        let size = self.constants.uniform_size(&self.net);
+        let edge = match (self.constants, self.uniform) {
+            // The report bounds Euclidean lengths.
+            (Constants::Printed, Some(eigenvalues)) => {
+                let what = "half the longest canvas edge (Euclidean) is below alpha s0";
+                Condition::below(what, self.euclidean_size, self.constants.alpha(eigenvalues) * size)
+            }
+            _ => Condition::below(EDGE, self.size, size),
+        };
+        let is_uniform = Condition::fact("the metric is the same everywhere", self.uniform.is_some());
+        Verdict::new("9.9", NERVE, vec![is_uniform, self.protected(), edge], self.doubt.clone()).asking(size)
+    }
+
+    fn with_errors(&self) -> Verdict {
+        // What errors leave of the sizing field: none where they are as large as the slack of the net.
+        let what = "the error of distances is below what the net allows";
+        let condition = Condition::below(what, self.distance_error, self.greatest_error());
+        let says = "the same, with the distances that the canvas computes";
+        self.nerve("9.4", says, self.distance_error, vec![condition])
+    }
+
+    fn nerve(&self, theorem: &'static str, says: &'static str, error: f64, more: Vec<Condition>) -> Verdict {
+        let allowed = self.constants.distortion_allowed(&self.net);
+        let what = "psi0 - 1 within 6 epsilon of a seed is below what the net allows";
+        let mut conditions = vec![self.protected(), Condition::below(what, self.psi - 1.0, allowed - 1.0)];
+        conditions.extend(more);
+        let size = self.constants.size(&self.net, self.psi, error);
+        let none = if error.is_nan() { error } else { self.none() };
+        conditions.push(Condition::below(EDGE, self.size, size.unwrap_or(none)));
+        Verdict::new(theorem, says, conditions, self.doubt.clone()).asking(size.unwrap_or(0.0))
+    }
+
+    /// The greatest error of distances with which some canvas would do; 0 where none does without errors.
+    fn greatest_error(&self) -> f64 {
+        let is_enough = |error: f64| self.constants.size(&self.net, self.psi, error).is_some();
+        let (mut low, mut high) = (0.0, self.net.epsilon);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if is_enough(middle) { low = middle } else { high = middle }
         }
-        _ => Condition::below(EDGE, evidence.size, size),
-    };
-    let is_uniform = Condition::fact("the metric is the same everywhere", evidence.uniform.is_some());
-    Verdict::new("9.9", NERVE, vec![is_uniform, protected(evidence), edge], evidence.doubt.clone()).asking(size)
-}
-
-fn arbitrary(evidence: &Evidence) -> Verdict {
-    nerve("9.10", NERVE, evidence, 0.0, vec![])
-}
-
-fn with_errors(evidence: &Evidence) -> Verdict {
-    let error = evidence.distance_error;
-    let says = "the same, with the distances that the canvas computes";
-    // What errors leave of the sizing field: none where they are as large as the slack of the net.
-    let most = greatest_error(evidence);
-    nerve(
-        "9.4",
-        says,
-        evidence,
-        error,
-        vec![Condition::below("the error of distances is below what the net allows", error, most)],
-    )
-}
-
-fn nerve(
-    theorem: &'static str,
-    says: &'static str,
-    evidence: &Evidence,
-    error: f64,
-    mut conditions: Vec<Condition>,
-) -> Verdict {
-    let allowed = evidence.constants.distortion_allowed(&evidence.net);
-    let what = "psi0 - 1 within 6 epsilon of a seed is below what the net allows";
-    conditions.insert(0, protected(evidence));
-    conditions.insert(1, Condition::below(what, evidence.psi - 1.0, allowed - 1.0));
-    let size = evidence.constants.size(&evidence.net, evidence.psi, error);
-    let none = if error.is_nan() { error } else { none_of(evidence) };
-    conditions.push(Condition::below(EDGE, evidence.size, size.unwrap_or(none)));
-    let doubt = evidence.doubt.clone();
-    let verdict = Verdict::new(theorem, says, conditions, doubt);
-    size.map_or(verdict.clone(), |size| verdict.asking(size))
-}
-
-/// The greatest error of distances with which some canvas would do; 0 where none does without errors.
-fn greatest_error(evidence: &Evidence) -> f64 {
-    let (mut low, mut high) = (0.0, evidence.net.epsilon);
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        let is_enough = evidence.constants.size(&evidence.net, evidence.psi, middle).is_some();
-        if is_enough { low = middle } else { high = middle }
+        // Bisection never ends at 0.
+        if is_enough(0.0) { low } else { self.none() }
     }
-    // Bisection never ends at 0.
-    let is_none = evidence.constants.size(&evidence.net, evidence.psi, 0.0).is_none();
-    if is_none { none_of(evidence) } else { low }
-}
 
-/// The limit where no size would do: 0, but unknown where net or distortion was not measured.
-fn none_of(evidence: &Evidence) -> f64 {
-    if (evidence.net.epsilon + evidence.psi).is_nan() { f64::NAN } else { 0.0 }
-}
-
-fn geodesic_dual(evidence: &Evidence) -> Verdict {
-    let Convexity { radius, bend, .. } = evidence.convexity;
-    let conditions = vec![
-        Condition::below("epsilon is below a sixth of the convexity radius", evidence.net.epsilon, radius / 6.0),
-        Condition::above("no three vertices of a triangle are on a geodesic: sides' excess above 0", bend, 0.0),
-        // The dual of four cells that meet is no triangle.
-        protected(evidence),
-    ];
-    let doubt = evidence.doubt.clone().or_else(|| evidence.convexity.doubt());
-    Verdict::new("10.20", "the dual with geodesic edges is embedded", conditions, doubt)
-}
-
-fn straight_dual(evidence: &Evidence, geodesic: &Verdict) -> Verdict {
-    let (net, psi) = (&evidence.net, evidence.psi);
-    let least = evidence.constants.straightness(psi);
-    let mut conditions = vec![Condition::above("lambda^2 is above its bound", net.lambda().powi(2), least)];
-    if evidence.constants == Constants::Corrected {
-        let shift = centre_shift(net, psi).unwrap_or(f64::INFINITY);
-        conditions.push(Condition::below("circumcentres shift by less than psi0 epsilon", shift, psi * net.epsilon));
+    /// The limit where no size would do: 0, but unknown where net or distortion was not measured.
+    fn none(&self) -> f64 {
+        if (self.net.epsilon + self.psi).is_nan() { f64::NAN } else { 0.0 }
     }
-    let doubt = evidence.doubt.clone();
-    let open = || (geodesic.outcome != Outcome::Holds).then(|| "Theorem 10.20, which it builds on".to_string());
-    Verdict::new("11.2", "the dual with straight edges is embedded", conditions, doubt.or_else(open))
+
+    fn geodesic_dual(&self) -> Verdict {
+        let Convexity { radius, bend, .. } = self.convexity;
+        let conditions = vec![
+            Condition::below("epsilon is below a sixth of the convexity radius", self.net.epsilon, radius / 6.0),
+            Condition::above("no three vertices of a triangle are on a geodesic: sides' excess above 0", bend, 0.0),
+            // The dual of four cells that meet is no triangle.
+            self.protected(),
+        ];
+        let doubt = self.doubt.clone().or_else(|| self.convexity.doubt());
+        Verdict::new("10.20", "the dual with geodesic edges is embedded", conditions, doubt)
+    }
+
+    fn straight_dual(&self, geodesic: &Verdict) -> Verdict {
+        let (net, psi) = (&self.net, self.psi);
+        let least = self.constants.straightness(psi);
+        let mut conditions = vec![Condition::above("lambda^2 is above its bound", net.lambda().powi(2), least)];
+        if self.constants == Constants::Corrected {
+            let shift = centre_shift(net, psi).unwrap_or(f64::INFINITY);
+            let what = "circumcentres shift by less than psi0 epsilon";
+            conditions.push(Condition::below(what, shift, psi * net.epsilon));
+        }
+        let open = || (geodesic.outcome != Outcome::Holds).then(|| "Theorem 10.20, which it builds on".to_string());
+        let doubt = self.doubt.clone().or_else(open);
+        Verdict::new("11.2", "the dual with straight edges is embedded", conditions, doubt)
+    }
 }
 
 impl Verdict {
@@ -187,7 +167,7 @@ mod tests {
     }
 
     fn holding(evidence: &Evidence) -> Vec<&'static str> {
-        verdicts(evidence).into_iter().filter(Verdict::holds).map(|verdict| verdict.theorem).collect()
+        evidence.verdicts().into_iter().filter(Verdict::holds).map(|verdict| verdict.theorem).collect()
     }
 
     #[test]
@@ -212,12 +192,12 @@ mod tests {
     #[test]
     fn sizes_are_those_that_make_theorems_hold() {
         let varied = Evidence { uniform: None, psi: 1.002, ..evidence() };
-        let size = verdicts(&varied)[3].size.unwrap();
-        let with = |size: f64| verdicts(&Evidence { size, ..varied.clone() })[3].holds();
+        let size = varied.verdicts()[3].size.unwrap();
+        let with = |size: f64| (Evidence { size, ..varied.clone() }).verdicts()[3].holds();
         assert!(with(0.999 * size) && !with(1.001 * size));
         let far = Evidence { psi: 1.2, ..varied };
-        assert_eq!(verdicts(&far)[2].size, None);
-        assert!(verdicts(&far)[2].factor > 10.0);
+        assert_eq!(far.verdicts()[2].size, None);
+        assert!(far.verdicts()[2].factor > 10.0);
     }
 
     #[test]
@@ -225,7 +205,7 @@ mod tests {
         let with = |eigenvalues, euclidean_size| {
             let evidence =
                 Evidence { constants: Constants::Printed, uniform: Some(eigenvalues), euclidean_size, ..evidence() };
-            verdicts(&evidence)[1].holds()
+            evidence.verdicts()[1].holds()
         };
         let asked = Constants::Printed.uniform_size(&evidence().net);
         // In the metric 100 I a Euclidean length is ten times as long: the report lets it be a hundred times too long

@@ -3,7 +3,6 @@
 use crate::diagram::Diagram;
 use crate::geometry::Point;
 use crate::net::Ball;
-use crate::planar::Location;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation};
 use serde::Serialize;
 
@@ -80,8 +79,8 @@ fn between(diagram: &Diagram, mut door: HalfEdge, missing: u32) -> Option<(FaceI
     let topology = topology(diagram);
     for steps in 1..=topology.face_count() {
         let entry = topology.twin(door)?;
-        let third = diagram.label(topology.apex(entry)).colour;
-        let [from, to] = [topology.origin(entry), topology.target(entry)].map(|v| diagram.label(v).colour);
+        let [third] = diagram.colours_at([topology.apex(entry)]);
+        let [from, to] = diagram.colours_at(topology.ends(entry));
         if third == missing {
             return Some((entry.face(), steps));
         }
@@ -97,11 +96,7 @@ fn between(diagram: &Diagram, mut door: HalfEdge, missing: u32) -> Option<(FaceI
 fn start(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<FaceId> {
     let canvas = diagram.canvas();
     let planar = canvas.embedded();
-    let face = match canvas.locate(at)? {
-        Location::Face(f) => f,
-        Location::Edge(h) | Location::Behind(h) => h.face(),
-        Location::Vertex(v) => planar.topology.start(v)?.face(),
-    };
+    let face = canvas.face_of(canvas.locate(at)?)?;
     let topology = topology(diagram);
     let own = planar.topology.corners(face);
     let near = own.into_iter().flat_map(|v| topology.star(v).map(HalfEdge::face));
@@ -121,17 +116,17 @@ fn start(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<FaceId> {
 }
 
 fn is_door(diagram: &Diagram, h: HalfEdge) -> bool {
-    let topology = topology(diagram);
-    diagram.label(topology.origin(h)).colour != diagram.label(topology.target(h)).colour
+    let [from, to] = diagram.colours_at(topology(diagram).ends(h));
+    from != to
 }
 
 fn middle(diagram: &Diagram, h: HalfEdge) -> Point {
-    let topology = topology(diagram);
-    diagram.canvas().position(topology.origin(h)).midpoint(diagram.canvas().position(topology.target(h)))
+    let [p, q] = topology(diagram).ends(h).map(|v| diagram.canvas().position(v));
+    p.midpoint(q)
 }
 
 fn colours_of(diagram: &Diagram, f: FaceId) -> [u32; 3] {
-    topology(diagram).corners(f).map(|v| diagram.label(v).colour)
+    diagram.colours_at(topology(diagram).corners(f))
 }
 
 fn topology<'a>(diagram: &Diagram<'a>) -> &'a Triangulation {

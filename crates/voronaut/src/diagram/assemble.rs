@@ -1,9 +1,9 @@
 //! From the nerve to a mesh: its straight realisation (RR-9103, sections 11 and 14: SRDT), and the canvas as a mesh.
 
-use super::{Diagram, Nerve, NerveTriangle, SurfaceDiagram};
+use super::{Diagram, Ground, Nerve, NerveTriangle};
 use crate::domain::Domain;
 use crate::mesh::Mesh;
-use crate::triangulation::{VertexId, smallest_first};
+use crate::triangulation::smallest_first;
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Diagram<'_> {
@@ -46,34 +46,18 @@ impl Diagram<'_> {
         };
         triangles.iter().map(region).collect()
     }
-
-    /// The canvas as a mesh, its vertices labelled by colour (-1 where no seed reaches), and their distances.
-    pub fn to_coloured_canvas(&self) -> (Mesh, Vec<f64>) {
-        let embedded = self.ground.canvas.embedded();
-        let faces = || embedded.topology.faces();
-        let mesh = Mesh {
-            points: embedded.positions.iter().map(|p| [p.x, p.y, 0.0]).collect(),
-            point_labels: self.propagation.labels().iter().map(|l| l.colour.cast_signed()).collect(),
-            triangles: faces().map(|f| embedded.topology.corners(f).map(|v| v.0)).collect(),
-            triangle_labels: faces().map(|f| embedded.topology.region(f)).collect(),
-            ..Mesh::default()
-        };
-        (mesh, self.propagation.labels().iter().map(|l| l.distance).collect())
-    }
 }
 
-impl SurfaceDiagram<'_> {
-    /// The canvas as a mesh with the region labels of the surface, its vertices labelled by colour (-1 where no seed reaches),
-    /// and their distances.
-    pub fn to_coloured_surface(&self) -> (Mesh, Vec<f64>) {
-        let draped = self.canvas().draped();
-        let (topology, own) = (draped.topology(), draped.input().surface.topology());
-        let vertices = (0..self.vertex_count() as u32).map(VertexId);
+impl<'a, G: Ground<'a>> Diagram<'a, G> {
+    /// The canvas as a mesh with the region labels of the domain or surface, its vertices labelled by colour (-1 where no seed
+    /// reaches), and their distances.
+    pub fn to_coloured_canvas(&self) -> (Mesh, Vec<f64>) {
+        let embedded = self.ground.embedded();
         let mesh = Mesh {
-            points: vertices.map(|v| draped.position(v).to_array()).collect(),
+            points: self.vertices().map(|v| self.ground.coordinates(v)).collect(),
             point_labels: self.propagation.labels().iter().map(|l| l.colour.cast_signed()).collect(),
-            triangles: topology.faces().map(|f| topology.corners(f).map(|v| v.0)).collect(),
-            triangle_labels: topology.faces().map(|f| own.region(draped.home(f))).collect(),
+            triangles: embedded.faces().map(|f| embedded.corners(f).map(|v| v.0)).collect(),
+            triangle_labels: embedded.faces().map(|f| self.ground.region(f)).collect(),
             ..Mesh::default()
         };
         (mesh, self.propagation.labels().iter().map(|l| l.distance).collect())

@@ -11,7 +11,7 @@ use super::overlap::Overlap;
 use crate::geodesic::NO_COLOUR;
 use crate::geometry::Point;
 use crate::parallel::prelude::*;
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, VertexId, distinct};
 
 /// The cells of a diagram as plain data, in the user's coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -54,7 +54,7 @@ impl Diagram<'_> {
         let cutter = Cutter::new(self);
         let mut pieces = cutter.pieces();
         let topology = &self.ground.canvas.embedded().topology;
-        let borders = topology.faces().flat_map(FaceId::half_edges).filter(|&h| topology.twin(h).is_none());
+        let borders = topology.borders();
         let mut loops: Vec<Piece> =
             borders.map(|h| Piece { colour: 0, from: topology.origin(h).0, to: topology.target(h).0 }).collect();
         let mut outlines = vec![Vec::new(); self.colours()];
@@ -114,7 +114,7 @@ impl<'d, 'a> Cutter<'d, 'a> {
         for f in topology.faces() {
             self.cut(f, &mut pieces);
             for h in f.half_edges().into_iter().filter(|&h| topology.twin(h).is_none()) {
-                let [u, v] = [topology.origin(h), topology.target(h)];
+                let [u, v] = topology.ends(h);
                 if self.colour(u) == self.colour(v) {
                     pieces.push(Piece { colour: self.colour(u), from: u.0, to: v.0 });
                 } else {
@@ -186,7 +186,7 @@ impl<'d, 'a> Cutter<'d, 'a> {
         let half_edges = self.vertices() as u32..(self.vertices() + 3 * topology.face_slots()) as u32;
         let crossed =
             chain.iter().filter(|node| half_edges.contains(node)).map(|node| HalfEdge(node - half_edges.start));
-        let beside = crossed.flat_map(|h| [topology.origin(h), topology.target(h)]);
+        let beside = crossed.flat_map(|h| topology.ends(h));
         let mut own = beside.filter(|&v| self.colour(v) == colour).peekable();
         own.peek().is_some() && own.all(|v| self.is_orphan[v.index()])
     }
@@ -194,7 +194,7 @@ impl<'d, 'a> Cutter<'d, 'a> {
     /// Where the border between the cells of an edge's ends crosses it.
     fn crossing(&self, h: HalfEdge) -> Point {
         let embedded = self.diagram.ground.canvas.embedded();
-        let ends = [embedded.topology.origin(h), embedded.topology.target(h)];
+        let ends = embedded.topology.ends(h);
         let [p, q] = embedded.ends(h);
         let lead = ends.map(|v| self.square(v, self.colour(ends[1])) - self.square(v, self.colour(ends[0])));
         let t = lead[0] / (lead[0] - lead[1]);
@@ -229,12 +229,9 @@ impl<'d, 'a> Cutter<'d, 'a> {
 
     fn neighbours(&self) -> Vec<[u32; 2]> {
         let topology = &self.diagram.ground.canvas.embedded().topology;
-        let ends = topology.edges().map(|h| [topology.origin(h), topology.target(h)].map(|v| self.colour(v)));
+        let ends = topology.edges().map(|h| topology.ends(h).map(|v| self.colour(v)));
         let border = ends.filter(|&[a, b]| a != b && a != NO_COLOUR && b != NO_COLOUR);
-        let mut pairs: Vec<[u32; 2]> = border.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
-        pairs
+        distinct(border.map(|[a, b]| [a.min(b), a.max(b)]))
     }
 }
 

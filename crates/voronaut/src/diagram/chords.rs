@@ -1,10 +1,10 @@
 //! Distances straight through the plane, in a metric that is frozen: the diagrams of Du and Wang and of Labelle and
 //! Shewchuk ([`super::Kind`]).
 
-use super::Seed;
-use super::ground::{Flat, Straight};
+use super::ground::Straight;
 use super::kind::Chords;
 use super::nearest::{Nearest, Site};
+use super::{Flat, Seed};
 use crate::geodesic::{Label, MarchCounters, Propagation};
 use crate::geometry::Point;
 use crate::parallel::prelude::*;

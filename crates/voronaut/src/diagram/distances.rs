@@ -1,23 +1,24 @@
 //! Distances from given points by any of the methods, and the ways back.
 
-use super::descend::Descent;
+use super::descend::{At, Descent};
 use super::seeds::{Care, Start};
-use super::unfold::OnEdge;
 use super::{Diagram, Flat, Ground, Measure, solver};
-use crate::canvas::{Border, Canvas};
-use crate::error::Result;
+use crate::canvas::{Border, Canvas, Draped, Way};
+use crate::error::{Error, Result};
 use crate::geodesic::{Heat, MarchCounters, Method, Polyline, Sources, bowed_chord, straighten};
-use crate::geometry::Point;
+use crate::geometry::{Point, Point3};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::triangulation::{FaceId, VertexId};
 
-/// The distance of every canvas vertex from the nearest of given places: of the plane, or a
-/// [`SurfaceDistances`](super::SurfaceDistances).
+/// A place on an edge: its ends, and the share of the way from the first to the second; a vertex twice for that.
+type OnEdge = ([VertexId; 2], f64);
+
+/// The distance of every canvas vertex from the nearest of given places: of the plane, or a [`SurfaceDistances`].
 pub struct Distances<'a, G: Ground<'a> = Flat<'a>> {
-    pub(super) ground: G,
+    ground: G,
     method: Method,
-    pub(super) from: Vec<G::Place>,
+    from: Vec<G::Place>,
     starts: Vec<Vec<Start>>,
     values: Vec<f64>,
     parents: Vec<Option<VertexId>>,
@@ -25,7 +26,7 @@ pub struct Distances<'a, G: Ground<'a> = Flat<'a>> {
 }
 
 impl<'a, G: Ground<'a>> Distances<'a, G> {
-    pub(super) fn by_method(ground: G, from: &[G::Place], method: Method) -> Result<Self> {
+    fn by_method(ground: G, from: &[G::Place], method: Method) -> Result<Self> {
         let starts = ground.starts_of_all(from, false, Care::Full)?;
         let (values, parents, counters) = match method {
             Method::Lbr => (ground.on_lattice(from, &starts)?, Vec::new(), None),
@@ -33,9 +34,8 @@ impl<'a, G: Ground<'a>> Distances<'a, G> {
             _ => {
                 let ways = Measure::Ways(solver(ground, method)?);
                 let diagram = Diagram::made(ground, from, starts.clone(), ways);
-                let vertices = || (0..diagram.vertex_count() as u32).map(VertexId);
-                let parents = vertices().map(|v| diagram.parent(v)).collect();
-                (vertices().map(|v| diagram.distance(v)).collect(), parents, Some(*diagram.counters()))
+                let parents = diagram.vertices().map(|v| diagram.parent(v)).collect();
+                (diagram.vertices().map(|v| diagram.distance(v)).collect(), parents, Some(*diagram.counters()))
             }
         };
         Ok(Self { ground, method, from: from.to_vec(), starts, values, parents, counters })
@@ -44,11 +44,6 @@ impl<'a, G: Ground<'a>> Distances<'a, G> {
     /// The metric distances of the canvas vertices, in order; infinite where no point is reached.
     pub fn values(&self) -> &[f64] {
         &self.values
-    }
-
-    /// How they were computed.
-    pub(crate) fn method(&self) -> Method {
-        self.method
     }
 
     /// Work of the method, where it propagates.
@@ -61,29 +56,37 @@ impl<'a, G: Ground<'a>> Distances<'a, G> {
         self.parents.get(v.index()).copied().flatten()
     }
 
+    /// What goes down these distances.
+    fn descend<T>(&self, go: impl FnOnce(&Descent<'_, G>) -> T) -> T {
+        let distance = |v: VertexId| self.values[v.index()];
+        go(&Descent { ground: self.ground, distance: &distance, parent: &|v| self.parent(v) })
+    }
+
     /// The lines of equal distance at these distances: pieces within embedded canvas faces, by where they begin and end.
-    pub(super) fn pieces<'b>(&'b self, levels: &'b [f64]) -> impl Iterator<Item = [OnEdge; 2]> + 'b {
+    fn pieces<'b>(&'b self, levels: &'b [f64]) -> impl Iterator<Item = [OnEdge; 2]> + 'b {
         let embedded = self.ground.embedded();
         let corners = move |f: FaceId| embedded.corners(f).map(|v| (v, self.values[v.index()]));
         let reached = embedded.faces().map(corners).filter(|corners| corners.iter().all(|c| c.1.is_finite()));
         reached.flat_map(|corners| levels.iter().filter_map(move |&level| piece(corners, level)))
     }
 
-    /// The embedded canvas as a mesh, and with a path as labelled edges between points of its own, behind the others. Points
-    /// are labelled 0, those of the path 1.
-    pub(super) fn mesh_with(&self, points: &[[f64; 3]], along: &[[f64; 3]], label: impl Fn(FaceId) -> i32) -> Mesh {
+    /// The embedded canvas as a mesh with the distances of its points, and with a path, by its points and their distances, as
+    /// labelled edges between points of its own, behind the others. Points are labelled 0, those of the path 1.
+    fn mesh_with(&self, along: &[[f64; 3]], distances: impl Iterator<Item = f64>) -> (Mesh, Vec<f64>) {
         let embedded = self.ground.embedded();
-        let first = points.len() as u32;
+        let first = self.values.len() as u32;
         let segments = along.len().saturating_sub(1) as u32;
-        Mesh {
-            point_labels: [vec![0; points.len()], vec![1; along.len()]].concat(),
-            points: [points, along].concat(),
+        let vertices = (0..first).map(|v| self.ground.coordinates(VertexId(v)));
+        let mesh = Mesh {
+            point_labels: [vec![0; first as usize], vec![1; along.len()]].concat(),
+            points: vertices.chain(along.iter().copied()).collect(),
             triangles: embedded.faces().map(|f| embedded.corners(f).map(|v| v.0)).collect(),
-            triangle_labels: embedded.faces().map(label).collect(),
+            triangle_labels: embedded.faces().map(|f| self.ground.region(f)).collect(),
             edges: (first..first + segments).map(|v| [v, v + 1]).collect(),
             edge_labels: vec![1; segments as usize],
             ..Mesh::default()
-        }
+        };
+        (mesh, self.values.iter().copied().chain(distances).collect())
     }
 }
 
@@ -120,7 +123,7 @@ impl<'a> Distances<'a> {
     /// Metric length of a side of a face.
     fn side(&self, v: VertexId, u: VertexId) -> f64 {
         let topology = self.ground.embedded();
-        topology.find(v, u).or_else(|| topology.find(u, v)).map_or(0.0, |h| topology.length(h))
+        topology.edge_between(v, u).map_or(0.0, |h| topology.length(h))
     }
 
     /// The way from a point of the domain to the nearest of the given points: with [`Method::March`] the geodesic
@@ -133,10 +136,7 @@ impl<'a> Distances<'a> {
         let Flat { canvas, field } = self.ground;
         let seeds: Vec<(Point, &[Start])> =
             self.from.iter().zip(&self.starts).map(|(&at, starts)| (at, starts.as_slice())).collect();
-        let distance = |v: VertexId| self.values[v.index()];
-        let parent = |v: VertexId| self.parent(v);
-        let descent = Descent { canvas, field, seeds: &seeds, distance: &distance, parent: &parent };
-        let points = descent.trace(to)?;
+        let points = self.descend(|descent| descent.polyline(to, &seeds))?;
         if self.method == Method::March {
             return Ok(straighten(field, &points, &Border::of(canvas)));
         }
@@ -146,20 +146,91 @@ impl<'a> Distances<'a> {
     /// The canvas as a mesh with the distances of its points, and with a path as labelled edges between points of its own,
     /// behind the others, if there is one. Points are labelled 0, those of the path 1.
     pub fn to_mesh(&self, path: Option<&Polyline>) -> (Mesh, Vec<f64>) {
-        let embedded = self.ground.canvas.embedded();
         let along: &[Point] = path.map_or(&[], |path| &path.points);
-        let flat = |p: &Point| [p.x, p.y, 0.0];
-        let points: Vec<[f64; 3]> = embedded.positions.iter().map(flat).collect();
-        let along_flat: Vec<[f64; 3]> = along.iter().map(flat).collect();
-        let mesh = self.mesh_with(&points, &along_flat, |f| embedded.topology.region(f));
-        let of_path = along.iter().map(|&p| self.at(p).unwrap_or(f64::INFINITY));
-        (mesh, self.values.iter().copied().chain(of_path).collect())
+        let flat: Vec<[f64; 3]> = along.iter().map(|p| [p.x, p.y, 0.0]).collect();
+        self.mesh_with(&flat, along.iter().map(|&p| self.at(p).unwrap_or(f64::INFINITY)))
     }
 
     /// The lines of equal distance at these distances: pieces within canvas faces, two points each.
     pub fn isolines(&self, levels: &[f64]) -> Vec<[Point; 2]> {
         let canvas = self.ground.canvas;
         let at = |([a, b], t): OnEdge| canvas.position(a).lerp(canvas.position(b), t);
+        self.pieces(levels).map(|piece| piece.map(at)).collect()
+    }
+}
+
+/// The distance of every vertex of a surface's canvas from the nearest of given vertices.
+pub type SurfaceDistances<'a> = Distances<'a, &'a Canvas<Draped<'a>>>;
+
+impl<'a> SurfaceDistances<'a> {
+    /// Distances by a method from vertices of a surface's canvas, which was made with them.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] of what is no canvas vertex; [`Error::Unsupported`] of [`Method::Lbr`];
+    /// [`Error::Unsupported`] where rounding leaves heat no factor.
+    pub fn on_surface(canvas: &'a Canvas<Draped<'a>>, from: &[VertexId], method: Method) -> Result<Self> {
+        Self::by_method(canvas, from, method)
+    }
+
+    /// The way from a canvas vertex to the nearest of the given ones: with [`Method::March`] the geodesic
+    /// ([`Draped::geodesic`]); else down the method's own distances, by their gradient in each face and by parents where that
+    /// does not lead on, as good as these distances are.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where the distances lead to none of the given vertices.
+    pub fn path(&self, to: VertexId) -> Result<Way> {
+        let draped = self.ground.draped();
+        let way = if self.method == Method::March {
+            let back = std::iter::successors(Some(to), |&v| self.parent(v)).last();
+            back.filter(|last| self.from.contains(last)).and_then(|last| draped.geodesic(to, last))
+        } else {
+            self.descend(|descent| draped.way_along(self.down(descent, to)?))
+        };
+        way.ok_or_else(|| {
+            let help = "take a point of the surface that is reached, or a finer canvas";
+            Error::domain("no way from there", draped.position(to).to_string(), help)
+        })
+    }
+
+    /// From a vertex down to a corner of a face that is one of the given vertices.
+    fn down(&self, descent: &Descent<'_, &'a Canvas<Draped<'a>>>, from: VertexId) -> Option<Vec<OnEdge>> {
+        let topology = self.ground.embedded();
+        let is_given = |v: &VertexId| self.from.contains(v);
+        let (way, end) = descent.trace(At::Vertex(from), |at| match at {
+            At::Vertex(v) => Some(v).filter(is_given),
+            At::Face(_, f, _) => topology.corners(f).into_iter().find(is_given),
+        })?;
+        let on_edge = |at: At| match at {
+            At::Vertex(v) => ([v, v], 0.0),
+            At::Face(p, f, entered) => {
+                let h = entered.unwrap_or(f.half_edges()[0]);
+                let [a, b, _] = descent.corners(h);
+                (topology.ends(h), a.distance(p) / a.distance(b))
+            }
+        };
+        let mut on: Vec<OnEdge> = way.into_iter().chain([At::Vertex(end)]).map(on_edge).collect();
+        on.dedup();
+        Some(on)
+    }
+
+    /// The distance of a point of an edge, interpolated as in flat space.
+    fn on_edge(&self, ([a, b], t): OnEdge) -> f64 {
+        let [at_a, at_b] = [a, b].map(|v| self.values[v.index()]);
+        let length = self.ground.draped().length_between(a, b);
+        ((1.0 - t) * at_a * at_a + t * at_b * at_b - t * (1.0 - t) * length * length).max(0.0).sqrt()
+    }
+
+    /// The canvas as a mesh with the distances of its points, and with a path as labelled edges between points of its own,
+    /// behind the others, if there is one. Points are labelled 0, those of the path 1; triangles as those of the surface.
+    pub fn to_mesh(&self, path: Option<&Way>) -> (Mesh, Vec<f64>) {
+        let along: Vec<[f64; 3]> = path.iter().flat_map(|path| &path.points).map(|p| p.to_array()).collect();
+        self.mesh_with(&along, path.iter().flat_map(|path| &path.on).map(|&on| self.on_edge(on)))
+    }
+
+    /// The lines of equal distance at these distances: pieces within the triangles of the canvas, two points each.
+    pub fn isolines(&self, levels: &[f64]) -> Vec<[Point3; 2]> {
+        let draped = self.ground.draped();
+        let at = |([a, b], t): OnEdge| draped.position(a).lerp(draped.position(b), t);
         self.pieces(levels).map(|piece| piece.map(at)).collect()
     }
 }

@@ -74,7 +74,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// The pairs of cells whose border crosses an edge.
     fn borders_on(&self, overlap: &Overlap, h: HalfEdge) -> Vec<NerveEdge> {
         let topology = self.ground.topology();
-        let near = near(overlap, [topology.origin(h), topology.target(h)]);
+        let near = near(overlap, topology.ends(h));
         let border = topology.twin(h).is_none().then_some(h);
         let mut found = Vec::new();
         for i in 0..near.len() {

@@ -1,7 +1,6 @@
 //! The nerve as it hangs together: one triangle for every canvas face of three colours, glued along the borders of cells.
 
 use super::{Diagram, Ground};
-use crate::geodesic::NO_COLOUR;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation};
 
 impl<'a, G: Ground<'a>> Diagram<'a, G> {
@@ -12,12 +11,11 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// those of the seeds; the list has the seeds of these.
     pub(crate) fn glued_nerve(&self) -> (Triangulation, Vec<u32>) {
         let topology = self.ground.topology();
-        let colours = |f: FaceId| topology.corners(f).map(|v| self.label(v).colour);
-        let is_triangle = |[a, b, c]: [u32; 3]| a != b && b != c && c != a && ![a, b, c].contains(&NO_COLOUR);
-        let witnesses: Vec<FaceId> = topology.faces().filter(|&f| is_triangle(colours(f))).collect();
+        let witnesses: Vec<FaceId> =
+            topology.faces().filter(|&f| self.three_colours(topology.corners(f)).is_some()).collect();
         let mut number = vec![u32::MAX; topology.face_slots()];
         (0..).zip(&witnesses).for_each(|(i, f)| number[f.index()] = i);
-        let triangles: Vec<[u32; 3]> = witnesses.iter().map(|&f| colours(f)).collect();
+        let triangles: Vec<[u32; 3]> = witnesses.iter().map(|&f| self.colours_at(topology.corners(f))).collect();
         let beyond = |h: HalfEdge| {
             let end = self.follow(h, &number)?;
             Some(3 * number[end.face().index()] + (end.index() % 3) as u32)
@@ -36,22 +34,19 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// which that is entered; `None` where the border of the domain comes first.
     fn follow(&self, from: HalfEdge, number: &[u32]) -> Option<HalfEdge> {
         let topology = self.ground.topology();
-        let colour = |v| self.label(v).colour;
         let mut side = topology.twin(from)?;
         // A border between cells crosses each face once.
         for _ in 0..topology.face_slots() {
             if number[side.face().index()] != u32::MAX {
                 return Some(side);
             }
-            let apex = colour(topology.apex(side));
-            let out = if apex == colour(topology.origin(side)) {
-                side.next()
-            } else if apex == colour(topology.target(side)) {
-                side.prev()
-            } else {
-                return None;
-            };
-            side = topology.twin(out)?;
+            let [apex, origin, target] =
+                self.colours_at([topology.apex(side), topology.origin(side), topology.target(side)]);
+            side = topology.twin(match apex {
+                _ if apex == origin => side.next(),
+                _ if apex == target => side.prev(),
+                _ => return None,
+            })?;
         }
         None
     }

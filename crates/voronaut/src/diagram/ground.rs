@@ -1,15 +1,14 @@
 //! What a diagram lies on: a canvas of the plane or of a surface, with the metric it was made with.
 
 use super::kind::Chords;
-use super::lattice;
 use super::seeds::{self, Care, Start};
-use super::{Measure, Seed, SurfaceDiagram};
-use crate::canvas::{Canvas, Draped, StarSet};
+use super::{Flat, Measure, Seed, SurfaceDiagram};
+use crate::canvas::{Border, Canvas, Draped, StarSet};
 use crate::error::{Error, Result};
-use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Marching, Method, Propagation, Stvd};
-use crate::geometry::Point;
-use crate::metric::MetricField;
-use crate::triangulation::{Triangulation, VertexId};
+use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Propagation, Stvd, layout};
+use crate::geometry::{Aabb, Point, Tensor};
+use crate::planar::Location;
+use crate::triangulation::{FaceId, Triangulation, VertexId};
 use std::convert::Infallible;
 
 /// A canvas with its metric. All that a diagram knows of the plane or of a surface it knows through this.
@@ -27,6 +26,14 @@ pub trait Ground<'a>: Copy + Send + Sync {
     fn stars(&self) -> Option<&'a StarSet>;
     /// Where a canvas vertex is.
     fn place(&self, v: VertexId) -> Self::Place;
+    /// The coordinates of a canvas vertex.
+    fn coordinates(&self, v: VertexId) -> [f64; 3];
+    /// The label that the domain or the surface has where a face of [`Ground::embedded`] is.
+    fn region(&self, f: FaceId) -> i32;
+    /// The corners of a face of [`Ground::embedded`], laid out in the plane.
+    fn triangle(&self, f: FaceId) -> [Point; 3];
+    /// The metric at a place of a face, as that is laid out.
+    fn metric(&self, at: Point) -> Tensor;
     /// What methods without triangles travel on.
     fn graph(&self) -> Graph;
     /// The starts of a seed.
@@ -56,13 +63,6 @@ pub trait Straight<'a, G: Ground<'a>> {
     fn propagate(&self, ground: G, seeds: &[Option<Seed<G::Place>>]) -> Propagation;
 }
 
-/// A canvas of the plane.
-#[derive(Clone, Copy)]
-pub struct Flat<'a> {
-    pub(super) canvas: &'a Canvas,
-    pub(super) field: &'a dyn MetricField,
-}
-
 impl<'a> Ground<'a> for Flat<'a> {
     type Place = Point;
     type Straight = Chords;
@@ -83,24 +83,57 @@ impl<'a> Ground<'a> for Flat<'a> {
         self.canvas.position(v)
     }
 
+    fn coordinates(&self, v: VertexId) -> [f64; 3] {
+        let Point { x, y } = self.canvas.position(v);
+        [x, y, 0.0]
+    }
+
+    fn region(&self, f: FaceId) -> i32 {
+        self.embedded().region(f)
+    }
+
+    fn triangle(&self, f: FaceId) -> [Point; 3] {
+        self.canvas.embedded().triangle(f)
+    }
+
+    fn metric(&self, at: Point) -> Tensor {
+        self.field.at(at)
+    }
+
     fn graph(&self) -> Graph {
         self.canvas.graph(self.field)
     }
 
     fn starts(&self, seed: Point) -> Result<Vec<Start>> {
-        seeds::starts(self.canvas, self.field, seed)
+        let location = self.canvas.locate(seed).ok_or_else(|| seeds::outside(seed.to_string()))?;
+        Ok(seeds::starts_in(*self, seed, &seeds::places(self.canvas, location), Care::Full))
     }
 
     fn starts_of_all(&self, seeds: &[Point], are_vertices: bool, care: Care) -> Result<Vec<Vec<Start>>> {
-        seeds::starts_of_all(self.canvas, self.field, seeds, are_vertices, care)
+        seeds::starts_of_all(*self, seeds, are_vertices, care)
     }
 
     fn starts_at_vertex(&self, v: VertexId, care: Care) -> Vec<Start> {
-        seeds::starts_at_vertex(self.canvas, self.field, v, care)
+        seeds::starts_in(*self, self.place(v), &seeds::places(self.canvas, Location::Vertex(v)), care)
     }
 
+    /// By [`Lattice`] on as many nodes as the canvas has vertices; vertices in sight of a point have the length of the way
+    /// there.
     fn on_lattice(&self, from: &[Point], starts: &[Vec<Start>]) -> Result<Vec<f64>> {
-        Ok(lattice::distances(self.canvas, self.field, from, starts))
+        let Flat { canvas, field } = *self;
+        let positions = &canvas.embedded().positions;
+        let Some(bounds) = Aabb::of(positions.iter().copied()) else { return Ok(Vec::new()) };
+        let extent = bounds.extent();
+        // What of the box is outside the domain costs no nodes.
+        let nodes = positions.len() as f64 * (extent.x * extent.y / canvas.embedded().area()).min(100.0);
+        let border = Border::of(canvas);
+        let is_inside = |points: &[Point]| canvas.locate_all(points).iter().map(Option::is_some).collect();
+        let mut values = Lattice::new(bounds, nodes as usize, field, is_inside, &border).distances(from, positions);
+        for start in starts.iter().flatten() {
+            let value = &mut values[start.vertex.index()];
+            *value = value.min(start.distance);
+        }
+        Ok(values)
     }
 }
 
@@ -123,6 +156,25 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
 
     fn place(&self, v: VertexId) -> VertexId {
         v
+    }
+
+    fn coordinates(&self, v: VertexId) -> [f64; 3] {
+        self.draped().position(v).to_array()
+    }
+
+    fn region(&self, f: FaceId) -> i32 {
+        self.draped().input().surface.topology().region(self.draped().home(f))
+    }
+
+    /// By its metric lengths, in which the metric is Euclidean.
+    fn triangle(&self, f: FaceId) -> [Point; 3] {
+        let [base, to_end, to_start] = f.half_edges().map(|h| self.embedded().length(h));
+        let (x, y) = layout(base, to_start, to_end);
+        [Point::default(), Point::new(base, 0.0), Point::new(x, y)]
+    }
+
+    fn metric(&self, _at: Point) -> Tensor {
+        Tensor::IDENTITY
     }
 
     fn graph(&self) -> Graph {
@@ -168,9 +220,7 @@ impl<'a> SurfaceDiagram<'a> {
     /// # Errors
     /// [`Error::Domain`] of a seed that is no canvas vertex; [`Error::Unsupported`] of a method that does not drive diagrams.
     pub fn on_surface(canvas: &'a Canvas<Draped<'a>>, seeds: &[VertexId], method: Method) -> Result<Self> {
-        method.demand_diagrams()?;
-        let starts = canvas.starts_of_all(seeds, false, Care::Full)?;
-        Ok(Self::made(canvas, seeds, starts, Measure::Ways(solver(canvas, method)?)))
+        Self::of_seeds(canvas, seeds, false, Care::Full, Measure::Ways(solver(canvas, method)?))
     }
 
     /// The canvas.
@@ -188,7 +238,7 @@ pub(super) fn solver<'a, G: Ground<'a>>(ground: G, method: Method) -> Result<Box
     Ok(match method {
         Method::March | Method::Lbr | Method::Heat => Box::new(Marching::on(ground.topology())),
         Method::Stvd { window } => Box::new(Stvd::on(ground.graph(), window)),
-        Method::Dijkstra => Box::new(Dijkstra::on(ground.graph())),
-        Method::Konukoglu => Box::new(Konukoglu::on(ground.graph())),
+        Method::Dijkstra => Box::new(Dijkstra(ground.graph())),
+        Method::Konukoglu => Box::new(Konukoglu(ground.graph())),
     })
 }

@@ -13,30 +13,23 @@ mod envelope;
 mod glued;
 mod ground;
 mod kind;
-mod lattice;
 mod nearest;
 mod nerve;
 mod orphans;
 mod overlap;
-mod passes;
 mod paths;
 mod resolve;
 mod seeds;
-mod surface_distances;
 #[cfg(test)]
 mod test_diagrams;
-mod unfold;
-mod witnesses;
 
 pub use cells::{Cells, Outline};
-pub use distances::Distances;
-pub use ground::{Flat, Ground};
+pub use distances::{Distances, SurfaceDistances};
+pub use ground::Ground;
 pub use kind::Kind;
-pub use nerve::{Nerve, NerveEdge, NerveTriangle};
+pub use nerve::{Nerve, NerveEdge, NerveTriangle, Witnesses};
 pub use paths::Paths;
 pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
-pub use surface_distances::SurfaceDistances;
-pub use witnesses::Witnesses;
 
 use crate::canvas::{Canvas, Draped};
 use crate::error::{Error, Result};
@@ -59,6 +52,13 @@ pub struct Diagram<'a, G: Ground<'a> = Flat<'a>> {
     sources: Sources,
     propagation: Propagation,
     overlap: OnceLock<Overlap>,
+}
+
+/// A canvas of the plane.
+#[derive(Clone, Copy)]
+pub struct Flat<'a> {
+    canvas: &'a Canvas,
+    field: &'a dyn MetricField,
 }
 
 /// The diagram of seeds on a surface.
@@ -99,8 +99,8 @@ impl<'a> Diagram<'a> {
         vertices: &[Point],
         method: Method,
     ) -> Result<Self> {
-        let starts = seeds::starts_of_all(canvas, field, vertices, true, Care::Full)?;
-        Ok(Self::from_starts(canvas, field, vertices, starts, solver(Flat { canvas, field }, method)?))
+        let ground = Flat { canvas, field };
+        Self::of_seeds(ground, vertices, true, Care::Full, Measure::Ways(solver(ground, method)?))
     }
 
     /// [`Diagram::of_vertices`] with distances that are poorer around seeds where the metric varies much, for a tenth of
@@ -113,8 +113,8 @@ impl<'a> Diagram<'a> {
         field: &'a dyn MetricField,
         vertices: &[Point],
     ) -> Result<Self> {
-        let starts = seeds::starts_of_all(canvas, field, vertices, true, Care::Quick)?;
-        Ok(Self::from_starts(canvas, field, vertices, starts, Box::new(Marching::on(canvas.topology()))))
+        let ways = Measure::Ways(Box::new(Marching::on(canvas.topology())));
+        Self::of_seeds(Flat { canvas, field }, vertices, true, Care::Quick, ways)
     }
 
     /// The diagram of seeds by a solver.
@@ -127,8 +127,7 @@ impl<'a> Diagram<'a> {
         seeds: &[Point],
         solver: impl Geodesic + 'a,
     ) -> Result<Self> {
-        let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Full)?;
-        Ok(Self::from_starts(canvas, field, seeds, starts, Box::new(solver)))
+        Self::of_seeds(Flat { canvas, field }, seeds, false, Care::Full, Measure::Ways(Box::new(solver)))
     }
 
     /// The diagram of seeds by one of the methods, on what of the canvas it travels on.
@@ -141,8 +140,8 @@ impl<'a> Diagram<'a> {
         seeds: &[Point],
         method: Method,
     ) -> Result<Self> {
-        let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Full)?;
-        Ok(Self::from_starts(canvas, field, seeds, starts, solver(Flat { canvas, field }, method)?))
+        let ground = Flat { canvas, field };
+        Self::of_seeds(ground, seeds, false, Care::Full, Measure::Ways(solver(ground, method)?))
     }
 
     /// The diagram of a kind; a method is for the Riemannian one.
@@ -161,34 +160,20 @@ impl<'a> Diagram<'a> {
             Kind::DuWang => Chords::InMetricOfPlace,
             Kind::LabelleShewchuk => Chords::InMetricOfSeed,
         };
-        let starts = seeds::starts_of_all(canvas, field, seeds, false, Care::Quick)?;
+        let ground = Flat { canvas, field };
+        let starts = ground.starts_of_all(seeds, false, Care::Quick)?;
         check_field(field, seeds.iter().copied())?;
-        Ok(Self::measured(canvas, field, seeds, starts, Measure::Chords(chords)))
-    }
-
-    fn from_starts(
-        canvas: &'a Canvas,
-        field: &'a dyn MetricField,
-        seeds: &[Point],
-        starts: Vec<Vec<Start>>,
-        solver: Box<dyn Geodesic + 'a>,
-    ) -> Self {
-        Self::measured(canvas, field, seeds, starts, Measure::Ways(solver))
-    }
-
-    fn measured(
-        canvas: &'a Canvas,
-        field: &'a dyn MetricField,
-        seeds: &[Point],
-        starts: Vec<Vec<Start>>,
-        measure: Measure<'a, Flat<'a>>,
-    ) -> Self {
-        Self::made(Flat { canvas, field }, seeds, starts, measure)
+        Ok(Self::made(ground, seeds, starts, Measure::Chords(chords)))
     }
 
     /// The canvas.
     pub(crate) fn canvas(&self) -> &'a Canvas {
         self.ground.canvas
+    }
+
+    /// The metric that it was made with.
+    pub(crate) fn field(&self) -> &'a dyn MetricField {
+        self.ground.field
     }
 
     /// By what distance its cells are the nearest places.
@@ -202,6 +187,20 @@ impl<'a> Diagram<'a> {
 }
 
 impl<'a, G: Ground<'a>> Diagram<'a, G> {
+    /// The diagram of seeds, which may be the vertices of a mesh of the domain.
+    ///
+    /// # Errors
+    /// A seed is outside the domain.
+    fn of_seeds(
+        ground: G,
+        seeds: &[G::Place],
+        are_vertices: bool,
+        care: Care,
+        measure: Measure<'a, G>,
+    ) -> Result<Self> {
+        Ok(Self::made(ground, seeds, ground.starts_of_all(seeds, are_vertices, care)?, measure))
+    }
+
     fn made(ground: G, seeds: &[G::Place], starts: Vec<Vec<Start>>, measure: Measure<'a, G>) -> Self {
         let mut sources = Sources::new(ground.topology().vertex_slots());
         let mut placed = Vec::with_capacity(seeds.len());
@@ -240,11 +239,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
             return Err(Error::domain("no such seed", format!("colour {colour}"), help));
         }
         let starts = self.ground.starts(to)?;
-        let changed = self.lift(colour);
-        self.sources_of(colour, &starts);
-        let all: Vec<VertexId> = changed.into_iter().chain(starts.iter().map(|s| s.vertex)).collect();
-        self.seeds[colour as usize] = Some(Seed { at: to, starts });
-        self.mend(&all);
+        self.place(colour, to, starts);
         Ok(())
     }
 
@@ -300,12 +295,9 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         match self.label(v).support() {
             Support::Nothing | Support::Source => None,
             Support::Neighbour(u) => Some(u),
-            Support::Vertex(h) => {
-                let (a, b) = (topology.origin(h), topology.target(h));
-                Some(if a == v { b } else { a })
-            }
+            Support::Vertex(h) => topology.ends(h).into_iter().find(|&end| end != v).or(Some(v)),
             Support::Edge(h) => {
-                let (a, b) = (topology.origin(h), topology.target(h));
+                let [a, b] = topology.ends(h);
                 Some(if self.distance(b) < self.distance(a) { b } else { a })
             }
         }
@@ -323,8 +315,12 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
 
     /// The canvas vertex farthest from its seed, and its distance: where farthest-point refinement puts the next seed.
     pub(crate) fn farthest(&self) -> Option<(VertexId, f64)> {
-        let vertices = (0..self.vertex_count() as u32).map(VertexId);
-        vertices.map(|v| (v, self.distance(v))).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
+        self.vertices().map(|v| (v, self.distance(v))).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
+    }
+
+    /// All canvas vertices, in order.
+    pub(crate) fn vertices(&self) -> impl Iterator<Item = VertexId> + use<'a, G> {
+        (0..self.vertex_count() as u32).map(VertexId)
     }
 
     /// Number of canvas vertices.
@@ -343,17 +339,15 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         sizes
     }
 
+    /// Puts a seed in a place, from where it was if it was anywhere.
     fn place(&mut self, colour: u32, at: G::Place, starts: Vec<Start>) {
-        self.sources_of(colour, &starts);
-        let changed: Vec<VertexId> = starts.iter().map(|s| s.vertex).collect();
+        let mut changed = self.lift(colour);
+        for s in &starts {
+            self.sources.add(s.vertex, s.distance, colour);
+            changed.push(s.vertex);
+        }
         self.seeds[colour as usize] = Some(Seed { at, starts });
         self.mend(&changed);
-    }
-
-    fn sources_of(&mut self, colour: u32, starts: &[Start]) {
-        for s in starts {
-            self.sources.add(s.vertex, s.distance, colour);
-        }
     }
 
     /// Takes a seed's starts away; returns the vertices that had them.

@@ -2,6 +2,7 @@
 
 use super::{Diagram, Ground};
 use crate::geodesic::NO_COLOUR;
+use crate::geometry::Point;
 use crate::triangulation::{FaceId, HalfEdge, VertexId, smallest_first};
 
 /// Two cells that touch.
@@ -78,10 +79,36 @@ impl Nerve {
     }
 }
 
+/// The canvas faces that witness simplices of the nerve.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Witnesses {
+    /// Faces with three colours: they witness a Voronoi vertex.
+    pub vertices: Vec<FaceId>,
+    /// Faces with two colours: two of their edges witness a Voronoi edge.
+    pub edges: Vec<FaceId>,
+}
+
 impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// Reads the nerve off the canvas, as the report does: from canvas edges with two colours, faces with three.
     pub fn nerve(&self) -> Nerve {
         Nerve::new(self.coloured_vertices(), self.bicoloured_edges(), self.tricoloured_faces())
+    }
+
+    /// All witnesses (RR-9103, section 6.4 and Figure 7), in order: faces of the canvas that distances travel on, as for
+    /// [`Diagram::nerve`].
+    pub fn witnesses(&self) -> Witnesses {
+        let topology = self.ground.topology();
+        let mut witnesses = Witnesses::default();
+        for f in topology.faces() {
+            let corners = topology.corners(f);
+            let [a, b, c] = self.colours_at(corners);
+            if self.three_colours(corners).is_some() {
+                witnesses.vertices.push(f);
+            } else if ![a, b, c].contains(&NO_COLOUR) && (a != b || b != c) {
+                witnesses.edges.push(f);
+            }
+        }
+        witnesses
     }
 
     /// The triangles of the nerve as the report reads them off the canvas (Figure 7), with a witness each: a canvas simplex
@@ -95,7 +122,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
                 topology.faces().filter_map(|f| coloured(topology.corners(f))).collect()
             }
             Some(stars) => {
-                let vertices = (0..self.vertex_count() as u32).map(VertexId);
+                let vertices = self.vertices();
                 let simplices = vertices.flat_map(|v| stars.star(v).map(move |[a, b]| [v, a, b]));
                 simplices.filter_map(coloured).collect()
             }
@@ -105,16 +132,21 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         found
     }
 
+    /// The colours of some vertices, [`NO_COLOUR`] of those that no seed reaches.
+    pub(crate) fn colours_at<const N: usize>(&self, vertices: [VertexId; N]) -> [u32; N] {
+        vertices.map(|v| self.label(v).colour)
+    }
+
     /// The colours of three vertices, if they are three.
-    fn three_colours(&self, vertices: [VertexId; 3]) -> Option<[u32; 3]> {
-        let [a, b, c] = vertices.map(|v| self.label(v).colour);
+    pub(super) fn three_colours(&self, vertices: [VertexId; 3]) -> Option<[u32; 3]> {
+        let [a, b, c] = self.colours_at(vertices);
         let distinct = a != b && b != c && c != a && [a, b, c].iter().all(|&x| x != NO_COLOUR);
         distinct.then_some(smallest_first([a, b, c]))
     }
 
     pub(super) fn coloured_vertices(&self) -> Vec<(u32, VertexId)> {
         let mut first = vec![None; self.colours()];
-        for v in (0..self.vertex_count() as u32).map(VertexId) {
+        for v in self.vertices() {
             if let Some(colour) = self.colour(v) {
                 let best: &mut Option<VertexId> = &mut first[colour as usize];
                 if best.is_none_or(|b| self.distance(v) < self.distance(b)) {
@@ -128,7 +160,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     fn bicoloured_edges(&self) -> Vec<NerveEdge> {
         let topology = self.ground.topology();
         let between = |h: HalfEdge| {
-            let [a, b] = [topology.origin(h), topology.target(h)].map(|v| self.label(v).colour);
+            let [a, b] = self.colours_at(topology.ends(h));
             let border = topology.twin(h).is_none().then_some(h);
             (a != b && a != NO_COLOUR && b != NO_COLOUR).then(|| NerveEdge {
                 colours: [a.min(b), a.max(b)],
@@ -151,4 +183,42 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
 
 fn nearer(a: Option<(u32, f64)>, b: Option<(u32, f64)>) -> Option<(u32, f64)> {
     a.into_iter().chain(b).min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+impl Diagram<'_> {
+    /// The corners of faces of the canvas that distances travel on. Sides that flips have made are no straight lines in
+    /// the plane; triangles drawn from these points are their chords.
+    pub fn corners_of(&self, faces: &[FaceId]) -> Vec<[Point; 3]> {
+        let topology = self.ground.topology();
+        faces.iter().map(|&f| topology.corners(f).map(|v| self.ground.canvas.position(v))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::canvas::Canvas;
+    use crate::diagram::Diagram;
+    use crate::diagram::test_diagrams::{plate_with_hole, seeds_of};
+    use crate::metric::Swirl;
+
+    #[test]
+    fn witnesses_have_the_colours_of_what_they_witness() {
+        let (domain, swirl) = (plate_with_hole(), Swirl::default());
+        let canvas = Canvas::intrinsic(&domain, &swirl, 4000).unwrap();
+        let diagram = Diagram::new(&canvas, &swirl, &seeds_of(&domain, 40)).unwrap();
+        let witnesses = diagram.witnesses();
+        let colours = |f| {
+            let mut colours = canvas.topology().corners(f).map(|v| diagram.colour(v).unwrap()).to_vec();
+            colours.sort_unstable();
+            colours.dedup();
+            colours.len()
+        };
+        assert!(witnesses.vertices.iter().all(|&f| colours(f) == 3));
+        assert!(witnesses.edges.iter().all(|&f| colours(f) == 2));
+        let nerve = diagram.nerve();
+        let counted: u32 = nerve.triangles.iter().map(|t| t.witnesses).sum();
+        assert_eq!(witnesses.vertices.len(), counted as usize);
+        assert!(nerve.triangles.iter().all(|t| witnesses.vertices.contains(&t.witness)));
+        assert!(witnesses.edges.len() > nerve.edges.len());
+    }
 }

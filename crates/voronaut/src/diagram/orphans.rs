@@ -53,7 +53,7 @@ fn flood(
     let mut next = 0;
     while let Some(&v) = set.get(next) {
         next += 1;
-        for y in topology.star(v).flat_map(|h| [topology.target(h), topology.apex(h)]) {
+        for y in topology.around(v) {
             if colour(y) == colour(from) && !std::mem::replace(&mut reached[y.index()], true) {
                 set.push(y);
             }

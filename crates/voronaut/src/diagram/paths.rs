@@ -1,8 +1,8 @@
 //! Shortest paths: from a point to its seed, and between neighbouring seeds.
 
+use super::Diagram;
 use super::descend::Descent;
 use super::overlap::Overlap;
-use super::{Diagram, Flat};
 use crate::canvas::Border;
 use crate::error::{Error, Result};
 use crate::geodesic::{Obstacles, Polyline, straighten};
@@ -71,11 +71,10 @@ impl Paths<'_, '_> {
 
     fn descend(&self, from: Point, colour: u32) -> Result<Vec<Point>> {
         let distance = |v: VertexId| self.overlap.distance(v, colour).unwrap_or(f64::INFINITY);
-        let Flat { canvas, field } = self.diagram.ground;
         let seed = self.diagram.seeds.get(colour as usize).and_then(Option::as_ref);
         let seeds: Vec<_> = seed.iter().map(|s| (s.at, s.starts.as_slice())).collect();
         let parent = |v: VertexId| self.diagram.parent(v).filter(|_| self.diagram.colour(v) == Some(colour));
-        Descent { canvas, field, seeds: &seeds, distance: &distance, parent: &parent }.trace(from)
+        Descent { ground: self.diagram.ground, distance: &distance, parent: &parent }.polyline(from, &seeds)
     }
 
     /// The seed with the least interpolated distance at a point.

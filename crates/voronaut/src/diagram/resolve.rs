@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::geodesic::chord;
 use crate::geometry::Point;
 use crate::metric::MetricField;
-use crate::triangulation::{FaceId, VertexId};
+use crate::triangulation::{FaceId, VertexId, distinct};
 
 /// Simplices whose longest edge is shorter than this share of the distance to the nearest seed are not refined: cells that
 /// meet there do so, as far as computed distances tell, in one point.
@@ -62,10 +62,8 @@ fn unresolved(diagram: &Diagram) -> Vec<[VertexId; 3]> {
     let mut witnesses: Vec<FaceId> = sharp.triangles.iter().map(|t| t.witness).collect();
     witnesses.sort_unstable();
     faces.extend(witnesses.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]));
-    faces.sort_unstable();
-    faces.dedup();
     let extra = raw.into_iter().filter(|w| !is_sharp(w.0)).map(|w| w.1);
-    faces.into_iter().map(|f| topology.corners(f)).chain(extra).collect()
+    distinct(faces).into_iter().map(|f| topology.corners(f)).chain(extra).collect()
 }
 
 /// The corners of the simplices that are not tiny.
@@ -77,8 +75,5 @@ fn coarse(diagram: &Diagram, simplices: &[[VertexId; 3]]) -> Vec<VertexId> {
         let nearest = [a, b, c].map(|v| diagram.distance(v)).into_iter().fold(f64::INFINITY, f64::min);
         longest > TINY * nearest
     };
-    let mut corners: Vec<VertexId> = simplices.iter().filter(is_coarse).copied().flatten().collect();
-    corners.sort_unstable();
-    corners.dedup();
-    corners
+    distinct(simplices.iter().filter(is_coarse).copied().flatten())
 }

@@ -1,13 +1,13 @@
 //! From a seed to the canvas vertices around it, with exact local distances.
 
+use super::Flat;
 use crate::canvas::Canvas;
 use crate::error::{Error, Result};
 use crate::geodesic::bowed_chord;
 use crate::geometry::{Orientation, Point, orientation};
-use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::planar::{Location, Planar};
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::{HalfEdge, VertexId, distinct};
 use std::collections::BTreeMap;
 
 /// A canvas vertex in sight of a seed, and the metric length of the geodesic between them.
@@ -30,46 +30,26 @@ pub enum Care {
     Quick,
 }
 
-/// The starts of a seed: every vertex of the embedded face that holds it, and those in sight across its edges. Where
-/// the domain touches itself in a point, a seed there starts in all fans.
-///
-/// # Errors
-/// The seed is outside the domain.
-pub(super) fn starts(canvas: &Canvas, field: &dyn MetricField, seed: Point) -> Result<Vec<Start>> {
-    let location = canvas.locate(seed).ok_or_else(|| outside(seed))?;
-    Ok(starts_in(canvas, field, seed, &places(canvas, location), Care::Full))
-}
-
-/// [`starts`] of many seeds. Where the domain touches itself in a point and seeds are the vertices of a mesh of it, as many
-/// seeds in the point as there are fans have a fan each, in order.
+/// The starts of many seeds, as for [`starts_in`]. Where the domain touches itself in a point and seeds are the vertices of a
+/// mesh of it, as many seeds in the point as there are fans have a fan each, in order.
 ///
 /// # Errors
 /// A seed, by number, is outside the domain.
-pub(super) fn starts_of_all(
-    canvas: &Canvas,
-    field: &dyn MetricField,
-    seeds: &[Point],
-    are_vertices: bool,
-    care: Care,
-) -> Result<Vec<Vec<Start>>> {
+pub(super) fn starts_of_all(ground: Flat, seeds: &[Point], are_vertices: bool, care: Care) -> Result<Vec<Vec<Start>>> {
     let mut found: Vec<Vec<Location>> = Vec::with_capacity(seeds.len());
-    for (i, location) in canvas.locate_all(seeds).into_iter().enumerate() {
-        found.push(places(canvas, location.ok_or_else(|| numbered(i, seeds[i]))?));
+    for (i, location) in ground.canvas.locate_all(seeds).into_iter().enumerate() {
+        let location = location.ok_or_else(|| outside(format!("seed {} {}", i + 1, seeds[i])))?;
+        found.push(places(ground.canvas, location));
     }
     if are_vertices {
         share_fans(&mut found);
     }
-    let measured = |(&seed, places): (&Point, &Vec<Location>)| starts_in(canvas, field, seed, places, care);
+    let measured = |(&seed, places): (&Point, &Vec<Location>)| starts_in(ground, seed, places, care);
     Ok(seeds.par_iter().zip(&found).with_min_len(64).map(measured).collect())
 }
 
-/// [`starts`] of a seed at a canvas vertex.
-pub(super) fn starts_at_vertex(canvas: &Canvas, field: &dyn MetricField, v: VertexId, care: Care) -> Vec<Start> {
-    starts_in(canvas, field, canvas.position(v), &places(canvas, Location::Vertex(v)), care)
-}
-
 /// All fans of a place.
-fn places(canvas: &Canvas, location: Location) -> Vec<Location> {
+pub(super) fn places(canvas: &Canvas, location: Location) -> Vec<Location> {
     match location {
         Location::Vertex(v) => canvas.copies(v).into_iter().map(Location::Vertex).collect(),
         other => vec![other],
@@ -92,22 +72,21 @@ fn share_fans(found: &mut [Vec<Location>]) {
     }
 }
 
-fn starts_in(canvas: &Canvas, field: &dyn MetricField, seed: Point, places: &[Location], care: Care) -> Vec<Start> {
-    places.iter().flat_map(|&location| starts_at(canvas, field, seed, location, care)).collect()
+/// The starts of a seed in places: every vertex of the embedded face that holds it, and those in sight across its edges.
+/// Where the domain touches itself in a point, a seed there starts in all fans.
+pub(super) fn starts_in(ground: Flat, seed: Point, places: &[Location], care: Care) -> Vec<Start> {
+    places.iter().flat_map(|&location| starts_at(ground, seed, location, care)).collect()
 }
 
-fn starts_at(canvas: &Canvas, field: &dyn MetricField, seed: Point, location: Location, care: Care) -> Vec<Start> {
+fn starts_at(Flat { canvas, field }: Flat, seed: Point, location: Location, care: Care) -> Vec<Start> {
     let planar = canvas.embedded();
-    let (rim, mut near) = around(planar, location);
+    let (rim, near) = around(planar, location);
     let mut far = Vec::new();
     for h in rim {
         let [right, left] = planar.ends(h);
         look(planar, seed, h, [right, left], SIGHT, &mut far);
     }
-    near.sort_unstable();
-    near.dedup();
-    far.sort_unstable();
-    far.dedup();
+    let (near, mut far) = (distinct(near), distinct(far));
     far.retain(|v| near.binary_search(v).is_err());
     let geodesic = |vertex: VertexId| Start { vertex, distance: bowed_chord(field, seed, planar.position(vertex)) };
     if care == Care::Full {
@@ -129,11 +108,11 @@ fn around(planar: &Planar, location: Location) -> (Vec<HalfEdge>, Vec<VertexId>)
         Location::Vertex(v) => topology.star(v).map(HalfEdge::next).collect(),
         Location::Face(f) => f.half_edges().to_vec(),
         Location::Edge(h) | Location::Behind(h) => {
-            let sides = [Some(h), topology.twin(h)].into_iter().flatten();
+            let sides = topology.sides(h);
             sides.flat_map(|side| [side.next(), side.prev()]).collect()
         }
     };
-    let mut near: Vec<VertexId> = rim.iter().flat_map(|&h| [topology.origin(h), topology.target(h)]).collect();
+    let mut near: Vec<VertexId> = rim.iter().flat_map(|&h| topology.ends(h)).collect();
     if let Location::Vertex(v) = location {
         near.push(v);
     }
@@ -158,11 +137,6 @@ fn look(planar: &Planar, seed: Point, h: HalfEdge, [right, left]: [Point; 2], fa
     }
 }
 
-fn outside(seed: Point) -> Error {
-    Error::domain("a seed outside the domain", seed.to_string(), "remove it, or move it into the domain")
-}
-
-fn numbered(i: usize, seed: Point) -> Error {
-    let place = format!("seed {} {seed}", i + 1);
+pub(super) fn outside(place: String) -> Error {
     Error::domain("a seed outside the domain", place, "remove it, or move it into the domain")
 }

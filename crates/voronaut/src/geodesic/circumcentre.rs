@@ -1,7 +1,7 @@
 //! The in-circle test by its definition: a point equally far from three seeds, and how far the fourth is from it.
 
 use super::in_circle::{Margin, opposite};
-use super::path::{Fineness, Paths, Solved};
+use super::path::{Fineness, Paths};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 
@@ -65,17 +65,15 @@ impl Circle {
         fineness: Fineness,
     ) -> Option<Self> {
         // Coarse geodesics lead near the centre.
-        let [a, b, c] = corners;
-        let flat = flat_centre(field.at(a + ((b - a) + (c - a)) * (1.0 / 3.0)), corners)?;
-        let coarse = Self::from_centre(paths, field, corners, flat, Fineness::COARSEST, 0)?;
-        Self::from_centre(paths, field, corners, coarse.centre, fineness, 1)
+        let coarse = Search { paths, field, corners, fineness: Fineness::COARSEST };
+        let start = coarse.straight(coarse.flat()?, 0)?.centre;
+        Search { fineness, ..coarse }.straight(start, 1)
     }
 
     /// [`Circle::around`] with the finest paths from the first step on: finds some circles that coarse paths lead away from.
     pub(crate) fn around_carefully(paths: &Paths, field: &dyn MetricField, corners: [Point; 3]) -> Option<Self> {
-        let [a, b, c] = corners;
-        let flat = flat_centre(field.at(a + ((b - a) + (c - a)) * (1.0 / 3.0)), corners)?;
-        Self::from_centre(paths, field, corners, flat, Fineness::FINEST, 0)
+        let search = Search { paths, field, corners, fineness: Fineness::FINEST };
+        search.straight(search.flat()?, 0)
     }
 
     /// The circle through three points whose centre damped Newton steps reach from a place: of the points where three
@@ -84,7 +82,7 @@ impl Circle {
         let (mut fineness, mut now) = (Fineness::MIDDLE, None);
         let mut from = start;
         loop {
-            let found = Descent { paths, field, corners, fineness }.from(from);
+            let found = Search { paths, field, corners, fineness }.damped(from);
             now = found.or(now);
             from = found.map_or(start, |circle: Self| circle.centre);
             match (now, fineness.next()) {
@@ -100,40 +98,10 @@ impl Circle {
     pub(crate) fn power(&self, paths: &Paths, field: &dyn MetricField, p: Point, fineness: Fineness) -> Option<f64> {
         paths.length(field, self.centre, p, fineness).map(|length| length.value.powi(2) - self.square)
     }
-
-    fn from_centre(
-        paths: &Paths,
-        field: &dyn MetricField,
-        corners: [Point; 3],
-        mut centre: Point,
-        fineness: Fineness,
-        pass: usize,
-    ) -> Option<Self> {
-        let mut known: Option<Self> = None;
-        for _ in 0..STEPS[pass] {
-            let spokes = corners.map(|p| paths.solve(field, centre, p, fineness));
-            let [Some(a), Some(b), Some(c)] = spokes else { return None };
-            let squares = [a, b, c].map(|s| s.length.value.powi(2));
-            let [least, most] =
-                [squares.iter().copied().fold(f64::INFINITY, f64::min), squares.iter().copied().fold(0.0, f64::max)];
-            let relative = [a, b, c].iter().map(|s| s.length.error).fold(0.0, f64::max);
-            if relative > VAGUE {
-                return None;
-            }
-            let circle = Self { centre, square: squares[0], error: 2.0 * SAFETY * relative * most + (most - least) };
-            let stalls = known.as_ref().is_some_and(|k| k.error <= circle.error);
-            if most - least < RESIDUE[pass] * most || (stalls && most - least < 0.1 * circle.error) {
-                return Some(circle);
-            }
-            centre = next_centre(field, centre, &[a, b, c], squares)?;
-            known = Some(circle);
-        }
-        known.filter(|circle| circle.error < 1e-3 * circle.square)
-    }
 }
 
-/// Newton steps to a circumcentre that are shortened until they lead nearer to it.
-struct Descent<'a> {
+/// Newton steps to the circumcentre of three points.
+struct Search<'a> {
     paths: &'a Paths,
     field: &'a dyn MetricField,
     corners: [Point; 3],
@@ -143,20 +111,41 @@ struct Descent<'a> {
 /// Three paths from one place.
 struct Spokes {
     circle: Circle,
-    solved: [Solved; 3],
+    pulls: [Vector; 3],
     squares: [f64; 3],
+    most: f64,
     spread: f64,
 }
 
-impl Descent<'_> {
-    fn from(&self, start: Point) -> Option<Circle> {
+impl Search<'_> {
+    /// The circumcentre with the tensor at the centroid.
+    fn flat(&self) -> Option<Point> {
+        flat_centre(self.field.at(Point::centroid(self.corners)), self.corners)
+    }
+
+    /// By whole steps.
+    fn straight(&self, mut centre: Point, pass: usize) -> Option<Circle> {
+        let mut known: Option<Circle> = None;
+        for _ in 0..STEPS[pass] {
+            let now = self.spokes(centre)?;
+            let stalls = known.is_some_and(|k| k.error <= now.circle.error);
+            if now.spread < RESIDUE[pass] * now.most || (stalls && now.spread < 0.1 * now.circle.error) {
+                return Some(now.circle);
+            }
+            centre = centre + self.step(&now)?;
+            known = Some(now.circle);
+        }
+        known.filter(|circle| circle.error < 1e-3 * circle.square)
+    }
+
+    /// By steps that are shortened until they lead nearer.
+    fn damped(&self, start: Point) -> Option<Circle> {
         let mut now = self.spokes(start)?;
         for _ in 0..DAMPED_STEPS {
             if now.spread < RESIDUE[1].max(0.01 * now.circle.error / now.circle.square) * now.circle.square {
                 break;
             }
-            let tensor = self.field.at(now.circle.centre);
-            let step = equalising_step(tensor, now.solved.map(|s| s.pull), now.squares)?;
+            let step = self.step(&now)?;
             let shares = (0..HALVINGS).map(|k| 0.5_f64.powi(k));
             let mut trials = shares.filter_map(|share| self.spokes(now.circle.centre + step * share));
             let Some(better) = trials.find(|trial| trial.spread < now.spread) else { break };
@@ -165,22 +154,22 @@ impl Descent<'_> {
         (now.spread < RESIDUE_LEFT * now.circle.square).then_some(now.circle)
     }
 
+    fn step(&self, now: &Spokes) -> Option<Vector> {
+        equalising_step(self.field.at(now.circle.centre), now.pulls, now.squares)
+    }
+
+    /// `None` where paths are not resolved.
     fn spokes(&self, centre: Point) -> Option<Spokes> {
         let spokes = self.corners.map(|p| self.paths.solve(self.field, centre, p, self.fineness));
         let [Some(a), Some(b), Some(c)] = spokes else { return None };
-        let solved = [a, b, c];
-        let squares = solved.map(|s| s.length.value.powi(2));
+        let squares = [a, b, c].map(|s| s.length.value.powi(2));
         let [least, most] = squares.iter().fold([f64::INFINITY, 0.0], |[a, b], &s: &f64| [a.min(s), b.max(s)]);
-        let relative = solved.iter().map(|s| s.length.error).fold(0.0, f64::max);
+        let relative = [a, b, c].map(|s| s.length.error).into_iter().fold(0.0, f64::max);
         let spread = most - least;
         let circle = Circle { centre, square: squares[0], error: 2.0 * SAFETY * relative * most + spread };
-        (relative < VAGUE && spread.is_finite()).then_some(Spokes { circle, solved, squares, spread })
+        let pulls = [a, b, c].map(|s| s.pull);
+        (relative < VAGUE && spread.is_finite()).then_some(Spokes { circle, pulls, squares, most, spread })
     }
-}
-
-/// A Newton step to where the three squared distances are equal, at most a half of the radius long.
-fn next_centre(field: &dyn MetricField, at: Point, [a, b, c]: &[Solved; 3], squares: [f64; 3]) -> Option<Point> {
-    Some(at + equalising_step(field.at(at), [a.pull, b.pull, c.pull], squares)?)
 }
 
 /// The Newton step to where three squared distances are equal, given half their derivatives by their common end; at most a

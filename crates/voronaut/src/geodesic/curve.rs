@@ -1,6 +1,7 @@
 //! A geodesic between two points as a curve: polynomials that can be evaluated anywhere, and drawn.
 
 use super::jet::Frame;
+use super::length::reached;
 use super::rule::modes_at;
 use crate::geometry::{Point, Vector};
 use crate::metric::MetricField;
@@ -81,43 +82,28 @@ fn across(p: Point, m: Point, q: Point) -> Vector {
     if t.is_finite() { d - chord * t } else { d }
 }
 
-/// A path from which a geodesic is found, at shares of its metric length, in a frame's coordinates.
-pub(super) struct Guess {
-    shares: Vec<f64>,
-    places: Vec<Vector>,
-}
-
-impl Guess {
-    /// A polyline from the frame's (0, 0) to (1, 0).
-    pub(super) fn new(field: &dyn MetricField, frame: &Frame, path: &[Point]) -> Self {
-        let mut reached = vec![0.0];
-        for w in path.windows(2) {
-            let step = field.at(w[0].midpoint(w[1])).length(w[1] - w[0]);
-            reached.push(reached[reached.len() - 1] + step);
+/// The best approximation (in the energy of a frame) by so many modes of a polyline from the frame's (0, 0) to (1, 0), taken at
+/// shares of its metric length; the chord where that is none.
+pub(super) fn modes_near(field: &dyn MetricField, frame: &Frame, path: &[Point], count: usize) -> Vec<Vector> {
+    let reached = reached(field, path);
+    let total = reached[reached.len() - 1];
+    let shares: Vec<f64> = reached.iter().map(|r| r / total).collect();
+    let places: Vec<Vector> = path.iter().map(|&p| frame.vector(p - path[0])).collect();
+    let values: Vec<Vec<f64>> = shares.iter().map(|&t| modes_at(count, t)).collect();
+    let mut modes = vec![Vector::default(); count];
+    for i in 1..places.len() {
+        let span = shares[i] - shares[i - 1];
+        if span <= 0.0 {
+            continue;
         }
-        let total = reached[reached.len() - 1];
-        let shares = reached.iter().map(|r| r / total).collect();
-        Self { shares, places: path.iter().map(|&p| frame.vector(p - path[0])).collect() }
-    }
-
-    /// Its best approximation (in the energy of the frame) by so many modes; the chord where that is none.
-    pub(super) fn modes(&self, count: usize) -> Vec<Vector> {
-        let mut modes = vec![Vector::default(); count];
-        let values: Vec<Vec<f64>> = self.shares.iter().map(|&t| modes_at(count, t)).collect();
-        for i in 1..self.places.len() {
-            let span = self.shares[i] - self.shares[i - 1];
-            if span <= 0.0 {
-                continue;
-            }
-            // Modes have orthonormal slopes: the integral of the path's slope with theirs.
-            let slope = (self.places[i] - self.places[i - 1]) * (1.0 / span);
-            for (mode, (b, a)) in modes.iter_mut().zip(values[i].iter().zip(&values[i - 1])) {
-                *mode = *mode + slope * (b - a);
-            }
+        // Modes have orthonormal slopes: the integral of the path's slope with theirs.
+        let slope = (places[i] - places[i - 1]) * (1.0 / span);
+        for (mode, (b, a)) in modes.iter_mut().zip(values[i].iter().zip(&values[i - 1])) {
+            *mode = *mode + slope * (b - a);
         }
-        let is_told = modes.iter().all(|c| c.x.is_finite() && c.y.is_finite());
-        if is_told { modes } else { vec![Vector::default(); count] }
     }
+    let is_told = modes.iter().all(|c| c.x.is_finite() && c.y.is_finite());
+    if is_told { modes } else { vec![Vector::default(); count] }
 }
 
 #[cfg(test)]

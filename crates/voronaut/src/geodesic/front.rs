@@ -51,8 +51,17 @@ impl Front {
         }
     }
 
+    /// Puts the vertex in by the lesser of its labels if it differs from the one that is due, else takes it out.
+    pub(super) fn put(&mut self, v: VertexId, label: &Label, due: &Label) {
+        if label == due {
+            self.remove(v);
+        } else {
+            self.set(v, if due.is_before(label) { due } else { label });
+        }
+    }
+
     /// Takes the vertex out, if it is there.
-    pub(super) fn remove(&mut self, v: VertexId) {
+    fn remove(&mut self, v: VertexId) {
         let at = self.place[v.index()];
         if at == ABSENT {
             return;

@@ -2,7 +2,7 @@
 
 use crate::geometry::{Point, Tensor, Vector};
 use crate::parallel::prelude::*;
-use crate::triangulation::VertexId;
+use crate::triangulation::{VertexId, distinct};
 use std::fmt;
 use std::sync::Arc;
 
@@ -47,29 +47,29 @@ impl Graph {
     /// A graph of vertices of the plane at these (Euclidean) positions with the metric there, in the units of the metric field.
     ///
     /// As for `Graph::seen_by`; positions are as many as tensors.
-    pub(crate) fn new(positions: Vec<Point>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
+    pub(crate) fn new(
+        positions: Vec<Point>,
+        tensors: Vec<Tensor>,
+        pairs: impl IntoIterator<Item = [VertexId; 2]>,
+    ) -> Self {
         assert!(positions.len() == tensors.len(), "an entry for each vertex");
-        Self::seen_by(Arc::new(InPlane(positions)), tensors, neighbours)
+        Self::seen_by(Arc::new(InPlane(positions)), tensors, pairs)
     }
 
-    /// A graph of vertices that see each other so, with the metric in the frame of each. Two vertices are neighbours if either
-    /// names the other, as in a star set; a vertex is never its own. Edges have their lengths by the trapezium rule: the mean
+    /// A graph of vertices that see each other so, with the metric in the frame of each. Neighbours are named
+    /// in pairs, in any order, if more than once; a vertex is never its own. Edges have their lengths by the trapezium rule: the mean
     /// of what the tensors at their ends say of a straight line.
     ///
-    /// Tensors are as many as lists of neighbours, and these are places in them.
-    pub(crate) fn seen_by(sight: Arc<dyn Sight>, tensors: Vec<Tensor>, neighbours: &[Vec<u32>]) -> Self {
-        assert!(tensors.len() == neighbours.len(), "an entry for each vertex");
-        let named = neighbours.iter().enumerate().flat_map(|(v, list)| list.iter().map(move |&u| (v as u32, u)));
-        let mut pairs: Vec<(u32, u32)> = named.filter(|(v, u)| v != u).flat_map(|(v, u)| [(v, u), (u, v)]).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
-        let mut first = vec![0; tensors.len() + 1];
-        for &(v, _) in &pairs {
-            first[v as usize + 1] += 1;
-        }
-        for v in 0..tensors.len() {
-            first[v + 1] += first[v];
-        }
+    /// There is a tensor for each vertex.
+    pub(crate) fn seen_by(
+        sight: Arc<dyn Sight>,
+        tensors: Vec<Tensor>,
+        pairs: impl IntoIterator<Item = [VertexId; 2]>,
+    ) -> Self {
+        let named = pairs.into_iter().map(|[a, b]| (a.0, b.0)).filter(|(v, u)| v != u);
+        let pairs = distinct(named.flat_map(|(v, u)| [(v, u), (u, v)]));
+        let first = |v: usize| pairs.partition_point(|pair| (pair.0 as usize) < v) as u32;
+        let first = (0..=tensors.len()).map(first).collect();
         let straight = |&(v, u): &(u32, u32)| {
             let ends = [VertexId(v), VertexId(u)];
             let said_by = |end: VertexId| tensors[end.index()].length(sight.line(end, ends[0], ends[1]));
@@ -140,7 +140,7 @@ mod tests {
     fn neighbours_are_reciprocal_and_named_once() {
         let positions = [(0.0, 0.0), (2.0, 0.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y)).to_vec();
         let tensors = vec![Tensor::IDENTITY, Tensor::new(9.0, 0.0, 1.0), Tensor::IDENTITY];
-        let graph = Graph::new(positions, tensors, &[vec![1, 1, 0], vec![], vec![0]]);
+        let graph = Graph::new(positions, tensors, [[0, 1], [0, 1], [0, 0], [2, 0]].map(|pair| pair.map(VertexId)));
         assert_eq!(graph.neighbours(VertexId(0)), [VertexId(1), VertexId(2)]);
         assert_eq!(graph.neighbours(VertexId(1)), [VertexId(0)]);
         assert_eq!((graph.vertex_count(), graph.edge_count()), (3, 2));

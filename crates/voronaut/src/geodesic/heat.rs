@@ -1,6 +1,7 @@
 //! Distances from heat: let it flow for a short time, follow its gradient at unit speed.
 
 use super::label::Sources;
+use super::update::layout;
 use crate::error::{Error, Result};
 use crate::geometry::Vector;
 use crate::sparse::{Cholesky, Elimination, Symmetric};
@@ -46,7 +47,7 @@ impl<'a> Heat<'a> {
         let edges = canvas.edges().count().max(1) as f64;
         let mean = canvas.edges().map(|h| canvas.length(h)).sum::<f64>() / edges;
         let time = (EDGES * mean).powi(2);
-        let part = parts(canvas);
+        let part = canvas.parts();
         // One vertex of each part is held: sources and sinks of its flow balance, so that nothing flows there.
         let grounds: Vec<f64> = (0..n).map(|v| if part[v] == v { 1.0 } else { 0.0 }).collect();
         let elimination = Elimination::of(&stiffness);
@@ -127,7 +128,7 @@ impl<'a> Heat<'a> {
 fn lone(sources: &Sources) -> BTreeSet<usize> {
     let mut of_colour: BTreeMap<u32, Option<usize>> = BTreeMap::new();
     for v in sources.vertices() {
-        for (_, colour) in sources.at(v) {
+        for &(_, colour) in sources.at(v) {
             of_colour.entry(colour).and_modify(|only| *only = None).or_insert(Some(v.index()));
         }
     }
@@ -178,8 +179,8 @@ struct Face {
 impl Face {
     fn of(canvas: &Triangulation, f: FaceId) -> Self {
         let [base, to_end, to_start] = f.half_edges().map(|h| canvas.length(h));
-        let x = 0.5 * (base + (to_start - to_end) * (to_start + to_end) / base);
-        let y = ((to_start - x) * (to_start + x)).max(0.0).sqrt().max(FLATTEST * base);
+        let (x, height) = layout(base, to_start, to_end);
+        let y = height.max(FLATTEST * base);
         let area = 0.5 * base * y;
         // Across the side opposite to each corner, divided by twice the area.
         let sides = [Vector::new(x - base, y), Vector::new(-x, -y), Vector::new(base, 0.0)];
@@ -196,22 +197,6 @@ impl Face {
         let length = gradient.norm();
         (length > 0.0 && length.is_finite()).then(|| -gradient * (1.0 / length))
     }
-}
-
-/// The connected part of every vertex, named by its first vertex.
-fn parts(canvas: &Triangulation) -> Vec<usize> {
-    let mut part = vec![usize::MAX; canvas.vertex_slots()];
-    for first in 0..part.len() {
-        let mut stack = vec![first];
-        while let Some(v) = stack.pop() {
-            if part[v] == usize::MAX {
-                part[v] = first;
-                let star = canvas.star(VertexId(v as u32));
-                stack.extend(star.flat_map(|h| [canvas.target(h), canvas.apex(h)]).map(VertexId::index));
-            }
-        }
-    }
-    part
 }
 
 #[cfg(test)]

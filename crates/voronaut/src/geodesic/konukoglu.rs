@@ -1,9 +1,9 @@
 //! Recursive anisotropic fast marching: fronts cross the faces at a vertex, and what they get wrong is corrected.
 
-use super::label::{Label, Sources, Support};
-use super::simplex::crossing_by_lengths;
-use super::sweep::{self, Step, beyond};
-use super::{Geodesic, Graph, Patches, Propagation};
+use super::Graph;
+use super::label::{Label, Support};
+use super::sweep::{Step, beyond};
+use super::update::plane_crossing_by_lengths;
 use crate::triangulation::VertexId;
 
 /// A settled vertex is settled once more where its distance falls by more than this share of it.
@@ -19,23 +19,19 @@ const CORRECTION: f64 = 1e-6;
 ///
 /// Labels are mended by making them anew.
 #[derive(Clone, Debug)]
-pub(crate) struct Konukoglu {
-    graph: Graph,
-}
-
-impl Konukoglu {
-    /// On a graph.
-    pub(crate) fn on(graph: Graph) -> Self {
-        Self { graph }
-    }
-}
+pub(crate) struct Konukoglu(pub Graph);
 
 impl Step for Konukoglu {
+    fn graph(&self) -> &Graph {
+        &self.0
+    }
+
     fn correction(&self) -> Option<f64> {
         Some(CORRECTION)
     }
 
-    fn carry(&self, graph: &Graph, labels: &[Label], from: VertexId, x: VertexId) -> Label {
+    fn carry(&self, labels: &[Label], from: VertexId, x: VertexId) -> Label {
+        let graph = &self.0;
         let label = labels[from.index()];
         let mut best = (beyond(label.distance + graph.length(from, x), label.distance), from);
         let to_from = graph.length(x, from);
@@ -45,7 +41,7 @@ impl Step for Konukoglu {
                 continue;
             }
             let sides = [to_from, graph.length(x, k)];
-            let found = crossing_by_lengths(sides, graph.length(from, k), [label.distance, other.distance]);
+            let found = plane_crossing_by_lengths(sides, graph.length(from, k), [label.distance, other.distance]);
             let nearer = if other.is_before(&label) { k } else { from };
             if let Some(distance) = found.map(|d| beyond(d, labels[nearer.index()].distance)).filter(|&d| d < best.0) {
                 best = (distance, nearer);
@@ -58,14 +54,4 @@ impl Step for Konukoglu {
 /// What two lists in order have in common.
 fn common<'a>(one: &'a [VertexId], other: &'a [VertexId]) -> impl Iterator<Item = VertexId> + 'a {
     one.iter().copied().filter(|v| other.binary_search(v).is_ok())
-}
-
-impl Geodesic for Konukoglu {
-    fn propagate(&self, sources: &Sources) -> Propagation {
-        sweep::propagate(self, &self.graph, sources)
-    }
-
-    fn patches(&self) -> Box<dyn Patches + '_> {
-        sweep::patches(self, &self.graph)
-    }
 }

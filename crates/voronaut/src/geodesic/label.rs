@@ -80,68 +80,40 @@ impl Label {
     }
 }
 
-/// Where distances start: vertices with the distance of a source beside them.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Sources {
-    first: Vec<u32>,
-    records: Vec<Record>,
-    free: Vec<u32>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Record {
-    distance: f64,
-    colour: u32,
-    next: u32,
-}
+/// Where distances start: at every vertex the sources beside it, each by its distance and colour.
+#[derive(Clone, Debug)]
+pub(crate) struct Sources(Vec<Vec<(f64, u32)>>);
 
 impl Sources {
     /// No sources on a canvas with so many vertices.
     pub(crate) fn new(vertices: usize) -> Self {
-        Self { first: vec![NOTHING; vertices], ..Self::default() }
+        Self(vec![Vec::new(); vertices])
     }
 
     /// Adds a start at a vertex.
     pub(crate) fn add(&mut self, v: VertexId, distance: f64, colour: u32) {
-        let record = Record { distance, colour, next: self.first[v.index()] };
-        let slot = self.free.pop().unwrap_or(self.records.len() as u32);
-        if slot as usize == self.records.len() {
-            self.records.push(record);
-        } else {
-            self.records[slot as usize] = record;
-        }
-        self.first[v.index()] = slot;
+        self.0[v.index()].push((distance, colour));
     }
 
     /// Removes all starts of a colour at a vertex.
     pub(crate) fn remove(&mut self, v: VertexId, colour: u32) {
-        let kept: Vec<(f64, u32)> = self.at(v).filter(|&(_, c)| c != colour).collect();
-        let mut slot = std::mem::replace(&mut self.first[v.index()], NOTHING);
-        while slot != NOTHING {
-            self.free.push(slot);
-            slot = self.records[slot as usize].next;
-        }
-        for (distance, colour) in kept {
-            self.add(v, distance, colour);
-        }
+        self.0[v.index()].retain(|start| start.1 != colour);
     }
 
     /// The starts at a vertex: distance and colour.
-    pub(crate) fn at(&self, v: VertexId) -> impl Iterator<Item = (f64, u32)> + '_ {
-        let record = move |slot: u32| (slot != NOTHING).then(|| self.records[slot as usize]);
-        let chain = std::iter::successors(record(self.first[v.index()]), move |r| record(r.next));
-        chain.map(|r| (r.distance, r.colour))
+    pub(crate) fn at(&self, v: VertexId) -> &[(f64, u32)] {
+        &self.0[v.index()]
     }
 
     /// The nearest start at a vertex.
     pub(super) fn nearest(&self, v: VertexId) -> Label {
-        let labels = self.at(v).map(|(distance, colour)| Label::of_source(distance, colour));
+        let labels = self.at(v).iter().map(|&(distance, colour)| Label::of_source(distance, colour));
         labels.fold(Label::FAR, |best, label| if label.is_before(&best) { label } else { best })
     }
 
     /// The vertices that have a start.
     pub(crate) fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
-        (0..self.first.len() as u32).map(VertexId).filter(|v| self.first[v.index()] != NOTHING)
+        (0..self.0.len() as u32).map(VertexId).filter(|&v| !self.at(v).is_empty())
     }
 }
 
@@ -159,9 +131,9 @@ mod tests {
         assert_eq!((sources.nearest(v).colour, sources.vertices().count()), (8, 1));
         sources.remove(v, 8);
         sources.remove(v, 9);
-        assert_eq!(sources.at(v).collect::<Vec<_>>(), [(0.5, 7)]);
+        assert_eq!(sources.at(v), [(0.5, 7)]);
         sources.add(v, 0.1, 3);
-        assert!(sources.records.len() <= 3, "slots are used again");
+        assert_eq!(sources.nearest(v).colour, 3);
         assert_eq!(sources.nearest(VertexId(0)), Label::FAR);
     }
 }

@@ -1,13 +1,14 @@
 //! Fast marching on a Cartesian grid of its own, with stencils from lattice basis reduction.
 
+use super::Label;
+use super::front::Front;
 use super::length::chord;
-use super::simplex::crossing;
 use super::straighten::Obstacles;
+use super::update::plane_crossing;
 use crate::geometry::{Aabb, Point, Tensor, Vector};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use crate::triangulation::VertexId;
 
 /// Nodes within so many steps of a source, along each axis, get their distance by a straight line.
 const SIGHT: i64 = 2;
@@ -105,25 +106,19 @@ impl<'a> Lattice<'a> {
             }
         }
         pairs.sort_unstable();
-        self.first = vec![0; self.stencils.len() + 1];
-        for &(j, ..) in &pairs {
-            self.first[j as usize + 1] += 1;
-        }
-        for j in 0..self.stencils.len() {
-            self.first[j + 1] += self.first[j];
-        }
+        let first = |j: usize| pairs.partition_point(|pair| (pair.0 as usize) < j) as u32;
+        self.first = (0..=self.stencils.len()).map(first).collect();
         self.users = pairs.into_iter().map(|(_, i, k)| (i, k)).collect();
     }
 
     fn march(&self, sources: &[Point]) -> Vec<f64> {
         let mut values = vec![f64::INFINITY; self.stencils.len()];
         let mut is_known = vec![false; self.stencils.len()];
-        let mut front: BinaryHeap<Reverse<(u64, u32)>> = BinaryHeap::new();
-        // Distances are not negative: their bits are in their order.
-        let offer = |values: &mut Vec<f64>, front: &mut BinaryHeap<Reverse<(u64, u32)>>, i: usize, distance: f64| {
+        let mut front = Front::new(values.len());
+        let offer = |values: &mut Vec<f64>, front: &mut Front, i: usize, distance: f64| {
             if distance < values[i] {
                 values[i] = distance;
-                front.push(Reverse((distance.to_bits(), i as u32)));
+                front.set(VertexId(i as u32), &Label::of_source(distance, 0));
             }
         };
         for &source in sources {
@@ -133,10 +128,8 @@ impl<'a> Lattice<'a> {
                 }
             }
         }
-        while let Some(Reverse((_, j))) = front.pop() {
-            if std::mem::replace(&mut is_known[j as usize], true) {
-                continue;
-            }
+        while let Some(VertexId(j)) = front.pop() {
+            is_known[j as usize] = true;
             for &(i, k) in &self.users[self.first[j as usize] as usize..self.first[j as usize + 1] as usize] {
                 if !is_known[i as usize] {
                     let distance = self.reach(i as usize, usize::from(k), &values, &is_known);
@@ -158,7 +151,7 @@ impl<'a> Lattice<'a> {
         let Some((u, at_u)) = at(k) else { return f64::INFINITY };
         let straight = at_u + stencil.metric.length(u);
         let beside = [(k + 1) % 6, (k + 5) % 6].into_iter().filter_map(at);
-        let across = beside.filter_map(|(w, at_w)| crossing(stencil.metric, [u, w], [at_u, at_w]));
+        let across = beside.filter_map(|(w, at_w)| plane_crossing(stencil.metric, [u, w], [at_u, at_w]));
         across.fold(straight, f64::min)
     }
 

@@ -1,6 +1,6 @@
 //! Lengths of short geodesics, in metric units: four estimates, each better and dearer than the one before.
 
-use super::LocalMetric;
+use super::{LocalMetric, tension};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 
@@ -81,6 +81,24 @@ pub(crate) fn chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
     GAUSS.iter().map(|&(t, weight)| weight * field.at(p.lerp(q, t)).length(d)).sum()
 }
 
+/// The metric length up to each point of a path, with the tensors at the middles of its segments.
+pub(crate) fn reached(field: &dyn MetricField, path: &[Point]) -> Vec<f64> {
+    let mut total = 0.0;
+    let step = |w: &[Point]| {
+        total += field.at(w[0].midpoint(w[1])).length(w[1] - w[0]);
+        total
+    };
+    std::iter::once(0.0).chain(path.windows(2).map(step)).collect()
+}
+
+/// The place on a path where so much of the lengths up to its points is [`reached`], and the number of the point that
+/// comes then.
+pub(crate) fn place_at(path: &[Point], reached: &[f64], goal: f64) -> (Point, usize) {
+    let i = reached.partition_point(|&r| r <= goal).clamp(1, path.len() - 1);
+    let t = (goal - reached[i - 1]) / (reached[i] - reached[i - 1]);
+    (path[i - 1].lerp(path[i], if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 }), i)
+}
+
 /// Length of the geodesic p-q: a path of `segments` segments from the chord, its energy minimised by damped Newton
 /// steps, its length then summed by quadrature. It finds *a* geodesic, knows no holes, and never returns more than
 /// the chord's length. The error is the difference to the path of half as many segments.
@@ -101,13 +119,13 @@ const CONVERGED: f64 = 1e-12;
 pub(super) fn relaxed_length(field: &dyn MetricField, p: Point, q: Point, segments: usize, settled: f64) -> f64 {
     let mut path: Vec<Point> = (0..=segments).map(|i| p.lerp(q, i as f64 / segments as f64)).collect();
     path[segments] = q;
-    let mut energy = path_energy_of(field, &path);
+    let mut energy = tension::energy(field, &path);
     for _ in 0..NEWTON_STEPS {
         let step = newton_step(field, &path);
         let mut damping = 1.0;
         let improved = loop {
             let trial: Vec<Point> = path.iter().zip(&step).map(|(&x, &s)| x + s * damping).collect();
-            let trial_energy = path_energy_of(field, &trial);
+            let trial_energy = tension::energy(field, &trial);
             if trial_energy < energy {
                 let gain = energy - trial_energy;
                 (path, energy) = (trial, trial_energy);
@@ -123,15 +141,6 @@ pub(super) fn relaxed_length(field: &dyn MetricField, p: Point, q: Point, segmen
         }
     }
     path.windows(2).map(|w| chord(field, w[0], w[1])).sum()
-}
-
-/// Energy of a path: the sum of squared segment lengths, each with the tensor at its middle.
-fn path_energy_of(field: &dyn MetricField, path: &[Point]) -> f64 {
-    let of_segment = |w: &[Point]| {
-        let tensor = field.at(w[0].midpoint(w[1]));
-        if tensor.is_positive_definite() { tensor.dot(w[1] - w[0], w[1] - w[0]) } else { f64::INFINITY }
-    };
-    path.windows(2).map(of_segment).sum()
 }
 
 /// A Newton step with the Hessian of the path with frozen tensors (block tridiagonal and positive definite): solved

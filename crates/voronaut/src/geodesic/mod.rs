@@ -7,7 +7,6 @@
 mod bow;
 mod circumcentre;
 mod curve;
-mod dijkstra;
 mod edge_path;
 mod front;
 mod graph;
@@ -20,14 +19,12 @@ mod label;
 mod lattice;
 mod length;
 mod local;
-mod logarithm;
 mod march;
+mod mending;
 mod method;
 mod patch;
 mod path;
-mod predicate;
 mod rule;
-mod simplex;
 mod straighten;
 mod strip;
 mod stvd;
@@ -39,30 +36,28 @@ pub(crate) use bow::{bowed_between, bowed_chord};
 pub(crate) use circumcentre::{Circle, equalising_step, flat_centre, margin_by_power};
 pub use curve::Curve;
 pub(crate) use curve::PathLength;
-pub(crate) use dijkstra::Dijkstra;
 pub use graph::Graph;
 pub(crate) use graph::Sight;
 pub(crate) use heat::Heat;
 pub use in_circle::{Angles, Margin};
-pub(crate) use in_circle::{circumradius, frozen_margin, margin_of_estimates};
+pub(crate) use in_circle::{circumradius, frozen_margin, margin_from_lengths, margin_of_estimates};
 pub(crate) use jet::gauss_curvature;
 pub(crate) use karcher::karcher_mean;
 pub(crate) use konukoglu::Konukoglu;
 pub(crate) use label::{Label, NO_COLOUR, Sources, Support};
 pub(crate) use lattice::Lattice;
-pub(crate) use length::{Length, bent_chord, chord, hermite, hermite_between};
+pub(crate) use length::{Length, bent_chord, chord, hermite, hermite_between, place_at, reached};
 pub(crate) use local::LocalMetric;
-pub(crate) use logarithm::Logarithm;
 pub(crate) use march::Marching;
-pub use march::Propagation;
+pub use mending::Propagation;
 pub use method::Method;
-pub(crate) use path::{Fineness, Paths};
-pub(crate) use predicate::margin_from_lengths;
+pub(crate) use path::{Fineness, Logarithm, Paths};
 pub use straighten::Polyline;
 pub(crate) use straighten::{Obstacles, straighten};
 pub(crate) use strip::taut;
 pub(crate) use stvd::Stvd;
-pub(crate) use update::Wave;
+pub(crate) use sweep::Dijkstra;
+pub(crate) use update::{Wave, layout};
 
 use crate::triangulation::VertexId;
 
@@ -71,12 +66,8 @@ pub(crate) trait Geodesic: Sync {
     /// Distance to, and colour of, the nearest source of every vertex.
     fn propagate(&self, sources: &Sources) -> Propagation;
 
-    /// Mends labels after the sources at the vertices `changed` have changed; the result equals [`Geodesic::propagate`], by
-    /// which a method that knows no better makes them anew.
-    fn update(&self, sources: &Sources, changed: &[VertexId], state: &mut Propagation) {
-        let _ = changed;
-        state.replace(self.propagate(sources));
-    }
+    /// Mends labels after the sources at the vertices `changed` have changed; the result equals [`Geodesic::propagate`].
+    fn update(&self, sources: &Sources, changed: &[VertexId], state: &mut Propagation);
 
     /// The same method on parts of the canvas.
     fn patches(&self) -> Box<dyn Patches + '_>;

@@ -1,10 +1,9 @@
 //! Distances from one source on a part of the canvas, without regard for other sources.
 
-use super::Patches;
+use super::front::Front;
 use super::update::Crossing;
+use super::{Label, Patches};
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
 /// Improvements by a smaller share of the distance are rounding.
 const ROUNDING: f64 = 1e-12;
@@ -20,7 +19,7 @@ pub(super) struct PatchSolver<'a> {
     canvas: &'a Triangulation,
     slots: Vec<u32>,
     distances: Vec<f64>,
-    heap: BinaryHeap<Reached>,
+    front: Front,
 }
 
 const OUTSIDE: u32 = u32::MAX;
@@ -28,8 +27,8 @@ const OUTSIDE: u32 = u32::MAX;
 impl<'a> PatchSolver<'a> {
     /// A solver on a canvas.
     pub(super) fn new(canvas: &'a Triangulation) -> Self {
-        let slots = vec![OUTSIDE; canvas.vertex_slots()];
-        Self { canvas, slots, distances: Vec::new(), heap: BinaryHeap::new() }
+        let vertices = canvas.vertex_slots();
+        Self { canvas, slots: vec![OUTSIDE; vertices], distances: Vec::new(), front: Front::new(vertices) }
     }
 
     fn distance(&self, v: VertexId) -> f64 {
@@ -52,15 +51,8 @@ impl<'a> PatchSolver<'a> {
 
     /// The distance at the apex of a half-edge's face of a path across the half-edge.
     fn across(&self, h: HalfEdge) -> Option<f64> {
-        let canvas = self.canvas;
-        let crossing = Crossing {
-            base: canvas.length(h),
-            from_start: canvas.length(h.prev()),
-            from_end: canvas.length(h.next()),
-            at_start: self.distance(canvas.origin(h)),
-            at_end: self.distance(canvas.target(h)),
-        };
-        if crossing.at_start.is_finite() && crossing.at_end.is_finite() { crossing.circular() } else { None }
+        let at = self.canvas.ends(h).map(|v| self.distance(v));
+        if at.iter().all(|d| d.is_finite()) { Crossing::of(self.canvas, h, at).circular() } else { None }
     }
 
     fn offer(&mut self, vertex: VertexId, distance: Option<f64>) {
@@ -70,7 +62,7 @@ impl<'a> PatchSolver<'a> {
         };
         if distance < *old * (1.0 - ROUNDING) {
             *old = distance;
-            self.heap.push(Reached { distance, vertex });
+            self.front.set(vertex, &Label::of_source(distance, 0));
         }
     }
 }
@@ -85,39 +77,14 @@ impl Patches for PatchSolver<'_> {
         for &(v, distance) in starts {
             self.offer(v, Some(distance));
         }
-        let mut budget = patch.len() * ROUNDS;
-        while let Some(Reached { distance, vertex }) = self.heap.pop() {
-            if self.distance(vertex) < distance {
-                continue;
-            }
-            self.spread(vertex);
-            budget -= 1;
-            if budget == 0 {
-                self.heap.clear();
-            }
+        for _ in 0..patch.len() * ROUNDS {
+            let Some(v) = self.front.pop() else { break };
+            self.spread(v);
         }
+        while self.front.pop().is_some() {}
         for v in patch {
             self.slots[v.index()] = OUTSIDE;
         }
         std::mem::take(&mut self.distances)
-    }
-}
-
-/// A heap entry; the nearest is the greatest.
-#[derive(PartialEq)]
-struct Reached {
-    distance: f64,
-    vertex: VertexId,
-}
-
-impl Eq for Reached {}
-impl PartialOrd for Reached {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Reached {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.distance.total_cmp(&self.distance).then(other.vertex.cmp(&self.vertex))
     }
 }

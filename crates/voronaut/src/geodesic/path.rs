@@ -4,7 +4,7 @@
 //! vector. For a smooth field the error falls exponentially with their number, and the change of the length from one
 //! number to its double, with the change before, tells how large it still is.
 
-use super::curve::{Curve, Guess, PathLength};
+use super::curve::{Curve, PathLength, modes_near};
 use super::jet::{Frame, Jet};
 use super::rule::Rule;
 use crate::geometry::{Point, Tensor, Vector};
@@ -54,6 +54,16 @@ pub(super) struct Solved {
     pub(super) pull: Vector,
 }
 
+/// The logarithm map of a metric field, which way a geodesic sets out: see [`Paths::logarithm`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Logarithm {
+    /// The velocity at p of the geodesic that arrives at q after the time 1: in the tensor at p it is as long as the geodesic,
+    /// up to errors.
+    pub velocity: Vector,
+    /// The length of the geodesic, with its error.
+    pub length: PathLength,
+}
+
 impl Default for Paths {
     fn default() -> Self {
         Self { rules: STAGES.iter().map(|&(modes, points)| Rule::new(points, modes)).collect() }
@@ -79,10 +89,23 @@ impl Paths {
         fineness: Fineness,
     ) -> Option<Curve> {
         let frame = Frame::along(field, p, q)?;
-        let guess = near.map(|path| Guess::new(field, &frame, path));
         let mut path = Path { field, frame, modes: Vec::new() };
-        let solved = self.climb(&mut path, fineness, guess.as_ref())?;
+        let solved = self.climb(&mut path, fineness, near)?;
         Some(Curve::new([p, q], frame, path.modes, solved.length))
+    }
+
+    /// The logarithm of q at p, of the geodesic that [`Paths::length`] finds. `None` where that finds none or where p is q.
+    pub(crate) fn logarithm(
+        &self,
+        field: &dyn MetricField,
+        p: Point,
+        q: Point,
+        fineness: Fineness,
+    ) -> Option<Logarithm> {
+        let solved = self.solve(field, p, q, fineness)?;
+        // Half the squared length falls fastest, in the tensor at p, where p moves along the geodesic (Gauss's lemma).
+        let velocity = -field.at(p).inverse().apply(solved.pull);
+        (velocity.x.is_finite() && velocity.y.is_finite()).then_some(Logarithm { velocity, length: solved.length })
     }
 
     pub(super) fn solve(&self, field: &dyn MetricField, p: Point, q: Point, fineness: Fineness) -> Option<Solved> {
@@ -91,18 +114,18 @@ impl Paths {
     }
 
     /// Relaxes a path, with more modes from stage to stage.
-    fn climb(&self, path: &mut Path, fineness: Fineness, guess: Option<&Guess>) -> Option<Solved> {
+    fn climb(&self, path: &mut Path, fineness: Fineness, near: Option<&[Point]>) -> Option<Solved> {
         let frame = path.frame;
         let mut before = f64::NAN;
         let mut change = f64::NAN;
         let mut error = f64::NAN;
         let mut last = None;
         // Few modes would lose what is particular to a path that is given.
-        let first = usize::from(guess.is_some());
+        let first = usize::from(near.is_some());
         for (stage, rule) in self.rules[..=fineness.0 as usize].iter().enumerate().skip(first) {
             path.modes.resize(STAGES[stage].0, Vector::default());
-            if let Some(guess) = guess.filter(|_| stage == first) {
-                path.modes = guess.modes(path.modes.len());
+            if let Some(near) = near.filter(|_| stage == first) {
+                path.modes = modes_near(path.field, &frame, near, path.modes.len());
             }
             let relaxed = path.relax(rule, RESIDUE[stage.min(1)])?;
             // The first stage is held against the chord, or the path given.
@@ -111,13 +134,13 @@ impl Paths {
             let ratio = if change > 0.0 { now / change } else { 0.0 };
             let unresolved = ratio > RATIOS.1;
             error = if unresolved { 2.0 * now } else { now * (ratio / (1.0 - ratio)).max(RATIOS.0) };
-            error += relaxed.residue + ROUNDING;
+            error += relaxed.system.residue + ROUNDING;
             (before, change) = (relaxed.length, now);
             last = Some(relaxed);
         }
         let last = last?;
-        let length = PathLength { value: last.length, error, curvature: last.curvature };
-        (error.is_finite() && last.length > 0.0).then(|| Solved { length, pull: frame.covector(last.pull) })
+        let length = PathLength { value: last.length, error, curvature: last.system.curvature };
+        (error.is_finite() && last.length > 0.0).then(|| Solved { length, pull: frame.covector(last.system.pull) })
     }
 }
 
@@ -131,10 +154,8 @@ struct Relaxed {
     length: f64,
     /// Length of the path that the relaxation began with.
     chord: f64,
-    /// Relative error of the length that further steps would remove.
-    residue: f64,
-    curvature: [f64; 2],
-    pull: Vector,
+    /// As it ended.
+    system: System,
 }
 
 /// A path at the points of a rule.
@@ -184,9 +205,7 @@ impl Path<'_> {
             }
             system = System::new(self, rule, &samples);
         }
-        let length = samples.length(rule);
-        let curvature = system.curvature;
-        Some(Relaxed { length, chord, residue: system.residue, curvature, pull: system.pull })
+        Some(Relaxed { length: samples.length(rule), chord, system })
     }
 
     /// The path a share of the step further whose energy is lower.
@@ -222,6 +241,7 @@ struct System {
     frozen: Vec<f64>,
     curvature: [f64; 2],
     pull: Vector,
+    /// Relative error of the length that further steps would remove.
     residue: f64,
 }
 
@@ -375,5 +395,29 @@ mod tests {
         let kinked = |p: Point| Tensor::isotropic(1.0 + 0.2 * (p.x - 0.1).abs() + p.y);
         let [coarse, fine] = [Fineness::COARSEST, Fineness::FINEST].map(|f| paths.length(&kinked, p, q, f).unwrap());
         assert!((coarse.value / fine.value - 1.0).abs() < 1e-3 && fine.error < 1e-5, "{coarse:?} {fine:?}");
+    }
+
+    #[test]
+    fn in_a_uniform_metric_it_is_the_difference() {
+        let (p, q) = (Point::new(0.2, -0.3), Point::new(1.0, 0.7));
+        let found = Paths::default().logarithm(&|_: Point| Tensor::new(4.0, 1.0, 2.0), p, q, Fineness::MIDDLE).unwrap();
+        assert!((found.velocity - (q - p)).norm() < 1e-9, "{:?}", found.velocity);
+    }
+
+    #[test]
+    fn half_plane_geodesics_leave_along_their_circles() {
+        // The circle around the origin through both points.
+        let (p, q) = (Point::new(-0.6, 0.8), Point::new(0.6, 0.8));
+        let half_plane = |p: Point| Tensor::isotropic(p.y);
+        let found = Paths::default().logarithm(&half_plane, p, q, Fineness::FINEST).unwrap();
+        let length = (1.0 + 1.2_f64.powi(2) / (2.0 * 0.64)).acosh();
+        let tangent = Vector::new(0.8, 0.6) * (0.8 * length);
+        assert!((found.velocity - tangent).norm() < 1e-5, "{:?} is not {tangent:?}", found.velocity);
+    }
+
+    #[test]
+    fn there_is_none_from_a_point_to_itself() {
+        let p = Point::new(0.5, 0.5);
+        assert_eq!(Paths::default().logarithm(&|_: Point| Tensor::IDENTITY, p, p, Fineness::MIDDLE), None);
     }
 }

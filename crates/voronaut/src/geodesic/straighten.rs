@@ -1,6 +1,6 @@
 //! From a path that is nearly shortest to a geodesic: its energy is minimised, and obstacles hold it back.
 
-use super::length::chord;
+use super::length::{chord, place_at, reached};
 use super::tension::{self, Expansion, energy};
 use crate::geometry::Point;
 use crate::metric::MetricField;
@@ -59,7 +59,13 @@ pub(crate) fn straighten(field: &dyn MetricField, path: &[Point], obstacles: &dy
     if points.len() < 2 {
         return given;
     }
-    let mut band = Band { field, obstacles, pinned: pins(points.len()), points, damping: 0.0 };
+    let mut band = Band {
+        field,
+        obstacles,
+        pinned: (0..points.len()).map(|i| i == 0 || i + 1 == points.len()).collect(),
+        points,
+        damping: 0.0,
+    };
     let mut best = given;
     for level in 0..DOUBLINGS {
         band.relax();
@@ -80,18 +86,12 @@ pub(crate) fn straighten(field: &dyn MetricField, path: &[Point], obstacles: &dy
 /// [`FEWEST`] segments of equal metric length along the path; where one would be barred, with the points of the path
 /// between its ends.
 fn resample(field: &dyn MetricField, path: &[Point], obstacles: &dyn Obstacles) -> Vec<Point> {
-    let mut reached = vec![0.0];
-    for w in path.windows(2) {
-        let middle = field.at(w[0].midpoint(w[1]));
-        reached.push(reached[reached.len() - 1] + middle.length(w[1] - w[0]));
-    }
+    let reached = reached(field, path);
     let (total, last) = (reached[path.len() - 1], path[path.len() - 1]);
     let (mut points, mut passed) = (vec![path[0]], 1);
     for k in 1..=FEWEST {
-        let goal = total * k as f64 / FEWEST as f64;
-        let i = reached.partition_point(|&r| r <= goal).clamp(1, path.len() - 1);
-        let t = (goal - reached[i - 1]) / (reached[i] - reached[i - 1]);
-        let next = if k == FEWEST { last } else { path[i - 1].lerp(path[i], if t.is_finite() { t } else { 0.0 }) };
+        let (place, i) = place_at(path, &reached, total * k as f64 / FEWEST as f64);
+        let next = if k == FEWEST { last } else { place };
         if obstacles.bars(points[points.len() - 1], next) {
             points.extend(&path[passed..i]);
         }
@@ -100,10 +100,6 @@ fn resample(field: &dyn MetricField, path: &[Point], obstacles: &dyn Obstacles) 
     }
     points.dedup();
     points
-}
-
-fn pins(count: usize) -> Vec<bool> {
-    (0..count).map(|i| i == 0 || i + 1 == count).collect()
 }
 
 /// A path under tension.

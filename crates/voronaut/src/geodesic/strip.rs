@@ -100,21 +100,24 @@ impl Strip<'_> {
     /// The portals past a vertex to its left (or right), from one edge to the next, and the angle between these; `None`
     /// across a border.
     fn past(&self, v: VertexId, pair: &[HalfEdge], is_left: bool) -> Option<(Vec<HalfEdge>, f64)> {
-        let topology = self.topology;
         let first = self.directed(pair[0], v, is_left)?;
         // The side of the next edge that is in the last face: on the way to v, left and right are exchanged.
         let last = self.directed(pair[1], v, !is_left)?;
         let (mut portals, mut angle) = (Vec::new(), 0.0);
-        let mut portal = if is_left { first.next() } else { first.prev() };
-        loop {
+        for portal in self.fan(first, is_left) {
             angle += self.angle_at(v, portal);
             if portal == last {
                 return Some((portals, angle));
             }
             portals.push(portal);
-            let across = topology.twin(portal)?;
-            portal = if is_left { across.next() } else { across.prev() };
         }
+        None
+    }
+
+    /// The portals out of one face after the other around the left (or right) end of a half-edge, from its face on.
+    fn fan(&self, from: HalfEdge, is_left: bool) -> impl Iterator<Item = HalfEdge> {
+        let out = move |h: HalfEdge| if is_left { h.next() } else { h.prev() };
+        std::iter::successors(Some(out(from)), move |&portal| self.topology.twin(portal).map(out))
     }
 
     /// The angle at a vertex in the face of a half-edge that begins or ends there.
@@ -166,7 +169,7 @@ impl Strip<'_> {
 
     /// Both ends are in one face.
     fn one_edge(&self) -> Taut {
-        let length = self.topology.find(self.from, self.to).or_else(|| self.topology.find(self.to, self.from));
+        let length = self.topology.edge_between(self.from, self.to);
         Taut { length: length.map_or(f64::NAN, |h| self.topology.length(h)), ..Taut::default() }
     }
 
@@ -187,15 +190,11 @@ impl Strip<'_> {
         let (first, last) = (bend.portal - before, bend.portal + after - 1);
         let goal = topology.twin(self.portals[last])?.face();
         let mut portals = self.portals[..first].to_vec();
-        let from = self.portals[first];
-        let mut portal = if bend.is_left { from.next() } else { from.prev() };
-        loop {
+        for portal in self.fan(self.portals[first], bend.is_left) {
             portals.push(portal);
-            let across = topology.twin(portal)?;
-            if across.face() == goal {
+            if topology.twin(portal)?.face() == goal {
                 break;
             }
-            portal = if bend.is_left { across.next() } else { across.prev() };
         }
         portals.extend(&self.portals[last + 1..]);
         Some(portals)
@@ -327,7 +326,7 @@ mod tests {
     fn in_space(places: &[Place], triangles: &[[u32; 3]]) -> Triangulation {
         let mut topology = Triangulation::from_triangles(places.len(), triangles, &vec![0; triangles.len()]);
         for h in topology.edges().collect::<Vec<_>>() {
-            let [a, b] = [topology.origin(h), topology.target(h)].map(|v| places[v.index()]);
+            let [a, b] = topology.ends(h).map(|v| places[v.index()]);
             topology.set_length(h, distance(a, b));
         }
         topology.check().unwrap();
@@ -360,7 +359,7 @@ mod tests {
             let found = taut(&topology, from, to).unwrap();
             assert!((found.length / distance(p, q) - 1.0).abs() < 1e-12, "{from:?} {to:?} {found:?}");
             for (h, share) in found.crossings {
-                let [a, b] = [topology.origin(h), topology.target(h)].map(|v| places[v.index()]);
+                let [a, b] = topology.ends(h).map(|v| places[v.index()]);
                 let on = [0, 1, 2].map(|i| a[i] + share * (b[i] - a[i]));
                 assert!((distance(p, on) + distance(on, q) - found.length).abs() < 1e-9, "{from:?} {to:?}");
             }

@@ -1,8 +1,8 @@
 //! Short-term vector Dijkstra: the last few edges of a way count as one straight piece.
 
-use super::label::{Label, Sources, Support};
-use super::sweep::{self, Step, beyond};
-use super::{Geodesic, Graph, Patches, Propagation};
+use super::Graph;
+use super::label::{Label, Support};
+use super::sweep::{Step, beyond};
 use crate::geometry::{Tensor, Vector};
 use crate::triangulation::VertexId;
 
@@ -41,7 +41,12 @@ fn projected(edges: &[(Vector, Tensor)], u: Vector) -> f64 {
 }
 
 impl Step for Stvd {
-    fn carry(&self, graph: &Graph, labels: &[Label], from: VertexId, x: VertexId) -> Label {
+    fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    fn carry(&self, labels: &[Label], from: VertexId, x: VertexId) -> Label {
+        let graph = &self.graph;
         let sight = graph.sight();
         let label = labels[from.index()];
         let mut edges: Vec<(Vector, Tensor)> = Vec::with_capacity(self.window);
@@ -64,15 +69,5 @@ impl Step for Stvd {
             };
         }
         Label::new(beyond(best, label.distance), label.colour, Support::Neighbour(from))
-    }
-}
-
-impl Geodesic for Stvd {
-    fn propagate(&self, sources: &Sources) -> Propagation {
-        sweep::propagate(self, &self.graph, sources)
-    }
-
-    fn patches(&self) -> Box<dyn Patches + '_> {
-        sweep::patches(self, &self.graph)
     }
 }

@@ -4,25 +4,99 @@
 //! distance gets from one to the other is the method's [`Step`]; whether settled vertices may be corrected is, too.
 
 use super::front::Front;
-use super::label::{Label, Sources};
-use super::{Graph, MarchCounters, Patches, Propagation};
+use super::label::{Label, Sources, Support};
+use super::mending::{Propagation, Rule};
+use super::{Geodesic, Graph, MarchCounters, Patches};
 use crate::triangulation::VertexId;
 
-/// How a method carries distances over an edge of a graph.
-pub(super) trait Step: Sync {
+/// How a method carries distances over an edge of the graph that it travels on.
+pub(super) trait Step: Sync + Sized {
+    /// What it travels on.
+    fn graph(&self) -> &Graph;
+
     /// The share of its distance by which a settled vertex must improve to be settled once more; `None`: it never is.
     fn correction(&self) -> Option<f64> {
         None
     }
 
     /// The label that x has from the label of its neighbour `from`, which has one: greater than those it rests on.
-    fn carry(&self, graph: &Graph, labels: &[Label], from: VertexId, x: VertexId) -> Label;
+    fn carry(&self, labels: &[Label], from: VertexId, x: VertexId) -> Label;
+
+    /// As [`Geodesic::update`]: by making labels anew, for as a rule they depend on the order of work.
+    fn mend(&self, sources: &Sources, _changed: &[VertexId], state: &mut Propagation) {
+        state.replace(self.propagate(sources));
+    }
+}
+
+impl<S: Step> Geodesic for S {
+    fn propagate(&self, sources: &Sources) -> Propagation {
+        let mut sweep = Sweep::new(self, Status::Open);
+        for v in sources.vertices() {
+            sweep.start(v, sources.nearest(v));
+        }
+        sweep.run();
+        Propagation::of(sweep.labels, sweep.counters)
+    }
+
+    fn update(&self, sources: &Sources, changed: &[VertexId], state: &mut Propagation) {
+        self.mend(sources, changed, state);
+    }
+
+    fn patches(&self) -> Box<dyn Patches + '_> {
+        Box::new(Sweep::new(self, Status::Outside))
+    }
+}
+
+/// Shortest ways along the edges of a graph, of lengths [`Graph::length`] (Dijkstra 1959). The baseline: however fine the
+/// canvas, ways stay on edges, and are too long by a share that depends on how many directions these have.
+///
+/// Labels are mended as in [`Marching`](super::Marching): by work on what has changed, with the result of making them anew.
+#[derive(Clone, Debug)]
+pub(crate) struct Dijkstra(pub Graph);
+
+impl Step for Dijkstra {
+    fn graph(&self) -> &Graph {
+        &self.0
+    }
+
+    fn carry(&self, labels: &[Label], from: VertexId, x: VertexId) -> Label {
+        let label = labels[from.index()];
+        let distance = beyond(label.distance + self.0.length(from, x), label.distance);
+        Label::new(distance, label.colour, Support::Neighbour(from))
+    }
+
+    fn mend(&self, sources: &Sources, changed: &[VertexId], state: &mut Propagation) {
+        state.mend(self, sources, changed);
+    }
+}
+
+impl Rule for Dijkstra {
+    fn spread(&self, labels: &[Label], v: VertexId, mut offer: impl FnMut(VertexId, Label)) -> u64 {
+        let neighbours = self.0.neighbours(v);
+        for &x in neighbours {
+            offer(x, self.carry(labels, v, x));
+        }
+        neighbours.len() as u64
+    }
+
+    fn gather(&self, labels: &[Label], x: VertexId, mut offer: impl FnMut(Label)) -> u64 {
+        let has_label = |v: &VertexId| labels[v.index()].support() != Support::Nothing;
+        self.near(x).filter(has_label).for_each(|v| offer(self.carry(labels, v, x)));
+        0
+    }
+
+    fn near(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
+        self.0.neighbours(v).iter().copied()
+    }
+
+    fn rests_on(&self, due: &Label, v: VertexId) -> bool {
+        due.support() == Support::Neighbour(v)
+    }
 }
 
 /// Labels in the making.
-pub(super) struct Sweep<'a, S> {
+struct Sweep<'a, S> {
     step: &'a S,
-    graph: &'a Graph,
     labels: Vec<Label>,
     status: Vec<Status>,
     front: Front,
@@ -38,11 +112,11 @@ enum Status {
 }
 
 impl<'a, S: Step> Sweep<'a, S> {
-    fn new(step: &'a S, graph: &'a Graph, status: Status) -> Self {
-        let n = graph.vertex_count();
+    fn new(step: &'a S, status: Status) -> Self {
+        let n = step.graph().vertex_count();
         let counters = MarchCounters::default();
         let (labels, status) = (vec![Label::FAR; n], vec![status; n]);
-        Self { step, graph, labels, status, front: Front::new(n), counters }
+        Self { step, labels, status, front: Front::new(n), counters }
     }
 
     fn start(&mut self, v: VertexId, label: Label) {
@@ -53,7 +127,7 @@ impl<'a, S: Step> Sweep<'a, S> {
     }
 
     fn run(&mut self) {
-        let graph = self.graph;
+        let graph = self.step.graph();
         while let Some(v) = self.front.pop() {
             self.status[v.index()] = Status::Known;
             self.counters.settled += 1;
@@ -71,7 +145,7 @@ impl<'a, S: Step> Sweep<'a, S> {
         }
         self.counters.crossings += 1;
         let old = self.labels[x.index()];
-        let label = self.step.carry(self.graph, &self.labels, v, x);
+        let label = self.step.carry(&self.labels, v, x);
         let least = old.distance * (1.0 - correction.unwrap_or(0.0));
         let is_better = if status == Status::Known { label.distance < least } else { label.is_before(&old) };
         if is_better {
@@ -83,21 +157,6 @@ impl<'a, S: Step> Sweep<'a, S> {
             self.front.set(x, &label);
         }
     }
-}
-
-/// The labels of all vertices.
-pub(super) fn propagate(step: &impl Step, graph: &Graph, sources: &Sources) -> Propagation {
-    let mut sweep = Sweep::new(step, graph, Status::Open);
-    for v in sources.vertices() {
-        sweep.start(v, sources.nearest(v));
-    }
-    sweep.run();
-    Propagation::of(sweep.labels, sweep.counters)
-}
-
-/// Sweeps over one part of the graph after the other.
-pub(super) fn patches<'a>(step: &'a impl Step, graph: &'a Graph) -> Box<dyn Patches + 'a> {
-    Box::new(Sweep::new(step, graph, Status::Outside))
 }
 
 impl<S: Step> Patches for Sweep<'_, S> {

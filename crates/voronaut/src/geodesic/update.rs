@@ -4,6 +4,9 @@
 //! at the ends of the edge then give one at the apex. A rule answers only where the straight path to the apex crosses
 //! the edge; else the ends alone reach it, along the other edges.
 
+use crate::geometry::{Tensor, Vector};
+use crate::triangulation::{HalfEdge, Triangulation};
+
 /// The shape that a front is taken to have within a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Wave {
@@ -31,6 +34,12 @@ pub(super) struct Crossing {
 const ON_LINE: f64 = 1e-9;
 
 impl Crossing {
+    /// The face of a half-edge, which is its base.
+    pub(super) fn of(canvas: &Triangulation, h: HalfEdge, [at_start, at_end]: [f64; 2]) -> Self {
+        let [base, from_start, from_end] = [h, h.prev(), h.next()].map(|e| canvas.length(e));
+        Self { base, from_start, from_end, at_start, at_end }
+    }
+
     /// The distance at the apex of a path through the base's interior; `None` if there is none, or if it is not longer
     /// than the distances that it comes from (such a value could not have come before them).
     pub(super) fn distance(&self, wave: Wave) -> Option<f64> {
@@ -134,9 +143,39 @@ impl Unfolding {
 }
 
 /// The apex of a triangle over the base from (0, 0) to (l, 0), at the distances a and b from its ends.
-fn layout(l: f64, a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn layout(l: f64, a: f64, b: f64) -> (f64, f64) {
     let x = 0.5 * (l + (a - b) * (a + b) / l);
     (x, ((a - x) * (a + x)).max(0.0).sqrt())
+}
+
+/// The local rule of first-order schemes, a plane wave that crosses the far edge of a triangle with a uniform metric: the
+/// distance at a vertex, seen from which an edge has its ends at u and w, of the shortest way across that edge, along
+/// which the distance varies linearly between the two given (Bornemann and Rasch 2006); `None` if that way leads
+/// through an end. It is never less than both distances, and may be less than one.
+pub(super) fn plane_crossing(metric: Tensor, [u, w]: [Vector; 2], at: [f64; 2]) -> Option<f64> {
+    let e = u - w;
+    let area = e.cross(w);
+    by_plane(metric.dot(e, e), metric.dot(e, w), metric.determinant() * area * area, at)
+}
+
+/// The same in the one metric that gives a triangle its lengths: those of the sides from the vertex to the edge's ends, and of
+/// the edge.
+pub(super) fn plane_crossing_by_lengths([to_u, to_w]: [f64; 2], edge: f64, at: [f64; 2]) -> Option<f64> {
+    let square = edge * edge;
+    let along = 0.5 * (to_u * to_u - to_w * to_w - square);
+    by_plane(square, along, square * to_w * to_w - along * along, at)
+}
+
+/// From the products of e = u - w with itself and with w, and the determinant of the Gram matrix of e and w.
+fn by_plane(square: f64, along: f64, gram: f64, [at_u, at_w]: [f64; 2]) -> Option<f64> {
+    let difference = at_u - at_w;
+    let rest = square - difference * difference;
+    if !(rest > 0.0 && gram > 0.0) {
+        return None;
+    }
+    let foot = (-along - difference * (gram / rest).sqrt()) / square;
+    let distance = at_w + (-difference * along + (gram * rest).sqrt()) / square;
+    (foot > 0.0 && foot < 1.0 && distance.is_finite()).then_some(distance)
 }
 
 #[cfg(test)]
@@ -227,5 +266,31 @@ mod tests {
     fn paths_beside_the_edge_are_refused() {
         let (c, _) = crossing((-5.0, -1.0), (0.9, 1.0), 2.0);
         assert_eq!((c.distance(Wave::Circular), c.distance(Wave::Plane)), (None, None));
+    }
+
+    #[test]
+    fn it_is_the_least_over_the_edge() {
+        let mut found = 0;
+        for i in 0..200 {
+            let f = f64::from(i);
+            let (angle, ratio) = (0.7 * f, 1.0 + (3.0 * f).sin().abs() * 30.0);
+            let metric = Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), ratio, 1.0);
+            let (u, w) = (Vector::new(1.0 + (1.1 * f).sin(), 0.5), Vector::new(-0.4, 1.0 + 0.5 * (2.3 * f).cos()));
+            let at = [2.0 + 0.8 * (1.7 * f).sin(), 2.0];
+            let through = |p: f64| p * at[0] + (1.0 - p) * at[1] + metric.length(u * p + w * (1.0 - p));
+            let least = (0..=20_000).map(|k| through(f64::from(k) / 20_000.0)).fold(f64::INFINITY, f64::min);
+            let sides = [metric.length(u), metric.length(w)];
+            let by_lengths = plane_crossing_by_lengths(sides, metric.length(u - w), at);
+            match plane_crossing(metric, [u, w], at) {
+                Some(distance) => {
+                    found += 1;
+                    assert!((distance - least).abs() < 1e-6, "{distance} {least}");
+                    assert!(distance >= at[0].min(at[1]));
+                    assert!((by_lengths.unwrap() - distance).abs() < 1e-6, "{by_lengths:?} {distance}");
+                }
+                None => assert!(least >= through(0.0).min(through(1.0)) - 1e-12),
+            }
+        }
+        assert!(found > 40, "{found}");
     }
 }

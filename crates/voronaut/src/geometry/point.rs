@@ -33,6 +33,17 @@ impl Point {
         self + (other - self) * t
     }
 
+    /// The point nearest to this one of the segment from a to b.
+    pub(crate) fn nearest_between(self, a: Point, b: Point) -> Point {
+        let along = b - a;
+        a.lerp(b, ((self - a).dot(along) / along.dot(along)).clamp(0.0, 1.0))
+    }
+
+    /// The centroid of a triangle.
+    pub(crate) fn centroid([a, b, c]: [Point; 3]) -> Point {
+        a + ((b - a) + (c - a)) * (1.0 / 3.0)
+    }
+
     /// The midpoint of two points.
     #[must_use]
     pub(crate) fn midpoint(self, other: Point) -> Point {

@@ -3,6 +3,7 @@
 
 use crate::geodesic::{Margin, PathLength, margin_from_lengths};
 use crate::parallel::prelude::*;
+use crate::triangulation::distinct;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -25,9 +26,14 @@ pub(crate) struct Quad {
 }
 
 impl Quad {
+    /// The four seeds.
+    pub(crate) fn seeds(&self) -> [u32; 4] {
+        [self.a, self.b, self.c, self.d]
+    }
+
     /// The pairs a-b, a-c, b-c, a-d, b-d.
     pub(crate) fn pairs(&self) -> [(u32, u32); 5] {
-        let Quad { a, b, c, d } = *self;
+        let [a, b, c, d] = self.seeds();
         [(a, b), (a, c), (b, c), (a, d), (b, d)].map(|(i, j): (u32, u32)| (i.min(j), i.max(j)))
     }
 
@@ -46,7 +52,7 @@ impl Quad {
 
     /// The same for the edge in both directions.
     fn key(&self) -> [u32; 4] {
-        let Quad { a, b, c, d } = *self;
+        let [a, b, c, d] = self.seeds();
         if a < b { [a, b, c, d] } else { [b, a, d, c] }
     }
 }
@@ -188,9 +194,7 @@ impl Tests {
     fn solve_for(&mut self, by: &impl InCircle, quads: &[Quad], level: usize) {
         let is_lacking =
             |pair: &(u32, u32)| self.lengths.get(pair).is_none_or(|known| known.level < level && !known.is_vetoed);
-        let mut pairs: Vec<(u32, u32)> = quads.iter().flat_map(Quad::pairs).filter(is_lacking).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
+        let pairs = distinct(quads.iter().flat_map(Quad::pairs).filter(is_lacking));
         let solved: Vec<Option<Known>> =
             pairs.par_iter().with_min_len(8).map(|&(i, j)| by.solve(i, j, level)).collect();
         self.counters.paths += pairs.len() as u64;

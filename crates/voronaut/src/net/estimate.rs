@@ -5,7 +5,7 @@ use crate::geodesic::{LocalMetric, chord, equalising_step, flat_centre, hermite}
 use crate::geometry::{Point, Tensor};
 use crate::metric::MetricField;
 use crate::planar::Location;
-use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId, distinct};
 
 /// Newton steps at most to a circumcentre, and the residue (share of the squared radius) at which they end.
 const STEPS: usize = 6;
@@ -71,11 +71,8 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
 
     /// The faces at a seed and at its neighbours, each once, in order.
     pub(crate) fn around(&self, v: VertexId) -> Vec<FaceId> {
-        let mut faces: Vec<FaceId> =
-            self.neighbours(&[v]).into_iter().chain([v]).flat_map(|u| self.faces_at(u)).collect();
-        faces.sort_unstable();
-        faces.dedup();
-        faces
+        let star = |u| self.0.topology().star(u).map(HalfEdge::face);
+        distinct(self.neighbours(&[v]).into_iter().chain([v]).flat_map(star))
     }
 
     /// The interior triangles and border edges, by a face that has them, that miss a power `asked`.
@@ -89,16 +86,12 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
         self.of_triangle(self.0.topology().corners(f)).map(|circle| (circle.centre, circle.square))
     }
 
-    fn faces_at(&self, v: VertexId) -> impl Iterator<Item = FaceId> {
-        self.0.topology().star(v).map(HalfEdge::face)
-    }
-
     /// Of a face's triangle and those of its sides that lie on the border.
     fn of_face(&self, f: FaceId, only: Option<VertexId>, asked: &impl Fn(VertexId) -> f64) -> f64 {
         let topology = self.0.topology();
         let corners = topology.corners(f);
         let of_border = |h: HalfEdge| {
-            let ends = [topology.origin(h), topology.target(h)];
+            let ends = topology.ends(h);
             self.middle(ends).map_or(0.0, |circle| self.missing(&circle, &ends, only, asked))
         };
         let sides = f.half_edges().into_iter().filter(|&h| topology.twin(h).is_none());
@@ -132,11 +125,8 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
     fn neighbours(&self, corners: &[VertexId]) -> Vec<VertexId> {
         let topology = self.0.topology();
         // At the border the last neighbour is the apex of the last face.
-        let around = |&v: &VertexId| topology.star(v).flat_map(|h| [topology.target(h), topology.apex(h)]);
-        let mut found: Vec<VertexId> = corners.iter().flat_map(around).filter(|v| !corners.contains(v)).collect();
-        found.sort_unstable();
-        found.dedup();
-        found
+        let around = |&v: &VertexId| topology.around(v);
+        distinct(corners.iter().flat_map(around).filter(|v| !corners.contains(v)))
     }
 
     fn power(&self, circle: &Around, v: VertexId) -> f64 {

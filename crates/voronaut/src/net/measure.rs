@@ -1,10 +1,11 @@
 //! Circles and powers by geodesics.
 
-use super::{Ball, Simplices};
+use super::{Ball, Net, Simplices};
 use crate::geodesic::{Circle, Fineness, Paths, chord, flat_centre};
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
+use crate::triangulation::distinct;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -35,7 +36,7 @@ struct Remembered {
 
 /// Squared distances, circles and powers of seeds.
 pub(super) struct Measure<'a> {
-    paths: &'a Paths,
+    paths: Paths,
     field: &'a dyn MetricField,
     found: &'a Simplices<'a>,
     neighbours: Vec<Vec<u32>>,
@@ -45,16 +46,25 @@ pub(super) struct Measure<'a> {
 }
 
 impl<'a> Measure<'a> {
-    pub(super) fn new(paths: &'a Paths, field: &'a dyn MetricField, found: &'a Simplices<'a>) -> Self {
+    pub(super) fn new(field: &'a dyn MetricField, found: &'a Simplices<'a>) -> Self {
         let neighbours = super::neighbours(found.seeds.len(), found.triangles.iter().copied());
         let mut is_at_border = vec![false; found.seeds.len()];
         found.border.iter().flatten().for_each(|&i| is_at_border[i as usize] = true);
-        Self { paths, field, found, neighbours, is_at_border, chords: AtomicUsize::new(0) }
+        Self { paths: Paths::default(), field, found, neighbours, is_at_border, chords: AtomicUsize::new(0) }
+    }
+
+    /// The circles of some triangles and of all border edges, and what has none.
+    pub(super) fn circles(&self, wanted: &[[u32; 3]], memory: &mut Memory) -> Net {
+        let (triangles, unknown) = self.triangles(wanted, memory);
+        let border = self.found.border.par_iter().with_min_len(16);
+        let border: Vec<Ball<2>> = border.filter_map(|&ends| self.border_edge(ends)).collect();
+        let unmeasured = unknown.len() + self.found.border.len() - border.len();
+        Net { triangles, border, unmeasured, unknown, ..Net::default() }
     }
 
     /// The circles of those triangles that have one, as far as possible from memory, which then knows all of them; and
     /// those that have none although they should.
-    pub(super) fn triangles(&self, wanted: &[[u32; 3]], memory: &mut Memory) -> (Vec<Ball<3>>, Vec<[u32; 3]>) {
+    fn triangles(&self, wanted: &[[u32; 3]], memory: &mut Memory) -> (Vec<Ball<3>>, Vec<[u32; 3]>) {
         let measured = |&corners: &[u32; 3]| {
             let seeds: Vec<(u32, Point)> =
                 corners.into_iter().chain(self.around(&corners)).map(|i| (i, self.seed(i))).collect();
@@ -71,11 +81,6 @@ impl<'a> Measure<'a> {
         let balls = found.iter().filter_map(|(_, remembered)| remembered.ball).collect();
         memory.0.extend(found);
         (balls, unknown)
-    }
-
-    /// The circles of all border edges that have one.
-    pub(super) fn border(&self) -> Vec<Ball<2>> {
-        self.found.border.par_iter().with_min_len(16).filter_map(|&ends| self.border_edge(ends)).collect()
     }
 
     /// The least distance between neighbours: along the shortest chords until no other edge can be shorter.
@@ -112,10 +117,10 @@ impl<'a> Measure<'a> {
 
     fn triangle(&self, corners: [u32; 3]) -> Option<Ball<3>> {
         let points = corners.map(|i| self.seed(i));
-        let around = |fineness| Circle::around(self.paths, self.field, points, fineness);
+        let around = |fineness| Circle::around(&self.paths, self.field, points, fineness);
         let known = around(Fineness::MIDDLE).filter(|circle| circle.error < VAGUE * circle.square);
         // Circles around centres far outside the domain are not worth the finest paths.
-        let fine = || around(Fineness::FINEST).or_else(|| Circle::around_carefully(self.paths, self.field, points));
+        let fine = || around(Fineness::FINEST).or_else(|| Circle::around_carefully(&self.paths, self.field, points));
         let circle = known.or_else(|| self.may_be_interior(corners).then(fine).flatten());
         let ball = |circle: Circle| self.ball(corners, &circle, (self.found.is_inside)(corners[0], circle.centre));
         if let Some(found) = circle.map(ball).filter(|ball| ball.power > 0.0 || !ball.is_interior) {
@@ -127,7 +132,7 @@ impl<'a> Measure<'a> {
         // Of several circles the one of cells that meet has no seed in it.
         let starts = self.starts(points);
         let others =
-            starts.into_iter().filter_map(|start| Circle::near(self.paths, self.field, points, start)).map(ball);
+            starts.into_iter().filter_map(|start| Circle::near(&self.paths, self.field, points, start)).map(ball);
         let best = |a: Ball<3>, b: Ball<3>| {
             let rank = |ball: &Ball<3>| if ball.is_interior { ball.power } else { f64::NEG_INFINITY };
             if rank(&b) > rank(&a) { b } else { a }
@@ -158,8 +163,7 @@ impl<'a> Measure<'a> {
     /// Whether the circumcentre with one tensor is in the domain.
     fn seems_interior(&self, corners: [u32; 3]) -> bool {
         let points = corners.map(|i| self.seed(i));
-        let middle = points[0] + ((points[1] - points[0]) + (points[2] - points[0])) * (1.0 / 3.0);
-        let centre = flat_centre(self.field.at(middle), points);
+        let centre = flat_centre(self.field.at(Point::centroid(points)), points);
         centre.is_some_and(|centre| (self.found.is_inside)(corners[0], centre))
     }
 
@@ -175,11 +179,8 @@ impl<'a> Measure<'a> {
 
     /// The seeds that share an edge with a corner and are none, in order.
     fn around(&self, corners: &[u32]) -> Vec<u32> {
-        let mut around: Vec<u32> = corners.iter().flat_map(|&i| self.neighbours[i as usize].iter().copied()).collect();
-        around.sort_unstable();
-        around.dedup();
-        around.retain(|i| !corners.contains(i));
-        around
+        let around = corners.iter().flat_map(|&i| self.neighbours[i as usize].iter().copied());
+        distinct(around.filter(|i| !corners.contains(i)))
     }
 
     /// The least power of a seed that shares an edge with a corner, nearest chords first.
@@ -192,7 +193,7 @@ impl<'a> Measure<'a> {
             if (LEAST_SHARE * chord).powi(2) - circle.square > least {
                 break;
             }
-            let power = circle.power(self.paths, self.field, self.seed(i), Fineness::MIDDLE);
+            let power = circle.power(&self.paths, self.field, self.seed(i), Fineness::MIDDLE);
             let power = power.unwrap_or_else(|| self.stand_in(chord).powi(2) - circle.square);
             if power < least {
                 (least, nearest) = (power, Some(i));

@@ -14,9 +14,10 @@ pub(crate) use measure::Memory;
 pub(crate) use on_canvas::circles_on_canvas;
 pub use random::Random;
 
-use crate::geodesic::Paths;
 use crate::geometry::Point;
 use crate::metric::MetricField;
+use crate::triangulation::{distinct, smallest_first};
+use measure::Measure;
 use std::collections::HashSet;
 
 /// A Delaunay circle: of a triangle, or of an edge at the border of the domain, where its centre is on that edge.
@@ -89,33 +90,26 @@ impl Net {
     /// For every triangle all seeds are asked that share an edge with one of its corners: a seed in its circle need not
     /// be opposite to one of its sides. Distances know of no holes.
     pub(crate) fn measure(field: &dyn MetricField, found: &Simplices) -> Self {
-        Self::measure_again(field, found, &mut Memory::default())
+        Self::measure_beside(field, found, &[], &mut Memory::default())
     }
 
     /// [`Net::measure`] of seeds of which most are where they were when the memory was written: what depends on no seed that
-    /// has moved is not measured again. The memory is of one field and one domain.
-    pub(crate) fn measure_again(field: &dyn MetricField, found: &Simplices, memory: &mut Memory) -> Self {
-        Self::measure_beside(field, found, &[], memory)
-    }
-
-    /// [`Net::measure_again`] where some circles are known from a canvas ([`circles_on_canvas`]).
+    /// has moved is not measured again. The memory is of one field and one domain. Some circles may be known from a canvas
+    /// ([`circles_on_canvas`]).
     pub(crate) fn measure_beside(
         field: &dyn MetricField,
         found: &Simplices,
         known: &[Ball<3>],
         memory: &mut Memory,
     ) -> Self {
-        let paths = Paths::default();
-        let measure = measure::Measure::new(&paths, field, found);
-        let of_canvas: HashSet<[u32; 3]> = known.iter().map(|ball| turned(ball.corners)).collect();
-        let is_open = |corners: &&[u32; 3]| !of_canvas.contains(&turned(**corners));
+        let of_canvas: HashSet<[u32; 3]> = known.iter().map(|ball| smallest_first(ball.corners)).collect();
+        let is_open = |corners: &&[u32; 3]| !of_canvas.contains(&smallest_first(**corners));
         let wanted: Vec<[u32; 3]> = found.triangles.iter().filter(is_open).copied().collect();
-        let mut net = Self { mu: measure.mu(), by_canvas: known.len(), ..Self::default() };
-        (net.triangles, net.unknown) = measure.triangles(&wanted, memory);
+        let measure = Measure::new(field, found);
+        let mu = measure.mu();
+        let mut net = Self { mu, by_canvas: known.len(), ..measure.circles(&wanted, memory) };
         net.triangles.extend_from_slice(known);
-        net.border = measure.border();
         net.by_chord = measure.chords();
-        net.unmeasured = net.unknown.len() + found.border.len() - net.border.len();
         // A circle with a seed in it says nothing of how far points are from seeds.
         let interior = net.interior().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius);
         let radii = interior.chain(net.border.iter().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius));
@@ -130,12 +124,7 @@ impl Net {
         wanted: &[[u32; 3]],
         memory: &mut Memory,
     ) -> Self {
-        let paths = Paths::default();
-        let measure = measure::Measure::new(&paths, field, found);
-        let (triangles, unknown) = measure.triangles(wanted, memory);
-        let border = measure.border();
-        let unmeasured = unknown.len() + found.border.len() - border.len();
-        Self { triangles, border, unmeasured, unknown, ..Self::default() }
+        Measure::new(field, found).circles(wanted, memory)
     }
 
     /// The triangles whose circumcentre is in the domain.
@@ -161,21 +150,12 @@ impl Net {
 
 /// The seeds that share a triangle with each of so many seeds, in order.
 pub(crate) fn neighbours(seeds: usize, triangles: impl Iterator<Item = [u32; 3]>) -> Vec<Vec<u32>> {
-    let mut neighbours = vec![Vec::new(); seeds];
+    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); seeds];
     for [a, b, c] in triangles {
         for [i, j] in [[a, b], [b, c], [c, a]] {
             neighbours[i as usize].push(j);
             neighbours[j as usize].push(i);
         }
     }
-    for list in &mut neighbours {
-        list.sort_unstable();
-        list.dedup();
-    }
-    neighbours
-}
-
-/// The same cycle, its smallest member first.
-fn turned([a, b, c]: [u32; 3]) -> [u32; 3] {
-    [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])
+    neighbours.into_iter().map(distinct).collect()
 }

@@ -26,8 +26,7 @@ pub(crate) fn circles_on_canvas(
 
 fn ball(diagram: &Diagram, simplex: &NerveTriangle, number: impl Fn(u32) -> u32) -> Option<Ball<3>> {
     let square = simplex.square?;
-    let [a, b, c] = diagram.corners_of(&[simplex.witness])[0];
-    let centre = a + ((b - a) + (c - a)) * (1.0 / 3.0);
+    let centre = Point::centroid(diagram.corners_of(&[simplex.witness])[0]);
     let power = simplex.fourth.map_or(f64::INFINITY, |(_, gap)| gap * square);
     let nearest = simplex.fourth.map(|(colour, _)| number(colour));
     let corners = simplex.colours.map(&number);

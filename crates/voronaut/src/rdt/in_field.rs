@@ -111,7 +111,7 @@ impl InCircle for InField<'_> {
         let [p, q] = [i, j].map(|k| &self.sites[k as usize]);
         let fineness = [Fineness::COARSEST, Fineness::MIDDLE, Fineness::FINEST][level - FIRST_PATH];
         let found = self.paths.length(self.field, p.at, q.at, fineness);
-        let agreed = found.filter(|l| self.agrees(i, j, [1.0 - l.error, 1.0 + l.error].map(|x| l.value * x)));
+        let agreed = found.filter(|l| self.agrees(i, j, l.value, l.error));
         let vetoed = || {
             let (distance, error) = self.trust.reference.and_then(|reference| reference(i, j))?;
             let length = PathLength { value: distance, error: error / distance, curvature: [0.0; 2] };
@@ -124,7 +124,7 @@ impl InCircle for InField<'_> {
 impl InField<'_> {
     /// One tensor for all, the mean of the four; the error from what the tensors at the ends say of each edge.
     fn frozen(&self, quad: &Quad) -> Margin {
-        let sites = [quad.a, quad.b, quad.c, quad.d].map(|i| &self.sites[i as usize]);
+        let sites = quad.seeds().map(|i| &self.sites[i as usize]);
         let [a, b, c, d] = sites.map(|s| s.at);
         let mean = sites.iter().fold(Tensor::default(), |sum, s| sum + s.local.tensor) * 0.25;
         let (left, right) = ((b - a).cross(c - a), (a - b).cross(d - b));
@@ -140,14 +140,13 @@ impl InField<'_> {
             let slopes = (g + h) / 12.0 + (g * g + h * h) / 24.0;
             ((0.5 * (here + there) / all - 1.0).abs() + OF_SPREAD * (here - there).abs() / all + slopes, all)
         };
-        let mut plain = [PathLength { value: 0.0, error: 0.0, curvature: [0.0; 2] }; 5];
         let bent = sites.iter().map(|s| s.curvature.abs()).fold(0.0, f64::max);
-        for (length, (i, j)) in plain.iter_mut().zip(quad.pairs()) {
+        let plain = quad.pairs().map(|(i, j)| {
             let (error, value) = error_of(i, j);
-            *length = PathLength { value, error, curvature: [-bent, bent] };
-        }
+            PathLength { value, error, curvature: [-bent, bent] }
+        });
         let is_told = |(l, (i, j)): (&PathLength, (u32, u32))| {
-            l.value < self.longest((i, j)) && self.agrees(i, j, [1.0 - l.error, 1.0 + l.error].map(|x| l.value * x))
+            l.value < self.longest((i, j)) && self.agrees(i, j, l.value, l.error)
         };
         let margin = margin_from_lengths(&plain);
         let error = if plain.iter().zip(quad.pairs()).all(is_told) { margin.error } else { f64::INFINITY };
@@ -155,16 +154,15 @@ impl InField<'_> {
     }
 
     fn by_expansions(&self, quad: &Quad) -> Margin {
-        let mut lengths = [PathLength { value: 0.0, error: 0.0, curvature: [0.0; 2] }; 5];
-        let curvatures = || [quad.a, quad.b, quad.c, quad.d].into_iter().map(|i| self.sites[i as usize].curvature);
+        let curvatures = || quad.seeds().into_iter().map(|i| self.sites[i as usize].curvature);
         let (least, most) =
             (curvatures().fold(f64::INFINITY, f64::min), curvatures().fold(f64::NEG_INFINITY, f64::max));
         let doubt = 0.5 * (most - least);
-        for (length, (i, j)) in lengths.iter_mut().zip(quad.pairs()) {
-            let Some(found) = self.expanded(i, j) else { return Margin::UNKNOWN };
-            *length = PathLength { curvature: [least - doubt, most + doubt], ..found };
-        }
-        margin_from_lengths(&lengths)
+        let [Some(ab), Some(ac), Some(bc), Some(ad), Some(bd)] = quad.pairs().map(|(i, j)| self.expanded(i, j)) else {
+            return Margin::UNKNOWN;
+        };
+        let curvature = [least - doubt, most + doubt];
+        margin_from_lengths(&[ab, ac, bc, ad, bd].map(|length| PathLength { curvature, ..length }))
     }
 
     /// A length from the expansions at its ends; `None` where they do not tell.
@@ -175,7 +173,7 @@ impl InField<'_> {
         let is_told = !p.local.is_rough
             && !q.local.is_rough
             && found.value < self.longest((i, j))
-            && self.agrees(i, j, [1.0 - error, 1.0 + error].map(|x| found.value * x));
+            && self.agrees(i, j, found.value, error);
         is_told.then_some(PathLength { value: found.value, error, curvature: [0.0; 2] })
     }
 
@@ -183,18 +181,17 @@ impl InField<'_> {
         LONG * self.sites[i as usize].spacing.max(self.sites[j as usize].spacing)
     }
 
-    /// Whether the reference allows a length between these bounds: it is neither the longer of two ways nor one that
+    /// Whether the reference allows a length with this relative error: it is neither the longer of two ways nor one that
     /// leaves the domain.
-    fn agrees(&self, i: u32, j: u32, [least, most]: [f64; 2]) -> bool {
+    fn agrees(&self, i: u32, j: u32, length: f64, error: f64) -> bool {
+        let [least, most] = [1.0 - error, 1.0 + error].map(|x| length * x);
         let known = self.trust.reference.and_then(|reference| reference(i, j));
         known.is_none_or(|(distance, error)| least <= distance + error && most >= distance - error)
     }
 
     fn by_power(&self, quad: &Quad, level: usize, lengths: &Lengths) -> Margin {
-        let known = quad.pairs().map(|pair| lengths.get(&pair));
-        let [Some(ab), Some(ac), Some(bc), Some(ad), Some(bd)] = known else { return Margin::UNKNOWN };
-        let known = [ab, ac, bc, ad, bd];
-        let [ab, ac, bc, ad, bd] = known.map(|k| k.length.value);
+        let Some(known) = quad.lengths(lengths) else { return Margin::UNKNOWN };
+        let [ab, ac, bc, ad, bd] = known.map(|k| k.value);
         let mut sides = [
             ([quad.a, quad.b, quad.c, quad.d], [ab, ac, bc, ad, bd]),
             ([quad.b, quad.a, quad.d, quad.c], [ab, bd, ad, bc, ac]),
@@ -205,7 +202,7 @@ impl InField<'_> {
         }
         let [first, second] = sides;
         let is_small = circumradius(first.1[0], first.1[1], first.1[2]) < self.longest((quad.a, quad.b));
-        if !is_small || known.iter().any(|k| k.is_vetoed) {
+        if !is_small {
             return Margin::UNKNOWN;
         }
         let fineness = if level == CIRCUMCENTRE { Fineness::MIDDLE } else { Fineness::FINEST };
@@ -215,7 +212,7 @@ impl InField<'_> {
         };
         let margin = by_circle(first);
         // With the other triangle's circle the value differs by about this share of it.
-        let bends = known.iter().flat_map(|k| k.length.curvature).map(f64::abs).filter(|k| k.is_finite());
+        let bends = known.iter().flat_map(|k| k.curvature).map(f64::abs).filter(|k| k.is_finite());
         let share = bends.fold(0.0, f64::max) * ab * ab;
         let other = if share > MUCH_CURVED && margin.error.is_finite() { by_circle(second) } else { Margin::UNKNOWN };
         if other.error.is_finite() {

@@ -5,28 +5,38 @@
 //! growing degree, and at last the circumcentre itself. Nothing is embedded, so that nothing keeps an edge from being
 //! flipped; how the triangulation is drawn is for others to say. It ends where the triangles it started from end.
 
-mod fill;
 mod flips;
 mod in_field;
-mod judge;
-mod memory;
 mod on_surface;
 mod site;
 mod sides;
 mod start;
 
 pub(crate) use in_field::InField;
-pub(crate) use judge::Judge;
-pub(crate) use memory::Memory;
 pub(crate) use on_surface::OnSurface;
 pub use start::Start;
 
 use crate::geodesic::{Margin, PathLength};
-use crate::geometry::Point;
-use crate::in_circle::{LEVELS, Lengths, Quad, Tested};
+use crate::geometry::{Point, Vector};
+use crate::in_circle::{InCircle, LEVELS, Lengths, Quad, TestCounters, Tested, Tests};
 use crate::metric::MetricField;
-use crate::triangulation::{HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{HalfEdge, Triangulation, VertexId, smallest_first};
+use start::Prepared;
 use std::collections::HashSet;
+
+/// What a triangulation of seeds knows of where they are: seeds of the plane in a metric field, or of a surface.
+pub(crate) trait Judge: InCircle {
+    /// Whether there is such a seed, and a metric there.
+    fn is_seed(&self, i: u32) -> bool;
+    /// The direction of a seed seen from another, in a frame there.
+    fn direction(&self, from: u32, to: u32) -> Vector;
+    /// The squared circumradius of a triangle, roughly, in the metric there; infinite where it is turned over.
+    fn size(&self, triangle: [u32; 3]) -> f64;
+    /// Whether a loop of seeds turns so that there are triangles missing within it.
+    fn encloses(&self, outline: &[u32]) -> bool;
+    /// The greatest error of a margin whose sign is followed although it is not certain.
+    fn doubt(&self) -> f64;
+}
 
 /// Distances on a canvas, held against geodesics found from the metric alone, which may not be the shortest and know no
 /// holes: of two seeds, their distance and an absolute bound on its error; `None` where it is not known.
@@ -45,6 +55,23 @@ impl Default for Trust<'_> {
     /// Tests only, whatever they are worth.
     fn default() -> Self {
         Self { reference: None, doubt: f64::INFINITY }
+    }
+}
+
+/// What a triangulation has found, lengths and in-circle tests, for the next one of which few seeds have moved. It is of one field and one [`Trust`].
+#[derive(Clone, Default)]
+pub(crate) struct Memory {
+    seeds: Vec<Point>,
+    tests: Tests,
+}
+
+impl Memory {
+    /// Forgets what depends on seeds that are not where they were.
+    fn keep_for(&mut self, seeds: &[Point]) {
+        let is_there = |i: u32| self.seeds.get(i as usize).is_some_and(|p| seeds.get(i as usize) == Some(p));
+        self.tests.keep(is_there);
+        self.tests.counters = TestCounters::default();
+        self.seeds = seeds.to_vec();
     }
 }
 
@@ -125,55 +152,41 @@ impl<'a> Rdt<InField<'a>> {
     ) -> Self {
         memory.keep_for(seeds);
         let mut judge = InField::new(field, seeds, trust);
-        let mut counters = RdtCounters::default();
-        let triangles = start.triangulated(&judge, &mut counters);
-        judge.expand(&triangles);
-        Self::settled(judge, seeds.len(), start, &triangles, counters, memory)
+        let filled = start.triangulated(&judge);
+        judge.expand(&filled.triangles);
+        Self::settled(judge, seeds.len(), start, filled, memory)
     }
 }
 
 impl<J: Judge> Rdt<J> {
     /// The triangulation of the seeds, so many, that a judge knows, from a start.
     pub(crate) fn judged(judge: J, seeds: usize, start: &Start) -> Self {
-        let mut counters = RdtCounters::default();
-        let triangles = start.triangulated(&judge, &mut counters);
-        Self::settled(judge, seeds, start, &triangles, counters, Memory::default())
+        let filled = start.triangulated(&judge);
+        Self::settled(judge, seeds, start, filled, Memory::default())
     }
 
     /// The triangulation of the seeds, so many, that a judge knows, from one that may have doubled edges: vertices are seeds,
     /// those behind them copies of the seeds in the list.
     pub(crate) fn from_glued(judge: J, seeds: usize, topology: Triangulation, copies: &[u32]) -> Self {
         let seed_of = (0..seeds as u32).chain(copies.iter().copied()).collect();
-        Self::of_topology(judge, seeds, topology, seed_of, RdtCounters::default(), Memory::default())
+        Self::of_topology(judge, seeds, topology, seed_of, Memory::default())
     }
 
-    fn settled(
-        judge: J,
-        seeds: usize,
-        start: &Start,
-        triangles: &[[u32; 3]],
-        counters: RdtCounters,
-        memory: Memory,
-    ) -> Self {
-        let mut topology = Triangulation::from_triangles(seeds, triangles, &vec![0; triangles.len()]);
+    fn settled(judge: J, seeds: usize, start: &Start, filled: Prepared, memory: Memory) -> Self {
+        let Prepared { triangles, dropped, filled } = filled;
+        let mut topology = Triangulation::from_triangles(seeds, &triangles, &vec![0; triangles.len()]);
         let seed_of = split(&mut topology, seeds);
-        let mut rdt = Self::of_topology(judge, seeds, topology, seed_of, counters, memory);
-        rdt.dropped = missing(&start.triangles, triangles);
+        let mut rdt = Self::of_topology(judge, seeds, topology, seed_of, memory);
+        rdt.dropped = missing(&start.triangles, &triangles);
+        rdt.counters = RdtCounters { dropped, filled, ..rdt.counters };
         rdt
     }
 
-    fn of_topology(
-        judge: J,
-        seeds: usize,
-        topology: Triangulation,
-        seed_of: Vec<u32>,
-        mut counters: RdtCounters,
-        memory: Memory,
-    ) -> Self {
-        counters.split = (seed_of.len() - seeds) as u64;
+    fn of_topology(judge: J, seeds: usize, topology: Triangulation, seed_of: Vec<u32>, memory: Memory) -> Self {
         let mut used = vec![false; seeds];
         topology.vertices().for_each(|v| used[seed_of[v.index()] as usize] = true);
-        counters.isolated = used.iter().filter(|used| !**used).count() as u64;
+        let isolated = used.iter().filter(|used| !**used).count() as u64;
+        let counters = RdtCounters { split: (seed_of.len() - seeds) as u64, isolated, ..RdtCounters::default() };
         let slots = 3 * topology.face_slots();
         let mut rdt = Self {
             judge,
@@ -263,7 +276,7 @@ impl<J: Judge> Rdt<J> {
         let topology = &self.topology;
         let tested = self.tested(h, LEVELS - 1);
         Edge {
-            ends: [topology.origin(h), topology.target(h)].map(|v| self.seed(v)),
+            ends: topology.ends(h).map(|v| self.seed(v)),
             apexes: [Some(h), topology.twin(h)].map(|side| side.map(|e| self.seed(topology.apex(e)))),
             margin: tested.map(|t| t.margin),
             level: tested.map_or(0, |t| t.level),
@@ -273,7 +286,7 @@ impl<J: Judge> Rdt<J> {
     /// The ends of all edges, the smaller first, sorted.
     fn pairs(&self) -> Vec<[u32; 2]> {
         let topology = &self.topology;
-        let ends = |h| sorted([topology.origin(h), topology.target(h)].map(|v| self.seed(v)));
+        let ends = |h| sorted(topology.ends(h).map(|v| self.seed(v)));
         let mut pairs: Vec<[u32; 2]> = topology.edges().map(ends).collect();
         pairs.sort_unstable();
         pairs
@@ -293,9 +306,8 @@ fn split(topology: &mut Triangulation, seeds: usize) -> Vec<u32> {
 
 /// The triangles of the first list that the second lacks, wherever they begin.
 fn missing(wanted: &[[u32; 3]], found: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
-    let found: HashSet<[u32; 3]> = found.iter().map(turned).collect();
-    wanted.iter().map(turned).filter(|t| !found.contains(t)).collect()
+    let found: HashSet<[u32; 3]> = found.iter().map(|&t| smallest_first(t)).collect();
+    wanted.iter().map(|&t| smallest_first(t)).filter(|t| !found.contains(t)).collect()
 }
 
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {

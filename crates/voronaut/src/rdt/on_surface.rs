@@ -91,7 +91,7 @@ impl InCircle for OnSurface<'_> {
 
     fn margin(&self, quad: &Quad, _level: usize, lengths: &Lengths) -> Margin {
         let Some(lengths) = quad.lengths(lengths) else { return Margin::UNKNOWN };
-        let bends = || [quad.a, quad.b, quad.c, quad.d].map(|i| self.curvature[i as usize]).into_iter();
+        let bends = || quad.seeds().map(|i| self.curvature[i as usize]).into_iter();
         let curvature = [bends().fold(f64::INFINITY, f64::min), bends().fold(f64::NEG_INFINITY, f64::max)];
         margin_from_lengths(&lengths.map(|length| PathLength { curvature, ..length }))
     }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 /// The sides of triangles accepted so far: which triangle has the side a -> b.
 pub(super) struct Sides<'a> {
-    judge: &'a dyn Judge,
+    pub(super) judge: &'a dyn Judge,
     next: BTreeMap<(u32, u32), u32>,
 }
 
@@ -58,16 +58,6 @@ impl<'a> Sides<'a> {
             }
         }
         ((before - self.next.len()) / 3) as u64
-    }
-
-    /// See [`Judge::encloses`].
-    pub(super) fn encloses(&self, outline: &[u32]) -> bool {
-        self.judge.encloses(outline)
-    }
-
-    /// See [`Judge::size`].
-    pub(super) fn size(&self, triangle: [u32; 3]) -> f64 {
-        self.judge.size(triangle)
     }
 
     /// The loops of sides with a triangle on one side only: the missing triangles lie to their left. Each is simple.

@@ -1,8 +1,7 @@
 //! From triangles that are nearly a triangulation to one.
 
-use super::fill::Outline;
+use super::Judge;
 use super::sides::Sides;
-use super::{Judge, RdtCounters};
 use crate::diagram::Nerve;
 use std::collections::BTreeSet;
 
@@ -20,6 +19,13 @@ pub struct Start {
     pub at_border: BTreeSet<[u32; 2]>,
 }
 
+/// A start with small holes filled, and how that went: as [`RdtCounters`](super::RdtCounters) has it.
+pub(super) struct Prepared {
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) dropped: u64,
+    pub(super) filled: u64,
+}
+
 impl Start {
     /// The triangles of a nerve, best [`sharp`](crate::diagram::Diagram::sharp_nerve).
     pub(crate) fn from_nerve(nerve: &Nerve) -> Self {
@@ -30,35 +36,35 @@ impl Start {
     }
 
     /// Triangles in which no oriented side occurs twice, with small holes filled.
-    pub(super) fn triangulated(&self, judge: &dyn Judge, counters: &mut RdtCounters) -> Vec<[u32; 3]> {
+    pub(super) fn triangulated(&self, judge: &dyn Judge) -> Prepared {
         let mut sides = Sides::new(judge);
         let mut candidates: Vec<[u32; 3]> = self.triangles.iter().copied().filter(|&t| sides.are_seeds(t)).collect();
         // Those with the smallest circles first: of two that claim a side the Delaunay one, mostly.
-        candidates.sort_by(|&a, &b| sides.size(a).total_cmp(&sides.size(b)).then(a.cmp(&b)));
+        candidates.sort_by(|&a, &b| judge.size(a).total_cmp(&judge.size(b)).then(a.cmp(&b)));
         for triangle in candidates {
             sides.add(triangle);
         }
-        counters.dropped = (self.triangles.len() - sides.count()) as u64;
+        let (mut dropped, mut filled) = ((self.triangles.len() - sides.count()) as u64, 0);
         for _ in 0..GROWING {
-            let defects = self.fill_holes(&mut sides, counters);
+            let defects = self.fill_holes(&mut sides, &mut filled);
             if defects.is_empty() {
                 break;
             }
-            counters.dropped += sides.remove_along(&defects);
+            dropped += sides.remove_along(&defects);
         }
-        self.fill_holes(&mut sides, counters);
-        sides.triangles()
+        self.fill_holes(&mut sides, &mut filled);
+        Prepared { triangles: sides.triangles(), dropped, filled }
     }
 
     /// Fills what can be filled; returns the holes that cannot.
-    fn fill_holes(&self, sides: &mut Sides, counters: &mut RdtCounters) -> Vec<Vec<u32>> {
+    fn fill_holes(&self, sides: &mut Sides, filled: &mut u64) -> Vec<Vec<u32>> {
         let mut defects = Vec::new();
         for outline in sides.outlines() {
             let parts = if self.is_hole(&outline, sides) { vec![outline.clone()] } else { self.open_parts(&outline) };
             for part in parts {
-                let filling = Outline { corners: part.clone(), sides }.triangulated();
+                let filling = filling(part.clone(), sides);
                 if filling.len() + 2 == part.len() {
-                    counters.filled += filling.into_iter().filter(|&triangle| sides.add(triangle)).count() as u64;
+                    *filled += filling.into_iter().filter(|&triangle| sides.add(triangle)).count() as u64;
                 } else if part.len() == outline.len() {
                     defects.push(part);
                 }
@@ -71,7 +77,7 @@ impl Start {
     /// from the border.
     fn is_hole(&self, outline: &[u32], sides: &Sides) -> bool {
         let at_border = (0..outline.len()).filter(|&i| self.touches_border(outline, i)).count();
-        outline.len() <= SMALL && 2 * at_border < outline.len() && sides.encloses(outline)
+        outline.len() <= SMALL && 2 * at_border < outline.len() && sides.judge.encloses(outline)
     }
 
     /// Whether side i of a loop joins cells that touch at the border.
@@ -101,4 +107,22 @@ impl Start {
         }
         parts
     }
+}
+
+/// Triangles that fill a polygon, counter-clockwise, ear by ear, the one with the smallest circle first: roughly right will do,
+/// for flips follow. Where no ear turns the right way the rest stays open.
+fn filling(mut corners: Vec<u32>, sides: &Sides) -> Vec<[u32; 3]> {
+    let mut triangles = Vec::new();
+    while corners.len() > 2 {
+        let n = corners.len();
+        let ear = |i: usize| [0, 1, 2].map(|k| corners[(i + k) % n]);
+        // The last ear closes on a side that is there or, of an open part, on none.
+        let is_free = |[a, _, c]: [u32; 3]| n == 3 || !(sides.has(a, c) || sides.has(c, a));
+        let sizes = (0..n).filter(|&i| is_free(ear(i))).map(|i| (i, sides.judge.size(ear(i))));
+        let best = sizes.filter(|(_, size)| size.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((i, _)) = best else { break };
+        triangles.push(ear(i));
+        corners.remove((i + 1) % n);
+    }
+    triangles
 }

@@ -1,7 +1,7 @@
-//! Edges as geodesics: of the ways that are found, the shortest that stays in the domain.
+//! Edges of a dual as geodesics: of the ways that are found, the shortest that stays in the domain.
 
-use super::edge::{Found, GeodesicEdge};
 use super::untangle::untangle;
+use super::{Found, GeodesicEdge};
 use crate::canvas::Border;
 use crate::diagram::Diagram;
 use crate::geodesic::{Curve, Fineness, Obstacles, Paths, Polyline};

@@ -1,13 +1,11 @@
 //! The Riemannian Delaunay triangulation as it lies in the plane (Rouxel-Labbé et al. 2017, section 10): geodesic edges as
 //! polylines, and the triangles between them.
 
-mod edge;
 mod edges;
 mod regions;
 mod simplices;
 mod untangle;
 
-pub use edge::{Found, GeodesicEdge};
 pub use simplices::Grid;
 
 use crate::diagram::Diagram;
@@ -29,6 +27,53 @@ pub struct Realisation {
     /// For each triangle the straight ones that it is cut into, by the vertices of [`Realisation::to_mesh`]; none where its
     /// edges bound no region, counter-clockwise.
     pub regions: Vec<Vec<[u32; 3]>>,
+}
+
+/// How an edge was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Found {
+    /// As a polynomial, from the metric alone; it stays in the domain.
+    Smooth,
+    /// On the canvas, straightened.
+    Traced,
+    /// One of either kind, moved aside (by 2e-5 of its way) from the way of another edge that it crossed, as far as they run
+    /// together.
+    Parted,
+}
+
+/// An edge as a geodesic, as reports have it but for its points.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct GeodesicEdge {
+    /// Its seeds, smaller first, numbered from 0.
+    #[serde(rename = "edge")]
+    pub ends: [u32; 2],
+    /// The geodesic from the first to the second, as a polyline.
+    #[serde(skip)]
+    pub points: Vec<Point>,
+    /// Metric length of the geodesic.
+    pub length: f64,
+    /// Estimated relative error of the length (not a bound); how much shorter another way may be is not in it.
+    pub error: f64,
+    /// How it was found.
+    pub found: Found,
+}
+
+impl AsRef<[Point]> for GeodesicEdge {
+    fn as_ref(&self) -> &[Point] {
+        &self.points
+    }
+}
+
+impl GeodesicEdge {
+    /// Its points from one of its seeds on.
+    fn from(&self, seed: u32) -> Vec<Point> {
+        let mut points = self.points.clone();
+        if self.ends[0] != seed {
+            points.reverse();
+        }
+        points
+    }
 }
 
 impl Realisation {

@@ -1,7 +1,6 @@
 //! Riemannian triangles as regions of the plane: what lies between three geodesics, cut into straight triangles.
 
-use super::Realisation;
-use super::edge::GeodesicEdge;
+use super::{GeodesicEdge, Realisation};
 use crate::geometry::{Orientation, Point, Tensor, orientation};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
@@ -66,16 +65,14 @@ impl Realisation {
         let mut corners = Vec::new();
         for [from, to] in [[a, b], [b, c], [c, a]] {
             let edge = self.edge_between(from, to)?;
-            let (mut numbers, mut points) = (self.line(edge, first), self.edges[edge].points.clone());
+            let mut numbers = self.line(edge, first);
             if from > to {
                 numbers.reverse();
-                points.reverse();
             }
             let last = numbers.len() - 1;
-            corners.extend(numbers.into_iter().zip(points).take(last));
+            corners.extend(numbers.into_iter().zip(self.edges[edge].from(from)).take(last));
         }
-        let middle = [a, b, c].map(|i| self.seeds[i as usize]);
-        let tensor = field.at(middle[0] + ((middle[1] - middle[0]) + (middle[2] - middle[0])) * (1.0 / 3.0));
+        let tensor = field.at(Point::centroid([a, b, c].map(|i| self.seeds[i as usize])));
         Region { corners, tensor }.cut()
     }
 }

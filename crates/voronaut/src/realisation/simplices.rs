@@ -1,7 +1,7 @@
 //! Riemannian triangles by barycentric coordinates: grids of Karcher means.
 
 use super::Realisation;
-use crate::geodesic::{Fineness, Paths, karcher_mean};
+use crate::geodesic::{Fineness, Paths, karcher_mean, place_at, reached};
 use crate::geometry::{Orientation, Point, orientation};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
@@ -75,33 +75,10 @@ impl Realisation {
 
     /// An edge at equal metric lengths.
     fn side(&self, field: &dyn MetricField, [from, to]: [u32; 2], n: usize) -> Option<Vec<Point>> {
-        let mut line = self.edges[self.edge_between(from, to)?].points.clone();
-        if from > to {
-            line.reverse();
-        }
-        let mut reached = vec![0.0];
-        for w in line.windows(2) {
-            reached.push(reached[reached.len() - 1] + field.at(w[0].midpoint(w[1])).length(w[1] - w[0]));
-        }
-        let total = reached[reached.len() - 1];
-        let at = |k: usize| {
-            let goal = total * k as f64 / n as f64;
-            let i = reached.partition_point(|&r| r <= goal).clamp(1, line.len() - 1);
-            line[i - 1].lerp(line[i], ((goal - reached[i - 1]) / (reached[i] - reached[i - 1])).clamp(0.0, 1.0))
-        };
-        let ends = [line[0], line[line.len() - 1]];
-        Some(
-            (0..=n)
-                .map(|k| {
-                    if k == 0 {
-                        ends[0]
-                    } else if k == n {
-                        ends[1]
-                    } else {
-                        at(k)
-                    }
-                })
-                .collect(),
-        )
+        let line = self.edges[self.edge_between(from, to)?].from(from);
+        let reached = reached(field, &line);
+        let (total, last) = (reached[line.len() - 1], line[line.len() - 1]);
+        let inner = (1..n).map(|k| place_at(&line, &reached, total * k as f64 / n as f64).0);
+        Some([line[0]].into_iter().chain(inner).chain([last]).collect())
     }
 }

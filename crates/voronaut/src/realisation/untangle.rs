@@ -4,7 +4,7 @@
 //! swirl) they can run together for a good part of their length, with less between them than the error of a straightened
 //! path, and their polylines cross. Then both take the way of the shorter one there, and the other a little to the side.
 
-use super::edge::{Found, GeodesicEdge};
+use super::{Found, GeodesicEdge};
 use crate::geodesic::{Obstacles, Polyline};
 use crate::geometry::{Orientation, Point, orientation, segment_intersection};
 use crate::metric::MetricField;
@@ -57,7 +57,7 @@ fn parted(
     let [e, f] = numbers.map(|k| &edges[k]);
     let seed = *e.ends.iter().find(|seed| f.ends.contains(seed))?;
     // Both from the seed on, and their last crossing.
-    let [p, q] = [e, f].map(|edge| from(edge, seed));
+    let [p, q] = [e, f].map(|edge| edge.from(seed));
     let last = |c: &&Crossing| if e.ends[0] == seed { c.segments[0] } else { u32::MAX - c.segments[0] };
     let segments = group.iter().max_by_key(last)?.segments;
     let i = turned(segments[0], e.ends[0] == seed, p.len());
@@ -82,15 +82,6 @@ fn parted(
     // It was no better known than that it could be so much shorter, and it may bend where it leaves the common way.
     let error = old.error.max(gain / length);
     Some((numbers[number], GeodesicEdge { ends: old.ends, points, length, error, found: Found::Parted }))
-}
-
-/// The points of an edge from one of its seeds on.
-fn from(edge: &GeodesicEdge, seed: u32) -> Vec<Point> {
-    let mut points = edge.points.clone();
-    if edge.ends[0] != seed {
-        points.reverse();
-    }
-    points
 }
 
 /// The number of a segment of a path of so many points, counted from its other end unless it is the right one.

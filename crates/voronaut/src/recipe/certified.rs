@@ -24,7 +24,7 @@ pub(crate) fn certify(
     exact: &[[u32; 3]],
     constants: Constants,
 ) -> Certificate {
-    Certificate::new(diagram, field, exact, &net(diagram, field, exact), constants)
+    Certificate::new(diagram, exact, &net(diagram, field, exact), constants)
 }
 
 /// The canvas for which section 9.4's conditions hold, if the seeds allow one: refined to the sizing field s0 that a

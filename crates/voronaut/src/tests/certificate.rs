@@ -119,7 +119,7 @@ fn uniform(map: Map, seeds: &[Point], canvas: &Canvas) -> Case {
     let field = Uniform(map.metric());
     let diagram = Diagram::new(canvas, &field, seeds).unwrap();
     let (net, exact) = net_by_hand(map, seeds, diagram.farthest().unwrap().1);
-    let certificate = Certificate::new(&diagram, &field, &exact, &net, Constants::Corrected);
+    let certificate = Certificate::new(&diagram, &exact, &net, Constants::Corrected);
     compared(&diagram, certificate, exact)
 }
 
@@ -128,7 +128,7 @@ fn varied(field: &dyn MetricField, seeds: &[Point], canvas: &Canvas) -> Case {
     let diagram = Diagram::new(canvas, field, seeds).unwrap();
     let dual = recipe::dual(&diagram, field, Road::Both, &Silent);
     let net = recipe::net(&diagram, field, &dual.exact);
-    let certificate = Certificate::new(&diagram, field, &dual.exact, &net, Constants::Corrected);
+    let certificate = Certificate::new(&diagram, &dual.exact, &net, Constants::Corrected);
     compared(&diagram, certificate, dual.exact)
 }
 

@@ -120,6 +120,11 @@ impl Triangulation {
         self.faces().flat_map(FaceId::half_edges).filter(|&h| self.twin(h).is_none_or(|t| h < t))
     }
 
+    /// The edges at the border, by face.
+    pub(crate) fn borders(&self) -> impl Iterator<Item = HalfEdge> + '_ {
+        self.faces().flat_map(FaceId::half_edges).filter(|&h| self.twin(h).is_none())
+    }
+
     /// Whether the slot holds a vertex of some face.
     pub(crate) fn is_vertex(&self, v: VertexId) -> bool {
         self.start[v.index()] != NONE
@@ -140,6 +145,11 @@ impl Triangulation {
         self.origin[h.next().index()]
     }
 
+    /// The vertices that a half-edge leaves and reaches.
+    pub(crate) fn ends(&self, h: HalfEdge) -> [VertexId; 2] {
+        [self.origin(h), self.target(h)]
+    }
+
     /// The vertex opposite to a half-edge in its face.
     pub(crate) fn apex(&self, h: HalfEdge) -> VertexId {
         self.origin[h.prev().index()]
@@ -149,6 +159,11 @@ impl Triangulation {
     pub fn twin(&self, h: HalfEdge) -> Option<HalfEdge> {
         let t = self.twin[h.index()];
         (t != NONE).then_some(HalfEdge(t))
+    }
+
+    /// The sides of the edge: this one, and the other if there is one.
+    pub(crate) fn sides(&self, h: HalfEdge) -> impl Iterator<Item = HalfEdge> + use<> {
+        [Some(h), self.twin(h)].into_iter().flatten()
     }
 
     /// The side of the edge with the smaller id.
@@ -231,6 +246,18 @@ impl Triangulation {
         Star::new(self, v)
     }
 
+    /// The neighbours of a vertex, face by face: each is there twice, but those at the ends of a border vertex's fan.
+    pub(crate) fn around(&self, v: VertexId) -> impl Iterator<Item = VertexId> + '_ {
+        self.star(v).flat_map(|h| [self.target(h), self.apex(h)])
+    }
+
+    /// A half-edge of every edge at a vertex, counter-clockwise: of the last one at the border that which comes in.
+    pub(crate) fn spokes(&self, v: VertexId) -> Vec<HalfEdge> {
+        let mut spokes: Vec<HalfEdge> = self.star(v).collect();
+        spokes.extend(spokes.last().map(|h| h.prev()).filter(|&h| self.twin(h).is_none()));
+        spokes
+    }
+
     /// Whether the vertex lies on the border.
     pub(crate) fn is_border_vertex(&self, v: VertexId) -> bool {
         self.start(v).is_some_and(|h| self.twin(h).is_none())
@@ -240,6 +267,21 @@ impl Triangulation {
     pub(crate) fn euler_characteristic(&self) -> isize {
         let [v, e] = [self.vertices().count(), self.edges().count()].map(usize::cast_signed);
         v - e + self.face_count().cast_signed()
+    }
+
+    /// The connected part that each vertex slot belongs to, by the first vertex of it.
+    pub(crate) fn parts(&self) -> Vec<usize> {
+        let mut part = vec![usize::MAX; self.vertex_slots()];
+        for first in 0..part.len() {
+            let mut stack = vec![first];
+            while let Some(v) = stack.pop() {
+                if part[v] == usize::MAX {
+                    part[v] = first;
+                    stack.extend(self.around(VertexId(v as u32)).map(VertexId::index));
+                }
+            }
+        }
+        part
     }
 
     /// The closed curves of the border, each as its half-edges in order, the faces on their left.
@@ -266,6 +308,11 @@ impl Triangulation {
     pub(crate) fn find(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
         self.star(a).find(|&h| self.target(h) == b)
     }
+
+    /// A side of the edge between two vertices, that from a to b if a face has it.
+    pub(crate) fn edge_between(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
+        self.find(a, b).or_else(|| self.find(b, a))
+    }
 }
 
 /// The same cycle of three, its smallest member first.
@@ -277,4 +324,12 @@ pub(crate) fn smallest_first<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [T; 3] 
     } else {
         [c, a, b]
     }
+}
+
+/// Some items in order, each once.
+pub(crate) fn distinct<T: Ord>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut items: Vec<T> = items.into_iter().collect();
+    items.sort_unstable();
+    items.dedup();
+    items
 }

@@ -152,8 +152,7 @@ fn error(
     from: Point,
     exact: &dyn Fn(Point) -> Option<f64>,
 ) -> f64 {
-    let diagram =
-        Diagram::with_solver(canvas, field, &[from], Marching::on(canvas.topology()).with_wave(wave)).unwrap();
+    let diagram = Diagram::with_solver(canvas, field, &[from], Marching { canvas: canvas.topology(), wave }).unwrap();
     let errors: Vec<f64> = vertices(canvas)
         .filter_map(|v| exact(canvas.position(v)).map(|truth| (diagram.distance(v) / truth - 1.0).abs()))
         .collect();
@@ -244,7 +243,7 @@ fn solvers_share_one_interface() {
     let canvas = Canvas::straight(&domain, &Uniform::default(), 400).unwrap();
     let mut sources = Sources::new(canvas.vertex_count());
     sources.add(VertexId(3), 0.5, 8);
-    let solver: &dyn Geodesic = &Marching::on(canvas.topology()).with_wave(Wave::Plane);
+    let solver: &dyn Geodesic = &Marching { canvas: canvas.topology(), wave: Wave::Plane };
     let found = solver.propagate(&sources);
     assert!(found.labels().iter().all(|l| l.colour == 8 && l.distance >= 0.5));
 }

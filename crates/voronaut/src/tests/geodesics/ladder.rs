@@ -96,9 +96,12 @@ fn grid(n: u32) -> Graph {
     let tensors = vec![TURNED; positions.len()];
     let around = |v: u32| {
         let (right, up) = (v % n + 1 < n, v / n + 1 < n);
-        [(right, v + 1), (up, v + n), (right && up, v + n + 1)].into_iter().filter(|o| o.0).map(|o| o.1).collect()
+        [(right, v + 1), (up, v + n), (right && up, v + n + 1)]
+            .into_iter()
+            .filter(|o| o.0)
+            .map(move |o| [v, o.1].map(VertexId))
     };
-    Graph::new(positions, tensors, &(0..n * n).map(around).collect::<Vec<Vec<u32>>>())
+    Graph::new(positions, tensors, (0..n * n).flat_map(around))
 }
 
 #[test]
@@ -117,8 +120,8 @@ fn a_fixed_window_does_not_converge() {
         };
         let solvers: [Box<dyn Geodesic>; 3] = [
             Box::new(Stvd::on(graph.clone(), 8)),
-            Box::new(Konukoglu::on(graph.clone())),
-            Box::new(Dijkstra::on(graph.clone())),
+            Box::new(Konukoglu(graph.clone())),
+            Box::new(Dijkstra(graph.clone())),
         ];
         for (solver, found) in solvers.iter().zip(&mut found) {
             let labels = solver.propagate(&sources);
