@@ -3,21 +3,20 @@
 mod intersection;
 mod jet;
 mod joint;
+mod linear;
 mod point;
 mod predicates;
 mod quadrature;
-mod space;
 mod tensor;
 mod tensor3;
 mod tree;
 
 pub use jet::Jet3;
 pub(crate) use point::Readable;
-pub use point::{Aabb, Point, Vector};
+pub use point::{Aabb, Aabb3, Point, Point3, Vector, Vector3};
 pub use predicates::{Orientation, orientation, signed_area};
 pub(crate) use predicates::{in_circle, segment_intersection, signed_volume};
 pub(crate) use quadrature::{Node, combine, radon};
-pub use space::{Aabb3, Point3, Vector3};
 pub use tensor::{Eigen, Tensor};
 pub(crate) use tensor3::Eigen3;
 pub use tensor3::{TangentPlane, Tensor3};

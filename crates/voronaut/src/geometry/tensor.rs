@@ -3,8 +3,8 @@
 //! The squared length of a vector e is e' M e; an eigenvalue 1/h^2 asks for edges of Euclidean length h along its
 //! eigenvector.
 
+use super::linear::linear;
 use super::{Point, Vector, signed_area};
-use std::ops::{Add, Mul};
 
 /// The symmetric matrix ((xx, xy), (xy, yy)); a metric when positive definite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,6 +27,8 @@ pub struct Eigen {
     /// Unit eigenvector of `large`; that of `small` is [`Vector::perpendicular`] to it.
     pub axis: Vector,
 }
+
+linear!(Tensor: xx, xy, yy);
 
 impl Tensor {
     /// The identity: Euclidean length.
@@ -145,20 +147,6 @@ impl Tensor {
     pub fn anisotropy(self) -> f64 {
         let e = self.eigen();
         (e.large / e.small).sqrt()
-    }
-}
-
-impl Add for Tensor {
-    type Output = Tensor;
-    fn add(self, other: Tensor) -> Tensor {
-        Tensor::new(self.xx + other.xx, self.xy + other.xy, self.yy + other.yy)
-    }
-}
-
-impl Mul<f64> for Tensor {
-    type Output = Tensor;
-    fn mul(self, s: f64) -> Tensor {
-        Tensor::new(self.xx * s, self.xy * s, self.yy * s)
     }
 }
 

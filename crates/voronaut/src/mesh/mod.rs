@@ -2,9 +2,13 @@
 //! a point is.
 
 mod locate;
+mod network;
+mod sides;
 mod solution;
 
 pub(crate) use locate::{Located, Locator};
+pub(crate) use network::Network;
+pub(crate) use sides::{Side, borders, by_edge, edges_of, sides, sides_at, unordered};
 pub use solution::{Solution, SolutionValues, Solutions, TensorOrder};
 
 use crate::error::{Error, Result};

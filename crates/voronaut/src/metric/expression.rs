@@ -61,23 +61,23 @@ impl Expression {
 
     fn run<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
         // The last value is kept out of the stack: most operations then touch it once or not at all.
-        let mut stack = [N::constant(0.0); STACK];
+        let mut stack = [N::from(0.0); STACK];
         let mut top = 0;
-        let mut value = N::constant(0.0);
+        let mut value = N::from(0.0);
         let mut next = 0;
         while let Some(&op) = self.code.get(next) {
             next += 1;
             match op {
-                Op::Constant(c) => push(&mut stack, &mut top, &mut value, N::constant(c)),
+                Op::Constant(c) => push(&mut stack, &mut top, &mut value, c.into()),
                 Op::X => push(&mut stack, &mut top, &mut value, x),
                 Op::Y => push(&mut stack, &mut top, &mut value, y),
                 Op::Z => push(&mut stack, &mut top, &mut value, z),
-                Op::Negate => value = value.negate(),
+                Op::Negate => value = -value,
                 Op::Square => value = value.square(),
-                Op::Add => value = value.add(pop(&stack, &mut top)),
-                Op::Subtract => value = pop(&stack, &mut top).subtract(value),
-                Op::Multiply => value = value.multiply(pop(&stack, &mut top)),
-                Op::Divide => value = pop(&stack, &mut top).divide(value),
+                Op::Add => value = value + pop(&stack, &mut top),
+                Op::Subtract => value = pop(&stack, &mut top) - value,
+                Op::Multiply => value = value * pop(&stack, &mut top),
+                Op::Divide => value = pop(&stack, &mut top) / value,
                 Op::Power => value = pop(&stack, &mut top).power(value),
                 Op::Call1(f) => value = value.call1(f),
                 Op::Call2(f) => value = pop(&stack, &mut top).call2(value, f),

@@ -1,6 +1,7 @@
 //! What a compiled expression runs on: plain numbers, and numbers that carry their derivatives.
 
 use crate::geometry::Jet3;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A function of one number with its first and second derivative.
 #[derive(Debug)]
@@ -18,51 +19,29 @@ pub(super) struct Binary {
 }
 
 /// Arithmetic of expressions.
-pub(super) trait Number: Copy {
-    fn constant(value: f64) -> Self;
+pub(super) trait Number:
+    Copy
+    + From<f64>
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+{
     fn is_zero(self) -> bool;
-    fn negate(self) -> Self;
     fn square(self) -> Self;
-    fn add(self, other: Self) -> Self;
-    fn subtract(self, other: Self) -> Self;
-    fn multiply(self, other: Self) -> Self;
-    fn divide(self, other: Self) -> Self;
     fn power(self, exponent: Self) -> Self;
     fn call1(self, function: &Unary) -> Self;
     fn call2(self, other: Self, function: &Binary) -> Self;
 }
 
 impl Number for f64 {
-    fn constant(value: f64) -> Self {
-        value
-    }
-
     fn is_zero(self) -> bool {
         self == 0.0
     }
 
-    fn negate(self) -> Self {
-        -self
-    }
-
     fn square(self) -> Self {
         self * self
-    }
-
-    fn add(self, other: Self) -> Self {
-        self + other
-    }
-
-    fn subtract(self, other: Self) -> Self {
-        self - other
-    }
-
-    fn multiply(self, other: Self) -> Self {
-        self * other
-    }
-
-    fn divide(self, other: Self) -> Self {
-        self / other
     }
 
     fn power(self, exponent: Self) -> Self {
@@ -79,39 +58,12 @@ impl Number for f64 {
 }
 
 impl Number for Jet3 {
-    fn constant(value: f64) -> Self {
-        Jet3::constant(value)
-    }
-
     fn is_zero(self) -> bool {
         self.value == 0.0
     }
 
-    fn negate(self) -> Self {
-        -self
-    }
-
     fn square(self) -> Self {
         self.chain(self.value * self.value, [2.0 * self.value, 2.0])
-    }
-
-    fn add(self, other: Self) -> Self {
-        self + other
-    }
-
-    fn subtract(self, other: Self) -> Self {
-        self - other
-    }
-
-    fn multiply(self, other: Self) -> Self {
-        self * other
-    }
-
-    fn divide(self, other: Self) -> Self {
-        let inverse = 1.0 / other.value;
-        let quotient = self.value * inverse;
-        let second = [0.0, -inverse * inverse, 2.0 * quotient * inverse * inverse];
-        self.chain2(other, self.value / other.value, [inverse, -quotient * inverse], second)
     }
 
     fn power(self, exponent: Self) -> Self {

@@ -1,6 +1,5 @@
 //! A triangulation embedded in the plane: every living face is counter-clockwise, by exact predicates, at every moment.
 
-mod connect;
 mod constrain;
 mod delaunay;
 mod locate;

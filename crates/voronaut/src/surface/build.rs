@@ -1,10 +1,10 @@
 //! From an indexed list of triangles to a surface.
 
-use super::orient::{Side, orient, sides};
+use super::orient::orient;
 use super::{Mark, Surface};
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Side, by_edge, sides};
 use crate::triangulation::{Broken, Constraint, FaceId, Triangulation, VertexId};
 use std::collections::BTreeSet;
 
@@ -24,7 +24,7 @@ impl Surface {
         let positions = finite_positions(mesh)?;
         check_triangles(&mesh.triangles, &positions)?;
         let mut triangles = mesh.triangles.clone();
-        let sides = sides(&triangles);
+        let sides = sides(triangles.iter().copied());
         check_edges(&sides, &positions)?;
         let turned = orient(&mut triangles, &sides, |ends| edge(ends, &positions))?;
         let mut regions = mesh.triangle_labels.clone();
@@ -140,11 +140,10 @@ fn check_duplicates(triangles: &[[u32; 3]], positions: &[Point3]) -> Result<()> 
 }
 
 fn check_edges(sides: &[Side], positions: &[Point3]) -> Result<()> {
-    let Some(triple) = sides.windows(3).find(|triple| triple[0].ends == triple[2].ends) else { return Ok(()) };
-    let count = sides.iter().filter(|side| side.ends == triple[0].ends).count();
-    let [s, t, u] = [0, 1, 2].map(|i| triple[i].triangle + 1);
-    let what = format!("an edge of {count} triangles (among them {s}, {t} and {u})");
-    Err(Error::domain(what, edge(triple[0].ends, positions), "leave at most two triangles at every edge"))
+    let Some(same) = by_edge(sides).find(|same| same.len() > 2) else { return Ok(()) };
+    let [s, t, u] = [0, 1, 2].map(|i| same[i].triangle + 1);
+    let what = format!("an edge of {} triangles (among them {s}, {t} and {u})", same.len());
+    Err(Error::domain(what, edge(same[0].ends, positions), "leave at most two triangles at every edge"))
 }
 
 fn check_fans(topology: &Triangulation, positions: &[Point3]) -> Result<()> {

@@ -3,6 +3,7 @@
 use super::features::{FeatureOptions, Mark};
 use super::{Place, Surface};
 use crate::geometry::{Point3, Vector3};
+use crate::mesh::Network;
 use crate::triangulation::{HalfEdge, VertexId};
 use std::collections::BTreeSet;
 
@@ -95,111 +96,91 @@ impl Surface {
     /// change, at corners and required vertices of the input and at the ends of required edges. Creases of fewer than five
     /// edges that end inside a patch do not count, unless the input lists them.
     pub(crate) fn curves(&self, options: &FeatureOptions) -> Curves {
-        let found = self.topology.edges().filter_map(|h| Some((h, self.feature(h, options)?)));
-        let edges: Vec<(CurveEdge, Mark)> = found.map(|(h, mark)| (CurveEdge::of(self, h), mark)).collect();
-        let mut at: Vec<Vec<usize>> = vec![Vec::new(); self.positions.len()];
-        for (i, (edge, _)) in edges.iter().enumerate() {
-            at[edge.from.index()].push(i);
-            at[edge.to.index()].push(i);
-        }
-        prune(self, &edges, &mut at);
-        let network = Network { surface: self, options, edges: &edges, at: &at };
-        let corners: BTreeSet<VertexId> =
-            self.corners.iter().copied().chain(network.vertices().filter(|&v| network.is_corner(v))).collect();
-        let stops = network.vertices().filter(|&v| network.changes(v));
-        let stops: BTreeSet<VertexId> = corners.iter().chain(&self.required_points).copied().chain(stops).collect();
-        let curves = network.curves(&stops);
+        let features = Features::of(self, options);
+        let vertices = || features.network.vertices().map(VertexId);
+        let bends = vertices().filter(|&v| features.is_corner(v, options.ar));
+        let corners: BTreeSet<VertexId> = self.corners.iter().copied().chain(bends).collect();
+        let changes = vertices().filter(|&v| features.changes(v));
+        let stops: BTreeSet<VertexId> = corners.iter().chain(&self.required_points).copied().chain(changes).collect();
+        let curves = features.curves(&stops);
         Curves { curves, stops: stops.into_iter().collect(), corners: corners.into_iter().collect() }
     }
 }
 
-/// Takes away creases found by angle that are short and end nowhere, again and again.
-fn prune(surface: &Surface, edges: &[(CurveEdge, Mark)], at: &mut [Vec<usize>]) {
-    let mut ends: Vec<VertexId> =
-        (0..).map(VertexId).zip(at.iter()).filter(|(_, at)| at.len() == 1).map(|(v, _)| v).collect();
-    while let Some(end) = ends.pop() {
-        let (mut v, mut chain) = (end, Vec::new());
-        while let Some(&i) = at[v.index()].iter().find(|i| !chain.contains(*i)) {
-            let is_given = edges[i].0.sides[0].is_some_and(|h| surface.is_given(h));
-            if is_given || chain.len() == LEAST_CREASE || (v != end && at[v.index()].len() != 2) {
-                break;
-            }
-            chain.push(i);
-            v = if edges[i].0.from == v { edges[i].0.to } else { edges[i].0.from };
-        }
-        if (1..LEAST_CREASE).contains(&chain.len()) {
-            for i in chain {
-                for v in [edges[i].0.from, edges[i].0.to] {
-                    at[v.index()].retain(|&j| j != i);
-                }
-            }
-            ends.extend((at[v.index()].len() == 1).then_some(v));
-        }
-    }
-}
-
-/// Feature edges, and those at each vertex.
-struct Network<'a> {
+/// Feature edges and how they hang together.
+struct Features<'a> {
     surface: &'a Surface,
-    options: &'a FeatureOptions,
-    edges: &'a [(CurveEdge, Mark)],
-    at: &'a [Vec<usize>],
+    edges: Vec<(CurveEdge, Mark)>,
+    network: Network,
 }
 
-impl Network<'_> {
-    /// The vertices with feature edges.
-    fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        (0..).map(VertexId).zip(self.at).filter(|(_, at)| !at.is_empty()).map(|(v, _)| v)
+impl<'a> Features<'a> {
+    fn of(surface: &'a Surface, options: &FeatureOptions) -> Self {
+        let found = surface.topology.edges().filter_map(|h| Some((h, surface.feature(h, options)?)));
+        let edges: Vec<(CurveEdge, Mark)> = found.map(|(h, mark)| (CurveEdge::of(surface, h), mark)).collect();
+        let ends = edges.iter().map(|(edge, _)| [edge.from.0, edge.to.0]);
+        let network = Network::new(surface.positions.len(), ends);
+        let mut features = Self { surface, edges, network };
+        features.prune();
+        features
+    }
+
+    /// Takes away creases found by angle that are short and end nowhere, again and again.
+    fn prune(&mut self) {
+        let network = &mut self.network;
+        let mut ends: Vec<u32> = network.vertices().filter(|&v| network.at(v).len() == 1).collect();
+        while let Some(end) = ends.pop() {
+            let (mut v, mut chain) = (end, Vec::new());
+            while let Some(&i) = network.at(v).iter().find(|i| !chain.contains(*i)) {
+                let is_given = self.edges[i as usize].0.sides[0].is_some_and(|h| self.surface.is_given(h));
+                if is_given || chain.len() == LEAST_CREASE || (v != end && network.at(v).len() != 2) {
+                    break;
+                }
+                chain.push(i);
+                v = network.across(v, i);
+            }
+            if (1..LEAST_CREASE).contains(&chain.len()) {
+                chain.into_iter().for_each(|i| network.remove(i));
+                ends.extend((network.at(v).len() == 1).then_some(v));
+            }
+        }
     }
 
     /// The edge leaving a vertex.
-    fn leaving(&self, v: VertexId, i: usize) -> CurveEdge {
-        let edge = self.edges[i].0;
+    fn leaving(&self, v: VertexId, i: u32) -> CurveEdge {
+        let edge = self.edges[i as usize].0;
         if edge.from == v { edge } else { edge.turned() }
     }
 
-    /// Whether curves end or fork at a vertex, or bend.
-    fn is_corner(&self, v: VertexId) -> bool {
-        let &[i, j] = self.at[v.index()].as_slice() else { return true };
+    /// Whether curves end or fork at a vertex, or bend by more than the angle.
+    fn is_corner(&self, v: VertexId, angle: Option<f64>) -> bool {
+        let &[i, j] = self.network.at(v.0) else { return true };
         let [e, f] = [i, j].map(|i| self.leaving(v, i).direction(self.surface));
-        self.options.ar.is_some_and(|angle| -e.dot(f) < angle.to_radians().cos())
+        angle.is_some_and(|angle| -e.dot(f) < angle.to_radians().cos())
     }
 
     /// Whether the edges at a vertex differ in what they are, or one is required.
     fn changes(&self, v: VertexId) -> bool {
-        let mut marks = self.at[v.index()].iter().map(|&i| self.edges[i].1);
-        let borders = |&i: &usize| self.edges[i].0.sides.contains(&None);
-        let first = marks.clone().next();
-        let is_mixed = self.at[v.index()].iter().any(borders) && !self.at[v.index()].iter().all(borders);
-        is_mixed || marks.any(|mark| mark.is_required || Some(mark) != first)
+        let mut kinds = self.network.at(v.0).iter().map(|&i| {
+            let (edge, mark) = self.edges[i as usize];
+            (edge.sides.contains(&None), mark)
+        });
+        let first = kinds.clone().next();
+        kinds.any(|kind| kind.1.is_required || Some(kind) != first)
     }
 
-    /// The curves: first those from the stops, then the closed ones.
     fn curves(&self, stops: &BTreeSet<VertexId>) -> Vec<Curve> {
-        let mut used = vec![false; self.edges.len()];
-        let mut curves = Vec::new();
-        for start in stops.iter().copied().chain(self.vertices()) {
-            for &i in &self.at[start.index()] {
-                if !used[i] {
-                    let edges = self.follow(start, i, stops, &mut used);
-                    curves.push(Curve { edges, mark: self.edges[i].1, has_stops: stops.contains(&start) });
-                }
-            }
-        }
-        curves
-    }
-
-    fn follow(&self, start: VertexId, first: usize, stops: &BTreeSet<VertexId>, used: &mut [bool]) -> Vec<CurveEdge> {
-        let (mut v, mut next) = (start, Some(first));
-        let mut edges = Vec::new();
-        while let Some(i) = next {
-            used[i] = true;
-            let edge = self.leaving(v, i);
-            edges.push(edge);
-            v = edge.to;
-            next = self.at[v.index()].iter().copied().find(|&j| !used[j]).filter(|_| !stops.contains(&v));
-        }
-        edges
+        let curve = |(start, chain): (u32, Vec<u32>)| {
+            let mark = self.edges[chain[0] as usize].1;
+            let mut at = VertexId(start);
+            let next = |i| {
+                let edge = self.leaving(at, i);
+                at = edge.to;
+                edge
+            };
+            Curve { edges: chain.into_iter().map(next).collect(), mark, has_stops: stops.contains(&VertexId(start)) }
+        };
+        self.network.chains(|v| stops.contains(&VertexId(v))).into_iter().map(curve).collect()
     }
 }
 

@@ -1,26 +1,7 @@
-//! Edges of a list of triangles, and triangles turned so that neighbours agree.
+//! Triangles turned so that neighbours agree.
 
 use crate::error::{Error, Result};
-
-/// One side of an edge: a triangle that has it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Side {
-    /// The edge's vertices, the smaller first.
-    pub(super) ends: [u32; 2],
-    pub(super) triangle: u32,
-    /// Whether the triangle passes from the smaller to the larger.
-    pub(super) forward: bool,
-}
-
-/// All sides, sorted by their edges.
-pub(super) fn sides(triangles: &[[u32; 3]]) -> Vec<Side> {
-    let of_triangle = |(i, &[a, b, c]): (usize, &[u32; 3])| {
-        [[a, b], [b, c], [c, a]].map(|[p, q]| Side { ends: [p.min(q), p.max(q)], triangle: i as u32, forward: p < q })
-    };
-    let mut sides: Vec<Side> = triangles.iter().enumerate().flat_map(of_triangle).collect();
-    sides.sort_unstable();
-    sides
-}
+use crate::mesh::Side;
 
 /// Turns triangles until neighbours pass their edge in opposite directions; in each component as few as possible (its
 /// majority stays). Every edge has at most two `sides`. Returns how many were turned.

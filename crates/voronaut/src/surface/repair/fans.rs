@@ -1,11 +1,11 @@
 //! Vertices from sides that are glued: one for every fan of triangles.
 
-use super::classes::Classes;
 use super::glue::{NONE, Twins};
 use super::mended::Damage;
-use super::work::Work;
+use super::work::{Classes, Work};
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
+use crate::mesh::unordered;
 
 /// Triangles with their final vertices.
 pub(super) struct Sewn {
@@ -79,7 +79,7 @@ fn demand_fans(work: &mut Work, fans: &Classes) -> Result<()> {
             let help = "split the vertex, one for each group of neighbouring triangles, or run again with `repair`";
             return Err(Error::domain("triangles that meet in a point only", place, help));
         }
-        work.mended.add(Damage::Point, || place);
+        work.mended.add(Damage::Point, place);
     }
     Ok(())
 }
@@ -90,7 +90,7 @@ fn separate(work: &Work, sewn: &mut Sewn, twins: &Twins) {
     let ends = |side: u32| {
         let triangle = sewn.triangles[side as usize / 3];
         let [v, w] = [triangle[side as usize % 3], triangle[(side as usize + 1) % 3]];
-        [v.min(w), v.max(w)]
+        unordered([v, w])
     };
     let firsts = (0..twins.len() as u32).filter(|&side| twins[side as usize] == NONE || side < twins[side as usize]);
     let mut keyed: Vec<([u32; 2], u32)> = firsts.map(|side| (ends(side), side)).collect();

@@ -1,6 +1,7 @@
 //! A hole's best triangulation without new vertices.
 
 use crate::geometry::{Point3, Vector3};
+use crate::mesh::unordered;
 use crate::surface::build::has_area;
 
 /// A closed curve of border edges, from each vertex to the next.
@@ -28,8 +29,7 @@ pub(super) fn fill(rim: &Rim, is_edge: impl Fn([u32; 2]) -> bool) -> Option<Vec<
     for span in 2..n {
         for i in 0..n - span {
             let k = i + span;
-            let ends = [rim.vertices[i].min(rim.vertices[k]), rim.vertices[i].max(rim.vertices[k])];
-            if span < n - 1 && is_edge(ends) {
+            if span < n - 1 && is_edge(unordered([rim.vertices[i], rim.vertices[k]])) {
                 continue;
             }
             let ways = (i + 1..k).filter_map(|m| part(rim, &table, [i, m, k]));

@@ -1,13 +1,12 @@
 //! Small holes that look like damage.
 
-use super::classes::Classes;
 use super::fans::Sewn;
 use super::fill::{Rim, fill};
 use super::glue::NONE;
 use super::mended::Damage;
-use super::work::Work;
+use super::work::{Classes, Work};
 use crate::geometry::{Aabb3, Point3};
-use crate::surface::orient::{Side, sides};
+use crate::mesh::{Network, Side, borders, edges_of, sides, sides_at, unordered};
 use std::collections::{HashMap, HashSet};
 
 /// A hole with more edges than this is no small one.
@@ -20,9 +19,8 @@ const EXTENT: f64 = 0.5;
 /// A border of at most twelve edges is a small hole if it is at most half as large as its component and can be filled so that
 /// the surface goes on over it ([`fill`]). All others are borders that were meant.
 pub(super) fn close(work: &mut Work, sewn: &mut Sewn) {
-    let all = sides(&sewn.triangles);
-    let borders: Vec<Side> =
-        all.chunk_by(|s, t| s.ends == t.ends).filter(|group| group.len() == 1).map(|group| group[0]).collect();
+    let all = sides(sewn.triangles.iter().copied());
+    let borders: Vec<Side> = borders(&all).collect();
     if borders.is_empty() {
         return;
     }
@@ -33,7 +31,8 @@ pub(super) fn close(work: &mut Work, sewn: &mut Sewn) {
     let sizes = component_sizes(work, sewn, &position);
     let mut chords: HashSet<[u32; 2]> = HashSet::new();
     let (mut patches, mut places) = (Vec::new(), Vec::new());
-    for rim in loops(&borders).into_iter().filter(|rim| (3..=EDGES).contains(&rim.len())) {
+    let vertices = work.mesh.points.len() + sewn.added.len();
+    for rim in loops(vertices, &borders).into_iter().filter(|rim| (3..=EDGES).contains(&rim.len())) {
         let corners: Vec<Point3> = rim.iter().map(|side| position(side.0)).collect();
         let size = Aabb3::of(corners.iter().copied()).map_or(0.0, |bounds| bounds.diagonal());
         if size > EXTENT * sizes[rim[0].1 as usize] {
@@ -44,19 +43,16 @@ pub(super) fn close(work: &mut Work, sewn: &mut Sewn) {
             let ends = [side.0, vertices[(i + 1) % vertices.len()]];
             sewn.triangles[side.1 as usize].into_iter().find(|v| !ends.contains(v)).map_or(corners[i], position)
         });
-        let is_edge =
-            |ends: [u32; 2]| all.binary_search_by(|side| side.ends.cmp(&ends)).is_ok() || chords.contains(&ends);
+        let is_edge = |ends: [u32; 2]| !sides_at(&all, ends).is_empty() || chords.contains(&ends);
         let rim_of = Rim { vertices: &vertices, corners: &corners, apexes: &apexes.collect::<Vec<_>>() };
         let Some(patch) = fill(&rim_of, is_edge) else { continue };
-        chords.extend(patch.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [a, c]]).map(|[v, w]| [v.min(w), v.max(w)]));
+        chords.extend(patch.iter().copied().flat_map(edges_of).map(unordered));
         let number = sewn.numbers[rim[0].1 as usize].into_iter().find(|&v| v != NONE).unwrap_or(0);
         places.push(format!("{} edges at {}", rim.len(), work.vertex(number)));
         patches.push((patch, rim[0].1));
     }
     let kind = if work.options.repair { Damage::Closed } else { Damage::Open };
-    for place in places {
-        work.mended.add(kind, || place);
-    }
+    places.into_iter().for_each(|place| work.mended.add(kind, place));
     for (patch, beside) in patches.into_iter().filter(|_| work.options.repair) {
         for triangle in patch {
             sewn.triangles.push(triangle);
@@ -84,27 +80,15 @@ fn component_sizes(work: &Work, sewn: &Sewn, position: &impl Fn(u32) -> Point3) 
 }
 
 /// The closed curves of the border: vertices in order, each with the triangle beside the edge to the next.
-fn loops(borders: &[Side]) -> Vec<Vec<(u32, u32)>> {
-    let mut at: HashMap<u32, Vec<usize>> = HashMap::new();
-    for (i, side) in borders.iter().enumerate() {
-        for end in side.ends {
-            at.entry(end).or_default().push(i);
-        }
-    }
-    let mut is_seen = vec![false; borders.len()];
-    let mut found = Vec::new();
-    for start in 0..borders.len() {
-        let (mut curve, mut i, mut vertex) = (Vec::new(), start, borders[start].ends[0]);
-        while !is_seen[i] {
-            is_seen[i] = true;
-            curve.push((vertex, borders[i].triangle));
-            let [v, w] = borders[i].ends;
-            vertex = if vertex == v { w } else { v };
-            i = at[&vertex].iter().copied().find(|&j| j != i).unwrap_or(i);
-        }
-        if !curve.is_empty() {
-            found.push(curve);
-        }
-    }
-    found
+fn loops(vertices: usize, borders: &[Side]) -> Vec<Vec<(u32, u32)>> {
+    let network = Network::new(vertices, borders.iter().map(|side| side.ends));
+    let curve = |(mut v, edges): (u32, Vec<u32>)| {
+        let step = |i| {
+            let from = v;
+            v = network.across(v, i);
+            (from, borders[i as usize].triangle)
+        };
+        edges.into_iter().map(step).collect()
+    };
+    network.chains(|_| false).into_iter().map(curve).collect()
 }

@@ -158,7 +158,7 @@ impl Mended {
         self.mends.iter().any(|mend| !is_told_only(mend.kind))
     }
 
-    pub(super) fn add(&mut self, kind: Damage, place: impl FnOnce() -> String) {
+    pub(super) fn add(&mut self, kind: Damage, place: String) {
         let at = match self.mends.binary_search_by_key(&kind, |mend| mend.kind) {
             Ok(at) => at,
             Err(at) => {
@@ -169,7 +169,7 @@ impl Mended {
         let mend = &mut self.mends[at];
         mend.count += 1;
         if mend.places.len() < PLACES {
-            mend.places.push(place());
+            mend.places.push(place);
         }
     }
 }

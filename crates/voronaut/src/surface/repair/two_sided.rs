@@ -31,7 +31,7 @@ pub(super) fn demand(work: &mut Work, twins: &mut Twins) -> Result<()> {
             if is_by_number && !work.options.repair {
                 return Err(one_sided(place));
             }
-            work.mended.add(if is_by_number { Damage::OneSided } else { Damage::Seam }, || place);
+            work.mended.add(if is_by_number { Damage::OneSided } else { Damage::Seam }, place);
             (twins[side as usize], twins[twin as usize]) = (NONE, NONE);
         }
     }
