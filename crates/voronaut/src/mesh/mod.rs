@@ -55,6 +55,12 @@ impl Mesh {
         triangle.map(|v| self.point(v))
     }
 
+    /// Twice the area of a planar triangle of either orientation.
+    pub(crate) fn double_area(&self, triangle: [u32; 3]) -> f64 {
+        let [a, b, c] = self.corners_of(triangle);
+        (b - a).cross(c - a).abs()
+    }
+
     /// The position of a vertex in space.
     pub fn position(&self, vertex: u32) -> Point3 {
         self.points[vertex as usize].into()

@@ -1,8 +1,8 @@
 //! Expressions in x, y and z: compiled once to a flat program that runs without allocating.
 
 use super::number::Number;
-use super::operation::{Op, STACK, Variables};
 use super::parser::Parser;
+use super::vocabulary::{Op, STACK, Variables};
 use crate::error::Result;
 use crate::geometry::{Jet3, Point3};
 

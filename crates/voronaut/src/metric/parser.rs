@@ -1,7 +1,6 @@
 //! From the text of an expression to its program: one pass, precedence climbing, constants folded.
 
-use super::operation::{Op, STACK, Variables};
-use super::vocabulary::{COMPARISON, CONSTANTS, FUNCTIONS, Function, OPERATORS, POWER, SIGN};
+use super::vocabulary::{COMPARISON, CONSTANTS, FUNCTIONS, Function, OPERATORS, Op, POWER, SIGN, STACK, Variables};
 use crate::error::{Error, Result};
 use std::ops::Range;
 

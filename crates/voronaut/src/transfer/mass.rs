@@ -6,11 +6,7 @@ use crate::sparse::{conjugate_gradients, dot};
 
 /// Areas of all triangles, of either orientation.
 pub(super) fn areas(mesh: &Mesh) -> Vec<f64> {
-    let area = |&triangle: &[u32; 3]| {
-        let [a, b, c] = mesh.corners_of(triangle);
-        0.5 * (b - a).cross(c - a).abs()
-    };
-    mesh.triangles.iter().map(area).collect()
+    mesh.triangles.iter().map(|&triangle| 0.5 * mesh.double_area(triangle)).collect()
 }
 
 /// The matrix of integrals of products of hat functions: |T| / 12 for each triangle of two vertices, |T| / 6 on the diagonal.

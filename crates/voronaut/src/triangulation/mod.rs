@@ -8,13 +8,11 @@ mod ids;
 mod lawson;
 mod operations;
 mod renumber;
-mod star;
 
 pub use check::Broken;
 pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
 pub use lawson::Limit;
 pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_in_rounds};
-pub(crate) use star::Star;
 
 use ids::NONE;
 
@@ -228,7 +226,8 @@ impl Triangulation {
 
     /// The half-edges that leave a vertex, counter-clockwise; at the border from one end of the fan to the other.
     pub(crate) fn star(&self, v: VertexId) -> Star<'_> {
-        Star::new(self, v)
+        let first = self.start(v);
+        Star { triangulation: self, first, next: first }
     }
 
     /// Whether the vertex lies on the border.
@@ -262,9 +261,53 @@ impl Triangulation {
         loops
     }
 
+    /// The parts of faces that hang together across half-edges for which `joins` holds (of both sides or none): the part of
+    /// each face slot, and the faces of each part, in the order in which neighbours are found.
+    pub(crate) fn parts(&self, joins: impl Fn(HalfEdge) -> bool) -> (Vec<u32>, Vec<Vec<FaceId>>) {
+        let mut part_of = vec![NONE; self.face_slots()];
+        let mut parts: Vec<Vec<FaceId>> = Vec::new();
+        for start in self.faces() {
+            let (mut part, mut next) = (vec![start], 0);
+            if part_of[start.index()] != NONE {
+                continue;
+            }
+            part_of[start.index()] = parts.len() as u32;
+            while let Some(&f) = part.get(next) {
+                next += 1;
+                for h in f.half_edges().into_iter().filter(|&h| joins(h)) {
+                    let Some(beside) = self.twin(h).map(HalfEdge::face) else { continue };
+                    if part_of[beside.index()] == NONE {
+                        part_of[beside.index()] = parts.len() as u32;
+                        part.push(beside);
+                    }
+                }
+            }
+            parts.push(part);
+        }
+        (part_of, parts)
+    }
+
     /// The half-edge from a to b, if a face has it (the first of several).
     pub(crate) fn find(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
         self.star(a).find(|&h| self.target(h) == b)
+    }
+}
+
+/// The half-edges that leave a vertex, counter-clockwise. See [`Triangulation::star`].
+#[derive(Clone)]
+pub(crate) struct Star<'a> {
+    triangulation: &'a Triangulation,
+    first: Option<HalfEdge>,
+    next: Option<HalfEdge>,
+}
+
+impl Iterator for Star<'_> {
+    type Item = HalfEdge;
+
+    fn next(&mut self) -> Option<HalfEdge> {
+        let h = self.next?;
+        self.next = self.triangulation.twin(h.prev()).filter(|&n| Some(n) != self.first);
+        Some(h)
     }
 }
 

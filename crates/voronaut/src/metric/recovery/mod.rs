@@ -5,7 +5,7 @@ mod least_squares;
 mod projection;
 mod stencil;
 
-use super::sampled::check_background;
+use super::validate::check_background;
 use crate::error::{Error, Result, named};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;

@@ -25,8 +25,8 @@ mod sampled;
 mod sizes;
 mod sizing;
 mod spec;
-mod validate;
 
+pub(crate) use crate::metric::check_tensor3;
 pub use bounded::Bounded;
 pub(crate) use closer::Closer;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
@@ -36,7 +36,6 @@ pub use sampled::Sampled;
 pub use sizes::Sizes;
 pub use sizing::Sizing;
 pub use spec::{Spec, field, field_of_values};
-pub(crate) use validate::check_tensor3;
 
 use super::Place;
 use crate::geometry::{Point, Point3, Tensor3};

@@ -1,9 +1,11 @@
 //! A metric given at the vertices of the surface.
 
-use super::{CurvatureFigures, SurfaceMetric, check_tensor3};
+use super::{CurvatureFigures, SurfaceMetric};
 use crate::error::{Error, Result};
 use crate::geometry::Tensor3;
 use crate::mesh::{Solution, SolutionValues};
+use crate::metric::{check_sizes, check_tensor3};
+use crate::surface::input::check_count;
 use crate::surface::{Place, Surface};
 
 /// Tensors at the vertices of a surface; inside triangles the log-Euclidean interpolation (Arsigny 2006), exp of the linear
@@ -23,7 +25,7 @@ impl Sampled {
     /// # Errors
     /// [`Error::Metric`] where numbers of tensors and vertices differ, or that of a vertex of a triangle is no metric.
     pub(crate) fn new(surface: &Surface, tensors: &[Tensor3]) -> Result<Self> {
-        check_count(surface, tensors.len())?;
+        check_count(tensors.len(), surface.positions().len())?;
         let t = surface.topology();
         for v in t.vertices() {
             check_tensor3(tensors[v.index()], || format!("vertex {} {}", v.0 + 1, surface.position(v)))?;
@@ -52,14 +54,7 @@ impl Sampled {
                 Self::new(surface, &tensors)
             }
             SolutionValues::Scalar(sizes) => {
-                if let Some(i) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) {
-                    let what = format!("the size h = {} is not positive and finite", sizes[i]);
-                    return Err(Error::metric(
-                        what,
-                        format!("vertex {}", i + 1),
-                        "a size is the length of edges there",
-                    ));
-                }
+                check_sizes(sizes, |i| format!("vertex {}", i + 1))?;
                 let tensors: Vec<Tensor3> = sizes.iter().map(|&h| Tensor3::isotropic(h)).collect();
                 Self::new(surface, &tensors)
             }
@@ -81,15 +76,6 @@ impl SurfaceMetric for Sampled {
     fn curvature_figures(&self) -> Option<CurvatureFigures> {
         self.figures
     }
-}
-
-fn check_count(surface: &Surface, found: usize) -> Result<()> {
-    let needed = surface.positions().len();
-    if found == needed {
-        return Ok(());
-    }
-    let help = "the metric must have one value for each vertex of the surface's file, in the same order";
-    Err(Error::metric(format!("{found} values for {needed} vertices"), "the surface", help))
 }
 
 #[cfg(test)]
