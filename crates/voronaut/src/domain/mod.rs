@@ -11,7 +11,6 @@ mod polygons;
 mod pslg;
 mod shapes;
 mod sides;
-mod written;
 
 pub(crate) use chains::Chain;
 pub use from_mesh::from_mesh;
@@ -19,10 +18,10 @@ pub use outlines::{to_mesh, to_poly, to_polygons};
 pub use poly::{Poly, PolyRegion, from_poly};
 pub use polygons::{Polygon, Polygons, Ring, from_polygons};
 pub use pslg::{Filling, Pslg, Segment, Side};
+pub(crate) use shapes::read_numbers;
 #[cfg(test)]
 pub(crate) use shapes::rect;
-pub(crate) use written::read_numbers;
-pub use written::shape;
+pub use shapes::shape;
 
 use crate::geometry::{Aabb, Point};
 use crate::planar::Planar;

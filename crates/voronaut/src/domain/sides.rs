@@ -2,7 +2,7 @@
 
 use super::{Filling, Pslg, Side};
 use crate::error::{Error, Result};
-use crate::geometry::{Point, signed_area};
+use crate::geometry::{Point, centroid, signed_area};
 use crate::planar::{Location, Planar};
 use crate::triangulation::{FaceId, HalfEdge};
 
@@ -42,12 +42,13 @@ impl Areas {
     pub(super) fn inner_points(&self, planar: &Planar) -> Vec<(Side, Point)> {
         let mut best = vec![(0.0, Point::default()); self.sides.len()];
         for f in planar.topology.faces() {
-            let [a, b, c] = planar.triangle(f);
+            let triangle = planar.triangle(f);
+            let [a, b, c] = triangle;
             let perimeter = a.distance(b) + b.distance(c) + c.distance(a);
             let radius = signed_area(a, b, c) / perimeter;
             let known = &mut best[self.area_of[f.index()] as usize];
             if radius > known.0 {
-                *known = (radius, Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0));
+                *known = (radius, centroid(triangle));
             }
         }
         let outer = self.area_of[far_face(planar).index()] as usize;

@@ -60,6 +60,16 @@ impl Tensor {
         u.dot(self.apply(v))
     }
 
+    /// What the tensor says of combinations of two vectors: P' M P with P = (p, q).
+    pub(crate) fn along(self, [p, q]: [Vector; 2]) -> Tensor {
+        Tensor::new(self.dot(p, p), self.dot(p, q), self.dot(q, q))
+    }
+
+    /// v v'.
+    pub(crate) fn square(v: Vector) -> Tensor {
+        Tensor::new(v.x * v.x, v.x * v.y, v.y * v.y)
+    }
+
     /// Metric length of a vector: sqrt(v' M v).
     pub fn length(self, v: Vector) -> f64 {
         self.dot(v, v).max(0.0).sqrt()
@@ -134,6 +144,13 @@ impl Tensor {
         let a = self.xx.sqrt();
         let b = self.xy / a;
         [a, b, (self.determinant() / self.xx).max(0.0).sqrt()]
+    }
+
+    /// The columns of F with F' F = M ([`Tensor::cholesky`]), and those of its inverse, in whose coordinates M is the identity.
+    pub(crate) fn frames(self) -> [[Vector; 2]; 2] {
+        let [a, b, c] = self.cholesky();
+        let inverse = [Vector::new(1.0 / a, 0.0), Vector::new(-b / (a * c), 1.0 / c)];
+        [[Vector::new(a, 0.0), Vector::new(b, c)], inverse]
     }
 
     /// 4 sqrt(3) times the area of a straight triangle over the sum of its squared edges, all in this metric: 1 of an equilateral

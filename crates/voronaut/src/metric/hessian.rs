@@ -1,10 +1,10 @@
 //! The metric of a function's second derivatives: known at every point, or recovered from a solution at the vertices of a mesh.
 
 use super::complexity::start;
-use super::nodal::absolute;
+use super::nodal::{absolute, size};
 use super::{MetricField, Norm, Recovery, Sampled, ScalarField, Snapshot, recover_hessian};
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Tensor};
+use crate::geometry::{Point, Tensor, centroid};
 use crate::mesh::{Located, Locator, Mesh};
 
 /// The metric in which a unit mesh has the least L^p error of linear interpolation of a function (Loseille and Alauzet 2011): its
@@ -25,10 +25,9 @@ impl Hessian {
     /// not finite.
     pub(crate) fn new(function: Snapshot, norm: Norm, domain: &[[Point; 3]]) -> Result<Self> {
         let (mut sum, mut total) = (0.0, 0.0);
-        for ([a, b, c], _) in start(domain)? {
-            let middle = Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0);
-            let e = function.second_derivatives(middle).eigen();
-            let greatest = e.large.abs().max(e.small.abs());
+        for (triangle, _) in start(domain)? {
+            let ([a, b, c], middle) = (triangle, centroid(triangle));
+            let greatest = size(function.second_derivatives(middle));
             if !greatest.is_finite() {
                 let what = "the function's second derivatives are not finite";
                 let help = "give a function with two derivatives in the whole domain";
@@ -56,7 +55,7 @@ impl MetricField for Hessian {
 /// The floor of absolute eigenvalues, as a share of the mean over the domain of the greater one: where a function is linear in
 /// some direction, longer edges would gain nothing, and make a metric that no straight edges can honour. Measured: a hundredth
 /// of it makes errors larger by 1 to 3 %, for the mesh cannot follow; ten times as much by 4 %.
-pub(super) const FLOOR: f64 = 1e-4;
+const FLOOR: f64 = 1e-4;
 
 /// The function that is quadratic on every triangle, has a solution's values at the vertices, and there, as well as a continuous
 /// function can, its recovered second derivatives: linear interpolation and, of each edge e, -e'He / 8 in the middle.
@@ -98,26 +97,17 @@ impl Recovered {
 
     /// Second derivatives that rounding of the values alone could make up.
     fn rounding(&self) -> f64 {
-        let twice = |&triangle: &[u32; 3]| {
-            let [a, b, c] = self.mesh.corners_of(triangle);
-            (b - a).cross(c - a).abs()
-        };
-        let area = 0.5 * self.mesh.triangles.iter().map(twice).sum::<f64>();
+        let area = 0.5 * self.mesh.triangles.iter().map(|&triangle| self.mesh.double_area(triangle)).sum::<f64>();
         let greatest = self.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
         100.0 * f64::EPSILON * greatest * self.values.len() as f64 / area
     }
 
     /// The mean over the mesh's area of the greater absolute eigenvalue.
     fn mean_size(&self) -> f64 {
-        let size = |v: u32| {
-            let e = self.hessians[v as usize].eigen();
-            e.large.abs().max(e.small.abs())
-        };
         let (mut sum, mut total) = (0.0, 0.0);
         for &triangle in &self.mesh.triangles {
-            let [a, b, c] = self.mesh.corners_of(triangle);
-            let area = (b - a).cross(c - a).abs();
-            sum += area * triangle.map(size).iter().sum::<f64>() / 3.0;
+            let area = self.mesh.double_area(triangle);
+            sum += area * triangle.map(|v| size(self.hessians[v as usize])).iter().sum::<f64>() / 3.0;
             total += area;
         }
         sum / total

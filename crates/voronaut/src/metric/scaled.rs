@@ -51,8 +51,7 @@ impl MetricField for Steadied<'_> {
 impl Steadied<'_> {
     /// How much the field turns for each unit, along both axes of a frame.
     fn turn(&self, p: Point, tensor: Tensor) -> f64 {
-        let [a, b, c] = tensor.cholesky();
-        let axes = [Vector::new(1.0 / a, 0.0), Vector::new(-b / (a * c), 1.0 / c)];
+        let [_, axes] = tensor.frames();
         let [x, y] = axes.map(|axis| {
             let away = axis * (0.5 * STEP);
             turn(self.field.at(p + away), self.field.at(p - away)) / STEP

@@ -32,4 +32,4 @@ pub use gradation::grade;
 pub use implied::{implied, isotropic};
 pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source, Touched};
 pub use restrict::{Limit, Limits, restrict};
-pub(crate) use spd::{absolute, enforce_spd};
+pub(crate) use spd::{absolute, enforce_spd, size};

@@ -56,9 +56,9 @@ impl Frame {
             return None;
         }
         // Scaled first: squares of small lengths underflow, and so do their determinants.
-        let covariance = offsets.map(|d| d * (1.0 / longest)).fold(Tensor::default(), |sum, d| {
-            sum + Tensor::new(d.x * d.x, d.x * d.y, d.y * d.y) * (1.0 / vertices.len() as f64)
-        });
+        let covariance = offsets
+            .map(|d| d * (1.0 / longest))
+            .fold(Tensor::default(), |sum, d| sum + Tensor::square(d) * (1.0 / vertices.len() as f64));
         let trace = covariance.xx + covariance.yy;
         if covariance.determinant() <= FLAT * trace * trace {
             return None;
@@ -76,7 +76,6 @@ impl Frame {
     /// Second derivatives by x and y from those by these coordinates: F' H F.
     pub(super) fn back(&self, h: Tensor) -> Tensor {
         let [a, b, c] = self.factor;
-        let (p, q) = (Vector::new(a, 0.0), Vector::new(b, c));
-        Tensor::new(h.dot(p, p), h.dot(p, q), h.dot(q, q))
+        h.along([Vector::new(a, 0.0), Vector::new(b, c)])
     }
 }

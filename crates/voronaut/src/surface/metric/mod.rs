@@ -15,12 +15,9 @@
 //!
 //! [`Spec`] reads the second column, [`field`] makes the field; `check_tensor3` tells whether a value is a metric.
 
-mod bends;
 mod bounded;
-mod closer;
 mod curvature;
 mod fit;
-mod gradation;
 mod sampled;
 mod sizes;
 mod sizing;
@@ -28,12 +25,12 @@ mod spec;
 
 pub(crate) use crate::metric::check_tensor3;
 pub use bounded::Bounded;
-pub(crate) use closer::Closer;
+pub(crate) use bounded::Closer;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub use fit::fit_curvatures;
-pub(crate) use gradation::grade;
 pub use sampled::Sampled;
 pub use sizes::Sizes;
+pub(crate) use sizes::grade;
 pub use sizing::Sizing;
 pub use spec::{Spec, field, field_of_values};
 

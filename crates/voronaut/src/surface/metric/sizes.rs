@@ -1,10 +1,14 @@
-//! Sizes or tensors at the vertices of a surface, as they stand in a `.sol` file.
+//! Sizes or tensors at the vertices of a surface, as they stand in a `.sol` file; sizes that grow slowly.
 
 use super::{Sampled, SurfaceMetric};
 use crate::error::{Error, Result};
 use crate::geometry::{Point3, Tensor3};
 use crate::mesh::{Solution, SolutionValues};
+use crate::metric::Neighbours;
+use crate::metric::nodal::Gradation;
 use crate::surface::{Nearest, Surface};
+use crate::triangulation::VertexId;
+use std::collections::BTreeMap;
 
 /// What is asked for at the vertices of a surface, one entry per vertex slot.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,11 +62,45 @@ impl Sizes {
     }
 }
 
+/// Lowers sizes, one per vertex slot, until along every edge of length l they grow by no more than l ln(hgrad), the law of
+/// [`grade`](crate::metric::nodal::grade) for sizes that are the same in all directions. The result is the largest such field
+/// below the given one, to a millionth along every edge.
+///
+/// Vertices at equal positions, as they are where a surface was cut, end with equal sizes. Sizes are positive, and finite
+/// where there are triangles.
+///
+/// # Errors
+/// As of [`grade`](crate::metric::nodal::grade).
+pub(crate) fn grade(surface: &Surface, sizes: &mut [f64], hgrad: f64) -> Result<()> {
+    let t = surface.topology();
+    let triangles = t.faces().map(|f| t.corners(f).map(|v| v.0));
+    let around = Neighbours::of_triangles(sizes.len(), triangles, copies(surface));
+    let length = |v, w| surface.position(VertexId(v)).distance(surface.position(VertexId(w)));
+    Gradation::of_sizes(around, length, hgrad)?.apply_to_sizes(sizes)
+}
+
+/// Vertices at equal positions, each with the first of them; only what is cut has copies, and a cut is a border.
+fn copies(surface: &Surface) -> Vec<[u32; 2]> {
+    let t = surface.topology();
+    let mut first: BTreeMap<[u64; 3], u32> = BTreeMap::new();
+    let pair = |v: VertexId| {
+        // Adding 0 makes one zero of both.
+        let key = surface.position(v).to_array().map(|x| (x + 0.0).to_bits());
+        let one = *first.entry(key).or_insert(v.0);
+        (one != v.0).then_some([one, v.0])
+    };
+    t.vertices().filter(|&v| t.is_border_vertex(v)).filter_map(pair).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::Vector3;
+    use crate::mesh::Mesh;
     use crate::surface::Input;
+    use crate::surface::torus;
+    use crate::test_cases::cases;
+    use proptest::prelude::*;
 
     /// The values at the vertices of a surface are the field that it was.
     #[test]
@@ -88,5 +126,51 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// The torus, its triangles apart but for their positions.
+    fn soup(surface: &Surface) -> Surface {
+        let mesh = surface.to_mesh();
+        let points = mesh.triangles.iter().flatten().map(|&v| mesh.points[v as usize]).collect();
+        let triangles = (0..mesh.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Surface::new(&Mesh { points, triangles, ..Mesh::default() }).unwrap()
+    }
+
+    proptest! {
+        #![proptest_config(cases(24))]
+        #[test]
+        fn sizes_obey_the_law_and_no_more(seed in 0..1_000_000_u32, hgrad in 1.0..3.0_f64, spread in 0.1..6.0_f64) {
+            let surface = torus(2.0, 0.7, 0.4).unwrap();
+            let noise = |i: usize| ((i as f64 + f64::from(seed)) * 12.9898).sin() * spread;
+            let given: Vec<f64> = (0..surface.positions().len()).map(|i| noise(i).exp()).collect();
+            let mut sizes = given.clone();
+            grade(&surface, &mut sizes, hgrad).unwrap();
+            for v in surface.topology().vertices() {
+                let (size, given) = (sizes[v.index()], given[v.index()]);
+                // The most that any neighbour allows.
+                let reach = |w: VertexId| sizes[w.index()] + hgrad.ln() * surface.position(v).distance(surface.position(w));
+                let t = surface.topology();
+                let around = t.star(v).flat_map(|h| [t.target(h), t.apex(h)]);
+                let most = around.map(reach).fold(f64::INFINITY, f64::min);
+                prop_assert!(size <= most * (1.0 + 1e-6), "{} over {}", size, most);
+                prop_assert!((size - given.min(most)).abs() <= 1e-6 * size, "{}, not {} or {}", size, given, most);
+            }
+        }
+    }
+
+    #[test]
+    fn a_cut_surface_is_graded_as_the_whole() {
+        let surface = torus(2.0, 0.7, 0.4).unwrap();
+        let given: Vec<f64> = surface.positions().iter().map(|p| if p.x > 2.6 { 0.01 } else { 5.0 }).collect();
+        let mut whole = given.clone();
+        grade(&surface, &mut whole, 1.3).unwrap();
+        let soup = soup(&surface);
+        let mut apart: Vec<f64> = soup.positions().iter().map(|p| if p.x > 2.6 { 0.01 } else { 5.0 }).collect();
+        grade(&soup, &mut apart, 1.3).unwrap();
+        let mesh = surface.to_mesh();
+        for (i, &v) in mesh.triangles.iter().flatten().enumerate() {
+            assert!((apart[i] / whole[v as usize] - 1.0).abs() < 1e-6);
+        }
+        assert!(whole.iter().any(|&h| h > 0.5) && whole.iter().all(|&h| h < 5.0));
     }
 }

@@ -4,7 +4,7 @@ use super::glue::{NONE, Twins, numbers};
 use super::mended::Damage;
 use super::work::Work;
 use crate::error::Result;
-use crate::surface::orient::one_sided;
+use crate::surface::build::one_sided;
 
 /// Opens what makes the surface one-sided, and counts the triangles that [`Surface::new`](crate::surface::Surface::new) will
 /// turn.
