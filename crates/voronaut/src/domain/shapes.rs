@@ -1,6 +1,6 @@
 //! Domains that need no file, and the texts that name them.
 
-use super::{Domain, Filling, Pslg, Segment, Side, shapes};
+use super::{Domain, Filling, Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
 use std::f64::consts::FRAC_PI_2;

@@ -2,7 +2,7 @@
 //! star sets come to agree.
 
 use super::MetricField;
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geometry::{Point, Tensor};
 
 /// The field `factor` M: metric lengths grow by sqrt(factor), the complexity (see [`complexity`](super::complexity()))
 /// by `factor`. The factor is positive and finite; any other gives tensors that

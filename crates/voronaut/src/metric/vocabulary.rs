@@ -1,6 +1,6 @@
-//! The names, operators and instructions of expressions, each declared once.
+//! The names and operators of expressions, each declared once.
 
-use super::number::{Binary, Unary};
+use super::program::{Binary, Op, Unary};
 
 /// How many arguments a function takes, and what it does with them.
 pub(super) enum Function {
@@ -119,28 +119,4 @@ pub enum Variables {
     Space,
     /// x, y and the time t, which takes the place of z.
     Motion,
-}
-
-/// Values an expression may keep waiting, such as the three 1 in `1 + (1 + (1 + x))`.
-pub(super) const STACK: usize = 64;
-
-/// One instruction; operands come from the stack, the result goes there.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Op {
-    Constant(f64),
-    X,
-    Y,
-    Z,
-    Negate,
-    Square,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
-    Call1(&'static Unary),
-    Call2(&'static Binary),
-    Jump(u32),
-    /// Takes the condition off the stack.
-    JumpIfZero(u32),
 }

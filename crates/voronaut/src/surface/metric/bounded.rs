@@ -3,7 +3,7 @@
 
 use super::{CurvatureFigures, Sampled, Sizing, SurfaceMetric};
 use crate::error::Result;
-use crate::geometry::{TangentPlane, Tensor3};
+use crate::geometry::{TangentPlane, Tensor, Tensor3};
 use crate::metric::Bounds;
 use crate::surface::{Input, Place};
 
@@ -28,11 +28,7 @@ impl<F: SurfaceMetric> Bounded<F> {
 
 impl<F: SurfaceMetric> SurfaceMetric for Bounded<F> {
     fn at(&self, place: &Place) -> Tensor3 {
-        let tensor = self.field.at(place);
-        let plane = TangentPlane::new(place.normal);
-        let tangential = plane.restrict(tensor);
-        let clamped = self.bounds.clamp(tangential);
-        if clamped == tangential { tensor } else { plane.extend(clamped, clamped.eigen().large) }
+        changed(self.field.at(place), place, |_, tangential| self.bounds.clamp(tangential))
     }
 
     fn curvature_figures(&self) -> Option<CurvatureFigures> {
@@ -66,15 +62,20 @@ impl<'a> Closer<'a> {
 
 impl SurfaceMetric for Closer<'_> {
     fn at(&self, place: &Place) -> Tensor3 {
-        let tensor = self.field.at(place);
-        let plane = TangentPlane::new(place.normal);
-        let [wanted, needed] = [tensor, self.sizes.at(place)].map(|m| plane.restrict(m));
-        if !wanted.is_positive_definite() {
-            return tensor;
-        }
-        let both = wanted.intersection(needed);
-        if both == wanted { tensor } else { plane.extend(both, both.eigen().large) }
+        changed(self.field.at(place), place, |plane, wanted| {
+            let needed = || plane.restrict(self.sizes.at(place));
+            if wanted.is_positive_definite() { wanted.intersection(needed()) } else { wanted }
+        })
     }
+}
+
+/// A tensor with another part in the tangent plane; what it says of the normal becomes the larger eigenvalue of that, where it is
+/// another.
+fn changed(tensor: Tensor3, place: &Place, change: impl Fn(&TangentPlane, Tensor) -> Tensor) -> Tensor3 {
+    let plane = TangentPlane::new(place.normal);
+    let before = plane.restrict(tensor);
+    let after = change(&plane, before);
+    if after == before { tensor } else { plane.extend(after, after.eigen().large) }
 }
 
 #[cfg(test)]

@@ -18,8 +18,8 @@
 mod bounded;
 mod curvature;
 mod fit;
+mod gradation;
 mod sampled;
-mod sizes;
 mod sizing;
 mod spec;
 
@@ -28,9 +28,8 @@ pub use bounded::Bounded;
 pub(crate) use bounded::Closer;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub use fit::fit_curvatures;
-pub use sampled::Sampled;
-pub use sizes::Sizes;
-pub(crate) use sizes::grade;
+pub(crate) use gradation::grade;
+pub use sampled::{Sampled, Sizes};
 pub use sizing::Sizing;
 pub use spec::{Spec, field, field_of_values};
 
@@ -60,16 +59,6 @@ impl<F: Fn(Point3) -> Tensor3 + Sync> SurfaceMetric for F {
 }
 
 impl SurfaceMetric for Box<dyn SurfaceMetric + '_> {
-    fn at(&self, place: &Place) -> Tensor3 {
-        (**self).at(place)
-    }
-
-    fn curvature_figures(&self) -> Option<CurvatureFigures> {
-        (**self).curvature_figures()
-    }
-}
-
-impl SurfaceMetric for &dyn SurfaceMetric {
     fn at(&self, place: &Place) -> Tensor3 {
         (**self).at(place)
     }

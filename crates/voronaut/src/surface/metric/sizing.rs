@@ -1,9 +1,9 @@
 //! The sizes that keep a mesh close to its surface, and to the curves on it: borders, and edges that are fixed.
 
-use super::{Sampled, Sizes, fit_curvatures, grade};
+use super::{Sizes, fit_curvatures, grade};
 use crate::error::{Error, Result};
 use crate::geometry::{TangentPlane, Tensor, Tensor3, Vector3};
-use crate::mesh::{Solution, SolutionValues};
+use crate::mesh::Solution;
 use crate::metric::Bounds;
 use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Surface};
@@ -44,12 +44,12 @@ impl Sizing {
     /// [`Error::Parse`] that names a parameter out of range; [`Error::Metric`] where what is given is not one metric, or size, for each vertex.
     pub fn sizes(&self, surface: &Surface, given: Option<&Solution>) -> Result<Sizes> {
         self.check()?;
-        if let Some(given) = given {
-            Sampled::from_solution(surface, given)?;
-        }
+        let given = given.map(Sizes::of).transpose()?;
+        // Whether it is a metric.
+        given.as_ref().map(|given| given.field(surface)).transpose()?;
         let curvatures = fit_curvatures(surface);
-        let asked = |v: usize| given.map(|given| asked(given, v));
-        let is_tensor = given.is_some_and(|given| matches!(given.values, SolutionValues::Tensor3(_)));
+        let asked = |v: usize| given.as_ref().map(|given| given.tensor(v));
+        let is_tensor = matches!(given, Some(Sizes::Anisotropic(_)));
         let slots = (0..curvatures.len()).into_par_iter();
         if self.anisotropic || is_tensor {
             let tensor = |v: usize| self.tensor(surface, v, curvatures[v].as_ref(), asked(v));
@@ -113,15 +113,6 @@ impl Sizing {
         let limits = Bounds { h_min: Some(self.h_min), h_max: Some(self.h_max), a_max: None };
         let tensor = limits.clamp(all);
         plane.extend(tensor, tensor.eigen().large)
-    }
-}
-
-/// An entry of a solution, which was found to be a metric.
-fn asked(given: &Solution, v: usize) -> Tensor3 {
-    match &given.values {
-        SolutionValues::Tensor3(entries) => Tensor3::from_disk(entries[v]),
-        SolutionValues::Scalar(sizes) => Tensor3::isotropic(sizes[v]),
-        SolutionValues::Vector { .. } | SolutionValues::Tensor(_) => Tensor3::IDENTITY,
     }
 }
 

@@ -39,9 +39,7 @@ pub(super) fn glue(work: &mut Work) -> Result<Twins> {
 
 /// The vertex numbers of a side, the smaller first.
 pub(super) fn numbers(work: &Work, side: u32) -> [u32; 2] {
-    let triangle = work.triangles[side as usize / 3];
-    let [v, w] = [triangle[side as usize % 3], triangle[(side as usize + 1) % 3]];
-    unordered([v, w])
+    unordered(work.ends(side))
 }
 
 /// Whether two triangles at the same places would be glued back to back though their numbers do not ask for it.

@@ -41,8 +41,8 @@ pub(super) fn demand(work: &mut Work, twins: &mut Twins) -> Result<()> {
 
 /// Whether two triangles pass the edge between them in opposite directions.
 fn are_opposite(work: &Work, side: u32, twin: u32) -> bool {
-    let from = |side: u32| work.places.of(work.triangles[side as usize / 3][side as usize % 3]);
-    from(side) != from(twin)
+    let [from, to] = [side, twin].map(|side| work.places.of(work.ends(side)[0]));
+    from != to
 }
 
 /// The fewer of each component are turned.

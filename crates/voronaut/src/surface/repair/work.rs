@@ -51,6 +51,11 @@ impl<'a> Work<'a> {
         self.triangles[t].map(|v| self.position(v))
     }
 
+    /// The ends of side k of triangle t, at 3 t + k, in its direction: vertex numbers.
+    pub(super) fn ends(&self, side: u32) -> [u32; 2] {
+        edges_of(self.triangles[side as usize / 3])[side as usize % 3]
+    }
+
     /// The places of a triangle's corners.
     pub(super) fn places_of(&self, t: usize) -> [u32; 3] {
         self.triangles[t].map(|v| self.places.of(v))
