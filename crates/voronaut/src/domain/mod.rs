@@ -18,10 +18,10 @@ pub use outlines::{to_mesh, to_poly, to_polygons};
 pub use poly::{Poly, PolyRegion, from_poly};
 pub use polygons::{Polygon, Polygons, Ring, from_polygons};
 pub use pslg::{Filling, Pslg, Segment, Side};
-pub(crate) use shapes::read_numbers;
 #[cfg(test)]
 pub(crate) use shapes::rect;
 pub use shapes::shape;
+pub(crate) use shapes::{name_and_rest, read_numbers};
 
 use crate::geometry::{Aabb, Point};
 use crate::planar::Planar;

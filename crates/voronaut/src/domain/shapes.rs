@@ -118,7 +118,7 @@ impl Domain {
 
 /// The shape that a text names, or why it is none in the plane; `None` if it names none.
 pub fn shape(spec: &str) -> Option<Result<Pslg>> {
-    let (name, numbers) = spec.split_once(':').map_or((spec, None), |(name, numbers)| (name, Some(numbers)));
+    let (name, numbers) = name_and_rest(spec);
     match (name, numbers) {
         ("rect", Some(numbers)) => Some(
             read_numbers(spec, numbers, "rect:x0,y0,x1,y1")
@@ -130,6 +130,11 @@ pub fn shape(spec: &str) -> Option<Result<Pslg>> {
         _ if SURFACES.contains(&name) => Some(Err(not_planar(format!("the surface {spec} as planar domain")))),
         _ => None,
     }
+}
+
+/// The name in front of a colon, and what is behind it.
+pub(crate) fn name_and_rest(text: &str) -> (&str, Option<&str>) {
+    text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)))
 }
 
 /// The comma-separated numbers of a shape.

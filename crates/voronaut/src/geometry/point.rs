@@ -226,6 +226,12 @@ impl Vector3 {
 }
 
 impl Aabb3 {
+    /// Whether a point is in the box or on its sides.
+    pub(crate) fn contains(&self, p: Point3) -> bool {
+        let [x, low, high] = [p, self.min, self.max].map(Point3::to_array);
+        (0..3).all(|i| low[i] <= x[i] && x[i] <= high[i])
+    }
+
     /// The length of the diagonal.
     pub(crate) fn diagonal(&self) -> f64 {
         self.extent().norm()

@@ -101,13 +101,17 @@ impl Tensor {
 
     /// Eigenvalues and the axis of the larger one (the x axis where both are equal).
     pub fn eigen(self) -> Eigen {
-        let half_difference = 0.5 * (self.xx - self.yy);
-        let radius = half_difference.hypot(self.xy);
-        let mean = 0.5 * (self.xx + self.yy);
+        let (mean, radius, axis) = self.spectrum();
         let large = mean + radius;
         let small = if mean > 0.0 { self.determinant() / large } else { mean - radius };
+        Eigen { large, small, axis }
+    }
+
+    /// The mean of the eigenvalues, half their difference, and the axis of the larger one.
+    fn spectrum(self) -> (f64, f64, Vector) {
+        let half_difference = 0.5 * (self.xx - self.yy);
         let angle = 0.5 * self.xy.atan2(half_difference);
-        Eigen { large, small, axis: Vector::new(angle.cos(), angle.sin()) }
+        (0.5 * (self.xx + self.yy), half_difference.hypot(self.xy), Vector::new(angle.cos(), angle.sin()))
     }
 
     /// The symmetric tensor with the same axes and each eigenvalue mapped by `f`.
@@ -127,11 +131,8 @@ impl Tensor {
     #[must_use]
     pub(crate) fn exp(self) -> Tensor {
         // Not through `map_eigenvalues`: a logarithm is no metric, and its smaller eigenvalue may be negative.
-        let mean = 0.5 * (self.xx + self.yy);
-        let half_difference = 0.5 * (self.xx - self.yy);
-        let radius = half_difference.hypot(self.xy);
-        let angle = 0.5 * self.xy.atan2(half_difference);
-        Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), (mean + radius).exp(), (mean - radius).exp())
+        let (mean, radius, axis) = self.spectrum();
+        Tensor::from_axis(axis, (mean + radius).exp(), (mean - radius).exp())
     }
 
     /// Log-Euclidean mean: exp of the weighted sum of logarithms. Weights sum to one.

@@ -30,12 +30,7 @@ impl Expression {
     /// # Errors
     /// [`Error::Parse`](crate::Error::Parse) with the column (from 1, in characters), the text and a caret below it.
     pub fn parse(text: &str, variables: Variables) -> Result<Self> {
-        Self::parse_named(text, variables, "expression")
-    }
-
-    /// The same, with a name for messages.
-    pub(super) fn parse_named(text: &str, variables: Variables, name: &str) -> Result<Self> {
-        Self::parse_range(text, 0..text.len(), variables, name)
+        Self::parse_range(text, 0..text.len(), variables, "expression")
     }
 
     /// Compiles a part of a text; columns count from the start of the whole text, which `name` names in messages.

@@ -36,8 +36,7 @@ impl Formula {
                 help: "in the plane write three entries: m11; m12; m22".into(),
             });
         }
-        let [m11, m12, m22] = entries(text, ["m11", "m12", "m22"], "three", Variables::Plane)?;
-        Ok(Self { entries: [m11, m12, m22] })
+        Ok(Self { entries: entries(text, ["m11", "m12", "m22"], "three", Variables::Plane)? })
     }
 }
 
@@ -78,8 +77,8 @@ fn entries<const N: usize>(text: &str, names: [&str; N], count: &str, variables:
 
 impl MetricField for Formula {
     fn at(&self, p: Point) -> Tensor {
-        let [m11, m12, m22] = &self.entries;
-        Tensor::new(m11.at(p.x, p.y, 0.0), m12.at(p.x, p.y, 0.0), m22.at(p.x, p.y, 0.0))
+        let [m11, m12, m22] = self.entries.each_ref().map(|entry| entry.at(p.x, p.y, 0.0));
+        Tensor::new(m11, m12, m22)
     }
 }
 

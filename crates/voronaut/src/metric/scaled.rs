@@ -71,6 +71,7 @@ fn turn(m: Tensor, n: Tensor) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Vector;
     use crate::metric::Uniform;
 
     #[test]

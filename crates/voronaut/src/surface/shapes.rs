@@ -1,7 +1,7 @@
 //! Surfaces that need no file, and the texts that name them.
 
 use super::{Input, Surface, mesh_implicit};
-use crate::domain::read_numbers;
+use crate::domain::{name_and_rest, read_numbers};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3, Vector3};
 use crate::mesh::Mesh;
@@ -167,7 +167,7 @@ impl Input {
 /// [`Error::Parse`] of numbers and equations that are none; [`Error::Domain`] of what makes no surface; [`Error::Limit`] of too
 /// many triangles.
 pub fn shape(text: &str, edge: Option<f64>) -> Option<Result<Input>> {
-    let (name, rest) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
+    let (name, rest) = name_and_rest(text);
     match (name.trim(), rest) {
         ("sphere", Some(numbers)) => Some(read_sphere(text, numbers, edge)),
         ("torus", Some(numbers)) => Some(read_torus(text, numbers, edge)),

@@ -162,7 +162,7 @@ impl Triangulation {
 
     /// Whether an edge has two faces and no constraint, and its flip makes no edge between vertices that one joins already.
     pub(crate) fn can_flip(&self, h: HalfEdge) -> bool {
-        let joins = |u, v| self.star(u).any(|e| self.target(e) == v || self.apex(e) == v);
+        let joins = |u, v| self.around(u).any(|w| w == v);
         !self.is_fixed(h) && self.quad(h).is_some_and(|[_, _, c, d]| c != d && !joins(c, d))
     }
 
@@ -228,6 +228,22 @@ impl Triangulation {
     pub(crate) fn star(&self, v: VertexId) -> Star<'_> {
         let first = self.start(v);
         Star { triangulation: self, first, next: first }
+    }
+
+    /// The vertices around one, most of them twice.
+    pub(crate) fn around(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
+        self.star(v).flat_map(|h| [self.target(h), self.apex(h)])
+    }
+
+    /// The vertices to which fixed edges lead from one, those of the border included.
+    pub(crate) fn along_fixed(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
+        let ends = self.star(v).flat_map(|h| {
+            let ahead = self.is_fixed(h).then(|| self.target(h));
+            // The side that comes back to the vertex has a half-edge of the star on its other side, but for the border.
+            let is_last = self.twin(h.prev()).is_none();
+            [ahead, is_last.then(|| self.apex(h))]
+        });
+        ends.flatten()
     }
 
     /// Whether the vertex lies on the border.

@@ -45,7 +45,7 @@ pub(crate) fn sampled_curvature(surface: &Surface, floor: f64) -> Result<Sampled
     let fits: Vec<Option<Tensor3>> = fitted.iter().zip(&caps).map(metric).collect();
     let t = surface.topology();
     let tensor = |v: u32| {
-        let around = || t.star(VertexId(v)).flat_map(|h| [t.target(h), t.apex(h)]).filter_map(|w| fits[w.index()]);
+        let around = || t.around(VertexId(v)).filter_map(|w| fits[w.index()]);
         fits[v as usize].or_else(|| mean(around())).unwrap_or(Tensor3::IDENTITY * floor)
     };
     let tensors: Vec<Tensor3> = (0..fits.len() as u32).map(tensor).collect();
@@ -62,9 +62,7 @@ pub(crate) fn sampled_curvature(surface: &Surface, floor: f64) -> Result<Sampled
 
 /// The greatest curvature that edges at a vertex can tell; no number of a vertex without edges, which has no fit either.
 fn cap(surface: &Surface, v: VertexId) -> f64 {
-    let t = surface.topology();
-    let ends =
-        t.star(v).flat_map(|h| [t.target(h), t.apex(h)]).map(|w| surface.position(w).distance(surface.position(v)));
+    let ends = surface.topology().around(v).map(|w| surface.position(w).distance(surface.position(v)));
     let (count, sum) = ends.fold((0.0, 0.0), |(count, sum), length| (count + 1.0, sum + length));
     std::f64::consts::TAU * count / sum
 }

@@ -7,7 +7,7 @@ use crate::mesh::Solution;
 use crate::metric::Bounds;
 use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Surface};
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::VertexId;
 
 /// c in h = sqrt(c hausd / curvature), the size that keeps unit meshes within `hausd` of a surface. An edge of length h alone is
 /// an eighth of h^2 times the curvature away, an equilateral triangle a sixth; but edges of unit meshes are up to a third longer.
@@ -132,14 +132,7 @@ const CORNER: f64 = 45.0;
 /// neighbours on the curve has the curvature 2 sin(turn) / |chord| (Menger 1930), exact where all are on a circle. `None` off
 /// curves, where other than two of their edges meet, and at corners.
 pub(super) fn bend(surface: &Surface, v: VertexId) -> Option<Bend> {
-    let t = surface.topology();
-    let is_of_curve = |h: HalfEdge| t.twin(h).is_none() || t.is_fixed(h);
-    let mut ends = Vec::new();
-    for h in t.star(v) {
-        // The side that comes back to the vertex has a half-edge of the star on its other side, but for the border.
-        ends.extend(is_of_curve(h).then(|| t.target(h)));
-        ends.extend(t.twin(h.prev()).is_none().then(|| t.apex(h)));
-    }
+    let ends: Vec<VertexId> = surface.topology().along_fixed(v).collect();
     let &[before, after] = ends.as_slice() else { return None };
     let at = surface.position(v);
     let [u, w] = [at - surface.position(before), surface.position(after) - at];
@@ -153,7 +146,7 @@ pub(super) fn bend(surface: &Surface, v: VertexId) -> Option<Bend> {
 mod tests {
     use super::*;
     use crate::geometry::{Point3, Vector3};
-    use crate::mesh::Mesh;
+    use crate::mesh::{Mesh, SolutionValues};
     use crate::surface::{sphere, torus};
     use std::f64::consts::TAU;
 

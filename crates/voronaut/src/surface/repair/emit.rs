@@ -12,7 +12,9 @@ use std::collections::{HashMap, HashSet};
 pub(super) fn emit(work: &mut Work, sewn: &Sewn) -> Mesh {
     let mesh = work.mesh;
     let label = |labels: &[i32], i: u32| labels.get(i as usize).copied().unwrap_or(0);
-    let vertices = || (0..mesh.points.len() as u32).chain(sewn.added.iter().map(|added| added.1));
+    let vertices = (0..mesh.points.len() as u32).chain(sewn.added.iter().map(|added| added.1));
+    let vertices = vertices.filter(|_| !mesh.point_labels.is_empty());
+    let triangles = sewn.sources.iter().filter(|_| !mesh.triangle_labels.is_empty());
     let edges = Edges::of(work, sewn);
     let copies = copies(work, sewn);
     let all_copies = |list: &[u32]| -> Vec<u32> {
@@ -24,17 +26,9 @@ pub(super) fn emit(work: &mut Work, sewn: &Sewn) -> Mesh {
     let is_of_file = |t: usize| sewn.numbers[t] != [NONE; 3];
     Mesh {
         points: points(work, sewn),
-        point_labels: if mesh.point_labels.is_empty() {
-            Vec::new()
-        } else {
-            vertices().map(|v| label(&mesh.point_labels, v)).collect()
-        },
+        point_labels: vertices.map(|v| label(&mesh.point_labels, v)).collect(),
         triangles: sewn.triangles.clone(),
-        triangle_labels: if mesh.triangle_labels.is_empty() {
-            Vec::new()
-        } else {
-            sewn.sources.iter().map(|&t| label(&mesh.triangle_labels, t)).collect()
-        },
+        triangle_labels: triangles.map(|&t| label(&mesh.triangle_labels, t)).collect(),
         edge_labels: edges.sources.iter().map(|&i| label(&mesh.edge_labels, i)).collect(),
         corners: all_copies(&mesh.corners),
         required_points: all_copies(&mesh.required_points),
