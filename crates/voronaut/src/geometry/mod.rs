@@ -2,7 +2,6 @@
 
 mod intersection;
 mod jet;
-mod joint;
 mod linear;
 mod point;
 mod predicates;

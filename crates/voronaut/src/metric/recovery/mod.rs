@@ -1,7 +1,6 @@
 //! Second derivatives of a solution that is known at the vertices of a mesh.
 
 mod fit;
-mod least_squares;
 mod projection;
 mod stencil;
 

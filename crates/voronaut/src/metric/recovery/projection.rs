@@ -1,8 +1,7 @@
 //! Second derivatives by projecting gradients twice.
 
 use super::super::neighbours::Neighbours;
-use super::least_squares::solve;
-use super::stencil::{Frame, Rings};
+use super::stencil::{Frame, Rings, solve};
 use crate::geometry::Tensor;
 use crate::mesh::{Mesh, borders, sides};
 use crate::parallel::prelude::*;

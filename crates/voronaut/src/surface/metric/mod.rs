@@ -17,7 +17,6 @@
 
 mod bounded;
 mod curvature;
-mod fit;
 mod gradation;
 mod sampled;
 mod sizing;
@@ -26,8 +25,8 @@ mod spec;
 pub(crate) use crate::metric::check_tensor3;
 pub use bounded::Bounded;
 pub(crate) use bounded::Closer;
+pub use curvature::fit_curvatures;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
-pub use fit::fit_curvatures;
 pub(crate) use gradation::grade;
 pub use sampled::{Sampled, Sizes};
 pub use sizing::Sizing;

@@ -13,6 +13,7 @@ pub(super) fn emit(work: &mut Work, sewn: &Sewn) -> Mesh {
     let mesh = work.mesh;
     let label = |labels: &[i32], i: u32| labels.get(i as usize).copied().unwrap_or(0);
     let vertices = (0..mesh.points.len() as u32).chain(sewn.added.iter().map(|added| added.1));
+    // What has no labels gets none.
     let vertices = vertices.filter(|_| !mesh.point_labels.is_empty());
     let triangles = sewn.sources.iter().filter(|_| !mesh.triangle_labels.is_empty());
     let edges = Edges::of(work, sewn);

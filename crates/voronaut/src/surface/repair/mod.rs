@@ -7,14 +7,13 @@
 //! | `weld` | vertices at one place |
 //! | `t_junctions` | vertices inside edges |
 //! | `glue`, `two_sided`, `fans` | which sides meet, and fins that this leaves loose; not one-sided; one vertex per fan |
-//! | `holes`, `fill` | small holes |
+//! | `holes` | small holes |
 //! | `emit` | lists and labels, renumbered |
 //! | `mended` | what was done, in numbers and words |
 
 mod dropped;
 mod emit;
 mod fans;
-mod fill;
 mod glue;
 mod holes;
 mod mended;

@@ -161,7 +161,8 @@ impl Classes {
         }
     }
 
-    fn shorten(&mut self, mut i: u32) -> u32 {
+    /// [`Classes::of`], with the way there shortened.
+    pub(super) fn shorten(&mut self, mut i: u32) -> u32 {
         while self.parent[i as usize] != i {
             let up = self.parent[self.parent[i as usize] as usize];
             self.parent[i as usize] = up;
