@@ -2,6 +2,7 @@
 
 mod intersection;
 mod jet;
+mod joint;
 mod linear;
 mod point;
 mod predicates;

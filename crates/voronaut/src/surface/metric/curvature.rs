@@ -198,7 +198,6 @@ mod tests {
     use crate::geometry::TangentPlane;
     use crate::mesh::Mesh;
     use crate::metric::{Expression, Variables};
-    use crate::surface::torus;
     use crate::surface::{sphere, torus};
 
     #[test]
