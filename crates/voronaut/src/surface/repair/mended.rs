@@ -65,7 +65,7 @@ impl Damage {
             Self::NotFinite => {
                 "[triangle with a coordinate that is|triangles with coordinates that are] not finite [was|were] dropped"
             }
-            Self::Welded => "[vertex|vertices] at the place of another [was|were] welded to [it|them]",
+            Self::Welded => "[vertex|vertices] at the place of another [was|were] welded to it",
             Self::Degenerate => "[triangle|triangles] without area [was|were] dropped",
             Self::Duplicate => "duplicate [triangle was|triangles were] dropped",
             Self::TJunction => {
