@@ -202,7 +202,9 @@ impl<'a> Features<'a> {
                 v = network.across(v, i);
             }
             if (1..LEAST_CREASE).contains(&chain.len()) {
-                chain.into_iter().for_each(|i| network.remove(i));
+                for i in chain {
+                    network.remove(i);
+                }
                 ends.extend((network.at(v).len() == 1).then_some(v));
             }
         }

@@ -39,7 +39,9 @@ impl<'a> Averaging<'a> {
         let mut areas = vec![0.0; mesh.points.len()];
         for &t in &mesh.triangles {
             let area = mesh.double_area(t);
-            t.into_iter().for_each(|v| areas[v as usize] += area);
+            for v in t {
+                areas[v as usize] += area;
+            }
         }
         Self { mesh, around: Neighbours::of(mesh), is_border: border(mesh), areas }
     }

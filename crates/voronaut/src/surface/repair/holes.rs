@@ -52,7 +52,9 @@ pub(super) fn close(work: &mut Work, sewn: &mut Sewn) {
         patches.push((patch, rim[0].1));
     }
     let kind = if work.options.repair { Damage::Closed } else { Damage::Open };
-    places.into_iter().for_each(|place| work.mended.add(kind, place));
+    for place in places {
+        work.mended.add(kind, place);
+    }
     for (patch, beside) in patches.into_iter().filter(|_| work.options.repair) {
         for triangle in patch {
             sewn.triangles.push(triangle);
