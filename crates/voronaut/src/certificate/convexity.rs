@@ -67,7 +67,7 @@ pub(super) fn convexity(diagram: &Diagram, net: &Net, coverage: &Coverage, unit:
     let most = found.iter().map(|s| s.0).fold(0.0, |a: f64, b: f64| if b > a || b.is_nan() { b } else { a });
     let total =
         stride as f64 * found.iter().map(|&(k, area)| if k.is_nan() { k } else { k.max(0.0) * area }).sum::<f64>();
-    let parts = topology.parts();
+    let parts = topology.vertex_parts();
     let parts = topology.vertices().filter(|v| parts[v.index()] == v.index()).count();
     let holes = parts.cast_signed().saturating_sub(topology.euler_characteristic()).max(0).cast_unsigned();
     let radius = if most > FLAT {

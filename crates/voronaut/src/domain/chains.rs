@@ -2,6 +2,7 @@
 
 use super::{Pslg, Segment, Side};
 use crate::geometry::{Point, signed_area};
+use crate::mesh::Network;
 
 /// A run of segments with one label and one pair of sides; its inner vertices belong to no other segment.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,19 +17,20 @@ impl Pslg {
     /// Cuts the segments into curves. A curve ends where segments fork or end, where label or sides change, at
     /// required points, and at both ends of required segments.
     pub(crate) fn chains(&self) -> Vec<Chain> {
-        let incident = self.incident_segments();
-        let is_node = self.nodes(&incident);
-        let mut used = vec![false; self.segments.len()];
-        let mut chains = Vec::new();
-        let from_nodes = (0..self.points.len()).filter(|&v| is_node[v]);
-        for v in from_nodes.chain(0..self.points.len()) {
-            for &s in &incident[v] {
-                if !used[s as usize] {
-                    chains.push(self.trace(v as u32, s, &incident, &is_node, &mut used));
-                }
+        let network = self.network();
+        let is_node = self.nodes(&network);
+        let chain = |(start, segments): (u32, Vec<u32>)| {
+            let mut kind = self.segments[segments[0] as usize];
+            if kind.ends[0] != start {
+                kind = Segment { ends: [kind.ends[1], kind.ends[0]], left: kind.right, right: kind.left, ..kind };
             }
-        }
-        chains
+            let mut vertices = vec![start];
+            for s in segments {
+                vertices.push(network.across(vertices[vertices.len() - 1], s));
+            }
+            Chain { vertices, kind }
+        };
+        network.chains(|v| is_node[v as usize]).into_iter().map(chain).collect()
     }
 
     /// The same graph with other vertices along its curves. Points that no curve uses any more are dropped, but for
@@ -36,31 +38,18 @@ impl Pslg {
     #[must_use]
     pub(crate) fn with_chains(&self, chains: &[Chain]) -> Pslg {
         let mut kept = vec![false; self.points.len()];
-        self.required_points.iter().for_each(|&v| kept[v as usize] = true);
-        chains.iter().flat_map(|c| &c.vertices).for_each(|&v| kept[v as usize] = true);
-        let mut number = vec![0; self.points.len()];
-        let old: Vec<usize> = (0..self.points.len()).filter(|&v| kept[v]).collect();
-        old.iter().enumerate().for_each(|(new, &v)| number[v] = new as u32);
-        let segments = chains.iter().flat_map(|c| {
-            let number = &number;
-            c.vertices.windows(2).map(move |w| Segment { ends: [w[0], w[1]].map(|v| number[v as usize]), ..c.kind })
-        });
-        Pslg {
-            points: old.iter().map(|&v| self.points[v]).collect(),
-            point_labels: old.iter().map(|&v| self.point_labels[v]).collect(),
-            required_points: self.required_points.iter().map(|&v| number[v as usize]).collect(),
-            segments: segments.collect(),
-            filling: self.filling.clone(),
-            tolerance: self.tolerance,
-            names: old.iter().map(|&v| self.name(v as u32)).collect(),
-        }
+        let used = chains.iter().flat_map(|c| &c.vertices).chain(&self.required_points);
+        used.for_each(|&v| kept[v as usize] = true);
+        let segments =
+            chains.iter().flat_map(|c| c.vertices.windows(2).map(|w| Segment { ends: [w[0], w[1]], ..c.kind }));
+        Pslg { segments: segments.collect(), ..self.clone() }.with_points(&kept)
     }
 
     /// Drops the vertices in the middle of straight runs: those that lie on the chord to within the rounding of the
     /// coordinates.
     #[must_use]
     pub(crate) fn without_straight_vertices(&self) -> Pslg {
-        let is_node = self.nodes(&self.incident_segments());
+        let is_node = self.nodes(&self.network());
         let mut chains = self.chains();
         for chain in &mut chains {
             self.straighten(chain, is_node[chain.vertices[0] as usize]);
@@ -70,20 +59,16 @@ impl Pslg {
 
     /// Vertices where curves end or fork, and those where one turns by more than the angle (degrees), if it is given.
     pub(crate) fn corners(&self, angle: Option<f64>) -> Vec<u32> {
-        let incident = self.incident_segments();
-        let other = |s: u32, v: usize| {
-            let [a, b] = self.segments[s as usize].ends;
-            self.point(if a as usize == v { b } else { a })
-        };
-        let is_corner = |&v: &usize| match incident[v][..] {
-            [] => false,
+        let network = self.network();
+        let is_corner = |&v: &u32| match *network.at(v) {
             [s, t] => {
-                let turn = (self.points[v] - other(s, v)).turn(other(t, v) - self.points[v]);
+                let [before, at, after] = [network.across(v, s), v, network.across(v, t)].map(|v| self.point(v));
+                let turn = (at - before).turn(after - at);
                 angle.is_some_and(|angle| turn.to_degrees() > angle)
             }
             _ => true,
         };
-        (0..self.points.len()).filter(is_corner).map(|v| v as u32).collect()
+        network.vertices().filter(is_corner).collect()
     }
 
     /// Drops a curve's straight vertices. A closed curve that starts at a node keeps it; any other starts anew at a
@@ -114,48 +99,23 @@ impl Pslg {
         chain.vertices = kept;
     }
 
-    fn incident_segments(&self) -> Vec<Vec<u32>> {
-        let mut incident = vec![Vec::new(); self.points.len()];
-        for (s, segment) in self.segments.iter().enumerate() {
-            segment.ends.iter().for_each(|&v| incident[v as usize].push(s as u32));
-        }
-        incident
+    fn network(&self) -> Network {
+        Network::new(self.points.len(), self.segments.iter().map(|segment| segment.ends))
     }
 
-    fn nodes(&self, incident: &[Vec<u32>]) -> Vec<bool> {
-        let mut is_node: Vec<bool> = (0..self.points.len())
-            .map(|v| match incident[v][..] {
-                [s, t] => {
-                    let (s, t) = (self.segments[s as usize], self.segments[t as usize]);
-                    let [l, r] = sides_arriving(&s, v as u32);
-                    let [other_r, other_l] = sides_arriving(&t, v as u32);
-                    s.label != t.label || [l, r] != [other_l, other_r] || s.required || t.required
-                }
-                _ => true,
-            })
-            .collect();
+    fn nodes(&self, network: &Network) -> Vec<bool> {
+        let is_node = |v: u32| match *network.at(v) {
+            [s, t] => {
+                let (s, t) = (self.segments[s as usize], self.segments[t as usize]);
+                let [l, r] = sides_arriving(&s, v);
+                let [other_r, other_l] = sides_arriving(&t, v);
+                s.label != t.label || [l, r] != [other_l, other_r] || s.required || t.required
+            }
+            _ => true,
+        };
+        let mut is_node: Vec<bool> = (0..self.points.len() as u32).map(is_node).collect();
         self.required_points.iter().for_each(|&v| is_node[v as usize] = true);
         is_node
-    }
-
-    fn trace(&self, from: u32, segment: u32, incident: &[Vec<u32>], is_node: &[bool], used: &mut [bool]) -> Chain {
-        let mut kind = self.segments[segment as usize];
-        if kind.ends[0] != from {
-            kind = Segment { ends: [kind.ends[1], kind.ends[0]], left: kind.right, right: kind.left, ..kind };
-        }
-        let mut vertices = vec![from];
-        let (mut at, mut s) = (from, segment);
-        loop {
-            used[s as usize] = true;
-            let [a, b] = self.segments[s as usize].ends;
-            at = if a == at { b } else { a };
-            vertices.push(at);
-            let next = incident[at as usize].iter().find(|&&t| !used[t as usize]);
-            match next {
-                Some(&t) if !is_node[at as usize] => s = t,
-                _ => return Chain { vertices, kind },
-            }
-        }
     }
 
     fn point(&self, v: u32) -> Point {

@@ -3,17 +3,13 @@
 use super::{Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
+use crate::mesh::unordered;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 /// A position as a key: equal for equal positions, -0 counting as 0.
 pub(super) fn key(p: Point) -> [u64; 2] {
     [(p.x + 0.0).to_bits(), (p.y + 0.0).to_bits()]
-}
-
-/// The ends of a segment as a key, whatever its direction.
-pub(super) fn unordered([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }
 
 /// Checks that no two of the points, each given with its number, have the same coordinates.

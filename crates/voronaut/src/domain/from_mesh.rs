@@ -1,10 +1,10 @@
 //! Domains from meshes: the area of the triangles, or what the edges enclose.
 
-use super::distinct::{check_points, listed, merge_segments, unordered};
+use super::distinct::{check_points, listed, merge_segments};
 use super::{Filling, Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, orientation};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Side as TriangleSide, by_edge, sides, unordered};
 
 /// The domain of a planar mesh.
 ///
@@ -45,14 +45,6 @@ struct EdgeSides {
     ends: [u32; 2],
     left: Side,
     right: Side,
-}
-
-/// An edge of one triangle, from its smaller to its larger vertex.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct TriangleEdge {
-    ends: [u32; 2],
-    triangle_is_left: bool,
-    triangle: u32,
 }
 
 fn check_planar(mesh: &Mesh) -> Result<()> {
@@ -125,41 +117,33 @@ fn with_sides(mesh: &Mesh, mut segments: Vec<Segment>) -> Result<Vec<Segment>> {
 
 /// All edges of the triangles, in the order of their ends.
 fn sides_of_edges(mesh: &Mesh) -> Result<Vec<EdgeSides>> {
-    let mut edges = Vec::with_capacity(3 * mesh.triangles.len());
-    for (triangle, &vertices) in (0..).zip(&mesh.triangles) {
-        let is_left = is_counter_clockwise(mesh, triangle, vertices)?;
-        let [a, b, c] = vertices;
-        edges.extend([[a, b], [b, c], [c, a]].map(|ends| TriangleEdge {
-            ends: unordered(ends),
-            triangle_is_left: is_left == (ends[0] < ends[1]),
-            triangle,
-        }));
-    }
-    edges.sort_unstable();
-    edges.chunk_by(|a, b| a.ends == b.ends).map(|group| sides(mesh, group)).collect()
+    let turns = (0..).zip(&mesh.triangles).map(|(triangle, &corners)| is_counter_clockwise(mesh, triangle, corners));
+    let turns = turns.collect::<Result<Vec<bool>>>()?;
+    let all = sides(mesh.triangles.iter().copied());
+    by_edge(&all).map(|group| sides_of_edge(mesh, group, &turns)).collect()
 }
 
 /// The sides of an edge from the triangles at it, of which there may be one on each side.
-fn sides(mesh: &Mesh, group: &[TriangleEdge]) -> Result<EdgeSides> {
-    let region =
-        |edge: &TriangleEdge| Side::Region(mesh.triangle_labels.get(edge.triangle as usize).copied().unwrap_or(0));
+fn sides_of_edge(mesh: &Mesh, group: &[TriangleSide], turns: &[bool]) -> Result<EdgeSides> {
     let ends = group[0].ends;
-    match group {
-        [one] if one.triangle_is_left => Ok(EdgeSides { ends, left: region(one), right: Side::Outside }),
-        [one] => Ok(EdgeSides { ends, left: Side::Outside, right: region(one) }),
-        // In sorted order the triangle on the right comes first.
-        [right, left] if right.triangle_is_left != left.triangle_is_left => {
-            Ok(EdgeSides { ends, left: region(left), right: region(right) })
-        }
-        [first, second] => {
-            let triangles = format!("triangles {} and {}", first.triangle + 1, second.triangle + 1);
+    let mut found = EdgeSides { ends, left: Side::Outside, right: Side::Outside };
+    for side in group {
+        let is_left = turns[side.triangle as usize] == side.forward;
+        let own = if is_left { &mut found.left } else { &mut found.right };
+        *own = Side::Region(mesh.triangle_labels.get(side.triangle as usize).copied().unwrap_or(0));
+    }
+    let mut triangles: Vec<u32> = group.iter().map(|side| side.triangle + 1).collect();
+    triangles.sort_unstable();
+    match triangles[..] {
+        [first, second] if [found.left, found.right].contains(&Side::Outside) => {
+            let triangles = format!("triangles {first} and {second}");
             let what = format!("overlapping triangles: {triangles} lie on the same side of an edge");
             Err(edge_error(mesh, what, ends, "remove one of the triangles"))
         }
-        more => {
-            let first = more.iter().map(|edge| edge.triangle).min().unwrap_or(0);
-            let last = more.iter().map(|edge| edge.triangle).max().unwrap_or(0);
-            let triangles = format!("{} triangles (the first is {}, the last {})", more.len(), first + 1, last + 1);
+        [_] | [_, _] => Ok(found),
+        ref more => {
+            let (first, last) = (more[0], more[more.len() - 1]);
+            let triangles = format!("{} triangles (the first is {first}, the last {last})", more.len());
             let what = format!("a non-manifold edge of {triangles}");
             Err(edge_error(mesh, what, ends, "leave at most two triangles at each edge"))
         }
@@ -180,36 +164,24 @@ fn is_counter_clockwise(mesh: &Mesh, triangle: u32, vertices: [u32; 3]) -> Resul
 }
 
 /// Leaves out the vertices that the domain does not need, and renumbers.
-fn compact(mesh: &Mesh, used: &[bool], mut segments: Vec<Segment>, filling: Filling) -> Pslg {
-    let count = mesh.points.len();
-    let mut required = vec![false; count];
+fn compact(mesh: &Mesh, used: &[bool], segments: Vec<Segment>, filling: Filling) -> Pslg {
+    let all = 0..mesh.points.len() as u32;
+    let mut required = vec![false; mesh.points.len()];
     let corners = mesh.corners.iter().filter(|&&vertex| used[vertex as usize]);
-    for &vertex in corners.chain(&mesh.required_points) {
-        required[vertex as usize] = true;
-    }
+    corners.chain(&mesh.required_points).for_each(|&vertex| required[vertex as usize] = true);
     let mut kept = required.clone();
-    for vertex in segments.iter().flat_map(|segment| segment.ends) {
-        kept[vertex as usize] = true;
-    }
-    let vertices: Vec<u32> = (0..count as u32).filter(|&vertex| kept[vertex as usize]).collect();
-    let mut numbers = vec![0; count];
-    for (number, &vertex) in (0..).zip(&vertices) {
-        numbers[vertex as usize] = number;
-    }
-    for segment in &mut segments {
-        segment.ends = segment.ends.map(|vertex| numbers[vertex as usize]);
-    }
-    let label = |&vertex: &u32| mesh.point_labels.get(vertex as usize).copied().unwrap_or(0);
-    let is_required = |&(_, &vertex): &(u32, &u32)| required[vertex as usize];
-    Pslg {
-        points: vertices.iter().map(|&vertex| mesh.point(vertex)).collect(),
-        point_labels: vertices.iter().map(label).collect(),
-        required_points: (0..).zip(&vertices).filter(is_required).map(|(number, _)| number).collect(),
+    segments.iter().flat_map(|segment| segment.ends).for_each(|vertex| kept[vertex as usize] = true);
+    let label = |vertex: u32| mesh.point_labels.get(vertex as usize).copied().unwrap_or(0);
+    let graph = Pslg {
+        points: all.clone().map(|vertex| mesh.point(vertex)).collect(),
+        point_labels: all.clone().map(label).collect(),
+        required_points: all.filter(|&vertex| required[vertex as usize]).collect(),
         segments,
         filling,
         tolerance: 0.0,
-        names: if vertices.len() == count { Vec::new() } else { vertices.iter().map(|&v| name(v)).collect() },
-    }
+        names: Vec::new(),
+    };
+    graph.with_points(&kept)
 }
 
 fn edge_error(mesh: &Mesh, what: String, [a, b]: [u32; 2], help: &str) -> Error {

@@ -11,7 +11,6 @@ mod polygons;
 mod pslg;
 mod shapes;
 mod sides;
-mod written;
 
 pub(crate) use chains::Chain;
 pub use from_mesh::from_mesh;
@@ -21,8 +20,8 @@ pub use polygons::{Polygon, Polygons, Ring, from_polygons};
 pub use pslg::{Filling, Pslg, Segment, Side};
 #[cfg(test)]
 pub(crate) use shapes::rect;
-pub(crate) use written::read_numbers;
-pub use written::shape;
+pub use shapes::shape;
+pub(crate) use shapes::{name_and_rest, read_numbers};
 
 use crate::geometry::{Aabb, Point};
 use crate::planar::Planar;

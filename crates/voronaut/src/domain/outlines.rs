@@ -41,15 +41,13 @@ pub fn to_poly(pslg: &Pslg) -> Result<Poly> {
 /// As of [`Domain::new`](super::Domain::new).
 pub fn to_polygons(pslg: &Pslg) -> Result<Polygons> {
     let outlined = Outlined::new(pslg)?;
-    let parts = outlined.parts();
     let mut polygons: Vec<Polygon> = Vec::new();
     let mut number_of = BTreeMap::new();
-    let mut rings: Vec<(u32, Ring)> = outlined.rings(pslg, &parts);
+    let mut rings = outlined.rings(pslg);
     // Outer rings first: they are the counter-clockwise ones.
     rings.sort_by_key(|(_, ring)| area(&ring.points) <= 0.0);
-    for (part, ring) in rings {
+    for ((part, region), ring) in rings {
         let index = *number_of.entry(part).or_insert_with(|| {
-            let region = parts.regions[part as usize];
             polygons.push(Polygon { feature: polygons.len() + 1, number: 1, region, rings: Vec::new() });
             polygons.len() - 1
         });
@@ -84,16 +82,6 @@ pub fn to_mesh(pslg: &Pslg) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// The connected parts of regions.
-struct Parts {
-    /// Of each face slot, or [`NONE`].
-    part_of: Vec<u32>,
-    /// The label of each.
-    regions: Vec<i32>,
-}
-
-const NONE: u32 = u32::MAX;
-
 /// A triangulated graph, and what its areas are.
 struct Outlined {
     planar: Planar,
@@ -113,40 +101,16 @@ impl Outlined {
         self.planar.topology.twin(h).is_none_or(|t| self.areas.of(t.face()) != self.areas.of(h.face()))
     }
 
-    /// The connected parts of regions.
-    fn parts(&self) -> Parts {
+    /// The borders of all connected parts of regions, each with the part on its left and its region, cut where they come back to a
+    /// vertex.
+    fn rings(&self, pslg: &Pslg) -> Vec<((u32, i32), Ring)> {
         let topology = &self.planar.topology;
-        let mut part_of = vec![NONE; topology.face_slots()];
-        let mut regions = Vec::new();
-        for seed in topology.faces() {
-            let Side::Region(region) = self.areas.of(seed) else { continue };
-            if part_of[seed.index()] != NONE {
-                continue;
-            }
-            let part = regions.len() as u32;
-            regions.push(region);
-            part_of[seed.index()] = part;
-            let mut stack = vec![seed];
-            while let Some(f) = stack.pop() {
-                let inner = f.half_edges().into_iter().filter(|&h| !self.is_border(h)).filter_map(|h| topology.twin(h));
-                for g in inner.map(HalfEdge::face).collect::<Vec<_>>() {
-                    if part_of[g.index()] == NONE {
-                        part_of[g.index()] = part;
-                        stack.push(g);
-                    }
-                }
-            }
-        }
-        Parts { part_of, regions }
-    }
-
-    /// The borders of all parts, each with the part on its left, cut where they come back to a vertex.
-    fn rings(&self, pslg: &Pslg, parts: &Parts) -> Vec<(u32, Ring)> {
-        let topology = &self.planar.topology;
+        let (part_of, parts) = topology.parts(|h| !self.is_border(h));
         let mut rings = Vec::new();
         let mut used = vec![false; 3 * topology.face_slots()];
-        let all = topology.faces().filter(|f| parts.part_of[f.index()] != NONE).flat_map(FaceId::half_edges);
-        for start in all.filter(|&h| self.is_border(h)) {
+        for start in topology.faces().flat_map(FaceId::half_edges).filter(|&h| self.is_border(h)) {
+            let part = part_of[start.face().index()];
+            let Side::Region(region) = self.areas.of(parts[part as usize][0]) else { continue };
             let (mut walk, mut place) = (Vec::new(), HashMap::new());
             let mut h = start;
             while !used[h.index()] {
@@ -157,14 +121,14 @@ impl Outlined {
                     for &e in &cut {
                         place.remove(&topology.origin(e));
                     }
-                    rings.push((parts.part_of[h.face().index()], self.ring(pslg, &cut)));
+                    rings.push(((part, region), self.ring(pslg, &cut)));
                 }
                 place.insert(origin, walk.len());
                 walk.push(h);
                 h = self.next_on_border(h);
             }
             if !walk.is_empty() {
-                rings.push((parts.part_of[start.face().index()], self.ring(pslg, &walk)));
+                rings.push(((part, region), self.ring(pslg, &walk)));
             }
         }
         rings

@@ -1,9 +1,10 @@
 //! Domains from polygons.
 
-use super::distinct::{key, unordered};
+use super::distinct::key;
 use super::{Filling, Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, orientation};
+use crate::mesh::unordered;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 

@@ -66,6 +66,25 @@ pub struct Pslg {
 }
 
 impl Pslg {
+    /// The same graph of some of its points, among which are all ends of segments and required ones.
+    pub(super) fn with_points(self, kept: &[bool]) -> Self {
+        let old: Vec<u32> = (0..).zip(kept).filter(|(_, kept)| **kept).map(|(v, _)| v).collect();
+        if old.len() == self.points.len() {
+            return self;
+        }
+        let mut number = vec![0; kept.len()];
+        (0..).zip(&old).for_each(|(new, &v)| number[v as usize] = new);
+        let renumbered = |ends: [u32; 2]| ends.map(|v| number[v as usize]);
+        Self {
+            points: old.iter().map(|&v| self.points[v as usize]).collect(),
+            point_labels: old.iter().map(|&v| self.point_labels[v as usize]).collect(),
+            names: old.iter().map(|&v| self.name(v)).collect(),
+            required_points: self.required_points.iter().map(|&v| number[v as usize]).collect(),
+            segments: self.segments.iter().map(|s| Segment { ends: renumbered(s.ends), ..*s }).collect(),
+            ..self
+        }
+    }
+
     /// The name of a point in the input.
     pub(crate) fn name(&self, point: u32) -> String {
         self.names.get(point as usize).map_or_else(|| format!("vertex {}", point + 1), Clone::clone)

@@ -1,6 +1,6 @@
-//! Domains that need no file.
+//! Domains that need no file, and the texts that name them.
 
-use super::{Filling, Pslg, Segment, Side};
+use super::{Domain, Filling, Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
 use std::f64::consts::FRAC_PI_2;
@@ -99,6 +99,65 @@ fn shape_error(what: &str, min: Point, max: Point) -> Error {
     Error::domain(what, format!("{min}, {max}"), help)
 }
 
+/// What users write for surfaces that need no file.
+const SURFACES: [&str; 4] = ["sphere", "torus", "chair", "implicit"];
+/// How shapes are written, for messages.
+pub(crate) const SHAPES: &str = "rect:x0,y0,x1,y1 or disk:cx,cy,r";
+
+impl Domain {
+    /// The shape that a text names: `rect:x0,y0,x1,y1` or `disk:cx,cy,r`.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] of a text that names none, or has other numbers; [`Error::Domain`] of a shape without area;
+    /// [`Error::Unsupported`] of a surface.
+    pub fn shape(text: &str) -> Result<Self> {
+        let unknown = || Error::parse(text, "no such shape", format!("give {SHAPES}"));
+        Self::new(&shape(text).ok_or_else(unknown)??)
+    }
+}
+
+/// The shape that a text names, or why it is none in the plane; `None` if it names none.
+pub fn shape(spec: &str) -> Option<Result<Pslg>> {
+    let (name, numbers) = name_and_rest(spec);
+    match (name, numbers) {
+        ("rect", Some(numbers)) => Some(
+            read_numbers(spec, numbers, "rect:x0,y0,x1,y1")
+                .and_then(|[x0, y0, x1, y1]| rect(Point::new(x0, y0), Point::new(x1, y1))),
+        ),
+        ("disk", Some(numbers)) => {
+            Some(read_numbers(spec, numbers, "disk:cx,cy,r").and_then(|[x, y, r]| disk(Point::new(x, y), r)))
+        }
+        _ if SURFACES.contains(&name) => Some(Err(not_planar(format!("the surface {spec} as planar domain")))),
+        _ => None,
+    }
+}
+
+/// The name in front of a colon, and what is behind it.
+pub(crate) fn name_and_rest(text: &str) -> (&str, Option<&str>) {
+    text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)))
+}
+
+/// The comma-separated numbers of a shape.
+///
+/// # Errors
+/// [`Error::Parse`] of more, fewer, or what is no number.
+pub(crate) fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &str) -> Result<[f64; N]> {
+    let error = |what: String| Error::parse(spec, what, format!("write {usage}"));
+    let words: Vec<_> = numbers.split(',').map(str::trim).collect();
+    if words.len() != N {
+        return Err(error(format!("{} numbers where {N} are expected", words.len())));
+    }
+    let mut values = [0.0; N];
+    for (value, word) in values.iter_mut().zip(words) {
+        *value = word.parse().map_err(|_| error(format!("'{word}' is not a number")))?;
+    }
+    Ok(values)
+}
+
+fn not_planar(what: String) -> Error {
+    Error::Unsupported { what, help: format!("give {SHAPES}, or a planar domain in a file") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -140,6 +199,30 @@ mod tests {
         ] {
             let error = shape.expect_err(expected);
             assert!(error.to_string().contains(expected), "{error}");
+            assert!(!error.help().is_empty());
+        }
+    }
+
+    #[test]
+    fn shapes_are_read() {
+        assert_eq!(Domain::shape("rect: 0, 0,1e0,2").unwrap().pslg().points.len(), 4);
+        assert_eq!(shape("disk:0,0,1").unwrap().unwrap().points.len(), 4096);
+        assert!(shape("mesh").is_none() && shape("rect").is_none() && shape("").is_none());
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (text, expected) in [
+            ("rect:0,0,1", "rect:0,0,1: 3 numbers where 4 are expected"),
+            ("disk:0,x,1", "disk:0,x,1: 'x' is not a number"),
+            ("rect:0,0,0,1", "invalid domain: a rectangle needs x0 < x1"),
+            ("disk:0,0,nan", "invalid domain: a disk without a positive radius"),
+            ("sphere:1", "not supported: the surface sphere:1 as planar domain"),
+            ("chair", "not supported: the surface chair as planar domain"),
+            ("", ": no such shape"),
+        ] {
+            let error = Domain::shape(text).unwrap_err();
+            assert!(error.to_string().starts_with(expected), "{error}");
             assert!(!error.help().is_empty());
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Filling, Pslg, Side};
 use crate::error::{Error, Result};
-use crate::geometry::{Point, signed_area};
+use crate::geometry::{Point, centroid, signed_area};
 use crate::planar::{Location, Planar};
 use crate::triangulation::{FaceId, HalfEdge};
 
@@ -20,8 +20,8 @@ impl Areas {
     /// # Errors
     /// The boundary is open, encloses nothing, or contradicts itself.
     pub(super) fn classify(pslg: &Pslg, planar: &Planar) -> Result<Self> {
-        let (area_of, count) = flood(planar);
-        let mut areas = Self { area_of, sides: vec![Side::Unknown; count] };
+        let (area_of, areas) = planar.topology.parts(|h| !planar.topology.is_fixed(h));
+        let mut areas = Self { area_of, sides: vec![Side::Unknown; areas.len()] };
         let outer = areas.area_of[far_face(planar).index()] as usize;
         areas.sides[outer] = Side::Outside;
         match &pslg.filling {
@@ -42,12 +42,13 @@ impl Areas {
     pub(super) fn inner_points(&self, planar: &Planar) -> Vec<(Side, Point)> {
         let mut best = vec![(0.0, Point::default()); self.sides.len()];
         for f in planar.topology.faces() {
-            let [a, b, c] = planar.triangle(f);
+            let triangle = planar.triangle(f);
+            let [a, b, c] = triangle;
             let perimeter = a.distance(b) + b.distance(c) + c.distance(a);
             let radius = signed_area(a, b, c) / perimeter;
             let known = &mut best[self.area_of[f.index()] as usize];
             if radius > known.0 {
-                *known = (radius, Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0));
+                *known = (radius, centroid(triangle));
             }
         }
         let outer = self.area_of[far_face(planar).index()] as usize;
@@ -126,32 +127,6 @@ fn loose_end(pslg: &Pslg) -> Option<u32> {
     let mut degree = vec![0; pslg.points.len()];
     pslg.segments.iter().flat_map(|s| s.ends).for_each(|v| degree[v as usize] += 1);
     degree.iter().position(|&d| d == 1).map(|v| v as u32)
-}
-
-/// Numbers the areas; returns the area of each face slot, and how many there are.
-fn flood(planar: &Planar) -> (Vec<u32>, usize) {
-    let topology = &planar.topology;
-    let mut area_of = vec![u32::MAX; topology.face_slots()];
-    let mut count = 0;
-    let mut stack = Vec::new();
-    for seed in topology.faces() {
-        if area_of[seed.index()] != u32::MAX {
-            continue;
-        }
-        area_of[seed.index()] = count;
-        stack.push(seed);
-        while let Some(f) = stack.pop() {
-            let open = f.half_edges().into_iter().filter(|&h| !topology.is_fixed(h)).filter_map(|h| topology.twin(h));
-            for g in open.map(HalfEdge::face) {
-                if area_of[g.index()] == u32::MAX {
-                    area_of[g.index()] = count;
-                    stack.push(g);
-                }
-            }
-        }
-        count += 1;
-    }
-    (area_of, count as usize)
 }
 
 fn constrained_half_edges(planar: &Planar) -> impl Iterator<Item = HalfEdge> + '_ {

@@ -47,7 +47,7 @@ impl<'a> Heat<'a> {
         let edges = canvas.edges().count().max(1) as f64;
         let mean = canvas.edges().map(|h| canvas.length(h)).sum::<f64>() / edges;
         let time = (EDGES * mean).powi(2);
-        let part = canvas.parts();
+        let part = canvas.vertex_parts();
         // One vertex of each part is held: sources and sinks of its flow balance, so that nothing flows there.
         let grounds: Vec<f64> = (0..n).map(|v| if part[v] == v { 1.0 } else { 0.0 }).collect();
         let elimination = Elimination::of(&stiffness);

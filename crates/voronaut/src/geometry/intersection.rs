@@ -1,6 +1,6 @@
 //! The intersection of two metrics: the coarsest one that is nowhere coarser than either.
 
-use super::{Tensor, Vector};
+use super::Tensor;
 
 impl Tensor {
     /// The intersection of a metric with another tensor: of all tensors M with v' M v at least as large as that of both for
@@ -13,25 +13,22 @@ impl Tensor {
     #[must_use]
     pub(crate) fn intersection(self, other: Tensor) -> Tensor {
         // F' F = self: in the coordinates F v `self` is the identity.
-        let [a, b, c] = self.cholesky();
-        let (p, q) = (Vector::new(1.0 / a, 0.0), Vector::new(-b / (a * c), 1.0 / c));
-        let seen = Tensor::new(other.dot(p, p), other.dot(p, q), other.dot(q, q));
-        let eigen = seen.eigen();
+        let [frame, inverse] = self.frames();
+        let eigen = other.along(inverse).eigen();
         if eigen.large <= 1.0 {
             return self;
         }
         if eigen.small >= 1.0 {
             return other;
         }
-        let both = Tensor::from_axis(eigen.axis, eigen.large, 1.0);
-        let (f, g) = (Vector::new(a, 0.0), Vector::new(b, c));
-        Tensor::new(both.dot(f, f), both.dot(f, g), both.dot(g, g))
+        Tensor::from_axis(eigen.axis, eigen.large, 1.0).along(frame)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Vector;
     use proptest::prelude::*;
 
     /// Anisotropies up to a hundred, sizes from a tenth to ten.

@@ -1,7 +1,8 @@
 //! Second-order forward differentiation in three variables: numbers that carry their gradient and their Hessian.
 
+use super::linear::linear;
 use super::{Tensor3, Vector3};
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Div, Mul};
 
 /// A function's value at a point of space with its first and second derivatives there. Arithmetic follows the chain rule
 /// (Griewank and Walther 2008): derivatives are exact but for rounding.
@@ -15,12 +16,9 @@ pub struct Jet3 {
     pub hessian: Tensor3,
 }
 
-impl Jet3 {
-    /// A function that is the same everywhere.
-    pub(crate) fn constant(value: f64) -> Self {
-        Self { value, ..Self::default() }
-    }
+linear!(Jet3: value, gradient, hessian);
 
+impl Jet3 {
     /// The coordinates x, y and z as functions.
     pub(crate) fn coordinates(x: f64, y: f64, z: f64) -> [Self; 3] {
         let axes = [Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 1.0, 0.0), Vector3::new(0.0, 0.0, 1.0)];
@@ -38,7 +36,7 @@ impl Jet3 {
     pub(crate) fn chain(self, value: f64, [first, second]: [f64; 2]) -> Self {
         if self.is_constant() {
             // Also where g has no derivative, as sqrt at zero.
-            return Self::constant(value);
+            return value.into();
         }
         let hessian = self.hessian * first + Tensor3::square(self.gradient) * second;
         Self { value, gradient: self.gradient * first, hessian }
@@ -59,34 +57,26 @@ impl Jet3 {
     }
 }
 
-impl Neg for Jet3 {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self { value: -self.value, gradient: -self.gradient, hessian: self.hessian * -1.0 }
-    }
-}
-
-impl Add for Jet3 {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            value: self.value + other.value,
-            gradient: self.gradient + other.gradient,
-            hessian: self.hessian + other.hessian,
-        }
-    }
-}
-
-impl Sub for Jet3 {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
 impl Mul for Jet3 {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         self.chain2(other, self.value * other.value, [other.value, self.value], [0.0, 1.0, 0.0])
+    }
+}
+
+impl Div for Jet3 {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let inverse = 1.0 / other.value;
+        let quotient = self.value * inverse;
+        let second = [0.0, -inverse * inverse, 2.0 * quotient * inverse * inverse];
+        self.chain2(other, self.value / other.value, [inverse, -quotient * inverse], second)
+    }
+}
+
+/// A function that is the same everywhere.
+impl From<f64> for Jet3 {
+    fn from(value: f64) -> Self {
+        Self { value, ..Self::default() }
     }
 }

@@ -31,17 +31,13 @@ impl Tensor {
 
 /// The intersection, found in coordinates in which `frame` is the identity.
 fn joint(frame: Tensor, all: &[Tensor]) -> Tensor {
-    let [a, b, c] = frame.cholesky();
-    let both = around(&seen_from(frame, all)).tensor();
-    let (f, g) = (Vector::new(a, 0.0), Vector::new(b, c));
-    Tensor::new(both.dot(f, f), both.dot(f, g), both.dot(g, g))
+    around(&seen_from(frame, all)).tensor().along(frame.frames()[0])
 }
 
 /// Tensors as disks in the coordinates F v, F' F = frame, in which `frame` is the identity.
 fn seen_from(frame: Tensor, all: &[Tensor]) -> Vec<Disk> {
-    let [a, b, c] = frame.cholesky();
-    let (p, q) = (Vector::new(1.0 / a, 0.0), Vector::new(-b / (a * c), 1.0 / c));
-    all.iter().map(|m| Disk::of(Tensor::new(m.dot(p, p), m.dot(p, q), m.dot(q, q)))).collect()
+    let [_, inverse] = frame.frames();
+    all.iter().map(|m| Disk::of(m.along(inverse))).collect()
 }
 
 /// A disk may leave out so much of another, as a share of its radius, before that counts.

@@ -1,7 +1,8 @@
-//! Points and vectors of the plane, in the user's (Euclidean) units.
+//! Points, vectors and boxes of the plane and of space, in the user's (Euclidean) units.
 
+use super::linear::linear;
 use std::fmt;
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Sub};
 
 /// A point of the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,18 +22,129 @@ pub struct Vector {
     pub y: f64,
 }
 
+/// An axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// The corner with the smallest coordinates.
+    pub min: Point,
+    /// The corner with the largest coordinates.
+    pub max: Point,
+}
+
+/// A point of space.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Point3 {
+    /// First coordinate.
+    pub x: f64,
+    /// Second coordinate.
+    pub y: f64,
+    /// Third coordinate.
+    pub z: f64,
+}
+
+/// A difference of two points of space.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vector3 {
+    /// First component.
+    pub x: f64,
+    /// Second component.
+    pub y: f64,
+    /// Third component.
+    pub z: f64,
+}
+
+/// An axis-aligned box of space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb3 {
+    /// The corner with the smallest coordinates.
+    pub min: Point3,
+    /// The corner with the largest coordinates.
+    pub max: Point3,
+}
+
+/// What is the same in the plane and in space, coordinate by coordinate.
+macro_rules! affine {
+    ($point:ident, $vector:ident, $bounds:ident: $($x:ident),+) => {
+        linear!($vector: $($x),+);
+
+        impl $point {
+            /// The point with these coordinates.
+            pub const fn new($($x: f64),+) -> Self {
+                Self { $($x),+ }
+            }
+
+            /// The point `self + t (other - self)`; a coordinate that both points share is kept to the last bit.
+            #[must_use]
+            pub fn lerp(self, other: Self, t: f64) -> Self {
+                self + (other - self) * t
+            }
+
+            /// Euclidean distance.
+            pub fn distance(self, other: Self) -> f64 {
+                (self - other).norm()
+            }
+
+            /// Whether all coordinates are finite.
+            pub fn is_finite(self) -> bool {
+                $(self.$x.is_finite())&&+
+            }
+        }
+
+        impl $vector {
+            /// The vector with these components.
+            pub const fn new($($x: f64),+) -> Self {
+                Self { $($x),+ }
+            }
+
+            /// Euclidean length; components beyond about 1e150 overflow, those below 1e-150 vanish.
+            pub fn norm(self) -> f64 {
+                // Not `hypot`: its guard against overflow cost a seventh of the relaxation.
+                self.dot(self).sqrt()
+            }
+        }
+
+        impl $bounds {
+            /// The smallest box that holds all points; `None` of no point.
+            pub fn of(points: impl IntoIterator<Item = $point>) -> Option<Self> {
+                points.into_iter().fold(None, |bounds: Option<Self>, p| {
+                    let Self { min, max } = bounds.unwrap_or(Self { min: p, max: p });
+                    Some(Self { min: $point::new($(min.$x.min(p.$x)),+), max: $point::new($(max.$x.max(p.$x)),+) })
+                })
+            }
+
+            /// Its extent along each axis.
+            pub fn extent(&self) -> $vector {
+                self.max - self.min
+            }
+        }
+
+        impl Sub for $point {
+            type Output = $vector;
+            fn sub(self, other: Self) -> $vector {
+                $vector::new($(self.$x - other.$x),+)
+            }
+        }
+
+        impl Add<$vector> for $point {
+            type Output = Self;
+            fn add(self, v: $vector) -> Self {
+                Self::new($(self.$x + v.$x),+)
+            }
+        }
+
+        impl Sub<$vector> for $point {
+            type Output = Self;
+            fn sub(self, v: $vector) -> Self {
+                Self::new($(self.$x - v.$x),+)
+            }
+        }
+    };
+}
+
+affine!(Point, Vector, Aabb: x, y);
+affine!(Point3, Vector3, Aabb3: x, y, z);
+
 impl Point {
-    /// The point (x, y).
-    pub const fn new(x: f64, y: f64) -> Self {
-        Self { x, y }
-    }
-
-    /// The point `self + t (other - self)`; a coordinate that both points share is kept to the last bit.
-    #[must_use]
-    pub fn lerp(self, other: Point, t: f64) -> Point {
-        self + (other - self) * t
-    }
-
     /// The point nearest to this one of the segment from a to b.
     pub(crate) fn nearest_between(self, a: Point, b: Point) -> Point {
         let along = b - a;
@@ -49,24 +161,9 @@ impl Point {
     pub(crate) fn midpoint(self, other: Point) -> Point {
         Point::new(0.5 * self.x + 0.5 * other.x, 0.5 * self.y + 0.5 * other.y)
     }
-
-    /// Euclidean distance.
-    pub fn distance(self, other: Point) -> f64 {
-        (self - other).norm()
-    }
-
-    /// Whether both coordinates are finite.
-    pub fn is_finite(self) -> bool {
-        self.x.is_finite() && self.y.is_finite()
-    }
 }
 
 impl Vector {
-    /// The vector (x, y).
-    pub const fn new(x: f64, y: f64) -> Self {
-        Self { x, y }
-    }
-
     /// Euclidean dot product.
     pub fn dot(self, other: Vector) -> f64 {
         self.x * other.x + self.y * other.y
@@ -75,12 +172,6 @@ impl Vector {
     /// The z component of the cross product: twice the signed area of the triangle (0, self, other).
     pub fn cross(self, other: Vector) -> f64 {
         self.x * other.y - self.y * other.x
-    }
-
-    /// Euclidean length; components beyond about 1e150 overflow, those below 1e-150 vanish.
-    pub fn norm(self) -> f64 {
-        // Not `hypot`: its guard against overflow cost a seventh of the relaxation.
-        self.dot(self).sqrt()
     }
 
     /// The angle (radians, 0 to pi) between two directions.
@@ -95,9 +186,84 @@ impl Vector {
     }
 }
 
+impl Aabb {
+    /// The middle of the box.
+    pub(crate) fn centre(&self) -> Point {
+        self.min.midpoint(self.max)
+    }
+}
+
+impl Point3 {
+    /// The coordinates in order.
+    pub const fn to_array(self) -> [f64; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    /// The point of a triangle with these barycentric coordinates, which sum to one.
+    pub(crate) fn weighted([a, b, c]: [Point3; 3], [_, s, t]: [f64; 3]) -> Point3 {
+        a + (b - a) * s + (c - a) * t
+    }
+}
+
+impl Vector3 {
+    /// Euclidean dot product.
+    pub fn dot(self, other: Vector3) -> f64 {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// The cross product: perpendicular to both, as long as the parallelogram is large.
+    #[must_use]
+    pub fn cross(self, other: Vector3) -> Vector3 {
+        Vector3::new(
+            self.y * other.z - self.z * other.y,
+            self.z * other.x - self.x * other.z,
+            self.x * other.y - self.y * other.x,
+        )
+    }
+
+    /// The vector with length one; `None` of the zero vector and of what is not finite.
+    pub fn unit(self) -> Option<Vector3> {
+        let norm = self.norm();
+        (norm > 0.0 && norm.is_finite()).then(|| self * (1.0 / norm))
+    }
+
+    /// Some unit vector perpendicular to this one, which has length one (Duff et al. 2017).
+    #[must_use]
+    pub fn perpendicular(self) -> Vector3 {
+        let sign = 1.0_f64.copysign(self.z);
+        let a = -1.0 / (sign + self.z);
+        Vector3::new(1.0 + sign * self.x * self.x * a, sign * self.x * self.y * a, -sign * self.x)
+    }
+}
+
+impl Aabb3 {
+    /// Whether a point is in the box or on its sides.
+    pub(crate) fn contains(&self, p: Point3) -> bool {
+        let [x, low, high] = [p, self.min, self.max].map(Point3::to_array);
+        (0..3).all(|i| low[i] <= x[i] && x[i] <= high[i])
+    }
+
+    /// The length of the diagonal.
+    pub(crate) fn diagonal(&self) -> f64 {
+        self.extent().norm()
+    }
+}
+
+impl From<[f64; 3]> for Point3 {
+    fn from([x, y, z]: [f64; 3]) -> Self {
+        Self { x, y, z }
+    }
+}
+
 impl fmt::Display for Point {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "({}, {})", Readable(self.x), Readable(self.y))
+    }
+}
+
+impl fmt::Display for Point3 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "({}, {}, {})", Readable(self.x), Readable(self.y), Readable(self.z))
     }
 }
 
@@ -116,94 +282,42 @@ impl fmt::Display for Readable {
     }
 }
 
-impl Sub for Point {
-    type Output = Vector;
-    fn sub(self, other: Point) -> Vector {
-        Vector::new(self.x - other.x, self.y - other.y)
-    }
-}
-
-impl Add<Vector> for Point {
-    type Output = Point;
-    fn add(self, v: Vector) -> Point {
-        Point::new(self.x + v.x, self.y + v.y)
-    }
-}
-
-impl Sub<Vector> for Point {
-    type Output = Point;
-    fn sub(self, v: Vector) -> Point {
-        Point::new(self.x - v.x, self.y - v.y)
-    }
-}
-
-impl Add for Vector {
-    type Output = Vector;
-    fn add(self, v: Vector) -> Vector {
-        Vector::new(self.x + v.x, self.y + v.y)
-    }
-}
-
-impl Sub for Vector {
-    type Output = Vector;
-    fn sub(self, v: Vector) -> Vector {
-        Vector::new(self.x - v.x, self.y - v.y)
-    }
-}
-
-impl Neg for Vector {
-    type Output = Vector;
-    fn neg(self) -> Vector {
-        Vector::new(-self.x, -self.y)
-    }
-}
-
-impl Mul<f64> for Vector {
-    type Output = Vector;
-    fn mul(self, s: f64) -> Vector {
-        Vector::new(self.x * s, self.y * s)
-    }
-}
-
-/// An axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Aabb {
-    /// The corner with the smallest coordinates.
-    pub min: Point,
-    /// The corner with the largest coordinates.
-    pub max: Point,
-}
-
-impl Aabb {
-    /// The smallest box that holds all points; `None` of no point.
-    pub fn of(points: impl IntoIterator<Item = Point>) -> Option<Self> {
-        points.into_iter().fold(None, |bounds: Option<Self>, p| {
-            Some(bounds.map_or(Self { min: p, max: p }, |b| Self {
-                min: Point::new(b.min.x.min(p.x), b.min.y.min(p.y)),
-                max: Point::new(b.max.x.max(p.x), b.max.y.max(p.y)),
-            }))
-        })
-    }
-
-    /// Width along x and height along y.
-    pub fn extent(&self) -> Vector {
-        self.max - self.min
-    }
-
-    /// The middle of the box.
-    pub(crate) fn centre(&self) -> Point {
-        self.min.midpoint(self.max)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn numbers_are_readable_at_every_scale() {
         let shown = [0.0, -0.25, 1e300, 3e-75, f64::NAN].map(|x| Readable(x).to_string());
         assert_eq!(shown, ["0", "-0.25", "1e300", "3e-75", "NaN"]);
         assert_eq!(Point::new(1e16, -1e-9).to_string(), "(10000000000000000, -1e-9)");
+    }
+
+    proptest! {
+        #[test]
+        fn perpendiculars_are_perpendicular_units(x in -1.0..1.0, y in -1.0..1.0, z in -1.0..1.0) {
+            let Some(n) = Vector3::new(x, y, z).unit() else { return Ok(()) };
+            let u = n.perpendicular();
+            let v = n.cross(u);
+            for value in [u.dot(u) - 1.0, v.dot(v) - 1.0, u.dot(n), v.dot(n), u.dot(v)] {
+                prop_assert!(value.abs() < 1e-14, "{value}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_axes_have_perpendiculars_too() {
+        for n in [Vector3::new(0.0, 0.0, 1.0), Vector3::new(0.0, 0.0, -1.0), Vector3::new(0.0, -1.0, -0.0)] {
+            assert!(n.perpendicular().dot(n).abs() < 1e-15 && (n.perpendicular().norm() - 1.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn boxes_hold_their_points() {
+        let bounds = Aabb3::of([[1.0, 5.0, 0.0], [-1.0, 2.0, 6.0]].map(Point3::from)).unwrap();
+        assert_eq!(bounds.extent(), Vector3::new(2.0, 3.0, 6.0));
+        assert!((bounds.diagonal() - 7.0).abs() < 1e-15);
+        assert_eq!(Aabb3::of([]), None);
     }
 }

@@ -54,6 +54,11 @@ pub(crate) fn segment_intersection(a: Point, b: Point, c: Point, d: Point) -> Po
     a + u * ((c - a).cross(v) / denominator)
 }
 
+/// The centroid of a triangle.
+pub(crate) fn centroid([a, b, c]: [Point; 3]) -> Point {
+    Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0)
+}
+
 fn coord(p: Point) -> Coord<f64> {
     Coord { x: p.x, y: p.y }
 }

@@ -3,8 +3,8 @@
 //! The squared length of a vector e is e' M e; an eigenvalue 1/h^2 asks for edges of Euclidean length h along its
 //! eigenvector.
 
+use super::linear::linear;
 use super::{Point, Vector, signed_area};
-use std::ops::{Add, Mul};
 
 /// The symmetric matrix ((xx, xy), (xy, yy)); a metric when positive definite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,6 +27,8 @@ pub struct Eigen {
     /// Unit eigenvector of `large`; that of `small` is [`Vector::perpendicular`] to it.
     pub axis: Vector,
 }
+
+linear!(Tensor: xx, xy, yy);
 
 impl Tensor {
     /// The identity: Euclidean length.
@@ -56,6 +58,16 @@ impl Tensor {
     /// u' M v.
     pub(crate) fn dot(self, u: Vector, v: Vector) -> f64 {
         u.dot(self.apply(v))
+    }
+
+    /// What the tensor says of combinations of two vectors: P' M P with P = (p, q).
+    pub(crate) fn along(self, [p, q]: [Vector; 2]) -> Tensor {
+        Tensor::new(self.dot(p, p), self.dot(p, q), self.dot(q, q))
+    }
+
+    /// v v'.
+    pub(crate) fn square(v: Vector) -> Tensor {
+        Tensor::new(v.x * v.x, v.x * v.y, v.y * v.y)
     }
 
     /// Metric length of a vector: sqrt(v' M v).
@@ -89,13 +101,17 @@ impl Tensor {
 
     /// Eigenvalues and the axis of the larger one (the x axis where both are equal).
     pub fn eigen(self) -> Eigen {
-        let half_difference = 0.5 * (self.xx - self.yy);
-        let radius = half_difference.hypot(self.xy);
-        let mean = 0.5 * (self.xx + self.yy);
+        let (mean, radius, axis) = self.spectrum();
         let large = mean + radius;
         let small = if mean > 0.0 { self.determinant() / large } else { mean - radius };
+        Eigen { large, small, axis }
+    }
+
+    /// The mean of the eigenvalues, half their difference, and the axis of the larger one.
+    fn spectrum(self) -> (f64, f64, Vector) {
+        let half_difference = 0.5 * (self.xx - self.yy);
         let angle = 0.5 * self.xy.atan2(half_difference);
-        Eigen { large, small, axis: Vector::new(angle.cos(), angle.sin()) }
+        (0.5 * (self.xx + self.yy), half_difference.hypot(self.xy), Vector::new(angle.cos(), angle.sin()))
     }
 
     /// The symmetric tensor with the same axes and each eigenvalue mapped by `f`.
@@ -115,11 +131,8 @@ impl Tensor {
     #[must_use]
     pub(crate) fn exp(self) -> Tensor {
         // Not through `map_eigenvalues`: a logarithm is no metric, and its smaller eigenvalue may be negative.
-        let mean = 0.5 * (self.xx + self.yy);
-        let half_difference = 0.5 * (self.xx - self.yy);
-        let radius = half_difference.hypot(self.xy);
-        let angle = 0.5 * self.xy.atan2(half_difference);
-        Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), (mean + radius).exp(), (mean - radius).exp())
+        let (mean, radius, axis) = self.spectrum();
+        Tensor::from_axis(axis, (mean + radius).exp(), (mean - radius).exp())
     }
 
     /// Log-Euclidean mean: exp of the weighted sum of logarithms. Weights sum to one.
@@ -134,6 +147,13 @@ impl Tensor {
         [a, b, (self.determinant() / self.xx).max(0.0).sqrt()]
     }
 
+    /// The columns of F with F' F = M ([`Tensor::cholesky`]), and those of its inverse, in whose coordinates M is the identity.
+    pub(crate) fn frames(self) -> [[Vector; 2]; 2] {
+        let [a, b, c] = self.cholesky();
+        let inverse = [Vector::new(1.0 / a, 0.0), Vector::new(-b / (a * c), 1.0 / c)];
+        [[Vector::new(a, 0.0), Vector::new(b, c)], inverse]
+    }
+
     /// 4 sqrt(3) times the area of a straight triangle over the sum of its squared edges, all in this metric: 1 of an equilateral
     /// one, negative of one that is clockwise.
     pub(crate) fn shape(self, [a, b, c]: [Point; 3]) -> f64 {
@@ -145,20 +165,6 @@ impl Tensor {
     pub fn anisotropy(self) -> f64 {
         let e = self.eigen();
         (e.large / e.small).sqrt()
-    }
-}
-
-impl Add for Tensor {
-    type Output = Tensor;
-    fn add(self, other: Tensor) -> Tensor {
-        Tensor::new(self.xx + other.xx, self.xy + other.xy, self.yy + other.yy)
-    }
-}
-
-impl Mul<f64> for Tensor {
-    type Output = Tensor;
-    fn mul(self, s: f64) -> Tensor {
-        Tensor::new(self.xx * s, self.xy * s, self.yy * s)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Symmetric 3 x 3 tensors: the metric M of space, of which a surface sees what lies in its tangent planes.
 
+use super::linear::linear;
 use super::{Point3, Tensor, Vector, Vector3};
-use std::ops::{Add, Mul};
 
 /// The symmetric matrix ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)); a metric when positive definite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,6 +39,8 @@ pub struct TangentPlane {
     /// Perpendicular to the plane.
     pub normal: Vector3,
 }
+
+linear!(Tensor3: xx, xy, yy, xz, yz, zz);
 
 impl Tensor3 {
     /// The identity: Euclidean length.
@@ -265,21 +267,6 @@ fn rotate(m: &mut [[f64; 3]; 3], axes: &mut [[f64; 3]; 3], p: usize, q: usize) {
     (m[p][r], m[q][r]) = (m[r][p], m[r][q]);
     for row in axes {
         (row[p], row[q]) = (cos * row[p] - sin * row[q], sin * row[p] + cos * row[q]);
-    }
-}
-
-impl Add for Tensor3 {
-    type Output = Tensor3;
-    fn add(self, other: Tensor3) -> Tensor3 {
-        let (a, b) = (self.to_disk(), other.to_disk());
-        Tensor3::from_disk(std::array::from_fn(|i| a[i] + b[i]))
-    }
-}
-
-impl Mul<f64> for Tensor3 {
-    type Output = Tensor3;
-    fn mul(self, s: f64) -> Tensor3 {
-        Tensor3::from_disk(self.to_disk().map(|entry| entry * s))
     }
 }
 

@@ -2,9 +2,13 @@
 //! a point is.
 
 mod locate;
+mod network;
+mod sides;
 mod solution;
 
 pub(crate) use locate::{Located, Locator};
+pub(crate) use network::Network;
+pub(crate) use sides::{Side, borders, by_edge, edges_of, sides, sides_at, unordered};
 pub use solution::{Solution, SolutionValues, Solutions, TensorOrder};
 
 use crate::error::{Error, Result};
@@ -49,6 +53,12 @@ impl Mesh {
     /// The three planar positions of a triangle.
     pub fn corners_of(&self, triangle: [u32; 3]) -> [Point; 3] {
         triangle.map(|v| self.point(v))
+    }
+
+    /// Twice the area of a planar triangle of either orientation.
+    pub(crate) fn double_area(&self, triangle: [u32; 3]) -> f64 {
+        let [a, b, c] = self.corners_of(triangle);
+        (b - a).cross(c - a).abs()
     }
 
     /// The position of a vertex in space.

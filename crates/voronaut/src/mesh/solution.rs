@@ -18,19 +18,8 @@ impl Solution {
     /// If there is no such vertex.
     #[must_use]
     pub(crate) fn of_vertices(&self, vertices: &[u32]) -> Self {
-        fn taken<T: Clone>(entries: &[T], vertices: &[u32]) -> Vec<T> {
-            vertices.iter().map(|&v| entries[v as usize].clone()).collect()
-        }
-        let values = match &self.values {
-            SolutionValues::Scalar(entries) => SolutionValues::Scalar(taken(entries, vertices)),
-            &SolutionValues::Vector { components, ref numbers } => {
-                let row = |&v: &u32| &numbers[v as usize * components..][..components];
-                SolutionValues::Vector { components, numbers: vertices.iter().flat_map(row).copied().collect() }
-            }
-            SolutionValues::Tensor(entries) => SolutionValues::Tensor(taken(entries, vertices)),
-            SolutionValues::Tensor3(entries) => SolutionValues::Tensor3(taken(entries, vertices)),
-        };
-        Self { dimension: self.dimension, values }
+        let numbers: Vec<f64> = vertices.iter().flat_map(|&v| self.values.row(v as usize)).copied().collect();
+        Self { dimension: self.dimension, values: self.values.with_numbers(&numbers) }
     }
 
     /// How many vertices it has entries of.

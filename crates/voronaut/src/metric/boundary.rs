@@ -142,11 +142,9 @@ impl Segment {
             if self.inverse == 0.0 {
                 return Tensor::new(0.5, 0.0, 0.5);
             }
-            let n = self.along.perpendicular();
-            return Tensor::new(n.x * n.x, n.x * n.y, n.y * n.y) * self.inverse;
+            return Tensor::square(self.along.perpendicular()) * self.inverse;
         }
-        let n = offset * (1.0 / distance);
-        Tensor::new(n.x * n.x, n.x * n.y, n.y * n.y)
+        Tensor::square(offset * (1.0 / distance))
     }
 }
 

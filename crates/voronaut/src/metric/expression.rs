@@ -1,8 +1,8 @@
 //! Expressions in x, y and z: compiled once to a flat program that runs without allocating.
 
-use super::number::Number;
-use super::operation::{Op, STACK, Variables};
 use super::parser::Parser;
+use super::program::{Op, run};
+use super::vocabulary::Variables;
 use crate::error::Result;
 use crate::geometry::{Jet3, Point3};
 
@@ -30,12 +30,7 @@ impl Expression {
     /// # Errors
     /// [`Error::Parse`](crate::Error::Parse) with the column (from 1, in characters), the text and a caret below it.
     pub fn parse(text: &str, variables: Variables) -> Result<Self> {
-        Self::parse_named(text, variables, "expression")
-    }
-
-    /// The same, with a name for messages.
-    pub(super) fn parse_named(text: &str, variables: Variables, name: &str) -> Result<Self> {
-        Self::parse_range(text, 0..text.len(), variables, name)
+        Self::parse_range(text, 0..text.len(), variables, "expression")
     }
 
     /// Compiles a part of a text; columns count from the start of the whole text, which `name` names in messages.
@@ -50,60 +45,14 @@ impl Expression {
 
     /// The value at a point; z is not used by expressions of the plane, and is the time of those with one.
     pub(crate) fn at(&self, x: f64, y: f64, z: f64) -> f64 {
-        self.run([x, y, z])
+        run(&self.code, [x, y, z])
     }
 
     /// The value at a point with its first and second derivatives, exact but for rounding. Where an expression jumps or
     /// has a kink (comparisons, `if`, `abs`, `min`, `max`) they are those of one side.
     pub(crate) fn jet(&self, p: Point3) -> Jet3 {
-        self.run(Jet3::coordinates(p.x, p.y, p.z))
+        run(&self.code, Jet3::coordinates(p.x, p.y, p.z))
     }
-
-    fn run<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
-        // The last value is kept out of the stack: most operations then touch it once or not at all.
-        let mut stack = [N::constant(0.0); STACK];
-        let mut top = 0;
-        let mut value = N::constant(0.0);
-        let mut next = 0;
-        while let Some(&op) = self.code.get(next) {
-            next += 1;
-            match op {
-                Op::Constant(c) => push(&mut stack, &mut top, &mut value, N::constant(c)),
-                Op::X => push(&mut stack, &mut top, &mut value, x),
-                Op::Y => push(&mut stack, &mut top, &mut value, y),
-                Op::Z => push(&mut stack, &mut top, &mut value, z),
-                Op::Negate => value = value.negate(),
-                Op::Square => value = value.square(),
-                Op::Add => value = value.add(pop(&stack, &mut top)),
-                Op::Subtract => value = pop(&stack, &mut top).subtract(value),
-                Op::Multiply => value = value.multiply(pop(&stack, &mut top)),
-                Op::Divide => value = pop(&stack, &mut top).divide(value),
-                Op::Power => value = pop(&stack, &mut top).power(value),
-                Op::Call1(f) => value = value.call1(f),
-                Op::Call2(f) => value = pop(&stack, &mut top).call2(value, f),
-                Op::Jump(target) => next = target as usize,
-                Op::JumpIfZero(target) => {
-                    if value.is_zero() {
-                        next = target as usize;
-                    }
-                    value = pop(&stack, &mut top);
-                }
-            }
-        }
-        value
-    }
-}
-
-// The compiler of `parser` keeps the height below STACK; the remainder spares the bounds check.
-fn push<N: Number>(stack: &mut [N; STACK], top: &mut usize, value: &mut N, new: N) {
-    stack[*top % STACK] = *value;
-    *top += 1;
-    *value = new;
-}
-
-fn pop<N: Number>(stack: &[N; STACK], top: &mut usize) -> N {
-    *top = top.wrapping_sub(1);
-    stack[*top % STACK]
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
-//! A metric field from the formulas of its entries.
+//! Fields from formulas: metrics from those of their entries, functions at one time.
 
-use super::MetricField;
 use super::expression::Expression;
-use super::operation::Variables;
 use super::parser::error_at;
+use super::vocabulary::Variables;
+use super::{MetricField, ScalarField};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3, Tensor, Tensor3};
 
@@ -36,8 +36,7 @@ impl Formula {
                 help: "in the plane write three entries: m11; m12; m22".into(),
             });
         }
-        let [m11, m12, m22] = entries(text, ["m11", "m12", "m22"], "three", Variables::Plane)?;
-        Ok(Self { entries: [m11, m12, m22] })
+        Ok(Self { entries: entries(text, ["m11", "m12", "m22"], "three", Variables::Plane)? })
     }
 }
 
@@ -78,8 +77,37 @@ fn entries<const N: usize>(text: &str, names: [&str; N], count: &str, variables:
 
 impl MetricField for Formula {
     fn at(&self, p: Point) -> Tensor {
-        let [m11, m12, m22] = &self.entries;
-        Tensor::new(m11.at(p.x, p.y, 0.0), m12.at(p.x, p.y, 0.0), m22.at(p.x, p.y, 0.0))
+        let [m11, m12, m22] = self.entries.each_ref().map(|entry| entry.at(p.x, p.y, 0.0));
+        Tensor::new(m11, m12, m22)
+    }
+}
+
+/// An expression in x, y and t at one time.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    /// The expression, of [`Variables::Motion`] or of the plane.
+    pub expression: Expression,
+    /// The value of t.
+    pub time: f64,
+}
+
+impl Snapshot {
+    /// Exact second derivatives by x and y.
+    pub fn second_derivatives(&self, p: Point) -> Tensor {
+        let hessian = self.expression.jet(Point3::new(p.x, p.y, self.time)).hessian;
+        Tensor::new(hessian.xx, hessian.xy, hessian.yy)
+    }
+}
+
+impl From<Expression> for Snapshot {
+    fn from(expression: Expression) -> Self {
+        Self { expression, time: 0.0 }
+    }
+}
+
+impl ScalarField for Snapshot {
+    fn value(&self, p: Point) -> f64 {
+        self.expression.at(p.x, p.y, self.time)
     }
 }
 

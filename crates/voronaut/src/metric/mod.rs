@@ -30,17 +30,13 @@ mod hessian;
 mod neighbours;
 pub mod nodal;
 mod norm;
-mod number;
-mod operation;
 mod parser;
-mod recovered;
+mod program;
 mod recovery;
 mod sampled;
-mod scalar;
 mod scaled;
 mod smoothed;
 mod spec;
-mod steadied;
 mod validate;
 mod vocabulary;
 
@@ -50,22 +46,21 @@ pub use bounds::{Bounded, Bounds};
 pub use complexity::complexity;
 pub(crate) use complexity::rough_complexity;
 pub use expression::Expression;
-pub use formula::{Formula, SpaceFormula};
+pub use formula::{Formula, Snapshot, SpaceFormula};
 pub use hessian::Hessian;
+pub(crate) use hessian::Recovered;
 pub(crate) use neighbours::Neighbours;
 pub use norm::Norm;
-pub use operation::Variables;
-pub(crate) use recovered::Recovered;
 pub use recovery::{Recovery, recover_hessian};
 pub use sampled::Sampled;
-pub use scalar::{ScalarField, Snapshot};
 pub use scaled::Scaled;
+pub(crate) use scaled::Steadied;
 pub use smoothed::MOST_SWEEPS;
 pub(crate) use smoothed::smoothed;
 pub use spec::MetricSpec;
 pub(crate) use spec::Parameters;
-pub(crate) use steadied::Steadied;
-pub(crate) use validate::{check_field, check_tensor, check_tensor_at};
+pub(crate) use validate::{check_field, check_sizes, check_tensor, check_tensor_at, check_tensor3};
+pub use vocabulary::Variables;
 
 use crate::geometry::{Point, Tensor};
 
@@ -87,5 +82,20 @@ impl<F: Fn(Point) -> Tensor + Sync> MetricField for F {
 impl MetricField for Box<dyn MetricField + '_> {
     fn at(&self, p: Point) -> Tensor {
         (**self).at(p)
+    }
+}
+
+/// A function on the plane.
+///
+/// The contract: `value` is a pure function of the point, defined on the whole domain; where it is not finite, whoever uses
+/// it says so.
+pub trait ScalarField: Sync {
+    /// The value at a point.
+    fn value(&self, p: Point) -> f64;
+}
+
+impl<F: Fn(Point) -> f64 + Sync> ScalarField for F {
+    fn value(&self, p: Point) -> f64 {
+        self(p)
     }
 }

@@ -1,6 +1,6 @@
 //! Which vertices of a mesh share an edge.
 
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, edges_of};
 
 /// The neighbours of every vertex in ascending order, one list after the other.
 pub(crate) struct Neighbours {
@@ -20,7 +20,7 @@ impl Neighbours {
         triangles: impl IntoIterator<Item = [u32; 3]>,
         more: impl IntoIterator<Item = [u32; 2]>,
     ) -> Self {
-        let edges = triangles.into_iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).chain(more);
+        let edges = triangles.into_iter().flat_map(edges_of).chain(more);
         let mut pairs: Vec<[u32; 2]> = edges.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
         pairs.sort_unstable();
         pairs.dedup();

@@ -1,7 +1,7 @@
 //! From the text of an expression to its program: one pass, precedence climbing, constants folded.
 
-use super::operation::{Op, STACK, Variables};
-use super::vocabulary::{COMPARISON, CONSTANTS, FUNCTIONS, Function, OPERATORS, POWER, SIGN};
+use super::program::{Op, STACK, run};
+use super::vocabulary::{COMPARISON, CONSTANTS, FUNCTIONS, Function, OPERATORS, POWER, SIGN, Variables};
 use crate::error::{Error, Result};
 use std::ops::Range;
 
@@ -213,14 +213,11 @@ impl<'a> Parser<'a> {
 
     /// Appends an instruction, or does it now where its operands are constants.
     fn emit(&mut self, op: Op) -> Result<()> {
-        let (operands, op_now) = fold(op, &self.code[self.barrier..]).unwrap_or((0, op));
-        self.code.truncate(self.code.len() - operands);
+        let operands = op.operands().expect("jumps are written by `jump`");
+        let (replaced, op_now) = fold(op, operands, &self.code[self.barrier..]).unwrap_or((0, op));
+        self.code.truncate(self.code.len() - replaced);
         self.code.push(op_now);
-        match op {
-            Op::Constant(_) | Op::X | Op::Y | Op::Z => self.height += 1,
-            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power | Op::Call2(_) => self.height -= 1,
-            _ => {}
-        }
+        self.height = self.height + 1 - operands;
         if self.height >= STACK {
             let what = format!("more than {} unfinished operations", STACK - 1);
             return Err(self.error(&what, "write 1 + x + y rather than 1 + (x + (y)), or use fewer levels"));
@@ -265,25 +262,15 @@ impl<'a> Parser<'a> {
 }
 
 /// What `op` after `code` comes down to: how many instructions at the end of `code` one other replaces.
-fn fold(op: Op, code: &[Op]) -> Option<(usize, Op)> {
-    let (a, b) = match *code {
-        [.., Op::Constant(a), Op::Constant(b)] => (Some(a), Some(b)),
-        [.., Op::Constant(b)] => (None, Some(b)),
-        _ => (None, None),
-    };
-    let value = match (op, a, b) {
-        (Op::Negate, _, Some(b)) => return Some((1, Op::Constant(-b))),
-        (Op::Call1(f), _, Some(b)) => return Some((1, Op::Constant((f.value)(b)))),
-        (Op::Add, Some(a), Some(b)) => a + b,
-        (Op::Subtract, Some(a), Some(b)) => a - b,
-        (Op::Multiply, Some(a), Some(b)) => a * b,
-        (Op::Divide, Some(a), Some(b)) => a / b,
-        (Op::Power, Some(a), Some(b)) => a.powf(b),
-        (Op::Call2(f), Some(a), Some(b)) => (f.value)(a, b),
-        (Op::Power, None, Some(2.0)) => return Some((1, Op::Square)),
-        _ => return None,
-    };
-    Some((2, Op::Constant(value)))
+fn fold(op: Op, operands: usize, code: &[Op]) -> Option<(usize, Op)> {
+    let taken = &code[code.len().checked_sub(operands)?..];
+    if operands > 0 && taken.iter().all(|op| matches!(op, Op::Constant(_))) {
+        return Some((operands, Op::Constant(run(&[taken, &[op]].concat(), [0.0; 3]))));
+    }
+    match (op, code) {
+        (Op::Power, [.., Op::Constant(2.0)]) => Some((1, Op::Square)),
+        _ => None,
+    }
 }
 
 /// A parse error with its column and the text around it, a caret below the place.

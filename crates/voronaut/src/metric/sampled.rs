@@ -1,8 +1,9 @@
 //! A metric given at the vertices of a background mesh.
 
 use super::MetricField;
-use super::validate::check_tensor_at;
-use crate::error::{Error, Result};
+use super::nodal::isotropic;
+use super::validate::{BACKGROUND, check_at_vertices};
+use crate::error::Result;
 use crate::geometry::{Point, Tensor};
 use crate::mesh::{Located, Locator, Mesh};
 
@@ -20,9 +21,6 @@ pub struct Sampled {
     locator: Locator,
 }
 
-/// What messages call the mesh.
-const BACKGROUND: &str = "the background mesh of the metric";
-
 impl Sampled {
     /// The field of one tensor per vertex.
     ///
@@ -31,11 +29,8 @@ impl Sampled {
     /// definite; [`Error::Domain`] where the background has no triangles, is not planar, not finite, or refers to
     /// vertices it does not have.
     pub fn new(background: &Mesh, tensors: &[Tensor]) -> Result<Self> {
+        check_at_vertices(background, tensors)?;
         let locator = Locator::new(background, BACKGROUND)?;
-        check_count(background, "tensors", tensors.len())?;
-        for (i, &tensor) in tensors.iter().enumerate() {
-            check_tensor_at(tensor, || background.describe(i))?;
-        }
         let logs = tensors.iter().map(|tensor| tensor.log()).collect();
         Ok(Self { logs, triangles: background.triangles.clone(), locator })
     }
@@ -45,13 +40,7 @@ impl Sampled {
     /// # Errors
     /// As [`Sampled::new`]; [`Error::Metric`] where a size is not positive and finite.
     pub(crate) fn sizes(background: &Mesh, sizes: &[f64]) -> Result<Self> {
-        check_count(background, "sizes", sizes.len())?;
-        if let Some(i) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) {
-            let what = format!("the size h = {} is not positive and finite", sizes[i]);
-            return Err(Error::metric(what, background.describe(i), "a size is the length of edges there"));
-        }
-        let tensors: Vec<Tensor> = sizes.iter().map(|&h| Tensor::isotropic(h)).collect();
-        Self::new(background, &tensors)
+        Self::new(background, &isotropic(background, sizes)?)
     }
 
     /// The same with other logarithms at the vertices.
@@ -68,21 +57,6 @@ impl MetricField for Sampled {
         let [a, b, c] = self.triangles[triangle as usize].map(|v| self.logs[v as usize]);
         (a * weights[0] + b * weights[1] + c * weights[2]).exp()
     }
-}
-
-/// Whether tensors at the vertices of a mesh can make a field.
-pub(super) fn check_background(background: &Mesh) -> Result<()> {
-    Locator::check(background, BACKGROUND)
-}
-
-pub(super) fn check_count(background: &Mesh, what: &str, found: usize) -> Result<()> {
-    let needed = background.points.len();
-    if found == needed {
-        return Ok(());
-    }
-    let what = format!("{found} {what} for {needed} vertices");
-    let help = "the metric must have one value for each vertex of the background mesh, in the same order";
-    Err(Error::metric(what, "the background mesh", help))
 }
 
 #[cfg(test)]

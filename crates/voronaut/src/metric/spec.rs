@@ -1,6 +1,7 @@
 //! The metric as a user writes it on the command line or in a recipe.
 
 use super::{BoundarySizes, Expression, Formula, Shock, Swirl, SwirlField, Uniform, Variables};
+use crate::domain::name_and_rest;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 
@@ -29,10 +30,7 @@ impl MetricSpec {
     /// [`Error::Unsupported`] of `curvature`.
     pub fn parse(text: &str) -> Result<Self> {
         let text = text.trim();
-        let (name, parameters) = match text.split_once(':') {
-            Some((name, parameters)) => (name, Some(parameters)),
-            None => (text, None),
-        };
+        let (name, parameters) = name_and_rest(text);
         match name {
             "uniform" => uniform(parameters),
             "swirl" => swirl(&Parameters::read("swirl", parameters, &["nu", "field"])?),
@@ -106,7 +104,7 @@ fn boundary(parameters: &Parameters) -> Result<MetricSpec> {
 }
 
 fn hessian(text: &str) -> Result<MetricSpec> {
-    Ok(MetricSpec::Hessian(Expression::parse_named(text, Variables::Plane, "metric hessian")?))
+    Ok(MetricSpec::Hessian(Expression::parse_range(text, 0..text.len(), Variables::Plane, "metric hessian")?))
 }
 
 fn unsupported(what: &str, help: &str) -> Error {

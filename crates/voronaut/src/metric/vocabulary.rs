@@ -1,7 +1,6 @@
 //! The names and operators of expressions, each declared once.
 
-use super::number::{Binary, Unary};
-use super::operation::Op;
+use super::program::{Binary, Op, Unary};
 
 /// How many arguments a function takes, and what it does with them.
 pub(super) enum Function {
@@ -109,4 +108,15 @@ fn truth(holds: bool) -> f64 {
 #[expect(clippy::float_cmp)]
 fn equal(a: f64, b: f64) -> f64 {
     truth(a == b)
+}
+
+/// Which variables an expression may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variables {
+    /// x and y.
+    Plane,
+    /// x, y and z.
+    Space,
+    /// x, y and the time t, which takes the place of z.
+    Motion,
 }

@@ -1,12 +1,9 @@
-//! Making a segment an edge of the triangulation, by flips (Sloan 1993).
+//! Making the straight line between two vertices an edge of the triangulation, by flips (Sloan 1993).
 
 use super::Planar;
 use crate::geometry::{Orientation, orientation};
-use crate::triangulation::{Constraint, HalfEdge, Lawson, VertexId};
+use crate::triangulation::{Constraint, HalfEdge, Lawson, Triangulation, VertexId};
 use std::collections::VecDeque;
-
-/// Edges by their ends: half-edge ids move when a neighbour is flipped.
-type Edges = VecDeque<[VertexId; 2]>;
 
 /// The segment crosses, or runs along, one that is already there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,26 +30,57 @@ impl Planar {
     pub fn constrain(&mut self, a: VertexId, b: VertexId, constraint: Constraint) -> Result<(), Crossing> {
         let mut at = a;
         while at != b {
-            let (edge, recovered) = match self.ahead(at, b) {
-                Ahead::Vertex(edge) => (edge, false),
-                Ahead::Edge(first) => (self.recover(at, b, first)?, true),
+            let edge = match self.ahead(at, b) {
+                Ahead::Vertex(edge) => {
+                    self.demand_free(edge)?;
+                    edge
+                }
+                Ahead::Edge(first) => self.recover(at, b, first)?,
             };
-            let next = self.topology.target(edge);
-            if let Some(with) = self.topology.constraint(edge).filter(|_| !recovered) {
-                return Err(Crossing { with, edge: [at, next] });
-            }
             self.topology.set_constraint(edge, constraint);
-            at = next;
+            at = self.topology.target(edge);
         }
         Ok(())
+    }
+
+    /// Flips away every edge between two vertices, so that they are joined by one. `None`, and nothing is changed, where
+    /// `Planar::edges_between` finds no way. Whether the edges may be flipped is for the caller to ask before.
+    pub(crate) fn connect(&mut self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
+        let crossed = self.edges_between(a, b)?;
+        // A round flips at least one of the crossed edges (Sloan 1993), which bounds the rounds.
+        let turns = crossed.len() * (crossed.len() + 1);
+        self.flip_away(&crossed, [a, b], turns)?;
+        self.topology.find(a, b)
+    }
+
+    /// The edges that the straight line between two vertices crosses, from the first vertex on. `None` where they are
+    /// joined already, and where the line passes through another vertex or leaves the triangulation.
+    pub(crate) fn edges_between(&self, a: VertexId, b: VertexId) -> Option<Vec<HalfEdge>> {
+        let side = |v: VertexId| self.side([a, b], v);
+        let is_ahead = |h: &HalfEdge| {
+            let (right, left) = (self.topology.target(*h), self.topology.apex(*h));
+            side(right) == Orientation::Right && side(left) == Orientation::Left
+        };
+        let first = self.topology.star(a).find(is_ahead)?.next();
+        let (crossed, end) = self.crossed_edges([a, b], first)?;
+        (end == b).then_some(crossed)
+    }
+
+    /// On which side of the line through two vertices another one is.
+    fn side(&self, [a, b]: [VertexId; 2], v: VertexId) -> Orientation {
+        orientation(self.position(a), self.position(b), self.position(v))
+    }
+
+    fn demand_free(&self, h: HalfEdge) -> Result<(), Crossing> {
+        let edge = [self.topology.origin(h), self.topology.target(h)];
+        self.topology.constraint(h).map_or(Ok(()), |with| Err(Crossing { with, edge }))
     }
 
     fn ahead(&self, a: VertexId, b: VertexId) -> Ahead {
         let (p, q) = (self.position(a), self.position(b));
         for h in self.topology.star(a) {
             let (right, left) = (self.topology.target(h), self.topology.apex(h));
-            let of_right = orientation(p, q, self.position(right));
-            let of_left = orientation(p, q, self.position(left));
+            let [of_right, of_left] = [right, left].map(|v| self.side([a, b], v));
             let forward = (self.position(right) - p).dot(q - p) > 0.0;
             if right == b || (of_right == Orientation::Collinear && forward) {
                 return Ahead::Vertex(h);
@@ -66,19 +94,9 @@ impl Planar {
 
     /// Flips away what lies between a and the next vertex on the segment a-b; returns the half-edge between them.
     fn recover(&mut self, a: VertexId, b: VertexId, first: HalfEdge) -> Result<HalfEdge, Crossing> {
-        let (mut crossed, end) = self.crossed_edges(a, b, first)?;
-        let mut created = Edges::new();
-        while let Some([u, v]) = crossed.pop_front() {
-            let h = self.topology.find(u, v).expect("only this edge's own flip removes it");
-            if !self.is_convex(h) {
-                crossed.push_back([u, v]);
-                continue;
-            }
-            self.topology.flip(h);
-            let diagonal = [self.topology.origin(h), self.topology.target(h)];
-            let list = if self.crosses(diagonal, [a, end]) { &mut crossed } else { &mut created };
-            list.push_back(diagonal);
-        }
+        let (crossed, end) = self.crossed_edges([a, b], first).expect("the segment ends inside the triangulation");
+        crossed.iter().try_for_each(|&h| self.demand_free(h))?;
+        let created = self.flip_away(&crossed, [a, end], usize::MAX).expect("only an edge's own flip removes it");
         let edge = self.topology.find(a, end).expect("no edge crosses the segment any more");
         // Held during the flips that restore the Delaunay property around it; the caller names the constraint.
         self.topology.set_constraint(edge, Constraint(0));
@@ -88,31 +106,44 @@ impl Planar {
         Ok(self.topology.find(a, end).expect("constrained edges are not flipped"))
     }
 
-    /// Whether the ends of an edge lie strictly on both sides of the line through the segment's ends.
-    fn crosses(&self, [u, v]: [VertexId; 2], [a, b]: [VertexId; 2]) -> bool {
-        let side = |w: VertexId| orientation(self.position(a), self.position(b), self.position(w));
-        side(u) != Orientation::Collinear && side(v) != Orientation::Collinear && side(u) != side(v)
-    }
-
-    /// The edges that the segment crosses, in order, up to the first vertex on it.
-    fn crossed_edges(&self, a: VertexId, b: VertexId, first: HalfEdge) -> Result<(Edges, VertexId), Crossing> {
-        let (p, q) = (self.position(a), self.position(b));
-        let mut crossed = VecDeque::new();
-        let mut h = first;
+    /// The edges that the way from one vertex to another crosses, in order, and the first vertex on it. `None` where it leaves the
+    /// triangulation.
+    fn crossed_edges(&self, way: [VertexId; 2], first: HalfEdge) -> Option<(Vec<HalfEdge>, VertexId)> {
+        let mut crossed = vec![first];
         loop {
-            let edge = [self.topology.origin(h), self.topology.target(h)];
-            if let Some(with) = self.topology.constraint(h) {
-                return Err(Crossing { with, edge });
-            }
-            crossed.push_back(edge);
-            let t = self.topology.twin(h).expect("the segment ends inside the triangulation");
+            let t = self.topology.twin(crossed[crossed.len() - 1])?;
             let apex = self.topology.apex(t);
-            match orientation(p, q, self.position(apex)) {
-                Orientation::Collinear => return Ok((crossed, apex)),
-                Orientation::Left => h = t.next(),
-                Orientation::Right => h = t.prev(),
+            match self.side(way, apex) {
+                Orientation::Collinear => return Some((crossed, apex)),
+                Orientation::Left => crossed.push(t.next()),
+                Orientation::Right => crossed.push(t.prev()),
             }
         }
+    }
+
+    /// Flips edges until none of those that come of it crosses the line, or so many times were tried; returns those that do not.
+    fn flip_away(&mut self, crossed: &[HalfEdge], line: [VertexId; 2], turns: usize) -> Option<Vec<[VertexId; 2]>> {
+        // Edges by their ends: half-edge ids move when a neighbour is flipped.
+        let ends = |topology: &Triangulation, h| [topology.origin(h), topology.target(h)];
+        let mut crossed: VecDeque<_> = crossed.iter().map(|&h| ends(&self.topology, h)).collect();
+        let mut created = Vec::new();
+        for _ in 0..turns {
+            let Some([u, v]) = crossed.pop_front() else { break };
+            let h = self.topology.find(u, v)?;
+            if !self.is_convex(h) {
+                crossed.push_back([u, v]);
+                continue;
+            }
+            self.topology.flip(h);
+            let diagonal = ends(&self.topology, h);
+            let sides = diagonal.map(|w| self.side(line, w));
+            if sides[0] != sides[1] && !sides.contains(&Orientation::Collinear) {
+                crossed.push_back(diagonal);
+            } else {
+                created.push(diagonal);
+            }
+        }
+        Some(created)
     }
 }
 
@@ -154,5 +185,26 @@ mod tests {
         let crossing = planar.constrain(VertexId(6), VertexId(29), Constraint(2)).unwrap_err();
         assert_eq!(crossing.with, Constraint(1));
         planar.topology.check().unwrap();
+    }
+
+    #[test]
+    fn far_vertices_are_joined_or_nothing_changes() {
+        let point = |i: u32| Point::new(f64::from(i * 37 % 101) + 0.01 * f64::from(i % 7), f64::from(i * 61 % 97));
+        let mut planar = delaunay(&(0..90).map(point).collect::<Vec<_>>()).unwrap();
+        let mut joined = 0;
+        for i in 0..40 {
+            let (a, b) = (VertexId(i), VertexId(89 - i));
+            let before: Vec<_> = planar.topology.faces().map(|f| planar.topology.corners(f)).collect();
+            if planar.topology.find(a, b).is_none() {
+                let found = planar.connect(a, b);
+                joined += usize::from(found.is_some());
+                let after: Vec<_> = planar.topology.faces().map(|f| planar.topology.corners(f)).collect();
+                assert_eq!(found.is_some(), before != after);
+                assert_eq!(found, planar.topology.find(a, b));
+            }
+            planar.topology.check().unwrap();
+            assert!(planar.is_embedded());
+        }
+        assert!(joined > 15, "{joined}");
     }
 }

@@ -1,7 +1,7 @@
 //! Point location by walking along a straight line.
 
 use super::Planar;
-use crate::geometry::{Orientation, Point, orientation};
+use crate::geometry::{Orientation, Point, centroid, orientation};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 /// Where a walk ended.
@@ -81,8 +81,4 @@ impl Planar {
         };
         self.topology.faces().find(holds).map(|f| self.classify(f, p))
     }
-}
-
-fn centroid([a, b, c]: [Point; 3]) -> Point {
-    Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0)
 }

@@ -1,6 +1,5 @@
 //! A triangulation embedded in the plane: every living face is counter-clockwise, by exact predicates, at every moment.
 
-mod connect;
 mod constrain;
 mod delaunay;
 mod locate;
@@ -69,14 +68,8 @@ impl Planar {
     /// The positions of the two neighbours along the constraint that a vertex is in the middle of; `None` where there are
     /// none.
     pub(crate) fn neighbours_on_segment(&self, v: VertexId) -> Option<[Point; 2]> {
-        let topology = &self.topology;
-        let mut ends = topology.star(v).flat_map(|h| {
-            let ahead = topology.is_fixed(h).then(|| topology.target(h));
-            let is_last = topology.twin(h.prev()).is_none();
-            [ahead, is_last.then(|| topology.apex(h))]
-        });
-        let first = ends.by_ref().flatten().next()?;
-        let second = ends.flatten().next()?;
+        let mut ends = self.topology.along_fixed(v);
+        let (first, second) = (ends.next()?, ends.next()?);
         Some([self.position(first), self.position(second)])
     }
 

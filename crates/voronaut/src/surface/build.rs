@@ -1,10 +1,9 @@
-//! From an indexed list of triangles to a surface.
+//! From an indexed list of triangles, turned so that neighbours agree, to a surface.
 
-use super::orient::{Side, orient, sides};
 use super::{Mark, Surface};
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Side, by_edge, sides};
 use crate::triangulation::{Broken, Constraint, FaceId, Triangulation, VertexId};
 use std::collections::BTreeSet;
 
@@ -24,7 +23,7 @@ impl Surface {
         let positions = finite_positions(mesh)?;
         check_triangles(&mesh.triangles, &positions)?;
         let mut triangles = mesh.triangles.clone();
-        let sides = sides(&triangles);
+        let sides = sides(triangles.iter().copied());
         check_edges(&sides, &positions)?;
         let turned = orient(&mut triangles, &sides, |ends| edge(ends, &positions))?;
         let mut regions = mesh.triangle_labels.clone();
@@ -140,11 +139,10 @@ fn check_duplicates(triangles: &[[u32; 3]], positions: &[Point3]) -> Result<()> 
 }
 
 fn check_edges(sides: &[Side], positions: &[Point3]) -> Result<()> {
-    let Some(triple) = sides.windows(3).find(|triple| triple[0].ends == triple[2].ends) else { return Ok(()) };
-    let count = sides.iter().filter(|side| side.ends == triple[0].ends).count();
-    let [s, t, u] = [0, 1, 2].map(|i| triple[i].triangle + 1);
-    let what = format!("an edge of {count} triangles (among them {s}, {t} and {u})");
-    Err(Error::domain(what, edge(triple[0].ends, positions), "leave at most two triangles at every edge"))
+    let Some(same) = by_edge(sides).find(|same| same.len() > 2) else { return Ok(()) };
+    let [s, t, u] = [0, 1, 2].map(|i| same[i].triangle + 1);
+    let what = format!("an edge of {} triangles (among them {s}, {t} and {u})", same.len());
+    Err(Error::domain(what, edge(same[0].ends, positions), "leave at most two triangles at every edge"))
 }
 
 fn check_fans(topology: &Triangulation, positions: &[Point3]) -> Result<()> {
@@ -185,6 +183,81 @@ fn at(v: u32, positions: &[Point3]) -> String {
 
 fn edge([a, b]: [u32; 2], positions: &[Point3]) -> String {
     format!("{} - {}", at(a, positions), at(b, positions))
+}
+
+/// Turns triangles until neighbours pass their edge in opposite directions; in each component as few as possible (its
+/// majority stays). Every edge has at most two `sides`. Returns how many were turned.
+///
+/// # Errors
+/// [`Error::Domain`] of a one-sided surface (a Moebius strip, a Klein bottle), where no way of turning is right; `place`
+/// says where an edge is.
+pub(super) fn orient(triangles: &mut [[u32; 3]], sides: &[Side], place: impl Fn([u32; 2]) -> String) -> Result<usize> {
+    let neighbours = neighbours(triangles.len(), sides);
+    let mut turned: Vec<Option<bool>> = vec![None; triangles.len()];
+    let mut count = 0;
+    for start in 0..triangles.len() {
+        if turned[start].is_some() {
+            continue;
+        }
+        turned[start] = Some(false);
+        let mut component = vec![start];
+        let mut next = 0;
+        while let Some(&triangle) = component.get(next) {
+            next += 1;
+            for &Neighbour { triangle: other, same_direction, ends } in &neighbours[triangle] {
+                let needed = turned[triangle].map(|turned| turned != same_direction);
+                match turned[other] {
+                    None => {
+                        turned[other] = needed;
+                        component.push(other);
+                    }
+                    found if found == needed => {}
+                    _ => return Err(one_sided(place(ends))),
+                }
+            }
+        }
+        count += turn(triangles, &component, &turned);
+    }
+    Ok(count)
+}
+
+/// A triangle across an edge.
+#[derive(Clone, Copy)]
+struct Neighbour {
+    triangle: usize,
+    same_direction: bool,
+    ends: [u32; 2],
+}
+
+fn neighbours(count: usize, sides: &[Side]) -> Vec<Vec<Neighbour>> {
+    let mut neighbours = vec![Vec::with_capacity(3); count];
+    for pair in sides.windows(2).filter(|pair| pair[0].ends == pair[1].ends) {
+        let (same_direction, ends) = (pair[0].forward == pair[1].forward, pair[0].ends);
+        for [from, to] in [[0, 1], [1, 0]] {
+            let neighbour = Neighbour { triangle: pair[to].triangle as usize, same_direction, ends };
+            neighbours[pair[from].triangle as usize].push(neighbour);
+        }
+    }
+    neighbours
+}
+
+/// Turns the smaller part of a component.
+fn turn(triangles: &mut [[u32; 3]], component: &[usize], turned: &[Option<bool>]) -> usize {
+    let marked = component.iter().filter(|&&t| turned[t] == Some(true)).count();
+    let which = 2 * marked <= component.len();
+    let mut count = 0;
+    for &t in component.iter().filter(|&&t| turned[t] == Some(which)) {
+        triangles[t].swap(1, 2);
+        count += 1;
+    }
+    count
+}
+
+/// The error of a surface without two sides.
+pub(super) fn one_sided(place: String) -> Error {
+    let help =
+        "only two-sided surfaces can be meshed: cut this one open (`repair` does), or correct the triangles there";
+    Error::domain("a one-sided surface: its triangles cannot all turn the same way", place, help)
 }
 
 #[cfg(test)]

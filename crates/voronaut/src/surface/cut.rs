@@ -5,8 +5,7 @@
 //! is put onto a feature is put onto all of its sides, so that meshes of the patches fit together again.
 
 use super::Surface;
-use super::curves::{Curve, Curves};
-use super::features::FeatureOptions;
+use super::features::{Curve, Curves, FeatureOptions};
 use crate::error::Result;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 

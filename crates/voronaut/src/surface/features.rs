@@ -1,7 +1,10 @@
-//! Which edges of a surface are features: what a mesh of it has to keep.
+//! Features of a surface, which a mesh of it has to keep, and the curves they make: chains from stop to stop, or closed.
 
-use super::Surface;
-use crate::triangulation::{Constraint, HalfEdge};
+use super::{Place, Surface};
+use crate::geometry::{Point3, Vector3};
+use crate::mesh::Network;
+use crate::triangulation::{Constraint, HalfEdge, VertexId};
+use std::collections::BTreeSet;
 
 /// What counts as a feature besides borders, edges of the input's list, and edges between triangles of different labels.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -63,5 +66,231 @@ impl Surface {
     fn turns(&self, h: HalfEdge, angle: f64) -> bool {
         let Some(twin) = self.topology.twin(h) else { return true };
         self.normal(h.face()).dot(self.normal(twin.face())) < angle.to_radians().cos()
+    }
+}
+
+/// The features of a surface as curves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curves {
+    /// The curves; every feature edge is in one.
+    pub curves: Vec<Curve>,
+    /// Vertices that have to be kept, on curves or not, in order: corners, required ones, those where marks change.
+    pub stops: Vec<VertexId>,
+    /// Those among them where curves end, bend or fork, or that the input calls corners, in order.
+    pub corners: Vec<VertexId>,
+}
+
+/// A chain of feature edges between two stops, which may be one, or a closed one without any.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Its edges, one after the other.
+    pub edges: Vec<CurveEdge>,
+    /// What all of its edges are.
+    pub mark: Mark,
+    /// Whether it ends at stops; else it is closed.
+    pub has_stops: bool,
+}
+
+/// An edge of a curve, with its sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CurveEdge {
+    /// Where it begins.
+    pub from: VertexId,
+    /// Where it ends.
+    pub to: VertexId,
+    /// The half-edge in this direction, if a triangle has it, and that against it.
+    pub sides: [Option<HalfEdge>; 2],
+}
+
+impl Curve {
+    /// The first vertex and the last.
+    pub(crate) fn ends(&self) -> [VertexId; 2] {
+        [self.edges[0].from, self.edges[self.edges.len() - 1].to]
+    }
+
+    /// Whether only one triangle has each edge.
+    pub(crate) fn is_border(&self) -> bool {
+        self.edges[0].sides.contains(&None)
+    }
+}
+
+impl CurveEdge {
+    fn of(surface: &Surface, h: HalfEdge) -> Self {
+        let t = surface.topology();
+        Self { from: t.origin(h), to: t.target(h), sides: [Some(h), t.twin(h)] }
+    }
+
+    fn turned(self) -> Self {
+        Self { from: self.to, to: self.from, sides: [self.sides[1], self.sides[0]] }
+    }
+
+    /// Where it begins and ends in space.
+    pub(crate) fn positions(&self, surface: &Surface) -> [Point3; 2] {
+        [self.from, self.to].map(|v| surface.position(v))
+    }
+
+    fn direction(&self, surface: &Surface) -> Vector3 {
+        let [a, b] = self.positions(surface);
+        (b - a).unit().unwrap_or_default()
+    }
+
+    /// The place with this parameter, from 0 at the beginning to 1 at the end, in the triangle on each side. All have the same
+    /// position to the bit.
+    pub(crate) fn places(&self, surface: &Surface, t: f64) -> Vec<Place> {
+        let [a, b] = self.positions(surface);
+        let position = a.lerp(b, t);
+        let on = |(side, t): (Option<HalfEdge>, f64)| {
+            let h = side?;
+            let mut weights = [0.0; 3];
+            weights[h.index() % 3] = 1.0 - t;
+            weights[h.next().index() % 3] = t;
+            Some(Place { position, ..surface.place(h.face(), weights) })
+        };
+        [(self.sides[0], t), (self.sides[1], 1.0 - t)].into_iter().filter_map(on).collect()
+    }
+}
+
+/// Creases found by their angle that end inside a smooth part after fewer edges than this are noise of a coarse mesh.
+const LEAST_CREASE: usize = 5;
+
+impl Surface {
+    /// Its features as curves, cut at stops: where one ends, forks, bends by more than the angle of the options, where marks
+    /// change, at corners and required vertices of the input and at the ends of required edges. Creases of fewer than five
+    /// edges that end inside a patch do not count, unless the input lists them.
+    pub(crate) fn curves(&self, options: &FeatureOptions) -> Curves {
+        let features = Features::of(self, options);
+        let vertices = || features.network.vertices().map(VertexId);
+        let bends = vertices().filter(|&v| features.is_corner(v, options.ar));
+        let corners: BTreeSet<VertexId> = self.corners.iter().copied().chain(bends).collect();
+        let changes = vertices().filter(|&v| features.changes(v));
+        let stops: BTreeSet<VertexId> = corners.iter().chain(&self.required_points).copied().chain(changes).collect();
+        let curves = features.curves(&stops);
+        Curves { curves, stops: stops.into_iter().collect(), corners: corners.into_iter().collect() }
+    }
+}
+
+/// Feature edges and how they hang together.
+struct Features<'a> {
+    surface: &'a Surface,
+    edges: Vec<(CurveEdge, Mark)>,
+    network: Network,
+}
+
+impl<'a> Features<'a> {
+    fn of(surface: &'a Surface, options: &FeatureOptions) -> Self {
+        let found = surface.topology.edges().filter_map(|h| Some((h, surface.feature(h, options)?)));
+        let edges: Vec<(CurveEdge, Mark)> = found.map(|(h, mark)| (CurveEdge::of(surface, h), mark)).collect();
+        let ends = edges.iter().map(|(edge, _)| [edge.from.0, edge.to.0]);
+        let network = Network::new(surface.positions.len(), ends);
+        let mut features = Self { surface, edges, network };
+        features.prune();
+        features
+    }
+
+    /// Takes away creases found by angle that are short and end nowhere, again and again.
+    fn prune(&mut self) {
+        let network = &mut self.network;
+        let mut ends: Vec<u32> = network.vertices().filter(|&v| network.at(v).len() == 1).collect();
+        while let Some(end) = ends.pop() {
+            let (mut v, mut chain) = (end, Vec::new());
+            while let Some(&i) = network.at(v).iter().find(|i| !chain.contains(*i)) {
+                let is_given = self.edges[i as usize].0.sides[0].is_some_and(|h| self.surface.is_given(h));
+                if is_given || chain.len() == LEAST_CREASE || (v != end && network.at(v).len() != 2) {
+                    break;
+                }
+                chain.push(i);
+                v = network.across(v, i);
+            }
+            if (1..LEAST_CREASE).contains(&chain.len()) {
+                for i in chain {
+                    network.remove(i);
+                }
+                ends.extend((network.at(v).len() == 1).then_some(v));
+            }
+        }
+    }
+
+    /// The edge leaving a vertex.
+    fn leaving(&self, v: VertexId, i: u32) -> CurveEdge {
+        let edge = self.edges[i as usize].0;
+        if edge.from == v { edge } else { edge.turned() }
+    }
+
+    /// Whether curves end or fork at a vertex, or bend by more than the angle.
+    fn is_corner(&self, v: VertexId, angle: Option<f64>) -> bool {
+        let &[i, j] = self.network.at(v.0) else { return true };
+        let [e, f] = [i, j].map(|i| self.leaving(v, i).direction(self.surface));
+        angle.is_some_and(|angle| -e.dot(f) < angle.to_radians().cos())
+    }
+
+    /// Whether the edges at a vertex differ in what they are, or one is required.
+    fn changes(&self, v: VertexId) -> bool {
+        let mut kinds = self.network.at(v.0).iter().map(|&i| {
+            let (edge, mark) = self.edges[i as usize];
+            (edge.sides.contains(&None), mark)
+        });
+        let first = kinds.clone().next();
+        kinds.any(|kind| kind.1.is_required || Some(kind) != first)
+    }
+
+    fn curves(&self, stops: &BTreeSet<VertexId>) -> Vec<Curve> {
+        let curve = |(start, chain): (u32, Vec<u32>)| {
+            let mark = self.edges[chain[0] as usize].1;
+            let mut at = VertexId(start);
+            let next = |i| {
+                let edge = self.leaving(at, i);
+                at = edge.to;
+                edge
+            };
+            Curve { edges: chain.into_iter().map(next).collect(), mark, has_stops: stops.contains(&VertexId(start)) }
+        };
+        self.network.chains(|v| stops.contains(&VertexId(v))).into_iter().map(curve).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+
+    /// The unit cube, 12 triangles, a label per side.
+    fn cube() -> Mesh {
+        let points = (0..8).map(|i| [f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)]).collect();
+        let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        Mesh { points, triangles, triangle_labels: (0..12).map(|i| i / 2).collect(), ..Mesh::default() }
+    }
+
+    #[test]
+    fn a_cube_has_twelve_ridges_and_eight_corners() {
+        let surface = Surface::new(&cube()).unwrap();
+        let found = surface.curves(&FeatureOptions::default());
+        assert_eq!((found.curves.len(), found.corners.len(), found.stops.len()), (12, 8, 8));
+        assert!(found.curves.iter().all(|c| c.mark.is_ridge && c.edges.len() == 1 && c.has_stops));
+        let by_labels = surface.curves(&FeatureOptions { ar: None });
+        assert_eq!((by_labels.curves.len(), by_labels.corners.len()), (12, 8));
+        assert!(by_labels.curves.iter().all(|c| !c.mark.is_ridge));
+        let unlabelled = Surface::new(&Mesh { triangle_labels: Vec::new(), ..cube() }).unwrap();
+        assert_eq!(unlabelled.curves(&FeatureOptions { ar: None }), Curves::default());
+        assert_eq!(unlabelled.curves(&FeatureOptions { ar: Some(91.0) }), Curves::default());
+    }
+
+    #[test]
+    fn required_points_stop_a_curve_and_labels_change_it() {
+        let mesh = Mesh {
+            points: vec![[0., 0., 0.], [1., 0., 0.], [2., 0.1, 0.], [3., 0., 0.], [1.5, 2., 0.]],
+            triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4]],
+            edges: vec![[0, 1], [1, 2], [2, 3]],
+            edge_labels: vec![5, 5, 6],
+            required_points: vec![1],
+            ..Mesh::default()
+        };
+        let found = Surface::new(&mesh).unwrap().curves(&FeatureOptions::default());
+        assert_eq!(found.corners, [0, 3, 4].map(VertexId));
+        assert_eq!(found.stops, [0, 1, 2, 3, 4].map(VertexId));
+        assert!(found.curves.len() == 5 && found.curves.iter().all(Curve::is_border));
+        let closed = Surface::new(&mesh).unwrap().curves(&FeatureOptions { ar: None });
+        assert_eq!((closed.corners.len(), closed.stops), (0, [0, 1, 2, 3].map(VertexId).to_vec()));
+        assert_eq!(closed.curves.len(), 4);
     }
 }

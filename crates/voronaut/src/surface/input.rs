@@ -88,12 +88,8 @@ impl Input {
     /// # Errors
     /// [`Error::Metric`] where it has not one entry per vertex.
     pub fn spread(&self, solution: &Solution) -> Result<Solution> {
-        let (found, needed) = (solution.count(), self.seams.vertices_before());
-        if found == needed {
-            return Ok(solution.of_vertices(&self.seams.originals()));
-        }
-        let help = "the metric must have one value for each vertex of the surface's file, in the same order";
-        Err(Error::metric(format!("{found} values for {needed} vertices"), "the surface", help))
+        check_count(solution.count(), self.seams.vertices_before())?;
+        Ok(solution.of_vertices(&self.seams.originals()))
     }
 
     fn with_seams(surface: Surface, implicit: Option<Expression>, seams: Seams) -> Self {
@@ -176,6 +172,15 @@ impl Input {
         let weighted = corners.iter().zip(place.weights).map(|(v, weight)| self.normals[v.index()] * weight);
         weighted.fold(Vector3::default(), |sum, normal| sum + normal).unit().unwrap_or(place.normal)
     }
+}
+
+/// Whether a metric has a value for each vertex.
+pub(super) fn check_count(found: usize, needed: usize) -> Result<()> {
+    if found == needed {
+        return Ok(());
+    }
+    let help = "the metric must have one value for each vertex of the surface's file, in the same order";
+    Err(Error::metric(format!("{found} values for {needed} vertices"), "the surface", help))
 }
 
 /// Where a triangle is closest to a point, and the square of the distance.

@@ -78,9 +78,7 @@ impl<'a> Level<'a> {
     /// The vertex where Newton's method leads, not farther than `reach`, within the box.
     pub(super) fn land(&self, p: Point3, pins: Pins, reach: f64) -> Option<Vertex> {
         let q = project_pinned(self.f, p, pins, reach, self.tolerance)?;
-        let [x, low, high] = [q, self.bounds.min, self.bounds.max].map(Point3::to_array);
-        let inside = (0..3).all(|i| low[i] <= x[i] && x[i] <= high[i]);
-        self.vertex(q, pins).filter(|_| inside)
+        self.vertex(q, pins).filter(|_| self.bounds.contains(q))
     }
 
     /// The vertex above the middle of an edge. Where the surface bends much between the ends, that is where the ray along

@@ -91,42 +91,24 @@ impl Surface {
     /// The connected parts, in the order of their first triangles.
     pub fn components(&self) -> Vec<Component> {
         let t = &self.topology;
-        let mut part = vec![usize::MAX; t.face_slots()];
-        let mut components = Vec::new();
-        for start in t.faces() {
-            if part[start.index()] == usize::MAX {
-                part[start.index()] = components.len();
-                components.push(Component { faces: vec![start], euler_characteristic: 0, borders: 0 });
-                self.grow(&mut components, &mut part);
-            }
-        }
+        let (part, parts) = t.parts(|_| true);
+        let component = |faces: Vec<FaceId>| {
+            let euler_characteristic = faces.len().cast_signed();
+            Component { faces, euler_characteristic, borders: 0 }
+        };
+        let mut components: Vec<Component> = parts.into_iter().map(component).collect();
+        let part_of = |h: HalfEdge| part[h.face().index()] as usize;
         for v in t.vertices() {
             let start = t.start(v).expect("a vertex of a face");
-            components[part[start.face().index()]].euler_characteristic += 1;
+            components[part_of(start)].euler_characteristic += 1;
         }
         for h in t.edges() {
-            components[part[h.face().index()]].euler_characteristic -= 1;
+            components[part_of(h)].euler_characteristic -= 1;
         }
         for curve in self.border_loops() {
-            components[part[curve[0].face().index()]].borders += 1;
+            components[part_of(curve[0])].borders += 1;
         }
         components
-    }
-
-    /// Adds all triangles that hang together with the first of the last component.
-    fn grow(&self, components: &mut [Component], part: &mut [usize]) {
-        let Some((component, before)) = components.split_last_mut() else { return };
-        let mut next = 0;
-        while let Some(&f) = component.faces.get(next) {
-            next += 1;
-            for other in f.half_edges().into_iter().filter_map(|h| self.topology.twin(h)).map(HalfEdge::face) {
-                if part[other.index()] == usize::MAX {
-                    part[other.index()] = before.len();
-                    component.faces.push(other);
-                }
-            }
-        }
-        component.euler_characteristic = component.faces.len().cast_signed();
     }
 }
 

@@ -2,24 +2,22 @@
 //!
 //! | module | what it is |
 //! |---|---|
-//! | `build`, `orient` | from an indexed list of triangles to a [`Surface`], or what is wrong and where |
+//! | `build` | from an indexed list of triangles to a [`Surface`], or what is wrong and where |
 //! | `repair` | damage of meshes mended, or named |
 //! | `measure` | area, normals, Euler characteristic, components, borders |
 //! | `nearest` | the closest point of a surface |
-//! | `features`, `curves` | creases, borders, interfaces, edges of the list; the curves that they make, from corner to corner |
+//! | `features` | creases, borders, interfaces, edges of the list; the curves that they make, from corner to corner |
 //! | `cut` | a surface cut open along its features into patches |
 //! | `input` | a surface with its equation, if it has one; how points come onto it |
-//! | `chart`, `chord` | a part of a surface seen as a part of the plane; the way over a chord |
+//! | `chart` | a part of a surface seen as a part of the plane; the way over a chord |
 //! | `implicit`, `march` | surfaces f(x, y, z) = 0: derivatives, projection, a first mesh by marching tetrahedra |
 //! | `sheets` | lines in which sheets of f = 0 meet |
 //! | `level`, `remesh` | a triangulation on f = 0; better triangles for it, as fine as its curvature asks for |
-//! | `shapes`, `written` | spheres, tori, chairs, and how users write them |
+//! | `shapes` | spheres, tori, chairs, and how users write them |
 //! | [`metric`] | metric fields on surfaces, curvature among them |
 
 mod build;
 mod chart;
-mod chord;
-mod curves;
 mod cut;
 mod features;
 mod implicit;
@@ -29,19 +27,16 @@ mod march;
 mod measure;
 pub mod metric;
 mod nearest;
-mod orient;
 mod remesh;
 mod repair;
 mod shapes;
 mod sheets;
 mod tetrahedra;
-mod written;
 
 pub(crate) use chart::Chart;
-pub use curves::{Curve, CurveEdge, Curves};
 pub use cut::Seams;
 pub(crate) use cut::Whole;
-pub use features::{FeatureOptions, Mark};
+pub use features::{Curve, CurveEdge, Curves, FeatureOptions, Mark};
 pub use implicit::{Curvatures, Implicit};
 pub(crate) use implicit::{closest_zero, curvatures, project};
 pub use input::Input;
@@ -51,8 +46,7 @@ pub(crate) use nearest::{Nearest, closest_weights};
 pub use repair::{Mended, RepairOptions, repaired};
 #[cfg(test)]
 pub(crate) use shapes::chair;
-pub use shapes::{sphere, torus};
-pub use written::shape;
+pub use shapes::{shape, sphere, torus};
 
 use crate::geometry::{Point3, Vector3};
 use crate::triangulation::{Constraint, FaceId, Triangulation, VertexId};

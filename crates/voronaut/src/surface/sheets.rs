@@ -40,9 +40,7 @@ fn on_line(f: &dyn Implicit, p: Point3, step: f64, bounds: Aabb3) -> Option<Poin
         let next = crossing(f, q + along * (part * step), step);
         next.is_some_and(|(next, _)| next.distance(q) > 0.25 * step)
     });
-    let [x, low, high] = [q, bounds.min, bounds.max].map(Point3::to_array);
-    let is_inside = (0..3).all(|i| low[i] <= x[i] && x[i] <= high[i]);
-    (is_line && is_inside).then_some(q)
+    (is_line && bounds.contains(q)).then_some(q)
 }
 
 /// The nearest point with f = 0 and without gradient where the second derivatives have both signs, by Newton's method on the

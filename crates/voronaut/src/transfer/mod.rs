@@ -11,7 +11,6 @@
 //!
 //! Beyond the old mesh (curved boundaries have other chords in another mesh) the nearest value goes on.
 
-mod bounded;
 mod clip;
 mod cover;
 mod field;

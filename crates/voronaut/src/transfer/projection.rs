@@ -1,9 +1,8 @@
 //! Fields projected: the least L2 distance to the old field, or the mean over each triangle.
 
-use super::bounded::bounded;
 use super::cover::Cover;
 use super::loads::{Loads, Old, Rows};
-use super::mass::{MassMatrix, areas, balance, share_missing};
+use super::mass::{MassMatrix, areas, balance, bounded, share_missing};
 use super::{Field, Kind, Overshoot, Place};
 use crate::error::Result;
 use crate::mesh::{Locator, Mesh};

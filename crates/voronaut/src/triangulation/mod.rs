@@ -8,13 +8,11 @@ mod ids;
 mod lawson;
 mod operations;
 mod renumber;
-mod star;
 
 pub use check::Broken;
 pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
 pub use lawson::Limit;
 pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_in_rounds};
-pub(crate) use star::Star;
 
 use ids::NONE;
 
@@ -179,7 +177,7 @@ impl Triangulation {
 
     /// Whether an edge has two faces and no constraint, and its flip makes no edge between vertices that one joins already.
     pub(crate) fn can_flip(&self, h: HalfEdge) -> bool {
-        let joins = |u, v| self.star(u).any(|e| self.target(e) == v || self.apex(e) == v);
+        let joins = |u, v| self.around(u).any(|w| w == v);
         !self.is_fixed(h) && self.quad(h).is_some_and(|[_, _, c, d]| c != d && !joins(c, d))
     }
 
@@ -243,7 +241,19 @@ impl Triangulation {
 
     /// The half-edges that leave a vertex, counter-clockwise; at the border from one end of the fan to the other.
     pub(crate) fn star(&self, v: VertexId) -> Star<'_> {
-        Star::new(self, v)
+        let first = self.start(v);
+        Star { triangulation: self, first, next: first }
+    }
+
+    /// The vertices to which fixed edges lead from one, those of the border included.
+    pub(crate) fn along_fixed(&self, v: VertexId) -> impl Iterator<Item = VertexId> {
+        let ends = self.star(v).flat_map(|h| {
+            let ahead = self.is_fixed(h).then(|| self.target(h));
+            // The side that comes back to the vertex has a half-edge of the star on its other side, but for the border.
+            let is_last = self.twin(h.prev()).is_none();
+            [ahead, is_last.then(|| self.apex(h))]
+        });
+        ends.flatten()
     }
 
     /// The neighbours of a vertex, face by face: each is there twice, but those at the ends of a border vertex's fan.
@@ -270,7 +280,7 @@ impl Triangulation {
     }
 
     /// The connected part that each vertex slot belongs to, by the first vertex of it.
-    pub(crate) fn parts(&self) -> Vec<usize> {
+    pub(crate) fn vertex_parts(&self) -> Vec<usize> {
         let mut part = vec![usize::MAX; self.vertex_slots()];
         for first in 0..part.len() {
             let mut stack = vec![first];
@@ -304,6 +314,32 @@ impl Triangulation {
         loops
     }
 
+    /// The parts of faces that hang together across half-edges for which `joins` holds (of both sides or none): the part of
+    /// each face slot, and the faces of each part, in the order in which neighbours are found.
+    pub(crate) fn parts(&self, joins: impl Fn(HalfEdge) -> bool) -> (Vec<u32>, Vec<Vec<FaceId>>) {
+        let mut part_of = vec![NONE; self.face_slots()];
+        let mut parts: Vec<Vec<FaceId>> = Vec::new();
+        for start in self.faces() {
+            let (mut part, mut next) = (vec![start], 0);
+            if part_of[start.index()] != NONE {
+                continue;
+            }
+            part_of[start.index()] = parts.len() as u32;
+            while let Some(&f) = part.get(next) {
+                next += 1;
+                for h in f.half_edges().into_iter().filter(|&h| joins(h)) {
+                    let Some(beside) = self.twin(h).map(HalfEdge::face) else { continue };
+                    if part_of[beside.index()] == NONE {
+                        part_of[beside.index()] = parts.len() as u32;
+                        part.push(beside);
+                    }
+                }
+            }
+            parts.push(part);
+        }
+        (part_of, parts)
+    }
+
     /// The half-edge from a to b, if a face has it (the first of several).
     pub(crate) fn find(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
         self.star(a).find(|&h| self.target(h) == b)
@@ -312,6 +348,24 @@ impl Triangulation {
     /// A side of the edge between two vertices, that from a to b if a face has it.
     pub(crate) fn edge_between(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
         self.find(a, b).or_else(|| self.find(b, a))
+    }
+}
+
+/// The half-edges that leave a vertex, counter-clockwise. See [`Triangulation::star`].
+#[derive(Clone)]
+pub(crate) struct Star<'a> {
+    triangulation: &'a Triangulation,
+    first: Option<HalfEdge>,
+    next: Option<HalfEdge>,
+}
+
+impl Iterator for Star<'_> {
+    type Item = HalfEdge;
+
+    fn next(&mut self) -> Option<HalfEdge> {
+        let h = self.next?;
+        self.next = self.triangulation.twin(h.prev()).filter(|&n| Some(n) != self.first);
+        Some(h)
     }
 }
 

@@ -151,7 +151,7 @@ impl Triangulation {
 
     /// The vertices that an edge joins to this one.
     fn neighbours(&self, v: VertexId) -> Vec<VertexId> {
-        let mut found: Vec<VertexId> = self.star(v).flat_map(|h| [self.target(h), self.apex(h)]).collect();
+        let mut found: Vec<VertexId> = self.around(v).collect();
         found.sort_unstable();
         found.dedup();
         found

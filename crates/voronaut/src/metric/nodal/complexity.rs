@@ -1,19 +1,17 @@
 //! The complexity of a metric at vertices, in closed form, and metrics of a given complexity.
 
-use super::{check, enforce_spd};
+use super::enforce_spd;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::metric::Norm;
+use crate::metric::validate::check_at_vertices;
 
 /// The integral of sqrt(det M) over a planar mesh, of the metric that is log-Euclidean between the vertices: exact but for
 /// rounding, for there log sqrt(det M) is linear on every triangle. Triangles of either orientation count.
 pub fn complexity(mesh: &Mesh, tensors: &[Tensor]) -> f64 {
     let logs: Vec<f64> = tensors.iter().map(|tensor| 0.5 * tensor.determinant().ln()).collect();
-    let of_triangle = |&t: &[u32; 3]| {
-        let [a, b, c] = mesh.corners_of(t);
-        (b - a).cross(c - a).abs() * divided_difference(t.map(|v| logs[v as usize]))
-    };
+    let of_triangle = |&t: &[u32; 3]| mesh.double_area(t) * divided_difference(t.map(|v| logs[v as usize]));
     mesh.triangles.iter().map(of_triangle).sum()
 }
 
@@ -24,7 +22,7 @@ pub fn complexity(mesh: &Mesh, tensors: &[Tensor]) -> f64 {
 /// As of [`Sampled::new`](crate::metric::Sampled::new); [`Error::Parse`] of a target that is not positive and finite.
 pub fn normalise(mesh: &Mesh, hessians: &[Tensor], norm: Norm, target_complexity: f64) -> Result<Vec<Tensor>> {
     let weighted = weighted(hessians, norm)?;
-    check(mesh, &weighted)?;
+    check_at_vertices(mesh, &weighted)?;
     scaled_to(mesh, &weighted, target_complexity)
 }
 

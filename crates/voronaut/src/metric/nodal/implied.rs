@@ -1,10 +1,9 @@
 //! Metrics from meshes and from sizes.
 
-use super::check;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
 use crate::mesh::Mesh;
-use crate::metric::sampled::{check_background, check_count};
+use crate::metric::validate::{check_at_vertices, check_background, check_count, check_sizes};
 
 /// The metric that a mesh implies: that of a triangle is the one in which it is equilateral with edges of length one (its Steiner
 /// tensor), that of a vertex the log-Euclidean mean of those around it, weighted by (Euclidean) areas. A vertex that no triangle
@@ -23,8 +22,7 @@ pub fn implied(mesh: &Mesh) -> Result<Vec<Tensor>> {
             let help = "remove triangles without area: voronaut check names them";
             return Err(Error::Mesh { what: "a triangle has no area".into(), place, help: help.into() });
         }
-        let [a, b, c] = corners;
-        let area = (b - a).cross(c - a).abs();
+        let area = mesh.double_area(t);
         for v in t {
             let (sum, total) = &mut sums[v as usize];
             *sum = *sum + tensor.log() * area;
@@ -55,14 +53,10 @@ fn of_triangle([a, b, c]: [Point; 3]) -> Tensor {
 /// # Errors
 /// [`Error::Metric`](crate::Error::Metric) of a size that is not positive and finite, or of more or fewer than vertices.
 pub fn isotropic(mesh: &Mesh, sizes: &[f64]) -> Result<Vec<Tensor>> {
-    check_background(mesh)?;
     check_count(mesh, "sizes", sizes.len())?;
-    if let Some(v) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) {
-        let what = format!("the size h = {} is not positive and finite", sizes[v]);
-        return Err(Error::metric(what, mesh.describe(v), "a size is the length of edges there"));
-    }
+    check_sizes(sizes, |v| mesh.describe(v))?;
     let tensors: Vec<Tensor> = sizes.iter().map(|&h| Tensor::isotropic(h)).collect();
-    check(mesh, &tensors)?;
+    check_at_vertices(mesh, &tensors)?;
     Ok(tensors)
 }
 

@@ -24,7 +24,6 @@ mod solve;
 mod spd;
 #[cfg(test)]
 pub(super) mod test_meshes;
-mod waiting;
 
 pub use combine::{average, intersect};
 pub use complexity::{complexity, normalise};
@@ -33,17 +32,4 @@ pub use gradation::grade;
 pub use implied::{implied, isotropic};
 pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source, Touched};
 pub use restrict::{Limit, Limits, restrict};
-pub(crate) use spd::{absolute, enforce_spd};
-
-use super::sampled::{check_background, check_count};
-use super::validate::check_tensor_at;
-use crate::error::Result;
-use crate::geometry::Tensor;
-use crate::mesh::Mesh;
-
-/// Whether these are a metric at the vertices of a planar mesh: errors as of [`Sampled::new`](super::Sampled::new).
-fn check(mesh: &Mesh, tensors: &[Tensor]) -> Result<()> {
-    check_background(mesh)?;
-    check_count(mesh, "tensors", tensors.len())?;
-    tensors.iter().enumerate().try_for_each(|(v, &tensor)| check_tensor_at(tensor, || mesh.describe(v)))
-}
+pub(crate) use spd::{absolute, enforce_spd, size};

@@ -4,11 +4,12 @@ use super::complexity::{complexity, demand_target, scaled_to, weighted};
 use super::gradation::Gradation;
 use super::restrict::{Limits, restrict};
 use super::solve::{Root, root};
-use super::{average, check, intersect};
+use super::{average, intersect};
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::metric::Norm;
+use crate::metric::validate::check_at_vertices;
 
 /// From Hessians and metrics to the metric of the next mesh. The order:
 ///
@@ -121,7 +122,7 @@ impl Pipeline {
                 Source::Hessian(hessians) => weighted(hessians, self.norm)?,
                 Source::Metric(tensors) => tensors.clone(),
             };
-            check(mesh, &tensors)?;
+            check_at_vertices(mesh, &tensors)?;
             self.target_complexity.map_or(Ok(tensors.clone()), |target| scaled_to(mesh, &tensors, target))
         };
         let metrics = sources.iter().map(metric).collect::<Result<Vec<_>>>()?;

@@ -38,7 +38,7 @@ pub(crate) fn enforce_spd(hessians: &[Tensor]) -> Result<Vec<Tensor>> {
 }
 
 /// The greater absolute eigenvalue.
-fn size(h: Tensor) -> f64 {
+pub(crate) fn size(h: Tensor) -> f64 {
     let e = h.eigen();
     e.large.abs().max(e.small.abs())
 }

@@ -1,8 +1,7 @@
 //! Second derivatives by quadratic polynomials fitted around every vertex.
 
 use super::super::neighbours::Neighbours;
-use super::least_squares::solve;
-use super::stencil::{Frame, Rings};
+use super::stencil::{Frame, Rings, solve};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;

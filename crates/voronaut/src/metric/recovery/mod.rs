@@ -1,11 +1,10 @@
 //! Second derivatives of a solution that is known at the vertices of a mesh.
 
 mod fit;
-mod least_squares;
 mod projection;
 mod stencil;
 
-use super::sampled::check_background;
+use super::validate::check_background;
 use crate::error::{Error, Result, named};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;

@@ -1,10 +1,9 @@
 //! Second derivatives by projecting gradients twice.
 
 use super::super::neighbours::Neighbours;
-use super::least_squares::solve;
-use super::stencil::{Frame, Rings};
+use super::stencil::{Frame, Rings, solve};
 use crate::geometry::Tensor;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, borders, sides};
 use crate::parallel::prelude::*;
 
 /// The double L2 projection with lumped masses: gradients of triangles averaged to the vertices by area, differentiated, and
@@ -39,9 +38,9 @@ impl<'a> Averaging<'a> {
     fn of(mesh: &'a Mesh) -> Self {
         let mut areas = vec![0.0; mesh.points.len()];
         for &t in &mesh.triangles {
-            let [a, b, c] = mesh.corners_of(t);
+            let area = mesh.double_area(t);
             for v in t {
-                areas[v as usize] += (b - a).cross(c - a).abs();
+                areas[v as usize] += area;
             }
         }
         Self { mesh, around: Neighbours::of(mesh), is_border: border(mesh), areas }
@@ -106,14 +105,8 @@ const INDEPENDENT: f64 = 0.2;
 
 /// Which vertices are on an edge of one triangle only.
 fn border(mesh: &Mesh) -> Vec<bool> {
-    let sides = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)]);
-    let mut edges: Vec<[u32; 2]> = mesh.triangles.iter().flat_map(sides).collect();
-    edges.sort_unstable();
     let mut is_border = vec![false; mesh.points.len()];
-    for edge in edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1) {
-        for v in edge[0] {
-            is_border[v as usize] = true;
-        }
-    }
+    let all = sides(mesh.triangles.iter().copied());
+    borders(&all).flat_map(|side| side.ends).for_each(|v| is_border[v as usize] = true);
     is_border
 }

@@ -1,8 +1,8 @@
-//! The metric of principal curvatures.
+//! The metric of principal curvatures, and these at the vertices of a mesh.
 
-use super::{CurvatureFigures, Sampled, SurfaceMetric, fit_curvatures};
+use super::{CurvatureFigures, Sampled, SurfaceMetric};
 use crate::error::Result;
-use crate::geometry::Tensor3;
+use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3};
 use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Implicit, Place, Surface, curvatures};
 use crate::triangulation::VertexId;
@@ -45,7 +45,7 @@ pub(crate) fn sampled_curvature(surface: &Surface, floor: f64) -> Result<Sampled
     let fits: Vec<Option<Tensor3>> = fitted.iter().zip(&caps).map(metric).collect();
     let t = surface.topology();
     let tensor = |v: u32| {
-        let around = || t.star(VertexId(v)).flat_map(|h| [t.target(h), t.apex(h)]).filter_map(|w| fits[w.index()]);
+        let around = || t.around(VertexId(v)).filter_map(|w| fits[w.index()]);
         fits[v as usize].or_else(|| mean(around())).unwrap_or(Tensor3::IDENTITY * floor)
     };
     let tensors: Vec<Tensor3> = (0..fits.len() as u32).map(tensor).collect();
@@ -62,9 +62,7 @@ pub(crate) fn sampled_curvature(surface: &Surface, floor: f64) -> Result<Sampled
 
 /// The greatest curvature that edges at a vertex can tell; no number of a vertex without edges, which has no fit either.
 fn cap(surface: &Surface, v: VertexId) -> f64 {
-    let t = surface.topology();
-    let ends =
-        t.star(v).flat_map(|h| [t.target(h), t.apex(h)]).map(|w| surface.position(w).distance(surface.position(v)));
+    let ends = surface.topology().around(v).map(|w| surface.position(w).distance(surface.position(v)));
     let (count, sum) = ends.fold((0.0, 0.0), |(count, sum), length| (count + 1.0, sum + length));
     std::f64::consts::TAU * count / sum
 }
@@ -75,12 +73,132 @@ fn mean(tensors: impl Iterator<Item = Tensor3>) -> Option<Tensor3> {
     (count > 0.0).then(|| (sum * (1.0 / count)).exp())
 }
 
+/// Principal curvatures at every vertex by fitting a polynomial of degree three over the tangent plane to the vertices of
+/// its two rings of neighbours (Cazals and Pouget 2005, "jets"). Where vertices are on a smooth surface, curvatures are
+/// right to the second order in the length of edges, however irregular the mesh: theirs is a proof, which averages of
+/// normals (Rusinkiewicz 2004) do not have. Noise is not smoothed. With too few neighbours the degree is two, the order one.
+///
+/// One entry per vertex slot: `None` of vertices without triangles, or where those around have no common side or make no finite
+/// fit (needles without height).
+pub fn fit_curvatures(surface: &Surface) -> Vec<Option<Curvatures>> {
+    let slots = surface.positions().len() as u32;
+    (0..slots).into_par_iter().map(|v| fit(surface, VertexId(v))).collect()
+}
+
+/// Terms of a polynomial of degree three in two variables.
+const TERMS: usize = 10;
+/// Terms of degree two and less stand first.
+const QUADRATIC: usize = 6;
+/// A polynomial of degree three has so many neighbours to fit, at least.
+const ENOUGH: usize = 14;
+/// Singular systems (few neighbours, or all on a conic) get this part of their largest entry on the diagonal.
+const RIDGE: f64 = 1e-12;
+
+fn fit(surface: &Surface, v: VertexId) -> Option<Curvatures> {
+    let normal = surface.vertex_normal(v)?;
+    let plane = TangentPlane::new(normal);
+    let origin = surface.position(v);
+    let around = two_rings(surface, v, &plane);
+    let size = around.iter().map(|&p| plane.flatten(p - origin).norm()).fold(0.0, f64::max);
+    if size == 0.0 {
+        return None;
+    }
+    let terms = if around.len() >= ENOUGH { TERMS } else { QUADRATIC };
+    let mut system = System::default();
+    for p in around.into_iter().chain([origin]) {
+        let (flat, height) = (plane.flatten(p - origin) * (1.0 / size), (p - origin).dot(normal) / size);
+        system.add(monomials(flat.x, flat.y), height);
+    }
+    let [_, x, y, xx, xy, yy, ..] = system.solve(terms);
+    let found = of_graph(&plane, [x, y], Tensor::new(2.0 * xx, xy, 2.0 * yy) * (1.0 / size));
+    found.values.iter().all(|value| value.is_finite()).then_some(found)
+}
+
+/// Neighbours and their neighbours, without those on triangles that face away: they are of another sheet.
+fn two_rings(surface: &Surface, v: VertexId, plane: &TangentPlane) -> Vec<Point3> {
+    let t = surface.topology();
+    let mut found = vec![v];
+    let mut ring = 0..1;
+    for _ in 0..2 {
+        let next = found.len();
+        for i in ring {
+            let spokes = t.star(found[i]).filter(|&h| surface.normal(h.face()).dot(plane.normal) > 0.0);
+            // Both ends of the far side: at the border one of them has no spoke of its own.
+            for w in spokes.flat_map(|h| [t.target(h), t.apex(h)]).collect::<Vec<_>>() {
+                if !found.contains(&w) {
+                    found.push(w);
+                }
+            }
+        }
+        ring = next..found.len();
+    }
+    found[1..].iter().map(|&w| surface.position(w)).collect()
+}
+
+fn monomials(x: f64, y: f64) -> [f64; TERMS] {
+    [1.0, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y]
+}
+
+/// From the gradient and the Hessian of a height over a plane to curvatures: the shape operator in the graph's own tangent
+/// plane. Heights grow along the normal, so that a sphere's Hessian is negative and its curvatures positive.
+fn of_graph(plane: &TangentPlane, [x, y]: [f64; 2], hessian: Tensor) -> Curvatures {
+    let slant = (1.0 + x * x + y * y).sqrt();
+    let normal = (plane.normal + plane.u * -x + plane.v * -y) * (1.0 / slant);
+    let own = TangentPlane::new(normal);
+    // A tangent of the graph with plane coordinates d bends by d' H d / slant.
+    let [a, b] = [own.u, own.v].map(|axis| plane.flatten(axis));
+    let bend = |d, e| -hessian.dot(d, e) / slant;
+    Curvatures::of(Tensor::new(bend(a, a), bend(a, b), bend(b, b)), &own)
+}
+
+/// Normal equations of a linear least-squares problem.
+#[derive(Default)]
+struct System {
+    matrix: [[f64; TERMS]; TERMS],
+    right: [f64; TERMS],
+}
+
+impl System {
+    fn add(&mut self, row: [f64; TERMS], value: f64) {
+        for i in 0..TERMS {
+            self.right[i] += row[i] * value;
+            for j in 0..TERMS {
+                self.matrix[i][j] += row[i] * row[j];
+            }
+        }
+    }
+
+    /// The solution in the first `terms` unknowns (others are zero), by Cholesky's factors.
+    fn solve(mut self, terms: usize) -> [f64; TERMS] {
+        let largest = (0..terms).map(|i| self.matrix[i][i]).fold(0.0, f64::max);
+        for i in 0..terms {
+            self.matrix[i][i] += RIDGE * largest;
+        }
+        let m = &mut self.matrix;
+        for i in 0..terms {
+            for j in 0..=i {
+                let sum = m[i][j] - (0..j).map(|k| m[i][k] * m[j][k]).sum::<f64>();
+                m[i][j] = if i == j { sum.max(f64::MIN_POSITIVE).sqrt() } else { sum / m[j][j] };
+            }
+        }
+        let mut x = [0.0; TERMS];
+        for i in 0..terms {
+            x[i] = (self.right[i] - (0..i).map(|k| m[i][k] * x[k]).sum::<f64>()) / m[i][i];
+        }
+        for i in (0..terms).rev() {
+            x[i] = (x[i] - (i + 1..terms).map(|k| m[k][i] * x[k]).sum::<f64>()) / m[i][i];
+        }
+        x
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::TangentPlane;
+    use crate::mesh::Mesh;
     use crate::metric::{Expression, Variables};
-    use crate::surface::torus;
+    use crate::surface::{sphere, torus};
 
     #[test]
     fn meshes_and_equations_agree() {
@@ -111,5 +229,77 @@ mod tests {
             ..surface.place(crate::triangulation::FaceId(0), [1.0, 0.0, 0.0])
         };
         assert!(!ImplicitCurvature { f, floor: 0.1 }.at(&place).is_positive_definite());
+    }
+
+    /// The largest errors of both curvatures at all vertices, against the truth at a point.
+    fn error(surface: &Surface, truth: impl Fn(Point3) -> [f64; 2]) -> f64 {
+        let fitted = fit_curvatures(surface);
+        let of_vertex = |v: VertexId| {
+            let truth = truth(surface.position(v));
+            let values = fitted[v.index()].expect("curvatures").values;
+            (values[0] - truth[0]).abs().max((values[1] - truth[1]).abs())
+        };
+        surface.topology().vertices().map(of_vertex).fold(0.0, f64::max)
+    }
+
+    /// The surface with every vertex moved along by up to a quarter of an edge, and pushed back by `onto`.
+    fn shaken(surface: &Surface, edge: f64, onto: impl Fn(Point3) -> Point3) -> Surface {
+        let mut mesh = surface.to_mesh();
+        for (i, p) in mesh.points.iter_mut().enumerate() {
+            let i = i as f64;
+            let shift = [1.3, 2.9, 4.7].map(|k| 0.15 * edge * (k * 12.9898 * i).sin());
+            *p = onto(Point3::new(p[0] + shift[0], p[1] + shift[1], p[2] + shift[2])).to_array();
+        }
+        Surface::new(&mesh).unwrap()
+    }
+
+    fn orders(errors: &[f64]) -> Vec<f64> {
+        errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect()
+    }
+
+    fn on_torus(p: Point3) -> Point3 {
+        let ring = Point3::new(2.0 * p.x / p.x.hypot(p.y), 2.0 * p.y / p.x.hypot(p.y), 0.0);
+        ring + (p - ring) * (0.7 / (p - ring).norm())
+    }
+
+    #[test]
+    fn spheres_have_the_curvature_of_their_radius() {
+        let edges = [0.8, 0.4, 0.2];
+        let errors = edges.map(|edge| {
+            let round = |p: Point3| Point3::default() + (p - Point3::default()).unit().unwrap() * 2.0;
+            error(&shaken(&sphere(2.0, edge).unwrap(), edge, round), |_| [0.5, 0.5])
+        });
+        println!("sphere, shaken: errors {errors:?}, orders {:?}", orders(&errors));
+        assert!(orders(&errors).iter().all(|&order| order > 1.6), "{errors:?}");
+    }
+
+    #[test]
+    fn tori_have_the_curvatures_of_both_radii() {
+        let truth = |p: Point3| {
+            let r = p.x.hypot(p.y);
+            let mut values = [1.0 / 0.7, (r - 2.0) / 0.7 / r];
+            values.sort_by(|a, b| b.abs().total_cmp(&a.abs()));
+            values
+        };
+        let edges = [0.2, 0.1, 0.05];
+        let even = edges.map(|edge| error(&torus(2.0, 0.7, edge).unwrap(), truth));
+        let errors = edges.map(|edge| error(&shaken(&torus(2.0, 0.7, edge).unwrap(), edge, on_torus), truth));
+        println!("torus: errors {even:?}, orders {:?}", orders(&even));
+        println!("torus, shaken: errors {errors:?}, orders {:?}", orders(&errors));
+        assert!(orders(&even).iter().chain(&orders(&errors)).all(|&order| order > 1.6), "{even:?} {errors:?}");
+    }
+
+    #[test]
+    fn few_neighbours_are_enough_for_something_finite() {
+        let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+        let tetrahedron = Surface::new(&Mesh { points: points.clone(), triangles, ..Mesh::default() }).unwrap();
+        let triangle = Surface::new(&Mesh { points, triangles: vec![[0, 1, 2]], ..Mesh::default() }).unwrap();
+        for c in fit_curvatures(&tetrahedron).iter().flatten().chain(fit_curvatures(&triangle).iter().flatten()) {
+            assert!(c.values.iter().all(|value| value.is_finite() && value.abs() < 100.0), "{c:?}");
+        }
+        assert!(fit_curvatures(&triangle)[3].is_none());
+        let flat = fit_curvatures(&triangle)[0].unwrap();
+        assert!(flat.values.iter().all(|value| value.abs() < 1e-9), "{flat:?}");
     }
 }

@@ -15,28 +15,22 @@
 //!
 //! [`Spec`] reads the second column, [`field`] makes the field; `check_tensor3` tells whether a value is a metric.
 
-mod bends;
 mod bounded;
-mod closer;
 mod curvature;
-mod fit;
 mod gradation;
 mod sampled;
-mod sizes;
 mod sizing;
 mod spec;
-mod validate;
 
+pub(crate) use crate::metric::check_tensor3;
 pub use bounded::Bounded;
-pub(crate) use closer::Closer;
+pub(crate) use bounded::Closer;
+pub use curvature::fit_curvatures;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
-pub use fit::fit_curvatures;
 pub(crate) use gradation::grade;
-pub use sampled::Sampled;
-pub use sizes::Sizes;
+pub use sampled::{Sampled, Sizes};
 pub use sizing::Sizing;
 pub use spec::{Spec, field, field_of_values};
-pub(crate) use validate::check_tensor3;
 
 use super::Place;
 use crate::geometry::{Point, Point3, Tensor3};
@@ -64,16 +58,6 @@ impl<F: Fn(Point3) -> Tensor3 + Sync> SurfaceMetric for F {
 }
 
 impl SurfaceMetric for Box<dyn SurfaceMetric + '_> {
-    fn at(&self, place: &Place) -> Tensor3 {
-        (**self).at(place)
-    }
-
-    fn curvature_figures(&self) -> Option<CurvatureFigures> {
-        (**self).curvature_figures()
-    }
-}
-
-impl SurfaceMetric for &dyn SurfaceMetric {
     fn at(&self, place: &Place) -> Tensor3 {
         (**self).at(place)
     }

@@ -1,10 +1,12 @@
-//! A metric given at the vertices of the surface.
+//! A metric, or sizes, given at the vertices of the surface.
 
-use super::{CurvatureFigures, SurfaceMetric, check_tensor3};
+use super::{CurvatureFigures, SurfaceMetric};
 use crate::error::{Error, Result};
-use crate::geometry::Tensor3;
+use crate::geometry::{Point3, Tensor3};
 use crate::mesh::{Solution, SolutionValues};
-use crate::surface::{Place, Surface};
+use crate::metric::{check_sizes, check_tensor3};
+use crate::surface::input::check_count;
+use crate::surface::{Nearest, Place, Surface};
 
 /// Tensors at the vertices of a surface; inside triangles the log-Euclidean interpolation (Arsigny 2006), exp of the linear
 /// interpolation of log M, which is positive definite and between the sizes at the corners.
@@ -23,7 +25,7 @@ impl Sampled {
     /// # Errors
     /// [`Error::Metric`] where numbers of tensors and vertices differ, or that of a vertex of a triangle is no metric.
     pub(crate) fn new(surface: &Surface, tensors: &[Tensor3]) -> Result<Self> {
-        check_count(surface, tensors.len())?;
+        check_count(tensors.len(), surface.positions().len())?;
         let t = surface.topology();
         for v in t.vertices() {
             check_tensor3(tensors[v.index()], || format!("vertex {} {}", v.0 + 1, surface.position(v)))?;
@@ -46,28 +48,7 @@ impl Sampled {
     /// # Errors
     /// As [`Sampled::new`]; [`Error::Metric`] of a size that is not positive and finite, and of vectors or planar tensors.
     pub(crate) fn from_solution(surface: &Surface, solution: &Solution) -> Result<Self> {
-        match &solution.values {
-            SolutionValues::Tensor3(entries) => {
-                let tensors: Vec<Tensor3> = entries.iter().map(|&entries| Tensor3::from_disk(entries)).collect();
-                Self::new(surface, &tensors)
-            }
-            SolutionValues::Scalar(sizes) => {
-                if let Some(i) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) {
-                    let what = format!("the size h = {} is not positive and finite", sizes[i]);
-                    return Err(Error::metric(
-                        what,
-                        format!("vertex {}", i + 1),
-                        "a size is the length of edges there",
-                    ));
-                }
-                let tensors: Vec<Tensor3> = sizes.iter().map(|&h| Tensor3::isotropic(h)).collect();
-                Self::new(surface, &tensors)
-            }
-            SolutionValues::Tensor(_) | SolutionValues::Vector { .. } => {
-                let help = "save the metric with Dimension 3, as scalars (1 1) or as symmetric tensors (1 3)";
-                Err(Error::metric("neither sizes nor tensors of space", "the metric of a surface", help))
-            }
-        }
+        Sizes::of(solution)?.field(surface)
     }
 }
 
@@ -83,18 +64,91 @@ impl SurfaceMetric for Sampled {
     }
 }
 
-fn check_count(surface: &Surface, found: usize) -> Result<()> {
-    let needed = surface.positions().len();
-    if found == needed {
-        return Ok(());
+/// What is asked for at the vertices of a surface, one entry per vertex slot.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sizes {
+    /// Lengths of edges, the same in all directions.
+    Isotropic(Vec<f64>),
+    /// Metrics.
+    Anisotropic(Vec<Tensor3>),
+}
+
+impl Sizes {
+    /// Those of a solution in space: tensors, or sizes.
+    ///
+    /// # Errors
+    /// [`Error::Metric`] of a size that is not positive and finite, and of vectors or planar tensors.
+    pub(super) fn of(solution: &Solution) -> Result<Self> {
+        match &solution.values {
+            SolutionValues::Tensor3(entries) => {
+                Ok(Self::Anisotropic(entries.iter().map(|&entries| Tensor3::from_disk(entries)).collect()))
+            }
+            SolutionValues::Scalar(sizes) => {
+                check_sizes(sizes, |i| format!("vertex {}", i + 1))?;
+                Ok(Self::Isotropic(sizes.clone()))
+            }
+            SolutionValues::Tensor(_) | SolutionValues::Vector { .. } => {
+                let help = "save the metric with Dimension 3, as scalars (1 1) or as symmetric tensors (1 3)";
+                Err(Error::metric("neither sizes nor tensors of space", "the metric of a surface", help))
+            }
+        }
     }
-    let help = "the metric must have one value for each vertex of the surface's file, in the same order";
-    Err(Error::metric(format!("{found} values for {needed} vertices"), "the surface", help))
+
+    /// What is asked for at a vertex, as a metric.
+    pub(super) fn tensor(&self, v: usize) -> Tensor3 {
+        match self {
+            Self::Isotropic(sizes) => Tensor3::isotropic(sizes[v]),
+            Self::Anisotropic(tensors) => tensors[v],
+        }
+    }
+
+    /// The field of these values, log-Euclidean (geometric, of sizes) between vertices.
+    ///
+    /// # Errors
+    /// [`Error::Metric`] where numbers of values and vertices differ, or one is no metric.
+    pub fn field(&self, surface: &Surface) -> Result<Sampled> {
+        match self {
+            Self::Isotropic(sizes) => {
+                Sampled::new(surface, &sizes.iter().map(|&h| Tensor3::isotropic(h)).collect::<Vec<_>>())
+            }
+            Self::Anisotropic(tensors) => Sampled::new(surface, tensors),
+        }
+    }
+
+    /// A field with values of this kind, at the places of the surface that points are closest to: sizes h or tensors, of the field
+    /// times `factor`. Points of a mesh that was fitted are off the surface, and may be far from it.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] of a point that is not finite.
+    pub fn solution(
+        &self,
+        field: &dyn SurfaceMetric,
+        factor: f64,
+        surface: &Surface,
+        points: &[[f64; 3]],
+    ) -> Result<Solution> {
+        let nearest = Nearest::new(surface);
+        let at = |&p: &[f64; 3]| {
+            let found = nearest.closest(surface, Point3::from(p));
+            let help = "correct the coordinates";
+            let found =
+                found.ok_or_else(|| Error::domain("a coordinate is not finite", Point3::from(p).to_string(), help))?;
+            Ok(field.at(&found.place) * factor)
+        };
+        let tensors = points.iter().map(at).collect::<Result<Vec<Tensor3>>>()?;
+        let values = match self {
+            Self::Isotropic(_) => SolutionValues::Scalar(tensors.iter().map(|m| 1.0 / m.xx.sqrt()).collect()),
+            Self::Anisotropic(_) => SolutionValues::Tensor3(tensors.iter().map(|m| m.to_disk()).collect()),
+        };
+        Ok(Solution { dimension: 3, values })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Vector3;
+    use crate::surface::Input;
     use crate::surface::sphere;
     use crate::triangulation::FaceId;
 
@@ -130,6 +184,32 @@ mod tests {
             (message(SolutionValues::Tensor3(tensors)), "m33 = -1 is not positive definite at vertex 5 ("),
         ] {
             assert!(message.contains(expected), "{message}");
+        }
+    }
+
+    /// The values at the vertices of a surface are the field that it was.
+    #[test]
+    fn solutions_are_the_same_field() {
+        let surface = Input::shape("torus:2,0.7", Some(0.5)).unwrap().surface;
+        let count = surface.positions().len();
+        let tilted =
+            |i: usize| Tensor3::square(Vector3::new(0.6, 0.8 * (i as f64).cos(), 0.1)) * 3.0 + Tensor3::IDENTITY;
+        for sizes in [
+            Sizes::Isotropic((0..count).map(|i| 1.5 + (i as f64).sin()).collect()),
+            Sizes::Anisotropic((0..count).map(tilted).collect()),
+        ] {
+            let field = sizes.field(&surface).unwrap();
+            let points = surface.to_mesh().points;
+            let solution = sizes.solution(&field, 4.0, &surface, &points).unwrap();
+            let again = Sampled::from_solution(&surface, &solution).unwrap();
+            for f in surface.topology().faces() {
+                let place = surface.place(f, [0.2, 0.5, 0.3]);
+                let (found, truth) = (again.at(&place), field.at(&place) * 4.0);
+                assert!(
+                    (found + truth * -1.0).map_eigenvalues(f64::abs).length(Vector3::new(1.0, 2.0, 3.0)) < 1e-5,
+                    "{found:?} {truth:?}"
+                );
+            }
         }
     }
 }

@@ -1,10 +1,9 @@
-//! The sizes that keep a mesh close to its surface.
+//! The sizes that keep a mesh close to its surface, and to the curves on it: borders, and edges that are fixed.
 
-use super::bends::bend;
-use super::{Sampled, Sizes, fit_curvatures, grade};
+use super::{Sizes, fit_curvatures, grade};
 use crate::error::{Error, Result};
-use crate::geometry::{TangentPlane, Tensor, Tensor3};
-use crate::mesh::{Solution, SolutionValues};
+use crate::geometry::{TangentPlane, Tensor, Tensor3, Vector3};
+use crate::mesh::Solution;
 use crate::metric::Bounds;
 use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Surface};
@@ -45,12 +44,12 @@ impl Sizing {
     /// [`Error::Parse`] that names a parameter out of range; [`Error::Metric`] where what is given is not one metric, or size, for each vertex.
     pub fn sizes(&self, surface: &Surface, given: Option<&Solution>) -> Result<Sizes> {
         self.check()?;
-        if let Some(given) = given {
-            Sampled::from_solution(surface, given)?;
-        }
+        let given = given.map(Sizes::of).transpose()?;
+        // Whether it is a metric.
+        given.as_ref().map(|given| given.field(surface)).transpose()?;
         let curvatures = fit_curvatures(surface);
-        let asked = |v: usize| given.map(|given| asked(given, v));
-        let is_tensor = given.is_some_and(|given| matches!(given.values, SolutionValues::Tensor3(_)));
+        let asked = |v: usize| given.as_ref().map(|given| given.tensor(v));
+        let is_tensor = matches!(given, Some(Sizes::Anisotropic(_)));
         let slots = (0..curvatures.len()).into_par_iter();
         if self.anisotropic || is_tensor {
             let tensor = |v: usize| self.tensor(surface, v, curvatures[v].as_ref(), asked(v));
@@ -117,20 +116,37 @@ impl Sizing {
     }
 }
 
-/// An entry of a solution, which was found to be a metric.
-fn asked(given: &Solution, v: usize) -> Tensor3 {
-    match &given.values {
-        SolutionValues::Tensor3(entries) => Tensor3::from_disk(entries[v]),
-        SolutionValues::Scalar(sizes) => Tensor3::isotropic(sizes[v]),
-        SolutionValues::Vector { .. } | SolutionValues::Tensor(_) => Tensor3::IDENTITY,
-    }
+/// How a curve bends at a vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bend {
+    /// Its curvature, in 1 / length.
+    pub(super) curvature: f64,
+    /// Unit tangent.
+    pub(super) tangent: Vector3,
+}
+
+/// Turns by more than this, in degrees, are corners, which ask for nothing: they are kept as they are.
+const CORNER: f64 = 45.0;
+
+/// How the curve bends on which a vertex lies: that of the border and of fixed edges. The circle through the vertex and its
+/// neighbours on the curve has the curvature 2 sin(turn) / |chord| (Menger 1930), exact where all are on a circle. `None` off
+/// curves, where other than two of their edges meet, and at corners.
+pub(super) fn bend(surface: &Surface, v: VertexId) -> Option<Bend> {
+    let ends: Vec<VertexId> = surface.topology().along_fixed(v).collect();
+    let &[before, after] = ends.as_slice() else { return None };
+    let at = surface.position(v);
+    let [u, w] = [at - surface.position(before), surface.position(after) - at];
+    let turn = u.cross(w).norm().atan2(u.dot(w));
+    let chord = u + w;
+    let tangent = chord.unit().filter(|_| turn.to_degrees() <= CORNER)?;
+    Some(Bend { curvature: 2.0 * turn.sin() / chord.norm(), tangent })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::{Point3, Vector3};
-    use crate::mesh::Mesh;
+    use crate::mesh::{Mesh, SolutionValues};
     use crate::surface::{sphere, torus};
     use std::f64::consts::TAU;
 
@@ -273,5 +289,37 @@ mod tests {
         let given = Solution { dimension: 3, values: SolutionValues::Scalar(vec![1.0]) };
         let error = LOOSE.sizes(&surface, Some(&given)).unwrap_err().to_string();
         assert!(error.contains("1 values for"), "{error}");
+    }
+
+    /// A fan of triangles around the origin: its rim a circle of this radius with vertices at uneven angles.
+    fn plate(radius: f64, count: u32) -> Surface {
+        let angle = |i: u32| TAU * (f64::from(i) + 0.3 * f64::from(i).sin()) / f64::from(count);
+        let rim = (0..count).map(|i| [radius * angle(i).cos(), radius * angle(i).sin(), 1.0]);
+        let points = [[0.0, 0.0, 1.0]].into_iter().chain(rim).collect();
+        let triangles = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
+        Surface::new(&Mesh { points, triangles, ..Mesh::default() }).unwrap()
+    }
+
+    #[test]
+    fn circles_have_the_curvature_of_their_radius() {
+        let surface = plate(3.0, 24);
+        assert_eq!(bend(&surface, VertexId(0)), None, "off the border");
+        for v in (1..25).map(VertexId) {
+            let found = bend(&surface, v).unwrap();
+            assert!((found.curvature * 3.0 - 1.0).abs() < 1e-12, "{found:?}");
+            assert!(found.tangent.dot(surface.position(v) - crate::geometry::Point3::new(0.0, 0.0, 1.0)).abs() < 0.3);
+        }
+    }
+
+    #[test]
+    fn corners_and_forks_do_not_bend() {
+        let square = plate(1.0, 5);
+        assert!((1..6).all(|v| bend(&square, VertexId(v)).is_none()), "turns of 72 degrees, about");
+        let fork = Mesh { edges: vec![[0, 1], [0, 9], [0, 17]], ..plate(1.0, 24).to_mesh() };
+        let surface = Surface::new(&fork).unwrap();
+        assert!([0, 1, 9, 17].into_iter().all(|v| bend(&surface, VertexId(v)).is_none()));
+        let line = Mesh { edges: vec![[0, 1], [0, 13]], ..plate(1.0, 24).to_mesh() };
+        let found = bend(&Surface::new(&line).unwrap(), VertexId(0)).unwrap();
+        assert!(found.curvature < 0.3, "nearly straight through the middle: {found:?}");
     }
 }

@@ -1,6 +1,7 @@
 //! The metric of a surface as a user writes it.
 
 use super::{Bounded, Constant, FLOOR, ImplicitCurvature, Sampled, SurfaceMetric, sampled_curvature};
+use crate::domain::name_and_rest;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor3;
 use crate::mesh::Solution;
@@ -27,7 +28,7 @@ impl Spec {
     /// [`Error::Parse`] that names the part at fault; [`Error::Unsupported`] of metrics of the plane.
     pub fn parse(text: &str) -> Result<Self> {
         let text = text.trim();
-        let (name, parameters) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
+        let (name, parameters) = name_and_rest(text);
         match name {
             "uniform" if parameters.is_none() => Ok(Self::Uniform),
             "formula" => Ok(Self::Formula(SpaceFormula::parse(parameters.unwrap_or_default())?)),

@@ -4,8 +4,7 @@ use super::fans::Sewn;
 use super::glue::NONE;
 use super::mended::Damage;
 use super::work::Work;
-use crate::mesh::Mesh;
-use crate::surface::orient::sides;
+use crate::mesh::{Mesh, edges_of, unordered};
 use std::collections::{HashMap, HashSet};
 
 /// The mesh of the triangles as sewn. Vertices keep their numbers, used or not, and those that were added follow; triangles and
@@ -13,7 +12,10 @@ use std::collections::{HashMap, HashSet};
 pub(super) fn emit(work: &mut Work, sewn: &Sewn) -> Mesh {
     let mesh = work.mesh;
     let label = |labels: &[i32], i: u32| labels.get(i as usize).copied().unwrap_or(0);
-    let vertices = || (0..mesh.points.len() as u32).chain(sewn.added.iter().map(|added| added.1));
+    let vertices = (0..mesh.points.len() as u32).chain(sewn.added.iter().map(|added| added.1));
+    // What has no labels gets none.
+    let vertices = vertices.filter(|_| !mesh.point_labels.is_empty());
+    let triangles = sewn.sources.iter().filter(|_| !mesh.triangle_labels.is_empty());
     let edges = Edges::of(work, sewn);
     let copies = copies(work, sewn);
     let all_copies = |list: &[u32]| -> Vec<u32> {
@@ -25,17 +27,9 @@ pub(super) fn emit(work: &mut Work, sewn: &Sewn) -> Mesh {
     let is_of_file = |t: usize| sewn.numbers[t] != [NONE; 3];
     Mesh {
         points: points(work, sewn),
-        point_labels: if mesh.point_labels.is_empty() {
-            Vec::new()
-        } else {
-            vertices().map(|v| label(&mesh.point_labels, v)).collect()
-        },
+        point_labels: vertices.map(|v| label(&mesh.point_labels, v)).collect(),
         triangles: sewn.triangles.clone(),
-        triangle_labels: if mesh.triangle_labels.is_empty() {
-            Vec::new()
-        } else {
-            sewn.sources.iter().map(|&t| label(&mesh.triangle_labels, t)).collect()
-        },
+        triangle_labels: triangles.map(|&t| label(&mesh.triangle_labels, t)).collect(),
         edge_labels: edges.sources.iter().map(|&i| label(&mesh.edge_labels, i)).collect(),
         corners: all_copies(&mesh.corners),
         required_points: all_copies(&mesh.required_points),
@@ -111,7 +105,7 @@ impl Edges {
             }
             let before = edges.ends.len();
             for ends in found {
-                let (sorted, numbers) = (sorted(ends), sorted(listed));
+                let (sorted, numbers) = (unordered(ends), unordered(listed));
                 // The same edge listed twice by number is a mistake in the list, unless labels agree.
                 let twin = first.get(&sorted).filter(|twin| twin.1 != numbers || work.options.repair);
                 if let Some(&(at, _)) = twin {
@@ -125,7 +119,7 @@ impl Edges {
             }
             if edges.ends.len() == before {
                 let place = format!("edge {} of the list, {}", i + 1, work.edge(listed));
-                work.mended.add(Damage::Listed, || place);
+                work.mended.add(Damage::Listed, place);
             }
         }
         edges
@@ -142,39 +136,34 @@ struct Known {
     of_file: HashSet<[u32; 2]>,
 }
 
-fn sorted([v, w]: [u32; 2]) -> [u32; 2] {
-    [v.min(w), v.max(w)]
-}
-
 impl Known {
     fn of(work: &Work, sewn: &Sewn) -> Self {
         let listed: HashSet<u32> = work.mesh.edges.as_flattened().iter().map(|&v| work.places.of(v)).collect();
         let (mut by_number, mut by_place) = (HashMap::<_, Vec<_>>::new(), HashMap::<_, Vec<_>>::new());
         for (corners, numbers) in sewn.triangles.iter().zip(&sewn.numbers).filter(|_| !listed.is_empty()) {
-            for k in 0..3 {
-                let [v, w] = [numbers[k], numbers[(k + 1) % 3]];
+            for ([v, w], ends) in edges_of(*numbers).into_iter().zip(edges_of(*corners)) {
                 if v == NONE || w == NONE {
                     continue;
                 }
                 // The final edge in the direction from the smaller number, or place, to the larger.
-                let ends = [corners[k], corners[(k + 1) % 3]];
                 let back = [ends[1], ends[0]];
                 let push = |list: &mut Vec<[u32; 2]>, ends| {
                     if !list.contains(&ends) {
                         list.push(ends);
                     }
                 };
-                push(by_number.entry(sorted([v, w])).or_default(), if v < w { ends } else { back });
+                push(by_number.entry(unordered([v, w])).or_default(), if v < w { ends } else { back });
                 let [p, q] = [v, w].map(|v| work.places.of(v));
-                push(by_place.entry(sorted([p, q])).or_default(), if p < q { ends } else { back });
+                push(by_place.entry(unordered([p, q])).or_default(), if p < q { ends } else { back });
             }
         }
-        let of_file = if listed.is_empty() { Vec::new() } else { sides(&work.mesh.triangles) };
-        Self { by_number, by_place, of_file: of_file.into_iter().map(|side| side.ends).collect() }
+        let of_file =
+            work.mesh.triangles.iter().filter(|_| !listed.is_empty()).copied().flat_map(edges_of).map(unordered);
+        Self { by_number, by_place, of_file: of_file.collect() }
     }
 
     fn is_of_file(&self, ends: [u32; 2]) -> bool {
-        self.of_file.contains(&sorted(ends))
+        self.of_file.contains(&unordered(ends))
     }
 
     /// What an edge of the list has become, in its direction.
@@ -182,7 +171,7 @@ impl Known {
         let turn = |list: &[[u32; 2]], is_forward: bool| -> Vec<[u32; 2]> {
             list.iter().map(|&[a, b]| if is_forward { [a, b] } else { [b, a] }).collect()
         };
-        if let Some(found) = self.by_number.get(&sorted([v, w])) {
+        if let Some(found) = self.by_number.get(&unordered([v, w])) {
             return turn(found, v < w);
         }
         let mut found = Vec::new();
@@ -190,7 +179,7 @@ impl Known {
         // Every cut is followed once: cuts of cuts that led back would never end.
         let mut is_followed = HashSet::new();
         while let Some([p, q]) = left.pop() {
-            let key = sorted([p, q]);
+            let key = unordered([p, q]);
             if let Some(ends) = self.by_place.get(&key) {
                 found.extend(turn(ends, p < q));
             } else if let Some(inside) = work.cuts.get(&key).filter(|_| is_followed.insert(key)) {

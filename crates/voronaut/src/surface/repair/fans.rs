@@ -1,11 +1,11 @@
 //! Vertices from sides that are glued: one for every fan of triangles.
 
-use super::classes::Classes;
 use super::glue::{NONE, Twins};
 use super::mended::Damage;
-use super::work::Work;
+use super::work::{Classes, Work};
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
+use crate::mesh::{edges_of, unordered};
 
 /// Triangles with their final vertices.
 pub(super) struct Sewn {
@@ -58,7 +58,7 @@ pub(super) fn sew(work: &mut Work, twins: &Twins) -> Result<Sewn> {
 fn fans(work: &Work, twins: &Twins) -> Classes {
     let mut fans = Classes::new(twins.len());
     let next = |side: u32| side - side % 3 + (side + 1) % 3;
-    let place = |corner: u32| work.places.of(work.triangles[corner as usize / 3][corner as usize % 3]);
+    let place = |side: u32| work.places.of(work.ends(side)[0]);
     for (side, &twin) in (0..).zip(twins).filter(|(side, twin)| **twin != NONE && side < *twin) {
         let ends = if place(side) == place(twin) { [twin, next(twin)] } else { [next(twin), twin] };
         fans.join(side, ends[0]);
@@ -79,7 +79,7 @@ fn demand_fans(work: &mut Work, fans: &Classes) -> Result<()> {
             let help = "split the vertex, one for each group of neighbouring triangles, or run again with `repair`";
             return Err(Error::domain("triangles that meet in a point only", place, help));
         }
-        work.mended.add(Damage::Point, || place);
+        work.mended.add(Damage::Point, place);
     }
     Ok(())
 }
@@ -87,11 +87,7 @@ fn demand_fans(work: &mut Work, fans: &Classes) -> Result<()> {
 /// Where two fans pass the same edge twice, its vertices are the same and yet these are two edges: all but the first get a
 /// vertex in the middle.
 fn separate(work: &Work, sewn: &mut Sewn, twins: &Twins) {
-    let ends = |side: u32| {
-        let triangle = sewn.triangles[side as usize / 3];
-        let [v, w] = [triangle[side as usize % 3], triangle[(side as usize + 1) % 3]];
-        [v.min(w), v.max(w)]
-    };
+    let ends = |side: u32| unordered(edges_of(sewn.triangles[side as usize / 3])[side as usize % 3]);
     let firsts = (0..twins.len() as u32).filter(|&side| twins[side as usize] == NONE || side < twins[side as usize]);
     let mut keyed: Vec<([u32; 2], u32)> = firsts.map(|side| (ends(side), side)).collect();
     keyed.sort_unstable();
@@ -99,8 +95,7 @@ fn separate(work: &Work, sewn: &mut Sewn, twins: &Twins) {
         keyed.chunk_by(|a, b| a.0 == b.0).flat_map(|same| &same[1..]).map(|&(_, side)| side).collect();
     let mut middles = std::collections::BTreeMap::<usize, [u32; 3]>::new();
     for side in doubled {
-        let numbers = work.triangles[side as usize / 3];
-        let [v, w] = [numbers[side as usize % 3], numbers[(side as usize + 1) % 3]];
+        let [v, w] = work.ends(side);
         let middle = (work.mesh.points.len() + sewn.added.len()) as u32;
         sewn.added.push((work.position(v).lerp(work.position(w), 0.5), v));
         for side in [side, twins[side as usize]].into_iter().filter(|&side| side != NONE) {

@@ -1,10 +1,10 @@
-//! Which sides of triangles are glued to each other.
+//! Which sides of triangles are glued to each other, and small pieces that this leaves loose.
 
 use super::mended::Damage;
-use super::work::Work;
+use super::work::{Classes, Work};
 use crate::error::{Error, Result};
 use crate::geometry::Vector3;
-use crate::surface::orient::Side;
+use crate::mesh::{Side, by_edge, unordered};
 
 /// No side.
 pub(super) const NONE: u32 = u32::MAX;
@@ -26,7 +26,7 @@ const PAIRED: usize = 16;
 pub(super) fn glue(work: &mut Work) -> Result<Twins> {
     let all = work.sides();
     let mut twins = vec![NONE; 3 * work.triangles.len()];
-    for group in all.chunk_by(|s, t| s.ends == t.ends) {
+    for group in by_edge(&all) {
         match group {
             [_] => {}
             [s, t] if is_fold(work, s, t) => {}
@@ -39,9 +39,7 @@ pub(super) fn glue(work: &mut Work) -> Result<Twins> {
 
 /// The vertex numbers of a side, the smaller first.
 pub(super) fn numbers(work: &Work, side: u32) -> [u32; 2] {
-    let triangle = work.triangles[side as usize / 3];
-    let [v, w] = [triangle[side as usize % 3], triangle[(side as usize + 1) % 3]];
-    [v.min(w), v.max(w)]
+    unordered(work.ends(side))
 }
 
 /// Whether two triangles at the same places would be glued back to back though their numbers do not ask for it.
@@ -81,8 +79,7 @@ fn glue_many(work: &mut Work, twins: &mut Twins, group: &[Side]) -> Result<()> {
         if work.options.repair {
             glue_straightest(work, twins, &left);
         } else {
-            let place = work.edge(group[0].ends);
-            work.mended.add(Damage::Borders, || place);
+            work.mended.add(Damage::Borders, work.edge(group[0].ends));
         }
     }
     Ok(())
@@ -97,7 +94,7 @@ fn cut_edge(work: &mut Work, twins: &mut Twins, ends: [u32; 2], sides: &[Side]) 
         let help = "leave at most two triangles at every edge, or run again with `repair`";
         return Err(Error::domain(what, place, help));
     }
-    work.mended.add(Damage::Edge, || place);
+    work.mended.add(Damage::Edge, place);
     glue_straightest(work, twins, sides);
     Ok(())
 }
@@ -136,4 +133,31 @@ fn direction(work: &Work, side: &Side) -> Option<Vector3> {
     let along = (b - a).unit()?;
     let off = apex - a;
     (off - along * off.dot(along)).unit()
+}
+
+/// Pieces of so many triangles at most are dropped,
+const MOST: usize = 8;
+/// if what they touch has so many times as many at least.
+const LARGER: usize = 8;
+
+/// Drops small pieces that touch another part of the surface at an edge that they are not glued to: fins. Says whether there
+/// were any; the other sides there may then be glued.
+pub(super) fn drop_fins(work: &mut Work, twins: &Twins) -> bool {
+    let mut pieces = Classes::new(work.triangles.len());
+    for (side, &twin) in (0..).zip(twins).filter(|(_, twin)| **twin != NONE) {
+        pieces.join(side / 3, twin / 3);
+    }
+    pieces.flatten();
+    let mut sizes = vec![0_usize; work.triangles.len()];
+    (0..work.triangles.len() as u32).for_each(|t| sizes[pieces.of(t) as usize] += 1);
+    let mut is_fin = vec![false; work.triangles.len()];
+    for group in by_edge(&work.sides()).filter(|group| group.len() > 2) {
+        let largest = group.iter().map(|side| sizes[pieces.of(side.triangle) as usize]).max().unwrap_or(0);
+        for piece in group.iter().map(|side| pieces.of(side.triangle) as usize) {
+            is_fin[piece] |= sizes[piece] <= MOST && LARGER * sizes[piece] <= largest;
+        }
+    }
+    let marked: Vec<bool> = (0..work.triangles.len() as u32).map(|t| is_fin[pieces.of(t) as usize]).collect();
+    work.drop_damaged(Damage::Fin, &marked);
+    marked.contains(&true)
 }

@@ -59,57 +59,45 @@ pub(crate) enum Damage {
 }
 
 impl Damage {
-    /// What it is and what was done, for one and for many.
-    fn words(self) -> [&'static str; 2] {
+    /// What it is and what was done: of `[one|many]` the first word is said of one.
+    fn words(self) -> &'static str {
         match self {
-            Self::NotFinite => [
-                "triangle with a coordinate that is not finite was dropped",
-                "triangles with coordinates that are not finite were dropped",
-            ],
-            Self::Welded => [
-                "vertex at the place of another was welded to it",
-                "vertices at the place of another were welded to it",
-            ],
-            Self::Degenerate => ["triangle without area was dropped", "triangles without area were dropped"],
-            Self::Duplicate => ["duplicate triangle was dropped", "duplicate triangles were dropped"],
-            Self::TJunction => [
-                "T-junction was closed by cutting the triangle beside it",
-                "T-junctions were closed by cutting the triangles beside them",
-            ],
-            Self::Edge => ["edge of more than two triangles was cut", "edges of more than two triangles were cut"],
-            Self::Fin => [
-                "triangle of a small piece at an edge of more than two triangles was dropped",
-                "triangles of small pieces at edges of more than two triangles were dropped",
-            ],
-            Self::Borders => [
-                "edge where more than two borders meet was left open",
-                "edges where more than two borders meet were left open",
-            ],
-            Self::OneSided => {
-                ["edge of a one-sided surface was cut open", "edges of a one-sided surface were cut open"]
+            Self::NotFinite => {
+                "[triangle with a coordinate that is|triangles with coordinates that are] not finite [was|were] dropped"
             }
-            Self::Seam => [
-                "seam edge was left open: closed, the surface would be one-sided",
-                "seam edges were left open: closed, the surface would be one-sided",
-            ],
-            Self::Point => [
-                "vertex in which sheets met in a point only was split",
-                "vertices in which sheets met in a point only were split",
-            ],
-            Self::Turned => [
-                "triangle was turned to agree with its neighbours",
-                "triangles were turned to agree with their neighbours",
-            ],
-            Self::Closed => ["small hole was closed", "small holes were closed"],
-            Self::Open => [
-                "small hole was left open (`repair` closes what looks like damage)",
-                "small holes were left open (`repair` closes what looks like damage)",
-            ],
-            Self::Listed => [
-                "listed edge was dropped: no triangle has it, or it is there twice",
-                "listed edges were dropped: no triangle has them, or they are there twice",
-            ],
+            Self::Welded => "[vertex|vertices] at the place of another [was|were] welded to it",
+            Self::Degenerate => "[triangle|triangles] without area [was|were] dropped",
+            Self::Duplicate => "duplicate [triangle was|triangles were] dropped",
+            Self::TJunction => {
+                "[T-junction was|T-junctions were] closed by cutting the [triangle beside it|triangles beside them]"
+            }
+            Self::Edge => "[edge|edges] of more than two triangles [was|were] cut",
+            Self::Fin => {
+                "[triangle of a small piece at an edge|triangles of small pieces at edges] of more than two triangles \
+                 [was|were] dropped"
+            }
+            Self::Borders => "[edge|edges] where more than two borders meet [was|were] left open",
+            Self::OneSided => "[edge|edges] of a one-sided surface [was|were] cut open",
+            Self::Seam => "seam [edge was|edges were] left open: closed, the surface would be one-sided",
+            Self::Point => "[vertex|vertices] in which sheets met in a point only [was|were] split",
+            Self::Turned => "[triangle was|triangles were] turned to agree with [its|their] neighbours",
+            Self::Closed => "small [hole was|holes were] closed",
+            Self::Open => "small [hole was|holes were] left open (`repair` closes what looks like damage)",
+            Self::Listed => {
+                "listed [edge was|edges were] dropped: no triangle has [it, or it is|them, or they are] there twice"
+            }
         }
+    }
+
+    /// The words for so many.
+    fn told(self, count: usize) -> String {
+        let mut parts = self.words().split(['[', '|', ']']);
+        let mut told = parts.next().unwrap_or_default().to_owned();
+        while let (Some(one), Some(many), Some(rest)) = (parts.next(), parts.next(), parts.next()) {
+            told.push_str(if count == 1 { one } else { many });
+            told.push_str(rest);
+        }
+        told
     }
 }
 
@@ -131,9 +119,8 @@ impl Mended {
     /// What the reader of the file says, and one sentence for each kind, for users: "3 duplicate triangles were dropped (first: triangle 7)".
     pub fn sentences(&self) -> impl Iterator<Item = String> + '_ {
         let mends = self.mends.iter().map(|mend| {
-            let [one, many] = mend.kind.words();
             let first = mend.places.first().map(|place| format!(" (first: {place})")).unwrap_or_default();
-            format!("{} {}{first}", mend.count, if mend.count == 1 { one } else { many })
+            format!("{} {}{first}", mend.count, mend.kind.told(mend.count))
         });
         self.notes.iter().cloned().chain(mends)
     }
@@ -158,7 +145,7 @@ impl Mended {
         self.mends.iter().any(|mend| !is_told_only(mend.kind))
     }
 
-    pub(super) fn add(&mut self, kind: Damage, place: impl FnOnce() -> String) {
+    pub(super) fn add(&mut self, kind: Damage, place: String) {
         let at = match self.mends.binary_search_by_key(&kind, |mend| mend.kind) {
             Ok(at) => at,
             Err(at) => {
@@ -169,7 +156,7 @@ impl Mended {
         let mend = &mut self.mends[at];
         mend.count += 1;
         if mend.places.len() < PLACES {
-            mend.places.push(place());
+            mend.places.push(place);
         }
     }
 }
@@ -182,9 +169,9 @@ mod tests {
     fn sentences_count_and_name_the_first() {
         let mut mended = Mended::default();
         for i in [7, 9, 11, 13] {
-            mended.add(Damage::Duplicate, || format!("triangle {i}"));
+            mended.add(Damage::Duplicate, format!("triangle {i}"));
         }
-        mended.add(Damage::Welded, || "vertex 2".into());
+        mended.add(Damage::Welded, "vertex 2".into());
         let said: Vec<_> = mended.sentences().collect();
         assert_eq!(
             said,

@@ -2,25 +2,20 @@
 //!
 //! | module | what it does |
 //! |---|---|
-//! | `work`, `classes` | a mesh on the bench; sets of numbers |
-//! | `weld` | vertices at one place; coordinates that are not finite |
-//! | `degenerate`, `duplicates` | triangles without area, or there twice |
+//! | `work` | a mesh on the bench; sets of numbers |
+//! | `dropped` | triangles that are not finite, without area, or there twice |
+//! | `weld` | vertices at one place |
 //! | `t_junctions` | vertices inside edges |
-//! | `glue`, `two_sided`, `fans` | which sides meet; not one-sided; one vertex per fan |
-//! | `loose` | fins, which cutting leaves loose |
-//! | `holes`, `fill` | small holes |
+//! | `glue`, `two_sided`, `fans` | which sides meet, and fins that this leaves loose; not one-sided; one vertex per fan |
+//! | `holes` | small holes |
 //! | `emit` | lists and labels, renumbered |
 //! | `mended` | what was done, in numbers and words |
 
-mod classes;
-mod degenerate;
-mod duplicates;
+mod dropped;
 mod emit;
 mod fans;
-mod fill;
 mod glue;
 mod holes;
-mod loose;
 mod mended;
 mod t_junctions;
 mod two_sided;
@@ -78,14 +73,14 @@ const LOOKS: usize = 3;
 fn looked_over(mesh: &Mesh, options: RepairOptions) -> Result<(Mesh, Mended)> {
     mesh.check_numbers()?;
     let mut work = Work::new(mesh, options);
-    weld::drop_not_finite(&mut work)?;
+    dropped::drop_not_finite(&mut work)?;
     weld::find_places(&mut work);
     drop_triangles(&mut work)?;
     if t_junctions::close(&mut work)? {
         drop_triangles(&mut work)?;
     }
     let mut twins = glue::glue(&mut work)?;
-    if work.mended.count(Damage::Edge) > 0 && loose::drop_fins(&mut work, &twins) {
+    if work.mended.count(Damage::Edge) > 0 && glue::drop_fins(&mut work, &twins) {
         twins = glue::glue(&mut work)?;
     }
     two_sided::demand(&mut work, &mut twins)?;
@@ -104,8 +99,8 @@ fn looked_over(mesh: &Mesh, options: RepairOptions) -> Result<(Mesh, Mended)> {
 }
 
 fn drop_triangles(work: &mut Work) -> Result<()> {
-    degenerate::drop_degenerate(work)?;
-    duplicates::drop_duplicates(work);
+    dropped::drop_degenerate(work)?;
+    dropped::drop_duplicates(work);
     Ok(())
 }
 
@@ -116,7 +111,6 @@ fn note_welded(work: &mut Work, sewn: &fans::Sewn) {
     pairs.sort_unstable();
     pairs.dedup();
     for pair in pairs.windows(2).filter(|pair| pair[0][0] == pair[1][0]) {
-        let place = work.vertex(pair[1][1]);
-        work.mended.add(Damage::Welded, || place);
+        work.mended.add(Damage::Welded, work.vertex(pair[1][1]));
     }
 }

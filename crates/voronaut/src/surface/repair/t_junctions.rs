@@ -4,6 +4,7 @@ use super::mended::Damage;
 use super::work::Work;
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
+use crate::mesh::{Side, borders};
 
 /// A vertex is on an edge if it is off by no more than this share of its distance from the nearer end ...
 const OFF: f64 = 1e-6;
@@ -40,8 +41,7 @@ pub(super) fn close(work: &mut Work) -> Result<bool> {
                 continue;
             }
             for &v in &inside {
-                let place = work.vertex(v);
-                work.mended.add(Damage::TJunction, || place);
+                work.mended.add(Damage::TJunction, work.vertex(v));
             }
             work.cut(triangle, side, &inside);
         }
@@ -59,8 +59,7 @@ struct Junction {
 
 fn find(work: &Work) -> Vec<Junction> {
     let all = work.sides();
-    let groups = all.chunk_by(|s, t| s.ends == t.ends).filter(|group| group.len() == 1);
-    let borders: Vec<_> = groups.map(|group| group[0]).collect();
+    let borders: Vec<Side> = borders(&all).collect();
     let mut ways: Vec<[u32; 2]> = borders.iter().flat_map(|side| [side.ends, [side.ends[1], side.ends[0]]]).collect();
     ways.sort_unstable();
     let mut found = Vec::new();

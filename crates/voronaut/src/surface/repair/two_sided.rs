@@ -2,9 +2,9 @@
 
 use super::glue::{NONE, Twins, numbers};
 use super::mended::Damage;
-use super::work::Work;
+use super::work::{Classes, Work};
 use crate::error::Result;
-use crate::surface::orient::one_sided;
+use crate::surface::build::one_sided;
 
 /// Opens what makes the surface one-sided, and counts the triangles that [`Surface::new`](crate::surface::Surface::new) will
 /// turn.
@@ -31,7 +31,7 @@ pub(super) fn demand(work: &mut Work, twins: &mut Twins) -> Result<()> {
             if is_by_number && !work.options.repair {
                 return Err(one_sided(place));
             }
-            work.mended.add(if is_by_number { Damage::OneSided } else { Damage::Seam }, || place);
+            work.mended.add(if is_by_number { Damage::OneSided } else { Damage::Seam }, place);
             (twins[side as usize], twins[twin as usize]) = (NONE, NONE);
         }
     }
@@ -41,57 +41,50 @@ pub(super) fn demand(work: &mut Work, twins: &mut Twins) -> Result<()> {
 
 /// Whether two triangles pass the edge between them in opposite directions.
 fn are_opposite(work: &Work, side: u32, twin: u32) -> bool {
-    let from = |side: u32| work.places.of(work.triangles[side as usize / 3][side as usize % 3]);
-    from(side) != from(twin)
+    let [from, to] = [side, twin].map(|side| work.places.of(work.ends(side)[0]));
+    from != to
 }
 
 /// The fewer of each component are turned.
 fn note_turned(work: &mut Work, turns: &mut Turns) {
     let found: Vec<(u32, bool)> = (0..work.triangles.len() as u32).map(|t| turns.of(t)).collect();
     let mut counts = vec![[0_usize; 2]; found.len()];
-    for &(root, is_turned) in &found {
-        counts[root as usize][usize::from(is_turned)] += 1;
+    for &(first, is_turned) in &found {
+        counts[first as usize][usize::from(is_turned)] += 1;
     }
-    for (t, &(root, is_turned)) in found.iter().enumerate() {
-        let [as_root, others] = counts[root as usize];
-        if is_turned == (others <= as_root) && as_root.min(others) > 0 {
+    for (t, &(first, is_turned)) in found.iter().enumerate() {
+        let [as_first, others] = counts[first as usize];
+        if is_turned == (others <= as_first) && as_first.min(others) > 0 {
             work.note_triangle(Damage::Turned, t);
         }
     }
 }
 
-/// Triangles in sets, each with whether it turns as the first of its set.
+/// Which triangles turn as others do: t as it is, and t + count turned.
 struct Turns {
-    parent: Vec<(u32, bool)>,
-    size: Vec<u32>,
+    count: u32,
+    same: Classes,
 }
 
 impl Turns {
     fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).map(|t| (t, false)).collect(), size: vec![1; count] }
+        Self { count: count as u32, same: Classes::new(2 * count) }
     }
 
+    /// The first triangle of the same component, and whether this one turns against it.
     fn of(&mut self, t: u32) -> (u32, bool) {
-        let (mut at, mut is_turned) = (t, false);
-        while self.parent[at as usize].0 != at {
-            is_turned ^= self.parent[at as usize].1;
-            at = self.parent[at as usize].0;
-        }
-        self.parent[t as usize] = (at, is_turned);
-        (at, is_turned)
+        let [own, against] = [t, t + self.count].map(|t| self.same.shorten(t));
+        (own.min(against), against < own)
     }
 
-    /// Makes one set of two, where one triangle is to turn against the other or not; false if they already turn otherwise.
+    /// Makes one component of two, where one triangle is to turn against the other or not; false if they already turn otherwise.
     fn join(&mut self, s: u32, t: u32, is_against: bool) -> bool {
-        let ((mut root, a), (mut other, b)) = (self.of(s), self.of(t));
-        if root == other {
-            return (a ^ b) == is_against;
+        let [like, unlike] = if is_against { [t + self.count, t] } else { [t, t + self.count] };
+        if self.same.shorten(s) == self.same.shorten(unlike) {
+            return false;
         }
-        if self.size[root as usize] < self.size[other as usize] {
-            std::mem::swap(&mut root, &mut other);
-        }
-        self.parent[other as usize] = (root, a ^ b ^ is_against);
-        self.size[root as usize] += self.size[other as usize];
+        self.same.join(s, like);
+        self.same.join(s + self.count, unlike);
         true
     }
 }

@@ -1,10 +1,8 @@
 //! Which vertices are at one place.
 
-use super::mended::Damage;
 use super::work::Work;
-use crate::error::{Error, Result};
 use crate::geometry::{BoxTree, widened};
-use crate::surface::orient::sides;
+use crate::mesh::borders;
 use std::collections::HashMap;
 
 /// Vertices on borders this close, as a share of the diagonal, are at one place.
@@ -13,26 +11,6 @@ const NEAR: f64 = 1e-9;
 const OF_EDGE: f64 = 1e-2;
 /// Near vertices that are looked at, at most.
 const NEIGHBOURS: usize = 8;
-
-/// Drops triangles with coordinates that are not finite, if damage is to be repaired.
-///
-/// # Errors
-/// [`Error::Domain`] with the vertex, if it is not.
-pub(super) fn drop_not_finite(work: &mut Work) -> Result<()> {
-    let is_finite = |v: u32| work.mesh.position(v).is_finite();
-    let marked: Vec<bool> = work.triangles.iter().map(|t| !t.iter().all(|&v| is_finite(v))).collect();
-    let Some(first) = marked.iter().position(|&marked| marked) else { return Ok(()) };
-    if !work.options.repair {
-        let at = work.triangles[first].into_iter().find(|&v| !is_finite(v)).unwrap_or_default();
-        let help = "correct the vertex, or run again with `repair`: its triangles are dropped then";
-        return Err(Error::domain("a coordinate is not finite", work.vertex(at), help));
-    }
-    for t in (0..marked.len()).filter(|&t| marked[t]) {
-        work.note_triangle(Damage::NotFinite, t);
-    }
-    work.drop_marked(&marked);
-    Ok(())
-}
 
 /// Finds vertices at one place: with the same coordinates; and on borders, which soups are made of, nearly so.
 ///
@@ -56,13 +34,9 @@ pub(super) fn find_places(work: &mut Work) {
 /// Joins places on borders that are next to each other.
 fn join_near(work: &mut Work) {
     let mut reach: HashMap<u32, f64> = HashMap::new();
-    let by_places: Vec<[u32; 3]> = (0..work.triangles.len()).map(|t| work.places_of(t)).collect();
-    let all = sides(&by_places);
-    for group in all.chunk_by(|s, t| s.ends == t.ends).filter(|group| group.len() == 1) {
-        for end in group[0].ends {
-            reach.insert(end, NEAR * work.diagonal);
-        }
-    }
+    let all = work.sides();
+    let on_borders = borders(&all).flat_map(|side| side.ends);
+    reach.extend(on_borders.map(|end| (end, NEAR * work.diagonal)));
     for side in all.iter().filter(|side| side.ends[0] != side.ends[1]) {
         let length = work.position(side.ends[0]).distance(work.position(side.ends[1]));
         for end in side.ends {

@@ -1,12 +1,10 @@
-//! A mesh on the bench: triangles that come and go, and which vertices are at one place.
+//! A mesh on the bench: triangles that come and go, and which vertices are at one place. Sets of numbers.
 
 use super::RepairOptions;
-use super::classes::Classes;
 use super::mended::{Damage, Mended};
 use crate::geometry::{Aabb3, Point3};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Side, edges_of, sides, unordered};
 use crate::surface::build;
-use crate::surface::orient::{Side, sides};
 use std::collections::HashMap;
 
 /// A mesh in the course of repair.
@@ -53,6 +51,11 @@ impl<'a> Work<'a> {
         self.triangles[t].map(|v| self.position(v))
     }
 
+    /// The ends of side k of triangle t, at 3 t + k, in its direction: vertex numbers.
+    pub(super) fn ends(&self, side: u32) -> [u32; 2] {
+        edges_of(self.triangles[side as usize / 3])[side as usize % 3]
+    }
+
     /// The places of a triangle's corners.
     pub(super) fn places_of(&self, t: usize) -> [u32; 3] {
         self.triangles[t].map(|v| self.places.of(v))
@@ -60,18 +63,13 @@ impl<'a> Work<'a> {
 
     /// The sides of all triangles, sorted, by places.
     pub(super) fn sides(&self) -> Vec<Side> {
-        let by_places: Vec<[u32; 3]> = (0..self.triangles.len()).map(|t| self.places_of(t)).collect();
-        sides(&by_places)
+        sides((0..self.triangles.len()).map(|t| self.places_of(t)))
     }
 
     /// The index k of the side of a triangle, from corner k to k + 1, between these places.
     pub(super) fn side_index(&self, side: &Side) -> usize {
-        let places = self.places_of(side.triangle as usize);
-        let is_it = |k: &usize| {
-            let [p, q] = [places[*k], places[(*k + 1) % 3]];
-            [p.min(q), p.max(q)] == side.ends
-        };
-        (0..3).find(is_it).unwrap_or(0)
+        let edges = edges_of(self.places_of(side.triangle as usize));
+        edges.into_iter().position(|ends| unordered(ends) == side.ends).unwrap_or(0)
     }
 
     /// A vertex, for messages.
@@ -91,9 +89,14 @@ impl<'a> Work<'a> {
 
     /// Counts a triangle as mended.
     pub(super) fn note_triangle(&mut self, kind: Damage, t: usize) {
-        let number = self.number(t);
-        let place = format!("triangle {number} at {}", self.vertex(self.triangles[t][0]));
-        self.mended.add(kind, || place);
+        let place = format!("triangle {} at {}", self.number(t), self.vertex(self.triangles[t][0]));
+        self.mended.add(kind, place);
+    }
+
+    /// Takes away the marked triangles, and counts them as mended.
+    pub(super) fn drop_damaged(&mut self, kind: Damage, is_marked: &[bool]) {
+        (0..is_marked.len()).filter(|&t| is_marked[t]).for_each(|t| self.note_triangle(kind, t));
+        self.drop_marked(is_marked);
     }
 
     /// Takes away the marked triangles.
@@ -119,6 +122,66 @@ impl<'a> Work<'a> {
         if p > q {
             ordered.reverse();
         }
-        self.cuts.entry([p.min(q), p.max(q)]).or_insert(ordered);
+        self.cuts.entry(unordered([p, q])).or_insert(ordered);
+    }
+}
+
+/// Disjoint sets of the numbers below a bound (union-find with path halving): nearly linear in all.
+#[derive(Clone, Debug)]
+pub(super) struct Classes {
+    parent: Vec<u32>,
+}
+
+impl Classes {
+    /// Every number alone.
+    pub(super) fn new(count: usize) -> Self {
+        Self { parent: (0..count as u32).collect() }
+    }
+
+    /// The least number of the set.
+    pub(super) fn of(&self, mut i: u32) -> u32 {
+        while self.parent[i as usize] != i {
+            i = self.parent[i as usize];
+        }
+        i
+    }
+
+    /// Makes one set of two; whether they were two.
+    pub(super) fn join(&mut self, i: u32, j: u32) -> bool {
+        let (i, j) = (self.shorten(i), self.shorten(j));
+        self.parent[i.max(j) as usize] = i.min(j);
+        i != j
+    }
+
+    /// Lets every number know its set at once: [`Classes::of`] takes one step then.
+    pub(super) fn flatten(&mut self) {
+        for i in 0..self.parent.len() {
+            // The parent is smaller, and so flat already.
+            self.parent[i] = self.parent[self.parent[i] as usize];
+        }
+    }
+
+    /// [`Classes::of`], with the way there shortened.
+    pub(super) fn shorten(&mut self, mut i: u32) -> u32 {
+        while self.parent[i as usize] != i {
+            let up = self.parent[self.parent[i as usize] as usize];
+            self.parent[i as usize] = up;
+            i = up;
+        }
+        i
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_stands_for_its_set() {
+        let mut classes = Classes::new(7);
+        assert!(classes.join(6, 4) && classes.join(4, 2) && !classes.join(6, 2));
+        assert!(classes.join(1, 3) && classes.join(3, 6));
+        classes.flatten();
+        assert_eq!([0, 1, 2, 3, 4, 5, 6].map(|i| classes.of(i)), [0, 1, 1, 1, 1, 5, 1]);
     }
 }

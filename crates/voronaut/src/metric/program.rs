@@ -1,6 +1,7 @@
-//! What a compiled expression runs on: plain numbers, and numbers that carry their derivatives.
+//! What expressions are compiled to, and how that runs: on plain numbers, and on numbers that carry their derivatives.
 
 use crate::geometry::Jet3;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A function of one number with its first and second derivative.
 #[derive(Debug)]
@@ -18,51 +19,29 @@ pub(super) struct Binary {
 }
 
 /// Arithmetic of expressions.
-pub(super) trait Number: Copy {
-    fn constant(value: f64) -> Self;
+pub(super) trait Number:
+    Copy
+    + From<f64>
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+{
     fn is_zero(self) -> bool;
-    fn negate(self) -> Self;
     fn square(self) -> Self;
-    fn add(self, other: Self) -> Self;
-    fn subtract(self, other: Self) -> Self;
-    fn multiply(self, other: Self) -> Self;
-    fn divide(self, other: Self) -> Self;
     fn power(self, exponent: Self) -> Self;
     fn call1(self, function: &Unary) -> Self;
     fn call2(self, other: Self, function: &Binary) -> Self;
 }
 
 impl Number for f64 {
-    fn constant(value: f64) -> Self {
-        value
-    }
-
     fn is_zero(self) -> bool {
         self == 0.0
     }
 
-    fn negate(self) -> Self {
-        -self
-    }
-
     fn square(self) -> Self {
         self * self
-    }
-
-    fn add(self, other: Self) -> Self {
-        self + other
-    }
-
-    fn subtract(self, other: Self) -> Self {
-        self - other
-    }
-
-    fn multiply(self, other: Self) -> Self {
-        self * other
-    }
-
-    fn divide(self, other: Self) -> Self {
-        self / other
     }
 
     fn power(self, exponent: Self) -> Self {
@@ -79,39 +58,12 @@ impl Number for f64 {
 }
 
 impl Number for Jet3 {
-    fn constant(value: f64) -> Self {
-        Jet3::constant(value)
-    }
-
     fn is_zero(self) -> bool {
         self.value == 0.0
     }
 
-    fn negate(self) -> Self {
-        -self
-    }
-
     fn square(self) -> Self {
         self.chain(self.value * self.value, [2.0 * self.value, 2.0])
-    }
-
-    fn add(self, other: Self) -> Self {
-        self + other
-    }
-
-    fn subtract(self, other: Self) -> Self {
-        self - other
-    }
-
-    fn multiply(self, other: Self) -> Self {
-        self * other
-    }
-
-    fn divide(self, other: Self) -> Self {
-        let inverse = 1.0 / other.value;
-        let quotient = self.value * inverse;
-        let second = [0.0, -inverse * inverse, 2.0 * quotient * inverse * inverse];
-        self.chain2(other, self.value / other.value, [inverse, -quotient * inverse], second)
     }
 
     fn power(self, exponent: Self) -> Self {
@@ -140,6 +92,89 @@ impl Number for Jet3 {
 /// c a^b, zero where c is, even if a^b is infinite.
 fn scaled_power(c: f64, a: f64, b: f64) -> f64 {
     if c == 0.0 { 0.0 } else { c * a.powf(b) }
+}
+
+/// Values an expression may keep waiting, such as the three 1 in `1 + (1 + (1 + x))`.
+pub(super) const STACK: usize = 64;
+
+/// One instruction; operands come from the stack, the result goes there.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Op {
+    Constant(f64),
+    X,
+    Y,
+    Z,
+    Negate,
+    Square,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+    Call1(&'static Unary),
+    Call2(&'static Binary),
+    Jump(u32),
+    /// Takes the condition off the stack.
+    JumpIfZero(u32),
+}
+
+impl Op {
+    /// How many values it takes off the stack for the one that it puts there; `None` of jumps.
+    pub(super) fn operands(self) -> Option<usize> {
+        match self {
+            Op::Constant(_) | Op::X | Op::Y | Op::Z => Some(0),
+            Op::Negate | Op::Square | Op::Call1(_) => Some(1),
+            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power | Op::Call2(_) => Some(2),
+            Op::Jump(_) | Op::JumpIfZero(_) => None,
+        }
+    }
+}
+
+/// What a program makes of its variables.
+pub(super) fn run<N: Number>(code: &[Op], [x, y, z]: [N; 3]) -> N {
+    // The last value is kept out of the stack: most operations then touch it once or not at all.
+    let mut stack = [N::from(0.0); STACK];
+    let mut top = 0;
+    let mut value = N::from(0.0);
+    let mut next = 0;
+    while let Some(&op) = code.get(next) {
+        next += 1;
+        match op {
+            Op::Constant(c) => push(&mut stack, &mut top, &mut value, c.into()),
+            Op::X => push(&mut stack, &mut top, &mut value, x),
+            Op::Y => push(&mut stack, &mut top, &mut value, y),
+            Op::Z => push(&mut stack, &mut top, &mut value, z),
+            Op::Negate => value = -value,
+            Op::Square => value = value.square(),
+            Op::Add => value = value + pop(&stack, &mut top),
+            Op::Subtract => value = pop(&stack, &mut top) - value,
+            Op::Multiply => value = value * pop(&stack, &mut top),
+            Op::Divide => value = pop(&stack, &mut top) / value,
+            Op::Power => value = pop(&stack, &mut top).power(value),
+            Op::Call1(f) => value = value.call1(f),
+            Op::Call2(f) => value = pop(&stack, &mut top).call2(value, f),
+            Op::Jump(target) => next = target as usize,
+            Op::JumpIfZero(target) => {
+                if value.is_zero() {
+                    next = target as usize;
+                }
+                value = pop(&stack, &mut top);
+            }
+        }
+    }
+    value
+}
+
+// The compiler in `parser` keeps the height below STACK; the remainder spares the bounds check.
+fn push<N: Number>(stack: &mut [N; STACK], top: &mut usize, value: &mut N, new: N) {
+    stack[*top % STACK] = *value;
+    *top += 1;
+    *value = new;
+}
+
+fn pop<N: Number>(stack: &[N; STACK], top: &mut usize) -> N {
+    *top = top.wrapping_sub(1);
+    stack[*top % STACK]
 }
 
 #[cfg(test)]
