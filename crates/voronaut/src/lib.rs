@@ -81,6 +81,7 @@
 mod error;
 pub mod progress;
 mod parallel;
+mod lists;
 mod sparse;
 pub mod geometry;
 pub mod mesh;

@@ -8,10 +8,11 @@ use super::lengths::{self, Measured};
 use crate::error::{Error, Result};
 use crate::geodesic::bowed_between;
 use crate::geometry::{Point3, TangentPlane, Tensor3};
+use crate::lists::distinct;
 use crate::parallel::prelude::*;
 use crate::surface::metric::{SurfaceMetric, check_tensor3};
 use crate::surface::{Chart, Input, Place};
-use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId, distinct};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use std::collections::BTreeMap;
 
 /// Tensors at the ends of an edge say the same of it, and of what is across it, if they differ by no more than this share.

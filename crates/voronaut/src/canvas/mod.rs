@@ -36,10 +36,11 @@ use crate::domain::Domain;
 use crate::error::{Result, named};
 use crate::geodesic::{Graph, bowed_chord};
 use crate::geometry::Point;
+use crate::lists::distinct;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::planar::{Planar, hilbert_order};
-use crate::triangulation::{Triangulation, VertexId, distinct};
+use crate::triangulation::{Triangulation, VertexId};
 use isotropic::Until;
 use locate::Finder;
 

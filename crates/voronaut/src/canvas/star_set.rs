@@ -5,10 +5,11 @@ use super::steiner::{Placed, Steiner};
 use super::{CanvasCounters, refine, renumbered};
 use crate::error::Result;
 use crate::geometry::Point;
+use crate::lists::distinct;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::planar::Planar;
-use crate::triangulation::{HalfEdge, VertexId, distinct};
+use crate::triangulation::{HalfEdge, VertexId};
 use std::collections::HashSet;
 
 /// The share of the vertices that the embedded triangulation is refined to before stars are.

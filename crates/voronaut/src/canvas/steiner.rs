@@ -4,9 +4,10 @@
 use super::flip::{FROZEN_LIMIT, Frozen};
 use crate::error::Result;
 use crate::geometry::{Point, Tensor};
+use crate::lists::distinct;
 use crate::metric::{MetricField, check_tensor};
 use crate::planar::{Location, Planar};
-use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId, distinct};
+use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
 
 /// Fixed edges shorter than this share of the circle that asks for it are not halved: under a small angle between
 /// two of them halving would go on for long.

@@ -10,8 +10,9 @@ use super::envelope::{Near, meeting};
 use super::overlap::Overlap;
 use crate::geodesic::NO_COLOUR;
 use crate::geometry::Point;
+use crate::lists::distinct;
 use crate::parallel::prelude::*;
-use crate::triangulation::{FaceId, HalfEdge, VertexId, distinct};
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 /// The cells of a diagram as plain data, in the user's coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]

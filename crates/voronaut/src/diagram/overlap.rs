@@ -6,6 +6,7 @@
 use super::ground::Straight as _;
 use super::{Diagram, Ground, Measure, Seed};
 use crate::geodesic::NO_COLOUR;
+use crate::lists::Rows;
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
 use std::collections::HashMap;
@@ -16,15 +17,12 @@ const RINGS: usize = 3;
 const CELLS: usize = 128;
 
 /// The distances of canvas vertices to the seeds whose cells are near.
-pub(super) struct Overlap {
-    first: Vec<u32>,
-    entries: Vec<(u32, f64)>,
-}
+pub(super) struct Overlap(Rows<(u32, f64)>);
 
 impl Overlap {
     /// The seeds near a vertex by colour, with their distances.
     pub(super) fn at(&self, v: VertexId) -> &[(u32, f64)] {
-        &self.entries[self.first[v.index()] as usize..self.first[v.index() + 1] as usize]
+        self.0.row(v.index())
     }
 
     /// The distance of a vertex to a seed, where it is known.
@@ -114,22 +112,10 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
 
 /// From lists by colour to lists by vertex.
 fn gather(vertices: usize, patches: &[Patch]) -> Overlap {
-    let mut first = vec![0_u32; vertices + 1];
-    for (v, _) in patches.iter().flatten() {
-        first[v.index() + 1] += 1;
-    }
-    for v in 0..vertices {
-        first[v + 1] += first[v];
-    }
-    let mut next = first.clone();
-    let mut entries = vec![(NO_COLOUR, f64::INFINITY); first[vertices] as usize];
-    for (colour, patch) in patches.iter().enumerate() {
-        for &(v, distance) in patch {
-            entries[next[v.index()] as usize] = (colour as u32, distance);
-            next[v.index()] += 1;
-        }
-    }
-    Overlap { first, entries }
+    let entries = (0..)
+        .zip(patches)
+        .flat_map(|(colour, patch)| patch.iter().map(move |&(v, distance)| (v.0, (colour, distance))));
+    Overlap(Rows::new(vertices, entries))
 }
 
 /// For pairs of seeds whose cells, with their surroundings, have canvas vertices in common: the vertex with the least sum of

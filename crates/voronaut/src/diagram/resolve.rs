@@ -5,8 +5,9 @@ use crate::canvas::Canvas;
 use crate::error::Result;
 use crate::geodesic::chord;
 use crate::geometry::Point;
+use crate::lists::distinct;
 use crate::metric::MetricField;
-use crate::triangulation::{FaceId, VertexId, distinct};
+use crate::triangulation::{FaceId, VertexId};
 
 /// Simplices whose longest edge is shorter than this share of the distance to the nearest seed are not refined: cells that
 /// meet there do so, as far as computed distances tell, in one point.

@@ -5,9 +5,10 @@ use crate::canvas::Canvas;
 use crate::error::{Error, Result};
 use crate::geodesic::bowed_chord;
 use crate::geometry::{Orientation, Point, orientation};
+use crate::lists::distinct;
 use crate::parallel::prelude::*;
 use crate::planar::{Location, Planar};
-use crate::triangulation::{HalfEdge, VertexId, distinct};
+use crate::triangulation::{HalfEdge, VertexId};
 use std::collections::BTreeMap;
 
 /// A canvas vertex in sight of a seed, and the metric length of the geodesic between them.

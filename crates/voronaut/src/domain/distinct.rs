@@ -3,7 +3,7 @@
 use super::{Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
-use crate::mesh::unordered;
+use crate::lists::in_order;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -56,7 +56,7 @@ pub(super) fn merge_segments(
             let what = format!("{noun} {number} has no length: both its ends are the same vertex");
             return Err(Error::domain(what, describe(a), format!("remove the {noun}, or correct its ends")));
         }
-        match known.entry(unordered(segment.ends)) {
+        match known.entry(in_order(segment.ends)) {
             Entry::Vacant(entry) => {
                 entry.insert((merged.len(), number));
                 merged.push(segment);

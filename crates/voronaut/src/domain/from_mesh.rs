@@ -4,7 +4,8 @@ use super::distinct::{check_points, listed, merge_segments};
 use super::{Filling, Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, orientation};
-use crate::mesh::{Mesh, Side as TriangleSide, by_edge, sides, unordered};
+use crate::lists::in_order;
+use crate::mesh::{Mesh, Side as TriangleSide, by_edge, sides};
 
 /// The domain of a planar mesh.
 ///
@@ -96,7 +97,7 @@ fn with_sides(mesh: &Mesh, mut segments: Vec<Segment>) -> Result<Vec<Segment>> {
     let edges = sides_of_edges(mesh)?;
     let mut is_listed = vec![false; edges.len()];
     for segment in &mut segments {
-        let ends = unordered(segment.ends);
+        let ends = in_order(segment.ends);
         let Ok(index) = edges.binary_search_by_key(&ends, |edge| edge.ends) else {
             let place = format!("{} - {}", describe(mesh, segment.ends[0]), describe(mesh, segment.ends[1]));
             let help = "remove the edge, or all triangles (then the edges alone are the domain)";

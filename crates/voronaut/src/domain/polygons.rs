@@ -4,7 +4,7 @@ use super::distinct::key;
 use super::{Filling, Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, orientation};
-use crate::mesh::unordered;
+use crate::lists::in_order;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -118,7 +118,7 @@ impl Builder {
 
     /// Puts a region on one side of the segment between two vertices.
     fn claim(&mut self, ends: [u32; 2], left: bool, region: i32, label: i32) -> Result<()> {
-        let index = match self.joined.entry(unordered(ends)) {
+        let index = match self.joined.entry(in_order(ends)) {
             Entry::Occupied(entry) => *entry.get(),
             Entry::Vacant(entry) => {
                 entry.insert(self.segments.len());

@@ -1,12 +1,11 @@
 //! What relaxation asks of a triangulation whose seeds it moves, in the plane or on a surface; and what mending its worst triangles asks:
 //! how good triangles and edges are as a mesh's are measured.
 
-use super::{Dual, Effort, Kind, Saved, SurfaceDual};
+use super::{Dual, Effort, Kind, Saved};
 use crate::error::Result;
 use crate::geodesic::LocalMetric;
-use crate::geometry::{Point, Tensor, Tensor3, Vector};
+use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
-use crate::surface::Place;
 use crate::triangulation::{Triangulation, VertexId};
 
 /// Seeds that can move, with their triangulation. Vectors at a seed are in its own coordinates: those of the plane, or of a
@@ -158,49 +157,5 @@ impl Mending for Dual<'_> {
     fn settle_move(&mut self, v: VertexId) {
         self.remeasure(v);
         self.flip_around(v, Effort::Local);
-    }
-}
-
-/// A place of a surface and the logarithm of the tensor there.
-#[derive(Clone, Copy)]
-pub(crate) struct SurfaceSite {
-    place: Place,
-    log: Tensor3,
-}
-
-impl SurfaceDual<'_> {
-    fn site_of(&self, place: Place) -> SurfaceSite {
-        let normal = self.input().normal(&place);
-        SurfaceSite { log: (self.metric().at(&place) * self.factor()).log(), place: Place { normal, ..place } }
-    }
-}
-
-impl Mending for SurfaceDual<'_> {
-    type Site = SurfaceSite;
-
-    fn site(&self, v: VertexId) -> SurfaceSite {
-        self.site_of(self.places()[v.index()])
-    }
-
-    fn site_after(&self, v: VertexId, by: Vector) -> Option<SurfaceSite> {
-        Some(self.site_of(self.place_after(v, by)?))
-    }
-
-    /// Negative where the triangle is turned over against the surface's normal at a corner.
-    fn quality(&self, corners: [SurfaceSite; 3]) -> f64 {
-        let [a, b, c] = corners.map(|site| site.place.position);
-        let tensor = (corners.iter().fold(Tensor3::default(), |sum, site| sum + site.log) * (1.0 / 3.0)).exp();
-        let (normal, quality) = ((b - a).cross(c - a), tensor.shape([a, b, c]));
-        let is_upright = corners.iter().all(|site| site.place.normal.dot(normal) > 0.0);
-        if is_upright { quality } else { -quality }
-    }
-
-    fn straight_length(&self, [a, b]: [SurfaceSite; 2]) -> f64 {
-        ((a.log + b.log) * 0.5).exp().length(b.place.position - a.place.position)
-    }
-
-    fn settle_move(&mut self, v: VertexId) {
-        self.remeasure(v);
-        self.flip_around(v);
     }
 }

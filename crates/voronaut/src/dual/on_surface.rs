@@ -4,7 +4,7 @@
 //! without doubled edges, and lets no triangle turn away from the surface's normals. What the metric is around a seed, and where its neighbours are, is
 //! told in a chart there (RR-9103, section 12).
 
-use super::{Kind, Moving};
+use super::{Kind, Mending, Moving};
 use crate::error::{Error, Result};
 use crate::geodesic::LocalMetric;
 use crate::geometry::{Point, Point3, TangentPlane, Tensor3, Vector, Vector3};
@@ -321,5 +321,49 @@ impl Moving for SurfaceDual<'_> {
 
     fn moved_since(&self, saved: &State, v: VertexId) -> Vector {
         self.state.planes[v.index()].flatten(self.position(v) - saved.places[v.index()].position)
+    }
+}
+
+/// A place of a surface and the logarithm of the tensor there.
+#[derive(Clone, Copy)]
+pub(crate) struct SurfaceSite {
+    place: Place,
+    log: Tensor3,
+}
+
+impl SurfaceDual<'_> {
+    fn site_of(&self, place: Place) -> SurfaceSite {
+        let normal = self.input().normal(&place);
+        SurfaceSite { log: (self.metric().at(&place) * self.factor()).log(), place: Place { normal, ..place } }
+    }
+}
+
+impl Mending for SurfaceDual<'_> {
+    type Site = SurfaceSite;
+
+    fn site(&self, v: VertexId) -> SurfaceSite {
+        self.site_of(self.places()[v.index()])
+    }
+
+    fn site_after(&self, v: VertexId, by: Vector) -> Option<SurfaceSite> {
+        Some(self.site_of(self.place_after(v, by)?))
+    }
+
+    /// Negative where the triangle is turned over against the surface's normal at a corner.
+    fn quality(&self, corners: [SurfaceSite; 3]) -> f64 {
+        let [a, b, c] = corners.map(|site| site.place.position);
+        let tensor = (corners.iter().fold(Tensor3::default(), |sum, site| sum + site.log) * (1.0 / 3.0)).exp();
+        let (normal, quality) = ((b - a).cross(c - a), tensor.shape([a, b, c]));
+        let is_upright = corners.iter().all(|site| site.place.normal.dot(normal) > 0.0);
+        if is_upright { quality } else { -quality }
+    }
+
+    fn straight_length(&self, [a, b]: [SurfaceSite; 2]) -> f64 {
+        ((a.log + b.log) * 0.5).exp().length(b.place.position - a.place.position)
+    }
+
+    fn settle_move(&mut self, v: VertexId) {
+        self.remeasure(v);
+        self.flip_around(v);
     }
 }

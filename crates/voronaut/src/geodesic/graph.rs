@@ -1,8 +1,9 @@
 //! What methods that know no triangles travel on: vertices with a tensor each, and who is whose neighbour.
 
 use crate::geometry::{Point, Tensor, Vector};
+use crate::lists::distinct;
 use crate::parallel::prelude::*;
-use crate::triangulation::{VertexId, distinct};
+use crate::triangulation::VertexId;
 use std::fmt;
 use std::sync::Arc;
 

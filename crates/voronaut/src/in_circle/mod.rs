@@ -2,8 +2,8 @@
 //! before it cannot tell. What the levels are is for an [`InCircle`] to say; lengths and outcomes are kept.
 
 use crate::geodesic::{Margin, PathLength, margin_from_lengths};
+use crate::lists::distinct;
 use crate::parallel::prelude::*;
-use crate::triangulation::distinct;
 use std::collections::HashMap;
 use std::ops::Range;
 

@@ -8,7 +8,7 @@ mod solution;
 
 pub(crate) use locate::{Located, Locator};
 pub(crate) use network::Network;
-pub(crate) use sides::{Side, borders, by_edge, edges_of, sides, sides_at, unordered};
+pub(crate) use sides::{Side, borders, by_edge, edges_of, sides, sides_at};
 pub use solution::{Solution, SolutionValues, Solutions, TensorOrder};
 
 use crate::error::{Error, Result};

@@ -1,5 +1,7 @@
 //! The edges of a list of triangles, and which triangles have them.
 
+use crate::lists::in_order;
+
 /// One side of an edge: a triangle that has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Side {
@@ -11,11 +13,6 @@ pub(crate) struct Side {
     pub forward: bool,
 }
 
-/// The ends of an edge, the smaller first, whatever its direction.
-pub(crate) fn unordered([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
-}
-
 /// The edges of a triangle, in its direction.
 pub(crate) fn edges_of([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
@@ -24,7 +21,7 @@ pub(crate) fn edges_of([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 /// All sides, sorted by their edges.
 pub(crate) fn sides(triangles: impl IntoIterator<Item = [u32; 3]>) -> Vec<Side> {
     let of_triangle = |(triangle, corners)| {
-        edges_of(corners).map(|ends| Side { ends: unordered(ends), triangle, forward: ends[0] < ends[1] })
+        edges_of(corners).map(|ends| Side { ends: in_order(ends), triangle, forward: ends[0] < ends[1] })
     };
     let mut sides: Vec<Side> = (0..).zip(triangles).flat_map(of_triangle).collect();
     sides.sort_unstable();

@@ -1,12 +1,10 @@
 //! Which vertices of a mesh share an edge.
 
+use crate::lists::{Rows, distinct};
 use crate::mesh::{Mesh, edges_of};
 
 /// The neighbours of every vertex in ascending order, one list after the other.
-pub(crate) struct Neighbours {
-    starts: Vec<usize>,
-    lists: Vec<u32>,
-}
+pub(crate) struct Neighbours(Rows<u32>);
 
 impl Neighbours {
     /// Of a mesh whose numbers are valid.
@@ -21,16 +19,13 @@ impl Neighbours {
         more: impl IntoIterator<Item = [u32; 2]>,
     ) -> Self {
         let edges = triangles.into_iter().flat_map(edges_of).chain(more);
-        let mut pairs: Vec<[u32; 2]> = edges.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
-        let starts = (0..=count).map(|v| pairs.partition_point(|pair| (pair[0] as usize) < v)).collect();
-        Self { starts, lists: pairs.iter().map(|pair| pair[1]).collect() }
+        let pairs = distinct(edges.flat_map(|[a, b]| [[a, b], [b, a]]));
+        Self(Rows::new(count, pairs.iter().map(|&[v, w]| (v, w))))
     }
 
     /// Of one vertex; none where it has no triangle.
     pub(crate) fn at(&self, v: usize) -> &[u32] {
-        &self.lists[self.starts[v]..self.starts[v + 1]]
+        self.0.row(v)
     }
 
     /// Of any of these vertices, in ascending order.
@@ -69,7 +64,7 @@ impl Neighbours {
     }
 
     fn count(&self) -> usize {
-        self.starts.len() - 1
+        self.0.count()
     }
 }
 

@@ -3,9 +3,10 @@
 use crate::dual::Dual;
 use crate::geodesic::{LocalMetric, chord, equalising_step, flat_centre, hermite};
 use crate::geometry::{Point, Tensor};
+use crate::lists::distinct;
 use crate::metric::MetricField;
 use crate::planar::Location;
-use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId, distinct};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// Newton steps at most to a circumcentre, and the residue (share of the squared radius) at which they end.
 const STEPS: usize = 6;

@@ -3,9 +3,9 @@
 use super::{Ball, Net, Simplices};
 use crate::geodesic::{Circle, Fineness, Paths, chord, flat_centre};
 use crate::geometry::Point;
+use crate::lists::distinct;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
-use crate::triangulation::distinct;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

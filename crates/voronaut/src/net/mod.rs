@@ -15,8 +15,9 @@ pub(crate) use on_canvas::circles_on_canvas;
 pub use random::Random;
 
 use crate::geometry::Point;
+use crate::lists::distinct;
 use crate::metric::MetricField;
-use crate::triangulation::{distinct, smallest_first};
+use crate::triangulation::smallest_first;
 use measure::Measure;
 use std::collections::HashSet;
 

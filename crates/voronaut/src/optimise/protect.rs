@@ -8,6 +8,7 @@ use crate::dual::{Dual, Kind};
 use crate::error::Result;
 use crate::geodesic::{Angles, LocalMetric, hermite};
 use crate::geometry::Point;
+use crate::lists::distinct;
 use crate::metric::MetricField;
 use crate::net::{Ball, Estimate, Memory, Net, Random, Simplices, Sites};
 use crate::parallel::prelude::*;
@@ -341,9 +342,7 @@ impl<'a, 'b> Mender<'a, 'b> {
         let topology = &self.topology;
         // The powers of seeds count that the neighbours of the faces' corners are.
         let corners = faces.iter().flat_map(|&f| topology.corners(f));
-        let mut wide: Vec<FaceId> = corners.flat_map(|v| topology.star(v).map(HalfEdge::face)).collect();
-        wide.sort_unstable();
-        wide.dedup();
+        let wide = distinct(corners.flat_map(|v| topology.star(v).map(HalfEdge::face)));
         let border = faces.iter().flat_map(|f| f.half_edges()).filter(|&h| topology.twin(h).is_none());
         let border: Vec<[u32; 2]> = border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect();
         let triangles = corners_of(topology, wide.into_iter());

@@ -10,6 +10,7 @@ use super::edges::Edges;
 use super::faults::{Fault, Piece, Segments};
 use super::self_intersections::meet;
 use crate::geometry::{Aabb, Orientation, Point, orientation};
+use crate::lists::distinct;
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 
@@ -62,9 +63,7 @@ fn overlapping_fans(mesh: &Mesh, boundary: &[[u32; 2]], turns: &[u32]) -> Vec<Fa
     }
     let twice = (0..).zip(turns).filter(|&(_, &turns)| turns > 1).map(|(v, _)| v);
     let starts = boundary.iter().zip(&covers).filter(|&(_, &covers)| covers != 1).map(|(&[v, _], _)| v);
-    let mut vertices: Vec<u32> = twice.chain(starts).collect();
-    vertices.sort_unstable();
-    vertices.dedup();
+    let vertices = distinct(twice.chain(starts));
     let what = |v: u32| format!("the triangles around vertex {} overlap", v + 1);
     vertices.into_iter().map(|v| Fault { what: what(v), place: mesh.point(v).to_string() }).collect()
 }
@@ -132,9 +131,7 @@ fn rightmost_vertices(mesh: &Mesh, boundary: &[[u32; 2]]) -> Vec<u32> {
         let (low, high) = if place(a) < place(b) { (a, b) } else { (b, a) };
         parent[low as usize] = high;
     }
-    let mut roots: Vec<u32> = boundary.iter().map(|&[v, _]| root(&mut parent, v)).collect();
-    roots.sort_unstable();
-    roots.dedup();
+    let roots = distinct(boundary.iter().map(|&[v, _]| root(&mut parent, v)));
     roots
 }
 

@@ -18,7 +18,6 @@ mod test_meshes;
 mod unmet;
 mod validity;
 
-pub(crate) use faults::faulty_triangles;
 pub use faults::{Fault, Position};
 pub use fidelity::{Farthest, Fidelity, fidelity};
 pub use histogram::{Both, Histogram, Histograms, histograms};
@@ -30,6 +29,7 @@ pub use self_intersections::{Crossing, crossing_edges};
 pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
 pub use surface_quality::surface_quality;
 pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet};
+pub(crate) use validity::faulty_triangles;
 pub use validity::{Validity, check, validity, validity_on};
 
 pub use edges::Edges;

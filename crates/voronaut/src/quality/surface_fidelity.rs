@@ -5,6 +5,7 @@ use super::metric_quality::{Spot, demand_vertices, fault, spot};
 use super::sampled_distance::{Sample, Sampled, sample};
 use crate::error::Result;
 use crate::geometry::{Point3, Vector3};
+use crate::lists::distinct;
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::surface::{Implicit, Nearest, Surface, closest_zero};
@@ -163,9 +164,7 @@ impl Deviation {
 }
 
 fn farthest_vertex(mesh: &Mesh, target: &Target) -> Spot {
-    let mut used = mesh.triangles.as_flattened().to_vec();
-    used.sort_unstable();
-    used.dedup();
+    let used = distinct(mesh.triangles.as_flattened().iter().copied());
     let misses: Vec<f64> = used.par_iter().map(|&v| target.miss(mesh.position(v))).collect();
     spot(&misses, |miss| -miss, |i| mesh.position(used[i]).into()).map(|miss| -miss)
 }

@@ -4,7 +4,7 @@ use super::edges::{self, Edges, NONE};
 use super::embedding;
 use super::faults::{Fault, duplicates, is_finite, longest, middle};
 use super::meetings::{Excused, Meetings};
-use super::self_intersections::pairs;
+use super::self_intersections::{Pair, pairs};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, is_flat, orientation};
 use crate::mesh::Mesh;
@@ -240,6 +240,29 @@ impl Validity {
     }
 }
 
+/// The triangles of a surface's mesh that are flat, have an edge or a vertex that is not manifold, or meet another one where the
+/// surface does not meet itself; in order. [`validity_on`] says what is wrong with the mesh; this says where
+/// it has to be made anew.
+pub(crate) fn faulty_triangles(mesh: &Mesh, surface: &Meetings) -> Vec<u32> {
+    let flat = |t: &u32| is_flat(mesh.positions_of(mesh.triangles[*t as usize]));
+    let mut faulty: Vec<u32> = (0..mesh.triangles.len() as u32).filter(flat).collect();
+    if faulty.is_empty() {
+        let of_ours = |pair: &Pair| !pair.is_excused(mesh, surface);
+        faulty
+            .extend(pairs(mesh).iter().filter(|pair| of_ours(pair)).flat_map(|pair| pair.triangles).map(|t| t as u32));
+    }
+    let edges = Edges::of(&mesh.triangles);
+    for (_, half_edges) in edges.iter().filter(|(_, half_edges)| !edges.is_manifold(half_edges)) {
+        faulty.extend(half_edges.iter().map(|(_, half_edge)| half_edge / 3));
+    }
+    let split = split_vertices(mesh, &edges);
+    let has_split = |t: &[u32; 3]| t.iter().any(|v| split.binary_search(v).is_ok());
+    faulty.extend((0..).zip(&mesh.triangles).filter(|(_, t)| has_split(t)).map(|(i, _)| i));
+    faulty.sort_unstable();
+    faulty.dedup();
+    faulty
+}
+
 /// Cycles of the boundary: from each boundary half-edge on through the fan of triangles at its end.
 fn boundary_loops(edges: &Edges) -> usize {
     let twins = edges.twins();
@@ -259,7 +282,7 @@ fn boundary_loops(edges: &Edges) -> usize {
 }
 
 /// Vertices with triangles that cannot be reached from another one of theirs across edges at the vertex.
-pub(super) fn split_vertices(mesh: &Mesh, edges: &Edges) -> Vec<u32> {
+fn split_vertices(mesh: &Mesh, edges: &Edges) -> Vec<u32> {
     let twins = edges.twins();
     let mut corners = vec![0_u32; mesh.points.len()];
     let mut start = vec![NONE; mesh.points.len()];

@@ -19,6 +19,7 @@ pub use start::Start;
 use crate::geodesic::{Margin, PathLength};
 use crate::geometry::{Point, Vector};
 use crate::in_circle::{InCircle, LEVELS, Lengths, Quad, TestCounters, Tested, Tests};
+use crate::lists::in_order;
 use crate::metric::MetricField;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId, smallest_first};
 use start::Prepared;
@@ -231,7 +232,7 @@ impl<J: Judge> Rdt<J> {
 
     /// The edges that the start did not have: where the start and the in-circle tests disagree.
     pub(crate) fn disagreements(&self) -> Vec<Edge> {
-        let is_new = |e: &Edge| self.started_with.binary_search(&sorted(e.ends)).is_err();
+        let is_new = |e: &Edge| self.started_with.binary_search(&in_order(e.ends)).is_err();
         self.edges().into_iter().filter(is_new).collect()
     }
 
@@ -286,7 +287,7 @@ impl<J: Judge> Rdt<J> {
     /// The ends of all edges, the smaller first, sorted.
     fn pairs(&self) -> Vec<[u32; 2]> {
         let topology = &self.topology;
-        let ends = |h| sorted(topology.ends(h).map(|v| self.seed(v)));
+        let ends = |h| in_order(topology.ends(h).map(|v| self.seed(v)));
         let mut pairs: Vec<[u32; 2]> = topology.edges().map(ends).collect();
         pairs.sort_unstable();
         pairs
@@ -308,8 +309,4 @@ fn split(topology: &mut Triangulation, seeds: usize) -> Vec<u32> {
 fn missing(wanted: &[[u32; 3]], found: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let found: HashSet<[u32; 3]> = found.iter().map(|&t| smallest_first(t)).collect();
     wanted.iter().map(|&t| smallest_first(t)).filter(|t| !found.contains(t)).collect()
-}
-
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

@@ -4,6 +4,7 @@ use crate::diagram::{Diagram, Ground, Kind, Nerve, NerveTriangle, SurfaceDiagram
 use crate::dual::Road;
 use crate::figures;
 use crate::geometry::{Point, Point3};
+use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::net::{Net, Simplices};
@@ -137,8 +138,8 @@ pub(super) fn account(rdt: &Rdt<impl Judge>, nerve: &Nerve, road: Road) -> figur
     let unsure: HashSet<[u32; 2]> = nerve.sides(|t| t.fourth.is_some_and(|(_, gap)| gap < NERVE_ERROR)).collect();
     let is_open = |edge: &&Edge| match road {
         Road::Geodesic => edge.is_uncertain(),
-        Road::Canvas => unsure.contains(&sorted(edge.ends)),
-        Road::Both => edge.is_uncertain() && unsure.contains(&sorted(edge.ends)),
+        Road::Canvas => unsure.contains(&in_order(edge.ends)),
+        Road::Both => edge.is_uncertain() && unsure.contains(&in_order(edge.ends)),
     };
     let uncertain_edges: Vec<figures::UncertainEdge> = edges.iter().filter(is_open).map(uncertain).collect();
     let differing = rdt.disagreements().into_iter().map(|edge| disagreement(&edge, &of_nerve, road));
@@ -163,14 +164,10 @@ fn uncertain(edge: &Edge) -> figures::UncertainEdge {
 
 fn disagreement(edge: &Edge, of_nerve: &HashSet<[u32; 2]>, road: Road) -> figures::Disagreement {
     let (margin, error) = edge.margin.map_or((0.0, f64::INFINITY), |m| (m.value, m.error));
-    let other = if let [Some(c), Some(d)] = edge.apexes { Some(sorted([c, d])) } else { None };
+    let other = if let [Some(c), Some(d)] = edge.apexes { Some(in_order([c, d])) } else { None };
     let settled_by = if road == Road::Canvas { Road::Canvas } else { Road::Geodesic };
     let instead = other.filter(|other| of_nerve.contains(other));
     figures::Disagreement { edge: edge.ends, instead, margin, error, settled_by }
-}
-
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }
 
 /// The dual of a diagram's seeds on a surface, by the road that is asked for; see [`super::dual()`].

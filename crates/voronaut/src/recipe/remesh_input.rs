@@ -4,6 +4,7 @@ use super::field::{BACKGROUND_VERTICES, even};
 use crate::domain::{Domain, Pslg, from_mesh};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
+use crate::lists::in_order;
 use crate::mesh::{Mesh, Solution, SolutionValues};
 use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, complexity, implied, isotropic};
 use crate::metric::{Bounds, MetricField, Sampled};
@@ -64,7 +65,7 @@ impl RemeshInput {
         let required_edges = mesh
             .required_edges
             .iter()
-            .map(|&e| unordered(mesh.edges[e as usize].map(|v| position(mesh.points[v as usize]))));
+            .map(|&e| in_order(mesh.edges[e as usize].map(|v| position(mesh.points[v as usize]))));
         let input = Self::of_graph(from_mesh(&mesh)?, keep)?;
         let corners: HashSet<Position> = own(&mesh.corners);
         Ok(Self {
@@ -85,7 +86,7 @@ impl RemeshInput {
         let at = |pslg: &Pslg, v: u32| position_of(pslg.points[v as usize]);
         let required: HashSet<Position> = pslg.required_points.iter().map(|&v| at(&pslg, v)).collect();
         let is_required = pslg.segments.iter().filter(|segment| segment.required);
-        let required_edges = is_required.map(|segment| unordered(segment.ends.map(|v| at(&pslg, v)))).collect();
+        let required_edges = is_required.map(|segment| in_order(segment.ends.map(|v| at(&pslg, v)))).collect();
         let turns = pslg.corners(keep.features.ar);
         let corners = turns.iter().map(|&v| at(&pslg, v)).collect();
         pslg.required_points.extend(turns);
@@ -112,7 +113,7 @@ impl RemeshInput {
         let at = |v: u32| position(mesh.points[v as usize]);
         mesh.corners.retain(|&v| self.corners.contains(&at(v)));
         mesh.required_points.retain(|&v| self.required.contains(&at(v)));
-        mesh.required_edges.retain(|&e| self.required_edges.contains(&unordered(mesh.edges[e as usize].map(at))));
+        mesh.required_edges.retain(|&e| self.required_edges.contains(&in_order(mesh.edges[e as usize].map(at))));
     }
 }
 
@@ -136,10 +137,6 @@ fn required_lengths(pslg: &Pslg) -> HashMap<Position, f64> {
     sums.into_iter().map(|(p, (sum, count))| (p, sum / count)).collect()
 }
 
-fn unordered<T: Ord>([a, b]: [T; 2]) -> [T; 2] {
-    if a < b { [a, b] } else { [b, a] }
-}
-
 /// The mesh without edges that are no triangle's, and without those inside a region that are not required unless they are to be kept;
 /// and how many these were. As mmg2d has it.
 fn without_useless_edges(mut mesh: Mesh, inner: bool) -> (Mesh, usize) {
@@ -149,7 +146,7 @@ fn without_useless_edges(mut mesh: Mesh, inner: bool) -> (Mesh, usize) {
     let sides = labels_beside(&mesh);
     let mut is_required = vec![false; mesh.edges.len()];
     mesh.required_edges.iter().for_each(|&e| is_required[e as usize] = true);
-    let is_kept = |e: usize| match sides.get(&unordered(mesh.edges[e])).map(Vec::as_slice) {
+    let is_kept = |e: usize| match sides.get(&in_order(mesh.edges[e])).map(Vec::as_slice) {
         Some([a, b]) => a != b || inner || is_required[e],
         found => found.is_some(),
     };
@@ -168,7 +165,7 @@ fn labels_beside(mesh: &Mesh) -> HashMap<[u32; 2], Vec<i32>> {
     for (i, &[a, b, c]) in mesh.triangles.iter().enumerate() {
         let label = mesh.triangle_labels.get(i).copied().unwrap_or(0);
         for ends in [[a, b], [b, c], [c, a]] {
-            sides.entry(unordered(ends)).or_default().push(label);
+            sides.entry(in_order(ends)).or_default().push(label);
         }
     }
     sides

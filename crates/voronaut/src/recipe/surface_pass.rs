@@ -9,6 +9,7 @@ use crate::diagram::SurfaceDiagram;
 use crate::dual::{Road, SurfaceDual};
 use crate::error::{Error, Result};
 use crate::figures;
+use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::optimise::{Relaxed, Tangent, mend_worst, relax};
 use crate::progress::Progress;
@@ -362,10 +363,6 @@ impl Pass<'_> {
 fn no_features() -> Error {
     let help = "ask for more vertices, or leave features out";
     Error::domain("features cannot be kept without folds", "the surface", help)
-}
-
-fn in_order([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }
 
 /// The longest edge of a triangle.

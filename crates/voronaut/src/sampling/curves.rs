@@ -4,6 +4,7 @@
 use crate::domain::{Chain, Domain, Pslg};
 use crate::geodesic::chord;
 use crate::geometry::{Aabb, BoxTree, Orientation, Point, Tensor, Vector, orientation, widened};
+use crate::lists::distinct;
 use crate::metric::MetricField;
 use std::collections::HashSet;
 
@@ -27,9 +28,7 @@ pub(crate) fn simplify(domain: &Domain, field: &dyn MetricField, tolerance: f64)
 
 fn thin(pslg: &Pslg, chain: &Chain, field: &dyn MetricField, tolerance: f64, neighbours: &Neighbours) -> Chain {
     let points: Vec<Point> = chain.vertices.iter().map(|&v| pslg.points[v as usize]).collect();
-    let mut kept = unit_steps(&points, field);
-    kept.sort_unstable();
-    kept.dedup();
+    let mut kept = distinct(unit_steps(&points, field));
     let is_loop = chain.vertices[0] == chain.vertices[chain.vertices.len() - 1];
     if is_loop && kept.len() < 4 {
         let n = points.len() - 1;

@@ -1,6 +1,7 @@
 //! Seeds on the features of a surface: at stops, and along curves at even metric length.
 
 use crate::geometry::Point3;
+use crate::lists::in_order;
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Curve, CurveEdge, Input, Mark, Place};
@@ -294,10 +295,6 @@ fn speeds(input: &Input, metric: &dyn SurfaceMetric, edge: &CurveEdge, t: f64) -
         *speed = metric.at(&place).length(b - a);
     }
     speeds
-}
-
-fn in_order([a, b]: [VertexId; 2]) -> [VertexId; 2] {
-    [a.min(b), a.max(b)]
 }
 
 fn distance_to_segment(p: Point3, [a, b]: [Point3; 2]) -> f64 {

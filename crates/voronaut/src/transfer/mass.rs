@@ -1,5 +1,6 @@
 //! The mass matrix of linear elements, what is integrated with it, and values brought back into bounds with the same integral.
 
+use crate::lists::Rows;
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::sparse::{conjugate_gradients, dot};
@@ -14,9 +15,8 @@ pub(super) struct MassMatrix<'a> {
     triangles: &'a [[u32; 3]],
     /// Of the triangles.
     pub(super) areas: &'a [f64],
-    /// Triangles and corners at each vertex, from `starts[v]` to `starts[v + 1]`.
-    fans: Vec<(u32, u8)>,
-    starts: Vec<usize>,
+    /// Triangles and corners at each vertex.
+    fans: Rows<(u32, u8)>,
     /// The integral of each hat function: the sum of its row.
     pub(super) lumped: Vec<f64>,
 }
@@ -27,33 +27,22 @@ const STEPS: usize = 60;
 
 impl<'a> MassMatrix<'a> {
     pub(super) fn new(mesh: &'a Mesh, areas: &'a [f64]) -> Self {
-        let mut starts = vec![0; mesh.points.len() + 1];
-        mesh.triangles.as_flattened().iter().for_each(|&v| starts[v as usize + 1] += 1);
-        for v in 0..mesh.points.len() {
-            starts[v + 1] += starts[v];
-        }
-        let (mut next, mut fans) = (starts.clone(), vec![(0, 0); 3 * mesh.triangles.len()]);
-        for (t, triangle) in mesh.triangles.iter().enumerate() {
-            for (corner, &v) in triangle.iter().enumerate() {
-                fans[next[v as usize]] = (t as u32, corner as u8);
-                next[v as usize] += 1;
-            }
-        }
-        let mut matrix = Self { triangles: &mesh.triangles, areas, fans, starts, lumped: Vec::new() };
+        let corners =
+            (0..).zip(&mesh.triangles).flat_map(|(t, triangle)| (0..).zip(triangle).map(move |(k, &v)| (v, (t, k))));
+        let fans = Rows::new(mesh.points.len(), corners);
+        let mut matrix = Self { triangles: &mesh.triangles, areas, fans, lumped: Vec::new() };
         matrix.lumped = matrix.assemble(|t, _| areas[t] / 3.0);
         matrix
     }
 
     /// The triangles at a vertex, and which of their corners it is.
     pub(super) fn fan(&self, vertex: usize) -> impl Iterator<Item = (usize, usize)> {
-        self.fans[self.starts[vertex]..self.starts[vertex + 1]]
-            .iter()
-            .map(|&(t, corner)| (t as usize, usize::from(corner)))
+        self.fans.row(vertex).iter().map(|&(t, corner)| (t as usize, usize::from(corner)))
     }
 
     /// Sums over the triangles at each vertex of what triangle and corner bring.
     pub(super) fn assemble(&self, bring: impl Fn(usize, usize) -> f64 + Sync) -> Vec<f64> {
-        let vertices = self.starts.len() - 1;
+        let vertices = self.fans.count();
         (0..vertices).into_par_iter().map(|v| self.fan(v).map(|(t, corner)| bring(t, corner)).sum()).collect()
     }
 

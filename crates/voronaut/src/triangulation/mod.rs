@@ -379,11 +379,3 @@ pub(crate) fn smallest_first<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [T; 3] 
         [c, a, b]
     }
 }
-
-/// Some items in order, each once.
-pub(crate) fn distinct<T: Ord>(items: impl IntoIterator<Item = T>) -> Vec<T> {
-    let mut items: Vec<T> = items.into_iter().collect();
-    items.sort_unstable();
-    items.dedup();
-    items
-}

@@ -3,6 +3,7 @@
 
 use super::ids::NONE;
 use super::{FaceId, HalfEdge, Triangulation, VertexId};
+use crate::lists::distinct;
 
 impl Triangulation {
     /// A new vertex that belongs to no face yet.
@@ -151,9 +152,7 @@ impl Triangulation {
 
     /// The vertices that an edge joins to this one.
     fn neighbours(&self, v: VertexId) -> Vec<VertexId> {
-        let mut found: Vec<VertexId> = self.around(v).collect();
-        found.sort_unstable();
-        found.dedup();
+        let found = distinct(self.around(v));
         found
     }
 

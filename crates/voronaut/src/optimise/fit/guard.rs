@@ -2,6 +2,7 @@
 
 use super::samples::Sheet;
 use crate::geometry::{Aabb3, Bounds, BoxTree, Corners, Point3, Vector3, contact};
+use crate::lists::distinct;
 use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, VertexId};
 
@@ -62,10 +63,7 @@ impl<'a> Guard<'a> {
             if harmed.is_empty() {
                 break;
             }
-            let mut vertices: Vec<usize> =
-                harmed.iter().flat_map(|&f| mesh.topology.corners(f)).map(VertexId::index).collect();
-            vertices.sort_unstable();
-            vertices.dedup();
+            let vertices = distinct(harmed.iter().flat_map(|&f| mesh.topology.corners(f)).map(VertexId::index));
             for v in vertices {
                 halvings[v] += 1;
             }

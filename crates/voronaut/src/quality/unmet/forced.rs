@@ -5,6 +5,7 @@ use super::super::metric_quality::edge_length;
 use super::{Around, Edges, RANGE, is_unit};
 use crate::geodesic::bowed_chord;
 use crate::geometry::{Point, Point3, Vector};
+use crate::lists::{Rows, distinct};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use std::collections::BTreeMap;
@@ -118,31 +119,16 @@ pub(super) struct Density<'a> {
     logarithms: Vec<f64>,
     /// Of each edge whether it tells of the density.
     tells: Vec<bool>,
-    /// The edges at each vertex, one vertex after the other, and where each vertex's begin.
-    at: Vec<u32>,
-    first: Vec<u32>,
+    /// The edges at each vertex.
+    at: Rows<u32>,
 }
 
 impl<'a> Density<'a> {
     /// Of edges with these lengths; those that do not tell are left out.
     pub(super) fn of(vertices: usize, ends: &'a [[u32; 2]], lengths: &[f64], tells: impl Fn(usize) -> bool) -> Self {
-        let mut first = vec![0_u32; vertices + 1];
-        for &v in ends.as_flattened() {
-            first[v as usize + 1] += 1;
-        }
-        for v in 0..vertices {
-            first[v + 1] += first[v];
-        }
-        let mut next = first.clone();
-        let mut at = vec![0_u32; 2 * ends.len()];
-        for (e, pair) in ends.iter().enumerate() {
-            for &v in pair {
-                at[next[v as usize] as usize] = e as u32;
-                next[v as usize] += 1;
-            }
-        }
+        let at = Rows::new(vertices, (0..).zip(ends).flat_map(|(e, pair)| pair.iter().map(move |&v| (v, e))));
         let logarithms = lengths.iter().map(|length| length.ln()).collect();
-        Self { ends, logarithms, tells: (0..ends.len()).map(tells).collect(), at, first }
+        Self { ends, logarithms, tells: (0..ends.len()).map(tells).collect(), at }
     }
 
     /// Whether an edge's length is what it is because of the density around: of the edges at its ends and at their neighbours
@@ -159,14 +145,9 @@ impl<'a> Density<'a> {
 
     /// The edges at the ends of an edge and at their neighbours that tell, in order.
     fn patch(&self, edge: usize) -> Vec<u32> {
-        let around = |v: u32| &self.at[self.first[v as usize] as usize..self.first[v as usize + 1] as usize];
-        let mut vertices: Vec<u32> =
-            self.ends[edge].iter().flat_map(|&v| around(v)).flat_map(|&e| self.ends[e as usize]).collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let mut edges: Vec<u32> = vertices.into_iter().flat_map(|v| around(v).iter().copied()).collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let around = |v: u32| self.at.row(v as usize);
+        let vertices = distinct(self.ends[edge].iter().flat_map(|&v| around(v)).flat_map(|&e| self.ends[e as usize]));
+        let mut edges = distinct(vertices.into_iter().flat_map(|v| around(v).iter().copied()));
         edges.retain(|&e| self.tells[e as usize]);
         edges
     }

@@ -3,7 +3,8 @@
 use super::mended::Damage;
 use super::work::Work;
 use crate::error::{Error, Result};
-use crate::mesh::{Side, edges_of, sides, sides_at, unordered};
+use crate::lists::in_order;
+use crate::mesh::{Side, edges_of, sides, sides_at};
 use crate::surface::build::has_area;
 
 /// Drops triangles with coordinates that are not finite, if damage is to be repaired.
@@ -92,7 +93,7 @@ fn flip_caps(work: &mut Work, flat: &[usize]) {
         let k = (1..3).fold(0, |most, k| if lengths[k] > lengths[most] { k } else { most });
         let [a, b, middle] = [0, 1, 2].map(|i| work.triangles[t][(k + i) % 3]);
         let [p, q] = [a, b].map(|v| work.places.of(v));
-        let beyond = sides_at(&sides, unordered([p, q]));
+        let beyond = sides_at(&sides, in_order([p, q]));
         if beyond.iter().any(|side| is_touched[side.triangle as usize]) {
             continue;
         }
@@ -152,7 +153,7 @@ fn drop_of_groups(work: &mut Work, keys: &[[u32; 3]], choose: impl Fn(&[usize]) 
 const COMPARED: usize = 16;
 
 fn is_doubtful(t: usize, group: &[usize], triangles: &[[u32; 3]], by_number: &[Side]) -> bool {
-    let own = edges_of(triangles[t]).map(unordered);
+    let own = edges_of(triangles[t]).map(in_order);
     let counts = own.map(|ends| sides_at(by_number, ends).len());
     if counts == [1; 3] {
         return true;

@@ -4,7 +4,9 @@ use super::fans::Sewn;
 use super::glue::NONE;
 use super::mended::Damage;
 use super::work::Work;
-use crate::mesh::{Mesh, edges_of, unordered};
+use crate::lists::distinct;
+use crate::lists::in_order;
+use crate::mesh::{Mesh, edges_of};
 use std::collections::{HashMap, HashSet};
 
 /// The mesh of the triangles as sewn. Vertices keep their numbers, used or not, and those that were added follow; triangles and
@@ -64,9 +66,7 @@ pub(super) fn harmless(mesh: &Mesh) -> Vec<[f64; 3]> {
 /// For each vertex number of the mesh the vertices that it has become, where these are not itself.
 fn copies(work: &Work, sewn: &Sewn) -> HashMap<u32, Vec<u32>> {
     let corners = sewn.numbers.as_flattened().iter().zip(sewn.triangles.as_flattened());
-    let mut pairs: Vec<(u32, u32)> = corners.map(|(&number, &v)| (number, v)).filter(|p| p.0 != NONE).collect();
-    pairs.sort_unstable();
-    pairs.dedup();
+    let pairs = distinct(corners.map(|(&number, &v)| (number, v)).filter(|p| p.0 != NONE));
     let mut copies: HashMap<u32, Vec<u32>> = HashMap::new();
     let mut at_place: HashMap<u32, u32> = HashMap::new();
     for (number, v) in pairs {
@@ -105,7 +105,7 @@ impl Edges {
             }
             let before = edges.ends.len();
             for ends in found {
-                let (sorted, numbers) = (unordered(ends), unordered(listed));
+                let (sorted, numbers) = (in_order(ends), in_order(listed));
                 // The same edge listed twice by number is a mistake in the list, unless labels agree.
                 let twin = first.get(&sorted).filter(|twin| twin.1 != numbers || work.options.repair);
                 if let Some(&(at, _)) = twin {
@@ -152,18 +152,18 @@ impl Known {
                         list.push(ends);
                     }
                 };
-                push(by_number.entry(unordered([v, w])).or_default(), if v < w { ends } else { back });
+                push(by_number.entry(in_order([v, w])).or_default(), if v < w { ends } else { back });
                 let [p, q] = [v, w].map(|v| work.places.of(v));
-                push(by_place.entry(unordered([p, q])).or_default(), if p < q { ends } else { back });
+                push(by_place.entry(in_order([p, q])).or_default(), if p < q { ends } else { back });
             }
         }
         let of_file =
-            work.mesh.triangles.iter().filter(|_| !listed.is_empty()).copied().flat_map(edges_of).map(unordered);
+            work.mesh.triangles.iter().filter(|_| !listed.is_empty()).copied().flat_map(edges_of).map(in_order);
         Self { by_number, by_place, of_file: of_file.collect() }
     }
 
     fn is_of_file(&self, ends: [u32; 2]) -> bool {
-        self.of_file.contains(&unordered(ends))
+        self.of_file.contains(&in_order(ends))
     }
 
     /// What an edge of the list has become, in its direction.
@@ -171,7 +171,7 @@ impl Known {
         let turn = |list: &[[u32; 2]], is_forward: bool| -> Vec<[u32; 2]> {
             list.iter().map(|&[a, b]| if is_forward { [a, b] } else { [b, a] }).collect()
         };
-        if let Some(found) = self.by_number.get(&unordered([v, w])) {
+        if let Some(found) = self.by_number.get(&in_order([v, w])) {
             return turn(found, v < w);
         }
         let mut found = Vec::new();
@@ -179,7 +179,7 @@ impl Known {
         // Every cut is followed once: cuts of cuts that led back would never end.
         let mut is_followed = HashSet::new();
         while let Some([p, q]) = left.pop() {
-            let key = unordered([p, q]);
+            let key = in_order([p, q]);
             if let Some(ends) = self.by_place.get(&key) {
                 found.extend(turn(ends, p < q));
             } else if let Some(inside) = work.cuts.get(&key).filter(|_| is_followed.insert(key)) {

@@ -5,7 +5,9 @@ use super::mended::Damage;
 use super::work::{Classes, Work};
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
-use crate::mesh::{edges_of, unordered};
+use crate::lists::distinct;
+use crate::lists::in_order;
+use crate::mesh::edges_of;
 
 /// Triangles with their final vertices.
 pub(super) struct Sewn {
@@ -70,9 +72,7 @@ fn fans(work: &Work, twins: &Twins) -> Classes {
 
 fn demand_fans(work: &mut Work, fans: &Classes) -> Result<()> {
     let corners = work.triangles.as_flattened();
-    let mut keys: Vec<[u32; 2]> = (0..).zip(corners).map(|(i, &number)| [number, fans.of(i)]).collect();
-    keys.sort_unstable();
-    keys.dedup();
+    let keys = distinct((0..).zip(corners).map(|(i, &number)| [number, fans.of(i)]));
     for same in keys.chunk_by(|a, b| a[0] == b[0]).filter(|same| same.len() > 1) {
         let place = work.vertex(same[0][0]);
         if !work.options.repair {
@@ -87,7 +87,7 @@ fn demand_fans(work: &mut Work, fans: &Classes) -> Result<()> {
 /// Where two fans pass the same edge twice, its vertices are the same and yet these are two edges: all but the first get a
 /// vertex in the middle.
 fn separate(work: &Work, sewn: &mut Sewn, twins: &Twins) {
-    let ends = |side: u32| unordered(edges_of(sewn.triangles[side as usize / 3])[side as usize % 3]);
+    let ends = |side: u32| in_order(edges_of(sewn.triangles[side as usize / 3])[side as usize % 3]);
     let firsts = (0..twins.len() as u32).filter(|&side| twins[side as usize] == NONE || side < twins[side as usize]);
     let mut keyed: Vec<([u32; 2], u32)> = firsts.map(|side| (ends(side), side)).collect();
     keyed.sort_unstable();

@@ -4,7 +4,8 @@ use super::mended::Damage;
 use super::work::{Classes, Work};
 use crate::error::{Error, Result};
 use crate::geometry::Vector3;
-use crate::mesh::{Side, by_edge, unordered};
+use crate::lists::in_order;
+use crate::mesh::{Side, by_edge};
 
 /// No side.
 pub(super) const NONE: u32 = u32::MAX;
@@ -39,7 +40,7 @@ pub(super) fn glue(work: &mut Work) -> Result<Twins> {
 
 /// The vertex numbers of a side, the smaller first.
 pub(super) fn numbers(work: &Work, side: u32) -> [u32; 2] {
-    unordered(work.ends(side))
+    in_order(work.ends(side))
 }
 
 /// Whether two triangles at the same places would be glued back to back though their numbers do not ask for it.

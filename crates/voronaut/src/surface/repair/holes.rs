@@ -5,7 +5,8 @@ use super::glue::NONE;
 use super::mended::Damage;
 use super::work::{Classes, Work};
 use crate::geometry::{Aabb3, Point3, Vector3};
-use crate::mesh::{Network, Side, borders, edges_of, sides, sides_at, unordered};
+use crate::lists::in_order;
+use crate::mesh::{Network, Side, borders, edges_of, sides, sides_at};
 use crate::surface::build::has_area;
 use std::collections::{HashMap, HashSet};
 
@@ -46,7 +47,7 @@ pub(super) fn close(work: &mut Work, sewn: &mut Sewn) {
         let is_edge = |ends: [u32; 2]| !sides_at(&all, ends).is_empty() || chords.contains(&ends);
         let rim_of = Rim { vertices: &vertices, corners: &corners, apexes: &apexes.collect::<Vec<_>>() };
         let Some(patch) = fill(&rim_of, is_edge) else { continue };
-        chords.extend(patch.iter().copied().flat_map(edges_of).map(unordered));
+        chords.extend(patch.iter().copied().flat_map(edges_of).map(in_order));
         let number = sewn.numbers[rim[0].1 as usize].into_iter().find(|&v| v != NONE).unwrap_or(0);
         places.push(format!("{} edges at {}", rim.len(), work.vertex(number)));
         patches.push((patch, rim[0].1));
@@ -120,7 +121,7 @@ pub(super) fn fill(rim: &Rim, is_edge: impl Fn([u32; 2]) -> bool) -> Option<Vec<
     for span in 2..n {
         for i in 0..n - span {
             let k = i + span;
-            if span < n - 1 && is_edge(unordered([rim.vertices[i], rim.vertices[k]])) {
+            if span < n - 1 && is_edge(in_order([rim.vertices[i], rim.vertices[k]])) {
                 continue;
             }
             let ways = (i + 1..k).filter_map(|m| part(rim, &table, [i, m, k]));

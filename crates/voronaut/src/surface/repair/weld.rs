@@ -2,6 +2,7 @@
 
 use super::work::Work;
 use crate::geometry::{BoxTree, widened};
+use crate::lists::distinct;
 use crate::mesh::borders;
 use std::collections::HashMap;
 
@@ -17,9 +18,7 @@ const NEIGHBOURS: usize = 8;
 /// Nothing is joined by that yet: sides of triangles will be, where they are at the same places and a surface comes out.
 pub(super) fn find_places(work: &mut Work) {
     let mut first: HashMap<[u64; 3], u32> = HashMap::new();
-    let mut used = work.triangles.as_flattened().to_vec();
-    used.sort_unstable();
-    used.dedup();
+    let used = distinct(work.triangles.as_flattened().iter().copied());
     for v in used {
         // Adding zero makes -0 equal to 0 in its bits, too.
         let key = work.mesh.points[v as usize].map(|x| (x + 0.0).to_bits());

@@ -3,7 +3,8 @@
 use super::RepairOptions;
 use super::mended::{Damage, Mended};
 use crate::geometry::{Aabb3, Point3};
-use crate::mesh::{Mesh, Side, edges_of, sides, unordered};
+use crate::lists::in_order;
+use crate::mesh::{Mesh, Side, edges_of, sides};
 use crate::surface::build;
 use std::collections::HashMap;
 
@@ -69,7 +70,7 @@ impl<'a> Work<'a> {
     /// The index k of the side of a triangle, from corner k to k + 1, between these places.
     pub(super) fn side_index(&self, side: &Side) -> usize {
         let edges = edges_of(self.places_of(side.triangle as usize));
-        edges.into_iter().position(|ends| unordered(ends) == side.ends).unwrap_or(0)
+        edges.into_iter().position(|ends| in_order(ends) == side.ends).unwrap_or(0)
     }
 
     /// A vertex, for messages.
@@ -122,7 +123,7 @@ impl<'a> Work<'a> {
         if p > q {
             ordered.reverse();
         }
-        self.cuts.entry(unordered([p, q])).or_insert(ordered);
+        self.cuts.entry(in_order([p, q])).or_insert(ordered);
     }
 }
 
