@@ -1,10 +1,11 @@
 //! Parameters by the names that users type. The libraries call them by their own, in backquotes: `canvas_size`, `mesher=voronoi`.
 
 /// Those that the libraries speak of.
-pub(crate) const PARAMETERS: [&str; 15] = [
+pub(crate) const PARAMETERS: [&str; 18] = [
     "a_max",
     "background",
     "canvas_size",
+    "centroid",
     "certify",
     "field",
     "h_max",
@@ -13,6 +14,8 @@ pub(crate) const PARAMETERS: [&str; 15] = [
     "linear_tensors",
     "memory_limit",
     "mesher",
+    "net",
+    "polish",
     "repair",
     "seeding",
     "tensor_order",
