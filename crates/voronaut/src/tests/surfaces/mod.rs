@@ -1,5 +1,6 @@
 //! Diagrams and duals on surfaces, against what is known in closed form.
 
+mod brute;
 mod random;
 mod sheet;
 mod sphere;
