@@ -1,9 +1,8 @@
 //! How far the boundary of a mesh strays from that of its domain.
 
-use super::edges::Edges;
 use super::faults::{Piece, Segments};
 use crate::geometry::Point;
-use crate::mesh::Mesh;
+use crate::mesh::{Edges, Mesh};
 
 /// Euclidean distances between two boundaries, measured at the ends and the midpoint of every edge and segment: a lower
 /// bound of the Hausdorff distance, exact where the one boundary subdivides the other.
@@ -31,7 +30,7 @@ pub fn fidelity(mesh: &Mesh, segments: &[(Point, Point)]) -> Fidelity {
     let triangles: Vec<[u32; 3]> = mesh.triangles.iter().copied().filter(|t| exists(t)).collect();
     let edges = Edges::of(&triangles);
     let place = |[a, b]: [u32; 2]| (mesh.point(a), mesh.point(b));
-    let boundary = finite(edges.boundary().into_iter().map(|h| place(edges.ends(h))));
+    let boundary = finite(edges.boundary().map(|side| place(side.directed())));
     let labelled = finite(mesh.edges.iter().copied().filter(|e| exists(e)).map(place));
     let segments = finite(segments.iter().copied());
     let all_edges = boundary.iter().chain(&labelled).copied();

@@ -1,9 +1,8 @@
 //! Triangles of a surface that meet where they are not neighbours, and lines in the plane that cross, decided exactly.
 
-use super::edges::Edges;
 use super::faults::{Fault, Piece, Segments};
 use crate::geometry::{Aabb, Aabb3, Bounds, BoxTree, Corners, Orientation, Point, Point3, contact, orientation};
-use crate::mesh::Mesh;
+use crate::mesh::{Edges, Mesh};
 use crate::parallel::prelude::*;
 
 /// Two triangles that meet, the smaller number first.
@@ -94,7 +93,7 @@ pub(crate) fn crossings<P: AsRef<[Point]> + Sync>(paths: &[P]) -> Vec<Crossing> 
 pub fn crossing_edges(mesh: &Mesh) -> Vec<[[u32; 2]; 2]> {
     let exists = |t: &&[u32; 3]| t.iter().all(|&v| (v as usize) < mesh.points.len());
     let triangles: Vec<[u32; 3]> = mesh.triangles.iter().filter(exists).copied().collect();
-    let edges: Vec<[u32; 2]> = Edges::of(&triangles).iter().map(|e| e.0).filter(|[a, b]| a != b).collect();
+    let edges: Vec<[u32; 2]> = Edges::of(&triangles).ends().filter(|[a, b]| a != b).collect();
     let paths: Vec<[Point; 2]> = edges.iter().map(|e| e.map(|v| mesh.point(v))).collect();
     let pairs = crossings(&paths).into_iter().map(|c| c.paths.map(|i| edges[i as usize]));
     pairs.filter(|[e, f]| !e.iter().any(|v| f.contains(v))).collect()

@@ -1,12 +1,12 @@
 //! Vertices from sides that are glued: one for every fan of triangles.
 
-use super::glue::{NONE, Twins};
+use super::glue::Twins;
 use super::mended::Damage;
-use super::work::{Classes, Work};
+use super::work::Work;
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
-use crate::lists::distinct;
-use crate::lists::in_order;
+use crate::lists::{Classes, distinct, in_order};
+use crate::mesh::edges::NONE;
 use crate::mesh::edges_of;
 
 /// Triangles with their final vertices.
