@@ -1,6 +1,6 @@
 //! The edges of a list of triangles, and which triangles have them: found by sorting, so in the same order on every machine.
 
-use crate::lists::in_order;
+use crate::lists::{Classes, distinct, in_order};
 use crate::parallel::prelude::*;
 
 /// No half-edge on the other side.
@@ -105,7 +105,26 @@ pub(crate) fn next(half_edge: u32) -> u32 {
     if half_edge % 3 == 2 { half_edge - 2 } else { half_edge + 1 }
 }
 
-/// The half-edge before one, around its triangle.
-pub(crate) fn previous(half_edge: u32) -> u32 {
-    if half_edge.is_multiple_of(3) { half_edge + 2 } else { half_edge - 1 }
+/// The corners of triangles, each with the number of the half-edge that leaves it, in classes: those of a vertex that can be reached
+/// from each other across edges with a twin. `are_alike` says of half-edges that are twins whether they run in one direction.
+pub(crate) fn fans(twins: &[u32], are_alike: impl Fn(u32, u32) -> bool) -> Classes {
+    let mut fans = Classes::new(twins.len());
+    for (h, &twin) in (0..).zip(twins).filter(|(h, twin)| **twin != NONE && h < *twin) {
+        let [start, end] = if are_alike(h, twin) { [twin, next(twin)] } else { [next(twin), twin] };
+        fans.join(h, start);
+        fans.join(next(h), end);
+    }
+    fans.flatten();
+    fans
+}
+
+/// The vertices whose corners are in several of these classes, in order.
+pub(crate) fn vertices_of_several(fans: &Classes, corners: &[u32]) -> Vec<u32> {
+    let mut first = vec![NONE; corners.iter().max().map_or(0, |&v| v as usize + 1)];
+    let has_another = |&(h, &v): &(u32, &u32)| {
+        let (fan, known) = (fans.of(h), &mut first[v as usize]);
+        *known = if *known == NONE { fan } else { *known };
+        *known != fan
+    };
+    distinct((0..).zip(corners).filter(has_another).map(|(_, &v)| v))
 }

@@ -24,8 +24,7 @@ pub(super) fn overlaps(mesh: &Mesh, edges: &Edges) -> Vec<Fault> {
     if !faults.is_empty() {
         return faults;
     }
-    let pieces = (0..).zip(&boundary).map(|(id, &[a, b])| Piece { a: mesh.point(a), b: mesh.point(b), id }).collect();
-    let segments = Segments::new(pieces);
+    let segments = Segments::new(boundary.iter().map(|ends| ends.map(|v| mesh.point(v))));
     let faults = touching_edges(mesh, &boundary, &segments);
     if faults.is_empty() { covered_components(mesh, &boundary, &segments, &turns) } else { faults }
 }

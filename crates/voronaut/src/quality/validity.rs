@@ -226,17 +226,14 @@ impl Validity {
                 continue;
             }
             self.overlaps += 1;
-            let fault = pair.fault();
-            self.fault(fault.what, fault.place);
+            self.first_fault.get_or_insert(pair.fault());
         }
     }
 
     fn examine_embedding(&mut self, mesh: &Mesh, edges: &Edges) {
         let overlaps = embedding::overlaps(mesh, edges);
         self.overlaps = overlaps.len();
-        if let Some(fault) = overlaps.into_iter().next() {
-            self.fault(fault.what, fault.place);
-        }
+        self.first_fault = self.first_fault.take().or(overlaps.into_iter().next());
     }
 }
 
@@ -280,36 +277,8 @@ fn boundary_loops(edges: &Edges) -> usize {
 
 /// Vertices with triangles that cannot be reached from another one of theirs across edges at the vertex.
 fn split_vertices(mesh: &Mesh, edges: &Edges) -> Vec<u32> {
-    let twins = edges.twins();
-    let mut corners = vec![0_u32; mesh.points.len()];
-    let mut start = vec![NONE; mesh.points.len()];
-    for (h, &v) in (0..).zip(mesh.triangles.as_flattened()) {
-        corners[v as usize] += 1;
-        start[v as usize] = h;
-    }
-    let fan = |start: u32| {
-        let mut count = 1;
-        // Counter-clockwise, and if that ends at a border, clockwise from the start.
-        let mut h = start;
-        loop {
-            h = twins[edges::previous(h) as usize];
-            if h == start {
-                return count;
-            }
-            if h == NONE {
-                break;
-            }
-            count += 1;
-        }
-        h = start;
-        while twins[h as usize] != NONE {
-            h = edges::next(twins[h as usize]);
-            count += 1;
-        }
-        count
-    };
-    let is_split = |&v: &u32| corners[v as usize] > 0 && fan(start[v as usize]) < corners[v as usize];
-    (0..mesh.points.len() as u32).filter(is_split).collect()
+    let fans = edges::fans(&edges.twins(), |_, _| false);
+    edges::vertices_of_several(&fans, mesh.triangles.as_flattened())
 }
 
 /// For each vertex the longest edge of its triangles.

@@ -1,6 +1,6 @@
 //! A planar mesh that is to be made anew: its domain, what of it is to be there again, and the sizes by which it is made.
 
-use super::field::{BACKGROUND_VERTICES, even};
+use super::field::{BACKGROUND_VERTICES, even, tensors};
 use crate::domain::{Domain, Pslg, from_mesh};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
@@ -328,13 +328,9 @@ fn triangulated(mesh: &Mesh) -> Result<Mesh> {
 fn metric(mesh: &Mesh, values: &SolutionValues) -> Result<Vec<Tensor>> {
     let tensors = match values {
         SolutionValues::Scalar(sizes) => isotropic(mesh, sizes)?,
-        SolutionValues::Tensor(entries) => entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect(),
         // Of a planar mesh in dimension 3.
         SolutionValues::Tensor3(entries) => entries.iter().map(|m| Tensor::new(m[0], m[1], m[2])).collect(),
-        SolutionValues::Vector { .. } => {
-            let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
-            return Err(Error::parse("the metric", "the values are no planar metric", help));
-        }
+        _ => tensors(values, "the metric")?,
     };
     // Refuses what is no metric, or of another mesh.
     Sampled::new(mesh, &tensors)?;
