@@ -120,7 +120,9 @@ fn winding_right_of(mesh: &Mesh, boundary: &[[u32; 2]], segments: &Segments, ver
 /// The lexicographically largest vertex of each connected piece of the boundary, in increasing order of number.
 fn rightmost_vertices(mesh: &Mesh, boundary: &[[u32; 2]]) -> Vec<u32> {
     let mut parts = Classes::new(mesh.points.len());
-    boundary.iter().for_each(|&[a, b]| _ = parts.join(a, b));
+    for &[a, b] in boundary {
+        parts.join(a, b);
+    }
     let place = |v: u32| (mesh.point(v).x, mesh.point(v).y);
     let mut rightmost: BTreeMap<u32, u32> = BTreeMap::new();
     for &[v, _] in boundary {

@@ -127,7 +127,9 @@ fn geodesic_angles(
 ) -> Result<Vec<f64>> {
     let mut edge_of = vec![0; 3 * mesh.triangles.len()];
     for (edge, sides) in edges.iter().enumerate() {
-        sides.iter().for_each(|side| edge_of[side.half_edge as usize] = edge);
+        for side in sides {
+            edge_of[side.half_edge as usize] = edge;
+        }
     }
     let numbers: Vec<usize> = (0..mesh.triangles.len()).collect();
     let angles = collect(&numbers, |&t| {

@@ -192,7 +192,9 @@ fn orient(triangles: &mut [[u32; 3]], edges: &Edges, place: impl Fn([u32; 2]) ->
         }
     }
     let turned = turns.minorities();
-    turned.iter().for_each(|&t| triangles[t].swap(1, 2));
+    for &t in &turned {
+        triangles[t].swap(1, 2);
+    }
     Ok(turned.len())
 }
 
