@@ -4,10 +4,9 @@ use crate::options::{Outputs, Show, refuse};
 use voronaut::Result;
 use voronaut::diagram::{Diagram, SurfaceDiagram};
 use voronaut::geometry::Point3;
-use voronaut::mesh::Mesh;
+use voronaut::mesh::{Edges, Mesh};
 use voronaut::metric::MetricField;
 use voronaut::net::Net;
-use voronaut::quality::Edges;
 use voronaut::realisation::{Grid, Realisation};
 use voronaut::triangulation::VertexId;
 use voronaut_draw::{Layers, Picture, Protection, Scene, Stroke, View};
@@ -66,7 +65,7 @@ pub(crate) fn on_surface(outputs: &Outputs, diagram: &SurfaceDiagram, mesh: &Mes
     let is_of_canvas = outputs.shows(Show::Cells) || outputs.shows(Show::Geodesics);
     let mut scene = if is_of_canvas { coloured(diagram, outputs.shows(Show::Cells)) } else { Scene::of_mesh(mesh) };
     let edges = Edges::of(&mesh.triangles);
-    let edges = edges.iter().map(|(ends, _)| ends);
+    let edges = edges.ends();
     if outputs.shows(Show::Geodesics) {
         scene = scene.with(edges.filter_map(|ends| geodesic(diagram, ends)), Stroke::Geodesic);
     } else if outputs.shows(Show::Mesh) && is_of_canvas {
@@ -96,7 +95,7 @@ fn geodesic(diagram: &SurfaceDiagram, ends: [u32; 2]) -> Option<Vec<Point3>> {
 /// edge from 1.
 pub(crate) fn with_geodesics(diagram: &SurfaceDiagram, mesh: &Mesh) -> Mesh {
     let mut all = Mesh { edges: Vec::new(), edge_labels: Vec::new(), ..mesh.clone() };
-    for (label, (ends, _)) in (1..).zip(Edges::of(&mesh.triangles).iter()) {
+    for (label, ends) in (1..).zip(Edges::of(&mesh.triangles).ends()) {
         let Some(points) = geodesic(diagram, ends) else { continue };
         let mut before = ends[0];
         for p in &points[1..points.len() - 1] {

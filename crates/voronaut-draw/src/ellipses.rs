@@ -6,9 +6,8 @@ use super::{colours, palette};
 use std::collections::VecDeque;
 use std::fmt::Write;
 use voronaut::geometry::Tensor;
-use voronaut::mesh::Mesh;
+use voronaut::mesh::{Edges, Mesh};
 use voronaut::metric::MetricField;
-use voronaut::quality::Edges;
 use voronaut::{Error, Result};
 
 /// About how many ellipses a picture can hold and still be read.
@@ -45,7 +44,7 @@ pub(super) fn ellipses(svg: &mut String, sheet: &Sheet, metric: &dyn MetricField
 /// The tensors at the vertices of triangles.
 fn tensors(mesh: &Mesh, edges: &Edges, metric: &dyn MetricField) -> Result<Vec<Option<Tensor>>> {
     let mut tensors = vec![None; mesh.points.len()];
-    for v in edges.iter().flat_map(|(ends, _)| ends) {
+    for v in edges.ends().flatten() {
         if tensors[v as usize].is_none() {
             let (p, tensor) = (mesh.point(v), metric.at(mesh.point(v)));
             if !tensor.is_positive_definite() {
@@ -78,13 +77,13 @@ impl<'a> Packing<'a> {
     fn new(mesh: &'a Mesh, edges: &Edges, tensors: &'a [Option<Tensor>], distance: f64) -> Self {
         let count = mesh.points.len();
         let mut avoided = vec![false; count];
-        for v in edges.boundary().into_iter().flat_map(|half_edge| edges.ends(half_edge)) {
+        for v in edges.boundary().flat_map(|side| side.ends) {
             avoided[v as usize] = true;
         }
         if (0..count).all(|v| avoided[v] || tensors[v].is_none()) {
             avoided.fill(false);
         }
-        let neighbours = palette::adjacency(count, edges.iter().map(|(ends, _)| ends));
+        let neighbours = palette::adjacency(count, edges.ends());
         let (covered, seen_from) = (vec![false; count], vec![u32::MAX; count]);
         Self { mesh, tensors, distance, neighbours, avoided, covered, seen_from, rim: VecDeque::new() }
     }

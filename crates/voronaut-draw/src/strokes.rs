@@ -4,8 +4,7 @@ use super::colours;
 use super::frame::{Frame, PathData};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-use voronaut::mesh::Mesh;
-use voronaut::quality::Edges;
+use voronaut::mesh::{EdgeSide, Edges, Mesh};
 
 /// Attributes of lines that are round where they turn, and there and at their ends.
 pub(super) const ROUND_JOINS: &str = r#" stroke-linejoin="round""#;
@@ -53,7 +52,7 @@ impl Pen {
 pub(super) struct Sheet<'a> {
     pub(super) mesh: &'a Mesh,
     /// Of the triangles that are drawn.
-    pub(super) edges: &'a Edges<'a>,
+    pub(super) edges: &'a Edges,
     /// The least height of each of these triangles, in pixels.
     pub(super) heights: &'a [f64],
     pub(super) frame: &'a Frame,
@@ -62,31 +61,25 @@ pub(super) struct Sheet<'a> {
 impl Sheet<'_> {
     /// One SVG path per class of line width: all edges between at least so many triangles.
     pub(super) fn edges_of(&self, svg: &mut String, sides: usize) {
-        let inner = self.edges.iter().filter(|(_, half_edges)| half_edges.len() >= sides);
+        let inner = self.edges.iter().filter(|edge| edge.len() >= sides);
         self.lines(svg, inner, INNER, colours::EDGE);
     }
 
     /// The same of some edges, by a pen, for the height of the flatter triangle at each, and in a colour.
-    pub(super) fn lines<'e>(
-        &self,
-        svg: &mut String,
-        edges: impl Iterator<Item = ([u32; 2], &'e [(u64, u32)])>,
-        pen: Pen,
-        ink: &str,
-    ) {
+    pub(super) fn lines<'e>(&self, svg: &mut String, edges: impl Iterator<Item = &'e [EdgeSide]>, pen: Pen, ink: &str) {
         let mut classes: BTreeMap<usize, PathData> = BTreeMap::new();
-        for (ends, half_edges) in edges {
-            let heights = half_edges.iter().map(|&(_, h)| self.heights[h as usize / 3]);
+        for sides in edges {
+            let heights = sides.iter().map(|side| self.heights[side.triangle()]);
             let path = classes.entry(pen.class(heights.fold(f64::INFINITY, f64::min))).or_default();
-            path.polyline(&self.place(ends), false);
+            path.polyline(&self.place(sides[0].ends), false);
         }
         pen.draw(svg, &classes, ink, self.frame);
     }
 
     /// Boundary edges and labelled edges, stronger than the rest.
     pub(super) fn boundary(&self, svg: &mut String) {
-        let labelled = self.mesh.edges.iter().copied().filter(|&[a, b]| self.edges.contains(a, b));
-        let boundary = self.edges.boundary().into_iter().map(|h| self.edges.ends(h));
+        let labelled = self.mesh.edges.iter().copied().filter(|&ends| !self.edges.at(ends).is_empty());
+        let boundary = self.edges.boundary().map(|side| side.ends);
         let all: BTreeSet<[u32; 2]> = boundary.chain(labelled).map(|[a, b]| [a.min(b), a.max(b)]).collect();
         let path = PathData::of(all.into_iter().map(|ends| self.place(ends)), false);
         let (ink, width) = (colours::BOUNDARY, self.frame.quanta(BOUNDARY_WIDTH));

@@ -9,9 +9,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use voronaut::diagram::Cells;
 use voronaut::geometry::{Aabb, Point};
-use voronaut::mesh::Mesh;
+use voronaut::mesh::{Edges, Mesh};
 use voronaut::metric::MetricField;
-use voronaut::quality::Edges;
 use voronaut::{Error, Result};
 
 /// What a picture shows.

@@ -25,7 +25,7 @@ pub(super) fn edges(svg: &mut String, sheet: &Sheet, unmet: &Unmet) {
     for is_short in [false, true] {
         for cause in Cause::ALL {
             let found = unmet.edges.iter().filter(|edge| edge.cause == cause && edge.is_short() == is_short);
-            let found = found.filter_map(|edge| all.binary_search_by_key(&edge.edge, |(ends, _)| *ends).ok());
+            let found = found.filter_map(|edge| all.binary_search_by_key(&edge.edge, |sides| sides[0].ends).ok());
             let ink = colours::cause(cause as usize, is_short);
             let pen = if cause == Cause::Boundary { KEPT_PEN } else { PEN };
             sheet.lines(svg, found.map(|i| all[i]), pen, &ink);

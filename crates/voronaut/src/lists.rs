@@ -1,4 +1,4 @@
-//! Lists: in order, without repetitions, in rows.
+//! Lists: in order, without repetitions, marked, in rows, in classes.
 
 /// What there is among these, each once, in order.
 pub(crate) fn distinct<T: Ord>(items: impl IntoIterator<Item = T>) -> Vec<T> {
@@ -8,9 +8,21 @@ pub(crate) fn distinct<T: Ord>(items: impl IntoIterator<Item = T>) -> Vec<T> {
     list
 }
 
-/// Two things, the smaller first.
-pub(crate) fn in_order<T: Ord>([a, b]: [T; 2]) -> [T; 2] {
-    if b < a { [b, a] } else { [a, b] }
+/// A few things, the smallest first.
+pub(crate) fn in_order<T: Ord, const N: usize>(mut items: [T; N]) -> [T; N] {
+    items.sort_unstable();
+    items
+}
+
+/// Of each number below `count` whether it is one of these; what is not below is left out.
+pub(crate) fn marked(count: usize, numbers: impl IntoIterator<Item = u32>) -> Vec<bool> {
+    let mut marks = vec![false; count];
+    for number in numbers {
+        if let Some(mark) = marks.get_mut(number as usize) {
+            *mark = true;
+        }
+    }
+    marks
 }
 
 /// Items in numbered rows, one row after the other in one list.
@@ -52,9 +64,64 @@ impl<T: Copy + Default> Rows<T> {
     }
 }
 
+/// Disjoint sets of the numbers below a bound (union-find with path halving): nearly linear in all.
+#[derive(Clone, Debug)]
+pub(crate) struct Classes {
+    parent: Vec<u32>,
+}
+
+impl Classes {
+    /// Every number alone.
+    pub(crate) fn new(count: usize) -> Self {
+        Self { parent: (0..count as u32).collect() }
+    }
+
+    /// The least number of the set.
+    pub(crate) fn of(&self, mut i: u32) -> u32 {
+        while self.parent[i as usize] != i {
+            i = self.parent[i as usize];
+        }
+        i
+    }
+
+    /// Makes one set of two; whether they were two.
+    pub(crate) fn join(&mut self, i: u32, j: u32) -> bool {
+        let (i, j) = (self.shorten(i), self.shorten(j));
+        self.parent[i.max(j) as usize] = i.min(j);
+        i != j
+    }
+
+    /// Lets every number know its set at once: [`Classes::of`] takes one step then.
+    pub(crate) fn flatten(&mut self) {
+        for i in 0..self.parent.len() {
+            // The parent is smaller, and so flat already.
+            self.parent[i] = self.parent[self.parent[i] as usize];
+        }
+    }
+
+    /// [`Classes::of`], with the way there shortened.
+    pub(crate) fn shorten(&mut self, mut i: u32) -> u32 {
+        while self.parent[i as usize] != i {
+            let up = self.parent[self.parent[i as usize] as usize];
+            self.parent[i as usize] = up;
+            i = up;
+        }
+        i
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_least_stands_for_its_set() {
+        let mut classes = Classes::new(7);
+        assert!(classes.join(6, 4) && classes.join(4, 2) && !classes.join(6, 2));
+        assert!(classes.join(1, 3) && classes.join(3, 6));
+        classes.flatten();
+        assert_eq!([0, 1, 2, 3, 4, 5, 6].map(|i| classes.of(i)), [0, 1, 1, 1, 1, 5, 1]);
+    }
 
     #[test]
     fn items_are_in_their_rows_in_order_and_once() {

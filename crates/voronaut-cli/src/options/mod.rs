@@ -12,7 +12,7 @@ use values::{GIB, default_memory_limit, window};
 use voronaut::geometry::Aabb;
 use voronaut::mesh::TensorOrder;
 use voronaut::metric::{Bounds, MOST_SWEEPS, Norm, Recovery};
-use voronaut::recipe::{MetricOptions, SMOOTH_METRIC};
+use voronaut::recipe::MetricOptions;
 use voronaut::surface::RepairOptions;
 use voronaut::{Error, Result};
 use voronaut_draw::Picture;
@@ -41,7 +41,7 @@ pub(crate) struct MetricChoices {
     pub(crate) gradation: Option<f64>,
     /// Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a .sol
     /// file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
-    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(..=i64::from(MOST_SWEEPS)), allow_negative_numbers = true, default_value_t = SMOOTH_METRIC)]
+    #[arg(long, value_name = "K", value_parser = value_parser!(u32).range(..=i64::from(MOST_SWEEPS)), allow_negative_numbers = true, default_value_t = MetricOptions::default().smooth_metric)]
     pub(crate) smooth_metric: u32,
     /// In which order tensors in files have their entries: disk (m11 m12 m22 m13 m23 m33, as .sol files have), upper (m11 m12 m13 m22
     /// m23 m33) or diagonal (m11 m22 m33 m12 m23 m13)

@@ -4,8 +4,7 @@ use super::super::shades::{self, BANDS};
 use super::coloured::normals;
 use super::{Fill, Scene, SceneTriangle, Stroke, existing};
 use voronaut::geometry::Point3;
-use voronaut::mesh::Mesh;
-use voronaut::quality::Edges;
+use voronaut::mesh::{Edges, Mesh};
 
 impl Scene {
     /// The triangles of a mesh, flat, by their size, with all edges; its border and its labelled edges are stronger. Triangles with
@@ -22,12 +21,13 @@ impl Scene {
             fill: Fill::Level { region, share },
         };
         let edges = Edges::of(&used);
-        let (inner, mut border): (Vec<_>, Vec<_>) = edges.iter().partition(|(_, half_edges)| half_edges.len() > 1);
-        border.extend(mesh.edges.iter().filter(|[a, b]| edges.contains(*a, *b)).map(|&ends| (ends, [].as_slice())));
-        let line = |(ends, _): ([u32; 2], &[(u64, u32)])| ends.map(at).to_vec();
+        let inner = edges.iter().filter(|sides| sides.len() > 1).map(|sides| sides[0].ends);
+        let listed = mesh.edges.iter().copied().filter(|&ends| !edges.at(ends).is_empty());
+        let border = edges.boundary().map(|side| side.ends).chain(listed);
+        let line = |ends: [u32; 2]| ends.map(at).to_vec();
         Self { triangles: corners.iter().zip(fills).map(triangle).collect(), lines: Vec::new() }
-            .with(inner.into_iter().map(line), Stroke::Edge)
-            .with(border.into_iter().map(line), Stroke::Border)
+            .with(inner.map(line), Stroke::Edge)
+            .with(border.map(line), Stroke::Border)
     }
 
     /// A surface whose vertices have values from 0 up, smooth: each triangle by the mean of its corners, the less, the

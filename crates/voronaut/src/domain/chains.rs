@@ -2,6 +2,7 @@
 
 use super::{Pslg, Segment, Side};
 use crate::geometry::{Point, signed_area};
+use crate::lists::marked;
 use crate::mesh::Network;
 
 /// A run of segments with one label and one pair of sides; its inner vertices belong to no other segment.
@@ -37,9 +38,8 @@ impl Pslg {
     /// required ones.
     #[must_use]
     pub(crate) fn with_chains(&self, chains: &[Chain]) -> Pslg {
-        let mut kept = vec![false; self.points.len()];
         let used = chains.iter().flat_map(|c| &c.vertices).chain(&self.required_points);
-        used.for_each(|&v| kept[v as usize] = true);
+        let kept = marked(self.points.len(), used.copied());
         let segments =
             chains.iter().flat_map(|c| c.vertices.windows(2).map(|w| Segment { ends: [w[0], w[1]], ..c.kind }));
         Pslg { segments: segments.collect(), ..self.clone() }.with_points(&kept)

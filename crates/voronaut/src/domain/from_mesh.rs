@@ -4,8 +4,8 @@ use super::distinct::{check_points, listed, merge_segments};
 use super::{Filling, Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, orientation};
-use crate::lists::in_order;
-use crate::mesh::{Mesh, Side as TriangleSide, by_edge, sides};
+use crate::lists::{in_order, marked};
+use crate::mesh::{EdgeSide, Edges, Mesh};
 
 /// The domain of a planar mesh.
 ///
@@ -61,19 +61,12 @@ fn check_planar(mesh: &Mesh) -> Result<()> {
 
 /// Vertices of triangles and edges, and the required ones.
 fn used_vertices(mesh: &Mesh) -> Vec<bool> {
-    let mut used = vec![false; mesh.points.len()];
     let elements = mesh.triangles.as_flattened().iter().chain(mesh.edges.as_flattened());
-    for &vertex in elements.chain(&mesh.required_points) {
-        used[vertex as usize] = true;
-    }
-    used
+    marked(mesh.points.len(), elements.chain(&mesh.required_points).copied())
 }
 
 fn listed_segments(mesh: &Mesh) -> Result<Vec<Segment>> {
-    let mut required = vec![false; mesh.edges.len()];
-    for &edge in &mesh.required_edges {
-        required[edge as usize] = true;
-    }
+    let required = marked(mesh.edges.len(), mesh.required_edges.iter().copied());
     let segments =
         mesh.edges.iter().zip(required).enumerate().map(|(index, (&ends, required))| {
             listed(ends, mesh.edge_labels.get(index).copied().unwrap_or(0), required)
@@ -120,31 +113,28 @@ fn with_sides(mesh: &Mesh, mut segments: Vec<Segment>) -> Result<Vec<Segment>> {
 fn sides_of_edges(mesh: &Mesh) -> Result<Vec<EdgeSides>> {
     let turns = (0..).zip(&mesh.triangles).map(|(triangle, &corners)| is_counter_clockwise(mesh, triangle, corners));
     let turns = turns.collect::<Result<Vec<bool>>>()?;
-    let all = sides(mesh.triangles.iter().copied());
-    by_edge(&all).map(|group| sides_of_edge(mesh, group, &turns)).collect()
+    Edges::of(&mesh.triangles).iter().map(|group| sides_of_edge(mesh, group, &turns)).collect()
 }
 
 /// The sides of an edge from the triangles at it, of which there may be one on each side.
-fn sides_of_edge(mesh: &Mesh, group: &[TriangleSide], turns: &[bool]) -> Result<EdgeSides> {
+fn sides_of_edge(mesh: &Mesh, group: &[EdgeSide], turns: &[bool]) -> Result<EdgeSides> {
     let ends = group[0].ends;
     let mut found = EdgeSides { ends, left: Side::Outside, right: Side::Outside };
     for side in group {
-        let is_left = turns[side.triangle as usize] == side.forward;
+        let is_left = turns[side.triangle()] == side.forward;
         let own = if is_left { &mut found.left } else { &mut found.right };
-        *own = Side::Region(mesh.triangle_labels.get(side.triangle as usize).copied().unwrap_or(0));
+        *own = Side::Region(mesh.triangle_labels.get(side.triangle()).copied().unwrap_or(0));
     }
-    let mut triangles: Vec<u32> = group.iter().map(|side| side.triangle + 1).collect();
-    triangles.sort_unstable();
-    match triangles[..] {
-        [first, second] if [found.left, found.right].contains(&Side::Outside) => {
-            let triangles = format!("triangles {first} and {second}");
+    let [first, last] = [0, group.len() - 1].map(|i| group[i].triangle() + 1);
+    match group.len() {
+        2 if [found.left, found.right].contains(&Side::Outside) => {
+            let triangles = format!("triangles {first} and {last}");
             let what = format!("overlapping triangles: {triangles} lie on the same side of an edge");
             Err(edge_error(mesh, what, ends, "remove one of the triangles"))
         }
-        [_] | [_, _] => Ok(found),
-        ref more => {
-            let (first, last) = (more[0], more[more.len() - 1]);
-            let triangles = format!("{} triangles (the first is {first}, the last {last})", more.len());
+        1 | 2 => Ok(found),
+        count => {
+            let triangles = format!("{count} triangles (the first is {first}, the last {last})");
             let what = format!("a non-manifold edge of {triangles}");
             Err(edge_error(mesh, what, ends, "leave at most two triangles at each edge"))
         }
@@ -167,9 +157,8 @@ fn is_counter_clockwise(mesh: &Mesh, triangle: u32, vertices: [u32; 3]) -> Resul
 /// Leaves out the vertices that the domain does not need, and renumbers.
 fn compact(mesh: &Mesh, used: &[bool], segments: Vec<Segment>, filling: Filling) -> Pslg {
     let all = 0..mesh.points.len() as u32;
-    let mut required = vec![false; mesh.points.len()];
     let corners = mesh.corners.iter().filter(|&&vertex| used[vertex as usize]);
-    corners.chain(&mesh.required_points).for_each(|&vertex| required[vertex as usize] = true);
+    let required = marked(mesh.points.len(), corners.chain(&mesh.required_points).copied());
     let mut kept = required.clone();
     segments.iter().flat_map(|segment| segment.ends).for_each(|vertex| kept[vertex as usize] = true);
     let label = |vertex: u32| mesh.point_labels.get(vertex as usize).copied().unwrap_or(0);

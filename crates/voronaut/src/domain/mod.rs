@@ -58,8 +58,7 @@ impl Domain {
     /// The segments between the domain and its outside, without interfaces and inner features.
     pub fn boundary(&self) -> Vec<(Point, Point)> {
         let t = &self.planar.topology;
-        let border = t.edges().filter(|&h| t.twin(h).is_none());
-        border.map(|h| self.planar.ends(h)).map(|[a, b]| (a, b)).collect()
+        t.borders().map(|h| self.planar.ends(h).into()).collect()
     }
 
     /// Triangles that cover the domain exactly.

@@ -4,6 +4,7 @@ use super::distinct::{check_points, listed, merge_segments};
 use super::{Filling, Pslg};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
+use crate::lists::marked;
 
 /// What a `.poly` file of Triangle says (Shewchuk): a planar straight-line graph with holes and regions.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -54,16 +55,13 @@ pub fn from_poly(poly: &Poly) -> Result<Pslg> {
     let describe = |vertex: u32| format!("{} {}", name(vertex), poly.points[vertex as usize]);
     let segments = poly.segments.iter().zip(&poly.segment_markers).map(|(&ends, &label)| listed(ends, label, false));
     let segments = merge_segments(segments, "segment", poly.first as usize, describe)?;
-    let mut isolated = vec![true; poly.points.len()];
-    for vertex in segments.iter().flat_map(|segment| segment.ends) {
-        isolated[vertex as usize] = false;
-    }
+    let is_joined = marked(poly.points.len(), segments.iter().flat_map(|segment| segment.ends));
     let regions = poly.regions.iter().map(region).collect::<Result<_>>()?;
     let count = poly.points.len() as u32;
     Ok(Pslg {
         points: poly.points.clone(),
         point_labels: poly.point_markers.clone(),
-        required_points: (0..count).filter(|&vertex| isolated[vertex as usize]).collect(),
+        required_points: (0..count).filter(|&vertex| !is_joined[vertex as usize]).collect(),
         segments,
         filling: Filling::Enclosed { holes: poly.holes.clone(), regions },
         tolerance: 0.0,

@@ -1,18 +1,20 @@
 //! The mesh that leaves the program: plain arrays, as every format and every solver wants them; and where in a planar one
 //! a point is.
 
+pub(crate) mod edges;
 mod locate;
 mod network;
-mod sides;
 mod solution;
 
+pub(crate) use edges::edges_of;
+pub use edges::{EdgeSide, Edges};
 pub(crate) use locate::{Located, Locator};
 pub(crate) use network::Network;
-pub(crate) use sides::{Side, borders, by_edge, edges_of, sides, sides_at};
 pub use solution::{Solution, SolutionValues, Solutions, TensorOrder};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3};
+use crate::lists::marked;
 
 /// A triangle mesh with the user's labels ("references" in Medit).
 ///
@@ -59,6 +61,11 @@ impl Mesh {
     pub(crate) fn double_area(&self, triangle: [u32; 3]) -> f64 {
         let [a, b, c] = self.corners_of(triangle);
         (b - a).cross(c - a).abs()
+    }
+
+    /// Of each vertex whether a triangle has it.
+    pub(crate) fn used_vertices(&self) -> Vec<bool> {
+        marked(self.points.len(), self.triangles.as_flattened().iter().copied())
     }
 
     /// The position of a vertex in space.

@@ -6,26 +6,25 @@
 //! 3. outside each connected piece of the boundary no triangle covers it: by Stokes, the number of triangles over a
 //!    point is the winding number of the whole boundary around it, and it changes only at the boundary.
 
-use super::edges::Edges;
 use super::faults::{Fault, Piece, Segments};
 use super::self_intersections::meet;
 use crate::geometry::{Aabb, Orientation, Point, orientation};
-use crate::lists::distinct;
-use crate::mesh::Mesh;
+use crate::lists::{Classes, distinct, marked};
+use crate::mesh::{Edges, Mesh};
 use crate::parallel::prelude::*;
+use std::collections::BTreeMap;
 
 /// The faults of the first of the three conditions that does not hold; empty if the mesh is embedded.
 /// Needs finite positions, no two vertices at one, manifold edges and counter-clockwise triangles.
 pub(super) fn overlaps(mesh: &Mesh, edges: &Edges) -> Vec<Fault> {
-    let mut boundary: Vec<[u32; 2]> = edges.boundary().into_iter().map(|half_edge| edges.ends(half_edge)).collect();
+    let mut boundary: Vec<[u32; 2]> = edges.boundary().map(|side| side.directed()).collect();
     boundary.sort_unstable();
     let turns = turns(mesh);
     let faults = overlapping_fans(mesh, &boundary, &turns);
     if !faults.is_empty() {
         return faults;
     }
-    let pieces = (0..).zip(&boundary).map(|(id, &[a, b])| Piece { a: mesh.point(a), b: mesh.point(b), id }).collect();
-    let segments = Segments::new(pieces);
+    let segments = Segments::new(boundary.iter().map(|ends| ends.map(|v| mesh.point(v))));
     let faults = touching_edges(mesh, &boundary, &segments);
     if faults.is_empty() { covered_components(mesh, &boundary, &segments, &turns) } else { faults }
 }
@@ -47,10 +46,7 @@ fn turns(mesh: &Mesh) -> Vec<u32> {
 /// triangle that begins there.
 fn overlapping_fans(mesh: &Mesh, boundary: &[[u32; 2]], turns: &[u32]) -> Vec<Fault> {
     let mut covers = vec![0; boundary.len()];
-    let mut on_boundary = vec![false; mesh.points.len()];
-    for &[v, _] in boundary {
-        on_boundary[v as usize] = true;
-    }
+    let on_boundary = marked(mesh.points.len(), boundary.iter().map(|&[v, _]| v));
     for &[a, b, c] in &mesh.triangles {
         for [v, from, to] in [[a, b, c], [b, c, a], [c, a, b]] {
             if on_boundary[v as usize] {
@@ -123,24 +119,17 @@ fn winding_right_of(mesh: &Mesh, boundary: &[[u32; 2]], segments: &Segments, ver
 
 /// The lexicographically largest vertex of each connected piece of the boundary, in increasing order of number.
 fn rightmost_vertices(mesh: &Mesh, boundary: &[[u32; 2]]) -> Vec<u32> {
-    let mut parent: Vec<u32> = (0..mesh.points.len() as u32).collect();
-    let place = |v: u32| (mesh.point(v).x, mesh.point(v).y);
+    let mut parts = Classes::new(mesh.points.len());
     for &[a, b] in boundary {
-        let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-        // The root of a piece is its largest vertex; halving paths keeps the search short.
-        let (low, high) = if place(a) < place(b) { (a, b) } else { (b, a) };
-        parent[low as usize] = high;
+        parts.join(a, b);
     }
-    let roots = distinct(boundary.iter().map(|&[v, _]| root(&mut parent, v)));
-    roots
-}
-
-fn root(parent: &mut [u32], mut v: u32) -> u32 {
-    while parent[v as usize] != v {
-        parent[v as usize] = parent[parent[v as usize] as usize];
-        v = parent[v as usize];
+    let place = |v: u32| (mesh.point(v).x, mesh.point(v).y);
+    let mut rightmost: BTreeMap<u32, u32> = BTreeMap::new();
+    for &[v, _] in boundary {
+        let known = rightmost.entry(parts.shorten(v)).or_insert(v);
+        *known = if place(*known) < place(v) { v } else { *known };
     }
-    v
+    distinct(rightmost.into_values())
 }
 
 #[cfg(test)]

@@ -90,9 +90,9 @@ pub(crate) struct Piece {
 impl Piece {
     /// The point of the segment (as a closed set) nearest to `p`.
     fn nearest(&self, p: Point) -> Point {
-        let along = self.b - self.a;
-        let t = (p - self.a).dot(along) / along.dot(along);
-        if t.is_nan() { self.a } else { self.a.lerp(self.b, t.clamp(0.0, 1.0)) }
+        let found = p.nearest_between(self.a, self.b);
+        // It is not if the segment has no length.
+        if found.is_finite() { found } else { self.a }
     }
 }
 
@@ -102,10 +102,10 @@ pub(crate) struct Segments {
 }
 
 impl Segments {
-    /// An index of the pieces; all coordinates are finite.
-    pub(crate) fn new(pieces: Vec<Piece>) -> Self {
-        let boxed = |piece: Piece| Some((Aabb::of([piece.a, piece.b])?.into(), piece));
-        Self { tree: BoxTree::new(pieces.into_iter().filter_map(boxed)) }
+    /// An index of segments, numbered in their order; all coordinates are finite.
+    pub(crate) fn new(segments: impl Iterator<Item = [Point; 2]>) -> Self {
+        let boxed = |(id, [a, b]): (u32, [Point; 2])| Some((Aabb::of([a, b])?.into(), Piece { a, b, id }));
+        Self { tree: BoxTree::new((0..).zip(segments).filter_map(boxed)) }
     }
 
     /// The pieces whose bounding box meets a box (both closed).

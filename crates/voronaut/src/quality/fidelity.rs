@@ -1,9 +1,8 @@
 //! How far the boundary of a mesh strays from that of its domain.
 
-use super::edges::Edges;
-use super::faults::{Piece, Segments};
+use super::faults::Segments;
 use crate::geometry::Point;
-use crate::mesh::Mesh;
+use crate::mesh::{Edges, Mesh};
 
 /// Euclidean distances between two boundaries, measured at the ends and the midpoint of every edge and segment: a lower
 /// bound of the Hausdorff distance, exact where the one boundary subdivides the other.
@@ -30,28 +29,24 @@ pub fn fidelity(mesh: &Mesh, segments: &[(Point, Point)]) -> Fidelity {
     let exists = |numbers: &[u32]| numbers.iter().all(|&v| (v as usize) < mesh.points.len());
     let triangles: Vec<[u32; 3]> = mesh.triangles.iter().copied().filter(|t| exists(t)).collect();
     let edges = Edges::of(&triangles);
-    let place = |[a, b]: [u32; 2]| (mesh.point(a), mesh.point(b));
-    let boundary = finite(edges.boundary().into_iter().map(|h| place(edges.ends(h))));
+    let place = |ends: [u32; 2]| ends.map(|v| mesh.point(v));
+    let boundary = finite(edges.boundary().map(|side| place(side.directed())));
     let labelled = finite(mesh.edges.iter().copied().filter(|e| exists(e)).map(place));
-    let segments = finite(segments.iter().copied());
+    let segments = finite(segments.iter().map(|&(a, b)| [a, b]));
     let all_edges = boundary.iter().chain(&labelled).copied();
     Fidelity {
-        mesh_to_domain: farthest(&boundary, &index(segments.iter().copied())),
-        domain_to_mesh: farthest(&segments, &index(all_edges)),
+        mesh_to_domain: farthest(&boundary, &Segments::new(segments.iter().copied())),
+        domain_to_mesh: farthest(&segments, &Segments::new(all_edges)),
     }
 }
 
-fn finite(segments: impl Iterator<Item = (Point, Point)>) -> Vec<(Point, Point)> {
-    segments.filter(|(a, b)| a.is_finite() && b.is_finite()).collect()
-}
-
-fn index(segments: impl Iterator<Item = (Point, Point)>) -> Segments {
-    Segments::new((0..).zip(segments).map(|(id, (a, b))| Piece { a, b, id }).collect())
+fn finite(segments: impl Iterator<Item = [Point; 2]>) -> Vec<[Point; 2]> {
+    segments.filter(|ends| ends.iter().all(|p| p.is_finite())).collect()
 }
 
 /// The first of the sample points with the greatest distance to the index.
-fn farthest(segments: &[(Point, Point)], index: &Segments) -> Option<Farthest> {
-    let samples = segments.iter().flat_map(|&(a, b)| [a, a.midpoint(b), b]);
+fn farthest(segments: &[[Point; 2]], index: &Segments) -> Option<Farthest> {
+    let samples = segments.iter().flat_map(|&[a, b]| [a, a.midpoint(b), b]);
     let distances = samples.filter_map(|p| Some(Farthest { distance: index.distance(p)?, at: [p.x, p.y] }));
     distances.reduce(|best, next| if next.distance > best.distance { next } else { best })
 }

@@ -1,11 +1,11 @@
 //! The edges of a mesh as geodesics, from the metric alone: how long, and which way they leave their ends.
 
-use super::edges::Edges;
 use super::metric_quality::{angle, collect, edge_length};
 use crate::error::Result;
 use crate::geodesic::{Fineness, Logarithm, Paths};
 use crate::geometry::{Point, Vector};
-use crate::mesh::Mesh;
+use crate::lists::in_order;
+use crate::mesh::{EdgeSide, Edges, Mesh};
 use crate::metric::MetricField;
 use std::collections::HashSet;
 
@@ -40,25 +40,16 @@ pub(super) enum Found {
 
 /// Measures all edges, in parallel, in their order.
 pub(super) fn measure(mesh: &Mesh, edges: &Edges, metric: &dyn MetricField) -> Result<Vec<MeasuredEdge>> {
-    let border = border(mesh, edges);
+    let labelled: HashSet<[u32; 2]> = mesh.edges.iter().copied().map(in_order).collect();
     let paths = Paths::default();
-    let sides: Vec<([u32; 2], u32)> = edges.iter().map(|(ends, half_edges)| (ends, half_edges[0].1)).collect();
-    collect(&sides, |&(ends, half_edge)| {
-        // The domain lies to the left of a half-edge on its border.
-        let inside = if edges.ends(half_edge) == ends { 1.0 } else { -1.0 };
-        let is_border = border.contains(&half_edge);
+    let all: Vec<&[EdgeSide]> = edges.iter().collect();
+    collect(&all, |sides| {
+        let EdgeSide { ends, forward, .. } = sides[0];
+        // The domain lies to the left of its border.
+        let inside = if forward { 1.0 } else { -1.0 };
+        let is_border = sides.len() == 1 && labelled.contains(&ends);
         edge(&paths, metric, ends.map(|v| mesh.point(v)), is_border.then_some(inside))
     })
-}
-
-/// The half-edges of triangles that lie on the border of the domain: labelled, with nothing on the other side.
-fn border(mesh: &Mesh, edges: &Edges) -> HashSet<u32> {
-    let labelled: HashSet<[u32; 2]> = mesh.edges.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
-    let is_labelled = |h: &u32| {
-        let [a, b] = edges.ends(*h);
-        labelled.contains(&[a.min(b), a.max(b)])
-    };
-    edges.boundary().into_iter().filter(is_labelled).collect()
 }
 
 /// `inside` of an edge on the border is 1 where the domain lies to the left of p-q, -1 where to the right.

@@ -1,10 +1,9 @@
 //! How metric edge lengths and angles are distributed, with straight edges and with geodesic ones (RR-9103, figure 20).
 
-use super::edges::Edges;
 use super::geodesics::{Found, MeasuredEdge, measure};
 use super::metric_quality::{EdgeLengths, angle, collect, demand_planar, mean_tensor, tensor, vertex_logarithms};
 use crate::error::Result;
-use crate::mesh::Mesh;
+use crate::mesh::{Edges, Mesh};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 
@@ -127,9 +126,9 @@ fn geodesic_angles(
     metric: &dyn MetricField,
 ) -> Result<Vec<f64>> {
     let mut edge_of = vec![0; 3 * mesh.triangles.len()];
-    for (edge, (_, half_edges)) in edges.iter().enumerate() {
-        for &(_, half_edge) in half_edges {
-            edge_of[half_edge as usize] = edge;
+    for (edge, sides) in edges.iter().enumerate() {
+        for side in sides {
+            edge_of[side.half_edge as usize] = edge;
         }
     }
     let numbers: Vec<usize> = (0..mesh.triangles.len()).collect();
@@ -173,7 +172,7 @@ mod tests {
     fn equilateral_lattice_has_unit_edges_and_sixty_degrees() {
         let lattice = lattice(8);
         let found = histograms(&lattice, &|_: Point| Tensor::IDENTITY).unwrap();
-        let edges = Edges::of(&lattice.triangles).count();
+        let edges = Edges::of(&lattice.triangles).iter().count();
         assert_eq!(near(&found.edge_length, 1.0), [edges; 2]);
         assert_eq!(near(&found.angle, 60.0), [3 * lattice.triangles.len(); 2]);
         for mean in [found.edge_length.mean.straight, found.edge_length.mean.geodesic] {

@@ -1,10 +1,10 @@
 //! Lengths, shapes and angles of a mesh in a metric.
 
-use super::edges::Edges;
 use super::faults::{Position, middle};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3, Tensor, Vector};
-use crate::mesh::Mesh;
+use crate::lists::marked;
+use crate::mesh::{Edges, Mesh};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
@@ -102,9 +102,8 @@ pub(super) fn figures(
     position: impl Fn(Point3) -> Position,
 ) -> Result<MetricQuality> {
     let edges = Edges::of(&mesh.triangles);
-    let mut on_boundary = vec![false; mesh.points.len()];
-    edges.boundary().into_iter().for_each(|h| edges.ends(h).iter().for_each(|&v| on_boundary[v as usize] = true));
-    let ends: Vec<[u32; 2]> = edges.iter().map(|(ends, _)| ends).collect();
+    let on_boundary = marked(mesh.points.len(), edges.boundary().flat_map(|side| side.ends));
+    let ends: Vec<[u32; 2]> = edges.ends().collect();
     let lengths = collect(&ends, |&ends| length(ends))?;
     let shapes: Vec<Shape> = mesh.triangles.par_iter().map(|&t| shape(t)).collect();
     let is_interior = |ends: &[u32; 2]| ends.iter().all(|&v| !on_boundary[v as usize]);
@@ -192,8 +191,7 @@ pub(super) fn angle(m: Tensor, u: Vector, v: Vector) -> f64 {
 
 /// Logarithms of the tensors at the vertices of triangles; zero at vertices of no triangle.
 pub(super) fn vertex_logarithms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Vec<Tensor>> {
-    let mut used = vec![false; mesh.points.len()];
-    mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+    let used = mesh.used_vertices();
     let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
     let logarithm =
         |v: u32| if used[v as usize] { Ok(tensor(metric, mesh.point(v))?.log()) } else { Ok(Tensor::default()) };

@@ -1,6 +1,5 @@
 //! What a mesh is worth: valid or not, good or not in a metric, close or not to its domain.
 
-mod edges;
 mod embedding;
 mod faults;
 mod geodesics;
@@ -31,5 +30,3 @@ pub use surface_quality::surface_quality;
 pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet};
 pub(crate) use validity::faulty_triangles;
 pub use validity::{Validity, check, validity, validity_on};
-
-pub use edges::Edges;

@@ -1,9 +1,8 @@
 //! Triangles of a surface that meet where they are not neighbours, and lines in the plane that cross, decided exactly.
 
-use super::edges::Edges;
-use super::faults::{Fault, Piece, Segments};
+use super::faults::{Fault, Segments};
 use crate::geometry::{Aabb, Aabb3, Bounds, BoxTree, Corners, Orientation, Point, Point3, contact, orientation};
-use crate::mesh::Mesh;
+use crate::mesh::{Edges, Mesh};
 use crate::parallel::prelude::*;
 
 /// Two triangles that meet, the smaller number first.
@@ -67,16 +66,11 @@ pub struct Crossing {
 /// that run along each other do. A polyline is not held against itself. Points that are not finite meet nothing.
 pub(crate) fn crossings<P: AsRef<[Point]> + Sync>(paths: &[P]) -> Vec<Crossing> {
     let mut origins = Vec::new();
-    let mut pieces = Vec::new();
     for (path, points) in (0..).zip(paths) {
-        for (segment, w) in (0..).zip(points.as_ref().windows(2)) {
-            if w[0].is_finite() && w[1].is_finite() {
-                pieces.push(Piece { a: w[0], b: w[1], id: origins.len() as u32 });
-                origins.push(([path, segment], [w[0], w[1]]));
-            }
-        }
+        let segments = (0..).zip(points.as_ref().windows(2)).map(|(i, ends)| ([path, i], [ends[0], ends[1]]));
+        origins.extend(segments.filter(|(_, ends)| ends.iter().all(|p| p.is_finite())));
     }
-    let segments = Segments::new(pieces);
+    let segments = Segments::new(origins.iter().map(|origin| origin.1));
     let of_one = |(i, &([path, segment], ends)): (usize, &([u32; 2], [Point; 2]))| {
         let near = Aabb::of(ends).into_iter().flat_map(|bounds| segments.meeting(bounds));
         let others = near.map(|piece| piece.id as usize).filter(|&j| j > i);
@@ -94,7 +88,7 @@ pub(crate) fn crossings<P: AsRef<[Point]> + Sync>(paths: &[P]) -> Vec<Crossing> 
 pub fn crossing_edges(mesh: &Mesh) -> Vec<[[u32; 2]; 2]> {
     let exists = |t: &&[u32; 3]| t.iter().all(|&v| (v as usize) < mesh.points.len());
     let triangles: Vec<[u32; 3]> = mesh.triangles.iter().filter(exists).copied().collect();
-    let edges: Vec<[u32; 2]> = Edges::of(&triangles).iter().map(|e| e.0).filter(|[a, b]| a != b).collect();
+    let edges: Vec<[u32; 2]> = Edges::of(&triangles).ends().filter(|[a, b]| a != b).collect();
     let paths: Vec<[Point; 2]> = edges.iter().map(|e| e.map(|v| mesh.point(v))).collect();
     let pairs = crossings(&paths).into_iter().map(|c| c.paths.map(|i| edges[i as usize]));
     pairs.filter(|[e, f]| !e.iter().any(|v| f.contains(v))).collect()

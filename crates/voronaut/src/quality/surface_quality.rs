@@ -23,8 +23,7 @@ use crate::surface::{Nearest, Surface};
 pub fn surface_quality(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric) -> Result<MetricQuality> {
     demand_vertices(mesh)?;
     let field = Field::new(surface, metric);
-    let mut used = vec![false; mesh.points.len()];
-    mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+    let used = mesh.used_vertices();
     let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
     let seen = |v: u32| used[v as usize].then(|| field.at(mesh.position(v))).transpose();
     let tensors = collect(&vertices, |&v| seen(v))?;

@@ -1,13 +1,14 @@
 //! Whether a mesh is a mesh: by counting and by exact predicates, never by a tolerance.
 
-use super::edges::{self, Edges, NONE};
 use super::embedding;
 use super::faults::{Fault, duplicates, is_finite, longest, middle};
 use super::meetings::{Excused, Meetings};
 use super::self_intersections::{Pair, pairs};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, is_flat, orientation};
-use crate::mesh::Mesh;
+use crate::lists::distinct;
+use crate::mesh::edges::{self, NONE, is_manifold};
+use crate::mesh::{Edges, Mesh};
 use crate::parallel::prelude::*;
 
 /// What was found in a mesh. `valid` means: at least one triangle, every figure marked (fault) is zero.
@@ -171,8 +172,7 @@ impl Validity {
             let what = format!("vertices {} and {} are at the same position", v + 1, w + 1);
             self.fault_at(what, mesh, &[v]);
         }
-        let mut used = vec![false; mesh.points.len()];
-        mesh.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+        let used = mesh.used_vertices();
         self.unused_vertices = used.iter().filter(|&&used| !used).count();
     }
 
@@ -196,16 +196,16 @@ impl Validity {
 
     fn examine_edges(&mut self, mesh: &Mesh, edges: &Edges) {
         let used = mesh.points.len() - self.unused_vertices;
-        self.euler = used.cast_signed() - edges.count().cast_signed() + mesh.triangles.len().cast_signed();
-        for ([a, b], half_edges) in edges.iter().filter(|(_, half_edges)| !edges.is_manifold(half_edges)) {
+        self.euler = used.cast_signed() - edges.iter().count().cast_signed() + mesh.triangles.len().cast_signed();
+        for sides in edges.iter().filter(|sides| !is_manifold(sides)) {
             self.non_manifold_edges += 1;
-            let count = half_edges.len();
+            let ([a, b], count) = (sides[0].ends, sides.len());
             let what =
                 format!("edge {} {} is not manifold: {count} triangles, or the same direction twice", a + 1, b + 1);
             self.fault_at(what, mesh, &[a, b]);
         }
         self.boundary_loops = boundary_loops(edges);
-        for (number, &[a, b]) in (1..).zip(&mesh.edges).filter(|(_, [a, b])| !edges.contains(*a, *b)) {
+        for (number, &[a, b]) in (1..).zip(&mesh.edges).filter(|(_, [a, b])| edges.at([*a, *b]).is_empty()) {
             self.stray_edges += 1;
             let what = format!("labelled edge {number} (vertices {} {}) is no edge of a triangle", a + 1, b + 1);
             self.fault_at(what, mesh, &[a, b]);
@@ -226,17 +226,14 @@ impl Validity {
                 continue;
             }
             self.overlaps += 1;
-            let fault = pair.fault();
-            self.fault(fault.what, fault.place);
+            self.first_fault.get_or_insert(pair.fault());
         }
     }
 
     fn examine_embedding(&mut self, mesh: &Mesh, edges: &Edges) {
         let overlaps = embedding::overlaps(mesh, edges);
         self.overlaps = overlaps.len();
-        if let Some(fault) = overlaps.into_iter().next() {
-            self.fault(fault.what, fault.place);
-        }
+        self.first_fault = self.first_fault.take().or(overlaps.into_iter().next());
     }
 }
 
@@ -252,15 +249,12 @@ pub(crate) fn faulty_triangles(mesh: &Mesh, surface: &Meetings) -> Vec<u32> {
             .extend(pairs(mesh).iter().filter(|pair| of_ours(pair)).flat_map(|pair| pair.triangles).map(|t| t as u32));
     }
     let edges = Edges::of(&mesh.triangles);
-    for (_, half_edges) in edges.iter().filter(|(_, half_edges)| !edges.is_manifold(half_edges)) {
-        faulty.extend(half_edges.iter().map(|(_, half_edge)| half_edge / 3));
-    }
+    let wrong = edges.iter().filter(|sides| !is_manifold(sides)).flatten();
+    faulty.extend(wrong.map(|side| side.triangle() as u32));
     let split = split_vertices(mesh, &edges);
     let has_split = |t: &[u32; 3]| t.iter().any(|v| split.binary_search(v).is_ok());
     faulty.extend((0..).zip(&mesh.triangles).filter(|(_, t)| has_split(t)).map(|(i, _)| i));
-    faulty.sort_unstable();
-    faulty.dedup();
-    faulty
+    distinct(faulty)
 }
 
 /// Cycles of the boundary: from each boundary half-edge on through the fan of triangles at its end.
@@ -269,8 +263,8 @@ fn boundary_loops(edges: &Edges) -> usize {
     let mut seen = vec![false; twins.len()];
     let mut loops = 0;
     for start in edges.boundary() {
-        let mut half_edge = start;
-        loops += usize::from(!seen[start as usize]);
+        let mut half_edge = start.half_edge;
+        loops += usize::from(!seen[half_edge as usize]);
         while !std::mem::replace(&mut seen[half_edge as usize], true) {
             half_edge = edges::next(half_edge);
             while twins[half_edge as usize] != NONE {
@@ -283,36 +277,8 @@ fn boundary_loops(edges: &Edges) -> usize {
 
 /// Vertices with triangles that cannot be reached from another one of theirs across edges at the vertex.
 fn split_vertices(mesh: &Mesh, edges: &Edges) -> Vec<u32> {
-    let twins = edges.twins();
-    let mut corners = vec![0_u32; mesh.points.len()];
-    let mut start = vec![NONE; mesh.points.len()];
-    for (h, &v) in (0..).zip(mesh.triangles.as_flattened()) {
-        corners[v as usize] += 1;
-        start[v as usize] = h;
-    }
-    let fan = |start: u32| {
-        let mut count = 1;
-        // Counter-clockwise, and if that ends at a border, clockwise from the start.
-        let mut h = start;
-        loop {
-            h = twins[edges::previous(h) as usize];
-            if h == start {
-                return count;
-            }
-            if h == NONE {
-                break;
-            }
-            count += 1;
-        }
-        h = start;
-        while twins[h as usize] != NONE {
-            h = edges::next(twins[h as usize]);
-            count += 1;
-        }
-        count
-    };
-    let is_split = |&v: &u32| corners[v as usize] > 0 && fan(start[v as usize]) < corners[v as usize];
-    (0..mesh.points.len() as u32).filter(is_split).collect()
+    let fans = edges::fans(&edges.twins(), |_, _| false);
+    edges::vertices_of_several(&fans, mesh.triangles.as_flattened())
 }
 
 /// For each vertex the longest edge of its triangles.

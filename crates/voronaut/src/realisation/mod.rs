@@ -10,8 +10,9 @@ pub use simplices::Grid;
 
 use crate::diagram::Diagram;
 use crate::geometry::Point;
+use crate::mesh::Edges;
 use crate::metric::MetricField;
-use crate::quality::{Edges, crossings};
+use crate::quality::crossings;
 
 /// See the [module](self).
 #[derive(Clone, Debug, Default)]
@@ -79,7 +80,7 @@ impl GeodesicEdge {
 impl Realisation {
     /// Of triangles of a diagram's seeds, such as its nerve or a dual.
     pub fn new(diagram: &Diagram, field: &dyn MetricField, triangles: &[[u32; 3]]) -> Self {
-        let pairs: Vec<[u32; 2]> = Edges::of(triangles).iter().map(|e| e.0).collect();
+        let pairs: Vec<[u32; 2]> = Edges::of(triangles).ends().collect();
         let edges = edges::of(diagram, field, &pairs);
         let mut crossing: Vec<[u32; 2]> = crossings(&edges).iter().map(|c| c.paths).collect();
         crossing.dedup();

@@ -15,12 +15,9 @@ use crate::optimise::polishing_norm;
 use crate::quality::interpolation_error;
 use std::borrow::Cow;
 
-/// Sweeps of smoothing (`--smooth-metric`, TOML key and Python keyword `smooth_metric`) unless told otherwise.
-pub const SMOOTH_METRIC: u32 = 0;
-
 /// What is done to a metric in the plane, in this order: recovery of second derivatives and the norm they are weighted for, limits,
 /// smoothing, gradation. Every parameter has one name (flag, TOML key, Python keyword).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct MetricOptions {
     /// Least and greatest sizes, greatest anisotropy.
     pub bounds: Bounds,
@@ -32,18 +29,6 @@ pub struct MetricOptions {
     pub smooth_metric: u32,
     /// How fast sizes may grow; `None` for no gradation.
     pub gradation: Option<f64>,
-}
-
-impl Default for MetricOptions {
-    fn default() -> Self {
-        Self {
-            bounds: Bounds::default(),
-            norm: Norm::default(),
-            recovery: Recovery::default(),
-            smooth_metric: SMOOTH_METRIC,
-            gradation: None,
-        }
-    }
 }
 
 /// A metric in the plane.
@@ -98,7 +83,7 @@ pub fn metric_of_values(
 ) -> Result<PlanarMetric> {
     let field = match values {
         SolutionValues::Scalar(sizes) => Sampled::sizes(mesh, sizes)?,
-        _ => sampled(mesh, values, place)?,
+        _ => Sampled::new(mesh, &tensors(values, place)?)?,
     };
     finished(PlanarMetric::plain(field), domain, Some(mesh), options, at)
 }
@@ -117,7 +102,7 @@ pub fn metric_of_solution(
 ) -> Result<PlanarMetric> {
     let named = match values {
         SolutionValues::Scalar(values) => recovered(mesh, values, domain, options, at)?,
-        _ => PlanarMetric::plain(sampled(mesh, values, "the solution")?),
+        _ => PlanarMetric::plain(Sampled::new(mesh, &tensors(values, "the solution")?)?),
     };
     finished(named, domain, Some(mesh), options, at)
 }
@@ -187,13 +172,13 @@ fn within_domain<F: MetricField + 'static>(field: F, domain: &Domain, at: Graded
     Ok((Bounded::new(field, Bounds { h_max, ..Bounds::default() })?, scale))
 }
 
-fn sampled(mesh: &Mesh, values: &SolutionValues, place: &str) -> Result<Sampled> {
+/// The tensors of values that are tensors of the plane; `place` names them in messages.
+pub(super) fn tensors(values: &SolutionValues, place: &str) -> Result<Vec<Tensor>> {
     let SolutionValues::Tensor(entries) = values else {
         let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
         return Err(Error::parse(place, "the values are no planar metric", help));
     };
-    let tensors: Vec<Tensor> = entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect();
-    Sampled::new(mesh, &tensors)
+    Ok(entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect())
 }
 
 /// Limits, then smoothing, then gradation. A function counts only where none of them was asked for.

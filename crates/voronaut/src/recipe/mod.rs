@@ -17,7 +17,7 @@ pub use adapt::{LoopOptions, Source, Step, adapt};
 pub use certified::certified_canvas;
 pub use dual::{SeedDual, dual, net, surface_dual, surface_mesh};
 pub use field::{
-    GradedAt, MetricOptions, PlanarMetric, SMOOTH_METRIC, metric, metric_named, metric_of_function, metric_of_solution,
+    GradedAt, MetricOptions, PlanarMetric, metric, metric_named, metric_of_function, metric_of_solution,
     metric_of_values,
 };
 pub use on_surface::mesh_surface;
@@ -147,25 +147,19 @@ pub fn mesh_for(
     let polished = aim.map(|aim| watch.time("polish", || job.polish(&mut dual, aim))).transpose()?;
     let mesh = watch.time("check", || job.finish(&domain, &dual))?;
     let (net, protection) = job.net(&domain, &dual, protected);
-    let settle::Settled { dual: account, canvas, diagram } = settled;
-    let (canvas, diagram) = (job.canvas.or(canvas), job.diagram.or(diagram));
-    let metric_scale = dual.field().factor;
-    let (seconds, notes) = (watch.seconds(), job.notes);
-    let star_set = None;
     Ok(Meshed {
         mesh,
-        metric_scale,
-        dual: account,
+        metric_scale: dual.field().factor,
+        dual: settled.dual,
         relaxation,
         polished,
-        canvas,
-        diagram,
+        canvas: job.canvas.or(settled.canvas),
+        diagram: job.diagram.or(settled.diagram),
         net,
         protection,
-        fidelity: None,
-        star_set,
-        seconds,
-        notes,
+        seconds: watch.seconds(),
+        notes: job.notes,
+        ..Meshed::default()
     })
 }
 

@@ -143,9 +143,9 @@ impl<'a> Setting<'a> {
         let meshed = Meshed {
             mesh,
             metric_scale: pass.dual.factor(),
-            dual: pass.settled.account,
+            dual: pass.settled.dual,
             relaxation: pass.relaxed,
-            canvas: pass.settled.figures,
+            canvas: pass.settled.canvas,
             diagram: pass.settled.diagram,
             notes,
             ..Meshed::default()

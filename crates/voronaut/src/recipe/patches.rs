@@ -1,6 +1,7 @@
 //! Patches of a cut surface put together again: one mesh, with the features that it keeps.
 
 use crate::geometry::Point3;
+use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::sampling::{FeatureEdge, FeatureSeeds};
 use crate::surface::{Input, Place};
@@ -60,7 +61,7 @@ impl Patched<'_> {
         mesh.corners = seeds(&features.corners);
         mesh.required_points = seeds(self.input.surface.required_points());
         let required: BTreeSet<[u32; 3]> = self.required_triangles(&seed_at).into_iter().collect();
-        let is_required = |t: &[u32; 3]| !required.is_empty() && required.contains(&sorted(*t));
+        let is_required = |t: &[u32; 3]| !required.is_empty() && required.contains(&in_order(*t));
         mesh.required_triangles = (0..).zip(&mesh.triangles).filter(|(_, t)| is_required(t)).map(|(i, _)| i).collect();
     }
 
@@ -68,13 +69,8 @@ impl Patched<'_> {
         let surface = &self.input.surface;
         let of = |&f| {
             let [a, b, c] = surface.topology().corners(f).map(|v| seed_at.get(&self.input.seams.original(v)).copied());
-            Some(sorted([a?, b?, c?]))
+            Some(in_order([a?, b?, c?]))
         };
         surface.required_triangles().iter().filter_map(of).collect()
     }
-}
-
-fn sorted(mut t: [u32; 3]) -> [u32; 3] {
-    t.sort_unstable();
-    t
 }

@@ -1,11 +1,11 @@
 //! A planar mesh that is to be made anew: its domain, what of it is to be there again, and the sizes by which it is made.
 
-use super::field::{BACKGROUND_VERTICES, even};
+use super::field::{BACKGROUND_VERTICES, even, tensors};
 use crate::domain::{Domain, Pslg, from_mesh};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
-use crate::lists::in_order;
-use crate::mesh::{Mesh, Solution, SolutionValues};
+use crate::lists::{distinct, in_order, marked};
+use crate::mesh::{EdgeSide, Edges, Mesh, Solution, SolutionValues};
 use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, complexity, implied, isotropic};
 use crate::metric::{Bounds, MetricField, Sampled};
 use crate::planar::{Duplicate, delaunay};
@@ -89,9 +89,7 @@ impl RemeshInput {
         let required_edges = is_required.map(|segment| in_order(segment.ends.map(|v| at(&pslg, v)))).collect();
         let turns = pslg.corners(keep.features.ar);
         let corners = turns.iter().map(|&v| at(&pslg, v)).collect();
-        pslg.required_points.extend(turns);
-        pslg.required_points.sort_unstable();
-        pslg.required_points.dedup();
+        pslg.required_points = distinct(pslg.required_points.into_iter().chain(turns));
         pslg.segments.iter_mut().for_each(|segment| segment.required |= keep.curves);
         let required_lengths = if keep.plain_sizes { HashMap::new() } else { required_lengths(&pslg) };
         let domain = Domain::new(&pslg)?;
@@ -143,12 +141,12 @@ fn without_useless_edges(mut mesh: Mesh, inner: bool) -> (Mesh, usize) {
     if mesh.triangles.is_empty() {
         return (mesh, 0);
     }
-    let sides = labels_beside(&mesh);
-    let mut is_required = vec![false; mesh.edges.len()];
-    mesh.required_edges.iter().for_each(|&e| is_required[e as usize] = true);
-    let is_kept = |e: usize| match sides.get(&in_order(mesh.edges[e])).map(Vec::as_slice) {
-        Some([a, b]) => a != b || inner || is_required[e],
-        found => found.is_some(),
+    let edges = Edges::of(&mesh.triangles);
+    let label = |side: &EdgeSide| mesh.triangle_labels.get(side.triangle()).copied().unwrap_or(0);
+    let is_required = marked(mesh.edges.len(), mesh.required_edges.iter().copied());
+    let is_kept = |e: usize| match edges.at(mesh.edges[e]) {
+        [s, t] => label(s) != label(t) || inner || is_required[e],
+        sides => !sides.is_empty(),
     };
     let kept: Vec<usize> = (0..mesh.edges.len()).filter(|&e| is_kept(e)).collect();
     let left_out = mesh.edges.len() - kept.len();
@@ -157,18 +155,6 @@ fn without_useless_edges(mut mesh: Mesh, inner: bool) -> (Mesh, usize) {
     mesh.edge_labels = kept.iter().map(|&e| mesh.edge_labels.get(e).copied().unwrap_or(0)).collect();
     mesh.edges = kept.iter().map(|&e| mesh.edges[e]).collect();
     (mesh, left_out)
-}
-
-/// The labels of the triangles at every edge.
-fn labels_beside(mesh: &Mesh) -> HashMap<[u32; 2], Vec<i32>> {
-    let mut sides: HashMap<[u32; 2], Vec<i32>> = HashMap::new();
-    for (i, &[a, b, c]) in mesh.triangles.iter().enumerate() {
-        let label = mesh.triangle_labels.get(i).copied().unwrap_or(0);
-        for ends in [[a, b], [b, c], [c, a]] {
-            sides.entry(in_order(ends)).or_default().push(label);
-        }
-    }
-    sides
 }
 
 /// What sizes are asked for, besides those of curves and the greatest one.
@@ -342,13 +328,9 @@ fn triangulated(mesh: &Mesh) -> Result<Mesh> {
 fn metric(mesh: &Mesh, values: &SolutionValues) -> Result<Vec<Tensor>> {
     let tensors = match values {
         SolutionValues::Scalar(sizes) => isotropic(mesh, sizes)?,
-        SolutionValues::Tensor(entries) => entries.iter().map(|&[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect(),
         // Of a planar mesh in dimension 3.
         SolutionValues::Tensor3(entries) => entries.iter().map(|m| Tensor::new(m[0], m[1], m[2])).collect(),
-        SolutionValues::Vector { .. } => {
-            let help = "give one size (type 1) or one tensor m11 m12 m22 (type 3) per vertex, in dimension 2";
-            return Err(Error::parse("the metric", "the values are no planar metric", help));
-        }
+        _ => tensors(values, "the metric")?,
     };
     // Refuses what is no metric, or of another mesh.
     Sampled::new(mesh, &tensors)?;

@@ -2,7 +2,7 @@
 
 use super::dual::account;
 use super::patches::Patched;
-use super::settle::Stopwatch;
+use super::settle::{Settled, Stopwatch};
 use super::{MeshOptions, Seeding};
 use crate::canvas::{Canvas, CanvasFigures, Draped};
 use crate::diagram::SurfaceDiagram;
@@ -57,15 +57,6 @@ pub(super) struct Pass<'a> {
     owners: Vec<u32>,
     pub(super) relaxed: Relaxed,
     pub(super) settled: Settled,
-}
-
-/// What came of settling edges.
-#[derive(Default)]
-pub(super) struct Settled {
-    pub(super) account: figures::Dual,
-    /// Of the canvas, where one was made.
-    pub(super) figures: Option<CanvasFigures>,
-    pub(super) diagram: Option<figures::Diagram>,
 }
 
 /// Where the passes before made no mesh.
@@ -123,7 +114,7 @@ impl<'a> Setting<'a> {
         let (mut dual, relaxed) = self.watch.time("relax", || self.relaxed(adapted, scale, steps))?;
         let settle = || if steps.is_some() { self.settled(&mut dual) } else { Ok(Settled::default()) };
         let mut settled = self.watch.time("settle", settle)?;
-        settled.figures = settled.figures.or(canvas);
+        settled.canvas = settled.canvas.or(canvas);
         Ok(Pass { input: self.input, dual, features, owners, relaxed, settled })
     }
 
@@ -239,8 +230,8 @@ impl<'a> Setting<'a> {
             return self.settle(dual);
         }
         let (blocked_flips, min_margin) = dual.unsettled();
-        let account = figures::Dual { min_margin, blocked_flips, ..figures::Dual::default() };
-        Ok(Settled { account, ..Settled::default() })
+        let dual = figures::Dual { min_margin, blocked_flips, ..figures::Dual::default() };
+        Ok(Settled { dual, ..Settled::default() })
     }
 
     fn settle(&self, dual: &mut SurfaceDual) -> Result<Settled> {
@@ -256,7 +247,7 @@ impl<'a> Setting<'a> {
         dual.unfold();
         mend(dual);
         let account = figures::Dual { blocked_flips: blocked, ..account(&rdt, &nerve, Road::Geodesic) };
-        Ok(Settled { account, figures: Some(canvas.figures()), diagram: Some(figures::Diagram::of(&diagram)) })
+        Ok(Settled { dual: account, canvas: Some(canvas.figures()), diagram: Some(figures::Diagram::of(&diagram)) })
     }
 
     /// A canvas of so many seeds as a surface: finer than what an equation was first meshed to.

@@ -3,9 +3,9 @@
 use super::{Mark, Surface};
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
-use crate::mesh::{Mesh, Side, by_edge, sides};
+use crate::lists::{Classes, distinct, in_order};
+use crate::mesh::{Edges, Mesh};
 use crate::triangulation::{Broken, Constraint, FaceId, Triangulation, VertexId};
-use std::collections::BTreeSet;
 
 impl Surface {
     /// The surface of a mesh's triangles, with its labels; edges of the list are fixed.
@@ -23,9 +23,9 @@ impl Surface {
         let positions = finite_positions(mesh)?;
         check_triangles(&mesh.triangles, &positions)?;
         let mut triangles = mesh.triangles.clone();
-        let sides = sides(triangles.iter().copied());
-        check_edges(&sides, &positions)?;
-        let turned = orient(&mut triangles, &sides, |ends| edge(ends, &positions))?;
+        let edges = Edges::of(&triangles);
+        check_edges(&edges, &positions)?;
+        let turned = orient(&mut triangles, &edges, |ends| edge(ends, &positions))?;
         let mut regions = mesh.triangle_labels.clone();
         regions.resize(triangles.len(), 0);
         let topology = Triangulation::from_triangles(positions.len(), &triangles, &regions);
@@ -37,9 +37,9 @@ impl Surface {
             positions,
             point_labels,
             marks: marks(mesh),
-            corners: in_order(&mesh.corners).map(VertexId).collect(),
-            required_points: in_order(&mesh.required_points).map(VertexId).collect(),
-            required_triangles: in_order(&mesh.required_triangles).map(FaceId).collect(),
+            corners: distinct(mesh.corners.iter().copied().map(VertexId)),
+            required_points: distinct(mesh.required_points.iter().copied().map(VertexId)),
+            required_triangles: distinct(mesh.required_triangles.iter().copied().map(FaceId)),
             turned,
         };
         surface.fix_edges(&mesh.edges)?;
@@ -126,21 +126,16 @@ pub(super) fn has_area([p, q, r]: [Point3; 3]) -> bool {
 }
 
 fn check_duplicates(triangles: &[[u32; 3]], positions: &[Point3]) -> Result<()> {
-    let sorted = |(i, &triangle): (usize, &[u32; 3])| {
-        let mut vertices = triangle;
-        vertices.sort_unstable();
-        (vertices, i)
-    };
-    let mut keys: Vec<_> = triangles.iter().enumerate().map(sorted).collect();
+    let mut keys: Vec<_> = triangles.iter().copied().map(in_order).zip(1..).collect();
     keys.sort_unstable();
     let Some(pair) = keys.windows(2).find(|pair| pair[0].0 == pair[1].0) else { return Ok(()) };
-    let what = format!("triangles {} and {} have the same vertices", pair[0].1 + 1, pair[1].1 + 1);
+    let what = format!("triangles {} and {} have the same vertices", pair[0].1, pair[1].1);
     Err(Error::domain(what, at(pair[0].0[0], positions), "keep one of them"))
 }
 
-fn check_edges(sides: &[Side], positions: &[Point3]) -> Result<()> {
-    let Some(same) = by_edge(sides).find(|same| same.len() > 2) else { return Ok(()) };
-    let [s, t, u] = [0, 1, 2].map(|i| same[i].triangle + 1);
+fn check_edges(edges: &Edges, positions: &[Point3]) -> Result<()> {
+    let Some(same) = edges.iter().find(|same| same.len() > 2) else { return Ok(()) };
+    let [s, t, u] = [0, 1, 2].map(|i| same[i].triangle() + 1);
     let what = format!("an edge of {} triangles (among them {s}, {t} and {u})", same.len());
     Err(Error::domain(what, edge(same[0].ends, positions), "leave at most two triangles at every edge"))
 }
@@ -168,10 +163,6 @@ fn marks(mesh: &Mesh) -> Vec<Mark> {
     marks
 }
 
-fn in_order(numbers: &[u32]) -> impl Iterator<Item = u32> {
-    numbers.iter().copied().collect::<BTreeSet<u32>>().into_iter()
-}
-
 /// A vertex, numbered from 1, for messages.
 pub(super) fn vertex(v: u32, position: Point3) -> String {
     format!("vertex {} {position}", v + 1)
@@ -186,71 +177,69 @@ fn edge([a, b]: [u32; 2], positions: &[Point3]) -> String {
 }
 
 /// Turns triangles until neighbours pass their edge in opposite directions; in each component as few as possible (its
-/// majority stays). Every edge has at most two `sides`. Returns how many were turned.
+/// majority stays). Every edge has at most two sides. Returns how many were turned.
 ///
 /// # Errors
 /// [`Error::Domain`] of a one-sided surface (a Moebius strip, a Klein bottle), where no way of turning is right; `place`
 /// says where an edge is.
-pub(super) fn orient(triangles: &mut [[u32; 3]], sides: &[Side], place: impl Fn([u32; 2]) -> String) -> Result<usize> {
-    let neighbours = neighbours(triangles.len(), sides);
-    let mut turned: Vec<Option<bool>> = vec![None; triangles.len()];
-    let mut count = 0;
-    for start in 0..triangles.len() {
-        if turned[start].is_some() {
-            continue;
-        }
-        turned[start] = Some(false);
-        let mut component = vec![start];
-        let mut next = 0;
-        while let Some(&triangle) = component.get(next) {
-            next += 1;
-            for &Neighbour { triangle: other, same_direction, ends } in &neighbours[triangle] {
-                let needed = turned[triangle].map(|turned| turned != same_direction);
-                match turned[other] {
-                    None => {
-                        turned[other] = needed;
-                        component.push(other);
-                    }
-                    found if found == needed => {}
-                    _ => return Err(one_sided(place(ends))),
-                }
-            }
-        }
-        count += turn(triangles, &component, &turned);
-    }
-    Ok(count)
-}
-
-/// A triangle across an edge.
-#[derive(Clone, Copy)]
-struct Neighbour {
-    triangle: usize,
-    same_direction: bool,
-    ends: [u32; 2],
-}
-
-fn neighbours(count: usize, sides: &[Side]) -> Vec<Vec<Neighbour>> {
-    let mut neighbours = vec![Vec::with_capacity(3); count];
-    for pair in sides.windows(2).filter(|pair| pair[0].ends == pair[1].ends) {
-        let (same_direction, ends) = (pair[0].forward == pair[1].forward, pair[0].ends);
-        for [from, to] in [[0, 1], [1, 0]] {
-            let neighbour = Neighbour { triangle: pair[to].triangle as usize, same_direction, ends };
-            neighbours[pair[from].triangle as usize].push(neighbour);
+fn orient(triangles: &mut [[u32; 3]], edges: &Edges, place: impl Fn([u32; 2]) -> String) -> Result<usize> {
+    let mut turns = Turns::new(triangles.len());
+    for sides in edges.iter() {
+        if let [s, t] = sides
+            && !turns.join(s.half_edge / 3, t.half_edge / 3, s.forward == t.forward)
+        {
+            return Err(one_sided(place(s.ends)));
         }
     }
-    neighbours
-}
-
-/// Turns the smaller part of a component.
-fn turn(triangles: &mut [[u32; 3]], component: &[usize], turned: &[Option<bool>]) -> usize {
-    let marked = component.iter().filter(|&&t| turned[t] == Some(true)).count();
-    let which = 2 * marked <= component.len();
-    let mut count = 0;
-    for &t in component.iter().filter(|&&t| turned[t] == Some(which)) {
+    let turned = turns.minorities();
+    for &t in &turned {
         triangles[t].swap(1, 2);
-        count += 1;
     }
-    count
+    Ok(turned.len())
+}
+
+/// Which triangles turn as others do: t as it is, and t + count turned.
+pub(super) struct Turns {
+    count: u32,
+    same: Classes,
+}
+
+impl Turns {
+    pub(super) fn new(count: usize) -> Self {
+        Self { count: count as u32, same: Classes::new(2 * count) }
+    }
+
+    /// The first triangle of the same component, and whether this one turns against it.
+    fn of(&mut self, t: u32) -> (u32, bool) {
+        let [own, against] = [t, t + self.count].map(|t| self.same.shorten(t));
+        (own.min(against), against < own)
+    }
+
+    /// Makes one component of two, where one triangle is to turn against the other or not; false if they already turn otherwise.
+    pub(super) fn join(&mut self, s: u32, t: u32, is_against: bool) -> bool {
+        let [like, unlike] = if is_against { [t + self.count, t] } else { [t, t + self.count] };
+        if self.same.shorten(s) == self.same.shorten(unlike) {
+            return false;
+        }
+        self.same.join(s, like);
+        self.same.join(s + self.count, unlike);
+        true
+    }
+
+    /// The triangles to turn for all to agree: in each component as few as possible, in order.
+    pub(super) fn minorities(&mut self) -> Vec<usize> {
+        let found: Vec<(u32, bool)> = (0..self.count).map(|t| self.of(t)).collect();
+        let mut counts = vec![[0_usize; 2]; found.len()];
+        for &(first, is_turned) in &found {
+            counts[first as usize][usize::from(is_turned)] += 1;
+        }
+        let is_less = |&t: &usize| {
+            let (first, is_turned) = found[t];
+            let [as_first, others] = counts[first as usize];
+            is_turned == (others <= as_first)
+        };
+        (0..found.len()).filter(is_less).collect()
+    }
 }
 
 /// The error of a surface without two sides.

@@ -7,6 +7,7 @@
 use super::Surface;
 use super::features::{Curve, Curves, FeatureOptions};
 use crate::error::Result;
+use crate::lists::marked;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 /// Where a surface was cut open, or is open: its feature curves, and the copies of their vertices.
@@ -86,10 +87,8 @@ impl Seams {
 /// As for [`Surface::new`]: none of a surface that was one, but for its size.
 pub(super) fn cut(surface: &Surface, options: &FeatureOptions) -> Result<(Surface, Seams)> {
     let features = surface.curves(options);
-    let mut is_cut = vec![false; 3 * surface.topology().face_slots()];
-    for side in features.curves.iter().flat_map(|curve| &curve.edges).flat_map(|edge| edge.sides).flatten() {
-        is_cut[side.index()] = true;
-    }
+    let sides = features.curves.iter().flat_map(|curve| &curve.edges).flat_map(|edge| edge.sides).flatten();
+    let is_cut = marked(3 * surface.topology().face_slots(), sides.map(|side| side.index() as u32));
     let mut mesh = surface.to_mesh();
     let before = mesh.points.len();
     let mut originals: Vec<VertexId> = (0..before as u32).map(VertexId).collect();

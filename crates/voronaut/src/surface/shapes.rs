@@ -4,7 +4,8 @@ use super::{Input, Surface, mesh_implicit};
 use crate::domain::{name_and_rest, read_numbers};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3, Vector3};
-use crate::mesh::Mesh;
+use crate::lists::in_order;
+use crate::mesh::{Mesh, edges_of};
 use crate::metric::{Expression, Variables};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -29,7 +30,7 @@ pub fn sphere(radius: f64, edge: f64) -> Result<Surface> {
     check_count(4.0 * TAU * (radius / edge).powi(2))?;
     let (mut points, mut triangles) = icosahedron();
     let longest = |points: &[Vector3], triangles: &[[u32; 3]]| {
-        let edges = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let edges = triangles.iter().copied().flat_map(edges_of);
         edges.map(|[a, b]| (points[a as usize] - points[b as usize]).norm()).fold(0.0, f64::max)
     };
     while longest(&points, &triangles) * radius > edge {
@@ -131,7 +132,7 @@ fn icosahedron() -> (Vec<Vector3>, Vec<[u32; 3]>) {
 fn halve(points: &mut Vec<Vector3>, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut middles: HashMap<[u32; 2], u32> = HashMap::new();
     let mut middle = |a: u32, b: u32| {
-        *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+        *middles.entry(in_order([a, b])).or_insert_with(|| {
             let sum = points[a as usize] + points[b as usize];
             points.push(sum * (1.0 / sum.norm()));
             points.len() as u32 - 1

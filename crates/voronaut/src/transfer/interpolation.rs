@@ -15,7 +15,7 @@ pub(super) fn interpolate(locator: &Locator, old: &Mesh, new: &Mesh, fields: &[F
     let vertices = located(locator, &vertices);
     let on_triangles = fields.iter().any(|field| field.place == Place::Triangles);
     let centroids: Vec<Point> =
-        if on_triangles { new.triangles.iter().map(|&t| centroid(new, t)).collect() } else { vec![] };
+        if on_triangles { new.triangles.iter().map(|&t| Point::centroid(new.corners_of(t))).collect() } else { vec![] };
     let centroids = located(locator, &centroids);
     let carried = fields.iter().map(|field| match field.place {
         Place::Vertices => at_vertices(old, field, &vertices),
@@ -47,11 +47,6 @@ fn located(locator: &Locator, points: &[Point]) -> Vec<Located> {
         .par_iter()
         .map(|&p| locator.locate(p).expect("checked: points are finite, and there are triangles"))
         .collect()
-}
-
-fn centroid(mesh: &Mesh, triangle: [u32; 3]) -> Point {
-    let [a, b, c] = mesh.corners_of(triangle);
-    a + ((b - a) + (c - a)) * (1.0 / 3.0)
 }
 
 fn cover(old: &Mesh, vertices: &[Located]) -> Cover {

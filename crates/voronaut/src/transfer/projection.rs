@@ -17,13 +17,12 @@ pub(super) fn project(
     cover: Cover,
     overshoot: Overshoot,
 ) -> Result<(Vec<Field>, Cover)> {
-    let columns = |place| Columns::of(fields, place);
-    let (linear, constant) = (columns(Place::Vertices), columns(Place::Triangles));
+    let [linear, constant] = [Place::Vertices, Place::Triangles].map(|place| columns(fields, place));
     let sources = Old {
         mesh: old,
         locator,
-        linear: linear.gather(fields, old.points.len()),
-        constant: constant.gather(fields, old.triangles.len()),
+        linear: gathered(&linear, fields, old.points.len()),
+        constant: gathered(&constant, fields, old.triangles.len()),
     };
     let loads = Loads::new(&sources, new);
     let shares = loads.shares(old, new);
@@ -31,12 +30,12 @@ pub(super) fn project(
     let (there, here) = (areas(old), areas(new));
     let [old_matrix, matrix] = [(old, &there), (new, &here)].map(|(mesh, areas)| MassMatrix::new(mesh, areas));
     let mut carried = interpolated;
-    for (c, column) in linear.0.iter().enumerate() {
+    for (c, column) in linear.iter().enumerate() {
         let target = dot(&sources.linear.column(c), &old_matrix.lumped);
         let values = nodal(&matrix, &loads, c, &column.read(&carried), target, overshoot);
         column.write(&mut carried, &values);
     }
-    for (c, column) in constant.0.iter().enumerate() {
+    for (c, column) in constant.iter().enumerate() {
         let target = dot(&sources.constant.column(c), &there);
         let mut values: Vec<f64> = (0..here.len()).map(|t| loads.mean(t, c)).collect();
         balance(&mut values, &here, target);
@@ -86,25 +85,22 @@ struct Column {
 }
 
 /// The components of all fields of one place but metrics.
-struct Columns(Vec<Column>);
+fn columns(fields: &[Field], place: Place) -> Vec<Column> {
+    let chosen = fields.iter().enumerate().filter(|(_, field)| field.place == place && field.kind != Kind::Metric);
+    let columns = chosen.flat_map(|(field, of)| {
+        let width = of.components();
+        (0..width).map(move |component| {
+            let unit = unit(of.values.iter().skip(component).step_by(width));
+            Column { field, component, width, unit }
+        })
+    });
+    columns.collect()
+}
 
-impl Columns {
-    fn of(fields: &[Field], place: Place) -> Self {
-        let chosen = fields.iter().enumerate().filter(|(_, field)| field.place == place && field.kind != Kind::Metric);
-        let columns = chosen.flat_map(|(field, of)| {
-            let width = of.components();
-            (0..width).map(move |component| {
-                let unit = unit(of.values.iter().skip(component).step_by(width));
-                Column { field, component, width, unit }
-            })
-        });
-        Self(columns.collect())
-    }
-
-    fn gather(&self, fields: &[Field], rows: usize) -> Rows {
-        let row = |i: usize| self.0.iter().map(move |c| fields[c.field].values[i * c.width + c.component] / c.unit);
-        Rows { width: self.0.len(), values: (0..rows).flat_map(row).collect() }
-    }
+/// The values of these columns, by rows.
+fn gathered(columns: &[Column], fields: &[Field], rows: usize) -> Rows {
+    let row = |i: usize| columns.iter().map(move |c| fields[c.field].values[i * c.width + c.component] / c.unit);
+    Rows { width: columns.len(), values: (0..rows).flat_map(row).collect() }
 }
 
 impl Column {

@@ -3,7 +3,8 @@
 use super::super::neighbours::Neighbours;
 use super::stencil::{Frame, Rings, solve};
 use crate::geometry::Tensor;
-use crate::mesh::{Mesh, borders, sides};
+use crate::lists::marked;
+use crate::mesh::{Edges, Mesh};
 use crate::parallel::prelude::*;
 
 /// The double L2 projection with lumped masses: gradients of triangles averaged to the vertices by area, differentiated, and
@@ -105,8 +106,5 @@ const INDEPENDENT: f64 = 0.2;
 
 /// Which vertices are on an edge of one triangle only.
 fn border(mesh: &Mesh) -> Vec<bool> {
-    let mut is_border = vec![false; mesh.points.len()];
-    let all = sides(mesh.triangles.iter().copied());
-    borders(&all).flat_map(|side| side.ends).for_each(|v| is_border[v as usize] = true);
-    is_border
+    marked(mesh.points.len(), Edges::of(&mesh.triangles).boundary().flat_map(|side| side.ends))
 }

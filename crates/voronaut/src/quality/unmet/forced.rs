@@ -2,11 +2,11 @@
 //! around it, or a metric that turns too fast for straight edges.
 
 use super::super::metric_quality::edge_length;
-use super::{Around, Edges, RANGE, is_unit};
+use super::{Around, RANGE, is_unit};
 use crate::geodesic::bowed_chord;
-use crate::geometry::{Point, Point3, Vector};
-use crate::lists::{Rows, distinct};
-use crate::mesh::Mesh;
+use crate::geometry::{Point, Vector};
+use crate::lists::{Rows, distinct, in_order, marked};
+use crate::mesh::{Edges, Mesh, Network};
 use crate::metric::MetricField;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_3;
@@ -29,7 +29,7 @@ impl Forced {
         let curves = Curves::of(mesh, edges, corner);
         let mut crowded = vec![false; mesh.points.len()];
         let mut all = vec![Forced::No; lengths.len()];
-        for (((ends, _), &length), forced) in edges.iter().zip(lengths).zip(&mut all) {
+        for ((ends, &length), forced) in edges.ends().zip(lengths).zip(&mut all) {
             let kept = curves.kept.get(&ends);
             let both = |list: &[bool]| length < 1.0 && ends.iter().all(|&v| list[v as usize]);
             if is_unit(length) {
@@ -43,7 +43,7 @@ impl Forced {
                 *forced = Forced::Across;
             }
         }
-        for ((ends, _), forced) in edges.iter().zip(&mut all) {
+        for (ends, forced) in edges.ends().zip(&mut all) {
             if ends.iter().any(|&v| crowded[v as usize]) {
                 *forced = Forced::Kept;
             }
@@ -71,46 +71,36 @@ struct Kept {
 impl Curves {
     fn of(mesh: &Mesh, edges: &Edges, corner: f64) -> Self {
         let kept = kept(mesh, edges);
-        let mut on: BTreeMap<u32, Vec<(u32, Kept)>> = BTreeMap::new();
-        for (&[a, b], &edge) in &kept {
-            on.entry(a).or_default().push((b, edge));
-            on.entry(b).or_default().push((a, edge));
-        }
-        let listed = mesh.corners.iter().chain(&mesh.required_points).copied();
-        let found = on.iter().filter(|(v, around)| is_corner(mesh, **v, around, corner)).map(|(&v, _)| v);
-        let is_corner = marked(mesh, listed.chain(found));
-        let is_on = marked(mesh, on.keys().chain(&mesh.corners).chain(&mesh.required_points).copied());
+        let network = Network::new(mesh.points.len(), kept.keys().copied());
+        let marks: Vec<Kept> = kept.values().copied().collect();
+        // Whether a vertex cannot slide along borders and features.
+        let is_corner = |&v: &u32| {
+            let &[e, f] = network.at(v) else { return true };
+            let [p, at, q] = [network.across(v, e), v, network.across(v, f)].map(|v| mesh.position(v));
+            let (to, from) = (at - p, q - at);
+            let turn = to.cross(from).norm().atan2(to.dot(from));
+            let [before, after] = [e, f].map(|i| marks[i as usize]);
+            before.label != after.label || before.is_required || after.is_required || turn > corner
+        };
+        let listed = || mesh.corners.iter().chain(&mesh.required_points).copied();
+        let is_corner = marked(mesh.points.len(), listed().chain(network.vertices().filter(is_corner)));
+        let is_on = marked(mesh.points.len(), listed().chain(network.vertices()));
         Self { kept, is_on, is_corner }
     }
 }
 
 /// The edges of one triangle, and those that the mesh lists, as far as they are edges of triangles.
 fn kept(mesh: &Mesh, edges: &Edges) -> BTreeMap<[u32; 2], Kept> {
-    let single = edges.iter().filter(|(_, half_edges)| half_edges.len() != 2);
-    let mut kept: BTreeMap<[u32; 2], Kept> = single.map(|(ends, _)| (ends, Kept::default())).collect();
-    for (i, &[a, b]) in mesh.edges.iter().enumerate().filter(|(_, ends)| edges.contains(ends[0], ends[1])) {
+    let single = edges.iter().filter(|sides| sides.len() != 2);
+    let mut kept: BTreeMap<[u32; 2], Kept> = single.map(|sides| (sides[0].ends, Kept::default())).collect();
+    for (i, &ends) in mesh.edges.iter().enumerate().filter(|(_, ends)| !edges.at(**ends).is_empty()) {
         let label = mesh.edge_labels.get(i).copied().unwrap_or(0);
-        kept.insert([a.min(b), a.max(b)], Kept { label, is_required: false });
+        kept.insert(in_order(ends), Kept { label, is_required: false });
     }
-    for [a, b] in mesh.required_edges.iter().filter_map(|&i| mesh.edges.get(i as usize)) {
-        kept.entry([*a.min(b), *a.max(b)]).and_modify(|kept| kept.is_required = true);
+    for &ends in mesh.required_edges.iter().filter_map(|&i| mesh.edges.get(i as usize)) {
+        kept.entry(in_order(ends)).and_modify(|kept| kept.is_required = true);
     }
     kept
-}
-
-/// Whether a vertex with these neighbours along borders and features cannot slide along them.
-fn is_corner(mesh: &Mesh, v: u32, around: &[(u32, Kept)], corner: f64) -> bool {
-    let &[(a, before), (b, after)] = around else { return true };
-    let [p, at, q]: [Point3; 3] = [a, v, b].map(|v| mesh.position(v));
-    let (to, from) = (at - p, q - at);
-    let turn = to.cross(from).norm().atan2(to.dot(from));
-    before.label != after.label || before.is_required || after.is_required || turn > corner
-}
-
-fn marked(mesh: &Mesh, vertices: impl Iterator<Item = u32>) -> Vec<bool> {
-    let mut marks = vec![false; mesh.points.len()];
-    vertices.for_each(|v| marks.get_mut(v as usize).map_or((), |mark| *mark = true));
-    marks
 }
 
 /// The edges of a mesh and the logarithms of their metric lengths, by vertices.

@@ -4,13 +4,12 @@ mod forced;
 #[cfg(test)]
 mod tests;
 
-use super::edges::Edges;
 use super::faults::{Position, middle};
 use super::metric_quality::{collect, demand_planar, demand_vertices, edge_length};
 use super::surface_quality::Field;
 use crate::error::Result;
 use crate::geometry::{Point, Point3, Vector};
-use crate::mesh::Mesh;
+use crate::mesh::{Edges, Mesh};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
@@ -191,7 +190,7 @@ fn find<'a>(
     position: impl Fn(Point3) -> Position + Sync,
 ) -> Result<Unmet> {
     let edges = Edges::of(&mesh.triangles);
-    let ends: Vec<[u32; 2]> = edges.iter().map(|(ends, _)| ends).collect();
+    let ends: Vec<[u32; 2]> = edges.ends().collect();
     let lengths = collect(&ends, |&ends| length(ends))?;
     let forced = Forced::of(mesh, &edges, &lengths, corner);
     let density = Density::of(mesh.points.len(), &ends, &lengths, |e| forced[e] == Forced::No);

@@ -4,7 +4,7 @@ use super::mended::Damage;
 use super::work::Work;
 use crate::error::{Error, Result};
 use crate::lists::in_order;
-use crate::mesh::{Side, edges_of, sides, sides_at};
+use crate::mesh::{Edges, edges_of};
 use crate::surface::build::has_area;
 
 /// Drops triangles with coordinates that are not finite, if damage is to be repaired.
@@ -86,23 +86,22 @@ fn collapse_needles(work: &mut Work, flat: &[usize]) -> bool {
 }
 
 fn flip_caps(work: &mut Work, flat: &[usize]) {
-    let sides = work.sides();
+    let edges = work.edges();
     let (mut is_touched, mut is_dropped) = (vec![false; work.triangles.len()], vec![false; work.triangles.len()]);
     for &t in flat {
         let lengths = lengths(work, t);
         let k = (1..3).fold(0, |most, k| if lengths[k] > lengths[most] { k } else { most });
         let [a, b, middle] = [0, 1, 2].map(|i| work.triangles[t][(k + i) % 3]);
         let [p, q] = [a, b].map(|v| work.places.of(v));
-        let beyond = sides_at(&sides, in_order([p, q]));
-        if beyond.iter().any(|side| is_touched[side.triangle as usize]) {
+        let beyond = edges.at([p, q]);
+        if beyond.iter().any(|side| is_touched[side.triangle()]) {
             continue;
         }
         for side in beyond {
-            let s = side.triangle as usize;
+            let s = side.triangle();
             is_touched[s] = true;
             if s != t {
-                let k = work.side_index(side);
-                work.cut(s, k, &[middle]);
+                work.cut(s, side.half_edge as usize % 3, &[middle]);
             }
         }
         is_dropped[t] = true;
@@ -118,14 +117,10 @@ fn flip_caps(work: &mut Work, flat: &[usize]) {
 /// are so only where the vertex numbers do not make them parts of surfaces that lie on each other (the walls of two boxes
 /// side by side): where one hangs on nothing, or hangs on an edge of more than two triangles that it shares with the other.
 pub(super) fn drop_duplicates(work: &mut Work) {
-    let sorted = |mut triangle: [u32; 3]| {
-        triangle.sort_unstable();
-        triangle
-    };
-    let numbers: Vec<_> = work.triangles.iter().map(|&triangle| sorted(triangle)).collect();
+    let numbers: Vec<_> = work.triangles.iter().copied().map(in_order).collect();
     drop_of_groups(work, &numbers, |group| (0..group.len()).map(|i| i > 0).collect());
-    let places: Vec<_> = (0..work.triangles.len()).map(|t| sorted(work.places_of(t))).collect();
-    let by_number = sides(work.triangles.iter().copied());
+    let places: Vec<_> = (0..work.triangles.len()).map(|t| in_order(work.places_of(t))).collect();
+    let by_number = Edges::of(&work.triangles);
     let triangles = work.triangles.clone();
     drop_of_groups(work, &places, |group| {
         let mut doubtful: Vec<bool> = group.iter().map(|&t| is_doubtful(t, group, &triangles, &by_number)).collect();
@@ -152,9 +147,9 @@ fn drop_of_groups(work: &mut Work, keys: &[[u32; 3]], choose: impl Fn(&[usize]) 
 /// Triangles of a group that are compared with each other, at most.
 const COMPARED: usize = 16;
 
-fn is_doubtful(t: usize, group: &[usize], triangles: &[[u32; 3]], by_number: &[Side]) -> bool {
+fn is_doubtful(t: usize, group: &[usize], triangles: &[[u32; 3]], by_number: &Edges) -> bool {
     let own = edges_of(triangles[t]).map(in_order);
-    let counts = own.map(|ends| sides_at(by_number, ends).len());
+    let counts = own.map(|ends| by_number.at(ends).len());
     if counts == [1; 3] {
         return true;
     }

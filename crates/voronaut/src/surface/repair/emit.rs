@@ -1,11 +1,10 @@
 //! The mesh that comes out, with all its lists renumbered.
 
 use super::fans::Sewn;
-use super::glue::NONE;
 use super::mended::Damage;
 use super::work::Work;
-use crate::lists::distinct;
-use crate::lists::in_order;
+use crate::lists::{distinct, in_order};
+use crate::mesh::edges::NONE;
 use crate::mesh::{Mesh, edges_of};
 use std::collections::{HashMap, HashSet};
 

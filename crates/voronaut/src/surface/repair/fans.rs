@@ -1,13 +1,12 @@
 //! Vertices from sides that are glued: one for every fan of triangles.
 
-use super::glue::{NONE, Twins};
+use super::glue::Twins;
 use super::mended::Damage;
-use super::work::{Classes, Work};
+use super::work::Work;
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
-use crate::lists::distinct;
-use crate::lists::in_order;
-use crate::mesh::edges_of;
+use crate::lists::{Classes, in_order};
+use crate::mesh::edges::{NONE, edges_of, fans, vertices_of_several};
 
 /// Triangles with their final vertices.
 pub(super) struct Sewn {
@@ -25,7 +24,8 @@ pub(super) struct Sewn {
 /// # Errors
 /// [`Error::Domain`] of a vertex that is several fans by its number, unless damage is to be repaired.
 pub(super) fn sew(work: &mut Work, twins: &Twins) -> Result<Sewn> {
-    let fans = fans(work, twins);
+    let place = |side: u32| work.places.of(work.ends(side)[0]);
+    let fans = fans(twins, |side, twin| place(side) == place(twin));
     demand_fans(work, &fans)?;
     let corners = work.triangles.as_flattened();
     let mut least = vec![NONE; corners.len()];
@@ -56,25 +56,9 @@ pub(super) fn sew(work: &mut Work, twins: &Twins) -> Result<Sewn> {
     Ok(sewn)
 }
 
-/// Corners of triangles, 3 t + k, that hang together by glued sides.
-fn fans(work: &Work, twins: &Twins) -> Classes {
-    let mut fans = Classes::new(twins.len());
-    let next = |side: u32| side - side % 3 + (side + 1) % 3;
-    let place = |side: u32| work.places.of(work.ends(side)[0]);
-    for (side, &twin) in (0..).zip(twins).filter(|(side, twin)| **twin != NONE && side < *twin) {
-        let ends = if place(side) == place(twin) { [twin, next(twin)] } else { [next(twin), twin] };
-        fans.join(side, ends[0]);
-        fans.join(next(side), ends[1]);
-    }
-    fans.flatten();
-    fans
-}
-
 fn demand_fans(work: &mut Work, fans: &Classes) -> Result<()> {
-    let corners = work.triangles.as_flattened();
-    let keys = distinct((0..).zip(corners).map(|(i, &number)| [number, fans.of(i)]));
-    for same in keys.chunk_by(|a, b| a[0] == b[0]).filter(|same| same.len() > 1) {
-        let place = work.vertex(same[0][0]);
+    for number in vertices_of_several(fans, work.triangles.as_flattened()) {
+        let place = work.vertex(number);
         if !work.options.repair {
             let help = "split the vertex, one for each group of neighbouring triangles, or run again with `repair`";
             return Err(Error::domain("triangles that meet in a point only", place, help));

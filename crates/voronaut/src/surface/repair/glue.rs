@@ -1,14 +1,12 @@
 //! Which sides of triangles are glued to each other, and small pieces that this leaves loose.
 
 use super::mended::Damage;
-use super::work::{Classes, Work};
+use super::work::Work;
 use crate::error::{Error, Result};
 use crate::geometry::Vector3;
-use crate::lists::in_order;
-use crate::mesh::{Side, by_edge};
-
-/// No side.
-pub(super) const NONE: u32 = u32::MAX;
+use crate::lists::{Classes, in_order};
+use crate::mesh::EdgeSide;
+use crate::mesh::edges::NONE;
 
 /// For side k of triangle t, at 3 t + k, the side it is glued to, or [`NONE`].
 pub(super) type Twins = Vec<u32>;
@@ -25,13 +23,12 @@ const PAIRED: usize = 16;
 /// # Errors
 /// [`Error::Domain`] of an edge that more than two triangles share by number, unless damage is to be repaired.
 pub(super) fn glue(work: &mut Work) -> Result<Twins> {
-    let all = work.sides();
     let mut twins = vec![NONE; 3 * work.triangles.len()];
-    for group in by_edge(&all) {
+    for group in work.edges().iter() {
         match group {
             [_] => {}
             [s, t] if is_fold(work, s, t) => {}
-            &[s, t] => join(work, &mut twins, s, t),
+            [s, t] => join(&mut twins, s, t),
             _ => glue_many(work, &mut twins, group)?,
         }
     }
@@ -44,34 +41,25 @@ pub(super) fn numbers(work: &Work, side: u32) -> [u32; 2] {
 }
 
 /// Whether two triangles at the same places would be glued back to back though their numbers do not ask for it.
-fn is_fold(work: &Work, s: &Side, t: &Side) -> bool {
-    let sorted = |side: &Side| {
-        let mut places = work.places_of(side.triangle as usize);
-        places.sort_unstable();
-        places
-    };
-    numbers(work, index(work, s)) != numbers(work, index(work, t)) && sorted(s) == sorted(t)
+fn is_fold(work: &Work, s: &EdgeSide, t: &EdgeSide) -> bool {
+    let places = |side: &EdgeSide| in_order(work.places_of(side.triangle()));
+    numbers(work, s.half_edge) != numbers(work, t.half_edge) && places(s) == places(t)
 }
 
-fn index(work: &Work, side: &Side) -> u32 {
-    3 * side.triangle + work.side_index(side) as u32
+fn join(twins: &mut Twins, s: &EdgeSide, t: &EdgeSide) {
+    (twins[s.half_edge as usize], twins[t.half_edge as usize]) = (t.half_edge, s.half_edge);
 }
 
-fn join(work: &Work, twins: &mut Twins, s: Side, t: Side) {
-    let [s, t] = [&s, &t].map(|side| index(work, side));
-    (twins[s as usize], twins[t as usize]) = (t, s);
-}
-
-fn glue_many(work: &mut Work, twins: &mut Twins, group: &[Side]) -> Result<()> {
-    let mut keyed: Vec<([u32; 2], Side)> = group.iter().map(|s| (numbers(work, index(work, s)), *s)).collect();
+fn glue_many(work: &mut Work, twins: &mut Twins, group: &[EdgeSide]) -> Result<()> {
+    let mut keyed: Vec<([u32; 2], EdgeSide)> = group.iter().map(|s| (numbers(work, s.half_edge), *s)).collect();
     keyed.sort_unstable();
     let mut left = Vec::new();
     for same in keyed.chunk_by(|s, t| s.0 == t.0) {
         match same {
-            [(_, s), (_, t)] => join(work, twins, *s, *t),
+            [(_, s), (_, t)] => join(twins, s, t),
             [(_, s)] => left.push(*s),
             _ => {
-                let sides: Vec<Side> = same.iter().map(|s| s.1).collect();
+                let sides: Vec<EdgeSide> = same.iter().map(|s| s.1).collect();
                 cut_edge(work, twins, same[0].0, &sides)?;
             }
         }
@@ -87,10 +75,10 @@ fn glue_many(work: &mut Work, twins: &mut Twins, group: &[Side]) -> Result<()> {
 }
 
 /// An edge that three triangles or more share by number.
-fn cut_edge(work: &mut Work, twins: &mut Twins, ends: [u32; 2], sides: &[Side]) -> Result<()> {
+fn cut_edge(work: &mut Work, twins: &mut Twins, ends: [u32; 2], sides: &[EdgeSide]) -> Result<()> {
     let place = work.edge(ends);
     if !work.options.repair {
-        let [s, t, u] = [0, 1, 2].map(|i| work.number(sides[i].triangle as usize));
+        let [s, t, u] = [0, 1, 2].map(|i| work.number(sides[i].triangle()));
         let what = format!("an edge of {} triangles (among them {s}, {t} and {u})", sides.len());
         let help = "leave at most two triangles at every edge, or run again with `repair`";
         return Err(Error::domain(what, place, help));
@@ -100,7 +88,7 @@ fn cut_edge(work: &mut Work, twins: &mut Twins, ends: [u32; 2], sides: &[Side]) 
     Ok(())
 }
 
-fn glue_straightest(work: &Work, twins: &mut Twins, sides: &[Side]) {
+fn glue_straightest(work: &Work, twins: &mut Twins, sides: &[EdgeSide]) {
     if sides.len() > PAIRED {
         return;
     }
@@ -122,14 +110,14 @@ fn glue_straightest(work: &Work, twins: &mut Twins, sides: &[Side]) {
     for (_, i, j) in pairs {
         if !is_taken[i] && !is_taken[j] {
             (is_taken[i], is_taken[j]) = (true, true);
-            join(work, twins, sides[i], sides[j]);
+            join(twins, &sides[i], &sides[j]);
         }
     }
 }
 
 /// From a side into its triangle, perpendicular to the side.
-fn direction(work: &Work, side: &Side) -> Option<Vector3> {
-    let (k, p) = (work.side_index(side), work.corners(side.triangle as usize));
+fn direction(work: &Work, side: &EdgeSide) -> Option<Vector3> {
+    let (k, p) = (side.half_edge as usize % 3, work.corners(side.triangle()));
     let [a, b, apex] = [0, 1, 2].map(|i| p[(k + i) % 3]);
     let along = (b - a).unit()?;
     let off = apex - a;
@@ -152,9 +140,9 @@ pub(super) fn drop_fins(work: &mut Work, twins: &Twins) -> bool {
     let mut sizes = vec![0_usize; work.triangles.len()];
     (0..work.triangles.len() as u32).for_each(|t| sizes[pieces.of(t) as usize] += 1);
     let mut is_fin = vec![false; work.triangles.len()];
-    for group in by_edge(&work.sides()).filter(|group| group.len() > 2) {
-        let largest = group.iter().map(|side| sizes[pieces.of(side.triangle) as usize]).max().unwrap_or(0);
-        for piece in group.iter().map(|side| pieces.of(side.triangle) as usize) {
+    for group in work.edges().iter().filter(|group| group.len() > 2) {
+        let largest = group.iter().map(|side| sizes[pieces.of(side.half_edge / 3) as usize]).max().unwrap_or(0);
+        for piece in group.iter().map(|side| pieces.of(side.half_edge / 3) as usize) {
             is_fin[piece] |= sizes[piece] <= MOST && LARGER * sizes[piece] <= largest;
         }
     }

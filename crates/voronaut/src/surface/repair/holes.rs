@@ -1,12 +1,12 @@
 //! Small holes that look like damage, and the best triangulation of one without new vertices.
 
 use super::fans::Sewn;
-use super::glue::NONE;
 use super::mended::Damage;
-use super::work::{Classes, Work};
+use super::work::Work;
 use crate::geometry::{Aabb3, Point3, Vector3};
-use crate::lists::in_order;
-use crate::mesh::{Network, Side, borders, edges_of, sides, sides_at};
+use crate::lists::{Classes, in_order};
+use crate::mesh::edges::NONE;
+use crate::mesh::{EdgeSide, Edges, Network, edges_of};
 use crate::surface::build::has_area;
 use std::collections::{HashMap, HashSet};
 
@@ -20,8 +20,8 @@ const EXTENT: f64 = 0.5;
 /// A border of at most twelve edges is a small hole if it is at most half as large as its component and can be filled so that
 /// the surface goes on over it ([`fill`]). All others are borders that were meant.
 pub(super) fn close(work: &mut Work, sewn: &mut Sewn) {
-    let all = sides(sewn.triangles.iter().copied());
-    let borders: Vec<Side> = borders(&all).collect();
+    let edges = Edges::of(&sewn.triangles);
+    let borders: Vec<EdgeSide> = edges.boundary().collect();
     if borders.is_empty() {
         return;
     }
@@ -44,7 +44,7 @@ pub(super) fn close(work: &mut Work, sewn: &mut Sewn) {
             let ends = [side.0, vertices[(i + 1) % vertices.len()]];
             sewn.triangles[side.1 as usize].into_iter().find(|v| !ends.contains(v)).map_or(corners[i], position)
         });
-        let is_edge = |ends: [u32; 2]| !sides_at(&all, ends).is_empty() || chords.contains(&ends);
+        let is_edge = |ends: [u32; 2]| !edges.at(ends).is_empty() || chords.contains(&ends);
         let rim_of = Rim { vertices: &vertices, corners: &corners, apexes: &apexes.collect::<Vec<_>>() };
         let Some(patch) = fill(&rim_of, is_edge) else { continue };
         chords.extend(patch.iter().copied().flat_map(edges_of).map(in_order));
@@ -83,13 +83,13 @@ fn component_sizes(work: &Work, sewn: &Sewn, position: &impl Fn(u32) -> Point3) 
 }
 
 /// The closed curves of the border: vertices in order, each with the triangle beside the edge to the next.
-fn loops(vertices: usize, borders: &[Side]) -> Vec<Vec<(u32, u32)>> {
+fn loops(vertices: usize, borders: &[EdgeSide]) -> Vec<Vec<(u32, u32)>> {
     let network = Network::new(vertices, borders.iter().map(|side| side.ends));
     let curve = |(mut v, edges): (u32, Vec<u32>)| {
         let step = |i| {
             let from = v;
             v = network.across(v, i);
-            (from, borders[i as usize].triangle)
+            (from, borders[i as usize].half_edge / 3)
         };
         edges.into_iter().map(step).collect()
     };

@@ -29,7 +29,9 @@ pub(crate) use mended::Damage;
 pub use mended::Mended;
 
 use crate::error::{Error, Result};
+use crate::lists::distinct;
 use crate::mesh::Mesh;
+use crate::mesh::edges::NONE;
 use crate::surface::Surface;
 use work::Work;
 
@@ -107,9 +109,7 @@ fn drop_triangles(work: &mut Work) -> Result<()> {
 /// Counts vertices that were joined to another.
 fn note_welded(work: &mut Work, sewn: &fans::Sewn) {
     let corners = sewn.numbers.as_flattened().iter().zip(sewn.triangles.as_flattened());
-    let mut pairs: Vec<[u32; 2]> = corners.filter(|c| *c.0 != glue::NONE).map(|(&number, &v)| [v, number]).collect();
-    pairs.sort_unstable();
-    pairs.dedup();
+    let pairs = distinct(corners.filter(|c| *c.0 != NONE).map(|(&number, &v)| [v, number]));
     for pair in pairs.windows(2).filter(|pair| pair[0][0] == pair[1][0]) {
         work.mended.add(Damage::Welded, work.vertex(pair[1][1]));
     }

@@ -4,7 +4,7 @@ use super::mended::Damage;
 use super::work::Work;
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
-use crate::mesh::{Side, borders};
+use crate::mesh::EdgeSide;
 
 /// A vertex is on an edge if it is off by no more than this share of its distance from the nearer end ...
 const OFF: f64 = 1e-6;
@@ -58,8 +58,7 @@ struct Junction {
 }
 
 fn find(work: &Work) -> Vec<Junction> {
-    let all = work.sides();
-    let borders: Vec<Side> = borders(&all).collect();
+    let borders: Vec<EdgeSide> = work.edges().boundary().collect();
     let mut ways: Vec<[u32; 2]> = borders.iter().flat_map(|side| [side.ends, [side.ends[1], side.ends[0]]]).collect();
     ways.sort_unstable();
     let mut found = Vec::new();
@@ -76,7 +75,7 @@ fn find(work: &Work) -> Vec<Junction> {
         if !side.forward {
             inside.reverse();
         }
-        found.push(Junction { triangle: side.triangle as usize, side: work.side_index(&side), inside });
+        found.push(Junction { triangle: side.triangle(), side: side.half_edge as usize % 3, inside });
     }
     found.sort_by_key(|junction| junction.triangle);
     found

@@ -1,10 +1,11 @@
 //! Whether the triangles that are glued can all turn the same way.
 
-use super::glue::{NONE, Twins, numbers};
+use super::glue::{Twins, numbers};
 use super::mended::Damage;
-use super::work::{Classes, Work};
+use super::work::Work;
 use crate::error::Result;
-use crate::surface::build::one_sided;
+use crate::mesh::edges::NONE;
+use crate::surface::build::{Turns, one_sided};
 
 /// Opens what makes the surface one-sided, and counts the triangles that [`Surface::new`](crate::surface::Surface::new) will
 /// turn.
@@ -35,7 +36,7 @@ pub(super) fn demand(work: &mut Work, twins: &mut Twins) -> Result<()> {
             (twins[side as usize], twins[twin as usize]) = (NONE, NONE);
         }
     }
-    note_turned(work, &mut turns);
+    turns.minorities().into_iter().for_each(|t| work.note_triangle(Damage::Turned, t));
     Ok(())
 }
 
@@ -43,48 +44,4 @@ pub(super) fn demand(work: &mut Work, twins: &mut Twins) -> Result<()> {
 fn are_opposite(work: &Work, side: u32, twin: u32) -> bool {
     let [from, to] = [side, twin].map(|side| work.places.of(work.ends(side)[0]));
     from != to
-}
-
-/// The fewer of each component are turned.
-fn note_turned(work: &mut Work, turns: &mut Turns) {
-    let found: Vec<(u32, bool)> = (0..work.triangles.len() as u32).map(|t| turns.of(t)).collect();
-    let mut counts = vec![[0_usize; 2]; found.len()];
-    for &(first, is_turned) in &found {
-        counts[first as usize][usize::from(is_turned)] += 1;
-    }
-    for (t, &(first, is_turned)) in found.iter().enumerate() {
-        let [as_first, others] = counts[first as usize];
-        if is_turned == (others <= as_first) && as_first.min(others) > 0 {
-            work.note_triangle(Damage::Turned, t);
-        }
-    }
-}
-
-/// Which triangles turn as others do: t as it is, and t + count turned.
-struct Turns {
-    count: u32,
-    same: Classes,
-}
-
-impl Turns {
-    fn new(count: usize) -> Self {
-        Self { count: count as u32, same: Classes::new(2 * count) }
-    }
-
-    /// The first triangle of the same component, and whether this one turns against it.
-    fn of(&mut self, t: u32) -> (u32, bool) {
-        let [own, against] = [t, t + self.count].map(|t| self.same.shorten(t));
-        (own.min(against), against < own)
-    }
-
-    /// Makes one component of two, where one triangle is to turn against the other or not; false if they already turn otherwise.
-    fn join(&mut self, s: u32, t: u32, is_against: bool) -> bool {
-        let [like, unlike] = if is_against { [t + self.count, t] } else { [t, t + self.count] };
-        if self.same.shorten(s) == self.same.shorten(unlike) {
-            return false;
-        }
-        self.same.join(s, like);
-        self.same.join(s + self.count, unlike);
-        true
-    }
 }

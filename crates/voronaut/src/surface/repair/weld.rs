@@ -3,7 +3,6 @@
 use super::work::Work;
 use crate::geometry::{BoxTree, widened};
 use crate::lists::distinct;
-use crate::mesh::borders;
 use std::collections::HashMap;
 
 /// Vertices on borders this close, as a share of the diagonal, are at one place.
@@ -33,12 +32,12 @@ pub(super) fn find_places(work: &mut Work) {
 /// Joins places on borders that are next to each other.
 fn join_near(work: &mut Work) {
     let mut reach: HashMap<u32, f64> = HashMap::new();
-    let all = work.sides();
-    let on_borders = borders(&all).flat_map(|side| side.ends);
+    let edges = work.edges();
+    let on_borders = edges.boundary().flat_map(|side| side.ends);
     reach.extend(on_borders.map(|end| (end, NEAR * work.diagonal)));
-    for side in all.iter().filter(|side| side.ends[0] != side.ends[1]) {
-        let length = work.position(side.ends[0]).distance(work.position(side.ends[1]));
-        for end in side.ends {
+    for [v, w] in edges.ends().filter(|[v, w]| v != w) {
+        let length = work.position(v).distance(work.position(w));
+        for end in [v, w] {
             if let Some(reach) = reach.get_mut(&end) {
                 *reach = reach.min(OF_EDGE * length);
             }

@@ -3,8 +3,8 @@
 use super::RepairOptions;
 use super::mended::{Damage, Mended};
 use crate::geometry::{Aabb3, Point3};
-use crate::lists::in_order;
-use crate::mesh::{Mesh, Side, edges_of, sides};
+use crate::lists::{Classes, in_order};
+use crate::mesh::{Edges, Mesh, edges_of};
 use crate::surface::build;
 use std::collections::HashMap;
 
@@ -62,15 +62,9 @@ impl<'a> Work<'a> {
         self.triangles[t].map(|v| self.places.of(v))
     }
 
-    /// The sides of all triangles, sorted, by places.
-    pub(super) fn sides(&self) -> Vec<Side> {
-        sides((0..self.triangles.len()).map(|t| self.places_of(t)))
-    }
-
-    /// The index k of the side of a triangle, from corner k to k + 1, between these places.
-    pub(super) fn side_index(&self, side: &Side) -> usize {
-        let edges = edges_of(self.places_of(side.triangle as usize));
-        edges.into_iter().position(|ends| in_order(ends) == side.ends).unwrap_or(0)
+    /// The edges of all triangles, by places.
+    pub(super) fn edges(&self) -> Edges {
+        Edges::of(&(0..self.triangles.len()).map(|t| self.places_of(t)).collect::<Vec<_>>())
     }
 
     /// A vertex, for messages.
@@ -124,65 +118,5 @@ impl<'a> Work<'a> {
             ordered.reverse();
         }
         self.cuts.entry(in_order([p, q])).or_insert(ordered);
-    }
-}
-
-/// Disjoint sets of the numbers below a bound (union-find with path halving): nearly linear in all.
-#[derive(Clone, Debug)]
-pub(super) struct Classes {
-    parent: Vec<u32>,
-}
-
-impl Classes {
-    /// Every number alone.
-    pub(super) fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).collect() }
-    }
-
-    /// The least number of the set.
-    pub(super) fn of(&self, mut i: u32) -> u32 {
-        while self.parent[i as usize] != i {
-            i = self.parent[i as usize];
-        }
-        i
-    }
-
-    /// Makes one set of two; whether they were two.
-    pub(super) fn join(&mut self, i: u32, j: u32) -> bool {
-        let (i, j) = (self.shorten(i), self.shorten(j));
-        self.parent[i.max(j) as usize] = i.min(j);
-        i != j
-    }
-
-    /// Lets every number know its set at once: [`Classes::of`] takes one step then.
-    pub(super) fn flatten(&mut self) {
-        for i in 0..self.parent.len() {
-            // The parent is smaller, and so flat already.
-            self.parent[i] = self.parent[self.parent[i] as usize];
-        }
-    }
-
-    /// [`Classes::of`], with the way there shortened.
-    pub(super) fn shorten(&mut self, mut i: u32) -> u32 {
-        while self.parent[i as usize] != i {
-            let up = self.parent[self.parent[i as usize] as usize];
-            self.parent[i as usize] = up;
-            i = up;
-        }
-        i
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_least_stands_for_its_set() {
-        let mut classes = Classes::new(7);
-        assert!(classes.join(6, 4) && classes.join(4, 2) && !classes.join(6, 2));
-        assert!(classes.join(1, 3) && classes.join(3, 6));
-        classes.flatten();
-        assert_eq!([0, 1, 2, 3, 4, 5, 6].map(|i| classes.of(i)), [0, 1, 1, 1, 1, 5, 1]);
     }
 }
