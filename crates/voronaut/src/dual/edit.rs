@@ -225,8 +225,12 @@ impl Dual<'_> {
 
     /// Quality of a straight triangle in the mean tensor of its corners: 1 of an equilateral one.
     pub(super) fn shape(&self, corners: [VertexId; 3]) -> f64 {
-        let tensor = corners.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / 3.0);
-        tensor.shape(corners.map(|v| self.position(v)))
+        self.mean_tensor(corners).shape(corners.map(|v| self.position(v)))
+    }
+
+    /// The mean of the tensors at some vertices.
+    pub(crate) fn mean_tensor<const N: usize>(&self, vertices: [VertexId; N]) -> Tensor {
+        vertices.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / N as f64)
     }
 }
 

@@ -26,7 +26,7 @@ use crate::geometry::{Point, Readable, Tensor};
 use crate::in_circle::Tests;
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
-use crate::planar::Planar;
+use crate::planar::{Location, Planar};
 use crate::triangulation::{FaceId, HalfEdge, Lawson, Triangulation, VertexId};
 use margin::LEVELS;
 use std::collections::HashSet;
@@ -136,6 +136,17 @@ impl<'a> Dual<'a> {
     /// The metric around a vertex.
     pub(crate) fn local(&self, v: VertexId) -> &LocalMetric {
         &self.locals[v.index()]
+    }
+
+    /// The metric around every vertex, by id.
+    pub(crate) fn locals(&self) -> &[LocalMetric] {
+        &self.locals
+    }
+
+    /// Whether the straight way from a vertex to a point stays in the domain.
+    pub(crate) fn is_inside(&self, near: VertexId, p: Point) -> bool {
+        let face = self.topology().start(near).map(HalfEdge::face);
+        face.is_some_and(|face| !matches!(self.planar.walk(face, p, false), Location::Behind(_)))
     }
 
     /// What holds a vertex.

@@ -20,6 +20,7 @@ pub use predicates::{Orientation, orientation, signed_area};
 pub(crate) use predicates::{centroid, in_circle, segment_intersection, signed_volume};
 pub(crate) use quadrature::{Node, combine, radon};
 pub use tensor::{Eigen, Tensor};
+pub(crate) use tensor::{from_frame, to_frame};
 pub(crate) use tensor3::Eigen3;
 pub use tensor3::{TangentPlane, Tensor3};
 pub(crate) use tree::{Bounds, BoxTree, widened};

@@ -9,7 +9,7 @@ mod measure;
 mod on_canvas;
 mod random;
 
-pub(crate) use estimate::{Estimate, Sites};
+pub(crate) use estimate::Estimate;
 pub(crate) use measure::Memory;
 pub(crate) use on_canvas::circles_on_canvas;
 pub use random::Random;

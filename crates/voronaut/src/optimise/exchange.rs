@@ -1,10 +1,9 @@
 //! Seeds that change places: those that crowd go and others come where edges are too long, at a given number of vertices; and a few
 //! move to where the worst triangle around them is best.
 
-use super::cell::from_frame;
 use crate::dual::{Dual, Effort, Kind, Mending};
 use crate::error::Result;
-use crate::geometry::Vector;
+use crate::geometry::{Vector, from_frame};
 use crate::planar::Location;
 use crate::progress::Silent;
 use crate::sampling::{Fill, insert_spaced, refine};
@@ -28,7 +27,7 @@ fn remove_crowded(dual: &mut Dual, most: usize, shorter_than: f64) -> usize {
     let mut short: Vec<(f64, [VertexId; 2])> = dual
         .topology()
         .edges()
-        .map(|h| (dual.edge_length(h), [dual.topology().origin(h), dual.topology().target(h)]))
+        .map(|h| (dual.edge_length(h), dual.topology().ends(h)))
         .filter(|&(length, ends)| length < shorter_than && ends.iter().any(|&v| dual.kind(v) == Kind::Free))
         .collect();
     short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -62,8 +61,7 @@ pub(crate) fn meet_blocked_flips(dual: &mut Dual, most: usize) -> usize {
     let mut blocked = dual.blocked_flips(Effort::Local);
     blocked.retain(|(_, margin)| margin.is_certain());
     blocked.sort_by(|a, b| a.1.value.total_cmp(&b.1.value).then(a.0.cmp(&b.0)));
-    let ends = |h| [dual.topology().origin(h), dual.topology().target(h)];
-    let edges: Vec<[VertexId; 2]> = blocked.into_iter().map(|(h, _)| ends(h)).collect();
+    let edges: Vec<[VertexId; 2]> = blocked.into_iter().map(|(h, _)| dual.topology().ends(h)).collect();
     let mut met = 0;
     for [a, b] in edges {
         if met == most {
@@ -113,7 +111,7 @@ fn mend<M: Mending>(dual: &mut M, v: VertexId) -> bool {
     let ring: Vec<[M::Site; 2]> =
         topology.star(v).map(|h| [topology.target(h), topology.apex(h)].map(|u| dual.site(u))).collect();
     let is_long = |h: HalfEdge| {
-        let ends = [topology.origin(h), topology.target(h)].map(|u| dual.site(u));
+        let ends = topology.ends(h).map(|u| dual.site(u));
         topology.is_fixed(h) && dual.straight_length(ends).ln() > UNIT
     };
     let is_beside = topology.star(v).any(|h| is_long(h.next()));

@@ -1,12 +1,12 @@
 //! The seeds that can move, the energy, and its gradient; and regions where geodesics are not resolved, whose triangles and circles a
 //! diagram on a canvas decides on.
 
-use super::cell::{CellsOf, Moments, from_frame};
+use super::cell::{CellsOf, Moments};
 use super::quasi_newton::{Memory, dot};
 use crate::canvas::Canvas;
 use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Point, Vector, from_frame};
 use crate::net::{Ball, circles_on_canvas};
 use crate::triangulation::VertexId;
 

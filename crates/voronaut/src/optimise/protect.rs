@@ -9,8 +9,7 @@ use crate::error::Result;
 use crate::geodesic::{Angles, LocalMetric, hermite};
 use crate::geometry::Point;
 use crate::lists::distinct;
-use crate::metric::MetricField;
-use crate::net::{Ball, Estimate, Memory, Net, Random, Simplices, Sites};
+use crate::net::{Ball, Estimate, Memory, Net, Random, Simplices};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::triangulation::{FaceId, Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
@@ -148,32 +147,13 @@ struct Trial {
     flips: Vec<HalfEdge>,
 }
 
-impl Sites for Mender<'_, '_> {
-    fn field(&self) -> &dyn MetricField {
-        self.dual.scaled_field()
-    }
-    fn topology(&self) -> &Triangulation {
-        &self.topology
-    }
-    fn position(&self, v: VertexId) -> Point {
-        self.positions[v.index()]
-    }
-    fn local(&self, v: VertexId) -> &LocalMetric {
-        &self.locals[v.index()]
-    }
-    fn is_inside(&self, near: VertexId, p: Point) -> bool {
-        self.dual.is_inside(near, p)
-    }
-}
-
 impl<'a, 'b> Mender<'a, 'b> {
     fn new(dual: &'a mut Dual<'b>, share: f64) -> Self {
         let slots = dual.topology().vertex_slots();
-        let all = || (0..slots as u32).map(VertexId);
         Self {
             share,
-            positions: all().map(|v| dual.position(v)).collect(),
-            locals: all().map(|v| *dual.local(v)).collect(),
+            positions: dual.planar().positions.clone(),
+            locals: dual.locals().to_vec(),
             topology: dual.topology().clone(),
             excess: vec![ASKED[0]; slots],
             survey: Survey::default(),
@@ -245,13 +225,9 @@ impl<'a, 'b> Mender<'a, 'b> {
         if !self.is_wide && !free.is_empty() {
             return free;
         }
-        let star = |&v: &VertexId| self.topology.star(v).flat_map(|h| [self.topology.target(h), self.topology.apex(h)]);
-        let mut all: Vec<VertexId> = seeds.iter().flat_map(star).filter(is_free).collect();
-        all.extend(seeds.iter().filter(|&&v| self.dual.kind(v) == Kind::Curve));
-        all.extend(free);
-        all.sort_unstable();
-        all.dedup();
-        all
+        let star = |&v: &VertexId| self.topology.around(v);
+        let on_curves = seeds.iter().copied().filter(|&v| self.dual.kind(v) == Kind::Curve);
+        distinct(seeds.iter().flat_map(star).filter(is_free).chain(on_curves).chain(free))
     }
 
     /// Places for seeds by what they gain, estimated; until one gains everything, if estimates are to decide.
@@ -262,7 +238,7 @@ impl<'a, 'b> Mender<'a, 'b> {
         for k in 0..if movable.is_empty() { 0 } else { TRIES[0].max(4 * movable.len()) } {
             let (v, before) = (movable[k % movable.len()], before[k % movable.len()]);
             let to = self.place_near(v, radius);
-            if self.dual.kind(v) == Kind::Free && !self.is_inside(v, to) {
+            if self.dual.kind(v) == Kind::Free && !self.dual.is_inside(v, to) {
                 continue;
             }
             let gain = before - self.shortfall_at(v, to, By::Estimates, asked, &mut memory);
@@ -286,10 +262,10 @@ impl<'a, 'b> Mender<'a, 'b> {
         let region = Region::around(self.dual, seeds, PER_SEED)?;
         let missing = |ball: &Ball<3>| (1.0 - ball.power / (asked * ASKED_OF_CANVAS)).max(0.0);
         let shortfall = |this: &Self, v: VertexId, to: Point| {
-            let at = |u: VertexId| if u == v { to } else { this.position(u) };
+            let at = |u: VertexId| if u == v { to } else { this.positions[u.index()] };
             Some(region.circles(this.dual, at)?.iter().map(missing).sum::<f64>())
         };
-        let before = shortfall(self, seeds[0], self.position(seeds[0]))?;
+        let before = shortfall(self, seeds[0], self.positions[seeds[0].index()])?;
         if before <= LEAST_GAIN || movable.is_empty() {
             return None;
         }
@@ -329,7 +305,8 @@ impl<'a, 'b> Mender<'a, 'b> {
     }
 
     fn shortfall(&self, v: VertexId, by: By, asked: f64, memory: &mut Memory) -> f64 {
-        let estimate = Estimate(self);
+        let Self { dual, topology, positions, locals, .. } = self;
+        let estimate = Estimate { dual, topology, positions, locals };
         let faces = estimate.around(v);
         match by {
             By::Estimates => estimate.shortfall(&faces, |u| asked * self.excess[u.index()]),
@@ -344,10 +321,10 @@ impl<'a, 'b> Mender<'a, 'b> {
         let corners = faces.iter().flat_map(|&f| topology.corners(f));
         let wide = distinct(corners.flat_map(|v| topology.star(v).map(HalfEdge::face)));
         let border = faces.iter().flat_map(|f| f.half_edges()).filter(|&h| topology.twin(h).is_none());
-        let border: Vec<[u32; 2]> = border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect();
+        let border: Vec<[u32; 2]> = border.map(|h| topology.ends(h).map(|v| v.0)).collect();
         let triangles = corners_of(topology, wide.into_iter());
         let own = corners_of(topology, faces.iter().copied());
-        let is_inside = |seed: u32, p: Point| self.is_inside(VertexId(seed), p);
+        let is_inside = |seed: u32, p: Point| self.dual.is_inside(VertexId(seed), p);
         let found = Simplices { seeds: &self.positions, triangles: &triangles, border: &border, is_inside: &is_inside };
         let net = Net::measure_some(self.dual.scaled_field(), &found, &own, memory);
         let powers = net.interior().map(|ball| ball.power).chain(net.border.iter().map(|ball| ball.power));
@@ -357,11 +334,7 @@ impl<'a, 'b> Mender<'a, 'b> {
     /// A random point within a distance of a seed; on its curve, of a seed that is bound to one.
     fn place_near(&mut self, v: VertexId, radius: f64) -> Point {
         let local = &self.locals[v.index()];
-        let [a, b, c] = local.tensor.cholesky();
-        let mut step = self.random.in_disk() * radius;
-        step.y /= c;
-        step.x = (step.x - b * step.y) / a;
-        let step = local.exp(step);
+        let step = local.exp(self.random.in_ball(local.tensor, radius));
         if self.dual.kind(v) == Kind::Curve {
             self.dual.slid(v, step, SLIDING)
         } else {
@@ -400,8 +373,11 @@ impl Flipping for Mender<'_, '_> {
     /// By lengths from expansions.
     fn wants_flip(&mut self, h: HalfEdge) -> bool {
         let Some([a, b, c, d]) = self.topology.quad(h).filter(|_| self.topology.can_flip(h)) else { return false };
-        let length =
-            |u: VertexId, v: VertexId| hermite(self.position(u), self.local(u), self.position(v), self.local(v)).value;
+        let (at, local) = (&self.positions, &self.locals);
+        let length = |u: VertexId, v: VertexId| {
+            let (u, v) = (u.index(), v.index());
+            hermite(at[u], &local[u], at[v], &local[v]).value
+        };
         let angles = Angles::from_lengths(length(a, b), [length(a, c), length(b, c)], [length(a, d), length(b, d)]);
         angles.margin() < -TIE
     }
