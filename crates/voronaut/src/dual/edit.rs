@@ -1,29 +1,14 @@
 //! Seeds come, go and move, edges are flipped (Lawson) by the metric in-circle test, and the mesh leaves the program. Each verb says whether
 //! it was done; what would not be embedded is not done.
 
-use super::margin::pair;
-use super::{Dual, Effort, Kind};
+use super::{Dual, Effort, Kind, LIMIT, Moving, POOR, TIE};
 use crate::domain::Domain;
-use crate::geodesic::{LocalMetric, Margin};
+use crate::geodesic::Margin;
 use crate::geometry::{Point, Tensor, Vector};
+use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::planar::Planar;
-use crate::triangulation::{FaceId, Flipping, HalfEdge, Limit, Triangulation, VertexId};
-
-/// Seeds, edges and the metric at the seeds, with its factor.
-pub(crate) struct Saved {
-    planar: Planar,
-    locals: Vec<LocalMetric>,
-    kinds: Vec<Kind>,
-    factor: f64,
-}
-
-impl Saved {
-    /// Where a seed was.
-    pub(crate) fn position(&self, v: VertexId) -> Point {
-        self.planar.position(v)
-    }
-}
+use crate::triangulation::{FaceId, Flipping, HalfEdge, Triangulation, VertexId};
 
 impl Dual<'_> {
     /// Puts a free seed strictly inside a face.
@@ -45,26 +30,6 @@ impl Dual<'_> {
         self.settle(v, kind);
         // A constrained half still stands after the flips; that of a free edge may be gone.
         Some((v, self.planar.topology.find(v, target).unwrap_or(h)))
-    }
-
-    /// What insertions, removals, moves and flips change, to be [restored](Dual::restore).
-    pub(crate) fn saved(&self) -> Saved {
-        Saved {
-            planar: self.planar.clone(),
-            locals: self.locals.clone(),
-            kinds: self.kinds.clone(),
-            factor: self.field.factor,
-        }
-    }
-
-    /// Takes back what was done since.
-    pub(crate) fn restore(&mut self, saved: &Saved) {
-        self.planar.clone_from(&saved.planar);
-        self.locals.clone_from(&saved.locals);
-        self.kinds.clone_from(&saved.kinds);
-        self.field.factor = saved.factor;
-        self.forget();
-        self.touched.clear();
     }
 
     /// Takes over a triangulation of the same vertices and constraints that was changed by other rules than the metric's.
@@ -102,8 +67,7 @@ impl Dual<'_> {
         if !self.shift(v, to) {
             return false;
         }
-        self.locals[v.index()] = self.measure(to);
-        self.flip_around(v, Effort::Local);
+        self.settle_move(v);
         true
     }
 
@@ -132,8 +96,7 @@ impl Dual<'_> {
         self.kinds.resize(slots, kind);
         self.locals[v.index()] = local;
         self.kinds[v.index()] = kind;
-        let star: Vec<FaceId> = self.planar.topology.star(v).map(HalfEdge::face).collect();
-        self.touched.extend(star);
+        self.touched.extend(self.planar.topology.star(v).map(HalfEdge::face));
         self.flip_around(v, Effort::Local);
     }
 }
@@ -154,16 +117,6 @@ impl Dual<'_> {
         if let Kind::Corner(point) = self.kind(v) { Some(point) } else { None }
     }
 }
-
-/// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
-const TIE: f64 = 1e-9;
-
-/// Inconsistent tests can make flips go round in a circle.
-const LIMIT: Limit = Limit::OfSlot(6);
-
-/// A flip may not leave a triangle whose quality is below this if both were better before: where lengths of straight
-/// edges contradict each other, or geodesics bend away from them, it would leave slivers.
-const POOR: f64 = 0.5;
 
 impl Dual<'_> {
     /// Flips every edge that the metric wants flipped and the plane allows. Returns the number of flips.
@@ -205,7 +158,7 @@ impl Dual<'_> {
 
     pub(super) fn is_held(&self, h: HalfEdge) -> bool {
         let topology = &self.planar.topology;
-        !self.held.is_empty() && self.held.contains(&pair(topology.origin(h), topology.target(h)))
+        !self.held.is_empty() && self.held.contains(&in_order(topology.ends(h)))
     }
 
     fn flip_queued(&mut self, effort: Effort) -> u64 {
@@ -254,6 +207,6 @@ impl Flipping for ByMargin<'_, '_> {
         let topology = &mut self.dual.planar.topology;
         topology.flip(h);
         self.dual.counters.flips += 1;
-        self.dual.touched.extend([Some(h), topology.twin(h)].into_iter().flatten().map(HalfEdge::face));
+        self.dual.touched.extend(topology.sides(h).map(HalfEdge::face));
     }
 }

@@ -14,9 +14,8 @@ mod patch;
 
 pub(crate) use consult::Consultation;
 pub use consult::{Disagreement, Road};
-pub(crate) use edit::Saved;
 pub(crate) use margin::Effort;
-pub(crate) use moving::{Mending, Moving};
+pub(crate) use moving::Moving;
 pub(crate) use on_surface::SurfaceDual;
 
 use crate::domain::Domain;
@@ -27,7 +26,7 @@ use crate::in_circle::Tests;
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
 use crate::planar::{Location, Planar};
-use crate::triangulation::{FaceId, HalfEdge, Lawson, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 use margin::LEVELS;
 use std::collections::HashSet;
 
@@ -41,6 +40,16 @@ pub enum Kind {
     /// Nothing: it may move and go.
     Free,
 }
+
+/// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
+const TIE: f64 = 1e-9;
+
+/// Inconsistent tests can make flips go round in a circle.
+const LIMIT: Limit = Limit::OfSlot(6);
+
+/// A flip may not leave a triangle whose quality is below this if both were better before: where lengths of straight
+/// edges contradict each other, or geodesics bend away from them, it would leave slivers.
+const POOR: f64 = 0.5;
 
 /// Work counters; deterministic.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -108,12 +117,7 @@ impl<'a> Dual<'a> {
     }
 
     /// The metric field, in units of the wanted edge length.
-    pub(crate) fn field(&self) -> Scaled<'a> {
-        self.field
-    }
-
-    /// [`Dual::field`], to be borrowed.
-    pub(crate) fn scaled_field(&self) -> &Scaled<'a> {
+    pub(crate) fn field(&self) -> &Scaled<'a> {
         &self.field
     }
 
@@ -162,7 +166,7 @@ impl<'a> Dual<'a> {
     /// Metric length of an edge: estimated from its ends (`hermite`), or, where the metric is rough, by quadrature
     /// along the chord.
     pub(crate) fn edge_length(&self, h: HalfEdge) -> f64 {
-        let (u, v) = (self.topology().origin(h), self.topology().target(h));
+        let [u, v] = self.topology().ends(h);
         let (p, q) = (self.position(u), self.position(v));
         if self.local(u).is_rough || self.local(v).is_rough {
             return chord(&self.field, p, q);
@@ -233,7 +237,7 @@ impl<'a> Dual<'a> {
     pub(crate) fn measure_rough_edges(&mut self) {
         let is_rough = |v: VertexId| self.local(v).is_rough;
         let topology = self.topology();
-        let at_rough = |&h: &HalfEdge| is_rough(topology.origin(h)) || is_rough(topology.target(h));
+        let at_rough = |&h: &HalfEdge| topology.ends(h).into_iter().any(is_rough);
         let edges: Vec<HalfEdge> = topology.edges().filter(at_rough).collect();
         let length = |&h: &HalfEdge| {
             let [p, q] = self.planar.ends(h);
@@ -247,8 +251,7 @@ impl<'a> Dual<'a> {
 
     /// Evaluates the metric at a vertex that has moved.
     pub(crate) fn remeasure(&mut self, v: VertexId) {
-        let local = self.measure(self.position(v));
-        self.locals[v.index()] = local;
+        self.locals[v.index()] = self.measure(self.position(v));
     }
 
     /// The metric around a point; where it is not valid that is noted, and the Euclidean metric serves instead.

@@ -117,7 +117,7 @@ impl<'a> Estimate<'a> {
     fn square(&self, p: Point, local: &LocalMetric, v: VertexId) -> f64 {
         let (q, at_q) = (self.position(v), self.local(v));
         let length = if local.is_rough || at_q.is_rough {
-            chord(self.dual.scaled_field(), p, q)
+            chord(self.dual.field(), p, q)
         } else {
             hermite(p, local, q, at_q).value
         };
@@ -139,7 +139,7 @@ impl<'a> Estimate<'a> {
     fn of_triangle(&self, corners: [VertexId; 3]) -> Option<Around> {
         let mut centre = flat_centre(self.tensor(corners), corners.map(|v| self.position(v)))?;
         for _ in 0..STEPS {
-            let local = LocalMetric::at(self.dual.scaled_field(), centre);
+            let local = LocalMetric::at(self.dual.field(), centre);
             if !local.tensor.is_positive_definite() {
                 return None;
             }
@@ -165,7 +165,7 @@ impl<'a> Estimate<'a> {
         let [a, b] = ends.map(|v| self.position(v));
         let at = |t: f64| {
             let centre = a.lerp(b, t);
-            let local = LocalMetric::at(self.dual.scaled_field(), centre);
+            let local = LocalMetric::at(self.dual.field(), centre);
             let [to_a, to_b] = ends.map(|v| self.square(centre, &local, v));
             (Around { centre, local, square: 0.5 * (to_a + to_b) }, to_a - to_b)
         };

@@ -1,7 +1,7 @@
 //! Seeds that change places: those that crowd go and others come where edges are too long, at a given number of vertices; and a few
 //! move to where the worst triangle around them is best.
 
-use crate::dual::{Dual, Effort, Kind, Mending};
+use crate::dual::{Dual, Effort, Kind, Moving};
 use crate::error::Result;
 use crate::geometry::{Vector, from_frame};
 use crate::planar::Location;
@@ -91,7 +91,7 @@ const MOVES: usize = 6;
 /// how many seeds moved.
 ///
 /// Relaxation equalises cells, of which a triangle beside the tip of a cape knows little. The energy may rise a little.
-pub(crate) fn mend_worst(dual: &mut impl Mending, most: usize) -> usize {
+pub(crate) fn mend_worst(dual: &mut impl Moving, most: usize) -> usize {
     let mut found: Vec<(f64, [VertexId; 3])> = Vec::new();
     for face in dual.topology().faces() {
         let corners = dual.topology().corners(face);
@@ -106,7 +106,7 @@ pub(crate) fn mend_worst(dual: &mut impl Mending, most: usize) -> usize {
 
 /// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out, unless the quality is poor beside
 /// an edge that must stay whole and is too long.
-fn mend<M: Mending>(dual: &mut M, v: VertexId) -> bool {
+fn mend<M: Moving>(dual: &mut M, v: VertexId) -> bool {
     let topology = dual.topology();
     let ring: Vec<[M::Site; 2]> =
         topology.star(v).map(|h| [topology.target(h), topology.apex(h)].map(|u| dual.site(u))).collect();

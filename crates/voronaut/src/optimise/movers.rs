@@ -161,7 +161,7 @@ impl Region {
         let inner: Vec<VertexId> = topology.vertices().filter(|v| is_inner[v.index()]).collect();
         let part = dual.part_around(&inner, RINGS);
         let near: Vec<VertexId> = part.topology.vertices().collect();
-        let canvas = Canvas::intrinsic_from(part, dual.scaled_field(), per_seed * near.len()).ok()?;
+        let canvas = Canvas::intrinsic_from(part, dual.field(), per_seed * near.len()).ok()?;
         Some(Self { canvas, core: seeds.to_vec(), near, is_inner })
     }
 
@@ -189,7 +189,7 @@ impl Region {
     /// canvas.
     pub(super) fn circles(&self, dual: &Dual, at: impl Fn(VertexId) -> Point) -> Option<Vec<Ball<3>>> {
         let seeds: Vec<(u32, Point)> = self.near.iter().map(|&v| (v.0, at(v))).collect();
-        let mut balls = circles_on_canvas(&self.canvas, dual.scaled_field(), &seeds).ok()?;
+        let mut balls = circles_on_canvas(&self.canvas, dual.field(), &seeds).ok()?;
         balls.retain(|ball| self.touches(&ball.corners));
         Some(balls)
     }

@@ -326,7 +326,7 @@ impl<'a, 'b> Mender<'a, 'b> {
         let own = corners_of(topology, faces.iter().copied());
         let is_inside = |seed: u32, p: Point| self.dual.is_inside(VertexId(seed), p);
         let found = Simplices { seeds: &self.positions, triangles: &triangles, border: &border, is_inside: &is_inside };
-        let net = Net::measure_some(self.dual.scaled_field(), &found, &own, memory);
+        let net = Net::measure_some(self.dual.field(), &found, &own, memory);
         let powers = net.interior().map(|ball| ball.power).chain(net.border.iter().map(|ball| ball.power));
         net.unmeasured as f64 + powers.map(|power| (1.0 - power / asked).max(0.0)).sum::<f64>()
     }
@@ -345,7 +345,7 @@ impl<'a, 'b> Mender<'a, 'b> {
     fn try_move(&mut self, v: VertexId, to: Point) -> Trial {
         let from = (self.positions[v.index()], self.locals[v.index()]);
         self.positions[v.index()] = to;
-        self.locals[v.index()] = LocalMetric::at(self.dual.scaled_field(), to);
+        self.locals[v.index()] = LocalMetric::at(self.dual.field(), to);
         Trial { v, from, flips: self.flip_around(v) }
     }
 

@@ -86,7 +86,7 @@ impl Survey {
         triangles.extend(circles.iter().map(|ball| ball.corners));
         let at_border = border_of(start).into_iter().map(in_order).collect();
         let tests = std::mem::take(&mut self.tests);
-        let rdt = Rdt::again(dual.scaled_field(), positions, &Start { triangles, at_border }, trust, tests);
+        let rdt = Rdt::again(dual.field(), positions, &Start { triangles, at_border }, trust, tests);
         // Of the region's seeds the diagram has all simplices: where cells touch twice no triangulation can hold them.
         let mut triangles = rdt.triangles();
         triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
@@ -101,7 +101,7 @@ fn measure(dual: &Dual, seeds: &[Point], triangles: &[[u32; 3]], known: &[Ball<3
     let border = border_of(dual.topology());
     let is_inside = |seed: u32, p: Point| dual.is_inside(VertexId(seed), p);
     let found = Simplices { seeds, triangles, border: &border, is_inside: &is_inside };
-    Net::measure_beside(dual.scaled_field(), &found, known, memory)
+    Net::measure_beside(dual.field(), &found, known, memory)
 }
 
 /// Corners of faces by their numbers.

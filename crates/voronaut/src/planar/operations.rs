@@ -33,11 +33,8 @@ impl Planar {
     /// Moves a vertex if all its faces stay counter-clockwise; says whether it did.
     pub(crate) fn move_vertex(&mut self, v: VertexId, to: Point) -> bool {
         let topology = &self.topology;
-        let fits = topology.star(v).all(|h| {
-            let a = self.position(topology.target(h));
-            let b = self.position(topology.apex(h));
-            is_left(to, a, b)
-        });
+        let fits =
+            topology.star(v).all(|h| is_left(to, self.position(topology.target(h)), self.position(topology.apex(h))));
         if fits {
             self.positions[v.index()] = to;
         }

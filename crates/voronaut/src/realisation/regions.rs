@@ -1,7 +1,7 @@
 //! Riemannian triangles as regions of the plane: what lies between three geodesics, cut into straight triangles.
 
 use super::{GeodesicEdge, Realisation};
-use crate::geometry::{Orientation, Point, Tensor, orientation};
+use crate::geometry::{Orientation, Point, Tensor, holds, orientation};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
@@ -127,10 +127,8 @@ impl Region {
         if orientation(a, b, c) != Orientation::Left {
             return None;
         }
-        let is_in =
-            |p: Point| [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, p) != Orientation::Right);
-        let others = self.corners.iter().enumerate().filter(|(k, _)| !numbers.contains(k));
-        if others.map(|(_, corner)| corner.1).any(is_in) {
+        let mut others = self.corners.iter().enumerate().filter(|(k, _)| !numbers.contains(k));
+        if others.any(|(_, corner)| holds([a, b, c], corner.1)) {
             return None;
         }
         let squares: f64 = [b - a, c - b, a - c].iter().map(|&side| self.tensor.dot(side, side)).sum();

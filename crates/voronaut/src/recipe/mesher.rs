@@ -37,7 +37,7 @@ pub(super) fn by_stars(
     let watch = Stopwatch::new(progress);
     let mut job = Job::new(field, options, &watch);
     let start = sampled(&mut job, domain, None)?;
-    let (scaled, unit) = (start.dual.field(), start.dual.vertex_count());
+    let (scaled, unit) = (*start.dual.field(), start.dual.vertex_count());
     let mut meshed = agreed(&mut job, &start, &scaled, unit);
     for most in TURNS {
         if !matches!(meshed, Err(Error::Limit { .. })) {

@@ -230,7 +230,7 @@ pub(super) fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
     let topology = dual.topology();
     let tensor = dual.field().at(p);
     let distance = |v: VertexId| tensor.length(p - dual.position(v));
-    let too_near = |v: VertexId| chord(&dual.field(), p, dual.position(v)) < SPACING;
+    let too_near = |v: VertexId| chord(dual.field(), p, dual.position(v)) < SPACING;
     let corners = topology.corners(face);
     if corners.into_iter().any(too_near) {
         return true;
@@ -249,7 +249,7 @@ pub(super) fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
 /// Metric length along an edge.
 fn chord_of(dual: &Dual, h: HalfEdge) -> f64 {
     let [a, b] = dual.planar().ends(h);
-    chord(&dual.field(), a, b)
+    chord(dual.field(), a, b)
 }
 
 fn halve(dual: &mut Dual, h: HalfEdge) -> bool {
@@ -291,7 +291,7 @@ fn is_sharp(dual: &Dual, v: VertexId) -> bool {
     let tensor = dual.local(v).tensor;
     let cosine = |u: Vector, w: Vector| tensor.dot(u, w) / (tensor.length(u) * tensor.length(w));
     (0..directions.len()).any(|i| {
-        // An inner feature's edge is met from both sides, hence the bound below one.
+        // Directions that are the same but for rounding are no corner, hence the bound below one.
         directions[..i].iter().any(|&u| (0.5..1.0 - 1e-12).contains(&cosine(u, directions[i])))
     })
 }
