@@ -10,7 +10,7 @@ use crate::canvas::{self, Canvas, CanvasFigures};
 use crate::diagram::{Diagram, NerveTriangle, resolve};
 use crate::error::{Result, named};
 use crate::geodesic::{MarchCounters, Margin, Method};
-use crate::lists::in_order;
+use crate::lists::{in_order, ranked};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::HashSet;
 
@@ -187,9 +187,7 @@ impl Dual<'_> {
         let beyond = edges
             .into_iter()
             .filter_map(|h| self.is_beyond_lengths(h).then(|| (certainty(self.margin(h, Effort::Full)), h)));
-        let mut found: Vec<(f64, HalfEdge)> = beyond.collect();
-        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        found.into_iter().map(|(_, h)| h).collect()
+        ranked(beyond).into_iter().map(|(_, h)| h).collect()
     }
 
     fn is_beyond_lengths(&mut self, h: HalfEdge) -> bool {

@@ -12,7 +12,7 @@ mod tensor;
 mod tensor3;
 mod tree;
 
-pub(crate) use contact::{Corners, contact, is_flat};
+pub(crate) use contact::{Corners, contacts, is_flat};
 pub use jet::Jet3;
 pub use point::{Aabb, Aabb3, Point, Point3, Vector, Vector3};
 pub(crate) use point::{Readable, kept_within};

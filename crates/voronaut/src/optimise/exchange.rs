@@ -4,6 +4,7 @@
 use crate::dual::{Dual, Effort, Kind, Moving};
 use crate::error::Result;
 use crate::geometry::{Vector, from_frame};
+use crate::lists::ranked;
 use crate::planar::Location;
 use crate::progress::Silent;
 use crate::sampling::{Fill, insert_spaced, refine};
@@ -24,13 +25,10 @@ pub(crate) fn exchange(dual: &mut Dual, fill: Fill, most: usize) -> Result<usize
 }
 
 fn remove_crowded(dual: &mut Dual, most: usize, shorter_than: f64) -> usize {
-    let mut short: Vec<(f64, [VertexId; 2])> = dual
-        .topology()
-        .edges()
-        .map(|h| (dual.edge_length(h), dual.topology().ends(h)))
-        .filter(|&(length, ends)| length < shorter_than && ends.iter().any(|&v| dual.kind(v) == Kind::Free))
-        .collect();
-    short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let edges = dual.topology().edges().map(|h| (dual.edge_length(h), dual.topology().ends(h)));
+    let short = ranked(
+        edges.filter(|&(length, ends)| length < shorter_than && ends.iter().any(|&v| dual.kind(v) == Kind::Free)),
+    );
     let mut spoken_for = vec![false; dual.topology().vertex_slots()];
     let mut removed = 0;
     for (_, ends) in short {
@@ -60,8 +58,8 @@ fn nearest_two(dual: &Dual, v: VertexId) -> f64 {
 pub(crate) fn meet_blocked_flips(dual: &mut Dual, most: usize) -> usize {
     let mut blocked = dual.blocked_flips(Effort::Local);
     blocked.retain(|(_, margin)| margin.is_certain());
-    blocked.sort_by(|a, b| a.1.value.total_cmp(&b.1.value).then(a.0.cmp(&b.0)));
-    let edges: Vec<[VertexId; 2]> = blocked.into_iter().map(|(h, _)| dual.topology().ends(h)).collect();
+    let worst_first = ranked(blocked.into_iter().map(|(h, margin)| (margin.value, h)));
+    let edges: Vec<[VertexId; 2]> = worst_first.into_iter().map(|(_, h)| dual.topology().ends(h)).collect();
     let mut met = 0;
     for [a, b] in edges {
         if met == most {
@@ -92,14 +90,9 @@ const MOVES: usize = 6;
 ///
 /// Relaxation equalises cells, of which a triangle beside the tip of a cape knows little. The energy may rise a little.
 pub(crate) fn mend_worst(dual: &mut impl Moving, most: usize) -> usize {
-    let mut found: Vec<(f64, [VertexId; 3])> = Vec::new();
-    for face in dual.topology().faces() {
-        let corners = dual.topology().corners(face);
-        found.push((dual.quality(corners.map(|v| dual.site(v))), corners));
-    }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    found.truncate(most);
-    let corners = found.into_iter().flat_map(|(_, corners)| corners);
+    let corners = dual.topology().faces().map(|face| dual.topology().corners(face));
+    let found = ranked(corners.map(|corners| (dual.quality(corners.map(|v| dual.site(v))), corners)));
+    let corners = found.into_iter().take(most).flat_map(|(_, corners)| corners);
     let free: Vec<VertexId> = corners.filter(|&v| dual.kind(v) == Kind::Free).collect();
     free.into_iter().filter(|&v| mend(dual, v)).count()
 }

@@ -144,7 +144,8 @@ const RINGS: usize = 2;
 /// Seeds, and a canvas that holds their cells.
 pub(super) struct Region {
     canvas: Canvas,
-    core: Vec<VertexId>,
+    /// The seeds that it is around.
+    pub(super) core: Vec<VertexId>,
     near: Vec<VertexId>,
     is_inner: Vec<bool>,
 }
@@ -165,19 +166,9 @@ impl Region {
         Some(Self { canvas, core: seeds.to_vec(), near, is_inner })
     }
 
-    /// The region around the same seeds where they are now.
-    pub(super) fn anew(&self, dual: &Dual, per_seed: usize) -> Option<Self> {
-        Self::around(dual, &self.core, per_seed)
-    }
-
-    /// Whether all of these are its seeds.
-    pub(super) fn holds(&self, seeds: &[u32]) -> bool {
-        seeds.iter().all(|&i| self.is_inner.get(i as usize) == Some(&true))
-    }
-
     /// Whether one of these is its seed.
     pub(super) fn touches(&self, seeds: &[u32]) -> bool {
-        seeds.iter().any(|&i| self.holds(&[i]))
+        seeds.iter().any(|&i| self.is_inner.get(i as usize) == Some(&true))
     }
 
     /// Its seeds.

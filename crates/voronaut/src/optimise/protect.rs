@@ -8,7 +8,7 @@ use crate::dual::{Dual, Kind};
 use crate::error::Result;
 use crate::geodesic::{Angles, LocalMetric, hermite};
 use crate::geometry::Point;
-use crate::lists::distinct;
+use crate::lists::{distinct, ranked};
 use crate::net::{Ball, Estimate, Memory, Net, Random, Simplices};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
@@ -178,9 +178,7 @@ impl<'a, 'b> Mender<'a, 'b> {
         let triangles = net.interior().filter(|ball| ball.protection() < asked).map(around);
         let border = net.border.iter().filter(|ball| ball.protection() < asked).map(around);
         let unknown = net.unknown.iter().map(|corners| (f64::NEG_INFINITY, corners.map(VertexId).to_vec()));
-        let mut bad: Vec<(f64, Vec<VertexId>)> = triangles.chain(border).chain(unknown).collect();
-        bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        bad.into_iter().map(|(_, seeds)| seeds).collect()
+        ranked(triangles.chain(border).chain(unknown)).into_iter().map(|(_, seeds)| seeds).collect()
     }
 
     /// One round: for each simplex, the best of the places tried for its seeds.

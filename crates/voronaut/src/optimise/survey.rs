@@ -73,7 +73,7 @@ impl Survey {
         let mut circles = self.region.as_ref().and_then(found);
         if circles.is_none() {
             // Seeds have left the part of the domain that the canvas covers.
-            self.region = self.region.as_ref().and_then(|region| region.anew(dual, PER_SEED));
+            self.region = self.region.as_ref().and_then(|region| Region::around(dual, &region.core, PER_SEED));
             circles = self.region.as_ref().and_then(found);
         }
         let region = self.region.as_ref().filter(|_| circles.is_some());
@@ -81,16 +81,17 @@ impl Survey {
         // The diagram's triangles stand around the region's seeds: no length is good enough there.
         let vetoed = |i: u32, j: u32| region.is_some_and(|region| region.touches(&[i, j])).then_some((0.0, 0.0));
         let trust = Trust { reference: Some(&vetoed), ..Trust::default() };
-        let mut triangles = corners_of(start, start.faces());
-        triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
-        triangles.extend(circles.iter().map(|ball| ball.corners));
+        let with_circles = |mut triangles: Vec<[u32; 3]>| {
+            triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
+            triangles.extend(circles.iter().map(|ball| ball.corners));
+            triangles
+        };
+        let triangles = with_circles(corners_of(start, start.faces()));
         let at_border = border_of(start).into_iter().map(in_order).collect();
         let tests = std::mem::take(&mut self.tests);
         let rdt = Rdt::again(dual.field(), positions, &Start { triangles, at_border }, trust, tests);
         // Of the region's seeds the diagram has all simplices: where cells touch twice no triangulation can hold them.
-        let mut triangles = rdt.triangles();
-        triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
-        triangles.extend(circles.iter().map(|ball| ball.corners));
+        let triangles = with_circles(rdt.triangles());
         let topology = (rdt.counters().split == 0).then(|| rdt.topology().clone());
         self.tests = rdt.into_memory();
         (measure(dual, positions, &triangles, &circles, &mut self.memory), topology)
