@@ -5,7 +5,7 @@
 
 use super::margin::diagonals;
 use super::patch::Patch;
-use super::{Dual, Effort};
+use super::{Dual, Effort, Moving};
 use crate::canvas::{self, Canvas, CanvasFigures};
 use crate::diagram::{Diagram, NerveTriangle, resolve};
 use crate::error::{Result, named};

@@ -99,9 +99,7 @@ impl Dual<'_> {
         self.touched.extend(self.planar.topology.star(v).map(HalfEdge::face));
         self.flip_around(v, Effort::Local);
     }
-}
 
-impl Dual<'_> {
     /// The mesh, by `Domain::mesh_of`.
     pub(crate) fn to_mesh(&self, domain: &Domain) -> Mesh {
         domain.mesh_of(self.planar(), |v| self.corner(v))
@@ -116,9 +114,7 @@ impl Dual<'_> {
     fn corner(&self, v: VertexId) -> Option<u32> {
         if let Kind::Corner(point) = self.kind(v) { Some(point) } else { None }
     }
-}
 
-impl Dual<'_> {
     /// Flips every edge that the metric wants flipped and the plane allows. Returns the number of flips.
     pub(crate) fn flip_all(&mut self, effort: Effort) -> u64 {
         let before = self.counters.flips;

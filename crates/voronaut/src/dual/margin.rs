@@ -1,7 +1,7 @@
 //! What the in-circle test of the mesh in the making climbs: a frozen tensor, expansions at the vertices, quadrature along the
 //! chords, geodesics with 4 and with 8 modes.
 
-use super::Dual;
+use super::{Dual, Moving};
 use crate::geodesic::{
     Fineness, Length, Margin, PathLength, bent_chord, bowed_chord, chord, frozen_margin, hermite, margin_of_estimates,
 };

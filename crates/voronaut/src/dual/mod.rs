@@ -26,7 +26,7 @@ use crate::in_circle::Tests;
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
 use crate::planar::{Location, Planar};
-use crate::triangulation::{FaceId, HalfEdge, Lawson, Limit, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Lawson, Limit, VertexId};
 use margin::LEVELS;
 use std::collections::HashSet;
 
@@ -106,11 +106,6 @@ impl<'a> Dual<'a> {
         Ok(dual)
     }
 
-    /// Topology.
-    pub(crate) fn topology(&self) -> &Triangulation {
-        &self.planar.topology
-    }
-
     /// The embedded triangulation.
     pub(crate) fn planar(&self) -> &Planar {
         &self.planar
@@ -137,25 +132,19 @@ impl<'a> Dual<'a> {
         self.planar.position(v)
     }
 
-    /// The metric around a vertex.
-    pub(crate) fn local(&self, v: VertexId) -> &LocalMetric {
-        &self.locals[v.index()]
-    }
-
     /// The metric around every vertex, by id.
     pub(crate) fn locals(&self) -> &[LocalMetric] {
         &self.locals
     }
 
-    /// Whether the straight way from a vertex to a point stays in the domain.
-    pub(crate) fn is_inside(&self, near: VertexId, p: Point) -> bool {
-        let face = self.topology().start(near).map(HalfEdge::face);
-        face.is_some_and(|face| !matches!(self.planar.walk(face, p, false), Location::Behind(_)))
+    /// Where a point is, as a vertex near it sees it: straight ahead, and with `confined` not beyond constraints.
+    pub(crate) fn seen_from(&self, near: VertexId, p: Point, confined: bool) -> Option<Location> {
+        Some(self.planar.walk(self.topology().start(near)?.face(), p, confined))
     }
 
-    /// What holds a vertex.
-    pub(crate) fn kind(&self, v: VertexId) -> Kind {
-        self.kinds[v.index()]
+    /// Whether the straight way from a vertex to a point stays in the domain.
+    pub(crate) fn is_inside(&self, near: VertexId, p: Point) -> bool {
+        !matches!(self.seen_from(near, p, false), None | Some(Location::Behind(_)))
     }
 
     /// Work counters since the beginning.

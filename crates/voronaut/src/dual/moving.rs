@@ -86,15 +86,15 @@ impl Moving for Dual<'_> {
     type Site = Site;
 
     fn topology(&self) -> &Triangulation {
-        Dual::topology(self)
+        &self.planar.topology
     }
 
     fn local(&self, v: VertexId) -> &LocalMetric {
-        Dual::local(self, v)
+        &self.locals[v.index()]
     }
 
     fn kind(&self, v: VertexId) -> Kind {
-        Dual::kind(self, v)
+        self.kinds[v.index()]
     }
 
     fn offset(&self, from: VertexId, to: VertexId) -> Vector {

@@ -1,6 +1,6 @@
 //! A part of the mesh around some of its edges, as a triangulation of its own.
 
-use super::Dual;
+use super::{Dual, Moving};
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 

@@ -120,6 +120,52 @@ impl SurfaceDual<'_> {
         let [before, after] = [now, then].map(|pair| self.leaning(pair));
         (before.upright <= FOLDED && after.is_better_than(&before)).then_some(after.area - before.area)
     }
+
+    /// The margin of an edge by a test of the caller's, if its sign is certain.
+    fn certain(&self, h: HalfEdge, test: impl Fn(&Quad) -> Margin) -> Margin {
+        let margin = Quad::around(self.topology(), h).map(|quad| test(&quad));
+        margin.filter(Margin::is_certain).unwrap_or(Margin::UNKNOWN)
+    }
+
+    /// Metric length of the geodesic between two seeds.
+    pub(super) fn estimate(&self, ends: [VertexId; 2]) -> Length {
+        let [u, v] = ends;
+        if !self.is_rough(ends) {
+            let locals = ends.map(|w| &self.state.locals[w.index()]);
+            return hermite_between(locals, [self.offset(u, v), -self.offset(v, u)]);
+        }
+        let topology = self.topology();
+        let measured = topology.edge_between(u, v).map(|h| topology.length(h));
+        let value = measured.filter(|length| !length.is_nan()).unwrap_or_else(|| self.chord_length(ends));
+        Length { value, error: KINKS }
+    }
+
+    pub(super) fn chord_length(&self, ends: [VertexId; 2]) -> f64 {
+        let [p, q] = ends.map(|w| &self.state.places[w.index()]);
+        let tensors = ends.map(|w| self.state.measured[w.index()].tensor);
+        let middle = self.input.lift(p, p.position.lerp(q.position, 0.5));
+        let middle = middle.map_or(tensors, |place| [self.metric.at(&place); 2]);
+        self.input.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()
+    }
+
+    pub(super) fn is_rough(&self, ends: [VertexId; 2]) -> bool {
+        ends.iter().any(|v| self.state.locals[v.index()].is_rough)
+    }
+
+    /// Keeps the length of an edge that takes long to measure.
+    pub(super) fn measure_edge(&mut self, h: HalfEdge) {
+        let ends = self.topology().ends(h);
+        if self.is_rough(ends) {
+            let length = self.chord_length(ends);
+            self.state.topology.set_length(h, length);
+        }
+    }
+
+    /// The in-circle test of an edge; [`Margin::UNKNOWN`] of one with a single face, and where lengths make no triangles.
+    pub(super) fn margin(&self, h: HalfEdge) -> Margin {
+        let Some([a, b, c, d]) = self.topology().quad(h) else { return Margin::UNKNOWN };
+        margin_of_estimates([[a, b], [c, a], [b, c], [a, d], [d, b]].map(|ends| self.estimate(ends)))
+    }
 }
 
 /// A mesh whose edges are flipped where a number says so, the least first.
@@ -186,53 +232,5 @@ impl Leaning {
     fn is_better_than(&self, other: &Self) -> bool {
         let rounding = 1e-9 * other.area;
         self.area < other.area - rounding || (self.area <= other.area + rounding && self.upright > other.upright)
-    }
-}
-
-impl SurfaceDual<'_> {
-    /// The margin of an edge by a test of the caller's, if its sign is certain.
-    fn certain(&self, h: HalfEdge, test: impl Fn(&Quad) -> Margin) -> Margin {
-        let margin = Quad::around(self.topology(), h).map(|quad| test(&quad));
-        margin.filter(Margin::is_certain).unwrap_or(Margin::UNKNOWN)
-    }
-
-    /// Metric length of the geodesic between two seeds.
-    pub(super) fn estimate(&self, ends: [VertexId; 2]) -> Length {
-        let [u, v] = ends;
-        if !self.is_rough(ends) {
-            let locals = ends.map(|w| &self.state.locals[w.index()]);
-            return hermite_between(locals, [self.offset(u, v), -self.offset(v, u)]);
-        }
-        let topology = self.topology();
-        let measured = topology.edge_between(u, v).map(|h| topology.length(h));
-        let value = measured.filter(|length| !length.is_nan()).unwrap_or_else(|| self.chord_length(ends));
-        Length { value, error: KINKS }
-    }
-
-    pub(super) fn chord_length(&self, ends: [VertexId; 2]) -> f64 {
-        let [p, q] = ends.map(|w| &self.state.places[w.index()]);
-        let tensors = ends.map(|w| self.state.measured[w.index()].tensor);
-        let middle = self.input.lift(p, p.position.lerp(q.position, 0.5));
-        let middle = middle.map_or(tensors, |place| [self.metric.at(&place); 2]);
-        self.input.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()
-    }
-
-    pub(super) fn is_rough(&self, ends: [VertexId; 2]) -> bool {
-        ends.iter().any(|v| self.state.locals[v.index()].is_rough)
-    }
-
-    /// Keeps the length of an edge that takes long to measure.
-    pub(super) fn measure_edge(&mut self, h: HalfEdge) {
-        let ends = self.topology().ends(h);
-        if self.is_rough(ends) {
-            let length = self.chord_length(ends);
-            self.state.topology.set_length(h, length);
-        }
-    }
-
-    /// The in-circle test of an edge; [`Margin::UNKNOWN`] of one with a single face, and where lengths make no triangles.
-    pub(super) fn margin(&self, h: HalfEdge) -> Margin {
-        let Some([a, b, c, d]) = self.topology().quad(h) else { return Margin::UNKNOWN };
-        margin_of_estimates([[a, b], [c, a], [b, c], [a, d], [d, b]].map(|ends| self.estimate(ends)))
     }
 }

@@ -1,6 +1,6 @@
 //! Circles and powers by expansions of the metric, for seeds that come, go and move.
 
-use crate::dual::Dual;
+use crate::dual::{Dual, Moving};
 use crate::geodesic::{LocalMetric, chord, equalising_step, flat_centre, hermite};
 use crate::geometry::{Point, Tensor};
 use crate::lists::distinct;

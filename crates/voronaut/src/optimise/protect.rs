@@ -4,7 +4,7 @@
 
 use super::movers::Region;
 use super::survey::{Survey, corners_of};
-use crate::dual::{Dual, Kind};
+use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
 use crate::geodesic::{Angles, LocalMetric, hermite};
 use crate::geometry::Point;
@@ -88,11 +88,10 @@ pub(crate) struct Protected {
 pub(crate) fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<Protected> {
     dual.reorder();
     let mut mender = Mender::new(dual, share);
-    let (mut best, mut since) = (usize::MAX, 0);
-    let mut found: Option<Protected> = None;
-    for round in 0.. {
+    let (mut best, mut since, mut round, mut first) = (usize::MAX, 0, 0, None);
+    loop {
         let (net, bad) = mender.measure();
-        let first = found.as_ref().map_or(bad.len(), |p| p.unprotected[0]);
+        let first = *first.get_or_insert(bad.len());
         since = if bad.len() < best { 0 } else { since + 1 };
         best = best.min(bad.len());
         let ending = match round {
@@ -101,20 +100,16 @@ pub(crate) fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> R
             _ if since > PATIENCE => Some(Ending::Stalled),
             _ => None,
         };
-        let epsilon = net.epsilon;
-        let (moves, tries, unprotected) = (mender.moves, mender.tries, [first, bad.len()]);
-        let state =
-            Protected { ending: ending.unwrap_or(Ending::Stalled), rounds: round, moves, tries, unprotected, net };
-        found = Some(state);
-        if ending.is_some() {
-            break;
+        if let Some(ending) = ending {
+            mender.dual.verdict()?;
+            let Mender { moves, tries, .. } = mender;
+            return Ok(Protected { ending, rounds: round, moves, tries, unprotected: [first, bad.len()], net });
         }
         mender.is_wide = since >= WIDER && since % 2 == 0;
-        mender.mend(&bad, round, epsilon);
+        mender.mend(&bad, round, net.epsilon);
         progress.advance(1)?;
+        round += 1;
     }
-    dual.verdict()?;
-    Ok(found.expect("the first round measures"))
 }
 
 /// What places for seeds are tried with.

@@ -4,7 +4,7 @@ use super::settle::Stopwatch;
 use super::{Job, MeshOptions, Meshed};
 use crate::canvas::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 use crate::domain::Domain;
-use crate::dual::{Dual, Kind};
+use crate::dual::{Dual, Kind, Moving};
 use crate::error::{Error, Result};
 use crate::figures;
 use crate::metric::{MetricField, Scaled, Steadied};

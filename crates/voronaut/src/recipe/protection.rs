@@ -4,7 +4,7 @@ use super::{Job, Seeding};
 use crate::canvas::{self, Canvas};
 use crate::diagram::{Diagram, RESOLVE_ROUNDS, resolve};
 use crate::domain::Domain;
-use crate::dual::{Dual, Road};
+use crate::dual::{Dual, Moving, Road};
 use crate::error::Result;
 use crate::figures;
 use crate::geometry::Point;

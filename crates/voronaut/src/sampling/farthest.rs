@@ -3,7 +3,7 @@
 
 use super::interior::{Entry, Fill, SPACING};
 use crate::diagram::{Diagram, Ground};
-use crate::dual::Dual;
+use crate::dual::{Dual, Moving};
 use crate::error::Result;
 use crate::geometry::{Point, holds};
 use crate::metric::MetricField;

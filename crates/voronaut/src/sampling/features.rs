@@ -101,11 +101,15 @@ impl<'a> MeasuredCurves<'a> {
                 continue;
             }
             let [a, b] = curve.ends();
-            let is_shortest = shortest.get(&in_order([a, b])) == Some(&i);
             let (arc, last) = (&self.curves[i].arc, curve.edges.len());
             let parts = (arc.length() / spacing).round() as usize;
             let density = density.get(i).copied().unwrap_or(1);
-            let least = self.least(curve, is_shortest);
+            // That many edges the curve needs for the mesh to be one: a slit without a seed between its ends would have two between them.
+            let least = match shortest.get(&in_order([a, b])) {
+                _ if a == b => LEAST_OF_LOOP,
+                Some(&shortest) if shortest == i && !self.is_slit(curve) => 1,
+                _ => 2,
+            };
             let stations = match parts.max(least).saturating_mul(density) {
                 _ if curve.mark.is_required || density == ALL_VERTICES => {
                     (0..=last).map(|vertex| vertex as f64).collect()
@@ -119,7 +123,7 @@ impl<'a> MeasuredCurves<'a> {
             let inner = stations[1..stations.len() - 1].iter().map(|&station| self.at_station(curve, station));
             let first = found.seeds.len() as u32;
             let [begin, end] = if curve.has_stops { [at[&a], at[&b]] } else { [first; 2] };
-            found.seeds.extend(if curve.has_stops { None } else { Some(self.at_vertex(a)) });
+            found.seeds.extend((!curve.has_stops).then(|| self.at_vertex(a)));
             let before = found.seeds.len() as u32;
             found.seeds.extend(inner);
             let chain: Vec<u32> = [begin].into_iter().chain(before..found.seeds.len() as u32).chain([end]).collect();
@@ -139,17 +143,6 @@ impl<'a> MeasuredCurves<'a> {
             *least = if length < least.0 { (length, i) } else { *least };
         }
         shortest.into_iter().map(|(ends, (_, i))| (ends, i)).collect()
-    }
-
-    /// The number of edges that a curve needs for the mesh to be one.
-    fn least(&self, curve: &Curve, is_shortest: bool) -> usize {
-        let [a, b] = curve.ends();
-        match () {
-            () if a == b => LEAST_OF_LOOP,
-            // A slit without a seed between its ends would have two edges between them.
-            () if self.is_slit(curve) || !is_shortest => 2,
-            () => 1,
-        }
     }
 
     /// Whether a curve ends inside a patch on both sides.

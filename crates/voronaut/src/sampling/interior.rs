@@ -1,6 +1,6 @@
 //! The interior: seeds one at a time at the circumcentre of the face whose metric circumradius is largest.
 
-use crate::dual::{Dual, Kind};
+use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
 use crate::geodesic::chord;
 use crate::geometry::{Point, Tensor, Vector, centroid};

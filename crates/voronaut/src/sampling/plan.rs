@@ -3,7 +3,7 @@
 
 use crate::canvas;
 use crate::domain::Domain;
-use crate::dual::Dual;
+use crate::dual::{Dual, Moving};
 use crate::error::{Error, Result};
 use crate::geodesic::chord;
 use crate::geometry::Point;

@@ -2,7 +2,7 @@
 //! without power protection.
 
 use super::interior::{Fill, encroached_edge, insert_spaced, is_crowded, refine_with};
-use crate::dual::Dual;
+use crate::dual::{Dual, Moving};
 use crate::error::Result;
 use crate::geometry::Point;
 use crate::metric::MetricField;
@@ -64,7 +64,7 @@ impl Picker {
         let near = dual.topology().corners(face)[0];
         // The tries may leave other faces there.
         self.pick_valid(dual, place, (centre, radius)).is_some()
-            || place_from(dual, near, centre).is_some_and(|p| insert_spaced(dual, p, centre))
+            || dual.seen_from(near, centre, true).is_some_and(|p| insert_spaced(dual, p, centre))
     }
 
     /// Seeds for the simplices that lack protection, as far as there are valid places.
@@ -83,7 +83,7 @@ impl Picker {
             if dual.vertex_count() >= count {
                 return;
             }
-            if let Some(place) = place_from(dual, near, centre) {
+            if let Some(place) = dual.seen_from(near, centre, true) {
                 self.pick_valid(dual, place, (centre, radius));
             }
         }
@@ -107,15 +107,9 @@ impl Picker {
     }
 }
 
-/// Where a point is, as a vertex near it sees it.
-fn place_from(dual: &Dual, near: VertexId, p: Point) -> Option<Location> {
-    let start = dual.topology().start(near)?.face();
-    Some(dual.planar().walk(start, p, true))
-}
-
 /// Inserts a seed, and takes it out again unless it is valid.
 fn insert_valid(dual: &mut Dual, near: VertexId, p: Point, asked: f64) -> Option<VertexId> {
-    let Location::Face(face) = place_from(dual, near, p)? else { return None };
+    let Location::Face(face) = dual.seen_from(near, p, true)? else { return None };
     if encroached_edge(dual, face, p).is_some() || is_crowded(dual, face, p) {
         return None;
     }

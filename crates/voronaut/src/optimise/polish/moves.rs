@@ -2,7 +2,7 @@
 //! them: those of a group can move at once.
 
 use super::{Work, is_allowed};
-use crate::dual::Kind;
+use crate::dual::{Kind, Moving};
 use crate::geometry::{Node, Point, Vector, combine, radon, signed_area};
 use crate::metric::{Norm, ScalarField};
 use crate::parallel::prelude::*;
