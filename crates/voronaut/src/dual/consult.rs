@@ -184,9 +184,12 @@ impl Dual<'_> {
     /// The edges that lengths do not decide, those that they know least about first.
     fn beyond_lengths(&mut self, edges: Vec<HalfEdge>) -> Vec<HalfEdge> {
         let certainty = |margin: Margin| margin.value.abs() / margin.error;
-        let beyond = edges
-            .into_iter()
-            .filter_map(|h| self.is_beyond_lengths(h).then(|| (certainty(self.margin(h, Effort::Full)), h)));
+        let mut beyond = Vec::new();
+        for h in edges {
+            if self.is_beyond_lengths(h) {
+                beyond.push((certainty(self.margin(h, Effort::Full)), h));
+            }
+        }
         ranked(beyond).into_iter().map(|(_, h)| h).collect()
     }
 

@@ -18,18 +18,15 @@ impl Dual<'_> {
         Some(v)
     }
 
-    /// Puts a seed on an edge: a curve's if the edge is constrained, else a free one. Returns it and the half-edge from
-    /// it to the old target of h. The edge of a required segment stays whole.
-    pub(crate) fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<(VertexId, HalfEdge)> {
+    /// Puts a seed on an edge: a curve's if the edge is constrained, else a free one. The edge of a required segment stays whole.
+    pub(crate) fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<VertexId> {
         if self.planar.topology.constraint(h).is_some_and(|c| self.required[c.0 as usize]) {
             return None;
         }
         let kind = if self.planar.topology.is_fixed(h) { Kind::Curve } else { Kind::Free };
-        let target = self.planar.topology.target(h);
-        let (v, _) = self.planar.insert_on_edge(h, p)?;
+        let v = self.planar.insert_on_edge(h, p)?;
         self.settle(v, kind);
-        // A constrained half still stands after the flips; that of a free edge may be gone.
-        Some((v, self.planar.topology.find(v, target).unwrap_or(h)))
+        Some(v)
     }
 
     /// Takes over a triangulation of the same vertices and constraints that was changed by other rules than the metric's.
@@ -129,9 +126,9 @@ impl Dual<'_> {
     }
 
     /// Flips around a vertex and onwards.
-    pub(crate) fn flip_around(&mut self, v: VertexId, effort: Effort) -> u64 {
+    pub(super) fn flip_around(&mut self, v: VertexId, effort: Effort) {
         self.lawson.queue(self.planar.topology.star(v).flat_map(|h| [h, h.next()]));
-        self.flip_queued(effort)
+        self.flip_queued(effort);
     }
 
     /// Edges that the metric wants flipped and the plane forbids, with their margins, certain or not.
@@ -157,11 +154,10 @@ impl Dual<'_> {
         !self.held.is_empty() && self.held.contains(&in_order(topology.ends(h)))
     }
 
-    fn flip_queued(&mut self, effort: Effort) -> u64 {
+    fn flip_queued(&mut self, effort: Effort) {
         let mut lawson = std::mem::take(&mut self.lawson);
-        let flips = lawson.pass(&mut ByMargin { dual: self, effort }, LIMIT).len() as u64;
+        lawson.pass(&mut ByMargin { dual: self, effort }, LIMIT);
         self.lawson = lawson;
-        flips
     }
 
     /// Whether the plane allows a flip: the quadrilateral is strictly convex, and the flip leaves no straight triangle

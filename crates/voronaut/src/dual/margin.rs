@@ -1,7 +1,7 @@
 //! What the in-circle test of the mesh in the making climbs: a frozen tensor, expansions at the vertices, quadrature along the
 //! chords, geodesics with 4 and with 8 modes.
 
-use super::{Dual, Moving};
+use super::{Dual, Effort, Moving};
 use crate::geodesic::{
     Fineness, Length, Margin, PathLength, bent_chord, bowed_chord, chord, frozen_margin, hermite, margin_of_estimates,
 };
@@ -31,17 +31,6 @@ pub(super) const KINKS: f64 = 0.005;
 const OF_BOW: f64 = 0.25;
 /// A bow that saves less than this share of the chord is small.
 const STRAIGHT: f64 = 0.02;
-
-/// How far up the levels a test may climb.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Effort {
-    /// To lengths from the expansions at the vertices: no evaluation of the field.
-    Local = 1,
-    /// To quadrature along the chords.
-    Chord = 2,
-    /// To the last level: geodesics.
-    Full = 4,
-}
 
 impl Dual<'_> {
     /// The margin of an edge with two faces.

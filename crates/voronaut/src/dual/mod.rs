@@ -14,7 +14,6 @@ mod patch;
 
 pub(crate) use consult::Consultation;
 pub use consult::{Disagreement, Road};
-pub(crate) use margin::Effort;
 pub(crate) use moving::Moving;
 pub(crate) use on_surface::SurfaceDual;
 
@@ -50,6 +49,17 @@ const LIMIT: Limit = Limit::OfSlot(6);
 /// A flip may not leave a triangle whose quality is below this if both were better before: where lengths of straight
 /// edges contradict each other, or geodesics bend away from them, it would leave slivers.
 const POOR: f64 = 0.5;
+
+/// How far up the levels a test may climb.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// To lengths from the expansions at the vertices: no evaluation of the field.
+    Local = 1,
+    /// To quadrature along the chords.
+    Chord = 2,
+    /// To the last level: geodesics.
+    Full = 4,
+}
 
 /// Work counters; deterministic.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -200,11 +210,6 @@ impl<'a> Dual<'a> {
         self.measure_each(|_, field, p| LocalMetric::at(field, p));
     }
 
-    /// Evaluates the metric at every vertex that has moved; where it was rough it counts as rough still.
-    pub(crate) fn measure_moved(&mut self) {
-        self.measure_each(|local, field, p| local.moved(field, p));
-    }
-
     fn measure_each(&mut self, measure: impl Fn(&LocalMetric, &Scaled, Point) -> LocalMetric + Sync) {
         self.forget();
         let field = self.field;
@@ -236,11 +241,6 @@ impl<'a> Dual<'a> {
         for (h, length) in edges.into_iter().zip(lengths) {
             self.planar.topology.set_length(h, length);
         }
-    }
-
-    /// Evaluates the metric at a vertex that has moved.
-    pub(crate) fn remeasure(&mut self, v: VertexId) {
-        self.locals[v.index()] = self.measure(self.position(v));
     }
 
     /// The metric around a point; where it is not valid that is noted, and the Euclidean metric serves instead.

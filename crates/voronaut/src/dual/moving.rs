@@ -122,7 +122,8 @@ impl Moving for Dual<'_> {
     }
 
     fn settle_moves(&mut self) -> Result<u64> {
-        self.measure_moved();
+        // Where the metric was rough it counts as rough still.
+        self.measure_each(|local, field, p| local.moved(field, p));
         self.verdict()?;
         let flips = self.flip_all(Effort::Local);
         self.take_touched();
@@ -171,7 +172,7 @@ impl Moving for Dual<'_> {
     }
 
     fn settle_move(&mut self, v: VertexId) {
-        self.remeasure(v);
+        self.locals[v.index()] = self.measure(self.position(v));
         self.flip_around(v, Effort::Local);
     }
 }

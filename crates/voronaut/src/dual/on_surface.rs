@@ -152,18 +152,6 @@ impl<'a> SurfaceDual<'a> {
         }
     }
 
-    /// Evaluates the metric at a seed that has moved.
-    pub(super) fn remeasure(&mut self, v: VertexId) {
-        let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
-        let chart = Chart::in_plane(self.input, self.metric, at, plane);
-        let local =
-            self.state.locals[v.index()].moved(&Scaled { field: &chart, factor: self.factor }, Point::default());
-        if local.tensor.is_positive_definite() {
-            self.state.locals[v.index()] = local;
-            self.state.measured[v.index()] = Measured { at: at.position, tensor: self.metric.at(&at) };
-        }
-    }
-
     /// Where a seed comes to lie that is moved by a vector of its tangent plane.
     pub(super) fn place_after(&self, v: VertexId, by: Vector) -> Option<Place> {
         let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
@@ -338,7 +326,14 @@ impl Moving for SurfaceDual<'_> {
     }
 
     fn settle_move(&mut self, v: VertexId) {
-        self.remeasure(v);
+        let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
+        let chart = Chart::in_plane(self.input, self.metric, at, plane);
+        let local =
+            self.state.locals[v.index()].moved(&Scaled { field: &chart, factor: self.factor }, Point::default());
+        if local.tensor.is_positive_definite() {
+            self.state.locals[v.index()] = local;
+            self.state.measured[v.index()] = Measured { at: at.position, tensor: self.metric.at(&at) };
+        }
         self.flip_around(v);
     }
 }

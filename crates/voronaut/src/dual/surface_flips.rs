@@ -26,9 +26,9 @@ impl SurfaceDual<'_> {
     }
 
     /// Flips around a seed and onwards.
-    pub(super) fn flip_around(&mut self, v: VertexId) -> u64 {
+    pub(super) fn flip_around(&mut self, v: VertexId) {
         let star: Vec<HalfEdge> = self.topology().star(v).flat_map(|h| [h, h.next()]).collect();
-        self.flip_by(star, Self::margin)
+        self.flip_by(star, Self::margin);
     }
 
     /// Flips by a test of the caller's: every edge with a certainly negative margin whose flip the surface allows. Returns the

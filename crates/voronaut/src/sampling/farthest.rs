@@ -106,7 +106,7 @@ pub(crate) fn refine_farthest(
 fn insert(dual: &mut Dual, near: VertexId, p: Point) -> Option<VertexId> {
     match locate(dual, near, p)? {
         Location::Face(f) => dual.insert_in_face(f, p),
-        Location::Edge(h) if !dual.topology().is_fixed(h) => dual.insert_on_edge(h, p).map(|(seed, _)| seed),
+        Location::Edge(h) if !dual.topology().is_fixed(h) => dual.insert_on_edge(h, p),
         _ => None,
     }
 }

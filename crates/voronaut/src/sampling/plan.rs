@@ -238,7 +238,7 @@ fn cut(dual: &mut Dual, from: VertexId, to: VertexId, points: &[Point]) {
         let Some(h) = dual.topology().find(from, to) else { continue };
         let middle = usize::midpoint(range.start, range.end);
         let candidates = (middle..range.end).chain((range.start..middle).rev());
-        let done = candidates.into_iter().find_map(|k| dual.insert_on_edge(h, points[k]).map(|(v, _)| (k, v)));
+        let done = candidates.into_iter().find_map(|k| Some((k, dual.insert_on_edge(h, points[k])?)));
         if let Some((k, v)) = done {
             pending.extend([(v, to, k + 1..range.end), (from, v, range.start..k)]);
         }
