@@ -8,6 +8,13 @@ pub(crate) fn distinct<T: Ord>(items: impl IntoIterator<Item = T>) -> Vec<T> {
     list
 }
 
+/// Things by their numbers, the least first; of equal ones in order.
+pub(crate) fn ranked<T: Ord>(items: impl IntoIterator<Item = (f64, T)>) -> Vec<(f64, T)> {
+    let mut list: Vec<(f64, T)> = items.into_iter().collect();
+    list.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
+    list
+}
+
 /// A few things, the smallest first.
 pub(crate) fn in_order<T: Ord, const N: usize>(mut items: [T; N]) -> [T; N] {
     items.sort_unstable();

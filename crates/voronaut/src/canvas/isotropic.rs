@@ -123,7 +123,7 @@ pub(super) fn halve(mut planar: Planar, edges: &[[VertexId; 2]], counters: &mut 
     for &[a, b] in edges {
         let Some(h) = planar.topology.edge_between(a, b) else { continue };
         let [p, q] = planar.ends(h);
-        if let Some((v, _)) = planar.insert_on_edge(h, p.midpoint(q)) {
+        if let Some(v) = planar.insert_on_edge(h, p.midpoint(q)) {
             lawson.queue(planar.topology.star(v).map(HalfEdge::next));
             planar.legalise(&mut lawson);
             counters.splits += 1;

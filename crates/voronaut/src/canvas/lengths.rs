@@ -58,7 +58,7 @@ impl Measured for InMetric<'_> {
         let [p, q] = self.planar.ends(h);
         let middle = p.midpoint(q);
         check_tensor(self.field.at(middle), middle)?;
-        let Some((v, _)) = self.planar.insert_on_edge(h, middle) else { return Ok(None) };
+        let Some(v) = self.planar.insert_on_edge(h, middle) else { return Ok(None) };
         let star: Vec<HalfEdge> = self.planar.topology.star(v).collect();
         for h in star.iter().flat_map(|&h| [h, h.prev()]) {
             let length = geodesic(self.planar, self.field, h);

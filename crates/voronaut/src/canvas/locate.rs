@@ -1,7 +1,7 @@
 //! Finding the face of the embedded triangulation that holds a point, in any domain.
 
 use super::Canvas;
-use crate::geometry::{Aabb, BoxTree, Orientation, Point, orientation, widened};
+use crate::geometry::{Aabb, BoxTree, Point, holds, widened};
 use crate::planar::{Location, Planar, hilbert_order};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::HashMap;
@@ -106,10 +106,7 @@ impl Canvas {
         let around = widened([[p.x, p.y]; 2], self.embedded.finder.rounding);
         let topology = &self.embedded.planar.topology;
         let near = || tree.meeting(around).copied();
-        let holds = |f: &FaceId| {
-            let [a, b, c] = self.embedded.planar.triangle(*f);
-            [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, p) != Orientation::Right)
-        };
+        let holds = |f: &FaceId| holds(self.embedded.planar.triangle(*f), p);
         // From a face that holds the point the walk ends at once.
         let inside = near().filter(holds).min().map(|face| self.embedded.planar.walk(face, p, false));
         let at_border = |h: &HalfEdge| topology.twin(*h).is_none() && self.is_beside(*h, p);

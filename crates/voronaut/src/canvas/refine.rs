@@ -124,7 +124,7 @@ impl<'a> Refiner<'a> {
         let middle = p.midpoint(q);
         let tensor = self.field.at(middle);
         check_tensor(tensor, middle)?;
-        let Some((v, _)) = self.planar.insert_on_edge(h, middle) else { return Ok(()) };
+        let Some(v) = self.planar.insert_on_edge(h, middle) else { return Ok(()) };
         self.tensors.resize(self.planar.positions.len().max(self.tensors.len()), tensor);
         self.tensors[v.index()] = tensor;
         counters.splits += 1;

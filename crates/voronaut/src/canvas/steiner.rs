@@ -63,7 +63,7 @@ impl<'a> Steiner<'a> {
             Location::Behind(h) => return self.halve(h, radius),
             Location::Vertex(_) => return Ok(Placed::Refused),
             Location::Edge(h) if self.planar.topology.is_fixed(h) => return self.halve(h, radius),
-            Location::Edge(h) => self.planar.insert_on_edge(h, p).map(|(v, _)| v),
+            Location::Edge(h) => self.planar.insert_on_edge(h, p),
             Location::Face(f) => self.planar.insert_in_face(f, p),
         };
         let Some(v) = placed else { return Ok(Placed::Refused) };
@@ -107,7 +107,7 @@ impl<'a> Steiner<'a> {
         if self.tensor_at(middle).length(b - a) <= SHORTEST * radius {
             return Ok(Placed::Refused);
         }
-        let Some((v, _)) = self.planar.insert_on_edge(h, middle) else { return Ok(Placed::Refused) };
+        let Some(v) = self.planar.insert_on_edge(h, middle) else { return Ok(Placed::Refused) };
         self.added(v)?;
         Ok(Placed::Halved(v))
     }

@@ -3,7 +3,7 @@
 use super::coverage::Coverage;
 use crate::diagram::Diagram;
 use crate::geodesic::{Fineness, Paths, gauss_curvature};
-use crate::geometry::{Point, Vector};
+use crate::geometry::Point;
 use crate::metric::{MetricField, Scaled};
 use crate::net::Net;
 use crate::parallel::prelude::*;
@@ -35,16 +35,13 @@ impl Convexity {
     /// Why short geodesic loops are not excluded.
     pub(crate) fn doubt(&self) -> Option<String> {
         if self.holes > 0 {
-            return Some(format!(
-                "the injectivity radius: geodesic loops around {} holes are not excluded",
-                self.holes
-            ));
+            let holes = self.holes;
+            return Some(format!("the injectivity radius: geodesic loops around {holes} holes are not excluded"));
         }
         let total = self.total;
         // A value that is none is a doubt as well.
-        let is_small = total < PI;
-        (!is_small)
-            .then(|| format!("the injectivity radius: {total:.3} of positive curvature (pi or more) may bound loops"))
+        let doubt = || format!("the injectivity radius: {total:.3} of positive curvature (pi or more) may bound loops");
+        (total >= PI || total.is_nan()).then(doubt)
     }
 }
 
@@ -59,7 +56,8 @@ pub(super) fn convexity(diagram: &Diagram, net: &Net, coverage: &Coverage, unit:
     // A third of the faces around a vertex is its share of the area.
     let sampled = |&v: &VertexId| {
         let p = planar.position(v);
-        let faces = topology.star(v).map(|h| area(planar.triangle(h.face()))).sum::<f64>() / 3.0;
+        let doubled = |[a, b, c]: [Point; 3]| (b - a).cross(c - a);
+        let faces = topology.star(v).map(|h| 0.5 * doubled(planar.triangle(h.face()))).sum::<f64>() / 3.0;
         (gauss_curvature(&scaled, p), faces * scaled.at(p).determinant().max(0.0).sqrt())
     };
     let found: Vec<(f64, f64)> = vertices.par_iter().with_min_len(256).map(sampled).collect();
@@ -70,22 +68,13 @@ pub(super) fn convexity(diagram: &Diagram, net: &Net, coverage: &Coverage, unit:
     let parts = topology.vertex_parts();
     let parts = topology.vertices().filter(|v| parts[v.index()] == v.index()).count();
     let holes = parts.cast_signed().saturating_sub(topology.euler_characteristic()).max(0).cast_unsigned();
-    let radius = if most > FLAT {
-        unit * 0.5 * PI / most.sqrt()
-    } else if most.is_nan() {
-        f64::NAN
-    } else {
-        f64::INFINITY
-    };
+    let of_curved = unit * 0.5 * PI / most.sqrt();
+    let radius = if most <= FLAT { f64::INFINITY } else { of_curved };
     Convexity { curvature: most / unit.powi(2), total, holes, radius, bend: bend(diagram, net, coverage) }
 }
 
 /// Curvatures (in units of the sampling) that differences may show of a flat metric.
 const FLAT: f64 = 1e-7;
-
-fn area([a, b, c]: [Point; 3]) -> f64 {
-    0.5 * Vector::cross(b - a, c - a)
-}
 
 fn bend(diagram: &Diagram, net: &Net, coverage: &Coverage) -> f64 {
     let paths = Paths::default();

@@ -1,6 +1,6 @@
 //! The distortion between tensors (RR-9103, section 3.2), and how large it gets around a seed.
 
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geometry::{Point, Tensor};
 use crate::metric::MetricField;
 
 /// Where the metric is sampled around a seed: circles in the seed's own metric, and places on each.
@@ -10,7 +10,7 @@ const PLACES: usize = 48;
 /// psi: the metrics of two tensors measure no vector longer than this times what the other does. At least 1; infinite where
 /// one of them is no metric.
 pub(crate) fn distortion(g: Tensor, h: Tensor) -> f64 {
-    let [u, v] = frame(g);
+    let [_, [u, v]] = g.frames();
     let eigen = Tensor::new(h.dot(u, u), h.dot(u, v), h.dot(v, v)).eigen();
     let is_metric = eigen.small > 0.0 && eigen.large.is_finite();
     if is_metric { eigen.large.max(1.0 / eigen.small).max(1.0).sqrt() } else { f64::INFINITY }
@@ -21,7 +21,7 @@ pub(crate) fn distortion(g: Tensor, h: Tensor) -> f64 {
 /// bound: a field may do what it likes between samples.
 pub(crate) fn distortion_around(field: &dyn MetricField, p: Point, radius: f64) -> f64 {
     let centre = field.at(p);
-    let [u, v] = frame(centre);
+    let [_, [u, v]] = centre.frames();
     let sample = |circle: usize, place: usize| {
         let (sin, cos) = (std::f64::consts::TAU * place as f64 / PLACES as f64).sin_cos();
         let r = radius * circle as f64 / CIRCLES as f64;
@@ -42,15 +42,10 @@ pub(crate) fn distortion_around(field: &dyn MetricField, p: Point, radius: f64) 
     if psi.is_finite() { psi } else { f64::INFINITY }
 }
 
-/// Two vectors that are orthonormal in a tensor's metric.
-fn frame(g: Tensor) -> [Vector; 2] {
-    let [a, b, c] = g.cholesky();
-    [Vector::new(1.0 / a, 0.0), Vector::new(-b / (a * c), 1.0 / c)]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Vector;
 
     #[test]
     fn what_is_no_metric_is_distorted_beyond_measure() {

@@ -2,8 +2,9 @@
 
 use crate::diagram::Diagram;
 use crate::geometry::Point;
+use crate::lists::ranked;
 use crate::net::Ball;
-use crate::triangulation::{FaceId, HalfEdge, Triangulation};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use serde::Serialize;
 
 /// How walks to the witnesses of Voronoi vertices ended. Deterministic.
@@ -64,11 +65,16 @@ pub(crate) fn walk(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<Fo
         return Some(Found { witness: first, steps: 0, turned: false });
     };
     let towards = diagram.seed(missing)?;
-    let mut doors: Vec<HalfEdge> = first.half_edges().into_iter().filter(|&h| is_door(diagram, h)).collect();
-    let distance = |h: HalfEdge| middle(diagram, h).distance(towards);
-    doors.sort_unstable_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-    let mut tries = doors.into_iter().enumerate();
-    tries.find_map(|(i, door)| {
+    let distance = |ends: [VertexId; 2]| {
+        let [p, q] = ends.map(|v| diagram.canvas().position(v));
+        p.midpoint(q).distance(towards)
+    };
+    let doors = first.half_edges().into_iter().filter_map(|h| {
+        let ends = topology(diagram).ends(h);
+        let [from, to] = diagram.colours_at(ends);
+        (from != to).then(|| (distance(ends), h))
+    });
+    ranked(doors).into_iter().enumerate().find_map(|(i, (_, door))| {
         let (witness, steps) = between(diagram, door, missing)?;
         Some(Found { witness, steps, turned: i > 0 })
     })
@@ -113,16 +119,6 @@ fn start(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<FaceId> {
     // The face of the plane itself, where it is one, is where the report starts.
     candidates.sort_unstable_by_key(|&(missing, is_other, f)| (is_other, missing, f));
     candidates.first().map(|candidate| candidate.2)
-}
-
-fn is_door(diagram: &Diagram, h: HalfEdge) -> bool {
-    let [from, to] = diagram.colours_at(topology(diagram).ends(h));
-    from != to
-}
-
-fn middle(diagram: &Diagram, h: HalfEdge) -> Point {
-    let [p, q] = topology(diagram).ends(h).map(|v| diagram.canvas().position(v));
-    p.midpoint(q)
 }
 
 fn colours_of(diagram: &Diagram, f: FaceId) -> [u32; 3] {

@@ -8,7 +8,7 @@
 use super::seeds::Start;
 use super::{Flat, Ground};
 use crate::error::{Error, Result};
-use crate::geometry::{Orientation, Point, Vector, orientation};
+use crate::geometry::{Point, Vector, holds};
 use crate::planar::Location;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
@@ -182,10 +182,7 @@ impl Descent<'_, Flat<'_>> {
     /// Whether a seed is in the face, or gave the vertex its distance.
     fn sees(&self, at: At, (seed, starts): &(Point, &[Start])) -> bool {
         match at {
-            At::Face(_, f, _) => {
-                let [a, b, c] = self.ground.triangle(f);
-                [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, *seed) != Orientation::Right)
-            }
+            At::Face(_, f, _) => holds(self.ground.triangle(f), *seed),
             At::Vertex(v) => starts.iter().any(|start| start.vertex == v),
         }
     }

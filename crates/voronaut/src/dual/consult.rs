@@ -3,13 +3,14 @@
 //! Each finds what the other cannot: in-circle tests by length are exact where geodesics are short and the field is
 //! smooth; the diagram knows about far seeds, wild fields and walls, to within the size of its canvas.
 
-use super::margin::{diagonals, pair};
+use super::margin::diagonals;
 use super::patch::Patch;
-use super::{Dual, Effort};
+use super::{Dual, Effort, Moving};
 use crate::canvas::{self, Canvas, CanvasFigures};
 use crate::diagram::{Diagram, NerveTriangle, resolve};
 use crate::error::{Result, named};
 use crate::geodesic::{MarchCounters, Margin, Method};
+use crate::lists::{in_order, ranked};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::HashSet;
 
@@ -128,7 +129,7 @@ impl Dual<'_> {
         };
         let ids: Vec<VertexId> = planar.topology.vertices().collect();
         let seeds: Vec<_> = ids.iter().map(|&v| planar.position(v)).collect();
-        let field = self.field();
+        let field = self.field;
         // Where much is unknown the cells are wide.
         let least = if WILD * asked.len() > seeds.len() { LEAST_VERTICES } else { 0 };
         let vertices = (seeds.len() * per_seed as usize).max(least);
@@ -138,10 +139,11 @@ impl Dual<'_> {
         }
         let diagram = Diagram::of_vertices(&canvas, &field, &seeds, method)?;
         let nerve = diagram.sharp_nerve();
-        let sides = nerve.sides(|_| true).map(|[i, j]| pair(ids[i as usize], ids[j as usize]));
+        let ends = |side: [u32; 2]| in_order(side.map(|i| ids[i as usize]));
+        let sides = nerve.sides(|_| true).map(ends);
         let wanted: HashSet<[VertexId; 2]> = sides.filter(|s| s.iter().all(|v| is_inner[v.index()])).collect();
         let unsure = |t: &NerveTriangle| t.fourth.is_some_and(|(_, gap)| gap < BEYOND_CANVAS);
-        let unsure = nerve.sides(unsure).map(|[i, j]| pair(ids[i as usize], ids[j as usize])).collect();
+        let unsure = nerve.sides(unsure).map(ends).collect();
         let mut found = self.compare(road, &wanted, &is_inner);
         let orphans = diagram.orphan_components();
         found.made = Some(Made {
@@ -182,14 +184,13 @@ impl Dual<'_> {
     /// The edges that lengths do not decide, those that they know least about first.
     fn beyond_lengths(&mut self, edges: Vec<HalfEdge>) -> Vec<HalfEdge> {
         let certainty = |margin: Margin| margin.value.abs() / margin.error;
-        let mut found: Vec<(f64, HalfEdge)> = Vec::new();
+        let mut beyond = Vec::new();
         for h in edges {
             if self.is_beyond_lengths(h) {
-                found.push((certainty(self.margin(h, Effort::Full)), h));
+                beyond.push((certainty(self.margin(h, Effort::Full)), h));
             }
         }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        found.into_iter().map(|(_, h)| h).collect()
+        ranked(beyond).into_iter().map(|(_, h)| h).collect()
     }
 
     fn is_beyond_lengths(&mut self, h: HalfEdge) -> bool {
@@ -248,8 +249,7 @@ impl Dual<'_> {
             return self.allows_flip(only) && self.planar.connect(u, v).is_some();
         }
         let before = self.planar.clone();
-        let faces: Vec<FaceId> =
-            crossed.iter().flat_map(|&h| [Some(h), self.topology().twin(h)]).flatten().map(HalfEdge::face).collect();
+        let faces: Vec<FaceId> = crossed.iter().flat_map(|&h| self.topology().sides(h)).map(HalfEdge::face).collect();
         let poorest =
             |dual: &Self| faces.iter().map(|&f| dual.shape(dual.topology().corners(f))).fold(f64::INFINITY, f64::min);
         let was = poorest(self);

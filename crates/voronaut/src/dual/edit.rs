@@ -1,29 +1,14 @@
 //! Seeds come, go and move, edges are flipped (Lawson) by the metric in-circle test, and the mesh leaves the program. Each verb says whether
 //! it was done; what would not be embedded is not done.
 
-use super::margin::pair;
-use super::{Dual, Effort, Kind};
+use super::{Dual, Effort, Kind, LIMIT, Moving, POOR, TIE};
 use crate::domain::Domain;
-use crate::geodesic::{LocalMetric, Margin};
+use crate::geodesic::Margin;
 use crate::geometry::{Point, Tensor, Vector};
+use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::planar::Planar;
-use crate::triangulation::{FaceId, Flipping, HalfEdge, Limit, Triangulation, VertexId};
-
-/// Seeds, edges and the metric at the seeds, with its factor.
-pub(crate) struct Saved {
-    planar: Planar,
-    locals: Vec<LocalMetric>,
-    kinds: Vec<Kind>,
-    factor: f64,
-}
-
-impl Saved {
-    /// Where a seed was.
-    pub(crate) fn position(&self, v: VertexId) -> Point {
-        self.planar.position(v)
-    }
-}
+use crate::triangulation::{FaceId, Flipping, HalfEdge, Triangulation, VertexId};
 
 impl Dual<'_> {
     /// Puts a free seed strictly inside a face.
@@ -33,38 +18,15 @@ impl Dual<'_> {
         Some(v)
     }
 
-    /// Puts a seed on an edge: a curve's if the edge is constrained, else a free one. Returns it and the half-edge from
-    /// it to the old target of h. The edge of a required segment stays whole.
-    pub(crate) fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<(VertexId, HalfEdge)> {
+    /// Puts a seed on an edge: a curve's if the edge is constrained, else a free one. The edge of a required segment stays whole.
+    pub(crate) fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<VertexId> {
         if self.planar.topology.constraint(h).is_some_and(|c| self.required[c.0 as usize]) {
             return None;
         }
         let kind = if self.planar.topology.is_fixed(h) { Kind::Curve } else { Kind::Free };
-        let target = self.planar.topology.target(h);
-        let (v, _) = self.planar.insert_on_edge(h, p)?;
+        let v = self.planar.insert_on_edge(h, p)?;
         self.settle(v, kind);
-        // A constrained half still stands after the flips; that of a free edge may be gone.
-        Some((v, self.planar.topology.find(v, target).unwrap_or(h)))
-    }
-
-    /// What insertions, removals, moves and flips change, to be [restored](Dual::restore).
-    pub(crate) fn saved(&self) -> Saved {
-        Saved {
-            planar: self.planar.clone(),
-            locals: self.locals.clone(),
-            kinds: self.kinds.clone(),
-            factor: self.field.factor,
-        }
-    }
-
-    /// Takes back what was done since.
-    pub(crate) fn restore(&mut self, saved: &Saved) {
-        self.planar.clone_from(&saved.planar);
-        self.locals.clone_from(&saved.locals);
-        self.kinds.clone_from(&saved.kinds);
-        self.field.factor = saved.factor;
-        self.forget();
-        self.touched.clear();
+        Some(v)
     }
 
     /// Takes over a triangulation of the same vertices and constraints that was changed by other rules than the metric's.
@@ -102,8 +64,7 @@ impl Dual<'_> {
         if !self.shift(v, to) {
             return false;
         }
-        self.locals[v.index()] = self.measure(to);
-        self.flip_around(v, Effort::Local);
+        self.settle_move(v);
         true
     }
 
@@ -132,13 +93,10 @@ impl Dual<'_> {
         self.kinds.resize(slots, kind);
         self.locals[v.index()] = local;
         self.kinds[v.index()] = kind;
-        let star: Vec<FaceId> = self.planar.topology.star(v).map(HalfEdge::face).collect();
-        self.touched.extend(star);
+        self.touched.extend(self.planar.topology.star(v).map(HalfEdge::face));
         self.flip_around(v, Effort::Local);
     }
-}
 
-impl Dual<'_> {
     /// The mesh, by `Domain::mesh_of`.
     pub(crate) fn to_mesh(&self, domain: &Domain) -> Mesh {
         domain.mesh_of(self.planar(), |v| self.corner(v))
@@ -153,19 +111,7 @@ impl Dual<'_> {
     fn corner(&self, v: VertexId) -> Option<u32> {
         if let Kind::Corner(point) = self.kind(v) { Some(point) } else { None }
     }
-}
 
-/// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
-const TIE: f64 = 1e-9;
-
-/// Inconsistent tests can make flips go round in a circle.
-const LIMIT: Limit = Limit::OfSlot(6);
-
-/// A flip may not leave a triangle whose quality is below this if both were better before: where lengths of straight
-/// edges contradict each other, or geodesics bend away from them, it would leave slivers.
-const POOR: f64 = 0.5;
-
-impl Dual<'_> {
     /// Flips every edge that the metric wants flipped and the plane allows. Returns the number of flips.
     pub(crate) fn flip_all(&mut self, effort: Effort) -> u64 {
         let before = self.counters.flips;
@@ -180,9 +126,9 @@ impl Dual<'_> {
     }
 
     /// Flips around a vertex and onwards.
-    pub(crate) fn flip_around(&mut self, v: VertexId, effort: Effort) -> u64 {
+    pub(super) fn flip_around(&mut self, v: VertexId, effort: Effort) {
         self.lawson.queue(self.planar.topology.star(v).flat_map(|h| [h, h.next()]));
-        self.flip_queued(effort)
+        self.flip_queued(effort);
     }
 
     /// Edges that the metric wants flipped and the plane forbids, with their margins, certain or not.
@@ -205,14 +151,13 @@ impl Dual<'_> {
 
     pub(super) fn is_held(&self, h: HalfEdge) -> bool {
         let topology = &self.planar.topology;
-        !self.held.is_empty() && self.held.contains(&pair(topology.origin(h), topology.target(h)))
+        !self.held.is_empty() && self.held.contains(&in_order(topology.ends(h)))
     }
 
-    fn flip_queued(&mut self, effort: Effort) -> u64 {
+    fn flip_queued(&mut self, effort: Effort) {
         let mut lawson = std::mem::take(&mut self.lawson);
-        let flips = lawson.pass(&mut ByMargin { dual: self, effort }, LIMIT).len() as u64;
+        lawson.pass(&mut ByMargin { dual: self, effort }, LIMIT);
         self.lawson = lawson;
-        flips
     }
 
     /// Whether the plane allows a flip: the quadrilateral is strictly convex, and the flip leaves no straight triangle
@@ -225,8 +170,12 @@ impl Dual<'_> {
 
     /// Quality of a straight triangle in the mean tensor of its corners: 1 of an equilateral one.
     pub(super) fn shape(&self, corners: [VertexId; 3]) -> f64 {
-        let tensor = corners.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / 3.0);
-        tensor.shape(corners.map(|v| self.position(v)))
+        self.mean_tensor(corners).shape(corners.map(|v| self.position(v)))
+    }
+
+    /// The mean of the tensors at some vertices.
+    pub(crate) fn mean_tensor<const N: usize>(&self, vertices: [VertexId; N]) -> Tensor {
+        vertices.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / N as f64)
     }
 }
 
@@ -250,6 +199,6 @@ impl Flipping for ByMargin<'_, '_> {
         let topology = &mut self.dual.planar.topology;
         topology.flip(h);
         self.dual.counters.flips += 1;
-        self.dual.touched.extend([Some(h), topology.twin(h)].into_iter().flatten().map(HalfEdge::face));
+        self.dual.touched.extend(topology.sides(h).map(HalfEdge::face));
     }
 }

@@ -1,12 +1,13 @@
 //! What the in-circle test of the mesh in the making climbs: a frozen tensor, expansions at the vertices, quadrature along the
 //! chords, geodesics with 4 and with 8 modes.
 
-use super::Dual;
+use super::{Dual, Effort, Moving};
 use crate::geodesic::{
     Fineness, Length, Margin, PathLength, bent_chord, bowed_chord, chord, frozen_margin, hermite, margin_of_estimates,
 };
 use crate::geometry::Tensor;
 use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested, climb};
+use crate::lists::in_order;
 use crate::triangulation::{HalfEdge, VertexId};
 
 /// Number of levels.
@@ -30,17 +31,6 @@ pub(super) const KINKS: f64 = 0.005;
 const OF_BOW: f64 = 0.25;
 /// A bow that saves less than this share of the chord is small.
 const STRAIGHT: f64 = 0.02;
-
-/// How far up the levels a test may climb.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Effort {
-    /// To lengths from the expansions at the vertices: no evaluation of the field.
-    Local = 1,
-    /// To quadrature along the chords.
-    Chord = 2,
-    /// To the last level: geodesics.
-    Full = 4,
-}
 
 impl Dual<'_> {
     /// The margin of an edge with two faces.
@@ -77,18 +67,13 @@ impl Dual<'_> {
     }
 
     pub(super) fn quad(&self, h: HalfEdge) -> Quad {
-        let [a, b, c, d] = self.topology().quad(h).expect("an edge with two faces").map(|v| v.0);
-        Quad { a, b, c, d }
+        Quad::around(self.topology(), h).expect("an edge with two faces")
     }
 }
 
 /// The two diagonals of a quadrilateral, that of the edge first, each with its smaller end first.
 pub(super) fn diagonals(&Quad { a, b, c, d }: &Quad) -> [[VertexId; 2]; 2] {
-    [pair(VertexId(a), VertexId(b)), pair(VertexId(c), VertexId(d))]
-}
-
-pub(super) fn pair(u: VertexId, v: VertexId) -> [VertexId; 2] {
-    [u.min(v), u.max(v)]
+    [[a, b], [c, d]].map(|ends| in_order(ends.map(VertexId)))
 }
 
 /// A dual, tested with some effort.
@@ -101,7 +86,7 @@ impl InCircle for ByEffort<'_, '_> {
     /// Expansions tell nothing of long quadrilaterals, nor at rough vertices.
     fn may_tell(&self, quad: &Quad, level: usize, _lengths: &Lengths, _known: Option<Tested>) -> bool {
         let is_rough = |i: u32| self.dual.local(VertexId(i)).is_rough;
-        level != 1 || !self.is_long(quad) && ![quad.a, quad.b, quad.c, quad.d].into_iter().any(is_rough)
+        level != 1 || !self.is_long(quad) && !quad.seeds().into_iter().any(is_rough)
     }
 
     fn is_by_lengths(&self, level: usize) -> bool {
@@ -153,20 +138,20 @@ impl InCircle for ByEffort<'_, '_> {
 
 impl ByEffort<'_, '_> {
     fn tensors(&self, quad: &Quad) -> ([Tensor; 4], Tensor) {
-        let tensors = [quad.a, quad.b, quad.c, quad.d].map(|i| self.dual.local(VertexId(i)).tensor);
+        let tensors = quad.seeds().map(|i| self.dual.local(VertexId(i)).tensor);
         (tensors, tensors.iter().fold(Tensor::default(), |sum, &t| sum + t) * 0.25)
     }
 
     /// Whether the quadrilateral is [`LONG`].
     fn is_long(&self, quad: &Quad) -> bool {
-        let [a, b, c, d] = [quad.a, quad.b, quad.c, quad.d].map(|i| self.dual.position(VertexId(i)));
+        let [a, b, c, d] = quad.seeds().map(|i| self.dual.position(VertexId(i)));
         let (_, mean) = self.tensors(quad);
         mean.length(b - a).min(mean.length(d - c)) > LONG
     }
 
     /// The mean tensor of the four corners, its error from how much the corners' tensors differ.
     fn frozen(&self, quad: &Quad) -> Margin {
-        let [a, b, c, d] = [quad.a, quad.b, quad.c, quad.d].map(|i| self.dual.position(VertexId(i)));
+        let [a, b, c, d] = quad.seeds().map(|i| self.dual.position(VertexId(i)));
         let (tensors, mean) = self.tensors(quad);
         let value = frozen_margin(mean, [a - c, b - c], [b - d, a - d]);
         let spread = |v| {

@@ -14,9 +14,7 @@ mod patch;
 
 pub(crate) use consult::Consultation;
 pub use consult::{Disagreement, Road};
-pub(crate) use edit::Saved;
-pub(crate) use margin::Effort;
-pub(crate) use moving::{Mending, Moving};
+pub(crate) use moving::Moving;
 pub(crate) use on_surface::SurfaceDual;
 
 use crate::domain::Domain;
@@ -26,8 +24,8 @@ use crate::geometry::{Point, Readable, Tensor};
 use crate::in_circle::Tests;
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
-use crate::planar::Planar;
-use crate::triangulation::{FaceId, HalfEdge, Lawson, Triangulation, VertexId};
+use crate::planar::{Location, Planar};
+use crate::triangulation::{FaceId, HalfEdge, Lawson, Limit, VertexId};
 use margin::LEVELS;
 use std::collections::HashSet;
 
@@ -40,6 +38,27 @@ pub enum Kind {
     Curve,
     /// Nothing: it may move and go.
     Free,
+}
+
+/// Margins closer to zero than this are ties: flipping them gains nothing and could go on for ever.
+const TIE: f64 = 1e-9;
+
+/// Inconsistent tests can make flips go round in a circle.
+const LIMIT: Limit = Limit::OfSlot(6);
+
+/// A flip may not leave a triangle whose quality is below this if both were better before: where lengths of straight
+/// edges contradict each other, or geodesics bend away from them, it would leave slivers.
+const POOR: f64 = 0.5;
+
+/// How far up the levels a test may climb.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// To lengths from the expansions at the vertices: no evaluation of the field.
+    Local = 1,
+    /// To quadrature along the chords.
+    Chord = 2,
+    /// To the last level: geodesics.
+    Full = 4,
 }
 
 /// Work counters; deterministic.
@@ -97,23 +116,13 @@ impl<'a> Dual<'a> {
         Ok(dual)
     }
 
-    /// Topology.
-    pub(crate) fn topology(&self) -> &Triangulation {
-        &self.planar.topology
-    }
-
     /// The embedded triangulation.
     pub(crate) fn planar(&self) -> &Planar {
         &self.planar
     }
 
     /// The metric field, in units of the wanted edge length.
-    pub(crate) fn field(&self) -> Scaled<'a> {
-        self.field
-    }
-
-    /// [`Dual::field`], to be borrowed.
-    pub(crate) fn scaled_field(&self) -> &Scaled<'a> {
+    pub(crate) fn field(&self) -> &Scaled<'a> {
         &self.field
     }
 
@@ -133,14 +142,19 @@ impl<'a> Dual<'a> {
         self.planar.position(v)
     }
 
-    /// The metric around a vertex.
-    pub(crate) fn local(&self, v: VertexId) -> &LocalMetric {
-        &self.locals[v.index()]
+    /// The metric around every vertex, by id.
+    pub(crate) fn locals(&self) -> &[LocalMetric] {
+        &self.locals
     }
 
-    /// What holds a vertex.
-    pub(crate) fn kind(&self, v: VertexId) -> Kind {
-        self.kinds[v.index()]
+    /// Where a point is, as a vertex near it sees it: straight ahead, and with `confined` not beyond constraints.
+    pub(crate) fn seen_from(&self, near: VertexId, p: Point, confined: bool) -> Option<Location> {
+        Some(self.planar.walk(self.topology().start(near)?.face(), p, confined))
+    }
+
+    /// Whether the straight way from a vertex to a point stays in the domain.
+    pub(crate) fn is_inside(&self, near: VertexId, p: Point) -> bool {
+        !matches!(self.seen_from(near, p, false), None | Some(Location::Behind(_)))
     }
 
     /// Work counters since the beginning.
@@ -151,7 +165,7 @@ impl<'a> Dual<'a> {
     /// Metric length of an edge: estimated from its ends (`hermite`), or, where the metric is rough, by quadrature
     /// along the chord.
     pub(crate) fn edge_length(&self, h: HalfEdge) -> f64 {
-        let (u, v) = (self.topology().origin(h), self.topology().target(h));
+        let [u, v] = self.topology().ends(h);
         let (p, q) = (self.position(u), self.position(v));
         if self.local(u).is_rough || self.local(v).is_rough {
             return chord(&self.field, p, q);
@@ -196,11 +210,6 @@ impl<'a> Dual<'a> {
         self.measure_each(|_, field, p| LocalMetric::at(field, p));
     }
 
-    /// Evaluates the metric at every vertex that has moved; where it was rough it counts as rough still.
-    pub(crate) fn measure_moved(&mut self) {
-        self.measure_each(|local, field, p| local.moved(field, p));
-    }
-
     fn measure_each(&mut self, measure: impl Fn(&LocalMetric, &Scaled, Point) -> LocalMetric + Sync) {
         self.forget();
         let field = self.field;
@@ -222,7 +231,7 @@ impl<'a> Dual<'a> {
     pub(crate) fn measure_rough_edges(&mut self) {
         let is_rough = |v: VertexId| self.local(v).is_rough;
         let topology = self.topology();
-        let at_rough = |&h: &HalfEdge| is_rough(topology.origin(h)) || is_rough(topology.target(h));
+        let at_rough = |&h: &HalfEdge| topology.ends(h).into_iter().any(is_rough);
         let edges: Vec<HalfEdge> = topology.edges().filter(at_rough).collect();
         let length = |&h: &HalfEdge| {
             let [p, q] = self.planar.ends(h);
@@ -232,12 +241,6 @@ impl<'a> Dual<'a> {
         for (h, length) in edges.into_iter().zip(lengths) {
             self.planar.topology.set_length(h, length);
         }
-    }
-
-    /// Evaluates the metric at a vertex that has moved.
-    pub(crate) fn remeasure(&mut self, v: VertexId) {
-        let local = self.measure(self.position(v));
-        self.locals[v.index()] = local;
     }
 
     /// The metric around a point; where it is not valid that is noted, and the Euclidean metric serves instead.

@@ -1,11 +1,12 @@
-//! What relaxation asks of a triangulation whose seeds it moves, in the plane or on a surface; and what mending its worst triangles asks:
-//! how good triangles and edges are as a mesh's are measured.
+//! What relaxation asks of a triangulation whose seeds it moves, in the plane or on a surface, and what mending its worst triangles
+//! asks, which tries one seed at a time elsewhere: how good triangles and edges are as a mesh's are measured.
 
-use super::{Dual, Effort, Kind, Saved};
+use super::{Dual, Effort, Kind};
 use crate::error::Result;
 use crate::geodesic::LocalMetric;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
+use crate::planar::Planar;
 use crate::triangulation::{Triangulation, VertexId};
 
 /// Seeds that can move, with their triangulation. Vectors at a seed are in its own coordinates: those of the plane, or of a
@@ -13,6 +14,8 @@ use crate::triangulation::{Triangulation, VertexId};
 pub(crate) trait Moving: Sync {
     /// Seeds, edges, and the metric at the seeds, to come back to.
     type Saved;
+    /// A place with what the metric is there.
+    type Site: Copy;
 
     /// Topology.
     fn topology(&self) -> &Triangulation;
@@ -24,13 +27,17 @@ pub(crate) trait Moving: Sync {
     fn offset(&self, from: VertexId, to: VertexId) -> Vector;
     /// The factor on the metric.
     fn factor(&self) -> f64;
-    /// The direction of the segment that a curve's seed is on: from one neighbour there to the other.
-    fn along_segment(&self, v: VertexId) -> Option<Vector>;
+    /// The direction of the segment that a curve's seed is on: from one neighbour there to the other; where there are segments.
+    fn along_segment(&self, _v: VertexId) -> Option<Vector> {
+        None
+    }
 
     /// Moves a seed, unless a triangle would turn over; says whether it did.
     fn shift_by(&mut self, v: VertexId, by: Vector) -> bool;
     /// Moves a curve's seed along its segment, as far as its edges there stay within these lengths (metric).
-    fn slide_by(&mut self, v: VertexId, by: Vector, lengths: [f64; 2]) -> bool;
+    fn slide_by(&mut self, _v: VertexId, _by: Vector, _lengths: [f64; 2]) -> bool {
+        false
+    }
     /// Measures what has to be known before cells are cut.
     fn measure(&mut self);
     /// After seeds have moved: measures the metric there and flips. Returns how many flips.
@@ -45,21 +52,49 @@ pub(crate) trait Moving: Sync {
     fn take_back(&mut self, saved: &Self::Saved);
     /// How a seed has moved since.
     fn moved_since(&self, saved: &Self::Saved, v: VertexId) -> Vector;
+
+    /// Where a seed is.
+    fn site(&self, v: VertexId) -> Self::Site;
+    /// Where a seed would be after a move; `None` where it cannot go.
+    fn site_after(&self, v: VertexId, by: Vector) -> Option<Self::Site>;
+    /// The quality of a straight triangle in the log-Euclidean mean of the tensors at its corners: 1 of an equilateral one,
+    /// negative of one that is turned over.
+    fn quality(&self, corners: [Self::Site; 3]) -> f64;
+    /// The metric length of a straight edge.
+    fn straight_length(&self, ends: [Self::Site; 2]) -> f64;
+    /// After a seed has moved: measures the metric there and flips around it.
+    fn settle_move(&mut self, v: VertexId);
+}
+
+/// Seeds, edges and the metric at the seeds, with its factor.
+pub(crate) struct Saved {
+    planar: Planar,
+    locals: Vec<LocalMetric>,
+    kinds: Vec<Kind>,
+    factor: f64,
+}
+
+/// A point and the logarithm of the tensor there.
+#[derive(Clone, Copy)]
+pub(crate) struct Site {
+    at: Point,
+    log: Tensor,
 }
 
 impl Moving for Dual<'_> {
     type Saved = Saved;
+    type Site = Site;
 
     fn topology(&self) -> &Triangulation {
-        Dual::topology(self)
+        &self.planar.topology
     }
 
     fn local(&self, v: VertexId) -> &LocalMetric {
-        Dual::local(self, v)
+        &self.locals[v.index()]
     }
 
     fn kind(&self, v: VertexId) -> Kind {
-        Dual::kind(self, v)
+        self.kinds[v.index()]
     }
 
     fn offset(&self, from: VertexId, to: VertexId) -> Vector {
@@ -87,7 +122,8 @@ impl Moving for Dual<'_> {
     }
 
     fn settle_moves(&mut self) -> Result<u64> {
-        self.measure_moved();
+        // Where the metric was rough it counts as rough still.
+        self.measure_each(|local, field, p| local.moved(field, p));
         self.verdict()?;
         let flips = self.flip_all(Effort::Local);
         self.take_touched();
@@ -96,45 +132,26 @@ impl Moving for Dual<'_> {
     }
 
     fn save(&self) -> Saved {
-        self.saved()
+        Saved {
+            planar: self.planar.clone(),
+            locals: self.locals.clone(),
+            kinds: self.kinds.clone(),
+            factor: self.field.factor,
+        }
     }
 
     fn take_back(&mut self, saved: &Saved) {
-        self.restore(saved);
+        self.planar.clone_from(&saved.planar);
+        self.locals.clone_from(&saved.locals);
+        self.kinds.clone_from(&saved.kinds);
+        self.field.factor = saved.factor;
+        self.forget();
+        self.touched.clear();
     }
 
     fn moved_since(&self, saved: &Saved, v: VertexId) -> Vector {
-        self.position(v) - saved.position(v)
+        self.position(v) - saved.planar.position(v)
     }
-}
-
-/// Seeds of which one at a time is tried elsewhere.
-pub(crate) trait Mending: Moving {
-    /// A place with what the metric is there.
-    type Site: Copy;
-
-    /// Where a seed is.
-    fn site(&self, v: VertexId) -> Self::Site;
-    /// Where a seed would be after a move; `None` where it cannot go.
-    fn site_after(&self, v: VertexId, by: Vector) -> Option<Self::Site>;
-    /// The quality of a straight triangle in the log-Euclidean mean of the tensors at its corners: 1 of an equilateral one,
-    /// negative of one that is turned over.
-    fn quality(&self, corners: [Self::Site; 3]) -> f64;
-    /// The metric length of a straight edge.
-    fn straight_length(&self, ends: [Self::Site; 2]) -> f64;
-    /// After a seed has moved: measures the metric there and flips around it.
-    fn settle_move(&mut self, v: VertexId);
-}
-
-/// A point and the logarithm of the tensor there.
-#[derive(Clone, Copy)]
-pub(crate) struct Site {
-    at: Point,
-    log: Tensor,
-}
-
-impl Mending for Dual<'_> {
-    type Site = Site;
 
     fn site(&self, v: VertexId) -> Site {
         let at = self.position(v);
@@ -155,7 +172,7 @@ impl Mending for Dual<'_> {
     }
 
     fn settle_move(&mut self, v: VertexId) {
-        self.remeasure(v);
+        self.locals[v.index()] = self.measure(self.position(v));
         self.flip_around(v, Effort::Local);
     }
 }

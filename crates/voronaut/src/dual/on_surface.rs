@@ -4,7 +4,7 @@
 //! without doubled edges, and lets no triangle turn away from the surface's normals. What the metric is around a seed, and where its neighbours are, is
 //! told in a chart there (RR-9103, section 12).
 
-use super::{Kind, Mending, Moving};
+use super::{Kind, Moving};
 use crate::error::{Error, Result};
 use crate::geodesic::LocalMetric;
 use crate::geometry::{Point, Point3, TangentPlane, Tensor3, Vector, Vector3};
@@ -14,8 +14,6 @@ use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
-/// Margins closer to zero than this are ties.
-pub(super) const TIE: f64 = 1e-9;
 /// The least cosine between a triangle's normal and those of the surface at its corners.
 pub(super) const UPRIGHT: f64 = 0.3;
 /// Triangles with this cosine or less are folded over, or flat.
@@ -36,7 +34,7 @@ pub(crate) struct SurfaceDual<'a> {
     pub(super) flips: u64,
 }
 
-/// What moves and flips change.
+/// What moves and flips change. Vertex i of the topology is seed i.
 #[derive(Clone)]
 pub(crate) struct State {
     pub(super) topology: Triangulation,
@@ -84,11 +82,6 @@ impl<'a> SurfaceDual<'a> {
         Ok(dual)
     }
 
-    /// Topology: vertex i is seed i.
-    pub(crate) fn topology(&self) -> &Triangulation {
-        &self.state.topology
-    }
-
     /// The triangles by their seeds.
     pub(crate) fn triangles(&self) -> Vec<[u32; 3]> {
         self.topology().faces().map(|f| self.topology().corners(f).map(|v| v.0)).collect()
@@ -107,11 +100,6 @@ impl<'a> SurfaceDual<'a> {
     /// Its metric, not scaled.
     pub(crate) fn metric(&self) -> &'a dyn SurfaceMetric {
         self.metric
-    }
-
-    /// The factor on the metric.
-    pub(crate) fn factor(&self) -> f64 {
-        self.factor
     }
 
     /// Multiplies the metric by another factor instead.
@@ -164,18 +152,6 @@ impl<'a> SurfaceDual<'a> {
         }
     }
 
-    /// Evaluates the metric at a seed that has moved.
-    pub(super) fn remeasure(&mut self, v: VertexId) {
-        let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
-        let chart = Chart::in_plane(self.input, self.metric, at, plane);
-        let local =
-            self.state.locals[v.index()].moved(&Scaled { field: &chart, factor: self.factor }, Point::default());
-        if local.tensor.is_positive_definite() {
-            self.state.locals[v.index()] = local;
-            self.state.measured[v.index()] = Measured { at: at.position, tensor: self.metric.at(&at) };
-        }
-    }
-
     /// Where a seed comes to lie that is moved by a vector of its tangent plane.
     pub(super) fn place_after(&self, v: VertexId, by: Vector) -> Option<Place> {
         let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
@@ -198,22 +174,27 @@ impl<'a> SurfaceDual<'a> {
 
     /// Quality of a triangle by its lengths: 1 of an equilateral one.
     pub(crate) fn shape(&self, [a, b, c]: [VertexId; 3]) -> f64 {
-        let [x, y, z] = [(a, b), (b, c), (c, a)].map(|(u, v)| self.length_between(u, v));
+        let [x, y, z] = [[a, b], [b, c], [c, a]].map(|ends| self.estimate(ends).value);
         let square = (x + y + z) * (x + y - z) * (x - y + z) * (y + z - x);
         3.0_f64.sqrt() * square.max(0.0).sqrt() / (x * x + y * y + z * z)
     }
 
     /// The geometric mean of the lengths of edges that are free to be as long as the metric wants: not between seeds that stay.
     pub(crate) fn mean_length(&self) -> f64 {
-        let stays = |v: VertexId| self.state.kinds[v.index()] != Kind::Free;
-        let is_free = |h: &HalfEdge| !stays(self.topology().origin(*h)) || !stays(self.topology().target(*h));
+        let is_free = |h: &HalfEdge| self.topology().ends(*h).iter().any(|&v| self.kind(v) == Kind::Free);
         let mut edges: Vec<HalfEdge> = self.topology().edges().filter(is_free).collect();
         if edges.is_empty() {
             edges = self.topology().edges().collect();
         }
-        let log = |&h: &HalfEdge| self.length_between(self.topology().origin(h), self.topology().target(h)).ln();
+        let log = |&h: &HalfEdge| self.estimate(self.topology().ends(h)).value.ln();
         let logs: Vec<f64> = edges.par_iter().with_min_len(64).map(log).collect();
         (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp()
+    }
+
+    /// A place with the metric there, scaled.
+    fn site_of(&self, place: Place) -> SurfaceSite {
+        let normal = self.input().normal(&place);
+        SurfaceSite { log: (self.metric().at(&place) * self.factor()).log(), place: Place { normal, ..place } }
     }
 }
 
@@ -227,8 +208,16 @@ fn upright([a, b, c]: [Point3; 3], normals: [Vector3; 3]) -> f64 {
     normals.iter().map(|n| n.dot(normal)).fold(1.0, f64::min)
 }
 
+/// A place of a surface and the logarithm of the tensor there.
+#[derive(Clone, Copy)]
+pub(crate) struct SurfaceSite {
+    place: Place,
+    log: Tensor3,
+}
+
 impl Moving for SurfaceDual<'_> {
     type Saved = State;
+    type Site = SurfaceSite;
 
     fn topology(&self) -> &Triangulation {
         &self.state.topology
@@ -262,10 +251,6 @@ impl Moving for SurfaceDual<'_> {
         self.factor
     }
 
-    fn along_segment(&self, _v: VertexId) -> Option<Vector> {
-        None
-    }
-
     fn shift_by(&mut self, v: VertexId, by: Vector) -> bool {
         let plane = self.state.planes[v.index()];
         let Some(place) = self.place_after(v, by) else { return false };
@@ -289,16 +274,12 @@ impl Moving for SurfaceDual<'_> {
         true
     }
 
-    fn slide_by(&mut self, _v: VertexId, _by: Vector, _lengths: [f64; 2]) -> bool {
-        false
-    }
-
     /// Lengths of edges that a rough metric makes slow to measure, where they are not known.
     fn measure(&mut self) {
         let topology = self.topology();
-        let is_due = |&h: &HalfEdge| topology.length(h).is_nan() && self.is_rough(self.ends(h));
+        let is_due = |&h: &HalfEdge| topology.length(h).is_nan() && self.is_rough(topology.ends(h));
         let edges: Vec<HalfEdge> = topology.edges().filter(is_due).collect();
-        let length = |&h: &HalfEdge| self.chord_length(self.ends(h));
+        let length = |&h: &HalfEdge| self.chord_length(topology.ends(h));
         let lengths: Vec<f64> = edges.par_iter().with_min_len(64).map(length).collect();
         for (h, length) in edges.into_iter().zip(lengths) {
             self.state.topology.set_length(h, length);
@@ -322,24 +303,6 @@ impl Moving for SurfaceDual<'_> {
     fn moved_since(&self, saved: &State, v: VertexId) -> Vector {
         self.state.planes[v.index()].flatten(self.position(v) - saved.places[v.index()].position)
     }
-}
-
-/// A place of a surface and the logarithm of the tensor there.
-#[derive(Clone, Copy)]
-pub(crate) struct SurfaceSite {
-    place: Place,
-    log: Tensor3,
-}
-
-impl SurfaceDual<'_> {
-    fn site_of(&self, place: Place) -> SurfaceSite {
-        let normal = self.input().normal(&place);
-        SurfaceSite { log: (self.metric().at(&place) * self.factor()).log(), place: Place { normal, ..place } }
-    }
-}
-
-impl Mending for SurfaceDual<'_> {
-    type Site = SurfaceSite;
 
     fn site(&self, v: VertexId) -> SurfaceSite {
         self.site_of(self.places()[v.index()])
@@ -363,7 +326,14 @@ impl Mending for SurfaceDual<'_> {
     }
 
     fn settle_move(&mut self, v: VertexId) {
-        self.remeasure(v);
+        let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
+        let chart = Chart::in_plane(self.input, self.metric, at, plane);
+        let local =
+            self.state.locals[v.index()].moved(&Scaled { field: &chart, factor: self.factor }, Point::default());
+        if local.tensor.is_positive_definite() {
+            self.state.locals[v.index()] = local;
+            self.state.measured[v.index()] = Measured { at: at.position, tensor: self.metric.at(&at) };
+        }
         self.flip_around(v);
     }
 }

@@ -1,6 +1,6 @@
 //! A part of the mesh around some of its edges, as a triangulation of its own.
 
-use super::Dual;
+use super::{Dual, Moving};
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
@@ -20,11 +20,8 @@ impl Dual<'_> {
     pub(super) fn patch_around(&self, edges: &[HalfEdge]) -> Patch {
         let topology = self.topology();
         let mut inside = vec![false; topology.vertex_slots()];
-        for &h in edges {
-            for side in [Some(h), topology.twin(h)].into_iter().flatten() {
-                inside[topology.origin(side).index()] = true;
-                inside[topology.apex(side).index()] = true;
-            }
+        for v in edges.iter().filter_map(|&h| topology.quad(h)).flatten() {
+            inside[v.index()] = true;
         }
         (1..RINGS).for_each(|_| self.grow(&mut inside));
         let is_inner = inside.clone();
@@ -67,13 +64,8 @@ impl Dual<'_> {
     /// Adds all neighbours.
     fn grow(&self, inside: &mut [bool]) {
         let topology = self.topology();
-        let next: Vec<VertexId> = topology
-            .edges()
-            .flat_map(|h| [[topology.origin(h), topology.target(h)], [topology.target(h), topology.origin(h)]])
-            .filter(|[u, v]| inside[u.index()] && !inside[v.index()])
-            .map(|[_, v]| v)
-            .collect();
-        for v in next {
+        let before: Vec<VertexId> = topology.vertices().filter(|v| inside[v.index()]).collect();
+        for v in before.into_iter().flat_map(|v| topology.around(v)) {
             inside[v.index()] = true;
         }
     }

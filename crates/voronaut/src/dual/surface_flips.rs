@@ -2,17 +2,13 @@
 //! from the expansions at both ends; where the metric is rough, by Simpson's rule.
 
 use super::margin::KINKS;
-use super::on_surface::{FOLDED, SurfaceDual, TIE, UPRIGHT};
-use super::{Mending, Moving};
+use super::on_surface::{FOLDED, SurfaceDual, UPRIGHT};
+use super::{LIMIT, Moving, POOR, TIE};
 use crate::geodesic::{Length, Margin, hermite_between, margin_of_estimates};
 use crate::in_circle::Quad;
 use crate::parallel::prelude::*;
-use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Rounds, Triangulation, VertexId, flip_in_rounds};
+use crate::triangulation::{Flipping, HalfEdge, Lawson, Rounds, Triangulation, VertexId, flip_in_rounds};
 
-/// Inconsistent tests can make flips go round in a circle.
-const LIMIT: Limit = Limit::OfSlot(6);
-/// A flip may not leave a triangle whose quality is below this if both were better before.
-const POOR: f64 = 0.5;
 /// Triangles below this quality are nearly flat.
 const NEARLY_FLAT: f64 = 0.05;
 /// Rounds of flips that unfold or round off, at most.
@@ -30,23 +26,21 @@ impl SurfaceDual<'_> {
     }
 
     /// Flips around a seed and onwards.
-    pub(super) fn flip_around(&mut self, v: VertexId) -> u64 {
+    pub(super) fn flip_around(&mut self, v: VertexId) {
         let star: Vec<HalfEdge> = self.topology().star(v).flat_map(|h| [h, h.next()]).collect();
-        self.flip_by(star, Self::margin)
+        self.flip_by(star, Self::margin);
     }
 
     /// Flips by a test of the caller's: every edge with a certainly negative margin whose flip the surface allows. Returns the
     /// number of flips.
     pub(crate) fn settle_by(&mut self, test: impl Fn(&Quad) -> Margin) -> u64 {
         let edges: Vec<HalfEdge> = self.topology().edges().collect();
-        self.flip_by(edges, |dual, h| certain(dual.seeds_around(h).map(|quad| test(&quad))))
+        self.flip_by(edges, |dual, h| dual.certain(h, &test))
     }
 
     /// How many edges a test wants flipped.
     pub(crate) fn disagreeing(&self, test: impl Fn(&Quad) -> Margin) -> usize {
-        let wants = |&h: &HalfEdge| {
-            !self.topology().is_fixed(h) && certain(self.seeds_around(h).map(|quad| test(&quad))).value < -TIE
-        };
+        let wants = |&h: &HalfEdge| !self.topology().is_fixed(h) && self.certain(h, &test).value < -TIE;
         self.topology().edges().filter(wants).count()
     }
 
@@ -56,11 +50,6 @@ impl SurfaceDual<'_> {
         let known = margins.filter(|margin| margin.error.is_finite()).map(|margin| margin.value);
         let (blocked, settled): (Vec<f64>, Vec<f64>) = known.partition(|&margin| margin < -TIE);
         (blocked.len(), settled.into_iter().fold(1.0, f64::min))
-    }
-
-    pub(super) fn seeds_around(&self, h: HalfEdge) -> Option<Quad> {
-        let [a, b, c, d] = self.topology().quad(h)?.map(|v| v.0);
-        Some(Quad { a, b, c, d })
     }
 
     /// Flips edges and what follows from them as long as a test gives a negative margin and the surface allows it.
@@ -131,6 +120,52 @@ impl SurfaceDual<'_> {
         let [before, after] = [now, then].map(|pair| self.leaning(pair));
         (before.upright <= FOLDED && after.is_better_than(&before)).then_some(after.area - before.area)
     }
+
+    /// The margin of an edge by a test of the caller's, if its sign is certain.
+    fn certain(&self, h: HalfEdge, test: impl Fn(&Quad) -> Margin) -> Margin {
+        let margin = Quad::around(self.topology(), h).map(|quad| test(&quad));
+        margin.filter(Margin::is_certain).unwrap_or(Margin::UNKNOWN)
+    }
+
+    /// Metric length of the geodesic between two seeds.
+    pub(super) fn estimate(&self, ends: [VertexId; 2]) -> Length {
+        let [u, v] = ends;
+        if !self.is_rough(ends) {
+            let locals = ends.map(|w| &self.state.locals[w.index()]);
+            return hermite_between(locals, [self.offset(u, v), -self.offset(v, u)]);
+        }
+        let topology = self.topology();
+        let measured = topology.edge_between(u, v).map(|h| topology.length(h));
+        let value = measured.filter(|length| !length.is_nan()).unwrap_or_else(|| self.chord_length(ends));
+        Length { value, error: KINKS }
+    }
+
+    pub(super) fn chord_length(&self, ends: [VertexId; 2]) -> f64 {
+        let [p, q] = ends.map(|w| &self.state.places[w.index()]);
+        let tensors = ends.map(|w| self.state.measured[w.index()].tensor);
+        let middle = self.input.lift(p, p.position.lerp(q.position, 0.5));
+        let middle = middle.map_or(tensors, |place| [self.metric.at(&place); 2]);
+        self.input.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()
+    }
+
+    pub(super) fn is_rough(&self, ends: [VertexId; 2]) -> bool {
+        ends.iter().any(|v| self.state.locals[v.index()].is_rough)
+    }
+
+    /// Keeps the length of an edge that takes long to measure.
+    pub(super) fn measure_edge(&mut self, h: HalfEdge) {
+        let ends = self.topology().ends(h);
+        if self.is_rough(ends) {
+            let length = self.chord_length(ends);
+            self.state.topology.set_length(h, length);
+        }
+    }
+
+    /// The in-circle test of an edge; [`Margin::UNKNOWN`] of one with a single face, and where lengths make no triangles.
+    pub(super) fn margin(&self, h: HalfEdge) -> Margin {
+        let Some([a, b, c, d]) = self.topology().quad(h) else { return Margin::UNKNOWN };
+        margin_of_estimates([[a, b], [c, a], [b, c], [a, d], [d, b]].map(|ends| self.estimate(ends)))
+    }
 }
 
 /// A mesh whose edges are flipped where a number says so, the least first.
@@ -197,60 +232,5 @@ impl Leaning {
     fn is_better_than(&self, other: &Self) -> bool {
         let rounding = 1e-9 * other.area;
         self.area < other.area - rounding || (self.area <= other.area + rounding && self.upright > other.upright)
-    }
-}
-
-/// A margin if its sign is certain.
-fn certain(margin: Option<Margin>) -> Margin {
-    margin.filter(Margin::is_certain).unwrap_or(Margin::UNKNOWN)
-}
-
-impl SurfaceDual<'_> {
-    /// Metric length of the geodesic between two seeds.
-    pub(crate) fn length_between(&self, u: VertexId, v: VertexId) -> f64 {
-        self.estimate([u, v]).value
-    }
-
-    fn estimate(&self, ends: [VertexId; 2]) -> Length {
-        let [u, v] = ends;
-        if !self.is_rough(ends) {
-            let locals = ends.map(|w| &self.state.locals[w.index()]);
-            return hermite_between(locals, [self.offset(u, v), -self.offset(v, u)]);
-        }
-        let topology = self.topology();
-        let measured = topology.find(u, v).or_else(|| topology.find(v, u)).map(|h| topology.length(h));
-        let value = measured.filter(|length| !length.is_nan()).unwrap_or_else(|| self.chord_length(ends));
-        Length { value, error: KINKS }
-    }
-
-    pub(super) fn chord_length(&self, ends: [VertexId; 2]) -> f64 {
-        let [p, q] = ends.map(|w| &self.state.places[w.index()]);
-        let tensors = ends.map(|w| self.state.measured[w.index()].tensor);
-        let middle = self.input.lift(p, p.position.lerp(q.position, 0.5));
-        let middle = middle.map_or(tensors, |place| [self.metric.at(&place); 2]);
-        self.input.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()
-    }
-
-    pub(super) fn is_rough(&self, ends: [VertexId; 2]) -> bool {
-        ends.iter().any(|v| self.state.locals[v.index()].is_rough)
-    }
-
-    pub(super) fn ends(&self, h: HalfEdge) -> [VertexId; 2] {
-        [self.topology().origin(h), self.topology().target(h)]
-    }
-
-    /// Keeps the length of an edge that takes long to measure.
-    pub(super) fn measure_edge(&mut self, h: HalfEdge) {
-        let ends = self.ends(h);
-        if self.is_rough(ends) {
-            let length = self.chord_length(ends);
-            self.state.topology.set_length(h, length);
-        }
-    }
-
-    /// The in-circle test of an edge; [`Margin::UNKNOWN`] of one with a single face, and where lengths make no triangles.
-    pub(super) fn margin(&self, h: HalfEdge) -> Margin {
-        let Some([a, b, c, d]) = self.topology().quad(h) else { return Margin::UNKNOWN };
-        margin_of_estimates([[a, b], [c, a], [b, c], [a, d], [d, b]].map(|ends| self.estimate(ends)))
     }
 }

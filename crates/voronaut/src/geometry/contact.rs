@@ -1,6 +1,8 @@
 //! Whether two triangles in space meet where they should not, by exact predicates.
 
-use super::{Orientation, Point, Point3, orientation, signed_area, signed_volume};
+use super::{Aabb3, Bounds, BoxTree, Orientation, Point, Point3, orientation, signed_area, signed_volume};
+use crate::lists::in_order;
+use crate::parallel::prelude::*;
 
 /// A triangle that is not flat, by the numbers and the positions of its corners.
 #[derive(Clone, Copy, Debug)]
@@ -11,7 +13,7 @@ pub(crate) struct Corners {
 
 /// A point (rounded) that two triangles, as closed sets, have in common beyond the vertex or the edge that they share by
 /// its numbers; `None` where there is none. Whether there is one is exact. Triangles with the same three vertices meet.
-pub(crate) fn contact(t: &Corners, u: &Corners) -> Option<Point3> {
+fn contact(t: &Corners, u: &Corners) -> Option<Point3> {
     let shared = |a: &Corners, b: &Corners| a.vertices.map(|v| b.vertices.contains(&v));
     let (of_t, of_u) = (shared(t, u), shared(u, t));
     match of_t.iter().filter(|&&is_shared| is_shared).count() {
@@ -20,6 +22,26 @@ pub(crate) fn contact(t: &Corners, u: &Corners) -> Option<Point3> {
         2 => folded(t, of_t, u, of_u),
         _ => Some(Point3::weighted(t.points, [1.0 / 3.0; 3])),
     }
+}
+
+/// All pairs of triangles that meet ([`contact`]), in order, the smaller number first, each with a point that both have, rounded; only
+/// pairs of which one at least is `asked` for. Positions are finite.
+///
+/// Pairs whose boxes meet are found in a tree: O(n log n) where triangles are not much longer than their distance from
+/// those that are no neighbours.
+pub(crate) fn contacts(triangles: &[Corners], asked: impl Fn(usize) -> bool + Sync) -> Vec<([usize; 2], Point3)> {
+    let bounds = |i: usize| -> Bounds<3> { Aabb3::of(triangles[i].points).expect("three corners").into() };
+    let tree = BoxTree::new((0..triangles.len()).map(|i| (bounds(i), i)));
+    let of_one = |i: usize| {
+        // Of two that are asked for, the smaller one looks.
+        let others = tree.meeting(bounds(i)).copied().filter(|&j| if asked(j) { i < j } else { i != j });
+        let met = |[i, j]: [usize; 2]| Some(([i, j], contact(&triangles[i], &triangles[j])?));
+        others.filter_map(|j| met(in_order([i, j]))).collect::<Vec<_>>()
+    };
+    let looking = (0..triangles.len()).into_par_iter().filter(|&i| asked(i));
+    let mut all: Vec<([usize; 2], Point3)> = looking.flat_map_iter(of_one).collect();
+    all.sort_unstable_by_key(|met| met.0);
+    all
 }
 
 /// Whether three points lie on one line, exactly: their shadows on all three coordinate planes do.

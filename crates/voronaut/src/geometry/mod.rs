@@ -12,14 +12,15 @@ mod tensor;
 mod tensor3;
 mod tree;
 
-pub(crate) use contact::{Corners, contact, is_flat};
+pub(crate) use contact::{Corners, contacts, is_flat};
 pub use jet::Jet3;
-pub(crate) use point::Readable;
 pub use point::{Aabb, Aabb3, Point, Point3, Vector, Vector3};
+pub(crate) use point::{Readable, kept_within};
 pub use predicates::{Orientation, orientation, signed_area};
-pub(crate) use predicates::{centroid, in_circle, segment_intersection, signed_volume};
+pub(crate) use predicates::{centroid, holds, in_circle, segment_intersection, signed_volume};
 pub(crate) use quadrature::{Node, combine, radon};
 pub use tensor::{Eigen, Tensor};
+pub(crate) use tensor::{from_frame, to_frame};
 pub(crate) use tensor3::Eigen3;
 pub use tensor3::{TangentPlane, Tensor3};
 pub(crate) use tree::{Bounds, BoxTree, widened};

@@ -79,6 +79,13 @@ macro_rules! affine {
                 self + (other - self) * t
             }
 
+            /// The point nearest to this one of the segment from a to b, which may be the same.
+            pub(crate) fn nearest_between(self, a: Self, b: Self) -> Self {
+                let along = b - a;
+                let t = ((self - a).dot(along) / along.dot(along)).clamp(0.0, 1.0);
+                a.lerp(b, if t.is_nan() { 0.0 } else { t })
+            }
+
             /// Euclidean distance.
             pub fn distance(self, other: Self) -> f64 {
                 (self - other).norm()
@@ -145,12 +152,6 @@ affine!(Point, Vector, Aabb: x, y);
 affine!(Point3, Vector3, Aabb3: x, y, z);
 
 impl Point {
-    /// The point nearest to this one of the segment from a to b.
-    pub(crate) fn nearest_between(self, a: Point, b: Point) -> Point {
-        let along = b - a;
-        a.lerp(b, ((self - a).dot(along) / along.dot(along)).clamp(0.0, 1.0))
-    }
-
     /// The centroid of a triangle.
     pub(crate) fn centroid([a, b, c]: [Point; 3]) -> Point {
         a + ((b - a) + (c - a)) * (1.0 / 3.0)
@@ -265,6 +266,19 @@ impl fmt::Display for Point3 {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "({}, {}, {})", Readable(self.x), Readable(self.y), Readable(self.z))
     }
+}
+
+/// What is kept of a curve between two of its places, the second one included: each chord is cut at the place that `strays` from it
+/// too far, until none does (Ramer 1972; Douglas and Peucker 1973).
+pub(crate) fn kept_within<P: Copy>(ends: [P; 2], strays: impl Fn([P; 2]) -> Option<P>) -> Vec<P> {
+    let (mut pending, mut kept) = (vec![ends], Vec::new());
+    while let Some([from, to]) = pending.pop() {
+        match strays([from, to]) {
+            Some(between) => pending.extend([[between, to], [from, between]]),
+            None => kept.push(to),
+        }
+    }
+    kept
 }
 
 /// A number as messages show it: all its digits, with an exponent where plain digits would be a row of zeros.

@@ -59,6 +59,11 @@ pub(crate) fn centroid([a, b, c]: [Point; 3]) -> Point {
     Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0)
 }
 
+/// Whether a counter-clockwise triangle holds a point, inside or on its sides.
+pub(crate) fn holds([a, b, c]: [Point; 3], p: Point) -> bool {
+    [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, p) != Orientation::Right)
+}
+
 fn coord(p: Point) -> Coord<f64> {
     Coord { x: p.x, y: p.y }
 }

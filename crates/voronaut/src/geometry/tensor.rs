@@ -168,6 +168,17 @@ impl Tensor {
     }
 }
 
+/// A tangent vector in the orthonormal frame that a tensor's Cholesky factor makes.
+pub(crate) fn to_frame([a, b, c]: [f64; 3], v: Vector) -> Vector {
+    Vector::new(a * v.x + b * v.y, c * v.y)
+}
+
+/// The inverse of [`to_frame`].
+pub(crate) fn from_frame([a, b, c]: [f64; 3], w: Vector) -> Vector {
+    let y = w.y / c;
+    Vector::new((w.x - b * y) / a, y)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

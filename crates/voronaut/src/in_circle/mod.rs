@@ -4,6 +4,7 @@
 use crate::geodesic::{Margin, PathLength, margin_from_lengths};
 use crate::lists::distinct;
 use crate::parallel::prelude::*;
+use crate::triangulation::{HalfEdge, Triangulation};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -26,6 +27,12 @@ pub(crate) struct Quad {
 }
 
 impl Quad {
+    /// Around an edge of a triangulation whose vertices are the seeds; `None` at its border.
+    pub(crate) fn around(topology: &Triangulation, h: HalfEdge) -> Option<Self> {
+        let [a, b, c, d] = topology.quad(h)?.map(|v| v.0);
+        Some(Self { a, b, c, d })
+    }
+
     /// The four seeds.
     pub(crate) fn seeds(&self) -> [u32; 4] {
         [self.a, self.b, self.c, self.d]

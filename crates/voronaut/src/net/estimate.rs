@@ -1,50 +1,14 @@
 //! Circles and powers by expansions of the metric, for seeds that come, go and move.
 
-use crate::dual::Dual;
+use crate::dual::{Dual, Moving};
 use crate::geodesic::{LocalMetric, chord, equalising_step, flat_centre, hermite};
 use crate::geometry::{Point, Tensor};
 use crate::lists::distinct;
-use crate::metric::MetricField;
-use crate::planar::Location;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// Newton steps at most to a circumcentre, and the residue (share of the squared radius) at which they end.
 const STEPS: usize = 6;
 const RESIDUE: f64 = 1e-3;
-
-/// Triangulated seeds with the metric around each, in units of about an edge.
-pub(crate) trait Sites {
-    /// The metric field.
-    fn field(&self) -> &dyn MetricField;
-    /// The triangulation.
-    fn topology(&self) -> &Triangulation;
-    /// The position of a seed.
-    fn position(&self, v: VertexId) -> Point;
-    /// The metric around a seed.
-    fn local(&self, v: VertexId) -> &LocalMetric;
-    /// Whether a point is in the domain, as a seed near it sees it.
-    fn is_inside(&self, near: VertexId, p: Point) -> bool;
-}
-
-impl Sites for Dual<'_> {
-    fn field(&self) -> &dyn MetricField {
-        self.scaled_field()
-    }
-    fn topology(&self) -> &Triangulation {
-        self.topology()
-    }
-    fn position(&self, v: VertexId) -> Point {
-        self.position(v)
-    }
-    fn local(&self, v: VertexId) -> &LocalMetric {
-        self.local(v)
-    }
-    /// Whether the straight way to the point stays in the domain.
-    fn is_inside(&self, near: VertexId, p: Point) -> bool {
-        let face = self.topology().start(near).map(HalfEdge::face);
-        face.is_some_and(|face| !matches!(self.planar().walk(face, p, false), Location::Behind(_)))
-    }
-}
 
 /// A circle whose centre is known with the metric around it.
 #[derive(Clone, Copy, Debug)]
@@ -55,9 +19,24 @@ struct Around {
 }
 
 /// Power protection of a triangulation's simplices, estimated: a few dozen evaluations of the field a triangle.
-pub(crate) struct Estimate<'a, S: Sites + ?Sized>(pub &'a S);
+#[derive(Clone, Copy)]
+pub(crate) struct Estimate<'a> {
+    /// Whose field and domain these are, in units of about an edge.
+    pub dual: &'a Dual<'a>,
+    /// The triangulation.
+    pub topology: &'a Triangulation,
+    /// Where seeds are, by id.
+    pub positions: &'a [Point],
+    /// The metric around each.
+    pub locals: &'a [LocalMetric],
+}
 
-impl<S: Sites + ?Sized> Estimate<'_, S> {
+impl<'a> Estimate<'a> {
+    /// Of a dual's own triangulation.
+    pub(crate) fn of(dual: &'a Dual) -> Self {
+        Self { dual, topology: dual.topology(), positions: &dual.planar().positions, locals: dual.locals() }
+    }
+
     /// By how much simplices miss a power `asked` of all seeds near them, each as a share of it (above one where the
     /// triangle is not Delaunay), summed over interior triangles and border edges among faces.
     pub(crate) fn shortfall(&self, faces: &[FaceId], asked: impl Fn(VertexId) -> f64) -> f64 {
@@ -72,24 +51,24 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
 
     /// The faces at a seed and at its neighbours, each once, in order.
     pub(crate) fn around(&self, v: VertexId) -> Vec<FaceId> {
-        let star = |u| self.0.topology().star(u).map(HalfEdge::face);
+        let star = |u| self.topology.star(u).map(HalfEdge::face);
         distinct(self.neighbours(&[v]).into_iter().chain([v]).flat_map(star))
     }
 
     /// The interior triangles and border edges, by a face that has them, that miss a power `asked`.
     pub(crate) fn short_faces(&self, asked: f64) -> Vec<FaceId> {
         let is_short = |&f: &FaceId| self.of_face(f, None, &|_| asked) > 0.0;
-        self.0.topology().faces().filter(is_short).collect()
+        self.topology.faces().filter(is_short).collect()
     }
 
     /// The circumcentre of a face, and the squared radius.
     pub(crate) fn circle(&self, f: FaceId) -> Option<(Point, f64)> {
-        self.of_triangle(self.0.topology().corners(f)).map(|circle| (circle.centre, circle.square))
+        self.of_triangle(self.topology.corners(f)).map(|circle| (circle.centre, circle.square))
     }
 
     /// Of a face's triangle and those of its sides that lie on the border.
     fn of_face(&self, f: FaceId, only: Option<VertexId>, asked: &impl Fn(VertexId) -> f64) -> f64 {
-        let topology = self.0.topology();
+        let topology = self.topology;
         let corners = topology.corners(f);
         let of_border = |h: HalfEdge| {
             let ends = topology.ends(h);
@@ -99,7 +78,7 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
         let border: f64 = sides.map(of_border).sum();
         border
             + match self.of_triangle(corners) {
-                Some(circle) if !self.0.is_inside(corners[0], circle.centre) => 0.0,
+                Some(circle) if !self.dual.is_inside(corners[0], circle.centre) => 0.0,
                 Some(circle) => self.missing(&circle, &corners, only, asked),
                 None => f64::from(u8::from(self.seems_interior(corners))),
             }
@@ -124,7 +103,7 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
 
     /// The seeds that share an edge with one of these, without these.
     fn neighbours(&self, corners: &[VertexId]) -> Vec<VertexId> {
-        let topology = self.0.topology();
+        let topology = self.topology;
         // At the border the last neighbour is the apex of the last face.
         let around = |&v: &VertexId| topology.around(v);
         distinct(corners.iter().flat_map(around).filter(|v| !corners.contains(v)))
@@ -136,23 +115,31 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
 
     /// The squared distance of a seed; by quadrature along the chord where the metric is rough.
     fn square(&self, p: Point, local: &LocalMetric, v: VertexId) -> f64 {
-        let (q, at_q) = (self.0.position(v), self.0.local(v));
+        let (q, at_q) = (self.position(v), self.local(v));
         let length = if local.is_rough || at_q.is_rough {
-            chord(self.0.field(), p, q)
+            chord(self.dual.field(), p, q)
         } else {
             hermite(p, local, q, at_q).value
         };
         length * length
     }
 
+    fn position(&self, v: VertexId) -> Point {
+        self.positions[v.index()]
+    }
+
+    fn local(&self, v: VertexId) -> &LocalMetric {
+        &self.locals[v.index()]
+    }
+
     fn tensor(&self, corners: [VertexId; 3]) -> Tensor {
-        corners.iter().fold(Tensor::default(), |sum, &v| sum + self.0.local(v).tensor) * (1.0 / 3.0)
+        corners.iter().fold(Tensor::default(), |sum, &v| sum + self.local(v).tensor) * (1.0 / 3.0)
     }
 
     fn of_triangle(&self, corners: [VertexId; 3]) -> Option<Around> {
-        let mut centre = flat_centre(self.tensor(corners), corners.map(|v| self.0.position(v)))?;
+        let mut centre = flat_centre(self.tensor(corners), corners.map(|v| self.position(v)))?;
         for _ in 0..STEPS {
-            let local = LocalMetric::at(self.0.field(), centre);
+            let local = LocalMetric::at(self.dual.field(), centre);
             if !local.tensor.is_positive_definite() {
                 return None;
             }
@@ -161,7 +148,7 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
             if most - least < RESIDUE * most {
                 return Some(Around { centre, local, square: squares.iter().sum::<f64>() / 3.0 });
             }
-            let pulls = corners.map(|v| -local.tensor.apply(local.log(self.0.position(v) - centre)));
+            let pulls = corners.map(|v| -local.tensor.apply(local.log(self.position(v) - centre)));
             centre = centre + equalising_step(local.tensor, pulls, squares)?;
         }
         None
@@ -169,16 +156,16 @@ impl<S: Sites + ?Sized> Estimate<'_, S> {
 
     /// Whether the circumcentre with one tensor is in the domain.
     fn seems_interior(&self, corners: [VertexId; 3]) -> bool {
-        let flat = flat_centre(self.tensor(corners), corners.map(|v| self.0.position(v)));
-        flat.is_some_and(|centre| self.0.is_inside(corners[0], centre))
+        let flat = flat_centre(self.tensor(corners), corners.map(|v| self.position(v)));
+        flat.is_some_and(|centre| self.dual.is_inside(corners[0], centre))
     }
 
     /// The circle around the point of a border edge that is equally far from its ends, by two secant steps.
     fn middle(&self, ends: [VertexId; 2]) -> Option<Around> {
-        let [a, b] = ends.map(|v| self.0.position(v));
+        let [a, b] = ends.map(|v| self.position(v));
         let at = |t: f64| {
             let centre = a.lerp(b, t);
-            let local = LocalMetric::at(self.0.field(), centre);
+            let local = LocalMetric::at(self.dual.field(), centre);
             let [to_a, to_b] = ends.map(|v| self.square(centre, &local, v));
             (Around { centre, local, square: 0.5 * (to_a + to_b) }, to_a - to_b)
         };

@@ -3,7 +3,7 @@
 use super::{Ball, Net, Simplices};
 use crate::geodesic::{Circle, Fineness, Paths, chord, flat_centre};
 use crate::geometry::Point;
-use crate::lists::distinct;
+use crate::lists::{distinct, ranked};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use std::collections::HashMap;
@@ -186,10 +186,8 @@ impl<'a> Measure<'a> {
     /// The least power of a seed that shares an edge with a corner, nearest chords first.
     fn least_power(&self, corners: &[u32], circle: &Circle) -> (f64, Option<u32>) {
         let chord = |i: u32| (chord(self.field, circle.centre, self.seed(i)), i);
-        let mut chords: Vec<(f64, u32)> = self.around(corners).into_iter().map(chord).collect();
-        chords.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let (mut least, mut nearest) = (f64::INFINITY, None);
-        for (chord, i) in chords {
+        for (chord, i) in ranked(self.around(corners).into_iter().map(chord)) {
             if (LEAST_SHARE * chord).powi(2) - circle.square > least {
                 break;
             }

@@ -9,13 +9,14 @@ mod measure;
 mod on_canvas;
 mod random;
 
-pub(crate) use estimate::{Estimate, Sites};
+pub(crate) use estimate::Estimate;
 pub(crate) use measure::Memory;
 pub(crate) use on_canvas::circles_on_canvas;
 pub use random::Random;
 
 use crate::geometry::Point;
 use crate::lists::distinct;
+use crate::mesh::edges_of;
 use crate::metric::MetricField;
 use crate::triangulation::smallest_first;
 use measure::Measure;
@@ -112,9 +113,9 @@ impl Net {
         net.triangles.extend_from_slice(known);
         net.by_chord = measure.chords();
         // A circle with a seed in it says nothing of how far points are from seeds.
-        let interior = net.interior().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius);
-        let radii = interior.chain(net.border.iter().filter(|ball| ball.power >= 0.0).map(|ball| ball.radius));
-        net.epsilon = radii.fold(0.0, f64::max);
+        let interior = net.interior().map(|ball| (ball.power, ball.radius));
+        let circles = interior.chain(net.border.iter().map(|ball| (ball.power, ball.radius)));
+        net.epsilon = circles.filter(|&(power, _)| power >= 0.0).map(|(_, radius)| radius).fold(0.0, f64::max);
         net
     }
 
@@ -152,11 +153,9 @@ impl Net {
 /// The seeds that share a triangle with each of so many seeds, in order.
 pub(crate) fn neighbours(seeds: usize, triangles: impl Iterator<Item = [u32; 3]>) -> Vec<Vec<u32>> {
     let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); seeds];
-    for [a, b, c] in triangles {
-        for [i, j] in [[a, b], [b, c], [c, a]] {
-            neighbours[i as usize].push(j);
-            neighbours[j as usize].push(i);
-        }
+    for [i, j] in triangles.flat_map(edges_of) {
+        neighbours[i as usize].push(j);
+        neighbours[j as usize].push(i);
     }
     neighbours.into_iter().map(distinct).collect()
 }

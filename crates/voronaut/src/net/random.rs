@@ -1,6 +1,6 @@
 //! Random numbers that are the same every time.
 
-use crate::geometry::Vector;
+use crate::geometry::{Tensor, Vector, from_frame};
 
 /// A generator of numbers that look even and independent, the same from the same start: splitmix64 (Steele et al. 2014).
 #[derive(Clone, Debug)]
@@ -25,5 +25,10 @@ impl Random {
     pub fn in_disk(&mut self) -> Vector {
         let (radius, angle) = (self.number().sqrt(), std::f64::consts::TAU * self.number());
         Vector::new(radius * angle.cos(), radius * angle.sin())
+    }
+
+    /// A vector no longer than a radius in a tensor's metric, evenly.
+    pub(crate) fn in_ball(&mut self, tensor: Tensor, radius: f64) -> Vector {
+        from_frame(tensor.cholesky(), self.in_disk() * radius)
     }
 }

@@ -5,7 +5,7 @@ use crate::diagram::Diagram;
 use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
 use crate::geodesic::{LocalMetric, Support};
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geometry::{Point, Tensor, Vector, to_frame};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, VertexId};
@@ -99,17 +99,6 @@ impl std::ops::Add for Moments {
     }
 }
 
-/// A tangent vector in the orthonormal frame that a tensor's Cholesky factor makes.
-pub(super) fn to_frame([a, b, c]: [f64; 3], v: Vector) -> Vector {
-    Vector::new(a * v.x + b * v.y, c * v.y)
-}
-
-/// The inverse of [`to_frame`].
-pub(super) fn from_frame([a, b, c]: [f64; 3], w: Vector) -> Vector {
-    let y = w.y / c;
-    Vector::new((w.x - b * y) / a, y)
-}
-
 /// The cells that relaxation works with.
 pub enum Cells<'a> {
     /// Cut in the tangent plane at each seed, from what its neighbours are seen as through the second-order logarithm map.
@@ -125,50 +114,42 @@ pub enum Cells<'a> {
 /// Where the moments of the cells of a triangulation's seeds come from.
 pub(crate) trait CellsOf<M> {
     /// The moments of every seed's cell about the seed, in order of the vertices' ids; tangent vectors are in the
-    /// orthonormal frame of the Cholesky factor of the tensor there.
+    /// orthonormal frame of [`to_frame`].
     ///
     /// # Errors
     /// [`crate::Error::Domain`] if cells are of a canvas that is not of the dual's domain.
     fn moments(&self, dual: &M) -> Result<Vec<(VertexId, Moments)>>;
 
     /// Whether steps that raise the energy are taken back.
-    fn lower_energy(&self) -> bool;
+    fn lower_energy(&self) -> bool {
+        true
+    }
 }
 
-/// The cells of [`Cells::Tangent`], on surfaces, too.
+/// The cells of [`Cells::Tangent`], on surfaces, too: each is cut in the tangent plane at the seed, by bisectors with its neighbours,
+/// which are seen through the second-order logarithm map, and by the domain's segments. Lengths at rough seeds must have been measured.
 pub(crate) struct Tangent;
 
 impl<M: Moving> CellsOf<M> for Tangent {
     fn moments(&self, dual: &M) -> Result<Vec<(VertexId, Moments)>> {
-        Ok(tangent_moments(dual))
-    }
-
-    fn lower_energy(&self) -> bool {
-        true
+        let seeds: Vec<VertexId> = dual.topology().vertices().collect();
+        let of = |cell: &mut Cell, v: VertexId| (v, View::at(dual, v).moments(cell));
+        Ok(seeds.into_par_iter().with_min_len(256).map_init(Cell::default, of).collect())
     }
 }
 
 impl CellsOf<Dual<'_>> for Cells<'_> {
     fn moments(&self, dual: &Dual) -> Result<Vec<(VertexId, Moments)>> {
         match self {
-            Cells::Tangent => Ok(tangent_moments(dual)),
-            Cells::Canvas(cells) => cells.moments(dual, OnCanvas::logarithm),
-            Cells::Weighted(cells) => cells.moments(dual, OnCanvas::difference),
+            Cells::Tangent => Tangent.moments(dual),
+            Cells::Canvas(cells) => cells.moments(dual, |_, logarithm| logarithm),
+            Cells::Weighted(cells) => cells.moments(dual, |difference, _| difference),
         }
     }
 
     fn lower_energy(&self) -> bool {
         !matches!(self, Cells::Weighted(_))
     }
-}
-
-/// The moments of every seed's cell, cut in the tangent plane at the seed: by bisectors with its neighbours, which are seen through
-/// the second-order logarithm map, and by the domain's segments. Tangent vectors are in the orthonormal frame of
-/// [`to_frame`]. In order of the vertices' ids; lengths at rough seeds must have been measured.
-pub(super) fn tangent_moments(dual: &impl Moving) -> Vec<(VertexId, Moments)> {
-    let seeds: Vec<VertexId> = dual.topology().vertices().collect();
-    let of = |cell: &mut Cell, v: VertexId| (v, View::at(dual, v).moments(cell));
-    seeds.into_par_iter().with_min_len(256).map_init(Cell::default, of).collect()
 }
 
 /// What the neighbourhood looks like in the tangent plane at a seed.
@@ -280,15 +261,15 @@ impl<'a> OnCanvas<'a> {
         Self { canvas, areas, tensors }
     }
 
-    /// The moments of every seed's cell, with the canvas's distances; `tangent` gives the tangent vector at a seed that leads
-    /// to a point at a distance.
+    /// The moments of every seed's cell, with the canvas's distances; `tangent` chooses the vector from a seed to a point: their
+    /// difference, or the logarithm.
     ///
     /// # Errors
     /// [`crate::Error::Domain`] of a seed outside the canvas's domain.
     pub(super) fn moments(
         &self,
         dual: &Dual,
-        tangent: impl Fn(&LocalMetric, Vector, Vector) -> Vector,
+        tangent: impl Fn(Vector, Vector) -> Vector,
     ) -> Result<Vec<(VertexId, Moments)>> {
         let ids: Vec<VertexId> = dual.topology().vertices().collect();
         let seeds: Vec<Point> = ids.iter().map(|&v| dual.position(v)).collect();
@@ -300,21 +281,11 @@ impl<'a> OnCanvas<'a> {
             let Some(colour) = diagram.colour(x).map(|colour| colour as usize) else { continue };
             let (mass, distance) = (self.areas[x.index()] * factor, diagram.distance(x) * factor.sqrt());
             let local = dual.local(ids[colour]);
-            let w = tangent(local, self.canvas.position(x) - seeds[colour], directions[x.index()] * distance);
+            let w = tangent(self.canvas.position(x) - seeds[colour], directions[x.index()] * distance);
             let first = to_frame(local.tensor.cholesky(), w) * mass;
             moments[colour] = moments[colour] + Moments { mass, first, second: mass * distance * distance };
         }
         Ok(ids.into_iter().zip(moments).collect())
-    }
-
-    /// The logarithm.
-    pub(super) fn logarithm(_: &LocalMetric, _: Vector, logarithm: Vector) -> Vector {
-        logarithm
-    }
-
-    /// The difference of positions.
-    pub(super) fn difference(_: &LocalMetric, difference: Vector, _: Vector) -> Vector {
-        difference
     }
 
     /// In which direction the geodesic to each vertex leaves its seed: a unit vector at the seed, handed on from the
@@ -332,8 +303,7 @@ impl<'a> OnCanvas<'a> {
                     diagram.parent(x).map_or(Vector::default(), |p| directions[p.index()])
                 }
                 Support::Edge(h) => {
-                    let topology = self.canvas.topology();
-                    let [a, b] = [topology.origin(h), topology.target(h)];
+                    let [a, b] = self.canvas.topology().ends(h);
                     let [at_a, at_b] = [a, b].map(|end| self.detour(diagram, x, end));
                     match [a, b].map(|end| diagram.colour(end) == Some(colour)) {
                         [true, true] => directions[a.index()] * at_b + directions[b.index()] * at_a,

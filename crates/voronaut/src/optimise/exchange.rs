@@ -1,10 +1,10 @@
 //! Seeds that change places: those that crowd go and others come where edges are too long, at a given number of vertices; and a few
 //! move to where the worst triangle around them is best.
 
-use super::cell::from_frame;
-use crate::dual::{Dual, Effort, Kind, Mending};
+use crate::dual::{Dual, Effort, Kind, Moving};
 use crate::error::Result;
-use crate::geometry::Vector;
+use crate::geometry::{Vector, from_frame};
+use crate::lists::ranked;
 use crate::planar::Location;
 use crate::progress::Silent;
 use crate::sampling::{Fill, insert_spaced, refine};
@@ -25,13 +25,10 @@ pub(crate) fn exchange(dual: &mut Dual, fill: Fill, most: usize) -> Result<usize
 }
 
 fn remove_crowded(dual: &mut Dual, most: usize, shorter_than: f64) -> usize {
-    let mut short: Vec<(f64, [VertexId; 2])> = dual
-        .topology()
-        .edges()
-        .map(|h| (dual.edge_length(h), [dual.topology().origin(h), dual.topology().target(h)]))
-        .filter(|&(length, ends)| length < shorter_than && ends.iter().any(|&v| dual.kind(v) == Kind::Free))
-        .collect();
-    short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let edges = dual.topology().edges().map(|h| (dual.edge_length(h), dual.topology().ends(h)));
+    let short = ranked(
+        edges.filter(|&(length, ends)| length < shorter_than && ends.iter().any(|&v| dual.kind(v) == Kind::Free)),
+    );
     let mut spoken_for = vec![false; dual.topology().vertex_slots()];
     let mut removed = 0;
     for (_, ends) in short {
@@ -61,9 +58,8 @@ fn nearest_two(dual: &Dual, v: VertexId) -> f64 {
 pub(crate) fn meet_blocked_flips(dual: &mut Dual, most: usize) -> usize {
     let mut blocked = dual.blocked_flips(Effort::Local);
     blocked.retain(|(_, margin)| margin.is_certain());
-    blocked.sort_by(|a, b| a.1.value.total_cmp(&b.1.value).then(a.0.cmp(&b.0)));
-    let ends = |h| [dual.topology().origin(h), dual.topology().target(h)];
-    let edges: Vec<[VertexId; 2]> = blocked.into_iter().map(|(h, _)| ends(h)).collect();
+    let worst_first = ranked(blocked.into_iter().map(|(h, margin)| (margin.value, h)));
+    let edges: Vec<[VertexId; 2]> = worst_first.into_iter().map(|(_, h)| dual.topology().ends(h)).collect();
     let mut met = 0;
     for [a, b] in edges {
         if met == most {
@@ -93,27 +89,22 @@ const MOVES: usize = 6;
 /// how many seeds moved.
 ///
 /// Relaxation equalises cells, of which a triangle beside the tip of a cape knows little. The energy may rise a little.
-pub(crate) fn mend_worst(dual: &mut impl Mending, most: usize) -> usize {
-    let mut found: Vec<(f64, [VertexId; 3])> = Vec::new();
-    for face in dual.topology().faces() {
-        let corners = dual.topology().corners(face);
-        found.push((dual.quality(corners.map(|v| dual.site(v))), corners));
-    }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    found.truncate(most);
-    let corners = found.into_iter().flat_map(|(_, corners)| corners);
+pub(crate) fn mend_worst(dual: &mut impl Moving, most: usize) -> usize {
+    let corners = dual.topology().faces().map(|face| dual.topology().corners(face));
+    let found = ranked(corners.map(|corners| (dual.quality(corners.map(|v| dual.site(v))), corners)));
+    let corners = found.into_iter().take(most).flat_map(|(_, corners)| corners);
     let free: Vec<VertexId> = corners.filter(|&v| dual.kind(v) == Kind::Free).collect();
     free.into_iter().filter(|&v| mend(dual, v)).count()
 }
 
 /// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out, unless the quality is poor beside
 /// an edge that must stay whole and is too long.
-fn mend<M: Mending>(dual: &mut M, v: VertexId) -> bool {
+fn mend<M: Moving>(dual: &mut M, v: VertexId) -> bool {
     let topology = dual.topology();
     let ring: Vec<[M::Site; 2]> =
         topology.star(v).map(|h| [topology.target(h), topology.apex(h)].map(|u| dual.site(u))).collect();
     let is_long = |h: HalfEdge| {
-        let ends = [topology.origin(h), topology.target(h)].map(|u| dual.site(u));
+        let ends = topology.ends(h).map(|u| dual.site(u));
         topology.is_fixed(h) && dual.straight_length(ends).ln() > UNIT
     };
     let is_beside = topology.star(v).any(|h| is_long(h.next()));

@@ -1,12 +1,12 @@
 //! The seeds that can move, the energy, and its gradient; and regions where geodesics are not resolved, whose triangles and circles a
 //! diagram on a canvas decides on.
 
-use super::cell::{CellsOf, Moments, from_frame};
+use super::cell::{CellsOf, Moments};
 use super::quasi_newton::{Memory, dot};
 use crate::canvas::Canvas;
 use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Point, Vector, from_frame};
 use crate::net::{Ball, circles_on_canvas};
 use crate::triangulation::VertexId;
 
@@ -144,7 +144,8 @@ const RINGS: usize = 2;
 /// Seeds, and a canvas that holds their cells.
 pub(super) struct Region {
     canvas: Canvas,
-    core: Vec<VertexId>,
+    /// The seeds that it is around.
+    pub(super) core: Vec<VertexId>,
     near: Vec<VertexId>,
     is_inner: Vec<bool>,
 }
@@ -161,23 +162,13 @@ impl Region {
         let inner: Vec<VertexId> = topology.vertices().filter(|v| is_inner[v.index()]).collect();
         let part = dual.part_around(&inner, RINGS);
         let near: Vec<VertexId> = part.topology.vertices().collect();
-        let canvas = Canvas::intrinsic_from(part, dual.scaled_field(), per_seed * near.len()).ok()?;
+        let canvas = Canvas::intrinsic_from(part, dual.field(), per_seed * near.len()).ok()?;
         Some(Self { canvas, core: seeds.to_vec(), near, is_inner })
-    }
-
-    /// The region around the same seeds where they are now.
-    pub(super) fn anew(&self, dual: &Dual, per_seed: usize) -> Option<Self> {
-        Self::around(dual, &self.core, per_seed)
-    }
-
-    /// Whether all of these are its seeds.
-    pub(super) fn holds(&self, seeds: &[u32]) -> bool {
-        seeds.iter().all(|&i| self.is_inner.get(i as usize) == Some(&true))
     }
 
     /// Whether one of these is its seed.
     pub(super) fn touches(&self, seeds: &[u32]) -> bool {
-        seeds.iter().any(|&i| self.holds(&[i]))
+        seeds.iter().any(|&i| self.is_inner.get(i as usize) == Some(&true))
     }
 
     /// Its seeds.
@@ -189,7 +180,7 @@ impl Region {
     /// canvas.
     pub(super) fn circles(&self, dual: &Dual, at: impl Fn(VertexId) -> Point) -> Option<Vec<Ball<3>>> {
         let seeds: Vec<(u32, Point)> = self.near.iter().map(|&v| (v.0, at(v))).collect();
-        let mut balls = circles_on_canvas(&self.canvas, dual.scaled_field(), &seeds).ok()?;
+        let mut balls = circles_on_canvas(&self.canvas, dual.field(), &seeds).ok()?;
         balls.retain(|ball| self.touches(&ball.corners));
         Some(balls)
     }

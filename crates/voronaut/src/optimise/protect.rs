@@ -4,13 +4,12 @@
 
 use super::movers::Region;
 use super::survey::{Survey, corners_of};
-use crate::dual::{Dual, Kind};
+use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
 use crate::geodesic::{Angles, LocalMetric, hermite};
 use crate::geometry::Point;
-use crate::lists::distinct;
-use crate::metric::MetricField;
-use crate::net::{Ball, Estimate, Memory, Net, Random, Simplices, Sites};
+use crate::lists::{distinct, ranked};
+use crate::net::{Ball, Estimate, Memory, Net, Random, Simplices};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::triangulation::{FaceId, Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
@@ -89,11 +88,10 @@ pub(crate) struct Protected {
 pub(crate) fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> Result<Protected> {
     dual.reorder();
     let mut mender = Mender::new(dual, share);
-    let (mut best, mut since) = (usize::MAX, 0);
-    let mut found: Option<Protected> = None;
-    for round in 0.. {
+    let (mut best, mut since, mut round, mut first) = (usize::MAX, 0, 0, None);
+    loop {
         let (net, bad) = mender.measure();
-        let first = found.as_ref().map_or(bad.len(), |p| p.unprotected[0]);
+        let first = *first.get_or_insert(bad.len());
         since = if bad.len() < best { 0 } else { since + 1 };
         best = best.min(bad.len());
         let ending = match round {
@@ -102,20 +100,16 @@ pub(crate) fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> R
             _ if since > PATIENCE => Some(Ending::Stalled),
             _ => None,
         };
-        let epsilon = net.epsilon;
-        let (moves, tries, unprotected) = (mender.moves, mender.tries, [first, bad.len()]);
-        let state =
-            Protected { ending: ending.unwrap_or(Ending::Stalled), rounds: round, moves, tries, unprotected, net };
-        found = Some(state);
-        if ending.is_some() {
-            break;
+        if let Some(ending) = ending {
+            mender.dual.verdict()?;
+            let Mender { moves, tries, .. } = mender;
+            return Ok(Protected { ending, rounds: round, moves, tries, unprotected: [first, bad.len()], net });
         }
         mender.is_wide = since >= WIDER && since % 2 == 0;
-        mender.mend(&bad, round, epsilon);
+        mender.mend(&bad, round, net.epsilon);
         progress.advance(1)?;
+        round += 1;
     }
-    dual.verdict()?;
-    Ok(found.expect("the first round measures"))
 }
 
 /// What places for seeds are tried with.
@@ -148,32 +142,13 @@ struct Trial {
     flips: Vec<HalfEdge>,
 }
 
-impl Sites for Mender<'_, '_> {
-    fn field(&self) -> &dyn MetricField {
-        self.dual.scaled_field()
-    }
-    fn topology(&self) -> &Triangulation {
-        &self.topology
-    }
-    fn position(&self, v: VertexId) -> Point {
-        self.positions[v.index()]
-    }
-    fn local(&self, v: VertexId) -> &LocalMetric {
-        &self.locals[v.index()]
-    }
-    fn is_inside(&self, near: VertexId, p: Point) -> bool {
-        self.dual.is_inside(near, p)
-    }
-}
-
 impl<'a, 'b> Mender<'a, 'b> {
     fn new(dual: &'a mut Dual<'b>, share: f64) -> Self {
         let slots = dual.topology().vertex_slots();
-        let all = || (0..slots as u32).map(VertexId);
         Self {
             share,
-            positions: all().map(|v| dual.position(v)).collect(),
-            locals: all().map(|v| *dual.local(v)).collect(),
+            positions: dual.planar().positions.clone(),
+            locals: dual.locals().to_vec(),
             topology: dual.topology().clone(),
             excess: vec![ASKED[0]; slots],
             survey: Survey::default(),
@@ -198,9 +173,7 @@ impl<'a, 'b> Mender<'a, 'b> {
         let triangles = net.interior().filter(|ball| ball.protection() < asked).map(around);
         let border = net.border.iter().filter(|ball| ball.protection() < asked).map(around);
         let unknown = net.unknown.iter().map(|corners| (f64::NEG_INFINITY, corners.map(VertexId).to_vec()));
-        let mut bad: Vec<(f64, Vec<VertexId>)> = triangles.chain(border).chain(unknown).collect();
-        bad.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        bad.into_iter().map(|(_, seeds)| seeds).collect()
+        ranked(triangles.chain(border).chain(unknown)).into_iter().map(|(_, seeds)| seeds).collect()
     }
 
     /// One round: for each simplex, the best of the places tried for its seeds.
@@ -245,13 +218,9 @@ impl<'a, 'b> Mender<'a, 'b> {
         if !self.is_wide && !free.is_empty() {
             return free;
         }
-        let star = |&v: &VertexId| self.topology.star(v).flat_map(|h| [self.topology.target(h), self.topology.apex(h)]);
-        let mut all: Vec<VertexId> = seeds.iter().flat_map(star).filter(is_free).collect();
-        all.extend(seeds.iter().filter(|&&v| self.dual.kind(v) == Kind::Curve));
-        all.extend(free);
-        all.sort_unstable();
-        all.dedup();
-        all
+        let star = |&v: &VertexId| self.topology.around(v);
+        let on_curves = seeds.iter().copied().filter(|&v| self.dual.kind(v) == Kind::Curve);
+        distinct(seeds.iter().flat_map(star).filter(is_free).chain(on_curves).chain(free))
     }
 
     /// Places for seeds by what they gain, estimated; until one gains everything, if estimates are to decide.
@@ -262,7 +231,7 @@ impl<'a, 'b> Mender<'a, 'b> {
         for k in 0..if movable.is_empty() { 0 } else { TRIES[0].max(4 * movable.len()) } {
             let (v, before) = (movable[k % movable.len()], before[k % movable.len()]);
             let to = self.place_near(v, radius);
-            if self.dual.kind(v) == Kind::Free && !self.is_inside(v, to) {
+            if self.dual.kind(v) == Kind::Free && !self.dual.is_inside(v, to) {
                 continue;
             }
             let gain = before - self.shortfall_at(v, to, By::Estimates, asked, &mut memory);
@@ -286,10 +255,10 @@ impl<'a, 'b> Mender<'a, 'b> {
         let region = Region::around(self.dual, seeds, PER_SEED)?;
         let missing = |ball: &Ball<3>| (1.0 - ball.power / (asked * ASKED_OF_CANVAS)).max(0.0);
         let shortfall = |this: &Self, v: VertexId, to: Point| {
-            let at = |u: VertexId| if u == v { to } else { this.position(u) };
+            let at = |u: VertexId| if u == v { to } else { this.positions[u.index()] };
             Some(region.circles(this.dual, at)?.iter().map(missing).sum::<f64>())
         };
-        let before = shortfall(self, seeds[0], self.position(seeds[0]))?;
+        let before = shortfall(self, seeds[0], self.positions[seeds[0].index()])?;
         if before <= LEAST_GAIN || movable.is_empty() {
             return None;
         }
@@ -329,7 +298,8 @@ impl<'a, 'b> Mender<'a, 'b> {
     }
 
     fn shortfall(&self, v: VertexId, by: By, asked: f64, memory: &mut Memory) -> f64 {
-        let estimate = Estimate(self);
+        let Self { dual, topology, positions, locals, .. } = self;
+        let estimate = Estimate { dual, topology, positions, locals };
         let faces = estimate.around(v);
         match by {
             By::Estimates => estimate.shortfall(&faces, |u| asked * self.excess[u.index()]),
@@ -344,12 +314,12 @@ impl<'a, 'b> Mender<'a, 'b> {
         let corners = faces.iter().flat_map(|&f| topology.corners(f));
         let wide = distinct(corners.flat_map(|v| topology.star(v).map(HalfEdge::face)));
         let border = faces.iter().flat_map(|f| f.half_edges()).filter(|&h| topology.twin(h).is_none());
-        let border: Vec<[u32; 2]> = border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect();
+        let border: Vec<[u32; 2]> = border.map(|h| topology.ends(h).map(|v| v.0)).collect();
         let triangles = corners_of(topology, wide.into_iter());
         let own = corners_of(topology, faces.iter().copied());
-        let is_inside = |seed: u32, p: Point| self.is_inside(VertexId(seed), p);
+        let is_inside = |seed: u32, p: Point| self.dual.is_inside(VertexId(seed), p);
         let found = Simplices { seeds: &self.positions, triangles: &triangles, border: &border, is_inside: &is_inside };
-        let net = Net::measure_some(self.dual.scaled_field(), &found, &own, memory);
+        let net = Net::measure_some(self.dual.field(), &found, &own, memory);
         let powers = net.interior().map(|ball| ball.power).chain(net.border.iter().map(|ball| ball.power));
         net.unmeasured as f64 + powers.map(|power| (1.0 - power / asked).max(0.0)).sum::<f64>()
     }
@@ -357,11 +327,7 @@ impl<'a, 'b> Mender<'a, 'b> {
     /// A random point within a distance of a seed; on its curve, of a seed that is bound to one.
     fn place_near(&mut self, v: VertexId, radius: f64) -> Point {
         let local = &self.locals[v.index()];
-        let [a, b, c] = local.tensor.cholesky();
-        let mut step = self.random.in_disk() * radius;
-        step.y /= c;
-        step.x = (step.x - b * step.y) / a;
-        let step = local.exp(step);
+        let step = local.exp(self.random.in_ball(local.tensor, radius));
         if self.dual.kind(v) == Kind::Curve {
             self.dual.slid(v, step, SLIDING)
         } else {
@@ -372,7 +338,7 @@ impl<'a, 'b> Mender<'a, 'b> {
     fn try_move(&mut self, v: VertexId, to: Point) -> Trial {
         let from = (self.positions[v.index()], self.locals[v.index()]);
         self.positions[v.index()] = to;
-        self.locals[v.index()] = LocalMetric::at(self.dual.scaled_field(), to);
+        self.locals[v.index()] = LocalMetric::at(self.dual.field(), to);
         Trial { v, from, flips: self.flip_around(v) }
     }
 
@@ -400,8 +366,11 @@ impl Flipping for Mender<'_, '_> {
     /// By lengths from expansions.
     fn wants_flip(&mut self, h: HalfEdge) -> bool {
         let Some([a, b, c, d]) = self.topology.quad(h).filter(|_| self.topology.can_flip(h)) else { return false };
-        let length =
-            |u: VertexId, v: VertexId| hermite(self.position(u), self.local(u), self.position(v), self.local(v)).value;
+        let (at, local) = (&self.positions, &self.locals);
+        let length = |u: VertexId, v: VertexId| {
+            let (u, v) = (u.index(), v.index());
+            hermite(at[u], &local[u], at[v], &local[v]).value
+        };
         let angles = Angles::from_lengths(length(a, b), [length(a, c), length(b, c)], [length(a, d), length(b, d)]);
         angles.margin() < -TIE
     }

@@ -4,7 +4,8 @@
 use super::movers::{Region, State};
 use crate::dual::{Dual, Moving};
 use crate::geometry::Point;
-use crate::net::{Ball, Memory, Net, Simplices, Sites};
+use crate::lists::{distinct, in_order};
+use crate::net::{Ball, Memory, Net, Simplices};
 use crate::rdt;
 use crate::rdt::{Rdt, Start, Trust};
 use crate::triangulation::{FaceId, Triangulation, VertexId};
@@ -58,16 +59,13 @@ impl Survey {
     }
 
     fn grow(&mut self, dual: &Dual, unknown: &[u32]) -> bool {
-        let mut seeds: Vec<VertexId> = unknown.iter().map(|&i| VertexId(i)).collect();
-        seeds.extend(self.region.iter().flat_map(Region::seeds));
-        seeds.sort_unstable();
-        seeds.dedup();
+        let unknown = unknown.iter().map(|&i| VertexId(i));
+        let seeds = distinct(unknown.chain(self.region.iter().flat_map(Region::seeds)));
         let has_room = (seeds.len() as f64) < LARGEST * dual.topology().vertex_count() as f64;
         let grown = has_room.then(|| Region::around(dual, &seeds, PER_SEED)).flatten();
-        grown.is_some_and(|region| {
-            self.region = Some(region);
-            true
-        })
+        let has_grown = grown.is_some();
+        self.region = grown.or(self.region.take());
+        has_grown
     }
 
     fn take_once(&mut self, dual: &Dual, positions: &[Point], start: &Triangulation) -> (Net, Option<Triangulation>) {
@@ -75,7 +73,7 @@ impl Survey {
         let mut circles = self.region.as_ref().and_then(found);
         if circles.is_none() {
             // Seeds have left the part of the domain that the canvas covers.
-            self.region = self.region.as_ref().and_then(|region| region.anew(dual, PER_SEED));
+            self.region = self.region.as_ref().and_then(|region| Region::around(dual, &region.core, PER_SEED));
             circles = self.region.as_ref().and_then(found);
         }
         let region = self.region.as_ref().filter(|_| circles.is_some());
@@ -83,16 +81,17 @@ impl Survey {
         // The diagram's triangles stand around the region's seeds: no length is good enough there.
         let vetoed = |i: u32, j: u32| region.is_some_and(|region| region.touches(&[i, j])).then_some((0.0, 0.0));
         let trust = Trust { reference: Some(&vetoed), ..Trust::default() };
-        let mut triangles = corners_of(start, start.faces());
-        triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
-        triangles.extend(circles.iter().map(|ball| ball.corners));
-        let at_border = border_of(start).into_iter().map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        let with_circles = |mut triangles: Vec<[u32; 3]>| {
+            triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
+            triangles.extend(circles.iter().map(|ball| ball.corners));
+            triangles
+        };
+        let triangles = with_circles(corners_of(start, start.faces()));
+        let at_border = border_of(start).into_iter().map(in_order).collect();
         let tests = std::mem::take(&mut self.tests);
-        let rdt = Rdt::again(dual.scaled_field(), positions, &Start { triangles, at_border }, trust, tests);
+        let rdt = Rdt::again(dual.field(), positions, &Start { triangles, at_border }, trust, tests);
         // Of the region's seeds the diagram has all simplices: where cells touch twice no triangulation can hold them.
-        let mut triangles = rdt.triangles();
-        triangles.retain(|corners| !region.is_some_and(|region| region.touches(corners)));
-        triangles.extend(circles.iter().map(|ball| ball.corners));
+        let triangles = with_circles(rdt.triangles());
         let topology = (rdt.counters().split == 0).then(|| rdt.topology().clone());
         self.tests = rdt.into_memory();
         (measure(dual, positions, &triangles, &circles, &mut self.memory), topology)
@@ -103,7 +102,7 @@ fn measure(dual: &Dual, seeds: &[Point], triangles: &[[u32; 3]], known: &[Ball<3
     let border = border_of(dual.topology());
     let is_inside = |seed: u32, p: Point| dual.is_inside(VertexId(seed), p);
     let found = Simplices { seeds, triangles, border: &border, is_inside: &is_inside };
-    Net::measure_beside(dual.scaled_field(), &found, known, memory)
+    Net::measure_beside(dual.field(), &found, known, memory)
 }
 
 /// Corners of faces by their numbers.
@@ -112,8 +111,7 @@ pub(super) fn corners_of(topology: &Triangulation, faces: impl Iterator<Item = F
 }
 
 fn border_of(topology: &Triangulation) -> Vec<[u32; 2]> {
-    let border = topology.edges().filter(|&h| topology.twin(h).is_none());
-    border.map(|h| [topology.origin(h).0, topology.target(h).0]).collect()
+    topology.borders().map(|h| topology.ends(h).map(|v| v.0)).collect()
 }
 
 /// The Riemannian Delaunay triangulation of a dual's seeds, measured.

@@ -2,7 +2,7 @@
 
 use super::Planar;
 use crate::geometry::{Orientation, orientation};
-use crate::triangulation::{Constraint, HalfEdge, Lawson, Triangulation, VertexId};
+use crate::triangulation::{Constraint, HalfEdge, Lawson, VertexId};
 use std::collections::VecDeque;
 
 /// The segment crosses, or runs along, one that is already there.
@@ -72,7 +72,7 @@ impl Planar {
     }
 
     fn demand_free(&self, h: HalfEdge) -> Result<(), Crossing> {
-        let edge = [self.topology.origin(h), self.topology.target(h)];
+        let edge = self.topology.ends(h);
         self.topology.constraint(h).map_or(Ok(()), |with| Err(Crossing { with, edge }))
     }
 
@@ -124,8 +124,7 @@ impl Planar {
     /// Flips edges until none of those that come of it crosses the line, or so many times were tried; returns those that do not.
     fn flip_away(&mut self, crossed: &[HalfEdge], line: [VertexId; 2], turns: usize) -> Option<Vec<[VertexId; 2]>> {
         // Edges by their ends: half-edge ids move when a neighbour is flipped.
-        let ends = |topology: &Triangulation, h| [topology.origin(h), topology.target(h)];
-        let mut crossed: VecDeque<_> = crossed.iter().map(|&h| ends(&self.topology, h)).collect();
+        let mut crossed: VecDeque<_> = crossed.iter().map(|&h| self.topology.ends(h)).collect();
         let mut created = Vec::new();
         for _ in 0..turns {
             let Some([u, v]) = crossed.pop_front() else { break };
@@ -135,7 +134,7 @@ impl Planar {
                 continue;
             }
             self.topology.flip(h);
-            let diagonal = ends(&self.topology, h);
+            let diagonal = self.topology.ends(h);
             let sides = diagonal.map(|w| self.side(line, w));
             if sides[0] != sides[1] && !sides.contains(&Orientation::Collinear) {
                 crossed.push_back(diagonal);

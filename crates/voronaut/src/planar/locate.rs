@@ -1,7 +1,7 @@
 //! Point location by walking along a straight line.
 
 use super::Planar;
-use crate::geometry::{Orientation, Point, centroid, orientation};
+use crate::geometry::{Orientation, Point, centroid, holds, orientation};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 /// Where a walk ended.
@@ -75,10 +75,6 @@ impl Planar {
 
     /// Exhaustive search, for when a walk went astray.
     fn search(&self, p: Point) -> Option<Location> {
-        let holds = |f: &FaceId| {
-            let [a, b, c] = self.triangle(*f);
-            [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, p) != Orientation::Right)
-        };
-        self.topology.faces().find(holds).map(|f| self.classify(f, p))
+        self.topology.faces().find(|&f| holds(self.triangle(f), p)).map(|f| self.classify(f, p))
     }
 }

@@ -36,7 +36,7 @@ impl Planar {
 
     /// The positions of a half-edge's ends.
     pub(crate) fn ends(&self, h: HalfEdge) -> [Point; 2] {
-        [self.position(self.topology.origin(h)), self.position(self.topology.target(h))]
+        self.topology.ends(h).map(|v| self.position(v))
     }
 
     /// The face at a vertex that the straight way to a point enters (one of two where that is along an edge); `None` where
@@ -58,10 +58,8 @@ impl Planar {
 
     /// Whether the edge has two faces that form a strictly convex quadrilateral: a flip keeps the embedding.
     pub(crate) fn is_convex(&self, h: HalfEdge) -> bool {
-        let Some(t) = self.topology.twin(h) else { return false };
-        let [a, b] = self.ends(h);
-        let c = self.position(self.topology.apex(h));
-        let d = self.position(self.topology.apex(t));
+        let Some(quad) = self.topology.quad(h) else { return false };
+        let [a, b, c, d] = quad.map(|v| self.position(v));
         orientation(d, b, c) == Orientation::Left && orientation(c, a, d) == Orientation::Left
     }
 

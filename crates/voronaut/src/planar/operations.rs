@@ -17,8 +17,8 @@ impl Planar {
     }
 
     /// Puts a vertex on an edge (or where rounding put it, next to the edge). `None` if one of the new triangles would
-    /// not be counter-clockwise. See [`crate::triangulation::Triangulation::split_edge`] for the half-edges.
-    pub(crate) fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<(VertexId, HalfEdge)> {
+    /// not be counter-clockwise.
+    pub(crate) fn insert_on_edge(&mut self, h: HalfEdge, p: Point) -> Option<VertexId> {
         let fits = |side: HalfEdge| {
             let [a, b] = self.ends(side);
             let c = self.position(self.topology.apex(side));
@@ -26,18 +26,16 @@ impl Planar {
         };
         (fits(h) && self.topology.twin(h).is_none_or(fits)).then(|| {
             let v = self.add_vertex(p);
-            (v, self.topology.split_edge(h, v))
+            self.topology.split_edge(h, v);
+            v
         })
     }
 
     /// Moves a vertex if all its faces stay counter-clockwise; says whether it did.
     pub(crate) fn move_vertex(&mut self, v: VertexId, to: Point) -> bool {
         let topology = &self.topology;
-        let fits = topology.star(v).all(|h| {
-            let a = self.position(topology.target(h));
-            let b = self.position(topology.apex(h));
-            is_left(to, a, b)
-        });
+        let fits =
+            topology.star(v).all(|h| is_left(to, self.position(topology.target(h)), self.position(topology.apex(h))));
         if fits {
             self.positions[v.index()] = to;
         }

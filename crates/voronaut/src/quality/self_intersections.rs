@@ -1,7 +1,7 @@
 //! Triangles of a surface that meet where they are not neighbours, and lines in the plane that cross, decided exactly.
 
 use super::faults::{Fault, Segments};
-use crate::geometry::{Aabb, Aabb3, Bounds, BoxTree, Corners, Orientation, Point, Point3, contact, orientation};
+use crate::geometry::{Aabb, Corners, Orientation, Point, Point3, contacts, orientation};
 use crate::mesh::{Edges, Mesh};
 use crate::parallel::prelude::*;
 
@@ -30,22 +30,9 @@ impl Pair {
 
 /// The pairs of triangles that have more in common than a vertex or an edge that both name, in order. Neighbours that lie flat
 /// on each other count. Needs finite positions and triangles that are not flat.
-///
-/// Pairs whose boxes meet are found in a tree: O(n log n) where triangles are not much longer than their distance from
-/// those that are no neighbours.
 pub(super) fn pairs(mesh: &Mesh) -> Vec<Pair> {
     let corners: Vec<Corners> = mesh.triangles.par_iter().map(|&t| corners(mesh, t)).collect();
-    let boxes: Vec<Bounds<3>> =
-        corners.par_iter().filter_map(|corners| Some(Aabb3::of(corners.points)?.into())).collect();
-    let tree = BoxTree::new(boxes.iter().copied().zip(0..));
-    let of_one = |i: usize| {
-        let others = tree.meeting(boxes[i]).copied().filter(|&j| j > i);
-        let meets = |j| Some(Pair { triangles: [i, j], at: contact(&corners[i], &corners[j])? });
-        let mut met: Vec<Pair> = others.filter_map(meets).collect();
-        met.sort_unstable_by_key(|pair| pair.triangles);
-        met
-    };
-    (0..boxes.len()).into_par_iter().flat_map_iter(of_one).collect()
+    contacts(&corners, |_| true).into_iter().map(|(triangles, at)| Pair { triangles, at }).collect()
 }
 
 fn corners(mesh: &Mesh, t: [u32; 3]) -> Corners {

@@ -5,7 +5,7 @@ use super::{Found, GeodesicEdge};
 use crate::canvas::Border;
 use crate::diagram::Diagram;
 use crate::geodesic::{Curve, Fineness, Obstacles, Paths, Polyline};
-use crate::geometry::Point;
+use crate::geometry::{Point, kept_within};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 
@@ -67,34 +67,25 @@ impl Finder<'_> {
             return None;
         }
         let points = curve.polyline(self.field, SAGITTA);
-        let is_free = points.windows(2).all(|w| !self.border.bars(w[0], w[1]));
-        is_free.then_some(points)
+        self.is_free(&points).then_some(points)
     }
 
     /// A polyline without points that are not needed to stay this near to it, in metric length.
     fn thinned(&self, points: Vec<Point>, sagitta: f64) -> Vec<Point> {
-        let mut kept = vec![points[0]];
-        self.keep(&points, sagitta, &mut kept);
-        let is_free = kept.windows(2).all(|w| !self.border.bars(w[0], w[1]));
-        if is_free { kept } else { points }
+        let away = |[i, j]: [usize; 2], k: usize| {
+            let (chord, d) = (points[j] - points[i], points[k] - points[i]);
+            let t = (d.dot(chord) / chord.dot(chord)).clamp(0.0, 1.0);
+            self.field.at(points[k]).length(if t.is_finite() { d - chord * t } else { d })
+        };
+        let kept = kept_within([0, points.len() - 1], |[i, j]| {
+            let far = (i + 1..j).map(|k| (k, away([i, j], k))).max_by(|x, y| x.1.total_cmp(&y.1));
+            far.filter(|far| far.1 > sagitta).map(|far| far.0)
+        });
+        let kept: Vec<Point> = [0].into_iter().chain(kept).map(|k| points[k]).collect();
+        if self.is_free(&kept) { kept } else { points }
     }
 
-    /// Appends what is needed of a polyline but its first point (Ramer 1972; Douglas and Peucker 1973).
-    fn keep(&self, points: &[Point], sagitta: f64, kept: &mut Vec<Point>) {
-        let [p, q] = [points[0], points[points.len() - 1]];
-        let away = |&m: &Point| {
-            let (chord, d) = (q - p, m - p);
-            let t = (d.dot(chord) / chord.dot(chord)).clamp(0.0, 1.0);
-            self.field.at(m).length(if t.is_finite() { d - chord * t } else { d })
-        };
-        let inner = points.iter().enumerate().skip(1).take(points.len().saturating_sub(2));
-        let far = inner.map(|(i, m)| (i, away(m))).max_by(|x, y| x.1.total_cmp(&y.1));
-        match far.filter(|far| far.1 > sagitta) {
-            Some((i, _)) => {
-                self.keep(&points[..=i], sagitta, kept);
-                self.keep(&points[i..], sagitta, kept);
-            }
-            None => kept.push(q),
-        }
+    fn is_free(&self, points: &[Point]) -> bool {
+        points.windows(2).all(|w| !self.border.bars(w[0], w[1]))
     }
 }

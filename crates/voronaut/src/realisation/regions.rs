@@ -1,33 +1,21 @@
 //! Riemannian triangles as regions of the plane: what lies between three geodesics, cut into straight triangles.
 
 use super::{GeodesicEdge, Realisation};
-use crate::geometry::{Orientation, Point, Tensor, orientation};
+use crate::geometry::{Orientation, Point, Tensor, holds, orientation};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 
 impl Realisation {
-    /// Vertices of a mesh that holds all seeds, then the inner points of all edges: the number of an edge's first one.
-    fn first_points(&self) -> Vec<u32> {
-        let mut next = self.seeds.len() as u32;
-        let inner = self.edges.iter().map(|edge| edge.points.len().saturating_sub(2) as u32);
-        let first = |count: u32| {
-            next += count;
-            next - count
-        };
-        inner.map(first).collect()
-    }
-
     /// The vertices of each edge in [`Realisation::to_mesh`], from its first seed to its second.
     pub fn lines(&self) -> Vec<Vec<u32>> {
-        let first = self.first_points();
-        (0..self.edges.len()).map(|edge| self.line(edge, &first)).collect()
-    }
-
-    fn line(&self, edge: usize, first: &[u32]) -> Vec<u32> {
-        let GeodesicEdge { ends, points, .. } = &self.edges[edge];
-        let inner = (0..points.len().saturating_sub(2) as u32).map(|k| first[edge] + k);
-        std::iter::once(ends[0]).chain(inner).chain(std::iter::once(ends[1])).collect()
+        let mut next = self.seeds.len() as u32;
+        let line = |GeodesicEdge { ends, points, .. }: &GeodesicEdge| {
+            let first = next;
+            next += inner(points).len() as u32;
+            [ends[0]].into_iter().chain(first..next).chain([ends[1]]).collect()
+        };
+        self.edges.iter().map(line).collect()
     }
 
     /// The number of the edge between two seeds.
@@ -57,15 +45,15 @@ impl Realisation {
     /// Each triangle's region, cut into straight triangles by the numbers of [`Realisation::to_mesh`]; empty where its edges
     /// bound no region, counter-clockwise.
     pub(super) fn cut(&self, field: &dyn MetricField) -> Vec<Vec<[u32; 3]>> {
-        let first = self.first_points();
-        self.triangles.par_iter().map(|&t| self.cut_one(field, t, &first).unwrap_or_default()).collect()
+        let lines = self.lines();
+        self.triangles.par_iter().map(|&t| self.cut_one(field, t, &lines).unwrap_or_default()).collect()
     }
 
-    fn cut_one(&self, field: &dyn MetricField, [a, b, c]: [u32; 3], first: &[u32]) -> Option<Vec<[u32; 3]>> {
+    fn cut_one(&self, field: &dyn MetricField, [a, b, c]: [u32; 3], lines: &[Vec<u32>]) -> Option<Vec<[u32; 3]>> {
         let mut corners = Vec::new();
         for [from, to] in [[a, b], [b, c], [c, a]] {
             let edge = self.edge_between(from, to)?;
-            let mut numbers = self.line(edge, first);
+            let mut numbers = lines[edge].clone();
             if from > to {
                 numbers.reverse();
             }
@@ -127,10 +115,8 @@ impl Region {
         if orientation(a, b, c) != Orientation::Left {
             return None;
         }
-        let is_in =
-            |p: Point| [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, p) != Orientation::Right);
-        let others = self.corners.iter().enumerate().filter(|(k, _)| !numbers.contains(k));
-        if others.map(|(_, corner)| corner.1).any(is_in) {
+        let mut others = self.corners.iter().enumerate().filter(|(k, _)| !numbers.contains(k));
+        if others.any(|(_, corner)| holds([a, b, c], corner.1)) {
             return None;
         }
         let squares: f64 = [b - a, c - b, a - c].iter().map(|&side| self.tensor.dot(side, side)).sum();

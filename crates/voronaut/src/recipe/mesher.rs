@@ -4,7 +4,7 @@ use super::settle::Stopwatch;
 use super::{Job, MeshOptions, Meshed};
 use crate::canvas::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 use crate::domain::Domain;
-use crate::dual::{Dual, Kind};
+use crate::dual::{Dual, Kind, Moving};
 use crate::error::{Error, Result};
 use crate::figures;
 use crate::metric::{MetricField, Scaled, Steadied};
@@ -37,7 +37,7 @@ pub(super) fn by_stars(
     let watch = Stopwatch::new(progress);
     let mut job = Job::new(field, options, &watch);
     let start = sampled(&mut job, domain, None)?;
-    let (scaled, unit) = (start.dual.field(), start.dual.vertex_count());
+    let (scaled, unit) = (*start.dual.field(), start.dual.vertex_count());
     let mut meshed = agreed(&mut job, &start, &scaled, unit);
     for most in TURNS {
         if !matches!(meshed, Err(Error::Limit { .. })) {

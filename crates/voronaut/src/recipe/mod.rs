@@ -26,7 +26,7 @@ pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
 
 use crate::canvas::{Canvas, CanvasFigures};
 use crate::domain::Domain;
-use crate::dual::{Dual, Kind};
+use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
 use crate::figures;
 use crate::mesh::Mesh;

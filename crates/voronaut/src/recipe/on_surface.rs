@@ -4,6 +4,7 @@ use super::settle::Stopwatch;
 use super::surface_pass::{Pass, Reseed, Setting};
 use super::{MeshOptions, Meshed, Mesher, Seeding};
 use crate::canvas::area_of_surface;
+use crate::dual::Moving;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::optimise::{FitOptions, fit};

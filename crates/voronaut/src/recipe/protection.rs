@@ -4,7 +4,7 @@ use super::{Job, Seeding};
 use crate::canvas::{self, Canvas};
 use crate::diagram::{Diagram, RESOLVE_ROUNDS, resolve};
 use crate::domain::Domain;
-use crate::dual::{Dual, Road};
+use crate::dual::{Dual, Moving, Road};
 use crate::error::Result;
 use crate::figures;
 use crate::geometry::Point;
@@ -57,7 +57,7 @@ impl Job<'_> {
         seeds.sort_by_key(|seed| seed.0);
         seeds.dedup_by_key(|seed| seed.0);
         let seeds: Vec<Point> = seeds.into_iter().map(|seed| seed.1).collect();
-        let field = dual.scaled_field();
+        let field = dual.field();
         let size = canvas::size_for(seeds.len(), self.options.canvas_size);
         let resolved = resolve(Canvas::intrinsic(domain, field, size)?, field, &seeds, RESOLVE_ROUNDS)?;
         let diagram = Diagram::new(&resolved.canvas, field, &seeds)?;

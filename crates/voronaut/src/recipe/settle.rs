@@ -6,7 +6,7 @@ use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job, MeshOptions};
 use crate::canvas::{Canvas, CanvasFigures};
 use crate::diagram::Diagram;
 use crate::domain::Domain;
-use crate::dual::{Consultation, Disagreement, Dual, Effort};
+use crate::dual::{Consultation, Disagreement, Dual, Effort, Moving};
 use crate::error::Result;
 use crate::geodesic::Margin;
 use crate::geometry::Point;
@@ -121,7 +121,7 @@ impl Job<'_> {
         }
         let count = dual.vertex_count();
         let most = |share: f64| (count as f64 * share) as usize;
-        let before = dual.saved();
+        let before = dual.save();
         self.fit_scale(dual);
         let met = meet_blocked_flips(dual, most(BLOCKED_SHARE));
         exchange(dual, self.fill(count), most(EXCHANGED_SHARE).max(met))?;
@@ -130,7 +130,7 @@ impl Job<'_> {
         let doubt = if self.options.centroid == Centroid::Tangent { ROUGH_DOUBT * rough_share(dual) } else { 0.0 };
         let rises = step.energy.last().is_none_or(|&now| now > (1.0 + doubt) * energy);
         if rises && self.options.centroid != Centroid::Weighted {
-            dual.restore(&before);
+            dual.take_back(&before);
             return Ok(false);
         }
         relaxed.append(step);

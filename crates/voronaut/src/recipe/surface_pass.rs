@@ -6,7 +6,7 @@ use super::settle::{Settled, Stopwatch};
 use super::{MeshOptions, Seeding};
 use crate::canvas::{Canvas, CanvasFigures, Draped};
 use crate::diagram::SurfaceDiagram;
-use crate::dual::{Road, SurfaceDual};
+use crate::dual::{Moving, Road, SurfaceDual};
 use crate::error::{Error, Result};
 use crate::figures;
 use crate::lists::in_order;

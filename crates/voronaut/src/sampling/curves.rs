@@ -3,7 +3,7 @@
 
 use crate::domain::{Chain, Domain, Pslg};
 use crate::geodesic::chord;
-use crate::geometry::{Aabb, BoxTree, Orientation, Point, Tensor, Vector, orientation, widened};
+use crate::geometry::{Aabb, BoxTree, Orientation, Point, Tensor, Vector, kept_within, orientation, widened};
 use crate::lists::distinct;
 use crate::metric::MetricField;
 use std::collections::HashSet;
@@ -35,11 +35,15 @@ fn thin(pslg: &Pslg, chain: &Chain, field: &dyn MetricField, tolerance: f64, nei
         kept = vec![0, n / 3, 2 * n / 3, n];
         kept.dedup();
     }
-    let mut result = vec![kept[0]];
-    for pair in kept.windows(2) {
-        keep_within((&points, &chain.vertices), (pair[0], pair[1]), tolerance, neighbours, &mut result);
-    }
-    Chain { vertices: result.into_iter().map(|i| chain.vertices[i]).collect(), kind: chain.kind }
+    // No chord strays farther than the tolerance, or leaves another vertex on its wrong side.
+    let strays = |[i, j]: [usize; 2]| {
+        let distance = |k: usize| points[k].distance(points[k].nearest_between(points[i], points[j]));
+        let (far, k) = (i + 1..j).map(|k| (distance(k), k)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        (far > tolerance || neighbours.any_between(&points[i..=j], &chain.vertices[i..=j])).then_some(k)
+    };
+    let inner = kept.windows(2).flat_map(|pair| kept_within([pair[0], pair[1]], strays));
+    let vertices = [kept[0]].into_iter().chain(inner).map(|i| chain.vertices[i]).collect();
+    Chain { vertices, kind: chain.kind }
 }
 
 /// All vertices of the domain, to see which of them a chord would leave on its other side.
@@ -88,35 +92,6 @@ fn unit_steps(points: &[Point], field: &dyn MetricField) -> Vec<usize> {
     kept
 }
 
-/// Adds to `result` what must be kept after point `from` up to `to`, so that no chord strays farther than the
-/// tolerance (Douglas and Peucker 1973) or leaves another vertex on its wrong side.
-fn keep_within(
-    (points, vertices): (&[Point], &[u32]),
-    (from, to): (usize, usize),
-    tolerance: f64,
-    neighbours: &Neighbours,
-    result: &mut Vec<usize>,
-) {
-    let mut pending = vec![(from, to)];
-    while let Some((i, j)) = pending.pop() {
-        let farthest = (i + 1..j)
-            .map(|k| (distance_to_segment(points[k], points[i], points[j]), k))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        match farthest {
-            Some((distance, k)) if distance > tolerance || neighbours.any_between(&points[i..=j], &vertices[i..=j]) => {
-                pending.extend([(k, j), (i, k)]);
-            }
-            _ => result.push(j),
-        }
-    }
-}
-
-pub(super) fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
-    let d = b - a;
-    let t = ((p - a).dot(d) / d.dot(d)).clamp(0.0, 1.0);
-    if t.is_nan() { p.distance(a) } else { p.distance(a.lerp(b, t)) }
-}
-
 /// A chord of length h is h^2 / 8 times the curvature away from its curve.
 const SAGITTA: f64 = 8.0;
 
@@ -160,7 +135,7 @@ impl CurveSizes {
         let reach = self.hausd.max(f64::MIN_POSITIVE.sqrt());
         let around = self.segments.meeting(widened([[p.x, p.y]; 2], reach));
         let near: Vec<&SizedSegment> =
-            around.filter(|bent| distance_to_segment(p, bent.ends[0], bent.ends[1]) <= reach).collect();
+            around.filter(|bent| p.distance(p.nearest_between(bent.ends[0], bent.ends[1])) <= reach).collect();
         let first = direction(near.first()?);
         let sum = near[1..].iter().map(|bent| direction(bent)).fold(first, |sum, d| sum + d * d.dot(first).signum());
         let logarithms: f64 = near.iter().map(|bent| bent.size.ln()).sum();

@@ -3,9 +3,9 @@
 
 use super::interior::{Entry, Fill, SPACING};
 use crate::diagram::{Diagram, Ground};
-use crate::dual::Dual;
+use crate::dual::{Dual, Moving};
 use crate::error::Result;
-use crate::geometry::{Orientation, Point, orientation};
+use crate::geometry::{Point, holds};
 use crate::metric::MetricField;
 use crate::planar::Location;
 use crate::progress::Progress;
@@ -106,7 +106,7 @@ pub(crate) fn refine_farthest(
 fn insert(dual: &mut Dual, near: VertexId, p: Point) -> Option<VertexId> {
     match locate(dual, near, p)? {
         Location::Face(f) => dual.insert_in_face(f, p),
-        Location::Edge(h) if !dual.topology().is_fixed(h) => dual.insert_on_edge(h, p).map(|(seed, _)| seed),
+        Location::Edge(h) if !dual.topology().is_fixed(h) => dual.insert_on_edge(h, p),
         _ => None,
     }
 }
@@ -124,17 +124,13 @@ fn locate(dual: &Dual, near: VertexId, p: Point) -> Option<Location> {
 fn search(dual: &Dual, from: FaceId, p: Point) -> Option<FaceId> {
     let tensor = dual.field().at(p);
     let entry = |of: FaceId| {
-        let [a, b, c] = dual.planar().triangle(of);
-        Entry { value: -[a, b, c].iter().map(|&q| tensor.length(q - p)).fold(f64::INFINITY, f64::min), of }
-    };
-    let holds = |f: FaceId| {
-        let [a, b, c] = dual.planar().triangle(f);
-        [(a, b), (b, c), (c, a)].iter().all(|&(u, v)| orientation(u, v, p) != Orientation::Right)
+        let lengths = dual.planar().triangle(of).map(|q| tensor.length(q - p));
+        Entry { value: -lengths.into_iter().fold(f64::INFINITY, f64::min), of }
     };
     let mut seen = BTreeSet::from([from]);
     let mut heap = BinaryHeap::from([entry(from)]);
     while let Some(Entry { of: face, .. }) = heap.pop() {
-        if holds(face) {
+        if holds(dual.planar().triangle(face), p) {
             return Some(face);
         }
         let beyond = face.half_edges().into_iter().filter_map(|h| dual.topology().twin(h)).map(HalfEdge::face);

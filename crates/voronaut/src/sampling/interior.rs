@@ -1,9 +1,9 @@
 //! The interior: seeds one at a time at the circumcentre of the face whose metric circumradius is largest.
 
-use crate::dual::{Dual, Kind};
+use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
 use crate::geodesic::chord;
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geometry::{Point, Tensor, Vector, centroid};
 use crate::metric::MetricField;
 use crate::planar::Location;
 use crate::progress::Progress;
@@ -135,8 +135,7 @@ impl Refiner<'_> {
             // Places were tried, and left other faces, which are in the queue.
             return false;
         }
-        let centroid = centroid(dual.planar().triangle(face));
-        if insert_spaced(dual, Location::Face(face), centroid) {
+        if insert_spaced(dual, Location::Face(face), centroid(dual.planar().triangle(face))) {
             return true;
         }
         let longest = face.half_edges().into_iter().max_by(|&g, &h| chord_of(dual, g).total_cmp(&chord_of(dual, h)));
@@ -165,14 +164,13 @@ impl Refiner<'_> {
         let mut edges: Vec<(f64, HalfEdge)> = dual.topology().edges().map(|h| (dual.edge_length(h), h)).collect();
         edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let wanted = (count - dual.vertex_count()).min(edges.len() / 8 + 1);
-        let ends = |h: HalfEdge| [dual.topology().origin(h), dual.topology().target(h)];
-        let candidates: Vec<[VertexId; 2]> = edges.iter().map(|&(_, h)| ends(h)).collect();
+        let candidates: Vec<[VertexId; 2]> = edges.iter().map(|&(_, h)| dual.topology().ends(h)).collect();
         let mut done = 0;
         for [a, b] in candidates {
             if done == wanted {
                 break;
             }
-            let edge = dual.topology().find(a, b).or_else(|| dual.topology().find(b, a));
+            let edge = dual.topology().edge_between(a, b);
             done += usize::from(edge.is_some_and(|h| halve(dual, h)));
         }
         let touched = dual.take_touched();
@@ -185,7 +183,7 @@ impl Refiner<'_> {
 /// where they are so far away that they say little of the face, mostly that at its centroid.
 fn circumcircle(dual: &Dual, face: FaceId) -> (Point, f64) {
     let corners = dual.topology().corners(face);
-    let mean = corners.iter().fold(Tensor::default(), |sum, &v| sum + dual.local(v).tensor) * (1.0 / 3.0);
+    let mean = dual.mean_tensor(corners);
     let [a, b, c] = corners.map(|v| dual.position(v));
     let (u, v) = (b - a, c - a);
     let tensor = if mean.length(u).max(mean.length(v)) > FAR {
@@ -209,7 +207,7 @@ pub(super) fn encroached_edge(dual: &Dual, face: FaceId, p: Point) -> Option<Hal
     let seen = face.half_edges().into_iter().chain(beyond.flat_map(|t| [t.next(), t.prev()]));
     let encroached = |h: &HalfEdge| {
         let [a, b] = dual.planar().ends(*h);
-        let tensor = (dual.local(topology.origin(*h)).tensor + dual.local(topology.target(*h)).tensor) * 0.5;
+        let tensor = dual.mean_tensor(topology.ends(*h));
         topology.is_fixed(*h) && tensor.dot(a - p, b - p) < 0.0
     };
     seen.filter(encroached).max_by(|&g, &h| dual.edge_length(g).total_cmp(&dual.edge_length(h)))
@@ -232,7 +230,7 @@ pub(super) fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
     let topology = dual.topology();
     let tensor = dual.field().at(p);
     let distance = |v: VertexId| tensor.length(p - dual.position(v));
-    let too_near = |v: VertexId| chord(&dual.field(), p, dual.position(v)) < SPACING;
+    let too_near = |v: VertexId| chord(dual.field(), p, dual.position(v)) < SPACING;
     let corners = topology.corners(face);
     if corners.into_iter().any(too_near) {
         return true;
@@ -251,7 +249,7 @@ pub(super) fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
 /// Metric length along an edge.
 fn chord_of(dual: &Dual, h: HalfEdge) -> f64 {
     let [a, b] = dual.planar().ends(h);
-    chord(&dual.field(), a, b)
+    chord(dual.field(), a, b)
 }
 
 fn halve(dual: &mut Dual, h: HalfEdge) -> bool {
@@ -270,7 +268,7 @@ fn split_if_long(dual: &mut Dual, h: HalfEdge) -> bool {
 /// Splits a constrained edge at its middle, or, next to a sharp corner, on one of the concentric shells of radius
 /// 2^k around it, so that the edges of both curves at the corner are split at the same distance (Ruppert 1995).
 fn split_constrained(dual: &mut Dual, h: HalfEdge) -> bool {
-    let (a, b) = (dual.topology().origin(h), dual.topology().target(h));
+    let [a, b] = dual.topology().ends(h);
     let length = dual.edge_length(h);
     let shell = (0.5 * length).log2().round().exp2() / length;
     let t = match (is_sharp(dual, a), is_sharp(dual, b)) {
@@ -288,20 +286,12 @@ fn is_sharp(dual: &Dual, v: VertexId) -> bool {
         return false;
     }
     let topology = dual.topology();
-    let mut directions: Vec<Vector> = Vec::new();
-    for h in topology.star(v) {
-        let ends = [(h, topology.target(h)), (h.prev(), topology.apex(h))];
-        let fixed = ends.into_iter().filter(|&(e, _)| topology.is_fixed(e));
-        directions.extend(fixed.map(|(_, u)| dual.position(u) - dual.position(v)));
-    }
+    let along = topology.along_fixed(v).map(|u| dual.position(u) - dual.position(v));
+    let directions: Vec<Vector> = along.collect();
     let tensor = dual.local(v).tensor;
     let cosine = |u: Vector, w: Vector| tensor.dot(u, w) / (tensor.length(u) * tensor.length(w));
     (0..directions.len()).any(|i| {
-        // An inner feature's edge is met from both sides, hence the bound below one.
+        // Directions that are the same but for rounding are no corner, hence the bound below one.
         directions[..i].iter().any(|&u| (0.5..1.0 - 1e-12).contains(&cosine(u, directions[i])))
     })
-}
-
-fn centroid([a, b, c]: [Point; 3]) -> Point {
-    Point::new((a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0)
 }

@@ -3,10 +3,11 @@
 
 use crate::canvas;
 use crate::domain::Domain;
-use crate::dual::Dual;
+use crate::dual::{Dual, Moving};
 use crate::error::{Error, Result};
 use crate::geodesic::chord;
 use crate::geometry::Point;
+use crate::lists::distinct;
 use crate::metric::{MetricField, complexity, rough_complexity};
 use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, VertexId};
@@ -49,7 +50,7 @@ impl Plan {
         let required = |h| planar.topology.constraint(h).is_some_and(|c| domain.pslg().segments[c.0 as usize].required);
         let constrained = planar.topology.edges().filter(|&h| planar.topology.constraint(h).is_some());
         let edges: Vec<(HalfEdge, bool)> = constrained.map(|h| (h, required(h))).collect();
-        let arcs = edges.par_iter().map(|&(h, _)| planar.ends(h)).map(|[a, b]| MetricArc::new(field, a, b)).collect();
+        let arcs = edges.par_iter().map(|&(h, _)| MetricArc::of_chord(field, planar.ends(h))).collect();
         // Elsewhere the integral is only where the search for scale or count starts.
         let integral = if matches!(target, Target::Complexity(_)) { complexity } else { rough_complexity };
         let complexity = integral(field, &domain.triangles())?;
@@ -119,11 +120,8 @@ impl Plan {
 }
 
 fn copies(domain: &Domain) -> usize {
-    let mut sources: Vec<u32> = domain.sources().iter().flatten().copied().collect();
-    let all = sources.len();
-    sources.sort_unstable();
-    sources.dedup();
-    all - sources.len()
+    let sources = domain.sources().iter().flatten();
+    sources.clone().count() - distinct(sources).len()
 }
 
 /// Demands that a mesh of so many vertices, made with a canvas of so many (0: none), fits into `limit` bytes.
@@ -150,10 +148,10 @@ pub fn demand_memory(vertices: f64, canvas: f64, limit: u64) -> Result<()> {
     Err(Error::Limit { what, help })
 }
 
-/// Metric length along a straight segment, as a piecewise linear function of the parameter.
+/// Metric length along a chain of edges, as a piecewise linear function of the parameter, which an edge adds one to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MetricArc {
-    /// Breakpoints (parameter in 0..=1, metric length from the start), both increasing.
+    /// Breakpoints (parameter, metric length from the start), both increasing.
     breaks: Vec<(f64, f64)>,
 }
 
@@ -164,15 +162,22 @@ const TOLERANCE: f64 = 1e-3;
 const MAX_DEPTH: u32 = 16;
 
 impl MetricArc {
-    /// Measures the segment a-b, with pieces as fine as the field needs.
-    pub(crate) fn new(field: &dyn MetricField, a: Point, b: Point) -> Self {
+    /// Measures so many edges, in pieces as fine as need be, of which `length` tells the lengths between parameters of one edge.
+    pub(crate) fn new(edges: usize, length: impl Fn(f64, f64) -> f64) -> Self {
         let mut arc = Self { breaks: vec![(0.0, 0.0)] };
-        let whole = chord(field, a, b);
-        arc.measure(&|t0, t1| chord(field, a.lerp(b, t0), a.lerp(b, t1)), (0.0, 1.0), whole, MAX_DEPTH);
+        for edge in 0..edges {
+            let (from, to) = (edge as f64, (edge + 1) as f64);
+            arc.measure(&length, (from, to), length(from, to), MAX_DEPTH);
+        }
         arc
     }
 
-    /// Metric length of the whole segment.
+    /// Of a straight edge in a field.
+    pub(crate) fn of_chord(field: &dyn MetricField, [a, b]: [Point; 2]) -> Self {
+        Self::new(1, |s, t| chord(field, a.lerp(b, s), a.lerp(b, t)))
+    }
+
+    /// Metric length of all edges.
     pub(crate) fn length(&self) -> f64 {
         self.breaks[self.breaks.len() - 1].1
     }
@@ -212,7 +217,7 @@ pub(super) fn pieces(length: f64) -> usize {
 /// A cut that rounding would make invalid is left out. Returns the number of new vertices.
 pub(crate) fn sample_segments(dual: &mut Dual, edges: &[(HalfEdge, bool)], arcs: &[MetricArc], scale: f64) -> usize {
     let before = dual.vertex_count();
-    let ends: Vec<_> = edges.iter().map(|&(h, _)| [dual.topology().origin(h), dual.topology().target(h)]).collect();
+    let ends: Vec<_> = edges.iter().map(|&(h, _)| dual.topology().ends(h)).collect();
     for ((&(_, required), arc), [from, to]) in edges.iter().zip(arcs).zip(ends) {
         if required {
             continue;
@@ -233,7 +238,7 @@ fn cut(dual: &mut Dual, from: VertexId, to: VertexId, points: &[Point]) {
         let Some(h) = dual.topology().find(from, to) else { continue };
         let middle = usize::midpoint(range.start, range.end);
         let candidates = (middle..range.end).chain((range.start..middle).rev());
-        let done = candidates.into_iter().find_map(|k| dual.insert_on_edge(h, points[k]).map(|(v, _)| (k, v)));
+        let done = candidates.into_iter().find_map(|k| Some((k, dual.insert_on_edge(h, points[k])?)));
         if let Some((k, v)) = done {
             pending.extend([(v, to, k + 1..range.end), (from, v, range.start..k)]);
         }
@@ -261,7 +266,7 @@ mod tests {
     #[test]
     fn arc_length_of_the_half_plane_is_a_logarithm() {
         let field = |p: Point| Tensor::isotropic(p.y);
-        let arc = MetricArc::new(&field, Point::new(0.0, 1e-3), Point::new(0.0, 1.0));
+        let arc = MetricArc::of_chord(&field, [Point::new(0.0, 1e-3), Point::new(0.0, 1.0)]);
         let exact = 1e3_f64.ln();
         assert!((arc.length() / exact - 1.0).abs() < 1e-3, "{}", arc.length());
         for share in [0.1, 0.5, 0.9] {

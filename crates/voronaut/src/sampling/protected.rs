@@ -2,9 +2,9 @@
 //! without power protection.
 
 use super::interior::{Fill, encroached_edge, insert_spaced, is_crowded, refine_with};
-use crate::dual::Dual;
+use crate::dual::{Dual, Moving};
 use crate::error::Result;
-use crate::geometry::{Point, Vector};
+use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::net::{Estimate, Random};
 use crate::planar::Location;
@@ -64,27 +64,26 @@ impl Picker {
         let near = dual.topology().corners(face)[0];
         // The tries may leave other faces there.
         self.pick_valid(dual, place, (centre, radius)).is_some()
-            || place_from(dual, near, centre).is_some_and(|p| insert_spaced(dual, p, centre))
+            || dual.seen_from(near, centre, true).is_some_and(|p| insert_spaced(dual, p, centre))
     }
 
     /// Seeds for the simplices that lack protection, as far as there are valid places.
     fn protect(&mut self, dual: &mut Dual, count: usize) {
-        let circles =
-            |dual: &Dual| dual.topology().faces().filter_map(|f| Estimate(dual).circle(f)).collect::<Vec<_>>();
-        let largest = circles(dual).into_iter().map(|(_, square)| square).fold(0.0, f64::max).min(COARSE * COARSE);
-        let asked = largest * self.picking.protection.powi(2);
-        let short: Vec<FaceId> = Estimate(dual).short_faces(asked);
-        let mut places: Vec<(Point, f64, VertexId)> = Vec::new();
-        for f in short {
-            let near = dual.topology().corners(f)[0];
-            places.extend(Estimate(dual).circle(f).map(|(centre, square)| (centre, square.sqrt(), near)));
-        }
+        let estimate = Estimate::of(dual);
+        let squares = dual.topology().faces().filter_map(|f| estimate.circle(f)).map(|(_, square)| square);
+        let asked = squares.fold(0.0, f64::max).min(COARSE * COARSE) * self.picking.protection.powi(2);
+        let circle = |f: FaceId| {
+            let (centre, square) = estimate.circle(f)?;
+            Some((centre, square.sqrt(), dual.topology().corners(f)[0]))
+        };
+        let short = estimate.short_faces(asked).into_iter();
+        let mut places: Vec<(Point, f64, VertexId)> = short.filter_map(circle).collect();
         places.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.2.cmp(&b.2)));
         for (centre, radius, near) in places {
             if dual.vertex_count() >= count {
                 return;
             }
-            if let Some(place) = place_from(dual, near, centre) {
+            if let Some(place) = dual.seen_from(near, centre, true) {
                 self.pick_valid(dual, place, (centre, radius));
             }
         }
@@ -96,34 +95,26 @@ impl Picker {
         // Faces come and go with the tries, their corners stay.
         let near = dual.topology().corners(face)[0];
         let asked = (self.picking.protection * radius).powi(2);
-        let [a, b, c] = dual.field().at(centre).cholesky();
+        let tensor = dual.field().at(centre);
         let mut p = centre;
         for _ in 0..TRIES {
             if let Some(v) = insert_valid(dual, near, p, asked) {
                 return Some(v);
             }
-            let step = self.random.in_disk() * (self.picking.radius * radius);
-            let y = step.y / c;
-            p = centre + Vector::new((step.x - b * y) / a, y);
+            p = centre + self.random.in_ball(tensor, self.picking.radius * radius);
         }
         None
     }
 }
 
-/// Where a point is, as a vertex near it sees it.
-fn place_from(dual: &Dual, near: VertexId, p: Point) -> Option<Location> {
-    let start = dual.topology().start(near)?.face();
-    Some(dual.planar().walk(start, p, true))
-}
-
 /// Inserts a seed, and takes it out again unless it is valid.
 fn insert_valid(dual: &mut Dual, near: VertexId, p: Point, asked: f64) -> Option<VertexId> {
-    let Location::Face(face) = place_from(dual, near, p)? else { return None };
+    let Location::Face(face) = dual.seen_from(near, p, true)? else { return None };
     if encroached_edge(dual, face, p).is_some() || is_crowded(dual, face, p) {
         return None;
     }
     let v = dual.insert_in_face(face, p)?;
-    let estimate = Estimate(dual);
+    let estimate = Estimate::of(dual);
     let is_valid = estimate.shortfall_of(v, &estimate.around(v), asked) <= 0.0;
     // A seed that cannot be taken out stays.
     (is_valid || !dual.remove(v)).then_some(v)

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::canvas::Canvas;
 use crate::diagram::Diagram;
 use crate::domain::{Domain, Poly, from_poly};
-use crate::dual::Dual;
+use crate::dual::{Dual, Moving};
 use crate::geometry::{Point, Tensor};
 use crate::metric::{MetricField, Scaled, Shock, Swirl, Uniform};
 use crate::progress::Silent;

@@ -1,7 +1,7 @@
 //! Moves of vertices shortened until no triangle comes to harm, or to meet another one.
 
 use super::samples::Sheet;
-use crate::geometry::{Aabb3, Bounds, BoxTree, Corners, Point3, Vector3, contact};
+use crate::geometry::{Corners, Point3, Vector3, contacts};
 use crate::lists::distinct;
 use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, VertexId};
@@ -106,27 +106,13 @@ fn shape(surface: &Sheet, mesh: &Sheet, f: FaceId, below: FaceId) -> Shape {
     Shape { quality, facing: own.dot(other), below }
 }
 
-/// All pairs of triangles that meet, exactly ([`contact`]), in order, the smaller number first; only pairs of which one at least is
+/// All pairs of triangles that meet, exactly ([`contacts`]), in order, the smaller number first; only pairs of which one at least is
 /// `asked` for.
 pub(super) fn crossings(sheet: &Sheet, asked: impl Fn(FaceId) -> bool + Sync) -> Vec<[FaceId; 2]> {
-    let bounds = |f: FaceId| -> Bounds<3> { Aabb3::of(sheet.triangle(f)).expect("three corners").into() };
     let faces: Vec<FaceId> = sheet.topology.faces().collect();
-    let tree = BoxTree::new(faces.iter().map(|&f| (bounds(f), f)));
-    let of_one = |&f: &FaceId| {
-        let near = tree.meeting(bounds(f)).copied();
-        // Of two that are asked for, the smaller one looks.
-        let others = near.filter(|&g| if asked(g) { f < g } else { f != g });
-        let own = corners(sheet, f);
-        let met = others.filter(|&g| contact(&own, &corners(sheet, g)).is_some());
-        met.map(|g| [f.min(g), f.max(g)]).collect::<Vec<_>>()
-    };
-    let mut all: Vec<_> = faces.par_iter().filter(|&&f| asked(f)).flat_map_iter(of_one).collect();
-    all.sort_unstable();
-    all
-}
-
-fn corners(sheet: &Sheet, f: FaceId) -> Corners {
-    Corners { vertices: sheet.topology.corners(f).map(|v| v.0), points: sheet.triangle(f) }
+    let corners = |&f: &FaceId| Corners { vertices: sheet.topology.corners(f).map(|v| v.0), points: sheet.triangle(f) };
+    let met = contacts(&faces.iter().map(corners).collect::<Vec<_>>(), |i| asked(faces[i]));
+    met.into_iter().map(|(pair, _)| pair.map(|i| faces[i])).collect()
 }
 
 #[cfg(test)]

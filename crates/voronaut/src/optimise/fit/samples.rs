@@ -113,17 +113,12 @@ impl<'a> Samples<'a> {
         let to_mesh: Vec<Foot> = self.of_surface.par_iter().enumerate().map(|(i, s)| on_mesh(i, s.place)).collect();
         let count = PER_TRIANGLE * mesh.topology.face_slots();
         let to_surface: Vec<Foot> = (0..count).into_par_iter().map(|i| on_surface(i, of_mesh(mesh, i).0)).collect();
-        let mut sums = [[0.0; 2]; 2];
-        for (foot, s) in to_mesh.iter().zip(&self.of_surface) {
-            sums[0][0] += s.weight * foot.square();
-            sums[0][1] += s.weight;
-        }
-        for (i, foot) in to_surface.iter().enumerate() {
-            let (_, weight) = of_mesh(mesh, i);
-            sums[1][0] += weight * foot.square();
-            sums[1][1] += weight;
-        }
-        let [a, b] = sums.map(|[sum, weight]| sum / weight);
+        let mean = |feet: &[Foot], weight: &dyn Fn(usize) -> f64| {
+            let weighted = feet.iter().enumerate().map(|(i, foot)| (weight(i), foot.square()));
+            let [sum, total] = weighted.fold([0.0; 2], |[sum, total], (w, square)| [sum + w * square, total + w]);
+            sum / total
+        };
+        let (a, b) = (mean(&to_mesh, &|i| self.of_surface[i].weight), mean(&to_surface, &|i| of_mesh(mesh, i).1));
         let greatest = to_mesh.iter().chain(&to_surface).map(Foot::square).fold(0.0, f64::max).sqrt();
         Assignment { to_mesh, to_surface, mean_square: 0.5 * (a + b), greatest }
     }

@@ -6,9 +6,8 @@
 
 mod moves;
 
-use crate::dual::{Dual, Kind};
+use crate::dual::Dual;
 use crate::error::{Error, Result};
-use crate::geometry::Tensor;
 use crate::metric::{Norm, ScalarField};
 use crate::parallel::prelude::*;
 use crate::planar::Planar;
@@ -71,31 +70,23 @@ pub(crate) fn polish(
     if let Some(last) = polished.error.last_mut() {
         *last = work.norm();
     }
-    dual.take_over(work.planar);
+    let planar = work.planar;
+    dual.take_over(planar);
     dual.verdict()?;
     Ok(polished)
 }
 
-/// What may be done to a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Freedom {
-    None,
-    Along,
-    All,
-}
-
-/// A triangulation with the function's values at its vertices, and the metric where they were.
+/// A triangulation with the function's values at its vertices, and the dual that it was made of, with the metric where they were.
 struct Work<'a> {
+    dual: &'a Dual<'a>,
     objective: Objective<'a>,
     planar: Planar,
     places: Vec<Place>,
-    tensors: Vec<Tensor>,
-    freedoms: Vec<Freedom>,
 }
 
 impl<'a> Work<'a> {
     /// `None` where the function is the same everywhere.
-    fn new(dual: &Dual, function: &'a dyn ScalarField, norm: Norm) -> Result<Option<Self>> {
+    fn new(dual: &'a Dual, function: &'a dyn ScalarField, norm: Norm) -> Result<Option<Self>> {
         let planar = dual.planar().clone();
         let values: Vec<f64> = planar.positions.par_iter().map(|&p| function.value(p)).collect();
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -108,17 +99,10 @@ impl<'a> Work<'a> {
             }
             (least, most) = (least.min(value), most.max(value));
         }
-        let freedom = |v: u32| match dual.kind(VertexId(v)) {
-            Kind::Corner(_) => Freedom::None,
-            Kind::Curve => Freedom::Along,
-            Kind::Free => Freedom::All,
-        };
-        let slots = planar.positions.len() as u32;
         Ok((most > least).then(|| Self {
+            dual,
             objective: Objective::new(function, norm, most - least),
             places: planar.positions.iter().zip(values).map(|(&at, value)| Place { at, value }).collect(),
-            tensors: (0..slots).map(|v| dual.local(VertexId(v)).tensor).collect(),
-            freedoms: (0..slots).map(freedom).collect(),
             planar,
         }))
     }
@@ -137,8 +121,7 @@ impl<'a> Work<'a> {
 
     /// Quality in the mean tensor of three vertices of a triangle with these corners: 1 of an equilateral one.
     fn shape(&self, vertices: [VertexId; 3], corners: [Place; 3]) -> f64 {
-        let tensor = vertices.iter().fold(Tensor::default(), |sum, v| sum + self.tensors[v.index()]) * (1.0 / 3.0);
-        tensor.shape(corners.map(|corner| corner.at))
+        self.dual.mean_tensor(vertices).shape(corners.map(|corner| corner.at))
     }
 }
 

@@ -1,7 +1,8 @@
 //! The error of linear interpolation on a triangle, and the moves and flips that lower it. Vertices move in groups without edges between
 //! them: those of a group can move at once.
 
-use super::{Freedom, Work, is_allowed};
+use super::{Work, is_allowed};
+use crate::dual::{Kind, Moving};
 use crate::geometry::{Node, Point, Vector, combine, radon, signed_area};
 use crate::metric::{Norm, ScalarField};
 use crate::parallel::prelude::*;
@@ -21,7 +22,7 @@ impl Work<'_> {
     /// Moves every vertex once, those of one colour at a time. Returns how many moved.
     pub(super) fn move_all(&mut self) -> u64 {
         let mut moved = 0;
-        for group in colours(&self.planar.topology, &self.freedoms) {
+        for group in colours(&self.planar.topology, |v| !matches!(self.dual.kind(v), Kind::Corner(_))) {
             let better: Vec<Option<Place>> = group.par_iter().with_min_len(16).map(|&v| self.better(v)).collect();
             for (v, place) in group.into_iter().zip(better) {
                 let Some(place) = place else { continue };
@@ -61,7 +62,7 @@ impl Work<'_> {
     /// The directions and lengths in which a vertex can move: those of the ellipse of inertia of its neighbours.
     fn frame(&self, v: VertexId, ring: &[[VertexId; 2]]) -> Option<Frame> {
         let here = self.place(v).at;
-        if self.freedoms[v.index()] == Freedom::Along {
+        if self.dual.kind(v) == Kind::Curve {
             let [a, b] = self.planar.neighbours_on_segment(v)?;
             let share = (here - a).dot(b - a) / (b - a).dot(b - a);
             return Some(Frame { segment: Some(([a, b], share)), first: (b - a) * 0.5, second: None });
@@ -126,15 +127,15 @@ fn descent([gx, gy]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Option<[f64; 2]> {
 }
 
 /// The vertices that can move, by colour: greedily, in the order of their ids.
-pub(super) fn colours(topology: &Triangulation, freedoms: &[Freedom]) -> Vec<Vec<VertexId>> {
+pub(super) fn colours(topology: &Triangulation, can_move: impl Fn(VertexId) -> bool) -> Vec<Vec<VertexId>> {
     const NONE: u16 = u16::MAX;
     let mut colour = vec![NONE; topology.vertex_slots()];
     let mut groups: Vec<Vec<VertexId>> = Vec::new();
     let mut is_taken: Vec<bool> = Vec::new();
-    for v in topology.vertices().filter(|v| freedoms[v.index()] != Freedom::None) {
+    for v in topology.vertices().filter(|&v| can_move(v)) {
         is_taken.clear();
         is_taken.resize(groups.len() + 1, false);
-        for u in topology.star(v).flat_map(|h| [topology.target(h), topology.apex(h)]) {
+        for u in topology.around(v) {
             if let Some(taken) = is_taken.get_mut(usize::from(colour[u.index()])) {
                 *taken = true;
             }
@@ -227,12 +228,10 @@ impl Work<'_> {
 
     /// By how much a flip would lower the error; `None` where it would not, or may not be.
     fn gain(&self, h: HalfEdge) -> Option<f64> {
-        let [a, b, c, d] = self.planar.topology.quad(h).filter(|_| !self.planar.topology.is_fixed(h))?;
+        let may_flip = !self.planar.topology.is_fixed(h) && self.planar.is_convex(h);
+        let [a, b, c, d] = self.planar.topology.quad(h).filter(|_| may_flip)?;
         let of = |vertices: [VertexId; 3]| self.objective.of(self.places_of(vertices));
         let (old, new) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
-        if !self.planar.is_convex(h) {
-            return None;
-        }
         let before: f64 = old.into_iter().map(of).sum();
         let gain = before - new.into_iter().map(of).sum::<f64>();
         if gain.is_nan() || gain <= GAIN * before {
@@ -292,16 +291,14 @@ mod tests {
         let at = |i: u32| Point::new((f64::from(i) * 0.618).fract(), (f64::from(i) * 0.414).fract());
         let points: Vec<Point> = (0..500).map(at).collect();
         let planar = delaunay(&points).unwrap();
-        let mut freedoms = vec![Freedom::All; planar.topology.vertex_slots()];
-        freedoms[7] = Freedom::None;
-        let groups = colours(&planar.topology, &freedoms);
+        let groups = colours(&planar.topology, |v| v != VertexId(7));
         let mut group = vec![usize::MAX; planar.topology.vertex_slots()];
         for (i, all) in groups.iter().enumerate() {
             for v in all {
                 group[v.index()] = i;
             }
         }
-        let ends = |h| [planar.topology.origin(h), planar.topology.target(h)].map(|v| group[v.index()]);
+        let ends = |h| planar.topology.ends(h).map(|v| group[v.index()]);
         assert!(planar.topology.edges().map(ends).all(|[a, b]| a != b));
         let has_none = |v: &VertexId| group[v.index()] == usize::MAX;
         assert_eq!(planar.topology.vertices().filter(has_none).collect::<Vec<_>>(), [VertexId(7)]);

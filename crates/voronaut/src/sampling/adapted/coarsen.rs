@@ -44,9 +44,7 @@ impl Work<'_> {
     /// Contracts a vertex of the border onto the neighbour along it with which triangles turn away least, if they may.
     fn contract_along_border(&mut self, v: VertexId) -> bool {
         let t = &self.topology;
-        let out = t.star(v).find(|&h| t.twin(h).is_none());
-        let back = t.star(v).last().map(HalfEdge::prev).filter(|&h| t.twin(h).is_none());
-        let ways = [out, back].into_iter().flatten().filter(|&h| t.can_collapse(h));
+        let ways = t.spokes(v).into_iter().filter(|&h| t.twin(h).is_none() && t.can_collapse(h));
         let worst = |h: HalfEdge| {
             let to = if t.origin(h) == v { t.target(h) } else { t.origin(h) };
             self.moved(v, to).map(|after| self.leaning(after)).fold(1.0, f64::min)
@@ -60,7 +58,7 @@ impl Work<'_> {
 
     /// Contracts neighbours of a vertex of the border onto it that are not on the border.
     fn clear_around(&mut self, v: VertexId) {
-        let around: Vec<VertexId> = self.link(v).into_iter().flatten().collect();
+        let around: Vec<VertexId> = self.topology.around(v).collect();
         for other in around {
             let t = &self.topology;
             let is_there = t.is_vertex(other) && !t.is_border_vertex(other);
@@ -90,19 +88,17 @@ impl Work<'_> {
             let before = self.vertex_count();
             let edges: Vec<HalfEdge> = self.topology.edges().collect();
             let mut queue: BinaryHeap<Reverse<(u64, VertexId, VertexId)>> = BinaryHeap::new();
-            queue.extend(edges.into_iter().map(|h| self.ends(h)).map(|[v, w]| self.entry(v, w)));
+            queue.extend(edges.into_iter().map(|h| self.topology.ends(h)).map(|[v, w]| self.entry(v, w)));
             while self.vertex_count() > count
                 && let Some(Reverse((_, v, w))) = queue.pop()
             {
                 let t = &self.topology;
                 let is_there = |v| t.is_vertex(v);
-                let Some(h) = (is_there(v) && is_there(w)).then(|| t.find(v, w).or_else(|| t.find(w, v))).flatten()
-                else {
-                    continue;
-                };
-                let link = [v, w].map(|v| self.link(v)).concat();
+                let edge = (is_there(v) && is_there(w)).then(|| t.edge_between(v, w)).flatten();
+                let Some(h) = edge else { continue };
+                let around: Vec<VertexId> = [v, w].into_iter().flat_map(|v| t.around(v)).collect();
                 if let Some(kept) = self.contract(h, manner) {
-                    let others = link.into_iter().flatten().filter(|&v| v != kept && self.topology.is_vertex(v));
+                    let others = around.into_iter().filter(|&v| v != kept && self.topology.is_vertex(v));
                     queue.extend(others.map(|other| self.entry(kept, other)));
                 }
             }
@@ -122,7 +118,7 @@ impl Work<'_> {
     /// Returns the end that is left.
     fn contract(&mut self, h: HalfEdge, manner: Manner) -> Option<VertexId> {
         let t = &self.topology;
-        let [v, w] = self.ends(h);
+        let [v, w] = t.ends(h);
         let may_go = |v: VertexId| self.at(v).may_go() && !t.is_border_vertex(v);
         let is_crowded = t.star(v).count() + t.star(w).count() > CROWD;
         if is_crowded || !(may_go(v) || may_go(w)) || !t.can_collapse(h) {
@@ -152,12 +148,6 @@ impl Work<'_> {
             worst = worst.min(quality);
         }
         Some(worst)
-    }
-
-    /// The edges opposite of a vertex.
-    fn link(&self, v: VertexId) -> Vec<[VertexId; 2]> {
-        let t = &self.topology;
-        t.star(v).map(|h| [t.target(h), t.apex(h)]).collect()
     }
 
     /// The triangles around a vertex that stay when it goes to another's place, with that one first.

@@ -42,7 +42,7 @@ impl Work<'_> {
     }
 
     fn length_of(&self, h: HalfEdge) -> f64 {
-        let [v, w] = self.ends(h);
+        let [v, w] = self.topology.ends(h);
         self.length(v, w)
     }
 
@@ -56,17 +56,16 @@ impl Work<'_> {
 
     /// Splits an edge in the middle, but not where that would turn a triangle away from the surface.
     fn split_in_the_middle(&mut self, h: HalfEdge) {
-        let [p, q] = self.ends(h).map(|v| self.at(v).place);
+        let [p, q] = self.topology.ends(h).map(|v| self.at(v).place);
         let Some(place) = self.input.lift(&p, p.position.lerp(q.position, 0.5)) else { return };
         let vertex = self.vertex(place);
         let t = &self.topology;
-        let sides = || [Some(h), t.twin(h)].into_iter().flatten();
         let halves = |side: HalfEdge| {
             let [a, b, c] = [t.origin(side), t.target(side), t.apex(side)].map(|v| self.at(v));
             [[a, &vertex, c], [&vertex, b, c]]
         };
-        let before = sides().map(|side| self.leaning(t.corners(side.face()))).fold(UPRIGHT, f64::min);
-        if sides().flat_map(halves).all(|corners| leaning(corners) >= before) {
+        let before = t.sides(h).map(|side| self.leaning(t.corners(side.face()))).fold(UPRIGHT, f64::min);
+        if t.sides(h).flat_map(halves).all(|corners| leaning(corners) >= before) {
             self.split(h, vertex);
         }
     }
@@ -91,8 +90,7 @@ impl Flipping for Work<'_> {
             return false;
         }
         let (now, then) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
-        let upright =
-            |pair: [[VertexId; 3]; 2]| pair.map(|corners| self.leaning(corners)).into_iter().fold(1.0, f64::min);
+        let upright = |[t, u]: [[VertexId; 3]; 2]| self.leaning(t).min(self.leaning(u));
         then.into_iter().all(|corners| self.quality(corners) > 0.0) && upright(then) >= upright(now).min(UPRIGHT)
     }
 }

@@ -107,10 +107,6 @@ impl<'a> Work<'a> {
         &self.vertices[v.index()]
     }
 
-    pub(super) fn ends(&self, h: HalfEdge) -> [VertexId; 2] {
-        [self.topology.origin(h), self.topology.target(h)]
-    }
-
     /// Puts a vertex on an edge; what is left of the edge behind it.
     pub(super) fn split(&mut self, h: HalfEdge, vertex: Vertex) -> HalfEdge {
         let v = self.topology.add_vertex();
