@@ -5,7 +5,9 @@ use super::seeds::{self, Care, Start};
 use super::{Flat, Measure, Seed, SurfaceDiagram};
 use crate::canvas::{Border, Canvas, Draped, StarSet};
 use crate::error::{Error, Result};
-use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Propagation, Stvd, layout};
+use crate::geodesic::{
+    Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Propagation, Sources, Stvd, layout,
+};
 use crate::geometry::{Aabb, Point, Tensor};
 use crate::planar::Location;
 use crate::triangulation::{FaceId, Triangulation, VertexId};
@@ -227,6 +229,17 @@ impl<'a> SurfaceDiagram<'a> {
     pub fn canvas(&self) -> &'a Canvas<Draped<'a>> {
         self.ground
     }
+}
+
+/// The sources that seeds with these starts make, in the order of their colours.
+pub(super) fn sources<'a, G: Ground<'a>>(ground: G, starts: &[Vec<Start>]) -> Sources {
+    let mut sources = Sources::new(ground.topology().vertex_slots());
+    for (colour, starts) in starts.iter().enumerate() {
+        for start in starts {
+            sources.add(start.vertex, start.distance, colour as u32);
+        }
+    }
+    sources
 }
 
 /// A method on what of a canvas it travels on.

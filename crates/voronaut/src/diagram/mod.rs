@@ -13,7 +13,6 @@ mod envelope;
 mod glued;
 mod ground;
 mod kind;
-mod nearest;
 mod nerve;
 mod orphans;
 mod overlap;
@@ -37,7 +36,7 @@ use crate::geodesic::{Geodesic, Label, MarchCounters, Marching, Method, NO_COLOU
 use crate::geometry::Point;
 use crate::metric::{MetricField, check_field};
 use crate::triangulation::VertexId;
-use ground::{Straight as _, solver};
+use ground::{Straight as _, solver, sources};
 use kind::Chords;
 use overlap::Overlap;
 use seeds::{Care, Start};
@@ -202,14 +201,8 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     }
 
     fn made(ground: G, seeds: &[G::Place], starts: Vec<Vec<Start>>, measure: Measure<'a, G>) -> Self {
-        let mut sources = Sources::new(ground.topology().vertex_slots());
-        let mut placed = Vec::with_capacity(seeds.len());
-        for (i, (&at, starts)) in seeds.iter().zip(starts).enumerate() {
-            for s in &starts {
-                sources.add(s.vertex, s.distance, i as u32);
-            }
-            placed.push(Some(Seed { at, starts }));
-        }
+        let sources = sources(ground, &starts);
+        let placed: Vec<_> = seeds.iter().zip(starts).map(|(&at, starts)| Some(Seed { at, starts })).collect();
         let propagation = match &measure {
             Measure::Ways(solver) => solver.propagate(&sources),
             Measure::Chords(chords) => chords.propagate(ground, &placed),
