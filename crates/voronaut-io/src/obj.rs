@@ -1,7 +1,7 @@
 //! Wavefront `.obj`, as far as surfaces go: vertices, polygons, lines.
 
 use super::Document;
-use super::codec::{At, Largest, Place, Shortest, Source, Text};
+use super::codec::{At, Largest, Place, Shortest, Source, Text, several};
 use super::cutting::Polygons;
 use super::document::{labelled, labels};
 use std::collections::BTreeMap;
@@ -131,12 +131,8 @@ impl Reader {
     }
 
     fn read_vertex<'w>(&mut self, place: Place<'_>, mut words: impl Iterator<Item = Text<'w>>) -> Result<()> {
-        let mut point = [0.0; 3];
-        for coordinate in &mut point {
-            let missing = || place.error("a vertex with fewer than three coordinates", "write v x y z");
-            *coordinate = words.next().ok_or_else(missing)?.number(At::head("v"))?;
-        }
-        self.mesh.points.push(point);
+        let missing = || place.error("a vertex with fewer than three coordinates", "write v x y z");
+        self.mesh.points.push(several(|| words.next().ok_or_else(missing)?.number(At::head("v")))?);
         Ok(())
     }
 

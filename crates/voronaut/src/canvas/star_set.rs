@@ -132,7 +132,6 @@ impl<'a> Stars<'a> {
             |finder, part| part.iter().map(|v| find(finder, v)).collect::<Vec<_>>(),
         );
         let found: Vec<Option<Star>> = parts.flatten_iter().collect();
-        self.by_vertex.resize(steiner.planar.topology.vertex_slots(), Star::new());
         let mut unsettled = 0;
         for (&v, star) in dirty.iter().zip(found) {
             unsettled += usize::from(star.is_none());

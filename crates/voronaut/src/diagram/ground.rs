@@ -200,9 +200,9 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
     }
 
     fn on_lattice(&self, _from: &[VertexId], _starts: &[Vec<Start>]) -> Result<Vec<f64>> {
-        let (what, lbr) = ("distances by lbr on a surface, which has no Cartesian grid".into(), Method::Lbr);
-        let others: Vec<&str> = Method::ALL.iter().filter(|&&m| m != lbr).map(|m| m.name()).collect();
-        Err(Error::Unsupported { what, help: format!("use one of {}", others.join(", ")) })
+        let what = "distances by lbr on a surface, which has no Cartesian grid".into();
+        let others = Method::names(|method| method != Method::Lbr);
+        Err(Error::Unsupported { what, help: format!("use one of {others}") })
     }
 }
 

@@ -29,6 +29,7 @@ pub use kind::Kind;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle, Witnesses};
 pub use paths::Paths;
 pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
+pub(crate) use seeds::Care;
 
 use crate::canvas::{Canvas, Draped};
 use crate::error::{Error, Result};
@@ -39,7 +40,7 @@ use crate::triangulation::VertexId;
 use ground::{Straight as _, solver, sources};
 use kind::Chords;
 use overlap::Overlap;
-use seeds::{Care, Start};
+use seeds::Start;
 use std::sync::OnceLock;
 
 /// See the [module](self). Seed i has colour i; a removed seed's colour is not used again. It is the same for every
@@ -47,6 +48,7 @@ use std::sync::OnceLock;
 pub struct Diagram<'a, G: Ground<'a> = Flat<'a>> {
     ground: G,
     measure: Measure<'a, G>,
+    care: Care,
     seeds: Vec<Option<Seed<G::Place>>>,
     sources: Sources,
     propagation: Propagation,
@@ -91,29 +93,16 @@ impl<'a> Diagram<'a> {
     /// in one place as the domain has fans there, in order, each belongs to one fan. (Elsewhere a seed belongs to all.)
     ///
     /// # Errors
-    /// As for [`Diagram::by_method`].
+    /// As for [`Diagram::of_kind`].
     pub(crate) fn of_vertices(
         canvas: &'a Canvas,
         field: &'a dyn MetricField,
         vertices: &[Point],
         method: Method,
+        care: Care,
     ) -> Result<Self> {
         let ground = Flat { canvas, field };
-        Self::of_seeds(ground, vertices, true, Care::Full, Measure::Ways(solver(ground, method)?))
-    }
-
-    /// [`Diagram::of_vertices`] with distances that are poorer around seeds where the metric varies much, for a tenth of
-    /// the evaluations: good enough to find where seeds are far.
-    ///
-    /// # Errors
-    /// As for [`Diagram::new`].
-    pub(crate) fn roughly_of_vertices(
-        canvas: &'a Canvas,
-        field: &'a dyn MetricField,
-        vertices: &[Point],
-    ) -> Result<Self> {
-        let ways = Measure::Ways(Box::new(Marching::on(canvas.topology())));
-        Self::of_seeds(Flat { canvas, field }, vertices, true, Care::Quick, ways)
+        Self::of_seeds(ground, vertices, true, care, Measure::Ways(solver(ground, method)?))
     }
 
     /// The diagram of seeds by a solver.
@@ -129,21 +118,7 @@ impl<'a> Diagram<'a> {
         Self::of_seeds(Flat { canvas, field }, seeds, false, Care::Full, Measure::Ways(Box::new(solver)))
     }
 
-    /// The diagram of seeds by one of the methods, on what of the canvas it travels on.
-    ///
-    /// # Errors
-    /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams.
-    pub(crate) fn by_method(
-        canvas: &'a Canvas,
-        field: &'a dyn MetricField,
-        seeds: &[Point],
-        method: Method,
-    ) -> Result<Self> {
-        let ground = Flat { canvas, field };
-        Self::of_seeds(ground, seeds, false, Care::Full, Measure::Ways(solver(ground, method)?))
-    }
-
-    /// The diagram of a kind; a method is for the Riemannian one.
+    /// The diagram of a kind; a method, on what of the canvas it travels on, is for the Riemannian one.
     ///
     /// # Errors
     /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams; [`Error::Metric`] where the metric is not positive definite at a seed.
@@ -154,12 +129,14 @@ impl<'a> Diagram<'a> {
         seeds: &[Point],
         method: Method,
     ) -> Result<Self> {
+        let ground = Flat { canvas, field };
         let chords = match kind {
-            Kind::Riemannian => return Self::by_method(canvas, field, seeds, method),
+            Kind::Riemannian => {
+                return Self::of_seeds(ground, seeds, false, Care::Full, Measure::Ways(solver(ground, method)?));
+            }
             Kind::DuWang => Chords::InMetricOfPlace,
             Kind::LabelleShewchuk => Chords::InMetricOfSeed,
         };
-        let ground = Flat { canvas, field };
         let starts = ground.starts_of_all(seeds, false, Care::Quick)?;
         check_field(field, seeds.iter().copied())?;
         Ok(Self::made(ground, seeds, starts, Measure::Chords(chords)))
@@ -197,7 +174,8 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         care: Care,
         measure: Measure<'a, G>,
     ) -> Result<Self> {
-        Ok(Self::made(ground, seeds, ground.starts_of_all(seeds, are_vertices, care)?, measure))
+        let starts = ground.starts_of_all(seeds, are_vertices, care)?;
+        Ok(Self { care, ..Self::made(ground, seeds, starts, measure) })
     }
 
     fn made(ground: G, seeds: &[G::Place], starts: Vec<Vec<Start>>, measure: Measure<'a, G>) -> Self {
@@ -207,7 +185,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
             Measure::Ways(solver) => solver.propagate(&sources),
             Measure::Chords(chords) => chords.propagate(ground, &placed),
         };
-        Self { ground, measure, seeds: placed, sources, propagation, overlap: OnceLock::new() }
+        Self { ground, measure, care: Care::Full, seeds: placed, sources, propagation, overlap: OnceLock::new() }
     }
 
     /// Inserts a seed by one front from it; returns its colour.
@@ -236,19 +214,10 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         Ok(())
     }
 
-    /// Inserts a seed at a canvas vertex; returns its colour.
+    /// Inserts a seed at a canvas vertex, with as much care as the diagram was made with; returns its colour.
     pub(crate) fn insert_at_vertex(&mut self, v: VertexId) -> u32 {
-        self.insert_with(v, Care::Full)
-    }
-
-    /// Inserts a seed at a canvas vertex into a diagram made by [`Diagram::roughly_of_vertices`]; returns its colour.
-    pub(crate) fn insert_roughly(&mut self, v: VertexId) -> u32 {
-        self.insert_with(v, Care::Quick)
-    }
-
-    fn insert_with(&mut self, v: VertexId, care: Care) -> u32 {
         let colour = self.seeds.len() as u32;
-        let starts = self.ground.starts_at_vertex(v, care);
+        let starts = self.ground.starts_at_vertex(v, self.care);
         self.seeds.push(None);
         self.place(colour, self.ground.place(v), starts);
         colour

@@ -7,7 +7,7 @@ use super::margin::{diagonals, pair};
 use super::patch::Patch;
 use super::{Dual, Effort};
 use crate::canvas::{self, Canvas, CanvasFigures};
-use crate::diagram::{Diagram, NerveTriangle, resolve};
+use crate::diagram::{Care, Diagram, NerveTriangle, resolve};
 use crate::error::{Result, named};
 use crate::geodesic::{MarchCounters, Margin, Method};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
@@ -136,7 +136,7 @@ impl Dual<'_> {
         if road == Road::Canvas {
             canvas = resolve(canvas, &field, &seeds, ROUNDS)?.canvas;
         }
-        let diagram = Diagram::of_vertices(&canvas, &field, &seeds, method)?;
+        let diagram = Diagram::of_vertices(&canvas, &field, &seeds, method, Care::Full)?;
         let nerve = diagram.sharp_nerve();
         let sides = nerve.sides(|_| true).map(|[i, j]| pair(ids[i as usize], ids[j as usize]));
         let wanted: HashSet<[VertexId; 2]> = sides.filter(|s| s.iter().all(|v| is_inner[v.index()])).collect();
