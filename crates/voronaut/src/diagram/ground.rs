@@ -1,6 +1,5 @@
 //! What a diagram lies on: a canvas of the plane or of a surface, with the metric it was made with.
 
-use super::kind::Chords;
 use super::seeds::{self, Care, Start};
 use super::{Flat, Measure, Seed, SurfaceDiagram};
 use crate::canvas::{Border, Canvas, Draped, StarSet};
@@ -11,14 +10,11 @@ use crate::geodesic::{
 use crate::geometry::{Aabb, Point, Tensor};
 use crate::planar::Location;
 use crate::triangulation::{FaceId, Triangulation, VertexId};
-use std::convert::Infallible;
 
 /// A canvas with its metric. All that a diagram knows of the plane or of a surface it knows through this.
 pub trait Ground<'a>: Copy + Send + Sync {
     /// Where a seed can be.
     type Place: Copy + Send + Sync;
-    /// How distances that are straight come about, where there are any.
-    type Straight: Straight<'a, Self> + Send + Sync;
 
     /// What distances travel on.
     fn topology(&self) -> &'a Triangulation;
@@ -58,7 +54,7 @@ pub trait Ground<'a>: Copy + Send + Sync {
 }
 
 /// Distances that do not follow the canvas.
-pub trait Straight<'a, G: Ground<'a>> {
+pub(super) trait Straight<'a, G: Ground<'a>>: Sync {
     /// The distance of a place from a seed.
     fn length(&self, ground: G, seed: G::Place, place: G::Place) -> f64;
     /// Every canvas vertex with its nearest seed.
@@ -67,7 +63,6 @@ pub trait Straight<'a, G: Ground<'a>> {
 
 impl<'a> Ground<'a> for Flat<'a> {
     type Place = Point;
-    type Straight = Chords;
 
     fn topology(&self) -> &'a Triangulation {
         self.canvas.topology()
@@ -142,7 +137,6 @@ impl<'a> Ground<'a> for Flat<'a> {
 /// A canvas of a surface has its metric with it, and seeds are vertices of it: the canvas was made with them.
 impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
     type Place = VertexId;
-    type Straight = Infallible;
 
     fn topology(&self) -> &'a Triangulation {
         Canvas::topology(*self)
@@ -203,16 +197,6 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
         let what = "distances by lbr on a surface, which has no Cartesian grid".into();
         let others = Method::names(|method| method != Method::Lbr);
         Err(Error::Unsupported { what, help: format!("use one of {others}") })
-    }
-}
-
-impl<'a, G: Ground<'a>> Straight<'a, G> for Infallible {
-    fn length(&self, _ground: G, _seed: G::Place, _place: G::Place) -> f64 {
-        match *self {}
-    }
-
-    fn propagate(&self, _ground: G, _seeds: &[Option<Seed<G::Place>>]) -> Propagation {
-        match *self {}
     }
 }
 

@@ -12,7 +12,6 @@ mod distances;
 mod envelope;
 mod glued;
 mod ground;
-mod kind;
 mod nerve;
 mod orphans;
 mod overlap;
@@ -23,9 +22,9 @@ mod seeds;
 mod test_diagrams;
 
 pub use cells::{Cells, Outline};
+pub use chords::Kind;
 pub use distances::{Distances, SurfaceDistances};
 pub use ground::Ground;
-pub use kind::Kind;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle, Witnesses};
 pub use paths::Paths;
 pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
@@ -37,8 +36,8 @@ use crate::geodesic::{Geodesic, Label, MarchCounters, Marching, Method, NO_COLOU
 use crate::geometry::Point;
 use crate::metric::{MetricField, check_field};
 use crate::triangulation::VertexId;
-use ground::{Straight as _, solver, sources};
-use kind::Chords;
+use chords::Chords;
+use ground::{Straight, solver, sources};
 use overlap::Overlap;
 use seeds::Start;
 use std::sync::OnceLock;
@@ -47,6 +46,7 @@ use std::sync::OnceLock;
 /// [`Ground`]: a `Diagram<'a>` lies in the plane, a [`SurfaceDiagram`] on a surface.
 pub struct Diagram<'a, G: Ground<'a> = Flat<'a>> {
     ground: G,
+    kind: Kind,
     measure: Measure<'a, G>,
     care: Care,
     seeds: Vec<Option<Seed<G::Place>>>,
@@ -70,7 +70,7 @@ enum Measure<'a, G: Ground<'a>> {
     /// Along shortest ways on the canvas.
     Ways(Box<dyn Geodesic + 'a>),
     /// Straight.
-    Chords(G::Straight),
+    Chords(Box<dyn Straight<'a, G>>),
 }
 
 /// A seed: where it is, and the canvas vertices that it gives a distance to.
@@ -139,7 +139,7 @@ impl<'a> Diagram<'a> {
         };
         let starts = ground.starts_of_all(seeds, false, Care::Quick)?;
         check_field(field, seeds.iter().copied())?;
-        Ok(Self::made(ground, seeds, starts, Measure::Chords(chords)))
+        Ok(Self { kind, ..Self::made(ground, seeds, starts, Measure::Chords(Box::new(chords))) })
     }
 
     /// The canvas.
@@ -154,11 +154,7 @@ impl<'a> Diagram<'a> {
 
     /// By what distance its cells are the nearest places.
     pub fn kind(&self) -> Kind {
-        match self.measure {
-            Measure::Ways(_) => Kind::Riemannian,
-            Measure::Chords(Chords::InMetricOfPlace) => Kind::DuWang,
-            Measure::Chords(Chords::InMetricOfSeed) => Kind::LabelleShewchuk,
-        }
+        self.kind
     }
 }
 
@@ -185,7 +181,8 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
             Measure::Ways(solver) => solver.propagate(&sources),
             Measure::Chords(chords) => chords.propagate(ground, &placed),
         };
-        Self { ground, measure, care: Care::Full, seeds: placed, sources, propagation, overlap: OnceLock::new() }
+        let (kind, care, overlap) = (Kind::Riemannian, Care::Full, OnceLock::new());
+        Self { ground, kind, measure, care, seeds: placed, sources, propagation, overlap }
     }
 
     /// Inserts a seed by one front from it; returns its colour.

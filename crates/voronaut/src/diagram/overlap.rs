@@ -3,7 +3,6 @@
 //! Where two fronts meet, values are poor on both sides, for neither crosses a face whose vertices have different colours.
 //! So each seed's distances are computed once more, by themselves, on its cell and a few rings around it.
 
-use super::ground::Straight as _;
 use super::{Diagram, Ground, Measure, Seed};
 use crate::geodesic::NO_COLOUR;
 use crate::lists::{Rows, in_order};
