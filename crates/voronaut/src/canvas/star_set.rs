@@ -23,8 +23,8 @@ const PART: usize = 512;
 /// Deterministic, for any number of threads.
 #[derive(Debug)]
 pub struct StarSet {
-    stars: Vec<Star>,
-    figures: StarFigures,
+    pub(super) stars: Vec<Star>,
+    pub(super) figures: StarFigures,
 }
 
 /// A star set in numbers.
@@ -77,11 +77,6 @@ impl StarSet {
     pub(super) fn new(embedded: &Planar, field: &dyn MetricField) -> Result<Self> {
         let stars = Stars::new(Steiner::metric(embedded.clone(), field)?);
         Ok(Self { figures: stars.figures(), stars: stars.by_vertex })
-    }
-
-    /// Stars that were found elsewhere.
-    pub(super) fn of(stars: Vec<Star>, figures: StarFigures) -> Self {
-        Self { stars, figures }
     }
 
     /// Every vertex with those in its star.
