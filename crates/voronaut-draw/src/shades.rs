@@ -55,9 +55,7 @@ pub(super) fn drawable(mesh: &Mesh) -> (Vec<[u32; 3]>, Vec<i32>) {
 /// The number of each triangle's region, and how small it is, from 0 (the largest) to 1, by the logarithm of its area. All but the
 /// outermost hundredths of the sizes are told apart, and at least a factor of four.
 pub(super) fn sizes(areas: impl Iterator<Item = f64>, labels: &[i32]) -> Vec<(usize, f64)> {
-    let mut regions = labels.to_vec();
-    regions.sort_unstable();
-    regions.dedup();
+    let regions = distinct(labels.iter().copied());
     let sizes: Vec<f64> = areas.map(f64::ln).collect();
     let finite = in_order(sizes.iter().copied().filter(|size| size.is_finite()));
     let at = |share: f64| finite.get((share * finite.len() as f64) as usize).copied().unwrap_or(0.0);
@@ -66,6 +64,14 @@ pub(super) fn sizes(areas: impl Iterator<Item = f64>, labels: &[i32]) -> Vec<(us
     let [low, high] = [low - 0.5 * missing, high + 0.5 * missing];
     let share = |size: f64| ((high - size) / (high - low)).clamp(0.0, 1.0);
     labels.iter().zip(sizes).map(|(label, size)| (regions.binary_search(label).unwrap_or(0), share(size))).collect()
+}
+
+/// What there is among these, each once, in order.
+pub(super) fn distinct<T: Ord>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut list: Vec<T> = items.collect();
+    list.sort_unstable();
+    list.dedup();
+    list
 }
 
 /// Numbers from the least to the greatest.

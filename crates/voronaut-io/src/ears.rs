@@ -140,9 +140,8 @@ impl<'a> Ears<'a> {
     }
 
     fn refill(&mut self, first: u32) {
-        let found: Vec<u32> = self.left(first).collect();
         self.candidates.clear();
-        for i in found {
+        for i in self.left(first).collect::<Vec<u32>>() {
             self.push(i);
         }
     }

@@ -1,6 +1,6 @@
 //! `FreeFEM`'s planar meshes, `.msh` as text, which bamg writes, too (`-omsh`): counts, then vertices, triangles and edges with labels.
 
-use super::codec::{At, Source};
+use super::codec::{At, Source, several};
 use std::io::BufRead;
 use voronaut::Result;
 use voronaut::mesh::Mesh;
@@ -12,33 +12,24 @@ use voronaut::mesh::Mesh;
 /// [`Error::Parse`](voronaut::Error::Parse) with the line of what is not as announced, or not there.
 pub fn read(source: impl BufRead, place: &str) -> Result<Mesh> {
     let (mut source, head) = (Source::new(source, place), At::head("the file"));
-    let mut count = || source.word(head)?.whole(head);
-    let [vertices, triangles, edges] = [count()?, count()?, count()?];
+    let [vertices, triangles, edges] = several(|| source.word(head)?.whole(head))?;
     let mut mesh = Mesh::default();
     for at in At::rows("the vertices", vertices) {
-        mesh.points.push([source.word(at)?.number(at)?, source.word(at)?.number(at)?, 0.0]);
+        let [x, y] = several(|| source.word(at)?.number(at))?;
+        mesh.points.push([x, y, 0.0]);
         mesh.point_labels.push(source.word(at)?.whole(at)?);
     }
     for at in At::rows("the triangles", triangles) {
-        mesh.triangles.push(references(&mut source, vertices, at)?);
+        mesh.triangles.push(several(|| source.word(at)?.vertex(1, vertices, at))?);
         mesh.triangle_labels.push(source.word(at)?.whole(at)?);
     }
     for at in At::rows("the edges", edges) {
-        mesh.edges.push(references(&mut source, vertices, at)?);
+        mesh.edges.push(several(|| source.word(at)?.vertex(1, vertices, at))?);
         mesh.edge_labels.push(source.word(at)?.whole(at)?);
     }
     let help = "check the counts in the first row; files of Gmsh begin with $MeshFormat";
     source.demand_end("more numbers than the counts in the file announce", help)?;
     Ok(mesh)
-}
-
-/// Vertices of an element, from 0.
-fn references<const N: usize>(source: &mut Source<'_>, vertices: u64, at: At<'_>) -> Result<[u32; N]> {
-    let mut element = [0; N];
-    for vertex in &mut element {
-        *vertex = source.word(at)?.vertex(1, vertices, at)?;
-    }
-    Ok(element)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Wavefront `.obj`, as far as surfaces go: vertices, polygons, lines.
 
 use super::Document;
-use super::codec::{At, Largest, Place, Shortest, Source, Text};
+use super::codec::{At, Largest, Place, Shortest, Source, Text, several};
 use super::cutting::Polygons;
 use super::document::{labelled, labels};
 use std::collections::BTreeMap;
@@ -92,33 +92,31 @@ impl Reader {
     fn read_row(&mut self, row: Text<'_>) -> Result<()> {
         let mut words = row.words();
         match words.next().map(|word| word.text) {
-            Some("v") => self.read_vertex(row.place, words),
+            Some("v") => {
+                let missing = || row.place.error("a vertex with fewer than three coordinates", "write v x y z");
+                self.mesh.points.push(several(|| words.next().ok_or_else(missing)?.number(At::head("v")))?);
+            }
             // Wavefront's programs once wrote fo.
             Some("f" | "fo") => {
-                let polygon = self.references(words, At::head("f"))?;
-                demand_length(row.place, polygon.len(), "face", 3)?;
+                let polygon = self.references(row.place, words, At::head("f"), ("face", 3))?;
                 self.polygons.push(&polygon);
                 self.polygons.label(self.label);
-                Ok(())
             }
             Some("l") => {
-                let line = self.references(words, At::head("l"))?;
-                demand_length(row.place, line.len(), "line", 2)?;
+                let line = self.references(row.place, words, At::head("l"), ("line", 2))?;
                 self.mesh.edges.extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
-                Ok(())
             }
             Some("g") => {
                 let region = words.next().and_then(|word| word.text.strip_prefix("region_")?.parse().ok());
                 self.label = region.unwrap_or(0);
-                Ok(())
             }
             other => {
                 if let Some((_, name)) = FREE_FORM.iter().find(|(keyword, _)| other == Some(keyword)) {
                     *self.free_form.entry(name).or_default() += 1;
                 }
-                Ok(())
             }
         }
+        Ok(())
     }
 
     /// Faces may refer to vertices below them: whether these exist is known at the end.
@@ -130,18 +128,20 @@ impl Reader {
         Ok(Document { notes: notes.collect(), ..labelled(mesh).into() })
     }
 
-    fn read_vertex<'w>(&mut self, place: Place<'_>, mut words: impl Iterator<Item = Text<'w>>) -> Result<()> {
-        let mut point = [0.0; 3];
-        for coordinate in &mut point {
-            let missing = || place.error("a vertex with fewer than three coordinates", "write v x y z");
-            *coordinate = words.next().ok_or_else(missing)?.number(At::head("v"))?;
+    /// The vertices of a face or a line, which has to have so many.
+    fn references<'w>(
+        &mut self,
+        place: Place<'_>,
+        words: impl Iterator<Item = Text<'w>>,
+        at: At<'_>,
+        (of, needed): (&str, usize),
+    ) -> Result<Vec<u32>> {
+        let found: Vec<u32> = words.map(|word| self.reference(word, at)).collect::<Result<_>>()?;
+        if found.len() >= needed {
+            return Ok(found);
         }
-        self.mesh.points.push(point);
-        Ok(())
-    }
-
-    fn references<'w>(&mut self, words: impl Iterator<Item = Text<'w>>, at: At<'_>) -> Result<Vec<u32>> {
-        words.map(|word| self.reference(word, at)).collect()
+        let what = format!("a {of} of {} vertices", found.len());
+        Err(place.error(what, format!("a {of} needs {needed} vertices or more")))
     }
 
     /// A vertex, numbered from 0.
@@ -162,13 +162,6 @@ impl Reader {
             }
         }
     }
-}
-
-fn demand_length(place: Place<'_>, found: usize, of: &str, needed: usize) -> Result<()> {
-    if found >= needed {
-        return Ok(());
-    }
-    Err(place.error(format!("a {of} of {found} vertices"), format!("a {of} needs {needed} vertices or more")))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Geomview's `.off` in text form.
 
-use super::codec::{At, Form, Kind, Place, Sink, Source, Text, shortened};
+use super::codec::{At, Form, Kind, Place, Sink, Source, Text, several, shortened};
 use super::cutting::cut;
 use super::document::labelled;
 use std::io::{self, BufRead, Write};
@@ -68,8 +68,7 @@ fn read_counts(source: &mut Source<'_>) -> Result<[u64; 2]> {
 
 /// Vertices and faces; a count of edges may follow and means nothing.
 fn counts<'w>(mut words: impl Iterator<Item = Text<'w>>, place: Place<'_>, at: At<'_>) -> Result<[u64; 2]> {
-    let mut count = || expect(words.next(), place, at)?.whole(at);
-    Ok([count()?, count()?])
+    several(|| expect(words.next(), place, at)?.whole(at))
 }
 
 /// The vertices of a face.

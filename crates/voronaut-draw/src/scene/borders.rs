@@ -1,5 +1,6 @@
 //! Borders between the cells of a coloured canvas: where they cut its edges, and as lines.
 
+use super::super::shades::distinct;
 use voronaut::geometry::Point3;
 
 /// Not there.
@@ -27,9 +28,7 @@ impl<'a> Borders<'a> {
     /// Cuts the edges of triangles, whose vertices exist, where their colours change.
     pub(super) fn new(positions: &'a [Point3], triangles: &[[u32; 3]], colours: &[Option<u32>]) -> Self {
         let differ = |[a, b]: &[u32; 2]| colours[*a as usize] != colours[*b as usize];
-        let mut edges: Vec<[u32; 2]> = triangles.iter().flat_map(|&t| sides(t)).filter(differ).collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let edges = distinct(triangles.iter().flat_map(|&t| sides(t)).filter(differ));
         let count = edges.len();
         let (shares, links) = (vec![0.5; count], vec![[NONE; 2]; count]);
         let mut borders = Self { positions, edges, shares, links, junctions: Vec::new() };

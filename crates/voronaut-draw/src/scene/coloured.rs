@@ -1,5 +1,6 @@
 //! Scenes of coloured canvases: cells that are cut out of triangles.
 
+use super::super::shades::distinct;
 use super::super::{colours, palette};
 use super::borders::Borders;
 use super::{Fill, Scene, SceneTriangle, Stroke, existing};
@@ -75,17 +76,13 @@ struct Fills {
 
 impl Fills {
     fn new(colours: &[Option<u32>], borders: &Borders) -> Self {
-        let mut used: Vec<u32> = colours.iter().copied().flatten().collect();
-        used.sort_unstable();
-        used.dedup();
+        let used = distinct(colours.iter().copied().flatten());
         let number = |colour: Option<u32>| Some(used.binary_search(&colour?).ok()? as u32);
         let pair = |[a, b]: [u32; 2]| {
             let [a, b] = [a, b].map(|v| number(colours[v as usize]));
             Some([a?.min(b?), a?.max(b?)])
         };
-        let mut neighbours: Vec<[u32; 2]> = borders.edges().iter().filter_map(|&ends| pair(ends)).collect();
-        neighbours.sort_unstable();
-        neighbours.dedup();
+        let neighbours = distinct(borders.edges().iter().filter_map(|&ends| pair(ends)));
         let hues = palette::colour(used.len(), &neighbours, colours::HUES, colours::likeness);
         Self { used, hues }
     }

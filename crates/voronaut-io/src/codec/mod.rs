@@ -14,3 +14,17 @@ pub(crate) use kinds::{Kind, Order};
 pub(crate) use places::{At, Largest, Place, Text, shortened};
 pub(crate) use sink::{Number, Shortest, Sink};
 pub(crate) use source::{Counted, Source};
+
+use voronaut::Result;
+
+/// As many as are asked for, one by one.
+///
+/// # Errors
+/// The first that there is.
+pub(crate) fn several<T: Copy + Default, const N: usize>(mut next: impl FnMut() -> Result<T>) -> Result<[T; N]> {
+    let mut found = [T::default(); N];
+    for item in &mut found {
+        *item = next()?;
+    }
+    Ok(found)
+}

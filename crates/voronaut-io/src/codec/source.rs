@@ -2,6 +2,7 @@
 
 use super::kinds::{Kind, Order};
 use super::places::{At, Place, Text};
+use super::several;
 use std::io::{self, BufRead, ErrorKind, Read};
 use std::ops::Range;
 use std::str::FromStr;
@@ -222,11 +223,7 @@ impl<'a> Source<'a> {
     /// # Errors
     /// As of [`Source::number`].
     pub(crate) fn numbers<const N: usize>(&mut self, kind: Kind, at: At<'_>) -> Result<[f64; N]> {
-        let mut numbers = [0.0; N];
-        for number in &mut numbers {
-            *number = self.number(kind, at)?;
-        }
-        Ok(numbers)
+        several(|| self.number(kind, at))
     }
 
     /// Passes over so many numbers of a kind, whatever they are.

@@ -1,7 +1,7 @@
 //! Gmsh's files as sections of text, with blocks of numbers in them that are text as well, or binary.
 
 use super::tags::Tags;
-use crate::codec::{At, Kind, Order, Source, shortened};
+use crate::codec::{At, Kind, Order, Source, several, shortened};
 use voronaut::{Error, Result};
 
 /// Numbers in blocks: types, dimensions, tags in versions 2 and 4.0.
@@ -54,7 +54,7 @@ impl<'a> Blocks<'a> {
         let totals = (self.source.whole(SIZE, at)?, self.source.whole(SIZE, at)?);
         if self.layout == Layout::FourOne {
             // The least and the greatest tag.
-            let _: [u64; 2] = [self.source.whole(SIZE, at)?, self.source.whole(SIZE, at)?];
+            let _: [u64; 2] = several(|| self.source.whole(SIZE, at))?;
         }
         Ok(totals)
     }

@@ -3,7 +3,7 @@
 use super::blocks::{Blocks, INT, Layout, REAL, SIZE, end_section, next_section, skip_section, unsupported};
 use super::groups::Groups;
 use super::tags::Tags;
-use crate::codec::At;
+use crate::codec::{At, several};
 use crate::document::marked_mut;
 use crate::volumes::Volumes;
 use crate::{Document, Fields};
@@ -121,10 +121,7 @@ impl Reader {
 
     fn read_entities(&mut self, from: &mut Blocks<'_>) -> Result<()> {
         let (section, layout, source) = ("Entities", from.layout, &mut from.source);
-        let (mut counts, at) = ([0; 4], At::head(section));
-        for count in &mut counts {
-            *count = source.whole(SIZE, at)?;
-        }
+        let counts: [u64; 4] = several(|| source.whole(SIZE, At::head(section)))?;
         for (dimension, count) in (0..).zip(counts) {
             for at in At::rows(section, count) {
                 let tag = source.whole(INT, at)?;

@@ -8,7 +8,7 @@ use sections::{KEYWORDS, READ};
 pub(super) use sections::{Sections, Writer};
 
 use super::Document;
-use super::codec::{At, Largest};
+use super::codec::{At, Largest, several};
 use super::cutting::cut;
 use super::document::{labels, marked, marked_mut};
 use super::volumes::Volumes;
@@ -157,11 +157,7 @@ impl Reader {
     fn read_elements<const N: usize>(&mut self, section: &str, from: &mut Sections<'_>) -> Result<Elements<N>> {
         let (mut elements, mut labels) = Elements::default();
         for at in At::rows(section, from.count()?) {
-            let mut element = [0; N];
-            for vertex in &mut element {
-                *vertex = self.reference(Of::Vertices, from, at)?;
-            }
-            elements.push(element);
+            elements.push(several(|| self.reference(Of::Vertices, from, at))?);
             labels.push(from.whole(at)?);
         }
         Ok((elements, labels))

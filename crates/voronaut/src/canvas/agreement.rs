@@ -1,56 +1,41 @@
 //! What a change of some stars does to the agreement of all.
 
-use super::star::Star;
+use super::star::{Star, has};
 use super::star_set::Stars;
 use crate::triangulation::{VertexId, smallest_first};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The stars of some vertices as they were.
-pub(super) struct Before {
-    stars: BTreeMap<VertexId, Star>,
-}
-
-/// Simplices that stars disagree on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Change {
-    /// Before the change, of those that it touches.
-    pub(super) before: usize,
-    /// After it.
-    pub(super) after: usize,
-}
+pub(super) struct Before(BTreeMap<VertexId, Star>);
 
 impl Before {
     /// Notes stars that are going to change.
     pub(super) fn of(stars: &Stars, dirty: impl IntoIterator<Item = VertexId>) -> Self {
-        Self { stars: dirty.into_iter().map(|v| (v, stars.by_vertex[v.index()].clone())).collect() }
+        Self(dirty.into_iter().map(|v| (v, stars.by_vertex[v.index()].clone())).collect())
     }
 
     /// Puts them back.
     pub(super) fn restore(self, stars: &mut Stars) {
-        for (v, star) in self.stars {
+        for (v, star) in self.0 {
             stars.by_vertex[v.index()] = star;
         }
     }
 
-    /// The simplices that changed, or may have, and on which stars disagree, before and after.
-    pub(super) fn change(&self, now: &Stars) -> Change {
-        let mut touched: BTreeSet<[VertexId; 3]> = BTreeSet::new();
-        for (&v, star) in &self.stars {
-            let both = star.iter().chain(&now.by_vertex[v.index()]);
-            touched.extend(both.map(|spoke| smallest_first([v, spoke.ends[0], spoke.ends[1]])));
-        }
-        let mut change = Change::default();
-        for corners in touched {
-            let turns = [0, 1, 2].map(|i| (corners[i], [corners[(i + 1) % 3], corners[(i + 2) % 3]]));
-            let holders =
-                |has: &dyn Fn(VertexId, [VertexId; 2]) -> bool| turns.iter().filter(|&&(v, ends)| has(v, ends)).count();
-            let had = |v: VertexId, ends: [VertexId; 2]| {
-                self.stars.get(&v).map_or_else(|| now.has(v, ends), |star| star.iter().any(|s| s.ends == ends))
-            };
-            change.before += usize::from((1..3).contains(&holders(&had)));
-            change.after += usize::from((1..3).contains(&holders(&|v, ends| now.has(v, ends))));
-        }
-        change
+    /// On how many of the simplices that changed, or may have, stars disagreed, and on how many they do now.
+    pub(super) fn disagreements(&self, now: &Stars) -> [usize; 2] {
+        let both = |(&v, star): (&VertexId, &Star)| -> Vec<[VertexId; 3]> {
+            let spokes = star.iter().chain(&now.by_vertex[v.index()]);
+            spokes.map(|spoke| smallest_first([v, spoke.ends[0], spoke.ends[1]])).collect()
+        };
+        let touched: BTreeSet<[VertexId; 3]> = self.0.iter().flat_map(both).collect();
+        let had = |v, ends| self.0.get(&v).map_or_else(|| now.has(v, ends), |star| has(star, ends));
+        let holders = |[a, b, c]: [VertexId; 3], has: &dyn Fn(VertexId, [VertexId; 2]) -> bool| {
+            [has(a, [b, c]), has(b, [c, a]), has(c, [a, b])].iter().filter(|&&has| has).count()
+        };
+        let disagreed = |has: &dyn Fn(VertexId, [VertexId; 2]) -> bool| {
+            touched.iter().filter(|&&corners| (1..3).contains(&holders(corners, has))).count()
+        };
+        [disagreed(&had), disagreed(&|v, ends| now.has(v, ends))]
     }
 }
 
@@ -72,9 +57,9 @@ mod tests {
         stars.update_all();
         let whole = stars.by_vertex.clone();
         let before = Before::of(&stars, [first]);
-        assert_eq!(before.change(&stars), Change { before: 0, after: 0 });
+        assert_eq!(before.disagreements(&stars), [0, 0]);
         stars.by_vertex[first.index()].pop().unwrap();
-        assert_eq!(before.change(&stars), Change { before: 0, after: 1 });
+        assert_eq!(before.disagreements(&stars), [0, 1]);
         before.restore(&mut stars);
         assert_eq!(stars.by_vertex, whole);
     }

@@ -8,16 +8,11 @@ use crate::triangulation::HalfEdge;
 /// The sides of a canvas's border, and the corners around which paths can bend.
 pub(crate) struct Border<'a> {
     canvas: &'a Canvas,
-    sides: BoxTree<Side, 2>,
+    /// The domain is on their left.
+    sides: BoxTree<[Point; 2], 2>,
     corners: BoxTree<Point, 2>,
     /// Distances below this are rounding.
     rounding: f64,
-}
-
-/// A side of the border, the domain on its left.
-struct Side {
-    from: Point,
-    to: Point,
 }
 
 /// Rounding, as a share of the domain's extent.
@@ -29,26 +24,25 @@ impl<'a> Border<'a> {
         let embedded = canvas.embedded();
         let topology = &embedded.topology;
         let borders = || topology.borders();
-        let side = |[from, to]: [Point; 2]| (around([from, to]), Side { from, to });
-        let sides = BoxTree::new(borders().map(|h| side(embedded.ends(h))));
+        let sides = BoxTree::new(borders().map(|h| embedded.ends(h)).map(|side| (around(side), side)));
         let corners = BoxTree::new(borders().filter_map(|h| reflex(canvas, h)).map(|p| (around([p, p]), p)));
         let extent = Aabb::of(embedded.positions.iter().copied()).map_or(0.0, |b| b.extent().norm());
         Self { canvas, sides, corners, rounding: ROUNDING * extent }
     }
 
     /// How far left of a side a point lies.
-    fn beside(side: &Side, p: Point) -> f64 {
-        let along = side.to - side.from;
-        along.cross(p - side.from) / along.norm()
+    fn beside([from, to]: [Point; 2], p: Point) -> f64 {
+        let along = to - from;
+        along.cross(p - from) / along.norm()
     }
 
-    fn crosses(&self, side: &Side, p: Point, q: Point) -> bool {
+    fn crosses(&self, side: [Point; 2], p: Point, q: Point) -> bool {
         let [dp, dq] = [p, q].map(|x| Self::beside(side, x));
         if dp.min(dq) > -self.rounding || dp.max(dq) < self.rounding {
             return false;
         }
-        let along = side.to - side.from;
-        let at = (p.lerp(q, dp / (dp - dq)) - side.from).dot(along) / along.dot(along);
+        let along = side[1] - side[0];
+        let at = (p.lerp(q, dp / (dp - dq)) - side[0]).dot(along) / along.dot(along);
         (-ROUNDING..=1.0 + ROUNDING).contains(&at)
     }
 }
@@ -72,7 +66,7 @@ impl Obstacles for Border<'_> {
         // Wide enough to notice the side that a segment starts just outside of: step by step it would walk away.
         let near = widened(around([p, q]), 2.0 * self.rounding);
         let mut is_near = false;
-        for side in self.sides.meeting(near) {
+        for &side in self.sides.meeting(near) {
             if self.crosses(side, p, q) {
                 return true;
             }
@@ -80,7 +74,7 @@ impl Obstacles for Border<'_> {
         }
         // A segment that starts on the border crosses nothing on its way out.
         let middle = p.midpoint(q);
-        let is_beside = |side: &Side| middle.distance(middle.nearest_between(side.from, side.to)) <= self.rounding;
+        let is_beside = |&[a, b]: &[Point; 2]| middle.distance(middle.nearest_between(a, b)) <= self.rounding;
         is_near && self.canvas.locate(middle).is_none() && !self.sides.meeting(near).any(is_beside)
     }
 

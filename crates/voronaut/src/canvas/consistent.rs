@@ -77,8 +77,7 @@ pub(crate) fn consistent(start: Planar, field: &dyn MetricField, asked: Consiste
     let stars = Stars::new(Steiner::metric(start, field)?);
     let (large, thin, counters) = (Buckets::default(), Buckets::default(), PickCounters::default());
     let mut picker = Picker { stars, asked, large, thin, counters, quiet: Quiet::default(), random: 1 };
-    let all: Vec<VertexId> = picker.stars.steiner.planar.topology.vertices().collect();
-    picker.note(&all);
+    picker.note(&all_vertices(&picker.stars));
     let mut rounds = 0;
     let (mut least, mut idle) = (usize::MAX, 0);
     loop {
@@ -285,14 +284,14 @@ impl Picker<'_> {
         let dirty = self.stars.changed_by(new);
         let before = Before::of(&self.stars, dirty.iter().copied());
         self.stars.mend(&[new]);
-        let change = before.change(&self.stars);
-        if change.after == 0 || !self.stars.steiner.take_out(new) {
+        let [had, left] = before.disagreements(&self.stars);
+        if left == 0 || !self.stars.steiner.take_out(new) {
             self.changed(&dirty);
             return (0, 0);
         }
         before.restore(&mut self.stars);
         self.stars.by_vertex[new.index()].clear();
-        (change.after, change.after.cast_signed() - change.before.cast_signed())
+        (left, left.cast_signed() - had.cast_signed())
     }
 
     /// A point of the unit disk, evenly distributed.

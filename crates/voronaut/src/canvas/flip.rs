@@ -4,7 +4,7 @@
 use crate::geodesic::{Angles, frozen_margin, layout};
 use crate::geometry::Tensor;
 use crate::planar::Planar;
-use crate::triangulation::{FaceId, Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
+use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 
 /// Margins (sine of the sum of opposite angles) above minus this are ties: flipping them gains nothing.
 const TIE: f64 = 1e-9;
@@ -89,8 +89,6 @@ pub(super) struct Frozen<'a> {
     pub(super) tensors: &'a [Tensor],
     /// Only edges opposite to this vertex follow.
     pub(super) around: Option<VertexId>,
-    /// Faces that were flipped are added here.
-    pub(super) changed: &'a mut Vec<FaceId>,
 }
 
 impl Flipping for Frozen<'_> {
@@ -108,7 +106,6 @@ impl Flipping for Frozen<'_> {
     }
 
     fn flip(&mut self, h: HalfEdge) {
-        self.changed.extend(self.planar.topology.sides(h).map(HalfEdge::face));
         self.planar.topology.flip(h);
     }
 

@@ -36,7 +36,7 @@ use crate::domain::Domain;
 use crate::error::{Result, named};
 use crate::geodesic::{Graph, bowed_chord};
 use crate::geometry::Point;
-use crate::lists::distinct;
+use crate::lists::{distinct, in_order};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::planar::{Planar, hilbert_order};
@@ -181,7 +181,7 @@ impl Canvas {
     /// # Errors
     /// [`crate::Error::Metric`] where the metric is not positive definite at a vertex.
     pub fn intrinsic(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::intrinsic_from(domain.planar().clone(), field, vertices)
+        Self::new(Kind::Intrinsic, domain, field, vertices)
     }
 
     /// The same vertices as [`Canvas::intrinsic`] without its flips: both triangulations are the embedded one.
@@ -192,15 +192,6 @@ impl Canvas {
         let mut counters = CanvasCounters::default();
         let planar = refine::refine(domain.planar().clone(), field, vertices, &mut counters)?;
         Self::unflipped(renumbered(&planar), field, Kind::Intrinsic, counters)
-    }
-
-    /// [`Canvas::intrinsic`] from any embedded triangulation, which may cover a part of a domain only. Its vertices are
-    /// vertices of the canvas, under other ids.
-    ///
-    /// # Errors
-    /// As for [`Canvas::intrinsic`].
-    pub(crate) fn intrinsic_from(planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::from_planar(Kind::Intrinsic, planar, field, vertices)
     }
 
     /// The isotropic one of [`Canvas::new`] with as many vertices as it takes until no circumradius exceeds so many `isotropic_size`s
@@ -232,7 +223,8 @@ impl Canvas {
         Self::from_planar(kind, domain.planar().clone(), field, vertices)
     }
 
-    /// [`Canvas::new`] from any embedded triangulation, as for [`Canvas::intrinsic_from`].
+    /// [`Canvas::new`] from any embedded triangulation, which may cover a part of a domain only. Its vertices are vertices of the
+    /// canvas, under other ids.
     ///
     /// # Errors
     /// As for [`Canvas::new`].
@@ -257,7 +249,7 @@ impl Canvas {
         // At the border the last edge of a star is known only by the face before it.
         let edges = around.iter().flat_map(|&v| topology.star(v)).flat_map(|h| [h, h.prev()]);
         let ends = |h| topology.ends(h);
-        let edges = distinct(edges.map(ends).map(|[a, b]| [a.min(b), a.max(b)]));
+        let edges = distinct(edges.map(ends).map(in_order));
         let mut counters = self.counters;
         let embedded = match self.kind {
             Kind::Isotropic => isotropic::halve(self.embedded.planar.clone(), &edges, &mut counters),

@@ -39,14 +39,11 @@ impl<'s> Canvas<Draped<'s>> {
         let mut number = vec![VertexId(u32::MAX); draped.topology.vertex_slots()];
         (0..).zip(&order).for_each(|(new, old)| number[old.index()] = VertexId(new));
         let at = at.into_iter().map(|v| number[v.index()]).collect();
-        Ok((Self::flipped(draped.renumbered(&order), kind, counters), at))
-    }
-
-    fn flipped(embedded: Draped<'s>, kind: Kind, mut counters: CanvasCounters) -> Self {
+        let embedded = draped.renumbered(&order);
         let mut topology = embedded.topology.clone();
         counters.flips = flip::to_intrinsic_delaunay(&mut topology);
         let stars = (kind == Kind::StarSet).then(|| star_set(&embedded));
-        Self { embedded, topology, stars, kind, counters }
+        Ok((Self { embedded, topology, stars, kind, counters }, at))
     }
 
     /// The same vertices on the surface: the triangulation that points and paths are on.

@@ -5,14 +5,13 @@
 
 use super::CanvasCounters;
 use super::buckets::Buckets;
-use super::flip::{FROZEN_LIMIT, Frozen};
+use super::steiner::Steiner;
 use crate::error::Result;
 use crate::geodesic::chord;
-use crate::geometry::{Point, Tensor};
-use crate::metric::{MetricField, check_tensor};
-use crate::parallel::prelude::*;
+use crate::geometry::Point;
+use crate::metric::MetricField;
 use crate::planar::Planar;
-use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
+use crate::triangulation::{HalfEdge, VertexId};
 
 /// Edges are measured by five evaluations of the field while there are fewer vertices than this, by one from then on:
 /// long edges may hide in their middle what their ends do not tell.
@@ -35,16 +34,16 @@ pub(super) fn refine(
     counters: &mut CanvasCounters,
 ) -> Result<Planar> {
     let mut refiner = Refiner::new(planar, field)?;
-    for h in refiner.planar.topology.edges().collect::<Vec<_>>() {
+    for h in refiner.steiner.planar.topology.edges().collect::<Vec<_>>() {
         refiner.enqueue(h);
     }
-    while refiner.planar.topology.vertex_count() < vertices {
+    while refiner.steiner.planar.topology.vertex_count() < vertices {
         let Some([a, b]) = refiner.queue.pop() else { break };
-        if let Some(h) = refiner.planar.topology.edge_between(a, b) {
+        if let Some(h) = refiner.steiner.planar.topology.edge_between(a, b) {
             refiner.split(h, counters)?;
         }
     }
-    Ok(refiner.planar)
+    Ok(refiner.steiner.planar)
 }
 
 /// Halves edges, given by their ends, with the flips that follow; an edge that a flip has taken away is passed over.
@@ -59,39 +58,31 @@ pub(super) fn halve(
 ) -> Result<Planar> {
     let mut refiner = Refiner::new(planar, field)?;
     for &[a, b] in edges {
-        if let Some(h) = refiner.planar.topology.edge_between(a, b) {
+        if let Some(h) = refiner.steiner.planar.topology.edge_between(a, b) {
             refiner.split(h, counters)?;
         }
     }
-    Ok(refiner.planar)
+    Ok(refiner.steiner.planar)
 }
 
 struct Refiner<'a> {
-    planar: Planar,
-    tensors: Vec<Tensor>,
+    steiner: Steiner<'a>,
     field: &'a dyn MetricField,
     queue: Buckets<[VertexId; 2]>,
-    lawson: Lawson,
-    changed: Vec<FaceId>,
 }
 
 impl<'a> Refiner<'a> {
     fn new(planar: Planar, field: &'a dyn MetricField) -> Result<Self> {
-        let positions = &planar.positions;
-        let tensors: Vec<Tensor> = positions.par_iter().with_min_len(1024).map(|&p| field.at(p)).collect();
-        for v in planar.topology.vertices() {
-            check_tensor(tensors[v.index()], planar.position(v))?;
-        }
-        Ok(Self { planar, tensors, field, queue: Buckets::default(), lawson: Lawson::default(), changed: Vec::new() })
+        Ok(Self { steiner: Steiner::metric(planar, field)?, field, queue: Buckets::default() })
     }
 
     /// Halves an edge, or first the fixed edge beside it that its middle encroaches: else new vertices creep ever closer
     /// to a border that they see under a small angle.
     fn split(&mut self, h: HalfEdge, counters: &mut CanvasCounters) -> Result<()> {
         let Some(fixed) = self.encroached(h) else { return self.halve(h, counters) };
-        let [a, b] = self.planar.topology.ends(h);
+        let [a, b] = self.steiner.planar.topology.ends(h);
         self.halve(fixed, counters)?;
-        if let Some(h) = self.planar.topology.edge_between(a, b) {
+        if let Some(h) = self.steiner.planar.topology.edge_between(a, b) {
             self.enqueue(h);
         }
         Ok(())
@@ -99,15 +90,16 @@ impl<'a> Refiner<'a> {
 
     /// The fixed edge of a face beside an edge that the edge's middle nearly lies on.
     fn encroached(&self, h: HalfEdge) -> Option<HalfEdge> {
-        let topology = &self.planar.topology;
+        let topology = &self.steiner.planar.topology;
         if topology.is_fixed(h) {
             return None;
         }
-        let [p, q] = self.planar.ends(h);
+        let [p, q] = self.steiner.planar.ends(h);
         let middle = p.midpoint(q);
-        let tensor = (self.tensors[topology.origin(h).index()] + self.tensors[topology.target(h).index()]) * 0.5;
+        let tensor =
+            (self.steiner.tensors[topology.origin(h).index()] + self.steiner.tensors[topology.target(h).index()]) * 0.5;
         let is_near = |e: &HalfEdge| {
-            let [a, b] = self.planar.ends(*e);
+            let [a, b] = self.steiner.planar.ends(*e);
             let (u, v) = (a - middle, b - middle);
             topology.is_fixed(*e) && tensor.dot(u, v) < CREEPING * tensor.length(u) * tensor.length(v)
         };
@@ -117,43 +109,34 @@ impl<'a> Refiner<'a> {
     /// Halves an edge, flips around the new vertex, and queues the edges there. An edge whose middle rounding has put
     /// beyond a neighbour stays whole, and so does one beside a face that is flat but for rounding.
     fn halve(&mut self, h: HalfEdge, counters: &mut CanvasCounters) -> Result<()> {
-        if is_beside_flat(&self.planar, h) {
+        if is_beside_flat(&self.steiner.planar, h) {
             return Ok(());
         }
-        let [p, q] = self.planar.ends(h);
-        let middle = p.midpoint(q);
-        let tensor = self.field.at(middle);
-        check_tensor(tensor, middle)?;
-        let Some(v) = self.planar.insert_on_edge(h, middle) else { return Ok(()) };
-        self.tensors.resize(self.planar.positions.len().max(self.tensors.len()), tensor);
-        self.tensors[v.index()] = tensor;
+        let [p, q] = self.steiner.planar.ends(h);
+        let Some(v) = self.steiner.planar.insert_on_edge(h, p.midpoint(q)) else { return Ok(()) };
         counters.splits += 1;
-        counters.planar_flips += self.flip_around(v);
-        for h in self.planar.topology.spokes(v) {
+        counters.planar_flips += self.steiner.added(v, Some(v))?;
+        for h in self.steiner.planar.topology.spokes(v) {
             self.enqueue(h);
         }
         Ok(())
     }
 
-    fn flip_around(&mut self, v: VertexId) -> u64 {
-        let Self { planar, tensors, lawson, changed, .. } = self;
-        lawson.queue(planar.topology.star(v).map(HalfEdge::next));
-        changed.clear();
-        lawson.pass(&mut Frozen { planar, tensors, around: Some(v), changed }, FROZEN_LIMIT).len() as u64
-    }
-
     fn enqueue(&mut self, h: HalfEdge) {
-        let ends = self.planar.topology.ends(h);
-        let [p, q] = self.planar.ends(h);
-        let length =
-            if self.planar.positions.len() < COARSE { chord(self.field, p, q) } else { self.simpson(ends, p, q) };
+        let ends = self.steiner.planar.topology.ends(h);
+        let [p, q] = self.steiner.planar.ends(h);
+        let length = if self.steiner.planar.positions.len() < COARSE {
+            chord(self.field, p, q)
+        } else {
+            self.simpson(ends, p, q)
+        };
         self.queue.push(length, ends);
     }
 
     /// Metric length along an edge by Simpson's rule; without its middle, where the ends agree.
     fn simpson(&self, [a, b]: [VertexId; 2], p: Point, q: Point) -> f64 {
         let d = q - p;
-        let [at_a, at_b] = [a, b].map(|v| self.tensors[v.index()].length(d));
+        let [at_a, at_b] = [a, b].map(|v| self.steiner.tensors[v.index()].length(d));
         let at_ends = at_a + at_b;
         if (at_a - at_b).abs() < ALIKE * at_ends {
             return 0.5 * at_ends;
@@ -168,6 +151,5 @@ pub(super) fn is_beside_flat(planar: &Planar, h: HalfEdge) -> bool {
     let [p, q] = planar.ends(h);
     let rounding = ROUNDING * [p.x, p.y, q.x, q.y].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let area = |side: HalfEdge| (q - p).cross(planar.position(planar.topology.apex(side)) - p).abs();
-    let sides = [Some(h), planar.topology.twin(h)];
-    sides.into_iter().flatten().any(|side| area(side) <= rounding * p.distance(q))
+    planar.topology.sides(h).any(|side| area(side) <= rounding * p.distance(q))
 }

@@ -21,6 +21,11 @@ pub(super) struct Spoke {
     pub(super) region: i32,
 }
 
+/// Whether the star of a vertex has the triangle of the vertex and these two.
+pub(super) fn has(star: &[Spoke], ends: [VertexId; 2]) -> bool {
+    star.iter().any(|spoke| spoke.ends == ends)
+}
+
 /// The star of a vertex in a triangulation as it is.
 pub(super) fn as_it_is(topology: &Triangulation, v: VertexId) -> Star {
     let spoke = |h| Spoke { ends: [topology.target(h), topology.apex(h)], region: topology.region(h.face()) };
@@ -37,17 +42,6 @@ pub(super) fn circle(tensor: Tensor, [v, a, b]: [Point; 3]) -> Option<(Point, f6
     (twice > 0.0 && radius.is_finite()).then(|| (v + to_centre, radius))
 }
 
-/// An orthonormal frame of a tensor.
-#[derive(Clone, Copy)]
-struct Frame([f64; 3]);
-
-impl Frame {
-    fn of(&self, p: Point) -> Point {
-        let [a, b, c] = self.0;
-        Point::new(a * p.x + b * p.y, c * p.y)
-    }
-}
-
 /// Searches stars; its memory is used again from one to the next.
 pub(super) struct Finder<'a> {
     planar: &'a Planar,
@@ -56,7 +50,8 @@ pub(super) struct Finder<'a> {
     stamp: u32,
     faces: Vec<FaceId>,
     candidates: Vec<VertexId>,
-    frame: Frame,
+    /// An orthonormal one of the tensor: see [`Tensor::cholesky`].
+    frame: [f64; 3],
     /// Whether the last search met a fixed edge.
     is_barred: bool,
 }
@@ -78,14 +73,14 @@ impl<'a> Finder<'a> {
             stamp: 0,
             faces: Vec::new(),
             candidates: Vec::new(),
-            frame: Frame([1.0, 0.0, 1.0]),
+            frame: [1.0, 0.0, 1.0],
             is_barred: false,
         }
     }
 
     /// The star of a vertex in a tensor. `None` where rounding leads wrapping astray.
     pub(super) fn star(&mut self, v: VertexId, tensor: Tensor) -> Option<Star> {
-        self.frame = Frame(tensor.cholesky());
+        self.frame = tensor.cholesky();
         let mut star = Star::new();
         for sector in sectors(self.planar, v) {
             let [first, last] = if sector.is_whole {
@@ -111,7 +106,8 @@ impl<'a> Finder<'a> {
     }
 
     fn at(&self, v: VertexId) -> Point {
-        self.frame.of(self.planar.position(v))
+        let (p, [a, b, c]) = (self.planar.position(v), self.frame);
+        Point::new(a * p.x + b * p.y, c * p.y)
     }
 
     /// The nearest vertex that can be seen.

@@ -1,6 +1,6 @@
 //! Star sets (RR-9103, section 7): the Delaunay star of every vertex in its own metric, whether or not the stars agree.
 
-use super::star::{Finder, Spoke, Star, as_it_is, circle};
+use super::star::{Finder, Spoke, Star, as_it_is, circle, has};
 use super::steiner::{Placed, Steiner};
 use super::{CanvasCounters, refine, renumbered};
 use crate::error::Result;
@@ -23,8 +23,8 @@ const PART: usize = 512;
 /// Deterministic, for any number of threads.
 #[derive(Debug)]
 pub struct StarSet {
-    stars: Vec<Star>,
-    figures: StarFigures,
+    pub(super) stars: Vec<Star>,
+    pub(super) figures: StarFigures,
 }
 
 /// A star set in numbers.
@@ -79,11 +79,6 @@ impl StarSet {
         Ok(Self { figures: stars.figures(), stars: stars.by_vertex })
     }
 
-    /// Stars that were found elsewhere.
-    pub(super) fn of(stars: Vec<Star>, figures: StarFigures) -> Self {
-        Self { stars, figures }
-    }
-
     /// Every vertex with those in its star.
     pub(crate) fn pairs(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
         let vertices = (0..self.stars.len() as u32).map(VertexId);
@@ -132,7 +127,6 @@ impl<'a> Stars<'a> {
             |finder, part| part.iter().map(|v| find(finder, v)).collect::<Vec<_>>(),
         );
         let found: Vec<Option<Star>> = parts.flatten_iter().collect();
-        self.by_vertex.resize(steiner.planar.topology.vertex_slots(), Star::new());
         let mut unsettled = 0;
         for (&v, star) in dirty.iter().zip(found) {
             unsettled += usize::from(star.is_none());
@@ -231,7 +225,7 @@ impl<'a> Stars<'a> {
 
     /// Whether the star of v has the simplex v a b.
     pub(super) fn has(&self, v: VertexId, ends: [VertexId; 2]) -> bool {
-        self.by_vertex[v.index()].iter().any(|spoke| spoke.ends == ends)
+        has(&self.by_vertex[v.index()], ends)
     }
 
     /// Whether all three stars have a simplex.
@@ -249,7 +243,7 @@ impl<'a> Stars<'a> {
 impl StarFigures {
     /// Counts of stars, with the circumradius of a simplex of the star of a vertex.
     pub(super) fn of(stars: &[Star], radius: impl Fn(VertexId, [VertexId; 2]) -> Option<f64>) -> Self {
-        let has = |v: VertexId, ends: [VertexId; 2]| stars[v.index()].iter().any(|spoke| spoke.ends == ends);
+        let has = |v: VertexId, ends| has(&stars[v.index()], ends);
         let mut figures = Self { vertices: stars.iter().filter(|star| !star.is_empty()).count(), ..Self::default() };
         for v in (0..stars.len() as u32).map(VertexId) {
             for spoke in &stars[v.index()] {

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::geometry::{Point, Tensor};
 use crate::lists::distinct;
 use crate::metric::{MetricField, check_tensor};
+use crate::parallel::prelude::*;
 use crate::planar::{Location, Planar};
 use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
 
@@ -32,6 +33,7 @@ pub(super) struct Steiner<'a> {
     /// One per vertex slot, where there is a metric.
     pub(super) tensors: Vec<Tensor>,
     lawson: Lawson,
+    /// Faces that are new, in the Euclidean plane.
     changed: Vec<FaceId>,
 }
 
@@ -46,7 +48,8 @@ impl<'a> Steiner<'a> {
     /// # Errors
     /// The metric is not positive definite at a vertex.
     pub(super) fn metric(planar: Planar, field: &'a dyn MetricField) -> Result<Self> {
-        let tensors: Vec<Tensor> = planar.positions.iter().map(|&p| field.at(p)).collect();
+        let positions = planar.positions.par_iter().with_min_len(1024);
+        let tensors: Vec<Tensor> = positions.map(|&p| field.at(p)).collect();
         for v in planar.topology.vertices() {
             check_tensor(tensors[v.index()], planar.position(v))?;
         }
@@ -67,7 +70,7 @@ impl<'a> Steiner<'a> {
             Location::Face(f) => self.planar.insert_in_face(f, p),
         };
         let Some(v) = placed else { return Ok(Placed::Refused) };
-        self.added(v)?;
+        self.added(v, None)?;
         let encroached = self.planar.topology.star(v).map(HalfEdge::next).find(|&h| self.is_encroached(h, p, radius));
         let Some(h) = encroached else { return Ok(Placed::Inserted(v)) };
         let [a, b] = self.planar.topology.ends(h);
@@ -108,12 +111,16 @@ impl<'a> Steiner<'a> {
             return Ok(Placed::Refused);
         }
         let Some(v) = self.planar.insert_on_edge(h, middle) else { return Ok(Placed::Refused) };
-        self.added(v)?;
+        self.added(v, None)?;
         Ok(Placed::Halved(v))
     }
 
-    /// Flips around a vertex that was just inserted.
-    fn added(&mut self, v: VertexId) -> Result<()> {
+    /// Flips around a vertex that was just inserted, in a metric only edges opposite to `around`, if there is one. In a metric it
+    /// says how many.
+    ///
+    /// # Errors
+    /// The metric is not positive definite at the vertex.
+    pub(super) fn added(&mut self, v: VertexId, around: Option<VertexId>) -> Result<u64> {
         if let Some(field) = self.field {
             let p = self.planar.position(v);
             let tensor = field.at(p);
@@ -122,24 +129,26 @@ impl<'a> Steiner<'a> {
             self.tensors[v.index()] = tensor;
         }
         self.lawson.queue(self.planar.topology.star(v).map(HalfEdge::next));
-        self.flip();
-        self.changed.extend(self.planar.topology.star(v).map(HalfEdge::face));
-        Ok(())
+        let flips = self.flip(around);
+        if self.field.is_none() {
+            self.changed.extend(self.planar.topology.star(v).map(HalfEdge::face));
+        }
+        Ok(flips)
     }
 
     /// Flips every edge that the test wants flipped.
     pub(super) fn flip_all(&mut self) {
         self.lawson.queue(self.planar.topology.edges());
-        self.flip();
+        self.flip(None);
     }
 
-    fn flip(&mut self) {
-        let Self { planar, tensors, lawson, changed, .. } = self;
+    fn flip(&mut self, around: Option<VertexId>) -> u64 {
+        let Self { planar, tensors, lawson, .. } = self;
         if self.field.is_none() {
             planar.legalise(lawson);
-        } else {
-            lawson.pass(&mut Frozen { planar, tensors, around: None, changed }, FROZEN_LIMIT);
+            return 0;
         }
+        lawson.pass(&mut Frozen { planar, tensors, around }, FROZEN_LIMIT).len() as u64
     }
 
     /// Moves a vertex, without flips; says whether it could.
@@ -170,7 +179,7 @@ impl<'a> Steiner<'a> {
         }
         let inside: Vec<HalfEdge> = link.iter().filter_map(|&[a, b]| self.planar.topology.find(a, b)).collect();
         self.lawson.queue(inside.iter().flat_map(|h| h.face().half_edges()));
-        self.flip();
+        self.flip(None);
         for [a, b] in link {
             self.changed.extend(self.planar.topology.find(a, b).map(HalfEdge::face));
         }

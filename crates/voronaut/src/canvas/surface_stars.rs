@@ -28,7 +28,7 @@ pub(super) fn star_set(draped: &Draped) -> StarSet {
     let radius = found.iter().map(|star| star.1).fold(0.0, f64::max);
     let stars: Vec<Star> = found.into_iter().map(|star| star.0).collect();
     let figures = StarFigures { radius, unsettled, ..StarFigures::of(&stars, |_, _| None) };
-    StarSet::of(stars, figures)
+    StarSet { stars, figures }
 }
 
 /// The star of a vertex, its greatest circumradius, and whether it is Delaunay.

@@ -93,11 +93,7 @@ struct Cutter<'d, 'a> {
 impl<'d, 'a> Cutter<'d, 'a> {
     fn new(diagram: &'d Diagram<'a>) -> Self {
         let overlap = diagram.overlap();
-        let nearest = |v: u32| {
-            let list = overlap.at(VertexId(v)).iter();
-            let least = list.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
-            least.map_or(diagram.label(VertexId(v)).colour, |e| e.0)
-        };
+        let nearest = |v: u32| overlap.nearest(VertexId(v)).unwrap_or(diagram.label(VertexId(v)).colour);
         let colours = (0..diagram.ground.canvas.vertex_count() as u32).into_par_iter().map(nearest).collect();
         let mut is_orphan = vec![false; diagram.ground.canvas.vertex_count()];
         diagram.orphans().into_iter().for_each(|v| is_orphan[v.index()] = true);

@@ -1,14 +1,52 @@
-//! Distances straight through the plane, in a metric that is frozen: the diagrams of Du and Wang and of Labelle and
-//! Shewchuk ([`super::Kind`]).
+//! Which diagram; distances straight through the plane, in a metric that is frozen: the diagrams of Du and Wang and of Labelle
+//! and Shewchuk.
 
 use super::ground::Straight;
-use super::kind::Chords;
-use super::nearest::{Nearest, Site};
 use super::{Flat, Seed};
+use crate::error::named;
 use crate::geodesic::{Label, MarchCounters, Propagation};
-use crate::geometry::Point;
+use crate::geometry::{Bounds, BoxTree, Point, Tensor};
+use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
+
+/// By what distance a place is given to its nearest seed; its names are those users type (`--voronoi`).
+///
+/// The last two measure along the straight segment, with one tensor for all of it: what they call near may be far on the
+/// way, and in a domain with holes or bays they see through walls. Their cells may fall into parts of which only one holds
+/// the seed (`Diagram::orphans`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    /// `riemannian`: by the geodesic distance, along the canvas.
+    #[default]
+    Riemannian,
+    /// `du-wang`: |x - p| in the metric at the place x (Du and Wang 2005).
+    DuWang,
+    /// `labelle-shewchuk`: |x - p| in the metric at the seed p (Labelle and Shewchuk 2003).
+    LabelleShewchuk,
+}
+
+named!(Kind, "Voronoi diagram", [Riemannian = "riemannian", DuWang = "du-wang", LabelleShewchuk = "labelle-shewchuk"]);
+
+/// Which tensor a chord is measured with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Chords {
+    /// That at the seed (Labelle and Shewchuk).
+    InMetricOfSeed,
+    /// That at the place whose distance it is (Du and Wang).
+    InMetricOfPlace,
+}
+
+impl Chords {
+    /// The distance of a place from a seed.
+    fn measured(self, field: &dyn MetricField, seed: Point, place: Point) -> f64 {
+        let frozen_at = match self {
+            Chords::InMetricOfSeed => seed,
+            Chords::InMetricOfPlace => place,
+        };
+        field.at(frozen_at).length(place - seed)
+    }
+}
 
 impl<'a> Straight<'a, Flat<'a>> for Chords {
     fn length(&self, ground: Flat, seed: Point, place: Point) -> f64 {
@@ -21,7 +59,7 @@ impl<'a> Straight<'a, Flat<'a>> for Chords {
             let at = seed.as_ref()?.at;
             Some(Site { at, colour, tensor: field.at(at) })
         });
-        let nearest = Nearest::new(sites.collect());
+        let nearest = Nearest::new(sites);
         let label = |v: u32| {
             let place = canvas.position(VertexId(v));
             let frozen = (*self == Chords::InMetricOfPlace).then(|| field.at(place));
@@ -30,6 +68,64 @@ impl<'a> Straight<'a, Flat<'a>> for Chords {
         let labels = (0..canvas.vertex_count() as u32).into_par_iter().with_min_len(1024).map(label).collect();
         Propagation::of(labels, MarchCounters::default())
     }
+}
+
+/// A point with its tensor.
+#[derive(Clone, Copy, Debug)]
+struct Site {
+    at: Point,
+    colour: u32,
+    tensor: Tensor,
+}
+
+/// The nearest of many sites where each, or the place that asks, has its own tensor.
+///
+/// A chord v has v' M v >= (v.x / r)^2, where r is how far the unit ball of M reaches along x, and likewise by y: what a box is
+/// away by either coordinate bounds the length of every chord to it from below. Boxes have these reaches of their sites as two
+/// more coordinates.
+struct Nearest(BoxTree<Site, 4>);
+
+/// Bounds stay clear of rounding by this share.
+const ROUNDING: f64 = 1e-12;
+
+impl Nearest {
+    fn new(sites: impl Iterator<Item = Site>) -> Self {
+        let boxed = |site: Site| {
+            let [x, y] = reach(site.tensor);
+            ([[site.at.x, site.at.y, x, y]; 2], site)
+        };
+        Self(BoxTree::new(sites.map(boxed)))
+    }
+
+    /// The least length of a chord to a site and that site's colour, of equal lengths the smallest colour; in the given
+    /// metric or, if none is, in each site's own. `None` without sites.
+    fn find(&self, place: Point, frozen: Option<Tensor>) -> Option<(f64, u32)> {
+        let reach = frozen.map(reach);
+        let place_at = [place.x, place.y];
+        // What the square of no chord to a site of a box is below.
+        let floor = |[low, high]: &Bounds<4>| {
+            let along = |k: usize| {
+                let away = (low[k] - place_at[k]).max(place_at[k] - high[k]).max(0.0);
+                away / reach.map_or(high[2 + k], |reach| reach[k])
+            };
+            (1.0 - ROUNDING) * along(0).max(along(1)).powi(2)
+        };
+        let mut best: Option<(f64, u32)> = None;
+        self.0.search_by(floor, |site| {
+            let found = (frozen.unwrap_or(site.tensor).length(place - site.at), site.colour);
+            if best.is_none_or(|best| found.0 < best.0 || (found.0 <= best.0 && found.1 < best.1)) {
+                best = Some(found);
+            }
+            // What is as near may have a smaller colour.
+            best.map_or(f64::INFINITY, |(least, _)| (least * least).next_up())
+        });
+        best
+    }
+}
+
+/// How far the unit ball of a metric reaches along x, and along y.
+fn reach(tensor: Tensor) -> [f64; 2] {
+    [tensor.yy, tensor.xx].map(|across| (across / tensor.determinant()).sqrt())
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use super::descend::{At, Descent};
 use super::seeds::{Care, Start};
-use super::{Diagram, Flat, Ground, Measure, solver};
+use super::{Diagram, Flat, Ground, Measure, solver, sources};
 use crate::canvas::{Border, Canvas, Draped, Way};
 use crate::error::{Error, Result};
-use crate::geodesic::{Heat, MarchCounters, Method, Polyline, Sources, bowed_chord, straighten};
+use crate::geodesic::{Heat, MarchCounters, Method, Polyline, bowed_chord, straighten};
 use crate::geometry::{Point, Point3};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
@@ -233,16 +233,6 @@ impl<'a> SurfaceDistances<'a> {
         let at = |([a, b], t): OnEdge| draped.position(a).lerp(draped.position(b), t);
         self.pieces(levels).map(|piece| piece.map(at)).collect()
     }
-}
-
-fn sources<'a, G: Ground<'a>>(ground: G, starts: &[Vec<Start>]) -> Sources {
-    let mut sources = Sources::new(ground.topology().vertex_slots());
-    for (colour, starts) in starts.iter().enumerate() {
-        for start in starts {
-            sources.add(start.vertex, start.distance, colour as u32);
-        }
-    }
-    sources
 }
 
 /// Where a function that is linear on a triangle has a value.

@@ -99,18 +99,16 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
 
 /// The colours that may be the nearest somewhere between the vertices; empty where one is the nearest at all of them.
 fn near<const N: usize>(overlap: &Overlap, vertices: [VertexId; N]) -> Vec<Near<N>> {
-    let lists = vertices.map(|v| overlap.at(v));
-    let least = lists.map(|list| list.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0))));
-    if least.iter().all(|l| l.map(|l| l.0) == least[0].map(|l| l.0)) {
+    let least = vertices.map(|v| overlap.nearest(v));
+    if least.iter().all(|nearest| *nearest == least[0]) {
         return Vec::new();
     }
-    let mut near: Vec<Near<N>> = Vec::new();
-    for &(colour, _) in lists[0] {
-        let found = lists.map(|list| list.binary_search_by_key(&colour, |e| e.0).ok().map(|i| list[i].1));
-        if found.iter().all(Option::is_some) {
-            near.push(Near { colour, squares: found.map(|d| d.unwrap_or(f64::INFINITY).powi(2)) });
-        }
-    }
+    let seen = |&(colour, _): &(u32, f64)| {
+        let found = vertices.map(|v| overlap.distance(v, colour));
+        let squares = found.map(|d| d.unwrap_or(f64::INFINITY).powi(2));
+        found.iter().all(Option::is_some).then_some(Near { colour, squares })
+    };
+    let near: Vec<Near<N>> = overlap.at(vertices[0]).iter().filter_map(seen).collect();
     undominated(&near)
 }
 

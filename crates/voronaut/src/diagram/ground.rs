@@ -1,22 +1,20 @@
 //! What a diagram lies on: a canvas of the plane or of a surface, with the metric it was made with.
 
-use super::kind::Chords;
 use super::seeds::{self, Care, Start};
 use super::{Flat, Measure, Seed, SurfaceDiagram};
 use crate::canvas::{Border, Canvas, Draped, StarSet};
 use crate::error::{Error, Result};
-use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Propagation, Stvd, layout};
+use crate::geodesic::{
+    Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Propagation, Sources, Stvd, layout,
+};
 use crate::geometry::{Aabb, Point, Tensor};
 use crate::planar::Location;
 use crate::triangulation::{FaceId, Triangulation, VertexId};
-use std::convert::Infallible;
 
 /// A canvas with its metric. All that a diagram knows of the plane or of a surface it knows through this.
 pub trait Ground<'a>: Copy + Send + Sync {
     /// Where a seed can be.
     type Place: Copy + Send + Sync;
-    /// How distances that are straight come about, where there are any.
-    type Straight: Straight<'a, Self> + Send + Sync;
 
     /// What distances travel on.
     fn topology(&self) -> &'a Triangulation;
@@ -56,7 +54,7 @@ pub trait Ground<'a>: Copy + Send + Sync {
 }
 
 /// Distances that do not follow the canvas.
-pub trait Straight<'a, G: Ground<'a>> {
+pub(super) trait Straight<'a, G: Ground<'a>>: Sync {
     /// The distance of a place from a seed.
     fn length(&self, ground: G, seed: G::Place, place: G::Place) -> f64;
     /// Every canvas vertex with its nearest seed.
@@ -65,7 +63,6 @@ pub trait Straight<'a, G: Ground<'a>> {
 
 impl<'a> Ground<'a> for Flat<'a> {
     type Place = Point;
-    type Straight = Chords;
 
     fn topology(&self) -> &'a Triangulation {
         self.canvas.topology()
@@ -140,7 +137,6 @@ impl<'a> Ground<'a> for Flat<'a> {
 /// A canvas of a surface has its metric with it, and seeds are vertices of it: the canvas was made with them.
 impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
     type Place = VertexId;
-    type Straight = Infallible;
 
     fn topology(&self) -> &'a Triangulation {
         Canvas::topology(*self)
@@ -198,19 +194,9 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
     }
 
     fn on_lattice(&self, _from: &[VertexId], _starts: &[Vec<Start>]) -> Result<Vec<f64>> {
-        let (what, lbr) = ("distances by lbr on a surface, which has no Cartesian grid".into(), Method::Lbr);
-        let others: Vec<&str> = Method::ALL.iter().filter(|&&m| m != lbr).map(|m| m.name()).collect();
-        Err(Error::Unsupported { what, help: format!("use one of {}", others.join(", ")) })
-    }
-}
-
-impl<'a, G: Ground<'a>> Straight<'a, G> for Infallible {
-    fn length(&self, _ground: G, _seed: G::Place, _place: G::Place) -> f64 {
-        match *self {}
-    }
-
-    fn propagate(&self, _ground: G, _seeds: &[Option<Seed<G::Place>>]) -> Propagation {
-        match *self {}
+        let what = "distances by lbr on a surface, which has no Cartesian grid".into();
+        let others = Method::names(|method| method != Method::Lbr);
+        Err(Error::Unsupported { what, help: format!("use one of {others}") })
     }
 }
 
@@ -227,6 +213,17 @@ impl<'a> SurfaceDiagram<'a> {
     pub fn canvas(&self) -> &'a Canvas<Draped<'a>> {
         self.ground
     }
+}
+
+/// The sources that seeds with these starts make, in the order of their colours.
+pub(super) fn sources<'a, G: Ground<'a>>(ground: G, starts: &[Vec<Start>]) -> Sources {
+    let mut sources = Sources::new(ground.topology().vertex_slots());
+    for (colour, starts) in starts.iter().enumerate() {
+        for start in starts {
+            sources.add(start.vertex, start.distance, colour as u32);
+        }
+    }
+    sources
 }
 
 /// A method on what of a canvas it travels on.

@@ -12,8 +12,6 @@ mod distances;
 mod envelope;
 mod glued;
 mod ground;
-mod kind;
-mod nearest;
 mod nerve;
 mod orphans;
 mod overlap;
@@ -24,12 +22,13 @@ mod seeds;
 mod test_diagrams;
 
 pub use cells::{Cells, Outline};
+pub use chords::Kind;
 pub use distances::{Distances, SurfaceDistances};
 pub use ground::Ground;
-pub use kind::Kind;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle, Witnesses};
 pub use paths::Paths;
 pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
+pub(crate) use seeds::Care;
 
 use crate::canvas::{Canvas, Draped};
 use crate::error::{Error, Result};
@@ -37,17 +36,19 @@ use crate::geodesic::{Geodesic, Label, MarchCounters, Marching, Method, NO_COLOU
 use crate::geometry::Point;
 use crate::metric::{MetricField, check_field};
 use crate::triangulation::VertexId;
-use ground::{Straight as _, solver};
-use kind::Chords;
+use chords::Chords;
+use ground::{Straight, solver, sources};
 use overlap::Overlap;
-use seeds::{Care, Start};
+use seeds::Start;
 use std::sync::OnceLock;
 
 /// See the [module](self). Seed i has colour i; a removed seed's colour is not used again. It is the same for every
 /// [`Ground`]: a `Diagram<'a>` lies in the plane, a [`SurfaceDiagram`] on a surface.
 pub struct Diagram<'a, G: Ground<'a> = Flat<'a>> {
     ground: G,
+    kind: Kind,
     measure: Measure<'a, G>,
+    care: Care,
     seeds: Vec<Option<Seed<G::Place>>>,
     sources: Sources,
     propagation: Propagation,
@@ -69,7 +70,7 @@ enum Measure<'a, G: Ground<'a>> {
     /// Along shortest ways on the canvas.
     Ways(Box<dyn Geodesic + 'a>),
     /// Straight.
-    Chords(G::Straight),
+    Chords(Box<dyn Straight<'a, G>>),
 }
 
 /// A seed: where it is, and the canvas vertices that it gives a distance to.
@@ -92,29 +93,16 @@ impl<'a> Diagram<'a> {
     /// in one place as the domain has fans there, in order, each belongs to one fan. (Elsewhere a seed belongs to all.)
     ///
     /// # Errors
-    /// As for [`Diagram::by_method`].
+    /// As for [`Diagram::of_kind`].
     pub(crate) fn of_vertices(
         canvas: &'a Canvas,
         field: &'a dyn MetricField,
         vertices: &[Point],
         method: Method,
+        care: Care,
     ) -> Result<Self> {
         let ground = Flat { canvas, field };
-        Self::of_seeds(ground, vertices, true, Care::Full, Measure::Ways(solver(ground, method)?))
-    }
-
-    /// [`Diagram::of_vertices`] with distances that are poorer around seeds where the metric varies much, for a tenth of
-    /// the evaluations: good enough to find where seeds are far.
-    ///
-    /// # Errors
-    /// As for [`Diagram::new`].
-    pub(crate) fn roughly_of_vertices(
-        canvas: &'a Canvas,
-        field: &'a dyn MetricField,
-        vertices: &[Point],
-    ) -> Result<Self> {
-        let ways = Measure::Ways(Box::new(Marching::on(canvas.topology())));
-        Self::of_seeds(Flat { canvas, field }, vertices, true, Care::Quick, ways)
+        Self::of_seeds(ground, vertices, true, care, Measure::Ways(solver(ground, method)?))
     }
 
     /// The diagram of seeds by a solver.
@@ -130,21 +118,7 @@ impl<'a> Diagram<'a> {
         Self::of_seeds(Flat { canvas, field }, seeds, false, Care::Full, Measure::Ways(Box::new(solver)))
     }
 
-    /// The diagram of seeds by one of the methods, on what of the canvas it travels on.
-    ///
-    /// # Errors
-    /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams.
-    pub(crate) fn by_method(
-        canvas: &'a Canvas,
-        field: &'a dyn MetricField,
-        seeds: &[Point],
-        method: Method,
-    ) -> Result<Self> {
-        let ground = Flat { canvas, field };
-        Self::of_seeds(ground, seeds, false, Care::Full, Measure::Ways(solver(ground, method)?))
-    }
-
-    /// The diagram of a kind; a method is for the Riemannian one.
+    /// The diagram of a kind; a method, on what of the canvas it travels on, is for the Riemannian one.
     ///
     /// # Errors
     /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams; [`Error::Metric`] where the metric is not positive definite at a seed.
@@ -155,15 +129,17 @@ impl<'a> Diagram<'a> {
         seeds: &[Point],
         method: Method,
     ) -> Result<Self> {
+        let ground = Flat { canvas, field };
         let chords = match kind {
-            Kind::Riemannian => return Self::by_method(canvas, field, seeds, method),
+            Kind::Riemannian => {
+                return Self::of_seeds(ground, seeds, false, Care::Full, Measure::Ways(solver(ground, method)?));
+            }
             Kind::DuWang => Chords::InMetricOfPlace,
             Kind::LabelleShewchuk => Chords::InMetricOfSeed,
         };
-        let ground = Flat { canvas, field };
         let starts = ground.starts_of_all(seeds, false, Care::Quick)?;
         check_field(field, seeds.iter().copied())?;
-        Ok(Self::made(ground, seeds, starts, Measure::Chords(chords)))
+        Ok(Self { kind, ..Self::made(ground, seeds, starts, Measure::Chords(Box::new(chords))) })
     }
 
     /// The canvas.
@@ -178,11 +154,7 @@ impl<'a> Diagram<'a> {
 
     /// By what distance its cells are the nearest places.
     pub fn kind(&self) -> Kind {
-        match self.measure {
-            Measure::Ways(_) => Kind::Riemannian,
-            Measure::Chords(Chords::InMetricOfPlace) => Kind::DuWang,
-            Measure::Chords(Chords::InMetricOfSeed) => Kind::LabelleShewchuk,
-        }
+        self.kind
     }
 }
 
@@ -198,23 +170,19 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         care: Care,
         measure: Measure<'a, G>,
     ) -> Result<Self> {
-        Ok(Self::made(ground, seeds, ground.starts_of_all(seeds, are_vertices, care)?, measure))
+        let starts = ground.starts_of_all(seeds, are_vertices, care)?;
+        Ok(Self { care, ..Self::made(ground, seeds, starts, measure) })
     }
 
     fn made(ground: G, seeds: &[G::Place], starts: Vec<Vec<Start>>, measure: Measure<'a, G>) -> Self {
-        let mut sources = Sources::new(ground.topology().vertex_slots());
-        let mut placed = Vec::with_capacity(seeds.len());
-        for (i, (&at, starts)) in seeds.iter().zip(starts).enumerate() {
-            for s in &starts {
-                sources.add(s.vertex, s.distance, i as u32);
-            }
-            placed.push(Some(Seed { at, starts }));
-        }
+        let sources = sources(ground, &starts);
+        let placed: Vec<_> = seeds.iter().zip(starts).map(|(&at, starts)| Some(Seed { at, starts })).collect();
         let propagation = match &measure {
             Measure::Ways(solver) => solver.propagate(&sources),
             Measure::Chords(chords) => chords.propagate(ground, &placed),
         };
-        Self { ground, measure, seeds: placed, sources, propagation, overlap: OnceLock::new() }
+        let (kind, care, overlap) = (Kind::Riemannian, Care::Full, OnceLock::new());
+        Self { ground, kind, measure, care, seeds: placed, sources, propagation, overlap }
     }
 
     /// Inserts a seed by one front from it; returns its colour.
@@ -243,19 +211,10 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         Ok(())
     }
 
-    /// Inserts a seed at a canvas vertex; returns its colour.
+    /// Inserts a seed at a canvas vertex, with as much care as the diagram was made with; returns its colour.
     pub(crate) fn insert_at_vertex(&mut self, v: VertexId) -> u32 {
-        self.insert_with(v, Care::Full)
-    }
-
-    /// Inserts a seed at a canvas vertex into a diagram made by [`Diagram::roughly_of_vertices`]; returns its colour.
-    pub(crate) fn insert_roughly(&mut self, v: VertexId) -> u32 {
-        self.insert_with(v, Care::Quick)
-    }
-
-    fn insert_with(&mut self, v: VertexId, care: Care) -> u32 {
         let colour = self.seeds.len() as u32;
-        let starts = self.ground.starts_at_vertex(v, care);
+        let starts = self.ground.starts_at_vertex(v, self.care);
         self.seeds.push(None);
         self.place(colour, self.ground.place(v), starts);
         colour

@@ -20,47 +20,34 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
             let starts = seed.iter().flat_map(|seed| &seed.starts).map(|start| start.vertex);
             starts.filter(move |&v| self.label(v).colour == colour)
         });
-        components(self.ground.topology(), &|v| self.label(v).colour, starts)
+        components(self.ground.topology(), |v| self.label(v).colour, starts)
     }
 }
 
 /// The connected sets of one colour that hold none of the given vertices.
 fn components(
     topology: &Triangulation,
-    colour: &dyn Fn(VertexId) -> u32,
+    colour: impl Fn(VertexId) -> u32,
     from: impl Iterator<Item = VertexId>,
 ) -> Vec<Vec<VertexId>> {
     let mut reached = vec![false; topology.vertex_slots()];
-    for v in from {
-        flood(topology, colour, v, &mut reached);
-    }
-    let vertices = (0..topology.vertex_slots() as u32).map(VertexId).filter(|&v| colour(v) != NO_COLOUR);
-    let sets = vertices.map(|v| flood(topology, colour, v, &mut reached));
-    sets.filter(|set| !set.is_empty()).collect()
-}
-
-/// The set of a vertex's colour around it, in order, which is marked as reached; none if it was.
-fn flood(
-    topology: &Triangulation,
-    colour: &dyn Fn(VertexId) -> u32,
-    from: VertexId,
-    reached: &mut [bool],
-) -> Vec<VertexId> {
-    if std::mem::replace(&mut reached[from.index()], true) {
-        return Vec::new();
-    }
-    let mut set = vec![from];
-    let mut next = 0;
-    while let Some(&v) = set.get(next) {
-        next += 1;
-        for y in topology.around(v) {
-            if colour(y) == colour(from) && !std::mem::replace(&mut reached[y.index()], true) {
-                set.push(y);
-            }
+    // The set of a vertex's colour around it, in order; none if it was reached before.
+    let mut flood = |from: VertexId| {
+        if std::mem::replace(&mut reached[from.index()], true) {
+            return None;
         }
-    }
-    set.sort_unstable();
-    set
+        let (mut set, mut next) = (vec![from], 0);
+        while let Some(&v) = set.get(next) {
+            next += 1;
+            let same = topology.around(v).filter(|&y| colour(y) == colour(from));
+            set.extend(same.filter(|y| !std::mem::replace(&mut reached[y.index()], true)));
+        }
+        set.sort_unstable();
+        Some(set)
+    };
+    from.for_each(|v| drop(flood(v)));
+    let vertices = (0..topology.vertex_slots() as u32).map(VertexId).filter(|&v| colour(v) != NO_COLOUR);
+    vertices.filter_map(flood).collect()
 }
 
 #[cfg(test)]

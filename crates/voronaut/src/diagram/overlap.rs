@@ -3,10 +3,9 @@
 //! Where two fronts meet, values are poor on both sides, for neither crosses a face whose vertices have different colours.
 //! So each seed's distances are computed once more, by themselves, on its cell and a few rings around it.
 
-use super::ground::Straight as _;
 use super::{Diagram, Ground, Measure, Seed};
 use crate::geodesic::NO_COLOUR;
-use crate::lists::Rows;
+use crate::lists::{Rows, in_order};
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
 use std::collections::HashMap;
@@ -23,6 +22,12 @@ impl Overlap {
     /// The seeds near a vertex by colour, with their distances.
     pub(super) fn at(&self, v: VertexId) -> &[(u32, f64)] {
         self.0.row(v.index())
+    }
+
+    /// The nearest of them, of equally near ones the first.
+    pub(super) fn nearest(&self, v: VertexId) -> Option<u32> {
+        let least = self.at(v).iter().min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        least.map(|entry| entry.0)
     }
 
     /// The distance of a vertex to a seed, where it is known.
@@ -120,9 +125,7 @@ fn gather(vertices: usize, patches: &[Patch]) -> Overlap {
 
 /// For pairs of seeds whose cells, with their surroundings, have canvas vertices in common: the vertex with the least sum of
 /// distances to both.
-pub(crate) struct Passes {
-    best: HashMap<[u32; 2], (f64, VertexId)>,
-}
+pub(crate) struct Passes(HashMap<[u32; 2], (f64, VertexId)>);
 
 impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// Where the shortest ways between seeds pass from cell to cell: all whose cells touch, or nearly do.
@@ -140,20 +143,14 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
                 }
             }
         }
-        Passes { best }
+        Passes(best)
     }
 }
 
 impl Passes {
-    /// The length of the way between two seeds through their pass: never less than their distance on the canvas, and more
-    /// by a share of about the square of a canvas edge's over the distance's length. `None` where their cells are not
-    /// near.
-    pub(crate) fn distance(&self, i: u32, j: u32) -> Option<f64> {
-        self.best.get(&[i.min(j), i.max(j)]).map(|found| found.0)
-    }
-
-    /// The pass between two seeds.
-    pub(crate) fn vertex(&self, i: u32, j: u32) -> Option<VertexId> {
-        self.best.get(&[i.min(j), i.max(j)]).map(|found| found.1)
+    /// The length of the way between two seeds through their pass, and the pass: never less than their distance on the canvas, and
+    /// more by a share of about the square of a canvas edge's over the distance's length. `None` where their cells are not near.
+    pub(crate) fn between(&self, i: u32, j: u32) -> Option<(f64, VertexId)> {
+        self.0.get(&in_order([i, j])).copied()
     }
 }

@@ -54,9 +54,9 @@ impl Paths<'_, '_> {
     pub fn geodesics(&self, pairs: &[[u32; 2]]) -> Vec<Option<Polyline>> {
         let passes = self.diagram.passes();
         let join = |&[a, b]: &[u32; 2]| {
-            let pass = passes.vertex(a, b);
+            let pass = passes.between(a, b);
             let ends = [self.diagram.seed(a)?, self.diagram.seed(b)?];
-            let joined = pass.and_then(|v| {
+            let joined = pass.and_then(|(_, v)| {
                 let at = self.diagram.ground.canvas.position(v);
                 let mut path = self.descend(at, a).ok()?;
                 path.reverse();

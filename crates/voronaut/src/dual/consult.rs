@@ -7,7 +7,7 @@ use super::margin::diagonals;
 use super::patch::Patch;
 use super::{Dual, Effort, Moving};
 use crate::canvas::{self, Canvas, CanvasFigures};
-use crate::diagram::{Diagram, NerveTriangle, resolve};
+use crate::diagram::{Care, Diagram, NerveTriangle, resolve};
 use crate::error::{Result, named};
 use crate::geodesic::{MarchCounters, Margin, Method};
 use crate::lists::{in_order, ranked};
@@ -137,7 +137,7 @@ impl Dual<'_> {
         if road == Road::Canvas {
             canvas = resolve(canvas, &field, &seeds, ROUNDS)?.canvas;
         }
-        let diagram = Diagram::of_vertices(&canvas, &field, &seeds, method)?;
+        let diagram = Diagram::of_vertices(&canvas, &field, &seeds, method, Care::Full)?;
         let nerve = diagram.sharp_nerve();
         let ends = |side: [u32; 2]| in_order(side.map(|i| ids[i as usize]));
         let sides = nerve.sides(|_| true).map(ends);

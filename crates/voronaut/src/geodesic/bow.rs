@@ -174,7 +174,7 @@ impl Samples {
     fn are_steady(&self) -> bool {
         let inverse = self.middle.inverse();
         let is_near = |t: &Tensor| {
-            let d = *t + self.middle * -1.0;
+            let d = *t - self.middle;
             // The trace of the square of (inverse d).
             let [a, b, c, e] = [
                 inverse.xx * d.xx + inverse.xy * d.xy,

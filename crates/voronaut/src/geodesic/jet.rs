@@ -48,9 +48,7 @@ impl Frame {
 
     /// The field at (u, v), in the frame's coordinates.
     pub(super) fn tensor(&self, field: &dyn MetricField, x: Vector) -> Tensor {
-        let m = field.at(self.place(x));
-        let (mu, mv) = (m.apply(self.u), m.apply(self.v));
-        Tensor::new(self.u.dot(mu), self.u.dot(mv), self.v.dot(mv))
+        field.at(self.place(x)).along([self.u, self.v])
     }
 
     /// A covector of the frame as one of the plane: the inverse transpose of the axes.
@@ -84,11 +82,11 @@ impl Jet {
         let twice = tensor * 2.0;
         Self {
             tensor,
-            first: [less(east, west) * (0.5 / STEP), less(north, south) * (0.5 / STEP)],
+            first: [(east - west) * (0.5 / STEP), (north - south) * (0.5 / STEP)],
             second: [
-                less(ew, twice) * (1.0 / (STEP * STEP)),
-                less(both + neither + twice, ew + ns) * (0.5 / (STEP * STEP)),
-                less(ns, twice) * (1.0 / (STEP * STEP)),
+                (ew - twice) * (1.0 / (STEP * STEP)),
+                (both + neither + twice - (ew + ns)) * (0.5 / (STEP * STEP)),
+                (ns - twice) * (1.0 / (STEP * STEP)),
             ],
         }
     }
@@ -105,10 +103,6 @@ impl Jet {
         let area = self.tensor.determinant();
         (rows - rest) / (area * area)
     }
-}
-
-fn less(a: Tensor, b: Tensor) -> Tensor {
-    a + b * -1.0
 }
 
 fn determinant([a, b, c]: [[f64; 3]; 3]) -> f64 {

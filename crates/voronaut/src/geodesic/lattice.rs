@@ -6,6 +6,7 @@ use super::length::chord;
 use super::straighten::Obstacles;
 use super::update::plane_crossing;
 use crate::geometry::{Aabb, Point, Tensor, Vector};
+use crate::lists::Rows;
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
@@ -28,9 +29,8 @@ pub(crate) struct Lattice<'a> {
     rows: i64,
     /// For each node the offsets of its neighbours, around it, and whether the way there is free; `None` outside.
     stencils: Vec<Option<Stencil>>,
-    /// For each node those in whose stencil it is, and its place there; by `first`.
-    users: Vec<(u32, u8)>,
-    first: Vec<u32>,
+    /// For each node those in whose stencil it is, and its place there.
+    users: Rows<(u32, u8)>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -55,12 +55,12 @@ impl<'a> Lattice<'a> {
         let side = (extent.x * extent.y / nodes.max(4) as f64).sqrt();
         let [columns, rows] = [extent.x, extent.y].map(|length| (length / side).round().max(1.0) as i64 + 1);
         let step = Vector::new(extent.x / (columns - 1) as f64, extent.y / (rows - 1) as f64);
-        let (stencils, users, first) = (Vec::new(), Vec::new(), Vec::new());
-        let mut lattice = Self { field, obstacles, origin: bounds.min, step, columns, rows, stencils, users, first };
+        let (stencils, users) = (Vec::new(), Rows::default());
+        let mut lattice = Self { field, obstacles, origin: bounds.min, step, columns, rows, stencils, users };
         let points: Vec<Point> = (0..(columns * rows) as usize).map(|i| lattice.point(i)).collect();
         let inside = is_inside(&points);
         lattice.stencils = (0..points.len()).into_par_iter().map(|i| inside[i].then(|| lattice.stencil(i))).collect();
-        lattice.find_users();
+        lattice.users = lattice.users();
         lattice
     }
 
@@ -97,18 +97,15 @@ impl<'a> Lattice<'a> {
         is_there.then(|| (row * self.columns + column) as usize)
     }
 
-    fn find_users(&mut self) {
-        let mut pairs: Vec<(u32, u32, u8)> = Vec::new();
-        for (i, stencil) in self.stencils.iter().enumerate() {
-            for k in stencil.iter().flat_map(|s| (0..6).filter(|&k| s.is_free[k]).map(|k| (k, s.offsets[k]))) {
-                let used = self.neighbour(i, k.1).filter(|&j| self.stencils[j].is_some());
-                pairs.extend(used.map(|j| (j as u32, i as u32, k.0 as u8)));
-            }
-        }
-        pairs.sort_unstable();
-        let first = |j: usize| pairs.partition_point(|pair| (pair.0 as usize) < j) as u32;
-        self.first = (0..=self.stencils.len()).map(first).collect();
-        self.users = pairs.into_iter().map(|(_, i, k)| (i, k)).collect();
+    fn users(&self) -> Rows<(u32, u8)> {
+        let stencils = (0..).zip(&self.stencils).filter_map(|(i, stencil)| Some((i, stencil.as_ref()?)));
+        let free =
+            stencils.flat_map(|(i, stencil)| (0..6).filter(|&k| stencil.is_free[k]).map(move |k| (i, stencil, k)));
+        let used = free.filter_map(|(i, stencil, k)| {
+            let j = self.neighbour(i as usize, stencil.offsets[k]).filter(|&j| self.stencils[j].is_some())?;
+            Some((j as u32, (i, k as u8)))
+        });
+        Rows::new(self.stencils.len(), used)
     }
 
     fn march(&self, sources: &[Point]) -> Vec<f64> {
@@ -130,7 +127,7 @@ impl<'a> Lattice<'a> {
         }
         while let Some(VertexId(j)) = front.pop() {
             is_known[j as usize] = true;
-            for &(i, k) in &self.users[self.first[j as usize] as usize..self.first[j as usize + 1] as usize] {
+            for &(i, k) in self.users.row(j as usize) {
                 if !is_known[i as usize] {
                     let distance = self.reach(i as usize, usize::from(k), &values, &is_known);
                     offer(&mut values, &mut front, i as usize, distance);

@@ -168,7 +168,7 @@ fn newton_step(field: &dyn MetricField, path: &[Point]) -> Vec<Vector> {
 /// Tensor at the middle of a segment and its derivatives by differences over the segment's length.
 fn local_on_segment(field: &dyn MetricField, a: Point, b: Point) -> LocalMetric {
     let (middle, h) = (a.midpoint(b), 0.5 * (b - a).norm());
-    let difference = |e: Vector| (field.at(middle + e * h) + field.at(middle - e * h) * -1.0) * (0.5 / h);
+    let difference = |e: Vector| (field.at(middle + e * h) - field.at(middle - e * h)) * (0.5 / h);
     let derivative = [difference(Vector::new(1.0, 0.0)), difference(Vector::new(0.0, 1.0))];
     LocalMetric { tensor: field.at(middle), derivative, is_rough: false }
 }
@@ -181,7 +181,7 @@ fn solve_tridiagonal(mut diagonal: Vec<Tensor>, couplings: &[Tensor], mut right:
         // c inverse c is symmetric; its columns are c inverse applied to the columns of c.
         let column = |e: Vector| c.apply(inverse.apply(c.apply(e)));
         let (x, y) = (column(Vector::new(1.0, 0.0)), column(Vector::new(0.0, 1.0)));
-        diagonal[i] = diagonal[i] + Tensor::new(x.x, 0.5 * (x.y + y.x), y.y) * -1.0;
+        diagonal[i] = diagonal[i] - Tensor::new(x.x, 0.5 * (x.y + y.x), y.y);
         right[i] = right[i] - c.apply(inverse.apply(right[i - 1]));
     }
     let n = diagonal.len();

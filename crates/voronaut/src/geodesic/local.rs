@@ -56,8 +56,8 @@ impl LocalMetric {
             let offset = axes[i] * steps[i];
             let (ahead, behind) = (field.at(p + offset), field.at(p - offset));
             if ahead.is_positive_definite() && behind.is_positive_definite() {
-                along[i] = (ahead + behind * -1.0) * (0.5 / steps[i]);
-                second = second.max(relative_size((ahead + behind) * 0.5 + tensor * -1.0, axes, steps));
+                along[i] = (ahead - behind) * (0.5 / steps[i]);
+                second = second.max(relative_size((ahead + behind) * 0.5 - tensor, axes, steps));
             }
         }
         let [u, v] = axes;
@@ -77,7 +77,7 @@ impl LocalMetric {
             let (ahead, behind) = (field.at(p + offset), field.at(p - offset));
             if ahead.is_positive_definite() && behind.is_positive_definite() {
                 (sum, number) = (sum + ahead + behind, number + 2.0);
-                let difference = ahead + behind * -1.0;
+                let difference = ahead - behind;
                 slopes = [slopes[0] + difference * cos, slopes[1] + difference * sin];
             }
         }

@@ -121,9 +121,8 @@ impl Rule for Marching<'_> {
     /// Edges that flips have made may lead around a hole and back.
     fn is_circular(&self, label: &Label, v: VertexId) -> bool {
         match label.support() {
-            Support::Nothing | Support::Source | Support::Neighbour(_) => false,
-            Support::Edge(h) => self.canvas.ends(h).contains(&v),
             Support::Vertex(h) => self.canvas.ends(h) == [v, v],
+            _ => self.rests_on(label, v),
         }
     }
 }

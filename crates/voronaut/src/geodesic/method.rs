@@ -47,8 +47,13 @@ impl Method {
             return Ok(());
         }
         let what = format!("a diagram by {self}, which gives distances alone");
-        let names: Vec<&str> = Self::ALL.iter().filter(|m| m.drives_diagrams()).map(|m| m.name()).collect();
-        Err(Error::Unsupported { what, help: format!("use one of {}", names.join(", ")) })
+        Err(Error::Unsupported { what, help: format!("use one of {}", Self::names(Self::drives_diagrams)) })
+    }
+
+    /// The names of some methods, for messages.
+    pub(crate) fn names(of: impl Fn(Self) -> bool) -> String {
+        let names: Vec<&str> = Self::ALL.into_iter().filter(|&method| of(method)).map(Self::name).collect();
+        names.join(", ")
     }
 
     /// The name without parameters.
@@ -95,8 +100,8 @@ impl FromStr for Method {
                 .ok_or_else(|| Error::parse(format!("geodesic {text}"), "no such window", help));
         }
         Self::ALL.into_iter().find(|method| method.name() == text).ok_or_else(|| {
-            let names: Vec<&str> = Self::ALL.iter().map(|method| method.name()).collect();
-            Error::parse(format!("geodesic {text}"), "no such method", format!("choose one of {}", names.join(", ")))
+            let help = format!("choose one of {}", Self::names(|_| true));
+            Error::parse(format!("geodesic {text}"), "no such method", help)
         })
     }
 }

@@ -141,7 +141,7 @@ impl Strip<'_> {
                 kept.push(portal);
             }
         }
-        let touches = |h: HalfEdge, v: VertexId| topology.origin(h) == v || topology.target(h) == v;
+        let touches = |h: HalfEdge, v: VertexId| topology.ends(h).contains(&v);
         let first = kept.iter().position(|&h| !touches(h, self.from)).unwrap_or(kept.len());
         kept.drain(..first);
         let last = kept.iter().rposition(|&h| !touches(h, self.to)).map_or(0, |i| i + 1);
@@ -158,7 +158,7 @@ impl Strip<'_> {
             let path = layout.path(&bends);
             let switched = bends.iter().enumerate().find_map(|(i, &bend)| {
                 let [before, at, after] = [path[i], path[i + 1], path[i + 2]];
-                self.switched(bend, angle_between(at, before, after))
+                self.switched(bend, (before - at).turn(after - at))
             });
             let Some(portals) = switched else { return layout.taut(&self.portals, &bends) };
             self.portals = portals;
@@ -294,11 +294,6 @@ impl Layout {
 /// Twice the signed area of a triangle: positive where c is left of the way from a to b.
 fn turn(a: Point, b: Point, c: Point) -> f64 {
     (b - a).cross(c - a)
-}
-
-/// The angle between two directions from a point, at most pi.
-fn angle_between(at: Point, a: Point, b: Point) -> f64 {
-    (a - at).cross(b - at).abs().atan2((a - at).dot(b - at))
 }
 
 /// The point to the left of the way from a to b that has these distances from both.

@@ -25,7 +25,7 @@ impl Segment {
         let [ex, ey] = [Vector::new(h, 0.0), Vector::new(0.0, h)];
         let at = field.at(m);
         let [[xp, xm], [yp, ym], [both, neither]] = [ex, ey, ex + ey].map(|e| [field.at(m + e), field.at(m - e)]);
-        let [dx, dy] = [xp + xm * -1.0, yp + ym * -1.0].map(|difference| difference * (0.5 / h));
+        let [dx, dy] = [xp - xm, yp - ym].map(|difference| difference * (0.5 / h));
         let second = |sum: Tensor| (sum + at * -2.0).dot(d, d) / (h * h);
         let (qxx, qyy) = (second(xp + xm), second(yp + ym));
         let qxy = 0.5 * (second(both + neither) - qxx - qyy);
@@ -38,7 +38,7 @@ impl Segment {
         let skew = by.x - bx.y;
         Self {
             gradient: [pull - ahead, pull + ahead],
-            own: [frozen + twist * -1.0 + quarter, frozen + twist + quarter],
+            own: [frozen - twist + quarter, frozen + twist + quarter],
             mixed: [
                 Vector::new(quarter.xx - frozen.xx, quarter.xy - frozen.xy + skew),
                 Vector::new(quarter.xy - frozen.xy - skew, quarter.yy - frozen.yy),
@@ -76,7 +76,7 @@ impl Expansion {
             }
             if let Some((inverse, [u, v], earlier)) = eliminated.last() {
                 let [iu, iv, ir] = [*u, *v, *earlier].map(|x| inverse.apply(x));
-                block = block + Tensor::new(u.dot(iu), u.dot(iv), v.dot(iv)) * -1.0;
+                block = block - Tensor::new(u.dot(iu), u.dot(iv), v.dot(iv));
                 right = right - Vector::new(u.dot(ir), v.dot(ir));
             }
             if !block.is_positive_definite() {

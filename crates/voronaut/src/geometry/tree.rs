@@ -88,14 +88,19 @@ impl<T, const D: usize> BoxTree<T, D> {
 
     /// Calls `visit` with all items whose box is nearer to `p` than the bound, nearer boxes first. `visit` returns the new
     /// bound, a squared distance; it starts at infinity.
-    pub(crate) fn search<'a>(&'a self, p: [f64; D], mut visit: impl FnMut(&'a T) -> f64) {
+    pub(crate) fn search<'a>(&'a self, p: [f64; D], visit: impl FnMut(&'a T) -> f64) {
+        self.search_by(|bounds| squared_distance(bounds, p), visit);
+    }
+
+    /// [`BoxTree::search`] by any distance of boxes: that of one is no more than that of what it holds.
+    pub(crate) fn search_by<'a>(&'a self, distance: impl Fn(&Bounds<D>) -> f64, mut visit: impl FnMut(&'a T) -> f64) {
         let mut pending = [(0, 0.0); MAX_DEPTH];
         let mut count = usize::from(!self.nodes.is_empty());
         let mut bound = f64::INFINITY;
         while count > 0 {
             count -= 1;
-            let (mut index, distance) = pending[count];
-            if distance >= bound {
+            let (mut index, nearest) = pending[count];
+            if nearest >= bound {
                 continue;
             }
             loop {
@@ -104,8 +109,8 @@ impl<T, const D: usize> BoxTree<T, D> {
                     self.leaf(node).iter().for_each(|(_, item)| bound = visit(item));
                     break;
                 }
-                let first = (index + 1, squared_distance(&self.nodes[index + 1].bounds, p));
-                let second = (node.next as usize, squared_distance(&self.nodes[node.next as usize].bounds, p));
+                let first = (index + 1, distance(&self.nodes[index + 1].bounds));
+                let second = (node.next as usize, distance(&self.nodes[node.next as usize].bounds));
                 let (near, far) = if second.1 < first.1 { (second, first) } else { (first, second) };
                 if far.1 < bound {
                     pending[count] = far;

@@ -1,10 +1,10 @@
 //! Voronoi cells of seeds, in the tangent planes there or of the diagram on a canvas, with their moments, which relaxation takes.
 
 use crate::canvas::Canvas;
-use crate::diagram::Diagram;
+use crate::diagram::{Care, Diagram};
 use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
-use crate::geodesic::{LocalMetric, Support};
+use crate::geodesic::{LocalMetric, Method, Support};
 use crate::geometry::{Point, Tensor, Vector, to_frame};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
@@ -274,7 +274,7 @@ impl<'a> OnCanvas<'a> {
         let ids: Vec<VertexId> = dual.topology().vertices().collect();
         let seeds: Vec<Point> = ids.iter().map(|&v| dual.position(v)).collect();
         let factor = dual.field().factor;
-        let diagram = Diagram::roughly_of_vertices(self.canvas, dual.field().field, &seeds)?;
+        let diagram = Diagram::of_vertices(self.canvas, dual.field().field, &seeds, Method::March, Care::Quick)?;
         let directions = self.directions(&diagram, |colour| dual.local(ids[colour as usize]));
         let mut moments = vec![Moments::default(); ids.len()];
         for x in (0..self.canvas.vertex_count() as u32).map(VertexId) {

@@ -3,7 +3,7 @@
 
 use super::cell::{CellsOf, Moments};
 use super::quasi_newton::{Memory, dot};
-use crate::canvas::Canvas;
+use crate::canvas::{self, Canvas};
 use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
 use crate::geometry::{Point, Vector, from_frame};
@@ -162,7 +162,7 @@ impl Region {
         let inner: Vec<VertexId> = topology.vertices().filter(|v| is_inner[v.index()]).collect();
         let part = dual.part_around(&inner, RINGS);
         let near: Vec<VertexId> = part.topology.vertices().collect();
-        let canvas = Canvas::intrinsic_from(part, dual.field(), per_seed * near.len()).ok()?;
+        let canvas = Canvas::from_planar(canvas::Kind::Intrinsic, part, dual.field(), per_seed * near.len()).ok()?;
         Some(Self { canvas, core: seeds.to_vec(), near, is_inner })
     }
 

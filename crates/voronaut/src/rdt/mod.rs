@@ -22,7 +22,6 @@ use crate::in_circle::{InCircle, LEVELS, Lengths, Quad, TestCounters, Tested, Te
 use crate::lists::in_order;
 use crate::metric::MetricField;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId, smallest_first};
-use start::Prepared;
 use std::collections::HashSet;
 
 /// What a triangulation of seeds knows of where they are: seeds of the plane in a metric field, or of a surface.
@@ -154,7 +153,7 @@ impl<'a> Rdt<InField<'a>> {
         memory.keep_for(seeds);
         let mut judge = InField::new(field, seeds, trust);
         let filled = start.triangulated(&judge);
-        judge.expand(&filled.triangles);
+        judge.expand(&filled.0);
         Self::settled(judge, seeds.len(), start, filled, memory)
     }
 }
@@ -173,13 +172,18 @@ impl<J: Judge> Rdt<J> {
         Self::of_topology(judge, seeds, topology, seed_of, Memory::default())
     }
 
-    fn settled(judge: J, seeds: usize, start: &Start, filled: Prepared, memory: Memory) -> Self {
-        let Prepared { triangles, dropped, filled } = filled;
+    fn settled(
+        judge: J,
+        seeds: usize,
+        start: &Start,
+        (triangles, filled): (Vec<[u32; 3]>, RdtCounters),
+        memory: Memory,
+    ) -> Self {
         let mut topology = Triangulation::from_triangles(seeds, &triangles, &vec![0; triangles.len()]);
         let seed_of = split(&mut topology, seeds);
         let mut rdt = Self::of_topology(judge, seeds, topology, seed_of, memory);
         rdt.dropped = missing(&start.triangles, &triangles);
-        rdt.counters = RdtCounters { dropped, filled, ..rdt.counters };
+        rdt.counters = RdtCounters { dropped: filled.dropped, filled: filled.filled, ..rdt.counters };
         rdt
     }
 

@@ -1,7 +1,7 @@
 //! From triangles that are nearly a triangulation to one.
 
-use super::Judge;
 use super::sides::Sides;
+use super::{Judge, RdtCounters};
 use crate::diagram::Nerve;
 use std::collections::BTreeSet;
 
@@ -19,13 +19,6 @@ pub struct Start {
     pub at_border: BTreeSet<[u32; 2]>,
 }
 
-/// A start with small holes filled, and how that went: as [`RdtCounters`](super::RdtCounters) has it.
-pub(super) struct Prepared {
-    pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) dropped: u64,
-    pub(super) filled: u64,
-}
-
 impl Start {
     /// The triangles of a nerve, best [`sharp`](crate::diagram::Diagram::sharp_nerve).
     pub(crate) fn from_nerve(nerve: &Nerve) -> Self {
@@ -35,8 +28,8 @@ impl Start {
         }
     }
 
-    /// Triangles in which no oriented side occurs twice, with small holes filled.
-    pub(super) fn triangulated(&self, judge: &dyn Judge) -> Prepared {
+    /// Triangles in which no oriented side occurs twice, with small holes filled; and how many were dropped and filled in.
+    pub(super) fn triangulated(&self, judge: &dyn Judge) -> (Vec<[u32; 3]>, RdtCounters) {
         let mut sides = Sides::new(judge);
         let mut candidates: Vec<[u32; 3]> = self.triangles.iter().copied().filter(|&t| sides.are_seeds(t)).collect();
         // Those with the smallest circles first: of two that claim a side the Delaunay one, mostly.
@@ -53,7 +46,7 @@ impl Start {
             dropped += sides.remove_along(&defects);
         }
         self.fill_holes(&mut sides, &mut filled);
-        Prepared { triangles: sides.triangles(), dropped, filled }
+        (sides.triangles(), RdtCounters { dropped, filled, ..RdtCounters::default() })
     }
 
     /// Fills what can be filled; returns the holes that cannot.

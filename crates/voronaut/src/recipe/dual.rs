@@ -54,7 +54,7 @@ pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road, progress: &d
     let passes = diagram.passes();
     let read = progress.seconds();
     let seeds: Vec<_> = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default()).collect();
-    let reference = |i: u32, j: u32| passes.distance(i, j).map(|distance| (distance, CANVAS_ERROR * distance));
+    let reference = |i: u32, j: u32| passes.between(i, j).map(|(distance, _)| (distance, CANVAS_ERROR * distance));
     let trust = match road {
         Road::Geodesic => Trust::default(),
         Road::Canvas | Road::Both => Trust { reference: Some(&reference), doubt: DOUBT },

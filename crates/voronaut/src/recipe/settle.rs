@@ -4,11 +4,11 @@
 use super::options::{Centroid, Seeding};
 use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job, MeshOptions};
 use crate::canvas::{Canvas, CanvasFigures};
-use crate::diagram::Diagram;
+use crate::diagram::{Care, Diagram};
 use crate::domain::Domain;
 use crate::dual::{Consultation, Disagreement, Dual, Effort, Moving};
 use crate::error::Result;
-use crate::geodesic::Margin;
+use crate::geodesic::{Margin, Method};
 use crate::geometry::Point;
 use crate::optimise::{Cells, OnCanvas, Relaxed, exchange, meet_blocked_flips, mend_worst, relax};
 use crate::progress::Progress;
@@ -173,7 +173,7 @@ impl Job<'_> {
     /// None that a dual of the canvas's domain could cause.
     pub(super) fn seed_farthest(&mut self, canvas: &Canvas, dual: &mut Dual, count: usize) -> Result<()> {
         let seeds: Vec<Point> = dual.topology().vertices().map(|v| dual.position(v)).collect();
-        let mut diagram = Diagram::roughly_of_vertices(canvas, self.field, &seeds)?;
+        let mut diagram = Diagram::of_vertices(canvas, self.field, &seeds, Method::March, Care::Quick)?;
         refine_farthest(dual, &mut diagram, self.fill(count), self.progress)?;
         self.diagram = Some(figures::Diagram::of(&diagram));
         Ok(())

@@ -76,7 +76,6 @@ pub(crate) fn fill_farthest<'a, G: Ground<'a>>(
 /// each at the canvas vertex inside the domain, on no segment, that is farthest from all seeds. Ends when the dual has
 /// as many vertices as asked for, when there is no such vertex, or, with [`Fill::AtMost`], when all are nearer than the
 /// least spacing of seeds. The dual's field is the diagram's times the dual's factor.
-/// Seeds are inserted with rough starts (`Diagram::insert_roughly`).
 ///
 /// A vertex at which the plane allows no seed (rounding) is passed over. Returns the number of seeds.
 pub(crate) fn refine_farthest(
@@ -94,7 +93,7 @@ pub(crate) fn refine_farthest(
     fill_farthest(diagram, fill.count(), least, is_free, progress, |diagram, v| {
         let near = diagram.colour(v).map_or(seeds[0], |colour| seeds[colour as usize]);
         if let Some(seed) = insert(dual, near, canvas.position(v)) {
-            diagram.insert_roughly(v);
+            diagram.insert_at_vertex(v);
             seeds.push(seed);
         }
     })?;

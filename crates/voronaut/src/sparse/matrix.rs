@@ -1,5 +1,6 @@
 //! Symmetric matrices, by compressed rows.
 
+use crate::lists::Rows;
 use std::ops::Range;
 
 /// A symmetric matrix of which only some entries are kept, by compressed rows: both halves, columns rising, and the whole
@@ -19,36 +20,21 @@ impl Symmetric {
     /// # Panics
     /// Of an entry in the lower half beyond the last row.
     pub(crate) fn from_triplets(size: usize, entries: &[(u32, u32, f64)]) -> Self {
-        let diagonal = || (0..size as u32).map(|i| (i, i, 0.0));
-        let all = || diagonal().chain(entries.iter().copied().filter(|&(i, j, _)| i >= j).flat_map(with_mirror_image));
-        let mut ends = vec![0; size];
-        all().for_each(|(i, ..)| ends[i as usize] += 1);
-        // Ends of rows are their starts until they are filled.
-        let mut count = 0;
-        for end in &mut ends {
-            count += std::mem::replace(end, count);
-        }
-        let mut rows = vec![(0, 0.0); count];
-        for (i, j, value) in all() {
-            rows[ends[i as usize]] = (j, value);
-            ends[i as usize] += 1;
-        }
-        Self::summed(&mut rows, &ends)
-    }
-
-    /// Rows that end there, of columns and values in any order.
-    fn summed(rows: &mut [(u32, f64)], ends: &[usize]) -> Self {
+        let diagonal = (0..size as u32).map(|i| (i, i, 0.0));
+        let lower = entries.iter().copied().filter(|&(i, j, _)| i >= j);
+        let all = diagonal.chain(lower.flat_map(with_mirror_image));
+        let rows = Rows::new(size, all.map(|(i, j, value)| (i, (j, value))));
         let mut matrix = Self { starts: vec![0], columns: Vec::new(), values: Vec::new() };
-        let mut start = 0;
-        for &end in ends {
-            let row = &mut rows[start..end];
+        let mut row: Vec<(u32, f64)> = Vec::new();
+        for i in 0..size {
+            row.clear();
+            row.extend(rows.row(i));
             row.sort_by_key(|&(column, _)| column);
             for same in row.chunk_by(|a, b| a.0 == b.0) {
                 matrix.columns.push(same[0].0);
                 matrix.values.push(same.iter().map(|&(_, value)| value).sum());
             }
             matrix.starts.push(matrix.columns.len());
-            start = end;
         }
         matrix
     }
@@ -108,6 +94,6 @@ impl Symmetric {
 }
 
 /// One after the other, so that both halves are sums in the same order.
-fn with_mirror_image((i, j, value): (u32, u32, f64)) -> impl Iterator<Item = (u32, u32, f64)> {
+fn with_mirror_image((i, j, value): (u32, u32, f64)) -> impl Iterator<Item = (u32, u32, f64)> + Clone {
     std::iter::once((i, j, value)).chain((i != j).then_some((j, i, value)))
 }

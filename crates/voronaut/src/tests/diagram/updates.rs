@@ -2,7 +2,7 @@
 
 use super::common::{halton, square, vertices};
 use crate::canvas::Canvas;
-use crate::diagram::Diagram;
+use crate::diagram::{Care, Diagram};
 use crate::domain::Domain;
 use crate::geodesic::Method;
 use crate::geometry::{Point, Tensor};
@@ -169,7 +169,7 @@ fn a_seed_where_holes_touch_belongs_to_both_sides() {
     diagram.insert(touching).unwrap();
     assert!(sides.iter().all(|&p| far(&diagram, p) < 0.61));
     // As vertices of a mesh the two copies have a side each.
-    let diagram = Diagram::of_vertices(&canvas, &field, &[touching, touching], Method::March).unwrap();
+    let diagram = Diagram::of_vertices(&canvas, &field, &[touching, touching], Method::March, Care::Full).unwrap();
     let sizes = diagram.cell_sizes();
     assert!(sizes.iter().all(|&size| size > 1500), "{sizes:?}");
 }

@@ -177,14 +177,18 @@ fn diagrams_by_every_method_change_as_if_made_anew() {
         let vertex = |i: u32| VertexId(7919 * i % round.vertex_count() as u32);
         for method in Method::ALL.into_iter().filter(|method| method.drives_diagrams()) {
             let name = format!("{method} on {kind}");
-            changed_as_made_anew(|seeds| Diagram::by_method(&flat, &swirl, seeds, method).unwrap(), seed, &name);
+            changed_as_made_anew(
+                |seeds| Diagram::of_kind(diagram::Kind::Riemannian, &flat, &swirl, seeds, method).unwrap(),
+                seed,
+                &name,
+            );
             changed_as_made_anew(|seeds| SurfaceDiagram::on_surface(&round, seeds, method).unwrap(), vertex, &name);
         }
     }
     let canvas = Canvas::intrinsic(&square, &swirl, 1500).unwrap();
     let (round, _) = Canvas::on_surface(Kind::Intrinsic, &sphere, &uniform, 1500, &[]).unwrap();
     for method in [Method::Lbr, Method::Heat] {
-        let of_plane = Diagram::by_method(&canvas, &swirl, &[seed(1)], method).err().unwrap();
+        let of_plane = Diagram::of_kind(diagram::Kind::Riemannian, &canvas, &swirl, &[seed(1)], method).err().unwrap();
         let of_surface = SurfaceDiagram::on_surface(&round, &[VertexId(1)], method).err().unwrap();
         for error in [of_plane, of_surface] {
             assert_eq!(error.to_string(), format!("not supported: a diagram by {method}, which gives distances alone"));
