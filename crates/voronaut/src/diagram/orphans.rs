@@ -80,7 +80,7 @@ mod tests {
             all.min_by(|&a, &b| canvas.position(a).distance(p).total_cmp(&canvas.position(b).distance(p))).unwrap()
         };
         let seeds = [nearest(Point::new(0.5, 0.5)), nearest(Point::new(3.0, 0.5))];
-        let mut found = components(canvas.topology(), &colour, seeds.into_iter());
+        let mut found = components(canvas.topology(), colour, seeds.into_iter());
         found.sort_by(|a, b| canvas.position(a[0]).x.total_cmp(&canvas.position(b[0]).x));
         let disk = |centre: Point| {
             let all = (0..canvas.vertex_count() as u32).map(VertexId);
@@ -89,7 +89,7 @@ mod tests {
         assert_eq!(found, [disk(first), disk(second)]);
         assert!(found[0].len() > 50);
         // Without a seed the whole right part is one more.
-        assert_eq!(components(canvas.topology(), &colour, seeds[..1].iter().copied()).len(), 3);
+        assert_eq!(components(canvas.topology(), colour, seeds[..1].iter().copied()).len(), 3);
     }
 
     #[test]

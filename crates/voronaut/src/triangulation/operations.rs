@@ -152,8 +152,7 @@ impl Triangulation {
 
     /// The vertices that an edge joins to this one.
     fn neighbours(&self, v: VertexId) -> Vec<VertexId> {
-        let found = distinct(self.around(v));
-        found
+        distinct(self.around(v))
     }
 
     /// Removes the origin of an edge: its edges end at the edge's target instead, and the faces of the edge vanish.

@@ -7,7 +7,7 @@ use crate::diagram::SurfaceDiagram;
 use crate::dual::Road;
 use crate::geodesic::Method;
 use crate::geometry::Tensor3;
-use crate::lists::distinct;
+use crate::lists::{distinct, in_order};
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::progress::Silent;
@@ -133,9 +133,7 @@ fn meetings(at_corners: [&[(u32, f64)]; 3], slack: f64) -> Vec<([u32; 3], f64)> 
                     let own = value(a.1, x);
                     let others = near.iter().filter(|e| ![a.0, b.0, c.0].contains(&e.0));
                     let gap = others.map(|e| value(e.1, x) / own - 1.0).fold(f64::INFINITY, f64::min);
-                    let mut corners = [a.0, b.0, c.0];
-                    corners.sort_unstable();
-                    found.extend((gap >= 0.0).then_some((corners, gap)));
+                    found.extend((gap >= 0.0).then_some((in_order([a.0, b.0, c.0]), gap)));
                 }
             }
         }
@@ -149,7 +147,9 @@ fn by_force(surface: &Surface, seeds: &[VertexId]) -> BTreeMap<[u32; 3], f64> {
     let each: Vec<_> = seeds.par_iter().map(|&seed| distances(surface, seed, 4.0 * spacing)).collect();
     let mut at: Vec<Vec<(u32, f64)>> = vec![Vec::new(); surface.positions().len()];
     for (seed, found) in (0..).zip(each) {
-        found.into_iter().for_each(|(v, distance)| at[v.index()].push((seed, distance)));
+        for (v, distance) in found {
+            at[v.index()].push((seed, distance));
+        }
     }
     let t = surface.topology();
     let faces: Vec<FaceId> = t.faces().collect();
@@ -173,42 +173,53 @@ fn seeded(surface: &Surface, count: usize) -> Vec<VertexId> {
     seeds
 }
 
+/// An ellipsoid and a torus, with edges of about so long a part of the unit.
+fn surfaces(fineness: f64) -> [(&'static str, Input); 2] {
+    let sphere = Input::shape("sphere:1", Some(fineness)).unwrap().surface.to_mesh();
+    let points = sphere.points.iter().map(|&[x, y, z]| [x, 0.7 * y, 0.5 * z]).collect();
+    let ellipsoid = Surface::new(&Mesh { points, ..sphere }).unwrap();
+    let torus = Input::shape("torus:2,0.7", Some(2.5 * fineness)).unwrap().surface;
+    [("ellipsoid", Input::new(ellipsoid, None)), ("torus", Input::new(torus, None))]
+}
+
+fn compare(name: &str, input: &Input, count: usize) {
+    let seeds = seeded(&input.surface, count);
+    let forced = by_force(&input.surface, &seeds);
+    let metric = Constant(Tensor3::IDENTITY);
+    let places: Vec<Place> = seeds.iter().map(|&v| input.surface.place_of(v).unwrap()).collect();
+    let size = size_for(places.len(), 20);
+    let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, input, &metric, size, &places).unwrap();
+    let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
+    let ours = distinct(surface_dual(&diagram, Road::Both, &Silent).triangles.into_iter().map(in_order));
+    let wrong: Vec<_> = forced.iter().filter(|(t, _)| ours.binary_search(t).is_err()).collect();
+    let clearly = wrong.iter().filter(|(_, gap)| **gap > 1e-3).count();
+    let expected = (2 * (seeds.len().cast_signed() - input.surface.euler_characteristic())) as usize;
+    let others = ours.iter().filter(|t| !forced.contains_key(*t)).count();
+    println!(
+        "{name}: {} vertices; of {expected} triangles {} by force and {} ours; {} missing ({clearly} above 1e-3), {others} others",
+        input.surface.positions().len(),
+        forced.len(),
+        ours.len(),
+        wrong.len()
+    );
+    assert!(clearly == 0, "{wrong:?}");
+    assert!(ours.len() == expected && forced.len() * 1000 > 995 * expected);
+    let ties = forced.values().filter(|gap| **gap <= 1e-3).count() + expected.saturating_sub(forced.len());
+    assert!(others <= 2 * ties, "{others} others, {ties} ties");
+}
+
 #[test]
 fn duals_are_those_that_force_finds() {
-    let sphere = Input::shape("sphere:1", Some(0.02)).unwrap().surface.to_mesh();
-    let points = sphere.points.iter().map(|&[x, y, z]| [x, 0.7 * y, 0.5 * z]).collect();
-    let ellipsoid = Input::new(Surface::new(&Mesh { points, ..sphere }).unwrap(), None);
-    let torus = Input::shape("torus:2,0.7", Some(0.05)).unwrap();
-    let torus = Input::new(torus.surface, None);
-    for (name, input) in [("ellipsoid", ellipsoid), ("torus", torus)] {
-        let seeds = seeded(&input.surface, 3000);
-        let forced = by_force(&input.surface, &seeds);
-        let metric = Constant(Tensor3::IDENTITY);
-        let places: Vec<Place> = seeds.iter().map(|&v| input.surface.place_of(v).unwrap()).collect();
-        let size = size_for(places.len(), 20);
-        let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, size, &places).unwrap();
-        let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
-        let triangles = surface_dual(&diagram, Road::Both, &Silent).triangles;
-        let sorted = |mut t: [u32; 3]| {
-            t.sort_unstable();
-            t
-        };
-        let ours = distinct(triangles.iter().map(|&t| sorted(t)));
-        let wrong: Vec<_> = forced.iter().filter(|(t, _)| ours.binary_search(t).is_err()).collect();
-        let clearly = wrong.iter().filter(|(_, gap)| **gap > 1e-3).count();
-        let expected = (2 * (seeds.len() as isize - input.surface.euler_characteristic())) as usize;
-        let others = ours.iter().filter(|t| !forced.contains_key(*t)).count();
-        println!(
-            "{name}: {} vertices, {} triangles by force of {expected}, {} ours, {} missing ({clearly} above 1e-3), {others} others",
-            input.surface.positions().len(),
-            forced.len(),
-            ours.len(),
-            wrong.len()
-        );
-        assert!(clearly == 0, "{wrong:?}");
-        assert!(ours.len() == expected && forced.len() * 1000 > 998 * expected);
-        let ties = forced.values().filter(|gap| **gap <= 1e-3).count() + expected.saturating_sub(forced.len());
-        assert!(others <= 2 * ties, "{others} others, {ties} ties");
+    for (name, input) in surfaces(0.06) {
+        compare(name, &input, 300);
+    }
+}
+
+#[test]
+#[ignore = "minutes: cargo test --release -p voronaut --lib force_finds -- --ignored --nocapture"]
+fn duals_of_thousands_are_those_that_force_finds() {
+    for (name, input) in surfaces(0.02) {
+        compare(name, &input, 3000);
     }
 }
 
