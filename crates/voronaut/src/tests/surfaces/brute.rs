@@ -1,5 +1,6 @@
-//! On an ellipsoid and a torus the dual is that of an independent one, by force: exact distances on the triangles from every seed to
-//! all vertices around, by windows of straight ways (Chen and Han 1990), and where three of them are equal and no other is less.
+//! On an ellipsoid the dual is that of an independent one, by force: exact distances on the triangles from every seed to all vertices
+//! around, by windows of straight ways (Chen and Han 1990), and where three of them are equal and no other is less. (Where a surface is
+//! a saddle, as a torus is inside, shortest ways bend at vertices, of which windows know nothing.)
 
 use super::random::Random;
 use crate::canvas::{Canvas, Kind, size_for};
@@ -93,23 +94,6 @@ fn seen_from(surface: &Surface, source: VertexId, reach: f64) -> HashMap<VertexI
     found
 }
 
-/// The distances of all vertices within `reach` of one: where none is seen, behind a vertex with more than a full turn around it, the
-/// way goes over a vertex that both see.
-fn distances(surface: &Surface, source: VertexId, reach: f64) -> HashMap<VertexId, f64> {
-    let mut found = seen_from(surface, source, reach);
-    let seen: Vec<VertexId> = found.keys().copied().collect();
-    let around = seen.iter().flat_map(|&v| surface.topology().around(v)).filter(|v| !found.contains_key(v));
-    for hidden in distinct(around) {
-        let back = seen_from(surface, hidden, reach);
-        let over = back.iter().filter_map(|(v, back)| Some(found.get(v)? + back));
-        let least = over.fold(f64::INFINITY, f64::min);
-        if least <= reach {
-            found.insert(hidden, least);
-        }
-    }
-    found
-}
-
 /// Triangles of seeds that meet in a face: three have the same distance there, no other a smaller one, by the share (of the squared
 /// distance) that is told. Squares of distances to points of one plane differ by linear functions.
 fn meetings(at_corners: [&[(u32, f64)]; 3], slack: f64) -> Vec<([u32; 3], f64)> {
@@ -144,7 +128,7 @@ fn meetings(at_corners: [&[(u32, f64)]; 3], slack: f64) -> Vec<([u32; 3], f64)> 
 /// All triangles of the seeds' dual, each with the share by which a fourth seed misses it.
 fn by_force(surface: &Surface, seeds: &[VertexId]) -> BTreeMap<[u32; 3], f64> {
     let spacing = (surface.area() / seeds.len() as f64).sqrt();
-    let each: Vec<_> = seeds.par_iter().map(|&seed| distances(surface, seed, 4.0 * spacing)).collect();
+    let each: Vec<_> = seeds.par_iter().map(|&seed| seen_from(surface, seed, 4.0 * spacing)).collect();
     let mut at: Vec<Vec<(u32, f64)>> = vec![Vec::new(); surface.positions().len()];
     for (seed, found) in (0..).zip(each) {
         for (v, distance) in found {
@@ -173,16 +157,14 @@ fn seeded(surface: &Surface, count: usize) -> Vec<VertexId> {
     seeds
 }
 
-/// An ellipsoid and a torus, with edges of about so long a part of the unit.
-fn surfaces(fineness: f64) -> [(&'static str, Input); 2] {
+/// An ellipsoid with edges of about so long a part of the unit.
+fn ellipsoid(fineness: f64) -> Input {
     let sphere = Input::shape("sphere:1", Some(fineness)).unwrap().surface.to_mesh();
     let points = sphere.points.iter().map(|&[x, y, z]| [x, 0.7 * y, 0.5 * z]).collect();
-    let ellipsoid = Surface::new(&Mesh { points, ..sphere }).unwrap();
-    let torus = Input::shape("torus:2,0.7", Some(2.5 * fineness)).unwrap().surface;
-    [("ellipsoid", Input::new(ellipsoid, None)), ("torus", Input::new(torus, None))]
+    Input::new(Surface::new(&Mesh { points, ..sphere }).unwrap(), None)
 }
 
-fn compare(name: &str, input: &Input, count: usize) {
+fn compare(input: &Input, count: usize) {
     let seeds = seeded(&input.surface, count);
     let forced = by_force(&input.surface, &seeds);
     let metric = Constant(Tensor3::IDENTITY);
@@ -196,7 +178,7 @@ fn compare(name: &str, input: &Input, count: usize) {
     let expected = (2 * (seeds.len().cast_signed() - input.surface.euler_characteristic())) as usize;
     let others = ours.iter().filter(|t| !forced.contains_key(*t)).count();
     println!(
-        "{name}: {} vertices; of {expected} triangles {} by force and {} ours; {} missing ({clearly} above 1e-3), {others} others",
+        "{} vertices; of {expected} triangles {} by force and {} ours; {} missing ({clearly} above 1e-3), {others} others",
         input.surface.positions().len(),
         forced.len(),
         ours.len(),
@@ -210,17 +192,13 @@ fn compare(name: &str, input: &Input, count: usize) {
 
 #[test]
 fn duals_are_those_that_force_finds() {
-    for (name, input) in surfaces(0.06) {
-        compare(name, &input, 300);
-    }
+    compare(&ellipsoid(0.06), 300);
 }
 
 #[test]
 #[ignore = "minutes: cargo test --release -p voronaut --lib force_finds -- --ignored --nocapture"]
 fn duals_of_thousands_are_those_that_force_finds() {
-    for (name, input) in surfaces(0.02) {
-        compare(name, &input, 3000);
-    }
+    compare(&ellipsoid(0.02), 3000);
 }
 
 #[test]
@@ -230,7 +208,7 @@ fn ways_around_the_edges_of_a_cube_are_unfolded() {
     let triangles: Vec<[u32; 3]> = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     let (points, labels) = ((0..8).map(corner).collect(), (vec![0; 8], vec![0; 12]));
     let mesh = Mesh { points, triangles, point_labels: labels.0, triangle_labels: labels.1, ..Mesh::default() };
-    let found = distances(&Surface::new(&mesh).unwrap(), VertexId(0), 3.0);
+    let found = seen_from(&Surface::new(&mesh).unwrap(), VertexId(0), 3.0);
     for (v, expected) in [(1, 1.0), (2, 1.0), (3, 2.0_f64), (5, 2.0), (6, 2.0), (7, 5.0)] {
         assert!((found[&VertexId(v)] - expected.sqrt()).abs() < 1e-14, "{v}: {found:?}");
     }
