@@ -192,13 +192,9 @@ fn compare(input: &Input, count: usize) {
 
 #[test]
 fn duals_are_those_that_force_finds() {
-    compare(&ellipsoid(0.06), 300);
-}
-
-#[test]
-#[ignore = "minutes: cargo test --release -p voronaut --lib force_finds -- --ignored --nocapture"]
-fn duals_of_thousands_are_those_that_force_finds() {
-    compare(&ellipsoid(0.02), 3000);
+    for (fineness, count) in [(0.06, 300), (0.02, 3000)] {
+        compare(&ellipsoid(fineness), count);
+    }
 }
 
 #[test]
