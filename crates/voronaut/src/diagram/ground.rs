@@ -114,7 +114,7 @@ impl<'a> Ground<'a> for Flat<'a> {
         seeds::starts_in(*self, self.place(v), &seeds::places(self.canvas, Location::Vertex(v)), care)
     }
 
-    /// By [`Lattice`] on as many nodes as the canvas has vertices; vertices in sight of a point have the length of the way
+    /// By FM-LBR on as many nodes as the canvas has vertices; vertices in sight of a point have the length of the way
     /// there.
     fn on_lattice(&self, from: &[Point], starts: &[Vec<Start>]) -> Result<Vec<f64>> {
         let Flat { canvas, field } = *self;

@@ -25,8 +25,8 @@ impl Sampled {
     /// The field of one tensor per vertex.
     ///
     /// # Errors
-    /// [`Error::Metric`] where the numbers of tensors and vertices differ, or a tensor is not finite and positive
-    /// definite; [`Error::Domain`] where the background has no triangles, is not planar, not finite, or refers to
+    /// [`Error::Metric`](crate::Error::Metric) where the numbers of tensors and vertices differ, or a tensor is not finite and positive
+    /// definite; [`Error::Domain`](crate::Error::Domain) where the background has no triangles, is not planar, not finite, or refers to
     /// vertices it does not have.
     pub fn new(background: &Mesh, tensors: &[Tensor]) -> Result<Self> {
         check_at_vertices(background, tensors)?;
