@@ -234,3 +234,28 @@ impl Leaning {
         self.area < other.area - rounding || (self.area <= other.area + rounding && self.upright > other.upright)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point3, Tensor3};
+    use crate::mesh::Mesh;
+    use crate::surface::metric::Constant;
+    use crate::surface::{Input, Surface};
+
+    #[test]
+    fn what_is_nearly_flat_is_rounded_off() {
+        let corners = vec![[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [3.0, 3.0, 0.0], [-3.0, 3.0, 0.0]];
+        let sheet = Mesh { points: corners, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
+        let (input, metric) = (Input::new(Surface::new(&sheet).unwrap(), None), Constant(Tensor3::IDENTITY));
+        // The third is above the middle of the edge between the first two by next to nothing.
+        let seeds = [(-1.0, 0.0), (1.0, 0.0), (0.0, 1e-6), (0.0, 2.0), (0.0, -2.0)];
+        let places = seeds.map(|(x, y)| input.closest(Point3::new(x, y, 0.0)).unwrap()).to_vec();
+        let triangles = [[0, 1, 2], [0, 2, 3], [2, 1, 3], [0, 4, 1]];
+        let topology = Triangulation::from_triangles(5, &triangles, &[0; 4]);
+        let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
+        assert_eq!((dual.round_off(), dual.round_off()), (1, 0));
+        let least = dual.triangles().into_iter().map(|t| dual.quality(t.map(|v| dual.site(VertexId(v)))));
+        assert!(least.fold(1.0, f64::min) > 0.5);
+    }
+}
