@@ -7,11 +7,11 @@ use voronaut_fuzz::{PLACE, read};
 
 fuzz_target!(|input: &[u8]| {
     let Ok(text) = std::str::from_utf8(input) else { return };
-    if let Some(found) = read(input, || points::read(text, PLACE)) {
-        assert!(found.iter().all(|p| p.is_finite()));
-        assert_eq!(found.len(), points::lines(text).len());
+    if let Some(found) = read(input, || points::read::<2>(text, PLACE)) {
+        assert!(found.iter().flat_map(|(_, p)| p).all(|x| x.is_finite()));
+        assert!(found.is_sorted_by(|(a, _), (b, _)| a < b));
     }
-    if let Some(found) = read(input, || points::read_in_space(text, PLACE)) {
-        assert!(found.iter().all(|p| p.is_finite()));
+    if let Some(found) = read(input, || points::read::<3>(text, PLACE)) {
+        assert!(found.iter().flat_map(|(_, p)| p).all(|x| x.is_finite()));
     }
 });

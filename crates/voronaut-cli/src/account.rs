@@ -3,14 +3,14 @@
 use crate::fields::Scaled;
 use serde_json::Value;
 use voronaut::figures::NetFigures;
+use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::quality::{
-    Meetings, MetricQuality, Unmet, Validity, metric_quality, surface_quality, surface_unmet, unmet, validity,
-    validity_on,
+    Meetings, Unmet, Validity, metric_quality, surface_quality, surface_unmet, unmet, validity, validity_on,
 };
 use voronaut::recipe::Meshed;
 use voronaut::surface::metric::SurfaceMetric;
-use voronaut::surface::{Input, Mended};
+use voronaut::surface::{Input, Mended, Surface};
 use voronaut::{Error, Result};
 use voronaut_io::{Report, Seconds, Strayed};
 
@@ -19,7 +19,7 @@ pub(crate) fn ours(error: Error) -> Error {
     match error {
         Error::Mesh { what, place, .. } => {
             let help = "this is a fault of voronaut: nothing was written; please report it with the input";
-            Error::Mesh { what, place, help: help.into() }
+            Error::mesh(what, place, help)
         }
         other => other,
     }
@@ -29,9 +29,8 @@ pub(crate) fn ours(error: Error) -> Error {
 pub(crate) fn in_plane(meshed: &Meshed, metric: &dyn MetricField, options: Value) -> Result<(Report, Unmet)> {
     let found = validity(&meshed.mesh);
     found.demand().map_err(ours)?;
-    let mut report = report(meshed, found, &metric_quality(&meshed.mesh, metric)?, options);
-    let unmet = unmet(&meshed.mesh, metric)?;
-    report.unmet = Some(unmet.figures());
+    let mut report = report(meshed, found, options);
+    let unmet = measure_in_plane(&mut report, &meshed.mesh, metric)?;
     Ok((report, unmet))
 }
 
@@ -47,19 +46,32 @@ pub(crate) fn on_surface(
     found.demand().map_err(ours)?;
     let meets = found.meetings.note();
     let scaled = Scaled { field: metric, factor: meshed.metric_scale };
-    let figures = surface_quality(&meshed.mesh, &input.surface, &scaled)?;
-    let mut report = report(meshed, found, &figures, options);
-    report.curvature = metric.curvature_figures();
-    report.unmet = Some(surface_unmet(&meshed.mesh, &input.surface, &scaled)?.figures());
+    let mut report = report(meshed, found, options);
+    measure_on_surface(&mut report, &meshed.mesh, &input.surface, &scaled)?;
     report.notes.extend(mended.sentences().chain(meets));
     report.fidelity = meshed.fidelity.map(|found| Strayed::Surface(found.into()));
     Ok(report)
 }
 
+/// Adds what a planar mesh is in a metric; its edges that are not of unit length.
+pub(crate) fn measure_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
+    report.add_quality(&metric_quality(mesh, metric)?);
+    let unmet = unmet(mesh, metric)?;
+    report.unmet = Some(unmet.figures());
+    Ok(unmet)
+}
+
+/// Adds what the mesh of a surface is in a metric.
+pub(crate) fn measure_on_surface(report: &mut Report, mesh: &Mesh, surface: &Surface, metric: &Scaled) -> Result<()> {
+    report.add_quality(&surface_quality(mesh, surface, metric)?);
+    report.curvature = metric.field.curvature_figures();
+    report.unmet = Some(surface_unmet(mesh, surface, metric)?.figures());
+    Ok(())
+}
+
 /// The parts that are the same for plane and surface, and the options as used.
-fn report(meshed: &Meshed, found: Validity, figures: &MetricQuality, options: Value) -> Report {
+fn report(meshed: &Meshed, found: Validity, options: Value) -> Report {
     let is_voronoi = meshed.star_set.is_none();
-    let (vertices, triangles) = (meshed.mesh.points.len(), meshed.mesh.triangles.len());
     Report {
         star_set: meshed.star_set,
         dual: is_voronoi.then(|| meshed.dual.clone()),
@@ -73,6 +85,14 @@ fn report(meshed: &Meshed, found: Validity, figures: &MetricQuality, options: Va
         notes: meshed.notes.clone(),
         seconds: Seconds { stages: meshed.seconds.clone(), total: 0.0 },
         options,
-        ..Report::new(found, vertices, triangles).with_quality(figures)
+        ..Report::new(&meshed.mesh, found)
     }
+}
+
+/// Two objects of a report as one.
+pub(crate) fn joined(mut one: Value, other: Value) -> Value {
+    if let (Value::Object(one), Value::Object(other)) = (&mut one, other) {
+        one.extend(other);
+    }
+    one
 }

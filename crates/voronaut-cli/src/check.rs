@@ -2,7 +2,7 @@
 
 use crate::fields::{self, Scaled};
 use crate::options::{Damage, MetricChoices, Outputs, Run, Show, positive, refuse};
-use crate::{files, pictures};
+use crate::{account, files, pictures};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
@@ -11,12 +11,8 @@ use voronaut::domain::{Domain, from_mesh};
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
-use voronaut::quality::{
-    Meetings, fidelity, interpolation_error, metric_quality, surface_fidelity, surface_quality, surface_unmet, unmet,
-    validity, validity_on,
-};
+use voronaut::quality::{Meetings, fidelity, interpolation_error, surface_fidelity, validity, validity_on};
 use voronaut::recipe::GradedAt;
-use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 use voronaut_draw::Layers;
@@ -69,7 +65,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     demand_drawable(args)?;
     args.run.set_threads()?;
     let Document { mesh, notes, .. } = voronaut_io::read(&args.mesh)?;
-    let read = |spec: &str| Given::read_with(spec, None, args.damage.options());
+    let read = |spec: &str| Given::read(spec, args.damage.options());
     let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();
     let found = match &given {
         Some(Given::Surface(input)) => validity_on(&mesh, &Meetings::of(input.whole_mesh())),
@@ -77,7 +73,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     };
     let fault = found.demand();
     let meets = found.meetings.note();
-    let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
+    let mut report = Report::new(&mesh, found);
     report.notes = notes;
     report.options = json!({
         "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain, "function": args.function, "norm": args.metric_choices.norm.to_string(),
@@ -122,15 +118,13 @@ fn demand_drawable(args: &CheckArgs) -> Result<()> {
 fn in_plane(args: &CheckArgs, mesh: &Mesh, domain: Option<&Domain>, report: &mut Report) -> Result<Option<String>> {
     if !mesh.is_planar() {
         let what = format!("{} is not planar (z = 0), its domain is", args.mesh.display());
-        return Err(Error::Unsupported { what, help: "give the surface that it is a mesh of as --domain".into() });
+        return Err(Error::unsupported(what, "give the surface that it is a mesh of as --domain"));
     }
     let mut layers = Layers::default();
     let metric = args.metric.as_deref().map(|text| planar_metric(args, text, mesh, domain)).transpose()?;
     if let Some(metric) = metric.as_deref() {
-        *report = std::mem::take(report).with_quality(&metric_quality(mesh, metric)?);
+        let unmet = account::measure_in_plane(report, mesh, metric)?;
         report.histograms = files::histograms(&args.outputs, mesh, metric)?;
-        let unmet = unmet(mesh, metric)?;
-        report.unmet = Some(unmet.figures());
         layers.unmet = Some(unmet).filter(|_| args.outputs.shows(Show::Unmet));
     }
     if let Some(text) = &args.function {
@@ -158,9 +152,7 @@ fn on_surface(args: &CheckArgs, mesh: &Mesh, given: Option<&Input>, report: &mut
         };
         let field = fields::on_surface(text, input, &args.metric_choices)?;
         let scaled = Scaled { field: field.as_ref(), factor: args.metric_scale.unwrap_or(1.0) };
-        *report = std::mem::take(report).with_quality(&surface_quality(mesh, &input.surface, &scaled)?);
-        report.curvature = field.curvature_figures();
-        report.unmet = Some(surface_unmet(mesh, &input.surface, &scaled)?.figures());
+        account::measure_on_surface(report, mesh, &input.surface, &scaled)?;
     }
     Ok(None)
 }

@@ -9,7 +9,7 @@ use voronaut::mesh::Mesh;
 use voronaut::{Error, Result};
 use voronaut_io::gmsh::Version;
 use voronaut_io::medit::Form;
-use voronaut_io::{Document, Fields, Format, geojson, lost_in_outline, poly, read_pslg};
+use voronaut_io::{Document, Fields, Format, ending, geojson, lost_in_outline, poly, read_pslg};
 
 pub(crate) const EXAMPLES: &str = "\
 IN   a mesh: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply, .stl; a planar domain: .poly, .geojson, rect:..., disk:...; or values:
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &ConvertArgs) -> Result<()> {
             let what = format!("{} and {}: values and a mesh", args.from.display(), args.to.display());
             let help =
                 "convert values to .sol or .solb, or a mesh with its values: convert IN.mesh OUT.vtu --sol IN.sol";
-            return Err(Error::Unsupported { what, help: help.into() });
+            return Err(Error::unsupported(what, help));
         }
         (from, Kind::Outline) => outline(args, from)?,
         (from, Kind::Mesh) => mesh(args, from)?,
@@ -83,8 +83,7 @@ enum Kind {
 impl Kind {
     /// That of a file by its ending.
     fn of(path: &Path) -> Self {
-        let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
-        match ending.as_deref() {
+        match ending(path).as_deref() {
             Some("sol" | "solb") => Self::Values,
             Some("poly" | "geojson" | "json") => Self::Outline,
             _ => Self::Mesh,
@@ -100,7 +99,7 @@ fn is_shape(path: &Path) -> bool {
 fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
     if let Some(sol) = &args.sol {
         let what = format!("values ({}) in {}", sol.display(), args.to.display());
-        return Err(Error::Unsupported { what, help: "leave out --sol: outlines hold none".into() });
+        return Err(Error::unsupported(what, "leave out --sol: outlines hold none"));
     }
     let (pslg, document) = if from == Kind::Mesh {
         let document = voronaut_io::read(&args.from)?;
@@ -111,7 +110,7 @@ fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
         (pslg, document)
     };
     summary::notes(&document.notes, args.quiet);
-    let is_poly = args.to.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("poly"));
+    let is_poly = ending(&args.to).as_deref() == Some("poly");
     let told = if is_poly { write_poly(&args.to, &pslg)? } else { write_geojson(&args.to, &pslg)? };
     Ok(with_lost(vec![told], &lost_in_outline(is_poly, &document.mesh, &document.fields)))
 }

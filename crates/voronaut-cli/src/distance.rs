@@ -2,7 +2,7 @@
 
 use crate::options::{Coordinates, Damage, Memory, MetricChoices, Run, coordinates};
 use crate::progress::Stages;
-use crate::{fields, files, summary};
+use crate::{account, fields, files, summary};
 use clap::{Args, value_parser};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ use voronaut::geodesic::{Method, Polyline};
 use voronaut::geometry::{Aabb3, Point, Point3};
 use voronaut::mesh::Mesh;
 use voronaut::recipe::GradedAt;
-use voronaut::surface::{Input, Place};
+use voronaut::surface::{Input, Mended, Place};
 use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
 use voronaut_draw::{Layers, Picture, Scene, Stroke, View};
@@ -75,14 +75,6 @@ pub(crate) struct DistanceArgs {
 /// Vertices of the canvas of `distance`: marching errs by about a thousandth then, in half a second.
 const CANVAS_VERTICES: u32 = 40_000;
 
-/// What is written.
-struct Made {
-    mesh: Mesh,
-    distances: Vec<f64>,
-    picture: Option<String>,
-    told: Value,
-}
-
 /// Writes the distance field on the canvas, and the path if there is one.
 pub(crate) fn run(args: &DistanceArgs) -> Result<()> {
     let stages = Stages::start();
@@ -92,20 +84,14 @@ pub(crate) fn run(args: &DistanceArgs) -> Result<()> {
     args.run.set_threads()?;
     args.metric_choices.bounds().check()?;
     demand_memory(args)?;
-    let (given, mended) = Given::read_with(&args.domain, None, args.damage.options())?;
-    let mut made = match given {
-        Given::Plane(domain) => in_plane(args, &domain, stages)?,
-        Given::Surface(input) => on_surface(args, &input, stages)?,
-    };
-    made.told["notes"] = mended.sentences().collect();
-    voronaut_io::write_diagram(&made.mesh, &made.distances, &args.out)?;
-    files::write_picture(made.picture, args.picture.as_deref())?;
-    args.run.write_report(&format!("{:#}\n", made.told))?;
-    summary::print_distance(&args.out, &made.told, &args.run);
-    Ok(())
+    let (given, mended) = Given::read(&args.domain, args.damage.options())?;
+    match given {
+        Given::Plane(domain) => in_plane(args, &domain, &mended, stages),
+        Given::Surface(input) => on_surface(args, &input, &mended, stages),
+    }
 }
 
-fn in_plane(args: &DistanceArgs, domain: &Domain, mut stages: Stages) -> Result<Made> {
+fn in_plane(args: &DistanceArgs, domain: &Domain, mended: &Mended, mut stages: Stages) -> Result<()> {
     let from = args.from.iter().map(|p| flat("--from", p)).collect::<Result<Vec<Point>>>()?;
     let to = args.to.as_ref().map(|p| flat("--to", p)).transpose()?;
     let at = GradedAt::Scale(1.0);
@@ -117,20 +103,19 @@ fn in_plane(args: &DistanceArgs, domain: &Domain, mut stages: Stages) -> Result<
     let found = Distances::new(&canvas, metric.as_ref(), &from, args.geodesic)?;
     stages.end("distances");
     let path = to.map(|to| found.path(to)).transpose()?;
-    let asked = Asked {
-        from: from.iter().map(|p| vec![p.x, p.y]).collect(),
-        to: to.map(|p| vec![p.x, p.y]),
-        distance: to.and_then(|p| found.at(p)),
-        path: path.as_ref().map(|path| (path.length, path.points.len())),
-    };
-    let told = told(args, &found, &asked, &canvas.figures(), stages);
+    stages.end("path");
+    let asked = json!({
+        "from": from.iter().map(|p| [p.x, p.y]).collect::<Vec<_>>(), "to": to.map(|p| [p.x, p.y]),
+        "distance": to.and_then(|p| found.at(p)),
+        "path_length": path.as_ref().map(|path| path.length), "path_points": path.as_ref().map(|path| path.points.len()),
+    });
+    let told = told(args, &found, asked, &canvas.figures(), mended, stages);
     let picture = args.picture.as_ref().map(|_| draw(args, &found, path.as_ref())).transpose()?;
-    let (mesh, distances) = found.to_mesh(path.as_ref());
-    Ok(Made { mesh, distances, picture, told })
+    finish(args, &found.to_mesh(path.as_ref()), picture, &told)
 }
 
 /// The distances on a canvas that has the points, moved onto the surface, as vertices.
-fn on_surface(args: &DistanceArgs, input: &Input, mut stages: Stages) -> Result<Made> {
+fn on_surface(args: &DistanceArgs, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
     let mut places: Vec<Place> = Vec::new();
     let from = args.from.iter().map(|p| Ok(add(on_it("--from", p, input)?, &mut places)));
     let from: Vec<usize> = from.collect::<Result<_>>()?;
@@ -146,18 +131,31 @@ fn on_surface(args: &DistanceArgs, input: &Input, mut stages: Stages) -> Result<
     stages.end("distances");
     let path = to.map(|to| found.path(to)).transpose()?;
     let position = |&v: &VertexId| canvas.draped().position(v);
-    let written = |v: &VertexId| position(v).to_array().to_vec();
-    let asked = Asked {
-        from: from.iter().map(written).collect(),
-        to: to.as_ref().map(written),
-        distance: to.map(|to| found.values()[to.index()]),
-        path: path.as_ref().map(|path| (path.length, path.points.len())),
-    };
-    let told = told(args, &found, &asked, &canvas.figures(), stages);
+    let written = |v: &VertexId| position(v).to_array();
+    stages.end("path");
+    let asked = json!({
+        "from": from.iter().map(written).collect::<Vec<_>>(), "to": to.as_ref().map(written),
+        "distance": to.map(|to| found.values()[to.index()]),
+        "path_length": path.as_ref().map(|path| path.length), "path_points": path.as_ref().map(|path| path.points.len()),
+    });
+    let told = told(args, &found, asked, &canvas.figures(), mended, stages);
     let seeds = from.iter().map(position).collect();
     let picture = args.picture.as_ref().map(|_| draw_on(args, &found, seeds, path.as_ref())).transpose()?;
-    let (mesh, distances) = found.to_mesh(path.as_ref());
-    Ok(Made { mesh, distances, picture, told })
+    finish(args, &found.to_mesh(path.as_ref()), picture, &told)
+}
+
+/// Writes the distances on the canvas, and what is beside them.
+fn finish(
+    args: &DistanceArgs,
+    (canvas, distances): &(Mesh, Vec<f64>),
+    picture: Option<String>,
+    told: &Value,
+) -> Result<()> {
+    voronaut_io::write_diagram(canvas, distances, &args.out)?;
+    files::write_picture(picture, args.picture.as_deref())?;
+    args.run.write_report(&format!("{told:#}\n"))?;
+    summary::print_distance(&args.out, told, &args.run);
+    Ok(())
 }
 
 /// A point of the plane.
@@ -175,7 +173,7 @@ fn flat(name: &str, p: &Coordinates) -> Result<Point> {
 fn on_it(name: &str, p: &Coordinates, input: &Input) -> Result<Place> {
     match *p {
         Coordinates::Space(p) => input.closest(p).map_err(|error| match error {
-            Error::Domain { what, help, .. } => Error::Domain { what, place: format!("{name} {p}"), help },
+            Error::Domain { what, help, .. } => Error::domain(what, format!("{name} {p}"), help),
             other => other,
         }),
         Coordinates::Plane(p) => {
@@ -201,7 +199,7 @@ fn demand_memory(args: &DistanceArgs) -> Result<()> {
     }
     let what =
         format!("a canvas of {} vertices needs about {:.1} GiB", args.canvas_size, needed / (1_u64 << 30) as f64);
-    Err(Error::Limit { what, help: "lower --canvas-size, or raise --memory-limit".into() })
+    Err(Error::limit(what, "lower --canvas-size, or raise --memory-limit"))
 }
 
 fn demand_inside(from: &[Point], to: Option<Point>, canvas: &Canvas) -> Result<()> {
@@ -214,31 +212,21 @@ fn demand_inside(from: &[Point], to: Option<Point>, canvas: &Canvas) -> Result<(
     }
 }
 
-/// Where distances start, and what was found of the point that was asked for: its distance, the path's length and points.
-struct Asked {
-    from: Vec<Vec<f64>>,
-    to: Option<Vec<f64>>,
-    distance: Option<f64>,
-    path: Option<(f64, usize)>,
-}
-
-/// The report: `distance` and `path_length` to the point that was asked for, both null without one.
+/// The report, with what was asked: `distance` and `path_length` to the point that was asked for, both null without one.
 fn told<'a, G: Ground<'a>>(
     args: &DistanceArgs,
     found: &Distances<'a, G>,
-    asked: &Asked,
+    asked: Value,
     canvas: &CanvasFigures,
-    mut stages: Stages,
+    mended: &Mended,
+    stages: Stages,
 ) -> Value {
-    stages.end("path");
     let reached = found.values().iter().filter(|d| d.is_finite());
     let unreached = found.values().len() - reached.clone().count();
-    json!({
-        "from": asked.from, "to": asked.to,
-        "distance": asked.distance.filter(|d| d.is_finite()),
-        "path_length": asked.path.map(|path| path.0), "path_points": asked.path.map(|path| path.1),
+    let figures = json!({
         "farthest": reached.copied().fold(0.0, f64::max), "unreached": unreached,
         "geodesic": args.geodesic, "canvas": canvas, "counters": found.counters(),
+        "notes": mended.sentences().collect::<Value>(),
         "seconds": stages.seconds(Vec::new()), "peak_memory_bytes": voronaut_io::peak_memory_bytes(), "version": env!("CARGO_PKG_VERSION"),
         "options": {
             "domain": args.domain, "metric": args.metric, "out": args.out, "canvas": args.canvas,
@@ -247,7 +235,8 @@ fn told<'a, G: Ground<'a>>(
             "pixels": args.pixels, "report": args.run.report, "threads": args.run.threads,
             "repair": args.damage.repair,
         },
-    })
+    });
+    account::joined(asked, figures)
 }
 
 /// The levels of lines of equal distance in a picture.

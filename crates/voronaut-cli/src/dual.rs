@@ -4,7 +4,7 @@ use crate::options::{CanvasSize, Damage, EdgesOut, Memory, MetricChoices, Output
 use crate::progress::{Bar, Stages};
 use crate::seeds::SeedFile;
 use crate::{fields, files, pictures};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use voronaut::canvas::{self, Canvas};
@@ -113,7 +113,7 @@ impl DualArgs {
         json!({
             "domain": self.domain, "metric": self.metric, "seeds": self.seeds, "out": self.out, "diagram": self.diagram,
             "canvas": self.canvas, "canvas_size": canvas_size,
-            "voronoi": self.voronoi, "certify": self.certify, "constants": self.constants, "geodesic": self.geodesic, "dual": self.dual, "edges": self.edges.to_possible_value().map(|value| value.get_name().to_string()), "strict": self.strict,
+            "voronoi": self.voronoi, "certify": self.certify, "constants": self.constants, "geodesic": self.geodesic, "dual": self.dual, "edges": self.edges, "strict": self.strict,
             "background": self.metric_choices.background, "bounds": self.metric_choices.bounds(),
             "smooth_metric": self.metric_choices.smooth_metric, "tensor_order": self.metric_choices.tensor_order, "gradation": self.metric_choices.gradation,
             "picture": self.outputs.picture, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
@@ -128,7 +128,7 @@ pub(crate) fn run(args: &DualArgs) -> Result<()> {
     demand(args)?;
     args.run.set_threads()?;
     args.metric_choices.bounds().check()?;
-    let (given, mended) = Given::read_with(&args.domain, None, args.damage.options())?;
+    let (given, mended) = Given::read(&args.domain, args.damage.options())?;
     match given {
         Given::Surface(input) => on_surface(args, &input, &mended, stages),
         Given::Plane(domain) => in_plane(args, &domain, &mended, stages),
@@ -304,9 +304,9 @@ fn reported(
     quality: impl FnOnce() -> Result<MetricQuality>,
 ) -> Result<Report> {
     let is_valid = found.valid;
-    let mut report = Report::new(found, mesh.points.len(), mesh.triangles.len());
+    let mut report = Report::new(mesh, found);
     if is_valid {
-        report = report.with_quality(&quality()?);
+        report.add_quality(&quality()?);
     }
     report.options = args.as_used();
     Ok(report)
@@ -337,7 +337,7 @@ fn demand_none(count: usize, what: &str, args: &DualArgs) -> Result<()> {
         return Ok(());
     }
     let help = "add seeds where the metric changes fast, or leave out --strict";
-    Err(Error::Mesh { what: format!("{count} {what}"), place: args.out.display().to_string(), help: help.into() })
+    Err(Error::mesh(format!("{count} {what}"), args.out.display().to_string(), help))
 }
 
 fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {

@@ -7,7 +7,7 @@ use voronaut::mesh::{Mesh, SolutionValues, Solutions};
 use voronaut::metric::MetricField;
 use voronaut::quality::{self, Histograms};
 use voronaut::{Error, Result};
-use voronaut_io::{Format, Report};
+use voronaut_io::{Format, Report, ending};
 
 /// Refuses, before any work, outputs that could not be written: endings, directories, one name used twice. `more` is
 /// what is written beside a mesh.
@@ -15,18 +15,18 @@ pub(crate) fn demand_writable(mesh: Option<&Path>, more: Option<&Path>, outputs:
     let (picture, histograms) = (outputs.picture.as_deref(), outputs.histograms.as_deref());
     mesh.map(Format::from_path).transpose()?;
     picture.map(voronaut_draw::is_png).transpose()?;
-    if let Some(path) = histograms.filter(|path| !ends_in(path, &["svg"])) {
+    if let Some(path) = histograms.filter(|path| ending(path).as_deref() != Some("svg")) {
         let what = format!("histograms in {}", path.display());
-        return Err(Error::Unsupported { what, help: "end the name of the histograms in .svg".into() });
+        return Err(Error::unsupported(what, "end the name of the histograms in .svg"));
     }
     demand_apart([mesh, more, picture, histograms, run.report.as_deref()])
 }
 
 /// Refuses, before any work, a file of values that could not be written, or is the report's.
 pub(crate) fn demand_solution(file: &Path, run: &Run) -> Result<()> {
-    if !ends_in(file, &["sol", "solb"]) {
+    if !matches!(ending(file).as_deref(), Some("sol" | "solb")) {
         let what = format!("{} does not end like a solution file", file.display());
-        return Err(Error::Unsupported { what, help: "end the name of OUT in .sol or .solb".into() });
+        return Err(Error::unsupported(what, "end the name of OUT in .sol or .solb"));
     }
     demand_apart([Some(file), run.report.as_deref()])
 }
@@ -43,10 +43,6 @@ pub(crate) fn demand_apart<'a>(files: impl IntoIterator<Item = Option<&'a Path>>
         seen.push(place);
     }
     Ok(())
-}
-
-fn ends_in(path: &Path, endings: &[&str]) -> bool {
-    path.extension().is_some_and(|own| endings.iter().any(|ending| own.eq_ignore_ascii_case(ending)))
 }
 
 /// Values of which there is not one for each vertex or triangle of a mesh.

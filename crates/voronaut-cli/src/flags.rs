@@ -1,13 +1,18 @@
 //! Parameters by the names that users type. The libraries call them by their own, in backquotes: `canvas_size`, `mesher=voronoi`.
 
 /// Those that the libraries speak of.
-pub(crate) const PARAMETERS: [&str; 18] = [
+pub(crate) const PARAMETERS: [&str; 28] = [
     "a_max",
     "background",
+    "canvas",
     "canvas_size",
     "centroid",
     "certify",
+    "dual",
     "field",
+    "fit",
+    "geodesic",
+    "gradation",
     "h_max",
     "h_min",
     "hausd",
@@ -15,9 +20,14 @@ pub(crate) const PARAMETERS: [&str; 18] = [
     "memory_limit",
     "mesher",
     "net",
+    "norm",
+    "picking_radius",
     "polish",
+    "protection",
+    "recovery",
     "repair",
     "seeding",
+    "smooth_metric",
     "tensor_order",
     "vertices",
 ];

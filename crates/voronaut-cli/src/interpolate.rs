@@ -78,7 +78,7 @@ fn planar(path: &Path, is_quiet: bool) -> Result<Mesh> {
         return Ok(mesh);
     }
     let what = format!("interpolate on a surface ({})", path.display());
-    Err(Error::Unsupported { what, help: "give planar meshes: Dimension 2, or z = 0 at every vertex".into() })
+    Err(Error::unsupported(what, "give planar meshes: Dimension 2, or z = 0 at every vertex"))
 }
 
 fn demand_counts(args: &InterpolateArgs, given: &Solutions, old: &Mesh, new: &Mesh) -> Result<()> {

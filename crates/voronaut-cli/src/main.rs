@@ -30,7 +30,7 @@ fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            eprintln!("error: {}", flags::flagged(&error.to_string()));
             if !error.help().is_empty() {
                 eprintln!("  help: {}", flags::flagged(error.help()));
             }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Instant;
 use voronaut::Result;
-use voronaut::canvas::{self, Canvas, VERTICES_PER_SEED};
+use voronaut::canvas::{self, Canvas};
 use voronaut::diagram::{Diagram, SurfaceDiagram};
 use voronaut::domain::Domain;
 use voronaut::dual::Road;
@@ -18,10 +18,10 @@ use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::quality::interpolation_error;
 use voronaut::realisation::Realisation;
-use voronaut::recipe::{self, Aim, Centroid, GradedAt, MeshOptions, Mesher, Seeding};
+use voronaut::recipe::{self, Aim, Centroid, GradedAt, Idle, MeshOptions, Mesher, Seeding, Task};
 use voronaut::surface::{FeatureOptions, Input, Mended};
 use voronaut_draw::Layers;
-use voronaut_io::{Given, Report};
+use voronaut_io::{Given, MetricSource, Report};
 
 pub(crate) const EXAMPLES: &str = "\
 DOMAIN  a file: .mesh, .meshb, .msh, .vtu, .vtp (boundary edges or triangles; of volumes the boundary), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
@@ -149,10 +149,23 @@ impl MeshArgs {
         }
     }
 
-    /// All options, as used.
-    pub(super) fn as_used(&self) -> Value {
+    /// The options that have no say; an error if one of them is set.
+    fn idle(&self, on_surface: bool) -> Result<Vec<Idle>> {
+        let is_drawn = self.outputs.picture.is_some() && self.outputs.need_diagram();
+        let metric = if on_surface {
+            Task::default()
+        } else {
+            fields::task(&MetricSource::parse(&self.metric)?, &self.metric_choices)
+        };
+        let task = Task { on_surface, is_drawn, ..metric };
+        let idle = [self.options().idle(task), self.metric_choices.options().idle(task)].concat();
+        idle.iter().try_for_each(Idle::demand_unset)?;
+        Ok(idle)
+    }
+
+    /// All options as used, without those that have no say.
+    fn as_used(&self, idle: &[Idle]) -> Value {
         let bounds = self.metric_choices.bounds();
-        let mut options = json!(self.options());
         let more = json!({
             "domain": self.domain, "metric": self.metric, "out": self.out, "background": self.metric_choices.background,
             "smooth_metric": self.metric_choices.smooth_metric, "tensor_order": self.metric_choices.tensor_order, "gradation": self.metric_choices.gradation,
@@ -161,18 +174,12 @@ impl MeshArgs {
             "picture": self.outputs.picture, "pixels": self.outputs.pixels, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
             "repair": self.damage.repair,
         });
-        if let (Value::Object(options), Value::Object(more)) = (&mut options, more) {
-            options.extend(more);
+        let mut options = account::joined(json!(self.options()), more);
+        if let Some(options) = options.as_object_mut() {
+            options.retain(|name, _| idle.iter().all(|idle| idle.option != name));
         }
         options
     }
-}
-
-/// What is written of a valid mesh.
-struct Made {
-    mesh: Mesh,
-    report: Report,
-    picture: Option<String>,
 }
 
 /// Meshes a domain. Nothing is written unless the mesh is valid.
@@ -181,18 +188,15 @@ pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     files::demand_writable(Some(&args.out), None, &args.outputs, &args.run)?;
     args.run.set_threads()?;
     args.metric_choices.bounds().check()?;
-    let (given, mended) = Given::read_with(&args.domain, None, args.damage.options())?;
-    let Made { mesh, report, picture } = match given {
-        Given::Surface(input) => on_surface(args, input, &mended, start)?,
-        Given::Plane(domain) => in_plane(args, &domain, &mended, start)?,
-    };
-    voronaut_io::write_mesh(&mesh, &args.out)?;
-    files::finish(&args.out, &args.outputs, picture, &report, &args.run)
+    let (given, mended) = Given::read(&args.domain, args.damage.options())?;
+    match given {
+        Given::Surface(input) => on_surface(args, input, &mended, start),
+        Given::Plane(domain) => in_plane(args, &domain, &mended, start),
+    }
 }
 
-fn in_plane(args: &MeshArgs, domain: &Domain, mended: &Mended, start: Instant) -> Result<Made> {
+fn in_plane(args: &MeshArgs, domain: &Domain, mended: &Mended, start: Instant) -> Result<()> {
     refuse([
-        (args.fit, "--fit in the plane", "leave out --fit: it is for surfaces"),
         (args.nr, "--nr in the plane", "leave out --nr: it is for surfaces"),
         (
             !args.nr && args.features() != FeatureOptions::default(),
@@ -201,6 +205,7 @@ fn in_plane(args: &MeshArgs, domain: &Domain, mended: &Mended, start: Instant) -
         ),
         (args.damage.repair, "--repair in the plane", "leave out --repair: it is for surfaces"),
     ])?;
+    let idle = args.idle(false)?;
     let (outputs, options) = (&args.outputs, args.options());
     let at = GradedAt::of(options.vertices, args.complexity);
     let made = fields::in_plane(&args.metric, domain, &args.domain, &args.metric_choices, at)?;
@@ -208,7 +213,10 @@ fn in_plane(args: &MeshArgs, domain: &Domain, mended: &Mended, start: Instant) -
     let meshed = recipe::mesh_for(domain, metric, aim, &options, &Bar::new(&args.run))?;
     let mesh = &meshed.mesh;
     let scaled = |p: Point| metric.at(p) * meshed.metric_scale;
-    let (mut report, unmet) = account::in_plane(&meshed, &scaled, args.as_used())?;
+    let mut used = args.as_used(&idle);
+    // Creases are of surfaces.
+    used["ar"] = Value::Null;
+    let (mut report, unmet) = account::in_plane(&meshed, &scaled, used)?;
     report.notes.extend(mended.sentences());
     report.histograms = files::histograms(outputs, mesh, &scaled)?;
     let error = |aim: Aim| interpolation_error(mesh, aim.function, aim.norm);
@@ -220,7 +228,7 @@ fn in_plane(args: &MeshArgs, domain: &Domain, mended: &Mended, start: Instant) -
         ..cells(args, domain, mesh, &scaled)?
     };
     let picture = pictures::in_plane(outputs, mesh, Some(&scaled), &layers)?;
-    Ok(Made { mesh: meshed.mesh, report, picture })
+    finish(args, mesh, picture, &report)
 }
 
 /// The diagram of the mesh's vertices, made only to be drawn.
@@ -229,20 +237,21 @@ fn cells(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
         return Ok(Layers::default());
     }
     let seeds: Vec<Point> = mesh.points.iter().map(|p| Point::new(p[0], p[1])).collect();
-    let size = (VERTICES_PER_SEED as usize).saturating_mul(seeds.len());
+    let size = (args.canvas_size as usize).saturating_mul(seeds.len());
     let canvas = Canvas::new(args.canvas, domain, metric, size)?;
     let diagram = Diagram::new(&canvas, metric, &seeds)?;
     let curved = args.outputs.have_geodesics().then(|| Realisation::new(&diagram, metric, &mesh.triangles));
     Ok(pictures::layers(&args.outputs, &diagram, metric, curved.as_ref()))
 }
 
-fn on_surface(args: &MeshArgs, input: Input, mended: &Mended, start: Instant) -> Result<Made> {
+fn on_surface(args: &MeshArgs, input: Input, mended: &Mended, start: Instant) -> Result<()> {
     pictures::demand_of_surfaces(&args.outputs, &[])?;
+    let idle = args.idle(true)?;
     let whole = args.outputs.picture.is_some().then(|| Input::new(input.surface.clone(), input.implicit.clone()));
     let input = &input.cut(&args.features())?;
     let metric = fields::on_surface(&args.metric, input, &args.metric_choices)?;
     let meshed = recipe::mesh_surface(input, metric.as_ref(), &args.options(), &Bar::new(&args.run))?;
-    let mut used = args.as_used();
+    let mut used = args.as_used(&idle);
     if args.dual == Road::Both {
         // Lengths decide, unless it is the canvas.
         used["dual"] = json!(Road::Geodesic);
@@ -250,7 +259,13 @@ fn on_surface(args: &MeshArgs, input: Input, mended: &Mended, start: Instant) ->
     let mut report = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
     report.seconds.total = start.elapsed().as_secs_f64();
     let picture = whole.map(|whole| drawn_on(args, &whole, &meshed.mesh)).transpose()?;
-    Ok(Made { mesh: meshed.mesh, report, picture })
+    finish(args, &meshed.mesh, picture, &report)
+}
+
+/// Writes a valid mesh, and what is beside it.
+fn finish(args: &MeshArgs, mesh: &Mesh, picture: Option<String>, report: &Report) -> Result<()> {
+    voronaut_io::write_mesh(mesh, &args.out)?;
+    files::finish(&args.out, &args.outputs, picture, report, &args.run)
 }
 
 /// The mesh of a surface that is whole: cells are drawn across creases.

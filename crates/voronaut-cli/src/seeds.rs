@@ -19,7 +19,7 @@ pub(crate) struct SeedFile<P> {
 impl SeedFile<Point> {
     /// Reads one seed or more, no two at the same place.
     pub(crate) fn read(path: &Path) -> Result<Self> {
-        Self::checked(path, points::read, "two numbers, x y,", |p| [p.x, p.y])
+        Self::checked(path, "two numbers, x y,", |[x, y]| Point::new(x, y))
     }
 
     /// Refuses seeds outside the domain of a canvas.
@@ -33,7 +33,7 @@ impl SeedFile<Point> {
 impl SeedFile<Point3> {
     /// Reads one seed in space or more, no two at the same place.
     pub(crate) fn read_in_space(path: &Path) -> Result<Self> {
-        Self::checked(path, points::read_in_space, "three numbers, x y z,", |p| p.to_array())
+        Self::checked(path, "three numbers, x y z,", |p: [f64; 3]| p.into())
     }
 
     /// The places of the seeds on a surface.
@@ -49,36 +49,25 @@ impl SeedFile<Point3> {
 }
 
 impl<P> SeedFile<P> {
-    fn checked<const N: usize>(
-        path: &Path,
-        read: impl Fn(&str, &str) -> Result<Vec<P>>,
-        numbers: &str,
-        coordinates: impl Fn(&P) -> [f64; N],
-    ) -> Result<Self> {
-        let (text, name) = (read_text(path)?, path.display().to_string());
-        let file = Self { seeds: read(&text, &name)?, lines: points::lines(&text), name };
-        if file.seeds.is_empty() {
+    fn checked<const N: usize>(path: &Path, numbers: &str, point: impl Fn([f64; N]) -> P) -> Result<Self> {
+        let name = path.display().to_string();
+        let rows = points::read(&read_text(path)?, &name)?;
+        if rows.is_empty() {
             let help = format!("write {numbers} on a line for each seed");
-            return Err(Error::parse(file.name, "there is no seed in it", help));
+            return Err(Error::parse(name, "there is no seed in it", help));
         }
         let mut first: HashMap<[u64; N], usize> = HashMap::new();
-        for (i, p) in file.seeds.iter().map(coordinates).enumerate() {
+        for &(line, p) in &rows {
             // Adding zero makes one zero of both.
-            let earlier = *first.entry(p.map(|x| (x + 0.0).to_bits())).or_insert(i);
-            if earlier != i {
-                let what = format!(
-                    "the seed ({}) is that of line {}",
-                    p.map(|x| x.to_string()).join(", "),
-                    file.lines[earlier]
-                );
-                return Err(Error::parse(
-                    file.place(i),
-                    what,
-                    "remove one of the two: each seed has a cell of its own",
-                ));
+            let earlier = *first.entry(p.map(|x| (x + 0.0).to_bits())).or_insert(line);
+            if earlier != line {
+                let what = format!("the seed ({}) is that of line {earlier}", p.map(|x| x.to_string()).join(", "));
+                let help = "remove one of the two: each seed has a cell of its own";
+                return Err(Error::parse(format!("{name}:{line}"), what, help));
             }
         }
-        Ok(file)
+        let (lines, seeds) = rows.into_iter().map(|(line, p)| (line, point(p))).unzip();
+        Ok(Self { seeds, lines, name })
     }
 
     fn place(&self, i: usize) -> String {

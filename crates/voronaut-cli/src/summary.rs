@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::io::Write as _;
 use std::path::Path;
 use voronaut::certificate::{Certificate, Condition, Outcome, Verdict};
-use voronaut::quality::{Cause, CauseFigures, Deviation, Farthest, Position, Spot, SurfaceFidelity};
+use voronaut::quality::{Cause, CauseFigures, Deviation, Farthest, Needles, Position, Spot, SurfaceFidelity};
 use voronaut_io::{Report, Strayed};
 
 /// How wide the names of figures are.
@@ -36,10 +36,10 @@ pub(crate) fn out(text: &str) {
 }
 
 /// Says on stderr what is worth knowing, unless told to be quiet.
-pub(crate) fn notes<'a>(notes: impl IntoIterator<Item = &'a String>, is_quiet: bool) {
+pub(crate) fn notes(notes: impl IntoIterator<Item: AsRef<str>>, is_quiet: bool) {
     if !is_quiet {
         for note in notes {
-            eprintln!("note: {}", flagged(note));
+            eprintln!("note: {}", flagged(note.as_ref()));
         }
     }
 }
@@ -58,9 +58,7 @@ pub(crate) fn print_distance(title: &Path, told: &Value, run: &Run) {
     ];
     let known = all.into_iter().filter(|(_, value)| !value.is_null());
     say(&title.display().to_string(), WIDTH, known.map(|(name, value)| (name.into(), value.to_string())).collect());
-    for note in told["notes"].as_array().into_iter().flatten().filter_map(Value::as_str) {
-        eprintln!("note: {}", flagged(note));
-    }
+    notes(told["notes"].as_array().into_iter().flatten().filter_map(Value::as_str), false);
     if let Some(count) = told["unreached"].as_u64().filter(|&count| count > 0) {
         eprintln!("note: {count} canvas vertices are not reached: infinite in the file");
     }
@@ -149,9 +147,17 @@ fn summary(report: &Report, verbose: bool) -> Lines {
     lines
 }
 
-/// How many edges are not of unit length, and why; nothing where there are none.
+/// How many edges are not of unit length, and why, and how many triangles are needles; nothing where there are none.
 fn unmet_lines(report: &Report) -> Vec<String> {
     let Some(unmet) = report.unmet.as_ref().filter(|unmet| unmet.edges > 0) else { return Vec::new() };
+    let needles = unmet.needles.poorest.first().map(|first| {
+        let Needles { count, forced, .. } = unmet.needles;
+        format!(
+            "{count} needles, {forced} of them between features; the first at {}: {:.1e}",
+            position(first.at),
+            first.quality
+        )
+    });
     let causes = unmet.by_cause.iter().filter(|(_, found)| found.count > 0);
     let shares = causes.clone().map(|(cause, found)| format!("{} {}", share(found.share), cause.name()));
     let of_edges = format!("{} of edges: {}", share(unmet.share), shares.collect::<Vec<_>>().join(", "));
@@ -160,7 +166,7 @@ fn unmet_lines(report: &Report) -> Vec<String> {
     let says = |(cause, found): (&Cause, &CauseFigures)| {
         found.worst.map(|worst| format!("worst at {}: {:.3}, {}", position(worst.at), worst.length, cause.name()))
     };
-    [Some(of_edges), worst.and_then(says)].into_iter().flatten().collect()
+    [Some(of_edges), worst.and_then(says), needles].into_iter().flatten().collect()
 }
 
 /// A share in per cent; never nothing of something.

@@ -13,6 +13,7 @@ mod good_input;
 mod histograms;
 mod interpolate;
 mod metric;
+mod options;
 mod protection;
 mod remesh;
 mod remesh_plane;

@@ -41,7 +41,7 @@ pub fn is_png(path: &Path) -> Result<bool> {
         _ => {
             let what = format!("{} does not end like a picture", path.display());
             let help = if has_png { "end the name of the picture in .svg or .png" } else { "end it in .svg" };
-            Err(Error::Unsupported { what, help: help.into() })
+            Err(Error::unsupported(what, help))
         }
     }
 }
@@ -61,8 +61,8 @@ pub fn picture_bytes(svg: &str, path: &Path) -> Result<Vec<u8>> {
 /// Refuses images of pixels: the library was built without PNG.
 #[cfg(not(feature = "png"))]
 pub(crate) fn data_url(_: &[[u8; 3]], _: u32) -> Result<String> {
-    let what = "a picture of a surface, for this build knows no PNG".into();
-    Err(Error::Unsupported { what, help: "build with the feature png".into() })
+    let what = "a picture of a surface, for this build knows no PNG";
+    Err(Error::unsupported(what, "build with the feature png"))
 }
 
 #[cfg(test)]

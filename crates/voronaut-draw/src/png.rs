@@ -20,9 +20,9 @@ pub(crate) fn render_png(svg: &str) -> Result<Vec<u8>> {
     let options = Options { image_href_resolver: resolver(&images), ..Options::default() };
     let tree = Tree::from_str(svg, &options).map_err(|error| fault(error.to_string()))?;
     let (width, height) = (tree.size().width().ceil(), tree.size().height().ceil());
-    let too_large = || Error::Limit {
-        what: format!("a picture of {width} x {height} pixels; the limit is {LIMIT:e} pixels"),
-        help: "make the picture narrower, or write it as .svg".into(),
+    let too_large = || {
+        let what = format!("a picture of {width} x {height} pixels; the limit is {LIMIT:e} pixels");
+        Error::limit(what, "make the picture narrower, or write it as .svg")
     };
     if f64::from(width) * f64::from(height) > LIMIT {
         return Err(too_large());
@@ -43,10 +43,7 @@ pub(crate) fn render_png(svg: &str) -> Result<Vec<u8>> {
 /// [`Error::Limit`] where there are none.
 pub(super) fn data_url(pixels: &[[u8; 3]], width: u32) -> Result<String> {
     let height = (pixels.len() as u32).checked_div(width).unwrap_or(0);
-    let fault = || Error::Limit {
-        what: format!("an image of {width} x {height} pixels"),
-        help: "give the picture another width".into(),
-    };
+    let fault = || Error::limit(format!("an image of {width} x {height} pixels"), "give the picture another width");
     let bytes = pixels.iter().flat_map(|&[r, g, b]| [r, g, b, u8::MAX]).collect();
     let size = IntSize::from_wh(width, height).ok_or_else(fault)?;
     let png = Pixmap::from_vec(bytes, size).and_then(|pixmap| pixmap.encode_png().ok()).ok_or_else(fault)?;

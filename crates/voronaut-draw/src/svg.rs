@@ -64,7 +64,7 @@ pub fn svg_with(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture
             (Some(protection), _) => triangles.iter().map(|&t| protection.fill(t)).collect(),
             (None, Some(values)) => shades::value_fills(&triangles, values),
             (None, None) if picture.mesh && layers.unmet.is_none() => {
-                shades::size_fills(triangles.iter().map(|&t| double_area(mesh, t)), &labels)
+                shades::size_fills(triangles.iter().map(|&t| mesh.double_area(t)), &labels)
             }
             (None, None) => vec![colours::DOMAIN.to_string(); triangles.len()],
         };
@@ -122,8 +122,8 @@ fn frame(mesh: &Mesh, triangles: &[[u32; 3]], heights: &[f64], picture: Picture,
 }
 
 fn no_metric() -> Error {
-    let what = "a picture of the metric's ellipses without a metric".into();
-    Error::Unsupported { what, help: "give a metric, or show the mesh only".into() }
+    let what = "a picture of the metric's ellipses without a metric";
+    Error::unsupported(what, "give a metric, or show the mesh only")
 }
 
 /// One path per colour. Each is also stroked a little, or the background would shine through between neighbours.
@@ -139,16 +139,11 @@ fn fill(text: &mut String, sheet: &Sheet, triangles: &[[u32; 3]], colours: &[Str
     text.push_str("</g>\n");
 }
 
-fn double_area(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
-    let [a, b, c] = mesh.corners_of(triangle);
-    (b - a).cross(c - a).abs()
-}
-
 /// The height over the longest side.
 fn least_height(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
     let [a, b, c] = mesh.corners_of(triangle);
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    if longest > 0.0 { double_area(mesh, triangle) / longest } else { 0.0 }
+    if longest > 0.0 { mesh.double_area(triangle) / longest } else { 0.0 }
 }
 
 #[cfg(test)]

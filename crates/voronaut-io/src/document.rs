@@ -141,7 +141,7 @@ pub(super) fn labelled(mut mesh: Mesh) -> Mesh {
 
 fn unfit(name: &str, of: &str, mesh: &str) -> Error {
     let what = format!("the tensors of {of} '{name}' beside a mesh that {mesh}");
-    Error::Unsupported { what, help: "give tensors of the mesh's own dimension".into() }
+    Error::unsupported(what, "give tensors of the mesh's own dimension")
 }
 
 fn named(values: Vec<SolutionValues>) -> Vec<Field> {

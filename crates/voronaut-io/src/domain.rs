@@ -33,7 +33,7 @@ pub fn read_pslg(spec: &str) -> Result<Pslg> {
         _ if format.is_some_and(Format::may_be_planar) => from_mesh(&read(path)?.mesh),
         Some(ending) if format.is_some() => {
             let what = format!("a .{ending} file as planar domain ({spec})");
-            return Err(Error::Unsupported { what, help: format!("give {DOMAINS}") });
+            return Err(Error::unsupported(what, format!("give {DOMAINS}")));
         }
         _ => return Err(neither(spec, DOMAINS)),
     };

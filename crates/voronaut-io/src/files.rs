@@ -57,9 +57,9 @@ impl Format {
     /// # Errors
     /// [`Error::Unsupported`], with the endings that work.
     pub fn from_path(path: &Path) -> Result<Self> {
-        Self::of_ending(path).ok_or_else(|| Error::Unsupported {
-            what: format!("{} does not end like a mesh file", path.display()),
-            help: format!("end the name of the mesh file in {MESH_ENDINGS}"),
+        Self::of_ending(path).ok_or_else(|| {
+            let what = format!("{} does not end like a mesh file", path.display());
+            Error::unsupported(what, format!("end the name of the mesh file in {MESH_ENDINGS}"))
         })
     }
 
@@ -110,7 +110,7 @@ pub fn read(path: &Path) -> Result<Document> {
 }
 
 /// How a name ends, in lower case.
-pub(super) fn ending(path: &Path) -> Option<String> {
+pub fn ending(path: &Path) -> Option<String> {
     Some(path.extension()?.to_str()?.to_ascii_lowercase())
 }
 
@@ -120,17 +120,17 @@ pub(super) fn neither(spec: &str, kinds: &str) -> Error {
 }
 
 /// Adds the file to the place of an error of what it holds.
-pub(super) fn in_file(file: &str, error: Error) -> Error {
+pub fn in_file(file: &str, error: Error) -> Error {
     match error {
-        Error::Domain { what, place, help } => Error::Domain { what, place: format!("{file}, {place}"), help },
-        Error::Unsupported { what, help } => Error::Unsupported { what: format!("{what} in {file}"), help },
+        Error::Domain { what, place, help } => Error::domain(what, format!("{file}, {place}"), help),
+        Error::Unsupported { what, help } => Error::unsupported(format!("{what} in {file}"), help),
         other => other,
     }
 }
 
 /// Whether a file is `FreeFEM`'s where another of the same ending is Gmsh's.
 fn begins_with_number(source: &mut impl BufRead, path: &Path) -> Result<bool> {
-    let start = source.fill_buf().map_err(|source| Error::Io { path: path.into(), source })?;
+    let start = source.fill_buf().map_err(|source| Error::io(path, source))?;
     Ok(start.trim_ascii_start().first().is_some_and(u8::is_ascii_digit))
 }
 
@@ -157,7 +157,7 @@ pub fn read_solutions(path: &Path) -> Result<Solutions> {
 pub fn read_text(path: &Path) -> Result<String> {
     let place = || path.display().to_string();
     let mut bytes = Vec::new();
-    open(path)?.read_to_end(&mut bytes).map_err(|source| Error::Io { path: path.into(), source })?;
+    open(path)?.read_to_end(&mut bytes).map_err(|source| Error::io(path, source))?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let what = format!("not a text in UTF-8 (byte {})", error.utf8_error().valid_up_to() + 1);
         Error::parse(place(), what, "save the file as UTF-8 text; this format has no binary form that is read")
@@ -174,7 +174,7 @@ pub fn read_text(path: &Path) -> Result<String> {
 /// [`Error::Io`] where it cannot be read; [`Error::Parse`] where it is empty.
 pub fn open(path: &Path) -> Result<BufReader<File>> {
     const BUFFER: usize = 1 << 17;
-    let fault = |source| Error::Io { path: path.into(), source };
+    let fault = |source| Error::io(path, source);
     let file = File::open(path).map_err(fault)?;
     let found = file.metadata().map_err(fault)?;
     if found.is_dir() {

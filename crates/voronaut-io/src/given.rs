@@ -4,7 +4,7 @@ use super::files::{ending, in_file, neither};
 use super::{DOMAINS, Document, Format, read, read_domain};
 use std::path::Path;
 use voronaut::Result;
-use voronaut::domain::Domain;
+use voronaut::domain::{Domain, from_mesh};
 use voronaut::surface::{self, Input, Mended, RepairOptions, Surface, repaired};
 
 /// A domain: of the plane, or a surface in space.
@@ -17,33 +17,26 @@ pub enum Given {
 }
 
 impl Given {
-    /// Reads what the user wrote. `sphere:`, `torus:`, `chair`, `implicit:` and files `.obj`, `.off`, `.ply` and `.stl` are
-    /// surfaces; a `.mesh` is one if it has triangles and some z is not 0. All else is a planar domain. `edge` is as for
-    /// [`read_surface`].
+    /// Reads what the user wrote, with what was mended, and what readers left out. `sphere:`, `torus:`, `chair`, `implicit:` and files
+    /// `.obj`, `.off`, `.ply` and `.stl` are surfaces; a `.mesh` is one if it has triangles and some z is not 0. All else is a planar
+    /// domain. Surfaces in files are mended as the options say.
     ///
     /// # Errors
     /// As for [`read_surface`] and [`read_domain`]; of what is neither, the help names both.
-    pub fn read(spec: &str, edge: Option<f64>) -> Result<Self> {
-        Ok(Self::read_with(spec, edge, RepairOptions::default())?.0)
-    }
-
-    /// As [`Given::read`], and surfaces in files are mended as the options say, with what was mended, and what readers left out.
-    ///
-    /// # Errors
-    /// As for [`Given::read`].
-    pub fn read_with(spec: &str, edge: Option<f64>, options: RepairOptions) -> Result<(Self, Mended)> {
-        let surface = || read_surface(spec, edge, options).map(|(input, mended)| (Self::Surface(input), mended));
-        let plane = |notes: &[String]| Ok((Self::Plane(read_domain(spec)?), Mended::default().with_notes(notes)));
+    pub fn read(spec: &str, options: RepairOptions) -> Result<(Self, Mended)> {
+        let surface = || read_surface(spec, options).map(|(input, mended)| (Self::Surface(input), mended));
+        let plane = |domain, notes: &[String]| Ok((Self::Plane(domain), Mended::default().with_notes(notes)));
         let name = spec.split(':').next().unwrap_or_default().trim();
         let path = Path::new(spec);
         match ending(path).as_deref() {
             _ if ["sphere", "torus", "chair", "implicit"].contains(&name) => surface(),
-            _ if ["rect", "disk"].contains(&name) => plane(&[]),
-            Some("geojson" | "json" | "poly") => plane(&[]),
+            _ if ["rect", "disk"].contains(&name) => plane(read_domain(spec)?, &[]),
+            Some("geojson" | "json" | "poly") => plane(read_domain(spec)?, &[]),
             _ if Format::of_ending(path).is_some_and(Format::may_be_planar) => {
                 let document = read(path)?;
                 if document.mesh.triangles.is_empty() || document.mesh.is_planar() {
-                    return plane(&document.notes);
+                    let outline = from_mesh(&document.mesh).map_err(|error| in_file(spec, error))?;
+                    return plane(Domain::new(&outline)?, &document.notes);
                 }
                 let (surface, mended) = of_document(spec, &document, options)?;
                 Ok((Self::Surface(Input::new(surface, None)), mended))
@@ -54,16 +47,15 @@ impl Given {
     }
 }
 
-/// Reads a surface: `sphere:r`, `torus:R,r`, `chair`, `implicit:EXPR;x0,y0,z0,x1,y1,z1`, with edges about as long as `edge`, or a
-/// file `.mesh`, `.meshb`, `.msh`, `.vtu`, `.vtp`, `.obj`, `.off`, `.ply` or `.stl`, mended as the options say ([`repaired`]), with
-/// what was mended.
+/// Reads a surface: `sphere:r`, `torus:R,r`, `chair`, `implicit:EXPR;x0,y0,z0,x1,y1,z1`, or a file `.mesh`, `.meshb`,
+/// `.msh`, `.vtu`, `.vtp`, `.obj`, `.off`, `.ply` or `.stl`, mended as the options say ([`repaired`]), with what was mended.
 ///
 /// # Errors
 /// [`Error::Io`](voronaut::Error::Io) of a file that cannot be read; [`Error::Parse`](voronaut::Error::Parse) of a text that is not what
 /// its format asks for; [`Error::Domain`](voronaut::Error::Domain) of what makes no surface; [`Error::Limit`](voronaut::Error::Limit) of
 /// too many triangles.
-pub fn read_surface(spec: &str, edge: Option<f64>, options: RepairOptions) -> Result<(Input, Mended)> {
-    if let Some(shape) = surface::shape(spec, edge) {
+pub fn read_surface(spec: &str, options: RepairOptions) -> Result<(Input, Mended)> {
+    if let Some(shape) = surface::shape(spec, None) {
         return Ok((shape?, Mended::default()));
     }
     if Format::of_ending(Path::new(spec)).is_none() {
@@ -99,11 +91,11 @@ mod tests {
 
     #[test]
     fn spot_and_bob() {
-        let spot = read_surface(&data("spot.obj"), None, RepairOptions::default()).unwrap().0.surface;
+        let spot = read_surface(&data("spot.obj"), RepairOptions::default()).unwrap().0.surface;
         let components = spot.components();
         assert_eq!((spot.positions().len(), components.len()), (2930, 1));
         assert_eq!((components[0].genus(), components[0].borders, spot.turned()), (0, 0, 0));
-        let bob = read_surface(&data("bob_small.obj"), None, RepairOptions::default()).unwrap().0.surface;
+        let bob = read_surface(&data("bob_small.obj"), RepairOptions::default()).unwrap().0.surface;
         let components = bob.components();
         assert_eq!((bob.positions().len(), components.len()), (250, 1));
         assert_eq!((components[0].genus(), components[0].borders, bob.turned()), (1, 0, 0));
@@ -115,7 +107,7 @@ mod tests {
         let mut file = tempfile::Builder::new().suffix(".OFF").tempfile().unwrap();
         file.write_all(text.as_bytes()).unwrap();
         assert_eq!(
-            read_surface(file.path().to_str().unwrap(), None, RepairOptions::default())
+            read_surface(file.path().to_str().unwrap(), RepairOptions::default())
                 .unwrap()
                 .0
                 .surface
@@ -125,14 +117,14 @@ mod tests {
         let mut file = tempfile::Builder::new().suffix(".obj").tempfile().unwrap();
         file.write_all(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 3 2 1\nf 1 2 4\nf 1 2 5\nv 1 1 1\n").unwrap();
         let path = file.path().to_str().unwrap();
-        let error = read_surface(path, None, RepairOptions::default()).unwrap_err();
+        let error = read_surface(path, RepairOptions::default()).unwrap_err();
         assert_eq!(
             error.to_string(),
             format!(
                 "invalid domain: an edge of 3 triangles (among them 1, 3 and 4) at {path}, vertex 1 (0, 0, 0) - vertex 2 (1, 0, 0)"
             )
         );
-        let (mended, notes) = read_surface(path, None, RepairOptions { repair: true }).unwrap();
+        let (mended, notes) = read_surface(path, RepairOptions { repair: true }).unwrap();
         let notes: Vec<_> = notes.sentences().collect();
         assert_eq!((mended.surface.topology().face_count(), notes.len()), (3, 4), "{notes:?}");
     }
@@ -152,7 +144,7 @@ mod tests {
             ("implicit:x;0,0,0,0,1,1", "invalid domain: an empty box at (0, 0, 0) - (0, 1, 1)"),
             ("no/such/file.stl", "no/such/file.stl: "),
         ] {
-            let error = read_surface(spec, None, RepairOptions::default()).unwrap_err();
+            let error = read_surface(spec, RepairOptions::default()).unwrap_err();
             assert!(error.to_string().starts_with(expected), "{error}");
             assert!(!error.help().is_empty());
         }
@@ -227,7 +219,7 @@ mod tests {
     }
 
     fn is_surface(spec: &str) -> bool {
-        matches!(Given::read(spec, Some(0.5)).unwrap(), Given::Surface(_))
+        matches!(Given::read(spec, RepairOptions::default()).unwrap().0, Given::Surface(_))
     }
 
     #[test]
@@ -264,20 +256,20 @@ mod tests {
             ("no/such.msh", "no/such.msh: "),
             ("no/such.poly", "no/such.poly: "),
         ] {
-            let error = Given::read(spec, None).unwrap_err();
+            let error = Given::read(spec, RepairOptions::default()).unwrap_err();
             assert!(error.to_string().starts_with(expected) && !error.help().is_empty(), "{error}");
         }
         for spec in ["", "cube:1", "part.step", "mesh"] {
-            let error = Given::read(spec, None).unwrap_err();
+            let error = Given::read(spec, RepairOptions::default()).unwrap_err();
             assert!(error.to_string().contains("neither a shape nor a file"), "{error}");
             assert!(error.help().contains(".geojson") && error.help().contains("torus:R,r"), "{}", error.help());
         }
         let curve = file(".mesh", "MeshVersionFormatted 2 Dimension 3 Vertices 2 0 0 0 0 1 0 1 0 Edges 1 1 2 0 End");
-        let error = Given::read(curve.path().to_str().unwrap(), None).unwrap_err();
+        let error = Given::read(curve.path().to_str().unwrap(), RepairOptions::default()).unwrap_err();
         assert!(error.to_string().contains("vertex 2 has z = 1"), "{error}");
         let lone =
             file(".mesh", "MeshVersionFormatted 2 Dimension 3 Vertices 3 0 0 1 0 1 0 0 0 2 0 -1 0 Triangles 1 1 2 3 0");
-        let error = Given::read(lone.path().to_str().unwrap(), None).unwrap_err().to_string();
+        let error = Given::read(lone.path().to_str().unwrap(), RepairOptions::default()).unwrap_err().to_string();
         assert!(
             error.contains("no triangles are left: 1 triangle without area")
                 && error.contains(lone.path().to_str().unwrap()),

@@ -63,7 +63,10 @@ impl MetricFiles<'_> {
         at: GradedAt,
     ) -> Result<PlanarMetric> {
         match (source, self.background) {
-            (MetricSource::Named(spec), None) => recipe::metric(spec, domain, options, at),
+            (MetricSource::Named(spec), None) => {
+                demand_default(self.order)?;
+                recipe::metric(spec, domain, options, at)
+            }
             (MetricSource::Named(_), Some(mesh)) => {
                 let what = "only a .sol metric is given on a background mesh";
                 Err(Error::parse(format!("background {}", mesh.display()), what, "leave the background out"))
@@ -105,7 +108,16 @@ pub fn surface_metric(text: &str, input: &Input, bounds: Bounds, order: TensorOr
     if is_solution(text.trim()) {
         return field_of_values(&read_metric(Path::new(text.trim()), order)?, input, bounds);
     }
+    demand_default(order)?;
     field(&Spec::parse(text)?, input, bounds)
+}
+
+/// Refuses an order of entries where no file has any.
+fn demand_default(order: TensorOrder) -> Result<()> {
+    if order == TensorOrder::default() {
+        return Ok(());
+    }
+    Err(Error::unsupported("`tensor_order` with a metric that is not of a file", "leave out `tensor_order`"))
 }
 
 /// Reads the sizes or tensors of a `.sol` or `.solb` file, whose tensors are in the order given, as a solution in the order on disk.

@@ -1,6 +1,6 @@
 //! Geomview's `.off` in text form.
 
-use super::codec::{At, Form, Kind, Place, Sink, Source, Text, several, shortened};
+use super::codec::{At, Form, Kind, Sink, Source, several};
 use super::cutting::cut;
 use super::document::labelled;
 use std::io::{self, BufRead, Write};
@@ -46,29 +46,19 @@ pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
 /// Dialects whose vertices begin with their three coordinates.
 const HEADS: [&str; 7] = ["OFF", "COFF", "NOFF", "CNOFF", "STOFF", "STCOFF", "STNOFF"];
 
+/// The numbers of vertices and faces; that of edges may follow and means nothing.
 fn read_counts(source: &mut Source<'_>) -> Result<[u64; 2]> {
     let at = At::head("the file");
-    let row = source.row(at)?;
-    let mut words = row.words().peekable();
-    let first = words.peek().map_or("", |word| word.text);
-    if !first.starts_with(|c: char| c.is_ascii_digit()) {
-        if !HEADS.iter().any(|head| head.eq_ignore_ascii_case(first)) {
-            let what = format!("the file begins with '{}', not with OFF", shortened(first));
-            return Err(row.place.error(what, "give a file in the text form of .off"));
-        }
-        words.next();
+    let first = source.word(at)?;
+    if first.text.starts_with(|c: char| c.is_ascii_digit()) {
+        source.unread();
+    } else if !HEADS.iter().any(|head| head.eq_ignore_ascii_case(first.text)) {
+        let what = format!("the file begins with '{}', not with OFF", first.quoted());
+        return Err(first.place.error(what, "give a file in the text form of .off"));
     }
-    if words.peek().is_some() {
-        return counts(words, row.place, at);
-    }
-    drop(words);
-    let row = source.row(at)?;
-    counts(row.words(), row.place, at)
-}
-
-/// Vertices and faces; a count of edges may follow and means nothing.
-fn counts<'w>(mut words: impl Iterator<Item = Text<'w>>, place: Place<'_>, at: At<'_>) -> Result<[u64; 2]> {
-    several(|| expect(words.next(), place, at)?.whole(at))
+    let counts = several(|| source.word(at)?.whole(at))?;
+    source.skip_row();
+    Ok(counts)
 }
 
 /// The vertices of a face.
@@ -81,11 +71,6 @@ fn read_face(source: &mut Source<'_>, at: At<'_>, vertices: u64) -> Result<Vec<u
     let face = (0..count).map(|_| source.word(at)?.vertex(0, vertices, at)).collect();
     source.skip_row();
     face
-}
-
-fn expect<'w>(word: Option<Text<'w>>, place: Place<'_>, at: At<'_>) -> Result<Text<'w>> {
-    let help = "write all numbers of a vertex or a face on one row";
-    word.ok_or_else(|| place.error(format!("the row ends too early ({at})"), help))
 }
 
 #[cfg(test)]
@@ -126,7 +111,7 @@ mod tests {
             ("", "a.off:1: the text ends in the head of the file"),
             ("solid\n", "a.off:1: the file begins with 'solid', not with OFF"),
             ("OFF BINARY\n", "a.off:1: 'BINARY' is not a whole number"),
-            ("OFF\n3", "a.off:2: the row ends too early (the head of the file)"),
+            ("OFF\n3", "a.off:2: the text ends in the head of the file"),
             ("OFF\n9000000000000000000 1 0\n0 0 0", "a.off:3: the text ends in row 2 of 9000000000000000000 of the v"),
             ("OFF\n1 1 0\n0 0\n", "a.off:3: the text ends in row 1 of 1 of the vertices"),
             ("OFF\n1 1 0\n0 0 inf\n", "a.off:3: 'inf' is not a finite number (row 1 of 1 of the vertices)"),

@@ -1,11 +1,11 @@
 //! The machine-readable account of a run (`--report`).
 
-use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 use voronaut::canvas::CanvasFigures;
 use voronaut::certificate::Certificate;
 use voronaut::figures::{Diagram, Dual, NetFigures, Protection, StarSet};
+use voronaut::mesh::Mesh;
 use voronaut::optimise::{Polished, Relaxed};
 use voronaut::quality::{
     Angles, EdgeLengths, Fidelity, Histograms, InterpolationError, MetricQuality, Quality, SurfaceFidelity,
@@ -100,21 +100,20 @@ pub struct Seconds {
 }
 
 impl Report {
-    /// A report with this crate's version and the process's peak memory; all else is empty.
-    pub fn new(validity: Validity, vertices: usize, triangles: usize) -> Self {
+    /// A report of a mesh with this crate's version and the process's peak memory; all else is empty.
+    pub fn new(mesh: &Mesh, validity: Validity) -> Self {
+        let (vertices, triangles) = (mesh.points.len(), mesh.triangles.len());
         let (peak_memory_bytes, version) = (peak_memory_bytes(), env!("CARGO_PKG_VERSION"));
         Self { vertices, triangles, validity, peak_memory_bytes, version, ..Self::default() }
     }
 
-    /// The report with figures in a metric.
-    #[must_use]
-    pub fn with_quality(mut self, figures: &MetricQuality) -> Self {
+    /// Adds figures in a metric.
+    pub fn add_quality(&mut self, figures: &MetricQuality) {
         self.metric_edge_length = Some(figures.metric_edge_length);
         self.interior_edge_length = figures.interior_edge_length;
         self.quality = Some(figures.quality);
         self.angle = Some(figures.angle);
         self.worst = Some(figures.worst);
-        self
     }
 
     /// The report as JSON text that ends in a newline.
@@ -140,12 +139,7 @@ impl Serialize for Seconds {
                 None => stages.push((name, time)),
             }
         }
-        let mut map = serializer.serialize_map(Some(stages.len() + 1))?;
-        for (name, time) in stages {
-            map.serialize_entry(name, &time)?;
-        }
-        map.serialize_entry("total", &self.total)?;
-        map.end()
+        serializer.collect_map(stages.into_iter().chain([("total", self.total)]))
     }
 }
 
@@ -155,7 +149,7 @@ mod tests {
 
     #[test]
     fn holds_what_the_contract_lists_and_is_json_whatever_happened() {
-        let mut report = Report::new(Validity { area: f64::NAN, ..Validity::default() }, 4, 2);
+        let mut report = Report::new(&Mesh::default(), Validity { area: f64::NAN, ..Validity::default() });
         report.metric_scale = Some(f64::INFINITY);
         report.seconds = Seconds { stages: vec![("sampling", 1.0), ("lloyd", 2.0), ("sampling", 0.5)], total: 4.0 };
         report.dual = Some(Dual { min_margin: f64::NAN, ..Dual::default() });

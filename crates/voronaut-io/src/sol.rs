@@ -21,7 +21,7 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Solution> {
     let (dimension, [(place, values), _]) = read_sections(source, place, &SECTIONS[..1], help)?;
     let [values] = <[SolutionValues; 1]>::try_from(values).map_err(|values| {
         let what = format!("{} solutions per vertex ({place})", values.len());
-        Error::Unsupported { what, help: "save each solution in a .sol file of its own ('1 t')".into() }
+        Error::unsupported(what, "save each solution in a .sol file of its own ('1 t')")
     })?;
     Ok(Solution { dimension, values })
 }

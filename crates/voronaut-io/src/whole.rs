@@ -21,7 +21,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 /// [`Error::Io`] with the path, of what `fill` says too.
 pub fn write_with(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     demand_directory(path)?;
-    replace(path, fill).map_err(|source| Error::Io { path: path.into(), source })
+    replace(path, fill).map_err(|source| Error::io(path, source))
 }
 
 /// Checks, before long work, that a file can be put at a path: its directory exists and it is no directory itself.
@@ -29,7 +29,7 @@ pub fn write_with(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<(
 /// # Errors
 /// [`Error::Io`] with the directory that is missing, or the path that is a directory.
 pub fn demand_directory(path: &Path) -> Result<()> {
-    let fault = |path: &Path, kind: io::ErrorKind| Error::Io { path: path.into(), source: kind.into() };
+    let fault = |path: &Path, kind: io::ErrorKind| Error::io(path, kind.into());
     let directory = directory(path);
     if path.file_name().is_none() || path.is_dir() {
         return Err(fault(path, io::ErrorKind::IsADirectory));
@@ -37,7 +37,7 @@ pub fn demand_directory(path: &Path) -> Result<()> {
     match fs::metadata(&directory) {
         Ok(found) if found.is_dir() => Ok(()),
         Ok(_) => Err(fault(&directory, io::ErrorKind::NotADirectory)),
-        Err(source) => Err(Error::Io { path: directory, source }),
+        Err(source) => Err(Error::io(directory, source)),
     }
 }
 
@@ -47,7 +47,7 @@ pub fn demand_directory(path: &Path) -> Result<()> {
 /// As [`demand_directory`].
 pub fn place(path: &Path) -> Result<PathBuf> {
     demand_directory(path)?;
-    let directory = fs::canonicalize(directory(path)).map_err(|source| Error::Io { path: path.into(), source })?;
+    let directory = fs::canonicalize(directory(path)).map_err(|source| Error::io(path, source))?;
     let place = directory.join(path.file_name().unwrap_or_default());
     Ok(fs::canonicalize(&place).unwrap_or(place))
 }

@@ -75,7 +75,7 @@ pub fn demand_diagram(path: &Path) -> Result<()> {
         return Ok(());
     }
     let what = format!("a diagram in {}", path.display());
-    Err(Error::Unsupported { what, help: "end the name of the diagram in .vtu".into() })
+    Err(Error::unsupported(what, "end the name of the diagram in .vtu"))
 }
 
 /// Writes a canvas with its distances: point data `colour` and `distance`.

@@ -10,7 +10,7 @@ use voronaut::surface::{FeatureOptions, RepairOptions};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let [from, to] = &words[..] else { return Err("surface FROM TO".into()) };
-    let (surface, mended) = voronaut_io::read_surface(from, None, RepairOptions::default())?;
+    let (surface, mended) = voronaut_io::read_surface(from, RepairOptions::default())?;
     mended.sentences().for_each(|sentence| eprintln!("note: {sentence}"));
 
     // Creases, borders and labels stay.

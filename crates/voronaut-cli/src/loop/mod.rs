@@ -15,6 +15,7 @@ use voronaut::mesh::Solutions;
 use voronaut::metric::{Expression, Variables};
 use voronaut::quality::validity;
 use voronaut::recipe::{self, LoopOptions, MeshOptions, Source, Step};
+use voronaut::surface::RepairOptions;
 use voronaut::transfer::{Carried, Extent, Kind, Overshoot, TransferOptions};
 use voronaut::{Error, Result};
 use voronaut_io::{Format, Given};
@@ -133,7 +134,7 @@ pub(crate) fn run(args: &LoopArgs) -> Result<()> {
     demand_writable(args)?;
     args.run.set_threads()?;
     args.metric_choices.bounds().check()?;
-    let domain = match Given::read(&args.domain, None)? {
+    let domain = match Given::read(&args.domain, RepairOptions::default())?.0 {
         Given::Plane(domain) => domain,
         Given::Surface(_) => {
             let help = "give a planar domain: Dimension 2, or a shape such as rect:0,0,1,1";
@@ -233,7 +234,7 @@ impl<'a> Told<'a> {
                 "step {:>3}: {time}{count} vertices, {border} on the boundary{error}{drift}, {seconds:.2} s\n",
                 step.number
             ));
-            step.meshed.notes.iter().for_each(|note| eprintln!("note: step {}: {note}", step.number));
+            summary::notes(step.meshed.notes.iter().map(|note| format!("step {}: {note}", step.number)), false);
         }
         self.steps.push(json!({
             "step": step.number, "time": step.time, "vertices": mesh.points.len(), "triangles": mesh.triangles.len(),

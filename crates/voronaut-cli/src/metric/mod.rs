@@ -5,6 +5,7 @@ mod sources;
 use crate::options::{Run, positive};
 use crate::{files, summary};
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -82,7 +83,8 @@ pub(crate) struct MetricArgs {
 }
 
 /// How metrics are combined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
 pub(crate) enum Combine {
     /// As fine as each
     Intersect,
@@ -90,8 +92,9 @@ pub(crate) enum Combine {
     Average,
 }
 
-/// A limit as it is typed.
-#[derive(Clone, Debug)]
+/// A limit as it is typed, and as reports have it.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
 pub(crate) enum LimitText {
     /// The same everywhere.
     Number(f64),
@@ -107,16 +110,6 @@ impl FromStr for LimitText {
             return Ok(LimitText::File(text.into()));
         }
         positive(text).map(LimitText::Number).map_err(|_| "neither a positive number nor a file .sol".into())
-    }
-}
-
-impl LimitText {
-    /// As reports have it.
-    pub(crate) fn as_used(&self) -> serde_json::Value {
-        match self {
-            LimitText::Number(value) => (*value).into(),
-            LimitText::File(path) => path.display().to_string().into(),
-        }
     }
 }
 
@@ -162,7 +155,6 @@ fn told(args: &MetricArgs, mesh: &Mesh, made: &Outcome, seconds: f64) -> Value {
     let least = eigen().map(|e| e.large.powf(-0.5)).fold(f64::INFINITY, f64::min);
     let greatest = eigen().map(|e| e.small.powf(-0.5)).fold(0.0, f64::max);
     let anisotropy = made.tensors.iter().map(|m| m.anisotropy()).fold(1.0, f64::max);
-    let limit = |text: &Option<LimitText>| text.as_ref().map(LimitText::as_used);
     json!({
         "vertices": mesh.points.len(), "triangles": mesh.triangles.len(),
         "complexity": made.complexity, "expected_vertices": (made.complexity / COMPLEXITY_PER_VERTEX).round() as u64,
@@ -171,8 +163,8 @@ fn told(args: &MetricArgs, mesh: &Mesh, made: &Outcome, seconds: f64) -> Value {
         "seconds": { "total": seconds }, "peak_memory_bytes": voronaut_io::peak_memory_bytes(), "version": env!("CARGO_PKG_VERSION"),
         "options": {
             "mesh": args.mesh, "metric": args.metric, "out": args.out, "norm": args.norm.to_string(),
-            "combine": format!("{:?}", args.combine).to_lowercase(), "weights": args.weights, "complexity": args.complexity,
-            "h_min": limit(&args.h_min), "h_max": limit(&args.h_max), "a_max": limit(&args.a_max),
+            "combine": args.combine, "weights": args.weights, "complexity": args.complexity,
+            "h_min": args.h_min, "h_max": args.h_max, "a_max": args.a_max,
             "gradation": args.gradation, "recovery": args.recovery, "background": args.background, "report": args.run.report,
             "threads": args.run.threads,
         },

@@ -63,15 +63,11 @@ fn own(path: &Path, mesh: &Mesh, order: TensorOrder) -> Result<Vec<Tensor>> {
 
 /// One number per vertex from a file.
 fn scalars(path: &Path, need: &str) -> Result<Vec<f64>> {
-    let place = path.display().to_string();
-    match voronaut_io::read_solution(path)?.values {
-        SolutionValues::Scalar(values) => Ok(values),
-        _ => Err(Error::parse(
-            place,
-            format!("the values are no scalars; {need}"),
-            "write one number (type 1) per vertex",
-        )),
-    }
+    let SolutionValues::Scalar(values) = voronaut_io::read_solution(path)?.values else {
+        let what = format!("the values are no scalars; {need}");
+        return Err(Error::parse(path.display().to_string(), what, "write one number (type 1) per vertex"));
+    };
+    Ok(values)
 }
 
 /// The limits, with their files read.

@@ -137,7 +137,7 @@ impl Run {
         let Some(threads) = self.threads else { return Ok(()) };
         let built = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global();
         let help = "ask for fewer threads";
-        built.map_err(|error| Error::Limit { what: format!("{threads} threads: {error}"), help: help.into() })
+        built.map_err(|error| Error::limit(format!("{threads} threads: {error}"), help))
     }
 
     /// Writes the report, if asked for.
@@ -149,7 +149,7 @@ impl Run {
 /// Refuses what is not there: the first of these, of which each has whether it is asked for, what it is, and what to do.
 pub(crate) fn refuse<W: Into<String>, H: Into<String>>(all: impl IntoIterator<Item = (bool, W, H)>) -> Result<()> {
     match all.into_iter().find(|(is_asked, ..)| *is_asked) {
-        Some((_, what, help)) => Err(Error::Unsupported { what: what.into(), help: help.into() }),
+        Some((_, what, help)) => Err(Error::unsupported(what, help)),
         None => Ok(()),
     }
 }

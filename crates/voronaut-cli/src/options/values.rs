@@ -1,6 +1,7 @@
 //! Values as they are typed, and how they are read.
 
 use clap::ValueEnum;
+use serde::Serialize;
 use std::fmt;
 use voronaut::canvas::VERTICES_PER_SEED;
 use voronaut::geometry::{Aabb, Point, Point3};
@@ -36,7 +37,8 @@ impl Show {
 }
 
 /// How the edges of a dual are written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
 pub(crate) enum EdgesOut {
     /// Straight
     Straight,

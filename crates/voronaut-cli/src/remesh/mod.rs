@@ -18,7 +18,7 @@ use voronaut::recipe::{self, Asked, Keep, MeshOptions, RemeshInput};
 use voronaut::surface::metric::{Sizes, Sizing};
 use voronaut::surface::{Input, Mended};
 use voronaut_io::gmsh::Version;
-use voronaut_io::{Fields, Format, Given, Report, Strayed, of_document, read_metric, read_pslg};
+use voronaut_io::{Fields, Format, Given, Report, Strayed, in_file, of_document, read_metric, read_pslg};
 
 /// mmg's exit code where it writes no mesh.
 pub(crate) const FAILURE: u8 = 2;
@@ -130,19 +130,9 @@ fn read(args: &RemeshArgs) -> Result<Read> {
         let (surface, mended) = of_document(&spec, &document, args.damage.options())?;
         return Ok(Read::Surface(Input::new(surface, None), mended));
     }
-    match Given::read_with(&spec, None, args.damage.options())? {
+    match Given::read(&spec, args.damage.options())? {
         (Given::Surface(input), mended) => Ok(Read::Surface(input, mended)),
         (Given::Plane(_), _) => Ok(Read::Plane(RemeshInput::of_graph(read_pslg(&spec)?, keep(args))?, Vec::new())),
-    }
-}
-
-/// Adds the file to the place of an error of its domain.
-fn in_file(file: &str, error: voronaut::Error) -> voronaut::Error {
-    match error {
-        voronaut::Error::Domain { what, place, help } => {
-            voronaut::Error::Domain { what, place: format!("{file}, {place}"), help }
-        }
-        other => other,
     }
 }
 

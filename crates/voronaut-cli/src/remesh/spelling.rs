@@ -24,7 +24,7 @@ pub(crate) fn translated(words: impl IntoIterator<Item = OsString>) -> Result<Ve
     if let Some(word) = MISSING.into_iter().find(|missing| words.iter().any(|word| word == missing)) {
         let help =
             "leave it out: meshes are adapted as a whole, by one metric, without level sets or files of parameters";
-        return Err(Error::Unsupported { what: format!("remesh {word}"), help: help.into() });
+        return Err(Error::unsupported(format!("remesh {word}"), help));
     }
     // To clap these were -h, which asks for help, and more.
     let is_help = |word: &&OsString| {

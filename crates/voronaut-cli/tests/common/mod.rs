@@ -27,6 +27,13 @@ impl Place {
         fs::read(self.path().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
+    /// Reads a file and removes it.
+    pub(crate) fn take(&self, name: &str) -> Vec<u8> {
+        let bytes = self.read(name);
+        fs::remove_file(self.path().join(name)).expect("removed");
+        bytes
+    }
+
     /// The names of all files, hidden ones too, sorted.
     pub(crate) fn files(&self) -> Vec<String> {
         let entries = fs::read_dir(self.path()).expect("readable").map(|entry| entry.expect("readable").file_name());

@@ -58,7 +58,7 @@ impl Camera {
     pub(super) fn new(scene: &Scene, view: &View) -> Result<Self> {
         if view.pixels > LARGEST {
             let what = format!("a picture of a surface {} pixels wide; the limit is {LARGEST} pixels", view.pixels);
-            return Err(Error::Limit { what, help: "make the picture narrower".into() });
+            return Err(Error::limit(what, "make the picture narrower"));
         }
         let axes = axes(view)?;
         let drawable = || scene.points().filter(|&p| is_drawable(p));

@@ -92,7 +92,7 @@ impl<'a> Source<'a> {
     /// # Errors
     /// [`Error::Io`] of a file that cannot be read.
     pub(crate) fn ahead(&mut self) -> Result<&[u8]> {
-        self.from.fill_buf().map_err(|source| Error::Io { path: self.file.into(), source })
+        self.from.fill_buf().map_err(|source| Error::io(self.file, source))
     }
 
     /// Whether nothing follows but blanks and comments, or in a binary file nothing at all. What follows in a text is read.
@@ -119,7 +119,7 @@ impl<'a> Source<'a> {
         self.row.clear();
         self.word = 0..0;
         let found = (&mut self.from).take(most).read_until(b'\n', &mut self.row);
-        let found = found.map_err(|source| Error::Io { path: self.file.into(), source })?;
+        let found = found.map_err(|source| Error::io(self.file, source))?;
         self.line += usize::from(self.row.ends_with(b"\n"));
         Ok(found > 0)
     }
@@ -243,7 +243,7 @@ impl<'a> Source<'a> {
     /// As of [`Source::skip`].
     pub(crate) fn skip_bytes(&mut self, count: u64, at: At<'_>) -> Result<()> {
         let found = io::copy(&mut (&mut self.from).take(count), &mut io::sink());
-        let found = found.map_err(|source| Error::Io { path: self.file.into(), source })?;
+        let found = found.map_err(|source| Error::io(self.file, source))?;
         if found < count { Err(self.cut_off(at)) } else { Ok(()) }
     }
 
@@ -253,7 +253,7 @@ impl<'a> Source<'a> {
         match self.from.read_exact(bytes) {
             Ok(()) => Ok(order.bits(bytes)),
             Err(source) if source.kind() == ErrorKind::UnexpectedEof => Err(self.cut_off(at)),
-            Err(source) => Err(Error::Io { path: self.file.into(), source }),
+            Err(source) => Err(Error::io(self.file, source)),
         }
     }
 

@@ -211,5 +211,5 @@ pub(super) fn skip_section(source: &mut Source<'_>, section: &str) -> Result<()>
 /// An error about what the format has and this library does not read.
 pub(super) fn unsupported(what: &str, source: &Source<'_>) -> Error {
     let what = format!("{what} of Gmsh's format ({})", source.place());
-    Error::Unsupported { what, help: "save the mesh as version 4.1 or 2.2, as a whole and without parameters".into() }
+    Error::unsupported(what, "save the mesh as version 4.1 or 2.2, as a whole and without parameters")
 }

@@ -99,7 +99,7 @@ fn read_head(from: &mut Blocks<'_>, section: &str) -> Result<Head> {
     };
     if components > MOST {
         let what = format!("{section} '{name}' of {components} numbers per value ({})", source.place());
-        return Err(Error::Unsupported { what, help: format!("save values of at most {MOST} numbers") });
+        return Err(Error::unsupported(what, format!("save values of at most {MOST} numbers")));
     }
     Ok(Head { name, step, components: components as usize, rows })
 }

@@ -22,7 +22,7 @@ impl Reader {
         let counts: Vec<String> = self.foreign.iter().map(|(name, count)| format!("{count} {name}")).collect();
         let what = format!("{} ({})", counts.join(", "), from.source.place());
         let help = "give a mesh of straight triangles: in Gmsh mesh in 2 dimensions with Mesh.ElementOrder = 1";
-        Err(Error::Unsupported { what, help: help.into() })
+        Err(Error::unsupported(what, help))
     }
 
     /// Volumes are left out beside triangles; without them the mesh is their outside.
@@ -174,7 +174,7 @@ fn read_kind(from: &mut Blocks<'_>, at: At<'_>) -> Result<Kind> {
     let code = from.source.whole(INT, at)?;
     Kind::of(code).ok_or_else(|| {
         let what = format!("elements of type {code} ({at}; {})", from.source.place());
-        Error::Unsupported { what, help: "give a mesh of straight triangles, edges and points".into() }
+        Error::unsupported(what, "give a mesh of straight triangles, edges and points")
     })
 }
 

@@ -197,5 +197,5 @@ fn demand_moderate_cuts(data: &Data<'_>, triangles: usize, cells: usize, file: &
         return Ok(());
     }
     let what = format!("{file}: {cells} cells are cut into {triangles} triangles, with {numbers} values on them");
-    Err(Error::Limit { what, help: "triangulate the polygons, or remove the data on cells".into() })
+    Err(Error::limit(what, "triangulate the polygons, or remove the data on cells"))
 }

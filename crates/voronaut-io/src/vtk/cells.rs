@@ -119,7 +119,7 @@ pub(super) fn refuse_foreign(kinds: &[i64], place: &str) -> Result<()> {
     let name = name.map_or("of higher order or unknown", |(_, name)| name);
     let what = format!("{count} cells of type {kind} ({name}) in {place}");
     let help = "give a mesh of triangles: in ParaView, the filters Extract Surface and Triangulate make one";
-    Err(Error::Unsupported { what, help: help.into() })
+    Err(Error::unsupported(what, help))
 }
 
 #[cfg(test)]

@@ -101,7 +101,7 @@ impl Array<'_> {
                 self.error("ends before all is there that its sizes announce", "the file is cut off or damaged")
             }
             ErrorKind::InvalidData => self.error(&format!("holds {error}"), "the file is damaged"),
-            kind => Error::Io { path: self.file.into(), source: io::Error::new(kind, error.to_string()) },
+            kind => Error::io(self.file, io::Error::new(kind, error.to_string())),
         }
     }
 

@@ -56,7 +56,8 @@ impl<'a, R: BufRead> Tags<'a, R> {
         let event = self.xml.read_event_into(buffer).map_err(|error| self.misread(&error))?;
         match event {
             Event::Start(tag) if self.open == [FILE] && tag.name().0 == "AppendedData" => {
-                self.read_appended(&tag)?;
+                let is_raw = self.choice(&tag, "encoding", [("base64", false), ("raw", true)])?;
+                read_appended(self.xml.get_mut().source(), is_raw, &mut self.grid)?;
                 return Ok(false);
             }
             Event::Start(tag) => self.open(&tag)?,
@@ -119,9 +120,9 @@ impl<'a, R: BufRead> Tags<'a, R> {
     /// What the tag `VTKFile` says.
     fn read_head(&mut self, tag: &BytesStart<'_>) -> Result<()> {
         let kind = self.attribute(tag, "type")?.unwrap_or_default();
-        self.kind = KINDS.into_iter().find(|known| *known == kind).ok_or_else(|| Error::Unsupported {
-            what: format!("{} is a VTK file of type '{}'", self.grid.file, shortened(&kind)),
-            help: "save it as one file of type UnstructuredGrid (.vtu) or PolyData (.vtp)".into(),
+        self.kind = KINDS.into_iter().find(|known| *known == kind).ok_or_else(|| {
+            let what = format!("{} is a VTK file of type '{}'", self.grid.file, shortened(&kind));
+            Error::unsupported(what, "save it as one file of type UnstructuredGrid (.vtu) or PolyData (.vtp)")
         })?;
         let order = self.choice(tag, "byte_order", [("LittleEndian", Order::Little), ("BigEndian", Order::Big)])?;
         let is_wide = self.choice(tag, "header_type", [("UInt32", false), ("UInt64", true)])?;
@@ -199,7 +200,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
             (_, Some(compressor)) => {
                 let what = format!("{} is compressed by '{}'", self.grid.file, shortened(compressor));
                 let help = "save it uncompressed, or compressed by zlib (ParaView: Compressor Type ZLib or None)";
-                Err(Error::Unsupported { what, help: help.into() })
+                Err(Error::unsupported(what, help))
             }
             (Some("binary"), _) => Ok(Stored::Plain(Vec::new())),
             (Some("appended"), _) => {
@@ -238,11 +239,6 @@ impl<'a, R: BufRead> Tags<'a, R> {
         Ok(())
     }
 
-    fn read_appended(&mut self, tag: &BytesStart<'_>) -> Result<()> {
-        let is_raw = self.choice(tag, "encoding", [("base64", false), ("raw", true)])?;
-        read_appended(self.xml.get_mut().source(), is_raw, &mut self.grid)
-    }
-
     fn finish(self) -> Result<Grid<'a>> {
         if self.grid.pieces.is_empty() {
             let what = format!("no {} with a piece in it", self.kind);
@@ -277,7 +273,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
         match error {
             quick_xml::Error::Io(source) => {
                 let source = io::Error::new(source.kind(), source.to_string());
-                Error::Io { path: self.grid.file.into(), source }
+                Error::io(self.grid.file, source)
             }
             _ if self.open.is_empty() => self.no_vtk(),
             error => self.error(&error.to_string(), "check that the file is whole, and that a VTK program wrote it"),
@@ -295,7 +291,7 @@ impl<'a, R: BufRead> Tags<'a, R> {
 /// [`Error::Parse`] where an array is not there as a whole, or begins in another; [`Error::Io`] of what cannot be read.
 fn read_appended(section: &mut Counted<impl BufRead>, is_raw: bool, grid: &mut Grid<'_>) -> Result<()> {
     let (file, layout, begin) = (grid.file, grid.layout, section.position());
-    let io = |source| Error::Io { path: file.into(), source };
+    let io = |source| Error::io(file, source);
     if !passes_mark(section).map_err(io)? {
         let what = "AppendedData without the '_' that its arrays begin with";
         return Err(Place::byte(file, begin).error(what, "the file is cut off or damaged"));

@@ -97,11 +97,11 @@ fn read_as(reader: Reader, bytes: &[u8]) -> Result<bool> {
         }
         Reader::Points => {
             let text = text()?;
-            let (plane, space) = (points::read(text, PLACE), points::read_in_space(text, PLACE));
+            let (plane, space) = (points::read::<2>(text, PLACE), points::read::<3>(text, PLACE));
             return Ok(if let Ok(points) = plane {
-                points.iter().all(|p| p.is_finite())
+                points.iter().flat_map(|(_, p)| p).all(|x| x.is_finite())
             } else {
-                space?.iter().all(|p| p.is_finite())
+                space?.iter().flat_map(|(_, p)| p).all(|x| x.is_finite())
             });
         }
         Reader::Geojson => {

@@ -2,7 +2,7 @@
 
 use super::Canvas;
 use crate::geodesic::Obstacles;
-use crate::geometry::{Aabb, Bounds, BoxTree, Orientation, Point, orientation, widened};
+use crate::geometry::{Aabb, BoxTree, Orientation, Point, around, orientation, widened};
 use crate::triangulation::HalfEdge;
 
 /// The sides of a canvas's border, and the corners around which paths can bend.
@@ -45,10 +45,6 @@ impl<'a> Border<'a> {
         let at = (p.lerp(q, dp / (dp - dq)) - side[0]).dot(along) / along.dot(along);
         (-ROUNDING..=1.0 + ROUNDING).contains(&at)
     }
-}
-
-fn around([p, q]: [Point; 2]) -> Bounds<2> {
-    [[p.x.min(q.x), p.y.min(q.y)], [p.x.max(q.x), p.y.max(q.y)]]
 }
 
 /// The start of a side of the border if the domain's angle there is more than straight.

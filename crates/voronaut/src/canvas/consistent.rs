@@ -184,7 +184,7 @@ impl Picker<'_> {
         let count = self.stars.steiner.planar.topology.vertex_count();
         let place = self.stars.steiner.planar.position(v);
         let what = format!("the stars do not agree with {count} vertices, for example at {place}");
-        Error::Limit { what, help: NEEDS_MORE.into() }
+        Error::limit(what, NEEDS_MORE)
     }
 
     /// All simplices that not all of their vertices' stars have.
@@ -333,11 +333,7 @@ fn union(stars: &Stars) -> Result<Planar> {
 }
 
 fn not_meshed(what: &str, place: String) -> Error {
-    Error::Mesh {
-        what: what.into(),
-        place,
-        help: "use `mesher=voronoi`, which never depends on stars that agree".into(),
-    }
+    Error::mesh(what, place, "use `mesher=voronoi`, which never depends on stars that agree")
 }
 
 /// A circumradius that simplices of a relaxed unit mesh keep below: the mean is 0.6.

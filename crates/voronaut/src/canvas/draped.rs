@@ -200,8 +200,7 @@ impl<'s> Draped<'s> {
         let near_zero = weights.map(|w| w <= ON_EDGE);
         let [ab, bc, ca] = f.half_edges();
         let corners = self.topology.corners(f);
-        let [p, q, r] = corners.map(|v| self.position(v));
-        let rounding = ON_EDGE * p.distance(q).max(q.distance(r)).max(r.distance(p));
+        let rounding = ON_EDGE * Point3::longest_side(corners.map(|v| self.position(v)));
         if let Some(v) = corners.into_iter().find(|&v| self.position(v).distance(seed.position) <= rounding) {
             self.places[v.index()].position = seed.position;
             return Ok(v);
@@ -369,7 +368,7 @@ impl Measured for Draped<'_> {
     fn is_beside_flat(&self, h: HalfEdge) -> bool {
         let is_flat = |f: FaceId| {
             let [a, b, c] = self.topology.corners(f).map(|v| self.position(v));
-            let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
+            let longest = Point3::longest_side([a, b, c]);
             (b - a).cross(c - a).norm() <= FLAT * longest * longest
         };
         self.topology.sides(h).any(|side| is_flat(side.face()))

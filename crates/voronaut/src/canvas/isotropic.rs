@@ -98,18 +98,14 @@ impl Refiner<'_> {
 pub(super) fn sizes(field: &dyn MetricField, triangle: [Point; 3]) -> Result<Option<f64>> {
     let Some((centre, radius)) = circle(triangle) else { return Ok(None) };
     let centroid = Point::centroid(triangle);
-    let is_near = centre.distance(centroid) <= radius_of_view(triangle);
+    // Circumcentres farther away than the longest edge say nothing of the triangle.
+    let is_near = centre.distance(centroid) <= Point::longest_side(triangle);
     let mut tensor = if is_near { field.at(centre) } else { field.at(centroid) };
     if is_near && !tensor.is_positive_definite() {
         tensor = field.at(centroid);
     }
     check_tensor(tensor, centroid)?;
     Ok(Some(radius / isotropic_size(tensor)))
-}
-
-/// Circumcentres farther away than the longest edge say nothing of the triangle.
-fn radius_of_view([a, b, c]: [Point; 3]) -> f64 {
-    a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 
 /// Centre and radius of a triangle's Euclidean circle; `None` where it is flat but for rounding.

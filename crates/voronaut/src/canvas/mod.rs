@@ -39,7 +39,7 @@ use crate::geometry::Point;
 use crate::lists::{distinct, in_order};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
-use crate::planar::{Planar, hilbert_order};
+use crate::planar::Planar;
 use crate::triangulation::{Triangulation, VertexId};
 use isotropic::Until;
 use locate::Finder;
@@ -306,14 +306,9 @@ impl Canvas {
 
 /// The vertices along a Hilbert curve, for the sake of the cache.
 fn renumbered(planar: &Planar) -> Planar {
-    let living: Vec<VertexId> = planar.topology.vertices().collect();
-    let positions: Vec<Point> = living.iter().map(|&v| planar.position(v)).collect();
-    let order = hilbert_order(&positions);
-    let old: Vec<VertexId> = order.iter().map(|&i| living[i as usize]).collect();
-    Planar {
-        topology: planar.topology.renumbered(&old),
-        positions: order.iter().map(|&i| positions[i as usize]).collect(),
-    }
+    let old = planar.along_curve();
+    let positions = old.iter().map(|&v| planar.position(v)).collect();
+    Planar { topology: planar.topology.renumbered(&old), positions }
 }
 
 #[cfg(test)]

@@ -120,8 +120,7 @@ impl Sight for OnSurface {
     fn turned(&self, seen_from: VertexId, at: VertexId, tensor: Tensor) -> Tensor {
         let [here, there] = [seen_from, at].map(|v| &self.planes[v.index()]);
         let turned = here.turned(there.normal);
-        let [u, v] = [turned.u, turned.v].map(|axis| there.flatten(axis));
-        Tensor::new(tensor.dot(u, u), tensor.dot(u, v), tensor.dot(v, v))
+        tensor.along([turned.u, turned.v].map(|axis| there.flatten(axis)))
     }
 
     fn is_flat(&self, from: VertexId, to: VertexId) -> bool {

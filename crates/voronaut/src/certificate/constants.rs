@@ -83,12 +83,7 @@ impl Constants {
 
     /// The greatest distortion with which there is such a size; 1 where there is none even without distortion.
     pub(crate) fn distortion_allowed(self, net: &Figures) -> f64 {
-        let (mut low, mut high) = (1.0, 2.0);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if self.size(net, middle, 0.0).is_some() { low = middle } else { high = middle }
-        }
-        low
+        greatest([1.0, 2.0], |psi| self.size(net, psi, 0.0).is_some())
     }
 
     /// What lambda^2 must exceed for straight edges (Lemma 11.2).
@@ -99,6 +94,16 @@ impl Constants {
             Constants::Printed => 2.0 * psi.powi(4) * tube,
         }
     }
+}
+
+/// By bisection the greatest number of a range for which something is so, as it is for all smaller ones; the least one where it
+/// is so for none.
+pub(super) fn greatest([mut low, mut high]: [f64; 2], is_so: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if is_so(middle) { low = middle } else { high = middle }
+    }
+    low
 }
 
 /// The slack omega of squared distances (Lemma 5.5, erratum): d'(p)^2 - d'(q)^2 where the computed distance of p is no

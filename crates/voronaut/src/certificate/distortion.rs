@@ -10,8 +10,8 @@ const PLACES: usize = 48;
 /// psi: the metrics of two tensors measure no vector longer than this times what the other does. At least 1; infinite where
 /// one of them is no metric.
 pub(crate) fn distortion(g: Tensor, h: Tensor) -> f64 {
-    let [_, [u, v]] = g.frames();
-    let eigen = Tensor::new(h.dot(u, u), h.dot(u, v), h.dot(v, v)).eigen();
+    let [_, inverse] = g.frames();
+    let eigen = h.along(inverse).eigen();
     let is_metric = eigen.small > 0.0 && eigen.large.is_finite();
     if is_metric { eigen.large.max(1.0 / eigen.small).max(1.0).sqrt() } else { f64::INFINITY }
 }

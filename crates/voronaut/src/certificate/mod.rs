@@ -207,7 +207,7 @@ fn uniform(diagram: &Diagram) -> Option<[f64; 2]> {
     let first = field.at(*positions.first()?);
     let scale = first.xx + first.yy;
     let is_same = |&p: &Point| {
-        let Tensor { xx, xy, yy } = field.at(p) + first * -1.0;
+        let Tensor { xx, xy, yy } = field.at(p) - first;
         xx.abs().max(xy.abs()).max(yy.abs()) <= ROUNDING * scale
     };
     let eigen = first.eigen();

@@ -1,6 +1,6 @@
 //! The verdicts on RR-9103's theorems, from what was measured. Pure functions.
 
-use super::constants::{Constants, Figures, centre_shift};
+use super::constants::{Constants, Figures, centre_shift, greatest};
 use super::convexity::Convexity;
 use super::verdict::{Condition, Outcome, Verdict};
 
@@ -99,13 +99,7 @@ impl Evidence {
     /// The greatest error of distances with which some canvas would do; 0 where none does without errors.
     fn greatest_error(&self) -> f64 {
         let is_enough = |error: f64| self.constants.size(&self.net, self.psi, error).is_some();
-        let (mut low, mut high) = (0.0, self.net.epsilon);
-        for _ in 0..50 {
-            let middle = 0.5 * (low + high);
-            if is_enough(middle) { low = middle } else { high = middle }
-        }
-        // Bisection never ends at 0.
-        if is_enough(0.0) { low } else { self.none() }
+        if is_enough(0.0) { greatest([0.0, self.net.epsilon], is_enough) } else { self.none() }
     }
 
     /// The limit where no size would do: 0, but unknown where net or distortion was not measured.

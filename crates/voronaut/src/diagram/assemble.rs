@@ -3,7 +3,7 @@
 use super::{Diagram, Ground, Nerve, NerveTriangle};
 use crate::domain::Domain;
 use crate::mesh::Mesh;
-use crate::triangulation::smallest_first;
+use crate::triangulation::{VertexId, smallest_first};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Diagram<'_> {
@@ -48,18 +48,23 @@ impl Diagram<'_> {
     }
 }
 
+/// The embedded canvas as a mesh with the region labels of the domain or surface, its vertices without labels.
+pub(super) fn to_mesh<'a, G: Ground<'a>>(ground: G) -> Mesh {
+    let embedded = ground.embedded();
+    Mesh {
+        points: (0..embedded.vertex_slots() as u32).map(|v| ground.coordinates(VertexId(v))).collect(),
+        triangles: embedded.faces().map(|f| embedded.corners(f).map(|v| v.0)).collect(),
+        triangle_labels: embedded.faces().map(|f| ground.region(f)).collect(),
+        ..Mesh::default()
+    }
+}
+
 impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// The canvas as a mesh with the region labels of the domain or surface, its vertices labelled by colour (-1 where no seed
     /// reaches), and their distances.
     pub fn to_coloured_canvas(&self) -> (Mesh, Vec<f64>) {
-        let embedded = self.ground.embedded();
-        let mesh = Mesh {
-            points: self.vertices().map(|v| self.ground.coordinates(v)).collect(),
-            point_labels: self.propagation.labels().iter().map(|l| l.colour.cast_signed()).collect(),
-            triangles: embedded.faces().map(|f| embedded.corners(f).map(|v| v.0)).collect(),
-            triangle_labels: embedded.faces().map(|f| self.ground.region(f)).collect(),
-            ..Mesh::default()
-        };
+        let point_labels = self.propagation.labels().iter().map(|l| l.colour.cast_signed()).collect();
+        let mesh = Mesh { point_labels, ..to_mesh(self.ground) };
         (mesh, self.propagation.labels().iter().map(|l| l.distance).collect())
     }
 }

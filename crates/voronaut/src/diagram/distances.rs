@@ -1,5 +1,6 @@
 //! Distances from given points by any of the methods, and the ways back.
 
+use super::assemble::to_mesh;
 use super::descend::{At, Descent};
 use super::seeds::{Care, Start};
 use super::{Diagram, Flat, Ground, Measure, solver, sources};
@@ -73,19 +74,15 @@ impl<'a, G: Ground<'a>> Distances<'a, G> {
     /// The embedded canvas as a mesh with the distances of its points, and with a path, by its points and their distances, as
     /// labelled edges between points of its own, behind the others. Points are labelled 0, those of the path 1.
     fn mesh_with(&self, along: &[[f64; 3]], distances: impl Iterator<Item = f64>) -> (Mesh, Vec<f64>) {
-        let embedded = self.ground.embedded();
         let first = self.values.len() as u32;
         let segments = along.len().saturating_sub(1) as u32;
-        let vertices = (0..first).map(|v| self.ground.coordinates(VertexId(v)));
-        let mesh = Mesh {
+        let mut mesh = Mesh {
             point_labels: [vec![0; first as usize], vec![1; along.len()]].concat(),
-            points: vertices.chain(along.iter().copied()).collect(),
-            triangles: embedded.faces().map(|f| embedded.corners(f).map(|v| v.0)).collect(),
-            triangle_labels: embedded.faces().map(|f| self.ground.region(f)).collect(),
             edges: (first..first + segments).map(|v| [v, v + 1]).collect(),
             edge_labels: vec![1; segments as usize],
-            ..Mesh::default()
+            ..to_mesh(self.ground)
         };
+        mesh.points.extend(along);
         (mesh, self.values.iter().copied().chain(distances).collect())
     }
 }

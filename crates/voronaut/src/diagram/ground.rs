@@ -194,9 +194,9 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
     }
 
     fn on_lattice(&self, _from: &[VertexId], _starts: &[Vec<Start>]) -> Result<Vec<f64>> {
-        let what = "distances by lbr on a surface, which has no Cartesian grid".into();
+        let what = "distances by lbr on a surface, which has no Cartesian grid";
         let others = Method::names(|method| method != Method::Lbr);
-        Err(Error::Unsupported { what, help: format!("use one of {others}") })
+        Err(Error::unsupported(what, format!("use one of {others}")))
     }
 }
 

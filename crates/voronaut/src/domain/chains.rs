@@ -21,10 +21,8 @@ impl Pslg {
         let network = self.network();
         let is_node = self.nodes(&network);
         let chain = |(start, segments): (u32, Vec<u32>)| {
-            let mut kind = self.segments[segments[0] as usize];
-            if kind.ends[0] != start {
-                kind = Segment { ends: [kind.ends[1], kind.ends[0]], left: kind.right, right: kind.left, ..kind };
-            }
+            let first = self.segments[segments[0] as usize];
+            let kind = if first.ends[0] == start { first } else { first.turned() };
             let mut vertices = vec![start];
             for s in segments {
                 vertices.push(network.across(vertices[vertices.len() - 1], s));
@@ -99,7 +97,8 @@ impl Pslg {
         chain.vertices = kept;
     }
 
-    fn network(&self) -> Network {
+    /// The segments, by their vertices.
+    pub(super) fn network(&self) -> Network {
         Network::new(self.points.len(), self.segments.iter().map(|segment| segment.ends))
     }
 

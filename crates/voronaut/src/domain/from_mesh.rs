@@ -5,7 +5,7 @@ use super::{Filling, Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, orientation};
 use crate::lists::{in_order, marked};
-use crate::mesh::{EdgeSide, Edges, Mesh};
+use crate::mesh::{EdgeSide, Edges, Mesh, Network};
 
 /// The domain of a planar mesh.
 ///
@@ -41,13 +41,6 @@ pub fn from_mesh(mesh: &Mesh) -> Result<Pslg> {
     Ok(compact(mesh, &used, segments, filling))
 }
 
-/// The two sides of an edge: left and right of the direction from its smaller to its larger vertex.
-struct EdgeSides {
-    ends: [u32; 2],
-    left: Side,
-    right: Side,
-}
-
 fn check_planar(mesh: &Mesh) -> Result<()> {
     let finite = |p: &[f64; 3]| p.iter().all(|x| x.is_finite());
     if let Some(vertex) = mesh.points.iter().position(|p| !finite(p)) {
@@ -56,7 +49,7 @@ fn check_planar(mesh: &Mesh) -> Result<()> {
     }
     let Some(vertex) = mesh.points.iter().position(|p| p[2] != 0.0) else { return Ok(()) };
     let what = format!("a surface as domain (vertex {} has z = {})", vertex + 1, mesh.points[vertex][2]);
-    Err(Error::Unsupported { what, help: "give a planar mesh: Dimension 2, or z = 0 at every vertex".into() })
+    Err(Error::unsupported(what, "give a planar mesh: Dimension 2, or z = 0 at every vertex"))
 }
 
 /// Vertices of triangles and edges, and the required ones.
@@ -71,15 +64,12 @@ fn listed_segments(mesh: &Mesh) -> Result<Vec<Segment>> {
         mesh.edges.iter().zip(required).enumerate().map(|(index, (&ends, required))| {
             listed(ends, mesh.edge_labels.get(index).copied().unwrap_or(0), required)
         });
-    merge_segments(segments, "edge", 1, |vertex| describe(mesh, vertex))
+    merge_segments(segments, "edge", 1, |vertex| mesh.describe(vertex as usize))
 }
 
 fn filling_of(segments: &[Segment], vertices: usize) -> Filling {
-    let mut degree = vec![0_u32; vertices];
-    for vertex in segments.iter().flat_map(|segment| segment.ends) {
-        degree[vertex as usize] += 1;
-    }
-    if degree.iter().all(|&degree| degree == 0 || degree == 2) {
+    let network = Network::new(vertices, segments.iter().map(|segment| segment.ends));
+    if network.vertices().all(|v| network.at(v).len() == 2) {
         return Filling::EvenOdd;
     }
     Filling::Enclosed { holes: Vec::new(), regions: Vec::new() }
@@ -92,34 +82,30 @@ fn with_sides(mesh: &Mesh, mut segments: Vec<Segment>) -> Result<Vec<Segment>> {
     for segment in &mut segments {
         let ends = in_order(segment.ends);
         let Ok(index) = edges.binary_search_by_key(&ends, |edge| edge.ends) else {
-            let place = format!("{} - {}", describe(mesh, segment.ends[0]), describe(mesh, segment.ends[1]));
             let help = "remove the edge, or all triangles (then the edges alone are the domain)";
-            return Err(Error::domain("an edge in the list is no edge of a triangle", place, help));
+            return Err(edge_error(mesh, "an edge in the list is no edge of a triangle", segment.ends, help));
         };
         is_listed[index] = true;
-        let EdgeSides { left, right, .. } = edges[index];
-        (segment.left, segment.right) = if ends == segment.ends { (left, right) } else { (right, left) };
+        let edge = if ends == segment.ends { edges[index] } else { edges[index].turned() };
+        (segment.left, segment.right) = (edge.left, edge.right);
     }
-    let unlisted = edges.iter().zip(is_listed).filter(|(edge, is_listed)| !is_listed && edge.left != edge.right);
-    segments.extend(unlisted.map(|(&EdgeSides { ends: [a, b], left, right }, _)| {
-        // Boundaries run with the domain on their left.
-        let (ends, left, right) = if left == Side::Outside { ([b, a], right, left) } else { ([a, b], left, right) };
-        Segment { ends, label: 0, required: false, left, right }
-    }));
+    let unlisted = edges.into_iter().zip(is_listed).filter(|(edge, is_listed)| !is_listed && edge.left != edge.right);
+    // Boundaries run with the domain on their left.
+    segments.extend(unlisted.map(|(edge, _)| if edge.left == Side::Outside { edge.turned() } else { edge }));
     Ok(segments)
 }
 
-/// All edges of the triangles, in the order of their ends.
-fn sides_of_edges(mesh: &Mesh) -> Result<Vec<EdgeSides>> {
+/// All edges of the triangles without labels, from the smaller to the larger vertex, in the order of their ends.
+fn sides_of_edges(mesh: &Mesh) -> Result<Vec<Segment>> {
     let turns = (0..).zip(&mesh.triangles).map(|(triangle, &corners)| is_counter_clockwise(mesh, triangle, corners));
     let turns = turns.collect::<Result<Vec<bool>>>()?;
     Edges::of(&mesh.triangles).iter().map(|group| sides_of_edge(mesh, group, &turns)).collect()
 }
 
 /// The sides of an edge from the triangles at it, of which there may be one on each side.
-fn sides_of_edge(mesh: &Mesh, group: &[EdgeSide], turns: &[bool]) -> Result<EdgeSides> {
+fn sides_of_edge(mesh: &Mesh, group: &[EdgeSide], turns: &[bool]) -> Result<Segment> {
     let ends = group[0].ends;
-    let mut found = EdgeSides { ends, left: Side::Outside, right: Side::Outside };
+    let mut found = Segment { left: Side::Outside, right: Side::Outside, ..listed(ends, 0, false) };
     for side in group {
         let is_left = turns[side.triangle()] == side.forward;
         let own = if is_left { &mut found.left } else { &mut found.right };
@@ -147,7 +133,7 @@ fn is_counter_clockwise(mesh: &Mesh, triangle: u32, vertices: [u32; 3]) -> Resul
         Orientation::Left => Ok(true),
         Orientation::Right => Ok(false),
         Orientation::Collinear => {
-            let place = vertices.map(|vertex| describe(mesh, vertex)).join(", ");
+            let place = vertices.map(|vertex| mesh.describe(vertex as usize)).join(", ");
             let what = format!("triangle {} has no area", u64::from(triangle) + 1);
             Err(Error::domain(what, place, "remove the triangle, or move its vertices apart"))
         }
@@ -168,18 +154,13 @@ fn compact(mesh: &Mesh, used: &[bool], segments: Vec<Segment>, filling: Filling)
         required_points: all.filter(|&vertex| required[vertex as usize]).collect(),
         segments,
         filling,
-        tolerance: 0.0,
-        names: Vec::new(),
+        ..Pslg::default()
     };
     graph.with_points(&kept)
 }
 
-fn edge_error(mesh: &Mesh, what: String, [a, b]: [u32; 2], help: &str) -> Error {
-    Error::domain(what, format!("{} - {}", describe(mesh, a), describe(mesh, b)), help)
-}
-
-fn describe(mesh: &Mesh, vertex: u32) -> String {
-    format!("{} {}", name(vertex), mesh.point(vertex))
+fn edge_error(mesh: &Mesh, what: impl Into<String>, ends: [u32; 2], help: &str) -> Error {
+    Error::domain(what, ends.map(|vertex| mesh.describe(vertex as usize)).join(" - "), help)
 }
 
 fn name(vertex: u32) -> String {

@@ -1,10 +1,10 @@
 //! From a graph back to what files hold: outlines (`.poly`, `.geojson`), and a mesh of nothing but its points.
 
 use super::build::{check_entries, triangulate};
+use super::polygons::is_counter_clockwise;
 use super::sides::Areas;
 use super::{Poly, PolyRegion, Polygon, Polygons, Pslg, Ring, Side};
 use crate::error::Result;
-use crate::geometry::{Point, signed_area};
 use crate::mesh::Mesh;
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge};
@@ -45,7 +45,7 @@ pub fn to_polygons(pslg: &Pslg) -> Result<Polygons> {
     let mut number_of = BTreeMap::new();
     let mut rings = outlined.rings(pslg);
     // Outer rings first: they are the counter-clockwise ones.
-    rings.sort_by_key(|(_, ring)| area(&ring.points) <= 0.0);
+    rings.sort_by_key(|(_, ring)| is_counter_clockwise(&ring.points) != Some(true));
     for ((part, region), ring) in rings {
         let index = *number_of.entry(part).or_insert_with(|| {
             polygons.push(Polygon { feature: polygons.len() + 1, number: 1, region, rings: Vec::new() });
@@ -157,9 +157,4 @@ impl Outlined {
         let label = most.map_or(0, |(label, _)| label);
         Ring { points: walk.iter().map(|&h| self.planar.ends(h)[0]).collect(), label }
     }
-}
-
-fn area(points: &[Point]) -> f64 {
-    let pairs = points.iter().zip(points.iter().cycle().skip(1));
-    pairs.map(|(&p, &q)| signed_area(points[0], p, q)).sum()
 }

@@ -64,8 +64,8 @@ pub fn from_poly(poly: &Poly) -> Result<Pslg> {
         required_points: (0..count).filter(|&vertex| !is_joined[vertex as usize]).collect(),
         segments,
         filling: Filling::Enclosed { holes: poly.holes.clone(), regions },
-        tolerance: 0.0,
         names: if poly.first == 0 { (0..count).map(name).collect() } else { Vec::new() },
+        ..Pslg::default()
     })
 }
 

@@ -1,7 +1,7 @@
 //! Domains from polygons.
 
 use super::distinct::key;
-use super::{Filling, Pslg, Segment, Side};
+use super::{Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, orientation};
 use crate::lists::in_order;
@@ -59,11 +59,9 @@ pub fn from_polygons(polygons: &Polygons) -> Result<Pslg> {
     Ok(Pslg {
         point_labels: vec![0; builder.points.len()],
         points: builder.points,
-        required_points: Vec::new(),
         segments: builder.segments,
-        filling: Filling::Sides,
-        tolerance: 0.0,
         names: builder.names,
+        ..Pslg::default()
     })
 }
 
@@ -150,7 +148,7 @@ impl Builder {
 }
 
 /// The orientation of a closed line that does not cross itself; `None` if it encloses nothing.
-fn is_counter_clockwise(points: &[Point]) -> Option<bool> {
+pub(super) fn is_counter_clockwise(points: &[Point]) -> Option<bool> {
     let origin = *points.first()?;
     let (mut area, mut size) = (0.0, 0.0);
     for index in 0..points.len() {

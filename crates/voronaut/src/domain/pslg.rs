@@ -28,10 +28,20 @@ pub struct Segment {
     pub right: Side,
 }
 
+impl Segment {
+    /// The same segment in the other direction.
+    #[must_use]
+    pub(super) fn turned(self) -> Self {
+        let [a, b] = self.ends;
+        Self { ends: [b, a], left: self.right, right: self.left, ..self }
+    }
+}
+
 /// How areas are told apart where the sides of the segments do not say.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Filling {
     /// Every segment says what lies on both sides.
+    #[default]
     Sides,
     /// Areas enclosed by segments alternate: in, out (a hole), in again (an island) ...
     EvenOdd,
@@ -45,7 +55,7 @@ pub enum Filling {
 }
 
 /// A planar straight-line graph: the raw form of every planar domain.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pslg {
     /// Positions.
     pub points: Vec<Point>,

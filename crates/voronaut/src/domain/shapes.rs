@@ -1,6 +1,6 @@
 //! Domains that need no file, and the texts that name them.
 
-use super::{Domain, Filling, Pslg, Segment, Side};
+use super::{Domain, Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
 use std::f64::consts::FRAC_PI_2;
@@ -87,10 +87,8 @@ fn region_inside(points: Vec<Point>, label: impl Fn(usize) -> i32, tolerance: f6
         segments: (0..count).map(segment).collect(),
         point_labels: vec![0; count],
         points,
-        required_points: Vec::new(),
-        filling: Filling::Sides,
         tolerance,
-        names: Vec::new(),
+        ..Pslg::default()
     }
 }
 
@@ -155,7 +153,7 @@ pub(crate) fn read_numbers<const N: usize>(spec: &str, numbers: &str, usage: &st
 }
 
 fn not_planar(what: String) -> Error {
-    Error::Unsupported { what, help: format!("give {SHAPES}, or a planar domain in a file") }
+    Error::unsupported(what, format!("give {SHAPES}, or a planar domain in a file"))
 }
 
 #[cfg(test)]

@@ -117,16 +117,12 @@ impl Areas {
             .find(|&h| outside(h.face()) && planar.topology.twin(h).is_none_or(|t| outside(t.face())));
         let Some(h) = useless else { return Ok(()) };
         let segment = planar.topology.constraint(h).expect("constrained").0;
+        let network = pslg.network();
+        let loose_end = network.vertices().find(|&v| network.at(v).len() == 1);
         let place =
-            loose_end(pslg).map_or_else(|| format!("segment {}", pslg.describe_segment(segment)), |v| pslg.describe(v));
+            loose_end.map_or_else(|| format!("segment {}", pslg.describe_segment(segment)), |v| pslg.describe(v));
         Err(Error::domain("the boundary is open, or a segment lies outside of the domain,", place, OPEN_HELP))
     }
-}
-
-fn loose_end(pslg: &Pslg) -> Option<u32> {
-    let mut degree = vec![0; pslg.points.len()];
-    pslg.segments.iter().flat_map(|s| s.ends).for_each(|v| degree[v as usize] += 1);
-    degree.iter().position(|&d| d == 1).map(|v| v as u32)
 }
 
 fn constrained_half_edges(planar: &Planar) -> impl Iterator<Item = HalfEdge> + '_ {

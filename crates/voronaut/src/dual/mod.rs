@@ -14,7 +14,7 @@ mod patch;
 
 pub(crate) use consult::Consultation;
 pub use consult::{Disagreement, Road};
-pub(crate) use moving::Moving;
+pub(crate) use moving::{Moving, sites};
 pub(crate) use on_surface::SurfaceDual;
 
 use crate::domain::Domain;

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::geodesic::LocalMetric;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
+use crate::parallel::prelude::*;
 use crate::planar::Planar;
 use crate::triangulation::{Triangulation, VertexId};
 
@@ -15,7 +16,7 @@ pub(crate) trait Moving: Sync {
     /// Seeds, edges, and the metric at the seeds, to come back to.
     type Saved;
     /// A place with what the metric is there.
-    type Site: Copy;
+    type Site: Copy + Send + Sync;
 
     /// Topology.
     fn topology(&self) -> &Triangulation;
@@ -64,6 +65,15 @@ pub(crate) trait Moving: Sync {
     fn straight_length(&self, ends: [Self::Site; 2]) -> f64;
     /// After a seed has moved: measures the metric there and flips around it.
     fn settle_move(&mut self, v: VertexId);
+}
+
+/// Where all seeds are, by id, in parallel; in slots without a seed that of some other.
+pub(crate) fn sites<M: Moving>(dual: &M) -> Vec<M::Site> {
+    let topology = dual.topology();
+    let some = topology.vertices().next().unwrap_or(VertexId(0));
+    let seed = |v: u32| if topology.is_vertex(VertexId(v)) { VertexId(v) } else { some };
+    let slots = (0..topology.vertex_slots() as u32).into_par_iter();
+    slots.with_min_len(64).map(|v| dual.site(seed(v))).collect()
 }
 
 /// Seeds, edges and the metric at the seeds, with its factor.

@@ -2,15 +2,15 @@
 //! from the expansions at both ends; where the metric is rough, by Simpson's rule.
 
 use super::margin::KINKS;
-use super::on_surface::{FOLDED, SurfaceDual, UPRIGHT};
+use super::moving::sites;
+use super::on_surface::{FOLDED, SurfaceDual, SurfaceSite, UPRIGHT};
 use super::{LIMIT, Moving, POOR, TIE};
 use crate::geodesic::{Length, Margin, hermite_between, margin_of_estimates};
+use crate::geometry::NEEDLE;
 use crate::in_circle::Quad;
 use crate::parallel::prelude::*;
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Rounds, Triangulation, VertexId, flip_in_rounds};
 
-/// Triangles below this quality are nearly flat.
-const NEARLY_FLAT: f64 = 0.05;
 /// Rounds of flips that unfold or round off, at most.
 const ROUNDS: usize = 64;
 
@@ -100,18 +100,19 @@ impl SurfaceDual<'_> {
     /// Flips edges of triangles that are nearly flat, as those of a mesh are measured, whatever lengths say, as long as the worse of
     /// the two gets better. Returns the number of flips.
     pub(crate) fn round_off(&mut self) -> u64 {
-        flip_in_rounds(&mut Improving { dual: self, by: Self::rounding }, ROUNDS)
+        let sites = sites(self);
+        flip_in_rounds(&mut Improving { dual: self, by: |dual: &Self, h| dual.rounding(&sites, h) }, ROUNDS)
     }
 
     /// The quality of the worse triangle of an edge, where it is poor and better after a flip.
-    fn rounding(&self, h: HalfEdge) -> Option<f64> {
+    fn rounding(&self, sites: &[SurfaceSite], h: HalfEdge) -> Option<f64> {
         let Flip { now, then } = self.flip_of(h)?;
         let worse = |pair: [[VertexId; 3]; 2]| {
-            pair.map(|corners| self.quality(corners.map(|v| self.site(v)))).into_iter().fold(1.0, f64::min)
+            pair.map(|corners| self.quality(corners.map(|v| sites[v.index()]))).into_iter().fold(1.0, f64::min)
         };
         let before = worse(now);
         let may_flip = || self.leaning(then).upright >= self.leaning(now).upright.min(UPRIGHT);
-        (before < NEARLY_FLAT && worse(then) > before && may_flip()).then_some(before)
+        (before < NEEDLE && worse(then) > before && may_flip()).then_some(before)
     }
 
     /// By how much more area leans over after a flip, of an edge of a triangle that is folded over; `None` where it is no better.
@@ -169,25 +170,29 @@ impl SurfaceDual<'_> {
 }
 
 /// A mesh whose edges are flipped where a number says so, the least first.
-struct Improving<'a, 'b> {
+struct Improving<'a, 'b, F> {
     dual: &'a mut SurfaceDual<'b>,
-    by: fn(&SurfaceDual<'b>, HalfEdge) -> Option<f64>,
+    by: F,
 }
 
-impl Rounds for Improving<'_, '_> {
+impl<'b, F: Fn(&SurfaceDual<'b>, HalfEdge) -> Option<f64> + Sync> Rounds for Improving<'_, 'b, F> {
     fn topology(&self) -> &Triangulation {
         self.dual.topology()
     }
 
     fn wanted(&mut self, edges: &[HalfEdge]) -> Vec<(f64, HalfEdge)> {
-        let (dual, by) = (&*self.dual, self.by);
+        let (dual, by) = (&*self.dual, &self.by);
         edges.par_iter().with_min_len(64).filter_map(|&h| Some((by(dual, h)?, h))).collect()
     }
 
     fn flip(&mut self, h: HalfEdge) -> bool {
-        self.dual.state.topology.flip(h);
-        self.dual.flips += 1;
-        true
+        // Another flip of the round may have joined the same two seeds.
+        let may_flip = self.dual.topology().can_flip(h);
+        if may_flip {
+            self.dual.state.topology.flip(h);
+            self.dual.flips += 1;
+        }
+        may_flip
     }
 }
 
@@ -257,5 +262,24 @@ mod tests {
         assert_eq!((dual.round_off(), dual.round_off()), (1, 0));
         let least = dual.triangles().into_iter().map(|t| dual.quality(t.map(|v| dual.site(VertexId(v)))));
         assert!(least.fold(1.0, f64::min) > 0.5);
+    }
+
+    #[test]
+    fn flips_of_one_round_do_not_join_two_seeds_twice() {
+        let points: Vec<[f64; 3]> =
+            [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]].map(|p| p.map(f64::from)).to_vec();
+        let triangles = vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+        let octahedron = Mesh { points, triangles, ..Mesh::default() };
+        let input = Input::new(Surface::new(&octahedron).unwrap(), None);
+        let topology = input.surface.topology().clone();
+        let places = topology.vertices().map(|v| input.surface.place_of(v).unwrap()).collect();
+        let metric = Constant(Tensor3::IDENTITY);
+        let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
+        // Each edge of the square 0 2 1 3 flips to an edge from 4 to 5.
+        let by = |dual: &SurfaceDual, h: HalfEdge| {
+            let flip = dual.flip_of(h)?;
+            flip.then.iter().all(|t| [4, 5].iter().all(|&v| t.contains(&VertexId(v)))).then_some(0.0)
+        };
+        assert_eq!(flip_in_rounds(&mut Improving { dual: &mut dual, by }, 1), 1);
     }
 }

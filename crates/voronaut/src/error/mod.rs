@@ -97,6 +97,11 @@ impl Error {
         }
     }
 
+    /// An [`Error::Io`] from its two parts.
+    pub fn io(path: impl Into<PathBuf>, source: std::io::Error) -> Self {
+        Error::Io { path: path.into(), source }
+    }
+
     /// A [`Error::Parse`] from its three parts.
     pub fn parse(place: impl Into<String>, what: impl Into<String>, help: impl Into<String>) -> Self {
         Error::Parse { place: place.into(), what: what.into(), help: help.into() }
@@ -110,5 +115,19 @@ impl Error {
     /// A [`Error::Metric`] from its three parts.
     pub fn metric(what: impl Into<String>, place: impl Into<String>, help: impl Into<String>) -> Self {
         Error::Metric { what: what.into(), place: place.into(), help: help.into() }
+    }
+    /// A [`Error::Limit`] from its two parts.
+    pub fn limit(what: impl Into<String>, help: impl Into<String>) -> Self {
+        Error::Limit { what: what.into(), help: help.into() }
+    }
+
+    /// A [`Error::Mesh`] from its three parts.
+    pub fn mesh(what: impl Into<String>, place: impl Into<String>, help: impl Into<String>) -> Self {
+        Error::Mesh { what: what.into(), place: place.into(), help: help.into() }
+    }
+
+    /// An [`Error::Unsupported`] from its two parts.
+    pub fn unsupported(what: impl Into<String>, help: impl Into<String>) -> Self {
+        Error::Unsupported { what: what.into(), help: help.into() }
     }
 }

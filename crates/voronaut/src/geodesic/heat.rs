@@ -100,10 +100,10 @@ impl<'a> Heat<'a> {
             time *= 4.0;
             longer = Some(factor(&flow(&self.mass, &self.stiffness, time), &self.elimination)?);
         }
-        Err(Error::Unsupported {
-            what: "heat on a canvas so long that it vanishes on the way".into(),
-            help: "use another method, such as march".into(),
-        })
+        Err(Error::unsupported(
+            "heat on a canvas so long that it vanishes on the way",
+            "use another method, such as march",
+        ))
     }
 
     /// Distances are known but for a constant in each part: that which fits the vertices around sources best. These keep
@@ -162,9 +162,11 @@ fn flow(mass: &[f64], stiffness: &Symmetric, time: f64) -> Symmetric {
 }
 
 fn factor(matrix: &Symmetric, elimination: &Elimination) -> Result<Cholesky> {
-    Cholesky::of(matrix, elimination).ok_or_else(|| Error::Unsupported {
-        what: "heat on this canvas, whose matrix is not positive definite by rounding".into(),
-        help: "use another method, such as march, or limit the metric (`a_max`)".into(),
+    Cholesky::of(matrix, elimination).ok_or_else(|| {
+        Error::unsupported(
+            "heat on this canvas, whose matrix is not positive definite by rounding",
+            "use another method, such as march, or limit the metric (`a_max`)",
+        )
     })
 }
 

@@ -1,6 +1,6 @@
 //! The metric around a point to second order: tensor, Christoffel symbols, logarithm and exponential map.
 
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geometry::{Point, Tensor, Vector, from_frame};
 use crate::metric::MetricField;
 
 /// Finite differences are taken over this share of the metric unit length: at the scale of a cell, so that noise of
@@ -72,8 +72,7 @@ impl LocalMetric {
         let (mut sum, mut number, mut slopes) = (centre, 1.0, [Tensor::default(); 2]);
         for k in 0..RING / 2 {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / RING as f64).sin_cos();
-            let y = sin / c;
-            let offset = Vector::new((cos - b * y) / a, y) * RING_RADIUS;
+            let offset = from_frame([a, b, c], Vector::new(cos, sin)) * RING_RADIUS;
             let (ahead, behind) = (field.at(p + offset), field.at(p - offset));
             if ahead.is_positive_definite() && behind.is_positive_definite() {
                 (sum, number) = (sum + ahead + behind, number + 2.0);

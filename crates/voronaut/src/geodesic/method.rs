@@ -47,7 +47,7 @@ impl Method {
             return Ok(());
         }
         let what = format!("a diagram by {self}, which gives distances alone");
-        Err(Error::Unsupported { what, help: format!("use one of {}", Self::names(Self::drives_diagrams)) })
+        Err(Error::unsupported(what, format!("use one of {}", Self::names(Self::drives_diagrams))))
     }
 
     /// The names of some methods, for messages.

@@ -5,6 +5,7 @@
 //! shortest of the paths that pass vertices as it does, which need not be the shortest of all.
 
 use super::edge_path::edge_path;
+use super::in_circle::opposite;
 use crate::geometry::Point;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 use std::f64::consts::PI;
@@ -124,10 +125,8 @@ impl Strip<'_> {
     fn angle_at(&self, v: VertexId, h: HalfEdge) -> f64 {
         let out = if self.topology.origin(h) == v { h } else { h.next() };
         let [a, b, c] = [out, out.prev(), out.next()].map(|e| self.topology.length(e));
-        let cosine = (a * a + b * b - c * c) / (2.0 * a * b);
-        // Well defined for thin faces, too.
-        let square = (a + b + c) * (a + b - c) * (a - b + c) * (b + c - a);
-        (0.5 * square.max(0.0).sqrt() / (a * b)).atan2(cosine)
+        let ((cosine, sine), _) = opposite(c, a, b);
+        sine.atan2(cosine)
     }
 
     /// Drops portals that are crossed back at once, and those at the ends of the path.

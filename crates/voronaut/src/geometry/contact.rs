@@ -1,8 +1,9 @@
 //! Whether two triangles in space meet where they should not, by exact predicates.
 
-use super::{Aabb3, Bounds, BoxTree, Orientation, Point, Point3, orientation, signed_area, signed_volume};
-use crate::lists::in_order;
-use crate::parallel::prelude::*;
+use super::tree::boxes_meet;
+use super::{
+    Aabb3, Bounds, Orientation, Point, Point3, around, meeting_pairs, orientation, signed_area, signed_volume,
+};
 
 /// A triangle that is not flat, by the numbers and the positions of its corners.
 #[derive(Clone, Copy, Debug)]
@@ -25,23 +26,12 @@ fn contact(t: &Corners, u: &Corners) -> Option<Point3> {
 }
 
 /// All pairs of triangles that meet ([`contact`]), in order, the smaller number first, each with a point that both have, rounded; only
-/// pairs of which one at least is `asked` for. Positions are finite.
-///
-/// Pairs whose boxes meet are found in a tree: O(n log n) where triangles are not much longer than their distance from
-/// those that are no neighbours.
+/// pairs of which one at least is `asked` for. Positions are finite. Fast where triangles are not much longer than their distance from
+/// those that are no neighbours ([`meeting_pairs`]).
 pub(crate) fn contacts(triangles: &[Corners], asked: impl Fn(usize) -> bool + Sync) -> Vec<([usize; 2], Point3)> {
-    let bounds = |i: usize| -> Bounds<3> { Aabb3::of(triangles[i].points).expect("three corners").into() };
-    let tree = BoxTree::new((0..triangles.len()).map(|i| (bounds(i), i)));
-    let of_one = |i: usize| {
-        // Of two that are asked for, the smaller one looks.
-        let others = tree.meeting(bounds(i)).copied().filter(|&j| if asked(j) { i < j } else { i != j });
-        let met = |[i, j]: [usize; 2]| Some(([i, j], contact(&triangles[i], &triangles[j])?));
-        others.filter_map(|j| met(in_order([i, j]))).collect::<Vec<_>>()
-    };
-    let looking = (0..triangles.len()).into_par_iter().filter(|&i| asked(i));
-    let mut all: Vec<([usize; 2], Point3)> = looking.flat_map_iter(of_one).collect();
-    all.sort_unstable_by_key(|met| met.0);
-    all
+    let bounds = |t: &Corners| Aabb3::of(t.points).expect("three corners").into();
+    let boxes: Vec<Bounds<3>> = triangles.iter().map(bounds).collect();
+    meeting_pairs(&boxes, asked, |[i, j]| contact(&triangles[i], &triangles[j]))
 }
 
 /// Whether three points lie on one line, exactly: their shadows on all three coordinate planes do.
@@ -123,21 +113,15 @@ fn meet_in_plane([p, q]: [Point3; 2], triangle: [Point3; 3]) -> Option<Point3> {
             let (left, right) = (orientation(a, b, p), orientation(a, b, q));
             left != right || left == Orientation::Collinear
         };
-        across(a, b, start, end) && across(start, end, a, b) && boxes_meet([a, b], [start, end])
+        across(a, b, start, end) && across(start, end, a, b)
+            // Segments of one line meet where their boxes do.
+            && boxes_meet(&around([a, b]), &around([start, end]))
     });
     crossed.map(|[a, b]| {
         let (from, to) = (signed_area(a, b, start), signed_area(a, b, end));
         let share = from / (from - to);
         p.lerp(q, if share.is_finite() { share } else { 0.5 })
     })
-}
-
-/// Segments of one line meet where their boxes do.
-fn boxes_meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
-    a.x.max(b.x) >= c.x.min(d.x)
-        && c.x.max(d.x) >= a.x.min(b.x)
-        && a.y.max(b.y) >= c.y.min(d.y)
-        && c.y.max(d.y) >= a.y.min(b.y)
 }
 
 /// The coordinate that can be left out of a triangle's plane without losing the triangle.

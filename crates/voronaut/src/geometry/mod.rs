@@ -23,4 +23,7 @@ pub use tensor::{Eigen, Tensor};
 pub(crate) use tensor::{from_frame, to_frame};
 pub(crate) use tensor3::Eigen3;
 pub use tensor3::{TangentPlane, Tensor3};
-pub(crate) use tree::{Bounds, BoxTree, widened};
+pub(crate) use tree::{Bounds, BoxTree, around, meeting_pairs, widened};
+
+/// Triangles of less quality than this, of 1, are needles: their height is less than about a fortieth of their longest side.
+pub(crate) const NEEDLE: f64 = 0.05;

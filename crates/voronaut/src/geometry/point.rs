@@ -86,9 +86,29 @@ macro_rules! affine {
                 a.lerp(b, if t.is_nan() { 0.0 } else { t })
             }
 
+            /// The squared distance to the nearest point of a triangle's sides, and its barycentric coordinates.
+            pub(crate) fn nearest_on_sides(self, [a, b, c]: [Self; 3]) -> (f64, [f64; 3]) {
+                let on_side = |(i, (start, end)): (usize, (Self, Self))| {
+                    let (along, offset) = (end - start, self - start);
+                    let square = along.dot(along);
+                    let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+                    let rest = offset - along * t;
+                    let mut weights = [0.0; 3];
+                    (weights[i], weights[(i + 1) % 3]) = (1.0 - t, t);
+                    (rest.dot(rest), weights)
+                };
+                let sides = [(a, b), (b, c), (c, a)].into_iter().enumerate().map(on_side);
+                sides.min_by(|a, b| a.0.total_cmp(&b.0)).expect("three sides")
+            }
+
             /// Euclidean distance.
             pub fn distance(self, other: Self) -> f64 {
                 (self - other).norm()
+            }
+
+            /// The length of the longest side of a triangle.
+            pub(crate) fn longest_side([a, b, c]: [Self; 3]) -> f64 {
+                a.distance(b).max(b.distance(c)).max(c.distance(a))
             }
 
             /// Whether all coordinates are finite.

@@ -3,7 +3,9 @@
 //! Flat, built once, read by any number of threads without allocating; what is found first of several that are equally near
 //! depends on the items alone.
 
-use super::{Aabb, Aabb3};
+use super::{Aabb, Aabb3, Point};
+use crate::lists::in_order;
+use crate::parallel::prelude::*;
 
 /// Items in boxes of so many dimensions.
 #[derive(Clone, Debug)]
@@ -44,11 +46,6 @@ impl<T, const D: usize> BoxTree<T, D> {
         Self { items: order.into_iter().filter_map(|i| items[i as usize].take()).collect(), nodes }
     }
 
-    /// The box of all; `None` of no item.
-    pub(crate) fn bounds(&self) -> Option<Bounds<D>> {
-        self.nodes.first().map(|root| root.bounds)
-    }
-
     /// The items whose boxes have a point in common with a box, if only of their borders.
     pub(crate) fn meeting(&self, bounds: Bounds<D>) -> impl Iterator<Item = &T> {
         let mut pending = [0; MAX_DEPTH + 1];
@@ -58,7 +55,7 @@ impl<T, const D: usize> BoxTree<T, D> {
                 count -= 1;
                 let index: usize = pending[count];
                 let node = &self.nodes[index];
-                if !meet(&node.bounds, &bounds) {
+                if !boxes_meet(&node.bounds, &bounds) {
                     continue;
                 }
                 if node.count > 0 {
@@ -70,7 +67,7 @@ impl<T, const D: usize> BoxTree<T, D> {
             }
             None
         });
-        leaves.flatten().filter(move |(own, _)| meet(own, &bounds)).map(|(_, item)| item)
+        leaves.flatten().filter(move |(own, _)| boxes_meet(own, &bounds)).map(|(_, item)| item)
     }
 
     /// The item with the least squared distance from `p`, of several the first that is met; `None` of no item.
@@ -141,6 +138,30 @@ impl From<Aabb3> for Bounds<3> {
     }
 }
 
+/// What `met` makes of the numbers of boxes that meet, in order, the smaller number first; only of pairs of which one at least is
+/// `asked` for. O(n log n) where boxes meet few others.
+pub(crate) fn meeting_pairs<const D: usize, T: Send>(
+    boxes: &[Bounds<D>],
+    asked: impl Fn(usize) -> bool + Sync,
+    met: impl Fn([usize; 2]) -> Option<T> + Sync,
+) -> Vec<([usize; 2], T)> {
+    let tree = BoxTree::new(boxes.iter().copied().zip(0..));
+    let of_one = |i: usize| {
+        // Of two that are asked for, the smaller one looks.
+        let others = tree.meeting(boxes[i]).copied().filter(|&j| if asked(j) { i < j } else { i != j });
+        others.map(|j| in_order([i, j])).filter_map(|pair| Some((pair, met(pair)?))).collect::<Vec<_>>()
+    };
+    let looking = (0..boxes.len()).into_par_iter().filter(|&i| asked(i));
+    let mut all: Vec<([usize; 2], T)> = looking.flat_map_iter(of_one).collect();
+    all.sort_unstable_by_key(|met| met.0);
+    all
+}
+
+/// The box of a segment.
+pub(crate) fn around([p, q]: [Point; 2]) -> Bounds<2> {
+    [[p.x.min(q.x), p.y.min(q.y)], [p.x.max(q.x), p.y.max(q.y)]]
+}
+
 /// What is within so much of a box.
 pub(crate) fn widened<const D: usize>([low, high]: Bounds<D>, by: f64) -> Bounds<D> {
     [low.map(|x| x - by), high.map(|x| x + by)]
@@ -172,7 +193,8 @@ fn union<const D: usize>(a: Bounds<D>, b: Bounds<D>) -> Bounds<D> {
     [std::array::from_fn(|k| a[0][k].min(b[0][k])), std::array::from_fn(|k| a[1][k].max(b[1][k]))]
 }
 
-fn meet<const D: usize>([a_low, a_high]: &Bounds<D>, [b_low, b_high]: &Bounds<D>) -> bool {
+/// Whether two boxes have a point in common, if only of their borders.
+pub(super) fn boxes_meet<const D: usize>([a_low, a_high]: &Bounds<D>, [b_low, b_high]: &Bounds<D>) -> bool {
     (0..D).all(|k| a_low[k] <= b_high[k] && b_low[k] <= a_high[k])
 }
 
@@ -211,7 +233,7 @@ mod tests {
             let tree = BoxTree::new(boxes.iter().copied().zip(0..));
             let mut seen: Vec<usize> = tree.meeting(boxes[0]).copied().collect();
             seen.sort_unstable();
-            let truth: Vec<usize> = (0..boxes.len()).filter(|&i| meet(&boxes[i], &boxes[0])).collect();
+            let truth: Vec<usize> = (0..boxes.len()).filter(|&i| boxes_meet(&boxes[i], &boxes[0])).collect();
             prop_assert_eq!(seen, truth);
         }
     }
@@ -219,7 +241,7 @@ mod tests {
     #[test]
     fn an_empty_tree_has_no_items() {
         let tree: BoxTree<(), 2> = BoxTree::new([]);
-        assert!(tree.nearest([0.0; 2], |()| 0.0).is_none() && tree.bounds().is_none());
+        assert!(tree.nearest([0.0; 2], |()| 0.0).is_none());
         assert_eq!(tree.meeting([[-1.0; 2], [1.0; 2]]).count(), 0);
     }
 

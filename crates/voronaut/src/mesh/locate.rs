@@ -185,24 +185,8 @@ fn weights_within([a, b, c]: [Point; 3], p: Point) -> Option<[f64; 3]> {
 
 /// Squared distance of `p` to a triangle of either orientation, even without area, and the barycentric coordinates
 /// of the nearest point.
-fn nearest_point([a, b, c]: [Point; 3], p: Point) -> (f64, [f64; 3]) {
-    if let Some(weights) = weights_within([a, b, c], p) {
-        return (0.0, weights);
-    }
-    let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
-    for (i, (start, end)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
-        let (along, offset) = (end - start, p - start);
-        let square = along.dot(along);
-        let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        let rest: Vector = offset - along * t;
-        if rest.dot(rest) < best.0 {
-            let mut weights = [0.0; 3];
-            weights[i] = 1.0 - t;
-            weights[(i + 1) % 3] = t;
-            best = (rest.dot(rest), weights);
-        }
-    }
-    best
+fn nearest_point(corners: [Point; 3], p: Point) -> (f64, [f64; 3]) {
+    weights_within(corners, p).map_or_else(|| p.nearest_on_sides(corners), |weights| (0.0, weights))
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ pub use solution::{Solution, SolutionValues, Solutions, TensorOrder};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3};
 use crate::lists::marked;
+use crate::parallel::prelude::*;
 
 /// A triangle mesh with the user's labels ("references" in Medit).
 ///
@@ -58,7 +59,7 @@ impl Mesh {
     }
 
     /// Twice the area of a planar triangle of either orientation.
-    pub(crate) fn double_area(&self, triangle: [u32; 3]) -> f64 {
+    pub fn double_area(&self, triangle: [u32; 3]) -> f64 {
         let [a, b, c] = self.corners_of(triangle);
         (b - a).cross(c - a).abs()
     }
@@ -105,9 +106,19 @@ impl Mesh {
             if let Some(number) = found {
                 let (what, place) =
                     (format!("{one} {number} (from 0) does not exist"), format!("a list of {count} {many}"));
-                return Err(Error::Mesh { what, place, help: "correct the number".into() });
+                return Err(Error::mesh(what, place, "correct the number"));
             }
         }
         Ok(())
     }
+}
+
+/// Vertices that lie exactly where others with smaller numbers lie, each behind the first of these.
+pub(crate) fn coincident(positions: impl IntoIterator<Item = (u32, Point3)>) -> Vec<[u32; 2]> {
+    // Adding 0 makes one zero of both.
+    let key = |p: Point3| p.to_array().map(|x| (x + 0.0).to_bits());
+    let mut keyed: Vec<([u64; 3], u32)> = positions.into_iter().map(|(v, p)| (key(p), v)).collect();
+    keyed.par_sort_unstable();
+    let others = keyed.chunk_by(|a, b| a.0 == b.0).flat_map(|same| same[1..].iter().map(|other| [same[0].1, other.1]));
+    others.collect()
 }

@@ -60,12 +60,7 @@ pub enum SolutionValues {
 impl SolutionValues {
     /// How many entries there are.
     pub fn count(&self) -> usize {
-        match self {
-            SolutionValues::Scalar(entries) => entries.len(),
-            SolutionValues::Vector { components, numbers } => numbers.len() / components,
-            SolutionValues::Tensor(entries) => entries.len(),
-            SolutionValues::Tensor3(entries) => entries.len(),
-        }
+        self.numbers().len() / self.components()
     }
 
     /// How many numbers an entry has.
@@ -83,11 +78,15 @@ impl SolutionValues {
     /// # Panics
     /// If there is no such entry.
     pub fn row(&self, i: usize) -> &[f64] {
+        &self.numbers()[i * self.components()..][..self.components()]
+    }
+
+    /// The numbers of all entries, one after the other.
+    fn numbers(&self) -> &[f64] {
         match self {
-            SolutionValues::Scalar(entries) => std::slice::from_ref(&entries[i]),
-            SolutionValues::Vector { components, numbers } => &numbers[i * components..][..*components],
-            SolutionValues::Tensor(entries) => &entries[i],
-            SolutionValues::Tensor3(entries) => &entries[i],
+            SolutionValues::Scalar(numbers) | SolutionValues::Vector { numbers, .. } => numbers,
+            SolutionValues::Tensor(entries) => entries.as_flattened(),
+            SolutionValues::Tensor3(entries) => entries.as_flattened(),
         }
     }
 
@@ -190,28 +189,24 @@ impl std::str::FromStr for TensorOrder {
 impl SolutionValues {
     /// The same tensors in the order on disk, if these are in another; what is no tensor stays as it is.
     #[must_use]
-    pub fn from_order(mut self, order: TensorOrder) -> Self {
-        match &mut self {
-            Self::Tensor(entries) => entries.iter_mut().for_each(|e| *e = order.planar_places().map(|i| e[i])),
-            Self::Tensor3(entries) => entries.iter_mut().for_each(|e| *e = order.places().map(|i| e[i])),
-            Self::Scalar(_) | Self::Vector { .. } => {}
-        }
-        self
+    pub fn from_order(self, order: TensorOrder) -> Self {
+        self.arranged(order.planar_places(), order.places())
     }
 
     /// The same tensors in another order, if these are in that on disk: undoes [`SolutionValues::from_order`].
     #[must_use]
-    pub fn to_order(mut self, order: TensorOrder) -> Self {
-        fn moved<const N: usize>(entry: [f64; N], places: [usize; N]) -> [f64; N] {
-            let mut moved = [0.0; N];
-            for (place, value) in places.into_iter().zip(entry) {
-                moved[place] = value;
-            }
-            moved
+    pub fn to_order(self, order: TensorOrder) -> Self {
+        fn inverse<const N: usize>(places: [usize; N]) -> [usize; N] {
+            std::array::from_fn(|i| places.iter().position(|&place| place == i).expect("every place once"))
         }
+        self.arranged(inverse(order.planar_places()), inverse(order.places()))
+    }
+
+    /// The same tensors, their entries taken from these places.
+    fn arranged(mut self, planar: [usize; 3], space: [usize; 6]) -> Self {
         match &mut self {
-            Self::Tensor(entries) => entries.iter_mut().for_each(|e| *e = moved(*e, order.planar_places())),
-            Self::Tensor3(entries) => entries.iter_mut().for_each(|e| *e = moved(*e, order.places())),
+            Self::Tensor(entries) => entries.iter_mut().for_each(|e| *e = planar.map(|i| e[i])),
+            Self::Tensor3(entries) => entries.iter_mut().for_each(|e| *e = space.map(|i| e[i])),
             Self::Scalar(_) | Self::Vector { .. } => {}
         }
         self

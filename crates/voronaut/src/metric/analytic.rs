@@ -1,8 +1,8 @@
 //! Metric fields in closed form: uniform, and the planar fields of RR-9103, section 15.
 
 use super::MetricField;
-use super::validate::check_tensor_at;
-use crate::error::{Error, Result};
+use super::validate::{check_tensor_at, require};
+use crate::error::Result;
 use crate::geometry::{Point, Tensor, Vector};
 
 /// The same tensor everywhere; the identity by default.
@@ -68,7 +68,7 @@ impl Uniform {
     /// Whether the tensor is a metric.
     ///
     /// # Errors
-    /// [`Error::Metric`].
+    /// [`Error::Metric`](crate::Error::Metric).
     pub(crate) fn check(&self) -> Result<()> {
         check_tensor_at(self.0, || "every point".into())
     }
@@ -78,7 +78,7 @@ impl Swirl {
     /// Whether the angle is finite.
     ///
     /// # Errors
-    /// [`Error::Parse`].
+    /// [`Error::Parse`](crate::Error::Parse).
     pub(crate) fn check(&self) -> Result<()> {
         require(self.nu.is_finite(), "metric swirl", "nu", self.nu, "finite")
     }
@@ -88,7 +88,7 @@ impl Shock {
     /// Whether `phi` is not negative, `lambda` positive, and both finite.
     ///
     /// # Errors
-    /// [`Error::Parse`] that names the parameter.
+    /// [`Error::Parse`](crate::Error::Parse) that names the parameter.
     pub(crate) fn check(&self) -> Result<()> {
         let place = "metric shock";
         require(self.phi.is_finite() && self.phi >= 0.0, place, "phi", self.phi, "finite and at least 0")?;
@@ -149,14 +149,6 @@ impl MetricField for Shock {
 /// |50 (1 - (f - 1)^2)|
 fn stretch(f: f64) -> f64 {
     (50.0 * (1.0 - (f - 1.0).powi(2))).abs()
-}
-
-/// An error that names a parameter unless it is as `needed`.
-pub(super) fn require(holds: bool, place: &str, name: &str, value: f64, needed: &str) -> Result<()> {
-    if holds {
-        return Ok(());
-    }
-    Err(Error::parse(place, format!("{name} = {value}"), format!("{name} must be {needed}")))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Limits on the sizes and the anisotropy that a metric asks for.
 
 use super::MetricField;
+use super::validate::require;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
 
@@ -24,11 +25,9 @@ impl Bounds {
         for (name, limit, least) in [("h_min", self.h_min, 0.0), ("h_max", self.h_max, 0.0), ("a_max", self.a_max, 1.0)]
         {
             let Some(value) = limit else { continue };
-            if !value.is_finite() || value < least || value == 0.0 {
-                let needed = if least == 0.0 { "positive" } else { "at least 1" };
-                let help = format!("{name} must be finite and {needed}; leave it out for no limit");
-                return Err(Error::parse("metric bounds", format!("{name} = {value}"), help));
-            }
+            let needed = if least == 0.0 { "positive" } else { "at least 1" };
+            let needed = format!("finite and {needed}; leave it out for no limit");
+            require(value.is_finite() && value >= least && value != 0.0, "metric bounds", name, value, &needed)?;
         }
         if let (Some(low), Some(high)) = (self.h_min, self.h_max)
             && low > high
@@ -68,14 +67,14 @@ impl Bounds {
     }
 }
 
-/// A field within [`Bounds`].
+/// A field within [`Bounds`]; one on a surface in the tangent planes.
 #[derive(Clone, Debug)]
 pub struct Bounded<F> {
-    field: F,
-    bounds: Bounds,
+    pub(crate) field: F,
+    pub(crate) bounds: Bounds,
 }
 
-impl<F: MetricField> Bounded<F> {
+impl<F> Bounded<F> {
     /// The field with its tensors clamped.
     ///
     /// # Errors

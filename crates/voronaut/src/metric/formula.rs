@@ -31,10 +31,10 @@ impl Formula {
     /// surface's.
     pub fn planar(text: &str) -> Result<Self> {
         if text.matches(';').count() == 5 {
-            return Err(Error::Unsupported {
-                what: "a formula of six entries: metrics of space".into(),
-                help: "in the plane write three entries: m11; m12; m22".into(),
-            });
+            return Err(Error::unsupported(
+                "a formula of six entries: metrics of space",
+                "in the plane write three entries: m11; m12; m22",
+            ));
         }
         Ok(Self { entries: entries(text, ["m11", "m12", "m22"], "three", Variables::Plane)? })
     }

@@ -51,6 +51,7 @@ pub use hessian::Hessian;
 pub(crate) use hessian::Recovered;
 pub(crate) use neighbours::Neighbours;
 pub use norm::Norm;
+pub(crate) use recovery::least_squares;
 pub use recovery::{Recovery, recover_hessian};
 pub use sampled::Sampled;
 pub use scaled::Scaled;
@@ -59,7 +60,7 @@ pub use smoothed::MOST_SWEEPS;
 pub(crate) use smoothed::smoothed;
 pub use spec::MetricSpec;
 pub(crate) use spec::Parameters;
-pub(crate) use validate::{check_field, check_sizes, check_tensor, check_tensor_at, check_tensor3};
+pub(crate) use validate::{check_field, check_sizes, check_tensor, check_tensor_at, check_tensor3, require};
 pub use vocabulary::Variables;
 
 use crate::geometry::{Point, Tensor};

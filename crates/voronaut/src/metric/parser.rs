@@ -124,9 +124,9 @@ impl<'a> Parser<'a> {
             return self.call(name, function);
         }
         let op = match (name, self.variables) {
-            ("x", _) => Op::X,
-            ("y", _) => Op::Y,
-            ("z", Variables::Space) | ("t", Variables::Motion) => Op::Z,
+            ("x", _) => Op::Variable(0),
+            ("y", _) => Op::Variable(1),
+            ("z", Variables::Space) | ("t", Variables::Motion) => Op::Variable(2),
             ("z", _) => {
                 let help = if self.variables == Variables::Motion { "use x, y and t" } else { "use x and y" };
                 return Err(self.error("z is not a variable in the plane", help));
@@ -165,8 +165,8 @@ impl<'a> Parser<'a> {
         loop {
             self.expression(0)?;
             count += 1;
-            if let (Function::Many(f), 2..) = (function, count) {
-                self.emit(Op::Call2(f))?;
+            if let (Function::Many(op), 2..) = (function, count) {
+                self.emit(*op)?;
             }
             if !self.rest().starts_with(',') {
                 break;
@@ -175,8 +175,8 @@ impl<'a> Parser<'a> {
         }
         self.expect(")")?;
         let needed = match (function, count) {
-            (Function::One(f), 1) => return self.emit(Op::Call1(f)),
-            (Function::Two(f), 2) => return self.emit(Op::Call2(f)),
+            (Function::One(f), 1) => return self.emit(Op::Call(f)),
+            (Function::Two(op), 2) => return self.emit(*op),
             (Function::Many(_), 2..) => return Ok(()),
             (Function::One(_), _) => "1 argument",
             (Function::Many(_), _) => "2 or more arguments",

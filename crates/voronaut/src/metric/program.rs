@@ -10,14 +10,6 @@ pub(super) struct Unary {
     pub(super) derivatives: fn(f64) -> [f64; 2],
 }
 
-/// A function of two numbers a and b with its derivatives: by a, by b; by a a, a b, b b.
-#[derive(Debug)]
-pub(super) struct Binary {
-    pub(super) value: fn(f64, f64) -> f64,
-    pub(super) first: fn(f64, f64) -> [f64; 2],
-    pub(super) second: fn(f64, f64) -> [f64; 3],
-}
-
 /// Arithmetic of expressions.
 pub(super) trait Number:
     Copy
@@ -28,16 +20,17 @@ pub(super) trait Number:
     + Mul<Output = Self>
     + Div<Output = Self>
 {
-    fn is_zero(self) -> bool;
+    fn value(self) -> f64;
     fn square(self) -> Self;
     fn power(self, exponent: Self) -> Self;
-    fn call1(self, function: &Unary) -> Self;
-    fn call2(self, other: Self, function: &Binary) -> Self;
+    /// The angle of the vector (`x`, self).
+    fn atan2(self, x: Self) -> Self;
+    fn call(self, function: &Unary) -> Self;
 }
 
 impl Number for f64 {
-    fn is_zero(self) -> bool {
-        self == 0.0
+    fn value(self) -> f64 {
+        self
     }
 
     fn square(self) -> Self {
@@ -48,18 +41,18 @@ impl Number for f64 {
         self.powf(exponent)
     }
 
-    fn call1(self, function: &Unary) -> Self {
-        (function.value)(self)
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
     }
 
-    fn call2(self, other: Self, function: &Binary) -> Self {
-        (function.value)(self, other)
+    fn call(self, function: &Unary) -> Self {
+        (function.value)(self)
     }
 }
 
 impl Number for Jet3 {
-    fn is_zero(self) -> bool {
-        self.value == 0.0
+    fn value(self) -> f64 {
+        self.value
     }
 
     fn square(self) -> Self {
@@ -79,13 +72,16 @@ impl Number for Jet3 {
         self.chain2(exponent, power, [by_base[0], log * power], second)
     }
 
-    fn call1(self, function: &Unary) -> Self {
-        self.chain((function.value)(self.value), (function.derivatives)(self.value))
+    fn atan2(self, other: Self) -> Self {
+        let (y, x) = (self.value, other.value);
+        let square = x * x + y * y;
+        let fourth = square.powi(2);
+        let second = [-2.0 * x * y / fourth, (y * y - x * x) / fourth, 2.0 * x * y / fourth];
+        self.chain2(other, y.atan2(x), [x / square, -y / square], second)
     }
 
-    fn call2(self, other: Self, function: &Binary) -> Self {
-        let (a, b) = (self.value, other.value);
-        self.chain2(other, (function.value)(a, b), (function.first)(a, b), (function.second)(a, b))
+    fn call(self, function: &Unary) -> Self {
+        self.chain((function.value)(self.value), (function.derivatives)(self.value))
     }
 }
 
@@ -101,9 +97,8 @@ pub(super) const STACK: usize = 64;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Op {
     Constant(f64),
-    X,
-    Y,
-    Z,
+    /// The variable with this number.
+    Variable(usize),
     Negate,
     Square,
     Add,
@@ -111,8 +106,12 @@ pub(super) enum Op {
     Multiply,
     Divide,
     Power,
-    Call1(&'static Unary),
-    Call2(&'static Binary),
+    Atan2,
+    Call(&'static Unary),
+    /// 1 or 0, as it holds of two numbers.
+    Test(fn(f64, f64) -> bool),
+    /// One of two numbers.
+    Choose(fn(f64, f64) -> f64),
     Jump(u32),
     /// Takes the condition off the stack.
     JumpIfZero(u32),
@@ -122,16 +121,16 @@ impl Op {
     /// How many values it takes off the stack for the one that it puts there; `None` of jumps.
     pub(super) fn operands(self) -> Option<usize> {
         match self {
-            Op::Constant(_) | Op::X | Op::Y | Op::Z => Some(0),
-            Op::Negate | Op::Square | Op::Call1(_) => Some(1),
-            Op::Add | Op::Subtract | Op::Multiply | Op::Divide | Op::Power | Op::Call2(_) => Some(2),
+            Op::Constant(_) | Op::Variable(_) => Some(0),
+            Op::Negate | Op::Square | Op::Call(_) => Some(1),
             Op::Jump(_) | Op::JumpIfZero(_) => None,
+            _ => Some(2),
         }
     }
 }
 
 /// What a program makes of its variables.
-pub(super) fn run<N: Number>(code: &[Op], [x, y, z]: [N; 3]) -> N {
+pub(super) fn run<N: Number>(code: &[Op], variables: [N; 3]) -> N {
     // The last value is kept out of the stack: most operations then touch it once or not at all.
     let mut stack = [N::from(0.0); STACK];
     let mut top = 0;
@@ -141,9 +140,7 @@ pub(super) fn run<N: Number>(code: &[Op], [x, y, z]: [N; 3]) -> N {
         next += 1;
         match op {
             Op::Constant(c) => push(&mut stack, &mut top, &mut value, c.into()),
-            Op::X => push(&mut stack, &mut top, &mut value, x),
-            Op::Y => push(&mut stack, &mut top, &mut value, y),
-            Op::Z => push(&mut stack, &mut top, &mut value, z),
+            Op::Variable(i) => push(&mut stack, &mut top, &mut value, variables[i]),
             Op::Negate => value = -value,
             Op::Square => value = value.square(),
             Op::Add => value = value + pop(&stack, &mut top),
@@ -151,11 +148,17 @@ pub(super) fn run<N: Number>(code: &[Op], [x, y, z]: [N; 3]) -> N {
             Op::Multiply => value = value * pop(&stack, &mut top),
             Op::Divide => value = pop(&stack, &mut top) / value,
             Op::Power => value = pop(&stack, &mut top).power(value),
-            Op::Call1(f) => value = value.call1(f),
-            Op::Call2(f) => value = pop(&stack, &mut top).call2(value, f),
+            Op::Atan2 => value = pop(&stack, &mut top).atan2(value),
+            Op::Call(f) => value = value.call(f),
+            Op::Test(holds) => value = f64::from(u8::from(holds(pop(&stack, &mut top).value(), value.value()))).into(),
+            Op::Choose(one_of) => {
+                let first = pop(&stack, &mut top);
+                let is_second = one_of(first.value(), value.value()).to_bits() == value.value().to_bits();
+                value = if is_second { value } else { first };
+            }
             Op::Jump(target) => next = target as usize,
             Op::JumpIfZero(target) => {
-                if value.is_zero() {
+                if value.value() == 0.0 {
                     next = target as usize;
                 }
                 value = pop(&stack, &mut top);

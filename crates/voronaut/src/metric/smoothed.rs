@@ -28,7 +28,7 @@ pub(crate) fn smoothed(field: &dyn MetricField, background: &Mesh, sweeps: u32) 
     if sweeps > MOST_SWEEPS {
         let what = format!("{sweeps} sweeps of smoothing; the limit is {MOST_SWEEPS}");
         let help = "smooth less: K sweeps reach over half the square root of K edges of the background";
-        return Err(Error::Limit { what, help: help.into() });
+        return Err(Error::limit(what, help));
     }
     let vertices = 0..background.points.len() as u32;
     let tensors: Vec<Tensor> = vertices.into_par_iter().map(|v| field.at(background.point(v))).collect();

@@ -37,7 +37,9 @@ impl MetricSpec {
             "shock" => shock(&Parameters::read("shock", parameters, &["phi", "lambda"])?),
             "formula" => Ok(Self::Formula(Formula::planar(parameters.unwrap_or_default())?)),
             "boundary" => boundary(&Parameters::read("boundary", parameters, &["h0", "growth", "aspect", "h_max"])?),
-            "curvature" => Err(unsupported("metric curvature", "it is for surfaces; in the plane use another metric")),
+            "curvature" => {
+                Err(Error::unsupported("metric curvature", "it is for surfaces; in the plane use another metric"))
+            }
             "hessian" => hessian(parameters.unwrap_or_default()),
             _ => Err(Error::parse("metric", format!("`{text}` is not a metric"), METRICS)),
         }
@@ -105,10 +107,6 @@ fn boundary(parameters: &Parameters) -> Result<MetricSpec> {
 
 fn hessian(text: &str) -> Result<MetricSpec> {
     Ok(MetricSpec::Hessian(Expression::parse_range(text, 0..text.len(), Variables::Plane, "metric hessian")?))
-}
-
-fn unsupported(what: &str, help: &str) -> Error {
-    Error::Unsupported { what: what.into(), help: help.into() }
 }
 
 fn number(place: &str, key: &str, value: &str) -> Result<f64> {

@@ -1,4 +1,4 @@
-//! Whether a tensor, a field at given points, and values at the vertices of a mesh are a metric.
+//! Whether a tensor, a field at given points, and values at the vertices of a mesh are a metric, and parameters what they should be.
 
 use super::MetricField;
 use crate::error::{Error, Result};
@@ -57,6 +57,14 @@ pub(crate) fn check_sizes(sizes: &[f64], place: impl FnOnce(usize) -> String) ->
     let Some(i) = sizes.iter().position(|h| !h.is_finite() || *h <= 0.0) else { return Ok(()) };
     let what = format!("the size h = {} is not positive and finite", sizes[i]);
     Err(Error::metric(what, place(i), "a size is the length of edges there"))
+}
+
+/// An error that names a parameter unless it is as `needed`.
+pub(crate) fn require(holds: bool, place: &str, name: &str, value: f64, needed: &str) -> Result<()> {
+    if holds {
+        return Ok(());
+    }
+    Err(Error::parse(place, format!("{name} = {value}"), format!("{name} must be {needed}")))
 }
 
 /// Whether values at the vertices of a mesh can make a field.

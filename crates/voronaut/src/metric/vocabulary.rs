@@ -1,13 +1,13 @@
 //! The names and operators of expressions, each declared once.
 
-use super::program::{Binary, Op, Unary};
+use super::program::{Op, Unary};
 
 /// How many arguments a function takes, and what it does with them.
 pub(super) enum Function {
     One(&'static Unary),
-    Two(&'static Binary),
+    Two(Op),
     /// Two or more arguments, folded from the left.
-    Many(&'static Binary),
+    Many(Op),
     If,
 }
 
@@ -19,7 +19,7 @@ pub(super) const FUNCTIONS: [(&str, Function); 17] = [
     ("asin", Function::One(&Unary { value: f64::asin, derivatives: of_asin })),
     ("acos", Function::One(&Unary { value: f64::acos, derivatives: |x| of_asin(x).map(|d| -d) })),
     ("atan", Function::One(&Unary { value: f64::atan, derivatives: of_atan })),
-    ("atan2", Function::Two(&Binary { value: f64::atan2, first: of_atan2, second: second_of_atan2 })),
+    ("atan2", Function::Two(Op::Atan2)),
     ("sinh", Function::One(&Unary { value: f64::sinh, derivatives: |x| [x.cosh(), x.sinh()] })),
     ("cosh", Function::One(&Unary { value: f64::cosh, derivatives: |x| [x.sinh(), x.cosh()] })),
     ("tanh", Function::One(&Unary { value: f64::tanh, derivatives: of_tanh })),
@@ -27,8 +27,8 @@ pub(super) const FUNCTIONS: [(&str, Function); 17] = [
     ("log", Function::One(&Unary { value: f64::ln, derivatives: |x| [1.0 / x, -1.0 / (x * x)] })),
     ("sqrt", Function::One(&Unary { value: f64::sqrt, derivatives: |x| [0.5 / x.sqrt(), -0.25 / (x * x.sqrt())] })),
     ("abs", Function::One(&Unary { value: f64::abs, derivatives: |x| [x.signum(), 0.0] })),
-    ("min", Function::Many(&Binary { value: f64::min, first: |a, b| choice(a < b), second: |_, _| [0.0; 3] })),
-    ("max", Function::Many(&Binary { value: f64::max, first: |a, b| choice(a > b), second: |_, _| [0.0; 3] })),
+    ("min", Function::Many(Op::Choose(f64::min))),
+    ("max", Function::Many(Op::Choose(f64::max))),
     ("if", Function::If),
 ];
 
@@ -40,13 +40,12 @@ pub(super) const OPERATORS: [(&str, u8, Op); 15] = [
     ("or", 1, OR),
     ("&&", 2, AND),
     ("and", 2, AND),
-    ("<=", COMPARISON, Op::Call2(&step(|a, b| truth(a <= b)))),
-    ("<", COMPARISON, Op::Call2(&step(|a, b| truth(a < b)))),
-    (">=", COMPARISON, Op::Call2(&step(|a, b| truth(a >= b)))),
-    (">", COMPARISON, Op::Call2(&step(|a, b| truth(a > b)))),
-    // Exact comparison is what the user asks for.
-    ("==", COMPARISON, Op::Call2(&step(equal))),
-    ("!=", COMPARISON, Op::Call2(&step(|a, b| 1.0 - equal(a, b)))),
+    ("<=", COMPARISON, Op::Test(|a, b| a <= b)),
+    ("<", COMPARISON, Op::Test(|a, b| a < b)),
+    (">=", COMPARISON, Op::Test(|a, b| a >= b)),
+    (">", COMPARISON, Op::Test(|a, b| a > b)),
+    ("==", COMPARISON, Op::Test(are_equal)),
+    ("!=", COMPARISON, Op::Test(|a, b| !are_equal(a, b))),
     ("+", 4, Op::Add),
     ("-", 4, Op::Subtract),
     ("*", 5, Op::Multiply),
@@ -58,18 +57,8 @@ pub(super) const COMPARISON: u8 = 3;
 pub(super) const SIGN: u8 = 6;
 pub(super) const POWER: u8 = 7;
 
-const OR: Op = Op::Call2(&step(|a, b| truth(a != 0.0 || b != 0.0)));
-const AND: Op = Op::Call2(&step(|a, b| truth(a != 0.0 && b != 0.0)));
-
-/// A function whose derivatives are zero but where it jumps.
-const fn step(value: fn(f64, f64) -> f64) -> Binary {
-    Binary { value, first: |_, _| [0.0; 2], second: |_, _| [0.0; 3] }
-}
-
-/// The derivatives of a choice between two values.
-fn choice(first: bool) -> [f64; 2] {
-    if first { [1.0, 0.0] } else { [0.0, 1.0] }
-}
+const OR: Op = Op::Test(|a, b| a != 0.0 || b != 0.0);
+const AND: Op = Op::Test(|a, b| a != 0.0 && b != 0.0);
 
 fn of_tan(x: f64) -> [f64; 2] {
     let slope = x.cos().powi(-2);
@@ -91,23 +80,9 @@ fn of_tanh(x: f64) -> [f64; 2] {
     [slope, -2.0 * x.tanh() * slope]
 }
 
-fn of_atan2(y: f64, x: f64) -> [f64; 2] {
-    let square = x * x + y * y;
-    [x / square, -y / square]
-}
-
-fn second_of_atan2(y: f64, x: f64) -> [f64; 3] {
-    let fourth = (x * x + y * y).powi(2);
-    [-2.0 * x * y / fourth, (y * y - x * x) / fourth, 2.0 * x * y / fourth]
-}
-
-fn truth(holds: bool) -> f64 {
-    f64::from(u8::from(holds))
-}
-
-#[expect(clippy::float_cmp)]
-fn equal(a: f64, b: f64) -> f64 {
-    truth(a == b)
+#[expect(clippy::float_cmp, reason = "that is what the user asks for")]
+fn are_equal(a: f64, b: f64) -> bool {
+    a == b
 }
 
 /// Which variables an expression may use.

@@ -1,7 +1,7 @@
 //! Seeds that change places: those that crowd go and others come where edges are too long, at a given number of vertices; and a few
 //! move to where the worst triangle around them is best.
 
-use crate::dual::{Dual, Effort, Kind, Moving};
+use crate::dual::{Dual, Effort, Kind, Moving, sites};
 use crate::error::Result;
 use crate::geometry::{Vector, from_frame};
 use crate::lists::ranked;
@@ -90,8 +90,9 @@ const MOVES: usize = 6;
 ///
 /// Relaxation equalises cells, of which a triangle beside the tip of a cape knows little. The energy may rise a little.
 pub(crate) fn mend_worst(dual: &mut impl Moving, most: usize) -> usize {
+    let sites = sites(dual);
     let corners = dual.topology().faces().map(|face| dual.topology().corners(face));
-    let found = ranked(corners.map(|corners| (dual.quality(corners.map(|v| dual.site(v))), corners)));
+    let found = ranked(corners.map(|corners| (dual.quality(corners.map(|v| sites[v.index()])), corners)));
     let corners = found.into_iter().take(most).flat_map(|(_, corners)| corners);
     let free: Vec<VertexId> = corners.filter(|&v| dual.kind(v) == Kind::Free).collect();
     free.into_iter().filter(|&v| mend(dual, v)).count()
@@ -108,25 +109,31 @@ fn mend<M: Moving>(dual: &mut M, v: VertexId) -> bool {
         topology.is_fixed(h) && dual.straight_length(ends).ln() > UNIT
     };
     let is_beside = topology.star(v).any(|h| is_long(h.next()));
-    let misfit = |dual: &M, a, b| dual.straight_length([a, b]).ln().abs();
-    let worst_edge =
-        |dual: &M, site: M::Site| ring.iter().flatten().map(|&u| misfit(dual, site, u)).fold(0.0, f64::max);
+    let misfit = |dual: &M, site: M::Site, u: M::Site| dual.straight_length([site, u]).ln().abs();
+    let worst_edge = |dual: &M, site: M::Site| ring.iter().map(|&[u, _]| misfit(dual, site, u)).fold(0.0, f64::max);
     let usual = worst_edge(dual, dual.site(v)).max(UNIT);
-    let least = |dual: &M, site: M::Site, allowed: f64| {
-        let least = ring.iter().map(|&[a, b]| dual.quality([site, a, b])).fold(f64::INFINITY, f64::min);
-        if worst_edge(dual, site) > allowed { f64::NEG_INFINITY } else { least }
+    // The least quality around, where that is at least so much: most trials are told by their first triangles.
+    let least = |dual: &M, site: M::Site, floor: f64| {
+        ring.iter().map(|&[a, b]| dual.quality([site, a, b])).try_fold(f64::INFINITY, |least, quality| {
+            let least = least.min(quality);
+            (least >= floor).then_some(least)
+        })
     };
-    let mut now = least(dual, dual.site(v), f64::INFINITY);
+    let mut now = least(dual, dual.site(v), f64::NEG_INFINITY).unwrap_or(f64::NEG_INFINITY);
     let mut has_moved = false;
     for _ in 0..MOVES {
         let allowed = if is_beside && now < POOR { f64::INFINITY } else { usual };
-        let frame = dual.local(v).tensor.cholesky();
-        let trials = trials(frame).filter_map(|by| Some((by, least(dual, dual.site_after(v, by)?, allowed))));
-        let Some((by, best)) = trials.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
-        if best < now + GAIN || !dual.shift_by(v, by) {
+        let mut best = (now + GAIN, None);
+        for by in trials(dual.local(v).tensor.cholesky()) {
+            let Some(site) = dual.site_after(v, by) else { continue };
+            let found = least(dual, site, best.0).filter(|_| worst_edge(dual, site) <= allowed);
+            best = found.map_or(best, |quality| (quality, Some(by)));
+        }
+        let (quality, Some(by)) = best else { break };
+        if !dual.shift_by(v, by) {
             break;
         }
-        (now, has_moved) = (best, true);
+        (now, has_moved) = (quality, true);
     }
     if has_moved {
         dual.settle_move(v);

@@ -1,6 +1,6 @@
 //! Loops on one core, with the names that rayon has for those on all: iterators of the standard library, and what they do not have.
 
-use std::slice::{Chunks, ChunksMut, Iter, IterMut};
+use std::slice::{Chunks, Iter, IterMut};
 
 /// Runs both, one after the other.
 pub(crate) fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) {
@@ -28,9 +28,6 @@ pub(crate) trait ParallelSlice<T> {
     /// Over parts of this length.
     fn par_chunks(&self, length: usize) -> Chunks<'_, T>;
 
-    /// Over parts of this length that may be written to.
-    fn par_chunks_mut(&mut self, length: usize) -> ChunksMut<'_, T>;
-
     /// Sorts; equal ones in any order.
     fn par_sort_unstable(&mut self)
     where
@@ -48,10 +45,6 @@ impl<T> ParallelSlice<T> for [T] {
 
     fn par_chunks(&self, length: usize) -> Chunks<'_, T> {
         self.chunks(length)
-    }
-
-    fn par_chunks_mut(&mut self, length: usize) -> ChunksMut<'_, T> {
-        self.chunks_mut(length)
     }
 
     fn par_sort_unstable(&mut self)
@@ -92,12 +85,6 @@ pub(crate) trait ParallelIterator: Iterator + Sized {
 
     fn find_map_first<B>(mut self, f: impl FnMut(Self::Item) -> Option<B>) -> Option<B> {
         self.find_map(f)
-    }
-
-    /// With a state that is made once.
-    fn for_each_init<S>(self, init: impl FnOnce() -> S, mut f: impl FnMut(&mut S, Self::Item)) {
-        let mut state = init();
-        self.for_each(move |item| f(&mut state, item));
     }
 }
 

@@ -14,7 +14,7 @@ pub struct Crossing {
     pub edge: [VertexId; 2],
 }
 
-/// What a ray from a vertex towards a target meets first.
+/// What a ray from a vertex towards a target meets first, if a face at the vertex holds its beginning.
 enum Ahead {
     /// A vertex that lies exactly on the segment (perhaps the target itself), along this half-edge.
     Vertex(HalfEdge),
@@ -30,7 +30,7 @@ impl Planar {
     pub fn constrain(&mut self, a: VertexId, b: VertexId, constraint: Constraint) -> Result<(), Crossing> {
         let mut at = a;
         while at != b {
-            let edge = match self.ahead(at, b) {
+            let edge = match self.ahead(at, b).expect("the triangles around an interior vertex cover every direction") {
                 Ahead::Vertex(edge) => {
                     self.demand_free(edge)?;
                     edge
@@ -56,12 +56,7 @@ impl Planar {
     /// The edges that the straight line between two vertices crosses, from the first vertex on. `None` where they are
     /// joined already, and where the line passes through another vertex or leaves the triangulation.
     pub(crate) fn edges_between(&self, a: VertexId, b: VertexId) -> Option<Vec<HalfEdge>> {
-        let side = |v: VertexId| self.side([a, b], v);
-        let is_ahead = |h: &HalfEdge| {
-            let (right, left) = (self.topology.target(*h), self.topology.apex(*h));
-            side(right) == Orientation::Right && side(left) == Orientation::Left
-        };
-        let first = self.topology.star(a).find(is_ahead)?.next();
+        let Ahead::Edge(first) = self.ahead(a, b)? else { return None };
         let (crossed, end) = self.crossed_edges([a, b], first)?;
         (end == b).then_some(crossed)
     }
@@ -76,20 +71,20 @@ impl Planar {
         self.topology.constraint(h).map_or(Ok(()), |with| Err(Crossing { with, edge }))
     }
 
-    fn ahead(&self, a: VertexId, b: VertexId) -> Ahead {
+    fn ahead(&self, a: VertexId, b: VertexId) -> Option<Ahead> {
         let (p, q) = (self.position(a), self.position(b));
         for h in self.topology.star(a) {
             let (right, left) = (self.topology.target(h), self.topology.apex(h));
             let [of_right, of_left] = [right, left].map(|v| self.side([a, b], v));
             let forward = (self.position(right) - p).dot(q - p) > 0.0;
             if right == b || (of_right == Orientation::Collinear && forward) {
-                return Ahead::Vertex(h);
+                return Some(Ahead::Vertex(h));
             }
             if of_right == Orientation::Right && of_left == Orientation::Left {
-                return Ahead::Edge(h.next());
+                return Some(Ahead::Edge(h.next()));
             }
         }
-        unreachable!("the triangles around an interior vertex cover every direction")
+        None
     }
 
     /// Flips away what lies between a and the next vertex on the segment a-b; returns the half-edge between them.

@@ -5,12 +5,17 @@ use crate::geometry::{Aabb, Point};
 use crate::triangulation::{Constraint, HalfEdge, Triangulation, VertexId};
 
 impl Planar {
+    /// The vertices along a Hilbert curve.
+    pub(crate) fn along_curve(&self) -> Vec<VertexId> {
+        let living: Vec<VertexId> = self.topology.vertices().collect();
+        let points: Vec<Point> = living.iter().map(|&v| self.position(v)).collect();
+        hilbert_order(&points).into_iter().map(|i| living[i as usize]).collect()
+    }
+
     /// The same triangulation with vertices and faces numbered along a Hilbert curve, without dead slots or lengths;
     /// and for each new vertex its old id.
     pub(crate) fn reordered(&self) -> (Planar, Vec<VertexId>) {
-        let living: Vec<VertexId> = self.topology.vertices().collect();
-        let points: Vec<Point> = living.iter().map(|&v| self.position(v)).collect();
-        let old: Vec<VertexId> = hilbert_order(&points).into_iter().map(|i| living[i as usize]).collect();
+        let old = self.along_curve();
         let mut number = vec![u32::MAX; self.topology.vertex_slots()];
         for (new, v) in old.iter().enumerate() {
             number[v.index()] = new as u32;

@@ -1,7 +1,6 @@
 //! How far the boundary of a mesh strays from that of its domain.
 
-use super::faults::Segments;
-use crate::geometry::Point;
+use crate::geometry::{Aabb, BoxTree, Point};
 use crate::mesh::{Edges, Mesh};
 
 /// Euclidean distances between two boundaries, measured at the ends and the midpoint of every edge and segment: a lower
@@ -35,8 +34,8 @@ pub fn fidelity(mesh: &Mesh, segments: &[(Point, Point)]) -> Fidelity {
     let segments = finite(segments.iter().map(|&(a, b)| [a, b]));
     let all_edges = boundary.iter().chain(&labelled).copied();
     Fidelity {
-        mesh_to_domain: farthest(&boundary, &Segments::new(segments.iter().copied())),
-        domain_to_mesh: farthest(&segments, &Segments::new(all_edges)),
+        mesh_to_domain: farthest(&boundary, segments.iter().copied()),
+        domain_to_mesh: farthest(&segments, all_edges),
     }
 }
 
@@ -44,11 +43,16 @@ fn finite(segments: impl Iterator<Item = [Point; 2]>) -> Vec<[Point; 2]> {
     segments.filter(|ends| ends.iter().all(|p| p.is_finite())).collect()
 }
 
-/// The first of the sample points with the greatest distance to the index.
-fn farthest(segments: &[[Point; 2]], index: &Segments) -> Option<Farthest> {
-    let samples = segments.iter().flat_map(|&[a, b]| [a, a.midpoint(b), b]);
-    let distances = samples.filter_map(|p| Some(Farthest { distance: index.distance(p)?, at: [p.x, p.y] }));
-    distances.reduce(|best, next| if next.distance > best.distance { next } else { best })
+/// The first of the sample points of segments with the greatest distance to others.
+fn farthest(segments: &[[Point; 2]], others: impl Iterator<Item = [Point; 2]>) -> Option<Farthest> {
+    let tree = BoxTree::new(others.filter_map(|ends| Some((Aabb::of(ends)?.into(), ends))));
+    let from = |p: Point, &[a, b]: &[Point; 2]| p - p.nearest_between(a, b);
+    let sample = |p: Point| {
+        let nearest = tree.nearest([p.x, p.y], |other| from(p, other).dot(from(p, other)))?;
+        Some(Farthest { distance: from(p, nearest).norm(), at: [p.x, p.y] })
+    };
+    let samples = segments.iter().flat_map(|&[a, b]| [a, a.midpoint(b), b]).filter_map(sample);
+    samples.reduce(|best, next| if next.distance > best.distance { next } else { best })
 }
 
 #[cfg(test)]

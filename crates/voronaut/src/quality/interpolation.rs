@@ -53,8 +53,7 @@ pub fn interpolation_error(mesh: &Mesh, function: &dyn ScalarField, norm: Norm) 
     let of = |&t: &[u32; 3]| on_triangle(mesh.corners_of(t), t.map(|v| values[v as usize]), function, norm, &nodes);
     let found: Vec<(f64, f64, Point)> = mesh.triangles.par_iter().with_min_len(64).map(of).collect();
     let Some(&(_, max, at)) = found.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
-        let (what, place) = ("it has no triangles".into(), "the whole mesh".into());
-        return Err(Error::Mesh { what, place, help: "give a mesh with triangles".into() });
+        return Err(Error::mesh("it has no triangles", "the whole mesh", "give a mesh with triangles"));
     };
     if !max.is_finite() {
         let help = "give a function that is finite in the whole domain";

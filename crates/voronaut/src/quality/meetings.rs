@@ -1,9 +1,8 @@
 //! Where a surface meets itself, and where its meshes may therefore do so.
 
-use super::faults::Position;
-use super::faults::{duplicates, longest};
+use super::faults::{Position, duplicates};
 use super::self_intersections::{Pair, pairs};
-use crate::geometry::{Bounds, BoxTree, Point3, widened};
+use crate::geometry::{Aabb3, Bounds, BoxTree, Point3, widened};
 use crate::mesh::Mesh;
 use std::sync::OnceLock;
 
@@ -34,7 +33,7 @@ pub struct Excused {
 impl Pair {
     /// Whether the surface that the mesh is of meets itself there, too.
     pub(super) fn is_excused(&self, mesh: &Mesh, surface: &Meetings) -> bool {
-        let reach = self.triangles.map(|t| longest(mesh.positions_of(mesh.triangles[t])));
+        let reach = self.triangles.map(|t| Point3::longest_side(mesh.positions_of(mesh.triangles[t])));
         surface.excuse(self.at, reach[0].max(reach[1]), self.are_neighbours(mesh))
     }
 }
@@ -82,13 +81,10 @@ impl Meetings {
 }
 
 fn meeting(mesh: &Mesh, pair: &Pair) -> (Bounds<3>, Met) {
-    let [t, u] = pair.triangles.map(|t| mesh.triangles[t]);
-    let bounds = |t: [u32; 3], pick: fn(f64, f64) -> f64| {
-        let [a, b, c] = t.map(|v| mesh.points[v as usize]);
-        [0, 1, 2].map(|k| pick(pick(a[k], b[k]), c[k]))
-    };
-    let [low, high] = [[t, u].map(|t| bounds(t, f64::min)), [t, u].map(|t| bounds(t, f64::max))];
-    let both = [[0, 1, 2].map(|k| low[0][k].max(low[1][k])), [0, 1, 2].map(|k| high[0][k].min(high[1][k]))];
+    let boxes = pair.triangles.map(|t| Aabb3::of(mesh.positions_of(mesh.triangles[t])).expect("three corners").into());
+    let [[low, high], [other_low, other_high]]: [Bounds<3>; 2] = boxes;
+    let both = [0, 1, 2].map(|k| [low[k].max(other_low[k]), high[k].min(other_high[k])]);
+    let both = [both.map(|ends| ends[0]), both.map(|ends| ends[1])];
     (both, Met { least: both[0].into(), are_neighbours: pair.are_neighbours(mesh) })
 }
 

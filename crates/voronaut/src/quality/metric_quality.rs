@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3, Tensor, Vector};
 use crate::lists::marked;
 use crate::mesh::{Edges, Mesh};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, check_tensor};
 use crate::parallel::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -86,9 +86,20 @@ pub struct Spot {
 /// is not planar, [`Error::Metric`] where the tensor at a vertex or at a Gauss point is not positive definite.
 pub fn metric_quality(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQuality> {
     demand_planar(mesh)?;
-    let logarithms = vertex_logarithms(mesh, metric)?;
     let length = |ends: [u32; 2]| edge_length(ends.map(|v| mesh.point(v)), metric);
-    figures(mesh, length, |t| Shape::of(mean_tensor(t, &logarithms), mesh.corners_of(t)), Position::in_plane)
+    figures(mesh, length, shapes_in_plane(mesh, metric)?, Position::in_plane)
+}
+
+/// The shapes of the triangles of a planar mesh in the log-Euclidean means of the tensors at their corners.
+///
+/// # Errors
+/// [`Error::Metric`] where a tensor at a vertex is not positive definite.
+pub(super) fn shapes_in_plane<'a>(
+    mesh: &'a Mesh,
+    metric: &dyn MetricField,
+) -> Result<impl Fn([u32; 3]) -> Shape + use<'a>> {
+    let logarithms = vertex_logarithms(mesh, metric)?;
+    Ok(move |t| Shape::of(mean_tensor(t, &logarithms), mesh.corners_of(t)))
 }
 
 /// The figures of a mesh from the metric length of each edge, by its vertices, and the shape of each triangle.
@@ -161,7 +172,7 @@ pub(super) fn edge_length([a, b]: [Point; 2], metric: &dyn MetricField) -> Resul
 /// Quality and smallest angle (degrees) of a triangle in its own metric.
 #[derive(Default)]
 pub(super) struct Shape {
-    quality: f64,
+    pub(super) quality: f64,
     angle: f64,
 }
 
@@ -169,12 +180,9 @@ impl Shape {
     /// Of the triangle with these corners in the metric m.
     pub(super) fn of(m: Tensor, [a, b, c]: [Point; 3]) -> Self {
         let (ab, bc, ca) = (b - a, c - b, a - c);
-        // Twice the area in the metric.
-        let double_area = m.determinant().max(0.0).sqrt() * ab.cross(-ca);
-        let squares = m.dot(ab, ab) + m.dot(bc, bc) + m.dot(ca, ca);
         let smallest = angle(m, ab, -ca).min(angle(m, bc, -ab)).min(angle(m, ca, -bc));
-        let quality = if squares > 0.0 { 2.0 * 3.0_f64.sqrt() * double_area / squares } else { 0.0 };
-        Shape { quality, angle: smallest.to_degrees() }
+        let quality = m.shape([a, b, c]);
+        Shape { quality: if quality.is_nan() { 0.0 } else { quality }, angle: smallest.to_degrees() }
     }
 }
 
@@ -200,9 +208,8 @@ pub(super) fn vertex_logarithms(mesh: &Mesh, metric: &dyn MetricField) -> Result
 
 pub(super) fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {
     let m = metric.at(p);
-    let help = "mend the metric there, or give bounds on it (`h_min`, `h_max`, `a_max`)";
-    let what = || format!("({}, {}, {}) is not positive definite", m.xx, m.xy, m.yy);
-    if m.is_positive_definite() { Ok(m) } else { Err(Error::metric(what(), p.to_string(), help)) }
+    check_tensor(m, p)?;
+    Ok(m)
 }
 
 /// Maps in parallel; the error is that of the first item that has one, for any number of threads.
@@ -242,12 +249,12 @@ pub(super) fn demand_planar(mesh: &Mesh) -> Result<()> {
     if mesh.is_planar() {
         return Ok(());
     }
-    let what = "a metric of the plane on the mesh of a surface".into();
-    Err(Error::Unsupported { what, help: "use a planar mesh (z = 0)".into() })
+    let what = "a metric of the plane on the mesh of a surface";
+    Err(Error::unsupported(what, "use a planar mesh (z = 0)"))
 }
 
 pub(super) fn fault(what: &str, place: &str) -> Error {
-    Error::Mesh { what: what.into(), place: place.into(), help: "check that the file is complete".into() }
+    Error::mesh(what, place, "check that the file is complete")
 }
 
 #[cfg(test)]

@@ -27,6 +27,8 @@ pub(crate) use self_intersections::crossings;
 pub use self_intersections::{Crossing, crossing_edges};
 pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
 pub use surface_quality::surface_quality;
-pub use unmet::{Cause, CauseFigures, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet};
+pub use unmet::{
+    Cause, CauseFigures, Needle, Needles, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet,
+};
 pub(crate) use validity::faulty_triangles;
 pub use validity::{Validity, check, validity, validity_on};

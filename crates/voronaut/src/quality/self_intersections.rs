@@ -1,9 +1,8 @@
 //! Triangles of a surface that meet where they are not neighbours, and lines in the plane that cross, decided exactly.
 
-use super::faults::{Fault, Segments};
-use crate::geometry::{Aabb, Corners, Orientation, Point, Point3, contacts, orientation};
+use super::faults::Fault;
+use crate::geometry::{Aabb, Bounds, Corners, Orientation, Point, Point3, contacts, meeting_pairs, orientation};
 use crate::mesh::{Edges, Mesh};
-use crate::parallel::prelude::*;
 
 /// Two triangles that meet, the smaller number first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,12 +30,9 @@ impl Pair {
 /// The pairs of triangles that have more in common than a vertex or an edge that both name, in order. Neighbours that lie flat
 /// on each other count. Needs finite positions and triangles that are not flat.
 pub(super) fn pairs(mesh: &Mesh) -> Vec<Pair> {
-    let corners: Vec<Corners> = mesh.triangles.par_iter().map(|&t| corners(mesh, t)).collect();
+    let corners = |&t: &[u32; 3]| Corners { vertices: t, points: mesh.positions_of(t) };
+    let corners: Vec<Corners> = mesh.triangles.iter().map(corners).collect();
     contacts(&corners, |_| true).into_iter().map(|(triangles, at)| Pair { triangles, at }).collect()
-}
-
-fn corners(mesh: &Mesh, t: [u32; 3]) -> Corners {
-    Corners { vertices: t, points: mesh.positions_of(t) }
 }
 
 /// Two polylines that meet elsewhere than at a common point of both.
@@ -57,15 +53,12 @@ pub(crate) fn crossings<P: AsRef<[Point]> + Sync>(paths: &[P]) -> Vec<Crossing> 
         let segments = (0..).zip(points.as_ref().windows(2)).map(|(i, ends)| ([path, i], [ends[0], ends[1]]));
         origins.extend(segments.filter(|(_, ends)| ends.iter().all(|p| p.is_finite())));
     }
-    let segments = Segments::new(origins.iter().map(|origin| origin.1));
-    let of_one = |(i, &([path, segment], ends)): (usize, &([u32; 2], [Point; 2]))| {
-        let near = Aabb::of(ends).into_iter().flat_map(|bounds| segments.meeting(bounds));
-        let others = near.map(|piece| piece.id as usize).filter(|&j| j > i);
-        let others = others.map(|j| origins[j]).filter(|([other, _], them)| *other != path && meet(ends, *them));
-        let found = others.map(|([other, with], _)| Crossing { paths: [path, other], segments: [segment, with] });
-        found.collect::<Vec<_>>()
+    let boxes: Vec<Bounds<2>> = origins.iter().filter_map(|origin| Some(Aabb::of(origin.1)?.into())).collect();
+    let crossing = |[i, j]: [usize; 2]| {
+        let (([path, segment], ends), ([other, with], others)) = (origins[i], origins[j]);
+        (path != other && meet(ends, others)).then_some(Crossing { paths: [path, other], segments: [segment, with] })
     };
-    let mut all: Vec<Crossing> = origins.par_iter().enumerate().flat_map_iter(of_one).collect();
+    let mut all: Vec<Crossing> = meeting_pairs(&boxes, |_| true, crossing).into_iter().map(|found| found.1).collect();
     all.sort_unstable();
     all
 }
@@ -82,7 +75,7 @@ pub fn crossing_edges(mesh: &Mesh) -> Vec<[[u32; 2]; 2]> {
 }
 
 /// Whether two segments whose bounding boxes meet have a point in common that is not an end of both, exactly.
-pub(super) fn meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
+fn meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
     let shared = [(a, b, c, d), (a, b, d, c), (b, a, c, d), (b, a, d, c)].into_iter().find(|s| s.0 == s.2);
     if let Some((at, p, _, q)) = shared {
         let same_side = p.x > at.x && q.x > at.x

@@ -23,15 +23,7 @@ use crate::surface::{Nearest, Surface};
 pub fn surface_quality(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric) -> Result<MetricQuality> {
     demand_vertices(mesh)?;
     let field = Field::new(surface, metric);
-    let used = mesh.used_vertices();
-    let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
-    let seen = |v: u32| used[v as usize].then(|| field.at(mesh.position(v))).transpose();
-    let tensors = collect(&vertices, |&v| seen(v))?;
-    let shape = |t: [u32; 3]| {
-        let corners = t.map(|v| tensors[v as usize]);
-        let [Some(a), Some(b), Some(c)] = corners else { return Shape::default() };
-        shape(mesh.positions_of(t), [a, b, c])
-    };
+    let shape = field.shapes(mesh)?;
     figures(mesh, |ends| field.length(ends.map(|v| mesh.position(v))), shape, Position::from)
 }
 
@@ -76,6 +68,22 @@ impl<'a> Field<'a> {
         Some((at, flat))
     }
 
+    /// The shapes of the triangles of a mesh.
+    ///
+    /// # Errors
+    /// A position is not finite; the metric at a vertex in use is none.
+    pub(super) fn shapes<'m>(&self, mesh: &'m Mesh) -> Result<impl Fn([u32; 3]) -> Shape + use<'m>> {
+        let used = mesh.used_vertices();
+        let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
+        let seen = |v: u32| used[v as usize].then(|| self.at(mesh.position(v))).transpose();
+        let tensors = collect(&vertices, |&v| seen(v))?;
+        Ok(move |t: [u32; 3]| {
+            let corners = t.map(|v| tensors[v as usize]);
+            let [Some(a), Some(b), Some(c)] = corners else { return Shape::default() };
+            shape(mesh.positions_of(t), [a, b, c])
+        })
+    }
+
     /// The length of a straight edge.
     pub(super) fn length(&self, [a, b]: [Point3; 2]) -> Result<f64> {
         let part = |&(t, weight): &(f64, f64)| Ok(weight * self.at(a.lerp(b, t))?.length(b - a));
@@ -98,10 +106,7 @@ impl Seen {
     fn in_plane(&self, plane: &TangentPlane) -> Tensor {
         // Tangent planes have no side.
         let normal = if self.normal.dot(plane.normal) < 0.0 { -self.normal } else { self.normal };
-        let sum = normal + plane.normal;
-        let turned = |axis: Vector3| axis - sum * (axis.dot(normal) / (1.0 + normal.dot(plane.normal)));
-        let (u, v) = (turned(plane.u), turned(plane.v));
-        Tensor::new(self.tensor.dot(u, u), self.tensor.dot(u, v), self.tensor.dot(v, v))
+        plane.turned(normal).restrict(self.tensor)
     }
 }
 

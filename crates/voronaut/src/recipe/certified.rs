@@ -79,7 +79,7 @@ fn too_fine(size: f64, most: f64) -> Error {
         "a canvas without edges longer than {:.3e} in the metric needs more than {most:.3e} vertices",
         2.0 * size
     );
-    Error::Limit { what, help: "raise `memory_limit`, or give `canvas_size` a number".into() }
+    Error::limit(what, "raise `memory_limit`, or give `canvas_size` a number")
 }
 
 fn hopeless(certificate: &Certificate) -> Error {
@@ -91,5 +91,5 @@ fn hopeless(certificate: &Certificate) -> Error {
     let what = format!("no canvas is certified for these seeds: {}", doubt.or(why).unwrap_or_default());
     let help = "see `certify` for all figures; take more seeds, better protected (mesh with `seeding=protected`), or give \
                 `canvas_size` a number";
-    Error::Limit { what, help: help.into() }
+    Error::limit(what, help)
 }

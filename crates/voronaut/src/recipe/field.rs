@@ -201,8 +201,7 @@ fn finished(
         if bounds == Bounds::default() { field } else { Box::new(Bounded::new(field, bounds)?) };
     let field = smooth_metric(field, domain, own, options.smooth_metric)?;
     let field = grade_metric(field, domain, own, options.gradation, at)?;
-    let is_free = options.bounds == Bounds::default() && options.smooth_metric == 0 && options.gradation.is_none();
-    Ok(PlanarMetric { field, function: function.filter(|_| is_free), known_to, scale })
+    Ok(PlanarMetric { field, function: function.filter(|_| !options.is_limiting()), known_to, scale })
 }
 
 /// Vertices of the background on which a metric is smoothed or graded that has none of its own.

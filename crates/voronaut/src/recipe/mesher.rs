@@ -73,7 +73,7 @@ fn sampled<'a>(job: &mut Job<'a>, domain: &Domain, unit: Option<usize>) -> Resul
     let unit = unit.unwrap_or(count);
     if count > most(unit) {
         let what = format!("stars need about {count} vertices to agree, where a unit mesh has {unit}");
-        return Err(Error::Limit { what, help: NEEDS_MORE.into() });
+        return Err(Error::limit(what, NEEDS_MORE));
     }
     demand_memory(count as f64, most(unit) as f64, job.options.memory_limit)?;
     let mut dual = job.watch.time("seed", || job.seed(&domain, None, &plan, count, scale))?;

@@ -4,6 +4,7 @@ mod adapt;
 mod certified;
 mod dual;
 mod field;
+mod idle;
 mod mesher;
 mod on_surface;
 mod options;
@@ -20,6 +21,7 @@ pub use field::{
     GradedAt, MetricOptions, PlanarMetric, metric, metric_named, metric_of_function, metric_of_solution,
     metric_of_values,
 };
+pub use idle::{Idle, Origin, Task};
 pub use on_surface::mesh_surface;
 pub use options::{Centroid, MeshOptions, Mesher, Seeding};
 pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};

@@ -2,7 +2,7 @@
 
 use super::settle::Stopwatch;
 use super::surface_pass::{Pass, Reseed, Setting};
-use super::{MeshOptions, Meshed, Mesher, Seeding};
+use super::{Idle, MeshOptions, Meshed, Seeding, Task};
 use crate::canvas::area_of_surface;
 use crate::dual::Moving;
 use crate::error::{Error, Result};
@@ -48,7 +48,11 @@ pub fn mesh_surface(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
-    demand_supported(options)?;
+    options.geodesic.demand_diagrams()?;
+    options
+        .idle(Task { on_surface: true, is_drawn: true, ..Task::default() })
+        .iter()
+        .try_for_each(Idle::demand_unset)?;
     let is_open = options.vertices.is_none() && options.complexity.is_none();
     let asked = options.hausd.filter(|&hausd| is_open && hausd > 0.0);
     let closer = asked.map(|hausd| Closer::new(metric, input, hausd)).transpose()?;
@@ -78,26 +82,6 @@ pub fn mesh_surface(
         setting.demand_memory(count)?;
     }
     unreachable!("the last round returns")
-}
-
-/// Refuses what is of the plane only.
-fn demand_supported(options: &MeshOptions) -> Result<()> {
-    options.geodesic.demand_diagrams()?;
-    let default = MeshOptions::default();
-    let planar = [
-        (options.mesher == Mesher::StarSet, "the star-set mesher", "mesher"),
-        (options.seeding == Seeding::Protected, "protected seeding", "seeding"),
-        (options.centroid != default.centroid, "relaxation to centroids on a canvas", "centroid"),
-        (options.polish != default.polish, "polishing", "polish"),
-        (options.net, "the net of the vertices", "net"),
-    ];
-    match planar.into_iter().find(|(is_asked, ..)| *is_asked) {
-        None => Ok(()),
-        Some((_, what, option)) => {
-            let help = format!("leave out `{option}`, which is for the plane");
-            Err(Error::Unsupported { what: format!("{what} on a surface"), help })
-        }
-    }
 }
 
 /// The triangles of an equation are ours: where they meet, that is no property of what the user gave.
@@ -136,6 +120,10 @@ impl<'a> Setting<'a> {
             reseed = pass.reseed(&faulty, reseed);
         };
         pass.demand(&mesh, &self.meetings)?;
+        let farthest = self.farthest_passes();
+        if farthest > 0 && reseed.rounds >= farthest {
+            notes.push("farthest points made no mesh: seeds are of the surface's own triangles".into());
+        }
         notes.extend(reseed.note());
         notes.extend(pass.notes());
         notes.extend(self.count_note(&pass, mesh.points.len()));

@@ -58,7 +58,7 @@ impl RemeshInput {
         if !mesh.required_triangles.is_empty() {
             let what = format!("{} RequiredTriangles of a planar mesh", mesh.required_triangles.len());
             let help = "require their edges (RequiredEdges), or leave them out of the mesh and put them back";
-            return Err(Error::Unsupported { what, help: help.into() });
+            return Err(Error::unsupported(what, help));
         }
         let (mesh, left_out) = without_useless_edges(mesh, keep.inner_edges);
         let own = |points: &[u32]| points.iter().map(|&v| position(mesh.points[v as usize])).collect();
@@ -207,10 +207,7 @@ impl RemeshInput {
     fn own(&self, is_anisotropic: bool) -> Result<Vec<Tensor>> {
         if self.given.triangles.is_empty() {
             let help = "leave out -optim, or give a mesh with triangles";
-            return Err(Error::Unsupported {
-                what: "the sizes of a domain without a mesh (-optim)".into(),
-                help: help.into(),
-            });
+            return Err(Error::unsupported("the sizes of a domain without a mesh (-optim)", help));
         }
         let even = |m: Tensor| Tensor::isotropic(m.determinant().powf(-0.25));
         let implied = implied(&self.given)?;
@@ -305,11 +302,8 @@ impl Making<'_> {
 /// A mesh of the same vertices with triangles: its own, else the Delaunay triangulation.
 fn triangulated(mesh: &Mesh) -> Result<Mesh> {
     if mesh.points.is_empty() {
-        let what = "sizes at the vertices of a domain without a mesh".into();
-        return Err(Error::Unsupported {
-            what,
-            help: "give IN as the mesh that they belong to, such as a .mesh".into(),
-        });
+        let what = "sizes at the vertices of a domain without a mesh";
+        return Err(Error::unsupported(what, "give IN as the mesh that they belong to, such as a .mesh"));
     }
     if !mesh.triangles.is_empty() {
         return Ok(mesh.clone());

@@ -9,6 +9,7 @@ use crate::diagram::SurfaceDiagram;
 use crate::dual::{Moving, Road, SurfaceDual};
 use crate::error::{Error, Result};
 use crate::figures;
+use crate::geometry::Point3;
 use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::optimise::{Relaxed, Tangent, mend_worst, relax};
@@ -286,7 +287,7 @@ impl Pass<'_> {
     /// [`Error::Mesh`] with the first fault.
     pub(super) fn demand(&self, mesh: &Mesh, meetings: &Meetings) -> Result<()> {
         let help = "ask for more vertices (`vertices`); please report this with the input";
-        let fault = |what: &str, place: String| Err(Error::Mesh { what: what.into(), place, help: help.into() });
+        let fault = |what: &str, place: String| Err(Error::mesh(what, place, help));
         let found = quality::validity_on(mesh, meetings);
         if let Some(found) = found.first_fault {
             return fault(&found.what, found.place);
@@ -329,7 +330,8 @@ impl Pass<'_> {
         let mut held = before.held;
         held.extend(faulty.iter().map(|&t| {
             let corners = triangles[t as usize].map(|v| self.dual.places()[v as usize]);
-            let around = (before.rounds + 1) as f64 * AROUND * reach(corners);
+            let around =
+                (before.rounds + 1) as f64 * AROUND * Point3::longest_side(corners.map(|place| place.position));
             Held { corners: corners.map(|place| place.position), within: around }
         }));
         Reseed { density, held, rounds: before.rounds + 1 }
@@ -354,12 +356,6 @@ impl Pass<'_> {
 fn no_features() -> Error {
     let help = "ask for more vertices, or leave features out";
     Error::domain("features cannot be kept without folds", "the surface", help)
-}
-
-/// The longest edge of a triangle.
-fn reach(at: [Place; 3]) -> f64 {
-    let [a, b, c] = at.map(|place| place.position);
-    a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 
 /// Mends the worst triangles.

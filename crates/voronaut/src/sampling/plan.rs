@@ -145,7 +145,7 @@ pub fn demand_memory(vertices: f64, canvas: f64, limit: u64) -> Result<()> {
     let what = format!("{work} are estimated to need {needed} of memory; the limit is {limit}");
     let help =
         format!("ask for fewer vertices (`vertices`){coarser}, a coarser metric (`h_min`), or raise `memory_limit`");
-    Err(Error::Limit { what, help })
+    Err(Error::limit(what, help))
 }
 
 /// Metric length along a chain of edges, as a piecewise linear function of the parameter, which an edge adds one to.

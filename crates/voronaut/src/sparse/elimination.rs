@@ -17,7 +17,6 @@ pub(crate) struct Elimination {
     pub(super) order: Vec<u32>,
     /// When a row of the matrix is eliminated.
     place: Vec<u32>,
-    parents: Vec<u32>,
     /// Column k of the factor, without the diagonal, is from `starts[k]` to `starts[k + 1]`.
     pub(super) starts: Vec<usize>,
 }
@@ -39,8 +38,7 @@ impl Elimination {
             place[v as usize] = k as u32;
         }
         assert!(order.len() == n && !place.contains(&NONE), "every row once");
-        let mut elimination = Self { order, place, parents: Vec::new(), starts: Vec::new() };
-        elimination.parents = elimination.tree(matrix);
+        let mut elimination = Self { order, place, starts: Vec::new() };
         elimination.starts = elimination.columns(matrix);
         elimination
     }
@@ -55,27 +53,6 @@ impl Elimination {
     pub(super) fn row(&self, matrix: &Symmetric, k: usize) -> impl Iterator<Item = (usize, f64)> {
         let row = matrix.row(self.order[k] as usize);
         row.map(|(j, value)| (self.place[j] as usize, value)).filter(move |&(j, _)| j < k)
-    }
-
-    /// The parent of each unknown. Rows are added one by one: the roots that were reached from an entry of row k become children
-    /// of k. Ways up are shortened as they are walked.
-    fn tree(&self, matrix: &Symmetric) -> Vec<u32> {
-        let n = self.order.len();
-        let (mut parents, mut ancestors) = (vec![NONE; n], vec![NONE; n]);
-        for k in 0..n {
-            for (j, _) in self.row(matrix, k) {
-                let mut i = j;
-                while i != k {
-                    let above = std::mem::replace(&mut ancestors[i], k as u32);
-                    if above == NONE {
-                        parents[i] = k as u32;
-                        break;
-                    }
-                    i = above as usize;
-                }
-            }
-        }
-        parents
     }
 
     fn columns(&self, matrix: &Symmetric) -> Vec<usize> {
@@ -93,8 +70,11 @@ impl Elimination {
     }
 }
 
-/// Where rows of the factor have entries, with memory for all of them in turn.
+/// Where rows of the factor have entries, one after the other. The tree grows with them: a root that a row comes to is its
+/// child from then on.
 pub(super) struct Reach {
+    /// The parent of each unknown, as far as rows before tell.
+    parents: Vec<u32>,
     /// The last row whose ways passed.
     seen: Vec<u32>,
     path: Vec<u32>,
@@ -103,7 +83,7 @@ pub(super) struct Reach {
 
 impl Reach {
     pub(super) fn new(size: usize) -> Self {
-        Self { seen: vec![NONE; size], path: Vec::new(), found: vec![0; size] }
+        Self { parents: vec![NONE; size], seen: vec![NONE; size], path: Vec::new(), found: vec![0; size] }
     }
 
     /// The columns of row k, left of the diagonal: each before its parent.
@@ -116,7 +96,10 @@ impl Reach {
             while self.seen[i] != k as u32 {
                 self.seen[i] = k as u32;
                 self.path.push(i as u32);
-                i = elimination.parents[i] as usize;
+                if self.parents[i] == NONE {
+                    self.parents[i] = k as u32;
+                }
+                i = self.parents[i] as usize;
             }
             let end = start;
             start -= self.path.len();

@@ -121,7 +121,7 @@ fn check_triangles(triangles: &[[u32; 3]], positions: &[Point3]) -> Result<()> {
 
 /// Whether a triangle is more than a line, by more than rounding.
 pub(super) fn has_area([p, q, r]: [Point3; 3]) -> bool {
-    let longest = (q - p).norm().max((r - q).norm()).max((p - r).norm());
+    let longest = Point3::longest_side([p, q, r]);
     (q - p).cross(r - p).norm() > FLAT * longest * longest
 }
 
@@ -147,11 +147,11 @@ fn check_fans(topology: &Triangulation, positions: &[Point3]) -> Result<()> {
             let help = "split the vertex, one for each group of neighbouring triangles";
             Err(Error::domain("triangles that meet in a point only", at(v.0, positions), help))
         }
-        Err(other) => Err(Error::Mesh {
-            what: format!("its triangles do not hang together ({other:?})"),
-            place: "the surface".into(),
-            help: "please report this".into(),
-        }),
+        Err(other) => Err(Error::mesh(
+            format!("its triangles do not hang together ({other:?})"),
+            "the surface",
+            "please report this",
+        )),
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::{Place, Surface};
 use crate::geometry::{Point3, Vector3};
+use crate::lists::{Classes, distinct};
 use crate::mesh::Network;
 use crate::triangulation::{Constraint, HalfEdge, VertexId};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What counts as a feature besides borders, edges of the input's list, and edges between triangles of different labels.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -49,12 +50,11 @@ impl Surface {
         let is_required = [Some(h), t.twin(h)].into_iter().flatten().any(|side| self.is_required(side));
         let is_ridge = options.ar.is_some_and(|angle| self.turns(h, angle));
         let is_interface = t.twin(h).is_none_or(|twin| t.region(twin.face()) != t.region(h.face()));
-        let found = Mark { is_ridge, is_required, ..Mark::default() };
         let mark = listed.unwrap_or_default();
         (listed.is_some() || is_required || is_ridge || is_interface).then_some(Mark {
             label: mark.label,
-            is_ridge: mark.is_ridge || found.is_ridge,
-            is_required: mark.is_required || found.is_required,
+            is_ridge: mark.is_ridge || is_ridge,
+            is_required: mark.is_required || is_required,
         })
     }
 
@@ -150,20 +150,24 @@ impl CurveEdge {
     }
 }
 
-/// Creases found by their angle that end inside a smooth part after fewer edges than this are noise of a coarse mesh.
+/// Creases found by their angle that end inside a smooth part after fewer edges than this are noise of a coarse mesh, or of a scan, and so
+/// are those that hang together in fewer: the least solid, a tetrahedron, has six.
 const LEAST_CREASE: usize = 5;
 
 impl Surface {
     /// Its features as curves, cut at stops: where one ends, forks, bends by more than the angle of the options, where marks
     /// change, at corners and required vertices of the input and at the ends of required edges. Creases of fewer than five
-    /// edges that end inside a patch do not count, unless the input lists them.
+    /// edges that end inside a patch, or touch no other, do not count, unless the input lists them.
     pub(crate) fn curves(&self, options: &FeatureOptions) -> Curves {
         let features = Features::of(self, options);
         let vertices = || features.network.vertices().map(VertexId);
         let bends = vertices().filter(|&v| features.is_corner(v, options.ar));
-        let corners: BTreeSet<VertexId> = self.corners.iter().copied().chain(bends).collect();
+        // Vertices of no triangle belong to nothing, whatever the input calls them.
+        let [corners, required] = [&self.corners, &self.required_points]
+            .map(|listed| listed.iter().copied().filter(|&v| self.topology.start(v).is_some()));
+        let corners: BTreeSet<VertexId> = corners.chain(bends).collect();
         let changes = vertices().filter(|&v| features.changes(v));
-        let stops: BTreeSet<VertexId> = corners.iter().chain(&self.required_points).copied().chain(changes).collect();
+        let stops: BTreeSet<VertexId> = corners.iter().copied().chain(required).chain(changes).collect();
         let curves = features.curves(&stops);
         Curves { curves, stops: stops.into_iter().collect(), corners: corners.into_iter().collect() }
     }
@@ -183,12 +187,31 @@ impl<'a> Features<'a> {
         let ends = edges.iter().map(|(edge, _)| [edge.from.0, edge.to.0]);
         let network = Network::new(surface.positions.len(), ends);
         let mut features = Self { surface, edges, network };
-        features.prune();
+        features.prune_ends();
+        features.prune_specks();
         features
     }
 
+    /// Takes away creases found by angle that hang together in few edges: most are three around a dent.
+    fn prune_specks(&mut self) {
+        let network = &mut self.network;
+        let mut parts = Classes::new(self.surface.positions.len());
+        let left: Vec<u32> = distinct(network.vertices().flat_map(|v| network.at(v)).copied());
+        for &i in &left {
+            let (edge, _) = self.edges[i as usize];
+            parts.join(edge.from.0, edge.to.0);
+        }
+        let mut edges_of: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for i in left {
+            edges_of.entry(parts.of(self.edges[i as usize].0.from.0)).or_default().push(i);
+        }
+        let is_given = |&i: &u32| self.edges[i as usize].0.sides[0].is_some_and(|h| self.surface.is_given(h));
+        let specks = edges_of.into_values().filter(|part| part.len() < LEAST_CREASE && !part.iter().any(is_given));
+        specks.flatten().for_each(|i| network.remove(i));
+    }
+
     /// Takes away creases found by angle that are short and end nowhere, again and again.
-    fn prune(&mut self) {
+    fn prune_ends(&mut self) {
         let network = &mut self.network;
         let mut ends: Vec<u32> = network.vertices().filter(|&v| network.at(v).len() == 1).collect();
         while let Some(end) = ends.pop() {
@@ -292,5 +315,39 @@ mod tests {
         let closed = Surface::new(&mesh).unwrap().curves(&FeatureOptions { ar: None });
         assert_eq!((closed.corners.len(), closed.stops), (0, [0, 1, 2, 3].map(VertexId).to_vec()));
         assert_eq!(closed.curves.len(), 4);
+    }
+
+    /// A frustum with so many sides, wider at the top, where edges turn by 100 degrees.
+    fn frustum(sides: u32) -> Surface {
+        let ring = |z: f64, radius: f64| {
+            let angle = move |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(sides);
+            (0..sides).map(move |i| [radius * angle(i).cos(), radius * angle(i).sin(), z])
+        };
+        // Of the walls' distances from the axis.
+        let wall = (std::f64::consts::PI / f64::from(sides)).cos();
+        let points = ring(0.0, (1.0 - 0.1763) / wall).chain(ring(1.0, 1.0 / wall)).collect();
+        let next = |i: u32| (i + 1) % sides;
+        let walls = (0..sides).flat_map(|i| [[i, next(i), sides + next(i)], [i, sides + next(i), sides + i]]);
+        let ends = (1..sides - 1).flat_map(|i| [[0, i + 1, i], [sides, sides + i, sides + i + 1]]);
+        Surface::new(&Mesh { points, triangles: walls.chain(ends).collect(), ..Mesh::default() }).unwrap()
+    }
+
+    #[test]
+    fn creases_of_fewer_than_five_edges_alone_are_noise() {
+        let found = |sides| frustum(sides).curves(&FeatureOptions { ar: Some(93.0) });
+        assert_eq!(found(4), Curves::default());
+        assert_eq!(found(5).curves.iter().map(|curve| curve.edges.len()).sum::<usize>(), 5);
+    }
+
+    #[test]
+    fn vertices_of_no_triangle_are_no_stops() {
+        let cube = cube();
+        let (alone, own) = (cube.points.len() as u32, cube.triangles[0][0]);
+        let points = cube.points.iter().copied().chain([[9.0; 3]]).collect();
+        let (corners, required_points) = (vec![own, alone], vec![alone]);
+        let mesh = Mesh { points, corners, required_points, ..cube };
+        let found = Surface::new(&mesh).unwrap().curves(&FeatureOptions { ar: None });
+        assert!(found.stops.contains(&VertexId(own)) && !found.stops.contains(&VertexId(alone)), "{:?}", found.stops);
+        assert!(!found.corners.contains(&VertexId(alone)));
     }
 }

@@ -78,17 +78,7 @@ pub(crate) fn closest_weights([a, b, c]: [Point3; 3], p: Point3) -> [f64; 3] {
         let [_, s, t] = parts.map(|part| part / total);
         return [1.0 - s - t, s, t];
     }
-    let on_side = |(i, [start, end]): (usize, [Point3; 2])| {
-        let (along, offset) = (end - start, p - start);
-        let square = along.dot(along);
-        let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        let rest = offset - along * t;
-        let mut weights = [0.0; 3];
-        (weights[i], weights[(i + 1) % 3]) = (1.0 - t, t);
-        (rest.dot(rest), weights)
-    };
-    let sides = [[a, b], [b, c], [c, a]].into_iter().enumerate().map(on_side);
-    sides.min_by(|a, b| a.0.total_cmp(&b.0)).map_or([1.0, 0.0, 0.0], |(_, weights)| weights)
+    p.nearest_on_sides([a, b, c]).1
 }
 
 #[cfg(test)]

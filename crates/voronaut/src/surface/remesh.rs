@@ -7,6 +7,7 @@ use super::level::{Level, Vertex, quality};
 use super::{Implicit, Surface};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3, Vector3};
+use crate::lists::ranked;
 use crate::metric::Neighbours;
 use crate::metric::nodal::Gradation;
 use crate::parallel::prelude::*;
@@ -73,19 +74,13 @@ fn grade(level: &mut Level, edge: f64) -> Result<()> {
     let t = &level.topology;
     let around = Neighbours::of_triangles(sizes.len(), t.faces().map(|f| t.corners(f).map(|v| v.0)), []);
     let position = |v: u32| level.vertices[v as usize].position;
-    let gradation = Gradation::of_sizes(around, |v, w| position(v).distance(position(w)), GRADATION.exp())?;
-    gradation.apply_to_sizes(&mut sizes)?;
-    drop(gradation);
+    let length = |v, w| position(v).distance(position(w));
+    Gradation::of_sizes(around, length, GRADATION.exp())?.apply_to_sizes(&mut sizes)?;
     level.vertices.iter_mut().zip(sizes).for_each(|(vertex, size)| vertex.size = size);
     Ok(())
 }
 
-/// An edge's length, in the mean size of its ends.
-fn stretch(level: &Level, h: HalfEdge) -> f64 {
-    let [a, b] = level.ends(h);
-    ratio(a, b)
-}
-
+/// The length of the edge between two vertices, in their mean size.
 fn ratio(a: &Vertex, b: &Vertex) -> f64 {
     a.position.distance(b.position) / f64::midpoint(a.size, b.size)
 }
@@ -93,13 +88,6 @@ fn ratio(a: &Vertex, b: &Vertex) -> f64 {
 /// Whether the surface turns by more along an edge than `BEND` allows.
 fn turns(a: &Vertex, b: &Vertex) -> bool {
     a.normal.dot(b.normal) < (LONG * BEND).cos()
-}
-
-/// Edges by a number, the smallest first; those without one are left out.
-fn ranked(level: &Level, rank: impl Fn(HalfEdge) -> Option<f64>) -> Vec<HalfEdge> {
-    let mut edges: Vec<(f64, HalfEdge)> = level.topology.edges().filter_map(|h| Some((rank(h)?, h))).collect();
-    edges.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    edges.into_iter().map(|(_, h)| h).collect()
 }
 
 /// Splits edges that are too long, or along which the surface turns too much, the longest first. With `freely` that may
@@ -110,9 +98,9 @@ fn split(level: &mut Level, edge: f64, freely: bool) -> Result<()> {
         ratio(a, b) > LONG || turns(a, b) && level.length(h) > CREASE * edge
     };
     for _ in 0..PASSES {
-        let edges = ranked(level, |h| is_long(level, h).then(|| -level.length(h)));
-        let before = level.topology.vertex_count();
-        for h in edges {
+        let long = level.topology.edges().filter(|&h| is_long(level, h)).map(|h| (-level.length(h), h));
+        let (edges, before) = (ranked(long), level.topology.vertex_count());
+        for (_, h) in edges {
             if is_long(level, h) {
                 split_edge(level, h, freely);
             }
@@ -120,7 +108,7 @@ fn split(level: &mut Level, edge: f64, freely: bool) -> Result<()> {
         let after = level.topology.vertex_count();
         if after > MOST_VERTICES {
             let what = format!("more than {MOST_VERTICES} vertices for the implicit surface, which bends sharply");
-            return Err(Error::Limit { what, help: "ask for longer edges, or choose a smaller box".into() });
+            return Err(Error::limit(what, "ask for longer edges, or choose a smaller box"));
         }
         if after == before {
             break;
@@ -140,15 +128,9 @@ fn split_edge(level: &mut Level, h: HalfEdge, freely: bool) {
     if freely || after >= before.min(SLIM) {
         let v = level.topology.add_vertex();
         level.topology.split_edge(h, v);
-        put(level, v, vertex);
+        level.vertices.resize(level.topology.vertex_slots(), vertex);
+        level.vertices[v.index()] = vertex;
     }
-}
-
-fn put(level: &mut Level, v: VertexId, vertex: Vertex) {
-    if v.index() >= level.vertices.len() {
-        level.vertices.resize(v.index() + 1, Vertex::default());
-    }
-    level.vertices[v.index()] = vertex;
 }
 
 /// Collapses edges that are too short, and the shortest edge of poor triangles.
@@ -159,9 +141,11 @@ fn collapse(level: &mut Level) {
             level.quality(side, |_| None) < POOR
                 && [side.next(), side.prev()].into_iter().all(|other| level.length(other) >= length)
         };
-        stretch(level, h) < SHORT || poor(h) || level.topology.twin(h).is_some_and(poor)
+        let [a, b] = level.ends(h);
+        ratio(a, b) < SHORT || poor(h) || level.topology.twin(h).is_some_and(poor)
     };
-    for h in ranked(level, |h| is_short(level, h).then(|| level.length(h))) {
+    let short = level.topology.edges().filter(|&h| is_short(level, h)).map(|h| (level.length(h), h));
+    for (_, h) in ranked(short) {
         if level.topology.is_face(h.face()) && is_short(level, h) {
             collapse_edge(level, h);
         }

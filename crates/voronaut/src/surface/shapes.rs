@@ -104,7 +104,7 @@ fn check_count(needed: f64) -> Result<()> {
         return Ok(());
     }
     let what = format!("about {needed:.0} vertices for the shape; at most {MOST_VERTICES:.0}");
-    Err(Error::Limit { what, help: "ask for longer edges".into() })
+    Err(Error::limit(what, "ask for longer edges"))
 }
 
 fn icosahedron() -> (Vec<Vector3>, Vec<[u32; 3]>) {

@@ -42,7 +42,7 @@ impl Grid {
         let needed: f64 = counts.iter().map(|count| count + 1.0).product();
         if needed.is_nan() || needed > MOST_VALUES {
             let what = format!("a grid of {needed:.0} points for the implicit surface; at most {MOST_VALUES:.0}");
-            return Err(Error::Limit { what, help: "ask for longer edges, or choose a smaller box".into() });
+            return Err(Error::limit(what, "ask for longer edges, or choose a smaller box"));
         }
         let cubes = counts.map(|count| count as usize);
         let step = Vector3::new(extent.x / counts[0], extent.y / counts[1], extent.z / counts[2]);

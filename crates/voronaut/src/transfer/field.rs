@@ -80,12 +80,12 @@ impl Field {
             let found = self.values.len() as f64 / components.max(1) as f64;
             let what = format!("{found} values for {needed} {what}");
             let help = format!("a field has one value for each of the old mesh's {needed}, in the same order");
-            return Err(Error::Mesh { what, place: format!("field {number}"), help });
+            return Err(Error::mesh(what, format!("field {number}"), help));
         }
         if let Some(i) = self.values.iter().position(|value| !value.is_finite()) {
             let (what, place) =
                 (format!("the value is {}", self.values[i]), self.describe(old, i / components, number));
-            return Err(Error::Mesh { what, place, help: "correct the value: it must be finite".into() });
+            return Err(Error::mesh(what, place, "correct the value: it must be finite"));
         }
         if self.kind == Kind::Metric {
             for (i, row) in self.values.chunks_exact(3).enumerate() {

@@ -1,7 +1,7 @@
 //! Fields projected: the least L2 distance to the old field, or the mean over each triangle.
 
 use super::cover::Cover;
-use super::loads::{Loads, Old, Rows};
+use super::loads::{Load, Old, shares};
 use super::mass::{MassMatrix, areas, balance, bounded, share_missing};
 use super::{Field, Kind, Overshoot, Place};
 use crate::error::Result;
@@ -18,26 +18,22 @@ pub(super) fn project(
     overshoot: Overshoot,
 ) -> Result<(Vec<Field>, Cover)> {
     let [linear, constant] = [Place::Vertices, Place::Triangles].map(|place| columns(fields, place));
-    let sources = Old {
-        mesh: old,
-        locator,
-        linear: gathered(&linear, fields, old.points.len()),
-        constant: gathered(&constant, fields, old.triangles.len()),
-    };
-    let loads = Loads::new(&sources, new);
-    let shares = loads.shares(old, new);
+    let read = |columns: &[Column]| columns.iter().map(|column| column.read(fields)).collect();
+    let sources = Old { mesh: old, locator, linear: read(&linear), constant: read(&constant) };
+    let loads = sources.loads(new);
+    let shares = shares(&loads, old, new);
     shares.demand()?;
     let (there, here) = (areas(old), areas(new));
     let [old_matrix, matrix] = [(old, &there), (new, &here)].map(|(mesh, areas)| MassMatrix::new(mesh, areas));
     let mut carried = interpolated;
     for (c, column) in linear.iter().enumerate() {
-        let target = dot(&sources.linear.column(c), &old_matrix.lumped);
+        let target = dot(&sources.linear[c], &old_matrix.lumped);
         let values = nodal(&matrix, &loads, c, &column.read(&carried), target, overshoot);
         column.write(&mut carried, &values);
     }
     for (c, column) in constant.iter().enumerate() {
-        let target = dot(&sources.constant.column(c), &there);
-        let mut values: Vec<f64> = (0..here.len()).map(|t| loads.mean(t, c)).collect();
+        let target = dot(&sources.constant[c], &there);
+        let mut values: Vec<f64> = loads.iter().map(|load| load.means[c]).collect();
         balance(&mut values, &here, target);
         column.write(&mut carried, &values);
     }
@@ -47,14 +43,14 @@ pub(super) fn project(
 /// One component at the vertices, from its interpolation.
 fn nodal(
     matrix: &MassMatrix<'_>,
-    loads: &Loads,
+    loads: &[Load],
     component: usize,
     interpolated: &[f64],
     target: f64,
     overshoot: Overshoot,
 ) -> Vec<f64> {
     let masses = &matrix.lumped;
-    let load = matrix.assemble(|t, corner| matrix.areas[t] * loads.products(t, component)[corner]);
+    let load = matrix.assemble(|t, corner| matrix.areas[t] * loads[t].products[component][corner]);
     let mut values = matrix.solve(&load, interpolated.to_owned());
     balance(&mut values, masses, target);
     if overshoot == Overshoot::Kept {
@@ -67,7 +63,7 @@ fn nodal(
     let share = share_missing(&means, masses, target);
     let moved = |u: f64| u + share * u.abs();
     let bounds = |v: usize| {
-        let ranges = matrix.fan(v).filter(|&(t, _)| matrix.areas[t] > 0.0).map(|(t, _)| loads.range(t, component));
+        let ranges = matrix.fan(v).filter(|&(t, _)| matrix.areas[t] > 0.0).map(|(t, _)| loads[t].ranges[component]);
         let (low, high) = ranges.fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
         if low <= high { (moved(low), moved(high)) } else { (values[v], values[v]) }
     };
@@ -95,12 +91,6 @@ fn columns(fields: &[Field], place: Place) -> Vec<Column> {
         })
     });
     columns.collect()
-}
-
-/// The values of these columns, by rows.
-fn gathered(columns: &[Column], fields: &[Field], rows: usize) -> Rows {
-    let row = |i: usize| columns.iter().map(move |c| fields[c.field].values[i * c.width + c.component] / c.unit);
-    Rows { width: columns.len(), values: (0..rows).flat_map(row).collect() }
 }
 
 impl Column {

@@ -43,7 +43,7 @@ fn fields(given: &Solutions, linear_tensors: bool) -> Result<Vec<Field>> {
             SolutionValues::Tensor(_) if !linear_tensors => Kind::Metric,
             SolutionValues::Tensor3(_) if !linear_tensors => {
                 let help = "save the tensors with Dimension 2 (m11 m12 m22), or say that they are no metrics: `linear_tensors`";
-                return Err(Error::Unsupported { what: "metrics of space on planar meshes".into(), help: help.into() });
+                return Err(Error::unsupported("metrics of space on planar meshes", help));
             }
             SolutionValues::Scalar(_) => Kind::Linear(1),
             SolutionValues::Vector { components, .. } => Kind::Linear(*components),

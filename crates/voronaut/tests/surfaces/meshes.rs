@@ -13,7 +13,7 @@ use voronaut_io::read_surface;
 
 /// A shape or a file.
 fn read(spec: &str) -> Input {
-    read_surface(spec, None, RepairOptions::default()).unwrap().0
+    read_surface(spec, RepairOptions::default()).unwrap().0
 }
 
 fn data(name: &str) -> String {

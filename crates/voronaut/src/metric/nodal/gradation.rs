@@ -7,6 +7,7 @@ use crate::mesh::Mesh;
 use crate::metric::neighbours::Neighbours;
 use crate::metric::validate::check_at_vertices;
 use crate::parallel::prelude::*;
+use std::collections::BTreeMap;
 
 /// The metric with sizes that grow slowly: along no edge (p, q) does that at q ask for less than what the one at p has grown to.
 /// What it has grown to is that of mixed space (Alauzet 2010): the size h along each of its axes has become h times
@@ -145,7 +146,7 @@ impl<'a> Gradation<'a> {
 
 fn unsettled(growth: f64) -> Error {
     let what = format!("gradation by the factor {} does not settle: {PATIENCE} rounds and more", growth.exp());
-    Error::Limit { what, help: "choose a larger factor, or limit the anisotropy".into() }
+    Error::limit(what, "choose a larger factor, or limit the anisotropy")
 }
 
 /// Whether one tensor is nowhere smaller than another.
@@ -184,48 +185,39 @@ impl Source {
 /// The step from a level to the next, in the logarithm of the determinant: sizes that grow by 3 %. It is no number that metrics are
 /// made with (digits of the golden ratio), so that their determinants do not lie just between two levels.
 const STEP: f64 = 0.121_803_398_874_989_5;
-/// All determinants of finite positive numbers are in fewer levels.
-const MOST_LEVELS: f64 = 16_384.0;
 
 /// Vertices in levels below the greatest determinant there was at first. Within a level they have no order: of determinants that
 /// differ by rounding neither is the greater.
 pub(super) struct Waiting {
     densest: f64,
-    levels: Vec<Vec<u32>>,
+    levels: BTreeMap<u32, Vec<u32>>,
     still_waits: Vec<bool>,
-    first: usize,
 }
 
 impl Waiting {
     /// All vertices.
     pub(super) fn all(tensors: &[Tensor]) -> Self {
         let densest = tensors.iter().map(|m| m.determinant()).fold(0.0, f64::max).ln();
-        let mut all = Self { densest, levels: Vec::new(), still_waits: vec![false; tensors.len()], first: 0 };
+        let mut all = Self { densest, levels: BTreeMap::new(), still_waits: vec![false; tensors.len()] };
         tensors.iter().enumerate().for_each(|(v, &tensor)| all.add(v as u32, tensor));
         all
     }
 
     /// A vertex with its metric of now, which is no coarser than it was.
     pub(super) fn add(&mut self, v: u32, tensor: Tensor) {
-        let level = ((self.densest - tensor.determinant().ln()) / STEP).clamp(0.0, MOST_LEVELS) as usize;
-        if level >= self.levels.len() {
-            self.levels.resize_with(level + 1, Vec::new);
-        }
-        self.levels[level].push(v);
+        let level = ((self.densest - tensor.determinant().ln()) / STEP) as u32;
+        self.levels.entry(level).or_default().push(v);
         self.still_waits[v as usize] = true;
-        self.first = self.first.min(level);
     }
 
     /// All of the densest level where any wait; they wait no longer. `None` where none wait.
     pub(super) fn next(&mut self) -> Option<Vec<u32>> {
-        while self.first < self.levels.len() {
-            let mut all = std::mem::take(&mut self.levels[self.first]);
+        while let Some((_, mut all)) = self.levels.pop_first() {
             // Those that were taken from a denser level since.
             all.retain(|&v| std::mem::take(&mut self.still_waits[v as usize]));
             if !all.is_empty() {
                 return Some(all);
             }
-            self.first += 1;
         }
         None
     }

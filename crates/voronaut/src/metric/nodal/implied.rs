@@ -20,7 +20,7 @@ pub fn implied(mesh: &Mesh) -> Result<Vec<Tensor>> {
         if !tensor.is_positive_definite() {
             let place = format!("triangle {} at {}", i + 1, corners[0]);
             let help = "remove triangles without area: voronaut check names them";
-            return Err(Error::Mesh { what: "a triangle has no area".into(), place, help: help.into() });
+            return Err(Error::mesh("a triangle has no area", place, help));
         }
         let area = mesh.double_area(t);
         for v in t {

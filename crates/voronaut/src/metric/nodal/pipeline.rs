@@ -136,7 +136,7 @@ impl Pipeline {
 
 fn out_of_reach(target: f64, bound: &str, reached: f64) -> Error {
     let what = format!("a complexity of {target}: within the limits it is {bound} {reached:.6e}");
-    Error::Limit { what, help: "widen h_min and h_max, or ask for a complexity in reach".into() }
+    Error::limit(what, "widen h_min and h_max, or ask for a complexity in reach")
 }
 
 /// Steps 4 and 5, for any factor.

@@ -1,7 +1,7 @@
 //! Second derivatives by quadratic polynomials fitted around every vertex.
 
 use super::super::neighbours::Neighbours;
-use super::stencil::{Frame, Rings, solve};
+use super::stencil::{Frame, Rings, least_squares};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
@@ -49,7 +49,7 @@ fn through(mesh: &Mesh, values: &[f64], v: usize, stencil: &[u32]) -> Option<(f6
         rows.push([d.x, d.y, 0.5 * d.x * d.x, d.x * d.y, 0.5 * d.y * d.y].map(|entry| weight * entry));
         differences.push(weight * (values[w as usize] - values[v]));
     }
-    let found = solve(&mut rows, &mut differences);
+    let found = least_squares(&mut rows, &mut differences);
     let [_, _, xx, xy, yy] = found.coefficients;
     Some((found.independence, frame.back(Tensor::new(xx, xy, yy))))
 }

@@ -4,6 +4,8 @@ mod fit;
 mod projection;
 mod stencil;
 
+pub(crate) use stencil::least_squares;
+
 use super::validate::check_background;
 use crate::error::{Error, Result, named};
 use crate::geometry::Tensor;

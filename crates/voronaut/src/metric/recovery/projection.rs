@@ -1,7 +1,7 @@
 //! Second derivatives by projecting gradients twice.
 
 use super::super::neighbours::Neighbours;
-use super::stencil::{Frame, Rings, solve};
+use super::stencil::{Frame, Rings, least_squares};
 use crate::geometry::Tensor;
 use crate::lists::marked;
 use crate::mesh::{Edges, Mesh};
@@ -88,7 +88,7 @@ impl<'a> Averaging<'a> {
             let places = inside.iter().map(|&w| frame.place(self.mesh.point(w)));
             let mut rows: Vec<[f64; 3]> = places.map(|d| [1.0, d.x, d.y]).collect();
             let mut taken: Vec<f64> = inside.iter().map(|&w| values[w as usize]).collect();
-            let solved = solve(&mut rows, &mut taken);
+            let solved = least_squares(&mut rows, &mut taken);
             if solved.independence >= INDEPENDENT {
                 return Some(solved.coefficients[0]);
             }

@@ -4,7 +4,7 @@
 use super::super::metric_quality::edge_length;
 use super::{Around, RANGE, is_unit};
 use crate::geodesic::bowed_chord;
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Point, Vector, from_frame};
 use crate::lists::{Rows, distinct, in_order, marked};
 use crate::mesh::{Edges, Mesh, Network};
 use crate::metric::MetricField;
@@ -23,11 +23,9 @@ pub(super) enum Forced {
 }
 
 impl Forced {
-    /// Of all edges of a mesh, in order, by their metric lengths; curves that turn by more than `corner` (radians) in a vertex
-    /// have a corner there.
-    pub(super) fn of(mesh: &Mesh, edges: &Edges, lengths: &[f64], corner: f64) -> Vec<Self> {
-        let curves = Curves::of(mesh, edges, corner);
-        let mut crowded = vec![false; mesh.points.len()];
+    /// Of all edges of a mesh, in order, by their metric lengths.
+    pub(super) fn of(curves: &Curves, edges: &Edges, lengths: &[f64]) -> Vec<Self> {
+        let mut crowded = vec![false; curves.is_on.len()];
         let mut all = vec![Forced::No; lengths.len()];
         for ((ends, &length), forced) in edges.ends().zip(lengths).zip(&mut all) {
             let kept = curves.kept.get(&ends);
@@ -53,11 +51,11 @@ impl Forced {
 }
 
 /// What has to be kept of a mesh.
-struct Curves {
+pub(super) struct Curves {
     /// The edges of borders and features, by their vertices.
     kept: BTreeMap<[u32; 2], Kept>,
     /// Vertices on them, and required ones.
-    is_on: Vec<bool>,
+    pub(super) is_on: Vec<bool>,
     /// Vertices that cannot slide along them.
     is_corner: Vec<bool>,
 }
@@ -69,7 +67,8 @@ struct Kept {
 }
 
 impl Curves {
-    fn of(mesh: &Mesh, edges: &Edges, corner: f64) -> Self {
+    /// Curves that turn by more than `corner` (radians) in a vertex have a corner there.
+    pub(super) fn of(mesh: &Mesh, edges: &Edges, corner: f64) -> Self {
         let kept = kept(mesh, edges);
         let network = Network::new(mesh.points.len(), kept.keys().copied());
         let marks: Vec<Kept> = kept.values().copied().collect();
@@ -157,7 +156,11 @@ pub(super) fn straight_edges_fail(field: &dyn MetricField) -> bool {
     let third = 2.0 * FRAC_PI_3;
     let fits = |turn: u32| {
         let first = third * f64::from(turn) / f64::from(TURNS);
-        let [a, b, c] = [0.0, 1.0, 2.0].map(|i| tip(frame, FRAC_1_SQRT_3, first + third * i));
+        let corner = |i: f64| {
+            let (sin, cos) = (first + third * i).sin_cos();
+            Point::default() + from_frame(frame, Vector::new(cos, sin) * FRAC_1_SQRT_3)
+        };
+        let [a, b, c] = [0.0, 1.0, 2.0].map(corner);
         is_unit(a, b) && is_unit(b, c) && is_unit(c, a)
     };
     !(0..TURNS).any(fits)
@@ -168,10 +171,4 @@ pub(super) fn bends(around: &Around, length: f64) -> bool {
     let [p, q] = [Point::default() - around.half, Point::default() + around.half];
     let geodesic = bowed_chord(around.field.as_ref(), p, q);
     length > 1.0 && length > geodesic * length.sqrt()
-}
-
-/// The tip of a vector from the origin whose length is given in the metric of a tensor, by its Cholesky factor.
-fn tip([a, b, c]: [f64; 3], length: f64, angle: f64) -> Point {
-    let (sin, cos) = angle.sin_cos();
-    Point::default() + (Vector::new(1.0 / a, 0.0) * cos + Vector::new(-b / (a * c), 1.0 / c) * sin) * length
 }

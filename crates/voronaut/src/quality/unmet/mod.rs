@@ -1,20 +1,20 @@
-//! Where the metric was not met, and why: the edges of a mesh that are no unit edges, each with its cause.
+//! Where the metric was not met, and why: the edges of a mesh that are no unit edges, each with its cause, and its needles.
 
 mod forced;
 #[cfg(test)]
 mod tests;
 
 use super::faults::{Position, middle};
-use super::metric_quality::{collect, demand_planar, demand_vertices, edge_length};
+use super::metric_quality::{Shape, collect, demand_planar, demand_vertices, edge_length, shapes_in_plane};
 use super::surface_quality::Field;
 use crate::error::Result;
-use crate::geometry::{Point, Point3, Vector};
+use crate::geometry::{NEEDLE, Point, Point3, Vector};
 use crate::mesh::{Edges, Mesh};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{FeatureOptions, Surface};
-use forced::{Density, Forced};
+use forced::{Curves, Density, Forced};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -85,11 +85,46 @@ impl UnmetEdge {
 pub struct Unmet {
     /// Those edges, by their vertices.
     pub edges: Vec<UnmetEdge>,
+    /// Triangles of a quality below 0.05, the poorest first.
+    pub needles: Vec<Needle>,
     /// How many edges the mesh has.
     pub of: usize,
 }
 
-/// How many edges are not of unit length, and why.
+/// So many needles are told one by one.
+const TOLD: usize = 10;
+
+/// A triangle that is next to nothing in the metric.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Needle {
+    /// Its quality, as in [`Quality`](super::Quality).
+    pub quality: f64,
+    /// Its centroid.
+    pub at: Position,
+    /// Whether what has to be kept leaves no choice: all its corners are on borders or features, or required.
+    pub is_forced: bool,
+}
+
+/// How many needles there are.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Needles {
+    /// How many.
+    pub count: usize,
+    /// Those that borders, features and required vertices force.
+    pub forced: usize,
+    /// The poorest of those that are not forced, and then of those that are, ten at most.
+    pub poorest: Vec<Needle>,
+}
+
+impl Needles {
+    fn of(all: &[Needle]) -> Self {
+        let (forced, free): (Vec<Needle>, Vec<Needle>) = all.iter().partition(|needle| needle.is_forced);
+        let poorest = free.iter().chain(&forced).copied().take(TOLD).collect();
+        Self { count: all.len(), forced: forced.len(), poorest }
+    }
+}
+
+/// How many edges are not of unit length, and why; and how many triangles are needles.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct UnmetFigures {
     /// How many.
@@ -98,6 +133,8 @@ pub struct UnmetFigures {
     pub share: f64,
     /// The same for each cause; every cause is there.
     pub by_cause: BTreeMap<Cause, CauseFigures>,
+    /// Triangles that are next to nothing.
+    pub needles: Needles,
 }
 
 /// The edges of one cause.
@@ -137,7 +174,8 @@ impl Unmet {
             (cause, CauseFigures { count: all.len(), share: share(all.len()), short, long: all.len() - short, worst })
         };
         let edges = self.edges.len();
-        UnmetFigures { edges, share: share(edges), by_cause: Cause::ALL.into_iter().map(of_cause).collect() }
+        let by_cause = Cause::ALL.into_iter().map(of_cause).collect();
+        UnmetFigures { edges, share: share(edges), by_cause, needles: Needles::of(&self.needles) }
     }
 }
 
@@ -154,7 +192,8 @@ pub fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
         let (middle, half) = (a.midpoint(b), (b - a) * 0.5);
         Some(Around { field: Box::new(move |p: Point| metric.at(middle + (p - Point::default()))), half })
     };
-    find(mesh, STRAIGHT, |ends| edge_length(ends.map(|v| mesh.point(v)), metric), around, Position::in_plane)
+    let length = |ends: [u32; 2]| edge_length(ends.map(|v| mesh.point(v)), metric);
+    find(mesh, STRAIGHT, length, shapes_in_plane(mesh, metric)?, around, Position::in_plane)
 }
 
 /// The same of the mesh of a surface in a metric on it, see [`surface_quality`](super::surface_quality()). Features turn in a
@@ -171,7 +210,7 @@ pub fn surface_unmet(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric)
         Some(Around { field: Box::new(metric), half: edge * 0.5 })
     };
     let length = |ends: [u32; 2]| field.length(ends.map(|v| mesh.position(v)));
-    find(mesh, FeatureOptions::DEFAULT_ANGLE.to_radians(), length, around, Position::from)
+    find(mesh, FeatureOptions::DEFAULT_ANGLE.to_radians(), length, field.shapes(mesh)?, around, Position::from)
 }
 
 /// What the metric is around the middle of an edge, which lies at the origin.
@@ -186,13 +225,15 @@ fn find<'a>(
     mesh: &Mesh,
     corner: f64,
     length: impl Fn([u32; 2]) -> Result<f64> + Sync + Send,
+    shape: impl Fn([u32; 3]) -> Shape + Sync,
     around: impl Fn([u32; 2]) -> Option<Around<'a>> + Sync + Send,
     position: impl Fn(Point3) -> Position + Sync,
 ) -> Result<Unmet> {
     let edges = Edges::of(&mesh.triangles);
     let ends: Vec<[u32; 2]> = edges.ends().collect();
     let lengths = collect(&ends, |&ends| length(ends))?;
-    let forced = Forced::of(mesh, &edges, &lengths, corner);
+    let curves = Curves::of(mesh, &edges, corner);
+    let forced = Forced::of(&curves, &edges, &lengths);
     let density = Density::of(mesh.points.len(), &ends, &lengths, |e| forced[e] == Forced::No);
     let turns = |e: usize| {
         let around = around(ends[e]);
@@ -212,7 +253,14 @@ fn find<'a>(
         UnmetEdge { edge: ends[e], length: lengths[e], cause: cause(e), at }
     };
     let wrong: Vec<usize> = (0..ends.len()).filter(|&e| !is_unit(lengths[e])).collect();
-    Ok(Unmet { edges: wrong.into_par_iter().map(edge).collect(), of: ends.len() })
+    let needle = |&t: &[u32; 3]| {
+        let quality = Some(shape(t).quality).filter(|&quality| quality < NEEDLE)?;
+        let is_forced = t.iter().all(|&v| curves.is_on[v as usize]);
+        Some(Needle { quality, at: position(middle(mesh, &t)), is_forced })
+    };
+    let mut needles: Vec<Needle> = mesh.triangles.par_iter().filter_map(needle).collect();
+    needles.sort_by(|a, b| a.quality.total_cmp(&b.quality));
+    Ok(Unmet { edges: wrong.into_par_iter().map(edge).collect(), needles, of: ends.len() })
 }
 
 /// Whether a metric length is that of a unit edge.

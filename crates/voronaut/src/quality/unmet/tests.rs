@@ -174,3 +174,14 @@ fn faults_are_errors_and_threads_do_not_matter() {
     let with = |threads| crate::test_cases::on_threads(threads, || unmet(&wild, &metric).unwrap());
     assert_eq!(with(1), with(3));
 }
+
+#[test]
+fn needles_are_forced_where_all_their_corners_are_on_borders() {
+    // A vertex next to a side of the triangle that it is in.
+    let points = [[0.0, 0.0], [1.0, 0.0], [0.5, 1e-3], [0.5, 0.9]];
+    let inner = mesh(&points, &[[0, 1, 2], [0, 2, 3], [2, 1, 3]]);
+    let needles = |mesh: &Mesh| unmet(mesh, &UNIT).unwrap().figures().needles;
+    let told = |found: &Needles| (found.count, found.forced, found.poorest[0].is_forced);
+    assert_eq!(told(&needles(&inner)), (1, 0, false));
+    assert_eq!(told(&needles(&Mesh { required_points: vec![2], ..inner })), (1, 1, true));
+}

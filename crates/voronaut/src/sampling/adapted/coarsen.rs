@@ -2,6 +2,7 @@
 
 use super::UPRIGHT;
 use super::work::Work;
+use crate::geometry::NEEDLE;
 use crate::triangulation::{HalfEdge, VertexId};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -20,7 +21,7 @@ const CROWD: usize = 24;
 enum Manner {
     /// Triangles stay upright and fair, edges not too long.
     Fair,
-    /// Triangles stay upright.
+    /// Triangles stay upright, and become no needles.
     Upright,
 }
 
@@ -141,8 +142,9 @@ impl Work<'_> {
         for corners in self.moved(gone, kept) {
             let quality = self.quality(corners);
             let is_long = || self.length(corners[0], corners[1]).max(self.length(corners[0], corners[2])) > LONGEST;
-            let leans = self.leaning(corners) < upright || quality <= 0.0;
-            if leans || manner == Manner::Fair && (quality < fair || is_long()) {
+            let is_poor = quality <= 0.0 || quality < fair.min(NEEDLE);
+            let leans = self.leaning(corners) < upright;
+            if leans || is_poor || manner == Manner::Fair && (quality < fair || is_long()) {
                 return None;
             }
             worst = worst.min(quality);

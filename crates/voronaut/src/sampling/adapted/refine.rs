@@ -1,7 +1,8 @@
 //! Finer triangles: edges split and flipped.
 
 use super::UPRIGHT;
-use super::work::{Work, leaning};
+use super::work::{Work, leaning, quality};
+use crate::geometry::NEEDLE;
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 
 /// Edges longer than this (metric) are split: contraction then has vertices to choose from.
@@ -54,7 +55,7 @@ impl Work<'_> {
         length > longer && [h.next(), h.prev(), twin.next(), twin.prev()].into_iter().all(is_longest)
     }
 
-    /// Splits an edge in the middle, but not where that would turn a triangle away from the surface.
+    /// Splits an edge in the middle, but not where that would turn a triangle away from the surface, or leave a poorer needle.
     fn split_in_the_middle(&mut self, h: HalfEdge) {
         let [p, q] = self.topology.ends(h).map(|v| self.at(v).place);
         let Some(place) = self.input.lift(&p, p.position.lerp(q.position, 0.5)) else { return };
@@ -64,8 +65,10 @@ impl Work<'_> {
             let [a, b, c] = [t.origin(side), t.target(side), t.apex(side)].map(|v| self.at(v));
             [[a, &vertex, c], [&vertex, b, c]]
         };
-        let before = t.sides(h).map(|side| self.leaning(t.corners(side.face()))).fold(UPRIGHT, f64::min);
-        if t.sides(h).flat_map(halves).all(|corners| leaning(corners) >= before) {
+        let faces = || t.sides(h).map(|side| t.corners(side.face()));
+        let before = faces().map(|corners| self.leaning(corners)).fold(UPRIGHT, f64::min);
+        let poorest = faces().map(|corners| self.quality(corners)).fold(NEEDLE, f64::min);
+        if t.sides(h).flat_map(halves).all(|half| leaning(half) >= before && quality(half) >= poorest) {
             self.split(h, vertex);
         }
     }
@@ -91,6 +94,9 @@ impl Flipping for Work<'_> {
         }
         let (now, then) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
         let upright = |[t, u]: [[VertexId; 3]; 2]| self.leaning(t).min(self.leaning(u));
-        then.into_iter().all(|corners| self.quality(corners) > 0.0) && upright(then) >= upright(now).min(UPRIGHT)
+        let worst =
+            |pair: [[VertexId; 3]; 2]| pair.map(|corners| self.quality(corners)).into_iter().fold(1.0, f64::min);
+        let least = worst(then);
+        least > 0.0 && least >= worst(now).min(NEEDLE) && upright(then) >= upright(now).min(UPRIGHT)
     }
 }

@@ -130,19 +130,19 @@ impl<'a> Work<'a> {
 
     /// Quality in the mean metric of the corners: 1 of an equilateral triangle.
     pub(super) fn quality(&self, corners: [VertexId; 3]) -> f64 {
-        self.mean(corners).shape(corners.map(|v| self.at(v).place.position))
+        quality(corners.map(|v| self.at(v)))
     }
 
     /// Area in that metric.
     fn area(&self, corners: [VertexId; 3]) -> f64 {
         let [a, b, c] = corners.map(|v| self.at(v).place.position);
-        0.5 * self.root * self.root * self.mean(corners).area(b - a, c - a)
+        0.5 * self.root * self.root * mean(corners.map(|v| self.at(v))).area(b - a, c - a)
     }
 
     /// The sine of the sum of the angles that face an edge a-b from c and d, in the mean metric of the four: negative where it is
     /// not Delaunay. Lengths that know how the metric changes would not meet the triangle inequality where it changes much.
     pub(super) fn margin(&self, [a, b, c, d]: [VertexId; 4]) -> f64 {
-        let tensor = self.mean([a, b, c, d]);
+        let tensor = mean([a, b, c, d].map(|v| self.at(v)));
         let facing = |apex: VertexId| {
             let [u, v] = [a, b].map(|end| self.at(end).place.position - self.at(apex).place.position);
             let (uu, uv, vv) = (tensor.dot(u, u), tensor.dot(u, v), tensor.dot(v, v));
@@ -151,10 +151,6 @@ impl<'a> Work<'a> {
         };
         let [at_c, at_d] = [c, d].map(facing);
         at_c.0 * at_d.1 + at_c.1 * at_d.0
-    }
-
-    fn mean<const N: usize>(&self, corners: [VertexId; N]) -> Tensor3 {
-        corners.iter().fold(Tensor3::default(), |sum, &v| sum + self.at(v).tensor) * (1.0 / N as f64)
     }
 
     /// How many vertices are held beyond those that the metric asks for where they are: one for two unit triangles, each of the area
@@ -196,9 +192,24 @@ impl<'a> Work<'a> {
     }
 }
 
-/// The least cosine between a triangle's normal and those of the surface at its corners; -1 without area.
+fn mean<const N: usize>(corners: [&Vertex; N]) -> Tensor3 {
+    corners.iter().fold(Tensor3::default(), |sum, corner| sum + corner.tensor) * (1.0 / N as f64)
+}
+
+/// Quality in the mean metric of the corners: 1 of an equilateral triangle.
+pub(super) fn quality(corners: [&Vertex; 3]) -> f64 {
+    mean(corners).shape(corners.map(|corner| corner.place.position))
+}
+
+/// A triangle is flat, and its normal rounding, if its height is so small a part of an edge.
+const FLAT: f64 = 1e-9;
+
+/// The least cosine between a triangle's normal and those of the surface at its corners; -1 without area, but for rounding.
 pub(super) fn leaning(corners: [&Vertex; 3]) -> f64 {
     let [a, b, c] = corners.map(|corner| corner.place.position);
-    let Some(normal) = (b - a).cross(c - a).unit() else { return -1.0 };
+    let normal = (b - a).cross(c - a);
+    let Some(normal) = normal.unit().filter(|_| normal.norm() > FLAT * Point3::longest_side([a, b, c]).powi(2)) else {
+        return -1.0;
+    };
     corners.iter().map(|corner| corner.normal.dot(normal)).fold(1.0, f64::min)
 }

@@ -4,28 +4,10 @@
 use super::{CurvatureFigures, Sampled, Sizing, SurfaceMetric};
 use crate::error::Result;
 use crate::geometry::{TangentPlane, Tensor, Tensor3};
-use crate::metric::Bounds;
+use crate::metric::Bounded;
 use crate::surface::{Input, Place};
 
-/// A field within [`Bounds`] in the tangent planes; what it says of the normal becomes the larger tangential eigenvalue
-/// where limits change it.
-#[derive(Clone, Debug)]
-pub struct Bounded<F> {
-    field: F,
-    bounds: Bounds,
-}
-
-impl<F: SurfaceMetric> Bounded<F> {
-    /// The field with its tangential parts clamped.
-    ///
-    /// # Errors
-    /// As [`Bounds::check`].
-    pub(crate) fn new(field: F, bounds: Bounds) -> Result<Self> {
-        bounds.check()?;
-        Ok(Self { field, bounds })
-    }
-}
-
+/// What a field says of the normal becomes the larger tangential eigenvalue where limits change it.
 impl<F: SurfaceMetric> SurfaceMetric for Bounded<F> {
     fn at(&self, place: &Place) -> Tensor3 {
         changed(self.field.at(place), place, |_, tangential| self.bounds.clamp(tangential))
@@ -81,6 +63,7 @@ fn changed(tensor: Tensor3, place: &Place, change: impl Fn(&TangentPlane, Tensor
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metric::Bounds;
     use crate::surface::metric::Constant;
     use crate::surface::metric::sizing::SAGITTA;
     use crate::surface::sphere;

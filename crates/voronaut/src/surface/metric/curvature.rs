@@ -2,7 +2,8 @@
 
 use super::{CurvatureFigures, Sampled, SurfaceMetric};
 use crate::error::Result;
-use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3};
+use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3, Vector};
+use crate::metric::least_squares;
 use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Implicit, Place, Surface, curvatures};
 use crate::triangulation::VertexId;
@@ -85,14 +86,11 @@ pub fn fit_curvatures(surface: &Surface) -> Vec<Option<Curvatures>> {
     (0..slots).into_par_iter().map(|v| fit(surface, VertexId(v))).collect()
 }
 
-/// Terms of a polynomial of degree three in two variables.
-const TERMS: usize = 10;
-/// Terms of degree two and less stand first.
+/// Terms of a polynomial of degree three in two variables; those of degree two and less stand first.
+const CUBIC: usize = 10;
 const QUADRATIC: usize = 6;
 /// A polynomial of degree three has so many neighbours to fit, at least.
 const ENOUGH: usize = 14;
-/// Singular systems (few neighbours, or all on a conic) get this part of their largest entry on the diagonal.
-const RIDGE: f64 = 1e-12;
 
 fn fit(surface: &Surface, v: VertexId) -> Option<Curvatures> {
     let normal = surface.vertex_normal(v)?;
@@ -103,15 +101,24 @@ fn fit(surface: &Surface, v: VertexId) -> Option<Curvatures> {
     if size == 0.0 {
         return None;
     }
-    let terms = if around.len() >= ENOUGH { TERMS } else { QUADRATIC };
-    let mut system = System::default();
-    for p in around.into_iter().chain([origin]) {
-        let (flat, height) = (plane.flatten(p - origin) * (1.0 / size), (p - origin).dot(normal) / size);
-        system.add(monomials(flat.x, flat.y), height);
-    }
-    let [_, x, y, xx, xy, yy, ..] = system.solve(terms);
+    let sample = |p: Point3| (plane.flatten(p - origin) * (1.0 / size), (p - origin).dot(normal) / size);
+    let samples: Vec<(Vector, f64)> = around.into_iter().chain([origin]).map(sample).collect();
+    let [_, x, y, xx, xy, yy] =
+        if samples.len() > ENOUGH { polynomial::<CUBIC>(&samples) } else { polynomial::<QUADRATIC>(&samples) };
     let found = of_graph(&plane, [x, y], Tensor::new(2.0 * xx, xy, 2.0 * yy) * (1.0 / size));
     found.values.iter().all(|value| value.is_finite()).then_some(found)
+}
+
+/// The first coefficients of a polynomial of so many terms that fits heights over a plane.
+fn polynomial<const TERMS: usize>(samples: &[(Vector, f64)]) -> [f64; QUADRATIC] {
+    let terms = |p: Vector| -> [f64; TERMS] {
+        let all = monomials(p.x, p.y);
+        std::array::from_fn(|k| all[k])
+    };
+    let mut rows: Vec<[f64; TERMS]> = samples.iter().map(|sample| terms(sample.0)).collect();
+    let mut heights: Vec<f64> = samples.iter().map(|sample| sample.1).collect();
+    let found = least_squares(&mut rows, &mut heights).coefficients;
+    std::array::from_fn(|k| found[k])
 }
 
 /// Neighbours and their neighbours, without those on triangles that face away: they are of another sheet.
@@ -135,7 +142,7 @@ fn two_rings(surface: &Surface, v: VertexId, plane: &TangentPlane) -> Vec<Point3
     found[1..].iter().map(|&w| surface.position(w)).collect()
 }
 
-fn monomials(x: f64, y: f64) -> [f64; TERMS] {
+fn monomials(x: f64, y: f64) -> [f64; CUBIC] {
     [1.0, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y]
 }
 
@@ -149,47 +156,6 @@ fn of_graph(plane: &TangentPlane, [x, y]: [f64; 2], hessian: Tensor) -> Curvatur
     let [a, b] = [own.u, own.v].map(|axis| plane.flatten(axis));
     let bend = |d, e| -hessian.dot(d, e) / slant;
     Curvatures::of(Tensor::new(bend(a, a), bend(a, b), bend(b, b)), &own)
-}
-
-/// Normal equations of a linear least-squares problem.
-#[derive(Default)]
-struct System {
-    matrix: [[f64; TERMS]; TERMS],
-    right: [f64; TERMS],
-}
-
-impl System {
-    fn add(&mut self, row: [f64; TERMS], value: f64) {
-        for i in 0..TERMS {
-            self.right[i] += row[i] * value;
-            for j in 0..TERMS {
-                self.matrix[i][j] += row[i] * row[j];
-            }
-        }
-    }
-
-    /// The solution in the first `terms` unknowns (others are zero), by Cholesky's factors.
-    fn solve(mut self, terms: usize) -> [f64; TERMS] {
-        let largest = (0..terms).map(|i| self.matrix[i][i]).fold(0.0, f64::max);
-        for i in 0..terms {
-            self.matrix[i][i] += RIDGE * largest;
-        }
-        let m = &mut self.matrix;
-        for i in 0..terms {
-            for j in 0..=i {
-                let sum = m[i][j] - (0..j).map(|k| m[i][k] * m[j][k]).sum::<f64>();
-                m[i][j] = if i == j { sum.max(f64::MIN_POSITIVE).sqrt() } else { sum / m[j][j] };
-            }
-        }
-        let mut x = [0.0; TERMS];
-        for i in 0..terms {
-            x[i] = (self.right[i] - (0..i).map(|k| m[i][k] * x[k]).sum::<f64>()) / m[i][i];
-        }
-        for i in (0..terms).rev() {
-            x[i] = (x[i] - (i + 1..terms).map(|k| m[k][i] * x[k]).sum::<f64>()) / m[i][i];
-        }
-        x
-    }
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! Sizes that grow slowly.
 
 use crate::error::Result;
+use crate::mesh::coincident;
 use crate::metric::Neighbours;
 use crate::metric::nodal::Gradation;
 use crate::surface::Surface;
 use crate::triangulation::VertexId;
-use std::collections::BTreeMap;
 
 /// Lowers sizes, one per vertex slot, until along every edge of length l they grow by no more than l ln(hgrad), the law of
 /// [`grade`](crate::metric::nodal::grade) for sizes that are the same in all directions. The result is the largest such field
@@ -19,22 +19,11 @@ use std::collections::BTreeMap;
 pub(crate) fn grade(surface: &Surface, sizes: &mut [f64], hgrad: f64) -> Result<()> {
     let t = surface.topology();
     let triangles = t.faces().map(|f| t.corners(f).map(|v| v.0));
-    let around = Neighbours::of_triangles(sizes.len(), triangles, copies(surface));
+    // Only what is cut has copies, and a cut is a border.
+    let border = t.vertices().filter(|&v| t.is_border_vertex(v)).map(|v| (v.0, surface.position(v)));
+    let around = Neighbours::of_triangles(sizes.len(), triangles, coincident(border));
     let length = |v, w| surface.position(VertexId(v)).distance(surface.position(VertexId(w)));
     Gradation::of_sizes(around, length, hgrad)?.apply_to_sizes(sizes)
-}
-
-/// Vertices at equal positions, each with the first of them; only what is cut has copies, and a cut is a border.
-fn copies(surface: &Surface) -> Vec<[u32; 2]> {
-    let t = surface.topology();
-    let mut first: BTreeMap<[u64; 3], u32> = BTreeMap::new();
-    let pair = |v: VertexId| {
-        // Adding 0 makes one zero of both.
-        let key = surface.position(v).to_array().map(|x| (x + 0.0).to_bits());
-        let one = *first.entry(key).or_insert(v.0);
-        (one != v.0).then_some([one, v.0])
-    };
-    t.vertices().filter(|&v| t.is_border_vertex(v)).filter_map(pair).collect()
 }
 
 #[cfg(test)]

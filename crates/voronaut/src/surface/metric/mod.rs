@@ -11,7 +11,7 @@
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at vertices, log-Euclidean between them |
 //! | [`Sampled`] | what `remesh` makes | sizes at vertices for a distance to the surface, graded ([`Sizing`]) |
 //! | `Closer` | `--hausd` | another field, finer where a distance to the surface asks for it |
-//! | [`Bounded`] | `--h-min --h-max --a-max` | another field within limits, in the tangent plane |
+//! | [`Bounded`](crate::metric::Bounded) | `--h-min --h-max --a-max` | another field within limits, in the tangent plane |
 //!
 //! [`Spec`] reads the second column, [`field`] makes the field; `check_tensor3` tells whether a value is a metric.
 
@@ -23,7 +23,6 @@ mod sizing;
 mod spec;
 
 pub(crate) use crate::metric::check_tensor3;
-pub use bounded::Bounded;
 pub(crate) use bounded::Closer;
 pub use curvature::fit_curvatures;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};

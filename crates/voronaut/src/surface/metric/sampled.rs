@@ -107,12 +107,11 @@ impl Sizes {
     /// # Errors
     /// [`Error::Metric`] where numbers of values and vertices differ, or one is no metric.
     pub fn field(&self, surface: &Surface) -> Result<Sampled> {
-        match self {
-            Self::Isotropic(sizes) => {
-                Sampled::new(surface, &sizes.iter().map(|&h| Tensor3::isotropic(h)).collect::<Vec<_>>())
-            }
-            Self::Anisotropic(tensors) => Sampled::new(surface, tensors),
-        }
+        let count = match self {
+            Self::Isotropic(sizes) => sizes.len(),
+            Self::Anisotropic(tensors) => tensors.len(),
+        };
+        Sampled::new(surface, &(0..count).map(|v| self.tensor(v)).collect::<Vec<_>>())
     }
 
     /// A field with values of this kind, at the places of the surface that points are closest to: sizes h or tensors, of the field

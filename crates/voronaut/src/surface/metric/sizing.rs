@@ -1,10 +1,10 @@
 //! The sizes that keep a mesh close to its surface, and to the curves on it: borders, and edges that are fixed.
 
 use super::{Sizes, fit_curvatures, grade};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::{TangentPlane, Tensor, Tensor3, Vector3};
 use crate::mesh::Solution;
-use crate::metric::Bounds;
+use crate::metric::{Bounds, require};
 use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Surface};
 use crate::triangulation::VertexId;
@@ -41,7 +41,7 @@ impl Sizing {
     /// A surface may be cut along its features: what is said is of each side's own.
     ///
     /// # Errors
-    /// [`Error::Parse`] that names a parameter out of range; [`Error::Metric`] where what is given is not one metric, or size, for each vertex.
+    /// [`Error::Parse`](crate::Error::Parse) that names a parameter out of range; [`Error::Metric`](crate::Error::Metric) where what is given is not one metric, or size, for each vertex.
     pub fn sizes(&self, surface: &Surface, given: Option<&Solution>) -> Result<Sizes> {
         self.check()?;
         let given = given.map(Sizes::of).transpose()?;
@@ -65,21 +65,14 @@ impl Sizing {
     /// Whether the parameters make sense.
     ///
     /// # Errors
-    /// [`Error::Parse`] that names one that does not.
+    /// [`Error::Parse`](crate::Error::Parse) that names one that does not.
     pub fn check(&self) -> Result<()> {
         Bounds { h_min: Some(self.h_min), h_max: Some(self.h_max), a_max: None }.check()?;
-        let fault = |name: &str, value: f64, help: &str| Err(Error::parse("sizes", format!("{name} = {value}"), help));
-        match self.hgrad {
-            _ if !(self.hausd > 0.0 && self.hausd.is_finite()) => {
-                fault("hausd", self.hausd, "hausd must be positive and finite: a distance")
-            }
-            Some(hgrad) if !(hgrad >= 1.0 && hgrad.is_finite()) => fault(
-                "hgrad",
-                hgrad,
-                "hgrad must be at least 1 and finite: the factor by which sizes grow from edge to edge",
-            ),
-            _ => Ok(()),
-        }
+        let is_distance = self.hausd > 0.0 && self.hausd.is_finite();
+        require(is_distance, "sizes", "hausd", self.hausd, "positive and finite: a distance")?;
+        let hgrad = self.hgrad.unwrap_or(1.0);
+        let needed = "at least 1 and finite: the factor by which sizes grow from edge to edge";
+        require(hgrad >= 1.0 && hgrad.is_finite(), "sizes", "hgrad", hgrad, needed)
     }
 
     /// The size for a curvature.

@@ -1,11 +1,11 @@
 //! The metric of a surface as a user writes it.
 
-use super::{Bounded, Constant, FLOOR, ImplicitCurvature, Sampled, SurfaceMetric, sampled_curvature};
+use super::{Constant, FLOOR, ImplicitCurvature, Sampled, SurfaceMetric, sampled_curvature};
 use crate::domain::name_and_rest;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor3;
 use crate::mesh::Solution;
-use crate::metric::{Bounds, MetricSpec, Parameters, Shock, SpaceFormula};
+use crate::metric::{Bounded, Bounds, MetricSpec, Parameters, Shock, SpaceFormula, require};
 use crate::surface::Input;
 
 /// What a METRIC text says of a surface.
@@ -82,17 +82,15 @@ fn curvature(parameters: &Parameters) -> Result<Spec> {
     }
     let mut floor = f64::NAN;
     parameters.set("floor", &mut floor)?;
-    if floor > 0.0 && floor.is_finite() {
-        return Ok(Spec::Curvature(Some(floor)));
-    }
-    let help = "floor must be finite and positive: where the surface is flatter, it counts as so curved (1 / length)";
-    Err(Error::parse("metric curvature", format!("floor = {floor}"), help))
+    let needed = "finite and positive: where the surface is flatter, it counts as so curved (1 / length)";
+    require(floor > 0.0 && floor.is_finite(), "metric curvature", "floor", floor, needed)?;
+    Ok(Spec::Curvature(Some(floor)))
 }
 
 fn planar(text: &str) -> Error {
     let help = "on surfaces: uniform, curvature:floor=C, shock:phi=10,lambda=0.6, 'formula:m11; m12; m22; m13; m23; m33', \
                 FILE.sol";
-    Error::Unsupported { what: format!("metric {text} on a surface"), help: help.into() }
+    Error::unsupported(format!("metric {text} on a surface"), help)
 }
 
 #[cfg(test)]

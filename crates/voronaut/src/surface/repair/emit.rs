@@ -3,9 +3,9 @@
 use super::fans::Sewn;
 use super::mended::Damage;
 use super::work::Work;
-use crate::lists::{distinct, in_order};
+use crate::lists::{distinct, in_order, marked};
 use crate::mesh::edges::NONE;
-use crate::mesh::{Mesh, edges_of};
+use crate::mesh::{EdgeSide, Edges, Mesh, edges_of};
 use std::collections::{HashMap, HashSet};
 
 /// The mesh of the triangles as sewn. Vertices keep their numbers, used or not, and those that were added follow; triangles and
@@ -17,14 +17,14 @@ pub(super) fn emit(work: &mut Work, sewn: &Sewn) -> Mesh {
     // What has no labels gets none.
     let vertices = vertices.filter(|_| !mesh.point_labels.is_empty());
     let triangles = sewn.sources.iter().filter(|_| !mesh.triangle_labels.is_empty());
-    let edges = Edges::of(work, sewn);
+    let edges = Listed::of(work, sewn);
     let copies = copies(work, sewn);
     let all_copies = |list: &[u32]| -> Vec<u32> {
         let of = |v: &u32| copies.get(v).cloned().unwrap_or_else(|| vec![*v]);
         list.iter().flat_map(of).collect()
     };
     let entries = |list: &[u32]| -> Vec<u32> { list.iter().flat_map(|&i| edges.entries[i as usize].clone()).collect() };
-    let required: HashSet<u32> = mesh.required_triangles.iter().copied().collect();
+    let required = marked(mesh.triangles.len(), mesh.required_triangles.iter().copied());
     let is_of_file = |t: usize| sewn.numbers[t] != [NONE; 3];
     Mesh {
         points: points(work, sewn),
@@ -37,7 +37,7 @@ pub(super) fn emit(work: &mut Work, sewn: &Sewn) -> Mesh {
         ridges: entries(&mesh.ridges),
         required_edges: entries(&mesh.required_edges),
         required_triangles: (0..sewn.triangles.len())
-            .filter(|&t| is_of_file(t) && required.contains(&sewn.sources[t]))
+            .filter(|&t| is_of_file(t) && required[sewn.sources[t] as usize])
             .map(|t| t as u32)
             .collect(),
         edges: edges.ends,
@@ -82,7 +82,7 @@ fn copies(work: &Work, sewn: &Sewn) -> HashMap<u32, Vec<u32>> {
 }
 
 /// The list of edges, renumbered.
-struct Edges {
+struct Listed {
     ends: Vec<[u32; 2]>,
     /// The entry of the mesh's list that each comes from.
     sources: Vec<u32>,
@@ -90,7 +90,7 @@ struct Edges {
     entries: Vec<Vec<u32>>,
 }
 
-impl Edges {
+impl Listed {
     fn of(work: &mut Work, sewn: &Sewn) -> Self {
         let mesh = work.mesh;
         let known = Known::of(work, sewn);
@@ -98,7 +98,7 @@ impl Edges {
         let mut edges = Self { ends: Vec::new(), sources: Vec::new(), entries: vec![Vec::new(); mesh.edges.len()] };
         for (i, &listed) in (0..).zip(&mesh.edges) {
             let mut found = known.find(work, listed);
-            if found.is_empty() && !known.is_of_file(listed) && !work.options.repair {
+            if found.is_empty() && known.of_file.at(listed).is_empty() && !work.options.repair {
                 // Not lost by repair: the mistake is in the list, and is told as one.
                 found.push(listed);
             }
@@ -125,63 +125,55 @@ impl Edges {
     }
 }
 
-/// Edges of triangles, by which edges of the list are found again.
-struct Known {
-    /// By the vertex numbers of the mesh.
-    by_number: HashMap<[u32; 2], Vec<[u32; 2]>>,
-    /// By places.
-    by_place: HashMap<[u32; 2], Vec<[u32; 2]>>,
-    /// Edges of the mesh as it was.
-    of_file: HashSet<[u32; 2]>,
+/// Sides of triangles, by which edges of the list are found again.
+struct Known<'a> {
+    sewn: &'a Sewn,
+    /// Of the triangles as sewn, by the vertex numbers of the mesh,
+    by_number: Edges,
+    /// and by places.
+    by_place: Edges,
+    /// Of the mesh as it was.
+    of_file: Edges,
 }
 
-impl Known {
-    fn of(work: &Work, sewn: &Sewn) -> Self {
-        let listed: HashSet<u32> = work.mesh.edges.as_flattened().iter().map(|&v| work.places.of(v)).collect();
-        let (mut by_number, mut by_place) = (HashMap::<_, Vec<_>>::new(), HashMap::<_, Vec<_>>::new());
-        for (corners, numbers) in sewn.triangles.iter().zip(&sewn.numbers).filter(|_| !listed.is_empty()) {
-            for ([v, w], ends) in edges_of(*numbers).into_iter().zip(edges_of(*corners)) {
-                if v == NONE || w == NONE {
-                    continue;
-                }
-                // The final edge in the direction from the smaller number, or place, to the larger.
-                let back = [ends[1], ends[0]];
-                let push = |list: &mut Vec<[u32; 2]>, ends| {
-                    if !list.contains(&ends) {
-                        list.push(ends);
-                    }
-                };
-                push(by_number.entry(in_order([v, w])).or_default(), if v < w { ends } else { back });
-                let [p, q] = [v, w].map(|v| work.places.of(v));
-                push(by_place.entry(in_order([p, q])).or_default(), if p < q { ends } else { back });
-            }
-        }
-        let of_file =
-            work.mesh.triangles.iter().filter(|_| !listed.is_empty()).copied().flat_map(edges_of).map(in_order);
-        Self { by_number, by_place, of_file: of_file.collect() }
+impl<'a> Known<'a> {
+    fn of(work: &Work, sewn: &'a Sewn) -> Self {
+        let place = |v: u32| if v == NONE { NONE } else { work.places.of(v) };
+        let places: Vec<[u32; 3]> = sewn.numbers.iter().map(|numbers| numbers.map(place)).collect();
+        // Most meshes list no edges.
+        let edges = |list: &[[u32; 3]]| Edges::of(if work.mesh.edges.is_empty() { &[] } else { list });
+        let [by_number, by_place, of_file] = [&sewn.numbers, &places, &work.mesh.triangles].map(|list| edges(list));
+        Self { sewn, by_number, by_place, of_file }
     }
 
-    fn is_of_file(&self, ends: [u32; 2]) -> bool {
-        self.of_file.contains(&in_order(ends))
+    /// What sides have become, each once, in the direction that leaves `from`.
+    fn ends(&self, sides: &[EdgeSide], from: u32) -> Vec<[u32; 2]> {
+        let mut found = Vec::new();
+        for side in sides {
+            let [a, b] = edges_of(self.sewn.triangles[side.triangle()])[side.half_edge as usize % 3];
+            let ends = if side.directed()[0] == from { [a, b] } else { [b, a] };
+            if !found.contains(&ends) {
+                found.push(ends);
+            }
+        }
+        found
     }
 
     /// What an edge of the list has become, in its direction.
     fn find(&self, work: &Work, [v, w]: [u32; 2]) -> Vec<[u32; 2]> {
-        let turn = |list: &[[u32; 2]], is_forward: bool| -> Vec<[u32; 2]> {
-            list.iter().map(|&[a, b]| if is_forward { [a, b] } else { [b, a] }).collect()
-        };
-        if let Some(found) = self.by_number.get(&in_order([v, w])) {
-            return turn(found, v < w);
+        let mut found = self.ends(self.by_number.at([v, w]), v);
+        if !found.is_empty() {
+            return found;
         }
-        let mut found = Vec::new();
         let mut left = vec![[v, w].map(|v| work.places.of(v))];
         // Every cut is followed once: cuts of cuts that led back would never end.
         let mut is_followed = HashSet::new();
         while let Some([p, q]) = left.pop() {
-            let key = in_order([p, q]);
-            if let Some(ends) = self.by_place.get(&key) {
-                found.extend(turn(ends, p < q));
-            } else if let Some(inside) = work.cuts.get(&key).filter(|_| is_followed.insert(key)) {
+            let (key, sides) = (in_order([p, q]), self.by_place.at([p, q]));
+            found.extend(self.ends(sides, p));
+            if sides.is_empty()
+                && let Some(inside) = work.cuts.get(&key).filter(|_| is_followed.insert(key))
+            {
                 let mut chain: Vec<u32> = [key[0]].iter().chain(inside).chain(&[key[1]]).copied().collect();
                 if p > q {
                     chain.reverse();

@@ -4,7 +4,7 @@ use super::mended::Damage;
 use super::work::Work;
 use crate::error::{Error, Result};
 use crate::geometry::Point3;
-use crate::mesh::EdgeSide;
+use crate::mesh::{EdgeSide, Network};
 
 /// A vertex is on an edge if it is off by no more than this share of its distance from the nearer end ...
 const OFF: f64 = 1e-6;
@@ -59,14 +59,13 @@ struct Junction {
 
 fn find(work: &Work) -> Vec<Junction> {
     let borders: Vec<EdgeSide> = work.edges().boundary().collect();
-    let mut ways: Vec<[u32; 2]> = borders.iter().flat_map(|side| [side.ends, [side.ends[1], side.ends[0]]]).collect();
-    ways.sort_unstable();
+    let network = Network::new(work.mesh.points.len(), borders.iter().map(|side| side.ends));
     let mut found = Vec::new();
     for side in borders {
         let [p, q] = side.ends;
-        let mut inside = along(work, &ways, [p, q]);
+        let mut inside = along(work, &network, [p, q]);
         if inside.is_empty() {
-            inside = along(work, &ways, [q, p]);
+            inside = along(work, &network, [q, p]);
             inside.reverse();
         }
         if inside.is_empty() {
@@ -82,17 +81,16 @@ fn find(work: &Work) -> Vec<Junction> {
 }
 
 /// The vertices of the border that runs from the first end along an edge.
-fn along(work: &Work, ways: &[[u32; 2]], [from, to]: [u32; 2]) -> Vec<u32> {
+fn along(work: &Work, network: &Network, [from, to]: [u32; 2]) -> Vec<u32> {
     let (a, b) = (work.position(from), work.position(to));
     let tolerance = SINGLE * work.diagonal;
     let (mut at, mut reached, mut inside) = (from, 0.0, Vec::new());
     while inside.len() < BORDERS {
-        let start = ways.partition_point(|way| way[0] < at);
-        let next: Vec<u32> = ways[start..].iter().take_while(|way| way[0] == at).take(BORDERS).map(|w| w[1]).collect();
-        if next.len() == BORDERS || (at != from && next.contains(&to)) {
+        let next = || network.at(at).iter().map(|&i| network.across(at, i));
+        if next().len() >= BORDERS || (at != from && next().any(|v| v == to)) {
             break;
         }
-        let steps = next.iter().filter_map(|&v| Some((part_of(a, b, work.position(v), tolerance)?, v)));
+        let steps = next().filter_map(|v| Some((part_of(a, b, work.position(v), tolerance)?, v)));
         let Some((t, v)) = steps.filter(|step| step.0 > reached).min_by(|x, y| x.0.total_cmp(&y.0)) else { break };
         inside.push(v);
         (at, reached) = (v, t);

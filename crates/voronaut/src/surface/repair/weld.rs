@@ -3,6 +3,7 @@
 use super::work::Work;
 use crate::geometry::{BoxTree, widened};
 use crate::lists::distinct;
+use crate::mesh::coincident;
 use std::collections::HashMap;
 
 /// Vertices on borders this close, as a share of the diagonal, are at one place.
@@ -16,13 +17,9 @@ const NEIGHBOURS: usize = 8;
 ///
 /// Nothing is joined by that yet: sides of triangles will be, where they are at the same places and a surface comes out.
 pub(super) fn find_places(work: &mut Work) {
-    let mut first: HashMap<[u64; 3], u32> = HashMap::new();
     let used = distinct(work.triangles.as_flattened().iter().copied());
-    for v in used {
-        // Adding zero makes -0 equal to 0 in its bits, too.
-        let key = work.mesh.points[v as usize].map(|x| (x + 0.0).to_bits());
-        let at = *first.entry(key).or_insert(v);
-        work.places.join(at, v);
+    for [first, v] in coincident(used.into_iter().map(|v| (v, work.mesh.position(v)))) {
+        work.places.join(first, v);
     }
     work.places.flatten();
     join_near(work);

@@ -1,6 +1,6 @@
-//! On an ellipsoid the dual is that of an independent one, by force: exact distances on the triangles from every seed to all vertices
-//! around, by windows of straight ways (Chen and Han 1990), and where three of them are equal and no other is less. (Where a surface is
-//! a saddle, as a torus is inside, shortest ways bend at vertices, of which windows know nothing.)
+//! On an ellipsoid and on a torus the dual is that of an independent one, by force: exact distances on the triangles from every seed to
+//! all vertices around, by windows of straight ways (Chen and Han 1990), which bend at vertices with more than a full turn around them,
+//! and where three of them are equal and no other is less.
 
 use super::random::Random;
 use crate::canvas::{Canvas, Kind, size_for};
@@ -17,6 +17,7 @@ use crate::surface::metric::Constant;
 use crate::surface::{Input, Place, Surface};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::{BTreeMap, HashMap};
+use std::f64::consts::PI;
 
 type Flat = [f64; 2];
 
@@ -37,61 +38,130 @@ fn beyond(a: Flat, b: Flat, to_a: f64, to_b: f64) -> Flat {
     [a[0] + (along * x + across * y) / length, a[1] + (along * y - across * x) / length]
 }
 
-/// An edge as it is seen straight on from the source, which is at the origin: its ends, counter-clockwise, and between which
-/// directions.
+/// An edge as it is seen straight on from a vertex, which is at the origin: its ends, counter-clockwise, and between which directions.
 struct Window {
     edge: HalfEdge,
     ends: [Flat; 2],
     cone: [Flat; 2],
+    /// How far the source is from that vertex.
+    before: f64,
 }
 
 impl Window {
     /// The nearest that can be seen of the edge, at least.
     fn nearest(&self) -> f64 {
         let [a, b] = self.ends;
+        let [right, left] = self.cone;
+        if cross(right, left) <= NARROW * norm(right) * norm(left) {
+            return f64::INFINITY;
+        }
         let along = [b[0] - a[0], b[1] - a[1]];
         let at = |direction: Flat| cross(a, direction) / cross(direction, along);
         let foot = -(a[0] * along[0] + a[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]);
         let [from, to] = self.cone.map(at);
         let t = foot.clamp(from.min(to), from.max(to));
-        norm([a[0] + t * along[0], a[1] + t * along[1]])
+        self.before + norm([a[0] + t * along[0], a[1] + t * along[1]])
     }
 }
 
-/// The distances of the vertices that are seen from one over unfolded triangles, as far as `reach`.
-fn seen_from(surface: &Surface, source: VertexId, reach: f64) -> HashMap<VertexId, f64> {
-    let t = surface.topology();
-    let length = |u: VertexId, v: VertexId| surface.position(u).distance(surface.position(v));
-    let mut found: HashMap<VertexId, f64> = HashMap::from([(source, 0.0)]);
-    let mut windows: Vec<Window> = Vec::new();
-    for h in t.star(source) {
-        let [u, v] = [t.target(h), t.apex(h)];
-        let a = [length(source, u), 0.0];
-        found.insert(u, a[0]);
-        // To the left of the way from the origin to a.
-        let b = beyond(a, [0.0; 2], length(u, v), length(source, v));
-        windows.push(Window { edge: h.next(), ends: [a, b], cone: [a, b] });
+/// Directions this near to each other (radians) are one, and the windows on both sides of it see what lies there.
+const NARROW: f64 = 1e-12;
+
+/// Straight ways from a source, over unfolded triangles.
+struct Wave<'a> {
+    surface: &'a Surface,
+    found: HashMap<VertexId, f64>,
+    windows: Vec<Window>,
+}
+
+impl Wave<'_> {
+    fn length(&self, u: VertexId, v: VertexId) -> f64 {
+        self.surface.position(u).distance(self.surface.position(v))
     }
-    while let Some(window) = windows.pop() {
-        let Some(twin) = t.twin(window.edge).filter(|_| window.nearest() < reach) else { continue };
+
+    /// The angle of a half-edge's face where it begins.
+    fn angle(&self, h: HalfEdge) -> f64 {
+        let t = self.surface.topology();
+        let p = self.surface.position(t.origin(h));
+        let [u, v] = [t.target(h), t.apex(h)].map(|w| self.surface.position(w) - p);
+        u.cross(v).norm().atan2(u.dot(v))
+    }
+
+    /// A way has come to a vertex, which is so far from the source. If no other was shorter, and there is more than a full turn around
+    /// it, ways go on from there with no less than half a turn on either side. It came in so far beyond a half-edge that leaves it.
+    fn arrive(&mut self, v: VertexId, distance: f64, (first, turned): (HalfEdge, f64)) {
+        let known = self.found.entry(v).or_insert(f64::INFINITY);
+        if distance >= *known {
+            return;
+        }
+        *known = distance;
+        let t = self.surface.topology();
+        let fan: Vec<HalfEdge> = t.star(v).collect();
+        let start = fan.iter().position(|&h| h == first).expect("it leaves the vertex");
+        let angles: Vec<f64> = fan.iter().map(|&h| self.angle(h)).collect();
+        let [from, to] = [turned + PI, turned + angles.iter().sum::<f64>() - PI];
+        let mut at = 0.0;
+        for k in (start..start + fan.len()).map(|k| k % fan.len()) {
+            let (low, high) = ((from - at).max(0.0), (to - at).min(angles[k]));
+            at += angles[k];
+            if low < high {
+                self.look(fan[k], [low, high], distance);
+            }
+        }
+    }
+
+    /// Looks over the face of a half-edge from where it begins, between two angles from it.
+    fn look(&mut self, h: HalfEdge, angles: [f64; 2], before: f64) {
+        let t = self.surface.topology();
+        let [v, a, b] = [t.origin(h), t.target(h), t.apex(h)];
+        let (to_a, to_b, whole) = (self.length(v, a), self.length(v, b), self.angle(h));
+        let direction = |angle: f64| [angle.cos(), angle.sin()];
+        let ends = [[to_a, 0.0], direction(whole).map(|x| x * to_b)];
+        self.windows.push(Window { edge: h.next(), ends, cone: angles.map(direction), before });
+        if let Some(twin) = t.twin(h).filter(|_| angles[0] <= 0.0) {
+            self.arrive(a, before + to_a, (twin, 0.0));
+        }
+    }
+
+    /// Goes on beyond the edge of a window.
+    fn pass(&mut self, window: &Window) {
+        let t = self.surface.topology();
+        let Some(twin) = t.twin(window.edge) else { return };
         let ([a, b], [right, left]) = (window.ends, window.cone);
         let (u, v, w) = (t.origin(window.edge), t.target(window.edge), t.apex(twin));
-        let c = beyond(a, b, length(u, w), length(v, w));
+        let c = beyond(a, b, self.length(u, w), self.length(v, w));
         let (is_left_of_right, is_right_of_left) = (cross(right, c) >= 0.0, cross(c, left) >= 0.0);
-        if is_left_of_right && is_right_of_left {
-            let known = found.entry(w).or_insert(f64::INFINITY);
-            *known = known.min(norm(c));
-        }
-        let through = |edge: HalfEdge, ends: [Flat; 2], cone: [Flat; 2]| Window { edge, ends, cone };
+        let through = |edge: HalfEdge, ends: [Flat; 2], cone: [Flat; 2]| Window { edge, ends, cone, ..*window };
         if is_left_of_right {
-            windows.push(through(twin.next(), [a, c], [right, if is_right_of_left { c } else { left }]));
+            self.windows.push(through(twin.next(), [a, c], [right, if is_right_of_left { c } else { left }]));
         }
         if is_right_of_left {
-            windows.push(through(twin.prev(), [c, b], [if is_left_of_right { c } else { right }, left]));
+            self.windows.push(through(twin.prev(), [c, b], [if is_left_of_right { c } else { right }, left]));
+        }
+        // What two windows have between them is seen by one, at least.
+        let is_within = |u: Flat, v: Flat| cross(u, v) >= -NARROW * norm(u) * norm(v);
+        if is_within(right, c) && is_within(c, left) {
+            let (back, side) = ([-c[0], -c[1]], [b[0] - c[0], b[1] - c[1]]);
+            let turned = cross(side, back).atan2(side[0] * back[0] + side[1] * back[1]);
+            self.arrive(w, window.before + norm(c), (twin.prev(), turned));
         }
     }
-    found.retain(|_, distance| *distance <= reach);
-    found
+}
+
+/// The distances of the vertices around one, as far as `reach`.
+fn seen_from(surface: &Surface, source: VertexId, reach: f64) -> HashMap<VertexId, f64> {
+    let mut wave = Wave { surface, found: HashMap::from([(source, 0.0)]), windows: Vec::new() };
+    for h in surface.topology().star(source) {
+        let whole = wave.angle(h);
+        wave.look(h, [0.0, whole], 0.0);
+    }
+    while let Some(window) = wave.windows.pop() {
+        if window.nearest() < reach {
+            wave.pass(&window);
+        }
+    }
+    wave.found.retain(|_, distance| *distance <= reach);
+    wave.found
 }
 
 /// Triangles of seeds that meet in a face: three have the same distance there, no other a smaller one, by the share (of the squared
@@ -191,10 +261,16 @@ fn compare(input: &Input, count: usize) {
 }
 
 #[test]
-fn duals_are_those_that_force_finds() {
+fn duals_on_an_ellipsoid_are_those_that_force_finds() {
     for (fineness, count) in [(0.06, 300), (0.02, 3000)] {
         compare(&ellipsoid(fineness), count);
     }
+}
+
+#[test]
+fn duals_on_a_torus_are_those_that_force_finds() {
+    let torus = Input::shape("torus:2,0.7", Some(0.04)).unwrap();
+    compare(&Input::new(torus.surface, None), 3000);
 }
 
 #[test]
@@ -208,4 +284,32 @@ fn ways_around_the_edges_of_a_cube_are_unfolded() {
     for (v, expected) in [(1, 1.0), (2, 1.0), (3, 2.0_f64), (5, 2.0), (6, 2.0), (7, 5.0)] {
         assert!((found[&VertexId(v)] - expected.sqrt()).abs() < 1e-14, "{v}: {found:?}");
     }
+}
+
+#[test]
+fn ways_bend_at_saddles() {
+    // Six squares around a vertex, those below half a turn apart: along the edge between them and along the axis, or around.
+    let ring = [
+        [1, 0, 0],
+        [1, 1, 0],
+        [0, 1, 0],
+        [-1, 1, 0],
+        [-1, 0, 0],
+        [-1, 0, 1],
+        [0, 0, 1],
+        [0, -1, 1],
+        [0, -1, 0],
+        [1, -1, 0],
+    ];
+    let points = [[0; 3]].into_iter().chain(ring).map(|p: [i32; 3]| p.map(f64::from)).collect();
+    let triangles = (1..=10).map(|i| [0, i, i % 10 + 1]).collect();
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
+    let surface = Surface::new(&mesh).unwrap();
+    let found = seen_from(&surface, VertexId(2), 3.0);
+    let square = |v: u32| found[&VertexId(v)].powi(2);
+    // Straight over flat squares, and over the vertex in the middle.
+    for (v, expected) in [(0, 2.0), (5, 5.0), (9, 5.0)] {
+        assert!((square(v) - expected).abs() < 1e-14, "{v}: {found:?}");
+    }
+    assert!((found[&VertexId(7)] - (2.0_f64.sqrt() + 1.0)).abs() < 1e-14, "{found:?}");
 }
