@@ -55,7 +55,7 @@ impl Work<'_> {
         length > longer && [h.next(), h.prev(), twin.next(), twin.prev()].into_iter().all(is_longest)
     }
 
-    /// Splits an edge in the middle, but not where that would turn a triangle away from the surface, or leave a poorer needle.
+    /// Splits an edge in the middle, but not where that would turn a triangle away from the surface, or make the first needle.
     fn split_in_the_middle(&mut self, h: HalfEdge) {
         let [p, q] = self.topology.ends(h).map(|v| self.at(v).place);
         let Some(place) = self.input.lift(&p, p.position.lerp(q.position, 0.5)) else { return };
@@ -67,8 +67,9 @@ impl Work<'_> {
         };
         let faces = || t.sides(h).map(|side| t.corners(side.face()));
         let before = faces().map(|corners| self.leaning(corners)).fold(UPRIGHT, f64::min);
-        let poorest = faces().map(|corners| self.quality(corners)).fold(NEEDLE, f64::min);
-        if t.sides(h).flat_map(halves).all(|half| leaning(half) >= before && quality(half) >= poorest) {
+        // Needles have poorer halves at first: a fan of them on a border must be split for all that.
+        let least = if faces().any(|corners| self.quality(corners) < NEEDLE) { 0.0 } else { NEEDLE };
+        if t.sides(h).flat_map(halves).all(|half| leaning(half) >= before && quality(half) >= least) {
             self.split(h, vertex);
         }
     }
