@@ -63,7 +63,6 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     let start = Instant::now();
     files::demand_writable(None, None, &args.outputs, &args.run)?;
     demand_drawable(args)?;
-    args.run.set_threads()?;
     let Document { mesh, notes, .. } = voronaut_io::read(&args.mesh)?;
     let read = |spec: &str| Given::read(spec, args.damage.options());
     let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();

@@ -1,6 +1,7 @@
 //! `voronaut convert`: from one format to another.
 
 use crate::files::{self, Miscounted};
+use crate::options::Limits;
 use crate::summary;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -46,6 +47,8 @@ pub(crate) struct ConvertArgs {
     /// Say nothing but errors
     #[arg(short, long)]
     quiet: bool,
+    #[command(flatten)]
+    pub(crate) limits: Limits,
 }
 
 /// Converts a file.

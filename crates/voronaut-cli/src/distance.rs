@@ -1,6 +1,6 @@
 //! `voronaut distance`: how far every point is from given ones, and the way back.
 
-use crate::options::{Coordinates, Damage, Memory, MetricChoices, Run, coordinates};
+use crate::options::{Coordinates, Damage, MetricChoices, Run, coordinates};
 use crate::progress::Stages;
 use crate::{account, fields, files, summary};
 use clap::{Args, value_parser};
@@ -56,8 +56,6 @@ pub(crate) struct DistanceArgs {
     /// Vertices of the canvas, in all
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = CANVAS_VERTICES)]
     pub(crate) canvas_size: u32,
-    #[command(flatten)]
-    pub(crate) memory: Memory,
     /// Draw the distances, lines of equal distance and the path: .svg or .png
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: Option<PathBuf>,
@@ -81,7 +79,6 @@ pub(crate) fn run(args: &DistanceArgs) -> Result<()> {
     voronaut_io::demand_diagram(&args.out)?;
     args.picture.as_deref().map(voronaut_draw::is_png).transpose()?;
     files::demand_apart([Some(args.out.as_path()), args.picture.as_deref(), args.run.report.as_deref()])?;
-    args.run.set_threads()?;
     args.metric_choices.bounds().check()?;
     demand_memory(args)?;
     let (given, mended) = Given::read(&args.domain, args.damage.options())?;
@@ -194,7 +191,7 @@ fn add(place: Place, places: &mut Vec<Place>) -> usize {
 
 fn demand_memory(args: &DistanceArgs) -> Result<()> {
     let needed = f64::from(args.canvas_size) * BYTES_PER_VERTEX;
-    if needed <= args.memory.bytes() as f64 {
+    if needed <= args.run.limits.memory() as f64 {
         return Ok(());
     }
     let what =

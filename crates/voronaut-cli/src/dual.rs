@@ -1,6 +1,6 @@
 //! `voronaut dual`: diagram and dual of the seeds given.
 
-use crate::options::{CanvasSize, Damage, EdgesOut, Memory, MetricChoices, Outputs, Run, Show, canvas_size, refuse};
+use crate::options::{CanvasSize, Damage, EdgesOut, MetricChoices, Outputs, Run, Show, canvas_size, refuse};
 use crate::progress::{Bar, Stages};
 use crate::seeds::SeedFile;
 use crate::{fields, files, pictures};
@@ -80,11 +80,12 @@ pub(crate) struct DualArgs {
     /// Say which of the report's theorems hold of these seeds and this canvas, by how much others miss, and what it would take
     #[arg(long)]
     pub(crate) certify: bool,
+    /// Measure the seeds as a net: epsilon, mu, protection (report)
+    #[arg(long)]
+    pub(crate) net: bool,
     /// The formulas of these theorems: corrected, or printed (with the report's errors, to compare)
     #[arg(long, value_name = "WHICH", default_value_t = Constants::default())]
     pub(crate) constants: Constants,
-    #[command(flatten)]
-    pub(crate) memory: Memory,
     /// Exit with 1 if what OUT would hold is not embedded: straight triangles inverted, edges that cross
     #[arg(long)]
     pub(crate) strict: bool,
@@ -113,7 +114,7 @@ impl DualArgs {
         json!({
             "domain": self.domain, "metric": self.metric, "seeds": self.seeds, "out": self.out, "diagram": self.diagram,
             "canvas": self.canvas, "canvas_size": canvas_size,
-            "voronoi": self.voronoi, "certify": self.certify, "constants": self.constants, "geodesic": self.geodesic, "dual": self.dual, "edges": self.edges, "strict": self.strict,
+            "voronoi": self.voronoi, "certify": self.certify, "net": self.net, "constants": self.constants, "geodesic": self.geodesic, "dual": self.dual, "edges": self.edges, "strict": self.strict,
             "background": self.metric_choices.background, "bounds": self.metric_choices.bounds(),
             "smooth_metric": self.metric_choices.smooth_metric, "tensor_order": self.metric_choices.tensor_order, "gradation": self.metric_choices.gradation,
             "picture": self.outputs.picture, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
@@ -126,7 +127,6 @@ impl DualArgs {
 pub(crate) fn run(args: &DualArgs) -> Result<()> {
     let stages = Stages::start();
     demand(args)?;
-    args.run.set_threads()?;
     args.metric_choices.bounds().check()?;
     let (given, mended) = Given::read(&args.domain, args.damage.options())?;
     match given {
@@ -164,7 +164,7 @@ fn in_plane(args: &DualArgs, domain: &Domain, mended: &Mended, mut stages: Stage
     report.canvas = Some(canvas.figures());
     report.diagram =
         Some(figures::Diagram { raw_nerve: is_riemannian.then_some(raw_nerve), ..figures::Diagram::of(&diagram) });
-    let is_measured = args.run.report.is_some() || outputs.shows(Show::Protection) || args.is_certified();
+    let is_measured = args.net || outputs.shows(Show::Protection) || args.is_certified();
     let net = (is_riemannian && is_measured).then(|| recipe::net(&diagram, metric, &exact));
     report.net = net.as_ref().map(figures::NetFigures::of);
     if net.is_some() {
@@ -199,6 +199,7 @@ fn on_surface(args: &DualArgs, input: &Input, mended: &Mended, mut stages: Stage
     let refused = [
         (args.voronoi != Kind::Riemannian, "--voronoi"),
         (args.certify, "--certify"),
+        (args.net, "--net"),
         (args.canvas_size == CanvasSize::Certified, "--canvas-size certified"),
     ];
     pictures::demand_of_surfaces(&args.outputs, &refused)?;
@@ -261,7 +262,7 @@ fn finish(
 fn canvas_vertices(args: &DualArgs, seeds: usize) -> Result<Option<usize>> {
     let CanvasSize::PerSeed(per_seed) = args.canvas_size else { return Ok(None) };
     let size = canvas::size_for(seeds, per_seed);
-    sampling::demand_memory(seeds as f64, size as f64, args.memory.bytes())?;
+    sampling::demand_memory(seeds as f64, size as f64, args.run.limits.memory())?;
     Ok(Some(size))
 }
 
@@ -272,7 +273,7 @@ fn canvas(args: &DualArgs, domain: &Domain, metric: &dyn MetricField, file: &See
     let canvas = Canvas::new(args.canvas, domain, metric, size.unwrap_or_default())?;
     file.demand_inside(&canvas)?;
     if size.is_none() {
-        return recipe::certified_canvas(args.canvas, domain, metric, seeds, args.constants, args.memory.bytes());
+        return recipe::certified_canvas(args.canvas, domain, metric, seeds, args.constants, args.run.limits.memory());
     }
     if args.voronoi == Kind::Riemannian && args.dual == Road::Canvas {
         return Ok(resolve(canvas, metric, seeds, RESOLVE_ROUNDS)?.canvas);
@@ -287,6 +288,7 @@ fn demand_geodesics(args: &DualArgs) -> Result<()> {
         (args.outputs.have_geodesics(), "--show geodesics or triangles"),
         (args.outputs.shows(Show::Protection), "--show protection"),
         (args.is_certified(), "--certify"),
+        (args.net, "--net"),
         (args.geodesic != Method::default(), "--geodesic"),
     ];
     let is_other = args.voronoi != Kind::Riemannian;

@@ -54,7 +54,6 @@ pub(crate) struct InterpolateArgs {
 pub(crate) fn run(args: &InterpolateArgs) -> Result<()> {
     let mut stages = Stages::start();
     files::demand_solution(&args.out, &args.run)?;
-    args.run.set_threads()?;
     let (old, new) = (planar(&args.old, args.run.quiet)?, planar(&args.new, args.run.quiet)?);
     let given = voronaut_io::read_solutions(&args.field)?;
     demand_counts(args, &given, &old, &new)?;

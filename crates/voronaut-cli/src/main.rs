@@ -19,13 +19,13 @@ mod progress;
 mod remesh;
 mod seeds;
 mod summary;
+mod watch;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 use voronaut::Result;
 
 fn main() -> ExitCode {
-    let is_remesh = std::env::args_os().nth(1).is_some_and(|word| word == "remesh");
     let done = remesh::translated(std::env::args_os()).and_then(|words| run(Arguments::parse_from(words)));
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -34,12 +34,13 @@ fn main() -> ExitCode {
             if !error.help().is_empty() {
                 eprintln!("  help: {}", flags::flagged(error.help()));
             }
-            if is_remesh { ExitCode::from(remesh::FAILURE) } else { ExitCode::FAILURE }
+            ExitCode::from(watch::failure())
         }
     }
 }
 
 fn run(arguments: Arguments) -> Result<()> {
+    arguments.command.begin()?;
     match arguments.command {
         Command::Mesh(args) => mesh::run(&args),
         Command::Dual(args) => dual::run(&args),
@@ -90,6 +91,25 @@ enum Command {
     /// Examine a mesh: validity, quality in a metric, distance to its domain
     #[command(after_help = check::EXAMPLES)]
     Check(check::CheckArgs),
+}
+
+impl Command {
+    /// Keeps within limits from now on, and uses as many threads as are asked for.
+    fn begin(&self) -> Result<()> {
+        let run = match self {
+            Command::Mesh(args) => &args.run,
+            Command::Dual(args) => &args.run,
+            Command::Distance(args) => &args.run,
+            Command::Remesh(args) => &args.run(),
+            Command::Interpolate(args) => &args.run,
+            Command::Metric(args) => &args.run,
+            Command::Loop(args) => &args.run,
+            Command::Convert(args) => return watch::begin(args.limits),
+            Command::Check(args) => &args.run,
+        };
+        watch::begin(run.limits)?;
+        run.set_threads()
+    }
 }
 
 #[cfg(test)]

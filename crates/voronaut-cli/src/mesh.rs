@@ -1,6 +1,6 @@
 //! `voronaut mesh`: from the command line to the library and back. All calls of the mesher are here.
 
-use crate::options::{Damage, Memory, MetricChoices, Outputs, Run, Show, not_negative, positive, refuse};
+use crate::options::{Damage, MetricChoices, Outputs, Run, Show, not_negative, positive, refuse};
 use crate::progress::Bar;
 use crate::{account, fields, files, pictures};
 use clap::{Args, value_parser};
@@ -27,7 +27,8 @@ pub(crate) const EXAMPLES: &str = "\
 DOMAIN  a file: .mesh, .meshb, .msh, .vtu, .vtp (boundary edges or triangles; of volumes the boundary), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
         or a surface: .obj, .off, .ply, .stl and the first five; sphere:r, torus:R,r, chair, 'implicit:EXPR;x0,y0,z0,x1,y1,z1'
 METRIC  uniform, uniform:m11,m12,m22, swirl[:nu=3,field=authors], shock[:phi=10,lambda=0.6],
-        'formula:m11; m12; m22' in x and y, boundary:h0=,growth=,aspect=,h_max=, or a file .sol or .solb;
+        'formula:m11; m12; m22' in x and y, boundary:h0=,growth=,aspect=,h_max=,
+        hessian:EXPR or hessian:FILE.sol (for the least error of interpolation), or a file .sol or .solb;
         on surfaces: uniform, curvature[:floor=C], shock, 'formula:m11; m12; m22; m13; m23; m33' in x, y, z, or a .sol;
         an eigenvalue 1/h^2 asks for edges of length h along its eigenvector
 
@@ -112,8 +113,6 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = MeshOptions::default().canvas_size)]
     pub(crate) canvas_size: u32,
     #[command(flatten)]
-    pub(crate) memory: Memory,
-    #[command(flatten)]
     pub(crate) outputs: Outputs,
     #[command(flatten)]
     pub(crate) damage: Damage,
@@ -145,7 +144,7 @@ impl MeshArgs {
             net: self.net || self.outputs.shows(Show::Protection),
             canvas: self.canvas,
             canvas_size: self.canvas_size,
-            memory_limit: self.memory.bytes(),
+            memory_limit: self.run.limits.memory(),
         }
     }
 
@@ -186,7 +185,6 @@ impl MeshArgs {
 pub(crate) fn run(args: &MeshArgs) -> Result<()> {
     let start = Instant::now();
     files::demand_writable(Some(&args.out), None, &args.outputs, &args.run)?;
-    args.run.set_threads()?;
     args.metric_choices.bounds().check()?;
     let (given, mended) = Given::read(&args.domain, args.damage.options())?;
     match given {

@@ -1,6 +1,7 @@
 //! How far a run is: a progress bar on a terminal, and the times of its stages.
 
 use crate::options::Run;
+use crate::watch;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Instant;
@@ -27,6 +28,7 @@ impl Bar {
 
 impl Progress for Bar {
     fn stage(&self, name: &'static str, total: u64) {
+        watch::stage(name, total);
         self.line.set_length(total);
         self.line.set_position(0);
         self.line.set_message(name);
@@ -36,6 +38,7 @@ impl Progress for Bar {
     }
 
     fn done(&self, units: u64) {
+        watch::done(units);
         self.line.inc(units);
     }
 

@@ -69,7 +69,7 @@ pub(crate) fn print_metric(title: &Path, told: &Value, run: &Run) {
     if run.quiet {
         return;
     }
-    let number = |value: &Value| format!("{:.4e}", value.as_f64().unwrap_or(f64::NAN));
+    let number = |value: &Value| value.as_f64().map_or("unknown".into(), |x| format!("{x:.4e}"));
     let touched = |name: &str| format!("{name} {}", told["touched"][name]);
     let limits = ["h_min", "h_max", "a_max", "gradation"].map(touched).join(", ");
     let (complexity, vertices) = (&told["complexity"], &told["expected_vertices"]);
@@ -213,13 +213,17 @@ fn distance(farthest: Option<Farthest>) -> String {
 /// A certificate: what was measured, then the theorems.
 fn certificate_lines(found: &Certificate, mut line: impl FnMut(&str, String)) {
     let (covered, left, border) = (found.covered, found.border_not_covered, found.border_distance);
-    line("covered", format!("{covered} seeds; {left} are within {border:.3e} of the border: not covered"));
     let (epsilon, mu, delta, lambda) = (found.net.epsilon, found.net.mu, found.net.delta, found.lambda);
-    let ratios = format!("lambda {lambda:.3}, delta/epsilon {:.3}", delta / epsilon);
-    line("net", format!("epsilon {epsilon:.3e}, mu {mu:.3e}, delta {delta:.3e} ({ratios})"));
-    line("distortion", format!("psi0 - 1 = {:.3e} (sampled within 6 epsilon)", found.psi - 1.0));
-    let (size, error) = (found.size, found.distance_error);
-    line("sizes", format!("half the longest canvas edge {size:.3e}; distances err by {error:.1e}"));
+    if covered == 0 {
+        line("covered", format!("none of {left} seeds: all are too near to the border, or to few others"));
+    } else {
+        line("covered", format!("{covered} seeds; {left} are within {border:.3e} of the border: not covered"));
+        let ratios = format!("lambda {lambda:.3}, delta/epsilon {:.3}", delta / epsilon);
+        line("net", format!("epsilon {epsilon:.3e}, mu {mu:.3e}, delta {delta:.3e} ({ratios})"));
+        line("distortion", format!("psi0 - 1 = {:.3e} (sampled within 6 epsilon)", found.psi - 1.0));
+        let (size, error) = (found.size, found.distance_error);
+        line("sizes", format!("half the longest canvas edge {size:.3e}; distances err by {error:.1e}"));
+    }
     found.verdicts.iter().for_each(|verdict| line(verdict.theorem, told(verdict)));
     let asked = match (found.asked_size, found.asked_canvas) {
         (Some(size), Some(cost)) => {

@@ -58,6 +58,23 @@ fn a_solver_is_run_on_every_mesh() {
     assert!(near.filter(|x| (x - 0.45).abs() < 0.1).count() > 120);
 }
 
+/// Names of files are one word for the shell, in quotes or not.
+#[test]
+#[cfg(unix)]
+fn a_directory_for_temporary_files_may_have_a_space_in_its_name() {
+    let place = Place::new();
+    std::fs::create_dir(place.path().join("it's here")).unwrap();
+    for solver in [SOLVER.to_string(), SOLVER.replace("{out}", "\"{out}\"")] {
+        let run = std::process::Command::new(env!("CARGO_BIN_EXE_voronaut"))
+            .args(["loop", "rect:0,0,1,1", "--solver", &solver, "-n", "100", "--iterations", "1", "-o", "out.mesh"])
+            .current_dir(place.path())
+            .env("TMPDIR", place.path().join("it's here"))
+            .output()
+            .unwrap();
+        assert!(run.status.success(), "{}", stderr(&run));
+    }
+}
+
 #[test]
 fn solvers_at_fault_are_named_and_leave_nothing() {
     let place = Place::new();

@@ -120,6 +120,7 @@ const ROWS: &[Row] = &[
     all(&["--dual", "canvas"], &["--canvas-size", "900"], Report("canvas")),
     all(BY_LENGTHS, &["--canvas-size", "90"], Refused("--canvas-size")),
     all(&[], &["--memory-limit", "1e-6"], Refused("--memory-limit")),
+    all(&[], &["--time-limit", "1e-6"], Refused("--time-limit")),
     all(&[], &["--picture", "p.svg"], File("p.svg")),
     all(DRAWN, &["--show", "cells"], File("p.svg")),
     all(DRAWN, &["--pixels", "99"], File("p.svg")),

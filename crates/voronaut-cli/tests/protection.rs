@@ -61,7 +61,8 @@ fn a_net_is_measured_only_where_it_is_wanted() {
 
     place.put("seeds.txt", "0.2 0.2\n0.8 0.3\n0.5 0.9\n");
     let dual = ["dual", "rect:0,0,1,1", "--metric", "uniform", "--seeds", "seeds.txt", "-o", "d.mesh"];
-    let net = &runs(&place, &dual)["net"];
+    assert!(runs(&place, &dual)["net"].is_null());
+    let net = &runs(&place, &[&dual[..], &["--net"]].concat())["net"];
     // Farthest is (0, 0.7), where the cells of the first and the third seed meet on the border; canvas vertices there are
     // 0.003 apart.
     assert!((net["epsilon"].as_f64().unwrap() - 0.29_f64.sqrt()).abs() < 1.5e-3, "{net}");

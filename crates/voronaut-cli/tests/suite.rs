@@ -12,6 +12,7 @@ mod geodesic_edges;
 mod good_input;
 mod histograms;
 mod interpolate;
+mod limits;
 mod metric;
 mod options;
 mod protection;

@@ -39,7 +39,7 @@ pub use given::{Given, of_document, read_surface};
 pub use losses::lost_in_outline;
 pub use metric::{MetricFiles, MetricSource, read_metric, surface_metric};
 pub use report::{Report, Seconds, Strayed, peak_memory_bytes};
-pub use whole::{demand_directory, place, write, write_with};
+pub use whole::{Scratch, abandon, demand_directory, place, write, write_with};
 pub use write::{
     demand_diagram, write_diagram, write_document, write_mesh, write_realisation, write_solution, write_solutions,
 };

@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use voronaut::{Error, Result};
 
 /// Writes a file by way of a temporary one in the same directory, which takes its name once it is complete: whoever
@@ -48,8 +49,62 @@ pub fn demand_directory(path: &Path) -> Result<()> {
 pub fn place(path: &Path) -> Result<PathBuf> {
     demand_directory(path)?;
     let directory = fs::canonicalize(directory(path)).map_err(|source| Error::io(path, source))?;
-    let place = directory.join(path.file_name().unwrap_or_default());
-    Ok(fs::canonicalize(&place).unwrap_or(place))
+    followed(&directory.join(path.file_name().unwrap_or_default())).map_err(|source| Error::io(path, source))
+}
+
+/// Where a chain of symbolic links ends, whether there is a file or not.
+fn followed(path: &Path) -> io::Result<PathBuf> {
+    /// As many as Linux follows.
+    const LINKS: usize = 40;
+    let mut path = path.to_path_buf();
+    for _ in 0..LINKS {
+        match fs::read_link(&path) {
+            Ok(target) => path = directory(&path).join(target),
+            Err(_) => return Ok(path),
+        }
+    }
+    Err(io::Error::other("too many symbolic links"))
+}
+
+/// Temporary files and directories that are not yet gone. Whoever makes one, or gives it its name, holds the lock.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the temporary files and directories that there are, and lets no other thread make one, or finish a file, ever after: for a
+/// program that ends in the midst of its work.
+pub fn abandon() {
+    let mut left = unfinished();
+    for path in left.drain(..) {
+        // What cannot be removed is no reason to go on.
+        let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
+    }
+    std::mem::forget(left);
+}
+
+/// A directory for temporary files, which goes with this value, or with [`abandon`].
+pub struct Scratch {
+    directory: tempfile::TempDir,
+}
+
+impl Scratch {
+    /// # Errors
+    /// [`Error::Io`] with the directory in which none can be made.
+    pub fn new() -> Result<Self> {
+        let mut unfinished = unfinished();
+        let made = tempfile::Builder::new().prefix("voronaut-").tempdir();
+        let directory = made.map_err(|source| Error::io(std::env::temp_dir(), source))?;
+        unfinished.push(directory.path().to_path_buf());
+        Ok(Self { directory })
+    }
+}
+
+impl AsRef<Path> for Scratch {
+    fn as_ref(&self) -> &Path {
+        self.directory.path()
+    }
 }
 
 fn replace(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
@@ -57,13 +112,21 @@ fn replace(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> 
     if old.as_ref().is_some_and(|old| !old.is_file()) {
         return buffered(&mut fs::OpenOptions::new().write(true).open(path)?, fill);
     }
-    let target = if old.is_some() { fs::canonicalize(path)? } else { path.to_path_buf() };
-    let mut file = builder().tempfile_in(directory(&target))?;
+    let target = followed(path)?;
+    let mut file = {
+        let mut unfinished = unfinished();
+        let file = builder().tempfile_in(directory(&target))?;
+        unfinished.push(file.path().to_path_buf());
+        file
+    };
+    let temporary = file.path().to_path_buf();
     buffered(file.as_file_mut(), fill)?;
     if let Some(old) = old {
         file.as_file().set_permissions(old.permissions())?;
     }
+    let mut unfinished = unfinished();
     file.persist(&target).map_err(|failed| failed.error)?;
+    unfinished.retain(|path| *path != temporary);
     Ok(())
 }
 

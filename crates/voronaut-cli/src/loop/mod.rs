@@ -3,7 +3,7 @@
 mod solver;
 
 use crate::account::ours;
-use crate::options::{Memory, MetricChoices, Run, finite, not_negative, positive, refuse};
+use crate::options::{MetricChoices, Run, finite, not_negative, positive, refuse};
 use crate::progress::Bar;
 use crate::{files, summary};
 use clap::{Args, value_parser};
@@ -27,7 +27,7 @@ function's values, and the solution of the first mesh as it was carried through 
 
 With --solver CMD the first mesh is even. In each step the shell runs CMD, in which {mesh} stands for the mesh file, {start} for a .sol
 to start from (what the last step found, carried over; `-` in the first), {out} for the .sol that the solver has to write, and
-{step} for the number; put quotes around them if your directory for temporary files has spaces. The next mesh is for the second derivatives, recovered, of the solution that --field chooses, or in the metric
+{step} for the number. The next mesh is for the second derivatives, recovered, of the solution that --field chooses, or in the metric
 that it is; all that the solver wrote is carried to it, and is in the .sol.
 
 Every mesh is made from DOMAIN anew: boundaries, labels and features are its own, and vertices on straight sides are free to go.
@@ -82,8 +82,6 @@ pub(crate) struct LoopArgs {
     #[arg(long, value_name = "SWEEPS", default_value_t = MeshOptions::default().polish)]
     pub(crate) polish: usize,
     #[command(flatten)]
-    pub(crate) memory: Memory,
-    #[command(flatten)]
     pub(crate) run: Run,
 }
 
@@ -116,7 +114,7 @@ impl LoopArgs {
                 hausd: self.hausd,
                 lloyd: self.lloyd,
                 polish: self.polish,
-                memory_limit: self.memory.bytes(),
+                memory_limit: self.run.limits.memory(),
                 ..MeshOptions::default()
             },
             transfer: TransferOptions {
@@ -132,7 +130,6 @@ impl LoopArgs {
 pub(crate) fn run(args: &LoopArgs) -> Result<()> {
     let start = Instant::now();
     demand_writable(args)?;
-    args.run.set_threads()?;
     args.metric_choices.bounds().check()?;
     let domain = match Given::read(&args.domain, RepairOptions::default())?.0 {
         Given::Plane(domain) => domain,

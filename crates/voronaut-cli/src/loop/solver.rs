@@ -1,21 +1,22 @@
 //! A user's solver, run by the shell on files of its own directory.
 
 use crate::files::{self, Miscounted};
-use std::path::{Path, PathBuf};
+use crate::watch;
+use std::path::Path;
 use std::process::Command;
 use voronaut::mesh::{Mesh, Solutions};
 use voronaut::{Error, Result};
-use voronaut_io::sol;
+use voronaut_io::{Scratch, sol};
 
 /// A command and the directory of the files that it reads and writes, which goes when the loop ends.
 pub(super) struct Shell {
     command: String,
-    directory: PathBuf,
+    directory: Scratch,
 }
 
 impl Shell {
     /// # Errors
-    /// [`Error::Parse`] of a command that names no file to write; [`Error::Io`] where no directory can be made.
+    /// [`Error::Parse`] of a command that names no file to write; [`Error::Io`] where there is no place for temporary files.
     pub(super) fn new(command: &str) -> Result<Self> {
         for needed in ["{mesh}", "{out}"] {
             if !command.contains(needed) {
@@ -23,13 +24,7 @@ impl Shell {
                 return Err(Error::parse("solver", format!("{needed} is missing in `{command}`"), help));
             }
         }
-        let place = std::path::absolute(std::env::temp_dir()).unwrap_or_else(|_| std::env::temp_dir());
-        let directory = place.join(format!("voronaut-loop-{}", std::process::id()));
-        std::fs::create_dir(&directory).map_err(|error| {
-            let what = format!("cannot be made: {error}");
-            Error::parse(directory.display().to_string(), what, "set TMPDIR to a directory to write to")
-        })?;
-        Ok(Self { command: command.into(), directory })
+        Ok(Self { command: command.into(), directory: Scratch::new()? })
     }
 
     /// One run.
@@ -37,7 +32,9 @@ impl Shell {
     /// # Errors
     /// [`Error::Parse`] where the command fails or writes no file, or one that is none; [`Error::Io`] of files.
     pub(super) fn solve(&self, step: usize, mesh: &Mesh, start: Option<&Solutions>) -> Result<Solutions> {
-        let file = |name: &str| self.directory.join(name);
+        let scratch = self.directory.as_ref();
+        let directory = std::path::absolute(scratch).map_err(|source| Error::io(scratch, source))?;
+        let file = |name: &str| directory.join(name);
         let (mesh_file, start_file, out_file) = (file("mesh.mesh"), file("start.sol"), file("out.sol"));
         voronaut_io::write_mesh(mesh, &mesh_file)?;
         if let Some(start) = start {
@@ -51,7 +48,7 @@ impl Shell {
             ("{out}", out_file.display().to_string()),
             ("{step}", step.to_string()),
         ];
-        let text = names.iter().fold(self.command.clone(), |text, (name, value)| text.replace(name, value));
+        let text = put(&self.command, &names);
         run(step, &text)?;
         if !out_file.exists() {
             let help = "it has to write its solution to the file that {out} stands for";
@@ -66,16 +63,35 @@ impl Shell {
     }
 }
 
-impl Drop for Shell {
-    fn drop(&mut self) {
-        // Files left behind in a temporary directory are no failure.
-        let _ = std::fs::remove_dir_all(&self.directory);
+/// One word for the shell.
+fn quoted(value: &str) -> String {
+    if cfg!(windows) { format!("\"{value}\"") } else { format!("'{}'", value.replace('\'', "'\\''")) }
+}
+
+/// A command with values in place of their names, each as one word for the shell, in quotes or not.
+fn put(command: &str, names: &[(&str, String)]) -> String {
+    let is_plain = |value: &str| value.chars().all(|c| c.is_alphanumeric() || "/._-:\\~+@%".contains(c));
+    let (mut text, mut quote, mut rest) = (String::new(), None, command);
+    while let Some(c) = rest.chars().next() {
+        if let Some((name, value)) = names.iter().find(|(name, _)| rest.starts_with(name)) {
+            text.push_str(&if quote.is_none() && !is_plain(value) { quoted(value) } else { value.clone() });
+            rest = &rest[name.len()..];
+            continue;
+        }
+        quote = match quote {
+            None if c == '\'' || c == '"' => Some(c),
+            Some(open) if open == c => None,
+            other => other,
+        };
+        text.push(c);
+        rest = &rest[c.len_utf8()..];
     }
+    text
 }
 
 fn run(step: usize, text: &str) -> Result<()> {
     let (shell, flag) = if cfg!(windows) { ("cmd", "/C") } else { ("sh", "-c") };
-    let status = Command::new(shell).arg(flag).arg(text).status();
+    let status = watch::run(Command::new(shell).arg(flag).arg(text));
     let what = match status {
         Ok(status) if status.success() => return Ok(()),
         Ok(status) => format!("step {step}: `{text}` ended with {status}"),

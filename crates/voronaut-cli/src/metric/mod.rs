@@ -117,7 +117,6 @@ impl FromStr for LimitText {
 pub(crate) fn run(args: &MetricArgs) -> Result<()> {
     let start = Instant::now();
     files::demand_solution(&args.out, &args.run)?;
-    args.run.set_threads()?;
     let pipeline = Pipeline {
         norm: args.norm,
         target_complexity: args.complexity,

@@ -8,7 +8,8 @@ pub(crate) use values::{
 
 use clap::{Args, value_parser};
 use std::path::PathBuf;
-use values::{GIB, default_memory_limit, window};
+pub(crate) use values::GIB;
+use values::{default_memory_limit, window};
 use voronaut::geometry::Aabb;
 use voronaut::mesh::TensorOrder;
 use voronaut::metric::{Bounds, MOST_SWEEPS, Norm, Recovery};
@@ -102,18 +103,26 @@ impl Outputs {
     }
 }
 
-#[derive(Debug, Args)]
-pub(crate) struct Memory {
-    /// Refuse work that is estimated to need more memory than this
+/// What a run may take.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct Limits {
+    /// Stop, without an output, after so many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    pub(crate) time_limit: Option<f64>,
+    /// Refuse work that is estimated to need more memory than this, and stop, without an output, where it takes more all the same
     #[arg(long, value_name = "GIB", value_parser = positive, default_value_t = default_memory_limit())]
-    memory_limit: f64,
+    pub(crate) memory_limit: f64,
 }
 
-impl Memory {
-    pub(crate) fn bytes(&self) -> u64 {
+impl Limits {
+    /// Bytes.
+    pub(crate) fn memory(&self) -> u64 {
         (self.memory_limit * GIB) as u64
     }
 }
+
+/// More threads than the largest machines have cores only take turns: thousands need minutes to start.
+const MOST_THREADS: i64 = 1024;
 
 #[derive(Debug, Args)]
 pub(crate) struct Run {
@@ -121,8 +130,10 @@ pub(crate) struct Run {
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
     /// Threads to use [default: all]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=MOST_THREADS))]
     pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) limits: Limits,
     /// Say nothing but errors
     #[arg(short, long, conflicts_with = "verbose")]
     pub(crate) quiet: bool,

@@ -71,7 +71,7 @@ impl fmt::Display for CanvasSize {
 }
 
 /// Bytes of a gibibyte.
-pub(super) const GIB: f64 = 1_073_741_824.0;
+pub(crate) const GIB: f64 = 1_073_741_824.0;
 
 pub(super) fn default_memory_limit() -> f64 {
     MeshOptions::default().memory_limit as f64 / GIB

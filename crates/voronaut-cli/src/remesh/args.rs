@@ -1,6 +1,6 @@
 //! What users of mmg2d and mmgs type.
 
-use crate::options::{Damage, Run, not_negative, positive};
+use crate::options::{Damage, Limits, Run, not_negative, positive};
 use clap::Args;
 use std::path::PathBuf;
 use voronaut::mesh::TensorOrder;
@@ -93,8 +93,8 @@ pub(crate) struct RemeshArgs {
     /// Vertices on the surface, instead of where mesh and surface are closest in the sense of least squares
     #[arg(long)]
     pub(crate) no_fit: bool,
-    /// Megabytes the work may need, as estimated before
-    #[arg(short, long, value_name = "MB", value_parser = positive)]
+    /// --memory-limit in megabytes
+    #[arg(short, long, value_name = "MB", value_parser = positive, conflicts_with = "memory_limit")]
     pub(crate) memory: Option<f64>,
     /// How much is said, as mmg's -v N: nothing from 0 down, more from 5 up
     #[arg(long, value_name = "N", allow_negative_numbers = true, conflicts_with_all = ["quiet", "verbose"])]
@@ -199,7 +199,11 @@ impl RemeshArgs {
 
     /// Threads, and how much is said.
     pub(crate) fn run(&self) -> Run {
+        /// Megabytes of a gibibyte, as mmg counts.
+        const MEGABYTES: f64 = 1024.0;
+        let memory_limit = self.memory.map_or(self.run.limits.memory_limit, |megabytes| megabytes / MEGABYTES);
         Run {
+            limits: Limits { memory_limit, ..self.run.limits },
             report: self.run.report.clone(),
             threads: self.run.threads,
             quiet: self.run.quiet || self.verbosity.is_some_and(|n| n <= 0),

@@ -20,9 +20,6 @@ use voronaut::surface::{Input, Mended};
 use voronaut_io::gmsh::Version;
 use voronaut_io::{Fields, Format, Given, Report, Strayed, in_file, of_document, read_metric, read_pslg};
 
-/// mmg's exit code where it writes no mesh.
-pub(crate) const FAILURE: u8 = 2;
-
 /// Remeshes a planar domain or a surface. Nothing is written unless the mesh is valid.
 pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     let start = Instant::now();
@@ -35,7 +32,6 @@ pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     let sol_file = out.with_extension("sol");
     let files = [Some(&out), Some(&sol_file), run.report.as_ref()];
     files.into_iter().flatten().try_for_each(|path| voronaut_io::demand_directory(path))?;
-    run.set_threads()?;
     let given = read(args)?;
     let is_planar = matches!(given, Read::Plane(..));
     args.warnings(is_planar).iter().for_each(|warning| eprintln!("warning: {warning}"));
@@ -170,11 +166,7 @@ fn sizing(args: &RemeshArgs, [least, most]: [f64; 2]) -> Sizing {
 }
 
 fn options(args: &RemeshArgs) -> MeshOptions {
-    /// Bytes of a megabyte, as mmg counts.
-    const MEGABYTE: f64 = 1_048_576.0;
-    let default = MeshOptions::default();
-    let memory_limit = args.memory.map_or(default.memory_limit, |megabytes| (megabytes * MEGABYTE) as u64);
-    MeshOptions { hausd: Some(args.hausd), memory_limit, ..default }
+    MeshOptions { hausd: Some(args.hausd), memory_limit: args.run().limits.memory(), ..MeshOptions::default() }
 }
 
 fn as_used(args: &RemeshArgs, sizing: &Sizing, metric_file: Option<&Path>) -> Value {

@@ -8,10 +8,13 @@ use crate::geodesic::NO_COLOUR;
 use crate::lists::{Rows, in_order};
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// Rings of canvas vertices around a cell.
 const RINGS: usize = 3;
+/// Seeds near a vertex of which the ways from one to another are looked at: pairs are half the square of that.
+const CROWD: usize = 64;
 /// Cells that share the memory of one solver.
 const CELLS: usize = 128;
 
@@ -133,7 +136,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         let overlap = self.overlap();
         let mut best: HashMap<[u32; 2], (f64, VertexId)> = HashMap::new();
         for v in self.vertices() {
-            let list = overlap.at(v);
+            let list = nearest_few(overlap.at(v));
             for (k, &(a, to_a)) in list.iter().enumerate() {
                 for &(b, to_b) in &list[k + 1..] {
                     let found = best.entry([a, b]).or_insert((f64::INFINITY, v));
@@ -145,6 +148,18 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         }
         Passes(best)
     }
+}
+
+/// Those of the nearest seeds, by colour: more than cells that meet in a place are there only where many seeds are in one canvas face.
+fn nearest_few(list: &[(u32, f64)]) -> Cow<'_, [(u32, f64)]> {
+    if list.len() <= CROWD {
+        return list.into();
+    }
+    let mut few = list.to_vec();
+    few.select_nth_unstable_by(CROWD, |a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+    few.truncate(CROWD);
+    few.sort_by_key(|entry| entry.0);
+    few.into()
 }
 
 impl Passes {

@@ -83,18 +83,31 @@ impl Pslg {
             chain.vertices.push(chain.vertices[0]);
         }
         let mut kept = vec![chain.vertices[0]];
-        let mut run: Vec<u32> = Vec::new();
+        // Of those between, the corners of their hull are farthest from any chord.
+        let mut run: [Vec<u32>; 2] = Default::default();
         for &v in &chain.vertices[1..] {
             let anchor = self.point(kept[kept.len() - 1]);
-            let straight = run.iter().all(|&m| on_chord(anchor, self.point(m), self.point(v)));
-            if !straight {
-                kept.extend(run.last());
-                run.clear();
+            let is_straight = run.iter().flatten().all(|&m| on_chord(anchor, self.point(m), self.point(v)));
+            if !is_straight {
+                kept.extend(run[0].last());
+                run = Default::default();
             }
-            run.push(v);
+            self.extend_hull(&mut run, v);
         }
-        kept.extend(run.last());
+        kept.extend(run[0].last());
         chain.vertices = kept;
+    }
+
+    /// Adds a vertex to the two sides of the hull of vertices that come one behind the other (Andrew 1979).
+    fn extend_hull(&self, sides: &mut [Vec<u32>; 2], v: u32) {
+        for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+            while let [.., a, b] = side[..]
+                && sign * signed_area(self.point(a), self.point(b), self.point(v)) >= 0.0
+            {
+                side.pop();
+            }
+            side.push(v);
+        }
     }
 
     /// The segments, by their vertices.
@@ -168,6 +181,16 @@ mod tests {
         assert_eq!((clean.points.len(), clean.segments.len()), (4, 4));
         assert_eq!(clean.names.len(), 4);
         assert!(clean.names.contains(&"vertex 3".to_string()), "{:?}", clean.names);
+    }
+
+    /// Each new vertex was once held against all of its run.
+    #[test]
+    fn long_runs_cost_no_more_than_short_ones() {
+        let n = 400_000;
+        let bottom = (0..n).map(|i| (f64::from(i) / f64::from(n), 0.1 * f64::from(i) / f64::from(n)));
+        let points: Vec<(f64, f64)> = bottom.chain([(1.0, 0.1), (1.0, 1.0), (0.0, 1.0)]).collect();
+        let clean = polygon(&points, &vec![1; points.len()]).without_straight_vertices();
+        assert_eq!(clean.points.len(), 4);
     }
 
     #[test]

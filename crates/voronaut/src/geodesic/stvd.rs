@@ -34,6 +34,9 @@ impl Stvd {
     }
 }
 
+/// Windows up to this have room for their edges from the beginning.
+const USUAL: usize = 64;
+
 /// The length of a way's edges, each with its tensor's root and projected on the line along the unit vector u; not negative.
 fn projected(edges: &[(Vector, Tensor)], u: Vector) -> f64 {
     let lengths = edges.iter().map(|&(edge, root)| edge.dot(u) * root.apply(u).norm());
@@ -49,7 +52,7 @@ impl Step for Stvd {
         let graph = &self.graph;
         let sight = graph.sight();
         let label = labels[from.index()];
-        let mut edges: Vec<(Vector, Tensor)> = Vec::with_capacity(self.window);
+        let mut edges: Vec<(Vector, Tensor)> = Vec::with_capacity(self.window.min(USUAL));
         let is_bent = !sight.is_flat(x, from);
         let mut best = if is_bent { label.distance + graph.length(from, x) } else { f64::INFINITY };
         let (mut near, mut next) = (x, Some(from));

@@ -129,6 +129,7 @@ pub fn mesh_for(
         return mesher::by_stars(domain, field, options, progress);
     }
     options.geodesic.demand_diagrams()?;
+    protection::demand_possible(options)?;
     let watch = Stopwatch::new(progress);
     let mut job = Job::new(field, options, &watch);
     let (domain, plan, count, scale) = watch.time("plan", || job.plan(domain))?;

@@ -35,7 +35,7 @@ pub struct MeshOptions {
     /// How the interior is seeded.
     pub seeding: Seeding,
     /// With [`Seeding::Protected`], the power protection asked of every interior simplex, as a share of epsilon, the
-    /// greatest circumradius.
+    /// greatest circumradius; sqrt(3) at most.
     pub protection: f64,
     /// With [`Seeding::Protected`], the radius of the ball around a circumcentre in which a seed is picked, as a share of
     /// the circumradius.

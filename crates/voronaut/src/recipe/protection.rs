@@ -1,15 +1,28 @@
 //! Protected seeds: the last moves, and what the report says of the net.
 
-use super::{Job, Seeding};
+use super::{Job, MeshOptions, Seeding};
 use crate::canvas::{self, Canvas};
 use crate::diagram::{Diagram, RESOLVE_ROUNDS, resolve};
 use crate::domain::Domain;
 use crate::dual::{Dual, Moving, Road};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::figures;
 use crate::geometry::Point;
 use crate::net::{Ball, Net};
 use crate::optimise::{Ending, Protected, measured, protect};
+
+/// Refuses to look for what there cannot be: equilateral triangles, which are protected best, are by sqrt(3) epsilon.
+///
+/// # Errors
+/// [`Error::Unsupported`] of more.
+pub(super) fn demand_possible(options: &MeshOptions) -> Result<()> {
+    let asked = options.protection;
+    if options.seeding != Seeding::Protected || asked <= 3.0_f64.sqrt() {
+        return Ok(());
+    }
+    let help = "lower `protection`: equilateral triangles are protected by sqrt(3) epsilon; 0.2 is met by most meshes";
+    Err(Error::unsupported(format!("protection by {asked} epsilon"), help))
+}
 
 impl Job<'_> {
     /// With [`Seeding::Protected`], moves seeds until their simplices are protected.

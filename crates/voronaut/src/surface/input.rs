@@ -31,7 +31,8 @@ pub struct Input {
 const ON_SURFACE: f64 = 1e-14;
 /// It leads no farther away than this share of the diagonal.
 const REACH: f64 = 0.25;
-/// The faces passed in search of a closest point, at most.
+/// The faces passed in search of a closest point, at most, and those after which a tree is asked.
+const FEW_FACES: usize = 512;
 const FACES: usize = 4096;
 /// A point this far from the surface, as a share of the diagonal, is not meant to be on it.
 pub(crate) const OFF_SURFACE: f64 = 1e-2;
@@ -112,13 +113,16 @@ impl Input {
     /// # Errors
     /// [`Error::Domain`] where the point is not finite, or farther than a hundredth of the diagonal from the surface.
     pub fn closest(&self, p: Point3) -> Result<Place> {
-        let nearest = self.nearest.get_or_init(|| Nearest::new(&self.surface));
-        let found = nearest.closest(&self.surface, p).and_then(|found| self.lift(&found.place, p));
+        let found = self.nearest().closest(&self.surface, p).and_then(|found| self.lift(&found.place, p));
         let is_near = |place: &Place| place.position.distance(p) <= OFF_SURFACE * self.diagonal;
         found.filter(is_near).ok_or_else(|| {
             let help = "give points on the surface, or within a hundredth of its diagonal from it";
             Error::domain("a point off the surface", p.to_string(), help)
         })
+    }
+
+    fn nearest(&self) -> &Nearest {
+        self.nearest.get_or_init(|| Nearest::new(&self.surface))
     }
 
     /// The place of the surface that a point near a place is nearest to: found from triangle to triangle or, on an equation's
@@ -129,16 +133,22 @@ impl Input {
                 let position = project(f, p, REACH * self.diagonal, ON_SURFACE * self.diagonal)?;
                 Some(Place { position, normal: f.jet(position).gradient.unit()?, ..*near })
             }
-            None => p.is_finite().then(|| self.walk(near.face, p)),
+            None => p.is_finite().then(|| self.walk(near, p)),
         }
     }
 
     /// From triangle to triangle as long as that leads nearer to a point: across the edges that the closest point lies on, or else
-    /// around its corner.
-    fn walk(&self, from: FaceId, p: Point3) -> Place {
+    /// around its corner. Where that takes long, from what is closest of all, unless it is another side of the surface.
+    fn walk(&self, from: &Place, p: Point3) -> Place {
         let topology = self.surface.topology();
-        let mut best = self.reached(from, p);
-        for _ in 0..FACES {
+        let mut best = self.reached(from.face, p);
+        for step in 0..FACES {
+            if step == FEW_FACES {
+                let closest =
+                    self.nearest().closest(&self.surface, p).filter(|it| it.place.normal.dot(from.normal) > 0.0);
+                let closest = closest.map(|found| self.reached(found.place.face, p));
+                best = closest.filter(|closest| closest.square < best.square).unwrap_or(best);
+            }
             let [ab, bc, ca] = best.face.half_edges();
             let [a, b, c] = best.weights.map(|w| w <= 0.0);
             let across =

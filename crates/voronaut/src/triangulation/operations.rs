@@ -140,14 +140,28 @@ impl Triangulation {
             return false;
         }
         let sides = [Some(h), twin];
-        let stays = |side: HalfEdge| {
-            let apex = self.apex(side);
-            let faces = self.star(apex).count();
-            if self.is_border_vertex(apex) { faces > 1 } else { faces > 3 }
+        let apexes = sides.map(|side| side.map(|side| self.apex(side)));
+        let stays = |&apex: &VertexId| {
+            let least = if self.is_border_vertex(apex) { 1 } else { 3 };
+            self.star(apex).nth(least).is_some()
         };
-        let around = self.neighbours(b);
-        let common = self.neighbours(a).into_iter().filter(|v| around.contains(v)).count();
-        sides.into_iter().flatten().all(stays) && common == sides.into_iter().flatten().count()
+        let [few, many] = if self.has_fewer(a, b) { [a, b] } else { [b, a] };
+        let others = self.neighbours(few).into_iter().filter(|&v| v != many && !apexes.contains(&Some(v)));
+        apexes.iter().flatten().all(stays)
+            && apexes[0] != apexes[1]
+            && others.into_iter().all(|v| self.around(v).all(|w| w != many))
+    }
+
+    /// Whether one vertex has no more neighbours than another, in as many steps as the one with fewer has.
+    fn has_fewer(&self, v: VertexId, w: VertexId) -> bool {
+        let (mut of_v, mut of_w) = (self.star(v), self.star(w));
+        loop {
+            match (of_v.next(), of_w.next()) {
+                (None, _) => return true,
+                (_, None) => return false,
+                _ => {}
+            }
+        }
     }
 
     /// The vertices that an edge joins to this one.

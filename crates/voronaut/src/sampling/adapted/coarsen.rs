@@ -121,7 +121,8 @@ impl Work<'_> {
         let t = &self.topology;
         let [v, w] = t.ends(h);
         let may_go = |v: VertexId| self.at(v).may_go() && !t.is_border_vertex(v);
-        let is_crowded = t.star(v).count() + t.star(w).count() > CROWD;
+        let faces = |v: VertexId| t.star(v).take(CROWD + 1).count();
+        let is_crowded = faces(v) + faces(w) > CROWD;
         if is_crowded || !(may_go(v) || may_go(w)) || !t.can_collapse(h) {
             return None;
         }

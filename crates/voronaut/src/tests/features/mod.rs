@@ -85,7 +85,6 @@ macro_rules! parts_keep_features {
             }
 
             #[test]
-            #[ignore = "takes minutes"]
             fn many_vertices() {
                 super::keeps_features(stringify!($name), "uniform", &[5000]);
                 super::keeps_features(stringify!($name), "curvature", &[5000]);

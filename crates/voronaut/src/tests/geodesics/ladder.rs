@@ -104,6 +104,16 @@ fn grid(n: u32) -> Graph {
     Graph::new(positions, tensors, (0..n * n).flat_map(around))
 }
 
+/// A window has no more edges than a way, however many it may have.
+#[test]
+fn a_window_may_be_larger_than_memory() {
+    let graph = grid(5);
+    let mut sources = Sources::new(graph.vertex_count());
+    sources.add(VertexId(0), 0.0, 0);
+    let [all, most] = [usize::MAX, 25].map(|window| Stvd::on(graph.clone(), window).propagate(&sources));
+    assert!(graph.vertices().all(|v| all.label(v).distance.total_cmp(&most.label(v).distance).is_eq()));
+}
+
 #[test]
 fn a_fixed_window_does_not_converge() {
     let mut found = [[0.0; 3]; 3];

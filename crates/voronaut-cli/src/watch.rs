@@ -1,0 +1,120 @@
+//! What ends a run before its end: limits of time and memory, and signals. Nothing is left behind then.
+
+use crate::options::{GIB, Limits};
+use std::process::{Child, Command, ExitStatus, exit};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+use voronaut::{Error, Result};
+
+/// What the program itself may hold, whatever the limit: that is for its work, which is estimated before.
+const OWN: u64 = 64 << 20;
+/// The time between two looks at clock and memory.
+const PERIOD: Duration = Duration::from_millis(20);
+
+/// Watches over the rest of the run.
+///
+/// # Errors
+/// [`Error::Limit`] where signals cannot be handled.
+pub(crate) fn begin(limits: Limits) -> Result<()> {
+    let start = Instant::now();
+    let set = ctrlc::set_handler(|| stop("stopped by a signal", "files are whole or not there"));
+    set.map_err(|error| Error::limit(format!("signals cannot be handled: {error}"), "start it in another way"))?;
+    std::thread::spawn(move || {
+        loop {
+            check(limits, start);
+            std::thread::sleep(PERIOD);
+        }
+    });
+    Ok(())
+}
+
+fn check(limits: Limits, start: Instant) {
+    if let Some(limit) = limits.time_limit.filter(|&limit| start.elapsed().as_secs_f64() > limit) {
+        stop(&format!("not done within {limit} s"), "raise --time-limit, or ask for less");
+    }
+    if let Some(held) = voronaut_io::peak_memory_bytes().filter(|&held| held > limits.memory().max(OWN)) {
+        let what = format!("{:.2} GiB of memory were held, more than {}", held as f64 / GIB, limits.memory_limit);
+        stop(&what, "raise --memory-limit, or ask for less");
+    }
+}
+
+/// How far a run is.
+struct Stage {
+    name: &'static str,
+    began: Option<Instant>,
+    done: u64,
+    total: u64,
+}
+
+static STAGE: Mutex<Stage> = Mutex::new(Stage { name: "reading", began: None, done: 0, total: 0 });
+
+/// The program of the user's that runs.
+static CHILD: Mutex<Option<Child>> = Mutex::new(None);
+
+fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Runs a program to its end, or to the end of this one, with all that it starts.
+///
+/// # Errors
+/// What the system says.
+pub(crate) fn run(command: &mut Command) -> std::io::Result<ExitStatus> {
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(command, 0);
+    let mut running = held(&CHILD);
+    *running = Some(command.spawn()?);
+    drop(running);
+    loop {
+        let ended = held(&CHILD).as_mut().map_or(Ok(None), Child::try_wait)?;
+        if let Some(status) = ended {
+            *held(&CHILD) = None;
+            return Ok(status);
+        }
+        std::thread::sleep(PERIOD / 20);
+    }
+}
+
+/// The exit code of a run whose input or result is not what was asked: of `remesh` that of mmg.
+pub(crate) fn failure() -> u8 {
+    if std::env::args_os().nth(1).is_some_and(|word| word == "remesh") { 2 } else { 1 }
+}
+
+/// A stage begins, with so many units of work.
+pub(crate) fn stage(name: &'static str, total: u64) {
+    *held(&STAGE) = Stage { name, began: Some(Instant::now()), done: 0, total };
+}
+
+/// So many more units of it are done.
+pub(crate) fn done(units: u64) {
+    held(&STAGE).done += units;
+}
+
+impl Stage {
+    /// Where the run is, and what the stage would take.
+    fn account(&self) -> String {
+        let share = self.done as f64 / self.total.max(1) as f64;
+        match self.began.filter(|_| share > 0.0 && share < 1.0) {
+            None => format!("in the stage: {}", self.name),
+            Some(began) => {
+                let whole = began.elapsed().as_secs_f64() / share;
+                format!("in the stage: {}, {:.0} % done, of about {whole:.1} s", self.name, 100.0 * share)
+            }
+        }
+    }
+}
+
+/// Ends the program; files that are not whole go, and a solver that runs.
+fn stop(what: &str, help: &str) {
+    voronaut_io::abandon();
+    // Held to the end: nobody starts another.
+    let mut running = held(&CHILD);
+    if let Some(child) = running.as_mut() {
+        // It may have ended by itself; what it has started is in its group.
+        let _ = Command::new("kill").args(["-KILL", "--", &format!("-{}", child.id())]).status();
+        let _ = child.kill().and_then(|()| child.wait());
+    }
+    let stage = held(&STAGE).account();
+    eprintln!("error: {what}, {stage}\n  help: {help}");
+    exit(failure().into());
+}

@@ -1,0 +1,232 @@
+#!/usr/bin/env python3
+"""Runs the program on many random inputs, replayable by their seeds, and counts what comes of it.
+
+    scripts/campaign.py planar -n 1000            # random domains, metrics, options and numbers of vertices
+    scripts/campaign.py outlines -n 200           # hard outlines: displaced by 1e-14, gaps of 1e-12, spikes, islands, collinear runs
+    scripts/campaign.py surfaces -n 200           # random surfaces, damaged or not, metrics and options
+    scripts/campaign.py signals -n 200            # SIGINT and SIGTERM at random moments
+    scripts/campaign.py planar --seed 17 -n 1 -v  # case 17 again, with its command; its files stay in --keep FOLDER
+
+outcome: meshed (valid by `voronaut check`), refused (exit 1 with a message: counted by its first words), invalid, crashed (any other
+exit), hung (over 60 s), over (more memory than 4 GiB). Of signals: ended (by itself), stopped (exit 1, said so, nothing left behind),
+stray (files left, or over a second), crashed. The last line counts; the exit code is 1 if there is anything but meshed, refused, ended, stopped.
+"""
+
+import argparse
+import json
+import math
+import os
+import random
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+METRICS = ["uniform", "uniform:100,0,1", "swirl", "shock:phi=10,lambda=0.1", "shock:phi=1000,lambda=0.02",
+           "formula:1+100*x^2; 0; 1+y^2", "hessian:tanh(20*(x+0.3*y))", "boundary:h0=0.05,growth=1.5"]
+GOOD = {"meshed", "refused", "ended", "stopped"}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("kind", choices=["planar", "outlines", "surfaces", "signals"])
+    parser.add_argument("-n", type=int, default=100, help="cases")
+    parser.add_argument("--seed", type=int, default=0, help="of the first case")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--keep", type=Path, help="a folder for the files of cases that are not good")
+    parser.add_argument("--voronaut", default=str(ROOT / "target/release/voronaut"))
+    parser.add_argument("-v", action="store_true", help="say each case")
+    typed = parser.parse_args()
+    counts, reasons = Counter(), Counter()
+    with ThreadPoolExecutor(typed.jobs) as pool:
+        for seed, outcome, said in pool.map(lambda seed: one(typed, seed), range(typed.seed, typed.seed + typed.n)):
+            counts[outcome] += 1
+            if outcome == "refused":
+                reasons[re.sub(r"[0-9.e+-]{2,}|\d", "#", said)[:90]] += 1
+            if typed.v or outcome not in GOOD:
+                print(f"{seed}\t{outcome}\t{said}", flush=True)
+    for reason, count in reasons.most_common():
+        print(f"refused {count}: {reason}")
+    print(", ".join(f"{counts[outcome]} {outcome}" for outcome in sorted(counts)))
+    sys.exit(any(outcome not in GOOD for outcome in counts))
+
+
+def one(typed, seed):
+    chance = random.Random(f"{typed.kind} {seed}")
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        if typed.kind == "signals":
+            return seed, *signalled(typed.voronaut, place, chance)
+        words = {"planar": planar, "outlines": outlines, "surfaces": surfaces}[typed.kind](chance, place)
+        outcome, said = meshed(typed.voronaut, place, words)
+        if typed.v:
+            said = f"{' '.join(words)}: {said}"
+        if typed.keep and outcome not in GOOD:
+            kept = typed.keep / f"{typed.kind}-{seed}"
+            kept.mkdir(parents=True, exist_ok=True)
+            for file in place.iterdir():
+                (kept / file.name).write_bytes(file.read_bytes())
+            (kept / "command").write_text(" ".join(words))
+        return seed, outcome, said
+
+
+def meshed(program, place, words):
+    limits = ["--time-limit", "60", "--memory-limit", "4", "-q"]
+    run = subprocess.run([program, *words, *limits, "-o", "out.mesh"], cwd=place, capture_output=True, text=True)
+    said = run.stderr.strip().split("\n")[0]
+    if "not done within" in said:
+        return "hung", said
+    if "were held" in said:
+        return "over", said
+    if run.returncode not in (0, 1):
+        return "crashed", f"{run.returncode}: {run.stderr.strip()[-300:]}"
+    if run.returncode == 1:
+        left = [file.name for file in place.iterdir() if file.name.startswith(("out", ".voronaut"))]
+        return ("stray", str(left)) if left else ("refused" if said.startswith("error: ") else "crashed", said)
+    check = subprocess.run([program, "check", "out.mesh", "--report", "check.json", "-q"], cwd=place, capture_output=True, text=True)
+    report = json.loads((place / "check.json").read_text()) if (place / "check.json").exists() else {}
+    meets = "meet" in check.stderr
+    return ("meshed", "") if check.returncode == 0 or meets and words[0] == "mesh" and "in.obj" in words else ("invalid", check.stderr[:300] + str(report.get("valid")))
+
+
+def options(chance):
+    words = ["--metric", chance.choice(METRICS), "-n", str(int(10 ** chance.uniform(1, 3.5)))]
+    extra = [[], [], ["--lloyd", "0"], ["--hausd", "0.01"], ["--gradation", "1.3"], ["--h-min", "0.01"], ["--a-max", "5"],
+             ["--seeding", "farthest"], ["--dual", "canvas"], ["--dual", "geodesic"], ["--threads", "3"]]
+    return words + chance.choice(extra)
+
+
+def star(chance, centre, radius, corners):
+    angles = sorted(chance.uniform(0, 2 * math.pi) for _ in range(corners))
+    away = [radius * chance.uniform(0.3, 1) for _ in angles]
+    return [[centre[0] + r * math.cos(a), centre[1] + r * math.sin(a)] for a, r in zip(angles, away)]
+
+
+def planar(chance, place):
+    if chance.random() < 0.2:
+        x, y, w, h = (chance.uniform(-2, 2) for _ in range(4))
+        return ["mesh", f"rect:{x},{y},{x + abs(w) + 1e-3},{y + abs(h) + 1e-3}", *options(chance)]
+    scale = 10 ** chance.choice([-9, -3, 0, 0, 0, 3, 9])
+    rings = [star(chance, (0, 0), 1, chance.randint(4, 60))]
+    rings += [star(chance, (chance.uniform(-0.2, 0.2), chance.uniform(-0.2, 0.2)), 0.05, chance.randint(3, 8))
+              for _ in range(chance.randint(0, 2))]
+    return ["mesh", written(place, scaled(rings, scale)), *options(chance)]
+
+
+def scaled(rings, scale):
+    return [[[scale * x, scale * y] for x, y in ring] for ring in rings]
+
+
+def written(place, rings):
+    geometry = {"type": "Polygon", "coordinates": [ring + ring[:1] for ring in rings]}
+    (place / "in.geojson").write_text(json.dumps(geometry))
+    return "in.geojson"
+
+
+def outlines(chance, place):
+    n = chance.randint(20, 3000)
+    circle = [[math.cos(2 * math.pi * i / n), math.sin(2 * math.pi * i / n)] for i in range(n)]
+    square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    kind = chance.choice(["jitter", "gap", "spike", "islands", "collinear", "repeated", "comb", "nearly", "teeth"])
+    rings = [circle]
+    if kind == "jitter":
+        rings = [[[x + chance.uniform(-1e-14, 1e-14), y + chance.uniform(-1e-14, 1e-14)] for x, y in circle]]
+    elif kind == "gap":
+        gap = 10 ** chance.uniform(-13, -3)
+        rings = [square, [[0.3, gap], [0.3, 0.6], [0.7, 0.6], [0.7, gap]]]
+    elif kind == "spike":
+        width = 10 ** chance.uniform(-14, -2)
+        rings = [[[0, 0], [1, 0], [1, 1], [0.5 + width, 1], [0.5, chance.uniform(0.01, 0.9)], [0.5 - width, 1], [0, 1]]]
+    elif kind == "islands":
+        k = chance.randint(3, 30)
+        size = chance.uniform(0.01, 0.49) / k
+        rings = [square] + [[[x - size, y - size], [x - size, y + size], [x + size, y + size], [x + size, y - size]]
+                            for x in ((i + 0.5) / k for i in range(k)) for y in ((i + 0.5) / k for i in range(k))]
+    elif kind == "collinear":
+        slope = chance.choice([0, 0.1, 1 / 3])
+        rings = [[[i / n, slope * i / n] for i in range(n + 1)] + [[1, 2], [0, 2]]]
+    elif kind == "repeated":
+        at = chance.randrange(n)
+        rings = [circle[: at + 1] + circle[at:]]
+    elif kind == "comb":
+        depth = chance.choice([0.5, 1e-3, 1e-9])
+        rings = [[[i / n, depth * (i % 2)] for i in range(n + 1)] + [[1, 1], [0, 1]]]
+    elif kind == "nearly":
+        rings = [circle, [[x * (1 - 1e-9), y * (1 - 1e-9)] for x, y in circle]]
+    elif kind == "teeth":
+        rings = [[[i / n, chance.uniform(-1, 1) * 1e-6] for i in range(n + 1)] + [[1, 1], [0, 1]]]
+    return ["mesh", written(place, rings), "--metric", "uniform", "-n", str(chance.choice([100, 1000, 3 * n]))]
+
+
+def surfaces(chance, place):
+    n = chance.randint(4, 30)
+    grid = [(i, j) for i in range(n + 1) for j in range(n + 1)]
+    bend = chance.choice([lambda u, v: (u, v, 0), lambda u, v: (u, v, 0.3 * math.sin(6 * u) * v),
+                          lambda u, v: (math.cos(5 * u), math.sin(5 * u), v), lambda u, v: (u, v, abs(u - 0.5)),
+                          lambda u, v: (math.cos(6.2 * u) * (2 + math.cos(6 * v)), math.sin(6.2 * u) * (2 + math.cos(6 * v)), math.sin(6 * v))])
+    noise = chance.choice([0, 0, 0.02, 0.2])
+    points = [[c + noise / n * chance.uniform(-1, 1) for c in bend(i / n, j / n)] for i, j in grid]
+    triangles = []
+    for i in range(n):
+        for j in range(n):
+            a, b, c, d = (i * (n + 1) + j, (i + 1) * (n + 1) + j, (i + 1) * (n + 1) + j + 1, i * (n + 1) + j + 1)
+            triangles += [[a, b, c], [a, c, d]]
+    damage = chance.choice(["", "", "holes", "turned", "double", "points"])
+    if damage == "holes":
+        triangles = [t for t in triangles if chance.random() > 0.05]
+    elif damage == "turned":
+        triangles = [t[::-1] if chance.random() < 0.1 else t for t in triangles]
+    elif damage == "double":
+        triangles += chance.sample(triangles, 3)
+    elif damage == "points":
+        points += [chance.choice(points) for _ in range(5)]
+    scale = 10 ** chance.choice([-6, 0, 0, 0, 6])
+    rows = ["v " + " ".join(f"{scale * c!r}" for c in p) for p in points] + ["f " + " ".join(str(v + 1) for v in t) for t in triangles]
+    (place / "in.obj").write_text("\n".join(rows) + "\n")
+    words = ["mesh", "in.obj", "--metric", chance.choice(["uniform", "curvature"]), "-n", str(int(10 ** chance.uniform(1.5, 3.3)))]
+    return words + chance.choice([[], [], ["--fit"], ["--repair"], ["--nr"], ["--hausd", "1"], ["--seeding", "farthest"], ["--dual", "canvas"]])
+
+
+def signalled(program, place, chance):
+    commands = [
+        "mesh rect:-2,-2,2,2 --metric swirl -n 8000 -o a.mesh --report a.json --picture a.svg",
+        "mesh torus:2,0.7 --metric curvature -n 3000 -o a.vtu",
+        "dual rect:0,0,1,1 --metric uniform --seeds ../seeds.txt -o a.mesh --diagram a.vtu",
+        "distance rect:0,0,1,1 --metric swirl --from 0.5,0.5 -o a.vtu",
+        "convert ../big.mesh a.vtu", "metric ../big.mesh --metric hessian:tanh(9*x) -o a.sol",
+        "loop rect:0,0,1,1 --metric hessian:tanh(30*(x-t)) -n 800 --iterations 3 --every -o a.mesh",
+        "loop rect:0,0,1,1 --solver sleep\x001;\x00true\x00{mesh}\x00{out} -n 50 --iterations 2 -o a.mesh",
+    ]
+    work, temporary = place / "work", place / "temporary"
+    work.mkdir(), temporary.mkdir()
+    (place / "seeds.txt").write_text("".join(f"{chance.random()} {chance.random()}\n" for _ in range(200)))
+    words = [word.replace("\x00", " ") for word in chance.choice(commands).split(" ")]
+    if "../big.mesh" in words:
+        subprocess.run([program, "mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "60000", "--lloyd", "0", "-o", "big.mesh", "-q"],
+                       cwd=place, check=True, stdout=subprocess.DEVNULL)
+    run = subprocess.Popen([program, *words], cwd=work, env={**os.environ, "TMPDIR": str(temporary)}, stdout=subprocess.DEVNULL,
+                           stderr=subprocess.PIPE, text=True)
+    time.sleep(chance.uniform(0.01, 1.2))
+    sent = time.time()
+    run.send_signal(chance.choice([signal.SIGINT, signal.SIGTERM]))
+    said = run.communicate()[1]
+    late = time.time() - sent
+    strays = [file.name for file in work.iterdir() if not file.name.startswith("a.")] + [file.name for file in temporary.iterdir()]
+    if strays or late > 1:
+        return "stray", f"{' '.join(words)}: {strays}, {late:.2f} s"
+    if run.returncode == 0:
+        return "ended", ""
+    before = run.returncode in (-signal.SIGINT, -signal.SIGTERM) and not said
+    if run.returncode == 1 and "stopped by a signal" in said or before:
+        return "stopped", ""
+    return "crashed", f"{' '.join(words)}: {run.returncode} {said[-300:]}"
+
+
+if __name__ == "__main__":
+    main()
