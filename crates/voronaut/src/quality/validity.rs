@@ -67,11 +67,13 @@ fn examine(mesh: &Mesh, surface: Option<&Meetings>) -> Validity {
     let mut found = Validity::default();
     found.examine_numbers(mesh);
     if found.out_of_range == 0 {
+        // A flat surface may face either way, and meet itself.
+        let is_planar = surface.is_none() && mesh.is_planar();
         let edges = Edges::of(&mesh.triangles);
         found.examine_vertices(mesh, surface);
-        found.examine_triangles(mesh);
+        found.examine_triangles(mesh, is_planar);
         found.examine_edges(mesh, &edges);
-        if mesh.is_planar() {
+        if is_planar {
             if found.first_fault.is_none() {
                 found.examine_embedding(mesh, &edges);
             }
@@ -175,8 +177,7 @@ impl Validity {
         self.unused_vertices = used.iter().filter(|&&used| !used).count();
     }
 
-    fn examine_triangles(&mut self, mesh: &Mesh) {
-        let planar = mesh.is_planar();
+    fn examine_triangles(&mut self, mesh: &Mesh, planar: bool) {
         let area = |&t: &[u32; 3]| {
             let ([a, b, c], [p, q, r]) = (mesh.corners_of(t), mesh.positions_of(t));
             0.5 * if planar { (b - a).cross(c - a) } else { (q - p).cross(r - p).norm() }

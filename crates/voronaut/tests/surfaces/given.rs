@@ -34,6 +34,16 @@ fn two_triangles_become_unit_triangles() {
     assert!(found.mesh.points.len() == 1000 && quality.mean > 0.95 && quality.min > 0.4, "{quality:?}");
 }
 
+/// In the plane z = 0 a surface may face down; its mesh is no planar one.
+#[test]
+fn flat_surfaces_face_either_way() {
+    let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    for triangles in [vec![[0, 1, 2], [0, 2, 3]], vec![[0, 2, 1], [0, 3, 2]]] {
+        let found = meshed(&input(points.clone(), triangles), "uniform", 100);
+        assert_eq!(found.mesh.points.len(), 100);
+    }
+}
+
 /// A cone of height 100 over a ring of radius 1: at its tip normals are of no use, and curvature has no bound.
 #[test]
 fn a_thin_tip_has_a_metric() {
