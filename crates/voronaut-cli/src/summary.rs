@@ -215,7 +215,7 @@ fn certificate_lines(found: &Certificate, mut line: impl FnMut(&str, String)) {
     let (covered, left, border) = (found.covered, found.border_not_covered, found.border_distance);
     let (epsilon, mu, delta, lambda) = (found.net.epsilon, found.net.mu, found.net.delta, found.lambda);
     if covered == 0 {
-        line("covered", format!("none of {left} seeds: all are too near to the border, or to few others"));
+        line("covered", format!("none of {left} seeds: all are too near to the border"));
     } else {
         line("covered", format!("{covered} seeds; {left} are within {border:.3e} of the border: not covered"));
         let ratios = format!("lambda {lambda:.3}, delta/epsilon {:.3}", delta / epsilon);

@@ -66,11 +66,13 @@ pub(crate) fn run(command: &mut Command) -> std::io::Result<ExitStatus> {
     *running = Some(command.spawn()?);
     drop(running);
     loop {
-        let ended = held(&CHILD).as_mut().map_or(Ok(None), Child::try_wait)?;
-        if let Some(status) = ended {
-            *held(&CHILD) = None;
+        let mut running = held(&CHILD);
+        if let Some(status) = running.as_mut().map_or(Ok(None), Child::try_wait)? {
+            // Its number may be another's from now on.
+            *running = None;
             return Ok(status);
         }
+        drop(running);
         std::thread::sleep(PERIOD / 20);
     }
 }

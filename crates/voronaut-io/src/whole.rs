@@ -49,7 +49,11 @@ pub fn demand_directory(path: &Path) -> Result<()> {
 pub fn place(path: &Path) -> Result<PathBuf> {
     demand_directory(path)?;
     let directory = fs::canonicalize(directory(path)).map_err(|source| Error::io(path, source))?;
-    followed(&directory.join(path.file_name().unwrap_or_default())).map_err(|source| Error::io(path, source))
+    let place = followed(&directory.join(path.file_name().unwrap_or_default()));
+    let place = place.map_err(|source| Error::io(path, source))?;
+    // A link may say where it leads in roundabout ways.
+    let target = fs::canonicalize(self::directory(&place)).ok().zip(place.file_name());
+    Ok(target.map(|(directory, name)| directory.join(name)).unwrap_or(place))
 }
 
 /// Where a chain of symbolic links ends, whether there is a file or not.
@@ -168,6 +172,17 @@ mod tests {
         write(&path, b"second").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"second");
         assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
+    }
+
+    /// However a link says where it leads.
+    #[test]
+    #[cfg(unix)]
+    fn a_link_and_what_it_leads_to_are_one_place() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        fs::create_dir(at("sub")).unwrap();
+        std::os::unix::fs::symlink("sub/../real.mesh", at("link.mesh")).unwrap();
+        assert_eq!(place(&at("link.mesh")).unwrap(), place(&at("real.mesh")).unwrap());
     }
 
     #[test]

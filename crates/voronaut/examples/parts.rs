@@ -6,8 +6,6 @@
 //!
 //! They are what the tests of features mesh; the table in `src/tests/parts/mod.rs` says what each of them is.
 
-// The checker of features uses the rest.
-#[allow(dead_code, unused_imports)]
 #[path = "../src/tests/parts/mod.rs"]
 mod parts;
 

@@ -121,7 +121,7 @@ impl Limits {
     }
 }
 
-/// More threads than the largest machines have cores only take turns: thousands need minutes to start.
+/// More threads than machines have cores only take turns; 65,535 were not started within a minute.
 const MOST_THREADS: i64 = 1024;
 
 #[derive(Debug, Args)]

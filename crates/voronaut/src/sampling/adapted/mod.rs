@@ -1,7 +1,7 @@
 //! The surface's own triangulation, made as fine as a metric asks for: edges split that are too long, vertices contracted that are
 //! too many, edges flipped. Every state is a triangulation of the surface whose triangles stand upright on it, or as upright as those
-//! of the surface itself; so where vertices are held it is the surface. Needles of the metric are no poorer than those before: where nothing
-//! is relaxed afterwards they would stay.
+//! of the surface itself; so where vertices are held it is the surface. Flips and contractions leave no poorer
+//! needles of the metric than were there, splits none where there were none: where nothing is relaxed afterwards they would stay.
 
 mod coarsen;
 mod refine;

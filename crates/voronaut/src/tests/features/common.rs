@@ -5,7 +5,8 @@ use crate::geometry::Point3;
 use crate::mesh::Mesh;
 use crate::quality::validity;
 use crate::surface::{Nearest, Surface};
-use crate::tests::parts::{Chain, Features, Part, beside, sides};
+use crate::tests::parts::Part;
+use crate::tests::parts::chains::{Chain, Features, beside, sides};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Vertices are on chains to this share of the diagonal.
@@ -14,6 +15,12 @@ const ON_CHAIN: f64 = 1e-9;
 const CLEAR: f64 = 3.0;
 /// Points inside triangles from which distances are taken, per side.
 const SAMPLES: usize = 6;
+
+/// Positions along a chain; of a closed one the first again at the end.
+fn positions(chain: &Chain, mesh: &Mesh) -> Vec<Point3> {
+    let again = chain.vertices.first().filter(|_| chain.is_closed);
+    chain.vertices.iter().chain(again).map(|&v| mesh.position(v)).collect()
+}
 
 /// Everything that is wrong with a mesh of a part; distances, which are taken where nothing else is wrong, may be as large as
 /// `hausdorff`.
@@ -108,7 +115,7 @@ struct Truth<'a> {
 impl<'a> Truth<'a> {
     fn new(part: &'a Part) -> Self {
         let curve = |chain: &'a Chain| {
-            let points = chain.positions(&part.mesh);
+            let points = positions(chain, &part.mesh);
             let mut along = vec![0.0];
             for pair in points.windows(2) {
                 along.push(along[along.len() - 1] + pair[0].distance(pair[1]));
@@ -199,7 +206,7 @@ impl<'a> Truth<'a> {
         if chain.is_closed != curve.chain.is_closed {
             return Some((1, "it is open where the part's is closed, or the other way round".into()));
         }
-        let points = chain.positions(mesh);
+        let points = positions(chain, mesh);
         let feet: Vec<(f64, f64)> = points.iter().map(|&p| curve.foot(p)).collect();
         let farthest = feet.iter().map(|foot| foot.0).fold(0.0, f64::max);
         if farthest > ON_CHAIN * self.diagonal {

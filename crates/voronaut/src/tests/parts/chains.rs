@@ -1,7 +1,7 @@
 //! Features of a mesh as chains of its edges: where labels change, and the border.
 
 use std::collections::{BTreeMap, BTreeSet};
-use voronaut::geometry::{Point3, Vector3};
+use voronaut::geometry::Vector3;
 use voronaut::mesh::Mesh;
 
 /// Edges one after the other from corner to corner, or around.
@@ -125,12 +125,6 @@ impl Chain {
             edges.push([*last, *first]);
         }
         edges
-    }
-
-    /// Positions along it; of a closed one the first again at the end.
-    pub(crate) fn positions(&self, mesh: &Mesh) -> Vec<Point3> {
-        let again = self.vertices.first().filter(|_| self.is_closed);
-        self.vertices.iter().chain(again).map(|&v| mesh.position(v)).collect()
     }
 }
 

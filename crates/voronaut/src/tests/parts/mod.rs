@@ -12,12 +12,11 @@
 //! | `blade` | a wedge of ten degrees with a thin rim, bent | labels of faces |
 
 mod bracket;
-mod chains;
+pub(crate) mod chains;
 mod patches;
 mod shapes;
 
-pub(crate) use chains::{Chain, Features, beside, sides};
-
+use chains::Features;
 use std::sync::OnceLock;
 use voronaut::mesh::Mesh;
 
