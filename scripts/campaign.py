@@ -97,7 +97,7 @@ def meshed(program, place, words):
 
 
 def options(chance):
-    words = ["--metric", chance.choice(METRICS), "-n", str(int(10 ** chance.uniform(1, 3.5)))]
+    words = ["--metric", chance.choice(METRICS), "-n", str(int(10 ** chance.uniform(1, 3)))]
     extra = [[], [], ["--lloyd", "0"], ["--hausd", "0.01"], ["--gradation", "1.3"], ["--h-min", "0.01"], ["--a-max", "5"],
              ["--seeding", "farthest"], ["--dual", "canvas"], ["--dual", "geodesic"], ["--threads", "3"]]
     return words + chance.choice(extra)

@@ -131,8 +131,8 @@ fn open_boundaries_are_shown_where_they_end() {
 fn duplicate_points_are_named() {
     let twice = poly(&["0 0", "1 0", "1 1", "0 1", "1 1"], &RING);
     domain_refused("a.poly", twice, &["vertex 3 and vertex 5 have the same coordinates", "a.poly, (1, 1)"]);
-    let twice = polygon("[[0,0],[1,0],[1,0],[1,1],[0,0]]");
-    domain_refused("a.geojson", twice, &["two consecutive positions are equal", "positions 2 and 3 (1, 0)"]);
+    let flat = polygon("[[0,0],[1,0],[1,0],[0,0]]");
+    domain_refused("a.geojson", flat, &["a ring without area", "position 1 (0, 0)"]);
     let twice = SQUARE.replace("Vertices 4\n", "Vertices 5\n").replace("0 1 0\n", "0 1 0\n0 1 0\n");
     let edges = "Edges 4\n1 2 1\n2 3 1\n3 4 1\n5 1 1";
     let twice = twice.replace("Triangles 2\n1 2 3 1\n1 3 4 1", edges);

@@ -11,16 +11,14 @@ use voronaut::{Error, Result};
 ///
 /// A region's label is the first integer (of 32 bits) among the feature's properties `region`, `ref`, `label` and `id`;
 /// without one it is the number of the feature, from 1. The boundary's label is the property `boundary`, for all rings;
-/// a list
-/// of integers labels the rings of each polygon in turn; without it outer rings have 1, and the holes 2, 3, ... as they follow each
-/// other in the file. Third coordinates are
-/// passed over. `place` names the text in messages.
+/// a list of integers labels the rings of each polygon in turn; without it outer rings have 1, and the holes 2, 3, ... as they
+/// follow each other in the file. Third coordinates are passed over. `place` names the text in messages.
 ///
 /// # Errors
 ///
 /// [`Error::Parse`] of what is no `GeoJSON`, holds other geometries than polygons, or none. [`Error::Domain`] with
-/// feature, polygon, ring, position and coordinates of a ring that is not closed, has fewer than four positions, or
-/// equal consecutive ones, or of a position without two finite coordinates.
+/// feature, polygon, ring, position and coordinates of a ring that is not closed or has fewer than four positions, or
+/// of a position without two finite coordinates.
 pub fn read(text: &str, place: &str) -> Result<Polygons> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let json = text.parse::<GeoJson>().map_err(|error| malformed(&error, text, place))?;
@@ -173,10 +171,6 @@ fn read_ring(ring: &[Position], place: &str) -> Result<Vec<Point>> {
     for (index, position) in ring.iter().enumerate() {
         points.push(read_position(position, || format!("{place}, position {}", index + 1))?);
     }
-    if let Some(index) = points.windows(2).position(|pair| pair[0] == pair[1]) {
-        let place = format!("{place}, positions {} and {} {}", index + 1, index + 2, points[index]);
-        return Err(Error::domain("two consecutive positions are equal", place, "remove one of them"));
-    }
     let last = points.len() - 1;
     if points[0] != points[last] {
         let what = format!("a ring is not closed: its last position differs from its first {}", points[0]);
@@ -276,10 +270,6 @@ mod tests {
             ),
             (format!("{SQUARE},[]"), "a ring of 0 positions at a.geojson, feature 1, polygon 1, ring 2"),
             (String::new(), "a polygon without rings at a.geojson, feature 1, polygon 1"),
-            (
-                "[[0,0],[1,0],[1,0],[0,1],[0,0]]".into(),
-                "equal at a.geojson, feature 1, polygon 1, ring 1, positions 2 and 3 (1, 0)",
-            ),
             (
                 "[[0,0],[1],[1,0],[0,1],[0,0]]".into(),
                 "a position has 1 coordinates, not 2 at a.geojson, feature 1, polygon 1, ring 1, position 2 [1.0]",

@@ -31,7 +31,7 @@ pub struct Polygon {
 /// A closed line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ring {
-    /// At least three positions, no two consecutive ones equal; the closing position is left out.
+    /// At least three positions, of which consecutive ones that are equal count once; the closing position is left out.
     pub points: Vec<Point>,
     /// The label of the boundary along it.
     pub label: i32,
@@ -83,14 +83,15 @@ struct Builder {
 impl Builder {
     fn add_ring(&mut self, polygon: &Polygon, index: usize, ring: &Ring) -> Result<()> {
         let name = self.ring_name(polygon, index);
-        let Some(is_counter_clockwise) = is_counter_clockwise(&ring.points) else {
-            let place = format!("{name}, position 1 {}", ring.points.first().copied().unwrap_or_default());
+        let corners = corners(ring);
+        let points: Vec<Point> = corners.iter().map(|&(_, p)| p).collect();
+        let Some(is_counter_clockwise) = is_counter_clockwise(&points) else {
+            let place = format!("{name}, position 1 {}", points.first().copied().unwrap_or_default());
             return Err(Error::domain("a ring without area", place, "remove the ring, or correct its positions"));
         };
         let is_outer = index == 0;
         let region_is_left = is_counter_clockwise == is_outer;
-        let vertices: Vec<u32> =
-            (1..).zip(&ring.points).map(|(position, &p)| self.vertex(p, position, &name)).collect();
+        let vertices: Vec<u32> = corners.into_iter().map(|(position, p)| self.vertex(p, position, &name)).collect();
         self.rings += 1;
         for (position, &a) in vertices.iter().enumerate() {
             let b = vertices[(position + 1) % vertices.len()];
@@ -145,6 +146,16 @@ impl Builder {
         let [a, b] = ends.map(|v| format!("{} {}", self.names[v as usize], self.points[v as usize]));
         Error::domain(what, format!("{a} - {b}"), help)
     }
+}
+
+/// The positions of a ring with their numbers, counted from 1, without repetitions of the one before.
+fn corners(ring: &Ring) -> Vec<(usize, Point)> {
+    let mut corners: Vec<(usize, Point)> = (1..).zip(ring.points.iter().copied()).collect();
+    corners.dedup_by(|next, last| next.1 == last.1);
+    while corners.len() > 1 && corners.first().map(|c| c.1) == corners.last().map(|c| c.1) {
+        corners.pop();
+    }
+    corners
 }
 
 /// The orientation of a closed line that does not cross itself; `None` if it encloses nothing.
@@ -212,6 +223,16 @@ mod tests {
                 assert_eq!((inside, outside), (Side::Region(7), Side::Outside), "segment {number}");
             }
         }
+    }
+
+    #[test]
+    fn repeated_positions_count_once() {
+        let mut polygon = square(0.0, 7);
+        let points = &mut polygon.rings[0].points;
+        *points = [0, 0, 1, 2, 2, 2, 3, 0, 0].map(|i| points[i]).to_vec();
+        let (repeated, plain) = (domain(vec![polygon]).unwrap(), domain(vec![square(0.0, 7)]).unwrap());
+        assert_eq!((repeated.points, repeated.segments), (plain.points, plain.segments));
+        assert_eq!(repeated.names[3], "ring 1, position 7");
     }
 
     #[test]

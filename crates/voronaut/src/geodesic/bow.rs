@@ -19,7 +19,7 @@ const NEAR: f64 = 0.1;
 /// and saves what was foreseen, but for this share of the length;
 const FORESEEN: f64 = 5e-4;
 /// so often at most.
-const HALVINGS: u32 = 5;
+const HALVINGS: u32 = 3;
 /// The longest step from one bow to the next.
 const LONGEST: f64 = 4.0;
 /// Rounds in search of the best bow, each with trials closer to the last one's best.

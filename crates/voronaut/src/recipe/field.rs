@@ -204,16 +204,17 @@ fn finished(
     Ok(PlanarMetric { field, function: function.filter(|_| !options.is_limiting()), known_to, scale })
 }
 
-/// Vertices of the background on which a metric is smoothed or graded that has none of its own.
-pub(crate) const BACKGROUND_VERTICES: usize = 40_000;
+/// Vertices of the background on which a metric is smoothed that has none of its own, and the most of one on which it is graded.
+const BACKGROUND_VERTICES: usize = 40_000;
+/// So many times the vertices of the mesh, two to an edge, has the background of a metric that is graded,
+const FINER: f64 = 4.0;
+/// and at least so many.
+const FEWEST: usize = 1_000;
 
-/// A mesh to sample a field on: its own, or a triangulation of the domain with [`BACKGROUND_VERTICES`] (and all of the domain's
-/// own) that is even in the metric.
-pub(super) fn sampling<'a>(field: &dyn MetricField, domain: &Domain, own: Option<&'a Mesh>) -> Result<Cow<'a, Mesh>> {
-    match own {
-        Some(mesh) => Ok(Cow::Borrowed(mesh)),
-        None => Ok(Cow::Owned(even(field, domain, BACKGROUND_VERTICES)?)),
-    }
+/// How many vertices the background of a metric has that is graded for a mesh of a complexity; `fewest` at least.
+pub(super) fn background_vertices(complexity: f64, fewest: usize) -> usize {
+    let expected = complexity / COMPLEXITY_PER_VERTEX;
+    (FINER * expected).clamp(fewest as f64, BACKGROUND_VERTICES as f64) as usize
 }
 
 /// A triangulation of the domain that is even in the metric, with so many vertices, and all of the domain's own.
@@ -231,8 +232,8 @@ fn embedded(canvas: &Canvas) -> Mesh {
     }
 }
 
-/// The field after so many sweeps of smoothing ([`smoothed`]), on its own mesh or one of [`sampling`]. With no sweeps, the field as it
-/// is, to the bit.
+/// The field after so many sweeps of smoothing ([`smoothed`]), on its own mesh or one that is even in it, with
+/// [`BACKGROUND_VERTICES`] (and all of the domain's own). With no sweeps, the field as it is, to the bit.
 ///
 /// On the latter, K sweeps smooth with a standard deviation of about sqrt(K) / 400 of the domain's width in the metric, or half the
 /// square root of K N / 40,000 edges of a mesh that has N vertices.
@@ -248,7 +249,11 @@ pub(super) fn smooth_metric(
     if sweeps == 0 {
         return Ok(field);
     }
-    Ok(Box::new(smoothed(field.as_ref(), sampling(field.as_ref(), domain, own)?.as_ref(), sweeps)?))
+    let mesh = match own {
+        Some(mesh) => Cow::Borrowed(mesh),
+        None => Cow::Owned(even(field.as_ref(), domain, BACKGROUND_VERTICES)?),
+    };
+    Ok(Box::new(smoothed(field.as_ref(), &mesh, sweeps)?))
 }
 
 /// In which multiple of a metric edges are to have length one, when it is graded: gradation is a law between neighbouring
@@ -270,8 +275,8 @@ impl GradedAt {
 }
 
 /// The field graded ([`crate::metric::nodal::grade`]) at the vertices of a background: its own mesh if it is a `.sol` file, else a
-/// triangulation of the domain as for smoothing, but even in the graded metric. Without a factor, the field as it is, to the bit.
-/// What comes back is in the units of the field given, whatever multiple was graded.
+/// triangulation of the domain ([`background_vertices`]) that is even in the graded metric. Without a factor, the field as it is,
+/// to the bit. What comes back is in the units of the field given, whatever multiple was graded.
 ///
 /// # Errors
 /// As of [`Pipeline::run`]; the background is missing or no mesh.
@@ -283,13 +288,19 @@ pub(super) fn grade_metric(
     at: GradedAt,
 ) -> Result<Box<dyn MetricField>> {
     let Some(factor) = gradation_factor else { return Ok(field) };
-    let sampled = graded(field.as_ref(), sampling(field.as_ref(), domain, own)?.as_ref(), factor, at)?;
-    if own.is_some() {
-        return Ok(Box::new(sampled));
+    let graded = |mesh: &Mesh| graded(field.as_ref(), mesh, factor, at);
+    if let Some(mesh) = own {
+        return Ok(Box::new(graded(mesh)?));
     }
+    let vertices = |field: &dyn MetricField| match at {
+        GradedAt::Complexity(target) => Ok(background_vertices(target, FEWEST)),
+        GradedAt::Scale(scale) => {
+            rough_complexity(field, &domain.triangles()).map(|own| background_vertices(scale * own, FEWEST))
+        }
+    };
+    let sampled = graded(&even(field.as_ref(), domain, vertices(field.as_ref())?)?)?;
     // The metric as it was is coarse where it is to be finer; what was made of it there has a background that is fine enough.
-    let mesh = sampling(&sampled, domain, None)?;
-    Ok(Box::new(graded(field.as_ref(), mesh.as_ref(), factor, at)?))
+    Ok(Box::new(graded(&even(&sampled, domain, vertices(&sampled)?)?)?))
 }
 
 /// The field graded at the vertices of a mesh, in its own units.

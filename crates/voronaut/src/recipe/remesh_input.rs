@@ -1,12 +1,12 @@
 //! A planar mesh that is to be made anew: its domain, what of it is to be there again, and the sizes by which it is made.
 
-use super::field::{BACKGROUND_VERTICES, even, tensors};
+use super::field::{background_vertices, even, tensors};
 use crate::domain::{Domain, Pslg, from_mesh};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
 use crate::lists::{distinct, in_order, marked};
 use crate::mesh::{EdgeSide, Edges, Mesh, Solution, SolutionValues};
-use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, complexity, implied, isotropic};
+use crate::metric::nodal::{Pipeline, Source, complexity, implied, isotropic};
 use crate::metric::{Bounds, MetricField, Sampled};
 use crate::planar::{Duplicate, delaunay};
 use crate::sampling::CurveSizes;
@@ -255,8 +255,6 @@ impl RemeshSizes {
 
 /// Vertices of the triangulation that sizes are made on first, and of the last one at least.
 const FIRST: usize = 4_000;
-/// The last one has so many times the vertices of the mesh, up to [`BACKGROUND_VERTICES`].
-const FINER: f64 = 4.0;
 
 /// What sizes are made of, wherever that is.
 struct Making<'a> {
@@ -280,8 +278,7 @@ impl Making<'_> {
     fn on_background(&self, domain: &Domain) -> Result<RemeshSizes> {
         let uniform = Tensor::isotropic(self.sizing.h_max);
         let first = self.at_vertices(even(&move |_: Point| uniform, domain, FIRST)?, None)?;
-        let expected = complexity(&first.mesh, &first.tensors) / COMPLEXITY_PER_VERTEX;
-        let vertices = (FINER * expected).clamp(FIRST as f64, BACKGROUND_VERTICES as f64) as usize;
+        let vertices = background_vertices(complexity(&first.mesh, &first.tensors), FIRST);
         self.at_vertices(even(&first.field()?, domain, vertices)?, None)
     }
 
