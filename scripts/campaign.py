@@ -3,6 +3,7 @@
 
     scripts/campaign.py planar -n 1000            # random domains, metrics, options and numbers of vertices
     scripts/campaign.py outlines -n 200           # hard outlines: displaced by 1e-14, gaps of 1e-12, spikes, islands, collinear runs
+    scripts/campaign.py outlines -n 200 --peers ffbamg mmg2d_O3     # beside bamg (apt: freefem++) and mmg2d (pip: mmgpy): a table
     scripts/campaign.py surfaces -n 200           # random surfaces, damaged or not, metrics and options
     scripts/campaign.py signals -n 200            # SIGINT and SIGTERM at random moments
     scripts/campaign.py planar --seed 17 -n 1 -v  # case 17 again, with its command; its files stay in --keep FOLDER
@@ -10,6 +11,9 @@
 outcome: meshed (valid by `voronaut check`), refused (exit 1 with a message: counted by its first words), invalid, crashed (any other
 exit), hung (over 60 s), over (more memory than 4 GiB). Of signals: ended (by itself), stopped (exit 1, said so, nothing left behind),
 stray (files left, or over a second), crashed. The last line counts; the exit code is 1 if there is anything but meshed, refused, ended, stopped.
+
+A peer fails where it does not end within 60 s, writes no mesh, or one that `voronaut check` calls invalid or whose area is neither that
+of the domain nor that with its holes filled (within 2 %, for mmg2d may leave out corners).
 """
 
 import argparse
@@ -41,9 +45,10 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--keep", type=Path, help="a folder for the files of cases that are not good")
     parser.add_argument("--voronaut", default=str(ROOT / "target/release/voronaut"))
+    parser.add_argument("--peers", nargs="+", default=[], help="programs to run on the same outlines: bamg, mmg2d")
     parser.add_argument("-v", action="store_true", help="say each case")
     typed = parser.parse_args()
-    counts, reasons = Counter(), Counter()
+    counts, reasons, typed.fails, typed.cases = Counter(), Counter(), Counter(), Counter()
     with ThreadPoolExecutor(typed.jobs) as pool:
         for seed, outcome, said in pool.map(lambda seed: one(typed, seed), range(typed.seed, typed.seed + typed.n)):
             counts[outcome] += 1
@@ -54,6 +59,8 @@ def main():
     for reason, count in reasons.most_common():
         print(f"refused {count}: {reason}")
     print(", ".join(f"{counts[outcome]} {outcome}" for outcome in sorted(counts)))
+    if typed.peers:
+        print_table(typed)
     sys.exit(any(outcome not in GOOD for outcome in counts))
 
 
@@ -65,6 +72,8 @@ def one(typed, seed):
             return seed, *signalled(typed.voronaut, place, chance)
         words = {"planar": planar, "outlines": outlines, "surfaces": surfaces}[typed.kind](chance, place)
         outcome, said = meshed(typed.voronaut, place, words)
+        if typed.kind == "outlines" and typed.peers:
+            compare(typed, place, int(words[-1]), outcome)
         if typed.v:
             said = f"{' '.join(words)}: {said}"
         if typed.keep and outcome not in GOOD:
@@ -130,12 +139,73 @@ def written(place, rings):
     return "in.geojson"
 
 
+def compare(typed, place, vertices, outcome):
+    """Counts by kind of outline who fails on it."""
+    kind, rings = (place / "kind").read_text(), json.loads((place / "in.geojson").read_text())["coordinates"]
+    areas = [abs(sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(ring, ring[1:]))) / 2 for ring in rings]
+    write_edges(place / "in.mesh", rings)
+    size = math.sqrt((areas[0] - sum(areas[1:])) / vertices * 2 / math.sqrt(3))
+    typed.cases[kind] += 1
+    typed.fails[kind, "voronaut"] += outcome != "meshed"
+    for peer in typed.peers:
+        is_bamg = "bamg" in Path(peer).name
+        sized = ["-g", "in.mesh", "-hmax", str(size), "-hmin", str(size / 1e6), "-nbv", "200000"] if is_bamg else ["in.mesh", "-hsiz", str(size)]
+        typed.fails[kind, peer] += fails(typed, place, [peer, *sized, *(["-o"] if is_bamg else []), "peer.mesh"], areas)
+
+
+def fails(typed, place, command, areas):
+    out = place / "peer.mesh"
+    out.unlink(missing_ok=True)
+    try:
+        subprocess.run(command, cwd=place, capture_output=True, timeout=60)
+        check = subprocess.run([typed.voronaut, "check", "peer.mesh", "-q"], cwd=place, capture_output=True, timeout=60)
+    except subprocess.TimeoutExpired:
+        return True
+    if check.returncode != 0:
+        return True
+    area = area_of(out)
+    return all(abs(area / allowed - 1) > 0.02 for allowed in (areas[0], areas[0] - sum(areas[1:])))
+
+
+def write_edges(path, rings):
+    """The outline as users of bamg and mmg2d have it: no position twice, no edge of no length."""
+    numbers, edges = {}, []
+    for ring in rings:
+        ends = [numbers.setdefault(tuple(p), len(numbers) + 1) for p in ring]
+        edges += [(a, b) for a, b in zip(ends, ends[1:]) if a != b]
+    rows = ["MeshVersionFormatted 2", "Dimension 2", f"Vertices {len(numbers)}", *(f"{x!r} {y!r} 0" for x, y in numbers),
+            f"Edges {len(edges)}", *(f"{a} {b} 1" for a, b in edges), "End"]
+    path.write_text("\n".join(rows) + "\n")
+
+
+def area_of(path):
+    words = path.read_text().split()
+    def block(name, width, kind):
+        at = words.index(name)
+        values = [kind(word) for word in words[at + 2 : at + 2 + width * int(words[at + 1])]]
+        return [values[i : i + width] for i in range(0, len(values), width)]
+    points = block("Vertices", 3, float)
+    corners = [[points[i - 1] for i in t[:3]] for t in block("Triangles", 4, int)]
+    return sum(abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) for a, b, c in corners) / 2
+
+
+def print_table(typed):
+    programs = ["voronaut", *typed.peers]
+    print("\n| outlines | cases | " + " | ".join(Path(program).name + " fails" for program in programs) + " |")
+    print("|---" * (2 + len(programs)) + "|")
+    for kind, cases in sorted(typed.cases.items()):
+        print(f"| {kind} | {cases} | " + " | ".join(str(typed.fails[kind, program]) for program in programs) + " |")
+    totals = [sum(typed.fails[kind, program] for kind in typed.cases) for program in programs]
+    print(f"| all | {sum(typed.cases.values())} | " + " | ".join(map(str, totals)) + " |")
+
+
 def outlines(chance, place):
     n = chance.randint(20, 3000)
     circle = [[math.cos(2 * math.pi * i / n), math.sin(2 * math.pi * i / n)] for i in range(n)]
     square = [[0, 0], [1, 0], [1, 1], [0, 1]]
     kind = chance.choice(["jitter", "gap", "spike", "islands", "collinear", "repeated", "comb", "nearly", "teeth"])
     rings = [circle]
+    (place / "kind").write_text(kind)
     if kind == "jitter":
         rings = [[[x + chance.uniform(-1e-14, 1e-14), y + chance.uniform(-1e-14, 1e-14)] for x, y in circle]]
     elif kind == "gap":

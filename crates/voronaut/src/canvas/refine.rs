@@ -79,13 +79,16 @@ impl<'a> Refiner<'a> {
     /// Halves an edge, or first the fixed edge beside it that its middle encroaches: else new vertices creep ever closer
     /// to a border that they see under a small angle.
     fn split(&mut self, h: HalfEdge, counters: &mut CanvasCounters) -> Result<()> {
-        let Some(fixed) = self.encroached(h) else { return self.halve(h, counters) };
         let [a, b] = self.steiner.planar.topology.ends(h);
-        self.halve(fixed, counters)?;
-        if let Some(h) = self.steiner.planar.topology.edge_between(a, b) {
-            self.enqueue(h);
+        if let Some(fixed) = self.encroached(h)
+            && self.halve(fixed, counters)?
+        {
+            if let Some(h) = self.steiner.planar.topology.edge_between(a, b) {
+                self.enqueue(h);
+            }
+            return Ok(());
         }
-        Ok(())
+        self.halve(h, counters).map(drop)
     }
 
     /// The fixed edge of a face beside an edge that the edge's middle nearly lies on.
@@ -106,20 +109,20 @@ impl<'a> Refiner<'a> {
         topology.sides(h).flat_map(|side| [side.next(), side.prev()]).find(is_near)
     }
 
-    /// Halves an edge, flips around the new vertex, and queues the edges there. An edge whose middle rounding has put
-    /// beyond a neighbour stays whole, and so does one beside a face that is flat but for rounding.
-    fn halve(&mut self, h: HalfEdge, counters: &mut CanvasCounters) -> Result<()> {
+    /// Halves an edge, flips around the new vertex, and queues the edges there; whether it did. An edge whose middle rounding has
+    /// put beyond a neighbour stays whole, and so does one beside a face that is flat but for rounding.
+    fn halve(&mut self, h: HalfEdge, counters: &mut CanvasCounters) -> Result<bool> {
         if is_beside_flat(&self.steiner.planar, h) {
-            return Ok(());
+            return Ok(false);
         }
         let [p, q] = self.steiner.planar.ends(h);
-        let Some(v) = self.steiner.planar.insert_on_edge(h, p.midpoint(q)) else { return Ok(()) };
+        let Some(v) = self.steiner.planar.insert_on_edge(h, p.midpoint(q)) else { return Ok(false) };
         counters.splits += 1;
         counters.planar_flips += self.steiner.added(v, Some(v))?;
         for h in self.steiner.planar.topology.spokes(v) {
             self.enqueue(h);
         }
-        Ok(())
+        Ok(true)
     }
 
     fn enqueue(&mut self, h: HalfEdge) {
@@ -152,4 +155,19 @@ pub(super) fn is_beside_flat(planar: &Planar, h: HalfEdge) -> bool {
     let rounding = ROUNDING * [p.x, p.y, q.x, q.y].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let area = |side: HalfEdge| (q - p).cross(planar.position(planar.topology.apex(side)) - p).abs();
     planar.topology.sides(h).any(|side| area(side) <= rounding * p.distance(q))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::canvas::Canvas;
+    use crate::geometry::{Point, Tensor};
+    use crate::test_cases::plate;
+
+    #[test]
+    fn a_border_that_is_halved_no_more_ends_the_work() {
+        // Both long sides are encroached along all of their length, and nothing but rounding lies between them.
+        let needle = plate(&[&[[-6e-10, 6e-10], [953.125, -1250.0], [0.0, 0.0]]]);
+        let canvas = Canvas::straight(&needle, &|_: Point| Tensor::IDENTITY, 1000).unwrap();
+        assert!(canvas.vertex_count() <= 1000 + 120, "{}", canvas.vertex_count());
+    }
 }
