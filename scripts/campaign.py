@@ -6,11 +6,15 @@
     scripts/campaign.py outlines -n 200 --peers ffbamg mmg2d_O3     # beside bamg (apt: freefem++) and mmg2d (pip: mmgpy): a table
     scripts/campaign.py surfaces -n 200           # random surfaces, damaged or not, metrics and options
     scripts/campaign.py signals -n 200            # SIGINT and SIGTERM at random moments
+    scripts/campaign.py threads -n 100            # every command with 1, 2, 3 and 8 threads: the same bytes
+    scripts/campaign.py laws -n 200               # domains moved, turned, scaled by 1e-9 to 1e9, written in another order: meshes alike
     scripts/campaign.py planar --seed 17 -n 1 -v  # case 17 again, with its command; its files stay in --keep FOLDER
 
 outcome: meshed (valid by `voronaut check`), refused (exit 1 with a message: counted by its first words), invalid, crashed (any other
 exit), hung (over 60 s), over (more memory than 4 GiB). Of signals: ended (by itself), stopped (exit 1, said so, nothing left behind),
-stray (files left, or over a second), crashed. The last line counts; the exit code is 1 if there is anything but meshed, refused, ended, stopped.
+stray (files left, or over a second), crashed. Of threads and laws: same, differs, refused. The last line counts; the exit code is 1 if
+there is anything but meshed, refused, ended, stopped and same. Meshes are alike if both are valid, with as many vertices (1 %, of few 3), and
+shares of unit edges and mean qualities that differ by 0.05 at most: in other units roundings differ, and then vertices do.
 
 A peer fails where it does not end within 60 s, writes no mesh, or one that `voronaut check` calls invalid or whose area is neither that
 of the domain nor that with its holes filled (within 2 %, for mmg2d may leave out corners).
@@ -34,12 +38,12 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 METRICS = ["uniform", "uniform:100,0,1", "swirl", "shock:phi=10,lambda=0.1", "shock:phi=1000,lambda=0.02",
            "formula:1+100*x^2; 0; 1+y^2", "hessian:tanh(20*(x+0.3*y))", "boundary:h0=0.05,growth=1.5"]
-GOOD = {"meshed", "refused", "ended", "stopped"}
+GOOD = {"meshed", "refused", "ended", "stopped", "same"}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=["planar", "outlines", "surfaces", "signals"])
+    parser.add_argument("kind", choices=["planar", "outlines", "surfaces", "signals", "threads", "laws"])
     parser.add_argument("-n", type=int, default=100, help="cases")
     parser.add_argument("--seed", type=int, default=0, help="of the first case")
     parser.add_argument("--jobs", type=int, default=2)
@@ -68,8 +72,8 @@ def one(typed, seed):
     chance = random.Random(f"{typed.kind} {seed}")
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
-        if typed.kind == "signals":
-            return seed, *signalled(typed.voronaut, place, chance)
+        if others := {"signals": signalled, "threads": threads, "laws": laws}.get(typed.kind):
+            return seed, *others(typed.voronaut, place, chance)
         words = {"planar": planar, "outlines": outlines, "surfaces": surfaces}[typed.kind](chance, place)
         outcome, said = meshed(typed.voronaut, place, words)
         if typed.kind == "outlines" and typed.peers:
@@ -297,6 +301,79 @@ def signalled(program, place, chance):
     if run.returncode == 1 and "stopped by a signal" in said or before:
         return "stopped", ""
     return "crashed", f"{' '.join(words)}: {run.returncode} {said[-300:]}"
+
+
+def threads(program, place, chance):
+    """A random command with several numbers of threads."""
+    is_planar = chance.random() < 0.6
+    words = (planar if is_planar else surfaces)(chance, place)
+    domain, metric = words[1], words[3]
+    repair = ["--repair"] if not is_planar else []
+    if quiet(program, place, ["mesh", domain, "--metric", metric, "-n", "200", "-o", "base.mesh", *repair]):
+        return "refused", "no first mesh"
+    lines = (place / "base.mesh").read_text().split("\n")
+    at = lines.index("Vertices") + 2
+    points = [line.split()[:-1] for line in lines[at : at + int(lines[at - 1])]]
+    xs = [float(point[0]) for point in points]
+    extent = max(xs) - min(xs)
+    (place / "seeds.txt").write_text("".join(" ".join(point[: 2 if is_planar else 3]) + "\n" for point in points))
+    (place / "field.sol").write_text(f"MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n{len(points)}\n1 1\n"
+                                     + "".join(f"{i % 7}\n" for i in range(len(points))) + "End\n")
+    commands = [words, ["dual", domain, "--metric", metric, "--seeds", "seeds.txt", "--diagram", "{}.vtu", *repair],
+                ["distance", domain, "--metric", metric, "--from", ",".join(points[0][: 2 if is_planar else 3]), "-o", "{}.vtu", *repair],
+                ["remesh", "base.mesh", "{}.mesh", "-hausd", repr(0.01 * extent)]]
+    if is_planar:
+        commands += [["metric", "base.mesh", "--metric", "hessian:tanh(9*x)", "--gradation", "1.5", "-o", "{}.sol"],
+                     ["loop", "base.mesh", "--metric", "hessian:tanh(9*(x-t))", "-n", "200", "--iterations", "2"],
+                     ["interpolate", "base.mesh", "base.mesh", "field.sol", "-o", "{}.sol", "--conservative"]]
+    command = chance.choice(commands)
+    if not any("{}" in word for word in command) or command[0] == "dual":
+        command = [*command, "-o", "{}.mesh"]
+    while "--threads" in command:
+        del command[command.index("--threads") :][:2]
+    found = []
+    for count in (1, 2, 3, 8):
+        named = [word.replace("{}", f"out{count}") for word in command]
+        code = quiet(program, place, [*named, "--threads", str(count)])
+        files = sorted(file for file in place.iterdir() if file.name.startswith(f"out{count}"))
+        found.append((code, [file.read_bytes() for file in files]))
+    said = " ".join(command)
+    return ("same" if all(it == found[0] for it in found) and found[0][0] in (0, 1) else "differs", said)
+
+
+def quiet(program, place, words):
+    return subprocess.run([program, *words], cwd=place, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
+
+
+def laws(program, place, chance):
+    """A star with islands and a metric, and both transformed."""
+    rings = [star(chance, (0, 0), 1, chance.randint(5, 40))]
+    rings += [star(chance, (0.1, 0.05), 0.05, chance.randint(3, 8)) for _ in range(chance.randint(0, 1))]
+    count, law = str(int(10 ** chance.uniform(1.5, 3.3))), chance.choice(["turned", "scaled", "reordered"])
+    angle, scale = (chance.uniform(0, 6) if law == "turned" else 0, 10 ** chance.uniform(-9, 9) if law == "scaled" else 1)
+    ratio, size = chance.choice([1, 10, 1000]), chance.choice([0.01, 0.05])
+    c, s = math.cos(angle), math.sin(angle)
+    tensor = [ratio * c * c + s * s, (ratio - 1) * c * s, ratio * s * s + c * c]
+    turned = [[[scale * (c * x - s * y), scale * (s * x + c * y)] for x, y in ring] for ring in rings]
+    if law == "reordered":
+        turned = [ring[k:] + ring[:k] for ring in rings for k in [chance.randrange(len(ring))]]
+    metrics = [[f"uniform:{ratio},0,1", "uniform:" + ",".join(map(repr, tensor))],
+               [f"boundary:h0={size},growth=1.5", f"boundary:h0={size * scale!r},growth=1.5"]]
+    if law != "turned":
+        metrics.append(["formula:1+100*x^2; 0; 1+y^2", f"formula:1+100*(x/{scale!r})^2; 0; 1+(y/{scale!r})^2"])
+    pair = chance.choice(metrics)
+    found = []
+    for outline, metric in zip((rings, turned), pair):
+        words = ["mesh", written(place, outline), "--metric", metric, "-n", count, "-o", "out.mesh", "--report", "run.json", "-q"]
+        code = quiet(program, place, words)
+        found.append(json.loads((place / "run.json").read_text()) if code == 0 else {"code": code})
+    said = f"{law}, {pair[0]}, -n {count}, scale {scale:g}, angle {angle:g}"
+    if any("code" in report for report in found):
+        return ("refused" if found[0] == found[1] == {"code": 1} else "differs"), said
+    one, other = found
+    shares = [abs(one[part][key] - other[part][key]) for part, key in (("metric_edge_length", "unit_fraction"), ("quality", "mean"))]
+    is_alike = abs(one["vertices"] - other["vertices"]) <= max(3, 0.01 * one["vertices"]) and max(shares) <= 0.05
+    return ("same" if is_alike else "differs"), f"{said}: {one['vertices']}, {other['vertices']} vertices, {shares}"
 
 
 if __name__ == "__main__":

@@ -109,7 +109,7 @@ fn grid(bytes: &mut Unstructured) -> Result<Mesh> {
 /// Options that leave the work small.
 fn options(bytes: &mut Unstructured) -> Result<MeshOptions> {
     Ok(MeshOptions {
-        vertices: Some(bytes.int_in_range(1..=300)?),
+        vertices: Some(bytes.int_in_range(1..=100)?),
         hausd: if bytes.ratio(1, 8)? { Some(0.001 * f64::from(bytes.arbitrary::<u8>()?)) } else { None },
         lloyd: bytes.int_in_range(0..=12)?,
         seeding: *bytes.choose(&[Seeding::Sizing, Seeding::Sizing, Seeding::Farthest])?,

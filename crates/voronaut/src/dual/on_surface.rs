@@ -179,7 +179,8 @@ impl<'a> SurfaceDual<'a> {
         3.0_f64.sqrt() * square.max(0.0).sqrt() / (x * x + y * y + z * z)
     }
 
-    /// The geometric mean of the lengths of edges that are free to be as long as the metric wants: not between seeds that stay.
+    /// The geometric mean of the lengths of edges that are free to be as long as the metric wants: not between seeds that stay, nor
+    /// between seeds that have come to one place.
     pub(crate) fn mean_length(&self) -> f64 {
         let is_free = |h: &HalfEdge| self.topology().ends(*h).iter().any(|&v| self.kind(v) == Kind::Free);
         let mut edges: Vec<HalfEdge> = self.topology().edges().filter(is_free).collect();
@@ -187,7 +188,8 @@ impl<'a> SurfaceDual<'a> {
             edges = self.topology().edges().collect();
         }
         let log = |&h: &HalfEdge| self.estimate(self.topology().ends(h)).value.ln();
-        let logs: Vec<f64> = edges.par_iter().with_min_len(64).map(log).collect();
+        let mut logs: Vec<f64> = edges.par_iter().with_min_len(64).map(log).collect();
+        logs.retain(|log| log.is_finite());
         (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp()
     }
 

@@ -108,16 +108,16 @@ impl<'a> Setting<'a> {
         let mut reseed = Reseed::default();
         let mut notes = Vec::new();
         let (pass, mesh) = loop {
-            let Some(pass) = self.passed(count, scale, &mut reseed)? else { continue };
-            let mesh = pass.mesh();
-            let faulty = self.watch.time("check", || {
-                self.progress.begin("checking", 1)?;
-                Ok(pass.faulty(&mesh, &self.meetings))
-            })?;
-            if faulty.is_empty() || reseed.rounds + 1 >= self.farthest_passes() + ADAPTATIONS {
+            let Some(mut pass) = self.passed(count, scale, &mut reseed)? else { continue };
+            let (mut mesh, mut faulty) = self.checked(&pass)?;
+            if faulty.is_empty() && self.steps(&reseed).is_some() && self.settle_edges(&mut pass)? {
+                (mesh, faulty) = self.checked(&pass)?;
+            }
+            if faulty.is_empty() || reseed.is_last {
                 break (pass, mesh);
             }
             reseed = pass.reseed(&faulty, reseed);
+            reseed.is_last = reseed.rounds + 1 >= self.farthest_passes() + ADAPTATIONS;
         };
         pass.demand(&mesh, &self.meetings)?;
         let farthest = self.farthest_passes();
@@ -147,19 +147,33 @@ impl<'a> Setting<'a> {
     fn passed(&self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Option<Pass<'a>>> {
         let farthest = self.farthest_passes();
         let is_farthest = reseed.rounds < farthest;
-        let lloyd = self.options.lloyd;
-        let steps = match reseed.rounds.saturating_sub(farthest) {
-            0 => Some(lloyd),
-            rounds if rounds + UNRELAXED < ADAPTATIONS => Some(lloyd.min(FEWER_STEPS)),
-            _ => None,
-        };
-        match self.pass(count, scale, reseed, is_farthest, steps) {
+        match self.pass(count, scale, reseed, is_farthest, self.steps(reseed)) {
             Err(Error::Domain { .. }) if is_farthest => {
                 reseed.rounds = farthest;
                 Ok(None)
             }
             other => other.map(Some),
         }
+    }
+
+    /// Steps of relaxation, in the last passes not even none.
+    fn steps(&self, reseed: &Reseed) -> Option<usize> {
+        let lloyd = self.options.lloyd;
+        match reseed.rounds.saturating_sub(self.farthest_passes()) {
+            0 => Some(lloyd),
+            rounds if rounds + UNRELAXED < ADAPTATIONS => Some(lloyd.min(FEWER_STEPS)),
+            _ => None,
+        }
+    }
+
+    /// The mesh of a pass, and its triangles that make it none.
+    fn checked(&self, pass: &Pass) -> Result<(Mesh, Vec<u32>)> {
+        let mesh = pass.mesh();
+        let faulty = self.watch.time("check", || {
+            self.progress.begin("checking", 1)?;
+            Ok(pass.faulty(&mesh, &self.meetings))
+        })?;
+        Ok((mesh, faulty))
     }
 
     fn farthest_passes(&self) -> usize {

@@ -17,7 +17,8 @@ use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
 use crate::sampling::{
-    ALL_VERTICES, Adapted, FeatureSeeds, Held, MeasuredCurves, Wanted, adapted, contracted, exchanged, fill_farthest,
+    ALL_VERTICES, Adapted, FeatureSeeds, Held, Holding, MeasuredCurves, Wanted, adapted, contracted, exchanged,
+    fill_farthest,
 };
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Place, Surface, Whole};
@@ -67,6 +68,8 @@ pub(super) struct Reseed {
     density: Vec<usize>,
     /// Faulty triangles, around which a pass that starts from the surface's own triangles keeps these.
     held: Vec<Held>,
+    /// Whether nothing else may help: the surface's own triangles stay, and are split at most.
+    pub(super) is_last: bool,
     /// Passes before.
     pub(super) rounds: usize,
 }
@@ -112,11 +115,17 @@ impl<'a> Setting<'a> {
             }
         });
         let Started { features, owners, adapted, canvas } = started?;
-        let (mut dual, relaxed) = self.watch.time("relax", || self.relaxed(adapted, scale, steps))?;
-        let settle = || if steps.is_some() { self.settled(&mut dual) } else { Ok(Settled::default()) };
-        let mut settled = self.watch.time("settle", settle)?;
-        settled.canvas = settled.canvas.or(canvas);
+        let (dual, relaxed) = self.watch.time("relax", || self.relaxed(adapted, scale, steps))?;
+        let settled = Settled { canvas, ..Settled::default() };
         Ok(Pass { input: self.input, dual, features, owners, relaxed, settled })
+    }
+
+    /// Settles the edges of a pass that has made a mesh, and says whether any may be another one now.
+    pub(super) fn settle_edges(&self, pass: &mut Pass<'a>) -> Result<bool> {
+        let canvas = pass.settled.canvas.take();
+        pass.settled = self.watch.time("settle", || self.settled(&mut pass.dual))?;
+        pass.settled.canvas = pass.settled.canvas.take().or(canvas);
+        Ok(self.options.dual == Road::Canvas)
     }
 
     fn dual_of(&self, Adapted { places, staying, topology, .. }: Adapted, scale: f64) -> Result<SurfaceDual<'a>> {
@@ -185,9 +194,13 @@ impl<'a> Setting<'a> {
     fn started_from_surface(&self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Started> {
         let curves = &self.input.seams.features.curves;
         reseed.density.resize(curves.len(), 1);
+        if reseed.is_last {
+            reseed.density.fill(ALL_VERTICES);
+        }
         for _ in 0..DENSER {
             let (features, given, owners, total) = self.featured(count, scale, reseed);
-            let wanted = Wanted { given: &given, factor: scale, count: total, held: &reseed.held };
+            let held = if reseed.is_last { Holding::All } else { Holding::Near(&reseed.held) };
+            let wanted = Wanted { given: &given, factor: scale, count: total, held };
             let Some(adapted) = adapted(self.input, self.metric, &wanted) else { break };
             if adapted.stuck.is_empty() {
                 return Ok(Started { features, owners, adapted, canvas: None });
@@ -334,7 +347,7 @@ impl Pass<'_> {
                 (before.rounds + 1) as f64 * AROUND * Point3::longest_side(corners.map(|place| place.position));
             Held { corners: corners.map(|place| place.position), within: around }
         }));
-        Reseed { density, held, rounds: before.rounds + 1 }
+        Reseed { density, held, rounds: before.rounds + 1, is_last: false }
     }
 
     /// Vertices that features have.

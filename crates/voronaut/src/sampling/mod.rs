@@ -9,7 +9,7 @@ mod interior;
 mod plan;
 mod protected;
 
-pub(crate) use adapted::{Adapted, Held, Wanted, adapted, contracted, exchanged};
+pub(crate) use adapted::{Adapted, Held, Holding, Wanted, adapted, contracted, exchanged};
 pub(crate) use curves::{CurveSizes, simplify};
 pub use farthest::Farthest;
 pub(crate) use farthest::{fill_farthest, refine_farthest};

@@ -137,6 +137,11 @@ impl Input {
         }
     }
 
+    /// The place of a point that lies on the surface's triangles, but for rounding; for that of an equation what [`Input::lift`] says.
+    pub(crate) fn place_on_triangles(&self, near: &Place, p: Point3) -> Option<Place> {
+        if self.implicit.is_some() { self.lift(near, p) } else { Some(self.nearest().closest(&self.surface, p)?.place) }
+    }
+
     /// From triangle to triangle as long as that leads nearer to a point: across the edges that the closest point lies on, or else
     /// around its corner. Where that takes long, from what is closest of all, unless it is another side of the surface.
     fn walk(&self, from: &Place, p: Point3) -> Place {

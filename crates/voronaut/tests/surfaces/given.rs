@@ -64,6 +64,21 @@ fn a_thin_tip_has_a_metric() {
     assert!(found.mesh.points.len().abs_diff(400) <= 4, "{:?}", found.notes);
 }
 
+/// Spikes side by side, twelve high and a sixth wide: where nothing coarser is a mesh, the surface's own triangles are.
+#[test]
+fn spikes_have_a_mesh() {
+    let n = 6_u32;
+    for frequency in [3.7, 5.1] {
+        let at = |k: u32| [k / (n + 1), k % (n + 1)].map(|i| f64::from(i) / f64::from(n));
+        let height = |k: u32| 6.0 * (frequency * f64::from(k)).sin();
+        let points = (0..(n + 1) * (n + 1)).map(|k| [at(k)[0], at(k)[1], height(k)]).collect();
+        let cells = (0..n).flat_map(|i| (0..n).map(move |j| i * (n + 1) + j));
+        let triangles = cells.flat_map(|a| [[a, a + n + 1, a + n + 2], [a, a + n + 2, a + 1]]).collect();
+        let found = meshed(&input(points, triangles), "uniform", 300);
+        assert!(found.notes.iter().any(|note| note.starts_with("made anew")), "{:?}", found.notes);
+    }
+}
+
 /// A square of so many by so many labels.
 fn labelled_square(labels: u32) -> Input {
     let n = 20;

@@ -29,8 +29,17 @@ pub(crate) struct Wanted<'a> {
     pub factor: f64,
     /// Vertices.
     pub count: usize,
-    /// Near what all vertices of the surface are kept.
-    pub held: &'a [Held],
+    /// Where all vertices of the surface are kept.
+    pub held: Holding<'a>,
+}
+
+/// What stays of a surface's own triangles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Holding<'a> {
+    /// Vertices near these.
+    Near(&'a [Held]),
+    /// All of them, and their edges, but that too long ones are split.
+    All,
 }
 
 /// What is near a triangle.
@@ -63,6 +72,10 @@ pub(crate) struct Adapted {
 /// Adapts the triangles of a surface. `None` where two of the given places are one vertex.
 pub(crate) fn adapted(input: &Input, metric: &dyn SurfaceMetric, wanted: &Wanted) -> Option<Adapted> {
     let mut work = Work::new(input, metric, wanted)?;
+    if work.keeps_edges {
+        work.split_long(wanted.count);
+        return Some(work.finished());
+    }
     // Large triangles turn over less easily; where the border cannot be had of them, smaller ones may let it go.
     work.contract_border();
     work.split_long(MOST * (wanted.count + input.surface.positions().len()));

@@ -58,7 +58,10 @@ impl Work<'_> {
     /// Splits an edge in the middle, but not where that would turn a triangle away from the surface, or make the first needle.
     fn split_in_the_middle(&mut self, h: HalfEdge) {
         let [p, q] = self.topology.ends(h).map(|v| self.at(v).place);
-        let Some(place) = self.input.lift(&p, p.position.lerp(q.position, 0.5)) else { return };
+        let middle = p.position.lerp(q.position, 0.5);
+        let place =
+            if self.keeps_edges { self.input.place_on_triangles(&p, middle) } else { self.input.lift(&p, middle) };
+        let Some(place) = place else { return };
         let vertex = self.vertex(place);
         let t = &self.topology;
         let halves = |side: HalfEdge| {
@@ -89,7 +92,7 @@ impl Flipping for Work<'_> {
 
     fn wants_flip(&mut self, h: HalfEdge) -> bool {
         let Some([a, b, c, d]) = self.topology.quad(h) else { return false };
-        let is_held = self.at(a).is_held && self.at(b).is_held;
+        let is_held = self.keeps_edges || self.at(a).is_held && self.at(b).is_held;
         if is_held || self.margin([a, b, c, d]) >= -TIE || !self.topology.can_flip(h) {
             return false;
         }

@@ -10,7 +10,7 @@ fn metric(edge: f64) -> Constant {
 }
 
 fn of(input: &Input, edge: f64, count: usize, held: &[Held]) -> Adapted {
-    adapted(input, &metric(edge), &Wanted { given: &[], factor: 1.0, count, held }).unwrap()
+    adapted(input, &metric(edge), &Wanted { given: &[], factor: 1.0, count, held: Holding::Near(held) }).unwrap()
 }
 
 /// Corners of all triangles, each triangle turned such that its least corner is first.

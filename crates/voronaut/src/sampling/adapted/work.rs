@@ -1,6 +1,6 @@
 //! A triangulation of a surface in the making: its vertices, and what is measured of its triangles.
 
-use super::{Adapted, Wanted};
+use super::{Adapted, Holding, Wanted};
 use crate::geometry::{Point3, Tensor3, Vector3};
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
@@ -18,6 +18,8 @@ pub(super) struct Work<'a> {
     pub(super) vertices: Vec<Vertex>,
     /// Vertices of the surface that no triangle has.
     unused: usize,
+    /// Whether no edge is flipped.
+    pub(super) keeps_edges: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -45,7 +47,11 @@ impl<'a> Work<'a> {
         let slots = (0..topology.vertex_slots() as u32).map(VertexId);
         let places: Vec<Place> = slots.map(|v| input.surface.place_of(v).unwrap_or(nowhere)).collect();
         let mut work = Self::of(input, metric, wanted.factor, topology, places);
-        let is_near = |p: Point3| wanted.held.iter().any(|held| held.holds(p));
+        work.keeps_edges = matches!(wanted.held, Holding::All);
+        let is_near = |p: Point3| match wanted.held {
+            Holding::Near(held) => held.iter().any(|held| held.holds(p)),
+            Holding::All => true,
+        };
         work.vertices
             .par_iter_mut()
             .with_min_len(64)
@@ -62,7 +68,8 @@ impl<'a> Work<'a> {
         places: Vec<Place>,
     ) -> Self {
         let unused = topology.vertex_count() - topology.vertices().count();
-        let mut work = Self { input, metric, root: factor.sqrt(), topology, vertices: Vec::new(), unused };
+        let mut work =
+            Self { input, metric, root: factor.sqrt(), topology, vertices: Vec::new(), unused, keeps_edges: false };
         work.vertices = places.into_par_iter().with_min_len(64).map(|place| work.vertex(place)).collect();
         work
     }
