@@ -294,8 +294,8 @@ def surfaces():
     for words in (SPOT, f"{SPOT} --fit",
                   "data/bob_small.obj --metric curvature -n 1020", "chair --metric curvature -n 1020", SPHERE, BRACKET.format("uniform"),
                   BRACKET.format("curvature"), "data/parts/patch.mesh --metric curvature -n 2000"):
-        found = report(f"mesh {words}")
-        distance = found["fidelity"]
+        found, (mesh, _) = report(f"mesh {words}"), kept(f"mesh {words}")
+        distance = report(f"check {mesh} --domain {words.split()[0]}")["fidelity"]
         distances = f"{distance['rms_share']:.1e}, {distance['hausdorff_share']:.1e}"
         rows.append([f"`{words}`", *meshed(found), pair(found["quality"]), distances])
     return rows
@@ -442,7 +442,7 @@ def transfer():
 
 @table("ffbamg", "mmg2d_O3")
 def outlines():
-    words = ["outlines", "-n", 300, "--jobs", 1, "--peers", "ffbamg", "mmg2d_O3"]
+    words = ["outlines", "-n", 100, "--peers", "ffbamg", "mmg2d_O3"]
     return cells(run(sys.executable, ROOT / "scripts/campaign.py", *words, check=False))
 
 

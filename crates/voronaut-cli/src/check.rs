@@ -2,6 +2,7 @@
 
 use crate::fields::{self, Scaled};
 use crate::options::{Damage, MetricChoices, Outputs, Run, Show, positive, refuse};
+use crate::world::World;
 use crate::{account, files, pictures};
 use clap::Args;
 use serde_json::json;
@@ -59,12 +60,12 @@ pub(crate) struct CheckArgs {
 }
 
 /// Examines a mesh. The report is written for any mesh; figures in a metric and pictures are for valid ones.
-pub(crate) fn run(args: &CheckArgs) -> Result<()> {
+pub(crate) fn run(args: &CheckArgs, world: &World) -> Result<()> {
     let start = Instant::now();
     files::demand_writable(None, None, &args.outputs, &args.run)?;
     demand_drawable(args)?;
-    let Document { mesh, notes, .. } = voronaut_io::read(&args.mesh)?;
-    let read = |spec: &str| Given::read(spec, args.damage.options());
+    let Document { mesh, notes, .. } = world.document(&args.mesh)?;
+    let read = |spec: &str| world.given(spec, args.damage.options());
     let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();
     let found = match &given {
         Some(Given::Surface(input)) => validity_on(&mesh, &Meetings::of(input.whole_mesh())),
@@ -81,19 +82,19 @@ pub(crate) fn run(args: &CheckArgs) -> Result<()> {
     });
     if let Err(fault) = fault {
         report.seconds.total = start.elapsed().as_secs_f64();
-        files::finish(&args.mesh, &args.outputs, None, &report, &args.run)?;
+        files::finish(world, &args.mesh, &args.outputs, None, &report, &args.run)?;
         return Err(fault);
     }
     report.metric_scale = args.metric.is_some().then_some(args.metric_scale.unwrap_or(1.0));
     report.notes.extend(mended.iter().flat_map(Mended::sentences).chain(meets));
     let picture = match given {
-        Some(Given::Surface(input)) => on_surface(args, &mesh, Some(&input), &mut report)?,
-        None if !mesh.is_planar() => on_surface(args, &mesh, None, &mut report)?,
-        Some(Given::Plane(domain)) => in_plane(args, &mesh, Some(&domain), &mut report)?,
-        None => in_plane(args, &mesh, None, &mut report)?,
+        Some(Given::Surface(input)) => on_surface(args, world, &mesh, Some(&input), &mut report)?,
+        None if !mesh.is_planar() => on_surface(args, world, &mesh, None, &mut report)?,
+        Some(Given::Plane(domain)) => in_plane(args, world, &mesh, Some(&domain), &mut report)?,
+        None => in_plane(args, world, &mesh, None, &mut report)?,
     };
     report.seconds.total = start.elapsed().as_secs_f64();
-    files::finish(&args.mesh, &args.outputs, picture, &report, &args.run)
+    files::finish(world, &args.mesh, &args.outputs, picture, &report, &args.run)
 }
 
 /// Refuses pictures of what a mesh that is only checked does not have.
@@ -114,13 +115,19 @@ fn demand_drawable(args: &CheckArgs) -> Result<()> {
 }
 
 /// Measures a planar mesh, and draws it if that is asked for.
-fn in_plane(args: &CheckArgs, mesh: &Mesh, domain: Option<&Domain>, report: &mut Report) -> Result<Option<String>> {
+fn in_plane(
+    args: &CheckArgs,
+    world: &World,
+    mesh: &Mesh,
+    domain: Option<&Domain>,
+    report: &mut Report,
+) -> Result<Option<String>> {
     if !mesh.is_planar() {
         let what = format!("{} is not planar (z = 0), its domain is", args.mesh.display());
         return Err(Error::unsupported(what, "give the surface that it is a mesh of as --domain"));
     }
     let mut layers = Layers::default();
-    let metric = args.metric.as_deref().map(|text| planar_metric(args, text, mesh, domain)).transpose()?;
+    let metric = args.metric.as_deref().map(|text| planar_metric(args, world, text, mesh, domain)).transpose()?;
     if let Some(metric) = metric.as_deref() {
         let unmet = account::measure_in_plane(report, mesh, metric)?;
         report.histograms = files::histograms(&args.outputs, mesh, metric)?;
@@ -135,7 +142,13 @@ fn in_plane(args: &CheckArgs, mesh: &Mesh, domain: Option<&Domain>, report: &mut
 }
 
 /// Measures the mesh of a surface, of its own triangles if no other is given; there is no picture of it.
-fn on_surface(args: &CheckArgs, mesh: &Mesh, given: Option<&Input>, report: &mut Report) -> Result<Option<String>> {
+fn on_surface(
+    args: &CheckArgs,
+    world: &World,
+    mesh: &Mesh,
+    given: Option<&Input>,
+    report: &mut Report,
+) -> Result<Option<String>> {
     demand_for_surfaces(args)?;
     if let Some(Input { surface, implicit, .. }) = given {
         let implicit = implicit.as_ref().map(|f| f as &dyn Implicit);
@@ -149,7 +162,7 @@ fn on_surface(args: &CheckArgs, mesh: &Mesh, given: Option<&Input>, report: &mut
             own = Input::new(Surface::new(mesh)?, None);
             &own
         };
-        let field = fields::on_surface(text, input, &args.metric_choices)?;
+        let field = fields::on_surface(world, text, input, &args.metric_choices)?;
         let scaled = Scaled { field: field.as_ref(), factor: args.metric_scale.unwrap_or(1.0) };
         account::measure_on_surface(report, mesh, &input.surface, &scaled)?;
     }
@@ -167,7 +180,13 @@ fn demand_for_surfaces(args: &CheckArgs) -> Result<()> {
 }
 
 /// The metric, times its factor. A `.sol` file belongs to the background mesh, else to the domain's, else to the mesh.
-fn planar_metric(args: &CheckArgs, text: &str, mesh: &Mesh, domain: Option<&Domain>) -> Result<Box<dyn MetricField>> {
+fn planar_metric(
+    args: &CheckArgs,
+    world: &World,
+    text: &str,
+    mesh: &Mesh,
+    domain: Option<&Domain>,
+) -> Result<Box<dyn MetricField>> {
     let mesh_file = args.mesh.to_string_lossy();
     let file = args.domain.as_deref().unwrap_or(&mesh_file);
     let own;
@@ -178,6 +197,6 @@ fn planar_metric(args: &CheckArgs, text: &str, mesh: &Mesh, domain: Option<&Doma
         &own
     };
     let scale = args.metric_scale.unwrap_or(1.0);
-    let metric = fields::in_plane(text, domain, file, &args.metric_choices, GradedAt::Scale(scale))?.field;
+    let metric = fields::in_plane(world, text, domain, file, &args.metric_choices, GradedAt::Scale(scale))?.field;
     Ok(Box::new(move |p: Point| metric.at(p) * scale))
 }

@@ -1,7 +1,7 @@
 //! `voronaut convert`: from one format to another.
 
 use crate::files::{self, Miscounted};
-use crate::options::Limits;
+use crate::options::{Limits, Run};
 use crate::summary;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,14 @@ pub(crate) struct ConvertArgs {
     #[arg(short, long)]
     quiet: bool,
     #[command(flatten)]
-    pub(crate) limits: Limits,
+    limits: Limits,
+}
+
+impl ConvertArgs {
+    /// Limits, and how much is said.
+    pub(crate) fn run(&self) -> Run {
+        Run { report: None, threads: None, limits: self.limits, quiet: self.quiet, verbose: false }
+    }
 }
 
 /// Converts a file.

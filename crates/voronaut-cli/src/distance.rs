@@ -2,6 +2,7 @@
 
 use crate::options::{Coordinates, Damage, MetricChoices, Run, coordinates};
 use crate::progress::Stages;
+use crate::world::World;
 use crate::{account, fields, files, summary};
 use clap::{Args, value_parser};
 use serde_json::{Value, json};
@@ -74,25 +75,25 @@ pub(crate) struct DistanceArgs {
 const CANVAS_VERTICES: u32 = 40_000;
 
 /// Writes the distance field on the canvas, and the path if there is one.
-pub(crate) fn run(args: &DistanceArgs) -> Result<()> {
+pub(crate) fn run(args: &DistanceArgs, world: &World) -> Result<()> {
     let stages = Stages::start();
-    voronaut_io::demand_diagram(&args.out)?;
+    world.file(&args.out).map(voronaut_io::demand_diagram).transpose()?;
     args.picture.as_deref().map(voronaut_draw::is_png).transpose()?;
-    files::demand_apart([Some(args.out.as_path()), args.picture.as_deref(), args.run.report.as_deref()])?;
+    files::demand_apart([world.file(&args.out), args.picture.as_deref(), args.run.report.as_deref()])?;
     args.metric_choices.bounds().check()?;
     demand_memory(args)?;
-    let (given, mended) = Given::read(&args.domain, args.damage.options())?;
+    let (given, mended) = world.given(&args.domain, args.damage.options())?;
     match given {
-        Given::Plane(domain) => in_plane(args, &domain, &mended, stages),
-        Given::Surface(input) => on_surface(args, &input, &mended, stages),
+        Given::Plane(domain) => in_plane(args, world, &domain, &mended, stages),
+        Given::Surface(input) => on_surface(args, world, &input, &mended, stages),
     }
 }
 
-fn in_plane(args: &DistanceArgs, domain: &Domain, mended: &Mended, mut stages: Stages) -> Result<()> {
+fn in_plane(args: &DistanceArgs, world: &World, domain: &Domain, mended: &Mended, mut stages: Stages) -> Result<()> {
     let from = args.from.iter().map(|p| flat("--from", p)).collect::<Result<Vec<Point>>>()?;
     let to = args.to.as_ref().map(|p| flat("--to", p)).transpose()?;
     let at = GradedAt::Scale(1.0);
-    let metric = fields::in_plane(&args.metric, domain, &args.domain, &args.metric_choices, at)?.field;
+    let metric = fields::in_plane(world, &args.metric, domain, &args.domain, &args.metric_choices, at)?.field;
     stages.end("read");
     let canvas = Canvas::new(args.canvas, domain, metric.as_ref(), args.canvas_size as usize)?;
     demand_inside(&from, to, &canvas)?;
@@ -108,17 +109,17 @@ fn in_plane(args: &DistanceArgs, domain: &Domain, mended: &Mended, mut stages: S
     });
     let told = told(args, &found, asked, &canvas.figures(), mended, stages);
     let picture = args.picture.as_ref().map(|_| draw(args, &found, path.as_ref())).transpose()?;
-    finish(args, &found.to_mesh(path.as_ref()), picture, &told)
+    finish(args, world, found.to_mesh(path.as_ref()), picture, &told)
 }
 
 /// The distances on a canvas that has the points, moved onto the surface, as vertices.
-fn on_surface(args: &DistanceArgs, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
+fn on_surface(args: &DistanceArgs, world: &World, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
     let mut places: Vec<Place> = Vec::new();
     let from = args.from.iter().map(|p| Ok(add(on_it("--from", p, input)?, &mut places)));
     let from: Vec<usize> = from.collect::<Result<_>>()?;
     let to = args.to.as_ref().map(|p| on_it("--to", p, input)).transpose()?;
     let to = to.map(|place| add(place, &mut places));
-    let metric = fields::on_surface(&args.metric, input, &args.metric_choices)?;
+    let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices)?;
     stages.end("read");
     let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), args.canvas_size as usize, &places)?;
     stages.end("canvas");
@@ -138,19 +139,20 @@ fn on_surface(args: &DistanceArgs, input: &Input, mended: &Mended, mut stages: S
     let told = told(args, &found, asked, &canvas.figures(), mended, stages);
     let seeds = from.iter().map(position).collect();
     let picture = args.picture.as_ref().map(|_| draw_on(args, &found, seeds, path.as_ref())).transpose()?;
-    finish(args, &found.to_mesh(path.as_ref()), picture, &told)
+    finish(args, world, found.to_mesh(path.as_ref()), picture, &told)
 }
 
 /// Writes the distances on the canvas, and what is beside them.
 fn finish(
     args: &DistanceArgs,
-    (canvas, distances): &(Mesh, Vec<f64>),
+    world: &World,
+    field: (Mesh, Vec<f64>),
     picture: Option<String>,
     told: &Value,
 ) -> Result<()> {
-    voronaut_io::write_diagram(canvas, distances, &args.out)?;
+    world.write_diagram(field, Some(&args.out))?;
     files::write_picture(picture, args.picture.as_deref())?;
-    args.run.write_report(&format!("{told:#}\n"))?;
+    world.write_report(format!("{told:#}\n"), &args.run)?;
     summary::print_distance(&args.out, told, &args.run);
     Ok(())
 }

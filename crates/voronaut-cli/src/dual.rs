@@ -1,8 +1,9 @@
 //! `voronaut dual`: diagram and dual of the seeds given.
 
 use crate::options::{CanvasSize, Damage, EdgesOut, MetricChoices, Outputs, Run, Show, canvas_size, refuse};
-use crate::progress::{Bar, Stages};
+use crate::progress::Stages;
 use crate::seeds::SeedFile;
+use crate::world::World;
 use crate::{fields, files, pictures};
 use clap::Args;
 use serde_json::{Value, json};
@@ -124,23 +125,23 @@ impl DualArgs {
 }
 
 /// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
-pub(crate) fn run(args: &DualArgs) -> Result<()> {
+pub(crate) fn run(args: &DualArgs, world: &World) -> Result<()> {
     let stages = Stages::start();
-    demand(args)?;
+    demand(args, world)?;
     args.metric_choices.bounds().check()?;
-    let (given, mended) = Given::read(&args.domain, args.damage.options())?;
+    let (given, mended) = world.given(&args.domain, args.damage.options())?;
     match given {
-        Given::Surface(input) => on_surface(args, &input, &mended, stages),
-        Given::Plane(domain) => in_plane(args, &domain, &mended, stages),
+        Given::Surface(input) => on_surface(args, world, &input, &mended, stages),
+        Given::Plane(domain) => in_plane(args, world, &domain, &mended, stages),
     }
 }
 
-fn in_plane(args: &DualArgs, domain: &Domain, mended: &Mended, mut stages: Stages) -> Result<()> {
+fn in_plane(args: &DualArgs, world: &World, domain: &Domain, mended: &Mended, mut stages: Stages) -> Result<()> {
     let outputs = &args.outputs;
     let at = GradedAt::Scale(1.0);
-    let metric = fields::in_plane(&args.metric, domain, &args.domain, &args.metric_choices, at)?.field;
+    let metric = fields::in_plane(world, &args.metric, domain, &args.domain, &args.metric_choices, at)?.field;
     let metric = metric.as_ref();
-    let file = SeedFile::read(&args.seeds)?;
+    let file = SeedFile::of_points(world.seeds(&args.seeds)?)?;
     stages.end("read");
     let canvas = canvas(args, domain, metric, &file)?;
     let is_riemannian = args.voronoi == Kind::Riemannian;
@@ -148,7 +149,7 @@ fn in_plane(args: &DualArgs, domain: &Domain, mended: &Mended, mut stages: Stage
     let diagram = Diagram::of_kind(args.voronoi, &canvas, metric, &file.seeds, args.geodesic)?;
     stages.end("diagram");
     let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
-        recipe::dual(&diagram, metric, args.dual, &Bar::new(&args.run));
+        recipe::dual(&diagram, metric, args.dual, &*world.progress(&args.run));
     let mesh = diagram.to_mesh(triangles, &nerve, domain);
     account.crossing_edges = Some(crossing_edges(&mesh).len());
     stages.end("dual");
@@ -179,7 +180,7 @@ fn in_plane(args: &DualArgs, domain: &Domain, mended: &Mended, mut stages: Stage
     report.notes.extend(mended.sentences());
     // Parts of "dual".
     report.seconds = stages.seconds(seconds);
-    demand_embedded(args, &report)?;
+    demand_embedded(args, world, &report)?;
     let certificate = report.certificate.as_ref().filter(|_| outputs.shows(Show::Certificate));
     let layers = Layers {
         protection: pictures::protection(outputs, net.as_ref(), MeshOptions::default().protection),
@@ -188,14 +189,14 @@ fn in_plane(args: &DualArgs, domain: &Domain, mended: &Mended, mut stages: Stage
     };
     let picture = pictures::in_plane(outputs, &mesh, Some(metric), &layers)?;
     match curved.filter(|_| args.edges == EdgesOut::Geodesic) {
-        Some(curved) => voronaut_io::write_realisation(&curved, &args.out)?,
-        None => voronaut_io::write_mesh(&mesh, &args.out)?,
+        Some(curved) => world.write_realisation(&curved, &args.out)?,
+        None => world.write_mesh(mesh, &args.out)?,
     }
-    finish(args, picture, &report, || diagram.to_coloured_canvas())
+    finish(args, world, picture, &report, || diagram.to_coloured_canvas())
 }
 
 /// The dual of seeds on a surface.
-fn on_surface(args: &DualArgs, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
+fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
     let refused = [
         (args.voronoi != Kind::Riemannian, "--voronoi"),
         (args.certify, "--certify"),
@@ -203,8 +204,8 @@ fn on_surface(args: &DualArgs, input: &Input, mended: &Mended, mut stages: Stage
         (args.canvas_size == CanvasSize::Certified, "--canvas-size certified"),
     ];
     pictures::demand_of_surfaces(&args.outputs, &refused)?;
-    let metric = fields::on_surface(&args.metric, input, &args.metric_choices)?;
-    let places = SeedFile::read_in_space(&args.seeds)?.on_surface(input)?;
+    let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices)?;
+    let places = SeedFile::of_places(world.seeds(&args.seeds)?)?.on_surface(input)?;
     stages.end("read");
     let size = canvas_vertices(args, places.len())?.unwrap_or_default();
     let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), size, &places)?;
@@ -212,7 +213,7 @@ fn on_surface(args: &DualArgs, input: &Input, mended: &Mended, mut stages: Stage
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, args.geodesic)?;
     stages.end("diagram");
     let SeedDual { triangles, account, seconds, raw_nerve, .. } =
-        recipe::surface_dual(&diagram, args.dual, &Bar::new(&args.run));
+        recipe::surface_dual(&diagram, args.dual, &*world.progress(&args.run));
     let mesh = recipe::surface_mesh(input, &places, triangles);
     stages.end("dual");
     let found = validity_on(&mesh, &Meetings::of(input.whole_mesh()));
@@ -226,18 +227,18 @@ fn on_surface(args: &DualArgs, input: &Input, mended: &Mended, mut stages: Stage
         report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
     }
     report.seconds = stages.seconds(seconds);
-    demand_embedded(args, &report)?;
+    demand_embedded(args, world, &report)?;
     let is_drawn = args.outputs.picture.is_some();
     let picture = is_drawn.then(|| pictures::on_surface(&args.outputs, &diagram, &mesh)).transpose()?;
     let written = if args.edges == EdgesOut::Geodesic { pictures::with_geodesics(&diagram, &mesh) } else { mesh };
-    voronaut_io::write_mesh(&written, &args.out)?;
-    finish(args, picture, &report, || diagram.to_coloured_canvas())
+    world.write_mesh(written, &args.out)?;
+    finish(args, world, picture, &report, || diagram.to_coloured_canvas())
 }
 
 /// What can be refused before the work.
-fn demand(args: &DualArgs) -> Result<()> {
+fn demand(args: &DualArgs, world: &World) -> Result<()> {
     args.diagram.as_deref().map(voronaut_io::demand_diagram).transpose()?;
-    files::demand_writable(Some(&args.out), args.diagram.as_deref(), &args.outputs, &args.run)?;
+    files::demand_writable(world.file(&args.out), args.diagram.as_deref(), &args.outputs, &args.run)?;
     args.geodesic.demand_diagrams()?;
     demand_geodesics(args)?;
     let what = "a picture of where a metric is not met by seeds that are given";
@@ -247,15 +248,15 @@ fn demand(args: &DualArgs) -> Result<()> {
 /// Writes what is beside the dual.
 fn finish(
     args: &DualArgs,
+    world: &World,
     picture: Option<String>,
     report: &Report,
     coloured: impl FnOnce() -> (Mesh, Vec<f64>),
 ) -> Result<()> {
-    if let Some(path) = &args.diagram {
-        let (canvas, distances) = coloured();
-        voronaut_io::write_diagram(&canvas, &distances, path)?;
+    if args.diagram.is_some() || world.keeps_diagrams() {
+        world.write_diagram(coloured(), args.diagram.as_deref())?;
     }
-    files::finish(&args.out, &args.outputs, picture, report, &args.run)
+    files::finish(world, &args.out, &args.outputs, picture, report, &args.run)
 }
 
 /// Vertices of the canvas of so many seeds; `None`: as many as its certificate asks for.
@@ -315,9 +316,9 @@ fn reported(
 }
 
 /// Refuses, if that is asked for, what OUT would hold if it is not embedded, with the report.
-fn demand_embedded(args: &DualArgs, report: &Report) -> Result<()> {
+fn demand_embedded(args: &DualArgs, world: &World, report: &Report) -> Result<()> {
     if args.strict {
-        embedded(args, report).or_else(|fault| args.run.write_report(&report.to_json()).and(Err(fault)))?;
+        embedded(args, report).or_else(|fault| world.write_report(report.to_json(), &args.run).and(Err(fault)))?;
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Metrics from what is typed, in the plane and on surfaces.
 
 use crate::options::{MetricChoices, refuse};
-use std::path::Path;
+use crate::world::World;
 use voronaut::Result;
 use voronaut::domain::Domain;
 use voronaut::geometry::Tensor3;
@@ -9,37 +9,43 @@ use voronaut::metric::MetricSpec;
 use voronaut::recipe::{GradedAt, Idle, Origin, PlanarMetric, Task};
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Place};
-use voronaut_io::{MetricFiles, MetricSource, surface_metric};
+use voronaut_io::MetricSource;
 
 /// What a metric in the plane is for.
-pub(crate) fn task(source: &MetricSource, choices: &MetricChoices) -> Task {
-    let origin = match source {
-        MetricSource::Hessian(_) => Origin::Values,
-        MetricSource::Named(MetricSpec::Hessian(_)) => Origin::Function,
-        MetricSource::Named(_) | MetricSource::File(_) => Origin::Sizes,
+pub(crate) fn task(world: &World, text: &str, choices: &MetricChoices) -> Result<Task> {
+    let origin = match world.metric_origin(text) {
+        Some(origin) => origin,
+        None => match MetricSource::parse(text)? {
+            MetricSource::Hessian(_) => Origin::Values,
+            MetricSource::Named(MetricSpec::Hessian(_)) => Origin::Function,
+            MetricSource::Named(_) | MetricSource::File(_) => Origin::Sizes,
+        },
     };
-    Task { origin, is_limited: choices.options().is_limiting(), ..Task::default() }
+    Ok(Task { origin, is_limited: choices.options().is_limiting(), ..Task::default() })
 }
 
 /// The metric in the plane that a text names. `own` is what the domain was read from; `at` the multiple in which edges have length one.
 pub(crate) fn in_plane(
+    world: &World,
     text: &str,
     domain: &Domain,
     own: &str,
     choices: &MetricChoices,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
-    let source = MetricSource::parse(text)?;
-    choices.options().idle(task(&source, choices)).iter().try_for_each(Idle::demand_unset)?;
-    let (own, background) = (Some(Path::new(own)), choices.background.as_deref());
-    let files = MetricFiles { own, background, order: choices.tensor_order };
-    files.metric(&source, domain, &choices.options(), at)
+    choices.options().idle(task(world, text, choices)?).iter().try_for_each(Idle::demand_unset)?;
+    world.planar_metric(text, domain, own, choices, at)
 }
 
 /// The metric on a surface that a text names, within limits.
-pub(crate) fn on_surface(text: &str, input: &Input, choices: &MetricChoices) -> Result<Box<dyn SurfaceMetric>> {
+pub(crate) fn on_surface(
+    world: &World,
+    text: &str,
+    input: &Input,
+    choices: &MetricChoices,
+) -> Result<Box<dyn SurfaceMetric>> {
     demand_for_surfaces(choices)?;
-    surface_metric(text, input, choices.bounds(), choices.tensor_order)
+    world.surface_metric(text, input, choices)
 }
 
 /// Refuses what is not there for metrics on surfaces.

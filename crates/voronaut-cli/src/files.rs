@@ -2,6 +2,7 @@
 
 use crate::options::{Outputs, Run};
 use crate::summary;
+use crate::world::World;
 use std::path::Path;
 use voronaut::mesh::{Mesh, SolutionValues, Solutions};
 use voronaut::metric::MetricField;
@@ -72,6 +73,7 @@ pub(crate) fn histograms(outputs: &Outputs, mesh: &Mesh, metric: &dyn MetricFiel
 
 /// Writes what is beside a mesh, picture, histograms and report, as far as asked for, and says what was found.
 pub(crate) fn finish(
+    world: &World,
     mesh: &Path,
     outputs: &Outputs,
     picture: Option<String>,
@@ -82,7 +84,7 @@ pub(crate) fn finish(
     if let (Some(path), Some(found)) = (&outputs.histograms, &report.histograms) {
         voronaut_io::write(path, voronaut_draw::histograms_svg(found).as_bytes())?;
     }
-    run.write_report(&report.to_json())?;
+    world.write_report(report.to_json(), run)?;
     summary::print(mesh, report, run);
     Ok(())
 }

@@ -48,9 +48,25 @@ pub(crate) fn flagged(text: &str) -> String {
     out
 }
 
+/// The text with flags as keywords: `--canvas-size` becomes `canvas_size`.
+pub fn as_keywords(text: &str) -> String {
+    let mut parts = text.split("--");
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(part.len());
+        out.extend([&part[..end].replace('-', "_"), &part[end..]]);
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn flags_are_keywords() {
+        assert_eq!(as_keywords("raise --memory-limit, or ask (--h-min <H>)"), "raise memory_limit, or ask (h_min <H>)");
+    }
 
     #[test]
     fn parameters_are_flags_and_other_words_stay() {

@@ -4,6 +4,7 @@ use crate::files::{self, Miscounted};
 use crate::options::Run;
 use crate::progress::Stages;
 use crate::summary;
+use crate::world::World;
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -51,27 +52,27 @@ pub(crate) struct InterpolateArgs {
 }
 
 /// Carries all fields of a file to another mesh.
-pub(crate) fn run(args: &InterpolateArgs) -> Result<()> {
+pub(crate) fn run(args: &InterpolateArgs, world: &World) -> Result<()> {
     let mut stages = Stages::start();
-    files::demand_solution(&args.out, &args.run)?;
-    let (old, new) = (planar(&args.old, args.run.quiet)?, planar(&args.new, args.run.quiet)?);
-    let given = voronaut_io::read_solutions(&args.field)?;
+    world.file(&args.out).map(|out| files::demand_solution(out, &args.run)).transpose()?;
+    let (old, new) = (planar(world, &args.old, args.run.quiet)?, planar(world, &args.new, args.run.quiet)?);
+    let given = world.solutions(&args.field)?;
     demand_counts(args, &given, &old, &new)?;
     stages.end("read");
     let overshoot = if args.overshoot { Overshoot::Kept } else { Overshoot::Spread };
     let options = TransferOptions { conservative: args.conservative, overshoot, linear_tensors: args.linear_tensors };
     let (solutions, carried, cover) = carry(&old, &new, &given, options)?;
     stages.end("carry");
-    voronaut_io::write_solutions(&solutions, &args.out)?;
+    world.write_solutions(solutions, &args.out)?;
     stages.end("write");
     let told = Told { args, dimension: usize::from(given.dimension), carried: &carried, cover: &cover };
-    args.run.write_report(&format!("{:#}\n", told.report([&old, &new], &stages.seconds(Vec::new()))))?;
+    world.write_report(format!("{:#}\n", told.report([&old, &new], &stages.seconds(Vec::new()))), &args.run)?;
     told.print();
     Ok(())
 }
 
-fn planar(path: &Path, is_quiet: bool) -> Result<Mesh> {
-    let Document { mesh, notes, .. } = voronaut_io::read(path)?;
+fn planar(world: &World, path: &Path, is_quiet: bool) -> Result<Mesh> {
+    let Document { mesh, notes, .. } = world.document(path)?;
     crate::summary::notes(&notes, is_quiet);
     if mesh.is_planar() {
         return Ok(mesh);

@@ -1,7 +1,7 @@
 //! `voronaut mesh`: from the command line to the library and back. All calls of the mesher are here.
 
 use crate::options::{Damage, MetricChoices, Outputs, Run, Show, not_negative, positive, refuse};
-use crate::progress::Bar;
+use crate::world::World;
 use crate::{account, fields, files, pictures};
 use clap::{Args, value_parser};
 use serde_json::{Value, json};
@@ -21,7 +21,7 @@ use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, Aim, Centroid, GradedAt, Idle, MeshOptions, Mesher, Seeding, Task};
 use voronaut::surface::{FeatureOptions, Input, Mended};
 use voronaut_draw::Layers;
-use voronaut_io::{Given, MetricSource, Report};
+use voronaut_io::{Given, Report};
 
 pub(crate) const EXAMPLES: &str = "\
 DOMAIN  a file: .mesh, .meshb, .msh, .vtu, .vtp (boundary edges or triangles; of volumes the boundary), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
@@ -149,13 +149,10 @@ impl MeshArgs {
     }
 
     /// The options that have no say; an error if one of them is set.
-    fn idle(&self, on_surface: bool) -> Result<Vec<Idle>> {
+    fn idle(&self, on_surface: bool, world: &World) -> Result<Vec<Idle>> {
         let is_drawn = self.outputs.picture.is_some() && self.outputs.need_diagram();
-        let metric = if on_surface {
-            Task::default()
-        } else {
-            fields::task(&MetricSource::parse(&self.metric)?, &self.metric_choices)
-        };
+        let metric =
+            if on_surface { Task::default() } else { fields::task(world, &self.metric, &self.metric_choices)? };
         let task = Task { on_surface, is_drawn, ..metric };
         let idle = [self.options().idle(task), self.metric_choices.options().idle(task)].concat();
         idle.iter().try_for_each(Idle::demand_unset)?;
@@ -182,18 +179,18 @@ impl MeshArgs {
 }
 
 /// Meshes a domain. Nothing is written unless the mesh is valid.
-pub(crate) fn run(args: &MeshArgs) -> Result<()> {
+pub(crate) fn run(args: &MeshArgs, world: &World) -> Result<()> {
     let start = Instant::now();
-    files::demand_writable(Some(&args.out), None, &args.outputs, &args.run)?;
+    files::demand_writable(world.file(&args.out), None, &args.outputs, &args.run)?;
     args.metric_choices.bounds().check()?;
-    let (given, mended) = Given::read(&args.domain, args.damage.options())?;
+    let (given, mended) = world.given(&args.domain, args.damage.options())?;
     match given {
-        Given::Surface(input) => on_surface(args, input, &mended, start),
-        Given::Plane(domain) => in_plane(args, &domain, &mended, start),
+        Given::Surface(input) => on_surface(args, world, input, &mended, start),
+        Given::Plane(domain) => in_plane(args, world, &domain, &mended, start),
     }
 }
 
-fn in_plane(args: &MeshArgs, domain: &Domain, mended: &Mended, start: Instant) -> Result<()> {
+fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, start: Instant) -> Result<()> {
     refuse([
         (args.nr, "--nr in the plane", "leave out --nr: it is for surfaces"),
         (
@@ -203,12 +200,12 @@ fn in_plane(args: &MeshArgs, domain: &Domain, mended: &Mended, start: Instant) -
         ),
         (args.damage.repair, "--repair in the plane", "leave out --repair: it is for surfaces"),
     ])?;
-    let idle = args.idle(false)?;
+    let idle = args.idle(false, world)?;
     let (outputs, options) = (&args.outputs, args.options());
     let at = GradedAt::of(options.vertices, args.complexity);
-    let made = fields::in_plane(&args.metric, domain, &args.domain, &args.metric_choices, at)?;
+    let made = fields::in_plane(world, &args.metric, domain, &args.domain, &args.metric_choices, at)?;
     let (metric, aim) = (made.field.as_ref(), made.aim(args.metric_choices.norm));
-    let meshed = recipe::mesh_for(domain, metric, aim, &options, &Bar::new(&args.run))?;
+    let meshed = recipe::mesh_for(domain, metric, aim, &options, &*world.progress(&args.run))?;
     let mesh = &meshed.mesh;
     let scaled = |p: Point| metric.at(p) * meshed.metric_scale;
     let mut used = args.as_used(&idle);
@@ -226,7 +223,7 @@ fn in_plane(args: &MeshArgs, domain: &Domain, mended: &Mended, start: Instant) -
         ..cells(args, domain, mesh, &scaled)?
     };
     let picture = pictures::in_plane(outputs, mesh, Some(&scaled), &layers)?;
-    finish(args, mesh, picture, &report)
+    finish(args, world, meshed.mesh, picture, &report)
 }
 
 /// The diagram of the mesh's vertices, made only to be drawn.
@@ -242,13 +239,13 @@ fn cells(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
     Ok(pictures::layers(&args.outputs, &diagram, metric, curved.as_ref()))
 }
 
-fn on_surface(args: &MeshArgs, input: Input, mended: &Mended, start: Instant) -> Result<()> {
+fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, start: Instant) -> Result<()> {
     pictures::demand_of_surfaces(&args.outputs, &[])?;
-    let idle = args.idle(true)?;
+    let idle = args.idle(true, world)?;
     let whole = args.outputs.picture.is_some().then(|| Input::new(input.surface.clone(), input.implicit.clone()));
     let input = &input.cut(&args.features())?;
-    let metric = fields::on_surface(&args.metric, input, &args.metric_choices)?;
-    let meshed = recipe::mesh_surface(input, metric.as_ref(), &args.options(), &Bar::new(&args.run))?;
+    let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices)?;
+    let meshed = recipe::mesh_surface(input, metric.as_ref(), &args.options(), &*world.progress(&args.run))?;
     let mut used = args.as_used(&idle);
     if args.dual == Road::Both {
         // Lengths decide, unless it is the canvas.
@@ -256,19 +253,19 @@ fn on_surface(args: &MeshArgs, input: Input, mended: &Mended, start: Instant) ->
     }
     let mut report = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
     report.seconds.total = start.elapsed().as_secs_f64();
-    let picture = whole.map(|whole| drawn_on(args, &whole, &meshed.mesh)).transpose()?;
-    finish(args, &meshed.mesh, picture, &report)
+    let picture = whole.map(|whole| drawn_on(args, world, &whole, &meshed.mesh)).transpose()?;
+    finish(args, world, meshed.mesh, picture, &report)
 }
 
 /// Writes a valid mesh, and what is beside it.
-fn finish(args: &MeshArgs, mesh: &Mesh, picture: Option<String>, report: &Report) -> Result<()> {
-    voronaut_io::write_mesh(mesh, &args.out)?;
-    files::finish(&args.out, &args.outputs, picture, report, &args.run)
+fn finish(args: &MeshArgs, world: &World, mesh: Mesh, picture: Option<String>, report: &Report) -> Result<()> {
+    world.write_mesh(mesh, &args.out)?;
+    files::finish(world, &args.out, &args.outputs, picture, report, &args.run)
 }
 
 /// The mesh of a surface that is whole: cells are drawn across creases.
-fn drawn_on(args: &MeshArgs, whole: &Input, mesh: &Mesh) -> Result<String> {
-    let metric = fields::on_surface(&args.metric, whole, &args.metric_choices)?;
+fn drawn_on(args: &MeshArgs, world: &World, whole: &Input, mesh: &Mesh) -> Result<String> {
+    let metric = fields::on_surface(world, &args.metric, whole, &args.metric_choices)?;
     let places = mesh.points.iter().map(|&p| whole.closest(p.into())).collect::<Result<Vec<_>>>()?;
     let size = canvas::size_for(places.len(), args.canvas_size);
     let (canvas, at) = Canvas::on_surface(args.canvas, whole, metric.as_ref(), size, &places)?;

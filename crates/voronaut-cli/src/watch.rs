@@ -2,6 +2,7 @@
 
 use crate::options::{GIB, Limits};
 use std::process::{Child, Command, ExitStatus, exit};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use voronaut::{Error, Result};
@@ -77,9 +78,17 @@ pub(crate) fn run(command: &mut Command) -> std::io::Result<ExitStatus> {
     }
 }
 
+/// Whether exit codes are mmg's.
+static AS_MMG: AtomicBool = AtomicBool::new(false);
+
+/// Whether the exit code of a run that fails is mmg's.
+pub(crate) fn fail_as(mmg: bool) {
+    AS_MMG.store(mmg, Ordering::Relaxed);
+}
+
 /// The exit code of a run whose input or result is not what was asked: of `remesh` that of mmg.
 pub(crate) fn failure() -> u8 {
-    if std::env::args_os().nth(1).is_some_and(|word| word == "remesh") { 2 } else { 1 }
+    if AS_MMG.load(Ordering::Relaxed) { 2 } else { 1 }
 }
 
 /// A stage begins, with so many units of work.

@@ -33,17 +33,30 @@ impl Given {
             _ if ["rect", "disk"].contains(&name) => plane(read_domain(spec)?, &[]),
             Some("geojson" | "json" | "poly") => plane(read_domain(spec)?, &[]),
             _ if Format::of_ending(path).is_some_and(Format::may_be_planar) => {
-                let document = read(path)?;
-                if document.mesh.triangles.is_empty() || document.mesh.is_planar() {
-                    let outline = from_mesh(&document.mesh).map_err(|error| in_file(spec, error))?;
-                    return plane(Domain::new(&outline)?, &document.notes);
-                }
-                let (surface, mended) = of_document(spec, &document, options)?;
-                Ok((Self::Surface(Input::new(surface, None)), mended))
+                Self::of_document(spec, &read(path)?, true, options)
             }
             _ if Format::of_ending(path).is_some() => surface(),
             _ => Err(neither(spec, &format!("{DOMAINS}; or {SURFACES}"))),
         }
+    }
+
+    /// What a document is, which messages name: a surface, mended as the options say, if it has triangles and some z is not 0, or where
+    /// it cannot be planar.
+    ///
+    /// # Errors
+    /// As of [`repaired`], [`Surface::new`], [`from_mesh`] and [`Domain::new`].
+    pub fn of_document(
+        name: &str,
+        document: &Document,
+        may_be_planar: bool,
+        options: RepairOptions,
+    ) -> Result<(Self, Mended)> {
+        if may_be_planar && (document.mesh.triangles.is_empty() || document.mesh.is_planar()) {
+            let outline = from_mesh(&document.mesh).map_err(|error| in_file(name, error))?;
+            return Ok((Self::Plane(Domain::new(&outline)?), Mended::default().with_notes(&document.notes)));
+        }
+        let (surface, mended) = surface_of(name, document, options)?;
+        Ok((Self::Surface(Input::new(surface, None)), mended))
     }
 }
 
@@ -61,21 +74,18 @@ pub fn read_surface(spec: &str, options: RepairOptions) -> Result<(Input, Mended
     if Format::of_ending(Path::new(spec)).is_none() {
         return Err(neither(spec, SURFACES));
     }
-    let (surface, mended) = of_document(spec, &read(Path::new(spec))?, options)?;
+    let (surface, mended) = surface_of(spec, &read(Path::new(spec))?, options)?;
     Ok((Input::new(surface, None), mended))
 }
 
 /// What users write for a surface, for messages.
 const SURFACES: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl";
 
-/// The surface that a file holds, which messages name, mended as the options say ([`repaired`]), with what was mended.
-///
-/// # Errors
-/// As of [`repaired`] and [`Surface::new`].
-pub fn of_document(file: &str, document: &Document, options: RepairOptions) -> Result<(Surface, Mended)> {
+/// The surface that a document holds, mended, with what was mended.
+fn surface_of(name: &str, document: &Document, options: RepairOptions) -> Result<(Surface, Mended)> {
     let made = repaired(&document.mesh, options)
         .and_then(|(mesh, mended)| Ok((Surface::new(&mesh)?, mended.with_notes(&document.notes))));
-    made.map_err(|error| in_file(file, error))
+    made.map_err(|error| in_file(name, error))
 }
 
 #[cfg(test)]

@@ -124,7 +124,7 @@ impl Limits {
 /// More threads than machines have cores only take turns; 65,535 were not started within a minute.
 const MOST_THREADS: i64 = 1024;
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct Run {
     /// Write all figures as JSON
     #[arg(long, value_name = "FILE")]

@@ -6,22 +6,23 @@ mod spelling;
 pub(crate) use args::{EXAMPLES, RemeshArgs};
 pub(crate) use spelling::translated;
 
-use crate::progress::Bar;
+use crate::world::World;
 use crate::{account, summary};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use voronaut::Result;
 use voronaut::mesh::{Mesh, Solution};
+use voronaut::progress::Progress;
 use voronaut::quality::fidelity;
 use voronaut::recipe::{self, Asked, Keep, MeshOptions, RemeshInput};
 use voronaut::surface::metric::{Sizes, Sizing};
 use voronaut::surface::{Input, Mended};
 use voronaut_io::gmsh::Version;
-use voronaut_io::{Fields, Format, Given, Report, Strayed, in_file, of_document, read_metric, read_pslg};
+use voronaut_io::{Format, Given, Report, Strayed, in_file, read_metric, read_pslg};
 
 /// Remeshes a planar domain or a surface. Nothing is written unless the mesh is valid.
-pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
+pub(crate) fn run(args: &RemeshArgs, world: &World) -> Result<()> {
     let start = Instant::now();
     let (run, out) = (args.run(), args.out());
     let format = match Format::from_path(&out)? {
@@ -31,20 +32,21 @@ pub(crate) fn run(args: &RemeshArgs) -> Result<()> {
     };
     let sol_file = out.with_extension("sol");
     let files = [Some(&out), Some(&sol_file), run.report.as_ref()];
-    files.into_iter().flatten().try_for_each(|path| voronaut_io::demand_directory(path))?;
-    let given = read(args)?;
+    let files = files.into_iter().flatten().filter_map(|path| world.file(path));
+    files.into_iter().try_for_each(voronaut_io::demand_directory)?;
+    let given = read(args, world)?;
     let is_planar = matches!(given, Read::Plane(..));
-    args.warnings(is_planar).iter().for_each(|warning| eprintln!("warning: {warning}"));
-    let bar = Bar::new(&run);
+    args.warnings(is_planar).iter().for_each(|warning| world.say("warning", warning));
+    let progress = world.progress(&run);
     let Made { mesh, mut report, solution } = match given {
-        Read::Plane(input, notes) => in_plane(args, &input, notes, &bar)?,
-        Read::Surface(input, mended) => on_surface(args, input, &mended, &bar)?,
+        Read::Plane(input, notes) => in_plane(args, world, &input, notes, &*progress)?,
+        Read::Surface(input, mended) => on_surface(args, world, input, &mended, &*progress)?,
     };
-    drop(bar);
+    drop(progress);
     report.seconds.total = start.elapsed().as_secs_f64();
-    voronaut_io::write_with(&out, |file| format.write(&mesh, &Fields::default(), file))?;
-    voronaut_io::write_solution(&solution, &sol_file)?;
-    run.write_report(&report.to_json())?;
+    world.write_mesh_as(format, mesh, &out)?;
+    world.write_solution(solution, &sol_file)?;
+    world.write_report(report.to_json(), &run)?;
     summary::print(&out, &report, &run);
     Ok(())
 }
@@ -58,8 +60,14 @@ struct Made {
 }
 
 /// A valid mesh of a planar domain, as mmg2d does it; with what the reader left out.
-fn in_plane(args: &RemeshArgs, input: &RemeshInput, left_out: Vec<String>, bar: &Bar) -> Result<Made> {
-    let (metric_file, given) = asked(args)?.unzip();
+fn in_plane(
+    args: &RemeshArgs,
+    world: &World,
+    input: &RemeshInput,
+    left_out: Vec<String>,
+    bar: &dyn Progress,
+) -> Result<Made> {
+    let (metric_file, given) = asked(args, world)?.unzip();
     let asked = match given {
         Some(given) => Asked::Values(given.values),
         None if args.optim => Asked::Own,
@@ -83,19 +91,19 @@ fn in_plane(args: &RemeshArgs, input: &RemeshInput, left_out: Vec<String>, bar: 
 }
 
 /// A valid mesh of a surface, as mmgs does it.
-fn on_surface(args: &RemeshArgs, input: Input, mended: &Mended, bar: &Bar) -> Result<Made> {
+fn on_surface(args: &RemeshArgs, world: &World, input: Input, mended: &Mended, bar: &dyn Progress) -> Result<Made> {
     /// Vertices slide less than with `mesh --fit`: lengths of edges count for more here.
     const STIFFNESS: f64 = 0.5;
     /// The least size, as a share of the diagonal or of the one size asked for: as with mmgs.
     const LEAST: [f64; 2] = [1e-3, 0.1];
     let input = input.cut(&args.features())?;
-    let (metric_file, given) = asked(args)?.unzip();
+    let (metric_file, given) = asked(args, world)?.unzip();
     let given = given.map(|given| input.spread(&given)).transpose()?;
     let diagonal = input.diagonal();
     let sizing = sizing(args, [args.hsiz.map_or(LEAST[0] * diagonal, |h| LEAST[1] * h), diagonal]);
     let sizes = sizing.sizes(&input.surface, given.as_ref())?;
     if matches!(sizes, Sizes::Anisotropic(_)) && args.hgrad > 1.0 && !args.run().quiet {
-        eprintln!("note: sizes that depend on the direction are not graded: -hgrad would make them alike in all");
+        world.say("note", "sizes that depend on the direction are not graded: -hgrad would make them alike in all");
     }
     let field = sizes.field(&input.surface)?;
     let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args) };
@@ -114,19 +122,20 @@ enum Read {
     Surface(Input, Mended),
 }
 
-fn read(args: &RemeshArgs) -> Result<Read> {
+fn read(args: &RemeshArgs, world: &World) -> Result<Read> {
     let path = args.input();
     let spec = path.to_string_lossy();
-    if let Some(format) = Format::of_ending(&path) {
-        let document = voronaut_io::read(&path)?;
+    let given = if let Some(format) = Format::of_ending(&path) {
+        let document = world.document(&path)?;
         if format.may_be_planar() && (document.mesh.triangles.is_empty() || document.mesh.is_planar()) {
             let input = RemeshInput::of_mesh(document.mesh, keep(args)).map_err(|error| in_file(&spec, error))?;
             return Ok(Read::Plane(input, document.notes));
         }
-        let (surface, mended) = of_document(&spec, &document, args.damage.options())?;
-        return Ok(Read::Surface(Input::new(surface, None), mended));
-    }
-    match Given::read(&spec, args.damage.options())? {
+        Given::of_document(&spec, &document, false, args.damage.options())?
+    } else {
+        world.given(&spec, args.damage.options())?
+    };
+    match given {
         (Given::Surface(input), mended) => Ok(Read::Surface(input, mended)),
         (Given::Plane(_), _) => Ok(Read::Plane(RemeshInput::of_graph(read_pslg(&spec)?, keep(args))?, Vec::new())),
     }
@@ -138,7 +147,11 @@ fn keep(args: &RemeshArgs) -> Keep {
 
 /// The values of the metric: of the file named, else of the one next to the input, if there is one. What is named and not there is
 /// no metric, as mmg has it, with a warning.
-fn asked(args: &RemeshArgs) -> Result<Option<(PathBuf, Solution)>> {
+fn asked(args: &RemeshArgs, world: &World) -> Result<Option<(PathBuf, Solution)>> {
+    if !world.is_files() {
+        let named = args.sol.as_ref().map(|path| world.solution(path));
+        return Ok(named.transpose()?.map(|solution| (args.sol.clone().unwrap_or_default(), solution)));
+    }
     let with =
         |path: &Path| ["sol", "solb"].map(|ending| path.with_extension(ending)).into_iter().find(|own| own.is_file());
     let own = with(&args.input());
@@ -147,7 +160,7 @@ fn asked(args: &RemeshArgs) -> Result<Option<(PathBuf, Solution)>> {
     let is_there = |path: &PathBuf| {
         let is_there = path.is_file();
         if !is_there && args.sol.is_some() {
-            eprintln!("warning: {} not found: sizes are the default ones, as mmg has it", path.display());
+            world.say("warning", &format!("{} not found: sizes are the default ones, as mmg has it", path.display()));
         }
         is_there
     };

@@ -24,7 +24,7 @@ impl EdgeSide {
     }
 
     /// The edge's vertices, in the direction of the triangle.
-    pub fn directed(&self) -> [u32; 2] {
+    pub(crate) fn directed(&self) -> [u32; 2] {
         let [a, b] = self.ends;
         if self.forward { [a, b] } else { [b, a] }
     }

@@ -4,12 +4,12 @@ use super::Aim;
 use crate::canvas::Canvas;
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::geometry::Tensor;
+use crate::geometry::{Point, Tensor};
 use crate::mesh::{Mesh, SolutionValues};
 use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, complexity};
 use crate::metric::{
     Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Recovered, Recovery, Sampled, ScalarField,
-    Snapshot, rough_complexity, smoothed,
+    Snapshot, complexity as complexity_of, rough_complexity, smoothed,
 };
 use crate::optimise::polishing_norm;
 use crate::quality::interpolation_error;
@@ -120,6 +120,52 @@ pub fn metric_of_function(
     finished(optimal(function, domain, options, at)?, domain, None, options, at)
 }
 
+/// A field that is there, times the factor that gives it a complexity, if one is asked for; then within limits, smoothed and graded.
+///
+/// # Errors
+/// As of [`metric`].
+pub fn metric_of_field(
+    field: Box<dyn MetricField>,
+    target_complexity: Option<f64>,
+    domain: &Domain,
+    options: &MetricOptions,
+    at: GradedAt,
+) -> Result<PlanarMetric> {
+    let field = match target_complexity {
+        None => field,
+        Some(target) => {
+            let factor = target / complexity_of(field.as_ref(), &domain.triangles())?;
+            Box::new(move |p: Point| field.at(p) * factor)
+        }
+    };
+    finished(PlanarMetric::plain(field), domain, None, options, at)
+}
+
+/// The metric of a function that is slow to call and takes many points at once: sampled at the vertices of a background, first of one
+/// that is even, then twice of one that is even in the metric so far, with four times the vertices that the mesh will have.
+///
+/// # Errors
+/// As of [`metric`]; what the function says; its values are no metric.
+pub fn metric_of_samples(
+    mut sample: impl FnMut(&[Point]) -> Result<Vec<Tensor>>,
+    domain: &Domain,
+    options: &MetricOptions,
+    at: GradedAt,
+) -> Result<PlanarMetric> {
+    let mut sampled = |mesh: &Mesh| {
+        let points: Vec<Point> = (0..mesh.points.len() as u32).map(|v| mesh.point(v)).collect();
+        Sampled::new(mesh, &sample(&points)?)
+    };
+    let even_everywhere = |_: Point| Tensor::isotropic(1.0);
+    let mut mesh = even(&even_everywhere, domain, FIRST_SAMPLES)?;
+    let mut field = sampled(&mesh)?;
+    for _ in 0..2 {
+        mesh = even(&field, domain, vertices_for(&field, domain, at)?)?;
+        field = sampled(&mesh)?;
+    }
+    finished(PlanarMetric::plain(field), domain, Some(&mesh), options, at)
+}
+
 /// The field that a text names on a domain, when nothing else is asked of it and there is no file.
 ///
 /// # Errors
@@ -211,6 +257,9 @@ const FINER: f64 = 4.0;
 /// and at least so many.
 const FEWEST: usize = 1_000;
 
+/// Vertices of the first background of a metric that is sampled: what is finer than a hundredth of a square is found by them.
+const FIRST_SAMPLES: usize = 10_000;
+
 /// How many vertices the background of a metric has that is graded for a mesh of a complexity; `fewest` at least.
 pub(super) fn background_vertices(complexity: f64, fewest: usize) -> usize {
     let expected = complexity / COMPLEXITY_PER_VERTEX;
@@ -292,15 +341,19 @@ pub(super) fn grade_metric(
     if let Some(mesh) = own {
         return Ok(Box::new(graded(mesh)?));
     }
-    let vertices = |field: &dyn MetricField| match at {
+    let sampled = graded(&even(field.as_ref(), domain, vertices_for(field.as_ref(), domain, at)?)?)?;
+    // The metric as it was is coarse where it is to be finer; what was made of it there has a background that is fine enough.
+    Ok(Box::new(graded(&even(&sampled, domain, vertices_for(&sampled, domain, at)?)?)?))
+}
+
+/// How many vertices the background of a metric has.
+fn vertices_for(field: &dyn MetricField, domain: &Domain, at: GradedAt) -> Result<usize> {
+    match at {
         GradedAt::Complexity(target) => Ok(background_vertices(target, FEWEST)),
         GradedAt::Scale(scale) => {
             rough_complexity(field, &domain.triangles()).map(|own| background_vertices(scale * own, FEWEST))
         }
-    };
-    let sampled = graded(&even(field.as_ref(), domain, vertices(field.as_ref())?)?)?;
-    // The metric as it was is coarse where it is to be finer; what was made of it there has a background that is fine enough.
-    Ok(Box::new(graded(&even(&sampled, domain, vertices(&sampled)?)?)?))
+    }
 }
 
 /// The field graded at the vertices of a mesh, in its own units.
@@ -324,7 +377,7 @@ fn graded(field: &dyn MetricField, mesh: &Mesh, factor: f64, at: GradedAt) -> Re
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point, Vector};
+    use crate::geometry::Vector;
 
     /// Sizes that jump by a thousand, across and along.
     fn jumping(p: Point) -> Tensor {
@@ -359,6 +412,33 @@ mod tests {
             (at(coarse.as_ref(), 0.2) / 1e6 - 1.0).abs() < 1e-6 && (at(fine.as_ref(), 0.2) / 1e6 - 1.0).abs() < 1e-6
         );
         assert!(at(coarse.as_ref(), 0.7) > 10.0 * at(fine.as_ref(), 0.7));
+    }
+
+    #[test]
+    fn samples_follow_the_field() {
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        let layer = |p: Point| {
+            let across = 0.002 + 0.3 * (p.y - 0.37).abs();
+            Tensor::new(25.0, 0.0, across.powi(-2))
+        };
+        let mut calls = 0;
+        let sample = |points: &[Point]| {
+            calls += 1;
+            Ok(points.iter().map(|&p| layer(p)).collect())
+        };
+        let made = metric_of_samples(sample, &domain, &MetricOptions::default(), GradedAt::Complexity(1000.0)).unwrap();
+        assert_eq!(calls, 3);
+        for p in [Point::new(0.3, 0.37), Point::new(0.51, 0.3704), Point::new(0.2, 0.9)] {
+            let ratio = made.field.at(p).yy / layer(p).yy;
+            assert!(ratio > 0.8 && ratio < 1.25, "{p}: {ratio}");
+        }
+        let nothing = metric_of_samples(
+            |p| Ok(vec![Tensor::new(f64::NAN, 0.0, 1.0); p.len()]),
+            &domain,
+            &MetricOptions::default(),
+            GradedAt::Scale(1.0),
+        );
+        assert!(matches!(nothing, Err(Error::Metric { .. })));
     }
 
     #[test]

@@ -40,7 +40,7 @@ impl Surface {
 
     /// The mean of the normals of a vertex's triangles, weighted by their angles there (Thurmer and Wuthrich 1998), so
     /// that cutting a flat part differently changes nothing. `None` without triangles, or where the mean is zero.
-    pub fn vertex_normal(&self, v: VertexId) -> Option<Vector3> {
+    pub(crate) fn vertex_normal(&self, v: VertexId) -> Option<Vector3> {
         let weighted = self.topology.star(v).map(|h| self.normal(h.face()) * self.angle(h));
         weighted.fold(Vector3::default(), |sum, normal| sum + normal).unit()
     }

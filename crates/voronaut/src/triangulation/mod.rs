@@ -219,7 +219,7 @@ impl Triangulation {
     }
 
     /// Whether a flip may not remove the edge: it is constrained, or at the border.
-    pub fn is_fixed(&self, h: HalfEdge) -> bool {
+    pub(crate) fn is_fixed(&self, h: HalfEdge) -> bool {
         self.constraint[h.index()] != NONE || self.twin[h.index()] == NONE
     }
 

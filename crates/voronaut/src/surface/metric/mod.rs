@@ -29,7 +29,7 @@ pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub(crate) use gradation::grade;
 pub use sampled::{Sampled, Sizes};
 pub use sizing::Sizing;
-pub use spec::{Spec, field, field_of_values};
+pub use spec::{Spec, field, field_of_samples, field_of_values};
 
 use super::Place;
 use crate::geometry::{Point, Point3, Tensor3};

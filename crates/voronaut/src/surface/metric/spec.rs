@@ -3,8 +3,8 @@
 use super::{Constant, FLOOR, ImplicitCurvature, Sampled, SurfaceMetric, sampled_curvature};
 use crate::domain::name_and_rest;
 use crate::error::{Error, Result};
-use crate::geometry::Tensor3;
-use crate::mesh::Solution;
+use crate::geometry::{Point3, Tensor3};
+use crate::mesh::{Solution, SolutionValues};
 use crate::metric::{Bounded, Bounds, MetricSpec, Parameters, Shock, SpaceFormula, require};
 use crate::surface::Input;
 
@@ -70,6 +70,19 @@ pub fn field(spec: &Spec, input: &Input, bounds: Bounds) -> Result<Box<dyn Surfa
 /// There is not one value per vertex; the values are no metric; the limits contradict each other.
 pub fn field_of_values(solution: &Solution, input: &Input, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
     within(Box::new(Sampled::from_solution(&input.surface, &input.spread(solution)?)?), bounds)
+}
+
+/// The field of a function that takes many points at once, sampled at the vertices of the surface, within limits.
+///
+/// # Errors
+/// What the function says; its values are no metric; the limits contradict each other.
+pub fn field_of_samples(
+    sample: impl FnOnce(&[Point3]) -> Result<SolutionValues>,
+    input: &Input,
+    bounds: Bounds,
+) -> Result<Box<dyn SurfaceMetric>> {
+    let solution = Solution { dimension: 3, values: sample(input.surface.positions())? };
+    within(Box::new(Sampled::from_solution(&input.surface, &solution)?), bounds)
 }
 
 fn within(field: Box<dyn SurfaceMetric>, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {

@@ -1,0 +1,188 @@
+//! The commands of voronaut: for a terminal ([`run`]), and for callers that hold arrays ([`Job`]).
+
+mod account;
+mod check;
+mod convert;
+mod distance;
+mod dual;
+mod fields;
+mod files;
+mod flags;
+mod interpolate;
+mod job;
+mod r#loop;
+mod mesh;
+mod metric;
+mod options;
+mod pictures;
+mod progress;
+mod remesh;
+mod seeds;
+mod summary;
+mod watch;
+mod world;
+
+pub use flags::as_keywords;
+pub use job::{Job, Usage, commands};
+pub use world::{Held, HeldMetric, Made, World};
+
+use clap::{Parser, Subcommand};
+use options::Run;
+use std::borrow::Cow;
+use std::ffi::OsString;
+use voronaut::Result;
+
+/// Runs the program with these words, its name first, and returns its exit code: 0: done; 1: the input or the result is not what was
+/// asked, for which `remesh` has 2, as mmg has; 2: wrong usage. Limits and signals end the process.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let words: Vec<OsString> = words.into_iter().collect();
+    watch::fail_as(words.get(1).is_some_and(|word| word == "remesh"));
+    let done = remesh::translated(words).and_then(|words| obey(&Arguments::parse_from(words).command));
+    let Err(error) = done else { return 0 };
+    eprintln!("error: {}", flags::flagged(&error.to_string()));
+    if !error.help().is_empty() {
+        eprintln!("  help: {}", flags::flagged(error.help()));
+    }
+    watch::failure()
+}
+
+fn obey(command: &Command) -> Result<()> {
+    let run = command.run();
+    watch::begin(run.limits)?;
+    run.set_threads()?;
+    command.perform(&World::of_files())
+}
+
+/// Anisotropic triangle meshes from a Riemannian metric field.
+#[derive(Debug, Parser)]
+#[command(version, propagate_version = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Mesh a domain: valid, with edges of length one in a metric
+    #[command(after_help = mesh::EXAMPLES)]
+    Mesh(mesh::MeshArgs),
+    /// Voronoi diagram and dual of the seeds given: none is added or moved
+    #[command(after_help = dual::EXAMPLES)]
+    Dual(dual::DualArgs),
+    /// Distances in a metric from given points to everywhere, and the shortest path to one
+    #[command(after_help = distance::EXAMPLES)]
+    Distance(distance::DistanceArgs),
+    /// Mesh a surface anew, with the options of mmgs
+    #[command(after_help = remesh::EXAMPLES)]
+    Remesh(remesh::RemeshArgs),
+    /// Carry a solution from one planar mesh to another
+    #[command(after_help = interpolate::EXAMPLES)]
+    Interpolate(interpolate::InterpolateArgs),
+    /// Make a metric at the vertices of a mesh: from solutions, combined, limited, graded, of a complexity
+    #[command(after_help = metric::EXAMPLES)]
+    Metric(metric::MetricArgs),
+    /// Adapt the mesh of a planar domain to a formula or a solver, again and again
+    #[command(after_help = r#loop::EXAMPLES)]
+    Loop(Box<r#loop::LoopArgs>),
+    /// Read a file in one format and write it in another
+    #[command(after_help = convert::EXAMPLES, visible_alias = "translate")]
+    Convert(convert::ConvertArgs),
+    /// Examine a mesh: validity, quality in a metric, distance to its domain
+    #[command(after_help = check::EXAMPLES)]
+    Check(check::CheckArgs),
+}
+
+impl Command {
+    /// Reads, works and writes.
+    fn perform(&self, world: &World) -> Result<()> {
+        match self {
+            Command::Mesh(args) => mesh::run(args, world),
+            Command::Dual(args) => dual::run(args, world),
+            Command::Distance(args) => distance::run(args, world),
+            Command::Interpolate(args) => interpolate::run(args, world),
+            Command::Remesh(args) => remesh::run(args, world),
+            Command::Metric(args) => metric::run(args),
+            Command::Loop(args) => r#loop::run(args),
+            Command::Convert(args) => convert::run(args),
+            Command::Check(args) => check::run(args, world),
+        }
+    }
+
+    /// Threads, limits, and how much is said.
+    fn run(&self) -> Cow<'_, Run> {
+        Cow::Borrowed(match self {
+            Command::Mesh(args) => &args.run,
+            Command::Dual(args) => &args.run,
+            Command::Distance(args) => &args.run,
+            Command::Interpolate(args) => &args.run,
+            Command::Metric(args) => &args.run,
+            Command::Loop(args) => &args.run,
+            Command::Check(args) => &args.run,
+            Command::Remesh(args) => return Cow::Owned(args.run()),
+            Command::Convert(args) => return Cow::Owned(args.run()),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+    use voronaut::recipe::MeshOptions;
+
+    #[test]
+    fn what_libraries_speak_of_are_flags() {
+        let program = Arguments::command();
+        let flags: Vec<_> = program.get_subcommands().flat_map(clap::Command::get_arguments).collect();
+        for name in flags::PARAMETERS {
+            let is_it = |argument: &&clap::Arg| argument.get_long() == Some(&name.replace('_', "-"));
+            assert!(flags.iter().any(is_it), "{name}");
+        }
+    }
+
+    #[test]
+    fn definitions_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn defaults_are_the_library_s() {
+        let words = ["voronaut", "mesh", "rect:0,0,1,1", "--metric", "uniform", "-o", "a.mesh"];
+        let Command::Mesh(args) = Arguments::try_parse_from(words).unwrap().command else { unreachable!() };
+        let (ours, theirs) = (args.options(), MeshOptions::default());
+        assert_eq!(format!("{ours:?}"), format!("{theirs:?}"));
+    }
+
+    #[test]
+    fn nonsense_is_wrong_usage() {
+        let base = ["voronaut", "mesh", "rect:0,0,1,1", "--metric", "uniform", "-o", "a.mesh"];
+        for more in [
+            &["-n", "2"][..],
+            &["-n", "100", "--complexity", "3"],
+            &["--h-min", "nan"],
+            &["--hausd", "-1"],
+            &["--threads", "0"],
+            &["--seeding", "nearest"],
+            &["--protection", "-0.1"],
+            &["--picking-radius", "nan"],
+            &["--canvas", "grid"],
+            &["--mesher", "grid"],
+            &["--canvas-size", "0"],
+            &["--smooth-metric", "-1"],
+            &["--smooth-metric", "10001"],
+            &["--smooth-metric", "1.5"],
+            &["--show", "mesh"],
+            &["--pixels", "800"],
+            &["--window", "0,0,1,1"],
+            &["--window", "0,0,1", "--picture", "a.svg"],
+            &["--window", "0,0,1,nan", "--picture", "a.svg"],
+            &["--window", "0,1,1,1", "--picture", "a.svg"],
+            &["--pixels", "8", "--picture", "a.svg"],
+            &["--show", "stars", "--picture", "a.svg"],
+            &["-q", "-v"],
+        ] {
+            let error = Arguments::try_parse_from(base.iter().chain(more)).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{more:?}");
+        }
+    }
+}

@@ -1,0 +1,298 @@
+//! Where commands read what is named, and where what they make goes: files and a terminal, or the arrays of a caller.
+
+use crate::options::{MetricChoices, Run};
+use crate::progress::Bar;
+use crate::seeds::SeedRows;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::path::Path;
+use voronaut::domain::{Domain, from_polygons};
+use voronaut::mesh::{Mesh, Solution, SolutionValues, Solutions};
+use voronaut::metric::Bounds;
+use voronaut::progress::Progress;
+use voronaut::realisation::Realisation;
+use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, PlanarMetric};
+use voronaut::surface::metric::SurfaceMetric;
+use voronaut::surface::{Input, Mended, RepairOptions};
+use voronaut::{Error, Result};
+use voronaut_io::{
+    Document, Fields, Format, Given, MetricFiles, MetricSource, geojson, points, read_metric, read_text, surface_metric,
+};
+
+/// A metric that a caller has.
+pub trait HeldMetric: Send {
+    /// What it is made of.
+    fn origin(&self) -> Origin;
+    /// As a field in the plane; `at` is the multiple in which edges are to have length one.
+    ///
+    /// # Errors
+    /// It is none there.
+    fn in_plane(&self, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric>;
+    /// As a field on a surface, within limits.
+    ///
+    /// # Errors
+    /// It is none there.
+    fn on_surface(&self, input: &Input, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>>;
+}
+
+/// What a caller holds, by the words that stand for it among those of a command.
+#[derive(Default)]
+pub struct Held {
+    /// Meshes: domains, surfaces, what is checked or carried from and to.
+    pub documents: HashMap<String, Document>,
+    /// Domains as the text of `GeoJSON`.
+    pub polygons: HashMap<String, String>,
+    /// Metrics.
+    pub metrics: HashMap<String, Box<dyn HeldMetric>>,
+    /// Values on meshes.
+    pub solutions: HashMap<String, Solutions>,
+    /// Seeds, all of two or all of three coordinates.
+    pub seeds: HashMap<String, Vec<Vec<f64>>>,
+}
+
+/// What a command made for a caller.
+#[derive(Default)]
+pub struct Made {
+    /// The mesh.
+    pub mesh: Option<Mesh>,
+    /// A canvas, with colours as labels, and distances at its vertices.
+    pub canvas: Option<(Mesh, Vec<f64>)>,
+    /// Values at the mesh's vertices and triangles.
+    pub solutions: Option<Solutions>,
+    /// The report, JSON.
+    pub report: Option<String>,
+    /// What there is to say besides.
+    pub warnings: Vec<String>,
+}
+
+/// Where a command reads and writes.
+pub struct World<'a> {
+    held: Option<(Held, &'a dyn Progress)>,
+    made: RefCell<Made>,
+}
+
+impl<'a> World<'a> {
+    /// Files, and a terminal.
+    pub fn of_files() -> Self {
+        Self { held: None, made: RefCell::default() }
+    }
+
+    /// What a caller holds, and its progress. What commands make is kept; files that options name are read and written all the same.
+    pub fn of_caller(held: Held, progress: &'a dyn Progress) -> Self {
+        Self { held: Some((held, progress)), made: RefCell::default() }
+    }
+
+    /// What was made for the caller.
+    pub fn into_made(self) -> Made {
+        self.made.into_inner()
+    }
+
+    pub(crate) fn is_files(&self) -> bool {
+        self.held.is_none()
+    }
+
+    /// Whether the coloured canvas is kept though no file is named for it.
+    pub(crate) fn keeps_diagrams(&self) -> bool {
+        !self.is_files()
+    }
+
+    /// The name of an output, if it is that of a file.
+    pub(crate) fn file<'p>(&self, path: &'p Path) -> Option<&'p Path> {
+        self.is_files().then_some(path)
+    }
+
+    /// What the caller holds of a kind under a word; `remesh` adds an ending to words.
+    fn held<T>(&self, kind: impl Fn(&Held) -> &HashMap<String, T>, word: &Path) -> Option<&T> {
+        let all = self.held.as_ref().map(|(held, _)| kind(held))?;
+        let named = |path: &Path| all.get(path.to_str()?);
+        named(word).or_else(|| named(&word.with_extension("")))
+    }
+
+    pub(crate) fn document(&self, path: &Path) -> Result<Document> {
+        self.held(|held| &held.documents, path).map_or_else(|| voronaut_io::read(path), |found| Ok(found.clone()))
+    }
+
+    pub(crate) fn given(&self, spec: &str, options: RepairOptions) -> Result<(Given, Mended)> {
+        let word = Path::new(spec);
+        if let Some(document) = self.held(|held| &held.documents, word) {
+            return Given::of_document(spec, document, true, options);
+        }
+        match self.held(|held| &held.polygons, word) {
+            Some(text) => {
+                let outline = from_polygons(&geojson::read(text, spec)?)?;
+                Ok((Given::Plane(Domain::new(&outline)?), Mended::default()))
+            }
+            None => Given::read(spec, options),
+        }
+    }
+
+    /// What the caller's metric is made of, if it is the caller's.
+    pub(crate) fn metric_origin(&self, word: &str) -> Option<Origin> {
+        self.held(|held| &held.metrics, Path::new(word)).map(|metric| metric.origin())
+    }
+
+    /// The metric of a planar domain that a word names; `own` is what the domain was read from.
+    pub(crate) fn planar_metric(
+        &self,
+        word: &str,
+        domain: &Domain,
+        own: &str,
+        choices: &MetricChoices,
+        at: GradedAt,
+    ) -> Result<PlanarMetric> {
+        let options = choices.options();
+        if let Some(metric) = self.held(|held| &held.metrics, Path::new(word)) {
+            return metric.in_plane(domain, &options, at);
+        }
+        let (source, own, background) = (MetricSource::parse(word)?, Path::new(own), choices.background.as_deref());
+        let own_mesh = self.held(|held| &held.documents, own).filter(|_| background.is_none());
+        match (&source, own_mesh) {
+            (MetricSource::File(path) | MetricSource::Hessian(path), Some(Document { mesh, .. })) => {
+                let values = read_metric(path, choices.tensor_order)?.values;
+                match source {
+                    MetricSource::File(_) => recipe::metric_of_values(mesh, &values, word, domain, &options, at),
+                    _ => recipe::metric_of_solution(mesh, &values, domain, &options, at),
+                }
+            }
+            _ => MetricFiles { own: Some(own), background, order: choices.tensor_order }
+                .metric(&source, domain, &options, at),
+        }
+    }
+
+    pub(crate) fn surface_metric(
+        &self,
+        word: &str,
+        input: &Input,
+        choices: &MetricChoices,
+    ) -> Result<Box<dyn SurfaceMetric>> {
+        match self.held(|held| &held.metrics, Path::new(word)) {
+            Some(metric) => metric.on_surface(input, choices.bounds()),
+            None => surface_metric(word, input, choices.bounds(), choices.tensor_order),
+        }
+    }
+
+    pub(crate) fn solutions(&self, path: &Path) -> Result<Solutions> {
+        self.held(|held| &held.solutions, path).map_or_else(|| voronaut_io::read_solutions(path), |it| Ok(it.clone()))
+    }
+
+    /// One value for each vertex.
+    pub(crate) fn solution(&self, path: &Path) -> Result<Solution> {
+        let Solutions { dimension, mut vertices, triangles } = self.solutions(path)?;
+        if let (Some(values), true) = (vertices.pop(), vertices.is_empty() && triangles.is_empty()) {
+            return Ok(Solution { dimension, values });
+        }
+        let what = "there is more than one value per vertex, or none";
+        Err(Error::parse(path.display().to_string(), what, "give one"))
+    }
+
+    /// Seeds, each with its place.
+    pub(crate) fn seeds<const N: usize>(&self, path: &Path) -> Result<SeedRows<N>> {
+        let name = path.display().to_string();
+        let Some(given) = self.held(|held| &held.seeds, path) else {
+            let rows = points::read(&read_text(path)?, &name)?;
+            return Ok(SeedRows { name, before_number: ":", rows });
+        };
+        let row = |(i, row): (usize, &Vec<f64>)| {
+            row.as_slice().try_into().map(|row| (i, row)).map_err(|_| {
+                let what = format!("{} coordinates where {N} are expected", row.len());
+                Error::parse(format!("{name}, row {i}"), what, "two in the plane, three on a surface")
+            })
+        };
+        let rows = given.iter().enumerate().map(row).collect::<Result<_>>()?;
+        Ok(SeedRows { name, before_number: ", row ", rows })
+    }
+
+    pub(crate) fn progress(&self, run: &Run) -> Box<dyn Progress + '_> {
+        match self.held {
+            None => Box::new(Bar::new(run)),
+            Some((_, progress)) => Box::new(Told(progress)),
+        }
+    }
+
+    pub(crate) fn write_mesh(&self, mesh: Mesh, path: &Path) -> Result<()> {
+        self.write(mesh, |mesh| voronaut_io::write_mesh(mesh, path), |made| &mut made.mesh)
+    }
+
+    pub(crate) fn write_mesh_as(&self, format: Format, mesh: Mesh, path: &Path) -> Result<()> {
+        let write = |mesh: &Mesh| voronaut_io::write_with(path, |out| format.write(mesh, &Fields::default(), out));
+        self.write(mesh, write, |made| &mut made.mesh)
+    }
+
+    pub(crate) fn write_realisation(&self, curved: &Realisation, path: &Path) -> Result<()> {
+        match self.held {
+            None => voronaut_io::write_realisation(curved, path),
+            Some(_) => self.write_mesh(curved.to_mesh(), path),
+        }
+    }
+
+    /// A canvas with its distances, to a file if one is named.
+    pub(crate) fn write_diagram(&self, found: (Mesh, Vec<f64>), path: Option<&Path>) -> Result<()> {
+        let write = |(canvas, distances): &(Mesh, Vec<f64>)| {
+            path.map_or(Ok(()), |path| voronaut_io::write_diagram(canvas, distances, path))
+        };
+        self.write(found, write, |made| &mut made.canvas)
+    }
+
+    pub(crate) fn write_solutions(&self, solutions: Solutions, path: &Path) -> Result<()> {
+        self.write(solutions, |it| voronaut_io::write_solutions(it, path), |made| &mut made.solutions)
+    }
+
+    pub(crate) fn write_solution(&self, solution: Solution, path: &Path) -> Result<()> {
+        let Solution { dimension, values } = solution;
+        let write = |it: &Solutions| {
+            let values = it.vertices.first().cloned().unwrap_or(SolutionValues::Scalar(Vec::new()));
+            voronaut_io::write_solution(&Solution { dimension, values }, path)
+        };
+        let solutions = Solutions { dimension, vertices: vec![values], triangles: Vec::new() };
+        self.write(solutions, write, |made| &mut made.solutions)
+    }
+
+    fn write<T>(
+        &self,
+        value: T,
+        to_file: impl FnOnce(&T) -> Result<()>,
+        kept: impl FnOnce(&mut Made) -> &mut Option<T>,
+    ) -> Result<()> {
+        if self.is_files() {
+            return to_file(&value);
+        }
+        *kept(&mut self.made.borrow_mut()) = Some(value);
+        Ok(())
+    }
+
+    /// Writes the report, if a file is named for it.
+    pub(crate) fn write_report(&self, text: String, run: &Run) -> Result<()> {
+        run.write_report(&text)?;
+        self.write(text, |_| Ok(()), |made| &mut made.report)
+    }
+
+    /// Says what the user should know, of a kind: `warning`, `note`.
+    pub(crate) fn say(&self, kind: &str, text: &str) {
+        if self.is_files() {
+            eprintln!("{kind}: {text}");
+        } else {
+            self.made.borrow_mut().warnings.push(text.into());
+        }
+    }
+}
+
+/// Progress that somebody else watches.
+struct Told<'a>(&'a dyn Progress);
+
+impl Progress for Told<'_> {
+    fn stage(&self, name: &'static str, total: u64) {
+        self.0.stage(name, total);
+    }
+
+    fn done(&self, units: u64) {
+        self.0.done(units);
+    }
+
+    fn seconds(&self) -> f64 {
+        self.0.seconds()
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.0.is_stopped()
+    }
+}

@@ -1,0 +1,193 @@
+"""What goes in and what comes out."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import voronaut
+from voronaut import Metric
+
+ROOT = Path(__file__).resolve().parents[2]
+SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+SIDES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+SPOT = str(ROOT / "data/spot.obj")
+
+
+def is_whole(mesh):
+    a, b, c = (mesh.points[mesh.triangles[:, k], :2] for k in range(3))
+    u, v = b - a, c - a
+    return ((u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) > 0).all()
+
+
+@pytest.mark.parametrize(
+    "domain",
+    [
+        "rect:0,0,1,1",
+        (SQUARE, SIDES),
+        (SQUARE.astype(np.float32), SIDES.astype(np.uint8), [1, 2, 3, 4]),
+        (SQUARE.tolist(), np.array([[0, 1, 2], [0, 2, 3]])),
+        {"type": "Polygon", "coordinates": [[*SQUARE.tolist(), [0, 0]]]},
+        voronaut.Mesh(np.asfortranarray(SQUARE), [[0, 1, 2], [0, 2, 3]]),
+    ],
+    ids=["shape", "segments", "labels", "triangles", "geo", "mesh"],
+)
+def test_a_square_however_it_is_given(domain):
+    mesh = voronaut.mesh(domain, "uniform", n=200)
+    assert mesh.points.shape == (200, 2) and mesh.triangles.dtype == np.int32
+    assert is_whole(mesh) and mesh.report["valid"] and mesh.is_planar
+    assert mesh.report["metric_edge_length"]["unit_fraction"] == 1.0
+    assert mesh.quality.shape == (len(mesh.triangles),) and mesh.quality.min() > 0.5
+
+
+def test_labels_come_along():
+    mesh = voronaut.mesh((SQUARE, SIDES, [1, 2, 3, 4]), "uniform", n=100)
+    assert set(mesh.edge_labels.tolist()) == {1, 2, 3, 4}
+    bottom = mesh.points[mesh.edges[mesh.edge_labels == 1]]
+    assert (bottom[..., 1] == 0).all()
+
+
+def test_geo_interface_of_an_object():
+    class Land:
+        __geo_interface__ = {"type": "Polygon", "coordinates": [[[0, 0], [2, 0], [2, 1], [0, 1], [0, 0]]]}
+
+    assert voronaut.mesh(Land(), "uniform", n=50).points[:, 0].max() == 2.0
+
+
+def test_options_are_the_program_s_and_reported():
+    mesh = voronaut.mesh("rect:0,0,1,1", "uniform", complexity=100.0, lloyd=3, h_min=1e-3, nr=False)
+    options = mesh.report["options"]
+    assert (options["complexity"], options["lloyd"], options["h_min"]) == (100.0, 3, 1e-3)
+
+
+def test_the_same_bytes_for_any_number_of_threads():
+    one, two = (voronaut.mesh("disk:0,0,1", "swirl", n=400, threads=threads) for threads in (1, 2))
+    assert one.points.tobytes() == two.points.tobytes() and one.triangles.tobytes() == two.triangles.tobytes()
+
+
+def test_surfaces():
+    mesh = voronaut.mesh(SPOT, "curvature", n=600)
+    assert mesh.points.shape == (600, 3) and not mesh.is_planar and mesh.report["euler"] == 2
+    again = voronaut.mesh(mesh, Metric.from_callable(lambda points: 0.2 + 0.1 * points[:, 0] ** 2), n=400)
+    assert again.points.shape == (400, 3)
+    by_values = voronaut.mesh(mesh, np.full(600, 0.1), n=400)
+    assert by_values.report["valid"]
+
+
+def test_duals_and_distances():
+    seeds = np.random.default_rng(1).uniform(-1, 1, (60, 2))
+    dual = voronaut.dual("rect:-1,-1,1,1", "swirl", seeds)
+    assert (dual.points == seeds).all()
+    assert set(np.unique(dual.diagram.fields["colour"])) <= set(range(60))
+    found = voronaut.distance("rect:-1,-1,1,1", "uniform", (0, 0), to=(0.6, 0.8))
+    assert abs(found.report["distance"] - 1) < 0.01
+    d = found.fields["distance"]
+    assert np.abs(d - np.linalg.norm(found.points, axis=1)).max() < 0.02
+    sphere = voronaut.distance("sphere:1", "uniform", [(0, 0, 1)], (0, 0, -1), canvas_size=20000)
+    assert abs(sphere.report["distance"] - np.pi) < 0.02
+
+
+def test_transfer_keeps_linear_fields_and_masses():
+    old, new = (voronaut.mesh("rect:0,0,1,1", "uniform", n=n) for n in (300, 200))
+    fields = {"u": old.points @ [2.0, 1.0], "v": old.points.copy(), "cells": np.ones(len(old.triangles))}
+    carried = voronaut.transfer(old, new, fields, conservative=True)
+    assert np.allclose(carried["u"], new.points @ [2.0, 1.0]) and np.allclose(carried["v"], new.points)
+    assert np.allclose(carried["cells"], 1.0)
+    assert np.allclose(voronaut.transfer(old, new, fields["u"]), carried["u"])
+
+
+def test_adapt_carries_fields():
+    mesh = voronaut.mesh("rect:0,0,1,1", "uniform", n=2000)
+    mesh.fields["u"] = np.tanh(20 * (mesh.points[:, 0] - 0.3))
+    adapted = voronaut.adapt(mesh, Metric.from_hessian(mesh.fields["u"], mesh), np.full(2000, 0.2), n=600)
+    assert len(adapted.points) == 600 and adapted.fields["u"].shape == (600,)
+    assert (np.abs(adapted.points[:, 0] - 0.3) < 0.1).mean() > 0.4
+
+
+def test_remesh_and_check(tmp_path):
+    mesh = voronaut.mesh("rect:0,0,1,1", "uniform", n=100)
+    fine = voronaut.remesh(mesh, hsiz=0.05)
+    assert len(fine.points) > 300 and fine.fields["metric"].shape == (len(fine.points), 2, 2) or fine.fields["metric"].ndim == 1
+    sized = voronaut.remesh(mesh, np.full(100, 0.05), hgrad=-1)
+    assert abs(len(sized.points) / len(fine.points) - 1) < 0.2
+    found = voronaut.check(fine, lambda points: np.full(len(points), 0.05), "rect:0,0,1,1")
+    assert found["valid"] and found["metric_edge_length"]["unit_fraction"] > 0.95
+    folded = voronaut.Mesh(SQUARE, [[0, 1, 2], [0, 3, 2]])
+    assert voronaut.check(folded)["valid"] is False
+
+
+def test_files_and_other_programs_arrays(tmp_path):
+    mesh = voronaut.mesh("rect:0,0,1,1", "uniform", n=80)
+    mesh.fields["u"] = mesh.points[:, 0].copy()
+    mesh.fields["m"] = np.tile(np.eye(2), (80, 1, 1))
+    for ending in ("mesh", "meshb", "msh", "vtu"):
+        path = tmp_path / f"a.{ending}"
+        mesh.save(path)
+        back = voronaut.Mesh.read(path)
+        assert (back.points == mesh.points).all() and (back.triangles == mesh.triangles).all()
+        if ending in ("msh", "vtu"):
+            assert np.array_equal(back.fields["u"], mesh.fields["u"]) and back.fields["m"].shape == (80, 2, 2)
+    mesh.save(tmp_path / "a.sol")
+    values = voronaut.read_solution(tmp_path / "a.sol")["vertices"]
+    assert np.array_equal(values[0], mesh.fields["u"]) and values[1].shape == (80, 2, 2)
+    assert voronaut.convert(tmp_path / "a.msh", tmp_path / "b.ply").triangles.shape == mesh.triangles.shape
+    meshio = pytest.importorskip("meshio")
+    assert np.array_equal(meshio.read(tmp_path / "a.vtu").points[:, :2], mesh.points)
+    assert voronaut.check(mesh.to_meshio())["valid"]
+    by_file = voronaut.mesh(tmp_path / "a.mesh", "uniform", n=50)
+    assert len(by_file.points) == 50
+
+
+def test_scikit_fem_reads_labels():
+    pytest.importorskip("skfem")
+    mesh = voronaut.mesh((SQUARE, SIDES, [1, 1, 2, 2]), "uniform", n=60).to_skfem()
+    assert mesh.nvertices == 60 and set(mesh.boundaries) == {"1", "2"}
+
+
+def test_pictures_and_notebooks():
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    mesh = voronaut.mesh("disk:0,0,1", "uniform", n=60)
+    mesh.fields["u"] = mesh.points[:, 0].copy()
+    assert mesh.plot("u") is not None and "60" in repr(mesh)
+    assert len(mesh.plot(ellipses="uniform").lines) == 60 + 2
+    assert "data:image/png" in mesh._repr_html_() and "unit edges" in mesh._repr_html_()
+    with pytest.raises(KeyError, match="there are"):
+        mesh.plot("v")
+
+
+def test_pyvista_chains_and_carries():
+    pyvista = pytest.importorskip("pyvista")
+    sphere = pyvista.Sphere(theta_resolution=24, phi_resolution=24)
+    sphere.point_data["height"] = sphere.points[:, 2]
+    made = sphere.voronaut.remesh(n=300, metric="curvature")
+    assert made.n_points == 300 and np.abs(made.point_data["height"] - made.points[:, 2]).max() < 0.1
+    assert made.voronaut.check()["valid"]
+    plane = pyvista.Plane(i_resolution=40, j_resolution=40).triangulate()
+    plane.point_data["u"] = np.tanh(20 * plane.points[:, 0])
+    adapted = plane.voronaut.adapt("u", n=500)
+    assert adapted.n_points == 500 and "u" in adapted.point_data
+
+
+def test_the_program_is_the_program(tmp_path):
+    words = [sys.executable, "-m", "voronaut"]
+    done = subprocess.run([*words, "mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "50", "-o", "a.mesh", "-q"], cwd=tmp_path)
+    assert done.returncode == 0 and len(voronaut.Mesh.read(tmp_path / "a.mesh").points) == 50
+    refused = subprocess.run([*words, "remesh", "none.mesh"], cwd=tmp_path, capture_output=True, text=True)
+    assert refused.returncode == 2 and "none.mesh" in refused.stderr
+
+
+def test_functions_are_those_declared():
+    done = subprocess.run([sys.executable, ROOT / "scripts/declare.py", "--check"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_types(tmp_path):
+    pytest.importorskip("mypy")
+    for words in (["mypy"], ["mypy.stubtest", "voronaut._voronaut"]):
+        env = {**os.environ, "MYPY_CACHE_DIR": str(tmp_path)}
+        done = subprocess.run([sys.executable, "-m", *words], cwd=ROOT, capture_output=True, text=True, env=env)
+        assert done.returncode == 0, done.stdout + done.stderr
