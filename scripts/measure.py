@@ -8,8 +8,9 @@
 
 In a document a table stands between <!-- measured: NAME --> and <!-- end -->. It agrees where its words are the same and its numbers
 differ by no more than 2 % or one unit of their last digit; times (columns of seconds and the like) by no more than --times, a factor
-of three or 0.2 s: machines are noisy. Meshes are the same to the bit whatever the number of threads; on another processor the last
-digits of sines may differ, and with them what is most delicate, the poorest triangles.
+of three or 0.2 s: machines are noisy; how often other programs fail, by no more than three: not every run of theirs is the same.
+Meshes are the same to the bit whatever the number of threads; on another processor the last digits of sines may differ, and with
+them what is most delicate, the poorest triangles.
 
 Tables of peers need ffbamg (apt: freefem++), mmg2d_O3 and mmgs_O3 (pip: mmgpy, which brings the numpy that is needed) on the PATH;
 without these they are skipped, and said to be. The exit code is 1 where anything differs. All takes about half an hour.
@@ -34,6 +35,8 @@ BEGIN, END = "<!-- measured: {} -->", "<!-- end -->"
 MARKED = re.compile(r"<!-- measured: (\S+) -->\n(.*?)<!-- end -->", re.DOTALL)
 NUMBER = re.compile(r"\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
 NOISE = 0.02
+FAILS_OF_OTHERS = re.compile(r"^(?!voronaut)\S+ fails$")
+MORE_FAILS = 3
 IS_TIME = re.compile(r"\b(s|ns|seconds|microseconds)\b")
 
 AEGEAN = "data/aegean.geojson --metric boundary:h0=0.5,growth=1.2,aspect=4,h_max=30 -n 20000"
@@ -113,7 +116,11 @@ def compared(said, rows, times):
     for old, new in zip(said[1:], rows[1:]):
         for heading, a, b in zip(rows[0], old, new):
             count += len(NUMBER.findall(b))
-            if not agree(a, b, times if IS_TIME.search(heading) or b.endswith(" s") else None):
+            if FAILS_OF_OTHERS.search(heading):
+                differ = abs(int(a) - int(b)) > MORE_FAILS
+            else:
+                differ = not agree(a, b, times if IS_TIME.search(heading) or b.endswith(" s") else None)
+            if differ:
                 faults.append(f"{new[0]}, {heading}: {a} is stated, {b} measured")
     return count, faults
 

@@ -184,13 +184,18 @@ def matrices(flat: Floats) -> Floats:
 
 def domain_word(value: object, held: dict[str, dict[str, Any]], word: str = "domain") -> str:
     """The word for a domain: a text or a file is itself; others are held under the word."""
+    geo = getattr(value, "__geo_interface__", value if isinstance(value, Mapping) else None)
+    if geo is None:
+        return mesh_word(value, held, word)
+    held.setdefault("polygons", {})[word] = _polygons(word, geo)
+    return word
+
+
+def mesh_word(value: object, held: dict[str, dict[str, Any]], word: str) -> str:
+    """The word for a mesh, as that for a domain; polygons are none."""
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
-    geo = getattr(value, "__geo_interface__", value if isinstance(value, Mapping) else None)
-    if geo is not None:
-        held.setdefault("polygons", {})[word] = _polygons(word, geo)
-    else:
-        held.setdefault("documents", {})[word] = mesh_arrays(word, value)
+    held.setdefault("documents", {})[word] = mesh_arrays(word, value)
     return word
 
 

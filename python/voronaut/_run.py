@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from collections.abc import Callable, Mapping
 from typing import Any, Union
@@ -57,7 +58,7 @@ def check(
     mesh: object, metric: MetricLike | None, domain: object | None, options: Options, defaults: Options, progress: Progress
 ) -> dict[str, Any]:
     held: Held = {}
-    words = {"mesh": _given.domain_word(mesh, held, "mesh")}
+    words = {"mesh": _given.mesh_word(mesh, held, "mesh")}
     if metric is not None:
         words["metric"] = _metric_word(metric, held, mesh if domain is None else domain)
     if domain is not None:
@@ -71,7 +72,7 @@ def check(
 
 def remesh(mesh: object, metric: npt.ArrayLike | None, options: Options, defaults: Options, progress: Progress) -> Mesh:
     held: Held = {}
-    words: Options = {"input": _given.domain_word(mesh, held, "mesh"), "out": "made.mesh"}
+    words: Options = {"input": _given.mesh_word(mesh, held, "mesh"), "out": "made.mesh"}
     if metric is not None:
         arrays = held.get("documents", {}).get("mesh")
         count = None if arrays is None else len(arrays["points"])
@@ -92,10 +93,12 @@ def transfer(
     progress: Progress,
 ) -> Any:
     held: Held = {}
-    words: Options = {"old": _given.domain_word(old, held, "old"), "new": _given.domain_word(new, held, "new")}
+    # Which fields are of vertices and which of triangles is seen by their numbers.
+    of_arrays = Mesh.read(old) if isinstance(old, (str, os.PathLike)) else old
+    words: Options = {"old": _given.mesh_word(of_arrays, held, "old"), "new": _given.mesh_word(new, held, "new")}
     words |= {"field": "fields", "out": "carried"}
     named = dict(fields) if isinstance(fields, Mapping) else {"": fields}
-    places, document = _fields_of(named, held["documents"]["old"] if "old" in held.get("documents", {}) else old)
+    places, document = _fields_of(named, held["documents"]["old"])
     held["solutions"] = {"fields": document}
     carried = iter_solutions(_perform("interpolate", words, options, defaults, held, progress)["solutions"])
     found = {name: carried[place].pop(0) for name, place in places}
@@ -107,9 +110,8 @@ def iter_solutions(solutions: list[list[Any]]) -> dict[str, list[npt.NDArray[Any
     return {place: [_values(found) for found in all_of] for place, all_of in zip(("vertices", "triangles"), solutions)}
 
 
-def _fields_of(named: dict[str, npt.ArrayLike], old: Any) -> tuple[list[tuple[str, str]], dict[str, Any]]:
+def _fields_of(named: dict[str, npt.ArrayLike], arrays: dict[str, Any]) -> tuple[list[tuple[str, str]], dict[str, Any]]:
     """Where each field belongs, by its length, and all of them as the extension has them."""
-    arrays = old if isinstance(old, dict) else Mesh.read(old)._arrays()
     counts = {"vertices": len(arrays["points"]), "triangles": len(arrays["triangles"])}
     places: list[tuple[str, str]] = []
     kinds: dict[str, dict[str, Any]] = {"vertices": {}, "triangles": {}}

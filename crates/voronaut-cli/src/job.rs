@@ -4,7 +4,7 @@ use super::{Arguments, Command};
 use crate::flags::as_keywords;
 use crate::world::{Held, Made, World};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{CommandFactory, Parser};
+use clap::{CommandFactory, FromArgMatches};
 use std::error::Error as _;
 use voronaut::Result;
 use voronaut::progress::Progress;
@@ -33,16 +33,13 @@ impl Job {
     /// There is no such option, it has another value than it may have, or options contradict each other.
     pub fn new(name: &str, options: &[(String, Vec<String>)]) -> std::result::Result<Self, Usage> {
         let mut all = commands();
-        // Positions are counted now.
-        all.build();
         let Some(command) = all.find_subcommand(name) else { return Err(unknown(name)) };
         let (mut words, mut positional) = (vec!["voronaut".into(), name.to_owned(), "--quiet".into()], Vec::new());
         for (option, values) in options {
-            let Some(argument) = command.get_arguments().find(|argument| argument.get_id() == option) else {
-                return Err(unknown(option));
-            };
+            let found = command.get_arguments().enumerate().find(|(_, argument)| argument.get_id() == option);
+            let Some((place, argument)) = found else { return Err(unknown(option)) };
             if argument.is_positional() {
-                positional.push((argument.get_index(), values));
+                positional.push((place, values));
                 continue;
             }
             let flag = match (argument.get_long(), argument.get_short()) {
@@ -55,10 +52,8 @@ impl Job {
         positional.sort_unstable();
         words.push("--".into());
         words.extend(positional.into_iter().flat_map(|(_, values)| values).cloned());
-        match Arguments::try_parse_from(words) {
-            Ok(arguments) => Ok(Self(arguments.command)),
-            Err(error) => Err(usage(&error)),
-        }
+        let matches = all.try_get_matches_from_mut(words).map_err(|error| usage(&error))?;
+        Arguments::from_arg_matches(&matches).map(|arguments| Self(arguments.command)).map_err(|error| usage(&error))
     }
 
     /// Seconds after which the caller should tell it to stop.
