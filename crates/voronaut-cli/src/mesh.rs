@@ -18,7 +18,7 @@ use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::quality::interpolation_error;
 use voronaut::realisation::Realisation;
-use voronaut::recipe::{self, Aim, Centroid, GradedAt, Idle, MeshOptions, Mesher, Seeding, Task};
+use voronaut::recipe::{self, Aim, Centroid, Effort, GradedAt, Idle, MeshOptions, Mesher, Seeding, Task};
 use voronaut::surface::{FeatureOptions, Input, Mended};
 use voronaut_draw::Layers;
 use voronaut_io::{Given, Report};
@@ -76,7 +76,10 @@ pub(crate) struct MeshArgs {
     /// compare; -n then sets the scale only)
     #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().mesher)]
     pub(crate) mesher: Mesher,
-    /// Steps of Riemannian Lloyd relaxation
+    /// How much work is spent on what is left to gain: fast, normal or best
+    #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().effort)]
+    pub(crate) effort: Effort,
+    /// Steps of Riemannian Lloyd relaxation, at most
     #[arg(long, value_name = "STEPS", default_value_t = MeshOptions::default().lloyd)]
     pub(crate) lloyd: usize,
     /// The centroids seeds are relaxed to: tangent (of cells in tangent planes), canvas (of the diagram's cells) or weighted
@@ -133,6 +136,7 @@ impl MeshArgs {
             fit: self.fit,
             stiffness: MeshOptions::default().stiffness,
             mesher: self.mesher,
+            effort: self.effort,
             lloyd: self.lloyd,
             centroid: self.centroid,
             polish: self.polish,

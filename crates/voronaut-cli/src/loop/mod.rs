@@ -14,7 +14,7 @@ use std::time::Instant;
 use voronaut::mesh::Solutions;
 use voronaut::metric::{Expression, Variables};
 use voronaut::quality::validity;
-use voronaut::recipe::{self, LoopOptions, MeshOptions, Source, Step};
+use voronaut::recipe::{self, Effort, LoopOptions, MeshOptions, Source, Step};
 use voronaut::surface::RepairOptions;
 use voronaut::transfer::{Carried, Extent, Kind, Overshoot, TransferOptions};
 use voronaut::{Error, Result};
@@ -75,7 +75,10 @@ pub(crate) struct LoopArgs {
     /// How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]
     #[arg(long, value_name = "D", value_parser = not_negative)]
     pub(crate) hausd: Option<f64>,
-    /// Steps of Riemannian Lloyd relaxation of each mesh
+    /// How much work is spent on what is left to gain: fast, normal or best
+    #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().effort)]
+    pub(crate) effort: Effort,
+    /// Steps of Riemannian Lloyd relaxation of each mesh, at most
     #[arg(long, value_name = "STEPS", default_value_t = MeshOptions::default().lloyd)]
     pub(crate) lloyd: usize,
     /// Sweeps in which the error of linear interpolation itself is lowered, at most
@@ -112,6 +115,7 @@ impl LoopArgs {
                 vertices: self.vertices.map(|vertices| vertices as usize),
                 complexity: self.complexity,
                 hausd: self.hausd,
+                effort: self.effort,
                 lloyd: self.lloyd,
                 polish: self.polish,
                 memory_limit: self.run.limits.memory(),

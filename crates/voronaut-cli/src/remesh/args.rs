@@ -4,6 +4,7 @@ use crate::options::{Damage, Limits, Run, not_negative, positive};
 use clap::Args;
 use std::path::PathBuf;
 use voronaut::mesh::TensorOrder;
+use voronaut::recipe::Effort;
 use voronaut::surface::{FeatureOptions, RepairOptions};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -93,6 +94,9 @@ pub(crate) struct RemeshArgs {
     /// Vertices on the surface, instead of where mesh and surface are closest in the sense of least squares
     #[arg(long)]
     pub(crate) no_fit: bool,
+    /// How much work is spent on what is left to gain: fast, normal or best
+    #[arg(long, value_name = "HOW", default_value_t = Effort::Fast)]
+    pub(crate) effort: Effort,
     /// --memory-limit in megabytes
     #[arg(short, long, value_name = "MB", value_parser = positive, conflicts_with = "memory_limit")]
     pub(crate) memory: Option<f64>,

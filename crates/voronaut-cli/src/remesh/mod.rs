@@ -179,7 +179,12 @@ fn sizing(args: &RemeshArgs, [least, most]: [f64; 2]) -> Sizing {
 }
 
 fn options(args: &RemeshArgs) -> MeshOptions {
-    MeshOptions { hausd: Some(args.hausd), memory_limit: args.run().limits.memory(), ..MeshOptions::default() }
+    MeshOptions {
+        hausd: Some(args.hausd),
+        effort: args.effort,
+        memory_limit: args.run().limits.memory(),
+        ..MeshOptions::default()
+    }
 }
 
 fn as_used(args: &RemeshArgs, sizing: &Sizing, metric_file: Option<&Path>) -> Value {

@@ -51,12 +51,16 @@ impl Dual<'_> {
         a.lerp(b, (behind + step) / whole)
     }
 
-    /// Moves a seed if all its faces stay counter-clockwise; the metric there is to be measured by the caller
-    /// ([`Dual::measure_all`]).
+    /// Moves a seed if all its faces stay counter-clockwise; what the metric is there its derivatives tell, until the caller measures it.
     pub(crate) fn shift(&mut self, v: VertexId, to: Point) -> bool {
         debug_assert!(!matches!(self.kind(v), Kind::Corner(_)), "corners stay");
         self.forget();
-        self.planar.move_vertex(v, to)
+        let by = to - self.position(v);
+        let is_moved = self.planar.move_vertex(v, to);
+        if is_moved {
+            self.locals[v.index()] = self.locals[v.index()].carried(by);
+        }
+        is_moved
     }
 
     /// Moves a free seed if all its faces stay counter-clockwise, measures the metric there, and flips around it.
@@ -87,7 +91,7 @@ impl Dual<'_> {
     }
 
     fn settle(&mut self, v: VertexId, kind: Kind) {
-        let local = self.measure(self.position(v));
+        let local = self.measure(v);
         let slots = self.planar.topology.vertex_slots();
         self.locals.resize(slots, local);
         self.kinds.resize(slots, kind);

@@ -19,7 +19,7 @@ pub(crate) use on_surface::SurfaceDual;
 
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::geodesic::{LocalMetric, Paths, chord, hermite};
+use crate::geodesic::{LocalMetric, Paths, chord_near, hermite};
 use crate::geometry::{Point, Readable, Tensor};
 use crate::in_circle::Tests;
 use crate::metric::Scaled;
@@ -168,7 +168,7 @@ impl<'a> Dual<'a> {
         let [u, v] = self.topology().ends(h);
         let (p, q) = (self.position(u), self.position(v));
         if self.local(u).is_rough || self.local(v).is_rough {
-            return chord(&self.field, p, q);
+            return chord_near(&self.field, p, q, self.local(u).near);
         }
         hermite(p, self.local(u), q, self.local(v)).value
     }
@@ -207,7 +207,7 @@ impl<'a> Dual<'a> {
 
     /// Evaluates the metric at every vertex, in parallel.
     pub(crate) fn measure_all(&mut self) {
-        self.measure_each(|_, field, p| LocalMetric::at(field, p));
+        self.measure_each(|local, field, p| LocalMetric::at_near(field, p, local.near));
     }
 
     fn measure_each(&mut self, measure: impl Fn(&LocalMetric, &Scaled, Point) -> LocalMetric + Sync) {
@@ -235,7 +235,7 @@ impl<'a> Dual<'a> {
         let edges: Vec<HalfEdge> = topology.edges().filter(at_rough).collect();
         let length = |&h: &HalfEdge| {
             let [p, q] = self.planar.ends(h);
-            chord(&self.field, p, q)
+            chord_near(&self.field, p, q, self.local(topology.origin(h)).near)
         };
         let lengths: Vec<f64> = edges.par_iter().with_min_len(64).map(length).collect();
         for (h, length) in edges.into_iter().zip(lengths) {
@@ -243,10 +243,14 @@ impl<'a> Dual<'a> {
         }
     }
 
-    /// The metric around a point; where it is not valid that is noted, and the Euclidean metric serves instead.
-    fn measure(&mut self, p: Point) -> LocalMetric {
+    /// The metric around a vertex; where it is not valid that is noted, and the Euclidean metric serves instead.
+    fn measure(&mut self, v: VertexId) -> LocalMetric {
         self.forget();
-        let local = LocalMetric::at(&self.field, p);
+        // A neighbour tells where to look, of a vertex that is new itself.
+        let beside = self.topology().star(v).map(|h| self.topology().target(h));
+        let near = beside.map(|u| self.locals[u.index()].near).next().unwrap_or_default();
+        let p = self.position(v);
+        let local = LocalMetric::at_near(&self.field, p, near);
         self.vetted(p, local)
     }
 

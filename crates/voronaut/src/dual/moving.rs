@@ -91,6 +91,12 @@ pub(crate) struct Site {
     log: Tensor,
 }
 
+impl Dual<'_> {
+    fn site_at(&self, at: Point, beside: VertexId) -> Site {
+        Site { at, log: self.field().at_near(at, &mut self.local(beside).near.clone()).log() }
+    }
+}
+
 impl Moving for Dual<'_> {
     type Saved = Saved;
     type Site = Site;
@@ -133,7 +139,7 @@ impl Moving for Dual<'_> {
 
     fn settle_moves(&mut self) -> Result<u64> {
         // Where the metric was rough it counts as rough still.
-        self.measure_each(|local, field, p| local.moved(field, p));
+        self.measure_each(|local, field, p| if local.is_due() { local.moved(field, p) } else { *local });
         self.verdict()?;
         let flips = self.flip_all(Effort::Local);
         self.take_touched();
@@ -164,13 +170,11 @@ impl Moving for Dual<'_> {
     }
 
     fn site(&self, v: VertexId) -> Site {
-        let at = self.position(v);
-        Site { at, log: self.field().at(at).log() }
+        self.site_at(self.position(v), v)
     }
 
     fn site_after(&self, v: VertexId, by: Vector) -> Option<Site> {
-        let at = self.position(v) + by;
-        Some(Site { at, log: self.field().at(at).log() })
+        Some(self.site_at(self.position(v) + by, v))
     }
 
     fn quality(&self, [a, b, c]: [Site; 3]) -> f64 {
@@ -182,7 +186,7 @@ impl Moving for Dual<'_> {
     }
 
     fn settle_move(&mut self, v: VertexId) {
-        self.locals[v.index()] = self.measure(self.position(v));
+        self.locals[v.index()] = self.measure(v);
         self.flip_around(v, Effort::Local);
     }
 }

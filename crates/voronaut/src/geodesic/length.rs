@@ -2,7 +2,7 @@
 
 use super::{LocalMetric, tension};
 use crate::geometry::{Point, Tensor, Vector};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, Near};
 
 /// A length and an estimate (not a bound) of its relative error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,8 +77,13 @@ pub(super) const GAUSS: [(f64, f64); 5] = [
 
 /// Length of the straight segment p-q by five-point Gauss quadrature of sqrt(d' M d).
 pub(crate) fn chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
+    chord_near(field, p, q, Near::default())
+}
+
+/// The same, where the field may be looked for at a place near the first end.
+pub(crate) fn chord_near(field: &dyn MetricField, p: Point, q: Point, mut near: Near) -> f64 {
     let d = q - p;
-    GAUSS.iter().map(|&(t, weight)| weight * field.at(p.lerp(q, t)).length(d)).sum()
+    GAUSS.iter().map(|&(t, weight)| weight * field.at_near(p.lerp(q, t), &mut near).length(d)).sum()
 }
 
 /// The metric length up to each point of a path, with the tensors at the middles of its segments.
@@ -170,7 +175,7 @@ fn local_on_segment(field: &dyn MetricField, a: Point, b: Point) -> LocalMetric 
     let (middle, h) = (a.midpoint(b), 0.5 * (b - a).norm());
     let difference = |e: Vector| (field.at(middle + e * h) - field.at(middle - e * h)) * (0.5 / h);
     let derivative = [difference(Vector::new(1.0, 0.0)), difference(Vector::new(0.0, 1.0))];
-    LocalMetric { tensor: field.at(middle), derivative, is_rough: false }
+    LocalMetric { tensor: field.at(middle), derivative, ..LocalMetric::default() }
 }
 
 /// Solves a symmetric block tridiagonal system; block i couples unknowns i and i + 1.

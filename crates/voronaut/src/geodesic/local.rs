@@ -1,13 +1,15 @@
 //! The metric around a point to second order: tensor, Christoffel symbols, logarithm and exponential map.
 
 use crate::geometry::{Point, Tensor, Vector, from_frame};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, Near};
 
 /// Finite differences are taken over this share of the metric unit length: at the scale of a cell, so that noise of
 /// the field does not pass for curvature (DESIGN.md, "Rough metrics").
 const DIFFERENCE_STEP: f64 = 0.25;
 /// A field whose second differences over that step exceed this share of the tensor is rough there.
 const ROUGH: f64 = 0.08;
+/// Points that have moved by less than this (metric) are told by derivatives.
+const STILL: f64 = 0.05;
 /// Directions and radius (metric units) of the samples over which a rough field is averaged.
 const RING: usize = 8;
 const RING_RADIUS: f64 = 0.5;
@@ -25,6 +27,10 @@ pub(crate) struct LocalMetric {
     pub derivative: [Tensor; 2],
     /// Whether the field is rough here.
     pub is_rough: bool,
+    /// Where the field found the point.
+    pub near: Near,
+    /// How far the point has moved since the field was evaluated.
+    pub since: Vector,
 }
 
 impl LocalMetric {
@@ -32,21 +38,40 @@ impl LocalMetric {
     /// tensor's axes; at eight more where it is rough. Where the field is no metric at one of the points around p (a
     /// field may end with the domain) the derivative counts as zero.
     pub(crate) fn at(field: &dyn MetricField, p: Point) -> Self {
-        let tensor = field.at(p);
-        let (found, second) = Self::expanded(field, p, tensor);
-        if second > ROUGH { Self::averaged(field, p, tensor) } else { found }
+        Self::at_near(field, p, Near::default())
+    }
+
+    /// The same, where the field may be looked for at a place nearby.
+    pub(crate) fn at_near(field: &dyn MetricField, p: Point, mut near: Near) -> Self {
+        let tensor = field.at_near(p, &mut near);
+        let (found, second) = Self::expanded(field, p, tensor, near);
+        if second > ROUGH { Self::averaged(field, p, tensor, near) } else { found }
     }
 
     /// [`LocalMetric::at`] at a point that a seed has moved to: rough if the seed was so before. So understood it
     /// depends continuously on the point.
     #[must_use]
     pub(crate) fn moved(&self, field: &dyn MetricField, p: Point) -> Self {
-        let tensor = field.at(p);
-        if self.is_rough { Self::averaged(field, p, tensor) } else { Self::expanded(field, p, tensor).0 }
+        let mut near = self.near;
+        let tensor = field.at_near(p, &mut near);
+        if self.is_rough { Self::averaged(field, p, tensor, near) } else { Self::expanded(field, p, tensor, near).0 }
+    }
+
+    /// What derivatives say of a point beside this one, without evaluating the field.
+    #[must_use]
+    pub(crate) fn carried(&self, by: Vector) -> Self {
+        Self { tensor: self.tensor + self.derivative_along(by), since: self.since + by, ..*self }
+    }
+
+    /// Whether that is so far from where the field was evaluated that it has to be evaluated again.
+    pub(crate) fn is_due(&self) -> bool {
+        self.since != Vector::default()
+            && !(self.tensor.length(self.since) < STILL && self.tensor.is_positive_definite())
     }
 
     /// By differences along the axes, and the size of the second ones relative to the tensor.
-    fn expanded(field: &dyn MetricField, p: Point, tensor: Tensor) -> (Self, f64) {
+    fn expanded(field: &dyn MetricField, p: Point, tensor: Tensor, near: Near) -> (Self, f64) {
+        let beside = |p: Point| field.at_near(p, &mut near.clone());
         let eigen = tensor.eigen();
         let axes = [eigen.axis, eigen.axis.perpendicular()];
         let steps = [eigen.large, eigen.small].map(|eigenvalue| DIFFERENCE_STEP / eigenvalue.sqrt());
@@ -54,7 +79,7 @@ impl LocalMetric {
         let mut second = 0.0_f64;
         for i in 0..2 {
             let offset = axes[i] * steps[i];
-            let (ahead, behind) = (field.at(p + offset), field.at(p - offset));
+            let (ahead, behind) = (beside(p + offset), beside(p - offset));
             if ahead.is_positive_definite() && behind.is_positive_definite() {
                 along[i] = (ahead - behind) * (0.5 / steps[i]);
                 second = second.max(relative_size((ahead + behind) * 0.5 - tensor, axes, steps));
@@ -62,18 +87,19 @@ impl LocalMetric {
         }
         let [u, v] = axes;
         let derivative = [along[0] * u.x + along[1] * v.x, along[0] * u.y + along[1] * v.y];
-        (Self { tensor, derivative, is_rough: false }, second)
+        (Self { tensor, derivative, is_rough: false, near, since: Vector::default() }, second)
     }
 
     /// The mean over the centre and a ring, and the derivatives of the linear function that fits the ring best; the
     /// ring is the circle of half a unit in the tensor at the centre.
-    fn averaged(field: &dyn MetricField, p: Point, centre: Tensor) -> Self {
+    fn averaged(field: &dyn MetricField, p: Point, centre: Tensor, near: Near) -> Self {
+        let beside = |p: Point| field.at_near(p, &mut near.clone());
         let [a, b, c] = centre.cholesky();
         let (mut sum, mut number, mut slopes) = (centre, 1.0, [Tensor::default(); 2]);
         for k in 0..RING / 2 {
             let (sin, cos) = (std::f64::consts::TAU * k as f64 / RING as f64).sin_cos();
             let offset = from_frame([a, b, c], Vector::new(cos, sin)) * RING_RADIUS;
-            let (ahead, behind) = (field.at(p + offset), field.at(p - offset));
+            let (ahead, behind) = (beside(p + offset), beside(p - offset));
             if ahead.is_positive_definite() && behind.is_positive_definite() {
                 (sum, number) = (sum + ahead + behind, number + 2.0);
                 let difference = ahead - behind;
@@ -83,7 +109,13 @@ impl LocalMetric {
         // Along the two axes of the frame F v = (a x + b y, c y), then back: d/dx = a d/du, d/dy = b d/du + c d/dv.
         let scale = 2.0 / (RING as f64 * RING_RADIUS);
         let [du, dv] = slopes.map(|slope| slope * scale);
-        Self { tensor: sum * (1.0 / number), derivative: [du * a, du * b + dv * c], is_rough: true }
+        Self {
+            tensor: sum * (1.0 / number),
+            derivative: [du * a, du * b + dv * c],
+            is_rough: true,
+            near,
+            since: Vector::default(),
+        }
     }
 
     /// The derivative of the tensor along a vector.
@@ -96,7 +128,7 @@ impl LocalMetric {
     pub(crate) fn christoffel(&self, v: Vector) -> Vector {
         let along = self.derivative_along(v).apply(v);
         let gradient = Vector::new(self.derivative[0].dot(v, v), self.derivative[1].dot(v, v));
-        self.tensor.inverse().apply(along - gradient * 0.5)
+        self.tensor.solve(along - gradient * 0.5)
     }
 
     /// The logarithm map to second order: the initial velocity of the geodesic that reaches p + d at time one,
@@ -112,11 +144,11 @@ impl LocalMetric {
 
     fn bounded_correction(&self, v: Vector) -> Vector {
         let correction = self.christoffel(v) * 0.5;
-        let (size, limit) = (self.tensor.length(correction), self.tensor.length(v) / 3.0);
-        if size <= limit {
+        let (square, limit) = (self.tensor.dot(correction, correction), self.tensor.dot(v, v) / 9.0);
+        if square <= limit {
             correction
-        } else if size.is_finite() {
-            correction * (limit / size)
+        } else if square.is_finite() {
+            correction * (limit.max(0.0) / square).sqrt()
         } else {
             Vector::default()
         }

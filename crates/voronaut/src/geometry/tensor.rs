@@ -28,6 +28,24 @@ pub struct Eigen {
     pub axis: Vector,
 }
 
+/// Eigenvalues as their mean and half their difference; of the axis of the larger one the squares of the coordinates, and their
+/// product: all rational in the tensor's entries and this radius, so that functions of a tensor need no angle.
+#[derive(Clone, Copy)]
+struct Spectrum {
+    mean: f64,
+    radius: f64,
+    squares: [f64; 2],
+    product: f64,
+}
+
+impl Spectrum {
+    /// The tensor with these axes and other eigenvalues, the one of the axis first.
+    fn with(&self, [along, across]: [f64; 2]) -> Tensor {
+        let [x, y] = self.squares;
+        Tensor::new(along * x + across * y, (along - across) * self.product, along * y + across * x)
+    }
+}
+
 linear!(Tensor: xx, xy, yy);
 
 impl Tensor {
@@ -89,6 +107,11 @@ impl Tensor {
         Tensor::new(self.yy / d, -self.xy / d, self.xx / d)
     }
 
+    /// The vector that the tensor maps to w; the caller knows that it is not singular.
+    pub(crate) fn solve(self, w: Vector) -> Vector {
+        Vector::new(self.yy * w.x - self.xy * w.y, self.xx * w.y - self.xy * w.x) * (1.0 / self.determinant())
+    }
+
     /// Whether all entries are finite and both eigenvalues positive.
     pub fn is_positive_definite(self) -> bool {
         self.xx.is_finite()
@@ -101,24 +124,36 @@ impl Tensor {
 
     /// Eigenvalues and the axis of the larger one (the x axis where both are equal).
     pub fn eigen(self) -> Eigen {
-        let (mean, radius, axis) = self.spectrum();
-        let large = mean + radius;
-        let small = if mean > 0.0 { self.determinant() / large } else { mean - radius };
+        let Spectrum { mean, radius, squares: [x, y], product } = self.spectrum();
+        let [large, small] = self.eigenvalues(mean, radius);
+        // The greater coordinate divides.
+        let axis =
+            if x >= y { Vector::new(x.sqrt(), product / x.sqrt()) } else { Vector::new(product / y.sqrt(), y.sqrt()) };
         Eigen { large, small, axis }
     }
 
-    /// The mean of the eigenvalues, half their difference, and the axis of the larger one.
-    fn spectrum(self) -> (f64, f64, Vector) {
-        let half_difference = 0.5 * (self.xx - self.yy);
-        let angle = 0.5 * self.xy.atan2(half_difference);
-        (0.5 * (self.xx + self.yy), half_difference.hypot(self.xy), Vector::new(angle.cos(), angle.sin()))
+    fn eigenvalues(self, mean: f64, radius: f64) -> [f64; 2] {
+        let large = mean + radius;
+        [large, if mean > 0.0 { self.determinant() / large } else { mean - radius }]
+    }
+
+    fn spectrum(self) -> Spectrum {
+        let (mean, half) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
+        let radius = half.hypot(self.xy);
+        if radius == 0.0 {
+            return Spectrum { mean, radius, squares: [1.0, 0.0], product: 0.0 };
+        }
+        let product = 0.5 * (self.xy / radius);
+        // The squares are (1 +- half / radius) / 2: the smaller one so that nothing cancels.
+        let less = product * (self.xy / (radius + half.abs()));
+        Spectrum { mean, radius, squares: if half >= 0.0 { [1.0 - less, less] } else { [less, 1.0 - less] }, product }
     }
 
     /// The symmetric tensor with the same axes and each eigenvalue mapped by `f`.
     #[must_use]
     pub(crate) fn map_eigenvalues(self, f: impl Fn(f64) -> f64) -> Tensor {
-        let e = self.eigen();
-        Tensor::from_axis(e.axis, f(e.large), f(e.small))
+        let spectrum = self.spectrum();
+        spectrum.with(self.eigenvalues(spectrum.mean, spectrum.radius).map(f))
     }
 
     /// Matrix logarithm of a positive definite tensor.
@@ -131,8 +166,8 @@ impl Tensor {
     #[must_use]
     pub(crate) fn exp(self) -> Tensor {
         // Not through `map_eigenvalues`: a logarithm is no metric, and its smaller eigenvalue may be negative.
-        let (mean, radius, axis) = self.spectrum();
-        Tensor::from_axis(axis, (mean + radius).exp(), (mean - radius).exp())
+        let spectrum = self.spectrum();
+        spectrum.with([spectrum.mean + spectrum.radius, spectrum.mean - spectrum.radius].map(f64::exp))
     }
 
     /// Log-Euclidean mean: exp of the weighted sum of logarithms. Weights sum to one.

@@ -1,6 +1,7 @@
 //! Where in a planar mesh a point is, and which triangles a box may meet.
 
-use super::Mesh;
+use super::edges::NONE;
+use super::{Edges, Mesh};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, BoxTree, Point, Vector};
 
@@ -8,7 +9,16 @@ use crate::geometry::{Aabb, BoxTree, Point, Vector};
 /// have no area.
 #[derive(Clone, Debug)]
 pub(crate) struct Locator {
-    pieces: BoxTree<Piece, 2>,
+    faces: Vec<Face>,
+    /// The boxes of pieces of triangles, with the triangles' numbers.
+    pieces: BoxTree<u32, 2>,
+}
+
+/// A triangle, and those beyond its edges from corner i to the next; [`NONE`] at the border.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    corners: [Point; 3],
+    beyond: [u32; 3],
 }
 
 /// The point of a mesh that is nearest to a point: the point itself, if it is in the mesh.
@@ -32,12 +42,8 @@ const PIECES_IN_ALL: usize = 1 << 18;
 /// Pieces of a triangle whose neighbourhood is looked for.
 const PIECES_OF_QUERY: usize = 32;
 
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    /// Of the whole triangle.
-    corners: [Point; 3],
-    triangle: u32,
-}
+/// Triangles that are walked through before the tree is asked: it costs about as much.
+const STEPS: usize = 16;
 
 impl Locator {
     /// The locator of a mesh that messages call `name`.
@@ -52,9 +58,11 @@ impl Locator {
         for (i, &triangle) in corners.iter().enumerate() {
             cut(triangle, most, &mut |piece| found.push((piece, i as u32)));
         }
-        let boxed =
-            |(piece, triangle): (Aabb, u32)| (piece.into(), Piece { corners: corners[triangle as usize], triangle });
-        Ok(Self { pieces: BoxTree::new(found.into_iter().map(boxed)) })
+        let pieces = BoxTree::new(found.into_iter().map(|(piece, triangle)| (piece.into(), triangle)));
+        let twins = Edges::of(&mesh.triangles).twins();
+        let across = |half_edge: &u32| if *half_edge == NONE { NONE } else { half_edge / 3 };
+        let face = |(i, corners)| Face { corners, beyond: [0, 1, 2].map(|k| across(&twins[3 * i + k])) };
+        Ok(Self { faces: corners.into_iter().enumerate().map(face).collect(), pieces })
     }
 
     /// Whether a mesh is planar, finite, and has triangles of vertices that exist; `name` is what messages call it.
@@ -93,17 +101,31 @@ impl Locator {
             return None;
         }
         let at = [p.x, p.y];
-        let located = |piece: &Piece, (square, weights): (f64, [f64; 3])| Located {
-            triangle: piece.triangle,
+        let corners = |&triangle: &u32| self.faces[triangle as usize].corners;
+        let located = |&triangle: &u32, (square, weights): (f64, [f64; 3])| Located {
+            triangle,
             weights,
             distance: square.sqrt(),
         };
         // Mostly a triangle holds the point, and no distance is asked for.
         let mut around = self.pieces.meeting([at, at]);
-        around.find_map(|piece| Some(located(piece, (0.0, weights_within(piece.corners, p)?)))).or_else(|| {
-            let piece = self.pieces.nearest(at, |piece| nearest_point(piece.corners, p).0)?;
-            Some(located(piece, nearest_point(piece.corners, p)))
+        around.find_map(|piece| Some(located(piece, (0.0, weights_within(corners(piece), p)?)))).or_else(|| {
+            let piece = self.pieces.nearest(at, |piece| nearest_point(corners(piece), p).0)?;
+            Some(located(piece, nearest_point(corners(piece), p)))
         })
+    }
+
+    /// The same from a triangle that may be near: by walking, as far as that leads.
+    pub(crate) fn locate_from(&self, start: Option<u32>, p: Point) -> Option<Located> {
+        let mut at = start.unwrap_or(NONE);
+        for _ in 0..STEPS {
+            let Some(&Face { corners, beyond }) = self.faces.get(at as usize) else { break };
+            match within(corners, p) {
+                Ok(weights) => return Some(Located { triangle: at, weights, distance: 0.0 }),
+                Err(edge) => at = beyond[edge],
+            }
+        }
+        self.locate(p)
     }
 
     /// Puts into `found` the numbers, ascending, of all triangles that meet the triangle `corners`, and of some that only pass
@@ -111,7 +133,7 @@ impl Locator {
     pub(crate) fn near(&self, corners: [Point; 3], found: &mut Vec<u32>) {
         found.clear();
         cut(corners, PIECES_OF_QUERY, &mut |piece| {
-            found.extend(self.pieces.meeting(piece.into()).map(|piece| piece.triangle));
+            found.extend(self.pieces.meeting(piece.into()).copied());
         });
         found.sort_unstable();
         found.dedup();
@@ -177,10 +199,25 @@ fn padded(b: Aabb) -> Aabb {
 }
 
 /// The barycentric coordinates of `p` in a triangle of either orientation that holds it.
-fn weights_within([a, b, c]: [Point; 3], p: Point) -> Option<[f64; 3]> {
+fn weights_within(corners: [Point; 3], p: Point) -> Option<[f64; 3]> {
+    within(corners, p).ok()
+}
+
+/// The same, or the edge, from its corner of this number to the next, that `p` is farthest beyond.
+fn within([a, b, c]: [Point; 3], p: Point) -> std::result::Result<[f64; 3], usize> {
     let areas = [(b - p).cross(c - p), (c - p).cross(a - p), (a - p).cross(b - p)];
     let total: f64 = areas.iter().sum();
-    (total != 0.0 && areas.iter().all(|area| area * total >= 0.0)).then(|| areas.map(|area| area / total))
+    if total != 0.0 && areas.iter().all(|area| area * total >= 0.0) {
+        return Ok(areas.map(|area| area / total));
+    }
+    let [bc, ca, ab] = areas.map(|area| area * total);
+    Err(if ab <= bc && ab <= ca {
+        0
+    } else if bc <= ca {
+        1
+    } else {
+        2
+    })
 }
 
 /// Squared distance of `p` to a triangle of either orientation, even without area, and the barycentric coordinates

@@ -1,7 +1,7 @@
 //! Limits on the sizes and the anisotropy that a metric asks for.
 
-use super::MetricField;
 use super::validate::require;
+use super::{MetricField, Near};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
 
@@ -88,6 +88,10 @@ impl<F> Bounded<F> {
 impl<F: MetricField> MetricField for Bounded<F> {
     fn at(&self, p: Point) -> Tensor {
         self.bounds.clamp(self.field.at(p))
+    }
+
+    fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
+        self.bounds.clamp(self.field.at_near(p, near))
     }
 }
 

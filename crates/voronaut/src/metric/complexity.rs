@@ -1,7 +1,7 @@
 //! The complexity of a metric: its area of a domain, proportional to the vertices of a unit mesh.
 
-use super::MetricField;
 use super::validate::check_tensor;
+use super::{MetricField, Near};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, combine, radon};
 use crate::parallel::prelude::*;
@@ -19,7 +19,7 @@ use crate::parallel::prelude::*;
 /// the total after that many evaluations (the metric has a singularity that cannot be integrated); [`Error::Domain`]
 /// of a triangle that is not finite.
 pub fn complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f64> {
-    let Integral { total, error, worst } = adapt(field, triangles, TOLERANCE, MAX_EVALUATIONS)?;
+    let Integral { total, error, worst } = adapt(field, start(triangles, PIECES)?, TOLERANCE, MAX_EVALUATIONS)?;
     settle(total, error, worst.as_ref())
 }
 
@@ -29,7 +29,8 @@ pub fn complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f
 /// # Errors
 /// As [`complexity`], for tensors and triangles that are not valid, and where the value is not finite.
 pub(crate) fn rough_complexity(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<f64> {
-    let Integral { total, worst, .. } = adapt(field, triangles, ROUGH_TOLERANCE, MAX_EVALUATIONS >> 4)?;
+    let pieces = start(triangles, ROUGH_PIECES)?;
+    let Integral { total, worst, .. } = adapt(field, pieces, ROUGH_TOLERANCE, MAX_EVALUATIONS >> 4)?;
     settle(total, 0.0, worst.as_ref())
 }
 
@@ -39,13 +40,8 @@ struct Integral {
     worst: Option<Piece>,
 }
 
-fn adapt(
-    field: &dyn MetricField,
-    triangles: &[[Point; 3]],
-    tolerance: f64,
-    max_evaluations: usize,
-) -> Result<Integral> {
-    let mut pieces = measure(field, start(triangles)?)?;
+fn adapt(field: &dyn MetricField, pieces: Vec<Measured>, tolerance: f64, max_evaluations: usize) -> Result<Integral> {
+    let mut pieces = measure(field, pieces)?;
     let (mut spent, mut rounds) = (0, 0);
     loop {
         let total: f64 = pieces.iter().map(Piece::integral).sum();
@@ -73,7 +69,9 @@ const TOLERANCE: f64 = 2e-5;
 /// The same for a rough value.
 const ROUGH_TOLERANCE: f64 = 1e-2;
 /// Pieces to start from.
-const PIECES: f64 = 8192.0;
+pub(super) const PIECES: f64 = 8192.0;
+/// Those of a rough value: seeding corrects what it does not see.
+const ROUGH_PIECES: f64 = 1024.0;
 /// Evaluations after the start.
 const MAX_EVALUATIONS: usize = 1 << 24;
 /// Cuts one after the other, at most: after as many as two numbers have bits there is nothing between them to cut at.
@@ -134,7 +132,7 @@ fn negligible(pieces: &[Piece], allowance: f64) -> f64 {
 }
 
 /// The triangles with area, cut until none is larger than a share of the total.
-pub(super) fn start(triangles: &[[Point; 3]]) -> Result<Vec<Measured>> {
+pub(super) fn start(triangles: &[[Point; 3]], count: f64) -> Result<Vec<Measured>> {
     if let Some(i) = triangles.iter().position(|t| !area(*t).is_finite()) {
         let [a, b, c] = triangles[i];
         return Err(Error::domain(
@@ -143,7 +141,7 @@ pub(super) fn start(triangles: &[[Point; 3]]) -> Result<Vec<Measured>> {
             "check the coordinates of the domain",
         ));
     }
-    let largest = triangles.iter().map(|&t| area(t)).sum::<f64>() / PIECES;
+    let largest = triangles.iter().map(|&t| area(t)).sum::<f64>() / count;
     let mut pieces = Vec::new();
     for &triangle in triangles {
         let mut pending = vec![triangle];
@@ -174,10 +172,10 @@ fn measure(field: &dyn MetricField, triangles: Vec<Measured>) -> Result<Vec<Piec
 }
 
 fn integrate(field: &dyn MetricField, triangle: [Point; 3]) -> Result<f64> {
-    let mut sum = 0.0;
+    let (mut sum, mut near) = (0.0, Near::default());
     for (at, weight) in radon() {
         let p = combine(at, triangle);
-        let tensor = field.at(p);
+        let tensor = field.at_near(p, &mut near);
         check_tensor(tensor, p)?;
         sum += weight * tensor.determinant().sqrt();
     }

@@ -1,6 +1,6 @@
 //! The metric of a function's second derivatives: known at every point, or recovered from a solution at the vertices of a mesh.
 
-use super::complexity::start;
+use super::complexity::{PIECES, start};
 use super::nodal::{absolute, size};
 use super::{MetricField, Norm, Recovery, Sampled, ScalarField, Snapshot, recover_hessian};
 use crate::error::{Error, Result};
@@ -25,7 +25,7 @@ impl Hessian {
     /// not finite.
     pub(crate) fn new(function: Snapshot, norm: Norm, domain: &[[Point; 3]]) -> Result<Self> {
         let (mut sum, mut total) = (0.0, 0.0);
-        for (triangle, _) in start(domain)? {
+        for (triangle, _) in start(domain, PIECES)? {
             let ([a, b, c], middle) = (triangle, centroid(triangle));
             let greatest = size(function.second_derivatives(middle));
             if !greatest.is_finite() {

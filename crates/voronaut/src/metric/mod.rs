@@ -60,7 +60,9 @@ pub use smoothed::MOST_SWEEPS;
 pub(crate) use smoothed::smoothed;
 pub use spec::MetricSpec;
 pub(crate) use spec::Parameters;
-pub(crate) use validate::{check_field, check_sizes, check_tensor, check_tensor_at, check_tensor3, require};
+pub(crate) use validate::{
+    check_at_vertices, check_field, check_sizes, check_tensor, check_tensor_at, check_tensor3, require,
+};
 pub use vocabulary::Variables;
 
 use crate::geometry::{Point, Tensor};
@@ -72,6 +74,18 @@ use crate::geometry::{Point, Tensor};
 pub trait MetricField: Sync {
     /// The tensor at a point.
     fn at(&self, p: Point) -> Tensor;
+
+    /// The same, but for rounding, where the point is near that of the last call with this `near`: a field that looks for places
+    /// looks there first.
+    fn at_near(&self, p: Point, _near: &mut Near) -> Tensor {
+        self.at(p)
+    }
+}
+
+/// Where a field found what it was last asked for; at first nowhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Near {
+    pub(crate) triangle: Option<u32>,
 }
 
 impl<F: Fn(Point) -> Tensor + Sync> MetricField for F {
@@ -83,6 +97,10 @@ impl<F: Fn(Point) -> Tensor + Sync> MetricField for F {
 impl MetricField for Box<dyn MetricField + '_> {
     fn at(&self, p: Point) -> Tensor {
         (**self).at(p)
+    }
+
+    fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
+        (**self).at_near(p, near)
     }
 }
 

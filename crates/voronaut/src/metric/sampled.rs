@@ -1,8 +1,8 @@
 //! A metric given at the vertices of a background mesh.
 
-use super::MetricField;
 use super::nodal::isotropic;
 use super::validate::{BACKGROUND, check_at_vertices};
+use super::{MetricField, Near};
 use crate::error::Result;
 use crate::geometry::{Point, Tensor};
 use crate::mesh::{Located, Locator, Mesh};
@@ -51,9 +51,14 @@ impl Sampled {
 
 impl MetricField for Sampled {
     fn at(&self, p: Point) -> Tensor {
-        let Some(Located { triangle, weights, .. }) = self.locator.locate(p) else {
+        self.at_near(p, &mut Near::default())
+    }
+
+    fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
+        let Some(Located { triangle, weights, .. }) = self.locator.locate_from(near.triangle, p) else {
             return Tensor::new(f64::NAN, f64::NAN, f64::NAN);
         };
+        near.triangle = Some(triangle);
         let [a, b, c] = self.triangles[triangle as usize].map(|v| self.logs[v as usize]);
         (a * weights[0] + b * weights[1] + c * weights[2]).exp()
     }

@@ -1,7 +1,7 @@
 //! Another field times a factor: the same everywhere, as a mesh is given its number of vertices, or more where the field turns, as
 //! star sets come to agree.
 
-use super::MetricField;
+use super::{MetricField, Near};
 use crate::geometry::{Point, Tensor};
 
 /// The field `factor` M: metric lengths grow by sqrt(factor), the complexity (see [`complexity`](super::complexity()))
@@ -18,6 +18,10 @@ pub struct Scaled<'a> {
 impl MetricField for Scaled<'_> {
     fn at(&self, p: Point) -> Tensor {
         self.field.at(p) * self.factor
+    }
+
+    fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
+        self.field.at_near(p, near) * self.factor
     }
 }
 

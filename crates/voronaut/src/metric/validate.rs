@@ -88,7 +88,7 @@ pub(super) fn check_count(background: &Mesh, what: &str, found: usize) -> Result
 }
 
 /// Whether these are a metric at the vertices of a planar mesh: errors as of [`Sampled::new`](super::Sampled::new).
-pub(super) fn check_at_vertices(mesh: &Mesh, tensors: &[Tensor]) -> Result<()> {
+pub(crate) fn check_at_vertices(mesh: &Mesh, tensors: &[Tensor]) -> Result<()> {
     check_count(mesh, "tensors", tensors.len())?;
     tensors.iter().enumerate().try_for_each(|(v, &tensor)| check_tensor_at(tensor, || mesh.describe(v)))
 }

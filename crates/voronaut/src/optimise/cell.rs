@@ -15,6 +15,8 @@ use crate::triangulation::{HalfEdge, VertexId};
 pub struct Cell {
     corners: Vec<Vector>,
     scratch: Vec<Vector>,
+    /// What surrounds the seed.
+    spokes: Vec<Vector>,
 }
 
 /// Moments of a cell about its seed, in the tangent plane there.
@@ -55,6 +57,9 @@ impl Cell {
 
     /// Keeps the points x with x . normal <= offset (Sutherland and Hodgman 1974).
     fn cut(&mut self, normal: Vector, offset: f64) {
+        if self.corners.iter().all(|p| p.dot(normal) - offset <= 0.0) {
+            return;
+        }
         self.scratch.clear();
         for (i, &p) in self.corners.iter().enumerate() {
             let q = self.corners[(i + 1) % self.corners.len()];
@@ -166,21 +171,26 @@ impl<'a, M: Moving> View<'a, M> {
 
     fn moments(&self, cell: &mut Cell) -> Moments {
         let topology = self.dual.topology();
-        if topology.is_border_vertex(self.seed) {
-            return self.border_moments(cell);
-        }
-        cell.reset(topology.star(self.seed).map(|h| self.neighbour(h).norm()).fold(0.0, f64::max));
-        self.cut(cell);
-        cell.moments()
+        let mut spokes = std::mem::take(&mut cell.spokes);
+        spokes.clear();
+        spokes.extend(topology.star(self.seed).map(|h| self.neighbour(h)));
+        let moments = if topology.is_border_vertex(self.seed) {
+            self.border_moments(cell, &spokes)
+        } else {
+            cell.reset(spokes.iter().map(|w| w.norm()).fold(0.0, f64::max));
+            self.cut(cell, &spokes);
+            cell.moments()
+        };
+        cell.spokes = spokes;
+        moments
     }
 
     /// At the border the cell is a part of a disc: one or, at reflex corners, several convex ones.
-    fn border_moments(&self, cell: &mut Cell) -> Moments {
+    fn border_moments(&self, cell: &mut Cell, spokes: &[Vector]) -> Moments {
         let topology = self.dual.topology();
-        let spokes: Vec<Vector> = topology.star(self.seed).map(|h| self.neighbour(h)).collect();
         let Some(last) = topology.star(self.seed).last().map(|h| self.beyond(h)) else { return Moments::default() };
         let width = spokes.iter().map(|w| w.norm()).fold(last.norm(), f64::max);
-        let is_convex = matches!(self.dual.kind(self.seed), Kind::Curve) || turn(&spokes, last) <= std::f64::consts::PI;
+        let is_convex = matches!(self.dual.kind(self.seed), Kind::Curve) || turn(spokes, last) <= std::f64::consts::PI;
         let sectors: Vec<[Vector; 2]> = if is_convex {
             vec![[spokes[0], last]]
         } else {
@@ -192,20 +202,20 @@ impl<'a, M: Moving> View<'a, M> {
             cell.keep_left_of(from);
             cell.keep_left_of(-to);
             cell.cut_by_bisector(last);
-            self.cut(cell);
+            self.cut(cell, spokes);
             sum = sum + cell.moments();
         }
         sum
     }
 
     /// Cuts by what lies around.
-    fn cut(&self, cell: &mut Cell) {
+    fn cut(&self, cell: &mut Cell, spokes: &[Vector]) {
         let topology = self.dual.topology();
         let is_rough = self.dual.local(self.seed).is_rough;
-        for h in topology.star(self.seed) {
-            cell.cut_by_bisector(self.neighbour(h));
+        for (h, &spoke) in topology.star(self.seed).zip(spokes) {
+            cell.cut_by_bisector(spoke);
             if topology.is_fixed(h.next()) {
-                cell.cut_by_line(self.neighbour(h), self.beyond(h));
+                cell.cut_by_line(spoke, self.beyond(h));
             } else if let Some(t) = topology.twin(h.next()).filter(|_| !is_rough) {
                 // Not needed where every edge is Delaunay; where one is not, cells would overlap.
                 cell.cut_by_bisector(self.image(topology.apex(t), 0.0));

@@ -15,9 +15,8 @@ const BACKTRACKS: u32 = 8;
 /// After so many of them the quasi-Newton directions give way to Lloyd's steps, and after so many steps are halved in any case.
 const LLOYD_AFTER: u32 = 3;
 const SHORTER_AFTER: u32 = 6;
-/// Relaxation has stalled when so many steps in a row lower the energy by less than this share each.
-const STALLED: f64 = 1e-6;
-const IN_A_ROW: u32 = 3;
+/// Relaxation ends when so many steps in a row gain too little: one alone may have been a short one.
+const IN_A_ROW: u32 = 2;
 
 /// How a relaxation went.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
@@ -52,7 +51,16 @@ impl Relaxed {
     }
 }
 
-/// Lowers the energy in at most so many steps; ends early when it stalls.
+/// When relaxation ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Patience {
+    /// After so many steps.
+    pub steps: usize,
+    /// Or when steps lower the energy by less than this share each.
+    pub gain: f64,
+}
+
+/// Lowers the energy in at most so many steps; ends early when they gain too little.
 ///
 /// Directions are those of a quasi-Newton method whose first guess is Lloyd's step to the centroid, and Lloyd's where the
 /// metric is rough. Free seeds move by the second-order exponential map, those on a segment slide along it, corners stay.
@@ -65,7 +73,7 @@ impl Relaxed {
 pub(crate) fn relax<M: Moving>(
     dual: &mut M,
     cells: &impl CellsOf<M>,
-    steps: usize,
+    Patience { steps, gain }: Patience,
     progress: &dyn Progress,
 ) -> Result<Relaxed> {
     let mut relaxed = Relaxed::default();
@@ -81,7 +89,7 @@ pub(crate) fn relax<M: Moving>(
         let before = descent.state.energy;
         let done = descent.step(dual)?;
         progress.advance(1)?;
-        let is_small = cells.lower_energy() && before - descent.state.energy < STALLED * before;
+        let is_small = cells.lower_energy() && before - descent.state.energy < gain * before;
         small = if is_small { small + 1 } else { 0 };
         if !done || small == IN_A_ROW {
             descent.relaxed.stalled = true;

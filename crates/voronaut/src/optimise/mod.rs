@@ -16,7 +16,7 @@ pub use cell::{Cell, Cells, OnCanvas};
 pub(crate) use exchange::{exchange, meet_blocked_flips, mend_worst};
 pub(crate) use fit::{FitOptions, fit};
 pub use lloyd::Relaxed;
-pub(crate) use lloyd::relax;
+pub(crate) use lloyd::{Patience, relax};
 pub use polish::Polished;
 pub(crate) use polish::{polish, polishing_norm};
 pub use protect::Ending;

@@ -1,7 +1,7 @@
 //! How metric edge lengths and angles are distributed, with straight edges and with geodesic ones (RR-9103, figure 20).
 
 use super::geodesics::{Found, MeasuredEdge, measure};
-use super::metric_quality::{EdgeLengths, angle, collect, demand_planar, mean_tensor, tensor, vertex_logarithms};
+use super::metric_quality::{Corners, EdgeLengths, angle, collect, demand_planar, tensor};
 use crate::error::Result;
 use crate::mesh::{Edges, Mesh};
 use crate::metric::MetricField;
@@ -109,9 +109,9 @@ impl Histogram {
 
 /// The three angles of each triangle between its straight edges.
 fn straight_angles(mesh: &Mesh, metric: &dyn MetricField) -> Result<Vec<f64>> {
-    let logarithms = vertex_logarithms(mesh, metric)?;
+    let corners = Corners::of(mesh, metric)?;
     let of_triangle = |&triangle: &[u32; 3]| {
-        let m = mean_tensor(triangle, &logarithms);
+        let m = corners.mean(triangle);
         let [a, b, c] = mesh.corners_of(triangle);
         [angle(m, b - a, c - a), angle(m, c - b, a - b), angle(m, a - c, b - c)].map(unsigned)
     };

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3, Tensor, Vector};
 use crate::lists::marked;
 use crate::mesh::{Edges, Mesh};
-use crate::metric::{MetricField, check_tensor};
+use crate::metric::{MetricField, Near, check_tensor};
 use crate::parallel::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -86,20 +86,51 @@ pub struct Spot {
 /// is not planar, [`Error::Metric`] where the tensor at a vertex or at a Gauss point is not positive definite.
 pub fn metric_quality(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQuality> {
     demand_planar(mesh)?;
-    let length = |ends: [u32; 2]| edge_length(ends.map(|v| mesh.point(v)), metric);
-    figures(mesh, length, shapes_in_plane(mesh, metric)?, Position::in_plane)
+    let corners = Corners::of(mesh, metric)?;
+    figures(mesh, |ends| corners.edge_length(ends), |t| corners.shape(t), Position::in_plane)
 }
 
-/// The shapes of the triangles of a planar mesh in the log-Euclidean means of the tensors at their corners.
-///
-/// # Errors
-/// [`Error::Metric`] where a tensor at a vertex is not positive definite.
-pub(super) fn shapes_in_plane<'a>(
+/// A planar mesh in a metric: the logarithms of the tensors at its vertices, and where the field found these.
+pub(super) struct Corners<'a> {
     mesh: &'a Mesh,
-    metric: &dyn MetricField,
-) -> Result<impl Fn([u32; 3]) -> Shape + use<'a>> {
-    let logarithms = vertex_logarithms(mesh, metric)?;
-    Ok(move |t| Shape::of(mean_tensor(t, &logarithms), mesh.corners_of(t)))
+    metric: &'a dyn MetricField,
+    found: Vec<(Tensor, Near)>,
+}
+
+impl<'a> Corners<'a> {
+    /// Measures the vertices of triangles.
+    ///
+    /// # Errors
+    /// [`Error::Metric`] where a tensor at a vertex is not positive definite.
+    pub(super) fn of(mesh: &'a Mesh, metric: &'a dyn MetricField) -> Result<Self> {
+        let used = mesh.used_vertices();
+        let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
+        let at = |&v: &u32| {
+            let (p, mut near) = (mesh.point(v), Near::default());
+            let used = used[v as usize].then(|| tensor_near(metric, p, &mut near)).transpose()?;
+            Ok((used.map_or_else(Tensor::default, Tensor::log), near))
+        };
+        Ok(Self { mesh, metric, found: collect(&vertices, at)? })
+    }
+
+    /// The metric length of an edge, see [`edge_length`].
+    ///
+    /// # Errors
+    /// [`Error::Metric`] where the tensor at a Gauss point is not positive definite.
+    pub(super) fn edge_length(&self, ends: [u32; 2]) -> Result<f64> {
+        length_near(ends.map(|v| self.mesh.point(v)), self.metric, self.found[ends[0] as usize].1)
+    }
+
+    /// The log-Euclidean mean of the tensors at the corners of a triangle.
+    pub(super) fn mean(&self, triangle: [u32; 3]) -> Tensor {
+        let [a, b, c] = triangle.map(|v| self.found[v as usize].0);
+        ((a + b + c) * (1.0 / 3.0)).exp()
+    }
+
+    /// The shape of a triangle in that mean.
+    pub(super) fn shape(&self, triangle: [u32; 3]) -> Shape {
+        Shape::of(self.mean(triangle), self.mesh.corners_of(triangle))
+    }
 }
 
 /// The figures of a mesh from the metric length of each edge, by its vertices, and the shape of each triangle.
@@ -165,8 +196,12 @@ pub(super) const GAUSS: [(f64, f64); 5] = [
 ];
 
 /// Metric length of the straight edge.
-pub(super) fn edge_length([a, b]: [Point; 2], metric: &dyn MetricField) -> Result<f64> {
-    GAUSS.iter().map(|&(t, weight)| Ok(weight * tensor(metric, a.lerp(b, t))?.length(b - a))).sum()
+pub(super) fn edge_length(ends: [Point; 2], metric: &dyn MetricField) -> Result<f64> {
+    length_near(ends, metric, Near::default())
+}
+
+fn length_near([a, b]: [Point; 2], metric: &dyn MetricField, mut near: Near) -> Result<f64> {
+    GAUSS.iter().map(|&(t, weight)| Ok(weight * tensor_near(metric, a.lerp(b, t), &mut near)?.length(b - a))).sum()
 }
 
 /// Quality and smallest angle (degrees) of a triangle in its own metric.
@@ -185,29 +220,17 @@ impl Shape {
         Shape { quality: if quality.is_nan() { 0.0 } else { quality }, angle: smallest.to_degrees() }
     }
 }
-
-/// The tensor of a triangle: the log-Euclidean mean of those at its vertices.
-pub(super) fn mean_tensor(triangle: [u32; 3], logarithms: &[Tensor]) -> Tensor {
-    let [a, b, c] = triangle.map(|v| logarithms[v as usize]);
-    ((a + b + c) * (1.0 / 3.0)).exp()
-}
-
 /// The angle (radians, from -pi to pi) by which u must turn to point along v, in a metric.
 pub(super) fn angle(m: Tensor, u: Vector, v: Vector) -> f64 {
     (m.determinant().max(0.0).sqrt() * u.cross(v)).atan2(m.dot(u, v))
 }
 
-/// Logarithms of the tensors at the vertices of triangles; zero at vertices of no triangle.
-pub(super) fn vertex_logarithms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Vec<Tensor>> {
-    let used = mesh.used_vertices();
-    let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
-    let logarithm =
-        |v: u32| if used[v as usize] { Ok(tensor(metric, mesh.point(v))?.log()) } else { Ok(Tensor::default()) };
-    collect(&vertices, |&v| logarithm(v))
+pub(super) fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {
+    tensor_near(metric, p, &mut Near::default())
 }
 
-pub(super) fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {
-    let m = metric.at(p);
+fn tensor_near(metric: &dyn MetricField, p: Point, near: &mut Near) -> Result<Tensor> {
+    let m = metric.at_near(p, near);
     check_tensor(m, p)?;
     Ok(m)
 }

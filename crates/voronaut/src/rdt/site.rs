@@ -31,11 +31,8 @@ impl Site {
         }
         let local = LocalMetric::at(&unit, self.at);
         let back = spacing * spacing;
-        self.local = LocalMetric {
-            tensor: local.tensor * back,
-            derivative: local.derivative.map(|t| t * back),
-            is_rough: local.is_rough,
-        };
+        self.local =
+            LocalMetric { tensor: local.tensor * back, derivative: local.derivative.map(|t| t * back), ..local };
         self.curvature = gauss_curvature(&unit, self.at) * factor;
     }
 }

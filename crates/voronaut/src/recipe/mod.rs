@@ -23,7 +23,7 @@ pub use field::{
 };
 pub use idle::{Idle, Origin, Task};
 pub use on_surface::mesh_surface;
-pub use options::{Centroid, MeshOptions, Mesher, Seeding};
+pub use options::{Centroid, Effort, MeshOptions, Mesher, Seeding};
 pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
 
 use crate::canvas::{Canvas, CanvasFigures};
@@ -133,7 +133,7 @@ pub fn mesh_for(
     let watch = Stopwatch::new(progress);
     let mut job = Job::new(field, options, &watch);
     let (domain, plan, count, scale) = watch.time("plan", || job.plan(domain))?;
-    let asked = if options.seeding == Seeding::Protected { count } else { options.dual.seeds_asked(count) };
+    let asked = if options.seeding == Seeding::Protected { count } else { options.road().seeds_asked(count) };
     let on_canvas = asked as f64 * f64::from(options.canvas_size);
     demand_memory(count as f64, on_canvas, options.memory_limit)?;
     let canvas = job.canvas(&domain, count)?;
@@ -276,11 +276,14 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// With a count given, the factor is the one for which free edges have unit length in the (geometric) mean.
+    /// With a count given, the factor is the one for which free edges have unit length in the (geometric) mean. The metric is
+    /// measured anew at every seed.
     fn fit_scale(&self, dual: &mut Dual) {
         if self.options.vertices.is_some() {
             let mean = mean_free_edge(dual);
             dual.rescale(dual.field().factor / (mean * mean));
+        } else {
+            dual.measure_all();
         }
     }
 

@@ -22,7 +22,9 @@ pub struct MeshOptions {
     pub stiffness: f64,
     /// What makes the mesh. The options below are for [`Mesher::Voronoi`], but for the memory limit.
     pub mesher: Mesher,
-    /// Steps of Riemannian Lloyd relaxation, at most: it ends where it stalls.
+    /// How much work is spent on what is left to gain.
+    pub effort: Effort,
+    /// Steps of Riemannian Lloyd relaxation, at most: it ends where it gains too little ([`Effort`]).
     pub lloyd: usize,
     /// The centroids that it moves seeds to.
     pub centroid: Centroid,
@@ -59,6 +61,7 @@ impl Default for MeshOptions {
             fit: false,
             stiffness: FitOptions::default().stiffness,
             mesher: Mesher::default(),
+            effort: Effort::default(),
             lloyd: 40,
             centroid: Centroid::default(),
             polish: 20,
@@ -71,6 +74,38 @@ impl Default for MeshOptions {
             canvas: canvas::Kind::default(),
             canvas_size: canvas::VERTICES_PER_SEED,
             memory_limit: 16 << 30,
+        }
+    }
+}
+
+impl MeshOptions {
+    /// The road that is taken: diagrams cost more than the rest of a mesh that is to be there fast.
+    pub(super) fn road(&self) -> Road {
+        if self.effort == Effort::Fast && self.dual == Road::Both { Road::Geodesic } else { self.dual }
+    }
+}
+
+/// How much work is spent on what is left to gain; its names are those users type.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effort {
+    /// `fast`: relaxation ends early, and no diagram is asked unless `dual` says so.
+    Fast,
+    /// `normal`: relaxation ends when steps gain next to nothing.
+    #[default]
+    Normal,
+    /// `best`: relaxation ends when nothing is left to gain.
+    Best,
+}
+
+named!(Effort, "effort", [Fast = "fast", Normal = "normal", Best = "best"]);
+
+impl Effort {
+    /// The share of the energy that a step of relaxation has to gain.
+    pub(super) fn gain(self) -> f64 {
+        match self {
+            Effort::Fast => 4e-3,
+            Effort::Normal => 1e-4,
+            Effort::Best => 1e-6,
         }
     }
 }

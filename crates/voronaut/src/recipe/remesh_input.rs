@@ -7,7 +7,7 @@ use crate::geometry::{Point, Tensor};
 use crate::lists::{distinct, in_order, marked};
 use crate::mesh::{EdgeSide, Edges, Mesh, Solution, SolutionValues};
 use crate::metric::nodal::{Pipeline, Source, complexity, implied, isotropic};
-use crate::metric::{Bounds, MetricField, Sampled};
+use crate::metric::{Bounds, MetricField, Sampled, check_at_vertices};
 use crate::planar::{Duplicate, delaunay};
 use crate::sampling::CurveSizes;
 use crate::surface::FeatureOptions;
@@ -323,7 +323,6 @@ fn metric(mesh: &Mesh, values: &SolutionValues) -> Result<Vec<Tensor>> {
         SolutionValues::Tensor3(entries) => entries.iter().map(|m| Tensor::new(m[0], m[1], m[2])).collect(),
         _ => tensors(values, "the metric")?,
     };
-    // Refuses what is no metric, or of another mesh.
-    Sampled::new(mesh, &tensors)?;
+    check_at_vertices(mesh, &tensors)?;
     Ok(tensors)
 }

@@ -10,7 +10,7 @@ use crate::dual::{Consultation, Disagreement, Dual, Effort, Moving};
 use crate::error::Result;
 use crate::geodesic::{Margin, Method};
 use crate::geometry::Point;
-use crate::optimise::{Cells, OnCanvas, Relaxed, exchange, meet_blocked_flips, mend_worst, relax};
+use crate::optimise::{Cells, OnCanvas, Patience, Relaxed, exchange, meet_blocked_flips, mend_worst, relax};
 use crate::progress::Progress;
 use crate::sampling::{demand_memory, refine_farthest};
 use crate::triangulation::VertexId;
@@ -29,7 +29,7 @@ pub(super) fn settle(
 ) -> Result<Settled> {
     progress.begin("settling edges", 1)?;
     dual.flip_all(Effort::Full);
-    let found = dual.consult_diagram(options.dual, options.canvas, options.canvas_size, options.geodesic)?;
+    let found = dual.consult_diagram(options.road(), options.canvas, options.canvas_size, options.geodesic)?;
     let made = found.made;
     let canvas = made.map(|m| m.canvas);
     let diagram = made.map(|m| figures::Diagram {
@@ -96,13 +96,15 @@ impl Job<'_> {
             (Centroid::Weighted, Some(canvas)) => Cells::Weighted(OnCanvas::new(canvas, self.field)),
             _ => Cells::Tangent,
         };
-        let mut relaxed = relax(dual, &cells, steps / PARTS, self.progress)?;
+        let gain = self.options.effort.gain();
+        let patience = |steps| Patience { steps, gain };
+        let mut relaxed = relax(dual, &cells, patience(steps / PARTS), self.progress)?;
         for part in 1..PARTS {
             let mut left = (steps * (part + 1)) / PARTS - (steps * part) / PARTS;
             if self.exchange(dual, &cells, &mut relaxed)? {
                 left = left.saturating_sub(1);
             }
-            relaxed.append(relax(dual, &cells, left, self.progress)?);
+            relaxed.append(relax(dual, &cells, patience(left), self.progress)?);
         }
         self.fit_scale(dual);
         if self.exchanges() {
@@ -126,7 +128,7 @@ impl Job<'_> {
         let met = meet_blocked_flips(dual, most(BLOCKED_SHARE));
         exchange(dual, self.fill(count), most(EXCHANGED_SHARE).max(met))?;
         let Some(&energy) = relaxed.energy.last() else { return Ok(false) };
-        let step = relax(dual, cells, 1, self.progress)?;
+        let step = relax(dual, cells, Patience { steps: 1, gain: 0.0 }, self.progress)?;
         let doubt = if self.options.centroid == Centroid::Tangent { ROUGH_DOUBT * rough_share(dual) } else { 0.0 };
         let rises = step.energy.last().is_none_or(|&now| now > (1.0 + doubt) * energy);
         if rises && self.options.centroid != Centroid::Weighted {

@@ -12,7 +12,7 @@ use crate::figures;
 use crate::geometry::Point3;
 use crate::lists::in_order;
 use crate::mesh::Mesh;
-use crate::optimise::{Relaxed, Tangent, mend_worst, relax};
+use crate::optimise::{Patience, Relaxed, Tangent, mend_worst, relax};
 use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
@@ -152,7 +152,12 @@ impl<'a> Setting<'a> {
                 dual = self.dual_of(other, factor)?;
                 dual.flip_all();
             }
-            relaxed.append(relax(&mut dual, &Tangent, steps, self.progress)?);
+            relaxed.append(relax(
+                &mut dual,
+                &Tangent,
+                Patience { steps, gain: self.options.effort.gain() },
+                self.progress,
+            )?);
             self.fit_scale(&mut dual)?;
         }
         mend(&mut dual);

@@ -2,7 +2,7 @@
 
 use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
-use crate::geodesic::chord;
+use crate::geodesic::chord_near;
 use crate::geometry::{Point, Tensor, Vector, centroid};
 use crate::metric::MetricField;
 use crate::planar::Location;
@@ -228,10 +228,11 @@ pub(crate) fn insert_spaced(dual: &mut Dual, place: Location, p: Point) -> bool 
 /// nearest of them by going from neighbour to nearer neighbour.
 pub(super) fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
     let topology = dual.topology();
-    let tensor = dual.field().at(p);
-    let distance = |v: VertexId| tensor.length(p - dual.position(v));
-    let too_near = |v: VertexId| chord(dual.field(), p, dual.position(v)) < SPACING;
     let corners = topology.corners(face);
+    let mut near = dual.local(corners[0]).near;
+    let tensor = dual.field().at_near(p, &mut near);
+    let distance = |v: VertexId| tensor.length(p - dual.position(v));
+    let too_near = |v: VertexId| chord_near(dual.field(), p, dual.position(v), near) < SPACING;
     if corners.into_iter().any(too_near) {
         return true;
     }
@@ -249,7 +250,7 @@ pub(super) fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
 /// Metric length along an edge.
 fn chord_of(dual: &Dual, h: HalfEdge) -> f64 {
     let [a, b] = dual.planar().ends(h);
-    chord(dual.field(), a, b)
+    chord_near(dual.field(), a, b, dual.local(dual.topology().origin(h)).near)
 }
 
 fn halve(dual: &mut Dual, h: HalfEdge) -> bool {

@@ -5,7 +5,7 @@ mod forced;
 mod tests;
 
 use super::faults::{Position, middle};
-use super::metric_quality::{Shape, collect, demand_planar, demand_vertices, edge_length, shapes_in_plane};
+use super::metric_quality::{Corners, Shape, collect, demand_planar, demand_vertices};
 use super::surface_quality::Field;
 use crate::error::Result;
 use crate::geometry::{NEEDLE, Point, Point3, Vector};
@@ -192,8 +192,8 @@ pub fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
         let (middle, half) = (a.midpoint(b), (b - a) * 0.5);
         Some(Around { field: Box::new(move |p: Point| metric.at(middle + (p - Point::default()))), half })
     };
-    let length = |ends: [u32; 2]| edge_length(ends.map(|v| mesh.point(v)), metric);
-    find(mesh, STRAIGHT, length, shapes_in_plane(mesh, metric)?, around, Position::in_plane)
+    let corners = Corners::of(mesh, metric)?;
+    find(mesh, STRAIGHT, |ends| corners.edge_length(ends), |t| corners.shape(t), around, Position::in_plane)
 }
 
 /// The same of the mesh of a surface in a metric on it, see [`surface_quality`](super::surface_quality()). Features turn in a
