@@ -28,6 +28,9 @@ pub struct Eigen {
     pub axis: Vector,
 }
 
+/// Numbers whose squares neither overflow nor lose digits.
+const SQUARES: std::ops::Range<f64> = 1e-140..1e140;
+
 /// Eigenvalues as their mean and half their difference; of the axis of the larger one the squares of the coordinates, and their
 /// product: all rational in the tensor's entries and this radius, so that functions of a tensor need no angle.
 #[derive(Clone, Copy)]
@@ -139,7 +142,8 @@ impl Tensor {
 
     fn spectrum(self) -> Spectrum {
         let (mean, half) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
-        let radius = half.hypot(self.xy);
+        let plain = (half * half + self.xy * self.xy).sqrt();
+        let radius = if SQUARES.contains(&plain) { plain } else { half.hypot(self.xy) };
         if radius == 0.0 {
             return Spectrum { mean, radius, squares: [1.0, 0.0], product: 0.0 };
         }

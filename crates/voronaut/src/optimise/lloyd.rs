@@ -51,13 +51,18 @@ impl Relaxed {
     }
 }
 
-/// When relaxation ends.
+/// When relaxation and polishing end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Patience {
     /// After so many steps.
     pub steps: usize,
-    /// Or when steps lower the energy by less than this share each.
+    /// Or when steps lower the energy, or the error, by less than this share each.
     pub gain: f64,
+}
+
+impl Patience {
+    /// Nothing is done.
+    pub(crate) const NONE: Self = Self { steps: 0, gain: 0.0 };
 }
 
 /// Lowers the energy in at most so many steps; ends early when they gain too little.

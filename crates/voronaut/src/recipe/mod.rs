@@ -34,7 +34,7 @@ use crate::figures;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Norm, ScalarField, Scaled};
 use crate::net::Net;
-use crate::optimise::{Polished, Relaxed, polish};
+use crate::optimise::{Patience, Polished, Relaxed, polish};
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{
@@ -200,7 +200,7 @@ impl<'a> Job<'a> {
             // Fewer corners let the metric be finer, and the other way round: two rounds settle it.
             for _ in 0..2 {
                 simplified = simplify(domain, &Scaled { field: self.field, factor: scale }, tolerance);
-                plan = Plan::new(&simplified, self.field, self.target())?;
+                plan = plan.again(&simplified, self.field, self.target())?;
                 (count, scale) = plan.start(self.target(), self.options.memory_limit)?;
             }
         }
@@ -293,7 +293,7 @@ impl<'a> Job<'a> {
         if self.options.polish == 0 || self.options.seeding == Seeding::Protected {
             return Ok(false);
         }
-        let now = polish(dual, aim.function, aim.norm, 0, self.progress)?;
+        let now = polish(dual, aim.function, aim.norm, Patience::NONE, self.progress)?;
         let Some(&error) = now.error.first() else { return Ok(false) };
         if error < KNOWN * aim.known_to {
             self.notes.push(NOT_KNOWN.into());
@@ -304,8 +304,9 @@ impl<'a> Job<'a> {
 
     fn polish(&self, dual: &mut Dual, aim: Aim) -> Result<Polished> {
         let sweeps = self.options.polish;
+        let patience = Patience { steps: sweeps, gain: self.options.effort.gain_of_polishing() };
         self.progress.begin("polishing", sweeps as u64)?;
-        polish(dual, aim.function, aim.norm, sweeps, self.progress)
+        polish(dual, aim.function, aim.norm, patience, self.progress)
     }
 
     fn finish(&self, domain: &Domain, dual: &Dual) -> Result<Mesh> {

@@ -108,6 +108,15 @@ impl Effort {
             Effort::Best => 1e-6,
         }
     }
+
+    /// The share of the error that a sweep of polishing has to gain.
+    pub(super) fn gain_of_polishing(self) -> f64 {
+        match self {
+            Effort::Fast => 1e-2,
+            Effort::Normal => 2e-3,
+            Effort::Best => 5e-4,
+        }
+    }
 }
 
 /// How the interior is seeded, once the boundary is sampled at unit length; its names are those users type.

@@ -254,7 +254,7 @@ impl RemeshSizes {
 }
 
 /// Vertices of the triangulation that sizes are made on first, and of the last one at least.
-const FIRST: usize = 4_000;
+const FIRST: usize = 1_000;
 
 /// What sizes are made of, wherever that is.
 struct Making<'a> {

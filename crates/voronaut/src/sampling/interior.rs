@@ -16,6 +16,8 @@ use std::collections::BinaryHeap;
 const SPLIT_FLOOR: f64 = std::f64::consts::SQRT_2;
 /// New seeds keep at least this distance (metric length) from all others.
 pub(super) const SPACING: f64 = 0.55;
+/// A length that is so many times greater by the tensors at both ends is greater along the edge.
+const CLEAR: f64 = 1.3;
 /// Corners farther apart than this (metric length) say little of what lies between them.
 const FAR: f64 = 2.5;
 
@@ -232,7 +234,11 @@ pub(super) fn is_crowded(dual: &Dual, face: FaceId, p: Point) -> bool {
     let mut near = dual.local(corners[0]).near;
     let tensor = dual.field().at_near(p, &mut near);
     let distance = |v: VertexId| tensor.length(p - dual.position(v));
-    let too_near = |v: VertexId| chord_near(dual.field(), p, dual.position(v), near) < SPACING;
+    let too_near = |v: VertexId| {
+        let lengths = [distance(v), dual.local(v).tensor.length(p - dual.position(v))];
+        let is_clear = lengths.iter().all(|length| *length > CLEAR * SPACING);
+        !is_clear && chord_near(dual.field(), p, dual.position(v), near) < SPACING
+    };
     if corners.into_iter().any(too_near) {
         return true;
     }

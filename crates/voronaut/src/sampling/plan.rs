@@ -46,15 +46,30 @@ impl Plan {
     /// # Errors
     /// The metric is not positive definite somewhere, or its complexity not finite.
     pub(crate) fn new(domain: &Domain, field: &dyn MetricField, target: Target) -> Result<Self> {
+        // Elsewhere the integral is only where the search for scale or count starts.
+        let integral = if matches!(target, Target::Complexity(_)) { complexity } else { rough_complexity };
+        let complexity = integral(field, &domain.triangles())?;
+        Ok(Self::with(domain, field, complexity))
+    }
+
+    /// That of the same domain with its curves simplified.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub(crate) fn again(&self, domain: &Domain, field: &dyn MetricField, target: Target) -> Result<Self> {
+        match target {
+            Target::Complexity(_) => Self::new(domain, field, target),
+            Target::Vertices(_) | Target::Metric => Ok(Self::with(domain, field, self.complexity)),
+        }
+    }
+
+    fn with(domain: &Domain, field: &dyn MetricField, complexity: f64) -> Self {
         let planar = domain.planar();
         let required = |h| planar.topology.constraint(h).is_some_and(|c| domain.pslg().segments[c.0 as usize].required);
         let constrained = planar.topology.edges().filter(|&h| planar.topology.constraint(h).is_some());
         let edges: Vec<(HalfEdge, bool)> = constrained.map(|h| (h, required(h))).collect();
         let arcs = edges.par_iter().map(|&(h, _)| MetricArc::of_chord(field, planar.ends(h))).collect();
-        // Elsewhere the integral is only where the search for scale or count starts.
-        let integral = if matches!(target, Target::Complexity(_)) { complexity } else { rough_complexity };
-        let complexity = integral(field, &domain.triangles())?;
-        Ok(Self { complexity, edges, arcs, corners: planar.topology.vertex_count(), copies: copies(domain) })
+        Self { complexity, edges, arcs, corners: planar.topology.vertex_count(), copies: copies(domain) }
     }
 
     /// Vertices of the domain itself, with copies: no mesh has fewer.

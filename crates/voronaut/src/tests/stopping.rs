@@ -4,7 +4,7 @@ use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::metric::{Bounds, Expression, MetricField, Norm, Snapshot, Swirl, Uniform, Variables};
 use crate::progress::Progress;
-use crate::recipe::{self, Aim, MeshOptions, Seeding};
+use crate::recipe::{self, Aim, Effort, MeshOptions, Seeding};
 use crate::surface::Input;
 use crate::surface::metric::{Spec, field};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -56,7 +56,7 @@ fn planar_meshes() {
 #[test]
 fn polished_meshes() {
     let domain = Domain::shape("rect:0,0,1,1").unwrap();
-    let options = MeshOptions { vertices: Some(200), polish: 5, ..MeshOptions::default() };
+    let options = MeshOptions { vertices: Some(200), polish: 5, effort: Effort::Best, ..MeshOptions::default() };
     let function: Snapshot = Expression::parse("sin(3*x)*cos(5*y)", Variables::Plane).unwrap().into();
     let aim = || Some(Aim { function: &function, norm: Norm::default(), known_to: 0.0 });
     stops(45, |progress| recipe::mesh_for(&domain, &Uniform::default(), aim(), &options, progress).map(drop));

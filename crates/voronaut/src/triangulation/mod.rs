@@ -154,7 +154,7 @@ impl Triangulation {
     }
 
     /// The other side of the edge; `None` at the border.
-    pub fn twin(&self, h: HalfEdge) -> Option<HalfEdge> {
+    pub(crate) fn twin(&self, h: HalfEdge) -> Option<HalfEdge> {
         let t = self.twin[h.index()];
         (t != NONE).then_some(HalfEdge(t))
     }

@@ -6,6 +6,7 @@
 
 mod moves;
 
+use super::Patience;
 use crate::dual::Dual;
 use crate::error::{Error, Result};
 use crate::metric::{Norm, ScalarField};
@@ -16,8 +17,6 @@ use crate::triangulation::VertexId;
 pub(crate) use moves::polishing_norm;
 use moves::{Objective, Place};
 
-/// It ends when a sweep lowers the error by less than this share.
-const STALLED: f64 = 5e-4;
 /// No triangle may become worse than this for it, unless it was: quality in the mean tensor of its corners.
 const POOR: f64 = 0.05;
 
@@ -34,7 +33,7 @@ pub struct Polished {
 }
 
 /// Lowers the L^p error of linear interpolation of a function by at most so many sweeps of flips and moves; ends early where a sweep
-/// gains little.
+/// gains too little.
 ///
 /// The number of vertices stays; corners and constraints stay, vertices of segments slide along them. Each move and flip lowers
 /// the error as seven values of the function in each triangle show it, keeps the triangulation embedded, and leaves the poorest of
@@ -47,7 +46,7 @@ pub(crate) fn polish(
     dual: &mut Dual,
     function: &dyn ScalarField,
     norm: Norm,
-    sweeps: usize,
+    Patience { steps: sweeps, gain }: Patience,
     progress: &dyn Progress,
 ) -> Result<Polished> {
     let mut polished = Polished::default();
@@ -62,7 +61,7 @@ pub(crate) fn polish(
         let before = polished.error.last().copied().unwrap_or_default();
         polished.error.push(work.norm());
         progress.advance(1)?;
-        if work.norm() > (1.0 - STALLED) * before {
+        if work.norm() > (1.0 - gain) * before {
             break;
         }
     }
@@ -82,6 +81,8 @@ struct Work<'a> {
     objective: Objective<'a>,
     planar: Planar,
     places: Vec<Place>,
+    /// Whether something may be gained around a vertex: it or a neighbour has moved, or an edge around it was flipped, since it was tried.
+    awake: Vec<bool>,
 }
 
 impl<'a> Work<'a> {
@@ -103,6 +104,7 @@ impl<'a> Work<'a> {
             dual,
             objective: Objective::new(function, norm, most - least),
             places: planar.positions.iter().zip(values).map(|(&at, value)| Place { at, value }).collect(),
+            awake: vec![true; planar.positions.len()],
             planar,
         }))
     }

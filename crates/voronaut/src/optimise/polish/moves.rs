@@ -12,6 +12,8 @@ use crate::triangulation::{HalfEdge, Rounds, Triangulation, VertexId, flip_in_ro
 const STEP: f64 = 0.03;
 /// Longest move, in the same unit.
 const LONGEST: f64 = 0.5;
+/// Moves shorter than this change too little for neighbours to be tried again.
+const SMALL: f64 = 0.02;
 /// Shorter moves that are tried when a move does not lower the error, and by how much they are shorter.
 const TRIALS: usize = 5;
 const SHORTER: f64 = 0.4;
@@ -19,24 +21,39 @@ const SHORTER: f64 = 0.4;
 const LEAST_CURVATURE: f64 = 1e-3;
 
 impl Work<'_> {
-    /// Moves every vertex once, those of one colour at a time. Returns how many moved.
+    /// Moves every vertex that is awake once, those of one colour at a time. Returns how many moved. Awake are then those around moves
+    /// that were not [`SMALL`].
     pub(super) fn move_all(&mut self) -> u64 {
         let mut moved = 0;
-        for group in colours(&self.planar.topology, |v| !matches!(self.dual.kind(v), Kind::Corner(_))) {
-            let better: Vec<Option<Place>> = group.par_iter().with_min_len(16).map(|&v| self.better(v)).collect();
-            for (v, place) in group.into_iter().zip(better) {
-                let Some(place) = place else { continue };
+        let awake = std::mem::replace(&mut self.awake, vec![false; self.places.len()]);
+        let is_tried = |v: VertexId| awake[v.index()] && !matches!(self.dual.kind(v), Kind::Corner(_));
+        for group in colours(&self.planar.topology, is_tried) {
+            let better: Vec<Option<(Place, f64)>> =
+                group.par_iter().with_min_len(16).map(|&v| self.better(v)).collect();
+            for (v, better) in group.into_iter().zip(better) {
+                let Some((place, step)) = better else { continue };
                 if self.planar.move_vertex(v, place.at) {
                     self.places[v.index()] = place;
                     moved += 1;
+                    if step > SMALL {
+                        self.wake(v);
+                    }
                 }
             }
         }
         moved
     }
 
-    /// Where a vertex would better be: a step of Newton's method on the error around it.
-    fn better(&self, v: VertexId) -> Option<Place> {
+    /// A vertex and its neighbours are to be tried again.
+    fn wake(&mut self, v: VertexId) {
+        self.awake[v.index()] = true;
+        for u in self.planar.topology.around(v) {
+            self.awake[u.index()] = true;
+        }
+    }
+
+    /// Where a vertex would better be, and how far that is in the unit of [`STEP`]: a step of Newton's method on the error around it.
+    fn better(&self, v: VertexId) -> Option<(Place, f64)> {
         let topology = &self.planar.topology;
         let ring: Vec<[VertexId; 2]> = topology.star(v).map(|h| [topology.target(h), topology.apex(h)]).collect();
         let corners = |place: Place, [a, b]: [VertexId; 2]| [place, self.place(a), self.place(b)];
@@ -52,7 +69,7 @@ impl Work<'_> {
         for _ in 0..TRIALS {
             let there = place([x, y]);
             if error_at(there) < now && is_allowed(shape_at(here), shape_at(there)) {
-                return Some(there);
+                return Some((there, x.hypot(y)));
             }
             (x, y) = (x * SHORTER, y * SHORTER);
         }
@@ -254,11 +271,16 @@ impl Rounds for Work<'_> {
     }
 
     fn wanted(&mut self, edges: &[HalfEdge]) -> Vec<(f64, HalfEdge)> {
-        edges.par_iter().with_min_len(64).filter_map(|&h| Some((-self.gain(h)?, h))).collect()
+        let is_awake = |&&h: &&HalfEdge| self.planar.topology.ends(h).iter().any(|v| self.awake[v.index()]);
+        let awake = edges.par_iter().with_min_len(64).filter(is_awake);
+        awake.filter_map(|&h| Some((-self.gain(h)?, h))).collect()
     }
 
     fn flip(&mut self, h: HalfEdge) -> bool {
         self.planar.topology.flip(h);
+        for v in self.planar.topology.ends(h) {
+            self.wake(v);
+        }
         true
     }
 }
