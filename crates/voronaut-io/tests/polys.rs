@@ -16,7 +16,7 @@ fn holes_regions_and_isolated_points() {
     assert_eq!(pslg.segments.len(), 3, "the last segment repeats the third");
     assert_eq!(pslg.required_points, [2]);
     assert_eq!(pslg.point_labels, [1, 2, 3, 4]);
-    assert_eq!(pslg.describe(3), "vertex 3 (0, 1)");
+    assert_eq!(pslg.points[3], Point::new(0.0, 1.0));
     let holes = vec![Point::new(0.2, 0.2)];
     assert_eq!(pslg.filling, Filling::Enclosed { holes, regions: vec![(Point::new(0.3, 0.3), 8)] });
 }

@@ -201,7 +201,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     ///
     /// # Errors
     /// [`Error::Domain`] where there is no such seed, or it would leave the domain; the diagram is as before.
-    pub(crate) fn move_to(&mut self, colour: u32, to: G::Place) -> Result<()> {
+    pub fn move_to(&mut self, colour: u32, to: G::Place) -> Result<()> {
         if self.seed(colour).is_none() {
             let help = "colours are those that insertions returned and removals have not ended";
             return Err(Error::domain("no such seed", format!("colour {colour}"), help));

@@ -101,7 +101,7 @@ impl Pslg {
     }
 
     /// How to name a point in a message: its name in the input and its coordinates.
-    pub fn describe(&self, point: u32) -> String {
+    pub(crate) fn describe(&self, point: u32) -> String {
         format!("{} {}", self.name(point), self.points[point as usize])
     }
 

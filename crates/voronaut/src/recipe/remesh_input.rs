@@ -278,6 +278,9 @@ impl Making<'_> {
     fn on_background(&self, domain: &Domain) -> Result<RemeshSizes> {
         let uniform = Tensor::isotropic(self.sizing.h_max);
         let first = self.at_vertices(even(&move |_: Point| uniform, domain, FIRST)?, None)?;
+        if first.tensors.iter().all(|&tensor| tensor == uniform) {
+            return Ok(first);
+        }
         let vertices = background_vertices(complexity(&first.mesh, &first.tensors), FIRST);
         self.at_vertices(even(&first.field()?, domain, vertices)?, None)
     }

@@ -20,7 +20,7 @@ pub fn complexity(mesh: &Mesh, tensors: &[Tensor]) -> f64 {
 ///
 /// # Errors
 /// As of [`Sampled::new`](crate::metric::Sampled::new); [`Error::Parse`] of a target that is not positive and finite.
-pub(crate) fn normalise(mesh: &Mesh, hessians: &[Tensor], norm: Norm, target_complexity: f64) -> Result<Vec<Tensor>> {
+pub fn normalise(mesh: &Mesh, hessians: &[Tensor], norm: Norm, target_complexity: f64) -> Result<Vec<Tensor>> {
     let weighted = weighted(hessians, norm)?;
     check_at_vertices(mesh, &weighted)?;
     scaled_to(mesh, &weighted, target_complexity)

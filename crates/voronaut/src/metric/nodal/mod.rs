@@ -26,8 +26,7 @@ mod spd;
 pub(super) mod test_meshes;
 
 pub use combine::{average, intersect};
-pub use complexity::complexity;
-pub(crate) use complexity::normalise;
+pub use complexity::{complexity, normalise};
 pub(crate) use gradation::Gradation;
 pub use gradation::grade;
 pub use implied::{implied, isotropic};
