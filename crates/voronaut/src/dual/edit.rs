@@ -123,8 +123,11 @@ impl Dual<'_> {
             // Cheap flips first: few margins are then left to be measured one by one.
             self.flip_all(Effort::Chord);
             self.measure_margins();
+            self.lawson.queue(self.planar.topology.edges());
+        } else {
+            let wanted = self.wanted(effort);
+            self.lawson.queue(wanted);
         }
-        self.lawson.queue(self.planar.topology.edges());
         self.flip_queued(effort);
         self.counters.flips - before
     }

@@ -1,13 +1,14 @@
 //! What the in-circle test of the mesh in the making climbs: a frozen tensor, expansions at the vertices, quadrature along the
 //! chords, geodesics with 4 and with 8 modes.
 
-use super::{Dual, Effort, Moving};
+use super::{Dual, Effort, Moving, TIE};
 use crate::geodesic::{
     Fineness, Length, Margin, PathLength, bent_chord, bowed_chord, chord, frozen_margin, hermite, margin_of_estimates,
 };
 use crate::geometry::Tensor;
 use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested, climb};
 use crate::lists::in_order;
+use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, VertexId};
 
 /// Number of levels.
@@ -40,14 +41,28 @@ impl Dual<'_> {
             let known = self.tests.known(&quad, LEVELS - 1);
             return known.unwrap_or_else(|| self.test(&[quad])[0]).margin;
         }
-        let by = ByEffort { dual: self, effort };
-        let tested = climb(&by, &quad, 0..effort as usize + 1, &self.tests.lengths, None);
-        let Tested { mut margin, level } = tested.expect("the first level tells of every edge");
-        if effort == Effort::Local && level == 0 {
-            margin.error = 0.0;
-        }
+        let Tested { margin, level } = self.climbed(&quad, effort);
         self.counters.tests[level] += 1;
         margin
+    }
+
+    fn climbed(&self, quad: &Quad, effort: Effort) -> Tested {
+        let by = ByEffort { dual: self, effort };
+        let tested = climb(&by, quad, 0..effort as usize + 1, &self.tests.lengths, None);
+        let mut tested = tested.expect("the first level tells of every edge");
+        if effort == Effort::Local && tested.level == 0 {
+            tested.margin.error = 0.0;
+        }
+        tested
+    }
+
+    /// The edges whose margins, with less than full effort, want them flipped; in parallel.
+    pub(super) fn wanted(&mut self, effort: Effort) -> Vec<HalfEdge> {
+        let edges: Vec<HalfEdge> = self.free_edges().collect();
+        let tested = edges.par_iter().with_min_len(256).map(|&h| self.climbed(&self.quad(h), effort));
+        let tested: Vec<Tested> = tested.collect();
+        tested.iter().for_each(|tested| self.counters.tests[tested.level] += 1);
+        edges.into_iter().zip(tested).filter(|(_, tested)| tested.margin.value < -TIE).map(|(h, _)| h).collect()
     }
 
     /// Computes the margins of all edges with all levels, in parallel.

@@ -2,7 +2,7 @@
 //! Gunzburger 1999).
 
 use super::cell::CellsOf;
-use super::movers::{State, is_rough_around};
+use super::movers::State;
 use super::quasi_newton::Memory;
 use super::survey::Rest;
 use crate::dual::Moving;
@@ -167,7 +167,7 @@ impl<C> Descent<'_, C> {
             next.gradient.iter().zip(&self.state.gradient).map(|(&now, &was)| now - was).collect();
         for (i, seed) in seeds.iter().enumerate() {
             // Rough and resting seeds would spoil the memory of the others.
-            if is_rough_around(dual, seed.id) || !self.rest.is_awake(i) {
+            if seed.is_rough || !self.rest.is_awake(i) {
                 (step[i], change[i]) = (Vector::default(), Vector::default());
             }
         }

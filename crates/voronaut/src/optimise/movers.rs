@@ -8,6 +8,7 @@ use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
 use crate::geometry::{Point, Vector, from_frame};
 use crate::net::{Ball, circles_on_canvas};
+use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
 
 /// A seed whose move would turn a triangle over tries this many times with half of the move.
@@ -35,6 +36,8 @@ pub(super) struct Mover {
     pub(super) id: VertexId,
     freedom: Freedom,
     mass: f64,
+    /// Whether the metric is rough at the seed or one of its neighbours: no quasi-Newton step helps there.
+    pub(super) is_rough: bool,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -58,8 +61,9 @@ impl State {
         let shares: Vec<_> = moments.iter().map(|&(v, m)| (v, m.second / square)).collect();
         let energy = shares.iter().map(|(_, share)| share).sum();
         let straight = !cells.lower_energy();
-        let movable = moments.into_iter().filter_map(|(v, m)| Mover::new(dual, v, &m, straight));
-        let (seeds, gradient) = movable.unzip();
+        let movable = moments.into_par_iter().with_min_len(256);
+        let movable: Vec<_> = movable.filter_map(|(v, m)| Mover::new(dual, v, &m, straight)).collect();
+        let (seeds, gradient) = movable.into_iter().unzip();
         Ok(Self { energy, shares, seeds, gradient })
     }
 
@@ -74,7 +78,7 @@ impl State {
             return lloyd;
         }
         for ((seed, d), &step) in self.seeds.iter().zip(&mut direction).zip(&lloyd) {
-            if is_rough_around(dual, seed.id) {
+            if seed.is_rough {
                 *d = step;
             }
         }
@@ -82,8 +86,7 @@ impl State {
     }
 }
 
-/// Whether the metric is rough at a seed or one of its neighbours: no quasi-Newton step helps there.
-pub(super) fn is_rough_around(dual: &impl Moving, v: VertexId) -> bool {
+fn is_rough_around(dual: &impl Moving, v: VertexId) -> bool {
     dual.local(v).is_rough || dual.topology().star(v).any(|h| dual.local(dual.topology().target(h)).is_rough)
 }
 
@@ -102,7 +105,7 @@ impl Mover {
         let tensor = dual.local(id).tensor;
         let pull = tensor.apply(from_frame(tensor.cholesky(), moments.first)) * -2.0;
         let gradient = if let Freedom::Along(t) = freedom { t * pull.dot(t) } else { pull };
-        Some((Self { id, freedom, mass: moments.mass }, gradient))
+        Some((Self { id, freedom, mass: moments.mass, is_rough: is_rough_around(dual, id) }, gradient))
     }
 
     /// A first guess of the inverse Hessian times a covector: the gradient, so scaled, is minus the step to the centroid.
