@@ -195,6 +195,18 @@ mod tests {
     }
 
     #[test]
+    fn derivatives_tell_of_points_nearby_and_say_when_they_do_not() {
+        let linear = |p: Point| Tensor::new(4.0 + p.x, 0.5 * p.y, 3.0 - p.x);
+        let (p, by) = (Point::new(0.1, 0.2), Vector::new(0.01, -0.015));
+        let (carried, there) = (LocalMetric::at(&linear, p).carried(by), linear(p + by));
+        let off = carried.tensor - there;
+        assert!(off.xx.abs() + off.xy.abs() + off.yy.abs() < 1e-14 && !carried.is_due());
+        // Two steps are one as long, and beyond a twentieth of a unit the field has to be asked.
+        assert!(carried.carried(by).is_due() && !LocalMetric::at(&linear, p).is_due());
+        assert!(!carried.moved(&linear, p + by).is_due());
+    }
+
+    #[test]
     fn half_plane_christoffel_symbols() {
         let half_plane = |p: Point| Tensor::isotropic(p.y);
         // Differences over a quarter unit see 1 / y^2 through a wide window; a fine metric takes a narrow one.

@@ -239,6 +239,23 @@ mod tests {
     }
 
     #[test]
+    fn axes_are_those_of_any_angle_and_scale() {
+        for scale in [1e-200, 1e-9, 1.0, 1e9, 1e200] {
+            for step in 0..40 {
+                let angle = f64::from(step) * 0.0786 - std::f64::consts::FRAC_PI_2;
+                let axis = Vector::new(angle.cos(), angle.sin());
+                let e = Tensor::from_axis(axis, 3.0 * scale, 2.0 * scale).eigen();
+                assert!(
+                    (e.large / scale - 3.0).abs() < 1e-14 && (e.small / scale - 2.0).abs() < 1e-14,
+                    "{scale} {e:?}"
+                );
+                assert!(e.axis.cross(axis).abs() < 1e-14 && (e.axis.norm() - 1.0).abs() < 1e-15, "{angle} {e:?}");
+            }
+            assert_eq!((Tensor::IDENTITY * scale).eigen().axis, Vector::new(1.0, 0.0));
+        }
+    }
+
+    #[test]
     fn cholesky_factor_measures_lengths() {
         let m = Tensor::new(5.0, -2.0, 3.0);
         let [a, b, c] = m.cholesky();

@@ -285,6 +285,19 @@ mod tests {
         }
 
         #[test]
+        fn walks_end_where_the_point_is(mesh in triangles(), x in -0.5..1.5, y in -0.5..1.5, start in 0..50_u32) {
+            let locator = Locator::new(&mesh, "it").unwrap();
+            let p = Point::new(x, y);
+            let found = locator.locate_from(Some(start), p).unwrap();
+            prop_assert!((found.distance - locator.locate(p).unwrap().distance).abs() < 1e-14);
+            let [a, b, c] = mesh.corners_of(mesh.triangles[found.triangle as usize]);
+            let q = Point::default() + [a, b, c].iter().zip(found.weights).fold(Vector::default(), |sum, (corner, w)| {
+                sum + (*corner - Point::default()) * w
+            });
+            prop_assert!((p.distance(q) - found.distance).abs() < 1e-13);
+        }
+
+        #[test]
         fn triangles_that_hold_a_point_of_a_triangle_are_near_it(mesh in triangles(), r in 0.0..1.0, s in 0.0..1.0) {
             let locator = Locator::new(&mesh, "it").unwrap();
             let [a, b, c] = mesh.corners_of(mesh.triangles[0]);

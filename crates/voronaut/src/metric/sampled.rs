@@ -154,6 +154,16 @@ mod tests {
     }
 
     #[test]
+    fn where_it_was_found_last_changes_nothing() {
+        let field = sampled(&grid(8));
+        let mut near = Near::default();
+        for i in 0..300 {
+            let p = Point::new(1.3 * (f64::from(i) * 0.618).fract() - 0.1, 1.3 * (f64::from(i) * 0.414).fract() - 0.1);
+            assert!(error(field.at_near(p, &mut near), field.at(p)) < 1e-14, "{p}");
+        }
+    }
+
+    #[test]
     fn triangles_without_area_are_harmless() {
         let mut mesh = grid(3);
         mesh.triangles.extend([[0, 0, 0], [0, 1, 1], [0, 1, 2]]);

@@ -10,7 +10,7 @@ use crate::geometry::Point;
 use crate::lists::distinct;
 use crate::metric::{MetricField, complexity, rough_complexity};
 use crate::parallel::prelude::*;
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::VertexId;
 
 /// What the size of the mesh should follow from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,8 +32,8 @@ const BYTES_PER_VERTEX: f64 = 1200.0;
 pub(crate) struct Plan {
     /// The integral of sqrt(det M).
     pub complexity: f64,
-    /// One half-edge of every constrained edge of the domain's triangulation, and whether it must stay whole.
-    pub edges: Vec<(HalfEdge, bool)>,
+    /// The ends of every constrained edge of the domain's triangulation, and whether it must stay whole.
+    pub edges: Vec<([VertexId; 2], bool)>,
     /// Their metric lengths.
     pub arcs: Vec<MetricArc>,
     corners: usize,
@@ -67,8 +67,9 @@ impl Plan {
         let planar = domain.planar();
         let required = |h| planar.topology.constraint(h).is_some_and(|c| domain.pslg().segments[c.0 as usize].required);
         let constrained = planar.topology.edges().filter(|&h| planar.topology.constraint(h).is_some());
-        let edges: Vec<(HalfEdge, bool)> = constrained.map(|h| (h, required(h))).collect();
-        let arcs = edges.par_iter().map(|&(h, _)| MetricArc::of_chord(field, planar.ends(h))).collect();
+        let edges: Vec<_> = constrained.map(|h| (planar.topology.ends(h), required(h))).collect();
+        let arc = |&(ends, _): &([VertexId; 2], bool)| MetricArc::of_chord(field, ends.map(|v| planar.position(v)));
+        let arcs = edges.par_iter().map(arc).collect();
         Self { complexity, edges, arcs, corners: planar.topology.vertex_count(), copies: copies(domain) }
     }
 
@@ -84,7 +85,7 @@ impl Plan {
 
     /// Vertices on the boundary and interfaces when the metric is multiplied by `scale`.
     pub(crate) fn boundary_vertices(&self, scale: f64) -> f64 {
-        let cuts = |(arc, &(_, required)): (&MetricArc, &(HalfEdge, bool))| {
+        let cuts = |(arc, &(_, required)): (&MetricArc, &([VertexId; 2], bool))| {
             if required { 0.0 } else { pieces(arc.length() * scale.sqrt()) as f64 - 1.0 }
         };
         self.corners as f64 + self.arcs.iter().zip(&self.edges).map(cuts).sum::<f64>()
@@ -226,14 +227,18 @@ pub(super) fn pieces(length: f64) -> usize {
     (length.round() as usize).max(1)
 }
 
-/// Cuts every constrained edge of a fresh dual into edges of about unit metric length; `arcs` are the edges' lengths
+/// Cuts every constrained edge of a fresh dual, by its ends, into edges of about unit metric length; `arcs` are the edges' lengths
 /// under the unscaled field, in order, and `scale` the field's factor. Required segments stay whole.
 ///
 /// A cut that rounding would make invalid is left out. Returns the number of new vertices.
-pub(crate) fn sample_segments(dual: &mut Dual, edges: &[(HalfEdge, bool)], arcs: &[MetricArc], scale: f64) -> usize {
+pub(crate) fn sample_segments(
+    dual: &mut Dual,
+    edges: &[([VertexId; 2], bool)],
+    arcs: &[MetricArc],
+    scale: f64,
+) -> usize {
     let before = dual.vertex_count();
-    let ends: Vec<_> = edges.iter().map(|&(h, _)| dual.topology().ends(h)).collect();
-    for ((&(_, required), arc), [from, to]) in edges.iter().zip(arcs).zip(ends) {
+    for (&([from, to], required), arc) in edges.iter().zip(arcs) {
         if required {
             continue;
         }
@@ -264,9 +269,29 @@ fn cut(dual: &mut Dual, from: VertexId, to: VertexId, points: &[Point]) {
 mod tests {
     use super::*;
     use crate::domain::Domain;
-    use crate::geometry::Tensor;
+    use crate::geometry::{Tensor, Vector};
     use crate::metric::Scaled;
     use crate::sampling::Plan;
+
+    /// The first flips of the dual number half-edges anew.
+    #[test]
+    fn every_side_is_cut_by_its_own_metric() {
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        // Thin across one diagonal or the other, so that one of them is flipped; fine on one side.
+        for across in [Vector::new(1.0, 1.0), Vector::new(1.0, -1.0)] {
+            let field = |p: Point| {
+                Tensor::IDENTITY * 16.0
+                    + Tensor::square(across) * 64.0
+                    + Tensor::new(0.0, 0.0, 4e4 * (-20.0 * p.x).exp())
+            };
+            let plan = Plan::new(&domain, &field, crate::sampling::Target::Metric).unwrap();
+            let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
+            sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0);
+            let edges = dual.topology().edges().filter(|&h| dual.topology().constraint(h).is_some());
+            let lengths: Vec<f64> = edges.map(|h| dual.edge_length(h)).collect();
+            assert!(lengths.iter().all(|length| (0.7..1.4).contains(length)), "{lengths:?}");
+        }
+    }
 
     #[test]
     fn walls_face_to_face_are_cut_in_little_time() {
