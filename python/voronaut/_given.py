@@ -16,6 +16,8 @@ MeshArrays = dict[str, Any]
 
 # Largest number of a vertex, and of labels.
 _MOST = 2**31 - 1
+# More numbers than any option takes.
+_LONGEST = 7
 
 
 def text_of(name: str, value: object) -> str:
@@ -24,12 +26,15 @@ def text_of(name: str, value: object) -> str:
         raise TypeError(f"{name}: a number or a text is expected, not {value!r}")
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value) if not isinstance(value, str) else value
-    if isinstance(value, (list, tuple, np.ndarray)):
+    if isinstance(value, np.ndarray):
+        return text_of(name, value[()] if value.ndim == 0 else list(value[:_LONGEST]))
+    if isinstance(value, (list, tuple)) and 0 < len(value) < _LONGEST:
         return ",".join(text_of(name, part) for part in value)
     if isinstance(value, (int, np.integer)):
         return str(int(value))
     if isinstance(value, (float, np.floating)):
-        return repr(float(value))
+        is_whole = value.is_integer() and abs(value) < 2**53
+        return repr(int(value) if is_whole else float(value))
     raise TypeError(f"{name}: a number or a text is expected, not {type(value).__name__}")
 
 

@@ -268,6 +268,8 @@ def _labels(name: str, value: object, count: int) -> Ints:
 
 
 def _named(name: str, given: Mapping[str, npt.ArrayLike] | None) -> dict[str, npt.NDArray[Any]]:
+    if given is not None and not isinstance(given, Mapping):
+        raise TypeError(f"{name}: a mapping of names to arrays is expected, not {type(given).__name__}")
     return {key: np.asarray(value) for key, value in (given or {}).items()}
 
 

@@ -138,8 +138,12 @@ class Metric:
         """Times the factor by which the integral of sqrt(det M) is this; meshes have about 1.15 vertices for each unit."""
         return Metric(("scaled", (float(complexity), self._description)))
 
-    # As animate calls it.
+    # As animate calls these.
     normalise = scale_to
+
+    def combine(self, *others: MetricLike, average: bool = True, weights: Sequence[float] | None = None) -> Metric:
+        """`average`, or with `average=False` `intersect`."""
+        return self.average(*others, weights=weights) if average else self.intersect(*others)
 
     def at(self, mesh: Any) -> Floats:
         """The tensors at the vertices of a planar mesh: (N, 2, 2)."""
