@@ -172,6 +172,20 @@ def test_pyvista_chains_and_carries():
     assert adapted.n_points == 500 and "u" in adapted.point_data
 
 
+def test_pyvista_reads_what_it_lacks(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    mesh = voronaut.mesh("rect:0,0,1,1", "uniform", n=80)
+    mesh.fields["u"] = mesh.points[:, 0].copy()
+    for name in ("a.meshb", "a.solb", "a.sol"):
+        mesh.save(tmp_path / name)
+    assert pyvista.read(tmp_path / "a.meshb").n_cells == len(mesh.triangles)
+    for name in ("a.solb", "a.sol"):
+        assert np.array_equal(pyvista.read(tmp_path / name).point_data["solution 0"], mesh.fields["u"])
+    voronaut.mesh("rect:0,0,1,1", "uniform", n=50).save(tmp_path / "a.meshb")
+    with pytest.raises(ValueError, match="80 values, and 50 vertices"):
+        pyvista.read(tmp_path / "a.solb")
+
+
 def test_the_program_is_the_program(tmp_path):
     words = [sys.executable, "-m", "voronaut"]
     done = subprocess.run([*words, "mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "50", "-o", "a.mesh", "-q"], cwd=tmp_path)

@@ -33,8 +33,8 @@ def text_of(name: str, value: object) -> str:
     if isinstance(value, (int, np.integer)):
         return str(int(value))
     if isinstance(value, (float, np.floating)):
-        is_whole = value.is_integer() and abs(value) < 2**53
-        return repr(int(value) if is_whole else float(value))
+        number = float(value)
+        return repr(int(number) if number.is_integer() and abs(number) < 2**53 else number)
     raise TypeError(f"{name}: a number or a text is expected, not {type(value).__name__}")
 
 

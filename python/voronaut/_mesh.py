@@ -179,12 +179,13 @@ class Mesh:
         return mesh.with_subdomains(subdomains).with_boundaries(self._facets(mesh))
 
     def _facets(self, mesh: Any) -> dict[str, npt.NDArray[Any]]:
-        facets = {tuple(sorted(facet)): i for i, facet in enumerate(mesh.facets.T.tolist())}
-        found: dict[str, list[int]] = {}
-        for edge, label in zip(self.edges.tolist(), self.edge_labels.tolist()):
-            if label != 0:
-                found.setdefault(str(label), []).append(facets[tuple(sorted(edge))])
-        return {label: np.array(numbers) for label, numbers in found.items()}
+        """By their labels, the numbers of edges among scikit-fem's."""
+        ends = [np.sort(pairs, axis=0).astype(np.int64) for pairs in (mesh.facets, self.edges.T)]
+        facets, edges = (least * len(self.points) + greatest for least, greatest in ends)
+        order = np.argsort(facets)
+        numbers = order[np.searchsorted(facets, edges, sorter=order).clip(max=len(facets) - 1)]
+        labels = np.where(facets[numbers] == edges, self.edge_labels, 0)
+        return {str(label): numbers[labels == label] for label in set(labels.tolist()) - {0}}
 
     def plot(
         self, field: str | npt.ArrayLike | None = None, *, ax: Any = None, ellipses: Any = None, **style: Any

@@ -167,7 +167,11 @@ def _perform(
             texts.append((name, value))
         else:
             texts.append((name, [_given.text_of("n" if name == "vertices" else name, value)]))
-    told = _voronaut.perform(command, texts, held, _callback(progress))
+    try:
+        told = _voronaut.perform(command, texts, held, _callback(progress))
+    finally:
+        if progress is True:
+            print(file=sys.stderr)
     sys.stderr.writelines(f"voronaut: {warning}\n" for warning in told["warnings"])
     return told
 
@@ -182,8 +186,7 @@ def _callback(progress: Progress) -> Callable[[str, int, int], object] | None:
 
     def bar(stage: str, done: int, total: int) -> None:
         share = done / max(total, 1)
-        end = "\n" if stage == "checking" else ""
-        print(f"\r{stage:<16} {'━' * round(40 * share):<40} {100 * share:3.0f} %", end=end, file=sys.stderr, flush=True)
+        print(f"\r{stage:<16} {'━' * round(40 * share):<40} {100 * share:3.0f} %", end="", file=sys.stderr, flush=True)
 
     return bar
 

@@ -40,7 +40,7 @@ def _flat(values: Any) -> Any:
 def from_pyvista(data: Any, name: str = "mesh") -> Mesh:
     """The triangles of a pyvista data set: of volumes their boundary, polygons cut into triangles."""
     if not hasattr(data, "regular_faces"):
-        data = data.extract_surface()
+        data = data.extract_surface(pass_pointid=False, pass_cellid=False, algorithm=None)
     if not data.is_all_triangles:
         data = data.triangulate()
     labels = data.cell_data.get(_LABEL)

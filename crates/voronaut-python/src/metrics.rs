@@ -170,7 +170,7 @@ fn called(function: &Py<PyAny>, course: &Course, points: &[f64], dimension: usiz
         let array = PyArray1::from_slice(py, points).reshape([points.len() / dimension, dimension])?;
         values_of(&function.call1(py, (array,))?.into_bound(py))
     };
-    Python::attach(call).map_err(|error| course.raise(error))
+    course.call(call)
 }
 
 /// Sizes and tensors as tensors of the plane.
