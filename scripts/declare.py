@@ -28,7 +28,7 @@ UNITS = {"GIB": "GiB", "SECONDS": "seconds", "DEGREES": "degrees"}
 DOMAIN = ("domain : file, shape, arrays, mesh or object with `__geo_interface__`", "What to mesh: `\"rect:0,0,2,1\"`, "
           "`\"wing.mesh\"`, `\"sphere:1\"`, a tuple of points (N, 2) and segments (K, 2), of points (N, 3) and triangles (M, 3), "
           "with labels as a third if there are some; a mesh of voronaut, pyvista or meshio.")
-METRIC = ("metric : Metric, text, array or function", "Sizes and directions: what the command line has (`\"uniform\"`, `\"swirl\"`, "
+METRIC = ("metric : Metric, number, text, array or function", "Sizes and directions: one size, what the command line has (`\"uniform\"`, `\"swirl\"`, "
           "`\"curvature\"`, `\"hessian:EXPR\"`, `\"formula:m11; m12; m22\"`, `\"boundary:h0=0.1\"`, `\"FILE.sol\"`), sizes or tensors at "
           "the domain's vertices, or a function of points.")
 PROGRESS = ("progress : bool or function, default False", "True shows a bar; a function is called with the stage, how much is done and "

@@ -73,6 +73,8 @@ def test_surfaces():
     assert mesh.points.shape == (600, 3) and not mesh.is_planar and mesh.report["euler"] == 2
     again = voronaut.mesh(mesh, Metric.from_callable(lambda points: 0.2 + 0.1 * points[:, 0] ** 2), n=400)
     assert again.points.shape == (400, 3)
+    by_size, by_values = voronaut.mesh(mesh, 0.1), voronaut.mesh(mesh, np.full(600, 0.1))
+    assert abs(len(by_size.points) / len(by_values.points) - 1) < 0.02
     by_values = voronaut.mesh(mesh, np.full(600, 0.1), n=400)
     assert by_values.report["valid"]
 
@@ -137,6 +139,8 @@ def test_files_and_other_programs_arrays(tmp_path):
     meshio = pytest.importorskip("meshio")
     assert np.array_equal(meshio.read(tmp_path / "a.vtu").points[:, :2], mesh.points)
     assert voronaut.check(mesh.to_meshio())["valid"]
+    labelled = voronaut.mesh((SQUARE, SIDES, [1, 2, 3, 4]), "uniform", n=60).to_meshio()
+    assert set(voronaut.mesh(labelled, "uniform", n=60).edge_labels.tolist()) == {1, 2, 3, 4}
     by_file = voronaut.mesh(tmp_path / "a.mesh", "uniform", n=50)
     assert len(by_file.points) == 50
 

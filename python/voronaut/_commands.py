@@ -104,10 +104,10 @@ def mesh(
         What to mesh: `"rect:0,0,2,1"`, `"wing.mesh"`, `"sphere:1"`, a tuple of points (N, 2) and segments (K, 2), of
         points (N, 3) and triangles (M, 3), with labels as a third if there are some; a mesh of voronaut, pyvista or
         meshio.
-    metric : Metric, text, array or function
-        Sizes and directions: what the command line has (`"uniform"`, `"swirl"`, `"curvature"`, `"hessian:EXPR"`,
-        `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the domain's vertices, or a
-        function of points.
+    metric : Metric, number, text, array or function
+        Sizes and directions: one size, what the command line has (`"uniform"`, `"swirl"`, `"curvature"`,
+        `"hessian:EXPR"`, `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the
+        domain's vertices, or a function of points.
     n : int, optional
         Vertices; one factor scales the metric to meet it.
     complexity : float, optional
@@ -256,10 +256,10 @@ def dual(
         What to mesh: `"rect:0,0,2,1"`, `"wing.mesh"`, `"sphere:1"`, a tuple of points (N, 2) and segments (K, 2), of
         points (N, 3) and triangles (M, 3), with labels as a third if there are some; a mesh of voronaut, pyvista or
         meshio.
-    metric : Metric, text, array or function
-        Sizes and directions: what the command line has (`"uniform"`, `"swirl"`, `"curvature"`, `"hessian:EXPR"`,
-        `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the domain's vertices, or a
-        function of points.
+    metric : Metric, number, text, array or function
+        Sizes and directions: one size, what the command line has (`"uniform"`, `"swirl"`, `"curvature"`,
+        `"hessian:EXPR"`, `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the
+        domain's vertices, or a function of points.
     seeds : (N, 2) or (N, 3) array
         Seed i is vertex i.
     dual : str, default 'both'
@@ -383,10 +383,10 @@ def distance(
         What to mesh: `"rect:0,0,2,1"`, `"wing.mesh"`, `"sphere:1"`, a tuple of points (N, 2) and segments (K, 2), of
         points (N, 3) and triangles (M, 3), with labels as a third if there are some; a mesh of voronaut, pyvista or
         meshio.
-    metric : Metric, text, array or function
-        Sizes and directions: what the command line has (`"uniform"`, `"swirl"`, `"curvature"`, `"hessian:EXPR"`,
-        `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the domain's vertices, or a
-        function of points.
+    metric : Metric, number, text, array or function
+        Sizes and directions: one size, what the command line has (`"uniform"`, `"swirl"`, `"curvature"`,
+        `"hessian:EXPR"`, `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the
+        domain's vertices, or a function of points.
     start : point or (N, 2), (N, 3) array
         Where distances start.
     to : point, optional
@@ -485,10 +485,10 @@ def check(
     ----------
     mesh : Mesh, file or arrays
         What to examine.
-    metric : Metric, text, array or function
-        Sizes and directions: what the command line has (`"uniform"`, `"swirl"`, `"curvature"`, `"hessian:EXPR"`,
-        `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the domain's vertices, or a
-        function of points.
+    metric : Metric, number, text, array or function
+        Sizes and directions: one size, what the command line has (`"uniform"`, `"swirl"`, `"curvature"`,
+        `"hessian:EXPR"`, `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the
+        domain's vertices, or a function of points.
     domain : as for `mesh`, optional
         What it should be a mesh of.
     metric_scale : float, optional

@@ -28,13 +28,15 @@ class Metric:
 
     @staticmethod
     def of(value: MetricLike, mesh: Any = None) -> Metric:
-        """Whatever may stand for a metric as one; arrays need the mesh that they belong to."""
+        """Whatever may stand for a metric as one; a number is a size, arrays need the mesh that they belong to."""
         if isinstance(value, Metric):
             return value
         if isinstance(value, (str, os.PathLike)):
             return Metric(("text", (os.fspath(value),)))
         if callable(value):
             return Metric.from_callable(value)
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            return Metric.uniform(value)
         return Metric.from_array(value, mesh)
 
     @staticmethod

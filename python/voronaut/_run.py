@@ -35,7 +35,8 @@ def dual(
     held["seeds"] = {"seeds": _given.floats("seeds", seeds, (2, 3))}
     told = _perform("dual", words, options, defaults, held, progress)
     made = _mesh_of(told)
-    made.diagram = _canvas_of(told)
+    made.diagram = canvas = _canvas_of(told)
+    canvas.fields["colour"] = canvas.point_labels
     return made
 
 
@@ -49,7 +50,6 @@ def distance(
     words["to"] = None if to is None else _given.text_of("to", _given.floats("to", to))
     told = _perform("distance", words, options, defaults, held, progress)
     made = _canvas_of(told)
-    assert made is not None
     made.report = json.loads(told["report"])
     return made
 
@@ -195,12 +195,7 @@ def _mesh_of(told: dict[str, Any]) -> Mesh:
     return Mesh._of(told["mesh"], json.loads(told["report"]))
 
 
-def _canvas_of(told: dict[str, Any]) -> Mesh | None:
-    if "canvas" not in told:
-        return None
+def _canvas_of(told: dict[str, Any]) -> Mesh:
     canvas = Mesh._of(told["canvas"])
-    distances = told["distances"]
-    canvas.fields["distance"] = distances
-    if canvas.point_labels.any():
-        canvas.fields["colour"] = canvas.point_labels
+    canvas.fields["distance"] = told["distances"]
     return canvas
