@@ -159,6 +159,10 @@ def test_pictures_and_notebooks():
     assert mesh.plot("u") is not None and "60" in repr(mesh)
     assert len(mesh.plot(ellipses="uniform").lines) == 60 + 2
     assert "data:image/png" in mesh._repr_html_() and "unit edges" in mesh._repr_html_()
+    sphere = voronaut.mesh("sphere:1", "uniform", n=100)
+    assert np.array_equal(sphere.plot(sphere.quality).collections[0].get_array(), sphere.quality)
+    with pytest.raises(ValueError, match="planar meshes only"):
+        sphere.plot(ellipses="curvature")
     with pytest.raises(KeyError, match="there are"):
         mesh.plot("v")
 

@@ -208,8 +208,13 @@ class Mesh:
                 self._draw_ellipses(ax, ellipses)
             return ax
         ax = ax if ax is not None else plt.figure().add_subplot(projection="3d", aspect="equal")
-        style = {"linewidth": 0.2, "edgecolor": "#26547c", "color": "#dbe9f4", **style}
-        ax.plot_trisurf(*self.points.T, triangles=self.triangles, **style)
+        if ellipses is not None:
+            raise ValueError("ellipses: they are drawn of planar meshes only")
+        drawn = ax.plot_trisurf(
+            *self.points.T, triangles=self.triangles, **{"linewidth": 0.2, "edgecolor": "#26547c", "color": "#dbe9f4", **style}
+        )
+        if values is not None:
+            drawn.set_array(values if len(values) == len(self.triangles) else values[self.triangles].mean(axis=1))
         return ax
 
     def _draw_ellipses(self, ax: Any, metric: Any) -> None:

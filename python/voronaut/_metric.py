@@ -71,7 +71,7 @@ class Metric:
 
     @staticmethod
     def from_callable(function: Callable[[Floats], npt.ArrayLike]) -> Metric:
-        """Of a function that takes points (N, 2), on surfaces (N, 3), and returns sizes (N,) or tensors.
+        """Of a function that takes points (N, 2), on surfaces (N, 3), and returns sizes (N,), one size for all, or tensors.
 
         It is called a few times with many points, from one thread at a time: at the vertices of a background that is refined by what
         it says, on surfaces at the vertices of the surface.
@@ -82,6 +82,8 @@ class Metric:
         def called(points: Floats) -> tuple[str, Floats]:
             said = function(points)
             try:
+                if isinstance(said, (int, float)) and not isinstance(said, bool):
+                    said = np.full(len(points), float(said))
                 return _given.tensor_values("the metric function's result", said, len(points))
             except ValueError as error:
                 raise ValueError(f"{error}{_place(said, points)}") from None
