@@ -186,7 +186,7 @@ def another(chance, array):
     forms = [
         entry, entry, read_only, np.repeat(array, 2, axis=0)[::2], array[::-1], np.asfortranarray(array), array.T, array[:0], array[:-1], array[None],
         array.ravel(), array.astype(chance.choice(["f4", "f2", "i1", "u1", "u8", ">f8", ">i4", "c16", "O", "S9", "?"])), np.ma.masked_equal(array, 0),
-        np.ma.masked_array(array), np.repeat(array, 50_000, axis=0), np.broadcast_to(array, (3, *array.shape)), array.tolist(), array * 1e200, array * 0,
+        np.ma.masked_array(array), np.repeat(array, 50_000 if array.dtype.kind == "f" else 500, axis=0), np.broadcast_to(array, (3, *array.shape)), array.tolist(), array * 1e200, array * 0,
     ]  # fmt: skip
     return chance.choice(forms)
 
