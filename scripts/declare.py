@@ -23,11 +23,12 @@ TERMINAL = {"out", "report", "quiet", "verbose", "verbosity", "help", "version"}
 INTEGERS = {"N", "STEPS", "SWEEPS", "K", "PIXELS"}
 NUMBERS = {"H", "D", "C", "RATIO", "FACTOR", "DEGREES", "SHARE", "SECONDS", "GIB", "G", "MB"}
 FILES = {"FILE", "MESH"}
+UNITS = {"GIB": "GiB", "SECONDS": "seconds", "DEGREES": "degrees"}
 
 DOMAIN = ("domain : file, shape, arrays, mesh or object with `__geo_interface__`", "What to mesh: `\"rect:0,0,2,1\"`, "
           "`\"wing.mesh\"`, `\"sphere:1\"`, a tuple of points (N, 2) and segments (K, 2), of points (N, 3) and triangles (M, 3), "
           "with labels as a third if there are some; a mesh of voronaut, pyvista or meshio.")
-METRIC = ("metric : Metric, text, array or function", "Sizes and directions: what the command line has (`\"uniform\"`, `\"swirl\"`, "
+METRIC = ("metric : Metric, number, text, array or function", "Sizes and directions: one size, what the command line has (`\"uniform\"`, `\"swirl\"`, "
           "`\"curvature\"`, `\"hessian:EXPR\"`, `\"formula:m11; m12; m22\"`, `\"boundary:h0=0.1\"`, `\"FILE.sol\"`), sizes or tensors at "
           "the domain's vertices, or a function of points.")
 PROGRESS = ("progress : bool or function, default False", "True shows a bar; a function is called with the stage, how much is done and "
@@ -175,7 +176,7 @@ def function(name, spec, command):
     lines += ["    *,", *(f"    {it['name']}: {types[it['name']]} = {default(it)}," for it in options)]
     lines.append("    progress: Progress = False,")
     docs = "".join(described(*it) for it in spec["docs"])
-    docs += "".join(described(f"{it['name']} : {shown(types[it['name']], it)}", keywords(it["help"])) for it in options)
+    docs += "".join(described(f"{it['name']} : {shown(types[it['name']], it)}", keywords(it["help"]) + choices(it)) for it in options)
     docs += described(*PROGRESS)
     given = ", ".join(f'"{it["name"]}": {it["name"]}' for it in options)
     defaults = ", ".join(f'"{it["name"]}": {default(it)}' for it in options if it["default"] is not None)
@@ -211,8 +212,16 @@ def default(option):
     return given if re.fullmatch(r"-?\d+(\.\d+)?(e-?\d+)?", given) else repr(given)
 
 
+def choices(option):
+    """What it may be, where its help does not say so."""
+    unsaid = [it for it in option["choices"] if it not in (option["help"] or "")]
+    return f": {', '.join(option['choices'])}" if unsaid and not option["is_flag"] else ""
+
+
 def shown(of, option):
-    return f"{of.replace(' | None', ', optional')}" + ("" if default(option) == "None" else f", default {default(option)}")
+    unit = f" ({UNITS[option['value']]})" if option["value"] in UNITS else ""
+    rest = ", optional" if default(option) == "None" else f", default {default(option)}"
+    return of.removesuffix(" | None") + unit + rest
 
 
 def keywords(text):

@@ -3,6 +3,8 @@
 import gc
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -14,6 +16,7 @@ import voronaut
 from voronaut import Metric
 
 SQUARE = "rect:0,0,1,1"
+CAMPAIGN = Path(__file__).resolve().parents[2] / "scripts/campaign_python.py"
 POINTS = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
@@ -39,12 +42,12 @@ def test_functions_of_points(function, kind, message):
 @pytest.mark.parametrize(
     ("call", "kind", "message"),
     [
-        (lambda: voronaut.mesh(SQUARE, "uniform", n=2), ValueError, "n='2'|vertices='2'"),
+        (lambda: voronaut.mesh(SQUARE, "uniform", n=2), ValueError, "n='2': 2 is not in"),
         (lambda: voronaut.mesh(SQUARE, "uniform", n="many"), ValueError, "many"),
         (lambda: voronaut.mesh(SQUARE, "uniform", n=100, colour="red"), TypeError, "colour"),
         (lambda: voronaut.mesh(SQUARE, "uniform", n=100, h_min=-1), ValueError, "h_min='-1': not a positive number"),
         (lambda: voronaut.mesh(SQUARE, "uniform", n=100, canvas="grid"), ValueError, "canvas='grid'"),
-        (lambda: voronaut.mesh(SQUARE, "uniform", n=100, complexity=4), ValueError, "cannot be used with"),
+        (lambda: voronaut.mesh(SQUARE, "uniform", n=100, complexity=4), ValueError, "n cannot be used with complexity$"),
         (lambda: voronaut.mesh(SQUARE, "uniform", n=100, fit=True), voronaut.UnsupportedError, "fit"),
         (lambda: voronaut.mesh("rect:0,0,1", "uniform", n=100), voronaut.InputError, "3 numbers where 4"),
         (lambda: voronaut.mesh("none.mesh", "uniform", n=100), OSError, "none.mesh"),
@@ -105,7 +108,7 @@ def test_an_interrupt_is_heard_within_a_second():
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         voronaut.mesh(SQUARE, "swirl", n=500_000)
-    assert time.monotonic() - start < 10
+    assert time.monotonic() - start < 2
     signal.signal(signal.SIGINT, before)
 
 
@@ -133,7 +136,7 @@ def test_no_thread_and_no_file_is_left(tmp_path, monkeypatch):
     deadline = time.monotonic() + 5
     while threads() > before and time.monotonic() < deadline:
         time.sleep(0.01)
-    assert threads() == before and not list(tmp_path.iterdir())
+    assert threads() <= before and not list(tmp_path.iterdir())
 
 
 def resident():
@@ -162,37 +165,7 @@ def test_arrays_own_what_was_made():
     assert np.isfinite(points).all() and points.flags.writeable
 
 
-ODD = [
-    None, True, -1, 0, 3.5, "", "a", b"a", [], {}, (), object(), float("nan"), np.nan, 10**30, [[]], np.array(3), np.zeros((0, 3)),
-    np.zeros((2, 2, 2)), np.array(["a"]), np.array([None]), np.zeros(3, dtype=complex), np.zeros((4, 2), dtype="f4"), POINTS[::-1],
-    np.broadcast_to(1.0, (4, 2)), np.ma.masked_equal(POINTS, 0), POINTS.astype(">f8"), (POINTS, [[0, 1, 2]]), (POINTS, None), lambda p: p,
-]  # fmt: skip
-
-
-def test_odd_calls_end_in_exceptions_or_meshes():
-    random = np.random.default_rng(int(os.environ.get("VORONAUT_SEED", "0")))
-    names = ["h_min", "lloyd", "canvas", "net", "hausd", "progress", "gradation", "dual", "seeding", "memory_limit", "norm"]
-
-    def odd():
-        return ODD[random.integers(len(ODD))]
-
-    for _ in range(int(os.environ.get("VORONAUT_CASES", "150"))):
-        options = {name: odd() for name in random.choice(names, random.integers(3), replace=False)}
-        calls = [
-            lambda: voronaut.mesh(odd(), odd(), odd(), **options),
-            lambda: voronaut.mesh(SQUARE, odd(), 20, **options),
-            lambda: voronaut.mesh(odd(), "uniform", 20, **options),
-            lambda: voronaut.dual(SQUARE, "uniform", odd()),
-            lambda: voronaut.distance(SQUARE, "uniform", odd(), odd()),
-            lambda: voronaut.check(odd(), odd(), odd()),
-            lambda: voronaut.remesh(odd(), odd()),
-            lambda: voronaut.transfer(odd(), odd(), odd()),
-            lambda: voronaut.adapt(odd(), odd(), n=odd()),
-            lambda: voronaut.Mesh(odd(), odd(), edges=odd(), fields={"u": odd()})._arrays(),
-            lambda: Metric.from_array(odd(), odd()),
-            lambda: Metric.of(odd()).at(odd()),
-        ]
-        try:
-            calls[random.integers(len(calls))]()
-        except (TypeError, ValueError, voronaut.Error, OSError, AttributeError) as error:
-            assert str(error)
+def test_random_calls_are_done_or_refused():
+    words = ["-n", os.environ.get("VORONAUT_CASES", "150"), "--seed", os.environ.get("VORONAUT_SEED", "0")]
+    done = subprocess.run([sys.executable, CAMPAIGN, *words], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr

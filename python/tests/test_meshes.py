@@ -73,6 +73,8 @@ def test_surfaces():
     assert mesh.points.shape == (600, 3) and not mesh.is_planar and mesh.report["euler"] == 2
     again = voronaut.mesh(mesh, Metric.from_callable(lambda points: 0.2 + 0.1 * points[:, 0] ** 2), n=400)
     assert again.points.shape == (400, 3)
+    by_size, by_values = voronaut.mesh(mesh, 0.1), voronaut.mesh(mesh, np.full(600, 0.1))
+    assert abs(len(by_size.points) / len(by_values.points) - 1) < 0.02
     by_values = voronaut.mesh(mesh, np.full(600, 0.1), n=400)
     assert by_values.report["valid"]
 
@@ -137,6 +139,8 @@ def test_files_and_other_programs_arrays(tmp_path):
     meshio = pytest.importorskip("meshio")
     assert np.array_equal(meshio.read(tmp_path / "a.vtu").points[:, :2], mesh.points)
     assert voronaut.check(mesh.to_meshio())["valid"]
+    labelled = voronaut.mesh((SQUARE, SIDES, [1, 2, 3, 4]), "uniform", n=60).to_meshio()
+    assert set(voronaut.mesh(labelled, "uniform", n=60).edge_labels.tolist()) == {1, 2, 3, 4}
     by_file = voronaut.mesh(tmp_path / "a.mesh", "uniform", n=50)
     assert len(by_file.points) == 50
 
@@ -155,6 +159,10 @@ def test_pictures_and_notebooks():
     assert mesh.plot("u") is not None and "60" in repr(mesh)
     assert len(mesh.plot(ellipses="uniform").lines) == 60 + 2
     assert "data:image/png" in mesh._repr_html_() and "unit edges" in mesh._repr_html_()
+    sphere = voronaut.mesh("sphere:1", "uniform", n=100)
+    assert np.array_equal(sphere.plot(sphere.quality).collections[0].get_array(), sphere.quality)
+    with pytest.raises(ValueError, match="planar meshes only"):
+        sphere.plot(ellipses="curvature")
     with pytest.raises(KeyError, match="there are"):
         mesh.plot("v")
 
@@ -170,6 +178,20 @@ def test_pyvista_chains_and_carries():
     plane.point_data["u"] = np.tanh(20 * plane.points[:, 0])
     adapted = plane.voronaut.adapt("u", n=500)
     assert adapted.n_points == 500 and "u" in adapted.point_data
+
+
+def test_pyvista_reads_what_it_lacks(tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    mesh = voronaut.mesh("rect:0,0,1,1", "uniform", n=80)
+    mesh.fields["u"] = mesh.points[:, 0].copy()
+    for name in ("a.meshb", "a.solb", "a.sol"):
+        mesh.save(tmp_path / name)
+    assert pyvista.read(tmp_path / "a.meshb").n_cells == len(mesh.triangles)
+    for name in ("a.solb", "a.sol"):
+        assert np.array_equal(pyvista.read(tmp_path / name).point_data["solution 0"], mesh.fields["u"])
+    voronaut.mesh("rect:0,0,1,1", "uniform", n=50).save(tmp_path / "a.meshb")
+    with pytest.raises(ValueError, match="80 values, and 50 vertices"):
+        pyvista.read(tmp_path / "a.solb")
 
 
 def test_the_program_is_the_program(tmp_path):

@@ -104,10 +104,10 @@ def mesh(
         What to mesh: `"rect:0,0,2,1"`, `"wing.mesh"`, `"sphere:1"`, a tuple of points (N, 2) and segments (K, 2), of
         points (N, 3) and triangles (M, 3), with labels as a third if there are some; a mesh of voronaut, pyvista or
         meshio.
-    metric : Metric, text, array or function
-        Sizes and directions: what the command line has (`"uniform"`, `"swirl"`, `"curvature"`, `"hessian:EXPR"`,
-        `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the domain's vertices, or a
-        function of points.
+    metric : Metric, number, text, array or function
+        Sizes and directions: one size, what the command line has (`"uniform"`, `"swirl"`, `"curvature"`,
+        `"hessian:EXPR"`, `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the
+        domain's vertices, or a function of points.
     n : int, optional
         Vertices; one factor scales the metric to meet it.
     complexity : float, optional
@@ -140,7 +140,7 @@ def mesh(
         and surface from each other, by more vertices unless n says how many
     fit : bool, default False
         Surfaces: vertices where mesh and surface are closest in the sense of least squares, instead of on the surface
-    ar : float, default 45
+    ar : float (degrees), default 45
         Edges of a surface where its normal turns by more than this angle are creases: they are kept, as borders, listed
         edges and edges between labels are, and with them the corners where such curves turn by as much
     nr : bool, default False
@@ -178,7 +178,7 @@ def mesh(
     picture : File, optional
         Draw a picture: .svg or .png
     show : str, default 'mesh'
-        What the picture shows
+        What the picture shows: mesh, ellipses, cells, witnesses, geodesics, triangles, protection, unmet, certificate
     pixels : int, default 1600
         Pixels of the picture's longer side
     window : str, optional
@@ -190,9 +190,9 @@ def mesh(
         meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
     threads : int, optional
         Threads to use [default: all]
-    time_limit : float, optional
+    time_limit : float (seconds), optional
         Stop, without an output, after so many seconds
-    memory_limit : float, default 16
+    memory_limit : float (GiB), default 16
         Refuse work that is estimated to need more memory than this, and stop, without an output, where it takes more
         all the same
     progress : bool or function, default False
@@ -256,10 +256,10 @@ def dual(
         What to mesh: `"rect:0,0,2,1"`, `"wing.mesh"`, `"sphere:1"`, a tuple of points (N, 2) and segments (K, 2), of
         points (N, 3) and triangles (M, 3), with labels as a third if there are some; a mesh of voronaut, pyvista or
         meshio.
-    metric : Metric, text, array or function
-        Sizes and directions: what the command line has (`"uniform"`, `"swirl"`, `"curvature"`, `"hessian:EXPR"`,
-        `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the domain's vertices, or a
-        function of points.
+    metric : Metric, number, text, array or function
+        Sizes and directions: one size, what the command line has (`"uniform"`, `"swirl"`, `"curvature"`,
+        `"hessian:EXPR"`, `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the
+        domain's vertices, or a function of points.
     seeds : (N, 2) or (N, 3) array
         Seed i is vertex i.
     dual : str, default 'both'
@@ -314,7 +314,7 @@ def dual(
     picture : File, optional
         Draw a picture: .svg or .png
     show : str, default 'mesh'
-        What the picture shows
+        What the picture shows: mesh, ellipses, cells, witnesses, geodesics, triangles, protection, unmet, certificate
     pixels : int, default 1600
         Pixels of the picture's longer side
     window : str, optional
@@ -326,9 +326,9 @@ def dual(
         meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
     threads : int, optional
         Threads to use [default: all]
-    time_limit : float, optional
+    time_limit : float (seconds), optional
         Stop, without an output, after so many seconds
-    memory_limit : float, default 16
+    memory_limit : float (GiB), default 16
         Refuse work that is estimated to need more memory than this, and stop, without an output, where it takes more
         all the same
     progress : bool or function, default False
@@ -383,10 +383,10 @@ def distance(
         What to mesh: `"rect:0,0,2,1"`, `"wing.mesh"`, `"sphere:1"`, a tuple of points (N, 2) and segments (K, 2), of
         points (N, 3) and triangles (M, 3), with labels as a third if there are some; a mesh of voronaut, pyvista or
         meshio.
-    metric : Metric, text, array or function
-        Sizes and directions: what the command line has (`"uniform"`, `"swirl"`, `"curvature"`, `"hessian:EXPR"`,
-        `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the domain's vertices, or a
-        function of points.
+    metric : Metric, number, text, array or function
+        Sizes and directions: one size, what the command line has (`"uniform"`, `"swirl"`, `"curvature"`,
+        `"hessian:EXPR"`, `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the
+        domain's vertices, or a function of points.
     start : point or (N, 2), (N, 3) array
         Where distances start.
     to : point, optional
@@ -429,9 +429,9 @@ def distance(
         meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
     threads : int, optional
         Threads to use [default: all]
-    time_limit : float, optional
+    time_limit : float (seconds), optional
         Stop, without an output, after so many seconds
-    memory_limit : float, default 16
+    memory_limit : float (GiB), default 16
         Refuse work that is estimated to need more memory than this, and stop, without an output, where it takes more
         all the same
     progress : bool or function, default False
@@ -485,10 +485,10 @@ def check(
     ----------
     mesh : Mesh, file or arrays
         What to examine.
-    metric : Metric, text, array or function
-        Sizes and directions: what the command line has (`"uniform"`, `"swirl"`, `"curvature"`, `"hessian:EXPR"`,
-        `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the domain's vertices, or a
-        function of points.
+    metric : Metric, number, text, array or function
+        Sizes and directions: one size, what the command line has (`"uniform"`, `"swirl"`, `"curvature"`,
+        `"hessian:EXPR"`, `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the
+        domain's vertices, or a function of points.
     domain : as for `mesh`, optional
         What it should be a mesh of.
     metric_scale : float, optional
@@ -521,7 +521,7 @@ def check(
     picture : File, optional
         Draw a picture: .svg or .png
     show : str, default 'mesh'
-        What the picture shows
+        What the picture shows: mesh, ellipses, cells, witnesses, geodesics, triangles, protection, unmet, certificate
     pixels : int, default 1600
         Pixels of the picture's longer side
     window : str, optional
@@ -533,9 +533,9 @@ def check(
         meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
     threads : int, optional
         Threads to use [default: all]
-    time_limit : float, optional
+    time_limit : float (seconds), optional
         Stop, without an output, after so many seconds
-    memory_limit : float, default 16
+    memory_limit : float (GiB), default 16
         Refuse work that is estimated to need more memory than this, and stop, without an output, where it takes more
         all the same
     progress : bool or function, default False
@@ -597,7 +597,7 @@ def remesh(
         metric's greatest]
     hsiz : float, optional
         The same size everywhere, but where the distance to surface or curves asks for less
-    ar : float, default 45
+    ar : float (degrees), default 45
         Edges where the normal turns by more than this angle (degrees) are creases, and curves that do have a corner;
         both are kept
     nr : bool, default False
@@ -622,9 +622,9 @@ def remesh(
         Vertices on the surface, instead of where mesh and surface are closest in the sense of least squares
     threads : int, optional
         Threads to use [default: all]
-    time_limit : float, optional
+    time_limit : float (seconds), optional
         Stop, without an output, after so many seconds
-    memory_limit : float, default 16
+    memory_limit : float (GiB), default 16
         Refuse work that is estimated to need more memory than this, and stop, without an output, where it takes more
         all the same
     progress : bool or function, default False
@@ -675,9 +675,9 @@ def transfer(
         Symmetric tensors are no metrics (stresses, Hessians): carry each entry for itself
     threads : int, optional
         Threads to use [default: all]
-    time_limit : float, optional
+    time_limit : float (seconds), optional
         Stop, without an output, after so many seconds
-    memory_limit : float, default 16
+    memory_limit : float (GiB), default 16
         Refuse work that is estimated to need more memory than this, and stop, without an output, where it takes more
         all the same
     progress : bool or function, default False

@@ -16,6 +16,10 @@ MeshArrays = dict[str, Any]
 
 # Largest number of a vertex, and of labels.
 _MOST = 2**31 - 1
+# Where meshio keeps labels: of ours, of gmsh's and of Medit's files.
+_MESHIO_LABELS = ("label", "gmsh:physical", "medit:ref")
+# More numbers than any option takes.
+_LONGEST = 7
 
 
 def text_of(name: str, value: object) -> str:
@@ -24,12 +28,15 @@ def text_of(name: str, value: object) -> str:
         raise TypeError(f"{name}: a number or a text is expected, not {value!r}")
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value) if not isinstance(value, str) else value
-    if isinstance(value, (list, tuple, np.ndarray)):
+    if isinstance(value, np.ndarray):
+        return text_of(name, value[()] if value.ndim == 0 else list(value[:_LONGEST]))
+    if isinstance(value, (list, tuple)) and 0 < len(value) < _LONGEST:
         return ",".join(text_of(name, part) for part in value)
     if isinstance(value, (int, np.integer)):
         return str(int(value))
     if isinstance(value, (float, np.floating)):
-        return repr(float(value))
+        number = float(value)
+        return repr(int(number) if number.is_integer() and abs(number) < 2**53 else number)
     raise TypeError(f"{name}: a number or a text is expected, not {type(value).__name__}")
 
 
@@ -117,11 +124,15 @@ def _of_tuple(name: str, value: tuple[object, ...]) -> MeshArrays:
 def _of_meshio(name: str, value: Any) -> MeshArrays:
     from ._mesh import Mesh
 
-    cells = value.cells_dict
+    cells, data = value.cells_dict, value.cell_data_dict
+    labels: Mapping[str, Any] = next((data[key] for key in _MESHIO_LABELS if key in data), {})
     triangles = cells.get("triangle", np.empty((0, 3), np.int32))
-    mesh = Mesh(value.points, triangles, edges=cells.get("line"), _name=name)
-    for key, data in value.point_data.items():
-        mesh.fields[key] = data
+    of_triangles, of_edges = labels.get("triangle"), labels.get("line")
+    mesh = Mesh(value.points, triangles, edges=cells.get("line"), triangle_labels=of_triangles, edge_labels=of_edges, _name=name)
+    # Names with a colon are a format's own.
+    mesh.fields.update({key: np.asarray(found) for key, found in value.point_data.items() if ":" not in key})
+    found = {key: of["triangle"] for key, of in data.items() if "triangle" in of and ":" not in key and key != "label"}
+    mesh.triangle_fields.update(found)
     return mesh._arrays()
 
 

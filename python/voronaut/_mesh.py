@@ -179,12 +179,13 @@ class Mesh:
         return mesh.with_subdomains(subdomains).with_boundaries(self._facets(mesh))
 
     def _facets(self, mesh: Any) -> dict[str, npt.NDArray[Any]]:
-        facets = {tuple(sorted(facet)): i for i, facet in enumerate(mesh.facets.T.tolist())}
-        found: dict[str, list[int]] = {}
-        for edge, label in zip(self.edges.tolist(), self.edge_labels.tolist()):
-            if label != 0:
-                found.setdefault(str(label), []).append(facets[tuple(sorted(edge))])
-        return {label: np.array(numbers) for label, numbers in found.items()}
+        """By their labels, the numbers of edges among scikit-fem's."""
+        ends = [np.sort(pairs, axis=0).astype(np.int64) for pairs in (mesh.facets, self.edges.T)]
+        facets, edges = (least * len(self.points) + greatest for least, greatest in ends)
+        order = np.argsort(facets)
+        numbers = order[np.searchsorted(facets, edges, sorter=order).clip(max=len(facets) - 1)]
+        labels = np.where(facets[numbers] == edges, self.edge_labels, 0)
+        return {str(label): numbers[labels == label] for label in set(labels.tolist()) - {0}}
 
     def plot(
         self, field: str | npt.ArrayLike | None = None, *, ax: Any = None, ellipses: Any = None, **style: Any
@@ -207,8 +208,13 @@ class Mesh:
                 self._draw_ellipses(ax, ellipses)
             return ax
         ax = ax if ax is not None else plt.figure().add_subplot(projection="3d", aspect="equal")
-        style = {"linewidth": 0.2, "edgecolor": "#26547c", "color": "#dbe9f4", **style}
-        ax.plot_trisurf(*self.points.T, triangles=self.triangles, **style)
+        if ellipses is not None:
+            raise ValueError("ellipses: they are drawn of planar meshes only")
+        drawn = ax.plot_trisurf(
+            *self.points.T, triangles=self.triangles, **{"linewidth": 0.2, "edgecolor": "#26547c", "color": "#dbe9f4", **style}
+        )
+        if values is not None:
+            drawn.set_array(values if len(values) == len(self.triangles) else values[self.triangles].mean(axis=1))
         return ax
 
     def _draw_ellipses(self, ax: Any, metric: Any) -> None:
@@ -268,6 +274,8 @@ def _labels(name: str, value: object, count: int) -> Ints:
 
 
 def _named(name: str, given: Mapping[str, npt.ArrayLike] | None) -> dict[str, npt.NDArray[Any]]:
+    if given is not None and not isinstance(given, Mapping):
+        raise TypeError(f"{name}: a mapping of names to arrays is expected, not {type(given).__name__}")
     return {key: np.asarray(value) for key, value in (given or {}).items()}
 
 

@@ -28,13 +28,15 @@ class Metric:
 
     @staticmethod
     def of(value: MetricLike, mesh: Any = None) -> Metric:
-        """Whatever may stand for a metric as one; arrays need the mesh that they belong to."""
+        """Whatever may stand for a metric as one; a number is a size, arrays need the mesh that they belong to."""
         if isinstance(value, Metric):
             return value
         if isinstance(value, (str, os.PathLike)):
             return Metric(("text", (os.fspath(value),)))
         if callable(value):
             return Metric.from_callable(value)
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            return Metric.uniform(value)
         return Metric.from_array(value, mesh)
 
     @staticmethod
@@ -69,7 +71,7 @@ class Metric:
 
     @staticmethod
     def from_callable(function: Callable[[Floats], npt.ArrayLike]) -> Metric:
-        """Of a function that takes points (N, 2), on surfaces (N, 3), and returns sizes (N,) or tensors.
+        """Of a function that takes points (N, 2), on surfaces (N, 3), and returns sizes (N,), one size for all, or tensors.
 
         It is called a few times with many points, from one thread at a time: at the vertices of a background that is refined by what
         it says, on surfaces at the vertices of the surface.
@@ -80,6 +82,8 @@ class Metric:
         def called(points: Floats) -> tuple[str, Floats]:
             said = function(points)
             try:
+                if isinstance(said, (int, float)) and not isinstance(said, bool):
+                    said = np.full(len(points), float(said))
                 return _given.tensor_values("the metric function's result", said, len(points))
             except ValueError as error:
                 raise ValueError(f"{error}{_place(said, points)}") from None
@@ -138,8 +142,12 @@ class Metric:
         """Times the factor by which the integral of sqrt(det M) is this; meshes have about 1.15 vertices for each unit."""
         return Metric(("scaled", (float(complexity), self._description)))
 
-    # As animate calls it.
+    # As animate calls these.
     normalise = scale_to
+
+    def combine(self, *others: MetricLike, average: bool = True, weights: Sequence[float] | None = None) -> Metric:
+        """`average`, or with `average=False` `intersect`."""
+        return self.average(*others, weights=weights) if average else self.intersect(*others)
 
     def at(self, mesh: Any) -> Floats:
         """The tensors at the vertices of a planar mesh: (N, 2, 2)."""

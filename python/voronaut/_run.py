@@ -35,7 +35,8 @@ def dual(
     held["seeds"] = {"seeds": _given.floats("seeds", seeds, (2, 3))}
     told = _perform("dual", words, options, defaults, held, progress)
     made = _mesh_of(told)
-    made.diagram = _canvas_of(told)
+    made.diagram = canvas = _canvas_of(told)
+    canvas.fields["colour"] = canvas.point_labels
     return made
 
 
@@ -49,7 +50,6 @@ def distance(
     words["to"] = None if to is None else _given.text_of("to", _given.floats("to", to))
     told = _perform("distance", words, options, defaults, held, progress)
     made = _canvas_of(told)
-    assert made is not None
     made.report = json.loads(told["report"])
     return made
 
@@ -167,7 +167,11 @@ def _perform(
             texts.append((name, value))
         else:
             texts.append((name, [_given.text_of("n" if name == "vertices" else name, value)]))
-    told = _voronaut.perform(command, texts, held, _callback(progress))
+    try:
+        told = _voronaut.perform(command, texts, held, _callback(progress))
+    finally:
+        if progress is True:
+            print(file=sys.stderr)
     sys.stderr.writelines(f"voronaut: {warning}\n" for warning in told["warnings"])
     return told
 
@@ -182,8 +186,7 @@ def _callback(progress: Progress) -> Callable[[str, int, int], object] | None:
 
     def bar(stage: str, done: int, total: int) -> None:
         share = done / max(total, 1)
-        end = "\n" if stage == "checking" else ""
-        print(f"\r{stage:<16} {'━' * round(40 * share):<40} {100 * share:3.0f} %", end=end, file=sys.stderr, flush=True)
+        print(f"\r{stage:<16} {'━' * round(40 * share):<40} {100 * share:3.0f} %", end="", file=sys.stderr, flush=True)
 
     return bar
 
@@ -192,12 +195,7 @@ def _mesh_of(told: dict[str, Any]) -> Mesh:
     return Mesh._of(told["mesh"], json.loads(told["report"]))
 
 
-def _canvas_of(told: dict[str, Any]) -> Mesh | None:
-    if "canvas" not in told:
-        return None
+def _canvas_of(told: dict[str, Any]) -> Mesh:
     canvas = Mesh._of(told["canvas"])
-    distances = told["distances"]
-    canvas.fields["distance"] = distances
-    if canvas.point_labels.any():
-        canvas.fields["colour"] = canvas.point_labels
+    canvas.fields["distance"] = told["distances"]
     return canvas

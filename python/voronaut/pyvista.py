@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ._files import read_solution
 from ._mesh import Mesh
 
 _LABEL = "label"
@@ -38,7 +40,7 @@ def _flat(values: Any) -> Any:
 def from_pyvista(data: Any, name: str = "mesh") -> Mesh:
     """The triangles of a pyvista data set: of volumes their boundary, polygons cut into triangles."""
     if not hasattr(data, "regular_faces"):
-        data = data.extract_surface()
+        data = data.extract_surface(pass_pointid=False, pass_cellid=False, algorithm=None)
     if not data.is_all_triangles:
         data = data.triangulate()
     labels = data.cell_data.get(_LABEL)
@@ -54,5 +56,16 @@ def from_pyvista(data: Any, name: str = "mesh") -> Mesh:
 
 
 def read(path: str, **_: Any) -> Any:
-    """What `pyvista.read` calls for .meshb."""
-    return to_pyvista(Mesh.read(path))
+    """What `pyvista.read` calls for .meshb, and for .sol and .solb: values on the mesh of the same name beside them."""
+    place = Path(path)
+    if place.suffix.lower() not in (".sol", ".solb"):
+        return to_pyvista(Mesh.read(place))
+    beside = [place.with_suffix(ending) for ending in (".meshb", ".mesh")]
+    mesh = Mesh.read(next((it for it in beside if it.exists()), beside[-1]))
+    found = read_solution(place)
+    for kind, fields, count in (("vertices", mesh.fields, len(mesh.points)), ("triangles", mesh.triangle_fields, len(mesh.triangles))):
+        for i, values in enumerate(found[kind]):
+            if len(values) != count:
+                raise ValueError(f"{place}: {len(values)} values, and {count} {kind} in the mesh beside it")
+            fields[f"solution {i}"] = values
+    return to_pyvista(mesh)

@@ -150,6 +150,7 @@ fn finish(
     picture: Option<String>,
     told: &Value,
 ) -> Result<()> {
+    world.go_on()?;
     world.write_diagram(field, Some(&args.out))?;
     files::write_picture(picture, args.picture.as_deref())?;
     world.write_report(format!("{told:#}\n"), &args.run)?;

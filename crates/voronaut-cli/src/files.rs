@@ -80,6 +80,7 @@ pub(crate) fn finish(
     report: &Report,
     run: &Run,
 ) -> Result<()> {
+    world.go_on()?;
     write_picture(picture, outputs.picture.as_deref())?;
     if let (Some(path), Some(found)) = (&outputs.histograms, &report.histograms) {
         voronaut_io::write(path, voronaut_draw::histograms_svg(found).as_bytes())?;

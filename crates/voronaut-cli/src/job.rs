@@ -94,7 +94,8 @@ fn usage(error: &clap::Error) -> Usage {
     });
     let what = match (error.kind(), option, text(ContextKind::InvalidValue)) {
         (ErrorKind::ArgumentConflict, Some(option), _) => {
-            format!("{option} cannot be used with {}", as_keywords(&text(ContextKind::PriorArg).unwrap_or_default()))
+            let prior = as_keywords(&text(ContextKind::PriorArg).unwrap_or_default());
+            format!("{option} cannot be used with {}", prior.split(' ').next().unwrap_or_default())
         }
         (ErrorKind::MissingRequiredArgument, Some(option), _) => format!("{option} is missing"),
         (ErrorKind::TooManyValues, Some(option), Some(value)) => format!("{option} is true or false, not '{value}'"),

@@ -261,6 +261,12 @@ impl<'a> World<'a> {
     }
 
     /// Writes the report, if a file is named for it.
+    /// Whether to go on, for the caller may not wait any more: asked before files are written.
+    pub(crate) fn go_on(&self) -> Result<()> {
+        let is_stopped = self.held.as_ref().is_some_and(|(_, progress)| progress.is_stopped());
+        if is_stopped { Err(Error::Stopped) } else { Ok(()) }
+    }
+
     pub(crate) fn write_report(&self, text: String, run: &Run) -> Result<()> {
         run.write_report(&text)?;
         self.write(text, |_| Ok(()), |made| &mut made.report)

@@ -22,14 +22,15 @@ pub(crate) fn exception(py: Python, error: &Error) -> PyErr {
 
 /// An exception of the package, with what to do.
 pub(crate) fn raised(py: Python, kind: &str, what: &str, help: &str) -> PyResult<PyErr> {
-    let spelt = |text: &str| voronaut_cli::as_keywords(text);
+    let spelt = |text: &str| voronaut_cli::as_keywords(text).replace("`vertices`", "`n`");
     let class = py.import("voronaut._errors")?.getattr(kind)?;
     Ok(PyErr::from_value(class.call1((spelt(what), spelt(help)))?))
 }
 
 /// An option that there is not is a wrong call; another value than it may have is a wrong value.
-pub(crate) fn usage(usage: Usage) -> PyErr {
-    if usage.is_unknown { PyTypeError::new_err(usage.what) } else { PyValueError::new_err(usage.what) }
+pub(crate) fn usage(Usage { what, is_unknown }: Usage) -> PyErr {
+    let what = what.strip_prefix("vertices").map(|rest| format!("n{rest}")).unwrap_or(what);
+    if is_unknown { PyTypeError::new_err(what) } else { PyValueError::new_err(what) }
 }
 
 /// The work came to an end that it should not have.

@@ -39,7 +39,8 @@ fn perform<'py>(
     let course = Arc::new(Course::new());
     let held = held_of(held, &course)?;
     let terms = Terms { threads: job.threads(), time_limit: job.time_limit(), callback: progress.as_ref() };
-    let made = work::wait(py, &course, &terms, || job.perform(held, &&*course))?;
+    let own = course.clone();
+    let made = work::wait(py, &course, &terms, move || job.perform(held, &&*own))?;
     told(py, made)
 }
 
@@ -86,12 +87,12 @@ fn told(py: Python<'_>, made: Made) -> PyResult<Bound<'_, PyDict>> {
 /// Reads a file by its ending: a mesh with fields, or values without a mesh.
 #[pyfunction]
 fn read(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
-    let fault = |error: voronaut::Error| faults::exception(py, &error);
+    let (course, terms) = (Arc::new(Course::new()), Terms::default());
     if matches!(ending(&path).as_deref(), Some("sol" | "solb")) {
-        let solutions = py.detach(|| voronaut_io::read_solutions(&path)).map_err(fault)?;
+        let solutions = work::wait(py, &course, &terms, move || voronaut_io::read_solutions(&path))?;
         return told(py, Made { solutions: Some(solutions), ..Made::default() });
     }
-    let document = py.detach(|| voronaut_io::read(&path)).map_err(fault)?;
+    let document = work::wait(py, &course, &terms, move || voronaut_io::read(&path))?;
     arrays::of_document(py, document)
 }
 
@@ -120,8 +121,7 @@ fn metric_at<'py>(
     let mesh = arrays::mesh_of(mesh)?;
     let metrics = metrics.iter().map(|metric| Metric::of(metric, &course)).collect::<PyResult<Vec<_>>>()?;
     let pipeline = shaping.pipeline(py)?;
-    let terms = Terms { threads: None, time_limit: None, callback: None };
-    let made = work::wait(py, &course, &terms, || metrics::at_vertices(&pipeline, &mesh, &metrics))?;
+    let made = work::wait(py, &course, &Terms::default(), move || metrics::at_vertices(&pipeline, &mesh, &metrics))?;
     let flat: Vec<f64> = made.tensors.iter().flat_map(|m| [m.xx, m.xy, m.yy]).collect();
     let tensors = PyArray1::from_vec(py, flat).reshape([made.tensors.len(), 3])?;
     (tensors, made.complexity).into_pyobject(py)

@@ -11,7 +11,7 @@ use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor};
 use voronaut::mesh::{Mesh, Solution, SolutionValues, TensorOrder};
 use voronaut::metric::nodal::{self, implied};
-use voronaut::metric::{Bounded, Bounds, MetricField, MetricSpec, Recovery, recover_hessian};
+use voronaut::metric::{Bounded, Bounds, MetricField, MetricSpec, Recovery, Uniform, recover_hessian};
 use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, PlanarMetric};
 use voronaut::surface::Input;
 use voronaut::surface::metric::{SurfaceMetric, field_of_samples, field_of_values};
@@ -126,7 +126,7 @@ impl HeldMetric for Metric {
 
     fn on_surface(&self, input: &Input, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
         match self {
-            Self::Text(text) => surface_metric(text, input, bounds, TensorOrder::default()),
+            Self::Text(text) => surface_metric(&of_space(text), input, bounds, TensorOrder::default()),
             Self::Values(_, values) => {
                 field_of_values(&Solution { dimension: 3, values: values.clone() }, input, bounds)
             }
@@ -143,6 +143,16 @@ impl HeldMetric for Metric {
                 Err(Error::unsupported("a metric made of others, on a surface", help))
             }
         }
+    }
+}
+
+/// One size for all directions of the plane as one for those of space; other texts as they are.
+fn of_space(text: &str) -> String {
+    match MetricSource::parse(text) {
+        Ok(MetricSource::Named(MetricSpec::Uniform(Uniform(m)))) if m.xx == m.yy && m.xy == 0.0 => {
+            format!("formula:{0}; 0; {0}; 0; 0; {0}", m.xx)
+        }
+        _ => text.to_owned(),
     }
 }
 
@@ -170,7 +180,7 @@ fn called(function: &Py<PyAny>, course: &Course, points: &[f64], dimension: usiz
         let array = PyArray1::from_slice(py, points).reshape([points.len() / dimension, dimension])?;
         values_of(&function.call1(py, (array,))?.into_bound(py))
     };
-    Python::attach(call).map_err(|error| course.raise(error))
+    course.call(call)
 }
 
 /// Sizes and tensors as tensors of the plane.

@@ -4,7 +4,7 @@ use crate::faults;
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use voronaut::progress::Progress;
 use voronaut::{Error, Result};
@@ -12,12 +12,17 @@ use voronaut::{Error, Result};
 /// The time between two looks at signals, the clock and the callback.
 const PERIOD: Duration = Duration::from_millis(20);
 
+/// How long work that is told to stop is waited for.
+const GRACE: Duration = Duration::from_millis(500);
+
 /// How far the work is, and whether it is to stop.
 pub(crate) struct Course {
     start: Instant,
     stage: Mutex<(&'static str, u64)>,
     done: AtomicU64,
     is_stopped: AtomicBool,
+    /// Whether a function of the user's is being called.
+    is_calling: AtomicBool,
     /// What a function of the user's has raised.
     raised: Mutex<Option<PyErr>>,
 }
@@ -29,12 +34,23 @@ impl Course {
             stage: Mutex::new(("reading", 1)),
             done: AtomicU64::new(0),
             is_stopped: AtomicBool::new(false),
+            is_calling: AtomicBool::new(false),
             raised: Mutex::new(None),
         }
     }
 
+    /// Calls a function of the user's, unless the work is to stop: it may have been left, and Python be gone.
+    pub(crate) fn call<T>(&self, function: impl FnOnce(Python) -> PyResult<T>) -> Result<T> {
+        self.is_calling.store(true, Ordering::SeqCst);
+        let stopped = self.is_stopped.load(Ordering::SeqCst);
+        let said =
+            if stopped { Err(Error::Stopped) } else { Python::attach(function).map_err(|error| self.raise(error)) };
+        self.is_calling.store(false, Ordering::SeqCst);
+        said
+    }
+
     /// Keeps what a function has raised, for the caller; the work ends with the error that comes back.
-    pub(crate) fn raise(&self, error: PyErr) -> Error {
+    fn raise(&self, error: PyErr) -> Error {
         *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
         Error::Stopped
     }
@@ -68,6 +84,7 @@ impl Progress for &Course {
 }
 
 /// What work may take, and who watches it.
+#[derive(Default)]
 pub(crate) struct Terms<'a, 'py> {
     /// Threads; all if none are said.
     pub(crate) threads: Option<usize>,
@@ -77,33 +94,40 @@ pub(crate) struct Terms<'a, 'py> {
     pub(crate) callback: Option<&'a Bound<'py, PyAny>>,
 }
 
-/// Does the work, and waits for it. Its threads end with it.
-pub(crate) fn wait<T: Send>(
+/// Does the work on threads of its own, and waits for it. Where it is told to stop and does not within [`GRACE`], it is left to end by
+/// itself, without files and without Python.
+pub(crate) fn wait<T: Send + 'static>(
     py: Python,
-    course: &Course,
+    course: &Arc<Course>,
     terms: &Terms,
-    work: impl FnOnce() -> Result<T> + Send,
+    work: impl FnOnce() -> Result<T> + Send + 'static,
 ) -> PyResult<T> {
-    let mut halted: Option<PyErr> = None;
-    let done = std::thread::scope(|scope| {
-        let (sender, receiver) = sync_channel(1);
-        let receiver = Mutex::new(receiver);
-        let receive = || receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(PERIOD);
-        let threads = terms.threads.unwrap_or(0);
-        let worker = scope.spawn(move || {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let done = pool.map_err(|error| Error::limit(error.to_string(), "ask for fewer threads"));
-            let _ = sender.send(done.and_then(|pool| pool.install(work)));
-        });
-        loop {
-            match py.detach(receive) {
-                Ok(done) => return py.detach(|| worker.join()).map(|()| done),
-                Err(RecvTimeoutError::Disconnected) => return py.detach(|| worker.join()).and(Err(Box::new(()))),
-                Err(RecvTimeoutError::Timeout) if halted.is_none() => halted = halt(py, course, terms),
-                Err(RecvTimeoutError::Timeout) => {}
-            }
-        }
+    let (sender, receiver) = sync_channel(1);
+    let receiver = Mutex::new(receiver);
+    let receive = || receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(PERIOD);
+    let threads = terms.threads.unwrap_or(0);
+    let worker = std::thread::spawn(move || {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let done = pool.map_err(|error| Error::limit(error.to_string(), "ask for fewer threads"));
+        let _ = sender.send(done.and_then(|pool| pool.install(work)));
     });
+    let mut halted: Option<(PyErr, Instant)> = None;
+    let done = loop {
+        match (py.detach(receive), &halted) {
+            (Ok(done), _) => break py.detach(|| worker.join()).map(|()| done),
+            (Err(RecvTimeoutError::Disconnected), _) => break py.detach(|| worker.join()).and(Err(Box::new(()))),
+            (_, None) => halted = halt(py, course, terms).map(|reason| (reason, Instant::now())),
+            (_, Some((_, since))) if since.elapsed() > GRACE && !course.is_calling.load(Ordering::SeqCst) => {
+                break Ok(Err(Error::Stopped));
+            }
+            _ => {}
+        }
+    };
+    outcome(py, course, done, halted.map(|(reason, _)| reason))
+}
+
+/// What the caller gets of work that was done, failed or left, and of what was to halt it.
+fn outcome<T>(py: Python, course: &Course, done: std::thread::Result<Result<T>>, halted: Option<PyErr>) -> PyResult<T> {
     let raised = course.raised.lock().unwrap_or_else(PoisonError::into_inner).take();
     match (done, raised) {
         (_, Some(error)) => Err(error),
@@ -137,7 +161,7 @@ fn halt(py: Python, course: &Course, terms: &Terms) -> Option<PyErr> {
         }),
     };
     if reason.is_some() {
-        course.is_stopped.store(true, Ordering::Relaxed);
+        course.is_stopped.store(true, Ordering::SeqCst);
     }
     reason
 }
