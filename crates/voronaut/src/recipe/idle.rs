@@ -85,7 +85,6 @@ impl MeshOptions {
             ("fit", self.fit, &[surface]),
             ("stiffness", differs(self.stiffness, usual.stiffness), &[surface, (self.fit, "without `fit`")]),
             ("mesher", self.mesher != usual.mesher, &[(plane.0 || voronoi.0, plane.1)]),
-            ("effort", self.effort != usual.effort, &[voronoi]),
             ("centroid", self.centroid != usual.centroid, &[plane, voronoi, (self.lloyd > 0, "without relaxation")]),
             (
                 "polish",
