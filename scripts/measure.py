@@ -18,8 +18,10 @@ without these they are skipped, and said to be. The exit code is 1 where anythin
 
 import argparse
 import functools
+import importlib.util
 import json
 import math
+import os
 import re
 import shutil
 import subprocess
@@ -65,6 +67,10 @@ def main():
     if set(stated) != set(TABLES):
         sys.exit(f"documents and this script differ in tables: {sorted(set(stated) ^ set(TABLES))}")
     subprocess.run(["cargo", "build", "--release", "--quiet", "-p", "voronaut-cli"], cwd=ROOT, check=True)
+    # What pip puts on the PATH starts a Python first.
+    if mmg := importlib.util.find_spec("mmgpy"):
+        inside = [str(Path(folder, "bin")) for folder in mmg.submodule_search_locations]
+        os.environ["PATH"] = os.pathsep.join([*inside, os.environ["PATH"]])
     figures = different = 0
     for name in typed.tables or TABLES:
         measure, programs = TABLES[name]
@@ -215,6 +221,21 @@ def meshed(found):
     if not found["valid"]:
         sys.exit("an invalid mesh")
     return [number(found["vertices"], 0), seconds(found["seconds"]["total"]), percent(found["metric_edge_length"]["unit_fraction"])]
+
+
+@table()
+def efforts():
+    """What `--effort` costs and gives."""
+    rows = [["", "effort", "steps", "seconds", "unit edges", "quality, mean / min", "L2 error N"]]
+    layers = f"rect:0,0,1,1 --metric 'hessian:{LAYERS}' -n 10000"
+    for name, words in [("mild shock, 4,000", f"{MILD} -n 4000"), ("swirl, 4,000", f"{SWIRL} -n 4000"),
+                        ("front and layer, 10,000", layers), ("SPOT, 1,020", SPOT)]:
+        for effort in ("fast", "normal", "best"):
+            found = report(f"mesh {words} --effort {effort}")
+            error = found.get("interpolation")
+            rows.append([name, f"`{effort}`", str(len(found["relaxation"]["energy"]) - 1), *meshed(found)[1:], pair(found["quality"]),
+                         number(10000 * error["norm"], 3) if error else ""])
+    return rows
 
 
 @table()
