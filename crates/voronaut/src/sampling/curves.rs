@@ -215,7 +215,7 @@ mod tests {
         for hausd in [1e-3, 2e-3, 5e-3] {
             let unit = (SAGITTA * hausd).sqrt();
             let sides = simplify(&domain, &|_: Point| Tensor::isotropic(unit), hausd).boundary();
-            let lengths: Vec<f64> = sides.iter().map(|[a, b]| a.distance(*b) / unit).collect();
+            let lengths: Vec<f64> = sides.iter().map(|(a, b)| a.distance(*b) / unit).collect();
             assert!(lengths.iter().all(|length| (0.7..1.1).contains(length)), "{hausd}: {lengths:?}");
         }
     }
