@@ -41,6 +41,7 @@ Examples:
   voronaut mesh spot.obj --metric curvature -n 1020 --fit -o spot-1020.obj --picture spot.png --show cells,mesh";
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "one per option")]
 pub(crate) struct MeshArgs {
     /// What to mesh: a file or a shape
     pub(crate) domain: String,
@@ -62,6 +63,9 @@ pub(crate) struct MeshArgs {
     /// from each other, by more vertices unless -n says how many
     #[arg(long, value_name = "D", value_parser = not_negative)]
     pub(crate) hausd: Option<f64>,
+    /// In the plane: leave the edges of the domain's curves as they are, every one an edge of the mesh
+    #[arg(long, conflicts_with = "hausd")]
+    pub(crate) required: bool,
     /// Surfaces: vertices where mesh and surface are closest in the sense of least squares, instead of on the surface
     #[arg(long)]
     pub(crate) fit: bool,
@@ -172,7 +176,7 @@ impl MeshArgs {
             "norm": self.metric_choices.norm.to_string(), "recovery": self.metric_choices.recovery,
             "ar": self.features().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
             "picture": self.outputs.picture, "pixels": self.outputs.pixels, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
-            "repair": self.damage.repair,
+            "repair": self.damage.repair, "required": self.required,
         });
         let mut options = account::joined(json!(self.options()), more);
         if let Some(options) = options.as_object_mut() {
@@ -190,8 +194,16 @@ pub(crate) fn run(args: &MeshArgs, world: &World) -> Result<()> {
     let (given, mended) = world.given(&args.domain, args.damage.options())?;
     match given {
         Given::Surface(input) => on_surface(args, world, input, &mended, start),
+        Given::Plane(domain) if args.required => in_plane(args, world, &required(&domain)?, &mended, start),
         Given::Plane(domain) => in_plane(args, world, &domain, &mended, start),
     }
+}
+
+/// The domain with all its curves' edges required.
+fn required(domain: &Domain) -> Result<Domain> {
+    let mut pslg = domain.pslg().clone();
+    pslg.segments.iter_mut().for_each(|segment| segment.required = true);
+    Domain::new(&pslg)
 }
 
 fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, start: Instant) -> Result<()> {
@@ -244,6 +256,8 @@ fn cells(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
 }
 
 fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, start: Instant) -> Result<()> {
+    let help = "leave out --required: it is for planar domains; list required edges in the surface's file";
+    refuse([(args.required, "--required on a surface", help)])?;
     pictures::demand_of_surfaces(&args.outputs, &[])?;
     let idle = args.idle(true, world)?;
     let whole = args.outputs.picture.is_some().then(|| Input::new(input.surface.clone(), input.implicit.clone()));

@@ -92,6 +92,7 @@ const ROWS: &[Row] = &[
     each(&["--nr"], [Refused("--nr"), Nothing, Mesh]),
     each(&["--repair"], [Refused("--repair"), Nothing, Nothing]),
     each(&["--mesher", "starset"], [Mesh, Refused("--mesher"), Refused("--mesher")]),
+    each(&["--required"], [Mesh, Refused("--required"), Refused("--required")]),
     all(&[], &["--effort", "fast"], Mesh),
     all(&[], &["--lloyd", "0"], Mesh),
     plane(STARS, &["--lloyd", "0"], Mesh),

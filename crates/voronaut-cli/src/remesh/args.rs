@@ -94,9 +94,9 @@ pub(crate) struct RemeshArgs {
     /// Vertices on the surface, instead of where mesh and surface are closest in the sense of least squares
     #[arg(long)]
     pub(crate) no_fit: bool,
-    /// How much work is spent on what is left to gain: fast, normal or best
-    #[arg(long, value_name = "HOW", default_value_t = Effort::Fast)]
-    pub(crate) effort: Effort,
+    /// How much work is spent on what is left to gain: fast, normal or best [default: fast in the plane, normal on a surface]
+    #[arg(long, value_name = "HOW")]
+    pub(crate) effort: Option<Effort>,
     /// --memory-limit in megabytes
     #[arg(short, long, value_name = "MB", value_parser = positive, conflicts_with = "memory_limit")]
     pub(crate) memory: Option<f64>,

@@ -15,7 +15,7 @@ use voronaut::Result;
 use voronaut::mesh::{Mesh, Solution};
 use voronaut::progress::Progress;
 use voronaut::quality::fidelity;
-use voronaut::recipe::{self, Asked, Keep, MeshOptions, RemeshInput};
+use voronaut::recipe::{self, Asked, Effort, Keep, MeshOptions, RemeshInput};
 use voronaut::surface::metric::{Sizes, Sizing};
 use voronaut::surface::{Input, Mended};
 use voronaut_io::gmsh::Version;
@@ -76,7 +76,7 @@ fn in_plane(
     let sizing = sizing(args, args.hsiz.map_or_else(|| input.default_limits(&asked), |h| Ok([0.1 * h, h]))?);
     let sizes = input.sizes(&asked, &sizing)?;
     let field = sizes.field()?;
-    let mut meshed = recipe::mesh(&input.domain, &field, &options(args), bar)?;
+    let mut meshed = recipe::mesh(&input.domain, &field, &options(args, Effort::Fast), bar)?;
     input.mark(&mut meshed.mesh);
     let used = as_used(args, &sizing, metric_file.as_deref());
     let (mut report, _) = account::in_plane(&meshed, &field, used)?;
@@ -106,7 +106,7 @@ fn on_surface(args: &RemeshArgs, world: &World, input: Input, mended: &Mended, b
         world.say("note", "sizes that depend on the direction are not graded: -hgrad would make them alike in all");
     }
     let field = sizes.field(&input.surface)?;
-    let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args) };
+    let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args, Effort::Normal) };
     let meshed = recipe::mesh_surface(&input, &field, &options, bar)?;
     let used = as_used(args, &sizing, metric_file.as_deref());
     let report = account::on_surface(&meshed, &input, mended, &field, used)?;
@@ -178,10 +178,10 @@ fn sizing(args: &RemeshArgs, [least, most]: [f64; 2]) -> Sizing {
     Sizing { hausd: args.hausd, h_min, h_max, hgrad: args.gradation(), anisotropic: args.anisotropic }
 }
 
-fn options(args: &RemeshArgs) -> MeshOptions {
+fn options(args: &RemeshArgs, usual: Effort) -> MeshOptions {
     MeshOptions {
         hausd: Some(args.hausd),
-        effort: args.effort,
+        effort: args.effort.unwrap_or(usual),
         memory_limit: args.run().limits.memory(),
         ..MeshOptions::default()
     }
