@@ -70,10 +70,12 @@ def mesh(
     tensor_order: str = 'disk',
     background: File | None = None,
     hausd: float | None = None,
+    required: bool = False,
     fit: bool = False,
     ar: float = 45,
     nr: bool = False,
     mesher: str = 'voronoi',
+    effort: str = 'normal',
     lloyd: int = 40,
     centroid: str = 'tangent',
     polish: int = 20,
@@ -138,6 +140,8 @@ def mesh(
     hausd : float, optional
         How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]; of a surface: mesh
         and surface from each other, by more vertices unless n says how many
+    required : bool, default False
+        In the plane: leave the edges of the domain's curves as they are, every one an edge of the mesh
     fit : bool, default False
         Surfaces: vertices where mesh and surface are closest in the sense of least squares, instead of on the surface
     ar : float (degrees), default 45
@@ -148,8 +152,10 @@ def mesh(
     mesher : str, default 'voronoi'
         What makes the mesh: voronoi, or starset (Delaunay stars in the metrics of their vertices, refined until they
         agree: to compare; n then sets the scale only)
+    effort : str, default 'normal'
+        How much work is spent on what is left to gain: fast, normal or best
     lloyd : int, default 40
-        Steps of Riemannian Lloyd relaxation
+        Steps of Riemannian Lloyd relaxation, at most
     centroid : str, default 'tangent'
         The centroids seeds are relaxed to: tangent (of cells in tangent planes), canvas (of the diagram's cells) or
         weighted (equation 9 of the report, to compare)
@@ -208,8 +214,8 @@ def mesh(
     --------
     >>> layer = voronaut.mesh("rect:0,0,1,1", lambda p: 0.01 + 0.2 * abs(p[:, 1] - 0.5), n=2000)
     """
-    options = {"complexity": complexity, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "hausd": hausd, "fit": fit, "ar": ar, "nr": nr, "mesher": mesher, "lloyd": lloyd, "centroid": centroid, "polish": polish, "dual": dual, "geodesic": geodesic, "seeding": seeding, "protection": protection, "picking_radius": picking_radius, "net": net, "canvas": canvas, "canvas_size": canvas_size, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
-    defaults: dict[str, Any] = {"norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "ar": 45, "mesher": 'voronoi', "lloyd": 40, "centroid": 'tangent', "polish": 20, "dual": 'both', "geodesic": 'march', "seeding": 'sizing', "protection": 0.2, "picking_radius": 0.3, "canvas": 'intrinsic', "canvas_size": 60, "show": 'mesh', "pixels": 1600, "memory_limit": 16}
+    options = {"complexity": complexity, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "hausd": hausd, "required": required, "fit": fit, "ar": ar, "nr": nr, "mesher": mesher, "effort": effort, "lloyd": lloyd, "centroid": centroid, "polish": polish, "dual": dual, "geodesic": geodesic, "seeding": seeding, "protection": protection, "picking_radius": picking_radius, "net": net, "canvas": canvas, "canvas_size": canvas_size, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
+    defaults: dict[str, Any] = {"norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "ar": 45, "mesher": 'voronoi', "effort": 'normal', "lloyd": 40, "centroid": 'tangent', "polish": 20, "dual": 'both', "geodesic": 'march', "seeding": 'sizing', "protection": 0.2, "picking_radius": 0.3, "canvas": 'intrinsic', "canvas_size": 60, "show": 'mesh', "pixels": 1600, "memory_limit": 16}
     return _run.mesh(domain, metric, n, options, defaults, progress)
 
 
@@ -575,6 +581,7 @@ def remesh(
     opnbdy: bool = False,
     nosizreq: bool = False,
     no_fit: bool = False,
+    effort: str | None = None,
     threads: int | None = None,
     time_limit: float | None = None,
     memory_limit: float = 16,
@@ -620,6 +627,9 @@ def remesh(
         Sizes at required edges of a planar mesh as elsewhere, even where these are shorter
     no_fit : bool, default False
         Vertices on the surface, instead of where mesh and surface are closest in the sense of least squares
+    effort : str, optional
+        How much work is spent on what is left to gain: fast, normal or best [default: fast in the plane, normal on a
+        surface]
     threads : int, optional
         Threads to use [default: all]
     time_limit : float (seconds), optional
@@ -640,7 +650,7 @@ def remesh(
     --------
     >>> fine = voronaut.remesh("part.mesh", hausd=0.001, hmax=0.1)
     """
-    options = {"hausd": hausd, "hmin": hmin, "hmax": hmax, "hsiz": hsiz, "ar": ar, "nr": nr, "repair": repair, "hgrad": hgrad, "anisotropic": anisotropic, "optim": optim, "nosurf": nosurf, "opnbdy": opnbdy, "nosizreq": nosizreq, "no_fit": no_fit, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
+    options = {"hausd": hausd, "hmin": hmin, "hmax": hmax, "hsiz": hsiz, "ar": ar, "nr": nr, "repair": repair, "hgrad": hgrad, "anisotropic": anisotropic, "optim": optim, "nosurf": nosurf, "opnbdy": opnbdy, "nosizreq": nosizreq, "no_fit": no_fit, "effort": effort, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
     defaults: dict[str, Any] = {"hausd": 0.01, "ar": 45, "hgrad": 1.3, "memory_limit": 16}
     return _run.remesh(mesh, metric, options, defaults, progress)
 
