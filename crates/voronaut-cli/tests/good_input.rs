@@ -55,6 +55,21 @@ fn shapes_are_meshed_and_found_to_be_what_was_said() {
 }
 
 #[test]
+fn required_curves_stay_as_they_are() {
+    let place = Place::new();
+    place.put("plate.poly", PLATE);
+    let words = ["mesh", "plate.poly", "--metric", "uniform", "-n", "400", "-o", "out.mesh"];
+    let edges = |more: &[&str]| {
+        runs(&place, &[&words[..], more].concat());
+        let text = String::from_utf8(place.read("out.mesh")).unwrap();
+        let mesh = voronaut_io::medit::read(text.as_bytes(), "out.mesh").unwrap().mesh;
+        (mesh.edges.len(), mesh.required_edges.len())
+    };
+    assert!(edges(&[]).0 > 40);
+    assert_eq!(edges(&["--required"]), (11, 11));
+}
+
+#[test]
 fn poly_labels_and_regions_are_carried() {
     let place = Place::new();
     place.put("plate.poly", PLATE);
