@@ -6,7 +6,7 @@
 
 use super::{Kind, Moving};
 use crate::error::{Error, Result};
-use crate::geodesic::LocalMetric;
+use crate::geodesic::{LocalMetric, STILL};
 use crate::geometry::{Point, Point3, TangentPlane, Tensor3, Vector, Vector3};
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
@@ -20,8 +20,6 @@ pub(super) const UPRIGHT: f64 = 0.3;
 pub(super) const FOLDED: f64 = 1e-6;
 /// A triangle is flat if its height is so small a part of an edge.
 const FLAT: f64 = 1e-9;
-/// Seeds that have moved by less than this (metric) since the metric was measured there keep what was found.
-const STILL: f64 = 0.05;
 /// Slopes of the surface over a chord that tell its length; steeper ones count as this.
 const STEEP: f64 = 0.8;
 

@@ -8,8 +8,8 @@ use crate::metric::{MetricField, Near};
 const DIFFERENCE_STEP: f64 = 0.25;
 /// A field whose second differences over that step exceed this share of the tensor is rough there.
 const ROUGH: f64 = 0.08;
-/// Points that have moved by less than this (metric) are told by derivatives.
-const STILL: f64 = 0.05;
+/// What the metric is at points that have moved by less than this (metric) since it was measured follows from what was found.
+pub(crate) const STILL: f64 = 0.05;
 /// Directions and radius (metric units) of the samples over which a rough field is averaged.
 const RING: usize = 8;
 const RING_RADIUS: f64 = 0.5;

@@ -47,7 +47,7 @@ pub(crate) use konukoglu::Konukoglu;
 pub(crate) use label::{Label, NO_COLOUR, Sources, Support};
 pub(crate) use lattice::Lattice;
 pub(crate) use length::{Length, bent_chord, chord, chord_near, hermite, hermite_between, place_at, reached};
-pub(crate) use local::LocalMetric;
+pub(crate) use local::{LocalMetric, STILL};
 pub(crate) use march::Marching;
 pub use mending::Propagation;
 pub use method::Method;
