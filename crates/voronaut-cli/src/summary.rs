@@ -153,7 +153,7 @@ fn unmet_lines(report: &Report) -> Vec<String> {
     let needles = unmet.needles.poorest.first().map(|first| {
         let Needles { count, forced, .. } = unmet.needles;
         format!(
-            "{count} needles, {forced} of them between features; the first at {}: {:.1e}",
+            "{count} needles, {forced} of them forced by features; the first at {}: {:.1e}",
             position(first.at),
             first.quality
         )

@@ -7,7 +7,7 @@
 use super::{Kind, Moving};
 use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, STILL};
-use crate::geometry::{Point, Point3, TangentPlane, Tensor3, Vector, Vector3};
+use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor3, Vector, Vector3};
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
@@ -194,7 +194,8 @@ impl<'a> SurfaceDual<'a> {
     /// A place with the metric there, scaled.
     fn site_of(&self, place: Place) -> SurfaceSite {
         let normal = self.input().normal(&place);
-        SurfaceSite { log: (self.metric().at(&place) * self.factor()).log(), place: Place { normal, ..place } }
+        let tensor = self.metric().at(&place) * self.factor();
+        SurfaceSite { tensor, log: tensor.log(), place: Place { normal, ..place } }
     }
 }
 
@@ -208,10 +209,11 @@ fn upright([a, b, c]: [Point3; 3], normals: [Vector3; 3]) -> f64 {
     normals.iter().map(|n| n.dot(normal)).fold(1.0, f64::min)
 }
 
-/// A place of a surface and the logarithm of the tensor there.
+/// A place of a surface, the tensor there and its logarithm.
 #[derive(Clone, Copy)]
 pub(crate) struct SurfaceSite {
     place: Place,
+    tensor: Tensor3,
     log: Tensor3,
 }
 
@@ -314,9 +316,10 @@ impl Moving for SurfaceDual<'_> {
 
     /// Negative where the triangle is turned over against the surface's normal at a corner.
     fn quality(&self, corners: [SurfaceSite; 3]) -> f64 {
-        let [a, b, c] = corners.map(|site| site.place.position);
-        let tensor = (corners.iter().fold(Tensor3::default(), |sum, site| sum + site.log) * (1.0 / 3.0)).exp();
-        let (normal, quality) = ((b - a).cross(c - a), tensor.shape([a, b, c]));
+        let at @ [a, b, c] = corners.map(|site| site.place.position);
+        let seen = corners.map(|site| Seen { tensor: site.tensor, normal: site.place.normal });
+        let quality = Seen::flattened(at, seen).map_or(0.0, |(metric, corners)| metric.shape(corners));
+        let normal = (b - a).cross(c - a);
         let is_upright = corners.iter().all(|site| site.place.normal.dot(normal) > 0.0);
         if is_upright { quality } else { -quality }
     }

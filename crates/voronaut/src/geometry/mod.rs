@@ -21,7 +21,7 @@ pub(crate) use predicates::{centroid, holds, in_circle, segment_intersection, si
 pub(crate) use quadrature::{Node, combine, radon};
 pub use tensor::{Eigen, Tensor};
 pub(crate) use tensor::{from_frame, to_frame};
-pub(crate) use tensor3::Eigen3;
+pub(crate) use tensor3::{Eigen3, Seen};
 pub use tensor3::{TangentPlane, Tensor3};
 pub(crate) use tree::{Bounds, BoxTree, around, meeting_pairs, widened};
 

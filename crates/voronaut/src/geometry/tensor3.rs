@@ -1,7 +1,7 @@
 //! Symmetric 3 x 3 tensors: the metric M of space, of which a surface sees what lies in its tangent planes.
 
 use super::linear::linear;
-use super::{Point3, Tensor, Vector, Vector3};
+use super::{Point, Point3, Tensor, Vector, Vector3};
 
 /// The symmetric matrix ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)); a metric when positive definite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -267,6 +267,33 @@ fn rotate(m: &mut [[f64; 3]; 3], axes: &mut [[f64; 3]; 3], p: usize, q: usize) {
     (m[p][r], m[q][r]) = (m[r][p], m[r][q]);
     for row in axes {
         (row[p], row[q]) = (cos * row[p] - sin * row[q], sin * row[p] + cos * row[q]);
+    }
+}
+
+/// A tensor of space, and the normal of the surface there.
+#[derive(Clone, Copy)]
+pub(crate) struct Seen {
+    pub(crate) tensor: Tensor3,
+    pub(crate) normal: Vector3,
+}
+
+impl Seen {
+    /// What the tensor says of tangents, in the coordinates of another plane, to which the smallest rotation takes them.
+    pub(crate) fn in_plane(&self, plane: &TangentPlane) -> Tensor {
+        // Tangent planes have no side.
+        let normal = if self.normal.dot(plane.normal) < 0.0 { -self.normal } else { self.normal };
+        plane.turned(normal).restrict(self.tensor)
+    }
+
+    /// A triangle in its plane, and the log-Euclidean mean there of what its corners see; nothing of one without area.
+    pub(crate) fn flattened([a, b, c]: [Point3; 3], corners: [Seen; 3]) -> Option<(Tensor, [Point; 3])> {
+        let plane = TangentPlane::new((b - a).cross(c - a).unit()?);
+        let [l, m, n] = corners.map(|seen| seen.in_plane(&plane).log());
+        let flat = |p: Point3| {
+            let Vector { x, y } = plane.flatten(p - a);
+            Point::new(x, y)
+        };
+        Some((((l + m + n) * (1.0 / 3.0)).exp(), [a, b, c].map(flat)))
     }
 }
 

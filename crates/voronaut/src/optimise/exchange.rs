@@ -3,7 +3,7 @@
 
 use crate::dual::{Dual, Effort, Kind, Moving, sites};
 use crate::error::Result;
-use crate::geometry::{Vector, from_frame};
+use crate::geometry::{NEEDLE, Vector, from_frame};
 use crate::lists::ranked;
 use crate::planar::Location;
 use crate::progress::Silent;
@@ -80,7 +80,7 @@ const GAIN: f64 = 1e-3;
 /// Edges whose metric length has a logarithm of at most this size are well within the unit range.
 const UNIT: f64 = 0.3;
 /// Below this quality lengths do not count beside an edge that must stay whole and is too long: every way off it may make others worse.
-const POOR: f64 = 0.1;
+const POOR: f64 = 2.0 * NEEDLE;
 /// Moves of one seed.
 const MOVES: usize = 6;
 
@@ -90,16 +90,33 @@ const MOVES: usize = 6;
 ///
 /// Relaxation equalises cells, of which a triangle beside the tip of a cape knows little. The energy may rise a little.
 pub(crate) fn mend_worst(dual: &mut impl Moving, most: usize) -> usize {
+    let poorest: Vec<[VertexId; 3]> = by_quality(dual).into_iter().take(most).map(|(_, corners)| corners).collect();
+    mend_corners(dual, poorest)
+}
+
+/// The same of all triangles that are needles, or nearly: what the mesh is measured by asks for the metric at the closest places, and
+/// may find less.
+pub(crate) fn mend_needles(dual: &mut impl Moving) -> usize {
+    let poor = by_quality(dual).into_iter().take_while(|(quality, _)| *quality < POOR).map(|(_, corners)| corners);
+    let poor: Vec<[VertexId; 3]> = poor.collect();
+    mend_corners(dual, poor)
+}
+
+/// The triangles by their quality, the poorest first.
+fn by_quality(dual: &impl Moving) -> Vec<(f64, [VertexId; 3])> {
     let sites = sites(dual);
     let corners = dual.topology().faces().map(|face| dual.topology().corners(face));
-    let found = ranked(corners.map(|corners| (dual.quality(corners.map(|v| sites[v.index()])), corners)));
-    let corners = found.into_iter().take(most).flat_map(|(_, corners)| corners);
+    ranked(corners.map(|corners| (dual.quality(corners.map(|v| sites[v.index()])), corners)))
+}
+
+fn mend_corners(dual: &mut impl Moving, triangles: Vec<[VertexId; 3]>) -> usize {
+    let corners = triangles.into_iter().flatten();
     let free: Vec<VertexId> = corners.filter(|&v| dual.kind(v) == Kind::Free).collect();
     free.into_iter().filter(|&v| mend(dual, v)).count()
 }
 
-/// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out, unless the quality is poor beside
-/// an edge that must stay whole and is too long.
+/// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out, unless a triangle is a needle, or
+/// the quality is poor beside an edge that must stay whole and is too long.
 fn mend<M: Moving>(dual: &mut M, v: VertexId) -> bool {
     let topology = dual.topology();
     let ring: Vec<[M::Site; 2]> =
@@ -122,18 +139,15 @@ fn mend<M: Moving>(dual: &mut M, v: VertexId) -> bool {
     let mut now = least(dual, dual.site(v), f64::NEG_INFINITY).unwrap_or(f64::NEG_INFINITY);
     let mut has_moved = false;
     for _ in 0..MOVES {
-        let allowed = if is_beside && now < POOR { f64::INFINITY } else { usual };
-        let mut best = (now + GAIN, None);
-        for by in trials(dual.local(v).tensor.cholesky()) {
-            let Some(site) = dual.site_after(v, by) else { continue };
-            let found = least(dual, site, best.0).filter(|_| worst_edge(dual, site) <= allowed);
-            best = found.map_or(best, |quality| (quality, Some(by)));
-        }
-        let (quality, Some(by)) = best else { break };
-        if !dual.shift_by(v, by) {
-            break;
-        }
-        (now, has_moved) = (quality, true);
+        let allowed = if now < NEEDLE || (is_beside && now < POOR) { f64::INFINITY } else { usual };
+        let tried: Vec<Vector> = trials(dual.local(v).tensor.cholesky()).collect();
+        let gained = |&by: &Vector| {
+            let site = dual.site_after(v, by)?;
+            least(dual, site, now + GAIN).filter(|_| worst_edge(dual, site) <= allowed)
+        };
+        let better = ranked(tried.iter().enumerate().filter_map(|(i, by)| Some((-gained(by)?, i))));
+        let Some((loss, _)) = better.into_iter().find(|&(_, i)| dual.shift_by(v, tried[i])) else { break };
+        (now, has_moved) = (-loss, true);
     }
     if has_moved {
         dual.settle_move(v);

@@ -13,7 +13,7 @@ mod survey;
 
 pub(crate) use cell::Tangent;
 pub use cell::{Cell, Cells, OnCanvas};
-pub(crate) use exchange::{exchange, meet_blocked_flips, mend_worst};
+pub(crate) use exchange::{exchange, meet_blocked_flips, mend_needles, mend_worst};
 pub(crate) use fit::{FitOptions, fit};
 pub use lloyd::Relaxed;
 pub(crate) use lloyd::{Patience, relax};

@@ -3,7 +3,7 @@
 use super::faults::Position;
 use super::metric_quality::{GAUSS, MetricQuality, Shape, collect, demand_vertices, fault, figures};
 use crate::error::Result;
-use crate::geometry::{Point, Point3, TangentPlane, Tensor, Tensor3, Vector, Vector3};
+use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor, Vector, Vector3};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::surface::metric::{SurfaceMetric, check_tensor3};
@@ -32,13 +32,6 @@ pub(super) struct Field<'a> {
     surface: &'a Surface,
     nearest: Nearest,
     metric: &'a dyn SurfaceMetric,
-}
-
-/// A tensor of space, and the normal of the surface there.
-#[derive(Clone, Copy)]
-struct Seen {
-    tensor: Tensor3,
-    normal: Vector3,
 }
 
 impl<'a> Field<'a> {
@@ -80,46 +73,26 @@ impl<'a> Field<'a> {
         Ok(move |t: [u32; 3]| {
             let corners = t.map(|v| tensors[v as usize]);
             let [Some(a), Some(b), Some(c)] = corners else { return Shape::default() };
-            shape(mesh.positions_of(t), [a, b, c])
+            let flat = Seen::flattened(mesh.positions_of(t), [a, b, c]);
+            flat.map_or(Shape::default(), |(metric, corners)| Shape::of(metric, corners))
         })
     }
 
     /// The length of a straight edge.
     pub(super) fn length(&self, [a, b]: [Point3; 2]) -> Result<f64> {
-        let part = |&(t, weight): &(f64, f64)| Ok(weight * self.at(a.lerp(b, t))?.length(b - a));
+        let part = |&(t, weight): &(f64, f64)| Ok(weight * length(self.at(a.lerp(b, t))?, b - a));
         GAUSS.iter().map(part).sum()
     }
 }
 
-impl Seen {
-    /// The metric length of a vector of its Euclidean length that points along its part in the tangent plane; the mean over
-    /// directions, roughly, of one that has no such part.
-    fn length(&self, edge: Vector3) -> f64 {
-        let tangent = edge - self.normal * edge.dot(self.normal);
-        match tangent.unit() {
-            Some(direction) => self.tensor.length(direction) * edge.norm(),
-            None => TangentPlane::new(self.normal).restrict(self.tensor).determinant().powf(0.25) * edge.norm(),
-        }
+/// The metric length of a vector of its Euclidean length that points along its part in the tangent plane; the mean over
+/// directions, roughly, of one that has no such part.
+fn length(Seen { tensor, normal }: Seen, edge: Vector3) -> f64 {
+    let tangent = edge - normal * edge.dot(normal);
+    match tangent.unit() {
+        Some(direction) => tensor.length(direction) * edge.norm(),
+        None => TangentPlane::new(normal).restrict(tensor).determinant().powf(0.25) * edge.norm(),
     }
-
-    /// What the tensor says of tangents, in the coordinates of another plane, to which the smallest rotation takes them.
-    fn in_plane(&self, plane: &TangentPlane) -> Tensor {
-        // Tangent planes have no side.
-        let normal = if self.normal.dot(plane.normal) < 0.0 { -self.normal } else { self.normal };
-        plane.turned(normal).restrict(self.tensor)
-    }
-}
-
-/// Of a triangle by its corners and what the metric is there; of a flat one, zero.
-fn shape([a, b, c]: [Point3; 3], corners: [Seen; 3]) -> Shape {
-    let Some(normal) = (b - a).cross(c - a).unit() else { return Shape::default() };
-    let plane = TangentPlane::new(normal);
-    let [l, m, n] = corners.map(|seen| seen.in_plane(&plane).log());
-    let flat = |p: Point3| {
-        let Vector { x, y } = plane.flatten(p - a);
-        Point::new(x, y)
-    };
-    Shape::of(((l + m + n) * (1.0 / 3.0)).exp(), [a, b, c].map(flat))
 }
 
 #[cfg(test)]

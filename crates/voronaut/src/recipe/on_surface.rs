@@ -113,6 +113,9 @@ impl<'a> Setting<'a> {
             if faulty.is_empty() && self.steps(&reseed).is_some() && self.settle_edges(&mut pass)? {
                 (mesh, faulty) = self.checked(&pass)?;
             }
+            if faulty.is_empty() && self.steps(&reseed).is_none() {
+                mesh = self.without_needles(&mut pass, mesh)?;
+            }
             if faulty.is_empty() || reseed.is_last {
                 break (pass, mesh);
             }
@@ -174,6 +177,20 @@ impl<'a> Setting<'a> {
             Ok(pass.faulty(&mesh, &self.meetings))
         })?;
         Ok((mesh, faulty))
+    }
+
+    /// The mesh of a pass that was not relaxed, its needles mended where that is still a mesh.
+    fn without_needles(&self, pass: &mut Pass, mesh: Mesh) -> Result<Mesh> {
+        let before = pass.dual.save();
+        if !pass.mend_needles() {
+            return Ok(mesh);
+        }
+        let (mended, faulty) = self.checked(pass)?;
+        if faulty.is_empty() {
+            return Ok(mended);
+        }
+        pass.dual.take_back(&before);
+        Ok(mesh)
     }
 
     fn farthest_passes(&self) -> usize {

@@ -12,7 +12,7 @@ use crate::figures;
 use crate::geometry::Point3;
 use crate::lists::in_order;
 use crate::mesh::Mesh;
-use crate::optimise::{Patience, Relaxed, Tangent, mend_worst, relax};
+use crate::optimise::{Patience, Relaxed, Tangent, mend_needles, mend_worst, relax};
 use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
@@ -283,6 +283,15 @@ impl Pass<'_> {
     /// One mesh of all patches; its triangles are in the order of the dual's.
     pub(super) fn mesh(&self) -> Mesh {
         self.patched().mesh(self.dual.places(), &self.dual.triangles())
+    }
+
+    /// Mends its needles, and says whether it did.
+    pub(super) fn mend_needles(&mut self) -> bool {
+        let mut changes = 0;
+        for _ in 0..MENDINGS {
+            changes += self.dual.round_off() + mend_needles(&mut self.dual) as u64;
+        }
+        changes > 0
     }
 
     /// The triangles at which it is no mesh, or that are folded over, or whose border is that of no patch.

@@ -55,7 +55,7 @@ pub(super) struct Curves {
     /// The edges of borders and features, by their vertices.
     kept: BTreeMap<[u32; 2], Kept>,
     /// Vertices on them, and required ones.
-    pub(super) is_on: Vec<bool>,
+    is_on: Vec<bool>,
     /// Vertices that cannot slide along them.
     is_corner: Vec<bool>,
 }
@@ -85,6 +85,11 @@ impl Curves {
         let is_corner = marked(mesh.points.len(), listed().chain(network.vertices().filter(is_corner)));
         let is_on = marked(mesh.points.len(), listed().chain(network.vertices()));
         Self { kept, is_on, is_corner }
+    }
+
+    /// Whether all of these vertices are on borders or features, or required.
+    pub(super) fn has_all(&self, vertices: &[u32]) -> bool {
+        vertices.iter().all(|&v| self.is_on[v as usize])
     }
 }
 

@@ -9,6 +9,7 @@ use super::metric_quality::{Corners, Shape, collect, demand_planar, demand_verti
 use super::surface_quality::Field;
 use crate::error::Result;
 use crate::geometry::{NEEDLE, Point, Point3, Vector};
+use crate::lists::in_order;
 use crate::mesh::{Edges, Mesh};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
@@ -101,7 +102,9 @@ pub struct Needle {
     pub quality: f64,
     /// Its centroid.
     pub at: Position,
-    /// Whether what has to be kept leaves no choice: all its corners are on borders or features, or required.
+    /// Whether what has to be kept leaves no choice: all its corners are on borders or features, or required; or its shortest
+    /// edge is short because of what has to be kept ([`Cause::Boundary`]), joins two places of that, and is so short that even
+    /// with two unit edges the triangle on it would be a needle.
     pub is_forced: bool,
 }
 
@@ -253,14 +256,31 @@ fn find<'a>(
         UnmetEdge { edge: ends[e], length: lengths[e], cause: cause(e), at }
     };
     let wrong: Vec<usize> = (0..ends.len()).filter(|&e| !is_unit(lengths[e])).collect();
+    let stands_on_kept = |[a, b, c]: [u32; 3]| {
+        let sides = [[a, b], [b, c], [c, a]].map(in_order);
+        let shortest = sides
+            .into_iter()
+            .filter_map(|side| ends.binary_search(&side).ok())
+            .min_by(|&e, &f| lengths[e].total_cmp(&lengths[f]));
+        shortest.is_some_and(|e: usize| {
+            forced[e] != Forced::No && curves.has_all(&ends[e]) && isosceles(lengths[e]) < NEEDLE
+        })
+    };
     let needle = |&t: &[u32; 3]| {
         let quality = Some(shape(t).quality).filter(|&quality| quality < NEEDLE)?;
-        let is_forced = t.iter().all(|&v| curves.is_on[v as usize]);
+        let is_forced = curves.has_all(&t) || stands_on_kept(t);
         Some(Needle { quality, at: position(middle(mesh, &t)), is_forced })
     };
     let mut needles: Vec<Needle> = mesh.triangles.par_iter().filter_map(needle).collect();
     needles.sort_by(|a, b| a.quality.total_cmp(&b.quality));
     Ok(Unmet { edges: wrong.into_par_iter().map(edge).collect(), needles, of: ends.len() })
+}
+
+/// The quality of a triangle of two unit edges and one of this metric length.
+fn isosceles(base: f64) -> f64 {
+    // 4 sqrt 3 A over the sum of the squares, A half of the base times the height.
+    let height = (1.0 - 0.25 * base * base).max(0.0).sqrt();
+    2.0 * 3.0_f64.sqrt() * base * height / (2.0 + base * base)
 }
 
 /// Whether a metric length is that of a unit edge.

@@ -185,3 +185,21 @@ fn needles_are_forced_where_all_their_corners_are_on_borders() {
     assert_eq!(told(&needles(&inner)), (1, 0, false));
     assert_eq!(told(&needles(&Mesh { required_points: vec![2], ..inner })), (1, 1, true));
 }
+
+#[test]
+fn needles_on_a_short_edge_that_is_kept_are_forced() {
+    // A spoke's triangle on the rim of a hexagon, two corners of which are next to each other.
+    let hexagon = |degrees: f64| {
+        let angles = [0.0_f64, 60.0, 120.0, 180.0, 240.0, 300.0, 300.0 + degrees].map(f64::to_radians);
+        let mut points = vec![[0.0, 0.0]];
+        points.extend(angles.map(|angle| [angle.cos(), angle.sin()]));
+        mesh(&points, &(0..7).map(|i| [0, 1 + i, 1 + (i + 1) % 7]).collect::<Vec<[u32; 3]>>())
+    };
+    let needles = |mesh: &Mesh| unmet(mesh, &UNIT).unwrap().figures().needles;
+    let told = |found: &Needles| (found.count, found.forced);
+    assert_eq!(told(&needles(&hexagon(3.0))), (0, 0));
+    assert_eq!(told(&needles(&hexagon(1.0))), (1, 1));
+    // The same triangle where nothing has to be kept: its tip is beside the middle of a side that is no feature.
+    let inside = mesh(&[[0.0, 0.0], [1.0, 0.0], [0.5, 0.0125], [0.5, 0.9]], &[[0, 1, 2], [0, 2, 3], [2, 1, 3]]);
+    assert_eq!(told(&needles(&inside)), (1, 0));
+}
