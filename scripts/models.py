@@ -12,7 +12,7 @@ github.com/alecjacobson/common-3d-test-models into FOLDER. Each is meshed as it 
 outcome: meshed, repaired (meshed with --repair only), refused (exit 1, the message beside it), late (over the time limit),
 crashed (any other exit). Of the mesh, by `voronaut check --domain`: vertices; valid; pairs of triangles or vertices of the mesh that
 meet where the input meets itself, and those that meet elsewhere; the share of unit edges, mean and least quality in the metric scaled as it was;
-triangles folded over; root mean square and greatest distance to the input, both ways, as shares of its diagonal. The last line counts.
+needles (quality below 0.05) that features do not force; triangles folded over; root mean square and greatest distance to the input, both ways, as shares of its diagonal. The last line counts.
 """
 
 import argparse
@@ -28,7 +28,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 LIST = ROOT / "scripts/models.tsv"
 ENDINGS = {".off", ".obj", ".ply", ".stl", ".mesh", ".meshb", ".msh", ".vtu", ".vtp"}
-COLUMNS = ["model", "outcome", "seconds", "vertices", "valid", "input_meets", "ours_meet", "unit", "quality", "least", "folded",
+COLUMNS = ["model", "outcome", "seconds", "vertices", "valid", "input_meets", "ours_meet", "unit", "quality", "least", "loose", "folded",
            "rms", "greatest"]
 
 
@@ -115,7 +115,9 @@ def attempt(typed, options, file, place, before):
     repair = [word for word in options if word == "--repair"]
     subprocess.run([typed.voronaut, "check", out, "--metric", typed.metric, "--metric-scale", str(figures["metric_scale"]), "--domain", file,
                     *repair, "--report", checked], capture_output=True, text=True)
-    return row | {"outcome": "meshed", "message": " | ".join(figures["notes"])} | of_mesh(json.loads(checked.read_text()))
+    needles = figures["unmet"]["needles"]
+    loose = {"loose": needles["count"] - needles["forced"]}
+    return row | {"outcome": "meshed", "message": " | ".join(figures["notes"])} | loose | of_mesh(json.loads(checked.read_text()))
 
 
 def of_mesh(figures):

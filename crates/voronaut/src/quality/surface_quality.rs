@@ -100,6 +100,7 @@ mod tests {
     use super::super::metric_quality::metric_quality;
     use super::super::test_meshes::grid;
     use super::*;
+    use crate::geometry::{Tensor, Tensor3};
     use crate::surface::metric::Constant;
     use crate::surface::{Place, sphere, torus};
 
