@@ -184,16 +184,6 @@ impl Canvas {
         Self::new(Kind::Intrinsic, domain, field, vertices)
     }
 
-    /// The same vertices as [`Canvas::intrinsic`] without its flips: both triangulations are the embedded one.
-    ///
-    /// # Errors
-    /// As for [`Canvas::intrinsic`].
-    pub(crate) fn straight(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        let mut counters = CanvasCounters::default();
-        let planar = refine::refine(domain.planar().clone(), field, vertices, &mut counters)?;
-        Self::unflipped(renumbered(&planar), field, Kind::Intrinsic, counters)
-    }
-
     /// The isotropic one of [`Canvas::new`] with as many vertices as it takes until no circumradius exceeds so many `isotropic_size`s
     /// (at its circumcentre), but for faces that rounding or a small angle of the domain leaves no way to cut. The authors
     /// use 1.
@@ -302,6 +292,16 @@ impl Canvas {
     pub fn position(&self, v: VertexId) -> Point {
         self.embedded.planar.position(v)
     }
+}
+
+/// The triangulation that [`Canvas::intrinsic`] starts from, alone: even in the metric, with so many vertices, and all of those that
+/// there were.
+///
+/// # Errors
+/// As for [`Canvas::intrinsic`].
+pub(crate) fn even(planar: &Planar, field: &dyn MetricField, vertices: usize) -> Result<Planar> {
+    let refined = refine::refine(planar.clone(), field, vertices, &mut CanvasCounters::default())?;
+    Ok(renumbered(&refined))
 }
 
 /// The vertices along a Hilbert curve, for the sake of the cache.

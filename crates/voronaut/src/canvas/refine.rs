@@ -7,9 +7,9 @@ use super::CanvasCounters;
 use super::buckets::Buckets;
 use super::steiner::Steiner;
 use crate::error::Result;
-use crate::geodesic::chord;
+use crate::geodesic::chord_from;
 use crate::geometry::Point;
-use crate::metric::MetricField;
+use crate::metric::{MetricField, Near};
 use crate::planar::Planar;
 use crate::triangulation::{HalfEdge, VertexId};
 
@@ -69,11 +69,13 @@ struct Refiner<'a> {
     steiner: Steiner<'a>,
     field: &'a dyn MetricField,
     queue: Buckets<[VertexId; 2]>,
+    /// Where an edge was measured last: the next one is mostly beside it.
+    near: Near,
 }
 
 impl<'a> Refiner<'a> {
     fn new(planar: Planar, field: &'a dyn MetricField) -> Result<Self> {
-        Ok(Self { steiner: Steiner::metric(planar, field)?, field, queue: Buckets::default() })
+        Ok(Self { steiner: Steiner::metric(planar, field)?, field, queue: Buckets::default(), near: Near::default() })
     }
 
     /// Halves an edge, or first the fixed edge beside it that its middle encroaches: else new vertices creep ever closer
@@ -129,7 +131,7 @@ impl<'a> Refiner<'a> {
         let ends = self.steiner.planar.topology.ends(h);
         let [p, q] = self.steiner.planar.ends(h);
         let length = if self.steiner.planar.positions.len() < COARSE {
-            chord(self.field, p, q)
+            chord_from(self.field, p, q, &mut self.near)
         } else {
             self.simpson(ends, p, q)
         };
@@ -159,7 +161,7 @@ pub(super) fn is_beside_flat(planar: &Planar, h: HalfEdge) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::canvas::Canvas;
+    use crate::canvas::even;
     use crate::geometry::{Point, Tensor};
     use crate::test_cases::plate;
 
@@ -167,7 +169,7 @@ mod tests {
     fn a_border_that_is_halved_no_more_ends_the_work() {
         // Both long sides are encroached along all of their length, and nothing but rounding lies between them.
         let needle = plate(&[&[[-6e-10, 6e-10], [953.125, -1250.0], [0.0, 0.0]]]);
-        let canvas = Canvas::straight(&needle, &|_: Point| Tensor::IDENTITY, 1000).unwrap();
-        assert!(canvas.vertex_count() <= 1000 + 120, "{}", canvas.vertex_count());
+        let even = even(needle.planar(), &|_: Point| Tensor::IDENTITY, 1000).unwrap();
+        assert!(even.positions.len() <= 1000 + 120, "{}", even.positions.len());
     }
 }

@@ -64,7 +64,7 @@ mod tests {
     #[test]
     fn islands_are_counted_one_by_one() {
         let domain = Domain::shape("rect:0,0,4,1").unwrap();
-        let canvas = Canvas::straight(&domain, &|_: Point| Tensor::IDENTITY, 4000).unwrap();
+        let canvas = Canvas::intrinsic(&domain, &|_: Point| Tensor::IDENTITY, 4000).unwrap();
         let [first, second] = [Point::new(2.5, 0.3), Point::new(3.5, 0.7)];
         // The left half is 0's, the right one 1's but for two disks; a third is out of reach of everyone.
         let colour = |v: VertexId| {

@@ -1,6 +1,6 @@
 //! The length of a short geodesic by its one leading mode of bending.
 
-use super::length::{GAUSS, chord, relaxed_length};
+use super::length::{GAUSS, chord_by, nearby, relaxed_length};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 
@@ -44,22 +44,23 @@ pub(crate) fn bowed_chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
 
 /// [`bowed_chord`] where the tensors at both ends are known.
 pub(crate) fn bowed_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [Tensor; 2]) -> f64 {
+    let at = nearby(field);
     let d = q - p;
     let middle = p.midpoint(q);
-    let tensor = field.at(middle);
+    let tensor = at(middle);
     let across = across(tensor, d);
-    let samples = Samples { middle: tensor, ends, sides: [TRIAL, -TRIAL].map(|bow| field.at(middle + across * bow)) };
+    let samples = Samples { middle: tensor, ends, sides: [TRIAL, -TRIAL].map(|bow| at(middle + across * bow)) };
     let interpolated = |bow: f64| parabola(|t, offset| samples.at(t, offset), d, across, bow);
     if let Some(length) = Some(&samples).filter(|s| s.are_steady()).and_then(|_| least(interpolated).1) {
         return length;
     }
-    let evaluated = |bow: f64| parabola(|t, offset| field.at(p + d * t + across * offset), d, across, bow);
+    let evaluated = |bow: f64| parabola(|t, offset| at(p + d * t + across * offset), d, across, bow);
     let (straight, best) = least(evaluated);
     let length = best.unwrap_or_else(|| {
         let path = relaxed_length(field, p, q, SEGMENTS, SETTLED);
         if path.is_finite() { path.min(straight) } else { straight }
     });
-    if samples.differ(d) { length.min(halved(field, [p, q], straight, HALVINGS)) } else { length }
+    if samples.differ(d) { length.min(halved(&at, [p, q], straight, HALVINGS)) } else { length }
 }
 
 /// Orthogonal to a chord in the metric at its middle, and of its length there.
@@ -70,18 +71,18 @@ fn across(tensor: Tensor, d: Vector) -> Vector {
 
 /// The length of a path that bends far, or is a part of such a one, and may still be halved so often; `straight` without a
 /// bend.
-fn halved(field: &dyn MetricField, [p, q]: [Point; 2], straight: f64, halvings: u32) -> f64 {
+fn halved(at: &impl Fn(Point) -> Tensor, [p, q]: [Point; 2], straight: f64, halvings: u32) -> f64 {
     // Along any direction across, as paths go; the one that leads least far meets the fewest changes of the metric.
     let d = q - p;
     let aside = d.perpendicular();
-    let aside = aside * (d.cross(across(field.at(p.midpoint(q)), d)) / d.cross(aside));
-    let length = |bow: f64| parabola(|t, offset| field.at(p + d * t + aside * offset), d, aside, bow);
+    let aside = aside * (d.cross(across(at(p.midpoint(q)), d)) / d.cross(aside));
+    let length = |bow: f64| parabola(|t, offset| at(p + d * t + aside * offset), d, aside, bow);
     let best = Best::of(length, straight);
     if best.is_trusted() || halvings == 0 || !straight.is_finite() {
         return best.length;
     }
     let top = p.midpoint(q) + aside * best.bow;
-    let part = |ends: [Point; 2]| halved(field, ends, chord(field, ends[0], ends[1]), halvings - 1);
+    let part = |ends: [Point; 2]| halved(at, ends, chord_by(at, ends[0], ends[1]), halvings - 1);
     let both = part([p, top]) + part([top, q]);
     if both < best.length { both } else { best.length }
 }

@@ -3,6 +3,7 @@
 use super::{LocalMetric, tension};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::{MetricField, Near};
+use std::cell::Cell;
 
 /// A length and an estimate (not a bound) of its relative error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,15 +76,37 @@ pub(super) const GAUSS: [(f64, f64); 5] = [
     (0.953_089_922_969_332, 0.118_463_442_528_094_5),
 ];
 
-/// Length of the straight segment p-q by five-point Gauss quadrature of sqrt(d' M d).
-pub(crate) fn chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
-    chord_near(field, p, q, Near::default())
+/// A field that is asked for places near each other, one after the other.
+pub(crate) fn nearby(field: &dyn MetricField) -> impl Fn(Point) -> Tensor + '_ {
+    let found = Cell::new(Near::default());
+    move |p| {
+        let mut near = found.get();
+        let tensor = field.at_near(p, &mut near);
+        found.set(near);
+        tensor
+    }
 }
 
-/// The same, where the field may be looked for at a place near the first end.
-pub(crate) fn chord_near(field: &dyn MetricField, p: Point, q: Point, mut near: Near) -> f64 {
+/// Length of the straight segment p-q by five-point Gauss quadrature of sqrt(d' M d).
+pub(crate) fn chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
+    chord_by(nearby(field), p, q)
+}
+
+/// The same by what the tensors are.
+pub(crate) fn chord_by(at: impl Fn(Point) -> Tensor, p: Point, q: Point) -> f64 {
     let d = q - p;
-    GAUSS.iter().map(|&(t, weight)| weight * field.at_near(p.lerp(q, t), &mut near).length(d)).sum()
+    GAUSS.iter().map(|&(t, weight)| weight * at(p.lerp(q, t)).length(d)).sum()
+}
+
+/// [`chord`] where the field may be looked for at a place near the first end.
+pub(crate) fn chord_near(field: &dyn MetricField, p: Point, q: Point, mut near: Near) -> f64 {
+    chord_from(field, p, q, &mut near)
+}
+
+/// The same; then `near` is where the last end is.
+pub(crate) fn chord_from(field: &dyn MetricField, p: Point, q: Point, near: &mut Near) -> f64 {
+    let d = q - p;
+    GAUSS.iter().map(|&(t, weight)| weight * field.at_near(p.lerp(q, t), near).length(d)).sum()
 }
 
 /// The metric length up to each point of a path, with the tensors at the middles of its segments.

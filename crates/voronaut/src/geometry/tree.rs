@@ -72,28 +72,41 @@ impl<T, const D: usize> BoxTree<T, D> {
 
     /// The item with the least squared distance from `p`, of several the first that is met; `None` of no item.
     pub(crate) fn nearest(&self, p: [f64; D], square: impl Fn(&T) -> f64) -> Option<&T> {
-        let mut best: Option<(f64, &T)> = None;
-        self.search(p, |item| {
-            let (found, least) = (square(item), best.map_or(f64::INFINITY, |b| b.0));
-            if found < least || best.is_none() {
-                best = Some((found, item));
-            }
-            found.min(least)
-        });
-        best.map(|b| b.1)
+        self.nearer(p, f64::INFINITY, square)
+    }
+
+    /// The same of those alone that are nearer than a squared distance; at infinity all are.
+    pub(crate) fn nearer(&self, p: [f64; D], within: f64, square: impl Fn(&T) -> f64) -> Option<&T> {
+        let (mut best, mut item_there) = (within, None);
+        self.search_by(
+            within,
+            |bounds| squared_distance(bounds, p),
+            |item| {
+                let found = square(item);
+                if found < best || (item_there.is_none() && within == f64::INFINITY) {
+                    (best, item_there) = (found.min(best), Some(item));
+                }
+                best
+            },
+        );
+        item_there
     }
 
     /// Calls `visit` with all items whose box is nearer to `p` than the bound, nearer boxes first. `visit` returns the new
     /// bound, a squared distance; it starts at infinity.
     pub(crate) fn search<'a>(&'a self, p: [f64; D], visit: impl FnMut(&'a T) -> f64) {
-        self.search_by(|bounds| squared_distance(bounds, p), visit);
+        self.search_by(f64::INFINITY, |bounds| squared_distance(bounds, p), visit);
     }
 
-    /// [`BoxTree::search`] by any distance of boxes: that of one is no more than that of what it holds.
-    pub(crate) fn search_by<'a>(&'a self, distance: impl Fn(&Bounds<D>) -> f64, mut visit: impl FnMut(&'a T) -> f64) {
+    /// [`BoxTree::search`] from any bound on, by any distance of boxes: that of one is no more than that of what it holds.
+    pub(crate) fn search_by<'a>(
+        &'a self,
+        mut bound: f64,
+        distance: impl Fn(&Bounds<D>) -> f64,
+        mut visit: impl FnMut(&'a T) -> f64,
+    ) {
         let mut pending = [(0, 0.0); MAX_DEPTH];
         let mut count = usize::from(!self.nodes.is_empty());
-        let mut bound = f64::INFINITY;
         while count > 0 {
             count -= 1;
             let (mut index, nearest) = pending[count];

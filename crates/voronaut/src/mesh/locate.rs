@@ -115,17 +115,28 @@ impl Locator {
         })
     }
 
-    /// The same from a triangle that may be near: by walking, as far as that leads.
+    /// The same from a triangle that may be near: by walking, as far as that leads. Beyond the border the tree is asked for what is
+    /// nearer than the triangle there.
     pub(crate) fn locate_from(&self, start: Option<u32>, p: Point) -> Option<Located> {
         let mut at = start.unwrap_or(NONE);
         for _ in 0..STEPS {
             let Some(&Face { corners, beyond }) = self.faces.get(at as usize) else { break };
             match within(corners, p) {
                 Ok(weights) => return Some(Located { triangle: at, weights, distance: 0.0 }),
+                Err(edge) if beyond[edge] == NONE && p.is_finite() => return Some(self.nearer_than(at, p)),
                 Err(edge) => at = beyond[edge],
             }
         }
         self.locate(p)
+    }
+
+    /// The nearest point of the mesh, from a triangle that may have it.
+    fn nearer_than(&self, triangle: u32, p: Point) -> Located {
+        let found = |triangle: u32| nearest_point(self.faces[triangle as usize].corners, p);
+        let nearer = self.pieces.nearer([p.x, p.y], found(triangle).0, |&piece| found(piece).0);
+        let triangle = nearer.copied().unwrap_or(triangle);
+        let (square, weights) = found(triangle);
+        Located { triangle, weights, distance: square.sqrt() }
     }
 
     /// Puts into `found` the numbers, ascending, of all triangles that meet the triangle `corners`, and of some that only pass

@@ -1,7 +1,7 @@
 //! From what the user says of a metric to the field itself: limits, then smoothing and gradation on a mesh that it is sampled on.
 
 use super::Aim;
-use crate::canvas::Canvas;
+use crate::canvas;
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
@@ -12,6 +12,7 @@ use crate::metric::{
     Snapshot, complexity as complexity_of, rough_complexity, smoothed,
 };
 use crate::optimise::polishing_norm;
+use crate::planar::Planar;
 use crate::quality::interpolation_error;
 use std::borrow::Cow;
 
@@ -268,17 +269,12 @@ pub(super) fn background_vertices(complexity: f64, fewest: usize) -> usize {
 
 /// A triangulation of the domain that is even in the metric, with so many vertices, and all of the domain's own.
 pub(super) fn even(field: &dyn MetricField, domain: &Domain, vertices: usize) -> Result<Mesh> {
-    Ok(embedded(&Canvas::straight(domain, field, vertices)?))
-}
-
-/// The positions and triangles of a canvas.
-fn embedded(canvas: &Canvas) -> Mesh {
-    let planar = canvas.embedded();
-    Mesh {
-        points: planar.positions.iter().map(|p| [p.x, p.y, 0.0]).collect(),
-        triangles: planar.topology.faces().map(|face| planar.topology.corners(face).map(|v| v.0)).collect(),
+    let Planar { topology, positions } = canvas::even(domain.planar(), field, vertices)?;
+    Ok(Mesh {
+        points: positions.iter().map(|p| [p.x, p.y, 0.0]).collect(),
+        triangles: topology.faces().map(|face| topology.corners(face).map(|v| v.0)).collect(),
         ..Mesh::default()
-    }
+    })
 }
 
 /// The field after so many sweeps of smoothing ([`smoothed`]), on its own mesh or one that is even in it, with

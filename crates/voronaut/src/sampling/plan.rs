@@ -5,7 +5,7 @@ use crate::canvas;
 use crate::domain::Domain;
 use crate::dual::{Dual, Moving};
 use crate::error::{Error, Result};
-use crate::geodesic::chord;
+use crate::geodesic::{chord_by, nearby};
 use crate::geometry::Point;
 use crate::lists::distinct;
 use crate::metric::{MetricField, complexity, rough_complexity};
@@ -190,7 +190,8 @@ impl MetricArc {
 
     /// Of a straight edge in a field.
     pub(crate) fn of_chord(field: &dyn MetricField, [a, b]: [Point; 2]) -> Self {
-        Self::new(1, |s, t| chord(field, a.lerp(b, s), a.lerp(b, t)))
+        let at = nearby(field);
+        Self::new(1, |s, t| chord_by(&at, a.lerp(b, s), a.lerp(b, t)))
     }
 
     /// Metric length of all edges.
