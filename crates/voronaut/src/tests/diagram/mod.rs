@@ -240,7 +240,7 @@ fn wild_metrics_and_canvases_of_a_few_vertices_are_survived() {
 #[test]
 fn solvers_share_one_interface() {
     let domain = square(1.0);
-    let canvas = Canvas::straight(&domain, &Uniform::default(), 400).unwrap();
+    let canvas = Canvas::intrinsic(&domain, &Uniform::default(), 400).unwrap();
     let mut sources = Sources::new(canvas.vertex_count());
     sources.add(VertexId(3), 0.5, 8);
     let solver: &dyn Geodesic = &Marching { canvas: canvas.topology(), wave: Wave::Plane };
