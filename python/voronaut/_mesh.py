@@ -82,7 +82,7 @@ class Mesh:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Mesh:
-        """Reads a mesh with its fields: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply, .stl."""
+        """Reads a mesh with its fields: .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply, .stl."""
         found = _voronaut.read(os.fspath(path))
         if "points" not in found:
             raise ValueError(f"{os.fspath(path)}: values without a mesh; voronaut.read_solution reads them")

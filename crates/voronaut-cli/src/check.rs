@@ -23,7 +23,7 @@ pub(crate) const EXAMPLES: &str = "\
 Exits with 1 if the mesh is not valid; the report is written all the same.
 
 The mesh of a surface (some z is not 0) is held against a surface as DOMAIN: sphere:r, torus:R,r, chair,
-implicit:EXPR;x0,y0,z0,x1,y1,z1, or a file .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl. METRIC is then uniform, curvature[:floor=C],
+implicit:EXPR;x0,y0,z0,x1,y1,z1, or a file .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl. METRIC is then uniform, curvature[:floor=C],
 shock[:phi=10,lambda=0.6], 'formula:m11; m12; m22; m13; m23; m33' in x, y, z, or a file .sol of the domain's file.
 
 Examples:
@@ -34,7 +34,7 @@ Examples:
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// The mesh: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
+    /// The mesh: .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl
     pub(crate) mesh: PathBuf,
     /// Measure lengths, shapes and angles in this metric (as for `mesh`)
     #[arg(long)]

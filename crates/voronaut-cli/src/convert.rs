@@ -13,7 +13,7 @@ use voronaut_io::medit::Form;
 use voronaut_io::{Document, Fields, Format, ending, geojson, lost_in_outline, poly, read_pslg};
 
 pub(crate) const EXAMPLES: &str = "\
-IN   a mesh: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply, .stl; a planar domain: .poly, .geojson, rect:..., disk:...; or values:
+IN   a mesh: .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply, .stl; a planar domain: .poly, .geojson, rect:..., disk:...; or values:
      .sol, .solb
 OUT  of the same kinds; a mesh becomes a .poly or .geojson if it is planar, and a domain a mesh of nothing but its own points
 

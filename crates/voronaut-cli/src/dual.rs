@@ -51,7 +51,7 @@ pub(crate) struct DualArgs {
     /// The seeds: a file with a line `x y` for each
     #[arg(long, value_name = "FILE")]
     pub(crate) seeds: PathBuf,
-    /// The dual: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
+    /// The dual: .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// Write the coloured canvas, with colours and distances: .vtu

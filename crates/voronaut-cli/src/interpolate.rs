@@ -14,7 +14,7 @@ use voronaut::{Error, Result};
 use voronaut_io::{Document, Seconds};
 
 pub(crate) const EXAMPLES: &str = "\
-OLD and NEW are planar meshes of one domain: in files .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl. FIELD is a .sol or .solb with any number of scalars, vectors and tensors,
+OLD and NEW are planar meshes of one domain: in files .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl. FIELD is a .sol or .solb with any number of scalars, vectors and tensors,
 at the vertices of OLD (SolAtVertices, linear between them) or on its triangles (SolAtTriangles); all of them are carried.
 
 Without --conservative a vertex gets the value of the old field there, a triangle that of the old triangle below its centroid. With

@@ -24,7 +24,7 @@ use voronaut_draw::Layers;
 use voronaut_io::{Given, Report};
 
 pub(crate) const EXAMPLES: &str = "\
-DOMAIN  a file: .mesh, .meshb, .msh, .vtu, .vtp (boundary edges or triangles; of volumes the boundary), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
+DOMAIN  a file: .mesh, .meshb, .msh, .su2, .vtu, .vtp (boundary edges or triangles; of volumes the boundary), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
         or a surface: .obj, .off, .ply, .stl and the first five; sphere:r, torus:R,r, chair, 'implicit:EXPR;x0,y0,z0,x1,y1,z1'
 METRIC  uniform, uniform:m11,m12,m22, swirl[:nu=3,field=authors], shock[:phi=10,lambda=0.6],
         'formula:m11; m12; m22' in x and y, boundary:h0=,growth=,aspect=,h_max=,
@@ -54,7 +54,7 @@ pub(crate) struct MeshArgs {
     /// Integral of sqrt(det M) over the domain; one factor scales the metric to meet it
     #[arg(long, value_name = "C", value_parser = positive)]
     pub(crate) complexity: Option<f64>,
-    /// The mesh file: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
+    /// The mesh file: .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     #[command(flatten)]

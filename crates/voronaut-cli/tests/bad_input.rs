@@ -212,7 +212,7 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
     let square = ["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "100", "-o"];
     let with = |words: &[&'static str]| [&square[..], words].concat();
     for name in ["out.xyz", "out", "out.mshx"] {
-        refused(&place, &with(&[name]), &[name, "not supported", ".mesh, .meshb, .msh, .vtu"]);
+        refused(&place, &with(&[name]), &[name, "not supported", ".mesh, .meshb, .msh, .su2, .vtu"]);
     }
     refused(&place, &with(&["nowhere/out.mesh"]), &["nowhere: No such file or directory"]);
     refused(&place, &with(&["out.mesh", "--picture", "out.gif"]), &["out.gif", ".svg or .png"]);
@@ -233,7 +233,7 @@ fn a_directory_that_takes_no_files_is_named() {
 #[test]
 fn unknown_endings_of_domains_are_answered_with_those_that_work() {
     domain_refused("a.stl", "solid\nendsolid\n", &["a.stl", "no triangles"]);
-    domain_refused("a.xyz", "solid", &["a.xyz", ".geojson, .json, .poly, .mesh, .meshb, .msh, .vtu or .vtp"]);
+    domain_refused("a.xyz", "solid", &["a.xyz", ".geojson, .json, .poly, .mesh, .meshb, .msh, .su2, .vtu or .vtp"]);
     words_refused("rect:0,0", "uniform", &["2 numbers where 4 are expected", "rect:x0,y0,x1,y1"]);
     let place = Place::new();
     place.put("a.poly", "");

@@ -256,7 +256,7 @@ fn bad_outputs_and_limits_are_refused_before_the_work() {
         let words = ["dual", SQUARE, "--metric", "uniform", "--seeds", "seeds.txt"];
         refused(&place, &[&words[..], more].concat(), expected);
     };
-    with(&["-o", "out.svg"], &["out.svg", ".mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl"]);
+    with(&["-o", "out.svg"], &["out.svg", ".mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl"]);
     with(&["-o", "out.mesh", "--diagram", "out.svg"], &["out.svg", ".vtu"]);
     with(&["-o", "out.mesh", "--picture", "out.vtu"], &["out.vtu", ".svg or .png"]);
     with(&["-o", "out.mesh", "--diagram", "nowhere/out.vtu"], &["nowhere"]);

@@ -15,7 +15,7 @@ pub fn read_domain(spec: &str) -> Result<Domain> {
 }
 
 /// Reads the graph of a planar domain: `rect:x0,y0,x1,y1`, `disk:cx,cy,r`, or a file `.geojson`, `.json`, `.poly`, `.mesh`,
-/// `.meshb`, `.msh`, `.vtu` or `.vtp`.
+/// `.meshb`, `.msh`, `.su2`, `.vtu` or `.vtp`.
 ///
 /// # Errors
 /// [`Error::Io`] of a file that cannot be read; [`Error::Parse`] of a specification or a file that is not what its
@@ -41,7 +41,7 @@ pub fn read_pslg(spec: &str) -> Result<Pslg> {
 }
 
 /// What users write for a planar domain, for messages.
-pub(crate) const DOMAINS: &str = "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly, .mesh, .meshb, .msh, .vtu or .vtp";
+pub(crate) const DOMAINS: &str = "rect:x0,y0,x1,y1, disk:cx,cy,r, or a planar domain in a file .geojson, .json, .poly, .mesh, .meshb, .msh, .su2, .vtu or .vtp";
 
 #[cfg(test)]
 mod tests {

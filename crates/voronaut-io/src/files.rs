@@ -1,7 +1,7 @@
 //! Mesh files by the endings of their names.
 
 use super::codec::Form;
-use super::{Document, Fields, freefem, gmsh, medit, obj, off, ply, sol, stl, vtk};
+use super::{Document, Fields, freefem, gmsh, medit, obj, off, ply, sol, stl, su2, vtk};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
@@ -23,6 +23,8 @@ pub enum Format {
     Ply(Form),
     /// Stereolithography `.stl`; written binary: triangles without shared vertices, coordinates rounded to single precision.
     Stl,
+    /// SU2's `.su2`: positions and triangles; in the plane the labels of boundary edges, in space those of triangles.
+    Su2,
     /// VTK's `.vtu`, an unstructured grid: everything a [`Mesh`] holds, and fields.
     Vtu,
     /// VTK's `.vtp`, polygons: everything a [`Mesh`] holds, and fields.
@@ -30,7 +32,7 @@ pub enum Format {
 }
 
 /// Every format, and how names of its files end.
-const ENDINGS: [(&str, Format); 9] = [
+const ENDINGS: [(&str, Format); 10] = [
     ("mesh", Format::Medit(Form::Text)),
     ("meshb", Format::Medit(Form::Binary)),
     ("msh", Format::Gmsh(gmsh::Version::V4_1, Form::Text)),
@@ -38,12 +40,13 @@ const ENDINGS: [(&str, Format); 9] = [
     ("off", Format::Off),
     ("ply", Format::Ply(Form::Text)),
     ("stl", Format::Stl),
+    ("su2", Format::Su2),
     ("vtu", Format::Vtu),
     ("vtp", Format::Vtp),
 ];
 
 /// How names of mesh files end, for messages.
-pub(crate) const MESH_ENDINGS: &str = ".mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl";
+pub(crate) const MESH_ENDINGS: &str = ".mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl";
 
 impl Format {
     /// The format a file name asks for by its ending, in upper or lower case; `None` of other endings.
@@ -65,7 +68,7 @@ impl Format {
 
     /// Whether the format says which faces and edges belong to curves and regions, and may hold a planar domain.
     pub fn may_be_planar(self) -> bool {
-        matches!(self, Format::Medit(_) | Format::Gmsh(..) | Format::Vtu | Format::Vtp)
+        matches!(self, Format::Medit(_) | Format::Gmsh(..) | Format::Su2 | Format::Vtu | Format::Vtp)
     }
 
     /// Writes a mesh and fields as far as the format can hold them.
@@ -80,6 +83,7 @@ impl Format {
             Format::Off => off::write(mesh, out),
             Format::Ply(form) => ply::write(mesh, fields, form, out),
             Format::Stl => stl::write(mesh, out),
+            Format::Su2 => su2::write(mesh, out),
             Format::Vtu => vtk::write_vtu(mesh, fields, out),
             Format::Vtp => vtk::write_vtp(mesh, fields, out),
         }
@@ -105,6 +109,7 @@ pub fn read(path: &Path) -> Result<Document> {
         Format::Off => Ok(off::read(source, &place)?.into()),
         Format::Ply(_) => ply::read(source, &place),
         Format::Stl => Ok(stl::read(source, &place)?.into()),
+        Format::Su2 => su2::read(source, &place),
         Format::Vtu | Format::Vtp => vtk::read(source, &place),
     }
 }

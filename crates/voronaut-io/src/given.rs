@@ -61,7 +61,7 @@ impl Given {
 }
 
 /// Reads a surface: `sphere:r`, `torus:R,r`, `chair`, `implicit:EXPR;x0,y0,z0,x1,y1,z1`, or a file `.mesh`, `.meshb`,
-/// `.msh`, `.vtu`, `.vtp`, `.obj`, `.off`, `.ply` or `.stl`, mended as the options say ([`repaired`]), with what was mended.
+/// `.msh`, `.su2`, `.vtu`, `.vtp`, `.obj`, `.off`, `.ply` or `.stl`, mended as the options say ([`repaired`]), with what was mended.
 ///
 /// # Errors
 /// [`Error::Io`](voronaut::Error::Io) of a file that cannot be read; [`Error::Parse`](voronaut::Error::Parse) of a text that is not what
@@ -79,7 +79,7 @@ pub fn read_surface(spec: &str, options: RepairOptions) -> Result<(Input, Mended
 }
 
 /// What users write for a surface, for messages.
-const SURFACES: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl";
+const SURFACES: &str = "sphere:r, torus:R,r, chair, implicit:EXPR;x0,y0,z0,x1,y1,z1, or a surface in a file .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl";
 
 /// The surface that a document holds, mended, with what was mended.
 fn surface_of(name: &str, document: &Document, options: RepairOptions) -> Result<(Surface, Mended)> {

@@ -29,6 +29,7 @@ pub mod points;
 pub mod poly;
 pub mod sol;
 pub mod stl;
+pub mod su2;
 pub mod vtk;
 
 pub use document::{Document, Field, Fields};

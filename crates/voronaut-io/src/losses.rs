@@ -1,7 +1,7 @@
 //! What formats have no place for.
 
 use super::gmsh::Version;
-use super::{Fields, Format};
+use super::{Fields, Format, su2};
 use voronaut::mesh::Mesh;
 
 /// What a mesh and its fields hold besides positions and triangles.
@@ -41,12 +41,16 @@ impl Format {
             Format::Medit(_) | Format::Vtu | Format::Vtp | Format::Gmsh(Version::V4_1, _) => return Vec::new(),
             Format::Ply(_) => &[Part::PointLabels, Part::TriangleLabels, Part::Fields],
             Format::Obj => &[Part::TriangleLabels, Part::Edges],
+            Format::Su2 if mesh.is_planar() => &[Part::Edges, Part::EdgeLabels],
+            Format::Su2 => &[Part::TriangleLabels],
             Format::Off | Format::Stl => &[],
         };
         let is_rounded = |x: &f64| f64::from(*x as f32).to_bits() != x.to_bits();
         let digits = self == Format::Stl && mesh.points.as_flattened().iter().any(is_rounded);
         let digits = digits.then(|| "digits of coordinates beyond single precision".to_owned());
-        lost(kept, mesh, fields).into_iter().chain(digits).collect()
+        let inside = if self == Format::Su2 && mesh.is_planar() { su2::inner_edges(mesh) } else { 0 };
+        let inside = (inside > 0).then(|| format!("{inside} labelled edges that are not on the boundary"));
+        lost(kept, mesh, fields).into_iter().chain(digits).chain(inside).collect()
     }
 }
 

@@ -37,7 +37,7 @@ Examples:
 
 #[derive(Debug, Args)]
 pub(crate) struct MetricArgs {
-    /// The planar mesh at whose vertices the metric is made: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
+    /// The planar mesh at whose vertices the metric is made: .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl
     pub(crate) mesh: PathBuf,
     /// Where the metric comes from (see below); may be given more than once
     #[arg(long, value_name = "METRIC", required = true)]

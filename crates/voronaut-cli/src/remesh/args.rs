@@ -33,7 +33,7 @@ const HGRAD: f64 = 1.3;
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "one per option of mmg")]
 pub(crate) struct RemeshArgs {
-    /// The planar mesh, or the surface: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl; without an ending .meshb if that is there, else .mesh
+    /// The planar mesh, or the surface: .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl; without an ending .meshb if that is there, else .mesh
     #[arg(value_name = "IN", required_unless_present = "input")]
     pub(crate) first: Option<PathBuf>,
     /// The mesh [default: IN.o.mesh]
@@ -42,7 +42,7 @@ pub(crate) struct RemeshArgs {
     /// The input, named
     #[arg(long = "in", value_name = "IN")]
     input: Option<PathBuf>,
-    /// The mesh, named: .mesh, .meshb, .msh, .vtu, .vtp, .obj, .off, .ply or .stl
+    /// The mesh, named: .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl
     #[arg(short, long, value_name = "OUT")]
     out: Option<PathBuf>,
     /// Sizes or tensors at the vertices of IN, as -sol or -met

@@ -17,6 +17,8 @@ pub(crate) struct Source<'a> {
     order: Option<Order>,
     /// Whether lines are taken as they are: without comments, and in any encoding.
     is_verbatim: bool,
+    /// What begins a comment.
+    comment: u8,
     /// First words of rows that may be in any encoding.
     naming: &'static [&'static str],
     /// The line that was read last, counted from 1.
@@ -34,13 +36,18 @@ impl<'a> Source<'a> {
     /// A text that messages call `file`. Comments (from `#` to the end of the line), blank lines and a byte order mark are no part of it.
     pub(crate) fn new(from: impl BufRead + 'a, file: &'a str) -> Self {
         let (from, row) = (Counted::new(Box::new(from) as Box<dyn BufRead>), Vec::new());
-        Self { from, file, order: None, is_verbatim: false, naming: &[], line: 0, row, word: 0..0 }
+        Self { from, file, order: None, is_verbatim: false, comment: b'#', naming: &[], line: 0, row, word: 0..0 }
     }
 
     /// As [`Source::new`]; rows that begin with one of these words may be in any encoding, and characters that are not UTF-8 are
     /// replaced there.
     pub(crate) fn with_names(from: impl BufRead + 'a, file: &'a str, naming: &'static [&'static str]) -> Self {
         Self { naming, ..Self::new(from, file) }
+    }
+
+    /// As [`Source::new`], but that comments begin with another character.
+    pub(crate) fn with_comments(from: impl BufRead + 'a, file: &'a str, comment: u8) -> Self {
+        Self { comment, ..Self::new(from, file) }
     }
 
     /// As [`Source::new`]; lines are taken as they are, in any encoding, and `#` begins no comment.
@@ -300,7 +307,7 @@ impl<'a> Source<'a> {
 
     /// Comments may be in any encoding, what is left of the line only if it begins with one of some words.
     fn drop_comment(&mut self) -> Result<()> {
-        let end = self.row.iter().position(|&byte| byte == b'#');
+        let end = self.row.iter().position(|&byte| byte == self.comment);
         self.row.truncate(end.unwrap_or(self.row.len()));
         let Err(error) = std::str::from_utf8(&self.row) else { return Ok(()) };
         let first = self.row.split(|&byte| is_space(byte)).find(|word| !word.is_empty());
