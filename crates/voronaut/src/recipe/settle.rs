@@ -75,15 +75,13 @@ fn account(dual: &mut Dual, domain: &Domain, found: Consultation) -> figures::Du
     }
 }
 
-/// Relaxation goes in so many parts.
-const PARTS: usize = 4;
 /// Triangles that are mended in the end, as a share of all.
 const MENDED_SHARE: f64 = 0.002;
 /// Relative error of the energy that tangent planes give, where all seeds are rough.
 const ROUGH_DOUBT: f64 = 0.03;
 
 impl Job<'_> {
-    /// Relaxes in four parts, with an exchange of seeds before each but the first.
+    /// Relaxes in parts, with an exchange of seeds before each but the first.
     ///
     /// # Errors
     /// The metric is found invalid at a seed.
@@ -96,11 +94,11 @@ impl Job<'_> {
             (Centroid::Weighted, Some(canvas)) => Cells::Weighted(OnCanvas::new(canvas, self.field)),
             _ => Cells::Tangent,
         };
-        let gain = self.options.effort.gain();
+        let (gain, parts) = (self.options.effort.gain(), self.options.effort.parts());
         let patience = |steps| Patience { steps, gain };
-        let mut relaxed = relax(dual, &cells, patience(steps / PARTS), self.progress)?;
-        for part in 1..PARTS {
-            let mut left = (steps * (part + 1)) / PARTS - (steps * part) / PARTS;
+        let mut relaxed = relax(dual, &cells, patience(steps / parts), self.progress)?;
+        for part in 1..parts {
+            let mut left = (steps * (part + 1)) / parts - (steps * part) / parts;
             if self.exchange(dual, &cells, &mut relaxed)? {
                 left = left.saturating_sub(1);
             }

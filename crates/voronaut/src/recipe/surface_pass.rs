@@ -27,8 +27,6 @@ use std::collections::BTreeSet;
 
 /// Seeds that a canvas is made for at least.
 const LEAST_SEEDS: usize = 334;
-/// Relaxation goes in so many parts, the factor on the metric made fit between them.
-const PARTS: usize = 4;
 /// Triangles that are mended in the end, as a share of all, and how often.
 const MENDED_SHARE: f64 = 0.02;
 const MENDINGS: usize = 3;
@@ -132,7 +130,7 @@ impl<'a> Setting<'a> {
         SurfaceDual::new(self.input, self.metric, scale, places, staying, topology)
     }
 
-    /// In the metric whose factor is fit; with steps, relaxed in parts, between which vertices are exchanged.
+    /// In the metric whose factor is fit; with steps, relaxed in parts, between which vertices are exchanged and the factor made fit.
     fn relaxed(&self, adapted: Adapted, scale: f64, steps: Option<usize>) -> Result<(SurfaceDual<'a>, Relaxed)> {
         let staying = adapted.staying;
         let (mut dual, mut relaxed) = (self.dual_of(adapted, scale)?, Relaxed::default());
@@ -144,8 +142,9 @@ impl<'a> Setting<'a> {
         self.progress.begin("relaxing", steps as u64)?;
         dual.flip_all();
         self.fit_scale(&mut dual)?;
-        for part in 0..PARTS {
-            let steps = (steps * (part + 1)) / PARTS - (steps * part) / PARTS;
+        let parts = self.options.effort.parts();
+        for part in 0..parts {
+            let steps = (steps * (part + 1)) / parts - (steps * part) / parts;
             if part > 0 && steps > 0 {
                 let factor = dual.factor();
                 let other = exchanged(self.input, self.metric, factor, dual.places(), dual.topology(), staying);
