@@ -87,8 +87,10 @@ pub struct Unmet {
     pub edges: Vec<UnmetEdge>,
     /// Triangles of a quality below 0.05, the poorest first.
     pub needles: Vec<Needle>,
-    /// How many edges the mesh has.
-    pub of: usize,
+    /// The metric lengths of all edges of the mesh, in the order of [`Edges`].
+    pub lengths: Vec<f64>,
+    /// The quality of each triangle, and its smallest angle in the metric (degrees).
+    pub shapes: Vec<[f64; 2]>,
 }
 
 /// So many needles are told one by one.
@@ -164,7 +166,7 @@ pub struct WorstEdge {
 impl Unmet {
     /// The figures of these edges.
     pub fn figures(&self) -> UnmetFigures {
-        let share = |count: usize| if self.of > 0 { count as f64 / self.of as f64 } else { 0.0 };
+        let share = |count: usize| count as f64 / self.lengths.len().max(1) as f64;
         let of_cause = |cause: Cause| {
             let all: Vec<&UnmetEdge> = self.edges.iter().filter(|edge| edge.cause == cause).collect();
             let short = all.iter().filter(|edge| edge.is_short()).count();
@@ -253,14 +255,15 @@ fn find<'a>(
         UnmetEdge { edge: ends[e], length: lengths[e], cause: cause(e), at }
     };
     let wrong: Vec<usize> = (0..ends.len()).filter(|&e| !is_unit(lengths[e])).collect();
-    let needle = |&t: &[u32; 3]| {
-        let quality = Some(shape(t).quality).filter(|&quality| quality < NEEDLE)?;
+    let shapes: Vec<[f64; 2]> = mesh.triangles.par_iter().map(|&t| shape(t).figures()).collect();
+    let needle = |(t, &[quality, _]): (&[u32; 3], &[f64; 2])| {
         let is_forced = t.iter().all(|&v| curves.is_on[v as usize]);
-        Some(Needle { quality, at: position(middle(mesh, &t)), is_forced })
+        Some(Needle { quality, at: position(middle(mesh, t)), is_forced }).filter(|_| quality < NEEDLE)
     };
-    let mut needles: Vec<Needle> = mesh.triangles.par_iter().filter_map(needle).collect();
+    let mut needles: Vec<Needle> = mesh.triangles.iter().zip(&shapes).filter_map(needle).collect();
     needles.sort_by(|a, b| a.quality.total_cmp(&b.quality));
-    Ok(Unmet { edges: wrong.into_par_iter().map(edge).collect(), needles, of: ends.len() })
+    let edges = wrong.into_par_iter().map(edge).collect();
+    Ok(Unmet { edges, needles, lengths, shapes })
 }
 
 /// Whether a metric length is that of a unit edge.
