@@ -5,34 +5,47 @@ import type { Rgb } from "./colours";
 /** One value missing: no colour. */
 export const MISSING = -3e38;
 
-const FACE_VERTEX = `#version 300 es
+// What a shader does not need is left out: each number that corners hand to pixels takes time for every triangle.
+const FACE_VERTEX = `
 layout(location=0) in vec3 place;
 layout(location=1) in float value;
-layout(location=2) in float chosen;
+layout(location=2) in float marks;
 uniform mat4 view;
-out vec3 bary; out float v; out vec3 at; flat out float on; flat out int id;
+out vec2 corner; out float v; flat out float mark;
+#ifdef SURFACE
+out vec3 at;
+#endif
 void main() {
   int k = gl_VertexID % 3;
-  bary = vec3(k == 0, k == 1, k == 2);
-  id = gl_VertexID / 3;
-  v = value; on = chosen; at = place;
+  corner = vec2(k == 0, k == 1);
+  v = value; mark = marks * 255.0;
+#ifdef SURFACE
+  at = place;
+#endif
   gl_Position = view * vec4(place, 1.0);
 }`;
 
-const FACE_FRAGMENT = `#version 300 es
+const FACE_FRAGMENT = `
 precision highp float;
-in vec3 bary; in float v; in vec3 at; flat in float on; flat in int id;
+in vec2 corner; in float v; flat in float mark;
 uniform sampler2D scale;
 uniform vec2 range;
 uniform int mode;        // 0 plain, 1 a scale, 2 kinds, 3 a scale with lines of equal value
-uniform vec3 plain, faint, ink;
-uniform vec4 clip;       // what is beyond this plane is not there
-uniform vec3 eye;        // zero in the plane
-uniform float wire;      // width of edges, zero for none
+uniform vec3 plain, faint, ink, border;
+uniform float wire, rim; // widths of edges and of borders, zero for none
 uniform float gaps;      // distance of lines of equal value
+#ifdef SURFACE
+in vec3 at;
+uniform vec4 clip;       // what is beyond this plane is not there
+uniform vec3 eye;
+#endif
 out vec4 colour;
 void main() {
+  int bits = int(mark + 0.5);
+  bool isChosen = bits >= 8;
+#ifdef SURFACE
   if (dot(at, clip.xyz) > clip.w) discard;
+#endif
   vec3 fill = plain;
   if (mode == 1 || mode == 3) {
     fill = v < -1e38 ? faint : texture(scale, vec2(clamp((v - range.x) / (range.y - range.x), 0.002, 0.998), 0.5)).rgb;
@@ -42,27 +55,38 @@ void main() {
       fill = mix(fill, ink, 0.45 * (1.0 - smoothstep(0.3, 1.1, line)) * clamp(1.2 - 2.0 * w, 0.0, 1.0));
     }
   } else if (mode == 2) fill = texelFetch(scale, ivec2(int(mod(v + 0.5, 256.0)), 0), 0).rgb;
-  if (on < 0.5) fill = mix(fill, faint, 0.86);
-  if (eye != vec3(0.0)) {
-    vec3 n = normalize(cross(dFdx(at), dFdy(at)));
-    float front = abs(dot(n, eye));
-    float side = dot(n, normalize(eye + vec3(0.0, 0.0, 0.35)));
-    fill *= 0.52 + 0.36 * front + 0.14 * abs(side);
-  }
-  if (wire > 0.0) {
-    vec3 w = fwidth(bary);
-    vec3 near = smoothstep(w * max(wire - 0.5, 0.0), w * (wire + 0.5), bary);
-    float edge = 1.0 - min(near.x, min(near.y, near.z));
+  if (!isChosen) fill = mix(fill, faint, 0.86);
+#ifdef SURFACE
+  vec3 n = normalize(cross(dFdx(at), dFdy(at)));
+  fill *= 0.52 + 0.36 * abs(dot(n, eye)) + 0.14 * abs(dot(n, normalize(eye + vec3(0.0, 0.0, 0.35))));
+#endif
+  if (wire > 0.0 || rim > 0.0) {
+    vec3 bary = vec3(corner, 1.0 - corner.x - corner.y);
+    vec3 w = fwidth(bary), near = bary / w;
+    float edge = clamp(wire + 0.5 - min(near.x, min(near.y, near.z)), 0.0, 1.0);
     // Where triangles are as small as pixels, edges would hide everything.
     float room = clamp(1.15 - 1.6 * max(w.x, max(w.y, w.z)), 0.0, 1.0);
-    fill = mix(fill, ink, edge * room * (on < 0.5 ? 0.2 : 0.62));
+    if (wire > 0.0) fill = mix(fill, ink, edge * room * (isChosen ? 0.62 : 0.2));
+    if (rim > 0.0 && (bits & 7) != 0) {
+      vec3 far = vec3((bits & 1) != 0 ? near.x : 1e9, (bits & 2) != 0 ? near.y : 1e9, (bits & 4) != 0 ? near.z : 1e9);
+      fill = mix(fill, border, 0.9 * clamp(rim + 0.5 - min(far.x, min(far.y, far.z)), 0.0, 1.0));
+    }
   }
   colour = vec4(fill, 1.0);
 }`;
 
-const PICK_FRAGMENT = `#version 300 es
+const PICK_VERTEX = `
+layout(location=0) in vec3 place;
+uniform mat4 view;
+out vec3 at; flat out int id;
+void main() {
+  id = gl_VertexID / 3; at = place;
+  gl_Position = view * vec4(place, 1.0);
+}`;
+
+const PICK_FRAGMENT = `
 precision highp float;
-in vec3 bary; in float v; in vec3 at; flat in float on; flat in int id;
+in vec3 at; flat in int id;
 uniform vec4 clip;
 out uint found;
 void main() {
@@ -70,52 +94,72 @@ void main() {
   found = uint(id) + 1u;
 }`;
 
-const CELL_VERTEX = `#version 300 es
+const CELL_VERTEX = `
 layout(location=0) in vec3 place;
-layout(location=1) in vec3 cells;
+layout(location=1) in vec3 forms;
 layout(location=2) in vec3 hues;
 uniform mat4 view;
-out vec3 bary; out vec3 at; flat out vec3 cell; flat out vec3 hue;
+out vec3 bary; out vec3 at; flat out vec3 form; flat out vec3 hue;
 void main() {
   int k = gl_VertexID % 3;
   bary = vec3(k == 0, k == 1, k == 2);
-  cell = cells; hue = hues; at = place;
+  form = forms; hue = hues * 255.0; at = place;
   gl_Position = view * vec4(place, 1.0);
 }`;
 
-const CELL_FRAGMENT = `#version 300 es
+const CELL_FRAGMENT = `
 precision highp float;
-in vec3 bary; in vec3 at; flat in vec3 cell; flat in vec3 hue;
+in vec3 bary; in vec3 at; flat in vec3 form; flat in vec3 hue;
 uniform sampler2D scale;
 uniform vec4 clip;
 uniform vec3 eye, ink;
 out vec4 colour;
+vec3 filled(float kind) { return texelFetch(scale, ivec2(int(kind + 0.5), 0), 0).rgb; }
 void main() {
   if (dot(at, clip.xyz) > clip.w) discard;
-  // The nearest corner says whose cell this is.
-  bool first = bary.x >= bary.y && bary.x >= bary.z, second = !first && bary.y >= bary.z;
-  float own = first ? cell.x : second ? cell.y : cell.z;
-  float kind = first ? hue.x : second ? hue.y : hue.z;
-  vec3 fill = texelFetch(scale, ivec2(int(kind + 0.5), 0), 0).rgb;
-  vec3 others = vec3(notEqual(cell, vec3(own)));
-  vec3 rest = bary * others;
-  float gap = max(bary.x, max(bary.y, bary.z)) - max(rest.x, max(rest.y, rest.z));
-  float border = (others.x + others.y + others.z) > 0.0 ? 1.0 - smoothstep(0.2, 1.2, gap / max(fwidth(gap), 1e-6)) : 0.0;
+  vec3 part = form * bary;
+  vec3 fill = filled(hue.x);
+  bool isMixed = hue.x != hue.y || hue.y != hue.z;
+  float gap = 1e3;
+  if (min(form.x, min(form.y, form.z)) > 0.0) {
+    // One cell, or three: the heaviest corner's.
+    float most = max(part.x, max(part.y, part.z)), least = min(part.x, min(part.y, part.z));
+    fill = filled(part.x == most ? hue.x : part.y == most ? hue.y : hue.z);
+    gap = 2.0 * most + least - part.x - part.y - part.z;
+  } else {
+    // Two: on one side of a straight line is the corner that has a cell for itself.
+    gap = part.x + part.y + part.z;
+    bool first = form.x > 0.0, second = form.y > 0.0;
+    if (gap > 0.0) fill = filled(first ? hue.x : second ? hue.y : hue.z);
+    else fill = filled(first ? hue.y : hue.x);
+  }
+  float border = isMixed ? 1.0 - smoothstep(0.3, 1.3, abs(gap) / max(fwidth(gap), 1e-6)) : 0.0;
   if (eye != vec3(0.0)) {
     vec3 n = normalize(cross(dFdx(at), dFdy(at)));
     fill *= 0.58 + 0.44 * abs(dot(n, eye));
   }
-  colour = vec4(mix(fill, ink, 0.55 * border), 1.0);
+  colour = vec4(mix(fill, ink, 0.6 * border), 1.0);
 }`;
 
-const LINE_VERTEX = `#version 300 es
-layout(location=0) in vec2 corner;
-layout(location=1) in vec3 from;
-layout(location=2) in vec3 to;
-layout(location=3) in vec4 paint;
+// Instances would be the plain way; processors draw them a hundred times more slowly than triangles that fetch their own numbers.
+const FETCH = `
+precision highp float;
+precision highp sampler2D;
+vec4 fetched(sampler2D list) { int i = gl_VertexID / 6; return texelFetch(list, ivec2(i % 2048, i / 2048), 0); }
+vec2 cornered() {
+  int k = gl_VertexID % 6;
+  return vec2(k == 2 || k == 3 || k == 5, k == 1 || k > 3 ? 1.0 : -1.0);
+}`;
+
+const LINE_VERTEX = `
+${FETCH}
+uniform sampler2D first, second, third;
 uniform mat4 view; uniform vec2 size; uniform float width, lift;
 out vec3 at; out float across; flat out vec4 tint;
 void main() {
+  vec2 corner = cornered();
+  vec3 from = fetched(first).xyz, to = fetched(second).xyz;
+  vec4 paint = fetched(third);
   vec4 p = view * vec4(from, 1.0), q = view * vec4(to, 1.0);
   vec2 along = (q.xy - p.xy) * size;
   float len = length(along);
@@ -130,7 +174,7 @@ void main() {
   gl_Position = r;
 }`;
 
-const LINE_FRAGMENT = `#version 300 es
+const LINE_FRAGMENT = `
 precision highp float;
 in vec3 at; in float across; flat in vec4 tint;
 uniform vec4 clip; uniform float width;
@@ -142,21 +186,21 @@ void main() {
   colour = vec4(tint.rgb, a);
 }`;
 
-const BALL_VERTEX = `#version 300 es
-layout(location=0) in vec2 corner;
-layout(location=1) in vec3 middle;
-layout(location=2) in vec3 u;
-layout(location=3) in vec3 w;
+const BALL_VERTEX = `
+${FETCH}
+uniform sampler2D first, second, third;
 uniform mat4 view; uniform float lift;
 out vec3 at; out vec2 c;
 void main() {
+  vec2 corner = cornered();
+  vec3 middle = fetched(first).xyz, u = fetched(second).xyz, w = fetched(third).xyz;
   c = vec2(corner.x * 2.0 - 1.0, corner.y) * 1.06;
   at = middle + c.x * u + c.y * w;
   gl_Position = view * vec4(at, 1.0);
   gl_Position.z -= lift;
 }`;
 
-const BALL_FRAGMENT = `#version 300 es
+const BALL_FRAGMENT = `
 precision highp float;
 in vec3 at; in vec2 c;
 uniform vec4 clip; uniform vec3 ink;
@@ -176,11 +220,11 @@ class Program {
   readonly program: WebGLProgram;
   private readonly places = new Map<string, { at: WebGLUniformLocation | null; type: number }>();
 
-  constructor(private readonly gl: WebGL2RenderingContext, vertex: string, fragment: string) {
+  constructor(private readonly gl: WebGL2RenderingContext, vertex: string, fragment: string, define = "") {
     this.program = gl.createProgram()!;
     for (const [type, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
       const shader = gl.createShader(type)!;
-      gl.shaderSource(shader, text);
+      gl.shaderSource(shader, `#version 300 es\n${define}${text}`);
       gl.compileShader(shader);
       if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader) ?? "shader");
       gl.attachShader(this.program, shader);
@@ -208,21 +252,16 @@ class Program {
   }
 }
 
-/** Lists of numbers on the graphics card, as one thing to draw. */
-export class Batch {
-  readonly array: WebGLVertexArrayObject;
+/** What is drawn at once. */
+export interface Batch { count: number; set(at: number, size: number, data: Float32Array | Uint8Array): this; draw(): void; free(): void }
+
+/** Triangles, with a list of numbers for each place of the shader, corner by corner. */
+class Triangles implements Batch {
+  private readonly array: WebGLVertexArrayObject;
   private readonly buffers = new Map<number, WebGLBuffer>();
   count = 0;
 
-  constructor(private readonly gl: WebGL2RenderingContext, private readonly corners?: WebGLBuffer) {
-    this.array = gl.createVertexArray()!;
-    if (corners) {
-      gl.bindVertexArray(this.array);
-      gl.bindBuffer(gl.ARRAY_BUFFER, corners);
-      gl.enableVertexAttribArray(0);
-      gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
-    }
-  }
+  constructor(private readonly gl: WebGL2RenderingContext) { this.array = gl.createVertexArray()!; }
 
   set(at: number, size: number, data: Float32Array | Uint8Array) {
     const gl = this.gl;
@@ -234,17 +273,13 @@ export class Batch {
     gl.enableVertexAttribArray(at);
     const isBytes = data instanceof Uint8Array;
     gl.vertexAttribPointer(at, size, isBytes ? gl.UNSIGNED_BYTE : gl.FLOAT, isBytes, 0, 0);
-    if (this.corners) gl.vertexAttribDivisor(at, 1);
     this.count = data.length / size;
     return this;
   }
 
   draw() {
-    const gl = this.gl;
-    if (this.count === 0) return;
-    gl.bindVertexArray(this.array);
-    if (this.corners) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count);
-    else gl.drawArrays(gl.TRIANGLES, 0, this.count);
+    this.gl.bindVertexArray(this.array);
+    this.gl.drawArrays(this.gl.TRIANGLES, 0, this.count);
   }
 
   free() {
@@ -253,11 +288,52 @@ export class Batch {
   }
 }
 
+const ROW = 2048;
+
+/** Things of two triangles each, which fetch their numbers, thing by thing, from lists 1 to 3. */
+class Quads implements Batch {
+  private readonly lists = new Map<number, WebGLTexture>();
+  count = 0;
+
+  constructor(private readonly gl: WebGL2RenderingContext, private readonly empty: WebGLVertexArrayObject) {}
+
+  set(at: number, size: number, data: Float32Array | Uint8Array) {
+    const gl = this.gl;
+    this.count = data.length / size;
+    let list = this.lists.get(at);
+    if (!list) this.lists.set(at, (list = gl.createTexture()!));
+    gl.bindTexture(gl.TEXTURE_2D, list);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    const rows = Math.max(1, Math.ceil(this.count / ROW)), isBytes = data instanceof Uint8Array;
+    const filled = isBytes ? new Uint8Array(rows * ROW * size) : new Float32Array(rows * ROW * size);
+    filled.set(data);
+    if (isBytes) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, ROW, rows, 0, gl.RGBA, gl.UNSIGNED_BYTE, filled);
+    else gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB32F, ROW, rows, 0, gl.RGB, gl.FLOAT, filled);
+    return this;
+  }
+
+  draw() {
+    const gl = this.gl;
+    if (this.count === 0) return;
+    for (const [at, list] of this.lists) {
+      gl.activeTexture(gl.TEXTURE0 + at);
+      gl.bindTexture(gl.TEXTURE_2D, list);
+    }
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindVertexArray(this.empty);
+    gl.drawArrays(gl.TRIANGLES, 0, 6 * this.count);
+  }
+
+  free() { for (const list of this.lists.values()) this.gl.deleteTexture(list); }
+}
+
+const LISTS = { first: 1, second: 2, third: 3 };
+
 export class Painter {
   readonly gl: WebGL2RenderingContext;
-  private readonly faces: Program; private readonly picks: Program; private readonly cells: Program;
+  private readonly flat: Program; private readonly faces: Program; private readonly picks: Program; private readonly cells: Program;
   private readonly lines: Program; private readonly balls: Program;
-  private readonly quad: WebGLBuffer;
+  private readonly empty: WebGLVertexArrayObject;
   private readonly textures = new Map<string, WebGLTexture>();
   private readonly picked: WebGLFramebuffer;
 
@@ -265,19 +341,19 @@ export class Painter {
     const gl = canvas.getContext("webgl2", { antialias, alpha: false, powerPreference: "high-performance" });
     if (!gl) throw new Error("This browser has no WebGL2, which the page needs to draw.");
     this.gl = gl;
-    this.faces = new Program(gl, FACE_VERTEX, FACE_FRAGMENT);
-    this.picks = new Program(gl, FACE_VERTEX, PICK_FRAGMENT);
+    this.flat = new Program(gl, FACE_VERTEX, FACE_FRAGMENT);
+    this.faces = new Program(gl, FACE_VERTEX, FACE_FRAGMENT, "#define SURFACE\n");
+    this.picks = new Program(gl, PICK_VERTEX, PICK_FRAGMENT);
     this.cells = new Program(gl, CELL_VERTEX, CELL_FRAGMENT);
     this.lines = new Program(gl, LINE_VERTEX, LINE_FRAGMENT);
     this.balls = new Program(gl, BALL_VERTEX, BALL_FRAGMENT);
-    this.quad = gl.createBuffer()!;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.quad);
-    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([0, -1, 0, 1, 1, -1, 1, 1]), gl.STATIC_DRAW);
+    this.empty = gl.createVertexArray()!;
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     this.picked = this.pickTarget();
   }
 
-  triangles() { return new Batch(this.gl); }
-  instances() { return new Batch(this.gl, this.quad); }
+  triangles(): Batch { return new Triangles(this.gl); }
+  quads(): Batch { return new Quads(this.gl, this.empty); }
 
   /** A row of 256 colours, made once. */
   texture(name: string, texels: () => Uint8Array) {
@@ -307,10 +383,13 @@ export class Painter {
     gl.disable(gl.BLEND);
   }
 
-  drawFaces(batch: Batch, settings: Record<string, Setting>) { this.faces.use(settings); batch.draw(); }
+  drawFaces(batch: Batch, isPlanar: boolean, settings: Record<string, Setting>) {
+    (isPlanar ? this.flat : this.faces).use(settings);
+    batch.draw();
+  }
   drawCells(batch: Batch, settings: Record<string, Setting>) { this.cells.use(settings); batch.draw(); }
-  drawLines(batch: Batch, settings: Record<string, Setting>) { this.over(() => { this.lines.use(settings); batch.draw(); }); }
-  drawBalls(batch: Batch, settings: Record<string, Setting>) { this.over(() => { this.balls.use(settings); batch.draw(); }); }
+  drawLines(batch: Batch, settings: Record<string, Setting>) { this.over(() => { this.lines.use({ ...settings, ...LISTS }); batch.draw(); }); }
+  drawBalls(batch: Batch, settings: Record<string, Setting>) { this.over(() => { this.balls.use({ ...settings, ...LISTS }); batch.draw(); }); }
 
   /** Over what is there, without hiding what comes. */
   private over(draw: () => void) {

@@ -1,8 +1,8 @@
 // A mesh on the graphics card: its faces, edges, cells, ellipses and curves, made when they are first shown.
 
-import { Batch, MISSING, Painter } from "./gl";
+import { type Batch, MISSING, type Painter } from "./gl";
 import { CAUSE_HUES, KINDS, Rgb, Scale, colour } from "./colours";
-import type { Field, Mesh } from "./model";
+import { key, type Cells, type Field, type Mesh } from "./model";
 
 /** How a field is coloured: between which values, on which scale, whether by logarithm. */
 export interface Tone { low: number; high: number; scale: Scale; isLog: boolean }
@@ -19,6 +19,7 @@ export class Scene {
   private ballBatch: Batch | null = null;
   private curveBatch: Batch | null = null;
   private edgeBatch: Batch | null = null;
+  private everyEdge: Batch | null = null;
   private edgesShown = "";
   /** What is selected: 1, or 0 where it is not. */
   chosenTriangles: Uint8Array;
@@ -64,13 +65,20 @@ export class Scene {
     this.faces.set(1, 1, values);
   }
 
-  /** Sends what is selected to the graphics card. */
+  /** Sends what is selected to the graphics card, with a mark for each edge of a triangle that is a border. */
   choose() {
-    const corners = new Uint8Array(3 * this.mesh.triangles);
-    for (let i = 0; i < corners.length; i++) corners[i] = this.chosenTriangles[Math.floor(i / 3)] ? 255 : 0;
-    this.faces.set(2, 1, corners);
+    const { mesh } = this, marks = new Uint8Array(3 * mesh.triangles);
+    this.borders ??= bordersOf(mesh);
+    for (let t = 0, i = 0; t < mesh.triangles; t++) {
+      // An edge is marked by the corner that is opposite to it.
+      const mark = (this.chosenTriangles[t] ? 8 : 0) + this.borders[mesh.edgesOf[i + 1]] + 2 * this.borders[mesh.edgesOf[i + 2]] + 4 * this.borders[mesh.edgesOf[i]];
+      marks[i++] = marks[i++] = marks[i++] = mark;
+    }
+    this.faces.set(2, 1, marks);
     this.edgesShown = "";
   }
+  /** For each edge 1 where it is a border or has a label. */
+  private borders: Uint8Array | null = null;
 
   /** All edges by a field's values, or those that are selected alone. */
   edges(field: Field, tone: Tone): Batch {
@@ -94,18 +102,24 @@ export class Scene {
       from.set(this.place(this.mesh.positions, a), 3 * i);
       to.set(this.place(this.mesh.positions, b), 3 * i);
     }
-    return this.painter.instances().set(1, 3, from).set(2, 3, to);
+    return this.painter.quads().set(1, 3, from).set(2, 3, to);
   }
 
   /** Borders and labelled edges. */
-  borders(ink: Rgb): Batch {
+  borderLines(ink: Rgb): Batch {
     if (!this.borderBatch) {
-      const { mesh } = this, pairs: [number, number][] = [];
-      for (let i = 0; i < mesh.listed.length; i += 3) pairs.push([mesh.listed[i], mesh.listed[i + 1]]);
-      for (let e = 0; e < mesh.sides.length; e++) if (mesh.sides[e] !== 2) pairs.push([mesh.edges[2 * e], mesh.edges[2 * e + 1]]);
-      this.borderBatch = this.lines(pairs.length, (i) => pairs[i]);
+      const { edges } = this.mesh, list: number[] = [];
+      this.borders!.forEach((is, e) => { if (is) list.push(e); });
+      this.borderBatch = this.lines(list.length, (i) => [edges[2 * list[i]], edges[2 * list[i] + 1]]);
     }
     return tint(this.borderBatch, ink, 230);
+  }
+
+  /** All edges in one colour. */
+  allEdges(ink: Rgb): Batch {
+    const { edges, sides } = this.mesh;
+    this.everyEdge ??= this.lines(sides.length, (e) => [edges[2 * e], edges[2 * e + 1]]);
+    return tint(this.everyEdge, ink, 120);
   }
 
   curves(ink: Rgb): Batch {
@@ -117,7 +131,7 @@ export class Scene {
           to.push(...this.place(curve, i));
         }
       }
-      this.curveBatch = this.painter.instances().set(1, 3, new Float32Array(from)).set(2, 3, new Float32Array(to));
+      this.curveBatch = this.painter.quads().set(1, 3, new Float32Array(from)).set(2, 3, new Float32Array(to));
     }
     return tint(this.curveBatch, ink, 255);
   }
@@ -126,15 +140,18 @@ export class Scene {
   cells(): Batch | null {
     const { cells } = this.mesh;
     if (!cells || this.cellBatch) return this.cellBatch;
-    const count = cells.corners.length, [own, hues] = [new Float32Array(3 * count), new Float32Array(3 * count)];
-    for (let i = 0; i < count; i++) {
-      const t = i - (i % 3);
+    const count = cells.corners.length, forms = new Float32Array(3 * count), hues = new Uint8Array(3 * count);
+    const step = stepOf(cells);
+    for (let i = 0; i < count; i += 3) {
+      const corners = [0, 1, 2].map((k) => cells.corners[i + k]);
+      const form = formOf(corners.map((v) => cells.cells[v]), corners.map((v) => cells.distances[v]), step);
+      const hue = corners.map((v) => cells.hues[v]);
       for (let k = 0; k < 3; k++) {
-        own[3 * i + k] = cells.cells[cells.corners[t + k]];
-        hues[3 * i + k] = cells.hues[cells.corners[t + k]];
+        forms.set(form, 3 * (i + k));
+        hues.set(hue, 3 * (i + k));
       }
     }
-    return (this.cellBatch = this.canvasPlaces().set(1, 3, own).set(2, 3, hues));
+    return (this.cellBatch = this.canvasPlaces().set(1, 3, forms).set(2, 3, hues));
   }
 
   /** Distances on the canvas. */
@@ -142,7 +159,7 @@ export class Scene {
     const { cells } = this.mesh;
     if (!cells || this.canvasBatch) return this.canvasBatch;
     const values = Float32Array.from(cells.corners, (v) => (Number.isFinite(cells.distances[v]) ? cells.distances[v] : MISSING));
-    return (this.canvasBatch = this.canvasPlaces().set(1, 1, values).set(2, 1, new Uint8Array(values.length).fill(255)));
+    return (this.canvasBatch = this.canvasPlaces().set(1, 1, values).set(2, 1, new Uint8Array(values.length).fill(8)));
   }
 
   private canvasPlaces() {
@@ -163,18 +180,51 @@ export class Scene {
       ws.push(...axes[1].map((x) => x / this.world.size));
     }
     const [middle, u, w] = [middles, us, ws].map((list) => new Float32Array(list));
-    return (this.ballBatch = this.painter.instances().set(1, 3, middle).set(2, 3, u).set(3, 3, w));
+    return (this.ballBatch = this.painter.quads().set(1, 3, middle).set(2, 3, u).set(3, 3, w));
   }
 
   /** A few segments, for what is picked. */
   marks(segments: [number[], number[]][], ink: Rgb): Batch {
-    const batch = this.painter.instances();
+    const batch = this.painter.quads();
     batch.set(1, 3, new Float32Array(segments.flatMap(([p]) => p))).set(2, 3, new Float32Array(segments.flatMap(([, q]) => q)));
     return tint(batch, ink, 255);
   }
 }
 
+/** How long edges of a canvas are in the metric, roughly: distances along them differ by no more. */
+function stepOf(cells: Cells): number {
+  const { corners, distances } = cells, some: number[] = [];
+  const stride = 3 * Math.max(1, Math.floor(corners.length / 30000));
+  for (let i = 0; i + 1 < corners.length; i += stride) {
+    const [a, b] = [corners[i], corners[i + 1]];
+    if (cells.cells[a] === cells.cells[b]) some.push(Math.abs(distances[a] - distances[b]));
+  }
+  some.sort((x, y) => x - y);
+  return some[Math.floor(0.95 * some.length)] || 1;
+}
+
+/**
+ * Where cells meet in a triangle of a canvas. Of two cells: a linear form that is positive on the side of the corner that is alone. Else
+ * weights of the corners. An edge of this length is cut where the distances from both sides are equal.
+ */
+function formOf(cells: number[], distances: number[], step: number): number[] {
+  const alone = [0, 1, 2].filter((k) => cells[k] !== cells[(k + 1) % 3] && cells[k] !== cells[(k + 2) % 3]);
+  if (alone.length === 0) return [1, 1, 1];
+  if (alone.length === 1) {
+    const k = alone[0];
+    const part = (j: number) => Math.min(Math.max(0.5 + (distances[j] - distances[k]) / (2 * step), 0.06), 0.94);
+    return [0, 1, 2].map((j) => (j === k ? 1 : 1 - 1 / part(j)));
+  }
+  const mean = (distances[0] + distances[1] + distances[2]) / 3;
+  return distances.map((d) => Math.max(step + 2 * (mean - d), 0.1 * step));
+}
+
+const tinted = new WeakMap<Batch, string>();
+
+/** A batch in one colour. */
 function tint(batch: Batch, ink: Rgb, alpha: number): Batch {
+  if (tinted.get(batch) === `${ink}`) return batch;
+  tinted.set(batch, `${ink}`);
   const paint = new Uint8Array(4 * batch.count);
   for (let i = 0; i < batch.count; i++) paint.set([...ink, alpha], 4 * i);
   return batch.set(3, 4, paint);
@@ -186,6 +236,15 @@ export function hueOf(field: Field, tone: Tone, value: number): Rgb {
   if (field.kinds) return KINDS[((value % 8) + 8) % 8];
   const x = tone.isLog ? Math.log(value) : value;
   return Number.isFinite(x) ? colour(tone.scale, (x - tone.low) / (tone.high - tone.low)) : KINDS[8];
+}
+
+function bordersOf(mesh: Mesh): Uint8Array {
+  const found = Uint8Array.from(mesh.sides, (count) => Number(count !== 2));
+  if (mesh.labelOfEdge.size === 0) return found;
+  for (let e = 0; e < found.length; e++) {
+    if (!found[e] && mesh.labelOfEdge.has(key(mesh, mesh.edges[2 * e], mesh.edges[2 * e + 1]))) found[e] = 1;
+  }
+  return found;
 }
 
 const known = new WeakMap<Mesh, Float64Array>();

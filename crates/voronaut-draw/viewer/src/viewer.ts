@@ -2,7 +2,7 @@
 
 import { Camera } from "./camera";
 import { CAUSE_HUES, CELL_HUES, KINDS, Rgb, kindTexels, rgb, texels } from "./colours";
-import { Batch, Painter } from "./gl";
+import { type Batch, Painter } from "./gl";
 import { spreadOf } from "./histogram";
 import type { Field, Mesh } from "./model";
 import { Scene, Tone, World } from "./scene";
@@ -40,7 +40,7 @@ export class Viewer {
   constructor(readonly canvas: HTMLCanvasElement, readonly meshes: Mesh[]) {
     const triangles = meshes.reduce((sum, mesh) => sum + mesh.triangles, 0);
     // Smoothing costs a third of the time where processors draw; large meshes are fine enough.
-    this.painter = new Painter(canvas, triangles <= 60000);
+    this.painter = new Painter(canvas, triangles <= 0);
     const [low, high] = bounds(meshes);
     const middle = low.map((x, k) => (x + high[k]) / 2);
     const size = Math.max(...low.map((x, k) => high[k] - x)) / 2 || 1;
@@ -137,16 +137,16 @@ export class Viewer {
     const ratio = this.canvas.width / Math.max(camera.width, 1);
     const size = [this.canvas.width, this.canvas.height];
     const eye = mesh.isPlanar ? [0, 0, 0] : camera.rows[2];
-    const common = { view: camera.matrix(), clip: this.plane(), eye, plain: unit(inks.plain), faint: unit(inks.faint), ink: unit(inks.ink), scale: 0 };
-    const wire = this.layers.edges ? 0.9 * ratio : 0;
+    const common = { view: camera.matrix(), clip: this.plane(), eye, plain: unit(inks.plain), faint: unit(inks.faint), ink: unit(inks.ink), border: unit(inks.border), scale: 0 };
+    const wire = this.layers.edges ? 0.45 * ratio : 0, rim = this.layers.borders ? 1.1 * ratio : 0;
     const thick = (pixels: number, lift: number) => ({ ...common, size, width: pixels * ratio, lift });
-    this.fill(scene, common, wire);
-    if (this.layers.edges && this.isOfCanvas(mesh)) painter.drawLines(this.plainEdges(scene), thick(0.9, 0.002));
+    this.fill(scene, { ...common, wire, rim });
+    if (this.layers.edges && this.isOfCanvas(mesh)) painter.drawLines(scene.allEdges(inks.ink), thick(0.9, 0.002));
     const field = this.fieldOf(mesh);
     const shown = field?.on === "edge" ? field : this.areEdgesChosen(scene) ? mesh.field("length")! : null;
     if (shown) painter.drawLines(scene.edges(shown, this.tone(shown)), thick(mesh.triangles > 30000 ? 1.4 : 2, 0.002));
-    if (this.layers.borders) painter.drawLines(scene.borders(inks.border), thick(1.5, 0.0025));
-    if (this.layers.geodesics && mesh.curves.length > 0) painter.drawLines(scene.curves(inks.curve), thick(1.6, 0.004));
+    if (this.layers.borders && this.isOfCanvas(mesh)) painter.drawLines(scene.borderLines(inks.border), thick(1.5, 0.0025));
+    if (this.layers.geodesics && mesh.curves.length > 0) painter.drawLines(scene.curves(inks.curve), thick(1.2, 0.004));
     if (this.layers.ellipses) painter.drawBalls(scene.balls(), { ...common, ink: unit(inks.ball), lift: 0.003 });
     if (this.picked && i === this.current) this.mark(thick(2.6, 0.006));
   }
@@ -156,16 +156,7 @@ export class Viewer {
   /** Whether a part of the edges is selected. */
   areEdgesChosen(scene: Scene) { return scene.chosenEdges.includes(0); }
 
-  private plainEdges(scene: Scene): Batch {
-    const length = scene.mesh.field("length")!;
-    const ink = this.inks.ink[0];
-    const batch = scene.edges(length, { low: ink, high: ink + 1, scale: "sequential", isLog: false });
-    const paint = new Uint8Array(4 * batch.count);
-    for (let e = 0; e < batch.count; e++) paint.set([...this.inks.ink, 110], 4 * e);
-    return batch.set(3, 4, paint);
-  }
-
-  private fill(scene: Scene, common: Record<string, number | number[] | Float32Array>, wire: number) {
+  private fill(scene: Scene, common: Record<string, number | number[] | Float32Array>) {
     const { painter } = this, { mesh } = scene;
     if (this.colourBy === CELLS && mesh.cells) {
       painter.texture("cells", () => kindTexels(CELL_HUES));
@@ -175,7 +166,7 @@ export class Viewer {
     if (this.colourBy === DISTANCES && mesh.cells) {
       painter.texture("sequential", () => texels("sequential"));
       const { high } = this.distanceTone();
-      painter.drawFaces(scene.distances()!, { ...common, wire: 0, mode: 3, range: [0, high], gaps: high / 8 });
+      painter.drawFaces(scene.distances()!, mesh.isPlanar, { ...common, wire: 0, rim: 0, mode: 3, range: [0, high], gaps: high / 8 });
       return;
     }
     const field = this.fieldOf(mesh), isFilled = field !== null && field.on !== "edge";
@@ -185,7 +176,7 @@ export class Viewer {
     if (mode === 2) painter.texture("kinds", () => kindTexels(KINDS.slice(0, 8)));
     else painter.texture(tone?.scale ?? "sequential", () => texels(tone?.scale ?? "sequential"));
     const [low, high] = tone ? [tone.low, tone.high] : [0, 1];
-    painter.drawFaces(scene.faces, { ...common, wire, mode, range: [low, high], gaps: (high - low) / 12 });
+    painter.drawFaces(scene.faces, mesh.isPlanar, { ...common, mode, range: [low, high], gaps: (high - low) / 12 });
   }
 
   /** Up to which distance the scale goes. */
