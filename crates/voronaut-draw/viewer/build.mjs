@@ -1,14 +1,14 @@
 // Makes the page without meshes, src/page/viewer.html of the crate: one file, with the script and the style in it.
 //
-//     node build.mjs            # writes it
-//     node build.mjs --check    # whether it is what the sources give
+//     node build.mjs [PLACE]            # writes it there
+//     node build.mjs --check [PLACE]    # whether what is there is what the sources give
 import { build } from "esbuild";
 import { readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const place = join(here, "../src/page/viewer.html");
+const place = process.argv.slice(2).find((word) => !word.startsWith("--")) ?? join(here, "../src/page/viewer.html");
 const bundle = async (entry, options) => {
   const made = await build({ entryPoints: [join(here, entry)], bundle: true, minify: true, write: false, charset: "utf8", ...options });
   return made.outputFiles[0].text.trim();
@@ -21,7 +21,7 @@ const page = readFileSync(join(here, "page.html"), "utf8")
   .replace("/*script*/", () => script);
 if (process.argv.includes("--check")) {
   if (readFileSync(place, "utf8") !== page) {
-    console.error("src/page/viewer.html is not what its sources give: run npm run build");
+    console.error("viewer.html is not what its sources give: run scripts/test_page --build");
     process.exit(1);
   }
 } else {

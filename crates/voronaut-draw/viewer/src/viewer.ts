@@ -39,8 +39,8 @@ export class Viewer {
 
   constructor(readonly canvas: HTMLCanvasElement, readonly meshes: Mesh[]) {
     const triangles = meshes.reduce((sum, mesh) => sum + mesh.triangles, 0);
-    // Smoothing costs a third of the time where processors draw; large meshes are fine enough.
-    this.painter = new Painter(canvas, triangles <= 0);
+    // Smooth outlines cost a third of the time where processors draw.
+    this.painter = new Painter(canvas, triangles <= 20000);
     const [low, high] = bounds(meshes);
     const middle = low.map((x, k) => (x + high[k]) / 2);
     const size = Math.max(...low.map((x, k) => high[k] - x)) / 2 || 1;
@@ -221,9 +221,11 @@ export class Viewer {
     // Where triangles are small nothing but the nearest would ever be found.
     const room = Math.max(...pixels.map((p, k) => Math.hypot(p[0] - pixels[(k + 1) % 3][0], p[1] - pixels[(k + 1) % 3][1])));
     if (away[nearest] < Math.min(9, 0.25 * room)) return { mesh: i, hit: { kind: "vertex", index: corners[nearest] } };
+    // Nor would thin triangles beside their edges.
+    const height = doubleArea(pixels) / room;
     const off = pixels.map((p, k) => fromSegment([x, y], p, pixels[(k + 1) % 3]));
     const edge = off.indexOf(Math.min(...off));
-    if (off[edge] < Math.min(5, 0.1 * room)) return { mesh: i, hit: { kind: "edge", index: mesh.edgesOf[3 * t + edge] } };
+    if (off[edge] < Math.min(5, 0.25 * height)) return { mesh: i, hit: { kind: "edge", index: mesh.edgesOf[3 * t + edge] } };
     return { mesh: i, hit: { kind: "triangle", index: t } };
   }
 
@@ -294,6 +296,10 @@ function bounds(meshes: Mesh[]) {
     }
   }
   return [low, high];
+}
+
+function doubleArea([p, q, r]: number[][]) {
+  return Math.abs((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]));
 }
 
 function fromSegment([x, y]: [number, number], p: number[], q: number[]) {
