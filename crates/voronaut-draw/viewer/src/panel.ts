@@ -192,7 +192,7 @@ export class Panel {
     const legend = element("legend"), parts = this.legendParts();
     if (parts.kinds) {
       legend.innerHTML = `<ul class="kinds">${parts.kinds.map(([text, hue, many]) =>
-        `<li><i style="background:${css(hue)}"></i><span>${escaped(text)}</span><b>${many}</b></li>`).join("")}</ul>`;
+        `<li>${parts.tone === null && many === "" ? "" : `<i style="background:${css(hue)}"></i>`}<span>${escaped(text)}</span><b>${many}</b></li>`).join("")}</ul>`;
     } else if (parts.tone) {
       const stops = Array.from({ length: 11 }, (_, i) => css(colour(parts.tone!.scale, i / 10)));
       legend.innerHTML = `<div id="ramp" style="background:linear-gradient(90deg,${stops})"></div><div class="ends">${parts.ends.map((x) => `<span>${x}</span>`).join("")}</div>`;

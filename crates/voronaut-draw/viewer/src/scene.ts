@@ -79,6 +79,8 @@ export class Scene {
   }
   /** For each edge 1 where it is a border or has a label. */
   private borders: Uint8Array | null = null;
+  get borderCount() { return (this.count ??= this.borders!.reduce((sum, is) => sum + is, 0)); }
+  private count: number | null = null;
 
   /** All edges by a field's values, or those that are selected alone. */
   edges(field: Field, tone: Tone): Batch {

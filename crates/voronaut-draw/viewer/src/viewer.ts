@@ -9,6 +9,9 @@ import { Scene, Tone, World } from "./scene";
 import type { Hit } from "./text";
 
 export const CELLS = "Voronoi cells", DISTANCES = "distance in the metric", NOTHING = "nothing";
+/** More border edges than this are drawn within their triangles, which is faster; where those are thin they look dotted. */
+const MOST_LINES = 30000;
+
 export type Layer = "edges" | "borders" | "ellipses" | "geodesics" | "lines";
 
 const LIGHT = { paper: "f7f8fa", plain: "e3e9f1", faint: "e9ecf1", ink: "16233c", border: "16233c", ball: "b3261e", curve: "a3123a", mark: "e0004d" };
@@ -138,14 +141,15 @@ export class Viewer {
     const size = [this.canvas.width, this.canvas.height];
     const eye = mesh.isPlanar ? [0, 0, 0] : camera.rows[2];
     const common = { view: camera.matrix(), clip: this.plane(), eye, plain: unit(inks.plain), faint: unit(inks.faint), ink: unit(inks.ink), border: unit(inks.border), scale: 0 };
-    const wire = this.layers.edges ? 0.45 * ratio : 0, rim = this.layers.borders ? 1.1 * ratio : 0;
+    const wire = this.layers.edges ? 0.45 * ratio : 0, areLines = this.isOfCanvas(mesh) || scene.borderCount <= MOST_LINES;
+    const rim = this.layers.borders && !areLines ? 1.1 * ratio : 0;
     const thick = (pixels: number, lift: number) => ({ ...common, size, width: pixels * ratio, lift });
     this.fill(scene, { ...common, wire, rim });
     if (this.layers.edges && this.isOfCanvas(mesh)) painter.drawLines(scene.allEdges(inks.ink), thick(0.9, 0.002));
     const field = this.fieldOf(mesh);
     const shown = field?.on === "edge" ? field : this.areEdgesChosen(scene) ? mesh.field("length")! : null;
     if (shown) painter.drawLines(scene.edges(shown, this.tone(shown)), thick(mesh.triangles > 30000 ? 1.4 : 2, 0.002));
-    if (this.layers.borders && this.isOfCanvas(mesh)) painter.drawLines(scene.borderLines(inks.border), thick(1.5, 0.0025));
+    if (this.layers.borders && areLines) painter.drawLines(scene.borderLines(inks.border), thick(1.5, 0.0025));
     if (this.layers.geodesics && mesh.curves.length > 0) painter.drawLines(scene.curves(inks.curve), thick(1.2, 0.004));
     if (this.layers.ellipses) painter.drawBalls(scene.balls(), { ...common, ink: unit(inks.ball), lift: 0.003 });
     if (this.picked && i === this.current) this.mark(thick(2.6, 0.006));
