@@ -162,7 +162,7 @@ impl MeshArgs {
 
     /// The canvas of cells on the page, if it shows them.
     fn drawn(&self) -> Option<Drawn> {
-        self.paged.cells.then(|| Drawn { kind: self.canvas, size: self.canvas_size })
+        self.paged.cells.then_some(Drawn { kind: self.canvas, size: self.canvas_size })
     }
 
     /// The options that have no say; an error if one of them is set.

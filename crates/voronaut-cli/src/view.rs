@@ -138,7 +138,7 @@ fn sheet(args: &ViewArgs, world: &World, path: &Path) -> Result<Sheet> {
 
 impl ViewArgs {
     fn drawn(&self) -> Option<Drawn> {
-        self.cells.then(|| Drawn { kind: canvas::Kind::default(), size: self.canvas_size })
+        self.cells.then_some(Drawn { kind: canvas::Kind::default(), size: self.canvas_size })
     }
 }
 

@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn a_grid_takes_one_number_for_a_triangle_and_names_next_to_nothing() {
         let order = Order::of(&grid(60, 60));
-        let others = order.steps.iter().filter(|&&step| step == OTHER).count();
+        let others = order.steps.iter().filter(|&&step| step >= OTHER).count();
         assert!(others < 10 && order.steps.len() < 2 * order.triangles.len(), "{others} {}", order.steps.len());
     }
 }

@@ -129,7 +129,7 @@ impl Sheet {
             let ends = [a.min(b), a.max(b)];
             let length = old.binary_search(&ends).map_or(f64::NAN, |i| unmet.lengths[i]);
             let cause = by_ends.binary_search(&ends).map(|i| unmet.edges[i].cause);
-            let number = |cause: Cause| Cause::ALL.iter().position(|&other| other == cause).map_or(0, |i| i as i32 + 1);
+            let number = |cause: Cause| (1..).zip(Cause::ALL).find(|&(_, other)| other == cause).map_or(0, |(i, _)| i);
             (length, cause.map_or(0, number))
         };
         found.iter().map(figures).unzip()
@@ -209,7 +209,7 @@ impl Steps {
 
     /// Curves in the steps of the mesh.
     fn curves(&self, store: &mut Store, curves: &[Vec<Point3>]) -> Value {
-        let counts = integers(store, curves.iter().map(|curve| curve.len() as i32));
+        let counts = integers(store, curves.iter().map(|curve| (curve.len() as u32).cast_signed()));
         let points = || curves.iter().flatten().map(|p| p.to_array());
         let axes: Vec<Value> =
             (0..self.axes).map(|axis| integers(store, points().map(|p| self.place(p[axis], axis)))).collect();
