@@ -120,8 +120,3 @@ pub(crate) fn write_picture(svg: Option<String>, path: Option<&Path>) -> Result<
     let Some((svg, path)) = svg.zip(path) else { return Ok(()) };
     voronaut_io::write(path, &voronaut_draw::picture_bytes(&svg, path)?)
 }
-
-/// Writes a page, as a whole or not at all.
-pub(crate) fn write_page(path: &Path, page: &str) -> Result<()> {
-    voronaut_io::write(path, page.as_bytes())
-}

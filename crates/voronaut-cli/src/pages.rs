@@ -1,6 +1,5 @@
 //! Pages to look at meshes with: what they show of a mesh in a metric, in the plane and on surfaces.
 
-use crate::files;
 use crate::options::Paged;
 use crate::pictures;
 use crate::world::World;
@@ -134,5 +133,5 @@ pub(crate) fn of(
 pub(crate) fn write(paged: &Paged, world: &World, sheet: Option<Sheet>) -> Result<()> {
     let Some((path, sheet)) = paged.view.as_deref().zip(sheet) else { return Ok(()) };
     world.go_on()?;
-    files::write_page(path, &voronaut_draw::page(&sheet.name.clone(), &[sheet])?)
+    voronaut_io::write(path, voronaut_draw::page(&sheet.name.clone(), &[sheet])?.as_bytes())
 }

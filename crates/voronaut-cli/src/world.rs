@@ -1,6 +1,5 @@
 //! Where commands read what is named, and where what they make goes: files and a terminal, or the arrays of a caller.
 
-use crate::files;
 use crate::options::{MetricChoices, Run};
 use crate::progress::Bar;
 use crate::seeds::SeedRows;
@@ -237,7 +236,7 @@ impl<'a> World<'a> {
     }
 
     pub(crate) fn write_page(&self, page: String, path: &Path) -> Result<()> {
-        self.write(page, |page| files::write_page(path, page), |made| &mut made.page)
+        self.write(page, |page| voronaut_io::write(path, page.as_bytes()), |made| &mut made.page)
     }
 
     pub(crate) fn write_solutions(&self, solutions: Solutions, path: &Path) -> Result<()> {
