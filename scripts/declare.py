@@ -85,6 +85,14 @@ FUNCTIONS = {
         "skip": {"old", "new", "field"}, "returns": ("array, or dict of arrays", "As the fields are given."),
         "example": ">>> u_new = voronaut.transfer(old, new, u, conservative=True)",
     },
+    "view": {
+        "command": "view", "parameters": [("meshes", "object", None), ("metric", "MetricLike | None", "None")],
+        "title": "A page to look at meshes with: in a notebook, or in a file that any browser opens, without a network.",
+        "docs": [("meshes : Mesh, file, arrays, or list of these", "What to show; of several, one after the other or two side by side."), METRIC],
+        "skip": {"meshes", "metric", "sol"},
+        "returns": ("Page", "Notebooks show it; `save(path)` writes it. Without `metric_scale` the metric is scaled as that of the mesh was."),
+        "example": ">>> voronaut.view(layer, cells=True, metric=\"swirl\").save(\"layer.html\")",
+    },
 }
 
 HEAD = '''"""What users call. Written by scripts/declare.py from what the commands declare: change it there."""
@@ -102,6 +110,7 @@ import numpy.typing as npt
 from . import _run
 from ._mesh import Mesh
 from ._metric import MetricLike
+from ._page import Page
 from ._run import Progress
 
 File = Union[str, "os.PathLike[str]"]
@@ -181,7 +190,7 @@ def function(name, spec, command):
     given = ", ".join(f'"{it["name"]}": {it["name"]}' for it in options)
     defaults = ", ".join(f'"{it["name"]}": {default(it)}' for it in options if it["default"] is not None)
     names = ", ".join(key for key, *_ in spec["parameters"])
-    of = {"mesh": "Mesh", "dual": "Mesh", "distance": "Mesh", "remesh": "Mesh", "check": "dict[str, Any]", "transfer": "Any"}[name]
+    of = {"mesh": "Mesh", "dual": "Mesh", "distance": "Mesh", "remesh": "Mesh", "check": "dict[str, Any]", "transfer": "Any", "view": "Page"}[name]
     return (
         f"\n\ndef {name}(\n" + "\n".join(lines) + f"\n) -> {of}:\n"
         f'    """{spec["title"]}\n\n    Parameters\n    ----------\n{docs}\n    Returns\n    -------\n'

@@ -167,6 +167,19 @@ def test_pictures_and_notebooks():
         mesh.plot("v")
 
 
+def test_pages(tmp_path):
+    swirl = voronaut.mesh("disk:0,0,1", "swirl", n=200)
+    page = swirl.view("swirl", cells=True, title="A swirl")
+    assert page.html.startswith("<!doctype html>") and "<title>A swirl</title>" in page.html
+    assert page._repr_html_().startswith("<iframe srcdoc=") and "<script" not in page._repr_html_()
+    page.save(tmp_path / "swirl.html")
+    assert (tmp_path / "swirl.html").read_text() == page.html
+    plain = voronaut.view([swirl, voronaut.mesh("disk:0,0,1", "uniform", n=100)])
+    assert '"name":"mesh 2"' in plain.html
+    with pytest.raises(ValueError, match="there is none"):
+        voronaut.view([])
+
+
 def test_pyvista_chains_and_carries():
     pyvista = pytest.importorskip("pyvista")
     sphere = pyvista.Sphere(theta_resolution=24, phi_resolution=24)

@@ -10,7 +10,7 @@ Domains are files, shapes as text (`"disk:0,0,1"`, `"sphere:1"`), arrays (`(poin
 pyvista and meshio, objects with `__geo_interface__`. Metrics are texts, arrays, functions of points, or a `Metric`.
 """
 
-from ._commands import adapt, check, distance, dual, mesh, remesh, transfer
+from ._commands import adapt, check, distance, dual, mesh, remesh, transfer, view
 from ._errors import (
     Cancelled,
     DomainError,
@@ -25,6 +25,7 @@ from ._errors import (
 from ._files import convert, read_solution
 from ._mesh import Mesh
 from ._metric import Metric, at_vertices
+from ._page import Page
 
 __all__ = [
     "Cancelled",
@@ -37,6 +38,7 @@ __all__ = [
     "MeshError",
     "Metric",
     "MetricError",
+    "Page",
     "UnsupportedError",
     "adapt",
     "at_vertices",
@@ -48,4 +50,5 @@ __all__ = [
     "read_solution",
     "remesh",
     "transfer",
+    "view",
 ]

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _run
 from ._mesh import Mesh
 from ._metric import MetricLike
+from ._page import Page
 from ._run import Progress
 
 File = Union[str, "os.PathLike[str]"]
@@ -706,3 +707,52 @@ def transfer(
     options = {"conservative": conservative, "overshoot": overshoot, "linear_tensors": linear_tensors, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
     defaults: dict[str, Any] = {"memory_limit": 16}
     return _run.transfer(old, new, fields, options, defaults, progress)
+
+
+def view(
+    meshes: object,
+    metric: MetricLike | None = None,
+    *,
+    metric_scale: float | None = None,
+    domain: str | None = None,
+    cells: bool = False,
+    canvas_size: int | str = 60,
+    title: str | None = None,
+    progress: Progress = False,
+) -> Page:
+    """A page to look at meshes with: in a notebook, or in a file that any browser opens, without a network.
+
+    Parameters
+    ----------
+    meshes : Mesh, file, arrays, or list of these
+        What to show; of several, one after the other or two side by side.
+    metric : Metric, number, text, array or function
+        Sizes and directions: one size, what the command line has (`"uniform"`, `"swirl"`, `"curvature"`,
+        `"hessian:EXPR"`, `"formula:m11; m12; m22"`, `"boundary:h0=0.1"`, `"FILE.sol"`), sizes or tensors at the
+        domain's vertices, or a function of points.
+    metric_scale : float, optional
+        A factor on the metric tensor, such as `metric_scale` of a report
+    domain : str, optional
+        The domain or the surface that the metric is given on (as for `mesh`) [default: the mesh]
+    cells : bool, default False
+        Show Voronoi cells of the vertices in the metric, distances from them, and edges as geodesics
+    canvas_size : int | str, default 60
+        With cells: canvas vertices per seed
+    title : str, optional
+        What stands above the page [default: the names of the meshes]
+    progress : bool or function, default False
+        True shows a bar; a function is called with the stage, how much is done and of how much, and stops the work
+        where it returns False.
+
+    Returns
+    -------
+    Page
+        Notebooks show it; `save(path)` writes it. Without `metric_scale` the metric is scaled as that of the mesh was.
+
+    Examples
+    --------
+    >>> voronaut.view(layer, cells=True, metric="swirl").save("layer.html")
+    """
+    options = {"metric_scale": metric_scale, "domain": domain, "cells": cells, "canvas_size": canvas_size, "title": title}
+    defaults: dict[str, Any] = {"canvas_size": 60}
+    return _run.view(meshes, metric, options, defaults, progress)

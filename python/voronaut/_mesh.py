@@ -187,6 +187,12 @@ class Mesh:
         labels = np.where(facets[numbers] == edges, self.edge_labels, 0)
         return {str(label): numbers[labels == label] for label in set(labels.tolist()) - {0}}
 
+    def view(self, metric: Any = None, **options: Any) -> Any:
+        """A page to look at the mesh with: notebooks show it, `save(path)` writes it. Options are those of `voronaut.view`."""
+        from ._commands import view
+
+        return view(self, metric, **options)
+
     def plot(
         self, field: str | npt.ArrayLike | None = None, *, ax: Any = None, ellipses: Any = None, **style: Any
     ) -> Any:

@@ -15,6 +15,7 @@ from . import _given, _voronaut
 from ._errors import MeshError
 from ._mesh import Mesh, _values
 from ._metric import Metric, MetricLike
+from ._page import Page
 
 Progress = Union[bool, Callable[[str, int, int], object]]
 Options = dict[str, Any]
@@ -105,6 +106,20 @@ def transfer(
     return found if isinstance(fields, Mapping) else found[""]
 
 
+def view(meshes: object, metric: MetricLike | None, options: Options, defaults: Options, progress: Progress) -> Page:
+    held: Held = {}
+    given = list(meshes) if isinstance(meshes, list) else [meshes]
+    if not given:
+        raise ValueError("meshes: there is none")
+    names = ["mesh"] if len(given) == 1 else [f"mesh {i}" for i in range(1, len(given) + 1)]
+    words: Options = {"meshes": [_given.mesh_word(mesh, held, name) for mesh, name in zip(given, names)], "out": "page.html"}
+    if metric is not None:
+        words["metric"] = _metric_word(metric, held, given[0])
+        if len(given) == 1 and isinstance(given[0], Mesh) and options.get("metric_scale") is None:
+            options = {**options, "metric_scale": given[0].metric_scale}
+    return Page(_perform("view", words, options, defaults, held, progress)["page"])
+
+
 def iter_solutions(solutions: list[list[Any]]) -> dict[str, list[npt.NDArray[Any]]]:
     """The values of vertices and of triangles, in their order."""
     return {place: [_values(found) for found in all_of] for place, all_of in zip(("vertices", "triangles"), solutions)}
@@ -163,7 +178,7 @@ def _perform(
             continue
         if value is True:
             texts.append((name, []))
-        elif isinstance(value, list) and name == "from":
+        elif isinstance(value, list) and name in ("from", "meshes"):
             texts.append((name, value))
         else:
             texts.append((name, [_given.text_of("n" if name == "vertices" else name, value)]))

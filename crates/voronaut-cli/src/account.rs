@@ -34,23 +34,24 @@ pub(crate) fn in_plane(meshed: &Meshed, metric: &dyn MetricField, options: Value
     Ok((report, unmet))
 }
 
-/// The report of the mesh of a surface, which has to be valid, in a metric that is still to be scaled.
+/// The report of the mesh of a surface, which has to be valid, in a metric that is still to be scaled; and its edges that are
+/// not of unit length.
 pub(crate) fn on_surface(
     meshed: &Meshed,
     input: &Input,
     mended: &Mended,
     metric: &dyn SurfaceMetric,
     options: Value,
-) -> Result<Report> {
+) -> Result<(Report, Unmet)> {
     let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
     found.demand().map_err(ours)?;
     let meets = found.meetings.note();
     let scaled = Scaled { field: metric, factor: meshed.metric_scale };
     let mut report = report(meshed, found, options);
-    measure_on_surface(&mut report, &meshed.mesh, &input.surface, &scaled)?;
+    let unmet = measure_on_surface(&mut report, &meshed.mesh, &input.surface, &scaled)?;
     report.notes.extend(mended.sentences().chain(meets));
     report.fidelity = meshed.fidelity.map(|found| Strayed::Surface(found.into()));
-    Ok(report)
+    Ok((report, unmet))
 }
 
 /// Adds what a planar mesh is in a metric; its edges that are not of unit length.
@@ -61,12 +62,18 @@ pub(crate) fn measure_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn Me
     Ok(unmet)
 }
 
-/// Adds what the mesh of a surface is in a metric.
-pub(crate) fn measure_on_surface(report: &mut Report, mesh: &Mesh, surface: &Surface, metric: &Scaled) -> Result<()> {
+/// Adds what the mesh of a surface is in a metric; its edges that are not of unit length.
+pub(crate) fn measure_on_surface(
+    report: &mut Report,
+    mesh: &Mesh,
+    surface: &Surface,
+    metric: &Scaled,
+) -> Result<Unmet> {
     report.add_quality(&surface_quality(mesh, surface, metric)?);
     report.curvature = metric.field.curvature_figures();
-    report.unmet = Some(surface_unmet(mesh, surface, metric)?.figures());
-    Ok(())
+    let unmet = surface_unmet(mesh, surface, metric)?;
+    report.unmet = Some(unmet.figures());
+    Ok(unmet)
 }
 
 /// The parts that are the same for plane and surface, and the options as used.

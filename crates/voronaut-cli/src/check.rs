@@ -9,11 +9,9 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
 use voronaut::domain::{Domain, from_mesh};
-use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
 use voronaut::quality::{Meetings, fidelity, interpolation_error, surface_fidelity, validity, validity_on};
-use voronaut::recipe::GradedAt;
 use voronaut::surface::{Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 use voronaut_draw::Layers;
@@ -62,7 +60,7 @@ pub(crate) struct CheckArgs {
 /// Examines a mesh. The report is written for any mesh; figures in a metric and pictures are for valid ones.
 pub(crate) fn run(args: &CheckArgs, world: &World) -> Result<()> {
     let start = Instant::now();
-    files::demand_writable(None, None, &args.outputs, &args.run)?;
+    files::demand_writable(None, None, None, &args.outputs, &args.run)?;
     demand_drawable(args)?;
     let Document { mesh, notes, .. } = world.document(&args.mesh)?;
     let read = |spec: &str| world.given(spec, args.damage.options());
@@ -197,6 +195,5 @@ fn planar_metric(
         &own
     };
     let scale = args.metric_scale.unwrap_or(1.0);
-    let metric = fields::in_plane(world, text, domain, file, &args.metric_choices, GradedAt::Scale(scale))?.field;
-    Ok(Box::new(move |p: Point| metric.at(p) * scale))
+    fields::measuring(world, text, domain, file, &args.metric_choices, scale)
 }

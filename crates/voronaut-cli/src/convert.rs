@@ -1,6 +1,6 @@
 //! `voronaut convert`: from one format to another.
 
-use crate::files::{self, Miscounted};
+use crate::files;
 use crate::options::{Limits, Run};
 use crate::summary;
 use clap::Args;
@@ -161,11 +161,7 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
     };
     if let Some(sol) = &args.sol {
         let values = voronaut_io::read_solutions(sol)?;
-        if let Some(Miscounted { found, needed, places, .. }) = files::miscounted(&values, &mesh) {
-            let what = format!("{found} values, and the mesh has {needed} {places}");
-            return Err(Error::parse(name(sol), what, "give the values that belong to IN"));
-        }
-        fields.extend(Fields::of_solutions(values));
+        fields.extend(files::values_of(&mesh, values, sol)?);
     }
     let lost = format.lost(&mesh, &fields);
     let mut told = vec![format!(

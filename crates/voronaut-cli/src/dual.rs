@@ -1,10 +1,10 @@
 //! `voronaut dual`: diagram and dual of the seeds given.
 
-use crate::options::{CanvasSize, Damage, EdgesOut, MetricChoices, Outputs, Run, Show, canvas_size, refuse};
+use crate::options::{CanvasSize, Damage, EdgesOut, MetricChoices, Outputs, Paged, Run, Show, canvas_size, refuse};
 use crate::progress::Stages;
 use crate::seeds::SeedFile;
 use crate::world::World;
-use crate::{fields, files, pictures};
+use crate::{fields, files, pages, pictures};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -19,7 +19,8 @@ use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::quality::{
-    Meetings, MetricQuality, Validity, crossing_edges, metric_quality, surface_quality, validity, validity_on,
+    Meetings, MetricQuality, Unmet, Validity, crossing_edges, metric_quality, surface_quality, surface_unmet, unmet,
+    validity, validity_on,
 };
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, GradedAt, MeshOptions, SeedDual};
@@ -95,6 +96,8 @@ pub(crate) struct DualArgs {
     #[command(flatten)]
     pub(crate) outputs: Outputs,
     #[command(flatten)]
+    pub(crate) paged: Paged,
+    #[command(flatten)]
     pub(crate) damage: Damage,
     #[command(flatten)]
     pub(crate) run: Run,
@@ -118,7 +121,7 @@ impl DualArgs {
             "voronoi": self.voronoi, "certify": self.certify, "net": self.net, "constants": self.constants, "geodesic": self.geodesic, "dual": self.dual, "edges": self.edges, "strict": self.strict,
             "background": self.metric_choices.background, "bounds": self.metric_choices.bounds(),
             "smooth_metric": self.metric_choices.smooth_metric, "tensor_order": self.metric_choices.tensor_order, "gradation": self.metric_choices.gradation,
-            "picture": self.outputs.picture, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
+            "picture": self.outputs.picture, "view": self.paged.view, "cells": self.paged.cells, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
             "repair": self.damage.repair,
         })
     }
@@ -153,7 +156,7 @@ fn in_plane(args: &DualArgs, world: &World, domain: &Domain, mended: &Mended, mu
     let mesh = diagram.to_mesh(triangles, &nerve, domain);
     account.crossing_edges = Some(crossing_edges(&mesh).len());
     stages.end("dual");
-    let is_curved = args.edges == EdgesOut::Geodesic || outputs.have_geodesics();
+    let is_curved = args.edges == EdgesOut::Geodesic || outputs.have_geodesics() || args.paged.cells;
     let curved = is_curved.then(|| Realisation::new(&diagram, metric, &mesh.triangles));
     account.geodesics = curved.as_ref().map(figures::Geodesics::of);
     if is_curved {
@@ -188,10 +191,19 @@ fn in_plane(args: &DualArgs, world: &World, domain: &Domain, mended: &Mended, mu
         ..pictures::layers(outputs, &diagram, metric, curved.as_ref())
     };
     let picture = pictures::in_plane(outputs, &mesh, Some(metric), &layers)?;
+    let sheet = pages::of(&args.paged, &args.out, &mesh, |sheet| {
+        let found = if report.validity.valid { unmet(&mesh, metric)? } else { Unmet::default() };
+        pages::measured_in_plane(sheet, metric, found);
+        if let Some(curved) = curved.as_ref().filter(|_| args.paged.cells) {
+            pages::show_diagram(sheet, &diagram, curved);
+        }
+        Ok(())
+    })?;
     match curved.filter(|_| args.edges == EdgesOut::Geodesic) {
         Some(curved) => world.write_realisation(&curved, &args.out)?,
         None => world.write_mesh(mesh, &args.out)?,
     }
+    pages::write(&args.paged, world, sheet)?;
     finish(args, world, picture, &report, || diagram.to_coloured_canvas())
 }
 
@@ -230,15 +242,26 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
     demand_embedded(args, world, &report)?;
     let is_drawn = args.outputs.picture.is_some();
     let picture = is_drawn.then(|| pictures::on_surface(&args.outputs, &diagram, &mesh)).transpose()?;
+    let sheet = pages::of(&args.paged, &args.out, &mesh, |sheet| {
+        let is_valid = report.validity.valid;
+        let found = if is_valid { surface_unmet(&mesh, &input.surface, metric.as_ref())? } else { Unmet::default() };
+        pages::measured_on_surface(sheet, input, metric.as_ref(), found);
+        if args.paged.cells {
+            pages::show_diagram_on(sheet, &diagram);
+        }
+        Ok(())
+    })?;
     let written = if args.edges == EdgesOut::Geodesic { pictures::with_geodesics(&diagram, &mesh) } else { mesh };
     world.write_mesh(written, &args.out)?;
+    pages::write(&args.paged, world, sheet)?;
     finish(args, world, picture, &report, || diagram.to_coloured_canvas())
 }
 
 /// What can be refused before the work.
 fn demand(args: &DualArgs, world: &World) -> Result<()> {
     args.diagram.as_deref().map(voronaut_io::demand_diagram).transpose()?;
-    files::demand_writable(world.file(&args.out), args.diagram.as_deref(), &args.outputs, &args.run)?;
+    let view = args.paged.view.as_deref();
+    files::demand_writable(world.file(&args.out), args.diagram.as_deref(), view, &args.outputs, &args.run)?;
     args.geodesic.demand_diagrams()?;
     demand_geodesics(args)?;
     let what = "a picture of where a metric is not met by seeds that are given";

@@ -4,8 +4,8 @@ use crate::options::{MetricChoices, refuse};
 use crate::world::World;
 use voronaut::Result;
 use voronaut::domain::Domain;
-use voronaut::geometry::Tensor3;
-use voronaut::metric::MetricSpec;
+use voronaut::geometry::{Point, Tensor3};
+use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::recipe::{GradedAt, Idle, Origin, PlanarMetric, Task};
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Place};
@@ -35,6 +35,19 @@ pub(crate) fn in_plane(
 ) -> Result<PlanarMetric> {
     choices.options().idle(task(world, text, choices)?).iter().try_for_each(Idle::demand_unset)?;
     world.planar_metric(text, domain, own, choices, at)
+}
+
+/// The metric in the plane that a mesh is measured in, times a factor.
+pub(crate) fn measuring(
+    world: &World,
+    text: &str,
+    domain: &Domain,
+    own: &str,
+    choices: &MetricChoices,
+    scale: f64,
+) -> Result<Box<dyn MetricField>> {
+    let metric = in_plane(world, text, domain, own, choices, GradedAt::Scale(scale))?.field;
+    Ok(Box::new(move |p: Point| metric.at(p) * scale))
 }
 
 /// The metric on a surface that a text names, within limits.

@@ -8,11 +8,17 @@ use voronaut::mesh::{Mesh, SolutionValues, Solutions};
 use voronaut::metric::MetricField;
 use voronaut::quality::{self, Histograms};
 use voronaut::{Error, Result};
-use voronaut_io::{Format, Report, ending};
+use voronaut_io::{Fields, Format, Report, ending};
 
 /// Refuses, before any work, outputs that could not be written: endings, directories, one name used twice. `more` is
-/// what is written beside a mesh.
-pub(crate) fn demand_writable(mesh: Option<&Path>, more: Option<&Path>, outputs: &Outputs, run: &Run) -> Result<()> {
+/// what is written beside a mesh; a page is one, too.
+pub(crate) fn demand_writable(
+    mesh: Option<&Path>,
+    more: Option<&Path>,
+    page: Option<&Path>,
+    outputs: &Outputs,
+    run: &Run,
+) -> Result<()> {
     let (picture, histograms) = (outputs.picture.as_deref(), outputs.histograms.as_deref());
     mesh.map(Format::from_path).transpose()?;
     picture.map(voronaut_draw::is_png).transpose()?;
@@ -20,7 +26,17 @@ pub(crate) fn demand_writable(mesh: Option<&Path>, more: Option<&Path>, outputs:
         let what = format!("histograms in {}", path.display());
         return Err(Error::unsupported(what, "end the name of the histograms in .svg"));
     }
-    demand_apart([mesh, more, picture, histograms, run.report.as_deref()])
+    page.map(demand_page).transpose()?;
+    demand_apart([mesh, more, page, picture, histograms, run.report.as_deref()])
+}
+
+/// Refuses, before any work, a page whose name browsers would not open as one.
+pub(crate) fn demand_page(path: &Path) -> Result<()> {
+    if matches!(ending(path).as_deref(), Some("html" | "htm")) {
+        return Ok(());
+    }
+    let what = format!("{} does not end like a page", path.display());
+    Err(Error::unsupported(what, "end the name of the page in .html"))
 }
 
 /// Refuses, before any work, a file of values that could not be written, or is the report's.
@@ -64,6 +80,15 @@ pub(crate) fn miscounted(values: &Solutions, mesh: &Mesh) -> Option<Miscounted> 
         let found = solutions.iter().map(SolutionValues::count).find(|&found| found != needed)?;
         Some(Miscounted { section, found, needed, places })
     })
+}
+
+/// The values of a file as fields of the mesh that they belong to.
+pub(crate) fn values_of(mesh: &Mesh, values: Solutions, file: &Path) -> Result<Fields> {
+    if let Some(Miscounted { found, needed, places, .. }) = miscounted(&values, mesh) {
+        let what = format!("{found} values, and the mesh has {needed} {places}");
+        return Err(Error::parse(file.display().to_string(), what, "give the values that belong to the mesh"));
+    }
+    Ok(Fields::of_solutions(values))
 }
 
 /// The distributions of lengths and angles, if they are to be drawn.

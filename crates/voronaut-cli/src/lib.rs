@@ -14,11 +14,13 @@ mod r#loop;
 mod mesh;
 mod metric;
 mod options;
+mod pages;
 mod pictures;
 mod progress;
 mod remesh;
 mod seeds;
 mod summary;
+mod view;
 mod watch;
 mod world;
 
@@ -90,6 +92,9 @@ enum Command {
     /// Examine a mesh: validity, quality in a metric, distance to its domain
     #[command(after_help = check::EXAMPLES)]
     Check(check::CheckArgs),
+    /// Write a page to look at meshes with, in any browser
+    #[command(after_help = view::EXAMPLES)]
+    View(view::ViewArgs),
 }
 
 impl Command {
@@ -105,6 +110,7 @@ impl Command {
             Command::Loop(args) => r#loop::run(args),
             Command::Convert(args) => convert::run(args),
             Command::Check(args) => check::run(args, world),
+            Command::View(args) => view::run(args, world),
         }
     }
 
@@ -118,6 +124,7 @@ impl Command {
             Command::Metric(args) => &args.run,
             Command::Loop(args) => &args.run,
             Command::Check(args) => &args.run,
+            Command::View(args) => &args.run,
             Command::Remesh(args) => return Cow::Owned(args.run()),
             Command::Convert(args) => return Cow::Owned(args.run()),
         })

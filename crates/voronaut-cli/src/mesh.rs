@@ -1,8 +1,10 @@
 //! `voronaut mesh`: from the command line to the library and back. All calls of the mesher are here.
 
-use crate::options::{Damage, MetricChoices, Outputs, Run, Show, not_negative, positive, refuse};
+use crate::fields::{self, Scaled};
+use crate::options::{Damage, MetricChoices, Outputs, Paged, Run, Show, not_negative, positive, refuse};
+use crate::pages::{self, Drawn};
 use crate::world::World;
-use crate::{account, fields, files, pictures};
+use crate::{account, files, pictures};
 use clap::{Args, value_parser};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -20,7 +22,7 @@ use voronaut::quality::interpolation_error;
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, Aim, Centroid, Effort, GradedAt, Idle, MeshOptions, Mesher, Seeding, Task};
 use voronaut::surface::{FeatureOptions, Input, Mended};
-use voronaut_draw::Layers;
+use voronaut_draw::{Layers, Sheet};
 use voronaut_io::{Given, Report};
 
 pub(crate) const EXAMPLES: &str = "\
@@ -122,6 +124,8 @@ pub(crate) struct MeshArgs {
     #[command(flatten)]
     pub(crate) outputs: Outputs,
     #[command(flatten)]
+    pub(crate) paged: Paged,
+    #[command(flatten)]
     pub(crate) damage: Damage,
     #[command(flatten)]
     pub(crate) run: Run,
@@ -156,9 +160,15 @@ impl MeshArgs {
         }
     }
 
+    /// The canvas of cells on the page, if it shows them.
+    fn drawn(&self) -> Option<Drawn> {
+        self.paged.cells.then_some(Drawn { kind: self.canvas, size: self.canvas_size })
+    }
+
     /// The options that have no say; an error if one of them is set.
     fn idle(&self, on_surface: bool, world: &World) -> Result<Vec<Idle>> {
-        let is_drawn = self.outputs.picture.is_some() && self.outputs.need_diagram();
+        let is_pictured = self.outputs.picture.is_some() && self.outputs.need_diagram();
+        let is_drawn = is_pictured || self.paged.cells;
         let metric =
             if on_surface { Task::default() } else { fields::task(world, &self.metric, &self.metric_choices)? };
         let task = Task { on_surface, is_drawn, ..metric };
@@ -175,7 +185,7 @@ impl MeshArgs {
             "smooth_metric": self.metric_choices.smooth_metric, "tensor_order": self.metric_choices.tensor_order, "gradation": self.metric_choices.gradation,
             "norm": self.metric_choices.norm.to_string(), "recovery": self.metric_choices.recovery,
             "ar": self.features().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
-            "picture": self.outputs.picture, "pixels": self.outputs.pixels, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
+            "picture": self.outputs.picture, "view": self.paged.view, "cells": self.paged.cells, "pixels": self.outputs.pixels, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
             "repair": self.damage.repair, "required": self.required,
         });
         let mut options = account::joined(json!(self.options()), more);
@@ -189,7 +199,8 @@ impl MeshArgs {
 /// Meshes a domain. Nothing is written unless the mesh is valid.
 pub(crate) fn run(args: &MeshArgs, world: &World) -> Result<()> {
     let start = Instant::now();
-    files::demand_writable(world.file(&args.out), None, &args.outputs, &args.run)?;
+    let view = args.paged.view.as_deref();
+    files::demand_writable(world.file(&args.out), None, view, &args.outputs, &args.run)?;
     args.metric_choices.bounds().check()?;
     let (given, mended) = world.given(&args.domain, args.damage.options())?;
     match given {
@@ -233,13 +244,17 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     let error = |aim: Aim| interpolation_error(mesh, aim.function, aim.norm);
     report.interpolation = aim.map(error).transpose()?;
     report.seconds.total = start.elapsed().as_secs_f64();
+    let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
+        pages::measured_in_plane(sheet, &scaled, unmet.clone());
+        args.drawn().map_or(Ok(()), |drawn| pages::with_cells(sheet, domain, &scaled, drawn))
+    })?;
     let layers = Layers {
         protection: pictures::protection(outputs, meshed.net.as_ref(), args.protection),
         unmet: Some(unmet).filter(|_| outputs.shows(Show::Unmet)),
         ..cells(args, domain, mesh, &scaled)?
     };
     let picture = pictures::in_plane(outputs, mesh, Some(&scaled), &layers)?;
-    finish(args, world, meshed.mesh, picture, &report)
+    finish(args, world, meshed.mesh, picture, sheet, &report)
 }
 
 /// The diagram of the mesh's vertices, made only to be drawn.
@@ -260,7 +275,8 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
     refuse([(args.required, "--required on a surface", help)])?;
     pictures::demand_of_surfaces(&args.outputs, &[])?;
     let idle = args.idle(true, world)?;
-    let whole = args.outputs.picture.is_some().then(|| Input::new(input.surface.clone(), input.implicit.clone()));
+    let is_whole = args.outputs.picture.is_some() || args.paged.view.is_some();
+    let whole = is_whole.then(|| Input::new(input.surface.clone(), input.implicit.clone()));
     let input = &input.cut(&args.features())?;
     let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices)?;
     let meshed = recipe::mesh_surface(input, metric.as_ref(), &args.options(), &*world.progress(&args.run))?;
@@ -269,15 +285,31 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
         // Lengths decide, unless it is the canvas.
         used["dual"] = json!(Road::Geodesic);
     }
-    let mut report = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
+    let (mut report, unmet) = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
     report.seconds.total = start.elapsed().as_secs_f64();
-    let picture = whole.map(|whole| drawn_on(args, world, &whole, &meshed.mesh)).transpose()?;
-    finish(args, world, meshed.mesh, picture, &report)
+    let drawn = whole.as_ref().filter(|_| args.outputs.picture.is_some());
+    let picture = drawn.map(|whole| drawn_on(args, world, whole, &meshed.mesh)).transpose()?;
+    let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
+        let Some(whole) = &whole else { return Ok(()) };
+        let field = fields::on_surface(world, &args.metric, whole, &args.metric_choices)?;
+        let scaled = Scaled { field: field.as_ref(), factor: meshed.metric_scale };
+        pages::measured_on_surface(sheet, whole, &scaled, unmet);
+        args.drawn().map_or(Ok(()), |drawn| pages::with_cells_on(sheet, whole, &scaled, drawn))
+    })?;
+    finish(args, world, meshed.mesh, picture, sheet, &report)
 }
 
 /// Writes a valid mesh, and what is beside it.
-fn finish(args: &MeshArgs, world: &World, mesh: Mesh, picture: Option<String>, report: &Report) -> Result<()> {
+fn finish(
+    args: &MeshArgs,
+    world: &World,
+    mesh: Mesh,
+    picture: Option<String>,
+    sheet: Option<Sheet>,
+    report: &Report,
+) -> Result<()> {
     world.write_mesh(mesh, &args.out)?;
+    pages::write(&args.paged, world, sheet)?;
     files::finish(world, &args.out, &args.outputs, picture, report, &args.run)
 }
 

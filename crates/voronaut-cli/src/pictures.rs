@@ -86,7 +86,7 @@ fn coloured(diagram: &SurfaceDiagram, are_cells: bool) -> Scene {
 }
 
 /// The points of the geodesic between two seeds.
-fn geodesic(diagram: &SurfaceDiagram, ends: [u32; 2]) -> Option<Vec<Point3>> {
+pub(crate) fn geodesic(diagram: &SurfaceDiagram, ends: [u32; 2]) -> Option<Vec<Point3>> {
     let [from, to] = ends.map(|colour| diagram.seed(colour));
     diagram.canvas().draped().geodesic(from?, to?).map(|way| way.points)
 }

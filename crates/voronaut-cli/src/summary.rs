@@ -10,7 +10,7 @@ use voronaut::quality::{Cause, CauseFigures, Deviation, Farthest, Needles, Posit
 use voronaut_io::{Report, Strayed};
 
 /// How wide the names of figures are.
-const WIDTH: usize = 12;
+pub(crate) const WIDTH: usize = 12;
 
 /// A name and a text for each line.
 type Lines = Vec<(String, String)>;

@@ -59,6 +59,8 @@ pub struct Made {
     pub canvas: Option<(Mesh, Vec<f64>)>,
     /// Values at the mesh's vertices and triangles.
     pub solutions: Option<Solutions>,
+    /// A page, HTML.
+    pub page: Option<String>,
     /// The report, JSON.
     pub report: Option<String>,
     /// What there is to say besides.
@@ -233,6 +235,10 @@ impl<'a> World<'a> {
         self.write(found, write, |made| &mut made.canvas)
     }
 
+    pub(crate) fn write_page(&self, page: String, path: &Path) -> Result<()> {
+        self.write(page, |page| voronaut_io::write(path, page.as_bytes()), |made| &mut made.page)
+    }
+
     pub(crate) fn write_solutions(&self, solutions: Solutions, path: &Path) -> Result<()> {
         self.write(solutions, |it| voronaut_io::write_solutions(it, path), |made| &mut made.solutions)
     }
@@ -260,13 +266,13 @@ impl<'a> World<'a> {
         Ok(())
     }
 
-    /// Writes the report, if a file is named for it.
     /// Whether to go on, for the caller may not wait any more: asked before files are written.
     pub(crate) fn go_on(&self) -> Result<()> {
         let is_stopped = self.held.as_ref().is_some_and(|(_, progress)| progress.is_stopped());
         if is_stopped { Err(Error::Stopped) } else { Ok(()) }
     }
 
+    /// Writes the report, if a file is named for it.
     pub(crate) fn write_report(&self, text: String, run: &Run) -> Result<()> {
         run.write_report(&text)?;
         self.write(text, |_| Ok(()), |made| &mut made.report)

@@ -20,3 +20,4 @@ mod remesh;
 mod remesh_plane;
 mod surfaces;
 mod unmet;
+mod view;

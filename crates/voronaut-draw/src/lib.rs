@@ -1,4 +1,4 @@
-//! Pictures of voronaut's meshes, as SVG and PNG.
+//! Pictures of voronaut's meshes, as SVG and PNG, and pages to look at them.
 
 mod cells;
 mod colours;
@@ -6,6 +6,7 @@ mod ellipses;
 mod frame;
 mod histogram;
 mod letters;
+mod page;
 mod palette;
 #[cfg(feature = "png")]
 mod png;
@@ -14,12 +15,14 @@ mod shades;
 mod simplify;
 mod strokes;
 mod svg;
+mod text;
 #[cfg(test)]
 mod test_meshes;
 mod unmet;
 
 pub use cells::Layers;
 pub use histogram::histograms_svg;
+pub use page::{Sheet, page};
 #[cfg(feature = "png")]
 pub(crate) use png::{data_url, render_png};
 pub use scene::{Scene, Stroke, View, draw_surface};

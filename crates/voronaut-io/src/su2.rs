@@ -205,7 +205,7 @@ impl Reader {
     fn label(&self, tag: &str) -> i32 {
         let is_free = |label: &i32| self.tags.iter().all(|(_, taken)| taken != label);
         let own = tag.parse().ok().filter(is_free);
-        own.or_else(|| (1..).find(is_free)).unwrap_or(i32::MAX)
+        own.or_else(|| (1..=i32::MAX).find(is_free)).unwrap_or(i32::MAX)
     }
 
     fn finish(mut self, source: &Source<'_>) -> Result<Document> {

@@ -79,6 +79,7 @@ fn told(py: Python<'_>, made: Made) -> PyResult<Bound<'_, PyDict>> {
         told.set_item("distances", PyArray1::from_vec(py, distances))?;
     }
     told.set_item("solutions", made.solutions.map(|all| arrays::of_solutions(py, all)).transpose()?)?;
+    told.set_item("page", made.page)?;
     told.set_item("report", made.report)?;
     told.set_item("warnings", made.warnings)?;
     Ok(told)

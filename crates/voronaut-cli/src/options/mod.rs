@@ -87,6 +87,17 @@ pub(crate) struct Outputs {
     pub(crate) histograms: Option<PathBuf>,
 }
 
+/// A page of a mesh that is made.
+#[derive(Debug, Args)]
+pub(crate) struct Paged {
+    /// Write a page to look at the mesh with, in any browser (see `view`): .html
+    #[arg(long, value_name = "FILE")]
+    pub(crate) view: Option<PathBuf>,
+    /// With --view: show Voronoi cells, distances in them, and geodesic edges, too
+    #[arg(long, requires = "view")]
+    pub(crate) cells: bool,
+}
+
 impl Outputs {
     pub(crate) fn shows(&self, what: Show) -> bool {
         self.show.contains(&what)

@@ -159,7 +159,8 @@ impl Certificate {
     }
 
     /// Whether the verdicts are about this triangle: all its seeds are covered.
-    pub fn covers(&self, triangle: [u32; 3]) -> bool {
+    #[cfg(test)]
+    pub(crate) fn covers(&self, triangle: [u32; 3]) -> bool {
         triangle.iter().all(|i| self.cells.binary_search_by_key(i, |cell| cell.seed).is_ok())
     }
 }

@@ -219,6 +219,11 @@ impl Shape {
         let quality = m.shape([a, b, c]);
         Shape { quality: if quality.is_nan() { 0.0 } else { quality }, angle: smallest.to_degrees() }
     }
+
+    /// Both.
+    pub(super) fn figures(&self) -> [f64; 2] {
+        [self.quality, self.angle]
+    }
 }
 /// The angle (radians, from -pi to pi) by which u must turn to point along v, in a metric.
 pub(super) fn angle(m: Tensor, u: Vector, v: Vector) -> f64 {

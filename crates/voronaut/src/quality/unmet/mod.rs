@@ -88,8 +88,10 @@ pub struct Unmet {
     pub edges: Vec<UnmetEdge>,
     /// Triangles of a quality below 0.05, the poorest first.
     pub needles: Vec<Needle>,
-    /// How many edges the mesh has.
-    pub of: usize,
+    /// The metric lengths of all edges of the mesh, in the order of [`Edges`].
+    pub lengths: Vec<f64>,
+    /// The quality of each triangle, and its smallest angle in the metric (degrees).
+    pub shapes: Vec<[f64; 2]>,
 }
 
 /// So many needles are told one by one.
@@ -167,7 +169,7 @@ pub struct WorstEdge {
 impl Unmet {
     /// The figures of these edges.
     pub fn figures(&self) -> UnmetFigures {
-        let share = |count: usize| if self.of > 0 { count as f64 / self.of as f64 } else { 0.0 };
+        let share = |count: usize| count as f64 / self.lengths.len().max(1) as f64;
         let of_cause = |cause: Cause| {
             let all: Vec<&UnmetEdge> = self.edges.iter().filter(|edge| edge.cause == cause).collect();
             let short = all.iter().filter(|edge| edge.is_short()).count();
@@ -258,22 +260,21 @@ fn find<'a>(
     let wrong: Vec<usize> = (0..ends.len()).filter(|&e| !is_unit(lengths[e])).collect();
     let stands_on_kept = |[a, b, c]: [u32; 3]| {
         let sides = [[a, b], [b, c], [c, a]].map(in_order);
-        let shortest = sides
-            .into_iter()
-            .filter_map(|side| ends.binary_search(&side).ok())
-            .min_by(|&e, &f| lengths[e].total_cmp(&lengths[f]));
+        let found = sides.into_iter().filter_map(|side| ends.binary_search(&side).ok());
+        let shortest = found.min_by(|&e, &f| lengths[e].total_cmp(&lengths[f]));
         shortest.is_some_and(|e: usize| {
             forced[e] != Forced::No && curves.has_all(&ends[e]) && isosceles(lengths[e]) < NEEDLE
         })
     };
-    let needle = |&t: &[u32; 3]| {
-        let quality = Some(shape(t).quality).filter(|&quality| quality < NEEDLE)?;
-        let is_forced = curves.has_all(&t) || stands_on_kept(t);
-        Some(Needle { quality, at: position(middle(mesh, &t)), is_forced })
+    let shapes: Vec<[f64; 2]> = mesh.triangles.par_iter().map(|&t| shape(t).figures()).collect();
+    let needle = |(&t, &[quality, _]): (&[u32; 3], &[f64; 2])| {
+        let at = Some(position(middle(mesh, &t))).filter(|_| quality < NEEDLE)?;
+        Some(Needle { quality, at, is_forced: curves.has_all(&t) || stands_on_kept(t) })
     };
-    let mut needles: Vec<Needle> = mesh.triangles.par_iter().filter_map(needle).collect();
+    let mut needles: Vec<Needle> = mesh.triangles.iter().zip(&shapes).filter_map(needle).collect();
     needles.sort_by(|a, b| a.quality.total_cmp(&b.quality));
-    Ok(Unmet { edges: wrong.into_par_iter().map(edge).collect(), needles, of: ends.len() })
+    let edges = wrong.into_par_iter().map(edge).collect();
+    Ok(Unmet { edges, needles, lengths, shapes })
 }
 
 /// The quality of a triangle of two unit edges and one of this metric length.

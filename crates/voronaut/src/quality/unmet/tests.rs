@@ -15,7 +15,7 @@ fn counts(found: &Unmet) -> [usize; 4] {
 #[test]
 fn a_unit_mesh_has_no_such_edges_and_neither_has_none() {
     let found = unmet(&lattice(6), &UNIT).unwrap();
-    assert!(found.edges.is_empty() && found.of == 6 * 7 * 2 + 36);
+    assert!(found.edges.is_empty() && found.lengths.len() == 6 * 7 * 2 + 36);
     let figures = found.figures();
     assert!(figures.edges == 0 && figures.share.abs() < 1e-15 && figures.by_cause.len() == 4);
     assert_eq!(unmet(&Mesh::default(), &UNIT).unwrap().figures(), Unmet::default().figures());
@@ -24,21 +24,21 @@ fn a_unit_mesh_has_no_such_edges_and_neither_has_none() {
 #[test]
 fn too_few_vertices_for_a_metric_are_the_cause_everywhere() {
     let found = unmet(&lattice(12), &|_: Point| Tensor::isotropic(0.5)).unwrap();
-    assert_eq!(counts(&found), [0, found.of, 0, 0]);
+    assert_eq!(counts(&found), [0, found.lengths.len(), 0, 0]);
     let figures = found.figures().by_cause[&Cause::Count];
-    assert!(figures.long == found.of && figures.short == 0 && (figures.share - 1.0).abs() < 1e-15);
+    assert!(figures.long == found.lengths.len() && figures.short == 0 && (figures.share - 1.0).abs() < 1e-15);
     assert!((figures.worst.unwrap().length - 2.0).abs() < 1e-12);
     // Too many vertices: those that cut off a sharp corner of the border are too many, too.
     let found = unmet(&lattice(12), &|_: Point| Tensor::isotropic(2.0)).unwrap();
-    assert_eq!(counts(&found), [0, found.of, 0, 0]);
-    assert_eq!(found.figures().by_cause[&Cause::Count].short, found.of);
+    assert_eq!(counts(&found), [0, found.lengths.len(), 0, 0]);
+    assert_eq!(found.figures().by_cause[&Cause::Count].short, found.lengths.len());
 }
 
 #[test]
 fn a_mesh_of_other_shapes_than_the_metric_s_is_not_one_of_too_few_vertices() {
     // Cells sixteen times as long as wide, of the area that the lattice's have.
     let found = unmet(&lattice(12), &|_: Point| Tensor::new(1.0 / 16.0, 0.0, 16.0)).unwrap();
-    assert!(found.edges.len() > found.of / 2);
+    assert!(found.edges.len() > found.lengths.len() / 2);
     assert_eq!(counts(&found)[1..], [0, 0, found.edges.len() - counts(&found)[0]]);
 }
 
@@ -140,8 +140,8 @@ fn what_only_curved_edges_can_do_is_the_metric_s() {
     let (wild, metric) = waves(4.0);
     let found = unmet(&wild, &metric).unwrap();
     // Straight edges are never shorter than geodesics.
-    assert!(found.edges.len() > found.of / 4 && found.edges.iter().all(|edge| !edge.is_short()));
-    assert!(counts(&found)[2] > 9 * found.edges.len() / 10, "{:?} of {}", counts(&found), found.of);
+    assert!(found.edges.len() > found.lengths.len() / 4 && found.edges.iter().all(|edge| !edge.is_short()));
+    assert!(counts(&found)[2] > 9 * found.edges.len() / 10, "{:?} of {}", counts(&found), found.lengths.len());
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn surfaces_have_the_same_causes() {
     let surface = Surface::new(&flat).unwrap();
     let fine = Constant(Tensor3::isotropic(0.5));
     let found = surface_unmet(&flat, &surface, &fine).unwrap();
-    assert_eq!(counts(&found), [0, found.of, 0, 0]);
+    assert_eq!(counts(&found), [0, found.lengths.len(), 0, 0]);
     assert_eq!(found.edges[0].at.coordinates().len(), 3);
     let (wild, planar) = waves(4.0);
     let metric = |p: Point3| {

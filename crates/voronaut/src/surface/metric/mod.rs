@@ -3,7 +3,7 @@
 //!
 //! | field | as a METRIC | what it is |
 //! |---|---|---|
-//! | [`Constant`] | `uniform` | the surface's own lengths |
+//! | `Constant` | `uniform` | the surface's own lengths |
 //! | [`Shock`] | `shock:phi=10,lambda=0.6` | thin across the shock of RR-9103, 15.2, in space |
 //! | [`SpaceFormula`] | `formula:m11; m12; m22; m13; m23; m33` | six expressions in x, y, z |
 //! | `ImplicitCurvature` | `curvature`, of an equation | principal curvatures, exact (RR-9103, 15.1) |
@@ -68,7 +68,7 @@ impl SurfaceMetric for Box<dyn SurfaceMetric + '_> {
 
 /// The same tensor everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Constant(pub Tensor3);
+pub(crate) struct Constant(pub(crate) Tensor3);
 
 impl SurfaceMetric for Constant {
     fn at(&self, _place: &Place) -> Tensor3 {
