@@ -93,6 +93,8 @@ def mesh(
     pixels: int = 1600,
     window: str | None = None,
     histograms: File | None = None,
+    view: File | None = None,
+    cells: bool = False,
     repair: bool = False,
     threads: int | None = None,
     time_limit: float | None = None,
@@ -192,6 +194,10 @@ def mesh(
         What the picture is cut to: x0,y0,x1,y1 [default: everything]
     histograms : File, optional
         Draw how metric edge lengths and angles are distributed, with straight and with geodesic edges: .svg
+    view : File, optional
+        Write a page to look at the mesh with, in any browser (see `view`): .html
+    cells : bool, default False
+        With view: show Voronoi cells, distances in them, and geodesic edges, too
     repair : bool, default False
         Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that
         meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
@@ -215,7 +221,7 @@ def mesh(
     --------
     >>> layer = voronaut.mesh("rect:0,0,1,1", lambda p: 0.01 + 0.2 * abs(p[:, 1] - 0.5), n=2000)
     """
-    options = {"complexity": complexity, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "hausd": hausd, "required": required, "fit": fit, "ar": ar, "nr": nr, "mesher": mesher, "effort": effort, "lloyd": lloyd, "centroid": centroid, "polish": polish, "dual": dual, "geodesic": geodesic, "seeding": seeding, "protection": protection, "picking_radius": picking_radius, "net": net, "canvas": canvas, "canvas_size": canvas_size, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
+    options = {"complexity": complexity, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "hausd": hausd, "required": required, "fit": fit, "ar": ar, "nr": nr, "mesher": mesher, "effort": effort, "lloyd": lloyd, "centroid": centroid, "polish": polish, "dual": dual, "geodesic": geodesic, "seeding": seeding, "protection": protection, "picking_radius": picking_radius, "net": net, "canvas": canvas, "canvas_size": canvas_size, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "view": view, "cells": cells, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
     defaults: dict[str, Any] = {"norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "ar": 45, "mesher": 'voronoi', "effort": 'normal', "lloyd": 40, "centroid": 'tangent', "polish": 20, "dual": 'both', "geodesic": 'march', "seeding": 'sizing', "protection": 0.2, "picking_radius": 0.3, "canvas": 'intrinsic', "canvas_size": 60, "show": 'mesh', "pixels": 1600, "memory_limit": 16}
     return _run.mesh(domain, metric, n, options, defaults, progress)
 
@@ -249,6 +255,8 @@ def dual(
     pixels: int = 1600,
     window: str | None = None,
     histograms: File | None = None,
+    view: File | None = None,
+    cells: bool = False,
     repair: bool = False,
     threads: int | None = None,
     time_limit: float | None = None,
@@ -328,6 +336,10 @@ def dual(
         What the picture is cut to: x0,y0,x1,y1 [default: everything]
     histograms : File, optional
         Draw how metric edge lengths and angles are distributed, with straight and with geodesic edges: .svg
+    view : File, optional
+        Write a page to look at the mesh with, in any browser (see `view`): .html
+    cells : bool, default False
+        With view: show Voronoi cells, distances in them, and geodesic edges, too
     repair : bool, default False
         Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that
         meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
@@ -351,7 +363,7 @@ def dual(
     --------
     >>> rdt = voronaut.dual("rect:-2,-2,2,2", "swirl", seeds)
     """
-    options = {"dual": dual, "voronoi": voronoi, "geodesic": geodesic, "edges": edges, "canvas": canvas, "canvas_size": canvas_size, "certify": certify, "net": net, "constants": constants, "strict": strict, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
+    options = {"dual": dual, "voronoi": voronoi, "geodesic": geodesic, "edges": edges, "canvas": canvas, "canvas_size": canvas_size, "certify": certify, "net": net, "constants": constants, "strict": strict, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "view": view, "cells": cells, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
     defaults: dict[str, Any] = {"dual": 'both', "voronoi": 'riemannian', "geodesic": 'march', "edges": 'straight', "canvas": 'intrinsic', "canvas_size": 60, "constants": 'corrected', "norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "show": 'mesh', "pixels": 1600, "memory_limit": 16}
     return _run.dual(domain, metric, seeds, options, defaults, progress)
 
@@ -718,6 +730,19 @@ def view(
     cells: bool = False,
     canvas_size: int | str = 60,
     title: str | None = None,
+    h_min: float | None = None,
+    h_max: float | None = None,
+    norm: float | str = 2,
+    recovery: str = 'fit',
+    a_max: float | None = None,
+    gradation: float | None = None,
+    smooth_metric: int = 0,
+    tensor_order: str = 'disk',
+    background: File | None = None,
+    repair: bool = False,
+    threads: int | None = None,
+    time_limit: float | None = None,
+    memory_limit: float = 16,
     progress: Progress = False,
 ) -> Page:
     """A page to look at meshes with: in a notebook, or in a file that any browser opens, without a network.
@@ -740,6 +765,39 @@ def view(
         With cells: canvas vertices per seed
     title : str, optional
         What stands above the page [default: the names of the meshes]
+    h_min : float, optional
+        Least Euclidean size the metric may ask for
+    h_max : float, optional
+        Greatest Euclidean size the metric may ask for
+    norm : float | str, default 2
+        With hessian metrics: p of the L^p norm in which the error of linear interpolation is to be least: 1, 2, 4, ...
+        or inf
+    recovery : str, default 'fit'
+        With hessian:FILE.sol: how second derivatives are recovered, by a quadratic around each vertex (fit) or a double
+        projection (l2)
+    a_max : float, optional
+        Greatest ratio of the two sizes at a point, at least 1
+    gradation : float, optional
+        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; in the plane, sampled on a
+        background as smooth_metric has it [default: no gradation]
+    smooth_metric : int, default 0
+        Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a
+        .sol file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
+    tensor_order : str, default 'disk'
+        In which order tensors in files have their entries: disk (m11 m12 m22 m13 m23 m33, as .sol files have), upper
+        (m11 m12 m13 m22 m23 m33) or diagonal (m11 m22 m33 m12 m23 m13)
+    background : File, optional
+        The mesh on which a .sol metric is given [default: the domain's own]
+    repair : bool, default False
+        Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that
+        meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
+    threads : int, optional
+        Threads to use [default: all]
+    time_limit : float (seconds), optional
+        Stop, without an output, after so many seconds
+    memory_limit : float (GiB), default 16
+        Refuse work that is estimated to need more memory than this, and stop, without an output, where it takes more
+        all the same
     progress : bool or function, default False
         True shows a bar; a function is called with the stage, how much is done and of how much, and stops the work
         where it returns False.
@@ -753,6 +811,6 @@ def view(
     --------
     >>> voronaut.view(layer, cells=True, metric="swirl").save("layer.html")
     """
-    options = {"metric_scale": metric_scale, "domain": domain, "cells": cells, "canvas_size": canvas_size, "title": title}
-    defaults: dict[str, Any] = {"canvas_size": 60}
+    options = {"metric_scale": metric_scale, "domain": domain, "cells": cells, "canvas_size": canvas_size, "title": title, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
+    defaults: dict[str, Any] = {"canvas_size": 60, "norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "memory_limit": 16}
     return _run.view(meshes, metric, options, defaults, progress)

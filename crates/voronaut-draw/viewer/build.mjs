@@ -3,7 +3,8 @@
 //     node build.mjs [PLACE]            # writes it there
 //     node build.mjs --check [PLACE]    # whether what is there is what the sources give
 import { build } from "esbuild";
-import { readFileSync, writeFileSync } from "node:fs";
+import { createHash } from "node:crypto";
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -16,7 +17,12 @@ const bundle = async (entry, options) => {
 const style = await bundle("src/page.css", {});
 const script = await bundle("src/main.ts", { format: "iife", target: "es2022", legalComments: "none" });
 if (/<\/script|\{\{/i.test(script)) throw new Error("the script would end its own tag, or has a place in it");
+// Names and contents of all sources: so that it is seen without node where one of them has changed since.
+const sources = ["package-lock.json", "page.html", ...readdirSync(join(here, "src")).sort().map((name) => `src/${name}`)];
+const digest = createHash("sha256");
+for (const name of sources) digest.update(name).update("\0").update(readFileSync(join(here, name))).update("\0");
 const page = readFileSync(join(here, "page.html"), "utf8")
+  .replace('content="voronaut"', () => `content="voronaut" data-sources="${digest.digest("hex")}"`)
   .replace("/*style*/", () => style)
   .replace("/*script*/", () => script);
 if (process.argv.includes("--check")) {
