@@ -125,6 +125,8 @@ const ROWS: &[Row] = &[
     all(&[], &["--time-limit", "1e-6"], Refused("--time-limit")),
     all(&[], &["--picture", "p.svg"], File("p.svg")),
     all(DRAWN, &["--show", "cells"], File("p.svg")),
+    all(&[], &["--view", "v.html"], File("v.html")),
+    all(&["--view", "v.html"], &["--cells"], File("v.html")),
     all(DRAWN, &["--pixels", "99"], File("p.svg")),
     plane(DRAWN, &["--window", "0,0,0.5,0.5"], File("p.svg")),
     surfaces(DRAWN, &["--window", "0,0,0.5,0.5"], Refused("--window")),

@@ -91,15 +91,15 @@ const MOVES: usize = 6;
 /// Relaxation equalises cells, of which a triangle beside the tip of a cape knows little. The energy may rise a little.
 pub(crate) fn mend_worst(dual: &mut impl Moving, most: usize) -> usize {
     let poorest: Vec<[VertexId; 3]> = by_quality(dual).into_iter().take(most).map(|(_, corners)| corners).collect();
-    mend_corners(dual, poorest)
+    mend_corners(dual, poorest, Lengths::Kept)
 }
 
-/// The same of all triangles that are needles, or nearly: what the mesh is measured by asks for the metric at the closest places, and
+/// The same of all triangles that are needles, or nearly, whatever lengths become: what the mesh is measured by asks for the metric at the closest places, and
 /// may find less.
 pub(crate) fn mend_needles(dual: &mut impl Moving) -> usize {
     let poor = by_quality(dual).into_iter().take_while(|(quality, _)| *quality < POOR).map(|(_, corners)| corners);
     let poor: Vec<[VertexId; 3]> = poor.collect();
-    mend_corners(dual, poor)
+    mend_corners(dual, poor, Lengths::AfterNeedles)
 }
 
 /// The triangles by their quality, the poorest first.
@@ -109,15 +109,24 @@ fn by_quality(dual: &impl Moving) -> Vec<(f64, [VertexId; 3])> {
     ranked(corners.map(|corners| (dual.quality(corners.map(|v| sites[v.index()])), corners)))
 }
 
-fn mend_corners(dual: &mut impl Moving, triangles: Vec<[VertexId; 3]>) -> usize {
+fn mend_corners(dual: &mut impl Moving, triangles: Vec<[VertexId; 3]>, lengths: Lengths) -> usize {
     let corners = triangles.into_iter().flatten();
     let free: Vec<VertexId> = corners.filter(|&v| dual.kind(v) == Kind::Free).collect();
-    free.into_iter().filter(|&v| mend(dual, v)).count()
+    free.into_iter().filter(|&v| mend(dual, v, lengths)).count()
 }
 
-/// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out, unless a triangle is a needle, or
+/// What counts where a triangle is a needle.
+#[derive(Clone, Copy, PartialEq)]
+enum Lengths {
+    /// That no edge leaves the unit range.
+    Kept,
+    /// That it is none any more.
+    AfterNeedles,
+}
+
+/// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out, unless needles come first, or
 /// the quality is poor beside an edge that must stay whole and is too long.
-fn mend<M: Moving>(dual: &mut M, v: VertexId) -> bool {
+fn mend<M: Moving>(dual: &mut M, v: VertexId, lengths: Lengths) -> bool {
     let topology = dual.topology();
     let ring: Vec<[M::Site; 2]> =
         topology.star(v).map(|h| [topology.target(h), topology.apex(h)].map(|u| dual.site(u))).collect();
@@ -139,7 +148,11 @@ fn mend<M: Moving>(dual: &mut M, v: VertexId) -> bool {
     let mut now = least(dual, dual.site(v), f64::NEG_INFINITY).unwrap_or(f64::NEG_INFINITY);
     let mut has_moved = false;
     for _ in 0..MOVES {
-        let allowed = if now < NEEDLE || (is_beside && now < POOR) { f64::INFINITY } else { usual };
+        let allowed = if (lengths == Lengths::AfterNeedles && now < NEEDLE) || (is_beside && now < POOR) {
+            f64::INFINITY
+        } else {
+            usual
+        };
         let tried: Vec<Vector> = trials(dual.local(v).tensor.cholesky()).collect();
         let gained = |&by: &Vector| {
             let site = dual.site_after(v, by)?;

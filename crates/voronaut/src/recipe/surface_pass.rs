@@ -390,6 +390,7 @@ fn mend(dual: &mut SurfaceDual) {
     for _ in 0..MENDINGS {
         dual.round_off();
         mend_worst(dual, poor);
+        mend_needles(dual);
     }
     dual.round_off();
 }
