@@ -22,7 +22,7 @@ impl Random {
     }
 
     /// A vector in the unit disk, evenly.
-    pub(crate) fn in_disk(&mut self) -> Vector {
+    fn in_disk(&mut self) -> Vector {
         let (radius, angle) = (self.number().sqrt(), std::f64::consts::TAU * self.number());
         Vector::new(radius * angle.cos(), radius * angle.sin())
     }

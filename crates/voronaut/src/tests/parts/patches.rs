@@ -163,9 +163,11 @@ impl Sewing {
         let mut found = Vec::new();
         for j in 0..=((high[1] - low[1]) / row) as usize {
             for i in 0..=((high[0] - low[0]) / edge) as usize + 1 {
-                let shift = self.random.in_disk();
-                let x = low[0] + edge * (i as f64 + 0.5 * (j % 2) as f64 + SHAKE * shift.x);
-                let y = low[1] + row * (j as f64 + 0.5) + edge * SHAKE * shift.y;
+                // A vector in the disk of that radius, evenly.
+                let (radius, angle) = (SHAKE * self.random.number().sqrt(), TAU * self.random.number());
+                let shift = [radius * angle.cos(), radius * angle.sin()];
+                let x = low[0] + edge * (i as f64 + 0.5 * (j % 2) as f64 + shift[0]);
+                let y = low[1] + row * (j as f64 + 0.5) + edge * shift[1];
                 if is_inside(outlines, [x, y]) && all_sides(outlines).all(|s| distance([x, y], s) > AWAY * edge) {
                     found.push([x, y]);
                 }
