@@ -11,7 +11,10 @@ use std::time::Instant;
 use voronaut::domain::{Domain, from_mesh};
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
-use voronaut::quality::{Meetings, fidelity, interpolation_error, surface_fidelity, validity, validity_on};
+use voronaut::quality::{
+    Meetings, fidelity, interpolation_error, interpolation_error_on, surface_fidelity, validity, validity_on,
+};
+use voronaut::recipe::GradedAt;
 use voronaut::surface::{Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 use voronaut_draw::Layers;
@@ -40,7 +43,7 @@ pub(crate) struct CheckArgs {
     /// A factor on the metric tensor, such as `metric_scale` of a report
     #[arg(long, value_name = "FACTOR", value_parser = positive, requires = "metric")]
     pub(crate) metric_scale: Option<f64>,
-    /// In the plane: measure the error of linear interpolation of this function of x and y, in the L^p norm of --norm
+    /// Measure the error of linear interpolation of this function of x and y, on a surface of x, y and z, in the L^p norm of --norm
     #[arg(long, value_name = "EXPR")]
     pub(crate) function: Option<String>,
     /// Measure the distance to the boundary of this domain (as for `mesh`), or to this surface [default of a metric on a surface:
@@ -147,34 +150,40 @@ fn on_surface(
     given: Option<&Input>,
     report: &mut Report,
 ) -> Result<Option<String>> {
-    demand_for_surfaces(args)?;
+    demand_for_surfaces(args, world)?;
     if let Some(Input { surface, implicit, .. }) = given {
         let implicit = implicit.as_ref().map(|f| f as &dyn Implicit);
         report.fidelity = Some(Strayed::Surface(surface_fidelity(mesh, surface, implicit)?.into()));
     }
+    let own;
+    let input = if let Some(input) = given {
+        input
+    } else if args.metric.is_some() || args.function.is_some() {
+        own = Input::new(Surface::new(mesh)?, None);
+        &own
+    } else {
+        return Ok(None);
+    };
+    if let Some(text) = &args.function {
+        let function = Expression::parse(text, Variables::Space)?;
+        report.interpolation = Some(interpolation_error_on(mesh, input, &function, args.metric_choices.norm)?);
+    }
     if let Some(text) = &args.metric {
-        let own;
-        let input = if let Some(input) = given {
-            input
-        } else {
-            own = Input::new(Surface::new(mesh)?, None);
-            &own
-        };
-        let field = fields::on_surface(world, text, input, &args.metric_choices)?;
-        let scaled = Scaled { field: field.as_ref(), factor: args.metric_scale.unwrap_or(1.0) };
+        let factor = args.metric_scale.unwrap_or(1.0);
+        let field = fields::on_surface(world, text, input, &args.metric_choices, GradedAt::Scale(factor))?;
+        let scaled = Scaled { field: field.as_ref(), factor };
         account::measure_on_surface(report, mesh, &input.surface, &scaled)?;
     }
     Ok(None)
 }
 
 /// Refuses what is not there for surfaces.
-fn demand_for_surfaces(args: &CheckArgs) -> Result<()> {
+fn demand_for_surfaces(args: &CheckArgs, world: &World) -> Result<()> {
     refuse([
         (args.outputs.picture.is_some(), "a picture of the mesh of a surface", "leave out --picture"),
         (args.outputs.histograms.is_some(), "histograms of the mesh of a surface", "leave out --histograms"),
-        (args.function.is_some(), "interpolation on the mesh of a surface", "leave out --function"),
     ])?;
-    fields::demand_for_surfaces(&args.metric_choices)
+    args.metric.as_ref().map_or(Ok(()), |text| fields::demand_for_surfaces(world, text, &args.metric_choices))
 }
 
 /// The metric, times its factor. A `.sol` file belongs to the background mesh, else to the domain's, else to the mesh.

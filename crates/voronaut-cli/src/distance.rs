@@ -119,7 +119,7 @@ fn on_surface(args: &DistanceArgs, world: &World, input: &Input, mended: &Mended
     let from: Vec<usize> = from.collect::<Result<_>>()?;
     let to = args.to.as_ref().map(|p| on_it("--to", p, input)).transpose()?;
     let to = to.map(|place| add(place, &mut places));
-    let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices)?;
+    let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, GradedAt::Scale(1.0))?;
     stages.end("read");
     let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), args.canvas_size as usize, &places)?;
     stages.end("canvas");

@@ -216,7 +216,7 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
         (args.canvas_size == CanvasSize::Certified, "--canvas-size certified"),
     ];
     pictures::demand_of_surfaces(&args.outputs, &refused)?;
-    let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices)?;
+    let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, GradedAt::Scale(1.0))?;
     let places = SeedFile::of_places(world.seeds(&args.seeds)?)?.on_surface(input)?;
     stages.end("read");
     let size = canvas_vertices(args, places.len())?.unwrap_or_default();

@@ -9,19 +9,29 @@ use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::recipe::{GradedAt, Idle, Origin, PlanarMetric, Task};
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Place};
-use voronaut_io::MetricSource;
+use voronaut_io::{MetricSource, is_solution};
 
-/// What a metric in the plane is for.
-pub(crate) fn task(world: &World, text: &str, choices: &MetricChoices) -> Result<Task> {
+/// What a metric is for.
+pub(crate) fn task(world: &World, text: &str, choices: &MetricChoices, on_surface: bool) -> Result<Task> {
     let origin = match world.metric_origin(text) {
         Some(origin) => origin,
+        None if on_surface => origin_on_surface(text),
         None => match MetricSource::parse(text)? {
             MetricSource::Hessian(_) => Origin::Values,
             MetricSource::Named(MetricSpec::Hessian(_)) => Origin::Function,
             MetricSource::Named(_) | MetricSource::File(_) => Origin::Sizes,
         },
     };
-    Ok(Task { origin, is_limited: choices.options().is_limiting(), ..Task::default() })
+    Ok(Task { origin, is_limited: choices.options().is_limiting(), on_surface, ..Task::default() })
+}
+
+/// Functions of space are none of the plane, and read later.
+fn origin_on_surface(text: &str) -> Origin {
+    match text.trim().strip_prefix("hessian:") {
+        None => Origin::Sizes,
+        Some(file) if is_solution(file) => Origin::Values,
+        Some(_) => Origin::Function,
+    }
 }
 
 /// The metric in the plane that a text names. `own` is what the domain was read from; `at` the multiple in which edges have length one.
@@ -33,7 +43,7 @@ pub(crate) fn in_plane(
     choices: &MetricChoices,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
-    choices.options().idle(task(world, text, choices)?).iter().try_for_each(Idle::demand_unset)?;
+    choices.options().idle(task(world, text, choices, false)?).iter().try_for_each(Idle::demand_unset)?;
     world.planar_metric(text, domain, own, choices, at)
 }
 
@@ -50,21 +60,21 @@ pub(crate) fn measuring(
     Ok(Box::new(move |p: Point| metric.at(p) * scale))
 }
 
-/// The metric on a surface that a text names, within limits.
+/// The metric on a surface that a text names; `at` as of [`in_plane`].
 pub(crate) fn on_surface(
     world: &World,
     text: &str,
     input: &Input,
     choices: &MetricChoices,
+    at: GradedAt,
 ) -> Result<Box<dyn SurfaceMetric>> {
-    demand_for_surfaces(choices)?;
-    world.surface_metric(text, input, choices)
+    demand_for_surfaces(world, text, choices)?;
+    world.surface_metric(text, input, choices, at)
 }
 
-/// Refuses what is not there for metrics on surfaces.
-pub(crate) fn demand_for_surfaces(choices: &MetricChoices) -> Result<()> {
-    let task = Task { on_surface: true, ..Task::default() };
-    choices.options().idle(task).iter().try_for_each(Idle::demand_unset)?;
+/// Refuses what is not there for a metric on surfaces.
+pub(crate) fn demand_for_surfaces(world: &World, text: &str, choices: &MetricChoices) -> Result<()> {
+    choices.options().idle(task(world, text, choices, true)?).iter().try_for_each(Idle::demand_unset)?;
     let help = "give the file that the values belong to as the domain";
     refuse([(choices.background.is_some(), "--background on a surface", help)])
 }

@@ -17,13 +17,13 @@ use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
-use voronaut::metric::MetricField;
-use voronaut::quality::interpolation_error;
+use voronaut::metric::{Expression, MetricField, Variables};
+use voronaut::quality::{InterpolationError, interpolation_error, interpolation_error_on};
 use voronaut::realisation::Realisation;
-use voronaut::recipe::{self, Aim, Centroid, Effort, GradedAt, Idle, MeshOptions, Mesher, Seeding, Task};
+use voronaut::recipe::{self, Aim, Centroid, Effort, GradedAt, Idle, MeshOptions, Meshed, Mesher, Seeding, Task};
 use voronaut::surface::{FeatureOptions, Input, Mended};
 use voronaut_draw::{Layers, Sheet};
-use voronaut_io::{Given, Report};
+use voronaut_io::{Given, Report, is_solution};
 
 pub(crate) const EXAMPLES: &str = "\
 DOMAIN  a file: .mesh, .meshb, .msh, .su2, .vtu, .vtp (boundary edges or triangles; of volumes the boundary), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
@@ -169,9 +169,7 @@ impl MeshArgs {
     fn idle(&self, on_surface: bool, world: &World) -> Result<Vec<Idle>> {
         let is_pictured = self.outputs.picture.is_some() && self.outputs.need_diagram();
         let is_drawn = is_pictured || self.paged.cells;
-        let metric =
-            if on_surface { Task::default() } else { fields::task(world, &self.metric, &self.metric_choices)? };
-        let task = Task { on_surface, is_drawn, ..metric };
+        let task = Task { is_drawn, ..fields::task(world, &self.metric, &self.metric_choices, on_surface)? };
         let idle = [self.options().idle(task), self.metric_choices.options().idle(task)].concat();
         idle.iter().try_for_each(Idle::demand_unset)?;
         Ok(idle)
@@ -278,7 +276,8 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
     let is_whole = args.outputs.picture.is_some() || args.paged.view.is_some();
     let whole = is_whole.then(|| Input::new(input.surface.clone(), input.implicit.clone()));
     let input = &input.cut(&args.features())?;
-    let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices)?;
+    let at = GradedAt::of(args.options().vertices, args.complexity);
+    let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, at)?;
     let meshed = recipe::mesh_surface(input, metric.as_ref(), &args.options(), &*world.progress(&args.run))?;
     let mut used = args.as_used(&idle);
     if args.dual == Road::Both {
@@ -286,17 +285,30 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
         used["dual"] = json!(Road::Geodesic);
     }
     let (mut report, unmet) = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
+    report.interpolation = interpolated(args, input, &meshed.mesh)?;
     report.seconds.total = start.elapsed().as_secs_f64();
     let drawn = whole.as_ref().filter(|_| args.outputs.picture.is_some());
-    let picture = drawn.map(|whole| drawn_on(args, world, whole, &meshed.mesh)).transpose()?;
+    let picture = drawn.map(|whole| drawn_on(args, world, whole, &meshed)).transpose()?;
     let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
         let Some(whole) = &whole else { return Ok(()) };
-        let field = fields::on_surface(world, &args.metric, whole, &args.metric_choices)?;
+        let at = GradedAt::Scale(meshed.metric_scale);
+        let field = fields::on_surface(world, &args.metric, whole, &args.metric_choices, at)?;
         let scaled = Scaled { field: field.as_ref(), factor: meshed.metric_scale };
         pages::measured_on_surface(sheet, whole, &scaled, unmet);
         args.drawn().map_or(Ok(()), |drawn| pages::with_cells_on(sheet, whole, &scaled, drawn))
     })?;
     finish(args, world, meshed.mesh, picture, sheet, &report)
+}
+
+/// The error of interpolation of the function that the mesh is for, if that is a formula.
+fn interpolated(args: &MeshArgs, input: &Input, mesh: &Mesh) -> Result<Option<InterpolationError>> {
+    match args.metric.trim().strip_prefix("hessian:") {
+        Some(text) if !is_solution(text) => {
+            let function = Expression::parse(text, Variables::Space)?;
+            interpolation_error_on(mesh, input, &function, args.metric_choices.norm).map(Some)
+        }
+        _ => Ok(None),
+    }
 }
 
 /// Writes a valid mesh, and what is beside it.
@@ -314,8 +326,9 @@ fn finish(
 }
 
 /// The mesh of a surface that is whole: cells are drawn across creases.
-fn drawn_on(args: &MeshArgs, world: &World, whole: &Input, mesh: &Mesh) -> Result<String> {
-    let metric = fields::on_surface(world, &args.metric, whole, &args.metric_choices)?;
+fn drawn_on(args: &MeshArgs, world: &World, whole: &Input, meshed: &Meshed) -> Result<String> {
+    let (mesh, at) = (&meshed.mesh, GradedAt::Scale(meshed.metric_scale));
+    let metric = fields::on_surface(world, &args.metric, whole, &args.metric_choices, at)?;
     let places = mesh.points.iter().map(|&p| whole.closest(p.into())).collect::<Result<Vec<_>>>()?;
     let size = canvas::size_for(places.len(), args.canvas_size);
     let (canvas, at) = Canvas::on_surface(args.canvas, whole, metric.as_ref(), size, &places)?;

@@ -13,6 +13,7 @@ use voronaut::canvas;
 use voronaut::canvas::VERTICES_PER_SEED;
 use voronaut::domain::{Domain, from_mesh};
 use voronaut::quality::{surface_unmet, unmet};
+use voronaut::recipe::GradedAt;
 use voronaut::surface::{Input, Surface};
 use voronaut::{Error, Result};
 use voronaut_draw::Sheet;
@@ -156,8 +157,9 @@ fn in_plane(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, path:
 }
 
 fn on_surface(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, input: &Input) -> Result<()> {
-    let field = fields::on_surface(world, text, input, &args.metric_choices)?;
-    let scaled = Scaled { field: field.as_ref(), factor: args.metric_scale.unwrap_or(1.0) };
+    let factor = args.metric_scale.unwrap_or(1.0);
+    let field = fields::on_surface(world, text, input, &args.metric_choices, GradedAt::Scale(factor))?;
+    let scaled = Scaled { field: field.as_ref(), factor };
     let found = surface_unmet(&sheet.mesh, &input.surface, &scaled)?;
     pages::measured_on_surface(sheet, input, &scaled, found);
     args.drawn().map_or(Ok(()), |drawn| pages::with_cells_on(sheet, input, &scaled, drawn))

@@ -8,7 +8,6 @@ use std::collections::HashMap;
 use std::path::Path;
 use voronaut::domain::{Domain, from_polygons};
 use voronaut::mesh::{Mesh, Solution, SolutionValues, Solutions};
-use voronaut::metric::Bounds;
 use voronaut::progress::Progress;
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, PlanarMetric};
@@ -28,11 +27,11 @@ pub trait HeldMetric: Send {
     /// # Errors
     /// It is none there.
     fn in_plane(&self, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric>;
-    /// As a field on a surface, within limits.
+    /// As a field on a surface; `at` as in the plane.
     ///
     /// # Errors
     /// It is none there.
-    fn on_surface(&self, input: &Input, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>>;
+    fn on_surface(&self, input: &Input, options: &MetricOptions, at: GradedAt) -> Result<Box<dyn SurfaceMetric>>;
 }
 
 /// What a caller holds, by the words that stand for it among those of a command.
@@ -166,10 +165,11 @@ impl<'a> World<'a> {
         word: &str,
         input: &Input,
         choices: &MetricChoices,
+        at: GradedAt,
     ) -> Result<Box<dyn SurfaceMetric>> {
         match self.held(|held| &held.metrics, Path::new(word)) {
-            Some(metric) => metric.on_surface(input, choices.bounds()),
-            None => surface_metric(word, input, choices.bounds(), choices.tensor_order),
+            Some(metric) => metric.on_surface(input, &choices.options(), at),
+            None => surface_metric(word, input, &choices.options(), choices.tensor_order, at),
         }
     }
 

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use voronaut::domain::Domain;
 use voronaut::geometry::{Aabb, Tensor, Tensor3};
 use voronaut::mesh::{Mesh, Solution, SolutionValues, TensorOrder};
-use voronaut::metric::{Bounds, MetricSpec};
-use voronaut::recipe::{self, GradedAt, MetricOptions, PlanarMetric};
+use voronaut::metric::MetricSpec;
+use voronaut::recipe::{self, GradedAt, MetricOptions, PlanarMetric, SurfaceSource};
 use voronaut::surface::Input;
-use voronaut::surface::metric::{Spec, SurfaceMetric, field, field_of_values};
+use voronaut::surface::metric::{Spec, SurfaceMetric};
 use voronaut::{Error, Result};
 
 /// Where the metric of a planar domain comes from.
@@ -99,17 +99,31 @@ impl MetricFiles<'_> {
     }
 }
 
-/// The metric on a surface that a text names ([`Spec::parse`], or `FILE.sol` with a value per vertex of the surface's file), within
-/// limits.
+/// The metric on a surface that a text names ([`Spec::parse`], `FILE.sol` with a value per vertex of the surface's file, or
+/// `hessian:FILE.sol` with a number); `at` is the multiple in which edges are to have length one.
 ///
 /// # Errors
-/// As of [`Spec::parse`], [`field`] and [`field_of_values`]; a file is missing or not what it should be.
-pub fn surface_metric(text: &str, input: &Input, bounds: Bounds, order: TensorOrder) -> Result<Box<dyn SurfaceMetric>> {
-    if is_solution(text.trim()) {
-        return field_of_values(&read_metric(Path::new(text.trim()), order)?, input, bounds);
+/// As of [`Spec::parse`] and [`recipe::metric_on_surface`]; a file is missing or not what it should be.
+pub fn surface_metric(
+    text: &str,
+    input: &Input,
+    options: &MetricOptions,
+    order: TensorOrder,
+    at: GradedAt,
+) -> Result<Box<dyn SurfaceMetric>> {
+    let text = text.trim();
+    let made = |source| recipe::metric_on_surface(source, input, options, at);
+    if is_solution(text) {
+        return made(SurfaceSource::Values(&read_metric(Path::new(text), order)?));
     }
     demand_default(order)?;
-    field(&Spec::parse(text)?, input, bounds)
+    match text.strip_prefix("hessian:") {
+        Some(file) if is_solution(file) => match &read_solution(Path::new(file))?.values {
+            SolutionValues::Scalar(values) => made(SurfaceSource::Function(values)),
+            _ => Err(Error::parse(file, "the values are no scalars", "give one number (type 1) per vertex")),
+        },
+        _ => made(SurfaceSource::Named(&Spec::parse(text)?)),
+    }
 }
 
 /// Refuses an order of entries where no file has any.
@@ -132,7 +146,8 @@ pub fn read_metric(path: &Path, order: TensorOrder) -> Result<Solution> {
     Ok(Solution { dimension, values })
 }
 
-fn is_solution(text: &str) -> bool {
+/// Whether a text names a file of solutions, by its ending.
+pub fn is_solution(text: &str) -> bool {
     matches!(ending(Path::new(text)).as_deref(), Some("sol" | "solb"))
 }
 
@@ -234,7 +249,7 @@ mod tests {
         let rows = "4 0 4 0 0 4\n".repeat(count);
         write!(file, "MeshVersionFormatted 2 Dimension 3 SolAtVertices {count} 1 3\n{rows}").unwrap();
         let path = file.path().to_str().unwrap();
-        let field = surface_metric(path, &input, Bounds::default(), TensorOrder::Disk).unwrap();
+        let field = surface_metric(path, &input, &MetricOptions::default(), TensorOrder::Disk, GradedAt::Scale(1.0)).unwrap();
         let place = input.surface.place_of(VertexId(7)).unwrap();
         let m = TangentPlane::new(place.normal).restrict(field.at(&place));
         assert!((m.xx - 4.0).abs() + m.xy.abs() + (m.yy - 4.0).abs() < 1e-12, "{m:?}");

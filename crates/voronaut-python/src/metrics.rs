@@ -12,9 +12,9 @@ use voronaut::geometry::{Point, Tensor};
 use voronaut::mesh::{Mesh, Solution, SolutionValues, TensorOrder};
 use voronaut::metric::nodal::{self, implied};
 use voronaut::metric::{Bounded, Bounds, MetricField, MetricSpec, Recovery, Uniform, recover_hessian};
-use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, PlanarMetric};
+use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, PlanarMetric, SurfaceSource};
 use voronaut::surface::Input;
-use voronaut::surface::metric::{SurfaceMetric, field_of_samples, field_of_values};
+use voronaut::surface::metric::SurfaceMetric;
 use voronaut::{Error, Result};
 use voronaut_cli::HeldMetric;
 use voronaut_io::{MetricFiles, MetricSource, surface_metric};
@@ -124,20 +124,24 @@ impl HeldMetric for Metric {
         }
     }
 
-    fn on_surface(&self, input: &Input, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
+    fn on_surface(&self, input: &Input, options: &MetricOptions, at: GradedAt) -> Result<Box<dyn SurfaceMetric>> {
+        let made = |source| recipe::metric_on_surface(source, input, options, at);
+        let solution = |values: &SolutionValues| Solution { dimension: 3, values: values.clone() };
         match self {
-            Self::Text(text) => surface_metric(&of_space(text), input, bounds, TensorOrder::default()),
-            Self::Values(_, values) => {
-                field_of_values(&Solution { dimension: 3, values: values.clone() }, input, bounds)
+            Self::Text(text) => surface_metric(&of_space(text), input, options, TensorOrder::default(), at),
+            Self::Values(_, values) => made(SurfaceSource::Values(&solution(values))),
+            Self::Solution(_, SolutionValues::Scalar(values)) => made(SurfaceSource::Function(values)),
+            Self::Solution(_, values) => made(SurfaceSource::Values(&solution(values))),
+            Self::Function(function, course) => made(SurfaceSource::Samples(Box::new(|points| {
+                let flat: Vec<f64> = points.iter().flat_map(|p| p.to_array()).collect();
+                called(function, course, &flat, 3)
+            }))),
+            Self::Limited(bounds, metric) if options.bounds == Bounds::default() => {
+                metric.on_surface(input, &MetricOptions { bounds: *bounds, ..options.clone() }, at)
             }
-            Self::Function(function, course) => {
-                let sample = |points: &[voronaut::geometry::Point3]| {
-                    let flat: Vec<f64> = points.iter().flat_map(|p| p.to_array()).collect();
-                    called(function, course, &flat, 3)
-                };
-                field_of_samples(sample, input, bounds)
+            Self::Graded(factor, metric) if options.gradation.is_none() => {
+                metric.on_surface(input, &MetricOptions { gradation: Some(*factor), ..options.clone() }, at)
             }
-            Self::Limited(own, metric) if bounds == Bounds::default() => metric.on_surface(input, *own),
             _ => {
                 let help = "on surfaces a metric is a text, values at the vertices, or a function; combine its values";
                 Err(Error::unsupported("a metric made of others, on a surface", help))

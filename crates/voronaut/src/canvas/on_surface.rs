@@ -82,14 +82,27 @@ fn spread(cell: u32) -> u32 {
     (0..10).map(|bit| (cell >> bit & 1) << (3 * bit)).sum()
 }
 
+/// The surface's triangles, halved at their longest edges in the metric until there are so many vertices. Edges are not measured.
+///
+/// # Errors
+/// [`Error::Metric`](crate::Error::Metric) where the metric is not positive definite at a vertex.
+pub(crate) fn even_on_surface<'s>(
+    input: &'s Input,
+    metric: &'s dyn SurfaceMetric,
+    vertices: usize,
+) -> Result<Draped<'s>> {
+    let mut draped = Draped::new(input, metric)?;
+    draped.refine(Size::Metric, vertices, &mut CanvasCounters::default())?;
+    Ok(draped)
+}
+
 /// The metric area of a surface, the integral of sqrt(det M) over it: by the trapezoidal rule on triangles with so many vertices,
 /// even in the metric, or on the surface's own where these have more.
 ///
 /// # Errors
 /// [`Error::Metric`](crate::Error::Metric) where the metric is not positive definite at a vertex.
 pub(crate) fn area_of_surface(input: &Input, metric: &dyn SurfaceMetric, vertices: usize) -> Result<f64> {
-    let mut draped = Draped::new(input, metric)?;
-    draped.refine(Size::Metric, vertices, &mut CanvasCounters::default())?;
+    let draped = even_on_surface(input, metric, vertices)?;
     Ok(draped.topology.faces().map(|f| draped.metric_area(f)).sum())
 }
 

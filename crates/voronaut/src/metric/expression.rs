@@ -34,7 +34,7 @@ impl Expression {
     }
 
     /// Compiles a part of a text; columns count from the start of the whole text, which `name` names in messages.
-    pub(super) fn parse_range(
+    pub(crate) fn parse_range(
         text: &str,
         range: std::ops::Range<usize>,
         variables: Variables,

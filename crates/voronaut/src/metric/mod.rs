@@ -51,13 +51,13 @@ pub use hessian::Hessian;
 pub(crate) use hessian::Recovered;
 pub(crate) use neighbours::Neighbours;
 pub use norm::Norm;
-pub(crate) use recovery::least_squares;
+pub(crate) use recovery::{hessian_around, least_squares};
 pub use recovery::{Recovery, recover_hessian};
 pub use sampled::Sampled;
 pub use scaled::Scaled;
 pub(crate) use scaled::Steadied;
 pub use smoothed::MOST_SWEEPS;
-pub(crate) use smoothed::smoothed;
+pub(crate) use smoothed::{smoothed, swept};
 pub use spec::MetricSpec;
 pub(crate) use spec::Parameters;
 pub(crate) use validate::{

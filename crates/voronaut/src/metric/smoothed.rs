@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
+use std::ops::{Add, Mul};
 
 /// Sweeps at most. On a background of 40,000 vertices so many smooth over a quarter of the domain's width: what is left of a
 /// field then is about its mean.
@@ -25,29 +26,49 @@ const KEPT: f64 = 0.5;
 /// [`Error::Limit`] for more than [`MOST_SWEEPS`]; as for [`Sampled::new`] where the background is not what it should be or
 /// the field is no metric at one of its vertices.
 pub(crate) fn smoothed(field: &dyn MetricField, background: &Mesh, sweeps: u32) -> Result<Sampled> {
-    if sweeps > MOST_SWEEPS {
-        let what = format!("{sweeps} sweeps of smoothing; the limit is {MOST_SWEEPS}");
-        let help = "smooth less: K sweeps reach over half the square root of K edges of the background";
-        return Err(Error::limit(what, help));
-    }
+    demand(sweeps)?;
     let vertices = 0..background.points.len() as u32;
     let tensors: Vec<Tensor> = vertices.into_par_iter().map(|v| field.at(background.point(v))).collect();
     let sampled = Sampled::new(background, &tensors)?;
     let around = Neighbours::of(background);
-    let mut logs: Vec<Tensor> = tensors.iter().map(|tensor| tensor.log()).collect();
-    for _ in 0..sweeps {
-        logs = (0..logs.len()).into_par_iter().map(|v| smooth(&around, &logs, v)).collect();
+    let logs = tensors.iter().map(|tensor| tensor.log()).collect();
+    Ok(sampled.with_logarithms(swept(&around, logs, sweeps)?))
+}
+
+fn demand(sweeps: u32) -> Result<()> {
+    if sweeps <= MOST_SWEEPS {
+        return Ok(());
     }
-    Ok(sampled.with_logarithms(logs))
+    let what = format!("{sweeps} sweeps of smoothing; the limit is {MOST_SWEEPS}");
+    let help = "smooth less: K sweeps reach over half the square root of K edges of the background";
+    Err(Error::limit(what, help))
+}
+
+/// Logarithms of tensors after so many sweeps.
+///
+/// # Errors
+/// [`Error::Limit`] for more than [`MOST_SWEEPS`].
+pub(crate) fn swept<T>(around: &Neighbours, mut logs: Vec<T>, sweeps: u32) -> Result<Vec<T>>
+where
+    T: Copy + Default + Send + Sync + Add<Output = T> + Mul<f64, Output = T>,
+{
+    demand(sweeps)?;
+    for _ in 0..sweeps {
+        logs = (0..logs.len()).into_par_iter().map(|v| smooth(around, &logs, v)).collect();
+    }
+    Ok(logs)
 }
 
 /// A value after one sweep.
-fn smooth(around: &Neighbours, values: &[Tensor], v: usize) -> Tensor {
+fn smooth<T>(around: &Neighbours, values: &[T], v: usize) -> T
+where
+    T: Copy + Default + Add<Output = T> + Mul<f64, Output = T>,
+{
     let list = around.at(v);
     if list.is_empty() {
         return values[v];
     }
-    let sum = list.iter().fold(Tensor::default(), |sum, &n| sum + values[n as usize]);
+    let sum = list.iter().fold(T::default(), |sum, &n| sum + values[n as usize]);
     values[v] * KEPT + sum * ((1.0 - KEPT) / list.len() as f64)
 }
 

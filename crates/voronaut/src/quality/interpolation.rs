@@ -2,10 +2,11 @@
 
 use super::{Position, Spot};
 use crate::error::{Error, Result};
-use crate::geometry::{Node, Point, combine, radon};
+use crate::geometry::{Node, Point, Point3, radon};
 use crate::mesh::Mesh;
-use crate::metric::{Norm, ScalarField};
+use crate::metric::{Expression, Norm, ScalarField};
 use crate::parallel::prelude::*;
+use crate::surface::Input;
 use std::fmt;
 
 /// Each triangle is cut into so many times so many parts, with a rule of degree 5 on each.
@@ -47,20 +48,46 @@ impl fmt::Display for Exponent {
 /// # Errors
 /// [`Error::Metric`] where the function is not finite; [`Error::Mesh`] of a mesh without triangles.
 pub fn interpolation_error(mesh: &Mesh, function: &dyn ScalarField, norm: Norm) -> Result<InterpolationError> {
+    let value = |p: Point3| function.value(Point::new(p.x, p.y));
+    error_of(mesh, &value, &value, norm)
+}
+
+/// The same on the mesh of a surface, of a function of x, y and z: each point of a triangle stands for the closest one of the
+/// surface.
+///
+/// # Errors
+/// As of [`interpolation_error`].
+pub fn interpolation_error_on(
+    mesh: &Mesh,
+    input: &Input,
+    function: &Expression,
+    norm: Norm,
+) -> Result<InterpolationError> {
+    let value = |p: Point3| function.at(p.x, p.y, p.z);
+    let on_surface = |p: Point3| value(input.closest(p).map_or(p, |place| place.position));
+    error_of(mesh, &value, &on_surface, norm)
+}
+
+/// A function of what is at a point.
+type At<'a> = &'a (dyn Fn(Point3) -> f64 + Sync);
+
+/// The error by the values at vertices and at points of triangles.
+fn error_of(mesh: &Mesh, at_vertex: At, within: At, norm: Norm) -> Result<InterpolationError> {
     let values: Vec<f64> =
-        (0..mesh.points.len() as u32).into_par_iter().map(|v| function.value(mesh.point(v))).collect();
+        (0..mesh.points.len() as u32).into_par_iter().map(|v| at_vertex(mesh.position(v))).collect();
     let nodes = nodes();
-    let of = |&t: &[u32; 3]| on_triangle(mesh.corners_of(t), t.map(|v| values[v as usize]), function, norm, &nodes);
-    let found: Vec<(f64, f64, Point)> = mesh.triangles.par_iter().with_min_len(64).map(of).collect();
-    let Some(&(_, max, at)) = found.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
+    let of = |&t: &[u32; 3]| on_triangle(mesh.positions_of(t), t.map(|v| values[v as usize]), within, norm, &nodes);
+    let found: Vec<(f64, f64, Point3)> = mesh.triangles.par_iter().with_min_len(64).map(of).collect();
+    let Some(&(_, max, place)) = found.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
         return Err(Error::mesh("it has no triangles", "the whole mesh", "give a mesh with triangles"));
     };
+    let at = if mesh.is_planar() { Position::Plane([place.x, place.y]) } else { place.into() };
     if !max.is_finite() {
         let help = "give a function that is finite in the whole domain";
-        return Err(Error::metric("the function is not finite", at.to_string(), help));
+        return Err(Error::metric("the function is not finite", place.to_string(), help));
     }
     let p = norm.exponent();
-    let max_spot = Spot { value: max, at: Position::Plane([at.x, at.y]) };
+    let max_spot = Spot { value: max, at };
     if p.is_infinite() {
         return Ok(InterpolationError { norm: max, p: Exponent::Infinite("inf"), max: max_spot });
     }
@@ -94,27 +121,27 @@ fn nodes() -> Vec<Node> {
 
 /// The integral of the p-th power of the error as a share of the greatest; the greatest, and where it is.
 fn on_triangle(
-    corners: [Point; 3],
+    corners: [Point3; 3],
     values: [f64; 3],
-    function: &dyn ScalarField,
+    function: At,
     norm: Norm,
     nodes: &[Node],
-) -> (f64, f64, Point) {
+) -> (f64, f64, Point3) {
     let error = |&(at, _): &Node| {
-        let p = combine(at, corners);
+        let p = Point3::weighted(corners, at);
         let linear: f64 = at.iter().zip(values).map(|(share, value)| share * value).sum();
-        ((function.value(p) - linear).abs(), p)
+        ((function(p) - linear).abs(), p)
     };
-    let errors: Vec<(f64, Point)> = nodes.iter().map(error).collect();
+    let errors: Vec<(f64, Point3)> = nodes.iter().map(error).collect();
     let (most, at) =
         errors.iter().copied().fold(
             (0.0, corners[0]),
-            |most: (f64, Point), next| {
+            |most: (f64, Point3), next| {
                 if next.0 > most.0 || next.0.is_nan() { next } else { most }
             },
         );
     let [a, b, c] = corners;
-    let area = 0.5 * (b - a).cross(c - a).abs();
+    let area = 0.5 * (b - a).cross(c - a).norm();
     let power = |error: f64| if most > 0.0 { (error / most).powf(norm.exponent()) } else { 0.0 };
     let sum: f64 = errors.iter().zip(nodes).map(|(&(error, _), &(_, weight))| weight * power(error)).sum();
     (area * sum, most, at)

@@ -59,7 +59,7 @@ impl PlanarMetric {
 
 /// In the metric of second derivatives no size is greater than this share of the domain's extent: where a function is linear in some
 /// direction, longer edges would gain nothing, and make a metric that no straight edges can honour.
-const LONGEST: f64 = 1.0 / 3.0;
+pub(super) const LONGEST: f64 = 1.0 / 3.0;
 
 /// The field that a specification names on a domain; `at` is the multiple of the metric in which edges are to have length one, for
 /// gradation.

@@ -120,10 +120,8 @@ impl MetricOptions {
         let of_function = (task.origin != Origin::Sizes, "with a metric that is not a function's");
         let recovered = (task.origin == Origin::Values, "without values of a function to recover from");
         idle(&[
-            ("norm", self.norm != usual.norm, &[plane, of_function]),
+            ("norm", self.norm != usual.norm, &[of_function]),
             ("recovery", self.recovery != usual.recovery, &[plane, recovered]),
-            ("smooth_metric", self.smooth_metric != usual.smooth_metric, &[plane]),
-            ("gradation", self.gradation.is_some(), &[plane]),
         ])
     }
 

@@ -12,6 +12,7 @@ mod patches;
 mod protection;
 mod remesh_input;
 mod settle;
+mod surface_field;
 mod surface_pass;
 
 pub use adapt::{LoopOptions, Source, Step, adapt};
@@ -25,6 +26,7 @@ pub use idle::{Idle, Origin, Task};
 pub use on_surface::mesh_surface;
 pub use options::{Centroid, Effort, MeshOptions, Mesher, Seeding};
 pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
+pub use surface_field::{SurfaceSource, metric_on_surface};
 
 use crate::canvas::{Canvas, CanvasFigures};
 use crate::domain::Domain;

@@ -60,6 +60,12 @@ impl Nearest {
         Some(Closest { place, distance: place.position.distance(p) })
     }
 
+    /// The number of the closest triangle, of those put in, and the weights of its closest point. `None` as of [`Nearest::distance`].
+    pub(crate) fn closest_of(&self, p: Point3) -> Option<(u32, [f64; 3])> {
+        let found = if p.is_finite() { self.nearest(p) } else { None }?;
+        Some((found.face.0, closest_weights(found.corners, p)))
+    }
+
     fn nearest(&self, p: Point3) -> Option<&Triangle> {
         self.tree.nearest(p.to_array(), |t| {
             let offset = Point3::weighted(t.corners, closest_weights(t.corners, p)) - p;

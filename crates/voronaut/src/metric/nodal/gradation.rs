@@ -46,8 +46,10 @@ const TOGETHER: usize = 256;
 /// The law ([`grade`]), and where it holds.
 pub(crate) struct Gradation<'a> {
     around: Neighbours,
-    /// The way from a vertex to a neighbour.
+    /// The way from a vertex to a neighbour, in the coordinates of the latter,
     offset: Box<dyn Fn(u32, u32) -> Vector + Sync + 'a>,
+    /// and the x axis of the former in these, where coordinates differ.
+    turn: Option<Box<dyn Fn(u32, u32) -> Vector + Sync + 'a>>,
     growth: f64,
 }
 
@@ -72,13 +74,27 @@ impl<'a> Gradation<'a> {
         Self::new(around, move |v, w| Vector::new(length(v, w), 0.0), gradation_factor)
     }
 
+    /// On a surface: the way from a vertex to a neighbour in the coordinates of the latter's tangent plane, and the x axis of the
+    /// former's plane, taken to that by the smallest rotation.
+    ///
+    /// # Errors
+    /// As of [`Gradation::on`].
+    pub(crate) fn between_planes(
+        around: Neighbours,
+        offset: impl Fn(u32, u32) -> Vector + Sync + 'a,
+        turn: impl Fn(u32, u32) -> Vector + Sync + 'a,
+        gradation_factor: f64,
+    ) -> Result<Self> {
+        Ok(Self { turn: Some(Box::new(turn)), ..Self::new(around, offset, gradation_factor)? })
+    }
+
     fn new(around: Neighbours, offset: impl Fn(u32, u32) -> Vector + Sync + 'a, gradation_factor: f64) -> Result<Self> {
         if !(gradation_factor >= 1.0 && gradation_factor.is_finite()) {
             let what = format!("gradation_factor = {gradation_factor} is not at least 1");
             let help = "1.3 lets edges grow by a third from one to the next; leave it out for no gradation";
             return Err(Error::parse("metric gradation", what, help));
         }
-        Ok(Self { around, offset: Box::new(offset), growth: gradation_factor.ln() })
+        Ok(Self { around, offset: Box::new(offset), turn: None, growth: gradation_factor.ln() })
     }
 
     /// [`Gradation::apply`] to sizes.
@@ -96,7 +112,7 @@ impl<'a> Gradation<'a> {
     ///
     /// # Errors
     /// [`Error::Limit`] where it does not settle.
-    pub(super) fn apply(&self, tensors: &mut [Tensor], limits: &Limits) -> Result<()> {
+    pub(crate) fn apply(&self, tensors: &mut [Tensor], limits: &Limits) -> Result<()> {
         let mut sources: Vec<Source> = tensors.par_iter().map(|&m| Source::new(m)).collect();
         let mut waiting = Waiting::all(tensors);
         let mut is_asking = vec![false; tensors.len()];
@@ -127,7 +143,8 @@ impl<'a> Gradation<'a> {
         let most = own * (1.0 + SETTLED);
         let mut asked = Vec::new();
         for &v in self.around.at(w as usize).iter().filter(|&&v| is_asking[v as usize]) {
-            let from = &sources[v as usize];
+            let turned = self.turn.as_ref().map(|turn| sources[v as usize].turned(turn(v, w)));
+            let from = turned.as_ref().unwrap_or(&sources[v as usize]);
             // What is not finer here to begin with is not so when it has grown.
             if !is_above(own, from.tensor) {
                 let grown = from.grown((self.offset)(v, w), self.growth);
@@ -166,6 +183,13 @@ impl Source {
     fn new(tensor: Tensor) -> Self {
         let e = tensor.eigen();
         Self { tensor, axis: e.axis, eigenvalues: [e.large, e.small] }
+    }
+
+    /// The same in coordinates in which the x axis is another.
+    fn turned(&self, x: Vector) -> Self {
+        let axis = Vector::new(x.x * self.axis.x - x.y * self.axis.y, x.y * self.axis.x + x.x * self.axis.y);
+        let [large, small] = self.eigenvalues;
+        Self { tensor: Tensor::from_axis(axis, large, small), axis, ..*self }
     }
 
     /// What it allows at an offset. With t an eighth powers are roots, which are faster than logarithms.

@@ -4,6 +4,7 @@ mod fit;
 mod projection;
 mod stencil;
 
+pub(crate) use fit::hessian_around;
 pub(crate) use stencil::least_squares;
 
 use super::validate::check_background;

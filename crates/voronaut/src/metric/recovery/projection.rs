@@ -84,8 +84,9 @@ impl<'a> Averaging<'a> {
             if inside.len() < POINTS {
                 continue;
             }
-            let Some(frame) = Frame::of(self.mesh, self.mesh.point(v as u32), rings.vertices()) else { continue };
-            let places = inside.iter().map(|&w| frame.place(self.mesh.point(w)));
+            let offset = |w: &u32| self.mesh.point(*w) - self.mesh.point(v as u32);
+            let Some(frame) = Frame::of(&rings.vertices().iter().map(offset).collect::<Vec<_>>()) else { continue };
+            let places = inside.iter().map(|w| frame.place(offset(w)));
             let mut rows: Vec<[f64; 3]> = places.map(|d| [1.0, d.x, d.y]).collect();
             let mut taken: Vec<f64> = inside.iter().map(|&w| values[w as usize]).collect();
             let solved = least_squares(&mut rows, &mut taken);

@@ -2,8 +2,7 @@
 //! they are determined.
 
 use super::super::neighbours::Neighbours;
-use crate::geometry::{Point, Tensor, Vector};
-use crate::mesh::Mesh;
+use crate::geometry::{Tensor, Vector};
 
 /// Vertices by their rings around one: ring k are those k edges away.
 pub(super) struct Rings<'a> {
@@ -44,33 +43,32 @@ const FLAT: f64 = 1e-24;
 /// Linear coordinates in which vertices around a centre have the identity as their covariance: on meshes of any anisotropy they
 /// see each other at distances of about one.
 pub(super) struct Frame {
-    centre: Point,
     factor: [f64; 3],
 }
 
 impl Frame {
-    /// `None` where all lie on one line with the centre, or on the centre.
-    pub(super) fn of(mesh: &Mesh, centre: Point, vertices: &[u32]) -> Option<Self> {
-        let offsets = vertices.iter().map(|&v| mesh.point(v) - centre);
-        let longest = offsets.clone().map(Vector::norm).fold(0.0, f64::max);
+    /// From the ways there from the centre; `None` where all lie on one line with it, or on it.
+    pub(super) fn of(offsets: &[Vector]) -> Option<Self> {
+        let longest = offsets.iter().map(|d| d.norm()).fold(0.0, f64::max);
         if longest == 0.0 {
             return None;
         }
         // Scaled first: squares of small lengths underflow, and so do their determinants.
         let covariance = offsets
-            .map(|d| d * (1.0 / longest))
-            .fold(Tensor::default(), |sum, d| sum + Tensor::square(d) * (1.0 / vertices.len() as f64));
+            .iter()
+            .map(|&d| d * (1.0 / longest))
+            .fold(Tensor::default(), |sum, d| sum + Tensor::square(d) * (1.0 / offsets.len() as f64));
         let trace = covariance.xx + covariance.yy;
         if covariance.determinant() <= FLAT * trace * trace {
             return None;
         }
         let factor = covariance.inverse().cholesky().map(|entry| entry / longest);
-        Some(Self { centre, factor })
+        Some(Self { factor })
     }
 
-    /// A point in these coordinates.
-    pub(super) fn place(&self, p: Point) -> Vector {
-        let ([a, b, c], d) = (self.factor, p - self.centre);
+    /// The way to a vertex in these coordinates.
+    pub(super) fn place(&self, d: Vector) -> Vector {
+        let [a, b, c] = self.factor;
         Vector::new(a * d.x + b * d.y, c * d.y)
     }
 

@@ -45,11 +45,6 @@ pub(crate) fn sampled_curvature(surface: &Surface, floor: f64) -> Result<Sampled
     let metric = |(c, cap): (&Option<Curvatures>, &f64)| c.map(|c| c.metric([floor, *cap]));
     let fits: Vec<Option<Tensor3>> = fitted.iter().zip(&caps).map(metric).collect();
     let t = surface.topology();
-    let tensor = |v: u32| {
-        let around = || t.around(VertexId(v)).filter_map(|w| fits[w.index()]);
-        fits[v as usize].or_else(|| mean(around())).unwrap_or(Tensor3::IDENTITY * floor)
-    };
-    let tensors: Vec<Tensor3> = (0..fits.len() as u32).map(tensor).collect();
     let bent = || fitted.iter().zip(&caps).filter_map(|(c, cap)| Some((c.as_ref()?.values.map(f64::abs), *cap)));
     let figures = CurvatureFigures {
         floor,
@@ -58,7 +53,7 @@ pub(crate) fn sampled_curvature(surface: &Surface, floor: f64) -> Result<Sampled
         unfitted: t.vertices().filter(|v| fitted[v.index()].is_none()).count(),
         greatest: bent().map(|(values, cap)| values[0].min(cap).max(floor)).fold(floor, f64::max),
     };
-    Ok(Sampled::new(surface, &tensors)?.with_figures(figures))
+    Ok(Sampled::filled(surface, &fits, Tensor3::IDENTITY * floor)?.with_figures(figures))
 }
 
 /// The greatest curvature that edges at a vertex can tell; no number of a vertex without edges, which has no fit either.
@@ -66,12 +61,6 @@ fn cap(surface: &Surface, v: VertexId) -> f64 {
     let ends = surface.topology().around(v).map(|w| surface.position(w).distance(surface.position(v)));
     let (count, sum) = ends.fold((0.0, 0.0), |(count, sum), length| (count + 1.0, sum + length));
     std::f64::consts::TAU * count / sum
-}
-
-/// The log-Euclidean mean.
-fn mean(tensors: impl Iterator<Item = Tensor3>) -> Option<Tensor3> {
-    let (count, sum) = tensors.fold((0.0, Tensor3::default()), |(count, sum), m| (count + 1.0, sum + m.log()));
-    (count > 0.0).then(|| (sum * (1.0 / count)).exp())
 }
 
 /// Principal curvatures at every vertex by fitting a polynomial of degree three over the tangent plane to the vertices of

@@ -8,6 +8,8 @@
 //! | [`SpaceFormula`] | `formula:m11; m12; m22; m13; m23; m33` | six expressions in x, y, z |
 //! | `ImplicitCurvature` | `curvature`, of an equation | principal curvatures, exact (RR-9103, 15.1) |
 //! | [`Sampled`] | `curvature`, of a file | principal curvatures at vertices, fitted ([`fit_curvatures`]) |
+//! | `CovariantHessian` | `hessian:EXPR` | optimal for the interpolation of a function of x, y and z on the surface |
+//! | [`Sampled`] | `hessian:FILE.sol` | the same, recovered from values at vertices |
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at vertices, log-Euclidean between them |
 //! | [`Sampled`] | what `remesh` makes | sizes at vertices for a distance to the surface, graded ([`Sizing`]) |
 //! | `Closer` | `--hausd` | another field, finer where a distance to the surface asks for it |
@@ -18,6 +20,7 @@
 mod bounded;
 mod curvature;
 mod gradation;
+mod hessian;
 mod sampled;
 mod sizing;
 mod spec;
@@ -27,9 +30,11 @@ pub(crate) use bounded::Closer;
 pub use curvature::fit_curvatures;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub(crate) use gradation::grade;
+pub(crate) use hessian::{CovariantHessian, recovered_on};
 pub use sampled::{Sampled, Sizes};
 pub use sizing::Sizing;
-pub use spec::{Spec, field, field_of_samples, field_of_values};
+pub use spec::{Spec, field};
+pub(crate) use spec::{field_of_values, within};
 
 use super::Place;
 use crate::geometry::{Point, Point3, Tensor3};

@@ -7,6 +7,7 @@ use crate::mesh::{Solution, SolutionValues};
 use crate::metric::{check_sizes, check_tensor3};
 use crate::surface::input::check_count;
 use crate::surface::{Nearest, Place, Surface};
+use crate::triangulation::VertexId;
 
 /// Tensors at the vertices of a surface; inside triangles the log-Euclidean interpolation (Arsigny 2006), exp of the linear
 /// interpolation of log M, which is positive definite and between the sizes at the corners.
@@ -37,6 +38,20 @@ impl Sampled {
         Ok(Self { logs: tensors.iter().map(|tensor| tensor.log()).collect(), corners, figures: None })
     }
 
+    /// The field of tensors at some vertices; the others have the mean of their neighbours' logarithms, or `otherwise` where these
+    /// have none either.
+    ///
+    /// # Errors
+    /// As [`Sampled::new`].
+    pub(super) fn filled(surface: &Surface, known: &[Option<Tensor3>], otherwise: Tensor3) -> Result<Self> {
+        let t = surface.topology();
+        let tensor = |v: u32| {
+            let around = || t.around(VertexId(v)).filter_map(|w| known[w.index()]);
+            known[v as usize].or_else(|| mean(around())).unwrap_or(otherwise)
+        };
+        Self::new(surface, &(0..known.len() as u32).map(tensor).collect::<Vec<_>>())
+    }
+
     /// The same field, of curvatures that were bounded so.
     #[must_use]
     pub(super) fn with_figures(self, figures: CurvatureFigures) -> Self {
@@ -62,6 +77,12 @@ impl SurfaceMetric for Sampled {
     fn curvature_figures(&self) -> Option<CurvatureFigures> {
         self.figures
     }
+}
+
+/// The log-Euclidean mean.
+fn mean(tensors: impl Iterator<Item = Tensor3>) -> Option<Tensor3> {
+    let (count, sum) = tensors.fold((0.0, Tensor3::default()), |(count, sum), m| (count + 1.0, sum + m.log()));
+    (count > 0.0).then(|| (sum * (1.0 / count)).exp())
 }
 
 /// What is asked for at the vertices of a surface, one entry per vertex slot.

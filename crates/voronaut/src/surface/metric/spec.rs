@@ -1,11 +1,11 @@
 //! The metric of a surface as a user writes it.
 
-use super::{Constant, FLOOR, ImplicitCurvature, Sampled, SurfaceMetric, sampled_curvature};
+use super::{Constant, CovariantHessian, FLOOR, ImplicitCurvature, Sampled, SurfaceMetric, sampled_curvature};
 use crate::domain::name_and_rest;
 use crate::error::{Error, Result};
-use crate::geometry::{Point3, Tensor3};
-use crate::mesh::{Solution, SolutionValues};
-use crate::metric::{Bounded, Bounds, MetricSpec, Parameters, Shock, SpaceFormula, require};
+use crate::geometry::Tensor3;
+use crate::mesh::Solution;
+use crate::metric::{Bounded, Bounds, Expression, MetricSpec, Norm, Parameters, Shock, SpaceFormula, Variables, require};
 use crate::surface::Input;
 
 /// What a METRIC text says of a surface.
@@ -19,6 +19,8 @@ pub enum Spec {
     Formula(SpaceFormula),
     /// `curvature` or `curvature:floor=C`: curvatures below C (1 / length) count as C.
     Curvature(Option<f64>),
+    /// `hessian:EXPR`: of the second derivatives of a function of x, y and z.
+    Hessian(Expression),
 }
 
 impl Spec {
@@ -33,7 +35,11 @@ impl Spec {
             "uniform" if parameters.is_none() => Ok(Self::Uniform),
             "formula" => Ok(Self::Formula(SpaceFormula::parse(parameters.unwrap_or_default())?)),
             "curvature" => curvature(&Parameters::read("curvature", parameters, &["floor"])?),
-            "uniform" | "swirl" | "boundary" | "hessian" => Err(planar(text)),
+            "hessian" => {
+                let text = parameters.unwrap_or_default();
+                Ok(Self::Hessian(Expression::parse_range(text, 0..text.len(), Variables::Space, "metric hessian")?))
+            }
+            "uniform" | "swirl" | "boundary" => Err(planar(text)),
             // Shocks are written as in the plane.
             _ => match MetricSpec::parse(text)? {
                 MetricSpec::Shock(shock) => Ok(Self::Shock(shock)),
@@ -43,8 +49,8 @@ impl Spec {
     }
 }
 
-/// The field that a specification names on a surface, within limits. Curvatures are exact where the surface has an
-/// equation, else fitted.
+/// The field that a specification names on a surface, within limits; that of a function's second derivatives is for the L2 norm
+/// ([`crate::recipe::metric_on_surface`] has more to choose). Curvatures are exact where the surface has an equation, else fitted.
 ///
 /// # Errors
 /// The limits contradict each other; no curvature could be fitted.
@@ -60,32 +66,24 @@ pub fn field(spec: &Spec, input: &Input, bounds: Bounds) -> Result<Box<dyn Surfa
                 None => Box::new(sampled_curvature(&input.surface, floor)?),
             }
         }
+        Spec::Hessian(function) => Box::new(CovariantHessian::new(function, input, Norm::default())?),
     };
     within(field, bounds)
 }
 
-/// The field of values at the vertices that a surface had before it was cut, within limits.
+/// The field of values at the vertices that a surface had before it was cut.
 ///
 /// # Errors
-/// There is not one value per vertex; the values are no metric; the limits contradict each other.
-pub fn field_of_values(solution: &Solution, input: &Input, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
-    within(Box::new(Sampled::from_solution(&input.surface, &input.spread(solution)?)?), bounds)
+/// There is not one value per vertex; the values are no metric.
+pub(crate) fn field_of_values(solution: &Solution, input: &Input) -> Result<Sampled> {
+    Sampled::from_solution(&input.surface, &input.spread(solution)?)
 }
 
-/// The field of a function that takes many points at once, sampled at the vertices of the surface, within limits.
+/// A field within limits.
 ///
 /// # Errors
-/// What the function says; its values are no metric; the limits contradict each other.
-pub fn field_of_samples(
-    sample: impl FnOnce(&[Point3]) -> Result<SolutionValues>,
-    input: &Input,
-    bounds: Bounds,
-) -> Result<Box<dyn SurfaceMetric>> {
-    let solution = Solution { dimension: 3, values: sample(input.surface.positions())? };
-    within(Box::new(Sampled::from_solution(&input.surface, &solution)?), bounds)
-}
-
-fn within(field: Box<dyn SurfaceMetric>, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
+/// The limits contradict each other.
+pub(crate) fn within(field: Box<dyn SurfaceMetric>, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
     if bounds == Bounds::default() { Ok(field) } else { Ok(Box::new(Bounded::new(field, bounds)?)) }
 }
 
@@ -102,7 +100,7 @@ fn curvature(parameters: &Parameters) -> Result<Spec> {
 
 fn planar(text: &str) -> Error {
     let help = "on surfaces: uniform, curvature:floor=C, shock:phi=10,lambda=0.6, 'formula:m11; m12; m22; m13; m23; m33', \
-                FILE.sol";
+                'hessian:EXPR' in x, y and z, FILE.sol, hessian:FILE.sol";
     Error::unsupported(format!("metric {text} on a surface"), help)
 }
 

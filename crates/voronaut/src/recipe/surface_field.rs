@@ -1,0 +1,310 @@
+//! From what the user says of a metric on a surface to the field itself, as `field` has it of the plane: limits, then smoothing and
+//! gradation at the vertices of triangles on the surface.
+
+use super::field::{GradedAt, LONGEST, MetricOptions, background_vertices};
+use crate::canvas::{Draped, area_of_surface, even_on_surface};
+use crate::error::Result;
+use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3, Vector};
+use crate::lists::Rows;
+use crate::mesh::{Solution, SolutionValues, coincident};
+use crate::metric::nodal::{Gradation, Limits};
+use crate::metric::{Bounds, Neighbours, swept};
+use crate::parallel::prelude::*;
+use crate::surface::metric::{
+    CovariantHessian, CurvatureFigures, Sampled, Spec, SurfaceMetric, field, field_of_values, recovered_on, within,
+};
+use crate::surface::{Input, Nearest, Place, closest_weights};
+use crate::triangulation::{FaceId, VertexId};
+use std::collections::BTreeMap;
+
+/// Vertices of the triangles on which a metric is smoothed, as in the plane; at least so many has one that is graded.
+const BACKGROUND_VERTICES: usize = 40_000;
+const FEWEST: usize = 1_000;
+/// Normals whose cosine is this near to -1 are opposite.
+const OPPOSITE: f64 = 1e-9;
+/// Steps to the scale that has a complexity, at most.
+const STEPS: usize = 12;
+
+/// What a metric on a surface is made of.
+pub enum SurfaceSource<'a> {
+    /// A name with parameters, or a formula.
+    Named(&'a Spec),
+    /// Sizes or tensors at the vertices that the surface had before it was cut.
+    Values(&'a Solution),
+    /// A function's values there, whose interpolation the mesh is for.
+    Function(&'a [f64]),
+    /// A function that takes many points at once, and gives sizes or tensors.
+    Samples(Box<dyn FnOnce(&[Point3]) -> Result<SolutionValues> + 'a>),
+}
+
+/// The metric on a surface; `at` is the multiple of it in which edges are to have length one, for gradation and for limits on that of a
+/// function.
+///
+/// # Errors
+/// The limits contradict each other; there is not one value per vertex, or it is no metric; the function has no second derivatives;
+/// smoothing asks for too many sweeps; the gradation is no factor.
+pub fn metric_on_surface(
+    source: SurfaceSource,
+    input: &Input,
+    options: &MetricOptions,
+    at: GradedAt,
+) -> Result<Box<dyn SurfaceMetric>> {
+    options.bounds.check()?;
+    let has_vertices = !matches!(source, SurfaceSource::Named(_));
+    let (field, scale) = named(source, input, options, at)?;
+    let unit = scale.sqrt();
+    let bounds = Bounds {
+        h_min: options.bounds.h_min.map(|h| h * unit),
+        h_max: options.bounds.h_max.map(|h| h * unit),
+        a_max: options.bounds.a_max,
+    };
+    let field = within(field, bounds)?;
+    let vertices = |count: usize| if has_vertices { 0 } else { count };
+    let field = match options.smooth_metric {
+        0 => field,
+        sweeps => Box::new(smoothed(field.as_ref(), input, vertices(BACKGROUND_VERTICES), sweeps)?),
+    };
+    let Some(factor) = options.gradation else { return Ok(field) };
+    let once = graded(field.as_ref(), input, vertices(count_for(field.as_ref(), input, at)?), factor, at)?;
+    if has_vertices {
+        return Ok(Box::new(once));
+    }
+    // Where the metric is to be finer than it was, triangles that are even in what it was are too large.
+    let count = count_for(&once, input, at)?;
+    let background = Background::new(input, &once, count)?;
+    Ok(Box::new(background.graded(field.as_ref(), factor, at)?))
+}
+
+/// The field, and the multiple in which limits on sizes are meant: one, but for second derivatives, whose units are the function's.
+fn named(
+    source: SurfaceSource,
+    input: &Input,
+    options: &MetricOptions,
+    at: GradedAt,
+) -> Result<(Box<dyn SurfaceMetric>, f64)> {
+    let plain = |field: Box<dyn SurfaceMetric>| Ok((field, 1.0));
+    let values = |dimension, values| Solution { dimension, values };
+    match source {
+        SurfaceSource::Named(Spec::Hessian(function)) => {
+            within_surface(Box::new(CovariantHessian::new(function, input, options.norm)?), input, at)
+        }
+        SurfaceSource::Named(spec) => plain(field(spec, input, Bounds::default())?),
+        SurfaceSource::Values(solution) => plain(Box::new(field_of_values(solution, input)?)),
+        SurfaceSource::Samples(sample) => {
+            let sampled = values(3, sample(input.surface.positions())?);
+            plain(Box::new(Sampled::from_solution(&input.surface, &sampled)?))
+        }
+        SurfaceSource::Function(given) => {
+            let spread = input.spread(&values(3, SolutionValues::Scalar(given.to_vec())))?;
+            let SolutionValues::Scalar(spread) = spread.values else { unreachable!("as many values as before") };
+            within_surface(Box::new(recovered_on(input, &spread, options.norm)?), input, at)
+        }
+    }
+}
+
+/// The field with sizes of at most [`LONGEST`] of the surface's extent, in the multiple in which edges have length one; and that
+/// multiple.
+fn within_surface(field: Box<dyn SurfaceMetric>, input: &Input, at: GradedAt) -> Result<(Box<dyn SurfaceMetric>, f64)> {
+    let scale = match at {
+        GradedAt::Scale(scale) => scale,
+        GradedAt::Complexity(target) => target / area_of_surface(input, field.as_ref(), FEWEST)?,
+    };
+    let extent = input.surface.bounds().extent();
+    let h_max = Some(LONGEST * extent.x.max(extent.y).max(extent.z) * scale.sqrt());
+    Ok((within(field, Bounds { h_max, ..Bounds::default() })?, scale))
+}
+
+/// How many vertices the triangles have on which a metric is graded.
+fn count_for(field: &dyn SurfaceMetric, input: &Input, at: GradedAt) -> Result<usize> {
+    let complexity = match at {
+        GradedAt::Complexity(target) => target,
+        GradedAt::Scale(scale) => scale * area_of_surface(input, field, FEWEST)?,
+    };
+    Ok(background_vertices(complexity, FEWEST))
+}
+
+fn graded(
+    field: &dyn SurfaceMetric,
+    input: &Input,
+    vertices: usize,
+    factor: f64,
+    at: GradedAt,
+) -> Result<OnBackground> {
+    Background::new(input, field, vertices)?.graded(field, factor, at)
+}
+
+fn smoothed(field: &dyn SurfaceMetric, input: &Input, vertices: usize, sweeps: u32) -> Result<OnBackground> {
+    let background = Background::new(input, field, vertices)?;
+    let logs = background.tensors(field).par_iter().map(|tensor| tensor.log()).collect();
+    Ok(background.sampled(swept(&background.around(), logs, sweeps)?, field))
+}
+
+/// Triangles on a surface, at whose vertices metrics are sampled.
+struct Background<'s> {
+    draped: Draped<'s>,
+    planes: Vec<TangentPlane>,
+    /// Pairs of vertices that share a position, where the surface was cut.
+    copies: Vec<[u32; 2]>,
+}
+
+impl<'s> Background<'s> {
+    /// Even in a metric, with so many vertices, and all that the surface has.
+    fn new(input: &'s Input, metric: &'s dyn SurfaceMetric, vertices: usize) -> Result<Self> {
+        let draped = even_on_surface(input, metric, vertices)?;
+        let t = draped.topology();
+        let slots = t.vertex_slots() as u32;
+        let planes = (0..slots).into_par_iter().map(|v| draped.plane(VertexId(v))).collect();
+        // Only what is cut has copies, and a cut is a border.
+        let border = t.vertices().filter(|&v| t.is_border_vertex(v)).map(|v| (v.0, draped.position(v)));
+        let copies = coincident(border);
+        Ok(Self { draped, planes, copies })
+    }
+
+    /// Which vertices share a triangle or a position.
+    fn around(&self) -> Neighbours {
+        Neighbours::of_triangles(self.planes.len(), self.triangles(), self.copies.iter().copied())
+    }
+
+    fn tensors(&self, field: &dyn SurfaceMetric) -> Vec<Tensor3> {
+        let slots = self.planes.len() as u32;
+        (0..slots).into_par_iter().map(|v| field.at(self.draped.place(VertexId(v)))).collect()
+    }
+
+    /// The field graded in tangent planes, by the law of [`crate::metric::nodal::grade`]: what a neighbour asks for comes with the
+    /// smallest rotation that takes its plane here. In the multiple that is asked for; what comes back is in the field's own units.
+    fn graded(&self, field: &dyn SurfaceMetric, factor: f64, at: GradedAt) -> Result<OnBackground> {
+        let tensors = self.tensors(field);
+        let flat: Vec<Tensor> = tensors.iter().zip(&self.planes).map(|(&m, plane)| plane.restrict(m)).collect();
+        let position = |v: u32| self.draped.position(VertexId(v));
+        let offset = |v: u32, w: u32| {
+            let way = position(w) - position(v);
+            let flat = self.planes[w as usize].flatten(way);
+            // As long as it is, for it goes along the surface.
+            if flat.norm() > 0.0 { flat * (way.norm() / flat.norm()) } else { Vector::new(way.norm(), 0.0) }
+        };
+        let turn = |v: u32, w: u32| {
+            let [from, to] = [v, w].map(|v| &self.planes[v as usize]);
+            // Opposite sides, as of the edge of a sheet, have no smallest rotation.
+            let is_opposite = from.normal.dot(to.normal) < -1.0 + OPPOSITE;
+            let x = if is_opposite { from.u } else { from.turned(to.normal).u };
+            let x = to.flatten(x);
+            if x.norm() > 0.0 { x * (1.0 / x.norm()) } else { Vector::new(1.0, 0.0) }
+        };
+        let law = Gradation::between_planes(self.around(), offset, turn, factor)?;
+        let at_scale = |scale: f64| -> Result<Vec<Tensor>> {
+            let mut graded: Vec<Tensor> = flat.iter().map(|&m| m * scale).collect();
+            law.apply(&mut graded, &Limits::default())?;
+            Ok(graded)
+        };
+        let (scale, graded) = self.at_complexity(&flat, at, at_scale)?;
+        let back = |(v, &m): (usize, &Tensor)| {
+            let m = m * (1.0 / scale);
+            if m == flat[v] { tensors[v].log() } else { self.planes[v].extend(m, m.eigen().large).log() }
+        };
+        let logs = graded.par_iter().enumerate().map(back).collect();
+        Ok(self.sampled(logs, field))
+    }
+
+    /// The scale at which what is graded has the complexity asked for, to a two hundredth, and what is graded there. The logarithm of
+    /// the complexity grows with that of the scale, and no faster: steps by what is missing come near from one side.
+    fn at_complexity(
+        &self,
+        flat: &[Tensor],
+        at: GradedAt,
+        graded: impl Fn(f64) -> Result<Vec<Tensor>>,
+    ) -> Result<(f64, Vec<Tensor>)> {
+        let target = match at {
+            GradedAt::Scale(scale) => return Ok((scale, graded(scale)?)),
+            GradedAt::Complexity(target) => target,
+        };
+        let mut scale = target / self.complexity(flat);
+        let mut best = graded(scale)?;
+        for _ in 0..STEPS {
+            let missing = target / self.complexity(&best);
+            if missing.ln().abs() < 5e-3 {
+                break;
+            }
+            scale *= missing;
+            best = graded(scale)?;
+        }
+        Ok((scale, best))
+    }
+
+    /// The integral of sqrt(det M) over the triangles.
+    fn complexity(&self, flat: &[Tensor]) -> f64 {
+        let of = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(|v| self.draped.position(VertexId(v)));
+            let densities = corners.map(|v| flat[v as usize].determinant().sqrt());
+            (b - a).cross(c - a).norm() * densities.iter().sum::<f64>() / 6.0
+        };
+        self.triangles().map(of).sum()
+    }
+
+    fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
+        let t = self.draped.topology();
+        t.faces().map(|f| t.corners(f).map(|v| v.0))
+    }
+
+    /// The field of these logarithms at the vertices.
+    fn sampled(&self, logs: Vec<Tensor3>, field: &dyn SurfaceMetric) -> OnBackground {
+        OnBackground::new(&self.draped, logs, field)
+    }
+}
+
+/// Linear between logarithms at the vertices of triangles on a surface.
+struct OnBackground {
+    logs: Vec<Tensor3>,
+    corners: Vec<[u32; 3]>,
+    positions: Vec<Point3>,
+    /// The triangles in each of the surface's own,
+    at_home: Rows<u32>,
+    /// in trees where they are many.
+    trees: BTreeMap<u32, Nearest>,
+    figures: Option<CurvatureFigures>,
+}
+
+/// More triangles are looked for in a tree.
+const FEW: usize = 8;
+
+impl OnBackground {
+    fn new(draped: &Draped, logs: Vec<Tensor3>, field: &dyn SurfaceMetric) -> Self {
+        let t = draped.topology();
+        let (faces, corners): (Vec<FaceId>, Vec<[u32; 3]>) = t.faces().map(|f| (f, t.corners(f).map(|v| v.0))).unzip();
+        let positions: Vec<Point3> = (0..logs.len() as u32).map(|v| draped.position(VertexId(v))).collect();
+        let homes = draped.input().surface.topology().face_slots();
+        let mut pairs: Vec<(u32, u32)> = faces.iter().zip(0..).map(|(&f, i)| (draped.home(f).0, i)).collect();
+        pairs.sort_unstable();
+        let at_home = Rows::new(homes, pairs.into_iter());
+        let many = (0..homes as u32).filter(|&home| at_home.row(home as usize).len() > FEW);
+        let tree = |home: u32| {
+            let triangles = at_home.row(home as usize).iter().map(|&i| corners[i as usize].map(|v| positions[v as usize]));
+            (home, Nearest::of(triangles))
+        };
+        let trees = many.map(tree).collect();
+        Self { logs, corners, positions, at_home, trees, figures: field.curvature_figures() }
+    }
+}
+
+impl SurfaceMetric for OnBackground {
+    fn at(&self, place: &Place) -> Tensor3 {
+        let row = self.at_home.row(place.face.index());
+        let found = match self.trees.get(&place.face.0) {
+            Some(tree) => tree.closest_of(place.position).map(|(k, weights)| (row[k as usize], weights)),
+            None => {
+                let at = |&i: &u32| {
+                    let corners = self.corners[i as usize].map(|v| self.positions[v as usize]);
+                    let weights = closest_weights(corners, place.position);
+                    (i, weights, Point3::weighted(corners, weights).distance(place.position))
+                };
+                row.iter().map(at).min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, weights, _)| (i, weights))
+            }
+        };
+        let Some((i, weights)) = found else { return Tensor3::IDENTITY * f64::NAN };
+        let weighted = self.corners[i as usize].iter().zip(weights).map(|(&v, weight)| self.logs[v as usize] * weight);
+        weighted.fold(Tensor3::default(), |sum, log| sum + log).exp()
+    }
+
+    fn curvature_figures(&self) -> Option<CurvatureFigures> {
+        self.figures
+    }
+}

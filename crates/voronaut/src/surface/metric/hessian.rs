@@ -1,0 +1,195 @@
+//! The metric of a function's second derivatives along a surface: known at every place, or recovered from values at vertices.
+
+use super::{Sampled, SurfaceMetric, fit_curvatures};
+use crate::error::{Error, Result};
+use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3, Vector3};
+use crate::metric::nodal::{absolute, size};
+use crate::metric::{Expression, Neighbours, Norm, hessian_around};
+use crate::parallel::prelude::*;
+use crate::surface::{Curvatures, Input, Place, Surface, curvatures};
+use crate::triangulation::{FaceId, VertexId};
+
+/// The metric in which a unit mesh of a surface has the least L^p error of linear interpolation of a function of space on it, as
+/// [`crate::metric::Hessian`] is of the plane: the absolute value of the function's second derivatives along geodesics,
+///
+/// > H(t, t) = t' D²u t + (grad u . n) II(t, t),
+///
+/// II(t, t) n the curvature of the geodesic along t: exact of an equation's surface, else fitted at vertices
+/// ([`fit_curvatures`]) and linear between them.
+pub(crate) struct CovariantHessian {
+    function: Expression,
+    bend: Bend,
+    norm: Norm,
+    floor: f64,
+}
+
+/// How a surface bends: II(t, t) = -t' S t, S the shape operator.
+enum Bend {
+    Equation(Expression),
+    /// S at vertex slots, and the corners of face slots.
+    Fitted(Vec<Tensor3>, Vec<[u32; 3]>),
+}
+
+/// The floor of absolute eigenvalues, as a share of their mean over the surface: as in the plane.
+const FLOOR: f64 = 1e-4;
+/// Places that the mean is taken over, at least.
+const PLACES: f64 = 20_000.0;
+
+impl CovariantHessian {
+    /// Of a function of x, y and z.
+    ///
+    /// # Errors
+    /// [`Error::Metric`] where a second derivative is not finite, or where all are zero.
+    pub(crate) fn new(function: &Expression, input: &Input, norm: Norm) -> Result<Self> {
+        let bend = match &input.implicit {
+            Some(f) => Bend::Equation(f.clone()),
+            None => Bend::fitted(&input.surface),
+        };
+        let mut made = Self { function: function.clone(), bend, norm, floor: 0.0 };
+        let mean = mean_over(&input.surface, |place| {
+            let greatest = size(made.second_derivatives(place).1);
+            if greatest.is_finite() { Ok(greatest) } else { Err(not_finite(place)) }
+        })?;
+        made.floor = FLOOR * mean;
+        if made.floor > 0.0 { Ok(made) } else { Err(vanishing()) }
+    }
+
+    /// The function along the surface.
+    fn second_derivatives(&self, place: &Place) -> (TangentPlane, Tensor) {
+        let jet = self.function.jet(place.position);
+        let (normal, shape) = self.bend.at(place);
+        let plane = TangentPlane::new(normal);
+        (plane, plane.restrict(jet.hessian + shape * -jet.gradient.dot(normal)))
+    }
+}
+
+impl SurfaceMetric for CovariantHessian {
+    fn at(&self, place: &Place) -> Tensor3 {
+        let (plane, hessian) = self.second_derivatives(place);
+        let wanted = self.norm.weighted(absolute(hessian, self.floor));
+        plane.extend(wanted, wanted.eigen().large)
+    }
+}
+
+impl Bend {
+    fn fitted(surface: &Surface) -> Self {
+        // Where nothing could be fitted the surface counts as flat.
+        let shapes = fit_curvatures(surface).into_iter().map(|fit| fit.map_or(Tensor3::default(), |c| shape(&c))).collect();
+        let t = surface.topology();
+        let corners = |f| t.is_face(FaceId(f)).then(|| t.corners(FaceId(f)).map(|v| v.0)).unwrap_or_default();
+        Self::Fitted(shapes, (0..t.face_slots() as u32).map(corners).collect())
+    }
+
+    /// The unit normal and the shape operator at a place.
+    fn at(&self, place: &Place) -> (Vector3, Tensor3) {
+        match self {
+            Self::Equation(f) => match curvatures(&f.jet(place.position)) {
+                Some(c) => (c.normal, shape(&c)),
+                None => (place.normal, Tensor3::IDENTITY * f64::NAN),
+            },
+            Self::Fitted(shapes, corners) => {
+                let weighted = corners[place.face.index()].iter().zip(place.weights);
+                let sum = weighted.fold(Tensor3::default(), |sum, (&v, weight)| sum + shapes[v as usize] * weight);
+                (place.normal, sum)
+            }
+        }
+    }
+}
+
+/// The shape operator.
+fn shape(c: &Curvatures) -> Tensor3 {
+    Tensor3::square(c.axes[0]) * c.values[0] + Tensor3::square(c.axes[1]) * c.values[1]
+}
+
+/// The mean of a number over a surface, at the middles of parts of its triangles.
+fn mean_over(surface: &Surface, value: impl Fn(&Place) -> Result<f64> + Sync) -> Result<f64> {
+    let faces: Vec<FaceId> = surface.topology().faces().collect();
+    let total: f64 = faces.iter().map(|&f| area(surface.triangle(f))).sum();
+    let of_face = |&f: &FaceId| {
+        let area = area(surface.triangle(f));
+        let parts = (area / total * PLACES).sqrt().ceil().max(1.0) as u32;
+        let step = 1.0 / f64::from(parts);
+        // Upright parts and, in the gaps between them, upside-down ones.
+        let middles = (0..parts).flat_map(|i| (0..parts - i).flat_map(move |j| [[i, j, 0], [i, j, 1]]));
+        let mut sum = 0.0;
+        for [i, j, k] in middles.filter(|&[i, j, k]| i + j + k < parts) {
+            let [s, t] = [i, j].map(|i| (f64::from(i) + f64::from(1 + k) / 3.0) * step);
+            sum += value(&surface.place(f, [1.0 - s - t, s, t]))?;
+        }
+        Ok(sum * area * step * step)
+    };
+    let sums = faces.par_iter().map(of_face).collect::<Result<Vec<f64>>>()?;
+    Ok(sums.iter().sum::<f64>() / total)
+}
+
+/// The metric of second derivatives recovered from values at the vertices that the surface has: around each a quadratic is fitted in
+/// its tangent plane, whose second derivatives in the middle are those along geodesics. Between vertices it is log-Euclidean.
+///
+/// Of vertices whose triangles turn away from each other no quadratic is made; these have the mean of their neighbours' logarithms.
+///
+/// # Errors
+/// [`Error::Metric`] unless there is one finite value for each vertex, and where all second derivatives vanish.
+pub(crate) fn recovered_on(input: &Input, values: &[f64], norm: Norm) -> Result<Sampled> {
+    let surface = &input.surface;
+    super::super::input::check_count(values.len(), surface.positions().len())?;
+    let t = surface.topology();
+    if let Some(v) = t.vertices().find(|v| !values[v.index()].is_finite()) {
+        let what = format!("the solution's value {} is not finite", values[v.index()]);
+        return Err(Error::metric(what, format!("vertex {} {}", v.0 + 1, surface.position(v)), "correct the solution"));
+    }
+    let normals: Vec<Option<Vector3>> = (0..values.len() as u32).map(|v| surface.vertex_normal(VertexId(v))).collect();
+    let around = Neighbours::of_triangles(values.len(), t.faces().map(|f| t.corners(f).map(|v| v.0)), []);
+    let recovered = |v: u32| {
+        let plane = TangentPlane::new(normals[v as usize]?);
+        let origin = surface.position(VertexId(v));
+        let offset = |w: u32| {
+            let is_this_side = normals[w as usize]?.dot(plane.normal) > FACING;
+            is_this_side.then(|| plane.flatten(surface.position(VertexId(w)) - origin))
+        };
+        Some((plane, hessian_around(&around, values, v, offset)?))
+    };
+    let found: Vec<Option<(TangentPlane, Tensor)>> = (0..values.len() as u32).into_par_iter().map(recovered).collect();
+    let mean = weighted_mean(surface, |v| found[v.index()].as_ref().map_or(0.0, |(_, hessian)| size(*hessian)));
+    let area = t.faces().map(|f| area(surface.triangle(f))).sum::<f64>();
+    let greatest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    // Second derivatives that rounding of the values alone could make up say nothing.
+    if mean <= 100.0 * f64::EPSILON * greatest * values.len() as f64 / area || FLOOR * mean == 0.0 {
+        return Err(vanishing());
+    }
+    let metric = |(plane, hessian): &(TangentPlane, Tensor)| {
+        let wanted = norm.weighted(absolute(*hessian, FLOOR * mean));
+        plane.extend(wanted, wanted.eigen().large)
+    };
+    let fits: Vec<Option<Tensor3>> = found.iter().map(|found| found.as_ref().map(metric)).collect();
+    let least = norm.weighted(Tensor::isotropic(1.0) * (FLOOR * mean));
+    Sampled::filled(surface, &fits, Tensor3::IDENTITY * least.xx)
+}
+
+/// Vertices whose normals are more than 60 degrees from one's own are of another side.
+const FACING: f64 = 0.5;
+
+/// The mean over the area of what is linear on every triangle.
+fn weighted_mean(surface: &Surface, value: impl Fn(VertexId) -> f64) -> f64 {
+    let t = surface.topology();
+    let (mut sum, mut total) = (0.0, 0.0);
+    for f in t.faces() {
+        let area = area(surface.triangle(f));
+        sum += area * t.corners(f).map(&value).iter().sum::<f64>() / 3.0;
+        total += area;
+    }
+    sum / total
+}
+
+fn area([a, b, c]: [Point3; 3]) -> f64 {
+    0.5 * (b - a).cross(c - a).norm()
+}
+
+fn not_finite(place: &Place) -> Error {
+    let help = "give a function with two derivatives on the whole surface";
+    Error::metric("the function's second derivatives are not finite", place.position.to_string(), help)
+}
+
+fn vanishing() -> Error {
+    let help = "its interpolation is exact on any mesh: use another metric, such as uniform or curvature";
+    Error::metric("the function's second derivatives vanish everywhere", "the whole surface", help)
+}
