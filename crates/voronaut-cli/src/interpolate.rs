@@ -14,7 +14,7 @@ use voronaut::{Error, Result};
 use voronaut_io::{Document, Seconds};
 
 pub(crate) const EXAMPLES: &str = "\
-OLD and NEW are planar meshes of one domain: in files .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl. FIELD is a .sol or .solb with any number of scalars, vectors and tensors,
+OLD and NEW are meshes of one planar domain or one surface: in files .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl. FIELD is a .sol or .solb with any number of scalars, vectors and tensors,
 at the vertices of OLD (SolAtVertices, linear between them) or on its triangles (SolAtTriangles); all of them are carried.
 
 Without --conservative a vertex gets the value of the old field there, a triangle that of the old triangle below its centroid. With
@@ -55,7 +55,7 @@ pub(crate) struct InterpolateArgs {
 pub(crate) fn run(args: &InterpolateArgs, world: &World) -> Result<()> {
     let mut stages = Stages::start();
     world.file(&args.out).map(|out| files::demand_solution(out, &args.run)).transpose()?;
-    let (old, new) = (planar(world, &args.old, args.run.quiet)?, planar(world, &args.new, args.run.quiet)?);
+    let (old, new) = (read(world, &args.old, args.run.quiet)?, read(world, &args.new, args.run.quiet)?);
     let given = world.solutions(&args.field)?;
     demand_counts(args, &given, &old, &new)?;
     stages.end("read");
@@ -71,14 +71,10 @@ pub(crate) fn run(args: &InterpolateArgs, world: &World) -> Result<()> {
     Ok(())
 }
 
-fn planar(world: &World, path: &Path, is_quiet: bool) -> Result<Mesh> {
+fn read(world: &World, path: &Path, is_quiet: bool) -> Result<Mesh> {
     let Document { mesh, notes, .. } = world.document(path)?;
     crate::summary::notes(&notes, is_quiet);
-    if mesh.is_planar() {
-        return Ok(mesh);
-    }
-    let what = format!("interpolate on a surface ({})", path.display());
-    Err(Error::unsupported(what, "give planar meshes: Dimension 2, or z = 0 at every vertex"))
+    Ok(mesh)
 }
 
 fn demand_counts(args: &InterpolateArgs, given: &Solutions, old: &Mesh, new: &Mesh) -> Result<()> {
@@ -155,7 +151,7 @@ impl Told<'_> {
 
     fn field(&self, carried: &Carried) -> Value {
         let extents = |all: &[Extent]| match carried.field.kind {
-            Kind::Metric => all.iter().map(|extent| json!({ "min": extent.min, "max": extent.max })).collect(),
+            Kind::Metric | Kind::SpaceMetric => all.iter().map(|extent| json!({ "min": extent.min, "max": extent.max })).collect(),
             Kind::Linear(_) => json!(all),
         };
         json!({
@@ -166,7 +162,7 @@ impl Told<'_> {
 
     fn kind(&self, carried: &Carried) -> &'static str {
         match carried.field.kind {
-            Kind::Metric => "metric",
+            Kind::Metric | Kind::SpaceMetric => "metric",
             Kind::Linear(1) => "scalar",
             Kind::Linear(components) if components == self.dimension => "vector",
             Kind::Linear(_) => "tensor",
@@ -185,7 +181,7 @@ fn line(carried: &Carried, before: &Extent, after: &Extent) -> String {
     let range = |extent: &Extent| format!("{:.6} to {:.6}", extent.min, extent.max);
     let ranges = format!("{} -> {}", range(before), range(after));
     match carried.field.kind {
-        Kind::Metric => ranges,
+        Kind::Metric | Kind::SpaceMetric => ranges,
         Kind::Linear(_) => format!("{ranges}   mass {:.12e} -> {:.12e}", before.mass, after.mass),
     }
 }

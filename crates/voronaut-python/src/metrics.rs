@@ -130,8 +130,7 @@ impl HeldMetric for Metric {
         match self {
             Self::Text(text) => surface_metric(&of_space(text), input, options, TensorOrder::default(), at),
             Self::Values(_, values) => made(SurfaceSource::Values(&solution(values))),
-            Self::Solution(_, SolutionValues::Scalar(values)) => made(SurfaceSource::Function(values)),
-            Self::Solution(_, values) => made(SurfaceSource::Values(&solution(values))),
+            Self::Solution(mesh, values) => made(SurfaceSource::Solution(mesh, values)),
             Self::Function(function, course) => made(SurfaceSource::Samples(Box::new(|points| {
                 let flat: Vec<f64> = points.iter().flat_map(|p| p.to_array()).collect();
                 called(function, course, &flat, 3)

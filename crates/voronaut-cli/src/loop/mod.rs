@@ -13,15 +13,15 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use voronaut::mesh::Solutions;
 use voronaut::metric::{Expression, Variables};
-use voronaut::quality::validity;
-use voronaut::recipe::{self, Effort, LoopOptions, MeshOptions, Source, Step};
-use voronaut::surface::RepairOptions;
+use voronaut::quality::{Meetings, validity, validity_on};
+use voronaut::recipe::{self, Effort, Ground, Idle, LoopOptions, MeshOptions, Origin, Source, Step, Task};
+use voronaut::surface::{FeatureOptions, RepairOptions};
 use voronaut::transfer::{Carried, Extent, Kind, Overshoot, TransferOptions};
 use voronaut::{Error, Result};
 use voronaut_io::{Format, Given};
 
 pub(crate) const EXAMPLES: &str = "\
-With --metric hessian:EXPR, a function of x, y and t, each mesh is made for the function at one time, exactly; times go evenly from
+With --metric hessian:EXPR, a function of x, y and t (on a surface of x, y, z and t), each mesh is made for the function at one time, exactly; times go evenly from
 that of the first mesh to that of the last (--time). The .sol has the
 function's values, and the solution of the first mesh as it was carried through all meshes since.
 
@@ -39,9 +39,9 @@ Examples:
 
 #[derive(Debug, Args)]
 pub(crate) struct LoopArgs {
-    /// The planar domain: a file or a shape, as for `mesh`
+    /// The planar domain or the surface: a file or a shape, as for `mesh`
     pub(crate) domain: String,
-    /// What the mesh is for: hessian:EXPR in x, y and t
+    /// What the mesh is for: hessian:EXPR in x, y and t, on a surface in x, y, z and t
     #[arg(long, required_unless_present = "solver", conflicts_with = "solver")]
     pub(crate) metric: Option<String>,
     /// The solver: a command with {mesh}, {start}, {out} and {step} (see below)
@@ -135,17 +135,21 @@ pub(crate) fn run(args: &LoopArgs) -> Result<()> {
     let start = Instant::now();
     demand_writable(args)?;
     args.metric_choices.bounds().check()?;
-    let domain = match Given::read(&args.domain, RepairOptions::default())?.0 {
-        Given::Plane(domain) => domain,
-        Given::Surface(_) => {
-            let help = "give a planar domain: Dimension 2, or a shape such as rect:0,0,1,1";
-            return refuse([(true, "a loop on a surface", help)]);
-        }
+    let given = match Given::read(&args.domain, RepairOptions::default())?.0 {
+        Given::Surface(input) => Given::Surface(input.cut(&FeatureOptions::default())?),
+        plane => plane,
     };
+    let (ground, meetings) = match &given {
+        Given::Plane(domain) => (Ground::Plane(domain), None),
+        Given::Surface(input) => (Ground::Surface(input), Some(Meetings::of(input.whole_mesh()))),
+    };
+    let options = args.options();
+    demand_idle(args, &options, meetings.is_some())?;
     let bar = Bar::new(&args.run);
     let mut told = Told::new(args, start);
     let mut each = |step: &Step| {
-        let found = validity(&step.meshed.mesh);
+        let mesh = &step.meshed.mesh;
+        let found = meetings.as_ref().map_or_else(|| validity(mesh), |meetings| validity_on(mesh, meetings));
         found.demand().map_err(ours)?;
         told.add(step, found.area);
         if args.every {
@@ -156,29 +160,40 @@ pub(crate) fn run(args: &LoopArgs) -> Result<()> {
         }
         Ok(())
     };
-    let options = args.options();
     if let Some(command) = &args.solver {
         let shell = Shell::new(command)?;
         let mut solve = |number: usize, mesh: &_, start: Option<&Solutions>| shell.solve(number, mesh, start);
-        recipe::adapt(&domain, Source::Solver(&mut solve), &options, &bar, &mut each)?;
+        recipe::adapt(ground, Source::Solver(&mut solve), &options, &bar, &mut each)?;
     } else {
-        let source = Source::Formula(function(args)?, args.time);
-        recipe::adapt(&domain, source, &options, &bar, &mut each)?;
+        let variables = if meetings.is_some() { Variables::SpaceMotion } else { Variables::Motion };
+        let source = Source::Formula(function(args, variables)?, args.time);
+        recipe::adapt(ground, source, &options, &bar, &mut each)?;
     }
     drop(bar);
     args.run.write_report(&format!("{:#}\n", told.report()))
 }
 
+/// Refuses options that have no say.
+fn demand_idle(args: &LoopArgs, options: &LoopOptions, on_surface: bool) -> Result<()> {
+    if !on_surface {
+        return Ok(());
+    }
+    let origin = if args.solver.is_some() { Origin::Values } else { Origin::Function };
+    let task = Task { on_surface, origin, ..Task::default() };
+    let idle = [options.mesh.idle(task), options.metric.idle(task)].concat();
+    idle.iter().try_for_each(Idle::demand_unset)
+}
+
 /// The function that is followed.
-fn function(args: &LoopArgs) -> Result<Expression> {
+fn function(args: &LoopArgs, variables: Variables) -> Result<Expression> {
     let text = args.metric.as_deref().unwrap_or_default().trim();
     match text.strip_prefix("hessian:") {
         Some(function) if !function.trim().to_ascii_lowercase().ends_with(".sol") => {
-            Expression::parse(function, Variables::Motion)
+            Expression::parse(function, variables)
         }
         _ => {
             let help =
-                "write hessian:EXPR, a function of x, y and t, or give a --solver; for one mesh use voronaut mesh";
+                "write hessian:EXPR, a function of x, y and t (on a surface of x, y, z and t), or give a --solver; for one mesh use voronaut mesh";
             Err(Error::parse("metric", format!("`{text}` changes with nothing"), help))
         }
     }
@@ -275,6 +290,6 @@ fn drift(carried: &[Carried], area: f64) -> f64 {
         let scale = before.max.abs().max(before.min.abs()) * area;
         if scale > 0.0 { (after.mass - before.mass).abs() / scale } else { 0.0 }
     };
-    let densities = carried.iter().filter(|carried| carried.field.kind != Kind::Metric);
+    let densities = carried.iter().filter(|carried| matches!(carried.field.kind, Kind::Linear(_)));
     densities.flat_map(|carried| carried.before.iter().zip(&carried.after)).map(of).fold(0.0, f64::max)
 }

@@ -70,6 +70,19 @@ impl Locator {
     /// # Errors
     /// As for [`Locator::new`].
     pub(crate) fn check(mesh: &Mesh, name: &str) -> Result<()> {
+        if let Some(i) = mesh.points.iter().position(|p| p[2] != 0.0 && p[2].is_finite()) {
+            let (what, place) =
+                (format!("z = {} is not zero", mesh.points[i][2]), format!("{} of {name}", mesh.describe(i)));
+            return Err(Error::domain(what, place, "the mesh must lie in the plane z = 0"));
+        }
+        Self::check_numbers(mesh, name)
+    }
+
+    /// Whether a mesh of a surface is finite and has triangles of vertices that exist.
+    ///
+    /// # Errors
+    /// As for [`Locator::new`].
+    pub(crate) fn check_numbers(mesh: &Mesh, name: &str) -> Result<()> {
         if mesh.triangles.is_empty() {
             return Err(Error::domain(
                 "no triangles",
@@ -80,11 +93,6 @@ impl Locator {
         if let Some(i) = mesh.points.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
             let place = format!("{} of {name}", mesh.describe(i));
             return Err(Error::domain("a coordinate is not finite", place, "correct the mesh"));
-        }
-        if let Some(i) = mesh.points.iter().position(|p| p[2] != 0.0) {
-            let (what, place) =
-                (format!("z = {} is not zero", mesh.points[i][2]), format!("{} of {name}", mesh.describe(i)));
-            return Err(Error::domain(what, place, "the mesh must lie in the plane z = 0"));
         }
         let count = mesh.points.len();
         if let Some(i) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= count)) {

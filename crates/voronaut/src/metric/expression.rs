@@ -22,6 +22,8 @@ use crate::geometry::{Jet3, Point3};
 #[derive(Clone, Debug)]
 pub struct Expression {
     code: Vec<Op>,
+    /// The value of t, in expressions of space that change.
+    time: f64,
 }
 
 impl Expression {
@@ -40,18 +42,25 @@ impl Expression {
         variables: Variables,
         name: &str,
     ) -> Result<Self> {
-        Ok(Self { code: Parser::new(text, range, variables, name).parse()? })
+        Ok(Self { code: Parser::new(text, range, variables, name).parse()?, time: 0.0 })
+    }
+
+    /// The same at another time, of [`Variables::SpaceMotion`].
+    #[must_use]
+    pub(crate) fn at_time(&self, time: f64) -> Self {
+        Self { time, ..self.clone() }
     }
 
     /// The value at a point; z is not used by expressions of the plane, and is the time of those with one.
     pub(crate) fn at(&self, x: f64, y: f64, z: f64) -> f64 {
-        run(&self.code, [x, y, z])
+        run(&self.code, [x, y, z, self.time])
     }
 
     /// The value at a point with its first and second derivatives, exact but for rounding. Where an expression jumps or
     /// has a kink (comparisons, `if`, `abs`, `min`, `max`) they are those of one side.
     pub(crate) fn jet(&self, p: Point3) -> Jet3 {
-        run(&self.code, Jet3::coordinates(p.x, p.y, p.z))
+        let [x, y, z] = Jet3::coordinates(p.x, p.y, p.z);
+        run(&self.code, [x, y, z, self.time.into()])
     }
 }
 

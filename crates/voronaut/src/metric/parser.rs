@@ -126,7 +126,8 @@ impl<'a> Parser<'a> {
         let op = match (name, self.variables) {
             ("x", _) => Op::Variable(0),
             ("y", _) => Op::Variable(1),
-            ("z", Variables::Space) | ("t", Variables::Motion) => Op::Variable(2),
+            ("z", Variables::Space | Variables::SpaceMotion) | ("t", Variables::Motion) => Op::Variable(2),
+            ("t", Variables::SpaceMotion) => Op::Variable(3),
             ("z", _) => {
                 let help = if self.variables == Variables::Motion { "use x, y and t" } else { "use x and y" };
                 return Err(self.error("z is not a variable in the plane", help));
@@ -145,6 +146,7 @@ impl<'a> Parser<'a> {
             Variables::Plane => "x y",
             Variables::Space => "x y z",
             Variables::Motion => "x y t",
+            Variables::SpaceMotion => "x y z t",
         };
         let functions: Vec<&str> = FUNCTIONS.iter().map(|(f, _)| *f).collect();
         let help = format!("variables: {variables}; constants: pi e; functions: {}", functions.join(" "));
@@ -265,7 +267,7 @@ impl<'a> Parser<'a> {
 fn fold(op: Op, operands: usize, code: &[Op]) -> Option<(usize, Op)> {
     let taken = &code[code.len().checked_sub(operands)?..];
     if operands > 0 && taken.iter().all(|op| matches!(op, Op::Constant(_))) {
-        return Some((operands, Op::Constant(run(&[taken, &[op]].concat(), [0.0; 3]))));
+        return Some((operands, Op::Constant(run(&[taken, &[op]].concat(), [0.0; 4]))));
     }
     match (op, code) {
         (Op::Power, [.., Op::Constant(2.0)]) => Some((1, Op::Square)),

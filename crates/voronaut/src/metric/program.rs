@@ -130,7 +130,7 @@ impl Op {
 }
 
 /// What a program makes of its variables.
-pub(super) fn run<N: Number>(code: &[Op], variables: [N; 3]) -> N {
+pub(super) fn run<N: Number>(code: &[Op], variables: [N; 4]) -> N {
     // The last value is kept out of the stack: most operations then touch it once or not at all.
     let mut stack = [N::from(0.0); STACK];
     let mut top = 0;

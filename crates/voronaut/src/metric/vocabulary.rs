@@ -94,4 +94,6 @@ pub enum Variables {
     Space,
     /// x, y and the time t, which takes the place of z.
     Motion,
+    /// x, y, z and the time t.
+    SpaceMotion,
 }

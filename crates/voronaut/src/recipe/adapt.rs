@@ -1,13 +1,16 @@
 //! The mesh adapted to a solution, again and again: solve, recover, mesh, carry over.
 
 use super::{
-    GradedAt, MeshOptions, Meshed, MetricOptions, PlanarMetric, mesh_for, metric_of_function, metric_of_solution,
+    GradedAt, MeshOptions, Meshed, MetricOptions, PlanarMetric, SurfaceSource, mesh_for, mesh_surface, metric_of_function,
+    metric_of_solution, metric_on_surface,
 };
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geometry::Point;
 use crate::mesh::{Mesh, SolutionValues, Solutions};
 use crate::metric::{Expression, ScalarField, Snapshot, Uniform};
+use crate::surface::Input;
+use crate::surface::metric::Spec;
 use crate::progress::Progress;
 use crate::transfer::{Carried, Cover, TransferOptions, carry};
 use std::collections::BTreeSet;
@@ -30,9 +33,18 @@ pub struct LoopOptions {
 /// A user's solver: from the number of the step, a mesh and solutions there to start from (`None` at first) to solutions there.
 pub(crate) type Solver<'a> = dyn FnMut(usize, &Mesh, Option<&Solutions>) -> Result<Solutions> + 'a;
 
+/// What the meshes are of.
+#[derive(Clone, Copy, Debug)]
+pub enum Ground<'a> {
+    /// A planar domain.
+    Plane(&'a Domain),
+    /// A surface, cut open along the features that are to be kept.
+    Surface(&'a Input),
+}
+
 /// What the meshes are for.
 pub enum Source<'a> {
-    /// A function of x, y and t, known exactly; t goes evenly from the first time, for the first mesh, to the last.
+    /// A function of x, y and t, on a surface of x, y, z and t, known exactly; t goes evenly from the first time, for the first mesh, to the last.
     Formula(Expression, [f64; 2]),
     /// What a solver finds on each mesh, starting from an even one.
     Solver(&'a mut Solver<'a>),
@@ -55,21 +67,21 @@ pub struct Step {
     pub boundary_vertices: usize,
 }
 
-/// Adapts the mesh of a domain so many times, and calls `each` with every step.
+/// Adapts the mesh of a domain or a surface so many times, and calls `each` with every step.
 ///
 /// Every mesh is made from the domain itself, whose corners, labels and features it keeps; vertices in the middle of straight runs
 /// of one label are placed anew each time, so that their number follows the metric and does not grow with the steps.
 ///
 /// # Errors
-/// Those of the solver, of `each`, of meshing ([`mesh_for`]), recovery and transfer ([`carry`]), with the number of the step.
+/// Those of the solver, of `each`, of meshing ([`mesh_for`], [`mesh_surface`]), recovery and transfer ([`carry`]), with the number of the step.
 pub fn adapt(
-    domain: &Domain,
+    ground: Ground,
     source: Source,
     options: &LoopOptions,
     progress: &dyn Progress,
     each: &mut dyn FnMut(&Step) -> Result<()>,
 ) -> Result<()> {
-    let work = Work { domain, options, progress };
+    let work = Work { ground, options, progress };
     match source {
         Source::Formula(function, times) => work.follow(&function, times, each),
         Source::Solver(solver) => work.solve(solver, each),
@@ -77,7 +89,7 @@ pub fn adapt(
 }
 
 struct Work<'a> {
-    domain: &'a Domain,
+    ground: Ground<'a>,
     options: &'a LoopOptions,
     progress: &'a dyn Progress,
 }
@@ -94,36 +106,29 @@ impl Work<'_> {
         for number in 1..=steps {
             let share = (number - 1) as f64 / (steps.max(2) - 1) as f64;
             let time = first + share * (last - first);
-            let now = Snapshot { expression: function.clone(), time };
-            let metric = metric_of_function(&now, self.domain, &self.options.metric, self.graded_at())?;
-            let meshed = self.mesh(&metric)?;
-            let point = |&[x, y, _]: &[f64; 3]| Point::new(x, y);
-            let values: Vec<f64> = meshed.mesh.points.iter().map(|p| now.value(point(p))).collect();
-            let carried =
-                before.take().map(|(mesh, values)| self.carry(&mesh, &meshed.mesh, &of(values))).transpose()?;
+            let (meshed, values) = self.at_time(function, time)?;
+            let carry = |(mesh, values)| self.carry(&mesh, &meshed.mesh, &self.solutions(vec![values]));
+            let carried = before.take().map(carry).transpose()?;
             let values = SolutionValues::Scalar(values);
             let (along, transfer) = match carried {
                 Some((mut solutions, transfer)) => (solutions.vertices.swap_remove(0), Some(transfer)),
                 None => (values.clone(), None),
             };
             before = Some((meshed.mesh.clone(), along.clone()));
-            let solutions = Solutions { dimension: 2, vertices: vec![values, along], triangles: Vec::new() };
+            let solutions = self.solutions(vec![values, along]);
             each(&Step::new(number, Some(time), meshed, solutions, transfer))?;
         }
         Ok(())
     }
 
     fn solve(&self, solver: &mut Solver, each: &mut dyn FnMut(&Step) -> Result<()>) -> Result<()> {
-        let even = PlanarMetric::plain(Uniform::default());
-        let nothing = Solutions { dimension: 2, ..Solutions::default() };
-        let mut step = Step::new(0, None, self.mesh(&even)?, nothing, None);
+        let mut step = Step::new(0, None, self.even()?, self.solutions(Vec::new()), None);
         each(&step)?;
         for number in 1..=self.options.iterations {
             let mesh = &step.meshed.mesh;
             let found = solver(number, mesh, Some(&step.solutions).filter(|_| number > 1))?;
             let values = self.chosen(&found)?;
-            let metric = metric_of_solution(mesh, values, self.domain, &self.options.metric, self.graded_at())?;
-            let meshed = self.mesh(&metric)?;
+            let meshed = self.for_solution(mesh, values)?;
             let (solutions, transfer) = self.carry(mesh, &meshed.mesh, &found)?;
             step = Step::new(number, None, meshed, solutions, Some(transfer));
             each(&step)?;
@@ -135,9 +140,56 @@ impl Work<'_> {
         GradedAt::of(self.options.mesh.vertices, self.options.mesh.complexity)
     }
 
-    fn mesh(&self, metric: &PlanarMetric) -> Result<Meshed> {
+    /// The mesh for a function at one time, and its values there.
+    fn at_time(&self, function: &Expression, time: f64) -> Result<(Meshed, Vec<f64>)> {
+        match self.ground {
+            Ground::Plane(domain) => {
+                let now = Snapshot { expression: function.clone(), time };
+                let metric = metric_of_function(&now, domain, &self.options.metric, self.graded_at())?;
+                let meshed = self.in_plane(domain, &metric)?;
+                let value = |&[x, y, _]: &[f64; 3]| now.value(Point::new(x, y));
+                let values = meshed.mesh.points.iter().map(value).collect();
+                Ok((meshed, values))
+            }
+            Ground::Surface(input) => {
+                let now = function.at_time(time);
+                let meshed = self.on_surface(input, SurfaceSource::Named(&Spec::Hessian(now.clone())))?;
+                let values = meshed.mesh.points.iter().map(|&[x, y, z]| now.at(x, y, z)).collect();
+                Ok((meshed, values))
+            }
+        }
+    }
+
+    fn even(&self) -> Result<Meshed> {
+        match self.ground {
+            Ground::Plane(domain) => self.in_plane(domain, &PlanarMetric::plain(Uniform::default())),
+            Ground::Surface(input) => self.on_surface(input, SurfaceSource::Named(&Spec::Uniform)),
+        }
+    }
+
+    fn for_solution(&self, mesh: &Mesh, values: &SolutionValues) -> Result<Meshed> {
+        match self.ground {
+            Ground::Plane(domain) => {
+                let metric = metric_of_solution(mesh, values, domain, &self.options.metric, self.graded_at())?;
+                self.in_plane(domain, &metric)
+            }
+            Ground::Surface(input) => self.on_surface(input, SurfaceSource::Solution(mesh, values)),
+        }
+    }
+
+    fn in_plane(&self, domain: &Domain, metric: &PlanarMetric) -> Result<Meshed> {
         let aim = metric.aim(self.options.metric.norm);
-        mesh_for(self.domain, metric.field.as_ref(), aim, &self.options.mesh, self.progress)
+        mesh_for(domain, metric.field.as_ref(), aim, &self.options.mesh, self.progress)
+    }
+
+    fn on_surface(&self, input: &Input, source: SurfaceSource) -> Result<Meshed> {
+        let metric = metric_on_surface(source, input, &self.options.metric, self.graded_at())?;
+        mesh_surface(input, metric.as_ref(), &self.options.mesh, self.progress)
+    }
+
+    fn solutions(&self, vertices: Vec<SolutionValues>) -> Solutions {
+        let dimension = if matches!(self.ground, Ground::Plane(_)) { 2 } else { 3 };
+        Solutions { dimension, vertices, triangles: Vec::new() }
     }
 
     fn carry(&self, old: &Mesh, new: &Mesh, solutions: &Solutions) -> Result<(Solutions, (Vec<Carried>, Cover))> {
@@ -155,10 +207,6 @@ impl Work<'_> {
             Error::parse("the solver's file", what, "choose another `field`, or write it in SolAtVertices")
         })
     }
-}
-
-fn of(values: SolutionValues) -> Solutions {
-    Solutions { dimension: 2, vertices: vec![values], triangles: Vec::new() }
 }
 
 impl Step {

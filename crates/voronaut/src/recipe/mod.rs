@@ -15,7 +15,7 @@ mod settle;
 mod surface_field;
 mod surface_pass;
 
-pub use adapt::{LoopOptions, Source, Step, adapt};
+pub use adapt::{Ground, LoopOptions, Source, Step, adapt};
 pub use certified::certified_canvas;
 pub use dual::{SeedDual, dual, net, surface_dual, surface_mesh};
 pub use field::{

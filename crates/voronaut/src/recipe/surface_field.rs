@@ -6,14 +6,14 @@ use crate::canvas::{Draped, area_of_surface, even_on_surface};
 use crate::error::Result;
 use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3, Vector};
 use crate::lists::Rows;
-use crate::mesh::{Solution, SolutionValues, coincident};
+use crate::mesh::{Mesh, Solution, SolutionValues, coincident};
 use crate::metric::nodal::{Gradation, Limits};
 use crate::metric::{Bounds, Neighbours, swept};
 use crate::parallel::prelude::*;
 use crate::surface::metric::{
     CovariantHessian, CurvatureFigures, Sampled, Spec, SurfaceMetric, field, field_of_values, recovered_on, within,
 };
-use crate::surface::{Input, Nearest, Place, closest_weights};
+use crate::surface::{FeatureOptions, Input, Nearest, Place, Surface, closest_weights};
 use crate::triangulation::{FaceId, VertexId};
 use std::collections::BTreeMap;
 
@@ -33,6 +33,8 @@ pub enum SurfaceSource<'a> {
     Values(&'a Solution),
     /// A function's values there, whose interpolation the mesh is for.
     Function(&'a [f64]),
+    /// What a solver finds at the vertices of a mesh of the surface: a function's values, or tensors.
+    Solution(&'a Mesh, &'a SolutionValues),
     /// A function that takes many points at once, and gives sizes or tensors.
     Samples(Box<dyn FnOnce(&[Point3]) -> Result<SolutionValues> + 'a>),
 }
@@ -50,7 +52,7 @@ pub fn metric_on_surface(
     at: GradedAt,
 ) -> Result<Box<dyn SurfaceMetric>> {
     options.bounds.check()?;
-    let has_vertices = !matches!(source, SurfaceSource::Named(_));
+    let has_vertices = !matches!(source, SurfaceSource::Named(_) | SurfaceSource::Solution(..));
     let (field, scale) = named(source, input, options, at)?;
     let unit = scale.sqrt();
     let bounds = Bounds {
@@ -94,10 +96,46 @@ fn named(
             let sampled = values(3, sample(input.surface.positions())?);
             plain(Box::new(Sampled::from_solution(&input.surface, &sampled)?))
         }
-        SurfaceSource::Function(given) => {
-            let spread = input.spread(&values(3, SolutionValues::Scalar(given.to_vec())))?;
-            let SolutionValues::Scalar(spread) = spread.values else { unreachable!("as many values as before") };
-            within_surface(Box::new(recovered_on(input, &spread, options.norm)?), input, at)
+        SurfaceSource::Function(given) => within_surface(Box::new(recovered(given, input, options)?), input, at),
+        SurfaceSource::Solution(mesh, given) => {
+            let own = Input::new(Surface::new(mesh)?, None).cut(&FeatureOptions::default())?;
+            match given {
+                SolutionValues::Scalar(given) => {
+                    let field = Elsewhere::new(recovered(given, &own, options)?, own);
+                    within_surface(Box::new(field), input, at)
+                }
+                _ => plain(Box::new(Elsewhere::new(field_of_values(&values(3, given.clone()), &own)?, own))),
+            }
+        }
+    }
+}
+
+/// The metric of second derivatives recovered from values at the vertices that a surface had before it was cut.
+fn recovered(given: &[f64], input: &Input, options: &MetricOptions) -> Result<Sampled> {
+    let spread = input.spread(&Solution { dimension: 3, values: SolutionValues::Scalar(given.to_vec()) })?;
+    let SolutionValues::Scalar(spread) = spread.values else { unreachable!("of the type that was given") };
+    recovered_on(input, &spread, options.norm)
+}
+
+/// A field on another triangulation of the surface, at the closest place there that faces the same way.
+struct Elsewhere {
+    field: Sampled,
+    surface: Surface,
+    nearest: Nearest,
+}
+
+impl Elsewhere {
+    fn new(field: Sampled, input: Input) -> Self {
+        let nearest = Nearest::new(&input.surface);
+        Self { field, surface: input.surface, nearest }
+    }
+}
+
+impl SurfaceMetric for Elsewhere {
+    fn at(&self, place: &Place) -> Tensor3 {
+        match self.nearest.closest_facing(&self.surface, place.position, place.normal) {
+            Some(there) => self.field.at(&there),
+            None => Tensor3::IDENTITY * f64::NAN,
         }
     }
 }

@@ -40,6 +40,7 @@ pub use features::{Curve, CurveEdge, Curves, FeatureOptions, Mark};
 pub use implicit::{Curvatures, Implicit};
 pub(crate) use implicit::{closest_zero, curvatures, project};
 pub use input::Input;
+pub(crate) use input::OFF_SURFACE;
 pub(crate) use march::mesh_implicit;
 pub use measure::Component;
 pub(crate) use nearest::{Nearest, closest_weights};

@@ -1,7 +1,7 @@
 //! The closest point of a surface.
 
 use super::{Place, Surface};
-use crate::geometry::{Aabb3, BoxTree, Point3};
+use crate::geometry::{Aabb3, BoxTree, Point3, Vector3};
 use crate::triangulation::FaceId;
 
 /// The triangles of a surface in a tree of boxes: one search costs about the logarithm of their number.
@@ -58,6 +58,18 @@ impl Nearest {
         let found = self.nearest(p)?;
         let place = surface.place(found.face, closest_weights(found.corners, p));
         Some(Closest { place, distance: place.position.distance(p) })
+    }
+
+    /// The place that is closest to a finite point, of triangles that face the way of a normal; of all where none does.
+    pub(crate) fn closest_facing(&self, surface: &Surface, p: Point3, normal: Vector3) -> Option<Place> {
+        let is_facing = |[a, b, c]: [Point3; 3]| (b - a).cross(c - a).dot(normal) > 0.0;
+        let square = |t: &Triangle| {
+            let offset = Point3::weighted(t.corners, closest_weights(t.corners, p)) - p;
+            if is_facing(t.corners) { offset.dot(offset) } else { f64::INFINITY }
+        };
+        let found = self.tree.nearest(p.to_array(), square).filter(|found| is_facing(found.corners));
+        let found = found.or_else(|| self.nearest(p))?;
+        Some(surface.place(found.face, closest_weights(found.corners, p)))
     }
 
     /// The number of the closest triangle, of those put in, and the weights of its closest point. `None` as of [`Nearest::distance`].

@@ -1,7 +1,7 @@
 //! How well the old mesh covers the new one.
 
 use crate::error::{Error, Result};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb3, Point, Point3, Vector3};
 use crate::mesh::Mesh;
 use serde::Serialize;
 
@@ -37,15 +37,21 @@ const OVERHANG: f64 = 0.05;
 pub(super) fn demand_extent(old: &Mesh, new: &Mesh) -> Result<()> {
     let of = |mesh: &Mesh| {
         let used = mesh.triangles.as_flattened().iter();
-        Aabb::of(used.map(|&v| mesh.point(v)))
+        Aabb3::of(used.map(|&v| mesh.position(v)))
     };
     let (Some(cover), Some(bounds)) = (of(old), of(new)) else { return Ok(()) };
-    let (allowed, lower, upper) = (cover.extent() * OVERHANG, cover.min - bounds.min, bounds.max - cover.max);
-    if lower.x.max(upper.x) <= allowed.x && lower.y.max(upper.y) <= allowed.y {
+    let (mut allowed, lower, upper) = (cover.extent() * OVERHANG, cover.min - bounds.min, bounds.max - cover.max);
+    if !old.is_planar() {
+        // A surface may be as flat as a plane that is tilted.
+        let most = allowed.x.max(allowed.y).max(allowed.z);
+        allowed = Vector3::new(most, most, most);
+    }
+    if lower.x.max(upper.x) <= allowed.x && lower.y.max(upper.y) <= allowed.y && lower.z.max(upper.z) <= allowed.z {
         return Ok(());
     }
-    let what = format!("the new mesh ({} to {}) reaches beyond the old one", bounds.min, bounds.max);
-    let place = format!("the old mesh ({} to {})", cover.min, cover.max);
+    let corner = |p: Point3| if old.is_planar() { Point::new(p.x, p.y).to_string() } else { p.to_string() };
+    let what = format!("the new mesh ({} to {}) reaches beyond the old one", corner(bounds.min), corner(bounds.max));
+    let place = format!("the old mesh ({} to {})", corner(cover.min), corner(cover.max));
     Err(Error::domain(what, place, "give two meshes of one domain, in the same coordinates"))
 }
 

@@ -2,9 +2,9 @@
 
 use super::mass::areas;
 use crate::error::{Error, Result};
-use crate::geometry::Tensor;
+use crate::geometry::{Tensor, Tensor3};
 use crate::mesh::Mesh;
-use crate::metric::check_tensor_at;
+use crate::metric::{check_tensor_at, check_tensor3};
 use serde::Serialize;
 
 /// Values on a mesh.
@@ -35,6 +35,8 @@ pub enum Kind {
     Linear(usize),
     /// A metric m11, m12, m22, carried by its logarithm.
     Metric,
+    /// One of space, m11, m12, m22, m13, m23, m33, on a surface, carried so, too.
+    SpaceMetric,
 }
 
 /// A field on the new mesh, and its components here and there.
@@ -65,12 +67,13 @@ impl Field {
         match self.kind {
             Kind::Linear(components) => components,
             Kind::Metric => 3,
+            Kind::SpaceMetric => 6,
         }
     }
 
     /// Whether it has a value for all that needs one, finite and, where that is said, positive definite. `number` is its place among
     /// the fields, for messages.
-    pub(super) fn check(&self, old: &Mesh, number: usize) -> Result<()> {
+    pub(super) fn check(&self, old: &Mesh, number: usize, in_plane: bool) -> Result<()> {
         let (needed, what) = match self.place {
             Place::Vertices => (old.points.len(), "vertices"),
             Place::Triangles => (old.triangles.len(), "triangles"),
@@ -86,6 +89,21 @@ impl Field {
             let (what, place) =
                 (format!("the value is {}", self.values[i]), self.describe(old, i / components, number));
             return Err(Error::mesh(what, place, "correct the value: it must be finite"));
+        }
+        let refused = match self.kind {
+            Kind::Metric if !in_plane => Some(("metrics of the plane on the mesh of a surface", "3 (m11 m12 m22 m13 m23 m33)")),
+            Kind::SpaceMetric if in_plane => Some(("metrics of space on planar meshes", "2 (m11 m12 m22)")),
+            _ => None,
+        };
+        if let Some((what, dimension)) = refused {
+            let help =
+                format!("save the tensors with Dimension {dimension}, or say that they are no metrics: `linear_tensors`");
+            return Err(Error::unsupported(what, help));
+        }
+        if self.kind == Kind::SpaceMetric {
+            for (i, row) in self.values.chunks_exact(6).enumerate() {
+                check_tensor3(tensor3(row), || self.describe(old, i, number))?;
+            }
         }
         if self.kind == Kind::Metric {
             for (i, row) in self.values.chunks_exact(3).enumerate() {
@@ -104,17 +122,17 @@ impl Field {
 
     /// The numbers that are linear between vertices: the values, or the logarithms of metrics.
     pub(super) fn linear(&self) -> Vec<f64> {
-        self.mapped(Tensor::log)
+        self.mapped(Tensor::log, Tensor3::log)
     }
 
     /// A field of the same kind from what is linear.
     pub(super) fn with_linear(&self, values: Vec<f64>) -> Self {
         let linear = Self { values, ..*self };
-        let values = linear.mapped(Tensor::exp);
+        let values = linear.mapped(Tensor::exp, Tensor3::exp);
         Self { values, ..*self }
     }
 
-    fn mapped(&self, map: impl Fn(Tensor) -> Tensor) -> Vec<f64> {
+    fn mapped(&self, map: impl Fn(Tensor) -> Tensor, in_space: impl Fn(Tensor3) -> Tensor3) -> Vec<f64> {
         let tensor = |row: &[f64]| {
             let Tensor { xx, xy, yy } = map(Tensor::new(row[0], row[1], row[2]));
             [xx, xy, yy]
@@ -122,6 +140,7 @@ impl Field {
         match self.kind {
             Kind::Linear(_) => self.values.clone(),
             Kind::Metric => self.values.chunks_exact(3).flat_map(tensor).collect(),
+            Kind::SpaceMetric => self.values.chunks_exact(6).flat_map(|row| in_space(tensor3(row)).to_disk()).collect(),
         }
     }
 
@@ -142,6 +161,10 @@ impl Field {
         };
         (0..n).map(of).collect()
     }
+}
+
+fn tensor3(row: &[f64]) -> Tensor3 {
+    Tensor3::from_disk(std::array::from_fn(|i| row[i]))
 }
 
 /// Fields of the new mesh beside those of the old.

@@ -4,15 +4,16 @@ use super::clip::{Frame, Overlap};
 use super::cover::Shares;
 use super::interpolation::mean;
 use super::mass::areas;
-use crate::geometry::Point;
-use crate::mesh::{Located, Locator, Mesh};
+use super::ground::Ground;
+use crate::geometry::Point3;
+use crate::mesh::{Located, Mesh};
 use crate::parallel::prelude::*;
 
 /// The old fields on a mesh, component by component: those that are linear on triangles, by vertex, and those that are constant
 /// there, by triangle.
 pub(super) struct Old<'a> {
     pub(super) mesh: &'a Mesh,
-    pub(super) locator: &'a Locator,
+    pub(super) ground: &'a Ground,
     pub(super) linear: Vec<Vec<f64>>,
     pub(super) constant: Vec<Vec<f64>>,
 }
@@ -46,10 +47,8 @@ impl Old<'_> {
             means: vec![0.0; self.constant.len()],
         };
         let of_one = |near: &mut Vec<u32>, &triangle: &[u32; 3]| {
-            let (mut load, corners) = (none.clone(), new.corners_of(triangle));
-            if let Some(frame) = Frame::new(corners) {
-                load.gather(self, &frame, corners, near);
-            }
+            let mut load = none.clone();
+            load.gather(self, new.positions_of(triangle), near);
             load
         };
         new.triangles.par_iter().map_init(Vec::new, of_one).collect()
@@ -75,11 +74,13 @@ pub(super) fn shares(loads: &[Load], old: &Mesh, new: &Mesh) -> Shares {
 }
 
 impl Load {
-    fn gather(&mut self, old: &Old<'_>, frame: &Frame, corners: [Point; 3], near: &mut Vec<u32>) {
-        old.locator.near(corners, near);
+    fn gather(&mut self, old: &Old<'_>, corners: [Point3; 3], near: &mut Vec<u32>) {
+        let flat = old.ground.flat(corners);
+        let Some(frame) = Frame::new(corners.map(|p| flat.of(p))) else { return };
+        old.ground.near(corners, near);
         for &triangle in near.iter() {
             let vertices = old.mesh.triangles[triangle as usize];
-            if let Some(overlap) = frame.overlap(old.mesh.corners_of(vertices)) {
+            if let Some(overlap) = frame.overlap(old.mesh.positions_of(vertices).map(|p| flat.of(p))) {
                 self.add(old, triangle, &overlap);
             }
         }
@@ -104,11 +105,11 @@ impl Load {
     }
 
     /// What is not covered has the value nearest to its centroid.
-    fn fill(&mut self, old: &Old<'_>, [a, b, c]: [Point; 3]) {
+    fn fill(&mut self, old: &Old<'_>, [a, b, c]: [Point3; 3]) {
         let gaps = self.ones.map(|one| 1.0 / 3.0 - one);
         let gap = 1.0 - self.covered;
         let centroid = a + (b - a) * (gaps[1] / gap) + (c - a) * (gaps[2] / gap);
-        let Some(Located { triangle, weights, .. }) = old.locator.locate(centroid) else { return };
+        let Some(Located { triangle, weights, .. }) = old.ground.locate(centroid) else { return };
         for (c, products) in self.products.iter_mut().enumerate() {
             let value = mean(old.at_corners(c, triangle), weights);
             for (product, gap) in products.iter_mut().zip(gaps) {

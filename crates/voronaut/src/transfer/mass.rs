@@ -1,5 +1,6 @@
 //! The mass matrix of linear elements, what is integrated with it, and values brought back into bounds with the same integral.
 
+use crate::geometry::Point3;
 use crate::lists::Rows;
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
@@ -7,7 +8,8 @@ use crate::sparse::{conjugate_gradients, dot};
 
 /// Areas of all triangles, of either orientation.
 pub(super) fn areas(mesh: &Mesh) -> Vec<f64> {
-    mesh.triangles.iter().map(|&triangle| 0.5 * mesh.double_area(triangle)).collect()
+    let double = |corners: [Point3; 3]| (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+    mesh.triangles.iter().map(|&triangle| 0.5 * double(mesh.positions_of(triangle))).collect()
 }
 
 /// The matrix of integrals of products of hat functions: |T| / 12 for each triangle of two vertices, |T| / 6 on the diagonal.

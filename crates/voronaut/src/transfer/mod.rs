@@ -1,4 +1,4 @@
-//! Solutions carried from one planar mesh to another: values at vertices (continuous, linear on triangles) and values on triangles.
+//! Solutions carried from one mesh of a planar domain, or of a surface, to another: values at vertices (continuous, linear on triangles) and values on triangles.
 //!
 //! | | at vertices | on triangles |
 //! |---|---|---|
@@ -10,10 +10,15 @@
 //! no density: it is interpolated either way, log-Euclidean, as [`crate::metric::Sampled`] has it.
 //!
 //! Beyond the old mesh (curved boundaries have other chords in another mesh) the nearest value goes on.
+//!
+//! On a surface the value at a point is that at the closest one, and old triangles are intersected with each new one in its plane, those
+//! that face its way. Where both meshes have their vertices in the same flat facets that is exact; elsewhere areas differ as the square
+//! of the edges: [`Shares`] has how much, and the mass is corrected for it as where domains differ.
 
 mod clip;
 mod cover;
 mod field;
+mod ground;
 mod interpolation;
 mod loads;
 mod mass;
@@ -27,7 +32,8 @@ pub use field::{Carried, Extent, Field, Kind, Place};
 pub use solutions::{TransferOptions, carry};
 
 use crate::error::Result;
-use crate::mesh::{Locator, Mesh};
+use crate::mesh::Mesh;
+use ground::Ground;
 
 /// What [`conservative`] does where the projection leaves the bounds of the old field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,12 +52,12 @@ pub enum Overshoot {
 /// back to the last bit (metrics to rounding). Errors for smooth functions are of second order in the size of triangles.
 ///
 /// # Errors
-/// [`crate::Error::Domain`] where a mesh has no triangles, is not planar, not finite, refers to vertices it does not have, or `new`
+/// [`crate::Error::Domain`] where a mesh has no triangles, is planar and the other is not, not finite, refers to vertices it does not have, or `new`
 /// reaches far beyond `old`; [`crate::Error::Mesh`] where a field does not have as many values as `old` has vertices or triangles, or
 /// one is not finite; [`crate::Error::Metric`] where a tensor is no metric.
 pub fn interpolate(old: &Mesh, new: &Mesh, fields: &[Field]) -> Result<(Vec<Carried>, Cover)> {
-    let locator = checked(old, new, fields)?;
-    let (carried, cover) = interpolation::interpolate(&locator, old, new, fields);
+    let ground = checked(old, new, fields)?;
+    let (carried, cover) = interpolation::interpolate(&ground, old, new, fields);
     Ok((field::compared(old, new, fields, carried), cover))
 }
 
@@ -65,16 +71,15 @@ pub fn interpolate(old: &Mesh, new: &Mesh, fields: &[Field]) -> Result<(Vec<Carr
 /// As [`interpolate`]; [`crate::Error::Domain`] too where more than a few per cent of either mesh's area are not covered by the
 /// other, or of `new` covered twice.
 pub fn conservative(old: &Mesh, new: &Mesh, fields: &[Field], overshoot: Overshoot) -> Result<(Vec<Carried>, Cover)> {
-    let locator = checked(old, new, fields)?;
-    let (interpolated, cover) = interpolation::interpolate(&locator, old, new, fields);
-    let (carried, cover) = projection::project(&locator, [old, new], fields, interpolated, cover, overshoot)?;
+    let ground = checked(old, new, fields)?;
+    let (interpolated, cover) = interpolation::interpolate(&ground, old, new, fields);
+    let (carried, cover) = projection::project(&ground, [old, new], fields, interpolated, cover, overshoot)?;
     Ok((field::compared(old, new, fields, carried), cover))
 }
 
-fn checked(old: &Mesh, new: &Mesh, fields: &[Field]) -> Result<Locator> {
-    let locator = Locator::new(old, "the old mesh")?;
-    Locator::check(new, "the new mesh")?;
+fn checked(old: &Mesh, new: &Mesh, fields: &[Field]) -> Result<Ground> {
+    let ground = Ground::new(old, new)?;
     cover::demand_extent(old, new)?;
-    fields.iter().enumerate().try_for_each(|(i, field)| field.check(old, i + 1))?;
-    Ok(locator)
+    fields.iter().enumerate().try_for_each(|(i, field)| field.check(old, i + 1, ground.is_planar()))?;
+    Ok(ground)
 }

@@ -1,16 +1,17 @@
 //! Fields projected: the least L2 distance to the old field, or the mean over each triangle.
 
 use super::cover::Cover;
+use super::ground::Ground;
 use super::loads::{Load, Old, shares};
 use super::mass::{MassMatrix, areas, balance, bounded, share_missing};
 use super::{Field, Kind, Overshoot, Place};
 use crate::error::Result;
-use crate::mesh::{Locator, Mesh};
+use crate::mesh::Mesh;
 use crate::sparse::dot;
 
 /// All fields on the new mesh; metrics as they were interpolated.
 pub(super) fn project(
-    locator: &Locator,
+    ground: &Ground,
     [old, new]: [&Mesh; 2],
     fields: &[Field],
     interpolated: Vec<Field>,
@@ -19,7 +20,7 @@ pub(super) fn project(
 ) -> Result<(Vec<Field>, Cover)> {
     let [linear, constant] = [Place::Vertices, Place::Triangles].map(|place| columns(fields, place));
     let read = |columns: &[Column]| columns.iter().map(|column| column.read(fields)).collect();
-    let sources = Old { mesh: old, locator, linear: read(&linear), constant: read(&constant) };
+    let sources = Old { mesh: old, ground, linear: read(&linear), constant: read(&constant) };
     let loads = sources.loads(new);
     let shares = shares(&loads, old, new);
     shares.demand()?;
@@ -82,7 +83,7 @@ struct Column {
 
 /// The components of all fields of one place but metrics.
 fn columns(fields: &[Field], place: Place) -> Vec<Column> {
-    let chosen = fields.iter().enumerate().filter(|(_, field)| field.place == place && field.kind != Kind::Metric);
+    let chosen = fields.iter().enumerate().filter(|(_, field)| field.place == place && matches!(field.kind, Kind::Linear(_)));
     let columns = chosen.flat_map(|(field, of)| {
         let width = of.components();
         (0..width).map(move |component| {

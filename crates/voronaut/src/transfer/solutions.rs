@@ -1,7 +1,7 @@
 //! Everything that a solution file holds, carried at once.
 
 use super::{Carried, Cover, Field, Kind, Overshoot, Place, conservative, interpolate};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::mesh::{Mesh, SolutionValues, Solutions};
 
 /// How solutions are carried; every parameter has one name (flag, TOML key, Python keyword).
@@ -19,14 +19,14 @@ pub struct TransferOptions {
 /// vertices first.
 ///
 /// # Errors
-/// As of [`conservative`]; [`Error::Unsupported`] of metrics of space, which no planar mesh has.
+/// As of [`conservative`]; [`crate::Error::Unsupported`] of metrics of space on planar meshes, and of the plane on surfaces.
 pub fn carry(
     old: &Mesh,
     new: &Mesh,
     given: &Solutions,
     options: TransferOptions,
 ) -> Result<(Solutions, Vec<Carried>, Cover)> {
-    let fields = fields(given, options.linear_tensors)?;
+    let fields = fields(given, options.linear_tensors);
     let (carried, cover) = if options.conservative {
         conservative(old, new, &fields, options.overshoot)?
     } else {
@@ -35,23 +35,20 @@ pub fn carry(
     Ok((solutions(given, &carried), carried, cover))
 }
 
-fn fields(given: &Solutions, linear_tensors: bool) -> Result<Vec<Field>> {
+fn fields(given: &Solutions, linear_tensors: bool) -> Vec<Field> {
     let on_vertices = given.vertices.iter().map(|values| (Place::Vertices, values));
     let on_triangles = given.triangles.iter().map(|values| (Place::Triangles, values));
     let field = |(place, values): (Place, &SolutionValues)| {
         let kind = match values {
             SolutionValues::Tensor(_) if !linear_tensors => Kind::Metric,
-            SolutionValues::Tensor3(_) if !linear_tensors => {
-                let help = "save the tensors with Dimension 2 (m11 m12 m22), or say that they are no metrics: `linear_tensors`";
-                return Err(Error::unsupported("metrics of space on planar meshes", help));
-            }
+            SolutionValues::Tensor3(_) if !linear_tensors => Kind::SpaceMetric,
             SolutionValues::Scalar(_) => Kind::Linear(1),
             SolutionValues::Vector { components, .. } => Kind::Linear(*components),
             SolutionValues::Tensor(_) => Kind::Linear(3),
             SolutionValues::Tensor3(_) => Kind::Linear(6),
         };
         let numbers = (0..values.count()).flat_map(|i| values.row(i)).copied().collect();
-        Ok(Field { place, kind, values: numbers })
+        Field { place, kind, values: numbers }
     };
     on_vertices.chain(on_triangles).map(field).collect()
 }
