@@ -151,7 +151,9 @@ impl Told<'_> {
 
     fn field(&self, carried: &Carried) -> Value {
         let extents = |all: &[Extent]| match carried.field.kind {
-            Kind::Metric | Kind::SpaceMetric => all.iter().map(|extent| json!({ "min": extent.min, "max": extent.max })).collect(),
+            Kind::Metric | Kind::SpaceMetric => {
+                all.iter().map(|extent| json!({ "min": extent.min, "max": extent.max })).collect()
+            }
             Kind::Linear(_) => json!(all),
         };
         json!({

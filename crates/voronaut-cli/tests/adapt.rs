@@ -41,6 +41,52 @@ fn ten_steps_of_a_moving_front() {
 }
 
 #[test]
+fn a_front_moves_over_a_sphere() {
+    let place = Place::new();
+    let metric = "hessian:tanh(12*(x - 0.5 + t))";
+    let words =
+        ["loop", "sphere:1", "--metric", metric, "-n", "300", "--iterations", "3", "-o", "front.mesh", "--every"];
+    let run = place.run(&[&words[..], &["--report", "loop.json"]].concat());
+    assert!(run.status.success(), "{}", stderr(&run));
+    let report = json(&place, "loop.json");
+    let steps = report["steps"].as_array().unwrap();
+    let masses = |step: &Value, when: &str| step["fields"][0][when][0]["mass"].as_f64().unwrap();
+    for (step, number) in steps.iter().zip(1..) {
+        let name = format!("front.{number:02}.mesh");
+        let function = format!("tanh(12*(x - 0.5 + {}))", 0.5 * f64::from(number - 1));
+        let words = ["check", &name, "--domain", "sphere:1", "--function", &function, "--report", "check.json", "-q"];
+        let checked = place.run(&words);
+        assert!(checked.status.success(), "{name}: {}", stderr(&checked));
+        // An even mesh of so many vertices has 0.1 to 0.2.
+        let error = json(&place, "check.json")["interpolation"]["norm"].as_f64().unwrap();
+        assert!(error < 0.05, "{name}: {error}");
+        if number > 1 {
+            let (before, after) = (masses(step, "before"), masses(step, "after"));
+            assert!((after - before).abs() <= 1e-12 * before.abs().max(1.0), "{before} {after}");
+        }
+    }
+    assert!(String::from_utf8(place.read("front.sol")).unwrap().contains("Dimension 3"));
+}
+
+#[test]
+fn a_solver_is_run_on_meshes_of_a_surface() {
+    let place = Place::new();
+    let solver = SOLVER.replace("Dimension 2", "Dimension 3");
+    let words = ["loop", "sphere:1", "--solver", &solver, "-n", "300", "--iterations", "2", "-o", "out.mesh"];
+    let run = place.run(&[&words[..], &["--report", "loop.json"]].concat());
+    assert!(run.status.success(), "{}", stderr(&run));
+    let report = json(&place, "loop.json");
+    assert!(report["steps"].as_array().unwrap()[1..].iter().all(|step| step["mass_drift"].as_f64().unwrap() < 1e-10));
+    // The front is at x = 0.4 in the second step: there are the vertices.
+    let mesh = String::from_utf8(place.read("out.mesh")).unwrap();
+    let near = mesh.lines().filter_map(|line| line.split(' ').next()?.parse::<f64>().ok());
+    let near = near.filter(|x| (x - 0.4).abs() < 0.15).count();
+    assert!(near > 100, "{near}");
+    let refused = place.run(&[&words[..], &["--recovery", "l2"]].concat());
+    assert!(stderr(&refused).contains("--recovery on a surface"), "{}", stderr(&refused));
+}
+
+#[test]
 fn a_solver_is_run_on_every_mesh() {
     let place = Place::new();
     let words = ["loop", "rect:0,0,1,1", "--solver", SOLVER, "-n", "300", "--iterations", "3", "-o", "out.mesh"];

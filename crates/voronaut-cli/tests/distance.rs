@@ -173,7 +173,7 @@ fn faults_on_surfaces_are_named() {
     fails(&["--from", "1.2,0,0"], "a point off the surface at --from (1.2, 0, 0)");
     fails(&[&from[..], &["--to", "0,0,0"]].concat(), "a point off the surface at --to (0, 0, 0)");
     fails(&[&from[..], &["--geodesic", "lbr"]].concat(), "not supported: distances by lbr on a surface");
-    fails(&[&from[..], &["--smooth-metric", "2"]].concat(), "not supported: --smooth-metric on a surface");
+    fails(&[&from[..], &["--recovery", "l2"]].concat(), "not supported: --recovery on a surface");
 }
 
 #[test]

@@ -155,7 +155,7 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
             "all.sol: SolAtVertices has 36 entries, and new.mesh has 81 vertices",
         ),
         ("new.mesh old.mesh all.sol -o out.sol", 1, "help: old.mesh has 36: give the meshes in the other order"),
-        ("bent.mesh new.mesh all.sol -o out.sol", 1, "not supported: interpolate on a surface (bent.mesh)"),
+        ("bent.mesh new.mesh all.sol -o out.sol", 1, "is not zero at vertex"),
         ("old.mesh far.mesh all.sol -o out.sol", 1, "the new mesh ((3, 0) to (4, 1)) reaches beyond the old one"),
         (
             "old.mesh half.mesh all.sol -o out.sol --conservative",

@@ -161,7 +161,4 @@ fn other_commands_grade_their_metrics() {
     assert!(output.status.success(), "{}", stderr(&output));
     let checked: Value = serde_json::from_slice(&place.read("check.json")).unwrap();
     assert!((unit(&checked) - unit(&report)).abs() < 0.03, "{} {}", unit(&checked), unit(&report));
-    let words = ["mesh", "sphere:1", "--metric", "uniform", "-n", "100", "-o", "ball.obj", "--gradation", "1.2"];
-    let output = place.run(&words);
-    assert!(stderr(&output).contains("not supported: --gradation on a surface"), "{}", stderr(&output));
 }

@@ -54,6 +54,8 @@ const fn each(words: &'static [&'static str], says: [Says; 3]) -> Row {
 
 const LAYER: &[&str] = &["--metric", "formula:9/(0.1 + x*x); 0; 20"];
 const HESSIAN: &[&str] = &["--metric", "hessian:x^4 + 0.3*y^2 + x*y*y", "-n", "60"];
+const HESSIAN_IN_SPACE: &[&str] = &["--metric", "hessian:x^4 + 0.3*y^2 + x*y*z", "-n", "60"];
+const JUMP: &[&str] = &["--metric", "formula:if(x<0.1,99,1); 0; 9; 0; 0; 9", "-n", "90"];
 const RECOVERED: &[&str] = &["--metric", "hessian:u.sol", "-n", "60"];
 const OF_FILE: &[&str] = &["--metric", "tensors.sol"];
 const PROTECTED: &[&str] = &["--seeding", "protected"];
@@ -73,13 +75,16 @@ const ROWS: &[Row] = &[
     plane(LAYER, &["--a-max", "1.1"], Mesh),
     surfaces(&["--metric", "formula:99; 0; 9; 0; 0; 9"], &["--a-max", "1.1"], Mesh),
     plane(LAYER, &["--gradation", "1.1"], Mesh),
-    surfaces(&[], &["--gradation", "1.1"], Refused("--gradation")),
+    surfaces(JUMP, &["--gradation", "1.1"], Mesh),
     plane(LAYER, &["--smooth-metric", "9"], Mesh),
-    surfaces(&[], &["--smooth-metric", "9"], Refused("--smooth-metric")),
+    surfaces(JUMP, &["--smooth-metric", "9"], Mesh),
     plane(HESSIAN, &["--norm", "1"], Mesh),
+    surfaces(HESSIAN_IN_SPACE, &["--norm", "1"], Mesh),
     all(&[], &["--norm", "1"], Refused("--norm")),
     plane(RECOVERED, &["--recovery", "l2"], Mesh),
     plane(HESSIAN, &["--recovery", "l2"], Refused("--recovery")),
+    surfaces(HESSIAN_IN_SPACE, &["--recovery", "l2"], Refused("--recovery")),
+    surfaces(HESSIAN_IN_SPACE, &["--polish", "5"], Refused("--polish")),
     all(&[], &["--recovery", "l2"], Refused("--recovery")),
     plane(OF_FILE, &["--tensor-order", "diagonal"], Mesh),
     surfaces(OF_FILE, &["--tensor-order", "diagonal"], Mesh),

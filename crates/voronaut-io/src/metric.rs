@@ -249,7 +249,8 @@ mod tests {
         let rows = "4 0 4 0 0 4\n".repeat(count);
         write!(file, "MeshVersionFormatted 2 Dimension 3 SolAtVertices {count} 1 3\n{rows}").unwrap();
         let path = file.path().to_str().unwrap();
-        let field = surface_metric(path, &input, &MetricOptions::default(), TensorOrder::Disk, GradedAt::Scale(1.0)).unwrap();
+        let field =
+            surface_metric(path, &input, &MetricOptions::default(), TensorOrder::Disk, GradedAt::Scale(1.0)).unwrap();
         let place = input.surface.place_of(VertexId(7)).unwrap();
         let m = TangentPlane::new(place.normal).restrict(field.at(&place));
         assert!((m.xx - 4.0).abs() + m.xy.abs() + (m.yy - 4.0).abs() < 1e-12, "{m:?}");

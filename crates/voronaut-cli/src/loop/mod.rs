@@ -192,8 +192,7 @@ fn function(args: &LoopArgs, variables: Variables) -> Result<Expression> {
             Expression::parse(function, variables)
         }
         _ => {
-            let help =
-                "write hessian:EXPR, a function of x, y and t (on a surface of x, y, z and t), or give a --solver; for one mesh use voronaut mesh";
+            let help = "write hessian:EXPR, a function of x, y and t (on a surface of x, y, z and t), or give a --solver; for one mesh use voronaut mesh";
             Err(Error::parse("metric", format!("`{text}` changes with nothing"), help))
         }
     }

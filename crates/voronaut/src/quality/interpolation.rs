@@ -73,8 +73,7 @@ type At<'a> = &'a (dyn Fn(Point3) -> f64 + Sync);
 
 /// The error by the values at vertices and at points of triangles.
 fn error_of(mesh: &Mesh, at_vertex: At, within: At, norm: Norm) -> Result<InterpolationError> {
-    let values: Vec<f64> =
-        (0..mesh.points.len() as u32).into_par_iter().map(|v| at_vertex(mesh.position(v))).collect();
+    let values: Vec<f64> = (0..mesh.points.len() as u32).into_par_iter().map(|v| at_vertex(mesh.position(v))).collect();
     let nodes = nodes();
     let of = |&t: &[u32; 3]| on_triangle(mesh.positions_of(t), t.map(|v| values[v as usize]), within, norm, &nodes);
     let found: Vec<(f64, f64, Point3)> = mesh.triangles.par_iter().with_min_len(64).map(of).collect();
@@ -120,13 +119,7 @@ fn nodes() -> Vec<Node> {
 }
 
 /// The integral of the p-th power of the error as a share of the greatest; the greatest, and where it is.
-fn on_triangle(
-    corners: [Point3; 3],
-    values: [f64; 3],
-    function: At,
-    norm: Norm,
-    nodes: &[Node],
-) -> (f64, f64, Point3) {
+fn on_triangle(corners: [Point3; 3], values: [f64; 3], function: At, norm: Norm, nodes: &[Node]) -> (f64, f64, Point3) {
     let error = |&(at, _): &Node| {
         let p = Point3::weighted(corners, at);
         let linear: f64 = at.iter().zip(values).map(|(share, value)| share * value).sum();

@@ -1,17 +1,17 @@
 //! The mesh adapted to a solution, again and again: solve, recover, mesh, carry over.
 
 use super::{
-    GradedAt, MeshOptions, Meshed, MetricOptions, PlanarMetric, SurfaceSource, mesh_for, mesh_surface, metric_of_function,
-    metric_of_solution, metric_on_surface,
+    GradedAt, MeshOptions, Meshed, MetricOptions, PlanarMetric, SurfaceSource, mesh_for, mesh_surface,
+    metric_of_function, metric_of_solution, metric_on_surface,
 };
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geometry::Point;
 use crate::mesh::{Mesh, SolutionValues, Solutions};
 use crate::metric::{Expression, ScalarField, Snapshot, Uniform};
+use crate::progress::Progress;
 use crate::surface::Input;
 use crate::surface::metric::Spec;
-use crate::progress::Progress;
 use crate::transfer::{Carried, Cover, TransferOptions, carry};
 use std::collections::BTreeSet;
 

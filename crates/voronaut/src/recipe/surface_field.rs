@@ -315,7 +315,8 @@ impl OnBackground {
         let at_home = Rows::new(homes, pairs.into_iter());
         let many = (0..homes as u32).filter(|&home| at_home.row(home as usize).len() > FEW);
         let tree = |home: u32| {
-            let triangles = at_home.row(home as usize).iter().map(|&i| corners[i as usize].map(|v| positions[v as usize]));
+            let triangles =
+                at_home.row(home as usize).iter().map(|&i| corners[i as usize].map(|v| positions[v as usize]));
             (home, Nearest::of(triangles))
         };
         let trees = many.map(tree).collect();
@@ -344,5 +345,129 @@ impl SurfaceMetric for OnBackground {
 
     fn curvature_figures(&self) -> Option<CurvatureFigures> {
         self.figures
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metric::Norm;
+    use crate::surface::metric::grade;
+
+    fn spec(text: &str) -> Spec {
+        Spec::parse(text).unwrap()
+    }
+
+    fn tangential(field: &dyn SurfaceMetric, place: &Place) -> Tensor {
+        TangentPlane::new(place.normal).restrict(field.at(place))
+    }
+
+    fn places(input: &Input) -> impl Iterator<Item = Place> {
+        input.surface.topology().faces().map(|f| input.surface.place(f, [0.2, 0.3, 0.5]))
+    }
+
+    /// A cube of side 1 with n by n squares on each side, cut open along its creases.
+    fn cube(n: u32) -> Input {
+        let mut mesh = Mesh::default();
+        let step = 1.0 / f64::from(n);
+        for side in 0..6_usize {
+            let (axis, sign) = (side % 3, side / 3);
+            let first = mesh.points.len() as u32;
+            for k in 0..(n + 1) * (n + 1) {
+                let mut p = [sign as f64; 3];
+                (p[(axis + 1) % 3], p[(axis + 2) % 3]) = (f64::from(k % (n + 1)) * step, f64::from(k / (n + 1)) * step);
+                mesh.points.push(p);
+            }
+            for k in 0..n * n {
+                let a = first + k % n + k / n * (n + 1);
+                let cell = [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]];
+                mesh.triangles.extend(if sign == 1 { cell } else { cell.map(|[a, b, c]| [a, c, b]) });
+            }
+        }
+        Input::new(Surface::new(&mesh).unwrap(), None)
+    }
+
+    #[test]
+    fn uniform_metrics_stay() {
+        for input in [cube(3), Input::shape("torus:2,0.7", Some(0.5)).unwrap()] {
+            for options in [
+                MetricOptions { gradation: Some(1.2), ..MetricOptions::default() },
+                MetricOptions { smooth_metric: 7, ..MetricOptions::default() },
+            ] {
+                let at = GradedAt::Complexity(200.0);
+                let uniform = spec("formula:9; 0; 9; 0; 0; 9");
+                let field = metric_on_surface(SurfaceSource::Named(&uniform), &input, &options, at).unwrap();
+                for place in places(&input) {
+                    let d = tangential(field.as_ref(), &place) + Tensor::IDENTITY * -9.0;
+                    assert!(d.xx.abs() + d.xy.abs() + d.yy.abs() < 1e-9, "{d:?}");
+                }
+            }
+        }
+    }
+
+    /// Sizes that are the same in all directions are graded by lengths alone, over creases as on flat sides.
+    #[test]
+    fn sizes_are_graded_as_sizes() {
+        let input = cube(6);
+        let mut sizes: Vec<f64> =
+            input.surface.positions().iter().map(|p| if p.x + p.y < 0.1 && p.z > 0.4 { 0.01 } else { 2.0 }).collect();
+        let values = Solution { dimension: 3, values: SolutionValues::Scalar(sizes.clone()) };
+        let options = MetricOptions { gradation: Some(1.4), ..MetricOptions::default() };
+        let field = metric_on_surface(SurfaceSource::Values(&values), &input, &options, GradedAt::Scale(1.0)).unwrap();
+        grade(&input.surface, &mut sizes, 1.4).unwrap();
+        let mut changed = 0;
+        for v in input.surface.topology().vertices() {
+            let place = input.surface.place_of(v).unwrap();
+            let found = tangential(field.as_ref(), &place);
+            let size = sizes[v.index()];
+            changed += usize::from(size > 0.011 && size < 1.9);
+            assert!(
+                (found.xx.sqrt() * size - 1.0).abs() < 1e-5 && found.xy.abs() < 1e-5 * found.xx,
+                "{found:?} {size}"
+            );
+        }
+        assert!(changed > 100, "{changed}");
+    }
+
+    #[test]
+    fn graded_metrics_are_finer_and_in_the_units_given() {
+        let input = Input::shape("sphere:1", Some(0.3)).unwrap();
+        let jump = spec("formula:if(x<0,400,1); 0; if(x<0,4,1); 0; 0; 4");
+        let plain = MetricOptions::default();
+        let graded = MetricOptions { gradation: Some(1.3), ..plain.clone() };
+        let at = GradedAt::Complexity(3000.0);
+        let of = |options| metric_on_surface(SurfaceSource::Named(&jump), &input, options, at).unwrap();
+        let (before, after) = (of(&plain), of(&graded));
+        let mut finer = 0;
+        for place in places(&input) {
+            let [m, n] = [&before, &after].map(|field| tangential(field.as_ref(), &place));
+            // Between vertices of the background a jump is a slope.
+            if place.position.x.abs() > 0.1 {
+                assert!(n.determinant() > 0.9 * m.determinant(), "{} {m:?} {n:?}", place.position);
+                finer += usize::from(n.determinant() > 1.5 * m.determinant());
+            }
+        }
+        assert!(finer > 10, "{finer}");
+    }
+
+    /// What a solver finds on a mesh of the surface makes the metric that its formula has.
+    #[test]
+    fn solutions_on_other_meshes_make_metrics() {
+        let input = Input::shape("sphere:1", Some(0.3)).unwrap();
+        let mesh = crate::surface::sphere(1.0, 0.08).unwrap().to_mesh();
+        let values = mesh.points.iter().map(|p| (2.0 * p[0]).sin()).collect();
+        let options = MetricOptions { norm: Norm::new(f64::INFINITY).unwrap(), ..MetricOptions::default() };
+        let at = GradedAt::Scale(1.0);
+        let solution = SolutionValues::Scalar(values);
+        let found = metric_on_surface(SurfaceSource::Solution(&mesh, &solution), &input, &options, at).unwrap();
+        let truth = metric_on_surface(SurfaceSource::Named(&spec("hessian:sin(2*x)")), &input, &options, at).unwrap();
+        let [mut sum, mut worst] = [0.0_f64; 2];
+        for place in places(&input) {
+            let place = input.lift(&place, place.position).unwrap();
+            let [found, truth] = [&found, &truth].map(|field| tangential(field.as_ref(), &place).eigen().large);
+            (sum, worst) = (sum + truth, worst.max((found - truth).abs()));
+        }
+        let mean = sum / places(&input).count() as f64;
+        assert!(worst < 0.15 * mean, "{worst} of {mean}");
     }
 }

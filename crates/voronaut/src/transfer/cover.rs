@@ -31,6 +31,8 @@ pub struct Shares {
 /// How far the new mesh may reach beyond the old one, as a share of the old one's extent, and how much of an area may be missing:
 /// curves are meshed by chords.
 const OVERHANG: f64 = 0.05;
+/// The same on a surface, where triangles are chords everywhere, and few where nothing asks for more.
+const ON_SURFACE: f64 = 0.25;
 
 /// Beyond its mesh a field goes on with the nearest value: right for a sliver along a curved boundary, a mistake anywhere
 /// else.
@@ -43,7 +45,8 @@ pub(super) fn demand_extent(old: &Mesh, new: &Mesh) -> Result<()> {
     let (mut allowed, lower, upper) = (cover.extent() * OVERHANG, cover.min - bounds.min, bounds.max - cover.max);
     if !old.is_planar() {
         // A surface may be as flat as a plane that is tilted.
-        let most = allowed.x.max(allowed.y).max(allowed.z);
+        let extent = cover.extent();
+        let most = ON_SURFACE * extent.x.max(extent.y).max(extent.z);
         allowed = Vector3::new(most, most, most);
     }
     if lower.x.max(upper.x) <= allowed.x && lower.y.max(upper.y) <= allowed.y && lower.z.max(upper.z) <= allowed.z {
@@ -57,13 +60,14 @@ pub(super) fn demand_extent(old: &Mesh, new: &Mesh) -> Result<()> {
 
 impl Shares {
     /// Whether the meshes are of one domain.
-    pub(super) fn demand(&self) -> Result<()> {
+    pub(super) fn demand(&self, in_plane: bool) -> Result<()> {
+        let most = if in_plane { OVERHANG } else { ON_SURFACE };
         let found = [
             (self.uncovered, "of the new mesh's area are outside the old mesh"),
             (self.left, "of the old mesh's area are outside the new mesh"),
             (self.overlapped, "of the new mesh's area are covered more than once: the old mesh overlaps itself"),
         ];
-        let Some((share, what)) = found.into_iter().find(|(share, _)| *share > OVERHANG) else { return Ok(()) };
+        let Some((share, what)) = found.into_iter().find(|(share, _)| *share > most) else { return Ok(()) };
         let what = format!("{:.1} % {what}", 100.0 * share);
         let help = "give two valid meshes of one domain, or interpolate instead of conserving the integral";
         Err(Error::domain(what, "the two meshes", help))

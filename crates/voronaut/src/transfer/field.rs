@@ -91,13 +91,16 @@ impl Field {
             return Err(Error::mesh(what, place, "correct the value: it must be finite"));
         }
         let refused = match self.kind {
-            Kind::Metric if !in_plane => Some(("metrics of the plane on the mesh of a surface", "3 (m11 m12 m22 m13 m23 m33)")),
+            Kind::Metric if !in_plane => {
+                Some(("metrics of the plane on the mesh of a surface", "3 (m11 m12 m22 m13 m23 m33)"))
+            }
             Kind::SpaceMetric if in_plane => Some(("metrics of space on planar meshes", "2 (m11 m12 m22)")),
             _ => None,
         };
         if let Some((what, dimension)) = refused {
-            let help =
-                format!("save the tensors with Dimension {dimension}, or say that they are no metrics: `linear_tensors`");
+            let help = format!(
+                "save the tensors with Dimension {dimension}, or say that they are no metrics: `linear_tensors`"
+            );
             return Err(Error::unsupported(what, help));
         }
         if self.kind == Kind::SpaceMetric {

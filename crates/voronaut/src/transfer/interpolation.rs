@@ -45,10 +45,7 @@ pub(super) fn mean([a, b, c]: [f64; 3], weights: [f64; 3]) -> f64 {
 }
 
 fn located(ground: &Ground, points: &[Point3]) -> Vec<Located> {
-    points
-        .par_iter()
-        .map(|&p| ground.locate(p).expect("checked: points are finite, and there are triangles"))
-        .collect()
+    points.par_iter().map(|&p| ground.locate(p).expect("checked: points are finite, and there are triangles")).collect()
 }
 
 /// On a surface every vertex may be a little off the old triangles: more than a share of the extent is outside.

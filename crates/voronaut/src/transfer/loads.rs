@@ -2,9 +2,9 @@
 
 use super::clip::{Frame, Overlap};
 use super::cover::Shares;
+use super::ground::Ground;
 use super::interpolation::mean;
 use super::mass::areas;
-use super::ground::Ground;
 use crate::geometry::Point3;
 use crate::mesh::{Located, Mesh};
 use crate::parallel::prelude::*;

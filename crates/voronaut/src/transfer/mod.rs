@@ -25,6 +25,8 @@ mod mass;
 mod projection;
 mod solutions;
 #[cfg(test)]
+mod test_surfaces;
+#[cfg(test)]
 mod tests;
 
 pub use cover::{Cover, Shares};

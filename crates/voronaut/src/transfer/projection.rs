@@ -23,7 +23,7 @@ pub(super) fn project(
     let sources = Old { mesh: old, ground, linear: read(&linear), constant: read(&constant) };
     let loads = sources.loads(new);
     let shares = shares(&loads, old, new);
-    shares.demand()?;
+    shares.demand(ground.is_planar())?;
     let (there, here) = (areas(old), areas(new));
     let [old_matrix, matrix] = [(old, &there), (new, &here)].map(|(mesh, areas)| MassMatrix::new(mesh, areas));
     let mut carried = interpolated;
@@ -83,7 +83,8 @@ struct Column {
 
 /// The components of all fields of one place but metrics.
 fn columns(fields: &[Field], place: Place) -> Vec<Column> {
-    let chosen = fields.iter().enumerate().filter(|(_, field)| field.place == place && matches!(field.kind, Kind::Linear(_)));
+    let chosen =
+        fields.iter().enumerate().filter(|(_, field)| field.place == place && matches!(field.kind, Kind::Linear(_)));
     let columns = chosen.flat_map(|(field, of)| {
         let width = of.components();
         (0..width).map(move |component| {

@@ -74,7 +74,8 @@ impl SurfaceMetric for CovariantHessian {
 impl Bend {
     fn fitted(surface: &Surface) -> Self {
         // Where nothing could be fitted the surface counts as flat.
-        let shapes = fit_curvatures(surface).into_iter().map(|fit| fit.map_or(Tensor3::default(), |c| shape(&c))).collect();
+        let shapes =
+            fit_curvatures(surface).into_iter().map(|fit| fit.map_or(Tensor3::default(), |c| shape(&c))).collect();
         let t = surface.topology();
         let corners = |f| t.is_face(FaceId(f)).then(|| t.corners(FaceId(f)).map(|v| v.0)).unwrap_or_default();
         Self::Fitted(shapes, (0..t.face_slots() as u32).map(corners).collect())
@@ -192,4 +193,125 @@ fn not_finite(place: &Place) -> Error {
 fn vanishing() -> Error {
     let help = "its interpolation is exact on any mesh: use another metric, such as uniform or curvature";
     Error::metric("the function's second derivatives vanish everywhere", "the whole surface", help)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metric::Variables;
+    use crate::surface::{sphere, torus};
+
+    fn infinite() -> Norm {
+        Norm::new(f64::INFINITY).unwrap()
+    }
+
+    fn function(text: &str) -> Expression {
+        Expression::parse(text, Variables::Space).unwrap()
+    }
+
+    /// The greatest difference, in the tangent plane, from what it is in closed form.
+    fn greatest_error(
+        field: &dyn SurfaceMetric,
+        surface: &Surface,
+        truth: impl Fn(&Place) -> (TangentPlane, Tensor),
+    ) -> f64 {
+        let error = |f: FaceId| {
+            let place = surface.place(f, [0.5, 0.2, 0.3]);
+            let (plane, truth) = truth(&place);
+            let d = plane.restrict(field.at(&place)) + truth * -1.0;
+            d.xx.abs().max(d.xy.abs()).max(d.yy.abs())
+        };
+        surface.topology().faces().map(error).fold(0.0, f64::max)
+    }
+
+    /// Along great circles x is a sine: its second derivatives are -x in all directions, though in space they are zero.
+    fn of_x(place: &Place) -> (TangentPlane, Tensor) {
+        let p = place.position - Point3::default();
+        (TangentPlane::new(p.unit().unwrap()), Tensor::IDENTITY * (p.x.abs() / p.norm()).max(1e-3))
+    }
+
+    #[test]
+    fn coordinates_of_the_sphere_are_curved_on_it() {
+        let input = Input::shape("sphere:1", Some(0.2)).unwrap();
+        let exact = CovariantHessian::new(&function("x"), &input, infinite()).unwrap();
+        let on_equation = |place: &Place| input.lift(place, place.position).unwrap();
+        for f in input.surface.topology().faces() {
+            let place = on_equation(&input.surface.place(f, [0.5, 0.2, 0.3]));
+            let (plane, truth) = of_x(&place);
+            let d = plane.restrict(exact.at(&place)) + truth * -1.0;
+            assert!(place.position.x.abs() < 1e-3 || d.xx.abs() + d.xy.abs() + d.yy.abs() < 1e-12, "{d:?}");
+        }
+    }
+
+    #[test]
+    fn fitted_and_recovered_ones_come_near() {
+        let errors: Vec<[f64; 2]> = [0.2, 0.1]
+            .map(|size| {
+                let input = Input::new(sphere(1.0, size).unwrap(), None);
+                let values: Vec<f64> = input.surface.positions().iter().map(|p| p.x).collect();
+                let fitted = CovariantHessian::new(&function("x"), &input, infinite()).unwrap();
+                let recovered = recovered_on(&input, &values, infinite()).unwrap();
+                let error = |field: &dyn SurfaceMetric| greatest_error(field, &input.surface, of_x);
+                [error(&fitted), error(&recovered)]
+            })
+            .to_vec();
+        // Fits at vertices are of second order; between them the kink of |x| at its zero is of the first.
+        assert!(errors[0].iter().all(|&e| e < 0.1), "{errors:?}");
+        assert!((0..2).all(|i| errors[1][i] < 0.65 * errors[0][i]), "{errors:?}");
+    }
+
+    #[test]
+    fn a_tilted_plane_is_a_plane() {
+        // Two triangles each of a grid, turned about an axis; u = (3 s^2 - s t + t^2 / 2) of plane coordinates s and t.
+        let (along, up) = (Vector3::new(0.6, 0.0, 0.8), Vector3::new(0.0, 1.0, 0.0));
+        let point = |k: u32| Point3::default() + along * f64::from(k % 9) + up * f64::from(k / 9);
+        let cell = |k: u32| {
+            let a = k % 8 + k / 8 * 9;
+            [[a, a + 1, a + 10], [a, a + 10, a + 9]]
+        };
+        let mesh = crate::mesh::Mesh {
+            points: (0..81).map(|k| point(k).to_array()).collect(),
+            triangles: (0..64).flat_map(cell).collect(),
+            ..crate::mesh::Mesh::default()
+        };
+        let input = Input::new(Surface::new(&mesh).unwrap(), None);
+        let text = "3*(0.6*x+0.8*z)^2 - (0.6*x+0.8*z)*y + 0.5*y^2";
+        let values: Vec<f64> = input.surface.positions().iter().map(|p| function(text).at(p.x, p.y, p.z)).collect();
+        let [exact, found]: [Box<dyn SurfaceMetric>; 2] = [
+            Box::new(CovariantHessian::new(&function(text), &input, infinite()).unwrap()),
+            Box::new(recovered_on(&input, &values, infinite()).unwrap()),
+        ];
+        let plane = TangentPlane { u: along, v: up, normal: along.cross(up) };
+        for field in [exact, found] {
+            let error = greatest_error(field.as_ref(), &input.surface, |_| (plane, Tensor::new(6.0, -1.0, 1.0)));
+            assert!(error < 1e-7, "{error}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_second_derivatives_is_refused() {
+        let flat = Input::new(
+            Surface::new(&crate::mesh::Mesh {
+                points: vec![[0.0; 3], [1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [1.0, 1.0, 1.0]],
+                triangles: vec![[0, 1, 2], [1, 3, 2]],
+                ..crate::mesh::Mesh::default()
+            })
+            .unwrap(),
+            None,
+        );
+        let error = CovariantHessian::new(&function("x - 2*z"), &flat, infinite()).err().unwrap();
+        assert!(error.to_string().contains("vanish everywhere"), "{error}");
+        let torus = Input::new(torus(2.0, 0.7, 0.4).unwrap(), None);
+        let error = CovariantHessian::new(&function("sqrt(x)"), &torus, infinite()).err().unwrap();
+        assert!(error.to_string().contains("second derivatives are not finite at ("), "{error}");
+        let count = torus.surface.positions().len();
+        for (values, says) in [
+            (vec![1.0; count], "vanish everywhere"),
+            (vec![f64::NAN; count], "the solution's value NaN is not finite at vertex 1 ("),
+            (vec![1.0; 3], "3 values for"),
+        ] {
+            let error = recovered_on(&torus, &values, infinite()).unwrap_err();
+            assert!(error.to_string().contains(says), "{error}");
+        }
+    }
 }

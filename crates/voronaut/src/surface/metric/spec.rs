@@ -5,7 +5,9 @@ use crate::domain::name_and_rest;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor3;
 use crate::mesh::Solution;
-use crate::metric::{Bounded, Bounds, Expression, MetricSpec, Norm, Parameters, Shock, SpaceFormula, Variables, require};
+use crate::metric::{
+    Bounded, Bounds, Expression, MetricSpec, Norm, Parameters, Shock, SpaceFormula, Variables, require,
+};
 use crate::surface::Input;
 
 /// What a METRIC text says of a surface.
