@@ -127,7 +127,7 @@ fn what_is_not_there_for_surfaces_is_said() {
     refused(&place, &["a.off", "--picture", "a.svg"], &["not supported: a picture of the mesh of a surface", "help: "]);
     let uniform = ["a.off", "--metric", "uniform"];
     for (more, expected) in [
-        (&["--recovery", "l2"][..], "not supported: --smooth-metric"),
+        (&["--recovery", "l2"][..], "not supported: --recovery"),
         (&["--histograms", "h.svg"], "not supported: histograms"),
         (&["--background", "a.off"], "not supported: --background"),
         (&["--domain", "rect:0,0,1,1"], "not supported: a.off is not planar"),
