@@ -1,5 +1,6 @@
 //! `voronaut convert`: from one format to another.
 
+use crate::aside::say_aside;
 use crate::files;
 use crate::options::{Limits, Run};
 use crate::summary;
@@ -78,7 +79,7 @@ pub(crate) fn run(args: &ConvertArgs) -> Result<()> {
         (from, Kind::Mesh) => mesh(args, from)?,
     };
     if !args.quiet {
-        eprintln!("{}: {told}", args.to.display());
+        say_aside(&format!("{}: {told}", args.to.display()));
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! `voronaut interpolate`: a solution carried from one mesh to another.
 
+use crate::aside::say_aside;
 use crate::files::{self, Miscounted};
 use crate::options::Run;
 use crate::progress::Stages;
@@ -131,13 +132,15 @@ impl Told<'_> {
         summary::say(&format!("{} ({})", self.args.out.display(), self.method()), 24, lines);
         if self.cover.outside > 0 {
             let (count, farthest) = (self.cover.outside, self.cover.farthest);
-            eprintln!(
+            say_aside(&format!(
                 "note: {count} vertices are outside the old mesh, by up to {farthest:.3e}: they have the nearest value"
-            );
+            ));
         }
         let moved = self.cover.areas.map_or(0.0, |shares| shares.uncovered.max(shares.left));
         if moved > 0.0 {
-            eprintln!("note: a share of {moved:.1e} of the area is in one mesh only; masses are kept all the same");
+            say_aside(&format!(
+                "note: a share of {moved:.1e} of the area is in one mesh only; masses are kept all the same"
+            ));
         }
     }
 

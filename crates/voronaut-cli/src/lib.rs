@@ -1,6 +1,10 @@
 //! The commands of voronaut: for a terminal ([`run`]), and for callers that hold arrays ([`Job`]).
 
+// They panic where what they write to is closed.
+#![deny(clippy::print_stderr, clippy::print_stdout)]
+
 mod account;
+mod aside;
 mod check;
 mod convert;
 mod distance;
@@ -28,6 +32,7 @@ pub use flags::as_keywords;
 pub use job::{Job, Usage, commands};
 pub use world::{Held, HeldMetric, Made, World};
 
+use aside::say_aside;
 use clap::{Parser, Subcommand};
 use options::Run;
 use std::borrow::Cow;
@@ -41,9 +46,9 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     watch::fail_as(words.get(1).is_some_and(|word| word == "remesh"));
     let done = remesh::translated(words).and_then(|words| obey(&Arguments::parse_from(words).command));
     let Err(error) = done else { return 0 };
-    eprintln!("error: {}", flags::flagged(&error.to_string()));
+    say_aside(&format!("error: {}", flags::flagged(&error.to_string())));
     if !error.help().is_empty() {
-        eprintln!("  help: {}", flags::flagged(error.help()));
+        say_aside(&format!("  help: {}", flags::flagged(error.help())));
     }
     watch::failure()
 }

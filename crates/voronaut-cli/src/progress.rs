@@ -1,5 +1,6 @@
 //! How far a run is: a progress bar on a terminal, and the times of its stages.
 
+use crate::aside::say_aside;
 use crate::options::Run;
 use crate::watch;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -33,7 +34,7 @@ impl Progress for Bar {
         self.line.set_position(0);
         self.line.set_message(name);
         if self.verbose {
-            self.line.suspend(|| eprintln!("{name} ({total})"));
+            self.line.suspend(|| say_aside(&format!("{name} ({total})")));
         }
     }
 

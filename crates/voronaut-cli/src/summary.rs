@@ -1,5 +1,6 @@
 //! What a run says when it is done: one screen on stdout.
 
+use crate::aside::say_aside;
 use crate::flags::flagged;
 use crate::options::Run;
 use serde_json::Value;
@@ -39,7 +40,7 @@ pub(crate) fn out(text: &str) {
 pub(crate) fn notes(notes: impl IntoIterator<Item: AsRef<str>>, is_quiet: bool) {
     if !is_quiet {
         for note in notes {
-            eprintln!("note: {}", flagged(note.as_ref()));
+            say_aside(&format!("note: {}", flagged(note.as_ref())));
         }
     }
 }
@@ -60,7 +61,7 @@ pub(crate) fn print_distance(title: &Path, told: &Value, run: &Run) {
     say(&title.display().to_string(), WIDTH, known.map(|(name, value)| (name.into(), value.to_string())).collect());
     notes(told["notes"].as_array().into_iter().flatten().filter_map(Value::as_str), false);
     if let Some(count) = told["unreached"].as_u64().filter(|&count| count > 0) {
-        eprintln!("note: {count} canvas vertices are not reached: infinite in the file");
+        say_aside(&format!("note: {count} canvas vertices are not reached: infinite in the file"));
     }
 }
 

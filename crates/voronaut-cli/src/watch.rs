@@ -1,5 +1,6 @@
 //! What ends a run before its end: limits of time and memory, and signals. Nothing is left behind then.
 
+use crate::aside::say_aside;
 use crate::options::{GIB, Limits};
 use std::process::{Child, Command, ExitStatus, exit};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -126,6 +127,6 @@ fn stop(what: &str, help: &str) {
         let _ = child.kill().and_then(|()| child.wait());
     }
     let stage = held(&STAGE).account();
-    eprintln!("error: {what}, {stage}\n  help: {help}");
+    say_aside(&format!("error: {what}, {stage}\n  help: {help}"));
     exit(failure().into());
 }

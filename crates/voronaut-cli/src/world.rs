@@ -1,5 +1,6 @@
 //! Where commands read what is named, and where what they make goes: files and a terminal, or the arrays of a caller.
 
+use crate::aside::say_aside;
 use crate::options::{MetricChoices, Run};
 use crate::progress::Bar;
 use crate::seeds::SeedRows;
@@ -281,7 +282,7 @@ impl<'a> World<'a> {
     /// Says what the user should know, of a kind: `warning`, `note`.
     pub(crate) fn say(&self, kind: &str, text: &str) {
         if self.is_files() {
-            eprintln!("{kind}: {text}");
+            say_aside(&format!("{kind}: {text}"));
         } else {
             self.made.borrow_mut().warnings.push(text.into());
         }

@@ -39,6 +39,29 @@ fn memory_beyond_the_limit_ends_the_run() {
     demand_stopped(&run, &place, &["GiB of memory were held, more than 0.04, in the stage: reading"]);
 }
 
+/// Who reads what a run says may be gone before it: as a pipeline that is killed.
+#[test]
+#[cfg(unix)]
+fn a_signal_ends_a_run_that_nobody_hears() {
+    let place = Place::new();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_voronaut"));
+    command.args(LONG).current_dir(place.path()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut run = command.spawn().unwrap();
+    drop((run.stdout.take(), run.stderr.take()));
+    std::thread::sleep(Duration::from_millis(300));
+    Command::new("kill").args(["-TERM".into(), run.id().to_string()]).status().unwrap();
+    for _ in 0..200 {
+        if let Some(status) = run.try_wait().unwrap() {
+            assert_eq!(status.code(), Some(1));
+            assert!(place.files().is_empty(), "{:?}", place.files());
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    run.kill().unwrap();
+    panic!("it goes on");
+}
+
 /// Whenever a signal comes, each file is whole or not there, and nothing else is.
 #[test]
 #[cfg(unix)]

@@ -91,6 +91,21 @@ impl<'a> Level<'a> {
         if is_border && pins == Pins::default() {
             return None;
         }
+        self.between([a, b], pins)
+    }
+
+    /// The same of an edge at the border along an edge of the box, which the surface grazes: on the side there that the triangle has
+    /// not, or else on the other.
+    pub(super) fn middle_beside(&self, h: HalfEdge) -> Option<Vertex> {
+        let [a, b] = self.ends(h);
+        let sides = (0..3).filter(|&i| self.topology.twin(h).is_none() && a.pins[i] && b.pins[i]);
+        let apex = self.vertices[self.topology.apex(h).index()].pins;
+        let (kept, free): (Vec<usize>, Vec<usize>) = sides.partition(|&i| apex[i]);
+        free.into_iter().chain(kept).find_map(|i| self.between([a, b], [0, 1, 2].map(|j| i == j)))
+    }
+
+    /// The point of the surface in the middle of two, with some coordinates pinned.
+    fn between(&self, [a, b]: [&Vertex; 2], pins: Pins) -> Option<Vertex> {
         let (middle, length) = (a.position.lerp(b.position, 0.5), a.position.distance(b.position));
         let met = (a.normal.dot(b.normal) < BENT)
             .then(|| unpinned(a.normal + b.normal, pins).unit())
