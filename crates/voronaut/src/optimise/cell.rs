@@ -190,7 +190,7 @@ impl<'a, M: Moving> View<'a, M> {
         let topology = self.dual.topology();
         let Some(last) = topology.star(self.seed).last().map(|h| self.beyond(h)) else { return Moments::default() };
         let width = spokes.iter().map(|w| w.norm()).fold(last.norm(), f64::max);
-        let is_convex = matches!(self.dual.kind(self.seed), Kind::Curve) || turn(spokes, last) <= std::f64::consts::PI;
+        let is_convex = matches!(self.dual.kind(self.seed), Kind::Curve | Kind::Held) || turn(spokes, last) <= std::f64::consts::PI;
         let sectors: Vec<[Vector; 2]> = if is_convex {
             vec![[spokes[0], last]]
         } else {
