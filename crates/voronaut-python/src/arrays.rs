@@ -26,6 +26,7 @@ pub(crate) fn mesh_of(given: &Bound<PyDict>) -> PyResult<Mesh> {
         ridges: ridges?,
         required_edges: required_edges?,
         required_triangles: required_triangles?,
+        periodic: Vec::new(),
     })
 }
 

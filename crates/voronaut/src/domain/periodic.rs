@@ -81,7 +81,10 @@ fn pair(domain: &Domain, labels: [i32; 2]) -> Result<(Pair, Vec<u32>)> {
     let behind = curves.each_ref().map(|curve| lengths_behind(curve));
     let lengths = behind.each_ref().map(|behind| behind[behind.len() - 1]);
     if (lengths[0] - lengths[1]).abs() > UNEQUAL * lengths[0].max(lengths[1]) {
-        let what = format!("the curves with labels {} and {} have lengths {} and {}", labels[0], labels[1], lengths[0], lengths[1]);
+        let what = format!(
+            "the curves with labels {} and {} have lengths {} and {}",
+            labels[0], labels[1], lengths[0], lengths[1]
+        );
         return Err(Error::domain(what, pslg.describe(runs[1][0]), CONGRUENT));
     }
     let tolerance = TOLERANCE * lengths[0];
@@ -95,7 +98,8 @@ fn pair(domain: &Domain, labels: [i32; 2]) -> Result<(Pair, Vec<u32>)> {
     Ok((Pair { labels, motion, runs }, lone))
 }
 
-const CONGRUENT: &str = "the two curves of a pair have to be equal but for a rotation and a translation: give them the same corners";
+const CONGRUENT: &str =
+    "the two curves of a pair have to be equal but for a rotation and a translation: give them the same corners";
 
 /// That a point of the first label has no partner on the second.
 fn no_partner(pslg: &Pslg, labels: [i32; 2], point: u32, why: &str, off: Option<f64>) -> Error {
@@ -113,7 +117,11 @@ fn run(domain: &Domain, label: i32) -> Result<Vec<u32>> {
         let labels = distinct(pslg.segments.iter().map(|segment| segment.label));
         let labels: Vec<String> = labels.iter().map(i32::to_string).collect();
         let what = format!("no boundary has label {label}");
-        return Err(Error::domain(what, "`periodic`", format!("labels of the domain's curves are {}", labels.join(", "))));
+        return Err(Error::domain(
+            what,
+            "`periodic`",
+            format!("labels of the domain's curves are {}", labels.join(", ")),
+        ));
     };
     let fault = |what: &str, point: u32| {
         let what = format!("the segments with label {label} {what}");
@@ -130,7 +138,10 @@ fn run(domain: &Domain, label: i32) -> Result<Vec<u32>> {
         }
     }
     if next.len() < pslg.segments.iter().filter(|segment| segment.label == label).count() {
-        return fault("are not all at the boundary: some have the domain on both sides, the first of all beginning", pslg.segments[first].ends[0]);
+        return fault(
+            "are not all at the boundary: some have the domain on both sides, the first of all beginning",
+            pslg.segments[first].ends[0],
+        );
     }
     let ends: BTreeSet<u32> = next.values().copied().collect();
     let starts: Vec<u32> = next.keys().copied().filter(|v| !ends.contains(v)).collect();
@@ -161,11 +172,13 @@ fn along(points: &[Point], behind: &[f64]) -> Vec<Point> {
         let i = behind.partition_point(|&l| l < target).clamp(1, last);
         points[i - 1].lerp(points[i], (target - behind[i - 1]) / (behind[i] - behind[i - 1]))
     };
-    (0..=PLACES).map(|k| match k {
-        0 => points[0],
-        PLACES => points[last],
-        k => place(k),
-    }).collect()
+    (0..=PLACES)
+        .map(|k| match k {
+            0 => points[0],
+            PLACES => points[last],
+            k => place(k),
+        })
+        .collect()
 }
 
 /// The motion that brings most corners of the one curve to corners of the other, and these.
@@ -205,7 +218,11 @@ fn in_step(curves: [&[Point]; 2], behind: &[Vec<f64>; 2], tolerance: f64) -> Vec
 ///
 /// # Errors
 /// One that is not, and how far it is from the other polyline.
-fn lone(curves: [&[Point]; 2], matched: &[[usize; 2]], tolerance: f64) -> std::result::Result<Vec<[usize; 2]>, (usize, usize, f64)> {
+fn lone(
+    curves: [&[Point]; 2],
+    matched: &[[usize; 2]],
+    tolerance: f64,
+) -> std::result::Result<Vec<[usize; 2]>, (usize, usize, f64)> {
     let mut lone = Vec::new();
     for side in [0, 1] {
         let (own, other) = (curves[side], curves[1 - side]);
@@ -236,8 +253,7 @@ fn lone(curves: [&[Point]; 2], matched: &[[usize; 2]], tolerance: f64) -> std::r
 /// The curves of a graph, those of pairs in step: a pair's are cut where either ends, and come as two chains with as many vertices each.
 pub(crate) fn curves_in_step(pslg: &Pslg, pairs: &[Pair]) -> Vec<Vec<Chain>> {
     let chains = pslg.chains();
-    let ends: BTreeSet<u32> =
-        chains.iter().flat_map(|c| [c.vertices[0], c.vertices[c.vertices.len() - 1]]).collect();
+    let ends: BTreeSet<u32> = chains.iter().flat_map(|c| [c.vertices[0], c.vertices[c.vertices.len() - 1]]).collect();
     let labels: BTreeSet<i32> = pairs.iter().flat_map(|pair| pair.labels).collect();
     let (paired, alone): (Vec<Chain>, Vec<Chain>) = chains.into_iter().partition(|c| labels.contains(&c.kind.label));
     let mut curves: Vec<Vec<Chain>> = alone.into_iter().map(|chain| vec![chain]).collect();

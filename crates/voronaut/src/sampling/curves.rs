@@ -33,13 +33,7 @@ pub(crate) fn simplify(domain: &Domain, pairs: &[Pair], field: &dyn MetricField,
 const SHORTER: [f64; 3] = [0.94, 0.88, 0.82];
 
 /// A curve, or two in step, with fewer vertices.
-fn thin(
-    pslg: &Pslg,
-    chains: &[Chain],
-    field: &dyn MetricField,
-    tolerance: f64,
-    neighbours: &Neighbours,
-) -> Vec<Chain> {
+fn thin(pslg: &Pslg, chains: &[Chain], field: &dyn MetricField, tolerance: f64, neighbours: &Neighbours) -> Vec<Chain> {
     let point = |&v: &u32| pslg.points[v as usize];
     let all: Vec<Vec<Point>> = chains.iter().map(|chain| chain.vertices.iter().map(point).collect()).collect();
     let behind = lengths_behind(&all, field);
@@ -51,7 +45,8 @@ fn thin(
     };
     // No chord strays farther than the tolerance, or leaves another vertex on its wrong side.
     let strays = |[i, j]: [usize; 2]| {
-        let distance = |points: &Vec<Point>, k: usize| points[k].distance(points[k].nearest_between(points[i], points[j]));
+        let distance =
+            |points: &Vec<Point>, k: usize| points[k].distance(points[k].nearest_between(points[i], points[j]));
         let farthest = |k: usize| all.iter().map(|points| distance(points, k)).fold(0.0, f64::max);
         let (far, k) = (i + 1..j).map(|k| (farthest(k), k)).max_by(|a, b| a.0.total_cmp(&b.0))?;
         let mut sides = chains.iter().zip(&all);
@@ -68,7 +63,8 @@ fn thin(
         let others = SHORTER.map(|step| within(&steps(step)));
         kept = others.into_iter().fold(kept, |best, other| if other.len() < best.len() { other } else { best });
     }
-    let thinned = |chain: &Chain| Chain { vertices: kept.iter().map(|&i| chain.vertices[i]).collect(), ..chain.clone() };
+    let thinned =
+        |chain: &Chain| Chain { vertices: kept.iter().map(|&i| chain.vertices[i]).collect(), ..chain.clone() };
     chains.iter().map(thinned).collect()
 }
 

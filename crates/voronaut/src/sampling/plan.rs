@@ -176,7 +176,8 @@ fn stretches(domain: &Domain, pairs: &[Pair]) -> Vec<Stretch> {
     if pairs.is_empty() {
         return all.collect();
     }
-    let points = |ends: [VertexId; 2]| ends.map(|v| sources[v.index()].expect("an end of a segment is a point of the graph"));
+    let points =
+        |ends: [VertexId; 2]| ends.map(|v| sources[v.index()].expect("an end of a segment is a point of the graph"));
     let turned_as = |edge: &Stretch, from: u32| {
         let [a, b] = edge.ends;
         if points(edge.ends)[0] == from { [a, b] } else { [b, a] }
@@ -310,7 +311,8 @@ pub(crate) fn sample_segments(dual: &mut Dual, edges: &[Stretch], arcs: &[Metric
         let n = pieces(arc.length() * scale.sqrt());
         let [a, b] = ends.map(|v| dual.position(v));
         let cuts: Vec<Point> = (1..n).map(|k| a.lerp(b, arc.parameter(k as f64 / n as f64))).collect();
-        let sides = [Some((ends, cuts.clone())), twin.map(|(ends, by)| (ends, cuts.iter().map(|&p| by.image(p)).collect()))];
+        let sides =
+            [Some((ends, cuts.clone())), twin.map(|(ends, by)| (ends, cuts.iter().map(|&p| by.image(p)).collect()))];
         for (ends, cuts) in sides.into_iter().flatten() {
             let segment = dual.topology().edge_between(ends[0], ends[1]).and_then(|h| dual.topology().constraint(h));
             let new = cut(dual, ends, &cuts);

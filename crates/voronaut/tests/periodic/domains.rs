@@ -43,7 +43,9 @@ pub(super) fn aerofoil() -> Domain {
         let t = f64::from(i) / 12.0;
         (1.0 + 5.0 * t, 0.3 * t * t)
     };
-    let thickness = |x: f64| half * x + 0.6 * (x.sqrt() * 0.2969 - 0.126 * x - 0.3516 * x * x + 0.2843 * x.powi(3) - 0.1036 * x.powi(4));
+    let thickness = |x: f64| {
+        half * x + 0.6 * (x.sqrt() * 0.2969 - 0.126 * x - 0.3516 * x * x + 0.2843 * x.powi(3) - 0.1036 * x.powi(4))
+    };
     let surface = |i: u32| 0.5 - 0.5 * (0.5 * TAU * f64::from(i) / 40.0).cos();
     let (far_x, far_y) = wake(12);
     let mut corners = Vec::new();
@@ -75,7 +77,8 @@ pub(super) fn sector(angle: f64, more: [u32; 2], round: impl Fn(f64) -> f64) -> 
     back.reverse();
     back.pop();
     corners.extend(back);
-    corners.extend(arc(1.0, 3).map(|(r, t, label)| (r * ((1.0 - t) * angle).cos(), r * ((1.0 - t) * angle).sin(), label)));
+    corners
+        .extend(arc(1.0, 3).map(|(r, t, label)| (r * ((1.0 - t) * angle).cos(), r * ((1.0 - t) * angle).sin(), label)));
     let rounded: Vec<(f64, f64, i32)> = corners.into_iter().map(|(x, y, label)| (round(x), round(y), label)).collect();
     polygon(&rounded)
 }

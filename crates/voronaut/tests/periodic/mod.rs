@@ -157,7 +157,8 @@ fn straight_sides_may_be_cut_differently_and_rounded() {
 #[test]
 fn curves_are_simplified_in_step() {
     let even = |_: Point| Tensor::isotropic(0.05);
-    let options = MeshOptions { periodic: vec![[1, 3]], vertices: Some(500), hausd: Some(2e-3), ..MeshOptions::default() };
+    let options =
+        MeshOptions { periodic: vec![[1, 3]], vertices: Some(500), hausd: Some(2e-3), ..MeshOptions::default() };
     let made = try_to(&waves(400, 0.5), &even, options).unwrap();
     demand_partners(&made.mesh, &[[1, 3]]);
     let count = made.mesh.periodic[0].vertices.len();
@@ -183,7 +184,8 @@ fn what_does_not_fit_is_told_with_its_place() {
     has(fault(&square(), &[[4, 7]]), "no boundary has label 7");
     has(fault(&square(), &[[4, 4]]), "label 4 twice");
     has(fault(&square(), &[[4, 2], [1, 2]]), "label 2 twice");
-    let bent = domains::polygon(&[(0.0, 0.0, 1), (1.0, 0.0, 2), (1.25, 0.5, 2), (1.0, 1.0, 3), (0.0, 1.0, 4), (0.26, 0.5, 4)]);
+    let bent =
+        domains::polygon(&[(0.0, 0.0, 1), (1.0, 0.0, 2), (1.25, 0.5, 2), (1.0, 1.0, 3), (0.0, 1.0, 4), (0.26, 0.5, 4)]);
     has(fault(&bent, &[[4, 2]]), "a corner of label 4 has no partner on label 2: it is 1.000e-2 off");
     let longer = domains::polygon(&[(0.0, 0.0, 1), (1.0, 0.0, 2), (1.0, 1.1, 3), (0.0, 1.0, 4)]);
     has(fault(&longer, &[[4, 2]]), "the curves with labels 4 and 2 have lengths 1 and 1.1");
@@ -197,8 +199,16 @@ fn what_does_not_fit_is_told_with_its_place() {
 fn cuts_of_no_width_are_no_domains() {
     // Both sides of the cut from (1, 0) to (2, 0) have the same points.
     let slit = graph(&[
-        (2.0, 0.0, 2), (0.0, 2.0, 2), (-2.0, 0.0, 2), (0.0, -2.0, 2), (2.0, 0.0, 4), (1.0, 0.0, 1),
-        (0.0, -1.0, 1), (-1.0, 0.0, 1), (0.0, 1.0, 1), (1.0, 0.0, 3),
+        (2.0, 0.0, 2),
+        (0.0, 2.0, 2),
+        (-2.0, 0.0, 2),
+        (0.0, -2.0, 2),
+        (2.0, 0.0, 4),
+        (1.0, 0.0, 1),
+        (0.0, -1.0, 1),
+        (-1.0, 0.0, 1),
+        (0.0, 1.0, 1),
+        (1.0, 0.0, 3),
     ]);
     let error = Domain::new(&slit).unwrap_err().to_string();
     assert!(error.contains("two points have the same position"), "{error}");
