@@ -102,11 +102,18 @@ fn write_markers<T, const N: usize>(
     Ok(())
 }
 
-/// Each pair as SU2 has it: its markers, the centre of the rotation, its angles (degrees), and the translation after it.
+/// Each pair as SU2 has it: its markers, the centre of a rotation and its angles (degrees), a translation. It is one or the other, for SU2 goes
+/// back by both with the other sign.
 fn write_periodic(sink: &mut Sink<'_>, pairs: &[Periodic]) -> io::Result<()> {
     let told = |pair: &Periodic| {
-        let ([a, b], [c, s], [u, v]) = (pair.labels, pair.rotation, pair.translation.map(Shortest));
-        format!("{a}, {b}, 0, 0, 0, 0, 0, {}, {u}, {v}, 0", Shortest(s.atan2(c).to_degrees()))
+        let ([a, b], [c, s], [u, v]) = (pair.labels, pair.rotation, pair.translation);
+        let half = 0.5 * if c > 0.0 { (1.0 + c) / s } else { s / (1.0 - c) };
+        let is_turned = half.is_finite();
+        let angle = if is_turned { s.atan2(c).to_degrees() } else { 0.0 };
+        let centre = if is_turned { [0.5 * u - half * v, 0.5 * v + half * u] } else { [0.0; 2] };
+        let by = if is_turned { [0.0; 2] } else { [u, v] };
+        let ([x, y], [u, v]) = (centre.map(Shortest), by.map(Shortest));
+        format!("{a}, {b}, {x}, {y}, 0, 0, 0, {}, {u}, {v}, 0", Shortest(angle))
     };
     if pairs.is_empty() {
         return Ok(());
@@ -336,7 +343,7 @@ mod tests {
         let mut out = Vec::new();
         write(&mesh, &mut out).unwrap();
         let expected =
-            "% MARKER_PERIODIC= ( 1, 7, 0, 0, 0, 0, 0, 90, 0.5, 0, 0, -2, 3, 0, 0, 0, 0, 0, 0, 0, 1e-9, 0 )\n";
+            "% MARKER_PERIODIC= ( 1, 7, 0.25, 0.25, 0, 0, 0, 90, 0, 0, 0, -2, 3, 0, 0, 0, 0, 0, 0, 0, 1e-9, 0 )\n";
         assert!(String::from_utf8(out.clone()).unwrap().ends_with(expected));
         assert_eq!(read(out.as_slice(), "a.su2").unwrap().mesh.edges, mesh.edges);
     }
