@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 /// Thickness of the trailing edge, and of the slit behind it.
-const SLIT: f64 = 0.0078125;
+const SLIT: f64 = 1.0 / 128.0;
 
 /// A round far field (label 2) around an aerofoil-like shape (1), cut open along a wake that bends: the upper side of the cut has
 /// label 3, the lower one 4.
@@ -33,15 +33,10 @@ const SQUARE: [(f64, f64, i32); 4] = [(0.0, 0.0, 1), (1.0, 0.0, 2), (1.0, 1.0, 3
 /// A polygon as a `.poly` file: its corners with the label of the segment that begins there.
 fn poly(corners: &[(f64, f64, i32)]) -> String {
     let n = corners.len();
-    let mut text = format!("{n} 2 0 0\n");
-    for (i, (x, y, _)) in (1..).zip(corners) {
-        text += &format!("{i} {x} {y}\n");
-    }
-    text += &format!("{n} 1\n");
-    for (i, (_, _, label)) in (1..).zip(corners) {
-        text += &format!("{i} {i} {} {label}\n", i % n + 1);
-    }
-    text + "0\n"
+    let rows = |row: &dyn Fn(usize) -> String| (1..=n).map(row).collect::<Vec<String>>().join("\n");
+    let points = rows(&|i| format!("{i} {} {}", corners[i - 1].0, corners[i - 1].1));
+    let segments = rows(&|i| format!("{i} {i} {} {}", i % n + 1, corners[i - 1].2));
+    format!("{n} 2 0 0\n{points}\n{n} 1\n{segments}\n0\n")
 }
 
 /// A text as SU2's reader (`CSU2ASCIIMeshReader` of versions 7 and 8) takes it: keywords at fixed columns, as many lines as are announced, one element

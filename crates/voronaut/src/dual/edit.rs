@@ -32,7 +32,9 @@ impl Dual<'_> {
     /// Leaves a segment and the vertices on it as they are from now on.
     pub(crate) fn hold(&mut self, segment: Constraint, vertices: &[VertexId]) {
         self.required[segment.0 as usize] = true;
-        vertices.iter().for_each(|v| self.kinds[v.index()] = Kind::Held);
+        for v in vertices {
+            self.kinds[v.index()] = Kind::Held;
+        }
     }
 
     /// Takes over a triangulation of the same vertices and constraints that was changed by other rules than the metric's.
