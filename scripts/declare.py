@@ -206,6 +206,8 @@ def kind(option):
     value, given = option["value"], option["default"]
     if option["name"] == "norm":
         return "float | str"
+    if option["name"] == "periodic":
+        return "str | tuple[int, int] | list[tuple[int, int]] | None"
     if given is not None and value in INTEGERS and not option["choices"]:
         return "int | str" if option["name"] == "canvas_size" else "int"
     found = "int" if value in INTEGERS else "float" if value in NUMBERS else "File" if value in FILES else "str"

@@ -50,6 +50,17 @@ def test_labels_come_along():
     assert (bottom[..., 1] == 0).all()
 
 
+def test_periodic_sides(tmp_path):
+    mesh = voronaut.mesh((SQUARE, SIDES, [1, 2, 3, 4]), lambda p: 0.02 + 0.2 * p[:, 0], n=300, periodic=[(4, 2), (1, 3)])
+    (labels, turn, by, off, vertices), _ = mesh.periodic
+    assert (labels, turn, by, off) == ((4, 2), (1, 0), (1, 0), 0) and mesh.report["periodic"][0]["vertices"] == len(vertices)
+    left, right = mesh.points[vertices[:, 0]], mesh.points[vertices[:, 1]]
+    assert (left[:, 1] == right[:, 1]).all() and (left[:, 0] == 0).all() and (right[:, 0] == 1).all()
+    mesh.save(tmp_path / "a.msh")
+    assert "$Periodic\n2\n" in (tmp_path / "a.msh").read_text()
+    assert voronaut.mesh((SQUARE, SIDES, [1, 2, 3, 4]), 0.2, n=60, periodic="4,2").periodic[0][0] == (4, 2)
+
+
 def test_geo_interface_of_an_object():
     class Land:
         __geo_interface__ = {"type": "Polygon", "coordinates": [[[0, 0], [2, 0], [2, 1], [0, 1], [0, 0]]]}

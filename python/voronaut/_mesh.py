@@ -35,6 +35,9 @@ class Mesh:
     corners, required_points, ridges, required_edges, required_triangles : arrays of numbers
         What Medit's format calls so.
     fields, triangle_fields : dict
+    periodic : list
+        Curves of the boundary that correspond: labels (a, b), cosine and sine, translation, how far corners are off at most, and an
+        array (N, 2) of vertices with their partners. Gmsh's and SU2's files have them.
     report : dict
         What the command that made the mesh reports; empty of others.
     diagram : Mesh or None
@@ -71,6 +74,7 @@ class Mesh:
         )
         self.fields: dict[str, npt.NDArray[Any]] = _named(f"{dot}fields", fields)
         self.triangle_fields: dict[str, npt.NDArray[Any]] = _named(f"{dot}triangle_fields", triangle_fields)
+        self.periodic: list[Any] = []
         self.report: dict[str, Any] = {}
 
     def _cells(self, name: str, value: object, columns: int) -> Ints:
@@ -103,6 +107,7 @@ class Mesh:
             setattr(made, name, arrays[name].view(np.int32))
         made.fields = {name: _values(found) for name, found in arrays.get("vertex_fields", {}).items()}
         made.triangle_fields = {name: _values(found) for name, found in arrays.get("triangle_fields", {}).items()}
+        made.periodic = [(tuple(labels), tuple(turn), tuple(by), off, pairs.view(np.int32)) for labels, turn, by, off, pairs in arrays.get("periodic", [])]
         made.report = report if report is not None else {"notes": arrays.get("notes", [])}
         return made
 
@@ -114,6 +119,7 @@ class Mesh:
             arrays[name] = np.ascontiguousarray(getattr(self, name)).astype(np.uint32)
         for name in ("point_labels", "triangle_labels", "edge_labels"):
             arrays[name] = np.ascontiguousarray(getattr(self, name), dtype=np.int32)
+        arrays["periodic"] = [(*pair[:4], np.ascontiguousarray(pair[4]).astype(np.uint32)) for pair in self.periodic]
         count, triangles = len(self.points), len(self.triangles)
         arrays["vertex_fields"] = {name: _given.values(f"fields[{name!r}]", it, count) for name, it in self.fields.items()}
         arrays["triangle_fields"] = {

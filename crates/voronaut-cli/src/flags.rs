@@ -1,7 +1,7 @@
 //! Parameters by the names that users type. The libraries call them by their own, in backquotes: `canvas_size`, `mesher=voronoi`.
 
 /// Those that the libraries speak of.
-pub(crate) const PARAMETERS: [&str; 28] = [
+pub(crate) const PARAMETERS: [&str; 29] = [
     "a_max",
     "background",
     "canvas",
@@ -21,6 +21,7 @@ pub(crate) const PARAMETERS: [&str; 28] = [
     "mesher",
     "net",
     "norm",
+    "periodic",
     "picking_radius",
     "polish",
     "protection",

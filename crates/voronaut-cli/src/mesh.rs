@@ -1,7 +1,7 @@
 //! `voronaut mesh`: from the command line to the library and back. All calls of the mesher are here.
 
 use crate::fields::{self, Scaled};
-use crate::options::{Damage, MetricChoices, Outputs, Paged, Run, Show, not_negative, positive, refuse};
+use crate::options::{Damage, MetricChoices, Outputs, Paged, Paired, Run, Show, not_negative, positive, refuse};
 use crate::pages::{self, Drawn};
 use crate::world::World;
 use crate::{account, files, pictures};
@@ -68,6 +68,8 @@ pub(crate) struct MeshArgs {
     /// In the plane: leave the edges of the domain's curves as they are, every one an edge of the mesh
     #[arg(long, conflicts_with = "hausd")]
     pub(crate) required: bool,
+    #[command(flatten)]
+    pub(crate) paired: Paired,
     /// Surfaces: vertices where mesh and surface are closest in the sense of least squares, instead of on the surface
     #[arg(long)]
     pub(crate) fit: bool,
@@ -141,6 +143,7 @@ impl MeshArgs {
             vertices: self.vertices.map(|vertices| vertices as usize),
             complexity: self.complexity,
             hausd: self.hausd,
+            periodic: self.paired.pairs(),
             fit: self.fit,
             stiffness: MeshOptions::default().stiffness,
             mesher: self.mesher,

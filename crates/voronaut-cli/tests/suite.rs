@@ -15,6 +15,7 @@ mod interpolate;
 mod limits;
 mod metric;
 mod options;
+mod periodic;
 mod protection;
 mod remesh;
 mod remesh_plane;

@@ -5,7 +5,7 @@ use serde_json::Value;
 use voronaut::canvas::CanvasFigures;
 use voronaut::certificate::Certificate;
 use voronaut::figures::{Diagram, Dual, NetFigures, Protection, StarSet};
-use voronaut::mesh::Mesh;
+use voronaut::mesh::{Mesh, Periodic};
 use voronaut::optimise::{Polished, Relaxed};
 use voronaut::quality::{
     Angles, EdgeLengths, Fidelity, Histograms, InterpolationError, MetricQuality, Quality, SurfaceFidelity,
@@ -43,6 +43,9 @@ pub struct Report {
     pub curvature: Option<CurvatureFigures>,
     /// Euclidean distance to the domain's boundary, or to the surface.
     pub fidelity: Option<Strayed>,
+    /// Curves of the boundary that correspond, with how many vertices; only where there are some.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub periodic: Vec<Periodic>,
     /// The canvas, where one was used.
     pub canvas: Option<CanvasFigures>,
     /// The diagram, where one was made.
@@ -104,7 +107,8 @@ impl Report {
     pub fn new(mesh: &Mesh, validity: Validity) -> Self {
         let (vertices, triangles) = (mesh.points.len(), mesh.triangles.len());
         let (peak_memory_bytes, version) = (peak_memory_bytes(), env!("CARGO_PKG_VERSION"));
-        Self { vertices, triangles, validity, peak_memory_bytes, version, ..Self::default() }
+        let periodic = mesh.periodic.clone();
+        Self { vertices, triangles, validity, periodic, peak_memory_bytes, version, ..Self::default() }
     }
 
     /// Adds figures in a metric.

@@ -2,14 +2,14 @@
 //! (`CSU2ASCIIMeshReader`) takes.
 
 use super::Document;
-use super::codec::{At, Form, Largest, Sink, Source, Text};
+use super::codec::{At, Form, Largest, Shortest, Sink, Source, Text};
 use super::cutting::cut;
 use super::document::{labelled, labels};
 use super::volumes::Volumes;
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Write};
 use voronaut::Result;
-use voronaut::mesh::{Edges, Mesh};
+use voronaut::mesh::{Edges, Mesh, Periodic};
 
 /// Reads a mesh: sections `NDIME=`, `NELEM=`, `NPOIN=` and `NMARK=` with `MARKER_TAG=` and `MARKER_ELEMS=`, in any order after the
 /// first; `%` begins a comment. Other sections are passed over; numbers behind the vertices of an element and the coordinates of
@@ -46,6 +46,9 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
 /// In the plane the markers are the labels of the edges that have one triangle: these are what SU2 calls boundaries, and one that has no label
 /// is in marker 0. In space SU2 knows no lines: the markers are the labels of the triangles, and there are no cells.
 ///
+/// Curves that correspond are told in a comment at the end, which is the option `MARKER_PERIODIC` of SU2's configuration: since version 7 SU2
+/// looks for periodic boundaries there, and refuses a section `NPERIODIC` in the mesh.
+///
 /// # Errors
 /// What `out` says.
 pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
@@ -60,7 +63,8 @@ pub(crate) fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
         sink.row([i])?;
     }
     if is_planar {
-        write_markers(&mut sink, &boundary(mesh), |&ends| [LINE, ends[0], ends[1]])
+        write_markers(&mut sink, &boundary(mesh), |&ends| [LINE, ends[0], ends[1]])?;
+        write_periodic(&mut sink, &mesh.periodic)
     } else {
         let mut markers: BTreeMap<i32, Vec<[u32; 3]>> = BTreeMap::new();
         for (&triangle, label) in mesh.triangles.iter().zip(labels(&mesh.triangle_labels)) {
@@ -96,6 +100,26 @@ fn write_markers<T, const N: usize>(
         elements.iter().try_for_each(|element| sink.row(row(element)))?;
     }
     Ok(())
+}
+
+/// Each pair as SU2 has it: its markers, the centre of a rotation and its angles (degrees), a translation. It is one or the other, for SU2 goes
+/// back by both with the other sign.
+fn write_periodic(sink: &mut Sink<'_>, pairs: &[Periodic]) -> io::Result<()> {
+    let told = |pair: &Periodic| {
+        let ([a, b], [c, s], [u, v]) = (pair.labels, pair.rotation, pair.translation);
+        let half = 0.5 * if c > 0.0 { (1.0 + c) / s } else { s / (1.0 - c) };
+        let is_turned = half.is_finite();
+        let angle = if is_turned { s.atan2(c).to_degrees() } else { 0.0 };
+        let centre = if is_turned { [0.5 * u - half * v, 0.5 * v + half * u] } else { [0.0; 2] };
+        let by = if is_turned { [0.0; 2] } else { [u, v] };
+        let ([x, y], [u, v]) = (centre.map(Shortest), by.map(Shortest));
+        format!("{a}, {b}, {x}, {y}, 0, 0, 0, {}, {u}, {v}, 0", Shortest(angle))
+    };
+    if pairs.is_empty() {
+        return Ok(());
+    }
+    let pairs: Vec<String> = pairs.iter().map(told).collect();
+    sink.line(format_args!("% MARKER_PERIODIC= ( {} )", pairs.join(", ")))
 }
 
 /// The edges of one triangle by their labels, in the order and direction of the triangles.
@@ -308,6 +332,20 @@ mod tests {
             "FFD_NBOX= 1\nFFD_CORNER_POINTS= 2\n0 0\n1 1\nNPERIODIC= 1\nPERIODIC_INDEX= 0\nPERIODIC_CENTER= 0 0 0\n";
         let mesh = |text: &str| read(text.as_bytes(), "a.su2").unwrap().mesh;
         assert_eq!(mesh(&format!("NZONE= 1\n{SQUARE}{more}")), mesh(SQUARE));
+    }
+
+    #[test]
+    fn curves_that_correspond_are_an_option_in_a_comment() {
+        let mut mesh = read(SQUARE.as_bytes(), "a.su2").unwrap().mesh;
+        let turn = Periodic { labels: [1, 7], rotation: [0.0, 1.0], translation: [0.5, 0.0], ..Periodic::default() };
+        let shift = Periodic { labels: [-2, 3], rotation: [1.0, 0.0], translation: [0.0, 1e-9], ..turn.clone() };
+        mesh.periodic = vec![turn, shift];
+        let mut out = Vec::new();
+        write(&mesh, &mut out).unwrap();
+        let expected =
+            "% MARKER_PERIODIC= ( 1, 7, 0.25, 0.25, 0, 0, 0, 90, 0, 0, 0, -2, 3, 0, 0, 0, 0, 0, 0, 0, 1e-9, 0 )\n";
+        assert!(String::from_utf8(out.clone()).unwrap().ends_with(expected));
+        assert_eq!(read(out.as_slice(), "a.su2").unwrap().mesh.edges, mesh.edges);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use voronaut::mesh::{Mesh, SolutionValues, Solutions};
+use voronaut::mesh::{Mesh, Periodic, SolutionValues, Solutions};
 use voronaut_io::{Document, Field, Fields};
 
 /// Lists of vertices, edges and triangles by their numbers, as a mesh has them.
@@ -26,7 +26,28 @@ pub(crate) fn mesh_of(given: &Bound<PyDict>) -> PyResult<Mesh> {
         ridges: ridges?,
         required_edges: required_edges?,
         required_triangles: required_triangles?,
+        periodic: pairs_of(given)?,
     })
+}
+
+/// Curves that correspond: labels, cosine and sine, translation, how far corners are off, and vertices (N, 2).
+type Pair<V> = ([i32; 2], [f64; 2], [f64; 2], f64, V);
+
+fn pairs_of(given: &Bound<PyDict>) -> PyResult<Vec<Periodic>> {
+    let Some(all) = given.get_item("periodic")? else { return Ok(Vec::new()) };
+    let pair = |(labels, rotation, translation, off, vertices): Pair<PyReadonlyArray2<u32>>| {
+        Ok(Periodic { labels, rotation, translation, off, vertices: vertices.as_slice()?.as_chunks().0.to_vec() })
+    };
+    all.extract::<Vec<_>>()?.into_iter().map(pair).collect()
+}
+
+fn of_pairs(py: Python, pairs: Vec<Periodic>) -> PyResult<Vec<Pair<Py<PyAny>>>> {
+    let pair = |pair: Periodic| {
+        let count = pair.vertices.len();
+        let vertices = PyArray1::from_vec(py, pair.vertices.into_flattened()).reshape([count, 2])?;
+        Ok((pair.labels, pair.rotation, pair.translation, pair.off, vertices.into_any().unbind()))
+    };
+    pairs.into_iter().map(pair).collect()
 }
 
 /// A mesh with its fields, `vertex_fields` and `triangle_fields` by their names.
@@ -110,6 +131,7 @@ pub(crate) fn of_mesh(py: Python<'_>, mesh: Mesh) -> PyResult<Bound<'_, PyDict>>
     for (name, list) in LISTS.into_iter().zip(lists) {
         made.set_item(name, PyArray1::from_vec(py, list))?;
     }
+    made.set_item("periodic", of_pairs(py, mesh.periodic)?)?;
     Ok(made)
 }
 

@@ -3,6 +3,7 @@
 mod architecture;
 mod damage;
 mod interpolation;
+mod periodic;
 mod random_domains;
 mod surfaces;
 mod threads;

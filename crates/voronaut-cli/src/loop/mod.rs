@@ -3,7 +3,7 @@
 mod solver;
 
 use crate::account::ours;
-use crate::options::{MetricChoices, Run, finite, not_negative, positive, refuse};
+use crate::options::{MetricChoices, Paired, Run, finite, not_negative, positive, refuse};
 use crate::progress::Bar;
 use crate::{files, summary};
 use clap::{Args, value_parser};
@@ -75,6 +75,8 @@ pub(crate) struct LoopArgs {
     /// How far (Euclidean) edges may stray from the boundary [default: the domain's own tolerance]
     #[arg(long, value_name = "D", value_parser = not_negative)]
     pub(crate) hausd: Option<f64>,
+    #[command(flatten)]
+    pub(crate) paired: Paired,
     /// How much work is spent on what is left to gain: fast, normal or best
     #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().effort)]
     pub(crate) effort: Effort,
@@ -115,6 +117,7 @@ impl LoopArgs {
                 vertices: self.vertices.map(|vertices| vertices as usize),
                 complexity: self.complexity,
                 hausd: self.hausd,
+                periodic: self.paired.pairs(),
                 effort: self.effort,
                 lloyd: self.lloyd,
                 polish: self.polish,

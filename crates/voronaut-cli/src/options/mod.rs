@@ -9,7 +9,7 @@ pub(crate) use values::{
 use clap::{Args, value_parser};
 use std::path::PathBuf;
 pub(crate) use values::GIB;
-use values::{default_memory_limit, window};
+use values::{default_memory_limit, pairs, window};
 use voronaut::geometry::Aabb;
 use voronaut::mesh::TensorOrder;
 use voronaut::metric::{Bounds, MOST_SWEEPS, Norm, Recovery};
@@ -51,6 +51,22 @@ pub(crate) struct MetricChoices {
     /// The mesh on which a .sol metric is given [default: the domain's own]
     #[arg(long, value_name = "MESH")]
     pub(crate) background: Option<PathBuf>,
+}
+
+/// Curves of the boundary that correspond.
+#[derive(Debug, Args)]
+pub(crate) struct Paired {
+    /// In the plane: edges on the boundary curves with labels A and B correspond, which are equal but for a rotation and a
+    /// translation; for several pairs several times
+    #[arg(long, value_name = "A,B", value_parser = pairs, allow_hyphen_values = true)]
+    periodic: Vec<Vec<[i32; 2]>>,
+}
+
+impl Paired {
+    /// The pairs of labels.
+    pub(crate) fn pairs(&self) -> Vec<[i32; 2]> {
+        self.periodic.concat()
+    }
 }
 
 #[derive(Debug, Args)]

@@ -118,6 +118,15 @@ pub(crate) fn canvas_size(text: &str) -> Result<CanvasSize, String> {
     }
 }
 
+/// Pairs of labels, one after the other.
+pub(super) fn pairs(text: &str) -> Result<Vec<[i32; 2]>, String> {
+    let labels: Option<Vec<i32>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
+    match labels.as_deref().map(<[i32]>::as_chunks) {
+        Some((pairs, [])) => Ok(pairs.to_vec()),
+        _ => Err("not two labels A,B".into()),
+    }
+}
+
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     not_negative(text).ok().filter(|&value| value > 0.0).ok_or_else(|| "not a positive number".into())
 }

@@ -4,6 +4,7 @@ mod blocks;
 mod data;
 mod elements;
 mod groups;
+mod periodic;
 mod reader;
 mod tags;
 mod writer;

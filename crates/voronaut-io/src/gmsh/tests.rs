@@ -38,6 +38,7 @@ fn sample(z: f64) -> Mesh {
         ridges: vec![1, 2],
         required_edges: vec![2],
         required_triangles: vec![1],
+        periodic: Vec::new(),
     }
 }
 

@@ -20,6 +20,8 @@ use voronaut::mesh::Mesh;
 /// `required vertices`, `ridges`, `required edges` and `required triangles`. In version 2.2, where Gmsh repeats elements for each
 /// of their groups, those of edges and triangles are not written.
 ///
+/// Curves that correspond ([`Mesh::periodic`]) are in `$Periodic`, where the first is the master.
+///
 /// Fields are `$NodeData` and `$ElementData`; vectors of two numbers get a third, 0; tensors are written row by row with 9 numbers.
 /// Other fields of several numbers are one field `NAME_0`, `NAME_1`, ... each. So that meshio reads fields of triangles, in
 /// version 4.1 edges and points have values too: of a triangle at their first vertex, 0 where there is none. Of files of version 2.2
@@ -35,6 +37,7 @@ pub fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &m
         Version::V4_1 => plan.write_4(&mut sink)?,
         Version::V2_2 => plan.write_2(&mut sink)?,
     }
+    plan.write_periodic(version, &mut sink)?;
     for column in fields.vertices.iter().flat_map(Column::of) {
         write_data("NodeData", &column, (0..mesh.points.len()).map(Some), &mut sink)?;
     }
@@ -46,21 +49,23 @@ pub fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &m
 }
 
 /// Which elements a mesh becomes, and in what order: triangles, edges, points, each by label and marks.
-struct Plan<'a> {
-    mesh: &'a Mesh,
-    parts: Vec<Part>,
+pub(super) struct Plan<'a> {
+    pub(super) mesh: &'a Mesh,
+    pub(super) parts: Vec<Part>,
     groups: Vec<Numbering>,
 }
 
 /// The elements of an entity: those of one dimension with the same label and marks.
-struct Part {
-    dimension: u8,
+pub(super) struct Part {
+    pub(super) dimension: u8,
+    /// Their label and marks.
+    pub(super) key: (i32, Marks),
     /// The tag of the entity.
-    entity: i32,
+    pub(super) entity: i32,
     /// The physical groups of the entity.
     groups: Vec<i32>,
     /// Vertices, edges or triangles.
-    elements: Vec<u32>,
+    pub(super) elements: Vec<u32>,
 }
 
 impl<'a> Plan<'a> {
@@ -74,8 +79,8 @@ impl<'a> Plan<'a> {
             let sorted = sort(mesh, dimension, count, labels);
             let mut numbering = Numbering::new(dimension, sorted.keys().map(|&(label, _)| label));
             let first = parts.len();
-            for (entity, ((label, marks), elements)) in (1..).zip(sorted) {
-                parts.push(Part { dimension, entity, groups: numbering.tags(label, marks), elements });
+            for (entity, (key, elements)) in (1..).zip(sorted) {
+                parts.push(Part { dimension, key, entity, groups: numbering.tags(key.0, key.1), elements });
             }
             numbering.keep_used(&parts[first..].iter().flat_map(|part| part.groups.iter().copied()).collect());
             groups.push(numbering);
@@ -109,7 +114,8 @@ impl<'a> Plan<'a> {
             }
         }
         if is_bare {
-            self.write_entity(&Part { dimension: 2, entity: 1, groups: vec![], elements: vec![] }, sink)?;
+            let key = (0, Marks::default());
+            self.write_entity(&Part { dimension: 2, key, entity: 1, groups: vec![], elements: vec![] }, sink)?;
         }
         write_end("Entities", sink)?;
         self.write_nodes_4(sink)?;
@@ -200,7 +206,7 @@ impl<'a> Plan<'a> {
     }
 
     /// The vertices of a vertex, an edge or a triangle.
-    fn nodes<'b>(&'b self, dimension: u8, element: &'b u32) -> &'b [u32] {
+    pub(super) fn nodes<'b>(&'b self, dimension: u8, element: &'b u32) -> &'b [u32] {
         match dimension {
             0 => std::slice::from_ref(element),
             1 => &self.mesh.edges[*element as usize],
@@ -301,7 +307,7 @@ fn begin(version: Version, form: Form, out: &mut dyn Write) -> io::Result<Sink<'
 }
 
 /// Writes the line that ends a section.
-fn write_end(section: &str, sink: &mut Sink<'_>) -> io::Result<()> {
+pub(super) fn write_end(section: &str, sink: &mut Sink<'_>) -> io::Result<()> {
     if sink.is_binary() {
         // Behind the bytes of a block a line begins.
         sink.line(format_args!(""))?;

@@ -17,6 +17,7 @@ fn sample(z: f64) -> Mesh {
         ridges: vec![0, 1],
         required_edges: vec![1],
         required_triangles: vec![1],
+        periodic: Vec::new(),
     }
 }
 

@@ -8,7 +8,7 @@ use crate::geometry::{Point, Tensor, Vector};
 use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::planar::Planar;
-use crate::triangulation::{FaceId, Flipping, HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{Constraint, FaceId, Flipping, HalfEdge, Triangulation, VertexId};
 
 impl Dual<'_> {
     /// Puts a free seed strictly inside a face.
@@ -27,6 +27,14 @@ impl Dual<'_> {
         let v = self.planar.insert_on_edge(h, p)?;
         self.settle(v, kind);
         Some(v)
+    }
+
+    /// Leaves a segment and the vertices on it as they are from now on.
+    pub(crate) fn hold(&mut self, segment: Constraint, vertices: &[VertexId]) {
+        self.required[segment.0 as usize] = true;
+        for v in vertices {
+            self.kinds[v.index()] = Kind::Held;
+        }
     }
 
     /// Takes over a triangulation of the same vertices and constraints that was changed by other rules than the metric's.
@@ -53,7 +61,7 @@ impl Dual<'_> {
 
     /// Moves a seed if all its faces stay counter-clockwise; what the metric is there its derivatives tell, until the caller measures it.
     pub(crate) fn shift(&mut self, v: VertexId, to: Point) -> bool {
-        debug_assert!(!matches!(self.kind(v), Kind::Corner(_)), "corners stay");
+        debug_assert!(!matches!(self.kind(v), Kind::Corner(_) | Kind::Held), "corners stay");
         self.forget();
         let by = to - self.position(v);
         let is_moved = self.planar.move_vertex(v, to);

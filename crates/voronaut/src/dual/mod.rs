@@ -36,6 +36,8 @@ pub enum Kind {
     Corner(u32),
     /// It lies on a segment of the domain's graph.
     Curve,
+    /// It lies on one and stays where it is: on another segment of the pair is its partner.
+    Held,
     /// Nothing: it may move and go.
     Free,
 }

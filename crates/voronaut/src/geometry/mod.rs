@@ -5,6 +5,7 @@ mod intersection;
 mod jet;
 mod joint;
 mod linear;
+mod motion;
 mod point;
 mod predicates;
 mod quadrature;
@@ -14,6 +15,7 @@ mod tree;
 
 pub(crate) use contact::{Corners, contacts, is_flat};
 pub use jet::Jet3;
+pub(crate) use motion::Motion;
 pub use point::{Aabb, Aabb3, Point, Point3, Vector, Vector3};
 pub(crate) use point::{Readable, kept_within};
 pub use predicates::{Orientation, orientation, signed_area};

@@ -4,12 +4,14 @@
 pub(crate) mod edges;
 mod locate;
 mod network;
+mod periodic;
 mod solution;
 
 pub(crate) use edges::edges_of;
 pub use edges::{EdgeSide, Edges};
 pub(crate) use locate::{Located, Locator};
 pub(crate) use network::Network;
+pub use periodic::Periodic;
 pub use solution::{Solution, SolutionValues, Solutions, TensorOrder};
 
 use crate::error::{Error, Result};
@@ -44,6 +46,8 @@ pub struct Mesh {
     pub required_edges: Vec<u32>,
     /// Entries of `triangles` that the user marked as required.
     pub required_triangles: Vec<u32>,
+    /// Curves of the boundary whose vertices correspond.
+    pub periodic: Vec<Periodic>,
 }
 
 impl Mesh {
@@ -96,7 +100,9 @@ impl Mesh {
     pub fn check_numbers(&self) -> Result<()> {
         let vertices = self.points.len();
         let referred = self.triangles.as_flattened().iter().chain(self.edges.as_flattened());
-        let vertex = referred.chain(&self.corners).chain(&self.required_points).find(|&&v| v as usize >= vertices);
+        let partners = self.periodic.iter().flat_map(|pair| pair.vertices.as_flattened());
+        let listed = self.corners.iter().chain(&self.required_points).chain(partners);
+        let vertex = referred.chain(listed).find(|&&v| v as usize >= vertices);
         let vertex = (vertex.copied(), "vertex", vertices, "vertices");
         let beyond = |list: &[u32], most: usize| list.iter().copied().find(|&i| i as usize >= most);
         let [edges, triangles] = [self.edges.len(), self.triangles.len()];

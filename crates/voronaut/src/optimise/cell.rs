@@ -105,7 +105,7 @@ impl std::ops::Add for Moments {
 }
 
 /// The cells that relaxation works with.
-pub enum Cells<'a> {
+pub(crate) enum Cells<'a> {
     /// Cut in the tangent plane at each seed, from what its neighbours are seen as through the second-order logarithm map.
     /// Fast; right where the metric changes little over an edge.
     Tangent,
@@ -190,7 +190,8 @@ impl<'a, M: Moving> View<'a, M> {
         let topology = self.dual.topology();
         let Some(last) = topology.star(self.seed).last().map(|h| self.beyond(h)) else { return Moments::default() };
         let width = spokes.iter().map(|w| w.norm()).fold(last.norm(), f64::max);
-        let is_convex = matches!(self.dual.kind(self.seed), Kind::Curve) || turn(spokes, last) <= std::f64::consts::PI;
+        let is_convex =
+            matches!(self.dual.kind(self.seed), Kind::Curve | Kind::Held) || turn(spokes, last) <= std::f64::consts::PI;
         let sectors: Vec<[Vector; 2]> = if is_convex {
             vec![[spokes[0], last]]
         } else {
@@ -250,7 +251,7 @@ fn turn(spokes: &[Vector], last: Vector) -> f64 {
 }
 
 /// A canvas, and the metric area that each of its vertices stands for.
-pub struct OnCanvas<'a> {
+pub(crate) struct OnCanvas<'a> {
     canvas: &'a Canvas,
     areas: Vec<f64>,
     tensors: Vec<Tensor>,

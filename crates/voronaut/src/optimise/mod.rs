@@ -11,8 +11,8 @@ mod protect;
 mod quasi_newton;
 mod survey;
 
-pub(crate) use cell::Tangent;
-pub use cell::{Cell, Cells, OnCanvas};
+pub use cell::Cell;
+pub(crate) use cell::{Cells, OnCanvas, Tangent};
 pub(crate) use exchange::{exchange, meet_blocked_flips, mend_needles, mend_worst};
 pub(crate) use fit::{FitOptions, fit};
 pub use lloyd::Relaxed;

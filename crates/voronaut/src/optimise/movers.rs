@@ -91,10 +91,10 @@ fn is_rough_around(dual: &impl Moving, v: VertexId) -> bool {
 }
 
 impl Mover {
-    /// The seed, and the gradient of the scaled energy there; `None` of a corner, and of a seed on a segment without room.
+    /// The seed, and the gradient of the scaled energy there; `None` of a corner, one that is held, and of a seed on a segment without room.
     fn new(dual: &impl Moving, id: VertexId, moments: &Moments, straight: bool) -> Option<(Self, Vector)> {
         let freedom = match dual.kind(id) {
-            Kind::Corner(_) => return None,
+            Kind::Corner(_) | Kind::Held => return None,
             Kind::Free if straight => Freedom::Straight,
             Kind::Free => Freedom::Exponential,
             Kind::Curve => {

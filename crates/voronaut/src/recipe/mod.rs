@@ -9,6 +9,7 @@ mod mesher;
 mod on_surface;
 mod options;
 mod patches;
+mod periodic;
 mod protection;
 mod remesh_input;
 mod settle;
@@ -29,7 +30,7 @@ pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
 pub use surface_field::{SurfaceSource, metric_on_surface};
 
 use crate::canvas::{Canvas, CanvasFigures};
-use crate::domain::Domain;
+use crate::domain::{Domain, Pair, paired};
 use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
 use crate::figures;
@@ -42,6 +43,7 @@ use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{
     Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, sample_segments, simplify,
 };
+use periodic::correspondence;
 use settle::Stopwatch;
 
 /// A function is polished for that has at least this share of the error to which it is known.
@@ -150,7 +152,7 @@ pub fn mesh_for(
         watch.time("settle", || settle::settle(&mut dual, &domain, job.options, job.progress))?
     };
     let polished = aim.map(|aim| watch.time("polish", || job.polish(&mut dual, aim))).transpose()?;
-    let mesh = watch.time("check", || job.finish(&domain, &dual))?;
+    let mesh = watch.time("check", || job.finish(&domain, &dual, &plan.pairs))?;
     let (net, protection) = job.net(&domain, &dual, protected);
     Ok(Meshed {
         mesh,
@@ -195,14 +197,17 @@ impl<'a> Job<'a> {
     fn plan(&mut self, domain: &Domain) -> Result<(Domain, Plan, usize, f64)> {
         self.progress.begin("planning", 1)?;
         let tolerance = self.options.hausd.unwrap_or(domain.pslg().tolerance);
-        let mut plan = Plan::new(domain, self.field, self.target())?;
+        let (whole, of_whole) = paired(domain, &self.options.periodic)?;
+        let mut plan = Plan::new(&whole, &of_whole, self.field, self.target())?;
         let (mut count, mut scale) = plan.start(self.target(), self.options.memory_limit)?;
-        let mut simplified = domain.clone();
+        let mut simplified = whole.clone();
         if tolerance > 0.0 {
             // Fewer corners let the metric be finer, and the other way round: two rounds settle it.
             for _ in 0..2 {
-                simplified = simplify(domain, &Scaled { field: self.field, factor: scale }, tolerance);
-                plan = plan.again(&simplified, self.field, self.target())?;
+                let thinned = simplify(&whole, &of_whole, &Scaled { field: self.field, factor: scale }, tolerance);
+                let pairs;
+                (simplified, pairs) = paired(&thinned, &self.options.periodic)?;
+                plan = plan.again(&simplified, &pairs, self.field, self.target())?;
                 (count, scale) = plan.start(self.target(), self.options.memory_limit)?;
             }
         }
@@ -311,9 +316,10 @@ impl<'a> Job<'a> {
         polish(dual, aim.function, aim.norm, patience, self.progress)
     }
 
-    fn finish(&self, domain: &Domain, dual: &Dual) -> Result<Mesh> {
+    fn finish(&self, domain: &Domain, dual: &Dual, pairs: &[Pair]) -> Result<Mesh> {
         self.progress.begin("checking", 1)?;
-        let mesh = dual.to_mesh(domain);
+        let mut mesh = dual.to_mesh(domain);
+        mesh.periodic = correspondence(&mesh, domain, pairs)?;
         quality::check(&mesh)?;
         Ok(mesh)
     }

@@ -16,6 +16,9 @@ pub struct MeshOptions {
     /// How far (Euclidean) mesh edges may stray from the boundary; `None`: the domain's own tolerance. Of a surface: how far
     /// mesh and surface may be from each other; where that asks for more vertices, and no number is given, there are more.
     pub hausd: Option<f64>,
+    /// In the plane: pairs of labels of boundary curves that a rotation and a translation map onto each other. The mesh's edges on the two
+    /// correspond ([`Mesh::periodic`](crate::mesh::Mesh::periodic)).
+    pub periodic: Vec<[i32; 2]>,
     /// Of a surface: whether vertices are moved off it, to where mesh and surface are closest in the sense of least squares.
     pub fit: bool,
     /// How stiffly these vertices are held where they were; see `FitOptions`.
@@ -58,6 +61,7 @@ impl Default for MeshOptions {
             vertices: None,
             complexity: None,
             hausd: None,
+            periodic: Vec::new(),
             fit: false,
             stiffness: FitOptions::default().stiffness,
             mesher: Mesher::default(),

@@ -1,7 +1,7 @@
 //! Curves of a domain simplified within a distance, which tells what of the input's vertices the mesh keeps; and sizes for which
 //! chords stay as close to them.
 
-use crate::domain::{Chain, Domain, Pslg};
+use crate::domain::{Chain, Domain, Pair, Pslg, curves_in_step};
 use crate::geodesic::chord;
 use crate::geometry::{Aabb, BoxTree, Orientation, Point, Tensor, Vector, kept_within, orientation, widened};
 use crate::lists::distinct;
@@ -10,14 +10,16 @@ use std::collections::HashSet;
 
 /// The domain with fewer vertices along its curves: about one per unit of metric length, more where an edge would
 /// stray farther than `tolerance` (Euclidean) from the vertices that it skips. Ends of curves stay, loops keep at
-/// least three vertices, and where simplified curves would meet, they are kept finer, if need be as they were.
-pub(crate) fn simplify(domain: &Domain, field: &dyn MetricField, tolerance: f64) -> Domain {
+/// least three vertices, and where simplified curves would meet, they are kept finer, if need be as they were. Curves of periodic pairs
+/// keep the same vertices.
+pub(crate) fn simplify(domain: &Domain, pairs: &[Pair], field: &dyn MetricField, tolerance: f64) -> Domain {
     let pslg = domain.pslg();
-    let chains = pslg.chains();
+    let curves = curves_in_step(pslg, pairs);
     let neighbours = Neighbours::new(pslg);
     let mut allowed = tolerance;
     for _ in 0..6 {
-        let thinned: Vec<Chain> = chains.iter().map(|chain| thin(pslg, chain, field, allowed, &neighbours)).collect();
+        let thinned: Vec<Chain> =
+            curves.iter().flat_map(|curve| thin(pslg, curve, field, allowed, &neighbours)).collect();
         if let Ok(simplified) = Domain::new(&pslg.with_chains(&thinned)) {
             return simplified;
         }
@@ -30,20 +32,26 @@ pub(crate) fn simplify(domain: &Domain, field: &dyn MetricField, tolerance: f64)
 /// in two.
 const SHORTER: [f64; 3] = [0.94, 0.88, 0.82];
 
-fn thin(pslg: &Pslg, chain: &Chain, field: &dyn MetricField, tolerance: f64, neighbours: &Neighbours) -> Chain {
-    let points: Vec<Point> = chain.vertices.iter().map(|&v| pslg.points[v as usize]).collect();
-    let behind = lengths_behind(&points, field);
-    let is_loop = chain.vertices[0] == chain.vertices[chain.vertices.len() - 1];
+/// A curve, or two in step, with fewer vertices.
+fn thin(pslg: &Pslg, chains: &[Chain], field: &dyn MetricField, tolerance: f64, neighbours: &Neighbours) -> Vec<Chain> {
+    let point = |&v: &u32| pslg.points[v as usize];
+    let all: Vec<Vec<Point>> = chains.iter().map(|chain| chain.vertices.iter().map(point).collect()).collect();
+    let behind = lengths_behind(&all, field);
+    let n = behind.len() - 1;
+    let is_loop = chains[0].vertices[0] == chains[0].vertices[n];
     let steps = |step: f64| {
         let kept = distinct(even_steps(&behind, step));
-        let n = points.len() - 1;
         if is_loop && kept.len() < 4 { distinct([0, n / 3, 2 * n / 3, n]) } else { kept }
     };
     // No chord strays farther than the tolerance, or leaves another vertex on its wrong side.
     let strays = |[i, j]: [usize; 2]| {
-        let distance = |k: usize| points[k].distance(points[k].nearest_between(points[i], points[j]));
-        let (far, k) = (i + 1..j).map(|k| (distance(k), k)).max_by(|a, b| a.0.total_cmp(&b.0))?;
-        (far > tolerance || neighbours.any_between(&points[i..=j], &chain.vertices[i..=j])).then_some(k)
+        let distance =
+            |points: &Vec<Point>, k: usize| points[k].distance(points[k].nearest_between(points[i], points[j]));
+        let farthest = |k: usize| all.iter().map(|points| distance(points, k)).fold(0.0, f64::max);
+        let (far, k) = (i + 1..j).map(|k| (farthest(k), k)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let mut sides = chains.iter().zip(&all);
+        let crosses = sides.any(|(chain, points)| neighbours.any_between(&points[i..=j], &chain.vertices[i..=j]));
+        (far > tolerance || crosses).then_some(k)
     };
     let within = |steps: &[usize]| -> Vec<usize> {
         let inner = steps.windows(2).flat_map(|pair| kept_within([pair[0], pair[1]], strays));
@@ -55,7 +63,9 @@ fn thin(pslg: &Pslg, chain: &Chain, field: &dyn MetricField, tolerance: f64, nei
         let others = SHORTER.map(|step| within(&steps(step)));
         kept = others.into_iter().fold(kept, |best, other| if other.len() < best.len() { other } else { best });
     }
-    Chain { vertices: kept.into_iter().map(|i| chain.vertices[i]).collect(), kind: chain.kind }
+    let thinned =
+        |chain: &Chain| Chain { vertices: kept.iter().map(|&i| chain.vertices[i]).collect(), ..chain.clone() };
+    chains.iter().map(thinned).collect()
 }
 
 /// All vertices of the domain, to see which of them a chord would leave on its other side.
@@ -85,11 +95,12 @@ fn is_inside(polygon: &[Point], p: Point) -> bool {
     inside
 }
 
-/// The metric length of a polyline up to each of its points.
-fn lengths_behind(points: &[Point], field: &dyn MetricField) -> Vec<f64> {
+/// The metric length of a polyline up to each of its points; of several in step, that which is greatest of each of their segments.
+fn lengths_behind(all: &[Vec<Point>], field: &dyn MetricField) -> Vec<f64> {
     let mut behind = vec![0.0];
-    for pair in points.windows(2) {
-        behind.push(behind[behind.len() - 1] + chord(field, pair[0], pair[1]));
+    for i in 1..all[0].len() {
+        let longest = all.iter().map(|points| chord(field, points[i - 1], points[i])).fold(0.0, f64::max);
+        behind.push(behind[i - 1] + longest);
     }
     behind
 }
@@ -136,7 +147,7 @@ impl CurveSizes {
     pub(crate) fn new(domain: &Domain, hausd: f64, ar: f64) -> Self {
         let extent = domain.bounds().extent();
         let long = extent.x.max(extent.y);
-        let coarse = simplify(domain, &move |_: Point| Tensor::isotropic(long), hausd);
+        let coarse = simplify(domain, &[], &move |_: Point| Tensor::isotropic(long), hausd);
         let pslg = coarse.pslg();
         let required: HashSet<u32> = pslg.required_points.iter().copied().collect();
         let chains = pslg.chains();
@@ -203,7 +214,7 @@ mod tests {
     fn a_circle_is_cut_at_unit_length_or_finer_where_the_tolerance_asks() {
         let domain = Domain::shape("disk:0,0,1").unwrap();
         let size = |h: f64| move |_: Point| Tensor::isotropic(h);
-        let sides = |h: f64, tolerance: f64| simplify(&domain, &size(h), tolerance).boundary().len();
+        let sides = |h: f64, tolerance: f64| simplify(&domain, &[], &size(h), tolerance).boundary().len();
         assert_eq!(sides(0.1, 1.0), 63);
         assert!(sides(10.0, 1e-2) >= 22 && sides(10.0, 1e-2) < 60, "{}", sides(10.0, 1e-2));
         assert!(sides(10.0, 10.0) >= 3);
@@ -214,7 +225,7 @@ mod tests {
         let domain = Domain::shape("disk:0,0,1").unwrap();
         for hausd in [1e-3, 2e-3, 5e-3] {
             let unit = (SAGITTA * hausd).sqrt();
-            let sides = simplify(&domain, &|_: Point| Tensor::isotropic(unit), hausd).boundary();
+            let sides = simplify(&domain, &[], &|_: Point| Tensor::isotropic(unit), hausd).boundary();
             let lengths: Vec<f64> = sides.iter().map(|(a, b)| a.distance(*b) / unit).collect();
             assert!(lengths.iter().all(|length| (0.7..1.1).contains(length)), "{hausd}: {lengths:?}");
         }
@@ -223,7 +234,7 @@ mod tests {
     #[test]
     fn corners_of_a_square_stay_within_a_small_tolerance() {
         let square = Domain::shape("rect:0,0,1,1").unwrap();
-        assert_eq!(simplify(&square, &|_: Point| Tensor::isotropic(100.0), 0.01).boundary().len(), 4);
+        assert_eq!(simplify(&square, &[], &|_: Point| Tensor::isotropic(100.0), 0.01).boundary().len(), 4);
     }
 
     /// A disc, and a size that is asked for nowhere.

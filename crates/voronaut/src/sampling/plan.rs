@@ -2,15 +2,16 @@
 //! sampled at unit metric length.
 
 use crate::canvas;
-use crate::domain::Domain;
+use crate::domain::{Domain, Pair};
 use crate::dual::{Dual, Moving};
 use crate::error::{Error, Result};
 use crate::geodesic::{chord_by, nearby};
-use crate::geometry::Point;
-use crate::lists::distinct;
+use crate::geometry::{Motion, Point};
+use crate::lists::{distinct, in_order};
 use crate::metric::{MetricField, complexity, rough_complexity};
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
+use std::collections::{BTreeSet, HashMap};
 
 /// What the size of the mesh should follow from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,12 +33,40 @@ const BYTES_PER_VERTEX: f64 = 1200.0;
 pub(crate) struct Plan {
     /// The integral of sqrt(det M).
     pub complexity: f64,
-    /// The ends of every constrained edge of the domain's triangulation, and whether it must stay whole.
-    pub edges: Vec<([VertexId; 2], bool)>,
+    /// The constrained edges of the domain's triangulation; of two that are cut alike the first.
+    pub edges: Vec<Stretch>,
     /// Their metric lengths.
     pub arcs: Vec<MetricArc>,
+    /// The domain's periodic pairs.
+    pub pairs: Vec<Pair>,
     corners: usize,
     copies: usize,
+}
+
+/// A constrained edge of the domain's triangulation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch {
+    ends: [VertexId; 2],
+    /// It stays whole.
+    required: bool,
+    /// The edge of a periodic pair that is cut where the motion brings its cuts.
+    twin: Option<([VertexId; 2], Motion)>,
+}
+
+impl Stretch {
+    /// Its length, or the longer one of both: the metric that asks for more.
+    fn measured(&self, domain: &Domain, field: &dyn MetricField) -> MetricArc {
+        let positions = |ends: [VertexId; 2]| ends.map(|v| domain.planar().position(v));
+        match self.twin {
+            None => MetricArc::of_chord(field, positions(self.ends)),
+            Some((twin, _)) => MetricArc::of_longer(field, [self.ends, twin].map(positions)),
+        }
+    }
+
+    /// How many edges there are of it for each.
+    fn sides(&self) -> f64 {
+        if self.twin.is_some() { 2.0 } else { 1.0 }
+    }
 }
 
 impl Plan {
@@ -45,32 +74,35 @@ impl Plan {
     ///
     /// # Errors
     /// The metric is not positive definite somewhere, or its complexity not finite.
-    pub(crate) fn new(domain: &Domain, field: &dyn MetricField, target: Target) -> Result<Self> {
+    pub(crate) fn new(domain: &Domain, pairs: &[Pair], field: &dyn MetricField, target: Target) -> Result<Self> {
         // Elsewhere the integral is only where the search for scale or count starts.
         let integral = if matches!(target, Target::Complexity(_)) { complexity } else { rough_complexity };
         let complexity = integral(field, &domain.triangles())?;
-        Ok(Self::with(domain, field, complexity))
+        Ok(Self::with(domain, pairs, field, complexity))
     }
 
     /// That of the same domain with its curves simplified.
     ///
     /// # Errors
     /// As [`Plan::new`].
-    pub(crate) fn again(&self, domain: &Domain, field: &dyn MetricField, target: Target) -> Result<Self> {
+    pub(crate) fn again(
+        &self,
+        domain: &Domain,
+        pairs: &[Pair],
+        field: &dyn MetricField,
+        target: Target,
+    ) -> Result<Self> {
         match target {
-            Target::Complexity(_) => Self::new(domain, field, target),
-            Target::Vertices(_) | Target::Metric => Ok(Self::with(domain, field, self.complexity)),
+            Target::Complexity(_) => Self::new(domain, pairs, field, target),
+            Target::Vertices(_) | Target::Metric => Ok(Self::with(domain, pairs, field, self.complexity)),
         }
     }
 
-    fn with(domain: &Domain, field: &dyn MetricField, complexity: f64) -> Self {
-        let planar = domain.planar();
-        let required = |h| planar.topology.constraint(h).is_some_and(|c| domain.pslg().segments[c.0 as usize].required);
-        let constrained = planar.topology.edges().filter(|&h| planar.topology.constraint(h).is_some());
-        let edges: Vec<_> = constrained.map(|h| (planar.topology.ends(h), required(h))).collect();
-        let arc = |&(ends, _): &([VertexId; 2], bool)| MetricArc::of_chord(field, ends.map(|v| planar.position(v)));
-        let arcs = edges.par_iter().map(arc).collect();
-        Self { complexity, edges, arcs, corners: planar.topology.vertex_count(), copies: copies(domain) }
+    fn with(domain: &Domain, pairs: &[Pair], field: &dyn MetricField, complexity: f64) -> Self {
+        let edges = stretches(domain, pairs);
+        let arcs = edges.par_iter().map(|edge| edge.measured(domain, field)).collect();
+        let corners = domain.planar().topology.vertex_count();
+        Self { complexity, edges, arcs, pairs: pairs.to_vec(), corners, copies: copies(domain) }
     }
 
     /// Vertices of the domain itself, with copies: no mesh has fewer.
@@ -85,8 +117,8 @@ impl Plan {
 
     /// Vertices on the boundary and interfaces when the metric is multiplied by `scale`.
     pub(crate) fn boundary_vertices(&self, scale: f64) -> f64 {
-        let cuts = |(arc, &(_, required)): (&MetricArc, &([VertexId; 2], bool))| {
-            if required { 0.0 } else { pieces(arc.length() * scale.sqrt()) as f64 - 1.0 }
+        let cuts = |(arc, edge): (&MetricArc, &Stretch)| {
+            if edge.required { 0.0 } else { edge.sides() * (pieces(arc.length() * scale.sqrt()) as f64 - 1.0) }
         };
         self.corners as f64 + self.arcs.iter().zip(&self.edges).map(cuts).sum::<f64>()
     }
@@ -133,6 +165,36 @@ impl Plan {
         demand_memory(count, 0.0, memory_limit)?;
         Ok((count.round().max(3.0) as usize, scale))
     }
+}
+
+/// The constrained edges of a domain's triangulation, those of pairs as one.
+fn stretches(domain: &Domain, pairs: &[Pair]) -> Vec<Stretch> {
+    let (topology, sources) = (&domain.planar().topology, domain.sources());
+    let required = |h| topology.constraint(h).is_some_and(|c| domain.pslg().segments[c.0 as usize].required);
+    let constrained = topology.edges().filter(|&h| topology.constraint(h).is_some());
+    let all = constrained.map(|h| Stretch { ends: topology.ends(h), required: required(h), twin: None });
+    if pairs.is_empty() {
+        return all.collect();
+    }
+    let points =
+        |ends: [VertexId; 2]| ends.map(|v| sources[v.index()].expect("an end of a segment is a point of the graph"));
+    let turned_as = |edge: &Stretch, from: u32| {
+        let [a, b] = edge.ends;
+        if points(edge.ends)[0] == from { [a, b] } else { [b, a] }
+    };
+    let all: Vec<Stretch> = all.collect();
+    let by_points: HashMap<[u32; 2], usize> = (0..all.len()).map(|i| (in_order(points(all[i].ends)), i)).collect();
+    let (mut joined, mut second) = (all.clone(), BTreeSet::new());
+    for Pair { runs, motion, .. } in pairs {
+        for (from, to) in runs[0].windows(2).zip(runs[1].windows(2)) {
+            let [first, twin] = [from, to].map(|ends| by_points[&in_order([ends[0], ends[1]])]);
+            joined[first].ends = turned_as(&all[first], from[0]);
+            joined[first].twin = Some((turned_as(&all[twin], to[0]), *motion));
+            joined[first].required |= all[twin].required;
+            second.insert(twin);
+        }
+    }
+    joined.into_iter().enumerate().filter(|(i, _)| !second.contains(i)).map(|(_, edge)| edge).collect()
 }
 
 fn copies(domain: &Domain) -> usize {
@@ -194,6 +256,13 @@ impl MetricArc {
         Self::new(1, |s, t| chord_by(&at, a.lerp(b, s), a.lerp(b, t)))
     }
 
+    /// Of two straight edges at once, by what is longer of them: the metric along both is the intersection of both.
+    fn of_longer(field: &dyn MetricField, edges: [[Point; 2]; 2]) -> Self {
+        let at = nearby(field);
+        let length = |[a, b]: [Point; 2], s, t| chord_by(&at, a.lerp(b, s), a.lerp(b, t));
+        Self::new(1, |s, t| length(edges[0], s, t).max(length(edges[1], s, t)))
+    }
+
     /// Metric length of all edges.
     pub(crate) fn length(&self) -> f64 {
         self.breaks[self.breaks.len() - 1].1
@@ -228,42 +297,48 @@ pub(super) fn pieces(length: f64) -> usize {
     (length.round() as usize).max(1)
 }
 
-/// Cuts every constrained edge of a fresh dual, by its ends, into edges of about unit metric length; `arcs` are the edges' lengths
-/// under the unscaled field, in order, and `scale` the field's factor. Required segments stay whole.
+/// Cuts every constrained edge of a fresh dual into edges of about unit metric length; `arcs` are the edges' lengths
+/// under the unscaled field, in order, and `scale` the field's factor. Required segments stay whole. What is cut like its twin stays as it
+/// is from then on.
 ///
 /// A cut that rounding would make invalid is left out. Returns the number of new vertices.
-pub(crate) fn sample_segments(
-    dual: &mut Dual,
-    edges: &[([VertexId; 2], bool)],
-    arcs: &[MetricArc],
-    scale: f64,
-) -> usize {
+pub(crate) fn sample_segments(dual: &mut Dual, edges: &[Stretch], arcs: &[MetricArc], scale: f64) -> usize {
     let before = dual.vertex_count();
-    for (&([from, to], required), arc) in edges.iter().zip(arcs) {
+    for (&Stretch { ends, required, twin }, arc) in edges.iter().zip(arcs) {
         if required {
             continue;
         }
         let n = pieces(arc.length() * scale.sqrt());
-        let (a, b) = (dual.position(from), dual.position(to));
+        let [a, b] = ends.map(|v| dual.position(v));
         let cuts: Vec<Point> = (1..n).map(|k| a.lerp(b, arc.parameter(k as f64 / n as f64))).collect();
-        cut(dual, from, to, &cuts);
+        let sides =
+            [Some((ends, cuts.clone())), twin.map(|(ends, by)| (ends, cuts.iter().map(|&p| by.image(p)).collect()))];
+        for (ends, cuts) in sides.into_iter().flatten() {
+            let segment = dual.topology().edge_between(ends[0], ends[1]).and_then(|h| dual.topology().constraint(h));
+            let new = cut(dual, ends, &cuts);
+            if let Some(segment) = segment.filter(|_| twin.is_some()) {
+                dual.hold(segment, &new);
+            }
+        }
     }
     dual.vertex_count() - before
 }
 
 /// Cuts an edge at points along it, the middle one first: one after the other, each would take over the whole fan of
-/// the wall opposite, in quadratic time.
-fn cut(dual: &mut Dual, from: VertexId, to: VertexId, points: &[Point]) {
-    let mut pending = vec![(from, to, 0..points.len())];
+/// the wall opposite, in quadratic time. Returns the new vertices.
+fn cut(dual: &mut Dual, [from, to]: [VertexId; 2], points: &[Point]) -> Vec<VertexId> {
+    let (mut pending, mut new) = (vec![(from, to, 0..points.len())], Vec::new());
     while let Some((from, to, range)) = pending.pop() {
-        let Some(h) = dual.topology().find(from, to) else { continue };
+        let Some(h) = dual.topology().edge_between(from, to) else { continue };
         let middle = usize::midpoint(range.start, range.end);
         let candidates = (middle..range.end).chain((range.start..middle).rev());
         let done = candidates.into_iter().find_map(|k| Some((k, dual.insert_on_edge(h, points[k])?)));
         if let Some((k, v)) = done {
+            new.push(v);
             pending.extend([(v, to, k + 1..range.end), (from, v, range.start..k)]);
         }
     }
+    new
 }
 
 #[cfg(test)]
@@ -285,7 +360,7 @@ mod tests {
                     + Tensor::square(across) * 64.0
                     + Tensor::new(0.0, 0.0, 4e4 * (-20.0 * p.x).exp())
             };
-            let plan = Plan::new(&domain, &field, crate::sampling::Target::Metric).unwrap();
+            let plan = Plan::new(&domain, &[], &field, crate::sampling::Target::Metric).unwrap();
             let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
             sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0);
             let edges = dual.topology().edges().filter(|&h| dual.topology().constraint(h).is_some());
@@ -298,7 +373,7 @@ mod tests {
     fn walls_face_to_face_are_cut_in_little_time() {
         let domain = Domain::shape("rect:0,0,1,1e-6").unwrap();
         let field = |_: Point| Tensor::isotropic(1e-4);
-        let plan = Plan::new(&domain, &field, crate::sampling::Target::Metric).unwrap();
+        let plan = Plan::new(&domain, &[], &field, crate::sampling::Target::Metric).unwrap();
         let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
         assert_eq!(sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0), 2 * 9_999);
         assert!(dual.counters().flips < 40 * 10_000, "{}", dual.counters().flips);

@@ -64,6 +64,7 @@ impl Surface {
             ridges: marked(|mark| mark.is_ridge),
             required_edges: marked(|mark| mark.is_required),
             required_triangles: self.required_triangles.iter().map(|f| f.0).collect(),
+            periodic: Vec::new(),
         }
     }
 

@@ -26,7 +26,7 @@ impl Work<'_> {
     pub(super) fn move_all(&mut self) -> u64 {
         let mut moved = 0;
         let awake = std::mem::replace(&mut self.awake, vec![false; self.places.len()]);
-        let is_tried = |v: VertexId| awake[v.index()] && !matches!(self.dual.kind(v), Kind::Corner(_));
+        let is_tried = |v: VertexId| awake[v.index()] && !matches!(self.dual.kind(v), Kind::Corner(_) | Kind::Held);
         for group in colours(&self.planar.topology, is_tried) {
             let better: Vec<Option<(Place, f64)>> =
                 group.par_iter().with_min_len(16).map(|&v| self.better(v)).collect();

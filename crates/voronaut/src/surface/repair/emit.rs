@@ -41,6 +41,7 @@ pub(super) fn emit(work: &mut Work, sewn: &Sewn) -> Mesh {
             .map(|t| t as u32)
             .collect(),
         edges: edges.ends,
+        periodic: Vec::new(),
     }
 }
 
