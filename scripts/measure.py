@@ -486,6 +486,12 @@ def peers_on_functions():
     return rows
 
 
+@table("mmgs_O3")
+def surface_functions():
+    printed = run(sys.executable, ROOT / "scripts/compare_surface_hessian.py")
+    return [line.split("  ") for line in printed.splitlines()]
+
+
 @table("mmg2d_O3")
 def mmg2d():
     return remeshed("compare_mmg2d.py", "mmg2d", lambda row: row["asked"], [])
