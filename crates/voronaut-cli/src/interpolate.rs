@@ -2,7 +2,7 @@
 
 use crate::files::{self, Miscounted};
 use crate::options::Run;
-use crate::progress::Stages;
+use crate::stages::Stages;
 use crate::summary;
 use crate::world::World;
 use clap::Args;
@@ -53,7 +53,7 @@ pub(crate) struct InterpolateArgs {
 
 /// Carries all fields of a file to another mesh.
 pub(crate) fn run(args: &InterpolateArgs, world: &World) -> Result<()> {
-    let mut stages = Stages::start();
+    let mut stages = Stages::start(world);
     world.file(&args.out).map(|out| files::demand_solution(out, &args.run)).transpose()?;
     let (old, new) = (planar(world, &args.old, args.run.quiet)?, planar(world, &args.new, args.run.quiet)?);
     let given = world.solutions(&args.field)?;

@@ -10,6 +10,7 @@ use crate::geodesic::{LocalMetric, STILL};
 use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor3, Vector, Vector3};
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
+use crate::progress::Sketch;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
@@ -220,6 +221,10 @@ pub(crate) struct SurfaceSite {
 impl Moving for SurfaceDual<'_> {
     type Saved = State;
     type Site = SurfaceSite;
+
+    fn sketch(&self) -> Sketch {
+        (self.places().iter().map(|place| place.position.to_array()).collect(), self.triangles())
+    }
 
     fn topology(&self) -> &Triangulation {
         &self.state.topology

@@ -311,6 +311,7 @@ impl<'a> Job<'a> {
 
     fn finish(&self, domain: &Domain, dual: &Dual) -> Result<Mesh> {
         self.progress.begin("checking", 1)?;
+        self.progress.sketch(&|| dual.sketch());
         let mesh = dual.to_mesh(domain);
         quality::check(&mesh)?;
         Ok(mesh)

@@ -67,6 +67,7 @@ pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, 
         }
         if dual.vertex_count() >= reported + 256 {
             progress.advance((dual.vertex_count() - reported) as u64)?;
+            progress.sketch(&|| dual.sketch());
             reported = dual.vertex_count();
         }
     }
