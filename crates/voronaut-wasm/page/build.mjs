@@ -1,6 +1,7 @@
 // Makes the playground: one file, with the module, the scripts, the style and the files of examples in it.
 //
 //     node build.mjs MODULE.wasm DATA OUT
+//     node build.mjs --check    # the scripts alone
 import { build } from "esbuild";
 import { readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -18,7 +19,8 @@ const deflated = (path) => deflateRawSync(readFileSync(path), { level: constants
 const style = await bundle("src/playground.css", {});
 const worker = await bundle("src/worker.ts", script);
 const main = await bundle("src/main.ts", { ...script, define: { WORKER: JSON.stringify(worker) } });
-if (/<\/script/i.test(main)) throw new Error("the script would end its own tag");
+if (/<\/script/i.test(main) || main.includes("{{")) throw new Error("the script would end its own tag");
+if (module === "--check") process.exit(0);
 const files = [...readFileSync(join(here, "src/examples.ts"), "utf8").match(/FILES = \[(.*)\]/)[1].matchAll(/"([^"]+)"/g)];
 const scripts = files.map(([, name]) => `<script type="text/plain" id="${name}">${deflated(join(data, name)).toString("base64")}</script>`);
 const packed = deflated(module);

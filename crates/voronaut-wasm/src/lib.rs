@@ -10,5 +10,8 @@ mod files;
 mod request;
 mod watch;
 
+#[cfg(test)]
+mod tests;
+
 pub use desk::Desk;
 pub use watch::Window;

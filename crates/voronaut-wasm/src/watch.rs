@@ -16,7 +16,7 @@ pub trait Window: Sync {
 }
 
 /// Sketches are drawn no more often than once in so many seconds.
-const PERIOD: f64 = 0.1;
+const PERIOD: f64 = 0.2;
 
 /// Progress that is seen through a window.
 pub(crate) struct Watch<'a> {

@@ -73,7 +73,7 @@ export function bare(name: string, isPlanar: boolean, corners: Uint32Array, posi
   const told = { name, planar: isPlanar, fields: [], geometry_bytes: 0 };
   const mesh = new Mesh(told, corners, positions);
   findEdges(mesh);
-  addEuclidean(mesh, (name, on, values, bytes) => mesh.fields.push({ name, on, values, bytes, isOurs: false }));
+  if (mesh.triangles > 0) addEuclidean(mesh, (name, on, values, bytes) => mesh.fields.push({ name, on, values, bytes, isOurs: false }));
   return mesh;
 }
 

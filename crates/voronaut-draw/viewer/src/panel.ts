@@ -121,7 +121,7 @@ export class Panel {
     element<HTMLInputElement>("step").value = `${i}`;
     element("which").textContent = `${i + 1}/${meshes.length}`;
     document.querySelector("h1")!.textContent = this.title;
-    const facts = `${count(mesh.vertices)} vertices · ${count(mesh.triangles)} triangles`;
+    const facts = mesh.triangles === 0 ? "" : `${count(mesh.vertices)} vertices · ${count(mesh.triangles)} triangles`;
     element("facts").textContent = meshes.length > 1 ? `${mesh.name} · ${facts}` : facts;
     this.choices(mesh);
     this.spreads();

@@ -43,7 +43,7 @@ export class Bench {
       if (turn !== this.turn) return;
       const report = answer.told["report"] as Report, page = answer.text("page")!;
       this.made = { job, report, page };
-      await this.stage.made(page, title(job));
+      await this.stage.made(page, job.domain);
       showFigures(report, answer.told["warnings"] as string[]);
     } catch (fault) {
       if (turn === this.turn) this.refuse(fault);
@@ -83,7 +83,7 @@ export class Bench {
 
   /** The mesh in the making. */
   sketch(points: Float64Array, triangles: Uint32Array) {
-    if (this.isMeshing) this.stage.sketch(points, triangles, title(this.form.job));
+    if (this.isMeshing) this.stage.sketch(points, triangles, this.form.job.domain);
   }
 
   /** Shows a domain, unless it is what is seen. */
@@ -207,8 +207,6 @@ export class Bench {
   async file(name: string) { return (await this.engine.ask({ do: "write", name })).bytes("file")!; }
 }
 
-const title = ({ domain, metric }: Job) => `${domain} · ${metric.length > 40 ? `${metric.slice(0, 39)}…` : metric}`;
-
 /** To a tenth of a pixel. */
 function round(x: number, scale: number) {
   const digits = Math.max(0, Math.ceil(Math.log10(10 * scale)));
@@ -217,10 +215,10 @@ function round(x: number, scale: number) {
 
 /** Points of a domain, the same each time. */
 function scattered(count: number, stage: Stage): Point[] {
-  const { mesh } = stage.viewer, found: Point[] = [];
+  const mesh = stage.domain, found: Point[] = [];
   let state = 12345;
   const random = () => (state = (Math.imul(state, 1103515245) + 12345) & 0x7fffffff) / 0x7fffffff;
-  if (!mesh.isPlanar) {
+  if (mesh) {
     while (found.length < Math.min(count, mesh.vertices)) {
       const p = mesh.at(Math.floor(random() * mesh.vertices));
       if (!found.some((q) => q.every((x, k) => x === p[k]))) found.push(p);

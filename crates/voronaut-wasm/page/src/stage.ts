@@ -13,6 +13,8 @@ export class Stage {
   readonly panel: Panel;
   /** The curves of a planar domain, two ends each. */
   outline: Point[][] = [];
+  /** A surface as it is. */
+  domain: Mesh | null = null;
   private box: Box = [[-1, -1, 0], [1, 1, 0]];
   private chosen = "quality";
   /** Whether a mesh that is made is seen, and none in the making. */
@@ -28,6 +30,7 @@ export class Stage {
   /** An empty plane, to draw on. */
   clear(box: Box = [[-1, -1, 0], [1, 1, 0]]) {
     this.box = box;
+    this.domain = null;
     this.outline = [];
     this.show([empty(box)], "Draw a domain", false);
   }
@@ -40,6 +43,7 @@ export class Stage {
     const segments = answer.numbers("segments");
     this.outline = Array.from({ length: segments.length / 2 }, (_, i) => [at(segments[2 * i]), at(segments[2 * i + 1])]);
     this.box = bounds([mesh]);
+    this.domain = isPlanar ? null : mesh;
     this.show([mesh], title, false);
   }
 
@@ -71,19 +75,30 @@ export class Stage {
     panel.renew(title);
   }
 
-  /** The point of the plane, or of the mesh in front, that is at a pixel. */
+  /** The point of the plane, or of the surface in front, that is at a pixel. */
   pointAt(x: number, y: number): Point | null {
-    const { camera, world, scene, mesh } = this.viewer;
+    const { camera, world, mesh } = this.viewer;
     if (mesh.isPlanar) {
       const [dx, dy] = [(x - camera.width / 2) / camera.scale, -(y - camera.height / 2) / camera.scale];
       const [right, up] = camera.rows;
       return [0, 1, 2].map((k) => (camera.centre[k] + dx * right[k] + dy * up[k]) * world.size + world.middle[k]) as Point;
     }
-    const t = this.viewer.triangleAt(x, y);
-    if (t < 0) return null;
-    const corners = [0, 1, 2].map((k) => mesh.corners[3 * t + k]);
-    const weights = within(corners.map((v) => camera.project(scene.place(mesh.positions, v))), [x, y]);
-    return [0, 1, 2].map((k) => corners.reduce((sum, v, i) => sum + weights[i] * mesh.positions[3 * v + k], 0)) as Point;
+    return this.domain && this.onSurface(this.domain, [x, y]);
+  }
+
+  /** The point of the surface itself, for meshes of it have chords, that is in front at a pixel. */
+  private onSurface(surface: Mesh, pixel: [number, number]): Point | null {
+    const { corners, positions, vertices, triangles } = surface;
+    const pixels = Array.from({ length: vertices }, (_, v) => this.pixel(surface.at(v)));
+    let found: Point | null = null, depth = -Infinity;
+    for (let t = 0; t < triangles; t++) {
+      const ends = [0, 1, 2].map((k) => corners[3 * t + k]), weights = within(ends.map((v) => pixels[v]), pixel);
+      if (Math.min(...weights) < 0) continue;
+      const sum = (value: (v: number) => number) => ends.reduce((all, v, i) => all + weights[i] * value(v), 0);
+      const near = sum((v) => pixels[v][2]);
+      if (near > depth) [found, depth] = [[0, 1, 2].map((k) => sum((v) => positions[3 * v + k])) as Point, near];
+    }
+    return found;
   }
 
   /** Where a point is on the screen. */
@@ -105,5 +120,5 @@ function empty([low, high]: Box) {
 export function within([p, q, r]: number[][], [x, y]: number[]): number[] {
   const area = (a: number[], b: number[], c: number[]) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
   const all = area(p, q, r), [u, v] = [area([x, y], q, r) / all, area(p, [x, y], r) / all];
-  return Number.isFinite(u + v) ? [u, v, 1 - u - v] : [1 / 3, 1 / 3, 1 / 3];
+  return Number.isFinite(u + v) ? [u, v, 1 - u - v] : [1, 1, -1];
 }

@@ -29,6 +29,7 @@ pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
 use crate::canvas::{Canvas, CanvasFigures};
 use crate::domain::Domain;
 use crate::dual::{Dual, Kind, Moving};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::figures;
 use crate::mesh::Mesh;
@@ -325,17 +326,17 @@ fn mean_free_edge(dual: &Dual) -> f64 {
     let is_free = |v| dual.kind(v) == Kind::Free;
     let (mut free, mut all) = (Vec::new(), Vec::new());
     for h in topology.edges() {
-        let logarithm = dual.edge_length(h).max(f64::MIN_POSITIVE).ln();
+        let logarithm = dual.edge_length(h).max(f64::MIN_POSITIVE).logarithm();
         all.push(logarithm);
         if is_free(topology.origin(h)) && is_free(topology.target(h)) {
             free.push(logarithm);
         }
     }
     if 20 * free.len() > all.len() {
-        return (free.iter().sum::<f64>() / free.len() as f64).exp();
+        return (free.iter().sum::<f64>() / free.len() as f64).exponential();
     }
     all.sort_by(f64::total_cmp);
-    all[all.len() / 2].exp()
+    all[all.len() / 2].exponential()
 }
 
 #[cfg(test)]
