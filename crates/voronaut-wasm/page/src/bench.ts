@@ -162,12 +162,15 @@ export class Bench {
   async follow() {
     this.isAgain = true;
     if (this.isFollowing) return;
+    const turn = this.turn;
     this.isFollowing = true;
-    while (this.isAgain) {
+    this.tell("busy");
+    while (this.isAgain && turn === this.turn) {
       this.isAgain = false;
       await this.dual();
     }
     this.isFollowing = false;
+    if (turn === this.turn) this.tell("idle");
   }
 
   private async dual() {
