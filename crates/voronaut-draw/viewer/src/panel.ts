@@ -157,6 +157,7 @@ export class Panel {
 
   private spreads() {
     const { viewer } = this, { mesh } = viewer;
+    element("spreads").hidden = mesh.fields.length === 0;
     for (const [name, histogram] of Object.entries(this.histograms)) {
       const field = mesh.fields.find((it) => it.name === name && it.isOurs && (it.on === "edge") === (name === "length")) ?? mesh.field(name);
       histogram.element.hidden = !field;

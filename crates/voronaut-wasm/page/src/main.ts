@@ -32,7 +32,7 @@ async function begin() {
   const stage = new Stage(element("view"), document.querySelector<HTMLMetaElement>("meta[name=generator]")!.content);
   for (const id of ["head", "bench"]) element(id).hidden = false;
   element("panel").hidden = !isWide;
-  stage.viewer.margin = isWide ? { left: 336, right: 316, top: 60, bottom: 0 } : { left: 0, right: 0, top: 60, bottom: 300 };
+  stage.viewer.margin = isWide ? { left: 336, right: 316, top: 60, bottom: 0 } : { left: 0, right: 0, top: 60, bottom: 0.44 * window.innerHeight };
   const ink = new Ink(element("ink"), stage), progress = new Progress();
   let bench: Bench;
   const engine = new Engine(WORKER, module, {

@@ -24,7 +24,7 @@ export class Tools {
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => { canvas.releasePointerCapture(event.pointerId); this.up(); });
-    canvas.addEventListener("dblclick", () => { if (this.tool === "draw") this.close(); });
+    canvas.addEventListener("dblclick", (event) => { if (this.tool === "draw") this.close(event.shiftKey); });
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     // What is seen moves as without a tool.
     canvas.addEventListener("wheel", (event) => {
@@ -75,16 +75,17 @@ export class Tools {
   private corner(p: Point, event: PointerEvent) {
     const { ink } = this, last = ink.rings[ink.rings.length - 1];
     if (!ink.isOpen) { ink.rings.push([p]); ink.isOpen = true; return; }
-    if (last.length >= 3 && this.near([last[0]], event) === 0) this.close();
+    if (last.length >= 3 && this.near([last[0]], event) === 0) this.close(event.shiftKey);
     // The second half of a double click.
     else if (this.near(last.slice(-1), event) !== 0) last.push(p);
   }
 
-  private close() {
+  /** Ends a ring, and the domain unless a hole is to follow. */
+  private close(isFollowed: boolean) {
     const { ink } = this, last = ink.rings[ink.rings.length - 1];
     if (!ink.isOpen || last.length < 3) return;
     ink.isOpen = false;
-    this.told.drawn(ink.rings);
+    if (!isFollowed) this.told.drawn(ink.rings);
     this.stage.viewer.redraw();
   }
 
@@ -119,7 +120,7 @@ export class Tools {
     const { ink } = this;
     if (this.tool === "look" || /INPUT|TEXTAREA|SELECT/.test((event.target as HTMLElement).tagName)) return;
     if (event.key === "Escape") this.take("look");
-    else if (event.key === "Enter" && this.tool === "draw") this.close();
+    else if (event.key === "Enter" && this.tool === "draw") this.close(event.shiftKey);
     else if (event.key === "Backspace" && ink.isOpen) {
       ink.rings[ink.rings.length - 1].pop();
       if (ink.rings[ink.rings.length - 1].length === 0) { ink.rings.pop(); ink.isOpen = false; }

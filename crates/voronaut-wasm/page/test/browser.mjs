@@ -169,6 +169,18 @@ const tests = {
     for (const p of [[-0.8, -0.6, 0], [0.8, -0.6, 0], [0, 0.8, 0], [-0.8, -0.6, 0]]) await clickAt(page, p);
     await idle(page);
     assert.ok((await report(page)).valid);
+    assert.equal((await report(page)).euler, 1);
+    // With a hole.
+    await page.click("[data-tool=draw]");
+    const outer = [[-0.9, -0.9, 0], [0.9, -0.9, 0], [0.9, 0.9, 0], [-0.9, 0.9, 0]], inner = [[-0.3, -0.3, 0], [0, 0.4, 0], [0.3, -0.3, 0]];
+    for (const p of outer) await clickAt(page, p);
+    await page.keyboard.down("Shift");
+    await clickAt(page, outer[0]);
+    await page.keyboard.up("Shift");
+    for (const p of inner) await clickAt(page, p);
+    await page.keyboard.press("Enter");
+    await idle(page);
+    assert.equal((await report(page)).euler, 0);
     await page.click("[data-tool=draw]");
     for (const p of [[-0.5, -0.5, 0], [0.5, 0.5, 0], [0.5, -0.5, 0], [-0.5, 0.5, 0], [-0.5, -0.5, 0]]) await clickAt(page, p);
     await idle(page);

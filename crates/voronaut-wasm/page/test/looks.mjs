@@ -1,12 +1,13 @@
 // What the playground looks like, and how long it takes.
 
+/** Pictures of what one does, the second of which is that of the docs. */
 export async function pictures({ open, choose, idle, where, folder }) {
   const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
   const page = await open();
   const shot = async (name) => { await sleep(400); await page.screenshot({ path: `${folder}/${name}.png` }); };
   await shot("begin");
   await choose(page, "Aegean");
-  await page.mouse.move(...(await where(page, [300, 250, 0])));
+  await page.mouse.move(660, 690);
   await shot("aegean");
   await choose(page, "SPOT");
   await shot("spot");
@@ -37,6 +38,7 @@ export async function measure({ open, idle, report, type, theirs }) {
   for (const metric of ["shock:phi=1,lambda=0.6", "shock:phi=10,lambda=0.06"]) {
     await type(page, "#vertices", "5000");
     await type(page, "#metric", metric);
+    await idle(page);
     const [ours, others] = [[], []];
     for (let i = 0; i < 3; i++) {
       await page.click("#go");
