@@ -55,6 +55,8 @@ export class Bench {
   /** Ends the work; what was seen last stays. */
   cancel() {
     this.turn++;
+    // The worker that goes has the mesh.
+    if (this.engine.isBusy) this.made = null;
     this.engine.cancel();
     this.end();
     document.getElementById("figures")!.innerHTML = "<p>cancelled</p>";
