@@ -69,10 +69,10 @@ fn gradation_is_one_law() {
     let holders = |word: &str| -> Vec<String> {
         all.iter().filter(|source| source.code.contains(word)).map(|source| source.name.clone()).collect()
     };
-    for word in ["GRADATION_EXPONENT:", "fn grown(", "gradation_factor.ln()"] {
+    for word in ["GRADATION_EXPONENT:", "fn grown(", "gradation_factor.logarithm()"] {
         assert_eq!(holders(word), [law], "{word}");
     }
-    assert_eq!(holders("hgrad.ln()"), [""; 0]);
+    assert_eq!(holders("hgrad.logarithm()"), [""; 0]);
     assert_eq!(holders("Gradation::on("), [law, "metric/nodal/pipeline.rs"]);
     assert_eq!(holders("Gradation::of_sizes("), ["surface/metric/gradation.rs", "surface/remesh.rs"]);
 }
