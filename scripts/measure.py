@@ -9,8 +9,7 @@
 In a document a table stands between <!-- measured: NAME --> and <!-- end -->. It agrees where its words are the same and its numbers
 differ by no more than 2 % or one unit of their last digit; times (columns of seconds and the like) by no more than --times, a factor
 of three or 0.2 s: machines are noisy; how often other programs fail, by no more than three: not every run of theirs is the same.
-Meshes are the same to the bit whatever the number of threads; on another processor the last digits of sines may differ, and with
-them what is most delicate, the poorest triangles.
+Meshes are the same to the bit whatever the number of threads and the machine.
 
 Tables of peers need ffbamg (apt: freefem++), mmg2d_O3 and mmgs_O3 (pip: mmgpy, which brings the numpy that is needed) on the PATH;
 without these they are skipped, and said to be. The exit code is 1 where anything differs. All takes about half an hour.

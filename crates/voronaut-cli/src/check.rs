@@ -7,7 +7,6 @@ use crate::{account, files, pictures};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
-use std::time::Instant;
 use voronaut::domain::{Domain, from_mesh};
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
@@ -62,7 +61,7 @@ pub(crate) struct CheckArgs {
 
 /// Examines a mesh. The report is written for any mesh; figures in a metric and pictures are for valid ones.
 pub(crate) fn run(args: &CheckArgs, world: &World) -> Result<()> {
-    let start = Instant::now();
+    let start = world.seconds();
     files::demand_writable(None, None, None, &args.outputs, &args.run)?;
     demand_drawable(args)?;
     let Document { mesh, notes, .. } = world.document(&args.mesh)?;
@@ -82,7 +81,7 @@ pub(crate) fn run(args: &CheckArgs, world: &World) -> Result<()> {
         "smooth_metric": args.metric_choices.smooth_metric, "tensor_order": args.metric_choices.tensor_order, "gradation": args.metric_choices.gradation, "repair": args.damage.repair,
     });
     if let Err(fault) = fault {
-        report.seconds.total = start.elapsed().as_secs_f64();
+        report.seconds.total = world.seconds() - start;
         files::finish(world, &args.mesh, &args.outputs, None, &report, &args.run)?;
         return Err(fault);
     }
@@ -94,7 +93,7 @@ pub(crate) fn run(args: &CheckArgs, world: &World) -> Result<()> {
         Some(Given::Plane(domain)) => in_plane(args, world, &mesh, Some(&domain), &mut report)?,
         None => in_plane(args, world, &mesh, None, &mut report)?,
     };
-    report.seconds.total = start.elapsed().as_secs_f64();
+    report.seconds.total = world.seconds() - start;
     files::finish(world, &args.mesh, &args.outputs, picture, &report, &args.run)
 }
 

@@ -1,7 +1,7 @@
 //! `voronaut distance`: how far every point is from given ones, and the way back.
 
 use crate::options::{Coordinates, Damage, MetricChoices, Run, coordinates};
-use crate::progress::Stages;
+use crate::stages::Stages;
 use crate::world::World;
 use crate::{account, fields, files, summary};
 use clap::{Args, value_parser};
@@ -76,7 +76,7 @@ const CANVAS_VERTICES: u32 = 40_000;
 
 /// Writes the distance field on the canvas, and the path if there is one.
 pub(crate) fn run(args: &DistanceArgs, world: &World) -> Result<()> {
-    let stages = Stages::start();
+    let stages = Stages::start(world);
     world.file(&args.out).map(voronaut_io::demand_diagram).transpose()?;
     args.picture.as_deref().map(voronaut_draw::is_png).transpose()?;
     files::demand_apart([world.file(&args.out), args.picture.as_deref(), args.run.report.as_deref()])?;

@@ -1,8 +1,8 @@
 //! `voronaut dual`: diagram and dual of the seeds given.
 
 use crate::options::{CanvasSize, Damage, EdgesOut, MetricChoices, Outputs, Paged, Run, Show, canvas_size, refuse};
-use crate::progress::Stages;
 use crate::seeds::SeedFile;
+use crate::stages::Stages;
 use crate::world::World;
 use crate::{fields, files, pages, pictures};
 use clap::Args;
@@ -129,7 +129,7 @@ impl DualArgs {
 
 /// The dual of the seeds. Triangles that come out inverted and edges that cross are counted, not refused.
 pub(crate) fn run(args: &DualArgs, world: &World) -> Result<()> {
-    let stages = Stages::start();
+    let stages = Stages::start(world);
     demand(args, world)?;
     args.metric_choices.bounds().check()?;
     let (given, mended) = world.given(&args.domain, args.damage.options())?;
@@ -260,7 +260,7 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
 /// What can be refused before the work.
 fn demand(args: &DualArgs, world: &World) -> Result<()> {
     args.diagram.as_deref().map(voronaut_io::demand_diagram).transpose()?;
-    let view = args.paged.view.as_deref();
+    let view = world.page_file(&args.paged);
     files::demand_writable(world.file(&args.out), args.diagram.as_deref(), view, &args.outputs, &args.run)?;
     args.geodesic.demand_diagrams()?;
     demand_geodesics(args)?;

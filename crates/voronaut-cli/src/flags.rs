@@ -34,7 +34,7 @@ pub(crate) const PARAMETERS: [&str; 29] = [
 ];
 
 /// The text with each of these as its flag: `--canvas-size`, `--mesher voronoi`. Other words in backquotes stay as they are.
-pub(crate) fn flagged(text: &str) -> String {
+pub fn flagged(text: &str) -> String {
     let mut out = String::new();
     for (i, part) in text.split('`').enumerate() {
         let (name, value) = part.split_once('=').map_or((part, None), |(name, value)| (name, Some(value)));

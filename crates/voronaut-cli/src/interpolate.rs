@@ -3,7 +3,7 @@
 use crate::aside::say_aside;
 use crate::files::{self, Miscounted};
 use crate::options::Run;
-use crate::progress::Stages;
+use crate::stages::Stages;
 use crate::summary;
 use crate::world::World;
 use clap::Args;
@@ -54,7 +54,7 @@ pub(crate) struct InterpolateArgs {
 
 /// Carries all fields of a file to another mesh.
 pub(crate) fn run(args: &InterpolateArgs, world: &World) -> Result<()> {
-    let mut stages = Stages::start();
+    let mut stages = Stages::start(world);
     world.file(&args.out).map(|out| files::demand_solution(out, &args.run)).transpose()?;
     let (old, new) = (read(world, &args.old, args.run.quiet)?, read(world, &args.new, args.run.quiet)?);
     let given = world.solutions(&args.field)?;

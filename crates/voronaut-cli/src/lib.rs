@@ -20,15 +20,17 @@ mod metric;
 mod options;
 mod pages;
 mod pictures;
+#[cfg_attr(target_family = "wasm", path = "no_progress.rs")]
 mod progress;
 mod remesh;
 mod seeds;
+mod stages;
 mod summary;
 mod view;
 mod watch;
 mod world;
 
-pub use flags::as_keywords;
+pub use flags::{as_keywords, flagged};
 pub use job::{Job, Usage, commands};
 pub use world::{Held, HeldMetric, Made, World};
 

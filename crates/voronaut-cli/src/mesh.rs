@@ -8,7 +8,6 @@ use crate::{account, files, pictures};
 use clap::{Args, value_parser};
 use serde_json::{Value, json};
 use std::path::PathBuf;
-use std::time::Instant;
 use voronaut::Result;
 use voronaut::canvas::{self, Canvas};
 use voronaut::diagram::{Diagram, SurfaceDiagram};
@@ -199,8 +198,8 @@ impl MeshArgs {
 
 /// Meshes a domain. Nothing is written unless the mesh is valid.
 pub(crate) fn run(args: &MeshArgs, world: &World) -> Result<()> {
-    let start = Instant::now();
-    let view = args.paged.view.as_deref();
+    let start = world.seconds();
+    let view = world.page_file(&args.paged);
     files::demand_writable(world.file(&args.out), None, view, &args.outputs, &args.run)?;
     args.metric_choices.bounds().check()?;
     let (given, mended) = world.given(&args.domain, args.damage.options())?;
@@ -218,7 +217,7 @@ fn required(domain: &Domain) -> Result<Domain> {
     Domain::new(&pslg)
 }
 
-fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, start: Instant) -> Result<()> {
+fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, start: f64) -> Result<()> {
     refuse([
         (args.nr, "--nr in the plane", "leave out --nr: it is for surfaces"),
         (
@@ -244,7 +243,7 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     report.histograms = files::histograms(outputs, mesh, &scaled)?;
     let error = |aim: Aim| interpolation_error(mesh, aim.function, aim.norm);
     report.interpolation = aim.map(error).transpose()?;
-    report.seconds.total = start.elapsed().as_secs_f64();
+    report.seconds.total = world.seconds() - start;
     let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
         pages::measured_in_plane(sheet, &scaled, unmet.clone());
         args.drawn().map_or(Ok(()), |drawn| pages::with_cells(sheet, domain, &scaled, drawn))
@@ -271,7 +270,7 @@ fn cells(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
     Ok(pictures::layers(&args.outputs, &diagram, metric, curved.as_ref()))
 }
 
-fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, start: Instant) -> Result<()> {
+fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, start: f64) -> Result<()> {
     let help = "leave out --required: it is for planar domains; list required edges in the surface's file";
     refuse([(args.required, "--required on a surface", help)])?;
     pictures::demand_of_surfaces(&args.outputs, &[])?;
@@ -289,7 +288,7 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
     }
     let (mut report, unmet) = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
     report.interpolation = interpolated(args, input, &meshed.mesh)?;
-    report.seconds.total = start.elapsed().as_secs_f64();
+    report.seconds.total = world.seconds() - start;
     let drawn = whole.as_ref().filter(|_| args.outputs.picture.is_some());
     let picture = drawn.map(|whole| drawn_on(args, world, whole, &meshed)).transpose()?;
     let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {

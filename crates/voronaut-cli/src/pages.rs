@@ -133,5 +133,5 @@ pub(crate) fn of(
 pub(crate) fn write(paged: &Paged, world: &World, sheet: Option<Sheet>) -> Result<()> {
     let Some((path, sheet)) = paged.view.as_deref().zip(sheet) else { return Ok(()) };
     world.go_on()?;
-    voronaut_io::write(path, voronaut_draw::page(&sheet.name.clone(), &[sheet])?.as_bytes())
+    world.write_page_beside(voronaut_draw::page(&sheet.name.clone(), &[sheet])?, path)
 }

@@ -1,4 +1,4 @@
-//! How far a run is: a progress bar on a terminal, and the times of its stages.
+//! How far a run is: a progress bar on a terminal.
 
 use crate::aside::say_aside;
 use crate::options::Run;
@@ -7,7 +7,6 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Instant;
 use voronaut::progress::Progress;
-use voronaut_io::Seconds;
 
 /// Shows the current stage on stderr if that is a terminal; says each stage in a line of its own if verbose.
 pub(crate) struct Bar {
@@ -51,30 +50,5 @@ impl Progress for Bar {
 impl Drop for Bar {
     fn drop(&mut self) {
         self.line.finish_and_clear();
-    }
-}
-
-/// The stages of a run, each from the end of the one before.
-pub(crate) struct Stages {
-    start: Instant,
-    last: Instant,
-    ended: Vec<(&'static str, f64)>,
-}
-
-impl Stages {
-    pub(crate) fn start() -> Self {
-        let start = Instant::now();
-        Self { start, last: start, ended: Vec::new() }
-    }
-
-    pub(crate) fn end(&mut self, name: &'static str) {
-        self.ended.push((name, self.last.elapsed().as_secs_f64()));
-        self.last = Instant::now();
-    }
-
-    /// The times of all stages, then of parts of them, and in total.
-    pub(crate) fn seconds(mut self, parts: Vec<(&'static str, f64)>) -> Seconds {
-        self.ended.extend(parts);
-        Seconds { stages: self.ended, total: self.start.elapsed().as_secs_f64() }
     }
 }

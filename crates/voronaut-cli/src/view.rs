@@ -3,7 +3,7 @@
 use crate::fields::{self, Scaled};
 use crate::options::{Damage, MetricChoices, Run, positive, refuse};
 use crate::pages::{self, Drawn};
-use crate::progress::Stages;
+use crate::stages::Stages;
 use crate::world::World;
 use crate::{files, summary};
 use clap::{Args, value_parser};
@@ -70,7 +70,7 @@ pub(crate) struct ViewArgs {
 
 /// Writes the page.
 pub(crate) fn run(args: &ViewArgs, world: &World) -> Result<()> {
-    let mut stages = Stages::start();
+    let mut stages = Stages::start(world);
     files::demand_page(&args.out)?;
     files::demand_apart([world.file(&args.out), args.run.report.as_deref()])?;
     args.metric_choices.bounds().check()?;

@@ -6,7 +6,9 @@ use std::process::{Child, Command, ExitStatus, exit};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use voronaut::{Error, Result};
+#[cfg(not(target_family = "wasm"))]
+use voronaut::Error;
+use voronaut::Result;
 
 /// What the program itself may hold, whatever the limit: that is for its work, which is estimated before.
 const OWN: u64 = 64 << 20;
@@ -19,14 +21,26 @@ const PERIOD: Duration = Duration::from_millis(20);
 /// [`Error::Limit`] where signals cannot be handled.
 pub(crate) fn begin(limits: Limits) -> Result<()> {
     let start = Instant::now();
-    let set = ctrlc::set_handler(|| stop("stopped by a signal", "files are whole or not there"));
-    set.map_err(|error| Error::limit(format!("signals cannot be handled: {error}"), "start it in another way"))?;
+    heed_signals()?;
     std::thread::spawn(move || {
         loop {
             check(limits, start);
             std::thread::sleep(PERIOD);
         }
     });
+    Ok(())
+}
+
+#[cfg(not(target_family = "wasm"))]
+fn heed_signals() -> Result<()> {
+    let set = ctrlc::set_handler(|| stop("stopped by a signal", "files are whole or not there"));
+    let fault = |error| Error::limit(format!("signals cannot be handled: {error}"), "start it in another way");
+    set.map_err(fault)
+}
+
+/// There are none.
+#[cfg(target_family = "wasm")]
+fn heed_signals() -> Result<()> {
     Ok(())
 }
 

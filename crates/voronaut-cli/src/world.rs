@@ -1,13 +1,14 @@
 //! Where commands read what is named, and where what they make goes: files and a terminal, or the arrays of a caller.
 
 use crate::aside::say_aside;
-use crate::options::{MetricChoices, Run};
+use crate::options::{MetricChoices, Paged, Run};
 use crate::progress::Bar;
 use crate::seeds::SeedRows;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::path::Path;
-use voronaut::domain::{Domain, from_polygons};
+use std::time::Instant;
+use voronaut::domain::{Domain, Pslg, from_polygons};
 use voronaut::mesh::{Mesh, Solution, SolutionValues, Solutions};
 use voronaut::progress::Progress;
 use voronaut::realisation::Realisation;
@@ -42,12 +43,43 @@ pub struct Held {
     pub documents: HashMap<String, Document>,
     /// Domains as the text of `GeoJSON`.
     pub polygons: HashMap<String, String>,
+    /// Domains as their graphs.
+    pub outlines: HashMap<String, Pslg>,
     /// Metrics.
     pub metrics: HashMap<String, Box<dyn HeldMetric>>,
     /// Values on meshes.
     pub solutions: HashMap<String, Solutions>,
     /// Seeds, all of two or all of three coordinates.
     pub seeds: HashMap<String, Vec<Vec<f64>>>,
+    /// Whether pages are kept, whatever they are called, and not written.
+    pub keeps_pages: bool,
+}
+
+impl Held {
+    /// The domain that a word stands for; that of others is what they say by themselves.
+    ///
+    /// # Errors
+    /// What is held is no domain; as of [`Given::read`] of other words.
+    pub fn given(&self, spec: &str, options: RepairOptions) -> Result<(Given, Mended)> {
+        let plane = |outline: &Pslg| Ok((Given::Plane(Domain::new(outline)?), Mended::default()));
+        if let Some(document) = named(&self.documents, Path::new(spec)) {
+            let may_be_planar = Format::of_ending(Path::new(spec)).is_none_or(Format::may_be_planar);
+            return Given::of_document(spec, document, may_be_planar, options);
+        }
+        if let Some(outline) = named(&self.outlines, Path::new(spec)) {
+            return plane(outline);
+        }
+        match named(&self.polygons, Path::new(spec)) {
+            Some(text) => plane(&from_polygons(&geojson::read(text, spec)?)?),
+            None => Given::read(spec, options),
+        }
+    }
+}
+
+/// What stands under a word; `remesh` adds an ending to words.
+fn named<'a, T>(all: &'a HashMap<String, T>, word: &Path) -> Option<&'a T> {
+    let found = |path: &Path| all.get(path.to_str()?);
+    found(word).or_else(|| found(&word.with_extension("")))
 }
 
 /// What a command made for a caller.
@@ -70,18 +102,20 @@ pub struct Made {
 /// Where a command reads and writes.
 pub struct World<'a> {
     held: Option<(Held, &'a dyn Progress)>,
+    /// When it began; a caller's progress has a clock.
+    start: Option<Instant>,
     made: RefCell<Made>,
 }
 
 impl<'a> World<'a> {
     /// Files, and a terminal.
     pub fn of_files() -> Self {
-        Self { held: None, made: RefCell::default() }
+        Self { held: None, start: Some(Instant::now()), made: RefCell::default() }
     }
 
     /// What a caller holds, and its progress. What commands make is kept; files that options name are read and written all the same.
     pub fn of_caller(held: Held, progress: &'a dyn Progress) -> Self {
-        Self { held: Some((held, progress)), made: RefCell::default() }
+        Self { held: Some((held, progress)), start: None, made: RefCell::default() }
     }
 
     /// What was made for the caller.
@@ -91,6 +125,22 @@ impl<'a> World<'a> {
 
     pub(crate) fn is_files(&self) -> bool {
         self.held.is_none()
+    }
+
+    /// What the clock says: of a caller that of its progress, for there may be no other (WebAssembly).
+    pub(crate) fn seconds(&self) -> f64 {
+        let since = |start: &Instant| start.elapsed().as_secs_f64();
+        self.held.as_ref().map_or_else(|| self.start.as_ref().map_or(0.0, since), |(_, progress)| progress.seconds())
+    }
+
+    /// Whether pages are the caller's.
+    fn keeps_pages(&self) -> bool {
+        self.held.as_ref().is_some_and(|(held, _)| held.keeps_pages)
+    }
+
+    /// The name of the page of a run that makes a mesh, if it is that of a file.
+    pub(crate) fn page_file<'p>(&self, paged: &'p Paged) -> Option<&'p Path> {
+        paged.view.as_deref().filter(|_| !self.keeps_pages())
     }
 
     /// Whether the coloured canvas is kept though no file is named for it.
@@ -103,11 +153,9 @@ impl<'a> World<'a> {
         self.is_files().then_some(path)
     }
 
-    /// What the caller holds of a kind under a word; `remesh` adds an ending to words.
+    /// What the caller holds of a kind under a word.
     fn held<T>(&self, kind: impl Fn(&Held) -> &HashMap<String, T>, word: &Path) -> Option<&T> {
-        let all = self.held.as_ref().map(|(held, _)| kind(held))?;
-        let named = |path: &Path| all.get(path.to_str()?);
-        named(word).or_else(|| named(&word.with_extension("")))
+        named(self.held.as_ref().map(|(held, _)| kind(held))?, word)
     }
 
     pub(crate) fn document(&self, path: &Path) -> Result<Document> {
@@ -115,17 +163,7 @@ impl<'a> World<'a> {
     }
 
     pub(crate) fn given(&self, spec: &str, options: RepairOptions) -> Result<(Given, Mended)> {
-        let word = Path::new(spec);
-        if let Some(document) = self.held(|held| &held.documents, word) {
-            return Given::of_document(spec, document, true, options);
-        }
-        match self.held(|held| &held.polygons, word) {
-            Some(text) => {
-                let outline = from_polygons(&geojson::read(text, spec)?)?;
-                Ok((Given::Plane(Domain::new(&outline)?), Mended::default()))
-            }
-            None => Given::read(spec, options),
-        }
+        self.held.as_ref().map_or_else(|| Given::read(spec, options), |(held, _)| held.given(spec, options))
     }
 
     /// What the caller's metric is made of, if it is the caller's.
@@ -236,6 +274,11 @@ impl<'a> World<'a> {
         self.write(found, write, |made| &mut made.canvas)
     }
 
+    /// The page of a run that makes a mesh: a file that is named, unless the caller keeps pages.
+    pub(crate) fn write_page_beside(&self, page: String, path: &Path) -> Result<()> {
+        if self.keeps_pages() { self.write_page(page, path) } else { voronaut_io::write(path, page.as_bytes()) }
+    }
+
     pub(crate) fn write_page(&self, page: String, path: &Path) -> Result<()> {
         self.write(page, |page| voronaut_io::write(path, page.as_bytes()), |made| &mut made.page)
     }
@@ -307,5 +350,9 @@ impl Progress for Told<'_> {
 
     fn is_stopped(&self) -> bool {
         self.0.is_stopped()
+    }
+
+    fn sketch(&self, draw: &dyn Fn() -> (Vec<[f64; 3]>, Vec<[u32; 3]>)) {
+        self.0.sketch(draw);
     }
 }

@@ -71,6 +71,24 @@ impl Format {
         matches!(self, Format::Medit(_) | Format::Gmsh(..) | Format::Su2 | Format::Vtu | Format::Vtp)
     }
 
+    /// Reads a document, which messages call by its place.
+    ///
+    /// # Errors
+    /// [`Error::Parse`] of what is not as the format asks.
+    pub fn read(self, mut source: impl BufRead, place: &str) -> Result<Document> {
+        match self {
+            Format::Medit(_) => medit::read(source, place),
+            Format::Gmsh(..) if begins_with_number(&mut source, place)? => Ok(freefem::read(source, place)?.into()),
+            Format::Gmsh(..) => gmsh::read(source, place),
+            Format::Obj => obj::read(source, place),
+            Format::Off => Ok(off::read(source, place)?.into()),
+            Format::Ply(_) => ply::read(source, place),
+            Format::Stl => Ok(stl::read(source, place)?.into()),
+            Format::Su2 => su2::read(source, place),
+            Format::Vtu | Format::Vtp => vtk::read(source, place),
+        }
+    }
+
     /// Writes a mesh and fields as far as the format can hold them.
     ///
     /// # Errors
@@ -100,18 +118,7 @@ pub fn read(path: &Path) -> Result<Document> {
         let help = format!("give a mesh in a file {MESH_ENDINGS}");
         return Err(Error::parse(place, "the name does not end like that of a mesh that can be read", help));
     };
-    let mut source = open(path)?;
-    match format {
-        Format::Medit(_) => medit::read(source, &place),
-        Format::Gmsh(..) if begins_with_number(&mut source, path)? => Ok(freefem::read(source, &place)?.into()),
-        Format::Gmsh(..) => gmsh::read(source, &place),
-        Format::Obj => obj::read(source, &place),
-        Format::Off => Ok(off::read(source, &place)?.into()),
-        Format::Ply(_) => ply::read(source, &place),
-        Format::Stl => Ok(stl::read(source, &place)?.into()),
-        Format::Su2 => su2::read(source, &place),
-        Format::Vtu | Format::Vtp => vtk::read(source, &place),
-    }
+    format.read(open(path)?, &place)
 }
 
 /// How a name ends, in lower case.
@@ -134,8 +141,8 @@ pub fn in_file(file: &str, error: Error) -> Error {
 }
 
 /// Whether a file is `FreeFEM`'s where another of the same ending is Gmsh's.
-fn begins_with_number(source: &mut impl BufRead, path: &Path) -> Result<bool> {
-    let start = source.fill_buf().map_err(|source| Error::io(path, source))?;
+fn begins_with_number(source: &mut impl BufRead, place: &str) -> Result<bool> {
+    let start = source.fill_buf().map_err(|source| Error::io(place, source))?;
     Ok(start.trim_ascii_start().first().is_some_and(u8::is_ascii_digit))
 }
 
@@ -143,7 +150,7 @@ fn begins_with_number(source: &mut impl BufRead, path: &Path) -> Result<bool> {
 ///
 /// # Errors
 /// As of [`open`] and [`sol::read`].
-pub fn read_solution(path: &Path) -> Result<Solution> {
+pub(crate) fn read_solution(path: &Path) -> Result<Solution> {
     sol::read(open(path)?, &path.display().to_string())
 }
 

@@ -35,7 +35,7 @@ pub mod vtk;
 pub use document::{Document, Field, Fields};
 pub(crate) use domain::DOMAINS;
 pub use domain::{read_domain, read_pslg};
-pub use files::{Format, ending, in_file, open, read, read_solution, read_solutions, read_text};
+pub use files::{Format, ending, in_file, open, read, read_solutions, read_text};
 pub use given::{Given, read_surface};
 pub use losses::lost_in_outline;
 pub use metric::{MetricFiles, MetricSource, is_solution, read_metric, surface_metric};

@@ -1,7 +1,8 @@
 //! Metrics as users write them: named, or values in a file, in whichever order a program writes the entries of a tensor.
 
 use super::files::ending;
-use super::{Format, read, read_solution};
+use super::files::read_solution;
+use super::{Format, read};
 use std::path::{Path, PathBuf};
 use voronaut::domain::Domain;
 use voronaut::geometry::{Aabb, Tensor, Tensor3};
@@ -137,7 +138,7 @@ fn demand_default(order: TensorOrder) -> Result<()> {
 /// Reads the sizes or tensors of a `.sol` or `.solb` file, whose tensors are in the order given, as a solution in the order on disk.
 ///
 /// # Errors
-/// As of [`read_solution`]. [`Error::Metric`] of tensors that are not positive definite, where all are in another order: the file is
+/// As of [`open`](super::open) and [`sol::read`](super::sol::read). [`Error::Metric`] of tensors that are not positive definite, where all are in another order: the file is
 /// then surely in that. Other tensors that are no metric are left to who samples them.
 pub fn read_metric(path: &Path, order: TensorOrder) -> Result<Solution> {
     let Solution { dimension, values } = read_solution(path)?;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use voronaut::domain::{Domain, from_mesh};
 use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut::surface::Surface;
+use voronaut_io::sol;
 
 /// A file of `tests/data/medit`, whose README says what wrote it.
 fn file(name: &str) -> PathBuf {
@@ -34,7 +35,7 @@ fn mmg2d_as_text_and_binary() {
     assert_eq!(Mesh { points: text.points.clone(), ..binary }, text);
     let domain = Domain::new(&from_mesh(&text).unwrap()).unwrap();
     assert!((domain.area() - 2.0).abs() < 1e-12);
-    let sizes = voronaut_io::read_solution(&file("mmg2d.sol")).unwrap();
+    let sizes = sol::read(voronaut_io::open(&file("mmg2d.sol")).unwrap(), "mmg2d.sol").unwrap();
     assert!(matches!(sizes.values, SolutionValues::Scalar(sizes) if sizes.len() == 12));
 }
 

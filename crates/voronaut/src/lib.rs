@@ -77,11 +77,15 @@
 //! repository has the map and the invariants, `DESIGN.md` the reasons, `docs/measurements.md` the figures. Errors say what is wrong and
 //! where; [`Error::help`] says what to do about it.
 
+// Tests may take any machine's sines.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 // In the order of the flow of data; each module uses only those above it (held by tests/architecture).
 mod error;
 pub mod progress;
 mod parallel;
 mod lists;
+mod elementary;
 mod sparse;
 pub mod geometry;
 pub mod mesh;

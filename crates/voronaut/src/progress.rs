@@ -2,6 +2,9 @@
 
 use crate::error::{Error, Result};
 
+/// Points, and triangles of them.
+pub(crate) type Sketch = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
 /// Told about progress; called from one thread at a time.
 pub trait Progress: Sync {
     /// A stage began, with so many units of work.
@@ -18,6 +21,9 @@ pub trait Progress: Sync {
     fn is_stopped(&self) -> bool {
         false
     }
+    /// Shown the mesh in the making every so many units of work: points, of which some may be none's, and triangles. Whoever wants to
+    /// see them calls `draw`; nothing is drawn otherwise.
+    fn sketch(&self, _draw: &dyn Fn() -> Sketch) {}
 }
 
 impl dyn Progress + '_ {

@@ -9,7 +9,7 @@ use voronaut::metric::nodal::{Limit, Limits, Source, implied, isotropic};
 use voronaut::metric::{MetricSpec, Recovery, ScalarField, Snapshot, recover_hessian};
 use voronaut::recipe::{GradedAt, MetricOptions};
 use voronaut::{Error, Result};
-use voronaut_io::{MetricFiles, MetricSource, read_metric};
+use voronaut_io::{MetricFiles, MetricSource, read_metric, sol};
 
 /// What a METRIC text says at the vertices.
 pub(super) fn source(text: &str, mesh: &Mesh, args: &MetricArgs) -> Result<Source> {
@@ -63,7 +63,8 @@ fn own(path: &Path, mesh: &Mesh, order: TensorOrder) -> Result<Vec<Tensor>> {
 
 /// One number per vertex from a file.
 fn scalars(path: &Path, need: &str) -> Result<Vec<f64>> {
-    let SolutionValues::Scalar(values) = voronaut_io::read_solution(path)?.values else {
+    let SolutionValues::Scalar(values) = sol::read(voronaut_io::open(path)?, &path.display().to_string())?.values
+    else {
         let what = format!("the values are no scalars; {need}");
         return Err(Error::parse(path.display().to_string(), what, "write one number (type 1) per vertex"));
     };

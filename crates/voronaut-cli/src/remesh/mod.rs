@@ -10,7 +10,6 @@ use crate::world::World;
 use crate::{account, summary};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 use voronaut::Result;
 use voronaut::mesh::{Mesh, Solution};
 use voronaut::progress::Progress;
@@ -23,7 +22,7 @@ use voronaut_io::{Format, Given, Report, Strayed, in_file, read_metric, read_psl
 
 /// Remeshes a planar domain or a surface. Nothing is written unless the mesh is valid.
 pub(crate) fn run(args: &RemeshArgs, world: &World) -> Result<()> {
-    let start = Instant::now();
+    let start = world.seconds();
     let (run, out) = (args.run(), args.out());
     let format = match Format::from_path(&out)? {
         // mmg reads no other version.
@@ -43,7 +42,7 @@ pub(crate) fn run(args: &RemeshArgs, world: &World) -> Result<()> {
         Read::Surface(input, mended) => on_surface(args, world, input, &mended, &*progress)?,
     };
     drop(progress);
-    report.seconds.total = start.elapsed().as_secs_f64();
+    report.seconds.total = world.seconds() - start;
     world.write_mesh_as(format, mesh, &out)?;
     world.write_solution(solution, &sol_file)?;
     world.write_report(report.to_json(), &run)?;

@@ -69,6 +69,12 @@ export class Histogram {
 
   clear() { this.select(null); }
 
+  /** Nothing is selected, and nobody told. */
+  reset() {
+    this.range = this.places = null;
+    this.band.style.display = "none";
+  }
+
   private placeOf(value: number) {
     const { low, high, isLog } = this.spread;
     return isLog ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);

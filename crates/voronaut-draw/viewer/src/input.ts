@@ -4,11 +4,11 @@ import { Panel, told } from "./panel";
 import type { Viewer } from "./viewer";
 
 export function listen(viewer: Viewer, panel: Panel) {
-  const { canvas, camera } = viewer, fingers = new Map<number, { x: number; y: number }>();
+  const { canvas } = viewer, fingers = new Map<number, { x: number; y: number }>();
   let moved = 0, hover = 0;
   const drag = (dx: number, dy: number, isPan: boolean) => {
-    if (camera.isPlanar || isPan) camera.pan(dx, dy);
-    else camera.turn(dx * 0.008, dy * 0.008);
+    if (viewer.camera.isPlanar || isPan) viewer.camera.pan(dx, dy);
+    else viewer.camera.turn(dx * 0.008, dy * 0.008);
     viewer.redraw();
   };
   canvas.addEventListener("pointerdown", (event) => {
@@ -31,8 +31,8 @@ export function listen(viewer: Viewer, panel: Panel) {
     fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     if (fingers.size === 1) { drag(dx, dy, event.shiftKey || event.buttons > 1); return; }
     const after = spanOf(fingers);
-    camera.pan(after.x - before.x, after.y - before.y);
-    if (before.size > 0) camera.zoom(after.size / before.size, after.x, after.y);
+    viewer.camera.pan(after.x - before.x, after.y - before.y);
+    if (before.size > 0) viewer.camera.zoom(after.size / before.size, after.x, after.y);
     viewer.redraw();
   });
   const lift = (event: PointerEvent) => {
@@ -44,10 +44,10 @@ export function listen(viewer: Viewer, panel: Panel) {
   canvas.addEventListener("pointercancel", lift);
   canvas.addEventListener("pointerleave", () => { window.clearTimeout(hover); hide(); });
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("dblclick", (event) => { camera.zoom(2, event.clientX, event.clientY); viewer.redraw(); });
+  canvas.addEventListener("dblclick", (event) => { viewer.camera.zoom(2, event.clientX, event.clientY); viewer.redraw(); });
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
-    camera.zoom(Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0015)), event.clientX, event.clientY);
+    viewer.camera.zoom(Math.exp(-event.deltaY * (event.ctrlKey ? 0.01 : 0.0015)), event.clientX, event.clientY);
     hide();
     viewer.redraw();
   }, { passive: false });
@@ -89,7 +89,7 @@ function press(viewer: Viewer, panel: Panel, drag: (dx: number, dy: number, isPa
     return true;
   }
   // Lists and fields have keys of their own.
-  if (["INPUT", "SELECT"].includes(target.tagName) && (target as HTMLInputElement).type !== "checkbox") return false;
+  if (["INPUT", "SELECT", "TEXTAREA"].includes(target.tagName) && (target as HTMLInputElement).type !== "checkbox") return false;
   const step = 40, arrows: Record<string, [number, number]> = {
     ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
   const arrow = arrows[event.key];

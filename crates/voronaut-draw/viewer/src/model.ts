@@ -41,7 +41,7 @@ export class Mesh {
   cells: Cells | null = null;
   readonly geometryBytes: number;
 
-  constructor(told: PackedMesh, readonly corners: Uint32Array, readonly positions: Float64Array) {
+  constructor(told: Pick<PackedMesh, "name" | "planar" | "geometry_bytes"> & { fields: { on: string }[] }, readonly corners: Uint32Array, readonly positions: Float64Array) {
     this.name = told.name;
     this.isPlanar = told.planar;
     this.hasMetric = told.fields.some((field) => field.on === "edge");
@@ -66,6 +66,15 @@ export class Mesh {
     return -1;
   }
   distance(a: number, b: number) { return Math.hypot(...[0, 1, 2].map((k) => this.positions[3 * a + k] - this.positions[3 * b + k])); }
+}
+
+/** A mesh of which nothing but its triangles is known. */
+export function bare(name: string, isPlanar: boolean, corners: Uint32Array, positions: Float64Array): Mesh {
+  const told = { name, planar: isPlanar, fields: [], geometry_bytes: 0 };
+  const mesh = new Mesh(told, corners, positions);
+  findEdges(mesh);
+  if (mesh.triangles > 0) addEuclidean(mesh, (name, on, values, bytes) => mesh.fields.push({ name, on, values, bytes, isOurs: false }));
+  return mesh;
 }
 
 function find(numbers: Int32Array | null, number: number, count: number) {

@@ -18,16 +18,14 @@ export class Panel {
   private readonly histograms: Record<"length" | "quality" | "smallest angle", Histogram>;
   private timer = 0;
 
-  constructor(readonly viewer: Viewer, readonly title: string, by: string) {
-    const { meshes } = viewer;
+  constructor(readonly viewer: Viewer, public title: string, private readonly by: string) {
     this.root.innerHTML = `
       <section><h2>Colour</h2><select id="colour" aria-label="Colour by"></select><div id="legend"></div></section>
       <section><h2>Show</h2><div class="layers">${LAYERS.map(([name, text, key]) =>
         `<label title="Key ${key}"><input type="checkbox" data-layer="${name}">${text}</label>`).join("")}</div></section>
       <section id="steps"><h2>Meshes</h2>
-        <div class="row"><button id="play" aria-label="Play">▶</button><input type="range" id="step" min="0" max="${meshes.length - 1}" value="0" aria-label="Mesh"><output id="which"></output></div>
-        <div class="row"><label for="compare">Beside</label><select id="compare"><option value="">nothing</option>${meshes.map((mesh, i) =>
-          `<option value="${i}">${escaped(mesh.name)}</option>`).join("")}</select></div></section>
+        <div class="row"><button id="play" aria-label="Play">▶</button><input type="range" id="step" min="0" max="0" value="0" aria-label="Mesh"><output id="which"></output></div>
+        <div class="row"><label for="compare">Beside</label><select id="compare"></select></div></section>
       <section id="cut"><h2>Cut</h2><div class="row"><select id="axis" aria-label="Cut across" style="width:auto"><option value="-1">nothing</option><option value="0">x</option><option value="1">y</option><option value="2">z</option><option value="3">depth</option></select>
         <input type="range" id="clip" min="0" max="1" step="0.002" value="0.5" aria-label="Where to cut"><button id="flip" aria-label="The other side">⇄</button></div></section>
       <section id="spreads"><h2>Distribution <span style="text-transform:none;letter-spacing:0;font-weight:400">· drag to select</span></h2></section>
@@ -37,19 +35,30 @@ export class Panel {
     this.histograms = Object.fromEntries((["length", "quality", "smallest angle"] as const).map((name) =>
       [name, new Histogram(name, () => this.select())])) as typeof this.histograms;
     element("spreads").append(...Object.values(this.histograms).map((it) => it.element));
-    element("foot").innerHTML = this.foot(by);
-    element("steps").hidden = meshes.length < 2;
-    element("cut").hidden = meshes.every((mesh) => mesh.isPlanar);
     this.listen();
     this.setDark(window.matchMedia("(prefers-color-scheme: dark)").matches);
+    this.renew(title);
+  }
+
+  /** The controls of other meshes, which the viewer shows by now. */
+  renew(title: string) {
+    const { meshes } = this.viewer;
+    this.title = title;
+    element("foot").innerHTML = this.foot(this.by);
+    element("steps").hidden = meshes.length < 2;
+    element("cut").hidden = meshes.every((mesh) => mesh.isPlanar);
+    element<HTMLInputElement>("step").max = `${meshes.length - 1}`;
+    element("compare").innerHTML = `<option value="">nothing</option>${meshes.map((mesh, i) => `<option value="${i}">${escaped(mesh.name)}</option>`).join("")}`;
+    for (const histogram of Object.values(this.histograms)) histogram.reset();
     this.setMesh(0);
   }
 
   private foot(by: string) {
     const { meshes } = this.viewer;
-    const bits = meshes.map((mesh) => `${((8 * mesh.geometryBytes) / mesh.triangles).toFixed(1)} bits a triangle`);
     const numbers = meshes.every((mesh) => mesh.vertexNumbers) ? "numbers are the file's" : "numbers are this page's, not the file's";
-    return `<p>Coordinates to 26 bits (${bits[0]}), values in single precision; ${numbers}.</p>
+    const [{ geometryBytes, triangles }] = meshes, isPacked = geometryBytes > 0;
+    const kept = isPacked ? `Coordinates to 26 bits (${((8 * geometryBytes) / triangles).toFixed(1)} bits a triangle), values in single precision; ${numbers}.` : "";
+    return `<p>${kept}</p>
       <p><kbd>drag</kbd> ${this.viewer.camera.isPlanar ? "move" : "turn, with shift move"} · <kbd>wheel</kbd> zoom · <kbd>click</kbd> pick · <kbd>/</kbd> find</p><p>${escaped(by)}</p>`;
   }
 
@@ -112,7 +121,7 @@ export class Panel {
     element<HTMLInputElement>("step").value = `${i}`;
     element("which").textContent = `${i + 1}/${meshes.length}`;
     document.querySelector("h1")!.textContent = this.title;
-    const facts = `${count(mesh.vertices)} vertices · ${count(mesh.triangles)} triangles`;
+    const facts = mesh.triangles === 0 ? "" : `${count(mesh.vertices)} vertices · ${count(mesh.triangles)} triangles`;
     element("facts").textContent = meshes.length > 1 ? `${mesh.name} · ${facts}` : facts;
     this.choices(mesh);
     this.spreads();
@@ -148,6 +157,7 @@ export class Panel {
 
   private spreads() {
     const { viewer } = this, { mesh } = viewer;
+    element("spreads").hidden = mesh.fields.length === 0;
     for (const [name, histogram] of Object.entries(this.histograms)) {
       const field = mesh.fields.find((it) => it.name === name && it.isOurs && (it.on === "edge") === (name === "length")) ?? mesh.field(name);
       histogram.element.hidden = !field;

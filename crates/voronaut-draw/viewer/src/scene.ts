@@ -34,6 +34,12 @@ export class Scene {
     this.choose();
   }
 
+  /** Takes everything off the graphics card. */
+  free() {
+    const all = [this.faces, this.cellBatch, this.canvasBatch, this.borderBatch, this.ballBatch, this.curveBatch, this.edgeBatch, this.everyEdge];
+    for (const batch of all) batch?.free();
+  }
+
   /** A point as it is drawn. */
   place(positions: ArrayLike<number>, v: number): [number, number, number] {
     const { middle, size } = this.world;

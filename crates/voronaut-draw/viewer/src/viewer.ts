@@ -12,6 +12,8 @@ export const CELLS = "Voronoi cells", DISTANCES = "distance in the metric", NOTH
 /** More border edges than this are drawn within their triangles, which is faster; where those are thin they look dotted. */
 const MOST_LINES = 30000;
 
+/** Least and greatest coordinates. */
+export type Box = [number[], number[]];
 export type Layer = "edges" | "borders" | "ellipses" | "geodesics" | "lines";
 
 const LIGHT = { paper: "f7f8fa", plain: "e3e9f1", faint: "e9ecf1", ink: "16233c", border: "16233c", ball: "b3261e", curve: "a3123a", mark: "e0004d" };
@@ -23,8 +25,8 @@ export interface Course { frames: number; frameMs: number; loadMs: number }
 
 export class Viewer {
   readonly painter: Painter;
-  readonly camera: Camera;
-  readonly world: World;
+  camera!: Camera;
+  world!: World;
   readonly course: Course = { frames: 0, frameMs: 0, loadMs: 0 };
   private readonly scenes = new Map<number, Scene>();
   private readonly tones = new Map<Field, Tone>();
@@ -40,19 +42,41 @@ export class Viewer {
   isDark = false;
   margin = { left: 0, right: 0, top: 0, bottom: 0 };
 
-  constructor(readonly canvas: HTMLCanvasElement, readonly meshes: Mesh[]) {
+  constructor(readonly canvas: HTMLCanvasElement, public meshes: Mesh[]) {
     const triangles = meshes.reduce((sum, mesh) => sum + mesh.triangles, 0);
     // Smooth outlines cost a third of the time where processors draw.
     this.painter = new Painter(canvas, triangles <= 20000);
-    const [low, high] = bounds(meshes);
+    this.frame(bounds(meshes));
+  }
+  half!: [number, number, number];
+  /** Told of every picture that is drawn. */
+  drawn: () => void = () => {};
+
+  /** What is seen lies in this box, from now on. */
+  private frame(box: Box) {
+    const [low, high] = (this.box = box);
     const middle = low.map((x, k) => (x + high[k]) / 2);
     const size = Math.max(...low.map((x, k) => high[k] - x)) / 2 || 1;
     this.world = { middle, size };
-    const half = low.map((x, k) => (high[k] - x) / 2 / size) as [number, number, number];
-    this.camera = new Camera(meshes.every((mesh) => mesh.isPlanar), [0, 0, 0], half);
-    this.half = half;
+    this.half = low.map((x, k) => (high[k] - x) / 2 / size) as [number, number, number];
+    const { width, height } = this.camera ?? { width: 1, height: 1 };
+    this.camera = new Camera(this.meshes.every((mesh) => mesh.isPlanar), [0, 0, 0], this.half);
+    [this.camera.width, this.camera.height] = [width, height];
+    if (width > 1) this.camera.fit(this.margin);
   }
-  readonly half: [number, number, number];
+  private box!: Box;
+
+  /** Shows other meshes; in the same box from the same side as before. */
+  renew(meshes: Mesh[], box: Box = bounds(meshes)) {
+    for (const scene of this.scenes.values()) scene.free();
+    this.scenes.clear();
+    this.tones.clear();
+    this.pick(null);
+    [this.meshes, this.current, this.other] = [meshes, 0, null];
+    const isSame = this.camera.isPlanar === meshes.every((mesh) => mesh.isPlanar) && box.flat().every((x, i) => x === this.box.flat()[i]);
+    if (!isSame) this.frame(box);
+    this.redraw();
+  }
 
   get mesh() { return this.meshes[this.current]; }
   get scene() { return this.sceneOf(this.current); }
@@ -105,6 +129,7 @@ export class Viewer {
     const cut = this.other === null ? width : Math.round(this.split * width);
     this.part(this.current, 0, cut);
     if (this.other !== null) this.part(this.other, cut, width);
+    this.drawn();
     this.course.frames++;
     this.course.frameMs = performance.now() - start;
   }
@@ -212,12 +237,18 @@ export class Viewer {
     this.painter.drawLines(this.marks!, settings);
   }
 
+  /** The triangle in front at a pixel, or -1. */
+  triangleAt(x: number, y: number, i = this.current): number {
+    const { mesh, faces } = this.sceneOf(i);
+    const t = this.painter.pick(faces, this.camera.matrix([x, y], 1 / Math.min(window.devicePixelRatio || 1, 2)), this.plane());
+    return t < mesh.triangles ? t : -1;
+  }
+
   /** What is at a pixel: the vertex or the edge that is near, or the triangle. */
   at(x: number, y: number): { mesh: number; hit: Hit } | null {
     const i = this.other !== null && x > this.split * this.camera.width ? this.other : this.current;
-    const { mesh, faces } = this.sceneOf(i);
-    const t = this.painter.pick(faces, this.camera.matrix([x, y], 1 / Math.min(window.devicePixelRatio || 1, 2)), this.plane());
-    if (t < 0 || t >= mesh.triangles) return null;
+    const { mesh } = this.sceneOf(i), t = this.triangleAt(x, y, i);
+    if (t < 0) return null;
     const corners = [0, 1, 2].map((k) => mesh.corners[3 * t + k]);
     const pixels = corners.map((v) => this.camera.project(this.sceneOf(i).place(mesh.positions, v)));
     const away = pixels.map(([px, py]) => Math.hypot(px - x, py - y));
@@ -290,7 +321,8 @@ function toneOf(field: Field, all: Field[], hasMetric: boolean): Tone {
   return { low: isLog ? Math.log(low) : low, high: isLog ? Math.log(high) : high, scale: "sequential", isLog };
 }
 
-function bounds(meshes: Mesh[]) {
+/** The box that holds all vertices. */
+export function bounds(meshes: Mesh[]): Box {
   const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   for (const { positions } of meshes) {
     for (let i = 0; i < positions.length; i++) {

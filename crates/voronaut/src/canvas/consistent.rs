@@ -7,6 +7,7 @@ use super::relocate::{Quiet, relocate};
 use super::star::Spoke;
 use super::star_set::{StarFigures, Stars};
 use super::steiner::{Placed, Steiner};
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Vector};
 use crate::metric::MetricField;
@@ -300,7 +301,7 @@ impl Picker<'_> {
             self.random = self.random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (self.random >> 11) as f64 / (1_u64 << 53) as f64
         };
-        let (radius, (sine, cosine)) = (next().sqrt(), (std::f64::consts::TAU * next()).sin_cos());
+        let (radius, (sine, cosine)) = (next().sqrt(), (std::f64::consts::TAU * next()).sine_and_cosine());
         (radius * cosine, radius * sine)
     }
 }

@@ -1,6 +1,7 @@
 //! Flips to the intrinsic Delaunay triangulation, by lengths alone (Bobenko and Springborn 2007; Fisher et al. 2007); and of an
 //! embedded triangulation by one tensor for each quadrilateral, the mean of its corners'.
 
+use crate::elementary::Elementary;
 use crate::geodesic::{Angles, frozen_margin, layout};
 use crate::geometry::Tensor;
 use crate::planar::Planar;
@@ -72,7 +73,7 @@ impl Quad {
     fn other_diagonal(&self) -> f64 {
         let (cx, cy) = layout(self.ab, self.ac, self.bc);
         let (dx, dy) = layout(self.ab, self.ad, self.bd);
-        (cx - dx).hypot(cy + dy)
+        (cx - dx).hypotenuse(cy + dy)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Finding the face of the embedded triangulation that holds a point, in any domain.
 
 use super::Canvas;
+use crate::elementary::Elementary;
 use crate::geometry::{Aabb, BoxTree, Point, holds, widened};
 use crate::planar::{Location, Planar, hilbert_order};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
@@ -27,7 +28,7 @@ impl Finder {
     pub(super) fn new(planar: &Planar) -> Self {
         // Jump and walk (Mücke, Saias and Zhu 1999): the nearest of a cube root of all vertices is a cube root's walk
         // away. Along the Hilbert curve every k-th vertex is a well-spread sample.
-        let step = (planar.positions.len() as f64).powf(2.0 / 3.0).ceil().max(1.0) as usize;
+        let step = (planar.positions.len() as f64).raised_to(2.0 / 3.0).ceil().max(1.0) as usize;
         let anchors = (0..planar.positions.len() as u32).step_by(step).map(VertexId).collect();
         let largest = planar.positions.iter().map(|p| p.x.abs().max(p.y.abs())).fold(0.0, f64::max);
         let bounds = Aabb::of(planar.positions.iter().copied());

@@ -8,6 +8,7 @@
 
 use super::star::circle;
 use super::steiner::Steiner;
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{Tensor, Vector};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
@@ -197,7 +198,7 @@ impl Relocation<'_, '_> {
         for step in STEPS.into_iter().filter(|_| energy > 0.0) {
             let mut best = (energy, from, tensor);
             for i in 0..DIRECTIONS {
-                let (y, x) = (2.0 * PI * f64::from(i) / f64::from(DIRECTIONS)).sin_cos();
+                let (y, x) = (2.0 * PI * f64::from(i) / f64::from(DIRECTIONS)).sine_and_cosine();
                 let to = from + Vector::new((x - b * y / c) / a, y / c) * step;
                 if self.steiner.shift(v, to)? {
                     let there = self.there(best.0);
@@ -285,7 +286,7 @@ fn excess(tensor: Tensor, [a, b]: [Vector; 2], [c, d]: [Vector; 2]) -> f64 {
     if is_below || other_sine <= 0.0 {
         return 0.0;
     }
-    let angle = across.atan2(along);
+    let angle = across.arctangent_over(along);
     let angle = if angle < 0.0 { angle + 2.0 * PI } else { angle };
     (angle - (PI - MARGIN)).max(0.0)
 }

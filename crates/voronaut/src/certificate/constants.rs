@@ -1,5 +1,6 @@
 //! The formulas of RR-9103's conditions, corrected and as printed. Pure functions of a net's figures.
 
+use crate::elementary::Elementary;
 use serde::Serialize;
 
 use crate::error::named;
@@ -126,7 +127,7 @@ pub(crate) fn centre_shift(net: &Figures, psi: f64) -> Option<f64> {
     let eta = slack(net, psi, 0.0) / (2.0 * side);
     let mut shift = 0.0;
     for _ in 0..200 {
-        let next = eta / (0.5 * (0.5 * side / (reach + shift)).min(1.0).asin()).sin();
+        let next = eta / (0.5 * (0.5 * side / (reach + shift)).min(1.0).arcsine()).sine();
         if !next.is_finite() || next > 10.0 * reach {
             return None;
         }
@@ -142,7 +143,7 @@ pub(crate) fn centre_shift(net: &Figures, psi: f64) -> Option<f64> {
 /// The net in the uniform metric of a cell's seed (Lemmas 5.2 and 5.15, erratum); `None` where protection is lost.
 pub(crate) fn frozen(net: &Figures, psi: f64) -> Option<Figures> {
     let shift = centre_shift(net, psi)?;
-    let far = net.epsilon.hypot(net.delta) / psi + psi * net.epsilon;
+    let far = net.epsilon.hypotenuse(net.delta) / psi + psi * net.epsilon;
     let square = (net.delta / psi).powi(2) - slack(net, psi, 0.0) - 2.0 * shift * far;
     (square > 0.0).then(|| Figures { epsilon: psi * net.epsilon, mu: net.mu / psi, delta: square.sqrt() })
 }

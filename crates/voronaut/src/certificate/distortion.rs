@@ -1,5 +1,6 @@
 //! The distortion between tensors (RR-9103, section 3.2), and how large it gets around a seed.
 
+use crate::elementary::Elementary;
 use crate::geometry::{Point, Tensor};
 use crate::metric::MetricField;
 
@@ -23,9 +24,9 @@ pub(crate) fn distortion_around(field: &dyn MetricField, p: Point, radius: f64) 
     let centre = field.at(p);
     let [_, [u, v]] = centre.frames();
     let sample = |circle: usize, place: usize| {
-        let (sin, cos) = (std::f64::consts::TAU * place as f64 / PLACES as f64).sin_cos();
+        let (sin, cos) = (std::f64::consts::TAU * place as f64 / PLACES as f64).sine_and_cosine();
         let r = radius * circle as f64 / CIRCLES as f64;
-        distortion(centre, field.at(p + (u * cos + v * sin) * r)).ln()
+        distortion(centre, field.at(p + (u * cos + v * sin) * r)).logarithm()
     };
     let (mut inner, mut most, mut jump) = (vec![0.0; PLACES], 0.0_f64, 0.0_f64);
     for circle in 1..=CIRCLES {
@@ -37,7 +38,7 @@ pub(crate) fn distortion_around(field: &dyn MetricField, p: Point, radius: f64) 
         }
         inner = outer;
     }
-    let psi = (most + 0.5 * jump).exp();
+    let psi = (most + 0.5 * jump).exponential();
     // What is no metric somewhere is distorted beyond measure.
     if psi.is_finite() { psi } else { f64::INFINITY }
 }

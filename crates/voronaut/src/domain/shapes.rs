@@ -1,6 +1,7 @@
 //! Domains that need no file, and the texts that name them.
 
 use super::{Domain, Pslg, Segment, Side};
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::Point;
 use std::f64::consts::FRAC_PI_2;
@@ -63,7 +64,7 @@ const ROUNDING: f64 = 1e-4;
 /// Vertex `step` of a disk's polygon; exact where the circle meets the axes.
 fn on_circle(centre: Point, radius: f64, step: usize) -> Point {
     const QUARTER: usize = CIRCLE / 4;
-    let (sin, cos) = (FRAC_PI_2 * (step % QUARTER) as f64 / QUARTER as f64).sin_cos();
+    let (sin, cos) = (FRAC_PI_2 * (step % QUARTER) as f64 / QUARTER as f64).sine_and_cosine();
     let (x, y) = match step / QUARTER {
         0 => (cos, sin),
         1 => (-sin, cos),

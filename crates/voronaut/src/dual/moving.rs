@@ -8,6 +8,7 @@ use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::planar::Planar;
+use crate::progress::Sketch;
 use crate::triangulation::{Triangulation, VertexId};
 
 /// Seeds that can move, with their triangulation. Vectors at a seed are in its own coordinates: those of the plane, or of a
@@ -18,6 +19,8 @@ pub(crate) trait Moving: Sync {
     /// A place with what the metric is there.
     type Site: Copy + Send + Sync;
 
+    /// Where the seeds are, by id, and the triangles.
+    fn sketch(&self) -> Sketch;
     /// Topology.
     fn topology(&self) -> &Triangulation;
     /// The metric around a seed, in units of the wanted edge length.
@@ -100,6 +103,19 @@ impl Dual<'_> {
 impl Moving for Dual<'_> {
     type Saved = Saved;
     type Site = Site;
+
+    fn sketch(&self) -> Sketch {
+        let is_vertex = |v: &u32| self.topology().is_vertex(VertexId(*v));
+        let place = |v: u32| {
+            Some(v).filter(is_vertex).map_or([0.0; 3], |v| {
+                let p = self.position(VertexId(v));
+                [p.x, p.y, 0.0]
+            })
+        };
+        let points = (0..self.topology().vertex_slots() as u32).map(place).collect();
+        let corners = |f| self.topology().corners(f).map(|v| v.0);
+        (points, self.topology().faces().map(corners).collect())
+    }
 
     fn topology(&self) -> &Triangulation {
         &self.planar.topology

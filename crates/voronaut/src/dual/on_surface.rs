@@ -5,11 +5,13 @@
 //! told in a chart there (RR-9103, section 12).
 
 use super::{Kind, Moving};
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, STILL};
 use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor3, Vector, Vector3};
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
+use crate::progress::Sketch;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
@@ -185,10 +187,10 @@ impl<'a> SurfaceDual<'a> {
         if edges.is_empty() {
             edges = self.topology().edges().collect();
         }
-        let log = |&h: &HalfEdge| self.estimate(self.topology().ends(h)).value.ln();
+        let log = |&h: &HalfEdge| self.estimate(self.topology().ends(h)).value.logarithm();
         let mut logs: Vec<f64> = edges.par_iter().with_min_len(64).map(log).collect();
         logs.retain(|log| log.is_finite());
-        (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp()
+        (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exponential()
     }
 
     /// A place with the metric there, scaled.
@@ -220,6 +222,10 @@ pub(crate) struct SurfaceSite {
 impl Moving for SurfaceDual<'_> {
     type Saved = State;
     type Site = SurfaceSite;
+
+    fn sketch(&self) -> Sketch {
+        (self.places().iter().map(|place| place.position.to_array()).collect(), self.triangles())
+    }
 
     fn topology(&self) -> &Triangulation {
         &self.state.topology

@@ -2,6 +2,7 @@
 
 use super::label::Sources;
 use super::update::layout;
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::Vector;
 use crate::sparse::{Cholesky, Elimination, Symmetric};
@@ -88,7 +89,7 @@ impl<'a> Heat<'a> {
             let mut start = vec![0.0; self.mass.len()];
             for &(v, distance) in &nearest {
                 let area = if lone.contains(&v) { PI * time } else { self.mass[v] };
-                start[v] = area * (-distance * distance / time).exp();
+                start[v] = area * (-distance * distance / time).exponential();
             }
             let heat = longer.as_ref().unwrap_or(&self.flow).solve(&start);
             let most = heat.iter().copied().fold(0.0, f64::max);

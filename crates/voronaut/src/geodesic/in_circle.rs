@@ -6,6 +6,7 @@
 
 use super::curve::PathLength;
 use super::length::Length;
+use crate::elementary::Elementary;
 use crate::geometry::{Tensor, Vector};
 
 /// Curvature's share in the margin's error, per area: of how much it varies, of the margin itself, of its square.
@@ -73,7 +74,7 @@ pub(crate) fn margin_from_lengths(lengths: &[PathLength; 5]) -> Margin {
     let most = lengths.iter().map(|l| l.curvature[1]).fold(f64::NEG_INFINITY, f64::max);
     let (curvature, spread) = (0.5 * (least + most), 0.5 * (most - least));
     let (sine, cosine) = (at_c.0 * at_d.1 + at_c.1 * at_d.0, at_c.0 * at_d.0 - at_c.1 * at_d.1);
-    let (shift_sine, shift_cosine) = (curvature * area / 6.0).sin_cos();
+    let (shift_sine, shift_cosine) = (curvature * area / 6.0).sine_and_cosine();
     let value = sine * shift_cosine - cosine * shift_sine;
     let [e, f, g, h, i] = lengths.map(|l| l.error * l.value);
     let of_lengths = 0.5 * ab * ((e + f + g) / area_c + (e + h + i) / area_d);

@@ -1,5 +1,6 @@
 //! The metric around a point to second order: tensor, Christoffel symbols, logarithm and exponential map.
 
+use crate::elementary::Elementary;
 use crate::geometry::{Point, Tensor, Vector, from_frame};
 use crate::metric::{MetricField, Near};
 
@@ -97,7 +98,7 @@ impl LocalMetric {
         let [a, b, c] = centre.cholesky();
         let (mut sum, mut number, mut slopes) = (centre, 1.0, [Tensor::default(); 2]);
         for k in 0..RING / 2 {
-            let (sin, cos) = (std::f64::consts::TAU * k as f64 / RING as f64).sin_cos();
+            let (sin, cos) = (std::f64::consts::TAU * k as f64 / RING as f64).sine_and_cosine();
             let offset = from_frame([a, b, c], Vector::new(cos, sin)) * RING_RADIUS;
             let (ahead, behind) = (beside(p + offset), beside(p - offset));
             if ahead.is_positive_definite() && behind.is_positive_definite() {

@@ -1,5 +1,7 @@
 //! Gauss-Legendre quadrature on [0, 1], with the polynomials that paths are made of at its points.
 
+use crate::elementary::Elementary;
+
 /// Quadrature points and weights, and at each point as many functions, the modes, and their slopes: the slope of
 /// the k-th is the Legendre polynomial of degree k on [0, 1], normalised, and it vanishes at both ends.
 ///
@@ -57,7 +59,7 @@ fn legendre(n: usize, s: f64) -> Vec<f64> {
 /// Abscissa and weight i of n on [-1, 1]: a root of the Legendre polynomial of degree n by Newton steps.
 fn node(n: usize, i: usize) -> (f64, f64) {
     let degree = n as f64;
-    let mut s = -((i as f64 + 0.75) / (degree + 0.5) * std::f64::consts::PI).cos();
+    let mut s = -((i as f64 + 0.75) / (degree + 0.5) * std::f64::consts::PI).cosine();
     let mut slope = 1.0;
     for _ in 0..8 {
         let p = legendre(n, s);

@@ -6,6 +6,7 @@
 
 use super::edge_path::edge_path;
 use super::in_circle::opposite;
+use crate::elementary::Elementary;
 use crate::geometry::Point;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 use std::f64::consts::PI;
@@ -126,7 +127,7 @@ impl Strip<'_> {
         let out = if self.topology.origin(h) == v { h } else { h.next() };
         let [a, b, c] = [out, out.prev(), out.next()].map(|e| self.topology.length(e));
         let ((cosine, sine), _) = opposite(c, a, b);
-        sine.atan2(cosine)
+        sine.arctangent_over(cosine)
     }
 
     /// Drops portals that are crossed back at once, and those at the ends of the path.

@@ -4,6 +4,7 @@
 //! at the ends of the edge then give one at the apex. A rule answers only where the straight path to the apex crosses
 //! the edge; else the ends alone reach it, along the other edges.
 
+use crate::elementary::Elementary;
 use crate::geometry::{Tensor, Vector};
 use crate::triangulation::{HalfEdge, Triangulation};
 
@@ -56,7 +57,7 @@ impl Crossing {
         let (x, y) = layout(self.base, self.from_start, self.from_end);
         let crossing = u * y + x * depth;
         let reach = depth + y;
-        (crossing >= 0.0 && crossing <= self.base * reach).then(|| (x - u).hypot(reach))
+        (crossing >= 0.0 && crossing <= self.base * reach).then(|| (x - u).hypotenuse(reach))
     }
 
     /// The virtual source lies at (u, -depth).
@@ -118,7 +119,7 @@ impl Unfolding {
         let crossing = Crossing {
             base: l,
             from_start: self.from_start,
-            from_end: (along - l).hypot(across),
+            from_end: (along - l).hypotenuse(across),
             at_start: s,
             at_end: t,
         };

@@ -1,6 +1,7 @@
 //! Points, vectors and boxes of the plane and of space, in the user's (Euclidean) units.
 
 use super::linear::linear;
+use crate::elementary::Elementary;
 use std::fmt;
 use std::ops::{Add, Sub};
 
@@ -197,7 +198,7 @@ impl Vector {
 
     /// The angle (radians, 0 to pi) between two directions.
     pub(crate) fn turn(self, other: Vector) -> f64 {
-        self.cross(other).abs().atan2(self.dot(other))
+        self.cross(other).abs().arctangent_over(self.dot(other))
     }
 
     /// The vector turned by +90 degrees.

@@ -5,6 +5,7 @@
 
 use super::linear::linear;
 use super::{Point, Vector, signed_area};
+use crate::elementary::Elementary;
 
 /// The symmetric matrix ((xx, xy), (xy, yy)); a metric when positive definite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -143,7 +144,7 @@ impl Tensor {
     fn spectrum(self) -> Spectrum {
         let (mean, half) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
         let plain = (half * half + self.xy * self.xy).sqrt();
-        let radius = if SQUARES.contains(&plain) { plain } else { half.hypot(self.xy) };
+        let radius = if SQUARES.contains(&plain) { plain } else { half.hypotenuse(self.xy) };
         if radius == 0.0 {
             return Spectrum { mean, radius, squares: [1.0, 0.0], product: 0.0 };
         }
@@ -163,7 +164,7 @@ impl Tensor {
     /// Matrix logarithm of a positive definite tensor.
     #[must_use]
     pub(crate) fn log(self) -> Tensor {
-        self.map_eigenvalues(f64::ln)
+        self.map_eigenvalues(Elementary::logarithm)
     }
 
     /// Matrix exponential of a symmetric tensor; positive definite.
@@ -171,7 +172,7 @@ impl Tensor {
     pub(crate) fn exp(self) -> Tensor {
         // Not through `map_eigenvalues`: a logarithm is no metric, and its smaller eigenvalue may be negative.
         let spectrum = self.spectrum();
-        spectrum.with([spectrum.mean + spectrum.radius, spectrum.mean - spectrum.radius].map(f64::exp))
+        spectrum.with([spectrum.mean + spectrum.radius, spectrum.mean - spectrum.radius].map(Elementary::exponential))
     }
 
     /// Log-Euclidean mean: exp of the weighted sum of logarithms. Weights sum to one.

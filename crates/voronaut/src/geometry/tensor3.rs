@@ -2,6 +2,7 @@
 
 use super::linear::linear;
 use super::{Point, Point3, Tensor, Vector, Vector3};
+use crate::elementary::Elementary;
 
 /// The symmetric matrix ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)); a metric when positive definite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -161,7 +162,7 @@ impl Tensor3 {
     /// Matrix logarithm of a positive definite tensor.
     #[must_use]
     pub(crate) fn log(self) -> Tensor3 {
-        self.map_eigenvalues(f64::ln)
+        self.map_eigenvalues(Elementary::logarithm)
     }
 
     /// Matrix exponential of a symmetric tensor; positive definite. By Taylor's series and squaring (Moler and Van Loan 2003),
@@ -172,14 +173,14 @@ impl Tensor3 {
         let deviation = self + Tensor3::IDENTITY * -mean;
         let size = deviation.to_disk().into_iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         if !size.is_finite() || size > LARGEST {
-            return self.map_eigenvalues(f64::exp);
+            return self.map_eigenvalues(Elementary::exponential);
         }
         // Row sums are at most three entries.
-        let halvings = (3.0 * size / SMALL).log2().ceil().max(0.0) as i32;
+        let halvings = (3.0 * size / SMALL).binary_logarithm().ceil().max(0.0) as i32;
         let small = deviation * 0.5_f64.powi(halvings);
         let term = |sum: Tensor3, k: u32| Tensor3::IDENTITY + sum.product(small) * (1.0 / f64::from(k));
         let series = (1..=TERMS).rev().fold(Tensor3::IDENTITY, term);
-        (0..halvings).fold(series, |root, _| root.product(root)) * mean.exp()
+        (0..halvings).fold(series, |root, _| root.product(root)) * mean.exponential()
     }
 
     /// The product of two tensors with the same axes, which is symmetric.
@@ -254,7 +255,7 @@ fn rotate(m: &mut [[f64; 3]; 3], axes: &mut [[f64; 3]; 3], p: usize, q: usize) {
         return;
     }
     let theta = 0.5 * (m[q][q] / off - m[p][p] / off);
-    let t = 1.0_f64.copysign(theta) / (theta.abs() + theta.hypot(1.0));
+    let t = 1.0_f64.copysign(theta) / (theta.abs() + theta.hypotenuse(1.0));
     let cos = 1.0 / (t * t + 1.0).sqrt();
     let sin = t * cos;
     m[p][p] -= t * off;

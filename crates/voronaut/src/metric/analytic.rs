@@ -2,6 +2,7 @@
 
 use super::MetricField;
 use super::validate::{check_tensor_at, require};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{Point, Tensor, Vector};
 
@@ -97,9 +98,9 @@ impl Shock {
 
     /// The gradient of E.
     fn gradient(&self, p: Point) -> Vector {
-        let (sin, cos) = (5.0 * p.y).sin_cos();
+        let (sin, cos) = (5.0 * p.y).sine_and_cosine();
         // 1 / cosh^2 keeps its digits where 1 - tanh^2 has lost them.
-        let slope = ((2.0 * p.x - sin) / self.lambda).cosh().powi(-2) / self.lambda;
+        let slope = ((2.0 * p.x - sin) / self.lambda).hyperbolic_cosine().powi(-2) / self.lambda;
         Vector::new(2.0 * slope + 3.0 * p.x * p.x + p.y * p.y, -5.0 * cos * slope + 2.0 * p.x * p.y)
     }
 }
@@ -108,8 +109,8 @@ impl SwirlField {
     /// The eigenvalue along v1 at distance `r` from the origin.
     fn along(self, r: f64) -> f64 {
         match self {
-            SwirlField::Authors => 1.0 / (stretch(r.cbrt().midpoint(r)) + 1.0),
-            SwirlField::Printed => (1.0 / stretch(r.cbrt().midpoint(r.sqrt()))).clamp(1.0 / 50.0, 1.0).powi(2),
+            SwirlField::Authors => 1.0 / (stretch(r.cube_root().midpoint(r)) + 1.0),
+            SwirlField::Printed => (1.0 / stretch(r.cube_root().midpoint(r.sqrt()))).clamp(1.0 / 50.0, 1.0).powi(2),
         }
     }
 }
@@ -122,15 +123,15 @@ impl MetricField for Uniform {
 
 impl MetricField for Swirl {
     fn at(&self, p: Point) -> Tensor {
-        let r = p.x.hypot(p.y);
+        let r = p.x.hypotenuse(p.y);
         if r == 0.0 {
             return Tensor::IDENTITY;
         }
-        let (s, c) = self.nu.sin_cos();
+        let (s, c) = self.nu.sine_and_cosine();
         let (x, y) = (p.x / r, p.y / r);
         let turned = Vector::new(x * c - y * s, x * s + y * c);
         let t = (1.0 - r * r).powi(2);
-        let v1 = (turned * t + turned.perpendicular()) * (1.0 / t.hypot(1.0));
+        let v1 = (turned * t + turned.perpendicular()) * (1.0 / t.hypotenuse(1.0));
         Tensor::from_axis(v1, self.field.along(r), 1.0)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::MetricField;
 use super::validate::require;
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, BoxTree, Point, Tensor, Vector};
 
@@ -157,8 +158,8 @@ impl MetricField for Boundary {
             return normals * (1.0 / (across * across) - least) + Tensor::new(least, 0.0, least);
         }
         // The tied tensors have the same sizes: the mean of their logarithms is linear in the mean of n n'.
-        let least = -2.0 * along.ln();
-        (normals * (2.0 * (along / across).ln()) + Tensor::new(least, 0.0, least)).exp()
+        let least = -2.0 * along.logarithm();
+        (normals * (2.0 * (along / across).logarithm()) + Tensor::new(least, 0.0, least)).exp()
     }
 }
 

@@ -1,5 +1,6 @@
 //! The norm in which an error of interpolation is to be least, and what it makes of a Hessian.
 
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use std::fmt;
@@ -40,7 +41,7 @@ impl Norm {
         if self.0.is_infinite() {
             return absolute;
         }
-        absolute * absolute.determinant().powf(-1.0 / (2.0 * self.0 + 2.0))
+        absolute * absolute.determinant().raised_to(-1.0 / (2.0 * self.0 + 2.0))
     }
 }
 

@@ -1,5 +1,6 @@
 //! What expressions are compiled to, and how that runs: on plain numbers, and on numbers that carry their derivatives.
 
+use crate::elementary::Elementary;
 use crate::geometry::Jet3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -38,11 +39,11 @@ impl Number for f64 {
     }
 
     fn power(self, exponent: Self) -> Self {
-        self.powf(exponent)
+        self.raised_to(exponent)
     }
 
     fn atan2(self, x: Self) -> Self {
-        f64::atan2(self, x)
+        Elementary::arctangent_over(self, x)
     }
 
     fn call(self, function: &Unary) -> Self {
@@ -61,14 +62,14 @@ impl Number for Jet3 {
 
     fn power(self, exponent: Self) -> Self {
         let (a, b) = (self.value, exponent.value);
-        let power = a.powf(b);
+        let power = a.raised_to(b);
         let by_base = [scaled_power(b, a, b - 1.0), scaled_power(b * (b - 1.0), a, b - 2.0)];
         if exponent.is_constant() {
             // Bases below zero have no logarithm, but powers.
             return self.chain(power, by_base);
         }
-        let log = a.ln();
-        let second = [by_base[1], a.powf(b - 1.0) * (1.0 + b * log), log * log * power];
+        let log = a.logarithm();
+        let second = [by_base[1], a.raised_to(b - 1.0) * (1.0 + b * log), log * log * power];
         self.chain2(exponent, power, [by_base[0], log * power], second)
     }
 
@@ -77,7 +78,7 @@ impl Number for Jet3 {
         let square = x * x + y * y;
         let fourth = square.powi(2);
         let second = [-2.0 * x * y / fourth, (y * y - x * x) / fourth, 2.0 * x * y / fourth];
-        self.chain2(other, y.atan2(x), [x / square, -y / square], second)
+        self.chain2(other, y.arctangent_over(x), [x / square, -y / square], second)
     }
 
     fn call(self, function: &Unary) -> Self {
@@ -87,7 +88,7 @@ impl Number for Jet3 {
 
 /// c a^b, zero where c is, even if a^b is infinite.
 fn scaled_power(c: f64, a: f64, b: f64) -> f64 {
-    if c == 0.0 { 0.0 } else { c * a.powf(b) }
+    if c == 0.0 { 0.0 } else { c * a.raised_to(b) }
 }
 
 /// Values an expression may keep waiting, such as the three 1 in `1 + (1 + (1 + x))`.

@@ -2,6 +2,7 @@
 //! star sets come to agree.
 
 use super::{MetricField, Near};
+use crate::elementary::Elementary;
 use crate::geometry::{Point, Tensor};
 
 /// The field `factor` M: metric lengths grow by sqrt(factor), the complexity (see [`complexity`](super::complexity()))
@@ -60,7 +61,7 @@ impl Steadied<'_> {
             let away = axis * (0.5 * STEP);
             turn(self.field.at(p + away), self.field.at(p - away)) / STEP
         });
-        x.hypot(y)
+        x.hypotenuse(y)
     }
 }
 
@@ -69,7 +70,7 @@ fn turn(m: Tensor, n: Tensor) -> f64 {
     let square = m.determinant() * n.determinant();
     // Half the trace of M^-1 N over the root of its determinant: the hyperbolic cosine of the turn.
     let cosine = 0.5 * (m.yy * n.xx - 2.0 * m.xy * n.xy + m.xx * n.yy) / square.sqrt();
-    if cosine.is_finite() { cosine.max(1.0).acosh() } else { 0.0 }
+    if cosine.is_finite() { cosine.max(1.0).area_cosine() } else { 0.0 }
 }
 
 #[cfg(test)]

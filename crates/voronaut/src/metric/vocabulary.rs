@@ -1,6 +1,7 @@
 //! The names and operators of expressions, each declared once.
 
 use super::program::{Op, Unary};
+use crate::elementary::Elementary;
 
 /// How many arguments a function takes, and what it does with them.
 pub(super) enum Function {
@@ -13,18 +14,33 @@ pub(super) enum Function {
 
 /// Functions, in the order of the help.
 pub(super) const FUNCTIONS: [(&str, Function); 17] = [
-    ("sin", Function::One(&Unary { value: f64::sin, derivatives: |x| [x.cos(), -x.sin()] })),
-    ("cos", Function::One(&Unary { value: f64::cos, derivatives: |x| [-x.sin(), -x.cos()] })),
-    ("tan", Function::One(&Unary { value: f64::tan, derivatives: of_tan })),
-    ("asin", Function::One(&Unary { value: f64::asin, derivatives: of_asin })),
-    ("acos", Function::One(&Unary { value: f64::acos, derivatives: |x| of_asin(x).map(|d| -d) })),
-    ("atan", Function::One(&Unary { value: f64::atan, derivatives: of_atan })),
+    ("sin", Function::One(&Unary { value: Elementary::sine, derivatives: |x| [x.cosine(), -x.sine()] })),
+    ("cos", Function::One(&Unary { value: Elementary::cosine, derivatives: |x| [-x.sine(), -x.cosine()] })),
+    ("tan", Function::One(&Unary { value: Elementary::tangent, derivatives: of_tan })),
+    ("asin", Function::One(&Unary { value: Elementary::arcsine, derivatives: of_asin })),
+    ("acos", Function::One(&Unary { value: Elementary::arccosine, derivatives: |x| of_asin(x).map(|d| -d) })),
+    ("atan", Function::One(&Unary { value: Elementary::arctangent, derivatives: of_atan })),
     ("atan2", Function::Two(Op::Atan2)),
-    ("sinh", Function::One(&Unary { value: f64::sinh, derivatives: |x| [x.cosh(), x.sinh()] })),
-    ("cosh", Function::One(&Unary { value: f64::cosh, derivatives: |x| [x.sinh(), x.cosh()] })),
-    ("tanh", Function::One(&Unary { value: f64::tanh, derivatives: of_tanh })),
-    ("exp", Function::One(&Unary { value: f64::exp, derivatives: |x| [x.exp(), x.exp()] })),
-    ("log", Function::One(&Unary { value: f64::ln, derivatives: |x| [1.0 / x, -1.0 / (x * x)] })),
+    (
+        "sinh",
+        Function::One(&Unary {
+            value: Elementary::hyperbolic_sine,
+            derivatives: |x| [x.hyperbolic_cosine(), x.hyperbolic_sine()],
+        }),
+    ),
+    (
+        "cosh",
+        Function::One(&Unary {
+            value: Elementary::hyperbolic_cosine,
+            derivatives: |x| [x.hyperbolic_sine(), x.hyperbolic_cosine()],
+        }),
+    ),
+    ("tanh", Function::One(&Unary { value: Elementary::hyperbolic_tangent, derivatives: of_tanh })),
+    (
+        "exp",
+        Function::One(&Unary { value: Elementary::exponential, derivatives: |x| [x.exponential(), x.exponential()] }),
+    ),
+    ("log", Function::One(&Unary { value: Elementary::logarithm, derivatives: |x| [1.0 / x, -1.0 / (x * x)] })),
     ("sqrt", Function::One(&Unary { value: f64::sqrt, derivatives: |x| [0.5 / x.sqrt(), -0.25 / (x * x.sqrt())] })),
     ("abs", Function::One(&Unary { value: f64::abs, derivatives: |x| [x.signum(), 0.0] })),
     ("min", Function::Many(Op::Choose(f64::min))),
@@ -61,8 +77,8 @@ const OR: Op = Op::Test(|a, b| a != 0.0 || b != 0.0);
 const AND: Op = Op::Test(|a, b| a != 0.0 && b != 0.0);
 
 fn of_tan(x: f64) -> [f64; 2] {
-    let slope = x.cos().powi(-2);
-    [slope, 2.0 * x.tan() * slope]
+    let slope = x.cosine().powi(-2);
+    [slope, 2.0 * x.tangent() * slope]
 }
 
 fn of_asin(x: f64) -> [f64; 2] {
@@ -76,8 +92,8 @@ fn of_atan(x: f64) -> [f64; 2] {
 }
 
 fn of_tanh(x: f64) -> [f64; 2] {
-    let slope = x.cosh().powi(-2);
-    [slope, -2.0 * x.tanh() * slope]
+    let slope = x.hyperbolic_cosine().powi(-2);
+    [slope, -2.0 * x.hyperbolic_tangent() * slope]
 }
 
 #[expect(clippy::float_cmp, reason = "that is what the user asks for")]

@@ -1,5 +1,6 @@
 //! Random numbers that are the same every time.
 
+use crate::elementary::Elementary;
 use crate::geometry::{Tensor, Vector, from_frame};
 
 /// A generator of numbers that look even and independent, the same from the same start: splitmix64 (Steele et al. 2014).
@@ -24,7 +25,7 @@ impl Random {
     /// A vector in the unit disk, evenly.
     fn in_disk(&mut self) -> Vector {
         let (radius, angle) = (self.number().sqrt(), std::f64::consts::TAU * self.number());
-        Vector::new(radius * angle.cos(), radius * angle.sin())
+        Vector::new(radius * angle.cosine(), radius * angle.sine())
     }
 
     /// A vector no longer than a radius in a tensor's metric, evenly.

@@ -3,6 +3,7 @@
 use crate::canvas::Canvas;
 use crate::diagram::{Care, Diagram};
 use crate::dual::{Dual, Kind, Moving};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geodesic::{LocalMetric, Method, Support};
 use crate::geometry::{Point, Tensor, Vector, to_frame};
@@ -247,7 +248,7 @@ impl<'a, M: Moving> View<'a, M> {
 /// The angle from the first spoke to the last.
 fn turn(spokes: &[Vector], last: Vector) -> f64 {
     let to = spokes.iter().copied().skip(1).chain([last]);
-    spokes.iter().zip(to).map(|(a, b)| a.cross(b).atan2(a.dot(b))).sum()
+    spokes.iter().zip(to).map(|(a, b)| a.cross(b).arctangent_over(a.dot(b))).sum()
 }
 
 /// A canvas, and the metric area that each of its vertices stands for.

@@ -2,6 +2,7 @@
 //! move to where the worst triangle around them is best.
 
 use crate::dual::{Dual, Effort, Kind, Moving, sites};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{NEEDLE, Vector, from_frame};
 use crate::lists::ranked;
@@ -132,10 +133,10 @@ fn mend<M: Moving>(dual: &mut M, v: VertexId, lengths: Lengths) -> bool {
         topology.star(v).map(|h| [topology.target(h), topology.apex(h)].map(|u| dual.site(u))).collect();
     let is_long = |h: HalfEdge| {
         let ends = topology.ends(h).map(|u| dual.site(u));
-        topology.is_fixed(h) && dual.straight_length(ends).ln() > UNIT
+        topology.is_fixed(h) && dual.straight_length(ends).logarithm() > UNIT
     };
     let is_beside = topology.star(v).any(|h| is_long(h.next()));
-    let misfit = |dual: &M, site: M::Site, u: M::Site| dual.straight_length([site, u]).ln().abs();
+    let misfit = |dual: &M, site: M::Site, u: M::Site| dual.straight_length([site, u]).logarithm().abs();
     let worst_edge = |dual: &M, site: M::Site| ring.iter().map(|&[u, _]| misfit(dual, site, u)).fold(0.0, f64::max);
     let usual = worst_edge(dual, dual.site(v)).max(UNIT);
     // The least quality around, where that is at least so much: most trials are told by their first triangles.
@@ -171,7 +172,7 @@ fn mend<M: Moving>(dual: &mut M, v: VertexId, lengths: Lengths) -> bool {
 fn trials(frame: [f64; 3]) -> impl Iterator<Item = Vector> {
     LENGTHS.into_iter().flat_map(move |length| {
         (0..DIRECTIONS).map(move |k| {
-            let (sine, cosine) = (std::f64::consts::TAU * k as f64 / DIRECTIONS as f64).sin_cos();
+            let (sine, cosine) = (std::f64::consts::TAU * k as f64 / DIRECTIONS as f64).sine_and_cosine();
             from_frame(frame, Vector::new(length * cosine, length * sine))
         })
     })

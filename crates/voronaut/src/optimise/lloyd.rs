@@ -94,6 +94,7 @@ pub(crate) fn relax<M: Moving>(
         let before = descent.state.energy;
         let done = descent.step(dual)?;
         progress.advance(1)?;
+        progress.sketch(&|| dual.sketch());
         let is_small = cells.lower_energy() && before - descent.state.energy < gain * before;
         small = if is_small { small + 1 } else { 0 };
         if !done || small == IN_A_ROW {

@@ -5,6 +5,7 @@
 use super::movers::Region;
 use super::survey::{Survey, corners_of};
 use crate::dual::{Dual, Kind, Moving};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geodesic::{Angles, LocalMetric, hermite};
 use crate::geometry::Point;
@@ -178,7 +179,7 @@ impl<'a, 'b> Mender<'a, 'b> {
 
     /// One round: for each simplex, the best of the places tried for its seeds.
     fn mend(&mut self, bad: &[Vec<VertexId>], round: usize, epsilon: f64) {
-        let radius = epsilon * (BALL[0] * GROWTH.powf(round as f64)).min(BALL[1]);
+        let radius = epsilon * (BALL[0] * GROWTH.raised_to(round as f64)).min(BALL[1]);
         let asked = (self.share * epsilon).powi(2);
         let by = if round >= GEODESICS.0 && bad.len() <= GEODESICS.1 { By::Geodesics } else { By::Estimates };
         for seeds in bad {

@@ -1,6 +1,7 @@
 //! How far a function is from its linear interpolation on a mesh.
 
 use super::{Position, Spot};
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Node, Point, Point3, radon};
 use crate::mesh::Mesh;
@@ -91,8 +92,9 @@ fn error_of(mesh: &Mesh, at_vertex: At, within: At, norm: Norm) -> Result<Interp
         return Ok(InterpolationError { norm: max, p: Exponent::Infinite("inf"), max: max_spot });
     }
     // Powers of shares of the greatest: they neither overflow nor all vanish.
-    let sum: f64 = found.iter().map(|&(sum, own, _)| if own > 0.0 { sum * (own / max).powf(p) } else { 0.0 }).sum();
-    let value = if max > 0.0 { max * sum.powf(1.0 / p) } else { 0.0 };
+    let sum: f64 =
+        found.iter().map(|&(sum, own, _)| if own > 0.0 { sum * (own / max).raised_to(p) } else { 0.0 }).sum();
+    let value = if max > 0.0 { max * sum.raised_to(1.0 / p) } else { 0.0 };
     Ok(InterpolationError { norm: value, p: Exponent::Finite(p), max: max_spot })
 }
 
@@ -135,7 +137,7 @@ fn on_triangle(corners: [Point3; 3], values: [f64; 3], function: At, norm: Norm,
         );
     let [a, b, c] = corners;
     let area = 0.5 * (b - a).cross(c - a).norm();
-    let power = |error: f64| if most > 0.0 { (error / most).powf(norm.exponent()) } else { 0.0 };
+    let power = |error: f64| if most > 0.0 { (error / most).raised_to(norm.exponent()) } else { 0.0 };
     let sum: f64 = errors.iter().zip(nodes).map(|(&(error, _), &(_, weight))| weight * power(error)).sum();
     (area * sum, most, at)
 }

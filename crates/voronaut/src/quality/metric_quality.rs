@@ -1,6 +1,7 @@
 //! Lengths, shapes and angles of a mesh in a metric.
 
 use super::faults::{Position, middle};
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3, Tensor, Vector};
 use crate::lists::marked;
@@ -227,7 +228,7 @@ impl Shape {
 }
 /// The angle (radians, from -pi to pi) by which u must turn to point along v, in a metric.
 pub(super) fn angle(m: Tensor, u: Vector, v: Vector) -> f64 {
-    (m.determinant().max(0.0).sqrt() * u.cross(v)).atan2(m.dot(u, v))
+    (m.determinant().max(0.0).sqrt() * u.cross(v)).arctangent_over(m.dot(u, v))
 }
 
 pub(super) fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {

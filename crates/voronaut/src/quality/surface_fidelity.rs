@@ -3,6 +3,7 @@
 use super::faults::Position;
 use super::metric_quality::{Spot, demand_vertices, fault, spot};
 use super::sampled_distance::{Sample, Sampled, sample};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{Point3, Vector3};
 use crate::lists::distinct;
@@ -183,10 +184,10 @@ impl Normals {
         let compare = |&t: &[Point3; 3]| {
             let vector = (t[1] - t[0]).cross(t[2] - t[0]);
             let normal = target.closest(centroid(t)).normal;
-            (vector.norm(), vector.cross(normal).norm().atan2(vector.dot(normal)))
+            (vector.norm(), vector.cross(normal).norm().arctangent_over(vector.dot(normal)))
         };
         let mut found: Vec<(f64, f64)> = triangles.par_iter().map(compare).collect();
-        let reversed = found.iter().map(|(area, angle)| area * angle.cos()).sum::<f64>() < 0.0;
+        let reversed = found.iter().map(|(area, angle)| area * angle.cosine()).sum::<f64>() < 0.0;
         if reversed {
             for (_, angle) in &mut found {
                 *angle = std::f64::consts::PI - *angle;

@@ -2,6 +2,7 @@
 
 use super::faults::Position;
 use super::metric_quality::{GAUSS, MetricQuality, Shape, collect, demand_vertices, fault, figures};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor, Vector, Vector3};
 use crate::mesh::Mesh;
@@ -91,7 +92,7 @@ fn length(Seen { tensor, normal }: Seen, edge: Vector3) -> f64 {
     let tangent = edge - normal * edge.dot(normal);
     match tangent.unit() {
         Some(direction) => tensor.length(direction) * edge.norm(),
-        None => TangentPlane::new(normal).restrict(tensor).determinant().powf(0.25) * edge.norm(),
+        None => TangentPlane::new(normal).restrict(tensor).determinant().raised_to(0.25) * edge.norm(),
     }
 }
 

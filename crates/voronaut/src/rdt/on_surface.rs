@@ -3,6 +3,7 @@
 use super::Judge;
 use crate::canvas::{Canvas, Draped, metric_area};
 use crate::diagram::SurfaceDiagram;
+use crate::elementary::Elementary;
 use crate::geodesic::{Margin, PathLength, circumradius, margin_from_lengths};
 use crate::geometry::{Point3, TangentPlane, Vector};
 use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested};
@@ -124,6 +125,6 @@ fn curvatures(diagram: &SurfaceDiagram, seeds: usize) -> Vec<f64> {
 fn flat(topology: &Triangulation, f: FaceId) -> ([f64; 3], f64) {
     let [ab, bc, ca] = f.half_edges().map(|h| topology.length(h));
     let area = metric_area(topology, f);
-    let angle = |x: f64, y: f64, opposite: f64| (4.0 * area).atan2(x * x + y * y - opposite * opposite);
+    let angle = |x: f64, y: f64, opposite: f64| (4.0 * area).arctangent_over(x * x + y * y - opposite * opposite);
     ([angle(ab, ca, bc), angle(ab, bc, ca), angle(bc, ca, ab)], area)
 }

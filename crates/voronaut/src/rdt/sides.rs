@@ -1,6 +1,7 @@
 //! Triangles by their sides, and the loops of sides that lack one.
 
 use super::Judge;
+use crate::elementary::Elementary;
 use crate::geometry::Vector;
 use std::collections::BTreeMap;
 
@@ -102,6 +103,6 @@ impl<'a> Sides<'a> {
 
 /// The angle from u clockwise to v, in (0, 2 pi].
 fn clockwise(u: Vector, v: Vector) -> f64 {
-    let angle = v.cross(u).atan2(v.dot(u));
+    let angle = v.cross(u).arctangent_over(v.dot(u));
     if angle > 0.0 { angle } else { angle + std::f64::consts::TAU }
 }

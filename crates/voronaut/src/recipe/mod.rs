@@ -32,6 +32,7 @@ pub use surface_field::{SurfaceSource, metric_on_surface};
 use crate::canvas::{Canvas, CanvasFigures};
 use crate::domain::{Domain, Pair, paired};
 use crate::dual::{Dual, Kind, Moving};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::figures;
 use crate::mesh::Mesh;
@@ -318,6 +319,7 @@ impl<'a> Job<'a> {
 
     fn finish(&self, domain: &Domain, dual: &Dual, pairs: &[Pair]) -> Result<Mesh> {
         self.progress.begin("checking", 1)?;
+        self.progress.sketch(&|| dual.sketch());
         let mut mesh = dual.to_mesh(domain);
         mesh.periodic = correspondence(&mesh, domain, pairs)?;
         quality::check(&mesh)?;
@@ -332,17 +334,17 @@ fn mean_free_edge(dual: &Dual) -> f64 {
     let is_free = |v| dual.kind(v) == Kind::Free;
     let (mut free, mut all) = (Vec::new(), Vec::new());
     for h in topology.edges() {
-        let logarithm = dual.edge_length(h).max(f64::MIN_POSITIVE).ln();
+        let logarithm = dual.edge_length(h).max(f64::MIN_POSITIVE).logarithm();
         all.push(logarithm);
         if is_free(topology.origin(h)) && is_free(topology.target(h)) {
             free.push(logarithm);
         }
     }
     if 20 * free.len() > all.len() {
-        return (free.iter().sum::<f64>() / free.len() as f64).exp();
+        return (free.iter().sum::<f64>() / free.len() as f64).exponential();
     }
     all.sort_by(f64::total_cmp);
-    all[all.len() / 2].exp()
+    all[all.len() / 2].exponential()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::field::{background_vertices, even, tensors};
 use crate::domain::{Domain, Pslg, from_mesh};
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
 use crate::lists::{distinct, in_order, marked};
@@ -209,7 +210,7 @@ impl RemeshInput {
             let help = "leave out -optim, or give a mesh with triangles";
             return Err(Error::unsupported("the sizes of a domain without a mesh (-optim)", help));
         }
-        let even = |m: Tensor| Tensor::isotropic(m.determinant().powf(-0.25));
+        let even = |m: Tensor| Tensor::isotropic(m.determinant().raised_to(-0.25));
         let implied = implied(&self.given)?;
         Ok(if is_anisotropic { implied } else { implied.into_iter().map(even).collect() })
     }
@@ -226,7 +227,7 @@ impl RemeshInput {
         };
         let mesh = triangulated(&self.given)?;
         let sizes =
-            metric(&mesh, values)?.into_iter().map(|m| [m.eigen().large, m.eigen().small].map(|x| x.powf(-0.5)));
+            metric(&mesh, values)?.into_iter().map(|m| [m.eigen().large, m.eigen().small].map(|x| x.raised_to(-0.5)));
         let [least, most] = sizes.fold([f64::INFINITY, 0.0], |[a, b]: [f64; 2], [h, g]| [a.min(h), b.max(g)]);
         Ok([0.1 * least, 10.0 * most])
     }
@@ -247,7 +248,7 @@ impl RemeshSizes {
         let values = if self.is_anisotropic {
             SolutionValues::Tensor(tensors.map(|m| [m.xx, m.xy, m.yy]).collect())
         } else {
-            SolutionValues::Scalar(tensors.map(|m| m.xx.powf(-0.5)).collect())
+            SolutionValues::Scalar(tensors.map(|m| m.xx.raised_to(-0.5)).collect())
         };
         Solution { dimension: 2, values }
     }

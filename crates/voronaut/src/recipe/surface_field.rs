@@ -3,6 +3,7 @@
 
 use super::field::{GradedAt, LONGEST, MetricOptions, background_vertices};
 use crate::canvas::{Draped, area_of_surface, even_on_surface};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3, Vector};
 use crate::lists::Rows;
@@ -259,7 +260,7 @@ impl<'s> Background<'s> {
         let mut best = graded(scale)?;
         for _ in 0..STEPS {
             let missing = target / self.complexity(&best);
-            if missing.ln().abs() < 5e-3 {
+            if missing.logarithm().abs() < 5e-3 {
                 break;
             }
             scale *= missing;

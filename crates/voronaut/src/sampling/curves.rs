@@ -2,6 +2,7 @@
 //! chords stay as close to them.
 
 use crate::domain::{Chain, Domain, Pair, Pslg, curves_in_step};
+use crate::elementary::Elementary;
 use crate::geodesic::chord;
 use crate::geometry::{Aabb, BoxTree, Orientation, Point, Tensor, Vector, kept_within, orientation, widened};
 use crate::lists::distinct;
@@ -166,8 +167,8 @@ impl CurveSizes {
             around.filter(|bent| p.distance(p.nearest_between(bent.ends[0], bent.ends[1])) <= reach).collect();
         let first = direction(near.first()?);
         let sum = near[1..].iter().map(|bent| direction(bent)).fold(first, |sum, d| sum + d * d.dot(first).signum());
-        let logarithms: f64 = near.iter().map(|bent| bent.size.ln()).sum();
-        Some(((logarithms / near.len() as f64).exp(), sum * (1.0 / sum.norm())))
+        let logarithms: f64 = near.iter().map(|bent| bent.size.logarithm()).sum();
+        Some(((logarithms / near.len() as f64).exponential(), sum * (1.0 / sum.norm())))
     }
 }
 

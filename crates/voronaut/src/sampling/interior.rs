@@ -1,6 +1,7 @@
 //! The interior: seeds one at a time at the circumcentre of the face whose metric circumradius is largest.
 
 use crate::dual::{Dual, Kind, Moving};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geodesic::chord_near;
 use crate::geometry::{Point, Tensor, Vector, centroid};
@@ -67,6 +68,7 @@ pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, 
         }
         if dual.vertex_count() >= reported + 256 {
             progress.advance((dual.vertex_count() - reported) as u64)?;
+            progress.sketch(&|| dual.sketch());
             reported = dual.vertex_count();
         }
     }
@@ -277,7 +279,7 @@ fn split_if_long(dual: &mut Dual, h: HalfEdge) -> bool {
 fn split_constrained(dual: &mut Dual, h: HalfEdge) -> bool {
     let [a, b] = dual.topology().ends(h);
     let length = dual.edge_length(h);
-    let shell = (0.5 * length).log2().round().exp2() / length;
+    let shell = (0.5 * length).binary_logarithm().round().power_of_two() / length;
     let t = match (is_sharp(dual, a), is_sharp(dual, b)) {
         (true, false) => shell,
         (false, true) => 1.0 - shell,

@@ -1,6 +1,7 @@
 //! Features of a surface, which a mesh of it has to keep, and the curves they make: chains from stop to stop, or closed.
 
 use super::{Place, Surface};
+use crate::elementary::Elementary;
 use crate::geometry::{Point3, Vector3};
 use crate::lists::{Classes, distinct};
 use crate::mesh::Network;
@@ -65,7 +66,7 @@ impl Surface {
     /// Whether the normals on both sides of an edge differ by more than an angle. At the border the surface turns back.
     fn turns(&self, h: HalfEdge, angle: f64) -> bool {
         let Some(twin) = self.topology.twin(h) else { return true };
-        self.normal(h.face()).dot(self.normal(twin.face())) < angle.to_radians().cos()
+        self.normal(h.face()).dot(self.normal(twin.face())) < angle.to_radians().cosine()
     }
 }
 
@@ -243,7 +244,7 @@ impl<'a> Features<'a> {
     fn is_corner(&self, v: VertexId, angle: Option<f64>) -> bool {
         let &[i, j] = self.network.at(v.0) else { return true };
         let [e, f] = [i, j].map(|i| self.leaving(v, i).direction(self.surface));
-        angle.is_some_and(|angle| -e.dot(f) < angle.to_radians().cos())
+        angle.is_some_and(|angle| -e.dot(f) < angle.to_radians().cosine())
     }
 
     /// Whether the edges at a vertex differ in what they are, or one is required.

@@ -1,6 +1,7 @@
 //! Size and shape of a surface: area, normals, components, borders, genus.
 
 use super::{Place, Surface};
+use crate::elementary::Elementary;
 use crate::geometry::{Aabb3, Vector3};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
@@ -64,7 +65,7 @@ impl Surface {
     pub(crate) fn angle(&self, h: HalfEdge) -> f64 {
         let at = self.position(self.topology.origin(h));
         let [u, v] = [self.topology.target(h), self.topology.apex(h)].map(|v| self.position(v) - at);
-        u.cross(v).norm().atan2(u.dot(v))
+        u.cross(v).norm().arctangent_over(u.dot(v))
     }
 
     /// The sum of the triangles' areas.

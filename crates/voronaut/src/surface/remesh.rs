@@ -5,6 +5,7 @@
 use super::implicit::unpinned;
 use super::level::{Level, Vertex, quality};
 use super::{Implicit, Surface};
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3, Vector3};
 use crate::lists::ranked;
@@ -75,7 +76,7 @@ fn grade(level: &mut Level, edge: f64) -> Result<()> {
     let around = Neighbours::of_triangles(sizes.len(), t.faces().map(|f| t.corners(f).map(|v| v.0)), []);
     let position = |v: u32| level.vertices[v as usize].position;
     let length = |v, w| position(v).distance(position(w));
-    Gradation::of_sizes(around, length, GRADATION.exp())?.apply_to_sizes(&mut sizes)?;
+    Gradation::of_sizes(around, length, GRADATION.exponential())?.apply_to_sizes(&mut sizes)?;
     level.vertices.iter_mut().zip(sizes).for_each(|(vertex, size)| vertex.size = size);
     Ok(())
 }
@@ -87,7 +88,7 @@ fn ratio(a: &Vertex, b: &Vertex) -> f64 {
 
 /// Whether the surface turns by more along an edge than `BEND` allows.
 fn turns(a: &Vertex, b: &Vertex) -> bool {
-    a.normal.dot(b.normal) < (LONG * BEND).cos()
+    a.normal.dot(b.normal) < (LONG * BEND).cosine()
 }
 
 /// Splits edges that are too long, or along which the surface turns too much, the longest first. With `freely` that may

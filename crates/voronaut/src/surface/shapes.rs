@@ -2,6 +2,7 @@
 
 use super::{Input, Surface, mesh_implicit};
 use crate::domain::{name_and_rest, read_numbers};
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3, Vector3};
 use crate::lists::in_order;
@@ -63,8 +64,8 @@ pub fn torus(ring: f64, tube: f64, edge: f64) -> Result<Surface> {
     let at = |i: u32, j: u32| {
         // Every other row is shifted by half a step: triangles come out nearly equilateral.
         let shift = 0.5 * f64::from(j % 2);
-        let (sin_u, cos_u) = (TAU * (f64::from(i) + shift) / f64::from(long)).sin_cos();
-        let (sin_v, cos_v) = (TAU * f64::from(j) / f64::from(short)).sin_cos();
+        let (sin_u, cos_u) = (TAU * (f64::from(i) + shift) / f64::from(long)).sine_and_cosine();
+        let (sin_v, cos_v) = (TAU * f64::from(j) / f64::from(short)).sine_and_cosine();
         let r = ring + tube * cos_v;
         [r * cos_u, r * sin_u, tube * sin_v]
     };
@@ -113,7 +114,7 @@ fn icosahedron() -> (Vec<Vector3>, Vec<[u32; 3]>) {
     for (s, t) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
         points.extend([Vector3::new(s, t, 0.0), Vector3::new(0.0, s, t), Vector3::new(t, 0.0, s)]);
     }
-    let points: Vec<Vector3> = points.into_iter().map(|v| v * (1.0 / golden.hypot(1.0))).collect();
+    let points: Vec<Vector3> = points.into_iter().map(|v| v * (1.0 / golden.hypotenuse(1.0))).collect();
     // Neighbours are those nearer than a right angle.
     let near = |a: usize, b: usize| points[a].dot(points[b]) > 0.0;
     let mut triangles = Vec::new();
@@ -186,7 +187,7 @@ fn read_sphere(text: &str, numbers: &str, edge: Option<f64>) -> Result<Input> {
 
 fn read_torus(text: &str, numbers: &str, edge: Option<f64>) -> Result<Input> {
     let [ring, tube] = read_numbers(text, numbers, "torus:R,r")?;
-    let size = (ring + tube).hypot(ring + tube).hypot(tube) * 2.0;
+    let size = (ring + tube).hypotenuse(ring + tube).hypotenuse(tube) * 2.0;
     let surface = torus(ring, tube, edge.unwrap_or(size * DEFAULT_EDGE))?;
     with_equation(surface, &format!("(sqrt(x^2+y^2)-{ring:e})^2+z^2-{tube:e}^2"))
 }

@@ -5,6 +5,7 @@ use super::ground::Ground;
 use super::loads::{Load, Old, shares};
 use super::mass::{MassMatrix, areas, balance, bounded, share_missing};
 use super::{Field, Kind, Overshoot, Place};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::sparse::dot;
@@ -110,5 +111,5 @@ fn unit<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
     /// Powers of two beyond this are near those that overflow.
     const MOST: f64 = 1000.0;
     let greatest = values.fold(0.0_f64, |most, u| most.max(u.abs()));
-    if greatest > 0.0 { 2.0_f64.powi(greatest.log2().clamp(-MOST, MOST) as i32) } else { 1.0 }
+    if greatest > 0.0 { 2.0_f64.powi(greatest.binary_logarithm().clamp(-MOST, MOST) as i32) } else { 1.0 }
 }

@@ -23,7 +23,7 @@ impl Source {
 
 /// All files of all crates, without those that are only there for tests.
 pub(super) fn everywhere() -> Vec<Source> {
-    let crates = ["voronaut", "voronaut-io", "voronaut-draw", "voronaut-cli"];
+    let crates = ["voronaut", "voronaut-io", "voronaut-draw", "voronaut-cli", "voronaut-wasm"];
     let named = |name: &str| {
         let named =
             sources(name).into_iter().map(|source| Source { name: format!("{name}/{}", source.name), ..source });

@@ -1,6 +1,7 @@
 //! The complexity of a metric at vertices, in closed form, and metrics of a given complexity.
 
 use super::enforce_spd;
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
@@ -10,7 +11,7 @@ use crate::metric::validate::check_at_vertices;
 /// The integral of sqrt(det M) over a planar mesh, of the metric that is log-Euclidean between the vertices: exact but for
 /// rounding, for there log sqrt(det M) is linear on every triangle. Triangles of either orientation count.
 pub fn complexity(mesh: &Mesh, tensors: &[Tensor]) -> f64 {
-    let logs: Vec<f64> = tensors.iter().map(|tensor| 0.5 * tensor.determinant().ln()).collect();
+    let logs: Vec<f64> = tensors.iter().map(|tensor| 0.5 * tensor.determinant().logarithm()).collect();
     let of_triangle = |&t: &[u32; 3]| mesh.double_area(t) * divided_difference(t.map(|v| logs[v as usize]));
     mesh.triangles.iter().map(of_triangle).sum()
 }
@@ -74,7 +75,7 @@ const CLOSE: f64 = 1.0;
 /// (exp b - exp a) / (b - a), for a <= b.
 fn first_difference(a: f64, b: f64) -> f64 {
     let d = b - a;
-    b.exp() * if d > 0.0 { -(-d).exp_m1() / d } else { 1.0 }
+    b.exponential() * if d > 0.0 { -(-d).exponential_less_one() / d } else { 1.0 }
 }
 
 /// The sum of `h_k / (k + 2)!`, with `h_k` the complete homogeneous symmetric polynomials, about the mean: its terms fall like 1 / k!.
@@ -91,7 +92,7 @@ fn close_difference(values: [f64; 3]) -> f64 {
         factorial *= f64::from(k + 2);
         sum += three / factorial;
     }
-    mean.exp() * sum
+    mean.exponential() * sum
 }
 
 #[cfg(test)]

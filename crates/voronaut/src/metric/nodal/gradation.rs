@@ -1,6 +1,7 @@
 //! Metrics that change slowly: the one law, in the plane and on surfaces.
 
 use super::restrict::Limits;
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Tensor, Vector};
 use crate::mesh::Mesh;
@@ -94,7 +95,7 @@ impl<'a> Gradation<'a> {
             let help = "1.3 lets edges grow by a third from one to the next; leave it out for no gradation";
             return Err(Error::parse("metric gradation", what, help));
         }
-        Ok(Self { around, offset: Box::new(offset), turn: None, growth: gradation_factor.ln() })
+        Ok(Self { around, offset: Box::new(offset), turn: None, growth: gradation_factor.logarithm() })
     }
 
     /// [`Gradation::apply`] to sizes.
@@ -162,7 +163,7 @@ impl<'a> Gradation<'a> {
 }
 
 fn unsettled(growth: f64) -> Error {
-    let what = format!("gradation by the factor {} does not settle: {PATIENCE} rounds and more", growth.exp());
+    let what = format!("gradation by the factor {} does not settle: {PATIENCE} rounds and more", growth.exponential());
     Error::limit(what, "choose a larger factor, or limit the anisotropy")
 }
 
@@ -221,7 +222,7 @@ pub(super) struct Waiting {
 impl Waiting {
     /// All vertices.
     pub(super) fn all(tensors: &[Tensor]) -> Self {
-        let densest = tensors.iter().map(|m| m.determinant()).fold(0.0, f64::max).ln();
+        let densest = tensors.iter().map(|m| m.determinant()).fold(0.0, f64::max).logarithm();
         let mut all = Self { densest, levels: BTreeMap::new(), still_waits: vec![false; tensors.len()] };
         tensors.iter().enumerate().for_each(|(v, &tensor)| all.add(v as u32, tensor));
         all
@@ -229,7 +230,7 @@ impl Waiting {
 
     /// A vertex with its metric of now, which is no coarser than it was.
     pub(super) fn add(&mut self, v: u32, tensor: Tensor) {
-        let level = ((self.densest - tensor.determinant().ln()) / STEP) as u32;
+        let level = ((self.densest - tensor.determinant().logarithm()) / STEP) as u32;
         self.levels.entry(level).or_default().push(v);
         self.still_waits[v as usize] = true;
     }

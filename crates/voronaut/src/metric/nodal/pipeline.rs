@@ -5,6 +5,7 @@ use super::gradation::Gradation;
 use super::restrict::{Limits, restrict};
 use super::solve::{Root, root};
 use super::{average, intersect};
+use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
@@ -107,11 +108,11 @@ impl Pipeline {
         let Some(target) = self.target_complexity else { return stage.outcome(1.0, stage.at(1.0)?) };
         // Gradation is dear, and its result may be lifted.
         let aim = if stage.gradation.is_some() { LIFT } else { AIM };
-        let goal = target * (-aim).exp();
-        match root(aim, |x| Ok((complexity(mesh, &stage.at(x.exp())?) / goal).ln()))? {
-            Root::At(x) | Root::Jump(x) => stage.lifted(x.exp(), target),
-            Root::Below(excess) => Err(out_of_reach(target, "at most", goal * excess.exp())),
-            Root::Above(excess) => Err(out_of_reach(target, "at least", goal * excess.exp())),
+        let goal = target * (-aim).exponential();
+        match root(aim, |x| Ok((complexity(mesh, &stage.at(x.exponential())?) / goal).logarithm()))? {
+            Root::At(x) | Root::Jump(x) => stage.lifted(x.exponential(), target),
+            Root::Below(excess) => Err(out_of_reach(target, "at most", goal * excess.exponential())),
+            Root::Above(excess) => Err(out_of_reach(target, "at least", goal * excess.exponential())),
         }
     }
 
@@ -167,13 +168,15 @@ impl Stage<'_> {
     /// given, and with them, by a little, the complexity.
     fn lifted(&self, factor: f64, target: f64) -> Result<Outcome> {
         let graded = self.at(factor)?;
-        let times = |x: f64| restrict(&graded.iter().map(|&m| m * x.exp()).collect::<Vec<_>>(), self.limits);
-        match root(AIM, |x| Ok((complexity(self.mesh, &times(x)?) / target).ln()))? {
+        let times = |x: f64| restrict(&graded.iter().map(|&m| m * x.exponential()).collect::<Vec<_>>(), self.limits);
+        match root(AIM, |x| Ok((complexity(self.mesh, &times(x)?) / target).logarithm()))? {
             Root::At(x) | Root::Jump(x) => {
-                let lifted = self.outcome(factor * x.exp(), times(x)?)?;
+                let lifted = self.outcome(factor * x.exponential(), times(x)?)?;
                 Ok(Outcome { touched: self.touched(factor, &graded)?, ..lifted })
             }
-            Root::Below(excess) | Root::Above(excess) => Err(out_of_reach(target, "about", target * excess.exp())),
+            Root::Below(excess) | Root::Above(excess) => {
+                Err(out_of_reach(target, "about", target * excess.exponential()))
+            }
         }
     }
 

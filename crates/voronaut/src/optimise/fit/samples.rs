@@ -1,6 +1,7 @@
 //! Samples of a surface and of its mesh, and the closest point of the other for each: on triangles whose vertices move it is found
 //! from a triangle nearby.
 
+use crate::elementary::Elementary;
 use crate::geometry::{Point3, Vector3};
 use crate::parallel::prelude::*;
 use crate::surface::{Nearest, Surface, closest_weights};
@@ -324,7 +325,7 @@ impl<'a> Sheet<'a> {
         let around = t.star(corners[0]).filter(|h| corners.iter().all(|v| t.corners(h.face()).contains(v)));
         let weighted = around.map(|h| {
             let [u, v] = [t.target(h), t.apex(h)].map(|v| at(v) - at(t.origin(h)));
-            let angle = if corners.len() == 1 { u.cross(v).norm().atan2(u.dot(v)) } else { 1.0 };
+            let angle = if corners.len() == 1 { u.cross(v).norm().arctangent_over(u.dot(v)) } else { 1.0 };
             self.area_vector(h.face()).unit().unwrap_or_default() * angle
         });
         weighted.fold(Vector3::default(), |sum, n| sum + n).unit().unwrap_or_default()

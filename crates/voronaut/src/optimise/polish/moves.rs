@@ -3,6 +3,7 @@
 
 use super::{Work, is_allowed};
 use crate::dual::{Kind, Moving};
+use crate::elementary::Elementary;
 use crate::geometry::{Node, Point, Vector, combine, radon, signed_area};
 use crate::metric::{Norm, ScalarField};
 use crate::parallel::prelude::*;
@@ -69,7 +70,7 @@ impl Work<'_> {
         for _ in 0..TRIALS {
             let there = place([x, y]);
             if error_at(there) < now && is_allowed(shape_at(here), shape_at(there)) {
-                return Some((there, x.hypot(y)));
+                return Some((there, x.hypotenuse(y)));
             }
             (x, y) = (x * SHORTER, y * SHORTER);
         }
@@ -123,7 +124,7 @@ impl Frame {
         } else {
             [-gx / xx.abs(), 0.0]
         };
-        let length = step[0].hypot(step[1]);
+        let length = step[0].hypotenuse(step[1]);
         let share = (LONGEST / length).min(1.0);
         length.is_finite().then(|| step.map(|s| s * share))
     }
@@ -133,8 +134,8 @@ impl Frame {
 /// not finite.
 fn descent([gx, gy]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Option<[f64; 2]> {
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-    let radius = half.hypot(xy);
-    let (sine, cosine) = (0.5 * xy.atan2(half)).sin_cos();
+    let radius = half.hypotenuse(xy);
+    let (sine, cosine) = (0.5 * xy.arctangent_over(half)).sine_and_cosine();
     let [large, small] = [mean + radius, mean - radius].map(f64::abs);
     let least = LEAST_CURVATURE * large.max(small);
     let along = -(gx * cosine + gy * sine) / large.max(least);
@@ -223,12 +224,12 @@ impl<'a> Objective<'a> {
         // Exact on purpose: the default, and the fast one.
         #[expect(clippy::float_cmp)]
         let is_square = self.exponent == 2.0;
-        if is_square { error * error } else { error.abs().powf(self.exponent) }
+        if is_square { error * error } else { error.abs().raised_to(self.exponent) }
     }
 
     /// The norm of the error from the sum of all shares.
     pub(super) fn norm(&self, sum: f64) -> f64 {
-        self.unit * sum.powf(1.0 / self.exponent)
+        self.unit * sum.raised_to(1.0 / self.exponent)
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::super::metric_quality::edge_length;
 use super::{Around, RANGE, is_unit};
+use crate::elementary::Elementary;
 use crate::geodesic::bowed_chord;
 use crate::geometry::{Point, Vector, from_frame};
 use crate::lists::{Rows, distinct, in_order, marked};
@@ -77,7 +78,7 @@ impl Curves {
             let &[e, f] = network.at(v) else { return true };
             let [p, at, q] = [network.across(v, e), v, network.across(v, f)].map(|v| mesh.position(v));
             let (to, from) = (at - p, q - at);
-            let turn = to.cross(from).norm().atan2(to.dot(from));
+            let turn = to.cross(from).norm().arctangent_over(to.dot(from));
             let [before, after] = [e, f].map(|i| marks[i as usize]);
             before.label != after.label || before.is_required || after.is_required || turn > corner
         };
@@ -121,7 +122,7 @@ impl<'a> Density<'a> {
     /// Of edges with these lengths; those that do not tell are left out.
     pub(super) fn of(vertices: usize, ends: &'a [[u32; 2]], lengths: &[f64], tells: impl Fn(usize) -> bool) -> Self {
         let at = Rows::new(vertices, (0..).zip(ends).flat_map(|(e, pair)| pair.iter().map(move |&v| (v, e))));
-        let logarithms = lengths.iter().map(|length| length.ln()).collect();
+        let logarithms = lengths.iter().map(|length| length.logarithm()).collect();
         Self { ends, logarithms, tells: (0..ends.len()).map(tells).collect(), at }
     }
 
@@ -162,7 +163,7 @@ pub(super) fn straight_edges_fail(field: &dyn MetricField) -> bool {
     let fits = |turn: u32| {
         let first = third * f64::from(turn) / f64::from(TURNS);
         let corner = |i: f64| {
-            let (sin, cos) = (first + third * i).sin_cos();
+            let (sin, cos) = (first + third * i).sine_and_cosine();
             Point::default() + from_frame(frame, Vector::new(cos, sin) * FRAC_1_SQRT_3)
         };
         let [a, b, c] = [0.0, 1.0, 2.0].map(corner);

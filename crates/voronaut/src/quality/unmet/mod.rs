@@ -7,6 +7,7 @@ mod tests;
 use super::faults::{Position, middle};
 use super::metric_quality::{Corners, Shape, collect, demand_planar, demand_vertices};
 use super::surface_quality::Field;
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{NEEDLE, Point, Point3, Vector};
 use crate::lists::in_order;
@@ -173,7 +174,7 @@ impl Unmet {
         let of_cause = |cause: Cause| {
             let all: Vec<&UnmetEdge> = self.edges.iter().filter(|edge| edge.cause == cause).collect();
             let short = all.iter().filter(|edge| edge.is_short()).count();
-            let far = |edge: &UnmetEdge| edge.length.ln().abs();
+            let far = |edge: &UnmetEdge| edge.length.logarithm().abs();
             let worst = all.iter().copied().reduce(|worst, edge| if far(edge) > far(worst) { edge } else { worst });
             let worst = worst.map(|edge| WorstEdge { length: edge.length, at: edge.at });
             (cause, CauseFigures { count: all.len(), share: share(all.len()), short, long: all.len() - short, worst })

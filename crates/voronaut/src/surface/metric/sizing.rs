@@ -1,6 +1,7 @@
 //! The sizes that keep a mesh close to its surface, and to the curves on it: borders, and edges that are fixed.
 
 use super::{Sizes, fit_curvatures, grade};
+use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{TangentPlane, Tensor, Tensor3, Vector3};
 use crate::mesh::Solution;
@@ -129,10 +130,10 @@ pub(super) fn bend(surface: &Surface, v: VertexId) -> Option<Bend> {
     let &[before, after] = ends.as_slice() else { return None };
     let at = surface.position(v);
     let [u, w] = [at - surface.position(before), surface.position(after) - at];
-    let turn = u.cross(w).norm().atan2(u.dot(w));
+    let turn = u.cross(w).norm().arctangent_over(u.dot(w));
     let chord = u + w;
     let tangent = chord.unit().filter(|_| turn.to_degrees() <= CORNER)?;
-    Some(Bend { curvature: 2.0 * turn.sin() / chord.norm(), tangent })
+    Some(Bend { curvature: 2.0 * turn.sine() / chord.norm(), tangent })
 }
 
 #[cfg(test)]
