@@ -9,7 +9,7 @@ use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::recipe::{GradedAt, Idle, Origin, PlanarMetric, Task};
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Place};
-use voronaut_io::{MetricSource, is_solution};
+use voronaut_io::MetricSource;
 
 /// What a metric is for.
 pub(crate) fn task(world: &World, text: &str, choices: &MetricChoices, on_surface: bool) -> Result<Task> {
@@ -25,11 +25,16 @@ pub(crate) fn task(world: &World, text: &str, choices: &MetricChoices, on_surfac
     Ok(Task { origin, is_limited: choices.options().is_limiting(), on_surface, ..Task::default() })
 }
 
+/// Whether a text names a file of solutions, by its ending.
+pub(crate) fn names_solution(text: &str) -> bool {
+    [".sol", ".solb"].iter().any(|ending| text.trim().to_ascii_lowercase().ends_with(ending))
+}
+
 /// Functions of space are none of the plane, and read later.
 fn origin_on_surface(text: &str) -> Origin {
     match text.trim().strip_prefix("hessian:") {
         None => Origin::Sizes,
-        Some(file) if is_solution(file) => Origin::Values,
+        Some(file) if names_solution(file) => Origin::Values,
         Some(_) => Origin::Function,
     }
 }

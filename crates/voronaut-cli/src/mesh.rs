@@ -1,6 +1,6 @@
 //! `voronaut mesh`: from the command line to the library and back. All calls of the mesher are here.
 
-use crate::fields::{self, Scaled};
+use crate::fields::{self, Scaled, names_solution};
 use crate::options::{Damage, MetricChoices, Outputs, Paged, Paired, Run, Show, not_negative, positive, refuse};
 use crate::pages::{self, Drawn};
 use crate::world::World;
@@ -22,7 +22,7 @@ use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, Aim, Centroid, Effort, GradedAt, Idle, MeshOptions, Meshed, Mesher, Seeding, Task};
 use voronaut::surface::{FeatureOptions, Input, Mended};
 use voronaut_draw::{Layers, Sheet};
-use voronaut_io::{Given, Report, is_solution};
+use voronaut_io::{Given, Report};
 
 pub(crate) const EXAMPLES: &str = "\
 DOMAIN  a file: .mesh, .meshb, .msh, .su2, .vtu, .vtp (boundary edges or triangles; of volumes the boundary), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
@@ -305,7 +305,7 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
 /// The error of interpolation of the function that the mesh is for, if that is a formula.
 fn interpolated(args: &MeshArgs, input: &Input, mesh: &Mesh) -> Result<Option<InterpolationError>> {
     match args.metric.trim().strip_prefix("hessian:") {
-        Some(text) if !is_solution(text) => {
+        Some(text) if !names_solution(text) => {
             let function = Expression::parse(text, Variables::Space)?;
             interpolation_error_on(mesh, input, &function, args.metric_choices.norm).map(Some)
         }

@@ -147,8 +147,7 @@ pub fn read_metric(path: &Path, order: TensorOrder) -> Result<Solution> {
     Ok(Solution { dimension, values })
 }
 
-/// Whether a text names a file of solutions, by its ending.
-pub fn is_solution(text: &str) -> bool {
+fn is_solution(text: &str) -> bool {
     matches!(ending(Path::new(text)).as_deref(), Some("sol" | "solb"))
 }
 

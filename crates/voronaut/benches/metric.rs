@@ -99,6 +99,7 @@ fn complexities() {
 }
 
 fn boundary(count: u32) -> Boundary {
-    let sizes = BoundarySizes { aspect: 5.0, ..BoundarySizes::from_h0(0.001) };
+    let sizes =
+        BoundarySizes { aspect: 5.0, ..BoundarySizes { h0: 0.001, growth: 1.2, aspect: 1.0, h_max: f64::INFINITY } };
     Boundary::new(&coast(count), sizes).expect("a boundary")
 }

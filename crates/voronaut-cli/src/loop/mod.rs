@@ -3,6 +3,7 @@
 mod solver;
 
 use crate::account::ours;
+use crate::fields::names_solution;
 use crate::options::{MetricChoices, Paired, Run, finite, not_negative, positive, refuse};
 use crate::progress::Bar;
 use crate::{files, summary};
@@ -140,7 +141,7 @@ pub(crate) fn run(args: &LoopArgs) -> Result<()> {
     args.metric_choices.bounds().check()?;
     let given = match Given::read(&args.domain, RepairOptions::default())?.0 {
         Given::Surface(input) => Given::Surface(input.cut(&FeatureOptions::default())?),
-        plane => plane,
+        plane @ Given::Plane(_) => plane,
     };
     let (ground, meetings) = match &given {
         Given::Plane(domain) => (Ground::Plane(domain), None),
@@ -191,9 +192,7 @@ fn demand_idle(args: &LoopArgs, options: &LoopOptions, on_surface: bool) -> Resu
 fn function(args: &LoopArgs, variables: Variables) -> Result<Expression> {
     let text = args.metric.as_deref().unwrap_or_default().trim();
     match text.strip_prefix("hessian:") {
-        Some(function) if !function.trim().to_ascii_lowercase().ends_with(".sol") => {
-            Expression::parse(function, variables)
-        }
+        Some(function) if !names_solution(function) => Expression::parse(function, variables),
         _ => {
             let help = "write hessian:EXPR, a function of x, y and t (on a surface of x, y, z and t), or give a --solver; for one mesh use voronaut mesh";
             Err(Error::parse("metric", format!("`{text}` changes with nothing"), help))

@@ -1,6 +1,7 @@
 //! Rigid motions of the plane.
 
 use super::{Point, Vector};
+use crate::elementary::Elementary;
 
 /// A rotation by an angle with this cosine and sine, then a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +32,7 @@ impl Motion {
         let pairs = || from.iter().zip(to).map(|(&p, &q)| (p - a, q - b));
         let cosine: f64 = pairs().map(|(p, q)| p.dot(q)).sum();
         let sine: f64 = pairs().map(|(p, q)| p.cross(q)).sum();
-        let length = cosine.hypot(sine);
+        let length = cosine.hypotenuse(sine);
         let coordinates = from.iter().chain(to).flat_map(|p| [p.x.abs(), p.y.abs()]);
         let rounding = ROUNDING * coordinates.fold(0.0, f64::max);
         let best = Self::by([cosine / length, sine / length], a, b, rounding);

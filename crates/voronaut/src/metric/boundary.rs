@@ -49,7 +49,7 @@ const TIE: f64 = 16.0 * f64::EPSILON;
 
 impl BoundarySizes {
     /// The size at the boundary, with the defaults of the rest: growth 1.2, aspect 1, no largest size.
-    pub fn from_h0(h0: f64) -> Self {
+    pub(crate) fn from_h0(h0: f64) -> Self {
         Self { h0, growth: 1.2, aspect: 1.0, h_max: f64::INFINITY }
     }
 

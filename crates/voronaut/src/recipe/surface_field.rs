@@ -37,8 +37,10 @@ pub enum SurfaceSource<'a> {
     /// What a solver finds at the vertices of a mesh of the surface: a function's values, or tensors.
     Solution(&'a Mesh, &'a SolutionValues),
     /// A function that takes many points at once, and gives sizes or tensors.
-    Samples(Box<dyn FnOnce(&[Point3]) -> Result<SolutionValues> + 'a>),
+    Samples(Box<Sample<'a>>),
 }
+
+type Sample<'a> = dyn FnOnce(&[Point3]) -> Result<SolutionValues> + 'a;
 
 /// The metric on a surface; `at` is the multiple of it in which edges are to have length one, for gradation and for limits on that of a
 /// function.
@@ -328,16 +330,15 @@ impl OnBackground {
 impl SurfaceMetric for OnBackground {
     fn at(&self, place: &Place) -> Tensor3 {
         let row = self.at_home.row(place.face.index());
-        let found = match self.trees.get(&place.face.0) {
-            Some(tree) => tree.closest_of(place.position).map(|(k, weights)| (row[k as usize], weights)),
-            None => {
-                let at = |&i: &u32| {
-                    let corners = self.corners[i as usize].map(|v| self.positions[v as usize]);
-                    let weights = closest_weights(corners, place.position);
-                    (i, weights, Point3::weighted(corners, weights).distance(place.position))
-                };
-                row.iter().map(at).min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, weights, _)| (i, weights))
-            }
+        let at = |&i: &u32| {
+            let corners = self.corners[i as usize].map(|v| self.positions[v as usize]);
+            let weights = closest_weights(corners, place.position);
+            (i, weights, Point3::weighted(corners, weights).distance(place.position))
+        };
+        let found = if let Some(tree) = self.trees.get(&place.face.0) {
+            tree.closest_of(place.position).map(|(k, weights)| (row[k as usize], weights))
+        } else {
+            row.iter().map(at).min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, weights, _)| (i, weights))
         };
         let Some((i, weights)) = found else { return Tensor3::IDENTITY * f64::NAN };
         let weighted = self.corners[i as usize].iter().zip(weights).map(|(&v, weight)| self.logs[v as usize] * weight);

@@ -77,7 +77,7 @@ impl Bend {
         let shapes =
             fit_curvatures(surface).into_iter().map(|fit| fit.map_or(Tensor3::default(), |c| shape(&c))).collect();
         let t = surface.topology();
-        let corners = |f| t.is_face(FaceId(f)).then(|| t.corners(FaceId(f)).map(|v| v.0)).unwrap_or_default();
+        let corners = |f: u32| if t.is_face(FaceId(f)) { t.corners(FaceId(f)).map(|v| v.0) } else { [0; 3] };
         Self::Fitted(shapes, (0..t.face_slots() as u32).map(corners).collect())
     }
 
