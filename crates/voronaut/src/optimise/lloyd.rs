@@ -23,7 +23,7 @@ const IN_A_ROW: u32 = 2;
 pub struct Relaxed {
     /// The energy before the first step and after each: the sum over all cells of the integral of the squared distance
     /// to the seed, in the metric as given (not scaled), as far as the cells that were used know it. With
-    /// [`Cells::Weighted`](super::Cells::Weighted) it may rise, else it never does.
+    /// `centroid=weighted` it may rise, else it never does.
     pub energy: Vec<f64>,
     /// Root mean square of the moves (metric units), one entry per step.
     pub moves: Vec<f64>,
