@@ -517,7 +517,8 @@ def check(
     metric_scale : float, optional
         A factor on the metric tensor, such as `metric_scale` of a report
     function : str, optional
-        In the plane: measure the error of linear interpolation of this function of x and y, in the L^p norm of norm
+        Measure the error of linear interpolation of this function of x and y, on a surface of x, y and z, in the L^p
+        norm of norm
     h_min : float, optional
         Least Euclidean size the metric may ask for
     h_max : float, optional
