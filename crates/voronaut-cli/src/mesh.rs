@@ -30,7 +30,8 @@ DOMAIN  a file: .mesh, .meshb, .msh, .su2, .vtu, .vtp (boundary edges or triangl
 METRIC  uniform, uniform:m11,m12,m22, swirl[:nu=3,field=authors], shock[:phi=10,lambda=0.6],
         'formula:m11; m12; m22' in x and y, boundary:h0=,growth=,aspect=,h_max=,
         hessian:EXPR or hessian:FILE.sol (for the least error of interpolation), or a file .sol or .solb;
-        on surfaces: uniform, curvature[:floor=C], shock, 'formula:m11; m12; m22; m13; m23; m33' in x, y, z, or a .sol;
+        on surfaces: uniform, curvature[:floor=C], shock, 'formula:m11; m12; m22; m13; m23; m33' and hessian:EXPR in x, y, z,
+        hessian:FILE.sol, or a .sol;
         an eigenvalue 1/h^2 asks for edges of length h along its eigenvector
 
 Examples:
@@ -39,6 +40,7 @@ Examples:
   voronaut mesh rect:-1,-1,1,1 --metric 'formula:1/(0.01 + 0.2*abs(y))^2; 0; 25' -o layer.mesh
   voronaut mesh wing.mesh --metric wing.sol --h-min 1e-4 --a-max 100 -o adapted.mesh --report run.json
   voronaut mesh sea.geojson --metric boundary:h0=2,growth=1.3 -n 20000 -o sea.mesh -q
+  voronaut mesh sphere:1 --metric 'hessian:tanh(10*(x + 0.2*z))' -n 2000 -o front.mesh
   voronaut mesh spot.obj --metric curvature -n 1020 --fit -o spot-1020.obj --picture spot.png --show cells,mesh";
 
 #[derive(Debug, Args)]

@@ -36,7 +36,7 @@ pub(crate) struct MetricChoices {
     /// Greatest ratio of the two sizes at a point, at least 1
     #[arg(long, value_name = "RATIO", value_parser = positive)]
     a_max: Option<f64>,
-    /// Sizes of neighbouring edges differ by about this factor at most, such as 1.3; in the plane, sampled on a background as
+    /// Sizes of neighbouring edges differ by about this factor at most, such as 1.3; sampled on a background as
     /// --smooth-metric has it [default: no gradation]
     #[arg(long, value_name = "FACTOR", value_parser = positive)]
     pub(crate) gradation: Option<f64>,

@@ -39,6 +39,9 @@ pub fn grade(mesh: &Mesh, tensors: &[Tensor], gradation_factor: f64) -> Result<V
 pub(crate) const GRADATION_EXPONENT: f64 = 0.125;
 /// What neighbours ask for and is more than what is there by a smaller share is not asked for.
 const SETTLED: f64 = 1e-6;
+/// The same between tangent planes: around a vertex where a surface is curved directions come back turned, and what is asked for with
+/// them is a little more each time. A hundredth of a size is no gain to anybody.
+const SETTLED_BETWEEN_PLANES: f64 = 0.02;
 /// Rounds after which something is wrong, beside those that it takes to get across the mesh.
 const PATIENCE: usize = 200;
 /// A round looks at so many vertices one after the other before threads share them.
@@ -52,6 +55,8 @@ pub(crate) struct Gradation<'a> {
     /// and the x axis of the former in these, where coordinates differ.
     turn: Option<Box<dyn Fn(u32, u32) -> Vector + Sync + 'a>>,
     growth: f64,
+    /// What is more than what is there by a smaller share is not asked for.
+    settled: f64,
 }
 
 impl<'a> Gradation<'a> {
@@ -86,7 +91,8 @@ impl<'a> Gradation<'a> {
         turn: impl Fn(u32, u32) -> Vector + Sync + 'a,
         gradation_factor: f64,
     ) -> Result<Self> {
-        Ok(Self { turn: Some(Box::new(turn)), ..Self::new(around, offset, gradation_factor)? })
+        let law = Self::new(around, offset, gradation_factor)?;
+        Ok(Self { turn: Some(Box::new(turn)), settled: SETTLED_BETWEEN_PLANES, ..law })
     }
 
     fn new(around: Neighbours, offset: impl Fn(u32, u32) -> Vector + Sync + 'a, gradation_factor: f64) -> Result<Self> {
@@ -95,7 +101,13 @@ impl<'a> Gradation<'a> {
             let help = "1.3 lets edges grow by a third from one to the next; leave it out for no gradation";
             return Err(Error::parse("metric gradation", what, help));
         }
-        Ok(Self { around, offset: Box::new(offset), turn: None, growth: gradation_factor.logarithm() })
+        Ok(Self {
+            around,
+            offset: Box::new(offset),
+            turn: None,
+            growth: gradation_factor.logarithm(),
+            settled: SETTLED,
+        })
     }
 
     /// [`Gradation::apply`] to sizes.
@@ -141,7 +153,7 @@ impl<'a> Gradation<'a> {
     /// What a vertex becomes beside neighbours that have changed; `None` where that is what it was.
     fn finer(&self, w: u32, sources: &[Source], is_asking: &[bool], limits: &Limits) -> Option<Source> {
         let own = sources[w as usize].tensor;
-        let most = own * (1.0 + SETTLED);
+        let most = own * (1.0 + self.settled);
         let mut asked = Vec::new();
         for &v in self.around.at(w as usize).iter().filter(|&&v| is_asking[v as usize]) {
             let turned = self.turn.as_ref().map(|turn| sources[v as usize].turned(turn(v, w)));
@@ -157,7 +169,7 @@ impl<'a> Gradation<'a> {
         }
         let finer = limits.at(w as usize).clamp(own.intersection_with_all(&asked));
         // Without limits it is: limits may take back what neighbours ask for.
-        let is_finer = finer.determinant() > own.determinant() * (1.0 + 0.5 * SETTLED);
+        let is_finer = finer.determinant() > own.determinant() * (1.0 + 0.5 * self.settled);
         is_finer.then(|| Source::new(finer))
     }
 }
