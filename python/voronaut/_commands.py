@@ -131,8 +131,8 @@ def mesh(
     a_max : float, optional
         Greatest ratio of the two sizes at a point, at least 1
     gradation : float, optional
-        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; in the plane, sampled on a
-        background as smooth_metric has it [default: no gradation]
+        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; sampled on a background as
+        smooth_metric has it [default: no gradation]
     smooth_metric : int, default 0
         Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a
         .sol file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
@@ -320,8 +320,8 @@ def dual(
     a_max : float, optional
         Greatest ratio of the two sizes at a point, at least 1
     gradation : float, optional
-        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; in the plane, sampled on a
-        background as smooth_metric has it [default: no gradation]
+        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; sampled on a background as
+        smooth_metric has it [default: no gradation]
     smooth_metric : int, default 0
         Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a
         .sol file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
@@ -437,8 +437,8 @@ def distance(
     a_max : float, optional
         Greatest ratio of the two sizes at a point, at least 1
     gradation : float, optional
-        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; in the plane, sampled on a
-        background as smooth_metric has it [default: no gradation]
+        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; sampled on a background as
+        smooth_metric has it [default: no gradation]
     smooth_metric : int, default 0
         Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a
         .sol file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
@@ -532,8 +532,8 @@ def check(
     a_max : float, optional
         Greatest ratio of the two sizes at a point, at least 1
     gradation : float, optional
-        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; in the plane, sampled on a
-        background as smooth_metric has it [default: no gradation]
+        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; sampled on a background as
+        smooth_metric has it [default: no gradation]
     smooth_metric : int, default 0
         Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a
         .sol file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
@@ -783,8 +783,8 @@ def view(
     a_max : float, optional
         Greatest ratio of the two sizes at a point, at least 1
     gradation : float, optional
-        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; in the plane, sampled on a
-        background as smooth_metric has it [default: no gradation]
+        Sizes of neighbouring edges differ by about this factor at most, such as 1.3; sampled on a background as
+        smooth_metric has it [default: no gradation]
     smooth_metric : int, default 0
         Sweeps of Laplacian smoothing of the metric; K reach over sqrt(K)/400 of the domain's width in the metric (of a
         .sol file, over sqrt(K)/2 edges of its mesh), and what changes over less is lost
