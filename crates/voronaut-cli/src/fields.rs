@@ -5,38 +5,16 @@ use crate::world::World;
 use voronaut::Result;
 use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor3};
-use voronaut::metric::{MetricField, MetricSpec};
-use voronaut::recipe::{GradedAt, Idle, Origin, PlanarMetric, Task};
+use voronaut::metric::MetricField;
+use voronaut::recipe::{GradedAt, Idle, PlanarMetric, Task};
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Place};
-use voronaut_io::MetricSource;
+use voronaut_io::metric_origin;
 
 /// What a metric is for.
-pub(crate) fn task(world: &World, text: &str, choices: &MetricChoices, on_surface: bool) -> Result<Task> {
-    let origin = match world.metric_origin(text) {
-        Some(origin) => origin,
-        None if on_surface => origin_on_surface(text),
-        None => match MetricSource::parse(text)? {
-            MetricSource::Hessian(_) => Origin::Values,
-            MetricSource::Named(MetricSpec::Hessian(_)) => Origin::Function,
-            MetricSource::Named(_) | MetricSource::File(_) => Origin::Sizes,
-        },
-    };
-    Ok(Task { origin, is_limited: choices.options().is_limiting(), on_surface, ..Task::default() })
-}
-
-/// Whether a text names a file of solutions, by its ending.
-pub(crate) fn names_solution(text: &str) -> bool {
-    [".sol", ".solb"].iter().any(|ending| text.trim().to_ascii_lowercase().ends_with(ending))
-}
-
-/// Functions of space are none of the plane, and read later.
-fn origin_on_surface(text: &str) -> Origin {
-    match text.trim().strip_prefix("hessian:") {
-        None => Origin::Sizes,
-        Some(file) if names_solution(file) => Origin::Values,
-        Some(_) => Origin::Function,
-    }
+pub(crate) fn task(world: &World, text: &str, choices: &MetricChoices, on_surface: bool) -> Task {
+    let origin = world.metric_origin(text).unwrap_or_else(|| metric_origin(text));
+    Task { origin, is_limited: choices.options().is_limiting(), on_surface, ..Task::default() }
 }
 
 /// The metric in the plane that a text names. `own` is what the domain was read from; `at` the multiple in which edges have length one.
@@ -48,7 +26,7 @@ pub(crate) fn in_plane(
     choices: &MetricChoices,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
-    choices.options().idle(task(world, text, choices, false)?).iter().try_for_each(Idle::demand_unset)?;
+    choices.options().idle(task(world, text, choices, false)).iter().try_for_each(Idle::demand_unset)?;
     world.planar_metric(text, domain, own, choices, at)
 }
 
@@ -79,7 +57,7 @@ pub(crate) fn on_surface(
 
 /// Refuses what is not there for a metric on surfaces.
 pub(crate) fn demand_for_surfaces(world: &World, text: &str, choices: &MetricChoices) -> Result<()> {
-    choices.options().idle(task(world, text, choices, true)?).iter().try_for_each(Idle::demand_unset)?;
+    choices.options().idle(task(world, text, choices, true)).iter().try_for_each(Idle::demand_unset)?;
     let help = "give the file that the values belong to as the domain";
     refuse([(choices.background.is_some(), "--background on a surface", help)])
 }

@@ -84,13 +84,13 @@ enum Command {
     /// Mesh a surface anew, with the options of mmgs
     #[command(after_help = remesh::EXAMPLES)]
     Remesh(remesh::RemeshArgs),
-    /// Carry a solution from one planar mesh to another
+    /// Carry a solution from one mesh of a domain or a surface to another
     #[command(after_help = interpolate::EXAMPLES)]
     Interpolate(interpolate::InterpolateArgs),
     /// Make a metric at the vertices of a mesh: from solutions, combined, limited, graded, of a complexity
     #[command(after_help = metric::EXAMPLES)]
     Metric(metric::MetricArgs),
-    /// Adapt the mesh of a planar domain to a formula or a solver, again and again
+    /// Adapt the mesh of a domain or a surface to a formula or a solver, again and again
     #[command(after_help = r#loop::EXAMPLES)]
     Loop(Box<r#loop::LoopArgs>),
     /// Read a file in one format and write it in another

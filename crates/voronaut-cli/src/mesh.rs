@@ -1,6 +1,6 @@
 //! `voronaut mesh`: from the command line to the library and back. All calls of the mesher are here.
 
-use crate::fields::{self, Scaled, names_solution};
+use crate::fields::{self, Scaled};
 use crate::options::{Damage, MetricChoices, Outputs, Paged, Paired, Run, Show, not_negative, positive, refuse};
 use crate::pages::{self, Drawn};
 use crate::world::World;
@@ -16,10 +16,11 @@ use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
-use voronaut::metric::{Expression, MetricField, Variables};
+use voronaut::metric::MetricField;
 use voronaut::quality::{InterpolationError, interpolation_error, interpolation_error_on};
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, Aim, Centroid, Effort, GradedAt, Idle, MeshOptions, Meshed, Mesher, Seeding, Task};
+use voronaut::surface::metric::Spec;
 use voronaut::surface::{FeatureOptions, Input, Mended};
 use voronaut_draw::{Layers, Sheet};
 use voronaut_io::{Given, Report};
@@ -173,7 +174,7 @@ impl MeshArgs {
     fn idle(&self, on_surface: bool, world: &World) -> Result<Vec<Idle>> {
         let is_pictured = self.outputs.picture.is_some() && self.outputs.need_diagram();
         let is_drawn = is_pictured || self.paged.cells;
-        let task = Task { is_drawn, ..fields::task(world, &self.metric, &self.metric_choices, on_surface)? };
+        let task = Task { is_drawn, ..fields::task(world, &self.metric, &self.metric_choices, on_surface) };
         let idle = [self.options().idle(task), self.metric_choices.options().idle(task)].concat();
         idle.iter().try_for_each(Idle::demand_unset)?;
         Ok(idle)
@@ -306,13 +307,8 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
 
 /// The error of interpolation of the function that the mesh is for, if that is a formula.
 fn interpolated(args: &MeshArgs, input: &Input, mesh: &Mesh) -> Result<Option<InterpolationError>> {
-    match args.metric.trim().strip_prefix("hessian:") {
-        Some(text) if !names_solution(text) => {
-            let function = Expression::parse(text, Variables::Space)?;
-            interpolation_error_on(mesh, input, &function, args.metric_choices.norm).map(Some)
-        }
-        _ => Ok(None),
-    }
+    let Ok(Spec::Hessian(function)) = Spec::parse(&args.metric) else { return Ok(None) };
+    interpolation_error_on(mesh, input, &function, args.metric_choices.norm).map(Some)
 }
 
 /// Writes a valid mesh, and what is beside it.

@@ -94,6 +94,8 @@ mod tests {
     use crate::{obj, off, ply, stl};
     use proptest::prelude::*;
     use std::io::Write;
+    use voronaut::metric::Bounds;
+    use voronaut::surface::metric::{Spec, field};
 
     fn data(name: &str) -> String {
         format!("{}/../../data/{name}", env!("CARGO_MANIFEST_DIR"))
@@ -216,8 +218,12 @@ mod tests {
             for surface in found.into_iter().flatten().filter_map(|mesh| Surface::new(&mesh).ok()) {
                 prop_assert!(surface.topology().check().is_ok());
                 prop_assert!(surface.components().iter().all(|c| c.genus() >= 0));
-                let fitted = voronaut::surface::metric::fit_curvatures(&surface);
-                prop_assert!(fitted.iter().flatten().all(|c| c.values.iter().all(|value| !value.is_nan())));
+                let input = Input::new(surface, None);
+                let Ok(metric) = field(&Spec::Curvature(None), &input, Bounds::default()) else { continue };
+                for face in input.surface.topology().faces() {
+                    let place = input.closest(input.surface.triangle(face)[0]);
+                    prop_assert!(place.is_ok_and(|place| !metric.at(&place).xx.is_nan()));
+                }
             }
         }
     }

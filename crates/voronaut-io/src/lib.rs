@@ -38,7 +38,7 @@ pub use domain::{read_domain, read_pslg};
 pub use files::{Format, ending, in_file, open, read, read_solutions, read_text};
 pub use given::{Given, read_surface};
 pub use losses::lost_in_outline;
-pub use metric::{MetricFiles, MetricSource, read_metric, surface_metric};
+pub use metric::{MetricFiles, MetricSource, metric_origin, read_metric, surface_metric};
 pub use report::{Report, Seconds, Strayed, peak_memory_bytes};
 pub use whole::{Scratch, abandon, demand_directory, place, write, write_with};
 pub use write::{

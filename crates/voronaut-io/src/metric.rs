@@ -8,7 +8,7 @@ use voronaut::domain::Domain;
 use voronaut::geometry::{Aabb, Tensor, Tensor3};
 use voronaut::mesh::{Mesh, Solution, SolutionValues, TensorOrder};
 use voronaut::metric::MetricSpec;
-use voronaut::recipe::{self, GradedAt, MetricOptions, PlanarMetric, SurfaceSource};
+use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, PlanarMetric, SurfaceSource};
 use voronaut::surface::Input;
 use voronaut::surface::metric::{Spec, SurfaceMetric};
 use voronaut::{Error, Result};
@@ -36,6 +36,15 @@ impl MetricSource {
             None if is_solution(text) => Ok(Self::File(text.into())),
             _ => Ok(Self::Named(MetricSpec::parse(text)?)),
         }
+    }
+}
+
+/// What the metric that a text names is made of, in the plane or on a surface; of a text that names none, whatever.
+pub fn metric_origin(text: &str) -> Origin {
+    match text.trim().strip_prefix("hessian:") {
+        None => Origin::Sizes,
+        Some(file) if is_solution(file) => Origin::Values,
+        Some(_) => Origin::Function,
     }
 }
 

@@ -17,7 +17,7 @@ use voronaut::surface::Input;
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::{Error, Result};
 use voronaut_cli::HeldMetric;
-use voronaut_io::{MetricFiles, MetricSource, surface_metric};
+use voronaut_io::{MetricFiles, MetricSource, metric_origin, surface_metric};
 
 /// A metric.
 pub(crate) enum Metric {
@@ -80,11 +80,7 @@ impl HeldMetric for Metric {
     fn origin(&self) -> Origin {
         match self {
             Self::Solution(..) => Origin::Values,
-            Self::Text(text) => match MetricSource::parse(text) {
-                Ok(MetricSource::Hessian(_)) => Origin::Values,
-                Ok(MetricSource::Named(MetricSpec::Hessian(_))) => Origin::Function,
-                _ => Origin::Sizes,
-            },
+            Self::Text(text) => metric_origin(text),
             _ => Origin::Sizes,
         }
     }

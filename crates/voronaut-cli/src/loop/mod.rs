@@ -3,7 +3,6 @@
 mod solver;
 
 use crate::account::ours;
-use crate::fields::names_solution;
 use crate::options::{MetricChoices, Paired, Run, finite, not_negative, positive, refuse};
 use crate::progress::Bar;
 use crate::{files, summary};
@@ -19,7 +18,7 @@ use voronaut::recipe::{self, Effort, Ground, Idle, LoopOptions, MeshOptions, Ori
 use voronaut::surface::{FeatureOptions, RepairOptions};
 use voronaut::transfer::{Carried, Extent, Kind, Overshoot, TransferOptions};
 use voronaut::{Error, Result};
-use voronaut_io::{Format, Given};
+use voronaut_io::{Format, Given, metric_origin};
 
 pub(crate) const EXAMPLES: &str = "\
 With --metric hessian:EXPR, a function of x, y and t (on a surface of x, y, z and t), each mesh is made for the function at one time, exactly; times go evenly from
@@ -192,7 +191,7 @@ fn demand_idle(args: &LoopArgs, options: &LoopOptions, on_surface: bool) -> Resu
 fn function(args: &LoopArgs, variables: Variables) -> Result<Expression> {
     let text = args.metric.as_deref().unwrap_or_default().trim();
     match text.strip_prefix("hessian:") {
-        Some(function) if !names_solution(function) => Expression::parse(function, variables),
+        Some(function) if metric_origin(text) == Origin::Function => Expression::parse(function, variables),
         _ => {
             let help = "write hessian:EXPR, a function of x, y and t (on a surface of x, y, z and t), or give a --solver; for one mesh use voronaut mesh";
             Err(Error::parse("metric", format!("`{text}` changes with nothing"), help))

@@ -78,6 +78,11 @@ impl Tensor3 {
         axes.into_iter().zip(values).fold(Self::default(), |sum, (axis, value)| sum + Self::square(axis) * value)
     }
 
+    /// The sum of three, weighted.
+    pub(crate) fn weighted(tensors: [Self; 3], weights: [f64; 3]) -> Self {
+        tensors.into_iter().zip(weights).fold(Self::default(), |sum, (tensor, weight)| sum + tensor * weight)
+    }
+
     /// M v.
     pub(crate) fn apply(self, v: Vector3) -> Vector3 {
         Vector3::new(

@@ -38,6 +38,13 @@ impl Bounds {
         Ok(())
     }
 
+    /// The same limits in a multiple of the metric.
+    #[must_use]
+    pub(crate) fn times(&self, scale: f64) -> Self {
+        let size = |h: f64| h * scale.sqrt();
+        Self { h_min: self.h_min.map(size), h_max: self.h_max.map(size), a_max: self.a_max }
+    }
+
     /// The tensor with the same axes and its sizes first clamped to `h_min ..= h_max`; then the longer one shrinks
     /// to at most `a_max` times the shorter one (and so stays in range).
     ///

@@ -55,7 +55,7 @@ impl MetricField for Hessian {
 /// The floor of absolute eigenvalues, as a share of the mean over the domain of the greater one: where a function is linear in
 /// some direction, longer edges would gain nothing, and make a metric that no straight edges can honour. Measured: a hundredth
 /// of it makes errors larger by 1 to 3 %, for the mesh cannot follow; ten times as much by 4 %.
-const FLOOR: f64 = 1e-4;
+pub(crate) const FLOOR: f64 = 1e-4;
 
 /// The function that is quadratic on every triangle, has a solution's values at the vertices, and there, as well as a continuous
 /// function can, its recovered second derivatives: linear interpolation and, of each edge e, -e'He / 8 in the middle.
@@ -87,19 +87,13 @@ impl Recovered {
     pub(crate) fn metric(&self, norm: Norm) -> Result<Sampled> {
         let size = self.mean_size();
         let floor = FLOOR * size;
-        if size > self.rounding() && floor > 0.0 {
+        let area = 0.5 * self.mesh.triangles.iter().map(|&triangle| self.mesh.double_area(triangle)).sum::<f64>();
+        if size > rounding(&self.values, area) && floor > 0.0 {
             let tensors: Vec<Tensor> = self.hessians.iter().map(|&h| norm.weighted(absolute(h, floor))).collect();
             return Sampled::new(&self.mesh, &tensors);
         }
         let help = "its interpolation is exact on any mesh: use another metric, such as uniform";
         Err(Error::metric("the solution's second derivatives vanish everywhere", "the whole mesh", help))
-    }
-
-    /// Second derivatives that rounding of the values alone could make up.
-    fn rounding(&self) -> f64 {
-        let area = 0.5 * self.mesh.triangles.iter().map(|&triangle| self.mesh.double_area(triangle)).sum::<f64>();
-        let greatest = self.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-        100.0 * f64::EPSILON * greatest * self.values.len() as f64 / area
     }
 
     /// The mean over the mesh's area of the greater absolute eigenvalue.
@@ -112,6 +106,12 @@ impl Recovered {
         }
         sum / total
     }
+}
+
+/// Second derivatives that rounding of values alone could make up, at the vertices of a mesh of so much area.
+pub(crate) fn rounding(values: &[f64], area: f64) -> f64 {
+    let greatest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    100.0 * f64::EPSILON * greatest * values.len() as f64 / area
 }
 
 impl ScalarField for Recovered {

@@ -48,7 +48,7 @@ pub(crate) use complexity::rough_complexity;
 pub use expression::Expression;
 pub use formula::{Formula, Snapshot, SpaceFormula};
 pub use hessian::Hessian;
-pub(crate) use hessian::Recovered;
+pub(crate) use hessian::{FLOOR, Recovered, rounding};
 pub(crate) use neighbours::Neighbours;
 pub use norm::Norm;
 pub use recovery::{Recovery, recover_hessian};

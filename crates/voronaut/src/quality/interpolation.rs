@@ -7,7 +7,7 @@ use crate::geometry::{Node, Point, Point3, radon};
 use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm, ScalarField};
 use crate::parallel::prelude::*;
-use crate::surface::Input;
+use crate::surface::{Input, Place};
 use std::fmt;
 
 /// Each triangle is cut into so many times so many parts, with a rule of degree 5 on each.
@@ -50,11 +50,11 @@ impl fmt::Display for Exponent {
 /// [`Error::Metric`] where the function is not finite; [`Error::Mesh`] of a mesh without triangles.
 pub fn interpolation_error(mesh: &Mesh, function: &dyn ScalarField, norm: Norm) -> Result<InterpolationError> {
     let value = |p: Point3| function.value(Point::new(p.x, p.y));
-    error_of(mesh, &value, &value, norm)
+    error_of(mesh, &value, |_| (), |(), p| value(p), norm)
 }
 
-/// The same on the mesh of a surface, of a function of x, y and z: each point of a triangle stands for the closest one of the
-/// surface.
+/// The same on the mesh of a surface, of a function of x, y and z: each point of a triangle stands for the one of the surface that is
+/// nearest to it, as seen from the one that is closest to the triangle's middle.
 ///
 /// # Errors
 /// As of [`interpolation_error`].
@@ -65,18 +65,29 @@ pub fn interpolation_error_on(
     norm: Norm,
 ) -> Result<InterpolationError> {
     let value = |p: Point3| function.at(p.x, p.y, p.z);
-    let on_surface = |p: Point3| value(input.closest(p).map_or(p, |place| place.position));
-    error_of(mesh, &value, &on_surface, norm)
+    let beside = |triangle: [Point3; 3]| input.closest(Point3::weighted(triangle, [1.0 / 3.0; 3])).ok();
+    let lifted = |near: &Option<Place>, p: Point3| {
+        let place = near.as_ref().and_then(|near| input.lift(near, p));
+        value(place.map_or(p, |place| place.position))
+    };
+    error_of(mesh, &value, beside, lifted, norm)
 }
 
-/// A function of what is at a point.
-type At<'a> = &'a (dyn Fn(Point3) -> f64 + Sync);
-
-/// The error by the values at vertices and at points of triangles.
-fn error_of(mesh: &Mesh, at_vertex: At, within: At, norm: Norm) -> Result<InterpolationError> {
+/// The error by the values at vertices and within triangles, of each of which something is known that helps to find values there.
+fn error_of<K>(
+    mesh: &Mesh,
+    at_vertex: &(dyn Fn(Point3) -> f64 + Sync),
+    known: impl Fn([Point3; 3]) -> K + Sync,
+    within: impl Fn(&K, Point3) -> f64 + Sync,
+    norm: Norm,
+) -> Result<InterpolationError> {
     let values: Vec<f64> = (0..mesh.points.len() as u32).into_par_iter().map(|v| at_vertex(mesh.position(v))).collect();
     let nodes = nodes();
-    let of = |&t: &[u32; 3]| on_triangle(mesh.positions_of(t), t.map(|v| values[v as usize]), within, norm, &nodes);
+    let of = |&t: &[u32; 3]| {
+        let corners = mesh.positions_of(t);
+        let known = known(corners);
+        on_triangle(corners, t.map(|v| values[v as usize]), &|p| within(&known, p), norm, &nodes)
+    };
     let found: Vec<(f64, f64, Point3)> = mesh.triangles.par_iter().with_min_len(64).map(of).collect();
     let Some(&(_, max, place)) = found.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
         return Err(Error::mesh("it has no triangles", "the whole mesh", "give a mesh with triangles"));
@@ -121,7 +132,13 @@ fn nodes() -> Vec<Node> {
 }
 
 /// The integral of the p-th power of the error as a share of the greatest; the greatest, and where it is.
-fn on_triangle(corners: [Point3; 3], values: [f64; 3], function: At, norm: Norm, nodes: &[Node]) -> (f64, f64, Point3) {
+fn on_triangle(
+    corners: [Point3; 3],
+    values: [f64; 3],
+    function: &dyn Fn(Point3) -> f64,
+    norm: Norm,
+    nodes: &[Node],
+) -> (f64, f64, Point3) {
     let error = |&(at, _): &Node| {
         let p = Point3::weighted(corners, at);
         let linear: f64 = at.iter().zip(values).map(|(share, value)| share * value).sum();

@@ -238,12 +238,7 @@ fn finished(
 ) -> Result<PlanarMetric> {
     options.bounds.check()?;
     let PlanarMetric { field, function, known_to, scale } = named;
-    let unit = scale.sqrt();
-    let bounds = Bounds {
-        h_min: options.bounds.h_min.map(|h| h * unit),
-        h_max: options.bounds.h_max.map(|h| h * unit),
-        a_max: options.bounds.a_max,
-    };
+    let bounds = options.bounds.times(scale);
     let field: Box<dyn MetricField> =
         if bounds == Bounds::default() { field } else { Box::new(Bounded::new(field, bounds)?) };
     let field = smooth_metric(field, domain, own, options.smooth_metric)?;
@@ -252,11 +247,11 @@ fn finished(
 }
 
 /// Vertices of the background on which a metric is smoothed that has none of its own, and the most of one on which it is graded.
-const BACKGROUND_VERTICES: usize = 40_000;
+pub(super) const BACKGROUND_VERTICES: usize = 40_000;
 /// So many times the vertices of the mesh, two to an edge, has the background of a metric that is graded,
 const FINER: f64 = 4.0;
 /// and at least so many.
-const FEWEST: usize = 1_000;
+pub(super) const FEWEST: usize = 1_000;
 
 /// Vertices of the first background of a metric that is sampled: what is finer than a hundredth of a square is found by them.
 const FIRST_SAMPLES: usize = 10_000;

@@ -1,7 +1,7 @@
 //! From what the user says of a metric on a surface to the field itself, as `field` has it of the plane: limits, then smoothing and
 //! gradation at the vertices of triangles on the surface.
 
-use super::field::{GradedAt, LONGEST, MetricOptions, background_vertices};
+use super::field::{BACKGROUND_VERTICES, FEWEST, GradedAt, LONGEST, MetricOptions, background_vertices};
 use crate::canvas::{Draped, area_of_surface, even_on_surface};
 use crate::elementary::Elementary;
 use crate::error::Result;
@@ -18,9 +18,6 @@ use crate::surface::{FeatureOptions, Input, Nearest, Place, Surface, closest_wei
 use crate::triangulation::{FaceId, VertexId};
 use std::collections::BTreeMap;
 
-/// Vertices of the triangles on which a metric is smoothed, as in the plane; at least so many has one that is graded.
-const BACKGROUND_VERTICES: usize = 40_000;
-const FEWEST: usize = 1_000;
 /// Normals whose cosine is this near to -1 are opposite.
 const OPPOSITE: f64 = 1e-9;
 /// Steps to the scale that has a complexity, at most.
@@ -57,26 +54,20 @@ pub fn metric_on_surface(
     options.bounds.check()?;
     let has_vertices = !matches!(source, SurfaceSource::Named(_) | SurfaceSource::Solution(..));
     let (field, scale) = named(source, input, options, at)?;
-    let unit = scale.sqrt();
-    let bounds = Bounds {
-        h_min: options.bounds.h_min.map(|h| h * unit),
-        h_max: options.bounds.h_max.map(|h| h * unit),
-        a_max: options.bounds.a_max,
-    };
-    let field = within(field, bounds)?;
+    let field = within(field, options.bounds.times(scale))?;
     let vertices = |count: usize| if has_vertices { 0 } else { count };
     let field = match options.smooth_metric {
         0 => field,
         sweeps => Box::new(smoothed(field.as_ref(), input, vertices(BACKGROUND_VERTICES), sweeps)?),
     };
     let Some(factor) = options.gradation else { return Ok(field) };
-    let once = graded(field.as_ref(), input, vertices(count_for(field.as_ref(), input, at)?), factor, at)?;
+    let count = vertices(count_for(field.as_ref(), input, at)?);
+    let once = Background::new(input, field.as_ref(), count)?.graded(field.as_ref(), factor, at)?;
     if has_vertices {
         return Ok(Box::new(once));
     }
     // Where the metric is to be finer than it was, triangles that are even in what it was are too large.
-    let count = count_for(&once, input, at)?;
-    let background = Background::new(input, &once, count)?;
+    let background = Background::new(input, &once, count_for(&once, input, at)?)?;
     Ok(Box::new(background.graded(field.as_ref(), factor, at)?))
 }
 
@@ -88,7 +79,7 @@ fn named(
     at: GradedAt,
 ) -> Result<(Box<dyn SurfaceMetric>, f64)> {
     let plain = |field: Box<dyn SurfaceMetric>| Ok((field, 1.0));
-    let values = |dimension, values| Solution { dimension, values };
+    let values = |values| Solution { dimension: 3, values };
     match source {
         SurfaceSource::Named(Spec::Hessian(function)) => {
             within_surface(Box::new(CovariantHessian::new(function, input, options.norm)?), input, at)
@@ -96,7 +87,7 @@ fn named(
         SurfaceSource::Named(spec) => plain(field(spec, input, Bounds::default())?),
         SurfaceSource::Values(solution) => plain(Box::new(field_of_values(solution, input)?)),
         SurfaceSource::Samples(sample) => {
-            let sampled = values(3, sample(input.surface.positions())?);
+            let sampled = values(sample(input.surface.positions())?);
             plain(Box::new(Sampled::from_solution(&input.surface, &sampled)?))
         }
         SurfaceSource::Function(given) => within_surface(Box::new(recovered(given, input, options)?), input, at),
@@ -107,7 +98,7 @@ fn named(
                     let field = Elsewhere::new(recovered(given, &own, options)?, own);
                     within_surface(Box::new(field), input, at)
                 }
-                _ => plain(Box::new(Elsewhere::new(field_of_values(&values(3, given.clone()), &own)?, own))),
+                _ => plain(Box::new(Elsewhere::new(field_of_values(&values(given.clone()), &own)?, own))),
             }
         }
     }
@@ -164,20 +155,10 @@ fn count_for(field: &dyn SurfaceMetric, input: &Input, at: GradedAt) -> Result<u
     Ok(background_vertices(complexity, FEWEST))
 }
 
-fn graded(
-    field: &dyn SurfaceMetric,
-    input: &Input,
-    vertices: usize,
-    factor: f64,
-    at: GradedAt,
-) -> Result<OnBackground> {
-    Background::new(input, field, vertices)?.graded(field, factor, at)
-}
-
 fn smoothed(field: &dyn SurfaceMetric, input: &Input, vertices: usize, sweeps: u32) -> Result<OnBackground> {
     let background = Background::new(input, field, vertices)?;
     let logs = background.tensors(field).par_iter().map(|tensor| tensor.log()).collect();
-    Ok(background.sampled(swept(&background.around(), logs, sweeps)?, field))
+    Ok(OnBackground::new(&background.draped, swept(&background.around(), logs, sweeps)?, field))
 }
 
 /// Triangles on a surface, at whose vertices metrics are sampled.
@@ -243,7 +224,7 @@ impl<'s> Background<'s> {
             if m == flat[v] { tensors[v].log() } else { self.planes[v].extend(m, m.eigen().large).log() }
         };
         let logs = graded.par_iter().enumerate().map(back).collect();
-        Ok(self.sampled(logs, field))
+        Ok(OnBackground::new(&self.draped, logs, field))
     }
 
     /// The scale at which what is graded has the complexity asked for, to a two hundredth, and what is graded there. The logarithm of
@@ -284,11 +265,6 @@ impl<'s> Background<'s> {
     fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
         let t = self.draped.topology();
         t.faces().map(|f| t.corners(f).map(|v| v.0))
-    }
-
-    /// The field of these logarithms at the vertices.
-    fn sampled(&self, logs: Vec<Tensor3>, field: &dyn SurfaceMetric) -> OnBackground {
-        OnBackground::new(&self.draped, logs, field)
     }
 }
 
@@ -335,14 +311,13 @@ impl SurfaceMetric for OnBackground {
             let weights = closest_weights(corners, place.position);
             (i, weights, Point3::weighted(corners, weights).distance(place.position))
         };
-        let found = if let Some(tree) = self.trees.get(&place.face.0) {
-            tree.closest_of(place.position).map(|(k, weights)| (row[k as usize], weights))
+        let found = if row.len() > FEW {
+            self.trees[&place.face.0].closest_of(place.position).map(|(k, weights, _)| (row[k as usize], weights))
         } else {
             row.iter().map(at).min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, weights, _)| (i, weights))
         };
         let Some((i, weights)) = found else { return Tensor3::IDENTITY * f64::NAN };
-        let weighted = self.corners[i as usize].iter().zip(weights).map(|(&v, weight)| self.logs[v as usize] * weight);
-        weighted.fold(Tensor3::default(), |sum, log| sum + log).exp()
+        Tensor3::weighted(self.corners[i as usize].map(|v| self.logs[v as usize]), weights).exp()
     }
 
     fn curvature_figures(&self) -> Option<CurvatureFigures> {
@@ -355,6 +330,7 @@ mod tests {
     use super::*;
     use crate::metric::Norm;
     use crate::surface::metric::grade;
+    use crate::test_cases::cube;
 
     fn spec(text: &str) -> Spec {
         Spec::parse(text).unwrap()
@@ -368,30 +344,14 @@ mod tests {
         input.surface.topology().faces().map(|f| input.surface.place(f, [0.2, 0.3, 0.5]))
     }
 
-    /// A cube of side 1 with n by n squares on each side, cut open along its creases.
-    fn cube(n: u32) -> Input {
-        let mut mesh = Mesh::default();
-        let step = 1.0 / f64::from(n);
-        for side in 0..6_usize {
-            let (axis, sign) = (side % 3, side / 3);
-            let first = mesh.points.len() as u32;
-            for k in 0..(n + 1) * (n + 1) {
-                let mut p = [sign as f64; 3];
-                (p[(axis + 1) % 3], p[(axis + 2) % 3]) = (f64::from(k % (n + 1)) * step, f64::from(k / (n + 1)) * step);
-                mesh.points.push(p);
-            }
-            for k in 0..n * n {
-                let a = first + k % n + k / n * (n + 1);
-                let cell = [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]];
-                mesh.triangles.extend(if sign == 1 { cell } else { cell.map(|[a, b, c]| [a, c, b]) });
-            }
-        }
-        Input::new(Surface::new(&mesh).unwrap(), None)
+    /// The sides of a cube, each by itself.
+    fn sides(n: u32) -> Input {
+        Input::new(Surface::new(&cube(n, 0.0)).unwrap(), None)
     }
 
     #[test]
     fn uniform_metrics_stay() {
-        for input in [cube(3), Input::shape("torus:2,0.7", Some(0.5)).unwrap()] {
+        for input in [sides(3), Input::shape("torus:2,0.7", Some(0.5)).unwrap()] {
             for options in [
                 MetricOptions { gradation: Some(1.2), ..MetricOptions::default() },
                 MetricOptions { smooth_metric: 7, ..MetricOptions::default() },
@@ -410,7 +370,7 @@ mod tests {
     /// Sizes that are the same in all directions are graded by lengths alone, over creases as on flat sides.
     #[test]
     fn sizes_are_graded_as_sizes() {
-        let input = cube(6);
+        let input = sides(6);
         let mut sizes: Vec<f64> =
             input.surface.positions().iter().map(|p| if p.x + p.y < 0.1 && p.z > 0.4 { 0.01 } else { 2.0 }).collect();
         let values = Solution { dimension: 3, values: SolutionValues::Scalar(sizes.clone()) };
@@ -441,13 +401,13 @@ mod tests {
         let of = |options| metric_on_surface(SurfaceSource::Named(&jump), &input, options, at).unwrap();
         let (before, after) = (of(&plain), of(&graded));
         let mut finer = 0;
-        for place in places(&input) {
+        // The vertices of the surface are those of any background, and nothing is between them there.
+        for v in input.surface.topology().vertices() {
+            let place = input.surface.place_of(v).unwrap();
+            let place = input.lift(&place, place.position).unwrap();
             let [m, n] = [&before, &after].map(|field| tangential(field.as_ref(), &place));
-            // Between vertices of the background a jump is a slope.
-            if place.position.x.abs() > 0.1 {
-                assert!(n.determinant() > 0.9 * m.determinant(), "{} {m:?} {n:?}", place.position);
-                finer += usize::from(n.determinant() > 1.5 * m.determinant());
-            }
+            assert!(n.determinant() > (1.0 - 1e-9) * m.determinant(), "{} {m:?} {n:?}", place.position);
+            finer += usize::from(n.determinant() > 1.5 * m.determinant());
         }
         assert!(finer > 10, "{finer}");
     }

@@ -25,7 +25,7 @@ impl Implicit for Expression {
 /// Principal curvatures at a point of a surface, in units of 1 / length; positive where the surface bends away from its
 /// normal, as a sphere does from its outer one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Curvatures {
+pub(crate) struct Curvatures {
     /// First that of the larger absolute value.
     pub values: [f64; 2],
     /// Unit tangents along which the surface bends so, perpendicular to each other.

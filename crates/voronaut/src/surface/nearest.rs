@@ -31,7 +31,7 @@ impl Nearest {
         Self::numbered(surface.topology().faces().map(|face| Triangle { corners: surface.triangle(face), face }))
     }
 
-    /// Puts triangles of no surface into a tree: for distances alone.
+    /// Puts triangles of no surface into a tree; they are numbered.
     pub(crate) fn of(triangles: impl Iterator<Item = [Point3; 3]>) -> Self {
         Self::numbered(triangles.zip(0..).map(|(corners, i)| Triangle { corners, face: FaceId(i) }))
     }
@@ -42,11 +42,7 @@ impl Nearest {
 
     /// The distance of `p` to the closest triangle. `None` without triangles, or where `p` is not finite.
     pub(crate) fn distance(&self, p: Point3) -> Option<f64> {
-        if !p.is_finite() {
-            return None;
-        }
-        let corners = self.nearest(p)?.corners;
-        Some(Point3::weighted(corners, closest_weights(corners, p)).distance(p))
+        Some(self.closest_of(p)?.2)
     }
 
     /// The point of the surface that is closest to `p`; of several, one. `surface` is the one the tree was made of.
@@ -72,10 +68,17 @@ impl Nearest {
         Some(surface.place(found.face, closest_weights(found.corners, p)))
     }
 
-    /// The number of the closest triangle, of those put in, and the weights of its closest point. `None` as of [`Nearest::distance`].
-    pub(crate) fn closest_of(&self, p: Point3) -> Option<(u32, [f64; 3])> {
+    /// The number of the closest triangle, of those put in, the weights of its closest point, and how far that is. `None` as of
+    /// [`Nearest::distance`].
+    pub(crate) fn closest_of(&self, p: Point3) -> Option<(u32, [f64; 3], f64)> {
         let found = if p.is_finite() { self.nearest(p) } else { None }?;
-        Some((found.face.0, closest_weights(found.corners, p)))
+        let weights = closest_weights(found.corners, p);
+        Some((found.face.0, weights, Point3::weighted(found.corners, weights).distance(p)))
+    }
+
+    /// The numbers of triangles whose boxes meet a box, with their corners.
+    pub(crate) fn meeting(&self, bounds: Aabb3) -> impl Iterator<Item = (u32, [Point3; 3])> {
+        self.tree.meeting(bounds.into()).map(|t| (t.face.0, t.corners))
     }
 
     fn nearest(&self, p: Point3) -> Option<&Triangle> {

@@ -1,5 +1,6 @@
 //! How well the old mesh covers the new one.
 
+use super::ground::ASIDE;
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point, Point3, Vector3};
 use crate::mesh::Mesh;
@@ -31,8 +32,9 @@ pub struct Shares {
 /// How far the new mesh may reach beyond the old one, as a share of the old one's extent, and how much of an area may be missing:
 /// curves are meshed by chords.
 const OVERHANG: f64 = 0.05;
-/// The same on a surface, where triangles are chords everywhere, and few where nothing asks for more.
-const ON_SURFACE: f64 = 0.25;
+/// How much of an area may be missing on a surface, where all triangles are chords: on a sphere those with sides of a radian have 20 % less
+/// than what they span, and both meshes may have such.
+const AREAS_ON_SURFACE: f64 = 0.25;
 
 /// Beyond its mesh a field goes on with the nearest value: right for a sliver along a curved boundary, a mistake anywhere
 /// else.
@@ -44,10 +46,12 @@ pub(super) fn demand_extent(old: &Mesh, new: &Mesh) -> Result<()> {
     let (Some(cover), Some(bounds)) = (of(old), of(new)) else { return Ok(()) };
     let (mut allowed, lower, upper) = (cover.extent() * OVERHANG, cover.min - bounds.min, bounds.max - cover.max);
     if !old.is_planar() {
-        // A surface may be as flat as a plane that is tilted.
-        let extent = cover.extent();
-        let most = ON_SURFACE * extent.x.max(extent.y).max(extent.z);
-        allowed = Vector3::new(most, most, most);
+        // As far as either mesh strays from the surface, in any direction: a plane may be tilted.
+        let longest = |mesh: &Mesh| {
+            mesh.triangles.iter().map(|&t| Point3::longest_side(mesh.positions_of(t))).fold(0.0, f64::max)
+        };
+        let most = ASIDE * longest(old).max(longest(new));
+        allowed = Vector3::new(allowed.x.max(most), allowed.y.max(most), allowed.z.max(most));
     }
     if lower.x.max(upper.x) <= allowed.x && lower.y.max(upper.y) <= allowed.y && lower.z.max(upper.z) <= allowed.z {
         return Ok(());
@@ -61,7 +65,7 @@ pub(super) fn demand_extent(old: &Mesh, new: &Mesh) -> Result<()> {
 impl Shares {
     /// Whether the meshes are of one domain.
     pub(super) fn demand(&self, in_plane: bool) -> Result<()> {
-        let most = if in_plane { OVERHANG } else { ON_SURFACE };
+        let most = if in_plane { OVERHANG } else { AREAS_ON_SURFACE };
         let found = [
             (self.uncovered, "of the new mesh's area are outside the old mesh"),
             (self.left, "of the old mesh's area are outside the new mesh"),

@@ -70,7 +70,7 @@ fn cap(surface: &Surface, v: VertexId) -> f64 {
 ///
 /// One entry per vertex slot: `None` of vertices without triangles, or where those around have no common side or make no finite
 /// fit (needles without height).
-pub fn fit_curvatures(surface: &Surface) -> Vec<Option<Curvatures>> {
+pub(crate) fn fit_curvatures(surface: &Surface) -> Vec<Option<Curvatures>> {
     let slots = surface.positions().len() as u32;
     (0..slots).into_par_iter().map(|v| fit(surface, VertexId(v))).collect()
 }

@@ -4,9 +4,9 @@ use super::{Sampled, SurfaceMetric, fit_curvatures};
 use crate::error::{Error, Result};
 use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3, Vector3};
 use crate::metric::nodal::{absolute, size};
-use crate::metric::{Expression, Neighbours, Norm, hessian_around};
+use crate::metric::{Expression, FLOOR, Neighbours, Norm, hessian_around, rounding};
 use crate::parallel::prelude::*;
-use crate::surface::{Curvatures, Input, Place, Surface, curvatures};
+use crate::surface::{Curvatures, Implicit, Input, Place, Surface};
 use crate::triangulation::{FaceId, VertexId};
 
 /// The metric in which a unit mesh of a surface has the least L^p error of linear interpolation of a function of space on it, as
@@ -30,8 +30,6 @@ enum Bend {
     Fitted(Vec<Tensor3>, Vec<[u32; 3]>),
 }
 
-/// The floor of absolute eigenvalues, as a share of their mean over the surface: as in the plane.
-const FLOOR: f64 = 1e-4;
 /// Places that the mean is taken over, at least.
 const PLACES: f64 = 20_000.0;
 
@@ -66,40 +64,41 @@ impl CovariantHessian {
 impl SurfaceMetric for CovariantHessian {
     fn at(&self, place: &Place) -> Tensor3 {
         let (plane, hessian) = self.second_derivatives(place);
-        let wanted = self.norm.weighted(absolute(hessian, self.floor));
-        plane.extend(wanted, wanted.eigen().large)
+        optimal(&plane, hessian, self.norm, self.floor)
     }
+}
+
+/// The metric of second derivatives in a tangent plane, with the larger eigenvalue across it.
+fn optimal(plane: &TangentPlane, hessian: Tensor, norm: Norm, floor: f64) -> Tensor3 {
+    let wanted = norm.weighted(absolute(hessian, floor));
+    plane.extend(wanted, wanted.eigen().large)
 }
 
 impl Bend {
     fn fitted(surface: &Surface) -> Self {
         // Where nothing could be fitted the surface counts as flat.
-        let shapes =
-            fit_curvatures(surface).into_iter().map(|fit| fit.map_or(Tensor3::default(), |c| shape(&c))).collect();
+        let shape =
+            |c: Curvatures| Tensor3::from_axes([c.axes[0], c.axes[1], c.normal], [c.values[0], c.values[1], 0.0]);
+        let shapes = fit_curvatures(surface).into_iter().map(|fit| fit.map_or(Tensor3::default(), shape)).collect();
         let t = surface.topology();
         let corners = |f: u32| if t.is_face(FaceId(f)) { t.corners(FaceId(f)).map(|v| v.0) } else { [0; 3] };
         Self::Fitted(shapes, (0..t.face_slots() as u32).map(corners).collect())
     }
 
-    /// The unit normal and the shape operator at a place.
+    /// The unit normal, and what in its plane is the shape operator, at a place.
     fn at(&self, place: &Place) -> (Vector3, Tensor3) {
         match self {
-            Self::Equation(f) => match curvatures(&f.jet(place.position)) {
-                Some(c) => (c.normal, shape(&c)),
-                None => (place.normal, Tensor3::IDENTITY * f64::NAN),
-            },
+            Self::Equation(f) => {
+                let jet = Implicit::jet(f, place.position);
+                // Where there is no normal, nothing is finite.
+                (jet.gradient.unit().unwrap_or(place.normal), jet.hessian * (1.0 / jet.gradient.norm()))
+            }
             Self::Fitted(shapes, corners) => {
-                let weighted = corners[place.face.index()].iter().zip(place.weights);
-                let sum = weighted.fold(Tensor3::default(), |sum, (&v, weight)| sum + shapes[v as usize] * weight);
-                (place.normal, sum)
+                let shapes = corners[place.face.index()].map(|v| shapes[v as usize]);
+                (place.normal, Tensor3::weighted(shapes, place.weights))
             }
         }
     }
-}
-
-/// The shape operator.
-fn shape(c: &Curvatures) -> Tensor3 {
-    Tensor3::square(c.axes[0]) * c.values[0] + Tensor3::square(c.axes[1]) * c.values[1]
 }
 
 /// The mean of a number over a surface, at the middles of parts of its triangles.
@@ -152,15 +151,10 @@ pub(crate) fn recovered_on(input: &Input, values: &[f64], norm: Norm) -> Result<
     let found: Vec<Option<(TangentPlane, Tensor)>> = (0..values.len() as u32).into_par_iter().map(recovered).collect();
     let mean = weighted_mean(surface, |v| found[v.index()].as_ref().map_or(0.0, |(_, hessian)| size(*hessian)));
     let area = t.faces().map(|f| area(surface.triangle(f))).sum::<f64>();
-    let greatest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    // Second derivatives that rounding of the values alone could make up say nothing.
-    if mean <= 100.0 * f64::EPSILON * greatest * values.len() as f64 / area || FLOOR * mean == 0.0 {
+    if mean <= rounding(values, area) || FLOOR * mean == 0.0 {
         return Err(vanishing());
     }
-    let metric = |(plane, hessian): &(TangentPlane, Tensor)| {
-        let wanted = norm.weighted(absolute(*hessian, FLOOR * mean));
-        plane.extend(wanted, wanted.eigen().large)
-    };
+    let metric = |(plane, hessian): &(TangentPlane, Tensor)| optimal(plane, *hessian, norm, FLOOR * mean);
     let fits: Vec<Option<Tensor3>> = found.iter().map(|found| found.as_ref().map(metric)).collect();
     let least = norm.weighted(Tensor::isotropic(1.0) * (FLOOR * mean));
     Sampled::filled(surface, &fits, Tensor3::IDENTITY * least.xx)

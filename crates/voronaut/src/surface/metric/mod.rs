@@ -27,7 +27,7 @@ mod spec;
 
 pub(crate) use crate::metric::check_tensor3;
 pub(crate) use bounded::Closer;
-pub use curvature::fit_curvatures;
+pub(crate) use curvature::fit_curvatures;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
 pub(crate) use gradation::grade;
 pub(crate) use hessian::{CovariantHessian, recovered_on};

@@ -69,9 +69,8 @@ impl Sampled {
 
 impl SurfaceMetric for Sampled {
     fn at(&self, place: &Place) -> Tensor3 {
-        let corners = self.corners[place.face.index()];
-        let weighted = corners.iter().zip(place.weights).map(|(&v, weight)| self.logs[v as usize] * weight);
-        weighted.fold(Tensor3::default(), |sum, log| sum + log).exp()
+        let logs = self.corners[place.face.index()].map(|v| self.logs[v as usize]);
+        Tensor3::weighted(logs, place.weights).exp()
     }
 
     fn curvature_figures(&self) -> Option<CurvatureFigures> {
