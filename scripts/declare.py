@@ -38,7 +38,7 @@ FUNCTIONS = {
         "command": "mesh", "parameters": [("domain", "object", None), ("metric", "MetricLike", None), ("n", "int | None", "None")],
         "title": "Meshes a domain: valid, with edges of length one in a metric.",
         "docs": [DOMAIN, METRIC, ("n : int, optional", "Vertices; one factor scales the metric to meet it.")],
-        "skip": {"domain", "metric", "vertices"}, "returns": ("Mesh", "With the command's report."),
+        "skip": {"domain", "metric", "vertices", "parts", "parts_dir", "part"}, "returns": ("Mesh", "With the command's report."),
         "example": ">>> layer = voronaut.mesh(\"rect:0,0,1,1\", lambda p: 0.01 + 0.2 * abs(p[:, 1] - 0.5), n=2000)",
     },
     "dual": {

@@ -10,6 +10,7 @@ Domains are files, shapes as text (`"disk:0,0,1"`, `"sphere:1"`), arrays (`(poin
 pyvista and meshio, objects with `__geo_interface__`. Metrics are texts, arrays, functions of points, or a `Metric`.
 """
 
+from . import distributed
 from ._commands import adapt, check, distance, dual, mesh, remesh, transfer, view
 from ._errors import (
     Cancelled,
@@ -45,6 +46,7 @@ __all__ = [
     "check",
     "convert",
     "distance",
+    "distributed",
     "dual",
     "mesh",
     "read_solution",

@@ -28,6 +28,30 @@ def mesh(domain: object, metric: MetricLike, n: int | None, options: Options, de
     return _mesh_of(_perform("mesh", words, options, defaults, held, progress))
 
 
+def mesh_in_parts(
+    domain: object,
+    metric: MetricLike,
+    n: int,
+    options: Options,
+    make: Callable[[str, list[tuple[dict[str, Any], int]]], list[dict[str, Any]]],
+    progress: Progress,
+) -> Mesh:
+    held: Held = {"parts": {"maker": make}}
+    words = {"domain": _given.domain_word(domain, held), "metric": _metric_word(metric, held, domain), "vertices": n, "out": "mesh"}
+    return _mesh_of(_perform("mesh", words, options, {}, held, progress))
+
+
+def part(
+    domain: object, metric: MetricLike, n: int, of_part: dict[str, Any], vertices: int, options: Options
+) -> dict[str, Any]:
+    """The arrays of one part of a mesh."""
+    held: Held = {}
+    words = {"domain": _given.domain_word(domain, held), "metric": _metric_word(metric, held, domain), "vertices": n, "out": "mesh"}
+    held.setdefault("documents", {})["part"] = of_part
+    made: dict[str, Any] = _perform("mesh", {**words, "part": f"{vertices},part"}, options, {}, held, False)["mesh"]
+    return made
+
+
 def dual(
     domain: object, metric: MetricLike, seeds: npt.ArrayLike, options: Options, defaults: Options, progress: Progress
 ) -> Mesh:

@@ -19,6 +19,7 @@ mod mesh;
 mod metric;
 mod options;
 mod pages;
+mod parts;
 mod pictures;
 #[cfg_attr(target_family = "wasm", path = "no_progress.rs")]
 mod progress;
@@ -32,7 +33,7 @@ mod world;
 
 pub use flags::{as_keywords, flagged};
 pub use job::{Job, Usage, commands};
-pub use world::{Held, HeldMetric, Made, World};
+pub use world::{Held, HeldMetric, Made, PartsMaker, World};
 
 use aside::say_aside;
 use clap::{Parser, Subcommand};
@@ -41,12 +42,14 @@ use std::borrow::Cow;
 use std::ffi::OsString;
 use voronaut::Result;
 
-/// Runs the program with these words, its name first, and returns its exit code: 0: done; 1: the input or the result is not what was
-/// asked, for which `remesh` has 2, as mmg has; 2: wrong usage. Limits and signals end the process.
-pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
-    let words: Vec<OsString> = words.into_iter().collect();
+/// Runs the program with these words, and returns its exit code: 0: done; 1: the input or the result is not what was
+/// asked, for which `remesh` has 2, as mmg has; 2: wrong usage. Limits and signals end the process. `program` are the words that start it
+/// again, for parts of a mesh.
+pub fn run(program: Vec<OsString>, words: impl IntoIterator<Item = OsString>) -> u8 {
+    let words: Vec<OsString> = std::iter::once("voronaut".into()).chain(words).collect();
     watch::fail_as(words.get(1).is_some_and(|word| word == "remesh"));
-    let done = remesh::translated(words).and_then(|words| obey(&Arguments::parse_from(words).command));
+    let again = [program, words[1..].to_vec()].concat();
+    let done = remesh::translated(words).and_then(|words| obey(&Arguments::parse_from(words).command, again));
     let Err(error) = done else { return 0 };
     say_aside(&format!("error: {}", flags::flagged(&error.to_string())));
     if !error.help().is_empty() {
@@ -55,11 +58,11 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     watch::failure()
 }
 
-fn obey(command: &Command) -> Result<()> {
+fn obey(command: &Command, again: Vec<OsString>) -> Result<()> {
     let run = command.run();
     watch::begin(run.limits)?;
     run.set_threads()?;
-    command.perform(&World::of_files())
+    command.perform(&World::of_files(again))
 }
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
@@ -124,7 +127,7 @@ impl Command {
     /// Threads, limits, and how much is said.
     fn run(&self) -> Cow<'_, Run> {
         Cow::Borrowed(match self {
-            Command::Mesh(args) => &args.run,
+            Command::Mesh(args) => return args.run(),
             Command::Dual(args) => &args.run,
             Command::Distance(args) => &args.run,
             Command::Interpolate(args) => &args.run,

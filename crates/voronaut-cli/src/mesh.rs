@@ -3,10 +3,12 @@
 use crate::fields::{self, Scaled};
 use crate::options::{Damage, MetricChoices, Outputs, Paged, Paired, Run, Show, not_negative, positive, refuse};
 use crate::pages::{self, Drawn};
+use crate::parts::{self, InParts};
 use crate::world::World;
 use crate::{account, files, pictures};
 use clap::{Args, value_parser};
 use serde_json::{Value, json};
+use std::borrow::Cow;
 use std::path::PathBuf;
 use voronaut::Result;
 use voronaut::canvas::{self, Canvas};
@@ -41,6 +43,7 @@ Examples:
   voronaut mesh rect:-1,-1,1,1 --metric 'formula:1/(0.01 + 0.2*abs(y))^2; 0; 25' -o layer.mesh
   voronaut mesh wing.mesh --metric wing.sol --h-min 1e-4 --a-max 100 -o adapted.mesh --report run.json
   voronaut mesh sea.geojson --metric boundary:h0=2,growth=1.3 -n 20000 -o sea.mesh -q
+  voronaut mesh sea.geojson --metric boundary:h0=0.1,growth=1.1 -n 2000000 --parts auto --parts-dir parts -o sea.meshb
   voronaut mesh sphere:1 --metric 'hessian:tanh(10*(x + 0.2*z))' -n 2000 -o front.mesh
   voronaut mesh spot.obj --metric curvature -n 1020 --fit -o spot-1020.obj --picture spot.png --show cells,mesh";
 
@@ -126,6 +129,8 @@ pub(crate) struct MeshArgs {
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), default_value_t = MeshOptions::default().canvas_size)]
     pub(crate) canvas_size: u32,
     #[command(flatten)]
+    pub(crate) in_parts: InParts,
+    #[command(flatten)]
     pub(crate) outputs: Outputs,
     #[command(flatten)]
     pub(crate) paged: Paged,
@@ -138,6 +143,14 @@ pub(crate) struct MeshArgs {
 impl MeshArgs {
     pub(crate) fn features(&self) -> FeatureOptions {
         FeatureOptions { ar: (!self.nr).then_some(self.ar) }
+    }
+
+    /// Threads and limits: a part has one thread, for others are made beside it.
+    pub(crate) fn run(&self) -> Cow<'_, Run> {
+        match self.in_parts.part {
+            None => Cow::Borrowed(&self.run),
+            Some(_) => Cow::Owned(Run { threads: Some(1), ..self.run.clone() }),
+        }
     }
 
     pub(crate) fn options(&self) -> MeshOptions {
@@ -190,6 +203,7 @@ impl MeshArgs {
             "ar": self.features().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
             "picture": self.outputs.picture, "view": self.paged.view, "cells": self.paged.cells, "pixels": self.outputs.pixels, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
             "repair": self.damage.repair, "required": self.required,
+            "parts": self.in_parts.parts.map(|parts| parts.to_string()),
         });
         let mut options = account::joined(json!(self.options()), more);
         if let Some(options) = options.as_object_mut() {
@@ -235,13 +249,24 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     let at = GradedAt::of(options.vertices, args.complexity);
     let made = fields::in_plane(world, &args.metric, domain, &args.domain, &args.metric_choices, at)?;
     let (metric, aim) = (made.field.as_ref(), made.aim(args.metric_choices.norm));
-    let meshed = recipe::mesh_for(domain, metric, aim, &options, &*world.progress(&args.run))?;
-    let mesh = &meshed.mesh;
-    let scaled = |p: Point| metric.at(p) * meshed.metric_scale;
+    let field = parts::Field { metric, aim };
+    if let Some(job) = &args.in_parts.part {
+        return parts::one(job, world, &args.run, field, &options);
+    }
     let mut used = args.as_used(&idle);
     // Creases are of surfaces.
     used["ar"] = Value::Null;
+    let meshed = match args.in_parts.parts {
+        Some(_) => args.in_parts.all(world, &args.run, domain, field, &options, &used)?,
+        None => recipe::mesh_for(domain, metric, aim, &options, &*world.progress(&args.run))?,
+    };
+    let mesh = &meshed.mesh;
+    let scaled = |p: Point| metric.at(p) * meshed.metric_scale;
     let (mut report, unmet) = account::in_plane(&meshed, &scaled, used)?;
+    if args.in_parts.parts.is_some() {
+        // Each part has its own, of which nothing is kept.
+        (report.dual, report.relaxation) = (None, None);
+    }
     report.notes.extend(mended.sentences());
     report.histograms = files::histograms(outputs, mesh, &scaled)?;
     let error = |aim: Aim| interpolation_error(mesh, aim.function, aim.norm);
@@ -274,8 +299,11 @@ fn cells(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
 }
 
 fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, start: f64) -> Result<()> {
-    let help = "leave out --required: it is for planar domains; list required edges in the surface's file";
-    refuse([(args.required, "--required on a surface", help)])?;
+    let required = "leave out --required: it is for planar domains; list required edges in the surface's file";
+    refuse([
+        (args.required, "--required on a surface", required),
+        (args.in_parts.is_asked(), "--parts on a surface", "leave out --parts: it is for planar domains"),
+    ])?;
     pictures::demand_of_surfaces(&args.outputs, &[])?;
     let idle = args.idle(true, world)?;
     let is_whole = args.outputs.picture.is_some() || args.paged.view.is_some();

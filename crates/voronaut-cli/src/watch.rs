@@ -64,8 +64,8 @@ struct Stage {
 
 static STAGE: Mutex<Stage> = Mutex::new(Stage { name: "reading", began: None, done: 0, total: 0 });
 
-/// The program of the user's that runs.
-static CHILD: Mutex<Option<Child>> = Mutex::new(None);
+/// The programs that run: the user's, or this one again.
+static CHILDREN: Mutex<Vec<Child>> = Mutex::new(Vec::new());
 
 fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
@@ -78,14 +78,18 @@ fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 pub(crate) fn run(command: &mut Command) -> std::io::Result<ExitStatus> {
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(command, 0);
-    let mut running = held(&CHILD);
-    *running = Some(command.spawn()?);
+    let mut running = held(&CHILDREN);
+    let child = command.spawn()?;
+    let number = child.id();
+    running.push(child);
     drop(running);
     loop {
-        let mut running = held(&CHILD);
-        if let Some(status) = running.as_mut().map_or(Ok(None), Child::try_wait)? {
+        let mut running = held(&CHILDREN);
+        if let Some(at) = running.iter().position(|child| child.id() == number)
+            && let Some(status) = running[at].try_wait()?
+        {
             // Its number may be another's from now on.
-            *running = None;
+            let _ = running.swap_remove(at).wait();
             return Ok(status);
         }
         drop(running);
@@ -130,12 +134,12 @@ impl Stage {
     }
 }
 
-/// Ends the program; files that are not whole go, and a solver that runs.
+/// Ends the program; files that are not whole go, and programs that it runs.
 fn stop(what: &str, help: &str) {
     voronaut_io::abandon();
     // Held to the end: nobody starts another.
-    let mut running = held(&CHILD);
-    if let Some(child) = running.as_mut() {
+    let mut running = held(&CHILDREN);
+    for child in running.iter_mut() {
         // It may have ended by itself; what it has started is in its group.
         let _ = Command::new("kill").args(["-KILL", "--", &format!("-{}", child.id())]).status();
         let _ = child.kill().and_then(|()| child.wait());

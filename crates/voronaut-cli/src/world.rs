@@ -6,13 +6,15 @@ use crate::progress::Bar;
 use crate::seeds::SeedRows;
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::ffi::OsString;
 use std::path::Path;
+use std::sync::Mutex;
 use std::time::Instant;
 use voronaut::domain::{Domain, Pslg, from_polygons};
 use voronaut::mesh::{Mesh, Solution, SolutionValues, Solutions};
 use voronaut::progress::Progress;
 use voronaut::realisation::Realisation;
-use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, PlanarMetric};
+use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, Part, PlanarMetric};
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Mended, RepairOptions};
 use voronaut::{Error, Result};
@@ -36,6 +38,9 @@ pub trait HeldMetric: Send {
     fn on_surface(&self, input: &Input, options: &MetricOptions, at: GradedAt) -> Result<Box<dyn SurfaceMetric>>;
 }
 
+/// Makes the meshes of parts, in their order; the name is that of the round.
+pub type PartsMaker = Box<dyn FnMut(&'static str, &[Part]) -> Result<Vec<Mesh>> + Send>;
+
 /// What a caller holds, by the words that stand for it among those of a command.
 #[derive(Default)]
 pub struct Held {
@@ -51,6 +56,8 @@ pub struct Held {
     pub solutions: HashMap<String, Solutions>,
     /// Seeds, all of two or all of three coordinates.
     pub seeds: HashMap<String, Vec<Vec<f64>>>,
+    /// Who makes the parts of a mesh; the command itself if it is nobody.
+    pub parts_maker: Option<Mutex<PartsMaker>>,
     /// Whether pages are kept, whatever they are called, and not written.
     pub keeps_pages: bool,
 }
@@ -102,25 +109,37 @@ pub struct Made {
 /// Where a command reads and writes.
 pub struct World<'a> {
     held: Option<(Held, &'a dyn Progress)>,
+    /// The words that start the program again.
+    again: Vec<OsString>,
     /// When it began; a caller's progress has a clock.
     start: Option<Instant>,
     made: RefCell<Made>,
 }
 
 impl<'a> World<'a> {
-    /// Files, and a terminal.
-    pub fn of_files() -> Self {
-        Self { held: None, start: Some(Instant::now()), made: RefCell::default() }
+    /// Files, and a terminal; and the words that start the program again.
+    pub(crate) fn of_files(again: Vec<OsString>) -> Self {
+        Self { held: None, again, start: Some(Instant::now()), made: RefCell::default() }
     }
 
     /// What a caller holds, and its progress. What commands make is kept; files that options name are read and written all the same.
     pub fn of_caller(held: Held, progress: &'a dyn Progress) -> Self {
-        Self { held: Some((held, progress)), start: None, made: RefCell::default() }
+        Self { held: Some((held, progress)), again: Vec::new(), start: None, made: RefCell::default() }
     }
 
     /// What was made for the caller.
     pub fn into_made(self) -> Made {
         self.made.into_inner()
+    }
+
+    /// The words that start the program again, where there is one.
+    pub(crate) fn again(&self) -> Option<&[OsString]> {
+        self.is_files().then_some(&self.again)
+    }
+
+    /// Who makes the parts of a mesh for the caller.
+    pub(crate) fn parts_maker(&self) -> Option<&Mutex<PartsMaker>> {
+        self.held.as_ref().and_then(|(held, _)| held.parts_maker.as_ref())
     }
 
     pub(crate) fn is_files(&self) -> bool {

@@ -122,6 +122,8 @@ const ROWS: &[Row] = &[
     plane(PROTECTED, &["--picking-radius", "0.1"], Refused("--picking-radius")),
     all(&[], &["--picking-radius", "0.1"], Refused("--picking-radius")),
     each(&["--net"], [Report("net"), Refused("--net"), Refused("--net")]),
+    plane(&["-n", "2500"], &["--parts", "2"], Mesh),
+    surfaces(&[], &["--parts", "2"], Refused("--parts")),
     all(BY_CANVAS, &["--canvas", "starset"], Report("canvas")),
     all(BY_LENGTHS, &["--canvas", "starset"], Refused("--canvas")),
     plane(&["--dual", "geodesic", "--picture", "p.svg", "--show", "cells"], &["--canvas", "isotropic"], File("p.svg")),
@@ -143,8 +145,8 @@ const ROWS: &[Row] = &[
     all(&[], &["--verbose"], Nothing),
 ];
 
-/// Options of which the others are tested with.
-const USED: [&str; 5] = ["--metric", "--out", "--report", "--help", "--version"];
+/// Options with which the others are tested, and one that leaves a folder.
+const USED: [&str; 6] = ["--metric", "--out", "--report", "--help", "--version", "--parts-dir"];
 
 /// What is meshed in each column, with its metric.
 const MESHED: [[&str; 3]; 3] = [

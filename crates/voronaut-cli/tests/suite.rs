@@ -15,6 +15,7 @@ mod interpolate;
 mod limits;
 mod metric;
 mod options;
+mod parts;
 mod periodic;
 mod protection;
 mod remesh;

@@ -13,8 +13,9 @@ use pyo3::types::{PyDict, PyTuple};
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::sync::Arc;
-use voronaut_cli::{Held, Job, Made};
+use std::sync::{Arc, Mutex};
+use voronaut::recipe::Part;
+use voronaut_cli::{Held, Job, Made, PartsMaker};
 use voronaut_io::{Document, ending};
 use work::{Course, Terms};
 
@@ -52,6 +53,7 @@ fn held_of(given: &Bound<PyDict>, course: &Arc<Course>) -> PyResult<Held> {
             match kind.extract::<&str>()? {
                 "documents" => drop(held.documents.insert(word, arrays::document_of(value.cast()?)?)),
                 "polygons" => drop(held.polygons.insert(word, value.extract()?)),
+                "parts" => held.parts_maker = Some(Mutex::new(maker(value.unbind(), course.clone()))),
                 "metrics" => drop(held.metrics.insert(word, Box::new(Metric::of(&value, course)?))),
                 "solutions" => {
                     let document = arrays::document_of(value.cast()?)?;
@@ -69,6 +71,18 @@ fn held_of(given: &Bound<PyDict>, course: &Arc<Course>) -> PyResult<Held> {
         }
     }
     Ok(held)
+}
+
+/// A function of a round's name and its parts, each a mesh and its number of vertices, that returns their meshes.
+fn maker(function: Py<PyAny>, course: Arc<Course>) -> PartsMaker {
+    Box::new(move |round, parts| {
+        course.call(|py| {
+            let part = |part: &Part| Ok((arrays::of_mesh(py, part.domain.clone())?, part.vertices));
+            let parts = parts.iter().map(part).collect::<PyResult<Vec<_>>>()?;
+            let made = function.bind(py).call1((round, parts))?;
+            made.try_iter()?.map(|mesh| arrays::mesh_of(mesh?.cast()?)).collect()
+        })
+    })
 }
 
 fn told(py: Python<'_>, made: Made) -> PyResult<Bound<'_, PyDict>> {
@@ -134,8 +148,8 @@ fn commands() -> String {
     declared::commands().to_string()
 }
 
-/// The program: words as a shell has them, the program's name first. Returns the exit code.
+/// The program: the words that start it, and those after them, as a shell has them. Returns the exit code.
 #[pyfunction]
-fn main(words: Vec<OsString>) -> u8 {
-    voronaut_cli::run(words)
+fn main(program: Vec<OsString>, words: Vec<OsString>) -> u8 {
+    voronaut_cli::run(program, words)
 }

@@ -64,7 +64,7 @@ const SLIVER: f64 = 0.1;
 
 /// An edge on which the roads differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disagreement {
+pub(crate) struct Disagreement {
     /// The ends of the edge by lengths of geodesics.
     pub edge: [VertexId; 2],
     /// The ends of the other diagonal, if the nerve has it.

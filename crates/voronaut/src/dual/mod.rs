@@ -13,7 +13,8 @@ mod surface_flips;
 mod patch;
 
 pub(crate) use consult::Consultation;
-pub use consult::{Disagreement, Road};
+pub(crate) use consult::Disagreement;
+pub use consult::Road;
 pub(crate) use moving::{Moving, sites};
 pub(crate) use on_surface::SurfaceDual;
 

@@ -34,6 +34,20 @@ pub(crate) fn rough_complexity(field: &dyn MetricField, triangles: &[[Point; 3]]
     settle(total, 0.0, worst.as_ref())
 }
 
+/// A rough value of [`complexity`] of each of many triangles.
+///
+/// # Errors
+/// As [`rough_complexity`].
+pub(crate) fn complexities(field: &dyn MetricField, triangles: &[[Point; 3]]) -> Result<Vec<f64>> {
+    let share = triangles.len().max(1);
+    let one = |&triangle: &[Point; 3]| {
+        let pieces = start(&[triangle], (PIECES / share as f64).max(1.0))?;
+        let Integral { total, worst, .. } = adapt(field, pieces, ROUGH_TOLERANCE, (MAX_EVALUATIONS >> 4) / share)?;
+        settle(total, 0.0, worst.as_ref())
+    };
+    triangles.par_iter().map(one).collect()
+}
+
 struct Integral {
     total: f64,
     error: f64,

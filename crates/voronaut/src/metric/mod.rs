@@ -44,7 +44,7 @@ pub use analytic::{Shock, Swirl, SwirlField, Uniform};
 pub use boundary::{Boundary, BoundarySizes};
 pub use bounds::{Bounded, Bounds};
 pub use complexity::complexity;
-pub(crate) use complexity::rough_complexity;
+pub(crate) use complexity::{complexities, rough_complexity};
 pub use expression::Expression;
 pub use formula::{Formula, Snapshot, SpaceFormula};
 pub use hessian::Hessian;

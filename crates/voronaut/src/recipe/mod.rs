@@ -8,6 +8,7 @@ mod idle;
 mod mesher;
 mod on_surface;
 mod options;
+mod parts;
 mod patches;
 mod periodic;
 mod protection;
@@ -26,6 +27,7 @@ pub use field::{
 pub use idle::{Idle, Origin, Task};
 pub use on_surface::mesh_surface;
 pub use options::{Centroid, Effort, MeshOptions, Mesher, Seeding};
+pub use parts::{Part, mesh_in_parts, mesh_part};
 pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
 pub use surface_field::{SurfaceSource, metric_on_surface};
 

@@ -16,5 +16,5 @@ pub(crate) use farthest::{fill_farthest, refine_farthest};
 pub(crate) use features::{ALL_VERTICES, FeatureEdge, FeatureSeeds, MeasuredCurves};
 pub(crate) use interior::{Fill, insert_spaced, refine};
 pub use plan::demand_memory;
-pub(crate) use plan::{Plan, Target, sample_segments};
+pub(crate) use plan::{MetricArc, Plan, Target, pieces, sample_segments};
 pub(crate) use protected::{Picking, refine_protected};

@@ -98,7 +98,8 @@ impl Plan {
         }
     }
 
-    fn with(domain: &Domain, pairs: &[Pair], field: &dyn MetricField, complexity: f64) -> Self {
+    /// That of a domain whose complexity is known.
+    pub(crate) fn with(domain: &Domain, pairs: &[Pair], field: &dyn MetricField, complexity: f64) -> Self {
         let edges = stretches(domain, pairs);
         let arcs = edges.par_iter().map(|edge| edge.measured(domain, field)).collect();
         let corners = domain.planar().topology.vertex_count();
@@ -292,7 +293,7 @@ impl MetricArc {
 }
 
 /// How many edges a segment of this metric length is cut into: the nearest whole number, at least one.
-pub(super) fn pieces(length: f64) -> usize {
+pub(crate) fn pieces(length: f64) -> usize {
     // Saturates: an absurd length is caught by the estimate of the work before anything is cut.
     (length.round() as usize).max(1)
 }

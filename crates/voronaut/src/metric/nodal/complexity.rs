@@ -6,7 +6,6 @@ use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::metric::Norm;
-use crate::metric::validate::check_at_vertices;
 
 /// The integral of sqrt(det M) over a planar mesh, of the metric that is log-Euclidean between the vertices: exact but for
 /// rounding, for there log sqrt(det M) is linear on every triangle. Triangles of either orientation count.
@@ -16,18 +15,8 @@ pub fn complexity(mesh: &Mesh, tensors: &[Tensor]) -> f64 {
     mesh.triangles.iter().map(of_triangle).sum()
 }
 
-/// The metric that is optimal for linear interpolation in an L^p norm (Loseille and Alauzet 2011), of given Hessians and of
-/// a given complexity, which it has but for rounding: det(|H|)^(-1 / (2p + 2)) |H|, `enforce_spd` being |H|, times one factor.
-///
-/// # Errors
-/// As of [`Sampled::new`](crate::metric::Sampled::new); [`Error::Parse`] of a target that is not positive and finite.
-pub fn normalise(mesh: &Mesh, hessians: &[Tensor], norm: Norm, target_complexity: f64) -> Result<Vec<Tensor>> {
-    let weighted = weighted(hessians, norm)?;
-    check_at_vertices(mesh, &weighted)?;
-    scaled_to(mesh, &weighted, target_complexity)
-}
-
-/// The optimal metric of given Hessians up to a factor.
+/// The metric that is optimal for linear interpolation in an L^p norm (Loseille and Alauzet 2011), of given Hessians and up to a
+/// factor: det(|H|)^(-1 / (2p + 2)) |H|, `enforce_spd` being |H|.
 pub(super) fn weighted(hessians: &[Tensor], norm: Norm) -> Result<Vec<Tensor>> {
     Ok(enforce_spd(hessians)?.into_iter().map(|h| norm.weighted(h)).collect())
 }
@@ -159,6 +148,10 @@ mod tests {
         let truth: f64 = mesh.triangles.iter().map(|&t| by_points(t)).sum();
         // The sum over points is of first order.
         assert!((complexity(&mesh, &tensors) / truth - 1.0).abs() < 0.01);
+    }
+
+    fn normalise(mesh: &Mesh, hessians: &[Tensor], norm: Norm, target: f64) -> Result<Vec<Tensor>> {
+        scaled_to(mesh, &weighted(hessians, norm)?, target)
     }
 
     fn hessians() -> impl Strategy<Value = Vec<Tensor>> {

@@ -7,7 +7,6 @@
 //! |---|---|
 //! | [`recover_hessian`](super::recover_hessian) | second derivatives of a solution |
 //! | `enforce_spd` | their absolute values, with a floor |
-//! | [`normalise`] | the metric that is optimal in an L^p norm, of a complexity |
 //! | [`intersect`], [`average`] | one metric of several |
 //! | [`implied`] | the metric in which a mesh is as even as can be |
 //! | [`isotropic`] | of sizes |
@@ -26,7 +25,7 @@ mod spd;
 pub(super) mod test_meshes;
 
 pub use combine::{average, intersect};
-pub use complexity::{complexity, normalise};
+pub use complexity::complexity;
 pub(crate) use gradation::Gradation;
 pub use gradation::grade;
 pub use implied::{implied, isotropic};

@@ -14,7 +14,7 @@ use crate::metric::validate::check_at_vertices;
 
 /// From Hessians and metrics to the metric of the next mesh. The order:
 ///
-/// 1. *Absolute values* of Hessians, and their *L^p weights* ([`super::normalise`]); metrics come as they are.
+/// 1. *Absolute values* of Hessians, and their *L^p weights*, optimal in that norm (Loseille and Alauzet 2011); metrics come as they are.
 /// 2. *One scale*: with a target and several sources, each is given the target complexity. Sources in different units would
 ///    otherwise not be comparable, and the finer one would be the only one.
 /// 3. *Combine*: [`intersect`] or [`average`].

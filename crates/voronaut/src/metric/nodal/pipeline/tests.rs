@@ -1,7 +1,8 @@
 //! Targets met, limits kept, sources on one scale.
 
+use super::super::complexity::{scaled_to, weighted};
 use super::super::test_meshes::{grid, tensors_at};
-use super::super::{Limit, grade, normalise};
+use super::super::{Limit, grade};
 use super::*;
 use crate::geometry::Vector;
 use crate::metric::Bounds;
@@ -63,7 +64,8 @@ fn without_limits_it_is_normalisation() {
     let mesh = grid(16, 0.2);
     let pipeline = Pipeline { target_complexity: Some(500.0), ..Pipeline::default() };
     let found = pipeline.run(&mesh, &[Source::Hessian(layer(&mesh, 0.1))]).unwrap();
-    assert_eq!(found.tensors, normalise(&mesh, &layer(&mesh, 0.1), Norm::default(), 500.0).unwrap());
+    let normalised = scaled_to(&mesh, &weighted(&layer(&mesh, 0.1), Norm::default()).unwrap(), 500.0).unwrap();
+    assert_eq!(found.tensors, normalised);
     assert_eq!((found.factor.to_bits(), found.touched), (1.0_f64.to_bits(), Touched::default()));
 }
 

@@ -1,0 +1,271 @@
+//! A mesh in parts: each made by a process of its own, which is this program again, or wherever the caller says; what is done is kept.
+
+use crate::options::Run;
+use crate::watch;
+use crate::world::{PartsMaker, World};
+use clap::Args;
+use serde_json::Value;
+use std::ffi::OsString;
+use std::fmt;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use voronaut::domain::Domain;
+use voronaut::geometry::Aabb;
+use voronaut::mesh::Mesh;
+use voronaut::metric::MetricField;
+use voronaut::progress::Progress;
+use voronaut::recipe::{Aim, MeshOptions, Meshed, Part, mesh_in_parts, mesh_part};
+use voronaut::{Error, Result};
+use voronaut_io::{Fields, Format, Scratch};
+
+/// Whether a mesh is made in parts, or is one of them.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct InParts {
+    /// In the plane: make the mesh in K parts, or in parts of about 100,000 vertices (auto), as many at a time as --threads says, each by
+    /// a process of its own; the mesh depends on the number of parts, not on who makes them
+    #[arg(long, value_name = "K", value_parser = parts)]
+    pub(crate) parts: Option<Parts>,
+    /// With --parts: a folder for parts that are done; a run that was stopped goes on from them
+    #[arg(long, value_name = "DIR", requires = "parts")]
+    parts_dir: Option<PathBuf>,
+    /// One part of a mesh in parts: so many vertices, in the domain of a file
+    #[arg(long, value_name = "N,FILE", value_parser = job, hide = true)]
+    pub(crate) part: Option<Job>,
+}
+
+/// How many parts a mesh is made in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Parts(Option<usize>);
+
+impl fmt::Display for Parts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            None => f.write_str("auto"),
+            Some(count) => count.fmt(f),
+        }
+    }
+}
+
+/// `auto` or a number.
+fn parts(text: &str) -> std::result::Result<Parts, String> {
+    let count = || text.parse::<usize>().ok().filter(|&count| count > 0).map(|count| Parts(Some(count)));
+    let auto = (text == "auto").then_some(Parts(None));
+    auto.or_else(count).ok_or_else(|| "neither auto nor a number of parts, 1 or more".into())
+}
+
+/// The job of a part: how many vertices, and what its domain is in.
+#[derive(Clone, Debug)]
+pub(crate) struct Job {
+    vertices: usize,
+    domain: PathBuf,
+}
+
+/// `N,FILE`.
+fn job(text: &str) -> std::result::Result<Job, String> {
+    let found = text.split_once(',').and_then(|(count, file)| Some((count.parse().ok()?, file)));
+    let (vertices, file) = found.ok_or("not N,FILE")?;
+    Ok(Job { vertices, domain: file.into() })
+}
+
+/// A metric, and what it is for.
+#[derive(Clone, Copy)]
+pub(crate) struct Field<'a> {
+    pub(crate) metric: &'a dyn MetricField,
+    pub(crate) aim: Option<Aim<'a>>,
+}
+
+/// The mesh of one part, and where it goes.
+pub(crate) fn one(job: &Job, world: &World, run: &Run, field: Field, options: &MeshOptions) -> Result<()> {
+    let part = Part { domain: world.document(&job.domain)?.mesh, vertices: job.vertices };
+    let mesh = mesh_part(&part, field.metric, field.aim, options, &*world.progress(run))?;
+    world.write_mesh(mesh, &done_name(&job.domain))?;
+    // Files that the user named are of the whole.
+    world.write_report("{}".into(), &Run { report: None, ..run.clone() })
+}
+
+/// Where the mesh of a job goes: `strips-3-job.meshb` becomes `strips-3.meshb`.
+fn done_name(job: &Path) -> PathBuf {
+    let name = job.file_name().map(|name| name.to_string_lossy().replace("-job.", ".")).unwrap_or_default();
+    job.with_file_name(name)
+}
+
+impl InParts {
+    /// The whole mesh; `used` are all options.
+    pub(crate) fn is_asked(&self) -> bool {
+        self.parts.is_some() || self.part.is_some()
+    }
+
+    pub(crate) fn all(
+        &self,
+        world: &World,
+        run: &Run,
+        domain: &Domain,
+        field: Field,
+        options: &MeshOptions,
+        used: &Value,
+    ) -> Result<Meshed> {
+        let progress = &*world.progress(run);
+        let count = self.parts.and_then(|parts| parts.0);
+        let Field { metric, aim } = field;
+        if let Some(again) = world.again() {
+            let folder = Folder::open(self.parts_dir.as_deref(), used)?;
+            let processes = run.threads.map_or_else(cores, usize::from);
+            let workers = Workers { again, folder: folder.path(), processes, progress };
+            return mesh_in_parts(
+                domain,
+                metric,
+                count,
+                options,
+                &mut |round, parts| workers.make(round, parts),
+                progress,
+            );
+        }
+        if let Some(maker) = world.parts_maker() {
+            return mesh_in_parts(
+                domain,
+                metric,
+                count,
+                options,
+                &mut |round, parts| made(maker, round, parts),
+                progress,
+            );
+        }
+        let one = |part: &Part| mesh_part(part, metric, aim, options, progress);
+        mesh_in_parts(domain, metric, count, options, &mut |_, parts| parts.iter().map(one).collect(), progress)
+    }
+}
+
+fn made(maker: &Mutex<PartsMaker>, round: &'static str, parts: &[Part]) -> Result<Vec<Mesh>> {
+    maker.lock().unwrap_or_else(PoisonError::into_inner)(round, parts)
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Where jobs and their meshes are: a folder that is kept, or one that goes.
+enum Folder {
+    Kept(PathBuf),
+    Scratch(Scratch),
+}
+
+/// What of the options does not matter to parts.
+const BESIDE: [&str; 12] = [
+    "out",
+    "picture",
+    "view",
+    "cells",
+    "pixels",
+    "histograms",
+    "report",
+    "threads",
+    "memory_limit",
+    "net",
+    "canvas",
+    "canvas_size",
+];
+
+impl Folder {
+    /// # Errors
+    /// [`Error::Unsupported`] where a folder has the parts of another job; [`Error::Io`] of files.
+    fn open(kept: Option<&Path>, options: &Value) -> Result<Self> {
+        let Some(kept) = kept else { return Ok(Self::Scratch(Scratch::new()?)) };
+        std::fs::create_dir_all(kept).map_err(|source| Error::io(kept, source))?;
+        let mut options = options.clone();
+        if let Some(options) = options.as_object_mut() {
+            options.retain(|name, _| !BESIDE.contains(&name.as_str()));
+        }
+        let (file, text) = (kept.join("job.json"), format!("{options:#}\n"));
+        if file.exists() && voronaut_io::read_text(&file)? != text {
+            let what = format!("{} holds the parts of another job (see its job.json)", kept.display());
+            return Err(Error::unsupported(what, "name another folder, or empty this one"));
+        }
+        voronaut_io::write(&file, text.as_bytes())?;
+        Ok(Self::Kept(kept.into()))
+    }
+
+    fn path(&self) -> &Path {
+        match self {
+            Self::Kept(path) => path,
+            Self::Scratch(scratch) => scratch.as_ref(),
+        }
+    }
+}
+
+/// Processes that are this program again.
+struct Workers<'a> {
+    /// The words that started it.
+    again: &'a [OsString],
+    folder: &'a Path,
+    processes: usize,
+    progress: &'a dyn Progress,
+}
+
+impl Workers<'_> {
+    /// The meshes of a round, those with the most vertices first.
+    fn make(&self, round: &'static str, parts: &[Part]) -> Result<Vec<Mesh>> {
+        self.progress.stage(round, parts.len() as u64);
+        let mut order: Vec<usize> = (0..parts.len()).collect();
+        order.sort_by_key(|&i| std::cmp::Reverse(parts[i].vertices));
+        let (next, fault) = (AtomicUsize::new(0), Mutex::new(None));
+        let failed = || fault.lock().unwrap_or_else(PoisonError::into_inner);
+        let work = || {
+            while let Some(&i) = order.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| failed().is_none()) {
+                match self.perform(round, i, &parts[i]) {
+                    Ok(()) => self.progress.done(1),
+                    Err(error) => drop(failed().get_or_insert(error)),
+                }
+            }
+        };
+        std::thread::scope(|scope| (0..self.processes.min(parts.len())).for_each(|_| drop(scope.spawn(work))));
+        if let Some(error) = fault.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            return Err(error);
+        }
+        (0..parts.len()).map(|i| Ok(voronaut_io::read(&done_name(&self.job(round, i)))?.mesh)).collect()
+    }
+
+    fn job(&self, round: &str, i: usize) -> PathBuf {
+        self.folder.join(format!("{round}-{i}-job.meshb"))
+    }
+
+    /// Makes one mesh, unless it is there.
+    fn perform(&self, round: &str, i: usize, part: &Part) -> Result<()> {
+        let job = self.job(round, i);
+        let (done, log) = (done_name(&job), job.with_extension("log"));
+        let mut bytes = Vec::new();
+        let written = Format::from_path(&job)?.write(&part.domain, &Fields::default(), &mut bytes);
+        written.map_err(|source| Error::io(&job, source))?;
+        if std::fs::read(&job).is_ok_and(|old| old == bytes) && done.exists() {
+            return Ok(());
+        }
+        let _ = std::fs::remove_file(&done);
+        voronaut_io::write(&job, &bytes)?;
+        let mut value = OsString::from(format!("--part={},", part.vertices));
+        value.push(&job);
+        let said = File::create(&log).map_err(|source| Error::io(&log, source))?;
+        let mut command = Command::new(&self.again[0]);
+        let words = self.again.iter().position(|word| word == "mesh").unwrap_or(0) + 1;
+        command.args(&self.again[1..words]).arg(value).args(&self.again[words..]);
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(said);
+        let status = watch::run(&mut command).map_err(|source| Error::io(Path::new(&self.again[0]), source))?;
+        if status.success() && done.exists() {
+            let _ = std::fs::remove_file(&log);
+            return Ok(());
+        }
+        let said = voronaut_io::read_text(&log).unwrap_or_default();
+        let line = |start: &str| said.lines().find_map(|line| line.trim_start().strip_prefix(start).map(str::to_owned));
+        let what = line("error: ").unwrap_or_else(|| format!("its process ended with {status}"));
+        let help = line("help: ").unwrap_or_else(|| "start again with the same folder (--parts-dir)".into());
+        Err(Error::parse(place_of(round, i, part), what, help))
+    }
+}
+
+/// Which part it is, and where.
+fn place_of(round: &str, i: usize, part: &Part) -> String {
+    let points = (0..part.domain.points.len() as u32).map(|v| part.domain.point(v));
+    let place = Aabb::of(points).map_or_else(String::new, |b| format!(", from {} to {}", b.min, b.max));
+    format!("{round} {i}{place}")
+}
