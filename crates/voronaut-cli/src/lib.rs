@@ -6,6 +6,7 @@
 mod account;
 mod aside;
 mod check;
+mod completions;
 mod convert;
 mod distance;
 mod dual;
@@ -102,6 +103,9 @@ enum Command {
     /// Write a page to look at meshes with, in any browser
     #[command(after_help = view::EXAMPLES)]
     View(view::ViewArgs),
+    /// Write a script by which a shell completes commands and options
+    #[command(after_help = completions::EXAMPLES)]
+    Completions(completions::CompletionsArgs),
 }
 
 impl Command {
@@ -118,6 +122,7 @@ impl Command {
             Command::Convert(args) => convert::run(args),
             Command::Check(args) => check::run(args, world),
             Command::View(args) => view::run(args, world),
+            Command::Completions(args) => completions::run(args, commands()),
         }
     }
 
@@ -134,6 +139,7 @@ impl Command {
             Command::View(args) => &args.run,
             Command::Remesh(args) => return Cow::Owned(args.run()),
             Command::Convert(args) => return Cow::Owned(args.run()),
+            Command::Completions(_) => return Cow::Owned(Run::default()),
         })
     }
 }
