@@ -6,9 +6,11 @@ use clap_complete::{Shell, generate};
 use voronaut::{Error, Result};
 
 pub(crate) const EXAMPLES: &str = "\
+zsh reads what stands in its fpath: in ~/.zshrc `fpath+=~/.zfunc`, before `compinit`.
+
 Examples:
   voronaut completions bash > ~/.local/share/bash-completion/completions/voronaut
-  voronaut completions zsh > ~/.zfunc/_voronaut        # with fpath+=~/.zfunc before compinit in ~/.zshrc
+  voronaut completions zsh > ~/.zfunc/_voronaut
   voronaut completions fish > ~/.config/fish/completions/voronaut.fish";
 
 #[derive(Debug, Args)]

@@ -24,7 +24,7 @@ fn every_shell_knows_the_commands_and_their_options() {
     assert_eq!(place.run(&["completions", "csh"]).status.code(), Some(2));
 }
 
-/// Where there is a bash: what it is given, and what it then offers behind `voronaut`, `voronaut mesh --h-` and `voronaut mesh --seeding f`.
+/// Where there is a bash: what it is given, and what it then offers behind `voronaut`, `voronaut mesh --h-` and `voronaut completions z`.
 #[test]
 fn bash_completes() {
     let place = Place::new();
@@ -48,5 +48,5 @@ fn bash_completes() {
     let all = offered("voronaut ''");
     assert!(COMMANDS.iter().all(|name| all.iter().any(|word| word == name)), "{all:?}");
     assert_eq!(offered("voronaut mesh --h-"), ["--h-min", "--h-max"]);
-    assert_eq!(offered("voronaut mesh --seeding f"), ["farthest"]);
+    assert_eq!(offered("voronaut completions z"), ["zsh"]);
 }
