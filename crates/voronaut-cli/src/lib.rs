@@ -6,6 +6,7 @@
 mod account;
 mod aside;
 mod check;
+mod completions;
 mod convert;
 mod distance;
 mod dual;
@@ -105,6 +106,9 @@ enum Command {
     /// Write a page to look at meshes with, in any browser
     #[command(after_help = view::EXAMPLES)]
     View(view::ViewArgs),
+    /// Write a script by which a shell completes commands and options
+    #[command(after_help = completions::EXAMPLES)]
+    Completions(completions::CompletionsArgs),
 }
 
 impl Command {
@@ -121,6 +125,7 @@ impl Command {
             Command::Convert(args) => convert::run(args),
             Command::Check(args) => check::run(args, world),
             Command::View(args) => view::run(args, world),
+            Command::Completions(args) => completions::run(args, commands()),
         }
     }
 
@@ -137,6 +142,7 @@ impl Command {
             Command::View(args) => &args.run,
             Command::Remesh(args) => return Cow::Owned(args.run()),
             Command::Convert(args) => return Cow::Owned(args.run()),
+            Command::Completions(_) => return Cow::Owned(Run::default()),
         })
     }
 }

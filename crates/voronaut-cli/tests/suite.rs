@@ -5,6 +5,7 @@ mod bad_input;
 mod certificate;
 mod coming_from;
 mod common;
+mod completions;
 mod convert;
 mod distance;
 mod dual;

@@ -68,6 +68,11 @@ pub(crate) fn data_url(_: &[[u8; 3]], _: u32) -> Result<String> {
     Err(Error::unsupported(what, "build with the feature png"))
 }
 
+/// The README's examples are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests {
     use super::*;

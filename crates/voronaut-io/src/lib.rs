@@ -44,3 +44,8 @@ pub use whole::{Scratch, abandon, demand_directory, place, write, write_with};
 pub use write::{
     demand_diagram, write_diagram, write_document, write_mesh, write_realisation, write_solution, write_solutions,
 };
+
+/// The README's examples are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -141,6 +141,12 @@ pub(crate) struct Limits {
     pub(crate) memory_limit: f64,
 }
 
+impl Default for Limits {
+    fn default() -> Self {
+        Self { time_limit: None, memory_limit: default_memory_limit() }
+    }
+}
+
 impl Limits {
     /// Bytes.
     pub(crate) fn memory(&self) -> u64 {
@@ -151,7 +157,7 @@ impl Limits {
 /// More threads than machines have cores only take turns; 65,535 were not started within a minute.
 const MOST_THREADS: i64 = 1024;
 
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub(crate) struct Run {
     /// Write all figures as JSON
     #[arg(long, value_name = "FILE")]

@@ -21,8 +21,8 @@ pub(super) fn untangle(field: &dyn MetricField, obstacles: &dyn Obstacles, edges
     let mut fewest = usize::MAX;
     for round in 0..=ROUNDS {
         let found = crossings(&trial);
-        let pairs = found.chunk_by(|x, y| x.paths == y.paths);
-        let count = pairs.clone().count();
+        let pairs = || found.chunk_by(|x, y| x.paths == y.paths);
+        let count = pairs().count();
         if count < fewest {
             edges.clone_from(&trial);
             fewest = count;
@@ -31,7 +31,7 @@ pub(super) fn untangle(field: &dyn MetricField, obstacles: &dyn Obstacles, edges
             return;
         }
         let mut changed = vec![false; trial.len()];
-        for group in pairs {
+        for group in pairs() {
             let [i, j] = group[0].paths.map(|k| k as usize);
             if changed[i] || changed[j] {
                 continue;
