@@ -1,11 +1,16 @@
-"""Every snippet of README.md and docs/ runs, and prints what the page says that it prints.
+"""Every snippet of README.md and of the book runs, and prints what the page says that it prints.
 
 The blocks of a page run in their order, in one directory with `data/` in it; those of Python share their names. A block of text right after
-another is what that one prints: the same words, numbers within 2 %, but those of seconds and megabytes; a line `...` is any lines. Before a
-block that cannot run here stands <!-- not run: REASON -->, before one that takes another program <!-- needs: PROGRAM -->.
+another is what that one prints: the same words, numbers within 2 %, but those of seconds and megabytes; a line `...` is any lines. What a page
+shows as `![...](NAME.png)` beside itself is drawn by its blocks (`scripts/draw-book` draws it again).
+
+Before a block that cannot run here stands <!-- not run: REASON -->, before one that takes something else <!-- needs: WHAT -->: a program, an
+option of ours (`voronaut mesh --parts`), modules of Python (`import mpi4py`). Where another program runs all blocks of a language, the page
+says so: <!-- LANGUAGE is run elsewhere: WHERE -->.
 """
 
 import contextlib
+import importlib.util
 import io
 import itertools
 import os
@@ -18,9 +23,10 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-# Its commands run in crates/voronaut-cli/tests/coming_from.rs.
-ELSEWHERE = {"docs/coming-from.md": "sh"}
+BESIDE = [ROOT / name for name in ("ARCHITECTURE.md", "CONTRIBUTING.md", "DESIGN.md", "data/README.md")]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), *BESIDE]
+ELSEWHERE = re.compile(r"^<!-- (\w+) is run elsewhere: *(\S.*?) *-->$", re.MULTILINE)
+PICTURE = re.compile(r"^!\[[^]]*\]\(([\w-]+\.png)\)", re.MULTILINE)
 BLOCK = re.compile(r"(?:^<!-- (not run|needs): *(.*?) *-->\n)?^```(\w*)\n(.*?)^```$(\n*)", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
 VARIES = re.compile(r"\bs\b|\bms\b|seconds|\btime\b|\bMB\b")
@@ -83,16 +89,25 @@ def check_printed(shown, said, where):
     assert elided or not waiting, f"{where}: not on the page: {waiting}"
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
-def test_snippets(page, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("MPLBACKEND", "Agg")
+def is_here(what):
+    """Whether there is what a block needs."""
+    first, *rest = what.split()
+    if first == "import":
+        return all(importlib.util.find_spec(name) for name in " ".join(rest).split(", "))
+    if not rest:
+        return bool(shutil.which(first))
+    return rest[-1] in subprocess.run([first, *rest[:-1], "--help"], capture_output=True, text=True, check=True).stdout.split()
+
+
+def run_page(page):
+    """Runs the blocks of a page in the working directory."""
     Path("data").symlink_to(ROOT / "data")
     names = {"__name__": "snippet"}
+    elsewhere = {language for language, _ in ELSEWHERE.findall(page.read_text())}
     for line, marker, reason, language, snippet, shown in blocks(page):
         if marker:
             assert reason, f"{name_of(page)}:{line}: it is not said why this is not run"
-        if marker == "not run" or (marker == "needs" and not shutil.which(reason)) or ELSEWHERE.get(name_of(page)) == language:
+        if marker == "not run" or (marker == "needs" and not is_here(reason)) or language in elsewhere:
             continue
         assert language in ("sh", "python", "rust"), f"{name_of(page)}:{line}: a block of {language or 'no language'}"
         if language == "rust":
@@ -104,9 +119,24 @@ def test_snippets(page, monkeypatch, tmp_path):
             check_printed(shown, said, f"{name_of(page)}:{line}")
 
 
+def pictures(page):
+    """What is drawn by the page's own blocks: pictures beside pages in folders, and of the first page."""
+    is_drawn = page.parent.parent == ROOT / "docs" and page.parent.name in ("concepts", "howto")
+    return PICTURE.findall(page.read_text()) if is_drawn or page.name == "start.md" else []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_snippets(page, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    run_page(page)
+    for name in pictures(page):
+        assert Path(name).stat().st_size > 1000, f"{name_of(page)}: {name} is not drawn"
+
+
 def test_few_snippets_are_not_run():
     left_out = [(name_of(page), line) for page in PAGES for line, marker, *_ in blocks(page) if marker == "not run"]
-    assert len(left_out) <= 12, left_out
+    assert len(left_out) <= 14, left_out
 
 
 def anchors(page):
@@ -117,7 +147,7 @@ def anchors(page):
 
 
 def test_links_lead_somewhere():
-    for page in [*PAGES, *(ROOT / name for name in ("DESIGN.md", "ARCHITECTURE.md", "CONTRIBUTING.md"))]:
+    for page in PAGES:
         text = re.sub(r"^```.*?^```$", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
         for link in LINK.findall(text):
             path, _, anchor = link.partition("#")
@@ -132,4 +162,4 @@ def test_links_lead_somewhere():
 def test_every_page_is_in_the_book():
     index = (ROOT / "docs/index.md").read_text()
     listed = {target for target in re.findall(r"^- \[[^]]*\]\(([^)#]*\.md)\)", index, re.MULTILINE) if not target.startswith("../")}
-    assert listed == {str(page.relative_to(ROOT / "docs")) for page in PAGES[1:]} - {"index.md"}
+    assert listed == {str(page.relative_to(ROOT / "docs")) for page in PAGES if page.is_relative_to(ROOT / "docs")} - {"index.md"}
