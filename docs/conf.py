@@ -9,7 +9,7 @@ author = "the authors of voronaut"
 root_doc = "docs/index"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 include_patterns = ["docs/**", "*.md", "data/*.md"]
-exclude_patterns = ["README.md", "docs/pages"]
+exclude_patterns = ["docs/pages"]
 
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 4
