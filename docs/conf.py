@@ -22,6 +22,9 @@ autodoc_typehints = "none"
 default_role = "code"
 napoleon_google_docstring = False
 
+# `--` is in options.
+smartquotes = False
+
 html_theme = "furo"
 html_title = "voronaut"
 html_copy_source = html_show_sourcelink = False
@@ -29,6 +32,9 @@ html_static_path = ["static"]
 html_css_files = ["book.css"]
 html_math_renderer = "mathml"
 pygments_style, pygments_dark_style = "friendly", "monokai"
+
+
+LISTED = re.compile(r"^- \[([^]]*)\]\(([^)#]*)\.md\)", re.MULTILINE)
 
 
 def toctree(captions: list[tuple[str, list[str]]]) -> str:
@@ -40,10 +46,10 @@ def add_toctree(_app, page: str, source: list[str]) -> None:
     """The tree of pages is what the lists of links in `index.md` say, heading by heading, so that there is no other list of them."""
     if page == root_doc:
         parts = re.split(r"^## (.*)\n", source[0], flags=re.MULTILINE)[1:]
-        lists = [re.findall(r"^- \[[^]]*\]\(([^)#]*)\.md\)", text, re.MULTILINE) for text in parts[1::2]]
+        lists = [[f"{words} <{path}>" for words, path in LISTED.findall(text)] for text in parts[1::2]]
         source[0] += toctree(list(zip(parts[::2], lists)))
     elif page == "docs/reference":
-        source[0] += toctree([("Reference", ["reference/commands", "reference/report", "reference/python"])])
+        source[0] += toctree([("Reference", [f"reference/{name}" for name in ("commands", "report", "python", "rust")])])
     elif page == "docs/reference/commands":
         source[0] += "\n\n```{toctree}\n:hidden:\n:glob:\n\ncommands/*\n```\n"
 
