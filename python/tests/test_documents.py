@@ -30,6 +30,7 @@ PICTURE = re.compile(r"^!\[[^]]*\]\(([\w-]+\.png)\)", re.MULTILINE)
 BLOCK = re.compile(r"(?:^<!-- (not run|needs): *(.*?) *-->\n)?^```(\w*)\n(.*?)^```$(\n*)", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
 VARIES = re.compile(r"\bs\b|\bms\b|seconds|\btime\b|\bMB\b")
+CITATION = re.compile(r"([A-Z][a-z]+)\w*(?: et al\.)?,? \(?((?:19|20)\d\d)\b")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 
 
@@ -157,6 +158,13 @@ def test_links_lead_somewhere():
             assert target.exists(), f"{name_of(page)}: {link}"
             if anchor:
                 assert anchor in anchors(target.resolve()), f"{name_of(page)}: {link}"
+
+
+def test_what_is_cited_is_in_the_bibliography():
+    entries = (ROOT / "references.bib").read_text().split("\n@")
+    for page in PAGES:
+        for author, year in CITATION.findall(page.read_text()):
+            assert any(author in entry and f"year = {{{year}}}" in entry for entry in entries), f"{name_of(page)}: {author} {year}"
 
 
 def test_every_page_is_in_the_book():
