@@ -54,6 +54,12 @@ def add_toctree(_app, page: str, source: list[str]) -> None:
         source[0] += "\n\n```{toctree}\n:hidden:\n:glob:\n\ncommands/*\n```\n"
 
 
+def hide_lines(_app, _page: str, source: list[str]) -> None:
+    """Lines that rustdoc hides."""
+    source[0] = re.sub(r"^```rust\n.*?^```$", lambda block: re.sub(r"^# .*\n", "", block[0], flags=re.MULTILINE), source[0],
+                       flags=re.MULTILINE | re.DOTALL)
+
+
 def inline_math(writer, node) -> None:
     writer.body.append(tex2mathml(node.astext()))
     raise_skip()
@@ -72,5 +78,6 @@ def raise_skip() -> None:
 
 def setup(app) -> None:
     app.connect("source-read", add_toctree)
+    app.connect("source-read", hide_lines)
     # Browsers draw MathML themselves: no script, no network.
     app.add_html_math_renderer("mathml", (inline_math, None), (block_math, None))
