@@ -29,7 +29,8 @@ ELSEWHERE = re.compile(r"^<!-- (\w+) is run elsewhere: *(\S.*?) *-->$", re.MULTI
 PICTURE = re.compile(r"^!\[[^]]*\]\(([\w-]+\.png)\)", re.MULTILINE)
 BLOCK = re.compile(r"(?:^<!-- (not run|needs): *(.*?) *-->\n)?^```(\w*)\n(.*?)^```$(\n*)", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
-VARIES = re.compile(r"\bs\b|\bms\b|seconds|\btime\b|\bMB\b")
+VARIES = re.compile(NUMBER.pattern + r"(?= (?:s|ms|MB)\b)|(?<=seconds) +" + NUMBER.pattern)
+ROUNDING = 1e-12
 CITATION = re.compile(r"([A-Z][a-z]+)\w*(?: et al\.)?,? \(?((?:19|20)\d\d)\b")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 
@@ -69,12 +70,11 @@ def run_python(snippet, names, line, page):
 
 def is_same(shown, said):
     """Whether a line that a page shows is what was said."""
-    if VARIES.search(shown):
-        return NUMBER.sub("#", shown) == NUMBER.sub("#", said)
+    shown, said = VARIES.sub("", shown), VARIES.sub("", said)
     if NUMBER.sub("#", shown) != NUMBER.sub("#", said):
         return False
     pairs = zip(*([float(number.replace(",", "")) for number in NUMBER.findall(text)] for text in (shown, said)))
-    return all(abs(a - b) <= 0.02 * max(abs(a), abs(b)) for a, b in pairs)
+    return all(abs(a - b) <= 0.02 * max(abs(a), abs(b)) + ROUNDING for a, b in pairs)
 
 
 def check_printed(shown, said, where):
