@@ -50,11 +50,15 @@ def blocks(page):
             yield text.count("\n", 0, match.start(4)) + 1, marker, reason, language, snippet, after[4] if shown else None
 
 
+def environment():
+    """That of commands: with the programs beside this Python."""
+    return {**os.environ, "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
+
+
 def run_shell(snippet, line, page):
-    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     run = subprocess.run(
         ["bash", "-e", "-o", "pipefail", "-c", snippet],
-        env={**os.environ, "PATH": path}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, check=False,
+        env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True, check=False,
     )  # fmt: skip
     assert run.returncode == 0, f"{name_of(page)}:{line}: {run.stdout}"
     return run.stdout
@@ -95,9 +99,10 @@ def is_here(what):
     first, *rest = what.split()
     if first == "import":
         return all(importlib.util.find_spec(name) for name in " ".join(rest).split(", "))
-    if not rest:
-        return bool(shutil.which(first))
-    return rest[-1] in subprocess.run([first, *rest[:-1], "--help"], capture_output=True, text=True, check=True).stdout.split()
+    program = shutil.which(first, path=environment()["PATH"])
+    if not rest or not program:
+        return bool(program)
+    return rest[-1] in subprocess.run([program, *rest[:-1], "--help"], capture_output=True, text=True, check=True).stdout.split()
 
 
 def run_page(page):
