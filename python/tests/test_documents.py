@@ -165,6 +165,10 @@ def test_links_lead_somewhere():
                 assert anchor in anchors(target.resolve()), f"{name_of(page)}: {link}"
 
 
+def test_readme_is_short():
+    assert len((ROOT / "README.md").read_text().split()) <= 1200
+
+
 def test_what_is_cited_is_in_the_bibliography():
     entries = (ROOT / "references.bib").read_text().split("\n@")
     for page in PAGES:
