@@ -76,7 +76,7 @@ pub(crate) struct DualArgs {
     /// direction) or starset (even in the metric; methods on graphs travel along Delaunay stars, each in its own metric)
     #[arg(long, value_name = "WHICH", default_value_t = canvas::Kind::default())]
     pub(crate) canvas: canvas::Kind,
-    /// Canvas vertices per seed, of which up to 300 count as 2,500; or certified: as many as the theorems ask for
+    /// Canvas vertices per seed (of up to 300 seeds the canvas is that of 2,500); or certified: as many as the theorems ask for
     #[arg(long, value_name = "N", value_parser = canvas_size, default_value_t = CanvasSize::default())]
     pub(crate) canvas_size: CanvasSize,
     /// Say which of the report's theorems hold of these seeds and this canvas, by how much others miss, and what it would take

@@ -85,7 +85,7 @@ enum Command {
     /// Distances in a metric from given points to everywhere, and the shortest path to one
     #[command(after_help = distance::EXAMPLES)]
     Distance(distance::DistanceArgs),
-    /// Mesh a surface anew, with the options of mmgs
+    /// Mesh a surface or a planar mesh anew, with the options and files of mmgs and mmg2d
     #[command(after_help = remesh::EXAMPLES)]
     Remesh(remesh::RemeshArgs),
     /// Carry a solution from one mesh of a domain or a surface to another
