@@ -7,7 +7,7 @@
 //! | [`Shock`] | `shock:phi=10,lambda=0.6` | thin across the shock of RR-9103, 15.2, in space |
 //! | [`SpaceFormula`] | `formula:m11; m12; m22; m13; m23; m33` | six expressions in x, y, z |
 //! | `ImplicitCurvature` | `curvature`, of an equation | principal curvatures, exact (RR-9103, 15.1) |
-//! | [`Sampled`] | `curvature`, of a file | principal curvatures at vertices, fitted ([`fit_curvatures`]) |
+//! | [`Sampled`] | `curvature`, of a file | principal curvatures at vertices, fitted (`fit_curvatures`) |
 //! | `CovariantHessian` | `hessian:EXPR` | optimal for the interpolation of a function of x, y and z on the surface |
 //! | [`Sampled`] | `hessian:FILE.sol` | the same, recovered from values at vertices |
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at vertices, log-Euclidean between them |
