@@ -297,7 +297,8 @@ def dual(
         finest direction) or starset (even in the metric; methods on graphs travel along Delaunay stars, each in its own
         metric)
     canvas_size : int | str, default 60
-        Canvas vertices per seed, of which up to 300 count as 2,500; or certified: as many as the theorems ask for
+        Canvas vertices per seed (of up to 300 seeds the canvas is that of 2,500); or certified: as many as the theorems
+        ask for
     certify : bool, default False
         Say which of the report's theorems hold of these seeds and this canvas, by how much others miss, and what it
         would take
