@@ -68,7 +68,7 @@ fn obey(command: &Command, again: Vec<OsString>) -> Result<()> {
 
 /// Anisotropic triangle meshes from a Riemannian metric field.
 #[derive(Debug, Parser)]
-#[command(version, propagate_version = true)]
+#[command(name = "voronaut", version, propagate_version = true)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
