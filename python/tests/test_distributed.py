@@ -64,6 +64,22 @@ def test_work_goes_on_in_a_folder(whole, tmp_path):
     assert kept[2].exists() and all(path.stat().st_mtime_ns == when for path, when in others.items())
 
 
+def test_parts_of_another_metric_are_not_taken(tmp_path):
+    square = voronaut.Mesh([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1, 2], [0, 2, 3]])
+    here = {"n": 2500, "parts": 2, "effort": "fast"}
+    for metric, other in [
+        (voronaut.Metric.from_array([1, 1, 1, 1.0], square), voronaut.Metric.from_array([1, 1, 2, 1.0], square)),
+        (lambda p: 0.1 + p[:, 0], lambda p: 0.1 + 2 * p[:, 0]),
+    ]:
+        voronaut.distributed.mesh("rect:0,0,1,1", metric, **here, parts_dir=tmp_path)
+        before = set(tmp_path.iterdir())
+        again = voronaut.distributed.mesh("rect:0,0,1,1", metric, **here, parts_dir=tmp_path)
+        assert set(tmp_path.iterdir()) == before
+        found = voronaut.distributed.mesh("rect:0,0,1,1", other, **here, parts_dir=tmp_path)
+        assert (found.points == voronaut.distributed.mesh("rect:0,0,1,1", other, **here).points).all()
+        assert len(again.points) == 2500
+
+
 def test_what_fails_in_a_part_is_an_error():
     with pytest.raises(voronaut.Error, match=r"parts \d+, from \(.*are estimated to need"):
         voronaut.distributed.mesh(**{**PLACE, "n": 400_000}, memory_limit=0.1)

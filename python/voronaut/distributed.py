@@ -9,8 +9,9 @@ What comes out depends on the input and the number of parts alone: not on the nu
 from __future__ import annotations
 
 import hashlib
+import importlib.metadata
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, NamedTuple, Union
@@ -18,11 +19,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from . import _run
+from . import _given, _run
 from ._errors import Error
 from ._given import Floats, Ints
 from ._mesh import Mesh
-from ._metric import Metric, MetricLike
+from ._metric import MetricLike
 from ._run import Options, Progress
 
 __all__ = ["Share", "mesh"]
@@ -147,37 +148,52 @@ class _Maker:
     def __init__(self, domain: object, metric: MetricLike, n: int, options: Options, folder: Path | None) -> None:
         self.domain, self.metric, self.n, self.folder = domain, metric, n, folder
         self.options = {"threads": 1, **options}
+        self.functions: list[Callable[..., Any]] = []
+        self.told = hashlib.sha256()
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
+            held: dict[str, dict[str, Any]] = {}
+            domain_word = _given.domain_word(domain, held)
+            metric_word = _run._metric_word(metric, held, domain)
+            version = importlib.metadata.version("voronaut")
+            self.tell(self.told, (version, n, self.options, domain_word, metric_word, held))
 
-    def make(self, job: Job) -> dict[str, Any]:
-        place = None if self.folder is None else self.folder / f"{job.round}-{job.number}-{self.digest(job)}.meshb"
+    def tell(self, found: Any, given: object) -> None:
+        """Adds what is given to a digest: arrays and files by what is in them; functions are kept for later."""
+        if isinstance(given, Mapping):
+            given = sorted(given.items())
+        if isinstance(given, (tuple, list)):
+            found.update(f"[{len(given)}".encode())
+            for part in given:
+                self.tell(found, part)
+        elif isinstance(given, np.ndarray):
+            found.update(f"{given.dtype}{given.shape}".encode() + np.ascontiguousarray(given).tobytes())
+        elif callable(given):
+            self.functions.append(given)
+        else:
+            found.update(repr(given).encode())
+            name = given.removeprefix("hessian:") if isinstance(given, str) else ""
+            if name and Path(name).is_file():
+                found.update(Path(name).read_bytes())
+
+    def place(self, job: Job) -> Path | None:
+        """Where the mesh of a job is kept: the name says all that it depends on, functions by their values at the part's corners."""
+        if self.folder is None:
+            return None
+        found = self.told.copy()
+        self.tell(found, (job.domain, job.vertices))
+        points = np.ascontiguousarray(job.domain["points"][:, :2])
+        for function in self.functions:
+            self.tell(found, function(points))
+        return self.folder / f"{job.round}-{job.number}-{found.hexdigest()[:16]}.meshb"
+
+    def make(self, job: Job, place: Path | None) -> dict[str, Any]:
         if place is not None and place.exists():
             return Mesh.read(place)._arrays() | {"is_planar": True}
         made = _run.part(self.domain, self.metric, self.n, job.domain, job.vertices, self.options)
         if place is not None:
             Mesh._of(made).save(place)
         return made
-
-    def digest(self, job: Job) -> str:
-        """What the mesh of a job depends on, as far as it can be told: of a function its name."""
-        found = hashlib.sha256(repr((self.n, job.vertices, sorted(self.options.items()), _told(self.metric), _told(self.domain))).encode())
-        for name in sorted(job.domain):
-            found.update(name.encode() + np.asarray(job.domain[name]).tobytes() if name != "periodic" else b"")
-        return found.hexdigest()[:16]
-
-
-def _told(given: object) -> str:
-    """A text for what is given, the same in every process."""
-    if isinstance(given, (str, int, float, os.PathLike)):
-        return str(given)
-    if isinstance(given, Mesh):
-        return _told((given.points, given.triangles, given.edges))
-    if isinstance(given, (tuple, list)):
-        return " ".join(_told(part) for part in given)
-    if isinstance(given, np.ndarray):
-        return hashlib.sha256(np.ascontiguousarray(given).tobytes()).hexdigest()
-    return getattr(given, "__qualname__", type(given).__qualname__) if not isinstance(given, Metric) else repr(given._description[0])
 
 
 class _Team:
@@ -208,11 +224,13 @@ class _Team:
         if self.size > 1:
             self.comm.bcast(("round", None))
             mine = self.comm.scatter(_dealt(jobs, self.size))
-            done = self.comm.gather(_attempt(self.maker, mine))
+            done = self.comm.gather(_attempt(self.maker, mine, self.maker.place))
         else:
             largest_first = sorted(jobs, key=lambda job: -job.vertices)
+            # Functions are called from one thread at a time.
+            places = {job.number: self.maker.place(job) for job in jobs}
             with ThreadPoolExecutor(_cores()) as pool:
-                done = list(pool.map(lambda job: _attempt(self.maker, [job]), largest_first))
+                done = list(pool.map(lambda job: _attempt(self.maker, [job], lambda job: places[job.number]), largest_first))
         found: dict[int, dict[str, Any]] = {}
         for meshes, fault in done:
             if fault is not None:
@@ -227,7 +245,7 @@ class _Team:
                 if fault is not None:
                     raise Error(f"rank 0: {fault}")
                 return
-            self.comm.gather(_attempt(self.maker, self.comm.scatter(None)))
+            self.comm.gather(_attempt(self.maker, self.comm.scatter(None), self.maker.place))
 
 
 def _cores() -> int:
@@ -248,12 +266,12 @@ def _dealt(jobs: list[Job], ranks: int) -> list[list[Job]]:
 Attempt = tuple[dict[int, dict[str, Any]], Union[tuple[str, str], None]]
 
 
-def _attempt(maker: _Maker, jobs: Iterable[Job]) -> Attempt:
+def _attempt(maker: _Maker, jobs: Iterable[Job], place: Callable[[Job], Union[Path, None]]) -> Attempt:
     """The meshes of jobs by their numbers, up to one that fails; and how that failed."""
     found = {}
     for job in jobs:
         try:
-            found[job.number] = maker.make(job)
+            found[job.number] = maker.make(job, place(job))
         except Exception as error:
             return found, (f"{job}: {getattr(error, 'what', error)}", getattr(error, "help", ""))
     return found, None

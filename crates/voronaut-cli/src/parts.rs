@@ -4,10 +4,11 @@ use crate::options::Run;
 use crate::watch;
 use crate::world::{PartsMaker, World};
 use clap::Args;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::ffi::OsString;
 use std::fmt;
 use std::fs::File;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -168,6 +169,18 @@ const BESIDE: [&str; 12] = [
     "canvas_size",
 ];
 
+/// Options that may name files.
+const FILES: [&str; 3] = ["domain", "metric", "background"];
+
+/// The file that an option names, and a number for what is in it: the same name may stand for other values tomorrow.
+fn contents(option: &Value) -> Option<(String, Value)> {
+    let text = option.as_str()?;
+    let name = text.strip_prefix("hessian:").unwrap_or(text);
+    let mut hasher = DefaultHasher::new();
+    std::fs::read(name).ok()?.hash(&mut hasher);
+    Some((name.into(), format!("{:016x}", hasher.finish()).into()))
+}
+
 impl Folder {
     /// # Errors
     /// [`Error::Unsupported`] where a folder has the parts of another job; [`Error::Io`] of files.
@@ -177,6 +190,8 @@ impl Folder {
         let mut options = options.clone();
         if let Some(options) = options.as_object_mut() {
             options.retain(|name, _| !BESIDE.contains(&name.as_str()));
+            let files: Map<String, Value> = FILES.iter().filter_map(|&name| contents(options.get(name)?)).collect();
+            options.extend([("files".into(), files.into()), ("version".into(), env!("CARGO_PKG_VERSION").into())]);
         }
         let (file, text) = (kept.join("job.json"), format!("{options:#}\n"));
         if file.exists() && voronaut_io::read_text(&file)? != text {

@@ -55,6 +55,27 @@ fn a_run_goes_on_from_the_parts_of_another() {
     assert!(!other.status.success() && said.contains("kept holds the parts of another job"), "{said}");
 }
 
+/// A file of the same name with other values is another job.
+#[test]
+fn parts_of_another_metric_are_not_taken() {
+    let place = Place::new();
+    let square = "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\nTriangles\n2\n1 2 3 0\n1 3 4 0\nEnd\n";
+    place.put("square.mesh", square);
+    let run = |size: &str| {
+        place.put(
+            "h.sol",
+            format!("MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n4\n1 1\n0.02\n0.02\n{size}\n0.02\nEnd\n"),
+        );
+        let words =
+            ["mesh", "square.mesh", "--metric", "h.sol", "-n", "2000", "--effort", "fast", "-q", "-o", "out.meshb"];
+        place.run(&[&words[..], &["--parts", "2", "--parts-dir", "kept"]].concat())
+    };
+    assert!(run("0.03").status.success());
+    assert!(run("0.03").status.success());
+    let said = stderr(&run("0.02"));
+    assert!(said.contains("kept holds the parts of another job"), "{said}");
+}
+
 /// Whoever is stopped stops its processes; what they have done stays.
 #[test]
 #[cfg(unix)]

@@ -81,7 +81,7 @@ pub fn mesh_in_parts(
     let junctions = watch.time("stitch", || whole.junctions());
     remake(&mut whole, "junctions", &junctions, make, &watch)?;
     progress.begin("checking", 1)?;
-    let mesh = whole.into_mesh();
+    let mesh = whole.mesh;
     watch.time("check", || quality::check(&mesh))?;
     if mesh.points.len() != cut.vertices {
         notes.push(format!(

@@ -8,8 +8,8 @@ use crate::mesh::{Edges, Mesh};
 const LAYERS: u32 = 8;
 /// Strips end so many layers before the place where cuts meet,
 const CORE: u32 = 12;
-/// and so many layers around it are made anew after them.
-const REACH: u32 = 20;
+/// and so many layers around it are made anew after them: what strips have left, and as much beyond it as strips have at their sides.
+const REACH: u32 = CORE + LAYERS;
 
 /// Of vertices that are farther than anybody asks.
 const FAR: u32 = u32::MAX;

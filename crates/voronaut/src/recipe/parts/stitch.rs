@@ -122,11 +122,6 @@ impl Whole {
         let is_required = |ends: [u32; 2]| required.contains(&in_order(ends.map(|v| at(v, &mesh.points))));
         mesh.required_edges = (0..).zip(&mesh.edges).filter(|(_, ends)| is_required(**ends)).map(|(i, _)| i).collect();
     }
-
-    /// The mesh.
-    pub(super) fn into_mesh(self) -> Mesh {
-        self.mesh
-    }
 }
 
 /// Meshes are joined one after the other.
