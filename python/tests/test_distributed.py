@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import voronaut
+from voronaut.distributed import Job, _Maker
 
 PLACE = {"domain": "rect:-1,-1,1,1", "metric": "shock:phi=1,lambda=0.6", "n": 4000, "parts": 3, "effort": "fast"}
 
@@ -64,20 +65,23 @@ def test_work_goes_on_in_a_folder(whole, tmp_path):
     assert kept[2].exists() and all(path.stat().st_mtime_ns == when for path, when in others.items())
 
 
-def test_parts_of_another_metric_are_not_taken(tmp_path):
+def test_parts_are_kept_under_what_they_depend_on(tmp_path):
     square = voronaut.Mesh([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1, 2], [0, 2, 3]])
-    here = {"n": 2500, "parts": 2, "effort": "fast"}
-    for metric, other in [
-        (voronaut.Metric.from_array([1, 1, 1, 1.0], square), voronaut.Metric.from_array([1, 1, 2, 1.0], square)),
-        (lambda p: 0.1 + p[:, 0], lambda p: 0.1 + 2 * p[:, 0]),
-    ]:
-        voronaut.distributed.mesh("rect:0,0,1,1", metric, **here, parts_dir=tmp_path)
-        before = set(tmp_path.iterdir())
-        again = voronaut.distributed.mesh("rect:0,0,1,1", metric, **here, parts_dir=tmp_path)
-        assert set(tmp_path.iterdir()) == before
-        found = voronaut.distributed.mesh("rect:0,0,1,1", other, **here, parts_dir=tmp_path)
-        assert (found.points == voronaut.distributed.mesh("rect:0,0,1,1", other, **here).points).all()
-        assert len(again.points) == 2500
+    job = Job("parts", 0, square._arrays(), 1000)
+    (tmp_path / "h.sol").write_text("1")
+
+    def name(metric, **options):
+        return _Maker("rect:0,0,1,1", metric, 2000, options, tmp_path).place(job).name
+
+    def sizes(*values):
+        return voronaut.Metric.from_array(values, square)
+
+    metrics = [sizes(1, 1, 1, 1), sizes(1, 1, 2, 1), sizes(1, 1, 1, 1).gradate(1.2), lambda p: p[:, 0] + 1, lambda p: p[:, 0] + 2]
+    names = [name(metric) for metric in [*metrics, "uniform", str(tmp_path / "h.sol")]]
+    assert names == [name(metric) for metric in [*metrics, "uniform", str(tmp_path / "h.sol")]]
+    (tmp_path / "h.sol").write_text("2")
+    names += [name(str(tmp_path / "h.sol")), name("uniform", effort="fast")]
+    assert len(set(names)) == len(names)
 
 
 def test_what_fails_in_a_part_is_an_error():
