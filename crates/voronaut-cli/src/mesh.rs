@@ -249,7 +249,7 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     let at = GradedAt::of(options.vertices, args.complexity);
     let made = fields::in_plane(world, &args.metric, domain, &args.domain, &args.metric_choices, at)?;
     let (metric, aim) = (made.field.as_ref(), made.aim(args.metric_choices.norm));
-    let field = parts::Field { metric, aim };
+    let field = parts::Field::Plane(domain, metric, aim);
     if let Some(job) = &args.in_parts.part {
         return parts::one(job, world, &args.run, field, &options);
     }
@@ -257,7 +257,7 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     // Creases are of surfaces.
     used["ar"] = Value::Null;
     let meshed = match args.in_parts.parts {
-        Some(_) => args.in_parts.all(world, &args.run, domain, field, &options, &used)?,
+        Some(_) => args.in_parts.all(world, &args.run, field, &options, &used)?,
         None => recipe::mesh_for(domain, metric, aim, &options, &*world.progress(&args.run))?,
     };
     let mesh = &meshed.mesh;
@@ -300,10 +300,7 @@ fn cells(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
 
 fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, start: f64) -> Result<()> {
     let required = "leave out --required: it is for planar domains; list required edges in the surface's file";
-    refuse([
-        (args.required, "--required on a surface", required),
-        (args.in_parts.is_asked(), "--parts on a surface", "leave out --parts: it is for planar domains"),
-    ])?;
+    refuse([(args.required, "--required on a surface", required)])?;
     pictures::demand_of_surfaces(&args.outputs, &[])?;
     let idle = args.idle(true, world)?;
     let is_whole = args.outputs.picture.is_some() || args.paged.view.is_some();
@@ -311,13 +308,24 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
     let input = &input.cut(&args.features())?;
     let at = GradedAt::of(args.options().vertices, args.complexity);
     let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, at)?;
-    let meshed = recipe::mesh_surface(input, metric.as_ref(), &args.options(), &*world.progress(&args.run))?;
+    let (options, field) = (args.options(), parts::Field::Surface(input, metric.as_ref()));
+    if let Some(job) = &args.in_parts.part {
+        return parts::one(job, world, &args.run, field, &options);
+    }
     let mut used = args.as_used(&idle);
     if args.dual == Road::Both {
         // Lengths decide, unless it is the canvas.
         used["dual"] = json!(Road::Geodesic);
     }
+    let meshed = match args.in_parts.parts {
+        Some(_) => args.in_parts.all(world, &args.run, field, &options, &used)?,
+        None => recipe::mesh_surface(input, metric.as_ref(), &options, &*world.progress(&args.run))?,
+    };
     let (mut report, unmet) = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
+    if args.in_parts.parts.is_some() {
+        // As in the plane.
+        (report.dual, report.relaxation) = (None, None);
+    }
     report.interpolation = interpolated(args, input, &meshed.mesh)?;
     report.seconds.total = world.seconds() - start;
     let drawn = whole.as_ref().filter(|_| args.outputs.picture.is_some());

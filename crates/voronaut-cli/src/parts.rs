@@ -14,18 +14,22 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use voronaut::domain::Domain;
-use voronaut::geometry::Aabb;
+use voronaut::geometry::{Aabb, Aabb3};
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::progress::Progress;
-use voronaut::recipe::{Aim, MeshOptions, Meshed, Part, mesh_in_parts, mesh_part};
+use voronaut::recipe::{
+    Aim, MeshOptions, Meshed, Part, mesh_in_parts, mesh_part, mesh_surface_in_parts, mesh_surface_part,
+};
+use voronaut::surface::Input;
+use voronaut::surface::metric::SurfaceMetric;
 use voronaut::{Error, Result};
 use voronaut_io::{Fields, Format, Scratch};
 
 /// Whether a mesh is made in parts, or is one of them.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct InParts {
-    /// In the plane: make the mesh in K parts, or in parts of about 100,000 vertices (auto), as many at a time as --threads says, each by
+    /// Make the mesh in K parts, or in parts of about 100,000 vertices (auto), as many at a time as --threads says, each by
     /// a process of its own; the mesh depends on the number of parts, not on who makes them
     #[arg(long, value_name = "K", value_parser = parts)]
     pub(crate) parts: Option<Parts>,
@@ -71,17 +75,38 @@ fn job(text: &str) -> std::result::Result<Job, String> {
     Ok(Job { vertices, domain: file.into() })
 }
 
-/// A metric, and what it is for.
+/// A domain with its metric, for whole meshes and parts of them.
 #[derive(Clone, Copy)]
-pub(crate) struct Field<'a> {
-    pub(crate) metric: &'a dyn MetricField,
-    pub(crate) aim: Option<Aim<'a>>,
+pub(crate) enum Field<'a> {
+    /// Of the plane, and what the metric is for.
+    Plane(&'a Domain, &'a dyn MetricField, Option<Aim<'a>>),
+    /// Of a surface.
+    Surface(&'a Input, &'a dyn SurfaceMetric),
+}
+
+/// Who makes the meshes of a round, which has a name.
+type Make<'a> = &'a mut dyn FnMut(&'static str, &[Part]) -> Result<Vec<Mesh>>;
+
+impl Field<'_> {
+    fn part(&self, part: &Part, options: &MeshOptions, progress: &dyn Progress) -> Result<Mesh> {
+        match *self {
+            Field::Plane(_, metric, aim) => mesh_part(part, metric, aim, options, progress),
+            Field::Surface(input, metric) => mesh_surface_part(part, input, metric, options, progress),
+        }
+    }
+
+    fn whole(&self, parts: Option<usize>, options: &MeshOptions, make: Make, progress: &dyn Progress) -> Result<Meshed> {
+        match *self {
+            Field::Plane(domain, metric, _) => mesh_in_parts(domain, metric, parts, options, make, progress),
+            Field::Surface(input, metric) => mesh_surface_in_parts(input, metric, parts, options, make, progress),
+        }
+    }
 }
 
 /// The mesh of one part, and where it goes.
 pub(crate) fn one(job: &Job, world: &World, run: &Run, field: Field, options: &MeshOptions) -> Result<()> {
     let part = Part { domain: world.document(&job.domain)?.mesh, vertices: job.vertices };
-    let mesh = mesh_part(&part, field.metric, field.aim, options, &*world.progress(run))?;
+    let mesh = field.part(&part, options, &*world.progress(run))?;
     world.write_mesh(mesh, &done_name(&job.domain))?;
     // Files that the user named are of the whole.
     world.write_report("{}".into(), &Run { report: None, ..run.clone() })
@@ -95,47 +120,27 @@ fn done_name(job: &Path) -> PathBuf {
 
 impl InParts {
     /// The whole mesh; `used` are all options.
-    pub(crate) fn is_asked(&self) -> bool {
-        self.parts.is_some() || self.part.is_some()
-    }
-
     pub(crate) fn all(
         &self,
         world: &World,
         run: &Run,
-        domain: &Domain,
         field: Field,
         options: &MeshOptions,
         used: &Value,
     ) -> Result<Meshed> {
         let progress = &*world.progress(run);
         let count = self.parts.and_then(|parts| parts.0);
-        let Field { metric, aim } = field;
         if let Some(again) = world.again() {
             let folder = Folder::open(self.parts_dir.as_deref(), used)?;
             let processes = run.threads.map_or_else(cores, usize::from);
             let workers = Workers { again, folder: folder.path(), processes, progress };
-            return mesh_in_parts(
-                domain,
-                metric,
-                count,
-                options,
-                &mut |round, parts| workers.make(round, parts),
-                progress,
-            );
+            return field.whole(count, options, &mut |round, parts| workers.make(round, parts), progress);
         }
         if let Some(maker) = world.parts_maker() {
-            return mesh_in_parts(
-                domain,
-                metric,
-                count,
-                options,
-                &mut |round, parts| made(maker, round, parts),
-                progress,
-            );
+            return field.whole(count, options, &mut |round, parts| made(maker, round, parts), progress);
         }
-        let one = |part: &Part| mesh_part(part, metric, aim, options, progress);
-        mesh_in_parts(domain, metric, count, options, &mut |_, parts| parts.iter().map(one).collect(), progress)
+        let one = |part: &Part| field.part(part, options, progress);
+        field.whole(count, options, &mut |_, parts| parts.iter().map(one).collect(), progress)
     }
 }
 
@@ -280,7 +285,11 @@ impl Workers<'_> {
 
 /// Which part it is, and where.
 fn place_of(round: &str, i: usize, part: &Part) -> String {
-    let points = (0..part.domain.points.len() as u32).map(|v| part.domain.point(v));
-    let place = Aabb::of(points).map_or_else(String::new, |b| format!(", from {} to {}", b.min, b.max));
-    format!("{round} {i}{place}")
+    let vertices = 0..part.domain.points.len() as u32;
+    let place = if part.domain.is_planar() {
+        Aabb::of(vertices.map(|v| part.domain.point(v))).map(|b| format!(", from {} to {}", b.min, b.max))
+    } else {
+        Aabb3::of(vertices.map(|v| part.domain.position(v))).map(|b| format!(", from {} to {}", b.min, b.max))
+    };
+    format!("{round} {i}{}", place.unwrap_or_default())
 }

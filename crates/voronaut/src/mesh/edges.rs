@@ -105,6 +105,11 @@ pub(crate) fn next(half_edge: u32) -> u32 {
     if half_edge % 3 == 2 { half_edge - 2 } else { half_edge + 1 }
 }
 
+/// The half-edge before one, around its triangle.
+pub(crate) fn previous(half_edge: u32) -> u32 {
+    next(next(half_edge))
+}
+
 /// The corners of triangles, each with the number of the half-edge that leaves it, in classes: those of a vertex that can be reached
 /// from each other across edges with a twin. `are_alike` says of half-edges that are twins whether they run in one direction.
 pub(crate) fn fans(twins: &[u32], are_alike: impl Fn(u32, u32) -> bool) -> Classes {

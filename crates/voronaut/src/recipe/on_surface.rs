@@ -1,7 +1,7 @@
 //! The main job on a surface.
 
 use super::settle::Stopwatch;
-use super::surface_pass::{Pass, Reseed, Setting};
+use super::surface_pass::{Pass, Reseed, Setting, demand};
 use super::{Idle, MeshOptions, Meshed, Seeding, Task};
 use crate::canvas::area_of_surface;
 use crate::dual::Moving;
@@ -57,9 +57,7 @@ pub fn mesh_surface(
     let asked = options.hausd.filter(|&hausd| is_open && hausd > 0.0);
     let closer = asked.map(|hausd| Closer::new(metric, input, hausd)).transpose()?;
     let metric = closer.as_ref().map_or(metric, |closer| closer as &dyn SurfaceMetric);
-    let (curves, meetings) = (MeasuredCurves::new(input, metric), Meetings::of(input.whole_mesh()));
-    demand_apart(input, &meetings)?;
-    let setting = Setting { input, metric, options, progress, curves, meetings, watch: Stopwatch::new(progress) };
+    let setting = Setting::new(input, metric, options, progress)?;
     let (mut count, mut scale) = setting.watch.time("plan", || setting.plan())?;
     let (mut least, mut idle) = (f64::INFINITY, 0);
     for round in 1.. {
@@ -96,6 +94,21 @@ fn demand_apart(input: &Input, meetings: &Meetings) -> Result<()> {
 }
 
 impl<'a> Setting<'a> {
+    /// What a surface is meshed with.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where triangles of an equation's surface meet.
+    pub(super) fn new(
+        input: &'a Input,
+        metric: &'a dyn SurfaceMetric,
+        options: &'a MeshOptions,
+        progress: &'a dyn Progress,
+    ) -> Result<Self> {
+        let (curves, meetings) = (MeasuredCurves::new(input, metric), Meetings::of(input.whole_mesh()));
+        demand_apart(input, &meetings)?;
+        Ok(Self { input, metric, options, progress, curves, meetings, watch: Stopwatch::new(progress) })
+    }
+
     /// That the work for so many vertices fits into memory.
     fn demand_memory(&self, count: usize) -> Result<()> {
         let canvas = if self.needs_canvas() { self.canvas_size(count) } else { 0 };
@@ -122,7 +135,7 @@ impl<'a> Setting<'a> {
             reseed = pass.reseed(&faulty, reseed);
             reseed.is_last = reseed.rounds + 1 >= self.farthest_passes() + ADAPTATIONS;
         };
-        pass.demand(&mesh, &self.meetings)?;
+        demand(self.input, &mesh, &self.meetings)?;
         let farthest = self.farthest_passes();
         if farthest > 0 && reseed.rounds >= farthest {
             notes.push("farthest points made no mesh: seeds are of the surface's own triangles".into());
@@ -246,7 +259,7 @@ impl<'a> Setting<'a> {
     /// The number of vertices, and the factor on the metric for which edges then are of unit length.
     ///
     /// A triangulation with V vertices has 2 (V - chi) - B faces, B of its edges on the border; each has the area sqrt(3) / 4.
-    fn plan(&self) -> Result<(usize, f64)> {
+    pub(super) fn plan(&self) -> Result<(usize, f64)> {
         self.progress.begin("planning", 1)?;
         let area = area_of_surface(self.input, self.metric, MEASURING)?;
         // Of the surface as it was before it was cut: vertices on its cuts count once.

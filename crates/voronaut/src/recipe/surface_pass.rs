@@ -307,31 +307,6 @@ impl Pass<'_> {
         faulty.into_iter().collect()
     }
 
-    /// Nothing of a valid mesh of the surface's topology with all that is required.
-    ///
-    /// # Errors
-    /// [`Error::Mesh`] with the first fault.
-    pub(super) fn demand(&self, mesh: &Mesh, meetings: &Meetings) -> Result<()> {
-        let help = "ask for more vertices (`vertices`); please report this with the input";
-        let fault = |what: &str, place: String| Err(Error::mesh(what, place, help));
-        let found = quality::validity_on(mesh, meetings);
-        if let Some(found) = found.first_fault {
-            return fault(&found.what, found.place);
-        }
-        let Whole { euler, borders } = self.input.seams.whole();
-        if (found.euler, found.boundary_loops) != (euler, borders) {
-            let what = format!(
-                "the mesh has another topology than the surface: Euler number {} and {} borders instead of {euler} and {borders}",
-                found.euler, found.boundary_loops
-            );
-            return fault(&what, "the mesh".into());
-        }
-        if mesh.required_triangles.len() < self.input.surface.required_triangles().len() {
-            return fault("a required triangle is not in the mesh", "the mesh".into());
-        }
-        Ok(())
-    }
-
     /// What to do differently: more of the surface kept around faulty triangles, more seeds on the curves that one touches.
     pub(super) fn reseed(&self, faulty: &[u32], before: Reseed) -> Reseed {
         let mut density = before.density;
@@ -377,6 +352,31 @@ impl Pass<'_> {
         ];
         told.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect()
     }
+}
+
+/// Nothing of a valid mesh of the surface's topology with all that is required.
+///
+/// # Errors
+/// [`Error::Mesh`] with the first fault.
+pub(super) fn demand(input: &Input, mesh: &Mesh, meetings: &Meetings) -> Result<()> {
+    let help = "ask for more vertices (`vertices`); please report this with the input";
+    let fault = |what: &str, place: String| Err(Error::mesh(what, place, help));
+    let found = quality::validity_on(mesh, meetings);
+    if let Some(found) = found.first_fault {
+        return fault(&found.what, found.place);
+    }
+    let Whole { euler, borders } = input.seams.whole();
+    if (found.euler, found.boundary_loops) != (euler, borders) {
+        let what = format!(
+            "the mesh has another topology than the surface: Euler number {} and {} borders instead of {euler} and {borders}",
+            found.euler, found.boundary_loops
+        );
+        return fault(&what, "the mesh".into());
+    }
+    if mesh.required_triangles.len() < input.surface.required_triangles().len() {
+        return fault("a required triangle is not in the mesh", "the mesh".into());
+    }
+    Ok(())
 }
 
 fn no_features() -> Error {

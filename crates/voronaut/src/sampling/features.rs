@@ -5,7 +5,7 @@ use crate::geometry::kept_within;
 use crate::lists::in_order;
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Curve, CurveEdge, Input, Mark, Place};
+use crate::surface::{CUT, Curve, CurveEdge, Input, Mark, Place};
 use crate::triangulation::VertexId;
 use std::collections::BTreeMap;
 
@@ -84,7 +84,7 @@ impl<'a> MeasuredCurves<'a> {
 
     /// Seeds at the stops, and along curves about `spacing` (metric) apart; closer where the edges between them would stray
     /// farther than `hausd` (Euclidean) from the curve, and where fewer would make two edges of the mesh one. Of a required curve
-    /// all vertices are seeds. `density` says how many times as many edges each curve shall have; 1 if it says nothing; with
+    /// all vertices are seeds, of one with the label [`CUT`] its ends. `density` says how many times as many edges each curve shall have; 1 if it says nothing; with
     /// [`ALL_VERTICES`] all vertices are seeds.
     pub(crate) fn sampled(&self, spacing: f64, hausd: Option<f64>, density: &[usize]) -> FeatureSeeds {
         let features = &self.input.seams.features;
@@ -114,6 +114,7 @@ impl<'a> MeasuredCurves<'a> {
                 _ if curve.mark.is_required || density == ALL_VERTICES => {
                     (0..=last).map(|vertex| vertex as f64).collect()
                 }
+                _ if curve.mark.label == CUT => vec![0.0, last as f64],
                 2 if parts < 2 => self.refined(curve, self.at_bulge(i), hausd),
                 parts => {
                     let inner = (1..parts).map(|k| arc.parameter(k as f64 / parts as f64));

@@ -27,6 +27,9 @@ impl Default for FeatureOptions {
     }
 }
 
+/// The label of curves along which a surface was cut to be meshed in parts: from stop to stop they are one edge of the mesh, in each part.
+pub(crate) const CUT: i32 = i32::MIN;
+
 /// What is known of a feature edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Mark {

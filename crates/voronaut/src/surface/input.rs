@@ -61,6 +61,15 @@ impl Input {
         Ok(Self::with_seams(surface, self.implicit, seams))
     }
 
+    /// A part of this surface, cut open along its listed features: what counts as being on the equation's surface is the same for all parts.
+    ///
+    /// # Errors
+    /// As for [`Surface::new`].
+    pub(crate) fn part(&self, surface: Surface) -> Result<Self> {
+        let (part, seams) = cut(&surface, &FeatureOptions { ar: None })?;
+        Ok(Self { diagonal: self.diagonal, ..Self::with_seams(part, self.implicit.clone(), seams) })
+    }
+
     /// The triangles of the surface before it was cut, by its vertices then.
     pub fn whole_mesh(&self) -> Mesh {
         let t = self.surface.topology();
@@ -119,6 +128,11 @@ impl Input {
             let help = "give points on the surface, or within a hundredth of its diagonal from it";
             Error::domain("a point off the surface", p.to_string(), help)
         })
+    }
+
+    /// The place of the triangles that is closest to a finite point, among those that face the way of a normal.
+    pub(crate) fn closest_facing(&self, p: Point3, normal: Vector3) -> Option<Place> {
+        self.nearest().closest_facing(&self.surface, p, normal)
     }
 
     fn nearest(&self) -> &Nearest {

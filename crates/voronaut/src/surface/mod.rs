@@ -36,6 +36,7 @@ mod tetrahedra;
 pub(crate) use chart::Chart;
 pub use cut::Seams;
 pub(crate) use cut::Whole;
+pub(crate) use features::CUT;
 pub use features::{Curve, CurveEdge, Curves, FeatureOptions, Mark};
 pub use implicit::Implicit;
 pub(crate) use implicit::{Curvatures, closest_zero, curvatures, project};

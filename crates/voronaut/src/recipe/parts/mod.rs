@@ -1,10 +1,15 @@
-//! One mesh in parts that can be made anywhere: a domain is cut along edges of a coarse mesh, each part is an ordinary job whose cuts are
+//! One mesh in parts that can be made anywhere: a domain or a surface is cut, each part is an ordinary job whose cuts are
 //! sampled first, and what was cut is made anew when the parts are one mesh again. The result depends on the input and the number of
 //! parts alone, not on who makes the parts.
 
-mod partition;
+mod bisect;
+mod plane;
+mod region;
 mod regions;
 mod stitch;
+mod surface;
+#[cfg(test)]
+mod test_surfaces;
 #[cfg(test)]
 mod tests;
 
@@ -13,32 +18,67 @@ use super::{Aim, MeshOptions, Meshed, Mesher, Seeding, mesh_for};
 use crate::domain::{Domain, from_mesh};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
-use crate::geodesic::{chord_by, nearby};
 use crate::lists::marked;
 use crate::mesh::{Edges, Mesh};
 use crate::metric::MetricField;
-use crate::parallel::prelude::*;
 use crate::progress::Progress;
-use crate::quality;
-use partition::Partition;
-use stitch::Whole;
+use crate::surface::Input;
+use crate::surface::metric::SurfaceMetric;
+use plane::InPlane;
+use stitch::{Kept, Whole};
+pub use surface::mesh_surface_part;
+use surface::OnSurface;
 
 /// Vertices of a part, where the number of parts follows from that of vertices: a minute's work.
 const VERTICES_PER_PART: usize = 100_000;
 /// No part has fewer: strips around its cuts would be most of it.
 const FEWEST: usize = 1_000;
+/// Vertices per part of the triangles along whose edges is cut.
+const COARSE: usize = 64;
 
-/// A job of a mesh in parts, for [`mesh_part`].
+/// A job of a mesh in parts, for [`mesh_part`] or [`mesh_surface_part`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// Its domain, as a mesh of its corners. Edges towards other parts are required, and have the label `i32::MIN` unless the domain has
-    /// one there.
+    /// Its domain, as a mesh of its corners; of a surface its triangles, with all features as listed edges. Edges towards other parts have the
+    /// label `i32::MIN` unless the domain has one there, and stay.
     pub domain: Mesh,
-    /// Vertices of its mesh, exactly.
+    /// Vertices of its mesh; in the plane exactly.
     pub vertices: usize,
 }
 
-/// The mesh of a part.
+/// What is divided: a planar domain or a surface, with its metric.
+trait Divisible {
+    /// Cuts it into so many parts, or into as many as there should be.
+    fn partition(&self, parts: Option<usize>, options: &MeshOptions, progress: &dyn Progress) -> Result<Partition>;
+
+    /// Adds to what is required of the whole what the parts have made of it.
+    fn note_kept(&self, _kept: &mut Kept, _joined: &Mesh) {}
+
+    /// The domain of a region of the mesh that is to be made anew. Its outer edges are required.
+    fn job(&self, region: Mesh) -> Result<Mesh>;
+
+    /// That the whole is valid.
+    fn check(&self, mesh: &Mesh) -> Result<()>;
+
+    /// The logarithms of the metric lengths of edges.
+    fn logarithms(&self, mesh: &Mesh, edges: &[[u32; 2]]) -> Vec<f64>;
+}
+
+/// What is divided, in parts.
+struct Partition {
+    /// The jobs.
+    parts: Vec<Part>,
+    /// The factor on the metric by which cuts are sampled.
+    scale: f64,
+    /// Vertices of the whole.
+    vertices: usize,
+    /// What is required of it.
+    kept: Kept,
+    /// What could not be met.
+    notes: Vec<String>,
+}
+
+/// The mesh of a part of a planar domain.
 ///
 /// # Errors
 /// As of [`mesh_for`].
@@ -53,6 +93,9 @@ pub fn mesh_part(
     Ok(mesh_for(&domain, field, aim, &with_count(options, part.vertices), progress)?.mesh)
 }
 
+/// Who makes the meshes of a round of parts, in their order; the round has a name.
+type Make<'a> = &'a mut dyn FnMut(&'static str, &[Part]) -> Result<Vec<Mesh>>;
+
 /// Meshes a planar domain by a metric in so many parts, or in parts of about 100,000 vertices. There are three rounds of [`Part`]s: the
 /// parts themselves (`parts`), strips along the cuts (`strips`), and what is around the ends of strips that meet (`junctions`). The outer
 /// edges of these stay. The meshes of a round, in the order of its parts, are the business of `make`, which has its name: by [`mesh_part`],
@@ -66,48 +109,71 @@ pub fn mesh_in_parts(
     field: &dyn MetricField,
     parts: Option<usize>,
     options: &MeshOptions,
-    make: &mut impl FnMut(&'static str, &[Part]) -> Result<Vec<Mesh>>,
+    make: Make,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    in_parts(&InPlane { domain, field }, parts, options, make, progress)
+}
+
+/// [`mesh_in_parts`] of a surface that was cut along its features ([`Input::cut`]), whose parts are made by [`mesh_surface_part`]. Cuts are
+/// along edges of its triangles. The number of vertices is met as nearly as parts meet theirs.
+///
+/// # Errors
+/// As of [`mesh_in_parts`]; [`Error::Unsupported`] of vertices off the surface (`fit`) and of distances to it (`hausd`), too.
+pub fn mesh_surface_in_parts(
+    input: &Input,
+    metric: &dyn SurfaceMetric,
+    parts: Option<usize>,
+    options: &MeshOptions,
+    make: Make,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    in_parts(&OnSurface { input, metric }, parts, options, make, progress)
+}
+
+fn in_parts(
+    on: &impl Divisible,
+    parts: Option<usize>,
+    options: &MeshOptions,
+    make: Make,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
     demand_divisible(options)?;
     let watch = Stopwatch::new(progress);
-    let cut = watch.time("partition", || Partition::new(domain, field, parts, options, progress))?;
+    let cut = watch.time("partition", || on.partition(parts, options, progress))?;
     let mut notes = cut.notes;
     let meshes = watch.time("parts", || make("parts", &cut.parts))?;
-    let mut whole = watch.time("stitch", || Whole::of_parts(cut.domain, &meshes));
+    let mut whole = watch.time("stitch", || Whole::of_parts(on, cut.kept, &meshes));
     drop(meshes);
-    let strips = watch.time("stitch", || whole.strips());
-    remake(&mut whole, "strips", &strips, make, &watch)?;
-    let junctions = watch.time("stitch", || whole.junctions());
-    remake(&mut whole, "junctions", &junctions, make, &watch)?;
+    let strips = whole.strips();
+    remake(on, &mut whole, ("strips", &strips, cut.vertices), make, &watch)?;
+    let junctions = whole.junctions();
+    remake(on, &mut whole, ("junctions", &junctions, cut.vertices), make, &watch)?;
     progress.begin("checking", 1)?;
     let mesh = whole.mesh;
-    watch.time("check", || quality::check(&mesh))?;
+    watch.time("check", || on.check(&mesh))?;
     if mesh.points.len() != cut.vertices {
-        notes.push(format!(
-            "{} vertices were asked for, but rounding leaves room for {}",
-            cut.vertices,
-            mesh.points.len()
-        ));
+        notes.push(format!("{} vertices were asked for, but parts leave room for {}", cut.vertices, mesh.points.len()));
     }
-    let metric_scale = if options.vertices.is_some() { unit_factor(&mesh, field) } else { cut.scale };
+    let metric_scale = if options.vertices.is_some() { unit_factor(on, &mesh) } else { cut.scale };
     Ok(Meshed { mesh, metric_scale, seconds: watch.seconds(), notes, ..Meshed::default() })
 }
 
-/// Lets regions be made anew.
+/// Lets the regions of a round be made anew, so that the whole then has so many vertices.
 fn remake(
+    on: &impl Divisible,
     whole: &mut Whole,
-    round: &'static str,
-    regions: &[Vec<u32>],
-    make: &mut impl FnMut(&'static str, &[Part]) -> Result<Vec<Mesh>>,
+    (round, regions, vertices): (&'static str, &[Vec<u32>], usize),
+    make: Make,
     watch: &Stopwatch,
 ) -> Result<()> {
     if regions.is_empty() {
         return Ok(());
     }
-    let jobs = watch.time("stitch", || whole.jobs(regions))?;
+    let regions = whole.hanging_together(regions)?;
+    let jobs = watch.time("stitch", || whole.jobs(on, &regions, vertices))?;
     let meshes = watch.time(round, || make(round, &jobs))?;
-    watch.time("stitch", || whole.replace(regions, &meshes));
+    watch.time("stitch", || whole.replace(&regions, &meshes));
     Ok(())
 }
 
@@ -132,21 +198,21 @@ fn demand_divisible(options: &MeshOptions) -> Result<()> {
     }
 }
 
-/// The factor on the metric for which edges that touch no curve of the domain have unit length in the (geometric) mean, as it is of
-/// meshes of one piece.
-fn unit_factor(mesh: &Mesh, field: &dyn MetricField) -> f64 {
+/// How many parts there are of so many vertices.
+fn number_of_parts(vertices: usize, asked: Option<usize>) -> Result<usize> {
+    let parts = asked.unwrap_or(vertices.div_ceil(VERTICES_PER_PART));
+    if parts == 0 || vertices / parts < FEWEST {
+        let what = format!("{vertices} vertices in {parts} parts");
+        return Err(Error::limit(what, format!("let parts have {FEWEST} vertices at least")));
+    }
+    Ok(parts)
+}
+
+/// The factor on the metric for which edges that touch no curve have unit length in the (geometric) mean, as it is of meshes of one piece.
+fn unit_factor(on: &impl Divisible, mesh: &Mesh) -> f64 {
     let on_curve = marked(mesh.points.len(), mesh.edges.as_flattened().iter().copied());
     let edges = Edges::of(&mesh.triangles);
     let ends: Vec<[u32; 2]> = edges.ends().filter(|ends| ends.iter().all(|&v| !on_curve[v as usize])).collect();
-    let logarithms: Vec<f64> = ends
-        .par_chunks(1024)
-        .flat_map_iter(|chunk| {
-            let at = nearby(field);
-            let logarithm =
-                |&[a, b]: &[u32; 2]| chord_by(&at, mesh.point(a), mesh.point(b)).max(f64::MIN_POSITIVE).logarithm();
-            chunk.iter().map(logarithm).collect::<Vec<f64>>()
-        })
-        .collect();
-    let count = logarithms.len().max(1) as f64;
-    (-2.0 * logarithms.iter().sum::<f64>() / count).exponential()
+    let logarithms = on.logarithms(mesh, &ends);
+    (-2.0 * logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64).exponential()
 }

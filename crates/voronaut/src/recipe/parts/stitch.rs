@@ -1,18 +1,35 @@
 //! Meshes of parts as one: vertices on curves are those at the same position.
 
-use super::Part;
-use super::partition::{CUT, corner_mesh, submesh};
-use crate::domain::{Domain, from_mesh};
-use crate::error::Result;
-use crate::geometry::Point;
-use crate::lists::{distinct, in_order, marked};
+use super::bisect::{NOWHERE, join_around};
+use super::region::{CUT, submesh};
+use super::{Divisible, Part};
+use crate::error::{Error, Result};
+use crate::lists::{Rows, distinct, in_order, marked};
 use crate::mesh::{EdgeSide, Edges, Mesh};
-use crate::recipe::remesh_input::{Position, position_of};
 use std::collections::{HashMap, HashSet};
+
+/// What is made anew gets so many vertices more or less at most, as a share.
+const MOST_MORE: f64 = 0.1;
+
+/// Where a vertex is, to the bit.
+pub(super) type Position = [u64; 3];
+
+pub(super) fn position_of(p: [f64; 3]) -> Position {
+    p.map(f64::to_bits)
+}
+
+/// What is required of the whole, where parts have to keep more.
+#[derive(Default)]
+pub(super) struct Kept {
+    pub(super) corners: HashSet<Position>,
+    pub(super) points: HashSet<Position>,
+    pub(super) edges: HashSet<[Position; 2]>,
+    pub(super) ridges: HashSet<[Position; 2]>,
+}
 
 /// The mesh in the making.
 pub(super) struct Whole {
-    domain: Domain,
+    kept: Kept,
     pub(super) mesh: Mesh,
     /// Edges between parts that are none of the domain's.
     pub(super) cuts: Vec<[u32; 2]>,
@@ -23,39 +40,64 @@ pub(super) struct Whole {
 }
 
 impl Whole {
-    /// The meshes of all parts of a domain, joined.
-    pub(super) fn of_parts(domain: Domain, parts: &[Mesh]) -> Self {
+    /// The meshes of all parts, joined.
+    pub(super) fn of_parts(on: &impl Divisible, mut kept: Kept, parts: &[Mesh]) -> Self {
         let mut joiner = Joiner::default();
         (0..).zip(parts).for_each(|(owner, part)| joiner.add(part, owner));
         let Joiner { mesh, owners, mut cuts, .. } = joiner;
         cuts.sort_unstable();
         cuts.dedup();
-        let mut whole = Self { domain, mesh, cuts, owners, junctions: Vec::new() };
+        on.note_kept(&mut kept, &mesh);
+        let mut whole = Self { kept, mesh, cuts, owners, junctions: Vec::new() };
         whole.mark_required();
         whole.junctions = whole.meetings();
         whole
     }
 
-    /// The jobs of regions: their outer edges stay.
+    /// The jobs of regions: their outer edges stay. Together they have as many vertices more as the whole lacks, as far as that is no more
+    /// than a tenth of each.
     ///
     /// # Errors
     /// None that a valid mesh could cause.
-    pub(super) fn jobs(&self, regions: &[Vec<u32>]) -> Result<Vec<Part>> {
+    pub(super) fn jobs(&self, on: &impl Divisible, regions: &[Vec<u32>], vertices: usize) -> Result<Vec<Part>> {
         let edges = Edges::of(&self.mesh.triangles);
         let region = self.region_of(regions);
         let is_rim = |sides: &[EdgeSide]| matches!(sides, [s, t] if region[s.triangle()] != region[t.triangle()]);
         let rim: Vec<[u32; 2]> = edges.iter().filter(|sides| is_rim(sides)).map(|sides| sides[0].ends).collect();
+        let triangles = regions.iter().map(Vec::len).sum::<usize>().max(1);
+        let more = (vertices as f64 - self.mesh.points.len() as f64) / triangles as f64;
+        // A triangle comes with half a vertex.
+        let more = more.clamp(-0.5 * MOST_MORE, 0.5 * MOST_MORE);
+        let (mut sum, mut given) = (0.0, 0.0);
         let job = |triangles: &Vec<u32>| {
-            let part = submesh(&self.mesh, triangles, &rim);
-            let vertices = part.points.len();
-            Ok(Part { domain: corner_mesh(&Domain::new(&from_mesh(&part)?)?), vertices })
+            let (mut part, on_rim) = submesh(&self.mesh, triangles, &rim);
+            part.require(on_rim);
+            sum += more * triangles.len() as f64;
+            let vertices = part.points.len().saturating_add_signed((sum.round() - given) as isize);
+            given = sum.round();
+            Ok(Part { domain: on.job(part)?, vertices })
         };
         regions.iter().map(job).collect()
     }
 
-    /// The region of each triangle; `u32::MAX` of those in none.
+    /// Regions in which triangles hang together around each vertex: what does not is left out, or is another's.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where none are found.
+    pub(super) fn hanging_together(&self, regions: &[Vec<u32>]) -> Result<Vec<Vec<u32>>> {
+        let mut region = self.region_of(regions);
+        if !join_around(&self.mesh.triangles, &mut region) {
+            return Err(Error::limit("strips along cuts that touch themselves", "ask for fewer parts, or more vertices"));
+        }
+        let labelled = (0..).zip(&region).filter(|(_, it)| **it != NOWHERE).map(|(t, &label): (u32, _)| (label, t));
+        let rows = Rows::new(regions.len(), labelled);
+        let all = (0..regions.len()).map(|label| rows.row(label).to_vec());
+        Ok(all.filter(|triangles| !triangles.is_empty()).collect())
+    }
+
+    /// The region of each triangle, or [`NOWHERE`].
     fn region_of(&self, regions: &[Vec<u32>]) -> Vec<u32> {
-        let mut region = vec![u32::MAX; self.mesh.triangles.len()];
+        let mut region = vec![NOWHERE; self.mesh.triangles.len()];
         for (number, triangles) in (0..).zip(regions) {
             for &t in triangles {
                 region[t as usize] = number;
@@ -88,10 +130,12 @@ impl Whole {
         for v in (0..old.points.len()).filter(|&v| stays[v]) {
             number[v] = joiner.push(old, v);
             if is_near[v] {
-                joiner.at.insert(position_of(old.point(v as u32)), number[v]);
+                joiner.at.insert(position_of(old.points[v]), number[v]);
             }
         }
+        let is_required = marked(old.triangles.len(), old.required_triangles.iter().copied());
         for t in staying() {
+            joiner.mesh.required_triangles.extend(is_required[t].then_some(joiner.mesh.triangles.len() as u32));
             joiner.mesh.triangles.push(old.triangles[t].map(|v| number[v as usize]));
             joiner.mesh.triangle_labels.push(old.triangle_labels[t]);
             joiner.owners.push(self.owners[t]);
@@ -106,21 +150,19 @@ impl Whole {
         (joiner, number)
     }
 
-    /// Corners and required edges are those of the domain, not those that parts had to keep.
+    /// What is required is what is of the whole, not what parts had to keep.
     fn mark_required(&mut self) {
-        let graph = self.domain.pslg();
-        let place = |v: u32| position_of(graph.points[v as usize]);
-        let corners: HashSet<Position> = (0..graph.points.len() as u32).map(place).collect();
-        let points: HashSet<Position> = graph.required_points.iter().map(|&v| place(v)).collect();
-        let required = graph.segments.iter().filter(|segment| segment.required);
-        let required: HashSet<[Position; 2]> = required.map(|segment| in_order(segment.ends.map(place))).collect();
-        let mesh = &mut self.mesh;
-        let at = |v: u32, points: &[[f64; 3]]| position_of(Point::new(points[v as usize][0], points[v as usize][1]));
-        for (list, kept) in [(&mut mesh.corners, &corners), (&mut mesh.required_points, &points)] {
-            *list = distinct(list.iter().copied().filter(|&v| kept.contains(&at(v, &mesh.points))));
+        let (mesh, kept) = (&mut self.mesh, &self.kept);
+        let points = std::mem::take(&mut mesh.points);
+        let at = |v: u32| position_of(points[v as usize]);
+        for (list, kept) in [(&mut mesh.corners, &kept.corners), (&mut mesh.required_points, &kept.points)] {
+            *list = distinct(list.iter().copied().filter(|&v| kept.contains(&at(v))));
         }
-        let is_required = |ends: [u32; 2]| required.contains(&in_order(ends.map(|v| at(v, &mesh.points))));
-        mesh.required_edges = (0..).zip(&mesh.edges).filter(|(_, ends)| is_required(**ends)).map(|(i, _)| i).collect();
+        for (list, kept) in [(&mut mesh.required_edges, &kept.edges), (&mut mesh.ridges, &kept.ridges)] {
+            let is_in = |ends: &[u32; 2]| kept.contains(&in_order(ends.map(at)));
+            *list = (0..).zip(&mesh.edges).filter(|(_, ends)| is_in(ends)).map(|(i, _)| i).collect();
+        }
+        mesh.points = points;
     }
 }
 
@@ -143,7 +185,7 @@ impl Joiner {
                 if !is_shared[v] {
                     return self.push(part, v);
                 }
-                let place = position_of(part.point(v as u32));
+                let place = position_of(part.points[v]);
                 if let Some(&known) = self.at.get(&place) {
                     return known;
                 }
@@ -153,13 +195,20 @@ impl Joiner {
             })
             .collect();
         let at = |v: u32| number[v as usize];
+        let before = self.mesh.triangles.len() as u32;
+        self.mesh.required_triangles.extend(part.required_triangles.iter().map(|t| before + t));
         self.mesh.triangles.extend(part.triangles.iter().map(|t| t.map(at)));
         self.mesh.triangle_labels.extend(&part.triangle_labels);
         self.owners.extend(std::iter::repeat_n(owner, part.triangles.len()));
         self.mesh.corners.extend(part.corners.iter().copied().map(at));
         self.mesh.required_points.extend(part.required_points.iter().copied().map(at));
-        for (ends, &label) in part.edges.iter().zip(&part.edge_labels) {
-            self.list(ends.map(at), label);
+        let [required, ridges] =
+            [&part.required_edges, &part.ridges].map(|list| marked(part.edges.len(), list.iter().copied()));
+        for (i, (ends, &label)) in part.edges.iter().zip(&part.edge_labels).enumerate() {
+            if let Some(new) = self.list(ends.map(at), label) {
+                self.mesh.required_edges.extend(required[i].then_some(new));
+                self.mesh.ridges.extend(ridges[i].then_some(new));
+            }
         }
     }
 
@@ -169,13 +218,15 @@ impl Joiner {
         self.mesh.points.len() as u32 - 1
     }
 
-    /// An edge on a curve, which several parts may have.
-    fn list(&mut self, ends: [u32; 2], label: i32) {
+    /// An edge on a curve, which several parts may have; its number if it is new.
+    fn list(&mut self, ends: [u32; 2], label: i32) -> Option<u32> {
         if label == CUT {
             self.cuts.push(in_order(ends));
         } else if self.listed.insert(in_order(ends)) {
             self.mesh.edges.push(ends);
             self.mesh.edge_labels.push(label);
+            return Some(self.mesh.edges.len() as u32 - 1);
         }
+        None
     }
 }
