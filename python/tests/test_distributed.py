@@ -87,5 +87,16 @@ def test_parts_are_kept_under_what_they_depend_on(tmp_path):
 def test_what_fails_in_a_part_is_an_error():
     with pytest.raises(voronaut.Error, match=r"parts \d+, from \(.*are estimated to need"):
         voronaut.distributed.mesh(**{**PLACE, "n": 400_000}, memory_limit=0.1)
-    with pytest.raises(voronaut.Error, match="on a surface"):
-        voronaut.distributed.mesh("sphere:1", "euclidean", 4000, parts=2)
+    with pytest.raises(voronaut.Error, match="distances to the surface of a mesh in parts"):
+        voronaut.distributed.mesh("sphere:1", "euclidean", 4000, parts=2, hausd=0.1)
+
+
+def test_a_surface_comes_in_parts(tmp_path):
+    def steep(p):
+        assert p.shape[1] == 3
+        return 1 + p[:, 2] ** 2
+
+    mesh = voronaut.distributed.mesh("sphere:1", steep, 3000, parts=2, effort="fast", parts_dir=tmp_path)
+    assert mesh.report["valid"] and mesh.report["euler"] == 2 and len(mesh.points) == 3000
+    again = voronaut.distributed.mesh("sphere:1", steep, 3000, parts=2, effort="fast", parts_dir=tmp_path)
+    assert (again.points == mesh.points).all() and (again.triangles == mesh.triangles).all()

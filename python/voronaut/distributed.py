@@ -38,7 +38,9 @@ class Job(NamedTuple):
     vertices: int
 
     def __str__(self) -> str:
-        low, high = (tuple(at(self.domain["points"][:, :2], axis=0).tolist()) for at in (np.min, np.max))
+        points = self.domain["points"]
+        points = points if points[:, 2].any() else points[:, :2]
+        low, high = (tuple(at(points, axis=0).tolist()) for at in (np.min, np.max))
         return f"{self.round} {self.number}, from {low} to {high}"
 
 
@@ -61,7 +63,7 @@ class Share(NamedTuple):
     vertices: Ints
     """(N,) global numbers of the vertices of all of them."""
     points: Floats
-    """(N, 2) where they are."""
+    """(N, 2) where they are; on a surface (N, 3)."""
     owner: Ints
     """(N,) the rank that each belongs to."""
     vertex_count: int
@@ -100,7 +102,7 @@ def mesh(
     progress: Progress = False,
     **options: Any,
 ) -> Union[Mesh, Share, None]:
-    """Meshes a planar domain in parts: valid, with exactly n vertices and edges of length one in a metric.
+    """Meshes a planar domain or a surface in parts: valid, with n vertices and edges of length one in a metric.
 
     Parameters
     ----------
@@ -182,18 +184,28 @@ class _Maker:
             return None
         found = self.told.copy()
         self.tell(found, (job.domain, job.vertices))
-        points = np.ascontiguousarray(job.domain["points"][:, :2])
         for function in self.functions:
-            self.tell(found, function(points))
+            self.tell(found, _values(function, job.domain["points"]))
         return self.folder / f"{job.round}-{job.number}-{found.hexdigest()[:16]}.meshb"
 
     def make(self, job: Job, place: Path | None) -> dict[str, Any]:
         if place is not None and place.exists():
-            return Mesh.read(place)._arrays() | {"is_planar": True}
+            kept = Mesh.read(place)
+            return kept._arrays() | {"is_planar": kept.is_planar}
         made = _run.part(self.domain, self.metric, self.n, job.domain, job.vertices, self.options)
         if place is not None:
             Mesh._of(made).save(place)
         return made
+
+
+def _values(function: Callable[..., Any], points: Floats) -> Any:
+    """What a function of places says; of a part in the plane z = 0 the domain may be a surface all the same."""
+    if points[:, 2].any():
+        return function(points)
+    try:
+        return function(np.ascontiguousarray(points[:, :2]))
+    except Exception:
+        return function(points)
 
 
 class _Team:

@@ -95,7 +95,13 @@ impl Field<'_> {
         }
     }
 
-    fn whole(&self, parts: Option<usize>, options: &MeshOptions, make: Make, progress: &dyn Progress) -> Result<Meshed> {
+    fn whole(
+        &self,
+        parts: Option<usize>,
+        options: &MeshOptions,
+        make: Make,
+        progress: &dyn Progress,
+    ) -> Result<Meshed> {
         match *self {
             Field::Plane(domain, metric, _) => mesh_in_parts(domain, metric, parts, options, make, progress),
             Field::Surface(input, metric) => mesh_surface_in_parts(input, metric, parts, options, make, progress),

@@ -109,9 +109,33 @@ fn a_part_that_fails_is_named_with_its_place() {
     assert!(place.files().is_empty(), "{:?}", place.files());
 }
 
+/// The equation's surface is given by triangles that the program makes: every process makes the same.
 #[test]
-fn parts_of_surfaces_are_refused() {
+fn a_surface_in_parts_is_the_same_however_many_processes_make_it() {
     let place = Place::new();
-    let run = place.run(&["mesh", "sphere:1", "--metric", "euclidean", "-n", "4000", "--parts", "2", "-o", "out.mesh"]);
-    assert!(stderr(&run).contains("not supported: --parts on a surface"), "{}", stderr(&run));
+    let words = [
+        "mesh",
+        "sphere:1",
+        "--metric",
+        "uniform",
+        "-n",
+        "4000",
+        "--effort",
+        "fast",
+        "--parts",
+        "3",
+        "-q",
+        "-o",
+        "out.meshb",
+    ];
+    let made = |more: &[&str]| {
+        let run = place.run(&[&words[..], more].concat());
+        assert!(run.status.success(), "{}", stderr(&run));
+        place.take("out.meshb")
+    };
+    let mesh = made(&["--report", "report.json"]);
+    let report: Value = serde_json::from_slice(&place.take("report.json")).unwrap();
+    assert_eq!((&report["vertices"], &report["euler"]), (&4000.into(), &2.into()), "{}", report["notes"]);
+    assert!(report["valid"] == true && report["metric_edge_length"]["unit_fraction"].as_f64() > Some(0.99), "{report}");
+    assert!(mesh == made(&["--threads", "1"]));
 }

@@ -93,7 +93,8 @@ pub(super) fn join_around(triangles: &[[u32; 3]], labels: &mut [u32]) -> bool {
     for _ in 0..MENDINGS {
         let label = |half_edge: u32| labels[half_edge as usize / 3];
         let beyond = |half_edge: u32| Some(twins[half_edge as usize]).filter(|&twin| twin != NONE);
-        let alike = (0..corners.len() as u32).map(|h| beyond(h).filter(|&twin| label(twin) == label(h)).unwrap_or(NONE));
+        let alike =
+            (0..corners.len() as u32).map(|h| beyond(h).filter(|&twin| label(twin) == label(h)).unwrap_or(NONE));
         let fans = fans(&alike.collect::<Vec<_>>(), |_, _| false);
         let mut sizes = vec![0; corners.len()];
         (0..corners.len() as u32).for_each(|h| sizes[fans.of(h) as usize] += 1);

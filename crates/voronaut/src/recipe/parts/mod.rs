@@ -26,8 +26,8 @@ use crate::surface::Input;
 use crate::surface::metric::SurfaceMetric;
 use plane::InPlane;
 use stitch::{Kept, Whole};
-pub use surface::mesh_surface_part;
 use surface::OnSurface;
+pub use surface::mesh_surface_part;
 
 /// Vertices of a part, where the number of parts follows from that of vertices: a minute's work.
 const VERTICES_PER_PART: usize = 100_000;

@@ -87,7 +87,10 @@ impl Whole {
     pub(super) fn hanging_together(&self, regions: &[Vec<u32>]) -> Result<Vec<Vec<u32>>> {
         let mut region = self.region_of(regions);
         if !join_around(&self.mesh.triangles, &mut region) {
-            return Err(Error::limit("strips along cuts that touch themselves", "ask for fewer parts, or more vertices"));
+            return Err(Error::limit(
+                "strips along cuts that touch themselves",
+                "ask for fewer parts, or more vertices",
+            ));
         }
         let labelled = (0..).zip(&region).filter(|(_, it)| **it != NOWHERE).map(|(t, &label): (u32, _)| (label, t));
         let rows = Rows::new(regions.len(), labelled);

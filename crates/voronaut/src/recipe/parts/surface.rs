@@ -203,7 +203,11 @@ impl<'a> Base<'a> {
             let middle = self.position(a).lerp(self.position(b), 0.5);
             let on = |h: HalfEdge| {
                 let place = self.on.input.surface.closest_on(self.side(h.face()).home, middle);
-                if self.on.input.implicit.is_none() { Some(middle) } else { Some(self.on.input.lift(&place, middle)?.position) }
+                if self.on.input.implicit.is_none() {
+                    Some(middle)
+                } else {
+                    Some(self.on.input.lift(&place, middle)?.position)
+                }
             };
             let Some(p) = on(h).filter(|&p| p != self.position(a) && p != self.position(b)) else { continue };
             let (v, _) = self.split(h, p);
@@ -301,7 +305,8 @@ impl<'a> Base<'a> {
     fn sampled(&mut self, chain: &[VertexId], scale: f64) -> Vec<VertexId> {
         let is_closed = chain[0] == chain[chain.len() - 1];
         let edge = |i: usize| self.topology.edge_between(chain[i], chain[i + 1]);
-        let is_required = (0..chain.len() - 1).any(|i| edge(i).and_then(|h| self.mark(h)).is_some_and(|m| m.is_required));
+        let is_required =
+            (0..chain.len() - 1).any(|i| edge(i).and_then(|h| self.mark(h)).is_some_and(|m| m.is_required));
         if is_required {
             return chain.to_vec();
         }

@@ -11,7 +11,12 @@ fn options(vertices: usize) -> MeshOptions {
 }
 
 /// The mesh in parts, and how many parts each round had.
-fn made(input: &Input, metric: &dyn SurfaceMetric, parts: usize, options: &MeshOptions) -> Result<(Meshed, Vec<usize>)> {
+fn made(
+    input: &Input,
+    metric: &dyn SurfaceMetric,
+    parts: usize,
+    options: &MeshOptions,
+) -> Result<(Meshed, Vec<usize>)> {
     let mut rounds = Vec::new();
     let mut make = |_: &'static str, parts: &[Part]| {
         rounds.push(parts.len());
@@ -84,7 +89,8 @@ fn features_of_a_cube_stay() {
 #[test]
 fn what_is_of_the_whole_is_refused_by_name() {
     let input = Input::new(sphere(1.0, 0.3).unwrap(), None);
-    let message = |options: &MeshOptions| made(&input, &Constant(Tensor3::IDENTITY), 2, options).unwrap_err().to_string();
+    let message =
+        |options: &MeshOptions| made(&input, &Constant(Tensor3::IDENTITY), 2, options).unwrap_err().to_string();
     let of = options(3000);
     for changed in [MeshOptions { fit: true, ..of.clone() }, MeshOptions { hausd: Some(0.1), ..of.clone() }] {
         assert!(message(&changed).contains("distances to the surface of a mesh in parts"), "{}", message(&changed));

@@ -31,7 +31,7 @@ fn demand_whole(domain: &Domain, meshed: &Meshed, vertices: usize) {
     assert!(found.valid && meshed.notes.is_empty(), "{:?}", meshed.notes);
     assert_eq!(mesh.points.len(), vertices);
     assert!((found.area - domain.area()).abs() < 1e-12 * domain.area(), "{} of {}", found.area, domain.area());
-    assert!(!mesh.edge_labels.contains(&partition::CUT));
+    assert!(!mesh.edge_labels.contains(&region::CUT));
     let pslg = domain.pslg();
     assert_eq!(mesh.corners.len(), pslg.points.len());
     assert_eq!(mesh.required_edges.len(), pslg.segments.iter().filter(|segment| segment.required).count());
@@ -48,7 +48,7 @@ fn the_whole_is_valid_with_exactly_so_many_vertices_and_as_good_as_one_piece() {
     assert_eq!(rounds.iter().map(|round| round.0).collect::<Vec<_>>(), ["parts", "strips", "junctions"]);
     assert_eq!(rounds[0].1.len(), 4);
     let figures = |mesh: &Mesh, factor: f64| {
-        let scaled = |p: Point| field.at(p) * factor;
+        let scaled = |p: Point| MetricField::at(&field, p) * factor;
         let found = metric_quality(mesh, &scaled).unwrap();
         (found.metric_edge_length.unit_fraction, found.quality.mean)
     };
@@ -68,8 +68,7 @@ fn parts_meet_at_the_same_points() {
     let (domain, field) = (Domain::shape("rect:-1,-1,1,1").unwrap(), Shock { phi: 1.0, lambda: 0.6 });
     let (_, rounds) = made(&domain, &field, 3, &options(4000)).unwrap();
     let cuts = |part: &Part| {
-        let ends =
-            part.domain.edges.iter().zip(&part.domain.edge_labels).filter(|(_, label)| **label == partition::CUT);
+        let ends = part.domain.edges.iter().zip(&part.domain.edge_labels).filter(|(_, label)| **label == region::CUT);
         let place = |v: u32| part.domain.points[v as usize].map(f64::to_bits);
         ends.map(|(ends, _)| crate::lists::in_order(ends.map(place))).collect::<Vec<_>>()
     };
