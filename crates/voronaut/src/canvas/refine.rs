@@ -7,9 +7,9 @@ use super::CanvasCounters;
 use super::buckets::Buckets;
 use super::steiner::Steiner;
 use crate::error::Result;
-use crate::geodesic::chord_from;
+use crate::geodesic::chord_near;
 use crate::geometry::Point;
-use crate::metric::{MetricField, Near};
+use crate::metric::MetricField;
 use crate::planar::Planar;
 use crate::triangulation::{HalfEdge, VertexId};
 
@@ -69,13 +69,11 @@ struct Refiner<'a> {
     steiner: Steiner<'a>,
     field: &'a dyn MetricField,
     queue: Buckets<[VertexId; 2]>,
-    /// Where an edge was measured last: the next one is mostly beside it.
-    near: Near,
 }
 
 impl<'a> Refiner<'a> {
     fn new(planar: Planar, field: &'a dyn MetricField) -> Result<Self> {
-        Ok(Self { steiner: Steiner::metric(planar, field)?, field, queue: Buckets::default(), near: Near::default() })
+        Ok(Self { steiner: Steiner::metric(planar, field)?, field, queue: Buckets::default() })
     }
 
     /// Halves an edge, or first the fixed edge beside it that its middle encroaches: else new vertices creep ever closer
@@ -131,7 +129,7 @@ impl<'a> Refiner<'a> {
         let ends = self.steiner.planar.topology.ends(h);
         let [p, q] = self.steiner.planar.ends(h);
         let length = if self.steiner.planar.positions.len() < COARSE {
-            chord_from(self.field, p, q, &mut self.near)
+            chord_near(self.field, p, q, self.steiner.nears[ends[0].index()])
         } else {
             self.simpson(ends, p, q)
         };
@@ -146,7 +144,8 @@ impl<'a> Refiner<'a> {
         if (at_a - at_b).abs() < ALIKE * at_ends {
             return 0.5 * at_ends;
         }
-        (at_ends + 4.0 * self.field.at(p.midpoint(q)).length(d)) / 6.0
+        let middle = self.field.at_near(p.midpoint(q), &mut self.steiner.nears[a.index()].clone());
+        (at_ends + 4.0 * middle.length(d)) / 6.0
     }
 }
 

@@ -5,7 +5,7 @@ use super::flip::{FROZEN_LIMIT, Frozen};
 use crate::error::Result;
 use crate::geometry::{Point, Tensor};
 use crate::lists::distinct;
-use crate::metric::{MetricField, check_tensor};
+use crate::metric::{MetricField, Near, check_tensor};
 use crate::parallel::prelude::*;
 use crate::planar::{Location, Planar};
 use crate::triangulation::{FaceId, HalfEdge, Lawson, VertexId};
@@ -32,6 +32,8 @@ pub(super) struct Steiner<'a> {
     field: Option<&'a dyn MetricField>,
     /// One per vertex slot, where there is a metric.
     pub(super) tensors: Vec<Tensor>,
+    /// Where the metric found each of them.
+    pub(super) nears: Vec<Near>,
     lawson: Lawson,
     /// Faces that are new, in the Euclidean plane.
     changed: Vec<FaceId>,
@@ -40,7 +42,8 @@ pub(super) struct Steiner<'a> {
 impl<'a> Steiner<'a> {
     /// In the Euclidean plane, from a constrained Delaunay triangulation.
     pub(super) fn euclidean(planar: Planar) -> Self {
-        Self { planar, field: None, tensors: Vec::new(), lawson: Lawson::default(), changed: Vec::new() }
+        let (tensors, nears) = (Vec::new(), Vec::new());
+        Self { planar, field: None, tensors, nears, lawson: Lawson::default(), changed: Vec::new() }
     }
 
     /// In a metric, from any triangulation.
@@ -49,11 +52,15 @@ impl<'a> Steiner<'a> {
     /// The metric is not positive definite at a vertex.
     pub(super) fn metric(planar: Planar, field: &'a dyn MetricField) -> Result<Self> {
         let positions = planar.positions.par_iter().with_min_len(1024);
-        let tensors: Vec<Tensor> = positions.map(|&p| field.at(p)).collect();
+        let found = positions.map(|&p| {
+            let mut near = Near::default();
+            (field.at_near(p, &mut near), near)
+        });
+        let (tensors, nears): (Vec<Tensor>, Vec<Near>) = found.collect::<Vec<_>>().into_iter().unzip();
         for v in planar.topology.vertices() {
             check_tensor(tensors[v.index()], planar.position(v))?;
         }
-        Ok(Self { field: Some(field), tensors, ..Self::euclidean(planar) })
+        Ok(Self { field: Some(field), tensors, nears, ..Self::euclidean(planar) })
     }
 
     /// Inserts a point that is seen from a face, unless it encroaches a fixed edge: then that is halved. `radius` is that
@@ -123,10 +130,14 @@ impl<'a> Steiner<'a> {
     pub(super) fn added(&mut self, v: VertexId, around: Option<VertexId>) -> Result<u64> {
         if let Some(field) = self.field {
             let p = self.planar.position(v);
-            let tensor = field.at(p);
+            // A neighbour tells where to look, of a vertex that is new itself.
+            let mut beside = self.planar.topology.star(v).map(|h| self.planar.topology.target(h).index());
+            let mut near = beside.next().and_then(|u| self.nears.get(u).copied()).unwrap_or_default();
+            let tensor = field.at_near(p, &mut near);
             check_tensor(tensor, p)?;
             self.tensors.resize(self.planar.positions.len(), tensor);
-            self.tensors[v.index()] = tensor;
+            self.nears.resize(self.planar.positions.len(), near);
+            (self.tensors[v.index()], self.nears[v.index()]) = (tensor, near);
         }
         self.lawson.queue(self.planar.topology.star(v).map(HalfEdge::next));
         let flips = self.flip(around);

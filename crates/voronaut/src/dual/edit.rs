@@ -7,6 +7,7 @@ use crate::geodesic::Margin;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::lists::in_order;
 use crate::mesh::Mesh;
+use crate::parallel::prelude::*;
 use crate::planar::Planar;
 use crate::triangulation::{Constraint, FaceId, Flipping, HalfEdge, Triangulation, VertexId};
 
@@ -148,7 +149,9 @@ impl Dual<'_> {
 
     /// Edges that the metric wants flipped and the plane forbids, with their margins, certain or not.
     pub(crate) fn blocked_flips(&mut self, effort: Effort) -> Vec<(HalfEdge, Margin)> {
-        let forbidden: Vec<HalfEdge> = self.free_edges().filter(|&h| !self.allows_flip(h)).collect();
+        let edges: Vec<HalfEdge> = self.free_edges().collect();
+        let forbidden = edges.into_par_iter().with_min_len(1024).filter(|&h| !self.allows_flip(h));
+        let forbidden: Vec<HalfEdge> = forbidden.collect();
         let with_margin = forbidden.into_iter().map(|h| (h, self.margin(h, effort)));
         with_margin.filter(|(_, margin)| margin.value < -TIE).collect()
     }

@@ -9,7 +9,7 @@ use crate::geometry::Tensor;
 use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested, climb};
 use crate::lists::in_order;
 use crate::parallel::prelude::*;
-use crate::triangulation::{HalfEdge, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 /// Number of levels.
 pub(super) const LEVELS: usize = 5;
@@ -32,6 +32,9 @@ pub(super) const KINKS: f64 = 0.005;
 const OF_BOW: f64 = 0.25;
 /// A bow that saves less than this share of the chord is small.
 const STRAIGHT: f64 = 0.02;
+
+/// Faces whose edges are tested one after the other.
+const PART: usize = 256;
 
 impl Dual<'_> {
     /// The margin of an edge with two faces.
@@ -58,13 +61,28 @@ impl Dual<'_> {
 
     /// The edges whose margins, with less than full effort, want them flipped; in parallel.
     pub(super) fn wanted(&mut self, effort: Effort) -> Vec<HalfEdge> {
-        let edges: Vec<HalfEdge> = self.free_edges().collect();
-        let tested = edges.par_iter().with_min_len(256).map(|&h| self.climbed(&self.quad(h), effort));
-        let tested: Vec<Tested> = tested.collect();
-        for tested in &tested {
-            self.counters.tests[tested.level] += 1;
+        let faces: Vec<FaceId> = self.topology().faces().collect();
+        let found: Vec<_> = faces.par_chunks(PART).map(|faces| self.wanted_at(faces, effort)).collect();
+        let mut wanted = Vec::new();
+        for (edges, tests) in found {
+            wanted.extend(edges);
+            self.counters.tests.iter_mut().zip(tests).for_each(|(sum, count)| *sum += count);
         }
-        edges.into_iter().zip(tested).filter(|(_, tested)| tested.margin.value < -TIE).map(|(h, _)| h).collect()
+        wanted
+    }
+
+    /// Those of faces, and how many tests each level settled.
+    fn wanted_at(&self, faces: &[FaceId], effort: Effort) -> (Vec<HalfEdge>, [u64; LEVELS]) {
+        let topology = self.topology();
+        let is_own = |h: &HalfEdge| !topology.is_fixed(*h) && topology.canonical(*h) == *h && !self.is_held(*h);
+        let mut tests = [0; LEVELS];
+        let mut is_wanted = |h: &HalfEdge| {
+            let Tested { margin, level } = self.climbed(&self.quad(*h), effort);
+            tests[level] += 1;
+            margin.value < -TIE
+        };
+        let edges = faces.iter().flat_map(|f| f.half_edges()).filter(is_own);
+        (edges.filter(|h| is_wanted(h)).collect(), tests)
     }
 
     /// Computes the margins of all edges with all levels, in parallel.

@@ -222,16 +222,20 @@ impl<'a> Dual<'a> {
                 *local = measure(local, &field, positions[v]);
             }
         });
-        for v in 0..self.locals.len() {
-            if self.planar.topology.is_vertex(VertexId(v as u32)) {
-                self.locals[v] = self.vetted(self.planar.positions[v], self.locals[v]);
-            }
+        let is_vertex = |v: usize| topology.is_vertex(VertexId(v as u32));
+        let slots = (0..self.locals.len()).into_par_iter().with_min_len(1024);
+        let faults = slots.filter(|&v| is_vertex(v) && !self.locals[v].tensor.is_positive_definite());
+        for v in faults.collect::<Vec<usize>>() {
+            self.locals[v] = self.vetted(self.planar.positions[v], self.locals[v]);
         }
     }
 
     /// Measures, in parallel, the edges at rough vertices by quadrature along the chord, and stores their lengths in
     /// the triangulation.
     pub(crate) fn measure_rough_edges(&mut self) {
+        if !self.locals.par_iter().with_min_len(1024).any(|local| local.is_rough) {
+            return;
+        }
         let is_rough = |v: VertexId| self.local(v).is_rough;
         let topology = self.topology();
         let at_rough = |&h: &HalfEdge| topology.ends(h).into_iter().any(is_rough);

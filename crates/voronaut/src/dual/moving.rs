@@ -15,7 +15,7 @@ use crate::triangulation::{Triangulation, VertexId};
 /// chart there.
 pub(crate) trait Moving: Sync {
     /// Seeds, edges, and the metric at the seeds, to come back to.
-    type Saved;
+    type Saved: Sync;
     /// A place with what the metric is there.
     type Site: Copy + Send + Sync;
 
@@ -38,6 +38,10 @@ pub(crate) trait Moving: Sync {
 
     /// Moves a seed, unless a triangle would turn over; says whether it did.
     fn shift_by(&mut self, v: VertexId, by: Vector) -> bool;
+    /// Moves seeds all at once; says which moved. Others would turn a triangle over, or may be moved one by one.
+    fn shift_together(&mut self, moves: &[(VertexId, Vector)]) -> Vec<bool> {
+        vec![false; moves.len()]
+    }
     /// Moves a curve's seed along its segment, as far as its edges there stay within these lengths (metric).
     fn slide_by(&mut self, _v: VertexId, _by: Vector, _lengths: [f64; 2]) -> bool {
         false
@@ -143,6 +147,22 @@ impl Moving for Dual<'_> {
 
     fn shift_by(&mut self, v: VertexId, by: Vector) -> bool {
         self.shift(v, self.position(v) + by)
+    }
+
+    fn shift_together(&mut self, moves: &[(VertexId, Vector)]) -> Vec<bool> {
+        self.forget();
+        let targets: Vec<(VertexId, Point)> = moves.iter().map(|&(v, by)| (v, self.position(v) + by)).collect();
+        let moved = self.planar.move_together(&targets);
+        let mut carried = vec![Vector::default(); self.locals.len()];
+        for (&(v, by), _) in moves.iter().zip(&moved).filter(|(_, moved)| **moved) {
+            carried[v.index()] = by;
+        }
+        self.locals.par_iter_mut().zip(&carried).with_min_len(1024).for_each(|(local, &by)| {
+            if by != Vector::default() {
+                *local = local.carried(by);
+            }
+        });
+        moved
     }
 
     fn slide_by(&mut self, v: VertexId, by: Vector, lengths: [f64; 2]) -> bool {

@@ -60,10 +60,9 @@ fn less_bending(chord: f64, ends: [&LocalMetric; 2], chords: [Vector; 2]) -> Len
 
 /// |r|^2: the squared metric size of the part of Gamma(d, d) across d.
 fn bending(local: &LocalMetric, d: Vector) -> f64 {
-    let gamma = local.christoffel(d);
-    let (m, length2) = (local.tensor, local.tensor.dot(d, d));
-    let along = m.dot(gamma, d);
-    let across2 = m.dot(gamma, gamma) - along * along / length2;
+    let bend = local.bend(d);
+    let along = bend.dot(d);
+    let across2 = bend.dot(local.tensor.solve(bend)) - along * along / local.tensor.dot(d, d);
     if across2.is_finite() { across2.max(0.0) } else { 0.0 }
 }
 
@@ -100,13 +99,8 @@ pub(crate) fn chord_by(at: impl Fn(Point) -> Tensor, p: Point, q: Point) -> f64 
 
 /// [`chord`] where the field may be looked for at a place near the first end.
 pub(crate) fn chord_near(field: &dyn MetricField, p: Point, q: Point, mut near: Near) -> f64 {
-    chord_from(field, p, q, &mut near)
-}
-
-/// The same; then `near` is where the last end is.
-pub(crate) fn chord_from(field: &dyn MetricField, p: Point, q: Point, near: &mut Near) -> f64 {
     let d = q - p;
-    GAUSS.iter().map(|&(t, weight)| weight * field.at_near(p.lerp(q, t), near).length(d)).sum()
+    GAUSS.iter().map(|&(t, weight)| weight * field.at_near(p.lerp(q, t), &mut near).length(d)).sum()
 }
 
 /// The metric length up to each point of a path, with the tensors at the middles of its segments.

@@ -127,9 +127,17 @@ impl LocalMetric {
     /// Gamma(v, v), the Christoffel symbols of the second kind applied twice to a vector: a geodesic that leaves with
     /// velocity v has the coordinate acceleration -Gamma(v, v).
     pub(crate) fn christoffel(&self, v: Vector) -> Vector {
-        let along = self.derivative_along(v).apply(v);
-        let gradient = Vector::new(self.derivative[0].dot(v, v), self.derivative[1].dot(v, v));
-        self.tensor.solve(along - gradient * 0.5)
+        self.tensor.solve(self.bend(v))
+    }
+
+    /// M Gamma(v, v), the Christoffel symbols of the first kind: (v . grad) M v less half the gradient of v' M v, term by term.
+    pub(crate) fn bend(&self, v: Vector) -> Vector {
+        let [dx, dy] = self.derivative;
+        let (xx, xy, yy) = (v.x * v.x, v.x * v.y, v.y * v.y);
+        Vector::new(
+            0.5 * dx.xx * xx + dy.xx * xy + (dy.xy - 0.5 * dx.yy) * yy,
+            (dx.xy - 0.5 * dy.xx) * xx + dx.yy * xy + 0.5 * dy.yy * yy,
+        )
     }
 
     /// The logarithm map to second order: the initial velocity of the geodesic that reaches p + d at time one,

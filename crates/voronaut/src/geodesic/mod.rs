@@ -47,7 +47,7 @@ pub(crate) use konukoglu::Konukoglu;
 pub(crate) use label::{Label, NO_COLOUR, Sources, Support};
 pub(crate) use lattice::Lattice;
 pub(crate) use length::{
-    Length, bent_chord, chord, chord_by, chord_from, chord_near, hermite, hermite_between, nearby, place_at, reached,
+    Length, bent_chord, chord, chord_by, chord_near, hermite, hermite_between, nearby, place_at, reached,
 };
 pub(crate) use local::{LocalMetric, STILL};
 pub(crate) use march::Marching;

@@ -16,6 +16,8 @@ use crate::mesh::{Located, Locator, Mesh};
 pub struct Sampled {
     /// Logarithms, one per vertex.
     logs: Vec<Tensor>,
+    /// The tensor, where all vertices have the same: nothing has to be looked for.
+    same: Option<Tensor>,
     /// The vertices of every triangle.
     triangles: Vec<[u32; 3]>,
     locator: Locator,
@@ -31,8 +33,8 @@ impl Sampled {
     pub fn new(background: &Mesh, tensors: &[Tensor]) -> Result<Self> {
         check_at_vertices(background, tensors)?;
         let locator = Locator::new(background, BACKGROUND)?;
-        let logs = tensors.iter().map(|tensor| tensor.log()).collect();
-        Ok(Self { logs, triangles: background.triangles.clone(), locator })
+        let logs: Vec<Tensor> = tensors.iter().map(|tensor| tensor.log()).collect();
+        Ok(Self { same: same(&logs), logs, triangles: background.triangles.clone(), locator })
     }
 
     /// The isotropic field of one size per vertex: log-linear, so that a size half-way is the geometric mean.
@@ -45,8 +47,14 @@ impl Sampled {
 
     /// The same with other logarithms at the vertices.
     pub(super) fn with_logarithms(self, logs: Vec<Tensor>) -> Self {
-        Self { logs, ..self }
+        Self { same: same(&logs), logs, ..self }
     }
+}
+
+/// The exponential of logarithms that are all the same.
+fn same(logs: &[Tensor]) -> Option<Tensor> {
+    let first = *logs.first()?;
+    logs.iter().all(|log| *log == first).then(|| first.exp())
 }
 
 impl MetricField for Sampled {
@@ -55,6 +63,9 @@ impl MetricField for Sampled {
     }
 
     fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
+        if let Some(tensor) = self.same.filter(|_| p.is_finite()) {
+            return tensor;
+        }
         let Some(Located { triangle, weights, .. }) = self.locator.locate_from(near.triangle, p) else {
             return Tensor::new(f64::NAN, f64::NAN, f64::NAN);
         };

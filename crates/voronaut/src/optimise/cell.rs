@@ -163,11 +163,14 @@ struct View<'a, M> {
     dual: &'a M,
     seed: VertexId,
     frame: [f64; 3],
+    /// The inverses of the frame's diagonal.
+    inverse: [f64; 2],
 }
 
 impl<'a, M: Moving> View<'a, M> {
     fn at(dual: &'a M, seed: VertexId) -> Self {
-        Self { dual, seed, frame: dual.local(seed).tensor.cholesky() }
+        let frame = dual.local(seed).tensor.cholesky();
+        Self { dual, seed, frame, inverse: [1.0 / frame[0], 1.0 / frame[2]] }
     }
 
     fn moments(&self, cell: &mut Cell) -> Moments {
@@ -178,19 +181,52 @@ impl<'a, M: Moving> View<'a, M> {
         let moments = if topology.is_border_vertex(self.seed) {
             self.border_moments(cell, &spokes)
         } else {
-            cell.reset(spokes.iter().map(|w| w.norm()).fold(0.0, f64::max));
-            self.cut(cell, &spokes);
+            if !self.is_by_centres(cell, &spokes) {
+                cell.reset(width(&spokes));
+                self.cut(cell, &spokes);
+            }
             cell.moments()
         };
         cell.spokes = spokes;
         moments
     }
 
+    /// Puts into a cell the centres of the circles through the seed and two neighbours, one after the other, and says whether they are its
+    /// corners, as nearly everywhere: each bisector is gone along from one to the next, once around, and nothing else would cut it.
+    fn is_by_centres(&self, cell: &mut Cell, spokes: &[Vector]) -> bool {
+        let following = || spokes.iter().zip(spokes.iter().cycle().skip(1));
+        cell.corners.clear();
+        cell.corners.extend(following().map(|(&u, &v)| centre(u, v)));
+        let corners = &cell.corners;
+        let Some(&last) = corners.last() else { return false };
+        let before = std::iter::once(&last).chain(corners);
+        let goes_on =
+            |((&from, &to), &spoke): ((&Vector, &Vector), &Vector)| (to - from).dot(spoke.perpendicular()) >= 0.0;
+        let turns = following().filter(|(u, v)| u.y < 0.0 && v.y >= 0.0).count();
+        let width = width(spokes);
+        turns == 1
+            && following().all(|(&u, &v)| u.cross(v) > 0.0)
+            && before.zip(corners).zip(spokes).all(goes_on)
+            && corners.iter().all(|corner| corner.x.abs() <= width && corner.y.abs() <= width)
+            && self.dual.topology().star(self.seed).zip(corners).all(|(h, &corner)| self.is_free_beyond(h, corner))
+    }
+
+    /// Whether neither a constraint nor the seed beyond the edge opposite to this one cuts off the corner towards that edge.
+    fn is_free_beyond(&self, h: HalfEdge, corner: Vector) -> bool {
+        let topology = self.dual.topology();
+        let Some(t) = topology.twin(h.next()).filter(|_| !topology.is_fixed(h.next())) else { return false };
+        if self.dual.local(self.seed).is_rough {
+            return true;
+        }
+        let beyond = self.image(topology.apex(t), 0.0);
+        corner.dot(beyond) <= 0.5 * beyond.dot(beyond)
+    }
+
     /// At the border the cell is a part of a disc: one or, at reflex corners, several convex ones.
     fn border_moments(&self, cell: &mut Cell, spokes: &[Vector]) -> Moments {
         let topology = self.dual.topology();
         let Some(last) = topology.star(self.seed).last().map(|h| self.beyond(h)) else { return Moments::default() };
-        let width = spokes.iter().map(|w| w.norm()).fold(last.norm(), f64::max);
+        let width = width(spokes).max(last.norm());
         let is_convex =
             matches!(self.dual.kind(self.seed), Kind::Curve | Kind::Held) || turn(spokes, last) <= std::f64::consts::PI;
         let sectors: Vec<[Vector; 2]> = if is_convex {
@@ -239,10 +275,40 @@ impl<'a, M: Moving> View<'a, M> {
 
     fn image(&self, u: VertexId, length: f64) -> Vector {
         let local = self.dual.local(self.seed);
-        let w = to_frame(self.frame, local.log(self.dual.offset(self.seed, u)));
+        let w = self.log(local, self.dual.offset(self.seed, u));
         // No expansion gives lengths in a rough field; quadrature does.
         if local.is_rough { w * (length / w.norm()) } else { w }
     }
+
+    /// [`LocalMetric::log`] in the frame, whose inverses are known.
+    fn log(&self, local: &LocalMetric, d: Vector) -> Vector {
+        let ([_, b, _], [by_a, by_c]) = (self.frame, self.inverse);
+        let (w, bend) = (to_frame(self.frame, d), local.bend(d) * 0.5);
+        let x = bend.x * by_a;
+        w + bounded(Vector::new(x, (bend.y - b * x) * by_c), w)
+    }
+}
+
+/// A correction of a vector in an orthonormal frame, cut to a third of it as in [`LocalMetric::log`].
+fn bounded(correction: Vector, w: Vector) -> Vector {
+    let (square, limit) = (correction.dot(correction), w.dot(w) / 9.0);
+    if square <= limit {
+        correction
+    } else if square.is_finite() {
+        correction * (limit / square).sqrt()
+    } else {
+        Vector::default()
+    }
+}
+
+/// The longest spoke.
+fn width(spokes: &[Vector]) -> f64 {
+    spokes.iter().map(|w| w.dot(*w)).fold(0.0, f64::max).sqrt()
+}
+
+/// The centre of the circle through the origin and two points.
+fn centre(u: Vector, v: Vector) -> Vector {
+    (u.perpendicular() * v.dot(v) - v.perpendicular() * u.dot(u)) * (0.5 / u.cross(v))
 }
 
 /// The angle from the first spoke to the last.
@@ -345,6 +411,10 @@ impl<'a> OnCanvas<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::domain::Domain;
+    use crate::metric::{Scaled, Shock};
+    use crate::progress::Silent;
+    use crate::sampling::{Fill, Plan, Target, refine, sample_segments};
 
     #[test]
     fn the_cell_of_a_square_lattice_is_a_square() {
@@ -360,6 +430,50 @@ mod tests {
         assert!((moments.mass - 2.0).abs() < 1e-15 && (moments.second - (1.0 / 6.0 + 3.5 / 3.0)).abs() < 1e-14);
         cell.cut_by_line(Vector::new(-5.0, -0.5), Vector::new(5.0, -0.5));
         assert!(cell.moments().centroid().norm() < 1e-15);
+    }
+
+    /// Seeds as refinement leaves them: nearly all cells are told by centres, and these are those that bisectors cut.
+    #[test]
+    fn corners_of_cells_are_centres_of_circles() {
+        let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
+        let field = Shock { phi: 1.0, lambda: 0.6 };
+        let plan = Plan::new(&domain, &[], &field, Target::Vertices(400)).unwrap();
+        let scaled = Scaled { field: &field, factor: plan.scale_for(400.0) };
+        let mut dual = Dual::new(&domain, scaled).unwrap();
+        sample_segments(&mut dual, &plan.edges, &plan.arcs, scaled.factor);
+        refine(&mut dual, Fill::AtMost(400), &Silent).unwrap();
+        dual.measure();
+        let (mut told, mut seeds) = (0, 0);
+        for v in dual.topology().vertices().filter(|&v| !dual.topology().is_border_vertex(v)) {
+            let (view, mut cell) = (View::at(&dual, v), Cell::default());
+            let spokes: Vec<Vector> = dual.topology().star(v).map(|h| view.neighbour(h)).collect();
+            seeds += 1;
+            if !view.is_by_centres(&mut cell, &spokes) {
+                continue;
+            }
+            told += 1;
+            let by_centres = cell.moments();
+            cell.reset(width(&spokes));
+            view.cut(&mut cell, &spokes);
+            let by_cuts = cell.moments();
+            let off = (by_centres.first - by_cuts.first).norm() + (by_centres.mass - by_cuts.mass).abs();
+            assert!(off < 1e-9 && (by_centres.second - by_cuts.second).abs() < 1e-9, "{by_centres:?} {by_cuts:?}");
+        }
+        assert!(2 * told > seeds && seeds > 250, "{told} of {seeds}");
+    }
+
+    #[test]
+    fn logarithms_in_the_frame_are_logarithms() {
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        let field = |p: Point| Tensor::new(4.0 + 3.0 * p.x, 0.5 * p.y, 3.0 - p.x + p.y);
+        let dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
+        for v in dual.topology().vertices() {
+            let (view, local) = (View::at(&dual, v), dual.local(v));
+            for d in [Vector::new(0.3, 0.1), Vector::new(-2.0, 3.0), Vector::new(0.0, 1e-9)] {
+                let (found, truth) = (view.log(local, d), to_frame(view.frame, local.log(d)));
+                assert!((found - truth).norm() < 1e-13 * truth.norm(), "{found:?} {truth:?}");
+            }
+        }
     }
 
     #[test]

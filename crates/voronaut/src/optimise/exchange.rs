@@ -6,6 +6,7 @@ use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{NEEDLE, Vector, from_frame};
 use crate::lists::ranked;
+use crate::parallel::prelude::*;
 use crate::planar::Location;
 use crate::progress::Silent;
 use crate::sampling::{Fill, insert_spaced, refine};
@@ -26,10 +27,11 @@ pub(crate) fn exchange(dual: &mut Dual, fill: Fill, most: usize) -> Result<usize
 }
 
 fn remove_crowded(dual: &mut Dual, most: usize, shorter_than: f64) -> usize {
-    let edges = dual.topology().edges().map(|h| (dual.edge_length(h), dual.topology().ends(h)));
-    let short = ranked(
-        edges.filter(|&(length, ends)| length < shorter_than && ends.iter().any(|&v| dual.kind(v) == Kind::Free)),
-    );
+    let edges: Vec<HalfEdge> = dual.topology().edges().collect();
+    let edges = edges.par_iter().with_min_len(1024).map(|&h| (dual.edge_length(h), dual.topology().ends(h)));
+    let is_free = |ends: &[VertexId; 2]| ends.iter().any(|&v| dual.kind(v) == Kind::Free);
+    let short = edges.filter(|(length, ends)| *length < shorter_than && is_free(ends));
+    let short = ranked(short.collect::<Vec<_>>());
     let mut spoken_for = vec![false; dual.topology().vertex_slots()];
     let mut removed = 0;
     for (_, ends) in short {
@@ -106,8 +108,12 @@ pub(crate) fn mend_needles(dual: &mut impl Moving) -> usize {
 /// The triangles by their quality, the poorest first.
 fn by_quality(dual: &impl Moving) -> Vec<(f64, [VertexId; 3])> {
     let sites = sites(dual);
-    let corners = dual.topology().faces().map(|face| dual.topology().corners(face));
-    ranked(corners.map(|corners| (dual.quality(corners.map(|v| sites[v.index()])), corners)))
+    let corners: Vec<_> = dual.topology().faces().map(|face| dual.topology().corners(face)).collect();
+    let measured = corners.par_iter().with_min_len(1024).map(|&corners| {
+        let quality = dual.quality(corners.map(|v| sites[v.index()]));
+        (quality, corners)
+    });
+    ranked(measured.collect::<Vec<_>>())
 }
 
 fn mend_corners(dual: &mut impl Moving, triangles: Vec<[VertexId; 3]>, lengths: Lengths) -> usize {

@@ -8,7 +8,9 @@ use super::survey::Rest;
 use crate::dual::Moving;
 use crate::error::Result;
 use crate::geometry::Vector;
+use crate::parallel::prelude::*;
 use crate::progress::Progress;
+use crate::triangulation::VertexId;
 
 /// A step that raises the energy is taken back and tried again, shorter or with fewer seeds, this many times.
 const BACKTRACKS: u32 = 8;
@@ -146,10 +148,20 @@ impl<C> Descent<'_, C> {
 
     /// Moves all seeds that do not rest by a share of a direction and settles the triangulation; moves held back, and flips.
     fn advance(&self, dual: &mut impl Moving, direction: &[Vector], share: f64) -> Result<(u64, u64)> {
+        let seeds = &self.state.seeds;
+        let awake: Vec<usize> = (0..seeds.len()).filter(|&i| self.rest.is_awake(i)).collect();
+        let whole: Vec<_> = {
+            let dual = &*dual;
+            let awake = awake.par_iter().with_min_len(1024);
+            awake.map(|&i| seeds[i].whole_move(dual, direction[i] * share)).collect()
+        };
+        // Most move at once; what is left goes one by one, as far as it can.
+        let moves: Vec<(VertexId, Vector)> = whole.iter().flatten().copied().collect();
+        let mut moved = dual.shift_together(&moves).into_iter();
         let mut held = 0;
-        for (i, (seed, &d)) in self.state.seeds.iter().zip(direction).enumerate() {
-            if self.rest.is_awake(i) {
-                held += u64::from(!seed.shift(dual, d * share));
+        for (i, whole) in awake.into_iter().zip(whole) {
+            if whole.is_none() || moved.next() == Some(false) {
+                held += u64::from(!seeds[i].shift(dual, direction[i] * share));
             }
         }
         let flips = dual.settle_moves()?;
@@ -161,7 +173,8 @@ impl<C> Descent<'_, C> {
         C: CellsOf<M>,
     {
         let seeds = &self.state.seeds;
-        let mut step: Vec<Vector> = seeds.iter().map(|s| dual.moved_since(before, s.id)).collect();
+        let parallel = seeds.par_iter().with_min_len(1024);
+        let mut step: Vec<Vector> = parallel.map(|s| dual.moved_since(before, s.id)).collect();
         let squares = seeds.iter().zip(&step).map(|(s, &d)| dual.local(s.id).tensor.dot(d, d));
         self.relaxed.moves.push((squares.sum::<f64>() / step.len().max(1) as f64).sqrt());
         let mut change: Vec<Vector> =

@@ -69,10 +69,11 @@ impl State {
 
     /// Where to go: the quasi-Newton direction at smooth seeds, Lloyd's step at rough ones.
     pub(super) fn direction(&self, dual: &impl Moving, memory: &Memory) -> Vec<Vector> {
-        let lloyd: Vec<Vector> = self.seeds.iter().zip(&self.gradient).map(|(s, &g)| -s.scaled(dual, g)).collect();
-        let mut direction = memory.direction(&self.gradient, |gradient| {
-            self.seeds.iter().zip(gradient).map(|(seed, g)| seed.scaled(dual, g)).collect()
-        });
+        let scaled = |gradient: &[Vector]| -> Vec<Vector> {
+            self.seeds.par_iter().zip(gradient).with_min_len(1024).map(|(seed, &g)| seed.scaled(dual, g)).collect()
+        };
+        let lloyd: Vec<Vector> = scaled(&self.gradient).into_iter().map(|step| -step).collect();
+        let mut direction = memory.direction(&self.gradient, |gradient| scaled(&gradient));
         // Not downhill: only Lloyd's step surely is.
         if dot(&direction, &self.gradient) > 0.0 {
             return lloyd;
@@ -119,6 +120,17 @@ impl Mover {
             Freedom::Straight | Freedom::Exponential => tensor.inverse().apply(gradient),
         };
         step * (0.5 / self.mass)
+    }
+
+    /// Where a step leads a seed that is on no segment: the move, if nothing is in its way.
+    pub(super) fn whole_move(&self, dual: &impl Moving, step: Vector) -> Option<(VertexId, Vector)> {
+        let local = dual.local(self.id);
+        let step = step * (LONGEST / local.tensor.length(step)).min(1.0);
+        match self.freedom {
+            Freedom::Exponential => Some((self.id, local.exp(step))),
+            Freedom::Straight => Some((self.id, step)),
+            Freedom::Along(_) => None,
+        }
     }
 
     /// Moves the seed, or as far as the embedding allows; says whether it went all the way.

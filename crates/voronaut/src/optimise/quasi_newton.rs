@@ -2,10 +2,13 @@
 //! (2009), on top of Lloyd's step.
 
 use crate::geometry::Vector;
+use crate::parallel::prelude::*;
 use std::collections::VecDeque;
 
 /// So many steps are remembered.
 const MEMORY: usize = 7;
+/// Vectors that are worth a thread's while.
+const PART: usize = 4096;
 
 /// A step that was taken, and how the gradient changed along it.
 struct Pair {
@@ -65,11 +68,14 @@ impl Memory {
 }
 
 pub(super) fn dot(a: &[Vector], b: &[Vector]) -> f64 {
-    a.iter().zip(b).map(|(u, v)| u.dot(*v)).sum()
+    let part = |(a, b): (&[Vector], &[Vector])| -> f64 { a.iter().zip(b).map(|(u, v)| u.dot(*v)).sum() };
+    // Parts of one length, summed in order: the same for any number of threads.
+    let parts: Vec<f64> = a.par_chunks(PART).zip(b.par_chunks(PART)).map(part).collect();
+    parts.into_iter().sum()
 }
 
 fn add(to: &mut [Vector], what: &[Vector], times: f64) {
-    to.iter_mut().zip(what).for_each(|(sum, &w)| *sum = *sum + w * times);
+    to.par_iter_mut().zip(what).with_min_len(PART).for_each(|(sum, &w)| *sum = *sum + w * times);
 }
 
 #[cfg(test)]

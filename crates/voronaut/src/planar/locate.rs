@@ -24,20 +24,26 @@ impl Planar {
     ///
     /// In a domain with holes [`Location::Behind`] says only that the straight way is barred.
     pub(crate) fn walk(&self, from: FaceId, to: Point, confined: bool) -> Location {
+        // A straight walk visits a face once; the bound only guards against the rounding of its start.
+        let found = self.walk_within(from, to, confined, self.topology.face_slots() + 1);
+        found.or_else(|| self.search(to)).unwrap_or(Location::Face(from))
+    }
+
+    /// The same through so many faces at most; `None` where the point lies beyond them.
+    pub(crate) fn walk_within(&self, from: FaceId, to: Point, confined: bool, faces: usize) -> Option<Location> {
         let start = centroid(self.triangle(from));
         let mut entered: Option<HalfEdge> = None;
         let mut face = from;
-        // A straight walk visits a face once; the bound only guards against the rounding of `start`.
-        for _ in 0..=self.topology.face_slots() {
-            let Some(exit) = self.exit(face, entered, start, to) else { return self.classify(face, to) };
+        for _ in 0..faces {
+            let Some(exit) = self.exit(face, entered, start, to) else { return Some(self.classify(face, to)) };
             if confined && self.topology.is_fixed(exit) {
-                return Location::Behind(exit);
+                return Some(Location::Behind(exit));
             }
-            let Some(twin) = self.topology.twin(exit) else { return Location::Behind(exit) };
+            let Some(twin) = self.topology.twin(exit) else { return Some(Location::Behind(exit)) };
             entered = Some(twin);
             face = twin.face();
         }
-        self.search(to).unwrap_or(Location::Face(face))
+        None
     }
 
     /// The edge through which the line from `start` to `to` leaves the face; `None` where the face holds `to`.

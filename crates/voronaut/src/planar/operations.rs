@@ -2,6 +2,8 @@
 
 use super::Planar;
 use crate::geometry::{Orientation, Point, orientation};
+use crate::lists::distinct;
+use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 impl Planar {
@@ -42,6 +44,29 @@ impl Planar {
         fits
     }
 
+    /// Moves vertices all at once, but for those of faces that would not stay counter-clockwise; says which moved.
+    pub(crate) fn move_together(&mut self, moves: &[(VertexId, Point)]) -> Vec<bool> {
+        let topology = &self.topology;
+        let mut to = self.positions.clone();
+        moves.iter().for_each(|&(v, p)| to[v.index()] = p);
+        let is_turned = |&f: &FaceId, to: &[Point]| {
+            let [a, b, c] = topology.corners(f).map(|v| to[v.index()]);
+            !is_left(a, b, c)
+        };
+        let faces = (0..topology.face_slots() as u32).into_par_iter().with_min_len(1024).map(FaceId);
+        let mut turned: Vec<FaceId> = faces.filter(|f| topology.is_face(*f) && is_turned(f, &to)).collect();
+        while !turned.is_empty() {
+            // Faces were counter-clockwise before: each has a corner that has moved.
+            let back = distinct(turned.iter().flat_map(|&f| topology.corners(f)));
+            let back: Vec<VertexId> = back.into_iter().filter(|v| to[v.index()] != self.positions[v.index()]).collect();
+            back.iter().for_each(|v| to[v.index()] = self.positions[v.index()]);
+            let around = distinct(back.iter().flat_map(|&v| topology.star(v)).map(HalfEdge::face));
+            turned = around.into_iter().filter(|f| is_turned(f, &to)).collect();
+        }
+        self.positions = to;
+        moves.iter().map(|&(v, p)| self.position(v) == p).collect()
+    }
+
     /// Removes an interior vertex that no constraint touches: flips its edges away until three are left. Says whether
     /// it could; where it could not, the vertex stays, with fewer edges.
     pub(crate) fn remove_vertex(&mut self, v: VertexId) -> bool {
@@ -73,4 +98,61 @@ impl Planar {
 
 fn is_left(a: Point, b: Point, c: Point) -> bool {
     orientation(a, b, c) == Orientation::Left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Vector;
+    use crate::planar::delaunay;
+
+    /// A grid with a wobble, and moves of its vertices by up to `reach` of its step.
+    fn grid_and_moves(reach: f64) -> (Planar, Vec<(VertexId, Point)>) {
+        let wave = |k: f64| (k * 0.618).fract() - 0.5;
+        let at = |i: u32| Point::new(f64::from(i % 20), f64::from(i / 20)) + Vector::new(wave(f64::from(i)), 0.0) * 0.2;
+        let points: Vec<Point> = (0..400).map(at).collect();
+        let planar = delaunay(&points).unwrap();
+        let inner = (0..400).filter(|i| (1..19).contains(&(i % 20)) && (1..19).contains(&(i / 20)));
+        let by = |i: u32| Vector::new(wave(f64::from(i) * 3.7), wave(f64::from(i) * 5.3)) * (2.0 * reach);
+        let moves = inner.map(|i| (VertexId(i), planar.position(VertexId(i)) + by(i))).collect();
+        (planar, moves)
+    }
+
+    #[test]
+    fn short_moves_are_done_at_once_and_long_ones_as_far_as_triangles_stay() {
+        for (reach, least) in [(0.1, 1.0), (0.5, 0.3), (3.0, 0.0)] {
+            let (mut planar, moves) = grid_and_moves(reach);
+            let before = planar.clone();
+            let moved = planar.move_together(&moves);
+            assert!(planar.is_embedded());
+            let share = moved.iter().filter(|is| **is).count() as f64 / moves.len() as f64;
+            assert!(share >= least && (share < 1.0 || reach < 0.2), "{reach}: {share}");
+            for (&(v, to), moved) in moves.iter().zip(moved) {
+                assert_eq!(planar.position(v), if moved { to } else { before.position(v) });
+            }
+        }
+    }
+
+    #[test]
+    fn one_that_leaps_over_the_others_stays_and_they_go() {
+        let (mut planar, mut moves) = grid_and_moves(0.1);
+        moves[100].1 = Point::new(18.5, 17.5);
+        let moved = planar.move_together(&moves);
+        let staying = moved.iter().filter(|is| !**is).count();
+        assert!(planar.is_embedded() && !moved[100] && staying < 30, "{staying}");
+    }
+
+    #[test]
+    fn walks_end_within_their_reach_or_not_at_all() {
+        let (planar, _) = grid_and_moves(0.0);
+        let from = planar.topology.star(VertexId(0)).next().unwrap().face();
+        let to = Point::new(15.3, 14.4);
+        let there = planar.walk(from, to, false);
+        assert_eq!(planar.walk_within(from, to, false, 200), Some(there));
+        assert_eq!(planar.walk_within(from, to, false, 10), None);
+        assert_eq!(
+            planar.walk_within(from, planar.position(VertexId(1)), false, 10),
+            Some(planar.walk(from, planar.position(VertexId(1)), false))
+        );
+    }
 }

@@ -98,6 +98,9 @@ pub(super) struct Corners<'a> {
     found: Vec<(Tensor, Near)>,
 }
 
+/// Vertices that are measured one after the other.
+const PART: usize = 256;
+
 impl<'a> Corners<'a> {
     /// Measures the vertices of triangles.
     ///
@@ -106,12 +109,18 @@ impl<'a> Corners<'a> {
     pub(super) fn of(mesh: &'a Mesh, metric: &'a dyn MetricField) -> Result<Self> {
         let used = mesh.used_vertices();
         let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
-        let at = |&v: &u32| {
-            let (p, mut near) = (mesh.point(v), Near::default());
-            let used = used[v as usize].then(|| tensor_near(metric, p, &mut near)).transpose()?;
-            Ok((used.map_or_else(Tensor::default, Tensor::log), near))
+        // Vertices with numbers next to each other are mostly near each other.
+        let part = |vertices: &[u32]| -> Result<Vec<(Tensor, Near)>> {
+            let mut near = Near::default();
+            let mut at = |&v: &u32| {
+                let used = used[v as usize].then(|| tensor_near(metric, mesh.point(v), &mut near)).transpose()?;
+                Ok((used.map_or_else(Tensor::default, Tensor::log), near))
+            };
+            vertices.iter().map(&mut at).collect()
         };
-        Ok(Self { mesh, metric, found: collect(&vertices, at)? })
+        let parts: Vec<Result<Vec<_>>> = vertices.par_chunks(PART).map(part).collect();
+        let parts: Vec<Vec<_>> = parts.into_iter().collect::<Result<_>>()?;
+        Ok(Self { mesh, metric, found: parts.into_iter().flatten().collect() })
     }
 
     /// The metric length of an edge, see [`edge_length`].

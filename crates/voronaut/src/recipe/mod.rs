@@ -41,11 +41,13 @@ use crate::mesh::Mesh;
 use crate::metric::{MetricField, Norm, ScalarField, Scaled};
 use crate::net::Net;
 use crate::optimise::{Patience, Polished, Relaxed, polish};
+use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{
     Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, sample_segments, simplify,
 };
+use crate::triangulation::HalfEdge;
 use periodic::correspondence;
 use settle::Stopwatch;
 
@@ -334,14 +336,11 @@ impl<'a> Job<'a> {
 fn mean_free_edge(dual: &Dual) -> f64 {
     let topology = dual.topology();
     let is_free = |v| dual.kind(v) == Kind::Free;
-    let (mut free, mut all) = (Vec::new(), Vec::new());
-    for h in topology.edges() {
-        let logarithm = dual.edge_length(h).max(f64::MIN_POSITIVE).logarithm();
-        all.push(logarithm);
-        if is_free(topology.origin(h)) && is_free(topology.target(h)) {
-            free.push(logarithm);
-        }
-    }
+    let edges: Vec<HalfEdge> = topology.edges().collect();
+    let logarithm = |&h: &HalfEdge| dual.edge_length(h).max(f64::MIN_POSITIVE).logarithm();
+    let mut all: Vec<f64> = edges.par_iter().with_min_len(1024).map(logarithm).collect();
+    let free = edges.iter().zip(&all).filter(|(h, _)| topology.ends(**h).into_iter().all(is_free));
+    let free: Vec<f64> = free.map(|(_, &logarithm)| logarithm).collect();
     if 20 * free.len() > all.len() {
         return (free.iter().sum::<f64>() / free.len() as f64).exponential();
     }

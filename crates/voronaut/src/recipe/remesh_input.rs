@@ -4,6 +4,7 @@ use super::field::{background_vertices, even, tensors};
 use crate::domain::{Domain, Pslg, from_mesh};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
+use crate::geodesic::nearby;
 use crate::geometry::{Point, Tensor};
 use crate::lists::{distinct, in_order, marked};
 use crate::mesh::{EdgeSide, Edges, Mesh, Solution, SolutionValues};
@@ -244,7 +245,8 @@ impl RemeshSizes {
 
     /// A field's values at points, sizes or tensors as these are.
     pub fn solution(&self, field: &dyn MetricField, points: &[[f64; 3]]) -> Solution {
-        let tensors = points.iter().map(|p| field.at(Point::new(p[0], p[1])));
+        let at = nearby(field);
+        let tensors = points.iter().map(|p| at(Point::new(p[0], p[1])));
         let values = if self.is_anisotropic {
             SolutionValues::Tensor(tensors.map(|m| [m.xx, m.xy, m.yy]).collect())
         } else {
