@@ -4,8 +4,8 @@ use super::bezier::{MOST, exponents, interior_of_sides, nodes_of_curve, side};
 use super::jacobian::{Bound, bound};
 use super::rules::Rule;
 use crate::geometry::{Point, Vector};
-use crate::lists::marked;
-use crate::mesh::edges::{NONE, next};
+use crate::lists::{in_order, marked};
+use crate::mesh::edges::{NONE, edges_of, next};
 use crate::mesh::{Curved, Edges, Mesh};
 
 /// Halvings after which a triangle counts as not valid, while it is moved and in the end.
@@ -29,45 +29,127 @@ pub(crate) struct Elements {
     /// Bezier points, the vertices first.
     pub(super) points: Vec<Point>,
     pub(super) holds: Vec<Hold>,
-    pub(super) vertices: usize,
+    /// Of each vertex the one of the straight mesh that it was; `NONE` of those that came later.
+    pub(super) sources: Vec<u32>,
     /// The numbers of a triangle's Bezier points.
     pub(super) triangles: Vec<[u32; MOST]>,
+    /// Triangles' labels.
+    pub(super) labels: Vec<i32>,
     /// Of half-edges the ones on the other side; `NONE` on the boundary.
     pub(super) twins: Vec<u32>,
-    /// Whether half-edges are of the boundary or an interface.
-    pub(super) is_held: Vec<bool>,
+    /// Of half-edges the labelled edges of the straight mesh that they are of; `NONE` elsewhere.
+    pub(super) held: Vec<u32>,
+}
+
+/// A vertex by itself.
+#[derive(Clone, Copy)]
+pub(super) struct Vertex {
+    pub(super) place: Point,
+    pub(super) hold: Hold,
+    pub(super) source: u32,
+}
+
+/// A triangle by itself: its vertices, its Bezier points, what its sides are of, and its label.
+#[derive(Clone, Copy)]
+pub(super) struct Loose {
+    pub(super) corners: [u32; 3],
+    pub(super) points: [Point; MOST],
+    pub(super) held: [u32; 3],
+    pub(super) label: i32,
 }
 
 impl Elements {
     /// The triangles of a straight mesh as such of order 2. Its corners stay, and so do its required vertices.
     pub(crate) fn of(mesh: &Mesh) -> Self {
-        let edges = Edges::of(&mesh.triangles);
         let is_fixed = marked(mesh.points.len(), mesh.corners.iter().chain(&mesh.required_points).copied());
         let straight = Straight::of(mesh, &is_fixed);
-        let mut points: Vec<Point> = (0..mesh.points.len() as u32).map(|v| mesh.point(v)).collect();
-        let mut holds: Vec<Hold> =
-            (0..points.len()).map(|v| if is_fixed[v] { Hold::Fixed } else { straight.hold(v) }).collect();
-        let mut triangles: Vec<[u32; MOST]> = mesh
-            .triangles
-            .iter()
-            .map(|&[a, b, c]| {
-                let mut numbers = [NONE; MOST];
-                numbers[..3].copy_from_slice(&[a, b, c]);
-                numbers
-            })
-            .collect();
-        let mut is_held = vec![false; 3 * triangles.len()];
+        let vertex = |v: u32| {
+            let hold = if is_fixed[v as usize] { Hold::Fixed } else { straight.hold(v) };
+            Vertex { place: mesh.point(v), hold, source: v }
+        };
+        let vertices: Vec<Vertex> = (0..mesh.points.len() as u32).map(vertex).collect();
+        let mut labelled: Vec<([u32; 2], u32)> = (0..).zip(&mesh.edges).map(|(i, &ends)| (in_order(ends), i)).collect();
+        labelled.sort_unstable();
+        let label_of = |ends: [u32; 2]| {
+            let at = labelled.binary_search_by_key(&in_order(ends), |entry| entry.0);
+            at.map_or(NONE, |at| labelled[at].1)
+        };
+        let loose = |(&corners, &label): (&[u32; 3], &i32)| {
+            let [a, b, c] = mesh.corners_of(corners);
+            let mut points = [Point::default(); MOST];
+            points[..6].copy_from_slice(&[a, b, c, a.midpoint(b), b.midpoint(c), c.midpoint(a)]);
+            Loose { corners, points, held: edges_of(corners).map(label_of), label }
+        };
+        let triangles: Vec<Loose> = mesh.triangles.iter().zip(&mesh.triangle_labels).map(loose).collect();
+        Self::assembled(2, &vertices, &triangles)
+    }
+
+    /// Those of vertices and triangles by themselves; sides have the points of the first triangle that has them.
+    pub(super) fn assembled(order: usize, vertices: &[Vertex], loose: &[Loose]) -> Self {
+        let corners: Vec<[u32; 3]> = loose.iter().map(|t| t.corners).collect();
+        let edges = Edges::of(&corners);
+        let mut found = Self {
+            order,
+            points: vertices.iter().map(|v| v.place).collect(),
+            holds: vertices.iter().map(|v| v.hold).collect(),
+            sources: vertices.iter().map(|v| v.source).collect(),
+            triangles: vec![[NONE; MOST]; loose.len()],
+            labels: loose.iter().map(|t| t.label).collect(),
+            twins: edges.twins(),
+            held: loose.iter().flat_map(|t| t.held).collect(),
+        };
         for sides in edges.iter() {
-            let ends = sides[0].ends;
-            let along = straight.between(ends);
-            for s in sides {
-                is_held[s.half_edge as usize] = along.is_some();
-                triangles[s.triangle()][3 + s.half_edge as usize % 3] = points.len() as u32;
+            let first = found.points.len() as u32;
+            let half_edge = sides[0].half_edge as usize;
+            let triangle = &loose[half_edge / 3];
+            let line = found.line(triangle, half_edge);
+            let numbers: Vec<u32> = (first..).take(order - 1).collect();
+            for i in side(order, half_edge % 3).skip(1).take(order - 1) {
+                found.points.push(triangle.points[i]);
+                found.holds.push(line.map_or(Hold::Free, Hold::Along));
             }
-            points.push(mesh.point(ends[0]).midpoint(mesh.point(ends[1])));
-            holds.push(along.map_or(Hold::Free, Hold::Along));
+            found.number_side(half_edge, &numbers);
         }
-        Self { order: 2, points, holds, vertices: mesh.points.len(), triangles, twins: edges.twins(), is_held }
+        for (numbers, triangle) in found.triangles.iter_mut().zip(loose) {
+            numbers[..3].copy_from_slice(&triangle.corners);
+            if order == 3 {
+                numbers[9] = found.points.len() as u32;
+                found.points.push(triangle.points[9]);
+                found.holds.push(Hold::Free);
+            }
+        }
+        found
+    }
+
+    /// The straight part that a side is of, if it is labelled: that of an end that slides, or else both ends.
+    fn line(&self, triangle: &Loose, half_edge: usize) -> Option<[Point; 2]> {
+        (triangle.held[half_edge % 3] != NONE).then(|| {
+            let ends = edges_of(triangle.corners)[half_edge % 3].map(|v| v as usize);
+            let slides = ends.into_iter().find_map(|v| if let Hold::Along(line) = self.holds[v] { Some(line) } else { None });
+            slides.unwrap_or(ends.map(|v| self.points[v]))
+        })
+    }
+
+    /// The triangles by themselves.
+    pub(super) fn loose(&self) -> Vec<Loose> {
+        let one = |t: usize| Loose {
+            corners: self.corners(t),
+            points: self.of_triangle(&self.points, t),
+            held: [0, 1, 2].map(|s| self.held[3 * t + s]),
+            label: self.labels[t],
+        };
+        (0..self.triangles.len()).map(one).collect()
+    }
+
+    /// The vertices by themselves.
+    pub(super) fn loose_vertices(&self) -> Vec<Vertex> {
+        let one = |v: usize| Vertex { place: self.points[v], hold: self.holds[v], source: self.sources[v] };
+        (0..self.sources.len()).map(one).collect()
+    }
+
+    /// How many vertices there are.
+    pub(super) fn vertices(&self) -> usize {
+        self.sources.len()
     }
 
     /// How many Bezier points a triangle has.
@@ -109,40 +191,32 @@ impl Elements {
     /// The same triangles by polynomials of order 3.
     #[must_use]
     pub(crate) fn raised(&self) -> Self {
-        let mut raised = Self {
-            order: 3,
-            points: self.points[..self.vertices].to_vec(),
-            holds: self.holds[..self.vertices].to_vec(),
-            ..self.clone()
-        };
-        for h in (0..self.twins.len()).filter(|&h| self.twins[h] == NONE || h < self.twins[h] as usize) {
-            let [a, b, c] = [0, 1, 2].map(|i| self.side(h)[i] as usize);
-            let first = raised.points.len() as u32;
-            for end in [a, c] {
-                raised.points.push(self.points[end].lerp(self.points[b], 2.0 / 3.0));
-                raised.holds.push(self.holds[b]);
+        let raise = |mut triangle: Loose| {
+            let old = triangle.points;
+            for s in 0..3 {
+                let ends = [s, (s + 1) % 3];
+                for (i, end) in ends.into_iter().enumerate() {
+                    triangle.points[3 + 2 * s + i] = old[end].lerp(old[3 + s], 2.0 / 3.0);
+                }
             }
-            raised.number_side(h, [first, first + 1]);
-        }
-        for t in 0..self.triangles.len() {
-            raised.triangles[t][9] = raised.points.len() as u32;
-            raised.points.push(Point::default());
-            raised.holds.push(Hold::Free);
-            let points = raised.of_triangle(&raised.points, t);
-            *raised.points.last_mut().expect("one was added") = interior_of_sides(&points);
-        }
-        raised
+            triangle.points[9] = interior_of_sides(&triangle.points);
+            triangle
+        };
+        let triangles: Vec<Loose> = self.loose().into_iter().map(raise).collect();
+        Self::assembled(3, &self.loose_vertices(), &triangles)
     }
 
-    /// Numbers the inner points of a cubic side, for both triangles.
-    fn number_side(&mut self, half_edge: usize, [p, q]: [u32; 2]) {
-        let at = |h: usize| (h / 3, 3 + 2 * (h % 3));
+    /// Numbers the inner points of a side, for both triangles.
+    fn number_side(&mut self, half_edge: usize, numbers: &[u32]) {
+        let at = |h: usize| (h / 3, 3 + numbers.len() * (h % 3));
         let (t, start) = at(half_edge);
-        (self.triangles[t][start], self.triangles[t][start + 1]) = (p, q);
+        self.triangles[t][start..start + numbers.len()].copy_from_slice(numbers);
         let twin = self.twins[half_edge];
         if twin != NONE {
             let (t, start) = at(twin as usize);
-            (self.triangles[t][start], self.triangles[t][start + 1]) = (q, p);
+            let there = &mut self.triangles[t][start..start + numbers.len()];
+            there.copy_from_slice(numbers);
+            there.reverse();
         }
     }
 
@@ -152,28 +226,65 @@ impl Elements {
         [t[0], t[1], t[2]]
     }
 
-    /// A mesh with these triangles, and what else a mesh of the same vertices has.
-    pub(crate) fn to_mesh(&self, like: &Mesh) -> Mesh {
-        let mut mesh = like.clone();
+    /// The mesh: its labels are those of the straight mesh that it was.
+    pub(crate) fn to_mesh(&self, straight: &Mesh) -> Mesh {
         let space = |p: &Point| [p.x, p.y, 0.0];
-        mesh.points = self.points[..self.vertices].iter().map(space).collect();
-        mesh.triangles = (0..self.triangles.len()).map(|t| self.corners(t)).collect();
-        let mut nodes: Vec<[f64; 3]> = self.points[self.vertices..].iter().map(space).collect();
-        let first = self.vertices as u32;
+        let count = self.vertices();
+        let mut now = vec![NONE; straight.points.len()];
+        for (v, &source) in (0..).zip(&self.sources).filter(|(_, source)| **source != NONE) {
+            now[source as usize] = v;
+        }
+        let of_list = |list: &[u32]| list.iter().map(|&v| now[v as usize]).collect();
+        let label = |&source: &u32| if source == NONE { 0 } else { straight.point_labels[source as usize] };
+        let mut mesh = Mesh {
+            points: self.points[..count].iter().map(space).collect(),
+            point_labels: self.sources.iter().map(label).collect(),
+            triangles: (0..self.triangles.len()).map(|t| self.corners(t)).collect(),
+            triangle_labels: self.labels.clone(),
+            corners: of_list(&straight.corners),
+            required_points: of_list(&straight.required_points),
+            ..Mesh::default()
+        };
+        self.add_edges(straight, &mut mesh);
+        mesh.curved = Some(self.nodes());
+        mesh
+    }
+
+    /// Labelled edges, each in the direction of the one that it is of.
+    fn add_edges(&self, straight: &Mesh, mesh: &mut Mesh) {
+        let required = marked(straight.edges.len(), straight.required_edges.iter().copied());
+        let once = (0..self.twins.len()).filter(|&h| self.twins[h] == NONE || h < self.twins[h] as usize);
+        for h in once.filter(|&h| self.held[h] != NONE) {
+            let source = self.held[h] as usize;
+            let [a, b] = [h, Self::next(h)].map(|h| self.origin(h));
+            let [from, to] = straight.edges[source].map(|v| straight.point(v));
+            let is_along = (to - from).dot(mesh.point(b) - mesh.point(a)) > 0.0;
+            if required[source] {
+                mesh.required_edges.push(mesh.edges.len() as u32);
+            }
+            mesh.edges.push(if is_along { [a, b] } else { [b, a] });
+            mesh.edge_labels.push(straight.edge_labels[source]);
+        }
+    }
+
+    /// The nodes of the triangles.
+    fn nodes(&self) -> Curved {
+        let space = |p: Point| [p.x, p.y, 0.0];
+        let first = self.vertices() as u32;
+        let mut nodes = vec![[0.0; 3]; self.points.len() - self.vertices()];
         for numbers in self.sides() {
             let points: Vec<Point> = numbers.iter().map(|&n| self.points[n as usize]).collect();
-            for (number, node) in numbers[1..].iter().zip(nodes_of_curve(&points)) {
-                nodes[(number - first) as usize] = space(&self.within(*number, node));
+            for (&number, node) in numbers[1..].iter().zip(nodes_of_curve(&points)) {
+                nodes[(number - first) as usize] = space(self.within(number, node));
             }
         }
         let middle = Rule::middle(self.order);
         for t in 0..self.triangles.len() * usize::from(self.order == 3) {
             let number = self.triangles[t][9] - first;
-            nodes[number as usize] = space(&middle.image(&self.of_triangle(&self.points, t)));
+            nodes[number as usize] = space(middle.image(&self.of_triangle(&self.points, t)));
         }
         let triangles = (0..self.triangles.len()).flat_map(|t| &self.numbers(t)[3..]).map(|n| n - first).collect();
-        mesh.curved = Some(Curved { order: self.order, nodes, triangles });
-        mesh
+        Curved { order: self.order, nodes, triangles }
     }
 
     /// A place, put where what holds a point allows it.
@@ -236,17 +347,12 @@ impl<'a> Straight<'a> {
         Self { mesh, is_fixed, neighbours }
     }
 
-    fn hold(&self, vertex: usize) -> Hold {
-        match self.neighbours[vertex][..] {
+    fn hold(&self, vertex: u32) -> Hold {
+        match self.neighbours[vertex as usize][..] {
             [] => Hold::Free,
-            [a, b] => Hold::Along([self.end(vertex as u32, a), self.end(vertex as u32, b)]),
+            [a, b] => Hold::Along([self.end(vertex, a), self.end(vertex, b)]),
             _ => Hold::Fixed,
         }
-    }
-
-    /// The ends of the part that an edge is of, if it is labelled.
-    fn between(&self, [a, b]: [u32; 2]) -> Option<[Point; 2]> {
-        self.neighbours[a as usize].contains(&b).then(|| [self.end(b, a), self.end(a, b)])
     }
 
     /// The corner at the end of the way that goes from one vertex over another.

@@ -32,7 +32,7 @@ struct Flipped {
 /// Flips sides that cost less on the other diagonal, the best first and none beside another; the number of flips.
 pub(super) fn flip(elements: &mut Elements, aim: &Aim) -> usize {
     let inner: Vec<usize> = (0..elements.twins.len())
-        .filter(|&h| elements.twins[h] != NONE && h < elements.twins[h] as usize && !elements.is_held[h])
+        .filter(|&h| elements.twins[h] != NONE && h < elements.twins[h] as usize && elements.held[h] == NONE)
         .collect();
     let rule = Rule::of(elements.order);
     let found: Vec<Flipped> = inner.par_iter().filter_map(|&h| tried(elements, aim, &rule, h)).collect();
@@ -104,7 +104,7 @@ impl Pair {
     fn flip(self, elements: &mut Elements, points: &[[Point; MOST]; 2]) {
         let numbers = self.numbers(elements);
         let outer = self.outer();
-        let known = outer.map(|pair| pair.map(|h| (elements.twins[h], elements.is_held[h])));
+        let known = outer.map(|pair| pair.map(|h| (elements.twins[h], elements.held[h])));
         let [t, s] = self.triangles();
         let count = elements.count();
         for (triangle, numbers, points) in [(t, numbers[0], points[0]), (s, numbers[1], points[1])] {
@@ -116,8 +116,8 @@ impl Pair {
         // Sides: a d, d c, c a and d b, b c, c d.
         let new = [[3 * t, 3 * t + 2], [3 * s, 3 * s + 1]];
         for (half_edges, known) in new.into_iter().zip(known) {
-            for (h, (twin, is_held)) in half_edges.into_iter().zip(known) {
-                (elements.twins[h], elements.is_held[h]) = (twin, is_held);
+            for (h, (twin, held)) in half_edges.into_iter().zip(known) {
+                (elements.twins[h], elements.held[h]) = (twin, held);
                 if twin != NONE {
                     elements.twins[twin as usize] = h as u32;
                 }
@@ -125,7 +125,7 @@ impl Pair {
         }
         let [dc, cd] = [3 * t + 1, 3 * s + 2];
         (elements.twins[dc], elements.twins[cd]) = (cd as u32, dc as u32);
-        (elements.is_held[dc], elements.is_held[cd]) = (false, false);
+        (elements.held[dc], elements.held[cd]) = (NONE, NONE);
     }
 }
 

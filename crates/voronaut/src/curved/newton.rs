@@ -6,13 +6,16 @@ use super::system::System;
 use super::term::{Expansion, side, side_energy, triangle, triangle_energy};
 use crate::error::Result;
 use crate::geometry::{Point, Vector};
+use crate::lists::{distinct, marked};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 
-/// A step is shortened by half at most so many times, for all points alike where the energy would rise.
-const SHORTENED: usize = 6;
-/// And for the points of a triangle that would not be valid.
+/// A step is halved for all points alike where the energy would rise, and given up where less than this share is left of it.
+const LEAST_SHARE: f64 = 0.03;
+/// It is halved for the points of a triangle that would not be valid, or cost more than so many times what it did, and so much; at most
+/// so many times.
+const WORSE: (f64, f64) = (1.5, 0.1);
 const BARRED: usize = 5;
 
 /// What a curved mesh is to be good for.
@@ -24,19 +27,32 @@ pub(super) struct Aim<'a> {
 }
 
 impl Aim<'_> {
-    /// The energy of the mesh with its points at these places; sums are made in order.
-    pub(super) fn energy(&self, elements: &Elements, points: &[Point]) -> f64 {
-        let rule = Rule::of(elements.order);
-        let count = elements.count();
-        let of_triangle = |t: usize| triangle_energy(&rule, &elements.of_triangle(points, t)[..count], self.metric);
-        let all: Vec<f64> = (0..elements.triangles.len()).into_par_iter().map(of_triangle).collect();
-        let sides: Vec<Vec<u32>> = if self.lengths > 0.0 { elements.sides().collect() } else { Vec::new() };
+    /// The energy of a triangle, infinite where it is not valid.
+    fn of_triangle(&self, elements: &Elements, rule: &Rule, points: &[Point], triangle: usize) -> f64 {
+        if elements.bound(points, triangle).is_valid() {
+            triangle_energy(rule, &elements.of_triangle(points, triangle)[..elements.count()], self.metric)
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// The energies of all triangles.
+    fn of_triangles(&self, elements: &Elements, rule: &Rule) -> Vec<f64> {
+        let of_triangle = |t: usize| self.of_triangle(elements, rule, &elements.points, t);
+        (0..elements.triangles.len()).into_par_iter().map(of_triangle).collect()
+    }
+
+    /// The cost of all sides.
+    fn of_sides(&self, elements: &Elements, points: &[Point]) -> f64 {
+        if self.lengths == 0.0 {
+            return 0.0;
+        }
+        let sides: Vec<Vec<u32>> = elements.sides().collect();
         let of_side = |numbers: &Vec<u32>| {
             let points: Vec<Point> = numbers.iter().map(|&n| points[n as usize]).collect();
             side_energy(&points, self.metric, self.lengths)
         };
-        let sides: Vec<f64> = sides.par_iter().map(of_side).collect();
-        all.iter().chain(&sides).sum()
+        sides.par_iter().map(of_side).collect::<Vec<f64>>().iter().sum()
     }
 
     fn expansions(&self, elements: &Elements, system: &System) -> Vec<Expansion> {
@@ -56,6 +72,11 @@ impl Aim<'_> {
     }
 }
 
+/// The energy of a mesh.
+pub(super) fn energy(elements: &Elements, aim: &Aim) -> f64 {
+    aim.of_triangles(elements, &Rule::of(elements.order)).iter().sum::<f64>() + aim.of_sides(elements, &elements.points)
+}
+
 /// Takes Newton's steps, so many at most, until one gains less than a share of the energy. Returns the energy.
 ///
 /// # Errors
@@ -68,14 +89,31 @@ pub(super) fn minimise(
     progress: &dyn Progress,
 ) -> Result<f64> {
     let mut system = System::of(elements);
-    let mut energy = aim.energy(elements, &elements.points);
+    let rule = Rule::of(elements.order);
+    let mut energies = aim.of_triangles(elements, &rule);
+    let sum = |energies: &[f64], sides: f64| energies.iter().sum::<f64>() + sides;
+    let mut energy = sum(&energies, aim.of_sides(elements, &elements.points));
     for _ in 0..steps {
         let expansions = aim.expansions(elements, &system);
         let Some(step) = system.step(&expansions, elements) else { break };
-        let Some((points, now)) = shortened(elements, aim, &step, energy) else { break };
-        elements.points = points;
+        let mut share = 1.0;
+        let (now, moved) = loop {
+            let moved = Moved::by(elements, aim, &rule, &energies, &step, share);
+            let now = sum(&moved.energies, aim.of_sides(elements, &moved.points));
+            if std::env::var_os("CURVED_TRACE").is_some() {
+                let e = elements.triangles.len() as f64;
+                eprintln!("    share {share} {} {}", energy / e, now / e);
+            }
+            share *= 0.5;
+            if now < energy || share < LEAST_SHARE {
+                break (now, moved);
+            }
+        };
+        if now >= energy {
+            break;
+        }
         let gained = energy - now;
-        energy = now;
+        (elements.points, energies, energy) = (moved.points, moved.energies, now);
         progress.advance(1)?;
         if gained < gain * energy {
             break;
@@ -84,46 +122,44 @@ pub(super) fn minimise(
     Ok(energy)
 }
 
-/// The places after a step, shortened until the energy falls, and that energy.
-fn shortened(elements: &Elements, aim: &Aim, step: &[Vector], energy: f64) -> Option<(Vec<Point>, f64)> {
-    let mut share = 1.0;
-    for _ in 0..SHORTENED {
-        let points = barred(elements, step, share);
-        let now = aim.energy(elements, &points);
-        if now < energy {
-            return Some((points, now));
-        }
-        share *= 0.5;
-    }
-    None
+/// Where a step leads, and what triangles cost there.
+struct Moved {
+    points: Vec<Point>,
+    energies: Vec<f64>,
 }
 
-/// The places after a share of a step; where a triangle would not be valid its points go half as far, or stay in the end.
-fn barred(elements: &Elements, step: &[Vector], share: f64) -> Vec<Point> {
-    let mut shares = vec![share; elements.points.len()];
-    let mut halved = vec![0; elements.points.len()];
-    let mut points = elements.points.clone();
-    let mut moved: Vec<usize> = (0..points.len()).collect();
-    let mut suspects: Vec<usize> = (0..elements.triangles.len()).collect();
-    loop {
-        for &p in &moved {
-            let old = elements.points[p];
-            points[p] = if shares[p] > 0.0 { elements.within(p as u32, old + step[p] * shares[p]) } else { old };
+impl Moved {
+    /// A share of a step. Where a triangle would not be valid, or cost far more than before, its points go half as far, or stay in
+    /// the end: what goes wrong in one place does not hold up the others.
+    fn by(elements: &Elements, aim: &Aim, rule: &Rule, before: &[f64], step: &[Vector], share: f64) -> Self {
+        let count = elements.points.len();
+        let (mut shares, mut halved) = (vec![share; count], vec![0; count]);
+        let mut found = Self { points: elements.points.clone(), energies: before.to_vec() };
+        let mut moved: Vec<u32> = (0..count as u32).collect();
+        while !moved.is_empty() {
+            for &p in &moved {
+                let (old, share) = (elements.points[p as usize], shares[p as usize]);
+                found.points[p as usize] =
+                    if share > 0.0 { elements.within(p, old + step[p as usize] * share) } else { old };
+            }
+            let is_moved = marked(count, moved.iter().copied());
+            let near: Vec<usize> = (0..elements.triangles.len())
+                .filter(|&t| elements.numbers(t).iter().any(|&n| is_moved[n as usize]))
+                .collect();
+            let now: Vec<f64> =
+                near.par_iter().map(|&t| aim.of_triangle(elements, rule, &found.points, t)).collect();
+            for (&t, energy) in near.iter().zip(now) {
+                found.energies[t] = energy;
+            }
+            let is_bad = |t: &usize| !(found.energies[*t] <= WORSE.0 * before[*t] + WORSE.1);
+            let bad = near.into_iter().filter(is_bad);
+            moved = distinct(bad.flat_map(|t| elements.numbers(t)).copied());
+            moved.retain(|&p| shares[p as usize] > 0.0);
+            for &p in &moved {
+                halved[p as usize] += 1;
+                shares[p as usize] = if halved[p as usize] < BARRED { 0.5 * shares[p as usize] } else { 0.0 };
+            }
         }
-        let is_bad = |&t: &usize| !elements.bound(&points, t).is_valid();
-        let bad: Vec<usize> = suspects.par_iter().copied().filter(is_bad).collect();
-        if bad.is_empty() {
-            return points;
-        }
-        moved = crate::lists::distinct(bad.iter().flat_map(|&t| elements.numbers(t)).map(|&n| n as usize));
-        moved.retain(|&p| shares[p] > 0.0);
-        if moved.is_empty() {
-            return elements.points.clone();
-        }
-        for &p in &moved {
-            halved[p] += 1;
-            shares[p] = if halved[p] < BARRED { 0.5 * shares[p] } else { 0.0 };
-        }
-        suspects = (0..elements.triangles.len()).collect();
+        found
     }
 }

@@ -136,8 +136,8 @@ fn order(elements: &Elements, first: &[u32]) -> Vec<u32> {
         let (a, b) = (side[0], side[side.len() - 1]);
         (a.max(b), a.min(b), 0.0)
     });
-    let graph = Symmetric::from_triplets(elements.vertices, &edges.collect::<Vec<_>>());
-    let mut place = vec![0; elements.vertices];
+    let graph = Symmetric::from_triplets(elements.vertices(), &edges.collect::<Vec<_>>());
+    let mut place = vec![0; elements.vertices()];
     for (k, v) in (0_u32..).zip(nested_dissection(&graph)) {
         place[v as usize] = k;
     }
