@@ -27,6 +27,7 @@ pub(crate) fn mesh_of(given: &Bound<PyDict>) -> PyResult<Mesh> {
         required_edges: required_edges?,
         required_triangles: required_triangles?,
         periodic: pairs_of(given)?,
+        curved: None,
     })
 }
 

@@ -39,6 +39,7 @@ fn sample(z: f64) -> Mesh {
         required_edges: vec![2],
         required_triangles: vec![1],
         periodic: Vec::new(),
+        curved: None,
     }
 }
 

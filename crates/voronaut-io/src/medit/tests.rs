@@ -18,6 +18,7 @@ fn sample(z: f64) -> Mesh {
         required_edges: vec![1],
         required_triangles: vec![1],
         periodic: Vec::new(),
+        curved: None,
     }
 }
 

@@ -18,6 +18,7 @@ fn sample(z: f64) -> Document {
         required_edges: vec![1],
         required_triangles: vec![1],
         periodic: Vec::new(),
+        curved: None,
     };
     let field = |name: &str, values| Field { name: name.into(), values };
     let tensor = |i: f64| [1.0 + i, 0.1 * i, 2.0, 0.5, -0.3, 1e-5 + i];

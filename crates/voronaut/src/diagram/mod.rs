@@ -31,7 +31,7 @@ pub use resolve::{RESOLVE_ROUNDS, Resolved, resolve};
 pub(crate) use seeds::Care;
 
 use crate::canvas::{Canvas, Draped};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geodesic::{Geodesic, Label, MarchCounters, Marching, Method, NO_COLOUR, Propagation, Sources, Support};
 use crate::geometry::Point;
 use crate::metric::{MetricField, check_field};
@@ -84,7 +84,7 @@ impl<'a> Diagram<'a> {
     /// The diagram of seeds by fast marching with circular waves, all fronts at once.
     ///
     /// # Errors
-    /// [`Error::Domain`] of a seed outside the domain.
+    /// [`Error::Domain`](crate::Error::Domain) of a seed outside the domain.
     pub fn new(canvas: &'a Canvas, field: &'a dyn MetricField, seeds: &[Point]) -> Result<Self> {
         Self::with_solver(canvas, field, seeds, Marching::on(canvas.topology()))
     }
@@ -121,7 +121,7 @@ impl<'a> Diagram<'a> {
     /// The diagram of a kind; a method, on what of the canvas it travels on, is for the Riemannian one.
     ///
     /// # Errors
-    /// As for [`Diagram::new`]; [`Error::Unsupported`] of a method that does not drive diagrams; [`Error::Metric`] where the metric is not positive definite at a seed.
+    /// As for [`Diagram::new`]; [`Error::Unsupported`](crate::Error::Unsupported) of a method that does not drive diagrams; [`Error::Metric`](crate::Error::Metric) where the metric is not positive definite at a seed.
     pub fn of_kind(
         kind: Kind,
         canvas: &'a Canvas,
@@ -188,7 +188,7 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// Inserts a seed by one front from it; returns its colour.
     ///
     /// # Errors
-    /// [`Error::Domain`] outside the domain, on a surface of what is no canvas vertex; the diagram is as before.
+    /// [`Error::Domain`](crate::Error::Domain) outside the domain, on a surface of what is no canvas vertex; the diagram is as before.
     pub fn insert(&mut self, at: G::Place) -> Result<u32> {
         let colour = self.seeds.len() as u32;
         let starts = self.ground.starts(at)?;
@@ -200,11 +200,12 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// Moves a seed, which keeps its colour.
     ///
     /// # Errors
-    /// [`Error::Domain`] where there is no such seed, or it would leave the domain; the diagram is as before.
-    pub fn move_to(&mut self, colour: u32, to: G::Place) -> Result<()> {
+    /// [`Error::Domain`](crate::Error::Domain) where there is no such seed, or it would leave the domain; the diagram is as before.
+    #[cfg(test)]
+    pub(crate) fn move_to(&mut self, colour: u32, to: G::Place) -> Result<()> {
         if self.seed(colour).is_none() {
             let help = "colours are those that insertions returned and removals have not ended";
-            return Err(Error::domain("no such seed", format!("colour {colour}"), help));
+            return Err(crate::Error::domain("no such seed", format!("colour {colour}"), help));
         }
         let starts = self.ground.starts(to)?;
         self.place(colour, to, starts);

@@ -1,12 +1,14 @@
 //! The mesh that leaves the program: plain arrays, as every format and every solver wants them; and where in a planar one
 //! a point is.
 
+mod curved;
 pub(crate) mod edges;
 mod locate;
 mod network;
 mod periodic;
 mod solution;
 
+pub use curved::Curved;
 pub(crate) use edges::edges_of;
 pub use edges::{EdgeSide, Edges};
 pub(crate) use locate::{Located, Locator};
@@ -48,6 +50,8 @@ pub struct Mesh {
     pub required_triangles: Vec<u32>,
     /// Curves of the boundary whose vertices correspond.
     pub periodic: Vec<Periodic>,
+    /// The triangles' nodes beyond their vertices, where they are of order 2 or 3.
+    pub curved: Option<Curved>,
 }
 
 impl Mesh {
@@ -93,7 +97,8 @@ impl Mesh {
         format!("vertex {} {}", vertex + 1, self.point(vertex as u32))
     }
 
-    /// Whether triangles, edges, corners and what is required refer to vertices and edges that exist.
+    /// Whether triangles, edges, corners and what is required refer to vertices and edges that exist, and curved triangles to nodes
+    /// that neighbours share.
     ///
     /// # Errors
     /// [`Error::Mesh`] with the number at fault.
@@ -115,7 +120,7 @@ impl Mesh {
                 return Err(Error::mesh(what, place, "correct the number"));
             }
         }
-        Ok(())
+        self.curved.as_ref().map_or(Ok(()), |curved| curved.check_numbers(&self.triangles))
     }
 }
 

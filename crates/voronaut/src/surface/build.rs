@@ -65,6 +65,7 @@ impl Surface {
             required_edges: marked(|mark| mark.is_required),
             required_triangles: self.required_triangles.iter().map(|f| f.0).collect(),
             periodic: Vec::new(),
+            curved: None,
         }
     }
 

@@ -42,6 +42,7 @@ pub(super) fn emit(work: &mut Work, sewn: &Sewn) -> Mesh {
             .collect(),
         edges: edges.ends,
         periodic: Vec::new(),
+        curved: None,
     }
 }
 

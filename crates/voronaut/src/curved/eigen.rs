@@ -1,0 +1,65 @@
+//! Eigenvalues and eigenvectors of small symmetric matrices.
+
+/// Sweeps of rotations, at most: convergence is quadratic in the end, and six sweeps are plenty for rounding.
+const SWEEPS: usize = 8;
+/// Entries off the diagonal that are smaller, beside the greatest on it, count as none: eigenvalues are for a model of an energy.
+const SMALL: f64 = 1e-9;
+
+/// Eigenvalues with their eigenvectors, by Jacobi's rotations.
+pub(super) fn eigen<const N: usize>(mut a: [[f64; N]; N]) -> [(f64, [f64; N]); N] {
+    let mut vectors = [[0.0; N]; N];
+    (0..N).for_each(|i| vectors[i][i] = 1.0);
+    for _ in 0..SWEEPS {
+        let greatest = (0..N).map(|i| a[i][i].abs()).fold(0.0, f64::max);
+        let mut is_done = true;
+        for p in 0..N {
+            for q in p + 1..N {
+                if a[p][q].abs() > SMALL * greatest {
+                    is_done = false;
+                    rotate(&mut a, &mut vectors, p, q);
+                }
+            }
+        }
+        if is_done {
+            break;
+        }
+    }
+    std::array::from_fn(|i| (a[i][i], vectors[i]))
+}
+
+/// Makes the entry (p, q) zero (Golub and Van Loan 2013, section 8.5).
+fn rotate<const N: usize>(a: &mut [[f64; N]; N], vectors: &mut [[f64; N]; N], p: usize, q: usize) {
+    let tau = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+    let t = tau.signum() / (tau.abs() + (1.0 + tau * tau).sqrt());
+    let c = 1.0 / (1.0 + t * t).sqrt();
+    let s = t * c;
+    for row in a.iter_mut() {
+        (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+    }
+    for k in 0..N {
+        (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
+        (vectors[p][k], vectors[q][k]) = (c * vectors[p][k] - s * vectors[q][k], s * vectors[p][k] + c * vectors[q][k]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_matrix_is_the_sum_of_its_parts(entries in prop::collection::vec(-3.0..3.0, 36)) {
+            let a: [[f64; 6]; 6] = std::array::from_fn(|i| std::array::from_fn(|j| entries[6 * i.max(j) + i.min(j)]));
+            let parts = eigen(a);
+            for i in 0..6 {
+                for j in 0..6 {
+                    let sum: f64 = parts.iter().map(|(value, v)| value * v[i] * v[j]).sum();
+                    let product: f64 = parts[i].1.iter().zip(&parts[j].1).map(|(x, y)| x * y).sum();
+                    prop_assert!((sum - a[i][j]).abs() < 1e-7, "{} {}", sum, a[i][j]);
+                    prop_assert!((product - f64::from(u8::from(i == j))).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}

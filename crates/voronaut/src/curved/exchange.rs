@@ -1,0 +1,241 @@
+//! Exchange of vertices: as many go where sides are short as come where sides are long.
+
+use super::bezier::{MOST, exponents, side};
+use super::elements::{Elements, HALVINGS, Hold, Loose, Vertex};
+use super::jacobian::bound;
+use super::newton::Aim;
+use super::rules::Rule;
+use super::term::{curve_length, triangle_energy};
+use crate::geometry::{Point, Vector};
+use crate::lists::{distinct, ranked};
+use crate::mesh::edges::NONE;
+use crate::parallel::prelude::*;
+
+/// Sides that are shorter may go, and those that are longer may be halved: what is left of a longer one is not shorter than this.
+const SHORT: f64 = 0.75;
+const LONG: f64 = 1.4;
+
+/// A change of a few triangles.
+struct Change {
+    /// What the energy gains by it, before anything settles.
+    gain: f64,
+    /// Triangles that go, and those that come; a new vertex in these is `NONE`.
+    old: Vec<usize>,
+    new: Vec<Loose>,
+    /// The vertex that goes or comes.
+    vertex: Option<Vertex>,
+}
+
+/// Exchanges vertices, so many at most: pairs of a collapse and a split that lower the energy together, none beside another. The mesh
+/// with them, and their number.
+pub(super) fn exchange(elements: &Elements, aim: &Aim, most: usize) -> (Elements, usize) {
+    let rule = Rule::of(elements.order);
+    let work = Work { elements, aim, rule: &rule, loose: elements.loose() };
+    let lengths: Vec<f64> = (0..elements.twins.len()).into_par_iter().map(|h| work.length(h)).collect();
+    let halves = (0..lengths.len()).filter(|&h| elements.twins[h] == NONE || h < elements.twins[h] as usize);
+    let (mut long, mut short): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
+    for h in halves {
+        if lengths[h] > LONG {
+            long.push(h);
+        } else if lengths[h] < SHORT {
+            short.extend([Some(h), (elements.twins[h] != NONE).then_some(elements.twins[h] as usize)].into_iter().flatten());
+        }
+    }
+    let splits: Vec<Change> = long.par_iter().map(|&h| work.split(h)).collect();
+    let collapses: Vec<Change> = short.par_iter().filter_map(|&h| work.collapse(h)).collect();
+    let by_gain = |changes: &[Change]| ranked(changes.iter().zip(0..).map(|(c, i): (&Change, usize)| (-c.gain, i)));
+    let (splits_by_gain, collapses_by_gain) = (by_gain(&splits), by_gain(&collapses));
+    let mut chosen: Vec<&Change> = Vec::new();
+    let mut is_touched = vec![false; elements.triangles.len()];
+    let mut going = collapses_by_gain.into_iter();
+    for (loss, i) in splits_by_gain {
+        if chosen.len() >= 2 * most {
+            break;
+        }
+        let is_free = |change: &Change, is_touched: &[bool]| change.old.iter().all(|&t| !is_touched[t]);
+        if !is_free(&splits[i], &is_touched) {
+            continue;
+        }
+        splits[i].old.iter().for_each(|&t| is_touched[t] = true);
+        let Some((cost, j)) = going.find(|&(_, j)| is_free(&collapses[j], &is_touched)) else { break };
+        if loss + cost >= 0.0 {
+            break;
+        }
+        collapses[j].old.iter().for_each(|&t| is_touched[t] = true);
+        chosen.extend([&splits[i], &collapses[j]]);
+    }
+    (work.changed(&chosen), chosen.len() / 2)
+}
+
+struct Work<'a> {
+    elements: &'a Elements,
+    aim: &'a Aim<'a>,
+    rule: &'a Rule,
+    loose: Vec<Loose>,
+}
+
+impl Work<'_> {
+    fn length(&self, half_edge: usize) -> f64 {
+        let points: Vec<Point> =
+            self.elements.side(half_edge).iter().map(|&n| self.elements.points[n as usize]).collect();
+        curve_length(&points, self.aim.metric)
+    }
+
+    fn energy(&self, triangle: &Loose) -> f64 {
+        triangle_energy(self.rule, &triangle.points[..self.elements.count()], self.aim.metric)
+    }
+
+    fn gain(&self, old: &[usize], new: &[Loose]) -> f64 {
+        let before: f64 = old.iter().map(|&t| self.energy(&self.loose[t])).sum();
+        before - new.iter().map(|t| self.energy(t)).sum::<f64>()
+    }
+
+    /// A triangle with the corner that a half-edge leaves first.
+    fn from(&self, half_edge: usize) -> Loose {
+        let turned = |by: usize| {
+            let (old, order) = (self.loose[half_edge / 3], self.elements.order);
+            let mut new = old;
+            for i in 0..3 {
+                (new.corners[i], new.held[i]) = (old.corners[(i + by) % 3], old.held[(i + by) % 3]);
+                for (to, from) in side(order, i).zip(side(order, (i + by) % 3)) {
+                    new.points[to] = old.points[from];
+                }
+            }
+            new
+        };
+        turned(half_edge % 3)
+    }
+
+    /// Halves a side and the triangles beside it, which stay what they are.
+    fn split(&self, half_edge: usize) -> Change {
+        let twin = self.elements.twins[half_edge];
+        let both = [Some(half_edge), (twin != NONE).then_some(twin as usize)];
+        let mut change = Change { gain: 0.0, old: Vec::new(), new: Vec::new(), vertex: None };
+        for h in both.into_iter().flatten() {
+            let triangle = self.from(h);
+            change.old.push(h / 3);
+            change.new.extend(halves(&triangle, self.elements.order));
+        }
+        let held = change.new[0].held[0];
+        let [a, b] = [half_edge, Elements::next(half_edge)].map(|h| self.elements.origin(h) as usize);
+        let line = |v: usize| if let Hold::Along(line) = self.elements.holds[v] { Some(line) } else { None };
+        let ends = || [a, b].map(|v| self.elements.points[v]);
+        let hold =
+            if held == NONE { Hold::Free } else { Hold::Along(line(a).or(line(b)).unwrap_or_else(ends)) };
+        change.vertex = Some(Vertex { place: change.new[0].points[1], hold, source: NONE });
+        change.gain = self.gain(&change.old, &change.new);
+        change
+    }
+
+    /// Moves the vertex that a half-edge leaves onto the one that it goes to, where that leaves valid triangles.
+    fn collapse(&self, half_edge: usize) -> Option<Change> {
+        let elements = self.elements;
+        let [v, w] = [half_edge, Elements::next(half_edge)].map(|h| elements.origin(h));
+        let held = elements.held[half_edge];
+        match elements.holds[v as usize] {
+            Hold::Fixed => return None,
+            Hold::Along(_) if held == NONE => return None,
+            _ => {}
+        }
+        let around: Vec<usize> = elements.around(half_edge).collect();
+        let beside: Vec<usize> =
+            [Some(half_edge), (elements.twins[half_edge] != NONE).then_some(elements.twins[half_edge] as usize)]
+                .into_iter()
+                .flatten()
+                .collect();
+        let common = self.neighbours(half_edge).iter().filter(|u| self.neighbours(Elements::next(half_edge)).contains(u)).count();
+        if common != beside.len() || around.len() < 2 + beside.len() {
+            return None;
+        }
+        let away = elements.points[w as usize] - elements.points[v as usize];
+        let gone: Vec<usize> = beside.iter().map(|h| h / 3).collect();
+        let stay = around.iter().filter(|&&h| !gone.contains(&(h / 3)));
+        let new: Vec<Loose> = stay.map(|&h| self.moved(self.from(h), w, away, &gone)).collect();
+        let is_valid = |t: &Loose| bound(&t.points[..elements.count()], elements.order, HALVINGS).is_valid();
+        if !new.iter().all(is_valid) {
+            return None;
+        }
+        let old: Vec<usize> = around.iter().map(|h| h / 3).collect();
+        let gain = self.gain(&old, &new);
+        Some(Change { gain, old, new, vertex: None })
+    }
+
+    fn neighbours(&self, half_edge: usize) -> Vec<u32> {
+        let elements = self.elements;
+        let ends = elements.around(half_edge).flat_map(|h| {
+            let next = Elements::next(h);
+            [elements.origin(next), elements.origin(Elements::next(next))]
+        });
+        distinct(ends)
+    }
+
+    /// A triangle whose first corner goes to another vertex, its points with it, the less the farther away they are; sides that were there
+    /// already are as they were.
+    fn moved(&self, mut triangle: Loose, to: u32, away: Vector, gone: &[usize]) -> Loose {
+        let order = self.elements.order;
+        for (p, e) in triangle.points.iter_mut().zip(exponents(order)) {
+            *p = *p + away * (f64::from(e[0]) / order as f64);
+        }
+        triangle.corners[0] = to;
+        for &t in gone {
+            for s in 0..3 {
+                let [a, b] = [s, (s + 1) % 3].map(|i| self.loose[t].corners[i]);
+                // The side from `to` to the corner opposite, in either direction.
+                for i in [0, 2] {
+                    let [c, d] = [i, (i + 1) % 3].map(|i| triangle.corners[i]);
+                    let old: Vec<Point> = side(order, s).map(|i| self.loose[t].points[i]).collect();
+                    let places: Vec<usize> = side(order, i).collect();
+                    if [a, b] == [c, d] {
+                        places.iter().zip(&old).for_each(|(&i, &p)| triangle.points[i] = p);
+                    } else if [b, a] == [c, d] {
+                        places.iter().rev().zip(&old).for_each(|(&i, &p)| triangle.points[i] = p);
+                    } else {
+                        continue;
+                    }
+                    triangle.held[i] = self.loose[t].held[s];
+                }
+            }
+        }
+        triangle
+    }
+
+    /// The mesh with changes done, vertices and triangles numbered anew.
+    fn changed(&self, changes: &[&Change]) -> Elements {
+        let mut vertices = self.elements.loose_vertices();
+        let mut is_gone = vec![false; self.loose.len()];
+        let mut triangles = Vec::new();
+        for change in changes {
+            change.old.iter().for_each(|&t| is_gone[t] = true);
+            let new = vertices.len() as u32;
+            vertices.extend(change.vertex);
+            triangles.extend(change.new.iter().map(|&t| Loose { corners: t.corners.map(|v| if v == NONE { new } else { v }), ..t }));
+        }
+        let kept = self.loose.iter().zip(is_gone).filter(|(_, is_gone)| !is_gone).map(|(&t, _)| t);
+        let mut triangles: Vec<Loose> = kept.chain(triangles).collect();
+        let used = distinct(triangles.iter().flat_map(|t| t.corners));
+        for triangle in &mut triangles {
+            triangle.corners = triangle.corners.map(|v| used.binary_search(&v).expect("it is used") as u32);
+        }
+        let vertices: Vec<Vertex> = used.iter().map(|&v| vertices[v as usize]).collect();
+        Elements::assembled(self.elements.order, &vertices, &triangles)
+    }
+}
+
+/// Both halves of a triangle cut from the middle of its first side to the corner opposite; the new vertex is `NONE`.
+fn halves(triangle: &Loose, order: usize) -> [Loose; 2] {
+    let at = |e: [u8; 3]| exponents(order).iter().position(|f| *f == e).expect("exponents of this order");
+    let [a, b, c] = triangle.corners;
+    let [ab, bc, ca] = triangle.held;
+    let mut first = Loose { corners: [a, NONE, c], held: [ab, NONE, ca], points: [Point::default(); MOST], ..*triangle };
+    let mut second = Loose { corners: [NONE, b, c], held: [ab, bc, NONE], ..first };
+    for k in 0..=order as u8 {
+        let length = order as u8 - k;
+        let mut row: Vec<Point> = (0..=length).map(|j| triangle.points[at([length - j, j, k])]).collect();
+        for round in 0..=length {
+            first.points[at([length - round, round, k])] = row[0];
+            second.points[at([round, length - round, k])] = row[row.len() - 1];
+            row = row.windows(2).map(|pair| pair[0].midpoint(pair[1])).collect();
+        }
+    }
+    [first, second]
+}

@@ -1,0 +1,165 @@
+//! Newton's method on the energy of a curved mesh.
+
+use super::elements::Elements;
+use super::rules::Rule;
+use super::system::System;
+use super::term::{Expansion, side, side_energy, triangle, triangle_energy};
+use crate::error::Result;
+use crate::geometry::{Point, Vector};
+use crate::lists::{distinct, marked};
+use crate::metric::MetricField;
+use crate::parallel::prelude::*;
+use crate::progress::Progress;
+
+/// A step is halved for all points alike where the energy would rise, and given up where less than this share is left of it.
+const LEAST_SHARE: f64 = 0.03;
+/// It is halved for the points of a triangle that would not be valid, or cost more than so many times what it did, and so much; at most
+/// so many times.
+const WORSE: (f64, f64) = (1.5, 0.1);
+const BARRED: usize = 5;
+
+/// What a curved mesh is to be good for.
+#[derive(Clone, Copy)]
+pub(super) struct Aim<'a> {
+    pub(super) metric: &'a dyn MetricField,
+    /// The weight of the lengths of sides, beside the energy of triangles.
+    pub(super) lengths: f64,
+}
+
+impl Aim<'_> {
+    /// The energy of a triangle, infinite where it is not valid.
+    fn of_triangle(&self, elements: &Elements, rule: &Rule, points: &[Point], triangle: usize) -> f64 {
+        if elements.bound(points, triangle).is_valid() {
+            triangle_energy(rule, &elements.of_triangle(points, triangle)[..elements.count()], self.metric)
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// The energies of all triangles.
+    fn of_triangles(&self, elements: &Elements, rule: &Rule) -> Vec<f64> {
+        let of_triangle = |t: usize| self.of_triangle(elements, rule, &elements.points, t);
+        (0..elements.triangles.len()).into_par_iter().map(of_triangle).collect()
+    }
+
+    /// The cost of all sides.
+    fn of_sides(&self, elements: &Elements, points: &[Point]) -> f64 {
+        if self.lengths == 0.0 {
+            return 0.0;
+        }
+        let sides: Vec<Vec<u32>> = elements.sides().collect();
+        let of_side = |numbers: &Vec<u32>| {
+            let points: Vec<Point> = numbers.iter().map(|&n| points[n as usize]).collect();
+            side_energy(&points, self.metric, self.lengths)
+        };
+        sides.par_iter().map(of_side).collect::<Vec<f64>>().iter().sum()
+    }
+
+    fn expansions(&self, elements: &Elements, system: &System) -> Vec<Expansion> {
+        let rule = Rule::of(elements.order);
+        let (triangles, sides) = system.members.split_at(elements.triangles.len());
+        let sides = if self.lengths > 0.0 { sides } else { &[] };
+        let expand = |member: &super::system::Member| {
+            let points = member.points(&elements.points);
+            triangle(&rule, &points, &member.freedoms, self.metric)
+        };
+        let expand_side = |member: &super::system::Member| {
+            side(&member.points(&elements.points), &member.freedoms, self.metric, self.lengths)
+        };
+        let mut all: Vec<Expansion> = triangles.par_iter().map(expand).collect();
+        all.extend(sides.par_iter().map(expand_side).collect::<Vec<_>>());
+        all
+    }
+}
+
+/// The energy of a mesh.
+pub(super) fn energy(elements: &Elements, aim: &Aim) -> f64 {
+    aim.of_triangles(elements, &Rule::of(elements.order)).iter().sum::<f64>() + aim.of_sides(elements, &elements.points)
+}
+
+/// Takes Newton's steps, so many at most, until one gains less than a share of the energy. Returns the energy.
+///
+/// # Errors
+/// The work is to stop.
+pub(super) fn minimise(
+    elements: &mut Elements,
+    aim: &Aim,
+    steps: usize,
+    gain: f64,
+    progress: &dyn Progress,
+) -> Result<f64> {
+    let mut system = System::of(elements);
+    let rule = Rule::of(elements.order);
+    let mut energies = aim.of_triangles(elements, &rule);
+    let sum = |energies: &[f64], sides: f64| energies.iter().sum::<f64>() + sides;
+    let mut energy = sum(&energies, aim.of_sides(elements, &elements.points));
+    for _ in 0..steps {
+        let expansions = aim.expansions(elements, &system);
+        let Some(step) = system.step(&expansions, elements) else { break };
+        let mut share = 1.0;
+        let (now, moved) = loop {
+            let moved = Moved::by(elements, aim, &rule, &energies, &step, share);
+            let now = sum(&moved.energies, aim.of_sides(elements, &moved.points));
+            if std::env::var_os("CURVED_TRACE").is_some() {
+                let e = elements.triangles.len() as f64;
+                eprintln!("    share {share} {} {}", energy / e, now / e);
+            }
+            share *= 0.5;
+            if now < energy || share < LEAST_SHARE {
+                break (now, moved);
+            }
+        };
+        if now >= energy {
+            break;
+        }
+        let gained = energy - now;
+        (elements.points, energies, energy) = (moved.points, moved.energies, now);
+        progress.advance(1)?;
+        if gained < gain * energy {
+            break;
+        }
+    }
+    Ok(energy)
+}
+
+/// Where a step leads, and what triangles cost there.
+struct Moved {
+    points: Vec<Point>,
+    energies: Vec<f64>,
+}
+
+impl Moved {
+    /// A share of a step. Where a triangle would not be valid, or cost far more than before, its points go half as far, or stay in
+    /// the end: what goes wrong in one place does not hold up the others.
+    fn by(elements: &Elements, aim: &Aim, rule: &Rule, before: &[f64], step: &[Vector], share: f64) -> Self {
+        let count = elements.points.len();
+        let (mut shares, mut halved) = (vec![share; count], vec![0; count]);
+        let mut found = Self { points: elements.points.clone(), energies: before.to_vec() };
+        let mut moved: Vec<u32> = (0..count as u32).collect();
+        while !moved.is_empty() {
+            for &p in &moved {
+                let (old, share) = (elements.points[p as usize], shares[p as usize]);
+                found.points[p as usize] =
+                    if share > 0.0 { elements.within(p, old + step[p as usize] * share) } else { old };
+            }
+            let is_moved = marked(count, moved.iter().copied());
+            let near: Vec<usize> = (0..elements.triangles.len())
+                .filter(|&t| elements.numbers(t).iter().any(|&n| is_moved[n as usize]))
+                .collect();
+            let now: Vec<f64> =
+                near.par_iter().map(|&t| aim.of_triangle(elements, rule, &found.points, t)).collect();
+            for (&t, energy) in near.iter().zip(now) {
+                found.energies[t] = energy;
+            }
+            let is_bad = |t: &usize| !(found.energies[*t] <= WORSE.0 * before[*t] + WORSE.1);
+            let bad = near.into_iter().filter(is_bad);
+            moved = distinct(bad.flat_map(|t| elements.numbers(t)).copied());
+            moved.retain(|&p| shares[p as usize] > 0.0);
+            for &p in &moved {
+                halved[p as usize] += 1;
+                shares[p as usize] = if halved[p as usize] < BARRED { 0.5 * shares[p as usize] } else { 0.0 };
+            }
+        }
+        found
+    }
+}
