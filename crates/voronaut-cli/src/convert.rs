@@ -187,7 +187,8 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
 fn beside(mesh: &Path, format: Format, fields: &Fields) -> Option<PathBuf> {
     let Format::Medit(form) = format else { return None };
     let is_empty = fields.vertices.is_empty() && fields.triangles.is_empty();
-    (!is_empty).then(|| mesh.with_extension(form.solution_ending()))
+    let ending = if form == Form::Binary { "solb" } else { "sol" };
+    (!is_empty).then(|| mesh.with_extension(ending))
 }
 
 fn name(path: &Path) -> String {

@@ -4,6 +4,7 @@ use super::cells::{Shapes, refuse_foreign, types};
 use super::data::{Data, Joined};
 use super::grid::{Array, CELLS, Grid, Piece};
 use crate::codec::Place;
+use crate::curved::Raised;
 use crate::{Document, Fields};
 use voronaut::mesh::Mesh;
 use voronaut::{Error, Result};
@@ -19,13 +20,16 @@ pub(super) fn assemble(grid: Grid<'_>) -> Result<Document> {
     }
     let is_planar = assembly.mesh.is_planar();
     let [vertices, triangles] = [assembly.vertices, assembly.triangles].map(|joined| joined.finish(is_planar));
-    Ok(Document { mesh: assembly.mesh, fields: Fields { vertices, triangles }, notes: assembly.notes })
+    let mut document = Document { mesh: assembly.mesh, fields: Fields { vertices, triangles }, notes: assembly.notes };
+    assembly.raised.finish(&mut document, assembly.file)?;
+    Ok(document)
 }
 
 #[derive(Default)]
 struct Assembly<'a> {
     file: &'a str,
     mesh: Mesh,
+    raised: Raised,
     vertices: Joined<'a>,
     triangles: Joined<'a>,
     notes: Vec<String>,
@@ -61,6 +65,7 @@ impl<'a> Assembly<'a> {
         for vertex in shapes.triangles.as_flattened_mut().iter_mut().chain(shapes.edges.as_flattened_mut()) {
             *vertex += base as u32;
         }
+        self.raised.append(std::mem::take(&mut shapes.raised), base as u32, self.mesh.edges.len() as u32);
         self.append_cells(data, shapes, cells as usize)
     }
 
