@@ -131,7 +131,7 @@ fn renumber(mesh: &mut Mesh, numbers: &[Number], triangles: Vec<u32>, order: usi
         if number.is_ok() { mesh.points.push(point) } else { nodes.push(point) }
     }
     let mut numbered = numbers.iter();
-    mesh.point_labels.retain(|_| numbered.next().is_some_and(|number| number.is_ok()));
+    mesh.point_labels.retain(|_| numbered.next().is_some_and(std::result::Result::is_ok));
     let either = |v: &mut u32| *v = numbers[*v as usize].unwrap_or_else(|node| node);
     mesh.triangles.as_flattened_mut().iter_mut().for_each(either);
     mesh.edges.as_flattened_mut().iter_mut().for_each(either);
@@ -368,11 +368,11 @@ mod tests {
             ("EdgesP2 1 1 2 3 0", "a.mesh: point 3 (from 1) is a vertex, and a node inside a curved element"),
             ("Corners 1 5", "a.mesh: point 5 (from 1) is a vertex, and a node inside a curved element"),
             ("Edges 1 1 2 0\nEdgesP2 1 1 2 4 0", "EdgesP2 beside edges of another order in a.mesh"),
-            ("BezierBasis 1", "curved elements by Bézier points (BezierBasis in a.mesh:5)"),
-            ("TrianglesP2Ordering 5\n2 0 0 0 2 0 0 0 2 1 1 0 0 1 1", "a.mesh:6: TrianglesP2Ordering has 5 rows"),
+            ("BezierBasis 1", "curved elements by Bézier points (BezierBasis in a.mesh:4)"),
+            ("TrianglesP2Ordering 5\n2 0 0 0 2 0 0 0 2 1 1 0 0 1 1", "a.mesh:5: TrianglesP2Ordering has 5 rows"),
             (
                 "TrianglesP2Ordering 6\n2 0 0\n0 2 0\n0 0 2\n1 1 0\n1 1 0\n1 0 1",
-                "a.mesh:10: a node that elements do not",
+                "a.mesh:9: a node that elements do not",
             ),
         ] {
             let found = message(&format!("{curved}{sections}"));

@@ -131,7 +131,7 @@ impl Mesh {
     pub(crate) fn demand_straight(&self) -> Result<()> {
         let Some(curved) = &self.curved else { return Ok(()) };
         let what = format!("triangles of order {}, where straight ones are needed", curved.order);
-        Err(Error::unsupported(what, "give a straight mesh, one of `order` 1"))
+        Err(Error::unsupported(what, "give straight triangles: convert the mesh with `order` 1"))
     }
 }
 

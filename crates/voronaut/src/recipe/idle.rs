@@ -82,6 +82,7 @@ impl MeshOptions {
         let canvas = (has_canvas, "where no canvas is made");
         let differs = |one: f64, other: f64| one.to_bits() != other.to_bits();
         idle(&[
+            ("order", self.order != usual.order, &[plane, voronoi]),
             ("periodic", !self.periodic.is_empty(), &[plane, voronoi]),
             ("fit", self.fit, &[surface]),
             ("stiffness", differs(self.stiffness, usual.stiffness), &[surface, (self.fit, "without `fit`")]),

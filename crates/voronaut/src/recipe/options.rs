@@ -16,6 +16,8 @@ pub struct MeshOptions {
     /// How far (Euclidean) mesh edges may stray from the boundary; `None`: the domain's own tolerance. Of a surface: how far
     /// mesh and surface may be from each other; where that asks for more vertices, and no number is given, there are more.
     pub hausd: Option<f64>,
+    /// In the plane: the order of triangles, 1 for straight ones; those of order 2 and 3 are curved to follow the metric.
+    pub order: usize,
     /// In the plane: pairs of labels of boundary curves that a rotation and a translation map onto each other. The mesh's edges on the two
     /// correspond ([`Mesh::periodic`](crate::mesh::Mesh::periodic)).
     pub periodic: Vec<[i32; 2]>,
@@ -61,6 +63,7 @@ impl Default for MeshOptions {
             vertices: None,
             complexity: None,
             hausd: None,
+            order: 1,
             periodic: Vec::new(),
             fit: false,
             stiffness: FitOptions::default().stiffness,
