@@ -1,6 +1,7 @@
 //! Curved triangles and edges as files have them: elements list their nodes behind their corners, in the order of [`Curved`], and all
 //! nodes are points like vertices. So it is in Gmsh's files, in VTK's and, by default, in Medit's.
 
+use super::codec::Place;
 use super::{Document, Fields};
 use std::borrow::Cow;
 use std::io;
@@ -56,17 +57,16 @@ impl Raised {
     /// # Errors
     /// [`Error::Unsupported`] of triangles of different orders; [`Error::Parse`] of nodes that are vertices elsewhere, and of curved
     /// edges that are not those of a triangle.
-    pub(super) fn finish(self, document: &mut Document, file: &str) -> Result<()> {
+    pub(super) fn finish(self, document: &mut Document, place: Place<'_>) -> Result<()> {
         if self.edges.is_empty() && self.triangles.is_empty() {
             return Ok(());
         }
-        let order = self.order(&document.mesh, file)?;
-        let vertices = self.vertices(&document.mesh, file)?;
+        let order = self.order(&document.mesh, place.file)?;
+        let vertices = self.vertices(&document.mesh, place)?;
         renumber(&mut document.mesh, &vertices, self.triangles, order);
         let edges = self.edges.iter().map(|(edge, nodes)| (*edge, nodes.as_slice()));
-        demand_sides(&document.mesh, edges, &vertices, file)?;
-        let fault = |error: Error| Error::parse(file, error.to_string(), error.help());
-        document.mesh.check_numbers().map_err(fault)?;
+        demand_sides(&document.mesh, edges, &vertices, place)?;
+        document.mesh.check_numbers().map_err(|error| place.error(error.to_string(), error.help()))?;
         let inside = vertices.iter().filter(|vertex| vertex.is_err()).count();
         if inside > 0 && !document.fields.vertices.is_empty() {
             let kept: Vec<Row> = (0..).zip(&vertices).filter(|(_, v)| v.is_ok()).map(|(i, _)| vec![(i, 1.0)]).collect();
@@ -96,7 +96,7 @@ impl Raised {
     }
 
     /// The number of each point among the vertices, or else among the nodes.
-    fn vertices(&self, mesh: &Mesh, file: &str) -> Result<Vec<Number>> {
+    fn vertices(&self, mesh: &Mesh, place: Place<'_>) -> Result<Vec<Number>> {
         let mut is_node = vec![false; mesh.points.len()];
         for &node in self.triangles.iter().chain(self.edges.iter().flat_map(|(_, nodes)| nodes)) {
             is_node[node as usize] = true;
@@ -105,7 +105,7 @@ impl Raised {
         let mut all = corners.chain(&mesh.corners).chain(&mesh.required_points);
         if let Some(both) = all.find(|&&v| is_node[v as usize]) {
             let what = format!("point {} (from 1) is a vertex, and a node inside a curved element", both + 1);
-            return Err(Error::parse(file, what, "give curved elements nodes of their own"));
+            return Err(place.error(what, "give curved elements nodes of their own"));
         }
         let mut next = [0; 2];
         let number = |is_node: bool| {
@@ -146,18 +146,18 @@ fn demand_sides<'a>(
     mesh: &Mesh,
     edges: impl Iterator<Item = (u32, &'a [u32])>,
     numbers: &[Number],
-    file: &str,
+    place: Place<'_>,
 ) -> Result<()> {
     let Ok(elements) = Elements::new(mesh) else {
         let what = "an edge that no curved triangle has";
-        return Err(Error::parse(file, what, "list edges of triangles alone, or straight triangles"));
+        return Err(place.error(what, "list edges of triangles alone, or straight triangles"));
     };
     for (edge, nodes) in edges {
         let own = nodes.iter().map(|&node| numbers[node as usize].unwrap_or_else(|node| node));
         if !own.eq(elements.between(edge as usize).iter().copied()) {
             let [a, b] = mesh.edges[edge as usize].map(|v| v + 1);
             let what = format!("the curved edge between vertices {a} and {b} has other nodes than its triangle");
-            return Err(Error::parse(file, what, "let edges and triangles share their nodes"));
+            return Err(place.error(what, "let edges and triangles share their nodes"));
         }
     }
     Ok(())
@@ -359,14 +359,11 @@ mod tests {
         for (sections, expected) in [
             ("Triangles 1 1 2 7 0", "1 triangles of order 1 beside 1 of order 2 in a.mesh"),
             ("TrianglesP3 1 1 2 3 4 5 6 4 5 6 7 0", "1 triangles of order 2 beside 1 of order 3 in a.mesh"),
-            ("EdgesP2 1 1 2 5 0", "a.mesh: the curved edge between vertices 1 and 2 has other nodes than its triangle"),
-            ("EdgesP2 1 1 7 8 0", "a.mesh: an edge that no curved triangle has"),
-            (
-                "EdgesP3 1 1 2 4 8 0",
-                "a.mesh: the curved edge between vertices 1 and 2 has other nodes than its triangle",
-            ),
-            ("EdgesP2 1 1 2 3 0", "a.mesh: point 3 (from 1) is a vertex, and a node inside a curved element"),
-            ("Corners 1 5", "a.mesh: point 5 (from 1) is a vertex, and a node inside a curved element"),
+            ("EdgesP2 1 1 2 5 0", "the curved edge between vertices 1 and 2 has other nodes than its triangle"),
+            ("EdgesP2 1 1 7 8 0", "an edge that no curved triangle has"),
+            ("EdgesP3 1 1 2 4 8 0", "the curved edge between vertices 1 and 2 has other nodes than its triangle"),
+            ("EdgesP2 1 1 2 3 0", "point 3 (from 1) is a vertex, and a node inside a curved element"),
+            ("Corners 1 5", "point 5 (from 1) is a vertex, and a node inside a curved element"),
             ("Edges 1 1 2 0\nEdgesP2 1 1 2 4 0", "EdgesP2 beside edges of another order in a.mesh"),
             ("BezierBasis 1", "curved elements by Bézier points (BezierBasis in a.mesh:4)"),
             ("TrianglesP2Ordering 5\n2 0 0 0 2 0 0 0 2 1 1 0 0 1 1", "a.mesh:5: TrianglesP2Ordering has 5 rows"),
@@ -376,7 +373,7 @@ mod tests {
             ),
         ] {
             let found = message(&format!("{curved}{sections}"));
-            assert!(found.contains(expected), "{sections}: {found}");
+            assert!(found.contains(expected) && found.contains("a.mesh"), "{sections}: {found}");
         }
         let torn = message("TrianglesP2 2 1 2 3 4 5 6 0 2 1 7 8 5 6 0");
         assert!(torn.contains("the triangles beside the edge 1-2 have different nodes"), "{torn}");

@@ -69,7 +69,7 @@ impl Reader {
             list.dedup();
         }
         let mut document = Document { mesh: self.mesh, fields: self.fields, notes: self.notes };
-        self.raised.finish(&mut document, from.source.file())?;
+        self.raised.finish(&mut document, from.source.place())?;
         Ok(document)
     }
 

@@ -218,7 +218,7 @@ impl Reader {
             (self.mesh.triangles, self.mesh.triangle_labels) = (skin.triangles, skin.labels);
         }
         let mut document = Document { notes: note.into_iter().collect(), ..self.mesh.into() };
-        raised.finish(&mut document, from.source.file())?;
+        raised.finish(&mut document, from.source.place())?;
         Ok(document)
     }
 

@@ -15,13 +15,15 @@ use voronaut::{Error, Result};
 /// As of [`super::read`].
 pub(super) fn assemble(grid: Grid<'_>) -> Result<Document> {
     let mut assembly = Assembly { file: grid.file, ..Assembly::default() };
+    let mut last = 0;
     for piece in grid.pieces {
+        last = piece.byte;
         assembly.append(piece)?;
     }
     let is_planar = assembly.mesh.is_planar();
     let [vertices, triangles] = [assembly.vertices, assembly.triangles].map(|joined| joined.finish(is_planar));
     let mut document = Document { mesh: assembly.mesh, fields: Fields { vertices, triangles }, notes: assembly.notes };
-    assembly.raised.finish(&mut document, assembly.file)?;
+    assembly.raised.finish(&mut document, Place::byte(assembly.file, last))?;
     Ok(document)
 }
 
