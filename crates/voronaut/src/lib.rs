@@ -105,6 +105,7 @@ pub mod net;
 pub mod certificate;
 pub mod sampling;
 pub mod optimise;
+mod curved;
 pub mod quality;
 pub mod realisation;
 pub mod figures;

@@ -1,11 +1,13 @@
 //! Lengths, shapes and angles of a mesh in a metric.
 
+use super::curved::{shape, side_length};
 use super::faults::{Position, middle};
+use crate::curved::Rule;
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Point3, Tensor, Vector};
 use crate::lists::marked;
-use crate::mesh::{Edges, Mesh};
+use crate::mesh::{EdgeSide, Edges, Mesh};
 use crate::metric::{MetricField, Near, check_tensor};
 use crate::parallel::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
@@ -26,7 +28,7 @@ pub struct MetricQuality {
     pub worst: Worst,
 }
 
-/// Metric lengths of edges: the integral of sqrt(e' M e) along the straight edge by 5-point Gauss-Legendre.
+/// Metric lengths of edges: the integral of sqrt(e' M e) along the edge by Gauss-Legendre, of 5 points for a straight one.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct EdgeLengths {
     /// Shortest.
@@ -42,7 +44,9 @@ pub struct EdgeLengths {
 }
 
 /// 4 sqrt 3 A / (sum of the squared side lengths), A and sides in the metric M of the triangle, the log-Euclidean mean
-/// of the tensors at its vertices: 1 for an equilateral triangle, 0 for a flat one, negative for an inverted one.
+/// of the tensors at its vertices: 1 for an equilateral triangle, 0 for a flat one, negative for an inverted one. Of a curved
+/// triangle the mean over it of 2 sqrt(det C) / tr C, which is the same of a straight one in one metric: C is M as the equilateral
+/// triangle sees it through the triangle's map.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Quality {
     /// Of the worst triangle.
@@ -87,8 +91,15 @@ pub struct Spot {
 /// is not planar, [`Error::Metric`] where the tensor at a vertex or at a Gauss point is not positive definite.
 pub fn metric_quality(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQuality> {
     demand_planar(mesh)?;
+    if mesh.curved.is_some() {
+        mesh.check_numbers()?;
+        let rule = Rule::fine(mesh);
+        let (length, shape) = (|side: &_| side_length(mesh, side, metric), |t| shape(mesh, &rule, t, metric));
+        return figures(mesh, length, shape, Position::in_plane);
+    }
     let corners = Corners::of(mesh, metric)?;
-    figures(mesh, |ends| corners.edge_length(ends), |t| corners.shape(t), Position::in_plane)
+    let shape = |t: usize| Ok(corners.shape(mesh.triangles[t]));
+    figures(mesh, |side| corners.edge_length(side.ends), shape, Position::in_plane)
 }
 
 /// A planar mesh in a metric: the logarithms of the tensors at its vertices, and where the field found these.
@@ -134,21 +145,23 @@ impl<'a> Corners<'a> {
     }
 }
 
-/// The figures of a mesh from the metric length of each edge, by its vertices, and the shape of each triangle.
+/// The figures of a mesh from the metric length of each edge, by its first side, and the shape of each triangle, by its number.
 ///
 /// # Errors
-/// [`Error::Mesh`] without triangles, and the first error of a length.
+/// [`Error::Mesh`] without triangles, and the first error of a length or a shape.
 pub(super) fn figures(
     mesh: &Mesh,
-    length: impl Fn([u32; 2]) -> Result<f64> + Sync + Send,
-    shape: impl Fn([u32; 3]) -> Shape + Sync,
+    length: impl Fn(&EdgeSide) -> Result<f64> + Sync + Send,
+    shape: impl Fn(usize) -> Result<Shape> + Sync + Send,
     position: impl Fn(Point3) -> Position,
 ) -> Result<MetricQuality> {
     let edges = Edges::of(&mesh.triangles);
     let on_boundary = marked(mesh.points.len(), edges.boundary().flat_map(|side| side.ends));
     let ends: Vec<[u32; 2]> = edges.ends().collect();
-    let lengths = collect(&ends, |&ends| length(ends))?;
-    let shapes: Vec<Shape> = mesh.triangles.par_iter().map(|&t| shape(t)).collect();
+    let first: Vec<EdgeSide> = edges.iter().map(|sides| sides[0]).collect();
+    let lengths = collect(&first, length)?;
+    let numbers: Vec<usize> = (0..mesh.triangles.len()).collect();
+    let shapes = collect(&numbers, |&t| shape(t))?;
     let is_interior = |ends: &[u32; 2]| ends.iter().all(|&v| !on_boundary[v as usize]);
     let interior = ends.iter().zip(&lengths).filter(|(ends, _)| is_interior(ends)).map(|(_, &length)| length);
     let all = EdgeLengths::of(&lengths).ok_or_else(|| fault("there are no triangles", "the array of triangles"))?;
@@ -187,14 +200,7 @@ impl Spot {
     }
 }
 
-/// Nodes on [0, 1] and weights of 5-point Gauss-Legendre quadrature.
-pub(super) const GAUSS: [(f64, f64); 5] = [
-    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
-    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
-    (0.5, 0.284_444_444_444_444_44),
-    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
-    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
-];
+pub(super) use crate::curved::GAUSS;
 
 /// Metric length of the straight edge.
 pub(super) fn edge_length(ends: [Point; 2], metric: &dyn MetricField) -> Result<f64> {
@@ -213,12 +219,16 @@ pub(super) struct Shape {
 }
 
 impl Shape {
+    /// With this quality, and this smallest angle in radians.
+    pub(super) fn new(quality: f64, angle: f64) -> Self {
+        Shape { quality: if quality.is_nan() { 0.0 } else { quality }, angle: angle.to_degrees() }
+    }
+
     /// Of the triangle with these corners in the metric m.
     pub(super) fn of(m: Tensor, [a, b, c]: [Point; 3]) -> Self {
         let (ab, bc, ca) = (b - a, c - b, a - c);
         let smallest = angle(m, ab, -ca).min(angle(m, bc, -ab)).min(angle(m, ca, -bc));
-        let quality = m.shape([a, b, c]);
-        Shape { quality: if quality.is_nan() { 0.0 } else { quality }, angle: smallest.to_degrees() }
+        Self::new(m.shape([a, b, c]), smallest)
     }
 
     /// Both.
@@ -235,7 +245,7 @@ pub(super) fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {
     tensor_near(metric, p, &mut Near::default())
 }
 
-fn tensor_near(metric: &dyn MetricField, p: Point, near: &mut Near) -> Result<Tensor> {
+pub(super) fn tensor_near(metric: &dyn MetricField, p: Point, near: &mut Near) -> Result<Tensor> {
     let m = metric.at_near(p, near);
     check_tensor(m, p)?;
     Ok(m)

@@ -1,5 +1,6 @@
 //! What a mesh is worth: valid or not, good or not in a metric, close or not to its domain.
 
+mod curved;
 mod embedding;
 mod faults;
 mod geodesics;

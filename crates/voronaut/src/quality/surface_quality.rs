@@ -5,7 +5,7 @@ use super::metric_quality::{GAUSS, MetricQuality, Shape, collect, demand_vertice
 use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor, Vector, Vector3};
-use crate::mesh::Mesh;
+use crate::mesh::{EdgeSide, Mesh};
 use crate::metric::MetricField;
 use crate::surface::metric::{SurfaceMetric, check_tensor3};
 use crate::surface::{Nearest, Surface};
@@ -25,7 +25,8 @@ pub fn surface_quality(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetri
     demand_vertices(mesh)?;
     let field = Field::new(surface, metric);
     let shape = field.shapes(mesh)?;
-    figures(mesh, |ends| field.length(ends.map(|v| mesh.position(v))), shape, Position::from)
+    let length = |side: &EdgeSide| field.length(side.ends.map(|v| mesh.position(v)));
+    figures(mesh, length, |t| Ok(shape(mesh.triangles[t])), Position::from)
 }
 
 /// A metric field, and where to look it up.

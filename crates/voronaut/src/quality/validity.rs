@@ -1,5 +1,6 @@
 //! Whether a mesh is a mesh: by counting and by exact predicates, never by a tolerance.
 
+use super::curved::Jacobians;
 use super::embedding;
 use super::faults::{Fault, duplicates, middle};
 use super::meetings::{Excused, Meetings};
@@ -22,6 +23,12 @@ pub struct Validity {
     pub valid: bool,
     /// Triangles whose exact orientation is not counter-clockwise; flat ones count (fault).
     pub inverted: usize,
+    /// Curved triangles whose Jacobian is not known to be positive everywhere, nor not to be somewhere (fault).
+    #[serde(skip_serializing_if = "is_zero")]
+    pub undecided: usize,
+    /// Of a curved mesh: the least Jacobian is at least so much, in units of its mean in the same triangle; 1 of straight triangles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_jacobian: Option<f64>,
     /// Edges with more than two triangles, or with two that traverse it in the same direction (fault).
     pub non_manifold_edges: usize,
     /// Vertices of a surface whose triangles are not one fan, ends of edges that are not manifold among them (fault). 0 of a
@@ -52,6 +59,10 @@ pub struct Validity {
     pub first_fault: Option<Fault>,
 }
 
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
 /// Examines a mesh in O(n log n). Never fails: what is wrong is in the answer.
 pub fn validity(mesh: &Mesh) -> Validity {
     examine(mesh, None)
@@ -71,13 +82,17 @@ fn examine(mesh: &Mesh, surface: Option<&Meetings>) -> Validity {
         let is_planar = surface.is_none() && mesh.is_planar();
         let edges = Edges::of(&mesh.triangles);
         found.examine_vertices(mesh, surface);
-        found.examine_triangles(mesh, is_planar);
+        if is_planar && mesh.curved.is_some() {
+            found.examine_curved(mesh);
+        } else {
+            found.examine_triangles(mesh, is_planar);
+        }
         found.examine_edges(mesh, &edges);
-        if is_planar {
+        if is_planar && mesh.curved.is_none() {
             if found.first_fault.is_none() {
                 found.examine_embedding(mesh, &edges);
             }
-        } else {
+        } else if !is_planar {
             found.examine_fans(mesh, &edges);
             if found.inverted == 0 && found.not_finite == 0 {
                 found.examine_contacts(mesh, surface);
@@ -195,6 +210,23 @@ impl Validity {
             let [a, b, c] = mesh.triangles[t].map(|v| u64::from(v) + 1);
             let what = format!("triangle {} (vertices {a} {b} {c}) is inverted or flat", t + 1);
             self.fault_at(what, mesh, &mesh.triangles[t]);
+        }
+    }
+
+    fn examine_curved(&mut self, mesh: &Mesh) {
+        if let Err(error) = mesh.check_numbers() {
+            self.out_of_range += 1;
+            return self.fault(error.to_string(), "the nodes of curved triangles");
+        }
+        let found = Jacobians::of(mesh);
+        (self.inverted, self.undecided) = (found.inverted.len(), found.undecided.len());
+        (self.least_jacobian, self.area) = (Some(found.least), found.area);
+        for (wrong, what) in
+            [(found.inverted, "folds"), (found.undecided, "may fold: its Jacobian comes too near zero")]
+        {
+            if let Some(&t) = wrong.first() {
+                self.fault_at(format!("curved triangle {} {what}", t + 1), mesh, &mesh.triangles[t]);
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod adapt;
 mod certified;
+mod curved;
 mod dual;
 mod field;
 mod idle;
@@ -132,6 +133,10 @@ pub fn mesh_for(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
+    curved::demand_possible(options)?;
+    if options.order > 1 {
+        return curved::mesh_curved(domain, field, options, progress);
+    }
     if options.mesher == Mesher::StarSet {
         return mesher::by_stars(domain, field, options, progress);
     }

@@ -47,8 +47,7 @@ impl Symmetric {
     pub(crate) fn plus_diagonal(mut self, added: &[f64]) -> Self {
         assert_eq!(added.len(), self.size(), "a number for each row");
         for (i, value) in added.iter().enumerate() {
-            let at = self.place_of_diagonal(i);
-            self.values[at] += value;
+            self.add(self.place(i, i), *value);
         }
         self
     }
@@ -64,8 +63,24 @@ impl Symmetric {
         (0..self.size()).map(|i| self.diagonal_at(i)).collect()
     }
 
-    pub(super) fn diagonal_at(&self, i: usize) -> f64 {
-        self.values[self.place_of_diagonal(i)]
+    /// Sets all entries to zero.
+    pub(crate) fn clear(&mut self) {
+        self.values.fill(0.0);
+    }
+
+    /// Adds to the entry at a place, and to that alone: the caller adds to its mirror image as much.
+    pub(crate) fn add(&mut self, place: u32, value: f64) {
+        self.values[place as usize] += value;
+    }
+
+    /// The place of an entry that the matrix has.
+    pub(crate) fn place(&self, i: usize, j: usize) -> u32 {
+        (self.starts[i] + self.neighbours(i).partition_point(|&k| (k as usize) < j)) as u32
+    }
+
+    /// The entry on the diagonal.
+    pub(crate) fn diagonal_at(&self, i: usize) -> f64 {
+        self.values[self.place(i, i) as usize]
     }
 
     /// Columns and values of a row, columns rising.
@@ -86,10 +101,6 @@ impl Symmetric {
 
     fn range(&self, i: usize) -> Range<usize> {
         self.starts[i]..self.starts[i + 1]
-    }
-
-    fn place_of_diagonal(&self, i: usize) -> usize {
-        self.starts[i] + self.neighbours(i).partition_point(|&j| (j as usize) < i)
     }
 }
 

@@ -1,0 +1,57 @@
+//! Meshes of order 2 and 3.
+
+use super::settle::Stopwatch;
+use super::{MeshOptions, Meshed, Mesher, mesh_for};
+use crate::curved::{POWERS, Tempered, curved};
+use crate::domain::Domain;
+use crate::error::{Error, Result};
+use crate::metric::{MetricField, Scaled, complexity};
+use crate::progress::Progress;
+use crate::quality;
+
+/// Half the square root of 3: the metric area that a unit mesh has for each vertex, two equilateral triangles.
+const AREA_PER_VERTEX: f64 = 0.866_025_403_784_438_6;
+
+/// Refuses an order that there is none of, and what does not go with curved triangles.
+///
+/// # Errors
+/// [`Error::Unsupported`].
+pub(super) fn demand_possible(options: &MeshOptions) -> Result<()> {
+    if !(1..=3).contains(&options.order) {
+        let what = format!("triangles of order {}", options.order);
+        return Err(Error::unsupported(what, "use `order` 1, 2 or 3"));
+    }
+    let refused = [
+        ("`mesher=starset`", options.mesher == Mesher::StarSet),
+        ("`periodic`", !options.periodic.is_empty()),
+        ("`net`", options.net),
+    ];
+    let found = refused.into_iter().find(|(_, is_set)| options.order > 1 && *is_set);
+    found.map_or(Ok(()), |(name, _)| Err(Error::unsupported(format!("{name} with curved triangles"), "use `order` 1")))
+}
+
+/// Meshes a domain with triangles of order 2 or 3: first a straight mesh of the metric made less anisotropic, then curved, and
+/// on to the metric as it is. With a number of vertices given the factor on the metric is that for which all triangles of so many
+/// vertices, but for the boundary's, could have the area of equilateral ones with unit sides.
+///
+/// # Errors
+/// As for [`mesh_for`].
+pub(super) fn mesh_curved(
+    domain: &Domain,
+    field: &dyn MetricField,
+    options: &MeshOptions,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    let watch = Stopwatch::new(progress);
+    let straight = MeshOptions { order: 1, ..options.clone() };
+    let mild = Tempered { field, power: POWERS[0] };
+    let start = mesh_for(domain, &mild, None, &straight, progress)?;
+    let metric_scale = match (options.vertices, options.complexity) {
+        (Some(count), _) => count as f64 * AREA_PER_VERTEX / complexity(field, &domain.triangles())?,
+        _ => start.metric_scale,
+    };
+    let unit = Scaled { field, factor: metric_scale };
+    let mesh = watch.time("curve", || curved(&start.mesh, &unit, options.order, progress))?;
+    watch.time("check", || quality::check(&mesh))?;
+    Ok(Meshed { mesh, metric_scale, seconds: [start.seconds.clone(), watch.seconds()].concat(), ..start })
+}
