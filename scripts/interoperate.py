@@ -43,6 +43,7 @@ def main():
             with_gmsh(args, place, name, mesh)
             with_mmg(args, place, name, mesh)
         from_gmsh(args, place)
+        curved(args, place)
         from_bamg(args, place)
     sys.exit(1 if failed else 0)
 
@@ -263,6 +264,117 @@ def with_mmg(args, place, name, mesh):
         values = written.with_suffix(".sol")
         if values.is_file():
             run(args.voronaut, "convert", values, place / "again.solb", "-q")
+
+
+def curved(args, place):
+    """Disks of order 2 and 3, by gmsh: what voronaut makes of them is read back with the same nodes in the same order."""
+    try:
+        import gmsh
+    except (ImportError, OSError):
+        return
+    for order in (2, 3):
+        gmsh.clear()
+        gmsh.model.occ.addDisk(0, 0, 0, 2, 1)
+        gmsh.model.occ.synchronize()
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.5)
+        gmsh.model.mesh.generate(2)
+        gmsh.model.mesh.setOrder(order)
+        truth = nodes_of_gmsh()
+        for name, version, binary in [(f"{v} binary={b}", v, b) for v in (2.2, 4.1) for b in (0, 1)] + [("mesh", 4.1, 0)]:
+            gmsh.option.setNumber("Mesh.MshFileVersion", version)
+            gmsh.option.setNumber("Mesh.Binary", binary)
+            file = place / ("curved.mesh" if name == "mesh" else f"curved{version}{binary}.msh")
+            gmsh.write(str(file))
+            through(args, place, f"order {order}: gmsh {name}", file, truth)
+
+
+def through(args, place, title, file, truth):
+    """Converts a file to every format with curves, and compares what others read there."""
+    for ending, options in [("msh", ()), ("msh", ("--binary",)), ("msh", ("--msh-version", "2.2")),
+                            ("msh", ("--msh-version", "2.2", "--binary")), ("mesh", ()), ("meshb", ()), ("vtu", ())]:
+        out = place / f"curved_ours.{ending}"
+        run(args.voronaut, "convert", file, out, "-q", *options)
+        again = place / "curved_again.msh"
+        run(args.voronaut, "convert", out, again, "-q")
+        words = " ".join([ending, *options])
+        compare_nodes(f"{title} -> ours .{words} -> gmsh", truth, again, nodes_in_gmsh)
+        for program, read, endings in [("gmsh", nodes_in_gmsh, ("msh", "mesh")), ("meshio", nodes_in_meshio, ("msh", "vtu")),
+                                       ("VTK", nodes_in_vtk, ("vtu",))]:
+            if ending in endings:
+                compare_nodes(f"{title} -> {program} .{words}", truth, out, read)
+
+
+def compare_nodes(title, truth, file, read):
+    """Elements by the places of their nodes, in order; text of some programs is rounded."""
+    global failed
+    try:
+        found = read(file)
+    except ImportError:
+        return
+    kinds = {kind: len(elements) for kind, elements in found.items()}
+    off = max((abs(x - y) for kind in truth for a, b in zip(truth[kind], found.get(kind, [])) for p, q in zip(a, b)
+               for x, y in zip(p, q)), default=0)
+    same = kinds == {kind: len(elements) for kind, elements in truth.items()} and off < 1e-10
+    failed += not same
+    print(title.ljust(64), kinds, " ", "same" if same else f"nodes differ by {off:.3g}", flush=True)
+
+
+def in_order(elements):
+    """Of each kind, by how many nodes there are, the elements in the order of their places."""
+    found = collections.defaultdict(list)
+    for element in elements:
+        found[len(element)].append([tuple(map(float, p)) for p in element])
+    # Places of the corners differ by more than rounding.
+    return {kind: sorted(all, key=lambda e: [[round(x, 6) + 0.0 for x in p] for p in e]) for kind, all in found.items()}
+
+
+def nodes_in_gmsh(file):
+    import gmsh
+    own = gmsh.model.getCurrent()
+    gmsh.model.add("read")
+    gmsh.merge(str(file))
+    found = nodes_of_gmsh()
+    gmsh.model.remove()
+    gmsh.model.setCurrent(own)
+    return found
+
+
+def nodes_of_gmsh():
+    """Of the open model, lines and triangles of any order."""
+    import gmsh
+    tags, places, _ = gmsh.model.mesh.getNodes()
+    at = dict(zip(tags.tolist(), places.reshape(-1, 3).tolist()))
+    elements = []
+    for dimension in (1, 2):
+        for kind, _, nodes in zip(*gmsh.model.mesh.getElements(dimension)):
+            count = gmsh.model.mesh.getElementProperties(kind)[3]
+            elements += [[at[node] for node in element] for element in nodes.reshape(-1, count).tolist()]
+    return in_order(elements)
+
+
+def nodes_in_meshio(file):
+    import meshio
+    with contextlib.redirect_stdout(io.StringIO()):
+        mesh = meshio.read(file)
+    kinds = {"line3", "triangle6", "line4", "triangle10", "VTK_LAGRANGE_CURVE", "VTK_LAGRANGE_TRIANGLE"}
+    cells = [block for block in mesh.cells if block.type in kinds]
+    places = [[*p, 0.0][:3] for p in mesh.points.tolist()]
+    return in_order([places[node] for node in element] for block in cells for element in block.data.tolist())
+
+
+def nodes_in_vtk(file):
+    import vtk
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(file))
+    reader.Update()
+    grid = reader.GetOutput()
+    kinds = {21, 22, 68, 69}
+    elements = []
+    for i in range(grid.GetNumberOfCells()):
+        if grid.GetCellType(i) in kinds:
+            cell = grid.GetCell(i)
+            elements.append([grid.GetPoint(cell.GetPointId(k)) for k in range(cell.GetNumberOfPoints())])
+    return in_order(elements)
 
 
 def from_bamg(args, place):

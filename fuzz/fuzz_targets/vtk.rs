@@ -13,7 +13,9 @@ fuzz_target!(|input: &[u8]| {
         // XML has no such characters: the writer puts others in their place.
         return;
     }
-    for write in [vtk::write_vtu, vtk::write_vtp] {
+    // Polygons have no place for curves.
+    let writers = if document.mesh.curved.is_some() { 1 } else { 2 };
+    for write in &[vtk::write_vtu, vtk::write_vtp][..writers] {
         let file = written(|out| write(&document.mesh, &document.fields, out));
         let again = vtk::read(file.as_slice(), PLACE).expect("its own file");
         assert_same_document(&again, &document);

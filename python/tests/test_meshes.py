@@ -162,6 +162,59 @@ def test_scikit_fem_reads_labels():
     assert mesh.nvertices == 60 and set(mesh.boundaries) == {"1", "2"}
 
 
+def curved_disk(order):
+    form = "2-4.1" if order == 2 else "3-2.2"
+    return voronaut.Mesh.read(ROOT / f"crates/voronaut-io/tests/data/gmsh/order-{form}.msh")
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_curved_triangles_are_arrays(tmp_path, order):
+    disk = curved_disk(order)
+    assert disk.order == order and disk.points.shape == (8, 2) and f"of order {order}" in repr(disk)
+    assert disk.curved_triangles.shape == (7, 3 if order == 2 else 7) and disk.nodes.shape == (14 if order == 2 else 35, 2)
+    assert np.isclose(np.linalg.norm(disk.nodes, axis=1), 1).sum() == 7 * (order - 1)
+    made = voronaut.Mesh(
+        disk.points, disk.triangles, edges=disk.edges, nodes=disk.nodes, curved_triangles=disk.curved_triangles.astype(np.int64)
+    )
+    for ending in ("mesh", "meshb", "msh", "vtu"):
+        made.save(tmp_path / f"a.{ending}")
+        back = voronaut.Mesh.read(tmp_path / f"a.{ending}")
+        assert (back.nodes == disk.nodes).all() and (back.curved_triangles == disk.curved_triangles).all()
+        assert (back.points == disk.points).all() and back.order == order
+    for refused in (lambda: made.save(tmp_path / "a.obj"), lambda: voronaut.mesh(made, 0.3)):
+        with pytest.raises(voronaut.UnsupportedError, match=f"triangles of order {order}"):
+            refused()
+    assert not (tmp_path / "a.obj").exists()
+    for wrong in ({"nodes": disk.nodes}, {"nodes": disk.nodes[1:], "curved_triangles": disk.curved_triangles}):
+        with pytest.raises(ValueError, match="curved_triangles"):
+            voronaut.Mesh(disk.points, disk.triangles, **wrong)
+    with pytest.raises(ValueError, match="save it as .vtu"):
+        disk.to_pyvista()
+
+
+def test_meshio_takes_curved_triangles():
+    pytest.importorskip("meshio")
+    triangles, edges = curved_disk(3).to_meshio().cells
+    assert (triangles.type, triangles.data.shape, edges.type, edges.data.shape) == ("triangle10", (7, 10), "line4", (7, 4))
+    quadratic = curved_disk(2).to_meshio()
+    with pytest.raises(ValueError, match="curved cells .line3"):
+        voronaut.check(quadratic)
+    ends, middles = quadratic.points[quadratic.cells[1].data[:, :2]], quadratic.points[quadratic.cells[1].data[:, 2]]
+    assert np.allclose(np.linalg.norm(middles, axis=1), 1) and np.allclose(np.linalg.norm(ends, axis=2), 1)
+
+
+def test_scikit_fem_integrates_over_a_curved_disk():
+    skfem = pytest.importorskip("skfem")
+    mesh = curved_disk(2).to_skfem()
+    basis = skfem.Basis(mesh, skfem.ElementTriP2())
+    area = skfem.Functional(lambda w: 1 + 0 * w.x[0]).assemble(basis)
+    # The polygon of its seven corners has 2.74.
+    assert abs(area - np.pi) < 5e-3 and set(mesh.boundaries) == {"5"}
+    assert len(mesh.boundaries["5"]) == 7
+    with pytest.raises(ValueError, match="of order 3"):
+        curved_disk(3).to_skfem()
+
+
 def test_pictures_and_notebooks():
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
@@ -172,6 +225,8 @@ def test_pictures_and_notebooks():
     assert "data:image/png" in mesh._repr_html_() and "unit edges" in mesh._repr_html_()
     sphere = voronaut.mesh("sphere:1", "uniform", n=100)
     assert np.array_equal(sphere.plot(sphere.quality).collections[0].get_array(), sphere.quality)
+    (curves,) = curved_disk(3).plot().lines
+    assert np.nanmax(np.hypot(*curves.get_data())) == pytest.approx(1, abs=2e-3)
     with pytest.raises(ValueError, match="planar meshes only"):
         sphere.plot(ellipses="curvature")
     with pytest.raises(KeyError, match="there are"):

@@ -125,6 +125,8 @@ def _of_meshio(name: str, value: Any) -> MeshArrays:
     from ._mesh import Mesh
 
     cells, data = value.cells_dict, value.cell_data_dict
+    if curved := sorted({"triangle6", "triangle7", "triangle10", "line3", "line4"} & set(cells)):
+        raise ValueError(f"{name}: curved cells ({curved[0]}): write a .msh or .vtu with meshio, which voronaut.Mesh.read takes")
     labels: Mapping[str, Any] = next((data[key] for key in _MESHIO_LABELS if key in data), {})
     triangles = cells.get("triangle", np.empty((0, 3), np.int32))
     of_triangles, of_edges = labels.get("triangle"), labels.get("line")

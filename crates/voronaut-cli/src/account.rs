@@ -1,5 +1,6 @@
 //! What is reported of any mesh that we made.
 
+use crate::curves;
 use crate::fields::Scaled;
 use serde_json::Value;
 use voronaut::figures::NetFigures;
@@ -57,6 +58,10 @@ pub(crate) fn on_surface(
 /// Adds what a planar mesh is in a metric; its edges that are not of unit length.
 pub(crate) fn measure_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
     report.add_quality(&metric_quality(mesh, metric)?);
+    if mesh.curved.is_some() {
+        // Causes are those of straight edges.
+        return Ok(Unmet::default());
+    }
     let unmet = unmet(mesh, metric)?;
     report.unmet = Some(unmet.figures());
     Ok(unmet)
@@ -79,7 +84,7 @@ pub(crate) fn measure_on_surface(
 /// The parts that are the same for plane and surface, and the options as used.
 fn report(meshed: &Meshed, found: Validity, options: Value) -> Report {
     let is_voronoi = meshed.star_set.is_none();
-    Report {
+    let mut report = Report {
         star_set: meshed.star_set,
         dual: is_voronoi.then(|| meshed.dual.clone()),
         relaxation: is_voronoi.then(|| meshed.relaxation.clone()),
@@ -93,7 +98,9 @@ fn report(meshed: &Meshed, found: Validity, options: Value) -> Report {
         seconds: Seconds { stages: meshed.seconds.clone(), total: 0.0 },
         options,
         ..Report::new(&meshed.mesh, found)
-    }
+    };
+    curves::report(&mut report, &meshed.mesh);
+    report
 }
 
 /// Two objects of a report as one.

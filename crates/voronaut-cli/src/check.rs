@@ -3,7 +3,7 @@
 use crate::fields::{self, Scaled};
 use crate::options::{Damage, MetricChoices, Outputs, Run, Show, positive, refuse};
 use crate::world::World;
-use crate::{account, files, pictures};
+use crate::{account, curves, files, pictures};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
@@ -65,6 +65,7 @@ pub(crate) fn run(args: &CheckArgs, world: &World) -> Result<()> {
     files::demand_writable(None, None, None, &args.outputs, &args.run)?;
     demand_drawable(args)?;
     let Document { mesh, notes, .. } = world.document(&args.mesh)?;
+    demand_for_curves(args, &mesh)?;
     let read = |spec: &str| world.given(spec, args.damage.options());
     let (given, mended) = args.domain.as_deref().map(read).transpose()?.unzip();
     let found = match &given {
@@ -74,6 +75,7 @@ pub(crate) fn run(args: &CheckArgs, world: &World) -> Result<()> {
     let fault = found.demand();
     let meets = found.meetings.note();
     let mut report = Report::new(&mesh, found);
+    curves::report(&mut report, &mesh);
     report.notes = notes;
     report.options = json!({
         "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain, "function": args.function, "norm": args.metric_choices.norm.to_string(),
@@ -114,6 +116,19 @@ fn demand_drawable(args: &CheckArgs) -> Result<()> {
     ])
 }
 
+/// Refuses what there is not of curved triangles, if the mesh has them.
+fn demand_for_curves(args: &CheckArgs, mesh: &Mesh) -> Result<()> {
+    if mesh.curved.is_none() {
+        return Ok(());
+    }
+    let straight = "convert the mesh with --order 1, to examine it with straight triangles";
+    refuse([
+        (!mesh.is_planar(), "curved triangles of a surface", straight),
+        (args.function.is_some(), "the error of linear interpolation on curved triangles", "leave out --function"),
+    ])?;
+    curves::demand_drawable(&args.outputs)
+}
+
 /// Measures a planar mesh, and draws it if that is asked for.
 fn in_plane(
     args: &CheckArgs,
@@ -137,7 +152,11 @@ fn in_plane(
         let function = Snapshot::from(Expression::parse(text, Variables::Plane)?);
         report.interpolation = Some(interpolation_error(mesh, &function, args.metric_choices.norm)?);
     }
-    report.fidelity = domain.map(|domain| Strayed::Boundary(fidelity(mesh, &domain.boundary())));
+    let straight = domain.filter(|_| mesh.curved.is_none());
+    report.fidelity = straight.map(|domain| Strayed::Boundary(fidelity(mesh, &domain.boundary())));
+    if domain.is_some() && mesh.curved.is_some() {
+        report.notes.push("how far curved triangles are from the domain's boundary is not measured".into());
+    }
     pictures::in_plane(&args.outputs, mesh, metric.as_deref(), &layers)
 }
 
@@ -199,7 +218,7 @@ fn planar_metric(
     let domain = if let Some(domain) = domain {
         domain
     } else {
-        own = Domain::new(&from_mesh(mesh)?)?;
+        own = Domain::new(&from_mesh(&curves::straight(mesh))?)?;
         &own
     };
     let scale = args.metric_scale.unwrap_or(1.0);

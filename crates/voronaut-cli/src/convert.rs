@@ -1,9 +1,9 @@
 //! `voronaut convert`: from one format to another.
 
 use crate::aside::say_aside;
-use crate::files;
 use crate::options::{Limits, Run};
 use crate::summary;
+use crate::{curves, files};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use voronaut::domain::{Pslg, from_mesh, to_mesh, to_poly, to_polygons};
@@ -24,6 +24,7 @@ Labels, labelled edges, corners and what is required go along as far as OUT has 
 
 Examples:
   voronaut convert wing.msh wing.meshb
+  voronaut convert curved.msh corners.stl --order 1
   voronaut convert adapted.mesh adapted.vtu --sol adapted.sol
   voronaut convert sea.geojson sea.poly
   voronaut convert metric.sol metric.solb";
@@ -42,6 +43,9 @@ pub(crate) struct ConvertArgs {
     /// Version of a .msh: 4.1 or 2.2
     #[arg(long, value_name = "VERSION", default_value_t = Version::V4_1)]
     msh_version: Version,
+    /// Leave out the curves of triangles of order 2 or 3: 1, which keeps the vertices and straight triangles between them
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=1))]
+    order: Option<u8>,
     /// Write a .msh or .ply as a binary file
     #[arg(long)]
     binary: bool,
@@ -84,6 +88,15 @@ pub(crate) fn run(args: &ConvertArgs) -> Result<()> {
     Ok(())
 }
 
+/// The mesh to convert, straight if that is asked for.
+fn document(args: &ConvertArgs) -> Result<Document> {
+    let mut document = voronaut_io::read(&args.from)?;
+    if args.order == Some(1) {
+        document.mesh.curved = None;
+    }
+    Ok(document)
+}
+
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Mesh,
@@ -113,7 +126,7 @@ fn outline(args: &ConvertArgs, from: Kind) -> Result<String> {
         return Err(Error::unsupported(what, "leave out --sol: outlines hold none"));
     }
     let (pslg, document) = if from == Kind::Mesh {
-        let document = voronaut_io::read(&args.from)?;
+        let document = document(args)?;
         (from_mesh(&document.mesh)?, document)
     } else {
         let pslg = read_pslg(&name(&args.from))?;
@@ -157,9 +170,10 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
         other => other,
     };
     let Document { mesh, mut fields, notes } = match from {
-        Kind::Mesh => voronaut_io::read(&args.from)?,
+        Kind::Mesh => document(args)?,
         _ => to_mesh(&read_pslg(&name(&args.from))?)?.into(),
     };
+    format.demand_order(curves::order_of(&mesh))?;
     if let Some(sol) = &args.sol {
         let values = voronaut_io::read_solutions(sol)?;
         fields.extend(files::values_of(&mesh, values, sol)?);
@@ -171,7 +185,14 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
         mesh.triangles.len(),
         mesh.edges.len()
     )];
+    if let Some(curved) = &mesh.curved {
+        told.push(format!("of order {}, with {} nodes beside the vertices", curved.order, curved.nodes.len()));
+    }
     let beside = beside(&args.to, format, &fields);
+    if beside.is_some() && mesh.curved.is_some() {
+        let what = "values beside a curved .mesh, which has nodes that are no vertices";
+        return Err(Error::unsupported(what, "write a .vtu or .msh"));
+    }
     let solutions = beside.as_ref().map(|_| fields.clone().into_solutions(&mesh)).transpose()?;
     voronaut_io::write_with(&args.to, |out| format.write(&mesh, &fields, out))?;
     if let (Some(beside), Some(solutions)) = (beside, solutions) {
@@ -187,7 +208,8 @@ fn mesh(args: &ConvertArgs, from: Kind) -> Result<String> {
 fn beside(mesh: &Path, format: Format, fields: &Fields) -> Option<PathBuf> {
     let Format::Medit(form) = format else { return None };
     let is_empty = fields.vertices.is_empty() && fields.triangles.is_empty();
-    (!is_empty).then(|| mesh.with_extension(form.solution_ending()))
+    let ending = if form == Form::Binary { "solb" } else { "sol" };
+    (!is_empty).then(|| mesh.with_extension(ending))
 }
 
 fn name(path: &Path) -> String {

@@ -1,7 +1,7 @@
 //! Parameters by the names that users type. The libraries call them by their own, in backquotes: `canvas_size`, `mesher=voronoi`.
 
 /// Those that the libraries speak of.
-pub(crate) const PARAMETERS: [&str; 29] = [
+pub(crate) const PARAMETERS: [&str; 30] = [
     "a_max",
     "background",
     "canvas",
@@ -21,6 +21,7 @@ pub(crate) const PARAMETERS: [&str; 29] = [
     "mesher",
     "net",
     "norm",
+    "order",
     "periodic",
     "picking_radius",
     "polish",

@@ -8,6 +8,7 @@ mod aside;
 mod check;
 mod completions;
 mod convert;
+mod curves;
 mod distance;
 mod dual;
 mod fields;

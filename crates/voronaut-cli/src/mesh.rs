@@ -5,7 +5,7 @@ use crate::options::{Damage, MetricChoices, Outputs, Paged, Paired, Run, Show, n
 use crate::pages::{self, Drawn};
 use crate::parts::{self, InParts};
 use crate::world::World;
-use crate::{account, files, pictures};
+use crate::{account, curves, files, pictures};
 use clap::{Args, value_parser};
 use serde_json::{Value, json};
 use std::borrow::Cow;
@@ -25,7 +25,7 @@ use voronaut::recipe::{self, Aim, Centroid, Effort, GradedAt, Idle, MeshOptions,
 use voronaut::surface::metric::Spec;
 use voronaut::surface::{FeatureOptions, Input, Mended};
 use voronaut_draw::{Layers, Sheet};
-use voronaut_io::{Given, Report};
+use voronaut_io::{Format, Given, Report};
 
 pub(crate) const EXAMPLES: &str = "\
 DOMAIN  a file: .mesh, .meshb, .msh, .su2, .vtu, .vtp (boundary edges or triangles; of volumes the boundary), .poly, .geojson; or a shape: rect:x0,y0,x1,y1, disk:cx,cy,r;
@@ -41,6 +41,7 @@ Examples:
   voronaut mesh rect:0,0,2,1 --metric uniform -n 2000 -o plate.mesh
   voronaut mesh disk:0,0,1 --metric swirl -n 4000 -o swirl.vtu --picture swirl.svg
   voronaut mesh rect:-1,-1,1,1 --metric 'formula:1/(0.01 + 0.2*abs(y))^2; 0; 25' -o layer.mesh
+  voronaut mesh disk:0,0,1 --metric swirl:field=printed -n 1000 --order 3 -o curved.msh --picture curved.svg
   voronaut mesh wing.mesh --metric wing.sol --h-min 1e-4 --a-max 100 -o adapted.mesh --report run.json
   voronaut mesh sea.geojson --metric boundary:h0=2,growth=1.3 -n 20000 -o sea.mesh -q
   voronaut mesh sea.geojson --metric boundary:h0=0.1,growth=1.1 -n 2000000 --parts auto --parts-dir parts -o sea.meshb
@@ -73,6 +74,9 @@ pub(crate) struct MeshArgs {
     /// In the plane: leave the edges of the domain's curves as they are, every one an edge of the mesh
     #[arg(long, conflicts_with = "hausd")]
     pub(crate) required: bool,
+    /// In the plane: the order of triangles: 1, straight; 2 or 3, curved to follow the metric (.msh, .vtu, .mesh and .meshb hold them)
+    #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=3), default_value_t = MeshOptions::default().order as u8)]
+    pub(crate) order: u8,
     #[command(flatten)]
     pub(crate) paired: Paired,
     /// Surfaces: vertices where mesh and surface are closest in the sense of least squares, instead of on the surface
@@ -158,6 +162,7 @@ impl MeshArgs {
             vertices: self.vertices.map(|vertices| vertices as usize),
             complexity: self.complexity,
             hausd: self.hausd,
+            order: self.order.into(),
             periodic: self.paired.pairs(),
             fit: self.fit,
             stiffness: MeshOptions::default().stiffness,
@@ -218,6 +223,7 @@ pub(crate) fn run(args: &MeshArgs, world: &World) -> Result<()> {
     let start = world.seconds();
     let view = world.page_file(&args.paged);
     files::demand_writable(world.file(&args.out), None, view, &args.outputs, &args.run)?;
+    demand_for_curves(args, world)?;
     args.metric_choices.bounds().check()?;
     let (given, mended) = world.given(&args.domain, args.damage.options())?;
     match given {
@@ -225,6 +231,19 @@ pub(crate) fn run(args: &MeshArgs, world: &World) -> Result<()> {
         Given::Plane(domain) if args.required => in_plane(args, world, &required(&domain)?, &mended, start),
         Given::Plane(domain) => in_plane(args, world, &domain, &mended, start),
     }
+}
+
+/// Refuses what there is not of curved triangles, if they are asked for.
+fn demand_for_curves(args: &MeshArgs, world: &World) -> Result<()> {
+    if args.order == 1 {
+        return Ok(());
+    }
+    if let Some(out) = world.file(&args.out) {
+        Format::from_path(out)?.demand_order(args.order.into())?;
+    }
+    let parts = (args.in_parts.is_asked(), "--parts with curved triangles", "leave out --parts, or use --order 1");
+    refuse([parts])?;
+    curves::demand_drawable(&args.outputs)
 }
 
 /// The domain with all its curves' edges required.
@@ -261,6 +280,7 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
         None => recipe::mesh_for(domain, metric, aim, &options, &*world.progress(&args.run))?,
     };
     let mesh = &meshed.mesh;
+    curves::demand_made(mesh, options.order)?;
     let scaled = |p: Point| metric.at(p) * meshed.metric_scale;
     let (mut report, unmet) = account::in_plane(&meshed, &scaled, used)?;
     if args.in_parts.parts.is_some() {
@@ -270,7 +290,8 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     report.notes.extend(mended.sentences());
     report.histograms = files::histograms(outputs, mesh, &scaled)?;
     let error = |aim: Aim| interpolation_error(mesh, aim.function, aim.norm);
-    report.interpolation = aim.map(error).transpose()?;
+    // It is that of linear interpolation on straight triangles.
+    report.interpolation = aim.filter(|_| options.order == 1).map(error).transpose()?;
     report.seconds.total = world.seconds() - start;
     let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
         pages::measured_in_plane(sheet, &scaled, unmet.clone());

@@ -90,6 +90,9 @@ fn summary(report: &Report, verbose: bool) -> Lines {
     let mut line = |name: &str, value: String| lines.push((name.into(), value));
     line("vertices", report.vertices.to_string());
     line("triangles", report.triangles.to_string());
+    if let Some(curved) = &report.curved {
+        line("order", format!("{}   ({} nodes beside the vertices)", curved["order"], curved["nodes"]));
+    }
     line("valid", valid(report));
     if let Some(lengths) = report.metric_edge_length {
         let (min, mean, max) = (lengths.min, lengths.mean, lengths.max);

@@ -116,6 +116,8 @@ fn sheet(args: &ViewArgs, world: &World, path: &Path) -> Result<Sheet> {
     let Document { mesh, mut fields, notes } = world.document(path)?;
     summary::notes(&notes, args.run.quiet);
     mesh.check_numbers()?;
+    let curved = mesh.curved.is_some() && args.metric.is_some();
+    refuse([(curved, "curved triangles in a metric", "leave out --metric: voronaut check measures them")])?;
     if let Some(sol) = &args.sol {
         fields.extend(files::values_of(&mesh, world.solutions(sol)?, sol)?);
     }

@@ -7,6 +7,7 @@ mod coming_from;
 mod common;
 mod completions;
 mod convert;
+mod curved;
 mod distance;
 mod dual;
 mod geodesic_edges;

@@ -108,6 +108,24 @@ impl PathData {
         }
     }
 
+    /// Adds Bézier curves from a point, one behind the other: each by its control points, of which it has none to two, and its end.
+    pub(super) fn curves(&mut self, from: [i64; 2], curves: &[Vec<[i64; 2]>], closed: bool) {
+        self.text.push('m');
+        self.step(from);
+        for points in curves {
+            self.text.push(['l', 'q', 'c'][points.len() - 1]);
+            let start = self.at;
+            for &point in points {
+                self.at = start;
+                self.step(point);
+            }
+        }
+        if closed {
+            self.text.push('z');
+            self.at = from;
+        }
+    }
+
     /// Adds a line of no length: a dot where lines have round ends.
     pub(super) fn dot(&mut self, point: [i64; 2]) {
         self.polyline(&[point], false);
@@ -169,6 +187,14 @@ mod tests {
         let mut path = PathData::default();
         path.ellipse([[10, 0], [0, 0]], [5, 2], 30.0);
         assert_eq!(path.text(), "m10 0a5 2 30.0 1 0-10 0a5 2 30.0 1 0 10 0z");
+    }
+
+    #[test]
+    fn curves_are_relative_to_where_they_begin() {
+        let mut path = PathData::default();
+        path.curves([10, 20], &[vec![[15, 25], [20, 20]], vec![[20, 10]], vec![[12, 8], [11, 9], [10, 20]]], true);
+        path.polyline(&[[10, 20], [11, 20]], false);
+        assert_eq!(path.text(), "m10 20q5 5 10 0l0-10c-8-2-9-1-10 10zm0 0 1 0");
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod cells;
 mod colours;
+mod curves;
 mod ellipses;
 mod frame;
 mod histogram;

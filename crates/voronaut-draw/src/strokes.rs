@@ -1,9 +1,11 @@
 //! Lines whose width follows the local size, so that fine parts stay crisp; of the edges of a mesh, and of its boundary.
 
 use super::colours;
+use super::curves::Curves;
 use super::frame::{Frame, PathData};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
+use voronaut::geometry::Point;
 use voronaut::mesh::{EdgeSide, Edges, Mesh};
 
 /// Attributes of lines that are round where they turn, and there and at their ends.
@@ -56,6 +58,7 @@ pub(super) struct Sheet<'a> {
     /// The least height of each of these triangles, in pixels.
     pub(super) heights: &'a [f64],
     pub(super) frame: &'a Frame,
+    pub(super) curves: &'a Curves,
 }
 
 impl Sheet<'_> {
@@ -71,7 +74,7 @@ impl Sheet<'_> {
         for sides in edges {
             let heights = sides.iter().map(|side| self.heights[side.triangle()]);
             let path = classes.entry(pen.class(heights.fold(f64::INFINITY, f64::min))).or_default();
-            path.polyline(&self.place(sides[0].ends), false);
+            self.trace(path, &sides[0].ends, false);
         }
         pen.draw(svg, &classes, ink, self.frame);
     }
@@ -81,13 +84,27 @@ impl Sheet<'_> {
         let labelled = self.mesh.edges.iter().copied().filter(|&ends| !self.edges.at(ends).is_empty());
         let boundary = self.edges.boundary().map(|side| side.ends);
         let all: BTreeSet<[u32; 2]> = boundary.chain(labelled).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        let path = PathData::of(all.into_iter().map(|ends| self.place(ends)), false);
+        let mut path = PathData::default();
+        for ends in all {
+            self.trace(&mut path, &ends, false);
+        }
         let (ink, width) = (colours::BOUNDARY, self.frame.quanta(BOUNDARY_WIDTH));
         path.draw(svg, &format!(r#"fill="none" stroke-linecap="round" stroke="{ink}" stroke-width="{width:.1}""#));
     }
 
-    /// Corners of a triangle or ends of an edge, in quanta.
-    pub(super) fn place<const N: usize>(&self, vertices: [u32; N]) -> [[i64; 2]; N] {
-        vertices.map(|v| self.frame.place(self.mesh.point(v)))
+    /// Adds the edges between vertices to a path, all around a triangle if it is closed.
+    pub(super) fn trace(&self, path: &mut PathData, vertices: &[u32], is_closed: bool) {
+        let place = |v: u32| self.frame.place(self.mesh.point(v));
+        if self.mesh.curved.is_none() {
+            let points: Vec<[i64; 2]> = vertices.iter().map(|&v| place(v)).collect();
+            return path.polyline(&points, is_closed);
+        }
+        let edges = if is_closed { vertices.len() } else { vertices.len() - 1 };
+        let curve = |i: usize| {
+            let ends = [vertices[i], vertices[(i + 1) % vertices.len()]];
+            let controls = self.curves.between(ends).into_iter().map(|p| self.frame.place(Point::new(p.x, p.y)));
+            controls.chain([place(ends[1])]).collect()
+        };
+        path.curves(place(vertices[0]), &(0..edges).map(curve).collect::<Vec<_>>(), is_closed);
     }
 }

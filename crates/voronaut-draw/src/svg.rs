@@ -2,6 +2,7 @@
 
 use super::cells::{self, Layers};
 use super::colours::Tint;
+use super::curves::Curves;
 use super::frame::{Frame, PathData};
 use super::strokes::Sheet;
 use super::{colours, ellipses, shades, unmet};
@@ -34,7 +35,7 @@ impl Default for Picture {
 
 /// Draws a mesh, seen along z, as the text of an SVG file: one path per class of colour or line width, y up, white
 /// background, triangles by the logarithm of their area, with a hue per region: the smaller, the stronger; the boundary and
-/// labelled edges on top. Triangles with a vertex that does not exist or is not finite are left out.
+/// labelled edges on top. Curved triangles have their curves, exactly. Triangles with a vertex that does not exist or is not finite are left out.
 ///
 /// The layers may hold the cells of a diagram instead of filled triangles, and more; the border drawn on top is then that of the
 /// cells' domain.
@@ -45,9 +46,12 @@ pub fn svg_with(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture
     let (triangles, labels) = shades::drawable(mesh);
     let edges = Edges::of(&triangles);
     let heights: Vec<f64> = triangles.iter().map(|&t| least_height(mesh, t)).collect();
-    let frame = frame(mesh, &triangles, &heights, *picture, layers.cells.as_ref());
+    let curves = Curves::of(mesh);
+    let corners = triangles.as_flattened().iter().map(|&v| mesh.point(v));
+    let outline = corners.chain(curves.controls().map(|p| Point::new(p.x, p.y)));
+    let frame = frame(outline, &heights, *picture, layers.cells.as_ref());
     let pixels: Vec<f64> = heights.iter().map(|&height| frame.pixels(height)).collect();
-    let sheet = Sheet { mesh, edges: &edges, heights: &pixels, frame: &frame };
+    let sheet = Sheet { mesh, edges: &edges, heights: &pixels, frame: &frame, curves: &curves };
 
     let below = layers.unmet.as_ref().map_or(0.0, |_| unmet::legend_height(&frame));
     let mut text = frame.paper(below, "rect", "fill=\"#fff\"");
@@ -101,12 +105,11 @@ pub fn svg_with(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture
 }
 
 /// A frame around what is to be seen, or the domain as far as it is known, fine enough for thin triangles or cells.
-fn frame(mesh: &Mesh, triangles: &[[u32; 3]], heights: &[f64], picture: Picture, cells: Option<&Cells>) -> Frame {
+fn frame(outline: impl Iterator<Item = Point>, heights: &[f64], picture: Picture, cells: Option<&Cells>) -> Frame {
     let border = cells.iter().flat_map(|c| c.border.iter().flatten().copied());
-    let corners = triangles.as_flattened().iter().map(|&v| mesh.point(v));
     let bounds = picture
         .window
-        .or_else(|| Aabb::of(border.chain(corners)))
+        .or_else(|| Aabb::of(border.chain(outline)))
         .unwrap_or(Aabb { min: Point::default(), max: Point::default() });
     let width = f64::from(picture.width.max(16));
     // Lines between cells and along triangles are drawn: both tell how fine the paper must be.
@@ -130,7 +133,7 @@ fn no_metric() -> Error {
 fn fill(text: &mut String, sheet: &Sheet, triangles: &[[u32; 3]], colours: &[String]) {
     let mut paths: BTreeMap<&str, PathData> = BTreeMap::new();
     for (&triangle, colour) in triangles.iter().zip(colours) {
-        paths.entry(colour).or_default().polyline(&sheet.place(triangle), true);
+        sheet.trace(paths.entry(colour).or_default(), &triangle, true);
     }
     let _ = writeln!(text, r#"<g stroke-width="{:.1}" stroke-linejoin="round">"#, sheet.frame.quanta(0.4));
     for (colour, path) in paths {
@@ -149,7 +152,7 @@ fn least_height(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_meshes::{grid, mesh};
+    use crate::test_meshes::{bowed, grid, mesh};
     use voronaut::geometry::Tensor;
 
     fn svg(mesh: &Mesh, metric: Option<&dyn MetricField>, picture: &Picture) -> Result<String> {
@@ -161,6 +164,20 @@ mod tests {
         let text = svg(&grid(40, 40), None, &Picture::default()).unwrap();
         assert!(text.matches("<path").count() < 8, "{}", text.matches("<path").count());
         assert!(text.len() < 50 * 3200, "{} bytes", text.len());
+    }
+
+    #[test]
+    fn curved_triangles_are_drawn_as_curves() {
+        for (order, command) in [(2, 'q'), (3, 'c')] {
+            let text = svg(&bowed(order), None, &Picture::default()).unwrap();
+            let paths: String = text.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+            // Two triangles of three sides each, an inner edge, four on the boundary.
+            assert_eq!(paths.matches(command).count(), 3 * 2 + 1 + 4, "{text}");
+            assert!(!paths.contains('l'));
+            let height = |text: &str| text.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>();
+            let flat = svg(&Mesh { curved: None, ..bowed(order) }, None, &Picture::default()).unwrap();
+            assert_ne!(height(&text), height(&flat), "the bow is outside the corners");
+        }
     }
 
     #[test]

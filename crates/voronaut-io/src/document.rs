@@ -1,5 +1,6 @@
 //! What a file holds: a mesh, values on it, and what a mesh cannot hold.
 
+use super::curved::Row;
 use std::collections::HashSet;
 use voronaut::mesh::{Mesh, SolutionValues, Solutions};
 use voronaut::{Error, Result};
@@ -96,6 +97,23 @@ impl Field {
             _ => k,
         };
         self.values.row(i).get(place).copied().unwrap_or(0.0)
+    }
+
+    /// The field whose entries are sums of these, with weights.
+    pub(super) fn combined(&self, rows: &[Row]) -> Self {
+        let components = self.values.components();
+        let sum = |row: &Row, k: usize| {
+            let weighted = row.iter().map(|&(i, weight)| weight * self.values.row(i as usize)[k]);
+            weighted.reduce(|a, b| a + b).unwrap_or(0.0)
+        };
+        let numbers: Vec<f64> = rows.iter().flat_map(|row| (0..components).map(move |k| sum(row, k))).collect();
+        let values = match self.values {
+            SolutionValues::Scalar(_) => SolutionValues::Scalar(numbers),
+            SolutionValues::Vector { components, .. } => SolutionValues::Vector { components, numbers },
+            SolutionValues::Tensor(_) => SolutionValues::Tensor(numbers.as_chunks().0.to_vec()),
+            SolutionValues::Tensor3(_) => SolutionValues::Tensor3(numbers.as_chunks().0.to_vec()),
+        };
+        Self { name: self.name.clone(), values }
     }
 
     fn into_solutions(self, dimension: u8) -> Result<Vec<SolutionValues>> {

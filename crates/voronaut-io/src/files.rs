@@ -4,6 +4,7 @@ use super::codec::Form;
 use super::{Document, Fields, freefem, gmsh, medit, obj, off, ply, sol, stl, su2, vtk};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
+use std::mem;
 use std::path::Path;
 use voronaut::mesh::{Mesh, Solution, Solutions};
 use voronaut::{Error, Result};
@@ -71,6 +72,22 @@ impl Format {
         matches!(self, Format::Medit(_) | Format::Gmsh(..) | Format::Su2 | Format::Vtu | Format::Vtp)
     }
 
+    /// Refuses triangles of an order that the format has no place for.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] where the order is not 1, with the endings that work.
+    pub fn demand_order(self, order: usize) -> Result<()> {
+        if order == 1 || matches!(self, Format::Medit(_) | Format::Gmsh(..) | Format::Vtu) {
+            return Ok(());
+        }
+        let name = ENDINGS.iter().find(|(_, format)| mem::discriminant(format) == mem::discriminant(&self));
+        let what = format!("triangles of order {order} in a file .{}", name.map_or("", |(ending, _)| ending));
+        Err(Error::unsupported(
+            what,
+            "write .msh, .vtu, .mesh or .meshb, which hold curves, or straight triangles: `order` 1",
+        ))
+    }
+
     /// Reads a document, which messages call by its place.
     ///
     /// # Errors
@@ -92,8 +109,9 @@ impl Format {
     /// Writes a mesh and fields as far as the format can hold them.
     ///
     /// # Errors
-    /// What `out` says.
+    /// What `out` says; curved triangles that it has no place for.
     pub fn write(self, mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()> {
+        self.demand_order(order(mesh)).map_err(io::Error::other)?;
         match self {
             Format::Medit(form) => medit::write(mesh, form, out),
             Format::Gmsh(version, form) => gmsh::write(mesh, fields, version, form, out),
@@ -119,6 +137,11 @@ pub fn read(path: &Path) -> Result<Document> {
         return Err(Error::parse(place, "the name does not end like that of a mesh that can be read", help));
     };
     format.read(open(path)?, &place)
+}
+
+/// The order of a mesh's triangles.
+pub(crate) fn order(mesh: &Mesh) -> usize {
+    mesh.curved.as_ref().map_or(1, |curved| curved.order)
 }
 
 /// How a name ends, in lower case.

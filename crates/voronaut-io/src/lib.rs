@@ -5,6 +5,7 @@
 //! what users write; [`write_mesh`] and its like leave a file there as a whole or not at all.
 
 mod codec;
+mod curved;
 mod cutting;
 mod document;
 mod domain;

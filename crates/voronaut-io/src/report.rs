@@ -2,6 +2,7 @@
 
 use serde::{Serialize, Serializer};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use voronaut::canvas::CanvasFigures;
 use voronaut::certificate::Certificate;
 use voronaut::figures::{Diagram, Dual, NetFigures, Protection, StarSet};
@@ -23,7 +24,10 @@ pub struct Report {
     /// Validity, its fields beside these.
     #[serde(flatten)]
     pub validity: Validity,
-    /// Metric lengths of all edges.
+    /// Of curved triangles their `order`, and how many `nodes` they have beside the vertices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curved: Option<BTreeMap<&'static str, usize>>,
+    /// Metric lengths of all edges, along their curves.
     pub metric_edge_length: Option<EdgeLengths>,
     /// Metric lengths of the edges that touch no boundary vertex.
     pub interior_edge_length: Option<EdgeLengths>,

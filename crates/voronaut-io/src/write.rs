@@ -2,7 +2,7 @@
 
 use super::codec::Form;
 use super::document::labels;
-use super::files::ending;
+use super::files::{ending, order};
 use super::vtk::{Array, Grid, LINE, POLY_LINE};
 use super::{Fields, Format, sol, write_with};
 use std::io::{self, Write};
@@ -14,7 +14,7 @@ use voronaut::{Error, Result};
 /// Writes a mesh in the format its name ends in, as a whole or not at all.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for other endings, [`Error::Io`] where the file cannot be written.
+/// [`Error::Unsupported`] for other endings, and of curved triangles in formats that have no place for them, [`Error::Io`] where the file cannot be written.
 pub fn write_mesh(mesh: &Mesh, path: &Path) -> Result<()> {
     write_document(mesh, &Fields::default(), path)
 }
@@ -25,6 +25,7 @@ pub fn write_mesh(mesh: &Mesh, path: &Path) -> Result<()> {
 /// As of [`write_mesh`].
 pub fn write_document(mesh: &Mesh, fields: &Fields, path: &Path) -> Result<()> {
     let format = Format::from_path(path)?;
+    format.demand_order(order(mesh))?;
     write_with(path, |out| format.write(mesh, fields, out))
 }
 
@@ -86,7 +87,8 @@ fn write_canvas(canvas: &Mesh, distances: &[f64], out: &mut dyn Write) -> io::Re
     let colours = labels(&canvas.point_labels).take(canvas.points.len());
     let grid = Grid {
         points: &canvas.points,
-        triangles: &canvas.triangles,
+        triangles: canvas.triangles.as_flattened(),
+        order: 1,
         lines,
         line: LINE,
         point_data: vec![Array::new("colour", 1, colours), Array::new("distance", 1, distances.iter().copied())],
@@ -107,7 +109,8 @@ fn write_curved(realisation: &Realisation, out: &mut dyn Write) -> io::Result<()
     let lengths = mesh.triangles.iter().map(|_| 0.0).chain(edges.iter().map(|e| e.length));
     let grid = Grid {
         points: &mesh.points,
-        triangles: &mesh.triangles,
+        triangles: mesh.triangles.as_flattened(),
+        order: 1,
         lines: lines.iter().map(Vec::as_slice).collect(),
         line: POLY_LINE,
         point_data: vec![Array::new("label", 1, mesh.point_labels.iter().copied())],

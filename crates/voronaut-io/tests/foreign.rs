@@ -61,3 +61,54 @@ fn bamg_in_its_own_format_and_in_that_of_freefem() {
     let area = |mesh: &Mesh| Domain::new(&from_mesh(mesh).unwrap()).unwrap().area();
     assert!((area(&own) - 1.0).abs() < 1e-12 && (area(&freefem) - 1.0).abs() < 1e-12);
 }
+
+/// Where the nodes of a triangle are, in barycentric coordinates times its order: corners, then as [`Curved`] has them.
+fn places(order: usize) -> Vec<[usize; 3]> {
+    let corners = [[order, 0, 0], [0, order, 0], [0, 0, order]];
+    let sides = (0..3).flat_map(|side| {
+        (1..order).map(move |i| {
+            let mut place = [0; 3];
+            (place[side], place[(side + 1) % 3]) = (order - i, i);
+            place
+        })
+    });
+    corners.into_iter().chain(sides).chain((order == 3).then_some([1; 3])).collect()
+}
+
+/// The disk of the unit circle: seven triangles around its centre, whose outer sides are curved.
+#[test]
+fn curved_triangles_have_their_nodes_in_order() {
+    let names = [2, 3].map(|order| {
+        let medit = format!("medit/gmsh-order-{order}.mesh");
+        let forms = if order == 2 { ["2.2-binary", "4.1"] } else { ["2.2", "4.1-binary"] };
+        let [two, four] = forms.map(|form| format!("gmsh/order-{order}-{form}.msh"));
+        (order, [two, four, medit, format!("vtk/vtk-order-{order}.vtu")])
+    });
+    for (order, name) in names.iter().flat_map(|(order, names)| names.iter().map(move |name| (*order, name))) {
+        let mesh = voronaut_io::read(&file("..").join(name)).unwrap().mesh;
+        let curved = mesh.curved.as_ref().expect(name);
+        let inner = (order + 1) * (order + 2) / 2 - 3;
+        let counts = (mesh.points.len(), mesh.triangles.len(), mesh.edges.len(), curved.order, curved.nodes.len());
+        // Fourteen edges with their nodes, and seven interiors for order 3.
+        assert_eq!(counts, (8, 7, 7, order, 14 * (order - 1) + if order == 3 { 7 } else { 0 }), "{name}");
+        assert!(mesh.check_numbers().is_ok(), "{name}");
+        let mut bent = 0;
+        for (i, &triangle) in mesh.triangles.iter().enumerate() {
+            let corners = mesh.corners_of(triangle);
+            for (&node, place) in curved.triangles[i * inner..][..inner].iter().zip(&places(order)[3..]) {
+                let at = |axis: usize| {
+                    let x = |k: usize| place[k] as f64 / order as f64 * [corners[k].x, corners[k].y][axis];
+                    x(0) + x(1) + x(2)
+                };
+                let [x, y, z] = curved.nodes[node as usize];
+                // A third of the way on the chord of a seventh of the circle is 0.29, and the bow is 0.1.
+                let off = (x - at(0)).hypot(y - at(1));
+                assert!(off < 0.11 && z == 0.0, "{name}: {off}");
+                bent += usize::from(off > 0.05);
+            }
+        }
+        assert!(bent >= 7 * (order - 1), "{name}: {bent}");
+        let label = if name.starts_with("medit") { 1 } else { 5 };
+        assert!(mesh.edge_labels.iter().all(|&l| l == label || name.starts_with("vtk")), "{name}");
+    }
+}

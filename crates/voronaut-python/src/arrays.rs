@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use voronaut::mesh::{Mesh, Periodic, SolutionValues, Solutions};
+use voronaut::mesh::{Curved, Mesh, Periodic, SolutionValues, Solutions};
 use voronaut_io::{Document, Field, Fields};
 
 /// Lists of vertices, edges and triangles by their numbers, as a mesh has them.
@@ -27,8 +27,16 @@ pub(crate) fn mesh_of(given: &Bound<PyDict>) -> PyResult<Mesh> {
         required_edges: required_edges?,
         required_triangles: required_triangles?,
         periodic: pairs_of(given)?,
-        curved: None,
+        curved: curved_of(given)?,
     })
+}
+
+/// The nodes of triangles of order 2 or 3: `nodes` (K, 3) and `curved_triangles`, three numbers or seven for each triangle.
+fn curved_of(given: &Bound<PyDict>) -> PyResult<Option<Curved>> {
+    let Some(array) = given.get_item("curved_triangles")? else { return Ok(None) };
+    let numbers: PyReadonlyArray2<u32> = array.extract()?;
+    let order = if numbers.as_array().ncols() == 3 { 2 } else { 3 };
+    Ok(Some(Curved { order, nodes: rows(given, "nodes")?, triangles: numbers.as_slice()?.to_vec() }))
 }
 
 /// Curves that correspond: labels, cosine and sine, translation, how far corners are off, and vertices (N, 2).
@@ -133,6 +141,12 @@ pub(crate) fn of_mesh(py: Python<'_>, mesh: Mesh) -> PyResult<Bound<'_, PyDict>>
         made.set_item(name, PyArray1::from_vec(py, list))?;
     }
     made.set_item("periodic", of_pairs(py, mesh.periodic)?)?;
+    if let Some(curved) = mesh.curved {
+        let (nodes, columns) = (curved.nodes.len(), if curved.order == 2 { 3 } else { 7 });
+        made.set_item("nodes", PyArray1::from_vec(py, curved.nodes.into_flattened()).reshape([nodes, 3])?)?;
+        let numbers = PyArray1::from_vec(py, curved.triangles).reshape([triangles, columns])?;
+        made.set_item("curved_triangles", numbers)?;
+    }
     Ok(made)
 }
 

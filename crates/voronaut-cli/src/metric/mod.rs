@@ -2,7 +2,7 @@
 
 mod sources;
 
-use crate::options::{Run, positive};
+use crate::options::{Run, positive, refuse};
 use crate::{files, summary};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -127,6 +127,7 @@ pub(crate) fn run(args: &MetricArgs) -> Result<()> {
     let Document { mesh, notes, .. } = voronaut_io::read(&args.mesh)?;
     summary::notes(&notes, args.run.quiet);
     mesh.check_numbers()?;
+    refuse([(mesh.curved.is_some(), "a metric on curved triangles", "convert the mesh with --order 1")])?;
     let sources = args.metric.iter().map(|text| sources::source(text, &mesh, args)).collect::<Result<Vec<_>>>()?;
     let made = pipeline.run(&mesh, &sources)?;
     let values = SolutionValues::Tensor(made.tensors.iter().map(|m| [m.xx, m.xy, m.yy]).collect());

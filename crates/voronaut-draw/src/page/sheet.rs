@@ -2,6 +2,7 @@
 
 use super::bytes::{Planes, Store};
 use super::order::{Guess, Order};
+use crate::curves::Curves;
 use serde_json::{Value, json};
 use voronaut::geometry::Point3;
 use voronaut::mesh::{Edges, Mesh};
@@ -30,7 +31,7 @@ pub struct Sheet {
     pub tensors: Vec<[f64; 6]>,
     /// A canvas with the numbers of cells, from 0, as labels of its vertices (-1 for none), and the distances there.
     pub canvas: Option<(Mesh, Vec<f64>)>,
-    /// Curves on the mesh, such as geodesic edges.
+    /// Curves on the mesh, such as geodesic edges; those of a curved mesh are drawn without.
     pub curves: Vec<Vec<Point3>>,
 }
 
@@ -72,7 +73,8 @@ impl Sheet {
             told_canvas["distances"] = store.planes(&Planes::of_reals(distances));
             told["canvas"] = told_canvas;
         }
-        told["curves"] = steps.curves(store, &self.curves);
+        let edges = Curves::of(&self.mesh).polylines(&self.mesh);
+        told["curves"] = steps.curves(store, &[self.curves.as_slice(), &edges].concat());
         Ok(told)
     }
 

@@ -18,11 +18,6 @@ impl Form {
         let is_binary = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("solb"));
         if is_binary { Form::Binary } else { Form::Text }
     }
-
-    /// How the name of a solution's file ends.
-    pub fn solution_ending(self) -> &'static str {
-        if self == Form::Binary { "solb" } else { "sol" }
-    }
 }
 
 /// Which byte of a number comes first.

@@ -21,7 +21,8 @@ impl Reader {
         }
         let counts: Vec<String> = self.foreign.iter().map(|(name, count)| format!("{count} {name}")).collect();
         let what = format!("{} ({})", counts.join(", "), from.source.place());
-        let help = "give a mesh of straight triangles: in Gmsh mesh in 2 dimensions with Mesh.ElementOrder = 1";
+        let help =
+            "give a mesh of triangles of order 1 to 3: in Gmsh mesh in 2 dimensions with Mesh.ElementOrder = 1, 2 or 3";
         Err(Error::unsupported(what, help))
     }
 
@@ -136,11 +137,19 @@ impl Reader {
             Shape::Edge => {
                 mesh.edges.push([nodes[0], nodes[1]]);
                 mesh.edge_labels.push(0);
+                if let curve @ [_, ..] = &nodes[2..] {
+                    self.raised.edge(mesh.edges.len() - 1, curve);
+                }
                 mesh.edges.len() as u32 - 1
             }
-            Shape::Face => {
+            Shape::Face | Shape::Curved => {
                 let index = mesh.triangles.len();
-                cut(&mesh.points, nodes, &mut mesh.triangles);
+                if matches!(kind.shape, Shape::Curved) {
+                    mesh.triangles.push([nodes[0], nodes[1], nodes[2]]);
+                    self.raised.triangle(&nodes[3..]);
+                } else {
+                    cut(&mesh.points, nodes, &mut mesh.triangles);
+                }
                 mesh.triangle_labels.resize(mesh.triangles.len(), 0);
                 self.triangle_elements.resize(mesh.triangles.len(), element);
                 index as u32
@@ -157,6 +166,7 @@ impl Reader {
             Shape::Point => (&mut mesh.point_labels, 1),
             Shape::Edge => (&mut mesh.edge_labels, 1),
             Shape::Face => (&mut mesh.triangle_labels, kind.nodes - 2),
+            Shape::Curved => (&mut mesh.triangle_labels, 1),
             Shape::Solid | Shape::Foreign(_) => return self.volumes.label(index, label),
         };
         labels[index as usize..][..count].fill(label);
@@ -174,16 +184,16 @@ fn read_kind(from: &mut Blocks<'_>, at: At<'_>) -> Result<Kind> {
     let code = from.source.whole(INT, at)?;
     Kind::of(code).ok_or_else(|| {
         let what = format!("elements of type {code} ({at}; {})", from.source.place());
-        Error::unsupported(what, "give a mesh of straight triangles, edges and points")
+        Error::unsupported(what, "give a mesh of triangles of order 1 to 3, edges and points")
     })
 }
 
 /// An element repeated more often than this is not taken for one in so many groups.
 const MOST_GROUPS: usize = 256;
 
-/// What is written.
-pub(super) const EDGE: i32 = 1;
-pub(super) const TRIANGLE: i32 = 2;
+/// What is written, by order where there are several.
+pub(super) const EDGES: [i32; 3] = [1, 8, 26];
+pub(super) const TRIANGLES: [i32; 3] = [2, 9, 21];
 pub(super) const POINT: i32 = 15;
 
 /// A type of elements.
@@ -200,9 +210,12 @@ struct Kind {
 #[derive(Clone, Copy)]
 enum Shape {
     Point,
+    /// An edge, its ends first.
     Edge,
     /// A triangle, or a quadrangle that is cut in two.
     Face,
+    /// A curved triangle, its corners first.
+    Curved,
     /// A cell with straight edges, of which the outside may be taken.
     Solid,
     /// Nothing: what such elements are called.
@@ -220,11 +233,12 @@ impl Kind {
         };
         let shape = match code {
             POINT => Shape::Point,
-            EDGE => Shape::Edge,
-            TRIANGLE | 3 => Shape::Face,
+            1 | 8 | 26 => Shape::Edge,
+            2 | 3 => Shape::Face,
+            9 | 21 => Shape::Curved,
             4..=7 => Shape::Solid,
-            8 | 26..=28 => Shape::Foreign("curved edges"),
-            9 | 20..=25 => Shape::Foreign("curved triangles"),
+            27 | 28 => Shape::Foreign("curved edges of order 4 or 5"),
+            20 | 22..=25 => Shape::Foreign("curved triangles of order 4 or 5, or without inner nodes"),
             10 | 16 | 36 => Shape::Foreign("curved quadrangles"),
             _ => Shape::Foreign("curved volume elements"),
         };
@@ -235,7 +249,7 @@ impl Kind {
         match self.shape {
             Shape::Point => 0,
             Shape::Edge => 1,
-            Shape::Face => 2,
+            Shape::Face | Shape::Curved => 2,
             Shape::Solid | Shape::Foreign(_) => 3,
         }
     }

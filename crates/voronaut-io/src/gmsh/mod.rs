@@ -50,7 +50,7 @@ impl FromStr for Version {
 /// Reads a mesh and the values on it from a file of version 2 to 2.2, 4.0 or 4.1, text or binary of either byte order.
 ///
 /// Vertices are the nodes in the order of the file, used or not, whatever their tags. Triangles and edges are the elements of types
-/// 2 and 1; quadrangles are cut in two along their better diagonal. Tetrahedra, hexahedra, prisms and pyramids are left out with a
+/// 2 and 1; or of types 9 and 8, or 21 and 26, of order 2 and 3, of which the inner nodes are no vertices, and values there left out; quadrangles are cut in two along their better diagonal. Tetrahedra, hexahedra, prisms and pyramids are left out with a
 /// note; where there are neither triangles nor quadrangles the mesh is their boundary, with their labels, and where labels differ what
 /// is between them. Elements of type 15 (points) are corners; but where
 /// there is a physical group of points named `corners`, only those in it are.
@@ -69,7 +69,7 @@ impl FromStr for Version {
 /// # Errors
 ///
 /// [`Error::Parse`] with the line, or in binary files the byte, of what is not as announced.
-/// [`Error::Unsupported`] of other versions, of curved elements with their numbers, of
+/// [`Error::Unsupported`] of other versions, of other curved elements with their numbers, of triangles of different orders, of
 /// meshes in partitions. [`Error::Io`] of a file that cannot be read.
 pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
     Reader::default().read(Blocks::new(Source::verbatim(source, place))?)

@@ -57,7 +57,7 @@ impl Plan<'_> {
     }
 
     fn vertices_of(&self, part: &Part) -> BTreeSet<u32> {
-        part.elements.iter().flat_map(|edge| self.nodes(part.dimension, edge).iter().copied()).collect()
+        part.elements.iter().flat_map(|edge| self.mesh.edges[*edge as usize]).collect()
     }
 }
 

@@ -4,6 +4,7 @@ use super::blocks::{Blocks, INT, Layout, REAL, SIZE, end_section, next_section, 
 use super::groups::Groups;
 use super::tags::Tags;
 use crate::codec::{At, several};
+use crate::curved::Raised;
 use crate::document::marked_mut;
 use crate::volumes::Volumes;
 use crate::{Document, Fields};
@@ -25,6 +26,7 @@ pub(super) struct Reader {
     /// The element that each triangle comes from, counted in the order of the file.
     pub(super) triangle_elements: Vec<u32>,
     pub(super) volumes: Volumes,
+    pub(super) raised: Raised,
     /// Elements of which a triangle mesh can hold nothing.
     pub(super) foreign: BTreeMap<&'static str, u64>,
     pub(super) mesh: Mesh,
@@ -43,8 +45,8 @@ pub(super) struct Piece {
     pub(super) index: u32,
 }
 
-/// The nodes of an element, and zeros behind them: a hexahedron has most.
-pub(super) type Corners = [u32; 8];
+/// The nodes of an element, and zeros behind them: a triangle of order 3 has most.
+pub(super) type Corners = [u32; 10];
 
 /// Sections that are read once; `NodeData` and `ElementData` are read as often as they come, all others are passed over.
 const SECTIONS: [&str; 4] = ["PhysicalNames", "Entities", "Nodes", "Elements"];
@@ -66,7 +68,9 @@ impl Reader {
             list.sort_unstable();
             list.dedup();
         }
-        Ok(Document { mesh: self.mesh, fields: self.fields, notes: self.notes })
+        let mut document = Document { mesh: self.mesh, fields: self.fields, notes: self.notes };
+        self.raised.finish(&mut document, from.source.place())?;
+        Ok(document)
     }
 
     fn read_section(&mut self, section: &str, from: &mut Blocks<'_>) -> Result<()> {

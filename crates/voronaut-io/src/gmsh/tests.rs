@@ -356,7 +356,11 @@ fn errors_say_what_and_where() {
         ("90 70 3 10 11", "90 70 3 10 -1", "a.msh:34: '-1' is out of range (row 1 of 3 of Elements)"),
         ("5 10 3", "90 10 3", "a.msh:37: element 90 is there twice (rows 1 and 3 of Elements)"),
         ("1 3 1 2\n2 70", "1 3 99 2\n2 70", "not supported: elements of type 99 (the head of Elements; a.msh:35)"),
-        ("2 9 3 1\n90 70 3 10 11", "2 9 8 1\n90 70 3 10", "not supported: 1 curved edges (a.msh:37)"),
+        (
+            "2 9 3 1\n90 70 3 10 11",
+            "2 9 8 1\n90 70 3 10",
+            "not supported: 1 curved edges without curved triangles in a.msh",
+        ),
         ("5 10 3", "5 10 3\n6 10 3", "a.msh:38: '6' where $EndElements should be: Elements is longer than announced"),
         ("$EndElements\n", "", "a.msh:37: the file ends without $EndElements"),
         ("$EndElements\n", "$EndElements\njunk", "a.msh:39: 'junk' where a section such as $Nodes should begin"),

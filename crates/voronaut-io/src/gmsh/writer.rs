@@ -2,10 +2,11 @@
 
 use super::Version;
 use super::data::Column;
-use super::elements::{EDGE, POINT, TRIANGLE};
+use super::elements::{EDGES, POINT, TRIANGLES};
 use super::groups::{MARKS, Marks, Numbering};
 use crate::Fields;
 use crate::codec::{Form, Sink};
+use crate::curved::Elements;
 use crate::document::{labels, marked};
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -20,6 +21,8 @@ use voronaut::mesh::Mesh;
 /// `required vertices`, `ridges`, `required edges` and `required triangles`. In version 2.2, where Gmsh repeats elements for each
 /// of their groups, those of edges and triangles are not written.
 ///
+/// Nodes of curved triangles follow the vertices, with values between those at vertices.
+///
 /// Curves that correspond ([`Mesh::periodic`]) are in `$Periodic`, where the first is the master.
 ///
 /// Fields are `$NodeData` and `$ElementData`; vectors of two numbers get a third, 0; tensors are written row by row with 9 numbers.
@@ -28,9 +31,9 @@ use voronaut::mesh::Mesh;
 /// Gmsh leaves out vertices without element.
 ///
 /// # Errors
-/// What `out` says; more elements than version 2.2 or fields have tags for.
+/// What `out` says; more elements than version 2.2 or fields have tags for; labelled edges of a curved mesh that no triangle has.
 pub fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &mut dyn Write) -> io::Result<()> {
-    let plan = Plan::new(mesh);
+    let plan = Plan::new(mesh)?;
     let mut sink = begin(version, form, out)?;
     plan.write_names(&mut sink)?;
     match version {
@@ -38,8 +41,8 @@ pub fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &m
         Version::V2_2 => plan.write_2(&mut sink)?,
     }
     plan.write_periodic(version, &mut sink)?;
-    for column in fields.vertices.iter().flat_map(Column::of) {
-        write_data("NodeData", &column, (0..mesh.points.len()).map(Some), &mut sink)?;
+    for column in plan.elements.fields(fields).vertices.iter().flat_map(Column::of) {
+        write_data("NodeData", &column, (0..plan.elements.points.len()).map(Some), &mut sink)?;
     }
     let rows = if fields.triangles.is_empty() { Vec::new() } else { plan.triangles_of_elements(version) };
     for column in fields.triangles.iter().flat_map(Column::of) {
@@ -51,6 +54,7 @@ pub fn write(mesh: &Mesh, fields: &Fields, version: Version, form: Form, out: &m
 /// Which elements a mesh becomes, and in what order: triangles, edges, points, each by label and marks.
 pub(super) struct Plan<'a> {
     pub(super) mesh: &'a Mesh,
+    elements: Elements<'a>,
     pub(super) parts: Vec<Part>,
     groups: Vec<Numbering>,
 }
@@ -69,7 +73,7 @@ pub(super) struct Part {
 }
 
 impl<'a> Plan<'a> {
-    fn new(mesh: &'a Mesh) -> Self {
+    fn new(mesh: &'a Mesh) -> io::Result<Self> {
         let (mut parts, mut groups): (Vec<Part>, Vec<Numbering>) = (Vec::new(), Vec::new());
         for (dimension, count, labels) in [
             (2, mesh.triangles.len(), &mesh.triangle_labels),
@@ -85,7 +89,7 @@ impl<'a> Plan<'a> {
             numbering.keep_used(&parts[first..].iter().flat_map(|part| part.groups.iter().copied()).collect());
             groups.push(numbering);
         }
-        Self { mesh, parts, groups }
+        Ok(Self { mesh, elements: Elements::new(mesh)?, parts, groups })
     }
 
     fn write_names(&self, sink: &mut Sink<'_>) -> io::Result<()> {
@@ -137,14 +141,14 @@ impl<'a> Plan<'a> {
     fn bounds(&self, part: &Part) -> [[f64; 3]; 2] {
         let vertices = || part.elements.iter().flat_map(|element| self.nodes(part.dimension, element));
         let extreme = |of: fn(f64, f64) -> f64| {
-            let points = vertices().map(|&v| self.mesh.points[v as usize]);
+            let points = vertices().map(|v| self.elements.points[v as usize]);
             points.reduce(|a, b| [0, 1, 2].map(|i| of(a[i], b[i]))).unwrap_or_default()
         };
         [extreme(f64::min), extreme(f64::max)]
     }
 
     fn write_nodes_4(&self, sink: &mut Sink<'_>) -> io::Result<()> {
-        let count = self.mesh.points.len() as u64;
+        let count = self.elements.points.len() as u64;
         let blocks = u64::from(count > 0);
         sink.line(format_args!("$Nodes"))?;
         sink.row([blocks, count, blocks, count])?;
@@ -154,7 +158,7 @@ impl<'a> Plan<'a> {
             sink.row([count])?;
             (1..=count).try_for_each(|tag| sink.row([tag]))?;
         }
-        self.mesh.points.iter().try_for_each(|point| sink.row(*point))?;
+        self.elements.points.iter().try_for_each(|point| sink.row(*point))?;
         write_end("Nodes", sink)
     }
 
@@ -164,11 +168,11 @@ impl<'a> Plan<'a> {
         sink.row([self.parts.len() as u64, count, u64::from(count > 0), count])?;
         let mut tags = 1_u64..;
         for part in &self.parts {
-            sink.put_all([part.dimension.into(), part.entity, kind(part.dimension)]);
+            sink.put_all([part.dimension.into(), part.entity, self.kind(part.dimension)]);
             sink.row([part.elements.len() as u64])?;
             for (element, tag) in part.elements.iter().zip(&mut tags) {
                 sink.put(tag);
-                sink.row(self.nodes(part.dimension, element).iter().map(|&v| u64::from(v) + 1))?;
+                sink.row(self.nodes(part.dimension, element).map(|v| u64::from(v) + 1))?;
             }
         }
         write_end("Elements", sink)
@@ -177,9 +181,10 @@ impl<'a> Plan<'a> {
     fn write_2(&self, sink: &mut Sink<'_>) -> io::Result<()> {
         let count = self.parts.iter().map(Part::count_2).sum();
         demand_tags(count)?;
-        demand_tags(self.mesh.points.len())?;
-        sink.line(format_args!("$Nodes\n{}", self.mesh.points.len()))?;
-        for (tag, point) in (1_i32..).zip(&self.mesh.points) {
+        let points = &self.elements.points;
+        demand_tags(points.len())?;
+        sink.line(format_args!("$Nodes\n{}", points.len()))?;
+        for (tag, point) in (1_i32..).zip(points.iter()) {
             sink.put(tag);
             sink.row(*point)?;
         }
@@ -188,30 +193,32 @@ impl<'a> Plan<'a> {
         let mut tag = 0;
         for part in &self.parts {
             if sink.is_binary() {
-                sink.put_all([kind(part.dimension), (part.count_2() as u32).cast_signed(), 2]);
+                sink.put_all([self.kind(part.dimension), (part.count_2() as u32).cast_signed(), 2]);
             }
             for element in &part.elements {
                 for &group in part.groups_2() {
                     tag += 1;
                     sink.put(tag);
                     if !sink.is_binary() {
-                        sink.put_all([kind(part.dimension), 2]);
+                        sink.put_all([self.kind(part.dimension), 2]);
                     }
                     sink.put_all([group, part.entity]);
-                    sink.row(self.nodes(part.dimension, element).iter().map(|v| v + 1))?;
+                    sink.row(self.nodes(part.dimension, element).map(|v| v + 1))?;
                 }
             }
         }
         write_end("Elements", sink)
     }
 
-    /// The vertices of a vertex, an edge or a triangle.
-    pub(super) fn nodes<'b>(&'b self, dimension: u8, element: &'b u32) -> &'b [u32] {
-        match dimension {
-            0 => std::slice::from_ref(element),
-            1 => &self.mesh.edges[*element as usize],
-            _ => &self.mesh.triangles[*element as usize],
-        }
+    /// The points of a vertex, an edge or a triangle, corners first.
+    pub(super) fn nodes<'b>(&'b self, dimension: u8, element: &'b u32) -> impl Iterator<Item = u32> + use<'a, 'b> {
+        self.elements.nodes(dimension, element)
+    }
+
+    /// The type of elements of a dimension.
+    fn kind(&self, dimension: u8) -> i32 {
+        let curve = self.elements.order - 1;
+        [POINT, EDGES[curve], TRIANGLES[curve]][usize::from(dimension)]
     }
 
     /// The triangle whose value each element has. Version 4.1: meshio reads values of elements only where all elements have one, so an
@@ -227,7 +234,7 @@ impl<'a> Plan<'a> {
         let parts = self.parts.iter().filter(|part| part.dimension == 2 || version == Version::V4_1);
         let of = |part: &Part, element: &u32| match part.dimension {
             2 => Some(*element as usize),
-            dimension => at[self.nodes(dimension, element)[0] as usize],
+            dimension => self.nodes(dimension, element).next().and_then(|v| at[v as usize]),
         };
         parts.flat_map(|part| part.elements.iter().map(move |element| of(part, element))).collect()
     }
@@ -266,11 +273,6 @@ fn sort(mesh: &Mesh, dimension: u8, count: usize, given: &[i32]) -> Sorted {
         }
     }
     sorted
-}
-
-/// The type of elements of a dimension.
-fn kind(dimension: u8) -> i32 {
-    [POINT, EDGE, TRIANGLE][usize::from(dimension)]
 }
 
 /// Writes values of nodes or elements, zeros where there is no `row`.

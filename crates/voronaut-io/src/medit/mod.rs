@@ -1,6 +1,7 @@
 //! Medit's formats for meshes (Frey, INRIA RT-0253; libMeshb): `.mesh` as text and `.meshb` as binary files, those of mmg,
 //! refine, bamg and `FreeFEM`.
 
+mod curved;
 mod sections;
 
 pub use super::codec::Form;
@@ -9,9 +10,11 @@ pub(super) use sections::{Sections, Writer};
 
 use super::Document;
 use super::codec::{At, Largest, several};
+use super::curved::{Elements as Nodes, places};
 use super::cutting::cut;
 use super::document::{labels, marked, marked_mut};
 use super::volumes::Volumes;
+use curved::{Curves, write_order};
 use std::io::{self, BufRead, Write};
 use voronaut::Result;
 use voronaut::mesh::Mesh;
@@ -23,13 +26,16 @@ use voronaut::mesh::Mesh;
 /// `RequiredTriangles`. `Quadrilaterals` are cut in two along their better diagonal, behind the triangles, and required like
 /// `RequiredQuadrilaterals`. `Tetrahedra`, `Pyramids`, `Prisms` and `Hexahedra` are left out with a note; where there are neither
 /// triangles nor quadrilaterals the mesh is their boundary, with the labels of the cells, and where labels differ what is between
-/// them. All other sections are passed over. Sections come in any order, keywords of text in any case, its `End` may
+/// them. `TrianglesP2` and `EdgesP2`, or those called P3, are a curved mesh: nodes are in the order of [`Curved`](voronaut::mesh::Curved)
+/// behind the corners, or in that of `TrianglesP2Ordering` and its like, which give barycentric coordinates; labels of nodes inside are
+/// left out. All other sections are passed over. Sections come in any order, keywords of text in any case, its `End` may
 /// be missing. `place` names the file in messages. Memory follows the file, never a count written in it.
 ///
 /// # Errors
 ///
 /// [`Error::Parse`](voronaut::Error::Parse) with the line or the byte of what is not as announced: a file cut off, a count too large or
-/// too small, something that is no finite number, a vertex or edge that does not exist, a section given twice.
+/// too small, something that is no finite number, a vertex or edge that does not exist, a section given twice, curved edges that are not
+/// those of their triangles. [`Error::Unsupported`](voronaut::Error::Unsupported) of triangles of different orders, and of Bézier points.
 /// [`Error::Io`](voronaut::Error::Io) of a file that cannot be read.
 pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
     let (mut sections, mut reader) = (Sections::new(source, place)?, Reader::default());
@@ -41,22 +47,24 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
 
 /// Writes a mesh as a file of version 2 that [`read`] turns into the same mesh, to the last bit.
 ///
-/// Planar meshes are written with `Dimension 2`; empty sections are left out; missing labels are written as 0.
+/// Planar meshes are written with `Dimension 2`; empty sections are left out; missing labels are written as 0. Of a curved mesh
+/// `Vertices` are the vertices, then the nodes with label 0; ridges and what is required number `EdgesP2` and `TrianglesP2`, or P3.
 ///
 /// # Errors
 /// What `out` says.
 pub fn write(mesh: &Mesh, form: Form, out: &mut dyn Write) -> io::Result<()> {
-    let coordinates = if mesh.is_planar() { 2 } else { 3 };
-    let elements = mesh.points.len() + mesh.triangles.len() + mesh.edges.len();
+    let nodes = Nodes::new(mesh)?;
+    let coordinates = if nodes.points.iter().all(|p| p[2] == 0.0) { 2 } else { 3 };
+    let elements = nodes.points.len() + mesh.triangles.len() + mesh.edges.len();
     let mut writer = Writer::new(form, coordinates, MOST_BYTES * elements as u64, out)?;
     let row = 8 * usize::from(coordinates) + 4;
-    writer.section("Vertices", mesh.points.len(), row, &[])?;
-    for (point, label) in mesh.points.iter().zip(labels(&mesh.point_labels)) {
+    writer.section("Vertices", nodes.points.len(), row, &[])?;
+    for (i, point) in nodes.points.iter().enumerate() {
         writer.sink.put_all(point[..usize::from(coordinates)].iter().copied());
-        writer.sink.row([label])?;
+        writer.sink.row([mesh.point_labels.get(i).copied().unwrap_or(0)])?;
     }
-    write_elements(&mut writer, "Edges", &mesh.edges, &mesh.edge_labels)?;
-    write_elements(&mut writer, "Triangles", &mesh.triangles, &mesh.triangle_labels)?;
+    write_elements(&mut writer, &nodes, 1, &mesh.edge_labels, mesh.edges.len())?;
+    write_elements(&mut writer, &nodes, 2, &mesh.triangle_labels, mesh.triangles.len())?;
     for ((name, _), numbers) in MARKS.into_iter().zip(marked(mesh)) {
         if !numbers.is_empty() {
             writer.section(name, numbers.len(), 4, &[])?;
@@ -66,8 +74,8 @@ pub fn write(mesh: &Mesh, form: Form, out: &mut dyn Write) -> io::Result<()> {
     writer.finish()
 }
 
-/// More bytes than a vertex, an edge or a triangle takes in a binary file, with all that refers to it.
-const MOST_BYTES: u64 = 40;
+/// More bytes than a vertex, an edge or a triangle, of order 3 at most, takes in a binary file, with all that refers to it.
+const MOST_BYTES: u64 = 64;
 
 /// What else programs call some sections in texts.
 const OTHER_NAMES: [(&str, &str); 2] = [("Pentahedra", "Prisms"), ("Hexaedra", "Hexahedra")];
@@ -87,6 +95,7 @@ struct Reader {
     quadrilaterals: Elements<4>,
     required_quadrilaterals: Vec<u32>,
     volumes: Volumes,
+    curves: Curves,
     seen: Vec<&'static str>,
     /// Of vertices, edges, triangles and quadrilaterals.
     largest: [Largest; 4],
@@ -134,6 +143,8 @@ impl Reader {
             "Pyramids" => self.read_solids::<5>(name, from)?,
             "Prisms" => self.read_solids::<6>(name, from)?,
             "Hexahedra" => self.read_solids::<8>(name, from)?,
+            "BezierBasis" => self.read_curved(name, from)?,
+            name if name.contains("P2") || name.contains("P3") => self.read_curved(name, from)?,
             _ => {
                 let mark = MARKS.iter().position(|(known, _)| *known == name).expect("all others are marks");
                 *marked_mut(&mut self.mesh)[mark] = self.read_numbers(name, MARKS[mark].1, from)?;
@@ -193,19 +204,22 @@ impl Reader {
         }
         for (of, count) in [
             (Of::Vertices, self.mesh.points.len()),
-            (Of::Edges, self.mesh.edges.len()),
-            (Of::Triangles, self.mesh.triangles.len()),
+            (Of::Edges, self.mesh.edges.len() + self.curves.count(1)),
+            (Of::Triangles, self.mesh.triangles.len() + self.curves.count(2)),
             (Of::Quadrilaterals, self.quadrilaterals.0.len()),
         ] {
             self.largest[of as usize].check(of.name(), 1, count, from.source.file())?;
         }
         self.cut_quadrilaterals();
+        let raised = self.curves.take(&mut self.mesh, from.source.file())?;
         let note = self.volumes.note(self.mesh.triangles.len());
         if self.mesh.triangles.is_empty() {
             let skin = self.volumes.skin(&self.mesh.points);
             (self.mesh.triangles, self.mesh.triangle_labels) = (skin.triangles, skin.labels);
         }
-        Ok(Document { notes: note.into_iter().collect(), ..self.mesh.into() })
+        let mut document = Document { notes: note.into_iter().collect(), ..self.mesh.into() };
+        raised.finish(&mut document, from.source.place())?;
+        Ok(document)
     }
 
     /// Appends the halves of all quadrilaterals to the triangles.
@@ -221,21 +235,26 @@ impl Reader {
     }
 }
 
-fn write_elements<const N: usize>(
+/// Writes all elements of a dimension.
+fn write_elements(
     writer: &mut Writer<'_>,
-    name: &str,
-    elements: &[[u32; N]],
+    nodes: &Nodes<'_>,
+    dimension: u8,
     element_labels: &[i32],
+    count: usize,
 ) -> io::Result<()> {
-    if elements.is_empty() {
+    const NAMES: [[&str; 3]; 2] = [["Edges", "EdgesP2", "EdgesP3"], ["Triangles", "TrianglesP2", "TrianglesP3"]];
+    if count == 0 {
         return Ok(());
     }
-    writer.section(name, elements.len(), 4 * N + 4, &[])?;
-    for (element, label) in elements.iter().zip(labels(element_labels)) {
-        writer.sink.put_all(element.map(|vertex| vertex + 1));
+    let name = NAMES[usize::from(dimension) - 1][nodes.order - 1];
+    let width = if dimension == 1 { nodes.order + 1 } else { places(nodes.order).len() };
+    writer.section(name, count, 4 * width + 4, &[])?;
+    for (element, label) in (0..count as u32).zip(labels(element_labels)) {
+        writer.sink.put_all(nodes.nodes(dimension, &element).map(|point| point + 1));
         writer.sink.row([label])?;
     }
-    Ok(())
+    write_order(writer, dimension, nodes.order)
 }
 
 #[cfg(test)]

@@ -175,7 +175,7 @@ impl<'a> Sections<'a> {
 
 /// The sections that matter here, and their numbers in binary files, as libMeshb has them: first [`READ`] sections of meshes that
 /// are read, then others whose names are known.
-pub(super) const KEYWORDS: [(i32, &str); 24] = [
+pub(super) const KEYWORDS: [(i32, &str); 33] = [
     (3, "Dimension"),
     (4, "Vertices"),
     (5, "Edges"),
@@ -191,6 +191,15 @@ pub(super) const KEYWORDS: [(i32, &str); 24] = [
     (17, "RequiredTriangles"),
     (18, "RequiredQuadrilaterals"),
     (49, "Pyramids"),
+    (24, "TrianglesP2"),
+    (25, "EdgesP2"),
+    (90, "TrianglesP3"),
+    (92, "EdgesP3"),
+    (125, "BezierBasis"),
+    (127, "EdgesP2Ordering"),
+    (128, "EdgesP3Ordering"),
+    (129, "TrianglesP2Ordering"),
+    (130, "TrianglesP3Ordering"),
     (19, "TangentAtEdgeVertices"),
     (20, "NormalAtVertices"),
     (54, "End"),
@@ -202,7 +211,7 @@ pub(super) const KEYWORDS: [(i32, &str); 24] = [
     (66, "SolAtTetrahedra"),
 ];
 
-pub(super) const READ: usize = 15;
+pub(super) const READ: usize = 24;
 
 /// The code of a section that is known.
 ///

@@ -4,6 +4,7 @@ use super::cells::{Shapes, refuse_foreign, types};
 use super::data::{Data, Joined};
 use super::grid::{Array, CELLS, Grid, Piece};
 use crate::codec::Place;
+use crate::curved::Raised;
 use crate::{Document, Fields};
 use voronaut::mesh::Mesh;
 use voronaut::{Error, Result};
@@ -14,18 +15,23 @@ use voronaut::{Error, Result};
 /// As of [`super::read`].
 pub(super) fn assemble(grid: Grid<'_>) -> Result<Document> {
     let mut assembly = Assembly { file: grid.file, ..Assembly::default() };
+    let mut last = 0;
     for piece in grid.pieces {
+        last = piece.byte;
         assembly.append(piece)?;
     }
     let is_planar = assembly.mesh.is_planar();
     let [vertices, triangles] = [assembly.vertices, assembly.triangles].map(|joined| joined.finish(is_planar));
-    Ok(Document { mesh: assembly.mesh, fields: Fields { vertices, triangles }, notes: assembly.notes })
+    let mut document = Document { mesh: assembly.mesh, fields: Fields { vertices, triangles }, notes: assembly.notes };
+    assembly.raised.finish(&mut document, Place::byte(assembly.file, last))?;
+    Ok(document)
 }
 
 #[derive(Default)]
 struct Assembly<'a> {
     file: &'a str,
     mesh: Mesh,
+    raised: Raised,
     vertices: Joined<'a>,
     triangles: Joined<'a>,
     notes: Vec<String>,
@@ -61,6 +67,7 @@ impl<'a> Assembly<'a> {
         for vertex in shapes.triangles.as_flattened_mut().iter_mut().chain(shapes.edges.as_flattened_mut()) {
             *vertex += base as u32;
         }
+        self.raised.append(std::mem::take(&mut shapes.raised), base as u32, self.mesh.edges.len() as u32);
         self.append_cells(data, shapes, cells as usize)
     }
 

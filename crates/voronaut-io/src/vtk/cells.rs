@@ -1,5 +1,6 @@
 //! Cells of VTK as triangles and edges.
 
+use crate::curved::Raised;
 use crate::cutting::cut;
 use crate::volumes::Volumes;
 use std::collections::BTreeMap;
@@ -20,6 +21,15 @@ pub(super) mod types {
     pub(in crate::vtk) const HEXAHEDRON: u8 = 12;
     pub(in crate::vtk) const WEDGE: u8 = 13;
     pub(in crate::vtk) const PYRAMID: u8 = 14;
+    pub(in crate::vtk) const QUADRATIC_EDGE: u8 = 21;
+    pub(in crate::vtk) const QUADRATIC_TRIANGLE: u8 = 22;
+    pub(in crate::vtk) const LAGRANGE_CURVE: u8 = 68;
+    pub(in crate::vtk) const LAGRANGE_TRIANGLE: u8 = 69;
+    /// Types that are read beside those up to pyramids.
+    pub(in crate::vtk) const CURVED: [u8; 4] = [QUADRATIC_EDGE, QUADRATIC_TRIANGLE, LAGRANGE_CURVE, LAGRANGE_TRIANGLE];
+    /// Edges and triangles by their order, from 1.
+    pub(in crate::vtk) const EDGES: [u8; 3] = [LINE, QUADRATIC_EDGE, LAGRANGE_CURVE];
+    pub(in crate::vtk) const TRIANGLES: [u8; 3] = [TRIANGLE, QUADRATIC_TRIANGLE, LAGRANGE_TRIANGLE];
 }
 
 /// What cells of other types are called; those not listed are of higher order.
@@ -35,6 +45,7 @@ pub(super) struct Shapes {
     /// The cell of each edge.
     pub(super) of_edges: Vec<u32>,
     pub(super) volumes: Volumes,
+    pub(super) raised: Raised,
 }
 
 impl Shapes {
@@ -55,6 +66,20 @@ impl Shapes {
             return Err(right);
         }
         match (kind, vertices) {
+            (types::QUADRATIC_EDGE | types::LAGRANGE_CURVE, &[a, b, ref nodes @ ..]) => {
+                self.edges.push([a, b]);
+                if !nodes.is_empty() {
+                    self.raised.edge(self.edges.len() - 1, nodes);
+                }
+            }
+            (types::QUADRATIC_TRIANGLE | types::LAGRANGE_TRIANGLE, &[a, b, c, ref nodes @ ..]) => {
+                self.triangles.push([a, b, c]);
+                match nodes.len() {
+                    0 => {}
+                    3 | 7 => self.raised.triangle(nodes),
+                    _ => return Err(right),
+                }
+            }
             (types::LINE | types::POLY_LINE, _) => {
                 self.edges.extend(vertices.windows(2).map(|ends| [ends[0], ends[1]]));
             }
@@ -100,18 +125,23 @@ fn right(kind: u8) -> (usize, usize, &'static str) {
         types::HEXAHEDRON => (8, 8, "a hexahedron has 8"),
         types::WEDGE => (6, 6, "a wedge has 6"),
         types::PYRAMID => (5, 5, "a pyramid has 5"),
+        types::QUADRATIC_EDGE => (3, 3, "a quadratic edge has 3"),
+        types::QUADRATIC_TRIANGLE => (6, 6, "a quadratic triangle has 6"),
+        types::LAGRANGE_CURVE => (2, 4, "Lagrange curves of order 1, 2 and 3, which are read, have 2, 3 and 4"),
+        types::LAGRANGE_TRIANGLE => (3, 10, "Lagrange triangles of order 1, 2 and 3, which are read, have 3, 6 and 10"),
         _ => (0, usize::MAX, ""),
     }
 }
 
-/// Refuses cells that are neither points, lines nor polygons, nor volumes of few straight edges.
+/// Refuses cells that are neither points, lines nor polygons, nor curved lines or triangles, nor volumes of few straight edges.
 ///
 /// # Errors
 /// [`Error::Unsupported`] with their count.
 pub(super) fn refuse_foreign(kinds: &[i64], place: &str) -> Result<()> {
     let known = i64::from(types::EMPTY)..=i64::from(types::PYRAMID);
+    let is_known = |kind: &i64| known.contains(kind) || types::CURVED.iter().any(|&curved| i64::from(curved) == *kind);
     let mut counts = BTreeMap::new();
-    for kind in kinds.iter().filter(|kind| !known.contains(kind)) {
+    for kind in kinds.iter().filter(|kind| !is_known(kind)) {
         *counts.entry(*kind).or_insert(0_u64) += 1;
     }
     let Some((kind, count)) = counts.into_iter().max_by_key(|&(_, count)| count) else { return Ok(()) };
@@ -178,6 +208,10 @@ mod tests {
             (types::HEXAHEDRON, 6, "a hexahedron has 8"),
             (types::WEDGE, 4, "a wedge has 6"),
             (types::PYRAMID, 4, "a pyramid has 5"),
+            (types::QUADRATIC_EDGE, 4, "a quadratic edge has 3"),
+            (types::QUADRATIC_TRIANGLE, 7, "a quadratic triangle has 6"),
+            (types::LAGRANGE_CURVE, 5, "Lagrange curves of order 1, 2 and 3, which are read, have 2, 3 and 4"),
+            (types::LAGRANGE_TRIANGLE, 9, "Lagrange triangles of order 1, 2 and 3, which are read, have 3, 6 and 10"),
         ] {
             assert_eq!(Shapes::default().push(0, kind, &[0; 9][..count], &[[0.0; 3]]).unwrap_err(), message);
         }

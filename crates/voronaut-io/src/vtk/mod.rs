@@ -5,7 +5,8 @@
 //! - Cells: triangles. Quadrilaterals, polygons and triangle strips are cut into triangles, the former along diagonals that suit
 //!   them. Lines and polylines are the mesh's labelled edges. Vertices are passed over. Tetrahedra, voxels, hexahedra, wedges and
 //!   pyramids are left out with a note; the mesh of a piece that has no flat cells is their boundary, with their labels and values, and
-//!   where labels differ what is between them. All others are refused.
+//!   where labels differ what is between them. Quadratic triangles and edges, and Lagrange triangles and curves of order 2 and 3, are
+//!   a curved mesh; values on their inner nodes are left out. All others are refused.
 //! - Labels: whole numbers on points and cells that are called `label`, `medit:ref`, `gmsh:physical`, `CellEntityIds`, `Material` or
 //!   `ref`; where there are several, the first of this list.
 //! - Marks: numbers of type `UInt8` called `corner` and `required` on points, `required` and `ridge` on cells; not 0 where it is so.
@@ -31,10 +32,12 @@ mod write;
 pub(crate) use cells::types::{LINE, POLY_LINE};
 pub(crate) use write::{Array, Grid};
 
+use super::curved::Elements;
 use super::{Document, Fields};
 use std::io::{self, BufRead, Write};
 use voronaut::Result;
 use voronaut::mesh::Mesh;
+use write::Cells;
 
 /// Reads a `.vtu` or a `.vtp` file: which one it is says the file itself.
 ///
@@ -61,16 +64,22 @@ pub fn read(source: impl BufRead, place: &str) -> Result<Document> {
 /// those of the plane; vectors of the plane have the third coordinate 0 in a mesh with z = 0. On lines, where fields have no
 /// values, they are NaN. Missing labels are written as 0.
 ///
+/// Of a curved mesh cells are quadratic, or Lagrange's of order 3, and points are its vertices and then its nodes, with label 0 and
+/// values between those at vertices.
+///
 /// # Errors
-/// What `out` says.
+/// What `out` says; labelled edges of a curved mesh that no triangle has.
 pub fn write_vtu(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()> {
-    write::grid(mesh, fields, [0, mesh.triangles.len()]).write_unstructured(out)
+    let elements = Elements::new(mesh)?;
+    let (cells, fields) = (Cells::new(mesh, &elements), elements.fields(fields));
+    cells.grid(&fields, [0, mesh.triangles.len()]).write_unstructured(out)
 }
 
-/// As [`write_vtu`], as a `.vtp` file: edges as lines, then triangles as polygons.
+/// As [`write_vtu`], as a `.vtp` file: edges as lines, then triangles as polygons. It has no place for curves: their corners are written.
 ///
 /// # Errors
 /// What `out` says.
 pub fn write_vtp(mesh: &Mesh, fields: &Fields, out: &mut dyn Write) -> io::Result<()> {
-    write::grid(mesh, fields, [mesh.edges.len(), 0]).write_poly_data(out)
+    let elements = Elements::of_corners(mesh);
+    Cells::new(mesh, &elements).grid(fields, [mesh.edges.len(), 0]).write_poly_data(out)
 }

@@ -262,7 +262,7 @@ fn damaged_files() {
         ("5 3<", "5<", "array 'types' holds 1 numbers, where 2 are needed"),
         ("5 3<", "10 10<", "array 'offsets' gives cell 1 3 vertices: a tetrahedron has 4"),
         ("5 3<", "42 42<", "not supported: 2 cells of type 42 (polyhedra) in a"),
-        ("5 3<", "22 3<", "not supported: 1 cells of type 22 (of higher order or unknown) in a"),
+        ("5 3<", "23 3<", "not supported: 1 cells of type 23 (of higher order or unknown) in a"),
         ("\"UInt8\" Name=\"types\"", "\"Float32\" Name=\"types\"", "array 'types' holds floating point numbers"),
         ("Name=\"types\"", "Name=\"kinds\"", "Cells of a piece without an array 'types' of one component"),
         ("\"ascii\"", "\"hex\"", "array '' has the format 'hex'"),

@@ -3,8 +3,10 @@
 
 use super::cells::types;
 use crate::codec::Number;
+use crate::curved::{Elements, places};
 use crate::document::{distinct_names, labels};
 use crate::{Field, Fields};
+use std::borrow::Cow;
 use std::io::{self, Write};
 use voronaut::mesh::Mesh;
 
@@ -55,7 +57,10 @@ fn write_numbers<T: Number>(numbers: impl Iterator<Item = T>, out: &mut dyn Writ
 /// What a file holds.
 pub(crate) struct Grid<'a> {
     pub(crate) points: &'a [[f64; 3]],
-    pub(crate) triangles: &'a [[u32; 3]],
+    /// The points of all triangles, one triangle after the other.
+    pub(crate) triangles: &'a [u32],
+    /// The order of the triangles, 1 to 3.
+    pub(crate) order: usize,
     pub(crate) lines: Vec<&'a [u32]>,
     /// The type of the lines' cells in a `.vtu` file.
     pub(crate) line: u8,
@@ -71,10 +76,11 @@ impl<'a> Grid<'a> {
     /// # Errors
     /// What `out` says.
     pub(crate) fn write_unstructured(self, out: &mut dyn Write) -> io::Result<()> {
-        let cells = self.triangles.len() + self.lines.len();
+        let triangles = self.triangles();
+        let cells = triangles.len() + self.lines.len();
         let counts = format!("NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\"", self.points.len());
-        let all = self.triangles.iter().map(<[u32; 3]>::as_slice).chain(self.lines.clone());
-        let kinds = std::iter::repeat_n(types::TRIANGLE, self.triangles.len());
+        let kinds = std::iter::repeat_n(types::TRIANGLES[self.order - 1], triangles.len());
+        let all = triangles.chain(self.lines.clone());
         let kinds = kinds.chain(std::iter::repeat_n(self.line, self.lines.len()));
         let mut arrays = connections(all);
         arrays.push(Array::new("types", 1, kinds));
@@ -86,14 +92,18 @@ impl<'a> Grid<'a> {
     /// # Errors
     /// What `out` says.
     pub(crate) fn write_poly_data(self, out: &mut dyn Write) -> io::Result<()> {
-        let (points, lines, triangles) = (self.points.len(), self.lines.len(), self.triangles.len());
+        let (points, lines, triangles) = (self.points.len(), self.lines.len(), self.triangles().len());
         let counts = format!(
             "NumberOfPoints=\"{points}\" NumberOfVerts=\"0\" NumberOfLines=\"{lines}\" NumberOfStrips=\"0\" \
              NumberOfPolys=\"{triangles}\""
         );
         let lines = connections(self.lines.clone().into_iter());
-        let triangles = connections(self.triangles.iter().map(<[u32; 3]>::as_slice));
+        let triangles = connections(self.triangles());
         self.write("PolyData", &counts, vec![("Lines", lines), ("Polys", triangles)], out)
+    }
+
+    fn triangles(&self) -> std::slice::ChunksExact<'a, u32> {
+        self.triangles.chunks_exact(places(self.order).len())
     }
 
     fn write(
@@ -144,20 +154,51 @@ fn connections<'a>(cells: impl Iterator<Item = &'a [u32]> + Clone + 'a) -> Vec<A
     vec![Array::new("connectivity", 1, vertices), Array::new("offsets", 1, ends)]
 }
 
-/// A mesh with all it holds, and fields; its edges as lines. `first`: the cells that the first triangle and the first edge are.
-pub(super) fn grid<'a>(mesh: &'a Mesh, fields: &'a Fields, first: [usize; 2]) -> Grid<'a> {
-    let lines = mesh.edges.iter().map(<[u32; 2]>::as_slice).collect();
-    let is_planar = mesh.is_planar();
-    let point_data = point_data(mesh, &fields.vertices, is_planar);
-    let cell_data = cell_data(mesh, &fields.triangles, is_planar, first);
-    Grid { points: &mesh.points, triangles: &mesh.triangles, lines, line: types::LINE, point_data, cell_data }
+/// The cells of a mesh by their points.
+pub(super) struct Cells<'a> {
+    mesh: &'a Mesh,
+    elements: &'a Elements<'a>,
+    triangles: Cow<'a, [u32]>,
+    edges: Cow<'a, [u32]>,
 }
 
-fn point_data<'a>(mesh: &'a Mesh, fields: &'a [Field], is_planar: bool) -> Vec<Array<'a>> {
-    let count = mesh.points.len();
+impl<'a> Cells<'a> {
+    pub(super) fn new(mesh: &'a Mesh, elements: &'a Elements<'a>) -> Self {
+        if elements.order == 1 {
+            let [triangles, edges] = [mesh.triangles.as_flattened(), mesh.edges.as_flattened()].map(Cow::Borrowed);
+            return Self { mesh, elements, triangles, edges };
+        }
+        let all = |dimension, count: usize| {
+            let nodes = (0..count as u32).flat_map(|i| elements.nodes(dimension, &i).collect::<Vec<_>>());
+            Cow::Owned(nodes.collect())
+        };
+        Self { mesh, elements, triangles: all(2, mesh.triangles.len()), edges: all(1, mesh.edges.len()) }
+    }
+
+    /// A mesh with all it holds, and fields; its edges as lines. `first`: the cells that the first triangle and the first edge are.
+    pub(super) fn grid(&'a self, fields: &'a Fields, first: [usize; 2]) -> Grid<'a> {
+        let (mesh, order, points) = (self.mesh, self.elements.order, &*self.elements.points);
+        let is_planar = points.iter().all(|p| p[2] == 0.0);
+        Grid {
+            points,
+            triangles: &self.triangles,
+            order,
+            lines: self.edges.chunks_exact(order + 1).collect(),
+            line: types::EDGES[order - 1],
+            point_data: point_data(mesh, points.len(), &fields.vertices, is_planar),
+            cell_data: cell_data(mesh, &fields.triangles, is_planar, first),
+        }
+    }
+}
+
+fn point_data<'a>(mesh: &'a Mesh, count: usize, fields: &'a [Field], is_planar: bool) -> Vec<Array<'a>> {
     let marked = [("corner", &mesh.corners), ("required", &mesh.required_points)];
     let marked = marked.map(|(name, marked)| (name, marked.iter().map(|&i| i as usize).collect()));
-    let label = Array::new("label", 1, labels(&mesh.point_labels).take(count));
+    let label = Array::new(
+        "label",
+        1,
+        labels(&mesh.point_labels[..mesh.points.len().min(mesh.point_labels.len())]).take(count),
+    );
     let fields = field_arrays(fields, is_planar, (0..count).map(Some));
     std::iter::once(label).chain(mark_arrays(marked, count)).chain(fields).collect()
 }

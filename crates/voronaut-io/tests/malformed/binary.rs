@@ -9,6 +9,7 @@ pub(crate) fn samples() -> Vec<Sample> {
     let mut samples = vec![stl(), ply(false), ply(true), strips(false), strips(true)];
     for (version, big) in [(1, false), (2, false), (2, true), (3, true), (4, false), (4, true)] {
         samples.push(Medit::new(version, big).mesh(if version < 3 { 2 } else { 3 }));
+        samples.push(Medit::new(version, big).curved());
         samples.push(Medit::new(version, big).solutions(if version < 3 { 2 } else { 3 }));
     }
     samples.extend([gmsh_2(false), gmsh_4(true)]);
@@ -53,6 +54,23 @@ impl Medit {
         self.numbers(16, &[1, 3], REFERENCE);
         self.numbers(17, &[2], None);
         self.finish("a.meshb", Reader::Medit)
+    }
+
+    /// A triangle of order 3 with one of its edges, and in which order that has its nodes.
+    fn curved(mut self) -> Sample {
+        self.dimension(2);
+        self.section(4, 10, |own| {
+            for i in 0..10 {
+                own.real(f64::from(i % 4));
+                own.real(f64::from(i / 4) / 2.0);
+                own.whole(0, None);
+            }
+        });
+        self.elements(92, &[[4, 8, 6, 5]]);
+        self.elements(90, &[[1, 4, 8, 2, 3, 5, 6, 7, 9, 10]]);
+        self.section(128, 4, |own| own.wholes(&[0, 3, 2, 1], REFERENCE));
+        self.numbers(16, &[1], None);
+        self.finish("curved.meshb", Reader::Medit)
     }
 
     fn solutions(mut self, dimension: i32) -> Sample {
@@ -125,7 +143,8 @@ impl Medit {
     fn finish(mut self, name: &'static str, reader: Reader) -> Sample {
         self.file.i32(54, None);
         self.file.raw(if self.version < 3 { &[0; 4] } else { &[0; 8] });
-        self.file.finish(name, reader, 1..4)
+        let references = if name == "curved.meshb" { 1..11 } else { 1..4 };
+        self.file.finish(name, reader, references)
     }
 }
 

@@ -8,6 +8,7 @@ pub(crate) fn samples() -> Vec<Sample> {
         Sample::text("plane.mesh", Reader::Medit, 1..5, PLANE),
         Sample::text("space.mesh", Reader::Medit, 1..4, SPACE),
         Sample::text("volume.mesh", Reader::Medit, 1..6, VOLUME),
+        Sample::text("curved.mesh", Reader::Medit, 1..7, CURVED),
         Sample::text("tensors.sol", Reader::Sol, 0..0, TENSORS),
         Sample::text("several.sol", Reader::Sol, 0..0, SEVERAL),
         Sample::text("a.obj", Reader::Obj, 1..5, OBJ),
@@ -21,8 +22,10 @@ pub(crate) fn samples() -> Vec<Sample> {
         Sample::text("free.msh", Reader::Freefem, 1..5, FREEFEM),
         Sample::text("2.2.msh", Reader::Gmsh, 1..5, GMSH_2),
         Sample::text("volume.msh", Reader::Gmsh, 1..6, GMSH_VOLUME),
+        Sample::text("curved.msh", Reader::Gmsh, 1..8, GMSH_CURVED),
         Sample::text("4.1.msh", Reader::Gmsh, 1..5, GMSH_4),
         Sample::text("a.vtu", Reader::Vtk, 0..4, VTU),
+        Sample::text("curved.vtu", Reader::Vtk, 0..6, VTU_CURVED),
         Sample::text("volume.vtu", Reader::Vtk, 0..5, VTU_VOLUME),
         Sample::text("a.vtp", Reader::Vtk, 0..4, VTP),
         Sample::text("plane.txt", Reader::Points, 0..0, POINTS),
@@ -42,6 +45,11 @@ Quadrilaterals 0\nVertices !3\n~0 ~0 ~0 0\n~0 ~1 ~0 0\n~0 ~0 ~1.25 5\n;";
 const VOLUME: &str = "MeshVersionFormatted 2\nDimension ^3\nVertices !5\n~0 ~0 ~0.5 0\n~1 ~0 ~0.5 0\n~0 ~1 ~0.5 0
 ~0 ~0 ~1.5 5\n~0.5 ~0.5 ~-0.5 1\n;Tetrahedra !2\n@1 @2 @3 @4 7\n@1 @3 @2 @5 8\n;Pyramids !1\n@1 @2 @3 @4 @5 9\n;
 Quadrilaterals !2\n@1 @2 @3 @4 5\n@5 @4 @3 @2 6\n;RequiredQuadrilaterals !1\n2\n;End\n";
+
+const CURVED: &str =
+    "MeshVersionFormatted 2\nDimension ^2\nVertices\n!6\n~0 ~0 1\n~1 ~0 -2\n~0 ~1.5e-3 0\n~0.5 ~-0.1 0\n~0.5 ~0.5 0
+~0 ~0.5 0\n;EdgesP2 !1\n@1 @2 @4 6\n;\nTrianglesP2\n!1\n@4 @1 @2 @3 @5 @6 1\n;TrianglesP2Ordering !6
+!1 1 0\n!2 0 0\n!0 2 0\n!0 0 2\n!0 1 1\n!1 0 1\n;RequiredEdges !1\n1\n;End\n";
 
 const TENSORS: &str =
     "MeshVersionFormatted 2\n\nDimension ^2\n\nSolAtVertices\n!3\n!1 !3\n~1 ~0.5 ~2\n~1.D0 ~0 ~1e-9\n~3 ~0 ~3\n;End\n";
@@ -94,6 +102,11 @@ $Nodes\n!4\n1 ~0 ~0 ~0\n2 ~1 ~0 ~0\n3 ~1 ~1 ~0\n4 ~0 ~1e-1 ~0.5\n$EndNodes\n;$El
 3 2 2 7 1 @1 @2 @3\n4 2 2 8 1 @1 @3 @4\n5 3 !2 8 1 @1 @2 @3 @4\n$EndElements\n;
 $NodeData\n!1\n\"u\"\n!1\n0.0\n!3\n0\n!1\n!4\n@1 ~0.5\n@2 ~0.5\n@3 ~1e-3\n@4 ~0.5\n$EndNodeData\n;";
 
+const GMSH_CURVED: &str =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n!7\n1 ~0 ~0 ~0\n2 ~1 ~0 ~0\n3 ~0 ~1e-1 ~0.5\n4 ~0.5 ~0 ~0
+5 ~0.5 ~0.5 ~0\n6 ~0 ~0.5 ~0\n7 ~3 ~3 ~0\n$EndNodes\n;$Elements\n!2\n1 8 2 5 1 @1 @2 @4\n2 9 !2 8 1 @1 @2 @3 @4 @5 @6
+$EndElements\n;$NodeData\n!1\n\"u\"\n!1\n0.0\n!3\n0\n!1\n!3\n@1 ~0.5\n@2 ~0.5\n@3 ~1e-3\n$EndNodeData\n;";
+
 const GMSH_VOLUME: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n!5\n1 ~0 ~0 ~0\n2 ~1 ~0 ~0\n3 ~1 ~1 ~0
 4 ~0 ~1e-1 ~0.5\n5 ~0 ~0 ~-1\n$EndNodes\n;$Elements\n!3\n1 4 !2 7 1 @1 @2 @3 @4\n2 4 2 8 1 @1 @3 @2 @5\n3 7 2 8 1 @1 @2 @3 @4 @5
 $EndElements\n;$ElementData\n!1\n\"e\"\n!1\n0.0\n!3\n0\n!1\n!3\n1 ~0.5\n2 ~0.5\n3 ~1e-3\n$EndElementData\n;";
@@ -115,6 +128,16 @@ const VTU: &str =
 <DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">@0 @1 @2 @2 @3 @0 @0 @1</DataArray>
 <DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">!3 !6 !8</DataArray>
 <DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">5 5 3</DataArray>
+</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+
+const VTU_CURVED: &str = "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">
+<UnstructuredGrid>\n<Piece NumberOfPoints=\"!6\" NumberOfCells=\"!2\">\n<PointData>
+<DataArray type=\"Float64\" Name=\"u\" format=\"ascii\">~1 ~2 ~3 ~4 ~5e-1 ~6</DataArray>
+</PointData>\n<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"!3\" format=\"ascii\">
+~0 ~0 ~0\n~1 ~0 ~0\n~0 ~1e-1 ~0.5\n~0.5 ~0 ~0\n~0.5 ~0.5 ~0\n~0 ~0.5 ~0\n</DataArray>\n</Points>\n<Cells>
+<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">@0 @1 @2 @3 @4 @5 @0 @1 @3</DataArray>
+<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">!6 !9</DataArray>
+<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">22 68</DataArray>
 </Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
 
 const VTU_VOLUME: &str = "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">

@@ -23,6 +23,7 @@ use crate::mesh::{EdgeSide, Edges, Mesh, Network};
 /// [`Error::Mesh`] of numbers beyond the lists they refer to.
 pub fn from_mesh(mesh: &Mesh) -> Result<Pslg> {
     mesh.check_numbers()?;
+    mesh.demand_straight()?;
     check_planar(mesh)?;
     let used = used_vertices(mesh);
     let in_use = (0..).zip(&used).filter(|&(_, &used)| used).map(|(vertex, _)| (vertex, mesh.point(vertex)));

@@ -99,7 +99,7 @@ impl Locator {
             let what = format!("triangle {} refers to a vertex beyond the last, {count}", i + 1);
             return Err(Error::domain(what, name, "correct the mesh"));
         }
-        Ok(())
+        mesh.demand_straight()
     }
 
     /// The point of the mesh that is nearest to `p`; `None` where `p` is not finite.

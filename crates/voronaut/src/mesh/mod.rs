@@ -87,9 +87,10 @@ impl Mesh {
         triangle.map(|v| self.position(v))
     }
 
-    /// Whether every position lies in the plane z = 0.
+    /// Whether every position, of vertices and of curved triangles' nodes, lies in the plane z = 0.
     pub fn is_planar(&self) -> bool {
-        self.points.iter().all(|p| p[2] == 0.0)
+        let nodes = self.curved.iter().flat_map(|curved| &curved.nodes);
+        self.points.iter().chain(nodes).all(|p| p[2] == 0.0)
     }
 
     /// A vertex, numbered from 1, for messages about planar meshes.
@@ -121,6 +122,16 @@ impl Mesh {
             }
         }
         self.curved.as_ref().map_or(Ok(()), |curved| curved.check_numbers(&self.triangles))
+    }
+
+    /// Refuses curved triangles where they would be taken for straight ones.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] with their order.
+    pub(crate) fn demand_straight(&self) -> Result<()> {
+        let Some(curved) = &self.curved else { return Ok(()) };
+        let what = format!("triangles of order {}, where straight ones are needed", curved.order);
+        Err(Error::unsupported(what, "give straight triangles: convert the mesh with `order` 1"))
     }
 }
 

@@ -57,6 +57,7 @@ impl RemeshInput {
     /// As of [`from_mesh`] and [`Domain::new`]; [`Error::Unsupported`] of required triangles.
     pub fn of_mesh(mesh: Mesh, keep: Keep) -> Result<Self> {
         mesh.check_numbers()?;
+        mesh.demand_straight()?;
         if !mesh.required_triangles.is_empty() {
             let what = format!("{} RequiredTriangles of a planar mesh", mesh.required_triangles.len());
             let help = "require their edges (RequiredEdges), or leave them out of the mesh and put them back";

@@ -20,6 +20,7 @@ impl Surface {
     /// an edge in the list that is no triangle's, or there twice with different labels.
     pub fn new(mesh: &Mesh) -> Result<Self> {
         mesh.check_numbers()?;
+        mesh.demand_straight()?;
         let positions = finite_positions(mesh)?;
         check_triangles(&mesh.triangles, &positions)?;
         let mut triangles = mesh.triangles.clone();

@@ -74,6 +74,7 @@ const LOOKS: usize = 3;
 /// All repairs, once.
 fn looked_over(mesh: &Mesh, options: RepairOptions) -> Result<(Mesh, Mended)> {
     mesh.check_numbers()?;
+    mesh.demand_straight()?;
     let mut work = Work::new(mesh, options);
     dropped::drop_not_finite(&mut work)?;
     weld::find_places(&mut work);

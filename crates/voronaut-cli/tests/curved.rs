@@ -1,0 +1,100 @@
+//! Curved meshes on the command line: converted, examined, drawn, and refused by name where they would be flattened.
+
+use crate::common::{Place, stderr};
+use voronaut::mesh::Mesh;
+
+/// The unit disk in seven triangles around its centre.
+const DISKS: [(usize, &[u8]); 2] = [
+    (2, include_bytes!("../../voronaut-io/tests/data/gmsh/order-2-4.1.msh")),
+    (3, include_bytes!("../../voronaut-io/tests/data/gmsh/order-3-2.2.msh")),
+];
+
+fn place(disk: &[u8]) -> Place {
+    let place = Place::new();
+    place.put("disk.msh", disk);
+    place
+}
+
+fn done(place: &Place, words: &str) -> String {
+    let output = place.run(&words.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0), "{words}: {}", stderr(&output));
+    stderr(&output)
+}
+
+fn mesh(place: &Place, name: &str) -> Mesh {
+    voronaut_io::read(&place.path().join(name)).unwrap().mesh
+}
+
+#[test]
+fn formats_with_curves_give_them_back() {
+    for (order, disk) in DISKS {
+        let place = place(disk);
+        let truth = mesh(&place, "disk.msh");
+        let told = done(&place, "convert disk.msh a.meshb");
+        let nodes = truth.curved.as_ref().unwrap().nodes.len();
+        assert!(told.contains(&format!("of order {order}, with {nodes} nodes beside the vertices")), "{told}");
+        done(&place, "convert a.meshb a.vtu");
+        done(&place, "convert a.vtu a.mesh");
+        done(&place, "convert a.mesh a.msh --binary --msh-version 2.2");
+        for name in ["a.meshb", "a.vtu", "a.mesh", "a.msh"] {
+            assert_eq!(mesh(&place, name), truth, "{name}");
+        }
+    }
+}
+
+#[test]
+fn what_has_no_place_for_curves_refuses_them_by_name() {
+    let place = place(DISKS[0].1);
+    for (words, expected) in [
+        ("convert disk.msh a.obj", "triangles of order 2 in a file .obj"),
+        ("convert disk.msh a.vtp", "triangles of order 2 in a file .vtp"),
+        ("convert disk.msh a.poly", "triangles of order 2, where straight ones are needed"),
+        ("mesh disk.msh --metric uniform -n 50 -o a.mesh", "triangles of order 2, where straight ones are needed"),
+        ("remesh disk.msh -hsiz 0.3 -o a.mesh", "triangles of order 2, where straight ones are needed"),
+        ("metric disk.msh --metric uniform -o a.sol", "a metric on curved triangles"),
+        ("interpolate disk.msh disk.msh u.sol -o a.sol", "triangles of order 2, where straight ones are needed"),
+        ("check disk.msh --function x", "the error of linear interpolation on curved triangles"),
+        ("check disk.msh --metric uniform --picture a.svg --show unmet", "--show unmet with curved triangles"),
+        ("check disk.msh --metric uniform --histograms a.svg", "--histograms with curved triangles"),
+        ("view disk.msh --metric uniform -o a.html", "curved triangles in a metric"),
+        ("mesh disk:0,0,1 --metric uniform -n 50 --order 2 -o a.stl", "triangles of order 2 in a file .stl"),
+        ("mesh disk:0,0,1 --metric uniform -n 50 --order 2 --parts 2 -o a.mesh", "--parts with curved triangles"),
+        ("mesh sphere:1 --metric uniform -n 50 --order 2 -o a.mesh", "--order on a surface"),
+    ] {
+        place.put("u.sol", "MeshVersionFormatted 2\nDimension 2\nSolAtVertices 8\n1 1\n1 2 3 4 5 6 7 8\nEnd\n");
+        let output = place.run(&words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(1), "{words}: {}", stderr(&output));
+        assert!(stderr(&output).contains(expected), "{words}: {}", stderr(&output));
+        assert!(stderr(&output).contains("help"), "{words}: {}", stderr(&output));
+        place.take("u.sol");
+        assert_eq!(place.files(), ["disk.msh"], "{words}");
+    }
+    let output = place.run(&["mesh", "disk:0,0,1", "--metric", "uniform", "--order", "4", "-o", "a.msh"]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn curves_are_left_out_on_request() {
+    let place = place(DISKS[1].1);
+    let truth = mesh(&place, "disk.msh");
+    done(&place, "convert disk.msh a.off --order 1");
+    let flat = mesh(&place, "a.off");
+    assert_eq!((&flat.triangles, flat.curved, flat.points), (&truth.triangles, None, truth.points));
+    done(&place, "mesh a.off --metric uniform -n 20 -o b.off");
+}
+
+#[test]
+fn check_and_view_know_curves() {
+    for (order, disk) in DISKS {
+        let place = place(disk);
+        done(&place, "check disk.msh --metric uniform --report a.json --picture a.svg");
+        let report: serde_json::Value = serde_json::from_slice(&place.read("a.json")).unwrap();
+        assert_eq!(report["curved"]["order"], order);
+        assert_eq!(report["curved"]["nodes"], if order == 2 { 14 } else { 35 });
+        let drawn = String::from_utf8(place.read("a.svg")).unwrap();
+        let paths: String = drawn.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+        // Sides of seven triangles, seven edges between them and seven of the boundary.
+        assert_eq!(paths.matches(if order == 2 { 'q' } else { 'c' }).count(), 3 * 7 + 7 + 7);
+        done(&place, "view disk.msh -o a.html");
+    }
+}
