@@ -9,14 +9,14 @@ mod stitch;
 mod tests;
 
 use super::settle::Stopwatch;
-use super::{Aim, MeshOptions, Meshed, Mesher, Seeding, mesh_for};
+use super::{Aim, MeshOptions, Meshed, Mesher, Seeding, closed_form_scale, mesh_for};
 use crate::domain::{Domain, from_mesh};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geodesic::{chord_by, nearby};
 use crate::lists::marked;
 use crate::mesh::{Edges, Mesh};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, rough_complexity};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality;
@@ -91,7 +91,11 @@ pub fn mesh_in_parts(
         ));
     }
     let metric_scale = if options.vertices.is_some() { unit_factor(&mesh, field) } else { cut.scale };
-    Ok(Meshed { mesh, metric_scale, seconds: watch.seconds(), notes, ..Meshed::default() })
+    let closed_form_scale = match options.vertices {
+        Some(count) => Some(closed_form_scale(count, rough_complexity(field, &domain.triangles())?)),
+        None => None,
+    };
+    Ok(Meshed { mesh, metric_scale, closed_form_scale, seconds: watch.seconds(), notes, ..Meshed::default() })
 }
 
 /// Lets regions be made anew.
