@@ -3,6 +3,7 @@
 use crate::curves;
 use crate::fields::Scaled;
 use serde_json::Value;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use voronaut::figures::NetFigures;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
@@ -13,7 +14,7 @@ use voronaut::recipe::Meshed;
 use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Mended, Surface};
 use voronaut::{Error, Result};
-use voronaut_io::{Report, Seconds, Strayed};
+use voronaut_io::{ClosedForm, Report, Seconds, Strayed};
 
 /// A mesh of ours that is not valid is our fault, not the user's.
 pub(crate) fn ours(error: Error) -> Error {
@@ -32,6 +33,7 @@ pub(crate) fn in_plane(meshed: &Meshed, metric: &dyn MetricField, options: Value
     found.demand().map_err(ours)?;
     let mut report = report(meshed, found, options);
     let unmet = measure_in_plane(&mut report, &meshed.mesh, metric)?;
+    report.closed_form = closed_form(meshed, &unmet);
     Ok((report, unmet))
 }
 
@@ -50,9 +52,19 @@ pub(crate) fn on_surface(
     let scaled = Scaled { field: metric, factor: meshed.metric_scale };
     let mut report = report(meshed, found, options);
     let unmet = measure_on_surface(&mut report, &meshed.mesh, &input.surface, &scaled)?;
+    report.closed_form = closed_form(meshed, &unmet);
     report.notes.extend(mended.sentences().chain(meets));
     report.fidelity = meshed.fidelity.map(|found| Strayed::Surface(found.into()));
     Ok((report, unmet))
+}
+
+/// The share of unit edges at the factor that the number of vertices asks for.
+fn closed_form(meshed: &Meshed, unmet: &Unmet) -> Option<ClosedForm> {
+    let metric_scale = meshed.closed_form_scale?;
+    let ratio = (metric_scale / meshed.metric_scale).sqrt();
+    let is_unit = |length: &&f64| (FRAC_1_SQRT_2..=SQRT_2).contains(&(*length * ratio));
+    let unit_fraction = unmet.lengths.iter().filter(is_unit).count() as f64 / unmet.lengths.len() as f64;
+    Some(ClosedForm { metric_scale, unit_fraction })
 }
 
 /// Adds what a planar mesh is in a metric; its edges that are not of unit length.

@@ -11,7 +11,7 @@ use voronaut::domain::{Domain, from_mesh};
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
 use voronaut::quality::{
-    Meetings, fidelity, interpolation_error, interpolation_error_on, surface_fidelity, validity, validity_on,
+    Meetings, Unmet, fidelity, interpolation_error, interpolation_error_on, surface_fidelity, validity, validity_on,
 };
 use voronaut::recipe::GradedAt;
 use voronaut::surface::{Implicit, Input, Mended, Surface};
@@ -160,7 +160,7 @@ fn in_plane(
     pictures::in_plane(&args.outputs, mesh, metric.as_deref(), &layers)
 }
 
-/// Measures the mesh of a surface, of its own triangles if no other is given; there is no picture of it.
+/// Measures the mesh of a surface, of its own triangles if no other is given, and draws it if that is asked for.
 fn on_surface(
     args: &CheckArgs,
     world: &World,
@@ -173,6 +173,9 @@ fn on_surface(
         let implicit = implicit.as_ref().map(|f| f as &dyn Implicit);
         report.fidelity = Some(Strayed::Surface(surface_fidelity(mesh, surface, implicit)?.into()));
     }
+    let drawn = |unmet: &Unmet| pictures::of_surface_mesh(&args.outputs, mesh, unmet);
+    let picture = |unmet: &Unmet| args.outputs.picture.as_ref().map(|_| drawn(unmet)).transpose();
+    let mut unmet = Unmet::default();
     let own;
     let input = if let Some(input) = given {
         input
@@ -180,7 +183,7 @@ fn on_surface(
         own = Input::new(Surface::new(mesh)?, None);
         &own
     } else {
-        return Ok(None);
+        return picture(&Unmet::default());
     };
     if let Some(text) = &args.function {
         let function = Expression::parse(text, Variables::Space)?;
@@ -190,17 +193,15 @@ fn on_surface(
         let factor = args.metric_scale.unwrap_or(1.0);
         let field = fields::on_surface(world, text, input, &args.metric_choices, GradedAt::Scale(factor))?;
         let scaled = Scaled { field: field.as_ref(), factor };
-        account::measure_on_surface(report, mesh, &input.surface, &scaled)?;
+        unmet = account::measure_on_surface(report, mesh, &input.surface, &scaled)?;
+        report.histograms = files::histograms_on(&args.outputs, mesh, input, &scaled)?;
     }
-    Ok(None)
+    picture(&unmet)
 }
 
 /// Refuses what is not there for surfaces.
 fn demand_for_surfaces(args: &CheckArgs, world: &World) -> Result<()> {
-    refuse([
-        (args.outputs.picture.is_some(), "a picture of the mesh of a surface", "leave out --picture"),
-        (args.outputs.histograms.is_some(), "histograms of the mesh of a surface", "leave out --histograms"),
-    ])?;
+    pictures::demand_of_surfaces(&args.outputs, &[])?;
     args.metric.as_ref().map_or(Ok(()), |text| fields::demand_for_surfaces(world, text, &args.metric_choices))
 }
 

@@ -211,8 +211,6 @@ fn in_plane(args: &DualArgs, world: &World, domain: &Domain, mended: &Mended, mu
 fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
     let refused = [
         (args.voronoi != Kind::Riemannian, "--voronoi"),
-        (args.certify, "--certify"),
-        (args.net, "--net"),
         (args.canvas_size == CanvasSize::Certified, "--canvas-size certified"),
     ];
     pictures::demand_of_surfaces(&args.outputs, &refused)?;
@@ -224,7 +222,7 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
     stages.end("canvas");
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, args.geodesic)?;
     stages.end("diagram");
-    let SeedDual { triangles, account, seconds, raw_nerve, .. } =
+    let SeedDual { triangles, account, seconds, raw_nerve, exact, .. } =
         recipe::surface_dual(&diagram, args.dual, &*world.progress(&args.run));
     let mesh = recipe::surface_mesh(input, &places, triangles);
     stages.end("dual");
@@ -232,8 +230,19 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
     let meets = found.meetings.note();
     let mut report = reported(args, &mesh, found, || surface_quality(&mesh, &input.surface, metric.as_ref()))?;
     report.dual = Some(account);
+    report.histograms = files::histograms_on(&args.outputs, &mesh, input, metric.as_ref())?;
     report.canvas = Some(canvas.figures());
     report.diagram = Some(figures::Diagram { raw_nerve: Some(raw_nerve), ..figures::Diagram::of(&diagram) });
+    let net = (args.net || args.is_certified()).then(|| recipe::surface_net(&diagram, &exact));
+    report.net = net.as_ref().map(figures::NetFigures::of);
+    if net.is_some() {
+        stages.end("net");
+    }
+    let certified = net.as_ref().filter(|_| args.is_certified());
+    report.certificate = certified.map(|net| Certificate::on_surface(&diagram, &exact, net, args.constants));
+    if certified.is_some() {
+        stages.end("certificate");
+    }
     report.notes.extend(mended.sentences().chain(meets));
     if !report.validity.valid {
         report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());

@@ -18,8 +18,8 @@ use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
-use voronaut::metric::MetricField;
-use voronaut::quality::{InterpolationError, interpolation_error, interpolation_error_on};
+use voronaut::metric::{Expression, MetricField};
+use voronaut::quality::{InterpolationError, Unmet, interpolation_error, interpolation_error_on};
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, Aim, Centroid, Effort, GradedAt, Idle, MeshOptions, Meshed, Mesher, Seeding, Task};
 use voronaut::surface::metric::Spec;
@@ -329,7 +329,9 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
     let input = &input.cut(&args.features())?;
     let at = GradedAt::of(args.options().vertices, args.complexity);
     let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, at)?;
-    let (options, field) = (args.options(), parts::Field::Surface(input, metric.as_ref()));
+    let aim = aimed(args);
+    let aim = aim.as_ref().map(|function| (function, args.metric_choices.norm));
+    let (options, field) = (args.options(), parts::Field::Surface(input, metric.as_ref(), aim));
     if let Some(job) = &args.in_parts.part {
         return parts::one(job, world, &args.run, field, &options);
     }
@@ -340,7 +342,7 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
     }
     let meshed = match args.in_parts.parts {
         Some(_) => args.in_parts.all(world, &args.run, field, &options, &used)?,
-        None => recipe::mesh_surface(input, metric.as_ref(), &options, &*world.progress(&args.run))?,
+        None => recipe::mesh_surface_for(input, metric.as_ref(), aim, &options, &*world.progress(&args.run))?,
     };
     let (mut report, unmet) = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
     if args.in_parts.parts.is_some() {
@@ -348,9 +350,11 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
         (report.dual, report.relaxation) = (None, None);
     }
     report.interpolation = interpolated(args, input, &meshed.mesh)?;
+    let scaled = Scaled { field: metric.as_ref(), factor: meshed.metric_scale };
     report.seconds.total = world.seconds() - start;
     let drawn = whole.as_ref().filter(|_| args.outputs.picture.is_some());
-    let picture = drawn.map(|whole| drawn_on(args, world, whole, &meshed)).transpose()?;
+    let picture = drawn.map(|whole| drawn_on(args, world, whole, &meshed, &unmet)).transpose()?;
+    report.histograms = files::histograms_on(&args.outputs, &meshed.mesh, input, &scaled)?;
     let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
         let Some(whole) = &whole else { return Ok(()) };
         let at = GradedAt::Scale(meshed.metric_scale);
@@ -360,6 +364,14 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
         args.drawn().map_or(Ok(()), |drawn| pages::with_cells_on(sheet, whole, &scaled, drawn))
     })?;
     finish(args, world, meshed.mesh, picture, sheet, &report)
+}
+
+/// The function that the mesh of a surface is for, if that is a formula and nothing else is asked of the metric.
+fn aimed(args: &MeshArgs) -> Option<Expression> {
+    match Spec::parse(&args.metric) {
+        Ok(Spec::Hessian(function)) if !args.metric_choices.options().is_limiting() => Some(function),
+        _ => None,
+    }
 }
 
 /// The error of interpolation of the function that the mesh is for, if that is a formula.
@@ -383,7 +395,10 @@ fn finish(
 }
 
 /// The mesh of a surface that is whole: cells are drawn across creases.
-fn drawn_on(args: &MeshArgs, world: &World, whole: &Input, meshed: &Meshed) -> Result<String> {
+fn drawn_on(args: &MeshArgs, world: &World, whole: &Input, meshed: &Meshed, unmet: &Unmet) -> Result<String> {
+    if !pictures::need_diagram_on_surface(&args.outputs) {
+        return pictures::of_surface_mesh(&args.outputs, &meshed.mesh, unmet);
+    }
     let (mesh, at) = (&meshed.mesh, GradedAt::Scale(meshed.metric_scale));
     let metric = fields::on_surface(world, &args.metric, whole, &args.metric_choices, at)?;
     let places = mesh.points.iter().map(|&p| whole.closest(p.into())).collect::<Result<Vec<_>>>()?;

@@ -16,7 +16,7 @@ use std::sync::{Mutex, PoisonError};
 use voronaut::domain::Domain;
 use voronaut::geometry::{Aabb, Aabb3};
 use voronaut::mesh::Mesh;
-use voronaut::metric::MetricField;
+use voronaut::metric::{Expression, MetricField, Norm};
 use voronaut::progress::Progress;
 use voronaut::recipe::{
     Aim, MeshOptions, Meshed, Part, mesh_in_parts, mesh_part, mesh_surface_in_parts, mesh_surface_part,
@@ -80,8 +80,8 @@ fn job(text: &str) -> std::result::Result<Job, String> {
 pub(crate) enum Field<'a> {
     /// Of the plane, and what the metric is for.
     Plane(&'a Domain, &'a dyn MetricField, Option<Aim<'a>>),
-    /// Of a surface.
-    Surface(&'a Input, &'a dyn SurfaceMetric),
+    /// Of a surface, and the function that the metric is for.
+    Surface(&'a Input, &'a dyn SurfaceMetric, Option<(&'a Expression, Norm)>),
 }
 
 /// Who makes the meshes of a round, which has a name.
@@ -91,7 +91,7 @@ impl Field<'_> {
     fn part(&self, part: &Part, options: &MeshOptions, progress: &dyn Progress) -> Result<Mesh> {
         match *self {
             Field::Plane(_, metric, aim) => mesh_part(part, metric, aim, options, progress),
-            Field::Surface(input, metric) => mesh_surface_part(part, input, metric, options, progress),
+            Field::Surface(input, metric, aim) => mesh_surface_part(part, input, metric, aim, options, progress),
         }
     }
 
@@ -104,7 +104,7 @@ impl Field<'_> {
     ) -> Result<Meshed> {
         match *self {
             Field::Plane(domain, metric, _) => mesh_in_parts(domain, metric, parts, options, make, progress),
-            Field::Surface(input, metric) => mesh_surface_in_parts(input, metric, parts, options, make, progress),
+            Field::Surface(input, metric, _) => mesh_surface_in_parts(input, metric, parts, options, make, progress),
         }
     }
 }
@@ -125,6 +125,11 @@ fn done_name(job: &Path) -> PathBuf {
 }
 
 impl InParts {
+    /// Whether a mesh is made in parts, or is one.
+    pub(crate) fn is_asked(&self) -> bool {
+        self.parts.is_some() || self.part.is_some()
+    }
+
     /// The whole mesh; `used` are all options.
     pub(crate) fn all(
         &self,

@@ -1,14 +1,15 @@
 //! Pictures of meshes and diagrams, of the plane and of surfaces, as far as they are asked for.
 
 use crate::options::{Outputs, Show, refuse};
-use voronaut::Result;
 use voronaut::diagram::{Diagram, SurfaceDiagram};
-use voronaut::geometry::Point3;
+use voronaut::geometry::{Aabb3, Point3};
 use voronaut::mesh::{Edges, Mesh};
 use voronaut::metric::MetricField;
 use voronaut::net::Net;
+use voronaut::quality::Unmet;
 use voronaut::realisation::{Grid, Realisation};
 use voronaut::triangulation::VertexId;
+use voronaut::{Error, Result};
 use voronaut_draw::{Layers, Picture, Protection, Scene, Stroke, View};
 
 /// Pieces per side in which pictures show a Riemannian triangle.
@@ -60,10 +61,25 @@ pub(crate) fn in_plane(
     outputs.picture.as_ref().map(|_| voronaut_draw::svg_with(mesh, metric, &picture, layers)).transpose()
 }
 
+/// The mesh of a surface, with its edges that are not of unit length if these are to be shown.
+pub(crate) fn of_surface_mesh(outputs: &Outputs, mesh: &Mesh, unmet: &Unmet) -> Result<String> {
+    let scene = Scene::of_mesh(mesh, Some(unmet).filter(|_| outputs.shows(Show::Unmet)));
+    let Some(bounds) = Aabb3::of((0..mesh.points.len() as u32).map(|v| mesh.position(v))) else {
+        return Err(Error::unsupported("a picture of a mesh without vertices", "leave out --picture"));
+    };
+    voronaut_draw::draw_surface(&scene, &View { pixels: outputs.pixels, ..View::of(bounds) })
+}
+
+/// Whether a picture on a surface needs a diagram.
+pub(crate) fn need_diagram_on_surface(outputs: &Outputs) -> bool {
+    outputs.shows(Show::Cells) || outputs.shows(Show::Geodesics)
+}
+
 /// The mesh of a surface, the cells of its vertices, its edges as geodesics.
 pub(crate) fn on_surface(outputs: &Outputs, diagram: &SurfaceDiagram, mesh: &Mesh) -> Result<String> {
-    let is_of_canvas = outputs.shows(Show::Cells) || outputs.shows(Show::Geodesics);
-    let mut scene = if is_of_canvas { coloured(diagram, outputs.shows(Show::Cells)) } else { Scene::of_mesh(mesh) };
+    let is_of_canvas = need_diagram_on_surface(outputs);
+    let mut scene =
+        if is_of_canvas { coloured(diagram, outputs.shows(Show::Cells)) } else { Scene::of_mesh(mesh, None) };
     let edges = Edges::of(&mesh.triangles);
     let edges = edges.ends();
     if outputs.shows(Show::Geodesics) {
@@ -113,11 +129,11 @@ pub(crate) fn with_geodesics(diagram: &SurfaceDiagram, mesh: &Mesh) -> Mesh {
 
 /// Refuses what there is no picture of on surfaces, and what else is asked for that is not there, by name.
 pub(crate) fn demand_of_surfaces(outputs: &Outputs, more: &[(bool, &str)]) -> Result<()> {
-    let is_shown = |show: &Show| matches!(show, Show::Mesh | Show::Cells | Show::Geodesics);
+    let is_shown = |show: &Show| matches!(show, Show::Mesh | Show::Cells | Show::Geodesics | Show::Unmet);
     let own = [
-        (outputs.histograms.is_some(), "--histograms"),
         (outputs.window.is_some(), "--window"),
-        (!outputs.show.iter().all(is_shown), "--show of anything but mesh, cells and geodesics"),
+        (!outputs.show.iter().all(is_shown), "--show of anything but mesh, cells, geodesics and unmet"),
+        (outputs.shows(Show::Unmet) && need_diagram_on_surface(outputs), "--show unmet with cells or geodesics"),
     ];
     let all = own.iter().chain(more);
     refuse(all.map(|&(is_asked, what)| (is_asked, format!("{what} on a surface"), format!("leave out {what}"))))

@@ -98,6 +98,10 @@ fn summary(report: &Report, verbose: bool) -> Lines {
         let (min, mean, max) = (lengths.min, lengths.mean, lengths.max);
         let share = 100.0 * lengths.unit_fraction;
         line("unit edges", format!("{share:.1} %   (metric length {min:.3} to {max:.3}, mean {mean:.3})"));
+        if let Some(found) = report.closed_form {
+            let (share, scale) = (100.0 * found.unit_fraction, found.metric_scale);
+            line("", format!("{share:.1} % at the metric scale that N asks for in closed form, {scale:.6}"));
+        }
     }
     for (i, says) in unmet_lines(report).into_iter().enumerate() {
         line(if i == 0 { "not met" } else { "" }, says);

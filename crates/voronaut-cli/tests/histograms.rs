@@ -48,6 +48,28 @@ fn histograms_are_drawn_and_reported_for_meshes_checks_and_duals() {
     assert_eq!(dual["histograms"]["angle"]["straight"], dual["histograms"]["angle"]["geodesic"]);
 }
 
+/// Straight edges of a sphere are shorter than the arcs over them, and triangles of arcs have more than 180 degrees.
+#[test]
+fn surfaces_have_histograms() {
+    let place = Place::new();
+    let sphere = ["mesh", "sphere:1", "--metric", "uniform", "-n", "120", "-o", "s.mesh", "-q"];
+    runs(&place, &[&sphere[..], &["--histograms", "s.svg", "--report", "s.json"]].concat());
+    let made = report(&place, "s.json");
+    let found = &made["histograms"];
+    assert_eq!(sum(&found["angle"]["geodesic"]), 3 * made["triangles"].as_u64().unwrap());
+    let mean = |key: &str, kind: &str| found[key]["mean"][kind].as_f64().unwrap();
+    assert!(mean("edge_length", "geodesic") > 1.005 * mean("edge_length", "straight"), "{found:#}");
+    // Girard: the excess is the area, 4 pi, over three corners of each triangle.
+    let excess = 720.0 / (3.0 * made["triangles"].as_f64().unwrap());
+    assert!((mean("angle", "geodesic") - 60.0 - excess).abs() < 0.02 * excess, "{found:#}");
+    assert!((mean("angle", "straight") - 60.0).abs() < 1e-9);
+    let scale = made["metric_scale"].to_string();
+    let check = ["check", "s.mesh", "--domain", "sphere:1", "--metric", "uniform", "--metric-scale", &scale];
+    runs(&place, &[&check[..], &["--histograms", "c.svg", "--report", "c.json", "-q"]].concat());
+    assert_eq!(report(&place, "c.json")["histograms"]["edge_length"]["straight"], found["edge_length"]["straight"]);
+    assert!(String::from_utf8(place.read("c.svg")).unwrap().contains("Metric edge lengths"));
+}
+
 #[test]
 fn without_being_asked_for_there_are_no_histograms() {
     let place = Place::new();

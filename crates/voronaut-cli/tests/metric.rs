@@ -143,6 +143,53 @@ fn faults_are_named() {
     assert!(stderr(&output).contains("does not end like a solution file"), "{}", stderr(&output));
 }
 
+/// On the mesh of a sphere: tensors of space, which are read, and the complexity that was asked for.
+#[test]
+fn surfaces_have_metrics_at_vertices() {
+    let place = Place::new();
+    let mesh = ["mesh", "sphere:1", "--metric", "uniform", "-n", "400", "-o", "s.mesh", "-q"];
+    assert!(place.run(&mesh).status.success());
+    let count = 400;
+    let mut values = format!("MeshVersionFormatted 2\nDimension 3\nSolAtVertices {count}\n1 1\n");
+    let mesh = String::from_utf8(place.read("s.mesh")).unwrap();
+    let rows = mesh.split("Vertices").nth(1).unwrap().lines().filter(|line| line.split(' ').count() >= 3);
+    for row in rows.take(count) {
+        let x: f64 = row.split(' ').next().unwrap().parse().unwrap();
+        let _ = writeln!(values, "{x}");
+    }
+    place.put("x.sol", values);
+    let words = |more: &[&str]| {
+        let words =
+            [&["metric", "s.mesh", "-o", "m.sol", "--report", "m.json", "--complexity", "900"][..], more].concat();
+        let output = place.run(&words);
+        assert!(output.status.success(), "{more:?}: {}", stderr(&output));
+        serde_json::from_slice::<Value>(&place.read("m.json")).unwrap()
+    };
+    let sizes = |report: &Value| ["min", "max"].map(|key| report["size"][key].as_f64().unwrap());
+    let exact = words(&["--metric", "hessian:x", "--norm", "inf", "--h-max", "0.2"]);
+    for source in [&["hessian:x.sol"][..], &["hessian:x", "--recovery", "fit"]] {
+        let found = words(&[&["--norm", "inf", "--h-max", "0.2", "--metric"], source].concat());
+        assert!((found["complexity"].as_f64().unwrap() / 900.0 - 1.0).abs() < 1e-6);
+        assert!(
+            sizes(&found).iter().zip(sizes(&exact)).all(|(a, b)| (a / b - 1.0).abs() < 0.05),
+            "{found:#} {exact:#}"
+        );
+    }
+    let all = ["--metric", "curvature", "--metric", "implied", "--metric", "hessian:x.sol", "--gradation", "1.5"];
+    let made = words(&all);
+    assert_eq!(made["expected_vertices"], 1039);
+    let output = place.run(&["mesh", "s.mesh", "--metric", "m.sol", "-o", "out.mesh", "-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for (more, says) in [
+        (&["--metric", "uniform", "--recovery", "l2"][..], "--recovery l2 on a surface"),
+        (&["--metric", "swirl"], "metric swirl on a surface"),
+        (&["--metric", "x.sol"], "the size h = "),
+    ] {
+        let output = place.run(&[&["metric", "s.mesh", "-o", "n.sol"][..], more].concat());
+        assert!(output.status.code() == Some(1) && stderr(&output).contains(says), "{more:?}: {}", stderr(&output));
+    }
+}
+
 #[test]
 fn other_commands_grade_their_metrics() {
     let place = Place::new();

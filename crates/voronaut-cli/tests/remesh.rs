@@ -88,8 +88,7 @@ fn metrics_are_given_or_found() {
     done(&place, "remesh ring.mesh d.mesh -hsiz 0.9 -hausd 2 -q");
     assert!((smallest("d.sol") - 0.9).abs() < 1e-9);
     sizes(&place, "thin.sol", "1 0 1 0 0 6");
-    let said = done(&place, "remesh ring.mesh e.mesh -sol thin.sol -hausd 1");
-    assert!(said.contains("note: sizes that depend on the direction are not graded"), "{said}");
+    done(&place, "remesh ring.mesh e.mesh -sol thin.sol -hausd 1 -q");
     assert!(matches!(solution(&place, "e.sol"), SolutionValues::Tensor3(_)));
 }
 

@@ -212,7 +212,7 @@ fn what_surfaces_do_not_have_is_refused_before_anything_is_written() {
     let dual = |seeds: &'static str| ["dual", "sphere:1", "--metric", "uniform", "--seeds", seeds, "-o", "d.obj"];
     for (words, expected) in [
         ([&mesh[..], &["--net"]].concat(), "not supported: --net on a surface"),
-        ([&dual("off.txt")[..], &["--certify"]].concat(), "--certify on a surface"),
+        ([&dual("off.txt")[..], &["--canvas-size", "certified"]].concat(), "--canvas-size certified on a surface"),
         (dual("off.txt").to_vec(), "off.txt:2: the seed (0, 0, 1.5) is off the surface"),
         (dual("flat.txt").to_vec(), "flat.txt:1: '0 1' is no point"),
         ([&plate[..], &["--fit"]].concat(), "not supported: --fit in the plane"),

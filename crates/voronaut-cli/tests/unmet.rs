@@ -107,7 +107,7 @@ fn what_cannot_be_shown_is_refused() {
     for (words, says) in [
         (&["check", "a.mesh"][..], "give the --metric"),
         (&dual, "voronaut check"),
-        (&["mesh", "sphere:1", "--metric", "uniform", "-n", "50", "-o", "s.mesh"], "on a surface"),
+        (&["mesh", "sphere:1", "--metric", "uniform", "-n", "50", "-o", "s.mesh", "--show", "cells"], "on a surface"),
     ] {
         let output = place.run(&[words, &picture].concat());
         assert_eq!(output.status.code(), Some(1), "{words:?}");
@@ -127,4 +127,12 @@ fn surfaces_have_causes_too() {
     let found = report(&place, "c.json");
     assert!(found["unmet"]["by_cause"]["count"]["share"].as_f64().unwrap() > 0.9, "{:#}", found["unmet"]);
     assert_eq!(found["unmet"]["by_cause"]["count"]["worst"]["at"].as_array().unwrap().len(), 3);
+    // Their colours, and a legend under the picture.
+    let pictures = ["--picture", "a.svg", "--pixels", "200", "-q"];
+    stdout(&place, &[&check[..], &pictures].concat());
+    stdout(&place, &[&check[..], &["--show", "unmet", "--picture", "b.svg", "--pixels", "200", "-q"]].concat());
+    let [plain, shown] = ["a.svg", "b.svg"].map(|name| String::from_utf8(place.read(name)).unwrap());
+    let height =
+        |text: &str| text.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap();
+    assert!(height(&shown) > height(&plain) + 10.0 && shown.matches("<path").count() > plain.matches("<path").count());
 }

@@ -40,7 +40,7 @@ pub use files::{Format, ending, in_file, open, read, read_solutions, read_text};
 pub use given::{Given, read_surface};
 pub use losses::lost_in_outline;
 pub use metric::{MetricFiles, MetricSource, metric_origin, read_metric, surface_metric};
-pub use report::{Report, Seconds, Strayed, peak_memory_bytes};
+pub use report::{ClosedForm, Report, Seconds, Strayed, peak_memory_bytes};
 pub use whole::{Scratch, abandon, demand_directory, place, write, write_with};
 pub use write::{
     demand_diagram, write_diagram, write_document, write_mesh, write_realisation, write_solution, write_solutions,

@@ -75,6 +75,9 @@ pub struct Report {
     pub star_set: Option<StarSet>,
     /// The factor on the metric tensor for which the mesh is a unit mesh.
     pub metric_scale: Option<f64>,
+    /// The share of unit edges at the factor that the number of vertices asks for, where one was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closed_form: Option<ClosedForm>,
     /// What could not be met, and what was mended of the input, in words.
     pub notes: Vec<String>,
     /// Wall time.
@@ -85,6 +88,15 @@ pub struct Report {
     pub version: &'static str,
     /// All options, as used.
     pub options: Value,
+}
+
+/// A mesh in the metric whose complexity is that of a unit mesh of the number of vertices that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ClosedForm {
+    /// The factor on the metric tensor: N sqrt(3) / 2 over the complexity.
+    pub metric_scale: f64,
+    /// The share of the edges whose length in that metric is in [1/sqrt 2, sqrt 2].
+    pub unit_fraction: f64,
 }
 
 /// How far a mesh strays from its domain.

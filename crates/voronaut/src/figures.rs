@@ -88,7 +88,7 @@ pub struct NetFigures {
 
 impl NetFigures {
     /// Of a net.
-    pub fn of(net: &Net) -> Self {
+    pub fn of<P: Copy + PartialEq + Send + Sync>(net: &Net<P>) -> Self {
         let mut all: Vec<f64> = net.interior().map(|ball| ball.protection() / net.epsilon).collect();
         all.sort_unstable_by(f64::total_cmp);
         let at = |share: f64| all.get((share * all.len() as f64) as usize).copied().unwrap_or(f64::NAN);

@@ -13,6 +13,8 @@ use std::time::Instant;
 use voronaut::mesh::{Mesh, Solution, SolutionValues, TensorOrder};
 use voronaut::metric::nodal::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline};
 use voronaut::metric::{Norm, Recovery};
+use voronaut::recipe::metric_at_vertices;
+use voronaut::surface::Surface;
 use voronaut::{Error, Result};
 use voronaut_io::Document;
 
@@ -21,6 +23,9 @@ METRIC  as for `mesh` (uniform, shock, swirl, boundary:h0=, 'formula:m11; m12; m
         hessian:FILE.sol    second derivatives of a solution on MESH, recovered
         'hessian:EXPR'      those of an expression in x and y, exact; with --recovery, recovered from its values
         implied             the metric in which MESH is as even as can be
+On the mesh of a surface (some z is not 0) METRIC is as for `mesh` there (uniform, curvature, shock, formulas of six entries in x, y and z,
+hessian:EXPR in x, y and z, FILE.sol with one size or tensor per vertex), hessian:FILE.sol or implied: tensors are made in the tangent planes,
+on each side of a crease for itself; a vertex of several sides gets a tensor that is as fine in each as that asks for.
 
 What is done, in this order: absolute values of Hessians and their weights for the norm; one complexity for all metrics, if one is
 asked for; combination; limits on sizes, then on the anisotropy; gradation; and last the factor that makes the complexity of what
@@ -33,16 +38,17 @@ Examples:
   voronaut metric wing.mesh --metric hessian:mach.sol --metric hessian:density.sol --norm 4 --complexity 5000 -o wing.sol
   voronaut metric plate.mesh --metric 'hessian:tanh(40*(y - x))' --complexity 2000 -o plate.sol --report plate.json
   voronaut metric plate.mesh --metric implied --metric sizes.sol --combine average --weights 1,3 -o plate.sol
+  voronaut metric spot.obj --metric curvature --metric hessian:heat.sol --complexity 5000 --gradation 1.3 -o spot.sol
   voronaut mesh wing.mesh --metric wing.sol -o adapted.mesh";
 
 #[derive(Debug, Args)]
 pub(crate) struct MetricArgs {
-    /// The planar mesh at whose vertices the metric is made: .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl
+    /// The mesh, planar or of a surface, at whose vertices the metric is made: .mesh, .meshb, .msh, .su2, .vtu, .vtp, .obj, .off, .ply or .stl
     pub(crate) mesh: PathBuf,
     /// Where the metric comes from (see below); may be given more than once
     #[arg(long, value_name = "METRIC", required = true)]
     pub(crate) metric: Vec<String>,
-    /// The metric, one tensor m11 m12 m22 per vertex: .sol
+    /// The metric, one tensor per vertex, m11 m12 m22 or of a surface m11 m12 m22 m13 m23 m33: .sol
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: PathBuf,
     /// What several metrics become: one as fine as each, or their log-Euclidean mean
@@ -128,14 +134,27 @@ pub(crate) fn run(args: &MetricArgs) -> Result<()> {
     summary::notes(&notes, args.run.quiet);
     mesh.check_numbers()?;
     refuse([(mesh.curved.is_some(), "a metric on curved triangles", "convert the mesh with --order 1")])?;
-    let sources = args.metric.iter().map(|text| sources::source(text, &mesh, args)).collect::<Result<Vec<_>>>()?;
-    let made = pipeline.run(&mesh, &sources)?;
-    let values = SolutionValues::Tensor(made.tensors.iter().map(|m| [m.xx, m.xy, m.yy]).collect());
-    voronaut_io::write_solution(&Solution { dimension: 2, values }, &args.out)?;
+    let (made, solution) =
+        if mesh.is_planar() { in_plane(args, &pipeline, &mesh)? } else { on_surface(args, &pipeline, &mesh)? };
+    voronaut_io::write_solution(&solution, &args.out)?;
     let told = told(args, &mesh, &made, start.elapsed().as_secs_f64());
     args.run.write_report(&format!("{told:#}\n"))?;
     summary::print_metric(&args.out, &told, &args.run);
     Ok(())
+}
+
+fn in_plane(args: &MetricArgs, pipeline: &Pipeline, mesh: &Mesh) -> Result<(Outcome, Solution)> {
+    let sources = args.metric.iter().map(|text| sources::source(text, mesh, args)).collect::<Result<Vec<_>>>()?;
+    let made = pipeline.run(mesh, &sources)?;
+    let values = SolutionValues::Tensor(made.tensors.iter().map(|m| [m.xx, m.xy, m.yy]).collect());
+    Ok((made, Solution { dimension: 2, values }))
+}
+
+fn on_surface(args: &MetricArgs, pipeline: &Pipeline, mesh: &Mesh) -> Result<(Outcome, Solution)> {
+    sources::demand_for_surfaces(args)?;
+    let read = |text: &String| sources::OnSurface::read(text, mesh, args);
+    let read = args.metric.iter().map(read).collect::<Result<Vec<_>>>()?;
+    metric_at_vertices(pipeline, Surface::new(mesh)?, read.iter().map(sources::OnSurface::source).collect())
 }
 
 fn combination(args: &MetricArgs) -> Result<Combination> {

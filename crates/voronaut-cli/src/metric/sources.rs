@@ -1,13 +1,16 @@
 //! Metrics at the vertices of a mesh, from texts and files.
 
 use super::{LimitText, MetricArgs};
+use crate::options::refuse;
 use std::path::Path;
 use voronaut::domain::{Domain, from_mesh};
 use voronaut::geometry::Tensor;
-use voronaut::mesh::{Mesh, SolutionValues, TensorOrder};
+use voronaut::mesh::{Mesh, Solution, SolutionValues, TensorOrder};
 use voronaut::metric::nodal::{Limit, Limits, Source, implied, isotropic};
 use voronaut::metric::{MetricSpec, Recovery, ScalarField, Snapshot, recover_hessian};
-use voronaut::recipe::{GradedAt, MetricOptions};
+use voronaut::recipe::{GradedAt, MetricOptions, SurfaceSource};
+use voronaut::surface::Implicit;
+use voronaut::surface::metric::Spec;
 use voronaut::{Error, Result};
 use voronaut_io::{MetricFiles, MetricSource, read_metric, sol};
 
@@ -47,6 +50,52 @@ fn hessian(function: &Snapshot, mesh: &Mesh, recovery: Option<Recovery>) -> Resu
         return recover_hessian(mesh, &values, recovery);
     }
     Ok(points.map(|p| function.second_derivatives(p)).collect())
+}
+
+/// What a METRIC text says of a surface: names, and values at its vertices.
+pub(super) enum OnSurface {
+    Implied,
+    Named(Spec),
+    Values(Solution),
+    Function(Vec<f64>),
+}
+
+impl OnSurface {
+    /// Reads a text and its files.
+    pub(super) fn read(text: &str, mesh: &Mesh, args: &MetricArgs) -> Result<Self> {
+        let text = text.trim();
+        let is_file = |text: &str| matches!(voronaut_io::ending(Path::new(text)).as_deref(), Some("sol" | "solb"));
+        match text.strip_prefix("hessian:") {
+            _ if text == "implied" => Ok(Self::Implied),
+            Some(file) if is_file(file) => {
+                Ok(Self::Function(scalars(Path::new(file), "a Hessian is recovered from a scalar solution")?))
+            }
+            None if is_file(text) => Ok(Self::Values(read_metric(Path::new(text), args.tensor_order)?)),
+            _ => match (Spec::parse(text)?, args.recovery) {
+                (Spec::Hessian(function), Some(_)) => {
+                    Ok(Self::Function(mesh.points.iter().map(|&p| function.value(p.into())).collect()))
+                }
+                (spec, _) => Ok(Self::Named(spec)),
+            },
+        }
+    }
+
+    pub(super) fn source(&self) -> SurfaceSource<'_> {
+        match self {
+            Self::Implied => SurfaceSource::Implied,
+            Self::Named(spec) => SurfaceSource::Named(spec),
+            Self::Values(solution) => SurfaceSource::Values(solution),
+            Self::Function(values) => SurfaceSource::Function(values),
+        }
+    }
+}
+
+/// Refuses what is not there on surfaces.
+pub(super) fn demand_for_surfaces(args: &MetricArgs) -> Result<()> {
+    refuse([
+        (args.recovery == Some(Recovery::L2), "--recovery l2 on a surface", "leave it out: quadratics are fitted"),
+        (args.background.is_some(), "--background on a surface", "give the mesh that the values belong to as MESH"),
+    ])
 }
 
 /// A metric of one value for each vertex of the mesh itself.

@@ -72,8 +72,7 @@ pub(crate) struct RemeshArgs {
     nr: bool,
     #[command(flatten)]
     pub(crate) damage: Damage,
-    /// Sizes grow from edge to edge by this factor at most; -1: as they will. On surfaces those that depend on
-    /// the direction always do
+    /// Sizes grow from edge to edge by this factor at most; -1: as they will
     #[arg(long, value_name = "G", allow_negative_numbers = true, default_value_t = HGRAD)]
     pub(crate) hgrad: f64,
     /// Sizes that follow the directions of curvature and curves, or of the planar mesh's own triangles (-optim)

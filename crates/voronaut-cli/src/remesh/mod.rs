@@ -15,7 +15,7 @@ use voronaut::mesh::{Mesh, Solution};
 use voronaut::progress::Progress;
 use voronaut::quality::fidelity;
 use voronaut::recipe::{self, Asked, Effort, Keep, MeshOptions, RemeshInput};
-use voronaut::surface::metric::{Sizes, Sizing};
+use voronaut::surface::metric::Sizing;
 use voronaut::surface::{Input, Mended};
 use voronaut_io::gmsh::Version;
 use voronaut_io::{Format, Given, Report, Strayed, in_file, read_metric, read_pslg};
@@ -101,9 +101,6 @@ fn on_surface(args: &RemeshArgs, world: &World, input: Input, mended: &Mended, b
     let diagonal = input.diagonal();
     let sizing = sizing(args, [args.hsiz.map_or(LEAST[0] * diagonal, |h| LEAST[1] * h), diagonal]);
     let sizes = sizing.sizes(&input.surface, given.as_ref())?;
-    if matches!(sizes, Sizes::Anisotropic(_)) && args.hgrad > 1.0 && !args.run().quiet {
-        world.say("note", "sizes that depend on the direction are not graded: -hgrad would make them alike in all");
-    }
     let field = sizes.field(&input.surface)?;
     let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args, Effort::Normal) };
     let meshed = recipe::mesh_surface(&input, &field, &options, bar)?;

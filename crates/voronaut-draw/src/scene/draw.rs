@@ -3,6 +3,7 @@
 use super::super::frame::PathData;
 use super::super::shades::in_order;
 use super::super::simplify::simplify;
+use super::super::unmet;
 use super::depth::SAMPLES;
 use super::light::Bodies;
 use super::view::{Camera, View};
@@ -34,13 +35,19 @@ pub fn draw_surface(scene: &Scene, view: &View) -> Result<String> {
     let [width, height] = camera.frame.size();
     let bodies = Bodies::new(scene, &camera);
     let image = crate::data_url(&bodies.pixels(), width as u32)?;
-    let mut text = camera.frame.paper(0.0, "image", &format!("href=\"{image}\""));
+    let below = scene.unmet.as_ref().map_or(0.0, |_| unmet::legend_height(&camera.frame));
+    let top = if scene.unmet.is_some() { " preserveAspectRatio=\"xMidYMin\"" } else { "" };
+    let mut text = camera.frame.paper(below, "image", &format!("href=\"{image}\"{top}"));
     text.push_str("<g fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n");
     let screen = Screen { bodies: &bodies, touch: TOUCH * width.max(height) };
-    for stroke in Stroke::ALL {
+    for stroke in Stroke::all() {
         lines(&mut text, scene, stroke, &screen, &camera);
     }
-    text.push_str("</g>\n</svg>\n");
+    text.push_str("</g>\n");
+    if let Some(found) = &scene.unmet {
+        unmet::legend(&mut text, found, &camera.frame);
+    }
+    text.push_str("</svg>\n");
     Ok(text)
 }
 

@@ -5,11 +5,12 @@ use super::coloured::normals;
 use super::{Fill, Scene, SceneTriangle, Stroke, existing};
 use voronaut::geometry::Point3;
 use voronaut::mesh::{Edges, Mesh};
+use voronaut::quality::Unmet;
 
 impl Scene {
-    /// The triangles of a mesh, flat, by their size, with all edges; its border and its labelled edges are stronger. Triangles with
-    /// vertices that do not exist or are not finite are left out.
-    pub fn of_mesh(mesh: &Mesh) -> Self {
+    /// The triangles of a mesh, flat, by their size, with all edges; its border and its labelled edges are stronger; over them those
+    /// that are not of unit length, by their causes, with a legend. Triangles with vertices that do not exist or are not finite are left out.
+    pub fn of_mesh(mesh: &Mesh, unmet: Option<&Unmet>) -> Self {
         let (used, labels) = shades::drawable(mesh);
         let at = |v: u32| Point3::from(mesh.points[v as usize]);
         let corners: Vec<[Point3; 3]> = used.iter().map(|triangle| triangle.map(at)).collect();
@@ -25,9 +26,16 @@ impl Scene {
         let listed = mesh.edges.iter().copied().filter(|&ends| !edges.at(ends).is_empty());
         let border = edges.boundary().map(|side| side.ends).chain(listed);
         let line = |ends: [u32; 2]| ends.map(at).to_vec();
-        Self { triangles: corners.iter().zip(fills).map(triangle).collect(), lines: Vec::new() }
+        let triangles = corners.iter().zip(fills).map(triangle).collect();
+        let mut scene = Self { triangles, unmet: unmet.cloned(), ..Self::default() }
             .with(inner.map(line), Stroke::Edge)
-            .with(border.map(line), Stroke::Border)
+            .with(border.map(line), Stroke::Border);
+        for edge in unmet.iter().flat_map(|unmet| &unmet.edges).filter(|edge| !edges.at(edge.edge).is_empty()) {
+            let cause = edge.cause as usize;
+            let stroke = if edge.is_short() { Stroke::TooShort(cause) } else { Stroke::TooLong(cause) };
+            scene = scene.with([line(edge.edge)], stroke);
+        }
+        scene
     }
 
     /// A surface whose vertices have values from 0 up, smooth: each triangle by the mean of its corners, the less, the
@@ -46,7 +54,7 @@ impl Scene {
             normals: Some(t.map(|v| normals[v as usize])),
             fill: fill(t),
         };
-        Self { triangles: triangles.iter().map(triangle).collect(), lines: Vec::new() }
+        Self { triangles: triangles.iter().map(triangle).collect(), ..Self::default() }
     }
 }
 

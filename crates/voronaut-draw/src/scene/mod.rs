@@ -23,7 +23,9 @@ pub use draw::draw_surface;
 pub use view::View;
 
 use super::colours::{self, Tint};
+use std::borrow::Cow;
 use voronaut::geometry::{Point3, Vector3};
+use voronaut::quality::{Cause, Unmet};
 
 /// Triangles and lines in space, to be drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,6 +34,8 @@ pub struct Scene {
     pub(crate) triangles: Vec<SceneTriangle>,
     /// Lines on the triangles or elsewhere; those of one point are dots.
     pub(crate) lines: Vec<SceneLine>,
+    /// What a legend of causes is drawn of.
+    pub(crate) unmet: Option<Unmet>,
 }
 
 /// A triangle of a scene. Its front is where its corners are counter-clockwise.
@@ -86,6 +90,10 @@ pub enum Stroke {
     Edge,
     /// A border or a feature of a surface.
     Border,
+    /// An edge that is too long, or too short, by the number of its cause.
+    TooLong(usize),
+    /// The same.
+    TooShort(usize),
     /// A geodesic edge: the thickest.
     Geodesic,
     /// A seed, as a line of one point.
@@ -118,17 +126,26 @@ impl Fill {
 }
 
 impl Stroke {
-    const ALL: [Stroke; 6] =
-        [Stroke::Cell, Stroke::Level, Stroke::Edge, Stroke::Border, Stroke::Geodesic, Stroke::Seed];
+    /// In the order in which they are drawn.
+    fn all() -> impl Iterator<Item = Stroke> {
+        let causes = || 0..Cause::ALL.len();
+        [Stroke::Cell, Stroke::Level, Stroke::Edge, Stroke::Border]
+            .into_iter()
+            .chain(causes().map(Stroke::TooLong))
+            .chain(causes().map(Stroke::TooShort))
+            .chain([Stroke::Geodesic, Stroke::Seed])
+    }
 
     fn pen(self) -> Pen {
-        let (ink, share, widest, is_thinned) = match self {
-            Stroke::Cell => (colours::CELL_BORDER, 0.045, 1.2, true),
-            Stroke::Level => (colours::GRID, 1.0, 0.8, true),
-            Stroke::Edge => (colours::EDGE, 0.05, 1.0, true),
-            Stroke::Border => (colours::BOUNDARY, 1.0, 1.6, false),
-            Stroke::Geodesic => (colours::GEODESIC, 0.06, 1.9, true),
-            Stroke::Seed => (colours::SEED, 0.0, 4.2, false),
+        let (ink, share, widest, is_thinned): (Cow<str>, f64, f64, bool) = match self {
+            Stroke::Cell => (colours::CELL_BORDER.into(), 0.045, 1.2, true),
+            Stroke::Level => (colours::GRID.into(), 1.0, 0.8, true),
+            Stroke::Edge => (colours::EDGE.into(), 0.05, 1.0, true),
+            Stroke::Border => (colours::BOUNDARY.into(), 1.0, 1.6, false),
+            Stroke::TooLong(cause) => (colours::cause(cause, false).into(), 0.26, 2.4, true),
+            Stroke::TooShort(cause) => (colours::cause(cause, true).into(), 0.26, 2.4, true),
+            Stroke::Geodesic => (colours::GEODESIC.into(), 0.06, 1.9, true),
+            Stroke::Seed => (colours::SEED.into(), 0.0, 4.2, false),
         };
         Pen { ink, share, widest, is_thinned }
     }
@@ -136,7 +153,7 @@ impl Stroke {
 
 /// What a stroke is drawn with.
 struct Pen {
-    ink: &'static str,
+    ink: Cow<'static, str>,
     /// Its width as a share of the length of typical lines, and at most, in pixels.
     share: f64,
     widest: f64,

@@ -86,7 +86,7 @@ fn half_of_the_edges_of_a_body_are_seen() {
     let points = surface.positions().iter().map(|p| p.to_array()).collect();
     let triangles = topology.faces().map(|f| topology.corners(f).map(|v| v.0)).collect();
     let mesh = Mesh { points, triangles, ..Mesh::default() };
-    let seen = paths(&draw_surface(&Scene::of_mesh(&mesh), &FRONT).unwrap()).len();
+    let seen = paths(&draw_surface(&Scene::of_mesh(&mesh, None), &FRONT).unwrap()).len();
     let share = seen as f64 / topology.edges().count() as f64;
     // All in front, those of the outline, and nothing else.
     assert!((0.5..0.57).contains(&share), "{share}");
@@ -129,7 +129,7 @@ fn nothing_and_nonsense_are_drawn_as_nothing() {
     more.triangles.iter_mut().for_each(|t| (t.normals, t.fill) = (normals, Fill::Level { region: 0, share: f64::NAN }));
     assert!(!vectors(&draw_surface(&more, &FRONT).unwrap()).contains("NaN"));
     let mesh = Mesh { points: vec![[f64::NAN; 3]; 2], triangles: vec![[0, 1, 0], [0, 1, 7]], ..Mesh::default() };
-    assert!(paths(&draw_surface(&Scene::of_mesh(&mesh), &FRONT).unwrap()).is_empty());
+    assert!(paths(&draw_surface(&Scene::of_mesh(&mesh, None), &FRONT).unwrap()).is_empty());
     let canvas =
         Scene::of_canvas(&[Point3::new(f64::NAN, 0.0, 0.0); 3], &[[0, 1, 2], [0, 0, 1]], &[Some(1), None, Some(7)]);
     assert!(paths(&draw_surface(&canvas, &FRONT).unwrap()).is_empty());

@@ -26,6 +26,9 @@ pub struct Convexity {
     /// No smaller disk is other than convex, if there are no short loops: min(injectivity radius / 2, pi / (2 sqrt
     /// curvature)); infinite where the curvature is nowhere positive.
     pub radius: f64,
+    /// On a surface an estimate of the injectivity radius from below, by geodesic loops that were found at seeds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub injectivity: Option<f64>,
     /// Of the covered triangles: how much the two shorter sides are longer than the third at least, as a share of it,
     /// less the errors of the lengths. Positive where no three seeds of a triangle lie on a geodesic.
     pub bend: f64,
@@ -34,6 +37,9 @@ pub struct Convexity {
 impl Convexity {
     /// Why short geodesic loops are not excluded.
     pub(crate) fn doubt(&self) -> Option<String> {
+        if let Some(injectivity) = self.injectivity {
+            return injectivity.is_nan().then(|| "the injectivity radius: no figure".into());
+        }
         if self.holes > 0 {
             let holes = self.holes;
             return Some(format!("the injectivity radius: geodesic loops around {holes} holes are not excluded"));
@@ -70,25 +76,29 @@ pub(super) fn convexity(diagram: &Diagram, net: &Net, coverage: &Coverage, unit:
     let holes = parts.cast_signed().saturating_sub(topology.euler_characteristic()).max(0).cast_unsigned();
     let of_curved = unit * 0.5 * PI / most.sqrt();
     let radius = if most <= FLAT { f64::INFINITY } else { of_curved };
-    Convexity { curvature: most / unit.powi(2), total, holes, radius, bend: bend(diagram, net, coverage) }
+    let paths = Paths::default();
+    let seed = |i: u32| diagram.seed(i).unwrap_or_default();
+    let sides = |corners: [u32; 3]| {
+        let [a, b, c] = corners.map(seed);
+        let length = |(p, q)| paths.length(diagram.field(), p, q, Fineness::COARSEST).map(|l| (l.value, l.error));
+        [(a, b), (b, c), (c, a)].map(|side| length(side).unwrap_or((f64::NAN, 0.0)))
+    };
+    let is_covered = |corners: &[u32; 3]| corners.iter().any(|&i| coverage.covered[i as usize]);
+    let triangles = net.triangles.iter().map(|ball| ball.corners).filter(is_covered).collect();
+    Convexity { curvature: most / unit.powi(2), total, holes, radius, injectivity: None, bend: bend(triangles, sides) }
 }
 
 /// Curvatures (in units of the sampling) that differences may show of a flat metric.
 const FLAT: f64 = 1e-7;
 
-fn bend(diagram: &Diagram, net: &Net, coverage: &Coverage) -> f64 {
-    let paths = Paths::default();
-    let seed = |i: u32| diagram.seed(i).unwrap_or_default();
+/// The least [`Convexity::bend`] of triangles, from the lengths of their sides and the errors of these.
+pub(super) fn bend(triangles: Vec<[u32; 3]>, sides: impl Fn([u32; 3]) -> [(f64, f64); 3] + Sync + Send) -> f64 {
     let of_triangle = |corners: [u32; 3]| {
-        let [a, b, c] = corners.map(seed);
-        let length = |(p, q)| paths.length(diagram.field(), p, q, Fineness::COARSEST).map(|l| (l.value, l.error));
-        let mut sides = [(a, b), (b, c), (c, a)].map(|side| length(side).unwrap_or((f64::NAN, 0.0)));
+        let mut sides = sides(corners);
         sides.sort_unstable_by(|x, y| x.0.total_cmp(&y.0));
         let error: f64 = sides.iter().map(|side| side.0 * side.1).sum();
         (sides[0].0 + sides[1].0 - sides[2].0 - error) / sides[2].0
     };
-    let is_covered = |corners: &[u32; 3]| corners.iter().any(|&i| coverage.covered[i as usize]);
-    let triangles: Vec<[u32; 3]> = net.triangles.iter().map(|ball| ball.corners).filter(is_covered).collect();
     let bends: Vec<f64> = triangles.into_par_iter().with_min_len(16).map(of_triangle).collect();
     bends.into_iter().fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
 }

@@ -35,6 +35,11 @@ impl Coverage {
         Self { depths, complete, covered, least: f64::INFINITY }
     }
 
+    /// Of seeds of a domain without border: all.
+    pub(super) fn whole(seeds: usize) -> Self {
+        Self { depths: vec![f64::INFINITY; seeds], complete: vec![true; seeds], covered: vec![true; seeds], least: 0.0 }
+    }
+
     /// Says which seeds are covered, from the epsilon of the complete cells.
     pub(super) fn cover(&mut self, net: &Net, longest: f64, inner: &Figures) {
         self.least = DEPTH[0] * (net.epsilon + longest) + DEPTH[1] * inner.epsilon;
@@ -47,11 +52,11 @@ impl Coverage {
     }
 }
 
-/// The net of the complete cells, and what keeps it from being one.
-pub(super) fn inner_net(
+/// The net of the complete cells, whose canvas vertices are no farther from their seeds than `farthest`, and what keeps it from being one.
+pub(super) fn inner_net<P>(
     coverage: &Coverage,
-    diagram: &Diagram,
-    net: &Net,
+    farthest: f64,
+    net: &Net<P>,
     exact: &[[u32; 3]],
 ) -> (Figures, Option<String>) {
     let touches = |corners: &[u32; 3]| corners.iter().any(|&i| coverage.complete[i as usize]);
@@ -62,7 +67,7 @@ pub(super) fn inner_net(
     }
     let figures = Figures {
         // In a metric that varies, the farthest point of a cell need not be a Voronoi vertex.
-        epsilon: balls.iter().map(|ball| ball.radius).fold(farthest(coverage, diagram), f64::max),
+        epsilon: balls.iter().map(|ball| ball.radius).fold(farthest, f64::max),
         mu: net.mu,
         delta: balls.iter().map(|ball| ball.protection()).fold(f64::INFINITY, f64::min),
     };
@@ -83,7 +88,7 @@ pub(super) fn inner_net(
 }
 
 /// How far a canvas vertex of a complete cell is from its seed at most.
-fn farthest(coverage: &Coverage, diagram: &Diagram) -> f64 {
+pub(super) fn farthest(coverage: &Coverage, diagram: &Diagram) -> f64 {
     let vertices = diagram.vertices();
     let is_inner = |v: &VertexId| diagram.colour(*v).is_some_and(|i| coverage.complete[i as usize]);
     vertices.filter(is_inner).map(|v| diagram.distance(v)).fold(0.0, f64::max)

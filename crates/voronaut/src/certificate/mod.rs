@@ -2,12 +2,13 @@
 //! canvas, by how much they miss, and what it would take. The derivations are in `docs/guarantees.md`.
 //!
 //! What is said is no proof: the metric is sampled, and geodesics are computed. It never says that a theorem holds of
-//! which a hypothesis was not looked at. Section 12 (surfaces) is left out: there are none yet.
+//! which a hypothesis was not looked at. Of section 12 (surfaces) there is what has constants: Theorem 10.20.
 
 mod constants;
 mod convexity;
 mod coverage;
 mod distortion;
+mod on_surface;
 mod sizing;
 mod theorems;
 mod verdict;
@@ -104,7 +105,8 @@ impl Certificate {
     pub fn new(diagram: &Diagram, exact: &[[u32; 3]], net: &Net, constants: Constants) -> Self {
         let longest = longest_edge(diagram.canvas());
         let mut coverage = Coverage::new(diagram, net, longest);
-        let (inner, open) = coverage::inner_net(&coverage, diagram, net, exact);
+        let farthest = coverage::farthest(&coverage, diagram);
+        let (inner, open) = coverage::inner_net(&coverage, farthest, net, exact);
         coverage.cover(net, longest, &inner);
         let none = || (coverage.count() == 0).then(|| format!("no seed is {:.3e} from the border", coverage.least));
         let cells = cells(diagram, net, &coverage, &inner);
@@ -123,14 +125,21 @@ impl Certificate {
         };
         let is_walked = |ball: &&Ball<3>| ball.corners.iter().any(|&i| coverage.covered[i as usize]);
         let walks = Walks::of(diagram, net.triangles.iter().filter(is_walked));
-        Self::of(&evidence, &coverage, walks, cells, Area::of(diagram.canvas(), diagram.field()))
+        let area = Area::of(diagram.canvas(), diagram.field());
+        Self::of(&evidence, evidence.verdicts(), &coverage, walks, cells, Some(area))
     }
 
-    fn of(evidence: &Evidence, coverage: &Coverage, walks: Walks, mut cells: Vec<Cell>, area: Area) -> Self {
+    fn of(
+        evidence: &Evidence,
+        verdicts: Vec<Verdict>,
+        coverage: &Coverage,
+        walks: Walks,
+        mut cells: Vec<Cell>,
+        area: Option<Area>,
+    ) -> Self {
         for cell in &mut cells {
             cell.factor = factor(cell, evidence);
         }
-        let verdicts = evidence.verdicts();
         let asked_size = verdicts.iter().find(|verdict| verdict.theorem == "9.4").and_then(|verdict| verdict.size);
         let covered = coverage.count();
         Self {
@@ -147,7 +156,7 @@ impl Certificate {
             convexity: evidence.convexity,
             verdicts,
             asked_size,
-            asked_canvas: asked_size.map(|size| area.cost(size)),
+            asked_canvas: asked_size.zip(area).map(|(size, area)| area.cost(size)),
             walks,
             cells,
         }

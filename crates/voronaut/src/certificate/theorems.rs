@@ -48,6 +48,17 @@ impl Evidence {
         vec![self.euclidean(), self.of_uniform(), arbitrary, self.with_errors(), embedded, straight]
     }
 
+    /// Verdicts on the same theorems on a surface: section 12 has constants for none that speaks of canvases or straight edges.
+    pub(super) fn on_surface(&self) -> Vec<Verdict> {
+        let without = |theorem, says| {
+            let why = "section 12 gives no constants on surfaces".to_string();
+            Verdict::new(theorem, says, vec![], Some(why))
+        };
+        let canvas = ["9.1", "9.9", "9.10", "9.4"].map(|theorem| without(theorem, NERVE));
+        let straight = without("11.2", "the dual with straight edges is embedded");
+        canvas.into_iter().chain([self.geodesic_dual(), straight]).collect()
+    }
+
     fn protected(&self) -> Condition {
         let what = "the net is power-protected: delta above a thousandth of epsilon";
         Condition::above(what, self.net.delta, CERTAIN * self.net.epsilon)

@@ -153,7 +153,7 @@ impl<'a> SurfaceDual<'a> {
     }
 
     /// Where a seed comes to lie that is moved by a vector of its tangent plane.
-    pub(super) fn place_after(&self, v: VertexId, by: Vector) -> Option<Place> {
+    pub(crate) fn place_after(&self, v: VertexId, by: Vector) -> Option<Place> {
         let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
         self.input.lift(&at, at.position + plane.lift(by))
     }

@@ -25,6 +25,16 @@ impl SurfaceDual<'_> {
         self.flip_by(edges, Self::margin)
     }
 
+    /// Flips an edge, if that leaves a triangulation; says whether it did.
+    pub(crate) fn flip_edge(&mut self, h: HalfEdge) -> bool {
+        let may_flip = self.topology().can_flip(h);
+        if may_flip {
+            self.state.topology.flip(h);
+            self.flips += 1;
+        }
+        may_flip
+    }
+
     /// Flips around a seed and onwards.
     pub(super) fn flip_around(&mut self, v: VertexId) {
         let star: Vec<HalfEdge> = self.topology().star(v).flat_map(|h| [h, h.next()]).collect();
@@ -187,12 +197,7 @@ impl<'b, F: Fn(&SurfaceDual<'b>, HalfEdge) -> Option<f64> + Sync> Rounds for Imp
 
     fn flip(&mut self, h: HalfEdge) -> bool {
         // Another flip of the round may have joined the same two seeds.
-        let may_flip = self.dual.topology().can_flip(h);
-        if may_flip {
-            self.dual.state.topology.flip(h);
-            self.dual.flips += 1;
-        }
-        may_flip
+        self.dual.flip_edge(h)
     }
 }
 

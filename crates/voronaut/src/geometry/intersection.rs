@@ -1,6 +1,6 @@
 //! The intersection of two metrics: the coarsest one that is nowhere coarser than either.
 
-use super::Tensor;
+use super::{Eigen3, Tensor, Tensor3};
 
 impl Tensor {
     /// The intersection of a metric with another tensor: of all tensors M with v' M v at least as large as that of both for
@@ -22,6 +22,25 @@ impl Tensor {
             return other;
         }
         Tensor::from_axis(eigen.axis, eigen.large, 1.0).along(frame)
+    }
+}
+
+impl Tensor3 {
+    /// The same in space, of two metrics.
+    #[must_use]
+    pub(crate) fn intersection(self, other: Tensor3) -> Tensor3 {
+        let Eigen3 { values, axes } = self.eigen();
+        // In the coordinates S v, S S = self, `self` is the identity.
+        let root = Tensor3::from_axes(axes, values.map(f64::sqrt));
+        let inverse = Tensor3::from_axes(axes, values.map(|value| 1.0 / value.sqrt()));
+        let eigen = other.along(inverse).eigen();
+        if eigen.values[0] <= 1.0 {
+            return self;
+        }
+        if eigen.values[2] >= 1.0 {
+            return other;
+        }
+        Tensor3::from_axes(eigen.axes, eigen.values.map(|value| value.max(1.0))).along(root)
     }
 }
 

@@ -83,6 +83,17 @@ impl Tensor3 {
         tensors.into_iter().zip(weights).fold(Self::default(), |sum, (tensor, weight)| sum + tensor * weight)
     }
 
+    /// F M F.
+    pub(super) fn along(self, frame: Self) -> Self {
+        let columns = [
+            Vector3::new(frame.xx, frame.xy, frame.xz),
+            Vector3::new(frame.xy, frame.yy, frame.yz),
+            Vector3::new(frame.xz, frame.yz, frame.zz),
+        ];
+        let entry = |i: usize, j: usize| self.dot(columns[i], columns[j]);
+        Self::from_disk([entry(0, 0), entry(0, 1), entry(1, 1), entry(0, 2), entry(1, 2), entry(2, 2)])
+    }
+
     /// M v.
     pub(crate) fn apply(self, v: Vector3) -> Vector3 {
         Vector3::new(

@@ -7,28 +7,33 @@
 mod estimate;
 mod measure;
 mod on_canvas;
+mod seen;
 mod random;
 
 pub(crate) use estimate::Estimate;
 pub(crate) use measure::Memory;
 pub(crate) use on_canvas::circles_on_canvas;
 pub use random::Random;
+pub(crate) use seen::SeedsOnSurface;
 
 use crate::geometry::Point;
 use crate::lists::distinct;
 use crate::mesh::edges_of;
 use crate::metric::MetricField;
+use crate::surface::Place;
 use crate::triangulation::smallest_first;
 use measure::Measure;
+use seen::{Flat, Seeds};
 use std::collections::HashSet;
 
-/// A Delaunay circle: of a triangle, or of an edge at the border of the domain, where its centre is on that edge.
+/// A Delaunay circle: of a triangle, or of an edge at the border of the domain, where its centre is on that edge. Its centre is a point, or
+/// a place of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ball<const N: usize> {
+pub struct Ball<const N: usize, P = Point> {
     /// The seeds on the circle.
     pub corners: [u32; N],
     /// The centre: a vertex of the Voronoi diagram where it lies in the domain.
-    pub centre: Point,
+    pub centre: P,
     /// The radius, in the metric.
     pub radius: f64,
     /// The least power (squared distance from the centre less squared radius) of a seed near the triangle that is no
@@ -42,7 +47,7 @@ pub struct Ball<const N: usize> {
     pub is_interior: bool,
 }
 
-impl<const N: usize> Ball<N> {
+impl<const N: usize, P> Ball<N, P> {
     /// The power protection delta: 0 where there is none.
     pub fn protection(&self) -> f64 {
         self.power.max(0.0).sqrt()
@@ -50,12 +55,12 @@ impl<const N: usize> Ball<N> {
 }
 
 /// The circles of a net, and what follows from them. Lengths are those of the metric.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Net {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Net<P = Point> {
     /// Of the triangles, in their order, without those that have no circle.
-    pub triangles: Vec<Ball<3>>,
+    pub triangles: Vec<Ball<3, P>>,
     /// Of the edges at the border: where the border of two cells meets that of the domain.
-    pub border: Vec<Ball<2>>,
+    pub border: Vec<Ball<2, P>>,
     /// Border edges and triangles with their circumcentre in the domain, as one tensor has it, of which no circle was found:
     /// they are nearly straight, or geodesics are not resolved.
     pub unmeasured: usize,
@@ -71,6 +76,21 @@ pub struct Net {
     pub epsilon: f64,
     /// The least distance between two seeds.
     pub mu: f64,
+}
+
+impl<P> Default for Net<P> {
+    fn default() -> Self {
+        Self {
+            triangles: Vec::new(),
+            border: Vec::new(),
+            unmeasured: 0,
+            unknown: Vec::new(),
+            by_canvas: 0,
+            by_chord: 0,
+            epsilon: 0.0,
+            mu: 0.0,
+        }
+    }
 }
 
 /// A triangulation of seeds whose circles are asked for.
@@ -104,10 +124,32 @@ impl Net {
         known: &[Ball<3>],
         memory: &mut Memory,
     ) -> Self {
+        Self::measured(&Measure::new(Flat { field, found }, found.triangles, found.border), known, memory)
+    }
+
+    /// The circles of some of the triangles, and of the border edges, and nothing else: neither epsilon nor mu.
+    pub(crate) fn measure_some(
+        field: &dyn MetricField,
+        found: &Simplices,
+        wanted: &[[u32; 3]],
+        memory: &mut Memory,
+    ) -> Self {
+        Measure::new(Flat { field, found }, found.triangles, found.border).circles(wanted, memory)
+    }
+}
+
+impl Net<Place> {
+    /// Measures seeds on a surface, in charts around their triangles ([`SeedsOnSurface`]).
+    pub(crate) fn on_surface(seeds: SeedsOnSurface, triangles: &[[u32; 3]]) -> Self {
+        Self::measured(&Measure::new(seeds, triangles, &[]), &[], &mut Memory::default())
+    }
+}
+
+impl<P: Copy + PartialEq + Send + Sync> Net<P> {
+    fn measured<S: Seeds<Place = P>>(measure: &Measure<S>, known: &[Ball<3, P>], memory: &mut Memory<P>) -> Self {
         let of_canvas: HashSet<[u32; 3]> = known.iter().map(|ball| smallest_first(ball.corners)).collect();
         let is_open = |corners: &&[u32; 3]| !of_canvas.contains(&smallest_first(**corners));
-        let wanted: Vec<[u32; 3]> = found.triangles.iter().filter(is_open).copied().collect();
-        let measure = Measure::new(field, found);
+        let wanted: Vec<[u32; 3]> = measure.all().iter().filter(is_open).copied().collect();
         let mu = measure.mu();
         let mut net = Self { mu, by_canvas: known.len(), ..measure.circles(&wanted, memory) };
         net.triangles.extend_from_slice(known);
@@ -119,18 +161,8 @@ impl Net {
         net
     }
 
-    /// The circles of some of the triangles, and of the border edges, and nothing else: neither epsilon nor mu.
-    pub(crate) fn measure_some(
-        field: &dyn MetricField,
-        found: &Simplices,
-        wanted: &[[u32; 3]],
-        memory: &mut Memory,
-    ) -> Self {
-        Measure::new(field, found).circles(wanted, memory)
-    }
-
     /// The triangles whose circumcentre is in the domain.
-    pub fn interior(&self) -> impl Iterator<Item = &Ball<3>> {
+    pub fn interior(&self) -> impl Iterator<Item = &Ball<3, P>> {
         self.triangles.iter().filter(|ball| ball.is_interior)
     }
 

@@ -18,7 +18,7 @@ pub(crate) use fit::{FitOptions, fit};
 pub use lloyd::Relaxed;
 pub(crate) use lloyd::{Patience, relax};
 pub use polish::Polished;
-pub(crate) use polish::{polish, polishing_norm};
+pub(crate) use polish::{polish, polish_on_surface, polishing_norm};
 pub use protect::Ending;
 pub(crate) use protect::{Protected, protect};
 pub(crate) use survey::measured;

@@ -1,6 +1,6 @@
 //! The edges of a mesh as geodesics, from the metric alone: how long, and which way they leave their ends.
 
-use super::metric_quality::{angle, collect, edge_length};
+use super::metric_quality::{angle, collect};
 use crate::error::Result;
 use crate::geodesic::{Fineness, Logarithm, Paths};
 use crate::geometry::{Point, Vector};
@@ -16,15 +16,15 @@ const HOPELESS: f64 = 0.1;
 /// A geodesic that turns out of the domain by no more than this (radians) runs along its border.
 const ALONG: f64 = 1e-6;
 
-/// An edge, straight and as a geodesic.
+/// An edge, straight and as a geodesic; directions are vectors of the plane or of space.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MeasuredEdge {
+pub(super) struct MeasuredEdge<V> {
     /// Metric length of the straight edge.
     pub(super) straight: f64,
     /// Metric length of the geodesic.
     pub(super) geodesic: f64,
     /// Which way the geodesic leaves its first end, and its second; lengths mean nothing.
-    pub(super) directions: [Vector; 2],
+    pub(super) directions: [V; 2],
     pub(super) found: Found,
 }
 
@@ -38,34 +38,43 @@ pub(super) enum Found {
     OnBorder,
 }
 
-/// Measures all edges, in parallel, in their order.
-pub(super) fn measure(mesh: &Mesh, edges: &Edges, metric: &dyn MetricField) -> Result<Vec<MeasuredEdge>> {
+/// Measures all edges, in parallel, in their order: by one of its sides, and on the border of the domain by where that lies: 1 to the left
+/// of the way from the first end to the second, -1 to the right.
+pub(super) fn measure<V: Send>(
+    mesh: &Mesh,
+    edges: &Edges,
+    edge: impl Fn(&EdgeSide, Option<f64>) -> Result<MeasuredEdge<V>> + Sync + Send,
+) -> Result<Vec<MeasuredEdge<V>>> {
     let labelled: HashSet<[u32; 2]> = mesh.edges.iter().copied().map(in_order).collect();
-    let paths = Paths::default();
     let all: Vec<&[EdgeSide]> = edges.iter().collect();
     collect(&all, |sides| {
         let EdgeSide { ends, forward, .. } = sides[0];
         // The domain lies to the left of its border.
         let inside = if forward { 1.0 } else { -1.0 };
         let is_border = sides.len() == 1 && labelled.contains(&ends);
-        edge(&paths, metric, ends.map(|v| mesh.point(v)), is_border.then_some(inside))
+        edge(&sides[0], is_border.then_some(inside))
     })
 }
 
-/// `inside` of an edge on the border is 1 where the domain lies to the left of p-q, -1 where to the right.
-fn edge(paths: &Paths, metric: &dyn MetricField, [p, q]: [Point; 2], inside: Option<f64>) -> Result<MeasuredEdge> {
-    let straight = edge_length([p, q], metric)?;
+/// The geodesic between two points in a metric, beside the straight edge of this length.
+pub(super) fn geodesic(
+    metric: &dyn MetricField,
+    [p, q]: [Point; 2],
+    straight: f64,
+    inside: Option<f64>,
+) -> MeasuredEdge<Vector> {
+    let paths = &Paths::default();
     let chord = MeasuredEdge { straight, geodesic: straight, directions: [q - p, p - q], found: Found::No };
-    let Some(ahead) = logarithm(paths, metric, [p, q]) else { return Ok(chord) };
-    let Some(back) = logarithm(paths, metric, [q, p]) else { return Ok(chord) };
+    let Some(ahead) = logarithm(paths, metric, [p, q]) else { return chord };
+    let Some(back) = logarithm(paths, metric, [q, p]) else { return chord };
     if let Some(side) = inside {
         let turns = [angle(metric.at(p), q - p, ahead.velocity), angle(metric.at(q), back.velocity, p - q)];
         if turns.iter().any(|turn| side * turn < -ALONG) {
-            return Ok(MeasuredEdge { found: Found::OnBorder, ..chord });
+            return MeasuredEdge { found: Found::OnBorder, ..chord };
         }
     }
     let geodesic = 0.5 * (ahead.length.value + back.length.value);
-    Ok(MeasuredEdge { straight, geodesic, directions: [ahead.velocity, back.velocity], found: Found::Geodesic })
+    MeasuredEdge { straight, geodesic, directions: [ahead.velocity, back.velocity], found: Found::Geodesic }
 }
 
 /// With as many modes as it takes.
@@ -78,6 +87,7 @@ fn logarithm(paths: &Paths, metric: &dyn MetricField, [p, q]: [Point; 2]) -> Opt
 
 #[cfg(test)]
 mod tests {
+    use super::super::metric_quality::edge_length;
     use super::super::test_meshes::mesh;
     use super::*;
     use crate::geometry::Tensor;
@@ -89,7 +99,11 @@ mod tests {
         let [above, below] = [1.5, 0.5].map(|y| {
             let mut one = mesh(&[[0.0, 1.0], [0.8, 1.0], [0.4, y]], &[if y > 1.0 { [0, 1, 2] } else { [0, 2, 1] }]);
             one.edges = vec![[0, 1]];
-            measure(&one, &Edges::of(&one.triangles), &half_plane).unwrap()[0]
+            let edge = |side: &EdgeSide, inside: Option<f64>| {
+                let ends = side.ends.map(|v| one.point(v));
+                Ok(geodesic(&half_plane, ends, edge_length(ends, &half_plane)?, inside))
+            };
+            measure(&one, &Edges::of(&one.triangles), edge).unwrap()[0]
         });
         assert_eq!((above.found, below.found), (Found::Geodesic, Found::OnBorder));
         assert!((above.geodesic - 1.32_f64.acosh()).abs() < 1e-8 && (above.straight - 0.8).abs() < 1e-12);

@@ -1,11 +1,17 @@
 //! How metric edge lengths and angles are distributed, with straight edges and with geodesic ones (RR-9103, figure 20).
 
-use super::geodesics::{Found, MeasuredEdge, measure};
-use super::metric_quality::{Corners, EdgeLengths, angle, collect, demand_planar, tensor};
+use super::geodesics::{Found, MeasuredEdge, geodesic, measure};
+use super::metric_quality::{
+    Corners, EdgeLengths, angle, collect, demand_planar, demand_vertices, edge_length, tensor,
+};
+use super::surface_quality::Field;
 use crate::error::Result;
-use crate::mesh::{Edges, Mesh};
+use crate::geometry::{Point, Tensor};
+use crate::mesh::{EdgeSide, Edges, Mesh};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
+use crate::surface::Input;
+use crate::surface::metric::SurfaceMetric;
 
 /// A figure of the mesh with straight edges, and the same with geodesic edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -63,22 +69,52 @@ const ANGLES: (f64, f64) = (3.0, 177.0);
 pub fn histograms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Histograms> {
     demand_planar(mesh)?;
     let edges = Edges::of(&mesh.triangles);
-    let measured = measure(mesh, &edges, metric)?;
+    let edge = |side: &EdgeSide, inside: Option<f64>| {
+        let ends = side.ends.map(|v| mesh.point(v));
+        Ok(geodesic(metric, ends, edge_length(ends, metric)?, inside))
+    };
+    let measured = measure(mesh, &edges, edge)?;
+    let corners = Corners::of(mesh, metric)?;
+    let straight = straight_angles(mesh, |t| Some((corners.mean(t), mesh.corners_of(t))));
+    let curved =
+        geodesic_angles(mesh, &edges, &measured, |v, from, to| Ok(angle(tensor(metric, mesh.point(v))?, from, to)))?;
+    Ok(of(&measured, Both { straight, geodesic: curved }))
+}
+
+/// The same of the mesh of a surface, whose straight edges and triangles are measured as by [`surface_quality`](super::surface_quality()):
+/// geodesics are those of the chart at the middle of an edge, between the places of the surface that its ends are closest to, and angles
+/// those in the tangent plane at a vertex.
+///
+/// # Errors
+/// As of [`surface_quality`](super::surface_quality()), but for meshes without triangles.
+pub fn histograms_on(mesh: &Mesh, input: &Input, metric: &dyn SurfaceMetric) -> Result<Histograms> {
+    demand_vertices(mesh)?;
+    let field = Field::new(&input.surface, metric);
+    let edges = Edges::of(&mesh.triangles);
+    let measured = measure(mesh, &edges, |side, inside| field.geodesic(mesh, input, side, inside))?;
+    let flattened = field.flattened(mesh)?;
+    let curved = geodesic_angles(mesh, &edges, &measured, |v, from, to| {
+        let (m, plane) = field.tangential(mesh.position(v))?;
+        Ok(angle(m, plane.flatten(from), plane.flatten(to)))
+    })?;
+    Ok(of(&measured, Both { straight: straight_angles(mesh, flattened), geodesic: curved }))
+}
+
+/// The distributions of what was measured.
+fn of<V>(measured: &[MeasuredEdge<V>], angles: Both<Vec<f64>>) -> Histograms {
     let lengths = Both {
         straight: measured.iter().map(|e| e.straight).collect::<Vec<_>>(),
         geodesic: measured.iter().map(|e| e.geodesic).collect(),
     };
-    let angles =
-        Both { straight: straight_angles(mesh, metric)?, geodesic: geodesic_angles(mesh, &edges, &measured, metric)? };
     let count = |found| measured.iter().filter(|edge| edge.found == found).count();
     let unit = |lengths: &[f64]| EdgeLengths::of(lengths).map_or(f64::NAN, |figures| figures.unit_fraction);
-    Ok(Histograms {
+    Histograms {
         unit_fraction: Both { straight: unit(&lengths.straight), geodesic: unit(&lengths.geodesic) },
         edge_length: Histogram::of(LENGTHS, &lengths),
         angle: Histogram::of(ANGLES, &angles),
         geodesics_not_found: count(Found::No),
         geodesics_on_border: count(Found::OnBorder),
-    })
+    }
 }
 
 impl Histogram {
@@ -107,23 +143,21 @@ impl Histogram {
     }
 }
 
-/// The three angles of each triangle between its straight edges.
-fn straight_angles(mesh: &Mesh, metric: &dyn MetricField) -> Result<Vec<f64>> {
-    let corners = Corners::of(mesh, metric)?;
+/// The three angles of each triangle between its straight edges, laid out flat in its metric; none of what has no area in space.
+fn straight_angles(mesh: &Mesh, laid_out: impl Fn([u32; 3]) -> Option<(Tensor, [Point; 3])> + Sync + Send) -> Vec<f64> {
     let of_triangle = |&triangle: &[u32; 3]| {
-        let m = corners.mean(triangle);
-        let [a, b, c] = mesh.corners_of(triangle);
+        let Some((m, [a, b, c])) = laid_out(triangle) else { return [0.0; 3] };
         [angle(m, b - a, c - a), angle(m, c - b, a - b), angle(m, a - c, b - c)].map(unsigned)
     };
-    Ok(mesh.triangles.par_iter().map(of_triangle).collect::<Vec<_>>().into_flattened())
+    mesh.triangles.par_iter().map(of_triangle).collect::<Vec<_>>().into_flattened()
 }
 
 /// The three angles of each triangle between the geodesics that leave its vertices.
-fn geodesic_angles(
+fn geodesic_angles<V: Copy + Sync>(
     mesh: &Mesh,
     edges: &Edges,
-    measured: &[MeasuredEdge],
-    metric: &dyn MetricField,
+    measured: &[MeasuredEdge<V>],
+    between: impl Fn(u32, V, V) -> Result<f64> + Sync + Send,
 ) -> Result<Vec<f64>> {
     let mut edge_of = vec![0; 3 * mesh.triangles.len()];
     for (edge, sides) in edges.iter().enumerate() {
@@ -141,8 +175,7 @@ fn geodesic_angles(
         });
         let mut angles = [0.0; 3];
         for (i, found) in angles.iter_mut().enumerate() {
-            let m = tensor(metric, mesh.point(triangle[i]))?;
-            *found = unsigned(angle(m, sides[i][0], sides[(i + 2) % 3][1]));
+            *found = unsigned(between(triangle[i], sides[i][0], sides[(i + 2) % 3][1])?);
         }
         Ok(angles)
     });
@@ -158,7 +191,8 @@ fn unsigned(angle: f64) -> f64 {
 mod tests {
     use super::super::test_meshes::{grid, lattice, mesh};
     use super::*;
-    use crate::geometry::{Point, Tensor};
+    use crate::surface::metric::Constant;
+    use crate::surface::sphere;
 
     /// How many values the bins that touch this value have.
     fn near(histogram: &Histogram, value: f64) -> [usize; 2] {
@@ -211,6 +245,67 @@ mod tests {
         assert!((found.angle.mean.straight - 60.0).abs() < 1e-9);
         assert!((found.edge_length.mean.geodesic - (a + b + c) / 3.0).abs() < 1e-8);
         assert!(found.edge_length.mean.straight > found.edge_length.mean.geodesic);
+    }
+
+    /// Great circles of the unit sphere: lengths and angles by spherical trigonometry; seen on an equation and on its triangles.
+    #[test]
+    fn spherical_triangles_have_more_than_180_degrees() {
+        let exact = Input::shape("sphere:1", Some(0.05)).unwrap();
+        let mesh = sphere(1.0, 0.4).unwrap().to_mesh();
+        let field = Constant(crate::geometry::Tensor3::IDENTITY);
+        let at = |v: u32| mesh.position(v) - crate::geometry::Point3::default();
+        let arc = |[v, w]: [u32; 2]| at(v).dot(at(w)).clamp(-1.0, 1.0).acos();
+        let corner = |[a, b, c]: [u32; 3]| {
+            let [a, b, c] = [arc([b, c]), arc([c, a]), arc([a, b])];
+            ((a.cos() - b.cos() * c.cos()) / (b.sin() * c.sin())).acos().to_degrees()
+        };
+        let edges = Edges::of(&mesh.triangles);
+        let count = edges.ends().count() as f64;
+        let length = edges.ends().map(arc).sum::<f64>() / count;
+        let chord = edges.ends().map(|[v, w]| mesh.position(v).distance(mesh.position(w))).sum::<f64>() / count;
+        let angles: f64 =
+            mesh.triangles.iter().map(|&[a, b, c]| corner([a, b, c]) + corner([b, c, a]) + corner([c, a, b])).sum();
+        let mean = angles / (3 * mesh.triangles.len()) as f64;
+        assert!(mean > 60.5, "{mean}");
+        for (input, tolerance) in [(&exact, 1e-6), (&Input::new(exact.surface.clone(), None), 1e-3)] {
+            let found = histograms_on(&mesh, input, &field).unwrap();
+            assert!(
+                (found.edge_length.mean.geodesic / length - 1.0).abs() < tolerance,
+                "{:?} {length}",
+                found.edge_length.mean
+            );
+            assert!((found.edge_length.mean.straight / chord - 1.0).abs() < 1e-9);
+            assert!((found.angle.mean.geodesic / mean - 1.0).abs() < 10.0 * tolerance, "{:?} {mean}", found.angle.mean);
+            assert!((found.angle.mean.straight - 60.0).abs() < 1e-9);
+            assert_eq!((found.geodesics_not_found, found.geodesics_on_border), (0, 0));
+        }
+    }
+
+    /// A tilted square is the square.
+    #[test]
+    fn histograms_of_a_plane_in_space_are_those_of_the_plane() {
+        let mut flat = grid(6, 6);
+        flat.edges = Edges::of(&flat.triangles).boundary().map(|side| side.ends).collect();
+        let bent = |x: f64| Tensor::new(1.0 + x * x, 0.2, 1.5);
+        let truth = histograms(&flat, &|p: Point| bent(p.x)).unwrap();
+        let mut tilted = flat.clone();
+        tilted.points.iter_mut().for_each(|p| *p = [0.6 * p[0], p[1], 0.8 * p[0]]);
+        let [u, v] = [[0.6, 0.0, 0.8], [0.0, 1.0, 0.0]].map(|[x, y, z]| crate::geometry::Vector3::new(x, y, z));
+        let field = |p: crate::geometry::Point3| {
+            crate::geometry::TangentPlane { u, v, normal: u.cross(v) }.extend(bent(p.x / 0.6), 9.0)
+        };
+        let input = Input::new(crate::surface::Surface::new(&tilted).unwrap(), None);
+        let found = histograms_on(&tilted, &input, &field).unwrap();
+        assert!(truth.geodesics_on_border > 0);
+        assert_eq!((found.geodesics_on_border, found.geodesics_not_found), (truth.geodesics_on_border, 0));
+        for (found, truth) in [
+            (found.edge_length.mean, truth.edge_length.mean),
+            (found.angle.mean, truth.angle.mean),
+            (found.angle.std, truth.angle.std),
+        ] {
+            assert!((found.straight - truth.straight).abs() < 1e-6 * truth.straight, "{found:?} {truth:?}");
+            assert!((found.geodesic - truth.geodesic).abs() < 1e-4 * truth.geodesic, "{found:?} {truth:?}");
+        }
     }
 
     #[test]

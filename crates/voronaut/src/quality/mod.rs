@@ -20,7 +20,7 @@ mod validity;
 
 pub use faults::{Fault, Position};
 pub use fidelity::{Farthest, Fidelity, fidelity};
-pub use histogram::{Both, Histogram, Histograms, histograms};
+pub use histogram::{Both, Histogram, Histograms, histograms, histograms_on};
 pub use interpolation::{Exponent, InterpolationError, interpolation_error, interpolation_error_on};
 pub use meetings::{Excused, Meetings};
 pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};

@@ -1,6 +1,7 @@
 //! Lengths, shapes and angles of the mesh of a surface in a metric on that surface.
 
 use super::faults::Position;
+use super::geodesics::{Found, MeasuredEdge, geodesic};
 use super::metric_quality::{GAUSS, MetricQuality, Shape, collect, demand_vertices, fault, figures};
 use crate::elementary::Elementary;
 use crate::error::Result;
@@ -8,7 +9,7 @@ use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor, Vector, Vector3
 use crate::mesh::{EdgeSide, Mesh};
 use crate::metric::MetricField;
 use crate::surface::metric::{SurfaceMetric, check_tensor3};
-use crate::surface::{Nearest, Surface};
+use crate::surface::{Chart, Input, Nearest, Surface};
 
 /// Measures the mesh of a surface in a metric on it, in parallel; the same bits for any number of threads. `surface` is what
 /// the metric is a field on; the mesh may stray from it.
@@ -63,20 +64,72 @@ impl<'a> Field<'a> {
         Some((at, flat))
     }
 
+    /// What the metric says of tangents at the closest place, and their plane.
+    pub(super) fn tangential(&self, p: Point3) -> Result<(Tensor, TangentPlane)> {
+        let seen = self.at(p)?;
+        let plane = TangentPlane::new(seen.normal);
+        Ok((plane.restrict(seen.tensor), plane))
+    }
+
+    /// An edge, straight and as a geodesic of the chart at its middle; `inside` is where the surface lies of an edge on its border.
+    pub(super) fn geodesic(
+        &self,
+        mesh: &Mesh,
+        input: &Input,
+        side: &EdgeSide,
+        inside: Option<f64>,
+    ) -> Result<MeasuredEdge<Vector3>> {
+        let [a, b] = side.ends.map(|v| mesh.position(v));
+        let straight = self.length([a, b])?;
+        let chord = MeasuredEdge { straight, geodesic: straight, directions: [b - a, a - b], found: Found::No };
+        let closest = |p: Point3| {
+            let place = self.nearest.closest(self.surface, p)?.place;
+            input.lift(&place, p)
+        };
+        let Some(middle) = closest(a.lerp(b, 0.5)) else { return Ok(chord) };
+        let chart = Chart::new(input, self.metric, middle, input.normal(&middle));
+        let ends = [a, b].map(|p| chart.flatten(p));
+        // Seen from the side that its triangle turns to, which is the chart's or the other.
+        let [p, q, r] = mesh.positions_of(mesh.triangles[side.half_edge as usize / 3]);
+        let turns = (q - p).cross(r - p).dot(input.normal(&middle)).signum();
+        let found = geodesic(&chart, ends, straight, inside.map(|side| side * turns));
+        let places = ends.map(|end| chart.place(end));
+        let ([Some(from), Some(to)], Found::Geodesic) = (places, found.found) else {
+            return Ok(MeasuredEdge { found: found.found, ..chord });
+        };
+        let [ahead, back] = found.directions;
+        Ok(MeasuredEdge {
+            directions: [chart.tangent(&from, ahead), chart.tangent(&to, back)],
+            geodesic: found.geodesic,
+            ..MeasuredEdge { found: Found::Geodesic, ..chord }
+        })
+    }
+
     /// The shapes of the triangles of a mesh.
     ///
     /// # Errors
     /// A position is not finite; the metric at a vertex in use is none.
     pub(super) fn shapes<'m>(&self, mesh: &'m Mesh) -> Result<impl Fn([u32; 3]) -> Shape + use<'m>> {
+        let flattened = self.flattened(mesh)?;
+        Ok(move |t: [u32; 3]| flattened(t).map_or(Shape::default(), |(metric, corners)| Shape::of(metric, corners)))
+    }
+
+    /// The triangles of a mesh laid out flat, each in the mean of the metric at its corners.
+    ///
+    /// # Errors
+    /// As of [`Field::shapes`].
+    pub(super) fn flattened<'m>(
+        &self,
+        mesh: &'m Mesh,
+    ) -> Result<impl Fn([u32; 3]) -> Option<(Tensor, [Point; 3])> + use<'m>> {
         let used = mesh.used_vertices();
         let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
         let seen = |v: u32| used[v as usize].then(|| self.at(mesh.position(v))).transpose();
         let tensors = collect(&vertices, |&v| seen(v))?;
         Ok(move |t: [u32; 3]| {
             let corners = t.map(|v| tensors[v as usize]);
-            let [Some(a), Some(b), Some(c)] = corners else { return Shape::default() };
-            let flat = Seen::flattened(mesh.positions_of(t), [a, b, c]);
-            flat.map_or(Shape::default(), |(metric, corners)| Shape::of(metric, corners))
+            let [Some(a), Some(b), Some(c)] = corners else { return None };
+            Seen::flattened(mesh.positions_of(t), [a, b, c])
         })
     }
 

@@ -6,7 +6,7 @@ use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
 use crate::mesh::{Mesh, SolutionValues};
-use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, complexity};
+use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, Vertices, complexity};
 use crate::metric::{
     Boundary, Bounded, Bounds, Hessian, MetricField, MetricSpec, Norm, Recovered, Recovery, Sampled, ScalarField,
     Snapshot, complexity as complexity_of, rough_complexity, smoothed,
@@ -349,20 +349,24 @@ fn vertices_for(field: &dyn MetricField, domain: &Domain, at: GradedAt) -> Resul
 
 /// The field graded at the vertices of a mesh, in its own units.
 fn graded(field: &dyn MetricField, mesh: &Mesh, factor: f64, at: GradedAt) -> Result<Sampled> {
+    let given: Vec<Tensor> = (0..mesh.points.len() as u32).map(|v| field.at(mesh.point(v))).collect();
+    Sampled::new(mesh, &graded_at(mesh, &given, factor, at)?)
+}
+
+/// Tensors graded at vertices, of the plane or of a surface, in their own units.
+pub(super) fn graded_at(on: &impl Vertices, tensors: &[Tensor], factor: f64, at: GradedAt) -> Result<Vec<Tensor>> {
     let (scale, target_complexity) = match at {
         GradedAt::Scale(scale) => (scale, None),
         GradedAt::Complexity(target) => (1.0, Some(target)),
     };
-    let vertices = 0..mesh.points.len() as u32;
-    let given: Vec<Tensor> = vertices.map(|v| field.at(mesh.point(v)) * scale).collect();
+    let given: Vec<Tensor> = tensors.iter().map(|&tensor| tensor * scale).collect();
     // Refuses what is no metric before it is scaled.
-    Sampled::new(mesh, &given)?;
-    let own = complexity(mesh, &given);
+    on.check(&given)?;
+    let own = complexity(on, &given);
     let pipeline = Pipeline { target_complexity, gradation_factor: Some(factor), ..Pipeline::default() };
-    let made = pipeline.run(mesh, &[Source::Metric(given)])?;
+    let made = pipeline.run_on(on, &[Source::Metric(given)])?;
     let back = 1.0 / (scale * made.factor * target_complexity.map_or(1.0, |target| target / own));
-    let tensors: Vec<Tensor> = made.tensors.iter().map(|&tensor| tensor * back).collect();
-    Sampled::new(mesh, &tensors)
+    Ok(made.tensors.iter().map(|&tensor| tensor * back).collect())
 }
 
 #[cfg(test)]

@@ -92,9 +92,9 @@ impl MeshOptions {
                 "polish",
                 self.polish != usual.polish,
                 &[
-                    plane,
                     voronoi,
                     (task.origin != Origin::Sizes, "with a metric that is not a function's"),
+                    (plane.0 || task.origin == Origin::Function, "on a surface, of a function known at vertices only"),
                     (!task.is_limited, "with a metric that is limited, smoothed or graded"),
                 ],
             ),

@@ -4,6 +4,7 @@ mod adapt;
 mod certified;
 mod curved;
 mod dual;
+mod at_vertices;
 mod field;
 mod idle;
 mod mesher;
@@ -19,14 +20,15 @@ mod surface_field;
 mod surface_pass;
 
 pub use adapt::{Ground, LoopOptions, Source, Step, adapt};
+pub use at_vertices::metric_at_vertices;
 pub use certified::certified_canvas;
-pub use dual::{SeedDual, dual, net, surface_dual, surface_mesh};
+pub use dual::{SeedDual, dual, net, surface_dual, surface_mesh, surface_net};
 pub use field::{
     GradedAt, MetricOptions, PlanarMetric, metric, metric_named, metric_of_field, metric_of_function,
     metric_of_samples, metric_of_solution, metric_of_values,
 };
 pub use idle::{Idle, Origin, Task};
-pub use on_surface::mesh_surface;
+pub use on_surface::{mesh_surface, mesh_surface_for};
 pub use options::{Centroid, Effort, MeshOptions, Mesher, Seeding};
 pub use parts::{Part, mesh_in_parts, mesh_part, mesh_surface_in_parts, mesh_surface_part};
 pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
@@ -39,6 +41,7 @@ use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::figures;
 use crate::mesh::Mesh;
+use crate::metric::nodal::COMPLEXITY_PER_VERTEX;
 use crate::metric::{MetricField, Norm, ScalarField, Scaled};
 use crate::net::Net;
 use crate::optimise::{Patience, Polished, Relaxed, polish};
@@ -64,6 +67,9 @@ pub struct Meshed {
     pub mesh: Mesh,
     /// The factor on the metric tensor for which the mesh is a unit mesh (1 where the metric was used as it is).
     pub metric_scale: f64,
+    /// The factor that the number of vertices asks for in closed form: [`COMPLEXITY_PER_VERTEX`] for each over the metric's complexity (to
+    /// about 1 %). `metric_scale` is less where straight edges cannot honour the metric, and unit edges then flatter. `None` without a number.
+    pub closed_form_scale: Option<f64>,
     /// How its edges were settled.
     pub dual: figures::Dual,
     /// How the seeds were relaxed.
@@ -167,6 +173,7 @@ pub fn mesh_for(
     Ok(Meshed {
         mesh,
         metric_scale: dual.field().factor,
+        closed_form_scale: options.vertices.map(|count| closed_form_scale(count, plan.complexity)),
         dual: settled.dual,
         relaxation,
         polished,
@@ -178,6 +185,11 @@ pub fn mesh_for(
         notes: job.notes,
         ..Meshed::default()
     })
+}
+
+/// See [`Meshed::closed_form_scale`].
+fn closed_form_scale(count: usize, complexity: f64) -> f64 {
+    COMPLEXITY_PER_VERTEX * count as f64 / complexity
 }
 
 struct Job<'a> {

@@ -1,27 +1,22 @@
 //! From what the user says of a metric on a surface to the field itself, as `field` has it of the plane: limits, then smoothing and
 //! gradation at the vertices of triangles on the surface.
 
-use super::field::{BACKGROUND_VERTICES, FEWEST, GradedAt, LONGEST, MetricOptions, background_vertices};
+use super::field::{BACKGROUND_VERTICES, FEWEST, GradedAt, LONGEST, MetricOptions, background_vertices, graded_at};
 use crate::canvas::{Draped, area_of_surface, even_on_surface};
-use crate::elementary::Elementary;
 use crate::error::Result;
-use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3, Vector};
+use crate::geometry::{Point3, Tensor3};
 use crate::lists::Rows;
 use crate::mesh::{Mesh, Solution, SolutionValues, coincident};
-use crate::metric::nodal::{Gradation, Limits};
-use crate::metric::{Bounds, Neighbours, swept};
+use crate::metric::nodal::Vertices;
+use crate::metric::{Bounds, swept};
 use crate::parallel::prelude::*;
 use crate::surface::metric::{
-    CovariantHessian, CurvatureFigures, Sampled, Spec, SurfaceMetric, field, field_of_values, recovered_on, within,
+    CovariantHessian, CurvatureFigures, Sampled, Spec, SurfaceMetric, TangentPlanes, field, field_of_values,
+    recovered_on, within,
 };
 use crate::surface::{FeatureOptions, Input, Nearest, Place, Surface, closest_weights};
 use crate::triangulation::{FaceId, VertexId};
 use std::collections::BTreeMap;
-
-/// Normals whose cosine is this near to -1 are opposite.
-const OPPOSITE: f64 = 1e-9;
-/// Steps to the scale that has a complexity, at most.
-const STEPS: usize = 12;
 
 /// What a metric on a surface is made of.
 pub enum SurfaceSource<'a> {
@@ -33,6 +28,8 @@ pub enum SurfaceSource<'a> {
     Function(&'a [f64]),
     /// What a solver finds at the vertices of a mesh of the surface: a function's values, or tensors.
     Solution(&'a Mesh, &'a SolutionValues),
+    /// What the surface's own triangles ask for: the metric in which they are as even as can be.
+    Implied,
     /// A function that takes many points at once, and gives sizes or tensors.
     Samples(Box<Sample<'a>>),
 }
@@ -72,7 +69,7 @@ pub fn metric_on_surface(
 }
 
 /// The field, and the multiple in which limits on sizes are meant: one, but for second derivatives, whose units are the function's.
-fn named(
+pub(super) fn named(
     source: SurfaceSource,
     input: &Input,
     options: &MetricOptions,
@@ -90,6 +87,10 @@ fn named(
             let sampled = values(sample(input.surface.positions())?);
             plain(Box::new(Sampled::from_solution(&input.surface, &sampled)?))
         }
+        SurfaceSource::Implied => {
+            let vertices = TangentPlanes::to_join(input);
+            plain(Box::new(Sampled::new(&input.surface, &vertices.extended(&vertices.implied()?))?))
+        }
         SurfaceSource::Function(given) => within_surface(Box::new(recovered(given, input, options)?), input, at),
         SurfaceSource::Solution(mesh, given) => {
             let own = Input::new(Surface::new(mesh)?, None).cut(&FeatureOptions::default())?;
@@ -106,9 +107,14 @@ fn named(
 
 /// The metric of second derivatives recovered from values at the vertices that a surface had before it was cut.
 fn recovered(given: &[f64], input: &Input, options: &MetricOptions) -> Result<Sampled> {
+    recovered_on(input, &spread_values(given, input)?, options.norm)
+}
+
+/// Values at the vertices that a surface had before it was cut, at those that it has now.
+pub(super) fn spread_values(given: &[f64], input: &Input) -> Result<Vec<f64>> {
     let spread = input.spread(&Solution { dimension: 3, values: SolutionValues::Scalar(given.to_vec()) })?;
     let SolutionValues::Scalar(spread) = spread.values else { unreachable!("of the type that was given") };
-    recovered_on(input, &spread, options.norm)
+    Ok(spread)
 }
 
 /// A field on another triangulation of the surface, at the closest place there that faces the same way.
@@ -158,15 +164,13 @@ fn count_for(field: &dyn SurfaceMetric, input: &Input, at: GradedAt) -> Result<u
 fn smoothed(field: &dyn SurfaceMetric, input: &Input, vertices: usize, sweeps: u32) -> Result<OnBackground> {
     let background = Background::new(input, field, vertices)?;
     let logs = background.tensors(field).par_iter().map(|tensor| tensor.log()).collect();
-    Ok(OnBackground::new(&background.draped, swept(&background.around(), logs, sweeps)?, field))
+    Ok(OnBackground::new(&background.draped, swept(&background.vertices.around(), logs, sweeps)?, field))
 }
 
 /// Triangles on a surface, at whose vertices metrics are sampled.
 struct Background<'s> {
     draped: Draped<'s>,
-    planes: Vec<TangentPlane>,
-    /// Pairs of vertices that share a position, where the surface was cut.
-    copies: Vec<[u32; 2]>,
+    vertices: TangentPlanes,
 }
 
 impl<'s> Background<'s> {
@@ -176,19 +180,16 @@ impl<'s> Background<'s> {
         let t = draped.topology();
         let slots = t.vertex_slots() as u32;
         let planes = (0..slots).into_par_iter().map(|v| draped.plane(VertexId(v))).collect();
+        let positions = (0..slots).map(|v| draped.position(VertexId(v))).collect();
+        let triangles = t.faces().map(|f| t.corners(f).map(|v| v.0)).collect();
         // Only what is cut has copies, and a cut is a border.
         let border = t.vertices().filter(|&v| t.is_border_vertex(v)).map(|v| (v.0, draped.position(v)));
         let copies = coincident(border);
-        Ok(Self { draped, planes, copies })
-    }
-
-    /// Which vertices share a triangle or a position.
-    fn around(&self) -> Neighbours {
-        Neighbours::of_triangles(self.planes.len(), self.triangles(), self.copies.iter().copied())
+        Ok(Self { vertices: TangentPlanes::new(positions, planes, triangles, copies), draped })
     }
 
     fn tensors(&self, field: &dyn SurfaceMetric) -> Vec<Tensor3> {
-        let slots = self.planes.len() as u32;
+        let slots = self.vertices.count() as u32;
         (0..slots).into_par_iter().map(|v| field.at(self.draped.place(VertexId(v)))).collect()
     }
 
@@ -196,75 +197,12 @@ impl<'s> Background<'s> {
     /// smallest rotation that takes its plane here. In the multiple that is asked for; what comes back is in the field's own units.
     fn graded(&self, field: &dyn SurfaceMetric, factor: f64, at: GradedAt) -> Result<OnBackground> {
         let tensors = self.tensors(field);
-        let flat: Vec<Tensor> = tensors.iter().zip(&self.planes).map(|(&m, plane)| plane.restrict(m)).collect();
-        let position = |v: u32| self.draped.position(VertexId(v));
-        let offset = |v: u32, w: u32| {
-            let way = position(w) - position(v);
-            let flat = self.planes[w as usize].flatten(way);
-            // As long as it is, for it goes along the surface.
-            if flat.norm() > 0.0 { flat * (way.norm() / flat.norm()) } else { Vector::new(way.norm(), 0.0) }
-        };
-        let turn = |v: u32, w: u32| {
-            let [from, to] = [v, w].map(|v| &self.planes[v as usize]);
-            // Opposite sides, as of the edge of a sheet, have no smallest rotation.
-            let is_opposite = from.normal.dot(to.normal) < -1.0 + OPPOSITE;
-            let x = if is_opposite { from.u } else { from.turned(to.normal).u };
-            let x = to.flatten(x);
-            if x.norm() > 0.0 { x * (1.0 / x.norm()) } else { Vector::new(1.0, 0.0) }
-        };
-        let law = Gradation::between_planes(self.around(), offset, turn, factor)?;
-        let at_scale = |scale: f64| -> Result<Vec<Tensor>> {
-            let mut graded: Vec<Tensor> = flat.iter().map(|&m| m * scale).collect();
-            law.apply(&mut graded, &Limits::default())?;
-            Ok(graded)
-        };
-        let (scale, graded) = self.at_complexity(&flat, at, at_scale)?;
-        let back = |(v, &m): (usize, &Tensor)| {
-            let m = m * (1.0 / scale);
-            if m == flat[v] { tensors[v].log() } else { self.planes[v].extend(m, m.eigen().large).log() }
-        };
-        let logs = graded.par_iter().enumerate().map(back).collect();
+        let flat = self.vertices.seen(&tensors);
+        let graded = graded_at(&self.vertices, &flat, factor, at)?;
+        let extended = self.vertices.extended(&graded);
+        let back = |v: usize| if graded[v] == flat[v] { tensors[v] } else { extended[v] }.log();
+        let logs = (0..flat.len()).into_par_iter().map(back).collect();
         Ok(OnBackground::new(&self.draped, logs, field))
-    }
-
-    /// The scale at which what is graded has the complexity asked for, to a two hundredth, and what is graded there. The logarithm of
-    /// the complexity grows with that of the scale, and no faster: steps by what is missing come near from one side.
-    fn at_complexity(
-        &self,
-        flat: &[Tensor],
-        at: GradedAt,
-        graded: impl Fn(f64) -> Result<Vec<Tensor>>,
-    ) -> Result<(f64, Vec<Tensor>)> {
-        let target = match at {
-            GradedAt::Scale(scale) => return Ok((scale, graded(scale)?)),
-            GradedAt::Complexity(target) => target,
-        };
-        let mut scale = target / self.complexity(flat);
-        let mut best = graded(scale)?;
-        for _ in 0..STEPS {
-            let missing = target / self.complexity(&best);
-            if missing.logarithm().abs() < 5e-3 {
-                break;
-            }
-            scale *= missing;
-            best = graded(scale)?;
-        }
-        Ok((scale, best))
-    }
-
-    /// The integral of sqrt(det M) over the triangles.
-    fn complexity(&self, flat: &[Tensor]) -> f64 {
-        let of = |corners: [u32; 3]| {
-            let [a, b, c] = corners.map(|v| self.draped.position(VertexId(v)));
-            let densities = corners.map(|v| flat[v as usize].determinant().sqrt());
-            (b - a).cross(c - a).norm() * densities.iter().sum::<f64>() / 6.0
-        };
-        self.triangles().map(of).sum()
-    }
-
-    fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
-        let t = self.draped.topology();
-        t.faces().map(|f| t.corners(f).map(|v| v.0))
     }
 }
 
@@ -328,6 +266,7 @@ impl SurfaceMetric for OnBackground {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::{TangentPlane, Tensor};
     use crate::metric::Norm;
     use crate::surface::metric::grade;
     use crate::test_cases::cube;

@@ -12,6 +12,7 @@ use crate::figures;
 use crate::geometry::Point3;
 use crate::lists::in_order;
 use crate::mesh::Mesh;
+use crate::metric::{Expression, Norm};
 use crate::optimise::{Patience, Relaxed, Tangent, mend_needles, mend_worst, relax};
 use crate::progress::Progress;
 use crate::quality::{self, Meetings};
@@ -41,6 +42,8 @@ const AROUND: f64 = 0.2;
 pub(super) struct Setting<'a> {
     pub(super) input: &'a Input,
     pub(super) metric: &'a dyn SurfaceMetric,
+    /// The function that the mesh is for, if it is for one, and the norm.
+    pub(super) aim: Option<(&'a Expression, Norm)>,
     pub(super) options: &'a MeshOptions,
     pub(super) progress: &'a dyn Progress,
     pub(super) curves: MeasuredCurves<'a>,

@@ -2,7 +2,7 @@
 
 use super::metric::SurfaceMetric;
 use super::{Input, Place};
-use crate::geometry::{Point, Point3, TangentPlane, Tensor, Tensor3, Vector3};
+use crate::geometry::{Point, Point3, TangentPlane, Tensor, Tensor3, Vector, Vector3};
 use crate::metric::MetricField;
 
 /// The parallel projection of a surface and its metric along the normal at a place to the plane there, with the place as origin:
@@ -32,6 +32,11 @@ impl<'a> Chart<'a> {
         Self { input, metric, at, plane }
     }
 
+    /// The unit vector that it looks along.
+    pub(crate) fn normal(&self) -> Vector3 {
+        self.plane.normal
+    }
+
     /// The coordinates of a point.
     pub(crate) fn flatten(&self, p: Point3) -> Point {
         Point::default() + self.plane.flatten(p - self.at.position)
@@ -42,12 +47,21 @@ impl<'a> Chart<'a> {
         self.input.lift(&self.at, self.at.position + self.plane.lift(u - Point::default()))
     }
 
+    /// The tangents of the surface over the two axes.
+    fn tangents(&self, place: &Place) -> [Vector3; 2] {
+        let upright = place.normal.dot(self.plane.normal).max(STEEPEST);
+        [self.plane.u, self.plane.v].map(|axis| axis - self.plane.normal * (axis.dot(place.normal) / upright))
+    }
+
+    /// The tangent of the surface over a vector of the chart.
+    pub(crate) fn tangent(&self, place: &Place, v: Vector) -> Vector3 {
+        let [x, y] = self.tangents(place);
+        x * v.x + y * v.y
+    }
+
     /// The tensor of a place in the coordinates of the chart.
     pub(crate) fn tensor(&self, place: &Place) -> Tensor {
-        let upright = place.normal.dot(self.plane.normal).max(STEEPEST);
-        // The tangents of the surface over the two axes.
-        let tangent = |axis: Vector3| axis - self.plane.normal * (axis.dot(place.normal) / upright);
-        let [u, v] = [self.plane.u, self.plane.v].map(tangent);
+        let [u, v] = self.tangents(place);
         let m = self.metric.at(place);
         Tensor::new(m.dot(u, u), m.dot(u, v), m.dot(v, v))
     }

@@ -1,18 +1,17 @@
 //! The complexity of a metric at vertices, in closed form, and metrics of a given complexity.
 
-use super::enforce_spd;
+use super::{Vertices, enforce_spd};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
-use crate::mesh::Mesh;
 use crate::metric::Norm;
 
-/// The integral of sqrt(det M) over a planar mesh, of the metric that is log-Euclidean between the vertices: exact but for
+/// The integral of sqrt(det M) over a mesh, of the metric that is log-Euclidean between the vertices: exact but for
 /// rounding, for there log sqrt(det M) is linear on every triangle. Triangles of either orientation count.
-pub fn complexity(mesh: &Mesh, tensors: &[Tensor]) -> f64 {
+pub(crate) fn complexity(mesh: &impl Vertices, tensors: &[Tensor]) -> f64 {
     let logs: Vec<f64> = tensors.iter().map(|tensor| 0.5 * tensor.determinant().logarithm()).collect();
-    let of_triangle = |&t: &[u32; 3]| mesh.double_area(t) * divided_difference(t.map(|v| logs[v as usize]));
-    mesh.triangles.iter().map(of_triangle).sum()
+    let of_triangle = |(t, double_area): ([u32; 3], f64)| double_area * divided_difference(t.map(|v| logs[v as usize]));
+    mesh.triangles().map(of_triangle).sum()
 }
 
 /// The metric that is optimal for linear interpolation in an L^p norm (Loseille and Alauzet 2011), of given Hessians and up to a
@@ -22,7 +21,7 @@ pub(super) fn weighted(hessians: &[Tensor], norm: Norm) -> Result<Vec<Tensor>> {
 }
 
 /// A metric times the factor that gives it a complexity.
-pub(super) fn scaled_to(mesh: &Mesh, tensors: &[Tensor], target_complexity: f64) -> Result<Vec<Tensor>> {
+pub(super) fn scaled_to(mesh: &impl Vertices, tensors: &[Tensor], target_complexity: f64) -> Result<Vec<Tensor>> {
     demand_target(target_complexity)?;
     let factor = target_complexity / complexity(mesh, tensors);
     if !(factor > 0.0 && factor.is_finite()) {
@@ -89,6 +88,7 @@ mod tests {
     use super::super::test_meshes::{grid, tensors_at};
     use super::*;
     use crate::geometry::{Point, Vector};
+    use crate::mesh::Mesh;
     use crate::metric::{MetricField, Sampled};
     use proptest::prelude::*;
 

@@ -13,19 +13,32 @@ use crate::metric::validate::{check_at_vertices, check_background, check_count, 
 /// As of [`Sampled::new`](crate::metric::Sampled::new) of what is not a planar mesh; [`Error::Mesh`] of a triangle without area.
 pub fn implied(mesh: &Mesh) -> Result<Vec<Tensor>> {
     check_background(mesh)?;
-    let mut sums = vec![(Tensor::default(), 0.0); mesh.points.len()];
-    for (i, &t) in mesh.triangles.iter().enumerate() {
-        let corners = mesh.corners_of(t);
+    implied_by(mesh.points.len(), mesh.triangles.iter().map(|&t| (t, mesh.corners_of(t))), |_, _, tensor| tensor)
+}
+
+/// The same of so many vertices and triangles that are laid out flat each; `seen` is what the tensor of a triangle, by its number, is at a
+/// vertex.
+///
+/// # Errors
+/// [`Error::Mesh`] of a triangle without area.
+pub(crate) fn implied_by(
+    count: usize,
+    triangles: impl Iterator<Item = ([u32; 3], [Point; 3])>,
+    seen: impl Fn(usize, u32, Tensor) -> Tensor,
+) -> Result<Vec<Tensor>> {
+    let mut sums = vec![(Tensor::default(), 0.0); count];
+    for (i, (t, corners)) in triangles.enumerate() {
         let tensor = of_triangle(corners);
         if !tensor.is_positive_definite() {
             let place = format!("triangle {} at {}", i + 1, corners[0]);
             let help = "remove triangles without area: voronaut check names them";
             return Err(Error::mesh("a triangle has no area", place, help));
         }
-        let area = mesh.double_area(t);
+        let [a, b, c] = corners;
+        let area = (b - a).cross(c - a).abs();
         for v in t {
             let (sum, total) = &mut sums[v as usize];
-            *sum = *sum + tensor.log() * area;
+            *sum = *sum + seen(i, v, tensor).log() * area;
             *total += area;
         }
     }

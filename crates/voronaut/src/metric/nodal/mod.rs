@@ -1,6 +1,7 @@
-//! Metrics at the vertices of a planar mesh, one tensor each, and what adapters of meshes do with them.
+//! Metrics at the vertices of a mesh, one tensor each, and what adapters of meshes do with them.
 //!
-//! Between vertices they are log-Euclidean, as [`Sampled`](super::Sampled) has them. [`Pipeline`] does the operations below in
+//! On a surface tensors are those of tangent planes ([`crate::recipe::metric_at_vertices`]). Between vertices they are log-Euclidean, as
+//! [`Sampled`](super::Sampled) has them. [`Pipeline`] does the operations below in
 //! the one order that meets all that was asked for; parameters have the names that `PETSc` and animate give them.
 //!
 //! | operation | what it is |
@@ -10,7 +11,7 @@
 //! | [`intersect`], [`average`] | one metric of several |
 //! | [`implied`] | the metric in which a mesh is as even as can be |
 //! | [`isotropic`] | of sizes |
-//! | [`restrict`] | within least and greatest sizes and a greatest anisotropy |
+//! | `restrict` | within least and greatest sizes and a greatest anisotropy |
 //! | [`grade`] | with sizes that grow slowly |
 
 mod combine;
@@ -21,14 +22,17 @@ mod pipeline;
 mod restrict;
 mod solve;
 mod spd;
+mod vertices;
 #[cfg(test)]
-pub(super) mod test_meshes;
+pub(crate) mod test_meshes;
 
 pub use combine::{average, intersect};
-pub use complexity::complexity;
+pub(crate) use complexity::complexity;
 pub(crate) use gradation::Gradation;
 pub use gradation::grade;
+pub(crate) use implied::implied_by;
 pub use implied::{implied, isotropic};
 pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source, Touched};
-pub use restrict::{Limit, Limits, restrict};
+pub use restrict::{Limit, Limits};
 pub(crate) use spd::{absolute, enforce_spd, size};
+pub(crate) use vertices::Vertices;

@@ -4,13 +4,12 @@ use super::complexity::{complexity, demand_target, scaled_to, weighted};
 use super::gradation::Gradation;
 use super::restrict::{Limits, restrict};
 use super::solve::{Root, root};
-use super::{average, intersect};
+use super::{Vertices, average, intersect};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::mesh::Mesh;
 use crate::metric::Norm;
-use crate::metric::validate::check_at_vertices;
 
 /// From Hessians and metrics to the metric of the next mesh. The order:
 ///
@@ -18,8 +17,8 @@ use crate::metric::validate::check_at_vertices;
 /// 2. *One scale*: with a target and several sources, each is given the target complexity. Sources in different units would
 ///    otherwise not be comparable, and the finer one would be the only one.
 /// 3. *Combine*: [`intersect`] or [`average`].
-/// 4. *Restrict* sizes, then anisotropy ([`restrict`]), after the scale, for limits are in the user's units.
-/// 5. *Gradation* ([`super::grade`]), after the limits, for they make metrics jump; it keeps them.
+/// 4. *Restrict* sizes, then anisotropy (`super::restrict`), after the scale, for limits are in the user's units.
+/// 5. *Gradation* ([`super::grade`]), after the limits, for they make metrics jump; it keeps them. At a crease of a surface sides then become one.
 /// 6. *The factor last*: 4 and 5 change the complexity, so the factor of step 2 is solved for, such that the complexity of
 ///    what comes out is the target. Where limits forbid that, the error says what they allow.
 ///
@@ -97,13 +96,21 @@ impl Pipeline {
     /// The metric that comes out at the vertices of a mesh.
     ///
     /// # Errors
-    /// As of [`Sampled::new`](crate::metric::Sampled::new), `super::enforce_spd`, [`intersect`], [`average`], [`restrict`] and
+    /// As of [`Sampled::new`](crate::metric::Sampled::new), `super::enforce_spd`, [`intersect`], [`average`], `super::restrict` and
     /// [`super::grade`]; [`Error::Parse`] of a target that is no complexity; [`Error::Limit`] of one that limits forbid.
     pub fn run(&self, mesh: &Mesh, sources: &[Source]) -> Result<Outcome> {
+        self.run_on(mesh, sources)
+    }
+
+    /// The same of vertices of any mesh.
+    ///
+    /// # Errors
+    /// As of [`Pipeline::run`].
+    pub(crate) fn run_on(&self, mesh: &impl Vertices, sources: &[Source]) -> Result<Outcome> {
         self.target_complexity.map_or(Ok(()), demand_target)?;
-        self.limits.check(mesh.points.len())?;
+        self.limits.check(mesh.count())?;
         let combined = self.combine(mesh, sources)?;
-        let gradation = self.gradation_factor.map(|factor| Gradation::on(mesh, factor)).transpose()?;
+        let gradation = self.gradation_factor.map(|factor| mesh.gradation(factor)).transpose()?;
         let stage = Stage { mesh, combined: &combined, limits: &self.limits, gradation };
         let Some(target) = self.target_complexity else { return stage.outcome(1.0, stage.at(1.0)?) };
         // Gradation is dear, and its result may be lifted.
@@ -117,13 +124,13 @@ impl Pipeline {
     }
 
     /// Steps 1 to 3.
-    fn combine(&self, mesh: &Mesh, sources: &[Source]) -> Result<Vec<Tensor>> {
+    fn combine(&self, mesh: &impl Vertices, sources: &[Source]) -> Result<Vec<Tensor>> {
         let metric = |source: &Source| {
             let tensors = match source {
                 Source::Hessian(hessians) => weighted(hessians, self.norm)?,
                 Source::Metric(tensors) => tensors.clone(),
             };
-            check_at_vertices(mesh, &tensors)?;
+            mesh.check(&tensors)?;
             self.target_complexity.map_or(Ok(tensors.clone()), |target| scaled_to(mesh, &tensors, target))
         };
         let metrics = sources.iter().map(metric).collect::<Result<Vec<_>>>()?;
@@ -141,21 +148,21 @@ fn out_of_reach(target: f64, bound: &str, reached: f64) -> Error {
 }
 
 /// Steps 4 and 5, for any factor.
-struct Stage<'a> {
-    mesh: &'a Mesh,
+struct Stage<'a, V> {
+    mesh: &'a V,
     combined: &'a [Tensor],
     limits: &'a Limits,
     gradation: Option<Gradation<'a>>,
 }
 
-impl Stage<'_> {
+impl<V: Vertices> Stage<'_, V> {
     fn at(&self, factor: f64) -> Result<Vec<Tensor>> {
         let scaled: Vec<Tensor> = self.combined.iter().map(|&tensor| tensor * factor).collect();
         let mut tensors = restrict(&scaled, self.limits)?;
         if let Some(gradation) = &self.gradation {
             gradation.apply(&mut tensors, self.limits)?;
         }
-        Ok(tensors)
+        Ok(self.mesh.join(tensors))
     }
 
     fn outcome(&self, factor: f64, tensors: Vec<Tensor>) -> Result<Outcome> {

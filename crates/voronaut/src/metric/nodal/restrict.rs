@@ -84,7 +84,7 @@ fn fault(error: &Error) -> String {
 ///
 /// # Errors
 /// [`Error::Parse`] of limits that contradict each other, or are no sizes.
-pub fn restrict(tensors: &[Tensor], limits: &Limits) -> Result<Vec<Tensor>> {
+pub(crate) fn restrict(tensors: &[Tensor], limits: &Limits) -> Result<Vec<Tensor>> {
     limits.check(tensors.len())?;
     Ok(tensors.iter().enumerate().map(|(v, &tensor)| limits.at(v).clamp(tensor)).collect())
 }

@@ -4,7 +4,7 @@ use crate::geometry::{Point, Tensor};
 use crate::mesh::Mesh;
 
 /// The unit square as 2 n^2 triangles, inner vertices moved by up to half `jitter` of a cell's width along each axis.
-pub(in super::super) fn grid(n: u32, jitter: f64) -> Mesh {
+pub(crate) fn grid(n: u32, jitter: f64) -> Mesh {
     let step = 1.0 / f64::from(n);
     let moved = |k: u32, seed: f64| {
         let noise = (f64::from(k) * 12.9898 + seed).sin() * 43_758.545;
@@ -27,6 +27,6 @@ pub(in super::super) fn grid(n: u32, jitter: f64) -> Mesh {
 }
 
 /// A field at the vertices.
-pub(in super::super) fn tensors_at(mesh: &Mesh, field: impl Fn(Point) -> Tensor) -> Vec<Tensor> {
+pub(crate) fn tensors_at(mesh: &Mesh, field: impl Fn(Point) -> Tensor) -> Vec<Tensor> {
     (0..mesh.points.len() as u32).map(|v| field(mesh.point(v))).collect()
 }

@@ -5,17 +5,21 @@
 //! function is saddle-shaped longer ones are as good. The last tenth is gained on the error itself.
 
 mod moves;
+mod on_surface;
+mod plane;
 
 use super::Patience;
-use crate::dual::Dual;
+use crate::dual::{Dual, Kind, SurfaceDual};
 use crate::error::{Error, Result};
-use crate::metric::{Norm, ScalarField};
+use crate::geometry::Vector;
+use crate::metric::{Expression, Norm, ScalarField};
 use crate::parallel::prelude::*;
-use crate::planar::Planar;
 use crate::progress::Progress;
-use crate::triangulation::VertexId;
+use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 pub(crate) use moves::polishing_norm;
-use moves::{Objective, Place};
+use moves::{Frame, Objective, Place};
+use on_surface::OnSurface;
+use plane::Flat;
 
 /// No triangle may become worse than this for it, unless it was: quality in the mean tensor of its corners.
 const POOR: f64 = 0.05;
@@ -46,14 +50,83 @@ pub(crate) fn polish(
     dual: &mut Dual,
     function: &dyn ScalarField,
     norm: Norm,
-    Patience { steps: sweeps, gain }: Patience,
+    patience: Patience,
     progress: &dyn Progress,
 ) -> Result<Polished> {
+    let (polished, flat) = polished(Flat::new(dual, function), norm, patience, progress)?;
+    if let Some(Flat { planar, .. }) = flat {
+        dual.take_over(planar);
+        dual.verdict()?;
+    }
+    Ok(polished)
+}
+
+/// The same on a surface, of a function of space: seeds stay on it, those of features where they are, and no triangle comes to lean over.
+///
+/// # Errors
+/// As of [`polish`].
+pub(crate) fn polish_on_surface(
+    dual: &mut SurfaceDual,
+    function: &Expression,
+    norm: Norm,
+    patience: Patience,
+    progress: &dyn Progress,
+) -> Result<Polished> {
+    let (polished, changed) = polished(OnSurface::new(dual, function), norm, patience, progress)?;
+    if changed.is_some() {
+        let factor = crate::dual::Moving::factor(dual);
+        dual.rescale(factor)?;
+    }
+    Ok(polished)
+}
+
+/// Triangles whose vertices move and whose edges flip, of the plane or on a surface, and the function that they are for.
+trait Sheet: Sync {
+    /// Where a vertex is.
+    type At: Copy + Send + Sync;
+
+    /// Topology.
+    fn topology(&self) -> &Triangulation;
+    /// What holds a vertex.
+    fn kind(&self, v: VertexId) -> Kind;
+    /// Where vertices are, by id.
+    fn places(&self) -> Vec<Self::At>;
+    /// Where that is, for messages.
+    fn describe(&self, v: VertexId) -> String;
+    /// The directions in which a vertex of a segment can move.
+    fn on_segment(&self, v: VertexId) -> Option<Frame>;
+    /// Where a vertex is, seen from another.
+    fn offset(&self, from: VertexId, to: VertexId) -> Vector;
+    /// Where a vertex comes to be by a step in a frame.
+    fn stepped(&self, v: VertexId, frame: &Frame, step: [f64; 2]) -> Option<Self::At>;
+    /// The area of a triangle; not positive where it is turned over.
+    fn area(&self, corners: [Self::At; 3]) -> f64;
+    /// The function at a vertex.
+    fn value(&self, at: Self::At) -> f64;
+    /// The function in a triangle, at barycentric coordinates.
+    fn value_within(&self, corners: [Self::At; 3], weights: [f64; 3]) -> f64;
+    /// Quality, in the mean tensor of three vertices, of a triangle with these corners: 1 of an equilateral one.
+    fn shape(&self, vertices: [VertexId; 3], corners: [Self::At; 3]) -> f64;
+    /// Whether an edge may be flipped.
+    fn may_flip(&self, h: HalfEdge) -> bool;
+    /// Flips an edge, and says whether it did.
+    fn flip(&mut self, h: HalfEdge) -> bool;
+    /// Moves a vertex, and says whether it did.
+    fn move_vertex(&mut self, v: VertexId, to: Self::At) -> bool;
+}
+
+/// The sheet, if sweeps were made.
+fn polished<S: Sheet>(
+    sheet: S,
+    norm: Norm,
+    Patience { steps: sweeps, gain }: Patience,
+    progress: &dyn Progress,
+) -> Result<(Polished, Option<S>)> {
     let mut polished = Polished::default();
-    let Some(mut work) = Work::new(dual, function, norm)? else { return Ok(polished) };
+    let Some(mut work) = Work::new(sheet, norm)? else { return Ok((polished, None)) };
     polished.error.push(work.norm());
     if sweeps == 0 {
-        return Ok(polished);
+        return Ok((polished, None));
     }
     for _ in 0..sweeps {
         polished.flips += work.flip_all();
@@ -69,61 +142,52 @@ pub(crate) fn polish(
     if let Some(last) = polished.error.last_mut() {
         *last = work.norm();
     }
-    let planar = work.planar;
-    dual.take_over(planar);
-    dual.verdict()?;
-    Ok(polished)
+    Ok((polished, Some(work.sheet)))
 }
 
-/// A triangulation with the function's values at its vertices, and the dual that it was made of, with the metric where they were.
-struct Work<'a> {
-    dual: &'a Dual<'a>,
-    objective: Objective<'a>,
-    planar: Planar,
-    places: Vec<Place>,
+/// Triangles with the function's values at their vertices.
+struct Work<S: Sheet> {
+    sheet: S,
+    objective: Objective,
+    places: Vec<Place<S::At>>,
     /// Whether something may be gained around a vertex: it or a neighbour has moved, or an edge around it was flipped, since it was tried.
     awake: Vec<bool>,
 }
 
-impl<'a> Work<'a> {
+impl<S: Sheet> Work<S> {
     /// `None` where the function is the same everywhere.
-    fn new(dual: &'a Dual, function: &'a dyn ScalarField, norm: Norm) -> Result<Option<Self>> {
-        let planar = dual.planar().clone();
-        let values: Vec<f64> = planar.positions.par_iter().map(|&p| function.value(p)).collect();
+    fn new(sheet: S, norm: Norm) -> Result<Option<Self>> {
+        let place = |&at: &S::At| Place { at, value: sheet.value(at) };
+        let places: Vec<Place<S::At>> = sheet.places().par_iter().map(place).collect();
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for v in planar.topology.vertices() {
-            let value = values[v.index()];
+        for v in sheet.topology().vertices() {
+            let value = places[v.index()].value;
             if !value.is_finite() {
                 let what = format!("the function is {value}");
                 let help = "give a function that is finite in the whole domain";
-                return Err(Error::metric(what, planar.position(v).to_string(), help));
+                return Err(Error::metric(what, sheet.describe(v), help));
             }
             (least, most) = (least.min(value), most.max(value));
         }
-        Ok((most > least).then(|| Self {
-            dual,
-            objective: Objective::new(function, norm, most - least),
-            places: planar.positions.iter().zip(values).map(|(&at, value)| Place { at, value }).collect(),
-            awake: vec![true; planar.positions.len()],
-            planar,
-        }))
+        let objective = Objective::new(norm, most - least);
+        let awake = vec![true; places.len()];
+        Ok((most > least).then_some(Self { sheet, objective, places, awake }))
     }
 
-    fn place(&self, v: VertexId) -> Place {
+    fn place(&self, v: VertexId) -> Place<S::At> {
         self.places[v.index()]
     }
 
     /// The norm of the error on all faces.
     fn norm(&self) -> f64 {
-        let faces: Vec<_> = self.planar.topology.faces().collect();
-        let share = |&f| self.objective.of(self.planar.topology.corners(f).map(|v| self.place(v)));
+        let faces: Vec<_> = self.sheet.topology().faces().collect();
+        let share = |&f| self.objective.of(&self.sheet, self.sheet.topology().corners(f).map(|v| self.place(v)));
         let shares: Vec<f64> = faces.par_iter().with_min_len(64).map(share).collect();
         self.objective.norm(shares.iter().sum())
     }
 
-    /// Quality in the mean tensor of three vertices of a triangle with these corners: 1 of an equilateral one.
-    fn shape(&self, vertices: [VertexId; 3], corners: [Place; 3]) -> f64 {
-        self.dual.mean_tensor(vertices).shape(corners.map(|corner| corner.at))
+    fn shape(&self, vertices: [VertexId; 3], corners: [Place<S::At>; 3]) -> f64 {
+        self.sheet.shape(vertices, corners.map(|corner| corner.at))
     }
 }
 

@@ -1,11 +1,11 @@
 //! The error of linear interpolation on a triangle, and the moves and flips that lower it. Vertices move in groups without edges between
 //! them: those of a group can move at once.
 
-use super::{Work, is_allowed};
-use crate::dual::{Kind, Moving};
+use super::{Sheet, Work, is_allowed};
+use crate::dual::Kind;
 use crate::elementary::Elementary;
-use crate::geometry::{Node, Point, Vector, combine, radon, signed_area};
-use crate::metric::{Norm, ScalarField};
+use crate::geometry::{Node, Point, Vector, radon};
+use crate::metric::Norm;
 use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, Rounds, Triangulation, VertexId, flip_in_rounds};
 
@@ -21,19 +21,19 @@ const SHORTER: f64 = 0.4;
 /// A second derivative is at least this share of the greatest.
 const LEAST_CURVATURE: f64 = 1e-3;
 
-impl Work<'_> {
+impl<S: Sheet> Work<S> {
     /// Moves every vertex that is awake once, those of one colour at a time. Returns how many moved. Awake are then those around moves
     /// that were not [`SMALL`].
     pub(super) fn move_all(&mut self) -> u64 {
         let mut moved = 0;
         let awake = std::mem::replace(&mut self.awake, vec![false; self.places.len()]);
-        let is_tried = |v: VertexId| awake[v.index()] && !matches!(self.dual.kind(v), Kind::Corner(_) | Kind::Held);
-        for group in colours(&self.planar.topology, is_tried) {
-            let better: Vec<Option<(Place, f64)>> =
+        let is_tried = |v: VertexId| awake[v.index()] && !matches!(self.sheet.kind(v), Kind::Corner(_) | Kind::Held);
+        for group in colours(self.sheet.topology(), is_tried) {
+            let better: Vec<Option<(Place<S::At>, f64)>> =
                 group.par_iter().with_min_len(16).map(|&v| self.better(v)).collect();
             for (v, better) in group.into_iter().zip(better) {
                 let Some((place, step)) = better else { continue };
-                if self.planar.move_vertex(v, place.at) {
+                if self.sheet.move_vertex(v, place.at) {
                     self.places[v.index()] = place;
                     moved += 1;
                     if step > SMALL {
@@ -48,27 +48,32 @@ impl Work<'_> {
     /// A vertex and its neighbours are to be tried again.
     fn wake(&mut self, v: VertexId) {
         self.awake[v.index()] = true;
-        for u in self.planar.topology.around(v) {
+        for u in self.sheet.topology().around(v) {
             self.awake[u.index()] = true;
         }
     }
 
     /// Where a vertex would better be, and how far that is in the unit of [`STEP`]: a step of Newton's method on the error around it.
-    fn better(&self, v: VertexId) -> Option<(Place, f64)> {
-        let topology = &self.planar.topology;
+    fn better(&self, v: VertexId) -> Option<(Place<S::At>, f64)> {
+        let topology = self.sheet.topology();
         let ring: Vec<[VertexId; 2]> = topology.star(v).map(|h| [topology.target(h), topology.apex(h)]).collect();
-        let corners = |place: Place, [a, b]: [VertexId; 2]| [place, self.place(a), self.place(b)];
-        let error_at = |place: Place| -> f64 { ring.iter().map(|&side| self.objective.of(corners(place, side))).sum() };
-        let shape_at = |place: Place| {
+        let corners = |place: Place<S::At>, [a, b]: [VertexId; 2]| [place, self.place(a), self.place(b)];
+        let error_at = |place: Place<S::At>| -> f64 {
+            ring.iter().map(|&side| self.objective.of(&self.sheet, corners(place, side))).sum()
+        };
+        let shape_at = |place: Place<S::At>| {
             ring.iter().map(|&[a, b]| self.shape([v, a, b], corners(place, [a, b]))).fold(f64::INFINITY, f64::min)
         };
         let frame = self.frame(v, &ring)?;
         let here = self.place(v);
-        let place = |step: [f64; 2]| self.objective.place(frame.at(here.at, step));
+        let place = |step: [f64; 2]| {
+            let at = self.sheet.stepped(v, &frame, step)?;
+            Some(Place { at, value: self.sheet.value(at) })
+        };
         let now = error_at(here);
-        let [mut x, mut y] = frame.newton(now, |step| error_at(place(step)))?;
+        let [mut x, mut y] = frame.newton(now, |step| place(step).map_or(f64::INFINITY, error_at))?;
         for _ in 0..TRIALS {
-            let there = place([x, y]);
+            let there = place([x, y])?;
             if error_at(there) < now && is_allowed(shape_at(here), shape_at(there)) {
                 return Some((there, x.hypotenuse(y)));
             }
@@ -79,13 +84,10 @@ impl Work<'_> {
 
     /// The directions and lengths in which a vertex can move: those of the ellipse of inertia of its neighbours.
     fn frame(&self, v: VertexId, ring: &[[VertexId; 2]]) -> Option<Frame> {
-        let here = self.place(v).at;
-        if self.dual.kind(v) == Kind::Curve {
-            let [a, b] = self.planar.neighbours_on_segment(v)?;
-            let share = (here - a).dot(b - a) / (b - a).dot(b - a);
-            return Some(Frame { segment: Some(([a, b], share)), first: (b - a) * 0.5, second: None });
+        if self.sheet.kind(v) == Kind::Curve {
+            return self.sheet.on_segment(v);
         }
-        let around: Vec<Vector> = ring.iter().flatten().map(|&u| self.place(u).at - here).collect();
+        let around: Vec<Vector> = ring.iter().flatten().map(|&u| self.sheet.offset(v, u)).collect();
         let mean = |of: fn(&Vector) -> f64| around.iter().map(of).sum::<f64>() / around.len() as f64;
         let (xx, xy, yy) = (mean(|d| d.x * d.x), mean(|d| d.x * d.y), mean(|d| d.y * d.y));
         let first = Vector::new(xx.sqrt(), xy / xx.sqrt());
@@ -95,21 +97,14 @@ impl Work<'_> {
 }
 
 /// One or two directions, of the length of a typical edge that way.
-struct Frame {
+pub(super) struct Frame {
     /// The ends of the segment that a vertex slides along, and where between them it is: steps do not add up their rounding.
-    segment: Option<([Point; 2], f64)>,
-    first: Vector,
-    second: Option<Vector>,
+    pub(super) segment: Option<([Point; 2], f64)>,
+    pub(super) first: Vector,
+    pub(super) second: Option<Vector>,
 }
 
 impl Frame {
-    fn at(&self, from: Point, [x, y]: [f64; 2]) -> Point {
-        match self.segment {
-            Some(([a, b], share)) => a.lerp(b, share + 0.5 * x),
-            None => from + self.first * x + self.second.unwrap_or_default() * y,
-        }
-    }
-
     /// The step to the minimum of a quadratic through values around, made convex where it is not.
     fn newton(&self, now: f64, error: impl Fn([f64; 2]) -> f64) -> Option<[f64; 2]> {
         let h = STEP;
@@ -178,8 +173,7 @@ pub(crate) fn polishing_norm(norm: Norm) -> Norm {
 
 /// What is to be made small: the integral of |f - its linear interpolation|^p, in a unit of its own for f.
 #[derive(Clone, Copy)]
-pub(super) struct Objective<'a> {
-    function: &'a dyn ScalarField,
+pub(super) struct Objective {
     exponent: f64,
     unit: f64,
     nodes: [Node; 7],
@@ -187,34 +181,30 @@ pub(super) struct Objective<'a> {
 
 /// A vertex, as errors see it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
-    pub(super) at: Point,
+pub(super) struct Place<At> {
+    pub(super) at: At,
     pub(super) value: f64,
 }
 
-impl<'a> Objective<'a> {
+impl Objective {
     /// Errors are measured in shares of `unit`, which is positive.
-    pub(super) fn new(function: &'a dyn ScalarField, norm: Norm, unit: f64) -> Self {
-        Self { function, exponent: polishing_norm(norm).exponent(), unit, nodes: radon() }
+    pub(super) fn new(norm: Norm, unit: f64) -> Self {
+        Self { exponent: polishing_norm(norm).exponent(), unit, nodes: radon() }
     }
 
-    /// A point with the function's value there.
-    pub(super) fn place(&self, at: Point) -> Place {
-        Place { at, value: self.function.value(at) }
-    }
-
-    /// The triangle's share, by seven values of the function; infinite of a triangle that is not counter-clockwise.
+    /// The triangle's share, by seven values of the function; infinite of a triangle that is turned over.
     ///
     /// Three values in the middles of the edges would not do: minimised, they find places where the function meets its
     /// interpolation there and nowhere else.
-    pub(super) fn of(&self, [a, b, c]: [Place; 3]) -> f64 {
-        let area = 0.5 * signed_area(a.at, b.at, c.at);
+    pub(super) fn of<S: Sheet>(&self, sheet: &S, corners: [Place<S::At>; 3]) -> f64 {
+        let [a, b, c] = corners;
+        let places = corners.map(|corner| corner.at);
+        let area = sheet.area(places);
         if area <= 0.0 {
             return f64::INFINITY;
         }
         let share = |&([u, v, w], weight): &Node| {
-            let p = combine([u, v, w], [a.at, b.at, c.at]);
-            let error = (self.function.value(p) - (u * a.value + v * b.value + w * c.value)) / self.unit;
+            let error = (sheet.value_within(places, [u, v, w]) - (u * a.value + v * b.value + w * c.value)) / self.unit;
             weight * self.power(error)
         };
         area * self.nodes.iter().map(share).sum::<f64>()
@@ -238,7 +228,7 @@ const ROUNDS: usize = 8;
 /// A flip gains this share of the two triangles' error at least.
 const GAIN: f64 = 1e-9;
 
-impl Work<'_> {
+impl<S: Sheet> Work<S> {
     /// Flips until no edge gains by it; the greatest gains first. Returns how many flips.
     pub(super) fn flip_all(&mut self) -> u64 {
         flip_in_rounds(self, ROUNDS)
@@ -246,9 +236,8 @@ impl Work<'_> {
 
     /// By how much a flip would lower the error; `None` where it would not, or may not be.
     fn gain(&self, h: HalfEdge) -> Option<f64> {
-        let may_flip = !self.planar.topology.is_fixed(h) && self.planar.is_convex(h);
-        let [a, b, c, d] = self.planar.topology.quad(h).filter(|_| may_flip)?;
-        let of = |vertices: [VertexId; 3]| self.objective.of(self.places_of(vertices));
+        let [a, b, c, d] = self.sheet.topology().quad(h).filter(|_| self.sheet.may_flip(h))?;
+        let of = |vertices: [VertexId; 3]| self.objective.of(&self.sheet, self.places_of(vertices));
         let (old, new) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
         let before: f64 = old.into_iter().map(of).sum();
         let gain = before - new.into_iter().map(of).sum::<f64>();
@@ -261,28 +250,30 @@ impl Work<'_> {
         is_allowed(least(old), least(new)).then_some(gain)
     }
 
-    fn places_of(&self, vertices: [VertexId; 3]) -> [Place; 3] {
+    fn places_of(&self, vertices: [VertexId; 3]) -> [Place<S::At>; 3] {
         vertices.map(|v| self.place(v))
     }
 }
 
-impl Rounds for Work<'_> {
+impl<S: Sheet> Rounds for Work<S> {
     fn topology(&self) -> &Triangulation {
-        &self.planar.topology
+        self.sheet.topology()
     }
 
     fn wanted(&mut self, edges: &[HalfEdge]) -> Vec<(f64, HalfEdge)> {
-        let is_awake = |&&h: &&HalfEdge| self.planar.topology.ends(h).iter().any(|v| self.awake[v.index()]);
+        let is_awake = |&&h: &&HalfEdge| self.sheet.topology().ends(h).iter().any(|v| self.awake[v.index()]);
         let awake = edges.par_iter().with_min_len(64).filter(is_awake);
         awake.filter_map(|&h| Some((-self.gain(h)?, h))).collect()
     }
 
     fn flip(&mut self, h: HalfEdge) -> bool {
-        self.planar.topology.flip(h);
-        for v in self.planar.topology.ends(h) {
-            self.wake(v);
+        let is_flipped = self.sheet.flip(h);
+        if is_flipped {
+            for v in self.sheet.topology().ends(h) {
+                self.wake(v);
+            }
         }
-        true
+        is_flipped
     }
 }
 

@@ -14,7 +14,7 @@ mod test_surfaces;
 mod tests;
 
 use super::settle::Stopwatch;
-use super::{Aim, MeshOptions, Meshed, Mesher, Seeding, mesh_for};
+use super::{Aim, MeshOptions, Meshed, Mesher, Seeding, closed_form_scale, mesh_for};
 use crate::domain::{Domain, from_mesh};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
@@ -70,6 +70,8 @@ struct Partition {
     parts: Vec<Part>,
     /// The factor on the metric by which cuts are sampled.
     scale: f64,
+    /// The integral of sqrt(det M) without it.
+    complexity: f64,
     /// Vertices of the whole.
     vertices: usize,
     /// What is required of it.
@@ -156,7 +158,8 @@ fn in_parts(
         notes.push(format!("{} vertices were asked for, but parts leave room for {}", cut.vertices, mesh.points.len()));
     }
     let metric_scale = if options.vertices.is_some() { unit_factor(on, &mesh) } else { cut.scale };
-    Ok(Meshed { mesh, metric_scale, seconds: watch.seconds(), notes, ..Meshed::default() })
+    let closed_form_scale = options.vertices.map(|count| closed_form_scale(count, cut.complexity));
+    Ok(Meshed { mesh, metric_scale, closed_form_scale, seconds: watch.seconds(), notes, ..Meshed::default() })
 }
 
 /// Lets the regions of a round be made anew, so that the whole then has so many vertices.

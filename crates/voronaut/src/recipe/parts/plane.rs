@@ -43,11 +43,12 @@ impl Divisible for InPlane<'_> {
         let centres: Vec<Point3> = corners.iter().map(|&corners| in_space(centroid(corners))).collect();
         let owner = owners(&coarse.triangles, &centres, &areas, parts);
         let domains = Cuts::new(&coarse, &owner, field, scale).domains(parts)?;
-        let plan = |(domain, area)| Plan::with(domain, &[], field, area);
-        let plans: Vec<Plan> = domains.iter().zip(areas_of(&owner, &areas, parts)).map(plan).collect();
+        let of_part = |(domain, area)| Plan::with(domain, &[], field, area);
+        let plans: Vec<Plan> = domains.iter().zip(areas_of(&owner, &areas, parts)).map(of_part).collect();
         let counts = counts_of(&domains, &plans, scale, vertices);
         let parts = domains.iter().zip(counts).map(|(domain, vertices)| Part { domain: corner_mesh(domain), vertices });
-        Ok(Partition { parts: parts.collect(), scale, vertices, notes: job.notes, kept: kept(&domain) })
+        let complexity = plan.complexity;
+        Ok(Partition { parts: parts.collect(), scale, complexity, vertices, notes: job.notes, kept: kept(&domain) })
     }
 
     /// That of a domain whose straight runs have no vertices inside.

@@ -9,11 +9,12 @@ use crate::error::{Error, Result};
 use crate::geometry::{Point3, Tensor3};
 use crate::lists::{Rows, distinct, in_order};
 use crate::mesh::{Mesh, Network};
+use crate::metric::{Expression, Norm};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality::Meetings;
 use crate::recipe::surface_pass::{Setting, demand};
-use crate::recipe::{MeshOptions, mesh_surface};
+use crate::recipe::{MeshOptions, mesh_surface_for};
 use crate::sampling::{MetricArc, pieces};
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Mark, Place, Surface};
@@ -36,18 +37,19 @@ pub(super) struct OnSurface<'a> {
 /// The mesh of a part of a surface, which is given whole and cut along its features.
 ///
 /// # Errors
-/// As of [`mesh_surface`].
+/// As of [`mesh_surface_for`].
 pub fn mesh_surface_part(
     part: &Part,
     whole: &Input,
     metric: &dyn SurfaceMetric,
+    aim: Option<(&Expression, Norm)>,
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Mesh> {
     let own = whole.part(Surface::new(&part.domain)?)?;
     let metric = OfWhole::new(&own.surface, whole, metric);
     let options = MeshOptions { hausd: None, ..with_count(options, part.vertices) };
-    Ok(mesh_surface(&own, &metric, &options, progress)?.mesh)
+    Ok(mesh_surface_for(&own, &metric, aim, &options, progress)?.mesh)
 }
 
 /// The metric of a surface as one of a part of it.
@@ -84,7 +86,7 @@ impl Divisible for OnSurface<'_> {
         }
         // The limit is that of each part.
         let options = MeshOptions { memory_limit: u64::MAX, ..options.clone() };
-        let (vertices, scale) = Setting::new(self.input, self.metric, &options, progress)?.plan()?;
+        let (vertices, scale, complexity) = Setting::new(self.input, self.metric, None, &options, progress)?.plan()?;
         let parts = number_of_parts(vertices, parts)?;
         let mut base = Base::new(*self)?;
         base.refine(COARSE * parts);
@@ -92,7 +94,7 @@ impl Divisible for OnSurface<'_> {
         let stations = base.cut(scale);
         let kept = base.kept();
         let parts = base.parts(&stations, &areas, scale, vertices);
-        Ok(Partition { parts, scale, vertices, kept, notes: Vec::new() })
+        Ok(Partition { parts, scale, complexity, vertices, kept, notes: Vec::new() })
     }
 
     /// Edges of features are required of the parts where the surface requires them, and are creases where it has them.

@@ -20,7 +20,7 @@ fn made(
     let mut rounds = Vec::new();
     let mut make = |_: &'static str, parts: &[Part]| {
         rounds.push(parts.len());
-        parts.iter().map(|part| mesh_surface_part(part, input, metric, options, &Silent)).collect()
+        parts.iter().map(|part| mesh_surface_part(part, input, metric, None, options, &Silent)).collect()
     };
     let meshed = mesh_surface_in_parts(input, metric, Some(parts), options, &mut make, &Silent)?;
     Ok((meshed, rounds))

@@ -1,9 +1,11 @@
 //! Sizes that grow slowly.
 
+use super::TangentPlanes;
 use crate::error::Result;
+use crate::geometry::Tensor3;
 use crate::mesh::coincident;
 use crate::metric::Neighbours;
-use crate::metric::nodal::Gradation;
+use crate::metric::nodal::{Gradation, Limits, Vertices};
 use crate::surface::Surface;
 use crate::triangulation::VertexId;
 
@@ -24,6 +26,19 @@ pub(crate) fn grade(surface: &Surface, sizes: &mut [f64], hgrad: f64) -> Result<
     let around = Neighbours::of_triangles(sizes.len(), triangles, coincident(border));
     let length = |v, w| surface.position(VertexId(v)).distance(surface.position(VertexId(w)));
     Gradation::of_sizes(around, length, hgrad)?.apply_to_sizes(sizes)
+}
+
+/// The same of tensors, by the law in tangent planes: within limits, which come first. What they say of normals becomes the larger
+/// eigenvalue.
+///
+/// # Errors
+/// As of [`grade`](crate::metric::nodal::grade).
+pub(crate) fn grade_tensors(surface: &Surface, tensors: &mut [Tensor3], hgrad: f64, limits: &Limits) -> Result<()> {
+    let vertices = TangentPlanes::of(surface);
+    let mut flat = vertices.seen(tensors);
+    vertices.gradation(hgrad)?.apply(&mut flat, limits)?;
+    tensors.copy_from_slice(&vertices.extended(&flat));
+    Ok(())
 }
 
 #[cfg(test)]

@@ -53,7 +53,7 @@ impl CovariantHessian {
     }
 
     /// The function along the surface.
-    fn second_derivatives(&self, place: &Place) -> (TangentPlane, Tensor) {
+    pub(crate) fn second_derivatives(&self, place: &Place) -> (TangentPlane, Tensor) {
         let jet = self.function.jet(place.position);
         let (normal, shape) = self.bend.at(place);
         let plane = TangentPlane::new(normal);
@@ -131,6 +131,24 @@ fn mean_over(surface: &Surface, value: impl Fn(&Place) -> Result<f64> + Sync) ->
 /// [`Error::Metric`] unless there is one finite value for each vertex, and where all second derivatives vanish.
 pub(crate) fn recovered_on(input: &Input, values: &[f64], norm: Norm) -> Result<Sampled> {
     let surface = &input.surface;
+    let found = hessians_on(surface, values)?;
+    let t = surface.topology();
+    let mean = weighted_mean(surface, |v| found[v.index()].as_ref().map_or(0.0, |(_, hessian)| size(*hessian)));
+    let area = t.faces().map(|f| area(surface.triangle(f))).sum::<f64>();
+    if mean <= rounding(values, area) || FLOOR * mean == 0.0 {
+        return Err(vanishing());
+    }
+    let metric = |(plane, hessian): &(TangentPlane, Tensor)| optimal(plane, *hessian, norm, FLOOR * mean);
+    let fits: Vec<Option<Tensor3>> = found.iter().map(|found| found.as_ref().map(metric)).collect();
+    let least = norm.weighted(Tensor::isotropic(1.0) * (FLOOR * mean));
+    Sampled::filled(surface, &fits, Tensor3::IDENTITY * least.xx)
+}
+
+/// Second derivatives recovered in the tangent planes at vertices; nothing of vertices whose triangles turn away from each other.
+///
+/// # Errors
+/// [`Error::Metric`] unless there is one finite value for each vertex.
+pub(crate) fn hessians_on(surface: &Surface, values: &[f64]) -> Result<Vec<Option<(TangentPlane, Tensor)>>> {
     super::super::input::check_count(values.len(), surface.positions().len())?;
     let t = surface.topology();
     if let Some(v) = t.vertices().find(|v| !values[v.index()].is_finite()) {
@@ -148,16 +166,7 @@ pub(crate) fn recovered_on(input: &Input, values: &[f64], norm: Norm) -> Result<
         };
         Some((plane, hessian_around(&around, values, v, offset)?))
     };
-    let found: Vec<Option<(TangentPlane, Tensor)>> = (0..values.len() as u32).into_par_iter().map(recovered).collect();
-    let mean = weighted_mean(surface, |v| found[v.index()].as_ref().map_or(0.0, |(_, hessian)| size(*hessian)));
-    let area = t.faces().map(|f| area(surface.triangle(f))).sum::<f64>();
-    if mean <= rounding(values, area) || FLOOR * mean == 0.0 {
-        return Err(vanishing());
-    }
-    let metric = |(plane, hessian): &(TangentPlane, Tensor)| optimal(plane, *hessian, norm, FLOOR * mean);
-    let fits: Vec<Option<Tensor3>> = found.iter().map(|found| found.as_ref().map(metric)).collect();
-    let least = norm.weighted(Tensor::isotropic(1.0) * (FLOOR * mean));
-    Sampled::filled(surface, &fits, Tensor3::IDENTITY * least.xx)
+    Ok((0..values.len() as u32).into_par_iter().map(recovered).collect())
 }
 
 /// Vertices whose normals are more than 60 degrees from one's own are of another side.

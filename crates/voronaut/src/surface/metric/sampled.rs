@@ -44,12 +44,7 @@ impl Sampled {
     /// # Errors
     /// As [`Sampled::new`].
     pub(super) fn filled(surface: &Surface, known: &[Option<Tensor3>], otherwise: Tensor3) -> Result<Self> {
-        let t = surface.topology();
-        let tensor = |v: u32| {
-            let around = || t.around(VertexId(v)).filter_map(|w| known[w.index()]);
-            known[v as usize].or_else(|| mean(around())).unwrap_or(otherwise)
-        };
-        Self::new(surface, &(0..known.len() as u32).map(tensor).collect::<Vec<_>>())
+        Self::new(surface, &filled(surface, known, otherwise))
     }
 
     /// The same field, of curvatures that were bounded so.
@@ -76,6 +71,16 @@ impl SurfaceMetric for Sampled {
     fn curvature_figures(&self) -> Option<CurvatureFigures> {
         self.figures
     }
+}
+
+/// Tensors at some vertices, and at the others the mean of their neighbours' logarithms, or `otherwise`.
+pub(crate) fn filled(surface: &Surface, known: &[Option<Tensor3>], otherwise: Tensor3) -> Vec<Tensor3> {
+    let t = surface.topology();
+    let tensor = |v: u32| {
+        let around = || t.around(VertexId(v)).filter_map(|w| known[w.index()]);
+        known[v as usize].or_else(|| mean(around())).unwrap_or(otherwise)
+    };
+    (0..known.len() as u32).map(tensor).collect()
 }
 
 /// The log-Euclidean mean.

@@ -1,6 +1,7 @@
 //! Diagrams and duals on surfaces, against what is known in closed form.
 
 mod brute;
+mod certificate;
 mod random;
 mod sheet;
 mod sphere;

@@ -1,0 +1,154 @@
+//! Seeds as they are seen from around some of them: as points of a plane with a metric. A surface is seen in the chart in the middle.
+
+use super::Simplices;
+use crate::geometry::{Point, Point3, Vector3};
+use crate::metric::MetricField;
+use crate::surface::metric::SurfaceMetric;
+use crate::surface::{Chart, Input, Place};
+
+/// Seeds whose normals have a lesser cosine with a chart's are not seen in it.
+const SEEN: f64 = 0.5;
+/// A centre this near (barycentric) to a surface's border may be beyond it.
+const AT_BORDER: f64 = 1e-9;
+
+/// Seeds of the plane, or of a surface.
+pub(super) trait Seeds: Sync {
+    /// Where a seed or the centre of a circle is.
+    type Place: Copy + PartialEq + Send + Sync;
+
+    /// How many there are.
+    fn count(&self) -> usize;
+    /// Where one is.
+    fn place(&self, seed: u32) -> Self::Place;
+    /// What is around these, if all of them are seen from their middle.
+    fn around(&self, seeds: &[u32]) -> Option<impl View<Place = Self::Place>>;
+}
+
+/// A plane in which seeds are seen.
+pub(super) trait View: Sync {
+    type Place;
+
+    fn field(&self) -> &dyn MetricField;
+    /// A seed; `None` of one that cannot be seen, which is far away.
+    fn seed(&self, seed: u32) -> Option<Point>;
+    /// Whether a point is in the domain, as the triangle sees it that has the seed for a corner.
+    fn is_inside(&self, seed: u32, p: Point) -> bool;
+    /// Where a point is.
+    fn place(&self, p: Point) -> Option<Self::Place>;
+}
+
+/// Seeds of the plane: all are seen from everywhere.
+#[derive(Clone, Copy)]
+pub(super) struct Flat<'a> {
+    pub(super) field: &'a dyn MetricField,
+    pub(super) found: &'a Simplices<'a>,
+}
+
+impl Seeds for Flat<'_> {
+    type Place = Point;
+
+    fn count(&self) -> usize {
+        self.found.seeds.len()
+    }
+
+    fn place(&self, seed: u32) -> Point {
+        self.found.seeds[seed as usize]
+    }
+
+    fn around(&self, _seeds: &[u32]) -> Option<impl View<Place = Point>> {
+        Some(*self)
+    }
+}
+
+impl View for Flat<'_> {
+    type Place = Point;
+
+    fn field(&self) -> &dyn MetricField {
+        self.field
+    }
+
+    fn seed(&self, seed: u32) -> Option<Point> {
+        Some(self.found.seeds[seed as usize])
+    }
+
+    fn is_inside(&self, seed: u32, p: Point) -> bool {
+        (self.found.is_inside)(seed, p)
+    }
+
+    fn place(&self, p: Point) -> Option<Point> {
+        Some(p)
+    }
+}
+
+/// Seeds at places of a surface.
+pub(crate) struct SeedsOnSurface<'a> {
+    input: &'a Input,
+    metric: &'a dyn SurfaceMetric,
+    places: Vec<Place>,
+    normals: Vec<Vector3>,
+}
+
+impl<'a> SeedsOnSurface<'a> {
+    pub(crate) fn new(input: &'a Input, metric: &'a dyn SurfaceMetric, places: Vec<Place>) -> Self {
+        let normals = places.iter().map(|place| input.normal(place)).collect();
+        Self { input, metric, places, normals }
+    }
+
+    /// The chart in the middle of some seeds, if all are seen in it.
+    pub(crate) fn chart(&self, seeds: &[u32]) -> Option<Chart<'a>> {
+        let (first, share) = (self.places[*seeds.first()? as usize], 1.0 / seeds.len() as f64);
+        let offset = |i: u32| self.places[i as usize].position - first.position;
+        let middle = seeds.iter().fold(Vector3::default(), |sum, &i| sum + offset(i) * share);
+        let place = self.input.lift(&first, first.position + middle)?;
+        let normal = self.input.normal(&place);
+        let is_seen = |&i: &u32| self.normals[i as usize].dot(normal) >= SEEN;
+        seeds.iter().all(is_seen).then(|| Chart::new(self.input, self.metric, place, normal))
+    }
+
+    /// The position of a seed.
+    pub(crate) fn position(&self, seed: u32) -> Point3 {
+        self.places[seed as usize].position
+    }
+}
+
+impl Seeds for SeedsOnSurface<'_> {
+    type Place = Place;
+
+    fn count(&self) -> usize {
+        self.places.len()
+    }
+
+    fn place(&self, seed: u32) -> Place {
+        self.places[seed as usize]
+    }
+
+    fn around(&self, seeds: &[u32]) -> Option<impl View<Place = Place>> {
+        Some(InChart { chart: self.chart(seeds)?, seeds: self })
+    }
+}
+
+struct InChart<'a> {
+    chart: Chart<'a>,
+    seeds: &'a SeedsOnSurface<'a>,
+}
+
+impl View for InChart<'_> {
+    type Place = Place;
+
+    fn field(&self) -> &dyn MetricField {
+        &self.chart
+    }
+
+    fn seed(&self, seed: u32) -> Option<Point> {
+        let is_seen = self.seeds.normals[seed as usize].dot(self.chart.normal()) >= SEEN;
+        is_seen.then(|| self.chart.flatten(self.seeds.position(seed)))
+    }
+
+    fn is_inside(&self, _seed: u32, p: Point) -> bool {
+        self.chart.place(p).is_some_and(|place| !self.seeds.input.is_at_border(&place, AT_BORDER))
+    }
+
+    fn place(&self, p: Point) -> Option<Place> {
+        self.chart.place(p)
+    }
+}
