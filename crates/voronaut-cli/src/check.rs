@@ -219,7 +219,8 @@ fn planar_metric(
     let domain = if let Some(domain) = domain {
         domain
     } else {
-        own = Domain::new(&from_mesh(&curves::straight(mesh))?)?;
+        let pslg = if mesh.curved.is_some() { from_mesh(&curves::outline(mesh))? } else { from_mesh(mesh)? };
+        own = Domain::new(&pslg)?;
         &own
     };
     let scale = args.metric_scale.unwrap_or(1.0);

@@ -1,7 +1,7 @@
 //! Curved meshes: what there is of them, and what there is not.
 
 use crate::options::{Outputs, Show, refuse};
-use voronaut::mesh::Mesh;
+use voronaut::mesh::{Edges, Mesh};
 use voronaut::{Error, Result};
 use voronaut_io::Report;
 
@@ -30,9 +30,10 @@ pub(crate) fn order_of(mesh: &Mesh) -> usize {
     mesh.curved.as_ref().map_or(1, |curved| curved.order)
 }
 
-/// The mesh with straight triangles between its vertices.
-pub(crate) fn straight(mesh: &Mesh) -> Mesh {
-    Mesh { curved: None, ..mesh.clone() }
+/// The polygons between the boundary vertices of a mesh. Straight triangles between the corners of curved ones may overlap.
+pub(crate) fn outline(mesh: &Mesh) -> Mesh {
+    let edges = Edges::of(&mesh.triangles).boundary().map(|side| side.ends).collect();
+    Mesh { points: mesh.points.clone(), edges, ..Mesh::default() }
 }
 
 /// Says in a report what curves a mesh has.

@@ -98,6 +98,8 @@ const ROWS: &[Row] = &[
     each(&["--nr"], [Refused("--nr"), Nothing, Mesh]),
     each(&["--repair"], [Refused("--repair"), Nothing, Nothing]),
     each(&["--mesher", "starset"], [Mesh, Refused("--mesher"), Refused("--mesher")]),
+    each(&["--order", "2"], [Mesh, Refused("--order"), Refused("--order")]),
+    plane(STARS, &["--order", "3"], Refused("--order")),
     each(&["--periodic", "4,2"], [Mesh, Refused("--periodic"), Refused("--periodic")]),
     plane(STARS, &["--periodic", "4,2"], Refused("--periodic")),
     each(&["--required"], [Mesh, Refused("--required"), Refused("--required")]),

@@ -1,6 +1,6 @@
 //! The edges of curved triangles: quadratic and cubic Bézier curves, which polynomials of order 2 and 3 are exactly.
 
-use voronaut::geometry::Point3;
+use voronaut::geometry::{Point, Point3, Vector};
 use voronaut::mesh::{Edges, Mesh};
 
 /// Pieces in which pages draw an edge: of a cubic they are within a part in a hundred of its bow.
@@ -53,6 +53,21 @@ impl Curves {
         self.all.iter().flat_map(|(_, controls)| controls.iter().copied())
     }
 
+    /// Twice the area of a planar triangle of either orientation, between its curves.
+    pub(super) fn double_area(&self, mesh: &Mesh, triangle: [u32; 3]) -> f64 {
+        if self.all.is_empty() {
+            return mesh.double_area(triangle);
+        }
+        let origin = mesh.point(triangle[0]);
+        let swept = |ends: [u32; 2]| {
+            let between = self.between(ends).into_iter().map(|p| Point::new(p.x, p.y));
+            let all = std::iter::once(mesh.point(ends[0])).chain(between).chain([mesh.point(ends[1])]);
+            swept(&all.map(|p| p - origin).collect::<Vec<_>>())
+        };
+        let [a, b, c] = triangle;
+        [[a, b], [b, c], [c, a]].into_iter().map(swept).sum::<f64>().abs()
+    }
+
     /// The edges as points along them, with their ends.
     pub(super) fn polylines(&self, mesh: &Mesh) -> Vec<Vec<Point3>> {
         let polyline = |(ends, controls): &([u32; 2], Vec<Point3>)| {
@@ -78,6 +93,19 @@ fn controls(from: Point3, nodes: &[Point3], to: Point3) -> Vec<Point3> {
     }
     let near = [-5.0 / 6.0, 3.0, -1.5, 1.0 / 3.0];
     vec![sum(&near), sum(&[near[3], near[2], near[1], near[0]])]
+}
+
+/// Twice the area that the ray to a Bézier curve sweeps: the integral of x dy - y dx.
+fn swept(controls: &[Vector]) -> f64 {
+    let across = |i: usize, j: usize| controls[i].cross(controls[j]);
+    match controls.len() {
+        2 => across(0, 1),
+        3 => (2.0 * across(0, 1) + across(0, 2) + 2.0 * across(1, 2)) / 3.0,
+        _ => {
+            let far = 6.0 * across(0, 1) + 3.0 * across(0, 2) + across(0, 3);
+            (far + 3.0 * across(1, 2) + 3.0 * across(1, 3) + 6.0 * across(2, 3)) / 10.0
+        }
+    }
 }
 
 /// A point of a Bézier curve, by de Casteljau's algorithm.
@@ -112,6 +140,18 @@ mod tests {
             let polylines = curves.polylines(&mesh);
             assert_eq!((polylines.len(), polylines[0].len()), (5, PIECES + 1));
             assert_eq!((polylines[0][0], polylines[0][PIECES]), (ends[0], ends[1]));
+        }
+    }
+
+    #[test]
+    fn areas_are_between_curves() {
+        for (order, bow) in [(2, 0.8 / 6.0), (3, 0.9 / 6.0)] {
+            let mesh = bowed(order);
+            let areas = mesh.triangles.iter().map(|&t| 0.5 * Curves::of(&mesh).double_area(&mesh, t));
+            // The parabolas 0.8 x (1 - x) through (1/2, 0.2), and 0.9 x (1 - x) through (1/3, 0.2) and (2/3, 0.2).
+            for (area, truth) in areas.zip([0.5 + bow, 0.5]) {
+                assert!((area - truth).abs() < 1e-14, "{area} {truth}");
+            }
         }
     }
 

@@ -68,7 +68,7 @@ impl Medit {
         });
         self.elements(92, &[[4, 8, 6, 5]]);
         self.elements(90, &[[1, 4, 8, 2, 3, 5, 6, 7, 9, 10]]);
-        self.section(128, 4, |own| own.wholes(&[0, 3, 2, 1], REFERENCE));
+        self.section(128, 4, |own| own.wholes(&[0, 3, 2, 1], None));
         self.numbers(16, &[1], None);
         self.finish("curved.meshb", Reader::Medit)
     }
