@@ -140,7 +140,7 @@ impl Moved {
             for (&t, energy) in near.iter().zip(now) {
                 found.energies[t] = energy;
             }
-            let is_bad = |t: &usize| !(found.energies[*t] <= WORSE.0 * before[*t] + WORSE.1);
+            let is_bad = |t: &usize| found.energies[*t].is_nan() || found.energies[*t] > WORSE.0 * before[*t] + WORSE.1;
             let bad = near.into_iter().filter(is_bad);
             moved = distinct(bad.flat_map(|t| elements.numbers(t)).copied());
             moved.retain(|&p| shares[p as usize] > 0.0);
