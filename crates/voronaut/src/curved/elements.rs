@@ -125,7 +125,8 @@ impl Elements {
     fn line(&self, triangle: &Loose, half_edge: usize) -> Option<[Point; 2]> {
         (triangle.held[half_edge % 3] != NONE).then(|| {
             let ends = edges_of(triangle.corners)[half_edge % 3].map(|v| v as usize);
-            let slides = ends.into_iter().find_map(|v| if let Hold::Along(line) = self.holds[v] { Some(line) } else { None });
+            let slides =
+                ends.into_iter().find_map(|v| if let Hold::Along(line) = self.holds[v] { Some(line) } else { None });
             slides.unwrap_or(ends.map(|v| self.points[v]))
         })
     }

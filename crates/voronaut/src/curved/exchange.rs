@@ -12,8 +12,10 @@ use crate::mesh::edges::NONE;
 use crate::parallel::prelude::*;
 
 /// Sides that are shorter may go, and those that are longer may be halved: what is left of a longer one is not shorter than this.
-const SHORT: f64 = 0.75;
-const LONG: f64 = 1.4;
+const SHORT: f64 = 0.8;
+const LONG: f64 = 1.3;
+/// What a collapse costs before anything settles counts by half: flips and steps mend that much of it.
+const MENDED: f64 = 0.5;
 
 /// A change of a few triangles.
 struct Change {
@@ -27,44 +29,35 @@ struct Change {
 }
 
 /// Exchanges vertices, so many at most: pairs of a collapse and a split that lower the energy together, none beside another. The mesh
-/// with them, and their number.
-pub(super) fn exchange(elements: &Elements, aim: &Aim, most: usize) -> (Elements, usize) {
+/// with them; none where there are none.
+pub(super) fn exchange(elements: &Elements, aim: &Aim, most: usize) -> Option<Elements> {
     let rule = Rule::of(elements.order);
     let work = Work { elements, aim, rule: &rule, loose: elements.loose() };
-    let lengths: Vec<f64> = (0..elements.twins.len()).into_par_iter().map(|h| work.length(h)).collect();
-    let halves = (0..lengths.len()).filter(|&h| elements.twins[h] == NONE || h < elements.twins[h] as usize);
-    let (mut long, mut short): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
-    for h in halves {
-        if lengths[h] > LONG {
-            long.push(h);
-        } else if lengths[h] < SHORT {
-            short.extend([Some(h), (elements.twins[h] != NONE).then_some(elements.twins[h] as usize)].into_iter().flatten());
-        }
-    }
-    let splits: Vec<Change> = long.par_iter().map(|&h| work.split(h)).collect();
-    let collapses: Vec<Change> = short.par_iter().filter_map(|&h| work.collapse(h)).collect();
+    let (splits, collapses) = work.possible();
+    let chosen = chosen(&splits, &collapses, elements.triangles.len(), most);
+    (!chosen.is_empty()).then(|| work.changed(&chosen))
+}
+
+/// Splits with collapses, the best of either first.
+fn chosen<'a>(splits: &'a [Change], collapses: &'a [Change], triangles: usize, most: usize) -> Vec<&'a Change> {
     let by_gain = |changes: &[Change]| ranked(changes.iter().zip(0..).map(|(c, i): (&Change, usize)| (-c.gain, i)));
-    let (splits_by_gain, collapses_by_gain) = (by_gain(&splits), by_gain(&collapses));
-    let mut chosen: Vec<&Change> = Vec::new();
-    let mut is_touched = vec![false; elements.triangles.len()];
-    let mut going = collapses_by_gain.into_iter();
-    for (loss, i) in splits_by_gain {
-        if chosen.len() >= 2 * most {
-            break;
-        }
-        let is_free = |change: &Change, is_touched: &[bool]| change.old.iter().all(|&t| !is_touched[t]);
+    let mut chosen = Vec::new();
+    let mut is_touched = vec![false; triangles];
+    let is_free = |change: &Change, is_touched: &[bool]| change.old.iter().all(|&t| !is_touched[t]);
+    let mut going = by_gain(collapses).into_iter();
+    for (loss, i) in by_gain(splits) {
         if !is_free(&splits[i], &is_touched) {
             continue;
         }
         splits[i].old.iter().for_each(|&t| is_touched[t] = true);
         let Some((cost, j)) = going.find(|&(_, j)| is_free(&collapses[j], &is_touched)) else { break };
-        if loss + cost >= 0.0 {
+        if loss + MENDED * cost >= 0.0 || chosen.len() >= 2 * most {
             break;
         }
         collapses[j].old.iter().for_each(|&t| is_touched[t] = true);
         chosen.extend([&splits[i], &collapses[j]]);
     }
-    (work.changed(&chosen), chosen.len() / 2)
+    chosen
 }
 
 struct Work<'a> {
@@ -75,6 +68,22 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
+    /// Splits of long sides, and collapses of short ones either way.
+    fn possible(&self) -> (Vec<Change>, Vec<Change>) {
+        let twins = &self.elements.twins;
+        let lengths: Vec<f64> = (0..twins.len()).into_par_iter().map(|h| self.length(h)).collect();
+        let is_required = |h: usize| {
+            // A labelled side between vertices that stay is whole.
+            let ends = [h, Elements::next(h)].map(|h| self.elements.holds[self.elements.origin(h) as usize]);
+            self.elements.held[h] != NONE && ends == [Hold::Fixed; 2]
+        };
+        let is_long = |&h: &usize| (twins[h] == NONE || h < twins[h] as usize) && lengths[h] > LONG && !is_required(h);
+        let long: Vec<usize> = (0..lengths.len()).filter(is_long).collect();
+        let short: Vec<usize> = (0..lengths.len()).filter(|&h| lengths[h] < SHORT).collect();
+        let collapses = short.par_iter().filter_map(|&h| self.collapse(h)).collect();
+        (long.par_iter().map(|&h| self.split(h)).collect(), collapses)
+    }
+
     fn length(&self, half_edge: usize) -> f64 {
         let points: Vec<Point> =
             self.elements.side(half_edge).iter().map(|&n| self.elements.points[n as usize]).collect();
@@ -88,6 +97,12 @@ impl Work<'_> {
     fn gain(&self, old: &[usize], new: &[Loose]) -> f64 {
         let before: f64 = old.iter().map(|&t| self.energy(&self.loose[t])).sum();
         before - new.iter().map(|t| self.energy(t)).sum::<f64>()
+    }
+
+    /// The half-edges of a side.
+    fn both(&self, half_edge: usize) -> Vec<usize> {
+        let twin = self.elements.twins[half_edge];
+        std::iter::once(half_edge).chain((twin != NONE).then_some(twin as usize)).collect()
     }
 
     /// A triangle with the corner that a half-edge leaves first.
@@ -108,10 +123,8 @@ impl Work<'_> {
 
     /// Halves a side and the triangles beside it, which stay what they are.
     fn split(&self, half_edge: usize) -> Change {
-        let twin = self.elements.twins[half_edge];
-        let both = [Some(half_edge), (twin != NONE).then_some(twin as usize)];
         let mut change = Change { gain: 0.0, old: Vec::new(), new: Vec::new(), vertex: None };
-        for h in both.into_iter().flatten() {
+        for h in self.both(half_edge) {
             let triangle = self.from(h);
             change.old.push(h / 3);
             change.new.extend(halves(&triangle, self.elements.order));
@@ -120,8 +133,7 @@ impl Work<'_> {
         let [a, b] = [half_edge, Elements::next(half_edge)].map(|h| self.elements.origin(h) as usize);
         let line = |v: usize| if let Hold::Along(line) = self.elements.holds[v] { Some(line) } else { None };
         let ends = || [a, b].map(|v| self.elements.points[v]);
-        let hold =
-            if held == NONE { Hold::Free } else { Hold::Along(line(a).or(line(b)).unwrap_or_else(ends)) };
+        let hold = if held == NONE { Hold::Free } else { Hold::Along(line(a).or(line(b)).unwrap_or_else(ends)) };
         change.vertex = Some(Vertex { place: change.new[0].points[1], hold, source: NONE });
         change.gain = self.gain(&change.old, &change.new);
         change
@@ -138,12 +150,9 @@ impl Work<'_> {
             _ => {}
         }
         let around: Vec<usize> = elements.around(half_edge).collect();
-        let beside: Vec<usize> =
-            [Some(half_edge), (elements.twins[half_edge] != NONE).then_some(elements.twins[half_edge] as usize)]
-                .into_iter()
-                .flatten()
-                .collect();
-        let common = self.neighbours(half_edge).iter().filter(|u| self.neighbours(Elements::next(half_edge)).contains(u)).count();
+        let beside = self.both(half_edge);
+        let [mine, others] = [half_edge, Elements::next(half_edge)].map(|h| self.neighbours(h));
+        let common = mine.iter().filter(|u| others.contains(u)).count();
         if common != beside.len() || around.len() < 2 + beside.len() {
             return None;
         }
@@ -208,7 +217,9 @@ impl Work<'_> {
             change.old.iter().for_each(|&t| is_gone[t] = true);
             let new = vertices.len() as u32;
             vertices.extend(change.vertex);
-            triangles.extend(change.new.iter().map(|&t| Loose { corners: t.corners.map(|v| if v == NONE { new } else { v }), ..t }));
+            triangles.extend(
+                change.new.iter().map(|&t| Loose { corners: t.corners.map(|v| if v == NONE { new } else { v }), ..t }),
+            );
         }
         let kept = self.loose.iter().zip(is_gone).filter(|(_, is_gone)| !is_gone).map(|(&t, _)| t);
         let mut triangles: Vec<Loose> = kept.chain(triangles).collect();
@@ -222,11 +233,12 @@ impl Work<'_> {
 }
 
 /// Both halves of a triangle cut from the middle of its first side to the corner opposite; the new vertex is `NONE`.
-fn halves(triangle: &Loose, order: usize) -> [Loose; 2] {
+pub(super) fn halves(triangle: &Loose, order: usize) -> [Loose; 2] {
     let at = |e: [u8; 3]| exponents(order).iter().position(|f| *f == e).expect("exponents of this order");
     let [a, b, c] = triangle.corners;
     let [ab, bc, ca] = triangle.held;
-    let mut first = Loose { corners: [a, NONE, c], held: [ab, NONE, ca], points: [Point::default(); MOST], ..*triangle };
+    let mut first =
+        Loose { corners: [a, NONE, c], held: [ab, NONE, ca], points: [Point::default(); MOST], ..*triangle };
     let mut second = Loose { corners: [NONE, b, c], held: [ab, bc, NONE], ..first };
     for k in 0..=order as u8 {
         let length = order as u8 - k;

@@ -40,8 +40,8 @@ pub(crate) fn bound(points: &[Point], order: usize, halvings: u32) -> Bound {
     let degree = 2 * (order - 1);
     let count = (degree + 1) * (degree + 2) / 2;
     let mean = coefficients[..count].iter().sum::<f64>() / count as f64;
-    // Not greater: a number that is none decides, too.
-    if !(mean > rounding) {
+    // A number that is none decides, too.
+    if mean.is_nan() || mean <= rounding {
         return Bound { least: -1.0, is_decided: true, area: 0.5 * mean };
     }
     let (least, is_decided) = least(&coefficients, degree, rounding, halvings);

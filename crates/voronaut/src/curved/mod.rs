@@ -35,69 +35,76 @@ use newton::{Aim, minimise};
 
 /// The powers of anisotropy through which it goes, from that of the straight mesh.
 pub(crate) const POWERS: [f64; 4] = [0.4, 0.6, 0.8, 1.0];
-/// Rounds of steps and flips for each, at most, and Newton's steps of a round.
+/// Rounds of steps and flips, at most, and Newton's steps of a round; after an exchange.
 const ROUNDS: usize = 3;
 const STEPS: usize = 2;
-/// Exchanges of vertices for each, at most, and their share of all.
-const EXCHANGES: usize = 3;
-const EXCHANGED_SHARE: f64 = 0.06;
+const ROUNDS_AFTER: usize = 2;
+/// Rounds end where fewer sides flip than this share of the triangles.
+const FLIPPED: f64 = 1e-3;
 /// Steps end that gain less than this share.
 const GAIN: f64 = 1e-3;
+/// Exchanges of vertices, at most: in milder metrics, in the one asked for, and when lengths count. On the printed shock (lambda 0.6, 4,000
+/// vertices, order 2) none leave 73 % of the sides of unit length, three 78 %.
+const EXCHANGES: [usize; 3] = [1, 4, 2];
+/// What is exchanged at once, as a share of all vertices.
+const EXCHANGED_SHARE: f64 = 0.06;
+/// The weight of the lengths of sides in the end, beside the energy of triangles: 78 % become 81 % in the case above.
+const LENGTHS: f64 = 1.5;
 
 /// A curved mesh for a metric whose unit mesh it is to be, from a straight one of that metric with the first of [`POWERS`].
 ///
 /// # Errors
 /// The work is to stop.
 pub(crate) fn curved(mesh: &Mesh, metric: &dyn MetricField, order: usize, progress: &dyn Progress) -> Result<Mesh> {
+    let [before, last, late] = EXCHANGES;
+    progress.begin("curving", (POWERS.len() + order) as u64)?;
     let mut elements = Elements::of(mesh);
-    let powers: Vec<f64> = std::env::var("POWERS").map_or(POWERS.to_vec(), |s| s.split(',').map(|x| x.parse().unwrap()).collect());
-    for power in powers {
+    for power in POWERS {
         let tempered = Tempered { field: metric, power };
-        let aim = Aim { metric: if power < 1.0 { &tempered } else { metric }, lengths: 0.0 };
+        let aim = Aim { metric: &tempered, lengths: 0.0 };
         settle(&mut elements, &aim, ROUNDS, progress)?;
-        for _ in 0..EXCHANGES {
-            if !exchanged(&mut elements, &aim, progress)? {
-                break;
-            }
-        }
+        exchange_all(&mut elements, &aim, if power < 1.0 { before } else { last }, progress)?;
+        progress.advance(1)?;
     }
     if order == 3 {
         elements = elements.raised();
         settle(&mut elements, &Aim { metric, lengths: 0.0 }, ROUNDS, progress)?;
+        progress.advance(1)?;
     }
+    let aim = Aim { metric, lengths: LENGTHS };
+    settle(&mut elements, &aim, ROUNDS, progress)?;
+    progress.advance(1)?;
+    exchange_all(&mut elements, &aim, late, progress)?;
+    progress.advance(1)?;
     Ok(elements.to_mesh(mesh))
 }
 
 /// Steps and flips in turns; the energy in the end.
 fn settle(elements: &mut Elements, aim: &Aim, rounds: usize, progress: &dyn Progress) -> Result<f64> {
     for _ in 0..rounds {
-        let energy = minimise(elements, aim, STEPS, GAIN, progress)?;
+        minimise(elements, aim, STEPS, GAIN, progress)?;
         let flips = flips::flip(elements, aim);
-        if std::env::var_os("CURVED_TRACE").is_some() {
-            eprintln!("energy {} flips {flips}", energy / elements.triangles.len() as f64);
-        }
-        if flips * 1000 < elements.triangles.len() {
+        if (flips as f64) < FLIPPED * elements.triangles.len() as f64 {
             break;
         }
     }
     minimise(elements, aim, STEPS, GAIN, progress)
 }
 
-/// Exchanges vertices and lets the mesh settle; whether that gained anything. If not, all is as before.
-fn exchanged(elements: &mut Elements, aim: &Aim, progress: &dyn Progress) -> Result<bool> {
-    let before = newton::energy(elements, aim);
-    let most = (elements.vertices() as f64 * EXCHANGED_SHARE) as usize;
-    let (mut changed, count) = exchange::exchange(elements, aim, most);
-    if count == 0 {
-        return Ok(false);
+/// Exchanges vertices and lets the mesh settle, so often at most; what gains nothing is taken back, and ends it.
+fn exchange_all(elements: &mut Elements, aim: &Aim, times: usize, progress: &dyn Progress) -> Result<()> {
+    let mut energy = aim.energy(elements);
+    for _ in 0..times {
+        let most = (elements.vertices() as f64 * EXCHANGED_SHARE) as usize;
+        let Some(mut changed) = exchange::exchange(elements, aim, most) else { break };
+        let now = settle(&mut changed, aim, ROUNDS_AFTER, progress)?;
+        if now >= energy {
+            break;
+        }
+        (*elements, energy) = (changed, now);
     }
-    let energy = settle(&mut changed, aim, 2, progress)?;
-    if std::env::var_os("CURVED_TRACE").is_some() {
-        eprintln!("exchanged {count}: {} {}", before / elements.triangles.len() as f64, energy / changed.triangles.len() as f64);
-    }
-    let gains = energy < before;
-    if gains {
-        *elements = changed;
-    }
-    Ok(gains)
+    Ok(())
 }
+
+#[cfg(test)]
+mod tests;

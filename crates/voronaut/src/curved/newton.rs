@@ -2,7 +2,7 @@
 
 use super::elements::Elements;
 use super::rules::Rule;
-use super::system::System;
+use super::system::{Member, System};
 use super::term::{Expansion, side, side_energy, triangle, triangle_energy};
 use crate::error::Result;
 use crate::geometry::{Point, Vector};
@@ -36,6 +36,12 @@ impl Aim<'_> {
         }
     }
 
+    /// That of a mesh; sums are made in order.
+    pub(super) fn energy(&self, elements: &Elements) -> f64 {
+        let triangles = self.of_triangles(elements, &Rule::of(elements.order));
+        triangles.iter().sum::<f64>() + self.of_sides(elements, &elements.points)
+    }
+
     /// The energies of all triangles.
     fn of_triangles(&self, elements: &Elements, rule: &Rule) -> Vec<f64> {
         let of_triangle = |t: usize| self.of_triangle(elements, rule, &elements.points, t);
@@ -59,22 +65,16 @@ impl Aim<'_> {
         let rule = Rule::of(elements.order);
         let (triangles, sides) = system.members.split_at(elements.triangles.len());
         let sides = if self.lengths > 0.0 { sides } else { &[] };
-        let expand = |member: &super::system::Member| {
+        let expand = |member: &Member| {
             let points = member.points(&elements.points);
             triangle(&rule, &points, &member.freedoms, self.metric)
         };
-        let expand_side = |member: &super::system::Member| {
-            side(&member.points(&elements.points), &member.freedoms, self.metric, self.lengths)
-        };
+        let expand_side =
+            |member: &Member| side(&member.points(&elements.points), &member.freedoms, self.metric, self.lengths);
         let mut all: Vec<Expansion> = triangles.par_iter().map(expand).collect();
         all.extend(sides.par_iter().map(expand_side).collect::<Vec<_>>());
         all
     }
-}
-
-/// The energy of a mesh.
-pub(super) fn energy(elements: &Elements, aim: &Aim) -> f64 {
-    aim.of_triangles(elements, &Rule::of(elements.order)).iter().sum::<f64>() + aim.of_sides(elements, &elements.points)
 }
 
 /// Takes Newton's steps, so many at most, until one gains less than a share of the energy. Returns the energy.
@@ -91,30 +91,20 @@ pub(super) fn minimise(
     let mut system = System::of(elements);
     let rule = Rule::of(elements.order);
     let mut energies = aim.of_triangles(elements, &rule);
-    let sum = |energies: &[f64], sides: f64| energies.iter().sum::<f64>() + sides;
-    let mut energy = sum(&energies, aim.of_sides(elements, &elements.points));
+    let mut energy = energies.iter().sum::<f64>() + aim.of_sides(elements, &elements.points);
     for _ in 0..steps {
         let expansions = aim.expansions(elements, &system);
         let Some(step) = system.step(&expansions, elements) else { break };
-        let mut share = 1.0;
-        let (now, moved) = loop {
+        let mut shares = std::iter::successors(Some(1.0), |share| Some(0.5 * share)).take_while(|&s| s > LEAST_SHARE);
+        let moved = shares.find_map(|share| {
             let moved = Moved::by(elements, aim, &rule, &energies, &step, share);
-            let now = sum(&moved.energies, aim.of_sides(elements, &moved.points));
-            if std::env::var_os("CURVED_TRACE").is_some() {
-                let e = elements.triangles.len() as f64;
-                eprintln!("    share {share} {} {}", energy / e, now / e);
-            }
-            share *= 0.5;
-            if now < energy || share < LEAST_SHARE {
-                break (now, moved);
-            }
-        };
-        if now >= energy {
-            break;
-        }
+            let now = moved.energies.iter().sum::<f64>() + aim.of_sides(elements, &moved.points);
+            (now < energy).then_some((moved, now))
+        });
+        let Some((moved, now)) = moved else { break };
         let gained = energy - now;
         (elements.points, energies, energy) = (moved.points, moved.energies, now);
-        progress.advance(1)?;
+        progress.advance(0)?;
         if gained < gain * energy {
             break;
         }
@@ -146,12 +136,11 @@ impl Moved {
             let near: Vec<usize> = (0..elements.triangles.len())
                 .filter(|&t| elements.numbers(t).iter().any(|&n| is_moved[n as usize]))
                 .collect();
-            let now: Vec<f64> =
-                near.par_iter().map(|&t| aim.of_triangle(elements, rule, &found.points, t)).collect();
+            let now: Vec<f64> = near.par_iter().map(|&t| aim.of_triangle(elements, rule, &found.points, t)).collect();
             for (&t, energy) in near.iter().zip(now) {
                 found.energies[t] = energy;
             }
-            let is_bad = |t: &usize| !(found.energies[*t] <= WORSE.0 * before[*t] + WORSE.1);
+            let is_bad = |t: &usize| found.energies[*t].is_nan() || found.energies[*t] > WORSE.0 * before[*t] + WORSE.1;
             let bad = near.into_iter().filter(is_bad);
             moved = distinct(bad.flat_map(|t| elements.numbers(t)).copied());
             moved.retain(|&p| shares[p as usize] > 0.0);

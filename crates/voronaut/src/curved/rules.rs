@@ -78,7 +78,7 @@ impl Rule {
             let c = 1.0 - a - b;
             let turns = [[a, b, c], [b, c, a], [c, a, b]];
             let mirrored = [[b, a, c], [a, c, b], [c, b, a]];
-            let all = if a == b { &[turns][..] } else { &[turns, mirrored][..] };
+            let all = if a.to_bits() == b.to_bits() { &[turns][..] } else { &[turns, mirrored][..] };
             places.extend(all.iter().flatten().map(|&at| Place::new(order, at, weight)));
         }
         Self { places }

@@ -14,7 +14,7 @@ pub(crate) struct Tempered<'a> {
 impl Tempered<'_> {
     fn temper(&self, m: Tensor) -> Tensor {
         let mean = m.determinant().sqrt();
-        if self.power >= 1.0 || !(mean > 0.0) {
+        if self.power >= 1.0 || mean.is_nan() || mean <= 0.0 {
             return m;
         }
         m.map_eigenvalues(|value| mean * (value / mean).raised_to(self.power))

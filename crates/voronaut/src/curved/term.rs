@@ -98,7 +98,10 @@ pub(super) fn triangle(rule: &Rule, points: &[Point], freedoms: &[Freedom], metr
         let at = place.image(points);
         let m = metric.at_near(at, &mut near);
         let frame = m.cholesky();
-        let model = Model::of(place.derivative(points).map(|side| to_frame(frame, side)), &Around::of(metric, at, m, &mut near));
+        let model = Model::of(
+            place.derivative(points).map(|side| to_frame(frame, side)),
+            &Around::of(metric, at, m, &mut near),
+        );
         found.value += place.weight * model.value;
         let form = |d: &[f64; 6]| {
             let pulled = [[d[0], d[1]], [d[2], d[3]], [d[4], d[5]]].map(|[x, y]| transposed(frame, Vector::new(x, y)));
@@ -183,8 +186,7 @@ pub(crate) fn curve_at(points: &[Point], t: f64) -> (Point, Vector) {
     (Point::new(place.x, place.y), sum(1))
 }
 
-/// What a length costs: its first derivative and a bound of the second from below that is not negative come after the value, by the
-/// logarithm of the length.
+/// What a length costs, half the square of its logarithm by weight, with both derivatives by that.
 fn cost(length: f64, weight: f64) -> [f64; 3] {
     let y = length.logarithm();
     [0.5 * weight * y * y, weight * y, weight]
@@ -234,8 +236,18 @@ mod tests {
         Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), 4.0 + p.y, 0.6)
     }
 
-    const POINTS: [(f64, f64); 10] =
-        [(0.0, 0.1), (1.0, 0.0), (0.4, 0.9), (0.3, -0.1), (0.7, 0.0), (0.8, 0.3), (0.6, 0.6), (0.3, 0.6), (0.1, 0.4), (0.45, 0.3)];
+    const POINTS: [(f64, f64); 10] = [
+        (0.0, 0.1),
+        (1.0, 0.0),
+        (0.4, 0.9),
+        (0.3, -0.1),
+        (0.7, 0.0),
+        (0.8, 0.3),
+        (0.6, 0.6),
+        (0.3, 0.6),
+        (0.1, 0.4),
+        (0.45, 0.3),
+    ];
 
     fn points(count: usize) -> Vec<Point> {
         POINTS[..count].iter().map(|&(x, y)| Point::new(x, y)).collect()
@@ -294,7 +306,11 @@ mod tests {
                     value(d)
                 };
                 let second = (at(1.0, 1.0) - at(1.0, -1.0) - at(-1.0, 1.0) + at(-1.0, -1.0)) / (4.0 * h * h);
-                assert!((second - model.curvature[i][j]).abs() < 2e-3 * (1.0 + second.abs()), "{i} {j}: {second} {}", model.curvature[i][j]);
+                assert!(
+                    (second - model.curvature[i][j]).abs() < 2e-3 * (1.0 + second.abs()),
+                    "{i} {j}: {second} {}",
+                    model.curvature[i][j]
+                );
             }
         }
     }

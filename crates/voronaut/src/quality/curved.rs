@@ -1,6 +1,6 @@
 //! Curved triangles in the plane: lengths along their sides, their quality over the whole of them, and whether they are valid.
 
-use super::metric_quality::{Shape, angle, tensor_near};
+use super::tensors::{angle, tensor_near};
 use crate::curved::{GAUSS, HALVINGS, Rule, bezier_points, bound, curve_at, exponents, side};
 use crate::error::Result;
 use crate::geometry::{Point, Vector, to_frame};
@@ -30,11 +30,11 @@ pub(super) fn side_length(mesh: &Mesh, edge: &EdgeSide, metric: &dyn MetricField
 }
 
 /// The mean over the reference triangle of 2 sqrt(det C) / tr C, where C is the metric pulled back to the equilateral triangle, as
-/// [`super::Quality`] is of a straight triangle in one metric; negative where the map turns. And the least of its angles at the corners.
+/// [`super::Quality`] is of a straight triangle in one metric; negative where the map turns. And the least of its angles at the corners, in radians.
 ///
 /// # Errors
 /// [`crate::Error::Metric`] where the tensor is not positive definite.
-pub(super) fn shape(mesh: &Mesh, rule: &Rule, triangle: usize, metric: &dyn MetricField) -> Result<Shape> {
+pub(super) fn shape(mesh: &Mesh, rule: &Rule, triangle: usize, metric: &dyn MetricField) -> Result<[f64; 2]> {
     let (points, order) = bezier_points(mesh, triangle);
     let points = &points[..exponents(order).len()];
     let (mut near, mut quality) = (Near::default(), 0.0);
@@ -50,7 +50,7 @@ pub(super) fn shape(mesh: &Mesh, rule: &Rule, triangle: usize, metric: &dyn Metr
         let (leaving, arriving): (Vector, Vector) = (along[1] - along[0], before[order - 1] - before[order]);
         least = least.min(angle(tensor_near(metric, points[corner], &mut near)?, leaving, arriving));
     }
-    Ok(Shape::new(quality, least))
+    Ok([quality, least])
 }
 
 /// What is known of the validity of curved triangles.

@@ -2,13 +2,13 @@
 
 use super::curved::{shape, side_length};
 use super::faults::{Position, middle};
+use super::tensors::tensor_near;
 use crate::curved::Rule;
-use crate::elementary::Elementary;
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Point3, Tensor, Vector};
+use crate::geometry::{Point, Point3, Tensor};
 use crate::lists::marked;
 use crate::mesh::{EdgeSide, Edges, Mesh};
-use crate::metric::{MetricField, Near, check_tensor};
+use crate::metric::{MetricField, Near};
 use crate::parallel::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -94,7 +94,8 @@ pub fn metric_quality(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQua
     if mesh.curved.is_some() {
         mesh.check_numbers()?;
         let rule = Rule::fine(mesh);
-        let (length, shape) = (|side: &_| side_length(mesh, side, metric), |t| shape(mesh, &rule, t, metric));
+        let length = |side: &_| side_length(mesh, side, metric);
+        let shape = |t| shape(mesh, &rule, t, metric).map(|[quality, angle]| Shape::new(quality, angle));
         return figures(mesh, length, shape, Position::in_plane);
     }
     let corners = Corners::of(mesh, metric)?;
@@ -209,6 +210,7 @@ impl Spot {
     }
 }
 
+pub(super) use super::tensors::{angle, tensor};
 pub(super) use crate::curved::GAUSS;
 
 /// Metric length of the straight edge.
@@ -245,21 +247,6 @@ impl Shape {
         [self.quality, self.angle]
     }
 }
-/// The angle (radians, from -pi to pi) by which u must turn to point along v, in a metric.
-pub(super) fn angle(m: Tensor, u: Vector, v: Vector) -> f64 {
-    (m.determinant().max(0.0).sqrt() * u.cross(v)).arctangent_over(m.dot(u, v))
-}
-
-pub(super) fn tensor(metric: &dyn MetricField, p: Point) -> Result<Tensor> {
-    tensor_near(metric, p, &mut Near::default())
-}
-
-pub(super) fn tensor_near(metric: &dyn MetricField, p: Point, near: &mut Near) -> Result<Tensor> {
-    let m = metric.at_near(p, near);
-    check_tensor(m, p)?;
-    Ok(m)
-}
-
 /// Maps in parallel; the error is that of the first item that has one, for any number of threads.
 pub(super) fn collect<T: Sync, U: Send>(items: &[T], f: impl Fn(&T) -> Result<U> + Sync + Send) -> Result<Vec<U>> {
     // Errors are large: only the first is kept, by asking for it again.
@@ -310,6 +297,7 @@ pub(super) fn fault(what: &str, place: &str) -> Error {
 mod tests {
     use super::super::test_meshes::{grid, lattice, mesh};
     use super::*;
+    use crate::geometry::Vector;
 
     fn close(a: f64, b: f64) {
         assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{a} is not {b}");

@@ -13,6 +13,7 @@ mod sampled_distance;
 mod self_intersections;
 mod surface_fidelity;
 mod surface_quality;
+mod tensors;
 #[cfg(test)]
 mod test_meshes;
 mod unmet;

@@ -59,6 +59,7 @@ pub struct Validity {
     pub first_fault: Option<Fault>,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
 fn is_zero(count: &usize) -> bool {
     *count == 0
 }

@@ -1,0 +1,146 @@
+use super::bezier::bernstein;
+use super::*;
+use crate::geometry::{Point, Tensor, Vector};
+use crate::metric::Scaled;
+use crate::progress::Silent;
+use crate::test_cases::on_threads;
+
+/// The unit square in n by n cells of two triangles each.
+fn square(n: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    let at = |i: u32, j: u32| j * (n + 1) + i;
+    for (j, i) in (0..=n).flat_map(|j| (0..=n).map(move |i| (j, i))) {
+        mesh.points.push([f64::from(i) / f64::from(n), f64::from(j) / f64::from(n), 0.0]);
+    }
+    mesh.point_labels = vec![0; mesh.points.len()];
+    for (j, i) in (0..n).flat_map(|j| (0..n).map(move |i| (j, i))) {
+        mesh.triangles.extend([[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]);
+    }
+    mesh.triangle_labels = vec![7; mesh.triangles.len()];
+    for i in 0..n {
+        mesh.edges.extend([
+            [at(i, 0), at(i + 1, 0)],
+            [at(n, i), at(n, i + 1)],
+            [at(i + 1, n), at(i, n)],
+            [at(0, i + 1), at(0, i)],
+        ]);
+        mesh.edge_labels.extend([1, 2, 3, 4]);
+    }
+    mesh.corners = vec![at(0, 0), at(n, 0), at(0, n), at(n, n)];
+    mesh
+}
+
+/// Where the waves' metric is the Euclidean one: its geodesics are straight there.
+fn flat(p: Point) -> Point {
+    Point::new(p.x, p.y + 0.15 * (5.0 * p.x).sin())
+}
+
+fn waves(p: Point) -> Tensor {
+    let slope = 0.75 * (5.0 * p.x).cos();
+    Tensor::new(1.0 + slope * slope, slope, 1.0)
+}
+
+fn unit(n: u32) -> f64 {
+    let vertices = f64::from((n + 1) * (n + 1));
+    vertices * 0.75_f64.sqrt()
+}
+
+fn curve(mesh: &Mesh, half_edge: usize) -> Vec<Point> {
+    let (points, order) = bezier_points(mesh, half_edge / 3);
+    side(order, half_edge % 3).map(|i| points[i]).collect()
+}
+
+fn length(curve: &[Point], metric: &dyn MetricField) -> f64 {
+    let at = |t: f64| {
+        let (p, slope) = curve_at(curve, t);
+        metric.at(p).length(slope)
+    };
+    let parts = 64;
+    (0..parts).map(|i| at((f64::from(i) + 0.5) / f64::from(parts)) / f64::from(parts)).sum()
+}
+
+fn assert_sound(mesh: &Mesh) {
+    mesh.check_numbers().unwrap();
+    let mut area = 0.0;
+    for t in 0..mesh.triangles.len() {
+        let (points, order) = bezier_points(mesh, t);
+        let found = bound(&points[..exponents(order).len()], order, HALVINGS);
+        assert!(found.is_valid() && found.is_decided, "{t} {found:?}");
+        area += found.area;
+    }
+    assert!((area - 1.0).abs() < 1e-12, "{area}");
+    let on_border = |p: &[f64; 3]| p[..2].iter().any(|&x| x == 0.0 || x == 1.0);
+    assert!(mesh.edges.iter().flatten().all(|&v| on_border(&mesh.points[v as usize])));
+    assert_eq!(mesh.corners.len(), 4);
+    assert!(mesh.triangle_labels.iter().all(|&label| label == 7));
+}
+
+/// How much longer the sides inside are than the shortest ways between their ends, in the mean, and the share of sides of unit length.
+fn excess(mesh: &Mesh, factor: f64) -> (f64, f64) {
+    let metric = Scaled { field: &waves, factor };
+    let edges = crate::mesh::Edges::of(&mesh.triangles);
+    let (mut inside, mut lengths) = (Vec::new(), Vec::new());
+    for sides in edges.iter() {
+        let curve = curve(mesh, sides[0].half_edge as usize);
+        let length = length(&curve, &metric);
+        lengths.push(length);
+        if sides.len() == 2 {
+            let shortest = flat(curve[0]).distance(flat(curve[curve.len() - 1])) * factor.sqrt();
+            inside.push(length / shortest - 1.0);
+        }
+    }
+    let is_unit = |l: &&f64| (0.5_f64.sqrt()..=2.0_f64.sqrt()).contains(*l);
+    let unit = lengths.iter().filter(is_unit).count() as f64 / lengths.len() as f64;
+    (inside.iter().sum::<f64>() / inside.len() as f64, unit)
+}
+
+#[test]
+fn sides_follow_the_geodesics_of_waves() {
+    let n = 9;
+    let mesh = square(n);
+    let metric = Scaled { field: &waves, factor: unit(n) };
+    let made = [2, 3].map(|order| curved(&mesh, &metric, order, &Silent).unwrap());
+    let [quadratic, cubic] = made.each_ref().map(|mesh| {
+        assert_sound(mesh);
+        assert_eq!(mesh.points.len(), 100);
+        excess(mesh, unit(n))
+    });
+    assert!(quadratic.0 < 5e-3 && cubic.0 < 5e-3, "{quadratic:?} {cubic:?}");
+    assert!(quadratic.1 > 0.9 && cubic.1 > 0.9, "{quadratic:?} {cubic:?}");
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let mesh = square(7);
+    let turning = |p: Point| {
+        let angle = 2.0 * p.x + p.y;
+        Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), 1200.0, 15.0)
+    };
+    let with = |threads| on_threads(threads, || curved(&mesh, &turning, 3, &Silent).unwrap());
+    let one = with(1);
+    assert_sound(&one);
+    assert_eq!(one, with(2));
+}
+
+#[test]
+fn raising_the_order_and_halving_change_no_map() {
+    let mut elements = Elements::of(&square(2));
+    for (i, p) in elements.points.iter_mut().enumerate().skip(9) {
+        *p = *p + Vector::new(0.02 * (i as f64).sin(), 0.03 * (i as f64).cos());
+    }
+    let raised = elements.raised();
+    let image = |e: &Elements, t: usize, at: [f64; 3]| {
+        let (points, values) = (e.of_triangle(&e.points, t), bernstein(e.order, at));
+        let count = e.count();
+        bezier::blend(&points[..count], &values[..count])
+    };
+    for t in 0..8 {
+        let at = [0.2, 0.5, 0.3];
+        assert!(image(&elements, t, at).distance(image(&raised, t, at)) < 1e-15);
+    }
+    let whole = raised.loose()[3];
+    let [first, second] = exchange::halves(&whole, 3);
+    let of = |points: &[Point], at: [f64; 3]| bezier::blend(&points[..10], &bernstein(3, at));
+    assert!(of(&first.points, [0.2, 0.5, 0.3]).distance(of(&whole.points, [0.45, 0.25, 0.3])) < 1e-15);
+    assert!(of(&second.points, [0.2, 0.5, 0.3]).distance(of(&whole.points, [0.1, 0.6, 0.3])) < 1e-15);
+}
