@@ -636,8 +636,7 @@ def remesh(
         Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that
         meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
     hgrad : float, default 1.3
-        Sizes grow from edge to edge by this factor at most; -1: as they will. On surfaces those that depend on the
-        direction always do
+        Sizes grow from edge to edge by this factor at most; -1: as they will
     anisotropic : bool, default False
         Sizes that follow the directions of curvature and curves, or of the planar mesh's own triangles (-optim)
     optim : bool, default False

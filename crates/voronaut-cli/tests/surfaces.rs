@@ -224,3 +224,31 @@ fn what_surfaces_do_not_have_is_refused_before_anything_is_written() {
         assert_eq!(place.files(), before);
     }
 }
+
+/// A net on a sphere is measured, and Theorem 10.20 with it; the others say why they are not.
+#[test]
+fn nets_and_certificates_of_surfaces_are_told() {
+    let place = Place::new();
+    let mut random = 1_u64;
+    let mut number = || {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut point = || {
+        let (z, angle) = (2.0 * number() - 1.0, std::f64::consts::TAU * number());
+        let r = (1.0 - z * z).sqrt();
+        format!("{} {} {z}\n", r * angle.cos(), r * angle.sin())
+    };
+    place.put("seeds.txt", (0..60).map(|_| point()).collect::<String>());
+    let dual =
+        ["dual", "sphere:1", "--metric", "uniform", "--seeds", "seeds.txt", "-o", "d.obj", "--canvas-size", "20"];
+    let output = place.run(&[&dual[..], &["--net", "--certify", "--report", "d.json"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let report = json(&place, "d.json");
+    assert_eq!((report["net"]["interior"].as_u64(), report["net"]["unmeasured"].as_u64()), (Some(116), Some(0)));
+    let verdicts = report["certificate"]["verdicts"].as_array().unwrap();
+    let of = |theorem: &str| verdicts.iter().find(|verdict| verdict["theorem"] == theorem).unwrap();
+    assert_eq!(of("10.20")["outcome"], "fails");
+    assert!(of("9.10")["not_measured"].as_str().unwrap().contains("section 12"));
+    assert!((report["certificate"]["convexity"]["curvature"].as_f64().unwrap() - 1.0).abs() < 0.01);
+}

@@ -136,3 +136,32 @@ fn surfaces_have_causes_too() {
         |text: &str| text.split("height=\"").nth(1).unwrap().split('"').next().unwrap().parse::<f64>().unwrap();
     assert!(height(&shown) > height(&plain) + 10.0 && shown.matches("<path").count() > plain.matches("<path").count());
 }
+
+/// N sqrt(3) / 2 over the complexity, which is the area of the metric: where straight edges cannot honour a metric the factor that is met
+/// is less, and unit edges are fewer at what N asks for.
+#[test]
+fn unit_edges_are_told_at_the_factor_that_n_asks_for() {
+    let place = Place::new();
+    let made = |domain: &str, metric: &str, name: &str| {
+        let words = ["mesh", domain, "--metric", metric, "-n", "400", "-o", name, "--report", "a.json"];
+        let says = stdout(&place, &words);
+        let made = report(&place, "a.json");
+        let [scale, share] = ["metric_scale", "unit_fraction"].map(|key| made["closed_form"][key].as_f64().unwrap());
+        assert!(says.contains(&format!("{:.1} % at the metric scale that N asks for", 100.0 * share)), "{says}");
+        (scale, share, made)
+    };
+    let area = 4.0 * std::f64::consts::PI;
+    for (domain, metric, name, complexity) in
+        [("rect:0,0,2,1", "uniform:9,0,4", "a.mesh", 12.0), ("sphere:1", "uniform", "s.mesh", area)]
+    {
+        let (scale, share, _) = made(domain, metric, name);
+        let asked = 400.0 * 0.75_f64.sqrt() / complexity;
+        assert!((scale / asked - 1.0).abs() < 0.015 && share > 0.9, "{domain}: {scale} {asked} {share}");
+    }
+    let (scale, share, swirl) = made("rect:-2,-2,2,2", "swirl", "w.mesh");
+    assert!(swirl["metric_scale"].as_f64().unwrap() < 0.95 * scale, "{swirl:#}");
+    assert!(share < swirl["metric_edge_length"]["unit_fraction"].as_f64().unwrap(), "{share}");
+    // Without a number nothing is asked for.
+    stdout(&place, &["mesh", "rect:0,0,2,1", "--metric", "uniform:90,0,90", "-o", "b.mesh", "--report", "b.json"]);
+    assert!(report(&place, "b.json").get("closed_form").is_none());
+}

@@ -158,7 +158,7 @@ fn backs_are_told_from_fronts_and_bodies_may_be_inside_out() {
     // A large front and a small back, in the same plane.
     let front = sheet([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]);
     let back = sheet([2.0, 2.0, 0.0], [2.0, 1.0, 0.0], [1.0, 2.0, 0.0]);
-    let drawn = pixels(&draw_surface(&Scene { triangles: vec![front, back], lines: Vec::new() }, &FRONT).unwrap());
+    let drawn = pixels(&draw_surface(&Scene { triangles: vec![front, back], ..Scene::default() }, &FRONT).unwrap());
     let [front, back] = [colour(&drawn, 60, 340), colour(&drawn, 360, 40)];
     assert!(front[2] > back[2] + 30, "{front:?} {back:?}");
 

@@ -10,13 +10,19 @@ use crate::metric::MetricField;
 /// chart (RR-9103, section 12).
 ///
 /// It is good as far as the surface does not turn away: where its normal has a lesser cosine with the chart's than [`STEEPEST`], it
-/// counts as so steep, so that the field is a metric everywhere (at the tip of a spike, in a fold). A coordinate is lifted to the closest place, not straight up: they differ by third order in its size.
+/// counts as so steep, so that the field is a metric everywhere (at the tip of a spike, in a fold). A coordinate is lifted to the closest place, not straight up, unless [`Chart::straight`] is asked for: they differ by third order in its size.
 pub(crate) struct Chart<'a> {
     input: &'a Input,
     metric: &'a dyn SurfaceMetric,
     at: Place,
     plane: TangentPlane,
+    is_straight: bool,
 }
+
+/// Steps in which the place straight above a coordinate is found, at most, and how far aside (share) it may be: each is nearer by the
+/// square of the slope.
+const STEPS: usize = 6;
+const STRAIGHT: f64 = 1e-9;
 
 /// The least cosine of the angle between the normals of a chart and of the surface in it.
 pub(crate) const STEEPEST: f64 = 0.2;
@@ -29,7 +35,12 @@ impl<'a> Chart<'a> {
 
     /// The chart at a place in the coordinates of a plane.
     pub(crate) fn in_plane(input: &'a Input, metric: &'a dyn SurfaceMetric, at: Place, plane: TangentPlane) -> Self {
-        Self { input, metric, at, plane }
+        Self { input, metric, at, plane, is_straight: false }
+    }
+
+    /// The same chart, in which coordinates are lifted straight up: it takes a few times as long.
+    pub(crate) fn straight(self) -> Self {
+        Self { is_straight: true, ..self }
     }
 
     /// The unit vector that it looks along.
@@ -44,7 +55,18 @@ impl<'a> Chart<'a> {
 
     /// The place with these coordinates; `None` where the surface cannot be reached.
     pub(crate) fn place(&self, u: Point) -> Option<Place> {
-        self.input.lift(&self.at, self.at.position + self.plane.lift(u - Point::default()))
+        let closest = |from: Vector| self.input.lift(&self.at, self.at.position + self.plane.lift(from));
+        let wanted = u - Point::default();
+        let (mut from, mut place) = (wanted, closest(wanted)?);
+        for _ in 0..if self.is_straight { STEPS } else { 0 } {
+            let off = wanted - self.plane.flatten(place.position - self.at.position);
+            if off.norm() <= STRAIGHT * wanted.norm() {
+                break;
+            }
+            from = from + off;
+            place = closest(from)?;
+        }
+        Some(place)
     }
 
     /// The tangents of the surface over the two axes.

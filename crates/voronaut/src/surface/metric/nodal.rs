@@ -7,6 +7,7 @@ use crate::metric::nodal::{Gradation, Vertices, implied_by};
 use crate::metric::{Neighbours, check_tensor3};
 use crate::surface::{Input, Place, Surface};
 use crate::triangulation::VertexId;
+use std::collections::BTreeMap;
 
 /// Normals whose cosine is this near to -1 are opposite.
 const OPPOSITE: f64 = 1e-9;
@@ -103,9 +104,17 @@ impl TangentPlanes {
     /// angles and axes lie along the crease.
     pub(crate) fn joined(&self, tensors: &[Tensor]) -> Vec<Tensor3> {
         let mut all = self.extended(tensors);
-        for &v in self.copies.iter().flatten() {
-            // Of the normal as little as can be: another side has it for a tangent.
-            all[v as usize] = self.planes[v as usize].extend(tensors[v as usize], tensors[v as usize].eigen().small);
+        // Of the normal as little as any side asks for: others have it for a tangent.
+        let mut least: BTreeMap<u32, f64> = BTreeMap::new();
+        for &[v, w] in &self.copies {
+            let small = [v, w].map(|v| tensors[v as usize].eigen().small);
+            let least = least.entry(v).or_insert(f64::INFINITY);
+            *least = small.into_iter().fold(*least, f64::min);
+        }
+        for &[v, w] in &self.copies {
+            for side in [v, w] {
+                all[side as usize] = self.planes[side as usize].extend(tensors[side as usize], least[&v]);
+            }
         }
         for &[v, w] in &self.copies {
             all[v as usize] = all[v as usize].intersection(all[w as usize]);
