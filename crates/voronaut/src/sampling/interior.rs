@@ -24,7 +24,8 @@ const CLEAR: f64 = 1.3;
 const FAR: f64 = 2.5;
 
 /// A circumcentre beyond so many faces is not looked for: a circle in the tensor of one face says nothing so far away. In metrics that
-/// meshes resolve none in 10,000 lies beyond; in thin shocks the ways to others took four fifths of the time, and meshes were no better.
+/// meshes resolve fewer than one in 10,000 lies beyond; in thin shocks ways to others took four fifths of the time, and meshes were no
+/// better for it.
 const REACH: usize = 128;
 
 /// How many vertices refinement goes for.
