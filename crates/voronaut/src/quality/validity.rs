@@ -12,7 +12,8 @@ use crate::mesh::edges::{self, NONE, is_manifold};
 use crate::mesh::{Edges, Mesh};
 use crate::parallel::prelude::*;
 
-/// What was found in a mesh. `valid` means: at least one triangle, every figure marked (fault) is zero.
+/// What was found in a mesh. `valid` means: at least one triangle, every figure marked (fault) is zero. Of curved triangles that is that none folds; whether
+/// curves of the boundary cross is not told.
 ///
 /// A mesh is that of a surface if some z is not 0: then `inverted` counts the triangles that are exactly flat. Where
 /// numbers are out of range nothing else is looked at. Overlaps are not looked for where triangles are inverted or positions not

@@ -143,7 +143,9 @@ pub fn mesh_for(
 ) -> Result<Meshed> {
     curved::demand_possible(options)?;
     if options.order > 1 {
-        return curved::mesh_curved(domain, field, options, progress);
+        let mut meshed = curved::mesh_curved(domain, field, options, progress)?;
+        meshed.notes.extend(aim.map(|_| "curved triangles follow the metric: they are not polished for the function".into()));
+        return Ok(meshed);
     }
     if options.mesher == Mesher::StarSet {
         return mesher::by_stars(domain, field, options, progress);

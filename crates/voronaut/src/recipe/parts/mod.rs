@@ -191,6 +191,7 @@ fn demand_divisible(options: &MeshOptions) -> Result<()> {
         (options.net, "the net", "`net`"),
         (options.mesher == Mesher::StarSet, "star sets", "`mesher`"),
         (options.seeding != Seeding::Sizing, "seeding other than by sizes", "`seeding`"),
+        (options.order > 1, "curved triangles", "`order`"),
     ];
     match whole.into_iter().find(|(is_asked, ..)| *is_asked) {
         None => Ok(()),
