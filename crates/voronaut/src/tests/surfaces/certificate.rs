@@ -132,7 +132,7 @@ fn short_ways_around_a_thin_torus_are_seen() {
 #[test]
 fn triangles_without_an_equation_are_not_certified() {
     let surface = sphere(1.0, 0.2).unwrap();
-    let found = certified(&Input::new(surface, None), sphere(1.0, 0.5).unwrap().positions());
+    let found = certified(&Input::new(surface, None), sphere(1.0, 1.0).unwrap().positions());
     let found = verdict(&found, "10.20");
     assert!(
         found.outcome != Outcome::Holds && found.not_measured.as_ref().unwrap().contains("no equation"),
