@@ -342,7 +342,7 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
     }
     let meshed = match args.in_parts.parts {
         Some(_) => args.in_parts.all(world, &args.run, field, &options, &used)?,
-        None => recipe::mesh_surface_for(input, metric.as_ref(), aim, &options, &*world.progress(&args.run))?,
+        None => recipe::mesh_surface(input, metric.as_ref(), aim, &options, &*world.progress(&args.run))?,
     };
     let (mut report, unmet) = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
     if args.in_parts.parts.is_some() {

@@ -2,6 +2,7 @@
 //! nodes are points like vertices. So it is in Gmsh's files, in VTK's and, by default, in Medit's.
 
 use super::codec::Place;
+use super::document::Row;
 use super::{Document, Fields};
 use std::borrow::Cow;
 use std::io;
@@ -119,9 +120,6 @@ impl Raised {
 
 /// What a point is: a vertex, or else a node, by its number among them.
 type Number = std::result::Result<u32, u32>;
-
-/// Points of the mesh with their weights, of which a point's value is the sum.
-pub(super) type Row = Vec<(u32, f64)>;
 
 /// Separates vertices from nodes, and numbers them in the order of the points.
 fn renumber(mesh: &mut Mesh, numbers: &[Number], triangles: Vec<u32>, order: usize) {

@@ -1,9 +1,11 @@
 //! What a file holds: a mesh, values on it, and what a mesh cannot hold.
 
-use super::curved::Row;
 use std::collections::HashSet;
 use voronaut::mesh::{Mesh, SolutionValues, Solutions};
 use voronaut::{Error, Result};
+
+/// Points of the mesh with their weights, of which a point's value is the sum.
+pub(super) type Row = Vec<(u32, f64)>;
 
 /// A mesh, and named values on its vertices and triangles.
 #[derive(Clone, Debug, Default, PartialEq)]

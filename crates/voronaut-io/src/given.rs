@@ -22,7 +22,7 @@ impl Given {
     /// domain. Surfaces in files are mended as the options say.
     ///
     /// # Errors
-    /// As for [`read_surface`] and [`read_domain`]; of what is neither, the help names both.
+    /// As for the surface that it may be, and [`read_domain`]; of what is neither, the help names both.
     pub fn read(spec: &str, options: RepairOptions) -> Result<(Self, Mended)> {
         let surface = || read_surface(spec, options).map(|(input, mended)| (Self::Surface(input), mended));
         let plane = |domain, notes: &[String]| Ok((Self::Plane(domain), Mended::default().with_notes(notes)));
@@ -67,7 +67,7 @@ impl Given {
 /// [`Error::Io`](voronaut::Error::Io) of a file that cannot be read; [`Error::Parse`](voronaut::Error::Parse) of a text that is not what
 /// its format asks for; [`Error::Domain`](voronaut::Error::Domain) of what makes no surface; [`Error::Limit`](voronaut::Error::Limit) of
 /// too many triangles.
-pub fn read_surface(spec: &str, options: RepairOptions) -> Result<(Input, Mended)> {
+pub(crate) fn read_surface(spec: &str, options: RepairOptions) -> Result<(Input, Mended)> {
     if let Some(shape) = surface::shape(spec, None) {
         return Ok((shape?, Mended::default()));
     }

@@ -1,7 +1,7 @@
 //! Files of voronaut: bytes to plain structs and back; domains, surfaces, metrics and reports from and to files.
 //!
 //! Each format has a module that reads from any [`BufRead`](std::io::BufRead) and writes to any [`Write`](std::io::Write), and knows
-//! nothing of files: messages name the line or the byte. [`read`], [`read_domain`], [`read_surface`] and [`Given`] open files by
+//! nothing of files: messages name the line or the byte. [`read`], [`read_domain`] and [`Given`] open files by
 //! what users write; [`write_mesh`] and its like leave a file there as a whole or not at all.
 
 mod codec;
@@ -37,7 +37,7 @@ pub use document::{Document, Field, Fields};
 pub(crate) use domain::DOMAINS;
 pub use domain::{read_domain, read_pslg};
 pub use files::{Format, ending, in_file, open, read, read_solutions, read_text};
-pub use given::{Given, read_surface};
+pub use given::Given;
 pub use losses::lost_in_outline;
 pub use metric::{MetricFiles, MetricSource, metric_origin, read_metric, surface_metric};
 pub use report::{ClosedForm, Report, Seconds, Strayed, peak_memory_bytes};

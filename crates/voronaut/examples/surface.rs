@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let patches = surface.cut(&FeatureOptions::default())?;
     let curvature = field(&Spec::Curvature(None), &patches, Bounds::default())?;
     let options = MeshOptions { vertices: Some(1000), fit: true, ..MeshOptions::default() };
-    let meshed = recipe::mesh_surface(&patches, curvature.as_ref(), &options, &Silent)?;
+    let meshed = recipe::mesh_surface(&patches, curvature.as_ref(), None, &options, &Silent)?;
     let fidelity = meshed.fidelity.ok_or("a fitted mesh is measured")?;
     println!("{} vertices, RMS distance {:.1e} of the diagonal", meshed.mesh.points.len(), fidelity.both.rms_share);
     Ok(voronaut_io::write_mesh(&meshed.mesh, to.as_ref())?)

@@ -103,7 +103,7 @@ fn on_surface(args: &RemeshArgs, world: &World, input: Input, mended: &Mended, b
     let sizes = sizing.sizes(&input.surface, given.as_ref())?;
     let field = sizes.field(&input.surface)?;
     let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args, Effort::Normal) };
-    let meshed = recipe::mesh_surface(&input, &field, &options, bar)?;
+    let meshed = recipe::mesh_surface(&input, &field, None, &options, bar)?;
     let used = as_used(args, &sizing, metric_file.as_deref());
     let (report, _) = account::on_surface(&meshed, &input, mended, &field, used)?;
     let solution = sizes.solution(&field, meshed.metric_scale, &input.surface, &meshed.mesh.points)?;

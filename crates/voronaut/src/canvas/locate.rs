@@ -39,7 +39,7 @@ impl Finder {
 impl Canvas {
     /// The face, edge or vertex of the embedded triangulation that holds a point; `None` outside the domain. A point
     /// that rounding has put beside a slanted border is on it.
-    pub fn locate(&self, p: Point) -> Option<Location> {
+    pub(crate) fn locate(&self, p: Point) -> Option<Location> {
         let near = |v: &&VertexId| self.position(**v).distance(p);
         let anchor = self.embedded.finder.anchors.iter().min_by(|a, b| near(a).total_cmp(&near(b)))?;
         self.locate_from(self.embedded.planar.topology.start(*anchor)?.face(), p)

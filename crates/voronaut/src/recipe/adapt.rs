@@ -1,7 +1,7 @@
 //! The mesh adapted to a solution, again and again: solve, recover, mesh, carry over.
 
 use super::{
-    GradedAt, MeshOptions, Meshed, MetricOptions, PlanarMetric, SurfaceSource, mesh_for, mesh_surface_for,
+    GradedAt, MeshOptions, Meshed, MetricOptions, PlanarMetric, SurfaceSource, mesh_for, mesh_surface,
     metric_of_function, metric_of_solution, metric_on_surface,
 };
 use crate::domain::Domain;
@@ -73,7 +73,7 @@ pub struct Step {
 /// of one label are placed anew each time, so that their number follows the metric and does not grow with the steps.
 ///
 /// # Errors
-/// Those of the solver, of `each`, of meshing ([`mesh_for`], [`mesh_surface_for`]), recovery and transfer ([`carry`]), with the number of the step.
+/// Those of the solver, of `each`, of meshing ([`mesh_for`], [`mesh_surface`]), recovery and transfer ([`carry`]), with the number of the step.
 pub fn adapt(
     ground: Ground,
     source: Source,
@@ -191,7 +191,7 @@ impl Work<'_> {
         };
         let metric = metric_on_surface(source, input, &self.options.metric, self.graded_at())?;
         let aim = function.as_ref().map(|function| (function, self.options.metric.norm));
-        mesh_surface_for(input, metric.as_ref(), aim, &self.options.mesh, self.progress)
+        mesh_surface(input, metric.as_ref(), aim, &self.options.mesh, self.progress)
     }
 
     fn solutions(&self, vertices: Vec<SolutionValues>) -> Solutions {

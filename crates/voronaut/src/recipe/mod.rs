@@ -28,7 +28,7 @@ pub use field::{
     metric_of_samples, metric_of_solution, metric_of_values,
 };
 pub use idle::{Idle, Origin, Task};
-pub use on_surface::{mesh_surface, mesh_surface_for};
+pub use on_surface::mesh_surface;
 pub use options::{Centroid, Effort, MeshOptions, Mesher, Seeding};
 pub use parts::{Part, mesh_in_parts, mesh_part, mesh_surface_in_parts, mesh_surface_part};
 pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
@@ -144,7 +144,9 @@ pub fn mesh_for(
     curved::demand_possible(options)?;
     if options.order > 1 {
         let mut meshed = curved::mesh_curved(domain, field, options, progress)?;
-        meshed.notes.extend(aim.map(|_| "curved triangles follow the metric: they are not polished for the function".into()));
+        meshed
+            .notes
+            .extend(aim.map(|_| "curved triangles follow the metric: they are not polished for the function".into()));
         return Ok(meshed);
     }
     if options.mesher == Mesher::StarSet {

@@ -40,24 +40,13 @@ const FARTHEST_PASSES: usize = 5;
 /// geodesics on one. Vertices are on the surface. With a number of vertices asked for the metric is scaled
 /// by one factor to meet it. Features are kept if the surface was cut open along them ([`Input::cut`]); else borders only.
 ///
-/// # Errors
-/// The metric is invalid somewhere; the work would exceed the memory limit; there is no valid mesh with the vertices asked for;
-/// options that are for the plane.
-pub fn mesh_surface(
-    input: &Input,
-    metric: &dyn SurfaceMetric,
-    options: &MeshOptions,
-    progress: &dyn Progress,
-) -> Result<Meshed> {
-    mesh_surface_for(input, metric, None, options, progress)
-}
-
-/// The same for a function of space whose interpolation is to have the least error in a norm: with it the mesh is polished in the end, as
-/// [`mesh_for`](super::mesh_for) does in the plane. The metric is that of the function's second derivatives.
+/// With a function of space and a norm the mesh is polished in the end, so that interpolating the function on it has the least error in that norm, as
+/// [`mesh_for`](super::mesh_for) does in the plane; the metric is that of the function's second derivatives.
 ///
 /// # Errors
-/// As of [`mesh_surface`]; the function is not finite at a vertex.
-pub fn mesh_surface_for(
+/// The metric is invalid somewhere; the work would exceed the memory limit; there is no valid mesh with the vertices asked for;
+/// options that are for the plane; the function is not finite at a vertex.
+pub fn mesh_surface(
     input: &Input,
     metric: &dyn SurfaceMetric,
     aim: Option<(&Expression, Norm)>,
@@ -361,7 +350,7 @@ mod tests {
             let metric = metric_on_surface(SurfaceSource::Named(&spec), &input, &MetricOptions::default(), at).unwrap();
             let made = |polish: usize| {
                 let options = MeshOptions { vertices: Some(count), polish, lloyd: 10, ..MeshOptions::default() };
-                mesh_surface_for(&input, metric.as_ref(), Some((function, norm)), &options, &Silent).unwrap()
+                mesh_surface(&input, metric.as_ref(), Some((function, norm)), &options, &Silent).unwrap()
             };
             let (plain, polished) = (made(0), made(10));
             let error = |made: &Meshed| interpolation_error_on(&made.mesh, &input, function, norm).unwrap().norm;

@@ -85,7 +85,7 @@ impl Surface {
     }
 
     /// `Triangulation::border_loops`.
-    pub fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
+    pub(crate) fn border_loops(&self) -> Vec<Vec<HalfEdge>> {
         self.topology.border_loops()
     }
 

@@ -67,5 +67,5 @@ fn surface_meshes() {
     let input = Input::shape("torus:2,0.7", None).unwrap();
     let metric = field(&Spec::parse("curvature").unwrap(), &input, Bounds::default()).unwrap();
     let options = MeshOptions { vertices: Some(200), fit: true, ..MeshOptions::default() };
-    stops(20, |progress| recipe::mesh_surface(&input, metric.as_ref(), &options, progress).map(drop));
+    stops(20, |progress| recipe::mesh_surface(&input, metric.as_ref(), None, &options, progress).map(drop));
 }

@@ -73,7 +73,7 @@ fn gradation_is_one_law() {
         assert_eq!(holders(word), [law], "{word}");
     }
     assert_eq!(holders("hgrad.logarithm()"), [""; 0]);
-    assert_eq!(holders("Gradation::on("), [law, "metric/nodal/pipeline.rs"]);
+    assert_eq!(holders("Gradation::on("), [law, "metric/nodal/vertices.rs"]);
     assert_eq!(holders("Gradation::of_sizes("), ["surface/metric/gradation.rs", "surface/remesh.rs"]);
 }
 

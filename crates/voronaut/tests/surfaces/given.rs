@@ -17,7 +17,7 @@ fn input(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Input {
 fn meshed(input: &Input, metric: &str, count: usize) -> Meshed {
     let field = field(&Spec::parse(metric).unwrap(), input, Bounds::default()).unwrap();
     let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
-    let meshed = mesh_surface(input, field.as_ref(), &options, &Silent).unwrap();
+    let meshed = mesh_surface(input, field.as_ref(), None, &options, &Silent).unwrap();
     let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
     assert!(found.valid, "{:?}", found.first_fault);
     meshed
@@ -100,7 +100,7 @@ fn labels_do_not_change_the_number_of_vertices() {
     let count = |labels: u32| {
         let input = labelled_square(labels);
         let field = field(&Spec::parse("formula:400;0;400;0;0;400").unwrap(), &input, Bounds::default()).unwrap();
-        mesh_surface(&input, field.as_ref(), &MeshOptions::default(), &Silent).unwrap().mesh.points.len()
+        mesh_surface(&input, field.as_ref(), None, &MeshOptions::default(), &Silent).unwrap().mesh.points.len()
     };
     let [one, many] = [1, 4].map(count);
     assert!(one.abs_diff(many) * 50 <= one, "{one} {many}");
@@ -156,7 +156,7 @@ fn what_meets_itself_is_meshed_and_told() {
 fn an_equation_whose_triangles_meet_is_refused_with_the_place() {
     let input = Input::shape("implicit:(x^2+y^2-z^2)*z;-1,-1,-1,1,1,1", None).unwrap();
     let field = field(&Spec::Uniform, &input, Bounds::default()).unwrap();
-    let error = mesh_surface(&input, field.as_ref(), &MeshOptions::default(), &Silent).unwrap_err();
+    let error = mesh_surface(&input, field.as_ref(), None, &MeshOptions::default(), &Silent).unwrap_err();
     assert!(error.to_string().contains("triangles of f = 0 meet"), "{error}");
 }
 

@@ -30,7 +30,7 @@ impl SurfaceMetric for Scaled<'_> {
 
 fn meshed(input: &Input, metric: &str, options: &MeshOptions) -> (Meshed, f64, f64) {
     let metric = field(&Spec::parse(metric).unwrap(), input, Bounds::default()).unwrap();
-    let meshed = mesh_surface(input, metric.as_ref(), options, &Silent).unwrap();
+    let meshed = mesh_surface(input, metric.as_ref(), None, options, &Silent).unwrap();
     let figures = surface_quality(&meshed.mesh, &input.surface, &Scaled(metric.as_ref(), meshed.metric_scale)).unwrap();
     (meshed, figures.quality.mean, figures.quality.min)
 }

@@ -14,7 +14,7 @@ use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality::Meetings;
 use crate::recipe::surface_pass::{Setting, demand};
-use crate::recipe::{MeshOptions, mesh_surface_for};
+use crate::recipe::{MeshOptions, mesh_surface};
 use crate::sampling::{MetricArc, pieces};
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Mark, Place, Surface};
@@ -37,7 +37,7 @@ pub(super) struct OnSurface<'a> {
 /// The mesh of a part of a surface, which is given whole and cut along its features.
 ///
 /// # Errors
-/// As of [`mesh_surface_for`].
+/// As of [`mesh_surface`].
 pub fn mesh_surface_part(
     part: &Part,
     whole: &Input,
@@ -49,7 +49,7 @@ pub fn mesh_surface_part(
     let own = whole.part(Surface::new(&part.domain)?)?;
     let metric = OfWhole::new(&own.surface, whole, metric);
     let options = MeshOptions { hausd: None, ..with_count(options, part.vertices) };
-    Ok(mesh_surface_for(&own, &metric, aim, &options, progress)?.mesh)
+    Ok(mesh_surface(&own, &metric, aim, &options, progress)?.mesh)
 }
 
 /// The metric of a surface as one of a part of it.

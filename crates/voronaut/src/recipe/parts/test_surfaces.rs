@@ -49,7 +49,7 @@ fn closed_surfaces_come_together_again() {
             assert!(found.valid && (found.euler, found.boundary_loops) == (euler, 0), "{found:?}");
             assert_eq!((meshed.mesh.points.len(), rounds[0]), (3600, parts), "{:?}", meshed.notes);
             assert!(meshed.mesh.edges.is_empty() && meshed.mesh.corners.is_empty(), "nothing of cuts is left");
-            let one = mesh_surface(&input, &turning, &options(3600), &Silent).unwrap();
+            let one = mesh_surface(&input, &turning, None, &options(3600), &Silent).unwrap();
             let share = |of: &Meshed| unit_share(&of.mesh, &|p| turning(p) * of.metric_scale);
             assert!(share(&meshed) > share(&one) - 0.01, "{} for {} in one piece", share(&meshed), share(&one));
         }
@@ -70,7 +70,7 @@ fn features_of_a_cube_stay() {
     let (meshed, _) = made(&input, &metric, 2, &options(2400)).unwrap();
     let mesh = &meshed.mesh;
     assert!(validity_on(mesh, &Meetings::of(input.whole_mesh())).valid);
-    let one = mesh_surface(&input, &metric, &options(2400), &Silent).unwrap().mesh;
+    let one = mesh_surface(&input, &metric, None, &options(2400), &Silent).unwrap().mesh;
     let length = |mesh: &Mesh, label: i32| -> f64 {
         let of = mesh.edges.iter().zip(&mesh.edge_labels).filter(|(_, it)| **it == label);
         of.map(|(&[a, b], _)| mesh.position(a).distance(mesh.position(b))).sum()

@@ -41,7 +41,7 @@ fn keeps_distance(name: &str, share: f64) {
     )
     .unwrap();
     let options = MeshOptions { hausd: Some(hausd), ..MeshOptions::default() };
-    let mesh = mesh_surface(&input, field.as_ref(), &options, &Silent).unwrap().mesh;
+    let mesh = mesh_surface(&input, field.as_ref(), None, &options, &Silent).unwrap().mesh;
     let found = faults(&part, &mesh, hausd);
     println!("{name} within {hausd:.2e}: {} vertices, {} faults", mesh.points.len(), found.len());
     assert!(found.is_empty(), "{name}:\n{}", found[..found.len().min(8)].join("\n"));
@@ -61,7 +61,7 @@ fn keeps_features(name: &str, metric: &str, counts: &[usize]) {
     let field = field(&Spec::parse(metric).unwrap(), &input, Bounds::default()).unwrap();
     for &count in counts {
         let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
-        let mesh = mesh_surface(&input, field.as_ref(), &options, &Silent).unwrap().mesh;
+        let mesh = mesh_surface(&input, field.as_ref(), None, &options, &Silent).unwrap().mesh;
         let found = faults(&part, &mesh, distance(&part, &input.surface, count, metric));
         println!("{name} {metric} {count}: {} vertices, {} faults", mesh.points.len(), found.len());
         assert!(found.is_empty(), "{name} {metric} {count}:\n{}", found[..found.len().min(8)].join("\n"));

@@ -37,7 +37,7 @@ fn required_vertices_edges_and_triangles_stay_to_the_last_bit() {
     let input = cut(&mesh);
     let metric = field(&Spec::parse("uniform").unwrap(), &input, Bounds::default()).unwrap();
     let options = MeshOptions { vertices: Some(400), ..MeshOptions::default() };
-    let made = mesh_surface(&input, metric.as_ref(), &options, &Silent).unwrap().mesh;
+    let made = mesh_surface(&input, metric.as_ref(), None, &options, &Silent).unwrap().mesh;
     check(&made).unwrap();
     let places: BTreeSet<[u64; 3]> = (0..made.points.len() as u32).map(|v| bits(&made, v)).collect();
     assert!(places.contains(&bits(&mesh, mesh.required_points[0])));
@@ -61,7 +61,7 @@ fn sizes_at_the_vertices_of_the_file_hold_on_all_sides_of_creases() {
     let solution = Solution { dimension: 3, values: SolutionValues::Scalar(sizes) };
     let input = cut(&mesh);
     let metric = Sampled::from_solution(&input.surface, &input.spread(&solution).unwrap()).unwrap();
-    let made = mesh_surface(&input, &metric, &MeshOptions::default(), &Silent).unwrap().mesh;
+    let made = mesh_surface(&input, &metric, None, &MeshOptions::default(), &Silent).unwrap().mesh;
     check(&made).unwrap();
     let quality = surface_quality(&made, &input.surface, &metric).unwrap();
     println!("{} vertices, {:?}", made.points.len(), quality.metric_edge_length);
