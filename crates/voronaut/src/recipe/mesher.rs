@@ -141,8 +141,8 @@ mod tests {
 
     #[test]
     fn where_the_metric_turns_seeds_are_denser_and_stages_are_told_once() {
-        // Cells that are three times as long as wide, along a direction that turns by two radians over the domain.
-        let turning = |p: Point| Tensor::from_axis(Vector::new(p.x.cos(), p.x.sin()), 1.0, 9.0);
+        // Cells that are three times as long as wide, along a direction that turns by three radians over the domain.
+        let turning = |p: Point| Tensor::from_axis(Vector::new((1.5 * p.x).cos(), (1.5 * p.x).sin()), 1.0, 9.0);
         let meshed = mesh("rect:0,0,2,1", &turning, 100).unwrap();
         let vertices = meshed.mesh.points.len();
         assert!(meshed.star_set.unwrap().figures.inconsistencies == 0 && (100..1000).contains(&vertices), "{vertices}");
