@@ -23,11 +23,11 @@ use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Aabb, Orientation, Point, orientation};
 use voronaut::mesh::Mesh;
-use voronaut::metric::MetricField;
+use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::net::Random;
 use voronaut::progress::Silent;
 use voronaut::realisation::Realisation;
-use voronaut::recipe::{self, MeshOptions};
+use voronaut::recipe::{self, GradedAt, MeshOptions, MetricOptions};
 use voronaut::triangulation::VertexId;
 use voronaut_draw::{Layers, Picture};
 
@@ -55,7 +55,8 @@ impl Scene {
         let is_swirl = metric.starts_with("swirl");
         let shape = if is_swirl { "rect:-2,-2,2,2" } else { "rect:-1,-1,1,1" };
         let domain = Domain::shape(shape)?;
-        let field = recipe::metric_named(metric, &domain)?;
+        let spec = MetricSpec::parse(metric)?;
+        let field = recipe::metric(&spec, &domain, &MetricOptions::default(), GradedAt::Scale(1.0))?.field;
         Ok(Self { name: metric.into(), is_swirl, domain, field })
     }
 

@@ -6,7 +6,7 @@ mod locate;
 mod operations;
 mod order;
 
-pub(crate) use constrain::Crossing;
+pub use constrain::Crossing;
 pub use delaunay::{Duplicate, delaunay};
 pub use locate::Location;
 pub(crate) use order::hilbert_order;

@@ -112,7 +112,7 @@ pub fn metric_of_solution(
 ///
 /// # Errors
 /// As of [`metric`].
-pub fn metric_of_function(
+pub(super) fn metric_of_function(
     function: &Snapshot,
     domain: &Domain,
     options: &MetricOptions,
@@ -171,7 +171,8 @@ pub fn metric_of_samples(
 ///
 /// # Errors
 /// As of [`MetricSpec::parse`] and [`metric`].
-pub fn metric_named(text: &str, domain: &Domain) -> Result<Box<dyn MetricField>> {
+#[cfg(test)]
+pub(crate) fn metric_named(text: &str, domain: &Domain) -> Result<Box<dyn MetricField>> {
     let made = metric(&MetricSpec::parse(text)?, domain, &MetricOptions::default(), GradedAt::Scale(1.0))?;
     Ok(made.field)
 }
