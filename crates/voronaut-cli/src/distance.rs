@@ -204,7 +204,7 @@ fn demand_memory(args: &DistanceArgs) -> Result<()> {
 
 fn demand_inside(from: &[Point], to: Option<Point>, canvas: &Canvas) -> Result<()> {
     let mut named = from.iter().map(|&p| ("--from", p)).chain(to.map(|p| ("--to", p)));
-    match named.find(|(_, p)| canvas.locate_all(&[*p])[0].is_none()) {
+    match named.find(|(_, p)| canvas.first_outside(&[*p]).is_some()) {
         None => Ok(()),
         Some((name, p)) => {
             Err(Error::domain("a point outside the domain", format!("{name} {p}"), "move it into the domain"))

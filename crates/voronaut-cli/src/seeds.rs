@@ -32,7 +32,7 @@ impl SeedFile<Point> {
 
     /// Refuses seeds outside the domain of a canvas.
     pub(crate) fn demand_inside(&self, canvas: &Canvas) -> Result<()> {
-        let Some(i) = canvas.locate_all(&self.seeds).iter().position(Option::is_none) else { return Ok(()) };
+        let Some(i) = canvas.first_outside(&self.seeds) else { return Ok(()) };
         let what = format!("the seed {} is outside the domain", self.seeds[i]);
         Err(Error::parse(self.place(i), what, "remove it, or move it into the domain"))
     }

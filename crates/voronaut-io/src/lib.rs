@@ -37,7 +37,7 @@ pub use document::{Document, Field, Fields};
 pub(crate) use domain::DOMAINS;
 pub use domain::{read_domain, read_pslg};
 pub use files::{Format, ending, in_file, open, read, read_solutions, read_text};
-pub use given::Given;
+pub use given::{Given, read_surface};
 pub use losses::lost_in_outline;
 pub use metric::{MetricFiles, MetricSource, metric_origin, read_metric, surface_metric};
 pub use report::{ClosedForm, Report, Seconds, Strayed, peak_memory_bytes};

@@ -2,10 +2,10 @@
 
 use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor};
-use voronaut::metric::MetricField;
+use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::progress::Silent;
 use voronaut::quality::{MetricQuality, check, metric_quality, validity};
-use voronaut::recipe::{MeshOptions, Meshed, mesh, metric_named};
+use voronaut::recipe::{GradedAt, MeshOptions, Meshed, MetricOptions, mesh, metric};
 use voronaut_io::medit;
 
 fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize) -> (Meshed, MetricQuality) {
@@ -18,7 +18,8 @@ fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize) -> (Meshed,
 }
 
 fn named(spec: &str, domain: &Domain) -> Box<dyn MetricField> {
-    metric_named(spec, domain).unwrap()
+    let spec = MetricSpec::parse(spec).unwrap();
+    metric(&spec, domain, &MetricOptions::default(), GradedAt::Scale(1.0)).unwrap().field
 }
 
 #[test]

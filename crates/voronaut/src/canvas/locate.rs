@@ -59,8 +59,13 @@ impl Canvas {
         }
     }
 
+    /// The number of the first of some points that is outside the domain.
+    pub fn first_outside(&self, points: &[Point]) -> Option<usize> {
+        self.locate_all(points).iter().position(Option::is_none)
+    }
+
     /// [`Canvas::locate`] for many points.
-    pub fn locate_all(&self, points: &[Point]) -> Vec<Option<Location>> {
+    pub(crate) fn locate_all(&self, points: &[Point]) -> Vec<Option<Location>> {
         let mut locations: Vec<Option<Location>> = vec![None; points.len()];
         let mut near: Option<FaceId> = None;
         for i in hilbert_order(points).into_iter().map(|i| i as usize) {

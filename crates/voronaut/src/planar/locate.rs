@@ -6,7 +6,7 @@ use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 /// Where a walk ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Location {
+pub(crate) enum Location {
     /// Strictly inside the face.
     Face(FaceId),
     /// On the edge, between its ends.

@@ -8,7 +8,7 @@ mod order;
 
 pub use constrain::Crossing;
 pub use delaunay::{Duplicate, delaunay};
-pub use locate::Location;
+pub(crate) use locate::Location;
 pub(crate) use order::hilbert_order;
 
 use crate::geometry::{Orientation, Point, orientation, signed_area};

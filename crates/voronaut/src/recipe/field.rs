@@ -112,7 +112,7 @@ pub fn metric_of_solution(
 ///
 /// # Errors
 /// As of [`metric`].
-pub(super) fn metric_of_function(
+pub fn metric_of_function(
     function: &Snapshot,
     domain: &Domain,
     options: &MetricOptions,

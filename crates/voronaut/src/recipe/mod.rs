@@ -25,10 +25,9 @@ pub use certified::certified_canvas;
 pub use dual::{SeedDual, dual, net, surface_dual, surface_mesh, surface_net};
 #[cfg(test)]
 pub(crate) use field::metric_named;
-use field::metric_of_function;
 pub use field::{
-    GradedAt, MetricOptions, PlanarMetric, metric, metric_of_field, metric_of_samples, metric_of_solution,
-    metric_of_values,
+    GradedAt, MetricOptions, PlanarMetric, metric, metric_of_field, metric_of_function, metric_of_samples,
+    metric_of_solution, metric_of_values,
 };
 pub use idle::{Idle, Origin, Task};
 pub use on_surface::mesh_surface;

@@ -4,7 +4,7 @@ use super::{HalfEdge, Triangulation, VertexId};
 
 /// The first invariant found broken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Broken {
+pub(crate) enum Broken {
     /// The twin of the half-edge's twin is another half-edge, or the two do not run between the same vertices.
     Twin(HalfEdge),
     /// Length or constraint differ between the two sides of the edge.
@@ -20,7 +20,7 @@ impl Triangulation {
     ///
     /// # Errors
     /// The first invariant that does not hold.
-    pub fn check(&self) -> Result<(), Broken> {
+    pub(crate) fn check(&self) -> Result<(), Broken> {
         let mut degree = vec![0_usize; self.vertex_slots()];
         for h in self.faces().flat_map(super::FaceId::half_edges) {
             self.check_twin(h)?;

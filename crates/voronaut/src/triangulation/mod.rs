@@ -9,7 +9,7 @@ mod lawson;
 mod operations;
 mod renumber;
 
-pub use check::Broken;
+pub(crate) use check::Broken;
 pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
 pub use lawson::Limit;
 pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_in_rounds};
