@@ -122,7 +122,9 @@ fn injectivity(diagram: &SurfaceDiagram, epsilon: f64) -> f64 {
     let shortest = loops.into_iter().fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a });
     let longest = topology.edges().map(|h| topology.length(h)).fold(0.0, f64::max);
     let mut sources = Sources::new(topology.vertex_slots());
-    sampled.iter().for_each(|&v| sources.add(v, 0.0, 0));
+    for &v in &sampled {
+        sources.add(v, 0.0, 0);
+    }
     let found = Marching::on(topology).propagate(&sources);
     let farthest =
         topology.vertices().map(|v| found.label(v).distance).filter(|d| d.is_finite()).fold(epsilon, f64::max);

@@ -156,7 +156,9 @@ mod tests {
             let Bound { least, is_decided, .. } = bound(&straight(order), order, 0);
             assert!(is_decided && (least - 1.0).abs() < 1e-12, "{order} {least}");
             let mut turned = straight(order);
-            turned.iter_mut().for_each(|p| p.x = -p.x);
+            for p in &mut turned {
+                p.x = -p.x;
+            }
             assert!(!bound(&turned, order, 9).is_valid());
         }
     }

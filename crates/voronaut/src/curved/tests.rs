@@ -69,7 +69,7 @@ fn assert_sound(mesh: &Mesh) {
         area += found.area;
     }
     assert!((area - 1.0).abs() < 1e-12, "{area}");
-    let on_border = |p: &[f64; 3]| p[..2].iter().any(|&x| x == 0.0 || x == 1.0);
+    let on_border = |p: &[f64; 3]| p[..2].iter().any(|x| [0.0, 1.0].contains(x));
     assert!(mesh.edges.iter().flatten().all(|&v| on_border(&mesh.points[v as usize])));
     assert_eq!(mesh.corners.len(), 4);
     assert!(mesh.triangle_labels.iter().all(|&label| label == 7));

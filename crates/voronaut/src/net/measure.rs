@@ -150,7 +150,7 @@ impl<'a, S: Seeds> Measure<'a, S> {
             return circle.and_then(ball);
         }
         // Of several circles the one of cells that meet has no seed in it.
-        let starts = self.starts(view.field(), points);
+        let starts = starts(view.field(), points);
         let near = |start| Circle::near(&self.paths, view.field(), points, start);
         let others = starts.into_iter().filter_map(near).filter_map(ball);
         let best = |a: Ball<3, S::Place>, b: Ball<3, S::Place>| {
@@ -158,20 +158,6 @@ impl<'a, S: Seeds> Measure<'a, S> {
             if rank(&b) > rank(&a) { b } else { a }
         };
         circle.and_then(ball).into_iter().chain(others).reduce(best)
-    }
-
-    /// Places from which a circumcentre may be found where the metric turns fast: the circumcentres with the tensors at the
-    /// corners, and places beside the longest side.
-    fn starts(&self, field: &dyn MetricField, corners: [Point; 3]) -> Vec<Point> {
-        let flat = corners.iter().filter_map(|&p| flat_centre(field.at(p), corners));
-        let [a, b, c] = corners;
-        let sides = [[a, b], [b, c], [c, a]].map(|[p, q]| (chord(field, p, q), p, q));
-        let (length, p, q) = sides.into_iter().fold(sides[0], |most, side| if side.0 > most.0 { side } else { most });
-        let middle = p.midpoint(q);
-        let tensor = field.at(middle);
-        let across = tensor.inverse().apply((q - p).perpendicular());
-        let across = across * (0.5 * length / tensor.length(across));
-        flat.chain(BESIDE.iter().map(|&share| middle + across * share)).collect()
     }
 
     /// Whether the circumcentre with one tensor is in the domain, or no corner at the border says that it may be outside.
@@ -255,4 +241,18 @@ fn seems_interior(view: &impl View, corners: [u32; 3]) -> bool {
     let Some(points) = seen(view, corners) else { return true };
     let centre = flat_centre(view.field().at(Point::centroid(points)), points);
     centre.is_some_and(|centre| view.is_inside(corners[0], centre))
+}
+
+/// Places from which a circumcentre may be found where the metric turns fast: the circumcentres with the tensors at the
+/// corners, and places beside the longest side.
+fn starts(field: &dyn MetricField, corners: [Point; 3]) -> Vec<Point> {
+    let flat = corners.iter().filter_map(|&p| flat_centre(field.at(p), corners));
+    let [a, b, c] = corners;
+    let sides = [[a, b], [b, c], [c, a]].map(|[p, q]| (chord(field, p, q), p, q));
+    let (length, p, q) = sides.into_iter().fold(sides[0], |most, side| if side.0 > most.0 { side } else { most });
+    let middle = p.midpoint(q);
+    let tensor = field.at(middle);
+    let across = tensor.inverse().apply((q - p).perpendicular());
+    let across = across * (0.5 * length / tensor.length(across));
+    flat.chain(BESIDE.iter().map(|&share| middle + across * share)).collect()
 }

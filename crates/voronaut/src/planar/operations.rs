@@ -48,7 +48,9 @@ impl Planar {
     pub(crate) fn move_together(&mut self, moves: &[(VertexId, Point)]) -> Vec<bool> {
         let topology = &self.topology;
         let mut to = self.positions.clone();
-        moves.iter().for_each(|&(v, p)| to[v.index()] = p);
+        for &(v, p) in moves {
+            to[v.index()] = p;
+        }
         let is_turned = |&f: &FaceId, to: &[Point]| {
             let [a, b, c] = topology.corners(f).map(|v| to[v.index()]);
             !is_left(a, b, c)
@@ -59,7 +61,9 @@ impl Planar {
             // Faces were counter-clockwise before: each has a corner that has moved.
             let back = distinct(turned.iter().flat_map(|&f| topology.corners(f)));
             let back: Vec<VertexId> = back.into_iter().filter(|v| to[v.index()] != self.positions[v.index()]).collect();
-            back.iter().for_each(|v| to[v.index()] = self.positions[v.index()]);
+            for v in &back {
+                to[v.index()] = self.positions[v.index()];
+            }
             let around = distinct(back.iter().flat_map(|&v| topology.star(v)).map(HalfEdge::face));
             turned = around.into_iter().filter(|f| is_turned(f, &to)).collect();
         }

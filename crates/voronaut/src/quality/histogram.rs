@@ -78,7 +78,7 @@ pub fn histograms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Histograms> {
     let straight = straight_angles(mesh, |t| Some((corners.mean(t), mesh.corners_of(t))));
     let curved =
         geodesic_angles(mesh, &edges, &measured, |v, from, to| Ok(angle(tensor(metric, mesh.point(v))?, from, to)))?;
-    Ok(of(&measured, Both { straight, geodesic: curved }))
+    Ok(of(&measured, &Both { straight, geodesic: curved }))
 }
 
 /// The same of the mesh of a surface, whose straight edges and triangles are measured as by [`surface_quality`](super::surface_quality()):
@@ -97,11 +97,11 @@ pub fn histograms_on(mesh: &Mesh, input: &Input, metric: &dyn SurfaceMetric) -> 
         let (m, plane) = field.tangential(mesh.position(v))?;
         Ok(angle(m, plane.flatten(from), plane.flatten(to)))
     })?;
-    Ok(of(&measured, Both { straight: straight_angles(mesh, flattened), geodesic: curved }))
+    Ok(of(&measured, &Both { straight: straight_angles(mesh, flattened), geodesic: curved }))
 }
 
 /// The distributions of what was measured.
-fn of<V>(measured: &[MeasuredEdge<V>], angles: Both<Vec<f64>>) -> Histograms {
+fn of<V>(measured: &[MeasuredEdge<V>], angles: &Both<Vec<f64>>) -> Histograms {
     let lengths = Both {
         straight: measured.iter().map(|e| e.straight).collect::<Vec<_>>(),
         geodesic: measured.iter().map(|e| e.geodesic).collect(),
@@ -111,7 +111,7 @@ fn of<V>(measured: &[MeasuredEdge<V>], angles: Both<Vec<f64>>) -> Histograms {
     Histograms {
         unit_fraction: Both { straight: unit(&lengths.straight), geodesic: unit(&lengths.geodesic) },
         edge_length: Histogram::of(LENGTHS, &lengths),
-        angle: Histogram::of(ANGLES, &angles),
+        angle: Histogram::of(ANGLES, angles),
         geodesics_not_found: count(Found::No),
         geodesics_on_border: count(Found::OnBorder),
     }

@@ -118,10 +118,7 @@ impl<'a> Field<'a> {
     ///
     /// # Errors
     /// As of [`Field::shapes`].
-    pub(super) fn flattened<'m>(
-        &self,
-        mesh: &'m Mesh,
-    ) -> Result<impl Fn([u32; 3]) -> Option<(Tensor, [Point; 3])> + use<'m>> {
+    pub(super) fn flattened<'m>(&self, mesh: &'m Mesh) -> Result<impl Fn([u32; 3]) -> Option<Flattened> + use<'m>> {
         let used = mesh.used_vertices();
         let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
         let seen = |v: u32| used[v as usize].then(|| self.at(mesh.position(v))).transpose();
@@ -139,6 +136,9 @@ impl<'a> Field<'a> {
         GAUSS.iter().map(part).sum()
     }
 }
+
+/// A triangle laid out flat, and the metric there.
+pub(super) type Flattened = (Tensor, [Point; 3]);
 
 /// The metric length of a vector of its Euclidean length that points along its part in the tangent plane; the mean over
 /// directions, roughly, of one that has no such part.

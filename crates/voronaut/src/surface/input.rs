@@ -65,8 +65,8 @@ impl Input {
     ///
     /// # Errors
     /// As for [`Surface::new`].
-    pub(crate) fn part(&self, surface: Surface) -> Result<Self> {
-        let (part, seams) = cut(&surface, &FeatureOptions { ar: None })?;
+    pub(crate) fn part(&self, surface: &Surface) -> Result<Self> {
+        let (part, seams) = cut(surface, &FeatureOptions { ar: None })?;
         Ok(Self { diagonal: self.diagonal, ..Self::with_seams(part, self.implicit.clone(), seams) })
     }
 

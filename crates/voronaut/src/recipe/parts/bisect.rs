@@ -111,7 +111,9 @@ pub(super) fn join_around(triangles: &[[u32; 3]], labels: &mut [u32]) -> bool {
         if changes.is_empty() {
             return true;
         }
-        changes.into_iter().for_each(|(t, label)| labels[t] = label);
+        for (t, label) in changes {
+            labels[t] = label;
+        }
     }
     false
 }

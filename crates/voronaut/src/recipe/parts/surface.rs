@@ -46,7 +46,7 @@ pub fn mesh_surface_part(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Mesh> {
-    let own = whole.part(Surface::new(&part.domain)?)?;
+    let own = whole.part(&Surface::new(&part.domain)?)?;
     let metric = OfWhole::new(&own.surface, whole, metric);
     let options = MeshOptions { hausd: None, ..with_count(options, part.vertices) };
     Ok(mesh_surface(&own, &metric, aim, &options, progress)?.mesh)
@@ -119,7 +119,9 @@ impl Divisible for OnSurface<'_> {
         let mut normal = vec![crate::geometry::Vector3::default(); mesh.points.len()];
         for &t in &mesh.triangles {
             let [a, b, c] = mesh.positions_of(t);
-            t.iter().for_each(|&v| normal[v as usize] = normal[v as usize] + (b - a).cross(c - a));
+            for v in t {
+                normal[v as usize] = normal[v as usize] + (b - a).cross(c - a);
+            }
         }
         let tensor = |v: u32| {
             let place = self.input.closest_facing(mesh.position(v), normal[v as usize])?;
@@ -161,7 +163,9 @@ impl<'a> Base<'a> {
         let surface = Surface::new(&whole)?;
         let mut topology = surface.topology().clone();
         let faces: Vec<FaceId> = topology.faces().collect();
-        faces.iter().for_each(|&f| topology.set_region(f, f.0.cast_signed()));
+        for &f in &faces {
+            topology.set_region(f, f.0.cast_signed());
+        }
         let homes: Vec<FaceId> = on.input.surface.topology().faces().collect();
         let marks = (0..whole.edges.len() as u32).map(|i| surface.mark(crate::triangulation::Constraint(i))).collect();
         let sides = homes.into_iter().map(|home| Side { home, owner: 0 }).collect();
