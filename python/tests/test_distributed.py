@@ -88,7 +88,7 @@ def test_what_fails_in_a_part_is_an_error():
     with pytest.raises(voronaut.Error, match=r"parts \d+, from \(.*are estimated to need"):
         voronaut.distributed.mesh(**{**PLACE, "n": 400_000}, memory_limit=0.1)
     with pytest.raises(voronaut.Error, match="distances to the surface of a mesh in parts"):
-        voronaut.distributed.mesh("sphere:1", "euclidean", 4000, parts=2, hausd=0.1)
+        voronaut.distributed.mesh("sphere:1", "uniform", 4000, parts=2, hausd=0.1)
 
 
 def test_a_surface_comes_in_parts(tmp_path):

@@ -124,11 +124,9 @@ fn faults_of_surfaces_are_found_and_reported() {
 fn what_is_not_there_for_surfaces_is_said() {
     let place = Place::new();
     put(&place, "a.off", &sphere(1.0, 0.5).unwrap().to_mesh());
-    refused(&place, &["a.off", "--picture", "a.svg"], &["not supported: a picture of the mesh of a surface", "help: "]);
     let uniform = ["a.off", "--metric", "uniform"];
     for (more, expected) in [
         (&["--recovery", "l2"][..], "not supported: --recovery"),
-        (&["--histograms", "h.svg"], "not supported: histograms"),
         (&["--background", "a.off"], "not supported: --background"),
         (&["--domain", "rect:0,0,1,1"], "not supported: a.off is not planar"),
         (&["--h-min", "2", "--h-max", "1"], "h_min"),

@@ -32,6 +32,10 @@ const ADAPTATIONS: usize = 8;
 const FEWER_STEPS: usize = 8;
 /// and the last times without.
 const UNRELAXED: usize = 3;
+/// Polishing may take the area of a mesh this much farther from the surface's, but for rounding: it knows the function's error alone, and
+/// leaves large triangles where the function is even. On the unit sphere the area of 300 vertices for a front fell from 11.9 to 10.2.
+const NEARLY: f64 = 1.25;
+const ROUNDING: f64 = 1e-9;
 /// Passes of farthest points, where these are asked for.
 const FARTHEST_PASSES: usize = 5;
 
@@ -91,6 +95,15 @@ pub fn mesh_surface(
         setting.demand_memory(count)?;
     }
     unreachable!("the last round returns")
+}
+
+/// The area of a mesh.
+fn area(mesh: &Mesh) -> f64 {
+    let double = |&t: &[u32; 3]| {
+        let [a, b, c] = mesh.positions_of(t);
+        (b - a).cross(c - a).norm()
+    };
+    0.5 * mesh.triangles.iter().map(double).sum::<f64>()
 }
 
 /// The triangles of an equation are ours: where they meet, that is no property of what the user gave.
@@ -240,12 +253,18 @@ impl<'a> Setting<'a> {
             polish_on_surface(&mut pass.dual, function, norm, patience, self.progress)
         })?;
         let (better, faulty) = self.checked(pass)?;
-        if faulty.is_empty() {
+        let stray = |mesh: &Mesh| (self.input.surface.area() - area(mesh)).abs();
+        let is_as_near = stray(&better) <= NEARLY * stray(mesh) + ROUNDING * self.input.surface.area();
+        if faulty.is_empty() && is_as_near {
             *mesh = better;
             return Ok(polished);
         }
         pass.dual.take_back(&before);
-        notes.push(format!("not polished: {} triangles would meet or fold over", faulty.len()));
+        notes.push(if is_as_near {
+            format!("not polished: {} triangles would meet or fold over", faulty.len())
+        } else {
+            "not polished: where the function is even, triangles would be too large for the surface".into()
+        });
         Ok(Polished { error: polished.error.into_iter().take(1).collect(), ..Polished::default() })
     }
 
@@ -336,13 +355,12 @@ mod tests {
     use crate::quality::interpolation_error_on;
     use crate::surface::metric::Spec;
 
-    /// A front on an equation's surface, and on triangles with creases: polishing lowers the error that is measured elsewhere, keeps the
+    /// A front on triangles with creases: polishing lowers the error that is measured elsewhere, keeps the
     /// number of vertices and their surface, and never raises its own.
     #[test]
     fn polishing_lowers_the_error_on_surfaces() {
-        let sphere = Input::shape("sphere:1", Some(0.1)).unwrap();
         let cube = Input::new(crate::surface::Surface::new(&crate::test_cases::cube(9, 0.0)).unwrap(), None);
-        for (input, text) in [(sphere, "tanh(8*(x - 0.3 + 0.2*y))"), (cube, "tanh(6*(x + y*z - 0.5))")] {
+        for (input, text) in [(cube, "tanh(6*(x + y*z - 0.5))")] {
             let spec = Spec::parse(&format!("hessian:{text}")).unwrap();
             let Spec::Hessian(function) = &spec else { panic!("of a function") };
             let (count, norm) = (500, Norm::default());
@@ -368,5 +386,20 @@ mod tests {
                 assert!(place.position.distance(p.into()) < 1e-9, "{p:?}");
             }
         }
+    }
+
+    /// Away from a front the error asks for no small triangles, and the sphere does.
+    #[test]
+    fn polishing_does_not_leave_the_surface() {
+        let sphere = Input::shape("sphere:1", Some(0.1)).unwrap();
+        let spec = Spec::parse("hessian:tanh(8*(x - 0.3 + 0.2*y))").unwrap();
+        let Spec::Hessian(function) = &spec else { panic!("of a function") };
+        let at = GradedAt::of(Some(500), None);
+        let metric = metric_on_surface(SurfaceSource::Named(&spec), &sphere, &MetricOptions::default(), at).unwrap();
+        let options = MeshOptions { vertices: Some(500), polish: 10, lloyd: 10, ..MeshOptions::default() };
+        let aim = Some((function, Norm::default()));
+        let made = mesh_surface(&sphere, metric.as_ref(), aim, &options, &Silent).unwrap();
+        assert!(made.notes.iter().any(|note| note.starts_with("not polished: ")), "{:?}", made.notes);
+        assert!(area(&made.mesh) > 0.97 * 4.0 * std::f64::consts::PI, "{}", area(&made.mesh));
     }
 }
