@@ -84,7 +84,8 @@ const ROWS: &[Row] = &[
     plane(RECOVERED, &["--recovery", "l2"], Mesh),
     plane(HESSIAN, &["--recovery", "l2"], Refused("--recovery")),
     surfaces(HESSIAN_IN_SPACE, &["--recovery", "l2"], Refused("--recovery")),
-    surfaces(HESSIAN_IN_SPACE, &["--polish", "0"], Mesh),
+    // Polishing would take the closed one away from its surface, and a note says so.
+    Row { with: HESSIAN_IN_SPACE, words: &["--polish", "0"], says: [None, Some(Report("notes")), Some(Mesh)] },
     surfaces(&["--metric", "hessian:x^4 + 0.3*y^2 + x*y*z", "--h-min", "0.1"], &["--polish", "5"], Refused("--polish")),
     all(&[], &["--recovery", "l2"], Refused("--recovery")),
     plane(OF_FILE, &["--tensor-order", "diagonal"], Mesh),
