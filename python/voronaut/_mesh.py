@@ -38,8 +38,6 @@ class Mesh:
     ----------
     points, triangles, edges, point_labels, triangle_labels, edge_labels : as above
     nodes, curved_triangles : as above, or None of straight triangles
-    order : int
-        1 of straight triangles, 2 or 3 of curved ones.
     corners, required_points, ridges, required_edges, required_triangles : arrays of numbers
         What Medit's format calls so.
     fields, triangle_fields : dict
