@@ -12,7 +12,7 @@ numpy), bamg with `apt install freefem++`; vorpalite, geogram's, is used if it i
 be. pip's `mmg2d_O3` on the PATH is a script that takes 0.15 s to start; what is timed is the program inside the package.
 
 Programs run in turns, A B A B ..., from files to files. s: medians of wall time; after it, voronaut's time as a multiple of the peer's:
-of the medians, and the median of the ratios in each turn. CPU: time in user mode, of all threads. MB: greatest memory. Every mesh is
+of the medians, and the median of the ratios in each turn. CPU: time in user mode, of all threads. MB: the peak of memory. Every mesh is
 judged by `voronaut check`: the share of edges of length in [1/sqrt 2, sqrt 2] in a metric, the mean and the least quality of triangles.
 """
 
@@ -443,7 +443,7 @@ def table(cases, peers):
     columns = {}
     for it in (it for _, results in cases for it in results.values()):
         columns |= {column: list(figures) for column, figures in it.get("figures", {}).items()}
-    rows = [["input", "program", "threads", "s", *(f"multiple of {peer}'s" for peer in peers), "CPU, s", "MB", "vertices",
+    rows = [["input", "program", "threads", "s", *(f"multiple of {peer}'s" for peer in peers), "CPU, s", "peak, MB", "vertices",
              *(f"{column}: {', '.join(names)}" for column, names in columns.items())]]
     for case, results in cases:
         before = None
@@ -479,18 +479,16 @@ def where_better(case, results):
 
 
 def losses(mine, there):
-    """What of theirs is better: costs for every number of threads, figures of the mesh once."""
+    """What of theirs is better: costs with the numbers of threads of ours, figures of the mesh with the metric."""
     if any("failed" in it for it in mine.values()):
         return ["voronaut fails"]
     lost, costs = [], medians(there)
     for key in COSTS:
-        ours_too = {threads: medians(it)[key] for threads, it in mine.items()}
-        less = [f"{told(key, cost)} ({threads})" for threads, cost in ours_too.items() if is_better(key, costs[key], cost)]
-        lost += [f"{key} {told(key, costs[key])}, ours {', '.join(less)}"] if less else []
+        slower = [str(threads) for threads, it in mine.items() if is_better(key, costs[key], medians(it)[key])]
+        lost += [f"{key} ({', '.join(slower)})"] if slower else []
     made = next(iter(mine.values()))["figures"]
     for column, figures in there["figures"].items():
-        lost += [f"{key} ({column}) {told(key, value)}, ours {told(key, made[column][key])}" for key, value in figures.items()
-                 if is_better(key, value, made[column][key])]
+        lost += [f"{key} ({column})" for key, value in figures.items() if is_better(key, value, made[column][key])]
     return lost
 
 
@@ -506,8 +504,8 @@ def page(typed, sections, better):
     parts = [f"# Benchmark\n\nMeasured on {datetime.date.today()} on a machine with {cores} cores and {memory:.0f} GiB of memory "
              f"({version}). `scripts/benchmark.py {given} --runs {typed.runs} --page docs/benchmark.md` wrote this page; no figure in it "
              f"is typed by hand.\n\n{' '.join(__doc__.split(chr(10) * 2)[-1].split())}\n"]
-    parts += [f"## {name}\n\n{text}\n\n{markdown(rows)}" for name, text, rows in sections]
-    said = "Every row in which a peer is faster, takes less, or has a better figure, and ours: of costs in brackets with how many threads."
+    parts += [f"## {name}\n\n{text}\n\n<!-- measured: benchmark-{name} -->\n{markdown(rows)}<!-- end -->\n" for name, text, rows in sections]
+    said = "In what a peer is faster, takes less, or has a better figure: of costs in brackets beside how many threads of ours."
     lines = "\n".join(better) or "None, of the peers that ran."
     return "\n".join([*parts, f"## Where peers are better\n\n{said}\n\n{lines}\n"])
 

@@ -11,8 +11,11 @@ differ by no more than 2 % or one unit of their last digit; times (columns of se
 of three or 0.2 s: machines are noisy; how often other programs fail, by no more than three: not every run of theirs is the same.
 Meshes are the same to the bit whatever the number of threads and the machine.
 
+docs/benchmark.md is compared, too, but written by scripts/benchmark.py alone.
+
 Tables of peers need ffbamg (apt: freefem++), mmg2d_O3 and mmgs_O3 (pip: mmgpy, which brings the numpy that is needed) on the PATH;
-without these they are skipped, and said to be. The exit code is 1 where anything differs. All takes about half an hour.
+that of pages chromium, node and npm; that of parts scipy, mpi4py and mpich (pip), and `maturin develop --release`; without these they are
+skipped, and said to be. The exit code is 1 where anything differs. All takes some two hours, of which parts take most.
 """
 
 import argparse
@@ -38,7 +41,8 @@ NUMBER = re.compile(r"\d[\d,]*(?:\.\d+)?(?:e[+-]?\d+)?")
 NOISE = 0.02
 FAILS_OF_OTHERS = re.compile(r"^(?!voronaut)\S+ fails$")
 MORE_FAILS = 3
-IS_TIME = re.compile(r"\b(s|ns|seconds|microseconds)\b")
+# And what else is of the machine.
+IS_TIME = re.compile(r"\b(s|ns|ms|second|seconds|microseconds|multiple|peak)\b")
 
 AEGEAN = "data/aegean.geojson --metric boundary:h0=0.5,growth=1.2,aspect=4,h_max=30 -n 20000"
 MILD, HARD, SHARP = (f"rect:-1,-1,1,1 --metric shock:phi={phi}" for phi in ("1,lambda=0.6", "10,lambda=0.06", "10,lambda=0.6"))
@@ -80,7 +84,7 @@ def main():
         rows = measure()
         print(f"== {name}\n{markdown(rows)}", flush=True)
         for document, text in stated[name]:
-            if typed.write:
+            if typed.write and not name.startswith("benchmark-"):
                 whole = document.read_text()
                 begin = BEGIN.format(name)
                 document.write_text(whole.replace(f"{begin}\n{text}{END}", f"{begin}\n{markdown(rows)}{END}"))
@@ -514,6 +518,54 @@ def remeshed(script, peer, figures, words):
                 rows.append([row["input"], program, number(found["vertices"], 0), percent(found["unit_fraction"]), pair(quality),
                              seconds(row[program]["seconds"])])
     return rows
+
+
+def benchmark(name):
+    """One group of the benchmark, as its page has it."""
+    with tempfile.TemporaryDirectory() as folder:
+        page = Path(folder, "page.md")
+        run(sys.executable, ROOT / "scripts/benchmark.py", name, "--runs", 3, "--page", page)
+        [(_, text)] = MARKED.findall(page.read_text())
+    return cells(text)
+
+
+@table("mmg2d_O3")
+def benchmark_remesh():
+    return benchmark("remesh")
+
+
+@table("ffbamg")
+def benchmark_shock():
+    return benchmark("shock")
+
+
+@table("node", "npm", os.environ.get("CHROMIUM", "chromium"))
+def pages():
+    printed = run(ROOT / "scripts/test_page", "--measure")
+    rows = [["mesh", "triangles", "page, MB", "written", "load", "frames a second", "processor, ms a frame"]]
+    for line in printed.splitlines():
+        kind, *figures = line.split()
+        if kind in ("plane", "torus"):
+            count, size, written, load, rate, _, busy, _ = map(float, figures)
+            rows.append([kind, number(count, 0), number(size, 2), f"{written:.2f} s", f"{load / 1000:.2f} s", f"{rate:.1f}", number(busy, 0)])
+    return rows
+
+
+def parts(case, *words):
+    with tempfile.TemporaryDirectory() as folder:
+        rows = Path(folder, "rows.json")
+        run(sys.executable, ROOT / "scripts/parts.py", case, *words, "--json", rows)
+        return json.loads(rows.read_text())
+
+
+@table("mpiexec")
+def parts_plane():
+    return parts("plane", "-n", 1_000_000, "--parts", 10, "--ranks", 1, 2, 4)
+
+
+@table("mpiexec")
+def parts_surface():
+    return parts("surface", "-n", 200_000, "--parts", 4, "--ranks", 1, 2, 4)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Union
 
 import numpy as np
@@ -33,7 +33,7 @@ def mesh_in_parts(
     metric: MetricLike,
     n: int,
     options: Options,
-    make: Callable[[str, list[tuple[dict[str, Any], int]]], list[dict[str, Any]]],
+    make: Callable[[str, list[tuple[dict[str, Any], int]]], Iterable[dict[str, Any]]],
     progress: Progress,
 ) -> Mesh:
     held: Held = {"parts": {"maker": make}}
@@ -42,13 +42,13 @@ def mesh_in_parts(
 
 
 def part(
-    domain: object, metric: MetricLike, n: int, of_part: dict[str, Any], vertices: int, options: Options
+    domain: object, metric: MetricLike, n: int, of_part: dict[str, Any], vertices: int, options: Options, progress: Progress
 ) -> dict[str, Any]:
     """The arrays of one part of a mesh."""
     held: Held = {}
     words = {"domain": _given.domain_word(domain, held), "metric": _metric_word(metric, held, domain), "vertices": n, "out": "mesh"}
     held.setdefault("documents", {})["part"] = of_part
-    made: dict[str, Any] = _perform("mesh", {**words, "part": f"{vertices},part"}, options, {}, held, False)["mesh"]
+    made: dict[str, Any] = _perform("mesh", {**words, "part": f"{vertices},part"}, options, {}, held, progress)["mesh"]
     return made
 
 

@@ -8,10 +8,15 @@ What comes out depends on the input and the number of parts alone: not on the nu
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import importlib.metadata
 import os
-from collections.abc import Callable, Iterable, Mapping
+import sys
+import tempfile
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, NamedTuple, Union
@@ -27,6 +32,9 @@ from ._metric import MetricLike
 from ._run import Options, Progress
 
 __all__ = ["Share", "mesh"]
+
+_PERIOD = 0.005
+"""Seconds between two looks at whether there is news."""
 
 
 class Job(NamedTuple):
@@ -113,7 +121,7 @@ def mesh(
     parts : int or "auto", default "auto"
         How many parts, of 1,000 vertices or more; by itself as many as there are 100,000 vertices.
     comm : communicator of mpi4py, optional
-        Whose ranks make parts, all of which call this. Without, as many threads of this process as there are cores.
+        Whose ranks make parts, one at a time each; all of them call this. Without, as many threads of this process as there are cores.
     parts_dir : path, optional
         A folder for the meshes of parts that are done, which ranks share; whoever starts again with it goes on from them.
     gather : bool, default True
@@ -188,14 +196,26 @@ class _Maker:
             self.tell(found, _values(function, job.domain["points"]))
         return self.folder / f"{job.round}-{job.number}-{found.hexdigest()[:16]}.meshb"
 
-    def make(self, job: Job, place: Path | None) -> dict[str, Any]:
+    def make(self, job: Job, place: Path | None, progress: Progress = False) -> dict[str, Any] | Path:
+        """The mesh of a job, or where it is."""
         if place is not None and place.exists():
-            kept = Mesh.read(place)
-            return kept._arrays() | {"is_planar": kept.is_planar}
-        made = _run.part(self.domain, self.metric, self.n, job.domain, job.vertices, self.options)
-        if place is not None:
-            Mesh._of(made).save(place)
-        return made
+            return place
+        _give_back()
+        made = _run.part(self.domain, self.metric, self.n, job.domain, job.vertices, self.options, progress)
+        _give_back()
+        if place is None:
+            return made
+        Mesh._of(made).save(place)
+        return place
+
+
+def _give_back() -> None:
+    """Has the C library return what was freed to the system, where it can: each part is made on threads of its own, whose memory glibc
+    would keep apart, so that a rank would come to hold several parts' worth."""
+    if sys.platform == "linux":
+        trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+        if trim is not None:
+            trim(0)
 
 
 def _values(function: Callable[..., Any], points: Floats) -> Any:
@@ -209,84 +229,116 @@ def _values(function: Callable[..., Any], points: Floats) -> Any:
 
 
 class _Team:
-    """Who makes parts: rank 0 says what, and all of them do."""
+    """Who makes parts: rank 0 says what, and all of them do, itself included; who is done gets the next."""
 
     def __init__(self, comm: Any, maker: _Maker) -> None:
-        self.comm, self.maker = comm, maker
+        # What is said here is not mixed up with what the caller's ranks say to each other.
+        self.comm, self.maker = None if comm is None else comm.Dup(), maker
         self.rank = 0 if comm is None else comm.Get_rank()
-        self.size = 1 if comm is None else comm.Get_size()
+        self.others = 0 if comm is None else comm.Get_size() - 1
+        self.idle = list(range(1, self.others + 1))
+        self.jobs: deque[Job] = deque()
+        self.done: list[tuple[int, Path]] = []
+        self.faults: list[tuple[int, Fault]] = []
+        self.scratch = Path()
 
     def lead(self, parts: int | str, options: Options, progress: Progress) -> Mesh:
-        asked = {**options, "parts": parts}
-        try:
-            made = _run.mesh_in_parts(self.maker.domain, self.maker.metric, self.maker.n, asked, self.make, progress)
-        except BaseException as error:
-            self.end(f"{type(error).__name__}: {error}")
-            raise
-        self.end(None)
-        return made
+        asked, fault = {**options, "parts": parts}, None
+        # What is done waits in files: it would take the memory in which parts are made.
+        with tempfile.TemporaryDirectory(prefix="voronaut-") as scratch:
+            self.scratch = Path(scratch)
+            try:
+                return _run.mesh_in_parts(self.maker.domain, self.maker.metric, self.maker.n, asked, self.make, progress)
+            except BaseException as error:
+                fault = f"{type(error).__name__}: {error}"
+                raise
+            finally:
+                self.jobs.clear()
+                self.await_others()
+                for rank in self.idle:
+                    self.comm.send(fault, rank)
+                if self.comm is not None:
+                    self.comm.Free()
 
-    def end(self, fault: str | None) -> None:
-        if self.size > 1:
-            self.comm.bcast(("end", fault))
-
-    def make(self, name: str, parts: list[tuple[dict[str, Any], int]]) -> list[dict[str, Any]]:
+    def make(self, name: str, parts: list[tuple[dict[str, Any], int]]) -> Iterator[dict[str, Any]]:
         """The meshes of a round, in the order of its parts."""
         jobs = [Job(name, number, domain, vertices) for number, (domain, vertices) in enumerate(parts)]
-        if self.size > 1:
-            self.comm.bcast(("round", None))
-            mine = self.comm.scatter(_dealt(jobs, self.size))
-            done = self.comm.gather(_attempt(self.maker, mine, self.maker.place))
-        else:
-            largest_first = sorted(jobs, key=lambda job: -job.vertices)
+        largest_first = sorted(jobs, key=lambda job: -job.vertices)
+        self.done, self.faults = [], []
+        if self.comm is None:
             # Functions are called from one thread at a time.
             places = {job.number: self.maker.place(job) for job in jobs}
             with ThreadPoolExecutor(_cores()) as pool:
-                done = list(pool.map(lambda job: _attempt(self.maker, [job], lambda job: places[job.number]), largest_first))
-        found: dict[int, dict[str, Any]] = {}
-        for meshes, fault in done:
-            if fault is not None:
-                raise Error(*fault)
-            found.update(meshes)
-        return [found[job.number] for job in jobs]
+                for attempt in pool.map(lambda job: _attempt(self.maker, job, lambda job: places[job.number]), largest_first):
+                    self.keep(*attempt)
+        else:
+            self.jobs = deque(largest_first)
+            self.serve()
+            while self.jobs:
+                self.keep(*_attempt(self.maker, self.jobs.popleft(), self.maker.place, self.serve))
+            self.await_others()
+        if self.faults:
+            raise Error(*min(self.faults)[1])
+        return (_arrays_in(place) for _, place in sorted(self.done))
+
+    def keep(self, number: int, made: dict[str, Any] | Path | None, fault: Fault | None) -> None:
+        if fault is not None:
+            self.faults.append((number, fault))
+            self.jobs.clear()
+        elif isinstance(made, Path):
+            self.done.append((number, made))
+        elif made is not None:
+            place = self.scratch / f"{number}.meshb"
+            Mesh._of(made).save(place)
+            self.done.append((number, place))
+
+    def serve(self, *_: object) -> None:
+        """Takes what others have made, and gives them more to do."""
+        while self.others and self.comm.iprobe():
+            rank, attempt = self.comm.recv()
+            self.idle.append(rank)
+            self.keep(*attempt)
+        while self.jobs and self.idle:
+            self.comm.send(self.jobs.popleft(), self.idle.pop())
+
+    def await_others(self) -> None:
+        while len(self.idle) < self.others:
+            time.sleep(_PERIOD)
+            self.serve()
 
     def follow(self) -> None:
+        """Does what rank 0 says. Whoever waits sleeps: MPI's own waiting takes a core."""
         while True:
-            what, fault = self.comm.bcast(None)
-            if what == "end":
-                if fault is not None:
-                    raise Error(f"rank 0: {fault}")
-                return
-            self.comm.gather(_attempt(self.maker, self.comm.scatter(None), self.maker.place))
+            while not self.comm.iprobe():
+                time.sleep(_PERIOD)
+            job = self.comm.recv()
+            if not isinstance(job, Job):
+                break
+            self.comm.send((self.rank, _attempt(self.maker, job, self.maker.place)), 0)
+        self.comm.Free()
+        if job is not None:
+            raise Error(f"rank 0: {job}")
 
 
 def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _dealt(jobs: list[Job], ranks: int) -> list[list[Job]]:
-    """Jobs for each rank: the largest first, each to whom has least."""
-    dealt: list[list[Job]] = [[] for _ in range(ranks)]
-    load = [0] * ranks
-    for job in sorted(jobs, key=lambda job: (-job.vertices, job.number)):
-        least = load.index(min(load))
-        dealt[least].append(job)
-        load[least] += job.vertices
-    return dealt
+Fault = tuple[str, str]
+Attempt = tuple[int, Union[dict[str, Any], Path, None], Union[Fault, None]]
 
 
-Attempt = tuple[dict[int, dict[str, Any]], Union[tuple[str, str], None]]
+def _attempt(maker: _Maker, job: Job, place: Callable[[Job], Union[Path, None]], progress: Progress = False) -> Attempt:
+    """The number of a job with its mesh, or where that is, or how it failed."""
+    try:
+        return job.number, maker.make(job, place(job), progress), None
+    except Exception as error:
+        return job.number, None, (f"{job}: {getattr(error, 'what', error)}", getattr(error, "help", ""))
 
 
-def _attempt(maker: _Maker, jobs: Iterable[Job], place: Callable[[Job], Union[Path, None]]) -> Attempt:
-    """The meshes of jobs by their numbers, up to one that fails; and how that failed."""
-    found = {}
-    for job in jobs:
-        try:
-            found[job.number] = maker.make(job, place(job))
-        except Exception as error:
-            return found, (f"{job}: {getattr(error, 'what', error)}", getattr(error, "help", ""))
-    return found, None
+def _arrays_in(place: Path) -> dict[str, Any]:
+    mesh = Mesh.read(place)
+    return mesh._arrays() | {"is_planar": mesh.is_planar}
 
 
 def _write_pvtu(place: Path, pieces: list[str]) -> None:

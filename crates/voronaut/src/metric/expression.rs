@@ -2,9 +2,11 @@
 
 use super::parser::Parser;
 use super::program::{Op, run};
+use super::sharing::shared;
 use super::vocabulary::Variables;
 use crate::error::Result;
 use crate::geometry::{Jet3, Point3};
+use std::ops::Range;
 
 /// A compiled expression. From loosest to tightest:
 ///
@@ -32,17 +34,18 @@ impl Expression {
     /// # Errors
     /// [`Error::Parse`](crate::Error::Parse) with the column (from 1, in characters), the text and a caret below it.
     pub fn parse(text: &str, variables: Variables) -> Result<Self> {
-        Self::parse_range(text, 0..text.len(), variables, "expression")
+        Self::named(text, variables, "expression")
     }
 
-    /// Compiles a part of a text; columns count from the start of the whole text, which `name` names in messages.
-    pub(crate) fn parse_range(
-        text: &str,
-        range: std::ops::Range<usize>,
-        variables: Variables,
-        name: &str,
-    ) -> Result<Self> {
-        Ok(Self { code: Parser::new(text, range, variables, name).parse()?, time: 0.0 })
+    /// Compiles a text that `name` names in messages.
+    pub(crate) fn named(text: &str, variables: Variables, name: &str) -> Result<Self> {
+        let program = Self::program(text, 0..text.len(), variables, name)?;
+        Ok(Self { code: shared(&[program]), time: 0.0 })
+    }
+
+    /// The program of a part of a text; columns count from the start of the whole text, which `name` names in messages.
+    pub(super) fn program(text: &str, range: Range<usize>, variables: Variables, name: &str) -> Result<Vec<Op>> {
+        Parser::new(text, range, variables, name).parse()
     }
 
     /// The same at another time, of [`Variables::SpaceMotion`].
@@ -53,14 +56,16 @@ impl Expression {
 
     /// The value at a point; z is not used by expressions of the plane, and is the time of those with one.
     pub(crate) fn at(&self, x: f64, y: f64, z: f64) -> f64 {
-        run(&self.code, [x, y, z, self.time])
+        let [value] = run(&self.code, [x, y, z, self.time]);
+        value
     }
 
     /// The value at a point with its first and second derivatives, exact but for rounding. Where an expression jumps or
     /// has a kink (comparisons, `if`, `abs`, `min`, `max`) they are those of one side.
     pub(crate) fn jet(&self, p: Point3) -> Jet3 {
         let [x, y, z] = Jet3::coordinates(p.x, p.y, p.z);
-        run(&self.code, [x, y, z, self.time.into()])
+        let [value] = run(&self.code, [x, y, z, self.time.into()]);
+        value
     }
 }
 

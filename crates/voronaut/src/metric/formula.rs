@@ -2,6 +2,8 @@
 
 use super::expression::Expression;
 use super::parser::error_at;
+use super::program::{Op, run};
+use super::sharing::shared;
 use super::vocabulary::Variables;
 use super::{MetricField, ScalarField};
 use crate::error::{Error, Result};
@@ -13,14 +15,16 @@ use crate::geometry::{Point, Point3, Tensor, Tensor3};
 /// make no metric.
 #[derive(Clone, Debug)]
 pub struct Formula {
-    entries: [Expression; 3],
+    /// All entries.
+    code: Vec<Op>,
 }
 
 /// The field of space with entries m11, m12, m22, m13, m23, m33 of six expressions in x, y and z; the order is that of
 /// Medit's `.sol` files. Values as for [`Formula`].
 #[derive(Clone, Debug)]
 pub struct SpaceFormula {
-    entries: [Expression; 6],
+    /// All entries.
+    code: Vec<Op>,
 }
 
 impl Formula {
@@ -36,7 +40,7 @@ impl Formula {
                 "in the plane write three entries: m11; m12; m22",
             ));
         }
-        Ok(Self { entries: entries(text, ["m11", "m12", "m22"], "three", Variables::Plane)? })
+        Ok(Self { code: entries(text, &["m11", "m12", "m22"], "three", Variables::Plane)? })
     }
 }
 
@@ -47,37 +51,37 @@ impl SpaceFormula {
     /// [`Error::Parse`] with the column and the place shown.
     pub(crate) fn parse(text: &str) -> Result<Self> {
         let names = ["m11", "m12", "m22", "m13", "m23", "m33"];
-        Ok(Self { entries: entries(text, names, "six", Variables::Space)? })
+        Ok(Self { code: entries(text, &names, "six", Variables::Space)? })
     }
 
     /// The tensor at a point.
     pub(crate) fn tensor(&self, p: Point3) -> Tensor3 {
-        Tensor3::from_disk(self.entries.each_ref().map(|entry| entry.at(p.x, p.y, p.z)))
+        Tensor3::from_disk(run(&self.code, [p.x, p.y, p.z, 0.0]))
     }
 }
 
-/// Expressions between semicolons, as many as there are names; `count` is their number as a word.
-fn entries<const N: usize>(text: &str, names: [&str; N], count: &str, variables: Variables) -> Result<[Expression; N]> {
+/// The program of expressions between semicolons, as many as there are names; `count` is their number as a word.
+fn entries(text: &str, names: &[&str], count: &str, variables: Variables) -> Result<Vec<Op>> {
     let mut starts = vec![0];
     starts.extend(text.match_indices(';').map(|(at, _)| at + 1));
-    if starts.len() != N {
-        let at = if starts.len() < N { text.len() } else { starts[N] - 1 };
+    if starts.len() != names.len() {
+        let at = if starts.len() < names.len() { text.len() } else { starts[names.len()] - 1 };
         let what = format!("{count} entries were expected, not {}", starts.len());
         let coordinates = if variables == Variables::Plane { "x and y" } else { "x, y and z" };
         let help = format!("write {}, each in {coordinates}", names.join("; "));
         return Err(error_at(text, at, "formula", &what, &help));
     }
-    let mut found = Vec::with_capacity(N);
-    for (i, name) in names.iter().enumerate() {
+    let program = |(i, name): (usize, &&str)| {
         let range = starts[i]..starts.get(i + 1).map_or(text.len(), |next| next - 1);
-        found.push(Expression::parse_range(text, range, variables, &format!("formula {name}"))?);
-    }
-    Ok(found.try_into().expect("one expression per name"))
+        Expression::program(text, range, variables, &format!("formula {name}"))
+    };
+    let programs: Vec<Vec<Op>> = names.iter().enumerate().map(program).collect::<Result<_>>()?;
+    Ok(shared(&programs))
 }
 
 impl MetricField for Formula {
     fn at(&self, p: Point) -> Tensor {
-        let [m11, m12, m22] = self.entries.each_ref().map(|entry| entry.at(p.x, p.y, 0.0));
+        let [m11, m12, m22] = run(&self.code, [p.x, p.y, 0.0, 0.0]);
         Tensor::new(m11, m12, m22)
     }
 }

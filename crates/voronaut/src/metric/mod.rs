@@ -35,6 +35,7 @@ mod program;
 mod recovery;
 mod sampled;
 mod scaled;
+mod sharing;
 mod smoothed;
 mod spec;
 mod validate;

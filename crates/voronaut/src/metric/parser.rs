@@ -267,7 +267,8 @@ impl<'a> Parser<'a> {
 fn fold(op: Op, operands: usize, code: &[Op]) -> Option<(usize, Op)> {
     let taken = &code[code.len().checked_sub(operands)?..];
     if operands > 0 && taken.iter().all(|op| matches!(op, Op::Constant(_))) {
-        return Some((operands, Op::Constant(run(&[taken, &[op]].concat(), [0.0; 4]))));
+        let [value] = run(&[taken, &[op, Op::Result(0)]].concat(), [0.0; 4]);
+        return Some((operands, Op::Constant(value)));
     }
     match (op, code) {
         (Op::Power, [.., Op::Constant(2.0)]) => Some((1, Op::Square)),

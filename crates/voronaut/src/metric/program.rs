@@ -116,6 +116,11 @@ pub(super) enum Op {
     Jump(u32),
     /// Takes the condition off the stack.
     JumpIfZero(u32),
+    /// Puts the last value in a place above the stack, too.
+    Keep(u32),
+    Recall(u32),
+    /// Takes the last value off the stack: it is the result with this number.
+    Result(u32),
 }
 
 impl Op {
@@ -124,14 +129,35 @@ impl Op {
         match self {
             Op::Constant(_) | Op::Variable(_) => Some(0),
             Op::Negate | Op::Square | Op::Call(_) => Some(1),
-            Op::Jump(_) | Op::JumpIfZero(_) => None,
+            Op::Jump(_) | Op::JumpIfZero(_) | Op::Keep(_) | Op::Recall(_) | Op::Result(_) => None,
             _ => Some(2),
+        }
+    }
+
+    /// What it does with its operands, as numbers: of the same function the same.
+    pub(super) fn identity(self) -> (u8, u64) {
+        match self {
+            Op::Constant(value) => (0, value.to_bits()),
+            Op::Variable(i) => (1, i as u64),
+            Op::Call(function) => (2, std::ptr::from_ref(function) as u64),
+            Op::Test(holds) => (3, holds as usize as u64),
+            Op::Choose(one_of) => (4, one_of as usize as u64),
+            Op::Negate => (5, 0),
+            Op::Square => (6, 0),
+            Op::Add => (7, 0),
+            Op::Subtract => (8, 0),
+            Op::Multiply => (9, 0),
+            Op::Divide => (10, 0),
+            Op::Power => (11, 0),
+            Op::Atan2 => (12, 0),
+            Op::Jump(i) | Op::JumpIfZero(i) | Op::Keep(i) | Op::Recall(i) | Op::Result(i) => (13, u64::from(i)),
         }
     }
 }
 
-/// What a program makes of its variables.
-pub(super) fn run<N: Number>(code: &[Op], variables: [N; 4]) -> N {
+/// What a program makes of its variables: its results.
+pub(super) fn run<N: Number, const RESULTS: usize>(code: &[Op], variables: [N; 4]) -> [N; RESULTS] {
+    let mut results = [N::from(0.0); RESULTS];
     // The last value is kept out of the stack: most operations then touch it once or not at all.
     let mut stack = [N::from(0.0); STACK];
     let mut top = 0;
@@ -164,9 +190,18 @@ pub(super) fn run<N: Number>(code: &[Op], variables: [N; 4]) -> N {
                 }
                 value = pop(&stack, &mut top);
             }
+            Op::Keep(place) => stack[place as usize % STACK] = value,
+            Op::Recall(place) => {
+                let kept = stack[place as usize % STACK];
+                push(&mut stack, &mut top, &mut value, kept);
+            }
+            Op::Result(number) => {
+                results[number as usize] = value;
+                value = pop(&stack, &mut top);
+            }
         }
     }
-    value
+    results
 }
 
 // The compiler in `parser` keeps the height below STACK; the remainder spares the bounds check.

@@ -106,7 +106,7 @@ fn boundary(parameters: &Parameters) -> Result<MetricSpec> {
 }
 
 fn hessian(text: &str) -> Result<MetricSpec> {
-    Ok(MetricSpec::Hessian(Expression::parse_range(text, 0..text.len(), Variables::Plane, "metric hessian")?))
+    Ok(MetricSpec::Hessian(Expression::named(text, Variables::Plane, "metric hessian")?))
 }
 
 fn number(place: &str, key: &str, value: &str) -> Result<f64> {

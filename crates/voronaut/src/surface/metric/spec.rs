@@ -39,7 +39,7 @@ impl Spec {
             "curvature" => curvature(&Parameters::read("curvature", parameters, &["floor"])?),
             "hessian" => {
                 let text = parameters.unwrap_or_default();
-                Ok(Self::Hessian(Expression::parse_range(text, 0..text.len(), Variables::Space, "metric hessian")?))
+                Ok(Self::Hessian(Expression::named(text, Variables::Space, "metric hessian")?))
             }
             "uniform" | "swirl" | "boundary" => Err(planar(text)),
             // Shocks are written as in the plane.

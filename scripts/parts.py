@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""Makes one mesh in parts, by processes and by ranks of MPI, compares the bytes, and judges it beside meshes in one piece.
+
+    scripts/parts.py plane                  # the hard shock, 200,000 vertices in 4 parts
+    scripts/parts.py plane -n 1000000 --parts 10 --ranks 1 2 4
+    scripts/parts.py surface -n 200000 --parts 4 --rotated 5
+    scripts/parts.py plane -n 5000000 --parts 50 --ranks --rotated 0 --no-whole
+    scripts/parts.py plane --json table.json                   # its lines as a table, too
+
+Set up: `cargo build --release`, and into the Python that runs this `pip install scipy mpi4py mpich maturin`, then `maturin develop
+--release`. Python's ranks keep to one core each, as do the program's processes.
+
+Strips are what was made anew around cuts. The same places of a mesh in one piece are its triangles whose nearest triangle of the other
+mesh, by centroids, is of a strip. Meshes in one piece are also made of the domain turned around the origin, with the metric turned
+along; from one to the next their worst triangles differ. Memory of ranks is counted over a process that only imports; that of the
+largest part is of a process that makes nothing else.
+"""
+
+import argparse
+import json
+import math
+import os
+import pickle
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+VORONAUT = ROOT / "target/release/voronaut"
+SPOT = ROOT / "data/spot.obj"
+PHI, LAMBDA = 10, 0.06
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("case", choices=CASES)
+    parser.add_argument("-n", type=int, default=200_000)
+    parser.add_argument("--parts", type=int, default=4)
+    parser.add_argument("--processes", type=int, nargs="*", default=[2])
+    parser.add_argument("--ranks", type=int, nargs="*", default=[1, 2])
+    parser.add_argument("--rotated", type=int, default=5, help="meshes in one piece of the domain turned")
+    parser.add_argument("--no-whole", action="store_true", help="no mesh in one piece of the domain as it is")
+    parser.add_argument("--folder", type=Path, help="what is kept of an earlier run, and of this one")
+    parser.add_argument("--json", type=Path, help="a file for the rows of a table")
+    parser.add_argument("--rank", choices=["import", "mesh", "largest"], help=argparse.SUPPRESS)
+    typed = parser.parse_args()
+    if typed.rank:
+        return be_a_rank(typed)
+    with tempfile.TemporaryDirectory() as scratch:
+        compare(typed, typed.folder or Path(scratch))
+
+
+def compare(typed, folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = Rows()
+    made = {f"{count} processes": by_processes(typed, folder, count, rows) for count in typed.processes}
+    if typed.ranks:
+        nothing = memory_of(typed, folder, "import", 1)[0]
+        rows.add("the largest part alone", peaks=[memory_of(typed, folder, "largest", 1)[0] - nothing])
+    for count in typed.ranks:
+        peaks = [peak - nothing for peak in memory_of(typed, folder, "mesh", count)]
+        name = f"{count} rank{'s' * (count > 1)}"
+        rows.add(name, json.loads((folder / "rank.json").read_text()), peaks)
+        made[name] = (folder / "rank.meshb").read_bytes()
+    others = [how for how, mesh in made.items() if mesh != next(iter(made.values()))]
+    if others:
+        sys.exit(f"other bytes than by {next(iter(made))}: {', '.join(others)}")
+    print(f"the same bytes: {', '.join(made)}", flush=True)
+    if not typed.no_whole:
+        strips(typed, folder, rows)
+    for turn in range(1, typed.rotated + 1):
+        told, peak = in_one_piece(typed, folder, 2 * math.pi * turn / (typed.rotated + 1), f"turned-{turn}")
+        rows.add(f"in one piece, turned {turn}", told, [peak])
+    if typed.json:
+        typed.json.write_text(json.dumps(rows.rows))
+
+
+class Rows:
+    """A table that is printed as it comes to be."""
+
+    def __init__(self):
+        self.rows = [["", "triangles", "unit edges", "quality, mean / min", "seconds", "peak, MB"]]
+
+    def add(self, name, told=None, peaks=()):
+        """What a report says of a mesh, if there is one; the greatest peak of memory is told, all are printed."""
+        figures = ["-"] * 4
+        if told:
+            quality = told["quality"]
+            figures = [f"{told['triangles']:,}", f"{100 * told['metric_edge_length']['unit_fraction']:.2f} %",
+                       f"{quality['mean']:.4f} / {quality['min']:.2g}", f"{told['seconds']:.0f} s" if told["seconds"] else "-"]
+        row = [name, *figures, f"{max(peaks):.0f}" if peaks else "-"]
+        print(" | ".join(row), *(f"{peak:.0f}" for peak in peaks[1:]), flush=True)
+        self.rows.append(row)
+
+
+def by_processes(typed, folder, count, rows):
+    """Makes the mesh by so many processes, and returns its bytes."""
+    out, kept = folder / f"processes-{count}.meshb", folder / f"kept-{count}"
+    words = ["--parts", typed.parts, "--parts-dir", kept, "--threads", count, "-n", typed.n]
+    told, peak = run(["mesh", *CASES[typed.case](folder, 0), *words], out)
+    assert told["valid"] and told["vertices"] == typed.n
+    print(", ".join(f"{stage} {seconds:.1f} s" for stage, seconds in told["stages"].items()), flush=True)
+    rows.add(f"{count} processes", told, [peak])
+    return out.read_bytes()
+
+
+def run(words, out):
+    """What the program reports, and the greatest peak of its processes' memory in MB."""
+    report = out.with_suffix(".json")
+    command = [VORONAUT, *map(str, words), "-o", out, "--report", report, "-q"]
+    told = subprocess.run([sys.executable, "-c", PEAK, *command], check=True, capture_output=True, text=True)
+    found = json.loads(report.read_text())
+    return {**found, "stages": found["seconds"], "seconds": found["seconds"]["total"]}, float(told.stdout) / 1024
+
+
+# Runs a program, and says what it and its own processes took at most.
+PEAK = """import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"""
+
+
+def memory_of(typed, folder, what, ranks):
+    """The peaks of the ranks' memory, in MB."""
+    words = [sys.executable, __file__, typed.case, "-n", typed.n, "--parts", typed.parts, "--folder", folder, "--rank", what]
+    mpiexec = Path(sys.executable).with_name("mpiexec")
+    subprocess.run([mpiexec, "-n", str(ranks), *map(str, words)], check=True)
+    return [float(path.read_text()) for path in sorted(folder.glob(f"{what}-*.peak"))[:ranks]]
+
+
+def be_a_rank(typed):
+    from mpi4py import MPI
+
+    import voronaut
+    from voronaut import distributed
+
+    comm = MPI.COMM_WORLD
+    domain, _, metric = CASES[typed.case](typed.folder, 0)
+    job = typed.folder / "largest.pickle"
+    if typed.rank == "largest" and not job.exists():
+        write_largest(typed, distributed, (domain, metric), job)
+        os.execv(sys.executable, [sys.executable, *sys.argv])
+    begun = time.perf_counter()
+    if typed.rank == "largest":
+        maker = distributed._Maker(domain, metric, typed.n, {}, None)
+        maker.make(pickle.loads(job.read_bytes()), None)
+    if typed.rank == "mesh":
+        mesh = distributed.mesh(domain, metric, typed.n, typed.parts, comm)
+        if mesh is not None:
+            (typed.folder / "rank.json").write_text(json.dumps({**mesh.report, "seconds": time.perf_counter() - begun}))
+            peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+            mesh.save(typed.folder / "rank.meshb")
+    peak = peak if typed.rank == "mesh" and comm.Get_rank() == 0 else resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    (typed.folder / f"{typed.rank}-{comm.Get_rank()}.peak").write_text(str(peak / 1024))
+
+
+def write_largest(typed, distributed, given, job):
+    """Keeps the job of the largest part for a process that makes nothing else."""
+    class Enough(Exception):
+        pass
+
+    class Team(distributed._Team):
+        def make(self, name, parts):
+            number = max(range(len(parts)), key=lambda i: parts[i][1])
+            job.write_bytes(pickle.dumps(distributed.Job(name, number, *parts[number])))
+            raise Enough
+
+    try:
+        Team(None, distributed._Maker(*given, typed.n, {}, None)).lead(typed.parts, {}, False)
+    except Enough:
+        pass
+
+
+def in_one_piece(typed, folder, angle, name):
+    return run(["mesh", *CASES[typed.case](folder, angle), "-n", typed.n], folder / f"{name}.meshb")
+
+
+def strips(typed, folder, rows):
+    """Judges strips beside the same places in one piece."""
+    import voronaut
+    from scipy.spatial import cKDTree
+
+    told, peak = in_one_piece(typed, folder, 0, "whole")
+    rows.add("in one piece", told, [peak])
+    count = typed.processes[0]
+    parts, whole = (voronaut.Mesh.read(folder / f"{name}.meshb") for name in (f"processes-{count}", "whole"))
+    anew = [voronaut.Mesh.read(path).points for path in sorted((folder / f"kept-{count}").glob("[sj]*[0-9].meshb"))]
+    known = set(map(bytes, np.concatenate(anew)))
+    at = np.fromiter((bytes(p) in known for p in parts.points), bool, len(parts.points))
+    in_strip = at[parts.triangles].all(axis=1)
+    middles = [mesh.points[mesh.triangles].mean(axis=1) for mesh in (parts, whole)]
+    nearest = cKDTree(middles[0]).query(middles[1])[1]
+    for name, mesh, taken in (("strips", parts, in_strip), ("the same places in one piece", whole, in_strip[nearest])):
+        triangles = mesh.triangles[taken]
+        used, numbers = np.unique(triangles, return_inverse=True)
+        place = folder / "strips.meshb"
+        voronaut.Mesh(mesh.points[used], numbers.reshape(-1, 3)).save(place)
+        scale = json.loads((folder / f"processes-{count}.json").read_text())["metric_scale"]
+        domain, *metric = CASES[typed.case](folder, 0)
+        words = ["check", place, *metric, "--metric-scale", scale, *(["--domain", domain] if typed.case == "surface" else [])]
+        subprocess.run([VORONAUT, *map(str, words), "--report", folder / "strips.json", "-q"], check=False)
+        rows.add(name, {**json.loads((folder / "strips.json").read_text()), "seconds": None})
+
+
+def plane(folder, angle):
+    """The hard shock on its square, turned."""
+    c, s = math.cos(angle), math.sin(angle)
+    if angle == 0:
+        return "rect:-1,-1,1,1", "--metric", f"shock:phi={PHI},lambda={LAMBDA}"
+    corners = [[c * x - s * y, s * x + c * y] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))]
+    domain = folder / f"square-{angle:.4f}.geojson"
+    domain.write_text(json.dumps({"type": "Polygon", "coordinates": [corners]}))
+    x, y = f"({c!r}*x+{s!r}*y)", f"({c!r}*y-{s!r}*x)"
+    slope = f"((1-tanh((2*{x}-sin(5*{y}))/{LAMBDA})^2)/{LAMBDA})"
+    gx, gy = f"(2*{slope}+3*{x}^2+{y}^2)", f"(2*{x}*{y}-5*cos(5*{y})*{slope})"
+    gu, gv = f"({c!r}*{gx}-{s!r}*{gy})", f"({s!r}*{gx}+{c!r}*{gy})"
+    # I + (2 phi / |g| + phi^2) g g'.
+    factor = f"({2 * PHI}/sqrt({gx}^2+{gy}^2)+{PHI**2})"
+    return domain, "--metric", f"formula:1+{factor}*{gu}^2; {factor}*{gu}*{gv}; 1+{factor}*{gv}^2"
+
+
+def surface(folder, angle):
+    """spot, turned around an axis that is none of its own."""
+    if angle == 0:
+        return SPOT, "--metric", "curvature"
+    axis = np.array([1.0, 2.0, 3.0]) / math.sqrt(14)
+    cross = np.cross(np.eye(3), axis)
+    turned = np.eye(3) * math.cos(angle) - cross * math.sin(angle) + (1 - math.cos(angle)) * np.outer(axis, axis)
+    lines = SPOT.read_text().splitlines()
+    at = [turned @ [float(word) for word in line.split()[1:4]] for line in lines if line.startswith("v ")]
+    faces = [line for line in lines if line.startswith("f ")]
+    domain = folder / f"spot-{angle:.4f}.obj"
+    domain.write_text("\n".join([*("v {!r} {!r} {!r}".format(*map(float, p)) for p in at),
+                                 *("f " + " ".join(word.split("/")[0] for word in face.split()[1:]) for face in faces)]) + "\n")
+    return domain, "--metric", "curvature"
+
+
+CASES = {"plane": plane, "surface": surface}
+
+if __name__ == "__main__":
+    main()
