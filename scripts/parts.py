@@ -12,8 +12,8 @@ Set up: `cargo build --release`, and into the Python that runs this `pip install
 
 Strips are what was made anew around cuts. The same places of a mesh in one piece are its triangles whose nearest triangle of the other
 mesh, by centroids, is of a strip. Meshes in one piece are also made of the domain turned around the origin, with the metric turned
-along; from one to the next their worst triangles differ. Memory of ranks is counted over a process that only imports; that of the
-largest part is of a process that makes nothing else.
+along; from one to the next their worst triangles differ. Memory of ranks is counted over a process that only imports; that of a part
+alone is of a process that makes nothing else, and the part is the one that takes most.
 """
 
 import argparse
@@ -26,6 +26,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -47,7 +48,8 @@ def main():
     parser.add_argument("--no-whole", action="store_true", help="no mesh in one piece of the domain as it is")
     parser.add_argument("--folder", type=Path, help="what is kept of an earlier run, and of this one")
     parser.add_argument("--json", type=Path, help="a file for the rows of a table")
-    parser.add_argument("--rank", choices=["import", "mesh", "largest"], help=argparse.SUPPRESS)
+    parser.add_argument("--rank", choices=["import", "mesh", "jobs", "part"], help=argparse.SUPPRESS)
+    parser.add_argument("--part", type=int, help=argparse.SUPPRESS)
     typed = parser.parse_args()
     if typed.rank:
         return be_a_rank(typed)
@@ -61,7 +63,10 @@ def compare(typed, folder):
     made = {f"{count} processes": by_processes(typed, folder, count, rows) for count in typed.processes}
     if typed.ranks:
         nothing = memory_of(typed, folder, "import", 1)[0]
-        rows.add("the largest part alone", peaks=[memory_of(typed, folder, "largest", 1)[0] - nothing])
+        memory_of(typed, folder, "jobs", 1)
+        with ThreadPoolExecutor(2) as pool:
+            alone = list(pool.map(lambda part: memory_of(typed, folder, "part", 1, "--part", part)[0], range(typed.parts)))
+        rows.add("a part alone", peaks=[max(alone) - nothing])
     for count in typed.ranks:
         peaks = [peak - nothing for peak in memory_of(typed, folder, "mesh", count)]
         name = f"{count} rank{'s' * (count > 1)}"
@@ -124,49 +129,45 @@ subprocess.run(sys.argv[1:], check=True)
 print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"""
 
 
-def memory_of(typed, folder, what, ranks):
+def memory_of(typed, folder, what, ranks, *more):
     """The peaks of the ranks' memory, in MB."""
-    words = [sys.executable, __file__, typed.case, "-n", typed.n, "--parts", typed.parts, "--folder", folder, "--rank", what]
+    words = [sys.executable, __file__, typed.case, "-n", typed.n, "--parts", typed.parts, "--folder", folder, "--rank", what, *more]
     mpiexec = Path(sys.executable).with_name("mpiexec")
     subprocess.run([mpiexec, "-n", str(ranks), *map(str, words)], check=True)
-    return [float(path.read_text()) for path in sorted(folder.glob(f"{what}-*.peak"))[:ranks]]
+    name = "-".join([what, *map(str, more[1:])])
+    return [float((folder / f"{name}-{rank}.peak").read_text()) for rank in range(ranks)]
 
 
 def be_a_rank(typed):
     from mpi4py import MPI
 
-    import voronaut
     from voronaut import distributed
 
-    comm = MPI.COMM_WORLD
     domain, _, metric = CASES[typed.case](typed.folder, 0)
-    job = typed.folder / "largest.pickle"
-    if typed.rank == "largest" and not job.exists():
-        write_largest(typed, distributed, (domain, metric), job)
-        os.execv(sys.executable, [sys.executable, *sys.argv])
-    begun = time.perf_counter()
-    if typed.rank == "largest":
-        maker = distributed._Maker(domain, metric, typed.n, {}, None)
-        maker.make(pickle.loads(job.read_bytes()), None)
+    comm, jobs, name = MPI.COMM_WORLD, typed.folder / "jobs.pickle", typed.rank
+    begun, mesh = time.perf_counter(), None
+    if typed.rank == "jobs":
+        write_jobs(typed, distributed, (domain, metric), jobs)
+    if typed.rank == "part":
+        name = f"part-{typed.part}"
+        distributed._Maker(domain, metric, typed.n, {}, None).make(pickle.loads(jobs.read_bytes())[typed.part], None)
     if typed.rank == "mesh":
         mesh = distributed.mesh(domain, metric, typed.n, typed.parts, comm)
-        if mesh is not None:
-            (typed.folder / "rank.json").write_text(json.dumps({**mesh.report, "seconds": time.perf_counter() - begun}))
-            peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-            mesh.save(typed.folder / "rank.meshb")
-    peak = peak if typed.rank == "mesh" and comm.Get_rank() == 0 else resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    (typed.folder / f"{typed.rank}-{comm.Get_rank()}.peak").write_text(str(peak / 1024))
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    (typed.folder / f"{name}-{comm.Get_rank()}.peak").write_text(str(peak))
+    if mesh is not None:
+        (typed.folder / "rank.json").write_text(json.dumps({**mesh.report, "seconds": time.perf_counter() - begun}))
+        mesh.save(typed.folder / "rank.meshb")
 
 
-def write_largest(typed, distributed, given, job):
-    """Keeps the job of the largest part for a process that makes nothing else."""
+def write_jobs(typed, distributed, given, jobs):
+    """Keeps the jobs of all parts, for processes that make one each."""
     class Enough(Exception):
         pass
 
     class Team(distributed._Team):
         def make(self, name, parts):
-            number = max(range(len(parts)), key=lambda i: parts[i][1])
-            job.write_bytes(pickle.dumps(distributed.Job(name, number, *parts[number])))
+            jobs.write_bytes(pickle.dumps([distributed.Job(name, number, *part) for number, part in enumerate(parts)]))
             raise Enough
 
     try:

@@ -69,13 +69,13 @@ fn closed_form(meshed: &Meshed, unmet: &Unmet) -> Option<ClosedForm> {
 
 /// Adds what a planar mesh is in a metric; its edges that are not of unit length.
 pub(crate) fn measure_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
-    report.add_quality(&metric_quality(mesh, metric)?);
-    if mesh.curved.is_some() {
-        // Causes are those of straight edges.
-        return Ok(Unmet::default());
+    // Causes are those of straight edges.
+    let unmet = if mesh.curved.is_some() { Unmet::default() } else { unmet(mesh, metric)? };
+    match &unmet.quality {
+        Some(quality) => report.add_quality(quality),
+        None => report.add_quality(&metric_quality(mesh, metric)?),
     }
-    let unmet = unmet(mesh, metric)?;
-    report.unmet = Some(unmet.figures());
+    report.unmet = mesh.curved.is_none().then(|| unmet.figures());
     Ok(unmet)
 }
 
@@ -86,9 +86,12 @@ pub(crate) fn measure_on_surface(
     surface: &Surface,
     metric: &Scaled,
 ) -> Result<Unmet> {
-    report.add_quality(&surface_quality(mesh, surface, metric)?);
     report.curvature = metric.field.curvature_figures();
     let unmet = surface_unmet(mesh, surface, metric)?;
+    match &unmet.quality {
+        Some(quality) => report.add_quality(quality),
+        None => report.add_quality(&surface_quality(mesh, surface, metric)?),
+    }
     report.unmet = Some(unmet.figures());
     Ok(unmet)
 }

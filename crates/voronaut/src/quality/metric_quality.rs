@@ -110,7 +110,7 @@ pub(super) struct Corners<'a> {
     found: Vec<(Tensor, Near)>,
 }
 
-/// Vertices that are measured one after the other.
+/// What is measured one after the other, such as vertices.
 const PART: usize = 256;
 
 impl<'a> Corners<'a> {
@@ -131,8 +131,11 @@ impl<'a> Corners<'a> {
             vertices.iter().map(&mut at).collect()
         };
         let parts: Vec<Result<Vec<_>>> = vertices.par_chunks(PART).map(part).collect();
-        let parts: Vec<Vec<_>> = parts.into_iter().collect::<Result<_>>()?;
-        Ok(Self { mesh, metric, found: parts.into_iter().flatten().collect() })
+        let mut found = Vec::with_capacity(vertices.len());
+        for part in parts {
+            found.append(&mut part?);
+        }
+        Ok(Self { mesh, metric, found })
     }
 
     /// The metric length of an edge, see [`edge_length`].
@@ -166,26 +169,44 @@ pub(super) fn figures(
     position: impl Fn(Point3) -> Position,
 ) -> Result<MetricQuality> {
     let edges = Edges::of(&mesh.triangles);
-    let on_boundary = marked(mesh.points.len(), edges.boundary().flat_map(|side| side.ends));
+    let first: Vec<&EdgeSide> = edges.iter().map(|sides| &sides[0]).collect();
+    let lengths = collect(&first, |side| length(side))?;
+    let numbers: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+    let shapes = collect(&numbers, |&t| Ok(shape(t as usize)?.figures()))?;
+    let on_boundary = boundary(mesh, &edges);
     let ends: Vec<[u32; 2]> = edges.ends().collect();
-    let first: Vec<EdgeSide> = edges.iter().map(|sides| sides[0]).collect();
-    let lengths = collect(&first, length)?;
-    let numbers: Vec<usize> = (0..mesh.triangles.len()).collect();
-    let shapes = collect(&numbers, |&t| shape(t))?;
+    summed(mesh, &on_boundary, (&ends, &lengths), &shapes, position)
+        .ok_or_else(|| fault("there are no triangles", "the array of triangles"))
+}
+
+/// Which vertices are on the boundary.
+pub(super) fn boundary(mesh: &Mesh, edges: &Edges) -> Vec<bool> {
+    marked(mesh.points.len(), edges.boundary().flat_map(|side| side.ends))
+}
+
+/// The figures of a mesh from the vertices on its boundary, its edges with their metric lengths, and the quality and the smallest angle of
+/// each triangle; none without triangles.
+pub(super) fn summed(
+    mesh: &Mesh,
+    on_boundary: &[bool],
+    (ends, lengths): (&[[u32; 2]], &[f64]),
+    shapes: &[[f64; 2]],
+    position: impl Fn(Point3) -> Position,
+) -> Option<MetricQuality> {
     let is_interior = |ends: &[u32; 2]| ends.iter().all(|&v| !on_boundary[v as usize]);
-    let interior = ends.iter().zip(&lengths).filter(|(ends, _)| is_interior(ends)).map(|(_, &length)| length);
-    let all = EdgeLengths::of(&lengths).ok_or_else(|| fault("there are no triangles", "the array of triangles"))?;
+    let interior = ends.iter().zip(lengths).filter(|(ends, _)| is_interior(ends)).map(|(_, &length)| length);
     let of_triangle = |t: usize| position(middle(mesh, &mesh.triangles[t]));
     let of_edge = |e: usize| position(middle(mesh, &ends[e]));
-    Ok(MetricQuality {
-        metric_edge_length: all,
+    let [quality, angle] = [|shape: &[f64; 2]| shape[0], |shape: &[f64; 2]| shape[1]];
+    Some(MetricQuality {
+        metric_edge_length: EdgeLengths::of(lengths)?,
         interior_edge_length: EdgeLengths::of(&interior.collect::<Vec<_>>()),
-        quality: Quality { min: least(&shapes, |s| s.quality), mean: mean(&shapes, |s| s.quality) },
-        angle: Angles { min: least(&shapes, |s| s.angle), mean_min: mean(&shapes, |s| s.angle) },
+        quality: Quality { min: least(shapes, quality), mean: mean(shapes, quality) },
+        angle: Angles { min: least(shapes, angle), mean_min: mean(shapes, angle) },
         worst: Worst {
-            triangle: spot(&shapes, |s| s.quality, of_triangle),
-            longest_edge: spot(&lengths, |l| -l, of_edge).map(|length| -length),
-            shortest_edge: spot(&lengths, |&l| l, of_edge),
+            triangle: spot(shapes, quality, of_triangle),
+            longest_edge: spot(lengths, |l| -l, of_edge).map(|length| -length),
+            shortest_edge: spot(lengths, |&l| l, of_edge),
         },
     })
 }
@@ -249,9 +270,12 @@ impl Shape {
 }
 /// Maps in parallel; the error is that of the first item that has one, for any number of threads.
 pub(super) fn collect<T: Sync, U: Send>(items: &[T], f: impl Fn(&T) -> Result<U> + Sync + Send) -> Result<Vec<U>> {
-    // Errors are large: only the first is kept, by asking for it again.
-    let values: Vec<Option<U>> = items.par_iter().map(|item| f(item).ok()).collect();
-    values.into_iter().zip(items).map(|(value, item)| value.map_or_else(|| f(item), Ok)).collect()
+    let parts: Vec<Result<Vec<U>>> = items.par_chunks(PART).map(|part| part.iter().map(&f).collect()).collect();
+    let mut all = Vec::with_capacity(items.len());
+    for part in parts {
+        all.append(&mut part?);
+    }
+    Ok(all)
 }
 
 /// The least figure; infinite of nothing.

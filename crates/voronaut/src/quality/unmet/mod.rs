@@ -5,7 +5,7 @@ mod forced;
 mod tests;
 
 use super::faults::{Position, middle};
-use super::metric_quality::{Corners, Shape, collect, demand_planar, demand_vertices};
+use super::metric_quality::{Corners, MetricQuality, Shape, boundary, collect, demand_planar, demand_vertices, summed};
 use super::surface_quality::Field;
 use crate::elementary::Elementary;
 use crate::error::Result;
@@ -93,6 +93,9 @@ pub struct Unmet {
     pub lengths: Vec<f64>,
     /// The quality of each triangle, and its smallest angle in the metric (degrees).
     pub shapes: Vec<[f64; 2]>,
+    /// What [`metric_quality`](super::metric_quality()) finds, or [`surface_quality`](super::surface_quality()) of a surface; `None` where
+    /// there are no triangles.
+    pub quality: Option<MetricQuality>,
 }
 
 /// So many needles are told one by one.
@@ -240,6 +243,8 @@ fn find<'a>(
     let lengths = collect(&ends, |&ends| length(ends))?;
     let curves = Curves::of(mesh, &edges, corner);
     let forced = Forced::of(&curves, &edges, &lengths);
+    let on_boundary = boundary(mesh, &edges);
+    drop(edges);
     let density = Density::of(mesh.points.len(), &ends, &lengths, |e| forced[e] == Forced::No);
     let turns = |e: usize| {
         let around = around(ends[e]);
@@ -275,7 +280,8 @@ fn find<'a>(
     let mut needles: Vec<Needle> = mesh.triangles.iter().zip(&shapes).filter_map(needle).collect();
     needles.sort_by(|a, b| a.quality.total_cmp(&b.quality));
     let edges = wrong.into_par_iter().map(edge).collect();
-    Ok(Unmet { edges, needles, lengths, shapes })
+    let quality = summed(mesh, &on_boundary, (&ends, &lengths), &shapes, &position);
+    Ok(Unmet { edges, needles, lengths, shapes, quality })
 }
 
 /// The quality of a triangle of two unit edges and one of this metric length.

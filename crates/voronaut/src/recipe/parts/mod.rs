@@ -145,8 +145,7 @@ fn in_parts(
     let cut = watch.time("partition", || on.partition(parts, options, progress))?;
     let mut notes = cut.notes;
     let meshes = watch.time("parts", || make("parts", &cut.parts))?;
-    let mut whole = watch.time("stitch", || Whole::of_parts(on, cut.kept, &meshes));
-    drop(meshes);
+    let mut whole = watch.time("stitch", || Whole::of_parts(on, cut.kept, meshes));
     let strips = whole.strips();
     remake(on, &mut whole, ("strips", &strips, cut.vertices), make, &watch)?;
     let junctions = whole.junctions();

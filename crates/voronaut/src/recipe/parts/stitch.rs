@@ -41,9 +41,9 @@ pub(super) struct Whole {
 
 impl Whole {
     /// The meshes of all parts, joined.
-    pub(super) fn of_parts(on: &impl Divisible, mut kept: Kept, parts: &[Mesh]) -> Self {
-        let mut joiner = Joiner::default();
-        (0..).zip(parts).for_each(|(owner, part)| joiner.add(part, owner));
+    pub(super) fn of_parts(on: &impl Divisible, mut kept: Kept, parts: Vec<Mesh>) -> Self {
+        let mut joiner = Joiner::with_room_for(&parts);
+        (0..).zip(parts).for_each(|(owner, part)| joiner.add(&part, owner));
         let Joiner { mesh, owners, mut cuts, .. } = joiner;
         cuts.sort_unstable();
         cuts.dedup();
@@ -112,7 +112,7 @@ impl Whole {
     /// Puts meshes in the place of regions.
     pub(super) fn replace(&mut self, regions: &[Vec<u32>], meshes: &[Mesh]) {
         let goes = marked(self.mesh.triangles.len(), regions.iter().flatten().copied());
-        let (mut joiner, number) = self.without(&goes);
+        let (mut joiner, number) = self.without(&goes, meshes);
         self.junctions.iter_mut().for_each(|v| *v = number[*v as usize]);
         for (region, mesh) in regions.iter().zip(meshes) {
             joiner.add(mesh, self.owners[region[0] as usize]);
@@ -122,13 +122,13 @@ impl Whole {
     }
 
     /// What stays, to be joined with what comes; and the new numbers of vertices.
-    fn without(&self, goes: &[bool]) -> (Joiner, Vec<u32>) {
+    fn without(&self, goes: &[bool], comes: &[Mesh]) -> (Joiner, Vec<u32>) {
         let old = &self.mesh;
         let staying = || (0..old.triangles.len()).filter(|&t| !goes[t]);
         let stays = marked(old.points.len(), staying().flat_map(|t| old.triangles[t]));
         let going = (0..old.triangles.len()).filter(|&t| goes[t]).flat_map(|t| old.triangles[t]);
         let is_near = marked(old.points.len(), going);
-        let mut joiner = Joiner::default();
+        let mut joiner = Joiner::with_room_for(comes.iter().chain([old]));
         let mut number = vec![u32::MAX; old.points.len()];
         for v in (0..old.points.len()).filter(|&v| stays[v]) {
             number[v] = joiner.push(old, v);
@@ -181,6 +181,19 @@ struct Joiner {
 }
 
 impl Joiner {
+    fn with_room_for<'a>(meshes: impl IntoIterator<Item = &'a Mesh>) -> Self {
+        let add = |(points, triangles), mesh: &Mesh| (points + mesh.points.len(), triangles + mesh.triangles.len());
+        let (points, triangles) = meshes.into_iter().fold((0, 0), add);
+        let mesh = Mesh {
+            points: Vec::with_capacity(points),
+            point_labels: Vec::with_capacity(points),
+            triangles: Vec::with_capacity(triangles),
+            triangle_labels: Vec::with_capacity(triangles),
+            ..Mesh::default()
+        };
+        Self { mesh, owners: Vec::with_capacity(triangles), ..Self::default() }
+    }
+
     fn add(&mut self, part: &Mesh, owner: u32) {
         let is_shared = marked(part.points.len(), part.edges.as_flattened().iter().copied());
         let number: Vec<u32> = (0..part.points.len())
