@@ -15,7 +15,7 @@ docs/benchmark.md is compared, too, but written by scripts/benchmark.py alone.
 
 Tables of peers need ffbamg (apt: freefem++), mmg2d_O3 and mmgs_O3 (pip: mmgpy, which brings the numpy that is needed) on the PATH;
 that of pages chromium, node and npm; that of parts scipy, mpi4py and mpich (pip), and `maturin develop --release`; without these they are
-skipped, and said to be. The exit code is 1 where anything differs. All takes some two hours, of which parts take most.
+skipped, and said to be. The exit code is 1 where anything differs. All takes about an hour.
 """
 
 import argparse
@@ -551,21 +551,12 @@ def pages():
     return rows
 
 
-def parts(case, *words):
+@table("mpiexec")
+def parts():
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder, "rows.json")
-        run(sys.executable, ROOT / "scripts/parts.py", case, *words, "--json", rows)
+        run(sys.executable, ROOT / "scripts/parts.py", "plane", "--rotated", 0, "--json", rows)
         return json.loads(rows.read_text())
-
-
-@table("mpiexec")
-def parts_plane():
-    return parts("plane", "-n", 1_000_000, "--parts", 10, "--ranks", 1, 2, 4)
-
-
-@table("mpiexec")
-def parts_surface():
-    return parts("surface", "-n", 200_000, "--parts", 4, "--ranks", 1, 2, 4)
 
 
 if __name__ == "__main__":

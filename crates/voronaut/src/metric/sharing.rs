@@ -12,11 +12,14 @@ pub(super) fn shared(programs: &[Vec<Op>]) -> Vec<Op> {
     let kept = vec![None; values.uses.len()];
     let room = STACK.saturating_sub(height + 1);
     let mut writer = Writer { uses: values.uses, room, kept, ..Writer::default() };
-    steps.into_iter().for_each(|step| writer.write(step));
+    for step in steps {
+        writer.write(step);
+    }
     writer.code
 }
 
 /// A program without places to jump to.
+#[derive(Clone, Copy)]
 enum Step {
     /// An operation, and the value that it makes.
     Do(Op, u32),
@@ -63,7 +66,9 @@ impl Values {
             }
             height = height.max(waiting.len());
         }
-        waiting.into_iter().for_each(|value| self.uses[value as usize] += 1);
+        for value in waiting {
+            self.uses[value as usize] += 1;
+        }
         steps.push(Step::Result(number));
         height
     }
@@ -73,7 +78,9 @@ impl Values {
         let value = *self.known.entry((kind, what, operands.clone())).or_insert(new);
         if value == new {
             self.uses.push(0);
-            operands.into_iter().for_each(|operand| self.uses[operand as usize] += 1);
+            for operand in operands {
+                self.uses[operand as usize] += 1;
+            }
         }
         value
     }

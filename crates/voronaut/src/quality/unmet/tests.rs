@@ -1,5 +1,7 @@
 //! Meshes of which it is known why their edges are not of unit length.
 
+use super::super::metric_quality::metric_quality;
+use super::super::surface_quality::surface_quality;
 use super::super::test_meshes::{grid, lattice, mesh};
 use super::*;
 use crate::geometry::{Tensor, Tensor3};
@@ -163,6 +165,16 @@ fn surfaces_have_the_same_causes() {
     // Off the sheet its metric is that of its rim.
     let differ = found.edges.iter().zip(&truth.edges).filter(|(a, b)| a.cause != b.cause).count();
     assert!(differ < truth.edges.len() / 10, "{differ}: {:?} {:?}", counts(&found), counts(&truth));
+}
+
+#[test]
+fn quality_is_what_is_measured_alone() {
+    let (wild, planar) = waves(4.0);
+    assert_eq!(unmet(&wild, &planar).unwrap().quality, Some(metric_quality(&wild, &planar).unwrap()));
+    let (surface, metric) = (Surface::new(&wild).unwrap(), Constant(Tensor3::IDENTITY));
+    let alone = surface_quality(&wild, &surface, &metric).unwrap();
+    assert_eq!(surface_unmet(&wild, &surface, &metric).unwrap().quality, Some(alone));
+    assert_eq!(unmet(&Mesh::default(), &UNIT).unwrap().quality, None);
 }
 
 #[test]
