@@ -233,7 +233,8 @@ class _Team:
 
     def __init__(self, comm: Any, maker: _Maker) -> None:
         # What is said here is not mixed up with what the caller's ranks say to each other.
-        self.comm, self.maker = None if comm is None else comm.Dup(), maker
+        self.comm: Any = None if comm is None else comm.Dup()
+        self.maker = maker
         self.rank = 0 if comm is None else comm.Get_rank()
         self.others = 0 if comm is None else comm.Get_size() - 1
         self.idle = list(range(1, self.others + 1))
