@@ -15,7 +15,7 @@ docs/benchmark.md is compared, too, but written by scripts/benchmark.py alone.
 
 Tables of peers need ffbamg (apt: freefem++), mmg2d_O3 and mmgs_O3 (pip: mmgpy, which brings the numpy that is needed) on the PATH;
 that of pages chromium, node and npm; that of parts scipy, mpi4py and mpich (pip), and `maturin develop --release`; without these they are
-skipped, and said to be. The exit code is 1 where anything differs. All takes about an hour.
+skipped, and said to be. The exit code is 1 where anything differs.
 """
 
 import argparse

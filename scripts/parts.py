@@ -19,7 +19,6 @@ alone is of a process that makes nothing else, and the part is the one that take
 import argparse
 import json
 import math
-import os
 import pickle
 import resource
 import subprocess
