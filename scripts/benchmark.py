@@ -284,8 +284,8 @@ def shock(typed):
 
 @group("bamg")
 def million(typed):
-    """`mesh rect:-1,-1,1,1 --metric shock:phi=100,lambda=0.01 -n N` beside a single pass of bamg from an even mesh of as many vertices."""
-    yield from (shocked(typed, 100, 0.01, size, 1) for size in typed.sizes or [1000000])
+    """`mesh rect:-1,-1,1,1 --metric shock:phi=10,lambda=0.6 -n N` beside a single pass of bamg from an even mesh of as many vertices."""
+    yield from (shocked(typed, 10, 0.6, size, 1) for size in typed.sizes or [1000000])
 
 
 def shocked(typed, phi, slope, size, passes):

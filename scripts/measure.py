@@ -552,10 +552,20 @@ def pages():
 
 
 @table("mpiexec")
+def costs():
+    return in_parts("-n", 1000000, "--parts", 10, "--ranks", "--no-whole", "--costs")
+
+
+@table("mpiexec")
 def parts():
+    return in_parts("--json")
+
+
+def in_parts(*words):
+    """The table that scripts/parts.py writes to the file which its last word is for."""
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder, "rows.json")
-        run(sys.executable, ROOT / "scripts/parts.py", "plane", "--rotated", 0, "--json", rows)
+        run(sys.executable, ROOT / "scripts/parts.py", "plane", "--rotated", 0, *words, rows)
         return json.loads(rows.read_text())
 
 

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Makes one mesh in parts, by processes and by ranks of MPI, compares the bytes, and judges it beside meshes in one piece.
 
-    scripts/parts.py plane                  # the hard shock, 200,000 vertices in 4 parts
+    scripts/parts.py plane                  # `shock:phi=10,lambda=0.6` on a square, 200,000 vertices in 4 parts
     scripts/parts.py plane -n 1000000 --parts 10 --ranks 1 2 4
     scripts/parts.py surface -n 200000 --parts 4 --rotated 5
     scripts/parts.py plane -n 5000000 --parts 50 --ranks --rotated 0 --no-whole
     scripts/parts.py plane --json table.json                   # its lines as a table, too
+    scripts/parts.py plane -n 1000000 --parts 10 --ranks --rotated 0 --no-whole --costs costs.json      # what costs how much
 
 Set up: `cargo build --release`, and into the Python that runs this `pip install scipy mpi4py mpich maturin`, then `maturin develop
 --release`. Python's ranks keep to one core each, as do the program's processes.
@@ -33,7 +34,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 VORONAUT = ROOT / "target/release/voronaut"
 SPOT = ROOT / "data/spot.obj"
-PHI, LAMBDA = 10, 0.06
+PHI, LAMBDA = 10, 0.6
 
 
 def main():
@@ -47,6 +48,7 @@ def main():
     parser.add_argument("--no-whole", action="store_true", help="no mesh in one piece of the domain as it is")
     parser.add_argument("--folder", type=Path, help="what is kept of an earlier run, and of this one")
     parser.add_argument("--json", type=Path, help="a file for the rows of a table")
+    parser.add_argument("--costs", type=Path, help="a file for the rows of a table of what is done by the first number of processes")
     parser.add_argument("--rank", choices=["import", "mesh", "jobs", "part"], help=argparse.SUPPRESS)
     parser.add_argument("--part", type=int, help=argparse.SUPPRESS)
     typed = parser.parse_args()
@@ -82,6 +84,44 @@ def compare(typed, folder):
         rows.add(f"in one piece, turned {turn}", told, [peak])
     if typed.json:
         typed.json.write_text(json.dumps(rows.rows))
+    if typed.costs:
+        typed.costs.write_text(json.dumps(costs(typed, folder)))
+
+
+def costs(typed, folder):
+    """Rows of what is done, by whom, how that grows, and what it was: N vertices in parts of n each on R cores."""
+    count = typed.processes[0]
+    stages = json.loads((folder / f"processes-{count}.json").read_text())["seconds"]
+    made = {name: [path for path in (folder / f"kept-{count}").glob(f"{name}-*.meshb") if not path.stem.endswith("-job")]
+            for name in ("parts", "strips", "junctions")}
+    vertices = {name: sum(vertices_of(path) for path in paths) for name, paths in made.items()}
+    jobs = list((folder / f"kept-{count}").glob("*-job.meshb"))
+    back = [path for paths in made.values() for path in paths]
+    judged = stages["total"] - sum(seconds for stage, seconds in stages.items() if stage != "total")
+    by_all = f"on {count} cores"
+
+    def size(paths):
+        return sum(path.stat().st_size for path in paths) / 1e6
+
+    return [
+        ["what", "who", "grows as", "measured"],
+        ["the factor on the metric, and a coarse mesh along whose edges is cut", "rank 0", "64 N / n vertices", f"{stages['partition']:.1f} s"],
+        ["parts", "all", "N / R", f"{vertices['parts']:,} vertices, {stages['parts']:.0f} s {by_all}"],
+        ["strips: eight layers on both sides of cuts", "all", "N / sqrt(n) vertices, over R",
+         f"{vertices['strips']:,} vertices, {stages['strips']:.0f} s {by_all}"],
+        ["junctions: twenty layers around the ends of cuts", "all", "N / n vertices, over R",
+         f"{vertices['junctions']:,} vertices, {stages['junctions']:.1f} s {by_all}"],
+        ["stitching, and the check of the whole", "rank 0", "N", f"{stages['stitch'] + stages['check']:.1f} s"],
+        ["what the whole is in the metric, for the report, and writing it", "rank 0", "N", f"{judged:.1f} s {by_all}"],
+        ["meshes that were made, as files", "R - 1 to one", "N", f"{size(back):.0f} MB in {len(back)}"],
+        ["corners and cuts of what is to be meshed, as files", "one to R - 1", "N / sqrt(n)", f"{size(jobs):.1f} MB in {len(jobs)}"],
+    ]
+
+
+def vertices_of(path):
+    import voronaut
+
+    return len(voronaut.Mesh.read(path).points)
 
 
 class Rows:
@@ -207,7 +247,7 @@ def strips(typed, folder, rows):
 
 
 def plane(folder, angle):
-    """The hard shock on its square, turned."""
+    """The shock on its square, turned."""
     c, s = math.cos(angle), math.sin(angle)
     if angle == 0:
         return "rect:-1,-1,1,1", "--metric", f"shock:phi={PHI},lambda={LAMBDA}"

@@ -54,6 +54,18 @@ def test_the_program_makes_the_same(whole, tmp_path):
     assert (tmp_path / "out.meshb").read_bytes() == whole[1]
 
 
+def test_parts_of_a_sampled_metric_are_the_same_by_threads_and_processes(tmp_path):
+    grid = voronaut.mesh("rect:0,0,1,1", "uniform", n=500)
+    voronaut.Mesh(grid.points, grid.triangles).save(tmp_path / "square.mesh")
+    sizes = [0.02 + 0.08 * x for x, _ in grid.points]
+    (tmp_path / "h.sol").write_text("\n".join(["MeshVersionFormatted 2\nDimension 2\nSolAtVertices", str(len(sizes)), "1 1", *map(str, sizes), "End"]))
+    place = {"domain": str(tmp_path / "square.mesh"), "metric": str(tmp_path / "h.sol")}
+    mesh = voronaut.distributed.mesh(**place, n=4000, parts=3, effort="fast")
+    words = ["mesh", place["domain"], "--metric", place["metric"], "-n", "4000", "--parts", "3", "--effort", "fast", "-q"]
+    subprocess.run([sys.executable, "-m", "voronaut", *words, "-o", tmp_path / "out.meshb"], check=True)
+    assert (tmp_path / "out.meshb").read_bytes() == the_bytes(mesh, tmp_path / "mesh.meshb")
+
+
 def test_work_goes_on_in_a_folder(whole, tmp_path):
     voronaut.distributed.mesh(**PLACE, parts_dir=tmp_path)
     kept = sorted(tmp_path.glob("*.meshb"))
@@ -67,7 +79,7 @@ def test_work_goes_on_in_a_folder(whole, tmp_path):
 
 def test_parts_are_kept_under_what_they_depend_on(tmp_path):
     square = voronaut.Mesh([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1, 2], [0, 2, 3]])
-    job = Job("parts", 0, square._arrays(), 1000)
+    job = Job("parts", 0, square._arrays(), 1000, None)
     (tmp_path / "h.sol").write_text("1")
 
     def name(metric, **options):

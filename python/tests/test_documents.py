@@ -169,6 +169,17 @@ def test_readme_is_short():
     assert len((ROOT / "README.md").read_text().split()) <= 1200
 
 
+def test_measured_figures_are_in_tables():
+    """What is measured stands where `scripts/measure.py` finds it, in blocks that run, or on pages that their scripts write."""
+    written = {"docs/benchmark.md", "docs/report/README.md"}
+    for page in PAGES:
+        if page in BESIDE or name_of(page) in written:
+            continue
+        prose = re.sub(r"<!-- measured: .*?<!-- end -->|^```.*?^```$|`[^`\n]*`", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+        prose = prose.replace("does not end within 60 s", "")
+        assert not (found := re.search(r".*\d (?:s|ms|MB|min|seconds|minutes|microseconds)\b.*", prose)), f"{name_of(page)}: {found[0]}"
+
+
 def test_what_is_cited_is_in_the_bibliography():
     entries = (ROOT / "references.bib").read_text().split("\n@")
     for page in PAGES:

@@ -33,7 +33,7 @@ def mesh_in_parts(
     metric: MetricLike,
     n: int,
     options: Options,
-    make: Callable[[str, list[tuple[dict[str, Any], int]]], Iterable[dict[str, Any]]],
+    make: Callable[[str, list[tuple[dict[str, Any], int, dict[str, Any] | None]]], Iterable[dict[str, Any]]],
     progress: Progress,
 ) -> Mesh:
     held: Held = {"parts": {"maker": make}}
@@ -42,13 +42,24 @@ def mesh_in_parts(
 
 
 def part(
-    domain: object, metric: MetricLike, n: int, of_part: dict[str, Any], vertices: int, options: Options, progress: Progress
+    domain: object,
+    metric: MetricLike,
+    n: int,
+    of_part: tuple[dict[str, Any], int, dict[str, Any] | None],
+    options: Options,
+    progress: Progress,
 ) -> dict[str, Any]:
-    """The arrays of one part of a mesh."""
+    """The arrays of one part of a mesh. Where it has a metric of its own, neither domain nor metric of the whole are looked at."""
     held: Held = {}
-    words = {"domain": _given.domain_word(domain, held), "metric": _metric_word(metric, held, domain), "vertices": n, "out": "mesh"}
-    held.setdefault("documents", {})["part"] = of_part
-    made: dict[str, Any] = _perform("mesh", {**words, "part": f"{vertices},part"}, options, {}, held, progress)["mesh"]
+    shape, vertices, own = of_part
+    words: Options = {"domain": "part", "metric": "part", "vertices": n, "out": "mesh", "part": f"{vertices},part-job.mesh"}
+    if own is None:
+        words |= {"domain": _given.domain_word(domain, held), "metric": _metric_word(metric, held, domain)}
+    documents = held.setdefault("documents", {})
+    documents["part-job.mesh"] = shape
+    if own is not None:
+        documents["part-metric.mesh"] = own
+    made: dict[str, Any] = _perform("mesh", words, options, {}, held, progress)["mesh"]
     return made
 
 

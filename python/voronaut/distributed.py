@@ -38,12 +38,14 @@ _PERIOD = 0.005
 
 
 class Job(NamedTuple):
-    """A part to make: the name of its round and its number in it, its domain as arrays, and how many vertices."""
+    """A part to make: the name of its round and its number in it, its domain as arrays, how many vertices, and its metric as a mesh with
+    values, where it has one of its own."""
 
     round: str
     number: int
     domain: dict[str, Any]
     vertices: int
+    metric: dict[str, Any] | None
 
     def __str__(self) -> str:
         points = self.domain["points"]
@@ -115,7 +117,8 @@ def mesh(
     Parameters
     ----------
     domain, metric : as for `voronaut.mesh`
-        The same on every rank; each makes the metric by itself.
+        The same on every rank. Of a metric that is interpolated in a mesh in the plane (values on one, files, functions, what is graded or
+        smoothed) rank 0 alone looks at it, and sends what parts need; others every rank makes by itself.
     n : int
         Vertices.
     parts : int or "auto", default "auto"
@@ -201,7 +204,7 @@ class _Maker:
         if place is not None and place.exists():
             return place
         _give_back()
-        made = _run.part(self.domain, self.metric, self.n, job.domain, job.vertices, self.options, progress)
+        made = _run.part(self.domain, self.metric, self.n, (job.domain, job.vertices, job.metric), self.options, progress)
         _give_back()
         if place is None:
             return made
@@ -261,9 +264,9 @@ class _Team:
                 if self.comm is not None:
                     self.comm.Free()
 
-    def make(self, name: str, parts: list[tuple[dict[str, Any], int]]) -> Iterator[dict[str, Any]]:
+    def make(self, name: str, parts: list[tuple[dict[str, Any], int, dict[str, Any] | None]]) -> Iterator[dict[str, Any]]:
         """The meshes of a round, in the order of its parts."""
-        jobs = [Job(name, number, domain, vertices) for number, (domain, vertices) in enumerate(parts)]
+        jobs = [Job(name, number, *part) for number, part in enumerate(parts)]
         largest_first = sorted(jobs, key=lambda job: -job.vertices)
         self.done, self.faults = [], []
         if self.comm is None:

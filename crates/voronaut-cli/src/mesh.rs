@@ -224,6 +224,11 @@ pub(crate) fn run(args: &MeshArgs, world: &World) -> Result<()> {
     let view = world.page_file(&args.paged);
     files::demand_writable(world.file(&args.out), None, view, &args.outputs, &args.run)?;
     demand_for_curves(args, world)?;
+    if let Some(job) = &args.in_parts.part
+        && parts::one_by_itself(job, world, &args.run, &args.options())?
+    {
+        return Ok(());
+    }
     args.metric_choices.bounds().check()?;
     let (given, mended) = world.given(&args.domain, args.damage.options())?;
     match given {

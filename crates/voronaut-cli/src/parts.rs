@@ -15,8 +15,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use voronaut::domain::Domain;
 use voronaut::geometry::{Aabb, Aabb3};
-use voronaut::mesh::Mesh;
-use voronaut::metric::{Expression, MetricField, Norm};
+use voronaut::mesh::{Mesh, Solution, SolutionValues};
+use voronaut::metric::{Expression, MetricField, Norm, Uniform};
 use voronaut::progress::Progress;
 use voronaut::recipe::{
     Aim, MeshOptions, Meshed, Part, mesh_in_parts, mesh_part, mesh_surface_in_parts, mesh_surface_part,
@@ -103,7 +103,7 @@ impl Field<'_> {
         progress: &dyn Progress,
     ) -> Result<Meshed> {
         match *self {
-            Field::Plane(domain, metric, _) => mesh_in_parts(domain, metric, parts, options, make, progress),
+            Field::Plane(domain, metric, aim) => mesh_in_parts(domain, metric, aim, parts, options, make, progress),
             Field::Surface(input, metric, _) => mesh_surface_in_parts(input, metric, parts, options, make, progress),
         }
     }
@@ -111,8 +111,22 @@ impl Field<'_> {
 
 /// The mesh of one part, and where it goes.
 pub(crate) fn one(job: &Job, world: &World, run: &Run, field: Field, options: &MeshOptions) -> Result<()> {
-    let part = Part { domain: world.document(&job.domain)?.mesh, vertices: job.vertices };
-    let mesh = field.part(&part, options, &*world.progress(run))?;
+    let part = Part { domain: world.document(&job.domain)?.mesh, vertices: job.vertices, metric: None };
+    write(job, world, run, field.part(&part, options, &*world.progress(run))?)
+}
+
+/// The same, if the part came with its metric: then nothing else is read.
+pub(crate) fn one_by_itself(job: &Job, world: &World, run: &Run, options: &MeshOptions) -> Result<bool> {
+    let metric = world.metric_at_vertices(&metric_name(&job.domain))?;
+    if metric.is_some() {
+        let part = Part { domain: world.document(&job.domain)?.mesh, vertices: job.vertices, metric };
+        write(job, world, run, mesh_part(&part, &Uniform::default(), None, options, &*world.progress(run))?)?;
+        return Ok(true);
+    }
+    Ok(false)
+}
+
+fn write(job: &Job, world: &World, run: &Run, mesh: Mesh) -> Result<()> {
     world.write_mesh(mesh, &done_name(&job.domain))?;
     // Files that the user named are of the whole.
     world.write_report("{}".into(), &Run { report: None, ..run.clone() })
@@ -120,7 +134,16 @@ pub(crate) fn one(job: &Job, world: &World, run: &Run, field: Field, options: &M
 
 /// Where the mesh of a job goes: `strips-3-job.meshb` becomes `strips-3.meshb`.
 fn done_name(job: &Path) -> PathBuf {
-    let name = job.file_name().map(|name| name.to_string_lossy().replace("-job.", ".")).unwrap_or_default();
+    renamed(job, ".")
+}
+
+/// Where the metric of a part is, if it has one of its own: `strips-3-metric.meshb`, and tensors beside it.
+fn metric_name(job: &Path) -> PathBuf {
+    renamed(job, "-metric.")
+}
+
+fn renamed(job: &Path, end: &str) -> PathBuf {
+    let name = job.file_name().map(|name| name.to_string_lossy().replace("-job.", end)).unwrap_or_default();
     job.with_file_name(name)
 }
 
@@ -274,6 +297,12 @@ impl Workers<'_> {
         }
         let _ = std::fs::remove_file(&done);
         voronaut_io::write(&job, &bytes)?;
+        let metric = metric_name(&job);
+        if let Some((mesh, tensors)) = &part.metric {
+            voronaut_io::write_mesh(mesh, &metric)?;
+            let values = SolutionValues::Tensor(tensors.iter().map(|tensor| [tensor.xx, tensor.xy, tensor.yy]).collect());
+            voronaut_io::write_solution(&Solution { dimension: 2, values }, &metric.with_extension("solb"))?;
+        }
         let mut value = OsString::from(format!("--part={},", part.vertices));
         value.push(&job);
         let said = File::create(&log).map_err(|source| Error::io(&log, source))?;
@@ -283,7 +312,9 @@ impl Workers<'_> {
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(said);
         let status = watch::run(&mut command).map_err(|source| Error::io(Path::new(&self.again[0]), source))?;
         if status.success() && done.exists() {
-            let _ = std::fs::remove_file(&log);
+            for file in [log, metric.with_extension("solb"), metric] {
+                let _ = std::fs::remove_file(file);
+            }
             return Ok(());
         }
         let said = voronaut_io::read_text(&log).unwrap_or_default();

@@ -11,6 +11,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
 use voronaut::domain::{Domain, Pslg, from_polygons};
+use voronaut::geometry::Tensor;
 use voronaut::mesh::{Mesh, Solution, SolutionValues, Solutions};
 use voronaut::progress::Progress;
 use voronaut::realisation::Realisation;
@@ -179,6 +180,23 @@ impl<'a> World<'a> {
 
     pub(crate) fn document(&self, path: &Path) -> Result<Document> {
         self.held(|held| &held.documents, path).map_or_else(|| voronaut_io::read(path), |found| Ok(found.clone()))
+    }
+
+    /// A mesh with tensors at its vertices, if there is one of this name: of files the tensors are in a `.solb` beside it.
+    pub(crate) fn metric_at_vertices(&self, path: &Path) -> Result<Option<(Mesh, Vec<Tensor>)>> {
+        let (mesh, values) = match &self.held {
+            Some((held, _)) => {
+                let Some(document) = named(&held.documents, path) else { return Ok(None) };
+                (document.mesh.clone(), document.fields.vertices.first().map(|field| field.values.clone()))
+            }
+            None if !path.exists() => return Ok(None),
+            None => {
+                let solutions = voronaut_io::read_solutions(&path.with_extension("solb"))?;
+                (voronaut_io::read(path)?.mesh, solutions.vertices.into_iter().next())
+            }
+        };
+        let Some(SolutionValues::Tensor(entries)) = values else { return Ok(None) };
+        Ok(Some((mesh, entries.into_iter().map(|[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect())))
     }
 
     pub(crate) fn given(&self, spec: &str, options: RepairOptions) -> Result<(Given, Mended)> {

@@ -4,6 +4,7 @@ use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use voronaut::geometry::Tensor;
 use voronaut::mesh::{Curved, Mesh, Periodic, SolutionValues, Solutions};
 use voronaut_io::{Document, Field, Fields};
 
@@ -83,6 +84,15 @@ pub(crate) fn values_of(given: &Bound<PyAny>) -> PyResult<SolutionValues> {
         (_, 1) => SolutionValues::Scalar(numbers),
         _ => SolutionValues::Vector { components, numbers },
     })
+}
+
+/// A mesh with tensors at its vertices.
+pub(crate) fn of_metric<'py>(py: Python<'py>, mesh: Mesh, tensors: &[Tensor]) -> PyResult<Bound<'py, PyDict>> {
+    let (told, fields) = (of_mesh(py, mesh)?, PyDict::new(py));
+    let entries = tensors.iter().map(|tensor| [tensor.xx, tensor.xy, tensor.yy]).collect();
+    fields.set_item("metric", of_values(py, SolutionValues::Tensor(entries))?)?;
+    told.set_item("vertex_fields", fields)?;
+    Ok(told)
 }
 
 /// What values are, and their numbers.

@@ -14,6 +14,8 @@ use std::collections::HashMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
+use voronaut::geometry::Tensor;
+use voronaut::mesh::Mesh;
 use voronaut::recipe::Part;
 use voronaut_cli::{Held, Job, Made, PartsMaker};
 use voronaut_io::{Document, ending};
@@ -73,11 +75,16 @@ fn held_of(given: &Bound<PyDict>, course: &Arc<Course>) -> PyResult<Held> {
     Ok(held)
 }
 
-/// A function of a round's name and its parts, each a mesh and its number of vertices, that returns their meshes.
+/// A function of a round's name and its parts, each a mesh, its number of vertices and its metric, if it has one of its own, that returns
+/// their meshes.
 fn maker(function: Py<PyAny>, course: Arc<Course>) -> PartsMaker {
     Box::new(move |round, parts| {
         course.call(|py| {
-            let part = |part: &Part| Ok((arrays::of_mesh(py, part.domain.clone())?, part.vertices));
+            let metric = |(mesh, tensors): &(Mesh, Vec<Tensor>)| arrays::of_metric(py, mesh.clone(), tensors);
+            let part = |part: &Part| {
+                let metric = part.metric.as_ref().map(metric).transpose()?;
+                Ok((arrays::of_mesh(py, part.domain.clone())?, part.vertices, metric))
+            };
             let parts = parts.iter().map(part).collect::<PyResult<Vec<_>>>()?;
             let made = function.bind(py).call1((round, parts))?;
             made.try_iter()?.map(|mesh| arrays::mesh_of(mesh?.cast()?)).collect()

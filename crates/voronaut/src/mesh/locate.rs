@@ -147,6 +147,11 @@ impl Locator {
         Located { triangle, weights, distance: square.sqrt() }
     }
 
+    /// The corners of a triangle.
+    pub(crate) fn corners(&self, triangle: u32) -> [Point; 3] {
+        self.faces[triangle as usize].corners
+    }
+
     /// Puts into `found` the numbers, ascending, of all triangles that meet the triangle `corners`, and of some that only pass
     /// near it.
     pub(crate) fn near(&self, corners: [Point; 3], found: &mut Vec<u32>) {

@@ -4,6 +4,7 @@ use super::validate::require;
 use super::{MetricField, Near};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
+use crate::mesh::Mesh;
 
 /// Limits on a metric; `None` for no limit. A size is the Euclidean length 1 / sqrt(eigenvalue).
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -99,6 +100,12 @@ impl<F: MetricField> MetricField for Bounded<F> {
 
     fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
         self.bounds.clamp(self.field.at_near(p, near))
+    }
+
+    /// With its tensors within the limits: so are those between them.
+    fn excerpt(&self, domain: &Mesh) -> Option<(Mesh, Vec<Tensor>)> {
+        let (mesh, tensors) = self.field.excerpt(domain)?;
+        Some((mesh, tensors.into_iter().map(|tensor| self.bounds.clamp(tensor)).collect()))
     }
 }
 

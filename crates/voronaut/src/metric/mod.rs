@@ -67,6 +67,7 @@ pub(crate) use validate::{
 pub use vocabulary::Variables;
 
 use crate::geometry::{Point, Tensor};
+use crate::mesh::Mesh;
 
 /// A Riemannian metric field on the plane.
 ///
@@ -80,6 +81,12 @@ pub trait MetricField: Sync {
     /// looks there first.
     fn at_near(&self, p: Point, _near: &mut Near) -> Tensor {
         self.at(p)
+    }
+
+    /// All that has to be known of it in a domain and around, which is given as triangles: tensors at the vertices of a mesh. `None` where
+    /// the field is no such thing, or the domain is not where the mesh is.
+    fn excerpt(&self, _domain: &Mesh) -> Option<(Mesh, Vec<Tensor>)> {
+        None
     }
 }
 
@@ -102,6 +109,10 @@ impl MetricField for Box<dyn MetricField + '_> {
 
     fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
         (**self).at_near(p, near)
+    }
+
+    fn excerpt(&self, domain: &Mesh) -> Option<(Mesh, Vec<Tensor>)> {
+        (**self).excerpt(domain)
     }
 }
 

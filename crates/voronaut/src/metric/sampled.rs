@@ -5,7 +5,11 @@ use super::validate::{BACKGROUND, check_at_vertices};
 use super::{MetricField, Near};
 use crate::error::Result;
 use crate::geometry::{Point, Tensor};
+use crate::lists::{distinct, marked};
 use crate::mesh::{Located, Locator, Mesh};
+
+/// Rings of triangles around those that meet a domain: derivatives are taken a little outside.
+const RINGS: usize = 2;
 
 /// Tensors at the vertices of a planar triangle mesh; inside triangles the log-Euclidean interpolation, exp of the
 /// linear interpolation of log M, which is positive definite and between the sizes at the corners.
@@ -72,6 +76,59 @@ impl MetricField for Sampled {
         near.triangle = Some(triangle);
         let [a, b, c] = self.triangles[triangle as usize].map(|v| self.logs[v as usize]);
         (a * weights[0] + b * weights[1] + c * weights[2]).exp()
+    }
+
+    fn excerpt(&self, domain: &Mesh) -> Option<(Mesh, Vec<Tensor>)> {
+        if domain.triangles.is_empty() || !self.reaches(domain) {
+            return None;
+        }
+        let mut near = vec![false; self.triangles.len()];
+        let mut found = Vec::new();
+        for &triangle in &domain.triangles {
+            self.locator.near(domain.corners_of(triangle), &mut found);
+            found.iter().for_each(|&t| near[t as usize] = true);
+        }
+        for _ in 0..RINGS {
+            let taken = self.triangles.iter().zip(&near).filter(|(_, near)| **near);
+            let at = marked(self.logs.len(), taken.flat_map(|(triangle, _)| *triangle));
+            for (triangle, near) in self.triangles.iter().zip(&mut near) {
+                *near |= triangle.iter().any(|&v| at[v as usize]);
+            }
+        }
+        let taken = || self.triangles.iter().zip(&near).filter(|(_, near)| **near).map(|(triangle, _)| *triangle);
+        let used = distinct(taken().flatten());
+        let number = |v: u32| used.partition_point(|&u| u < v) as u32;
+        let positions = self.positions();
+        let mesh = Mesh {
+            points: used.iter().map(|&v| positions[v as usize]).collect(),
+            triangles: taken().map(|triangle| triangle.map(number)).collect(),
+            ..Mesh::default()
+        };
+        Some((mesh, used.iter().map(|&v| self.logs[v as usize].exp()).collect()))
+    }
+}
+
+impl Sampled {
+    /// Whether all vertices of a domain are in the mesh, or no farther from it than its triangles there are long.
+    fn reaches(&self, domain: &Mesh) -> bool {
+        let mut near = None;
+        (0..domain.points.len() as u32).all(|v| {
+            let Some(found) = self.locator.locate_from(near, domain.point(v)) else { return false };
+            near = Some(found.triangle);
+            let [a, b, c] = self.locator.corners(found.triangle);
+            found.distance <= a.distance(b).max(b.distance(c)).max(c.distance(a))
+        })
+    }
+
+    /// Where the vertices are that triangles have.
+    fn positions(&self) -> Vec<[f64; 3]> {
+        let mut positions = vec![[0.0; 3]; self.logs.len()];
+        for (t, triangle) in (0..).zip(&self.triangles) {
+            for (&v, p) in triangle.iter().zip(self.locator.corners(t)) {
+                positions[v as usize] = [p.x, p.y, 0.0];
+            }
+        }
+        positions
     }
 }
 
@@ -207,6 +264,33 @@ mod tests {
         };
         let field = Sampled::sizes(&mesh, &[0.1, 10.0, 0.1]).unwrap();
         assert!(error(field.at(Point::new(0.5, 0.0)), Tensor::IDENTITY) < 1e-12);
+    }
+
+    /// Two triangles that fill a box.
+    fn filled(low: [f64; 2], high: [f64; 2]) -> Mesh {
+        let points = vec![[low[0], low[1], 0.0], [high[0], low[1], 0.0], [high[0], high[1], 0.0], [low[0], high[1], 0.0]];
+        Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() }
+    }
+
+    #[test]
+    fn an_excerpt_says_the_same_where_it_is_of() {
+        let field = sampled(&grid(40));
+        let (mesh, tensors) = field.excerpt(&filled([0.3, 0.6], [0.5, 0.7])).unwrap();
+        assert!(mesh.triangles.len() < 600, "{} of 3,200", mesh.triangles.len());
+        let part = Sampled::new(&mesh, &tensors).unwrap();
+        for i in 0..500 {
+            // A triangle farther out than its box.
+            let p = Point::new(0.28 + 0.24 * (f64::from(i) * 0.618).fract(), 0.58 + 0.14 * (f64::from(i) * 0.414).fract());
+            assert!(error(part.at(p), field.at(p)) < 1e-13, "{p}");
+        }
+    }
+
+    #[test]
+    fn there_is_no_excerpt_where_the_mesh_is_not() {
+        let field = sampled(&grid(10));
+        assert!(field.excerpt(&filled([0.9, 0.9], [1.05, 1.05])).is_some(), "a sliver outside");
+        assert!(field.excerpt(&filled([0.9, 0.9], [2.0, 2.0])).is_none());
+        assert!(field.excerpt(&Mesh::default()).is_none());
     }
 
     #[test]

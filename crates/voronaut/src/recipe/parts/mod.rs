@@ -18,9 +18,10 @@ use super::{Aim, MeshOptions, Meshed, Mesher, Seeding, closed_form_scale, mesh_f
 use crate::domain::{Domain, from_mesh};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
+use crate::geometry::Tensor;
 use crate::lists::marked;
 use crate::mesh::{Edges, Mesh};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, Sampled};
 use crate::progress::Progress;
 use crate::surface::Input;
 use crate::surface::metric::SurfaceMetric;
@@ -44,6 +45,15 @@ pub struct Part {
     pub domain: Mesh,
     /// Vertices of its mesh; in the plane exactly.
     pub vertices: usize,
+    /// In the plane the metric there, where that is interpolated in a mesh: that part of it, with tensors at its vertices.
+    pub metric: Option<(Mesh, Vec<Tensor>)>,
+}
+
+impl Part {
+    fn new(on: &impl Divisible, domain: Mesh, vertices: usize) -> Self {
+        let metric = on.metric_on(&domain);
+        Self { domain, vertices, metric }
+    }
 }
 
 /// What is divided: a planar domain or a surface, with its metric.
@@ -56,6 +66,11 @@ trait Divisible {
 
     /// The domain of a region of the mesh that is to be made anew. Its outer edges are required.
     fn job(&self, region: Mesh) -> Result<Mesh>;
+
+    /// See [`Part::metric`].
+    fn metric_on(&self, _domain: &Mesh) -> Option<(Mesh, Vec<Tensor>)> {
+        None
+    }
 
     /// That the whole is valid.
     fn check(&self, mesh: &Mesh) -> Result<()>;
@@ -80,7 +95,7 @@ struct Partition {
     notes: Vec<String>,
 }
 
-/// The mesh of a part of a planar domain.
+/// The mesh of a part of a planar domain. The field is asked where the part has no metric of its own.
 ///
 /// # Errors
 /// As of [`mesh_for`].
@@ -92,6 +107,8 @@ pub fn mesh_part(
     progress: &dyn Progress,
 ) -> Result<Mesh> {
     let domain = Domain::new(&from_mesh(&part.domain)?)?;
+    let own = part.metric.as_ref().map(|(mesh, tensors)| Sampled::new(mesh, tensors)).transpose()?;
+    let field = own.as_ref().map_or(field, |own| own);
     Ok(mesh_for(&domain, field, aim, &with_count(options, part.vertices), progress)?.mesh)
 }
 
@@ -100,7 +117,7 @@ type Make<'a> = &'a mut dyn FnMut(&'static str, &[Part]) -> Result<Vec<Mesh>>;
 
 /// Meshes a planar domain by a metric in so many parts, or in parts of about 100,000 vertices. There are three rounds of [`Part`]s: the
 /// parts themselves (`parts`), strips along the cuts (`strips`), and what is around the ends of strips that meet (`junctions`). The outer
-/// edges of these stay. The meshes of a round, in the order of its parts, are the business of `make`, which has its name: by [`mesh_part`],
+/// edges of these stay. With an aim, parts ask for the metric as a whole. The meshes of a round, in the order of its parts, are the business of `make`, which has its name: by [`mesh_part`],
 /// wherever that may be. The number of vertices is met exactly.
 ///
 /// # Errors
@@ -109,12 +126,13 @@ type Make<'a> = &'a mut dyn FnMut(&'static str, &[Part]) -> Result<Vec<Mesh>>;
 pub fn mesh_in_parts(
     domain: &Domain,
     field: &dyn MetricField,
+    aim: Option<Aim>,
     parts: Option<usize>,
     options: &MeshOptions,
     make: Make,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
-    in_parts(&InPlane { domain, field }, parts, options, make, progress)
+    in_parts(&InPlane { domain, field, is_whole: aim.is_some() }, parts, options, make, progress)
 }
 
 /// [`mesh_in_parts`] of a surface that was cut along its features ([`Input::cut`]), whose parts are made by [`mesh_surface_part`]. Cuts are

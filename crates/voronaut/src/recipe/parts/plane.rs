@@ -8,7 +8,7 @@ use crate::domain::{Domain, Segment, from_mesh};
 use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geodesic::{chord_by, nearby};
-use crate::geometry::{Point, Point3, centroid};
+use crate::geometry::{Point, Point3, Tensor, centroid};
 use crate::lists::{Rows, distinct, in_order};
 use crate::mesh::{EdgeSide, Edges, Mesh};
 use crate::metric::{MetricField, complexities};
@@ -25,6 +25,8 @@ use std::collections::{HashMap, HashSet};
 pub(super) struct InPlane<'a> {
     pub(super) domain: &'a Domain,
     pub(super) field: &'a dyn MetricField,
+    /// Whether parts need all of it.
+    pub(super) is_whole: bool,
 }
 
 impl Divisible for InPlane<'_> {
@@ -46,7 +48,8 @@ impl Divisible for InPlane<'_> {
         let of_part = |(domain, area)| Plan::with(domain, &[], field, area);
         let plans: Vec<Plan> = domains.iter().zip(areas_of(&owner, &areas, parts)).map(of_part).collect();
         let counts = counts_of(&domains, &plans, scale, vertices);
-        let parts = domains.iter().zip(counts).map(|(domain, vertices)| Part { domain: corner_mesh(domain), vertices });
+        let part = |(domain, vertices)| Part::new(self, corner_mesh(domain), vertices);
+        let parts = domains.iter().zip(counts).map(part);
         let complexity = plan.complexity;
         Ok(Partition { parts: parts.collect(), scale, complexity, vertices, notes: job.notes, kept: kept(&domain) })
     }
@@ -54,6 +57,10 @@ impl Divisible for InPlane<'_> {
     /// That of a domain whose straight runs have no vertices inside.
     fn job(&self, region: Mesh) -> Result<Mesh> {
         Ok(corner_mesh(&Domain::new(&from_mesh(&region)?)?))
+    }
+
+    fn metric_on(&self, domain: &Mesh) -> Option<(Mesh, Vec<Tensor>)> {
+        if self.is_whole { None } else { self.field.excerpt(domain) }
     }
 
     fn check(&self, mesh: &Mesh) -> Result<()> {

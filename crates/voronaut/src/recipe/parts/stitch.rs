@@ -75,7 +75,7 @@ impl Whole {
             sum += more * triangles.len() as f64;
             let vertices = part.points.len().saturating_add_signed((sum.round() - given) as isize);
             given = sum.round();
-            Ok(Part { domain: on.job(part)?, vertices })
+            Ok(Part::new(on, on.job(part)?, vertices))
         };
         regions.iter().map(job).collect()
     }

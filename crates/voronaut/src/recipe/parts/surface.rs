@@ -383,7 +383,7 @@ impl<'a> Base<'a> {
             .collect();
         let all = vertices as f64 + fixed.iter().sum::<f64>() - stations.len() as f64;
         let counts = counts(&fixed, &inside, all);
-        domains.into_iter().zip(counts).map(|(domain, vertices)| Part { domain, vertices }).collect()
+        domains.into_iter().zip(counts).map(|(domain, vertices)| Part { domain, vertices, metric: None }).collect()
     }
 
     /// As a mesh with features; stations are corners.

@@ -20,7 +20,7 @@ fn made(domain: &Domain, field: &dyn MetricField, parts: usize, options: &MeshOp
         rounds.push((round, parts.to_vec()));
         parts.iter().map(|part| mesh_part(part, field, None, options, &Silent)).collect()
     };
-    let meshed = mesh_in_parts(domain, field, Some(parts), options, &mut make, &Silent)?;
+    let meshed = mesh_in_parts(domain, field, None, Some(parts), options, &mut make, &Silent)?;
     Ok((meshed, rounds))
 }
 
@@ -176,6 +176,28 @@ fn a_metric_that_is_none_in_one_part_is_an_error_with_the_place() {
 fn a_part_that_fails_is_the_error() {
     let (domain, field) = (Domain::shape("rect:0,0,1,1").unwrap(), Uniform(Tensor::IDENTITY));
     let mut make = |round: &'static str, _: &[Part]| Err(Error::limit(format!("{round} 1"), "try again"));
-    let error = mesh_in_parts(&domain, &field, Some(2), &options(4000), &mut make, &Silent).unwrap_err();
+    let error = mesh_in_parts(&domain, &field, None, Some(2), &options(4000), &mut make, &Silent).unwrap_err();
     assert_eq!(error.to_string(), "limit exceeded: parts 1");
+}
+
+/// A metric that is interpolated in a mesh goes to parts as far as they need it, and no other is asked for.
+#[test]
+fn parts_come_with_their_own_metric() {
+    let (domain, shock) = (Domain::shape("rect:-1,-1,1,1").unwrap(), Shock { phi: 1.0, lambda: 0.6 });
+    let background = mesh(&domain, &shock, &options(8000), &Silent).unwrap().mesh;
+    let tensors: Vec<Tensor> =
+        (0..background.points.len() as u32).map(|v| MetricField::at(&shock, background.point(v))).collect();
+    let field = Sampled::new(&background, &tensors).unwrap();
+    let nowhere = |_: Point| -> Tensor { panic!("the metric as a whole was asked for") };
+    let mut largest = 0;
+    let mut make = |_, parts: &[Part]| {
+        let sizes = parts.iter().map(|part| part.metric.as_ref().map_or(usize::MAX, |metric| metric.1.len()));
+        largest = sizes.fold(largest, usize::max);
+        parts.iter().map(|part| mesh_part(part, &nowhere, None, &options(4000), &Silent)).collect()
+    };
+    let meshed = mesh_in_parts(&domain, &field, None, Some(4), &options(4000), &mut make, &Silent).unwrap();
+    demand_whole(&domain, &meshed, 4000);
+    assert!(largest < 4000, "{largest} of 8,000");
+    let by_shock = |p: Point| MetricField::at(&shock, p) * meshed.metric_scale;
+    assert!(metric_quality(&meshed.mesh, &by_shock).unwrap().metric_edge_length.unit_fraction > 0.97);
 }
