@@ -300,7 +300,8 @@ impl Workers<'_> {
         let metric = metric_name(&job);
         if let Some((mesh, tensors)) = &part.metric {
             voronaut_io::write_mesh(mesh, &metric)?;
-            let values = SolutionValues::Tensor(tensors.iter().map(|tensor| [tensor.xx, tensor.xy, tensor.yy]).collect());
+            let values =
+                SolutionValues::Tensor(tensors.iter().map(|tensor| [tensor.xx, tensor.xy, tensor.yy]).collect());
             voronaut_io::write_solution(&Solution { dimension: 2, values }, &metric.with_extension("solb"))?;
         }
         let mut value = OsString::from(format!("--part={},", part.vertices));

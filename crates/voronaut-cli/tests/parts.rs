@@ -71,7 +71,8 @@ fn parts_of_another_metric_are_not_taken() {
         place.run(&[&words[..], &["--parts", "2", "--parts-dir", "kept"]].concat())
     };
     assert!(run("0.03").status.success());
-    let kept: Vec<_> = std::fs::read_dir(place.path().join("kept")).unwrap().map(|file| file.unwrap().file_name()).collect();
+    let kept: Vec<_> =
+        std::fs::read_dir(place.path().join("kept")).unwrap().map(|file| file.unwrap().file_name()).collect();
     assert!(!kept.iter().any(|name| name.to_string_lossy().contains("metric")), "{kept:?}");
     assert!(run("0.03").status.success());
     let said = stderr(&run("0.02"));

@@ -86,7 +86,9 @@ impl MetricField for Sampled {
         let mut found = Vec::new();
         for &triangle in &domain.triangles {
             self.locator.near(domain.corners_of(triangle), &mut found);
-            found.iter().for_each(|&t| near[t as usize] = true);
+            for &t in &found {
+                near[t as usize] = true;
+            }
         }
         for _ in 0..RINGS {
             let taken = self.triangles.iter().zip(&near).filter(|(_, near)| **near);
@@ -268,7 +270,8 @@ mod tests {
 
     /// Two triangles that fill a box.
     fn filled(low: [f64; 2], high: [f64; 2]) -> Mesh {
-        let points = vec![[low[0], low[1], 0.0], [high[0], low[1], 0.0], [high[0], high[1], 0.0], [low[0], high[1], 0.0]];
+        let points =
+            vec![[low[0], low[1], 0.0], [high[0], low[1], 0.0], [high[0], high[1], 0.0], [low[0], high[1], 0.0]];
         Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() }
     }
 
@@ -280,7 +283,8 @@ mod tests {
         let part = Sampled::new(&mesh, &tensors).unwrap();
         for i in 0..500 {
             // A triangle farther out than its box.
-            let p = Point::new(0.28 + 0.24 * (f64::from(i) * 0.618).fract(), 0.58 + 0.14 * (f64::from(i) * 0.414).fract());
+            let p =
+                Point::new(0.28 + 0.24 * (f64::from(i) * 0.618).fract(), 0.58 + 0.14 * (f64::from(i) * 0.414).fract());
             assert!(error(part.at(p), field.at(p)) < 1e-13, "{p}");
         }
     }
