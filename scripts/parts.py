@@ -235,7 +235,7 @@ def strips(typed, folder, rows):
     middles = [mesh.points[mesh.triangles].mean(axis=1) for mesh in (parts, whole)]
     nearest = cKDTree(middles[0]).query(middles[1])[1]
     for name, mesh, taken in (("strips", parts, in_strip), ("the same places in one piece", whole, in_strip[nearest])):
-        triangles = mesh.triangles[taken]
+        triangles = fans(mesh.triangles[taken])
         used, numbers = np.unique(triangles, return_inverse=True)
         place = folder / "strips.meshb"
         voronaut.Mesh(mesh.points[used], numbers.reshape(-1, 3)).save(place)
@@ -244,6 +244,18 @@ def strips(typed, folder, rows):
         words = ["check", place, *metric, "--metric-scale", scale, *(["--domain", domain] if typed.case == "surface" else [])]
         subprocess.run([VORONAUT, *map(str, words), "--report", folder / "strips.json", "-q"], check=False)
         rows.add(name, {**json.loads((folder / "strips.json").read_text()), "seconds": None})
+
+
+def fans(triangles):
+    """The triangles without those at vertices around which they are not one fan: such a vertex has more than two edges at the border."""
+    while True:
+        ends = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        edges, count = np.unique(ends, axis=0, return_counts=True)
+        at_border = np.bincount(edges[count == 1].ravel(), minlength=triangles.max() + 1)
+        stays = (at_border[triangles] <= 2).all(axis=1)
+        if stays.all():
+            return triangles
+        triangles = triangles[stays]
 
 
 def plane(folder, angle):
