@@ -189,10 +189,12 @@ impl<'a> World<'a> {
                 let Some(document) = named(&held.documents, path) else { return Ok(None) };
                 (document.mesh.clone(), document.fields.vertices.first().map(|field| field.values.clone()))
             }
-            None if !path.exists() => return Ok(None),
             None => {
-                let solutions = voronaut_io::read_solutions(&path.with_extension("solb"))?;
-                (voronaut_io::read(path)?.mesh, solutions.vertices.into_iter().next())
+                let values = path.with_extension("solb");
+                if !values.exists() {
+                    return Ok(None);
+                }
+                (voronaut_io::read(path)?.mesh, voronaut_io::read_solutions(&values)?.vertices.into_iter().next())
             }
         };
         let Some(SolutionValues::Tensor(entries)) = values else { return Ok(None) };
