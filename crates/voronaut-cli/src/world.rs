@@ -184,18 +184,15 @@ impl<'a> World<'a> {
 
     /// A mesh with tensors at its vertices, if there is one of this name: of files the tensors are in a `.solb` beside it.
     pub(crate) fn metric_at_vertices(&self, path: &Path) -> Result<Option<(Mesh, Vec<Tensor>)>> {
-        let (mesh, values) = match &self.held {
-            Some((held, _)) => {
-                let Some(document) = named(&held.documents, path) else { return Ok(None) };
-                (document.mesh.clone(), document.fields.vertices.first().map(|field| field.values.clone()))
+        let (mesh, values) = if let Some((held, _)) = &self.held {
+            let Some(document) = named(&held.documents, path) else { return Ok(None) };
+            (document.mesh.clone(), document.fields.vertices.first().map(|field| field.values.clone()))
+        } else {
+            let values = path.with_extension("solb");
+            if !values.exists() {
+                return Ok(None);
             }
-            None => {
-                let values = path.with_extension("solb");
-                if !values.exists() {
-                    return Ok(None);
-                }
-                (voronaut_io::read(path)?.mesh, voronaut_io::read_solutions(&values)?.vertices.into_iter().next())
-            }
+            (voronaut_io::read(path)?.mesh, voronaut_io::read_solutions(&values)?.vertices.into_iter().next())
         };
         let Some(SolutionValues::Tensor(entries)) = values else { return Ok(None) };
         Ok(Some((mesh, entries.into_iter().map(|[xx, xy, yy]| Tensor::new(xx, xy, yy)).collect())))
