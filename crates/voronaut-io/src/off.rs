@@ -56,6 +56,11 @@ fn read_counts(source: &mut Source<'_>) -> Result<[u64; 2]> {
         let what = format!("the file begins with '{}', not with OFF", first.quoted());
         return Err(first.place.error(what, "give a file in the text form of .off"));
     }
+    let next = source.word(at)?;
+    if next.text.eq_ignore_ascii_case("BINARY") {
+        return Err(next.place.error("a binary .off file", "save it as text, or as .ply or .stl"));
+    }
+    source.unread();
     let counts = several(|| source.word(at)?.whole(at))?;
     source.skip_row();
     Ok(counts)
@@ -110,7 +115,7 @@ mod tests {
         for (text, expected) in [
             ("", "a.off:1: the text ends in the head of the file"),
             ("solid\n", "a.off:1: the file begins with 'solid', not with OFF"),
-            ("OFF BINARY\n", "a.off:1: 'BINARY' is not a whole number"),
+            ("OFF BINARY\n", "a.off:1: a binary .off file"),
             ("OFF\n3", "a.off:2: the text ends in the head of the file"),
             ("OFF\n9000000000000000000 1 0\n0 0 0", "a.off:3: the text ends in row 2 of 9000000000000000000 of the v"),
             ("OFF\n1 1 0\n0 0\n", "a.off:3: the text ends in row 1 of 1 of the vertices"),

@@ -7,7 +7,8 @@ use voronaut::Result;
 use voronaut::domain::{Poly, PolyRegion};
 use voronaut::geometry::Point;
 
-/// Reads a `.poly` text with its vertices inline, numbered from 0 or 1. Vertex attributes are passed over.
+/// Reads a `.poly` text with its vertices inline, numbered from 0 or 1. Vertex attributes are passed over. ([`read_pslg`](super::read_pslg)
+/// finds vertices in the `.node` file beside it, too.)
 ///
 /// The lists of holes and regions may be missing. `place` names the text in messages. Memory follows the text, never a
 /// count written in it.
@@ -18,8 +19,29 @@ use voronaut::geometry::Point;
 /// numbers out of turn, something that is no finite number, an end that is no vertex, no vertices inline, a dimension
 /// other than 2.
 pub fn read(source: impl BufRead, place: &str) -> Result<Poly> {
+    read_with(source, place, || None::<Result<(io::Empty, String)>>)
+}
+
+/// The same of a text whose vertices may be in a `.node` text, which is asked for then, with its name.
+///
+/// # Errors
+/// As of [`read`], and of asking.
+pub(crate) fn read_with<N: BufRead>(
+    source: impl BufRead,
+    place: &str,
+    nodes: impl FnOnce() -> Option<Result<(N, String)>>,
+) -> Result<Poly> {
     let (mut source, mut poly) = (Source::new(source, place), Poly::default());
-    read_vertices(&mut source, &mut poly)?;
+    if read_vertices(&mut source, &mut poly)? == 0 {
+        let (nodes, name) = nodes().transpose()?.ok_or_else(|| {
+            let help = "inline the vertices: put the content of the .node file here, in place of this row";
+            source.error("the file holds no vertices: they are in a .node file", help)
+        })?;
+        let mut nodes = Source::new(nodes, &name);
+        if read_vertices(&mut nodes, &mut poly)? == 0 {
+            return Err(nodes.error("the file holds no vertices", "give the file that Triangle wrote beside the .poly"));
+        }
+    }
     read_segments(&mut source, &mut poly)?;
     for at in At::rows("holes", read_count(&mut source, "holes")?) {
         let row = columns(source.row(at)?, at, 3..=3)?;
@@ -67,15 +89,12 @@ pub fn write(poly: &Poly, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-fn read_vertices(source: &mut Source<'_>, poly: &mut Poly) -> Result<()> {
+/// How many there are.
+fn read_vertices(source: &mut Source<'_>, poly: &mut Poly) -> Result<u64> {
     let [count, dimension, attributes, markers] = read_head(source, "vertices", 4)?;
     if let Some(dimension) = dimension.filter(|&dimension| dimension != 2) {
         let help = "give a planar .poly file; TetGen's three-dimensional ones are another format";
         return Err(source.error(format!("the vertices have dimension {dimension}, not 2"), help));
-    }
-    if count == Some(0) {
-        let help = "inline the vertices: put the content of the .node file here, in place of this row";
-        return Err(source.error("the file holds no vertices: they are in a .node file", help));
     }
     // A row of a text holds fewer columns than this; the sum below must not overflow.
     let attributes = attributes.unwrap_or(0).min(1 << 40) as usize;
@@ -86,7 +105,7 @@ fn read_vertices(source: &mut Source<'_>, poly: &mut Poly) -> Result<()> {
         poly.points.push(point(&row, at)?);
         poly.point_markers.push(marker(row.get(3 + attributes), at)?);
     }
-    Ok(())
+    Ok(count.unwrap_or(0))
 }
 
 fn read_segments(source: &mut Source<'_>, poly: &mut Poly) -> Result<()> {

@@ -149,6 +149,8 @@ struct Reader {
     largest: Largest,
     /// Whether the section that was read last means nothing here.
     is_foreign: bool,
+    /// Whether the marker that was named last is no boundary.
+    is_sent: bool,
 }
 
 impl Reader {
@@ -165,10 +167,15 @@ impl Reader {
             }
             "NPOIN" => self.points(count(source)?, source)?,
             "NELEM" => self.elements(At::rows("the elements", count(source)?), 0, source)?,
-            "MARKER_TAG" => {
+            // Points that SU2 sends from one part of an older mesh to another: no boundary, and their rows begin with SEND_TO=.
+            "MARKER_TAG" | "MARKERTAG" if value == "SEND_RECEIVE" => self.is_sent = true,
+            // SU2 does not look at how the word is spelled.
+            "MARKER_TAG" | "MARKERTAG" => {
+                self.is_sent = false;
                 let label = self.label(value);
                 self.tags.push((value.to_owned(), label));
             }
+            "MARKER_ELEMS" if self.is_sent => self.is_foreign = true,
             "MARKER_ELEMS" => {
                 let Some(&(_, label)) = self.tags.last() else {
                     return Err(source.error("MARKER_ELEMS= before any MARKER_TAG=", "name the marker first"));
@@ -332,6 +339,16 @@ mod tests {
             "FFD_NBOX= 1\nFFD_CORNER_POINTS= 2\n0 0\n1 1\nNPERIODIC= 1\nPERIODIC_INDEX= 0\nPERIODIC_CENTER= 0 0 0\n";
         let mesh = |text: &str| read(text.as_bytes(), "a.su2").unwrap().mesh;
         assert_eq!(mesh(&format!("NZONE= 1\n{SQUARE}{more}")), mesh(SQUARE));
+    }
+
+    /// As SU2 partitioned periodic meshes before version 7, and as its own test cases spell a marker.
+    #[test]
+    fn points_that_are_sent_are_no_boundary() {
+        let sent = "MARKER_TAG= SEND_RECEIVE\nMARKER_ELEMS= 2\nSEND_TO= 1\n1 0 1\n1 3 1\n";
+        let mesh = |text: &str| read(text.as_bytes(), "a.su2").unwrap();
+        let again = mesh(&format!("{SQUARE}{sent}MARKERTAG= 9\nMARKER_ELEMS= 1\n3 0 2\n"));
+        let expected = mesh(&format!("{SQUARE}MARKER_TAG= 9\nMARKER_ELEMS= 1\n3 0 2\n"));
+        assert_eq!((again.mesh, again.notes), (expected.mesh, expected.notes));
     }
 
     #[test]

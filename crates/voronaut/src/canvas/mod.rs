@@ -28,6 +28,7 @@ pub use consistent::PickCounters;
 pub(crate) use consistent::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 pub use draped::Draped;
 pub(crate) use lengths::metric_area;
+pub(crate) use refine::COARSE;
 pub(crate) use on_surface::{area_of_surface, even_on_surface};
 pub use star_set::{StarFigures, StarSet};
 pub use way::Way;
@@ -221,7 +222,7 @@ impl Canvas {
     pub(crate) fn from_planar(kind: Kind, planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
         let mut counters = CanvasCounters::default();
         let planar = match kind {
-            Kind::Intrinsic => refine::refine(planar, field, vertices, &mut counters)?,
+            Kind::Intrinsic => refine::refine(planar, field, COARSE, vertices, &mut counters)?,
             Kind::Isotropic => isotropic::refine(planar, field, Until { vertices, sizes: 0.0 }, &mut counters)?,
             Kind::StarSet => star_set::refine(planar, field, vertices, &mut counters)?,
         };
@@ -295,12 +296,13 @@ impl Canvas {
 }
 
 /// The triangulation that [`Canvas::intrinsic`] starts from, alone: even in the metric, with so many vertices, and all of those that
-/// there were.
+/// there were. Edges are measured with care while there are fewer vertices than `coarse`, which is [`COARSE`] where nothing is known of the
+/// field.
 ///
 /// # Errors
 /// As for [`Canvas::intrinsic`].
-pub(crate) fn even(planar: &Planar, field: &dyn MetricField, vertices: usize) -> Result<Planar> {
-    let refined = refine::refine(planar.clone(), field, vertices, &mut CanvasCounters::default())?;
+pub(crate) fn even(planar: &Planar, field: &dyn MetricField, coarse: usize, vertices: usize) -> Result<Planar> {
+    let refined = refine::refine(planar.clone(), field, coarse, vertices, &mut CanvasCounters::default())?;
     Ok(renumbered(&refined))
 }
 

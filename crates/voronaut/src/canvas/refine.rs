@@ -13,9 +13,8 @@ use crate::metric::MetricField;
 use crate::planar::Planar;
 use crate::triangulation::{HalfEdge, VertexId};
 
-/// Edges are measured by five evaluations of the field while there are fewer vertices than this, by one from then on:
-/// long edges may hide in their middle what their ends do not tell.
-const COARSE: usize = 20_000;
+/// Where edges begin to be measured by one evaluation, if nothing is known of the field.
+pub(crate) const COARSE: usize = 20_000;
 /// Ends agree on an edge's length if they differ by less than this share of their sum.
 const ALIKE: f64 = 0.05;
 /// A fixed edge that the middle of another sees under an angle with a cosine below this is halved first.
@@ -23,17 +22,19 @@ const CREEPING: f64 = -0.99;
 /// Faces no higher than this share of their coordinates are flat.
 const ROUNDING: f64 = 1e-15;
 
-/// Refines until there are `vertices` vertices.
+/// Refines until there are `vertices` vertices. Edges are measured by five evaluations of the field while there are fewer than `coarse`, by
+/// one from then on: long edges may hide in their middle what their ends do not tell.
 ///
 /// # Errors
 /// The metric is not positive definite at a vertex.
 pub(super) fn refine(
     planar: Planar,
     field: &dyn MetricField,
+    coarse: usize,
     vertices: usize,
     counters: &mut CanvasCounters,
 ) -> Result<Planar> {
-    let mut refiner = Refiner::new(planar, field)?;
+    let mut refiner = Refiner::new(planar, field, coarse)?;
     for h in refiner.steiner.planar.topology.edges().collect::<Vec<_>>() {
         refiner.enqueue(h);
     }
@@ -56,7 +57,7 @@ pub(super) fn halve(
     edges: &[[VertexId; 2]],
     counters: &mut CanvasCounters,
 ) -> Result<Planar> {
-    let mut refiner = Refiner::new(planar, field)?;
+    let mut refiner = Refiner::new(planar, field, COARSE)?;
     for &[a, b] in edges {
         if let Some(h) = refiner.steiner.planar.topology.edge_between(a, b) {
             refiner.split(h, counters)?;
@@ -69,11 +70,12 @@ struct Refiner<'a> {
     steiner: Steiner<'a>,
     field: &'a dyn MetricField,
     queue: Buckets<[VertexId; 2]>,
+    coarse: usize,
 }
 
 impl<'a> Refiner<'a> {
-    fn new(planar: Planar, field: &'a dyn MetricField) -> Result<Self> {
-        Ok(Self { steiner: Steiner::metric(planar, field)?, field, queue: Buckets::default() })
+    fn new(planar: Planar, field: &'a dyn MetricField, coarse: usize) -> Result<Self> {
+        Ok(Self { steiner: Steiner::metric(planar, field)?, field, queue: Buckets::default(), coarse })
     }
 
     /// Halves an edge, or first the fixed edge beside it that its middle encroaches: else new vertices creep ever closer
@@ -128,7 +130,7 @@ impl<'a> Refiner<'a> {
     fn enqueue(&mut self, h: HalfEdge) {
         let ends = self.steiner.planar.topology.ends(h);
         let [p, q] = self.steiner.planar.ends(h);
-        let length = if self.steiner.planar.positions.len() < COARSE {
+        let length = if self.steiner.planar.positions.len() < self.coarse {
             chord_near(self.field, p, q, self.steiner.nears[ends[0].index()])
         } else {
             self.simpson(ends, p, q)
@@ -168,7 +170,7 @@ mod tests {
     fn a_border_that_is_halved_no_more_ends_the_work() {
         // Both long sides are encroached along all of their length, and nothing but rounding lies between them.
         let needle = plate(&[&[[-6e-10, 6e-10], [953.125, -1250.0], [0.0, 0.0]]]);
-        let even = even(needle.planar(), &|_: Point| Tensor::IDENTITY, 1000).unwrap();
+        let even = even(needle.planar(), &|_: Point| Tensor::IDENTITY, COARSE, 1000).unwrap();
         assert!(even.positions.len() <= 1000 + 120, "{}", even.positions.len());
     }
 }

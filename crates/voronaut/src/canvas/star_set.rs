@@ -57,7 +57,7 @@ pub(super) fn refine(
     counters: &mut CanvasCounters,
 ) -> Result<Planar> {
     let start = (FROM_EMBEDDED * vertices as f64) as usize;
-    let planar = refine::refine(planar, field, start, counters)?;
+    let planar = refine::refine(planar, field, refine::COARSE, start, counters)?;
     let mut stars = Stars::new(Steiner::metric(renumbered(&planar), field)?);
     loop {
         let missing = vertices.saturating_sub(stars.steiner.planar.topology.vertex_count());

@@ -66,7 +66,7 @@ pub(crate) use validate::{
 };
 pub use vocabulary::Variables;
 
-use crate::geometry::{Point, Tensor};
+use crate::geometry::{Aabb, Point, Tensor};
 use crate::mesh::Mesh;
 
 /// A Riemannian metric field on the plane.
@@ -86,6 +86,12 @@ pub trait MetricField: Sync {
     /// All that has to be known of it in a domain and around, which is given as triangles: tensors at the vertices of a mesh. `None` where
     /// the field is no such thing, or the domain is not where the mesh is.
     fn excerpt(&self, _domain: &Mesh) -> Option<(Mesh, Vec<Tensor>)> {
+        None
+    }
+
+    /// The integral of sqrt(det M) over a domain, in closed form: known where the field is given on triangles, and these have the area and
+    /// the bounds of the domain but for a share of them.
+    fn integral(&self, _area: f64, _bounds: Aabb, _share: f64) -> Option<f64> {
         None
     }
 }
@@ -113,6 +119,10 @@ impl MetricField for Box<dyn MetricField + '_> {
 
     fn excerpt(&self, domain: &Mesh) -> Option<(Mesh, Vec<Tensor>)> {
         (**self).excerpt(domain)
+    }
+
+    fn integral(&self, area: f64, bounds: Aabb, share: f64) -> Option<f64> {
+        (**self).integral(area, bounds, share)
     }
 }
 

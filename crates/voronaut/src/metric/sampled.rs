@@ -1,10 +1,10 @@
 //! A metric given at the vertices of a background mesh.
 
-use super::nodal::isotropic;
+use super::nodal::{isotropic, of_triangle};
 use super::validate::{BACKGROUND, check_at_vertices};
 use super::{MetricField, Near};
 use crate::error::Result;
-use crate::geometry::{Point, Tensor};
+use crate::geometry::{Aabb, Point, Tensor};
 use crate::lists::{distinct, marked};
 use crate::mesh::{Located, Locator, Mesh};
 
@@ -76,6 +76,24 @@ impl MetricField for Sampled {
         near.triangle = Some(triangle);
         let [a, b, c] = self.triangles[triangle as usize].map(|v| self.logs[v as usize]);
         (a * weights[0] + b * weights[1] + c * weights[2]).exp()
+    }
+
+    fn integral(&self, area: f64, bounds: Aabb, share: f64) -> Option<f64> {
+        let corners = |t: usize| self.locator.corners(t as u32);
+        let own = Aabb::of((0..self.triangles.len()).flat_map(corners))?;
+        let longest = share * bounds.extent().x.max(bounds.extent().y);
+        if bounds.min.distance(own.min).max(bounds.max.distance(own.max)) > longest {
+            return None;
+        }
+        let of = |(t, triangle): (usize, &[u32; 3])| {
+            let [a, b, c] = corners(t);
+            let double_area = (b - a).cross(c - a).abs();
+            let logs = triangle.map(|v| 0.5 * (self.logs[v as usize].xx + self.logs[v as usize].yy));
+            [of_triangle(double_area, logs), 0.5 * double_area]
+        };
+        let parts = self.triangles.iter().enumerate().map(of);
+        let [integral, all] = parts.fold([0.0; 2], |[integral, all], [own, part]| [integral + own, all + part]);
+        ((area - all).abs() <= share * area).then(|| integral * (area / all))
     }
 
     fn excerpt(&self, domain: &Mesh) -> Option<(Mesh, Vec<Tensor>)> {

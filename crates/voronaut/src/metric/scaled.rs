@@ -3,7 +3,7 @@
 
 use super::{MetricField, Near};
 use crate::elementary::Elementary;
-use crate::geometry::{Point, Tensor};
+use crate::geometry::{Aabb, Point, Tensor};
 
 /// The field `factor` M: metric lengths grow by sqrt(factor), the complexity (see [`complexity`](super::complexity()))
 /// by `factor`. The factor is positive and finite; any other gives tensors that
@@ -23,6 +23,10 @@ impl MetricField for Scaled<'_> {
 
     fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
         self.field.at_near(p, near) * self.factor
+    }
+
+    fn integral(&self, area: f64, bounds: Aabb, share: f64) -> Option<f64> {
+        Some(self.field.integral(area, bounds, share)? * self.factor)
     }
 }
 

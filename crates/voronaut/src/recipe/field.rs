@@ -1,7 +1,7 @@
 //! From what the user says of a metric to the field itself: limits, then smoothing and gradation on a mesh that it is sampled on.
 
 use super::Aim;
-use crate::canvas;
+use crate::canvas::{self, COARSE};
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor};
@@ -158,10 +158,10 @@ pub fn metric_of_samples(
         Sampled::new(mesh, &sample(&points)?)
     };
     let even_everywhere = |_: Point| Tensor::isotropic(1.0);
-    let mut mesh = even(&even_everywhere, domain, FIRST_SAMPLES)?;
+    let mut mesh = even(&even_everywhere, domain, COARSE, FIRST_SAMPLES)?;
     let mut field = sampled(&mesh)?;
     for _ in 0..2 {
-        mesh = even(&field, domain, vertices_for(&field, domain, at)?)?;
+        mesh = even(&field, domain, COARSE, vertices_for(&field, domain, at)?)?;
         field = sampled(&mesh)?;
     }
     finished(PlanarMetric::plain(field), domain, Some(&mesh), options, at)
@@ -264,8 +264,8 @@ pub(super) fn background_vertices(complexity: f64, fewest: usize) -> usize {
 }
 
 /// A triangulation of the domain that is even in the metric, with so many vertices, and all of the domain's own.
-pub(super) fn even(field: &dyn MetricField, domain: &Domain, vertices: usize) -> Result<Mesh> {
-    let Planar { topology, positions } = canvas::even(domain.planar(), field, vertices)?;
+pub(super) fn even(field: &dyn MetricField, domain: &Domain, coarse: usize, vertices: usize) -> Result<Mesh> {
+    let Planar { topology, positions } = canvas::even(domain.planar(), field, coarse, vertices)?;
     Ok(Mesh {
         points: positions.iter().map(|p| [p.x, p.y, 0.0]).collect(),
         triangles: topology.faces().map(|face| topology.corners(face).map(|v| v.0)).collect(),
@@ -292,7 +292,7 @@ pub(super) fn smooth_metric(
     }
     let mesh = match own {
         Some(mesh) => Cow::Borrowed(mesh),
-        None => Cow::Owned(even(field.as_ref(), domain, BACKGROUND_VERTICES)?),
+        None => Cow::Owned(even(field.as_ref(), domain, COARSE, BACKGROUND_VERTICES)?),
     };
     Ok(Box::new(smoothed(field.as_ref(), &mesh, sweeps)?))
 }
@@ -333,9 +333,9 @@ pub(super) fn grade_metric(
     if let Some(mesh) = own {
         return Ok(Box::new(graded(mesh)?));
     }
-    let sampled = graded(&even(field.as_ref(), domain, vertices_for(field.as_ref(), domain, at)?)?)?;
+    let sampled = graded(&even(field.as_ref(), domain, COARSE, vertices_for(field.as_ref(), domain, at)?)?)?;
     // The metric as it was is coarse where it is to be finer; what was made of it there has a background that is fine enough.
-    Ok(Box::new(graded(&even(&sampled, domain, vertices_for(&sampled, domain, at)?)?)?))
+    Ok(Box::new(graded(&even(&sampled, domain, COARSE, vertices_for(&sampled, domain, at)?)?)?))
 }
 
 /// How many vertices the background of a metric has.

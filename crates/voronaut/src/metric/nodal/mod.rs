@@ -28,6 +28,7 @@ pub(crate) mod test_meshes;
 
 pub use combine::{average, intersect};
 pub(crate) use complexity::complexity;
+pub(super) use complexity::of_triangle;
 pub(crate) use gradation::Gradation;
 pub use gradation::grade;
 pub(crate) use implied::implied_by;
