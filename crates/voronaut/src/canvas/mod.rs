@@ -28,8 +28,8 @@ pub use consistent::PickCounters;
 pub(crate) use consistent::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 pub use draped::Draped;
 pub(crate) use lengths::metric_area;
-pub(crate) use refine::COARSE;
 pub(crate) use on_surface::{area_of_surface, even_on_surface};
+pub(crate) use refine::COARSE;
 pub use star_set::{StarFigures, StarSet};
 pub use way::Way;
 

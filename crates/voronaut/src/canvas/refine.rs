@@ -162,7 +162,7 @@ pub(super) fn is_beside_flat(planar: &Planar, h: HalfEdge) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::canvas::even;
+    use crate::canvas::{COARSE, even};
     use crate::geometry::{Point, Tensor};
     use crate::test_cases::plate;
 

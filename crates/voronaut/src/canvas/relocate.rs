@@ -295,7 +295,7 @@ fn excess(tensor: Tensor, [a, b]: [Vector; 2], [c, d]: [Vector; 2]) -> f64 {
 mod tests {
     use super::*;
     use crate::canvas::star_set::Stars;
-    use crate::canvas::{CanvasCounters, refine};
+    use crate::canvas::{COARSE, CanvasCounters, refine};
     use crate::domain::Domain;
     use crate::geometry::Point;
     use crate::metric::MetricField;
@@ -309,7 +309,8 @@ mod tests {
 
     fn refined(field: &dyn MetricField) -> Planar {
         let square = Domain::shape("rect:0,0,1,1").unwrap();
-        let planar = refine::refine(square.planar().clone(), field, 400, &mut CanvasCounters::default()).unwrap();
+        let planar =
+            refine::refine(square.planar().clone(), field, COARSE, 400, &mut CanvasCounters::default()).unwrap();
         crate::canvas::renumbered(&planar)
     }
 
