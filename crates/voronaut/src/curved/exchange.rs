@@ -5,7 +5,7 @@ use super::elements::{Elements, HALVINGS, Hold, Loose, Vertex};
 use super::jacobian::bound;
 use super::newton::Aim;
 use super::rules::Rule;
-use super::term::{curve_length, triangle_energy};
+use super::term::{curve_length, side_energy, triangle_energy};
 use crate::geometry::{Point, Vector};
 use crate::lists::{distinct, ranked};
 use crate::mesh::edges::NONE;
@@ -90,8 +90,15 @@ impl Work<'_> {
         curve_length(&points, self.aim.metric)
     }
 
+    /// The energy of a triangle and half the cost of its sides, which others have as well.
     fn energy(&self, triangle: &Loose) -> f64 {
-        triangle_energy(self.rule, &triangle.points[..self.elements.count()], self.aim.metric)
+        let Aim { metric, lengths } = *self.aim;
+        let of_side = |s: usize| {
+            let points: Vec<Point> = side(self.elements.order, s).map(|i| triangle.points[i]).collect();
+            side_energy(&points, metric, 0.5 * lengths)
+        };
+        let of_sides = if lengths > 0.0 { (0..3).map(of_side).sum() } else { 0.0 };
+        triangle_energy(self.rule, &triangle.points[..self.elements.count()], metric) + of_sides
     }
 
     fn gain(&self, old: &[usize], new: &[Loose]) -> f64 {

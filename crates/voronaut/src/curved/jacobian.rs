@@ -49,7 +49,7 @@ pub(crate) fn bound(points: &[Point], order: usize, halvings: u32) -> Bound {
 }
 
 /// The coefficients of the Jacobian, and how far rounding may have moved them.
-fn coefficients(points: &[Point], order: usize) -> ([f64; MOST], f64) {
+pub(super) fn coefficients(points: &[Point], order: usize) -> ([f64; MOST], f64) {
     let lower = exponents(order - 1);
     let mut slopes = [[Vector::default(); 2]; 6];
     let count = if order == 1 { 1 } else { lower.len() };

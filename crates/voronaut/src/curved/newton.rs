@@ -13,9 +13,8 @@ use crate::progress::Progress;
 
 /// A step is halved for all points alike where the energy would rise, and given up where less than this share is left of it.
 const LEAST_SHARE: f64 = 0.03;
-/// It is halved for the points of a triangle that would not be valid, or cost more than so many times what it did, and so much; at most
-/// so many times.
-const WORSE: (f64, f64) = (1.5, 0.1);
+/// It is halved for the points of a triangle that would not be valid, at most so many times. (Triangles that cost more have to be let: barred
+/// as well they held up all around them.)
 const BARRED: usize = 5;
 
 /// What a curved mesh is to be good for.
@@ -119,8 +118,8 @@ struct Moved {
 }
 
 impl Moved {
-    /// A share of a step. Where a triangle would not be valid, or cost far more than before, its points go half as far, or stay in
-    /// the end: what goes wrong in one place does not hold up the others.
+    /// A share of a step. Where a triangle would not be valid its points go half as far, or stay in the end: what goes wrong in one
+    /// place does not hold up the others.
     fn by(elements: &Elements, aim: &Aim, rule: &Rule, before: &[f64], step: &[Vector], share: f64) -> Self {
         let count = elements.points.len();
         let (mut shares, mut halved) = (vec![share; count], vec![0; count]);
@@ -140,8 +139,7 @@ impl Moved {
             for (&t, energy) in near.iter().zip(now) {
                 found.energies[t] = energy;
             }
-            let is_bad = |t: &usize| found.energies[*t].is_nan() || found.energies[*t] > WORSE.0 * before[*t] + WORSE.1;
-            let bad = near.into_iter().filter(is_bad);
+            let bad = near.into_iter().filter(|&t| !found.energies[t].is_finite());
             moved = distinct(bad.flat_map(|t| elements.numbers(t)).copied());
             moved.retain(|&p| shares[p as usize] > 0.0);
             for &p in &moved {

@@ -144,3 +144,30 @@ fn raising_the_order_and_halving_change_no_map() {
     assert!(of(&first.points, [0.2, 0.5, 0.3]).distance(of(&whole.points, [0.45, 0.25, 0.3])) < 1e-15);
     assert!(of(&second.points, [0.2, 0.5, 0.3]).distance(of(&whole.points, [0.1, 0.6, 0.3])) < 1e-15);
 }
+
+#[test]
+fn a_new_side_that_would_fold_is_untangled() {
+    let p = |x: f64, y: f64| Point::new(x, y);
+    // Beside the middle side, from the first vertex to the second, the third corner leans over to the right.
+    let vertices = [p(0.0, 0.0), p(1.0, 0.0), p(0.5, 1.0), p(0.5, -1.0)];
+    let vertices = vertices.map(|place| elements::Vertex { place, hold: elements::Hold::Free, source: 0 });
+    let triangle = |corners: [u32; 3], inner: [Point; 3]| {
+        let mut points = [Point::default(); bezier::MOST];
+        points[..3].copy_from_slice(&corners.map(|v| vertices[v as usize].place));
+        points[3..6].copy_from_slice(&inner);
+        elements::Loose { corners, points, held: [u32::MAX; 3], label: 0 }
+    };
+    let pair = [
+        triangle([0, 1, 2], [p(0.5, 0.0), p(1.2, 0.7), p(0.75, 0.55)]),
+        triangle([1, 0, 3], [p(0.5, 0.0), p(0.25, -0.5), p(0.75, -0.5)]),
+    ];
+    let quadratic = Elements::assembled(2, &vertices, &pair);
+    let aim = Aim { metric: &|_: Point| Tensor::IDENTITY, lengths: 0.0 };
+    for elements in [quadratic.raised(), quadratic] {
+        assert!((0..2).all(|t| elements.bound(&elements.points, t).is_valid()));
+        let rule = Rule::of(elements.order);
+        let mut flip = local::Local::of(&elements, &aim, &rule, pair::Pair::of(&elements, 0));
+        assert!(!flip.is_valid());
+        assert!(flip.untangle() && flip.is_valid() && flip.energy().is_finite());
+    }
+}
