@@ -1,4 +1,7 @@
-//! Lists: in order, without repetitions, marked, in rows, in classes.
+//! Lists: in order, without repetitions, marked, in rows, in classes; tables by numbers.
+
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// What there is among these, each once, in order.
 pub(crate) fn distinct<T: Ord>(items: impl IntoIterator<Item = T>) -> Vec<T> {
@@ -117,6 +120,45 @@ impl Classes {
     }
 }
 
+/// A table by a few numbers each, that the program made itself. What it holds must not depend on the order in which it is gone through.
+pub(crate) type Table<K, V> = HashMap<K, V, BuildHasherDefault<Mixer>>;
+
+/// Mixes numbers by multiplication, as `rustc-hash` does: the standard library's hash withstands who chooses keys to collide, and takes
+/// several times as long.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Mixer(u64);
+
+/// An odd number without pattern, whose multiples differ in their high bits (that of `rustc-hash`).
+const MULTIPLIER: u64 = 0xf135_7aea_2e62_a9c5;
+/// Brings the high bits of the product, which all bits of the keys have a say in, to where tables look.
+const TURN: u32 = 26;
+
+impl Hasher for Mixer {
+    fn write(&mut self, bytes: &[u8]) {
+        for chunk in bytes.chunks(8) {
+            let mut word = [0; 8];
+            word[..chunk.len()].copy_from_slice(chunk);
+            self.write_u64(u64::from_le_bytes(word));
+        }
+    }
+
+    fn write_u32(&mut self, number: u32) {
+        self.write_u64(u64::from(number));
+    }
+
+    fn write_u64(&mut self, number: u64) {
+        self.0 = self.0.wrapping_add(number).wrapping_mul(MULTIPLIER);
+    }
+
+    fn write_usize(&mut self, number: usize) {
+        self.write_u64(number as u64);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0.rotate_left(TURN)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -128,6 +170,17 @@ mod tests {
         assert!(classes.join(1, 3) && classes.join(3, 6));
         classes.flatten();
         assert_eq!([0, 1, 2, 3, 4, 5, 6].map(|i| classes.of(i)), [0, 1, 1, 1, 1, 5, 1]);
+    }
+
+    #[test]
+    fn numbers_of_neighbours_are_mixed_well() {
+        use std::hash::BuildHasher;
+        let by = BuildHasherDefault::<Mixer>::default();
+        let quads = (0..1 << 14).map(|i: u32| [i, i + 1, i + 100, i + 101]);
+        let places = quads.map(|quad| by.hash_one(quad) & ((1 << 14) - 1));
+        // Thrown at random, 1 - 1/e of all places are taken.
+        let taken = distinct(places).len() as f64 / f64::from(1 << 14);
+        assert!(taken > 0.6, "{taken}");
     }
 
     #[test]

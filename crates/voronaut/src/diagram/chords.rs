@@ -111,7 +111,7 @@ impl Nearest {
             (1.0 - ROUNDING) * along(0).max(along(1)).powi(2)
         };
         let mut best: Option<(f64, u32)> = None;
-        self.0.search_by(f64::INFINITY, floor, |site| {
+        self.0.search_by(f64::INFINITY, floor, |_, site| {
             let found = (frozen.unwrap_or(site.tensor).length(place - site.at), site.colour);
             if best.is_none_or(|best| found.0 < best.0 || (found.0 <= best.0 && found.1 < best.1)) {
                 best = Some(found);

@@ -62,6 +62,11 @@ const BEYOND_CANVAS: f64 = 0.01;
 /// Several flips at once may not leave a triangle of a quality below this, poorer than all before.
 const SLIVER: f64 = 0.1;
 
+/// Whether lengths do not decide.
+fn is_beyond(margin: Margin) -> bool {
+    !margin.is_certain() && margin.error > BEYOND_LENGTHS
+}
+
 /// An edge on which the roads differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Disagreement {
@@ -160,16 +165,14 @@ impl Dual<'_> {
     /// The edges of which lengths are not sure, and that are not held, or held and the nerve is not sure of them.
     fn uncertain_edges(&mut self, unsure: &HashSet<[VertexId; 2]>) -> Vec<([VertexId; 2], Margin)> {
         let topology = self.topology();
-        let edges: Vec<HalfEdge> = topology.edges().filter(|&h| !topology.is_fixed(h)).collect();
+        let ends = |h: HalfEdge| diagonals(&self.quad(h))[0];
+        let is_open = |&h: &HalfEdge| !topology.is_fixed(h) && (!self.is_held(h) || unsure.contains(&ends(h)));
+        let edges: Vec<HalfEdge> = topology.edges().filter(is_open).collect();
         let mut uncertain = Vec::new();
-        for h in edges {
-            let [ends, _] = diagonals(&self.quad(h));
-            if !self.is_held(h) || unsure.contains(&ends) {
-                let margin = self.margin(h, Effort::Full);
-                uncertain.extend((!margin.is_certain()).then_some((ends, margin)));
-            }
-        }
-        uncertain
+        self.each_margin(&edges, Effort::Full, |h, margin| {
+            uncertain.extend((!margin.is_certain()).then_some((h, margin)));
+        });
+        uncertain.into_iter().map(|(h, margin)| (diagonals(&self.quad(h))[0], margin)).collect()
     }
 
     fn edges_to_ask(&mut self, road: Road) -> Vec<HalfEdge> {
@@ -177,25 +180,22 @@ impl Dual<'_> {
         match road {
             Road::Geodesic => Vec::new(),
             Road::Canvas => free,
-            Road::Both => self.beyond_lengths(free),
+            Road::Both => self.beyond_lengths(&free),
         }
     }
 
     /// The edges that lengths do not decide, those that they know least about first.
-    fn beyond_lengths(&mut self, edges: Vec<HalfEdge>) -> Vec<HalfEdge> {
+    fn beyond_lengths(&mut self, edges: &[HalfEdge]) -> Vec<HalfEdge> {
         let certainty = |margin: Margin| margin.value.abs() / margin.error;
         let mut beyond = Vec::new();
-        for h in edges {
-            if self.is_beyond_lengths(h) {
-                beyond.push((certainty(self.margin(h, Effort::Full)), h));
-            }
-        }
+        self.each_margin(edges, Effort::Full, |h, margin| {
+            beyond.extend(is_beyond(margin).then(|| (certainty(margin), h)));
+        });
         ranked(beyond).into_iter().map(|(_, h)| h).collect()
     }
 
     fn is_beyond_lengths(&mut self, h: HalfEdge) -> bool {
-        let margin = self.margin(h, Effort::Full);
-        !margin.is_certain() && margin.error > BEYOND_LENGTHS
+        is_beyond(self.margin(h, Effort::Full))
     }
 
     /// Holds the edges of the mesh against those of the nerve.

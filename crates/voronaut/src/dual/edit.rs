@@ -132,6 +132,7 @@ impl Dual<'_> {
             // Cheap flips first: few margins are then left to be measured one by one.
             self.flip_all(Effort::Chord);
             self.measure_margins();
+            // All of them: a flip may leave another edge, not yet tested, in a slot whose turn is still to come.
             self.lawson.queue(self.planar.topology.edges());
         } else {
             let wanted = self.wanted(effort);
@@ -152,14 +153,19 @@ impl Dual<'_> {
         let edges: Vec<HalfEdge> = self.free_edges().collect();
         let forbidden = edges.into_par_iter().with_min_len(1024).filter(|&h| !self.allows_flip(h));
         let forbidden: Vec<HalfEdge> = forbidden.collect();
-        let with_margin = forbidden.into_iter().map(|h| (h, self.margin(h, effort)));
-        with_margin.filter(|(_, margin)| margin.value < -TIE).collect()
+        let mut wanted = Vec::new();
+        self.each_margin(&forbidden, effort, |h, margin| wanted.extend((margin.value < -TIE).then_some((h, margin))));
+        wanted
     }
 
     /// The smallest margin among all edges that are not constrained; `None` of none.
     pub(crate) fn smallest_margin(&mut self, effort: Effort) -> Option<f64> {
         let edges: Vec<HalfEdge> = self.free_edges().collect();
-        edges.into_iter().map(|h| self.margin(h, effort).value).reduce(f64::min)
+        let mut smallest: Option<f64> = None;
+        self.each_margin(&edges, effort, |_, margin| {
+            smallest = Some(smallest.map_or(margin.value, |least| least.min(margin.value)));
+        });
+        smallest
     }
 
     /// The edges that a flip may remove.

@@ -10,6 +10,7 @@ use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested, climb};
 use crate::lists::in_order;
 use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use std::ops::Range;
 
 /// Number of levels.
 pub(super) const LEVELS: usize = 5;
@@ -33,8 +34,10 @@ const OF_BOW: f64 = 0.25;
 /// A bow that saves less than this share of the chord is small.
 const STRAIGHT: f64 = 0.02;
 
-/// Faces whose edges are tested one after the other.
+/// Slots of faces whose edges are tested one after the other.
 const PART: usize = 256;
+/// Edges whose margins are looked up at once: enough for all cores, and next to no memory.
+const LOOKED_UP: usize = 1 << 16;
 
 impl Dual<'_> {
     /// The margin of an edge with two faces.
@@ -61,8 +64,9 @@ impl Dual<'_> {
 
     /// The edges whose margins, with less than full effort, want them flipped; in parallel.
     pub(super) fn wanted(&mut self, effort: Effort) -> Vec<HalfEdge> {
-        let faces: Vec<FaceId> = self.topology().faces().collect();
-        let found: Vec<_> = faces.par_chunks(PART).map(|faces| self.wanted_at(faces, effort)).collect();
+        let slots = self.topology().face_slots();
+        let part = |k: usize| self.wanted_at(k * PART..slots.min((k + 1) * PART), effort);
+        let found: Vec<_> = (0..slots.div_ceil(PART)).into_par_iter().map(part).collect();
         let mut wanted = Vec::new();
         for (edges, tests) in found {
             wanted.extend(edges);
@@ -71,24 +75,36 @@ impl Dual<'_> {
         wanted
     }
 
-    /// Those of faces, and how many tests each level settled.
-    fn wanted_at(&self, faces: &[FaceId], effort: Effort) -> (Vec<HalfEdge>, [u64; LEVELS]) {
+    /// Those of face slots, and how many tests each level settled.
+    fn wanted_at(&self, faces: Range<usize>, effort: Effort) -> (Vec<HalfEdge>, [u64; LEVELS]) {
         let topology = self.topology();
-        let is_own = |h: &HalfEdge| !topology.is_fixed(*h) && topology.canonical(*h) == *h && !self.is_held(*h);
+        let is_free = |h: &HalfEdge| !topology.is_fixed(*h) && !self.is_held(*h);
         let mut tests = [0; LEVELS];
         let mut is_wanted = |h: &HalfEdge| {
             let Tested { margin, level } = self.climbed(&self.quad(*h), effort);
             tests[level] += 1;
             margin.value < -TIE
         };
-        let edges = faces.iter().flat_map(|f| f.half_edges()).filter(is_own);
+        let edges = faces.flat_map(|f| topology.edges_of(FaceId(f as u32))).filter(is_free);
         (edges.filter(|h| is_wanted(h)).collect(), tests)
     }
 
     /// Computes the margins of all edges with all levels, in parallel.
     pub(super) fn measure_margins(&mut self) {
-        let quads: Vec<Quad> = self.free_edges().map(|h| self.quad(h)).collect();
+        let edges: Vec<HalfEdge> = self.free_edges().collect();
+        let quads: Vec<Quad> = edges.into_par_iter().with_min_len(1024).map(|h| self.quad(h)).collect();
         self.test(&quads);
+    }
+
+    /// Goes through the margins of edges: what is known of them is looked up in parallel, the others are tested one after the other.
+    pub(super) fn each_margin(&mut self, edges: &[HalfEdge], effort: Effort, mut then: impl FnMut(HalfEdge, Margin)) {
+        for edges in edges.chunks(LOOKED_UP) {
+            let known = |&h: &HalfEdge| self.tests.known(&self.quad(h), LEVELS - 1).filter(|_| effort == Effort::Full);
+            let known: Vec<Option<Tested>> = edges.par_iter().with_min_len(1024).map(known).collect();
+            for (&h, known) in edges.iter().zip(known) {
+                then(h, known.map_or_else(|| self.margin(h, effort), |known| known.margin));
+            }
+        }
     }
 
     fn test(&mut self, quads: &[Quad]) -> Vec<Tested> {

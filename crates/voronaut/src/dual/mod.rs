@@ -217,14 +217,12 @@ impl<'a> Dual<'a> {
         self.forget();
         let field = self.field;
         let (topology, positions) = (&self.planar.topology, &self.planar.positions);
-        self.locals.par_iter_mut().enumerate().with_min_len(256).for_each(|(v, local)| {
-            if topology.is_vertex(VertexId(v as u32)) {
-                *local = measure(local, &field, positions[v]);
-            }
+        let seeds = self.locals.par_iter_mut().enumerate().with_min_len(256);
+        let seeds = seeds.filter(|(v, _)| topology.is_vertex(VertexId(*v as u32)));
+        let faults = seeds.filter_map(|(v, local)| {
+            *local = measure(local, &field, positions[v]);
+            (!local.tensor.is_positive_definite()).then_some(v)
         });
-        let is_vertex = |v: usize| topology.is_vertex(VertexId(v as u32));
-        let slots = (0..self.locals.len()).into_par_iter().with_min_len(1024);
-        let faults = slots.filter(|&v| is_vertex(v) && !self.locals[v].tensor.is_positive_definite());
         for v in faults.collect::<Vec<usize>>() {
             self.locals[v] = self.vetted(self.planar.positions[v], self.locals[v]);
         }
@@ -239,13 +237,14 @@ impl<'a> Dual<'a> {
         let is_rough = |v: VertexId| self.local(v).is_rough;
         let topology = self.topology();
         let at_rough = |&h: &HalfEdge| topology.ends(h).into_iter().any(is_rough);
-        let edges: Vec<HalfEdge> = topology.edges().filter(at_rough).collect();
-        let length = |&h: &HalfEdge| {
+        let measured = |h: HalfEdge| {
             let [p, q] = self.planar.ends(h);
-            chord_near(&self.field, p, q, self.local(topology.origin(h)).near)
+            (h, chord_near(&self.field, p, q, self.local(topology.origin(h)).near))
         };
-        let lengths: Vec<f64> = edges.par_iter().with_min_len(64).map(length).collect();
-        for (h, length) in edges.into_iter().zip(lengths) {
+        let faces = (0..topology.face_slots() as u32).into_par_iter().with_min_len(64).map(FaceId);
+        let edges = faces.flat_map_iter(|f| topology.edges_of(f).filter(at_rough).map(measured));
+        let lengths: Vec<(HalfEdge, f64)> = edges.collect();
+        for (h, length) in lengths {
             self.planar.topology.set_length(h, length);
         }
     }

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::geodesic::LocalMetric;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
-use crate::parallel::prelude::*;
+use crate::parallel::{copy_over, prelude::*};
 use crate::planar::Planar;
 use crate::progress::Sketch;
 use crate::triangulation::{Triangulation, VertexId};
@@ -56,6 +56,11 @@ pub(crate) trait Moving: Sync {
 
     /// What moves and flips change.
     fn save(&self) -> Self::Saved;
+
+    /// The same in place of what was saved before, in the memory of that.
+    fn save_over(&self, saved: &mut Self::Saved) {
+        *saved = self.save();
+    }
     /// Takes back what was done since.
     fn take_back(&mut self, saved: &Self::Saved);
     /// How a seed has moved since.
@@ -151,7 +156,8 @@ impl Moving for Dual<'_> {
 
     fn shift_together(&mut self, moves: &[(VertexId, Vector)]) -> Vec<bool> {
         self.forget();
-        let targets: Vec<(VertexId, Point)> = moves.iter().map(|&(v, by)| (v, self.position(v) + by)).collect();
+        let targets = moves.par_iter().with_min_len(1024).map(|&(v, by)| (v, self.position(v) + by));
+        let targets: Vec<(VertexId, Point)> = targets.collect();
         let moved = self.planar.move_together(&targets);
         let mut carried = vec![Vector::default(); self.locals.len()];
         for (&(v, by), _) in moves.iter().zip(&moved).filter(|(_, moved)| **moved) {
@@ -192,9 +198,16 @@ impl Moving for Dual<'_> {
         }
     }
 
+    fn save_over(&self, saved: &mut Saved) {
+        saved.planar.copy_from(&self.planar);
+        copy_over(&mut saved.locals, &self.locals);
+        saved.kinds.clone_from(&self.kinds);
+        saved.factor = self.field.factor;
+    }
+
     fn take_back(&mut self, saved: &Saved) {
-        self.planar.clone_from(&saved.planar);
-        self.locals.clone_from(&saved.locals);
+        self.planar.copy_from(&saved.planar);
+        copy_over(&mut self.locals, &saved.locals);
         self.kinds.clone_from(&saved.kinds);
         self.field.factor = saved.factor;
         self.forget();

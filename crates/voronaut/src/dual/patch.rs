@@ -18,14 +18,28 @@ pub(super) struct Patch {
 impl Dual<'_> {
     /// The patch around edges.
     pub(super) fn patch_around(&self, edges: &[HalfEdge]) -> Patch {
+        let is_inner = self.inner(edges);
+        let planar = self.part(is_inner.clone(), 1);
+        debug_assert_eq!(planar.topology.vertex_count(), self.patch_size(edges), "the patch is as large as foreseen");
+        Patch { planar, is_inner }
+    }
+
+    /// The seeds of edges' quadrilaterals, and all but one of the rings around them.
+    fn inner(&self, edges: &[HalfEdge]) -> Vec<bool> {
         let topology = self.topology();
         let mut inside = vec![false; topology.vertex_slots()];
         for v in edges.iter().filter_map(|&h| topology.quad(h)).flatten() {
             inside[v.index()] = true;
         }
         (1..RINGS).for_each(|_| self.grow(&mut inside));
-        let is_inner = inside.clone();
-        Patch { planar: self.part(inside, 1), is_inner }
+        inside
+    }
+
+    /// The number of seeds of the patch around edges.
+    fn patch_size(&self, edges: &[HalfEdge]) -> usize {
+        let mut reached = self.within(self.inner(edges), 1);
+        self.grow(&mut reached);
+        reached.into_iter().filter(|is| *is).count()
     }
 
     /// The triangles within some rings of neighbours around seeds, with the mesh's ids.
@@ -38,21 +52,26 @@ impl Dual<'_> {
     }
 
     /// The triangles at these vertices and within some rings around them.
-    fn part(&self, mut inside: Vec<bool>, rings: usize) -> Planar {
-        (0..rings).for_each(|_| self.grow(&mut inside));
-        while self.close_fans(&mut inside) {}
+    fn part(&self, inside: Vec<bool>, rings: usize) -> Planar {
+        let inside = self.within(inside, rings);
         let mut planar = self.planar().clone();
         planar.topology.retain_faces(|f| self.is_in(f, &inside));
         planar
     }
 
+    /// These vertices and those within some rings around them, and others whose faces would form several fans.
+    fn within(&self, mut inside: Vec<bool>, rings: usize) -> Vec<bool> {
+        (0..rings).for_each(|_| self.grow(&mut inside));
+        while self.close_fans(&mut inside) {}
+        inside
+    }
+
     /// The patch around as many edges, from the first on, as keep it within so many seeds; around one edge at least.
     pub(super) fn patch_within(&self, edges: &[HalfEdge], seeds: usize) -> Patch {
-        let whole = self.patch_around(edges);
-        if whole.planar.topology.vertex_count() <= seeds {
-            return whole;
+        let fits = |count: usize| self.patch_size(&edges[..count]) <= seeds;
+        if fits(edges.len()) {
+            return self.patch_around(edges);
         }
-        let fits = |count: usize| self.patch_around(&edges[..count]).planar.topology.vertex_count() <= seeds;
         let (mut low, mut high) = (1, edges.len());
         while high - low > 1 {
             let middle = low.midpoint(high);

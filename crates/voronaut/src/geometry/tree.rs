@@ -78,32 +78,33 @@ impl<T, const D: usize> BoxTree<T, D> {
     /// The same of those alone that are nearer than a squared distance; at infinity all are.
     pub(crate) fn nearer(&self, p: [f64; D], within: f64, square: impl Fn(&T) -> f64) -> Option<&T> {
         let (mut best, mut item_there) = (within, None);
-        self.search_by(
-            within,
-            |bounds| squared_distance(bounds, p),
-            |item| {
-                let found = square(item);
-                if found < best || (item_there.is_none() && within == f64::INFINITY) {
-                    (best, item_there) = (found.min(best), Some(item));
-                }
-                best
-            },
-        );
+        self.search(p, within, |_, item| {
+            let found = square(item);
+            if found < best || (item_there.is_none() && within == f64::INFINITY) {
+                (best, item_there) = (found.min(best), Some(item));
+            }
+            best
+        });
         item_there
     }
 
-    /// Calls `visit` with all items whose box is nearer to `p` than the bound, nearer boxes first. `visit` returns the new
-    /// bound, a squared distance; it starts at infinity.
-    pub(crate) fn search<'a>(&'a self, p: [f64; D], visit: impl FnMut(&'a T) -> f64) {
-        self.search_by(f64::INFINITY, |bounds| squared_distance(bounds, p), visit);
+    /// Calls `visit` with all items whose box is nearer to `p` than the bound, nearer boxes first, and their places in the tree. `visit`
+    /// returns the new bound, a squared distance.
+    pub(crate) fn search<'a>(&'a self, p: [f64; D], bound: f64, visit: impl FnMut(u32, &'a T) -> f64) {
+        self.search_by(bound, |bounds| squared_distance(bounds, p), visit);
     }
 
-    /// [`BoxTree::search`] from any bound on, by any distance of boxes: that of one is no more than that of what it holds.
+    /// What is at a place in the tree.
+    pub(crate) fn item(&self, place: u32) -> Option<&T> {
+        self.items.get(place as usize).map(|(_, item)| item)
+    }
+
+    /// [`BoxTree::search`] by any distance of boxes: that of one is no more than that of what it holds.
     pub(crate) fn search_by<'a>(
         &'a self,
         mut bound: f64,
         distance: impl Fn(&Bounds<D>) -> f64,
-        mut visit: impl FnMut(&'a T) -> f64,
+        mut visit: impl FnMut(u32, &'a T) -> f64,
     ) {
         let mut pending = [(0, 0.0); MAX_DEPTH];
         let mut count = usize::from(!self.nodes.is_empty());
@@ -116,7 +117,7 @@ impl<T, const D: usize> BoxTree<T, D> {
             loop {
                 let node = &self.nodes[index];
                 if node.count > 0 {
-                    self.leaf(node).iter().for_each(|(_, item)| bound = visit(item));
+                    (node.next..).zip(self.leaf(node)).for_each(|(place, (_, item))| bound = visit(place, item));
                     break;
                 }
                 let first = (index + 1, distance(&self.nodes[index + 1].bounds));
@@ -212,7 +213,9 @@ pub(super) fn boxes_meet<const D: usize>([a_low, a_high]: &Bounds<D>, [b_low, b_
 }
 
 fn squared_distance<const D: usize>([low, high]: &Bounds<D>, p: [f64; D]) -> f64 {
-    let outside = |k: usize| (low[k] - p[k]).max(p[k] - high[k]).max(0.0);
+    // Comparisons are one instruction each, where `f64::max` looks for NaN as well.
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let outside = |k: usize| larger(larger(low[k] - p[k], p[k] - high[k]), 0.0);
     (0..D).map(|k| outside(k) * outside(k)).sum()
 }
 
@@ -262,7 +265,7 @@ mod tests {
     fn many_equal_boxes_are_split_all_the_same() {
         let tree = BoxTree::new([[[1.0, 1.0], [2.0, 2.0]]; 100].into_iter().zip(0..));
         let mut seen = [false; 100];
-        tree.search([0.0; 2], |&i: &usize| {
+        tree.search([0.0; 2], f64::INFINITY, |_, &i: &usize| {
             seen[i] = true;
             f64::INFINITY
         });

@@ -2,10 +2,9 @@
 //! before it cannot tell. What the levels are is for an [`InCircle`] to say; lengths and outcomes are kept.
 
 use crate::geodesic::{Margin, PathLength, margin_from_lengths};
-use crate::lists::distinct;
+use crate::lists::{Table, distinct};
 use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, Triangulation};
-use std::collections::HashMap;
 use std::ops::Range;
 
 /// Where the margin is known this well and still may be zero, four seeds count as being on a circle.
@@ -76,7 +75,7 @@ pub(crate) struct Known {
 }
 
 /// The best lengths known, by their ends, the smaller first.
-pub(crate) type Lengths = HashMap<(u32, u32), Known>;
+pub(crate) type Lengths = Table<(u32, u32), Known>;
 
 /// The outcome of a test, and the level that settled it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,13 +141,30 @@ pub(crate) struct TestCounters {
     pub vetoed: u64,
 }
 
+/// An outcome, the level that settled it, and the last one that it may be from: small, for a mesh has one for every edge.
+#[derive(Clone, Copy, Debug)]
+struct Outcome {
+    margin: Margin,
+    level: u8,
+    last: u8,
+}
+
+impl Outcome {
+    fn new(tested: Tested, last: usize) -> Self {
+        Self { margin: tested.margin, level: tested.level as u8, last: last as u8 }
+    }
+
+    fn tested(&self) -> Tested {
+        Tested { margin: self.margin, level: usize::from(self.level) }
+    }
+}
+
 /// Lengths and outcomes that are known. They are of one [`InCircle`].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tests {
     /// Lengths, by their ends.
     pub lengths: Lengths,
-    /// Outcomes, and the last level that they are from.
-    outcomes: HashMap<[u32; 4], (Tested, usize)>,
+    outcomes: Table<[u32; 4], Outcome>,
     /// What was done for them.
     pub counters: TestCounters,
 }
@@ -156,7 +172,7 @@ pub(crate) struct Tests {
 impl Tests {
     /// The outcome for an edge, with all levels up to and including `last`; `None` where it was not tested.
     pub(crate) fn known(&self, quad: &Quad, last: usize) -> Option<Tested> {
-        self.outcomes.get(&quad.key()).filter(|outcome| outcome.1 >= last).map(|outcome| outcome.0)
+        self.outcomes.get(&quad.key()).filter(|outcome| usize::from(outcome.last) >= last).map(Outcome::tested)
     }
 
     /// Forgets what depends on other seeds than these.
@@ -188,10 +204,11 @@ impl Tests {
             open.retain(|&i| !is_settled(found[i]));
             level = next;
         }
+        self.outcomes.reserve(new.len());
         for i in new {
-            if let Some(outcome) = found[i] {
-                self.counters.tests[outcome.level] += 1;
-                self.outcomes.insert(quads[i].key(), (outcome, last));
+            if let Some(tested) = found[i] {
+                self.counters.tests[tested.level] += 1;
+                self.outcomes.insert(quads[i].key(), Outcome::new(tested, last));
             }
         }
         found

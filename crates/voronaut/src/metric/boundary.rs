@@ -1,6 +1,6 @@
 //! Sizes that grow with the distance to the boundary: thin cells along it, as boundary layers need.
 
-use super::MetricField;
+use super::{MetricField, Near};
 use super::validate::require;
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
@@ -46,6 +46,10 @@ struct Segment {
 
 /// Distances to two segments that differ by less, relative to the coordinates, are equal: a few roundings.
 const TIE: f64 = 16.0 * f64::EPSILON;
+
+/// Segments are looked at that are farther than one that is known by so many ties: all that may tie with the nearest, or with one that
+/// does, and so on.
+const TIES: f64 = 1024.0;
 
 impl BoundarySizes {
     /// The size at the boundary, with the defaults of the rest: growth 1.2, aspect 1, no largest size.
@@ -98,25 +102,29 @@ impl Boundary {
         Ok(Self { sizes, tree, reach })
     }
 
-    /// Distance to the boundary, and the mean of n n' over the segments that are that near.
-    fn nearest(&self, p: Point) -> (f64, Tensor, u32) {
+    /// Distance to the boundary, and the mean of n n' over the segments that are that near. The distance to any segment bounds the search: that
+    /// to the one that was nearest to the last place, most often beside this one. It has no say in what is found.
+    fn nearest(&self, p: Point, near: &mut Near) -> (f64, Tensor, u32) {
         let tolerance = TIE * (self.reach + largest(p));
         let (mut distance, mut bound) = (f64::INFINITY, f64::INFINITY);
         let (mut sum, mut count) = (Tensor::default(), 0);
-        self.tree.search([p.x, p.y], |segment| {
+        let known = near.place.and_then(|place| self.tree.item(place));
+        let reach = known.map_or(f64::INFINITY, |segment| segment.offset(p).0.norm());
+        let limit = (reach + TIES * tolerance).powi(2) + f64::MIN_POSITIVE;
+        self.tree.search([p.x, p.y], limit, |place, segment| {
             let (offset, inside) = segment.offset(p);
             if offset.dot(offset) <= bound {
                 let d = offset.norm();
                 let square = segment.normal_square(offset, inside, d, tolerance);
                 if d < distance - tolerance {
-                    (sum, count) = (square, 1);
+                    (sum, count, near.place) = (square, 1, Some(place));
                 } else {
                     (sum, count) = (sum + square, count + 1);
                 }
                 distance = distance.min(d);
                 bound = (distance + tolerance) * (distance + tolerance);
             }
-            bound
+            bound.min(limit)
         });
         (distance, sum * (1.0 / f64::from(count)), count)
     }
@@ -151,7 +159,11 @@ impl Segment {
 
 impl MetricField for Boundary {
     fn at(&self, p: Point) -> Tensor {
-        let (distance, normals, count) = self.nearest(p);
+        self.at_near(p, &mut Near::default())
+    }
+
+    fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
+        let (distance, normals, count) = self.nearest(p, near);
         let (across, along) = self.sizes.at(distance);
         if count == 1 {
             let least = 1.0 / (along * along);
@@ -233,6 +245,21 @@ mod tests {
     }
 
     #[test]
+    fn what_was_asked_before_has_no_say() {
+        let corners = |i: u32| (f64::from(i) * 0.1).sin_cos();
+        let corners: Vec<(f64, f64)> = (0..60).map(corners).map(|(y, x)| (x + 0.3 * y * y, y)).collect();
+        let field = Boundary::new(&ring(&corners), SIZES).unwrap();
+        let points: Vec<Point> =
+            (0..40).map(|i| Point::new(f64::from(i % 7) * 0.4 - 1.2, f64::from(i / 7) * 0.4)).collect();
+        let mut near = Near::default();
+        for &p in points.iter().flat_map(|p| points.iter().flat_map(move |q| [p, q])) {
+            assert_eq!(field.at_near(p, &mut near), field.at(p));
+        }
+        let nowhere = Boundary::new(&[(Point::default(), Point::default())], SIZES).unwrap();
+        assert!(nowhere.at(Point::default()).is_positive_definite());
+    }
+
+    #[test]
     fn a_circle_s_centre_ties_with_everything() {
         let corners: Vec<(f64, f64)> =
             (0..360).map(|i| f64::from(i).to_radians()).map(|angle| (angle.cos(), angle.sin())).collect();
@@ -268,7 +295,7 @@ mod tests {
                 p.distance(a.lerp(b, t))
             }).fold(f64::INFINITY, f64::min);
             let field = Boundary::new(&segments, SIZES).unwrap();
-            let (distance, normals, _) = field.nearest(p);
+            let (distance, normals, _) = field.nearest(p, &mut Near::default());
             prop_assert!((distance - truth).abs() < 1e-14);
             prop_assert!((normals.xx + normals.yy - 1.0).abs() < 1e-12);
             prop_assert!(check_field(&field, [p].into_iter()).is_ok());

@@ -99,7 +99,7 @@ pub trait MetricField: Sync {
 /// Where a field found what it was last asked for; at first nowhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Near {
-    pub(crate) triangle: Option<u32>,
+    pub(crate) place: Option<u32>,
 }
 
 impl<F: Fn(Point) -> Tensor + Sync> MetricField for F {

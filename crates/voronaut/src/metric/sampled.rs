@@ -70,10 +70,10 @@ impl MetricField for Sampled {
         if let Some(tensor) = self.same.filter(|_| p.is_finite()) {
             return tensor;
         }
-        let Some(Located { triangle, weights, .. }) = self.locator.locate_from(near.triangle, p) else {
+        let Some(Located { triangle, weights, .. }) = self.locator.locate_from(near.place, p) else {
             return Tensor::new(f64::NAN, f64::NAN, f64::NAN);
         };
-        near.triangle = Some(triangle);
+        near.place = Some(triangle);
         let [a, b, c] = self.triangles[triangle as usize].map(|v| self.logs[v as usize]);
         (a * weights[0] + b * weights[1] + c * weights[2]).exp()
     }

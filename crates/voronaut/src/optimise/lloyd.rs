@@ -2,7 +2,7 @@
 //! Gunzburger 1999).
 
 use super::cell::CellsOf;
-use super::movers::State;
+use super::movers::{Mover, State};
 use super::quasi_newton::Memory;
 use super::survey::Rest;
 use crate::dual::Moving;
@@ -91,10 +91,10 @@ pub(crate) fn relax<M: Moving>(
     let state = State::of(dual, cells)?;
     relaxed.energy.push(state.energy);
     let mut descent = Descent { cells, memory: Memory::default(), rest: Rest::new(state.seeds.len()), state, relaxed };
-    let mut small = 0;
+    let (mut small, mut saved) = (0, None);
     for _ in 0..steps {
         let before = descent.state.energy;
-        let done = descent.step(dual)?;
+        let done = descent.step(dual, &mut saved)?;
         progress.advance(1)?;
         progress.sketch(&|| dual.sketch());
         let is_small = cells.lower_energy() && before - descent.state.energy < gain * before;
@@ -117,11 +117,15 @@ struct Descent<'a, C> {
 
 impl<C> Descent<'_, C> {
     /// One step that lowers the energy; false if none was found, and the dual is as before.
-    fn step<M: Moving>(&mut self, dual: &mut M) -> Result<bool>
+    fn step<M: Moving>(&mut self, dual: &mut M, saved: &mut Option<M::Saved>) -> Result<bool>
     where
         C: CellsOf<M>,
     {
-        let before = dual.save();
+        // The memory of one step serves the next: it is large, and new pages cost more than the copy.
+        if let Some(saved) = saved.as_mut() {
+            dual.save_over(saved);
+        }
+        let before: &M::Saved = saved.get_or_insert_with(|| dual.save());
         let mut direction = self.state.direction(dual, &self.memory);
         let mut share = 1.0;
         self.rest.next_step();
@@ -130,11 +134,11 @@ impl<C> Descent<'_, C> {
             let next = State::of(dual, self.cells)?;
             if next.energy <= self.state.energy || !self.cells.lower_energy() {
                 (self.relaxed.held, self.relaxed.flips) = (self.relaxed.held + held, self.relaxed.flips + flips);
-                self.accept(dual, &before, next);
+                self.accept(dual, before, next);
                 return Ok(true);
             }
             let resting = self.rest.blame(dual, &self.state, &next);
-            dual.take_back(&before);
+            dual.take_back(before);
             self.relaxed.taken_back += 1;
             if attempt > LLOYD_AFTER && !self.memory.is_empty() {
                 self.memory.clear();
@@ -156,7 +160,7 @@ impl<C> Descent<'_, C> {
             awake.map(|&i| seeds[i].whole_move(dual, direction[i] * share)).collect()
         };
         // Most move at once; what is left goes one by one, as far as it can.
-        let moves: Vec<(VertexId, Vector)> = whole.iter().flatten().copied().collect();
+        let moves: Vec<(VertexId, Vector)> = whole.par_iter().with_min_len(1024).filter_map(|&whole| whole).collect();
         let mut moved = dual.shift_together(&moves).into_iter();
         let mut held = 0;
         for (i, whole) in awake.into_iter().zip(whole) {
@@ -173,19 +177,23 @@ impl<C> Descent<'_, C> {
         C: CellsOf<M>,
     {
         let seeds = &self.state.seeds;
-        let parallel = seeds.par_iter().with_min_len(1024);
-        let mut step: Vec<Vector> = parallel.map(|s| dual.moved_since(before, s.id)).collect();
-        let squares = seeds.iter().zip(&step).map(|(s, &d)| dual.local(s.id).tensor.dot(d, d));
-        self.relaxed.moves.push((squares.sum::<f64>() / step.len().max(1) as f64).sqrt());
-        let mut change: Vec<Vector> =
-            next.gradient.iter().zip(&self.state.gradient).map(|(&now, &was)| now - was).collect();
-        for (i, seed) in seeds.iter().enumerate() {
-            // Rough and resting seeds would spoil the memory of the others.
-            if seed.is_rough || !self.rest.is_awake(i) {
-                (step[i], change[i]) = (Vector::default(), Vector::default());
-            }
-        }
+        let moved = |s: &Mover| {
+            let step = dual.moved_since(before, s.id);
+            (step, dual.local(s.id).tensor.dot(step, step))
+        };
+        let moves: (Vec<Vector>, Vec<f64>) = seeds.par_iter().with_min_len(1024).map(moved).unzip();
+        let (mut step, squares) = moves;
+        self.relaxed.moves.push((squares.into_iter().sum::<f64>() / step.len().max(1) as f64).sqrt());
         if self.cells.lower_energy() {
+            let mut change = next.gradient.clone();
+            let both = step.par_iter_mut().zip(&mut change).zip(&self.state.gradient).zip(seeds).enumerate();
+            both.with_min_len(1024).for_each(|(i, (((step, change), &was), seed))| {
+                *change = *change - was;
+                // Rough and resting seeds would spoil the memory of the others.
+                if seed.is_rough || !self.rest.is_awake(i) {
+                    (*step, *change) = (Vector::default(), Vector::default());
+                }
+            });
             self.memory.remember(step, change);
         }
         self.relaxed.energy.push(next.energy);

@@ -58,31 +58,30 @@ impl State {
     pub(super) fn of<M: Moving>(dual: &M, cells: &impl CellsOf<M>) -> Result<Self> {
         let moments = cells.moments(dual)?;
         let square = dual.factor().powi(2);
-        let shares: Vec<_> = moments.iter().map(|&(v, m)| (v, m.second / square)).collect();
+        let shares = moments.par_iter().with_min_len(1024).map(|&(v, m)| (v, m.second / square));
+        let shares: Vec<(VertexId, f64)> = shares.collect();
         let energy = shares.iter().map(|(_, share)| share).sum();
         let straight = !cells.lower_energy();
         let movable = moments.into_par_iter().with_min_len(256);
-        let movable: Vec<_> = movable.filter_map(|(v, m)| Mover::new(dual, v, &m, straight)).collect();
-        let (seeds, gradient) = movable.into_iter().unzip();
+        let (seeds, gradient) = movable.filter_map(|(v, m)| Mover::new(dual, v, &m, straight)).unzip();
         Ok(Self { energy, shares, seeds, gradient })
     }
 
     /// Where to go: the quasi-Newton direction at smooth seeds, Lloyd's step at rough ones.
     pub(super) fn direction(&self, dual: &impl Moving, memory: &Memory) -> Vec<Vector> {
-        let scaled = |gradient: &[Vector]| -> Vec<Vector> {
-            self.seeds.par_iter().zip(gradient).with_min_len(1024).map(|(seed, &g)| seed.scaled(dual, g)).collect()
+        let scale = |gradient: &mut [Vector]| {
+            let each = gradient.par_iter_mut().zip(&self.seeds).with_min_len(1024);
+            each.for_each(|(g, seed)| *g = seed.scaled(dual, *g));
         };
-        let lloyd: Vec<Vector> = scaled(&self.gradient).into_iter().map(|step| -step).collect();
-        let mut direction = memory.direction(&self.gradient, |gradient| scaled(&gradient));
+        let mut direction = memory.direction(&self.gradient, scale);
         // Not downhill: only Lloyd's step surely is.
-        if dot(&direction, &self.gradient) > 0.0 {
-            return lloyd;
-        }
-        for ((seed, d), &step) in self.seeds.iter().zip(&mut direction).zip(&lloyd) {
-            if seed.is_rough {
-                *d = step;
+        let is_uphill = dot(&direction, &self.gradient) > 0.0;
+        let each = direction.par_iter_mut().zip(&self.seeds).zip(&self.gradient).with_min_len(1024);
+        each.for_each(|((d, seed), &g)| {
+            if is_uphill || seed.is_rough {
+                *d = -seed.scaled(dual, g);
             }
-        }
+        });
         direction
     }
 }

@@ -45,24 +45,22 @@ impl Memory {
         }
     }
 
-    /// The descent direction for a gradient: minus the inverse Hessian, as far as known, times the gradient. `scaled`
+    /// The descent direction for a gradient: minus the inverse Hessian, as far as known, times the gradient. `scale`
     /// multiplies by a first guess of the inverse Hessian.
-    pub(super) fn direction(&self, gradient: &[Vector], scaled: impl Fn(Vec<Vector>) -> Vec<Vector>) -> Vec<Vector> {
-        let mut rest = gradient.to_vec();
+    pub(super) fn direction(&self, gradient: &[Vector], scale: impl Fn(&mut [Vector])) -> Vec<Vector> {
+        let mut direction = gradient.to_vec();
         let mut shares = Vec::with_capacity(self.pairs.len());
         for pair in &self.pairs {
-            let share = dot(&pair.step, &rest) / pair.product;
-            add(&mut rest, &pair.change, -share);
+            let share = dot(&pair.step, &direction) / pair.product;
+            add(&mut direction, &pair.change, -share);
             shares.push(share);
         }
-        let mut direction = scaled(rest);
+        scale(&mut direction);
         for (pair, share) in self.pairs.iter().zip(shares).rev() {
             let back = dot(&pair.change, &direction) / pair.product;
             add(&mut direction, &pair.step, share - back);
         }
-        for d in &mut direction {
-            *d = -*d;
-        }
+        direction.par_iter_mut().with_min_len(PART).for_each(|d| *d = -*d);
         direction
     }
 }
@@ -90,7 +88,7 @@ mod tests {
         let mut memory = Memory::default();
         for _ in 0..12 {
             let before = gradient(&x);
-            let step = memory.direction(&before, |g| g.iter().map(|&v| v * 0.25).collect());
+            let step = memory.direction(&before, |g| g.iter_mut().for_each(|v| *v = *v * 0.25));
             // The best length along the direction of a quadratic energy.
             let length = -dot(&step, &before) / dot(&step, &gradient(&step));
             let step: Vec<Vector> = step.iter().map(|&s| s * length).collect();

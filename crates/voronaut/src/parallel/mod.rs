@@ -17,3 +17,33 @@ pub(crate) mod prelude {
 pub(crate) use plain::join;
 #[cfg(all(feature = "threads", not(target_family = "wasm")))]
 pub(crate) use rayon::join;
+
+use prelude::*;
+
+/// Numbers that are worth a thread's while to copy.
+const COPIED: usize = 1 << 16;
+
+/// Makes a list another one, in the memory that it has.
+pub(crate) fn copy_over<T: Copy + Send + Sync>(to: &mut Vec<T>, from: &[T]) {
+    if to.len() == from.len() {
+        to.par_chunks_mut(COPIED).zip(from.par_chunks(COPIED)).for_each(|(to, from)| to.copy_from_slice(from));
+    } else {
+        to.clear();
+        to.extend_from_slice(from);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_becomes_another_of_any_length() {
+        for (before, length) in [(0, 5), (9, 5), (5, 5), (3 * COPIED, 3 * COPIED), (2, 3 * COPIED + 1)] {
+            let from: Vec<usize> = (0..length).collect();
+            let mut to = vec![7; before];
+            copy_over(&mut to, &from);
+            assert_eq!(to, from);
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! Loops on one core, with the names that rayon has for those on all: iterators of the standard library, and what they do not have.
 
-use std::slice::{Chunks, Iter, IterMut};
+use std::slice::{Chunks, ChunksMut, Iter, IterMut};
 
 /// Runs both, one after the other.
 pub(crate) fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) {
@@ -28,6 +28,9 @@ pub(crate) trait ParallelSlice<T> {
     /// Over parts of this length.
     fn par_chunks(&self, length: usize) -> Chunks<'_, T>;
 
+    /// The same, to be written to.
+    fn par_chunks_mut(&mut self, length: usize) -> ChunksMut<'_, T>;
+
     /// Sorts; equal ones in any order.
     fn par_sort_unstable(&mut self)
     where
@@ -45,6 +48,10 @@ impl<T> ParallelSlice<T> for [T] {
 
     fn par_chunks(&self, length: usize) -> Chunks<'_, T> {
         self.chunks(length)
+    }
+
+    fn par_chunks_mut(&mut self, length: usize) -> ChunksMut<'_, T> {
+        self.chunks_mut(length)
     }
 
     fn par_sort_unstable(&mut self)

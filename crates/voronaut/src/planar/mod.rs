@@ -12,6 +12,7 @@ pub(crate) use locate::Location;
 pub(crate) use order::hilbert_order;
 
 use crate::geometry::{Orientation, Point, orientation, signed_area};
+use crate::parallel::copy_over;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// A triangulation and the position of each of its vertices.
@@ -24,6 +25,12 @@ pub struct Planar {
 }
 
 impl Planar {
+    /// Becomes another one, in the memory that this one has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.topology.copy_from(&other.topology);
+        copy_over(&mut self.positions, &other.positions);
+    }
+
     /// The position of a vertex.
     pub(crate) fn position(&self, v: VertexId) -> Point {
         self.positions[v.index()]

@@ -68,7 +68,7 @@ impl Planar {
             turned = around.into_iter().filter(|f| is_turned(f, &to)).collect();
         }
         self.positions = to;
-        moves.iter().map(|&(v, p)| self.position(v) == p).collect()
+        moves.par_iter().with_min_len(1024).map(|&(v, p)| self.position(v) == p).collect()
     }
 
     /// Removes an interior vertex that no constraint touches: flips its edges away until three are left. Says whether

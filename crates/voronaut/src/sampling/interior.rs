@@ -1,5 +1,6 @@
 //! The interior: seeds one at a time at the circumcentre of the face whose metric circumradius is largest.
 
+use super::queue::Queue;
 use crate::dual::{Dual, Kind, Moving};
 use crate::elementary::Elementary;
 use crate::error::Result;
@@ -11,7 +12,6 @@ use crate::planar::Location;
 use crate::progress::Progress;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
 /// Constrained edges shorter than this (metric length) are not split for an encroaching seed: both halves stay unit
 /// edges, and spikes do not cascade.
@@ -63,7 +63,7 @@ pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, 
     let faces: Vec<FaceId> = dual.topology().faces().collect();
     let entry = |&of: &FaceId| Entry { value: circumcircle(dual, of).1, of };
     let entries: Vec<Entry<FaceId>> = faces.par_iter().with_min_len(1024).map(entry).collect();
-    let mut refiner = Refiner { queue: entries.into(), steiner };
+    let mut refiner = Refiner { queue: Queue::new(entries), steiner };
     let (mut reported, mut passes) = (dual.vertex_count(), 0);
     while dual.vertex_count() < count {
         if !refiner.improve_worst(dual) {
@@ -103,7 +103,7 @@ impl<T: Ord> Ord for Entry<T> {
 
 struct Refiner<'a> {
     /// Faces by their metric circumradius; stale once a face has changed.
-    queue: BinaryHeap<Entry<FaceId>>,
+    queue: Queue,
     steiner: Steiner<'a>,
 }
 

@@ -8,6 +8,7 @@ mod features;
 mod interior;
 mod plan;
 mod protected;
+mod queue;
 
 pub(crate) use adapted::{Adapted, Held, Holding, Wanted, adapted, contracted, exchanged};
 pub(crate) use curves::{CurveSizes, simplify};

@@ -14,6 +14,7 @@ pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
 pub use lawson::Limit;
 pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_in_rounds};
 
+use crate::parallel::copy_over;
 use ids::NONE;
 
 /// A triangulation: half-edge `3 f + i` is the i-th edge of face f, counter-clockwise.
@@ -70,6 +71,18 @@ impl Triangulation {
         result
     }
 
+    /// Becomes another one, in the memory that this one has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        copy_over(&mut self.origin, &other.origin);
+        copy_over(&mut self.twin, &other.twin);
+        copy_over(&mut self.length, &other.length);
+        copy_over(&mut self.constraint, &other.constraint);
+        copy_over(&mut self.region, &other.region);
+        copy_over(&mut self.start, &other.start);
+        self.free_faces.clone_from(&other.free_faces);
+        self.free_vertices.clone_from(&other.free_vertices);
+    }
+
     fn pair_twins(&mut self) {
         let key = |h: HalfEdge| {
             let (a, b) = (self.origin(h).0, self.target(h).0);
@@ -116,6 +129,12 @@ impl Triangulation {
     /// One half-edge of every edge: that with the smaller id, or the only one at the border.
     pub fn edges(&self) -> impl Iterator<Item = HalfEdge> + '_ {
         self.faces().flat_map(FaceId::half_edges).filter(|&h| self.twin(h).is_none_or(|t| h < t))
+    }
+
+    /// Those of [`Triangulation::edges`] that a face slot has.
+    pub(crate) fn edges_of(&self, f: FaceId) -> impl Iterator<Item = HalfEdge> + '_ {
+        let edges = f.half_edges().into_iter().filter(|&h| self.canonical(h) == h);
+        edges.take(if self.is_face(f) { 3 } else { 0 })
     }
 
     /// The edges at the border, by face.
