@@ -1,7 +1,7 @@
 //! Sizes that grow with the distance to the boundary: thin cells along it, as boundary layers need.
 
-use super::{MetricField, Near};
 use super::validate::require;
+use super::{MetricField, Near};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, BoxTree, Point, Tensor, Vector};

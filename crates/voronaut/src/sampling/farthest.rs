@@ -1,7 +1,8 @@
 //! The interior by farthest points (RR-9103, section 13): seeds one at a time at the canvas vertex that is farthest, in
 //! geodesic distance, from all seeds so far.
 
-use super::interior::{Entry, Fill, SPACING};
+use super::interior::{Fill, SPACING};
+use super::queue::Entry;
 use crate::diagram::{Diagram, Ground};
 use crate::dual::{Dual, Moving};
 use crate::error::Result;

@@ -1,6 +1,6 @@
 //! The interior: seeds one at a time at the circumcentre of the face whose metric circumradius is largest.
 
-use super::queue::Queue;
+use super::queue::{Entry, Queue};
 use crate::dual::{Dual, Kind, Moving};
 use crate::elementary::Elementary;
 use crate::error::Result;
@@ -11,7 +11,6 @@ use crate::parallel::prelude::*;
 use crate::planar::Location;
 use crate::progress::Progress;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
-use std::cmp::Ordering;
 
 /// Constrained edges shorter than this (metric length) are not split for an encroaching seed: both halves stay unit
 /// edges, and spikes do not cascade.
@@ -80,25 +79,6 @@ pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, 
         }
     }
     Ok(())
-}
-
-/// A number and what it belongs to; the greatest number first, of equal ones the smallest id.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) struct Entry<T> {
-    pub(super) value: f64,
-    pub(super) of: T,
-}
-
-impl<T: Ord> Eq for Entry<T> {}
-impl<T: Ord> PartialOrd for Entry<T> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl<T: Ord> Ord for Entry<T> {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.value.total_cmp(&other.value).then(other.of.cmp(&self.of))
-    }
 }
 
 struct Refiner<'a> {

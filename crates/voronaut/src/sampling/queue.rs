@@ -1,7 +1,7 @@
 //! Faces by their circumradius, the greatest first.
 
-use super::interior::Entry;
 use crate::triangulation::FaceId;
+use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Radii below and above these powers of two (metric units) are not told apart before their turn comes: seeds are wanted about a unit
@@ -11,6 +11,25 @@ const POWERS: [u64; 2] = [1023 - 8, 1023 + 8];
 const RUNGS: u64 = 4;
 /// The bits of a number below those that tell its rung.
 const SHIFT: u64 = 52 - RUNGS;
+
+/// A number and what it belongs to; the greatest number first, of equal ones the smallest id.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Entry<T> {
+    pub(super) value: f64,
+    pub(super) of: T,
+}
+
+impl<T: Ord> Eq for Entry<T> {}
+impl<T: Ord> PartialOrd for Entry<T> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl<T: Ord> Ord for Entry<T> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.value.total_cmp(&other.value).then(other.of.cmp(&self.of))
+    }
+}
 
 /// A queue whose front is a heap. What is to come later is in rungs by its size, in no order: most faces are good, never have their turn,
 /// and would only make the heap too large for the cache.
