@@ -263,7 +263,8 @@ pub(super) fn background_vertices(complexity: f64, fewest: usize) -> usize {
     (FINER * expected).clamp(fewest as f64, BACKGROUND_VERTICES as f64) as usize
 }
 
-/// A triangulation of the domain that is even in the metric, with so many vertices, and all of the domain's own.
+/// A triangulation of the domain that is even in the metric, with so many vertices, and all of the domain's own; `coarse` as of
+/// [`canvas::even`].
 pub(super) fn even(field: &dyn MetricField, domain: &Domain, coarse: usize, vertices: usize) -> Result<Mesh> {
     let Planar { topology, positions } = canvas::even(domain.planar(), field, coarse, vertices)?;
     Ok(Mesh {
