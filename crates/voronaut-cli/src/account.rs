@@ -58,9 +58,9 @@ pub(crate) fn on_surface(
     Ok((report, unmet))
 }
 
-/// The share of unit edges at the factor that the number of vertices asks for.
+/// The share of unit edges at the factor that the number of vertices asks for; of straight edges, for curved ones are not looked at one by one.
 fn closed_form(meshed: &Meshed, unmet: &Unmet) -> Option<ClosedForm> {
-    let metric_scale = meshed.closed_form_scale?;
+    let metric_scale = meshed.closed_form_scale.filter(|_| !unmet.lengths.is_empty())?;
     let ratio = (metric_scale / meshed.metric_scale).sqrt();
     let is_unit = |length: &&f64| (FRAC_1_SQRT_2..=SQRT_2).contains(&(*length * ratio));
     let unit_fraction = unmet.lengths.iter().filter(is_unit).count() as f64 / unmet.lengths.len() as f64;

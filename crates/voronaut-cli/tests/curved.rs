@@ -115,6 +115,7 @@ fn meshes_of_order_2_and_3_are_made() {
         assert_eq!((curved.order, curved.triangles.len()), (order, per_triangle * made.triangles.len()));
         assert_eq!((&report["valid"], &report["options"]["order"]), (&true.into(), &order.into()));
         assert!(report["least_jacobian"].as_f64().unwrap() > 0.0);
+        assert!(report.get("closed_form").is_none(), "it is measured of straight edges");
         done(&place, "check a.msh --metric swirl:field=printed --report b.json");
         let checked: serde_json::Value = serde_json::from_slice(&place.read("b.json")).unwrap();
         assert_eq!((&checked["area"], &checked["curved"]), (&report["area"], &report["curved"]));
