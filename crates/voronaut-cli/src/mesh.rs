@@ -266,7 +266,6 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
             "--ar in the plane",
             "leave out --ar: it is for surfaces",
         ),
-        (args.damage.repair, "--repair in the plane", "leave out --repair: it is for surfaces"),
     ])?;
     let idle = args.idle(false, world)?;
     let (outputs, options) = (&args.outputs, args.options());

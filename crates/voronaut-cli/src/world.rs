@@ -10,7 +10,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
-use voronaut::domain::{Domain, Pslg, from_polygons};
+use voronaut::domain::{Domain, Pslg, repaired_graph};
 use voronaut::geometry::Tensor;
 use voronaut::mesh::{Mesh, Solution, SolutionValues, Solutions};
 use voronaut::progress::Progress;
@@ -20,7 +20,7 @@ use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Mended, RepairOptions};
 use voronaut::{Error, Result};
 use voronaut_io::{
-    Document, Fields, Format, Given, MetricFiles, MetricSource, geojson, points, read_metric, read_text, surface_metric,
+    Document, Fields, Format, Given, MetricFiles, MetricSource, geojson, outline_of_polygons, points, read_metric, read_text, surface_metric,
 };
 
 /// A metric that a caller has.
@@ -69,16 +69,18 @@ impl Held {
     /// # Errors
     /// What is held is no domain; as of [`Given::read`] of other words.
     pub fn given(&self, spec: &str, options: RepairOptions) -> Result<(Given, Mended)> {
-        let plane = |outline: &Pslg| Ok((Given::Plane(Domain::new(outline)?), Mended::default()));
+        let plane = |(outline, notes): (Pslg, Vec<String>)| {
+            Ok((Given::Plane(Domain::new(&outline)?), Mended::default().with_notes(&notes)))
+        };
         if let Some(document) = named(&self.documents, Path::new(spec)) {
             let may_be_planar = Format::of_ending(Path::new(spec)).is_none_or(Format::may_be_planar);
             return Given::of_document(spec, document, may_be_planar, options);
         }
         if let Some(outline) = named(&self.outlines, Path::new(spec)) {
-            return plane(outline);
+            return plane(if options.repair { repaired_graph(outline)? } else { (outline.clone(), Vec::new()) });
         }
         match named(&self.polygons, Path::new(spec)) {
-            Some(text) => plane(&from_polygons(&geojson::read(text, spec)?)?),
+            Some(text) => plane(outline_of_polygons(&geojson::read(text, spec)?, options)?),
             None => Given::read(spec, options),
         }
     }

@@ -192,3 +192,26 @@ fn corners_beyond_the_count_are_kept_and_said() {
     let output = place.run(&words);
     assert!(output.status.success() && stderr(&output).contains("own corners are 4096"), "{}", stderr(&output));
 }
+
+/// Borders that were drawn twice, not quite the same, and a district that reaches into another.
+#[test]
+fn outlines_that_overlap_are_repaired_where_that_is_asked_for() {
+    let place = Place::new();
+    let feature = |ring: &str| {
+        let geometry = format!(r#"{{"type":"Polygon","coordinates":[[{ring}]]}}"#);
+        format!(r#"{{"type":"Feature","properties":{{}},"geometry":{geometry}}}"#)
+    };
+    let features = [
+        feature("[0,0],[2,0],[2,1],[2,2],[0,2],[0,0]"),
+        feature("[2.0000000000001,0],[4,0],[4,2],[1.9999999999999,2],[2.0000000000001,0]"),
+        feature("[3,1],[5,1],[5,3],[3,3],[3,1]"),
+    ];
+    let text = format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(","));
+    place.put("districts.geojson", text);
+    let words = ["mesh", "districts.geojson", "--metric", "uniform", "-n", "300", "-o", "a.mesh", "--report", "a.json"];
+    assert!(stderr(&place.run(&words)).contains("overlaps itself"));
+    runs(&place, &[&words[..], &["--repair"]].concat());
+    let report: Value = serde_json::from_slice(&place.read("a.json")).unwrap();
+    assert!((report["area"].as_f64().unwrap() - 11.0).abs() < 1e-9, "{}", report["area"]);
+    assert!(report["notes"].to_string().contains("1 area of several polygons is the first one's"), "{}", report["notes"]);
+}

@@ -97,7 +97,7 @@ const ROWS: &[Row] = &[
     each(&["--fit"], [Refused("--fit"), Mesh, Report("fidelity")]),
     each(&["--ar", "95"], [Refused("--ar"), Nothing, Mesh]),
     each(&["--nr"], [Refused("--nr"), Nothing, Mesh]),
-    each(&["--repair"], [Refused("--repair"), Nothing, Nothing]),
+    each(&["--repair"], [Nothing, Nothing, Nothing]),
     each(&["--mesher", "starset"], [Mesh, Refused("--mesher"), Refused("--mesher")]),
     each(&["--order", "2"], [Mesh, Refused("--order"), Refused("--order")]),
     plane(STARS, &["--order", "3"], Refused("--order")),

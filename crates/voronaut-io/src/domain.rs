@@ -3,7 +3,10 @@
 use super::files::{ending, in_file, neither};
 use super::{Format, geojson, open, poly, read, read_text};
 use std::path::Path;
-use voronaut::domain::{self, Domain, Pslg, from_mesh, from_poly, from_polygons};
+use voronaut::domain::{
+    self, Domain, Polygons, Pslg, from_mesh, from_poly, from_polygons, repaired_graph, repaired_polygons,
+};
+use voronaut::surface::RepairOptions;
 use voronaut::{Error, Result};
 
 /// Reads and validates a domain.
@@ -22,25 +25,46 @@ pub fn read_domain(spec: &str) -> Result<Domain> {
 /// format asks for, empty, or not UTF-8; [`Error::Domain`] of what makes no domain, as far as one look at points,
 /// segments and rings tells; [`Error::Unsupported`] of surfaces and of formats that are not read.
 pub fn read_pslg(spec: &str) -> Result<Pslg> {
+    Ok(read_outline(spec, RepairOptions::default())?.0)
+}
+
+/// The same, repaired as the options say, with what was done, in words.
+pub(crate) fn read_outline(spec: &str, options: RepairOptions) -> Result<(Pslg, Vec<String>)> {
     if let Some(shape) = domain::shape(spec) {
-        return shape;
+        return Ok((shape?, Vec::new()));
     }
     let path = Path::new(spec);
     let format = Format::of_ending(path);
-    let pslg = match ending(path).as_deref() {
-        Some("geojson" | "json") => from_polygons(&geojson::read(&read_text(path)?, spec)?),
+    let outline = match ending(path).as_deref() {
+        Some("geojson" | "json") => outline_of_polygons(&geojson::read(&read_text(path)?, spec)?, options),
         Some("poly") => from_poly(&poly::read_with(open(path)?, spec, || {
             let beside = path.with_extension("node");
             beside.is_file().then(|| Ok((open(&beside)?, beside.display().to_string())))
-        })?),
-        _ if format.is_some_and(Format::may_be_planar) => from_mesh(&read(path)?.mesh),
+        })?)
+        .and_then(|graph| as_outline(graph, options)),
+        _ if format.is_some_and(Format::may_be_planar) => {
+            from_mesh(&read(path)?.mesh).and_then(|graph| as_outline(graph, options))
+        }
         Some(ending) if format.is_some() => {
             let what = format!("a .{ending} file as planar domain ({spec})");
             return Err(Error::unsupported(what, format!("give {DOMAINS}")));
         }
         _ => return Err(neither(spec, DOMAINS)),
     };
-    pslg.map_err(|error| in_file(spec, error))
+    outline.map_err(|error| in_file(spec, error))
+}
+
+/// The graph of polygons, repaired as the options say, with what was done.
+///
+/// # Errors
+/// As of [`from_polygons`] or [`repaired_polygons`].
+pub fn outline_of_polygons(polygons: &Polygons, options: RepairOptions) -> Result<(Pslg, Vec<String>)> {
+    if options.repair { repaired_polygons(polygons) } else { Ok((from_polygons(polygons)?, Vec::new())) }
+}
+
+/// A graph, repaired as the options say, with what was done.
+pub(crate) fn as_outline(graph: Pslg, options: RepairOptions) -> Result<(Pslg, Vec<String>)> {
+    if options.repair { repaired_graph(&graph) } else { Ok((graph, Vec::new())) }
 }
 
 /// What users write for a planar domain, for messages.

@@ -1,10 +1,10 @@
 //! What the user writes for a surface (a shape, an equation, or a file), or for a domain that may be one or lie in the plane.
 
 use super::files::{ending, in_file, neither};
-use super::{DOMAINS, Document, Format, read, read_domain};
+use super::{DOMAINS, Document, Format, as_outline, read, read_outline};
 use std::path::Path;
 use voronaut::Result;
-use voronaut::domain::{Domain, from_mesh};
+use voronaut::domain::{Domain, Pslg, from_mesh};
 use voronaut::surface::{self, Input, Mended, RepairOptions, Surface, repaired};
 
 /// A domain: of the plane, or a surface in space.
@@ -19,19 +19,19 @@ pub enum Given {
 impl Given {
     /// Reads what the user wrote, with what was mended, and what readers left out. `sphere:`, `torus:`, `chair`, `implicit:` and files
     /// `.obj`, `.off`, `.ply` and `.stl` are surfaces; a `.mesh` is one if it has triangles and some z is not 0. All else is a planar
-    /// domain. Surfaces in files are mended as the options say.
+    /// domain. What is in files is mended as the options say.
     ///
     /// # Errors
-    /// As for the surface that it may be, and [`read_domain`]; of what is neither, the help names both.
+    /// As for the surface that it may be, and [`read_domain`](super::read_domain); of what is neither, the help names both.
     pub fn read(spec: &str, options: RepairOptions) -> Result<(Self, Mended)> {
         let surface = || read_surface(spec, options).map(|(input, mended)| (Self::Surface(input), mended));
-        let plane = |domain, notes: &[String]| Ok((Self::Plane(domain), Mended::default().with_notes(notes)));
+        let plane = || plane(read_outline(spec, options)?, &[]);
         let name = spec.split(':').next().unwrap_or_default().trim();
         let path = Path::new(spec);
         match ending(path).as_deref() {
             _ if ["sphere", "torus", "chair", "implicit"].contains(&name) => surface(),
-            _ if ["rect", "disk"].contains(&name) => plane(read_domain(spec)?, &[]),
-            Some("geojson" | "json" | "poly") => plane(read_domain(spec)?, &[]),
+            _ if ["rect", "disk"].contains(&name) => plane(),
+            Some("geojson" | "json" | "poly") => plane(),
             _ if Format::of_ending(path).is_some_and(Format::may_be_planar) => {
                 Self::of_document(spec, &read(path)?, true, options)
             }
@@ -52,12 +52,18 @@ impl Given {
         options: RepairOptions,
     ) -> Result<(Self, Mended)> {
         if may_be_planar && (document.mesh.triangles.is_empty() || document.mesh.is_planar()) {
-            let outline = from_mesh(&document.mesh).map_err(|error| in_file(name, error))?;
-            return Ok((Self::Plane(Domain::new(&outline)?), Mended::default().with_notes(&document.notes)));
+            let outline = from_mesh(&document.mesh).and_then(|graph| as_outline(graph, options));
+            return plane(outline.map_err(|error| in_file(name, error))?, &document.notes);
         }
         let (surface, mended) = surface_of(name, document, options)?;
         Ok((Self::Surface(Input::new(surface, None)), mended))
     }
+}
+
+/// The domain of a graph, with what the reader of its file says and what was mended.
+fn plane((outline, mended): (Pslg, Vec<String>), notes: &[String]) -> Result<(Given, Mended)> {
+    let notes: Vec<String> = notes.iter().cloned().chain(mended).collect();
+    Ok((Given::Plane(Domain::new(&outline)?), Mended::default().with_notes(&notes)))
 }
 
 /// Reads a surface: `sphere:r`, `torus:R,r`, `chair`, `implicit:EXPR;x0,y0,z0,x1,y1,z1`, or a file `.mesh`, `.meshb`,

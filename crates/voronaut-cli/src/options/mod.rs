@@ -71,14 +71,15 @@ impl Paired {
 
 #[derive(Debug, Args)]
 pub(crate) struct Damage {
-    /// Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that meet in a
-    /// point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
+    /// Mend what is else refused with its place. Surfaces: T-junctions, edges of three triangles, sheets that meet in a point; and small
+    /// holes are closed. (Duplicates and triangles without area go, and seams are welded, anyway.) Outlines: points nearer than 1e-9 of
+    /// the diagonal are joined, lines cut where they cross, and where polygons overlap the first has the say
     #[arg(long)]
     pub(crate) repair: bool,
 }
 
 impl Damage {
-    /// What may be done to the meshes of surfaces.
+    /// What may be done to what files hold.
     pub(crate) fn options(&self) -> RepairOptions {
         RepairOptions { repair: self.repair }
     }

@@ -10,6 +10,7 @@ mod periodic;
 mod poly;
 mod polygons;
 mod pslg;
+mod repair;
 mod shapes;
 mod sides;
 
@@ -20,6 +21,7 @@ pub(crate) use periodic::{Pair, curves_in_step, paired};
 pub use poly::{Poly, PolyRegion, from_poly};
 pub use polygons::{Polygon, Polygons, Ring, from_polygons};
 pub use pslg::{Filling, Pslg, Segment, Side};
+pub use repair::{repaired_graph, repaired_polygons};
 #[cfg(test)]
 pub(crate) use shapes::rect;
 pub use shapes::shape;

@@ -1,6 +1,6 @@
 //! Domains from polygons.
 
-use super::distinct::key;
+use super::distinct::{key, listed};
 use super::{Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, orientation};
@@ -47,7 +47,7 @@ pub struct Ring {
 /// [`Error::Domain`] of no polygon, a ring without area, a ring that runs over the same segment twice, and polygons
 /// that lie on the same side of a segment. Other overlaps and crossings are not looked for here.
 pub fn from_polygons(polygons: &Polygons) -> Result<Pslg> {
-    let mut builder = Builder { single: polygons.polygons.len() == 1, ..Builder::default() };
+    let mut builder = Builder::of(polygons);
     for polygon in &polygons.polygons {
         for (index, ring) in polygon.rings.iter().enumerate() {
             builder.add_ring(polygon, index, ring)?;
@@ -56,13 +56,21 @@ pub fn from_polygons(polygons: &Polygons) -> Result<Pslg> {
     if builder.segments.is_empty() {
         return Err(Error::domain("no polygon", "the list of polygons", "give at least one polygon"));
     }
-    Ok(Pslg {
-        point_labels: vec![0; builder.points.len()],
-        points: builder.points,
-        segments: builder.segments,
-        names: builder.names,
-        ..Pslg::default()
-    })
+    Ok(builder.finished())
+}
+
+/// The segments of all rings as they are, whatever they do, and the polygon of each.
+pub(super) fn lines(polygons: &Polygons) -> (Pslg, Vec<u32>) {
+    let (mut builder, mut polygon_of) = (Builder::of(polygons), Vec::new());
+    for (number, polygon) in (0..).zip(&polygons.polygons) {
+        for (index, ring) in polygon.rings.iter().enumerate() {
+            let vertices = builder.vertices_of(polygon, index, &corners(ring));
+            let ends = vertices.iter().copied().zip(vertices.iter().copied().cycle().skip(1));
+            builder.segments.extend(ends.map(|(a, b)| listed([a, b], ring.label, false)));
+            polygon_of.resize(builder.segments.len(), number);
+        }
+    }
+    (builder.finished(), polygon_of)
 }
 
 #[derive(Default)]
@@ -81,17 +89,31 @@ struct Builder {
 }
 
 impl Builder {
+    fn of(polygons: &Polygons) -> Self {
+        Self { single: polygons.polygons.len() == 1, ..Self::default() }
+    }
+
+    fn finished(self) -> Pslg {
+        Pslg {
+            point_labels: vec![0; self.points.len()],
+            points: self.points,
+            segments: self.segments,
+            names: self.names,
+            ..Pslg::default()
+        }
+    }
+
     fn add_ring(&mut self, polygon: &Polygon, index: usize, ring: &Ring) -> Result<()> {
-        let name = self.ring_name(polygon, index);
         let corners = corners(ring);
         let points: Vec<Point> = corners.iter().map(|&(_, p)| p).collect();
         let Some(is_counter_clockwise) = is_counter_clockwise(&points) else {
+            let name = self.ring_name(polygon, index);
             let place = format!("{name}, position 1 {}", points.first().copied().unwrap_or_default());
             return Err(Error::domain("a ring without area", place, "remove the ring, or correct its positions"));
         };
         let is_outer = index == 0;
         let region_is_left = is_counter_clockwise == is_outer;
-        let vertices: Vec<u32> = corners.into_iter().map(|(position, p)| self.vertex(p, position, &name)).collect();
+        let vertices = self.vertices_of(polygon, index, &corners);
         self.rings += 1;
         for (position, &a) in vertices.iter().enumerate() {
             let b = vertices[(position + 1) % vertices.len()];
@@ -105,6 +127,11 @@ impl Builder {
             return format!("ring {}", index + 1);
         }
         format!("feature {}, polygon {}, ring {}", polygon.feature, polygon.number, index + 1)
+    }
+
+    fn vertices_of(&mut self, polygon: &Polygon, ring: usize, corners: &[(usize, Point)]) -> Vec<u32> {
+        let name = self.ring_name(polygon, ring);
+        corners.iter().map(|&(position, p)| self.vertex(p, position, &name)).collect()
     }
 
     fn vertex(&mut self, p: Point, position: usize, ring: &str) -> u32 {

@@ -1,10 +1,12 @@
 //! Which triangles lie in the domain, and in which region.
 
-use super::{Filling, Pslg, Side};
+use super::{Filling, Pslg, Segment, Side};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, centroid, signed_area};
+use crate::lists::distinct;
 use crate::planar::{Location, Planar};
-use crate::triangulation::{FaceId, HalfEdge};
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use std::collections::VecDeque;
 
 const OPEN_HELP: &str = "close the boundary: every end of a segment must meet another segment of the same outline";
 
@@ -26,7 +28,7 @@ impl Areas {
         areas.sides[outer] = Side::Outside;
         match &pslg.filling {
             Filling::Sides => areas.read_segments(pslg, planar)?,
-            Filling::EvenOdd => areas.alternate(planar, outer),
+            Filling::EvenOdd => areas.alternate(planar),
             Filling::Enclosed { holes, regions } => areas.fill(planar, holes, regions),
         }
         areas.reject_useless_segments(pslg, planar)?;
@@ -75,23 +77,10 @@ impl Areas {
     }
 
     /// Areas alternate between out and in with every crossing of a constrained edge.
-    fn alternate(&mut self, planar: &Planar, outer: usize) {
-        let mut neighbours = vec![Vec::new(); self.sides.len()];
-        for h in constrained_half_edges(planar) {
-            if let Some(t) = planar.topology.twin(h) {
-                let [a, b] = [h, t].map(|e| self.area_of[e.face().index()] as usize);
-                neighbours[a].push(b);
-            }
-        }
-        let mut queue = std::collections::VecDeque::from([outer]);
-        while let Some(a) = queue.pop_front() {
-            let beyond = if self.sides[a] == Side::Outside { Side::Region(1) } else { Side::Outside };
-            for &b in &neighbours[a] {
-                if self.sides[b] == Side::Unknown {
-                    self.sides[b] = beyond;
-                    queue.push_back(b);
-                }
-            }
+    fn alternate(&mut self, planar: &Planar) {
+        let covers = Covers::new(planar, |_| &[0]);
+        for (side, of) in self.sides.iter_mut().zip(&covers.of) {
+            *side = if of.is_empty() { Side::Outside } else { Side::Region(1) };
         }
     }
 
@@ -125,6 +114,67 @@ impl Areas {
     }
 }
 
+/// What lines are around: the numbers of closed lines that one crosses an odd number of times on the way from an area to the outside.
+pub(super) struct Covers {
+    area_of: Vec<u32>,
+    /// Of each area, in order.
+    of: Vec<Vec<u32>>,
+}
+
+impl Covers {
+    /// `lines` are the numbers of the closed lines that a segment is part of, in order.
+    pub(super) fn new<'a>(planar: &Planar, lines: impl Fn(u32) -> &'a [u32]) -> Self {
+        let (area_of, areas) = planar.topology.parts(|h| !planar.topology.is_fixed(h));
+        let area = |h: HalfEdge| area_of[h.face().index()];
+        let mut neighbours = vec![Vec::new(); areas.len()];
+        for h in constrained_half_edges(planar) {
+            if let (Some(t), Some(constraint)) = (planar.topology.twin(h), planar.topology.constraint(h)) {
+                neighbours[area(h) as usize].push((area(t), constraint.0));
+            }
+        }
+        let mut of: Vec<Option<Vec<u32>>> = vec![None; areas.len()];
+        let outer = area_of[far_face(planar).index()];
+        of[outer as usize] = Some(Vec::new());
+        let mut queue = VecDeque::from([outer]);
+        while let Some(from) = queue.pop_front() {
+            let known = of[from as usize].clone().unwrap_or_default();
+            for &(to, segment) in &neighbours[from as usize] {
+                if of[to as usize].is_none() {
+                    of[to as usize] = Some(differing(&known, lines(segment)));
+                    queue.push_back(to);
+                }
+            }
+        }
+        Self { area_of, of: of.into_iter().map(Option::unwrap_or_default).collect() }
+    }
+
+    /// The first of the lines around a face.
+    pub(super) fn first(&self, f: FaceId) -> Option<u32> {
+        self.of[self.area_of[f.index()] as usize].first().copied()
+    }
+
+    /// How many areas several are around.
+    pub(super) fn shared(&self) -> usize {
+        self.of.iter().filter(|of| of.len() > 1).count()
+    }
+}
+
+/// What is in one of two lists, but not in both; in order.
+pub(super) fn differing(one: &[u32], other: &[u32]) -> Vec<u32> {
+    let only = |a: &[u32], b: &[u32]| a.iter().copied().filter(|x| !b.contains(x)).collect::<Vec<u32>>();
+    distinct(only(one, other).into_iter().chain(only(other, one)))
+}
+
+/// The faces left and right of each segment of a graph that has no points inside segments.
+pub(super) fn faces_beside(pslg: &Pslg, planar: &Planar) -> Vec<[FaceId; 2]> {
+    let beside = |segment: &Segment| {
+        let [a, b] = segment.ends.map(VertexId);
+        let side = |from, to| planar.topology.find(from, to).expect("a segment is an edge").face();
+        [side(a, b), side(b, a)]
+    };
+    pslg.segments.iter().map(beside).collect()
+}
+
 fn constrained_half_edges(planar: &Planar) -> impl Iterator<Item = HalfEdge> + '_ {
     let all = planar.topology.faces().flat_map(FaceId::half_edges);
     all.filter(|&h| planar.topology.constraint(h).is_some())
@@ -140,7 +190,7 @@ fn said_of_left(pslg: &Pslg, planar: &Planar, h: HalfEdge) -> (u32, Side) {
 }
 
 fn far_face(planar: &Planar) -> FaceId {
-    let far = crate::triangulation::VertexId(planar.topology.vertex_slots() as u32 - 1);
+    let far = VertexId(planar.topology.vertex_slots() as u32 - 1);
     planar.topology.start(far).expect("the far triangle's vertices are in use").face()
 }
 

@@ -40,6 +40,8 @@ pub(crate) struct State {
     pub(super) topology: Triangulation,
     pub(super) places: Vec<Place>,
     planes: Vec<TangentPlane>,
+    /// What the triangles at a seed are to face.
+    facing: Vec<Vector3>,
     pub(super) locals: Vec<LocalMetric>,
     pub(super) measured: Vec<Measured>,
     kinds: Vec<Kind>,
@@ -67,6 +69,7 @@ impl<'a> SurfaceDual<'a> {
         topology: Triangulation,
     ) -> Result<Self> {
         let planes = places.iter().map(|place| TangentPlane::new(input.normal(place))).collect();
+        let facing = places.iter().map(|place| input.facing(place)).collect();
         let stays = |v: u32| (v as usize) < staying || topology.is_border_vertex(VertexId(v));
         let kind = |v: u32| if stays(v) { Kind::Corner(v) } else { Kind::Free };
         let kinds = (0..places.len() as u32).map(kind).collect();
@@ -75,7 +78,7 @@ impl<'a> SurfaceDual<'a> {
             input,
             metric,
             factor,
-            state: State { topology, places, planes, locals, measured, kinds },
+            state: State { topology, places, planes, facing, locals, measured, kinds },
             flips: 0,
         };
         dual.measure_all()?;
@@ -168,7 +171,7 @@ impl<'a> SurfaceDual<'a> {
 
     /// The least cosine between the normal of a triangle and those of the surface at its corners.
     pub(crate) fn upright(&self, corners: [VertexId; 3]) -> f64 {
-        let normals = corners.map(|v| self.state.planes[v.index()].normal);
+        let normals = corners.map(|v| self.state.facing[v.index()]);
         upright(corners.map(|v| self.position(v)), normals)
     }
 
@@ -269,7 +272,7 @@ impl Moving for SurfaceDual<'_> {
         let topology = self.topology();
         let stands = |h: HalfEdge| {
             let [a, b] = [topology.target(h), topology.apex(h)];
-            let normals = [normal, self.state.planes[a.index()].normal, self.state.planes[b.index()].normal];
+            let normals = [normal, self.state.facing[a.index()], self.state.facing[b.index()]];
             let after = upright([place.position, self.position(a), self.position(b)], normals);
             after >= UPRIGHT || after >= self.upright([v, a, b])
         };
@@ -278,6 +281,7 @@ impl Moving for SurfaceDual<'_> {
         }
         self.state.places[v.index()] = place;
         self.state.planes[v.index()] = plane.turned(normal);
+        self.state.facing[v.index()] = normal;
         self.forget_lengths(self.topology().star(v).flat_map(|h| [h, h.prev()]).collect());
         true
     }

@@ -1,7 +1,9 @@
 //! The library's error: what went wrong, where, and what to do about it.
 
+mod counted;
 mod named;
 
+pub(crate) use counted::counted;
 pub(crate) use named::{named, unknown};
 
 use std::path::PathBuf;

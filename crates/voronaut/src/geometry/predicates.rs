@@ -44,7 +44,7 @@ pub(crate) fn signed_volume(a: Point3, b: Point3, c: Point3, d: Point3) -> f64 {
     robust::orient3d(coord(a), coord(b), coord(c), coord(d))
 }
 
-/// Where the lines through a-b and c-d meet (rounded): for messages, never for decisions.
+/// Where the lines through a-b and c-d meet (rounded).
 pub(crate) fn segment_intersection(a: Point, b: Point, c: Point, d: Point) -> Point {
     let (u, v) = (b - a, d - c);
     let denominator = u.cross(v);

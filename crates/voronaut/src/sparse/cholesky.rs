@@ -1,73 +1,45 @@
-//! The factor L of A = L L', row by row.
+//! The factor L of A = L L', front by front.
 
-use super::elimination::{Elimination, Reach};
+use super::dense::Dense;
+use super::elimination::{Elimination, Front};
 use super::matrix::Symmetric;
-use std::ops::Range;
+use crate::parallel::prelude::*;
+use std::sync::Arc;
 
-/// A Cholesky factor of a symmetric positive definite matrix, by compressed columns.
+/// A Cholesky factor of a symmetric positive definite matrix.
 #[derive(Clone, Debug)]
 pub(crate) struct Cholesky {
     /// The row of the matrix that is eliminated k-th.
-    order: Vec<u32>,
-    /// Column k, without the diagonal, is from `starts[k]` to `starts[k + 1]`.
-    starts: Vec<usize>,
-    rows: Vec<u32>,
-    values: Vec<f64>,
-    diagonal: Vec<f64>,
-}
-
-/// A factor in the making: its first rows are there.
-struct Rows<'a> {
-    matrix: &'a Symmetric,
-    elimination: &'a Elimination,
-    reach: Reach,
-    /// Where columns end so far.
-    ends: Vec<usize>,
-    /// The row in the making; zero elsewhere.
-    row: Vec<f64>,
+    order: Arc<[u32]>,
+    fronts: Arc<[Front]>,
+    /// Of each front its columns, one after the other, in its rows.
+    columns: Vec<Vec<f64>>,
 }
 
 impl Cholesky {
     /// Factors a matrix; `None` where a pivot is not positive, or not finite: the matrix is not positive definite, or so near to
     /// that, that rounding decides.
     ///
-    /// Rows come one after the other, each from a triangular system with those before: the *up-looking* factorisation of Davis
-    /// 2006, section 4.7.
+    /// Each front is a dense matrix: its columns of A, and what its children leave to the rows below theirs. Its own columns are
+    /// eliminated, and what that leaves goes to its parent: the *multifrontal* method of Duff and Reid 1983. Fronts that are not
+    /// above each other are made at the same time.
     ///
     /// # Panics
     /// Where the elimination is that of a matrix with entries in other places.
     pub(crate) fn of(matrix: &Symmetric, elimination: &Elimination) -> Option<Self> {
-        let (n, starts) = (matrix.size(), elimination.starts.clone());
-        assert_eq!(n, elimination.order.len(), "the elimination of another matrix");
-        let (rows, values) = (vec![0; starts[n]], vec![0.0; starts[n]]);
-        let mut made =
-            Rows { matrix, elimination, reach: Reach::new(n), ends: starts[..n].to_vec(), row: vec![0.0; n] };
-        let mut factor =
-            Self { order: elimination.order.clone(), starts, rows, values, diagonal: Vec::with_capacity(n) };
-        for k in 0..n {
-            factor.add_row(k, &mut made)?;
-        }
-        Some(factor)
-    }
-
-    fn add_row(&mut self, k: usize, made: &mut Rows<'_>) -> Option<()> {
-        for (j, value) in made.elimination.row(made.matrix, k) {
-            made.row[j] = value;
-        }
-        let mut pivot = made.matrix.diagonal_at(self.order[k] as usize);
-        for &i in made.reach.of_row(k, made.elimination, made.matrix) {
-            let (i, end) = (i as usize, made.ends[i as usize]);
-            assert!(end < self.starts[i + 1], "the elimination of another matrix");
-            let value = std::mem::take(&mut made.row[i]) / self.diagonal[i];
-            for (j, l) in self.entries(self.starts[i]..end) {
-                made.row[j] -= l * value;
+        assert_eq!(matrix.size(), elimination.order.len(), "the elimination of another matrix");
+        let fronts = &elimination.fronts;
+        let (mut columns, mut left) = (vec![Vec::new(); fronts.len()], vec![Vec::new(); fronts.len()]);
+        for level in &elimination.levels {
+            let made: Vec<Option<Dense>> =
+                level.par_iter().map(|&front| assembled(matrix, elimination, front, &left).eliminated()).collect();
+            for (&number, made) in level.iter().zip(made) {
+                let made = made?;
+                fronts[number as usize].children.iter().for_each(|&child| left[child as usize] = Vec::new());
+                (columns[number as usize], left[number as usize]) = (made.columns, made.rest);
             }
-            pivot -= value * value;
-            (self.rows[end], self.values[end]) = (k as u32, value);
-            made.ends[i] += 1;
         }
-        self.diagonal.push((pivot > 0.0 && pivot.is_finite()).then(|| pivot.sqrt())?);
-        Some(())
+        Some(Self { order: elimination.order.clone(), fronts: fronts.clone(), columns })
     }
 
     /// The solution for a right-hand side.
@@ -77,16 +49,21 @@ impl Cholesky {
     pub(crate) fn solve(&self, right: &[f64]) -> Vec<f64> {
         assert_eq!(right.len(), self.order.len(), "a number for each row");
         let mut values: Vec<f64> = self.order.iter().map(|&v| right[v as usize]).collect();
-        for k in 0..values.len() {
-            let value = values[k] / self.diagonal[k];
-            values[k] = value;
-            for (j, l) in self.entries(self.column(k)) {
-                values[j] -= l * value;
+        for (front, columns) in self.fronts.iter().zip(&self.columns) {
+            for (rows, column) in by_columns(front, columns) {
+                let value = values[rows[0] as usize] / column[0];
+                values[rows[0] as usize] = value;
+                for (&row, l) in rows[1..].iter().zip(&column[1..]) {
+                    values[row as usize] -= l * value;
+                }
             }
         }
-        for k in (0..values.len()).rev() {
-            let sum: f64 = self.entries(self.column(k)).map(|(j, l)| l * values[j]).sum();
-            values[k] = (values[k] - sum) / self.diagonal[k];
+        for (front, columns) in self.fronts.iter().zip(&self.columns).rev() {
+            for (rows, column) in by_columns(front, columns).rev() {
+                let below = rows[1..].iter().zip(&column[1..]);
+                let sum: f64 = below.map(|(&row, l)| l * values[row as usize]).sum();
+                values[rows[0] as usize] = (values[rows[0] as usize] - sum) / column[0];
+            }
         }
         let mut found = vec![0.0; values.len()];
         for (&v, value) in self.order.iter().zip(values) {
@@ -94,12 +71,43 @@ impl Cholesky {
         }
         found
     }
+}
 
-    fn column(&self, k: usize) -> Range<usize> {
-        self.starts[k]..self.starts[k + 1]
-    }
+/// The columns of a front from the diagonal on, with their rows.
+fn by_columns<'a>(front: &'a Front, columns: &'a [f64]) -> impl DoubleEndedIterator<Item = (&'a [u32], &'a [f64])> {
+    let height = front.rows.len();
+    (0..front.width).map(move |k| (&front.rows[k..], &columns[k * height + k..(k + 1) * height]))
+}
 
-    fn entries(&self, places: Range<usize>) -> impl Iterator<Item = (usize, f64)> {
-        self.rows[places.clone()].iter().zip(&self.values[places]).map(|(&j, &value)| (j as usize, value))
+/// A front before it is eliminated, from the matrix and from what its children left.
+fn assembled(matrix: &Symmetric, elimination: &Elimination, front: u32, left: &[Vec<f64>]) -> Dense {
+    let front = &elimination.fronts[front as usize];
+    let mut dense = Dense::zero(front.rows.len(), front.width);
+    for (k, &row) in front.rows[..front.width].iter().enumerate() {
+        dense.add(k, k, matrix.diagonal_at(elimination.order[row as usize] as usize));
+        for (below, value) in elimination.column(matrix, row) {
+            let at = front.rows.binary_search(&below).expect("the elimination of another matrix");
+            dense.add(at, k, value);
+        }
     }
+    for &child in &front.children {
+        let below = elimination.fronts[child as usize].below();
+        let places = places(below, &front.rows);
+        for (j, column) in left[child as usize].chunks_exact(below.len()).enumerate() {
+            for (&i, &value) in places[j..].iter().zip(&column[j..]) {
+                dense.add(i, places[j], value);
+            }
+        }
+    }
+    dense
+}
+
+/// Where some rows are among others; both rise.
+fn places(some: &[u32], others: &[u32]) -> Vec<usize> {
+    let mut at = 0;
+    let place = |row: &u32| {
+        at += others[at..].iter().take_while(|&other| other < row).count();
+        at
+    };
+    some.iter().map(place).collect()
 }

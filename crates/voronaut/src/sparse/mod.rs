@@ -15,6 +15,7 @@
 
 mod cholesky;
 mod conjugate;
+mod dense;
 mod elimination;
 mod matrix;
 mod ordering;

@@ -160,7 +160,8 @@ const LEAST_CREASE: usize = 5;
 
 impl Surface {
     /// Its features as curves, cut at stops: where one ends, forks, bends by more than the angle of the options, where marks
-    /// change, at corners and required vertices of the input and at the ends of required edges. Creases of fewer than five
+    /// change, at corners and required vertices of the input and at the ends of required edges. A vertex whose normal is farther than that
+    /// angle from those of all its triangles, the apex of a cone, is a corner on no curve. Creases of fewer than five
     /// edges that end inside a patch, or touch no other, do not count, unless the input lists them.
     pub(crate) fn curves(&self, options: &FeatureOptions) -> Curves {
         let features = Features::of(self, options);
@@ -169,7 +170,10 @@ impl Surface {
         // Vertices of no triangle belong to nothing, whatever the input calls them.
         let [corners, required] = [&self.corners, &self.required_points]
             .map(|listed| listed.iter().copied().filter(|&v| self.topology.start(v).is_some()));
-        let corners: BTreeSet<VertexId> = corners.chain(bends).collect();
+        let tips = options.ar.map(|angle| self.tips(angle)).unwrap_or_default();
+        let is_alone = |v: &VertexId| features.network.at(v.0).is_empty();
+        let tips = tips.into_iter().map(|tip| tip.0).filter(is_alone);
+        let corners: BTreeSet<VertexId> = corners.chain(bends).chain(tips).collect();
         let changes = vertices().filter(|&v| features.changes(v));
         let stops: BTreeSet<VertexId> = corners.iter().copied().chain(required).chain(changes).collect();
         let curves = features.curves(&stops);

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Point3, Vector3};
 use crate::mesh::{Mesh, Solution};
 use crate::metric::Expression;
-use crate::triangulation::{FaceId, HalfEdge};
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::sync::OnceLock;
 
 /// A surface as it was given: triangles, and an equation f = 0 if it has one.
@@ -22,6 +22,9 @@ pub struct Input {
     pub seams: Seams,
     /// Unit normals, one per vertex slot.
     normals: Vec<Vector3>,
+    /// Vertices that are the tip of something pointed, as far as that is known of triangles, in order; and the least cosine between their normals
+    /// and those of their triangles.
+    tips: Vec<(VertexId, f64)>,
     /// The diagonal of its bounding box.
     diagonal: f64,
     nearest: OnceLock<Nearest>,
@@ -31,6 +34,8 @@ pub struct Input {
 const ON_SURFACE: f64 = 1e-14;
 /// It leads no farther away than this share of the diagonal.
 const REACH: f64 = 0.25;
+/// Where the normal at a vertex is farther (degrees) from those of all its triangles it is the tip of something pointed.
+const POINTED: f64 = FeatureOptions::DEFAULT_ANGLE;
 /// The faces passed in search of a closest point, at most, and those after which a tree is asked.
 const FEW_FACES: usize = 512;
 const FACES: usize = 4096;
@@ -109,7 +114,23 @@ impl Input {
             normals[v.index()] = surface.vertex_normal(v).unwrap_or(up);
         }
         let diagonal = surface.bounds().diagonal();
-        Self { surface, implicit, seams, normals, diagonal, nearest: OnceLock::new() }
+        let tips = if implicit.is_some() { Vec::new() } else { surface.tips(POINTED) };
+        Self { surface, implicit, seams, normals, tips, diagonal, nearest: OnceLock::new() }
+    }
+
+    /// The least cosine between the normal at a vertex and those of its triangles, if it is a pointed tip.
+    fn tip(&self, v: VertexId) -> Option<f64> {
+        let found = self.tips.binary_search_by_key(&v, |tip| tip.0);
+        found.ok().map(|i| self.tips[i].1)
+    }
+
+    /// What triangles with a corner at a place are to face: the normal there. The triangles at a pointed tip may face away from it as far as the
+    /// surface's own do: there it is so much longer that these face it as if it were theirs.
+    pub(crate) fn facing(&self, place: &Place) -> Vector3 {
+        let normal = self.normal(place);
+        let corner = (0..3).find(|&k| place.weights[k] >= 1.0 && self.implicit.is_none());
+        let tip = corner.and_then(|k| self.tip(self.surface.topology().corners(place.face)[k]));
+        tip.filter(|&least| least > 0.0).map_or(normal, |least| normal * (1.0 / least))
     }
 
     /// The diagonal of the bounding box of its triangles.
@@ -192,13 +213,18 @@ impl Input {
         Reached { face, weights, square: offset.dot(offset) }
     }
 
-    /// The unit normal of the surface at a place: exact of an equation, else between those of the triangle's corners.
+    /// The unit normal of the surface at a place: exact of an equation, else between those of the triangle's corners. Beside a pointed tip
+    /// it is that of the triangle: the normal at the tip is none of its neighbourhood.
     pub(crate) fn normal(&self, place: &Place) -> Vector3 {
         if self.implicit.is_some() {
             return place.normal;
         }
         let corners = self.surface.topology().corners(place.face);
-        let weighted = corners.iter().zip(place.weights).map(|(v, weight)| self.normals[v.index()] * weight);
+        let at_corner = |&v: &VertexId, weight: f64| {
+            let is_beside_tip = weight < 1.0 && self.tip(v).is_some();
+            if is_beside_tip { place.normal } else { self.normals[v.index()] }
+        };
+        let weighted = corners.iter().zip(place.weights).map(|(v, weight)| at_corner(v, weight) * weight);
         weighted.fold(Vector3::default(), |sum, normal| sum + normal).unit().unwrap_or(place.normal)
     }
 }

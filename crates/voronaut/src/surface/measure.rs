@@ -46,6 +46,19 @@ impl Surface {
         weighted.fold(Vector3::default(), |sum, normal| sum + normal).unit()
     }
 
+    /// Vertices whose normal is farther than an angle (degrees) from those of all their triangles, in order; and the least cosine between
+    /// the two.
+    pub(super) fn tips(&self, angle: f64) -> Vec<(VertexId, f64)> {
+        let most = angle.to_radians().cosine();
+        let tip = |v: VertexId| {
+            let normal = self.vertex_normal(v)?;
+            let cosines = self.topology.star(v).map(|h| self.normal(h.face()).dot(normal));
+            let [least, greatest] = cosines.fold([1.0_f64, -1.0], |[l, g], c| [l.min(c), g.max(c)]);
+            (greatest < most && !self.topology.is_border_vertex(v)).then_some((v, least))
+        };
+        self.topology.vertices().filter_map(tip).collect()
+    }
+
     /// The unit normal at a place: that of its triangle, on an edge the mean of both, at a vertex [`Surface::vertex_normal`].
     pub(crate) fn normal_at(&self, place: &Place) -> Vector3 {
         let own = self.normal(place.face);

@@ -25,7 +25,8 @@ pub(super) struct Work<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Vertex {
     pub(super) place: Place,
-    normal: Vector3,
+    /// What its triangles are to face.
+    facing: Vector3,
     tensor: Tensor3,
     /// The number of the given place that it is.
     pub(super) given: Option<u32>,
@@ -102,8 +103,8 @@ impl<'a> Work<'a> {
     }
 
     pub(super) fn vertex(&self, place: Place) -> Vertex {
-        let (normal, tensor) = (self.input.normal(&place), self.metric.at(&place));
-        Vertex { place, normal, tensor, given: None, is_held: false }
+        let (facing, tensor) = (self.input.facing(&place), self.metric.at(&place));
+        Vertex { place, facing, tensor, given: None, is_held: false }
     }
 
     pub(super) fn vertex_count(&self) -> usize {
@@ -218,5 +219,5 @@ pub(super) fn leaning(corners: [&Vertex; 3]) -> f64 {
     let Some(normal) = normal.unit().filter(|_| normal.norm() > FLAT * Point3::longest_side([a, b, c]).powi(2)) else {
         return -1.0;
     };
-    corners.iter().map(|corner| corner.normal.dot(normal)).fold(1.0, f64::min)
+    corners.iter().map(|corner| corner.facing.dot(normal)).fold(1.0, f64::min)
 }

@@ -1,5 +1,6 @@
 //! What was mended of a surface, in numbers and in words.
 
+use crate::error::counted;
 use serde::Serialize;
 
 /// What was found wrong with a mesh of a surface, and mended or left; and what the reader of its file says.
@@ -88,17 +89,6 @@ impl Damage {
             }
         }
     }
-
-    /// The words for so many.
-    fn told(self, count: usize) -> String {
-        let mut parts = self.words().split(['[', '|', ']']);
-        let mut told = parts.next().unwrap_or_default().to_owned();
-        while let (Some(one), Some(many), Some(rest)) = (parts.next(), parts.next(), parts.next()) {
-            told.push_str(if count == 1 { one } else { many });
-            told.push_str(rest);
-        }
-        told
-    }
 }
 
 /// Places that are kept of each kind.
@@ -120,7 +110,7 @@ impl Mended {
     pub fn sentences(&self) -> impl Iterator<Item = String> + '_ {
         let mends = self.mends.iter().map(|mend| {
             let first = mend.places.first().map(|place| format!(" (first: {place})")).unwrap_or_default();
-            format!("{} {}{first}", mend.count, mend.kind.told(mend.count))
+            format!("{}{first}", counted(mend.count, mend.kind.words()))
         });
         self.notes.iter().cloned().chain(mends)
     }
