@@ -20,7 +20,8 @@ use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Mended, RepairOptions};
 use voronaut::{Error, Result};
 use voronaut_io::{
-    Document, Fields, Format, Given, MetricFiles, MetricSource, geojson, outline_of_polygons, points, read_metric, read_text, surface_metric,
+    Document, Fields, Format, Given, MetricFiles, MetricSource, geojson, outline_of_polygons, points, read_metric,
+    read_text, surface_metric,
 };
 
 /// A metric that a caller has.

@@ -213,5 +213,9 @@ fn outlines_that_overlap_are_repaired_where_that_is_asked_for() {
     runs(&place, &[&words[..], &["--repair"]].concat());
     let report: Value = serde_json::from_slice(&place.read("a.json")).unwrap();
     assert!((report["area"].as_f64().unwrap() - 11.0).abs() < 1e-9, "{}", report["area"]);
-    assert!(report["notes"].to_string().contains("1 area of several polygons is the first one's"), "{}", report["notes"]);
+    assert!(
+        report["notes"].to_string().contains("1 area of several polygons is the first one's"),
+        "{}",
+        report["notes"]
+    );
 }

@@ -83,7 +83,7 @@ fn crossing_error(pslg: &Pslg, planar: &Planar, segment: u32, crossing: Crossing
         pslg.describe_segment(segment),
         pslg.describe_segment(crossing.with.0),
     );
-    let help = "boundaries may touch only at common vertices: split the two segments there, or move one of them";
+    let help = "boundaries may touch only at common vertices: split the two segments there, move one of them, or have them cut (`repair`)";
     Error::domain("the boundary crosses or overlaps itself", place, help)
 }
 

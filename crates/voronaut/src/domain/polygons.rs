@@ -109,7 +109,11 @@ impl Builder {
         let Some(is_counter_clockwise) = is_counter_clockwise(&points) else {
             let name = self.ring_name(polygon, index);
             let place = format!("{name}, position 1 {}", points.first().copied().unwrap_or_default());
-            return Err(Error::domain("a ring without area", place, "remove the ring, or correct its positions"));
+            return Err(Error::domain(
+                "a ring without area",
+                place,
+                "remove the ring, correct its positions, or have it left out (`repair`)",
+            ));
         };
         let is_outer = index == 0;
         let region_is_left = is_counter_clockwise == is_outer;
@@ -155,7 +159,7 @@ impl Builder {
             }
         };
         if self.last_ring[index] == self.rings {
-            let help = "remove the part of the ring that runs forth and back";
+            let help = "remove the part of the ring that runs forth and back, or have it left out (`repair`)";
             return Err(self.segment_error("a ring runs over a segment twice", ends, help));
         }
         self.last_ring[index] = self.rings;
@@ -163,7 +167,11 @@ impl Builder {
         let side = if left == (segment.ends == ends) { &mut segment.left } else { &mut segment.right };
         if let Side::Region(earlier) = *side {
             let what = format!("overlapping polygons: regions {earlier} and {region} on the same side of a segment");
-            return Err(self.segment_error(&what, ends, "cut the overlap out of one of the polygons"));
+            return Err(self.segment_error(
+                &what,
+                ends,
+                "cut the overlap out of one of the polygons, or leave it to the first (`repair`)",
+            ));
         }
         *side = Side::Region(region);
         Ok(())

@@ -5,7 +5,9 @@ use super::polygons::lines;
 use super::sides::{Covers, differing, faces_beside};
 use super::{Filling, Polygons, Pslg, Segment, Side};
 use crate::error::{Error, Result, counted};
-use crate::geometry::{Aabb, Bounds, BoxTree, Point, around, meeting_pairs, orientation, segment_intersection, widened};
+use crate::geometry::{
+    Aabb, Bounds, BoxTree, Point, around, meeting_pairs, orientation, segment_intersection, widened,
+};
 use crate::lists::{distinct, in_order, marked};
 use std::collections::{BTreeMap, HashMap};
 
@@ -30,7 +32,8 @@ pub fn repaired_polygons(polygons: &Polygons) -> Result<(Pslg, Vec<String>)> {
     let arranged = work.graph(&graph);
     let planar = triangulate(&arranged)?;
     let covers = Covers::new(&planar, |segment| &work.pieces[segment as usize].of);
-    let side = |polygon: Option<u32>| polygon.map_or(Side::Outside, |p| Side::Region(polygons.polygons[p as usize].region));
+    let side =
+        |polygon: Option<u32>| polygon.map_or(Side::Outside, |p| Side::Region(polygons.polygons[p as usize].region));
     let beside = faces_beside(&arranged, &planar).into_iter();
     let segments = beside.zip(&arranged.segments).filter_map(|(faces, &segment)| {
         let [left, right] = faces.map(|f| covers.first(f));
@@ -305,10 +308,7 @@ mod tests {
     fn of_several_polygons_the_first_has_the_say() {
         let (areas, notes) = repaired(&[polygon(4, &[&square(0.0, 0.0)]), polygon(3, &[&square(0.5, 0.5)])]);
         assert!(has_areas(&areas, &[(3, 0.75), (4, 1.0)]), "{areas:?}");
-        assert_eq!(
-            notes,
-            ["4 lines were cut where they meet others", "1 area of several polygons is the first one's"]
-        );
+        assert_eq!(notes, ["4 lines were cut where they meet others", "1 area of several polygons is the first one's"]);
         let twice = [polygon(1, &[&square(0.0, 0.0)]), polygon(2, &[&square(0.0, 0.0)])];
         assert!(has_areas(&repaired(&twice).0, &[(1, 1.0)]));
     }
@@ -354,21 +354,23 @@ mod tests {
             let next = ring.points.iter().cycle().skip(1);
             ring.points.iter().copied().zip(next.copied())
         });
-        let crosses = |(a, b): (Point, Point)| {
-            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
-        };
+        let crosses =
+            |(a, b): (Point, Point)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
         lines.filter(|&line| crosses(line)).count() % 2 == 1
     }
 
     fn rings() -> impl Strategy<Value = Vec<Polygon>> {
         let point = (0_i32..7, 0_i32..7, -1_i32..2);
         let ring = proptest::collection::vec(point, 3..9).prop_map(|points| Ring {
-            points: points.iter().map(|&(x, y, off)| Point::new(x.into(), f64::from(y) + 1e-12 * f64::from(off))).collect(),
+            points: points
+                .iter()
+                .map(|&(x, y, off)| Point::new(x.into(), f64::from(y) + 1e-12 * f64::from(off)))
+                .collect(),
             label: 1,
         });
         let polygon = proptest::collection::vec(ring, 1..3);
         proptest::collection::vec(polygon, 1..5).prop_map(|polygons| {
-            let of = |(i, rings)| Polygon { feature: i, number: 1, region: i as i32, rings };
+            let of = |(i, rings): (i32, _)| Polygon { feature: i as usize, number: 1, region: i, rings };
             (1..).zip(polygons).map(of).collect()
         })
     }

@@ -6,7 +6,7 @@ mod locate;
 mod operations;
 mod order;
 
-pub use constrain::Crossing;
+pub(crate) use constrain::Crossing;
 pub use delaunay::{Duplicate, delaunay};
 pub(crate) use locate::Location;
 pub(crate) use order::hilbert_order;

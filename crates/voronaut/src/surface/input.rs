@@ -24,7 +24,7 @@ pub struct Input {
     normals: Vec<Vector3>,
     /// Vertices that are the tip of something pointed, as far as that is known of triangles, in order; and the least cosine between their normals
     /// and those of their triangles.
-    tips: Vec<(VertexId, f64)>,
+    tips: Box<[(VertexId, f64)]>,
     /// The diagonal of its bounding box.
     diagonal: f64,
     nearest: OnceLock<Nearest>,
@@ -114,7 +114,7 @@ impl Input {
             normals[v.index()] = surface.vertex_normal(v).unwrap_or(up);
         }
         let diagonal = surface.bounds().diagonal();
-        let tips = if implicit.is_some() { Vec::new() } else { surface.tips(POINTED) };
+        let tips = if implicit.is_some() { Box::default() } else { surface.tips(POINTED).into() };
         Self { surface, implicit, seams, normals, tips, diagonal, nearest: OnceLock::new() }
     }
 

@@ -3,12 +3,13 @@
 use voronaut::canvas::Kind;
 use voronaut::dual::Road;
 use voronaut::geometry::Tensor3;
+use voronaut::mesh::Mesh;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::quality::{surface_fidelity, surface_quality, validity};
 use voronaut::recipe::{MeshOptions, Meshed, Seeding, mesh_surface};
 use voronaut::surface::metric::{Spec, SurfaceMetric, field};
-use voronaut::surface::{Implicit, Input, Place, RepairOptions};
+use voronaut::surface::{FeatureOptions, Implicit, Input, Place, RepairOptions, Surface};
 use voronaut_io::Given;
 
 /// A shape or a file.
@@ -118,4 +119,22 @@ fn a_distance_asks_for_more_vertices_unless_their_number_is_given() {
     let few = MeshOptions { vertices: Some(80), hausd: Some(5e-3), ..MeshOptions::default() };
     let (found, ..) = meshed(&input, "uniform", &few);
     assert!(found.mesh.points.len() == 80 && found.notes[0].contains("`hausd` asks for"), "{:?}", found.notes);
+}
+
+/// Cones ten times as high as wide: their apex stays, and the triangles around it are no needles, though the normal there is none of theirs.
+#[test]
+fn pointed_cones_have_no_needles() {
+    for (sides, is_closed, metric) in [(8, true, "uniform"), (16, true, "curvature"), (32, false, "uniform")] {
+        let rim = (0..sides).map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(sides));
+        let points = [[0.0, 0.0, 10.0], [0.0; 3]].into_iter().chain(rim.map(|angle| [angle.cos(), angle.sin(), 0.0]));
+        let next = |i: u32| 2 + (i + 1) % sides;
+        let wall = (0..sides).map(|i| [0, 2 + i, next(i)]);
+        let base = (0..sides).filter(|_| is_closed).map(|i| [1, next(i), 2 + i]);
+        let cone = Mesh { points: points.collect(), triangles: wall.chain(base).collect(), ..Mesh::default() };
+        let input = Input::new(Surface::new(&cone).unwrap(), None).cut(&FeatureOptions::default()).unwrap();
+        let options = MeshOptions { vertices: Some(400), ..MeshOptions::default() };
+        let (meshed, mean, min) = meshed(&input, metric, &options);
+        assert!(meshed.mesh.points.contains(&[0.0, 0.0, 10.0]), "{sides} sides");
+        assert!(meshed.mesh.points.len() == 400 && min > 0.08 && mean > 0.9, "{sides} sides: {min} {mean}");
+    }
 }
