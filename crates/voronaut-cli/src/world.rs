@@ -10,7 +10,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
-use voronaut::domain::{Domain, Pslg, repaired_graph};
+use voronaut::domain::{Domain, Pslg, from_polygons, repaired_graph, repaired_polygons};
 use voronaut::geometry::Tensor;
 use voronaut::mesh::{Mesh, Solution, SolutionValues, Solutions};
 use voronaut::progress::Progress;
@@ -20,8 +20,7 @@ use voronaut::surface::metric::SurfaceMetric;
 use voronaut::surface::{Input, Mended, RepairOptions};
 use voronaut::{Error, Result};
 use voronaut_io::{
-    Document, Fields, Format, Given, MetricFiles, MetricSource, geojson, outline_of_polygons, points, read_metric,
-    read_text, surface_metric,
+    Document, Fields, Format, Given, MetricFiles, MetricSource, geojson, points, read_metric, read_text, surface_metric,
 };
 
 /// A metric that a caller has.
@@ -81,7 +80,14 @@ impl Held {
             return plane(if options.repair { repaired_graph(outline)? } else { (outline.clone(), Vec::new()) });
         }
         match named(&self.polygons, Path::new(spec)) {
-            Some(text) => plane(outline_of_polygons(&geojson::read(text, spec)?, options)?),
+            Some(text) => {
+                let polygons = geojson::read(text, spec)?;
+                plane(if options.repair {
+                    repaired_polygons(&polygons)?
+                } else {
+                    (from_polygons(&polygons)?, Vec::new())
+                })
+            }
             None => Given::read(spec, options),
         }
     }

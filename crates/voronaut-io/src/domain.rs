@@ -55,10 +55,7 @@ pub(crate) fn read_outline(spec: &str, options: RepairOptions) -> Result<(Pslg, 
 }
 
 /// The graph of polygons, repaired as the options say, with what was done.
-///
-/// # Errors
-/// As of [`from_polygons`] or [`repaired_polygons`].
-pub fn outline_of_polygons(polygons: &Polygons, options: RepairOptions) -> Result<(Pslg, Vec<String>)> {
+fn outline_of_polygons(polygons: &Polygons, options: RepairOptions) -> Result<(Pslg, Vec<String>)> {
     if options.repair { repaired_polygons(polygons) } else { Ok((from_polygons(polygons)?, Vec::new())) }
 }
 

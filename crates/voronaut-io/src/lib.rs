@@ -36,7 +36,7 @@ pub mod vtk;
 pub use document::{Document, Field, Fields};
 pub(crate) use domain::DOMAINS;
 pub(crate) use domain::{as_outline, read_outline};
-pub use domain::{outline_of_polygons, read_domain, read_pslg};
+pub use domain::{read_domain, read_pslg};
 pub use files::{Format, ending, in_file, open, read, read_solutions, read_text};
 pub use given::{Given, read_surface};
 pub use losses::lost_in_outline;

@@ -4,7 +4,7 @@ use super::sides::Areas;
 use super::{Domain, Pslg, Side};
 use crate::error::{Error, Result};
 use crate::geometry::segment_intersection;
-use crate::planar::{Crossing, Duplicate, Planar, delaunay};
+use crate::planar::{Crossing, Planar, delaunay};
 use crate::triangulation::{Constraint, VertexId};
 
 impl Domain {
@@ -61,7 +61,7 @@ pub(super) fn check_entries(pslg: &Pslg) -> Result<()> {
 }
 
 pub(super) fn triangulate(pslg: &Pslg) -> Result<Planar> {
-    let mut planar = delaunay(&pslg.points).map_err(|Duplicate(i, j)| {
+    let mut planar = delaunay(&pslg.points).map_err(|[i, j]| {
         let place = format!("{} and {}", pslg.describe(i), pslg.name(j));
         Error::domain("two points have the same position", place, "merge them into one vertex")
     })?;

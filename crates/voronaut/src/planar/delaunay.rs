@@ -3,19 +3,16 @@
 use super::order::hilbert_order;
 use super::{Location, Planar};
 use crate::geometry::{Aabb, Point, in_circle};
+use crate::lists::in_order;
 use crate::triangulation::{FaceId, Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
-
-/// Two input points at the same position.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Duplicate(pub u32, pub u32);
 
 /// The Delaunay triangulation of the points inside a triangle far around them.
 ///
 /// Vertex i is point i; the last three vertices are the far triangle's. Points are finite and at least one.
 ///
 /// # Errors
-/// Two points at the same position.
-pub fn delaunay(points: &[Point]) -> Result<Planar, Duplicate> {
+/// The numbers of two points at the same position.
+pub fn delaunay(points: &[Point]) -> Result<Planar, [u32; 2]> {
     let far = far_triangle(points);
     let n = points.len() as u32;
     let mut planar = Planar {
@@ -30,7 +27,7 @@ pub fn delaunay(points: &[Point]) -> Result<Planar, Duplicate> {
         match planar.walk(face, p, false) {
             Location::Face(f) => planar.topology.split_face(f, v),
             Location::Edge(h) => _ = planar.topology.split_edge(h, v),
-            Location::Vertex(other) => return Err(Duplicate(other.0.min(i), other.0.max(i))),
+            Location::Vertex(other) => return Err(in_order([other.0, i])),
             Location::Behind(_) => unreachable!("the far triangle holds every point"),
         }
         lawson.queue(planar.topology.star(v).map(HalfEdge::next));
@@ -110,6 +107,6 @@ mod tests {
     fn duplicates_are_named() {
         let mut points = pseudo_random(50);
         points.push(points[7]);
-        assert_eq!(delaunay(&points).unwrap_err(), Duplicate(7, 50));
+        assert_eq!(delaunay(&points).unwrap_err(), [7, 50]);
     }
 }

@@ -6,8 +6,8 @@ mod locate;
 mod operations;
 mod order;
 
-pub(crate) use constrain::Crossing;
-pub use delaunay::{Duplicate, delaunay};
+pub use constrain::Crossing;
+pub use delaunay::delaunay;
 pub(crate) use locate::Location;
 pub(crate) use order::hilbert_order;
 

@@ -10,7 +10,7 @@ use crate::lists::{distinct, in_order, marked};
 use crate::mesh::{EdgeSide, Edges, Mesh, Solution, SolutionValues};
 use crate::metric::nodal::{Pipeline, Source, complexity, implied, isotropic};
 use crate::metric::{Bounds, MetricField, Sampled, check_at_vertices};
-use crate::planar::{Duplicate, delaunay};
+use crate::planar::delaunay;
 use crate::sampling::CurveSizes;
 use crate::surface::FeatureOptions;
 use crate::surface::metric::Sizing;
@@ -316,7 +316,7 @@ fn triangulated(mesh: &Mesh) -> Result<Mesh> {
         return Ok(mesh.clone());
     }
     let points: Vec<Point> = (0..mesh.points.len() as u32).map(|v| mesh.point(v)).collect();
-    let planar = delaunay(&points).map_err(|Duplicate(i, j)| {
+    let planar = delaunay(&points).map_err(|[i, j]| {
         let place = format!("{} and {}", mesh.describe(i as usize), mesh.describe(j as usize));
         Error::domain("two vertices have the same position", place, "merge them into one vertex")
     })?;

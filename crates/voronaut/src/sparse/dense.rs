@@ -55,7 +55,7 @@ impl Dense {
         let (columns, below) = (&self.columns, height - width);
         if below > 0 {
             shared(&mut self.rest, below, columns.len(), |j, column| {
-                take_off(&mut column[j..], columns, height, width + j)
+                take_off(&mut column[j..], columns, height, width + j);
             });
         }
         Some(self)
