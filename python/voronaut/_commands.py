@@ -207,8 +207,10 @@ def mesh(
     cells : bool, default False
         With view: show Voronoi cells, distances in them, and geodesic edges, too
     repair : bool, default False
-        Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that
-        meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
+        Mend what is else refused with its place. Surfaces: T-junctions, edges of three triangles, sheets that meet in a
+        point; and small holes are closed. (Duplicates and triangles without area go, and seams are welded, anyway.)
+        Outlines: points nearer than 1e-9 of the diagonal are joined, lines cut where they cross, and where polygons
+        overlap the first has the say
     threads : int, optional
         Threads to use [default: all]
     time_limit : float (seconds), optional
@@ -350,8 +352,10 @@ def dual(
     cells : bool, default False
         With view: show Voronoi cells, distances in them, and geodesic edges, too
     repair : bool, default False
-        Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that
-        meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
+        Mend what is else refused with its place. Surfaces: T-junctions, edges of three triangles, sheets that meet in a
+        point; and small holes are closed. (Duplicates and triangles without area go, and seams are welded, anyway.)
+        Outlines: points nearer than 1e-9 of the diagonal are joined, lines cut where they cross, and where polygons
+        overlap the first has the say
     threads : int, optional
         Threads to use [default: all]
     time_limit : float (seconds), optional
@@ -453,8 +457,10 @@ def distance(
     background : File, optional
         The mesh on which a .sol metric is given [default: the domain's own]
     repair : bool, default False
-        Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that
-        meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
+        Mend what is else refused with its place. Surfaces: T-junctions, edges of three triangles, sheets that meet in a
+        point; and small holes are closed. (Duplicates and triangles without area go, and seams are welded, anyway.)
+        Outlines: points nearer than 1e-9 of the diagonal are joined, lines cut where they cross, and where polygons
+        overlap the first has the say
     threads : int, optional
         Threads to use [default: all]
     time_limit : float (seconds), optional
@@ -558,8 +564,10 @@ def check(
     histograms : File, optional
         Draw how metric edge lengths and angles are distributed, with straight and with geodesic edges: .svg
     repair : bool, default False
-        Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that
-        meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
+        Mend what is else refused with its place. Surfaces: T-junctions, edges of three triangles, sheets that meet in a
+        point; and small holes are closed. (Duplicates and triangles without area go, and seams are welded, anyway.)
+        Outlines: points nearer than 1e-9 of the diagonal are joined, lines cut where they cross, and where polygons
+        overlap the first has the say
     threads : int, optional
         Threads to use [default: all]
     time_limit : float (seconds), optional
@@ -633,8 +641,10 @@ def remesh(
     nr : bool, default False
         Look for no creases and corners by angles
     repair : bool, default False
-        Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that
-        meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
+        Mend what is else refused with its place. Surfaces: T-junctions, edges of three triangles, sheets that meet in a
+        point; and small holes are closed. (Duplicates and triangles without area go, and seams are welded, anyway.)
+        Outlines: points nearer than 1e-9 of the diagonal are joined, lines cut where they cross, and where polygons
+        overlap the first has the say
     hgrad : float, default 1.3
         Sizes grow from edge to edge by this factor at most; -1: as they will
     anisotropic : bool, default False
@@ -798,8 +808,10 @@ def view(
     background : File, optional
         The mesh on which a .sol metric is given [default: the domain's own]
     repair : bool, default False
-        Surfaces in files: mend what is else refused with its place: T-junctions, edges of three triangles, sheets that
-        meet in a point; and close small holes. Duplicates and triangles without area go, and seams are welded, anyway
+        Mend what is else refused with its place. Surfaces: T-junctions, edges of three triangles, sheets that meet in a
+        point; and small holes are closed. (Duplicates and triangles without area go, and seams are welded, anyway.)
+        Outlines: points nearer than 1e-9 of the diagonal are joined, lines cut where they cross, and where polygons
+        overlap the first has the say
     threads : int, optional
         Threads to use [default: all]
     time_limit : float (seconds), optional
