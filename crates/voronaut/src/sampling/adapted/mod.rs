@@ -7,7 +7,7 @@ mod coarsen;
 mod refine;
 mod work;
 
-use crate::geometry::Point3;
+use crate::geometry::{Aabb3, Bounds, Point3, widened};
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Place, closest_weights};
 use crate::triangulation::{Triangulation, VertexId};
@@ -52,6 +52,11 @@ pub(crate) struct Held {
 }
 
 impl Held {
+    /// A box around all that is held.
+    fn bounds(&self) -> Bounds<3> {
+        widened(Aabb3::of(self.corners).expect("three corners").into(), self.within)
+    }
+
     fn holds(&self, p: Point3) -> bool {
         Point3::weighted(self.corners, closest_weights(self.corners, p)).distance(p) <= self.within
     }

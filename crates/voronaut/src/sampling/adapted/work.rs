@@ -1,7 +1,7 @@
 //! A triangulation of a surface in the making: its vertices, and what is measured of its triangles.
 
 use super::{Adapted, Holding, Wanted};
-use crate::geometry::{Point3, Tensor3, Vector3};
+use crate::geometry::{BoxTree, Point3, Tensor3, Vector3};
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Place};
@@ -49,9 +49,12 @@ impl<'a> Work<'a> {
         let places: Vec<Place> = slots.map(|v| input.surface.place_of(v).unwrap_or(nowhere)).collect();
         let mut work = Self::of(input, metric, wanted.factor, topology, places);
         work.keeps_edges = matches!(wanted.held, Holding::All);
-        let is_near = |p: Point3| match wanted.held {
-            Holding::Near(held) => held.iter().any(|held| held.holds(p)),
-            Holding::All => true,
+        let is_near: Box<dyn Fn(Point3) -> bool + Sync> = match wanted.held {
+            Holding::Near(held) => {
+                let tree = BoxTree::new(held.iter().map(|held| (held.bounds(), held)));
+                Box::new(move |p| tree.meeting([p.to_array(); 2]).any(|held| held.holds(p)))
+            }
+            Holding::All => Box::new(|_| true),
         };
         work.vertices
             .par_iter_mut()
