@@ -92,6 +92,7 @@ impl Work {
 
     /// Joins and cuts until nothing is left to do; pieces that do not matter go.
     fn arrange(&mut self, matters: impl Fn(&Piece) -> bool) -> Result<()> {
+        let mut place = Point::default();
         for _ in 0..ROUNDS {
             self.join_points();
             self.join_pieces(&matters);
@@ -99,14 +100,12 @@ impl Work {
             if cuts.is_empty() {
                 cuts = self.crossings();
             }
-            if cuts.is_empty() {
-                return Ok(());
-            }
+            let Some(&(_, _, first)) = cuts.first() else { return Ok(()) };
+            place = self.points[first as usize];
             self.cuts += cuts.len();
             self.cut(cuts);
         }
-        let help = "mend the lines there: they run too close to each other for so coarse a look";
-        let place = self.pieces.first().map_or(Point::default(), |piece| self.points[piece.segment.ends[0] as usize]);
+        let help = "mend the lines there: they are closer to each other than 1e-9 of the diagonal, over and over";
         Err(Error::domain("lines that meet anew wherever they are cut", place.to_string(), help))
     }
 
