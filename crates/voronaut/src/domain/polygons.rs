@@ -66,7 +66,7 @@ pub(super) fn lines(polygons: &Polygons) -> (Pslg, Vec<u32>) {
         for (index, ring) in polygon.rings.iter().enumerate() {
             let vertices = builder.vertices_of(polygon, index, &corners(ring));
             let ends = vertices.iter().copied().zip(vertices.iter().copied().cycle().skip(1));
-            builder.segments.extend(ends.map(|(a, b)| listed([a, b], ring.label, false)));
+            builder.segments.extend(ends.filter(|(a, b)| a != b).map(|(a, b)| listed([a, b], ring.label, false)));
             polygon_of.resize(builder.segments.len(), number);
         }
     }

@@ -316,7 +316,8 @@ mod tests {
     fn what_a_ring_runs_over_twice_counts_for_nothing() {
         let spike = [(0.0, 0.0), (1.0, 0.0), (3.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
         let flat = [(5.0, 5.0), (6.0, 6.0), (7.0, 7.0)];
-        let (areas, notes) = repaired(&[polygon(1, &[&spike]), polygon(2, &[&flat])]);
+        let dot = [(5.0, 5.0); 3];
+        let (areas, notes) = repaired(&[polygon(1, &[&spike]), polygon(2, &[&flat]), polygon(3, &[&dot])]);
         assert!(has_areas(&areas, &[(1, 1.0)]), "{areas:?} {notes:?}");
         let bow = [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
         assert!(has_areas(&repaired(&[polygon(1, &[&bow])]).0, &[(1, 0.5)]));
