@@ -1,6 +1,7 @@
 //! A planar straight-line graph as a user brings it: not yet validated.
 
 use crate::geometry::Point;
+use crate::lists::marked;
 
 /// What lies on one side of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +94,12 @@ impl Pslg {
             segments: self.segments.iter().map(|s| Segment { ends: renumbered(s.ends), ..*s }).collect(),
             ..self
         }
+    }
+
+    /// The same graph without points that no segment has.
+    pub(super) fn of_segments(self) -> Self {
+        let used = marked(self.points.len(), self.segments.iter().flat_map(|segment| segment.ends));
+        self.with_points(&used)
     }
 
     /// The name of a point in the input.

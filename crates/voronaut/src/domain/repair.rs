@@ -29,7 +29,7 @@ pub fn repaired_polygons(polygons: &Polygons) -> Result<(Pslg, Vec<String>)> {
     let pieces = graph.segments.iter().zip(polygon_of).map(|(&segment, polygon)| Piece { segment, of: vec![polygon] });
     let mut work = Work::new(&graph, pieces.collect())?;
     work.arrange(|piece| !piece.of.is_empty())?;
-    let arranged = work.graph(&graph);
+    let arranged = work.graph(&graph).of_segments();
     let planar = triangulate(&arranged)?;
     let covers = Covers::new(&planar, |segment| &work.pieces[segment as usize].of);
     let side =
@@ -39,9 +39,7 @@ pub fn repaired_polygons(polygons: &Polygons) -> Result<(Pslg, Vec<String>)> {
         let [left, right] = faces.map(|f| covers.first(f));
         (left != right).then_some(Segment { left: side(left), right: side(right), ..segment })
     });
-    let mut made = Pslg { segments: segments.collect(), filling: Filling::Sides, ..arranged.clone() };
-    let used = marked(made.points.len(), made.segments.iter().flat_map(|segment| segment.ends));
-    made = made.with_points(&used);
+    let made = Pslg { segments: segments.collect(), filling: Filling::Sides, ..arranged.clone() }.of_segments();
     check_entries(&made)?;
     let shared = said(covers.shared(), "[area|areas] of several polygons [is|are] the first one's");
     Ok((made, work.notes().chain(shared).collect()))
@@ -321,6 +319,13 @@ mod tests {
         assert!(has_areas(&areas, &[(1, 1.0)]), "{areas:?} {notes:?}");
         let bow = [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
         assert!(has_areas(&repaired(&[polygon(1, &[&bow])]).0, &[(1, 0.5)]));
+    }
+
+    #[test]
+    fn points_of_lines_that_vanish_cut_nothing() {
+        let triangle = [(2.0, 3.0), (2.0, 0.0), (3.0, 0.0)];
+        let (areas, _) = repaired(&[polygon(1, &[&triangle]), polygon(2, &[&[(2.0, 2.0), (2.0, 2.0), (0.0, 0.0)]])]);
+        assert!(has_areas(&areas, &[(1, 1.5)]), "{areas:?}");
     }
 
     #[test]
