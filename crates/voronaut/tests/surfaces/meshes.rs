@@ -132,9 +132,9 @@ fn pointed_cones_have_no_needles() {
         let base = (0..sides).filter(|_| is_closed).map(|i| [1, next(i), 2 + i]);
         let cone = Mesh { points: points.collect(), triangles: wall.chain(base).collect(), ..Mesh::default() };
         let input = Input::new(Surface::new(&cone).unwrap(), None).cut(&FeatureOptions::default()).unwrap();
-        let options = MeshOptions { vertices: Some(400), ..MeshOptions::default() };
+        let options = MeshOptions { vertices: Some(500), ..MeshOptions::default() };
         let (meshed, mean, min) = meshed(&input, metric, &options);
         assert!(meshed.mesh.points.contains(&[0.0, 0.0, 10.0]), "{sides} sides");
-        assert!(meshed.mesh.points.len() == 400 && min > 0.05 && mean > 0.9, "{sides} sides: {min} {mean}");
+        assert!(meshed.mesh.points.len() == 500 && min > 0.1 && mean > 0.9, "{sides} sides: {min} {mean}");
     }
 }
