@@ -84,8 +84,10 @@ pub(crate) enum Field<'a> {
     Surface(&'a Input, &'a dyn SurfaceMetric, Option<(&'a Expression, Norm)>),
 }
 
+/// What is done with the meshes of a round, one after the other.
+type Take<'a> = &'a mut dyn FnMut(Mesh);
 /// Who makes the meshes of a round, which has a name.
-type Make<'a> = &'a mut dyn FnMut(&'static str, &[Part]) -> Result<Vec<Mesh>>;
+type Make<'a> = &'a mut dyn FnMut(&'static str, &[Part], Take) -> Result<()>;
 
 impl Field<'_> {
     fn part(&self, part: &Part, options: &MeshOptions, progress: &dyn Progress) -> Result<Mesh> {
@@ -168,18 +170,20 @@ impl InParts {
             let folder = Folder::open(self.parts_dir.as_deref(), used)?;
             let processes = run.threads.map_or_else(cores, usize::from);
             let workers = Workers { again, folder: folder.path(), processes, progress };
-            return field.whole(count, options, &mut |round, parts| workers.make(round, parts), progress);
+            return field.whole(count, options, &mut |round, parts, take| workers.make(round, parts, take), progress);
         }
         if let Some(maker) = world.parts_maker() {
-            return field.whole(count, options, &mut |round, parts| made(maker, round, parts), progress);
+            return field.whole(count, options, &mut |round, parts, take| made(maker, round, parts, take), progress);
         }
-        let one = |part: &Part| field.part(part, options, progress);
-        field.whole(count, options, &mut |_, parts| parts.iter().map(one).collect(), progress)
+        let mut all = |_, parts: &[Part], take: Take| {
+            parts.iter().try_for_each(|part| Ok(take(field.part(part, options, progress)?)))
+        };
+        field.whole(count, options, &mut all, progress)
     }
 }
 
-fn made(maker: &Mutex<PartsMaker>, round: &'static str, parts: &[Part]) -> Result<Vec<Mesh>> {
-    maker.lock().unwrap_or_else(PoisonError::into_inner)(round, parts)
+fn made(maker: &Mutex<PartsMaker>, round: &'static str, parts: &[Part], take: Take) -> Result<()> {
+    maker.lock().unwrap_or_else(PoisonError::into_inner)(round, parts, take)
 }
 
 fn cores() -> usize {
@@ -260,7 +264,7 @@ struct Workers<'a> {
 
 impl Workers<'_> {
     /// The meshes of a round, those with the most vertices first.
-    fn make(&self, round: &'static str, parts: &[Part]) -> Result<Vec<Mesh>> {
+    fn make(&self, round: &'static str, parts: &[Part], take: Take) -> Result<()> {
         self.progress.stage(round, parts.len() as u64);
         let mut order: Vec<usize> = (0..parts.len()).collect();
         order.sort_by_key(|&i| std::cmp::Reverse(parts[i].vertices));
@@ -278,7 +282,7 @@ impl Workers<'_> {
         if let Some(error) = fault.into_inner().unwrap_or_else(PoisonError::into_inner) {
             return Err(error);
         }
-        (0..parts.len()).map(|i| Ok(voronaut_io::read(&done_name(&self.job(round, i)))?.mesh)).collect()
+        (0..parts.len()).try_for_each(|i| Ok(take(voronaut_io::read(&done_name(&self.job(round, i)))?.mesh)))
     }
 
     fn job(&self, round: &str, i: usize) -> PathBuf {

@@ -40,7 +40,7 @@ pub trait HeldMetric: Send {
 }
 
 /// Makes the meshes of parts, in their order; the name is that of the round.
-pub type PartsMaker = Box<dyn FnMut(&'static str, &[Part]) -> Result<Vec<Mesh>> + Send>;
+pub type PartsMaker = Box<dyn FnMut(&'static str, &[Part], &mut dyn FnMut(Mesh)) -> Result<()> + Send>;
 
 /// What a caller holds, by the words that stand for it among those of a command.
 #[derive(Default)]

@@ -30,7 +30,7 @@ impl Curves {
             is_finite.then_some((ends, controls))
         };
         let edges = Edges::of(&mesh.triangles);
-        let sides = edges.iter().map(|sides| &sides[0]);
+        let sides = edges.iter().map(|sides| sides[0]);
         let all = sides.filter_map(|s| curve(s.ends, s.triangle(), s.half_edge as usize % 3, s.forward));
         Self { all: all.collect() }
     }

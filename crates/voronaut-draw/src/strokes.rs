@@ -54,7 +54,7 @@ impl Pen {
 pub(super) struct Sheet<'a> {
     pub(super) mesh: &'a Mesh,
     /// Of the triangles that are drawn.
-    pub(super) edges: &'a Edges,
+    pub(super) edges: &'a Edges<'a>,
     /// The least height of each of these triangles, in pixels.
     pub(super) heights: &'a [f64],
     pub(super) frame: &'a Frame,
@@ -69,9 +69,10 @@ impl Sheet<'_> {
     }
 
     /// The same of some edges, by a pen, for the height of the flatter triangle at each, and in a colour.
-    pub(super) fn lines<'e>(&self, svg: &mut String, edges: impl Iterator<Item = &'e [EdgeSide]>, pen: Pen, ink: &str) {
+    pub(super) fn lines(&self, svg: &mut String, edges: impl Iterator<Item: AsRef<[EdgeSide]>>, pen: Pen, ink: &str) {
         let mut classes: BTreeMap<usize, PathData> = BTreeMap::new();
-        for sides in edges {
+        for edge in edges {
+            let sides = edge.as_ref();
             let heights = sides.iter().map(|side| self.heights[side.triangle()]);
             let path = classes.entry(pen.class(heights.fold(f64::INFINITY, f64::min))).or_default();
             self.trace(path, &sides[0].ends, false);

@@ -21,14 +21,13 @@ pub(super) const PALE: f64 = 0.3;
 
 /// Edges by cause, the too long ones light, the too short ones, which are small, dark and over them.
 pub(super) fn edges(svg: &mut String, sheet: &Sheet, unmet: &Unmet) {
-    let all: Vec<_> = sheet.edges.iter().collect();
     for is_short in [false, true] {
         for cause in Cause::ALL {
             let found = unmet.edges.iter().filter(|edge| edge.cause == cause && edge.is_short() == is_short);
-            let found = found.filter_map(|edge| all.binary_search_by_key(&edge.edge, |sides| sides[0].ends).ok());
+            let sides = found.map(|edge| sheet.edges.at(edge.edge)).filter(|sides| !sides.is_empty());
             let ink = colours::cause(cause as usize, is_short);
             let pen = if cause == Cause::Boundary { KEPT_PEN } else { PEN };
-            sheet.lines(svg, found.map(|i| all[i]), pen, &ink);
+            sheet.lines(svg, sides, pen, &ink);
         }
     }
 }

@@ -181,7 +181,7 @@ impl<'a> Elements<'a> {
         let mut elements = Self { mesh, points, order: curved.order, edges: Vec::new() };
         let sides = Edges::of(&mesh.triangles);
         for &ends in &mesh.edges {
-            let Some(side) = sides.at(ends).first() else {
+            let Some(side) = sides.at(ends).first().copied() else {
                 let [a, b] = ends.map(|v| v + 1);
                 let what = format!("the edge between vertices {a} and {b} is of no triangle, and so without curve");
                 return Err(io::Error::other(what));

@@ -78,7 +78,7 @@ fn held_of(given: &Bound<PyDict>, course: &Arc<Course>) -> PyResult<Held> {
 /// A function of a round's name and its parts, each a mesh, its number of vertices and its metric, if it has one of its own, that returns
 /// their meshes.
 fn maker(function: Py<PyAny>, course: Arc<Course>) -> PartsMaker {
-    Box::new(move |round, parts| {
+    Box::new(move |round, parts, take| {
         course.call(|py| {
             let metric = |(mesh, tensors): &(Mesh, Vec<Tensor>)| arrays::of_metric(py, mesh.clone(), tensors);
             let part = |part: &Part| {
@@ -87,7 +87,7 @@ fn maker(function: Py<PyAny>, course: Arc<Course>) -> PartsMaker {
             };
             let parts = parts.iter().map(part).collect::<PyResult<Vec<_>>>()?;
             let made = function.bind(py).call1((round, parts))?;
-            made.try_iter()?.map(|mesh| arrays::mesh_of(mesh?.cast()?)).collect()
+            made.try_iter()?.try_for_each(|mesh| Ok(take(arrays::mesh_of(mesh?.cast()?)?)))
         })
     })
 }

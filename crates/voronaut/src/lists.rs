@@ -63,6 +63,14 @@ impl<T: Copy + Default> Rows<T> {
         Self { starts, items: list }
     }
 
+    /// All items, row by row, those of a row sorted.
+    pub(crate) fn into_sorted_by_key<K: Ord>(mut self, key: impl Fn(&T) -> K) -> Vec<T> {
+        for row in self.starts.windows(2) {
+            self.items[row[0] as usize..row[1] as usize].sort_unstable_by_key(&key);
+        }
+        self.items
+    }
+
     /// How many rows there are.
     pub(crate) fn count(&self) -> usize {
         self.starts.len() - 1

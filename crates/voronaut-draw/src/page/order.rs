@@ -107,7 +107,7 @@ impl Order {
 fn twins(triangles: &[[u32; 3]]) -> Vec<u32> {
     let mut twins = vec![NONE; 3 * triangles.len()];
     for sides in Edges::of(triangles).iter() {
-        if let [s, t] = sides
+        if let [s, t] = *sides
             && s.forward != t.forward
         {
             twins[s.half_edge as usize] = t.half_edge;

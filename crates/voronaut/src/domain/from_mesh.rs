@@ -100,7 +100,7 @@ fn with_sides(mesh: &Mesh, mut segments: Vec<Segment>) -> Result<Vec<Segment>> {
 fn sides_of_edges(mesh: &Mesh) -> Result<Vec<Segment>> {
     let turns = (0..).zip(&mesh.triangles).map(|(triangle, &corners)| is_counter_clockwise(mesh, triangle, corners));
     let turns = turns.collect::<Result<Vec<bool>>>()?;
-    Edges::of(&mesh.triangles).iter().map(|group| sides_of_edge(mesh, group, &turns)).collect()
+    Edges::of(&mesh.triangles).iter().map(|group| sides_of_edge(mesh, &group, &turns)).collect()
 }
 
 /// The sides of an edge from the triangles at it, of which there may be one on each side.

@@ -1,7 +1,12 @@
 //! The edges of a list of triangles, and which triangles have them: found by sorting, so in the same order on every machine.
 
-use crate::lists::{Classes, distinct, in_order};
+use crate::lists::{Classes, Rows, distinct, in_order};
 use crate::parallel::prelude::*;
+use smallvec::SmallVec;
+use std::borrow::Cow;
+
+/// Tables by vertices may have so many rows for each triangle; meshes have half a vertex for each.
+const SPREAD: usize = 4;
 
 /// No half-edge on the other side.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -30,60 +35,96 @@ impl EdgeSide {
     }
 }
 
-/// All edges of a triangle list.
-pub struct Edges {
-    /// Those of one edge together, in the order of their half-edges; edges in the order of their ends.
-    sides: Vec<EdgeSide>,
+/// The sides of one edge, in the order of their half-edges.
+pub(crate) type Sides = SmallVec<[EdgeSide; 2]>;
+
+/// All edges of a triangle list. Takes 4 bytes for each half-edge beside the triangles.
+pub struct Edges<'a> {
+    triangles: Cow<'a, [[u32; 3]]>,
+    /// Those of one edge together, in order; edges in the order of their ends.
+    half_edges: Vec<u32>,
 }
 
-impl Edges {
-    /// Finds the edges of the triangles, in O(n log n).
-    pub fn of(triangles: &[[u32; 3]]) -> Self {
-        let side = |half_edge: u32| {
-            let ends = edges_of(triangles[half_edge as usize / 3])[half_edge as usize % 3];
-            EdgeSide { ends: in_order(ends), half_edge, forward: ends[0] < ends[1] }
+impl<'a> Edges<'a> {
+    /// Finds the edges of the triangles, in O(n log n); where numbers of vertices are not much greater than how many there are, in O(n).
+    pub fn of(triangles: impl Into<Cow<'a, [[u32; 3]]>>) -> Self {
+        let triangles = triangles.into();
+        let by_ends = |&h: &u32| (ends_of(&triangles, h), h);
+        let all = 0..3 * triangles.len() as u32;
+        let vertices = triangles.as_flattened().iter().max().map_or(0, |&v| (v as usize).saturating_add(1));
+        let half_edges = if vertices <= SPREAD * triangles.len() {
+            let rows = Rows::new(vertices, all.map(|h| (ends_of(&triangles, h)[0], h)));
+            rows.into_sorted_by_key(by_ends)
+        } else {
+            let mut list: Vec<u32> = all.collect();
+            list.par_sort_unstable_by_key(by_ends);
+            list
         };
-        let mut sides: Vec<EdgeSide> = (0..3 * triangles.len() as u32).into_par_iter().map(side).collect();
-        sides.par_sort_unstable();
-        Self { sides }
+        Self { triangles, half_edges }
     }
 
-    /// The sides of each edge, in increasing order.
-    pub fn iter(&self) -> impl Iterator<Item = &[EdgeSide]> {
-        self.sides.chunk_by(|s, t| s.ends == t.ends)
+    /// The sides of each edge, in increasing order of its ends.
+    pub fn iter(&self) -> impl Iterator<Item = Sides> {
+        self.groups().map(|same| self.sides(same))
     }
 
     /// The ends of each edge, the smaller first, in increasing order.
     pub fn ends(&self) -> impl Iterator<Item = [u32; 2]> {
-        self.iter().map(|sides| sides[0].ends)
+        self.groups().map(|same| ends_of(&self.triangles, same[0]))
     }
 
     /// The sides of the edge between two vertices; none where there is no edge.
-    pub fn at(&self, ends: [u32; 2]) -> &[EdgeSide] {
+    pub fn at(&self, ends: [u32; 2]) -> Sides {
         let ends = in_order(ends);
-        let start = self.sides.partition_point(|side| side.ends < ends);
-        let count = self.sides[start..].iter().take_while(|side| side.ends == ends).count();
-        &self.sides[start..start + count]
+        let start = self.half_edges.partition_point(|&h| ends_of(&self.triangles, h) < ends);
+        let from_there = &self.half_edges[start..];
+        let count = from_there.iter().take_while(|&&h| ends_of(&self.triangles, h) == ends).count();
+        self.sides(&from_there[..count])
     }
 
     /// The sides of edges of one triangle only, in the order of the edges.
     pub fn boundary(&self) -> impl Iterator<Item = EdgeSide> {
-        self.iter().filter_map(|sides| if let [alone] = sides { Some(*alone) } else { None })
+        self.groups().filter_map(|same| if let [alone] = *same { Some(self.side(alone)) } else { None })
     }
 
     /// For each half-edge the one on the other side; [`NONE`] on the boundary and where the edge is not manifold.
     pub(crate) fn twins(&self) -> Vec<u32> {
-        let mut twins = vec![NONE; self.sides.len()];
-        for sides in self.iter() {
-            if let [s, t] = sides
-                && is_manifold(sides)
+        let mut twins = vec![NONE; self.half_edges.len()];
+        for same in self.groups() {
+            if let [s, t] = *same
+                && is_manifold(&self.sides(same))
             {
-                twins[s.half_edge as usize] = t.half_edge;
-                twins[t.half_edge as usize] = s.half_edge;
+                twins[s as usize] = t;
+                twins[t as usize] = s;
             }
         }
         twins
     }
+
+    /// The half-edges of each edge.
+    fn groups(&self) -> impl Iterator<Item = &[u32]> {
+        self.half_edges.chunk_by(|&g, &h| ends_of(&self.triangles, g) == ends_of(&self.triangles, h))
+    }
+
+    fn sides(&self, half_edges: &[u32]) -> Sides {
+        half_edges.iter().map(|&h| self.side(h)).collect()
+    }
+
+    fn side(&self, half_edge: u32) -> EdgeSide {
+        let [a, b] = directed(&self.triangles, half_edge);
+        EdgeSide { ends: in_order([a, b]), half_edge, forward: a < b }
+    }
+}
+
+/// The vertices of a half-edge, in the direction of its triangle.
+fn directed(triangles: &[[u32; 3]], half_edge: u32) -> [u32; 2] {
+    let (corners, i) = (triangles[half_edge as usize / 3], half_edge as usize % 3);
+    [corners[i], corners[(i + 1) % 3]]
+}
+
+/// The same, the smaller first.
+fn ends_of(triangles: &[[u32; 3]], half_edge: u32) -> [u32; 2] {
+    in_order(directed(triangles, half_edge))
 }
 
 /// Whether an edge has one or two triangles, and two traverse it in opposite directions.

@@ -46,13 +46,12 @@ pub(super) fn measure<V: Send>(
     edge: impl Fn(&EdgeSide, Option<f64>) -> Result<MeasuredEdge<V>> + Sync + Send,
 ) -> Result<Vec<MeasuredEdge<V>>> {
     let labelled: HashSet<[u32; 2]> = mesh.edges.iter().copied().map(in_order).collect();
-    let all: Vec<&[EdgeSide]> = edges.iter().collect();
-    collect(&all, |sides| {
-        let EdgeSide { ends, forward, .. } = sides[0];
+    let all: Vec<(EdgeSide, bool)> = edges.iter().map(|sides| (sides[0], sides.len() == 1)).collect();
+    collect(&all, |(side, is_outer)| {
         // The domain lies to the left of its border.
-        let inside = if forward { 1.0 } else { -1.0 };
-        let is_border = sides.len() == 1 && labelled.contains(&ends);
-        edge(&sides[0], is_border.then_some(inside))
+        let inside = if side.forward { 1.0 } else { -1.0 };
+        let is_border = *is_outer && labelled.contains(&side.ends);
+        edge(side, is_border.then_some(inside))
     })
 }
 

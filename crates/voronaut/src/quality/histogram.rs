@@ -74,8 +74,8 @@ pub fn histograms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Histograms> {
         Ok(geodesic(metric, ends, edge_length(ends, metric)?, inside))
     };
     let measured = measure(mesh, &edges, edge)?;
-    let corners = Corners::of(mesh, metric)?;
-    let straight = straight_angles(mesh, |t| Some((corners.mean(t), mesh.corners_of(t))));
+    let (_, mean) = Corners::of(mesh, metric)?;
+    let straight = straight_angles(mesh, |t| Some((mean(t), mesh.corners_of(t))));
     let curved =
         geodesic_angles(mesh, &edges, &measured, |v, from, to| Ok(angle(tensor(metric, mesh.point(v))?, from, to)))?;
     Ok(of(&measured, &Both { straight, geodesic: curved }))

@@ -98,8 +98,8 @@ pub fn metric_quality(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQua
         let shape = |t| shape(mesh, &rule, t, metric).map(|[quality, angle]| Shape::new(quality, angle));
         return figures(mesh, length, shape, Position::in_plane);
     }
-    let corners = Corners::of(mesh, metric)?;
-    let shape = |t: usize| Ok(corners.shape(mesh.triangles[t]));
+    let (corners, mean) = Corners::of(mesh, metric)?;
+    let shape = |t: usize| Ok(Shape::of(mean(mesh.triangles[t]), mesh.corners_of(mesh.triangles[t])));
     figures(mesh, |side| corners.edge_length(side.ends), shape, Position::in_plane)
 }
 
@@ -107,18 +107,23 @@ pub fn metric_quality(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQua
 pub(super) struct Corners<'a> {
     mesh: &'a Mesh,
     metric: &'a dyn MetricField,
-    found: Vec<(Tensor, Near)>,
+    near: Vec<Near>,
 }
 
 /// What is measured one after the other, such as vertices.
 const PART: usize = 256;
+/// What is measured in parallel before it is put together: many parts for each core, and little memory.
+const BLOCK: usize = 256 * PART;
 
 impl<'a> Corners<'a> {
-    /// Measures the vertices of triangles.
+    /// Measures the vertices of triangles; and what gives the log-Euclidean mean of the tensors at the corners of a triangle.
     ///
     /// # Errors
     /// [`Error::Metric`] where a tensor at a vertex is not positive definite.
-    pub(super) fn of(mesh: &'a Mesh, metric: &'a dyn MetricField) -> Result<Self> {
+    pub(super) fn of(
+        mesh: &'a Mesh,
+        metric: &'a dyn MetricField,
+    ) -> Result<(Self, impl Fn([u32; 3]) -> Tensor + Sync + use<>)> {
         let used = mesh.used_vertices();
         let vertices: Vec<u32> = (0..mesh.points.len() as u32).collect();
         // Vertices with numbers next to each other are mostly near each other.
@@ -130,12 +135,12 @@ impl<'a> Corners<'a> {
             };
             vertices.iter().map(&mut at).collect()
         };
-        let parts: Vec<Result<Vec<_>>> = vertices.par_chunks(PART).map(part).collect();
-        let mut found = Vec::with_capacity(vertices.len());
-        for part in parts {
-            found.append(&mut part?);
-        }
-        Ok(Self { mesh, metric, found })
+        let (logarithms, near): (Vec<Tensor>, Vec<Near>) = collect_parts(&vertices, part)?.into_iter().unzip();
+        let mean = move |triangle: [u32; 3]| {
+            let [a, b, c] = triangle.map(|v| logarithms[v as usize]);
+            ((a + b + c) * (1.0 / 3.0)).exp()
+        };
+        Ok((Self { mesh, metric, near }, mean))
     }
 
     /// The metric length of an edge, see [`edge_length`].
@@ -143,18 +148,7 @@ impl<'a> Corners<'a> {
     /// # Errors
     /// [`Error::Metric`] where the tensor at a Gauss point is not positive definite.
     pub(super) fn edge_length(&self, ends: [u32; 2]) -> Result<f64> {
-        length_near(ends.map(|v| self.mesh.point(v)), self.metric, self.found[ends[0] as usize].1)
-    }
-
-    /// The log-Euclidean mean of the tensors at the corners of a triangle.
-    pub(super) fn mean(&self, triangle: [u32; 3]) -> Tensor {
-        let [a, b, c] = triangle.map(|v| self.found[v as usize].0);
-        ((a + b + c) * (1.0 / 3.0)).exp()
-    }
-
-    /// The shape of a triangle in that mean.
-    pub(super) fn shape(&self, triangle: [u32; 3]) -> Shape {
-        Shape::of(self.mean(triangle), self.mesh.corners_of(triangle))
+        length_near(ends.map(|v| self.mesh.point(v)), self.metric, self.near[ends[0] as usize])
     }
 }
 
@@ -168,15 +162,55 @@ pub(super) fn figures(
     shape: impl Fn(usize) -> Result<Shape> + Sync + Send,
     position: impl Fn(Point3) -> Position,
 ) -> Result<MetricQuality> {
+    let shapes = Shapes::of(mesh, shape, &position, |_, _| ())?;
     let edges = Edges::of(&mesh.triangles);
-    let first: Vec<&EdgeSide> = edges.iter().map(|sides| &sides[0]).collect();
-    let lengths = collect(&first, |side| length(side))?;
-    let numbers: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-    let shapes = collect(&numbers, |&t| Ok(shape(t as usize)?.figures()))?;
+    let first: Vec<EdgeSide> = edges.iter().map(|sides| sides[0]).collect();
+    let lengths = collect(&first, length)?;
     let on_boundary = boundary(mesh, &edges);
     let ends: Vec<[u32; 2]> = edges.ends().collect();
     summed(mesh, &on_boundary, (&ends, &lengths), &shapes, position)
         .ok_or_else(|| fault("there are no triangles", "the array of triangles"))
+}
+
+/// The figures of the shapes of triangles, summed in order.
+pub(super) struct Shapes {
+    quality: Quality,
+    angle: Angles,
+    worst: Spot,
+}
+
+impl Shapes {
+    /// Of all triangles, by their numbers; `see` is shown each with its quality and its smallest angle.
+    ///
+    /// # Errors
+    /// The first of a shape.
+    pub(super) fn of(
+        mesh: &Mesh,
+        shape: impl Fn(usize) -> Result<Shape> + Sync + Send,
+        position: impl Fn(Point3) -> Position,
+        mut see: impl FnMut(usize, [f64; 2]),
+    ) -> Result<Self> {
+        let (mut least, mut sum) = ([f64::INFINITY; 2], [0.0; 2]);
+        let mut worst: Option<(usize, f64)> = None;
+        let count = mesh.triangles.len();
+        for start in (0..count).step_by(BLOCK) {
+            let numbers: Vec<usize> = (start..count.min(start + BLOCK)).collect();
+            for (t, found) in numbers.iter().copied().zip(collect(&numbers, |&t| Ok(shape(t)?.figures()))?) {
+                (0..2).for_each(|i| (least[i], sum[i]) = (least[i].min(found[i]), sum[i] + found[i]));
+                if worst.is_none_or(|(_, worst)| found[0].total_cmp(&worst).is_lt()) {
+                    worst = Some((t, found[0]));
+                }
+                see(t, found);
+            }
+        }
+        let mean = sum.map(|sum| sum / count as f64);
+        let spot = |(t, value): (usize, f64)| Spot { value, at: position(middle(mesh, &mesh.triangles[t])) };
+        Ok(Self {
+            quality: Quality { min: least[0], mean: mean[0] },
+            angle: Angles { min: least[1], mean_min: mean[1] },
+            worst: worst.map_or(NOWHERE, spot),
+        })
+    }
 }
 
 /// Which vertices are on the boundary.
@@ -184,27 +218,25 @@ pub(super) fn boundary(mesh: &Mesh, edges: &Edges) -> Vec<bool> {
     marked(mesh.points.len(), edges.boundary().flat_map(|side| side.ends))
 }
 
-/// The figures of a mesh from the vertices on its boundary, its edges with their metric lengths, and the quality and the smallest angle of
-/// each triangle; none without triangles.
+/// The figures of a mesh from the vertices on its boundary, its edges with their metric lengths, and those of its triangles; none without
+/// triangles.
 pub(super) fn summed(
     mesh: &Mesh,
     on_boundary: &[bool],
     (ends, lengths): (&[[u32; 2]], &[f64]),
-    shapes: &[[f64; 2]],
+    shapes: &Shapes,
     position: impl Fn(Point3) -> Position,
 ) -> Option<MetricQuality> {
     let is_interior = |ends: &[u32; 2]| ends.iter().all(|&v| !on_boundary[v as usize]);
     let interior = ends.iter().zip(lengths).filter(|(ends, _)| is_interior(ends)).map(|(_, &length)| length);
-    let of_triangle = |t: usize| position(middle(mesh, &mesh.triangles[t]));
     let of_edge = |e: usize| position(middle(mesh, &ends[e]));
-    let [quality, angle] = [|shape: &[f64; 2]| shape[0], |shape: &[f64; 2]| shape[1]];
     Some(MetricQuality {
         metric_edge_length: EdgeLengths::of(lengths)?,
         interior_edge_length: EdgeLengths::of(&interior.collect::<Vec<_>>()),
-        quality: Quality { min: least(shapes, quality), mean: mean(shapes, quality) },
-        angle: Angles { min: least(shapes, angle), mean_min: mean(shapes, angle) },
+        quality: shapes.quality,
+        angle: shapes.angle,
         worst: Worst {
-            triangle: spot(shapes, quality, of_triangle),
+            triangle: shapes.worst,
             longest_edge: spot(lengths, |l| -l, of_edge).map(|length| -length),
             shortest_edge: spot(lengths, |&l| l, of_edge),
         },
@@ -270,10 +302,20 @@ impl Shape {
 }
 /// Maps in parallel; the error is that of the first item that has one, for any number of threads.
 pub(super) fn collect<T: Sync, U: Send>(items: &[T], f: impl Fn(&T) -> Result<U> + Sync + Send) -> Result<Vec<U>> {
-    let parts: Vec<Result<Vec<U>>> = items.par_chunks(PART).map(|part| part.iter().map(&f).collect()).collect();
+    collect_parts(items, |part| part.iter().map(&f).collect())
+}
+
+/// Maps parts of [`PART`] items in parallel; the error is that of the first part that has one, for any number of threads.
+fn collect_parts<T: Sync, U: Send>(
+    items: &[T],
+    f: impl Fn(&[T]) -> Result<Vec<U>> + Sync + Send,
+) -> Result<Vec<U>> {
     let mut all = Vec::with_capacity(items.len());
-    for part in parts {
-        all.append(&mut part?);
+    for block in items.chunks(BLOCK) {
+        let parts: Vec<Result<Vec<U>>> = block.par_chunks(PART).map(&f).collect();
+        for part in parts {
+            all.append(&mut part?);
+        }
     }
     Ok(all)
 }
@@ -288,11 +330,13 @@ fn mean<T>(items: &[T], figure: impl Fn(&T) -> f64) -> f64 {
     items.iter().map(figure).sum::<f64>() / items.len() as f64
 }
 
+/// Of nothing.
+const NOWHERE: Spot = Spot { value: f64::NAN, at: Position::Plane([f64::NAN; 2]) };
+
 /// The first of the least figures, and its place.
 pub(super) fn spot<T>(items: &[T], figure: impl Fn(&T) -> f64, place: impl Fn(usize) -> Position) -> Spot {
     let least = items.iter().map(figure).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-    let nowhere = Spot { value: f64::NAN, at: Position::Plane([f64::NAN; 2]) };
-    least.map_or(nowhere, |(index, value)| Spot { value, at: place(index) })
+    least.map_or(NOWHERE, |(index, value)| Spot { value, at: place(index) })
 }
 
 /// Refuses triangles with vertices that do not exist.

@@ -147,7 +147,7 @@ fn without_useless_edges(mut mesh: Mesh, inner: bool) -> (Mesh, usize) {
     let edges = Edges::of(&mesh.triangles);
     let label = |side: &EdgeSide| mesh.triangle_labels.get(side.triangle()).copied().unwrap_or(0);
     let is_required = marked(mesh.edges.len(), mesh.required_edges.iter().copied());
-    let is_kept = |e: usize| match edges.at(mesh.edges[e]) {
+    let is_kept = |e: usize| match &*edges.at(mesh.edges[e]) {
         [s, t] => label(s) != label(t) || inner || is_required[e],
         sides => !sides.is_empty(),
     };

@@ -24,9 +24,10 @@ impl Surface {
         let positions = finite_positions(mesh)?;
         check_triangles(&mesh.triangles, &positions)?;
         let mut triangles = mesh.triangles.clone();
-        let edges = Edges::of(&triangles);
+        let edges = Edges::of(&mesh.triangles);
         check_edges(&edges, &positions)?;
-        let turned = orient(&mut triangles, &edges, |ends| edge(ends, &positions))?;
+        let turned = turned(triangles.len(), &edges, |ends| edge(ends, &positions))?;
+        turned.iter().for_each(|&t| triangles[t].swap(1, 2));
         let mut regions = mesh.triangle_labels.clone();
         regions.resize(triangles.len(), 0);
         let topology = Triangulation::from_triangles(positions.len(), &triangles, &regions);
@@ -41,7 +42,7 @@ impl Surface {
             corners: distinct(mesh.corners.iter().copied().map(VertexId)),
             required_points: distinct(mesh.required_points.iter().copied().map(VertexId)),
             required_triangles: distinct(mesh.required_triangles.iter().copied().map(FaceId)),
-            turned,
+            turned: turned.len(),
         };
         surface.fix_edges(&mesh.edges)?;
         Ok(surface)
@@ -185,20 +186,16 @@ fn edge([a, b]: [u32; 2], positions: &[Point3]) -> String {
 /// # Errors
 /// [`Error::Domain`] of a one-sided surface (a Moebius strip, a Klein bottle), where no way of turning is right; `place`
 /// says where an edge is.
-fn orient(triangles: &mut [[u32; 3]], edges: &Edges, place: impl Fn([u32; 2]) -> String) -> Result<usize> {
-    let mut turns = Turns::new(triangles.len());
+fn turned(count: usize, edges: &Edges, place: impl Fn([u32; 2]) -> String) -> Result<Vec<usize>> {
+    let mut turns = Turns::new(count);
     for sides in edges.iter() {
-        if let [s, t] = sides
+        if let [s, t] = *sides
             && !turns.join(s.half_edge / 3, t.half_edge / 3, s.forward == t.forward)
         {
             return Err(one_sided(place(s.ends)));
         }
     }
-    let turned = turns.minorities();
-    for &t in &turned {
-        triangles[t].swap(1, 2);
-    }
-    Ok(turned.len())
+    Ok(turns.minorities())
 }
 
 /// Which triangles turn as others do: t as it is, and t + count turned.

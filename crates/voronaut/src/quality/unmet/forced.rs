@@ -108,22 +108,25 @@ fn kept(mesh: &Mesh, edges: &Edges) -> BTreeMap<[u32; 2], Kept> {
     kept
 }
 
-/// The edges of a mesh and the logarithms of their metric lengths, by vertices.
+/// The edges of a mesh with their metric lengths, by vertices around some of them.
 pub(super) struct Density<'a> {
     ends: &'a [[u32; 2]],
-    logarithms: Vec<f64>,
-    /// Of each edge whether it tells of the density.
-    tells: Vec<bool>,
-    /// The edges at each vertex.
+    lengths: &'a [f64],
+    forced: &'a [Forced],
+    /// The edges at each vertex that is an end of one of those, or a neighbour of such an end.
     at: Rows<u32>,
 }
 
 impl<'a> Density<'a> {
-    /// Of edges with these lengths; those that do not tell are left out.
-    pub(super) fn of(vertices: usize, ends: &'a [[u32; 2]], lengths: &[f64], tells: impl Fn(usize) -> bool) -> Self {
-        let at = Rows::new(vertices, (0..).zip(ends).flat_map(|(e, pair)| pair.iter().map(move |&v| (v, e))));
-        let logarithms = lengths.iter().map(|length| length.logarithm()).collect();
-        Self { ends, logarithms, tells: (0..ends.len()).map(tells).collect(), at }
+    /// Of all edges around those that are asked for. What is forced does not tell of the density.
+    pub(super) fn around(asked: &[usize], (ends, lengths): (&'a [[u32; 2]], &'a [f64]), forced: &'a [Forced]) -> Self {
+        let vertices = ends.as_flattened().iter().max().map_or(0, |&v| v as usize + 1);
+        let asked = marked(vertices, asked.iter().flat_map(|&e| ends[e]));
+        let touching = ends.iter().filter(|pair| pair.iter().any(|&v| asked[v as usize]));
+        let near = marked(vertices, touching.flatten().copied());
+        let items = (0..).zip(ends).flat_map(|(e, pair)| pair.iter().map(move |&v| (v, e)));
+        let at = Rows::new(vertices, items.filter(|(v, _)| near[*v as usize]));
+        Self { ends, lengths, forced, at }
     }
 
     /// Whether an edge's length is what it is because of the density around: of the edges at its ends and at their neighbours
@@ -132,9 +135,10 @@ impl<'a> Density<'a> {
     pub(super) fn explains(&self, edge: usize) -> bool {
         let patch = self.patch(edge);
         let count = patch.len() as f64;
-        let mean = patch.iter().map(|&e| self.logarithms[e as usize]).sum::<f64>() / count;
-        let variance = patch.iter().map(|&e| (self.logarithms[e as usize] - mean).powi(2)).sum::<f64>() / count;
-        let own = self.logarithms[edge];
+        let logarithms: Vec<f64> = patch.iter().map(|&e| self.lengths[e as usize].logarithm()).collect();
+        let mean = logarithms.iter().sum::<f64>() / count;
+        let variance = logarithms.iter().map(|logarithm| (logarithm - mean).powi(2)).sum::<f64>() / count;
+        let own = self.lengths[edge].logarithm();
         variance <= RANGE * RANGE && (own - mean).abs() <= RANGE && mean / own >= 0.5
     }
 
@@ -143,7 +147,7 @@ impl<'a> Density<'a> {
         let around = |v: u32| self.at.row(v as usize);
         let vertices = distinct(self.ends[edge].iter().flat_map(|&v| around(v)).flat_map(|&e| self.ends[e as usize]));
         let mut edges = distinct(vertices.into_iter().flat_map(|v| around(v).iter().copied()));
-        edges.retain(|&e| self.tells[e as usize]);
+        edges.retain(|&e| self.forced[e as usize] == Forced::No);
         edges
     }
 }

@@ -5,7 +5,7 @@ mod forced;
 mod tests;
 
 use super::faults::{Position, middle};
-use super::metric_quality::{Corners, MetricQuality, Shape, boundary, collect, demand_planar, demand_vertices, summed};
+use super::metric_quality::{Corners, MetricQuality, Shape, Shapes, boundary, collect, demand_planar, demand_vertices, summed};
 use super::surface_quality::Field;
 use crate::elementary::Elementary;
 use crate::error::Result;
@@ -91,8 +91,8 @@ pub struct Unmet {
     pub needles: Vec<Needle>,
     /// The metric lengths of all edges of the mesh, in the order of [`Edges`].
     pub lengths: Vec<f64>,
-    /// The quality of each triangle, and its smallest angle in the metric (degrees).
-    pub shapes: Vec<[f64; 2]>,
+    /// The quality of each triangle, and its smallest angle in the metric (degrees); as exact as pictures need them.
+    pub shapes: Vec<[f32; 2]>,
     /// What [`metric_quality`](super::metric_quality()) finds, or [`surface_quality`](super::surface_quality()) of a surface; `None` where
     /// there are no triangles.
     pub quality: Option<MetricQuality>,
@@ -201,8 +201,9 @@ pub fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
         let (middle, half) = (a.midpoint(b), (b - a) * 0.5);
         Some(Around { field: Box::new(move |p: Point| metric.at(middle + (p - Point::default()))), half })
     };
-    let corners = Corners::of(mesh, metric)?;
-    find(mesh, STRAIGHT, |ends| corners.edge_length(ends), |t| corners.shape(t), around, Position::in_plane)
+    let (corners, mean) = Corners::of(mesh, metric)?;
+    let shape = move |t| Shape::of(mean(t), mesh.corners_of(t));
+    find(mesh, STRAIGHT, |ends| corners.edge_length(ends), shape, around, Position::in_plane)
 }
 
 /// The same of the mesh of a surface in a metric on it, see [`surface_quality`](super::surface_quality()). Features turn in a
@@ -238,6 +239,13 @@ fn find<'a>(
     around: impl Fn([u32; 2]) -> Option<Around<'a>> + Sync + Send,
     position: impl Fn(Point3) -> Position + Sync,
 ) -> Result<Unmet> {
+    let (mut shapes, mut poor) = (Vec::with_capacity(mesh.triangles.len()), Vec::new());
+    let of_all = Shapes::of(mesh, |t| Ok(shape(mesh.triangles[t])), &position, |t, found| {
+        shapes.push(found.map(|figure| figure as f32));
+        poor.extend((found[0] < NEEDLE).then_some((t, found[0])));
+    })?;
+    // What it holds is as large as the mesh.
+    drop(shape);
     let edges = Edges::of(&mesh.triangles);
     let ends: Vec<[u32; 2]> = edges.ends().collect();
     let lengths = collect(&ends, |&ends| length(ends))?;
@@ -245,7 +253,8 @@ fn find<'a>(
     let forced = Forced::of(&curves, &edges, &lengths);
     let on_boundary = boundary(mesh, &edges);
     drop(edges);
-    let density = Density::of(mesh.points.len(), &ends, &lengths, |e| forced[e] == Forced::No);
+    let wrong: Vec<usize> = (0..ends.len()).filter(|&e| !is_unit(lengths[e])).collect();
+    let density = Density::around(&wrong, (&ends, &lengths), &forced);
     let turns = |e: usize| {
         let around = around(ends[e]);
         around.is_some_and(|around| {
@@ -263,7 +272,6 @@ fn find<'a>(
         let at = position(middle(mesh, &ends[e]));
         UnmetEdge { edge: ends[e], length: lengths[e], cause: cause(e), at }
     };
-    let wrong: Vec<usize> = (0..ends.len()).filter(|&e| !is_unit(lengths[e])).collect();
     let stands_on_kept = |[a, b, c]: [u32; 3]| {
         let sides = [[a, b], [b, c], [c, a]].map(in_order);
         let found = sides.into_iter().filter_map(|side| ends.binary_search(&side).ok());
@@ -272,15 +280,15 @@ fn find<'a>(
             forced[e] != Forced::No && curves.has_all(&ends[e]) && isosceles(lengths[e]) < NEEDLE
         })
     };
-    let shapes: Vec<[f64; 2]> = mesh.triangles.par_iter().map(|&t| shape(t).figures()).collect();
-    let needle = |(&t, &[quality, _]): (&[u32; 3], &[f64; 2])| {
-        let at = Some(position(middle(mesh, &t))).filter(|_| quality < NEEDLE)?;
-        Some(Needle { quality, at, is_forced: curves.has_all(&t) || stands_on_kept(t) })
+    let needle = |(t, quality): (usize, f64)| {
+        let corners = mesh.triangles[t];
+        let is_forced = curves.has_all(&corners) || stands_on_kept(corners);
+        Needle { quality, at: position(middle(mesh, &corners)), is_forced }
     };
-    let mut needles: Vec<Needle> = mesh.triangles.iter().zip(&shapes).filter_map(needle).collect();
+    let mut needles: Vec<Needle> = poor.into_iter().map(needle).collect();
     needles.sort_by(|a, b| a.quality.total_cmp(&b.quality));
     let edges = wrong.into_par_iter().map(edge).collect();
-    let quality = summed(mesh, &on_boundary, (&ends, &lengths), &shapes, &position);
+    let quality = summed(mesh, &on_boundary, (&ends, &lengths), &of_all, &position);
     Ok(Unmet { edges, needles, lengths, shapes, quality })
 }
 

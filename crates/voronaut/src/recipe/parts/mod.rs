@@ -26,7 +26,7 @@ use crate::progress::Progress;
 use crate::surface::Input;
 use crate::surface::metric::SurfaceMetric;
 use plane::InPlane;
-use stitch::{Kept, Whole};
+use stitch::{Joiner, Kept, Whole};
 use surface::OnSurface;
 pub use surface::mesh_surface_part;
 
@@ -34,6 +34,8 @@ pub use surface::mesh_surface_part;
 const VERTICES_PER_PART: usize = 100_000;
 /// No part has fewer: strips around its cuts would be most of it.
 const FEWEST: usize = 1_000;
+/// Edges that are measured at once: many for each core, and little memory.
+const AT_ONCE: usize = 1 << 16;
 /// Vertices per part of the triangles along whose edges is cut.
 const COARSE: usize = 64;
 
@@ -112,13 +114,13 @@ pub fn mesh_part(
     Ok(mesh_for(&domain, field, aim, &with_count(options, part.vertices), progress)?.mesh)
 }
 
-/// Who makes the meshes of a round of parts, in their order; the round has a name.
-type Make<'a> = &'a mut dyn FnMut(&'static str, &[Part]) -> Result<Vec<Mesh>>;
+/// Who makes the meshes of a round of parts, and hands them over in their order, so that there need not be all at once; the round has a name.
+type Make<'a> = &'a mut dyn FnMut(&'static str, &[Part], &mut dyn FnMut(Mesh)) -> Result<()>;
 
 /// Meshes a planar domain by a metric in so many parts, or in parts of about 100,000 vertices. There are three rounds of [`Part`]s: the
 /// parts themselves (`parts`), strips along the cuts (`strips`), and what is around the ends of strips that meet (`junctions`). The outer
-/// edges of these stay. With an aim, parts ask for the metric as a whole. The meshes of a round, in the order of its parts, are the business of `make`, which has its name: by [`mesh_part`],
-/// wherever that may be. The number of vertices is met exactly.
+/// edges of these stay. With an aim, parts ask for the metric as a whole. The meshes of a round are the business of `make`, which has its name, and
+/// hands them over in the order of its parts: by [`mesh_part`], wherever that may be. The number of vertices is met exactly.
 ///
 /// # Errors
 /// As of [`mesh_for`], and of `make`. [`Error::Unsupported`] of options that need the whole domain: periodic pairs, the net, star sets,
@@ -162,8 +164,10 @@ fn in_parts(
     let watch = Stopwatch::new(progress);
     let cut = watch.time("partition", || on.partition(parts, options, progress))?;
     let mut notes = cut.notes;
-    let meshes = watch.time("parts", || make("parts", &cut.parts))?;
-    let mut whole = watch.time("stitch", || Whole::of_parts(on, cut.kept, meshes));
+    let mut joiner = Joiner::of_parts(cut.parts.len());
+    watch.time("parts", || make("parts", &cut.parts, &mut |mesh| joiner.add(&mesh)))?;
+    drop(cut.parts);
+    let mut whole = watch.time("stitch", || Whole::of_parts(on, cut.kept, joiner));
     let strips = whole.strips();
     remake(on, &mut whole, ("strips", &strips, cut.vertices), make, &watch)?;
     let junctions = whole.junctions();
@@ -192,8 +196,9 @@ fn remake(
     }
     let regions = whole.hanging_together(regions)?;
     let jobs = watch.time("stitch", || whole.jobs(on, &regions, vertices))?;
-    let meshes = watch.time(round, || make(round, &jobs))?;
-    watch.time("stitch", || whole.replace(&regions, &meshes));
+    let mut joiner = watch.time("stitch", || whole.without(&regions));
+    watch.time(round, || make(round, &jobs, &mut |mesh| joiner.add(&mesh)))?;
+    whole.close(joiner);
     Ok(())
 }
 
@@ -233,7 +238,14 @@ fn number_of_parts(vertices: usize, asked: Option<usize>) -> Result<usize> {
 fn unit_factor(on: &impl Divisible, mesh: &Mesh) -> f64 {
     let on_curve = marked(mesh.points.len(), mesh.edges.as_flattened().iter().copied());
     let edges = Edges::of(&mesh.triangles);
-    let ends: Vec<[u32; 2]> = edges.ends().filter(|ends| ends.iter().all(|&v| !on_curve[v as usize])).collect();
-    let logarithms = on.logarithms(mesh, &ends);
-    (-2.0 * logarithms.iter().sum::<f64>() / logarithms.len().max(1) as f64).exponential()
+    let mut ends = edges.ends().filter(|ends| ends.iter().all(|&v| !on_curve[v as usize]));
+    let (mut sum, mut count) = (0.0, 0);
+    loop {
+        let some: Vec<[u32; 2]> = ends.by_ref().take(AT_ONCE).collect();
+        if some.is_empty() {
+            return (-2.0 * sum / f64::from(count.max(1))).exponential();
+        }
+        sum = on.logarithms(mesh, &some).iter().fold(sum, |sum, logarithm| sum + logarithm);
+        count += some.len() as u32;
+    }
 }

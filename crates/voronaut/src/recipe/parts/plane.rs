@@ -129,8 +129,8 @@ struct Cuts<'a> {
 impl<'a> Cuts<'a> {
     fn new(coarse: &'a Mesh, owner: &'a [u32], field: &dyn MetricField, scale: f64) -> Self {
         let edges = Edges::of(&coarse.triangles);
-        let is_cut = |sides: &&[EdgeSide]| sides.iter().any(|s| owner[s.triangle()] != owner[sides[0].triangle()]);
-        let ends: Vec<[u32; 2]> = edges.iter().filter(is_cut).map(|sides| sides[0].ends).collect();
+        let is_cut = |sides: &[EdgeSide]| sides.iter().any(|s| owner[s.triangle()] != owner[sides[0].triangle()]);
+        let ends: Vec<[u32; 2]> = edges.iter().filter(|sides| is_cut(sides)).map(|sides| sides[0].ends).collect();
         let whole: HashSet<[u32; 2]> =
             coarse.required_edges.iter().map(|&e| in_order(coarse.edges[e as usize])).collect();
         let sampled = |ends: &[u32; 2]| {

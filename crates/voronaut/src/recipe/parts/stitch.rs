@@ -41,15 +41,11 @@ pub(super) struct Whole {
 
 impl Whole {
     /// The meshes of all parts, joined.
-    pub(super) fn of_parts(on: &impl Divisible, mut kept: Kept, parts: Vec<Mesh>) -> Self {
-        let mut joiner = Joiner::with_room_for(&parts);
-        (0..).zip(parts).for_each(|(owner, part)| joiner.add(&part, owner));
-        let Joiner { mesh, owners, mut cuts, .. } = joiner;
-        cuts.sort_unstable();
-        cuts.dedup();
-        on.note_kept(&mut kept, &mesh);
-        let mut whole = Self { kept, mesh, cuts, owners, junctions: Vec::new() };
-        whole.mark_required();
+    pub(super) fn of_parts(on: &impl Divisible, mut kept: Kept, joiner: Joiner) -> Self {
+        on.note_kept(&mut kept, &joiner.mesh);
+        let mut whole = Self { kept, mesh: Mesh::default(), cuts: Vec::new(), owners: Vec::new(), junctions: Vec::new() };
+        whole.close(joiner);
+        whole.cuts = distinct(std::mem::take(&mut whole.cuts));
         whole.junctions = whole.meetings();
         whole
     }
@@ -109,48 +105,46 @@ impl Whole {
         region
     }
 
-    /// Puts meshes in the place of regions.
-    pub(super) fn replace(&mut self, regions: &[Vec<u32>], meshes: &[Mesh]) {
-        let goes = marked(self.mesh.triangles.len(), regions.iter().flatten().copied());
-        let (mut joiner, number) = self.without(&goes, meshes);
-        self.junctions.iter_mut().for_each(|v| *v = number[*v as usize]);
-        for (region, mesh) in regions.iter().zip(meshes) {
-            joiner.add(mesh, self.owners[region[0] as usize]);
-        }
-        (self.mesh, self.owners, self.cuts) = (joiner.mesh, joiner.owners, Vec::new());
-        self.mark_required();
+    /// Takes regions out. What is in their place is to be added to what stays, region by region.
+    pub(super) fn without(&mut self, regions: &[Vec<u32>]) -> Joiner {
+        let (mut mesh, mut owners) = (std::mem::take(&mut self.mesh), std::mem::take(&mut self.owners));
+        let coming: Vec<u32> = regions.iter().map(|region| owners[region[0] as usize]).collect();
+        let goes = marked(mesh.triangles.len(), regions.iter().flatten().copied());
+        let corners = |of_going: bool| {
+            let all = mesh.triangles.iter().zip(&goes).filter(move |(_, goes)| **goes == of_going);
+            all.flat_map(|(corners, _)| *corners)
+        };
+        let [stays, is_near] = [corners(false), corners(true)].map(|corners| marked(mesh.points.len(), corners));
+        let edges = Edges::of(&mesh.triangles);
+        let listed = mesh.edges.iter().map(|&ends| edges.at(ends).iter().any(|side| !goes[side.triangle()]));
+        let is_listed: Vec<bool> = listed.collect();
+        drop(edges);
+        let number = numbers(&stays);
+        let near = (0..number.len()).filter(|&v| stays[v] && is_near[v]);
+        let at = near.map(|v| (position_of(mesh.points[v]), number[v])).collect();
+        let triangle_stays: Vec<bool> = goes.iter().map(|goes| !goes).collect();
+        renumber(&mut mesh.required_triangles, &numbers(&triangle_stays));
+        keep(&mut mesh.points, &stays);
+        keep(&mut mesh.point_labels, &stays);
+        keep(&mut mesh.triangles, &triangle_stays);
+        keep(&mut mesh.triangle_labels, &triangle_stays);
+        keep(&mut owners, &triangle_stays);
+        keep(&mut mesh.edges, &is_listed);
+        keep(&mut mesh.edge_labels, &is_listed);
+        let all = mesh.triangles.as_flattened_mut().iter_mut().chain(mesh.edges.as_flattened_mut());
+        all.chain(&mut self.junctions).for_each(|v| *v = number[*v as usize]);
+        renumber(&mut mesh.corners, &number);
+        renumber(&mut mesh.required_points, &number);
+        // Those of the whole are found again when all is there.
+        (mesh.required_edges, mesh.ridges) = (Vec::new(), Vec::new());
+        let listed = mesh.edges.iter().map(|&ends| in_order(ends)).collect();
+        Joiner { mesh, owners, cuts: Vec::new(), at, listed, coming: coming.into_iter() }
     }
 
-    /// What stays, to be joined with what comes; and the new numbers of vertices.
-    fn without(&self, goes: &[bool], comes: &[Mesh]) -> (Joiner, Vec<u32>) {
-        let old = &self.mesh;
-        let staying = || (0..old.triangles.len()).filter(|&t| !goes[t]);
-        let stays = marked(old.points.len(), staying().flat_map(|t| old.triangles[t]));
-        let going = (0..old.triangles.len()).filter(|&t| goes[t]).flat_map(|t| old.triangles[t]);
-        let is_near = marked(old.points.len(), going);
-        let mut joiner = Joiner::with_room_for(comes.iter().chain([old]));
-        let mut number = vec![u32::MAX; old.points.len()];
-        for v in (0..old.points.len()).filter(|&v| stays[v]) {
-            number[v] = joiner.push(old, v);
-            if is_near[v] {
-                joiner.at.insert(position_of(old.points[v]), number[v]);
-            }
-        }
-        let is_required = marked(old.triangles.len(), old.required_triangles.iter().copied());
-        for t in staying() {
-            joiner.mesh.required_triangles.extend(is_required[t].then_some(joiner.mesh.triangles.len() as u32));
-            joiner.mesh.triangles.push(old.triangles[t].map(|v| number[v as usize]));
-            joiner.mesh.triangle_labels.push(old.triangle_labels[t]);
-            joiner.owners.push(self.owners[t]);
-        }
-        let edges = Edges::of(&old.triangles);
-        let is_kept = |ends: [u32; 2]| edges.at(ends).iter().any(|side| !goes[side.triangle()]);
-        for (&ends, &label) in old.edges.iter().zip(&old.edge_labels).filter(|(ends, _)| is_kept(**ends)) {
-            joiner.list(ends.map(|v| number[v as usize]), label);
-        }
-        let numbers = |list: &[u32]| list.iter().map(|&v| number[v as usize]).filter(|&v| v != u32::MAX).collect();
-        (joiner.mesh.corners, joiner.mesh.required_points) = (numbers(&old.corners), numbers(&old.required_points));
-        (joiner, number)
+    /// Makes what was joined the whole.
+    pub(super) fn close(&mut self, joiner: Joiner) {
+        (self.mesh, self.owners, self.cuts) = (joiner.mesh, joiner.owners, joiner.cuts);
+        self.mark_required();
     }
 
     /// What is required is what is of the whole, not what parts had to keep.
@@ -169,32 +163,46 @@ impl Whole {
     }
 }
 
+/// Those that are marked, in order.
+fn keep<T>(list: &mut Vec<T>, marks: &[bool]) {
+    let mut mark = marks.iter();
+    list.retain(|_| mark.next() == Some(&true));
+}
+
+/// The new number of each that is marked; `u32::MAX` of others.
+fn numbers(marks: &[bool]) -> Vec<u32> {
+    let mut next = 0..;
+    marks.iter().map(|&is_marked| if is_marked { next.next().unwrap_or(u32::MAX) } else { u32::MAX }).collect()
+}
+
+/// Gives things their new numbers; those that have none are left out.
+fn renumber(list: &mut Vec<u32>, number: &[u32]) {
+    list.iter_mut().for_each(|it| *it = number[*it as usize]);
+    list.retain(|&it| it != u32::MAX);
+}
+
 /// Meshes are joined one after the other.
 #[derive(Default)]
-struct Joiner {
+pub(super) struct Joiner {
     mesh: Mesh,
     owners: Vec<u32>,
     cuts: Vec<[u32; 2]>,
     /// Vertices on curves.
     at: HashMap<Position, u32>,
     listed: HashSet<[u32; 2]>,
+    /// Whose the meshes are that are still to come.
+    coming: std::vec::IntoIter<u32>,
 }
 
 impl Joiner {
-    fn with_room_for<'a>(meshes: impl IntoIterator<Item = &'a Mesh>) -> Self {
-        let add = |(points, triangles), mesh: &Mesh| (points + mesh.points.len(), triangles + mesh.triangles.len());
-        let (points, triangles) = meshes.into_iter().fold((0, 0), add);
-        let mesh = Mesh {
-            points: Vec::with_capacity(points),
-            point_labels: Vec::with_capacity(points),
-            triangles: Vec::with_capacity(triangles),
-            triangle_labels: Vec::with_capacity(triangles),
-            ..Mesh::default()
-        };
-        Self { mesh, owners: Vec::with_capacity(triangles), ..Self::default() }
+    /// Of nothing yet, for the meshes of so many parts in their order.
+    pub(super) fn of_parts(parts: usize) -> Self {
+        Self { coming: (0..parts as u32).collect::<Vec<_>>().into_iter(), ..Self::default() }
     }
 
-    fn add(&mut self, part: &Mesh, owner: u32) {
+    /// Joins the mesh that is next.
+    pub(super) fn add(&mut self, part: &Mesh) {
+        let owner = self.coming.next().unwrap_or(NOWHERE);
         let is_shared = marked(part.points.len(), part.edges.as_flattened().iter().copied());
         let number: Vec<u32> = (0..part.points.len())
             .map(|v| {

@@ -18,9 +18,10 @@ fn made(
     options: &MeshOptions,
 ) -> Result<(Meshed, Vec<usize>)> {
     let mut rounds = Vec::new();
-    let mut make = |_: &'static str, parts: &[Part]| {
+    let mut make = |_: &'static str, parts: &[Part], take: &mut dyn FnMut(Mesh)| {
         rounds.push(parts.len());
-        parts.iter().map(|part| mesh_surface_part(part, input, metric, None, options, &Silent)).collect()
+        let mesh = |part| mesh_surface_part(part, input, metric, None, options, &Silent);
+        parts.iter().try_for_each(|part| Ok(take(mesh(part)?)))
     };
     let meshed = mesh_surface_in_parts(input, metric, Some(parts), options, &mut make, &Silent)?;
     Ok((meshed, rounds))

@@ -16,9 +16,9 @@ type Rounds = Vec<(&'static str, Vec<Part>)>;
 /// The mesh in parts, the rounds that were made, and how many parts each had.
 fn made(domain: &Domain, field: &dyn MetricField, parts: usize, options: &MeshOptions) -> Result<(Meshed, Rounds)> {
     let mut rounds = Rounds::new();
-    let mut make = |round, parts: &[Part]| {
+    let mut make = |round, parts: &[Part], take: &mut dyn FnMut(Mesh)| {
         rounds.push((round, parts.to_vec()));
-        parts.iter().map(|part| mesh_part(part, field, None, options, &Silent)).collect()
+        parts.iter().try_for_each(|part| Ok(take(mesh_part(part, field, None, options, &Silent)?)))
     };
     let meshed = mesh_in_parts(domain, field, None, Some(parts), options, &mut make, &Silent)?;
     Ok((meshed, rounds))
@@ -175,7 +175,7 @@ fn a_metric_that_is_none_in_one_part_is_an_error_with_the_place() {
 #[test]
 fn a_part_that_fails_is_the_error() {
     let (domain, field) = (Domain::shape("rect:0,0,1,1").unwrap(), Uniform(Tensor::IDENTITY));
-    let mut make = |round: &'static str, _: &[Part]| Err(Error::limit(format!("{round} 1"), "try again"));
+    let mut make = |round: &'static str, _: &[Part], _: &mut dyn FnMut(Mesh)| Err(Error::limit(format!("{round} 1"), "try again"));
     let error = mesh_in_parts(&domain, &field, None, Some(2), &options(4000), &mut make, &Silent).unwrap_err();
     assert_eq!(error.to_string(), "limit exceeded: parts 1");
 }
@@ -190,11 +190,11 @@ fn parts_come_with_their_own_metric() {
     let field = Sampled::new(&background, &tensors).unwrap();
     let nowhere = |_: Point| -> Tensor { panic!("the metric as a whole was asked for") };
     let mut largest = 0;
-    let mut make = |round, parts: &[Part]| {
+    let mut make = |round, parts: &[Part], take: &mut dyn FnMut(Mesh)| {
         let sizes = parts.iter().map(|part| part.metric.as_ref().map_or(usize::MAX, |metric| metric.1.len()));
         // Strips are long, and of few vertices much of the whole.
         largest = sizes.filter(|_| round == "parts").fold(largest, usize::max);
-        parts.iter().map(|part| mesh_part(part, &nowhere, None, &options(4000), &Silent)).collect()
+        parts.iter().try_for_each(|part| Ok(take(mesh_part(part, &nowhere, None, &options(4000), &Silent)?)))
     };
     let meshed = mesh_in_parts(&domain, &field, None, Some(4), &options(4000), &mut make, &Silent).unwrap();
     demand_whole(&domain, &meshed, 4000);

@@ -97,7 +97,7 @@ fn flip_caps(work: &mut Work, flat: &[usize]) {
         if beyond.iter().any(|side| is_touched[side.triangle()]) {
             continue;
         }
-        for side in beyond {
+        for side in &beyond {
             let s = side.triangle();
             is_touched[s] = true;
             if s != t {
@@ -120,8 +120,8 @@ pub(super) fn drop_duplicates(work: &mut Work) {
     let numbers: Vec<_> = work.triangles.iter().copied().map(in_order).collect();
     drop_of_groups(work, &numbers, |group| (0..group.len()).map(|i| i > 0).collect());
     let places: Vec<_> = (0..work.triangles.len()).map(|t| in_order(work.places_of(t))).collect();
-    let by_number = Edges::of(&work.triangles);
     let triangles = work.triangles.clone();
+    let by_number = Edges::of(&triangles);
     drop_of_groups(work, &places, |group| {
         let mut doubtful: Vec<bool> = group.iter().map(|&t| is_doubtful(t, group, &triangles, &by_number)).collect();
         if doubtful.iter().all(|&doubtful| doubtful) {

@@ -6,6 +6,7 @@ use super::work::Work;
 use crate::lists::{distinct, in_order, marked};
 use crate::mesh::edges::NONE;
 use crate::mesh::{EdgeSide, Edges, Mesh, edges_of};
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 /// The mesh of the triangles as sewn. Vertices keep their numbers, used or not, and those that were added follow; triangles and
@@ -131,20 +132,21 @@ impl Listed {
 struct Known<'a> {
     sewn: &'a Sewn,
     /// Of the triangles as sewn, by the vertex numbers of the mesh,
-    by_number: Edges,
+    by_number: Edges<'a>,
     /// and by places.
-    by_place: Edges,
+    by_place: Edges<'a>,
     /// Of the mesh as it was.
-    of_file: Edges,
+    of_file: Edges<'a>,
 }
 
 impl<'a> Known<'a> {
-    fn of(work: &Work, sewn: &'a Sewn) -> Self {
+    fn of(work: &Work<'a>, sewn: &'a Sewn) -> Self {
         let place = |v: u32| if v == NONE { NONE } else { work.places.of(v) };
         let places: Vec<[u32; 3]> = sewn.numbers.iter().map(|numbers| numbers.map(place)).collect();
         // Most meshes list no edges.
-        let edges = |list: &[[u32; 3]]| Edges::of(if work.mesh.edges.is_empty() { &[] } else { list });
-        let [by_number, by_place, of_file] = [&sewn.numbers, &places, &work.mesh.triangles].map(|list| edges(list));
+        let all: [Cow<'a, [[u32; 3]]>; 3] = [(&sewn.numbers).into(), places.into(), (&work.mesh.triangles).into()];
+        let edges = |list| Edges::of(if work.mesh.edges.is_empty() { Cow::default() } else { list });
+        let [by_number, by_place, of_file] = all.map(edges);
         Self { sewn, by_number, by_place, of_file }
     }
 
@@ -163,7 +165,7 @@ impl<'a> Known<'a> {
 
     /// What an edge of the list has become, in its direction.
     fn find(&self, work: &Work, [v, w]: [u32; 2]) -> Vec<[u32; 2]> {
-        let mut found = self.ends(self.by_number.at([v, w]), v);
+        let mut found = self.ends(&self.by_number.at([v, w]), v);
         if !found.is_empty() {
             return found;
         }
@@ -172,7 +174,7 @@ impl<'a> Known<'a> {
         let mut is_followed = HashSet::new();
         while let Some([p, q]) = left.pop() {
             let (key, sides) = (in_order([p, q]), self.by_place.at([p, q]));
-            found.extend(self.ends(sides, p));
+            found.extend(self.ends(&sides, p));
             if sides.is_empty()
                 && let Some(inside) = work.cuts.get(&key).filter(|_| is_followed.insert(key))
             {

@@ -25,11 +25,11 @@ const PAIRED: usize = 16;
 pub(super) fn glue(work: &mut Work) -> Result<Twins> {
     let mut twins = vec![NONE; 3 * work.triangles.len()];
     for group in work.edges().iter() {
-        match group {
+        match &*group {
             [_] => {}
             [s, t] if is_fold(work, s, t) => {}
             [s, t] => join(&mut twins, s, t),
-            _ => glue_many(work, &mut twins, group)?,
+            group => glue_many(work, &mut twins, group)?,
         }
     }
     Ok(twins)

@@ -63,8 +63,8 @@ impl<'a> Work<'a> {
     }
 
     /// The edges of all triangles, by places.
-    pub(super) fn edges(&self) -> Edges {
-        Edges::of(&(0..self.triangles.len()).map(|t| self.places_of(t)).collect::<Vec<_>>())
+    pub(super) fn edges(&self) -> Edges<'static> {
+        Edges::of((0..self.triangles.len()).map(|t| self.places_of(t)).collect::<Vec<_>>())
     }
 
     /// A vertex, for messages.
