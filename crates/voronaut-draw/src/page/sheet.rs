@@ -109,7 +109,8 @@ impl Sheet {
             }
         }
         if let Some(unmet) = self.unmet.as_ref().filter(|unmet| unmet.shapes.len() == self.mesh.triangles.len()) {
-            let shape = |k: usize| Planes::of_reals(order.triangles.iter().map(move |&t| unmet.shapes[t as usize][k].into()));
+            let shape =
+                |k: usize| Planes::of_reals(order.triangles.iter().map(move |&t| unmet.shapes[t as usize][k].into()));
             add("quality", "triangle", shape(0));
             add("smallest angle", "triangle", shape(1));
             let (lengths, causes) = self.of_edges(unmet, order);

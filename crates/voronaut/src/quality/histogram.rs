@@ -107,7 +107,8 @@ fn of<V>(measured: &[MeasuredEdge<V>], angles: &Both<Vec<f64>>) -> Histograms {
         geodesic: measured.iter().map(|e| e.geodesic).collect(),
     };
     let count = |found| measured.iter().filter(|edge| edge.found == found).count();
-    let unit = |lengths: &[f64]| EdgeLengths::of(lengths).map_or(f64::NAN, |figures| figures.unit_fraction);
+    let unit =
+        |lengths: &[f64]| EdgeLengths::of(|| lengths.iter().copied()).map_or(f64::NAN, |figures| figures.unit_fraction);
     Histograms {
         unit_fraction: Both { straight: unit(&lengths.straight), geodesic: unit(&lengths.geodesic) },
         edge_length: Histogram::of(LENGTHS, &lengths),

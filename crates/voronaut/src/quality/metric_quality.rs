@@ -164,11 +164,8 @@ pub(super) fn figures(
 ) -> Result<MetricQuality> {
     let shapes = Shapes::of(mesh, shape, &position, |_, _| ())?;
     let edges = Edges::of(&mesh.triangles);
-    let first: Vec<EdgeSide> = edges.iter().map(|sides| sides[0]).collect();
-    let lengths = collect(&first, length)?;
-    let on_boundary = boundary(mesh, &edges);
-    let ends: Vec<[u32; 2]> = edges.ends().collect();
-    summed(mesh, &on_boundary, (&ends, &lengths), &shapes, position)
+    let lengths = of_edges(&edges, length)?;
+    summed(mesh, &edges, &lengths, &shapes, position)
         .ok_or_else(|| fault("there are no triangles", "the array of triangles"))
 }
 
@@ -213,26 +210,21 @@ impl Shapes {
     }
 }
 
-/// Which vertices are on the boundary.
-pub(super) fn boundary(mesh: &Mesh, edges: &Edges) -> Vec<bool> {
-    marked(mesh.points.len(), edges.boundary().flat_map(|side| side.ends))
-}
-
-/// The figures of a mesh from the vertices on its boundary, its edges with their metric lengths, and those of its triangles; none without
-/// triangles.
+/// The figures of a mesh from its edges with their metric lengths, and those of its triangles; none without triangles.
 pub(super) fn summed(
     mesh: &Mesh,
-    on_boundary: &[bool],
-    (ends, lengths): (&[[u32; 2]], &[f64]),
+    edges: &Edges,
+    lengths: &[f64],
     shapes: &Shapes,
     position: impl Fn(Point3) -> Position,
 ) -> Option<MetricQuality> {
+    let on_boundary = marked(mesh.points.len(), edges.boundary().flat_map(|side| side.ends));
     let is_interior = |ends: &[u32; 2]| ends.iter().all(|&v| !on_boundary[v as usize]);
-    let interior = ends.iter().zip(lengths).filter(|(ends, _)| is_interior(ends)).map(|(_, &length)| length);
-    let of_edge = |e: usize| position(middle(mesh, &ends[e]));
+    let interior = || edges.ends().zip(lengths).filter(|(ends, _)| is_interior(ends)).map(|(_, &length)| length);
+    let of_edge = |e: usize| position(edges.ends().nth(e).map_or_else(Point3::default, |ends| middle(mesh, &ends)));
     Some(MetricQuality {
-        metric_edge_length: EdgeLengths::of(lengths)?,
-        interior_edge_length: EdgeLengths::of(&interior.collect::<Vec<_>>()),
+        metric_edge_length: EdgeLengths::of(|| lengths.iter().copied())?,
+        interior_edge_length: EdgeLengths::of(interior),
         quality: shapes.quality,
         angle: shapes.angle,
         worst: Worst {
@@ -244,15 +236,17 @@ pub(super) fn summed(
 }
 
 impl EdgeLengths {
-    pub(super) fn of(lengths: &[f64]) -> Option<Self> {
-        let is_unit = |length: &&f64| (FRAC_1_SQRT_2..=SQRT_2).contains(*length);
-        let mean = mean(lengths, |&l| l);
-        (!lengths.is_empty()).then(|| Self {
-            min: least(lengths, |&l| l),
+    /// Of lengths that can be gone through again; none of none.
+    pub(super) fn of<I: Iterator<Item = f64>>(lengths: impl Fn() -> I) -> Option<Self> {
+        let is_unit = |length: &f64| (FRAC_1_SQRT_2..=SQRT_2).contains(length);
+        let count = lengths().count() as f64;
+        let mean = lengths().sum::<f64>() / count;
+        (count > 0.0).then(|| Self {
+            min: lengths().fold(f64::INFINITY, f64::min),
             mean,
-            max: -least(lengths, |&l| -l),
-            std: self::mean(lengths, |&l| (l - mean) * (l - mean)).sqrt(),
-            unit_fraction: lengths.iter().filter(is_unit).count() as f64 / lengths.len() as f64,
+            max: lengths().fold(f64::NEG_INFINITY, f64::max),
+            std: (lengths().map(|length| (length - mean) * (length - mean)).sum::<f64>() / count).sqrt(),
+            unit_fraction: lengths().filter(is_unit).count() as f64 / count,
         })
     }
 }
@@ -306,10 +300,7 @@ pub(super) fn collect<T: Sync, U: Send>(items: &[T], f: impl Fn(&T) -> Result<U>
 }
 
 /// Maps parts of [`PART`] items in parallel; the error is that of the first part that has one, for any number of threads.
-fn collect_parts<T: Sync, U: Send>(
-    items: &[T],
-    f: impl Fn(&[T]) -> Result<Vec<U>> + Sync + Send,
-) -> Result<Vec<U>> {
+fn collect_parts<T: Sync, U: Send>(items: &[T], f: impl Fn(&[T]) -> Result<Vec<U>> + Sync + Send) -> Result<Vec<U>> {
     let mut all = Vec::with_capacity(items.len());
     for block in items.chunks(BLOCK) {
         let parts: Vec<Result<Vec<U>>> = block.par_chunks(PART).map(&f).collect();
@@ -320,14 +311,16 @@ fn collect_parts<T: Sync, U: Send>(
     Ok(all)
 }
 
-/// The least figure; infinite of nothing.
-fn least<T>(items: &[T], figure: impl Fn(&T) -> f64) -> f64 {
-    items.iter().map(figure).fold(f64::INFINITY, f64::min)
-}
-
-/// The mean of a figure, summed in order; not a number of nothing.
-fn mean<T>(items: &[T], figure: impl Fn(&T) -> f64) -> f64 {
-    items.iter().map(figure).sum::<f64>() / items.len() as f64
+/// Measures all edges in parallel, by their first sides, in their order.
+pub(super) fn of_edges<U: Send>(edges: &Edges, f: impl Fn(&EdgeSide) -> Result<U> + Sync + Send) -> Result<Vec<U>> {
+    let (mut first, mut all) = (edges.iter().map(|sides| sides[0]), Vec::new());
+    loop {
+        let block: Vec<EdgeSide> = first.by_ref().take(BLOCK).collect();
+        if block.is_empty() {
+            return Ok(all);
+        }
+        all.append(&mut collect(&block, &f)?);
+    }
 }
 
 /// Of nothing.

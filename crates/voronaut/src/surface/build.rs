@@ -27,7 +27,9 @@ impl Surface {
         let edges = Edges::of(&mesh.triangles);
         check_edges(&edges, &positions)?;
         let turned = turned(triangles.len(), &edges, |ends| edge(ends, &positions))?;
-        turned.iter().for_each(|&t| triangles[t].swap(1, 2));
+        for &t in &turned {
+            triangles[t].swap(1, 2);
+        }
         let mut regions = mesh.triangle_labels.clone();
         regions.resize(triangles.len(), 0);
         let topology = Triangulation::from_triangles(positions.len(), &triangles, &regions);

@@ -13,9 +13,10 @@ use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_3;
 
 /// How what has to be kept bears on an edge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Forced {
     /// It does not.
+    #[default]
     No,
     /// The edge is short, and joins two places of borders or features across the domain.
     Across,
@@ -108,47 +109,51 @@ fn kept(mesh: &Mesh, edges: &Edges) -> BTreeMap<[u32; 2], Kept> {
     kept
 }
 
-/// The edges of a mesh with their metric lengths, by vertices around some of them.
-pub(super) struct Density<'a> {
-    ends: &'a [[u32; 2]],
-    lengths: &'a [f64],
-    forced: &'a [Forced],
-    /// The edges at each vertex that is an end of one of those, or a neighbour of such an end.
-    at: Rows<u32>,
+/// An edge with its metric length, and how what has to be kept bears on it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Judged {
+    pub(super) ends: [u32; 2],
+    pub(super) length: f64,
+    pub(super) forced: Forced,
 }
 
-impl<'a> Density<'a> {
-    /// Of all edges around those that are asked for. What is forced does not tell of the density.
-    pub(super) fn around(asked: &[usize], (ends, lengths): (&'a [[u32; 2]], &'a [f64]), forced: &'a [Forced]) -> Self {
-        let vertices = ends.as_flattened().iter().max().map_or(0, |&v| v as usize + 1);
-        let asked = marked(vertices, asked.iter().flat_map(|&e| ends[e]));
-        let touching = ends.iter().filter(|pair| pair.iter().any(|&v| asked[v as usize]));
-        let near = marked(vertices, touching.flatten().copied());
-        let items = (0..).zip(ends).flat_map(|(e, pair)| pair.iter().map(move |&v| (v, e)));
-        let at = Rows::new(vertices, items.filter(|(v, _)| near[*v as usize]));
-        Self { ends, lengths, forced, at }
+/// The edges around some of a mesh.
+pub(super) struct Density {
+    /// Those at each vertex that is an end of one of these, or a neighbour of such an end.
+    at: Rows<Judged>,
+}
+
+impl Density {
+    /// Of all edges, in order, around those that are asked for.
+    pub(super) fn around<I: Iterator<Item = Judged>>(vertices: usize, asked: &[Judged], all: impl Fn() -> I) -> Self {
+        let is_end = marked(vertices, asked.iter().flat_map(|edge| edge.ends));
+        let touching = all().filter(|edge| edge.ends.iter().any(|&v| is_end[v as usize]));
+        let is_near = marked(vertices, touching.flat_map(|edge| edge.ends));
+        let near = all().flat_map(|edge| edge.ends.map(|v| (v, edge))).filter(|(v, _)| is_near[*v as usize]);
+        let near: Vec<(u32, Judged)> = near.collect();
+        Self { at: Rows::new(vertices, near.iter().copied()) }
     }
 
     /// Whether an edge's length is what it is because of the density around: of the edges at its ends and at their neighbours
     /// the logarithms of lengths spread (standard deviation) no more than those of unit edges may, their mean is the greater
     /// part of the edge's own, and what is left of that is in the range of unit edges.
-    pub(super) fn explains(&self, edge: usize) -> bool {
-        let patch = self.patch(edge);
-        let count = patch.len() as f64;
-        let logarithms: Vec<f64> = patch.iter().map(|&e| self.lengths[e as usize].logarithm()).collect();
+    pub(super) fn explains(&self, edge: &Judged) -> bool {
+        let logarithms: Vec<f64> = self.patch(edge).into_iter().map(Elementary::logarithm).collect();
+        let count = logarithms.len() as f64;
         let mean = logarithms.iter().sum::<f64>() / count;
         let variance = logarithms.iter().map(|logarithm| (logarithm - mean).powi(2)).sum::<f64>() / count;
-        let own = self.lengths[edge].logarithm();
+        let own = edge.length.logarithm();
         variance <= RANGE * RANGE && (own - mean).abs() <= RANGE && mean / own >= 0.5
     }
 
-    /// The edges at the ends of an edge and at their neighbours that tell, in order.
-    fn patch(&self, edge: usize) -> Vec<u32> {
+    /// The lengths of edges at the ends of an edge and at their neighbours, in order, without those that are forced.
+    fn patch(&self, edge: &Judged) -> Vec<f64> {
         let around = |v: u32| self.at.row(v as usize);
-        let vertices = distinct(self.ends[edge].iter().flat_map(|&v| around(v)).flat_map(|&e| self.ends[e as usize]));
-        let mut edges = distinct(vertices.into_iter().flat_map(|v| around(v).iter().copied()));
-        edges.retain(|&e| self.forced[e as usize] == Forced::No);
-        edges
+        let vertices = distinct(edge.ends.iter().flat_map(|&v| around(v)).flat_map(|edge| edge.ends));
+        let mut edges: Vec<Judged> = vertices.into_iter().flat_map(|v| around(v).iter().copied()).collect();
+        edges.sort_unstable_by_key(|edge| edge.ends);
+        edges.dedup_by_key(|edge| edge.ends);
+        edges.into_iter().filter(|edge| edge.forced == Forced::No).map(|edge| edge.length).collect()
     }
 }
 

@@ -5,18 +5,18 @@ mod forced;
 mod tests;
 
 use super::faults::{Position, middle};
-use super::metric_quality::{Corners, MetricQuality, Shape, Shapes, boundary, collect, demand_planar, demand_vertices, summed};
+use super::metric_quality::{Corners, MetricQuality, Shape, Shapes, demand_planar, demand_vertices, of_edges, summed};
 use super::surface_quality::Field;
 use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{NEEDLE, Point, Point3, Vector};
-use crate::lists::in_order;
-use crate::mesh::{Edges, Mesh};
+use crate::lists::{distinct, in_order};
+use crate::mesh::{Edges, Mesh, edges_of};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{FeatureOptions, Surface};
-use forced::{Curves, Density, Forced};
+use forced::{Curves, Density, Forced, Judged};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -240,44 +240,49 @@ fn find<'a>(
     position: impl Fn(Point3) -> Position + Sync,
 ) -> Result<Unmet> {
     let (mut shapes, mut poor) = (Vec::with_capacity(mesh.triangles.len()), Vec::new());
-    let of_all = Shapes::of(mesh, |t| Ok(shape(mesh.triangles[t])), &position, |t, found| {
-        shapes.push(found.map(|figure| figure as f32));
-        poor.extend((found[0] < NEEDLE).then_some((t, found[0])));
-    })?;
+    let of_all = Shapes::of(
+        mesh,
+        |t| Ok(shape(mesh.triangles[t])),
+        &position,
+        |t, found| {
+            shapes.push(found.map(|figure| figure as f32));
+            poor.extend((found[0] < NEEDLE).then_some((t, found[0])));
+        },
+    )?;
     // What it holds is as large as the mesh.
     drop(shape);
     let edges = Edges::of(&mesh.triangles);
-    let ends: Vec<[u32; 2]> = edges.ends().collect();
-    let lengths = collect(&ends, |&ends| length(ends))?;
+    let lengths = of_edges(&edges, |side| length(side.ends))?;
     let curves = Curves::of(mesh, &edges, corner);
     let forced = Forced::of(&curves, &edges, &lengths);
-    let on_boundary = boundary(mesh, &edges);
-    drop(edges);
-    let wrong: Vec<usize> = (0..ends.len()).filter(|&e| !is_unit(lengths[e])).collect();
-    let density = Density::around(&wrong, (&ends, &lengths), &forced);
-    let turns = |e: usize| {
-        let around = around(ends[e]);
+    let judged = |((ends, &length), &forced)| Judged { ends, length, forced };
+    let all = || edges.ends().zip(&lengths).zip(&forced).map(judged);
+    let wrong: Vec<Judged> = all().filter(|edge| !is_unit(edge.length)).collect();
+    let density = Density::around(mesh.points.len(), &wrong, all);
+    let turns = |edge: &Judged| {
+        let around = around(edge.ends);
         around.is_some_and(|around| {
-            forced::straight_edges_fail(around.field.as_ref()) || forced::bends(&around, lengths[e])
+            forced::straight_edges_fail(around.field.as_ref()) || forced::bends(&around, edge.length)
         })
     };
-    let cause = |e: usize| match () {
-        () if forced[e] == Forced::Kept => Cause::Boundary,
-        () if density.explains(e) => Cause::Count,
-        () if forced[e] == Forced::Across => Cause::Boundary,
-        () if turns(e) => Cause::Turning,
+    let cause = |edge: &Judged| match () {
+        () if edge.forced == Forced::Kept => Cause::Boundary,
+        () if density.explains(edge) => Cause::Count,
+        () if edge.forced == Forced::Across => Cause::Boundary,
+        () if turns(edge) => Cause::Turning,
         () => Cause::Irregular,
     };
-    let edge = |e: usize| {
-        let at = position(middle(mesh, &ends[e]));
-        UnmetEdge { edge: ends[e], length: lengths[e], cause: cause(e), at }
+    let unmet = |edge: &Judged| {
+        let at = position(middle(mesh, &edge.ends));
+        UnmetEdge { edge: edge.ends, length: edge.length, cause: cause(edge), at }
     };
-    let stands_on_kept = |[a, b, c]: [u32; 3]| {
-        let sides = [[a, b], [b, c], [c, a]].map(in_order);
-        let found = sides.into_iter().filter_map(|side| ends.binary_search(&side).ok());
-        let shortest = found.min_by(|&e, &f| lengths[e].total_cmp(&lengths[f]));
-        shortest.is_some_and(|e: usize| {
-            forced[e] != Forced::No && curves.has_all(&ends[e]) && isosceles(lengths[e]) < NEEDLE
+    let of_poor = distinct(poor.iter().flat_map(|&(t, _)| edges_of(mesh.triangles[t])).map(in_order));
+    let sides: Vec<Judged> = all().filter(|edge| of_poor.binary_search(&edge.ends).is_ok()).collect();
+    let stands_on_kept = |corners: [u32; 3]| {
+        let at = |side: [u32; 2]| sides.binary_search_by_key(&in_order(side), |edge| edge.ends).ok();
+        let found = edges_of(corners).into_iter().filter_map(|side| Some(sides[at(side)?]));
+        found.min_by(|e, f| e.length.total_cmp(&f.length)).is_some_and(|edge| {
+            edge.forced != Forced::No && curves.has_all(&edge.ends) && isosceles(edge.length) < NEEDLE
         })
     };
     let needle = |(t, quality): (usize, f64)| {
@@ -285,10 +290,10 @@ fn find<'a>(
         let is_forced = curves.has_all(&corners) || stands_on_kept(corners);
         Needle { quality, at: position(middle(mesh, &corners)), is_forced }
     };
-    let mut needles: Vec<Needle> = poor.into_iter().map(needle).collect();
+    let mut needles: Vec<Needle> = poor.iter().copied().map(needle).collect();
     needles.sort_by(|a, b| a.quality.total_cmp(&b.quality));
-    let edges = wrong.into_par_iter().map(edge).collect();
-    let quality = summed(mesh, &on_boundary, (&ends, &lengths), &of_all, &position);
+    let quality = summed(mesh, &edges, &lengths, &of_all, &position);
+    let edges = wrong.par_iter().map(unmet).collect();
     Ok(Unmet { edges, needles, lengths, shapes, quality })
 }
 

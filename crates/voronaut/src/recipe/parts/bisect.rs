@@ -1,7 +1,7 @@
 //! Triangles in parts of like metric area, by recursive bisection; and labels of triangles that hang together around each vertex.
 
 use crate::geometry::{Point3, Tensor3, Vector3};
-use crate::lists::ranked;
+use crate::lists::{marked, ranked};
 use crate::mesh::Edges;
 use crate::mesh::edges::{NONE, fans, previous};
 use std::cmp::Reverse;
@@ -89,6 +89,19 @@ pub(super) const NOWHERE: u32 = u32::MAX;
 /// Changes labels so that around each vertex the triangles of one label hang together by edges, as those of a surface do. Where they
 /// do not, the fewer get the labels of neighbours. Says whether that came to an end.
 pub(super) fn join_around(triangles: &[[u32; 3]], labels: &mut [u32]) -> bool {
+    let vertices = triangles.as_flattened().iter().max().map_or(0, |&v| v as usize + 1);
+    let labelled = triangles.iter().zip(labels.iter()).filter(|(_, label)| **label != NOWHERE);
+    let touched = marked(vertices, labelled.flat_map(|(corners, _)| *corners));
+    let is_near = |t: &usize| triangles[*t].iter().any(|&v| touched[v as usize]);
+    // What is far from labels has no say.
+    let near: Vec<usize> = (0..triangles.len()).filter(is_near).collect();
+    let mut of_near: Vec<u32> = near.iter().map(|&t| labels[t]).collect();
+    let is_done = join_near(&near.iter().map(|&t| triangles[t]).collect::<Vec<_>>(), &mut of_near);
+    near.into_iter().zip(of_near).for_each(|(t, label)| labels[t] = label);
+    is_done
+}
+
+fn join_near(triangles: &[[u32; 3]], labels: &mut [u32]) -> bool {
     let (corners, twins) = (triangles.as_flattened(), Edges::of(triangles).twins());
     for _ in 0..MENDINGS {
         let label = |half_edge: u32| labels[half_edge as usize / 3];

@@ -173,7 +173,7 @@ fn in_parts(
     let junctions = whole.junctions();
     remake(on, &mut whole, ("junctions", &junctions, cut.vertices), make, &watch)?;
     progress.begin("checking", 1)?;
-    let mesh = whole.mesh;
+    let mesh = whole.into_mesh();
     watch.time("check", || on.check(&mesh))?;
     if mesh.points.len() != cut.vertices {
         notes.push(format!("{} vertices were asked for, but parts leave room for {}", cut.vertices, mesh.points.len()));

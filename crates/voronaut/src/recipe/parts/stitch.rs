@@ -43,7 +43,8 @@ impl Whole {
     /// The meshes of all parts, joined.
     pub(super) fn of_parts(on: &impl Divisible, mut kept: Kept, joiner: Joiner) -> Self {
         on.note_kept(&mut kept, &joiner.mesh);
-        let mut whole = Self { kept, mesh: Mesh::default(), cuts: Vec::new(), owners: Vec::new(), junctions: Vec::new() };
+        let mut whole =
+            Self { kept, mesh: Mesh::default(), cuts: Vec::new(), owners: Vec::new(), junctions: Vec::new() };
         whole.close(joiner);
         whole.cuts = distinct(std::mem::take(&mut whole.cuts));
         whole.junctions = whole.meetings();
@@ -141,6 +142,11 @@ impl Whole {
         Joiner { mesh, owners, cuts: Vec::new(), at, listed, coming: coming.into_iter() }
     }
 
+    /// Its mesh, and nothing else.
+    pub(super) fn into_mesh(self) -> Mesh {
+        self.mesh
+    }
+
     /// Makes what was joined the whole.
     pub(super) fn close(&mut self, joiner: Joiner) {
         (self.mesh, self.owners, self.cuts) = (joiner.mesh, joiner.owners, joiner.cuts);
@@ -177,7 +183,9 @@ fn numbers(marks: &[bool]) -> Vec<u32> {
 
 /// Gives things their new numbers; those that have none are left out.
 fn renumber(list: &mut Vec<u32>, number: &[u32]) {
-    list.iter_mut().for_each(|it| *it = number[*it as usize]);
+    for it in list.iter_mut() {
+        *it = number[*it as usize];
+    }
     list.retain(|&it| it != u32::MAX);
 }
 

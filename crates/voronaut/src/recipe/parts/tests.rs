@@ -175,7 +175,8 @@ fn a_metric_that_is_none_in_one_part_is_an_error_with_the_place() {
 #[test]
 fn a_part_that_fails_is_the_error() {
     let (domain, field) = (Domain::shape("rect:0,0,1,1").unwrap(), Uniform(Tensor::IDENTITY));
-    let mut make = |round: &'static str, _: &[Part], _: &mut dyn FnMut(Mesh)| Err(Error::limit(format!("{round} 1"), "try again"));
+    let mut make =
+        |round: &'static str, _: &[Part], _: &mut dyn FnMut(Mesh)| Err(Error::limit(format!("{round} 1"), "try again"));
     let error = mesh_in_parts(&domain, &field, None, Some(2), &options(4000), &mut make, &Silent).unwrap_err();
     assert_eq!(error.to_string(), "limit exceeded: parts 1");
 }
