@@ -13,10 +13,9 @@ use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_3;
 
 /// How what has to be kept bears on an edge.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Forced {
     /// It does not.
-    #[default]
     No,
     /// The edge is short, and joins two places of borders or features across the domain.
     Across,
@@ -110,28 +109,38 @@ fn kept(mesh: &Mesh, edges: &Edges) -> BTreeMap<[u32; 2], Kept> {
 }
 
 /// An edge with its metric length, and how what has to be kept bears on it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Judged {
     pub(super) ends: [u32; 2],
     pub(super) length: f64,
     pub(super) forced: Forced,
 }
 
-/// The edges around some of a mesh.
+/// The edges around some of a mesh: those at an end of one of these, or at a neighbour of such an end.
 pub(super) struct Density {
-    /// Those at each vertex that is an end of one of these, or a neighbour of such an end.
-    at: Rows<Judged>,
+    /// In order.
+    edges: Vec<Judged>,
+    /// Those at each vertex.
+    at: Rows<u32>,
 }
 
 impl Density {
-    /// Of all edges, in order, around those that are asked for.
-    pub(super) fn around<I: Iterator<Item = Judged>>(vertices: usize, asked: &[Judged], all: impl Fn() -> I) -> Self {
+    /// What it is of: of all edges, in order, those around some.
+    pub(super) fn near<I: Iterator<Item = Judged>>(
+        vertices: usize,
+        asked: &[Judged],
+        all: impl Fn() -> I,
+    ) -> Vec<Judged> {
         let is_end = marked(vertices, asked.iter().flat_map(|edge| edge.ends));
         let touching = all().filter(|edge| edge.ends.iter().any(|&v| is_end[v as usize]));
         let is_near = marked(vertices, touching.flat_map(|edge| edge.ends));
-        let near = all().flat_map(|edge| edge.ends.map(|v| (v, edge))).filter(|(v, _)| is_near[*v as usize]);
-        let near: Vec<(u32, Judged)> = near.collect();
-        Self { at: Rows::new(vertices, near.iter().copied()) }
+        all().filter(|edge| edge.ends.iter().any(|&v| is_near[v as usize])).collect()
+    }
+
+    /// Of these edges.
+    pub(super) fn of(vertices: usize, edges: Vec<Judged>) -> Self {
+        let at = Rows::new(vertices, (0..).zip(&edges).flat_map(|(e, edge)| edge.ends.map(|v| (v, e))));
+        Self { edges, at }
     }
 
     /// Whether an edge's length is what it is because of the density around: of the edges at its ends and at their neighbours
@@ -148,12 +157,11 @@ impl Density {
 
     /// The lengths of edges at the ends of an edge and at their neighbours, in order, without those that are forced.
     fn patch(&self, edge: &Judged) -> Vec<f64> {
-        let around = |v: u32| self.at.row(v as usize);
-        let vertices = distinct(edge.ends.iter().flat_map(|&v| around(v)).flat_map(|edge| edge.ends));
-        let mut edges: Vec<Judged> = vertices.into_iter().flat_map(|v| around(v).iter().copied()).collect();
-        edges.sort_unstable_by_key(|edge| edge.ends);
-        edges.dedup_by_key(|edge| edge.ends);
-        edges.into_iter().filter(|edge| edge.forced == Forced::No).map(|edge| edge.length).collect()
+        let around = |v: u32| self.at.row(v as usize).iter().copied();
+        let vertices = edge.ends.into_iter().flat_map(around).flat_map(|e| self.edges[e as usize].ends);
+        let edges = distinct(distinct(vertices).into_iter().flat_map(around));
+        let told = edges.into_iter().map(|e| self.edges[e as usize]).filter(|edge| edge.forced == Forced::No);
+        told.map(|edge| edge.length).collect()
     }
 }
 

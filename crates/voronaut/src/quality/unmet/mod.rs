@@ -203,7 +203,7 @@ pub fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
     };
     let (corners, mean) = Corners::of(mesh, metric)?;
     let shape = move |t| Shape::of(mean(t), mesh.corners_of(t));
-    find(mesh, STRAIGHT, |ends| corners.edge_length(ends), shape, around, Position::in_plane)
+    find(mesh, STRAIGHT, move |ends| corners.edge_length(ends), shape, around, Position::in_plane)
 }
 
 /// The same of the mesh of a surface in a metric on it, see [`surface_quality`](super::surface_quality()). Features turn in a
@@ -249,16 +249,22 @@ fn find<'a>(
             poor.extend((found[0] < NEEDLE).then_some((t, found[0])));
         },
     )?;
-    // What it holds is as large as the mesh.
+    // What it holds is as large as the mesh, as is what lengths are measured by.
     drop(shape);
     let edges = Edges::of(&mesh.triangles);
     let lengths = of_edges(&edges, |side| length(side.ends))?;
+    drop(length);
     let curves = Curves::of(mesh, &edges, corner);
     let forced = Forced::of(&curves, &edges, &lengths);
     let judged = |((ends, &length), &forced)| Judged { ends, length, forced };
     let all = || edges.ends().zip(&lengths).zip(&forced).map(judged);
     let wrong: Vec<Judged> = all().filter(|edge| !is_unit(edge.length)).collect();
-    let density = Density::around(mesh.points.len(), &wrong, all);
+    let near = Density::near(mesh.points.len(), &wrong, all);
+    let of_poor = distinct(poor.iter().flat_map(|&(t, _)| edges_of(mesh.triangles[t])).map(in_order));
+    let sides: Vec<Judged> = all().filter(|edge| of_poor.binary_search(&edge.ends).is_ok()).collect();
+    let quality = summed(mesh, &edges, &lengths, &of_all, &position);
+    drop((edges, forced));
+    let density = Density::of(mesh.points.len(), near);
     let turns = |edge: &Judged| {
         let around = around(edge.ends);
         around.is_some_and(|around| {
@@ -276,8 +282,6 @@ fn find<'a>(
         let at = position(middle(mesh, &edge.ends));
         UnmetEdge { edge: edge.ends, length: edge.length, cause: cause(edge), at }
     };
-    let of_poor = distinct(poor.iter().flat_map(|&(t, _)| edges_of(mesh.triangles[t])).map(in_order));
-    let sides: Vec<Judged> = all().filter(|edge| of_poor.binary_search(&edge.ends).is_ok()).collect();
     let stands_on_kept = |corners: [u32; 3]| {
         let at = |side: [u32; 2]| sides.binary_search_by_key(&in_order(side), |edge| edge.ends).ok();
         let found = edges_of(corners).into_iter().filter_map(|side| Some(sides[at(side)?]));
@@ -292,7 +296,6 @@ fn find<'a>(
     };
     let mut needles: Vec<Needle> = poor.iter().copied().map(needle).collect();
     needles.sort_by(|a, b| a.quality.total_cmp(&b.quality));
-    let quality = summed(mesh, &edges, &lengths, &of_all, &position);
     let edges = wrong.par_iter().map(unmet).collect();
     Ok(Unmet { edges, needles, lengths, shapes, quality })
 }
