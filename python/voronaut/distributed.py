@@ -14,6 +14,7 @@ import importlib.metadata
 import os
 import sys
 import tempfile
+import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
@@ -33,10 +34,12 @@ from ._run import Options, Progress
 
 __all__ = ["Share", "mesh"]
 
-_MMAP_THRESHOLD = -3
-"""The number of that option of glibc's mallopt."""
 _PERIOD = 0.005
 """Seconds between two looks at whether there is news."""
+_ARENA_MAX, _MMAP_THRESHOLD = -8, -3
+"""The numbers of these options of glibc's mallopt."""
+_GIVES_BACK = 0.05
+"""Seconds between two times that memory is given back."""
 
 
 class Job(NamedTuple):
@@ -214,6 +217,14 @@ class _Maker:
         return place
 
 
+def _tune(option: int, value: int) -> None:
+    """Sets an option of the C library's memory, where it has them."""
+    if sys.platform == "linux":
+        mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
+        if mallopt is not None:
+            mallopt(option, value)
+
+
 def _give_back() -> None:
     """Has the C library return what was freed to the system, where it can: each part is made on threads of its own, whose memory glibc
     would keep apart, so that a rank would come to hold several parts' worth."""
@@ -221,15 +232,6 @@ def _give_back() -> None:
         trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
         if trim is not None:
             trim(0)
-
-
-def _keep_little() -> None:
-    """Has the C library give back at once what is larger than a megabyte, where it can. glibc comes to keep up to 64 MB of what was
-    freed: with the whole mesh of ranks' parts that is half as much again."""
-    if sys.platform == "linux":
-        mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
-        if mallopt is not None:
-            mallopt(_MMAP_THRESHOLD, 1 << 20)
 
 
 def _values(function: Callable[..., Any], points: Floats) -> Any:
@@ -248,6 +250,9 @@ class _Team:
     def __init__(self, comm: Any, maker: _Maker) -> None:
         # What is said here is not mixed up with what the caller's ranks say to each other.
         self.comm: Any = None if comm is None else comm.Dup()
+        if comm is not None:
+            # Of what each thread would have to itself not all can be given back.
+            _tune(_ARENA_MAX, 1)
         self.maker = maker
         self.rank = 0 if comm is None else comm.Get_rank()
         self.others = 0 if comm is None else comm.Get_size() - 1
@@ -256,11 +261,10 @@ class _Team:
         self.done: list[tuple[int, Path]] = []
         self.faults: list[tuple[int, Fault]] = []
         self.scratch = Path()
+        self.done_with: threading.Event | None = None
 
     def lead(self, parts: int | str, options: Options, progress: Progress) -> Mesh:
         asked, fault = {**options, "parts": parts}, None
-        if self.comm is not None:
-            _keep_little()
         # What is done waits in files: it would take the memory in which parts are made.
         with tempfile.TemporaryDirectory(prefix="voronaut-") as scratch:
             self.scratch = Path(scratch)
@@ -270,6 +274,8 @@ class _Team:
                 fault = f"{type(error).__name__}: {error}"
                 raise
             finally:
+                if self.done_with is not None:
+                    self.done_with.set()
                 self.jobs.clear()
                 self.await_others()
                 for rank in self.idle:
@@ -294,20 +300,22 @@ class _Team:
             while self.jobs:
                 self.keep(*_attempt(self.maker, self.jobs.popleft(), self.maker.place, self.serve))
             self.await_others()
+            self.tidy()
         if self.faults:
             raise Error(*min(self.faults)[1])
         return (_arrays_in(place) for _, place in sorted(self.done))
 
-    def keep(self, number: int, made: dict[str, Any] | Path | None, fault: Fault | None) -> None:
+    def keep(self, number: int, made: dict[str, Any] | bytes | Path | None, fault: Fault | None) -> None:
         if fault is not None:
             self.faults.append((number, fault))
             self.jobs.clear()
-        elif isinstance(made, Path):
-            self.done.append((number, made))
-        elif made is not None:
-            place = self.scratch / f"{number}.meshb"
+            return
+        place = made if isinstance(made, Path) else self.scratch / f"{number}.meshb"
+        if isinstance(made, bytes):
+            place.write_bytes(made)
+        elif isinstance(made, dict):
             Mesh._of(made).save(place)
-            self.done.append((number, place))
+        self.done.append((number, place))
 
     def serve(self, *_: object) -> None:
         """Takes what others have made, and gives them more to do."""
@@ -323,6 +331,20 @@ class _Team:
             time.sleep(_PERIOD)
             self.serve()
 
+    def tidy(self) -> None:
+        """From now on, while rank 0 holds the whole mesh, has what was freed given back again and again: it would come to be half as
+        much as is in use."""
+        if self.done_with is None:
+            # What is larger is given back at once; while parts are made that takes a tenth of the time.
+            _tune(_MMAP_THRESHOLD, 1 << 20)
+            done = self.done_with = threading.Event()
+
+            def give_back() -> None:
+                while not done.wait(_GIVES_BACK):
+                    _give_back()
+
+            threading.Thread(target=give_back, daemon=True).start()
+
     def follow(self) -> None:
         """Does what rank 0 says. Whoever waits sleeps: MPI's own waiting takes a core."""
         while True:
@@ -331,7 +353,8 @@ class _Team:
             job = self.comm.recv()
             if not isinstance(job, Job):
                 break
-            self.comm.send((self.rank, _attempt(self.maker, job, self.maker.place)), 0)
+            number, made, failed = _attempt(self.maker, job, self.maker.place)
+            self.comm.send((self.rank, (number, _packed(made) if isinstance(made, dict) else made, failed)), 0)
         self.comm.Free()
         if job is not None:
             raise Error(f"rank 0: {job}")
@@ -351,6 +374,14 @@ def _attempt(maker: _Maker, job: Job, place: Callable[[Job], Union[Path, None]],
         return job.number, maker.make(job, place(job), progress), None
     except Exception as error:
         return job.number, None, (f"{job}: {getattr(error, 'what', error)}", getattr(error, "help", ""))
+
+
+def _packed(made: dict[str, Any]) -> bytes:
+    """A mesh as it is in a file: less than half of its arrays."""
+    with tempfile.TemporaryDirectory(prefix="voronaut-") as scratch:
+        place = Path(scratch) / "part.meshb"
+        Mesh._of(made).save(place)
+        return place.read_bytes()
 
 
 def _arrays_in(place: Path) -> dict[str, Any]:

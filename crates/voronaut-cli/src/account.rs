@@ -70,7 +70,7 @@ fn closed_form(meshed: &Meshed, unmet: &Unmet) -> Option<ClosedForm> {
 /// Adds what a planar mesh is in a metric; its edges that are not of unit length.
 pub(crate) fn measure_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
     // Causes are those of straight edges.
-    let unmet = if mesh.curved.is_some() { Unmet::default() } else { unmet(mesh, metric)? };
+    let unmet = if mesh.curved.is_some() { Unmet::default() } else { unmet(mesh, metric, |_| ())? };
     match &unmet.quality {
         Some(quality) => report.add_quality(quality),
         None => report.add_quality(&metric_quality(mesh, metric)?),
@@ -87,7 +87,7 @@ pub(crate) fn measure_on_surface(
     metric: &Scaled,
 ) -> Result<Unmet> {
     report.curvature = metric.field.curvature_figures();
-    let unmet = surface_unmet(mesh, surface, metric)?;
+    let unmet = surface_unmet(mesh, surface, metric, |_| ())?;
     match &unmet.quality {
         Some(quality) => report.add_quality(quality),
         None => report.add_quality(&surface_quality(mesh, surface, metric)?),

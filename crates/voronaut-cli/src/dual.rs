@@ -19,8 +19,7 @@ use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::quality::{
-    Meetings, MetricQuality, Unmet, Validity, crossing_edges, metric_quality, surface_quality, surface_unmet, unmet,
-    validity, validity_on,
+    Meetings, MetricQuality, Validity, crossing_edges, metric_quality, surface_quality, validity, validity_on,
 };
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, GradedAt, MeshOptions, SeedDual};
@@ -192,8 +191,7 @@ fn in_plane(args: &DualArgs, world: &World, domain: &Domain, mended: &Mended, mu
     };
     let picture = pictures::in_plane(outputs, &mesh, Some(metric), &layers)?;
     let sheet = pages::of(&args.paged, &args.out, &mesh, |sheet| {
-        let found = if report.validity.valid { unmet(&mesh, metric)? } else { Unmet::default() };
-        pages::measured_in_plane(sheet, metric, found);
+        pages::measured_in_plane(sheet, metric, report.validity.valid)?;
         if let Some(curved) = curved.as_ref().filter(|_| args.paged.cells) {
             pages::show_diagram(sheet, &diagram, curved);
         }
@@ -252,9 +250,7 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
     let is_drawn = args.outputs.picture.is_some();
     let picture = is_drawn.then(|| pictures::on_surface(&args.outputs, &diagram, &mesh)).transpose()?;
     let sheet = pages::of(&args.paged, &args.out, &mesh, |sheet| {
-        let is_valid = report.validity.valid;
-        let found = if is_valid { surface_unmet(&mesh, &input.surface, metric.as_ref())? } else { Unmet::default() };
-        pages::measured_on_surface(sheet, input, metric.as_ref(), found);
+        pages::measured_on_surface(sheet, input, metric.as_ref(), report.validity.valid)?;
         if args.paged.cells {
             pages::show_diagram_on(sheet, &diagram);
         }

@@ -298,7 +298,7 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     report.interpolation = aim.filter(|_| options.order == 1).map(error).transpose()?;
     report.seconds.total = world.seconds() - start;
     let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
-        pages::measured_in_plane(sheet, &scaled, unmet.clone());
+        pages::measured_in_plane(sheet, &scaled, meshed.mesh.curved.is_none())?;
         args.drawn().map_or(Ok(()), |drawn| pages::with_cells(sheet, domain, &scaled, drawn))
     })?;
     let layers = Layers {
@@ -364,7 +364,7 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
         let at = GradedAt::Scale(meshed.metric_scale);
         let field = fields::on_surface(world, &args.metric, whole, &args.metric_choices, at)?;
         let scaled = Scaled { field: field.as_ref(), factor: meshed.metric_scale };
-        pages::measured_on_surface(sheet, whole, &scaled, unmet);
+        pages::measured_on_surface(sheet, whole, &scaled, true)?;
         args.drawn().map_or(Ok(()), |drawn| pages::with_cells_on(sheet, whole, &scaled, drawn))
     })?;
     finish(args, world, meshed.mesh, picture, sheet, &report)

@@ -12,7 +12,7 @@ use voronaut::geodesic::Method;
 use voronaut::geometry::{Point, Point3};
 use voronaut::mesh::{Edges, Mesh, SolutionValues};
 use voronaut::metric::MetricField;
-use voronaut::quality::Unmet;
+use voronaut::quality::{Unmet, surface_unmet, unmet};
 use voronaut::realisation::Realisation;
 use voronaut::surface::Input;
 use voronaut::surface::metric::SurfaceMetric;
@@ -64,21 +64,44 @@ fn numbers(Field { name, values }: Field) -> Vec<(String, Vec<f64>)> {
     all
 }
 
-/// Adds what a planar mesh is in a metric.
-pub(crate) fn measured_in_plane(sheet: &mut Sheet, metric: &dyn MetricField, unmet: Unmet) {
+/// Adds a metric, and what a planar mesh is in it, if it is a mesh.
+pub(crate) fn measured_in_plane(sheet: &mut Sheet, metric: &dyn MetricField, is_valid: bool) -> Result<()> {
     let tensor = |&[x, y, _]: &[f64; 3]| {
         let m = metric.at(Point::new(x, y));
         [m.xx, m.xy, m.yy, 0.0, 0.0, 0.0]
     };
     sheet.tensors = sheet.mesh.points.iter().map(tensor).collect();
-    sheet.unmet = Some(unmet);
+    if is_valid {
+        judged(sheet, |mesh, see| unmet(mesh, metric, see))?;
+    }
+    Ok(())
 }
 
-/// Adds what the mesh of a surface is in a metric on it; far from the surface there is none.
-pub(crate) fn measured_on_surface(sheet: &mut Sheet, input: &Input, metric: &dyn SurfaceMetric, unmet: Unmet) {
+/// Adds a metric, and what the mesh of a surface is in it, if it is a mesh; far from the surface there is none.
+pub(crate) fn measured_on_surface(
+    sheet: &mut Sheet,
+    input: &Input,
+    metric: &dyn SurfaceMetric,
+    is_valid: bool,
+) -> Result<()> {
     let tensor = |&p: &[f64; 3]| input.closest(p.into()).map_or([f64::NAN; 6], |place| metric.at(&place).to_disk());
     sheet.tensors = sheet.mesh.points.iter().map(tensor).collect();
-    sheet.unmet = Some(unmet);
+    if is_valid {
+        judged(sheet, |mesh, see| surface_unmet(mesh, &input.surface, metric, see))?;
+    }
+    Ok(())
+}
+
+/// Adds the shapes of triangles, and edges that are not of unit length.
+fn judged(sheet: &mut Sheet, judge: impl FnOnce(&Mesh, &mut dyn FnMut([f64; 2])) -> Result<Unmet>) -> Result<()> {
+    let (mut qualities, mut angles) = (Vec::new(), Vec::new());
+    let see = &mut |[quality, angle]: [f64; 2]| {
+        qualities.push(quality);
+        angles.push(angle);
+    };
+    sheet.unmet = Some(judge(&sheet.mesh, see)?);
+    sheet.triangles.extend([("quality".into(), qualities), ("smallest angle".into(), angles)]);
+    Ok(())
 }
 
 /// Adds the cells of a planar mesh's vertices, distances, and its edges as geodesics.

@@ -12,7 +12,6 @@ use std::path::{Path, PathBuf};
 use voronaut::canvas;
 use voronaut::canvas::VERTICES_PER_SEED;
 use voronaut::domain::{Domain, from_mesh};
-use voronaut::quality::{surface_unmet, unmet};
 use voronaut::recipe::GradedAt;
 use voronaut::surface::{Input, Surface};
 use voronaut::{Error, Result};
@@ -153,8 +152,7 @@ fn in_plane(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, path:
     let own = args.domain.clone().unwrap_or_else(|| path.to_string_lossy().into_owned());
     let scale = args.metric_scale.unwrap_or(1.0);
     let metric = fields::measuring(world, text, domain, &own, &args.metric_choices, scale)?;
-    let found = unmet(&sheet.mesh, metric.as_ref())?;
-    pages::measured_in_plane(sheet, metric.as_ref(), found);
+    pages::measured_in_plane(sheet, metric.as_ref(), true)?;
     args.drawn().map_or(Ok(()), |drawn| pages::with_cells(sheet, domain, metric.as_ref(), drawn))
 }
 
@@ -162,7 +160,6 @@ fn on_surface(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, inp
     let factor = args.metric_scale.unwrap_or(1.0);
     let field = fields::on_surface(world, text, input, &args.metric_choices, GradedAt::Scale(factor))?;
     let scaled = Scaled { field: field.as_ref(), factor };
-    let found = surface_unmet(&sheet.mesh, &input.surface, &scaled)?;
-    pages::measured_on_surface(sheet, input, &scaled, found);
+    pages::measured_on_surface(sheet, input, &scaled, true)?;
     args.drawn().map_or(Ok(()), |drawn| pages::with_cells_on(sheet, input, &scaled, drawn))
 }

@@ -97,7 +97,7 @@ mod tests {
     fn edges_have_the_colour_of_their_cause() {
         let none = Unmet::default();
         assert_eq!(paths(&none), [[0; 2]; 4]);
-        let fine = unmet(&grid(4, 4), &|_: Point| Tensor::isotropic(0.5)).unwrap();
+        let fine = unmet(&grid(4, 4), &|_: Point| Tensor::isotropic(0.5), |_| ()).unwrap();
         assert_eq!(paths(&fine), [[0, 0], [0, 1], [0, 0], [0, 0]]);
         let mut one = fine.clone();
         one.edges.truncate(1);

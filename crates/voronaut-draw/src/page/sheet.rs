@@ -108,11 +108,7 @@ impl Sheet {
                 add(name, on, Planes::of_reals(places.iter().map(|&i| values[i as usize])));
             }
         }
-        if let Some(unmet) = self.unmet.as_ref().filter(|unmet| unmet.shapes.len() == self.mesh.triangles.len()) {
-            let shape =
-                |k: usize| Planes::of_reals(order.triangles.iter().map(move |&t| unmet.shapes[t as usize][k].into()));
-            add("quality", "triangle", shape(0));
-            add("smallest angle", "triangle", shape(1));
+        if let Some(unmet) = &self.unmet {
             let (lengths, causes) = self.of_edges(unmet, order);
             add("length", "edge", Planes::of_reals(lengths));
             add("cause", "cause", Planes::of_integers(causes));

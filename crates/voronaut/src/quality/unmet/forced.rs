@@ -134,7 +134,10 @@ impl Density {
         let is_end = marked(vertices, asked.iter().flat_map(|edge| edge.ends));
         let touching = all().filter(|edge| edge.ends.iter().any(|&v| is_end[v as usize]));
         let is_near = marked(vertices, touching.flat_map(|edge| edge.ends));
-        all().filter(|edge| edge.ends.iter().any(|&v| is_near[v as usize])).collect()
+        let around = || all().filter(|edge| edge.ends.iter().any(|&v| is_near[v as usize]));
+        let mut edges = Vec::with_capacity(around().count());
+        edges.extend(around());
+        edges
     }
 
     /// Of these edges.

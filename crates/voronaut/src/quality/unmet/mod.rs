@@ -91,8 +91,6 @@ pub struct Unmet {
     pub needles: Vec<Needle>,
     /// The metric lengths of all edges of the mesh, in the order of [`Edges`].
     pub lengths: Vec<f64>,
-    /// The quality of each triangle, and its smallest angle in the metric (degrees); as exact as pictures need them.
-    pub shapes: Vec<[f32; 2]>,
     /// What [`metric_quality`](super::metric_quality()) finds, or [`surface_quality`](super::surface_quality()) of a surface; `None` where
     /// there are no triangles.
     pub quality: Option<MetricQuality>,
@@ -189,12 +187,12 @@ impl Unmet {
 }
 
 /// Finds the edges of a planar mesh that are not of unit length in a metric, and why, in parallel; the same bits for any number
-/// of threads. Corners of the mesh's borders and labelled edges are those in its lists, and wherever these edges end, fork,
+/// of threads. `see` is shown the quality and the smallest angle (degrees) of each triangle, in order. Corners of the mesh's borders and labelled edges are those in its lists, and wherever these edges end, fork,
 /// turn, or change their label.
 ///
 /// # Errors
 /// As [`metric_quality`](super::metric_quality), but that a mesh without triangles has no such edges.
-pub fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
+pub fn unmet(mesh: &Mesh, metric: &dyn MetricField, see: impl FnMut([f64; 2])) -> Result<Unmet> {
     demand_planar(mesh)?;
     let around = |ends: [u32; 2]| {
         let [a, b] = ends.map(|v| mesh.point(v));
@@ -203,7 +201,7 @@ pub fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
     };
     let (corners, mean) = Corners::of(mesh, metric)?;
     let shape = move |t| Shape::of(mean(t), mesh.corners_of(t));
-    find(mesh, STRAIGHT, move |ends| corners.edge_length(ends), shape, around, Position::in_plane)
+    find(mesh, STRAIGHT, move |ends| corners.edge_length(ends), shape, around, Position::in_plane, see)
 }
 
 /// The same of the mesh of a surface in a metric on it, see [`surface_quality`](super::surface_quality()). Features turn in a
@@ -211,7 +209,12 @@ pub fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
 ///
 /// # Errors
 /// As [`surface_quality`](super::surface_quality()), but that a mesh without triangles has no such edges.
-pub fn surface_unmet(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric) -> Result<Unmet> {
+pub fn surface_unmet(
+    mesh: &Mesh,
+    surface: &Surface,
+    metric: &dyn SurfaceMetric,
+    see: impl FnMut([f64; 2]),
+) -> Result<Unmet> {
     demand_vertices(mesh)?;
     let field = Field::new(surface, metric);
     let around = |ends: [u32; 2]| {
@@ -220,7 +223,7 @@ pub fn surface_unmet(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric)
         Some(Around { field: Box::new(metric), half: edge * 0.5 })
     };
     let length = |ends: [u32; 2]| field.length(ends.map(|v| mesh.position(v)));
-    find(mesh, FeatureOptions::DEFAULT_ANGLE.to_radians(), length, field.shapes(mesh)?, around, Position::from)
+    find(mesh, FeatureOptions::DEFAULT_ANGLE.to_radians(), length, field.shapes(mesh)?, around, Position::from, see)
 }
 
 /// What the metric is around the middle of an edge, which lies at the origin.
@@ -238,14 +241,15 @@ fn find<'a>(
     shape: impl Fn([u32; 3]) -> Shape + Sync,
     around: impl Fn([u32; 2]) -> Option<Around<'a>> + Sync + Send,
     position: impl Fn(Point3) -> Position + Sync,
+    mut see: impl FnMut([f64; 2]),
 ) -> Result<Unmet> {
-    let (mut shapes, mut poor) = (Vec::with_capacity(mesh.triangles.len()), Vec::new());
+    let mut poor = Vec::new();
     let of_all = Shapes::of(
         mesh,
         |t| Ok(shape(mesh.triangles[t])),
         &position,
         |t, found| {
-            shapes.push(found.map(|figure| figure as f32));
+            see(found);
             poor.extend((found[0] < NEEDLE).then_some((t, found[0])));
         },
     )?;
@@ -297,7 +301,7 @@ fn find<'a>(
     let mut needles: Vec<Needle> = poor.iter().copied().map(needle).collect();
     needles.sort_by(|a, b| a.quality.total_cmp(&b.quality));
     let edges = wrong.par_iter().map(unmet).collect();
-    Ok(Unmet { edges, needles, lengths, shapes, quality })
+    Ok(Unmet { edges, needles, lengths, quality })
 }
 
 /// The quality of a triangle of two unit edges and one of this metric length.

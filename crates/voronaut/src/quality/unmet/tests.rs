@@ -9,6 +9,14 @@ use crate::surface::metric::Constant;
 
 const UNIT: fn(Point) -> Tensor = |_| Tensor::IDENTITY;
 
+fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
+    super::unmet(mesh, metric, |_| ())
+}
+
+fn surface_unmet(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric) -> Result<Unmet> {
+    super::surface_unmet(mesh, surface, metric, |_| ())
+}
+
 /// How many edges there are of each cause, in order.
 fn counts(found: &Unmet) -> [usize; 4] {
     Cause::ALL.map(|cause| found.figures().by_cause[&cause].count)
