@@ -176,7 +176,7 @@ impl InParts {
             return field.whole(count, options, &mut |round, parts, take| made(maker, round, parts, take), progress);
         }
         let mut all = |_, parts: &[Part], take: Take| {
-            parts.iter().try_for_each(|part| Ok(take(field.part(part, options, progress)?)))
+            parts.iter().try_for_each(|part| field.part(part, options, progress).map(&mut *take))
         };
         field.whole(count, options, &mut all, progress)
     }
@@ -282,7 +282,8 @@ impl Workers<'_> {
         if let Some(error) = fault.into_inner().unwrap_or_else(PoisonError::into_inner) {
             return Err(error);
         }
-        (0..parts.len()).try_for_each(|i| Ok(take(voronaut_io::read(&done_name(&self.job(round, i)))?.mesh)))
+        let read = |i: usize| voronaut_io::read(&done_name(&self.job(round, i)));
+        (0..parts.len()).try_for_each(|i| read(i).map(|document| take(document.mesh)))
     }
 
     fn job(&self, round: &str, i: usize) -> PathBuf {

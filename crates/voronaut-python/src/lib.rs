@@ -87,7 +87,7 @@ fn maker(function: Py<PyAny>, course: Arc<Course>) -> PartsMaker {
             };
             let parts = parts.iter().map(part).collect::<PyResult<Vec<_>>>()?;
             let made = function.bind(py).call1((round, parts))?;
-            made.try_iter()?.try_for_each(|mesh| Ok(take(arrays::mesh_of(mesh?.cast()?)?)))
+            made.try_iter()?.try_for_each(|mesh| arrays::mesh_of(mesh?.cast()?).map(&mut *take))
         })
     })
 }

@@ -21,7 +21,7 @@ fn made(
     let mut make = |_: &'static str, parts: &[Part], take: &mut dyn FnMut(Mesh)| {
         rounds.push(parts.len());
         let mesh = |part| mesh_surface_part(part, input, metric, None, options, &Silent);
-        parts.iter().try_for_each(|part| Ok(take(mesh(part)?)))
+        parts.iter().try_for_each(|part| mesh(part).map(&mut *take))
     };
     let meshed = mesh_surface_in_parts(input, metric, Some(parts), options, &mut make, &Silent)?;
     Ok((meshed, rounds))

@@ -18,7 +18,7 @@ fn made(domain: &Domain, field: &dyn MetricField, parts: usize, options: &MeshOp
     let mut rounds = Rounds::new();
     let mut make = |round, parts: &[Part], take: &mut dyn FnMut(Mesh)| {
         rounds.push((round, parts.to_vec()));
-        parts.iter().try_for_each(|part| Ok(take(mesh_part(part, field, None, options, &Silent)?)))
+        parts.iter().try_for_each(|part| mesh_part(part, field, None, options, &Silent).map(&mut *take))
     };
     let meshed = mesh_in_parts(domain, field, None, Some(parts), options, &mut make, &Silent)?;
     Ok((meshed, rounds))
@@ -195,7 +195,7 @@ fn parts_come_with_their_own_metric() {
         let sizes = parts.iter().map(|part| part.metric.as_ref().map_or(usize::MAX, |metric| metric.1.len()));
         // Strips are long, and of few vertices much of the whole.
         largest = sizes.filter(|_| round == "parts").fold(largest, usize::max);
-        parts.iter().try_for_each(|part| Ok(take(mesh_part(part, &nowhere, None, &options(4000), &Silent)?)))
+        parts.iter().try_for_each(|part| mesh_part(part, &nowhere, None, &options(4000), &Silent).map(&mut *take))
     };
     let meshed = mesh_in_parts(&domain, &field, None, Some(4), &options(4000), &mut make, &Silent).unwrap();
     demand_whole(&domain, &meshed, 4000);
