@@ -130,6 +130,7 @@ def mesh(
         How many parts, of 1,000 vertices or more; by itself as many as there are 100,000 vertices.
     comm : communicator of mpi4py, optional
         Whose ranks make parts, one at a time each; all of them call this. Without, as many threads of this process as there are cores.
+        So that ranks need little memory, glibc is told to use one arena for all threads of theirs from then on.
     parts_dir : path, optional
         A folder for the meshes of parts that are done, which ranks share; whoever starts again with it goes on from them.
     gather : bool, default True

@@ -187,8 +187,8 @@ impl Unmet {
 }
 
 /// Finds the edges of a planar mesh that are not of unit length in a metric, and why, in parallel; the same bits for any number
-/// of threads. `see` is shown the quality and the smallest angle (degrees) of each triangle, in order. Corners of the mesh's borders and labelled edges are those in its lists, and wherever these edges end, fork,
-/// turn, or change their label.
+/// of threads. `see` is shown the quality and the smallest angle (degrees) of each triangle, in order. Corners of the mesh's borders and
+/// labelled edges are those in its lists, and wherever these edges end, fork, turn, or change their label.
 ///
 /// # Errors
 /// As [`metric_quality`](super::metric_quality), but that a mesh without triangles has no such edges.
