@@ -1,7 +1,6 @@
 //! The edges of a list of triangles, and which triangles have them: found by sorting, so in the same order on every machine.
 
 use crate::lists::{Classes, Rows, distinct, in_order};
-use crate::parallel::prelude::*;
 use smallvec::SmallVec;
 use std::borrow::Cow;
 
@@ -57,7 +56,7 @@ impl<'a> Edges<'a> {
             rows.into_sorted_by_key(by_ends)
         } else {
             let mut list: Vec<u32> = all.collect();
-            list.par_sort_unstable_by_key(by_ends);
+            list.sort_unstable_by_key(by_ends);
             list
         };
         Self { triangles, half_edges }
