@@ -75,8 +75,8 @@ pub(crate) fn run(args: &CheckArgs, world: &World) -> Result<()> {
     let fault = found.demand();
     let meets = found.meetings.note();
     let mut report = Report::new(&mesh, found);
-    curves::report(&mut report, &mesh);
     report.notes = notes;
+    curves::report(&mut report, &mesh);
     report.options = json!({
         "mesh": args.mesh, "metric": args.metric, "metric_scale": args.metric_scale, "domain": args.domain, "function": args.function, "norm": args.metric_choices.norm.to_string(),
         "background": args.metric_choices.background, "bounds": args.metric_choices.bounds(),
@@ -121,11 +121,11 @@ fn demand_for_curves(args: &CheckArgs, mesh: &Mesh) -> Result<()> {
     if mesh.curved.is_none() {
         return Ok(());
     }
-    let straight = "convert the mesh with --order 1, to examine it with straight triangles";
-    refuse([
-        (!mesh.is_planar(), "curved triangles of a surface", straight),
-        (args.function.is_some(), "the error of linear interpolation on curved triangles", "leave out --function"),
-    ])?;
+    refuse([(
+        args.function.is_some(),
+        "the error of linear interpolation on curved triangles",
+        "leave out --function",
+    )])?;
     curves::demand_drawable(&args.outputs)
 }
 

@@ -40,4 +40,7 @@ pub(crate) fn outline(mesh: &Mesh) -> Mesh {
 pub(crate) fn report(report: &mut Report, mesh: &Mesh) {
     let counts = mesh.curved.as_ref().map(|curved| [("order", curved.order), ("nodes", curved.nodes.len())]);
     report.curved = counts.map(|counts| counts.into_iter().collect());
+    if counts.is_some() && !mesh.is_planar() {
+        report.notes.push("lengths, shapes and distances are of straight triangles between the vertices".into());
+    }
 }

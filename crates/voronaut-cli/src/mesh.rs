@@ -21,7 +21,9 @@ use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField};
 use voronaut::quality::{InterpolationError, Unmet, interpolation_error, interpolation_error_on};
 use voronaut::realisation::Realisation;
-use voronaut::recipe::{self, Aim, Centroid, Effort, GradedAt, Idle, MeshOptions, Meshed, Mesher, Seeding, Task};
+use voronaut::recipe::{
+    self, Aim, Boundary, Centroid, Effort, GradedAt, Idle, MeshOptions, Meshed, Mesher, Seeding, Task,
+};
 use voronaut::surface::metric::Spec;
 use voronaut::surface::{FeatureOptions, Input, Mended};
 use voronaut_draw::{Layers, Sheet};
@@ -74,9 +76,14 @@ pub(crate) struct MeshArgs {
     /// In the plane: leave the edges of the domain's curves as they are, every one an edge of the mesh
     #[arg(long, conflicts_with = "hausd")]
     pub(crate) required: bool,
-    /// In the plane: the order of triangles: 1, straight; 2 or 3, curved to follow the metric (.msh, .vtu, .mesh and .meshb hold them)
+    /// The order of triangles: 1, straight; 2 or 3, curved: in the plane to follow the metric, on sphere:, torus: and f = 0 to follow the
+    /// surface (.msh, .vtu, .mesh and .meshb hold them)
     #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=3), default_value_t = MeshOptions::default().order as u8)]
     pub(crate) order: u8,
+    /// What boundaries of curved triangles are: auto (the circle of disk:, else polyline), polyline (the domain's own straight
+    /// segments), or spline (smooth curves through its vertices; corners of more than 45 degrees stay)
+    #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().boundary)]
+    pub(crate) boundary: Boundary,
     #[command(flatten)]
     pub(crate) paired: Paired,
     /// Surfaces: vertices where mesh and surface are closest in the sense of least squares, instead of on the surface
@@ -163,6 +170,7 @@ impl MeshArgs {
             complexity: self.complexity,
             hausd: self.hausd,
             order: self.order.into(),
+            boundary: self.boundary,
             periodic: self.paired.pairs(),
             fit: self.fit,
             stiffness: MeshOptions::default().stiffness,

@@ -9,6 +9,8 @@ const DISKS: [(usize, &[u8]); 2] = [
     (3, include_bytes!("../../voronaut-io/tests/data/gmsh/order-3-2.2.msh")),
 ];
 
+const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
 fn place(disk: &[u8]) -> Place {
     let place = Place::new();
     place.put("disk.msh", disk);
@@ -59,8 +61,11 @@ fn what_has_no_place_for_curves_refuses_them_by_name() {
         ("view disk.msh --metric uniform -o a.html", "curved triangles in a metric"),
         ("mesh disk:0,0,1 --metric uniform -n 50 --order 2 -o a.stl", "triangles of order 2 in a file .stl"),
         ("mesh disk:0,0,1 --metric uniform -n 50 --order 2 --parts 2 -o a.mesh", "--parts with curved triangles"),
-        ("mesh sphere:1 --metric uniform -n 50 --order 2 -o a.mesh", "--order on a surface"),
+        ("mesh sphere:1 --metric uniform -n 50 --order 2 --fit -o a.mesh", "`fit` with curved triangles"),
+        ("mesh cube.obj --metric uniform -n 50 --order 2 -o a.mesh", "curved triangles on a surface of triangles"),
+        ("mesh disk:0,0,1 --metric uniform -n 50 --boundary spline -o a.mesh", "--boundary with straight triangles"),
     ] {
+        place.put("cube.obj", CUBE);
         place.put("u.sol", "MeshVersionFormatted 2\nDimension 2\nSolAtVertices 8\n1 1\n1 2 3 4 5 6 7 8\nEnd\n");
         let output = place.run(&words.split_whitespace().collect::<Vec<_>>());
         // mmg's codes for mmg's words.
@@ -68,7 +73,7 @@ fn what_has_no_place_for_curves_refuses_them_by_name() {
         assert_eq!(output.status.code(), Some(code), "{words}: {}", stderr(&output));
         assert!(stderr(&output).contains(expected), "{words}: {}", stderr(&output));
         assert!(stderr(&output).contains("help"), "{words}: {}", stderr(&output));
-        place.take("u.sol");
+        ["cube.obj", "u.sol"].map(|name| place.take(name));
         assert_eq!(place.files(), ["disk.msh"], "{words}");
     }
     let output = place.run(&["mesh", "disk:0,0,1", "--metric", "uniform", "--order", "4", "-o", "a.msh"]);
@@ -120,4 +125,37 @@ fn meshes_of_order_2_and_3_are_made() {
         let checked: serde_json::Value = serde_json::from_slice(&place.read("b.json")).unwrap();
         assert_eq!((&checked["area"], &checked["curved"]), (&report["area"], &report["curved"]));
     }
+}
+
+#[test]
+fn surfaces_of_equations_have_curved_triangles() {
+    let place = Place::new();
+    done(&place, "mesh torus:1,0.4 --metric uniform -n 120 --order 2 -o a.vtu --report a.json");
+    let report: serde_json::Value = serde_json::from_slice(&place.read("a.json")).unwrap();
+    assert_eq!((&report["valid"], &report["curved"]["order"]), (&true.into(), &2.into()));
+    assert!(report["notes"].to_string().contains("of straight triangles between the vertices"), "{report}");
+    let curved = mesh(&place, "a.vtu").curved.expect("curves");
+    for [x, y, z] in curved.nodes {
+        assert!(((x.hypot(y) - 1.0).hypot(z) - 0.4).abs() < 1e-12);
+    }
+    done(&place, "check a.vtu --domain torus:1,0.4 --report b.json");
+    let checked: serde_json::Value = serde_json::from_slice(&place.read("b.json")).unwrap();
+    assert_eq!(checked["least_jacobian"], report["least_jacobian"]);
+}
+
+#[test]
+fn boundaries_are_bent_onto_splines_on_request() {
+    let place = Place::new();
+    let circle = (0..=24).map(|i| f64::from(i % 24) * std::f64::consts::TAU / 24.0);
+    let points: Vec<String> = circle.map(|a| format!("[{}, {}]", a.cos(), a.sin())).collect();
+    let ring = format!(r#"{{"type": "Polygon", "coordinates": [[{}]]}}"#, points.join(", "));
+    place.put("ring.geojson", ring);
+    let area = |words: &str| -> f64 {
+        done(&place, &format!("mesh ring.geojson --metric uniform -n 80 --order 2 -o a.msh --report a.json {words}"));
+        let report: serde_json::Value = serde_json::from_slice(&place.read("a.json")).unwrap();
+        report["area"].as_f64().unwrap()
+    };
+    let polygon = 12.0 * (std::f64::consts::TAU / 24.0).sin();
+    assert!((area("") - polygon).abs() < 1e-12 && (area("--boundary polyline") - polygon).abs() < 1e-12);
+    assert!((area("--boundary spline") - std::f64::consts::PI).abs() < 1e-4);
 }

@@ -1,8 +1,8 @@
 //! Triangles of order 1 to 3 by their Bezier points, numbered as the nodes of [`Curved`]: corners, then those of the sides in
 //! their direction, then the interior one.
 
-use crate::geometry::{Point, Vector};
-use crate::mesh::{Curved, Mesh};
+use crate::geometry::{Point, Point3, TangentPlane, Vector};
+use crate::mesh::Mesh;
 
 /// Bezier points of a triangle, at most.
 pub(crate) const MOST: usize = 10;
@@ -107,33 +107,46 @@ pub(super) fn interior_of_sides(points: &[Point]) -> Point {
 
 /// The Bezier points of a triangle of a curved mesh in the plane; of a straight one with its corners alone.
 pub(crate) fn bezier_points(mesh: &Mesh, triangle: usize) -> ([Point; MOST], usize) {
-    let mut points = [Point::default(); MOST];
-    points[..3].copy_from_slice(&mesh.corners_of(mesh.triangles[triangle]));
-    let Some(curved) = &mesh.curved else { return (points, 1) };
-    let order = curved.order;
-    let node = |&n: &u32| in_plane(curved, n);
-    for s in 0..3 {
-        let inner = curved.side(triangle, s).iter().map(node);
-        let nodes: Vec<Point> =
-            std::iter::once(points[s]).chain(inner).chain(std::iter::once(points[(s + 1) % 3])).collect();
-        let start = 3 + s * (order - 1);
-        points[start..start + order - 1].copy_from_slice(&curve_of_nodes(&nodes));
-    }
-    if order == 3 {
-        let middle = node(&curved.triangle(triangle)[6]);
-        let weights: [f64; 10] =
-            std::array::from_fn(|i| [-1.0 / 6.0, -0.5, 4.5][usize::from(i > 2) + usize::from(i > 8)]);
-        let nine = points;
-        points[9] =
-            blend(&[nine[0], nine[1], nine[2], nine[3], nine[4], nine[5], nine[6], nine[7], nine[8], middle], &weights);
-    }
-    (points, order)
+    seen(mesh, triangle, |p| Point::new(p.x, p.y))
 }
 
-/// The planar position of a node.
-fn in_plane(curved: &Curved, node: u32) -> Point {
-    let [x, y, _] = curved.nodes[node as usize];
-    Point::new(x, y)
+/// Those of a triangle on a surface, as they are seen along the normal of the straight triangle between its corners.
+pub(crate) fn seen_from_above(mesh: &Mesh, triangle: usize) -> ([Point; MOST], usize) {
+    let [a, b, c] = mesh.positions_of(mesh.triangles[triangle]);
+    let plane = TangentPlane::new((b - a).cross(c - a).unit().unwrap_or_default());
+    seen(mesh, triangle, |p| {
+        let at = plane.flatten(p - a);
+        Point::new(at.x, at.y)
+    })
+}
+
+/// The Bezier points of what is seen of a triangle.
+fn seen(mesh: &Mesh, triangle: usize, of: impl Fn(Point3) -> Point) -> ([Point; MOST], usize) {
+    let mut points = [Point::default(); MOST];
+    points[..3].copy_from_slice(&mesh.positions_of(mesh.triangles[triangle]).map(&of));
+    let Some(curved) = &mesh.curved else { return (points, 1) };
+    let order = curved.order;
+    for (p, &n) in points[3..].iter_mut().zip(curved.triangle(triangle)) {
+        *p = of(curved.nodes[n as usize].into());
+    }
+    (points_of_nodes(&points, order), order)
+}
+
+/// The Bezier points of a triangle from its nodes, in the same order.
+fn points_of_nodes(nodes: &[Point; MOST], order: usize) -> [Point; MOST] {
+    let mut points = *nodes;
+    for s in 0..3 {
+        let on_side: Vec<Point> = side(order, s).map(|i| nodes[i]).collect();
+        let start = 3 + s * (order - 1);
+        points[start..start + order - 1].copy_from_slice(&curve_of_nodes(&on_side));
+    }
+    if order == 3 {
+        let weights: [f64; 10] =
+            std::array::from_fn(|i| [-1.0 / 6.0, -0.5, 4.5][usize::from(i > 2) + usize::from(i > 8)]);
+        points[9] = nodes[9];
+        points[9] = blend(&points, &weights);
+    }
+    points
 }
 
 #[cfg(test)]

@@ -291,8 +291,7 @@ impl Elements {
     /// A place, put where what holds a point allows it.
     pub(super) fn within(&self, point: u32, place: Point) -> Point {
         match self.holds[point as usize] {
-            Hold::Free => place,
-            Hold::Fixed => self.points[point as usize],
+            Hold::Free | Hold::Fixed => place,
             Hold::Along([a, b]) => place.nearest_between(a, b),
         }
     }

@@ -5,8 +5,9 @@
 //! unknowns, vertices too, by Newton's method ([`newton`]); sides are flipped between ([`flips`]), and where the first guess of a new
 //! side would fold its triangles it is untangled ([`local`]). It starts from a straight mesh of a metric that is less anisotropic
 //! ([`Tempered`]), and goes on to the one asked for. Every state is valid: by bounds of Jacobians ([`jacobian`]), positive
-//! everywhere, and a boundary that stays where it is.
+//! everywhere, and a boundary that stays where it is, or is bent onto its curves in the end ([`bend`]).
 
+mod bend;
 mod bezier;
 mod density;
 mod eigen;
@@ -16,20 +17,24 @@ mod flips;
 mod jacobian;
 mod local;
 mod newton;
+mod onto;
 mod pair;
 mod rules;
 mod system;
 mod tempered;
 mod term;
 
-pub(crate) use bezier::{bezier_points, exponents, side};
+pub(crate) use bezier::{bezier_points, exponents, seen_from_above, side};
 pub(crate) use elements::HALVINGS;
 pub(crate) use jacobian::bound;
+pub(crate) use onto::onto_surface;
 pub(crate) use rules::{GAUSS, Rule};
 pub(crate) use tempered::Tempered;
 pub(crate) use term::curve_at;
 
+use crate::domain::Splines;
 use crate::error::Result;
+use crate::geometry::Point;
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::progress::Progress;
@@ -54,11 +59,18 @@ const EXCHANGED_SHARE: f64 = 0.06;
 /// of 72 % of the sides of unit length weight 5 made 79 %, 10 84 % and 15 85 %; 15 cost 11 % of the energy of triangles, 10 1 %.
 const LENGTHS: f64 = 10.0;
 
-/// A curved mesh for a metric whose unit mesh it is to be, from a straight one of that metric with the first of [`POWERS`].
+/// A curved mesh for a metric whose unit mesh it is to be, from a straight one of that metric with the first of [`POWERS`]. Its boundary and interfaces
+/// are bent onto these curves, if any are given; then also how many points stay away from them, and the first of those.
 ///
 /// # Errors
 /// The work is to stop.
-pub(crate) fn curved(mesh: &Mesh, metric: &dyn MetricField, order: usize, progress: &dyn Progress) -> Result<Mesh> {
+pub(crate) fn curved(
+    mesh: &Mesh,
+    curves: Option<&Splines>,
+    metric: &dyn MetricField,
+    order: usize,
+    progress: &dyn Progress,
+) -> Result<(Mesh, Option<(usize, Point)>)> {
     progress.begin("curving", POWERS.len() as u64 + 2)?;
     let mut elements = Elements::of(mesh);
     for power in POWERS {
@@ -75,7 +87,15 @@ pub(crate) fn curved(mesh: &Mesh, metric: &dyn MetricField, order: usize, progre
     progress.advance(1)?;
     exchange_all(&mut elements, &aim, progress)?;
     progress.advance(1)?;
-    Ok(elements.to_mesh(mesh))
+    let away = match curves {
+        Some(curves) => {
+            let away = bend::bend(&mut elements, curves, &Aim { lengths: 0.0, ..aim }, progress)?;
+            settle(&mut elements, &aim, ROUNDS_OF_LENGTHS, progress)?;
+            away
+        }
+        None => None,
+    };
+    Ok((elements.to_mesh(mesh), away))
 }
 
 /// Steps and flips in turns; the energy in the end.

@@ -93,7 +93,7 @@ pub(super) fn minimise(
     let mut energy = energies.iter().sum::<f64>() + aim.of_sides(elements, &elements.points);
     for _ in 0..steps {
         let expansions = aim.expansions(elements, &system);
-        let Some(step) = system.step(&expansions, elements) else { break };
+        let Some(step) = system.step(&expansions, elements, &[]) else { break };
         let mut shares = std::iter::successors(Some(1.0), |share| Some(0.5 * share)).take_while(|&s| s > LEAST_SHARE);
         let moved = shares.find_map(|share| {
             let moved = Moved::by(elements, aim, &rule, &energies, &step, share);
@@ -109,6 +109,23 @@ pub(super) fn minimise(
         }
     }
     Ok(energy)
+}
+
+/// Moves some points, which hold nothing, by given steps, and the others along, if they are to; less far where triangles would not be valid.
+pub(super) fn displace(elements: &mut Elements, aim: &Aim, given: &[(u32, Vector)], is_alone: bool) {
+    let rule = Rule::of(elements.order);
+    let energies = aim.of_triangles(elements, &rule);
+    let along = || {
+        let mut system = System::of(elements);
+        let expansions = aim.expansions(elements, &system);
+        system.step(&expansions, elements, given)
+    };
+    let others = (!is_alone).then(along).flatten();
+    let mut step = others.unwrap_or_else(|| vec![Vector::default(); elements.points.len()]);
+    for &(p, d) in given {
+        step[p as usize] = d;
+    }
+    elements.points = Moved::by(elements, aim, &rule, &energies, &step, 1.0).points;
 }
 
 /// Where a step leads, and what triangles cost there.

@@ -11,6 +11,8 @@ const DAMPING: f64 = 1e-9;
 const MORE_DAMPING: f64 = 100.0;
 /// Beyond that no step is taken.
 const MOST_DAMPING: f64 = 1e3;
+/// How much stiffer a point is held to a given step than by its neighbours.
+const GIVEN: f64 = 1e7;
 
 /// The points of a term, what of them may move, and where its second derivatives go.
 pub(super) struct Member {
@@ -59,8 +61,13 @@ impl System {
         Self { members, first, matrix, elimination }
     }
 
-    /// The step of each point that the terms ask for; none where no matrix has a factor.
-    pub(super) fn step(&mut self, expansions: &[Expansion], elements: &Elements) -> Option<Vec<Vector>> {
+    /// The step of each point that the terms ask for; where some have steps given, that of the others which costs least beside. None where no matrix has a factor.
+    pub(super) fn step(
+        &mut self,
+        expansions: &[Expansion],
+        elements: &Elements,
+        given: &[(u32, Vector)],
+    ) -> Option<Vec<Vector>> {
         self.matrix.clear();
         let mut slope = vec![0.0; self.matrix.size()];
         for (member, expansion) in self.members.iter().zip(expansions) {
@@ -72,6 +79,16 @@ impl System {
                 if mirror != place {
                     self.matrix.add(mirror, value);
                 }
+            }
+        }
+        if !given.is_empty() {
+            slope.fill(0.0);
+        }
+        for &(p, step) in given {
+            for (row, value) in (self.first[p as usize]..).zip([step.x, step.y]) {
+                let weight = GIVEN * self.matrix.diagonal_at(row as usize);
+                slope[row as usize] = weight * value;
+                self.matrix.add(self.matrix.place(row as usize, row as usize), weight);
             }
         }
         let steps = self.factor()?.solve(&slope);

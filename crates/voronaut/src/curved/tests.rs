@@ -1,6 +1,6 @@
 use super::bezier::bernstein;
 use super::*;
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geometry::{Tensor, Vector};
 use crate::metric::Scaled;
 use crate::progress::Silent;
 use crate::test_cases::on_threads;
@@ -99,7 +99,7 @@ fn sides_follow_the_geodesics_of_waves() {
     let n = 9;
     let mesh = square(n);
     let metric = Scaled { field: &waves, factor: unit(n) };
-    let made = [2, 3].map(|order| curved(&mesh, &metric, order, &Silent).unwrap());
+    let made = [2, 3].map(|order| curved(&mesh, None, &metric, order, &Silent).unwrap().0);
     let [quadratic, cubic] = made.each_ref().map(|mesh| {
         assert_sound(mesh);
         assert_eq!(mesh.points.len(), 100);
@@ -116,7 +116,7 @@ fn any_number_of_threads_gives_the_same_bits() {
         let angle = 2.0 * p.x + p.y;
         Tensor::from_axis(Vector::new(angle.cos(), angle.sin()), 1200.0, 15.0)
     };
-    let with = |threads| on_threads(threads, || curved(&mesh, &turning, 3, &Silent).unwrap());
+    let with = |threads| on_threads(threads, || curved(&mesh, None, &turning, 3, &Silent).unwrap().0);
     let one = with(1);
     assert_sound(&one);
     assert_eq!(one, with(2));

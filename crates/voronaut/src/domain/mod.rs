@@ -13,6 +13,7 @@ mod pslg;
 mod repair;
 mod shapes;
 mod sides;
+mod splines;
 
 pub(crate) use chains::Chain;
 pub use from_mesh::from_mesh;
@@ -26,6 +27,7 @@ pub use repair::{repaired_graph, repaired_polygons};
 pub(crate) use shapes::rect;
 pub use shapes::shape;
 pub(crate) use shapes::{name_and_rest, read_numbers};
+pub(crate) use splines::Splines;
 
 use crate::geometry::{Aabb, Point};
 use crate::planar::Planar;

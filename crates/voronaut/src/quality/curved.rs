@@ -1,7 +1,7 @@
 //! Curved triangles in the plane: lengths along their sides, their quality over the whole of them, and whether they are valid.
 
 use super::tensors::{angle, tensor_near};
-use crate::curved::{GAUSS, HALVINGS, Rule, bezier_points, bound, curve_at, exponents, side};
+use crate::curved::{GAUSS, HALVINGS, Rule, bezier_points, bound, curve_at, exponents, seen_from_above, side};
 use crate::error::Result;
 use crate::geometry::{Point, Vector, to_frame};
 use crate::mesh::{EdgeSide, Mesh};
@@ -67,9 +67,10 @@ pub(super) struct Jacobians {
 }
 
 impl Jacobians {
-    pub(super) fn of(mesh: &Mesh) -> Self {
+    /// Those of a planar mesh, or of triangles as each is seen along its normal.
+    pub(super) fn of(mesh: &Mesh, is_planar: bool) -> Self {
         let of = |t: usize| {
-            let (points, order) = bezier_points(mesh, t);
+            let (points, order) = if is_planar { bezier_points(mesh, t) } else { seen_from_above(mesh, t) };
             bound(&points[..exponents(order).len()], order, HALVINGS)
         };
         let all: Vec<_> = (0..mesh.triangles.len()).into_par_iter().map(of).collect();

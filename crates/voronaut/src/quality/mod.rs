@@ -1,6 +1,7 @@
 //! What a mesh is worth: valid or not, good or not in a metric, close or not to its domain.
 
 mod curved;
+mod curved_boundary;
 mod embedding;
 mod faults;
 mod geodesics;

@@ -1,6 +1,7 @@
 //! Whether a mesh is a mesh: by counting and by exact predicates, never by a tolerance.
 
 use super::curved::Jacobians;
+use super::curved_boundary;
 use super::embedding;
 use super::faults::{Fault, duplicates, middle};
 use super::meetings::{Excused, Meetings};
@@ -12,8 +13,9 @@ use crate::mesh::edges::{self, NONE, is_manifold};
 use crate::mesh::{Edges, Mesh};
 use crate::parallel::prelude::*;
 
-/// What was found in a mesh. `valid` means: at least one triangle, every figure marked (fault) is zero. Of curved triangles that is that none folds; whether
-/// curves of the boundary cross is not told.
+/// What was found in a mesh. `valid` means: at least one triangle, every figure marked (fault) is zero. Of curved triangles that is that none folds, and
+/// that no two sides on the boundary meet but in their ends; whether one piece of the mesh lies on another is not told. On a surface they are seen each along
+/// the normal of the straight triangle between its corners, and whether triangles meet is told of straight ones.
 ///
 /// A mesh is that of a surface if some z is not 0: then `inverted` counts the triangles that are exactly flat. Where
 /// numbers are out of range nothing else is looked at. Overlaps are not looked for where triangles are inverted or positions not
@@ -38,7 +40,8 @@ pub struct Validity {
     /// Vertices that lie exactly where one with a smaller number lies (fault).
     pub duplicate_vertices: usize,
     /// Pairs of triangles that have more in common than a vertex or an edge of both, by exact predicates (fault). In the plane
-    /// no more than one for each triangle: zero or not is what matters.
+    /// no more than one for each triangle: zero or not is what matters. Of curved triangles: pairs of sides on the boundary that meet, or
+    /// are too close to tell.
     pub overlaps: usize,
     /// Vertex or edge numbers that do not exist, and label arrays of the wrong length (fault).
     pub out_of_range: usize,
@@ -84,10 +87,14 @@ fn examine(mesh: &Mesh, surface: Option<&Meetings>) -> Validity {
         let is_planar = surface.is_none() && mesh.is_planar();
         let edges = Edges::of(&mesh.triangles);
         found.examine_vertices(mesh, surface);
-        if is_planar && mesh.curved.is_some() {
-            found.examine_curved(mesh);
-        } else {
+        if mesh.curved.is_none() || !is_planar {
             found.examine_triangles(mesh, is_planar);
+        }
+        if mesh.curved.is_some() {
+            found.examine_curved(mesh, is_planar);
+        }
+        if mesh.curved.is_some() && is_planar {
+            found.examine_sides(mesh, &edges);
         }
         found.examine_edges(mesh, &edges);
         if is_planar && mesh.curved.is_none() {
@@ -215,20 +222,33 @@ impl Validity {
         }
     }
 
-    fn examine_curved(&mut self, mesh: &Mesh) {
+    fn examine_curved(&mut self, mesh: &Mesh, is_planar: bool) {
         if let Err(error) = mesh.check_numbers() {
             self.out_of_range += 1;
             return self.fault(error.to_string(), "the nodes of curved triangles");
         }
-        let found = Jacobians::of(mesh);
-        (self.inverted, self.undecided) = (found.inverted.len(), found.undecided.len());
-        (self.least_jacobian, self.area) = (Some(found.least), found.area);
+        let found = Jacobians::of(mesh, is_planar);
+        (self.inverted, self.undecided) = (self.inverted + found.inverted.len(), found.undecided.len());
+        self.least_jacobian = Some(found.least);
+        if is_planar {
+            self.area = found.area;
+        }
         for (wrong, what) in
             [(found.inverted, "folds"), (found.undecided, "may fold: its Jacobian comes too near zero")]
         {
             if let Some(&t) = wrong.first() {
                 self.fault_at(format!("curved triangle {} {what}", t + 1), mesh, &mesh.triangles[t]);
             }
+        }
+    }
+
+    /// Whether sides of curved triangles on the boundary meet.
+    fn examine_sides(&mut self, mesh: &Mesh, edges: &Edges) {
+        let meetings = curved_boundary::meetings(mesh, edges);
+        self.overlaps = meetings.len();
+        if let Some(&[[a, b], [c, d]]) = meetings.first() {
+            let what = format!("the sides {}-{} and {}-{} on the boundary meet", a + 1, b + 1, c + 1, d + 1);
+            self.fault_at(what, mesh, &[a, b, c, d]);
         }
     }
 

@@ -1,13 +1,15 @@
 //! Meshes of order 2 and 3.
 
 use super::settle::Stopwatch;
-use super::{MeshOptions, Meshed, Mesher, mesh_for};
-use crate::curved::{POWERS, Tempered, curved};
-use crate::domain::Domain;
+use super::{Boundary, MeshOptions, Meshed, Mesher, mesh_for};
+use crate::curved::{POWERS, Tempered, curved, onto_surface};
+use crate::domain::{Domain, Splines};
 use crate::error::{Error, Result};
+use crate::geometry::Point;
 use crate::metric::{MetricField, Scaled, complexity};
 use crate::progress::Progress;
-use crate::quality;
+use crate::quality::{self, Meetings};
+use crate::surface::Input;
 
 /// Half the square root of 3: the metric area that a unit mesh has for each vertex, two equilateral triangles.
 const AREA_PER_VERTEX: f64 = 0.866_025_403_784_438_6;
@@ -51,7 +53,52 @@ pub(super) fn mesh_curved(
         _ => start.metric_scale,
     };
     let unit = Scaled { field, factor: metric_scale };
-    let mesh = watch.time("curve", || curved(&start.mesh, &unit, options.order, progress))?;
+    let curves = is_bent(domain, options.boundary).then(|| Splines::of(domain));
+    let (mesh, away) = watch.time("curve", || curved(&start.mesh, curves.as_ref(), &unit, options.order, progress))?;
     watch.time("check", || quality::check(&mesh))?;
-    Ok(Meshed { mesh, metric_scale, seconds: [start.seconds.clone(), watch.seconds()].concat(), ..start })
+    let note = |(count, at): (usize, Point)| {
+        format!("{count} points of the boundary are not on its curve, for triangles would fold: the first at {at}")
+    };
+    let notes = start.notes.iter().cloned().chain(away.map(note)).collect();
+    Ok(Meshed { mesh, metric_scale, seconds: [start.seconds.clone(), watch.seconds()].concat(), notes, ..start })
+}
+
+/// Refuses curved triangles of a surface whose curves are not known, or whose vertices are elsewhere.
+///
+/// # Errors
+/// [`Error::Unsupported`].
+pub(super) fn demand_possible_on(input: &Input, options: &MeshOptions) -> Result<()> {
+    if options.order > 1 && input.implicit.is_none() {
+        let help = "give an equation (`sphere:`, `torus:`, or f = 0), or use `order` 1";
+        return Err(Error::unsupported("curved triangles on a surface of triangles", help));
+    }
+    if options.order > 1 && options.fit {
+        return Err(Error::unsupported("`fit` with curved triangles", "leave out `fit`: nodes are on the surface"));
+    }
+    demand_possible(options)
+}
+
+/// Makes the triangles of a mesh of an equation's surface curved, with their nodes on it.
+///
+/// # Errors
+/// The mesh would not be valid.
+pub(super) fn curve_onto(meshed: &mut Meshed, input: &Input, meetings: &Meetings, order: usize) -> Result<()> {
+    if order == 1 {
+        return Ok(());
+    }
+    if let Some((count, at)) = onto_surface(&mut meshed.mesh, input, order) {
+        meshed.notes.push(format!(
+            "{count} nodes are not on the surface, for triangles would fold or it was not found: the first is near {at}"
+        ));
+    }
+    quality::validity_on(&meshed.mesh, meetings).demand()
+}
+
+/// Whether boundaries are bent onto curves. That a domain allows chords to stray says that its segments stand for a curve.
+fn is_bent(domain: &Domain, boundary: Boundary) -> bool {
+    match boundary {
+        Boundary::Polyline => false,
+        Boundary::Spline => true,
+        Boundary::Auto => domain.pslg().tolerance > 0.0,
+    }
 }

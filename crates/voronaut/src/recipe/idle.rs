@@ -82,7 +82,8 @@ impl MeshOptions {
         let canvas = (has_canvas, "where no canvas is made");
         let differs = |one: f64, other: f64| one.to_bits() != other.to_bits();
         idle(&[
-            ("order", self.order != usual.order, &[plane, voronoi]),
+            ("order", self.order != usual.order, &[(!plane.0 || voronoi.0, voronoi.1)]),
+            ("boundary", self.boundary != usual.boundary, &[plane, (self.order > 1, "with straight triangles")]),
             ("periodic", !self.periodic.is_empty(), &[plane, voronoi]),
             ("fit", self.fit, &[surface]),
             ("stiffness", differs(self.stiffness, usual.stiffness), &[surface, (self.fit, "without `fit`")]),

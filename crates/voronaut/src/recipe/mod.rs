@@ -31,7 +31,7 @@ pub use field::{
 };
 pub use idle::{Idle, Origin, Task};
 pub use on_surface::mesh_surface;
-pub use options::{Centroid, Effort, MeshOptions, Mesher, Seeding};
+pub use options::{Boundary, Centroid, Effort, MeshOptions, Mesher, Seeding};
 pub use parts::{Part, mesh_in_parts, mesh_part, mesh_surface_in_parts, mesh_surface_part};
 pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
 pub use surface_field::{SurfaceSource, metric_on_surface};

@@ -1,5 +1,6 @@
 //! The main job on a surface.
 
+use super::curved::{curve_onto, demand_possible_on};
 use super::settle::Stopwatch;
 use super::surface_pass::{Pass, Reseed, Setting, demand};
 use super::{Idle, MeshOptions, Meshed, Origin, Seeding, Task, closed_form_scale};
@@ -49,7 +50,7 @@ const FARTHEST_PASSES: usize = 5;
 ///
 /// # Errors
 /// The metric is invalid somewhere; the work would exceed the memory limit; there is no valid mesh with the vertices asked for;
-/// options that are for the plane; the function is not finite at a vertex.
+/// options that are for the plane; curved triangles of a surface without an equation; the function is not finite at a vertex.
 pub fn mesh_surface(
     input: &Input,
     metric: &dyn SurfaceMetric,
@@ -58,6 +59,7 @@ pub fn mesh_surface(
     progress: &dyn Progress,
 ) -> Result<Meshed> {
     options.geodesic.demand_diagrams()?;
+    demand_possible_on(input, options)?;
     options
         .idle(Task {
             on_surface: true,
@@ -86,6 +88,7 @@ pub fn mesh_surface(
             meshed.notes.push(format!("mesh and surface are {distance:.3e} apart where `hausd` asks for {most:.3e}"));
         }
         if ratio <= 1.0 || is_last {
+            setting.watch.time("curve", || curve_onto(&mut meshed, input, &setting.meetings, options.order))?;
             return Ok(Meshed { fidelity, closed_form_scale, seconds: setting.watch.seconds(), ..meshed });
         }
         least = least.min(ratio);

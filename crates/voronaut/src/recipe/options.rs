@@ -16,8 +16,10 @@ pub struct MeshOptions {
     /// How far (Euclidean) mesh edges may stray from the boundary; `None`: the domain's own tolerance. Of a surface: how far
     /// mesh and surface may be from each other; where that asks for more vertices, and no number is given, there are more.
     pub hausd: Option<f64>,
-    /// In the plane: the order of triangles, 1 for straight ones; those of order 2 and 3 are curved to follow the metric.
+    /// The order of triangles, 1 for straight ones; those of order 2 and 3 are curved to follow the metric in the plane, and an equation's surface.
     pub order: usize,
+    /// Of curved triangles: what boundaries and interfaces are between the vertices that the domain has there.
+    pub boundary: Boundary,
     /// In the plane: pairs of labels of boundary curves that a rotation and a translation map onto each other. The mesh's edges on the two
     /// correspond ([`Mesh::periodic`](crate::mesh::Mesh::periodic)).
     pub periodic: Vec<[i32; 2]>,
@@ -64,6 +66,7 @@ impl Default for MeshOptions {
             complexity: None,
             hausd: None,
             order: 1,
+            boundary: Boundary::default(),
             periodic: Vec::new(),
             fit: false,
             stiffness: FitOptions::default().stiffness,
@@ -172,3 +175,18 @@ pub enum Mesher {
 }
 
 named!(Mesher, "mesher", [Voronoi = "voronoi", StarSet = "starset"]);
+
+/// What the boundaries and interfaces of curved triangles are; its names are those users type.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Boundary {
+    /// `auto`: the circle of a disk, and straight between the vertices of other domains.
+    #[default]
+    Auto,
+    /// `polyline`: straight between the domain's vertices.
+    Polyline,
+    /// `spline`: smooth curves through the domain's vertices, with corners where they turn by more than 45 degrees, and straight segments where one is three
+    /// times as long as its neighbours.
+    Spline,
+}
+
+named!(Boundary, "boundary", [Auto = "auto", Polyline = "polyline", Spline = "spline"]);

@@ -2,6 +2,7 @@
 
 use super::cut::{Seams, cut};
 use super::features::FeatureOptions;
+use super::implicit::project_pinned;
 use super::nearest::closest_weights;
 use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
@@ -170,6 +171,13 @@ impl Input {
             }
             None => p.is_finite().then(|| self.walk(near, p)),
         }
+    }
+
+    /// The point of an equation's surface to which Newton's method leads from a point near it, with some coordinates as they are; `None` where it leads
+    /// nowhere, or there is no equation.
+    pub(crate) fn onto(&self, p: Point3, pinned: [bool; 3]) -> Option<Point3> {
+        let f = self.implicit.as_ref()?;
+        project_pinned(f, p, pinned, REACH * self.diagonal, ON_SURFACE * self.diagonal)
     }
 
     /// The place of a point that lies on the surface's triangles, but for rounding; for that of an equation what [`Input::lift`] says.

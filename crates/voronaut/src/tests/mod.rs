@@ -1,6 +1,7 @@
 //! Tests of several modules at once that see more than is public.
 
 mod certificate;
+mod curved;
 mod diagram;
 mod farthest;
 mod features;
