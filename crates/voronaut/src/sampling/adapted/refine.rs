@@ -70,8 +70,10 @@ impl Work<'_> {
         };
         let faces = || t.sides(h).map(|side| t.corners(side.face()));
         let before = faces().map(|corners| self.leaning(corners)).fold(UPRIGHT, f64::min);
-        // Needles have poorer halves at first: a fan of them on a border must be split for all that.
-        let least = if faces().any(|corners| self.quality(corners) < NEEDLE) { 0.0 } else { NEEDLE };
+        // Needles have poorer halves at first: a fan of them on a border must be split for all that. So must what has needles for halves, where
+        // flips mend these.
+        let poor = if self.keeps_edges { NEEDLE } else { 2.0 * NEEDLE };
+        let least = if faces().any(|corners| self.quality(corners) < poor) { 0.0 } else { NEEDLE };
         if t.sides(h).flat_map(halves).all(|half| leaning(half) >= before && quality(half) >= least) {
             self.split(h, vertex);
         }
