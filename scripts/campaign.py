@@ -5,6 +5,7 @@
     scripts/campaign.py outlines -n 200           # hard outlines: displaced by 1e-14, gaps of 1e-12, spikes, islands, collinear runs
     scripts/campaign.py outlines -n 200 --peers ffbamg mmg2d_O3     # beside bamg (apt: freefem++) and mmg2d (pip: mmgpy): a table
     scripts/campaign.py surfaces -n 200           # random surfaces, damaged or not, metrics and options
+    scripts/campaign.py curved -n 200             # triangles of order 2 and 3, planar and on surfaces (needs numpy)
     scripts/campaign.py signals -n 200            # SIGINT and SIGTERM at random moments
     scripts/campaign.py threads -n 100            # every command with 1, 2, 3 and 8 threads: the same bytes
     scripts/campaign.py laws -n 200               # domains moved, turned, scaled by 1e-9 to 1e9, written in another order: meshes alike
@@ -15,6 +16,9 @@ exit), hung (over 60 s), over (more memory than 4 GiB). Of signals: ended (by it
 stray (files left, or over a second), crashed. Of threads and laws: same, differs, refused. The last line counts; the exit code is 1 if
 there is anything but meshed, refused, ended, stopped and same. Meshes are alike if both are valid, with as many vertices (1 %, of few 3), and
 shares of unit edges and mean qualities that differ by 0.05 at most: in other units roundings differ, and then vertices do.
+
+Of curved: invalid, too, where the Jacobian is not positive at any of 496 places of a triangle, by Lagrange's polynomials and not by the
+bounds of the program, or where two sides on the boundary cross, as polygons of eight parts each.
 
 A peer fails where it does not end within 60 s, writes no mesh, or one that `voronaut check` calls invalid or whose area is neither that
 of the domain nor that with its holes filled (within 2 %, for mmg2d may leave out corners).
@@ -43,7 +47,7 @@ GOOD = {"meshed", "refused", "ended", "stopped", "same"}
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=["planar", "outlines", "surfaces", "signals", "threads", "laws"])
+    parser.add_argument("kind", choices=["planar", "outlines", "surfaces", "curved", "signals", "threads", "laws"])
     parser.add_argument("-n", type=int, default=100, help="cases")
     parser.add_argument("--seed", type=int, default=0, help="of the first case")
     parser.add_argument("--jobs", type=int, default=2)
@@ -74,8 +78,10 @@ def one(typed, seed):
         place = Path(folder)
         if others := {"signals": signalled, "threads": threads, "laws": laws}.get(typed.kind):
             return seed, *others(typed.voronaut, place, chance)
-        words = {"planar": planar, "outlines": outlines, "surfaces": surfaces}[typed.kind](chance, place)
+        words = {"planar": planar, "outlines": outlines, "surfaces": surfaces, "curved": curved}[typed.kind](chance, place)
         outcome, said = meshed(typed.voronaut, place, words)
+        if typed.kind == "curved" and outcome == "meshed":
+            outcome, said = sampled(place / "out.mesh")
         if typed.kind == "outlines" and typed.peers:
             compare(typed, place, int(words[-1]), outcome)
         if typed.v:
@@ -131,6 +137,93 @@ def planar(chance, place):
     rings += [star(chance, (chance.uniform(-0.2, 0.2), chance.uniform(-0.2, 0.2)), 0.05, chance.randint(3, 8))
               for _ in range(chance.randint(0, 2))]
     return ["mesh", written(place, scaled(rings, scale)), *options(chance)]
+
+
+def curved(chance, place):
+    """Triangles of order 2 and 3: stars, smooth rings as samples, disks, and surfaces of equations."""
+    order, n = str(chance.choice([2, 3])), str(int(10 ** chance.uniform(1, 2.7)))
+    if chance.random() < 0.2:
+        surface = chance.choice(["sphere:1", "sphere:1e-3", "torus:1,0.4", f"torus:{chance.uniform(1, 5)},0.9", "chair",
+                                 "implicit:x^2+y^2-z^2-0.1;-1,-1,-1,1,1,1", "implicit:z-0.3*sin(3*x)*y;-1,-1,-1,1,1,1"])
+        return ["mesh", surface, "--metric", chance.choice(["uniform", "curvature"]), "-n", n, "--order", order]
+    ways = chance.randint(2, 6)
+    wave = [(k, chance.uniform(-0.5, 0.5) / k**1.5, chance.uniform(0, 2 * math.pi)) for k in range(1, ways)]
+    radius = lambda a: 1 + sum(size * math.cos(k * a + phase) for k, size, phase in wave)
+    corners = chance.randint(8, 200)
+    angles = [2 * math.pi * (i + chance.uniform(-0.3, 0.3)) / corners for i in range(corners)]
+    smooth = [[radius(a) * math.cos(a), radius(a) * math.sin(a)] for a in angles]
+    rings = chance.choice([[smooth], [smooth, [[0.1 * x, 0.1 * y] for x, y in smooth[::-1]]], [star(chance, (0, 0), 1, chance.randint(4, 40))]])
+    domain = "disk:0.5,-1,2" if chance.random() < 0.2 else written(place, scaled(rings, 10 ** chance.choice([-6, 0, 0, 0, 6])))
+    boundary = chance.choice([[], ["--boundary", "spline"], ["--boundary", "spline"], ["--boundary", "polyline"]])
+    return ["mesh", domain, "--metric", chance.choice(METRICS), "-n", n, "--order", order, *boundary]
+
+
+def sampled(path):
+    """Whether curved triangles fold, or their boundary crosses itself, by many places of each."""
+    import numpy as np
+
+    points, triangles, order = nodes_of(path)
+    size = {2: 6, 3: 10}[order]
+    lattice = [[0, 0], [1, 0], [0, 1]]
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        lattice += [[((order - i) * lattice[a][c] + i * lattice[b][c]) / order for c in (0, 1)] for i in range(1, order)]
+    lattice = np.array(lattice + [[1 / 3, 1 / 3]] * (order == 3))
+    powers = [(i, j) for i in range(order + 1) for j in range(order + 1 - i)]
+    basis = np.linalg.inv(np.array([[x**i * y**j for i, j in powers] for x, y in lattice]))
+    at = np.array([[i / 30, j / 30] for i in range(31) for j in range(31 - i)])
+    slope = [np.array([[i * x ** max(i - 1, 0) * y**j for i, j in powers] for x, y in at]) @ basis,
+             np.array([[j * x**i * y ** max(j - 1, 0) for i, j in powers] for x, y in at]) @ basis]
+    nodes = points[triangles[:, :size]]
+    u, v = (np.einsum("sn,tnc->tsc", one, nodes) for one in slope)
+    is_planar = np.ptp(points[:, 2]) == 0
+    straight = np.cross(nodes[:, 1] - nodes[:, 0], nodes[:, 2] - nodes[:, 0])
+    if is_planar:
+        # Straight triangles between the corners of curved ones may be turned.
+        straight[:] = [0, 0, 1]
+    folded = (np.einsum("tsc,tc->ts", np.cross(u, v), straight) <= 0).any(axis=1)
+    if folded.any():
+        return "invalid", f"triangle {folded.argmax() + 1} folds"
+    return crossed(points, triangles, order) if is_planar else ("meshed", "")
+
+
+def crossed(points, triangles, order):
+    import numpy as np
+
+    inner = order - 1
+    sides = {}
+    for t in triangles:
+        for s in range(3):
+            way = [t[s], *t[3 + s * inner : 3 + (s + 1) * inner], t[(s + 1) % 3]]
+            sides.setdefault(tuple(sorted((way[0], way[-1]))), []).append(way)
+    border = [ways[0] for ways in sides.values() if len(ways) == 1]
+    steps, share = np.arange(order + 1) / order, np.linspace(0, 1, 9)
+    weights = np.stack([np.prod([(share - steps[k]) / (steps[i] - steps[k]) for k in range(order + 1) if k != i], axis=0)
+                        for i in range(order + 1)])
+    lines = np.einsum("is,bic->bsc", weights, points[np.array(border)][:, :, :2])
+    low, high = lines.min(axis=1), lines.max(axis=1)
+    turn = lambda a, b, c: (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])
+    for i, (line, way) in enumerate(zip(lines, border)):
+        near = np.flatnonzero(((low[i] <= high) & (low <= high[i])).all(axis=1))
+        for j in near[near > i]:
+            a, b, c, d = line[:-1, None], line[1:, None], lines[j][None, :-1], lines[j][None, 1:]
+            cross = (turn(a, b, c) * turn(a, b, d) < 0) & (turn(c, d, a) * turn(c, d, b) < 0)
+            if cross.any():
+                return "invalid", f"sides of the boundary cross: {way}, {border[j]}"
+    return "meshed", ""
+
+
+def nodes_of(path):
+    import numpy as np
+
+    words = path.read_text().split()
+    order = 2 if "TrianglesP2" in words else 3
+
+    def block(name, width, kind):
+        at = words.index(name) + 2
+        return np.array(words[at : at + width * int(words[at - 1])], dtype=kind).reshape(-1, width)
+    corners, axes = {2: 6, 3: 10}[order], int(words[words.index("Dimension") + 1])
+    points = np.pad(block("Vertices", axes + 1, float)[:, :axes], ((0, 0), (0, 3 - axes)))
+    return points, block(f"TrianglesP{order}", corners + 1, int)[:, :corners] - 1, order
 
 
 def scaled(rings, scale):

@@ -215,6 +215,23 @@ def test_scikit_fem_integrates_over_a_curved_disk():
         curved_disk(3).to_skfem()
 
 
+def test_a_quadratic_solution_on_a_curved_disk_converges_at_its_order():
+    """-div grad u = f with u = (1 - r^2)(2 + x) and 0 on the circle."""
+    skfem = pytest.importorskip("skfem")
+    from skfem.helpers import dot, grad
+
+    def error(n):
+        basis = skfem.Basis(voronaut.mesh("disk:0,0,1", "uniform", n=n, order=2).to_skfem(), skfem.ElementTriP2(), intorder=6)
+        stiffness = skfem.BilinearForm(lambda u, v, w: dot(grad(u), grad(v))).assemble(basis)
+        load = skfem.LinearForm(lambda v, w: 8 * (1 + w.x[0]) * v).assemble(basis)
+        u = skfem.solve(*skfem.condense(stiffness, load, D=basis.get_dofs()))
+        exact = lambda x: (1 - x[0] ** 2 - x[1] ** 2) * (2 + x[0])
+        return skfem.Functional(lambda w: (w["u"] - exact(w.x)) ** 2).assemble(basis, u=basis.interpolate(u)) ** 0.5
+
+    coarse, fine = error(100), error(400)
+    assert np.log2(coarse / fine) > 2.7, (coarse, fine)
+
+
 def test_pictures_and_notebooks():
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")

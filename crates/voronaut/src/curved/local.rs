@@ -224,7 +224,7 @@ fn both_axes(points: impl Iterator<Item = Option<usize>>) -> Vec<Freedom> {
 }
 
 /// The solution of a small system by Cholesky's method, from the lower half of its matrix; none where that is not positive definite.
-fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
+pub(super) fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
     let size = right.len();
     for i in 0..size {
         for j in 0..=i {

@@ -3,7 +3,7 @@
 //! What is minimised is the energy of the map from equilateral triangles with unit sides to each triangle, seen in the metric
 //! ([`term`]): zero where all are images of such triangles by isometries, whose sides are geodesics of length one. All Bezier points are
 //! unknowns, vertices too, by Newton's method ([`newton`]); sides are flipped between ([`flips`]), and where the first guess of a new
-//! side would fold its triangles it is untangled ([`local`]). It starts from a straight mesh of a metric that is less anisotropic
+//! side would fold its triangles it is untangled ([`local`]). In the end sides go onto geodesics ([`geodesic`]). It starts from a straight mesh of a metric that is less anisotropic
 //! ([`Tempered`]), and goes on to the one asked for. Every state is valid: by bounds of Jacobians ([`jacobian`]), positive
 //! everywhere, and a boundary that stays where it is, or is bent onto its curves in the end ([`bend`]).
 
@@ -14,6 +14,7 @@ mod eigen;
 mod elements;
 mod exchange;
 mod flips;
+mod geodesic;
 mod jacobian;
 mod local;
 mod newton;
@@ -95,6 +96,7 @@ pub(crate) fn curved(
         }
         None => None,
     };
+    geodesic::straighten(&mut elements, &aim);
     Ok((elements.to_mesh(mesh), away))
 }
 

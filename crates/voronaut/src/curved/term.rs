@@ -53,14 +53,14 @@ impl Expansion {
 
 /// A metric around a point, in coordinates in which it is the identity there: its first derivatives along both axes, and its second
 /// ones along the first, the second, and both.
-struct Around {
-    first: [Tensor; 2],
+pub(super) struct Around {
+    pub(super) first: [Tensor; 2],
     second: [Tensor; 3],
 }
 
 impl Around {
     /// By differences along the metric's own axes.
-    fn of(metric: &dyn MetricField, p: Point, m: Tensor, near: &mut Near) -> Self {
+    pub(super) fn of(metric: &dyn MetricField, p: Point, m: Tensor, near: &mut Near) -> Self {
         let [_, axes] = m.frames();
         let [u, v] = axes.map(|axis| axis * STEP);
         let mut at = |step: Vector| metric.at_near(p + step, near).along(axes);
@@ -73,7 +73,7 @@ impl Around {
 }
 
 /// F' w.
-fn transposed([a, b, c]: [f64; 3], w: Vector) -> Vector {
+pub(super) fn transposed([a, b, c]: [f64; 3], w: Vector) -> Vector {
     Vector::new(a * w.x, b * w.x + c * w.y)
 }
 

@@ -109,6 +109,97 @@ fn sides_follow_the_geodesics_of_waves() {
     assert!(quadratic.1 > 0.9 && cubic.1 > 0.9, "{quadratic:?} {cubic:?}");
 }
 
+/// A metric whose geodesics are known, and how far a point is from the one between two others, in the metric, nearly.
+struct Known {
+    name: &'static str,
+    metric: fn(Point) -> Tensor,
+    away: fn([Point; 2], Point) -> f64,
+}
+
+fn from_line([a, b]: [Point; 2], p: Point) -> f64 {
+    ((b - a).cross(p - a) / (b - a).norm()).abs()
+}
+
+/// The square turned around its middle, the more the farther out.
+fn untwisted(p: Point) -> Point {
+    let q = p - Point::new(0.5, 0.5);
+    let (sin, cos) = (1.5 * q.dot(q)).sin_cos();
+    Point::new(cos * q.x - sin * q.y, sin * q.x + cos * q.y)
+}
+
+fn twist(p: Point) -> Tensor {
+    let q = p - Point::new(0.5, 0.5);
+    let mixed = Tensor::new(-2.0 * q.x * q.y, q.x * q.x - q.y * q.y, 2.0 * q.x * q.y);
+    Tensor::IDENTITY + mixed * 3.0 + Tensor::square(q) * (9.0 * q.dot(q))
+}
+
+/// Geodesics of the half-plane y > 0 are circles around points of its border, here one below the square.
+fn from_half_circle([a, b]: [Point; 2], p: Point) -> f64 {
+    let [a, b, p] = [a, b, p].map(|p| Vector::new(p.x, p.y + 1.0));
+    let half = |v: Vector| 0.5 * v.dot(v);
+    // Where the border is as far from both ends; of ends one above the other it is at infinity.
+    let middle = (half(b) - half(a)) / (b.x - a.x);
+    let radius = |v: Vector| Vector::new(v.x - middle, v.y).norm();
+    let away = if middle.abs() < 1e6 { radius(p) - radius(a) } else { p.x - a.x };
+    away.abs() / p.y
+}
+
+/// The sphere by its projection from a pole onto the plane.
+fn on_sphere(p: Point) -> [f64; 3] {
+    let square = p.x * p.x + p.y * p.y;
+    [2.0 * p.x, 2.0 * p.y, square - 1.0].map(|x| x / (1.0 + square))
+}
+
+fn from_great_circle(ends: [Point; 2], p: Point) -> f64 {
+    let [a, b] = ends.map(|p| crate::geometry::Point3::from(on_sphere(p)) - crate::geometry::Point3::default());
+    let normal = a.cross(b).unit().unwrap();
+    (crate::geometry::Point3::from(on_sphere(p)) - crate::geometry::Point3::default()).dot(normal).abs()
+}
+
+const KNOWN: [Known; 4] = [
+    Known { name: "waves", metric: waves, away: |ends, p| from_line(ends.map(flat), flat(p)) },
+    Known { name: "twist", metric: twist, away: |ends, p| from_line(ends.map(untwisted), untwisted(p)) },
+    Known { name: "half-plane", metric: |p| Tensor::IDENTITY * (p.y + 1.0).powi(-2), away: from_half_circle },
+    Known {
+        name: "sphere",
+        metric: |p| Tensor::IDENTITY * (4.0 / (1.0 + p.x * p.x + p.y * p.y).powi(2)),
+        away: from_great_circle,
+    },
+];
+
+/// How far nine sides of ten inside are from the geodesics between their ends at most.
+fn away_from_geodesics(known: &Known, n: u32, order: usize) -> f64 {
+    let grid = square(n);
+    let area = crate::metric::complexity(
+        &known.metric,
+        &grid.triangles.iter().map(|t| grid.corners_of(*t)).collect::<Vec<_>>(),
+    );
+    let metric = Scaled { field: &known.metric, factor: unit(n) / area.unwrap() };
+    let (mesh, _) = curved(&grid, None, &metric, order, &Silent).unwrap();
+    let edges = crate::mesh::Edges::of(&mesh.triangles);
+    let of_side = |half_edge: usize| {
+        let curve = curve(&mesh, half_edge);
+        let ends = [curve[0], curve[order]];
+        (1..16).map(|i| (known.away)(ends, curve_at(&curve, f64::from(i) / 16.0).0)).fold(0.0, f64::max)
+    };
+    let inside = edges.iter().filter(|sides| sides.len() == 2).map(|sides| of_side(sides[0].half_edge as usize));
+    let mut away: Vec<f64> = inside.collect();
+    away.sort_by(f64::total_cmp);
+    away[away.len() * 9 / 10]
+}
+
+#[test]
+fn sides_are_as_near_to_geodesics_as_polynomials_of_their_order() {
+    for known in &KNOWN {
+        for order in [2, 3] {
+            let [coarse, fine] = [8, 16].map(|n| away_from_geodesics(known, n, order));
+            let observed = (coarse / fine).log2();
+            eprintln!("{} {order}: {observed} {coarse} {fine}", known.name);
+            assert!(observed > order as f64 + 0.7, "{} {order}: {observed} of {coarse} and {fine}", known.name);
+        }
+    }
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let mesh = square(7);

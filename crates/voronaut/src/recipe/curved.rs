@@ -6,6 +6,7 @@ use crate::curved::{POWERS, Tempered, curved, onto_surface};
 use crate::domain::{Domain, Splines};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
+use crate::mesh::Mesh;
 use crate::metric::{MetricField, Scaled, complexity};
 use crate::progress::Progress;
 use crate::quality::{self, Meetings};
@@ -55,12 +56,25 @@ pub(super) fn mesh_curved(
     let unit = Scaled { field, factor: metric_scale };
     let curves = is_bent(domain, options.boundary).then(|| Splines::of(domain));
     let (mesh, away) = watch.time("curve", || curved(&start.mesh, curves.as_ref(), &unit, options.order, progress))?;
-    watch.time("check", || quality::check(&mesh))?;
+    watch.time("check", || demand_valid(&mesh))?;
     let note = |(count, at): (usize, Point)| {
         format!("{count} points of the boundary are not on its curve, for triangles would fold: the first at {at}")
     };
     let notes = start.notes.iter().cloned().chain(away.map(note)).collect();
     Ok(Meshed { mesh, metric_scale, seconds: [start.seconds.clone(), watch.seconds()].concat(), notes, ..start })
+}
+
+/// # Errors
+/// [`Error::Domain`] where curves of the boundary meet, which their chords do not; else as [`quality::check`].
+fn demand_valid(mesh: &Mesh) -> Result<()> {
+    let found = quality::validity(mesh);
+    match &found.first_fault {
+        Some(fault) if found.overlaps > 0 => {
+            let help = "use `boundary=polyline`, or give the curves more vertices there";
+            Err(Error::domain(format!("curves of the boundary meet: {}", fault.what), fault.place.clone(), help))
+        }
+        _ => found.demand(),
+    }
 }
 
 /// Refuses curved triangles of a surface whose curves are not known, or whose vertices are elsewhere.

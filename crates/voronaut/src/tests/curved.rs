@@ -117,7 +117,7 @@ fn curves_that_meet_outside_are_an_error_with_the_place() {
     let [upper, lower] = ends.map(|ends| ends.map(|(x, y)| Point::new(x, y)));
     let domain = of_rings(vec![[above, upper.to_vec()].concat(), [below, lower.to_vec()].concat()]);
     let error = mesh(&domain, &|_: Point| Tensor::IDENTITY, &options(100, 2, Boundary::Spline), &Silent).unwrap_err();
-    assert!(error.to_string().contains("on the boundary meet"), "{error}");
+    assert!(error.to_string().contains("curves of the boundary meet"), "{error}");
 }
 
 #[test]
