@@ -73,6 +73,7 @@ def mesh(
     hausd: float | None = None,
     required: bool = False,
     order: int = 1,
+    boundary: str = 'auto',
     periodic: str | tuple[int, int] | list[tuple[int, int]] | None = None,
     fit: bool = False,
     ar: float = 45,
@@ -148,8 +149,11 @@ def mesh(
     required : bool, default False
         In the plane: leave the edges of the domain's curves as they are, every one an edge of the mesh
     order : int, default 1
-        In the plane: the order of triangles: 1, straight; 2 or 3, curved to follow the metric (.msh, .vtu, .mesh and
-        .meshb hold them)
+        The order of triangles: 1, straight; 2 or 3, curved: in the plane to follow the metric, on sphere:, torus: and f
+        = 0 to follow the surface (.msh, .vtu, .mesh and .meshb hold them)
+    boundary : str, default 'auto'
+        What boundaries of curved triangles are: auto (the circle of disk:, else polyline), polyline (the domain's own
+        straight segments), or spline (smooth curves through its vertices; corners of more than 45 degrees stay)
     periodic : str | tuple[int, int] | list[tuple[int, int]], optional
         In the plane: edges on the boundary curves with labels A and B correspond, which are equal but for a rotation
         and a translation; for several pairs several times
@@ -231,8 +235,8 @@ def mesh(
     --------
     >>> layer = voronaut.mesh("rect:0,0,1,1", lambda p: 0.01 + 0.2 * abs(p[:, 1] - 0.5), n=2000)
     """
-    options = {"complexity": complexity, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "hausd": hausd, "required": required, "order": order, "periodic": periodic, "fit": fit, "ar": ar, "nr": nr, "mesher": mesher, "effort": effort, "lloyd": lloyd, "centroid": centroid, "polish": polish, "dual": dual, "geodesic": geodesic, "seeding": seeding, "protection": protection, "picking_radius": picking_radius, "net": net, "canvas": canvas, "canvas_size": canvas_size, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "view": view, "cells": cells, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
-    defaults: dict[str, Any] = {"norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "order": 1, "ar": 45, "mesher": 'voronoi', "effort": 'normal', "lloyd": 40, "centroid": 'tangent', "polish": 20, "dual": 'both', "geodesic": 'march', "seeding": 'sizing', "protection": 0.2, "picking_radius": 0.3, "canvas": 'intrinsic', "canvas_size": 60, "show": 'mesh', "pixels": 1600, "memory_limit": 16}
+    options = {"complexity": complexity, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "hausd": hausd, "required": required, "order": order, "boundary": boundary, "periodic": periodic, "fit": fit, "ar": ar, "nr": nr, "mesher": mesher, "effort": effort, "lloyd": lloyd, "centroid": centroid, "polish": polish, "dual": dual, "geodesic": geodesic, "seeding": seeding, "protection": protection, "picking_radius": picking_radius, "net": net, "canvas": canvas, "canvas_size": canvas_size, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "view": view, "cells": cells, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
+    defaults: dict[str, Any] = {"norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "order": 1, "boundary": 'auto', "ar": 45, "mesher": 'voronoi', "effort": 'normal', "lloyd": 40, "centroid": 'tangent', "polish": 20, "dual": 'both', "geodesic": 'march', "seeding": 'sizing', "protection": 0.2, "picking_radius": 0.3, "canvas": 'intrinsic', "canvas_size": 60, "show": 'mesh', "pixels": 1600, "memory_limit": 16}
     return _run.mesh(domain, metric, n, options, defaults, progress)
 
 

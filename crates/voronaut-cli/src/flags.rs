@@ -1,9 +1,10 @@
 //! Parameters by the names that users type. The libraries call them by their own, in backquotes: `canvas_size`, `mesher=voronoi`.
 
 /// Those that the libraries speak of.
-pub(crate) const PARAMETERS: [&str; 30] = [
+pub(crate) const PARAMETERS: [&str; 31] = [
     "a_max",
     "background",
+    "boundary",
     "canvas",
     "canvas_size",
     "centroid",

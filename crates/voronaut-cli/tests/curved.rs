@@ -61,7 +61,7 @@ fn what_has_no_place_for_curves_refuses_them_by_name() {
         ("view disk.msh --metric uniform -o a.html", "curved triangles in a metric"),
         ("mesh disk:0,0,1 --metric uniform -n 50 --order 2 -o a.stl", "triangles of order 2 in a file .stl"),
         ("mesh disk:0,0,1 --metric uniform -n 50 --order 2 --parts 2 -o a.mesh", "--parts with curved triangles"),
-        ("mesh sphere:1 --metric uniform -n 50 --order 2 --fit -o a.mesh", "`fit` with curved triangles"),
+        ("mesh sphere:1 --metric uniform -n 50 --order 2 --fit -o a.mesh", "--fit with curved triangles"),
         ("mesh cube.obj --metric uniform -n 50 --order 2 -o a.mesh", "curved triangles on a surface of triangles"),
         ("mesh disk:0,0,1 --metric uniform -n 50 --boundary spline -o a.mesh", "--boundary with straight triangles"),
     ] {
@@ -73,7 +73,9 @@ fn what_has_no_place_for_curves_refuses_them_by_name() {
         assert_eq!(output.status.code(), Some(code), "{words}: {}", stderr(&output));
         assert!(stderr(&output).contains(expected), "{words}: {}", stderr(&output));
         assert!(stderr(&output).contains("help"), "{words}: {}", stderr(&output));
-        ["cube.obj", "u.sol"].map(|name| place.take(name));
+        for name in ["cube.obj", "u.sol"] {
+            place.take(name);
+        }
         assert_eq!(place.files(), ["disk.msh"], "{words}");
     }
     let output = place.run(&["mesh", "disk:0,0,1", "--metric", "uniform", "--order", "4", "-o", "a.msh"]);
@@ -158,4 +160,5 @@ fn boundaries_are_bent_onto_splines_on_request() {
     let polygon = 12.0 * (std::f64::consts::TAU / 24.0).sin();
     assert!((area("") - polygon).abs() < 1e-12 && (area("--boundary polyline") - polygon).abs() < 1e-12);
     assert!((area("--boundary spline") - std::f64::consts::PI).abs() < 1e-4);
+    assert!((area("--boundary spline --required") - polygon).abs() < 1e-12, "required segments are straight");
 }

@@ -3,7 +3,7 @@
 use crate::common::{Place, stderr};
 use serde_json::Value;
 use voronaut::mesh::Mesh;
-use voronaut::surface::{sphere, torus};
+use voronaut::surface::{Input, torus};
 use voronaut_io::write_mesh;
 
 fn put(place: &Place, name: &str, mesh: &Mesh) {
@@ -38,6 +38,10 @@ fn number(report: &Value, path: &str) -> f64 {
     report.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path} in {report}"))
 }
 
+fn sphere(radius: f64, edge: f64) -> Mesh {
+    Input::shape(&format!("sphere:{radius}"), Some(edge)).unwrap().surface.to_mesh()
+}
+
 #[test]
 fn meshes_of_every_format_are_read() {
     let place = Place::new();
@@ -58,7 +62,7 @@ fn meshes_of_every_format_are_read() {
 #[test]
 fn a_mesh_is_held_against_its_surface() {
     let place = Place::new();
-    let mesh = sphere(1.0, 0.3).unwrap().to_mesh();
+    let mesh = sphere(1.0, 0.3);
     put(&place, "a.off", &mesh);
     let (report, said) = checked(&place, &["a.off", "--domain", "sphere:1"]);
     // Inscribed: what is missing is the greatest sagitta, about edge^2 / 6 for an equilateral triangle.
@@ -82,7 +86,7 @@ fn a_mesh_is_held_against_its_surface() {
 #[test]
 fn metrics_on_surfaces_are_measured() {
     let place = Place::new();
-    let mesh = sphere(2.0, 0.5).unwrap().to_mesh();
+    let mesh = sphere(2.0, 0.5);
     put(&place, "a.mesh", &mesh);
     let edges = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let longest = edges.map(|[a, b]| mesh.position(a).distance(mesh.position(b))).fold(0.0, f64::max);
@@ -123,7 +127,7 @@ fn faults_of_surfaces_are_found_and_reported() {
 #[test]
 fn what_is_not_there_for_surfaces_is_said() {
     let place = Place::new();
-    put(&place, "a.off", &sphere(1.0, 0.5).unwrap().to_mesh());
+    put(&place, "a.off", &sphere(1.0, 0.5));
     let uniform = ["a.off", "--metric", "uniform"];
     for (more, expected) in [
         (&["--recovery", "l2"][..], "not supported: --recovery"),

@@ -11,7 +11,7 @@ use voronaut::surface::{self, Surface};
 const FRONT: View = View { from: Vector3::new(0.0, 0.0, 1.0), up: Vector3::new(0.0, 1.0, 0.0), pixels: 400 };
 
 fn sphere() -> Surface {
-    surface::sphere(1.0, 0.2).unwrap()
+    surface::Input::shape("sphere:1", Some(0.2)).unwrap().surface
 }
 
 fn line(points: &[[f64; 3]]) -> Vec<Point3> {

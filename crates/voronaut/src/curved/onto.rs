@@ -10,7 +10,7 @@ use crate::parallel::prelude::*;
 use crate::surface::Input;
 
 /// Nodes come back halfway to the straight triangle where it would fold, at most so many times, and all the way then.
-const BARRED: u32 = 5;
+const BARRED: i32 = 5;
 
 /// The triangles of a straight mesh of an equation's surface with nodes where that is nearest to equal steps along edges, and to the middles of
 /// triangles. Nodes of an edge on the border keep the coordinates that its ends have in common. Where a triangle would fold, seen along its normal, or the
@@ -20,9 +20,9 @@ pub(crate) fn onto_surface(mesh: &mut Mesh, input: &Input, order: usize) -> Opti
     let (straight, pins, triangles) = straight_nodes(mesh, order);
     let landed: Vec<Option<Point3>> =
         (0..straight.len()).into_par_iter().map(|n| input.onto(straight[n], pins[n])).collect();
-    let mut halved: Vec<u32> = landed.iter().map(|p| if p.is_some() { 0 } else { BARRED }).collect();
-    let place = |n: usize, halved: u32| match landed[n] {
-        Some(p) if halved < BARRED => straight[n].lerp(p, 0.5_f64.powi(halved as i32)),
+    let mut halved: Vec<i32> = landed.iter().map(|p| if p.is_some() { 0 } else { BARRED }).collect();
+    let place = |n: usize, halved: i32| match landed[n] {
+        Some(p) if halved < BARRED => straight[n].lerp(p, 0.5_f64.powi(halved)),
         _ => straight[n],
     };
     let nodes = (0..straight.len()).map(|n| place(n, halved[n]).to_array()).collect();
@@ -56,7 +56,8 @@ fn straight_nodes(mesh: &Mesh, order: usize) -> (Vec<Point3>, Vec<[bool; 3]>, Ve
     let mut triangles = vec![0; mesh.triangles.len() * per_triangle];
     for sides in Edges::of(&mesh.triangles).iter() {
         let [a, b] = sides[0].ends.map(|v| Point3::from(mesh.points[v as usize]));
-        let stays = if sides.len() == 1 { [a.x == b.x, a.y == b.y, a.z == b.z] } else { [false; 3] };
+        let way = b - a;
+        let stays = [way.x, way.y, way.z].map(|x| sides.len() == 1 && x == 0.0);
         let first = nodes.len() as u32;
         for i in 1..order {
             nodes.push(a.lerp(b, i as f64 / order as f64));

@@ -194,7 +194,6 @@ fn sides_are_as_near_to_geodesics_as_polynomials_of_their_order() {
         for order in [2, 3] {
             let [coarse, fine] = [8, 16].map(|n| away_from_geodesics(known, n, order));
             let observed = (coarse / fine).log2();
-            eprintln!("{} {order}: {observed} {coarse} {fine}", known.name);
             assert!(observed > order as f64 + 0.7, "{} {order}: {observed} of {coarse} and {fine}", known.name);
         }
     }

@@ -1,6 +1,6 @@
 //! Smooth curves through the vertices of a domain's boundaries and interfaces.
 
-use super::{Domain, Pslg};
+use super::{Chain, Domain, Pslg};
 use crate::geometry::{Point, Vector};
 use crate::lists::in_order;
 use std::collections::{HashMap, HashSet};
@@ -46,7 +46,7 @@ impl Splines {
         let pslg = domain.pslg();
         let mut found = Self { runs: Vec::new(), places: HashMap::new(), straight: HashSet::new() };
         for chain in pslg.chains() {
-            found.add(pslg, &chain.vertices);
+            found.add(pslg, &chain);
         }
         found
     }
@@ -65,9 +65,9 @@ impl Splines {
         arcs.min_by(|a, b| a.length().total_cmp(&b.length()))
     }
 
-    /// Cuts a curve at its corners and straight segments.
-    fn add(&mut self, pslg: &Pslg, vertices: &[u32]) {
-        let curve = Curve::of(pslg, vertices);
+    /// Cuts a curve at its corners and straight segments. Required ones are straight.
+    fn add(&mut self, pslg: &Pslg, chain: &Chain) {
+        let curve = Curve::of(pslg, chain);
         let n = curve.sides.len();
         let ends = |i: usize| in_order([i, i + 1].map(|i| key(curve.points[i])));
         self.straight.extend((0..n).filter(|&i| curve.is_straight[i]).map(ends));
@@ -107,12 +107,12 @@ struct Curve {
 }
 
 impl Curve {
-    fn of(pslg: &Pslg, vertices: &[u32]) -> Self {
+    fn of(pslg: &Pslg, Chain { vertices, kind }: &Chain) -> Self {
         let points: Vec<Point> = vertices.iter().map(|&v| pslg.points[v as usize]).collect();
         let sides: Vec<Vector> = points.windows(2).map(|w| w[1] - w[0]).collect();
         let is_closed = vertices[0] == vertices[sides.len()];
         let mut curve = Self { points, sides, is_closed, is_straight: Vec::new() };
-        curve.is_straight = (0..curve.sides.len()).map(|i| curve.looks_straight(i)).collect();
+        curve.is_straight = (0..curve.sides.len()).map(|i| kind.required || curve.looks_straight(i)).collect();
         curve
     }
 
@@ -264,7 +264,7 @@ mod tests {
 
     fn splines(points: Vec<Point>) -> Splines {
         let polygon = Polygon { feature: 1, number: 1, region: 1, rings: vec![Ring { points, label: 1 }] };
-        let pslg = from_polygons(&Polygons { polygons: vec![polygon], ..Polygons::default() }).unwrap();
+        let pslg = from_polygons(&Polygons { polygons: vec![polygon] }).unwrap();
         Splines::of(&Domain::new(&pslg).unwrap())
     }
 

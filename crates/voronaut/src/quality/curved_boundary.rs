@@ -69,7 +69,7 @@ fn have_ends_only(one: &Curve, other: &Curve) -> bool {
             let is_clear = |u: Vector, v: Vector| holds(u, v) > 16.0 * f64::EPSILON * u.norm() * v.norm();
             ones.iter().all(|&u| others.iter().all(|&v| is_clear(u, v)))
         };
-        all(|u, v| u.cross(v)) || all(|u, v| v.cross(u)) || all(|u, v| -u.dot(v))
+        all(Vector::cross) || all(|u, v| v.cross(u)) || all(|u, v| -u.dot(v))
     })
 }
 

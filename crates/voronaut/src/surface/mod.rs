@@ -48,7 +48,9 @@ pub(crate) use nearest::{Nearest, closest_weights};
 pub use repair::{Mended, RepairOptions, repaired};
 #[cfg(test)]
 pub(crate) use shapes::chair;
-pub use shapes::{shape, sphere, torus};
+#[cfg(test)]
+pub(crate) use shapes::sphere;
+pub use shapes::{shape, torus};
 
 use crate::geometry::{Point3, Vector3};
 use crate::triangulation::{Constraint, FaceId, Triangulation, VertexId};

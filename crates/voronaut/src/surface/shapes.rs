@@ -26,7 +26,7 @@ const MOST_VERTICES: f64 = 5e7;
 ///
 /// # Errors
 /// [`Error::Domain`] unless radius and edge length are positive and finite; [`Error::Limit`] of too many vertices.
-pub fn sphere(radius: f64, edge: f64) -> Result<Surface> {
+pub(crate) fn sphere(radius: f64, edge: f64) -> Result<Surface> {
     check("sphere", &[radius, edge])?;
     check_count(4.0 * TAU * (radius / edge).powi(2))?;
     let (mut points, mut triangles) = icosahedron();

@@ -67,7 +67,7 @@ fn half_disk(sides: u32) -> Domain {
 
 fn of_rings(rings: Vec<Vec<Point>>) -> Domain {
     let polygon = |(number, points)| Polygon { feature: 1, number, region: 1, rings: vec![Ring { points, label: 3 }] };
-    let polygons = Polygons { polygons: (1..).zip(rings).map(polygon).collect(), ..Polygons::default() };
+    let polygons = Polygons { polygons: (1..).zip(rings).map(polygon).collect() };
     Domain::new(&from_polygons(&polygons).unwrap()).unwrap()
 }
 
