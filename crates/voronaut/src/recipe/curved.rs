@@ -56,7 +56,7 @@ pub(super) fn mesh_curved(
     let unit = Scaled { field, factor: metric_scale };
     let curves = is_bent(domain, options.boundary).then(|| Splines::of(domain));
     let (mesh, away) = watch.time("curve", || curved(&start.mesh, curves.as_ref(), &unit, options.order, progress))?;
-    watch.time("check", || demand_valid(&mesh))?;
+    watch.time("check", || demand_valid(&mesh, curves.is_some()))?;
     let note = |(count, at): (usize, Point)| {
         format!("{count} points of the boundary are not on its curve, for triangles would fold: the first at {at}")
     };
@@ -65,11 +65,11 @@ pub(super) fn mesh_curved(
 }
 
 /// # Errors
-/// [`Error::Domain`] where curves of the boundary meet, which their chords do not; else as [`quality::check`].
-fn demand_valid(mesh: &Mesh) -> Result<()> {
+/// [`Error::Domain`] where curves of a boundary that was bent meet, which their chords do not; else as [`quality::check`].
+fn demand_valid(mesh: &Mesh, is_bent: bool) -> Result<()> {
     let found = quality::validity(mesh);
     match &found.first_fault {
-        Some(fault) if found.overlaps > 0 => {
+        Some(fault) if is_bent && found.overlaps > 0 => {
             let help = "use `boundary=polyline`, or give the curves more vertices there";
             Err(Error::domain(format!("curves of the boundary meet: {}", fault.what), fault.place.clone(), help))
         }
