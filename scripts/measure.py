@@ -503,6 +503,12 @@ def peers_on_functions():
     return rows
 
 
+@table("ffbamg", "mmg2d_O3")
+def curved_functions():
+    printed = run(sys.executable, ROOT / "scripts/compare_curved.py")
+    return [line.split("  ") for line in printed.splitlines()]
+
+
 @table("mmgs_O3")
 def surface_functions():
     printed = run(sys.executable, ROOT / "scripts/compare_surface_hessian.py")

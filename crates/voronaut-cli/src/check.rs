@@ -122,8 +122,8 @@ fn demand_for_curves(args: &CheckArgs, mesh: &Mesh) -> Result<()> {
         return Ok(());
     }
     refuse([(
-        args.function.is_some(),
-        "the error of linear interpolation on curved triangles",
+        args.function.is_some() && !mesh.is_planar(),
+        "the error of interpolation on curved triangles of a surface",
         "leave out --function",
     )])?;
     curves::demand_drawable(&args.outputs)
@@ -224,5 +224,6 @@ fn planar_metric(
         &own
     };
     let scale = args.metric_scale.unwrap_or(1.0);
-    fields::measuring(world, text, domain, file, &args.metric_choices, scale)
+    let choices = args.metric_choices.of_degree(curves::order_of(mesh));
+    fields::measuring(world, text, domain, file, &choices, scale)
 }

@@ -76,8 +76,8 @@ pub(crate) struct MeshArgs {
     /// In the plane: leave the edges of the domain's curves as they are, every one an edge of the mesh
     #[arg(long, conflicts_with = "hausd")]
     pub(crate) required: bool,
-    /// The order of triangles: 1, straight; 2 or 3, curved: in the plane to follow the metric, on sphere:, torus: and f = 0 to follow the
-    /// surface (.msh, .vtu, .mesh and .meshb hold them)
+    /// The order of triangles: 1, straight; 2 or 3, curved: in the plane to follow the metric, or with hessian:EXPR so that interpolation by
+    /// polynomials of that order has the least error; on sphere:, torus: and f = 0 to follow the surface (.msh, .vtu, .mesh and .meshb hold them)
     #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=3), default_value_t = MeshOptions::default().order as u8)]
     pub(crate) order: u8,
     /// What boundaries of curved triangles are: auto (the circle of disk:, else polyline), polyline (the domain's own straight
@@ -110,8 +110,8 @@ pub(crate) struct MeshArgs {
     /// (equation 9 of the report, to compare)
     #[arg(long, value_name = "WHICH", default_value_t = MeshOptions::default().centroid)]
     pub(crate) centroid: Centroid,
-    /// With hessian metrics: sweeps in which vertices move and edges flip so that the error of linear interpolation falls, at
-    /// most; 0 for the metric's unit mesh. Not with limits on the metric
+    /// With hessian metrics: sweeps in which vertices move and edges flip so that the error of interpolation falls, at most; 0 for
+    /// the metric's unit mesh. Not with limits on the metric
     #[arg(long, value_name = "SWEEPS", default_value_t = MeshOptions::default().polish)]
     pub(crate) polish: usize,
     /// What decides on the edges: geodesic (their lengths), canvas (the diagram on one) or both (the diagram where lengths cannot)
@@ -278,7 +278,8 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     let idle = args.idle(false, world)?;
     let (outputs, options) = (&args.outputs, args.options());
     let at = GradedAt::of(options.vertices, args.complexity);
-    let made = fields::in_plane(world, &args.metric, domain, &args.domain, &args.metric_choices, at)?;
+    let choices = args.metric_choices.of_degree(options.order);
+    let made = fields::in_plane(world, &args.metric, domain, &args.domain, &choices, at)?;
     let (metric, aim) = (made.field.as_ref(), made.aim(args.metric_choices.norm));
     let field = parts::Field::Plane(domain, metric, aim);
     if let Some(job) = &args.in_parts.part {
@@ -302,8 +303,7 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     report.notes.extend(mended.sentences());
     report.histograms = files::histograms(outputs, mesh, &scaled)?;
     let error = |aim: Aim| interpolation_error(mesh, aim.function, aim.norm);
-    // It is that of linear interpolation on straight triangles.
-    report.interpolation = aim.filter(|_| options.order == 1).map(error).transpose()?;
+    report.interpolation = aim.map(error).transpose()?;
     report.seconds.total = world.seconds() - start;
     let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
         pages::measured_in_plane(sheet, &scaled, meshed.mesh.curved.is_none())?;

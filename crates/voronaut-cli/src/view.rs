@@ -5,7 +5,7 @@ use crate::options::{Damage, MetricChoices, Run, positive, refuse};
 use crate::pages::{self, Drawn};
 use crate::stages::Stages;
 use crate::world::World;
-use crate::{files, summary};
+use crate::{curves, files, summary};
 use clap::{Args, value_parser};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -151,7 +151,8 @@ fn in_plane(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, path:
     }
     let own = args.domain.clone().unwrap_or_else(|| path.to_string_lossy().into_owned());
     let scale = args.metric_scale.unwrap_or(1.0);
-    let metric = fields::measuring(world, text, domain, &own, &args.metric_choices, scale)?;
+    let choices = args.metric_choices.of_degree(curves::order_of(&sheet.mesh));
+    let metric = fields::measuring(world, text, domain, &own, &choices, scale)?;
     pages::measured_in_plane(sheet, metric.as_ref(), true)?;
     args.drawn().map_or(Ok(()), |drawn| pages::with_cells(sheet, domain, metric.as_ref(), drawn))
 }

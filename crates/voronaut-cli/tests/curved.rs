@@ -55,7 +55,6 @@ fn what_has_no_place_for_curves_refuses_them_by_name() {
         ("remesh disk.msh -hsiz 0.3 -o a.mesh", "triangles of order 2, where straight ones are needed"),
         ("metric disk.msh --metric uniform -o a.sol", "a metric on curved triangles"),
         ("interpolate disk.msh disk.msh u.sol -o a.sol", "triangles of order 2, where straight ones are needed"),
-        ("check disk.msh --function x", "the error of linear interpolation on curved triangles"),
         ("check disk.msh --metric uniform --picture a.svg --show unmet", "--show unmet with curved triangles"),
         ("check disk.msh --metric uniform --histograms a.svg", "--histograms with curved triangles"),
         ("view disk.msh --metric uniform -o a.html", "curved triangles in a metric"),

@@ -18,15 +18,18 @@ use voronaut::surface::RepairOptions;
 use voronaut::{Error, Result};
 use voronaut_draw::Picture;
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct MetricChoices {
+    /// The degree of the polynomials by which functions are interpolated: the order of the triangles.
+    #[arg(skip = 1_usize)]
+    degree: usize,
     /// Least Euclidean size the metric may ask for
     #[arg(long, value_name = "H", value_parser = positive)]
     h_min: Option<f64>,
     /// Greatest Euclidean size the metric may ask for
     #[arg(long, value_name = "H", value_parser = positive)]
     h_max: Option<f64>,
-    /// With hessian metrics: p of the L^p norm in which the error of linear interpolation is to be least: 1, 2, 4, ... or inf
+    /// With hessian metrics: p of the L^p norm in which the error of interpolation is to be least: 1, 2, 4, ... or inf
     #[arg(long, value_name = "P", default_value_t = Norm::default())]
     pub(crate) norm: Norm,
     /// With hessian:FILE.sol: how second derivatives are recovered, by a quadratic around each vertex (fit) or a double projection
@@ -204,11 +207,17 @@ impl MetricChoices {
         Bounds { h_min: self.h_min, h_max: self.h_max, a_max: self.a_max }
     }
 
+    /// The same for triangles of an order.
+    pub(crate) fn of_degree(&self, degree: usize) -> Self {
+        Self { degree, ..self.clone() }
+    }
+
     /// What is asked of a metric in the plane.
     pub(crate) fn options(&self) -> MetricOptions {
         MetricOptions {
             bounds: self.bounds(),
             norm: self.norm,
+            degree: self.degree,
             recovery: self.recovery,
             smooth_metric: self.smooth_metric,
             gradation: self.gradation,

@@ -10,6 +10,9 @@ use crate::progress::Progress;
 
 /// Steps until what is not on its curve stays away, at most: each goes half of the way at least where triangles allow it.
 const STEPS: usize = 16;
+/// The least Jacobian that bending may leave, far above rounding: the corner of a triangle both of whose sides there are on a smooth curve would open to a half
+/// turn.
+pub(super) const LEAST: f64 = 1e-6;
 
 /// Moves the vertices and the sides on straight parts to the curves that these stand for, which they keep from then on. Returns how many points stay away,
 /// because triangles would not be valid, and the first of them.

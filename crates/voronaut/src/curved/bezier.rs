@@ -64,7 +64,7 @@ pub(super) fn slopes(order: usize, at: [f64; 3]) -> [Vector; MOST] {
 }
 
 /// The sum of points by weights that sum to one.
-pub(super) fn blend(points: &[Point], weights: &[f64]) -> Point {
+pub(crate) fn blend(points: &[Point], weights: &[f64]) -> Point {
     let sum = |of: fn(&Point) -> f64| points.iter().zip(weights).map(|(p, w)| w * of(p)).sum();
     Point::new(sum(|p| p.x), sum(|p| p.y))
 }
@@ -133,7 +133,7 @@ fn seen(mesh: &Mesh, triangle: usize, of: impl Fn(Point3) -> Point) -> ([Point; 
 }
 
 /// The Bezier points of a triangle from its nodes, in the same order.
-fn points_of_nodes(nodes: &[Point; MOST], order: usize) -> [Point; MOST] {
+pub(crate) fn points_of_nodes(nodes: &[Point; MOST], order: usize) -> [Point; MOST] {
     let mut points = *nodes;
     for s in 0..3 {
         let on_side: Vec<Point> = side(order, s).map(|i| nodes[i]).collect();

@@ -367,7 +367,7 @@ impl<'a> Straight<'a> {
 }
 
 /// The directions in which a point may move.
-pub(super) fn axes(hold: Hold) -> impl Iterator<Item = Vector> {
+pub(super) fn axes(hold: Hold) -> impl Iterator<Item = Vector> + Clone {
     let axes = match hold {
         Hold::Free => [Some(Vector::new(1.0, 0.0)), Some(Vector::new(0.0, 1.0))],
         Hold::Along([a, b]) => [Some((b - a) * (1.0 / (b - a).norm())), None],

@@ -5,7 +5,7 @@ use super::elements::{Elements, HALVINGS, Hold, Loose, Vertex};
 use super::jacobian::bound;
 use super::newton::Aim;
 use super::rules::Rule;
-use super::term::{curve_length, side_energy, triangle_energy};
+use super::term::{curve_length, side_energy};
 use crate::geometry::{Point, Vector};
 use crate::lists::{distinct, ranked};
 use crate::mesh::edges::NONE;
@@ -14,6 +14,9 @@ use crate::parallel::prelude::*;
 /// Sides that are shorter may go, and those that are longer may be halved: what is left of a longer one is not shorter than this.
 const SHORT: f64 = 0.8;
 const LONG: f64 = 1.3;
+/// Where errors are what counts, a side of a triangle may go that costs less than this, where the mean is one, and that of one may be halved that costs more.
+const CHEAP: f64 = 0.3;
+const DEAR: f64 = 2.0;
 /// What a collapse costs before anything settles counts by half: flips and steps mend that much of it.
 const MENDED: f64 = 0.5;
 
@@ -71,15 +74,22 @@ impl Work<'_> {
     /// Splits of long sides, and collapses of short ones either way.
     fn possible(&self) -> (Vec<Change>, Vec<Change>) {
         let twins = &self.elements.twins;
-        let lengths: Vec<f64> = (0..twins.len()).into_par_iter().map(|h| self.length(h)).collect();
+        let by_cost = self.aim.target.is_some();
+        let lengths: Vec<f64> =
+            (0..twins.len()).into_par_iter().map(|h| if by_cost { 0.0 } else { self.length(h) }).collect();
+        let costs: Vec<f64> = self.loose.par_iter().map(|t| if by_cost { self.energy(t) } else { 0.0 }).collect();
         let is_required = |h: usize| {
             // A labelled side between vertices that stay is whole.
             let ends = [h, Elements::next(h)].map(|h| self.elements.holds[self.elements.origin(h) as usize]);
             self.elements.held[h] != NONE && ends == [Hold::Fixed; 2]
         };
-        let is_long = |&h: &usize| (twins[h] == NONE || h < twins[h] as usize) && lengths[h] > LONG && !is_required(h);
-        let long: Vec<usize> = (0..lengths.len()).filter(is_long).collect();
-        let short: Vec<usize> = (0..lengths.len()).filter(|&h| lengths[h] < SHORT).collect();
+        let first = |h: usize| twins[h] == NONE || h < twins[h] as usize;
+        let is_long = |h: usize| if by_cost { costs[h / 3] > DEAR } else { lengths[h] > LONG };
+        let is_short = |h: usize| if by_cost { costs[h / 3] < CHEAP } else { lengths[h] < SHORT };
+        let are_long = |h: usize| is_long(h) || (twins[h] != NONE && is_long(twins[h] as usize));
+        let all = 0..twins.len();
+        let long: Vec<usize> = all.clone().filter(|&h| first(h) && are_long(h) && !is_required(h)).collect();
+        let short: Vec<usize> = all.filter(|&h| is_short(h)).collect();
         let collapses = short.par_iter().filter_map(|&h| self.collapse(h)).collect();
         (long.par_iter().map(|&h| self.split(h)).collect(), collapses)
     }
@@ -92,13 +102,13 @@ impl Work<'_> {
 
     /// The energy of a triangle and half the cost of its sides, which others have as well.
     fn energy(&self, triangle: &Loose) -> f64 {
-        let Aim { metric, lengths } = *self.aim;
+        let Aim { metric, lengths, .. } = *self.aim;
         let of_side = |s: usize| {
             let points: Vec<Point> = side(self.elements.order, s).map(|i| triangle.points[i]).collect();
             side_energy(&points, metric, 0.5 * lengths)
         };
         let of_sides = if lengths > 0.0 { (0..3).map(of_side).sum() } else { 0.0 };
-        triangle_energy(self.rule, &triangle.points[..self.elements.count()], metric) + of_sides
+        self.aim.of_points(self.rule, &triangle.points[..self.elements.count()]) + of_sides
     }
 
     fn gain(&self, old: &[usize], new: &[Loose]) -> f64 {

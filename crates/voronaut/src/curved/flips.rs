@@ -6,7 +6,7 @@ use super::local::Local;
 use super::newton::Aim;
 use super::pair::Pair;
 use super::rules::Rule;
-use super::term::{side_energy, triangle_energy};
+use super::term::side_energy;
 use crate::geometry::Point;
 use crate::lists::ranked;
 use crate::mesh::edges::NONE;
@@ -17,6 +17,9 @@ const LEAST_GAIN: f64 = 1e-4;
 /// Flips are tried of sides that are not Delaunay by the lengths of all around, or not by more than this angle: triangles are no
 /// straight ones, and better ones may be a little less Delaunay.
 const HOPEFUL: f64 = 0.3;
+
+/// Where errors are what counts, of which few triangles have most: flips are tried of pairs that cost so much, where the mean of triangles is one.
+const WORTHWHILE: f64 = 0.5;
 
 /// What a flip would make: the points of both triangles, the new side's and their inner ones among them.
 struct Flipped {
@@ -49,7 +52,9 @@ pub(super) fn flip(elements: &mut Elements, aim: &Aim) -> usize {
 /// What a flip would gain, where it is valid and gains anything.
 fn tried(elements: &Elements, aim: &Aim, rule: &Rule, half_edge: usize) -> Option<Flipped> {
     let pair = Pair::of(elements, half_edge);
-    if pair.excess(elements, aim) < -HOPEFUL {
+    let cost = cost(elements, aim, rule, pair);
+    let is_hopeless = if aim.target.is_some() { cost < WORTHWHILE } else { pair.excess(elements, aim) < -HOPEFUL };
+    if is_hopeless {
         return None;
     }
     let mut local = Local::of(elements, aim, rule, pair);
@@ -57,14 +62,14 @@ fn tried(elements: &Elements, aim: &Aim, rule: &Rule, half_edge: usize) -> Optio
         return None;
     }
     let guess = local.energy();
-    let gain = cost(elements, aim, rule, pair) - local.settle(guess);
+    let gain = cost - local.settle(guess);
     (gain > LEAST_GAIN).then_some(Flipped { gain, half_edge, triangles: local.triangles })
 }
 
 /// The energy of two triangles and the side between them.
 fn cost(elements: &Elements, aim: &Aim, rule: &Rule, pair: Pair) -> f64 {
     let count = elements.count();
-    let of_triangle = |t: usize| triangle_energy(rule, &elements.of_triangle(&elements.points, t)[..count], aim.metric);
+    let of_triangle = |t: usize| aim.of_points(rule, &elements.of_triangle(&elements.points, t)[..count]);
     let side: Vec<Point> = elements.side(pair.0[0]).iter().map(|&n| elements.points[n as usize]).collect();
     let of_side = if aim.lengths > 0.0 { side_energy(&side, aim.metric, aim.lengths) } else { 0.0 };
     pair.triangles().map(of_triangle).iter().sum::<f64>() + of_side

@@ -6,7 +6,7 @@ use super::jacobian::{bound, coefficients};
 use super::newton::Aim;
 use super::pair::Pair;
 use super::rules::Rule;
-use super::term::{Expansion, Freedom, curve_at, side, side_energy, triangle, triangle_energy};
+use super::term::{Expansion, Freedom, curve_at, side, side_energy};
 use crate::geometry::{Point, Vector};
 
 /// Steps in which the new side settles, at most, and what the last one gains at least.
@@ -85,7 +85,7 @@ impl<'a> Local<'a> {
     }
 
     pub(super) fn is_valid(&self) -> bool {
-        self.triangles.iter().all(|t| bound(&t[..self.count()], self.order, HALVINGS).is_valid())
+        self.triangles.iter().all(|t| bound(&t[..self.count()], self.order, HALVINGS).least > self.aim.least)
     }
 
     fn new_side(&self) -> Vec<Point> {
@@ -93,7 +93,7 @@ impl<'a> Local<'a> {
     }
 
     pub(super) fn energy(&self) -> f64 {
-        let of = |t: &[Point; MOST]| triangle_energy(self.rule, &t[..self.count()], self.aim.metric);
+        let of = |t: &[Point; MOST]| self.aim.of_points(self.rule, &t[..self.count()]);
         let lengths = self.aim.lengths;
         let of_side = if lengths > 0.0 { side_energy(&self.new_side(), self.aim.metric, lengths) } else { 0.0 };
         self.triangles.iter().map(of).sum::<f64>() + of_side
@@ -203,7 +203,7 @@ impl<'a> Local<'a> {
         };
         for (i, t) in self.triangles.iter().enumerate() {
             let freedoms = both_axes(self.unknown().iter().map(|places| places[i]));
-            add(&freedoms, &triangle(self.rule, &t[..self.count()], &freedoms, self.aim.metric));
+            add(&freedoms, &self.aim.expansion(self.rule, &t[..self.count()], &freedoms));
         }
         if self.aim.lengths > 0.0 {
             let freedoms = both_axes((1..self.order).map(Some));

@@ -6,6 +6,8 @@
 //! side would fold its triangles it is untangled ([`local`]). In the end sides go onto geodesics ([`geodesic`]). It starts from a straight mesh of a metric that is less anisotropic
 //! ([`Tempered`]), and goes on to the one asked for. Every state is valid: by bounds of Jacobians ([`jacobian`]), positive
 //! everywhere, and a boundary that stays where it is, or is bent onto its curves in the end ([`bend`]).
+//!
+//! For a function to be interpolated it is the error of that instead ([`target`]), of the straight mesh in a metric of higher derivatives ([`polish`]).
 
 mod bend;
 mod bezier;
@@ -20,16 +22,18 @@ mod local;
 mod newton;
 mod onto;
 mod pair;
+mod polish;
 mod rules;
 mod system;
+mod target;
 mod tempered;
 mod term;
 
-pub(crate) use bezier::{bezier_points, exponents, seen_from_above, side};
+pub(crate) use bezier::{MOST, bernstein, bezier_points, blend, exponents, points_of_nodes, seen_from_above, side};
 pub(crate) use elements::HALVINGS;
 pub(crate) use jacobian::bound;
 pub(crate) use onto::onto_surface;
-pub(crate) use rules::{GAUSS, Rule};
+pub(crate) use rules::{GAUSS, Place, Rule};
 pub(crate) use tempered::Tempered;
 pub(crate) use term::curve_at;
 
@@ -37,7 +41,8 @@ use crate::domain::Splines;
 use crate::error::Result;
 use crate::geometry::Point;
 use crate::mesh::Mesh;
-use crate::metric::MetricField;
+use crate::metric::{MetricField, Norm, ScalarField};
+use crate::optimise::{Patience, Polished};
 use crate::progress::Progress;
 use elements::Elements;
 use newton::{Aim, minimise};
@@ -80,24 +85,50 @@ pub(crate) fn curved(
             elements = elements.raised();
         }
         let tempered = Tempered { field: metric, power };
-        settle(&mut elements, &Aim { metric: &tempered, lengths: 0.0 }, ROUNDS, progress)?;
+        settle(&mut elements, &Aim { metric: &tempered, lengths: 0.0, least: 0.0, target: None }, ROUNDS, progress)?;
         progress.advance(1)?;
     }
-    let aim = Aim { metric, lengths: LENGTHS };
+    let aim = Aim { metric, lengths: LENGTHS, least: 0.0, target: None };
     settle(&mut elements, &aim, ROUNDS_OF_LENGTHS, progress)?;
     progress.advance(1)?;
     exchange_all(&mut elements, &aim, progress)?;
     progress.advance(1)?;
     let away = match curves {
         Some(curves) => {
-            let away = bend::bend(&mut elements, curves, &Aim { lengths: 0.0, ..aim }, progress)?;
-            settle(&mut elements, &aim, ROUNDS_OF_LENGTHS, progress)?;
+            let bent = Aim { least: bend::LEAST, ..aim };
+            let away = bend::bend(&mut elements, curves, &Aim { lengths: 0.0, ..bent }, progress)?;
+            settle(&mut elements, &bent, ROUNDS_OF_LENGTHS, progress)?;
             away
         }
         None => None,
     };
     geodesic::straighten(&mut elements, &aim);
     Ok((elements.to_mesh(mesh), away))
+}
+
+/// A curved mesh on which interpolating a function by polynomials of its order has a small error, from a straight one in a metric for that purpose: in the
+/// norm, with as much patience as given. Boundaries as for [`curved`].
+///
+/// # Errors
+/// The work is to stop.
+pub(crate) fn interpolating(
+    mesh: &Mesh,
+    curves: Option<&Splines>,
+    metric: &dyn MetricField,
+    order: usize,
+    (function, norm): (&dyn ScalarField, Norm),
+    patience: Patience,
+    progress: &dyn Progress,
+) -> Result<(Mesh, Option<(usize, Point)>, Polished)> {
+    progress.begin("polishing", patience.steps as u64)?;
+    let mut elements = Elements::of(mesh);
+    if order == 3 {
+        elements = elements.raised();
+    }
+    let bent = Aim { metric, lengths: 0.0, least: bend::LEAST, target: None };
+    let away = curves.map(|curves| bend::bend(&mut elements, curves, &bent, progress)).transpose()?.flatten();
+    let polished = polish::polish(&mut elements, metric, (function, norm), patience, progress)?;
+    Ok((elements.to_mesh(mesh), away, polished))
 }
 
 /// Steps and flips in turns; the energy in the end.

@@ -3,9 +3,10 @@
 use super::elements::Elements;
 use super::rules::Rule;
 use super::system::{Member, System};
-use super::term::{Expansion, side, side_energy, triangle, triangle_energy};
+use super::target::Target;
+use super::term::{Expansion, Freedom, side, side_energy, triangle, triangle_energy};
 use crate::error::Result;
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Point, Tensor, Vector};
 use crate::lists::{distinct, marked};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
@@ -17,19 +18,44 @@ const LEAST_SHARE: f64 = 0.03;
 /// as well they held up all around them.)
 const BARRED: usize = 5;
 
+/// How damping falls and grows, where it stays, and how often it grows for one step.
+const LESS: f64 = 0.4;
+const MORE: f64 = 4.0;
+const LEAST_DAMPING: f64 = 1e-6;
+const TRIES: usize = 8;
+
 /// What a curved mesh is to be good for.
 #[derive(Clone, Copy)]
 pub(super) struct Aim<'a> {
     pub(super) metric: &'a dyn MetricField,
     /// The weight of the lengths of sides, beside the energy of triangles.
     pub(super) lengths: f64,
+    /// Where the Jacobian of a triangle may be no more than this, in units of its mean, it counts as not valid, unless it was no more before.
+    pub(super) least: f64,
+    /// What triangles are for in place of their shape in the metric.
+    pub(super) target: Option<&'a Target<'a>>,
 }
 
 impl Aim<'_> {
+    /// The energy of a triangle by its points.
+    pub(super) fn of_points(&self, rule: &Rule, points: &[Point]) -> f64 {
+        self.target.map_or_else(|| triangle_energy(rule, points, self.metric), |target| target.energy(points))
+    }
+
+    /// That with its derivatives by what may move.
+    pub(super) fn expansion(&self, rule: &Rule, points: &[Point], freedoms: &[Freedom]) -> Expansion {
+        self.target.map_or_else(
+            || triangle(rule, points, freedoms, self.metric),
+            |target| target.expansion(points, freedoms),
+        )
+    }
+
     /// The energy of a triangle, infinite where it is not valid.
     fn of_triangle(&self, elements: &Elements, rule: &Rule, points: &[Point], triangle: usize) -> f64 {
-        if elements.bound(points, triangle).is_valid() {
-            triangle_energy(rule, &elements.of_triangle(points, triangle)[..elements.count()], self.metric)
+        let least = elements.bound(points, triangle).least;
+        let was = || elements.bound(&elements.points, triangle).least;
+        if least > self.least || (least > 0.0 && least >= was()) {
+            self.of_points(rule, &elements.of_triangle(points, triangle)[..elements.count()])
         } else {
             f64::INFINITY
         }
@@ -66,7 +92,7 @@ impl Aim<'_> {
         let sides = if self.lengths > 0.0 { sides } else { &[] };
         let expand = |member: &Member| {
             let points = member.points(&elements.points);
-            triangle(&rule, &points, &member.freedoms, self.metric)
+            self.expansion(&rule, &points, &member.freedoms)
         };
         let expand_side =
             |member: &Member| side(&member.points(&elements.points), &member.freedoms, self.metric, self.lengths);
@@ -93,7 +119,7 @@ pub(super) fn minimise(
     let mut energy = energies.iter().sum::<f64>() + aim.of_sides(elements, &elements.points);
     for _ in 0..steps {
         let expansions = aim.expansions(elements, &system);
-        let Some(step) = system.step(&expansions, elements, &[]) else { break };
+        let Some(step) = system.step(&expansions, elements, &[], &[]) else { break };
         let mut shares = std::iter::successors(Some(1.0), |share| Some(0.5 * share)).take_while(|&s| s > LEAST_SHARE);
         let moved = shares.find_map(|share| {
             let moved = Moved::by(elements, aim, &rule, &energies, &step, share);
@@ -111,6 +137,40 @@ pub(super) fn minimise(
     Ok(energy)
 }
 
+/// Takes Levenberg's and Marquardt's steps, so many at most: to go a unit of the metric costs the damping beside, which grows until a step gains, and
+/// falls then. Returns how many were taken. For energies that hardly change in some directions, which would be gone too far.
+///
+/// # Errors
+/// The work is to stop.
+pub(super) fn minimise_damped(
+    elements: &mut Elements,
+    aim: &Aim,
+    steps: usize,
+    damping: &mut f64,
+    progress: &dyn Progress,
+) -> Result<u64> {
+    let mut system = System::of(elements);
+    let rule = Rule::of(elements.order);
+    let mut energies = aim.of_triangles(elements, &rule);
+    for taken in 0..steps {
+        let expansions = aim.expansions(elements, &system);
+        let units: Vec<Tensor> = elements.points.par_iter().map(|&p| aim.metric.at(p)).collect();
+        let energy: f64 = energies.iter().sum();
+        let mut gaining = || {
+            let held: Vec<Tensor> = units.iter().map(|&unit| unit * *damping).collect();
+            let step = system.step(&expansions, elements, &[], &held)?;
+            let moved = Moved::by(elements, aim, &rule, &energies, &step, 1.0);
+            let gains = moved.energies.iter().sum::<f64>() < energy;
+            *damping = if gains { (LESS * *damping).max(LEAST_DAMPING) } else { MORE * *damping };
+            gains.then_some(moved)
+        };
+        let Some(moved) = (0..TRIES).find_map(|_| gaining()) else { return Ok(taken as u64) };
+        (elements.points, energies) = (moved.points, moved.energies);
+        progress.advance(0)?;
+    }
+    Ok(steps as u64)
+}
+
 /// Moves some points, which hold nothing, by given steps, and the others along, if they are to; less far where triangles would not be valid.
 pub(super) fn displace(elements: &mut Elements, aim: &Aim, given: &[(u32, Vector)], is_alone: bool) {
     let rule = Rule::of(elements.order);
@@ -118,7 +178,7 @@ pub(super) fn displace(elements: &mut Elements, aim: &Aim, given: &[(u32, Vector
     let along = || {
         let mut system = System::of(elements);
         let expansions = aim.expansions(elements, &system);
-        system.step(&expansions, elements, given)
+        system.step(&expansions, elements, given, &[])
     };
     let others = (!is_alone).then(along).flatten();
     let mut step = others.unwrap_or_else(|| vec![Vector::default(); elements.points.len()]);

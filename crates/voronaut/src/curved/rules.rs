@@ -18,6 +18,11 @@ pub(crate) struct Rule {
 }
 
 impl Place {
+    /// That of the triangles of a mesh, in barycentric coordinates.
+    pub(crate) fn of(mesh: &Mesh, at: [f64; 3], weight: f64) -> Self {
+        Self::new(mesh.curved.as_ref().map_or(1, |curved| curved.order), at, weight)
+    }
+
     fn new(order: usize, at: [f64; 3], weight: f64) -> Self {
         let root = 3.0_f64.sqrt();
         // The corner opposite is at (1/2, sqrt(3) / 2).
@@ -52,7 +57,11 @@ const TWELVE: [(f64, [f64; 2]); 3] = [
 impl Rule {
     /// That by which meshes are judged: Radon's on each of the four quarters of a triangle.
     pub(crate) fn fine(mesh: &Mesh) -> Self {
-        let order = mesh.curved.as_ref().map_or(1, |curved| curved.order);
+        Self::fine_of(mesh.curved.as_ref().map_or(1, |curved| curved.order))
+    }
+
+    /// The same, for triangles of an order.
+    pub(super) fn fine_of(order: usize) -> Self {
         let half = |c: usize| std::array::from_fn(|i| if i == c { 0.0 } else { 0.5 });
         let corner = |c: usize| std::array::from_fn(|i| if i == c { 1.0 } else { 0.0 });
         let [a, b, c]: [[f64; 3]; 3] = [half(0), half(1), half(2)];

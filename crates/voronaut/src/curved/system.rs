@@ -2,7 +2,7 @@
 
 use super::elements::{Elements, axes};
 use super::term::{Expansion, Freedom};
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Point, Tensor, Vector};
 use crate::mesh::edges::NONE;
 use crate::sparse::{Cholesky, Elimination, Symmetric, nested_dissection};
 
@@ -61,12 +61,14 @@ impl System {
         Self { members, first, matrix, elimination }
     }
 
-    /// The step of each point that the terms ask for; where some have steps given, that of the others which costs least beside. None where no matrix has a factor.
+    /// The step of each point that the terms ask for; where some have steps given, that of the others which costs least beside; with tensors given,
+    /// half the square of a step's length in them costs beside. None where no matrix has a factor.
     pub(super) fn step(
         &mut self,
         expansions: &[Expansion],
         elements: &Elements,
         given: &[(u32, Vector)],
+        held: &[Tensor],
     ) -> Option<Vec<Vector>> {
         self.matrix.clear();
         let mut slope = vec![0.0; self.matrix.size()];
@@ -89,6 +91,12 @@ impl System {
                 let weight = GIVEN * self.matrix.diagonal_at(row as usize);
                 slope[row as usize] = weight * value;
                 self.matrix.add(self.matrix.place(row as usize, row as usize), weight);
+            }
+        }
+        for (p, tensor) in held.iter().enumerate() {
+            let rows = axes(elements.holds[p]).zip(self.first[p] as usize..);
+            for (a, row) in rows.clone() {
+                rows.clone().for_each(|(b, column)| self.matrix.add(self.matrix.place(row, column), tensor.dot(a, b)));
             }
         }
         let steps = self.factor()?.solve(&slope);

@@ -34,12 +34,12 @@ pub(super) struct Expansion {
 }
 
 impl Expansion {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { value: 0.0, slope: [0.0; UNKNOWNS], curvature: [0.0; UNKNOWNS * (UNKNOWNS + 1) / 2] }
     }
 
     /// Adds the square of a linear form, times a factor.
-    fn add_square(&mut self, form: &[f64], factor: f64) {
+    pub(super) fn add_square(&mut self, form: &[f64], factor: f64) {
         let mut at = 0;
         for (a, &one) in form.iter().enumerate() {
             let scaled = factor * one;

@@ -199,6 +199,33 @@ fn sides_are_as_near_to_geodesics_as_polynomials_of_their_order() {
     }
 }
 
+/// Round a corner of the square, over an eighth of its width.
+const FRONT: &str = "tanh(16*(sqrt((x + 0.1)^2 + (y + 0.1)^2) - 0.7))";
+
+fn for_front(order: usize, norm: Norm) -> (Mesh, Polished) {
+    let front: crate::metric::Snapshot = crate::metric::Expression::parse(FRONT, crate::metric::Variables::Plane).unwrap().into();
+    let patience = Patience { steps: 12, gain: 2e-3 };
+    let metric = |_: Point| Tensor::IDENTITY * unit(8);
+    let (mesh, away, polished) =
+        interpolating(&square(8), None, &metric, order, (&front, norm), patience, &Silent).unwrap();
+    assert_eq!(away, None);
+    (mesh, polished)
+}
+
+#[test]
+fn curved_triangles_follow_a_function() {
+    for (order, p, least) in [(2, 2.0, 20.0), (3, 2.0, 20.0), (2, 1.0, 20.0), (2, 8.0, 5.0)] {
+        let (mesh, polished) = for_front(order, Norm::new(p).unwrap());
+        assert_sound(&mesh);
+        assert_eq!(mesh.points.len(), 81);
+        let [first, .., last] = polished.error[..] else { panic!("no sweeps") };
+        assert!(first > least * last, "{order} {p}: {:?}", polished.error);
+        let front: crate::metric::Snapshot = crate::metric::Expression::parse(FRONT, crate::metric::Variables::Plane).unwrap().into();
+        let found = crate::quality::interpolation_error(&mesh, &front, Norm::new(p).unwrap()).unwrap();
+        assert!((found.norm / last - 1.0).abs() < 0.25, "{order} {p}: {found:?} {last}");
+    }
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let mesh = square(7);
@@ -210,6 +237,8 @@ fn any_number_of_threads_gives_the_same_bits() {
     let one = with(1);
     assert_sound(&one);
     assert_eq!(one, with(2));
+    let [one, two] = [1, 2].map(|threads| on_threads(threads, || for_front(2, Norm::default()).0));
+    assert_eq!(one, two);
 }
 
 #[test]
@@ -252,7 +281,7 @@ fn a_new_side_that_would_fold_is_untangled() {
         triangle([1, 0, 3], [p(0.5, 0.0), p(0.25, -0.5), p(0.75, -0.5)]),
     ];
     let quadratic = Elements::assembled(2, &vertices, &pair);
-    let aim = Aim { metric: &|_: Point| Tensor::IDENTITY, lengths: 0.0 };
+    let aim = Aim { metric: &|_: Point| Tensor::IDENTITY, lengths: 0.0, least: 0.0, target: None };
     for elements in [quadratic.raised(), quadratic] {
         assert!((0..2).all(|t| elements.bound(&elements.points, t).is_valid()));
         let rule = Rule::of(elements.order);

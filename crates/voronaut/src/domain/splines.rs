@@ -232,7 +232,7 @@ impl Run {
         let h = self.width(i);
         let t = (s - self.parameters[i]) / h;
         let rest = 1.0 - t;
-        // Hermite's form, from the end that is nearer.
+        // Hermite's form.
         let [a, b] = [self.slopes[i] * h, self.slopes[i + 1] * h];
         let chord = self.points[i + 1] - self.points[i];
         self.points[i] + chord * (t * t * (1.0 + 2.0 * rest)) + a * (t * rest * rest) - b * (t * t * rest)

@@ -2,10 +2,11 @@
 
 use super::parser::Parser;
 use super::program::{Op, run};
+use super::series::Series;
 use super::sharing::shared;
 use super::vocabulary::Variables;
 use crate::error::Result;
-use crate::geometry::{Jet3, Point3};
+use crate::geometry::{Jet3, Point3, Vector3};
 use std::ops::Range;
 
 /// A compiled expression. From loosest to tightest:
@@ -64,6 +65,13 @@ impl Expression {
     /// has a kink (comparisons, `if`, `abs`, `min`, `max`) they are those of one side.
     pub(crate) fn jet(&self, p: Point3) -> Jet3 {
         let [x, y, z] = Jet3::coordinates(p.x, p.y, p.z);
+        let [value] = run(&self.code, [x, y, z, self.time.into()]);
+        value
+    }
+
+    /// The value at a point and along a line, with derivatives up to the fourth; of kinks as [`Expression::jet`] has it.
+    pub(super) fn along(&self, p: Point3, v: Vector3) -> Series {
+        let [x, y, z] = [(p.x, v.x), (p.y, v.y), (p.z, v.z)].map(|(from, step)| Series::line(from, step));
         let [value] = run(&self.code, [x, y, z, self.time.into()]);
         value
     }

@@ -7,7 +7,7 @@ use super::sharing::shared;
 use super::vocabulary::Variables;
 use super::{MetricField, ScalarField};
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Point3, Tensor, Tensor3};
+use crate::geometry::{Point, Point3, Tensor, Tensor3, Vector, Vector3};
 
 /// The field ((m11, m12), (m12, m22)) of three expressions in x and y; see [`Expression`] for what they may hold.
 ///
@@ -96,6 +96,11 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
+    /// The exact derivative of an order, up to the fourth, along a vector.
+    pub(crate) fn derivative(&self, p: Point, v: Vector, order: usize) -> f64 {
+        self.expression.along(Point3::new(p.x, p.y, self.time), Vector3::new(v.x, v.y, 0.0)).derivative(order)
+    }
+
     /// Exact second derivatives by x and y.
     pub fn second_derivatives(&self, p: Point) -> Tensor {
         let hessian = self.expression.jet(Point3::new(p.x, p.y, self.time)).hessian;
@@ -112,6 +117,11 @@ impl From<Expression> for Snapshot {
 impl ScalarField for Snapshot {
     fn value(&self, p: Point) -> f64 {
         self.expression.at(p.x, p.y, self.time)
+    }
+
+    fn slope(&self, p: Point) -> Option<(f64, Vector)> {
+        let jet = self.expression.jet(Point3::new(p.x, p.y, self.time));
+        Some((jet.value, Vector::new(jet.gradient.x, jet.gradient.y)))
     }
 }
 

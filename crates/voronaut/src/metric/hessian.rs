@@ -1,54 +1,75 @@
-//! The metric of a function's second derivatives: known at every point, or recovered from a solution at the vertices of a mesh.
+//! The metric of a function's derivatives: known at every point, or, second ones, recovered from a solution at the vertices of a mesh.
 
 use super::complexity::{PIECES, start};
+use super::form::Form;
 use super::nodal::{absolute, size};
 use super::{MetricField, Norm, Recovery, Sampled, ScalarField, Snapshot, recover_hessian};
 use crate::error::{Error, Result};
 use crate::geometry::{Point, Tensor, centroid};
 use crate::mesh::{Located, Locator, Mesh};
 
-/// The metric in which a unit mesh has the least L^p error of linear interpolation of a function (Loseille and Alauzet 2011): its
-/// Hessian's absolute value (`Norm::weighted`), from exact derivatives. It is defined up to a factor: scale it to a number of
-/// vertices or a complexity.
+/// The metric in which a unit mesh has the least L^p error of interpolating a function by polynomials of degree 1 (Loseille and Alauzet 2011: its Hessian's
+/// absolute value), 2 or 3 (on straight triangles; Mirebeau 2010: what bounds the form of the next derivatives), times `Norm::weight`. It is
+/// defined up to a factor: scale it to a number of vertices or a complexity.
 #[derive(Clone, Debug)]
 pub struct Hessian {
     function: Snapshot,
     norm: Norm,
     floor: f64,
+    degree: usize,
 }
 
 impl Hessian {
-    /// Of a function on a domain that these triangles cover.
+    /// Of a function on a domain that these triangles cover, for polynomials of a degree.
     ///
     /// # Errors
-    /// [`Error::Metric`] where a second derivative is not finite, or where all are zero; [`Error::Domain`] of triangles that are
+    /// [`Error::Metric`] where a derivative is not finite, or where all are zero; [`Error::Domain`] of triangles that are
     /// not finite.
-    pub(crate) fn new(function: Snapshot, norm: Norm, domain: &[[Point; 3]]) -> Result<Self> {
+    pub(crate) fn new(function: Snapshot, norm: Norm, degree: usize, domain: &[[Point; 3]]) -> Result<Self> {
+        let mut found = Self { function, norm, floor: 0.0, degree };
         let (mut sum, mut total) = (0.0, 0.0);
         for (triangle, _) in start(domain, PIECES)? {
             let ([a, b, c], middle) = (triangle, centroid(triangle));
-            let greatest = size(function.second_derivatives(middle));
+            let greatest = found.size(middle);
             if !greatest.is_finite() {
-                let what = "the function's second derivatives are not finite";
-                let help = "give a function with two derivatives in the whole domain";
+                let what = format!("the function's {} are not finite", found.derivatives());
+                let help = format!("give a function with {} derivatives in the whole domain", ["two", "three", "four"][degree - 1]);
                 return Err(Error::metric(what, middle.to_string(), help));
             }
             let area = (b - a).cross(c - a).abs();
             (sum, total) = (sum + area * greatest, total + area);
         }
-        let floor = FLOOR * sum / total;
-        if floor > 0.0 {
-            return Ok(Self { function, norm, floor });
+        found.floor = FLOOR * sum / total;
+        if found.floor > 0.0 {
+            return Ok(found);
         }
         let help = "what is linear needs no mesh, and kinks and jumps have no second derivatives: use another metric, or give values at \
                     the vertices of a fine mesh (hessian:FILE.sol)";
-        Err(Error::metric("the function's second derivatives vanish everywhere", "all points looked at", help))
+        Err(Error::metric(format!("the function's {} vanish everywhere", found.derivatives()), "all points looked at", help))
+    }
+
+    fn derivatives(&self) -> String {
+        format!("{} derivatives", ["second", "third", "fourth"][self.degree - 1])
+    }
+
+    fn form(&self, p: Point) -> Form {
+        let order = self.degree + 1;
+        Form::of_values(order, |v| self.function.derivative(p, v, order))
+    }
+
+    /// The greater eigenvalue of what the metric is made of.
+    fn size(&self, p: Point) -> f64 {
+        if self.degree == 1 { size(self.function.second_derivatives(p)) } else { self.form(p).size() }
     }
 }
 
 impl MetricField for Hessian {
     fn at(&self, p: Point) -> Tensor {
-        self.norm.weighted(absolute(self.function.second_derivatives(p), self.floor))
+        if self.degree == 1 {
+            return self.norm.weighted(absolute(self.function.second_derivatives(p), self.floor));
+        }
+        let bounding = self.form(p).bounding(self.floor);
+        bounding * self.norm.weight(bounding, self.degree)
     }
 }
 
@@ -139,9 +160,13 @@ mod tests {
     use crate::metric::{Expression, Variables};
 
     fn hessian(text: &str, norm: Norm) -> Result<Hessian> {
+        of_degree(text, norm, 1)
+    }
+
+    fn of_degree(text: &str, norm: Norm, degree: usize) -> Result<Hessian> {
         let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y));
         let halves = [[square[0], square[1], square[2]], [square[0], square[2], square[3]]];
-        Hessian::new(Expression::parse(text, Variables::Plane)?.into(), norm, &halves)
+        Hessian::new(Expression::parse(text, Variables::Plane)?.into(), norm, degree, &halves)
     }
 
     fn assert_close(a: Tensor, b: Tensor) {
@@ -158,6 +183,24 @@ mod tests {
             assert_close(hessian(text, Norm::new(f64::INFINITY).unwrap()).unwrap().at(p), truth);
             assert_close(hessian(text, Norm::default()).unwrap().at(p), truth * 16.0_f64.powf(-1.0 / 6.0));
         }
+    }
+
+    #[test]
+    fn of_cubics_and_quartics_it_is_constant_and_of_their_directions() {
+        // The form of third derivatives is 6 (8 a^3 + b^3), that of fourth ones 24 (16 a^4 + b^4), along and across (0.6, 0.8).
+        let (a, b) = ("(0.6*x + 0.8*y)", "(0.8*x - 0.6*y)");
+        let texts = [(2, format!("8*{a}^3 + {b}^3"), 6.0_f64.powf(2.0 / 3.0)), (3, format!("16*{a}^4 + {b}^4"), 24.0_f64.sqrt())];
+        for (degree, text, size) in texts {
+            let truth = Tensor::from_axis(crate::geometry::Vector::new(0.6, 0.8), 4.0, 1.0) * size;
+            let power = -1.0 / ((degree as f64 + 1.0) * 2.0 + 2.0);
+            for p in [Point::new(0.1, 0.9), Point::new(0.5, 0.5)] {
+                let field = |norm| of_degree(&text, norm, degree).unwrap().at(p);
+                assert_close(field(Norm::new(f64::INFINITY).unwrap()), truth);
+                assert_close(field(Norm::default()), truth * truth.determinant().powf(power));
+            }
+        }
+        let message = of_degree("x*x + x*y", Norm::default(), 2).unwrap_err().to_string();
+        assert!(message.contains("the function's third derivatives vanish everywhere"), "{message}");
     }
 
     #[test]

@@ -25,6 +25,7 @@ mod boundary;
 mod bounds;
 mod complexity;
 mod expression;
+mod form;
 mod formula;
 mod hessian;
 mod neighbours;
@@ -35,6 +36,7 @@ mod program;
 mod recovery;
 mod sampled;
 mod scaled;
+mod series;
 mod sharing;
 mod smoothed;
 mod spec;
@@ -66,7 +68,7 @@ pub(crate) use validate::{
 };
 pub use vocabulary::Variables;
 
-use crate::geometry::{Aabb, Point, Tensor};
+use crate::geometry::{Aabb, Point, Tensor, Vector};
 use crate::mesh::Mesh;
 
 /// A Riemannian metric field on the plane.
@@ -133,6 +135,11 @@ impl MetricField for Box<dyn MetricField + '_> {
 pub trait ScalarField: Sync {
     /// The value at a point.
     fn value(&self, p: Point) -> f64;
+
+    /// The value and the derivatives by x and y; `None` where these are not known in closed form.
+    fn slope(&self, _p: Point) -> Option<(f64, Vector)> {
+        None
+    }
 }
 
 impl<F: Fn(Point) -> f64 + Sync> ScalarField for F {

@@ -38,10 +38,15 @@ impl Norm {
     /// Alauzet 2011, in two dimensions). With p infinite, |H| itself.
     #[must_use]
     pub(crate) fn weighted(self, absolute: Tensor) -> Tensor {
+        absolute * self.weight(absolute, 1)
+    }
+
+    /// det(Q)^(-1 / ((k + 1) p + 2)), for polynomials of degree k, whose error over a unit of Q is the same everywhere.
+    pub(crate) fn weight(self, bounding: Tensor, degree: usize) -> f64 {
         if self.0.is_infinite() {
-            return absolute;
+            return 1.0;
         }
-        absolute * absolute.determinant().raised_to(-1.0 / (2.0 * self.0 + 2.0))
+        bounding.determinant().raised_to(-1.0 / ((degree as f64 + 1.0) * self.0 + 2.0))
     }
 }
 

@@ -1,14 +1,16 @@
 //! What expressions are compiled to, and how that runs: on plain numbers, and on numbers that carry their derivatives.
 
+use super::series::Series;
 use crate::elementary::Elementary;
 use crate::geometry::Jet3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A function of one number with its first and second derivative.
+/// A function of one number with its first and second derivative, and the series of the first.
 #[derive(Debug)]
 pub(super) struct Unary {
     pub(super) value: fn(f64) -> f64,
     pub(super) derivatives: fn(f64) -> [f64; 2],
+    pub(super) slope: fn(Series) -> Series,
 }
 
 /// Arithmetic of expressions.

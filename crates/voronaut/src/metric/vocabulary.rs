@@ -1,6 +1,7 @@
 //! The names and operators of expressions, each declared once.
 
-use super::program::{Op, Unary};
+use super::program::{Number, Op, Unary};
+use super::series::Series;
 use crate::elementary::Elementary;
 
 /// How many arguments a function takes, and what it does with them.
@@ -14,39 +15,73 @@ pub(super) enum Function {
 
 /// Functions, in the order of the help.
 pub(super) const FUNCTIONS: [(&str, Function); 17] = [
-    ("sin", Function::One(&Unary { value: Elementary::sine, derivatives: |x| [x.cosine(), -x.sine()] })),
-    ("cos", Function::One(&Unary { value: Elementary::cosine, derivatives: |x| [-x.sine(), -x.cosine()] })),
-    ("tan", Function::One(&Unary { value: Elementary::tangent, derivatives: of_tan })),
-    ("asin", Function::One(&Unary { value: Elementary::arcsine, derivatives: of_asin })),
-    ("acos", Function::One(&Unary { value: Elementary::arccosine, derivatives: |x| of_asin(x).map(|d| -d) })),
-    ("atan", Function::One(&Unary { value: Elementary::arctangent, derivatives: of_atan })),
+    ("sin", Function::One(&SIN)),
+    ("cos", Function::One(&COS)),
+    ("tan", Function::One(&TAN)),
+    ("asin", Function::One(&ASIN)),
+    ("acos", Function::One(&ACOS)),
+    ("atan", Function::One(&ATAN)),
     ("atan2", Function::Two(Op::Atan2)),
-    (
-        "sinh",
-        Function::One(&Unary {
-            value: Elementary::hyperbolic_sine,
-            derivatives: |x| [x.hyperbolic_cosine(), x.hyperbolic_sine()],
-        }),
-    ),
-    (
-        "cosh",
-        Function::One(&Unary {
-            value: Elementary::hyperbolic_cosine,
-            derivatives: |x| [x.hyperbolic_sine(), x.hyperbolic_cosine()],
-        }),
-    ),
-    ("tanh", Function::One(&Unary { value: Elementary::hyperbolic_tangent, derivatives: of_tanh })),
-    (
-        "exp",
-        Function::One(&Unary { value: Elementary::exponential, derivatives: |x| [x.exponential(), x.exponential()] }),
-    ),
-    ("log", Function::One(&Unary { value: Elementary::logarithm, derivatives: |x| [1.0 / x, -1.0 / (x * x)] })),
-    ("sqrt", Function::One(&Unary { value: f64::sqrt, derivatives: |x| [0.5 / x.sqrt(), -0.25 / (x * x.sqrt())] })),
-    ("abs", Function::One(&Unary { value: f64::abs, derivatives: |x| [x.signum(), 0.0] })),
+    ("sinh", Function::One(&SINH)),
+    ("cosh", Function::One(&COSH)),
+    ("tanh", Function::One(&TANH)),
+    ("exp", Function::One(&EXP)),
+    ("log", Function::One(&LOG)),
+    ("sqrt", Function::One(&SQRT)),
+    ("abs", Function::One(&ABS)),
     ("min", Function::Many(Op::Choose(f64::min))),
     ("max", Function::Many(Op::Choose(f64::max))),
     ("if", Function::If),
 ];
+
+const SIN: Unary =
+    Unary { value: Elementary::sine, derivatives: |x| [x.cosine(), -x.sine()], slope: |u| u.call(&COS) };
+const COS: Unary =
+    Unary { value: Elementary::cosine, derivatives: |x| [-x.sine(), -x.cosine()], slope: |u| -u.call(&SIN) };
+const TAN: Unary =
+    Unary { value: Elementary::tangent, derivatives: of_tan, slope: |u| one() + u.call(&TAN).square() };
+const ASIN: Unary = Unary {
+    value: Elementary::arcsine,
+    derivatives: of_asin,
+    slope: |u| one() / (one() - u.square()).call(&SQRT),
+};
+const ACOS: Unary = Unary {
+    value: Elementary::arccosine,
+    derivatives: |x| of_asin(x).map(|d| -d),
+    slope: |u| -(one() / (one() - u.square()).call(&SQRT)),
+};
+const ATAN: Unary =
+    Unary { value: Elementary::arctangent, derivatives: of_atan, slope: |u| one() / (one() + u.square()) };
+const SINH: Unary = Unary {
+    value: Elementary::hyperbolic_sine,
+    derivatives: |x| [x.hyperbolic_cosine(), x.hyperbolic_sine()],
+    slope: |u| u.call(&COSH),
+};
+const COSH: Unary = Unary {
+    value: Elementary::hyperbolic_cosine,
+    derivatives: |x| [x.hyperbolic_sine(), x.hyperbolic_cosine()],
+    slope: |u| u.call(&SINH),
+};
+const TANH: Unary =
+    Unary { value: Elementary::hyperbolic_tangent, derivatives: of_tanh, slope: |u| one() - u.call(&TANH).square() };
+const EXP: Unary = Unary {
+    value: Elementary::exponential,
+    derivatives: |x| [x.exponential(), x.exponential()],
+    slope: |u| u.call(&EXP),
+};
+pub(super) const LOG: Unary =
+    Unary { value: Elementary::logarithm, derivatives: |x| [1.0 / x, -1.0 / (x * x)], slope: |u| one() / u };
+const SQRT: Unary = Unary {
+    value: f64::sqrt,
+    derivatives: |x| [0.5 / x.sqrt(), -0.25 / (x * x.sqrt())],
+    slope: |u| Series::from(0.5) / u.call(&SQRT),
+};
+const ABS: Unary =
+    Unary { value: f64::abs, derivatives: |x| [x.signum(), 0.0], slope: |u| u.value().signum().into() };
+
+fn one() -> Series {
+    1.0.into()
+}
 
 pub(super) const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
 

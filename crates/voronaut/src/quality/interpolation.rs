@@ -1,19 +1,22 @@
-//! How far a function is from its linear interpolation on a mesh.
+//! How far a function is from its interpolation on a mesh.
 
 use super::{Position, Spot};
+use crate::curved::{MOST, Place, bernstein, bezier_points, blend, exponents, points_of_nodes};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Node, Point, Point3, radon};
 use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm, ScalarField};
 use crate::parallel::prelude::*;
-use crate::surface::{Input, Place};
+use crate::surface::{self, Input};
 use std::fmt;
 
 /// Each triangle is cut into so many times so many parts, with a rule of degree 5 on each.
 const PARTS: u32 = 4;
+/// The area of the equilateral triangle with unit sides.
+const EQUILATERAL: f64 = 0.433_012_701_892_219_3;
 
-/// The error of linear interpolation of a function on a mesh.
+/// The error of interpolation of a function on a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct InterpolationError {
     /// Its L^p norm.
@@ -43,14 +46,20 @@ impl fmt::Display for Exponent {
     }
 }
 
-/// The error of linear interpolation of a function on a planar mesh, by 112 values in each triangle: exact for the squares of errors
-/// that are quadratic. It does not see layers much thinner than a twelfth of a triangle.
+/// The error of interpolation of a function on a planar mesh, linear or by polynomials of the order of curved triangles, whose nodes are the mesh's; by 112
+/// values in each triangle: exact for the squares of errors that are quadratic on straight ones. It does not see layers much thinner than a twelfth of a
+/// triangle.
 ///
 /// # Errors
 /// [`Error::Metric`] where the function is not finite; [`Error::Mesh`] of a mesh without triangles.
 pub fn interpolation_error(mesh: &Mesh, function: &dyn ScalarField, norm: Norm) -> Result<InterpolationError> {
     let value = |p: Point3| function.value(Point::new(p.x, p.y));
-    error_of(mesh, &value, |_| (), |(), p| value(p), norm)
+    if mesh.curved.is_none() {
+        return error_of(mesh, &value, |_| (), |(), p| value(p), norm);
+    }
+    let places: Vec<Place> = nodes().into_iter().map(|(at, weight)| Place::of(mesh, at, weight)).collect();
+    let of = |t: usize| on_curved(mesh, t, function, norm, &places);
+    summed(&(0..mesh.triangles.len()).into_par_iter().with_min_len(64).map(of).collect::<Vec<_>>(), true, norm)
 }
 
 /// The same on the mesh of a surface, of a function of x, y and z: each point of a triangle stands for the one of the surface that is
@@ -66,7 +75,7 @@ pub fn interpolation_error_on(
 ) -> Result<InterpolationError> {
     let value = |p: Point3| function.at(p.x, p.y, p.z);
     let beside = |triangle: [Point3; 3]| input.closest(Point3::weighted(triangle, [1.0 / 3.0; 3])).ok();
-    let lifted = |near: &Option<Place>, p: Point3| {
+    let lifted = |near: &Option<surface::Place>, p: Point3| {
         let place = near.as_ref().and_then(|near| input.lift(near, p));
         value(place.map_or(p, |place| place.position))
     };
@@ -88,11 +97,15 @@ fn error_of<K>(
         let known = known(corners);
         on_triangle(corners, t.map(|v| values[v as usize]), &|p| within(&known, p), norm, &nodes)
     };
-    let found: Vec<(f64, f64, Point3)> = mesh.triangles.par_iter().with_min_len(64).map(of).collect();
+    summed(&mesh.triangles.par_iter().with_min_len(64).map(of).collect::<Vec<_>>(), mesh.is_planar(), norm)
+}
+
+/// The whole from what triangles have: of each the integral of the p-th power of the error as a share of the greatest; the greatest, and where it is.
+fn summed(found: &[(f64, f64, Point3)], is_planar: bool, norm: Norm) -> Result<InterpolationError> {
     let Some(&(_, max, place)) = found.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else {
         return Err(Error::mesh("it has no triangles", "the whole mesh", "give a mesh with triangles"));
     };
-    let at = if mesh.is_planar() { Position::Plane([place.x, place.y]) } else { place.into() };
+    let at = if is_planar { Position::Plane([place.x, place.y]) } else { place.into() };
     if !max.is_finite() {
         let help = "give a function that is finite in the whole domain";
         return Err(Error::metric("the function is not finite", place.to_string(), help));
@@ -139,24 +152,48 @@ fn on_triangle(
     norm: Norm,
     nodes: &[Node],
 ) -> (f64, f64, Point3) {
-    let error = |&(at, _): &Node| {
+    let error = |&(at, weight): &Node| {
         let p = Point3::weighted(corners, at);
         let linear: f64 = at.iter().zip(values).map(|(share, value)| share * value).sum();
-        ((function(p) - linear).abs(), p)
+        ((function(p) - linear).abs(), p, weight)
     };
-    let errors: Vec<(f64, Point3)> = nodes.iter().map(error).collect();
-    let (most, at) =
-        errors.iter().copied().fold(
-            (0.0, corners[0]),
-            |most: (f64, Point3), next| {
-                if next.0 > most.0 || next.0.is_nan() { next } else { most }
-            },
-        );
+    let (sum, most, at) = of_errors(&nodes.iter().map(error).collect::<Vec<_>>(), norm);
     let [a, b, c] = corners;
-    let area = 0.5 * (b - a).cross(c - a).norm();
+    (0.5 * (b - a).cross(c - a).norm() * sum, most, at)
+}
+
+/// The same of a curved triangle.
+fn on_curved(
+    mesh: &Mesh,
+    triangle: usize,
+    function: &dyn ScalarField,
+    norm: Norm,
+    places: &[Place],
+) -> (f64, f64, Point3) {
+    let (points, order) = bezier_points(mesh, triangle);
+    let points = &points[..exponents(order).len()];
+    let mut values = [Point::default(); MOST];
+    for (value, e) in values.iter_mut().zip(exponents(order)) {
+        let node = blend(points, &bernstein(order, e.map(|i| f64::from(i) / order as f64)));
+        *value = Point::new(function.value(node), 0.0);
+    }
+    let ordinates = points_of_nodes(&values, order);
+    let error = |place: &Place| {
+        let ([a, b], p) = (place.derivative(points), place.image(points));
+        let error = function.value(p) - place.image(&ordinates[..points.len()]).x;
+        (error.abs(), Point3::new(p.x, p.y, 0.0), EQUILATERAL * place.weight * a.cross(b))
+    };
+    of_errors(&places.iter().map(error).collect::<Vec<_>>(), norm)
+}
+
+/// The sum of the p-th powers of errors, as shares of the greatest, times weights; the greatest, and where it is.
+fn of_errors(errors: &[(f64, Point3, f64)], norm: Norm) -> (f64, f64, Point3) {
+    let greater = |most: (f64, Point3), next: &(f64, Point3, f64)| {
+        if next.0 > most.0 || next.0.is_nan() { (next.0, next.1) } else { most }
+    };
+    let (most, at) = errors.iter().fold((0.0, errors[0].1), greater);
     let power = |error: f64| if most > 0.0 { (error / most).raised_to(norm.exponent()) } else { 0.0 };
-    let sum: f64 = errors.iter().zip(nodes).map(|(&(error, _), &(_, weight))| weight * power(error)).sum();
-    (area * sum, most, at)
+    (errors.iter().map(|&(error, _, weight)| weight * power(error)).sum(), most, at)
 }
 
 #[cfg(test)]

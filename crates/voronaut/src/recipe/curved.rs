@@ -1,13 +1,14 @@
 //! Meshes of order 2 and 3.
 
 use super::settle::Stopwatch;
-use super::{Boundary, MeshOptions, Meshed, Mesher, mesh_for};
-use crate::curved::{POWERS, Tempered, curved, onto_surface};
+use super::{Aim, Boundary, MeshOptions, Meshed, Mesher, mesh_for, mesh_straight};
+use crate::curved::{POWERS, Tempered, curved, interpolating, onto_surface};
 use crate::domain::{Domain, Splines};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Scaled, complexity};
+use crate::optimise::{Patience, polishing_norm};
 use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::surface::Input;
@@ -33,22 +34,61 @@ pub(super) fn demand_possible(options: &MeshOptions) -> Result<()> {
     found.map_or(Ok(()), |(name, _)| Err(Error::unsupported(format!("{name} with curved triangles"), "use `order` 1")))
 }
 
-/// Meshes a domain with triangles of order 2 or 3: first a straight mesh of the metric made less anisotropic, then curved, and
-/// on to the metric as it is. With a number of vertices given the factor on the metric is that for which all triangles of so many
-/// vertices, but for the boundary's, could have the area of equilateral ones with unit sides.
+/// Meshes a domain with triangles of order 2 or 3. For a function whose derivatives are known, [`mesh_for_function`]; else they follow the metric.
 ///
 /// # Errors
 /// As for [`mesh_for`].
 pub(super) fn mesh_curved(
     domain: &Domain,
     field: &dyn MetricField,
+    aim: Option<Aim>,
+    options: &MeshOptions,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    let is_known = |aim: &Aim| aim.function.slope(domain.triangles()[0][0]).is_some();
+    match aim {
+        Some(aim) if is_known(&aim) => mesh_for_function(domain, field, aim, options, progress),
+        _ => {
+            let mut meshed = mesh_by_metric(domain, field, options, progress)?;
+            let note = "curved triangles follow the metric: they are polished for functions whose derivatives are known, formulas";
+            meshed.notes.extend(aim.map(|_| note.into()));
+            Ok(meshed)
+        }
+    }
+}
+
+/// First a straight mesh of the metric, which is that of interpolation by polynomials of the order; then all points are moved to where the error is
+/// least.
+fn mesh_for_function(
+    domain: &Domain,
+    field: &dyn MetricField,
+    aim: Aim,
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
     let watch = Stopwatch::new(progress);
     let straight = MeshOptions { order: 1, ..options.clone() };
+    let start = mesh_straight(domain, field, None, options.polish == 0, &straight, progress)?;
+    let unit = Scaled { field, factor: start.metric_scale };
+    let curves = is_bent(domain, options.boundary).then(|| Splines::of(domain));
+    let patience = Patience { steps: options.polish, gain: options.effort.gain_of_polishing() };
+    let target = (aim.function, polishing_norm(aim.norm));
+    let work = || interpolating(&start.mesh, curves.as_ref(), &unit, options.order, target, patience, progress);
+    let (mesh, away, polished) = watch.time("polish", work)?;
+    finished(Meshed { polished: Some(polished), ..start }, mesh, away, &watch, curves.is_some())
+}
+
+/// First a straight mesh of the metric made less anisotropic, then curved, and on to the metric as it is. With a number of vertices given the factor on the
+/// metric is that for which all triangles of so many vertices, but for the boundary's, could have the area of equilateral ones with unit sides.
+fn mesh_by_metric(
+    domain: &Domain,
+    field: &dyn MetricField,
+    options: &MeshOptions,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    let watch = Stopwatch::new(progress);
     let mild = Tempered { field, power: POWERS[0] };
-    let start = mesh_for(domain, &mild, None, &straight, progress)?;
+    let start = mesh_for(domain, &mild, None, &MeshOptions { order: 1, ..options.clone() }, progress)?;
     let metric_scale = match (options.vertices, options.complexity) {
         (Some(count), _) => count as f64 * AREA_PER_VERTEX / complexity(field, &domain.triangles())?,
         _ => start.metric_scale,
@@ -56,12 +96,23 @@ pub(super) fn mesh_curved(
     let unit = Scaled { field, factor: metric_scale };
     let curves = is_bent(domain, options.boundary).then(|| Splines::of(domain));
     let (mesh, away) = watch.time("curve", || curved(&start.mesh, curves.as_ref(), &unit, options.order, progress))?;
-    watch.time("check", || demand_valid(&mesh, curves.is_some()))?;
+    finished(Meshed { metric_scale, ..start }, mesh, away, &watch, curves.is_some())
+}
+
+/// The curved mesh, checked, in place of the straight one that it started from; with a note of points that are away from their curves.
+fn finished(
+    start: Meshed,
+    mesh: Mesh,
+    away: Option<(usize, Point)>,
+    watch: &Stopwatch,
+    is_bent: bool,
+) -> Result<Meshed> {
+    watch.time("check", || demand_valid(&mesh, is_bent))?;
     let note = |(count, at): (usize, Point)| {
         format!("{count} points of the boundary are not on its curve, for triangles would fold: the first at {at}")
     };
     let notes = start.notes.iter().cloned().chain(away.map(note)).collect();
-    Ok(Meshed { mesh, metric_scale, seconds: [start.seconds.clone(), watch.seconds()].concat(), notes, ..start })
+    Ok(Meshed { mesh, seconds: [start.seconds.clone(), watch.seconds()].concat(), notes, ..start })
 }
 
 /// # Errors

@@ -18,18 +18,34 @@ use std::borrow::Cow;
 
 /// What is done to a metric in the plane, in this order: recovery of second derivatives and the norm they are weighted for, limits,
 /// smoothing, gradation. Every parameter has one name (flag, TOML key, Python keyword).
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MetricOptions {
     /// Least and greatest sizes, greatest anisotropy.
     pub bounds: Bounds,
     /// The norm in which the error of interpolation is to be least.
     pub norm: Norm,
+    /// The degree of the polynomials by which a formula is to be interpolated, that of the order of triangles: 1, 2 or 3. (Solutions are interpolated
+    /// linearly.)
+    pub degree: usize,
     /// How second derivatives are recovered from a solution.
     pub recovery: Recovery,
     /// Sweeps of smoothing.
     pub smooth_metric: u32,
     /// How fast sizes may grow; `None` for no gradation.
     pub gradation: Option<f64>,
+}
+
+impl Default for MetricOptions {
+    fn default() -> Self {
+        Self {
+            bounds: Bounds::default(),
+            norm: Norm::default(),
+            degree: 1,
+            recovery: Recovery::default(),
+            smooth_metric: 0,
+            gradation: None,
+        }
+    }
 }
 
 /// A metric in the plane.
@@ -189,7 +205,7 @@ fn named(spec: &MetricSpec, domain: &Domain, options: &MetricOptions, at: Graded
 }
 
 fn optimal(function: &Snapshot, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
-    let field = Hessian::new(function.clone(), options.norm, &domain.triangles())?;
+    let field = Hessian::new(function.clone(), options.norm, options.degree, &domain.triangles())?;
     let (field, scale) = within_domain(field, domain, at)?;
     Ok(PlanarMetric { field: Box::new(field), function: Some(Box::new(function.clone())), known_to: 0.0, scale })
 }

@@ -145,17 +145,25 @@ pub fn mesh_for(
 ) -> Result<Meshed> {
     curved::demand_possible(options)?;
     if options.order > 1 {
-        let mut meshed = curved::mesh_curved(domain, field, options, progress)?;
-        meshed
-            .notes
-            .extend(aim.map(|_| "curved triangles follow the metric: they are not polished for the function".into()));
-        return Ok(meshed);
+        return curved::mesh_curved(domain, field, aim, options, progress);
     }
     if options.mesher == Mesher::StarSet {
         return mesher::by_stars(domain, field, options, progress);
     }
     options.geodesic.demand_diagrams()?;
     protection::demand_possible(options)?;
+    mesh_straight(domain, field, aim, true, options, progress)
+}
+
+/// A straight mesh; where it is not settled, its edges are yet to be decided on.
+fn mesh_straight(
+    domain: &Domain,
+    field: &dyn MetricField,
+    aim: Option<Aim>,
+    settles: bool,
+    options: &MeshOptions,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
     let watch = Stopwatch::new(progress);
     let mut job = Job::new(field, options, &watch);
     let (domain, plan, count, scale) = watch.time("plan", || job.plan(domain))?;
@@ -167,11 +175,11 @@ pub fn mesh_for(
     let relaxation = watch.time("relax", || job.relax(&mut dual, canvas.as_ref()))?;
     let protected = job.protect(&domain, &mut dual)?;
     let aim = aim.map(|aim| job.is_to_be_polished(&mut dual, aim).map(|is| is.then_some(aim))).transpose()?.flatten();
-    let settled = if aim.is_some() {
-        // Polishing decides on the edges.
-        settle::Settled::default()
-    } else {
+    // Polishing decides on the edges.
+    let settled = if aim.is_none() && settles {
         watch.time("settle", || settle::settle(&mut dual, &domain, job.options, job.progress))?
+    } else {
+        settle::Settled::default()
     };
     let polished = aim.map(|aim| watch.time("polish", || job.polish(&mut dual, aim))).transpose()?;
     let mesh = watch.time("check", || job.finish(&domain, &dual, &plan.pairs))?;

@@ -102,6 +102,19 @@ fn thin_layers_are_bent_with_their_boundary() {
     assert!((validity(&meshed.mesh).area - 0.5 * PI).abs() < 1e-4);
 }
 
+/// Where both sides of a triangle at a vertex are on a smooth boundary they would make a half turn there.
+#[test]
+fn triangles_in_smooth_corners_keep_a_margin() {
+    let ring = (0..12).map(|i| PI * f64::from(i) / 6.0).map(|a| Point::new(a.cos(), a.sin())).collect();
+    let domain = of_rings(vec![ring]);
+    for order in [2, 3] {
+        let options = options(12, order, Boundary::Spline);
+        let meshed = mesh(&domain, &|_: Point| Tensor::IDENTITY, &options, &Silent).unwrap();
+        let found = validity(&meshed.mesh);
+        assert!(found.valid && found.least_jacobian.unwrap() > 1e-4, "{:?}", found.least_jacobian);
+    }
+}
+
 /// The part above a curve that dips where its segments do not, and the part below another one that is close to these.
 fn above_and_below() -> [Vec<Point>; 2] {
     let points = |all: &[(f64, f64)]| all.iter().map(|&(x, y)| Point::new(x, y)).collect::<Vec<_>>();
