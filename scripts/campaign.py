@@ -42,6 +42,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 METRICS = ["uniform", "uniform:100,0,1", "swirl", "shock:phi=10,lambda=0.1", "shock:phi=1000,lambda=0.02",
            "formula:1+100*x^2; 0; 1+y^2", "hessian:tanh(20*(x+0.3*y))", "boundary:h0=0.05,growth=1.5"]
+FUNCTIONS = ["tanh(40*(sqrt((x+3)^2+(y+3)^2)-4))", "sin(5*x)*y", "x^4 + abs(y)*x^3", "exp(-100*(x^2+y^2))", "tanh(50*x*y) + x^5",
+             "if(x < 0.3, 0, 1)*x^4", "sqrt(x^2 + y^2)", "log(x + 9)*cosh(y)", "max(x, y)^3", "tanh(1e3*(y - x^2))", "1/(x*x + y*y + 1e-3)"]
 GOOD = {"meshed", "refused", "ended", "stopped", "same"}
 
 
@@ -153,9 +155,14 @@ def curved(chance, place):
     angles = [2 * math.pi * (i + chance.uniform(-0.3, 0.3)) / corners for i in range(corners)]
     smooth = [[radius(a) * math.cos(a), radius(a) * math.sin(a)] for a in angles]
     rings = chance.choice([[smooth], [smooth, [[0.1 * x, 0.1 * y] for x, y in smooth[::-1]]], [star(chance, (0, 0), 1, chance.randint(4, 40))]])
-    domain = "disk:0.5,-1,2" if chance.random() < 0.2 else written(place, scaled(rings, 10 ** chance.choice([-6, 0, 0, 0, 6])))
+    size = 10 ** chance.choice([-6, 0, 0, 0, 6])
+    domain, size = ("disk:0.5,-1,2", 1) if chance.random() < 0.2 else (written(place, scaled(rings, size)), size)
     boundary = chance.choice([[], ["--boundary", "spline"], ["--boundary", "spline"], ["--boundary", "polyline"]])
-    return ["mesh", domain, "--metric", chance.choice(METRICS), "-n", n, "--order", order, *boundary]
+    norm = chance.choice([[], [], ["--norm", "1"], ["--norm", "inf"]])
+    # Functions of the size of the domain, but for some that are nearly linear on a small one.
+    hessian = "hessian:" + re.sub(r"\b([xy])\b", rf"(\1/{max(size, 1):g})", chance.choice(FUNCTIONS))
+    metric = chance.choice([[chance.choice(METRICS)], [hessian, *norm]])
+    return ["mesh", domain, "--metric", *metric, "-n", n, "--order", order, *boundary]
 
 
 def sampled(path):

@@ -58,9 +58,10 @@ pub(crate) fn on_surface(
     Ok((report, unmet))
 }
 
-/// The share of unit edges at the factor that the number of vertices asks for; of straight edges, for curved ones are not looked at one by one.
+/// The share of unit edges at the factor that the number of vertices asks for; of straight edges, for curved ones have that factor.
 fn closed_form(meshed: &Meshed, unmet: &Unmet) -> Option<ClosedForm> {
-    let metric_scale = meshed.closed_form_scale.filter(|_| !unmet.lengths.is_empty())?;
+    let is_straight = meshed.mesh.curved.is_none();
+    let metric_scale = meshed.closed_form_scale.filter(|_| is_straight && !unmet.lengths.is_empty())?;
     let ratio = (metric_scale / meshed.metric_scale).sqrt();
     let is_unit = |length: &&f64| (FRAC_1_SQRT_2..=SQRT_2).contains(&(*length * ratio));
     let unit_fraction = unmet.lengths.iter().filter(is_unit).count() as f64 / unmet.lengths.len() as f64;
@@ -69,13 +70,12 @@ fn closed_form(meshed: &Meshed, unmet: &Unmet) -> Option<ClosedForm> {
 
 /// Adds what a planar mesh is in a metric; its edges that are not of unit length.
 pub(crate) fn measure_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
-    // Causes are those of straight edges.
-    let unmet = if mesh.curved.is_some() { Unmet::default() } else { unmet(mesh, metric, |_| ())? };
+    let unmet = unmet(mesh, metric, |_| ())?;
     match &unmet.quality {
         Some(quality) => report.add_quality(quality),
         None => report.add_quality(&metric_quality(mesh, metric)?),
     }
-    report.unmet = mesh.curved.is_none().then(|| unmet.figures());
+    report.unmet = Some(unmet.figures());
     Ok(unmet)
 }
 

@@ -42,7 +42,8 @@ pub(crate) struct CheckArgs {
     /// A factor on the metric tensor, such as `metric_scale` of a report
     #[arg(long, value_name = "FACTOR", value_parser = positive, requires = "metric")]
     pub(crate) metric_scale: Option<f64>,
-    /// Measure the error of linear interpolation of this function of x and y, on a surface of x, y and z, in the L^p norm of --norm
+    /// Measure the error of interpolation of this function of x and y, by polynomials of the triangles' order, on a surface (of order 1) of x,
+    /// y and z, in the L^p norm of --norm
     #[arg(long, value_name = "EXPR")]
     pub(crate) function: Option<String>,
     /// Measure the distance to the boundary of this domain (as for `mesh`), or to this surface [default of a metric on a surface:

@@ -12,8 +12,10 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// Steps to the least energy of a curve, at most; each gains digits, for what the metric's second derivatives say is left out.
 const STEPS: usize = 12;
-/// They end where one gains less than this share of the energy: then it is as long as rounding lets it be known.
-const LEAST_GAIN: f64 = 1e-15;
+/// They end where one gains less than this share of the energy: it is as long as rounding of places lets it be.
+const LEAST_GAIN: f64 = 1e-24;
+/// Steps that gain less are taken as they are: slopes are known better than energies.
+const KNOWN_GAIN: f64 = 1e-12;
 
 /// Moves the inner points of the sides inside to where the energy of these is least between their ends; less far where triangles would not be valid. Of polynomials
 /// these are nearest to geodesics that are passed at constant speed, to within the power of their length that is one above the order. Sides of unit length
@@ -42,7 +44,8 @@ fn shortest(points: &[Point], metric: &dyn MetricField) -> Option<Vec<Point>> {
         let decrease = |step: &[f64]| step.iter().zip(&slope).map(|(d, s)| d * s).sum::<f64>();
         let step = solved(matrix, slope.clone())?;
         // Twice the energy that the step gains where its model is right.
-        if decrease(&step) <= LEAST_GAIN * energy {
+        let gain = decrease(&step);
+        if gain <= LEAST_GAIN * energy {
             return Some(points);
         }
         let shares = [1.0, 0.5, 0.25, 0.125].into_iter();
@@ -53,7 +56,7 @@ fn shortest(points: &[Point], metric: &dyn MetricField) -> Option<Vec<Point>> {
             }
             (self::energy(&moved, metric, &mut near), moved)
         });
-        (energy, points) = tries.into_iter().find(|tried| tried.0 < energy)?;
+        (energy, points) = tries.into_iter().find(|tried| gain <= KNOWN_GAIN * energy || tried.0 < energy)?;
     }
     Some(points)
 }

@@ -44,10 +44,8 @@ impl Aim<'_> {
 
     /// That with its derivatives by what may move.
     pub(super) fn expansion(&self, rule: &Rule, points: &[Point], freedoms: &[Freedom]) -> Expansion {
-        self.target.map_or_else(
-            || triangle(rule, points, freedoms, self.metric),
-            |target| target.expansion(points, freedoms),
-        )
+        self.target
+            .map_or_else(|| triangle(rule, points, freedoms, self.metric), |target| target.expansion(points, freedoms))
     }
 
     /// The energy of a triangle, infinite where it is not valid.

@@ -1,8 +1,8 @@
 //! Curved triangles moved to where the error of interpolating a function is least.
 
+use super::EXCHANGED_SHARE;
 use super::elements::Elements;
 use super::exchange::exchange;
-use super::EXCHANGED_SHARE;
 use super::flips::flip;
 use super::newton::{Aim, minimise_damped};
 use super::target::Target;
@@ -19,8 +19,8 @@ const DAMPING: f64 = 0.1;
 /// Steps between rounds of flips.
 const STEPS: usize = 4;
 
-/// Moves all points, flips sides and exchanges vertices, in so many rounds at most and as long as one gains a share of the error. The metric is that whose unit is a
-/// length that points may go in a step.
+/// Moves all points, flips sides and exchanges vertices, in so many rounds at most and as long as a step gains a share of the error. The metric is that whose
+/// unit is a length that points may go in a step.
 ///
 /// # Errors
 /// The work is to stop.
@@ -51,7 +51,7 @@ pub(super) fn polish(
         (found.moves, found.flips) = (found.moves + moves, found.flips + flips);
         found.error.push(error);
         best.clone_from(elements);
-        if before - error < patience.gain * before {
+        if before - error < STEPS as f64 * patience.gain * before {
             break;
         }
         let most = (elements.vertices() as f64 * EXCHANGED_SHARE) as usize;

@@ -81,7 +81,8 @@ impl<'a> Target<'a> {
         let (e, p) = (error / self.unit, self.exponent);
         let square = e * e + LEAST * LEAST;
         let power = if p == 2.0 { 1.0 } else { square.raised_to(0.5 * p - 1.0) };
-        [power * square, p * power * e / self.unit, p * (p - 1.0).max(1.0) * power / (self.unit * self.unit)].map(|x| x * self.weight)
+        [power * square, p * power * e / self.unit, p * (p - 1.0).max(1.0) * power / (self.unit * self.unit)]
+            .map(|x| x * self.weight)
     }
 
     /// The energy of a triangle; infinite where the function is not.

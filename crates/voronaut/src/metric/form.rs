@@ -19,7 +19,8 @@ pub(super) struct Form {
 impl Form {
     /// Of degree 3 or 4, from its values: derivatives of that order along vectors.
     pub(super) fn of_values(degree: usize, at: impl Fn(Vector) -> f64) -> Self {
-        let [first, last, plus, minus] = [(1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, y)| at(Vector::new(x, y)));
+        let [first, last, plus, minus] =
+            [(1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, y)| at(Vector::new(x, y)));
         let (even, odd) = (0.5 * (plus + minus), 0.5 * (plus - minus));
         if degree == 3 {
             return Self { degree, coefficients: [first, odd - last, even - first, last, 0.0] };
@@ -134,7 +135,7 @@ mod tests {
         // The real part of z^3, and of z^4: one everywhere on a circle that is met by the unit circle alone.
         for (degree, coefficients) in [(3, [1.0, 0.0, -3.0, 0.0, 0.0]), (4, [1.0, 0.0, -6.0, 0.0, 1.0])] {
             let q = form(degree, coefficients).bounding(1e-9);
-            assert!((q.xx - 1.0).abs() + (q.yy - 1.0).abs() + q.xy.abs() < 0.02, "{q:?}");
+            assert!((q.xx - 1.0).abs() + (q.yy - 1.0).abs() + q.xy.abs() < 0.06, "{q:?}");
         }
         // 8 x^3 + y^3.
         let q = form(3, [8.0, 0.0, 0.0, 1.0, 0.0]).bounding(1e-9);
@@ -142,7 +143,7 @@ mod tests {
         // Nothing along y: the floor.
         let q = form(3, [8.0, 0.0, 0.0, 0.0, 0.0]).bounding(0.25);
         assert!((q.xx - 4.0).abs() + (q.yy - 0.25).abs() + q.xy.abs() < 1e-9, "{q:?}");
-        assert_eq!(form(4, [0.0; 5]).bounding(0.5), Tensor::isotropic(0.5));
+        assert_eq!(form(4, [0.0; 5]).bounding(0.5), Tensor::IDENTITY * 0.5);
     }
 
     proptest! {

@@ -33,7 +33,10 @@ impl Hessian {
             let greatest = found.size(middle);
             if !greatest.is_finite() {
                 let what = format!("the function's {} are not finite", found.derivatives());
-                let help = format!("give a function with {} derivatives in the whole domain", ["two", "three", "four"][degree - 1]);
+                let help = format!(
+                    "give a function with {} derivatives in the whole domain",
+                    ["two", "three", "four"][degree - 1]
+                );
                 return Err(Error::metric(what, middle.to_string(), help));
             }
             let area = (b - a).cross(c - a).abs();
@@ -45,7 +48,11 @@ impl Hessian {
         }
         let help = "what is linear needs no mesh, and kinks and jumps have no second derivatives: use another metric, or give values at \
                     the vertices of a fine mesh (hessian:FILE.sol)";
-        Err(Error::metric(format!("the function's {} vanish everywhere", found.derivatives()), "all points looked at", help))
+        Err(Error::metric(
+            format!("the function's {} vanish everywhere", found.derivatives()),
+            "all points looked at",
+            help,
+        ))
     }
 
     fn derivatives(&self) -> String {
@@ -189,7 +196,10 @@ mod tests {
     fn of_cubics_and_quartics_it_is_constant_and_of_their_directions() {
         // The form of third derivatives is 6 (8 a^3 + b^3), that of fourth ones 24 (16 a^4 + b^4), along and across (0.6, 0.8).
         let (a, b) = ("(0.6*x + 0.8*y)", "(0.8*x - 0.6*y)");
-        let texts = [(2, format!("8*{a}^3 + {b}^3"), 6.0_f64.powf(2.0 / 3.0)), (3, format!("16*{a}^4 + {b}^4"), 24.0_f64.sqrt())];
+        let texts = [
+            (2, format!("8*{a}^3 + {b}^3"), 6.0_f64.powf(2.0 / 3.0)),
+            (3, format!("16*{a}^4 + {b}^4"), 24.0_f64.sqrt()),
+        ];
         for (degree, text, size) in texts {
             let truth = Tensor::from_axis(crate::geometry::Vector::new(0.6, 0.8), 4.0, 1.0) * size;
             let power = -1.0 / ((degree as f64 + 1.0) * 2.0 + 2.0);

@@ -39,7 +39,8 @@ impl Series {
 
     /// The derivative.
     fn slope(self) -> Self {
-        let terms = std::array::from_fn(|k| if k + 1 < self.known { (k as f64 + 1.0) * self.terms[k + 1] } else { 0.0 });
+        let terms =
+            std::array::from_fn(|k| if k + 1 < self.known { (k as f64 + 1.0) * self.terms[k + 1] } else { 0.0 });
         Self { terms, known: self.known - 1 }
     }
 
@@ -186,7 +187,10 @@ mod tests {
             let truths = [here, (after - before) / (2.0 * h), (after + before - 2.0 * here) / (h * h)];
             for (order, truth) in (2..).zip(truths) {
                 let derivative = found.derivative(order);
-                assert!((derivative - truth).abs() < 1e-4 * (1.0 + truth.abs()), "{text} {order}: {derivative} {truth}");
+                assert!(
+                    (derivative - truth).abs() < 1e-4 * (1.0 + truth.abs()),
+                    "{text} {order}: {derivative} {truth}"
+                );
             }
         }
     }

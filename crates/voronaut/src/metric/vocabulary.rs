@@ -34,17 +34,12 @@ pub(super) const FUNCTIONS: [(&str, Function); 17] = [
     ("if", Function::If),
 ];
 
-const SIN: Unary =
-    Unary { value: Elementary::sine, derivatives: |x| [x.cosine(), -x.sine()], slope: |u| u.call(&COS) };
+const SIN: Unary = Unary { value: Elementary::sine, derivatives: |x| [x.cosine(), -x.sine()], slope: |u| u.call(&COS) };
 const COS: Unary =
     Unary { value: Elementary::cosine, derivatives: |x| [-x.sine(), -x.cosine()], slope: |u| -u.call(&SIN) };
-const TAN: Unary =
-    Unary { value: Elementary::tangent, derivatives: of_tan, slope: |u| one() + u.call(&TAN).square() };
-const ASIN: Unary = Unary {
-    value: Elementary::arcsine,
-    derivatives: of_asin,
-    slope: |u| one() / (one() - u.square()).call(&SQRT),
-};
+const TAN: Unary = Unary { value: Elementary::tangent, derivatives: of_tan, slope: |u| one() + u.call(&TAN).square() };
+const ASIN: Unary =
+    Unary { value: Elementary::arcsine, derivatives: of_asin, slope: |u| one() / (one() - u.square()).call(&SQRT) };
 const ACOS: Unary = Unary {
     value: Elementary::arccosine,
     derivatives: |x| of_asin(x).map(|d| -d),
@@ -76,8 +71,7 @@ const SQRT: Unary = Unary {
     derivatives: |x| [0.5 / x.sqrt(), -0.25 / (x * x.sqrt())],
     slope: |u| Series::from(0.5) / u.call(&SQRT),
 };
-const ABS: Unary =
-    Unary { value: f64::abs, derivatives: |x| [x.signum(), 0.0], slope: |u| u.value().signum().into() };
+const ABS: Unary = Unary { value: f64::abs, derivatives: |x| [x.signum(), 0.0], slope: |u| u.value().signum().into() };
 
 fn one() -> Series {
     1.0.into()

@@ -4,14 +4,16 @@ mod forced;
 #[cfg(test)]
 mod tests;
 
+use super::curved;
 use super::faults::{Position, middle};
 use super::metric_quality::{Corners, MetricQuality, Shape, Shapes, demand_planar, demand_vertices, of_edges, summed};
 use super::surface_quality::Field;
+use crate::curved::Rule;
 use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{NEEDLE, Point, Point3, Vector};
 use crate::lists::{distinct, in_order};
-use crate::mesh::{Edges, Mesh, edges_of};
+use crate::mesh::{EdgeSide, Edges, Mesh, edges_of};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
@@ -188,7 +190,8 @@ impl Unmet {
 
 /// Finds the edges of a planar mesh that are not of unit length in a metric, and why, in parallel; the same bits for any number
 /// of threads. `see` is shown the quality and the smallest angle (degrees) of each triangle, in order. Corners of the mesh's borders and
-/// labelled edges are those in its lists, and wherever these edges end, fork, turn, or change their label.
+/// labelled edges are those in its lists, and wherever these edges end, fork, turn, or change their label. Sides of curved triangles are measured along
+/// their curves; where a metric turns too fast for straight edges, and they are not of unit length either, that is the cause.
 ///
 /// # Errors
 /// As [`metric_quality`](super::metric_quality), but that a mesh without triangles has no such edges.
@@ -199,9 +202,17 @@ pub fn unmet(mesh: &Mesh, metric: &dyn MetricField, see: impl FnMut([f64; 2])) -
         let (middle, half) = (a.midpoint(b), (b - a) * 0.5);
         Some(Around { field: Box::new(move |p: Point| metric.at(middle + (p - Point::default()))), half })
     };
+    if mesh.curved.is_some() {
+        mesh.check_numbers()?;
+        let rule = Rule::fine(mesh);
+        let shape = |t| curved::shape(mesh, &rule, t, metric).map(|[quality, angle]| Shape::new(quality, angle));
+        let length = |side: &EdgeSide| curved::side_length(mesh, side, metric);
+        return find(mesh, STRAIGHT, length, shape, around, Position::in_plane, see);
+    }
     let (corners, mean) = Corners::of(mesh, metric)?;
-    let shape = move |t| Shape::of(mean(t), mesh.corners_of(t));
-    find(mesh, STRAIGHT, move |ends| corners.edge_length(ends), shape, around, Position::in_plane, see)
+    let shape = move |t: usize| Ok(Shape::of(mean(mesh.triangles[t]), mesh.corners_of(mesh.triangles[t])));
+    let length = move |side: &EdgeSide| corners.edge_length(side.ends);
+    find(mesh, STRAIGHT, length, shape, around, Position::in_plane, see)
 }
 
 /// The same of the mesh of a surface in a metric on it, see [`surface_quality`](super::surface_quality()). Features turn in a
@@ -222,8 +233,10 @@ pub fn surface_unmet(
         let (metric, edge) = field.around(a.lerp(b, 0.5), b - a)?;
         Some(Around { field: Box::new(metric), half: edge * 0.5 })
     };
-    let length = |ends: [u32; 2]| field.length(ends.map(|v| mesh.position(v)));
-    find(mesh, FeatureOptions::DEFAULT_ANGLE.to_radians(), length, field.shapes(mesh)?, around, Position::from, see)
+    let length = |side: &EdgeSide| field.length(side.ends.map(|v| mesh.position(v)));
+    let shapes = field.shapes(mesh)?;
+    let shape = |t: usize| Ok(shapes(mesh.triangles[t]));
+    find(mesh, FeatureOptions::DEFAULT_ANGLE.to_radians(), length, shape, around, Position::from, see)
 }
 
 /// What the metric is around the middle of an edge, which lies at the origin.
@@ -237,26 +250,21 @@ pub(super) struct Around<'a> {
 fn find<'a>(
     mesh: &Mesh,
     corner: f64,
-    length: impl Fn([u32; 2]) -> Result<f64> + Sync + Send,
-    shape: impl Fn([u32; 3]) -> Shape + Sync,
+    length: impl Fn(&EdgeSide) -> Result<f64> + Sync + Send,
+    shape: impl Fn(usize) -> Result<Shape> + Sync + Send,
     around: impl Fn([u32; 2]) -> Option<Around<'a>> + Sync + Send,
     position: impl Fn(Point3) -> Position + Sync,
     mut see: impl FnMut([f64; 2]),
 ) -> Result<Unmet> {
     let mut poor = Vec::new();
-    let of_all = Shapes::of(
-        mesh,
-        |t| Ok(shape(mesh.triangles[t])),
-        &position,
-        |t, found| {
-            see(found);
-            poor.extend((found[0] < NEEDLE).then_some((t, found[0])));
-        },
-    )?;
+    let of_all = Shapes::of(mesh, &shape, &position, |t, found| {
+        see(found);
+        poor.extend((found[0] < NEEDLE).then_some((t, found[0])));
+    })?;
     // What it holds is as large as the mesh, as is what lengths are measured by.
     drop(shape);
     let edges = Edges::of(&mesh.triangles);
-    let lengths = of_edges(&edges, |side| length(side.ends))?;
+    let lengths = of_edges(&edges, &length)?;
     drop(length);
     let curves = Curves::of(mesh, &edges, corner);
     let forced = Forced::of(&curves, &edges, &lengths);

@@ -154,6 +154,39 @@ fn what_only_curved_edges_can_do_is_the_metric_s() {
     assert!(counts(&found)[2] > 9 * found.edges.len() / 10, "{:?} of {}", counts(&found), found.lengths.len());
 }
 
+/// The same with quadratic sides through the middles of geodesics.
+fn bent(height: f64) -> (Mesh, impl Fn(Point) -> Tensor + Sync) {
+    let (mut mesh, metric) = waves(height);
+    let rise = |x: f64| height * (2.0 * x).sin();
+    let flat = |v: u32| mesh.point(v) + Vector::new(0.0, rise(mesh.point(v).x));
+    let ends: Vec<[u32; 2]> = Edges::of(&mesh.triangles).ends().collect();
+    let middles = ends.iter().map(|&[a, b]| flat(a).midpoint(flat(b))).map(|p| [p.x, p.y - rise(p.x), 0.0]);
+    let nodes = middles.collect();
+    let of = |side: [u32; 2]| ends.iter().position(|&ends| ends == in_order(side)).expect("an edge") as u32;
+    let triangles = mesh.triangles.iter().flat_map(|&t| edges_of(t).map(of)).collect();
+    mesh.curved = Some(crate::mesh::Curved { order: 2, nodes, triangles });
+    (mesh, metric)
+}
+
+#[test]
+fn sides_of_curved_triangles_are_measured_along_their_curves() {
+    let height = 1.5;
+    let ((straight, metric), (curved, _)) = (waves(height), bent(height));
+    let (before, found) = (unmet(&straight, &metric).unwrap(), unmet(&curved, &metric).unwrap());
+    assert!(
+        before.edges.len() > found.lengths.len() / 20 && found.edges.is_empty(),
+        "{} {}",
+        before.edges.len(),
+        found.edges.len()
+    );
+    assert_eq!(found.quality, Some(metric_quality(&curved, &metric).unwrap()));
+    let coarse = unmet(&curved, &|p: Point| metric.at(p) * 9.0).unwrap();
+    assert_eq!(counts(&coarse)[1], coarse.lengths.len());
+    let (wild, metric) = bent(4.0);
+    let found = unmet(&wild, &metric).unwrap();
+    assert!(found.edges.len() > 10 && counts(&found)[2] > found.edges.len() / 2, "{:?}", counts(&found));
+}
+
 #[test]
 fn surfaces_have_the_same_causes() {
     let flat = lattice(12);
