@@ -125,8 +125,7 @@ def mesh(
     h_max : float, optional
         Greatest Euclidean size the metric may ask for
     norm : float | str, default 2
-        With hessian metrics: p of the L^p norm in which the error of linear interpolation is to be least: 1, 2, 4, ...
-        or inf
+        With hessian metrics: p of the L^p norm in which the error of interpolation is to be least: 1, 2, 4, ... or inf
     recovery : str, default 'fit'
         With hessian:FILE.sol: how second derivatives are recovered, by a quadratic around each vertex (fit) or a double
         projection (l2)
@@ -149,8 +148,9 @@ def mesh(
     required : bool, default False
         In the plane: leave the edges of the domain's curves as they are, every one an edge of the mesh
     order : int, default 1
-        The order of triangles: 1, straight; 2 or 3, curved: in the plane to follow the metric, on sphere:, torus: and f
-        = 0 to follow the surface (.msh, .vtu, .mesh and .meshb hold them)
+        The order of triangles: 1, straight; 2 or 3, curved: in the plane to follow the metric, or with hessian:EXPR so
+        that interpolation by polynomials of that order has the least error; on sphere:, torus: and f = 0 to follow the
+        surface (.msh, .vtu, .mesh and .meshb hold them)
     boundary : str, default 'auto'
         What boundaries of curved triangles are: auto (the circle of disk:, else polyline), polyline (the domain's own
         straight segments), or spline (smooth curves through its vertices; corners of more than 45 degrees stay)
@@ -175,8 +175,8 @@ def mesh(
         The centroids seeds are relaxed to: tangent (of cells in tangent planes), canvas (of the diagram's cells) or
         weighted (equation 9 of the report, to compare)
     polish : int, default 20
-        With hessian metrics: sweeps in which vertices move and edges flip so that the error of linear interpolation
-        falls, at most; 0 for the metric's unit mesh. Not with limits on the metric
+        With hessian metrics: sweeps in which vertices move and edges flip so that the error of interpolation falls, at
+        most; 0 for the metric's unit mesh. Not with limits on the metric
     dual : str, default 'both'
         What decides on the edges: geodesic (their lengths), canvas (the diagram on one) or both (the diagram where
         lengths cannot)
@@ -323,8 +323,7 @@ def dual(
     h_max : float, optional
         Greatest Euclidean size the metric may ask for
     norm : float | str, default 2
-        With hessian metrics: p of the L^p norm in which the error of linear interpolation is to be least: 1, 2, 4, ...
-        or inf
+        With hessian metrics: p of the L^p norm in which the error of interpolation is to be least: 1, 2, 4, ... or inf
     recovery : str, default 'fit'
         With hessian:FILE.sol: how second derivatives are recovered, by a quadratic around each vertex (fit) or a double
         projection (l2)
@@ -442,8 +441,7 @@ def distance(
     h_max : float, optional
         Greatest Euclidean size the metric may ask for
     norm : float | str, default 2
-        With hessian metrics: p of the L^p norm in which the error of linear interpolation is to be least: 1, 2, 4, ...
-        or inf
+        With hessian metrics: p of the L^p norm in which the error of interpolation is to be least: 1, 2, 4, ... or inf
     recovery : str, default 'fit'
         With hessian:FILE.sol: how second derivatives are recovered, by a quadratic around each vertex (fit) or a double
         projection (l2)
@@ -532,15 +530,14 @@ def check(
     metric_scale : float, optional
         A factor on the metric tensor, such as `metric_scale` of a report
     function : str, optional
-        Measure the error of linear interpolation of this function of x and y, on a surface of x, y and z, in the L^p
-        norm of norm
+        Measure the error of interpolation of this function of x and y, by polynomials of the triangles' order, on a
+        surface (of order 1) of x, y and z, in the L^p norm of norm
     h_min : float, optional
         Least Euclidean size the metric may ask for
     h_max : float, optional
         Greatest Euclidean size the metric may ask for
     norm : float | str, default 2
-        With hessian metrics: p of the L^p norm in which the error of linear interpolation is to be least: 1, 2, 4, ...
-        or inf
+        With hessian metrics: p of the L^p norm in which the error of interpolation is to be least: 1, 2, 4, ... or inf
     recovery : str, default 'fit'
         With hessian:FILE.sol: how second derivatives are recovered, by a quadratic around each vertex (fit) or a double
         projection (l2)
@@ -793,8 +790,7 @@ def view(
     h_max : float, optional
         Greatest Euclidean size the metric may ask for
     norm : float | str, default 2
-        With hessian metrics: p of the L^p norm in which the error of linear interpolation is to be least: 1, 2, 4, ...
-        or inf
+        With hessian metrics: p of the L^p norm in which the error of interpolation is to be least: 1, 2, 4, ... or inf
     recovery : str, default 'fit'
         With hessian:FILE.sol: how second derivatives are recovered, by a quadratic around each vertex (fit) or a double
         projection (l2)
