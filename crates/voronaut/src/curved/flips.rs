@@ -52,9 +52,11 @@ pub(super) fn flip(elements: &mut Elements, aim: &Aim) -> usize {
 /// What a flip would gain, where it is valid and gains anything.
 fn tried(elements: &Elements, aim: &Aim, rule: &Rule, half_edge: usize) -> Option<Flipped> {
     let pair = Pair::of(elements, half_edge);
+    if aim.target.is_none() && pair.excess(elements, aim) < -HOPEFUL {
+        return None;
+    }
     let cost = cost(elements, aim, rule, pair);
-    let is_hopeless = if aim.target.is_some() { cost < WORTHWHILE } else { pair.excess(elements, aim) < -HOPEFUL };
-    if is_hopeless {
+    if aim.target.is_some() && cost < WORTHWHILE {
         return None;
     }
     let mut local = Local::of(elements, aim, rule, pair);
