@@ -1,5 +1,6 @@
 //! Straight boundaries and interfaces bent onto the curves that they stand for.
 
+use super::Away;
 use super::bezier::curve_of_nodes;
 use super::elements::{Elements, Hold};
 use super::newton::{Aim, displace};
@@ -19,12 +20,7 @@ pub(super) const LEAST: f64 = 1e-6;
 ///
 /// # Errors
 /// The work is to stop.
-pub(super) fn bend(
-    elements: &mut Elements,
-    curves: &Splines,
-    aim: &Aim,
-    progress: &dyn Progress,
-) -> Result<Option<(usize, Point)>> {
+pub(super) fn bend(elements: &mut Elements, curves: &Splines, aim: &Aim, progress: &dyn Progress) -> Result<Away> {
     let targets = targets(elements, curves);
     for &(p, _) in &targets {
         elements.holds[p as usize] = Hold::Free;

@@ -65,6 +65,9 @@ const EXCHANGED_SHARE: f64 = 0.06;
 /// of 72 % of the sides of unit length weight 5 made 79 %, 10 84 % and 15 85 %; 15 cost 11 % of the energy of triangles, 10 1 %.
 const LENGTHS: f64 = 10.0;
 
+/// How many points of boundaries stay away from their curves, and the first of them.
+pub(crate) type Away = Option<(usize, Point)>;
+
 /// A curved mesh for a metric whose unit mesh it is to be, from a straight one of that metric with the first of [`POWERS`]. Its boundary and interfaces
 /// are bent onto these curves, if any are given; then also how many points stay away from them, and the first of those.
 ///
@@ -76,7 +79,7 @@ pub(crate) fn curved(
     metric: &dyn MetricField,
     order: usize,
     progress: &dyn Progress,
-) -> Result<(Mesh, Option<(usize, Point)>)> {
+) -> Result<(Mesh, Away)> {
     progress.begin("curving", POWERS.len() as u64 + 2)?;
     let mut elements = Elements::of(mesh);
     for power in POWERS {
@@ -119,7 +122,7 @@ pub(crate) fn interpolating(
     (function, norm): (&dyn ScalarField, Norm),
     patience: Patience,
     progress: &dyn Progress,
-) -> Result<(Mesh, Option<(usize, Point)>, Polished)> {
+) -> Result<(Mesh, Away, Polished)> {
     progress.begin("polishing", patience.steps as u64)?;
     let mut elements = Elements::of(mesh);
     if order == 3 {

@@ -80,7 +80,7 @@ impl<'a> Target<'a> {
     fn cost(&self, error: f64) -> [f64; 3] {
         let (e, p) = (error / self.unit, self.exponent);
         let square = e * e + LEAST * LEAST;
-        let power = if p == 2.0 { 1.0 } else { square.raised_to(0.5 * p - 1.0) };
+        let power = if p.total_cmp(&2.0).is_eq() { 1.0 } else { square.raised_to(0.5 * p - 1.0) };
         [power * square, p * power * e / self.unit, p * (p - 1.0).max(1.0) * power / (self.unit * self.unit)]
             .map(|x| x * self.weight)
     }

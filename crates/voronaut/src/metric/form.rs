@@ -107,7 +107,8 @@ impl Form {
                 let share = (f64::from(j) + 0.5) / f64::from(BOUNDED);
                 let s = scale * share / (1.0 - share.abs());
                 let value = seen.value(Vector::new(1.0, s));
-                if value * value > (most + least * s * s).powi(self.degree as i32) {
+                let bound = most + least * s * s;
+                if value * value > if self.degree == 3 { bound.powi(3) } else { bound.powi(4) } {
                     least = (self.root(value) - most) / (s * s);
                 }
             }
@@ -153,7 +154,7 @@ mod tests {
         ) {
             prop_assume!(c[0].abs() > 0.05);
             let thin = 10.0_f64.powf(squeeze);
-            let squeezed = form(degree, std::array::from_fn(|i| c[i] / thin.powi(i as i32)));
+            let squeezed = form(degree, std::array::from_fn(|i| c[i] * thin.powf(-(i as f64))));
             let found = squeezed.along(Vector::new(turn.cos(), turn.sin()));
             let q = found.bounding(0.0);
             let share = |v: Vector| found.root(found.value(v)) / q.dot(v, v);

@@ -2,7 +2,7 @@
 
 use super::settle::Stopwatch;
 use super::{Aim, Boundary, MeshOptions, Meshed, Mesher, mesh_for, mesh_straight};
-use crate::curved::{POWERS, Tempered, curved, interpolating, onto_surface};
+use crate::curved::{Away, POWERS, Tempered, curved, interpolating, onto_surface};
 use crate::domain::{Domain, Splines};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
@@ -100,13 +100,7 @@ fn mesh_by_metric(
 }
 
 /// The curved mesh, checked, in place of the straight one that it started from; with a note of points that are away from their curves.
-fn finished(
-    start: Meshed,
-    mesh: Mesh,
-    away: Option<(usize, Point)>,
-    watch: &Stopwatch,
-    is_bent: bool,
-) -> Result<Meshed> {
+fn finished(start: Meshed, mesh: Mesh, away: Away, watch: &Stopwatch, is_bent: bool) -> Result<Meshed> {
     watch.time("check", || demand_valid(&mesh, is_bent))?;
     let note = |(count, at): (usize, Point)| {
         format!("{count} points of the boundary are not on its curve, for triangles would fold: the first at {at}")
