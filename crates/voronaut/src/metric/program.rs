@@ -1,35 +1,8 @@
 //! What expressions are compiled to, and how that runs: on plain numbers, and on numbers that carry their derivatives.
 
-use super::series::Series;
+use super::series::{Number, Unary};
 use crate::elementary::Elementary;
 use crate::geometry::Jet3;
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
-/// A function of one number with its first and second derivative, and the series of the first.
-#[derive(Debug)]
-pub(super) struct Unary {
-    pub(super) value: fn(f64) -> f64,
-    pub(super) derivatives: fn(f64) -> [f64; 2],
-    pub(super) slope: fn(Series) -> Series,
-}
-
-/// Arithmetic of expressions.
-pub(super) trait Number:
-    Copy
-    + From<f64>
-    + Neg<Output = Self>
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-{
-    fn value(self) -> f64;
-    fn square(self) -> Self;
-    fn power(self, exponent: Self) -> Self;
-    /// The angle of the vector (`x`, self).
-    fn atan2(self, x: Self) -> Self;
-    fn call(self, function: &Unary) -> Self;
-}
 
 impl Number for f64 {
     fn value(self) -> f64 {

@@ -1,8 +1,33 @@
-//! Derivatives along a line up to the fourth: numbers that carry their power series.
+//! What expressions do with numbers, and numbers that carry their power series along a line: derivatives up to the fourth.
 
-use super::program::{Number, Unary};
 use crate::elementary::Elementary;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A function of one number with its first and second derivative, and the series of the first.
+#[derive(Debug)]
+pub(super) struct Unary {
+    pub(super) value: fn(f64) -> f64,
+    pub(super) derivatives: fn(f64) -> [f64; 2],
+    pub(super) slope: fn(Series) -> Series,
+}
+
+/// Arithmetic of expressions.
+pub(super) trait Number:
+    Copy
+    + From<f64>
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+{
+    fn value(self) -> f64;
+    fn square(self) -> Self;
+    fn power(self, exponent: Self) -> Self;
+    /// The angle of the vector (`x`, self).
+    fn atan2(self, x: Self) -> Self;
+    fn call(self, function: &Unary) -> Self;
+}
 
 /// Terms of a series.
 const TERMS: usize = 5;
@@ -134,7 +159,7 @@ impl Number for Series {
         if self.known == 1 {
             return Self { terms: [value, 0.0, 0.0, 0.0, 0.0], known: 1 };
         }
-        let log = self.call(&super::vocabulary::LOG);
+        let log = (self.slope() / short[0]).integral(self.terms[0].logarithm());
         (short[0].power(short[1]) * slope(log * exponent)).integral(value)
     }
 

@@ -1,7 +1,7 @@
 //! The names and operators of expressions, each declared once.
 
-use super::program::{Number, Op, Unary};
-use super::series::Series;
+use super::program::Op;
+use super::series::{Number, Series, Unary};
 use crate::elementary::Elementary;
 
 /// How many arguments a function takes, and what it does with them.
@@ -64,7 +64,7 @@ const EXP: Unary = Unary {
     derivatives: |x| [x.exponential(), x.exponential()],
     slope: |u| u.call(&EXP),
 };
-pub(super) const LOG: Unary =
+const LOG: Unary =
     Unary { value: Elementary::logarithm, derivatives: |x| [1.0 / x, -1.0 / (x * x)], slope: |u| one() / u };
 const SQRT: Unary = Unary {
     value: f64::sqrt,
