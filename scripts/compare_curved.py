@@ -26,7 +26,7 @@ from pathlib import Path
 import numpy as np
 
 import compare_hessian
-from compare_hessian import ROOT, adapted, bamg, compiled, metric, mmg2d, pieces, read_mesh, rule, run
+from compare_hessian import ROOT, adapted, bamg, compiled, metric, mmg2d, read_mesh, rule, run
 
 CASES = {
     "circular front": "tanh(40*(sqrt((x+0.1)^2+(y+0.1)^2)-0.75))",

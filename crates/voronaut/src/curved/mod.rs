@@ -33,7 +33,7 @@ pub(crate) use bezier::{MOST, bernstein, bezier_points, blend, exponents, points
 pub(crate) use elements::HALVINGS;
 pub(crate) use jacobian::bound;
 pub(crate) use onto::onto_surface;
-pub(crate) use rules::{GAUSS, Place, Rule};
+pub(crate) use rules::{AREA, GAUSS, Place, Rule};
 pub(crate) use tempered::Tempered;
 pub(crate) use term::curve_at;
 

@@ -5,6 +5,9 @@ use super::density::Matrix;
 use crate::geometry::{Point, Vector, radon};
 use crate::mesh::Mesh;
 
+/// The area of the equilateral triangle with unit sides.
+pub(crate) const AREA: f64 = 0.433_012_701_892_219_3;
+
 /// A place of a triangle: its weight, the polynomials, and their gradients on the equilateral triangle with sides of length one.
 pub(crate) struct Place {
     pub(crate) weight: f64,

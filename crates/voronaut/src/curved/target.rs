@@ -1,14 +1,12 @@
 //! The error of interpolating a function by polynomials of the order of curved triangles, in place of their shape in a metric.
 
 use super::bezier::{MOST, bernstein, blend, exponents, points_of_nodes};
-use super::rules::Rule;
+use super::rules::{AREA, Rule};
 use super::term::{Expansion, Freedom, UNKNOWNS};
 use crate::elementary::Elementary;
 use crate::geometry::{Point, Vector};
 use crate::metric::{Norm, ScalarField};
 
-/// The area of the equilateral triangle with unit sides.
-const AREA: f64 = 0.433_012_701_892_219_3;
 /// Errors this small beside their mean count as this, so that powers below the square have second derivatives.
 const LEAST: f64 = 1e-3;
 

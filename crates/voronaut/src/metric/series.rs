@@ -153,14 +153,13 @@ impl Number for Series {
             // Bases below zero have no logarithm, but powers.
             return self.raised(1.0, exponent.terms[0]);
         }
-        let slope = |of: Self| of.slope();
         let short = [self, exponent].map(Self::shortened);
         let value = self.terms[0].raised_to(exponent.terms[0]);
         if self.known == 1 {
             return Self { terms: [value, 0.0, 0.0, 0.0, 0.0], known: 1 };
         }
         let log = (self.slope() / short[0]).integral(self.terms[0].logarithm());
-        (short[0].power(short[1]) * slope(log * exponent)).integral(value)
+        (short[0].power(short[1]) * (log * exponent).slope()).integral(value)
     }
 
     fn atan2(self, x: Self) -> Self {

@@ -1,7 +1,7 @@
 //! How far a function is from its interpolation on a mesh.
 
 use super::{Position, Spot};
-use crate::curved::{MOST, Place, bernstein, bezier_points, blend, exponents, points_of_nodes};
+use crate::curved::{AREA, MOST, Place, bernstein, bezier_points, blend, exponents, points_of_nodes};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Node, Point, Point3, radon};
@@ -13,8 +13,6 @@ use std::fmt;
 
 /// Each triangle is cut into so many times so many parts, with a rule of degree 5 on each.
 const PARTS: u32 = 4;
-/// The area of the equilateral triangle with unit sides.
-const EQUILATERAL: f64 = 0.433_012_701_892_219_3;
 
 /// The error of interpolation of a function on a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -181,7 +179,7 @@ fn on_curved(
     let error = |place: &Place| {
         let ([a, b], p) = (place.derivative(points), place.image(points));
         let error = function.value(p) - place.image(&ordinates[..points.len()]).x;
-        (error.abs(), Point3::new(p.x, p.y, 0.0), EQUILATERAL * place.weight * a.cross(b))
+        (error.abs(), Point3::new(p.x, p.y, 0.0), AREA * place.weight * a.cross(b))
     };
     of_errors(&places.iter().map(error).collect::<Vec<_>>(), norm)
 }

@@ -150,8 +150,6 @@ pub fn mesh_for(
     if options.mesher == Mesher::StarSet {
         return mesher::by_stars(domain, field, options, progress);
     }
-    options.geodesic.demand_diagrams()?;
-    protection::demand_possible(options)?;
     mesh_straight(domain, field, aim, true, options, progress)
 }
 
@@ -164,6 +162,8 @@ fn mesh_straight(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
+    options.geodesic.demand_diagrams()?;
+    protection::demand_possible(options)?;
     let watch = Stopwatch::new(progress);
     let mut job = Job::new(field, options, &watch);
     let (domain, plan, count, scale) = watch.time("plan", || job.plan(domain))?;
