@@ -3,7 +3,32 @@
 /// Sweeps of rotations, at most: convergence is quadratic in the end, and six sweeps are plenty for rounding.
 const SWEEPS: usize = 8;
 /// Entries off the diagonal that are smaller, beside the greatest on it, count as none: eigenvalues are for a model of an energy.
-const SMALL: f64 = 1e-7;
+const SMALL: f64 = 1e-4;
+
+/// Factors and vectors: those with positive factors have squares, as matrices, that sum to the part of a symmetric matrix which is positive
+/// semidefinite, all of it but negative eigenvalues with their eigenvectors.
+pub(super) fn positive_part<const N: usize>(a: [[f64; N]; N]) -> [(f64, [f64; N]); N] {
+    triangular(&a).unwrap_or_else(|| eigen(a))
+}
+
+/// The columns of L with the entries of D where the matrix is L D L' and positive definite; its eigenvalues need not be known then.
+fn triangular<const N: usize>(a: &[[f64; N]; N]) -> Option<[(f64, [f64; N]); N]> {
+    let mut rest = *a;
+    let mut columns = [(0.0, [0.0; N]); N];
+    for k in 0..N {
+        let pivot = rest[k][k];
+        // Written so that NaN is none, too.
+        if !(pivot > SMALL * a[k][k]) {
+            return None;
+        }
+        let column: [f64; N] = std::array::from_fn(|i| if i < k { 0.0 } else { rest[i][k] / pivot });
+        for i in k + 1..N {
+            (k + 1..N).for_each(|j| rest[i][j] -= pivot * column[i] * column[j]);
+        }
+        columns[k] = (pivot, column);
+    }
+    Some(columns)
+}
 
 /// Eigenvalues with their eigenvectors, by Jacobi's rotations.
 pub(super) fn eigen<const N: usize>(mut a: [[f64; N]; N]) -> [(f64, [f64; N]); N] {

@@ -24,6 +24,7 @@ mod onto;
 mod pair;
 mod polish;
 mod rules;
+mod slide;
 mod system;
 mod target;
 mod tempered;
@@ -83,13 +84,13 @@ pub(crate) fn curved(
     progress.begin("curving", POWERS.len() as u64 + 2)?;
     let mut elements = Elements::of(mesh);
     for power in POWERS {
-        // Quadratic triangles are quicker, and will do where less turns.
-        if order == 3 && power >= 1.0 {
-            elements = elements.raised();
-        }
         let tempered = Tempered { field: metric, power };
         settle(&mut elements, &Aim { metric: &tempered, lengths: 0.0, least: 0.0, target: None }, ROUNDS, progress)?;
         progress.advance(1)?;
+    }
+    // Quadratic triangles are quicker, and will do so far.
+    if order == 3 {
+        elements = elements.raised();
     }
     let aim = Aim { metric, lengths: LENGTHS, least: 0.0, target: None };
     settle(&mut elements, &aim, ROUNDS_OF_LENGTHS, progress)?;

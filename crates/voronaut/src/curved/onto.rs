@@ -3,6 +3,7 @@
 use super::bezier::{exponents, seen_from_above};
 use super::elements::HALVINGS;
 use super::jacobian::bound;
+use super::slide::Sliding;
 use crate::geometry::Point3;
 use crate::lists::distinct;
 use crate::mesh::{Curved, Edges, Mesh};
@@ -12,14 +13,15 @@ use crate::surface::Input;
 /// Nodes come back halfway to the straight triangle where it would fold, at most so many times, and all the way then.
 const BARRED: i32 = 5;
 
-/// The triangles of a straight mesh of an equation's surface with nodes where that is nearest to equal steps along edges, and to the middles of
-/// triangles. Nodes of an edge on the border keep the coordinates that its ends have in common. Where a triangle would fold, seen along its normal, or the
-/// surface is not found, nodes stay nearer to the straight one; returns how many do, and where the first is. The distance to the surface is of order
-/// `order + 1` in the length of edges.
+/// The triangles of a straight mesh of an equation's surface with nodes on that, near equal steps along edges and the middles of triangles, from where
+/// they slide ([`Sliding`]). Nodes of an edge on the border keep the coordinates that its ends have in common. Where a triangle would fold, seen along its
+/// normal, or the surface is not found, nodes stay nearer to the straight one; returns how many do, and where the first is. The distance to the surface is
+/// of order `order + 1` in the length of edges, and `order + 2` where it bends along them.
 pub(crate) fn onto_surface(mesh: &mut Mesh, input: &Input, order: usize) -> Option<(usize, Point3)> {
     let (straight, pins, triangles) = straight_nodes(mesh, order);
-    let landed: Vec<Option<Point3>> =
+    let mut landed: Vec<Option<Point3>> =
         (0..straight.len()).into_par_iter().map(|n| input.onto(straight[n], pins[n])).collect();
+    Sliding { mesh, input, order, triangles: &triangles, pins: &pins }.slide(&mut landed);
     let mut halved: Vec<i32> = landed.iter().map(|p| if p.is_some() { 0 } else { BARRED }).collect();
     let place = |n: usize, halved: i32| match landed[n] {
         Some(p) if halved < BARRED => straight[n].lerp(p, 0.5_f64.powi(halved)),

@@ -4,6 +4,7 @@ use super::elements::{Elements, axes};
 use super::term::{Expansion, Freedom};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::mesh::edges::NONE;
+use crate::parallel::prelude::*;
 use crate::sparse::{Cholesky, Elimination, Symmetric, nested_dissection};
 
 /// What is damped beside the matrix, as a share of its diagonal, where it has no factor: at first, and how it grows.
@@ -42,21 +43,11 @@ impl System {
         let triangles = (0..elements.triangles.len()).map(|t| elements.numbers(t).to_vec());
         let mut members: Vec<Member> =
             triangles.chain(elements.sides()).map(|numbers| Member::of(numbers, elements, &first)).collect();
-        let size = first[first.len() - 1] as usize;
-        let pairs = |member: &Member| {
-            let rows: Vec<u32> = member.freedoms.iter().map(|f| f.row).collect();
-            let all = rows.clone();
-            rows.into_iter()
-                .flat_map(move |a| all.clone().into_iter().filter_map(move |b| (b < a).then_some((a, b, 0.0))))
-        };
-        let of_triangles = &members[..elements.triangles.len()];
-        let mut entries: Vec<(u32, u32, f64)> = of_triangles.iter().flat_map(pairs).collect();
-        entries.sort_unstable_by_key(|&(a, b, _)| (a, b));
-        entries.dedup();
-        let matrix = Symmetric::from_triplets(size, &entries);
-        for member in &mut members {
-            member.find_places(&matrix);
-        }
+        // Sides are of triangles.
+        let rows = |member: &Member| member.freedoms.iter().map(|f| f.row).collect();
+        let groups: Vec<Vec<u32>> = members[..elements.triangles.len()].iter().map(rows).collect();
+        let matrix = Symmetric::of_groups(first[first.len() - 1] as usize, &groups);
+        members.par_iter_mut().for_each(|member| member.find_places(&matrix));
         let elimination = Elimination::in_order(&matrix, order(elements, &first));
         Self { members, first, matrix, elimination }
     }

@@ -17,7 +17,10 @@ impl Tempered<'_> {
         if self.power >= 1.0 || mean.is_nan() || mean <= 0.0 {
             return m;
         }
-        m.map_eigenvalues(|value| mean * (value / mean).raised_to(self.power))
+        m.map_both_eigenvalues(|[greater, _]| {
+            let ratio = (greater / mean).raised_to(self.power);
+            [mean * ratio, mean / ratio]
+        })
     }
 }
 

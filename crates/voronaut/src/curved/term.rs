@@ -2,7 +2,7 @@
 
 use super::bezier::MOST;
 use super::density::{Density, Matrix, dirichlet, inner, times};
-use super::eigen::eigen;
+use super::eigen::positive_part;
 use super::rules::{GAUSS, Rule, on_curve};
 use crate::elementary::Elementary;
 use crate::geometry::{Point, Tensor, Vector, to_frame};
@@ -115,7 +115,7 @@ pub(super) fn triangle(rule: &Rule, points: &[Point], freedoms: &[Freedom], metr
         for (entry, slope) in found.slope.iter_mut().zip(form(&model.slope)) {
             *entry += place.weight * slope;
         }
-        for (curvature, direction) in eigen(model.curvature).iter().filter(|(curvature, _)| *curvature > 0.0) {
+        for (curvature, direction) in positive_part(model.curvature).iter().filter(|(curvature, _)| *curvature > 0.0) {
             found.add_square(&form(direction)[..freedoms.len()], place.weight * curvature);
         }
     }

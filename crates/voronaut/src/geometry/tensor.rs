@@ -157,8 +157,14 @@ impl Tensor {
     /// The symmetric tensor with the same axes and each eigenvalue mapped by `f`.
     #[must_use]
     pub(crate) fn map_eigenvalues(self, f: impl Fn(f64) -> f64) -> Tensor {
+        self.map_both_eigenvalues(|both| both.map(f))
+    }
+
+    /// The symmetric tensor with the same axes and both eigenvalues, the greater one first, mapped by `f`.
+    #[must_use]
+    pub(crate) fn map_both_eigenvalues(self, f: impl FnOnce([f64; 2]) -> [f64; 2]) -> Tensor {
         let spectrum = self.spectrum();
-        spectrum.with(self.eigenvalues(spectrum.mean, spectrum.radius).map(f))
+        spectrum.with(f(self.eigenvalues(spectrum.mean, spectrum.radius)))
     }
 
     /// Matrix logarithm of a positive definite tensor.

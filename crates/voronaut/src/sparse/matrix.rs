@@ -1,6 +1,7 @@
 //! Symmetric matrices, by compressed rows.
 
-use crate::lists::Rows;
+use crate::lists::{Rows, distinct};
+use crate::parallel::prelude::*;
 use std::ops::Range;
 
 /// A symmetric matrix of which only some entries are kept, by compressed rows: both halves, columns rising, and the whole
@@ -37,6 +38,27 @@ impl Symmetric {
             matrix.starts.push(matrix.columns.len());
         }
         matrix
+    }
+
+    /// The matrix of `size` rows, all zeros, with an entry for any two rows of a group, and the whole diagonal.
+    ///
+    /// # Panics
+    /// Of a row beyond the last one.
+    pub(crate) fn of_groups(size: usize, groups: &[Vec<u32>]) -> Self {
+        let members = (0..).zip(groups).flat_map(|(g, rows)| rows.iter().map(move |&row| (row, g)));
+        let groups_of = Rows::<u32>::new(size, members);
+        let of_row = |i: usize| {
+            let others = groups_of.row(i).iter().flat_map(|&g| groups[g as usize].iter().copied());
+            distinct(others.chain(std::iter::once(i as u32)))
+        };
+        let rows: Vec<Vec<u32>> = (0..size).into_par_iter().map(of_row).collect();
+        let mut starts = vec![0];
+        starts.extend(rows.iter().scan(0, |end, row| {
+            *end += row.len();
+            Some(*end)
+        }));
+        let columns = rows.concat();
+        Self { starts, values: vec![0.0; columns.len()], columns }
     }
 
     /// The matrix with something added to its diagonal.
