@@ -310,6 +310,20 @@ def curved():
 
 
 @table()
+def curved_surfaces():
+    rows = [["", "order", "vertices", "seconds", "distance, root mean square", "greatest"]]
+    for domain in ("sphere:1", "torus:1,0.4"):
+        for order in (1, 2, 3):
+            for count in (250, 1000, 4000):
+                words = f"mesh {domain} --metric uniform -n {count} --order {order}"
+                found, (mesh, _) = report(words), kept(words)
+                away = report(f"check {mesh} --domain {domain}")["fidelity"]
+                away = away.get("curved", away["mesh_to_surface"])
+                rows.append([domain, str(order), *meshed(found)[:2], f"{away['rms']:.1e}", f"{away['hausdorff']:.1e}"])
+    return rows
+
+
+@table()
 def centroids():
     steps = [0, 1, 5, 20, 100]
     rows = [["energy of 320 seeds after so many steps", *map(str, steps)]]

@@ -41,6 +41,8 @@ pub(crate) fn report(report: &mut Report, mesh: &Mesh) {
     let counts = mesh.curved.as_ref().map(|curved| [("order", curved.order), ("nodes", curved.nodes.len())]);
     report.curved = counts.map(|counts| counts.into_iter().collect());
     if counts.is_some() && !mesh.is_planar() {
-        report.notes.push("lengths, shapes and distances are of straight triangles between the vertices".into());
+        let note =
+            "lengths and shapes are of straight triangles between the vertices, and so are distances but `curved` ones";
+        report.notes.push(note.into());
     }
 }

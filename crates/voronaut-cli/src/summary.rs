@@ -198,6 +198,9 @@ fn surface_lines(found: &SurfaceFidelity, mut line: impl FnMut(&str, String)) {
     };
     line("to surface", side(found.mesh_to_surface));
     line("from surface", side(found.surface_to_mesh));
+    if let Some(curved) = found.curved {
+        line("with curves", side(curved));
+    }
     let (vertices, normals) = (found.vertex_to_surface, found.normal_deviation);
     line("vertices", format!("off by {:.3e} at most, at {}", vertices.value, position(vertices.at)));
     let (mean, most, at) = (normals.mean, normals.max.value, position(normals.max.at));

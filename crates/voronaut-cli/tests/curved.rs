@@ -142,6 +142,9 @@ fn surfaces_of_equations_have_curved_triangles() {
     done(&place, "check a.vtu --domain torus:1,0.4 --report b.json");
     let checked: serde_json::Value = serde_json::from_slice(&place.read("b.json")).unwrap();
     assert_eq!(checked["least_jacobian"], report["least_jacobian"]);
+    let [straight, curved] =
+        ["mesh_to_surface", "curved"].map(|side| checked["fidelity"][side]["hausdorff"].as_f64().unwrap());
+    assert!(0.0 < curved && curved < 0.1 * straight, "{straight} {curved}");
 }
 
 #[test]

@@ -120,6 +120,12 @@ pub(crate) fn seen_from_above(mesh: &Mesh, triangle: usize) -> ([Point; MOST], u
     })
 }
 
+/// The Bezier points of a triangle in space: their x and y, and their z in place of x.
+pub(crate) fn points_in_space(mesh: &Mesh, triangle: usize) -> [[Point; MOST]; 2] {
+    let of_z = seen(mesh, triangle, |p| Point::new(p.z, 0.0));
+    [bezier_points(mesh, triangle).0, of_z.0]
+}
+
 /// The Bezier points of what is seen of a triangle.
 fn seen(mesh: &Mesh, triangle: usize, of: impl Fn(Point3) -> Point) -> ([Point; MOST], usize) {
     let mut points = [Point::default(); MOST];

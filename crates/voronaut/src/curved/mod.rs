@@ -30,7 +30,9 @@ mod target;
 mod tempered;
 mod term;
 
-pub(crate) use bezier::{MOST, bernstein, bezier_points, blend, exponents, points_of_nodes, seen_from_above, side};
+pub(crate) use bezier::{
+    MOST, bernstein, bezier_points, blend, exponents, points_in_space, points_of_nodes, seen_from_above, side,
+};
 pub(crate) use elements::HALVINGS;
 pub(crate) use jacobian::bound;
 pub(crate) use onto::onto_surface;

@@ -2,7 +2,7 @@
 
 use super::bezier::{MOST, bernstein, blend, slopes};
 use super::density::Matrix;
-use crate::geometry::{Point, Vector, radon};
+use crate::geometry::{Point, Point3, Vector, radon};
 use crate::mesh::Mesh;
 
 /// The area of the equilateral triangle with unit sides.
@@ -36,6 +36,12 @@ impl Place {
     /// The image of the place.
     pub(crate) fn image(&self, points: &[Point]) -> Point {
         blend(points, &self.values)
+    }
+
+    /// The image in space, by [`points_in_space`](super::points_in_space).
+    pub(crate) fn image_in_space(&self, points: &[[Point; MOST]; 2]) -> Point3 {
+        let [p, z] = points.each_ref().map(|points| self.image(points));
+        Point3::new(p.x, p.y, z.x)
     }
 
     /// The derivative of the map there, from the equilateral triangle.

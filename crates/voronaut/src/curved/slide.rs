@@ -11,11 +11,12 @@ use crate::parallel::prelude::*;
 use crate::sparse::conjugate_gradients;
 use crate::surface::Input;
 
-/// Gauss and Newton's steps, and steps of conjugate gradients for each. On tori of 250 to 16,000 vertices three and 100 gave the same to two digits.
-const STEPS: usize = 2;
-const CONJUGATE_STEPS: usize = 20;
-/// To go along the surface by this share of the length of edges costs as much as all that is around a node. On the same tori a tenth and a thirtieth
-/// left up to 2 and 3 times the distance on the coarsest ones, a fifth the same, and nodes that went by 0.06.
+/// Gauss and Newton's steps, and steps of conjugate gradients for each. On tori of 250 to 16,000 vertices two and 20 leave triangles of order 2 as near,
+/// those of order 3 up to twice as far away.
+const STEPS: usize = 3;
+const CONJUGATE_STEPS: usize = 60;
+/// A node goes by this share of the longest edge around at most in a step, and to go so far costs as much as all that is seen around a node. On the coarsest of these tori a
+/// thirtieth leaves twice the distance, a sixtieth three times; with a tenth no node went farther than a thirtieth.
 const SHARE: f64 = 0.1;
 
 /// The triangles whose nodes slide.
@@ -37,6 +38,14 @@ struct Seen {
     curvature: Vec<f64>,
 }
 
+/// What holds a node.
+struct Spring {
+    /// What it costs to go along the surface, by the square of the length.
+    stiffness: f64,
+    /// How far it goes in a step at most.
+    reach: f64,
+}
+
 impl Sliding<'_> {
     /// Moves nodes that are on the surface to where the squares of the triangles' distances from it are least, beside what it costs to go there.
     pub(super) fn slide(&self, nodes: &mut Vec<Option<Point3>>) {
@@ -48,22 +57,27 @@ impl Sliding<'_> {
         };
         let mut tangents = self.tangents(nodes);
         let mut seen = see(nodes, &tangents);
-        let stiffness = self.stiffness(&seen);
+        let springs = self.springs(&seen);
         let cost = |seen: &[Seen], nodes: &[Option<Point3>]| -> f64 {
-            let of_node = |(n, stiffness): (usize, &f64)| stiffness * gone(start[n], nodes[n]).norm().powi(2);
-            seen.iter().map(|it| it.square).sum::<f64>() + stiffness.iter().enumerate().map(of_node).sum::<f64>()
+            let of_node = |(n, spring): (usize, &Spring)| spring.stiffness * gone(start[n], nodes[n]).norm().powi(2);
+            seen.iter().map(|it| it.square).sum::<f64>() + springs.iter().enumerate().map(of_node).sum::<f64>()
         };
         for _ in 0..STEPS {
             let back: Vec<f64> = (0..nodes.len())
-                .flat_map(|n| tangents[n].map(|way| stiffness[n] * gone(start[n], nodes[n]).dot(way)))
+                .flat_map(|n| tangents[n].map(|way| springs[n].stiffness * gone(start[n], nodes[n]).dot(way)))
                 .collect();
-            let step = self.step(&seen, &stiffness, &back);
-            let moved: Vec<Option<Point3>> =
-                (0..nodes.len()).into_par_iter().map(|n| self.moved(n, nodes[n]?, tangents[n], &step)).collect();
+            let step = self.step(&seen, &springs, &back);
+            let moved = |n: usize| -> Option<Point3> {
+                let (from, [u, v]) = (nodes[n]?, tangents[n]);
+                let way = u * step[2 * n] + v * step[2 * n + 1];
+                let share = (springs[n].reach / way.norm()).min(1.0);
+                self.input.onto(from + way * share, self.pins[n]).or(Some(from))
+            };
+            let moved: Vec<Option<Point3>> = (0..nodes.len()).into_par_iter().map(moved).collect();
             let tangents_there = self.tangents(&moved);
             let next = see(&moved, &tangents_there);
-            // Written so that NaN does not count as less.
-            if !(cost(&next, &moved) < cost(&seen, nodes)) {
+            let gains = cost(&next, &moved) < cost(&seen, nodes);
+            if !gains {
                 break;
             }
             (*nodes, tangents, seen) = (moved, tangents_there, next);
@@ -83,7 +97,8 @@ impl Sliding<'_> {
         let of_node = |n: usize| {
             let normal = self.normal(nodes[n]?)?.1;
             let axes = [Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 1.0, 0.0), Vector3::new(0.0, 0.0, 1.0)];
-            let mut pinned = axes.into_iter().zip(self.pins[n]).filter_map(|(axis, is_pinned)| is_pinned.then_some(axis));
+            let mut pinned =
+                axes.into_iter().zip(self.pins[n]).filter_map(|(axis, is_pinned)| is_pinned.then_some(axis));
             match (pinned.next(), pinned.next()) {
                 (None, _) => Some(TangentPlane::new(normal)).map(|plane| [plane.u, plane.v]),
                 (Some(axis), None) => Some([normal.cross(axis).unit()?, Vector3::default()]),
@@ -105,13 +120,16 @@ impl Sliding<'_> {
         let unknowns = 2 * numbers.len();
         let mut seen = Seen { square: 0.0, slope: vec![0.0; unknowns], curvature: vec![0.0; unknowns * unknowns] };
         let corners = self.mesh.positions_of(self.mesh.triangles[triangle]);
-        let Some(inner) = numbers.iter().map(|&n| nodes[n as usize]).collect::<Option<Vec<Point3>>>() else { return seen };
+        let Some(inner) = numbers.iter().map(|&n| nodes[n as usize]).collect::<Option<Vec<Point3>>>() else {
+            return seen;
+        };
         for weights in weights {
             let sum = corners.iter().chain(&inner).zip(weights);
             let place = sum.fold(Vector3::default(), |sum, (&p, &w)| sum + (p - Point3::default()) * w);
             let Some((distance, normal)) = self.normal(Point3::default() + place) else { continue };
             let ways = numbers.iter().zip(&weights[3..]);
-            let form: Vec<f64> = ways.flat_map(|(&n, &w)| tangents[n as usize].map(|way| w * normal.dot(way))).collect();
+            let form: Vec<f64> =
+                ways.flat_map(|(&n, &w)| tangents[n as usize].map(|way| w * normal.dot(way))).collect();
             seen.square += distance * distance;
             for (i, one) in form.iter().enumerate() {
                 seen.slope[i] += distance * one;
@@ -122,8 +140,8 @@ impl Sliding<'_> {
         seen
     }
 
-    /// What it costs of each node to go along the surface, by the square of the length.
-    fn stiffness(&self, seen: &[Seen]) -> Vec<f64> {
+    /// What holds each node.
+    fn springs(&self, seen: &[Seen]) -> Vec<Spring> {
         let (mut squares, mut reach) = (vec![0.0; self.pins.len()], vec![0.0_f64; self.pins.len()]);
         for (t, seen) in seen.iter().enumerate() {
             let [a, b, c] = self.mesh.positions_of(self.mesh.triangles[t]);
@@ -133,14 +151,16 @@ impl Sliding<'_> {
                 reach[n as usize] = reach[n as usize].max(SHARE * longest);
             }
         }
-        squares.iter().zip(&reach).map(|(square, reach)| square / (reach * reach)).collect()
+        let of_node = |(&square, &reach): (&f64, &f64)| Spring { stiffness: square / (reach * reach), reach };
+        squares.iter().zip(&reach).map(of_node).collect()
     }
 
     /// How far nodes are to go along their tangents.
-    fn step(&self, seen: &[Seen], stiffness: &[f64], back: &[f64]) -> Vec<f64> {
+    fn step(&self, seen: &[Seen], springs: &[Spring], back: &[f64]) -> Vec<f64> {
         let rows = |t: usize| self.of_triangle(t).iter().flat_map(|&n| [2 * n as usize, 2 * n as usize + 1]);
         let mut right: Vec<f64> = back.iter().map(|x| -x).collect();
-        let mut diagonal: Vec<f64> = stiffness.iter().flat_map(|&s| [s, s]).collect();
+        let stiffness: Vec<f64> = springs.iter().flat_map(|spring| [spring.stiffness; 2]).collect();
+        let mut diagonal = stiffness.clone();
         for (t, seen) in seen.iter().enumerate() {
             for (i, row) in rows(t).enumerate() {
                 right[row] -= seen.slope[i];
@@ -153,18 +173,13 @@ impl Sliding<'_> {
                 seen.curvature.chunks(x.len()).map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect()
             };
             let images: Vec<Vec<f64>> = seen.par_iter().enumerate().map(of_triangle).collect();
-            let mut sum: Vec<f64> = x.iter().zip(stiffness.iter().flat_map(|s| [s, s])).map(|(x, s)| x * s).collect();
+            let mut sum: Vec<f64> = x.iter().zip(&stiffness).map(|(x, s)| x * s).collect();
             for (t, image) in images.iter().enumerate() {
                 rows(t).zip(image).for_each(|(row, value)| sum[row] += value);
             }
             sum
         };
         conjugate_gradients(times, &diagonal, &right, vec![0.0; right.len()], CONJUGATE_STEPS)
-    }
-
-    /// Where a node comes to be; where it was if the surface is not found there.
-    fn moved(&self, n: usize, from: Point3, [u, v]: [Vector3; 2], step: &[f64]) -> Option<Point3> {
-        self.input.onto(from + u * step[2 * n] + v * step[2 * n + 1], self.pins[n]).or(Some(from))
     }
 }
 

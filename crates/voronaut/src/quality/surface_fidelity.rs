@@ -3,6 +3,7 @@
 use super::faults::Position;
 use super::metric_quality::{Spot, demand_vertices, fault, spot};
 use super::sampled_distance::{Sample, Sampled, sample};
+use crate::curved::{Place, Rule, points_in_space};
 use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{Point3, Vector3};
@@ -23,6 +24,9 @@ pub struct SurfaceFidelity {
     pub mesh_to_surface: Deviation,
     /// From points of the surface to the mesh.
     pub surface_to_mesh: Deviation,
+    /// Of triangles of order 2 and 3: from points of these to the surface, at 28 places of each. All else is of straight ones between their corners.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curved: Option<Deviation>,
     /// The greatest distance of a vertex in use to the surface; with an equation, |f| / |grad f|.
     pub vertex_to_surface: Spot,
     /// Angles between the normals of triangles and of the surface.
@@ -90,6 +94,7 @@ pub fn surface_fidelity(mesh: &Mesh, surface: &Surface, implicit: Option<&dyn Im
         both: Deviation::of(&together(there, back), target.diagonal),
         mesh_to_surface: Deviation::of(&there, target.diagonal),
         surface_to_mesh: Deviation::of(&back, target.diagonal),
+        curved: of_curved(mesh, &target).map(|found| Deviation::of(&found, target.diagonal)),
         vertex_to_surface: farthest_vertex(mesh, &target),
         normal_deviation: normals.deviation,
         folded: normals.folded,
@@ -162,6 +167,26 @@ impl Deviation {
         let at = sampled.farthest.at.into();
         Self { hausdorff, hausdorff_share: hausdorff / diagonal, rms, rms_share: rms / diagonal, at }
     }
+}
+
+/// Distances of curved triangles; parts of the straight ones' areas are their weights.
+fn of_curved(mesh: &Mesh, target: &Target) -> Option<Sampled> {
+    mesh.curved.as_ref()?;
+    let rule = Rule::fine(mesh);
+    let of_triangle = |t: usize| -> Vec<(Sample, f64)> {
+        let [a, b, c] = mesh.positions_of(mesh.triangles[t]);
+        let area = 0.5 * (b - a).cross(c - a).norm();
+        let points = points_in_space(mesh, t);
+        let of_place = |place: &Place| {
+            let at = place.image_in_space(&points);
+            (Sample { at, distance: target.closest(at).position.distance(at) }, place.weight * area)
+        };
+        rule.places.iter().map(of_place).collect()
+    };
+    let all: Vec<Vec<(Sample, f64)>> = (0..mesh.triangles.len()).into_par_iter().map(of_triangle).collect();
+    let single =
+        |&(sample, area): &(Sample, f64)| Sampled { farthest: sample, squares: sample.distance.powi(2) * area, area };
+    all.iter().flatten().map(single).reduce(together)
 }
 
 fn farthest_vertex(mesh: &Mesh, target: &Target) -> Spot {

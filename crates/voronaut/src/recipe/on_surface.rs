@@ -89,6 +89,7 @@ pub fn mesh_surface(
         }
         if ratio <= 1.0 || is_last {
             setting.watch.time("curve", || curve_onto(&mut meshed, input, &setting.meetings, options.order))?;
+            let fidelity = if options.order > 1 { setting.fidelity(&meshed.mesh)? } else { fidelity };
             return Ok(Meshed { fidelity, closed_form_scale, seconds: setting.watch.seconds(), ..meshed });
         }
         least = least.min(ratio);
