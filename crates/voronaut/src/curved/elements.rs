@@ -49,12 +49,24 @@ pub(super) struct Vertex {
     pub(super) source: u32,
 }
 
+/// What a side of a triangle is of: a labelled edge of the straight mesh, `NONE` inside, and whether it is bent onto a curve, where it stays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Side {
+    pub(super) held: u32,
+    pub(super) is_bent: bool,
+}
+
+impl Side {
+    /// A side inside.
+    pub(super) const FREE: Self = Self { held: NONE, is_bent: false };
+}
+
 /// A triangle by itself: its vertices, its Bezier points, what its sides are of, and its label.
 #[derive(Clone, Copy)]
 pub(super) struct Loose {
     pub(super) corners: [u32; 3],
     pub(super) points: [Point; MOST],
-    pub(super) held: [u32; 3],
+    pub(super) sides: [Side; 3],
     pub(super) label: i32,
 }
 
@@ -78,7 +90,8 @@ impl Elements {
             let [a, b, c] = mesh.corners_of(corners);
             let mut points = [Point::default(); MOST];
             points[..6].copy_from_slice(&[a, b, c, a.midpoint(b), b.midpoint(c), c.midpoint(a)]);
-            Loose { corners, points, held: edges_of(corners).map(label_of), label }
+            let sides = edges_of(corners).map(|ends| Side { held: label_of(ends), is_bent: false });
+            Loose { corners, points, sides, label }
         };
         let triangles: Vec<Loose> = mesh.triangles.iter().zip(&mesh.triangle_labels).map(loose).collect();
         Self::assembled(2, &vertices, &triangles)
@@ -96,17 +109,17 @@ impl Elements {
             triangles: vec![[NONE; MOST]; loose.len()],
             labels: loose.iter().map(|t| t.label).collect(),
             twins: edges.twins(),
-            held: loose.iter().flat_map(|t| t.held).collect(),
+            held: loose.iter().flat_map(|t| t.sides.map(|side| side.held)).collect(),
         };
         for sides in edges.iter() {
             let first = found.points.len() as u32;
             let half_edge = sides[0].half_edge as usize;
             let triangle = &loose[half_edge / 3];
-            let line = found.line(triangle, half_edge);
+            let hold = found.hold(triangle, half_edge);
             let numbers: Vec<u32> = (first..).take(order - 1).collect();
             for i in side(order, half_edge % 3).skip(1).take(order - 1) {
                 found.points.push(triangle.points[i]);
-                found.holds.push(line.map_or(Hold::Free, Hold::Along));
+                found.holds.push(hold);
             }
             found.number_side(half_edge, &numbers);
         }
@@ -121,22 +134,25 @@ impl Elements {
         found
     }
 
-    /// The straight part that a side is of, if it is labelled: that of an end that slides, or else both ends.
-    fn line(&self, triangle: &Loose, half_edge: usize) -> Option<[Point; 2]> {
-        (triangle.held[half_edge % 3] != NONE).then(|| {
-            let ends = edges_of(triangle.corners)[half_edge % 3].map(|v| v as usize);
-            let slides =
-                ends.into_iter().find_map(|v| if let Hold::Along(line) = self.holds[v] { Some(line) } else { None });
-            slides.unwrap_or(ends.map(|v| self.points[v]))
-        })
+    /// What holds the inner points of a side: of a labelled one the straight part that an end slides on, or else that between both ends.
+    fn hold(&self, triangle: &Loose, half_edge: usize) -> Hold {
+        let side = triangle.sides[half_edge % 3];
+        if side.is_bent || side.held == NONE {
+            return if side.is_bent { Hold::Fixed } else { Hold::Free };
+        }
+        let ends = edges_of(triangle.corners)[half_edge % 3].map(|v| v as usize);
+        let slides =
+            ends.into_iter().find_map(|v| if let Hold::Along(line) = self.holds[v] { Some(line) } else { None });
+        Hold::Along(slides.unwrap_or(ends.map(|v| self.points[v])))
     }
 
     /// The triangles by themselves.
     pub(super) fn loose(&self) -> Vec<Loose> {
+        let is_bent = |h: usize| self.holds[self.side(h)[1] as usize] == Hold::Fixed;
         let one = |t: usize| Loose {
             corners: self.corners(t),
             points: self.of_triangle(&self.points, t),
-            held: [0, 1, 2].map(|s| self.held[3 * t + s]),
+            sides: [3 * t, 3 * t + 1, 3 * t + 2].map(|h| Side { held: self.held[h], is_bent: is_bent(h) }),
             label: self.labels[t],
         };
         (0..self.triangles.len()).map(one).collect()

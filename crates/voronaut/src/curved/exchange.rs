@@ -1,7 +1,7 @@
 //! Exchange of vertices: as many go where sides are short as come where sides are long.
 
 use super::bezier::{MOST, exponents, side};
-use super::elements::{Elements, HALVINGS, Hold, Loose, Vertex};
+use super::elements::{Elements, HALVINGS, Hold, Loose, Side, Vertex};
 use super::jacobian::bound;
 use super::newton::Aim;
 use super::rules::Rule;
@@ -128,7 +128,7 @@ impl Work<'_> {
             let (old, order) = (self.loose[half_edge / 3], self.elements.order);
             let mut new = old;
             for i in 0..3 {
-                (new.corners[i], new.held[i]) = (old.corners[(i + by) % 3], old.held[(i + by) % 3]);
+                (new.corners[i], new.sides[i]) = (old.corners[(i + by) % 3], old.sides[(i + by) % 3]);
                 for (to, from) in side(order, i).zip(side(order, (i + by) % 3)) {
                     new.points[to] = old.points[from];
                 }
@@ -146,7 +146,7 @@ impl Work<'_> {
             change.old.push(h / 3);
             change.new.extend(halves(&triangle, self.elements.order));
         }
-        let held = change.new[0].held[0];
+        let held = change.new[0].sides[0].held;
         let [a, b] = [half_edge, Elements::next(half_edge)].map(|h| self.elements.origin(h) as usize);
         let line = |v: usize| if let Hold::Along(line) = self.elements.holds[v] { Some(line) } else { None };
         let ends = || [a, b].map(|v| self.elements.points[v]);
@@ -218,7 +218,7 @@ impl Work<'_> {
                     } else {
                         continue;
                     }
-                    triangle.held[i] = self.loose[t].held[s];
+                    triangle.sides[i] = self.loose[t].sides[s];
                 }
             }
         }
@@ -253,10 +253,10 @@ impl Work<'_> {
 pub(super) fn halves(triangle: &Loose, order: usize) -> [Loose; 2] {
     let at = |e: [u8; 3]| exponents(order).iter().position(|f| *f == e).expect("exponents of this order");
     let [a, b, c] = triangle.corners;
-    let [ab, bc, ca] = triangle.held;
+    let [ab, bc, ca] = triangle.sides;
     let mut first =
-        Loose { corners: [a, NONE, c], held: [ab, NONE, ca], points: [Point::default(); MOST], ..*triangle };
-    let mut second = Loose { corners: [NONE, b, c], held: [ab, bc, NONE], ..first };
+        Loose { corners: [a, NONE, c], sides: [ab, Side::FREE, ca], points: [Point::default(); MOST], ..*triangle };
+    let mut second = Loose { corners: [NONE, b, c], sides: [ab, bc, Side::FREE], ..first };
     for k in 0..=order as u8 {
         let length = order as u8 - k;
         let mut row: Vec<Point> = (0..=length).map(|j| triangle.points[at([length - j, j, k])]).collect();

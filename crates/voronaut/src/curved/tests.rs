@@ -274,7 +274,7 @@ fn a_new_side_that_would_fold_is_untangled() {
         let mut points = [Point::default(); bezier::MOST];
         points[..3].copy_from_slice(&corners.map(|v| vertices[v as usize].place));
         points[3..6].copy_from_slice(&inner);
-        elements::Loose { corners, points, held: [u32::MAX; 3], label: 0 }
+        elements::Loose { corners, points, sides: [elements::Side::FREE; 3], label: 0 }
     };
     let pair = [
         triangle([0, 1, 2], [p(0.5, 0.0), p(1.2, 0.7), p(0.75, 0.55)]),

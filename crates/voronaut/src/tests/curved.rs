@@ -4,10 +4,10 @@ use crate::curved::{Rule, bezier_points, curve_at, points_in_space, side};
 use crate::domain::{Domain, Polygon, Polygons, Ring, from_polygons, shape};
 use crate::geometry::{Point, Point3, Tensor, Tensor3, Vector};
 use crate::mesh::{Edges, Mesh};
-use crate::metric::MetricField;
+use crate::metric::{Expression, MetricField, Norm, Snapshot, Variables};
 use crate::progress::Silent;
 use crate::quality::{surface_fidelity, validity};
-use crate::recipe::{Boundary, MeshOptions, Meshed, mesh, mesh_surface};
+use crate::recipe::{Aim, Boundary, MeshOptions, Meshed, mesh, mesh_for, mesh_surface};
 use crate::surface::{Implicit, Input};
 use std::f64::consts::PI;
 
@@ -55,6 +55,21 @@ fn disks_are_round_to_the_order_of_their_triangles_and_one_more() {
     }
     let straight = options(160, 2, Boundary::Polyline);
     assert!(away_from_circle(&made(&domain, &|_: Point| Tensor::IDENTITY, &straight).mesh) > 1e-3);
+}
+
+#[test]
+fn polishing_leaves_boundaries_on_their_curves() {
+    let domain = Domain::new(&shape("disk:0,0,1").unwrap().unwrap()).unwrap();
+    let front = Snapshot::from(Expression::parse("tanh(20*(x + y^2))", Variables::Plane).unwrap());
+    let aim = Aim { function: &front, norm: Norm::default(), known_to: 0.0 };
+    for order in [2, 3] {
+        let options = options(60, order, Boundary::Auto);
+        let meshed = mesh_for(&domain, &|_: Point| Tensor::IDENTITY, Some(aim), &options, &Silent).unwrap();
+        assert!(validity(&meshed.mesh).valid && meshed.polished.unwrap().error.len() > 2);
+        let away = away_from_circle(&meshed.mesh);
+        // Chords are five thousandths away.
+        assert!(away < 1e-4, "{order}: {away}");
+    }
 }
 
 /// The half of a disk above the x axis, as a polygon of so many sides on its arc.
