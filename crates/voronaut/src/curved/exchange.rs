@@ -177,7 +177,8 @@ impl Work<'_> {
         let gone: Vec<usize> = beside.iter().map(|h| h / 3).collect();
         let stay = around.iter().filter(|&&h| !gone.contains(&(h / 3)));
         let new: Vec<Loose> = stay.map(|&h| self.moved(self.from(h), w, away, &gone)).collect();
-        let is_valid = |t: &Loose| bound(&t.points[..elements.count()], elements.order, HALVINGS).is_valid();
+        let is_valid =
+            |t: &Loose| bound(&t.points[..elements.count()], elements.order, HALVINGS).least > self.aim.least;
         if !new.iter().all(is_valid) {
             return None;
         }

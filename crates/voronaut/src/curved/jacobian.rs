@@ -8,7 +8,8 @@ use crate::geometry::{Point, Vector};
 
 /// Coefficients of the Jacobian of a cubic triangle, a polynomial of degree 4.
 const MOST: usize = 15;
-/// Relative rounding of a coefficient, in units of the greatest derivatives: a sum of up to 36 products, each of differences.
+/// Relative rounding of a coefficient, a sum of up to 36 products of differences, and of these themselves in units of positions: nodes are rounded, and so is
+/// what readers make of them.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// What is known of the least Jacobian of a triangle, in units of its mean: 1 everywhere for a straight triangle.
@@ -71,7 +72,7 @@ pub(super) fn coefficients(points: &[Point], order: usize) -> ([f64; MOST], f64)
     let greatest = |i: usize| slopes[..count].iter().map(|s| s[i].norm()).fold(0.0, f64::max);
     let position = points.iter().map(|p| p.x.abs().max(p.y.abs())).fold(0.0, f64::max);
     let (u, v) = (greatest(0), greatest(1));
-    (found, ROUNDING * (u * v + f64::EPSILON * position * (u + v)))
+    (found, ROUNDING * (u * v + position * (u + v)))
 }
 
 /// The number of the Bezier point whose exponents are these with one more at a corner.
@@ -123,8 +124,9 @@ fn halves(coefficients: &[f64; MOST], degree: usize) -> [[f64; MOST]; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bezier::{MOST as POINTS, slopes};
+    use super::super::bezier::{MOST as POINTS, bezier_points, slopes};
     use super::*;
+    use crate::mesh::{Curved, Mesh};
     use proptest::prelude::*;
 
     /// The Jacobian at many places, by itself.
@@ -170,6 +172,29 @@ mod tests {
         points[3] = Point::new(1.0, 5.0);
         let found = bound(&points, 2, 9);
         assert!(found.is_decided && !found.is_valid());
+    }
+
+    /// Both sides at its second corner are on a spline. Lagrange's polynomials through these nodes have a negative Jacobian there, of -3e-12 of its mean.
+    #[test]
+    fn a_corner_that_opens_to_a_half_turn_but_for_rounding_is_not_valid() {
+        let nodes = [
+            [946129.4229037004, 835011.5989261345],
+            [929324.6277000898, 859397.2948418059],
+            [928349.7857858962, 860756.3227919906],
+            [940625.9280314636, 843205.2146823196],
+            [935023.9705062297, 851334.1516962064],
+            [928999.9870902443, 859850.5176789665],
+            [928675.0397208943, 860303.527062578],
+            [933154.0960804397, 851249.752929439],
+            [939305.0888686527, 842853.1773556068],
+            [933836.45763354, 851055.1333800252],
+        ];
+        let nodes = nodes.map(|[x, y]| [x, y, 0.0]);
+        let curved = Curved { order: 3, nodes: nodes[3..].to_vec(), triangles: (0..7).collect() };
+        let mesh =
+            Mesh { points: nodes[..3].to_vec(), triangles: vec![[0, 1, 2]], curved: Some(curved), ..Mesh::default() };
+        let found = bound(&bezier_points(&mesh, 0).0, 3, 9);
+        assert!(found.is_decided && !found.is_valid(), "{found:?}");
     }
 
     proptest! {

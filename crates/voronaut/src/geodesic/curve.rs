@@ -3,7 +3,7 @@
 use super::jet::Frame;
 use super::length::reached;
 use super::rule::modes_at;
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 
 /// Segments of a drawn curve at least, and how often each is halved at most.
@@ -84,8 +84,8 @@ fn across(p: Point, m: Point, q: Point) -> Vector {
 
 /// The best approximation (in the energy of a frame) by so many modes of a polyline from the frame's (0, 0) to (1, 0), taken at
 /// shares of its metric length; the chord where that is none.
-pub(super) fn modes_near(field: &dyn MetricField, frame: &Frame, path: &[Point], count: usize) -> Vec<Vector> {
-    let reached = reached(field, path);
+pub(super) fn modes_near(at: &dyn Fn(Point) -> Tensor, frame: &Frame, path: &[Point], count: usize) -> Vec<Vector> {
+    let reached = reached(at, path);
     let total = reached[reached.len() - 1];
     let shares: Vec<f64> = reached.iter().map(|r| r / total).collect();
     let places: Vec<Vector> = path.iter().map(|&p| frame.vector(p - path[0])).collect();

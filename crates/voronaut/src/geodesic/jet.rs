@@ -1,5 +1,6 @@
 //! A metric field in affine coordinates, with its first two derivatives, and the Gauss curvature from them.
 
+use super::length::nearby;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 
@@ -17,9 +18,9 @@ pub(super) struct Frame {
 impl Frame {
     /// The frame with p at (0, 0) and q at (1, 0), its axes orthogonal and of equal length in the tensor halfway;
     /// `None` where there is no such frame.
-    pub(super) fn along(field: &dyn MetricField, p: Point, q: Point) -> Option<Self> {
+    pub(super) fn along(at: &dyn Fn(Point) -> Tensor, p: Point, q: Point) -> Option<Self> {
         let u = q - p;
-        let tensor = field.at(p.midpoint(q));
+        let tensor = at(p.midpoint(q));
         if !tensor.is_positive_definite() {
             return None;
         }
@@ -47,8 +48,8 @@ impl Frame {
     }
 
     /// The field at (u, v), in the frame's coordinates.
-    pub(super) fn tensor(&self, field: &dyn MetricField, x: Vector) -> Tensor {
-        field.at(self.place(x)).along([self.u, self.v])
+    pub(super) fn tensor(&self, at: &dyn Fn(Point) -> Tensor, x: Vector) -> Tensor {
+        at(self.place(x)).along([self.u, self.v])
     }
 
     /// A covector of the frame as one of the plane: the inverse transpose of the axes.
@@ -71,9 +72,9 @@ pub(super) struct Jet {
 impl Jet {
     /// The jet of a field whose value at `x` is known, by central differences: six evaluations. Derivatives count as
     /// zero where the field is no metric in one of the places around (it may end with the domain).
-    pub(super) fn at(field: &dyn MetricField, frame: &Frame, x: Vector, tensor: Tensor) -> Self {
+    pub(super) fn of(at: &dyn Fn(Point) -> Tensor, frame: &Frame, x: Vector, tensor: Tensor) -> Self {
         let [u, v] = [Vector::new(STEP, 0.0), Vector::new(0.0, STEP)];
-        let around = [x + u, x - u, x + v, x - v, x + u + v, x - u - v].map(|x| frame.tensor(field, x));
+        let around = [x + u, x - u, x + v, x - v, x + u + v, x - u - v].map(|x| frame.tensor(at, x));
         if !around.iter().all(|t| t.is_positive_definite()) {
             return Self { tensor, ..Self::default() };
         }
@@ -113,9 +114,10 @@ fn determinant([a, b, c]: [[f64; 3]; 3]) -> f64 {
 /// Ten places around must be in the field's range; where it is no metric the result may be NaN.
 pub(crate) fn gauss_curvature(field: &dyn MetricField, p: Point) -> f64 {
     // Steps of a sixteenth of a unit.
-    let frame = Frame::at(p, field.at(p), 0.0625 / STEP);
+    let at = nearby(field);
+    let frame = Frame::at(p, at(p), 0.0625 / STEP);
     let x = Vector::default();
-    Jet::at(field, &frame, x, frame.tensor(field, x)).curvature()
+    Jet::of(&at, &frame, x, frame.tensor(&at, x)).curvature()
 }
 
 #[cfg(test)]

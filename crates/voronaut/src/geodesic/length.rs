@@ -104,10 +104,10 @@ pub(crate) fn chord_near(field: &dyn MetricField, p: Point, q: Point, mut near: 
 }
 
 /// The metric length up to each point of a path, with the tensors at the middles of its segments.
-pub(crate) fn reached(field: &dyn MetricField, path: &[Point]) -> Vec<f64> {
+pub(crate) fn reached(at: impl Fn(Point) -> Tensor, path: &[Point]) -> Vec<f64> {
     let mut total = 0.0;
     let step = |w: &[Point]| {
-        total += field.at(w[0].midpoint(w[1])).length(w[1] - w[0]);
+        total += at(w[0].midpoint(w[1])).length(w[1] - w[0]);
         total
     };
     std::iter::once(0.0).chain(path.windows(2).map(step)).collect()

@@ -6,6 +6,7 @@
 
 use super::curve::{Curve, PathLength, modes_near};
 use super::jet::{Frame, Jet};
+use super::length::nearby;
 use super::rule::Rule;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
@@ -88,8 +89,9 @@ impl Paths {
         near: Option<&[Point]>,
         fineness: Fineness,
     ) -> Option<Curve> {
-        let frame = Frame::along(field, p, q)?;
-        let mut path = Path { field, frame, modes: Vec::new() };
+        let at = nearby(field);
+        let frame = Frame::along(&at, p, q)?;
+        let mut path = Path { at: &at, frame, modes: Vec::new() };
         let solved = self.climb(&mut path, fineness, near)?;
         Some(Curve::new([p, q], frame, path.modes, solved.length))
     }
@@ -109,8 +111,9 @@ impl Paths {
     }
 
     pub(super) fn solve(&self, field: &dyn MetricField, p: Point, q: Point, fineness: Fineness) -> Option<Solved> {
-        let frame = Frame::along(field, p, q)?;
-        self.climb(&mut Path { field, frame, modes: Vec::new() }, fineness, None)
+        let at = nearby(field);
+        let frame = Frame::along(&at, p, q)?;
+        self.climb(&mut Path { at: &at, frame, modes: Vec::new() }, fineness, None)
     }
 
     /// Relaxes a path, with more modes from stage to stage.
@@ -125,7 +128,7 @@ impl Paths {
         for (stage, rule) in self.rules[..=fineness.0 as usize].iter().enumerate().skip(first) {
             path.modes.resize(STAGES[stage].0, Vector::default());
             if let Some(near) = near.filter(|_| stage == first) {
-                path.modes = modes_near(path.field, &frame, near, path.modes.len());
+                path.modes = modes_near(path.at, &frame, near, path.modes.len());
             }
             let relaxed = path.relax(rule, RESIDUE[stage.min(1)])?;
             // The first stage is held against the chord, or the path given.
@@ -145,7 +148,7 @@ impl Paths {
 }
 
 struct Path<'a> {
-    field: &'a dyn MetricField,
+    at: &'a dyn Fn(Point) -> Tensor,
     frame: Frame,
     modes: Vec<Vector>,
 }
@@ -175,7 +178,7 @@ impl Path<'_> {
         let places: Vec<Vector> =
             points.clone().map(|i| along(i, &rule.values, Vector::new(rule.points[i], 0.0))).collect();
         let velocities: Vec<Vector> = points.map(|i| along(i, &rule.slopes, Vector::new(1.0, 0.0))).collect();
-        let tensors: Vec<Tensor> = places.iter().map(|&x| self.frame.tensor(self.field, x)).collect();
+        let tensors: Vec<Tensor> = places.iter().map(|&x| self.frame.tensor(self.at, x)).collect();
         let speeds = rule.weights.iter().zip(tensors.iter().zip(&velocities)).map(|(w, (t, &v))| w * t.dot(v, v));
         let is_metric = tensors.iter().all(|t| t.is_positive_definite());
         let energy = if is_metric { speeds.sum() } else { f64::INFINITY };
@@ -257,7 +260,7 @@ impl System {
             residue: 0.0,
         };
         for i in 0..rule.len() {
-            let jet = Jet::at(path.field, &path.frame, samples.places[i], samples.tensors[i]);
+            let jet = Jet::of(path.at, &path.frame, samples.places[i], samples.tensors[i]);
             system.add(&jet, samples.velocities[i], rule, i);
         }
         system

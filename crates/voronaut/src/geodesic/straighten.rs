@@ -1,6 +1,6 @@
 //! From a path that is nearly shortest to a geodesic: its energy is minimised, and obstacles hold it back.
 
-use super::length::{chord, place_at, reached};
+use super::length::{chord, nearby, place_at, reached};
 use super::tension::{self, Expansion, energy};
 use crate::geometry::Point;
 use crate::metric::MetricField;
@@ -86,7 +86,7 @@ pub(crate) fn straighten(field: &dyn MetricField, path: &[Point], obstacles: &dy
 /// [`FEWEST`] segments of equal metric length along the path; where one would be barred, with the points of the path
 /// between its ends.
 fn resample(field: &dyn MetricField, path: &[Point], obstacles: &dyn Obstacles) -> Vec<Point> {
-    let reached = reached(field, path);
+    let reached = reached(nearby(field), path);
     let (total, last) = (reached[path.len() - 1], path[path.len() - 1]);
     let (mut points, mut passed) = (vec![path[0]], 1);
     for k in 1..=FEWEST {

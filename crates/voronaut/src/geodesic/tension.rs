@@ -1,5 +1,6 @@
 //! Newton steps on the energy of a path: the sum of e = d' M(m) d over its segments d, the tensor taken at their middles m.
 
+use super::length::nearby;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 
@@ -19,12 +20,12 @@ struct Segment {
 }
 
 impl Segment {
-    fn of(field: &dyn MetricField, p: Point, q: Point) -> Self {
+    fn of(field: impl Fn(Point) -> Tensor, p: Point, q: Point) -> Self {
         let (m, d) = (p.midpoint(q), q - p);
         let h = STEP * d.norm();
         let [ex, ey] = [Vector::new(h, 0.0), Vector::new(0.0, h)];
-        let at = field.at(m);
-        let [[xp, xm], [yp, ym], [both, neither]] = [ex, ey, ex + ey].map(|e| [field.at(m + e), field.at(m - e)]);
+        let at = field(m);
+        let [[xp, xm], [yp, ym], [both, neither]] = [ex, ey, ex + ey].map(|e| [field(m + e), field(m - e)]);
         let [dx, dy] = [xp - xm, yp - ym].map(|difference| difference * (0.5 / h));
         let second = |sum: Tensor| (sum + at * -2.0).dot(d, d) / (h * h);
         let (qxx, qyy) = (second(xp + xm), second(yp + ym));
@@ -55,7 +56,8 @@ pub(super) struct Expansion {
 
 impl Expansion {
     pub(super) fn of(field: &dyn MetricField, path: &[Point]) -> Self {
-        Self { segments: path.windows(2).map(|w| Segment::of(field, w[0], w[1])).collect() }
+        let field = nearby(field);
+        Self { segments: path.windows(2).map(|w| Segment::of(&field, w[0], w[1])).collect() }
     }
 
     /// The Newton step of all points; ends and held points stay. `damping` times the Hessian of frozen tensors, which is
@@ -99,8 +101,9 @@ fn column(tensor: Tensor, k: usize) -> Vector {
 
 /// The energy of a path; infinite where the metric is not positive definite.
 pub(super) fn energy(field: &dyn MetricField, path: &[Point]) -> f64 {
+    let at = nearby(field);
     let of_segment = |w: &[Point]| {
-        let tensor = field.at(w[0].midpoint(w[1]));
+        let tensor = at(w[0].midpoint(w[1]));
         if tensor.is_positive_definite() { tensor.dot(w[1] - w[0], w[1] - w[0]) } else { f64::INFINITY }
     };
     path.windows(2).map(of_segment).sum()

@@ -1,10 +1,10 @@
 //! Sizes that grow with the distance to the boundary: thin cells along it, as boundary layers need.
 
+use super::MetricField;
 use super::validate::require;
-use super::{MetricField, Near};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
-use crate::geometry::{Aabb, BoxTree, Point, Tensor, Vector};
+use crate::geometry::{Aabb, BoxTree, Cells, Point, Tensor, Vector, around};
 
 /// What [`Boundary`] asks for, in Euclidean lengths. At distance d from the boundary the size across it is
 /// `min(h_max, h0 + (growth - 1) d)`, and along it `aspect` times that, at most `h_max`.
@@ -29,8 +29,9 @@ pub struct BoundarySizes {
 #[derive(Clone, Debug)]
 pub struct Boundary {
     sizes: BoundarySizes,
-    /// In the order of `tree`.
     tree: BoxTree<Segment, 2>,
+    /// Which of them may be nearest.
+    cells: Cells,
     /// The largest absolute coordinate.
     reach: f64,
 }
@@ -46,10 +47,6 @@ struct Segment {
 
 /// Distances to two segments that differ by less, relative to the coordinates, are equal: a few roundings.
 const TIE: f64 = 16.0 * f64::EPSILON;
-
-/// Segments are looked at that are farther than one that is known by so many ties: all that may tie with the nearest, or with one that
-/// does, and so on.
-const TIES: f64 = 1024.0;
 
 impl BoundarySizes {
     /// The size at the boundary, with the defaults of the rest: growth 1.2, aspect 1, no largest size.
@@ -84,49 +81,74 @@ impl Boundary {
     /// [`Error::Parse`] of sizes that make no sense; [`Error::Domain`] of no segment, or of one that is not finite.
     pub fn new(segments: &[(Point, Point)], sizes: BoundarySizes) -> Result<Self> {
         sizes.check()?;
-        if segments.is_empty() {
-            return Err(Error::domain(
-                "no boundary",
-                "metric boundary",
-                "use another metric where there is no boundary",
-            ));
-        }
         if let Some(i) = segments.iter().position(|(a, b)| !a.is_finite() || !b.is_finite()) {
             let (a, b) = segments[i];
             let place = format!("segment {} from {a} to {b}", i + 1);
             return Err(Error::domain("a coordinate is not finite", place, "check the coordinates of the domain"));
         }
-        let boxes: Vec<Aabb> = segments.iter().filter_map(|&(a, b)| Aabb::of([a, b])).collect();
-        let tree = BoxTree::new(boxes.iter().map(|&b| b.into()).zip(segments.iter().copied().map(Segment::new)));
-        let reach = boxes.iter().flat_map(|b| [b.min, b.max]).map(largest).fold(0.0, f64::max);
-        Ok(Self { sizes, tree, reach })
+        let ends = segments.iter().flat_map(|&(a, b)| [a, b]);
+        let Some(bounds) = Aabb::of(ends.clone()) else {
+            return Err(Error::domain(
+                "no boundary",
+                "metric boundary",
+                "use another metric where there is no boundary",
+            ));
+        };
+        let boxes = segments.iter().map(|&(a, b)| around([a, b]));
+        let tree = BoxTree::new(boxes.zip(segments.iter().copied().map(Segment::new)));
+        let cells = Cells::new(bounds, segments.len());
+        Ok(Self { sizes, tree, cells, reach: ends.map(largest).fold(0.0, f64::max) })
     }
 
-    /// Distance to the boundary, and the mean of n n' over the segments that are that near. The distance to any segment bounds the search: that
-    /// to the one that was nearest to the last place, most often beside this one. It has no say in what is found.
-    fn nearest(&self, p: Point, near: &mut Near) -> (f64, Tensor, u32) {
-        let tolerance = TIE * (self.reach + largest(p));
-        let (mut distance, mut bound) = (f64::INFINITY, f64::INFINITY);
-        let (mut sum, mut count) = (Tensor::default(), 0);
-        let known = near.place.and_then(|place| self.tree.item(place));
-        let reach = known.map_or(f64::INFINITY, |segment| segment.offset(p).0.norm());
-        let limit = (reach + TIES * tolerance).powi(2) + f64::MIN_POSITIVE;
-        self.tree.search([p.x, p.y], limit, |place, segment| {
-            let (offset, inside) = segment.offset(p);
-            if offset.dot(offset) <= bound {
-                let d = offset.norm();
-                let square = segment.normal_square(offset, inside, d, tolerance);
-                if d < distance - tolerance {
-                    (sum, count, near.place) = (square, 1, Some(place));
-                } else {
-                    (sum, count) = (sum + square, count + 1);
-                }
-                distance = distance.min(d);
-                bound = (distance + tolerance) * (distance + tolerance);
+    /// Distance to the boundary, the mean of n n' over the segments that are that near, and their number.
+    fn nearest(&self, p: Point) -> (f64, Tensor, usize) {
+        match self.cells.at(p, |centre, within| self.around(centre, within)) {
+            Some(places) => self.nearest_of(p, places),
+            None => self.nearest_of(p, &self.around(p, 0.0)),
+        }
+    }
+
+    /// The places in the tree, in order, of the segments that are no farther than the nearest one and a distance, or tie with what is.
+    fn around(&self, p: Point, within: f64) -> Vec<u32> {
+        let slack = within + 4.0 * self.tolerance(p);
+        let (mut bound, mut seen) = (f64::INFINITY, Vec::new());
+        self.tree.search([p.x, p.y], bound, |place, segment| {
+            let square = segment.square(p);
+            if square <= bound {
+                bound = bound.min((square.sqrt() + slack).powi(2));
+                seen.push((place, square));
             }
-            bound.min(limit)
+            bound
         });
-        (distance, sum * (1.0 / f64::from(count)), count)
+        let mut places: Vec<u32> = seen.into_iter().filter(|seen| seen.1 <= bound).map(|seen| seen.0).collect();
+        places.sort_unstable();
+        places
+    }
+
+    /// [`Boundary::nearest`] of segments that are candidates.
+    fn nearest_of(&self, p: Point, places: &[u32]) -> (f64, Tensor, usize) {
+        let square = |place: u32| self.tree.item(place).map_or(f64::INFINITY, |segment| segment.square(p));
+        let (mut least, mut second, mut nearest) = (f64::INFINITY, f64::INFINITY, 0);
+        for &place in places {
+            let found = square(place);
+            if found < least {
+                (second, least, nearest) = (least, found, place);
+            } else if found < second {
+                second = found;
+            }
+        }
+        let (distance, tolerance) = (least.sqrt(), self.tolerance(p));
+        let bound = (distance + tolerance).powi(2);
+        let all: &[u32] = if second > bound { &[nearest] } else { places };
+        let tied = all.iter().filter(|&&place| square(place) <= bound).filter_map(|&place| self.tree.item(place));
+        let add = |(sum, count), segment: &Segment| (sum + segment.normal_square(p, tolerance), count + 1);
+        let (sum, count) = tied.fold((Tensor::default(), 0), add);
+        (distance, sum * (1.0 / count as f64), count)
+    }
+
+    /// What distances from a place may differ by and tie.
+    fn tolerance(&self, p: Point) -> f64 {
+        TIE * (self.reach + largest(p))
     }
 }
 
@@ -145,8 +167,16 @@ impl Segment {
         (from_start - self.along * clamped, 0.0 < t && t < 1.0)
     }
 
-    /// n n': of the segment's normal where that is the direction or the direction is noise, else of the offset.
-    fn normal_square(&self, offset: Vector, inside: bool, distance: f64, tolerance: f64) -> Tensor {
+    /// The square of the distance to `p`.
+    fn square(&self, p: Point) -> f64 {
+        let (offset, _) = self.offset(p);
+        offset.dot(offset)
+    }
+
+    /// n n' at a place: of the segment's normal where that is the direction or the direction is noise, else of the offset.
+    fn normal_square(&self, p: Point, tolerance: f64) -> Tensor {
+        let (offset, inside) = self.offset(p);
+        let distance = offset.norm();
         if inside || distance <= tolerance {
             if self.inverse == 0.0 {
                 return Tensor::new(0.5, 0.0, 0.5);
@@ -159,13 +189,10 @@ impl Segment {
 
 impl MetricField for Boundary {
     fn at(&self, p: Point) -> Tensor {
-        self.at_near(p, &mut Near::default())
-    }
-
-    fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
-        let (distance, normals, count) = self.nearest(p, near);
+        let (distance, normals, count) = self.nearest(p);
         let (across, along) = self.sizes.at(distance);
-        if count == 1 {
+        // Those that meet in the nearest vertex have one normal.
+        if count == 1 || normals.determinant() <= 4.0 * f64::EPSILON {
             let least = 1.0 / (along * along);
             return normals * (1.0 / (across * across) - least) + Tensor::new(least, 0.0, least);
         }
@@ -249,11 +276,10 @@ mod tests {
         let corners = |i: u32| (f64::from(i) * 0.1).sin_cos();
         let corners: Vec<(f64, f64)> = (0..60).map(corners).map(|(y, x)| (x + 0.3 * y * y, y)).collect();
         let field = Boundary::new(&ring(&corners), SIZES).unwrap();
-        let points: Vec<Point> =
-            (0..40).map(|i| Point::new(f64::from(i % 7) * 0.4 - 1.2, f64::from(i / 7) * 0.4)).collect();
-        let mut near = Near::default();
-        for &p in points.iter().flat_map(|p| points.iter().flat_map(move |q| [p, q])) {
-            assert_eq!(field.at_near(p, &mut near), field.at(p));
+        let points = (0..40).map(|i| Point::new(f64::from(i % 7) * 0.4 - 1.2, f64::from(i / 7) * 0.4));
+        for p in points {
+            assert_eq!(field.at(p), field.clone().at(p));
+            assert_eq!(field.nearest(p), field.nearest_of(p, &field.around(p, 0.0)));
         }
         let nowhere = Boundary::new(&[(Point::default(), Point::default())], SIZES).unwrap();
         assert!(nowhere.at(Point::default()).is_positive_definite());
@@ -295,7 +321,7 @@ mod tests {
                 p.distance(a.lerp(b, t))
             }).fold(f64::INFINITY, f64::min);
             let field = Boundary::new(&segments, SIZES).unwrap();
-            let (distance, normals, _) = field.nearest(p, &mut Near::default());
+            let (distance, normals, _) = field.nearest(p);
             prop_assert!((distance - truth).abs() < 1e-14);
             prop_assert!((normals.xx + normals.yy - 1.0).abs() < 1e-12);
             prop_assert!(check_field(&field, [p].into_iter()).is_ok());

@@ -1,7 +1,7 @@
 //! Riemannian triangles by barycentric coordinates: grids of Karcher means.
 
 use super::Realisation;
-use crate::geodesic::{Fineness, Paths, karcher_mean, place_at, reached};
+use crate::geodesic::{Fineness, Paths, karcher_mean, nearby, place_at, reached};
 use crate::geometry::{Orientation, Point, orientation};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
@@ -76,7 +76,7 @@ impl Realisation {
     /// An edge at equal metric lengths.
     fn side(&self, field: &dyn MetricField, [from, to]: [u32; 2], n: usize) -> Option<Vec<Point>> {
         let line = self.edges[self.edge_between(from, to)?].from(from);
-        let reached = reached(field, &line);
+        let reached = reached(nearby(field), &line);
         let (total, last) = (reached[line.len() - 1], line[line.len() - 1]);
         let inner = (1..n).map(|k| place_at(&line, &reached, total * k as f64 / n as f64).0);
         Some([line[0]].into_iter().chain(inner).chain([last]).collect())

@@ -67,7 +67,7 @@ fn polishing_leaves_boundaries_on_their_curves() {
         let meshed = mesh_for(&domain, &|_: Point| Tensor::IDENTITY, Some(aim), &options, &Silent).unwrap();
         assert!(validity(&meshed.mesh).valid && meshed.polished.unwrap().error.len() > 2);
         let away = away_from_circle(&meshed.mesh);
-        // Chords are five thousandths away.
+        // The chords of thirty even sides are 5e-3 away.
         assert!(away < 1e-4, "{order}: {away}");
     }
 }
