@@ -117,7 +117,11 @@ impl<T, const D: usize> BoxTree<T, D> {
             loop {
                 let node = &self.nodes[index];
                 if node.count > 0 {
-                    (node.next..).zip(self.leaf(node)).for_each(|(place, (_, item))| bound = visit(place, item));
+                    for (place, (bounds, item)) in (node.next..).zip(self.leaf(node)) {
+                        if distance(bounds) < bound {
+                            bound = visit(place, item);
+                        }
+                    }
                     break;
                 }
                 let first = (index + 1, distance(&self.nodes[index + 1].bounds));

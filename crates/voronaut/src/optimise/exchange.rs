@@ -165,7 +165,8 @@ fn mend<M: Moving>(dual: &mut M, v: VertexId, lengths: Lengths) -> bool {
             let site = dual.site_after(v, by)?;
             least(dual, site, now + GAIN).filter(|_| worst_edge(dual, site) <= allowed)
         };
-        let better = ranked(tried.iter().enumerate().filter_map(|(i, by)| Some((-gained(by)?, i))));
+        let gains: Vec<Option<f64>> = tried.par_iter().map(gained).collect();
+        let better = ranked(gains.into_iter().enumerate().filter_map(|(i, gain)| Some((-gain?, i))));
         let Some((loss, _)) = better.into_iter().find(|&(_, i)| dual.shift_by(v, tried[i])) else { break };
         (now, has_moved) = (-loss, true);
     }

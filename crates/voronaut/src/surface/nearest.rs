@@ -59,10 +59,7 @@ impl Nearest {
     /// The place that is closest to a finite point, of triangles that face the way of a normal; of all where none does.
     pub(crate) fn closest_facing(&self, surface: &Surface, p: Point3, normal: Vector3) -> Option<Place> {
         let is_facing = |[a, b, c]: [Point3; 3]| (b - a).cross(c - a).dot(normal) > 0.0;
-        let square = |t: &Triangle| {
-            let offset = Point3::weighted(t.corners, closest_weights(t.corners, p)) - p;
-            if is_facing(t.corners) { offset.dot(offset) } else { f64::INFINITY }
-        };
+        let square = |t: &Triangle| if is_facing(t.corners) { t.square(p) } else { f64::INFINITY };
         let found = self.tree.nearest(p.to_array(), square).filter(|found| is_facing(found.corners));
         let found = found.or_else(|| self.nearest(p))?;
         Some(surface.place(found.face, closest_weights(found.corners, p)))
@@ -81,11 +78,21 @@ impl Nearest {
         self.tree.meeting(bounds.into()).map(|t| (t.face.0, t.corners))
     }
 
+    /// The triangle that is closest to a finite point, if its squared distance is less than this; at infinity any is.
+    pub(crate) fn nearer(&self, p: Point3, than: f64) -> Option<FaceId> {
+        self.tree.nearer(p.to_array(), than, |t| t.square(p)).map(|t| t.face)
+    }
+
     fn nearest(&self, p: Point3) -> Option<&Triangle> {
-        self.tree.nearest(p.to_array(), |t| {
-            let offset = Point3::weighted(t.corners, closest_weights(t.corners, p)) - p;
-            offset.dot(offset)
-        })
+        self.tree.nearest(p.to_array(), |t| t.square(p))
+    }
+}
+
+impl Triangle {
+    /// The squared distance of a point.
+    fn square(&self, p: Point3) -> f64 {
+        let offset = Point3::weighted(self.corners, closest_weights(self.corners, p)) - p;
+        offset.dot(offset)
     }
 }
 

@@ -82,7 +82,7 @@ pub(crate) struct Misfit {
 pub(crate) fn fit(mesh: &Mesh, surface: &Surface, options: &FitOptions) -> Result<Fitted> {
     let start = Surface::new(mesh)?;
     let samples = Samples::new(surface, options.samples.max(1) * start.topology().face_count());
-    let first = samples.assign(surface, &start);
+    let first = samples.assign(surface, &start, None);
     let before = Misfit::of(&first);
     let mut fitting = Fitting::new(mesh, &start, &samples, first, options.stiffness);
     for _ in 0..options.steps {
@@ -94,7 +94,7 @@ pub(crate) fn fit(mesh: &Mesh, surface: &Surface, options: &FitOptions) -> Resul
     let mut fitted = mesh.clone();
     fitted.points = fitting.sheet.positions.iter().map(|p| p.to_array()).collect();
     // Steps follow closest points from triangle to triangle; what counts is the closest of all.
-    let end = Surface::new(&fitted).ok().map(|end| Misfit::of(&samples.assign(surface, &end)));
+    let end = Surface::new(&fitted).ok().map(|end| Misfit::of(&samples.assign(surface, &end, Some(&fitting.at))));
     let Some(after) = end.filter(|after| after.rms <= before.rms) else {
         return Ok(Fitted { mesh: mesh.clone(), before, after: before, moved: 0, held_back, steps: 0 });
     };

@@ -84,15 +84,18 @@ impl<'a> Samples<'a> {
         Self { surface: Sheet::of(surface), of_surface: of_surface(surface, count) }
     }
 
-    /// Closest points among all triangles of a mesh, which `whole` is as a surface.
-    pub(super) fn assign(&self, surface: &Surface, mesh: &Surface) -> Assignment {
+    /// Closest points among all triangles of a mesh and of the surface; none are farther than those known.
+    pub(super) fn assign(&self, surface: &Surface, mesh: &Surface, known: Option<&Assignment>) -> Assignment {
         let sheet = Sheet::of(mesh);
         let trees = [Nearest::new(surface), Nearest::new(mesh)];
-        let find = |tree: &Nearest, of: &Surface, p: Point3| tree.closest(of, p).map_or(FaceId(0), |c| c.place.face);
+        let find = |tree: &Nearest, sheet: &Sheet, p: Point3, known: Option<Foot>| {
+            let nearer = tree.nearer(p, known.map_or(f64::INFINITY, |foot| foot.square()));
+            nearer.map(|face| sheet.foot(face, p)).or(known).unwrap_or_else(|| sheet.foot(FaceId(0), p))
+        };
         self.measured(
             &sheet,
-            |_, p| sheet.foot(find(&trees[1], mesh, p), p),
-            |_, p| self.surface.foot(find(&trees[0], surface, p), p),
+            |i, p| find(&trees[1], &sheet, p, known.map(|known| known.to_mesh[i])),
+            |i, p| find(&trees[0], &self.surface, p, known.map(|known| known.to_surface[i])),
         )
     }
 
@@ -236,6 +239,10 @@ impl Foot {
     }
 }
 
+fn square(v: Vector3) -> f64 {
+    v.dot(v)
+}
+
 impl<'a> Sheet<'a> {
     /// A surface's triangles, where they are.
     pub(super) fn of(surface: &'a Surface) -> Self {
@@ -264,10 +271,21 @@ impl<'a> Sheet<'a> {
     /// bound.
     pub(super) fn descend(&self, start: FaceId, p: Point3) -> Foot {
         let mut best = self.foot(start, p);
-        while let Some(nearer) = self.nearer_beside(&best, p).or_else(|| self.nearer_around(&best, p)) {
+        while !self.is_far_inside(&best) {
+            let nearer = self.nearer_beside(&best, p).or_else(|| self.nearer_around(&best, p));
+            let Some(nearer) = nearer else { break };
             best = nearer;
         }
         best
+    }
+
+    /// Whether a foot is so far from the border of its triangle that none that shares a corner with it comes nearer, unless they make an angle below 30
+    /// degrees: what does is less than twice the distance from the foot, and all of it at least half as far as the border.
+    fn is_far_inside(&self, foot: &Foot) -> bool {
+        let corners = self.triangle(foot.face);
+        let height = |i: usize| foot.weights[i] * foot.weights[i] / square(corners[(i + 2) % 3] - corners[(i + 1) % 3]);
+        let least = (0..3).map(height).fold(f64::INFINITY, f64::min);
+        16.0 * foot.square() < least * square(area_vector(corners))
     }
 
     /// The nearest, if nearer, across the sides of a triangle that holds its foot inside, or of those that share an end of the side
