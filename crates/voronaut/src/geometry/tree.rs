@@ -118,7 +118,8 @@ impl<T, const D: usize> BoxTree<T, D> {
                 let node = &self.nodes[index];
                 if node.count > 0 {
                     for (place, (bounds, item)) in (node.next..).zip(self.leaf(node)) {
-                        if distance(bounds) < bound {
+                        // Both are infinite far out.
+                        if distance(bounds) <= bound {
                             bound = visit(place, item);
                         }
                     }
