@@ -94,16 +94,15 @@ impl Job<'_> {
             (Centroid::Weighted, Some(canvas)) => Cells::Weighted(OnCanvas::new(canvas, self.field)),
             _ => Cells::Tangent,
         };
-        let parts = self.options.effort.parts();
-        let patience = self.patience(dual, steps / parts);
-        let mut relaxed = relax(dual, &cells, patience, self.progress)?;
+        let (gain, parts) = (self.options.effort.gain(), self.options.effort.parts());
+        let patience = |steps| Patience { steps, gain };
+        let mut relaxed = relax(dual, &cells, patience(steps / parts), self.progress)?;
         for part in 1..parts {
             let mut left = (steps * (part + 1)) / parts - (steps * part) / parts;
             if self.exchange(dual, &cells, &mut relaxed)? {
                 left = left.saturating_sub(1);
             }
-            let patience = self.patience(dual, left);
-            relaxed.append(relax(dual, &cells, patience, self.progress)?);
+            relaxed.append(relax(dual, &cells, patience(left), self.progress)?);
         }
         self.fit_scale(dual);
         if self.exchanges() {
@@ -128,23 +127,14 @@ impl Job<'_> {
         exchange(dual, self.fill(count), most(EXCHANGED_SHARE).max(met))?;
         let Some(&energy) = relaxed.energy.last() else { return Ok(false) };
         let step = relax(dual, cells, Patience { steps: 1, gain: 0.0 }, self.progress)?;
-        let rises = step.energy.last().is_none_or(|&now| now > (1.0 + self.doubt(dual)) * energy);
+        let doubt = if self.options.centroid == Centroid::Tangent { ROUGH_DOUBT * rough_share(dual) } else { 0.0 };
+        let rises = step.energy.last().is_none_or(|&now| now > (1.0 + doubt) * energy);
         if rises && self.options.centroid != Centroid::Weighted {
             dual.take_back(&before);
             return Ok(false);
         }
         relaxed.append(step);
         Ok(true)
-    }
-
-    /// So many steps, each of which has to gain as much as the effort asks for, and its share of what is in doubt.
-    fn patience(&self, dual: &Dual, steps: usize) -> Patience {
-        Patience { steps, gain: self.options.effort.gain().max(self.doubt(dual) / steps.max(1) as f64) }
-    }
-
-    /// The relative error of the energy.
-    fn doubt(&self, dual: &Dual) -> f64 {
-        if self.options.centroid == Centroid::Tangent { ROUGH_DOUBT * rough_share(dual) } else { 0.0 }
     }
 
     /// Farthest points that are not to be relaxed stay as they are.
