@@ -1,8 +1,8 @@
 //! The length of a short geodesic by its one leading mode of bending.
 
-use super::length::{GAUSS, chord_by, nearby, relaxed_length};
+use super::length::{GAUSS, chord_by, relaxed_length};
 use crate::geometry::{Point, Tensor, Vector};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, nearby};
 
 /// Bows are tried at this share of the chord's length to either side of it.
 const TRIAL: f64 = 0.1;

@@ -1,8 +1,7 @@
 //! A metric field in affine coordinates, with its first two derivatives, and the Gauss curvature from them.
 
-use super::length::nearby;
 use crate::geometry::{Point, Tensor, Vector};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, nearby};
 
 /// Step of the differences, in the frame's units: small enough for their truncation, large enough for rounding.
 const STEP: f64 = 1.0 / 512.0;

@@ -2,8 +2,7 @@
 
 use super::{LocalMetric, tension};
 use crate::geometry::{Point, Tensor, Vector};
-use crate::metric::{MetricField, Near};
-use std::cell::Cell;
+use crate::metric::{MetricField, Near, nearby};
 
 /// A length and an estimate (not a bound) of its relative error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,17 +73,6 @@ pub(super) const GAUSS: [(f64, f64); 5] = [
     (0.769_234_655_052_841_5, 0.239_314_335_249_683_2),
     (0.953_089_922_969_332, 0.118_463_442_528_094_5),
 ];
-
-/// A field that is asked for places near each other, one after the other.
-pub(crate) fn nearby(field: &dyn MetricField) -> impl Fn(Point) -> Tensor + '_ {
-    let found = Cell::new(Near::default());
-    move |p| {
-        let mut near = found.get();
-        let tensor = field.at_near(p, &mut near);
-        found.set(near);
-        tensor
-    }
-}
 
 /// Length of the straight segment p-q by five-point Gauss quadrature of sqrt(d' M d).
 pub(crate) fn chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {

@@ -6,10 +6,9 @@
 
 use super::curve::{Curve, PathLength, modes_near};
 use super::jet::{Frame, Jet};
-use super::length::nearby;
 use super::rule::Rule;
 use crate::geometry::{Point, Tensor, Vector};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, nearby};
 
 /// Modes and quadrature points of the paths, from coarse to fine.
 const STAGES: [(usize, usize); 4] = [(2, 5), (4, 8), (8, 14), (16, 28)];

@@ -1,9 +1,9 @@
 //! From a path that is nearly shortest to a geodesic: its energy is minimised, and obstacles hold it back.
 
-use super::length::{chord, nearby, place_at, reached};
+use super::length::{chord, place_at, reached};
 use super::tension::{self, Expansion, energy};
 use crate::geometry::Point;
-use crate::metric::MetricField;
+use crate::metric::{MetricField, nearby};
 
 /// What a path may not cross: the border of its domain.
 pub(crate) trait Obstacles: Sync {

@@ -1,8 +1,7 @@
 //! Newton steps on the energy of a path: the sum of e = d' M(m) d over its segments d, the tensor taken at their middles m.
 
-use super::length::nearby;
 use crate::geometry::{Point, Tensor, Vector};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, nearby};
 
 /// Derivatives are differences over this share of a segment.
 const STEP: f64 = 0.1;

@@ -1,6 +1,6 @@
 //! Points, tensors and exact predicates: the vocabulary of everything below.
 
-mod cells;
+mod candidates;
 mod contact;
 mod intersection;
 mod jet;
@@ -14,7 +14,7 @@ mod tensor;
 mod tensor3;
 mod tree;
 
-pub(crate) use cells::Cells;
+pub(crate) use candidates::Candidates;
 pub(crate) use contact::{Corners, contacts, is_flat};
 pub use jet::Jet3;
 pub(crate) use motion::Motion;

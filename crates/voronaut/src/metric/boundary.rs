@@ -4,7 +4,7 @@ use super::MetricField;
 use super::validate::require;
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
-use crate::geometry::{Aabb, BoxTree, Cells, Point, Tensor, Vector, around};
+use crate::geometry::{Aabb, BoxTree, Candidates, Point, Tensor, Vector, around};
 
 /// What [`Boundary`] asks for, in Euclidean lengths. At distance d from the boundary the size across it is
 /// `min(h_max, h0 + (growth - 1) d)`, and along it `aspect` times that, at most `h_max`.
@@ -31,7 +31,7 @@ pub struct Boundary {
     sizes: BoundarySizes,
     tree: BoxTree<Segment, 2>,
     /// Which of them may be nearest.
-    cells: Cells,
+    candidates: Candidates,
     /// The largest absolute coordinate.
     reach: f64,
 }
@@ -96,13 +96,13 @@ impl Boundary {
         };
         let boxes = segments.iter().map(|&(a, b)| around([a, b]));
         let tree = BoxTree::new(boxes.zip(segments.iter().copied().map(Segment::new)));
-        let cells = Cells::new(bounds, segments.len());
-        Ok(Self { sizes, tree, cells, reach: ends.map(largest).fold(0.0, f64::max) })
+        let candidates = Candidates::new(bounds, segments.len());
+        Ok(Self { sizes, tree, candidates, reach: ends.map(largest).fold(0.0, f64::max) })
     }
 
     /// Distance to the boundary, the mean of n n' over the segments that are that near, and their number.
     fn nearest(&self, p: Point) -> (f64, Tensor, usize) {
-        match self.cells.at(p, |centre, within| self.around(centre, within)) {
+        match self.candidates.at(p, |centre, within| self.around(centre, within)) {
             Some(places) => self.nearest_of(p, places),
             None => self.nearest_of(p, &self.around(p, 0.0)),
         }

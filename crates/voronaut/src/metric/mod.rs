@@ -70,6 +70,7 @@ pub use vocabulary::Variables;
 
 use crate::geometry::{Aabb, Point, Tensor, Vector};
 use crate::mesh::Mesh;
+use std::cell::Cell;
 
 /// A Riemannian metric field on the plane.
 ///
@@ -102,6 +103,17 @@ pub trait MetricField: Sync {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Near {
     pub(crate) place: Option<u32>,
+}
+
+/// A field that is asked for places near each other, one after the other.
+pub(crate) fn nearby(field: &dyn MetricField) -> impl Fn(Point) -> Tensor + '_ {
+    let found = Cell::new(Near::default());
+    move |p| {
+        let mut near = found.get();
+        let tensor = field.at_near(p, &mut near);
+        found.set(near);
+        tensor
+    }
 }
 
 impl<F: Fn(Point) -> Tensor + Sync> MetricField for F {

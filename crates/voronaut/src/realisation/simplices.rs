@@ -1,9 +1,9 @@
 //! Riemannian triangles by barycentric coordinates: grids of Karcher means.
 
 use super::Realisation;
-use crate::geodesic::{Fineness, Paths, karcher_mean, nearby, place_at, reached};
+use crate::geodesic::{Fineness, Paths, karcher_mean, place_at, reached};
 use crate::geometry::{Orientation, Point, orientation};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, nearby};
 use crate::parallel::prelude::*;
 
 /// A Riemannian triangle in pieces: the images of barycentric coordinates that are multiples of 1/n.

@@ -8,22 +8,22 @@ use std::sync::OnceLock;
 const SHARE: usize = 64;
 const MOST: usize = 1 << 20;
 /// More candidates than these are not held: a tree is as quick.
-const CANDIDATES: usize = 32;
+const FEW: usize = 32;
 /// Cells count as wider by this share, for rounding.
 const SLACK: f64 = 1e-3;
 
 /// See the [module](self).
 #[derive(Clone, Debug)]
-pub(crate) struct Cells {
+pub(crate) struct Candidates {
     low: Point,
     side: f64,
     columns: usize,
     rows: usize,
     /// Row by row; empty where there are too many.
-    candidates: Vec<OnceLock<Box<[u32]>>>,
+    cells: Vec<OnceLock<Box<[u32]>>>,
 }
 
-impl Cells {
+impl Candidates {
     /// A grid on a box for so many items.
     pub(crate) fn new(bounds: Aabb, items: usize) -> Self {
         let extent = bounds.max - bounds.min;
@@ -31,7 +31,7 @@ impl Cells {
         let side = (extent.x * extent.y / count).sqrt().max(extent.x.max(extent.y) / count);
         let along = |extent: f64| if side > 0.0 && side.is_finite() { (extent / side).floor() as usize + 1 } else { 0 };
         let (columns, rows) = (along(extent.x), along(extent.y));
-        Self { low: bounds.min, side, columns, rows, candidates: vec![OnceLock::new(); columns * rows] }
+        Self { low: bounds.min, side, columns, rows, cells: vec![OnceLock::new(); columns * rows] }
     }
 
     /// The items that may be nearest to a place, or tie with those that are: what `find` has for the middle of its cell and a distance, all that are no farther
@@ -43,12 +43,12 @@ impl Cells {
             return None;
         }
         let (column, row) = (place.x as usize, place.y as usize);
-        let found = self.candidates[row * self.columns + column].get_or_init(|| {
+        let found = self.cells[row * self.columns + column].get_or_init(|| {
             let middle = |low: f64, i: usize| low + self.side * (i as f64 + 0.5);
             let centre = Point::new(middle(self.low.x, column), middle(self.low.y, row));
             // From the centre to a place in the cell, and back.
             let found = find(centre, 2.0 * self.side * std::f64::consts::FRAC_1_SQRT_2 * (1.0 + SLACK));
-            if found.len() > CANDIDATES { Box::default() } else { found.into() }
+            if found.len() > FEW { Box::default() } else { found.into() }
         });
         (!found.is_empty()).then_some(found)
     }
@@ -61,25 +61,25 @@ mod tests {
     #[test]
     fn cells_cover_their_box_and_know_what_they_were_told() {
         let bounds = Aabb { min: Point::new(-1.0, 2.0), max: Point::new(3.0, 4.0) };
-        let cells = Cells::new(bounds, 10);
+        let grid = Candidates::new(bounds, 10);
         for p in [bounds.min, bounds.max, Point::new(0.3, 2.9)] {
-            let told = cells.at(p, |centre, within| {
+            let told = grid.at(p, |centre, within| {
                 assert!(centre.distance(p) <= 0.5 * within);
                 vec![7]
             });
             assert_eq!(told, Some(&[7][..]));
-            assert_eq!(cells.at(p, |_, _| unreachable!()), Some(&[7][..]));
+            assert_eq!(grid.at(p, |_, _| unreachable!()), Some(&[7][..]));
         }
         for p in [Point::new(-1.1, 3.0), Point::new(0.0, 5.0), Point::new(f64::NAN, 3.0)] {
-            assert_eq!(cells.at(p, |_, _| vec![7]), None);
+            assert_eq!(grid.at(p, |_, _| vec![7]), None);
         }
     }
 
     #[test]
     fn too_many_are_none() {
-        let cells = Cells::new(Aabb { min: Point::new(0.0, 0.0), max: Point::new(1.0, 0.0) }, 1);
+        let grid = Candidates::new(Aabb { min: Point::new(0.0, 0.0), max: Point::new(1.0, 0.0) }, 1);
         assert_eq!(cells.at(Point::new(0.5, 0.0), |_, _| (0..100).collect()), None);
-        let point = Cells::new(Aabb { min: Point::new(1.0, 1.0), max: Point::new(1.0, 1.0) }, 1);
+        let point = Candidates::new(Aabb { min: Point::new(1.0, 1.0), max: Point::new(1.0, 1.0) }, 1);
         assert_eq!(point.at(Point::new(1.0, 1.0), |_, _| vec![7]), None);
     }
 }
