@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn too_many_are_none() {
         let grid = Candidates::new(Aabb { min: Point::new(0.0, 0.0), max: Point::new(1.0, 0.0) }, 1);
-        assert_eq!(cells.at(Point::new(0.5, 0.0), |_, _| (0..100).collect()), None);
+        assert_eq!(grid.at(Point::new(0.5, 0.0), |_, _| (0..100).collect()), None);
         let point = Candidates::new(Aabb { min: Point::new(1.0, 1.0), max: Point::new(1.0, 1.0) }, 1);
         assert_eq!(point.at(Point::new(1.0, 1.0), |_, _| vec![7]), None);
     }
