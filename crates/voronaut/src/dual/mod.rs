@@ -20,7 +20,7 @@ pub(crate) use on_surface::SurfaceDual;
 
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::geodesic::{LocalMetric, Paths, chord_near, hermite};
+use crate::geodesic::{LocalMetric, Paths, chord_between, hermite};
 use crate::geometry::{Point, Readable, Tensor};
 use crate::in_circle::Tests;
 use crate::metric::Scaled;
@@ -171,7 +171,7 @@ impl<'a> Dual<'a> {
         let [u, v] = self.topology().ends(h);
         let (p, q) = (self.position(u), self.position(v));
         if self.local(u).is_rough || self.local(v).is_rough {
-            return chord_near(&self.field, p, q, self.local(u).near);
+            return chord_between(&self.field, [p, q], [u, v].map(|v| self.local(v).tensor), self.local(u).near);
         }
         hermite(p, self.local(u), q, self.local(v)).value
     }
@@ -238,8 +238,8 @@ impl<'a> Dual<'a> {
         let topology = self.topology();
         let at_rough = |&h: &HalfEdge| topology.ends(h).into_iter().any(is_rough);
         let measured = |h: HalfEdge| {
-            let [p, q] = self.planar.ends(h);
-            (h, chord_near(&self.field, p, q, self.local(topology.origin(h)).near))
+            let [from, to] = topology.ends(h).map(|v| self.local(v));
+            (h, chord_between(&self.field, self.planar.ends(h), [from.tensor, to.tensor], from.near))
         };
         let faces = (0..topology.face_slots() as u32).into_par_iter().with_min_len(64).map(FaceId);
         let edges = faces.flat_map_iter(|f| topology.edges_of(f).filter(at_rough).map(measured));

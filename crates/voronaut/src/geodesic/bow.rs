@@ -9,7 +9,7 @@ const TRIAL: f64 = 0.1;
 /// Beyond this bow the one mode does not tell the path.
 const FAR: f64 = 0.3;
 /// Segments of the path that serves then.
-const SEGMENTS: usize = 8;
+const SEGMENTS: usize = 4;
 /// Its energy is minimised until a step gains no more than this share.
 const SETTLED: f64 = 1e-4;
 /// Where the tensors around a chord give it lengths that differ by this factor the best bow is searched, too,
@@ -32,8 +32,8 @@ const STEADY: f64 = 0.25;
 
 /// Length of the geodesic p-q: the least length of the parabolas through p and q, by quadrature on three of them and on
 /// the best of the parabola through their lengths. To second order in the length geodesics are parabolas; where the best
-/// one bows out far, a path of segments ([`path_energy`](super::path_energy)) answers instead; and where the metric differs much
-/// around the chord, a path of parts of parabolas, if that is shorter. It asks nothing of the field's derivatives: kinks do no harm.
+/// one bows out far, a path of segments ([`path_energy`](super::path_energy)) answers instead, or where the metric differs much
+/// around the chord a path of parts of parabolas, if that is shorter. It asks nothing of the field's derivatives: kinks do no harm.
 ///
 /// Where the metric varies little from end to end and across, tensors are interpolated from five, and the error is of
 /// fourth order in the length; else the field is evaluated wherever it is needed, 21 times at least, and the length is
@@ -56,11 +56,13 @@ pub(crate) fn bowed_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [
     }
     let evaluated = |bow: f64| parabola(|t, offset| at(p + d * t + across * offset), d, across, bow);
     let (straight, best) = least(evaluated);
-    let length = best.unwrap_or_else(|| {
+    if samples.differ(d) {
+        return best.unwrap_or(straight).min(halved(&at, [p, q], straight, HALVINGS));
+    }
+    best.unwrap_or_else(|| {
         let path = relaxed_length(field, p, q, SEGMENTS, SETTLED);
         if path.is_finite() { path.min(straight) } else { straight }
-    });
-    if samples.differ(d) { length.min(halved(&at, [p, q], straight, HALVINGS)) } else { length }
+    })
 }
 
 /// Orthogonal to a chord in the metric at its middle, and of its length there.

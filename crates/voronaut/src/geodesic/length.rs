@@ -4,6 +4,9 @@ use super::{LocalMetric, tension};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::{MetricField, Near, nearby};
 
+/// The inner points of Lobatto's quadrature with four: (1 -+ 1/sqrt 5) / 2.
+const LOBATTO: [f64; 2] = [0.276_393_202_250_021, 0.723_606_797_749_979];
+
 /// A length and an estimate (not a bound) of its relative error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Length {
@@ -89,6 +92,15 @@ pub(crate) fn chord_by(at: impl Fn(Point) -> Tensor, p: Point, q: Point) -> f64 
 pub(crate) fn chord_near(field: &dyn MetricField, p: Point, q: Point, mut near: Near) -> f64 {
     let d = q - p;
     GAUSS.iter().map(|&(t, weight)| weight * field.at_near(p.lerp(q, t), &mut near).length(d)).sum()
+}
+
+/// Length of the straight segment p-q by four-point Lobatto quadrature, where the tensors at both ends are known and the field may be
+/// looked for at a place near the first.
+pub(crate) fn chord_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [Tensor; 2], mut near: Near) -> f64 {
+    let d = q - p;
+    let [from, to] = ends.map(|tensor| tensor.length(d));
+    let inner: f64 = LOBATTO.iter().map(|&t| field.at_near(p.lerp(q, t), &mut near).length(d)).sum();
+    (from + to + 5.0 * inner) / 12.0
 }
 
 /// The metric length up to each point of a path, with the tensors at the middles of its segments.

@@ -46,7 +46,9 @@ pub(crate) use karcher::karcher_mean;
 pub(crate) use konukoglu::Konukoglu;
 pub(crate) use label::{Label, NO_COLOUR, Sources, Support};
 pub(crate) use lattice::Lattice;
-pub(crate) use length::{Length, bent_chord, chord, chord_by, chord_near, hermite, hermite_between, place_at, reached};
+pub(crate) use length::{
+    Length, bent_chord, chord, chord_between, chord_by, chord_near, hermite, hermite_between, place_at, reached,
+};
 pub(crate) use local::{LocalMetric, STILL};
 pub(crate) use march::Marching;
 pub use mending::Propagation;

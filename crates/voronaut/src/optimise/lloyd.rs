@@ -126,7 +126,9 @@ impl<C> Descent<'_, C> {
             dual.save_over(saved);
         }
         let before: &M::Saved = saved.get_or_insert_with(|| dual.save());
-        let mut direction = self.state.direction(dual, &self.memory);
+        let mut is_lloyd = !self.cells.lower_energy();
+        let mut direction =
+            if is_lloyd { self.state.to_centroids(dual) } else { self.state.direction(dual, &self.memory) };
         let mut share = 1.0;
         self.rest.next_step();
         for attempt in 1..=BACKTRACKS {
@@ -140,9 +142,10 @@ impl<C> Descent<'_, C> {
             let resting = self.rest.blame(dual, &self.state, &next);
             dual.take_back(before);
             self.relaxed.taken_back += 1;
-            if attempt > LLOYD_AFTER && !self.memory.is_empty() {
+            if attempt > LLOYD_AFTER && !is_lloyd {
                 self.memory.clear();
-                direction = self.state.direction(dual, &self.memory);
+                is_lloyd = true;
+                direction = self.state.to_centroids(dual);
             } else if resting == 0 || attempt > SHORTER_AFTER {
                 share *= 0.5;
             }

@@ -9,6 +9,7 @@ mod movers;
 mod polish;
 mod protect;
 mod quasi_newton;
+mod springs;
 mod survey;
 
 pub use cell::Cell;

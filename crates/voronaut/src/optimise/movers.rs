@@ -3,10 +3,11 @@
 
 use super::cell::{CellsOf, Moments};
 use super::quasi_newton::{Memory, dot};
+use super::springs::Springs;
 use crate::canvas::{self, Canvas};
 use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
-use crate::geometry::{Point, Vector, from_frame};
+use crate::geometry::{Point, Vector, from_frame, to_frame};
 use crate::net::{Ball, circles_on_canvas};
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
@@ -15,6 +16,9 @@ use crate::triangulation::VertexId;
 const HALVINGS: u32 = 4;
 /// Longest move in one step (metric length).
 const LONGEST: f64 = 0.5;
+/// Rough seeds go so many times as far as to the centroid, for neighbours that go the same way take it along with them. Half-rough metrics gain by more
+/// (mean quality of the swirl in 20 steps: 0.942 for 1, 0.943, 0.945 for 1.6), wild ones lose (Aegean: 0.815, 0.815, 0.812).
+const BEYOND: f64 = 1.2;
 /// Seeds slide along segments only as far as their edges there keep within these lengths (metric), well inside the unit
 /// range: where the interior would have another number of them on the boundary, they would open gaps.
 const SLIDING: [f64; 2] = [0.75, 1.33];
@@ -35,7 +39,8 @@ pub(super) struct State {
 pub(super) struct Mover {
     pub(super) id: VertexId,
     freedom: Freedom,
-    mass: f64,
+    /// The area of its cell.
+    pub(super) mass: f64,
     /// Whether the metric is rough at the seed or one of its neighbours: no quasi-Newton step helps there.
     pub(super) is_rough: bool,
 }
@@ -67,22 +72,34 @@ impl State {
         Ok(Self { energy, shares, seeds, gradient })
     }
 
-    /// Where to go: the quasi-Newton direction at smooth seeds, Lloyd's step at rough ones.
+    /// Where to go: the quasi-Newton direction at smooth seeds, on top of what springs between them give; Lloyd's step at rough ones.
     pub(super) fn direction(&self, dual: &impl Moving, memory: &Memory) -> Vec<Vector> {
+        let springs = Springs::new(dual, &self.seeds);
         let scale = |gradient: &mut [Vector]| {
             let each = gradient.par_iter_mut().zip(&self.seeds).with_min_len(1024);
-            each.for_each(|(g, seed)| *g = seed.scaled(dual, *g));
+            each.for_each(|(g, seed)| *g = seed.pull(dual, *g));
+            let moves = springs.give_way(gradient);
+            let each = gradient.par_iter_mut().zip(&moves).zip(&self.seeds).with_min_len(1024);
+            each.for_each(|((g, &way), seed)| *g = from_frame(dual.local(seed.id).tensor.cholesky(), way));
         };
         let mut direction = memory.direction(&self.gradient, scale);
         // Not downhill: only Lloyd's step surely is.
         let is_uphill = dot(&direction, &self.gradient) > 0.0;
         let each = direction.par_iter_mut().zip(&self.seeds).zip(&self.gradient).with_min_len(1024);
         each.for_each(|((d, seed), &g)| {
-            if is_uphill || seed.is_rough {
+            if is_uphill {
                 *d = -seed.scaled(dual, g);
+            } else if seed.is_rough {
+                *d = -seed.scaled(dual, g) * BEYOND;
             }
         });
         direction
+    }
+
+    /// Lloyd's step.
+    pub(super) fn to_centroids(&self, dual: &impl Moving) -> Vec<Vector> {
+        let each = self.gradient.par_iter().zip(&self.seeds).with_min_len(1024);
+        each.map(|(&g, seed)| -seed.scaled(dual, g)).collect()
     }
 }
 
@@ -119,6 +136,21 @@ impl Mover {
             Freedom::Straight | Freedom::Exponential => tensor.inverse().apply(gradient),
         };
         step * (0.5 / self.mass)
+    }
+
+    /// A covector in the orthonormal frame.
+    fn pull(&self, dual: &impl Moving, gradient: Vector) -> Vector {
+        let tensor = dual.local(self.id).tensor;
+        let frame = tensor.cholesky();
+        let pull = to_frame(frame, tensor.inverse().apply(gradient));
+        self.line(frame).map_or(pull, |line| line * line.dot(pull))
+    }
+
+    /// The direction of the segment that it slides along, in an orthonormal frame.
+    pub(super) fn line(&self, frame: [f64; 3]) -> Option<Vector> {
+        let Freedom::Along(t) = self.freedom else { return None };
+        let line = to_frame(frame, t);
+        Some(line * (1.0 / line.norm()))
     }
 
     /// Where a step leads a seed that is on no segment: the move, if nothing is in its way.

@@ -25,11 +25,6 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// Whether nothing is remembered: directions are then those of `scaled` alone.
-    pub(super) fn is_empty(&self) -> bool {
-        self.pairs.is_empty()
-    }
-
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
         self.pairs.clear();
@@ -65,6 +60,7 @@ impl Memory {
     }
 }
 
+/// The sum of the products.
 pub(super) fn dot(a: &[Vector], b: &[Vector]) -> f64 {
     let part = |(a, b): (&[Vector], &[Vector])| -> f64 { a.iter().zip(b).map(|(u, v)| u.dot(*v)).sum() };
     // Parts of one length, summed in order: the same for any number of threads.
@@ -72,7 +68,8 @@ pub(super) fn dot(a: &[Vector], b: &[Vector]) -> f64 {
     parts.into_iter().sum()
 }
 
-fn add(to: &mut [Vector], what: &[Vector], times: f64) {
+/// Adds a multiple of other vectors.
+pub(super) fn add(to: &mut [Vector], what: &[Vector], times: f64) {
     to.par_iter_mut().zip(what).with_min_len(PART).for_each(|(sum, &w)| *sum = *sum + w * times);
 }
 

@@ -72,7 +72,7 @@ impl Default for MeshOptions {
             stiffness: FitOptions::default().stiffness,
             mesher: Mesher::default(),
             effort: Effort::default(),
-            lloyd: 40,
+            lloyd: 20,
             centroid: Centroid::default(),
             polish: 20,
             dual: Road::default(),
