@@ -9,7 +9,7 @@ const TRIAL: f64 = 0.1;
 /// Beyond this bow the one mode does not tell the path.
 const FAR: f64 = 0.3;
 /// Segments of the path that serves then.
-const SEGMENTS: usize = 4;
+const SEGMENTS: usize = 8;
 /// Its energy is minimised until a step gains no more than this share.
 const SETTLED: f64 = 1e-4;
 /// Where the tensors around a chord give it lengths that differ by this factor the best bow is searched, too,

@@ -69,8 +69,8 @@ impl Patience {
 
 /// Lowers the energy in at most so many steps; ends early when they gain too little.
 ///
-/// Directions are those of a quasi-Newton method whose first guess is Lloyd's step to the centroid, and Lloyd's where the
-/// metric is rough. Free seeds move by the second-order exponential map, those on a segment slide along it, corners stay.
+/// Directions are those of a quasi-Newton method whose first guess is how springs between seeds give way ([`Springs`](super::springs::Springs)), and
+/// along Lloyd's step to the centroid where the metric is rough. Free seeds move by the second-order exponential map, those on a segment slide along it, corners stay.
 /// After each step edges are flipped. A step that would raise the energy is taken back, and the seeds to blame rest
 /// before the others are shortened. The triangulation stays embedded throughout. The result does not depend on the
 /// number of threads.

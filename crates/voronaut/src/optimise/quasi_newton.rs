@@ -1,5 +1,5 @@
 //! Limited-memory quasi-Newton directions (L-BFGS: Nocedal 1980), as used for centroidal Voronoi tessellations by Liu et al.
-//! (2009), on top of Lloyd's step.
+//! (2009), on top of a first guess.
 
 use crate::geometry::Vector;
 use crate::parallel::prelude::*;

@@ -197,3 +197,76 @@ impl<'a, M: Moving> Net<'a, M> {
         end.line.map_or(way, |line| line * line.dot(way))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::cell::Tangent;
+    use super::super::movers::State;
+    use super::*;
+    use crate::domain::Domain;
+    use crate::dual::Dual;
+    use crate::metric::{MetricField, Scaled, Uniform};
+    use crate::progress::Silent;
+    use crate::sampling::{Fill, Plan, Target, refine, sample_segments};
+
+    fn seeded<'a>(domain: &Domain, field: &'a dyn MetricField) -> Dual<'a> {
+        let plan = Plan::new(domain, &[], field, Target::Vertices(400)).unwrap();
+        let scaled = Scaled { field, factor: plan.scale_for(400.0) };
+        let mut dual = Dual::new(domain, scaled).unwrap();
+        sample_segments(&mut dual, &plan.edges, &plan.arcs, scaled.factor);
+        refine(&mut dual, Fill::AtMost(400), &Silent).unwrap();
+        dual
+    }
+
+    /// Vectors without an order, along the line of a seed that is on one.
+    fn scattered(springs: &Springs, seed: f64) -> Vec<Vector> {
+        let any = |i: usize| Vector::new((seed * i as f64).sin(), (seed + 2.0 * i as f64).cos());
+        springs.alone(&(0..springs.anchors.len()).map(any).collect::<Vec<Vector>>())
+    }
+
+    #[test]
+    fn forces_are_those_of_springs() {
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        let field = Uniform(Tensor::new(9.0, 2.0, 1.0));
+        let dual = seeded(&domain, &field);
+        let state = State::of(&dual, &Tangent).unwrap();
+        let springs = Springs::new(&dual, &state.seeds);
+        let [u, v] = [0.7, 1.3].map(|seed| scattered(&springs, seed));
+        let [there, back] = [dot(&u, &springs.force(&v)), dot(&v, &springs.force(&u))];
+        assert!((there - back).abs() < 1e-5 * there.abs().max(1.0), "{there} {back}");
+        assert!(dot(&u, &springs.force(&u)) > 0.0);
+        // What is pulled at with the force that it takes to move it goes there, nearly.
+        let came = springs.give_way(&springs.force(&u));
+        let off: Vec<Vector> = came.iter().zip(&u).map(|(&a, &b)| a - b).collect();
+        assert!(dot(&off, &off) < 0.01 * dot(&u, &u), "{} {}", dot(&off, &off), dot(&u, &u));
+        // All together springs inside hold nothing but anchors.
+        let together = vec![Vector::new(1.0, 0.0); u.len()];
+        let topology = dual.topology();
+        let is_inside = |v: VertexId| topology.star(v).all(|h| !topology.is_border_vertex(topology.target(h)));
+        for (i, force) in springs.force(&together).into_iter().enumerate() {
+            let seed = &state.seeds[i];
+            if !topology.is_border_vertex(seed.id) && is_inside(seed.id) {
+                let off = force - Vector::new(springs.anchors[i], 0.0);
+                assert!(off.norm() < 1e-6 * seed.mass, "{force:?} {}", springs.anchors[i]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_lowers_the_energy_by_more_than_lloyd_s() {
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        let field = Uniform(Tensor::new(9.0, 2.0, 1.0));
+        let after = |directions: fn(&State, &Dual) -> Vec<Vector>| {
+            let mut dual = seeded(&domain, &field);
+            let state = State::of(&dual, &Tangent).unwrap();
+            for (seed, step) in state.seeds.iter().zip(directions(&state, &dual)) {
+                seed.shift(&mut dual, step);
+            }
+            dual.settle_moves().unwrap();
+            State::of(&dual, &Tangent).unwrap().energy / state.energy
+        };
+        let lloyd = after(|state, dual| state.to_centroids(dual));
+        let springs = after(|state, dual| state.direction(dual, &Default::default()));
+        assert!(springs < 1.0 - 1.2 * (1.0 - lloyd), "{springs} {lloyd}");
+    }
+}
