@@ -80,7 +80,7 @@ def mesh(
     nr: bool = False,
     mesher: str = 'voronoi',
     effort: str = 'normal',
-    lloyd: int = 20,
+    lloyd: int = 40,
     centroid: str = 'tangent',
     polish: int = 20,
     dual: str = 'both',
@@ -169,7 +169,7 @@ def mesh(
         agree: to compare; n then sets the scale only)
     effort : str, default 'normal'
         How much work is spent on what is left to gain: fast, normal or best
-    lloyd : int, default 20
+    lloyd : int, default 40
         Steps of Riemannian Lloyd relaxation, at most
     centroid : str, default 'tangent'
         The centroids seeds are relaxed to: tangent (of cells in tangent planes), canvas (of the diagram's cells) or
@@ -236,7 +236,7 @@ def mesh(
     >>> layer = voronaut.mesh("rect:0,0,1,1", lambda p: 0.01 + 0.2 * abs(p[:, 1] - 0.5), n=2000)
     """
     options = {"complexity": complexity, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "hausd": hausd, "required": required, "order": order, "boundary": boundary, "periodic": periodic, "fit": fit, "ar": ar, "nr": nr, "mesher": mesher, "effort": effort, "lloyd": lloyd, "centroid": centroid, "polish": polish, "dual": dual, "geodesic": geodesic, "seeding": seeding, "protection": protection, "picking_radius": picking_radius, "net": net, "canvas": canvas, "canvas_size": canvas_size, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "view": view, "cells": cells, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
-    defaults: dict[str, Any] = {"norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "order": 1, "boundary": 'auto', "ar": 45, "mesher": 'voronoi', "effort": 'normal', "lloyd": 20, "centroid": 'tangent', "polish": 20, "dual": 'both', "geodesic": 'march', "seeding": 'sizing', "protection": 0.2, "picking_radius": 0.3, "canvas": 'intrinsic', "canvas_size": 60, "show": 'mesh', "pixels": 1600, "memory_limit": 16}
+    defaults: dict[str, Any] = {"norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "order": 1, "boundary": 'auto', "ar": 45, "mesher": 'voronoi', "effort": 'normal', "lloyd": 40, "centroid": 'tangent', "polish": 20, "dual": 'both', "geodesic": 'march', "seeding": 'sizing', "protection": 0.2, "picking_radius": 0.3, "canvas": 'intrinsic', "canvas_size": 60, "show": 'mesh', "pixels": 1600, "memory_limit": 16}
     return _run.mesh(domain, metric, n, options, defaults, progress)
 
 

@@ -14,6 +14,8 @@ const SEGMENTS: usize = 8;
 const SETTLED: f64 = 1e-4;
 /// Where the tensors around a chord give it lengths that differ by this factor the best bow is searched, too,
 const UNLIKE: f64 = 1.2;
+/// and from this factor on the path of segments is tried beside it;
+const WILD: f64 = 4.0;
 /// and the path halved at its top unless it is no more than this,
 const NEAR: f64 = 0.1;
 /// and saves what was foreseen, but for this share of the length;
@@ -32,8 +34,8 @@ const STEADY: f64 = 0.25;
 
 /// Length of the geodesic p-q: the least length of the parabolas through p and q, by quadrature on three of them and on
 /// the best of the parabola through their lengths. To second order in the length geodesics are parabolas; where the best
-/// one bows out far, a path of segments ([`path_energy`](super::path_energy)) answers instead, or where the metric differs much
-/// around the chord a path of parts of parabolas, if that is shorter. It asks nothing of the field's derivatives: kinks do no harm.
+/// one bows out far, a path of segments ([`path_energy`](super::path_energy)) answers instead, and where the metric differs
+/// around the chord a path of parts of parabolas, if that is shorter, or where it differs much the shorter of both. It asks nothing of the field's derivatives: kinks do no harm.
 ///
 /// Where the metric varies little from end to end and across, tensors are interpolated from five, and the error is of
 /// fourth order in the length; else the field is evaluated wherever it is needed, 21 times at least, and the length is
@@ -56,13 +58,13 @@ pub(crate) fn bowed_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [
     }
     let evaluated = |bow: f64| parabola(|t, offset| at(p + d * t + across * offset), d, across, bow);
     let (straight, best) = least(evaluated);
-    if samples.differ(d) {
-        return best.unwrap_or(straight).min(halved(&at, [p, q], straight, HALVINGS));
-    }
-    best.unwrap_or_else(|| {
-        let path = relaxed_length(field, p, q, SEGMENTS, SETTLED);
+    let unlike = samples.unlike(d);
+    let length = best.unwrap_or_else(|| {
+        let is_halved_alone = UNLIKE < unlike && unlike < WILD;
+        let path = if is_halved_alone { straight } else { relaxed_length(field, p, q, SEGMENTS, SETTLED) };
         if path.is_finite() { path.min(straight) } else { straight }
-    })
+    });
+    if unlike > UNLIKE { length.min(halved(&at, [p, q], straight, HALVINGS)) } else { length }
 }
 
 /// Orthogonal to a chord in the metric at its middle, and of its length there.
@@ -169,10 +171,10 @@ impl Samples {
         along + self.sides[0] * left + self.sides[1] * right + self.middle * -(share * share)
     }
 
-    /// Whether lengths of the chord by one tensor alone differ much.
-    fn differ(&self, d: Vector) -> bool {
+    /// The factor by which lengths of the chord by one tensor alone differ.
+    fn unlike(&self, d: Vector) -> f64 {
         let lengths = || self.ends.iter().chain(&self.sides).chain([&self.middle]).map(|tensor| tensor.length(d));
-        lengths().fold(0.0, f64::max) > UNLIKE * lengths().fold(f64::INFINITY, f64::min)
+        lengths().fold(0.0, f64::max) / lengths().fold(f64::INFINITY, f64::min)
     }
 
     fn are_steady(&self) -> bool {

@@ -202,6 +202,7 @@ impl<'a, M: Moving> Net<'a, M> {
 mod tests {
     use super::super::cell::Tangent;
     use super::super::movers::State;
+    use super::super::quasi_newton::Memory;
     use super::*;
     use crate::domain::Domain;
     use crate::dual::Dual;
@@ -266,7 +267,7 @@ mod tests {
             State::of(&dual, &Tangent).unwrap().energy / state.energy
         };
         let lloyd = after(|state, dual| state.to_centroids(dual));
-        let springs = after(|state, dual| state.direction(dual, &Default::default()));
+        let springs = after(|state, dual| state.direction(dual, &Memory::default()));
         assert!(springs < 1.0 - 1.2 * (1.0 - lloyd), "{springs} {lloyd}");
     }
 }

@@ -72,7 +72,7 @@ impl Default for MeshOptions {
             stiffness: FitOptions::default().stiffness,
             mesher: Mesher::default(),
             effort: Effort::default(),
-            lloyd: 20,
+            lloyd: 40,
             centroid: Centroid::default(),
             polish: 20,
             dual: Road::default(),
@@ -114,7 +114,7 @@ impl Effort {
     pub(super) fn gain(self) -> f64 {
         match self {
             Effort::Fast => 4e-3,
-            Effort::Normal => 1e-4,
+            Effort::Normal => 2e-3,
             Effort::Best => 1e-6,
         }
     }
