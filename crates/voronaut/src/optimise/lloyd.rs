@@ -2,6 +2,7 @@
 //! Gunzburger 1999).
 
 use super::cell::CellsOf;
+use super::directions::{by_memory, to_centroids};
 use super::movers::{Mover, State};
 use super::quasi_newton::Memory;
 use super::survey::Rest;
@@ -128,7 +129,7 @@ impl<C> Descent<'_, C> {
         let before: &M::Saved = saved.get_or_insert_with(|| dual.save());
         let mut is_lloyd = !self.cells.lower_energy();
         let mut direction =
-            if is_lloyd { self.state.to_centroids(dual) } else { self.state.direction(dual, &self.memory) };
+            if is_lloyd { to_centroids(&self.state, dual) } else { by_memory(&self.state, dual, &self.memory) };
         let mut share = 1.0;
         self.rest.next_step();
         for attempt in 1..=BACKTRACKS {
@@ -145,7 +146,7 @@ impl<C> Descent<'_, C> {
             if attempt > LLOYD_AFTER && !is_lloyd {
                 self.memory.clear();
                 is_lloyd = true;
-                direction = self.state.to_centroids(dual);
+                direction = to_centroids(&self.state, dual);
             } else if resting == 0 || attempt > SHORTER_AFTER {
                 share *= 0.5;
             }

@@ -2,6 +2,7 @@
 //! too short or too long. On surfaces: vertices of a finished mesh moved to where it is closest to the surface (`fit`).
 
 mod cell;
+mod directions;
 mod exchange;
 mod fit;
 mod lloyd;

@@ -2,8 +2,6 @@
 //! diagram on a canvas decides on.
 
 use super::cell::{CellsOf, Moments};
-use super::quasi_newton::{Memory, dot};
-use super::springs::Springs;
 use crate::canvas::{self, Canvas};
 use crate::dual::{Dual, Kind, Moving};
 use crate::error::Result;
@@ -16,9 +14,6 @@ use crate::triangulation::VertexId;
 const HALVINGS: u32 = 4;
 /// Longest move in one step (metric length).
 const LONGEST: f64 = 0.5;
-/// Rough seeds go so many times as far as to the centroid, for neighbours that go the same way take it along with them. Half-rough metrics gain by more
-/// (mean quality of the swirl in 20 steps: 0.942 for 1, 0.943, 0.945 for 1.6), wild ones lose (Aegean: 0.815, 0.815, 0.812).
-const BEYOND: f64 = 1.2;
 /// Seeds slide along segments only as far as their edges there keep within these lengths (metric), well inside the unit
 /// range: where the interior would have another number of them on the boundary, they would open gaps.
 const SLIDING: [f64; 2] = [0.75, 1.33];
@@ -71,36 +66,6 @@ impl State {
         let (seeds, gradient) = movable.filter_map(|(v, m)| Mover::new(dual, v, &m, straight)).unzip();
         Ok(Self { energy, shares, seeds, gradient })
     }
-
-    /// Where to go: the quasi-Newton direction at smooth seeds, on top of what springs between them give; Lloyd's step at rough ones.
-    pub(super) fn direction(&self, dual: &impl Moving, memory: &Memory) -> Vec<Vector> {
-        let springs = Springs::new(dual, &self.seeds);
-        let scale = |gradient: &mut [Vector]| {
-            let each = gradient.par_iter_mut().zip(&self.seeds).with_min_len(1024);
-            each.for_each(|(g, seed)| *g = seed.pull(dual, *g));
-            let moves = springs.give_way(gradient);
-            let each = gradient.par_iter_mut().zip(&moves).zip(&self.seeds).with_min_len(1024);
-            each.for_each(|((g, &way), seed)| *g = from_frame(dual.local(seed.id).tensor.cholesky(), way));
-        };
-        let mut direction = memory.direction(&self.gradient, scale);
-        // Not downhill: only Lloyd's step surely is.
-        let is_uphill = dot(&direction, &self.gradient) > 0.0;
-        let each = direction.par_iter_mut().zip(&self.seeds).zip(&self.gradient).with_min_len(1024);
-        each.for_each(|((d, seed), &g)| {
-            if is_uphill {
-                *d = -seed.scaled(dual, g);
-            } else if seed.is_rough {
-                *d = -seed.scaled(dual, g) * BEYOND;
-            }
-        });
-        direction
-    }
-
-    /// Lloyd's step.
-    pub(super) fn to_centroids(&self, dual: &impl Moving) -> Vec<Vector> {
-        let each = self.gradient.par_iter().zip(&self.seeds).with_min_len(1024);
-        each.map(|(&g, seed)| -seed.scaled(dual, g)).collect()
-    }
 }
 
 fn is_rough_around(dual: &impl Moving, v: VertexId) -> bool {
@@ -126,7 +91,7 @@ impl Mover {
     }
 
     /// A first guess of the inverse Hessian times a covector: the gradient, so scaled, is minus the step to the centroid.
-    fn scaled(&self, dual: &impl Moving, gradient: Vector) -> Vector {
+    pub(super) fn scaled(&self, dual: &impl Moving, gradient: Vector) -> Vector {
         if self.mass <= 0.0 {
             return Vector::default();
         }
@@ -139,7 +104,7 @@ impl Mover {
     }
 
     /// A covector in the orthonormal frame.
-    fn pull(&self, dual: &impl Moving, gradient: Vector) -> Vector {
+    pub(super) fn pull(&self, dual: &impl Moving, gradient: Vector) -> Vector {
         let tensor = dual.local(self.id).tensor;
         let frame = tensor.cholesky();
         let pull = to_frame(frame, tensor.inverse().apply(gradient));
