@@ -255,7 +255,8 @@ impl<'s> Draped<'s> {
     }
 
     fn measure_around(&mut self, v: VertexId) {
-        for h in self.topology.spokes(v) {
+        let spokes: Vec<HalfEdge> = self.topology.spokes(v).collect();
+        for h in spokes {
             let length = self.length_of(h, Along::Straight);
             self.topology.set_length(h, length);
         }

@@ -121,7 +121,8 @@ impl<'a> Refiner<'a> {
         let Some(v) = self.steiner.planar.insert_on_edge(h, p.midpoint(q)) else { return Ok(false) };
         counters.splits += 1;
         counters.planar_flips += self.steiner.added(v, Some(v))?;
-        for h in self.steiner.planar.topology.spokes(v) {
+        let spokes: Vec<HalfEdge> = self.steiner.planar.topology.spokes(v).collect();
+        for h in spokes {
             self.enqueue(h);
         }
         Ok(true)

@@ -34,8 +34,8 @@ const STEADY: f64 = 0.25;
 
 /// Length of the geodesic p-q: the least length of the parabolas through p and q, by quadrature on three of them and on
 /// the best of the parabola through their lengths. To second order in the length geodesics are parabolas; where the best
-/// one bows out far, a path of segments ([`path_energy`](super::path_energy)) answers instead, and where the metric differs
-/// around the chord a path of parts of parabolas, if that is shorter, or where it differs much the shorter of both. It asks nothing of the field's derivatives: kinks do no harm.
+/// one bows out far, a path of segments ([`path_energy`](super::path_energy)) answers instead; where the metric differs around the chord
+/// a path of parts of parabolas, and where it differs much the shorter of both. It asks nothing of the field's derivatives: kinks do no harm.
 ///
 /// Where the metric varies little from end to end and across, tensors are interpolated from five, and the error is of
 /// fourth order in the length; else the field is evaluated wherever it is needed, 21 times at least, and the length is
@@ -59,11 +59,13 @@ pub(crate) fn bowed_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [
     let evaluated = |bow: f64| parabola(|t, offset| at(p + d * t + across * offset), d, across, bow);
     let (straight, best) = least(evaluated);
     let unlike = samples.unlike(d);
-    let length = best.unwrap_or_else(|| {
-        let is_halved_alone = UNLIKE < unlike && unlike < WILD;
-        let path = if is_halved_alone { straight } else { relaxed_length(field, p, q, SEGMENTS, SETTLED) };
-        if path.is_finite() { path.min(straight) } else { straight }
-    });
+    let length = match best {
+        Some(length) => length,
+        None if (UNLIKE..WILD).contains(&unlike) => straight,
+        None => Some(relaxed_length(field, p, q, SEGMENTS, SETTLED))
+            .filter(|path| path.is_finite())
+            .map_or(straight, |path| path.min(straight)),
+    };
     if unlike > UNLIKE { length.min(halved(&at, [p, q], straight, HALVINGS)) } else { length }
 }
 

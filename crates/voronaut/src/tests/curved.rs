@@ -113,12 +113,8 @@ fn thin_layers_are_bent_with_their_boundary() {
         let across = (3e-4 + 0.3 * away).min(0.2);
         Tensor::from_axis(if r > 0.0 { out * (1.0 / r) } else { Vector::new(1.0, 0.0) }, across.powi(-2), 25.0)
     };
-    let meshed = mesh(&domain, &layer, &options(300, 2, Boundary::Spline), &Silent).unwrap();
-    let found = validity(&meshed.mesh);
-    assert!(found.valid && (found.area - 0.5 * PI).abs() < 1e-3, "{}", found.area);
-    // A point where triangles would fold may stay away, and is told.
-    let away = |note: &String| note.split(' ').next().and_then(|count| count.parse().ok()).unwrap_or(usize::MAX);
-    assert!(meshed.notes.iter().map(away).all(|points| points <= 2), "{:?}", meshed.notes);
+    let meshed = made(&domain, &layer, &options(300, 2, Boundary::Spline));
+    assert!((validity(&meshed.mesh).area - 0.5 * PI).abs() < 1e-4);
 }
 
 /// Where both sides of a triangle at a vertex are on a smooth boundary they would make a half turn there.

@@ -59,7 +59,7 @@ fn polished_meshes() {
     let options = MeshOptions { vertices: Some(200), polish: 5, effort: Effort::Best, ..MeshOptions::default() };
     let function: Snapshot = Expression::parse("sin(3*x)*cos(5*y)", Variables::Plane).unwrap().into();
     let aim = || Some(Aim { function: &function, norm: Norm::default(), known_to: 0.0 });
-    stops(25, |progress| recipe::mesh_for(&domain, &Uniform::default(), aim(), &options, progress).map(drop));
+    stops(45, |progress| recipe::mesh_for(&domain, &Uniform::default(), aim(), &options, progress).map(drop));
 }
 
 #[test]

@@ -281,10 +281,9 @@ impl Triangulation {
     }
 
     /// A half-edge of every edge at a vertex, counter-clockwise: of the last one at the border that which comes in.
-    pub(crate) fn spokes(&self, v: VertexId) -> Vec<HalfEdge> {
-        let mut spokes: Vec<HalfEdge> = self.star(v).collect();
-        spokes.extend(spokes.last().map(|h| h.prev()).filter(|&h| self.twin(h).is_none()));
-        spokes
+    pub(crate) fn spokes(&self, v: VertexId) -> impl Iterator<Item = HalfEdge> + '_ {
+        let coming_in = |h: HalfEdge| Some(h.prev()).filter(|&h| self.twin(h).is_none());
+        self.star(v).flat_map(move |h| std::iter::once(h).chain(coming_in(h)))
     }
 
     /// Whether the vertex lies on the border.

@@ -218,7 +218,7 @@ impl<'a> Base<'a> {
             let Some(p) = on(h).filter(|&p| p != self.position(a) && p != self.position(b)) else { continue };
             let (v, _) = self.split(h, p);
             halvings -= 1;
-            queue.extend(self.topology.spokes(v).into_iter().map(|h| entry(self, h)));
+            queue.extend(self.topology.spokes(v).map(|h| entry(self, h)));
         }
     }
 
@@ -298,7 +298,7 @@ impl<'a> Base<'a> {
         let marks: Vec<Option<Mark>> = cuts.iter().map(|&h| self.mark(h)).collect();
         let is_stop = |&v: &u32| {
             let along = network.at(v);
-            let marked = self.topology.spokes(VertexId(v)).into_iter().filter(|&h| self.topology.is_fixed(h)).count();
+            let marked = self.topology.spokes(VertexId(v)).filter(|&h| self.topology.is_fixed(h)).count();
             let of_cuts = along.iter().filter(|&&edge| marks[edge as usize].is_some()).count();
             let is_required = || along.iter().any(|&edge| marks[edge as usize].is_some_and(|mark| mark.is_required));
             let changes = || along.windows(2).any(|pair| marks[pair[0] as usize] != marks[pair[1] as usize]);

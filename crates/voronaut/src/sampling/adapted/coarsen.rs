@@ -45,7 +45,7 @@ impl Work<'_> {
     /// Contracts a vertex of the border onto the neighbour along it with which triangles turn away least, if they may.
     fn contract_along_border(&mut self, v: VertexId) -> bool {
         let t = &self.topology;
-        let ways = t.spokes(v).into_iter().filter(|&h| t.twin(h).is_none() && t.can_collapse(h));
+        let ways = t.spokes(v).filter(|&h| t.twin(h).is_none() && t.can_collapse(h));
         let worst = |h: HalfEdge| {
             let to = if t.origin(h) == v { t.target(h) } else { t.origin(h) };
             self.moved(v, to).map(|after| self.leaning(after)).fold(1.0, f64::min)
