@@ -45,6 +45,20 @@ impl dyn Progress + '_ {
     }
 }
 
+/// Progress within a stage: work that is not counted, but stops and is shown.
+pub(crate) struct Within<'a>(pub(crate) &'a dyn Progress);
+
+impl Progress for Within<'_> {
+    fn stage(&self, _name: &'static str, _total: u64) {}
+    fn done(&self, _units: u64) {}
+    fn is_stopped(&self) -> bool {
+        self.0.is_stopped()
+    }
+    fn sketch(&self, draw: &dyn Fn() -> Sketch) {
+        self.0.sketch(draw);
+    }
+}
+
 /// Progress that nobody watches.
 pub struct Silent;
 

@@ -6,6 +6,7 @@
 
 mod consult;
 mod edit;
+mod halve;
 mod margin;
 mod moving;
 mod on_surface;

@@ -91,7 +91,7 @@ pub(crate) fn relax<M: Moving>(
     dual.measure();
     let state = State::of(dual, cells)?;
     relaxed.energy.push(state.energy);
-    let mut descent = Descent { cells, memory: Memory::default(), rest: Rest::new(state.seeds.len()), state, relaxed };
+    let mut descent = Descent { cells, gain, memory: Memory::default(), rest: Rest::new(state.seeds.len()), state, relaxed };
     let (mut small, mut saved) = (0, None);
     for _ in 0..steps {
         let before = descent.state.energy;
@@ -110,6 +110,7 @@ pub(crate) fn relax<M: Moving>(
 
 struct Descent<'a, C> {
     cells: &'a C,
+    gain: f64,
     memory: Memory,
     rest: Rest,
     state: State,
@@ -150,8 +151,19 @@ impl<C> Descent<'_, C> {
             } else if resting == 0 || attempt > SHORTER_AFTER {
                 share *= 0.5;
             }
+            if !self.promises(dual, &direction, share) {
+                break;
+            }
         }
         Ok(false)
+    }
+
+    /// Whether a share of a direction would gain enough if the energy were quadratic, with its minimum at the end of the whole direction.
+    fn promises(&self, dual: &impl Moving, direction: &[Vector], share: f64) -> bool {
+        let awake = (0..direction.len()).filter(|&i| self.rest.is_awake(i));
+        let slope: f64 = awake.map(|i| direction[i].dot(self.state.gradient[i])).sum();
+        let energy = self.state.energy * dual.factor().powi(2);
+        -slope * share * (1.0 - 0.5 * share) > self.gain * energy
     }
 
     /// Moves all seeds that do not rest by a share of a direction and settles the triangulation; moves held back, and flips.

@@ -211,7 +211,7 @@ pub(super) mod tests {
         let plan = Plan::new(domain, &[], field, Target::Vertices(400)).unwrap();
         let scaled = Scaled { field, factor: plan.scale_for(400.0) };
         let mut dual = Dual::new(domain, scaled).unwrap();
-        sample_segments(&mut dual, &plan.edges, &plan.arcs, scaled.factor);
+        sample_segments(&mut dual, &plan.edges, &plan.arcs, scaled.factor, 0);
         refine(&mut dual, Fill::AtMost(400), &Silent).unwrap();
         dual
     }

@@ -2,12 +2,14 @@
 
 mod constrain;
 mod delaunay;
+mod halve;
 mod locate;
 mod operations;
 mod order;
 
 pub use constrain::Crossing;
 pub use delaunay::delaunay;
+pub(crate) use halve::Origin;
 pub(crate) use locate::Location;
 pub(crate) use order::hilbert_order;
 
@@ -82,4 +84,9 @@ impl Planar {
     pub(crate) fn is_embedded(&self) -> bool {
         self.topology.faces().map(|f| self.triangle(f)).all(|[a, b, c]| orientation(a, b, c) == Orientation::Left)
     }
+}
+
+/// Whether a triangle is counter-clockwise.
+fn is_left(a: Point, b: Point, c: Point) -> bool {
+    orientation(a, b, c) == Orientation::Left
 }

@@ -1,7 +1,7 @@
 //! Changes that keep the embedding: each checks first, and does nothing where the result would not be embedded.
 
-use super::Planar;
-use crate::geometry::{Orientation, Point, orientation};
+use super::{Planar, is_left};
+use crate::geometry::Point;
 use crate::lists::distinct;
 use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
@@ -98,10 +98,6 @@ impl Planar {
         }
         v
     }
-}
-
-fn is_left(a: Point, b: Point, c: Point) -> bool {
-    orientation(a, b, c) == Orientation::Left
 }
 
 #[cfg(test)]

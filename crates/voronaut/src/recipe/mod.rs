@@ -2,6 +2,7 @@
 
 mod adapt;
 mod certified;
+mod coarse;
 mod curved;
 mod dual;
 mod at_vertices;
@@ -51,7 +52,7 @@ use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{
-    Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, sample_segments, simplify,
+    Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, simplify,
 };
 use crate::triangulation::HalfEdge;
 use periodic::correspondence;
@@ -213,12 +214,14 @@ struct Job<'a> {
     canvas: Option<CanvasFigures>,
     diagram: Option<figures::Diagram>,
     watch: &'a Stopwatch<'a>,
+    /// Whether the seeds come from those of a coarser mesh.
+    is_even: bool,
     notes: Vec<String>,
 }
 
 impl<'a> Job<'a> {
     fn new(field: &'a dyn MetricField, options: &'a MeshOptions, watch: &'a Stopwatch<'a>) -> Self {
-        Self { field, options, progress: watch.progress, canvas: None, diagram: None, watch, notes: Vec::new() }
+        Self { field, options, progress: watch.progress, canvas: None, diagram: None, watch, is_even: false, notes: Vec::new() }
     }
 
     fn target(&self) -> Target {
@@ -273,8 +276,8 @@ impl<'a> Job<'a> {
     ) -> Result<Dual<'a>> {
         for round in 1.. {
             self.progress.begin("seeding", count as u64)?;
-            let mut dual = Dual::new(domain, Scaled { field: self.field, factor: scale })?;
-            sample_segments(&mut dual, &plan.edges, &plan.arcs, scale);
+            let (mut dual, is_even) = self.begun(domain, plan, count, scale)?;
+            self.is_even = is_even;
             if let Some(canvas) = canvas.filter(|_| self.options.seeding == Seeding::Farthest) {
                 self.seed_farthest(canvas, &mut dual, count)?;
             }

@@ -94,16 +94,8 @@ impl Job<'_> {
             (Centroid::Weighted, Some(canvas)) => Cells::Weighted(OnCanvas::new(canvas, self.field)),
             _ => Cells::Tangent,
         };
-        let (gain, parts) = (self.options.effort.gain(), self.options.effort.parts());
-        let patience = |steps| Patience { steps, gain };
-        let mut relaxed = relax(dual, &cells, patience(steps / parts), self.progress)?;
-        for part in 1..parts {
-            let mut left = (steps * (part + 1)) / parts - (steps * part) / parts;
-            if self.exchange(dual, &cells, &mut relaxed)? {
-                left = left.saturating_sub(1);
-            }
-            relaxed.append(relax(dual, &cells, patience(left), self.progress)?);
-        }
+        let (patience, parts) = (Patience { steps, gain: self.options.effort.gain() }, self.options.effort.parts(self.is_even));
+        let relaxed = self.relax_in_parts(dual, &cells, parts, patience, self.progress)?;
         self.fit_scale(dual);
         if self.exchanges() {
             mend_worst(dual, (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize);
@@ -113,9 +105,36 @@ impl Job<'_> {
         Ok(relaxed)
     }
 
+    /// Relaxes in parts, with an exchange of seeds before each but the first.
+    pub(super) fn relax_in_parts(
+        &self,
+        dual: &mut Dual,
+        cells: &Cells,
+        parts: usize,
+        Patience { steps, gain }: Patience,
+        progress: &dyn Progress,
+    ) -> Result<Relaxed> {
+        let patience = |steps| Patience { steps, gain };
+        let mut relaxed = relax(dual, cells, patience(steps / parts), progress)?;
+        for part in 1..parts {
+            let mut left = (steps * (part + 1)) / parts - (steps * part) / parts;
+            if self.exchange(dual, cells, &mut relaxed, progress)? {
+                left = left.saturating_sub(1);
+            }
+            relaxed.append(relax(dual, cells, patience(left), progress)?);
+        }
+        Ok(relaxed)
+    }
+
     /// Exchanges seeds and takes a step; if both together raise the energy (in a rough metric: by more than its doubt), both
     /// are taken back. Says whether a step was taken.
-    fn exchange(&self, dual: &mut Dual, cells: &Cells, relaxed: &mut Relaxed) -> Result<bool> {
+    fn exchange(
+        &self,
+        dual: &mut Dual,
+        cells: &Cells,
+        relaxed: &mut Relaxed,
+        progress: &dyn Progress,
+    ) -> Result<bool> {
         if !self.exchanges() {
             return Ok(false);
         }
@@ -126,7 +145,7 @@ impl Job<'_> {
         let met = meet_blocked_flips(dual, most(BLOCKED_SHARE));
         exchange(dual, self.fill(count), most(EXCHANGED_SHARE).max(met))?;
         let Some(&energy) = relaxed.energy.last() else { return Ok(false) };
-        let step = relax(dual, cells, Patience { steps: 1, gain: 0.0 }, self.progress)?;
+        let step = relax(dual, cells, Patience { steps: 1, gain: 0.0 }, progress)?;
         let doubt = if self.options.centroid == Centroid::Tangent { ROUGH_DOUBT * rough_share(dual) } else { 0.0 };
         let rises = step.energy.last().is_none_or(|&now| now > (1.0 + doubt) * energy);
         if rises && self.options.centroid != Centroid::Weighted {

@@ -145,7 +145,7 @@ impl<'a> Setting<'a> {
         self.progress.begin("relaxing", steps as u64)?;
         dual.flip_all();
         self.fit_scale(&mut dual)?;
-        let parts = self.options.effort.parts();
+        let parts = self.options.effort.parts(false);
         for part in 0..parts {
             let steps = (steps * (part + 1)) / parts - (steps * part) / parts;
             if part > 0 && steps > 0 {

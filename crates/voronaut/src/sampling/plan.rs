@@ -298,18 +298,37 @@ pub(crate) fn pieces(length: f64) -> usize {
     (length.round() as usize).max(1)
 }
 
-/// Cuts every constrained edge of a fresh dual into edges of about unit metric length; `arcs` are the edges' lengths
+/// How much longer or shorter edges may be that come of halving than they should be.
+const BY_HALVING: f64 = 1.15;
+
+/// How many edges a segment of this metric length is cut into, if they are halved up to so many times later.
+fn pieces_to_halve(length: f64, halvings: u32) -> usize {
+    let tried = (1..=halvings).rev().map(|times| {
+        let n = pieces(length / f64::from(1 << times));
+        (n, length / (n << times) as f64)
+    });
+    let fits = |&(_, each): &(usize, f64)| (BY_HALVING.recip()..=BY_HALVING).contains(&each);
+    tried.into_iter().find(fits).map_or_else(|| pieces(length), |(n, _)| n)
+}
+
+/// Cuts every constrained edge of a fresh dual into edges of about unit metric length, once they are halved so many times; `arcs` are the edges' lengths
 /// under the unscaled field, in order, and `scale` the field's factor. Required segments stay whole. What is cut like its twin stays as it
 /// is from then on.
 ///
 /// A cut that rounding would make invalid is left out. Returns the number of new vertices.
-pub(crate) fn sample_segments(dual: &mut Dual, edges: &[Stretch], arcs: &[MetricArc], scale: f64) -> usize {
+pub(crate) fn sample_segments(
+    dual: &mut Dual,
+    edges: &[Stretch],
+    arcs: &[MetricArc],
+    scale: f64,
+    halvings: u32,
+) -> usize {
     let before = dual.vertex_count();
     for (&Stretch { ends, required, twin }, arc) in edges.iter().zip(arcs) {
         if required {
             continue;
         }
-        let n = pieces(arc.length() * scale.sqrt());
+        let n = pieces_to_halve(arc.length() * scale.sqrt(), halvings);
         let [a, b] = ends.map(|v| dual.position(v));
         let cuts: Vec<Point> = (1..n).map(|k| a.lerp(b, arc.parameter(k as f64 / n as f64))).collect();
         let sides =
@@ -363,7 +382,7 @@ mod tests {
             };
             let plan = Plan::new(&domain, &[], &field, crate::sampling::Target::Metric).unwrap();
             let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
-            sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0);
+            sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0, 0);
             let edges = dual.topology().edges().filter(|&h| dual.topology().constraint(h).is_some());
             let lengths: Vec<f64> = edges.map(|h| dual.edge_length(h)).collect();
             assert!(lengths.iter().all(|length| (0.7..1.4).contains(length)), "{lengths:?}");
@@ -376,7 +395,7 @@ mod tests {
         let field = |_: Point| Tensor::isotropic(1e-4);
         let plan = Plan::new(&domain, &[], &field, crate::sampling::Target::Metric).unwrap();
         let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
-        assert_eq!(sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0), 2 * 9_999);
+        assert_eq!(sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0, 0), 2 * 9_999);
         assert!(dual.counters().flips < 40 * 10_000, "{}", dual.counters().flips);
     }
 

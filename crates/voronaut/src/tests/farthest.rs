@@ -115,7 +115,7 @@ fn work_grows_no_faster_than_n_log_n() {
         let (count, factor) = plan.start(Target::Vertices(seeds), u64::MAX).unwrap();
         let canvas = Canvas::intrinsic(&domain, &field, 10 * seeds).unwrap();
         let mut dual = Dual::new(&domain, Scaled { field: &field, factor }).unwrap();
-        sample_segments(&mut dual, &plan.edges, &plan.arcs, factor);
+        sample_segments(&mut dual, &plan.edges, &plan.arcs, factor, 0);
         let border: Vec<Point> = dual.topology().vertices().map(|v| dual.position(v)).collect();
         let mut diagram = Diagram::new(&canvas, &field, &border).unwrap();
         refine_farthest(&mut dual, &mut diagram, Fill::Exactly(count), &Silent).unwrap();

@@ -1,0 +1,109 @@
+//! Seeds from those of coarser meshes, which are relaxed and whose edges are then halved: few seeds are put one by one, and what is far
+//! apart is even from the start. (Levels in relaxation: Du and Emelianenko 2006.)
+
+use super::options::{Centroid, Seeding};
+use super::{Job, MeshOptions};
+use crate::domain::Domain;
+use crate::dual::{Dual, Moving};
+use crate::error::Result;
+use crate::geodesic::LocalMetric;
+use crate::metric::Scaled;
+use crate::optimise::{Cells, Patience};
+use crate::parallel::prelude::*;
+use crate::progress::{Progress, Within};
+use crate::sampling::{Fill, Plan, refine, sample_segments};
+use crate::triangulation::VertexId;
+
+/// The coarsest mesh has at least so many vertices. Meshes of less than four times as many get better, too (3,000 of one size: mean quality
+/// 0.983 for 0.977), but take as long or longer.
+const COARSEST: f64 = 2000.0;
+/// A coarser mesh has at most this share of the vertices: else most of both are on the boundary.
+const PAYS: f64 = 0.5;
+/// The share of a coarser mesh's seeds at which the metric may be rough. With more, seeds are dense in the wrong places: 100,000 for front
+/// and layer, whose coarser mesh has 0.06 to 0.13, have 1.5 % unit edges less and an error greater by 1.5 %.
+const ROUGH: f64 = 0.1;
+/// How a coarser mesh is relaxed, in how many parts.
+const PATIENCE: Patience = Patience { steps: 20, gain: 2e-3 };
+const PARTS: usize = 4;
+/// Edges that are longer are halved: both halves are then nearer to one, by ratio.
+const LONG: f64 = std::f64::consts::SQRT_2;
+
+impl<'a> Job<'a> {
+    /// A dual whose segments are sampled, with the seeds of coarser meshes where the metric lets these be made; and whether it has such.
+    pub(super) fn begun(&self, domain: &Domain, plan: &Plan, count: usize, scale: f64) -> Result<(Dual<'a>, bool)> {
+        let counts = self.counts(plan, count, scale);
+        let level = self.coarsest(domain, plan, scale, &counts)?;
+        let mut dual = self.sampled(domain, plan, scale, level)?;
+        let progress: &dyn Progress = &Within(self.progress);
+        for finer in (0..level).rev() {
+            let before = dual.vertex_count();
+            let fill = Fill::AtMost(before_halving(&dual, counts[finer]));
+            refine(&mut dual, fill, progress)?;
+            dual.reorder();
+            self.relax_in_parts(&mut dual, &Cells::Tangent, PARTS, PATIENCE, progress)?;
+            dual.rescale(factor(scale, finer));
+            let most = counts[finer].saturating_sub(dual.vertex_count());
+            dual.halve_longer(LONG, most);
+            dual.verdict()?;
+            self.progress.advance((dual.vertex_count() - before) as u64)?;
+        }
+        Ok((dual, level > 0))
+    }
+
+    /// The numbers of vertices of this mesh and of those that are coarser, each by two in length; this one alone where none is of use.
+    fn counts(&self, plan: &Plan, count: usize, scale: f64) -> Vec<usize> {
+        let mut counts = vec![count];
+        let MeshOptions { seeding, centroid, lloyd, .. } = *self.options;
+        if seeding != Seeding::Sizing || centroid != Centroid::Tangent || lloyd == 0 || !plan.pairs.is_empty() {
+            return counts;
+        }
+        let expected = |level| plan.expected_vertices(factor(scale, level));
+        for level in 1.. {
+            let coarser = count as f64 * (expected(level) / expected(0));
+            if coarser < COARSEST || coarser > PAYS * counts[level - 1] as f64 {
+                break;
+            }
+            counts.push(coarser as usize);
+        }
+        counts
+    }
+
+    /// The coarsest level whose mesh resolves the metric, as far as the seeds of the last one tell: these are as dense, by the metric, as
+    /// those of any other.
+    fn coarsest(&self, domain: &Domain, plan: &Plan, scale: f64, counts: &[usize]) -> Result<usize> {
+        let last = counts.len() - 1;
+        if last == 0 {
+            return Ok(0);
+        }
+        let mut probe = self.sampled(domain, plan, scale, last)?;
+        refine(&mut probe, Fill::AtMost(counts[last]), &Within(self.progress))?;
+        let seeds: Vec<VertexId> = probe.topology().vertices().collect();
+        let resolves = |&level: &usize| {
+            let field = Scaled { field: self.field, factor: factor(scale, level) };
+            let is_rough = |&v: &VertexId| LocalMetric::at_near(&field, probe.position(v), probe.local(v).near).is_rough;
+            let rough = seeds.par_iter().with_min_len(256).filter(|v| is_rough(v)).count();
+            rough as f64 <= ROUGH * seeds.len() as f64
+        };
+        Ok((1..=last).rev().find(resolves).unwrap_or(0))
+    }
+
+    fn sampled(&self, domain: &Domain, plan: &Plan, scale: f64, level: usize) -> Result<Dual<'a>> {
+        let mut dual = Dual::new(domain, Scaled { field: self.field, factor: factor(scale, level) })?;
+        sample_segments(&mut dual, &plan.edges, &plan.arcs, scale, level as u32);
+        Ok(dual)
+    }
+}
+
+/// The factor on the metric of a mesh so many levels coarser.
+fn factor(scale: f64, level: usize) -> f64 {
+    scale / 4.0_f64.powi(level as i32)
+}
+
+/// How many vertices there may be for there to be so many when all edges are halved, but those on segments that are short enough: each new
+/// seed brings three edges.
+fn before_halving(dual: &Dual, finer: usize) -> usize {
+    let topology = dual.topology();
+    let halved = topology.edges().filter(|&h| !topology.is_fixed(h) || dual.edge_length(h) > 0.5 * LONG).count();
+    let now = dual.vertex_count();
+    now + finer.saturating_sub(now + halved) / 4
+}
