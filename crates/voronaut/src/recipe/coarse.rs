@@ -24,7 +24,7 @@ const PAYS: f64 = 0.5;
 const ROUGH: f64 = 0.1;
 /// How a coarser mesh is relaxed, in how many parts.
 const PATIENCE: Patience = Patience { steps: 20, gain: 2e-3 };
-const PARTS: usize = 4;
+const PARTS: usize = 2;
 /// Edges that are longer are halved: both halves are then nearer to one, by ratio.
 const LONG: f64 = std::f64::consts::SQRT_2;
 

@@ -14,6 +14,7 @@ pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
 pub use lawson::Limit;
 pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_in_rounds};
 
+use crate::lists::{Rows, in_order};
 use crate::parallel::copy_over;
 use ids::NONE;
 
@@ -84,15 +85,18 @@ impl Triangulation {
     }
 
     fn pair_twins(&mut self) {
-        let key = |h: HalfEdge| {
-            let (a, b) = (self.origin(h).0, self.target(h).0);
-            (a.min(b), a.max(b))
-        };
-        let mut order: Vec<HalfEdge> = (0..self.origin.len() as u32).map(HalfEdge).collect();
-        order.sort_by_key(|&h| (key(h), h));
-        let pairs: Vec<_> = order.windows(2).filter(|w| key(w[0]) == key(w[1])).map(|w| (w[0], w[1])).collect();
-        for (h, t) in pairs {
-            self.glue(h, t);
+        let ends = |h: u32| in_order(self.ends(HalfEdge(h)));
+        let by_first = Rows::new(self.start.len(), (0..self.origin.len() as u32).map(|h| (ends(h)[0].0, h)));
+        for first in 0..by_first.count() {
+            let sides = by_first.row(first);
+            for (i, &h) in sides.iter().enumerate() {
+                let joins = |&t: &u32| in_order(self.ends(HalfEdge(t))) == in_order(self.ends(HalfEdge(h)));
+                if self.twin[h as usize] == NONE
+                    && let Some(t) = sides[i + 1..].iter().copied().find(joins)
+                {
+                    self.glue(HalfEdge(h), HalfEdge(t));
+                }
+            }
         }
     }
 
