@@ -183,7 +183,8 @@ impl Run {
     /// Uses so many threads from now on.
     pub(crate) fn set_threads(&self) -> Result<()> {
         let threads = self.threads.unwrap_or(0);
-        let built = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).use_current_thread().build_global();
+        let built =
+            rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).use_current_thread().build_global();
         let help = "ask for fewer threads";
         built.map_err(|error| Error::limit(format!("{threads} threads: {error}"), help))
     }

@@ -1,8 +1,8 @@
 //! Long edges halved all at once.
 
 use super::{Dual, Effort, Kind, Moving};
-use crate::geometry::Point;
 use crate::geodesic::LocalMetric;
+use crate::geometry::Point;
 use crate::parallel::prelude::*;
 use crate::planar::Origin;
 use crate::triangulation::HalfEdge;
@@ -21,7 +21,8 @@ impl Dual<'_> {
                 (LocalMetric::at_near(&field, p, near), kind)
             }
         };
-        let seeds: Vec<(LocalMetric, Kind)> = origins.par_iter().zip(&planar.positions).with_min_len(256).map(seed).collect();
+        let seeds: Vec<(LocalMetric, Kind)> =
+            origins.par_iter().zip(&planar.positions).with_min_len(256).map(seed).collect();
         (self.locals, self.kinds) = seeds.into_iter().unzip();
         for v in 0..self.locals.len() {
             self.locals[v] = self.vetted(planar.positions[v], self.locals[v]);
@@ -52,5 +53,49 @@ impl Dual<'_> {
         // Speed is linear: (from + (to - from) t / 2) t = (from + to) / 4.
         let root = (0.5 * (from * from + to * to)).sqrt();
         p.lerp(q, 0.5 * (from + to) / (from + root))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::Domain;
+    use crate::geometry::Tensor;
+    use crate::metric::Scaled;
+    use crate::progress::Silent;
+    use crate::sampling::{Fill, refine};
+
+    #[test]
+    fn long_edges_become_two_of_half_the_length() {
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        let field = |p: Point| Tensor::new(100.0, 30.0, 100.0) * (1.0 + p.x);
+        let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
+        refine(&mut dual, Fill::AtMost(60), &Silent).unwrap();
+        let edges: Vec<f64> = dual.topology().edges().map(|h| dual.edge_length(h)).collect();
+        let (before, long) = (dual.vertex_count(), edges.iter().filter(|length| **length > 1.0).count());
+        dual.halve_longer(1.0, usize::MAX);
+        assert_eq!(dual.vertex_count(), before + long);
+        assert!(dual.planar().is_embedded());
+        dual.topology().check().unwrap();
+        for v in dual.topology().vertices() {
+            let p = dual.position(v);
+            assert_eq!(dual.local(v).tensor, field(p));
+            let is_on_side = p.x == 0.0 || p.x == 1.0 || p.y == 0.0 || p.y == 1.0;
+            assert_eq!(dual.kind(v) != Kind::Free, is_on_side);
+        }
+        // The longest ones, where they are too many.
+        dual.halve_longer(0.0, 7);
+        assert_eq!(dual.vertex_count(), before + long + 7);
+    }
+
+    #[test]
+    fn both_halves_are_equally_long() {
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        let field = |p: Point| Tensor::isotropic(1.0 / (1.0 + 2.0 * p.x));
+        let dual = Dual::new(&domain, Scaled { field: &field, factor: 1e6 }).unwrap();
+        let bottom = dual.topology().edges().find(|&h| dual.planar().ends(h).iter().all(|p| p.y == 0.0)).unwrap();
+        // The speed along it grows as 1 + 2 x.
+        let x = dual.middle(bottom).x;
+        assert!((x + x * x - 1.0).abs() < 1e-12, "{x}");
     }
 }

@@ -46,6 +46,9 @@ pub(crate) fn bowed_chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
 
 /// [`bowed_chord`] where the tensors at both ends are known.
 pub(crate) fn bowed_between(field: &dyn MetricField, [p, q]: [Point; 2], ends: [Tensor; 2]) -> f64 {
+    if p == q {
+        return 0.0;
+    }
     let at = nearby(field);
     let d = q - p;
     let middle = p.midpoint(q);
@@ -201,6 +204,19 @@ mod tests {
     use super::*;
     use crate::geodesic::chord;
     use std::f64::consts::PI;
+
+    #[test]
+    fn to_itself_a_point_has_no_way() {
+        let asked = std::sync::atomic::AtomicUsize::new(0);
+        let field = |p: Point| {
+            asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            assert!(p.is_finite());
+            Tensor::isotropic(2.0 + p.x)
+        };
+        let p = Point::new(0.3, 0.4);
+        assert_eq!(bowed_chord(&field, p, p), 0.0);
+        assert!(asked.into_inner() <= 2);
+    }
 
     #[test]
     fn uniform_metrics_have_straight_geodesics() {

@@ -91,7 +91,8 @@ pub(crate) fn relax<M: Moving>(
     dual.measure();
     let state = State::of(dual, cells)?;
     relaxed.energy.push(state.energy);
-    let mut descent = Descent { cells, gain, memory: Memory::default(), rest: Rest::new(state.seeds.len()), state, relaxed };
+    let mut descent =
+        Descent { cells, gain, memory: Memory::default(), rest: Rest::new(state.seeds.len()), state, relaxed };
     let (mut small, mut saved) = (0, None);
     for _ in 0..steps {
         let before = descent.state.energy;

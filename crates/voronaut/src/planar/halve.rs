@@ -22,7 +22,8 @@ impl Planar {
     /// faces before.
     pub(crate) fn halved(&self, cuts: &[(HalfEdge, Point)]) -> (Planar, Vec<Origin>) {
         let cutting = Cutting::new(self, cuts);
-        let mut made = Made { vertex: vec![NONE; self.positions.len()], cut: vec![NONE; cuts.len()], ..Made::default() };
+        let mut made =
+            Made { vertex: vec![NONE; self.positions.len()], cut: vec![NONE; cuts.len()], ..Made::default() };
         for f in self.topology.faces() {
             for triangle in cutting.parts(f) {
                 made.push(&cutting, triangle, f);
@@ -56,7 +57,8 @@ impl<'a> Cutting<'a> {
         for (i, &(h, _)) in cuts.iter().enumerate() {
             planar.topology.sides(h).for_each(|h| cutting.of[h.index()] = i as u32);
         }
-        let mut pending: Vec<FaceId> = cuts.iter().flat_map(|&(h, _)| planar.topology.sides(h)).map(HalfEdge::face).collect();
+        let mut pending: Vec<FaceId> =
+            cuts.iter().flat_map(|&(h, _)| planar.topology.sides(h)).map(HalfEdge::face).collect();
         while let Some(f) = pending.pop() {
             if cutting.parts(f).all(|triangle| cutting.stands(triangle)) {
                 continue;
@@ -153,5 +155,65 @@ impl Made {
             self.positions.push(cutting.position(corner));
         }
         *slot
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::planar::delaunay;
+
+    /// Scattered points, of whose triangulation one edge inside is constrained and one face has a region of its own.
+    fn scattered() -> Planar {
+        let points: Vec<Point> = (0..40).map(|i| Point::new(f64::from(i * 7 % 40), f64::from(i * i % 23))).collect();
+        let mut planar = delaunay(&points).unwrap();
+        let edge = planar.topology.edges().find(|&h| planar.topology.twin(h).is_some()).unwrap();
+        planar.topology.set_constraint(edge, Constraint(3));
+        planar
+    }
+
+    fn middles(planar: &Planar, which: impl Fn(usize) -> bool) -> Vec<(HalfEdge, Point)> {
+        let edges = planar.topology.edges().enumerate().filter(|&(i, _)| which(i));
+        edges.map(|(_, h)| (h, planar.ends(h)[0].midpoint(planar.ends(h)[1]))).collect()
+    }
+
+    #[test]
+    fn any_edges_can_be_halved() {
+        let planar = scattered();
+        let constrained = |planar: &Planar| {
+            let edges = planar.topology.edges().filter(|&h| planar.topology.constraint(h) == Some(Constraint(3)));
+            edges.map(|h| planar.ends(h)[0].distance(planar.ends(h)[1])).collect::<Vec<f64>>()
+        };
+        for every in [1, 2, 3, 5, usize::MAX] {
+            let cuts = middles(&planar, |i| i.is_multiple_of(every));
+            let (halved, origins) = planar.halved(&cuts);
+            halved.topology.check().unwrap();
+            assert!(halved.is_embedded());
+            assert_eq!(halved.topology.vertex_count(), planar.topology.vertex_count() + cuts.len());
+            assert!((halved.area() - planar.area()).abs() < 1e-9 * planar.area());
+            assert!((constrained(&halved).iter().sum::<f64>() - constrained(&planar)[0]).abs() < 1e-12);
+            for (&origin, &p) in origins.iter().zip(&halved.positions) {
+                match origin {
+                    Origin::Vertex(v) => assert_eq!(p, planar.position(v)),
+                    Origin::Edge(h) => assert!(cuts.contains(&(h, p))),
+                }
+            }
+        }
+        let all = middles(&planar, |_| true);
+        assert_eq!(planar.halved(&all).0.topology.face_count(), 4 * planar.topology.face_count());
+    }
+
+    #[test]
+    fn where_a_cut_would_turn_a_triangle_over_edges_stay_whole() {
+        let planar = scattered();
+        let mut cuts = middles(&planar, |_| true);
+        // Far off its edge.
+        let (bad, _) = cuts[20];
+        cuts[20].1 = Point::new(1e3, 1e3);
+        let (halved, origins) = planar.halved(&cuts);
+        halved.topology.check().unwrap();
+        assert!(halved.is_embedded() && !origins.contains(&Origin::Edge(bad)));
+        let whole = cuts.len() + planar.topology.vertex_count() - halved.topology.vertex_count();
+        assert!((1..=5).contains(&whole), "{whole}");
     }
 }

@@ -17,7 +17,7 @@ use crate::triangulation::VertexId;
 /// The coarsest mesh has at least so many vertices. Meshes of less than four times as many get better, too (3,000 of one size: mean quality
 /// 0.983 for 0.977), but take as long or longer.
 const COARSEST: f64 = 2000.0;
-/// A coarser mesh has at most this share of the vertices: else most of both are on the boundary.
+/// A coarser mesh has at most this share of the vertices: else most of both are corners of the domain.
 const PAYS: f64 = 0.5;
 /// The share of a coarser mesh's seeds at which the metric may be rough. With more, seeds are dense in the wrong places: 100,000 for front
 /// and layer, whose coarser mesh has 0.06 to 0.13, have 1.5 % unit edges less and an error greater by 1.5 %.
@@ -80,7 +80,8 @@ impl<'a> Job<'a> {
         let seeds: Vec<VertexId> = probe.topology().vertices().collect();
         let resolves = |&level: &usize| {
             let field = Scaled { field: self.field, factor: factor(scale, level) };
-            let is_rough = |&v: &VertexId| LocalMetric::at_near(&field, probe.position(v), probe.local(v).near).is_rough;
+            let is_rough =
+                |&v: &VertexId| LocalMetric::at_near(&field, probe.position(v), probe.local(v).near).is_rough;
             let rough = seeds.par_iter().with_min_len(256).filter(|v| is_rough(v)).count();
             rough as f64 <= ROUGH * seeds.len() as f64
         };
@@ -106,4 +107,53 @@ fn before_halving(dual: &Dual, finer: usize) -> usize {
     let halved = topology.edges().filter(|&h| !topology.is_fixed(h) || dual.edge_length(h) > 0.5 * LONG).count();
     let now = dual.vertex_count();
     now + finer.saturating_sub(now + halved) / 4
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::settle::Stopwatch;
+    use super::*;
+    use crate::geometry::{Point, Tensor};
+    use crate::metric::{MetricField, Shock};
+    use crate::progress::Silent;
+    use crate::sampling::Target;
+    use crate::test_cases::plate;
+
+    /// The level that a mesh of so many vertices starts from, and how many vertices come of it.
+    fn level(domain: &Domain, field: &dyn MetricField, count: usize) -> (usize, usize) {
+        let (options, watch) = (MeshOptions::default(), Stopwatch::new(&Silent));
+        let job = Job::new(field, &options, &watch);
+        let plan = Plan::new(domain, &[], field, Target::Vertices(count)).unwrap();
+        let scale = plan.scale_for(count as f64);
+        let counts = job.counts(&plan, count, scale);
+        let level = job.coarsest(domain, &plan, scale, &counts).unwrap();
+        let (dual, is_even) = job.begun(domain, &plan, count, scale).unwrap();
+        assert_eq!(is_even, level > 0);
+        assert!(dual.planar().is_embedded());
+        (level, dual.vertex_count())
+    }
+
+    #[test]
+    fn halved_meshes_have_next_to_all_vertices() {
+        let square = Domain::shape("rect:0,0,1,1").unwrap();
+        let graded = |p: Point| Tensor::new(4.0, 1.0, 1.0) * (1.0 + p.y);
+        for (count, levels) in [(7_000, 0), (9_000, 1), (36_000, 2)] {
+            let (level, got) = level(&square, &graded, count);
+            assert_eq!(level, levels, "{count}");
+            assert!(level == 0 || (0.97 * count as f64..=count as f64).contains(&(got as f64)), "{got} of {count}");
+        }
+    }
+
+    #[test]
+    fn what_a_coarser_mesh_does_not_resolve_is_seeded_directly() {
+        let square = Domain::shape("rect:-1,-1,1,1").unwrap();
+        assert_eq!(level(&square, &Shock { phi: 10.0, lambda: 0.06 }, 9_000).0, 0);
+        // Most vertices are corners.
+        let corner = |i: usize| {
+            let (sine, cosine) = (std::f64::consts::TAU * i as f64 / 6_000.0).sin_cos();
+            [cosine, sine]
+        };
+        let disc = plate(&[&(0..6_000).map(corner).collect::<Vec<_>>()]);
+        assert_eq!(level(&disc, &|_: Point| Tensor::IDENTITY, 10_000).0, 0);
+    }
 }

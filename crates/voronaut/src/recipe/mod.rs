@@ -51,9 +51,7 @@ use crate::optimise::{Patience, Polished, Relaxed, polish};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
-use crate::sampling::{
-    Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, simplify,
-};
+use crate::sampling::{Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, simplify};
 use crate::triangulation::HalfEdge;
 use periodic::correspondence;
 use settle::Stopwatch;
@@ -221,7 +219,16 @@ struct Job<'a> {
 
 impl<'a> Job<'a> {
     fn new(field: &'a dyn MetricField, options: &'a MeshOptions, watch: &'a Stopwatch<'a>) -> Self {
-        Self { field, options, progress: watch.progress, canvas: None, diagram: None, watch, is_even: false, notes: Vec::new() }
+        Self {
+            field,
+            options,
+            progress: watch.progress,
+            canvas: None,
+            diagram: None,
+            watch,
+            is_even: false,
+            notes: Vec::new(),
+        }
     }
 
     fn target(&self) -> Target {

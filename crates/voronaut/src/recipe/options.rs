@@ -130,6 +130,11 @@ impl Effort {
         }
     }
 
+    /// Whether work goes on that may gain nothing.
+    pub(super) fn is_thorough(self) -> bool {
+        self == Effort::Best
+    }
+
     /// The share of the error that a sweep of polishing has to gain.
     pub(super) fn gain_of_polishing(self) -> f64 {
         match self {
