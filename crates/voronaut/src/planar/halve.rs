@@ -81,7 +81,7 @@ impl<'a> Cutting<'a> {
         // Turned so that the sides that are cut come first.
         let turn = match cuts.map(|cut| cut.is_some()) {
             [false, true, _] => 1,
-            [true, false, true] | [false, false, true] => 2,
+            [_, false, true] => 2,
             _ => 0,
         };
         let [a, b, c] = [0, 1, 2].map(|i| corners[(i + turn) % 3]);

@@ -97,7 +97,7 @@ impl<'a> Job<'a> {
 
 /// The factor on the metric of a mesh so many levels coarser.
 fn factor(scale: f64, level: usize) -> f64 {
-    scale / 4.0_f64.powi(level as i32)
+    scale * 0.25_f64.powi(level.try_into().unwrap_or(i32::MAX))
 }
 
 /// How many vertices there may be for there to be so many when all edges are halved, but those on segments that are short enough: each new
