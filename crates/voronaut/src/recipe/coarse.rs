@@ -1,5 +1,5 @@
 //! Seeds from those of coarser meshes, which are relaxed and whose edges are then halved: few seeds are put one by one, and what is far
-//! apart is even from the start. (Levels in relaxation: Du and Emelianenko 2006.)
+//! apart is even from the start. (Two grids: Hateley, Wei and Chen 2015.)
 
 use super::options::{Centroid, Seeding};
 use super::{Job, MeshOptions};
