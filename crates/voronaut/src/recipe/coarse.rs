@@ -21,7 +21,7 @@ const COARSEST: f64 = 2000.0;
 const PAYS: f64 = 0.5;
 /// The share of a coarser mesh's seeds at which the metric may be rough. With more, seeds are dense in the wrong places: 100,000 for front
 /// and layer, whose coarser mesh has 0.06 to 0.13, have 1.5 % unit edges less and an error greater by 1.5 %.
-const ROUGH: f64 = 0.1;
+const ROUGH: f64 = 0.05;
 /// How a coarser mesh is relaxed, in how many parts.
 const PATIENCE: Patience = Patience { steps: 20, gain: 2e-3 };
 const PARTS: usize = 2;
