@@ -121,7 +121,9 @@ impl Job<'_> {
         for part in 1..parts {
             let mut left = (steps * (part + 1)) / parts - (steps * part) / parts;
             let is_changed = self.exchange(dual, cells, &mut relaxed, progress)?;
-            let rises = is_changed && matches!(relaxed.energy[..], [.., before, after] if after > before);
+            // With weights it rises as it likes.
+            let counts = is_changed && self.options.centroid != Centroid::Weighted;
+            let rises = counts && matches!(relaxed.energy[..], [.., before, after] if after > before);
             if is_changed {
                 left = left.saturating_sub(1);
             }
