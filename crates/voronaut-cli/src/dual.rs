@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 use voronaut::canvas::{self, Canvas};
 use voronaut::certificate::{Certificate, Constants};
-use voronaut::diagram::{self, Diagram, Kind, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
+use voronaut::diagram::{self, Diagram, Ground, Kind, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
 use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::figures;
@@ -207,10 +207,8 @@ fn in_plane(args: &DualArgs, world: &World, domain: &Domain, mended: &Mended, mu
 
 /// The dual of seeds on a surface.
 fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
-    let refused = [
-        (args.voronoi != Kind::Riemannian, "--voronoi"),
-        (args.canvas_size == CanvasSize::Certified, "--canvas-size certified"),
-    ];
+    let is_riemannian = args.voronoi == Kind::Riemannian;
+    let refused = [(args.canvas_size == CanvasSize::Certified, "--canvas-size certified")];
     pictures::demand_of_surfaces(&args.outputs, &refused)?;
     let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, GradedAt::Scale(1.0))?;
     let places = SeedFile::of_places(world.seeds(&args.seeds)?)?.on_surface(input)?;
@@ -218,7 +216,7 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
     let size = canvas_vertices(args, places.len())?.unwrap_or_default();
     let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), size, &places)?;
     stages.end("canvas");
-    let diagram = SurfaceDiagram::on_surface(&canvas, &at, args.geodesic)?;
+    let diagram = SurfaceDiagram::of_kind_on_surface(args.voronoi, &canvas, &at, args.geodesic)?;
     stages.end("diagram");
     let SeedDual { triangles, account, seconds, raw_nerve, exact, .. } =
         recipe::surface_dual(&diagram, args.dual, &*world.progress(&args.run));
@@ -230,8 +228,9 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
     report.dual = Some(account);
     report.histograms = files::histograms_on(&args.outputs, &mesh, input, metric.as_ref())?;
     report.canvas = Some(canvas.figures());
-    report.diagram = Some(figures::Diagram { raw_nerve: Some(raw_nerve), ..figures::Diagram::of(&diagram) });
-    let net = (args.net || args.is_certified()).then(|| recipe::surface_net(&diagram, &exact));
+    report.diagram =
+        Some(figures::Diagram { raw_nerve: is_riemannian.then_some(raw_nerve), ..figures::Diagram::of(&diagram) });
+    let net = (is_riemannian && (args.net || args.is_certified())).then(|| recipe::surface_net(&diagram, &exact));
     report.net = net.as_ref().map(figures::NetFigures::of);
     if net.is_some() {
         stages.end("net");
@@ -241,6 +240,7 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
     if certified.is_some() {
         stages.end("certificate");
     }
+    report.notes = notes(&diagram, &report);
     report.notes.extend(mended.sentences().chain(meets));
     if !report.validity.valid {
         report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
@@ -371,10 +371,10 @@ fn demand_none(count: usize, what: &str, args: &DualArgs) -> Result<()> {
     Err(Error::mesh(format!("{count} {what}"), args.out.display().to_string(), help))
 }
 
-fn notes(diagram: &Diagram, report: &Report) -> Vec<String> {
+fn notes<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, report: &Report) -> Vec<String> {
     let mut notes = Vec::new();
     if report.triangles == 0 {
-        notes.push("there are no triangles: no three cells meet in the domain".into());
+        notes.push("there are no triangles: no three cells meet".into());
     }
     let mut note = |count: usize, what: &str| {
         if count > 0 {

@@ -98,7 +98,8 @@ fn coloured(diagram: &SurfaceDiagram, are_cells: bool) -> Scene {
     let topology = draped.topology();
     let triangles: Vec<[u32; 3]> = topology.faces().map(|f| topology.corners(f).map(|v| v.0)).collect();
     let colours: Vec<Option<u32>> = vertices().map(|v| diagram.colour(v).filter(|_| are_cells)).collect();
-    Scene::of_canvas(&positions, &triangles, &colours)
+    let orphans = if are_cells { diagram.orphan_components().concat() } else { Vec::new() };
+    Scene::of_canvas(&positions, &triangles, &colours, &orphans)
 }
 
 /// The points of the geodesic between two seeds.

@@ -5,6 +5,7 @@ use super::super::{colours, palette};
 use super::borders::Borders;
 use super::{Fill, Scene, SceneTriangle, Stroke, existing};
 use voronaut::geometry::{Point3, Vector3};
+use voronaut::triangulation::VertexId;
 
 /// A corner of a piece of a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +17,20 @@ struct Corner {
 impl Scene {
     /// The cells of a canvas whose vertices have colours (none: not reached, plain), smooth, with lines between the cells.
     /// Triangles of several colours are cut: edges between two colours near their middles, so that the lines are as
-    /// straight as the colours allow. Triangles with vertices that do not exist are left out.
-    pub fn of_canvas(positions: &[Point3], triangles: &[[u32; 3]], colours: &[Option<u32>]) -> Self {
+    /// straight as the colours allow. Triangles with vertices that do not exist are left out. What belongs to some vertices, the
+    /// orphans, is red.
+    pub fn of_canvas(
+        positions: &[Point3],
+        triangles: &[[u32; 3]],
+        colours: &[Option<u32>],
+        orphans: &[VertexId],
+    ) -> Self {
+        let mut is_orphan = vec![false; positions.len()];
+        for v in orphans {
+            if let Some(is_one) = is_orphan.get_mut(v.index()) {
+                *is_one = true;
+            }
+        }
         let triangles = existing(triangles, positions.len().min(colours.len()));
         let borders = Borders::new(positions, &triangles, colours);
         let normals = normals(positions, &triangles);
@@ -27,7 +40,9 @@ impl Scene {
             let corners = triangle.map(|v| Corner { at: positions[v as usize], normal: normals[v as usize] });
             for (piece, owner) in pieces(triangle, corners, &borders) {
                 let (corners, normals) = (piece.map(|c| c.at), Some(piece.map(|c| c.normal)));
-                scene.triangles.push(SceneTriangle { corners, normals, fill: fills.of(colours[owner as usize]) });
+                let own = fills.of(colours[owner as usize]);
+                let fill = if is_orphan[owner as usize] { Fill::Orphan } else { own };
+                scene.triangles.push(SceneTriangle { corners, normals, fill });
             }
         }
         scene.with(borders.lines(), Stroke::Cell)
@@ -120,7 +135,16 @@ mod tests {
 
     fn scene(colours: [Option<u32>; 4]) -> Scene {
         let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
-        Scene::of_canvas(&points, &[[0, 1, 2], [0, 2, 3], [0, 2, 9]], &colours)
+        Scene::of_canvas(&points, &[[0, 1, 2], [0, 2, 3], [0, 2, 9]], &colours, &[])
+    }
+
+    #[test]
+    fn orphans_are_red() {
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
+        let scene =
+            Scene::of_canvas(&points, &[[0, 1, 2], [0, 2, 3]], &[Some(0), Some(0), Some(0), Some(1)], &[VertexId(3)]);
+        let red: f64 = scene.triangles.iter().filter(|t| t.fill == Fill::Orphan).map(area).sum();
+        assert!((red - 0.125).abs() < 1e-12, "{red}");
     }
 
     #[test]

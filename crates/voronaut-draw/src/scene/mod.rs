@@ -61,6 +61,8 @@ pub(crate) enum Fill {
         /// A variation that is seen only beside another; any number.
         shade: usize,
     },
+    /// That of a part of a cell without its seed.
+    Orphan,
     /// A hue for each region, strong at 1 and pale at 0.
     Level {
         /// The number of the region.
@@ -120,6 +122,7 @@ impl Fill {
         match self {
             Fill::Plain => colours::SURFACE.into(),
             Fill::Cell { hue, shade } => colours::cell(hue, shade, Tint::Full),
+            Fill::Orphan => colours::ORPHAN[0].into(),
             Fill::Level { region, share } => colours::fill(region, share.clamp(0.0, 1.0)),
         }
     }

@@ -22,7 +22,7 @@ fn line(points: &[[f64; 3]]) -> Vec<Point3> {
 fn plain(surface: &Surface) -> Scene {
     let topology = surface.topology();
     let triangles: Vec<[u32; 3]> = topology.faces().map(|f| topology.corners(f).map(|v| v.0)).collect();
-    Scene::of_canvas(surface.positions(), &triangles, &vec![None; surface.positions().len()])
+    Scene::of_canvas(surface.positions(), &triangles, &vec![None; surface.positions().len()], &[])
 }
 
 /// A sphere with some lines.
@@ -130,8 +130,12 @@ fn nothing_and_nonsense_are_drawn_as_nothing() {
     assert!(!vectors(&draw_surface(&more, &FRONT).unwrap()).contains("NaN"));
     let mesh = Mesh { points: vec![[f64::NAN; 3]; 2], triangles: vec![[0, 1, 0], [0, 1, 7]], ..Mesh::default() };
     assert!(paths(&draw_surface(&Scene::of_mesh(&mesh, None), &FRONT).unwrap()).is_empty());
-    let canvas =
-        Scene::of_canvas(&[Point3::new(f64::NAN, 0.0, 0.0); 3], &[[0, 1, 2], [0, 0, 1]], &[Some(1), None, Some(7)]);
+    let canvas = Scene::of_canvas(
+        &[Point3::new(f64::NAN, 0.0, 0.0); 3],
+        &[[0, 1, 2], [0, 0, 1]],
+        &[Some(1), None, Some(7)],
+        &[],
+    );
     assert!(paths(&draw_surface(&canvas, &FRONT).unwrap()).is_empty());
 }
 

@@ -1,19 +1,17 @@
-//! Which diagram; distances straight through the plane, in a metric that is frozen: the diagrams of Du and Wang and of Labelle
-//! and Shewchuk.
+//! Which diagram; distances straight through the plane, or on a surface through space, in a metric that is frozen: the diagrams
+//! of Du and Wang and of Labelle and Shewchuk.
 
-use super::ground::Straight;
-use super::{Flat, Seed};
+use super::{Ground, Seed};
 use crate::error::named;
 use crate::geodesic::{Label, MarchCounters, Propagation};
-use crate::geometry::{Bounds, BoxTree, Point, Tensor};
-use crate::metric::MetricField;
+use crate::geometry::{Bounds, BoxTree, Point3, TangentPlane, Tensor, Vector3};
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
 
 /// By what distance a place is given to its nearest seed; its names are those users type (`--voronoi`).
 ///
 /// The last two measure along the straight segment, with one tensor for all of it: what they call near may be far on the
-/// way, and in a domain with holes or bays they see through walls. Their cells may fall into parts of which only one holds
+/// way, and in a domain with holes or bays they see through walls, on a surface from one side to the other. Their cells may fall into parts of which only one holds
 /// the seed (`Diagram::orphans`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
@@ -37,82 +35,95 @@ pub(super) enum Chords {
     InMetricOfPlace,
 }
 
-impl Chords {
-    /// The distance of a place from a seed.
-    fn measured(self, field: &dyn MetricField, seed: Point, place: Point) -> f64 {
-        let frozen_at = match self {
-            Chords::InMetricOfSeed => seed,
-            Chords::InMetricOfPlace => place,
-        };
-        field.at(frozen_at).length(place - seed)
+/// The metric that a tangent plane has at a place, by which straight ways from there are measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Frozen {
+    pub(super) at: Point3,
+    pub(super) plane: TangentPlane,
+    pub(super) tensor: Tensor,
+}
+
+impl Frozen {
+    /// The length of a way: in the direction of its projection onto the plane, as long as it is in space. What the metric says of
+    /// the normal no surface sees; a way along the normal is as if in the direction of greatest length.
+    fn length(&self, way: Vector3) -> f64 {
+        let flat = self.plane.flatten(way);
+        let (norm, projected) = (way.norm(), flat.norm());
+        if projected > 0.0 {
+            self.tensor.length(flat) * (norm / projected)
+        } else {
+            norm * self.tensor.eigen().large.sqrt()
+        }
+    }
+
+    /// How far the ball reaches along x, y and z of a metric of space in which no way is longer: that of the plane, and its
+    /// small eigenvalue across.
+    fn reach(&self) -> [f64; 3] {
+        let inverse = self.plane.extend(self.tensor.inverse(), self.tensor.eigen().small.recip());
+        [inverse.xx, inverse.yy, inverse.zz].map(f64::sqrt)
     }
 }
 
-impl<'a> Straight<'a, Flat<'a>> for Chords {
-    fn length(&self, ground: Flat, seed: Point, place: Point) -> f64 {
-        self.measured(ground.field, seed, place)
+impl Chords {
+    /// The distance of a place from a seed.
+    pub(super) fn length(self, seed: &Frozen, place: &Frozen) -> f64 {
+        match self {
+            Chords::InMetricOfSeed => seed.length(place.at - seed.at),
+            Chords::InMetricOfPlace => place.length(place.at - seed.at),
+        }
     }
 
     /// Every canvas vertex with its nearest seed, of equally near ones the first: exact but for the rounding of lengths.
-    fn propagate(&self, Flat { canvas, field }: Flat, seeds: &[Option<Seed<Point>>]) -> Propagation {
-        let sites = (0..).zip(seeds).filter_map(|(colour, seed)| {
-            let at = seed.as_ref()?.at;
-            Some(Site { at, colour, tensor: field.at(at) })
-        });
-        let nearest = Nearest::new(sites);
+    pub(super) fn propagate<'a, G: Ground<'a>>(self, ground: G, seeds: &[Option<Seed<G::Place>>]) -> Propagation {
+        let frozen = |seed: &Seed<G::Place>| ground.frozen(seed.at);
+        let sites = (0..).zip(seeds).filter_map(|(colour, seed)| Some((colour, frozen(seed.as_ref()?))));
+        let nearest = Nearest::new(self, sites);
         let label = |v: u32| {
-            let place = canvas.position(VertexId(v));
-            let frozen = (*self == Chords::InMetricOfPlace).then(|| field.at(place));
-            nearest.find(place, frozen).map_or(Label::FAR, |(distance, colour)| Label::of_source(distance, colour))
+            let found = nearest.find(&ground.frozen(ground.place(VertexId(v))));
+            found.map_or(Label::FAR, |(distance, colour)| Label::of_source(distance, colour))
         };
-        let labels = (0..canvas.vertex_count() as u32).into_par_iter().with_min_len(1024).map(label).collect();
-        Propagation::of(labels, MarchCounters::default())
+        let vertices = (0..ground.topology().vertex_slots() as u32).into_par_iter();
+        Propagation::of(vertices.with_min_len(1024).map(label).collect(), MarchCounters::default())
     }
 }
 
-/// A point with its tensor.
-#[derive(Clone, Copy, Debug)]
-struct Site {
-    at: Point,
-    colour: u32,
-    tensor: Tensor,
-}
-
-/// The nearest of many sites where each, or the place that asks, has its own tensor.
+/// The nearest of many seeds, each with its colour, where each, or the place that asks, has its own tensor.
 ///
-/// A chord v has v' M v >= (v.x / r)^2, where r is how far the unit ball of M reaches along x, and likewise by y: what a box is
-/// away by either coordinate bounds the length of every chord to it from below. Boxes have these reaches of their sites as two
+/// A way v has v' M v >= (v.x / r)^2, where r is how far the unit ball of M reaches along x, and likewise by y and z: what a box is
+/// away by a coordinate bounds the length of every way to it from below. Boxes have these reaches of their seeds as three
 /// more coordinates.
-struct Nearest(BoxTree<Site, 4>);
+struct Nearest {
+    chords: Chords,
+    seeds: BoxTree<(u32, Frozen), 6>,
+}
 
 /// Bounds stay clear of rounding by this share.
 const ROUNDING: f64 = 1e-12;
 
 impl Nearest {
-    fn new(sites: impl Iterator<Item = Site>) -> Self {
-        let boxed = |site: Site| {
-            let [x, y] = reach(site.tensor);
-            ([[site.at.x, site.at.y, x, y]; 2], site)
+    fn new(chords: Chords, seeds: impl Iterator<Item = (u32, Frozen)>) -> Self {
+        let boxed = |(colour, seed): (u32, Frozen)| {
+            let ([x, y, z], [rx, ry, rz]) = (seed.at.to_array(), seed.reach());
+            ([[x, y, z, rx, ry, rz]; 2], (colour, seed))
         };
-        Self(BoxTree::new(sites.map(boxed)))
+        Self { chords, seeds: BoxTree::new(seeds.map(boxed)) }
     }
 
-    /// The least length of a chord to a site and that site's colour, of equal lengths the smallest colour; in the given
-    /// metric or, if none is, in each site's own. `None` without sites.
-    fn find(&self, place: Point, frozen: Option<Tensor>) -> Option<(f64, u32)> {
-        let reach = frozen.map(reach);
-        let place_at = [place.x, place.y];
-        // What the square of no chord to a site of a box is below.
-        let floor = |[low, high]: &Bounds<4>| {
+    /// The least distance of a place from a seed, and that seed's colour, of equal distances the smallest. `None` without seeds.
+    fn find(&self, place: &Frozen) -> Option<(f64, u32)> {
+        let reach = (self.chords == Chords::InMetricOfPlace).then(|| place.reach());
+        let at = place.at.to_array();
+        // What the square of no way to a seed of a box is below.
+        let floor = |[low, high]: &Bounds<6>| {
             let along = |k: usize| {
-                let away = (low[k] - place_at[k]).max(place_at[k] - high[k]).max(0.0);
-                away / reach.map_or(high[2 + k], |reach| reach[k])
+                let away = (low[k] - at[k]).max(at[k] - high[k]).max(0.0);
+                away / reach.map_or(high[3 + k], |reach| reach[k])
             };
-            (1.0 - ROUNDING) * along(0).max(along(1)).powi(2)
+            (1.0 - ROUNDING) * along(0).max(along(1)).max(along(2)).powi(2)
         };
         let mut best: Option<(f64, u32)> = None;
-        self.0.search_by(f64::INFINITY, floor, |_, site| {
-            let found = (frozen.unwrap_or(site.tensor).length(place - site.at), site.colour);
+        self.seeds.search_by(f64::INFINITY, floor, |_, &(colour, ref seed)| {
+            let found = (self.chords.length(seed, place), colour);
             if best.is_none_or(|best| found.0 < best.0 || (found.0 <= best.0 && found.1 < best.1)) {
                 best = Some(found);
             }
@@ -123,24 +134,25 @@ impl Nearest {
     }
 }
 
-/// How far the unit ball of a metric reaches along x, and along y.
-fn reach(tensor: Tensor) -> [f64; 2] {
-    [tensor.yy, tensor.xx].map(|across| (across / tensor.determinant()).sqrt())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::canvas::Canvas;
+    use crate::diagram::SurfaceDiagram;
     use crate::diagram::test_diagrams::{plate_with_hole, seeds_of};
     use crate::diagram::{Diagram, Kind};
     use crate::domain::Domain;
     use crate::geodesic::Method;
-    use crate::geometry::Tensor;
-    use crate::metric::Swirl;
+    use crate::geometry::{Point, Tensor3};
+    use crate::metric::{MetricField, Swirl};
+    use crate::surface::Input;
 
     const RIVALS: [(Kind, Chords); 2] =
         [(Kind::DuWang, Chords::InMetricOfPlace), (Kind::LabelleShewchuk, Chords::InMetricOfSeed)];
+
+    fn frozen(field: &dyn MetricField, p: Point) -> Frozen {
+        Frozen { at: Point3::new(p.x, p.y, 0.0), plane: TangentPlane::FLAT, tensor: field.at(p) }
+    }
 
     fn vertices(canvas: &Canvas) -> impl Iterator<Item = VertexId> + use<> {
         (0..canvas.vertex_count() as u32).map(VertexId)
@@ -154,7 +166,7 @@ mod tests {
         for (kind, chords) in RIVALS {
             let diagram = Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap();
             for v in vertices(&canvas) {
-                let to = |i: usize| chords.measured(&swirl, seeds[i], canvas.position(v));
+                let to = |i: usize| chords.length(&frozen(&swirl, seeds[i]), &frozen(&swirl, canvas.position(v)));
                 let best = (0..seeds.len()).min_by(|&i, &j| to(i).total_cmp(&to(j))).unwrap();
                 assert_eq!((diagram.colour(v), diagram.distance(v)), (Some(best as u32), to(best)), "{kind} {v:?}");
             }
@@ -166,7 +178,7 @@ mod tests {
         // Twice as long for each unit of x beyond 0: only the metric of the place sees that.
         let stretched = |p: Point| Tensor::new((1.0 + p.x.max(0.0)).powi(2), 0.0, 1.0);
         let [seed, place] = [Point::new(0.0, 0.0), Point::new(2.0, 0.0)];
-        let length = |chords: Chords| chords.measured(&stretched, seed, place);
+        let length = |chords: Chords| chords.length(&frozen(&stretched, seed), &frozen(&stretched, place));
         assert_eq!((length(Chords::InMetricOfSeed), length(Chords::InMetricOfPlace)), (2.0, 6.0));
     }
 
@@ -193,6 +205,37 @@ mod tests {
         }
         assert!(100 * differing < canvas.vertex_count(), "{differing}");
         assert!([ours, du_wang, labelle].iter().all(|diagram| diagram.orphans().is_empty()));
+    }
+
+    #[test]
+    fn on_a_surface_colours_are_those_of_all_pairs_compared() {
+        let input = Input::shape("sphere:1", None).unwrap();
+        let metric = |p: Point3| Tensor3::from_disk([9.0 + 8.0 * p.y, 1.0, 2.0, 0.0, p.x, 3.0]);
+        let places: Vec<_> =
+            input.surface.topology().vertices().step_by(9).map(|v| input.surface.place_of(v).unwrap()).collect();
+        let (canvas, at) = Canvas::on_surface(crate::canvas::Kind::Intrinsic, &input, &metric, 3000, &places).unwrap();
+        let frozen = |v: VertexId| (&canvas).frozen(v);
+        for (kind, chords) in RIVALS {
+            let diagram = SurfaceDiagram::of_kind_on_surface(kind, &canvas, &at, Method::March).unwrap();
+            for v in diagram.vertices() {
+                let to = |i: usize| chords.length(&frozen(at[i]), &frozen(v));
+                let best = (0..at.len()).min_by(|&i, &j| to(i).total_cmp(&to(j))).unwrap();
+                assert_eq!((diagram.colour(v), diagram.distance(v)), (Some(best as u32), to(best)), "{kind} {v:?}");
+            }
+        }
+    }
+
+    /// Not what the metric says of the normal, but how long the way is: a chord of the sphere in the direction of its arc.
+    #[test]
+    fn ways_through_space_are_as_long_as_they_are() {
+        let plane = TangentPlane::new(Vector3::new(0.0, 0.6, 0.8));
+        let seed = Frozen { at: Point3::default(), plane, tensor: Tensor::new(4.0, 0.0, 9.0) };
+        let along = |x: f64, y: f64, up: f64| plane.lift(crate::geometry::Vector::new(x, y)) + plane.normal * up;
+        for (way, length) in
+            [((3.0, 0.0, 4.0), 10.0), ((0.0, 3.0, 4.0), 15.0), ((0.0, 0.0, 2.0), 6.0), ((0.0, 0.0, 0.0), 0.0)]
+        {
+            assert!((seed.length(along(way.0, way.1, way.2)) - length).abs() < 1e-12, "{way:?}");
+        }
     }
 
     #[test]

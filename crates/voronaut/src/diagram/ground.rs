@@ -1,13 +1,11 @@
 //! What a diagram lies on: a canvas of the plane or of a surface, with the metric it was made with.
 
 use super::seeds::{self, Care, Start};
-use super::{Flat, Measure, Seed, SurfaceDiagram};
+use super::{Flat, Frozen, Kind, SurfaceDiagram};
 use crate::canvas::{Border, Canvas, Draped, StarSet};
 use crate::error::{Error, Result};
-use crate::geodesic::{
-    Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Propagation, Sources, Stvd, layout,
-};
-use crate::geometry::{Aabb, Point, Tensor};
+use crate::geodesic::{Dijkstra, Geodesic, Graph, Konukoglu, Lattice, Marching, Method, Sources, Stvd, layout};
+use crate::geometry::{Aabb, Point, Point3, TangentPlane, Tensor};
 use crate::planar::Location;
 use crate::triangulation::{FaceId, Triangulation, VertexId};
 
@@ -26,6 +24,8 @@ pub trait Ground<'a>: Copy + Send + Sync {
     fn place(&self, v: VertexId) -> Self::Place;
     /// The coordinates of a canvas vertex.
     fn coordinates(&self, v: VertexId) -> [f64; 3];
+    /// Where a place is in space, with its tangent plane and the metric there.
+    fn frozen(&self, place: Self::Place) -> Frozen;
     /// The label that the domain or the surface has where a face of [`Ground::embedded`] is.
     fn region(&self, f: FaceId) -> i32;
     /// The corners of a face of [`Ground::embedded`], laid out in the plane.
@@ -53,14 +53,6 @@ pub trait Ground<'a>: Copy + Send + Sync {
     fn on_lattice(&self, from: &[Self::Place], starts: &[Vec<Start>]) -> Result<Vec<f64>>;
 }
 
-/// Distances that do not follow the canvas.
-pub(super) trait Straight<'a, G: Ground<'a>>: Sync {
-    /// The distance of a place from a seed.
-    fn length(&self, ground: G, seed: G::Place, place: G::Place) -> f64;
-    /// Every canvas vertex with its nearest seed.
-    fn propagate(&self, ground: G, seeds: &[Option<Seed<G::Place>>]) -> Propagation;
-}
-
 impl<'a> Ground<'a> for Flat<'a> {
     type Place = Point;
 
@@ -83,6 +75,10 @@ impl<'a> Ground<'a> for Flat<'a> {
     fn coordinates(&self, v: VertexId) -> [f64; 3] {
         let Point { x, y } = self.canvas.position(v);
         [x, y, 0.0]
+    }
+
+    fn frozen(&self, p: Point) -> Frozen {
+        Frozen { at: Point3::new(p.x, p.y, 0.0), plane: TangentPlane::FLAT, tensor: self.field.at(p) }
     }
 
     fn region(&self, f: FaceId) -> i32 {
@@ -158,6 +154,11 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
         self.draped().position(v).to_array()
     }
 
+    fn frozen(&self, v: VertexId) -> Frozen {
+        let (draped, plane) = (self.draped(), self.draped().plane(v));
+        Frozen { at: draped.position(v), plane, tensor: plane.restrict(draped.tensor(v)) }
+    }
+
     fn region(&self, f: FaceId) -> i32 {
         self.draped().input().surface.topology().region(self.draped().home(f))
     }
@@ -206,7 +207,20 @@ impl<'a> SurfaceDiagram<'a> {
     /// # Errors
     /// [`Error::Domain`] of a seed that is no canvas vertex; [`Error::Unsupported`] of a method that does not drive diagrams.
     pub fn on_surface(canvas: &'a Canvas<Draped<'a>>, seeds: &[VertexId], method: Method) -> Result<Self> {
-        Self::of_seeds(canvas, seeds, false, Care::Full, Measure::Ways(solver(canvas, method)?))
+        Self::of(Kind::Riemannian, canvas, seeds, method)
+    }
+
+    /// The diagram of a kind; a method is for the Riemannian one.
+    ///
+    /// # Errors
+    /// As for [`SurfaceDiagram::on_surface`].
+    pub fn of_kind_on_surface(
+        kind: Kind,
+        canvas: &'a Canvas<Draped<'a>>,
+        seeds: &[VertexId],
+        method: Method,
+    ) -> Result<Self> {
+        Self::of(kind, canvas, seeds, method)
     }
 
     /// The canvas.

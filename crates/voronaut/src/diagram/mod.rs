@@ -22,7 +22,7 @@ mod seeds;
 mod test_diagrams;
 
 pub use cells::{Cells, Outline};
-pub use chords::Kind;
+pub use chords::{Frozen, Kind};
 pub use distances::{Distances, SurfaceDistances};
 pub use ground::Ground;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle, Witnesses};
@@ -37,7 +37,7 @@ use crate::geometry::Point;
 use crate::metric::{MetricField, check_field};
 use crate::triangulation::VertexId;
 use chords::Chords;
-use ground::{Straight, solver, sources};
+use ground::{solver, sources};
 use overlap::Overlap;
 use seeds::Start;
 use std::sync::OnceLock;
@@ -47,7 +47,7 @@ use std::sync::OnceLock;
 pub struct Diagram<'a, G: Ground<'a> = Flat<'a>> {
     ground: G,
     kind: Kind,
-    measure: Measure<'a, G>,
+    measure: Measure<'a>,
     care: Care,
     seeds: Vec<Option<Seed<G::Place>>>,
     sources: Sources,
@@ -66,11 +66,11 @@ pub struct Flat<'a> {
 pub type SurfaceDiagram<'a> = Diagram<'a, &'a Canvas<Draped<'a>>>;
 
 /// How distances from seeds come about.
-enum Measure<'a, G: Ground<'a>> {
+enum Measure<'a> {
     /// Along shortest ways on the canvas.
     Ways(Box<dyn Geodesic + 'a>),
     /// Straight.
-    Chords(Box<dyn Straight<'a, G>>),
+    Chords(Chords),
 }
 
 /// A seed: where it is, and the canvas vertices that it gives a distance to.
@@ -129,17 +129,10 @@ impl<'a> Diagram<'a> {
         seeds: &[Point],
         method: Method,
     ) -> Result<Self> {
-        let ground = Flat { canvas, field };
-        let chords = match kind {
-            Kind::Riemannian => {
-                return Self::of_seeds(ground, seeds, false, Care::Full, Measure::Ways(solver(ground, method)?));
-            }
-            Kind::DuWang => Chords::InMetricOfPlace,
-            Kind::LabelleShewchuk => Chords::InMetricOfSeed,
-        };
-        let starts = ground.starts_of_all(seeds, false, Care::Quick)?;
-        check_field(field, seeds.iter().copied())?;
-        Ok(Self { kind, ..Self::made(ground, seeds, starts, Measure::Chords(Box::new(chords))) })
+        if kind != Kind::Riemannian {
+            check_field(field, seeds.iter().copied())?;
+        }
+        Self::of(kind, Flat { canvas, field }, seeds, method)
     }
 
     /// The canvas.
@@ -151,11 +144,6 @@ impl<'a> Diagram<'a> {
     pub(crate) fn field(&self) -> &'a dyn MetricField {
         self.ground.field
     }
-
-    /// By what distance its cells are the nearest places.
-    pub fn kind(&self) -> Kind {
-        self.kind
-    }
 }
 
 impl<'a, G: Ground<'a>> Diagram<'a, G> {
@@ -163,18 +151,24 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     ///
     /// # Errors
     /// A seed is outside the domain.
-    fn of_seeds(
-        ground: G,
-        seeds: &[G::Place],
-        are_vertices: bool,
-        care: Care,
-        measure: Measure<'a, G>,
-    ) -> Result<Self> {
+    fn of_seeds(ground: G, seeds: &[G::Place], are_vertices: bool, care: Care, measure: Measure<'a>) -> Result<Self> {
         let starts = ground.starts_of_all(seeds, are_vertices, care)?;
         Ok(Self { care, ..Self::made(ground, seeds, starts, measure) })
     }
 
-    fn made(ground: G, seeds: &[G::Place], starts: Vec<Vec<Start>>, measure: Measure<'a, G>) -> Self {
+    fn of(kind: Kind, ground: G, seeds: &[G::Place], method: Method) -> Result<Self> {
+        let chords = match kind {
+            Kind::Riemannian => {
+                return Self::of_seeds(ground, seeds, false, Care::Full, Measure::Ways(solver(ground, method)?));
+            }
+            Kind::DuWang => Chords::InMetricOfPlace,
+            Kind::LabelleShewchuk => Chords::InMetricOfSeed,
+        };
+        let starts = ground.starts_of_all(seeds, false, Care::Quick)?;
+        Ok(Self { kind, ..Self::made(ground, seeds, starts, Measure::Chords(chords)) })
+    }
+
+    fn made(ground: G, seeds: &[G::Place], starts: Vec<Vec<Start>>, measure: Measure<'a>) -> Self {
         let sources = sources(ground, &starts);
         let placed: Vec<_> = seeds.iter().zip(starts).map(|(&at, starts)| Some(Seed { at, starts })).collect();
         let propagation = match &measure {
@@ -183,6 +177,11 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         };
         let (kind, care, overlap) = (Kind::Riemannian, Care::Full, OnceLock::new());
         Self { ground, kind, measure, care, seeds: placed, sources, propagation, overlap }
+    }
+
+    /// By what distance its cells are the nearest places.
+    pub fn kind(&self) -> Kind {
+        self.kind
     }
 
     /// Inserts a seed by one front from it; returns its colour.

@@ -70,7 +70,9 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     fn patch_distances(&self) -> Box<Measured<'_, G::Place>> {
         match &self.measure {
             Measure::Chords(chords) => Box::new(|seed, vertices| {
-                let to = |&v: &VertexId| chords.length(self.ground, seed.at, self.ground.place(v));
+                let ground = self.ground;
+                let seed = ground.frozen(seed.at);
+                let to = |&v: &VertexId| chords.length(&seed, &ground.frozen(ground.place(v)));
                 vertices.iter().map(to).collect()
             }),
             Measure::Ways(solver) => {

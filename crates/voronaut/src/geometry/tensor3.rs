@@ -214,6 +214,10 @@ impl Tensor3 {
 }
 
 impl TangentPlane {
+    /// The plane of x and y.
+    pub(crate) const FLAT: Self =
+        Self { u: Vector3::new(1.0, 0.0, 0.0), v: Vector3::new(0.0, 1.0, 0.0), normal: Vector3::new(0.0, 0.0, 1.0) };
+
     /// The plane perpendicular to a unit vector, with axes that depend on nothing else.
     pub fn new(normal: Vector3) -> Self {
         let u = normal.perpendicular();

@@ -45,11 +45,10 @@ pub struct SeedDual {
 /// diagram that is not Riemannian there is one road, its nerve as canvas faces of three colours have it, nothing mended, and
 /// nothing exact to compare with.
 pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road, progress: &dyn Progress) -> SeedDual {
-    let start = progress.seconds();
     if diagram.kind() != Kind::Riemannian {
-        let read = as_read(diagram);
-        return SeedDual { seconds: vec![("nerve", progress.seconds() - start)], ..read };
+        return as_read(diagram, progress);
     }
+    let start = progress.seconds();
     let nerve = diagram.sharp_nerve();
     let passes = diagram.passes();
     let read = progress.seconds();
@@ -81,7 +80,8 @@ fn by_road<'a, G: Ground<'a>>(
     SeedDual { triangles, nerve, exact, raw_nerve, account, seconds }
 }
 
-fn as_read(diagram: &Diagram) -> SeedDual {
+fn as_read<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, progress: &dyn Progress) -> SeedDual {
+    let start = progress.seconds();
     let nerve = diagram.nerve();
     SeedDual {
         triangles: nerve.triangles.iter().map(|t| t.colours).collect(),
@@ -89,7 +89,7 @@ fn as_read(diagram: &Diagram) -> SeedDual {
         exact: Vec::new(),
         raw_nerve: figures::RawNerve::default(),
         account: figures::Dual { min_margin: 1.0, ..figures::Dual::default() },
-        seconds: Vec::new(),
+        seconds: vec![("nerve", progress.seconds() - start)],
     }
 }
 
@@ -182,6 +182,9 @@ fn disagreement(edge: &Edge, of_nerve: &HashSet<[u32; 2]>, road: Road) -> figure
 
 /// The dual of a diagram's seeds on a surface, by the road that is asked for; see [`super::dual()`].
 pub fn surface_dual(diagram: &SurfaceDiagram, road: Road, progress: &dyn Progress) -> SeedDual {
+    if diagram.kind() != Kind::Riemannian {
+        return as_read(diagram, progress);
+    }
     let start = progress.seconds();
     let nerve = diagram.sharp_nerve();
     let read = progress.seconds();
