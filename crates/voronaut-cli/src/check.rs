@@ -202,7 +202,7 @@ fn on_surface(
 
 /// Refuses what is not there for surfaces.
 fn demand_for_surfaces(args: &CheckArgs, world: &World) -> Result<()> {
-    pictures::demand_of_surfaces(&args.outputs, &[])?;
+    pictures::demand_of_surfaces(&args.outputs)?;
     args.metric.as_ref().map_or(Ok(()), |text| fields::demand_for_surfaces(world, text, &args.metric_choices))
 }
 

@@ -208,25 +208,36 @@ fn in_plane(args: &DualArgs, world: &World, domain: &Domain, mended: &Mended, mu
 /// The dual of seeds on a surface.
 fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
     let is_riemannian = args.voronoi == Kind::Riemannian;
-    let refused = [(args.canvas_size == CanvasSize::Certified, "--canvas-size certified")];
-    pictures::demand_of_surfaces(&args.outputs, &refused)?;
+    pictures::demand_of_surfaces(&args.outputs)?;
     let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, GradedAt::Scale(1.0))?;
     let places = SeedFile::of_places(world.seeds(&args.seeds)?)?.on_surface(input)?;
     stages.end("read");
-    let size = canvas_vertices(args, places.len())?.unwrap_or_default();
-    let (canvas, at) = Canvas::on_surface(args.canvas, input, metric.as_ref(), size, &places)?;
+    let metric = metric.as_ref();
+    let (canvas, at) = match canvas_vertices(args, places.len())? {
+        Some(size) => Canvas::on_surface(args.canvas, input, metric, size, &places)?,
+        None => {
+            let limit = args.run.limits.memory();
+            recipe::certified_canvas_on(args.canvas, input, metric, &places, args.constants, limit)?
+        }
+    };
     stages.end("canvas");
     let diagram = SurfaceDiagram::of_kind_on_surface(args.voronoi, &canvas, &at, args.geodesic)?;
     stages.end("diagram");
-    let SeedDual { triangles, account, seconds, raw_nerve, exact, .. } =
+    let SeedDual { triangles, mut account, seconds, raw_nerve, exact, .. } =
         recipe::surface_dual(&diagram, args.dual, &*world.progress(&args.run));
     let mesh = recipe::surface_mesh(input, &places, triangles);
     stages.end("dual");
     let found = validity_on(&mesh, &Meetings::of(input.whole_mesh()));
     let meets = found.meetings.note();
-    let mut report = reported(args, &mesh, found, || surface_quality(&mesh, &input.surface, metric.as_ref()))?;
+    let mut report = reported(args, &mesh, found, || surface_quality(&mesh, &input.surface, metric))?;
+    let is_curved = args.edges == EdgesOut::Geodesic || args.outputs.have_geodesics() || args.paged.cells;
+    let curved = is_curved.then(|| Realisation::on_surface(&diagram, &mesh.triangles));
+    account.geodesics = curved.as_ref().map(figures::Geodesics::of);
+    if is_curved {
+        stages.end("geodesics");
+    }
     report.dual = Some(account);
-    report.histograms = files::histograms_on(&args.outputs, &mesh, input, metric.as_ref())?;
+    report.histograms = files::histograms_on(&args.outputs, &mesh, input, metric)?;
     report.canvas = Some(canvas.figures());
     report.diagram =
         Some(figures::Diagram { raw_nerve: is_riemannian.then_some(raw_nerve), ..figures::Diagram::of(&diagram) });
@@ -248,16 +259,19 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
     report.seconds = stages.seconds(seconds);
     demand_embedded(args, world, &report)?;
     let is_drawn = args.outputs.picture.is_some();
-    let picture = is_drawn.then(|| pictures::on_surface(&args.outputs, &diagram, &mesh)).transpose()?;
+    let picture =
+        is_drawn.then(|| pictures::on_surface(&args.outputs, &diagram, &mesh, curved.as_ref())).transpose()?;
     let sheet = pages::of(&args.paged, &args.out, &mesh, |sheet| {
-        pages::measured_on_surface(sheet, input, metric.as_ref(), report.validity.valid)?;
-        if args.paged.cells {
-            pages::show_diagram_on(sheet, &diagram);
+        pages::measured_on_surface(sheet, input, metric, report.validity.valid)?;
+        if let Some(curved) = curved.as_ref().filter(|_| args.paged.cells) {
+            pages::show_diagram(sheet, &diagram, curved);
         }
         Ok(())
     })?;
-    let written = if args.edges == EdgesOut::Geodesic { pictures::with_geodesics(&diagram, &mesh) } else { mesh };
-    world.write_mesh(written, &args.out)?;
+    match curved.filter(|_| args.edges == EdgesOut::Geodesic) {
+        Some(curved) => world.write_realisation(&curved, &args.out)?,
+        None => world.write_mesh(mesh, &args.out)?,
+    }
     pages::write(&args.paged, world, sheet)?;
     finish(args, world, picture, &report, || diagram.to_coloured_canvas())
 }

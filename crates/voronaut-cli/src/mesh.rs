@@ -334,7 +334,7 @@ fn cells(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
 fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, start: f64) -> Result<()> {
     let required = "leave out --required: it is for planar domains; list required edges in the surface's file";
     refuse([(args.required, "--required on a surface", required)])?;
-    pictures::demand_of_surfaces(&args.outputs, &[])?;
+    pictures::demand_of_surfaces(&args.outputs)?;
     let idle = args.idle(true, world)?;
     let is_whole = args.outputs.picture.is_some() || args.paged.view.is_some();
     let whole = is_whole.then(|| Input::new(input.surface.clone(), input.implicit.clone()));
@@ -416,5 +416,7 @@ fn drawn_on(args: &MeshArgs, world: &World, whole: &Input, meshed: &Meshed, unme
     let places = mesh.points.iter().map(|&p| whole.closest(p.into())).collect::<Result<Vec<_>>>()?;
     let size = canvas::size_for(places.len(), args.canvas_size);
     let (canvas, at) = Canvas::on_surface(args.canvas, whole, metric.as_ref(), size, &places)?;
-    pictures::on_surface(&args.outputs, &SurfaceDiagram::on_surface(&canvas, &at, Method::March)?, mesh)
+    let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March)?;
+    let curved = args.outputs.have_geodesics().then(|| Realisation::on_surface(&diagram, &mesh.triangles));
+    pictures::on_surface(&args.outputs, &diagram, mesh, curved.as_ref())
 }

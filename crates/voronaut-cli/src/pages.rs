@@ -1,16 +1,15 @@
 //! Pages to look at meshes with: what they show of a mesh in a metric, in the plane and on surfaces.
 
 use crate::options::Paged;
-use crate::pictures;
 use crate::world::World;
 use std::path::Path;
 use voronaut::Result;
 use voronaut::canvas::{self, Canvas};
-use voronaut::diagram::{Diagram, SurfaceDiagram};
+use voronaut::diagram::{Diagram, Ground, SurfaceDiagram};
 use voronaut::domain::Domain;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Point, Point3};
-use voronaut::mesh::{Edges, Mesh, SolutionValues};
+use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut::metric::MetricField;
 use voronaut::quality::{Unmet, surface_unmet, unmet};
 use voronaut::realisation::Realisation;
@@ -115,10 +114,14 @@ pub(crate) fn with_cells(sheet: &mut Sheet, domain: &Domain, metric: &dyn Metric
 }
 
 /// Adds a diagram and geodesic edges.
-pub(crate) fn show_diagram(sheet: &mut Sheet, diagram: &Diagram, curved: &Realisation) {
-    let flat = |p: &Point| Point3::new(p.x, p.y, 0.0);
+pub(crate) fn show_diagram<'a, G: Ground<'a>, P: Copy + Into<[f64; 3]>>(
+    sheet: &mut Sheet,
+    diagram: &Diagram<'a, G>,
+    curved: &Realisation<P>,
+) {
+    let in_space = |&p: &P| Point3::from(p.into());
     sheet.canvas = Some(diagram.to_coloured_canvas());
-    sheet.curves = curved.edges.iter().map(|edge| edge.points.iter().map(flat).collect()).collect();
+    sheet.curves = curved.edges.iter().map(|edge| edge.points.iter().map(in_space).collect()).collect();
 }
 
 /// Adds the cells of the vertices of the mesh of a surface that is whole, distances, and its edges as geodesics.
@@ -126,15 +129,10 @@ pub(crate) fn with_cells_on(sheet: &mut Sheet, whole: &Input, metric: &dyn Surfa
     let places = sheet.mesh.points.iter().map(|&p| whole.closest(p.into())).collect::<Result<Vec<_>>>()?;
     let size = canvas::size_for(places.len(), drawn.size);
     let (canvas, at) = Canvas::on_surface(drawn.kind, whole, metric, size, &places)?;
-    show_diagram_on(sheet, &SurfaceDiagram::on_surface(&canvas, &at, Method::March)?);
+    let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March)?;
+    let curved = Realisation::on_surface(&diagram, &sheet.mesh.triangles);
+    show_diagram(sheet, &diagram, &curved);
     Ok(())
-}
-
-/// Adds a diagram on a surface, and the edges of the mesh as geodesics.
-pub(crate) fn show_diagram_on(sheet: &mut Sheet, diagram: &SurfaceDiagram) {
-    sheet.canvas = Some(diagram.to_coloured_canvas());
-    let edges = Edges::of(&sheet.mesh.triangles);
-    sheet.curves = edges.ends().filter_map(|ends| pictures::geodesic(diagram, ends)).collect();
 }
 
 /// What the page shows of a mesh that is made for a file, if there is to be a page.

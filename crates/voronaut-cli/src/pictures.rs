@@ -72,20 +72,28 @@ pub(crate) fn of_surface_mesh(outputs: &Outputs, mesh: &Mesh, unmet: &Unmet) -> 
 
 /// Whether a picture on a surface needs a diagram.
 pub(crate) fn need_diagram_on_surface(outputs: &Outputs) -> bool {
-    outputs.shows(Show::Cells) || outputs.shows(Show::Geodesics)
+    outputs.shows(Show::Cells) || outputs.have_geodesics()
 }
 
-/// The mesh of a surface, the cells of its vertices, its edges as geodesics.
-pub(crate) fn on_surface(outputs: &Outputs, diagram: &SurfaceDiagram, mesh: &Mesh) -> Result<String> {
+/// The mesh of a surface, the cells of its vertices, its edges as geodesics, its Riemannian triangles.
+pub(crate) fn on_surface(
+    outputs: &Outputs,
+    diagram: &SurfaceDiagram,
+    mesh: &Mesh,
+    curved: Option<&Realisation<Point3>>,
+) -> Result<String> {
     let is_of_canvas = need_diagram_on_surface(outputs);
     let mut scene =
         if is_of_canvas { coloured(diagram, outputs.shows(Show::Cells)) } else { Scene::of_mesh(mesh, None) };
-    let edges = Edges::of(&mesh.triangles);
-    let edges = edges.ends();
-    if outputs.shows(Show::Geodesics) {
-        scene = scene.with(edges.filter_map(|ends| geodesic(diagram, ends)), Stroke::Geodesic);
+    if let Some(found) = curved.filter(|_| outputs.have_geodesics()) {
+        scene = scene.with(found.edges.iter().map(|edge| edge.points.clone()), Stroke::Geodesic);
+        if outputs.shows(Show::Triangles) {
+            let grids = found.grids_on_surface(diagram, PIECES);
+            scene = scene.with(grids.iter().flatten().flat_map(Grid::lines), Stroke::Level);
+        }
     } else if outputs.shows(Show::Mesh) && is_of_canvas {
-        scene = scene.with(edges.map(|ends| ends.map(|v| mesh.position(v)).to_vec()), Stroke::Edge);
+        let edges = Edges::of(&mesh.triangles);
+        scene = scene.with(edges.ends().map(|ends| ends.map(|v| mesh.position(v)).to_vec()), Stroke::Edge);
     }
     let view = View { pixels: outputs.pixels, ..View::of(diagram.canvas().draped().input().surface.bounds()) };
     voronaut_draw::draw_surface(&scene, &view)
@@ -102,40 +110,14 @@ fn coloured(diagram: &SurfaceDiagram, are_cells: bool) -> Scene {
     Scene::of_canvas(&positions, &triangles, &colours, &orphans)
 }
 
-/// The points of the geodesic between two seeds.
-pub(crate) fn geodesic(diagram: &SurfaceDiagram, ends: [u32; 2]) -> Option<Vec<Point3>> {
-    let [from, to] = ends.map(|colour| diagram.seed(colour));
-    diagram.canvas().draped().geodesic(from?, to?).map(|way| way.points)
-}
-
-/// A mesh with the points of its geodesic edges behind the seeds, and their segments as edges, labelled with the number of the
-/// edge from 1.
-pub(crate) fn with_geodesics(diagram: &SurfaceDiagram, mesh: &Mesh) -> Mesh {
-    let mut all = Mesh { edges: Vec::new(), edge_labels: Vec::new(), ..mesh.clone() };
-    for (label, ends) in (1..).zip(Edges::of(&mesh.triangles).ends()) {
-        let Some(points) = geodesic(diagram, ends) else { continue };
-        let mut before = ends[0];
-        for p in &points[1..points.len() - 1] {
-            all.points.push(p.to_array());
-            all.point_labels.push(0);
-            let here = all.points.len() as u32 - 1;
-            all.edges.push([before, here]);
-            before = here;
-        }
-        all.edges.push([before, ends[1]]);
-        all.edge_labels.resize(all.edges.len(), label);
-    }
-    all
-}
-
-/// Refuses what there is no picture of on surfaces, and what else is asked for that is not there, by name.
-pub(crate) fn demand_of_surfaces(outputs: &Outputs, more: &[(bool, &str)]) -> Result<()> {
-    let is_shown = |show: &Show| matches!(show, Show::Mesh | Show::Cells | Show::Geodesics | Show::Unmet);
-    let own = [
+/// Refuses what there is no picture of on surfaces, by name.
+pub(crate) fn demand_of_surfaces(outputs: &Outputs) -> Result<()> {
+    let is_shown =
+        |show: &Show| matches!(show, Show::Mesh | Show::Cells | Show::Geodesics | Show::Triangles | Show::Unmet);
+    let all = [
         (outputs.window.is_some(), "--window"),
-        (!outputs.show.iter().all(is_shown), "--show of anything but mesh, cells, geodesics and unmet"),
+        (!outputs.show.iter().all(is_shown), "--show of anything but mesh, cells, geodesics, triangles and unmet"),
         (outputs.shows(Show::Unmet) && need_diagram_on_surface(outputs), "--show unmet with cells or geodesics"),
     ];
-    let all = own.iter().chain(more);
-    refuse(all.map(|&(is_asked, what)| (is_asked, format!("{what} on a surface"), format!("leave out {what}"))))
+    refuse(all.map(|(is_asked, what)| (is_asked, format!("{what} on a surface"), format!("leave out {what}"))))
 }

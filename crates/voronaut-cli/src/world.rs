@@ -304,7 +304,11 @@ impl<'a> World<'a> {
         self.write(mesh, write, |made| &mut made.mesh)
     }
 
-    pub(crate) fn write_realisation(&self, curved: &Realisation, path: &Path) -> Result<()> {
+    pub(crate) fn write_realisation<P: Copy + Into<[f64; 3]> + Send + Sync>(
+        &self,
+        curved: &Realisation<P>,
+        path: &Path,
+    ) -> Result<()> {
         match self.held {
             None => voronaut_io::write_realisation(curved, path),
             Some(_) => self.write_mesh(curved.to_mesh(), path),

@@ -51,7 +51,10 @@ pub fn write_solutions(solutions: &Solutions, path: &Path) -> Result<()> {
 ///
 /// # Errors
 /// As for [`write_mesh`].
-pub fn write_realisation(realisation: &Realisation, path: &Path) -> Result<()> {
+pub fn write_realisation<P: Copy + Into<[f64; 3]> + Send + Sync>(
+    realisation: &Realisation<P>,
+    path: &Path,
+) -> Result<()> {
     match Format::from_path(path)? {
         Format::Vtu => write_with(path, |out| write_curved(realisation, out)),
         _ => write_mesh(&realisation.to_mesh(), path),
@@ -99,7 +102,10 @@ fn write_canvas(canvas: &Mesh, distances: &[f64], out: &mut dyn Write) -> io::Re
 
 /// Writes a realisation as a `.vtu` file: the triangles that its regions are cut into, then its edges as polyline cells; cell
 /// data `label`, `seeds` and `length`.
-fn write_curved(realisation: &Realisation, out: &mut dyn Write) -> io::Result<()> {
+fn write_curved<P: Copy + Into<[f64; 3]> + Send + Sync>(
+    realisation: &Realisation<P>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let (mesh, lines) = (realisation.to_mesh(), realisation.lines());
     let edges = &realisation.edges;
     let cells = mesh.triangle_labels.iter().copied().chain((1..).take(edges.len()));

@@ -176,18 +176,25 @@ pub struct Geodesics {
     pub parted_geodesics: usize,
     /// Triangles whose three geodesics bound no region.
     pub open_regions: usize,
-    /// All edges, in order.
+    /// All edges, in order, without their points.
     pub geodesic_edges: Vec<GeodesicEdge>,
 }
 
 impl Geodesics {
     /// Of a realisation.
-    pub fn of(realisation: &Realisation) -> Self {
+    pub fn of<P>(realisation: &Realisation<P>) -> Self {
+        let without_points = |edge: &GeodesicEdge<P>| GeodesicEdge {
+            points: Vec::new(),
+            ends: edge.ends,
+            length: edge.length,
+            error: edge.error,
+            found: edge.found,
+        };
         Self {
             crossing_geodesics: realisation.crossing.len(),
             parted_geodesics: realisation.edges.iter().filter(|e| e.found == Found::Parted).count(),
             open_regions: realisation.open(),
-            geodesic_edges: realisation.edges.clone(),
+            geodesic_edges: realisation.edges.iter().map(without_points).collect(),
         }
     }
 }

@@ -38,6 +38,9 @@ pub struct Draped<'s> {
     tensors: Vec<Tensor3>,
 }
 
+/// The faces in each of the input's triangles.
+pub(crate) type Homes = BTreeMap<FaceId, Vec<FaceId>>;
+
 /// Which way along an edge is measured. Long edges may bow far away from what halves of them would see: while a triangulation is
 /// refined they are straight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,40 +116,63 @@ impl<'s> Draped<'s> {
     /// # Errors
     /// As for [`Draped::refine`].
     pub(super) fn insert_all(&mut self, seeds: &[Place]) -> Result<Vec<VertexId>> {
-        let mut at_home: BTreeMap<FaceId, Vec<FaceId>> = BTreeMap::new();
-        for f in self.topology.faces() {
-            at_home.entry(self.home(f)).or_default().push(f);
-        }
+        let mut at_home = self.homes();
         let mut found = Vec::with_capacity(seeds.len());
         for seed in seeds {
             let before = self.topology.face_slots() as u32;
-            if let Some(v) = self.insert_on_border(seed, &at_home)? {
-                found.push(v);
-                self.note_homes(before, &mut at_home);
-                continue;
-            }
-            let homes = self.homes_around(seed.face);
-            let faces = homes.iter().flat_map(|home| at_home.get(home).map_or(&[][..], Vec::as_slice));
-            let held = faces.map(|&f| (f, self.closest_on(f, seed.position)));
-            let deepest = |weights: [f64; 3]| weights.into_iter().fold(f64::INFINITY, f64::min);
-            let order = |x: &(f64, [f64; 3]), y: &(f64, [f64; 3])| {
-                x.0.total_cmp(&y.0).then(deepest(y.1).total_cmp(&deepest(x.1)))
-            };
-            let Some((f, (_, weights))) = held.min_by(|x, y| order(&x.1, &y.1)) else {
-                return Err(Error::domain(
-                    "a seed off the surface",
-                    seed.position.to_string(),
-                    "move it onto the surface",
-                ));
-            };
-            found.push(self.insert_in(f, weights, *seed)?);
+            let on_border = self.insert_on_border(seed, &at_home)?;
+            found.push(match on_border {
+                Some(v) => v,
+                None => {
+                    let (f, weights) = self.face_at(seed, &at_home)?;
+                    self.insert_in(f, weights, *seed)?
+                }
+            });
             self.note_homes(before, &mut at_home);
         }
         Ok(found)
     }
 
+    /// The faces in each of the input's triangles.
+    pub(crate) fn homes(&self) -> Homes {
+        let mut at_home = Homes::new();
+        for f in self.topology.faces() {
+            at_home.entry(self.home(f)).or_default().push(f);
+        }
+        at_home
+    }
+
+    /// The face that holds a place, and the weights of its corners.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] of a place off the surface.
+    pub(crate) fn face_at(&self, seed: &Place, at_home: &Homes) -> Result<(FaceId, [f64; 3])> {
+        let homes = self.homes_around(seed.face);
+        let faces = homes.iter().flat_map(|home| at_home.get(home).map_or(&[][..], Vec::as_slice));
+        let held = faces.map(|&f| (f, self.closest_on(f, seed.position)));
+        let deepest = |weights: [f64; 3]| weights.into_iter().fold(f64::INFINITY, f64::min);
+        let order =
+            |x: &(f64, [f64; 3]), y: &(f64, [f64; 3])| x.0.total_cmp(&y.0).then(deepest(y.1).total_cmp(&deepest(x.1)));
+        let found = held.min_by(|x, y| order(&x.1, &y.1)).map(|(f, (_, weights))| (f, weights));
+        let off = || Error::domain("a seed off the surface", seed.position.to_string(), "move it onto the surface");
+        found.ok_or_else(off)
+    }
+
+    /// The vertices of the face that holds a place and of those beside it, with their metric distances from it along chords.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] of a place off the surface.
+    pub(crate) fn around(&self, place: &Place, at_home: &Homes) -> Result<Vec<(VertexId, f64)>> {
+        let (f, _) = self.face_at(place, at_home)?;
+        let beside = f.half_edges().into_iter().filter_map(|h| Some(self.topology.apex(self.topology.twin(h)?)));
+        let near = distinct(self.topology.corners(f).into_iter().chain(beside));
+        let tensor = self.metric.at(place);
+        let distance = |v: VertexId| self.between([place, self.place(v)], [tensor, self.tensor(v)]);
+        Ok(near.into_iter().map(|v| (v, distance(v))).collect())
+    }
+
     /// Puts faces that are new since there were so many with the others of their homes.
-    fn note_homes(&self, before: u32, at_home: &mut BTreeMap<FaceId, Vec<FaceId>>) {
+    fn note_homes(&self, before: u32, at_home: &mut Homes) {
         for new in (before..self.topology.face_slots() as u32).map(FaceId) {
             at_home.entry(self.home(new)).or_default().push(new);
         }
@@ -154,7 +180,7 @@ impl<'s> Draped<'s> {
 
     /// Makes a place at the border of an equation's surface a vertex there: it is on the equation, and so beside the edges that
     /// the border has here. `None` of any other place.
-    fn insert_on_border(&mut self, seed: &Place, at_home: &BTreeMap<FaceId, Vec<FaceId>>) -> Result<Option<VertexId>> {
+    fn insert_on_border(&mut self, seed: &Place, at_home: &Homes) -> Result<Option<VertexId>> {
         if self.input.implicit.is_none() || !self.input.is_at_border(seed, 0.0) {
             return Ok(None);
         }

@@ -27,6 +27,7 @@ pub(crate) use border::Border;
 pub use consistent::PickCounters;
 pub(crate) use consistent::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 pub use draped::Draped;
+pub(crate) use draped::Homes;
 pub(crate) use lengths::metric_area;
 pub(crate) use on_surface::{area_of_surface, even_on_surface};
 pub(crate) use refine::COARSE;

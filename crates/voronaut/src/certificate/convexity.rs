@@ -1,6 +1,7 @@
 //! How large convex disks are (RR-9103, section 10.2): curvature, and geodesic loops excluded by Gauss and Bonnet.
 
 use super::coverage::Coverage;
+use super::sight::{Sight, Sights};
 use crate::diagram::Diagram;
 use crate::geodesic::{Fineness, Paths, gauss_curvature};
 use crate::geometry::Point;
@@ -32,11 +33,17 @@ pub struct Convexity {
     /// Of the covered triangles: how much the two shorter sides are longer than the third at least, as a share of it,
     /// less the errors of the lengths. Positive where no three seeds of a triangle lie on a geodesic.
     pub bend: f64,
+    /// What else keeps disks from being known to be convex.
+    #[serde(skip)]
+    pub open: Option<&'static str>,
 }
 
 impl Convexity {
     /// Why short geodesic loops are not excluded.
     pub(crate) fn doubt(&self) -> Option<String> {
+        if let Some(open) = self.open {
+            return Some(open.into());
+        }
         if let Some(injectivity) = self.injectivity {
             return injectivity.is_nan().then(|| "the injectivity radius: no figure".into());
         }
@@ -76,25 +83,22 @@ pub(super) fn convexity(diagram: &Diagram, net: &Net, coverage: &Coverage, unit:
     let holes = parts.cast_signed().saturating_sub(topology.euler_characteristic()).max(0).cast_unsigned();
     let of_curved = unit * 0.5 * PI / most.sqrt();
     let radius = if most <= FLAT { f64::INFINITY } else { of_curved };
-    let paths = Paths::default();
-    let seed = |i: u32| diagram.seed(i).unwrap_or_default();
-    let sides = |corners: [u32; 3]| {
-        let [a, b, c] = corners.map(seed);
-        let length = |(p, q)| paths.length(diagram.field(), p, q, Fineness::COARSEST).map(|l| (l.value, l.error));
-        [(a, b), (b, c), (c, a)].map(|side| length(side).unwrap_or((f64::NAN, 0.0)))
-    };
     let is_covered = |corners: &[u32; 3]| corners.iter().any(|&i| coverage.covered[i as usize]);
     let triangles = net.triangles.iter().map(|ball| ball.corners).filter(is_covered).collect();
-    Convexity { curvature: most / unit.powi(2), total, holes, radius, injectivity: None, bend: bend(triangles, sides) }
+    let bend = bend(triangles, diagram);
+    Convexity { curvature: most / unit.powi(2), total, holes, radius, injectivity: None, bend, open: None }
 }
 
 /// Curvatures (in units of the sampling) that differences may show of a flat metric.
 const FLAT: f64 = 1e-7;
 
-/// The least [`Convexity::bend`] of triangles, from the lengths of their sides and the errors of these.
-pub(super) fn bend(triangles: Vec<[u32; 3]>, sides: impl Fn([u32; 3]) -> [(f64, f64); 3] + Sync + Send) -> f64 {
+/// The least [`Convexity::bend`] of triangles; NaN where lengths are not known.
+pub(super) fn bend<P>(triangles: Vec<[u32; 3]>, sights: &impl Sights<P>) -> f64 {
+    let paths = Paths::default();
     let of_triangle = |corners: [u32; 3]| {
-        let mut sides = sides(corners);
+        let Some(sight) = sights.around(corners) else { return f64::NAN };
+        let [a, b, c] = corners.map(|i| sight.seed(i));
+        let mut sides = [(a, b), (b, c), (c, a)].map(|(p, q)| sight.length(&paths, p, q, Fineness::COARSEST));
         sides.sort_unstable_by(|x, y| x.0.total_cmp(&y.0));
         let error: f64 = sides.iter().map(|side| side.0 * side.1).sum();
         (sides[0].0 + sides[1].0 - sides[2].0 - error) / sides[2].0

@@ -1,9 +1,8 @@
 //! How far seeds are from the border, and which of them the theorems, whose domain has none, speak of.
 
 use super::constants::Figures;
-use crate::diagram::Diagram;
-use crate::geodesic::{Geodesic, Marching, Sources, Wave, chord};
-use crate::geometry::Point;
+use crate::diagram::{Diagram, Ground};
+use crate::geodesic::{Geodesic, Marching, Sources, Wave};
 use crate::net::Net;
 use crate::triangulation::{HalfEdge, VertexId};
 use std::collections::{HashMap, HashSet};
@@ -27,22 +26,17 @@ pub(crate) struct Coverage {
 
 impl Coverage {
     /// Of the seeds of a diagram; `longest` is the longest edge of its canvas, for points are as far from canvas
-    /// vertices. Before [`Coverage::cover`] no seed is covered.
-    pub(super) fn new(diagram: &Diagram, net: &Net, longest: f64) -> Self {
+    /// vertices. Before [`Coverage::cover`] no seed is covered. Where there is no border all are as deep as can be.
+    pub(super) fn new<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, epsilon: f64, longest: f64) -> Self {
         let depths = depths(diagram);
-        let complete: Vec<bool> = depths.iter().map(|&depth| depth > net.epsilon + longest).collect();
+        let complete: Vec<bool> = depths.iter().map(|&depth| depth > epsilon + longest).collect();
         let covered = vec![false; depths.len()];
         Self { depths, complete, covered, least: f64::INFINITY }
     }
 
-    /// Of seeds of a domain without border: all.
-    pub(super) fn whole(seeds: usize) -> Self {
-        Self { depths: vec![f64::INFINITY; seeds], complete: vec![true; seeds], covered: vec![true; seeds], least: 0.0 }
-    }
-
     /// Says which seeds are covered, from the epsilon of the complete cells.
-    pub(super) fn cover(&mut self, net: &Net, longest: f64, inner: &Figures) {
-        self.least = DEPTH[0] * (net.epsilon + longest) + DEPTH[1] * inner.epsilon;
+    pub(super) fn cover(&mut self, epsilon: f64, longest: f64, inner: &Figures) {
+        self.least = DEPTH[0] * (epsilon + longest) + DEPTH[1] * inner.epsilon;
         self.covered = self.depths.iter().map(|&depth| depth >= self.least).collect();
     }
 
@@ -88,7 +82,7 @@ pub(super) fn inner_net<P>(
 }
 
 /// How far a canvas vertex of a complete cell is from its seed at most.
-pub(super) fn farthest(coverage: &Coverage, diagram: &Diagram) -> f64 {
+pub(super) fn farthest<'a, G: Ground<'a>>(coverage: &Coverage, diagram: &Diagram<'a, G>) -> f64 {
     let vertices = diagram.vertices();
     let is_inner = |v: &VertexId| diagram.colour(*v).is_some_and(|i| coverage.complete[i as usize]);
     vertices.filter(is_inner).map(|v| diagram.distance(v)).fold(0.0, f64::max)
@@ -116,24 +110,20 @@ fn open_stars(coverage: &Coverage, exact: &[[u32; 3]]) -> usize {
     complete.filter(|&i| !is_closed(i)).count()
 }
 
-fn depths(diagram: &Diagram) -> Vec<f64> {
-    let canvas = diagram.canvas();
-    let topology = canvas.topology();
+fn depths<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>) -> Vec<f64> {
+    let topology = diagram.ground().topology();
     let borders: Vec<HalfEdge> = topology.edges().filter(|&h| topology.twin(h).is_none()).collect();
-    let mut sources = Sources::new(canvas.vertex_count());
+    let mut sources = Sources::new(diagram.vertex_count());
     for &h in &borders {
         sources.add(topology.origin(h), 0.0, 0);
         sources.add(topology.target(h), 0.0, 0);
     }
     let half = borders.iter().map(|&h| 0.5 * topology.length(h)).fold(0.0, f64::max);
     let found = Marching { canvas: topology, wave: Wave::Plane }.propagate(&sources);
-    let seeds = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default());
-    seeds.map(|p| (depth_of(diagram, p, |v| found.label(v).distance) - half).max(0.0)).collect()
-}
-
-/// What the distances at the corners around a point leave it at least.
-fn depth_of(diagram: &Diagram, p: Point, at: impl Fn(VertexId) -> f64) -> f64 {
-    let (canvas, field) = (diagram.canvas(), diagram.field());
-    let corners = canvas.weights(p).unwrap_or_default();
-    corners.into_iter().map(|(v, _)| at(v) - chord(field, p, canvas.position(v))).fold(0.0, f64::max)
+    // What the distances of the vertices around a seed leave it at least.
+    let depth = |i: u32| {
+        let around = diagram.starts_of(i);
+        around.map(|(v, distance)| found.label(v).distance - distance).fold(0.0, f64::max)
+    };
+    (0..diagram.colours() as u32).map(|i| (depth(i) - half).max(0.0)).collect()
 }

@@ -2,13 +2,14 @@
 //! canvas, by how much they miss, and what it would take. The derivations are in `docs/guarantees.md`.
 //!
 //! What is said is no proof: the metric is sampled, and geodesics are computed. It never says that a theorem holds of
-//! which a hypothesis was not looked at. Of section 12 (surfaces) there is what has constants: Theorem 10.20.
+//! which a hypothesis was not looked at. On surfaces (section 12) theorems of what is near a seed are those of the plane, in a chart.
 
 mod constants;
 mod convexity;
 mod coverage;
 mod distortion;
 mod on_surface;
+mod sight;
 mod sizing;
 mod theorems;
 mod verdict;
@@ -18,19 +19,20 @@ pub use constants::{Constants, Figures};
 pub use convexity::Convexity;
 pub(crate) use coverage::Coverage;
 pub(crate) use distortion::distortion_around;
-pub(crate) use sizing::{Area, sized_canvas};
-pub use sizing::{Cost, longest_edge};
+pub use sizing::Cost;
+pub(crate) use sizing::{Area, longest_edge, sized_canvas};
 pub use theorems::Evidence;
 pub use verdict::{Condition, Outcome, Verdict};
 pub use walk::{Found, Walks};
 
-use crate::diagram::Diagram;
+use crate::diagram::{Diagram, Ground};
 use crate::geodesic::{Fineness, Paths};
-use crate::geometry::{Point, Tensor};
+use crate::geometry::Tensor;
 use crate::net::{Ball, Net, neighbours};
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
 use serde::Serialize;
+use sight::{Sight, Sights};
 
 /// The radius of the neighbourhood U of Theorem 9.10 in epsilons: nothing that the proof of the theorem speaks of is
 /// farther away.
@@ -103,60 +105,66 @@ impl Certificate {
     /// Certifies a diagram on a canvas that is a triangulation. `net` is that of its seeds, with epsilon that of the
     /// whole domain, from the triangles of the exact dual (`recipe::net`).
     pub fn new(diagram: &Diagram, exact: &[[u32; 3]], net: &Net, constants: Constants) -> Self {
-        let longest = longest_edge(diagram.canvas());
-        let mut coverage = Coverage::new(diagram, net, longest);
+        let disks = |coverage: &Coverage, epsilon: f64| convexity::convexity(diagram, net, coverage, epsilon);
+        Self::of(diagram, diagram, exact, net, constants, disks, Evidence::verdicts)
+    }
+
+    fn of<'a, G: Ground<'a>, P: Copy + Sync>(
+        diagram: &Diagram<'a, G>,
+        sights: &impl Sights<P>,
+        exact: &[[u32; 3]],
+        net: &Net<P>,
+        constants: Constants,
+        disks: impl FnOnce(&Coverage, f64) -> Convexity,
+        verdicts: impl FnOnce(&Evidence) -> Vec<Verdict>,
+    ) -> Self {
+        let longest = longest_edge(diagram.ground().topology());
+        let mut coverage = Coverage::new(diagram, net.epsilon, longest);
         let farthest = coverage::farthest(&coverage, diagram);
         let (inner, open) = coverage::inner_net(&coverage, farthest, net, exact);
-        coverage.cover(net, longest, &inner);
+        coverage.cover(net.epsilon, longest, &inner);
         let none = || (coverage.count() == 0).then(|| format!("no seed is {:.3e} from the border", coverage.least));
-        let cells = cells(diagram, net, &coverage, &inner);
-        let psi = cells.iter().map(|cell| cell.psi).reduce(f64::max).unwrap_or(f64::NAN);
+        let mut cells = cells(sights, net, &coverage, &inner);
         let [size, euclidean_size] = sizing::half_longest(diagram, |i| coverage.complete[i as usize]);
         let evidence = Evidence {
             constants,
             net: inner,
-            psi,
+            // A value that is none is the greatest.
+            psi: cells
+                .iter()
+                .map(|cell| cell.psi)
+                .reduce(|a, b| if b > a || b.is_nan() { b } else { a })
+                .unwrap_or(f64::NAN),
             uniform: uniform(diagram),
             size,
             euclidean_size,
-            distance_error: distance_error(diagram, net, &coverage),
-            convexity: convexity::convexity(diagram, net, &coverage, inner.epsilon),
+            distance_error: distance_error(diagram, sights, net, &coverage),
+            convexity: disks(&coverage, inner.epsilon),
             doubt: open.or_else(none),
         };
-        let is_walked = |ball: &&Ball<3>| ball.corners.iter().any(|&i| coverage.covered[i as usize]);
-        let walks = Walks::of(diagram, net.triangles.iter().filter(is_walked));
-        let area = Area::of(diagram.canvas(), diagram.field());
-        Self::of(&evidence, evidence.verdicts(), &coverage, walks, cells, Some(area))
-    }
-
-    fn of(
-        evidence: &Evidence,
-        verdicts: Vec<Verdict>,
-        coverage: &Coverage,
-        walks: Walks,
-        mut cells: Vec<Cell>,
-        area: Option<Area>,
-    ) -> Self {
+        let is_walked = |ball: &&Ball<3, P>| ball.corners.iter().any(|&i| coverage.covered[i as usize]);
+        let walks = Walks::of(diagram, |at| sights.face(at), net.triangles.iter().filter(is_walked));
         for cell in &mut cells {
-            cell.factor = factor(cell, evidence);
+            cell.factor = factor(cell, &evidence);
         }
+        let verdicts = verdicts(&evidence);
         let asked_size = verdicts.iter().find(|verdict| verdict.theorem == "9.4").and_then(|verdict| verdict.size);
         let covered = coverage.count();
         Self {
-            constants: evidence.constants,
+            constants,
             covered,
             border_not_covered: coverage.covered.len() - covered,
             border_distance: coverage.least,
-            net: evidence.net,
-            lambda: evidence.net.lambda(),
+            net: inner,
+            lambda: inner.lambda(),
             psi: evidence.psi,
             is_uniform: evidence.uniform.is_some(),
-            size: evidence.size,
+            size,
             distance_error: evidence.distance_error,
             convexity: evidence.convexity,
             verdicts,
             asked_size,
-            asked_canvas: asked_size.zip(area).map(|(size, area)| area.cost(size)),
+            asked_canvas: asked_size.map(|size| Area::of(diagram.ground()).cost(size)),
             walks,
             cells,
         }
@@ -182,26 +190,27 @@ fn factor(cell: &Cell, evidence: &Evidence) -> f64 {
     size.map_or(of_psi.max(1.0), |size| of_psi.max(evidence.size / size))
 }
 
-fn cells(diagram: &Diagram, net: &Net, coverage: &Coverage, inner: &Figures) -> Vec<Cell> {
-    let field = diagram.field();
+fn cells<P: Copy + Sync>(sights: &impl Sights<P>, net: &Net<P>, coverage: &Coverage, inner: &Figures) -> Vec<Cell> {
     let mut around = vec![Vec::new(); coverage.covered.len()];
     for ball in &net.triangles {
         ball.corners.iter().for_each(|&i| around[i as usize].push(*ball));
     }
     let paths = Paths::default();
-    let seed = |i: u32| diagram.seed(i).unwrap_or_default();
-    let distance = |i: u32, j: u32| {
-        paths.length(field, seed(i), seed(j), Fineness::COARSEST).map_or(f64::NAN, |length| length.value)
-    };
     let cell = |&i: &u32| {
         let balls = &around[i as usize];
+        let sight = sights.around([i]);
+        let psi = |sight| distortion_around(Sight::field(sight), Sight::seed(sight, i), REACH * inner.epsilon);
+        let distance = |j: u32| {
+            let sight = sights.around([i, j])?;
+            Some(sight.length(&paths, sight.seed(i), sight.seed(j), Fineness::COARSEST).0)
+        };
         let others = balls.iter().flat_map(|ball| ball.corners).filter(|&j| j != i);
         Cell {
             seed: i,
             depth: coverage.depths[i as usize],
-            psi: distortion_around(field, seed(i), REACH * inner.epsilon),
+            psi: sight.as_ref().map_or(f64::NAN, psi),
             epsilon: balls.iter().map(|ball| ball.radius).fold(0.0, f64::max),
-            mu: others.map(|j| distance(i, j)).fold(f64::INFINITY, f64::min),
+            mu: others.map(|j| distance(j).unwrap_or(f64::NAN)).fold(f64::INFINITY, f64::min),
             delta: balls.iter().map(Ball::protection).fold(f64::INFINITY, f64::min),
             factor: f64::NAN,
         }
@@ -210,43 +219,50 @@ fn cells(diagram: &Diagram, net: &Net, coverage: &Coverage, inner: &Figures) -> 
     covered.par_iter().with_min_len(8).map(cell).collect()
 }
 
-/// The eigenvalues of the tensor if it is the same at all canvas vertices.
-fn uniform(diagram: &Diagram) -> Option<[f64; 2]> {
-    let field = diagram.field();
-    let positions = &diagram.canvas().embedded().positions;
-    let first = field.at(*positions.first()?);
-    let scale = first.xx + first.yy;
-    let is_same = |&p: &Point| {
-        let Tensor { xx, xy, yy } = field.at(p) - first;
-        xx.abs().max(xy.abs()).max(yy.abs()) <= ROUNDING * scale
+/// The eigenvalues of the tensor if it is the same at all canvas vertices, and so is the tangent plane.
+fn uniform<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>) -> Option<[f64; 2]> {
+    let ground = diagram.ground();
+    let frozen = |v: VertexId| ground.frozen(ground.place(v));
+    let first = frozen(VertexId(0));
+    let scale = first.tensor.xx + first.tensor.yy;
+    let is_same = |v: VertexId| {
+        let other = frozen(v);
+        let Tensor { xx, xy, yy } = other.tensor - first.tensor;
+        (other.plane.normal - first.plane.normal).norm() <= ROUNDING
+            && xx.abs().max(xy.abs()).max(yy.abs()) <= ROUNDING * scale
     };
-    let eigen = first.eigen();
-    positions.par_iter().with_min_len(1024).all(is_same).then_some([eigen.small, eigen.large])
+    let eigen = first.tensor.eigen();
+    let vertices = (0..diagram.vertex_count() as u32).into_par_iter();
+    vertices.with_min_len(1024).all(|v| is_same(VertexId(v))).then_some([eigen.small, eigen.large])
 }
 
 /// How far canvas distances are from lengths of geodesics at most, or beyond those to the seeds of neighbouring cells, with the
 /// errors of these, at samples of the covered cells; NaN where there are none, or geodesics are not found.
-fn distance_error(diagram: &Diagram, net: &Net, coverage: &Coverage) -> f64 {
-    let field = diagram.field();
+fn distance_error<'a, G: Ground<'a>, P: Copy>(
+    diagram: &Diagram<'a, G>,
+    sights: &impl Sights<P>,
+    net: &Net<P>,
+    coverage: &Coverage,
+) -> f64 {
     let neighbours = neighbours(coverage.covered.len(), net.triangles.iter().map(|ball| ball.corners));
-    let canvas = diagram.canvas();
-    let vertices = diagram.vertices();
     let is_covered = |v: &VertexId| diagram.colour(*v).is_some_and(|i| coverage.covered[i as usize]);
-    let all: Vec<VertexId> = vertices.filter(is_covered).collect();
+    let all: Vec<VertexId> = diagram.vertices().filter(is_covered).collect();
     let paths = Paths::default();
     let error = |v: &VertexId| {
-        let (p, colour) = (canvas.position(*v), diagram.colour(*v)?);
-        let seed = diagram.seed(colour)?;
-        if p == seed {
-            return Some(diagram.distance(*v));
-        }
+        let colour = diagram.colour(*v)?;
+        let sight = sights.around([colour])?;
+        let (p, seed) = (sight.vertex(*v), sight.seed(colour));
         let found = diagram.distance(*v);
-        let length = paths.length(field, p, seed, Fineness::MIDDLE)?;
-        let mut error = (length.value - found).abs() + length.error * length.value;
+        if p == seed {
+            return Some(found);
+        }
+        let (length, share) = sight.length(&paths, p, seed, Fineness::MIDDLE);
+        let mut error = (length - found).abs() + share * length;
         // A seed that should have won is nearer than what was found.
         for &other in &neighbours[colour as usize] {
-            let length = paths.length(field, p, diagram.seed(other)?, Fineness::MIDDLE)?;
-            error = error.max(found - length.value + length.error * length.value);
+            let (length, share) = sight.length(&paths, p, sight.seed(other), Fineness::MIDDLE);
+            let excess = found - length + share * length;
+            error = if excess > error || excess.is_nan() { excess } else { error };
         }
         Some(error)
     };

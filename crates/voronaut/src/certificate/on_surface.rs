@@ -1,14 +1,14 @@
-//! Certificates on surfaces: what Theorem 10.20 asks for, which charts and lengths tell. Of the others section 12 gives no constants.
+//! Certificates on surfaces: convex disks there, by curvature in charts and by geodesic loops.
 
 use super::convexity::{Convexity, bend};
-use super::coverage::{Coverage, inner_net};
-use super::{Certificate, Constants, Evidence, Walks};
+use super::sight::OnSurface;
+use super::{Certificate, Constants, Coverage, Evidence};
 use crate::canvas::{Canvas, Draped};
 use crate::diagram::SurfaceDiagram;
-use crate::geodesic::{Fineness, Geodesic, Marching, Paths, Sources, gauss_curvature};
+use crate::geodesic::{Geodesic, Marching, Sources, gauss_curvature};
 use crate::geometry::{Point, Vector};
 use crate::metric::Scaled;
-use crate::net::{Net, SeedsOnSurface};
+use crate::net::Net;
 use crate::parallel::prelude::*;
 use crate::surface::{Chart, Place};
 use crate::triangulation::{HalfEdge, VertexId};
@@ -21,52 +21,27 @@ const SOURCES: usize = 256;
 const RING: usize = 3;
 
 impl Certificate {
-    /// Certifies a diagram on a surface; `net` is that of its seeds (`recipe::surface_net`). Said of closed surfaces that have an equation:
-    /// triangles have no curvature but at their vertices, and theorems speak of surfaces without border.
+    /// Certifies a diagram on a surface, as [`Certificate::new`] does in the plane; `net` is that of its seeds (`recipe::surface_net`).
+    /// Around each seed the surface is seen in a chart. Convex disks are known on closed surfaces that have an equation only: triangles
+    /// have no curvature but at their vertices.
     pub fn on_surface(diagram: &SurfaceDiagram, exact: &[[u32; 3]], net: &Net<Place>, constants: Constants) -> Self {
-        let draped = diagram.canvas().draped();
-        let input = draped.input();
-        let coverage = Coverage::whole(diagram.colours());
-        let farthest = diagram.farthest().map_or(0.0, |(_, distance)| distance);
-        let (inner, open) = inner_net(&coverage, farthest, net, exact);
-        let border = input.seams.whole().borders > 0;
-        let doubt = match () {
-            () if border => Some("the surface has a border, where cells do not end at others".to_owned()),
-            () if input.implicit.is_none() => Some(
-                "the curvature: the surface has no equation, and its triangles have it at their vertices only".into(),
-            ),
-            () => open,
-        };
-        let evidence = Evidence {
-            constants,
-            net: inner,
-            psi: f64::NAN,
-            uniform: None,
-            size: f64::NAN,
-            euclidean_size: f64::NAN,
-            distance_error: f64::NAN,
-            convexity: convexity(diagram, net, inner.epsilon),
-            doubt,
-        };
-        Self::of(&evidence, evidence.on_surface(), &coverage, Walks::default(), Vec::new(), None)
+        let sights = OnSurface::new(diagram);
+        let disks = |_: &Coverage, epsilon: f64| convexity(diagram, &sights, net, epsilon);
+        Self::of(diagram, &sights, exact, net, constants, disks, Evidence::on_surface)
     }
 }
 
-fn convexity(diagram: &SurfaceDiagram, net: &Net<Place>, epsilon: f64) -> Convexity {
-    let canvas = diagram.canvas();
-    let draped = canvas.draped();
-    let [curvature, total] = curvatures(draped, epsilon);
+fn convexity(diagram: &SurfaceDiagram, sights: &OnSurface, net: &Net<Place>, epsilon: f64) -> Convexity {
+    let input = diagram.canvas().draped().input();
+    let [curvature, total] = curvatures(diagram.canvas().draped(), epsilon);
     let injectivity = injectivity(diagram, epsilon);
     let of_curvature = if curvature > 0.0 { 0.5 * PI / curvature.sqrt() } else { f64::INFINITY };
-    let places: Vec<Place> =
-        (0..diagram.colours() as u32).map(|i| *draped.place(diagram.seed(i).unwrap_or(VertexId(0)))).collect();
-    let seeds = SeedsOnSurface::new(draped.input(), draped.metric(), places);
-    let paths = Paths::default();
-    let sides = |corners: [u32; 3]| {
-        let Some(chart) = seeds.chart(&corners) else { return [(f64::NAN, 0.0); 3] };
-        let [a, b, c] = corners.map(|i| chart.flatten(seeds.position(i)));
-        let length = |p: Point, q: Point| paths.length(&chart, p, q, Fineness::COARSEST).map(|l| (l.value, l.error));
-        [(a, b), (b, c), (c, a)].map(|(p, q)| length(p, q).unwrap_or((f64::NAN, 0.0)))
+    let open = match () {
+        () if input.seams.whole().borders > 0 => Some("the surface has a border, where loops are not looked for"),
+        () if input.implicit.is_none() => {
+            Some("the curvature: the surface has no equation, and its triangles have it at their vertices only")
+        }
+        () => None,
     };
     Convexity {
         curvature,
@@ -75,7 +50,8 @@ fn convexity(diagram: &SurfaceDiagram, net: &Net<Place>, epsilon: f64) -> Convex
         // A minimum that does not lose what is no number.
         radius: if injectivity.is_nan() || 0.5 * injectivity < of_curvature { 0.5 * injectivity } else { of_curvature },
         injectivity: Some(injectivity),
-        bend: bend(net.triangles.iter().map(|ball| ball.corners).collect(), sides),
+        bend: bend(net.triangles.iter().map(|ball| ball.corners).collect(), sights),
+        open,
     }
 }
 

@@ -1,12 +1,10 @@
 //! What a sizing field costs, and how fine a canvas is.
 
-use crate::canvas::Canvas;
-use crate::diagram::Diagram;
-use crate::domain::Domain;
+use crate::diagram::{Diagram, Frozen, Ground};
 use crate::error::Result;
-use crate::geometry::{Point, Vector};
-use crate::metric::MetricField;
+use crate::geometry::Point3;
 use crate::parallel::prelude::*;
+use crate::triangulation::{FaceId, Triangulation};
 use serde::Serialize;
 
 /// Vertices that a canvas would take, estimated: half its triangles, each with an area of s0^2.
@@ -18,7 +16,7 @@ pub struct Cost {
     pub isotropic: f64,
 }
 
-/// The area of a domain in the metric, and in the isotropic metrics of the greater eigenvalues.
+/// The area of a domain or surface in the metric, and in the isotropic metrics of the greater eigenvalues.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Area {
     intrinsic: f64,
@@ -26,16 +24,19 @@ pub(crate) struct Area {
 }
 
 impl Area {
-    /// From the faces of a canvas, with one tensor in each.
-    pub(crate) fn of(canvas: &Canvas, field: &dyn MetricField) -> Self {
-        let planar = canvas.embedded();
-        let triangles: Vec<[Point; 3]> = planar.topology.faces().map(|f| planar.triangle(f)).collect();
-        let measured = |&[a, b, c]: &[Point; 3]| {
-            let tensor = field.at(Point::centroid([a, b, c]));
-            let area = 0.5 * Vector::cross(b - a, c - a);
-            [area * tensor.determinant().max(0.0).sqrt(), area * tensor.eigen().large]
+    /// From the faces of a canvas, with the mean of what their corners have.
+    pub(crate) fn of<'a, G: Ground<'a>>(ground: G) -> Self {
+        let topology = ground.embedded();
+        let faces: Vec<FaceId> = topology.faces().collect();
+        let measured = |&f: &FaceId| {
+            let corners = topology.corners(f).map(|v| ground.frozen(ground.place(v)));
+            let [a, b, c] = corners.map(|corner| corner.at);
+            let third = (b - a).cross(c - a).norm() / 6.0;
+            let densities =
+                corners.map(|Frozen { tensor, .. }| [tensor.determinant().max(0.0).sqrt(), tensor.eigen().large]);
+            [0, 1].map(|i| third * densities.iter().map(|density| density[i]).sum::<f64>())
         };
-        let areas: Vec<[f64; 2]> = triangles.par_iter().with_min_len(1024).map(measured).collect();
+        let areas: Vec<[f64; 2]> = faces.par_iter().with_min_len(1024).map(measured).collect();
         let [intrinsic, isotropic] = [0, 1].map(|i| areas.iter().map(|area| area[i]).sum());
         Self { intrinsic, isotropic }
     }
@@ -48,47 +49,46 @@ impl Area {
 }
 
 /// The longest edge that distances travel on, in the metric.
-pub fn longest_edge(canvas: &Canvas) -> f64 {
-    let topology = canvas.topology();
+pub(crate) fn longest_edge(topology: &Triangulation) -> f64 {
     topology.edges().map(|h| topology.length(h)).fold(0.0, f64::max)
 }
 
 /// Half the longest edge between vertices of the cells that a test picks: in the metric, and Euclidean.
-pub(super) fn half_longest(diagram: &Diagram, is_picked: impl Fn(u32) -> bool) -> [f64; 2] {
-    let canvas = diagram.canvas();
-    let topology = canvas.topology();
+pub(super) fn half_longest<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, is_picked: impl Fn(u32) -> bool) -> [f64; 2] {
+    let ground = diagram.ground();
+    let topology = ground.topology();
     let mut longest = [0.0_f64; 2];
     for h in topology.edges() {
         let ends = topology.ends(h);
         if ends.iter().all(|&v| diagram.colour(v).is_some_and(&is_picked)) {
-            let euclidean = canvas.position(ends[0]).distance(canvas.position(ends[1]));
-            longest = [longest[0].max(topology.length(h)), longest[1].max(euclidean)];
+            let [p, q] = ends.map(|v| Point3::from(ground.coordinates(v)));
+            longest = [longest[0].max(topology.length(h)), longest[1].max(p.distance(q))];
         }
     }
     // Where there are none nothing is known.
     longest.map(|length| if length > 0.0 { 0.5 * length } else { f64::NAN })
 }
 
-/// An intrinsic canvas of which no edge is longer than `2 size` in the metric, by as many vertices as that takes; and
-/// what made it end: `None` if it would take more than `most` vertices.
+/// A canvas of which no edge is longer than `2 size` in the metric, made with as many vertices as that takes; `None` if it would take more
+/// than `most` vertices.
 ///
 /// # Errors
-/// As for [`Canvas::intrinsic`].
-pub(crate) fn sized_canvas(
-    domain: &Domain,
-    field: &dyn MetricField,
+/// Those of making one.
+pub(crate) fn sized_canvas<C>(
     size: f64,
-    start: f64,
-    most: f64,
-) -> Result<Option<Canvas>> {
+    [start, most]: [f64; 2],
+    make: impl Fn(usize) -> Result<C>,
+    measure: impl Fn(&C) -> (f64, usize),
+) -> Result<Option<C>> {
     let mut vertices = start.max(100.0);
     while vertices <= most {
-        let canvas = Canvas::intrinsic(domain, field, vertices as usize)?;
-        let excess = longest_edge(&canvas) / (2.0 * size);
+        let canvas = make(vertices as usize)?;
+        let (longest, count) = measure(&canvas);
+        let excess = longest / (2.0 * size);
         if excess < 1.0 {
             return Ok(Some(canvas));
         }
-        vertices = vertices.max(canvas.vertex_count() as f64) * (excess * excess).clamp(1.1, 4.0);
+        vertices = vertices.max(count as f64) * (excess * excess).clamp(1.1, 4.0);
     }
     Ok(None)
 }

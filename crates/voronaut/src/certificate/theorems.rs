@@ -28,6 +28,7 @@ pub struct Evidence {
 }
 
 const NERVE: &str = "the canvas's three-coloured faces are the dual";
+const STRAIGHT: &str = "the dual with straight edges is embedded";
 const EDGE: &str = "half the longest canvas edge is below s0";
 
 /// Below this share of epsilon delta may be an error of the lengths that it comes from: its square is that of a difference of
@@ -48,15 +49,13 @@ impl Evidence {
         vec![self.euclidean(), self.of_uniform(), arbitrary, self.with_errors(), embedded, straight]
     }
 
-    /// Verdicts on the same theorems on a surface: section 12 has constants for none that speaks of canvases or straight edges.
+    /// Verdicts on the same theorems on a surface, in charts, but for Lemma 11.2: section 12 has no constants for straight edges in
+    /// space.
     pub(super) fn on_surface(&self) -> Vec<Verdict> {
-        let without = |theorem, says| {
-            let why = "section 12 gives no constants on surfaces".to_string();
-            Verdict::new(theorem, says, vec![], Some(why))
-        };
-        let canvas = ["9.1", "9.9", "9.10", "9.4"].map(|theorem| without(theorem, NERVE));
-        let straight = without("11.2", "the dual with straight edges is embedded");
-        canvas.into_iter().chain([self.geodesic_dual(), straight]).collect()
+        let why = "section 12 gives no constants for straight edges in space".to_string();
+        let straight = Verdict::new("11.2", STRAIGHT, vec![], Some(why));
+        let of_plane = self.verdicts().into_iter().filter(|verdict| verdict.theorem != "11.2");
+        of_plane.chain([straight]).collect()
     }
 
     fn protected(&self) -> Condition {
@@ -141,7 +140,7 @@ impl Evidence {
         }
         let open = || (geodesic.outcome != Outcome::Holds).then(|| "Theorem 10.20, which it builds on".to_string());
         let doubt = self.doubt.clone().or_else(open);
-        Verdict::new("11.2", "the dual with straight edges is embedded", conditions, doubt)
+        Verdict::new("11.2", STRAIGHT, conditions, doubt)
     }
 }
 

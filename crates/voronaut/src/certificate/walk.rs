@@ -1,7 +1,7 @@
 //! From the canvas face that holds a Voronoi vertex to its witness (RR-9103, proof of Lemma 9.3, Figure 10).
 
-use crate::diagram::Diagram;
-use crate::geometry::Point;
+use crate::diagram::{Diagram, Ground};
+use crate::geometry::Point3;
 use crate::lists::ranked;
 use crate::net::Ball;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
@@ -25,11 +25,15 @@ pub struct Walks {
 
 impl Walks {
     /// Walks from the centre of each circle.
-    pub(super) fn of<'a>(diagram: &Diagram, balls: impl Iterator<Item = &'a Ball<3>>) -> Self {
+    pub(super) fn of<'a, 'b, G: Ground<'a>, P: Copy + 'b>(
+        diagram: &Diagram<'a, G>,
+        face: impl Fn(P) -> Option<FaceId>,
+        balls: impl Iterator<Item = &'b Ball<3, P>>,
+    ) -> Self {
         let (mut walks, mut steps) = (Self::default(), 0);
         for ball in balls {
             walks.started += 1;
-            if let Some(found) = walk(diagram, ball.corners, ball.centre) {
+            if let Some(found) = face(ball.centre).and_then(|at| walk(diagram, ball.corners, at)) {
                 walks.found += 1;
                 walks.turned += usize::from(found.turned);
                 walks.max_steps = walks.max_steps.max(found.steps);
@@ -52,22 +56,23 @@ pub struct Found {
     pub turned: bool,
 }
 
-/// Walks from the face that holds `at`, where the cells of three colours meet, between two of the cells towards the
+/// Walks from a face of the embedded canvas, where the cells of three colours meet, between two of the cells towards the
 /// seed of the third, as far as faces have no other colour. `None` where that leads to no witness: the canvas is too
 /// coarse.
 ///
 /// On an intrinsic canvas, whose faces are not those of the plane, the walk starts in the first face with three or else
-/// two of the colours around the corners of the plane's.
-pub(crate) fn walk(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<Found> {
+/// two of the colours around the corners of the embedded one.
+pub(crate) fn walk<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, colours: [u32; 3], at: FaceId) -> Option<Found> {
     let first = start(diagram, colours, at)?;
     let found = colours_of(diagram, first);
     let Some(&missing) = colours.iter().find(|colour| !found.contains(colour)) else {
         return Some(Found { witness: first, steps: 0, turned: false });
     };
-    let towards = diagram.seed(missing)?;
+    let ground = diagram.ground();
+    let towards = ground.frozen(diagram.seed(missing)?).at;
     let distance = |ends: [VertexId; 2]| {
-        let [p, q] = ends.map(|v| diagram.canvas().position(v));
-        p.midpoint(q).distance(towards)
+        let [p, q] = ends.map(|v| Point3::from(ground.coordinates(v)));
+        p.lerp(q, 0.5).distance(towards)
     };
     let doors = first.half_edges().into_iter().filter_map(|h| {
         let ends = topology(diagram).ends(h);
@@ -81,7 +86,7 @@ pub(crate) fn walk(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<Fo
 }
 
 /// Goes through edges whose ends differ, from face to face, until a face has another colour.
-fn between(diagram: &Diagram, mut door: HalfEdge, missing: u32) -> Option<(FaceId, usize)> {
+fn between<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, mut door: HalfEdge, missing: u32) -> Option<(FaceId, usize)> {
     let topology = topology(diagram);
     for steps in 1..=topology.face_count() {
         let entry = topology.twin(door)?;
@@ -99,12 +104,9 @@ fn between(diagram: &Diagram, mut door: HalfEdge, missing: u32) -> Option<(FaceI
     None
 }
 
-fn start(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<FaceId> {
-    let canvas = diagram.canvas();
-    let planar = canvas.embedded();
-    let face = canvas.face_of(canvas.locate(at)?)?;
+fn start<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, colours: [u32; 3], at: FaceId) -> Option<FaceId> {
     let topology = topology(diagram);
-    let own = planar.topology.corners(face);
+    let own = diagram.ground().embedded().corners(at);
     let near = own.into_iter().flat_map(|v| topology.star(v).map(HalfEdge::face));
     let mut candidates: Vec<(usize, bool, FaceId)> = near
         .filter_map(|f| {
@@ -121,10 +123,10 @@ fn start(diagram: &Diagram, colours: [u32; 3], at: Point) -> Option<FaceId> {
     candidates.first().map(|candidate| candidate.2)
 }
 
-fn colours_of(diagram: &Diagram, f: FaceId) -> [u32; 3] {
+fn colours_of<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, f: FaceId) -> [u32; 3] {
     diagram.colours_at(topology(diagram).corners(f))
 }
 
-fn topology<'a>(diagram: &Diagram<'a>) -> &'a Triangulation {
-    diagram.canvas().topology()
+fn topology<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>) -> &'a Triangulation {
+    diagram.ground().topology()
 }

@@ -38,15 +38,18 @@ pub(super) enum Chords {
 /// The metric that a tangent plane has at a place, by which straight ways from there are measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Frozen {
-    pub(super) at: Point3,
-    pub(super) plane: TangentPlane,
-    pub(super) tensor: Tensor,
+    /// The place.
+    pub(crate) at: Point3,
+    /// Its tangent plane.
+    pub(crate) plane: TangentPlane,
+    /// The metric in the coordinates of that.
+    pub(crate) tensor: Tensor,
 }
 
 impl Frozen {
     /// The length of a way: in the direction of its projection onto the plane, as long as it is in space. What the metric says of
     /// the normal no surface sees; a way along the normal is as if in the direction of greatest length.
-    fn length(&self, way: Vector3) -> f64 {
+    pub(crate) fn length(&self, way: Vector3) -> f64 {
         let flat = self.plane.flatten(way);
         let (norm, projected) = (way.norm(), flat.norm());
         if projected > 0.0 {

@@ -58,8 +58,8 @@ pub struct Diagram<'a, G: Ground<'a> = Flat<'a>> {
 /// A canvas of the plane.
 #[derive(Clone, Copy)]
 pub struct Flat<'a> {
-    canvas: &'a Canvas,
-    field: &'a dyn MetricField,
+    pub(crate) canvas: &'a Canvas,
+    pub(crate) field: &'a dyn MetricField,
 }
 
 /// The diagram of seeds on a surface.
@@ -179,6 +179,11 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
         Self { ground, kind, measure, care, seeds: placed, sources, propagation, overlap }
     }
 
+    /// What it lies on.
+    pub(crate) fn ground(&self) -> G {
+        self.ground
+    }
+
     /// By what distance its cells are the nearest places.
     pub fn kind(&self) -> Kind {
         self.kind
@@ -230,6 +235,12 @@ impl<'a, G: Ground<'a>> Diagram<'a, G> {
     /// Where a seed is; `None` of a removed one.
     pub fn seed(&self, colour: u32) -> Option<G::Place> {
         self.seeds.get(colour as usize)?.as_ref().map(|seed| seed.at)
+    }
+
+    /// The canvas vertices in sight of a seed, with their distances from it.
+    pub(crate) fn starts_of(&self, colour: u32) -> impl Iterator<Item = (VertexId, f64)> {
+        let seed = self.seeds.get(colour as usize).and_then(Option::as_ref);
+        seed.into_iter().flat_map(|seed| &seed.starts).map(|start| (start.vertex, start.distance))
     }
 
     /// Number of colours given so far, those of removed seeds among them.

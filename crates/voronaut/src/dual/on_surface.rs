@@ -155,6 +155,26 @@ impl<'a> SurfaceDual<'a> {
         }
     }
 
+    /// Where a place is, seen from a seed.
+    pub(crate) fn seen_from(&self, seed: VertexId, place: &Place) -> Vector {
+        self.seen(seed, place.position, self.input.normal(place))
+    }
+
+    /// In the direction of the projection, as long as the way along the surface, by the cubic over the chord.
+    fn seen(&self, from: VertexId, to: Point3, normal: Vector3) -> Vector {
+        let e = to - self.position(from);
+        let plane = &self.state.planes[from.index()];
+        let flat = plane.flatten(e);
+        let square = e.dot(e);
+        let [a, b] = [plane.normal, normal].map(|normal| {
+            let sine = -normal.dot(e) / square.sqrt();
+            (sine / (1.0 - sine * sine).max(f64::MIN_POSITIVE).sqrt()).clamp(-STEEP, STEEP)
+        });
+        let length = square.sqrt() * (1.0 + (2.0 * (a * a + b * b) - a * b) / 30.0);
+        let norm = flat.norm();
+        if norm > 0.0 { flat * (length / norm) } else { Vector::default() }
+    }
+
     /// Where a seed comes to lie that is moved by a vector of its tangent plane.
     pub(crate) fn place_after(&self, v: VertexId, by: Vector) -> Option<Place> {
         let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
@@ -242,20 +262,8 @@ impl Moving for SurfaceDual<'_> {
         self.state.kinds[v.index()]
     }
 
-    /// In the direction of the projection, as long as the way along the surface, by the cubic over the chord.
     fn offset(&self, from: VertexId, to: VertexId) -> Vector {
-        let e = self.position(to) - self.position(from);
-        let flat = self.state.planes[from.index()].flatten(e);
-        let square = e.dot(e);
-        let slopes = [from, to].map(|v| {
-            let normal = self.state.planes[v.index()].normal;
-            let sine = -normal.dot(e) / square.sqrt();
-            (sine / (1.0 - sine * sine).max(f64::MIN_POSITIVE).sqrt()).clamp(-STEEP, STEEP)
-        });
-        let [a, b] = slopes;
-        let length = square.sqrt() * (1.0 + (2.0 * (a * a + b * b) - a * b) / 30.0);
-        let norm = flat.norm();
-        if norm > 0.0 { flat * (length / norm) } else { Vector::default() }
+        self.seen(from, self.position(to), self.state.planes[to.index()].normal)
     }
 
     fn factor(&self) -> f64 {

@@ -271,6 +271,18 @@ impl Aabb3 {
     }
 }
 
+impl From<Point> for [f64; 3] {
+    fn from(Point { x, y }: Point) -> Self {
+        [x, y, 0.0]
+    }
+}
+
+impl From<Point3> for [f64; 3] {
+    fn from(p: Point3) -> Self {
+        p.to_array()
+    }
+}
+
 impl From<[f64; 3]> for Point3 {
     fn from([x, y, z]: [f64; 3]) -> Self {
         Self { x, y, z }

@@ -1,9 +1,9 @@
 //! Circles by distances on a canvas, where geodesics are not resolved: around singular points of the metric, where shortest
 //! paths all lead through a small region and polynomials do not follow them.
 
-use super::Ball;
+use super::{Ball, SeedsOnSurface};
 use crate::canvas::Canvas;
-use crate::diagram::{Diagram, NerveTriangle};
+use crate::diagram::{Diagram, NerveTriangle, SurfaceDiagram};
 use crate::error::Result;
 use crate::geometry::Point;
 use crate::metric::MetricField;
@@ -22,6 +22,15 @@ pub(crate) fn circles_on_canvas(
     let diagram = Diagram::new(canvas, field, &places)?;
     let nerve = diagram.sharp_nerve();
     Ok(nerve.triangles.iter().filter_map(|t| ball(&diagram, t, |colour| seeds[colour as usize].0)).collect())
+}
+
+impl<'a> SeedsOnSurface<'a> {
+    /// The seeds of a diagram, of which none was removed.
+    pub(crate) fn of(diagram: &SurfaceDiagram<'a>) -> Self {
+        let draped = diagram.canvas().draped();
+        let places = (0..diagram.colours() as u32).filter_map(|i| Some(*draped.place(diagram.seed(i)?))).collect();
+        Self::new(draped.input(), draped.metric(), places)
+    }
 }
 
 fn ball(diagram: &Diagram, simplex: &NerveTriangle, number: impl Fn(u32) -> u32) -> Option<Ball<3>> {

@@ -1,13 +1,12 @@
 //! Voronoi cells of seeds, in the tangent planes there or of the diagram on a canvas, with their moments, which relaxation takes.
 
-use crate::canvas::Canvas;
-use crate::diagram::{Care, Diagram};
-use crate::dual::{Dual, Kind, Moving};
+use super::on_canvas::{Colouring, OnCanvas};
+use crate::diagram::Flat;
+use crate::dual::{Kind, Moving};
 use crate::elementary::Elementary;
 use crate::error::Result;
-use crate::geodesic::{LocalMetric, Method, Support};
-use crate::geometry::{Point, Tensor, Vector, to_frame};
-use crate::metric::MetricField;
+use crate::geodesic::LocalMetric;
+use crate::geometry::{Vector, to_frame};
 use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, VertexId};
 
@@ -105,16 +104,17 @@ impl std::ops::Add for Moments {
     }
 }
 
-/// The cells that relaxation works with.
-pub(crate) enum Cells<'a> {
+/// The cells that relaxation works with, in the plane or on a surface.
+pub(crate) enum Cells<'a, G = Flat<'a>> {
     /// Cut in the tangent plane at each seed, from what its neighbours are seen as through the second-order logarithm map.
     /// Fast; right where the metric changes little over an edge.
     Tangent,
     /// Those of the diagram on a canvas, with the distances there; directions by the second-order logarithm map.
-    Canvas(OnCanvas<'a>),
-    /// The same cells, and the report's centroid (RR-9103, equation 9): the Euclidean one with the metric's area as weight. For
+    Canvas(OnCanvas<'a, G>),
+    /// The same cells, and the report's centroid (RR-9103, equation 9): the Euclidean one with the metric's area as weight, on a surface in
+    /// the tangent plane. For
     /// comparison: it is not the Riemannian one (erratum 14), and nothing holds the energy.
-    Weighted(OnCanvas<'a>),
+    Weighted(OnCanvas<'a, G>),
 }
 
 /// Where the moments of the cells of a triangulation's seeds come from.
@@ -123,7 +123,7 @@ pub(crate) trait CellsOf<M> {
     /// orthonormal frame of [`to_frame`].
     ///
     /// # Errors
-    /// [`crate::Error::Domain`] if cells are of a canvas that is not of the dual's domain.
+    /// [`crate::Error::Domain`] if cells are of a canvas that is not of the dual's domain or surface.
     fn moments(&self, dual: &M) -> Result<Vec<(VertexId, Moments)>>;
 
     /// Whether steps that raise the energy are taken back.
@@ -144,8 +144,8 @@ impl<M: Moving> CellsOf<M> for Tangent {
     }
 }
 
-impl CellsOf<Dual<'_>> for Cells<'_> {
-    fn moments(&self, dual: &Dual) -> Result<Vec<(VertexId, Moments)>> {
+impl<'a, M: Moving, G: Colouring<'a, M>> CellsOf<M> for Cells<'a, G> {
+    fn moments(&self, dual: &M) -> Result<Vec<(VertexId, Moments)>> {
         match self {
             Cells::Tangent => Tangent.moments(dual),
             Cells::Canvas(cells) => cells.moments(dual, |_, logarithm| logarithm),
@@ -317,101 +317,12 @@ fn turn(spokes: &[Vector], last: Vector) -> f64 {
     spokes.iter().zip(to).map(|(a, b)| a.cross(b).arctangent_over(a.dot(b))).sum()
 }
 
-/// A canvas, and the metric area that each of its vertices stands for.
-pub(crate) struct OnCanvas<'a> {
-    canvas: &'a Canvas,
-    areas: Vec<f64>,
-    tensors: Vec<Tensor>,
-}
-
-impl<'a> OnCanvas<'a> {
-    /// Each vertex stands for a third of its faces, flat with their metric lengths.
-    pub(crate) fn new(canvas: &'a Canvas, field: &dyn MetricField) -> Self {
-        let topology = canvas.topology();
-        let mut areas = vec![0.0; canvas.vertex_count()];
-        for face in topology.faces() {
-            let [a, b, c] = face.half_edges().map(|h| topology.length(h));
-            let product = (a + b + c) * (b + c - a).max(0.0) * (c + a - b).max(0.0) * (a + b - c).max(0.0);
-            topology.corners(face).iter().for_each(|v| areas[v.index()] += 0.25 * product.sqrt() / 3.0);
-        }
-        let vertices = (0..canvas.vertex_count() as u32).into_par_iter().map(VertexId);
-        let tensors = vertices.map(|v| field.at(canvas.position(v))).collect();
-        Self { canvas, areas, tensors }
-    }
-
-    /// The moments of every seed's cell, with the canvas's distances; `tangent` chooses the vector from a seed to a point: their
-    /// difference, or the logarithm.
-    ///
-    /// # Errors
-    /// [`crate::Error::Domain`] of a seed outside the canvas's domain.
-    pub(super) fn moments(
-        &self,
-        dual: &Dual,
-        tangent: impl Fn(Vector, Vector) -> Vector,
-    ) -> Result<Vec<(VertexId, Moments)>> {
-        let ids: Vec<VertexId> = dual.topology().vertices().collect();
-        let seeds: Vec<Point> = ids.iter().map(|&v| dual.position(v)).collect();
-        let factor = dual.field().factor;
-        let diagram = Diagram::of_vertices(self.canvas, dual.field().field, &seeds, Method::March, Care::Quick)?;
-        let directions = self.directions(&diagram, |colour| dual.local(ids[colour as usize]));
-        let mut moments = vec![Moments::default(); ids.len()];
-        for x in (0..self.canvas.vertex_count() as u32).map(VertexId) {
-            let Some(colour) = diagram.colour(x).map(|colour| colour as usize) else { continue };
-            let (mass, distance) = (self.areas[x.index()] * factor, diagram.distance(x) * factor.sqrt());
-            let local = dual.local(ids[colour]);
-            let w = tangent(self.canvas.position(x) - seeds[colour], directions[x.index()] * distance);
-            let first = to_frame(local.tensor.cholesky(), w) * mass;
-            moments[colour] = moments[colour] + Moments { mass, first, second: mass * distance * distance };
-        }
-        Ok(ids.into_iter().zip(moments).collect())
-    }
-
-    /// In which direction the geodesic to each vertex leaves its seed: a unit vector at the seed, handed on from the
-    /// vertices that its distance came from. Beside the seed, by the second-order logarithm map.
-    fn directions<'l>(&self, diagram: &Diagram, local: impl Fn(u32) -> &'l LocalMetric) -> Vec<Vector> {
-        let mut order: Vec<VertexId> = (0..self.canvas.vertex_count() as u32).map(VertexId).collect();
-        order.sort_by(|&a, &b| diagram.distance(a).total_cmp(&diagram.distance(b)));
-        let mut directions = vec![Vector::default(); self.canvas.vertex_count()];
-        for x in order {
-            let Some(colour) = diagram.colour(x) else { break };
-            let local = local(colour);
-            let handed: Vector = match diagram.label(x).support() {
-                Support::Nothing | Support::Source => Vector::default(),
-                Support::Vertex(_) | Support::Neighbour(_) => {
-                    diagram.parent(x).map_or(Vector::default(), |p| directions[p.index()])
-                }
-                Support::Edge(h) => {
-                    let [a, b] = self.canvas.topology().ends(h);
-                    let [at_a, at_b] = [a, b].map(|end| self.detour(diagram, x, end));
-                    match [a, b].map(|end| diagram.colour(end) == Some(colour)) {
-                        [true, true] => directions[a.index()] * at_b + directions[b.index()] * at_a,
-                        [true, false] => directions[a.index()],
-                        [false, true] => directions[b.index()],
-                        [false, false] => Vector::default(),
-                    }
-                }
-            };
-            let seed = diagram.seed(colour).unwrap_or_default();
-            let w = if handed == Vector::default() { local.log(self.canvas.position(x) - seed) } else { handed };
-            let length = local.tensor.length(w);
-            directions[x.index()] = if length > 0.0 { w * (1.0 / length) } else { Vector::default() };
-        }
-        directions
-    }
-
-    /// The square root of what the way to x through one end of its support is longer than the geodesic: about proportional to
-    /// how far from that end the geodesic crosses the support.
-    fn detour(&self, diagram: &Diagram, x: VertexId, end: VertexId) -> f64 {
-        let step = self.canvas.position(x) - self.canvas.position(end);
-        let tensor = (self.tensors[x.index()] + self.tensors[end.index()]) * 0.5;
-        (diagram.distance(end) + tensor.length(step) - diagram.distance(x)).max(0.0).sqrt()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::domain::Domain;
+    use crate::dual::Dual;
+    use crate::geometry::{Point, Tensor};
     use crate::metric::{Scaled, Shock};
     use crate::progress::Silent;
     use crate::sampling::{Fill, Plan, Target, refine, sample_segments};

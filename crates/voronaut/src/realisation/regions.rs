@@ -1,16 +1,15 @@
-//! Riemannian triangles as regions of the plane: what lies between three geodesics, cut into straight triangles.
+//! Riemannian triangles as regions of the plane or of a surface: what lies between three geodesics, cut into straight triangles.
 
-use super::{GeodesicEdge, Realisation};
+use super::{GeodesicEdge, Realisation, View};
 use crate::geometry::{Orientation, Point, Tensor, holds, orientation};
 use crate::mesh::Mesh;
-use crate::metric::MetricField;
 use crate::parallel::prelude::*;
 
-impl Realisation {
+impl<P: Copy + Into<[f64; 3]> + Send + Sync> Realisation<P> {
     /// The vertices of each edge in [`Realisation::to_mesh`], from its first seed to its second.
     pub fn lines(&self) -> Vec<Vec<u32>> {
         let mut next = self.seeds.len() as u32;
-        let line = |GeodesicEdge { ends, points, .. }: &GeodesicEdge| {
+        let line = |GeodesicEdge { ends, points, .. }: &GeodesicEdge<P>| {
             let first = next;
             next += inner(points).len() as u32;
             [ends[0]].into_iter().chain(first..next).chain([ends[1]]).collect()
@@ -25,11 +24,12 @@ impl Realisation {
 
     /// The realisation as a mesh: the seeds in order, then the inner points of the polylines, edge by edge; the segments of
     /// each polyline as edges labelled with its number, and each Riemannian triangle as the straight triangles that it is
-    /// cut into, labelled with its number, numbers from 1. It is a valid mesh if no edges cross and no region is open.
+    /// cut into, labelled with its number, numbers from 1. It is a valid mesh if no edges cross and no region is open; on a
+    /// surface its vertices are on that, and triangles span from one to the next.
     pub fn to_mesh(&self) -> Mesh {
         let mut mesh = Mesh::default();
         let inner = self.edges.iter().flat_map(|edge| inner(&edge.points));
-        mesh.points = self.seeds.iter().chain(inner).map(|p| [p.x, p.y, 0.0]).collect();
+        mesh.points = self.seeds.iter().chain(inner).map(|&p| p.into()).collect();
         mesh.point_labels = vec![0; mesh.points.len()];
         for (line, label) in self.lines().iter().zip(1..) {
             mesh.edges.extend(line.windows(2).map(|w| [w[0], w[1]]));
@@ -43,36 +43,54 @@ impl Realisation {
     }
 
     /// Each triangle's region, cut into straight triangles by the numbers of [`Realisation::to_mesh`]; empty where its edges
-    /// bound no region, counter-clockwise.
-    pub(super) fn cut(&self, field: &dyn MetricField) -> Vec<Vec<[u32; 3]>> {
+    /// bound no region, counter-clockwise, in what it is seen in, or nothing is.
+    pub(super) fn cut<V: View<P>>(&self, view: impl Fn([u32; 3]) -> Option<V> + Sync) -> Vec<Vec<[u32; 3]>> {
         let lines = self.lines();
-        self.triangles.par_iter().map(|&t| self.cut_one(field, t, &lines).unwrap_or_default()).collect()
+        let one = |&t: &[u32; 3]| self.cut_one(&view(t)?, t, &lines);
+        self.triangles.par_iter().map(|t| one(t).unwrap_or_default()).collect()
     }
 
-    fn cut_one(&self, field: &dyn MetricField, [a, b, c]: [u32; 3], lines: &[Vec<u32>]) -> Option<Vec<[u32; 3]>> {
+    fn cut_one<V: View<P>>(&self, view: &V, [a, b, c]: [u32; 3], lines: &[Vec<u32>]) -> Option<Vec<[u32; 3]>> {
         let mut corners = Vec::new();
-        for [from, to] in [[a, b], [b, c], [c, a]] {
+        for (i, [from, to]) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
             let edge = self.edge_between(from, to)?;
             let mut numbers = lines[edge].clone();
             if from > to {
                 numbers.reverse();
             }
             let last = numbers.len() - 1;
-            corners.extend(numbers.into_iter().zip(self.edges[edge].from(from)).take(last));
+            let points = self.edges[edge].from(from).into_iter();
+            // Where it begins the edge before ends.
+            let sides = |k: usize| match k {
+                _ if V::IS_SHARED => 0,
+                0 => 1 << i | 1 << ((i + 2) % 3),
+                _ => 1 << i,
+            };
+            let corner = |(k, (number, p))| Corner { number, at: view.flat(p), sides: sides(k) };
+            corners.extend(numbers.into_iter().zip(points).take(last).enumerate().map(corner));
         }
-        let tensor = field.at(Point::centroid([a, b, c].map(|i| self.seeds[i as usize])));
-        Region { corners, tensor }.cut()
+        let middle = Point::centroid([a, b, c].map(|i| view.flat(self.seeds[i as usize])));
+        Region { corners, tensor: view.field().at(middle) }.cut()
     }
 }
 
-fn inner(points: &[Point]) -> &[Point] {
+fn inner<P>(points: &[P]) -> &[P] {
     points.get(1..points.len().saturating_sub(1)).unwrap_or_default()
 }
 
 /// A polygon, counter-clockwise, that ears are cut off.
 struct Region {
-    corners: Vec<(u32, Point)>,
+    corners: Vec<Corner>,
     tensor: Tensor,
+}
+
+#[derive(Clone, Copy)]
+struct Corner {
+    number: u32,
+    at: Point,
+    /// A bit for each side of the triangle that it is on, between two corners of which nothing is cut: the triangle across would cut
+    /// there, too. None where that cannot be.
+    sides: u8,
 }
 
 impl Region {
@@ -91,7 +109,7 @@ impl Region {
                 ears = (0..n).map(|i| self.ear(i)).collect();
                 best(&ears)
             })?;
-            triangles.push(self.around(i).map(|k| self.corners[k].0));
+            triangles.push(self.around(i).map(|k| self.corners[k].number));
             self.corners.remove(i);
             ears.remove(i);
             for k in [(i + n - 2) % (n - 1), i % (n - 1)] {
@@ -99,8 +117,8 @@ impl Region {
             }
         }
         let [a, b, c] = self.around(1).map(|k| self.corners[k]);
-        triangles.push([a.0, b.0, c.0]);
-        (orientation(a.1, b.1, c.1) == Orientation::Left).then_some(triangles)
+        triangles.push([a, b, c].map(|corner| corner.number));
+        (orientation(a.at, b.at, c.at) == Orientation::Left).then_some(triangles)
     }
 
     fn around(&self, i: usize) -> [usize; 3] {
@@ -111,12 +129,13 @@ impl Region {
     /// The shape of the ear at a corner, the better the greater; `None` where there is none.
     fn ear(&self, i: usize) -> Option<f64> {
         let numbers = self.around(i);
-        let [a, b, c] = numbers.map(|k| self.corners[k].1);
-        if orientation(a, b, c) != Orientation::Left {
+        let [before, own, after] = numbers.map(|k| self.corners[k]);
+        let [a, b, c] = [before, own, after].map(|corner| corner.at);
+        if before.sides & after.sides != 0 || orientation(a, b, c) != Orientation::Left {
             return None;
         }
         let mut others = self.corners.iter().enumerate().filter(|(k, _)| !numbers.contains(k));
-        if others.any(|(_, corner)| holds([a, b, c], corner.1)) {
+        if others.any(|(_, corner)| holds([a, b, c], corner.at)) {
             return None;
         }
         let squares: f64 = [b - a, c - b, a - c].iter().map(|&side| self.tensor.dot(side, side)).sum();
@@ -129,7 +148,8 @@ mod tests {
     use super::*;
 
     fn cut(points: &[(f64, f64)]) -> Option<Vec<[u32; 3]>> {
-        let corners = (0..).zip(points).map(|(i, &(x, y))| (i, Point::new(x, y))).collect();
+        let corner = |(number, &(x, y)): (u32, &(f64, f64))| Corner { number, at: Point::new(x, y), sides: 0 };
+        let corners = (0..).zip(points).map(corner).collect();
         Region { corners, tensor: Tensor::IDENTITY }.cut()
     }
 

@@ -1,31 +1,25 @@
 //! The certificate of a diagram's seeds, and the canvas that it takes.
 
-use super::{SeedDual, dual, net};
-use crate::canvas::{BYTES_PER_VERTEX, Canvas, Kind, VERTICES_PER_SEED, size_for};
-use crate::certificate::{Area, Certificate, Constants, sized_canvas};
-use crate::diagram::Diagram;
+use super::{SeedDual, dual, net, surface_dual, surface_net};
+use crate::canvas::{BYTES_PER_VERTEX, Canvas, Draped, Kind, VERTICES_PER_SEED, size_for};
+use crate::certificate::{Area, Certificate, Constants, longest_edge, sized_canvas};
+use crate::diagram::{Diagram, SurfaceDiagram};
 use crate::domain::Domain;
 use crate::dual::Road;
 use crate::error::{Error, Result};
+use crate::geodesic::Method;
 use crate::geometry::Point;
 use crate::metric::MetricField;
 use crate::progress::Silent;
 use crate::sampling::demand_memory;
+use crate::surface::metric::SurfaceMetric;
+use crate::surface::{Input, Place};
+use crate::triangulation::VertexId;
 
 /// Canvases are made so much finer than what they are asked for, so that errors of distances have room.
 const RESERVE: f64 = 0.9;
 /// So often at most, with what distances on the canvas before left of the room.
 const ROUNDS: usize = 3;
-
-/// The certificate of a diagram whose exact dual is known.
-pub(crate) fn certify(
-    diagram: &Diagram,
-    field: &dyn MetricField,
-    exact: &[[u32; 3]],
-    constants: Constants,
-) -> Certificate {
-    Certificate::new(diagram, exact, &net(diagram, field, exact), constants)
-}
 
 /// The canvas for which section 9.4's conditions hold, if the seeds allow one: refined to the sizing field s0 that a
 /// certificate on an ordinary canvas asks for, with `size_for` the seeds as the least. Its vertices are estimated
@@ -42,36 +36,87 @@ pub fn certified_canvas(
     constants: Constants,
     memory_limit: u64,
 ) -> Result<Canvas> {
-    let vertices = size_for(seeds.len(), VERTICES_PER_SEED);
-    demand_memory(seeds.len() as f64, vertices as f64, memory_limit)?;
-    let mut canvas = Canvas::new(kind, domain, field, vertices)?;
-    for _ in 0..ROUNDS {
-        let certificate = on(&canvas, field, seeds, constants)?;
-        if certificate.verdict("9.4").is_some_and(crate::certificate::Verdict::holds) {
-            break;
+    let make = |vertices: usize| Canvas::new(kind, domain, field, vertices);
+    let sized = |size: f64, [estimate, most]: [f64; 2]| match kind {
+        // Its sizes are sixths of the metric's unit.
+        Kind::Isotropic => Canvas::isotropic_sized(domain, field, 6.0 * size).map(Some),
+        // What a certificate speaks of is no star set.
+        _ => {
+            let make = |vertices: usize| Canvas::intrinsic(domain, field, vertices);
+            sized_canvas(size, [estimate, most], make, |canvas| {
+                (longest_edge(canvas.topology()), canvas.vertex_count())
+            })
         }
-        // A finer canvas has smaller errors: what is asked with none leaves the most room.
-        let size = RESERVE
-            * certificate.verdict("9.10").and_then(|verdict| verdict.size).ok_or_else(|| hopeless(&certificate))?;
-        let size = size.min(RESERVE * certificate.size);
-        let cost = Area::of(&canvas, field).cost(size);
-        let estimate = if kind == Kind::Isotropic { cost.isotropic } else { cost.intrinsic };
-        demand_memory(seeds.len() as f64, estimate, memory_limit)?;
-        canvas = if kind == Kind::Isotropic {
-            // Its sizes are sixths of the metric's unit.
-            Canvas::isotropic_sized(domain, field, 6.0 * size)?
-        } else {
-            let most = memory_limit as f64 / BYTES_PER_VERTEX;
-            sized_canvas(domain, field, size, estimate, most)?.ok_or_else(|| too_fine(size, most))?
-        };
-    }
-    Ok(canvas)
+    };
+    let examine = |canvas: &Canvas| {
+        let diagram = Diagram::new(canvas, field, seeds)?;
+        let SeedDual { exact, .. } = dual(&diagram, field, Road::Both, &Silent);
+        let certificate = Certificate::new(&diagram, &exact, &net(&diagram, field, &exact), constants);
+        Ok((certificate, Area::of(diagram.ground())))
+    };
+    Request { kind, seeds: seeds.len(), memory_limit }.met(make, sized, examine)
 }
 
-fn on(canvas: &Canvas, field: &dyn MetricField, seeds: &[Point], constants: Constants) -> Result<Certificate> {
-    let diagram = Diagram::new(canvas, field, seeds)?;
-    let SeedDual { exact, .. } = dual(&diagram, field, Road::Both, &Silent);
-    Ok(certify(&diagram, field, &exact, constants))
+/// The same of seeds on a surface, which are vertices of the canvas, and are returned with it.
+///
+/// # Errors
+/// As for [`certified_canvas`] and [`Canvas::on_surface`].
+pub fn certified_canvas_on<'s>(
+    kind: Kind,
+    input: &'s Input,
+    metric: &'s dyn SurfaceMetric,
+    seeds: &[Place],
+    constants: Constants,
+    memory_limit: u64,
+) -> Result<(Canvas<Draped<'s>>, Vec<VertexId>)> {
+    let make = |vertices: usize| Canvas::on_surface(kind, input, metric, vertices, seeds);
+    let sized = |size: f64, bounds: [f64; 2]| {
+        sized_canvas(size, bounds, make, |(canvas, _)| (longest_edge(canvas.topology()), canvas.vertex_count()))
+    };
+    let examine = |(canvas, at): &(Canvas<Draped<'s>>, Vec<VertexId>)| {
+        let diagram = SurfaceDiagram::on_surface(canvas, at, Method::March)?;
+        let SeedDual { exact, .. } = surface_dual(&diagram, Road::Both, &Silent);
+        let certificate = Certificate::on_surface(&diagram, &exact, &surface_net(&diagram, &exact), constants);
+        Ok((certificate, Area::of(diagram.ground())))
+    };
+    Request { kind, seeds: seeds.len(), memory_limit }.met(make, sized, examine)
+}
+
+/// What canvas is asked for.
+struct Request {
+    kind: Kind,
+    seeds: usize,
+    memory_limit: u64,
+}
+
+impl Request {
+    /// The canvas: made with so many vertices first, then of a size, from an estimate of its vertices to the most that are allowed.
+    fn met<C>(
+        &self,
+        make: impl Fn(usize) -> Result<C>,
+        sized: impl Fn(f64, [f64; 2]) -> Result<Option<C>>,
+        examine: impl Fn(&C) -> Result<(Certificate, Area)>,
+    ) -> Result<C> {
+        let vertices = size_for(self.seeds, VERTICES_PER_SEED);
+        demand_memory(self.seeds as f64, vertices as f64, self.memory_limit)?;
+        let mut canvas = make(vertices)?;
+        for _ in 0..ROUNDS {
+            let (certificate, area) = examine(&canvas)?;
+            if certificate.verdict("9.4").is_some_and(crate::certificate::Verdict::holds) {
+                break;
+            }
+            // A finer canvas has smaller errors: what is asked with none leaves the most room.
+            let size = RESERVE
+                * certificate.verdict("9.10").and_then(|verdict| verdict.size).ok_or_else(|| hopeless(&certificate))?;
+            let size = size.min(RESERVE * certificate.size);
+            let cost = area.cost(size);
+            let estimate = if self.kind == Kind::Isotropic { cost.isotropic } else { cost.intrinsic };
+            demand_memory(self.seeds as f64, estimate, self.memory_limit)?;
+            let most = self.memory_limit as f64 / BYTES_PER_VERTEX;
+            canvas = sized(size, [estimate, most])?.ok_or_else(|| too_fine(size, most))?;
+        }
+        Ok(canvas)
+    }
 }
 
 fn too_fine(size: f64, most: f64) -> Error {

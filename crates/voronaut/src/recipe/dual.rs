@@ -126,9 +126,7 @@ pub fn net(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]]) -> Ne
 
 /// The net of a surface diagram's seeds, from the triangles of their exact dual, as [`net`] has it of the plane; circles are found in charts.
 pub fn surface_net(diagram: &SurfaceDiagram, exact: &[[u32; 3]]) -> Net<Place> {
-    let draped = diagram.canvas().draped();
-    let seeds = (0..diagram.colours() as u32).filter_map(|i| Some(*draped.place(diagram.seed(i)?))).collect();
-    let mut net = Net::on_surface(SeedsOnSurface::new(draped.input(), draped.metric(), seeds), exact);
+    let mut net = Net::on_surface(SeedsOnSurface::of(diagram), exact);
     let farthest = diagram.farthest().map_or(0.0, |(_, distance)| distance);
     net.epsilon = if farthest.is_finite() { net.epsilon.max(farthest) } else { net.epsilon };
     net

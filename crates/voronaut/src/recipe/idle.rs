@@ -88,7 +88,7 @@ impl MeshOptions {
             ("fit", self.fit, &[surface]),
             ("stiffness", differs(self.stiffness, usual.stiffness), &[surface, (self.fit, "without `fit`")]),
             ("mesher", self.mesher != usual.mesher, &[(plane.0 || voronoi.0, plane.1)]),
-            ("centroid", self.centroid != usual.centroid, &[plane, voronoi, (self.lloyd > 0, "without relaxation")]),
+            ("centroid", self.centroid != usual.centroid, &[voronoi, (self.lloyd > 0, "without relaxation")]),
             (
                 "polish",
                 self.polish != usual.polish,

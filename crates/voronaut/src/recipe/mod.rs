@@ -22,7 +22,7 @@ mod surface_pass;
 
 pub use adapt::{Ground, LoopOptions, Source, Step, adapt};
 pub use at_vertices::metric_at_vertices;
-pub use certified::certified_canvas;
+pub use certified::{certified_canvas, certified_canvas_on};
 pub use dual::{SeedDual, dual, net, surface_dual, surface_mesh, surface_net};
 #[cfg(test)]
 pub(crate) use field::metric_named;

@@ -4,7 +4,7 @@
 use super::options::{Centroid, Seeding};
 use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job, MeshOptions};
 use crate::canvas::{Canvas, CanvasFigures};
-use crate::diagram::{Care, Diagram};
+use crate::diagram::{Care, Diagram, Flat, Ground};
 use crate::domain::Domain;
 use crate::dual::{Consultation, Disagreement, Dual, Effort, Moving};
 use crate::error::Result;
@@ -89,11 +89,8 @@ impl Job<'_> {
         dual.reorder();
         let steps = self.options.lloyd;
         self.progress.begin("relaxing", steps as u64)?;
-        let cells = match (self.options.centroid, canvas) {
-            (Centroid::Canvas, Some(canvas)) => Cells::Canvas(OnCanvas::new(canvas, self.field)),
-            (Centroid::Weighted, Some(canvas)) => Cells::Weighted(OnCanvas::new(canvas, self.field)),
-            _ => Cells::Tangent,
-        };
+        let field = self.field;
+        let cells = cells(self.options.centroid, canvas.map(|canvas| Flat { canvas, field }));
         let (patience, parts) =
             (Patience { steps, gain: self.options.effort.gain() }, self.options.effort.parts(self.is_even));
         let relaxed = self.relax_in_parts(dual, &cells, parts, patience, self.progress)?;
@@ -162,6 +159,15 @@ impl Job<'_> {
     /// Farthest points that are not to be relaxed stay as they are.
     fn exchanges(&self) -> bool {
         self.options.lloyd > 0 || self.options.seeding != Seeding::Farthest
+    }
+}
+
+/// The cells that seeds are relaxed with, on the canvas if one was made.
+pub(super) fn cells<'a, G: Ground<'a>>(centroid: Centroid, ground: Option<G>) -> Cells<'a, G> {
+    match (centroid, ground) {
+        (Centroid::Canvas, Some(ground)) => Cells::Canvas(OnCanvas::new(ground)),
+        (Centroid::Weighted, Some(ground)) => Cells::Weighted(OnCanvas::new(ground)),
+        _ => Cells::Tangent,
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::dual::account;
 use super::patches::Patched;
-use super::settle::{Settled, Stopwatch};
-use super::{MeshOptions, Seeding};
+use super::settle::{Settled, Stopwatch, cells};
+use super::{Centroid, MeshOptions, Seeding};
 use crate::canvas::{Canvas, CanvasFigures, Draped};
 use crate::diagram::SurfaceDiagram;
 use crate::dual::{Moving, Road, SurfaceDual};
@@ -13,7 +13,7 @@ use crate::geometry::Point3;
 use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm};
-use crate::optimise::{Patience, Relaxed, Tangent, mend_needles, mend_worst, relax};
+use crate::optimise::{Patience, Relaxed, mend_needles, mend_worst, relax};
 use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
@@ -116,8 +116,9 @@ impl<'a> Setting<'a> {
             }
         });
         let Started { features, owners, adapted, canvas } = started?;
-        let (dual, relaxed) = self.watch.time("relax", || self.relaxed(adapted, scale, steps))?;
-        let settled = Settled { canvas, ..Settled::default() };
+        let own = self.canvas_to_relax_on(adapted.places.len(), steps)?;
+        let (dual, relaxed) = self.watch.time("relax", || self.relaxed(adapted, scale, steps, own.as_ref()))?;
+        let settled = Settled { canvas: own.map(|canvas| canvas.figures()).or(canvas), ..Settled::default() };
         Ok(Pass { input: self.input, dual, features, owners, relaxed, settled })
     }
 
@@ -134,7 +135,13 @@ impl<'a> Setting<'a> {
     }
 
     /// In the metric whose factor is fit; with steps, relaxed in parts, between which vertices are exchanged and the factor made fit.
-    fn relaxed(&self, adapted: Adapted, scale: f64, steps: Option<usize>) -> Result<(SurfaceDual<'a>, Relaxed)> {
+    fn relaxed(
+        &self,
+        adapted: Adapted,
+        scale: f64,
+        steps: Option<usize>,
+        canvas: Option<&Canvas<Draped<'a>>>,
+    ) -> Result<(SurfaceDual<'a>, Relaxed)> {
         let staying = adapted.staying;
         let (mut dual, mut relaxed) = (self.dual_of(adapted, scale)?, Relaxed::default());
         let Some(steps) = steps else {
@@ -145,6 +152,7 @@ impl<'a> Setting<'a> {
         self.progress.begin("relaxing", steps as u64)?;
         dual.flip_all();
         self.fit_scale(&mut dual)?;
+        let cells = cells(self.options.centroid, canvas);
         let parts = self.options.effort.parts(false);
         for part in 0..parts {
             let steps = (steps * (part + 1)) / parts - (steps * part) / parts;
@@ -156,7 +164,7 @@ impl<'a> Setting<'a> {
             }
             relaxed.append(relax(
                 &mut dual,
-                &Tangent,
+                &cells,
                 Patience { steps, gain: self.options.effort.gain() },
                 self.progress,
             )?);
@@ -227,9 +235,16 @@ impl<'a> Setting<'a> {
         Canvas::on_surface(self.options.canvas, self.input, self.metric, size, seeds)
     }
 
-    /// Whether seeding or settling takes a canvas.
+    /// The canvas that cells are coloured on, if seeds are moved to centroids there.
+    fn canvas_to_relax_on(&self, count: usize, steps: Option<usize>) -> Result<Option<Canvas<Draped<'a>>>> {
+        let is_made = steps.is_some_and(|steps| steps > 0) && self.options.centroid != Centroid::Tangent;
+        is_made.then(|| Ok(self.watch.time("canvas", || self.canvas(count, &[]))?.0)).transpose()
+    }
+
+    /// Whether seeding, relaxing or settling takes a canvas.
     pub(super) fn needs_canvas(&self) -> bool {
-        self.options.seeding == Seeding::Farthest || self.options.dual == Road::Canvas
+        let MeshOptions { seeding, dual, centroid, .. } = *self.options;
+        seeding == Seeding::Farthest || dual == Road::Canvas || centroid != Centroid::Tangent
     }
 
     /// Canvas vertices for so many seeds.

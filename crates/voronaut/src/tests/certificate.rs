@@ -1,16 +1,20 @@
 //! Certificates: what is certified is so, and random seeds are not certified.
 
-use crate::canvas::{Canvas, Kind};
+use crate::canvas::{Canvas, Draped, Kind};
 use crate::certificate::{Certificate, Constants, Outcome};
-use crate::diagram::Diagram;
+use crate::diagram::{Diagram, SurfaceDiagram};
 use crate::domain::Domain;
 use crate::dual::Road;
-use crate::geometry::{Point, Tensor, Vector};
+use crate::geodesic::Method;
+use crate::geometry::{Point, Point3, TangentPlane, Tensor, Vector, Vector3};
+use crate::mesh::Mesh;
 use crate::metric::{MetricField, Uniform};
 use crate::net::{Ball, Net};
 use crate::planar::delaunay;
 use crate::progress::Silent;
 use crate::recipe;
+use crate::surface::{Input, Place, Surface};
+use crate::triangulation::VertexId;
 use std::collections::BTreeSet;
 
 /// Numbers from 0 to 1, the same on every machine.
@@ -272,4 +276,52 @@ fn a_certified_canvas_makes_the_certificate_hold_or_is_refused() {
     let scattered: Vec<Point> = (0..700).map(|_| Point::new(random.next(), random.next())).collect();
     let error = with(&scattered, 1 << 30).unwrap_err();
     assert!(error.to_string().contains("no canvas is certified for these seeds"), "{error}");
+}
+
+/// The unit square on a tilted plane in space, and where its points are.
+fn tilted() -> (Input, impl Fn(Point) -> Point3 + Copy) {
+    let plane = TangentPlane::new(Vector3::new(0.48, 0.6, 0.64));
+    let lifted = move |p: Point| Point3::new(1.0, 2.0, 3.0) + plane.lift(p - Point::default());
+    let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| lifted(Point::new(x, y)).to_array());
+    let mesh = Mesh { points: corners.to_vec(), triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
+    (Input::new(Surface::new(&mesh).unwrap(), None), lifted)
+}
+
+/// What is said of the plane is said of a plane in space, and there, too, is a canvas made for which it holds.
+#[test]
+fn a_plane_in_space_is_certified_as_the_plane_is() {
+    let (square, flat) = (Domain::shape("rect:0,0,1,1").unwrap(), turning(26.0));
+    let seeds = lattice(Map([26.0 * 1.5_f64.sqrt(), 0.0, 26.0]), 0.02, &mut Random(5));
+    let canvas = Canvas::intrinsic(&square, &flat, 80 * seeds.len()).unwrap();
+    let truth = varied(&flat, &seeds, &canvas).certificate;
+    let (input, lifted) = tilted();
+    let plane = TangentPlane::new(Vector3::new(0.48, 0.6, 0.64));
+    let metric = move |p: Point3| {
+        let at = Point::default() + plane.flatten(p - lifted(Point::default()));
+        plane.extend(flat.at(at), 1.0)
+    };
+    let places: Vec<Place> = seeds.iter().map(|&p| input.closest(lifted(p)).unwrap()).collect();
+    let certified = |(canvas, at): &(Canvas<Draped>, Vec<VertexId>)| {
+        let diagram = SurfaceDiagram::on_surface(canvas, at, Method::March).unwrap();
+        let exact = recipe::surface_dual(&diagram, Road::Both, &Silent).exact;
+        Certificate::on_surface(&diagram, &exact, &recipe::surface_net(&diagram, &exact), Constants::Corrected)
+    };
+    let found = certified(&Canvas::on_surface(Kind::Intrinsic, &input, &metric, 80 * seeds.len(), &places).unwrap());
+    let near = |a: f64, b: f64, share: f64| assert!((a / b - 1.0).abs() < share, "{a} {b}");
+    near(found.psi - 1.0, truth.psi - 1.0, 1e-3);
+    near(found.net.delta, truth.net.delta, 1e-3);
+    near(found.net.epsilon, truth.net.epsilon, 1e-2);
+    near(found.net.mu, truth.net.mu, 1e-3);
+    assert!(found.covered.abs_diff(truth.covered) * 20 < truth.covered, "{} {}", found.covered, truth.covered);
+    assert!(found.walks.found == found.walks.started && found.walks.started > 0, "{:?}", found.walks);
+    for theorem in ["9.1", "9.9", "9.10", "9.4"] {
+        let [of_plane, of_sheet] = [&truth, &found].map(|found| found.verdict(theorem).unwrap());
+        assert_eq!(of_plane.outcome, of_sheet.outcome, "{of_plane:#?} {of_sheet:#?}");
+    }
+    assert!(found.verdict("10.20").unwrap().not_measured.as_ref().unwrap().contains("border"));
+    let fine = recipe::certified_canvas_on(Kind::Intrinsic, &input, &metric, &places, Constants::Corrected, 1 << 30);
+    assert!(holds(&certified(&fine.unwrap()), "9.4"));
+    let small =
+        recipe::certified_canvas_on(Kind::Intrinsic, &input, &metric, &places, Constants::Corrected, 10_000_000);
+    assert!(small.err().unwrap().to_string().contains("are estimated to need"));
 }

@@ -96,10 +96,16 @@ fn a_protected_net_of_the_sphere_has_an_embedded_dual_and_a_random_one_is_not_kn
     assert!(injectivity < PI && injectivity > 0.8 * PI && convexity.radius <= 0.5 * PI, "{convexity:?}");
     let found = verdict(&even, "10.20");
     assert_eq!(found.outcome, Outcome::Holds, "{found:#?}");
-    for theorem in ["9.1", "9.4", "9.9", "9.10", "11.2"] {
-        let found = verdict(&even, theorem);
-        assert!(found.outcome == Outcome::NotMeasured && found.not_measured.as_ref().unwrap().contains("section 12"));
+    let straight = verdict(&even, "11.2");
+    assert!(straight.outcome == Outcome::NotMeasured && straight.not_measured.as_ref().unwrap().contains("section 12"));
+    // A parallel projection shortens by the cosine of the angle, whose sine is the distance from the seed there.
+    let finer = certified(&input, sphere(1.0, 0.15).unwrap().positions());
+    let psi = 1.0 / (1.0 - (6.0 * finer.net.epsilon).powi(2)).sqrt();
+    assert!(finer.psi >= psi && finer.psi < 1.1 * psi, "{} {psi}", finer.psi);
+    for theorem in ["9.1", "9.4", "9.9", "9.10"] {
+        assert_eq!(verdict(&finer, theorem).outcome, Outcome::Fails, "{theorem}");
     }
+    assert!(finer.walks.started > 0 && finer.walks.found == finer.walks.started, "{:?}", finer.walks);
     let random = certified(&input, &random_on_sphere(160));
     let found = verdict(&random, "10.20");
     assert!(found.outcome == Outcome::Fails && found.factor > 1.5, "{found:#?}");

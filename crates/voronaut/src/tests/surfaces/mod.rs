@@ -3,6 +3,7 @@
 mod brute;
 mod certificate;
 mod random;
+mod realisation;
 mod sheet;
 mod sphere;
 mod torus;

@@ -1,0 +1,66 @@
+//! Realisations on surfaces: edges are pulled taut on the diagram's canvas, triangles are seen in charts.
+
+use super::crossed::crossed;
+use super::{Found, GeodesicEdge, Grid, Realisation, View};
+use crate::canvas::Way;
+use crate::diagram::SurfaceDiagram;
+use crate::geometry::{Point, Point3};
+use crate::mesh::Edges;
+use crate::metric::MetricField;
+use crate::net::SeedsOnSurface;
+use crate::parallel::prelude::*;
+use crate::surface::Chart;
+use crate::triangulation::VertexId;
+
+/// Relative error of the length of a way that is taut on a canvas: that on a unit sphere with a canvas of 80 vertices a seed, measured
+/// (`tests::surfaces::realisation`).
+const OF_TAUT: f64 = 2e-3;
+
+impl Realisation<Point3> {
+    /// Of triangles of the seeds of a surface's diagram. An edge for which there is no way is straight, with an infinite error.
+    pub fn on_surface(diagram: &SurfaceDiagram, triangles: &[[u32; 3]]) -> Self {
+        let draped = diagram.canvas().draped();
+        let vertex = |i: u32| diagram.seed(i).unwrap_or(VertexId(0));
+        let pairs: Vec<[u32; 2]> = Edges::of(triangles).ends().collect();
+        let way = |&[p, q]: &[u32; 2]| draped.geodesic(vertex(p), vertex(q));
+        let ways: Vec<Option<Way>> = pairs.par_iter().map(way).collect();
+        let crossing = crossed(draped.topology(), &ways);
+        let edge = |(ends, way): ([u32; 2], Option<Way>)| {
+            let error = if way.is_some() { OF_TAUT } else { f64::INFINITY };
+            let Way { length, points, .. } = way.unwrap_or_else(|| {
+                let points = ends.map(|i| draped.position(vertex(i)));
+                Way { length: f64::INFINITY, points: points.to_vec(), ..Way::default() }
+            });
+            GeodesicEdge { ends, points, length, error, found: Found::Traced }
+        };
+        let edges = pairs.into_iter().zip(ways).map(edge).collect();
+        let seeds = (0..diagram.colours() as u32).map(|i| draped.position(vertex(i))).collect();
+        let mut found = Self { seeds, triangles: triangles.to_vec(), edges, crossing, regions: Vec::new() };
+        let charts = SeedsOnSurface::of(diagram);
+        found.regions = found.cut(|triangle| charts.chart(&triangle));
+        found
+    }
+
+    /// The triangles in n by n pieces, as [`Realisation::grids`] has them of the plane, on the surface of a diagram of these seeds.
+    pub fn grids_on_surface(&self, diagram: &SurfaceDiagram, sides: usize) -> Vec<Option<Grid<Point3>>> {
+        let charts = SeedsOnSurface::of(diagram);
+        self.seen_as_grids(|triangle| charts.chart(&triangle), sides)
+    }
+}
+
+impl View<Point3> for Chart<'_> {
+    /// Each sees it bend away from itself, or towards.
+    const IS_SHARED: bool = false;
+
+    fn field(&self) -> &dyn MetricField {
+        self
+    }
+
+    fn flat(&self, at: Point3) -> Point {
+        self.flatten(at)
+    }
+
+    fn lifted(&self, at: Point) -> Option<Point3> {
+        self.place(at).map(|place| place.position)
+    }
+}
