@@ -111,7 +111,7 @@ const ROWS: &[Row] = &[
     all(&[], &["--effort", "fast"], Mesh),
     all(&[], &["--lloyd", "0"], Mesh),
     plane(STARS, &["--lloyd", "0"], Mesh),
-    each(&["--centroid", "canvas", "--canvas-size", "3"], [Mesh, Refused("--centroid"), Refused("--centroid")]),
+    all(&[], &["--centroid", "canvas", "--canvas-size", "3"], Mesh),
     plane(STARS, &["--centroid", "canvas", "--lloyd", "9"], Refused("--centroid")),
     plane(HESSIAN, &["--polish", "0"], Mesh),
     plane(&["--metric", "hessian:x^4 + 0.3*y^2", "--h-min", "0.1"], &["--polish", "5"], Refused("--polish")),

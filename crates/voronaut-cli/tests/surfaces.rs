@@ -209,12 +209,20 @@ fn what_surfaces_do_not_have_is_refused_before_anything_is_written() {
     let place = Place::new();
     place.put("off.txt", "0 0 1\n0 0 1.5\n");
     place.put("flat.txt", "0 1\n");
+    place.put("few.txt", "1 0 0\n0 1 0\n0 0 1\n-1 0 0\n0 -1 0\n0 0 -1\n");
     let mesh = ["mesh", "sphere:1", "--metric", "uniform", "-n", "60", "-o", "s.obj"];
     let plate = ["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "60", "-o", "s.obj"];
     let dual = |seeds: &'static str| ["dual", "sphere:1", "--metric", "uniform", "--seeds", seeds, "-o", "d.obj"];
     for (words, expected) in [
         ([&mesh[..], &["--net"]].concat(), "not supported: --net on a surface"),
-        ([&dual("off.txt")[..], &["--canvas-size", "certified"]].concat(), "--canvas-size certified on a surface"),
+        (
+            [&dual("few.txt")[..], &["--canvas-size", "certified"]].concat(),
+            "no canvas is certified for these seeds: psi0 - 1 within 6 epsilon",
+        ),
+        (
+            [&dual("few.txt")[..], &["--voronoi", "du-wang", "--edges", "geodesic"]].concat(),
+            "--edges geodesic with a diagram that measures straight distances",
+        ),
         (dual("off.txt").to_vec(), "off.txt:2: the seed (0, 0, 1.5) is off the surface"),
         (dual("flat.txt").to_vec(), "flat.txt:1: '0 1' is no point"),
         ([&plate[..], &["--fit"]].concat(), "not supported: --fit in the plane"),
@@ -227,7 +235,42 @@ fn what_surfaces_do_not_have_is_refused_before_anything_is_written() {
     }
 }
 
-/// A net on a sphere is measured, and Theorem 10.20 with it; the others say why they are not.
+/// Cells of straight distances fall into parts on a sphere, too, and those of geodesics do not: their regions are a mesh.
+#[test]
+fn orphans_and_regions_of_surfaces_are_told() {
+    let place = Place::new();
+    let turns = |i: u32| f64::from(i) * 2.399_963_229_728_653;
+    let height = |i: u32| 1.0 - (2.0 * f64::from(i) + 1.0) / 100.0;
+    let point = |i: u32| {
+        let (z, r) = (height(i), (1.0 - height(i).powi(2)).sqrt());
+        format!("{} {} {z}\n", r * turns(i).cos(), r * turns(i).sin())
+    };
+    place.put("seeds.txt", (0..100).map(point).collect::<String>());
+    let metric = "shock:phi=6,lambda=0.3";
+    let dual = ["dual", "sphere:1", "--metric", metric, "--seeds", "seeds.txt", "-o", "d.vtu", "--report", "d.json"];
+    let orphans = |kind: &str| {
+        let more = ["--voronoi", kind, "--canvas-size", "60", "--picture", "d.svg", "--show", "cells"];
+        let output = place.run(&[&dual[..], &more].concat());
+        assert!(output.status.success(), "{kind}: {}", stderr(&output));
+        let report = json(&place, "d.json");
+        assert!(report["net"].is_null() && report["options"]["voronoi"] == kind);
+        (report["diagram"]["orphan_components"].as_u64().unwrap(), text(&place, "d.svg").contains("#d8293c"))
+    };
+    let (of_place, of_seed) = (orphans("du-wang"), orphans("labelle-shewchuk"));
+    assert!(of_place.0 > 0 && of_seed.0 > 0 && of_place.1 && of_seed.1, "{of_place:?} {of_seed:?}");
+    assert_eq!(orphans("riemannian"), (0, false));
+    let even = ["dual", "sphere:1", "--metric", "uniform", "--seeds", "seeds.txt", "-o", "r.obj", "--report", "r.json"];
+    let drawn = ["--edges", "geodesic", "--strict", "--picture", "r.svg", "--show", "triangles"];
+    let output = place.run(&[&even[..], &drawn].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let found = &json(&place, "r.json")["dual"];
+    assert_eq!((found["crossing_geodesics"].as_u64(), found["open_regions"].as_u64()), (Some(0), Some(0)));
+    let output = place.run(&["check", "r.obj"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && said.contains("Euler number 2"), "{said}");
+}
+
+/// A net on a sphere is measured, and what is certified of it; Lemma 11.2 says why it is not.
 #[test]
 fn nets_and_certificates_of_surfaces_are_told() {
     let place = Place::new();
@@ -251,6 +294,7 @@ fn nets_and_certificates_of_surfaces_are_told() {
     let verdicts = report["certificate"]["verdicts"].as_array().unwrap();
     let of = |theorem: &str| verdicts.iter().find(|verdict| verdict["theorem"] == theorem).unwrap();
     assert_eq!(of("10.20")["outcome"], "fails");
-    assert!(of("9.10")["not_measured"].as_str().unwrap().contains("section 12"));
+    assert_eq!(of("9.10")["outcome"], "fails");
+    assert!(of("11.2")["not_measured"].as_str().unwrap().contains("section 12"));
     assert!((report["certificate"]["convexity"]["curvature"].as_f64().unwrap() - 1.0).abs() < 0.01);
 }

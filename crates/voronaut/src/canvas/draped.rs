@@ -158,14 +158,14 @@ impl<'s> Draped<'s> {
         found.ok_or_else(off)
     }
 
-    /// The vertices of the face that holds a place and of those beside it, with their metric distances from it along chords.
+    /// The vertices of the face that holds a place and of those around its corners, with their metric distances from it along chords.
     ///
     /// # Errors
     /// [`Error::Domain`] of a place off the surface.
     pub(crate) fn around(&self, place: &Place, at_home: &Homes) -> Result<Vec<(VertexId, f64)>> {
         let (f, _) = self.face_at(place, at_home)?;
-        let beside = f.half_edges().into_iter().filter_map(|h| Some(self.topology.apex(self.topology.twin(h)?)));
-        let near = distinct(self.topology.corners(f).into_iter().chain(beside));
+        let around = self.topology.corners(f).into_iter().flat_map(|v| self.topology.around(v));
+        let near = distinct(around);
         let tensor = self.metric.at(place);
         let distance = |v: VertexId| self.between([place, self.place(v)], [tensor, self.tensor(v)]);
         Ok(near.into_iter().map(|v| (v, distance(v))).collect())

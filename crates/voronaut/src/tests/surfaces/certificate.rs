@@ -99,7 +99,7 @@ fn a_protected_net_of_the_sphere_has_an_embedded_dual_and_a_random_one_is_not_kn
     let straight = verdict(&even, "11.2");
     assert!(straight.outcome == Outcome::NotMeasured && straight.not_measured.as_ref().unwrap().contains("section 12"));
     // A parallel projection shortens by the cosine of the angle, whose sine is the distance from the seed there.
-    let finer = certified(&input, sphere(1.0, 0.15).unwrap().positions());
+    let finer = certified(&input, sphere(1.0, 0.2).unwrap().positions());
     let psi = 1.0 / (1.0 - (6.0 * finer.net.epsilon).powi(2)).sqrt();
     assert!(finer.psi >= psi && finer.psi < 1.1 * psi, "{} {psi}", finer.psi);
     for theorem in ["9.1", "9.4", "9.9", "9.10"] {
