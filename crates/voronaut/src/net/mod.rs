@@ -14,7 +14,7 @@ pub(crate) use estimate::Estimate;
 pub(crate) use measure::Memory;
 pub(crate) use on_canvas::circles_on_canvas;
 pub use random::Random;
-pub(crate) use seen::SeedsOnSurface;
+pub(crate) use seen::{SeedsOnSurface, Terrain, View};
 
 use crate::geometry::Point;
 use crate::lists::distinct;
@@ -139,9 +139,10 @@ impl Net {
 }
 
 impl Net<Place> {
-    /// Measures seeds on a surface, in charts around their triangles ([`SeedsOnSurface`]).
-    pub(crate) fn on_surface(seeds: SeedsOnSurface, triangles: &[[u32; 3]]) -> Self {
-        Self::measured(&Measure::new(seeds, triangles, &[]), &[], &mut Memory::default())
+    /// Measures seeds on a surface, in charts around their triangles ([`SeedsOnSurface`]); what a memory of that surface knows is not measured
+    /// again.
+    pub(crate) fn on_surface(seeds: &SeedsOnSurface, triangles: &[[u32; 3]], memory: &mut Memory<Place>) -> Self {
+        Self::measured(&Measure::new(seeds, triangles, &[]), &[], memory)
     }
 }
 

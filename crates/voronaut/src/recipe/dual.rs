@@ -7,7 +7,7 @@ use crate::geometry::{Point, Point3};
 use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
-use crate::net::{Net, SeedsOnSurface, Simplices};
+use crate::net::{Memory, Net, SeedsOnSurface, Simplices};
 use crate::planar::Location;
 use crate::progress::Progress;
 use crate::rdt::{Edge, Judge, OnSurface, Rdt, Start, Trust};
@@ -128,7 +128,8 @@ pub fn net(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]]) -> Ne
 pub fn surface_net(diagram: &SurfaceDiagram, exact: &[[u32; 3]]) -> Net<Place> {
     let draped = diagram.canvas().draped();
     let seeds = (0..diagram.colours() as u32).filter_map(|i| Some(*draped.place(diagram.seed(i)?))).collect();
-    let mut net = Net::on_surface(SeedsOnSurface::new(draped.input(), draped.metric(), seeds), exact);
+    let seeds = SeedsOnSurface::new(draped.input(), draped.metric(), seeds);
+    let mut net = Net::on_surface(&seeds, exact, &mut Memory::default());
     let farthest = diagram.farthest().map_or(0.0, |(_, distance)| distance);
     net.epsilon = if farthest.is_finite() { net.epsilon.max(farthest) } else { net.epsilon };
     net
