@@ -98,7 +98,11 @@ pub(super) trait Protecting {
 ///
 /// # Errors
 /// The metric is found invalid at a seed.
-pub(super) fn protected<G: Protecting>(ground: G, share: f64, progress: &dyn Progress) -> Result<Protected<G::Place>> {
+pub(super) fn protected<G: Protecting>(
+    ground: &mut G,
+    share: f64,
+    progress: &dyn Progress,
+) -> Result<Protected<G::Place>> {
     let mut mender = Mender::new(ground, share);
     let (mut best, mut since, mut round, mut first) = (usize::MAX, 0, 0, None);
     loop {
@@ -126,8 +130,8 @@ pub(super) fn protected<G: Protecting>(ground: G, share: f64, progress: &dyn Pro
 }
 
 /// Moves the seeds of a ground.
-struct Mender<G> {
-    ground: G,
+struct Mender<'a, G> {
+    ground: &'a mut G,
     share: f64,
     /// By how much more power than asked for estimates must have at each seed.
     excess: Vec<f64>,
@@ -136,8 +140,8 @@ struct Mender<G> {
     moves: u64,
 }
 
-impl<G: Protecting> Mender<G> {
-    fn new(ground: G, share: f64) -> Self {
+impl<'a, G: Protecting> Mender<'a, G> {
+    fn new(ground: &'a mut G, share: f64) -> Self {
         let slots = ground.topology().vertex_slots();
         let luck = Luck { random: Random::new(slots as u64), tries: 0 };
         Self { ground, share, excess: vec![ASKED[0]; slots], is_wide: false, luck, moves: 0 }

@@ -31,7 +31,7 @@ pub(crate) fn protect(dual: &mut Dual, share: f64, progress: &dyn Progress) -> R
         locals: dual.locals().to_vec(),
         topology: dual.topology().clone(),
     };
-    protected(InPlane { dual, stand, survey: Survey::default() }, share, progress)
+    protected(&mut InPlane { dual, stand, survey: Survey::default() }, share, progress)
 }
 
 struct InPlane<'a, 'b> {

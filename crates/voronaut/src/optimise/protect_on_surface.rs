@@ -29,7 +29,10 @@ pub(crate) fn protect_on_surface(
 ) -> Result<Protected<Place>> {
     let metric = Scaled { field: dual.metric(), factor: dual.factor() };
     let seeds = SeedsOnSurface::new(dual.input(), &metric, dual.places().to_vec());
-    protected(OnSurface { dual, seeds, memory: Memory::default() }, share, progress)
+    let mut ground = OnSurface { dual, seeds, memory: Memory::default() };
+    let protected = protected(&mut ground, share, progress)?;
+    let net = Net::on_surface(&ground.seeds, &ground.dual.triangles(), &mut ground.memory);
+    Ok(Protected { net, ..protected })
 }
 
 /// The net of a dual's seeds, from its triangles.
@@ -80,8 +83,9 @@ impl Protecting for OnSurface<'_, '_> {
         self.dual.kind(v)
     }
 
+    /// All but mu, which takes as long as the rest.
     fn measure(&mut self) -> Net<Place> {
-        Net::on_surface(&self.seeds, &self.dual.triangles(), &mut self.memory)
+        Net::circles_on_surface(&self.seeds, &self.dual.triangles(), &mut self.memory)
     }
 
     fn places(

@@ -55,8 +55,14 @@ impl<'a> Chart<'a> {
 
     /// The place with these coordinates; `None` where the surface cannot be reached.
     pub(crate) fn place(&self, u: Point) -> Option<Place> {
-        let closest = |from: Vector| self.input.lift(&self.at, self.at.position + self.plane.lift(from));
         let wanted = u - Point::default();
+        let above = |from: Vector| self.at.position + self.plane.lift(from);
+        let up = self.plane.normal;
+        let straight = self.is_straight.then(|| self.input.lift_along(&self.at, above(wanted), up, STEEPEST)).flatten();
+        if straight.is_some() {
+            return straight;
+        }
+        let closest = |from: Vector| self.input.lift(&self.at, above(from));
         let (mut from, mut place) = (wanted, closest(wanted)?);
         for _ in 0..if self.is_straight { STEPS } else { 0 } {
             let off = wanted - self.plane.flatten(place.position - self.at.position);

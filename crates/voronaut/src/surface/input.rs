@@ -2,7 +2,7 @@
 
 use super::cut::{Seams, cut};
 use super::features::FeatureOptions;
-use super::implicit::project_pinned;
+use super::implicit::{project_along, project_pinned};
 use super::nearest::closest_weights;
 use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
@@ -171,6 +171,14 @@ impl Input {
             }
             None => p.is_finite().then(|| self.walk(near, p)),
         }
+    }
+
+    /// The place of an equation's surface straight above or below a point near it, where a unit vector is up and no normal on the way has a lesser
+    /// cosine with that; `None` where there is none, or no equation.
+    pub(crate) fn lift_along(&self, near: &Place, p: Point3, up: Vector3, least: f64) -> Option<Place> {
+        let within = [REACH * self.diagonal, ON_SURFACE * self.diagonal / least];
+        let (position, normal) = project_along(self.implicit.as_ref()?, p, up, least, within)?;
+        Some(Place { position, normal, ..*near })
     }
 
     /// The point of an equation's surface to which Newton's method leads from a point near it, with some coordinates as they are; `None` where it leads
