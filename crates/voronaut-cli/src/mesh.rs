@@ -127,7 +127,7 @@ pub(crate) struct MeshArgs {
     /// With --seeding protected: the protection asked for, as a share of the greatest circumradius
     #[arg(long, value_name = "SHARE", value_parser = not_negative, allow_negative_numbers = true, default_value_t = MeshOptions::default().protection)]
     pub(crate) protection: f64,
-    /// With --seeding protected: where a seed may be picked around a circumcentre, as a share of the circumradius
+    /// In the plane with --seeding protected: where a seed may be picked around a circumcentre, as a share of the circumradius
     #[arg(long, value_name = "SHARE", value_parser = not_negative, allow_negative_numbers = true, default_value_t = MeshOptions::default().picking_radius)]
     pub(crate) picking_radius: f64,
     /// Measure the net of the vertices: epsilon, mu, lambda, power protection (in the report)

@@ -213,7 +213,7 @@ fn what_surfaces_do_not_have_is_refused_before_anything_is_written() {
     let plate = ["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "60", "-o", "s.obj"];
     let dual = |seeds: &'static str| ["dual", "sphere:1", "--metric", "uniform", "--seeds", seeds, "-o", "d.obj"];
     for (words, expected) in [
-        ([&mesh[..], &["--net"]].concat(), "not supported: --net on a surface"),
+        ([&mesh[..], &["--picking-radius", "0.1"]].concat(), "not supported: --picking-radius on a surface"),
         ([&dual("off.txt")[..], &["--canvas-size", "certified"]].concat(), "--canvas-size certified on a surface"),
         (dual("off.txt").to_vec(), "off.txt:2: the seed (0, 0, 1.5) is off the surface"),
         (dual("flat.txt").to_vec(), "flat.txt:1: '0 1' is no point"),

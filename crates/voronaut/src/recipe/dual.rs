@@ -93,7 +93,8 @@ fn as_read(diagram: &Diagram) -> SeedDual {
     }
 }
 
-fn compared<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, exact: &[[u32; 3]]) -> figures::RawNerve {
+/// The raw nerve of a diagram beside the triangles of the exact dual.
+pub(super) fn compared<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, exact: &[[u32; 3]]) -> figures::RawNerve {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
     let exact: HashSet<[u32; 3]> = exact.iter().map(turned).collect();
     let raw: HashSet<[u32; 3]> = diagram.witnesses_of_triangles().into_iter().map(|witness| witness.0).collect();

@@ -1,5 +1,6 @@
 //! Protected seeds: the last moves, and what the report says of the net.
 
+use super::dual::compared;
 use super::surface_pass::{Pass, Setting};
 use super::{Job, MeshOptions, Seeding};
 use crate::canvas::{self, Canvas};
@@ -113,19 +114,20 @@ impl Setting<'_> {
             said.push(format!("not protected: {} triangles would meet or fold over", faulty.len()));
         }
         self.progress.begin("comparing with a canvas", 1)?;
-        let nerve = self.watch.time("raw_nerve", || self.raw_nerve(pass))?;
+        let nerve = self.watch.time("raw_nerve", || self.raw_nerve(pass, &protected.net))?;
         said.extend(notes(&protected, self.options, nerve));
         let account = account(&protected, self.options, nerve);
         Ok(Some((numbered(protected.net, |place| pass.vertex(place)), account)))
     }
 
-    /// The nerve of the seeds on a canvas that has them for vertices and is not refined, held against their exact dual.
-    fn raw_nerve(&self, pass: &Pass) -> Result<figures::CanvasNerve> {
+    /// The nerve of the seeds on a canvas that has them for vertices and is not refined, held against the triangles whose cells meet.
+    fn raw_nerve(&self, pass: &Pass, net: &Net<Place>) -> Result<figures::CanvasNerve> {
         let places = pass.dual.places();
         let size = self.canvas_size(places.len());
         let (canvas, at) = Canvas::on_surface(canvas::Kind::Intrinsic, self.input, self.metric, size, places)?;
         let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::default())?;
-        let nerve = super::surface_dual(&diagram, Road::Geodesic, self.progress).raw_nerve;
+        let exact: Vec<[u32; 3]> = net.interior().map(|ball| ball.corners).collect();
+        let nerve = compared(&diagram, &exact);
         let canvas_vertices = canvas.topology().vertex_count();
         Ok(figures::CanvasNerve { canvas_vertices, rounds: 0, unwitnessed: nerve.missing, nerve })
     }

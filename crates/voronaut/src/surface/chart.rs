@@ -19,8 +19,8 @@ pub(crate) struct Chart<'a> {
     is_straight: bool,
 }
 
-/// Steps in which the place straight above a coordinate is found, at most, and how far aside (share) it may be: each is nearer by the
-/// square of the slope.
+/// Where [`Input::lift_along`] finds nothing: steps in which the place straight above a coordinate is found, at most, and how far aside
+/// (share) it may be: each is nearer by the square of the slope.
 const STEPS: usize = 6;
 const STRAIGHT: f64 = 1e-9;
 
@@ -57,10 +57,9 @@ impl<'a> Chart<'a> {
     pub(crate) fn place(&self, u: Point) -> Option<Place> {
         let wanted = u - Point::default();
         let above = |from: Vector| self.at.position + self.plane.lift(from);
-        let up = self.plane.normal;
-        let straight = self.is_straight.then(|| self.input.lift_along(&self.at, above(wanted), up, STEEPEST)).flatten();
-        if straight.is_some() {
-            return straight;
+        let straight = || self.input.lift_along(&self.at, above(wanted), self.plane.normal, STEEPEST);
+        if let Some(place) = self.is_straight.then(straight).flatten() {
+            return Some(place);
         }
         let closest = |from: Vector| self.input.lift(&self.at, above(from));
         let (mut from, mut place) = (wanted, closest(wanted)?);
