@@ -1,7 +1,6 @@
 //! What is reported of any mesh that we made.
 
 use crate::curves;
-use crate::fields::Scaled;
 use serde_json::Value;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use voronaut::figures::NetFigures;
@@ -11,7 +10,7 @@ use voronaut::quality::{
     Meetings, Unmet, Validity, metric_quality, surface_quality, surface_unmet, unmet, validity, validity_on,
 };
 use voronaut::recipe::Meshed;
-use voronaut::surface::metric::SurfaceMetric;
+use voronaut::surface::metric::{Scaled, SurfaceMetric};
 use voronaut::surface::{Input, Mended, Surface};
 use voronaut::{Error, Result};
 use voronaut_io::{ClosedForm, Report, Seconds, Strayed};
@@ -107,7 +106,7 @@ fn report(meshed: &Meshed, found: Validity, options: Value) -> Report {
         canvas: meshed.canvas,
         diagram: meshed.diagram.clone(),
         metric_scale: Some(meshed.metric_scale),
-        net: meshed.net.as_ref().map(NetFigures::of),
+        net: meshed.net.as_ref().map(NetFigures::of).or_else(|| meshed.surface_net.as_ref().map(NetFigures::of)),
         protection: meshed.protection,
         notes: meshed.notes.clone(),
         seconds: Seconds { stages: meshed.seconds.clone(), total: 0.0 },

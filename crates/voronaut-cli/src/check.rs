@@ -1,6 +1,6 @@
 //! `voronaut check`: examines a mesh that is there.
 
-use crate::fields::{self, Scaled};
+use crate::fields;
 use crate::options::{Damage, MetricChoices, Outputs, Run, Show, positive, refuse};
 use crate::world::World;
 use crate::{account, curves, files, pictures};
@@ -14,6 +14,7 @@ use voronaut::quality::{
     Meetings, Unmet, fidelity, interpolation_error, interpolation_error_on, surface_fidelity, validity, validity_on,
 };
 use voronaut::recipe::GradedAt;
+use voronaut::surface::metric::Scaled;
 use voronaut::surface::{Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 use voronaut_draw::Layers;

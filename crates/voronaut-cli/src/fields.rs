@@ -4,11 +4,11 @@ use crate::options::{MetricChoices, refuse};
 use crate::world::World;
 use voronaut::Result;
 use voronaut::domain::Domain;
-use voronaut::geometry::{Point, Tensor3};
+use voronaut::geometry::Point;
 use voronaut::metric::MetricField;
 use voronaut::recipe::{GradedAt, Idle, PlanarMetric, Task};
+use voronaut::surface::Input;
 use voronaut::surface::metric::SurfaceMetric;
-use voronaut::surface::{Input, Place};
 use voronaut_io::metric_origin;
 
 /// What a metric is for.
@@ -60,16 +60,4 @@ pub(crate) fn demand_for_surfaces(world: &World, text: &str, choices: &MetricCho
     choices.options().idle(task(world, text, choices, true)).iter().try_for_each(Idle::demand_unset)?;
     let help = "give the file that the values belong to as the domain";
     refuse([(choices.background.is_some(), "--background on a surface", help)])
-}
-
-/// A metric on a surface times a factor.
-pub(crate) struct Scaled<'a> {
-    pub(crate) field: &'a dyn SurfaceMetric,
-    pub(crate) factor: f64,
-}
-
-impl SurfaceMetric for Scaled<'_> {
-    fn at(&self, place: &Place) -> Tensor3 {
-        self.field.at(place) * self.factor
-    }
 }

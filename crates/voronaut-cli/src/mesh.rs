@@ -1,6 +1,6 @@
 //! `voronaut mesh`: from the command line to the library and back. All calls of the mesher are here.
 
-use crate::fields::{self, Scaled};
+use crate::fields;
 use crate::options::{Damage, MetricChoices, Outputs, Paged, Paired, Run, Show, not_negative, positive, refuse};
 use crate::pages::{self, Drawn};
 use crate::parts::{self, InParts};
@@ -24,7 +24,7 @@ use voronaut::realisation::Realisation;
 use voronaut::recipe::{
     self, Aim, Boundary, Centroid, Effort, GradedAt, Idle, MeshOptions, Meshed, Mesher, Seeding, Task,
 };
-use voronaut::surface::metric::Spec;
+use voronaut::surface::metric::{Scaled, Spec};
 use voronaut::surface::{FeatureOptions, Input, Mended};
 use voronaut_draw::{Layers, Sheet};
 use voronaut_io::{Format, Given, Report};
@@ -127,7 +127,7 @@ pub(crate) struct MeshArgs {
     /// With --seeding protected: the protection asked for, as a share of the greatest circumradius
     #[arg(long, value_name = "SHARE", value_parser = not_negative, allow_negative_numbers = true, default_value_t = MeshOptions::default().protection)]
     pub(crate) protection: f64,
-    /// With --seeding protected: where a seed may be picked around a circumcentre, as a share of the circumradius
+    /// In the plane with --seeding protected: where a seed may be picked around a circumcentre, as a share of the circumradius
     #[arg(long, value_name = "SHARE", value_parser = not_negative, allow_negative_numbers = true, default_value_t = MeshOptions::default().picking_radius)]
     pub(crate) picking_radius: f64,
     /// Measure the net of the vertices: epsilon, mu, lambda, power protection (in the report)

@@ -1,6 +1,6 @@
 //! `voronaut view`: a page to look at meshes with.
 
-use crate::fields::{self, Scaled};
+use crate::fields;
 use crate::options::{Damage, MetricChoices, Run, positive, refuse};
 use crate::pages::{self, Drawn};
 use crate::stages::Stages;
@@ -13,6 +13,7 @@ use voronaut::canvas;
 use voronaut::canvas::VERTICES_PER_SEED;
 use voronaut::domain::{Domain, from_mesh};
 use voronaut::recipe::GradedAt;
+use voronaut::surface::metric::Scaled;
 use voronaut::surface::{Input, Surface};
 use voronaut::{Error, Result};
 use voronaut_draw::Sheet;

@@ -214,7 +214,7 @@ fn what_surfaces_do_not_have_is_refused_before_anything_is_written() {
     let plate = ["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "60", "-o", "s.obj"];
     let dual = |seeds: &'static str| ["dual", "sphere:1", "--metric", "uniform", "--seeds", seeds, "-o", "d.obj"];
     for (words, expected) in [
-        ([&mesh[..], &["--net"]].concat(), "not supported: --net on a surface"),
+        ([&mesh[..], &["--picking-radius", "0.1"]].concat(), "not supported: --picking-radius on a surface"),
         (
             [&dual("few.txt")[..], &["--canvas-size", "certified"]].concat(),
             "no canvas is certified for these seeds: psi0 - 1 within 6 epsilon",

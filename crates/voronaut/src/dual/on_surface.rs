@@ -181,6 +181,17 @@ impl<'a> SurfaceDual<'a> {
         self.input.lift(&at, at.position + plane.lift(by))
     }
 
+    /// Moves a seed to a place near it, or as near to that as straight up from its tangent plane leads, and flips around it, unless a triangle would
+    /// turn over; says whether it did.
+    pub(crate) fn relocate(&mut self, v: VertexId, to: &Place) -> bool {
+        let by = self.state.planes[v.index()].flatten(to.position - self.position(v));
+        let is_done = self.shift_by(v, by);
+        if is_done {
+            self.settle_move(v);
+        }
+        is_done
+    }
+
     /// Whether a triangle faces away from the mean of the surface's normals at its corners.
     pub(crate) fn is_folded(&self, f: FaceId) -> bool {
         let corners = self.topology().corners(f);

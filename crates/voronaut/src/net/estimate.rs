@@ -1,5 +1,6 @@
 //! Circles and powers by expansions of the metric, for seeds that come, go and move.
 
+use super::Terrain;
 use crate::dual::{Dual, Moving};
 use crate::geodesic::{LocalMetric, chord, equalising_step, flat_centre, hermite};
 use crate::geometry::{Point, Tensor};
@@ -21,8 +22,8 @@ struct Around {
 /// Power protection of a triangulation's simplices, estimated: a few dozen evaluations of the field a triangle.
 #[derive(Clone, Copy)]
 pub(crate) struct Estimate<'a> {
-    /// Whose field and domain these are, in units of about an edge.
-    pub dual: &'a Dual<'a>,
+    /// The field, in units of about an edge, and the domain.
+    pub terrain: &'a dyn Terrain,
     /// The triangulation.
     pub topology: &'a Triangulation,
     /// Where seeds are, by id.
@@ -34,7 +35,7 @@ pub(crate) struct Estimate<'a> {
 impl<'a> Estimate<'a> {
     /// Of a dual's own triangulation.
     pub(crate) fn of(dual: &'a Dual) -> Self {
-        Self { dual, topology: dual.topology(), positions: &dual.planar().positions, locals: dual.locals() }
+        Self { terrain: dual, topology: dual.topology(), positions: &dual.planar().positions, locals: dual.locals() }
     }
 
     /// By how much simplices miss a power `asked` of all seeds near them, each as a share of it (above one where the
@@ -74,11 +75,12 @@ impl<'a> Estimate<'a> {
             let ends = topology.ends(h);
             self.middle(ends).map_or(0.0, |circle| self.missing(&circle, &ends, only, asked))
         };
-        let sides = f.half_edges().into_iter().filter(|&h| topology.twin(h).is_none());
+        let is_border = |h: &HalfEdge| self.terrain.is_whole() && topology.twin(*h).is_none();
+        let sides = f.half_edges().into_iter().filter(is_border);
         let border: f64 = sides.map(of_border).sum();
         border
             + match self.of_triangle(corners) {
-                Some(circle) if !self.dual.is_inside(corners[0], circle.centre) => 0.0,
+                Some(circle) if !self.terrain.is_inside(corners[0].0, circle.centre) => 0.0,
                 Some(circle) => self.missing(&circle, &corners, only, asked),
                 None => f64::from(u8::from(self.seems_interior(corners))),
             }
@@ -117,7 +119,7 @@ impl<'a> Estimate<'a> {
     fn square(&self, p: Point, local: &LocalMetric, v: VertexId) -> f64 {
         let (q, at_q) = (self.position(v), self.local(v));
         let length = if local.is_rough || at_q.is_rough {
-            chord(self.dual.field(), p, q)
+            chord(self.terrain.field(), p, q)
         } else {
             hermite(p, local, q, at_q).value
         };
@@ -139,7 +141,7 @@ impl<'a> Estimate<'a> {
     fn of_triangle(&self, corners: [VertexId; 3]) -> Option<Around> {
         let mut centre = flat_centre(self.tensor(corners), corners.map(|v| self.position(v)))?;
         for _ in 0..STEPS {
-            let local = LocalMetric::at(self.dual.field(), centre);
+            let local = LocalMetric::at(self.terrain.field(), centre);
             if !local.tensor.is_positive_definite() {
                 return None;
             }
@@ -157,7 +159,7 @@ impl<'a> Estimate<'a> {
     /// Whether the circumcentre with one tensor is in the domain.
     fn seems_interior(&self, corners: [VertexId; 3]) -> bool {
         let flat = flat_centre(self.tensor(corners), corners.map(|v| self.position(v)));
-        flat.is_some_and(|centre| self.dual.is_inside(corners[0], centre))
+        flat.is_some_and(|centre| self.terrain.is_inside(corners[0].0, centre))
     }
 
     /// The circle around the point of a border edge that is equally far from its ends, by two secant steps.
@@ -165,7 +167,7 @@ impl<'a> Estimate<'a> {
         let [a, b] = ends.map(|v| self.position(v));
         let at = |t: f64| {
             let centre = a.lerp(b, t);
-            let local = LocalMetric::at(self.dual.field(), centre);
+            let local = LocalMetric::at(self.terrain.field(), centre);
             let [to_a, to_b] = ends.map(|v| self.square(centre, &local, v));
             (Around { centre, local, square: 0.5 * (to_a + to_b) }, to_a - to_b)
         };

@@ -1,6 +1,6 @@
 //! Circles and powers by geodesics.
 
-use super::seen::{Seeds, View};
+use super::seen::{Seeds, Terrain, View};
 use super::{Ball, Net};
 use crate::geodesic::{Circle, Fineness, Paths, chord, flat_centre};
 use crate::geometry::Point;
@@ -108,7 +108,8 @@ impl<'a, S: Seeds> Measure<'a, S> {
             let view = self.seeds.around(&ends)?;
             Some((chord(view.field(), view.seed(i)?, view.seed(j)?), i, j))
         };
-        let mut edges: Vec<_> = edges.filter(|(i, j)| i < j).filter_map(chord).collect();
+        let edges: Vec<(u32, u32)> = edges.filter(|(i, j)| i < j).collect();
+        let mut edges: Vec<_> = edges.into_par_iter().with_min_len(64).filter_map(chord).collect();
         edges.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut least = f64::INFINITY;
         for (chord, i, j) in edges {

@@ -14,7 +14,7 @@ pub(crate) use estimate::Estimate;
 pub(crate) use measure::Memory;
 pub(crate) use on_canvas::circles_on_canvas;
 pub use random::Random;
-pub(crate) use seen::SeedsOnSurface;
+pub(crate) use seen::{SeedsOnSurface, Terrain, View};
 
 use crate::geometry::Point;
 use crate::lists::distinct;
@@ -139,21 +139,34 @@ impl Net {
 }
 
 impl Net<Place> {
-    /// Measures seeds on a surface, in charts around their triangles ([`SeedsOnSurface`]).
-    pub(crate) fn on_surface(seeds: SeedsOnSurface, triangles: &[[u32; 3]]) -> Self {
-        Self::measured(&Measure::new(seeds, triangles, &[]), &[], &mut Memory::default())
+    /// Measures seeds on a surface, in charts around their triangles ([`SeedsOnSurface`]); what a memory of that surface knows is not measured
+    /// again.
+    pub(crate) fn on_surface(seeds: &SeedsOnSurface, triangles: &[[u32; 3]], memory: &mut Memory<Place>) -> Self {
+        Self::measured(&Measure::new(seeds, triangles, &[]), &[], memory)
+    }
+
+    /// The same but for mu.
+    pub(crate) fn circles_on_surface(
+        seeds: &SeedsOnSurface,
+        triangles: &[[u32; 3]],
+        memory: &mut Memory<Place>,
+    ) -> Self {
+        Self::circled(&Measure::new(seeds, triangles, &[]), &[], memory)
     }
 }
 
 impl<P: Copy + PartialEq + Send + Sync> Net<P> {
     fn measured<S: Seeds<Place = P>>(measure: &Measure<S>, known: &[Ball<3, P>], memory: &mut Memory<P>) -> Self {
+        let net = Self::circled(measure, known, memory);
+        Self { mu: measure.mu(), by_chord: measure.chords(), ..net }
+    }
+
+    fn circled<S: Seeds<Place = P>>(measure: &Measure<S>, known: &[Ball<3, P>], memory: &mut Memory<P>) -> Self {
         let of_canvas: HashSet<[u32; 3]> = known.iter().map(|ball| smallest_first(ball.corners)).collect();
         let is_open = |corners: &&[u32; 3]| !of_canvas.contains(&smallest_first(**corners));
         let wanted: Vec<[u32; 3]> = measure.all().iter().filter(is_open).copied().collect();
-        let mu = measure.mu();
-        let mut net = Self { mu, by_canvas: known.len(), ..measure.circles(&wanted, memory) };
+        let mut net = Self { by_canvas: known.len(), ..measure.circles(&wanted, memory) };
         net.triangles.extend_from_slice(known);
-        net.by_chord = measure.chords();
         // A circle with a seed in it says nothing of how far points are from seeds.
         let interior = net.interior().map(|ball| (ball.power, ball.radius));
         let circles = interior.chain(net.border.iter().map(|ball| (ball.power, ball.radius)));

@@ -1,15 +1,27 @@
 //! Seeds as they are seen from around some of them: as points of a plane with a metric. A surface is seen in the chart in the middle.
 
 use super::Simplices;
+use crate::dual::Dual;
 use crate::geometry::{Point, Point3, Vector3};
 use crate::metric::MetricField;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
+use crate::triangulation::VertexId;
 
 /// Seeds whose normals have a lesser cosine with a chart's are not seen in it.
 const SEEN: f64 = 0.5;
 /// A centre this near (barycentric) to a surface's border may be beyond it.
 const AT_BORDER: f64 = 1e-9;
+
+/// A plane with a metric, and where the domain is in it.
+pub(crate) trait Terrain: Sync {
+    /// The metric.
+    fn field(&self) -> &dyn MetricField;
+    /// Whether a point is in the domain, as the triangle sees it that has the seed for a corner.
+    fn is_inside(&self, seed: u32, p: Point) -> bool;
+    /// Whether edges of a single triangle are pieces of the domain's border: more may lie beyond those of a chart.
+    fn is_whole(&self) -> bool;
+}
 
 /// Seeds of the plane, or of a surface.
 pub(super) trait Seeds: Sync {
@@ -25,14 +37,12 @@ pub(super) trait Seeds: Sync {
 }
 
 /// A plane in which seeds are seen.
-pub(super) trait View: Sync {
+pub(crate) trait View: Terrain {
+    /// What a point of it is a place of.
     type Place;
 
-    fn field(&self) -> &dyn MetricField;
     /// A seed; `None` of one that cannot be seen, which is far away.
     fn seed(&self, seed: u32) -> Option<Point>;
-    /// Whether a point is in the domain, as the triangle sees it that has the seed for a corner.
-    fn is_inside(&self, seed: u32, p: Point) -> bool;
     /// Where a point is.
     fn place(&self, p: Point) -> Option<Self::Place>;
 }
@@ -60,19 +70,39 @@ impl Seeds for Flat<'_> {
     }
 }
 
-impl View for Flat<'_> {
-    type Place = Point;
+impl Terrain for Dual<'_> {
+    fn field(&self) -> &dyn MetricField {
+        self.field()
+    }
 
+    fn is_inside(&self, seed: u32, p: Point) -> bool {
+        self.is_inside(VertexId(seed), p)
+    }
+
+    fn is_whole(&self) -> bool {
+        true
+    }
+}
+
+impl Terrain for Flat<'_> {
     fn field(&self) -> &dyn MetricField {
         self.field
     }
 
-    fn seed(&self, seed: u32) -> Option<Point> {
-        Some(self.found.seeds[seed as usize])
-    }
-
     fn is_inside(&self, seed: u32, p: Point) -> bool {
         (self.found.is_inside)(seed, p)
+    }
+
+    fn is_whole(&self) -> bool {
+        true
+    }
+}
+
+impl View for Flat<'_> {
+    type Place = Point;
+
+    fn seed(&self, seed: u32) -> Option<Point> {
+        Some(self.found.seeds[seed as usize])
     }
 
     fn place(&self, p: Point) -> Option<Point> {
@@ -105,13 +135,24 @@ impl<'a> SeedsOnSurface<'a> {
         seeds.iter().all(is_seen).then(|| Chart::new(self.input, self.metric, place, normal).straight())
     }
 
+    /// What is seen in that chart.
+    pub(crate) fn view(&self, seeds: &[u32]) -> Option<impl View<Place = Place>> {
+        Some(InChart { chart: self.chart(seeds)?, seeds: self })
+    }
+
     /// The position of a seed.
     pub(crate) fn position(&self, seed: u32) -> Point3 {
         self.places[seed as usize].position
     }
+
+    /// Puts a seed elsewhere.
+    pub(crate) fn put(&mut self, seed: u32, place: Place) {
+        self.places[seed as usize] = place;
+        self.normals[seed as usize] = self.input.normal(&place);
+    }
 }
 
-impl Seeds for SeedsOnSurface<'_> {
+impl Seeds for &SeedsOnSurface<'_> {
     type Place = Place;
 
     fn count(&self) -> usize {
@@ -123,7 +164,7 @@ impl Seeds for SeedsOnSurface<'_> {
     }
 
     fn around(&self, seeds: &[u32]) -> Option<impl View<Place = Place>> {
-        Some(InChart { chart: self.chart(seeds)?, seeds: self })
+        self.view(seeds)
     }
 }
 
@@ -132,20 +173,26 @@ struct InChart<'a> {
     seeds: &'a SeedsOnSurface<'a>,
 }
 
-impl View for InChart<'_> {
-    type Place = Place;
-
+impl Terrain for InChart<'_> {
     fn field(&self) -> &dyn MetricField {
         &self.chart
     }
 
+    fn is_inside(&self, _seed: u32, p: Point) -> bool {
+        self.chart.place(p).is_some_and(|place| !self.seeds.input.is_at_border(&place, AT_BORDER))
+    }
+
+    fn is_whole(&self) -> bool {
+        false
+    }
+}
+
+impl View for InChart<'_> {
+    type Place = Place;
+
     fn seed(&self, seed: u32) -> Option<Point> {
         let is_seen = self.seeds.normals[seed as usize].dot(self.chart.normal()) >= SEEN;
         is_seen.then(|| self.chart.flatten(self.seeds.position(seed)))
-    }
-
-    fn is_inside(&self, _seed: u32, p: Point) -> bool {
-        self.chart.place(p).is_some_and(|place| !self.seeds.input.is_at_border(&place, AT_BORDER))
     }
 
     fn place(&self, p: Point) -> Option<Place> {

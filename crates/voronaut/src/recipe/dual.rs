@@ -7,7 +7,7 @@ use crate::geometry::{Point, Point3};
 use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
-use crate::net::{Net, SeedsOnSurface, Simplices};
+use crate::net::{Memory, Net, SeedsOnSurface, Simplices};
 use crate::planar::Location;
 use crate::progress::Progress;
 use crate::rdt::{Edge, Judge, OnSurface, Rdt, Start, Trust};
@@ -93,7 +93,8 @@ fn as_read<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, progress: &dyn Progress)
     }
 }
 
-fn compared<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, exact: &[[u32; 3]]) -> figures::RawNerve {
+/// The raw nerve of a diagram beside the triangles of the exact dual.
+pub(super) fn compared<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, exact: &[[u32; 3]]) -> figures::RawNerve {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c]);
     let exact: HashSet<[u32; 3]> = exact.iter().map(turned).collect();
     let raw: HashSet<[u32; 3]> = diagram.witnesses_of_triangles().into_iter().map(|witness| witness.0).collect();
@@ -126,7 +127,7 @@ pub fn net(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]]) -> Ne
 
 /// The net of a surface diagram's seeds, from the triangles of their exact dual, as [`net`] has it of the plane; circles are found in charts.
 pub fn surface_net(diagram: &SurfaceDiagram, exact: &[[u32; 3]]) -> Net<Place> {
-    let mut net = Net::on_surface(SeedsOnSurface::of(diagram), exact);
+    let mut net = Net::on_surface(&SeedsOnSurface::of(diagram), exact, &mut Memory::default());
     let farthest = diagram.farthest().map_or(0.0, |(_, distance)| distance);
     net.epsilon = if farthest.is_finite() { net.epsilon.max(farthest) } else { net.epsilon };
     net

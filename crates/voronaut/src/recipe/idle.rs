@@ -101,14 +101,14 @@ impl MeshOptions {
             ),
             ("dual", self.dual != usual.dual, &[voronoi]),
             ("geodesic", self.geodesic != usual.geodesic, &[voronoi, diagram]),
-            ("seeding", self.seeding != usual.seeding, &[voronoi, (plane.0 || !protected.0, plane.1)]),
-            ("protection", differs(self.protection, usual.protection), &[plane, protected]),
+            ("seeding", self.seeding != usual.seeding, &[voronoi]),
+            ("protection", differs(self.protection, usual.protection), &[protected]),
             (
                 "picking_radius",
                 differs(self.picking_radius, usual.picking_radius),
                 &[plane, protected, (self.lloyd == 0, "where seeds are relaxed")],
             ),
-            ("net", self.net, &[plane, voronoi]),
+            ("net", self.net, &[voronoi]),
             ("canvas", self.canvas != usual.canvas, &[voronoi, canvas]),
             ("canvas_size", self.canvas_size != usual.canvas_size, &[voronoi, canvas]),
         ])

@@ -52,6 +52,7 @@ use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, simplify};
+use crate::surface::Place;
 use crate::triangulation::HalfEdge;
 use periodic::correspondence;
 use settle::Stopwatch;
@@ -83,6 +84,8 @@ pub struct Meshed {
     pub diagram: Option<figures::Diagram>,
     /// The vertices as a net, by their numbers in the mesh, where it was asked for.
     pub net: Option<Net>,
+    /// The same on a surface. A vertex of a feature is measured on each side of it by itself.
+    pub surface_net: Option<Net<Place>>,
     /// How protection went, with [`Seeding::Protected`].
     pub protection: Option<figures::Protection>,
     /// How far the mesh of a surface is from it, where [`MeshOptions::hausd`] or [`MeshOptions::fit`] asked for it.

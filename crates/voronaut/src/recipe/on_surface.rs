@@ -3,7 +3,7 @@
 use super::curved::{curve_onto, demand_possible_on};
 use super::settle::Stopwatch;
 use super::surface_pass::{Pass, Reseed, Setting, demand};
-use super::{Idle, MeshOptions, Meshed, Origin, Seeding, Task, closed_form_scale};
+use super::{Idle, MeshOptions, Meshed, Origin, Seeding, Task, closed_form_scale, protection};
 use crate::canvas::area_of_surface;
 use crate::dual::Moving;
 use crate::error::{Error, Result};
@@ -60,6 +60,7 @@ pub fn mesh_surface(
 ) -> Result<Meshed> {
     options.geodesic.demand_diagrams()?;
     demand_possible_on(input, options)?;
+    protection::demand_possible(options)?;
     options
         .idle(Task {
             on_surface: true,
@@ -164,11 +165,19 @@ impl<'a> Setting<'a> {
             reseed = pass.reseed(&faulty, reseed);
             reseed.is_last = reseed.rounds + 1 >= self.farthest_passes() + ADAPTATIONS;
         };
-        let polished = match self.aim.filter(|_| faulty_count == 0 && self.options.polish > 0) {
+        let polished = match self.aim.filter(|_| faulty_count == 0 && self.polishes()) {
             Some((function, norm)) => Some(self.polished(&mut pass, &mut mesh, function, norm, &mut notes)?),
             None => None,
         };
+        let protected = match faulty_count {
+            0 => self.protect(&mut pass, &mut mesh, &mut notes)?,
+            _ => None,
+        };
         demand(self.input, &mesh, &self.meetings)?;
+        let (surface_net, protection) = match protected {
+            Some((net, protection)) => (Some(net), Some(protection)),
+            None => (self.options.net.then(|| self.net(&pass)), None),
+        };
         let farthest = self.farthest_passes();
         if farthest > 0 && reseed.rounds >= farthest {
             notes.push("farthest points made no mesh: seeds are of the surface's own triangles".into());
@@ -186,6 +195,8 @@ impl<'a> Setting<'a> {
             polished,
             canvas: pass.settled.canvas,
             diagram: pass.settled.diagram,
+            surface_net,
+            protection,
             notes,
             ..Meshed::default()
         };
@@ -217,7 +228,7 @@ impl<'a> Setting<'a> {
     }
 
     /// The mesh of a pass, and its triangles that make it none.
-    fn checked(&self, pass: &Pass) -> Result<(Mesh, Vec<u32>)> {
+    pub(super) fn checked(&self, pass: &Pass) -> Result<(Mesh, Vec<u32>)> {
         let mesh = pass.mesh();
         let faulty = self.watch.time("check", || {
             self.progress.begin("checking", 1)?;
@@ -238,6 +249,11 @@ impl<'a> Setting<'a> {
         }
         pass.dual.take_back(&before);
         Ok(mesh)
+    }
+
+    /// Whether a mesh for a function is polished, which would undo protection.
+    fn polishes(&self) -> bool {
+        self.options.polish > 0 && self.options.seeding != Seeding::Protected
     }
 
     /// Polishes a mesh for a function; where what comes out is no mesh it stays as it was.

@@ -44,12 +44,13 @@ pub struct MeshOptions {
     /// How the interior is seeded.
     pub seeding: Seeding,
     /// With [`Seeding::Protected`], the power protection asked of every interior simplex, as a share of epsilon, the
-    /// greatest circumradius; sqrt(3) at most.
+    /// greatest circumradius; sqrt(3) at most. On a surface it is asked of triangles, not of edges at borders.
     pub protection: f64,
-    /// With [`Seeding::Protected`], the radius of the ball around a circumcentre in which a seed is picked, as a share of
+    /// In the plane, with [`Seeding::Protected`], the radius of the ball around a circumcentre in which a seed is picked, as a share of
     /// the circumradius.
     pub picking_radius: f64,
-    /// Whether the net of the mesh's vertices is measured ([`Meshed::net`](super::Meshed::net)); with [`Seeding::Protected`] it always is.
+    /// Whether the net of the mesh's vertices is measured ([`Meshed::net`](super::Meshed::net), or
+    /// [`Meshed::surface_net`](super::Meshed::surface_net)); with [`Seeding::Protected`] it always is.
     pub net: bool,
     /// Which canvas, where one is used: for seeding and relaxing, and to settle edges.
     pub canvas: canvas::Kind,
@@ -148,12 +149,13 @@ impl Effort {
 /// How the interior is seeded, once the boundary is sampled at unit length; its names are those users type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Seeding {
-    /// `sizing`: at the circumcentre of the face whose metric circumradius is largest.
+    /// `sizing`: at the circumcentre of the face whose metric circumradius is largest. On a surface its own triangles are split and contracted.
     #[default]
     Sizing,
     /// `farthest`: at the canvas vertex that is farthest, in geodesic distance, from all seeds so far. Needs a canvas.
     Farthest,
-    /// `protected`: as `sizing`, with seeds put where they leave every simplex power-protected; then moved until that is so.
+    /// `protected`: as `sizing`, with seeds put where they leave every simplex power-protected; then moved until that is so. On a surface
+    /// seeds at borders and on features stay.
     Protected,
 }
 

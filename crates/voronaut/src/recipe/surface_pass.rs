@@ -297,6 +297,11 @@ impl Pass<'_> {
         Patched { input: self.input, features: &self.features, owners: &self.owners }
     }
 
+    /// The vertex of the mesh that a seed is.
+    pub(super) fn vertex(&self, seed: u32) -> u32 {
+        self.patched().vertex(seed)
+    }
+
     /// One mesh of all patches; its triangles are in the order of the dual's.
     pub(super) fn mesh(&self) -> Mesh {
         self.patched().mesh(self.dual.places(), &self.dual.triangles())

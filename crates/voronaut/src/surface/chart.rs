@@ -19,8 +19,8 @@ pub(crate) struct Chart<'a> {
     is_straight: bool,
 }
 
-/// Steps in which the place straight above a coordinate is found, at most, and how far aside (share) it may be: each is nearer by the
-/// square of the slope.
+/// Where [`Input::lift_along`] finds nothing: steps in which the place straight above a coordinate is found, at most, and how far aside
+/// (share) it may be: each is nearer by the square of the slope.
 const STEPS: usize = 6;
 const STRAIGHT: f64 = 1e-9;
 
@@ -55,8 +55,13 @@ impl<'a> Chart<'a> {
 
     /// The place with these coordinates; `None` where the surface cannot be reached.
     pub(crate) fn place(&self, u: Point) -> Option<Place> {
-        let closest = |from: Vector| self.input.lift(&self.at, self.at.position + self.plane.lift(from));
         let wanted = u - Point::default();
+        let above = |from: Vector| self.at.position + self.plane.lift(from);
+        let straight = || self.input.lift_along(&self.at, above(wanted), self.plane.normal, STEEPEST);
+        if let Some(place) = self.is_straight.then(straight).flatten() {
+            return Some(place);
+        }
+        let closest = |from: Vector| self.input.lift(&self.at, above(from));
         let (mut from, mut place) = (wanted, closest(wanted)?);
         for _ in 0..if self.is_straight { STEPS } else { 0 } {
             let off = wanted - self.plane.flatten(place.position - self.at.position);

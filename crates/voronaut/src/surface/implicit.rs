@@ -71,6 +71,33 @@ pub(crate) fn project(f: &dyn Implicit, p: Point3, reach: f64, tolerance: f64) -
     project_pinned(f, p, Pins::default(), reach, tolerance)
 }
 
+/// The point of f = 0 that Newton's method along a unit vector reaches from `p`, to `tolerance` (a length), and the surface's normal there; `None` where
+/// it goes farther than `reach` from `p`, or the gradient's cosine with the vector is less than `least` on the way.
+pub(super) fn project_along(
+    f: &dyn Implicit,
+    p: Point3,
+    up: Vector3,
+    least: f64,
+    [reach, tolerance]: [f64; 2],
+) -> Option<(Point3, Vector3)> {
+    let mut height = 0.0_f64;
+    for _ in 0..STEPS {
+        let q = p + up * height;
+        let jet = f.jet(q);
+        let normal = jet.gradient.unit()?;
+        let slope = normal.dot(up);
+        if slope.is_nan() || slope < least || height.abs() > reach {
+            return None;
+        }
+        let step = jet.value / jet.gradient.dot(up);
+        if step.abs() <= tolerance {
+            return Some((q, normal));
+        }
+        height -= step;
+    }
+    None
+}
+
 /// Which coordinates of a point stay as they are.
 pub(super) type Pins = [bool; 3];
 

@@ -2,7 +2,7 @@
 
 use super::cut::{Seams, cut};
 use super::features::FeatureOptions;
-use super::implicit::project_pinned;
+use super::implicit::{project_along, project_pinned};
 use super::nearest::closest_weights;
 use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
@@ -171,6 +171,38 @@ impl Input {
             }
             None => p.is_finite().then(|| self.walk(near, p)),
         }
+    }
+
+    /// The place straight above or below a point near a place, where a unit vector is up: found as by [`Input::lift`]. `None` where there is none,
+    /// or a normal on the way has a lesser cosine with up.
+    pub(crate) fn lift_along(&self, near: &Place, p: Point3, up: Vector3, least: f64) -> Option<Place> {
+        let Some(f) = &self.implicit else { return self.walk_along(near.face, p, up, least) };
+        let within = [REACH * self.diagonal, ON_SURFACE * self.diagonal / least];
+        let (position, normal) = project_along(f, p, up, least, within)?;
+        Some(Place { position, normal, ..*near })
+    }
+
+    /// From triangle to triangle across the side that a point is farthest beyond, seen from above, until it is in one.
+    fn walk_along(&self, from: FaceId, p: Point3, up: Vector3, least: f64) -> Option<Place> {
+        let mut face = from;
+        for _ in 0..FEW_FACES {
+            let [a, b, c] = self.surface.triangle(face);
+            let normal = (b - a).cross(c - a);
+            let area = normal.dot(up);
+            if area.is_nan() || area <= least * normal.norm() {
+                return None;
+            }
+            let share = |u: Point3, v: Point3| (u - p).cross(v - p).dot(up) / area;
+            let weights = [share(b, c), share(c, a), share(a, b)];
+            let [ab, bc, ca] = face.half_edges();
+            let sides = [(weights[0], bc), (weights[1], ca), (weights[2], ab)];
+            let farthest = sides.into_iter().fold(sides[0], |most, side| if side.0 < most.0 { side } else { most });
+            if farthest.0 >= 0.0 {
+                return Some(self.surface.place(face, weights));
+            }
+            face = self.surface.topology().twin(farthest.1)?.face();
+        }
+        None
     }
 
     /// The point of an equation's surface to which Newton's method leads from a point near it, with some coordinates as they are; `None` where it leads

@@ -84,6 +84,20 @@ impl SurfaceMetric for Constant {
     }
 }
 
+/// Another field times a factor.
+pub struct Scaled<'a> {
+    /// The field.
+    pub field: &'a dyn SurfaceMetric,
+    /// What its tensors are multiplied by, positive and finite.
+    pub factor: f64,
+}
+
+impl SurfaceMetric for Scaled<'_> {
+    fn at(&self, place: &Place) -> Tensor3 {
+        self.field.at(place) * self.factor
+    }
+}
+
 /// E does not depend on z: F = U diag(1 + phi |grad E|, 1, 1) U' has the planar field in its upper left corner.
 impl SurfaceMetric for Shock {
     fn at(&self, place: &Place) -> Tensor3 {

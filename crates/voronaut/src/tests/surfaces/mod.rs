@@ -2,6 +2,7 @@
 
 mod brute;
 mod certificate;
+mod protected;
 mod random;
 mod realisation;
 mod sheet;
