@@ -34,10 +34,11 @@ impl Certificate {
 fn convexity(diagram: &SurfaceDiagram, sights: &OnSurface, net: &Net<Place>, epsilon: f64) -> Convexity {
     let input = diagram.canvas().draped().input();
     let [curvature, total] = curvatures(diagram.canvas().draped(), epsilon);
-    let injectivity = injectivity(diagram, epsilon);
+    let has_border = input.seams.whole().borders > 0;
+    let injectivity = if has_border { f64::NAN } else { injectivity(diagram, epsilon) };
     let of_curvature = if curvature > 0.0 { 0.5 * PI / curvature.sqrt() } else { f64::INFINITY };
     let open = match () {
-        () if input.seams.whole().borders > 0 => Some("the surface has a border, where loops are not looked for"),
+        () if has_border => Some("the surface has a border, where loops are not looked for"),
         () if input.implicit.is_none() => {
             Some("the curvature: the surface has no equation, and its triangles have it at their vertices only")
         }

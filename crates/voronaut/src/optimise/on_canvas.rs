@@ -158,7 +158,7 @@ mod tests {
     fn cells_on_a_sphere_are_those_of_tangent_planes() {
         let metric = |p: Point3| Tensor3::from_disk([4.0 + p.y, 0.0, 2.0, 0.0, 0.5 * p.x, 3.0]);
         let input = Input::new(sphere(1.0, 0.25).unwrap(), None);
-        let fine = Input::new(sphere(1.0, 0.03).unwrap(), None);
+        let fine = Input::new(sphere(1.0, 0.015).unwrap(), None);
         let surface = &input.surface;
         let places: Vec<_> =
             surface.topology().vertices().map(|v| fine.closest(surface.position(v)).unwrap()).collect();
@@ -166,17 +166,18 @@ mod tests {
         dual.settle_moves().unwrap();
         dual.measure();
         let (canvas, _) = Canvas::on_surface(Kind::Intrinsic, &fine, &metric, 0, &[]).unwrap();
-        assert!(canvas.vertex_count() > 50 * dual.places().len());
+        assert!(canvas.vertex_count() > 200 * dual.places().len());
         let found = OnCanvas::new(&canvas).moments(&dual, |_, logarithm| logarithm).unwrap();
         let expected = Tangent.moments(&dual).unwrap();
         let mass = |all: &[(VertexId, Moments)]| all.iter().map(|(_, moments)| moments.mass).sum::<f64>();
         let whole = 20.0 * crate::canvas::area_of_surface(&fine, &metric, 0).unwrap();
         assert!((mass(&found) / whole - 1.0).abs() < 0.02, "{} {whole}", mass(&found));
-        let [mut of_mass, mut of_first] = [0.0_f64; 2];
+        // Borders of cells are where canvas vertices are.
+        let (mut of_mass, mut of_first, seeds) = (0.0, 0.0, found.len() as f64);
         for ((_, found), (_, expected)) in found.iter().zip(&expected) {
-            of_mass = of_mass.max((found.mass / expected.mass - 1.0).abs());
-            of_first = of_first.max((found.first - expected.first).norm() / expected.mass.powf(1.5));
+            of_mass += (found.mass / expected.mass - 1.0).abs();
+            of_first += (found.first - expected.first).norm() / expected.mass.powf(1.5);
         }
-        assert!(of_mass < 0.15 && of_first < 0.05, "{of_mass} {of_first}");
+        assert!(of_mass < 0.03 * seeds && of_first < 0.03 * seeds, "{of_mass} {of_first} of {seeds}");
     }
 }
