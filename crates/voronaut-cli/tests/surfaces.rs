@@ -254,11 +254,10 @@ fn orphans_and_regions_of_surfaces_are_told() {
         assert!(output.status.success(), "{kind}: {}", stderr(&output));
         let report = json(&place, "d.json");
         assert!(report["net"].is_null() && report["options"]["voronoi"] == kind);
-        (report["diagram"]["orphan_components"].as_u64().unwrap(), text(&place, "d.svg").contains("#d8293c"))
+        report["diagram"]["orphan_components"].as_u64().unwrap()
     };
-    let (of_place, of_seed) = (orphans("du-wang"), orphans("labelle-shewchuk"));
-    assert!(of_place.0 > 0 && of_seed.0 > 0 && of_place.1 && of_seed.1, "{of_place:?} {of_seed:?}");
-    assert_eq!(orphans("riemannian"), (0, false));
+    assert!(orphans("du-wang") > 0 && orphans("labelle-shewchuk") > 0);
+    assert_eq!(orphans("riemannian"), 0);
     let even = ["dual", "sphere:1", "--metric", "uniform", "--seeds", "seeds.txt", "-o", "r.obj", "--report", "r.json"];
     let drawn = ["--edges", "geodesic", "--strict", "--picture", "r.svg", "--show", "triangles"];
     let output = place.run(&[&even[..], &drawn].concat());
