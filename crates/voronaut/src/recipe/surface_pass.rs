@@ -227,9 +227,9 @@ impl<'a> Setting<'a> {
         Canvas::on_surface(self.options.canvas, self.input, self.metric, size, seeds)
     }
 
-    /// Whether seeding or settling takes a canvas.
+    /// Whether seeding, protecting or settling takes a canvas.
     pub(super) fn needs_canvas(&self) -> bool {
-        self.options.seeding == Seeding::Farthest || self.options.dual == Road::Canvas
+        self.options.seeding != Seeding::Sizing || self.options.dual == Road::Canvas
     }
 
     /// Canvas vertices for so many seeds.
