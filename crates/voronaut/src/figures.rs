@@ -121,7 +121,7 @@ pub struct Protection {
     pub moves: u64,
     /// Places tried for them.
     pub tries: u64,
-    /// Interior triangles and border edges that were not protected before.
+    /// Interior triangles, and in the plane border edges, that were not protected before.
     pub unprotected_before: usize,
     /// Those that are not protected in the end.
     pub unprotected: usize,
@@ -129,14 +129,14 @@ pub struct Protection {
     pub raw_nerve: CanvasNerve,
 }
 
-/// The raw nerve of seeds on a canvas that was refined for them. Deterministic.
+/// The raw nerve of seeds on a canvas that, in the plane, was refined for them. Deterministic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CanvasNerve {
     /// Vertices of the canvas.
     pub canvas_vertices: usize,
     /// Rounds of refinement around Voronoi vertices that it did not tell apart.
     pub rounds: u32,
-    /// Places where it still does not.
+    /// Places where it still does not; of a surface, where it does not show three cells that meet.
     pub unwitnessed: usize,
     /// The nerve, beside the exact dual.
     #[serde(flatten)]

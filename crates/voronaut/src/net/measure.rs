@@ -34,7 +34,10 @@ impl<P> Default for Memory<P> {
 
 #[derive(Clone, Debug)]
 struct Remembered<P> {
+    /// The corners, and those around.
     seeds: Vec<(u32, P)>,
+    /// The circle through the corners, as the first paths found it.
+    circle: Option<Circle>,
     /// `None` of a triangle that has none.
     ball: Option<Ball<3, P>>,
     /// It has none although its circumcentre seems to be in the domain.
@@ -82,14 +85,16 @@ impl<'a, S: Seeds> Measure<'a, S> {
         let measured = |&corners: &[u32; 3]| {
             let seeds: Vec<(u32, S::Place)> =
                 corners.into_iter().chain(self.around(&corners)).map(|i| (i, self.seeds.place(i))).collect();
-            let known = memory.0.get(&corners).filter(|known| known.seeds == seeds);
-            if let Some(known) = known {
+            let known = memory.0.get(&corners).filter(|known| known.seeds[..3] == seeds[..3]);
+            if let Some(known) = known.filter(|known| known.seeds == seeds) {
                 return (corners, known.clone());
             }
             let view = self.seeds.around(&corners);
-            let ball = view.as_ref().and_then(|view| self.triangle(view, corners));
+            let circle =
+                known.map_or_else(|| view.as_ref().and_then(|view| self.circle(view, corners)), |known| known.circle);
+            let ball = view.as_ref().and_then(|view| self.triangle(view, corners, circle));
             let is_unmeasured = ball.is_none() && view.is_none_or(|view| self.may_be_interior(&view, corners));
-            (corners, Remembered { seeds, ball, is_unmeasured })
+            (corners, Remembered { seeds, circle, ball, is_unmeasured })
         };
         let found: Vec<([u32; 3], Remembered<S::Place>)> = wanted.par_iter().with_min_len(4).map(measured).collect();
         let unknown =
@@ -136,10 +141,20 @@ impl<'a, S: Seeds> Measure<'a, S> {
         self.chords.load(Ordering::Relaxed)
     }
 
-    fn triangle<V: View<Place = S::Place>>(&self, view: &V, corners: [u32; 3]) -> Option<Ball<3, S::Place>> {
+    /// The circle through three seeds, if it is found at once.
+    fn circle(&self, view: &impl View, corners: [u32; 3]) -> Option<Circle> {
+        let circle = Circle::around(&self.paths, view.field(), seen(view, corners)?, Fineness::MIDDLE);
+        circle.filter(|circle| circle.error < VAGUE * circle.square)
+    }
+
+    fn triangle<V: View<Place = S::Place>>(
+        &self,
+        view: &V,
+        corners: [u32; 3],
+        known: Option<Circle>,
+    ) -> Option<Ball<3, S::Place>> {
         let points = seen(view, corners)?;
         let around = |fineness| Circle::around(&self.paths, view.field(), points, fineness);
-        let known = around(Fineness::MIDDLE).filter(|circle| circle.error < VAGUE * circle.square);
         // Circles around centres far outside the domain are not worth the finest paths.
         let fine = || around(Fineness::FINEST).or_else(|| Circle::around_carefully(&self.paths, view.field(), points));
         let circle = known.or_else(|| self.may_be_interior(view, corners).then(fine).flatten());

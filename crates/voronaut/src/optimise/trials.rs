@@ -142,6 +142,10 @@ impl Search<'_> {
     fn estimated(&mut self, movable: &[VertexId], wish: &Wish, luck: &mut Luck) -> Vec<Found<Point>> {
         let before: Vec<f64> = movable.iter().map(|&v| self.estimated_shortfall(v, wish)).collect();
         let mut found = Vec::new();
+        if !self.terrain.is_whole() && wish.by == By::Estimates && before.iter().all(|&before| before <= LEAST_GAIN) {
+            // Circles that geodesics do not find: no estimate tells what would mend them, and there is no canvas here.
+            return found;
+        }
         for k in 0..if movable.is_empty() { 0 } else { TRIES[0].max(4 * movable.len()) } {
             let (v, before) = (movable[k % movable.len()], before[k % movable.len()]);
             let step = self.stand.step(v, wish.radius, luck);

@@ -86,14 +86,14 @@ impl Job<'_> {
     }
 }
 
-impl Setting<'_> {
+impl<'a> Setting<'a> {
     /// [`Job::protect`] of a pass whose mesh is valid, with seeds inside patches moved. Where what comes out is no mesh it stays as it was.
     ///
     /// # Errors
     /// The canvas finds the metric invalid somewhere.
     pub(super) fn protect(
         &self,
-        pass: &mut Pass,
+        pass: &mut Pass<'a>,
         mesh: &mut Mesh,
         said: &mut Vec<String>,
     ) -> Result<Option<(Net<Place>, figures::Protection)>> {
@@ -107,6 +107,10 @@ impl Setting<'_> {
         let (better, faulty) = self.checked(pass)?;
         if faulty.is_empty() {
             *mesh = better;
+            if self.options.dual != Road::Canvas {
+                // What is told of its edges is of those that are there now.
+                self.settle_edges(pass)?;
+            }
         } else {
             pass.dual.take_back(&before);
             protected.net = measured_on_surface(&pass.dual);

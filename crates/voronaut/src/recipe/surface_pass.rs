@@ -241,10 +241,10 @@ impl<'a> Setting<'a> {
         is_made.then(|| Ok(self.watch.time("canvas", || self.canvas(count, &[]))?.0)).transpose()
     }
 
-    /// Whether seeding, relaxing or settling takes a canvas.
+    /// Whether seeding, relaxing, protecting or settling takes a canvas.
     pub(super) fn needs_canvas(&self) -> bool {
         let MeshOptions { seeding, dual, centroid, .. } = *self.options;
-        seeding == Seeding::Farthest || dual == Road::Canvas || centroid != Centroid::Tangent
+        seeding != Seeding::Sizing || dual == Road::Canvas || centroid != Centroid::Tangent
     }
 
     /// Canvas vertices for so many seeds.

@@ -8,7 +8,6 @@ use crate::quality::validity;
 use crate::recipe::{MeshOptions, Meshed, Seeding, mesh_surface};
 use crate::surface::metric::Constant;
 use crate::surface::{FeatureOptions, Input, Place, Surface};
-use crate::test_cases::cube;
 
 /// Not relaxed: there is something to do.
 fn options(vertices: usize) -> MeshOptions {
@@ -112,10 +111,18 @@ fn what_cannot_be_had_is_noted() {
     assert_eq!(net(&meshed).interior().filter(|ball| ball.protection() < least).count(), account.unprotected);
 }
 
+fn cube() -> Input {
+    let points = (0..8_u32).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from)).collect();
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let mesh = Mesh { points, triangles, ..Mesh::default() };
+    Input::new(Surface::new(&mesh).unwrap(), None).cut(&FeatureOptions::default()).unwrap()
+}
+
 /// Features have their vertices where they have them without, and triangles the numbers of the mesh's vertices.
 #[test]
 fn seeds_on_features_stay() {
-    let input = Input::new(Surface::new(&cube(2, 0.0)).unwrap(), None).cut(&FeatureOptions::default()).unwrap();
+    let input = cube();
     let protected = meshed(&input, &options(300));
     demand_protected(&protected, 0.2);
     demand_circles_of_mesh(&protected);
