@@ -8,12 +8,15 @@ use voronaut::metric::MetricField;
 use voronaut::net::Net;
 use voronaut::quality::Unmet;
 use voronaut::realisation::{Grid, Realisation};
+use voronaut::surface::Input;
 use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
 use voronaut_draw::{Layers, Picture, Protection, Scene, Stroke, View};
 
 /// Pieces per side in which pictures show a Riemannian triangle.
 const PIECES: usize = 4;
+/// Points for each of the straight pieces of its lines, on a surface.
+const POINTS: usize = 8;
 
 /// What the picture shows of a diagram, and of the mesh with geodesic edges.
 pub(crate) fn layers(
@@ -89,7 +92,9 @@ pub(crate) fn on_surface(
         scene = scene.with(found.edges.iter().map(|edge| edge.points.clone()), Stroke::Geodesic);
         if outputs.shows(Show::Triangles) {
             let grids = found.grids_on_surface(diagram, PIECES);
-            scene = scene.with(grids.iter().flatten().flat_map(Grid::lines), Stroke::Level);
+            let input = diagram.canvas().draped().input();
+            let lines = grids.iter().flatten().flat_map(Grid::lines).map(|line| along(input, &line));
+            scene = scene.with(lines, Stroke::Level);
         }
     } else if outputs.shows(Show::Mesh) && is_of_canvas {
         let edges = Edges::of(&mesh.triangles);
@@ -97,6 +102,16 @@ pub(crate) fn on_surface(
     }
     let view = View { pixels: outputs.pixels, ..View::of(diagram.canvas().draped().input().surface.bounds()) };
     voronaut_draw::draw_surface(&scene, &view)
+}
+
+/// A line with more points, all on the surface, so that none of it is hidden.
+fn along(input: &Input, line: &[Point3]) -> Vec<Point3> {
+    let between = |ends: &[Point3]| {
+        let [p, q] = [ends[0], ends[1]];
+        (0..POINTS).map(move |k| p.lerp(q, k as f64 / POINTS as f64))
+    };
+    let points = line.windows(2).flat_map(between).chain(line.last().copied());
+    points.map(|p| input.closest(p).map_or(p, |place| place.position)).collect()
 }
 
 fn coloured(diagram: &SurfaceDiagram, are_cells: bool) -> Scene {
