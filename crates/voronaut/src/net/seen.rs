@@ -2,14 +2,17 @@
 
 use super::Simplices;
 use crate::dual::Dual;
-use crate::geometry::{Point, Point3, Vector3};
+use crate::geometry::{Point, Point3, Tensor, Vector3};
 use crate::metric::MetricField;
 use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Chart, Input, Place};
+use crate::surface::{Chart, Input, Patch, Place};
 use crate::triangulation::VertexId;
 
 /// Seeds whose normals have a lesser cosine with a chart's are not seen in it.
 const SEEN: f64 = 0.5;
+/// The metric is told by polynomials as far from the middle of some seeds as the farthest of them, times this: the seeds across the sides of a triangle are
+/// in there.
+const PATCH: f64 = 2.5;
 /// A centre this near (barycentric) to a surface's border may be beyond it.
 const AT_BORDER: f64 = 1e-9;
 
@@ -137,7 +140,11 @@ impl<'a> SeedsOnSurface<'a> {
 
     /// What is seen in that chart.
     pub(crate) fn view(&self, seeds: &[u32]) -> Option<impl View<Place = Place>> {
-        Some(InChart { chart: self.chart(seeds)?, seeds: self })
+        let chart = self.chart(seeds)?;
+        let from_middle = |&i: &u32| chart.flatten(self.position(i)).distance(Point::default());
+        let half = PATCH * seeds.iter().map(from_middle).fold(0.0, f64::max);
+        let patch = if half > 0.0 { Patch::new(&chart, half) } else { None };
+        Some(InChart { chart, patch, seeds: self })
     }
 
     /// The position of a seed.
@@ -170,12 +177,19 @@ impl Seeds for &SeedsOnSurface<'_> {
 
 struct InChart<'a> {
     chart: Chart<'a>,
+    patch: Option<Patch>,
     seeds: &'a SeedsOnSurface<'a>,
+}
+
+impl MetricField for InChart<'_> {
+    fn at(&self, p: Point) -> Tensor {
+        self.patch.as_ref().and_then(|patch| patch.at(p)).unwrap_or_else(|| self.chart.at(p))
+    }
 }
 
 impl Terrain for InChart<'_> {
     fn field(&self) -> &dyn MetricField {
-        &self.chart
+        self
     }
 
     fn is_inside(&self, _seed: u32, p: Point) -> bool {

@@ -27,6 +27,7 @@ mod march;
 mod measure;
 pub mod metric;
 mod nearest;
+mod patch;
 mod remesh;
 mod repair;
 mod shapes;
@@ -45,6 +46,7 @@ pub(crate) use input::OFF_SURFACE;
 pub(crate) use march::mesh_implicit;
 pub use measure::Component;
 pub(crate) use nearest::{Nearest, closest_weights};
+pub(crate) use patch::Patch;
 pub use repair::{Mended, RepairOptions, repaired};
 #[cfg(test)]
 pub(crate) use shapes::chair;
