@@ -213,12 +213,11 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
     let places = SeedFile::of_places(world.seeds(&args.seeds)?)?.on_surface(input)?;
     stages.end("read");
     let metric = metric.as_ref();
-    let (canvas, at) = match canvas_vertices(args, places.len())? {
-        Some(size) => Canvas::on_surface(args.canvas, input, metric, size, &places)?,
-        None => {
-            let limit = args.run.limits.memory();
-            recipe::certified_canvas_on(args.canvas, input, metric, &places, args.constants, limit)?
-        }
+    let (canvas, at) = if let Some(size) = canvas_vertices(args, places.len())? {
+        Canvas::on_surface(args.canvas, input, metric, size, &places)?
+    } else {
+        let limit = args.run.limits.memory();
+        recipe::certified_canvas_on(args.canvas, input, metric, &places, args.constants, limit)?
     };
     stages.end("canvas");
     let diagram = SurfaceDiagram::of_kind_on_surface(args.voronoi, &canvas, &at, args.geodesic)?;

@@ -121,12 +121,11 @@ impl<'s> Draped<'s> {
         for seed in seeds {
             let before = self.topology.face_slots() as u32;
             let on_border = self.insert_on_border(seed, &at_home)?;
-            found.push(match on_border {
-                Some(v) => v,
-                None => {
-                    let (f, weights) = self.face_at(seed, &at_home)?;
-                    self.insert_in(f, weights, *seed)?
-                }
+            found.push(if let Some(v) = on_border {
+                v
+            } else {
+                let (f, weights) = self.face_at(seed, &at_home)?;
+                self.insert_in(f, weights, *seed)?
             });
             self.note_homes(before, &mut at_home);
         }

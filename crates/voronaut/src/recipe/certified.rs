@@ -37,16 +37,14 @@ pub fn certified_canvas(
     memory_limit: u64,
 ) -> Result<Canvas> {
     let make = |vertices: usize| Canvas::new(kind, domain, field, vertices);
-    let sized = |size: f64, [estimate, most]: [f64; 2]| match kind {
-        // Its sizes are sixths of the metric's unit.
-        Kind::Isotropic => Canvas::isotropic_sized(domain, field, 6.0 * size).map(Some),
-        // What a certificate speaks of is no star set.
-        _ => {
-            let make = |vertices: usize| Canvas::intrinsic(domain, field, vertices);
-            sized_canvas(size, [estimate, most], make, |canvas| {
-                (longest_edge(canvas.topology()), canvas.vertex_count())
-            })
+    let sized = |size: f64, bounds: [f64; 2]| {
+        if kind == Kind::Isotropic {
+            // Its sizes are sixths of the metric's unit.
+            return Canvas::isotropic_sized(domain, field, 6.0 * size).map(Some);
         }
+        // What a certificate speaks of is no star set.
+        let make = |vertices: usize| Canvas::intrinsic(domain, field, vertices);
+        sized_canvas(size, bounds, make, |canvas| (longest_edge(canvas.topology()), canvas.vertex_count()))
     };
     let examine = |canvas: &Canvas| {
         let diagram = Diagram::new(canvas, field, seeds)?;
