@@ -189,7 +189,8 @@ def mesh(
     protection : float, default 0.2
         With seeding protected: the protection asked for, as a share of the greatest circumradius
     picking_radius : float, default 0.3
-        With seeding protected: where a seed may be picked around a circumcentre, as a share of the circumradius
+        In the plane with seeding protected: where a seed may be picked around a circumcentre, as a share of the
+        circumradius
     net : bool, default False
         Measure the net of the vertices: epsilon, mu, lambda, power protection (in the report)
     canvas : str, default 'intrinsic'

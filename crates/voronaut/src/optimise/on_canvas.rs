@@ -141,7 +141,9 @@ impl<'a, G: Ground<'a>> OnCanvas<'a, G> {
     fn detour(&self, diagram: &Diagram<'a, G>, x: VertexId, end: VertexId) -> f64 {
         let [from, to] = [end, x].map(|v| &self.frozen[v.index()]);
         let step = to.at - from.at;
-        (diagram.distance(end) + 0.5 * (from.length(step) + to.length(step)) - diagram.distance(x)).max(0.0).sqrt()
+        // In the mean of the tensors at both ends.
+        let length = (0.5 * (from.length(step).powi(2) + to.length(step).powi(2))).sqrt();
+        (diagram.distance(end) + length - diagram.distance(x)).max(0.0).sqrt()
     }
 }
 
