@@ -21,9 +21,9 @@ pub(crate) use coverage::Coverage;
 pub(crate) use distortion::distortion_around;
 pub use sizing::Cost;
 pub(crate) use sizing::{Area, longest_edge, sized_canvas};
-pub use theorems::Evidence;
+pub(crate) use theorems::Evidence;
 pub use verdict::{Condition, Outcome, Verdict};
-pub use walk::{Found, Walks};
+pub use walk::Walks;
 
 use crate::diagram::{Diagram, Ground};
 use crate::geodesic::{Fineness, Paths};

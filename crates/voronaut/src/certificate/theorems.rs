@@ -6,7 +6,7 @@ use super::verdict::{Condition, Outcome, Verdict};
 
 /// What was measured of seeds, metric and canvas. Lengths are of the metric but for those called Euclidean.
 #[derive(Clone, Debug)]
-pub struct Evidence {
+pub(crate) struct Evidence {
     /// Which formulas.
     pub constants: Constants,
     /// The net of the cells that end at other cells.
@@ -42,7 +42,7 @@ fn is_round([small, large]: [f64; 2]) -> bool {
 
 impl Evidence {
     /// Verdicts on Theorems 9.1, 9.9 and 9.10, on section 9.4, on Theorem 10.20 and Lemma 11.2, in this order.
-    pub fn verdicts(&self) -> Vec<Verdict> {
+    pub(crate) fn verdicts(&self) -> Vec<Verdict> {
         let embedded = self.geodesic_dual();
         let straight = self.straight_dual(&embedded);
         let arbitrary = self.nerve("9.10", NERVE, 0.0, vec![]);

@@ -47,7 +47,7 @@ impl Walks {
 
 /// The end of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Found {
+pub(crate) struct Found {
     /// A face whose vertices have the three colours.
     pub witness: FaceId,
     /// Faces passed.

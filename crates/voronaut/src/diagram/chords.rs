@@ -1,10 +1,10 @@
 //! Which diagram; distances straight through the plane, or on a surface through space, in a metric that is frozen: the diagrams
 //! of Du and Wang and of Labelle and Shewchuk.
 
-use super::{Ground, Seed};
+use super::{Frozen, Ground, Seed};
 use crate::error::named;
 use crate::geodesic::{Label, MarchCounters, Propagation};
-use crate::geometry::{Bounds, BoxTree, Point3, TangentPlane, Tensor, Vector3};
+use crate::geometry::{Bounds, BoxTree};
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
 
@@ -33,38 +33,6 @@ pub(super) enum Chords {
     InMetricOfSeed,
     /// That at the place whose distance it is (Du and Wang).
     InMetricOfPlace,
-}
-
-/// The metric that a tangent plane has at a place, by which straight ways from there are measured.
-#[derive(Clone, Copy, Debug)]
-pub struct Frozen {
-    /// The place.
-    pub(crate) at: Point3,
-    /// Its tangent plane.
-    pub(crate) plane: TangentPlane,
-    /// The metric in the coordinates of that.
-    pub(crate) tensor: Tensor,
-}
-
-impl Frozen {
-    /// The length of a way: in the direction of its projection onto the plane, as long as it is in space. What the metric says of
-    /// the normal no surface sees; a way along the normal is as if in the direction of greatest length.
-    pub(crate) fn length(&self, way: Vector3) -> f64 {
-        let flat = self.plane.flatten(way);
-        let (norm, projected) = (way.norm(), flat.norm());
-        if projected > 0.0 {
-            self.tensor.length(flat) * (norm / projected)
-        } else {
-            norm * self.tensor.eigen().large.sqrt()
-        }
-    }
-
-    /// How far the ball reaches along x, y and z of a metric of space in which no way is longer: that of the plane, and its
-    /// small eigenvalue across.
-    fn reach(&self) -> [f64; 3] {
-        let inverse = self.plane.extend(self.tensor.inverse(), self.tensor.eigen().small.recip());
-        [inverse.xx, inverse.yy, inverse.zz].map(f64::sqrt)
-    }
 }
 
 impl Chords {
@@ -146,7 +114,7 @@ mod tests {
     use crate::diagram::{Diagram, Kind};
     use crate::domain::Domain;
     use crate::geodesic::Method;
-    use crate::geometry::{Point, Tensor3};
+    use crate::geometry::{Point, Point3, TangentPlane, Tensor, Tensor3, Vector3};
     use crate::metric::{MetricField, Swirl};
     use crate::surface::Input;
 

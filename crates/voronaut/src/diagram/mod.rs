@@ -10,6 +10,7 @@ mod chords;
 mod descend;
 mod distances;
 mod envelope;
+mod frozen;
 mod glued;
 mod ground;
 mod nerve;
@@ -22,8 +23,9 @@ mod seeds;
 mod test_diagrams;
 
 pub use cells::{Cells, Outline};
-pub use chords::{Frozen, Kind};
+pub use chords::Kind;
 pub use distances::{Distances, SurfaceDistances};
+pub use frozen::Frozen;
 pub use ground::Ground;
 pub use nerve::{Nerve, NerveEdge, NerveTriangle, Witnesses};
 pub use paths::Paths;

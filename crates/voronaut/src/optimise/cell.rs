@@ -1,7 +1,5 @@
 //! Voronoi cells of seeds, in the tangent planes there or of the diagram on a canvas, with their moments, which relaxation takes.
 
-use super::on_canvas::{Colouring, OnCanvas};
-use crate::diagram::Flat;
 use crate::dual::{Kind, Moving};
 use crate::elementary::Elementary;
 use crate::error::Result;
@@ -104,19 +102,6 @@ impl std::ops::Add for Moments {
     }
 }
 
-/// The cells that relaxation works with, in the plane or on a surface.
-pub(crate) enum Cells<'a, G = Flat<'a>> {
-    /// Cut in the tangent plane at each seed, from what its neighbours are seen as through the second-order logarithm map.
-    /// Fast; right where the metric changes little over an edge.
-    Tangent,
-    /// Those of the diagram on a canvas, with the distances there; directions by the second-order logarithm map.
-    Canvas(OnCanvas<'a, G>),
-    /// The same cells, and the report's centroid (RR-9103, equation 9): the Euclidean one with the metric's area as weight, on a surface in
-    /// the tangent plane. For
-    /// comparison: it is not the Riemannian one (erratum 14), and nothing holds the energy.
-    Weighted(OnCanvas<'a, G>),
-}
-
 /// Where the moments of the cells of a triangulation's seeds come from.
 pub(crate) trait CellsOf<M> {
     /// The moments of every seed's cell about the seed, in order of the vertices' ids; tangent vectors are in the
@@ -132,7 +117,7 @@ pub(crate) trait CellsOf<M> {
     }
 }
 
-/// The cells of [`Cells::Tangent`], on surfaces, too: each is cut in the tangent plane at the seed, by bisectors with its neighbours,
+/// The cells of [`Cells::Tangent`](super::Cells::Tangent), on surfaces, too: each is cut in the tangent plane at the seed, by bisectors with its neighbours,
 /// which are seen through the second-order logarithm map, and by the domain's segments. Lengths at rough seeds must have been measured.
 pub(crate) struct Tangent;
 
@@ -141,20 +126,6 @@ impl<M: Moving> CellsOf<M> for Tangent {
         let seeds: Vec<VertexId> = dual.topology().vertices().collect();
         let of = |cell: &mut Cell, v: VertexId| (v, View::at(dual, v).moments(cell));
         Ok(seeds.into_par_iter().with_min_len(256).map_init(Cell::default, of).collect())
-    }
-}
-
-impl<'a, M: Moving, G: Colouring<'a, M>> CellsOf<M> for Cells<'a, G> {
-    fn moments(&self, dual: &M) -> Result<Vec<(VertexId, Moments)>> {
-        match self {
-            Cells::Tangent => Tangent.moments(dual),
-            Cells::Canvas(cells) => cells.moments(dual, |_, logarithm| logarithm),
-            Cells::Weighted(cells) => cells.moments(dual, |difference, _| difference),
-        }
-    }
-
-    fn lower_energy(&self) -> bool {
-        !matches!(self, Cells::Weighted(_))
     }
 }
 

@@ -2,6 +2,7 @@
 //! too short or too long. On surfaces: vertices of a finished mesh moved to where it is closest to the surface (`fit`).
 
 mod cell;
+mod cells;
 mod directions;
 mod exchange;
 mod fit;
@@ -18,7 +19,7 @@ mod survey;
 mod trials;
 
 pub use cell::Cell;
-pub(crate) use cell::Cells;
+pub(crate) use cells::Cells;
 pub(crate) use exchange::{exchange, meet_blocked_flips, mend_needles, mend_worst};
 pub(crate) use fit::{FitOptions, fit};
 pub use lloyd::Relaxed;
