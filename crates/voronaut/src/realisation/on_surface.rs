@@ -16,6 +16,19 @@ use crate::triangulation::VertexId;
 /// (`tests::surfaces::realisation`).
 const OF_TAUT: f64 = 2e-3;
 
+/// Points of a way that are as near as this (share of the diagonal) are one: it crosses several edges where it goes through a vertex.
+const SAME: f64 = 1e-12;
+
+/// Points without those that are nearer to the one before than a distance; both ends stay.
+fn apart(mut points: Vec<Point3>, least: f64) -> Vec<Point3> {
+    let end = points.pop();
+    points.dedup_by(|after, before| before.distance(*after) <= least);
+    while points.len() > 1 && points.last().zip(end).is_some_and(|(last, end)| last.distance(end) <= least) {
+        points.pop();
+    }
+    points.into_iter().chain(end).collect()
+}
+
 impl Realisation<Point3> {
     /// Of triangles of the seeds of a surface's diagram. An edge for which there is no way is straight, with an infinite error.
     pub fn on_surface(diagram: &SurfaceDiagram, triangles: &[[u32; 3]]) -> Self {
@@ -31,6 +44,7 @@ impl Realisation<Point3> {
                 let points = ends.map(|i| draped.position(vertex(i)));
                 Way { length: f64::INFINITY, points: points.to_vec(), ..Way::default() }
             });
+            let points = apart(points, SAME * draped.input().diagonal());
             GeodesicEdge { ends, points, length, error, found: Found::Traced }
         };
         let edges = pairs.into_iter().zip(ways).map(edge).collect();

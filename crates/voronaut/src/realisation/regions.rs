@@ -70,7 +70,9 @@ impl<P: Copy + Into<[f64; 3]> + Send + Sync> Realisation<P> {
             corners.extend(numbers.into_iter().zip(points).take(last).enumerate().map(corner));
         }
         let middle = Point::centroid([a, b, c].map(|i| view.flat(self.seeds[i as usize])));
-        Region { corners, tensor: view.field().at(middle) }.cut()
+        let region = Region { corners, tensor: view.field().at(middle) };
+        let by_ears = region.clone().cut();
+        by_ears.or_else(|| if V::IS_SHARED { None } else { region.cut_as_may_be() })
     }
 }
 
@@ -79,6 +81,7 @@ fn inner<P>(points: &[P]) -> &[P] {
 }
 
 /// A polygon, counter-clockwise, that ears are cut off.
+#[derive(Clone)]
 struct Region {
     corners: Vec<Corner>,
     tensor: Tensor,
@@ -121,6 +124,46 @@ impl Region {
         (orientation(a.at, b.at, c.at) == Orientation::Left).then_some(triangles)
     }
 
+    /// The triangles that fill it, where ears lead nowhere: of all ways those whose worst shape is best, piece by piece from the smallest.
+    fn cut_as_may_be(&self) -> Option<Vec<[u32; 3]>> {
+        let (n, all) = (self.corners.len(), &self.corners);
+        // Of the piece from one corner to another the worst shape, and the third corner of the triangle at that cut.
+        let mut best: Vec<Option<(f64, usize)>> = vec![None; n * n];
+        (1..n).for_each(|j| best[(j - 1) * n + j] = Some((f64::INFINITY, j)));
+        for length in 2..n {
+            for (i, j) in (0..n - length).map(|i| (i, i + length)) {
+                let is_side = length == n - 1;
+                if !is_side && all[i].sides & all[j].sides != 0 {
+                    continue;
+                }
+                let with = |k: usize| {
+                    let [(before, _), (after, _)] = [best[i * n + k]?, best[k * n + j]?];
+                    Some((self.shape([i, k, j])?.min(before).min(after), k))
+                };
+                best[i * n + j] = (i + 1..j).filter_map(with).max_by(|x, y| x.0.total_cmp(&y.0));
+            }
+        }
+        let (mut triangles, mut open) = (Vec::with_capacity(n), vec![(0, n - 1)]);
+        while let Some((i, j)) = open.pop() {
+            let (_, k) = best[i * n + j]?;
+            if j > i + 1 {
+                triangles.push([i, k, j].map(|corner| all[corner].number));
+                open.extend([(i, k), (k, j)]);
+            }
+        }
+        Some(triangles)
+    }
+
+    /// The shape of a triangle of its corners, the better the greater; `None` if it is not counter-clockwise.
+    fn shape(&self, corners: [usize; 3]) -> Option<f64> {
+        let [a, b, c] = corners.map(|k| self.corners[k].at);
+        if orientation(a, b, c) != Orientation::Left {
+            return None;
+        }
+        let squares: f64 = [b - a, c - b, a - c].iter().map(|&side| self.tensor.dot(side, side)).sum();
+        Some((b - a).cross(c - a) / squares)
+    }
+
     fn around(&self, i: usize) -> [usize; 3] {
         let n = self.corners.len();
         [(i + n - 1) % n, i, (i + 1) % n]
@@ -131,15 +174,12 @@ impl Region {
         let numbers = self.around(i);
         let [before, own, after] = numbers.map(|k| self.corners[k]);
         let [a, b, c] = [before, own, after].map(|corner| corner.at);
-        if before.sides & after.sides != 0 || orientation(a, b, c) != Orientation::Left {
-            return None;
-        }
+        let shape = self.shape(numbers).filter(|_| before.sides & after.sides == 0)?;
         let mut others = self.corners.iter().enumerate().filter(|(k, _)| !numbers.contains(k));
         if others.any(|(_, corner)| holds([a, b, c], corner.at)) {
             return None;
         }
-        let squares: f64 = [b - a, c - b, a - c].iter().map(|&side| self.tensor.dot(side, side)).sum();
-        Some((b - a).cross(c - a) / squares)
+        Some(shape)
     }
 }
 
