@@ -14,6 +14,7 @@ mod frozen;
 mod glued;
 mod ground;
 mod nerve;
+mod on_surface;
 mod orphans;
 mod overlap;
 mod paths;
