@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 use voronaut::Result;
 use voronaut::canvas::{self, Canvas};
-use voronaut::diagram::{Diagram, SurfaceDiagram};
+use voronaut::diagram::{Diagram, Kind, SurfaceDiagram};
 use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
@@ -416,7 +416,7 @@ fn drawn_on(args: &MeshArgs, world: &World, whole: &Input, meshed: &Meshed, unme
     let places = mesh.points.iter().map(|&p| whole.closest(p.into())).collect::<Result<Vec<_>>>()?;
     let size = canvas::size_for(places.len(), args.canvas_size);
     let (canvas, at) = Canvas::on_surface(args.canvas, whole, metric.as_ref(), size, &places)?;
-    let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March)?;
+    let diagram = SurfaceDiagram::of_kind_on_surface(Kind::Riemannian, &canvas, &at, Method::March)?;
     let curved = args.outputs.have_geodesics().then(|| Realisation::on_surface(&diagram, &mesh.triangles));
     pictures::on_surface(&args.outputs, &diagram, mesh, curved.as_ref())
 }

@@ -5,7 +5,7 @@ use crate::world::World;
 use std::path::Path;
 use voronaut::Result;
 use voronaut::canvas::{self, Canvas};
-use voronaut::diagram::{Diagram, Ground, SurfaceDiagram};
+use voronaut::diagram::{Diagram, Ground, Kind, SurfaceDiagram};
 use voronaut::domain::Domain;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Point, Point3};
@@ -129,7 +129,7 @@ pub(crate) fn with_cells_on(sheet: &mut Sheet, whole: &Input, metric: &dyn Surfa
     let places = sheet.mesh.points.iter().map(|&p| whole.closest(p.into())).collect::<Result<Vec<_>>>()?;
     let size = canvas::size_for(places.len(), drawn.size);
     let (canvas, at) = Canvas::on_surface(drawn.kind, whole, metric, size, &places)?;
-    let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March)?;
+    let diagram = SurfaceDiagram::of_kind_on_surface(Kind::Riemannian, &canvas, &at, Method::March)?;
     let curved = Realisation::on_surface(&diagram, &sheet.mesh.triangles);
     show_diagram(sheet, &diagram, &curved);
     Ok(())

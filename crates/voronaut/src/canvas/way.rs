@@ -22,7 +22,7 @@ impl Draped<'_> {
     /// The geodesic between two vertices: pulled taut from the shortest way along edges (`taut`), and so exact on a surface of
     /// triangles whose metric is uniform; on an equation's surface its points are moved onto f = 0 and its length is taken
     /// anew along the surface. `None` where there is no way.
-    pub fn geodesic(&self, from: VertexId, to: VertexId) -> Option<Way> {
+    pub(crate) fn geodesic(&self, from: VertexId, to: VertexId) -> Option<Way> {
         let found = taut(self.topology(), from, to)?;
         let topology = self.topology();
         let inner = found.crossings.iter().map(|&(h, t)| (topology.ends(h), t));

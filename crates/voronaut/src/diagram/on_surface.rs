@@ -15,14 +15,14 @@ impl<'a> SurfaceDiagram<'a> {
     ///
     /// # Errors
     /// [`Error::Domain`](crate::Error::Domain) of a seed that is no canvas vertex; [`Error::Unsupported`](crate::Error::Unsupported) of a method that does not drive diagrams.
-    pub fn on_surface(canvas: &'a Canvas<Draped<'a>>, seeds: &[VertexId], method: Method) -> Result<Self> {
+    pub(crate) fn on_surface(canvas: &'a Canvas<Draped<'a>>, seeds: &[VertexId], method: Method) -> Result<Self> {
         Self::of(Kind::Riemannian, canvas, seeds, method)
     }
 
     /// The diagram of a kind; a method is for the Riemannian one.
     ///
     /// # Errors
-    /// As for [`SurfaceDiagram::on_surface`].
+    /// Of a seed that is no canvas vertex; of a method that does not drive diagrams.
     pub fn of_kind_on_surface(
         kind: Kind,
         canvas: &'a Canvas<Draped<'a>>,

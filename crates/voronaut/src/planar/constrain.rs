@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 
 /// The segment crosses, or runs along, one that is already there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Crossing {
+pub struct Crossing {
     /// The constraint that is met.
     pub with: Constraint,
     /// The edge of it that is met.
@@ -27,7 +27,7 @@ impl Planar {
     ///
     /// # Errors
     /// The segment crosses a constrained edge, or runs along one. The triangulation stays valid.
-    pub(crate) fn constrain(&mut self, a: VertexId, b: VertexId, constraint: Constraint) -> Result<(), Crossing> {
+    pub fn constrain(&mut self, a: VertexId, b: VertexId, constraint: Constraint) -> Result<(), Crossing> {
         let mut at = a;
         while at != b {
             let edge = match self.ahead(at, b).expect("the triangles around an interior vertex cover every direction") {

@@ -7,7 +7,7 @@ mod locate;
 mod operations;
 mod order;
 
-pub(crate) use constrain::Crossing;
+pub use constrain::Crossing;
 pub use delaunay::delaunay;
 pub(crate) use halve::Origin;
 pub(crate) use locate::Location;
