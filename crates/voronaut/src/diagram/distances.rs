@@ -170,7 +170,7 @@ impl<'a> SurfaceDistances<'a> {
     }
 
     /// The way from a canvas vertex to the nearest of the given ones: with [`Method::March`] the geodesic
-    /// ([`Draped::geodesic`]); else down the method's own distances, by their gradient in each face and by parents where that
+    /// (pulled taut on the canvas); else down the method's own distances, by their gradient in each face and by parents where that
     /// does not lead on, as good as these distances are.
     ///
     /// # Errors
