@@ -1,4 +1,4 @@
-//! The metric of a chart as polynomials: where it is smooth, a few hundred values of it tell all others in its middle, at a tenth of the time.
+//! The metric of a chart as polynomials: where it is smooth, a few hundred values of it tell all others in its middle.
 
 use crate::elementary::Elementary;
 use crate::geometry::{Point, Tensor, Vector};
