@@ -160,15 +160,18 @@ impl Search<'_> {
 
     /// `None` where paths are not resolved.
     fn spokes(&self, centre: Point) -> Option<Spokes> {
-        let spokes = self.corners.map(|p| self.paths.solve(self.field, centre, p, self.fineness));
-        let [Some(a), Some(b), Some(c)] = spokes else { return None };
+        // One that leads nowhere is enough.
+        let spoke =
+            |p| self.paths.solve(self.field, centre, p, self.fineness).filter(|spoke| spoke.length.error < VAGUE);
+        let [a, b, c] = self.corners;
+        let [a, b, c] = [spoke(a)?, spoke(b)?, spoke(c)?];
         let squares = [a, b, c].map(|s| s.length.value.powi(2));
         let [least, most] = squares.iter().fold([f64::INFINITY, 0.0], |[a, b], &s: &f64| [a.min(s), b.max(s)]);
         let relative = [a, b, c].map(|s| s.length.error).into_iter().fold(0.0, f64::max);
         let spread = most - least;
         let circle = Circle { centre, square: squares[0], error: 2.0 * SAFETY * relative * most + spread };
         let pulls = [a, b, c].map(|s| s.pull);
-        (relative < VAGUE && spread.is_finite()).then_some(Spokes { circle, pulls, squares, most, spread })
+        spread.is_finite().then_some(Spokes { circle, pulls, squares, most, spread })
     }
 }
 

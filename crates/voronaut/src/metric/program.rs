@@ -68,6 +68,8 @@ fn scaled_power(c: f64, a: f64, b: f64) -> f64 {
 
 /// Values an expression may keep waiting, such as the three 1 in `1 + (1 + (1 + x))`.
 pub(super) const STACK: usize = 64;
+/// For programs of no more instructions, such as x^2 + y^2 + z^2 - 1 with derivatives: what is not there need not be set to zero.
+const SMALL_STACK: usize = 16;
 
 /// One instruction; operands come from the stack, the result goes there.
 #[derive(Clone, Copy, Debug)]
@@ -132,9 +134,18 @@ impl Op {
 
 /// What a program makes of its variables: its results.
 pub(super) fn run<N: Number, const RESULTS: usize>(code: &[Op], variables: [N; 4]) -> [N; RESULTS] {
+    // No program has more values than instructions, and those kept, at the stack's end, are there in any stack that is a part of the whole.
+    if code.len() <= SMALL_STACK {
+        run_on::<N, RESULTS, SMALL_STACK>(code, variables)
+    } else {
+        run_on::<N, RESULTS, STACK>(code, variables)
+    }
+}
+
+fn run_on<N: Number, const RESULTS: usize, const SIZE: usize>(code: &[Op], variables: [N; 4]) -> [N; RESULTS] {
     let mut results = [N::from(0.0); RESULTS];
     // The last value is kept out of the stack: most operations then touch it once or not at all.
-    let mut stack = [N::from(0.0); STACK];
+    let mut stack = [N::from(0.0); SIZE];
     let mut top = 0;
     let mut value = N::from(0.0);
     let mut next = 0;
@@ -165,9 +176,9 @@ pub(super) fn run<N: Number, const RESULTS: usize>(code: &[Op], variables: [N; 4
                 }
                 value = pop(&stack, &mut top);
             }
-            Op::Keep(place) => stack[place as usize % STACK] = value,
+            Op::Keep(place) => stack[place as usize % SIZE] = value,
             Op::Recall(place) => {
-                let kept = stack[place as usize % STACK];
+                let kept = stack[place as usize % SIZE];
                 push(&mut stack, &mut top, &mut value, kept);
             }
             Op::Result(number) => {
@@ -180,15 +191,15 @@ pub(super) fn run<N: Number, const RESULTS: usize>(code: &[Op], variables: [N; 4
 }
 
 // The compiler in `parser` keeps the height below STACK; the remainder spares the bounds check.
-fn push<N: Number>(stack: &mut [N; STACK], top: &mut usize, value: &mut N, new: N) {
-    stack[*top % STACK] = *value;
+fn push<N: Number, const SIZE: usize>(stack: &mut [N; SIZE], top: &mut usize, value: &mut N, new: N) {
+    stack[*top % SIZE] = *value;
     *top += 1;
     *value = new;
 }
 
-fn pop<N: Number>(stack: &[N; STACK], top: &mut usize) -> N {
+fn pop<N: Number, const SIZE: usize>(stack: &[N; SIZE], top: &mut usize) -> N {
     *top = top.wrapping_sub(1);
-    stack[*top % STACK]
+    stack[*top % SIZE]
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::Simplices;
 use crate::dual::Dual;
 use crate::geometry::{Point, Point3, Tensor, Vector3};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, Near};
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Patch, Place};
 use crate::triangulation::VertexId;
@@ -48,6 +48,10 @@ pub(crate) trait View: Terrain {
     fn seed(&self, seed: u32) -> Option<Point>;
     /// Where a point is.
     fn place(&self, p: Point) -> Option<Self::Place>;
+    /// Whether it has no creases around the seeds, across which geodesics are no polynomials.
+    fn is_smooth(&self) -> bool {
+        true
+    }
 }
 
 /// Seeds of the plane: all are seen from everywhere.
@@ -183,7 +187,11 @@ struct InChart<'a> {
 
 impl MetricField for InChart<'_> {
     fn at(&self, p: Point) -> Tensor {
-        self.patch.as_ref().and_then(|patch| patch.at(p)).unwrap_or_else(|| self.chart.at(p))
+        self.at_near(p, &mut Near::default())
+    }
+
+    fn at_near(&self, p: Point, near: &mut Near) -> Tensor {
+        self.patch.as_ref().and_then(|patch| patch.at(p)).unwrap_or_else(|| self.chart.at_near(p, near))
     }
 }
 
@@ -211,5 +219,9 @@ impl View for InChart<'_> {
 
     fn place(&self, p: Point) -> Option<Place> {
         self.chart.place(p)
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.seeds.input.implicit.is_some() || self.patch.is_some()
     }
 }

@@ -3,7 +3,8 @@
 use super::metric::SurfaceMetric;
 use super::{Input, Place};
 use crate::geometry::{Point, Point3, TangentPlane, Tensor, Tensor3, Vector, Vector3};
-use crate::metric::MetricField;
+use crate::metric::{MetricField, Near};
+use crate::triangulation::FaceId;
 
 /// The parallel projection of a surface and its metric along the normal at a place to the plane there, with the place as origin:
 /// a metric field of the plane whose geodesics are the projections of the surface's. What works in the plane works in a
@@ -55,9 +56,14 @@ impl<'a> Chart<'a> {
 
     /// The place with these coordinates; `None` where the surface cannot be reached.
     pub(crate) fn place(&self, u: Point) -> Option<Place> {
+        self.place_near(u, self.at.face)
+    }
+
+    /// The same, looked for from a triangle on.
+    fn place_near(&self, u: Point, face: FaceId) -> Option<Place> {
         let wanted = u - Point::default();
         let above = |from: Vector| self.at.position + self.plane.lift(from);
-        let straight = || self.input.lift_along(&self.at, above(wanted), self.plane.normal, STEEPEST);
+        let straight = || self.input.lift_along(&Place { face, ..self.at }, above(wanted), self.plane.normal, STEEPEST);
         if let Some(place) = self.is_straight.then(straight).flatten() {
             return Some(place);
         }
@@ -96,7 +102,13 @@ impl<'a> Chart<'a> {
 
 impl MetricField for Chart<'_> {
     fn at(&self, u: Point) -> Tensor {
-        self.place(u).map_or(Tensor::new(f64::NAN, f64::NAN, f64::NAN), |place| self.tensor(&place))
+        self.at_near(u, &mut Near::default())
+    }
+
+    fn at_near(&self, u: Point, near: &mut Near) -> Tensor {
+        let place = self.place_near(u, near.place.map_or(self.at.face, FaceId));
+        near.place = place.map(|place| place.face.0);
+        place.map_or(Tensor::new(f64::NAN, f64::NAN, f64::NAN), |place| self.tensor(&place))
     }
 }
 

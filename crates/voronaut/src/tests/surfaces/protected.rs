@@ -102,7 +102,7 @@ fn seeds_of_a_sphere_are_protected_and_their_net_is_that_of_spherical_geometry()
 /// More than most meshes have: what is left is counted, and said.
 #[test]
 fn what_cannot_be_had_is_noted() {
-    let meshed = meshed(&square(), &MeshOptions { protection: 1.5, ..options(16) });
+    let meshed = meshed(&square(), &MeshOptions { protection: 1.5, ..options(9) });
     let account = meshed.protection.unwrap();
     assert!(account.unprotected > 0 && account.unprotected <= account.unprotected_before, "{account:?}");
     let said = format!("{} simplices are less power-protected than by 1.5 epsilon", account.unprotected);
