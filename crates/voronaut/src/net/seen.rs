@@ -142,6 +142,15 @@ impl<'a> SeedsOnSurface<'a> {
         seeds.iter().all(is_seen).then(|| Chart::new(self.input, self.metric, place, normal).straight())
     }
 
+    /// The chart that looks along the normal of the straight triangle between three seeds, if it looks at the upper side there.
+    pub(crate) fn facing(&self, seeds: [u32; 3]) -> Option<Chart<'a>> {
+        let [a, b, c] = seeds.map(|i| self.position(i));
+        let normal = (b - a).cross(c - a).unit()?;
+        let upright: f64 = seeds.iter().map(|&i| self.normals[i as usize].dot(normal)).sum();
+        let place = self.input.closest_facing(a + ((b - a) + (c - a)) * (1.0 / 3.0), normal)?;
+        (upright > 0.0).then(|| Chart::new(self.input, self.metric, place, normal))
+    }
+
     /// What is seen in that chart.
     pub(crate) fn view(&self, seeds: &[u32]) -> Option<impl View<Place = Place>> {
         let chart = self.chart(seeds)?;

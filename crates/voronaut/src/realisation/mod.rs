@@ -117,7 +117,7 @@ impl Realisation {
         crossing.dedup();
         let seeds = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default()).collect();
         let mut found = Self { seeds, triangles: triangles.to_vec(), edges, crossing, regions: Vec::new() };
-        found.regions = found.cut(|_| Some(field));
+        found.regions = found.cut(|_| [field]);
         found
     }
 

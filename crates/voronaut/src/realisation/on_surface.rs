@@ -11,16 +11,18 @@ use crate::net::SeedsOnSurface;
 use crate::parallel::prelude::*;
 use crate::surface::Chart;
 use crate::triangulation::VertexId;
+use std::iter;
 
 /// Relative error of the length of a way that is taut on a canvas: that on a unit sphere with a canvas of 80 vertices a seed, measured
 /// (`tests::surfaces::realisation`).
 const OF_TAUT: f64 = 2e-3;
 
-/// Points of a way that are as near as this (share of the diagonal) are one: it crosses several edges where it goes through a vertex.
-const SAME: f64 = 1e-12;
+/// Points of a way that are as near as this (share of its length in space) are one: it crosses several edges where it goes by a vertex.
+const SAME: f64 = 1e-6;
 
-/// Points without those that are nearer to the one before than a distance; both ends stay.
-fn apart(mut points: Vec<Point3>, least: f64) -> Vec<Point3> {
+/// Points of a way without those that are the one before; both ends stay.
+fn apart(mut points: Vec<Point3>) -> Vec<Point3> {
+    let least = SAME * points.windows(2).map(|ends| ends[0].distance(ends[1])).sum::<f64>();
     let end = points.pop();
     points.dedup_by(|after, before| before.distance(*after) <= least);
     while points.len() > 1 && points.last().zip(end).is_some_and(|(last, end)| last.distance(end) <= least) {
@@ -44,14 +46,18 @@ impl Realisation<Point3> {
                 let points = ends.map(|i| draped.position(vertex(i)));
                 Way { length: f64::INFINITY, points: points.to_vec(), ..Way::default() }
             });
-            let points = apart(points, SAME * draped.input().diagonal());
-            GeodesicEdge { ends, points, length, error, found: Found::Traced }
+            GeodesicEdge { ends, points: apart(points), length, error, found: Found::Traced }
         };
         let edges = pairs.into_iter().zip(ways).map(edge).collect();
         let seeds = (0..diagram.colours() as u32).map(|i| draped.position(vertex(i))).collect();
         let mut found = Self { seeds, triangles: triangles.to_vec(), edges, crossing, regions: Vec::new() };
-        let charts = SeedsOnSurface::of(diagram);
-        found.regions = found.cut(|triangle| charts.chart(&triangle));
+        let charts = &SeedsOnSurface::of(diagram);
+        // On a tip the surface turns away from any chart: what is cut then is seen from where all three corners are level.
+        let views = |triangle: [u32; 3]| {
+            let chart = iter::once_with(move || charts.chart(&triangle));
+            chart.chain(iter::once_with(move || charts.facing(triangle))).flatten()
+        };
+        found.regions = found.cut(views);
         found
     }
 

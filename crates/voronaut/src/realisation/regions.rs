@@ -42,11 +42,14 @@ impl<P: Copy + Into<[f64; 3]> + Send + Sync> Realisation<P> {
         mesh
     }
 
-    /// Each triangle's region, cut into straight triangles by the numbers of [`Realisation::to_mesh`]; empty where its edges
-    /// bound no region, counter-clockwise, in what it is seen in, or nothing is.
-    pub(super) fn cut<V: View<P>>(&self, view: impl Fn([u32; 3]) -> Option<V> + Sync) -> Vec<Vec<[u32; 3]>> {
+    /// Each triangle's region, cut into straight triangles by the numbers of [`Realisation::to_mesh`], in the first view that it can be cut in;
+    /// empty where its edges bound no region, counter-clockwise, in any.
+    pub(super) fn cut<Views>(&self, views: impl Fn([u32; 3]) -> Views + Sync) -> Vec<Vec<[u32; 3]>>
+    where
+        Views: IntoIterator<Item: View<P>>,
+    {
         let lines = self.lines();
-        let one = |&t: &[u32; 3]| self.cut_one(&view(t)?, t, &lines);
+        let one = |&t: &[u32; 3]| views(t).into_iter().find_map(|view| self.cut_one(&view, t, &lines));
         self.triangles.par_iter().map(|t| one(t).unwrap_or_default()).collect()
     }
 
