@@ -100,7 +100,8 @@ fn summary(report: &Report, verbose: bool) -> Lines {
         line("unit edges", format!("{share:.1} %   (metric length {min:.3} to {max:.3}, mean {mean:.3})"));
         if let Some(found) = report.closed_form {
             let (share, scale) = (100.0 * found.unit_fraction, found.metric_scale);
-            line("", format!("{share:.1} % at the metric scale that N asks for in closed form, {scale:.6}"));
+            let scale = if scale < 1e-3 { format!("{scale:.5e}") } else { format!("{scale:.6}") };
+            line("", format!("{share:.1} % at the metric scale that N asks for in closed form, {scale}"));
         }
     }
     for (i, says) in unmet_lines(report).into_iter().enumerate() {
