@@ -77,8 +77,15 @@ impl Circle {
     }
 
     /// The circle through three points whose centre damped Newton steps reach from a place: of the points where three
-    /// lengths of geodesics are equal, one near that place. `None` where there is none, or paths are not resolved.
-    pub(crate) fn near(paths: &Paths, field: &dyn MetricField, corners: [Point; 3], start: Point) -> Option<Self> {
+    /// lengths of geodesics are equal, one near that place. `None` where there is none, or paths are not resolved. Unless the
+    /// field is smooth, no finer ones are tried where the first lead nowhere: across creases geodesics are no polynomials.
+    pub(crate) fn near(
+        paths: &Paths,
+        field: &dyn MetricField,
+        corners: [Point; 3],
+        start: Point,
+        is_smooth: bool,
+    ) -> Option<Self> {
         let (mut fineness, mut now) = (Fineness::MIDDLE, None);
         let mut from = start;
         loop {
@@ -87,6 +94,7 @@ impl Circle {
             from = found.map_or(start, |circle: Self| circle.centre);
             match (now, fineness.next()) {
                 (Some(circle), _) if circle.error < 1e-4 * circle.square => return Some(circle),
+                (None, _) if !is_smooth => return None,
                 (_, Some(finer)) => fineness = finer,
                 (known, None) => return known.filter(|circle| circle.error < 1e-2 * circle.square),
             }

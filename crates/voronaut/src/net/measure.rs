@@ -21,8 +21,6 @@ const STEPS: usize = 20;
 /// Where circumcentres are sought beside the longest side of a triangle, in halves of its length.
 const BESIDE: [f64; 5] = [0.0, 0.5, -0.5, 1.0, -1.0];
 const SETTLED: f64 = 1e-8;
-/// Where there are creases, after so many of these in vain the others hardly lead anywhere: of 2,120 on spot 13 did, measured.
-const PATIENCE: usize = 2;
 
 /// Circles of triangles that were measured, with the seeds that they depend on.
 #[derive(Clone, Debug)]
@@ -169,13 +167,8 @@ impl<'a, S: Seeds> Measure<'a, S> {
         }
         // Of several circles the one of cells that meet has no seed in it.
         let starts = starts(view.field(), points);
-        let near = |start| Circle::near(&self.paths, view.field(), points, start);
-        let patience = if view.is_smooth() { starts.len() } else { PATIENCE };
-        let found = starts.into_iter().map(near).scan(0, |in_vain, found| {
-            *in_vain = if found.is_some() { 0 } else { *in_vain + 1 };
-            (*in_vain < patience || found.is_some()).then_some(found)
-        });
-        let others = found.flatten().filter_map(ball);
+        let near = |start| Circle::near(&self.paths, view.field(), points, start, view.is_smooth());
+        let others = starts.into_iter().filter_map(near).filter_map(ball);
         let best = |a: Ball<3, S::Place>, b: Ball<3, S::Place>| {
             let rank = |ball: &Ball<3, S::Place>| if ball.is_interior { ball.power } else { f64::NEG_INFINITY };
             if rank(&b) > rank(&a) { b } else { a }
