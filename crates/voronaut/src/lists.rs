@@ -63,6 +63,31 @@ impl<T: Copy + Default> Rows<T> {
         Self { starts, items: list }
     }
 
+    /// The same rows, each in order and without repetitions.
+    pub(crate) fn distinct(mut self) -> Self
+    where
+        T: Ord,
+    {
+        let mut kept = 0;
+        for row in 0..self.count() {
+            let own = self.starts[row] as usize..self.starts[row + 1] as usize;
+            self.items[own.clone()].sort_unstable();
+            self.starts[row] = kept as u32;
+            for i in own {
+                let item = self.items[i];
+                if kept == self.starts[row] as usize || self.items[kept - 1] != item {
+                    self.items[kept] = item;
+                    kept += 1;
+                }
+            }
+        }
+        self.items.truncate(kept);
+        if let Some(last) = self.starts.last_mut() {
+            *last = kept as u32;
+        }
+        self
+    }
+
     /// All items, row by row, those of a row sorted.
     pub(crate) fn into_sorted_by_key<K: Ord>(mut self, key: impl Fn(&T) -> K) -> Vec<T> {
         for row in self.starts.windows(2) {
@@ -196,5 +221,7 @@ mod tests {
         let rows = Rows::new(4, [(2, 'a'), (0, 'b'), (2, 'c'), (3, 'd')].into_iter());
         assert_eq!([0, 1, 2, 3].map(|row| rows.row(row).to_vec()), [vec!['b'], vec![], vec!['a', 'c'], vec!['d']]);
         assert_eq!(distinct([3, 1, 3, 2, 1]), [1, 2, 3]);
+        let again = Rows::new(4, [(2, 9), (0, 5), (2, 3), (2, 9), (3, 9), (0, 5)].into_iter()).distinct();
+        assert_eq!([0, 1, 2, 3].map(|row| again.row(row).to_vec()), [vec![5], vec![], vec![3, 9], vec![9]]);
     }
 }

@@ -78,14 +78,17 @@ fn in_plane(
     let mut meshed = recipe::mesh(&input.domain, &field, &options(args, Effort::Fast), bar)?;
     input.mark(&mut meshed.mesh);
     let used = as_used(args, &sizing, metric_file.as_deref());
-    let (mut report, _) = account::in_plane(&meshed, &field, used)?;
-    report.fidelity = Some(Strayed::Boundary(fidelity(&meshed.mesh, &input.domain.boundary())));
+    let (measured, (strayed, solution)) = rayon::join(
+        || account::in_plane(&meshed, &field, used),
+        || (fidelity(&meshed.mesh, &input.domain.boundary()), sizes.solution(&field, &meshed.mesh.points)),
+    );
+    let (mut report, _) = measured?;
+    report.fidelity = Some(Strayed::Boundary(strayed));
     if input.left_out > 0 {
         let why = "inside a region and not required (-opnbdy keeps them), or no triangle's";
         report.notes.push(format!("{} edges of the list are left out: {why}", input.left_out));
     }
     report.notes.extend(left_out);
-    let solution = sizes.solution(&field, &meshed.mesh.points);
     Ok(Made { mesh: meshed.mesh, report, solution })
 }
 

@@ -176,6 +176,10 @@ impl Tensor {
     /// Matrix exponential of a symmetric tensor; positive definite.
     #[must_use]
     pub(crate) fn exp(self) -> Tensor {
+        if self.xy == 0.0 && self.xx == self.yy {
+            let value = self.xx.exponential();
+            return Self::new(value, 0.0, value);
+        }
         // Not through `map_eigenvalues`: a logarithm is no metric, and its smaller eigenvalue may be negative.
         let spectrum = self.spectrum();
         spectrum.with([spectrum.mean + spectrum.radius, spectrum.mean - spectrum.radius].map(Elementary::exponential))

@@ -5,7 +5,7 @@
 
 use super::{Aabb, Aabb3, Point};
 use crate::lists::in_order;
-use crate::parallel::prelude::*;
+use crate::parallel::{join, prelude::*};
 
 /// Items in boxes of so many dimensions.
 #[derive(Clone, Debug)]
@@ -29,6 +29,9 @@ struct Node<const D: usize> {
 
 /// Items per leaf.
 const LEAF: usize = 4;
+
+/// Halves of so many items and more are built side by side.
+const APART: usize = 2048;
 
 /// Median splits halve the items, so that 2^32 of them are at most this deep.
 const MAX_DEPTH: usize = 32;
@@ -186,6 +189,7 @@ pub(crate) fn widened<const D: usize>([low, high]: Bounds<D>, by: f64) -> Bounds
     [low.map(|x| x - by), high.map(|x| x + by)]
 }
 
+/// Adds the nodes of a tree of these boxes, whose items begin at a position.
 fn build<const D: usize>(boxes: &[Bounds<D>], order: &mut [u32], position: usize, nodes: &mut Vec<Node<D>>) {
     let bounds = order.iter().map(|&i| boxes[i as usize]).reduce(union).expect("a node holds at least one item");
     let index = nodes.len();
@@ -203,9 +207,24 @@ fn build<const D: usize>(boxes: &[Bounds<D>], order: &mut [u32], position: usize
     let middle = order.len() / 2;
     order.select_nth_unstable_by(middle, |i, j| middle_of(i).total_cmp(&middle_of(j)).then(i.cmp(j)));
     let (lower, upper) = order.split_at_mut(middle);
-    build(boxes, lower, position, nodes);
-    nodes[index].next = nodes.len() as u32;
-    build(boxes, upper, position + middle, nodes);
+    if middle < APART {
+        build(boxes, lower, position, nodes);
+        nodes[index].next = nodes.len() as u32;
+        build(boxes, upper, position + middle, nodes);
+        return;
+    }
+    let apart = |order, position| {
+        let mut own = Vec::new();
+        build(boxes, order, position, &mut own);
+        own
+    };
+    let halves = join(|| apart(lower, position), || apart(upper, position + middle));
+    for half in [halves.0, halves.1] {
+        let first = nodes.len() as u32;
+        nodes[index].next = first;
+        let placed = |node: Node<D>| if node.count == 0 { Node { next: node.next + first, ..node } } else { node };
+        nodes.extend(half.into_iter().map(placed));
+    }
 }
 
 fn union<const D: usize>(a: Bounds<D>, b: Bounds<D>) -> Bounds<D> {
@@ -256,6 +275,16 @@ mod tests {
             seen.sort_unstable();
             let truth: Vec<usize> = (0..boxes.len()).filter(|&i| boxes_meet(&boxes[i], &boxes[0])).collect();
             prop_assert_eq!(seen, truth);
+        }
+    }
+
+    #[test]
+    fn halves_that_are_built_apart_are_one_tree() {
+        let point = |i: usize| [i, i * i].map(|k| (k as f64 * std::f64::consts::SQRT_2).fract());
+        let count = 3 * APART;
+        let tree = BoxTree::new((0..count).map(|i| ([point(i); 2], i)));
+        for i in 0..count {
+            assert_eq!(tree.nearest(point(i), |&j| square(point(i), point(j))), Some(&i));
         }
     }
 

@@ -4,6 +4,7 @@ use super::edges::NONE;
 use super::{Edges, Mesh};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, BoxTree, Point, Vector};
+use crate::parallel::join;
 
 /// The triangles of a planar mesh, ready for searches by any number of threads. Triangles may be oriented either way, overlap, or
 /// have no area.
@@ -53,13 +54,7 @@ impl Locator {
     pub(crate) fn new(mesh: &Mesh, name: &str) -> Result<Self> {
         Self::check(mesh, name)?;
         let corners: Vec<[Point; 3]> = mesh.triangles.iter().map(|&t| mesh.corners_of(t)).collect();
-        let mut found: Vec<(Aabb, u32)> = Vec::new();
-        let most = most_pieces(&corners);
-        for (i, &triangle) in corners.iter().enumerate() {
-            cut(triangle, most, &mut |piece| found.push((piece, i as u32)));
-        }
-        let pieces = BoxTree::new(found.into_iter().map(|(piece, triangle)| (piece.into(), triangle)));
-        let twins = Edges::of(&mesh.triangles).twins();
+        let (pieces, twins) = join(|| pieces(&corners), || Edges::of(&mesh.triangles).twins());
         let across = |half_edge: &u32| if *half_edge == NONE { NONE } else { half_edge / 3 };
         let face = |(i, corners)| Face { corners, beyond: [0, 1, 2].map(|k| across(&twins[3 * i + k])) };
         Ok(Self { faces: corners.into_iter().enumerate().map(face).collect(), pieces })
@@ -162,6 +157,16 @@ impl Locator {
         found.sort_unstable();
         found.dedup();
     }
+}
+
+/// The boxes of pieces of triangles.
+fn pieces(triangles: &[[Point; 3]]) -> BoxTree<u32, 2> {
+    let mut found: Vec<(Aabb, u32)> = Vec::with_capacity(triangles.len());
+    let most = most_pieces(triangles);
+    for (i, &triangle) in (0..).zip(triangles) {
+        cut(triangle, most, &mut |piece| found.push((piece, i)));
+    }
+    BoxTree::new(found.into_iter().map(|(piece, triangle)| (piece.into(), triangle)))
 }
 
 /// Into how many pieces one triangle may be cut, so that there are not too many.

@@ -1,6 +1,6 @@
 //! Which vertices of a mesh share an edge.
 
-use crate::lists::{Rows, distinct};
+use crate::lists::Rows;
 use crate::mesh::{Mesh, edges_of};
 
 /// The neighbours of every vertex in ascending order, one list after the other.
@@ -18,9 +18,8 @@ impl Neighbours {
         triangles: impl IntoIterator<Item = [u32; 3]>,
         more: impl IntoIterator<Item = [u32; 2]>,
     ) -> Self {
-        let edges = triangles.into_iter().flat_map(edges_of).chain(more);
-        let pairs = distinct(edges.flat_map(|[a, b]| [[a, b], [b, a]]));
-        Self(Rows::new(count, pairs.iter().map(|&[v, w]| (v, w))))
+        let edges: Vec<[u32; 2]> = triangles.into_iter().flat_map(edges_of).chain(more).collect();
+        Self(Rows::new(count, edges.iter().flat_map(|&[a, b]| [(a, b), (b, a)])).distinct())
     }
 
     /// Of one vertex; none where it has no triangle.

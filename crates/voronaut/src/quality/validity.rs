@@ -11,7 +11,7 @@ use crate::geometry::{Orientation, Point, Point3, is_flat, orientation};
 use crate::lists::distinct;
 use crate::mesh::edges::{self, NONE, is_manifold};
 use crate::mesh::{Edges, Mesh};
-use crate::parallel::prelude::*;
+use crate::parallel::{join, prelude::*};
 
 /// What was found in a mesh. `valid` means: at least one triangle, every figure marked (fault) is zero. Of curved triangles that is that none folds, and
 /// that no two sides on the boundary meet but in their ends; whether one piece of the mesh lies on another is not told. On a surface they are seen each along
@@ -85,8 +85,8 @@ fn examine(mesh: &Mesh, surface: Option<&Meetings>) -> Validity {
     if found.out_of_range == 0 {
         // A flat surface may face either way, and meet itself.
         let is_planar = surface.is_none() && mesh.is_planar();
-        let edges = Edges::of(&mesh.triangles);
-        found.examine_vertices(mesh, surface);
+        let (edges, duplicates) = join(|| Edges::of(&mesh.triangles), || duplicates(mesh));
+        found.examine_vertices(mesh, duplicates, surface);
         if mesh.curved.is_none() || !is_planar {
             found.examine_triangles(mesh, is_planar);
         }
@@ -180,12 +180,11 @@ impl Validity {
         }
     }
 
-    fn examine_vertices(&mut self, mesh: &Mesh, surface: Option<&Meetings>) {
+    fn examine_vertices(&mut self, mesh: &Mesh, duplicates: Vec<[u32; 2]>, surface: Option<&Meetings>) {
         for (v, [x, y, z]) in (1..).zip(&mesh.points).filter(|(_, p)| !p.iter().all(|x| x.is_finite())) {
             self.not_finite += 1;
             self.fault(format!("vertex {v} is not finite"), format!("({x}, {y}, {z})"));
         }
-        let duplicates = duplicates(mesh);
         let reach = if duplicates.is_empty() || surface.is_none() { Vec::new() } else { longest_edges(mesh) };
         for [v, w] in duplicates {
             let at_both = || reach[v as usize].max(reach[w as usize]);

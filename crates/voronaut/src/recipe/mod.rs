@@ -246,18 +246,23 @@ impl<'a> Job<'a> {
     fn plan(&mut self, domain: &Domain) -> Result<(Domain, Plan, usize, f64)> {
         self.progress.begin("planning", 1)?;
         let tolerance = self.options.hausd.unwrap_or(domain.pslg().tolerance);
+        let (target, limit) = (self.target(), self.options.memory_limit);
         let (whole, of_whole) = paired(domain, &self.options.periodic)?;
-        let mut plan = Plan::new(&whole, &of_whole, self.field, self.target())?;
-        let (mut count, mut scale) = plan.start(self.target(), self.options.memory_limit)?;
-        let mut simplified = whole.clone();
-        if tolerance > 0.0 {
+        let simplified_at = |factor: f64| {
+            let field = Scaled { field: self.field, factor };
+            paired(&simplify(&whole, &of_whole, &field, tolerance), &self.options.periodic)
+        };
+        let stays = target == Target::Metric && tolerance > 0.0;
+        let (mut simplified, pairs) = if stays { simplified_at(1.0)? } else { (whole.clone(), of_whole.clone()) };
+        let mut plan = Plan::new(&simplified, &pairs, self.field, target)?;
+        let (mut count, mut scale) = plan.start(target, limit)?;
+        if tolerance > 0.0 && !stays {
             // Fewer corners let the metric be finer, and the other way round: two rounds settle it.
             for _ in 0..2 {
-                let thinned = simplify(&whole, &of_whole, &Scaled { field: self.field, factor: scale }, tolerance);
                 let pairs;
-                (simplified, pairs) = paired(&thinned, &self.options.periodic)?;
-                plan = plan.again(&simplified, &pairs, self.field, self.target())?;
-                (count, scale) = plan.start(self.target(), self.options.memory_limit)?;
+                (simplified, pairs) = simplified_at(scale)?;
+                plan = plan.again(&simplified, &pairs, self.field, target)?;
+                (count, scale) = plan.start(target, limit)?;
             }
         }
         if plan.corners() > count && self.options.vertices.is_some() {

@@ -256,7 +256,8 @@ impl RemeshSizes {
     }
 }
 
-/// Vertices of the triangulation that sizes are made on first, and of the last one at least.
+/// Vertices of the triangulation that sizes are made on first, besides those of the domain, and of the last one at least. With none of its
+/// own in a disc with 1,200 on its borders, sizes in between were too small, and the last one had three times as many.
 const FIRST: usize = 1_000;
 /// Its edges are measured by their ends from the first on: what asks for small sizes, curves and required edges, has vertices itself. The
 /// number of vertices and the mean quality of meshes are those with care, within 0.2 % (a disc with holes, the Aegean).
@@ -283,7 +284,8 @@ impl Making<'_> {
     /// On a triangulation that is even in what comes out, some times as fine as the mesh will be: first on one that is even.
     fn on_background(&self, domain: &Domain) -> Result<RemeshSizes> {
         let uniform = Tensor::isotropic(self.sizing.h_max);
-        let first = self.at_vertices(even(&move |_: Point| uniform, domain, BY_ENDS, FIRST)?, None)?;
+        let first = domain.planar().topology.vertex_count() + FIRST;
+        let first = self.at_vertices(even(&move |_: Point| uniform, domain, BY_ENDS, first)?, None)?;
         if first.tensors.iter().all(|&tensor| tensor == uniform) {
             return Ok(first);
         }

@@ -181,7 +181,8 @@ fn circumcircle(dual: &Dual, face: FaceId) -> (Point, f64) {
     let [a, b, c] = corners.map(|v| dual.position(v));
     let (u, v) = (b - a, c - a);
     let tensor = if mean.length(u).max(mean.length(v)) > FAR {
-        Tensor::log_mean([(mean, 0.25), (dual.field().at(centroid([a, b, c])), 0.75)])
+        let mut near = dual.local(corners[0]).near;
+        Tensor::log_mean([(mean, 0.25), (dual.field().at_near(centroid([a, b, c]), &mut near), 0.75)])
     } else {
         mean
     };
