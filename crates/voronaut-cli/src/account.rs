@@ -28,10 +28,11 @@ pub(crate) fn ours(error: Error) -> Error {
 
 /// The report of a planar mesh, which has to be valid, in a metric; and its edges that are not of unit length.
 pub(crate) fn in_plane(meshed: &Meshed, metric: &dyn MetricField, options: Value) -> Result<(Report, Unmet)> {
-    let found = validity(&meshed.mesh);
+    let mesh = &meshed.mesh;
+    let (found, unmet) = rayon::join(|| validity(mesh), || unmet(mesh, metric, |_| ()));
     found.demand().map_err(ours)?;
-    let mut report = report(meshed, found, options);
-    let unmet = measure_in_plane(&mut report, &meshed.mesh, metric)?;
+    let (mut report, unmet) = (report(meshed, found, options), unmet?);
+    add_in_plane(&mut report, mesh, metric, &unmet)?;
     report.closed_form = closed_form(meshed, &unmet);
     Ok((report, unmet))
 }
@@ -70,12 +71,17 @@ fn closed_form(meshed: &Meshed, unmet: &Unmet) -> Option<ClosedForm> {
 /// Adds what a planar mesh is in a metric; its edges that are not of unit length.
 pub(crate) fn measure_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
     let unmet = unmet(mesh, metric, |_| ())?;
+    add_in_plane(report, mesh, metric, &unmet)?;
+    Ok(unmet)
+}
+
+fn add_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn MetricField, unmet: &Unmet) -> Result<()> {
     match &unmet.quality {
         Some(quality) => report.add_quality(quality),
         None => report.add_quality(&metric_quality(mesh, metric)?),
     }
     report.unmet = Some(unmet.figures());
-    Ok(unmet)
+    Ok(())
 }
 
 /// Adds what the mesh of a surface is in a metric; its edges that are not of unit length.

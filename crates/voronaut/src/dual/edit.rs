@@ -132,12 +132,9 @@ impl Dual<'_> {
             // Cheap flips first: few margins are then left to be measured one by one.
             self.flip_all(Effort::Chord);
             self.measure_margins();
-            // All of them: a flip may leave another edge, not yet tested, in a slot whose turn is still to come.
-            self.lawson.queue(self.planar.topology.edges());
-        } else {
-            let wanted = self.wanted(effort);
-            self.lawson.queue(wanted);
         }
+        let wanted = if effort == Effort::Full { self.wanted_fully() } else { self.wanted(effort) };
+        self.lawson.queue(wanted);
         self.flip_queued(effort);
         self.counters.flips - before
     }

@@ -96,6 +96,14 @@ impl Dual<'_> {
         self.test(&quads);
     }
 
+    /// The edges whose margins by all levels want them flipped.
+    pub(super) fn wanted_fully(&mut self) -> Vec<HalfEdge> {
+        let edges: Vec<HalfEdge> = self.free_edges().collect();
+        let mut wanted = Vec::new();
+        self.each_margin(&edges, Effort::Full, |h, margin| wanted.extend((margin.value < -TIE).then_some(h)));
+        wanted
+    }
+
     /// Goes through the margins of edges: what is known of them is looked up in parallel, the others are tested one after the other.
     pub(super) fn each_margin(&mut self, edges: &[HalfEdge], effort: Effort, mut then: impl FnMut(HalfEdge, Margin)) {
         for edges in edges.chunks(LOOKED_UP) {

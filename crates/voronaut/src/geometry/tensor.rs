@@ -176,7 +176,7 @@ impl Tensor {
     /// Matrix exponential of a symmetric tensor; positive definite.
     #[must_use]
     pub(crate) fn exp(self) -> Tensor {
-        if self.xy == 0.0 && self.xx == self.yy {
+        if self.xy == 0.0 && self.xx - self.yy == 0.0 {
             let value = self.xx.exponential();
             return Self::new(value, 0.0, value);
         }

@@ -32,8 +32,7 @@ impl<'a> Job<'a> {
     /// A dual whose segments are sampled, with the seeds of coarser meshes where the metric lets these be made; and whether it has such.
     pub(super) fn begun(&self, domain: &Domain, plan: &Plan, count: usize, scale: f64) -> Result<(Dual<'a>, bool)> {
         let counts = self.counts(plan, count, scale);
-        let level = self.coarsest(domain, plan, scale, &counts)?;
-        let mut dual = self.sampled(domain, plan, scale, level)?;
+        let (level, mut dual) = self.coarsest(domain, plan, scale, &counts)?;
         let progress: &dyn Progress = &Within(self.progress);
         for finer in (0..level).rev() {
             let before = dual.vertex_count();
@@ -69,14 +68,15 @@ impl<'a> Job<'a> {
     }
 
     /// The coarsest level whose mesh resolves the metric, as far as the seeds of the last one tell: these are as dense, by the metric, as
-    /// those of any other.
-    fn coarsest(&self, domain: &Domain, plan: &Plan, scale: f64, counts: &[usize]) -> Result<usize> {
+    /// those of any other. And its dual, whose segments are sampled.
+    fn coarsest(&self, domain: &Domain, plan: &Plan, scale: f64, counts: &[usize]) -> Result<(usize, Dual<'a>)> {
         let last = counts.len() - 1;
-        if last == 0 {
-            return Ok(0);
-        }
         let mut probe = self.sampled(domain, plan, scale, last)?;
-        refine(&mut probe, Fill::AtMost(counts[last]), &Within(self.progress))?;
+        if last == 0 {
+            return Ok((0, probe));
+        }
+        let fill = Fill::AtMost(before_halving(&probe, counts[last - 1]));
+        refine(&mut probe, fill, &Within(self.progress))?;
         let seeds: Vec<VertexId> = probe.topology().vertices().collect();
         let resolves = |&level: &usize| {
             let field = Scaled { field: self.field, factor: factor(scale, level) };
@@ -85,7 +85,9 @@ impl<'a> Job<'a> {
             let rough = seeds.par_iter().with_min_len(256).filter(|v| is_rough(v)).count();
             rough as f64 <= ROUGH * seeds.len() as f64
         };
-        Ok((1..=last).rev().find(resolves).unwrap_or(0))
+        let level = (1..=last).rev().find(resolves).unwrap_or(0);
+        let dual = if level == last { probe } else { self.sampled(domain, plan, scale, level)? };
+        Ok((level, dual))
     }
 
     fn sampled(&self, domain: &Domain, plan: &Plan, scale: f64, level: usize) -> Result<Dual<'a>> {
