@@ -96,6 +96,11 @@ impl<T: Copy + Default> Rows<T> {
         self.items
     }
 
+    /// All items, row by row.
+    pub(crate) fn into_items(self) -> Vec<T> {
+        self.items
+    }
+
     /// How many rows there are.
     pub(crate) fn count(&self) -> usize {
         self.starts.len() - 1

@@ -2,7 +2,8 @@
 
 use super::Planar;
 use crate::geometry::{Aabb, Point};
-use crate::triangulation::{Constraint, HalfEdge, Triangulation, VertexId};
+use crate::parallel::prelude::*;
+use crate::triangulation::VertexId;
 
 impl Planar {
     /// The vertices along a Hilbert curve.
@@ -12,24 +13,11 @@ impl Planar {
         hilbert_order(&points).into_iter().map(|i| living[i as usize]).collect()
     }
 
-    /// The same triangulation with vertices and faces numbered along a Hilbert curve, without dead slots or lengths;
+    /// The same triangulation with vertices and faces numbered along a Hilbert curve, without dead slots;
     /// and for each new vertex its old id.
     pub(crate) fn reordered(&self) -> (Planar, Vec<VertexId>) {
         let old = self.along_curve();
-        let mut number = vec![u32::MAX; self.topology.vertex_slots()];
-        for (new, v) in old.iter().enumerate() {
-            number[v.index()] = new as u32;
-        }
-        let mut faces: Vec<_> = self.topology.faces().collect();
-        let corners = |f| self.topology.corners(f).map(|v| number[v.index()]);
-        faces.sort_by_key(|&f| corners(f).into_iter().min());
-        let triangles: Vec<[u32; 3]> = faces.iter().map(|&f| corners(f)).collect();
-        let regions: Vec<i32> = faces.iter().map(|&f| self.topology.region(f)).collect();
-        let mut topology = Triangulation::from_triangles(old.len(), &triangles, &regions);
-        let constraints = faces.iter().flat_map(|f| f.half_edges()).map(|h| self.topology.constraint(h));
-        for (h, constraint) in constraints.enumerate().filter_map(|(h, c)| c.map(|c: Constraint| (h, c))) {
-            topology.set_constraint(HalfEdge(h as u32), constraint);
-        }
+        let topology = self.topology.renumbered_by_corners(&old);
         let positions = old.iter().map(|&v| self.position(v)).collect();
         (Planar { topology, positions }, old)
     }
@@ -40,15 +28,12 @@ pub(crate) fn hilbert_order(points: &[Point]) -> Vec<u32> {
     let Some(bounds) = Aabb::of(points.iter().copied()) else { return Vec::new() };
     let extent = bounds.extent();
     let scale = 65_535.0 / extent.x.max(extent.y).max(f64::MIN_POSITIVE);
-    let mut keyed: Vec<(u32, u32)> = points
-        .iter()
-        .enumerate()
-        .map(|(i, p)| {
-            let cell = (*p - bounds.min) * scale;
-            (hilbert_index(cell.x as u32, cell.y as u32), i as u32)
-        })
-        .collect();
-    keyed.sort_unstable();
+    let keyed = |(i, p): (usize, &Point)| {
+        let cell = (*p - bounds.min) * scale;
+        (hilbert_index(cell.x as u32, cell.y as u32), i as u32)
+    };
+    let mut keyed: Vec<(u32, u32)> = points.par_iter().enumerate().with_min_len(4096).map(keyed).collect();
+    keyed.par_sort_unstable();
     keyed.into_iter().map(|(_, i)| i).collect()
 }
 
@@ -74,6 +59,7 @@ fn hilbert_index(mut x: u32, mut y: u32) -> u32 {
 mod tests {
     use super::*;
     use crate::planar::delaunay;
+    use crate::triangulation::Constraint;
 
     #[test]
     fn reordering_keeps_the_triangulation() {

@@ -128,7 +128,7 @@ mod tests {
         let plan = Plan::new(domain, &[], field, Target::Vertices(count)).unwrap();
         let scale = plan.scale_for(count as f64);
         let counts = job.counts(&plan, count, scale);
-        let level = job.coarsest(domain, &plan, scale, &counts).unwrap();
+        let (level, _) = job.coarsest(domain, &plan, scale, &counts).unwrap();
         let (dual, is_even) = job.begun(domain, &plan, count, scale).unwrap();
         assert_eq!(is_even, level > 0);
         assert!(dual.planar().is_embedded());

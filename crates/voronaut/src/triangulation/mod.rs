@@ -126,7 +126,7 @@ impl Triangulation {
     }
 
     /// All living faces.
-    pub fn faces(&self) -> impl Iterator<Item = FaceId> + '_ {
+    pub fn faces(&self) -> impl Iterator<Item = FaceId> + Clone + '_ {
         (0..self.region.len() as u32).map(FaceId).filter(|&f| self.is_face(f))
     }
 

@@ -2,44 +2,65 @@
 
 use super::ids::NONE;
 use super::{FaceId, HalfEdge, Triangulation, VertexId};
+use crate::lists::Rows;
+use crate::parallel::prelude::*;
 
 impl Triangulation {
     /// The same triangulation, its vertices in the given order and its faces in the order in which the stars of those
     /// vertices meet them. Dead slots are gone. The caller lists every living vertex once.
     #[must_use]
     pub(crate) fn renumbered(&self, order: &[VertexId]) -> Self {
-        let mut vertex = vec![NONE; self.vertex_slots()];
-        for (new, old) in order.iter().enumerate() {
-            vertex[old.index()] = new as u32;
+        let mut is_met = vec![false; self.face_slots()];
+        let met = order.iter().flat_map(|&v| self.star(v)).map(HalfEdge::face);
+        let faces: Vec<FaceId> = met.filter(|f| !std::mem::replace(&mut is_met[f.index()], true)).collect();
+        self.in_order(order, &numbers(self.vertex_slots(), order.iter().map(|v| v.index())), &faces)
+    }
+
+    /// The same with its faces in the order of the first of their corners, those of one corner in the order of before, and stars that begin
+    /// at the last half-edge that may begin them.
+    #[must_use]
+    pub(crate) fn renumbered_by_corners(&self, order: &[VertexId]) -> Self {
+        let vertex = numbers(self.vertex_slots(), order.iter().map(|v| v.index()));
+        let first = |f: FaceId| self.corners(f).map(|v| vertex[v.index()]).into_iter().min().unwrap_or(NONE);
+        let faces = Rows::new(order.len(), self.faces().map(|f| (first(f), f.0))).into_items();
+        let faces: Vec<FaceId> = faces.into_iter().map(FaceId).collect();
+        let mut new = self.in_order(order, &vertex, &faces);
+        new.start.fill(NONE);
+        for h in (0..new.origin.len() as u32).map(HalfEdge) {
+            new.set_start(h);
         }
-        let (face, faces) = self.faces_by_stars(order);
+        new
+    }
+
+    /// Vertices and faces in an order, with the new numbers of vertices.
+    fn in_order(&self, order: &[VertexId], vertex: &[u32], faces: &[FaceId]) -> Self {
+        let face = numbers(self.face_slots(), faces.iter().map(|f| f.index()));
         let half_edge = |h: u32| if h == NONE { NONE } else { 3 * face[HalfEdge(h).face().index()] + h % 3 };
-        let slots = || faces.iter().flat_map(|f| f.half_edges()).map(HalfEdge::index);
+        let slots = || (0..3 * faces.len()).into_par_iter().with_min_len(TOGETHER);
+        let old = |slot: usize| 3 * faces[slot / 3].index() + slot % 3;
         Self {
-            origin: slots().map(|i| VertexId(vertex[self.origin[i].index()])).collect(),
-            twin: slots().map(|i| half_edge(self.twin[i])).collect(),
-            length: slots().map(|i| self.length[i]).collect(),
-            constraint: slots().map(|i| self.constraint[i]).collect(),
+            origin: slots().map(|slot| VertexId(vertex[self.origin[old(slot)].index()])).collect(),
+            twin: slots().map(|slot| half_edge(self.twin[old(slot)])).collect(),
+            length: slots().map(|slot| self.length[old(slot)]).collect(),
+            constraint: slots().map(|slot| self.constraint[old(slot)]).collect(),
             region: faces.iter().map(|f| self.region[f.index()]).collect(),
             start: order.iter().map(|v| half_edge(self.start[v.index()])).collect(),
             free_faces: Vec::new(),
             free_vertices: Vec::new(),
         }
     }
+}
 
-    /// The new number of each face slot, and the faces by their new numbers.
-    fn faces_by_stars(&self, order: &[VertexId]) -> (Vec<u32>, Vec<FaceId>) {
-        let mut number = vec![NONE; self.face_slots()];
-        let mut faces = Vec::with_capacity(self.face_count());
-        for h in order.iter().flat_map(|&v| self.star(v)) {
-            let f = h.face();
-            if number[f.index()] == NONE {
-                number[f.index()] = faces.len() as u32;
-                faces.push(f);
-            }
-        }
-        (number, faces)
+/// Half-edges that are worth a thread's while.
+const TOGETHER: usize = 1 << 14;
+
+/// The places of slots in a list, by slot; [`NONE`] of those that are not in it.
+fn numbers(slots: usize, list: impl Iterator<Item = usize>) -> Vec<u32> {
+    let mut numbers = vec![NONE; slots];
+    for (number, slot) in (0..).zip(list) {
+        numbers[slot] = number;
     }
+    numbers
 }
 
 #[cfg(test)]
