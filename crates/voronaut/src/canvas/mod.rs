@@ -107,6 +107,28 @@ pub struct CanvasFigures {
     pub stars: Option<StarFigures>,
 }
 
+impl std::ops::AddAssign for CanvasFigures {
+    /// Those of both together.
+    fn add_assign(&mut self, more: Self) {
+        self.vertices += more.vertices;
+        self.counters.splits += more.counters.splits;
+        self.counters.planar_flips += more.counters.planar_flips;
+        self.counters.repairs += more.counters.repairs;
+        self.counters.shortened += more.counters.shortened;
+        self.counters.flips += more.counters.flips;
+        if let (Some(stars), Some(more)) = (&mut self.stars, more.stars) {
+            *stars = StarFigures {
+                vertices: stars.vertices + more.vertices,
+                inconsistencies: stars.inconsistencies + more.inconsistencies,
+                simplices: stars.simplices + more.simplices,
+                radius: stars.radius.max(more.radius),
+                rounds: stars.rounds.max(more.rounds),
+                unsettled: stars.unsettled + more.unsettled,
+            };
+        }
+    }
+}
+
 /// An immutable canvas of any [`Kind`], of a planar domain or, as a `Canvas<Draped>`, of a surface.
 ///
 /// Two triangulations on the same vertices: *embedded*, which covers the domain exactly and keeps its constraints, with

@@ -11,6 +11,9 @@ use crate::diagram::{Care, Diagram, NerveTriangle, resolve};
 use crate::error::{Result, named};
 use crate::geodesic::{MarchCounters, Margin, Method};
 use crate::lists::{in_order, ranked};
+use crate::metric::MetricField;
+use crate::parallel::prelude::*;
+use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::HashSet;
 
@@ -108,9 +111,61 @@ pub(crate) struct Made {
     pub diagram: MarchCounters,
 }
 
+impl Made {
+    /// Both together.
+    fn with(mut self, more: Self) -> Self {
+        self.canvas += more.canvas;
+        self.orphans += more.orphans;
+        self.orphan_components += more.orphan_components;
+        self.diagram += more.diagram;
+        self
+    }
+}
+
+/// How diagrams are made that are asked.
+struct Asking<'a> {
+    field: &'a dyn MetricField,
+    road: Road,
+    canvas: canvas::Kind,
+    method: Method,
+}
+
+/// What a diagram tells of a part of the mesh.
+struct Answer {
+    /// The sides of the nerve's triangles.
+    sides: Vec<[VertexId; 2]>,
+    /// Those of triangles of which the nerve is not sure.
+    unsure: Vec<[VertexId; 2]>,
+    made: Made,
+}
+
+impl Asking<'_> {
+    /// Of a part whose vertices are these of the mesh, on a canvas of so many vertices.
+    fn answer(&self, planar: Planar, ids: &[VertexId], vertices: usize) -> Result<Answer> {
+        let seeds = planar.positions.clone();
+        let mut canvas = Canvas::from_planar(self.canvas, planar, self.field, vertices)?;
+        if self.road == Road::Canvas {
+            canvas = resolve(canvas, self.field, &seeds, ROUNDS)?.canvas;
+        }
+        let diagram = Diagram::of_vertices(&canvas, self.field, &seeds, self.method, Care::Full)?;
+        let nerve = diagram.sharp_nerve();
+        let ends = |side: [u32; 2]| in_order(side.map(|i| ids[i as usize]));
+        let is_unsure = |t: &NerveTriangle| t.fourth.is_some_and(|(_, gap)| gap < BEYOND_CANVAS);
+        let orphans = diagram.orphan_components();
+        let made = Made {
+            canvas: canvas.figures(),
+            orphans: orphans.iter().map(Vec::len).sum(),
+            orphan_components: orphans.len(),
+            diagram: *diagram.counters(),
+        };
+        let (sides, unsure) = (nerve.sides(|_| true).map(ends), nerve.sides(is_unsure).map(ends));
+        Ok(Answer { sides: sides.collect(), unsure: unsure.collect(), made })
+    }
+}
+
 impl Dual<'_> {
     /// Asks the diagram, by a method, for the topology where the road says so, on a canvas of a kind with so many vertices per
-    /// seed, around the edges concerned only. Edges by lengths are to be settled before ([`Dual::flip_all`] with
+    /// seed, around the edges concerned only, of each connected part by itself. Edges by lengths are to be settled before ([`Dual::flip_all`] with
     /// [`Effort::Full`]).
     ///
     /// # Errors
@@ -132,31 +187,23 @@ impl Dual<'_> {
             Road::Both => self.patch_within(&asked, most),
             Road::Canvas | Road::Geodesic => self.patch_around(&asked),
         };
-        let ids: Vec<VertexId> = planar.topology.vertices().collect();
-        let seeds: Vec<_> = ids.iter().map(|&v| planar.position(v)).collect();
-        let field = self.field;
         // Where much is unknown the cells are wide.
-        let least = if WILD * asked.len() > seeds.len() { LEAST_VERTICES } else { 0 };
-        let vertices = (seeds.len() * per_seed as usize).max(least);
-        let mut canvas = Canvas::from_planar(canvas, planar, &field, vertices)?;
-        if road == Road::Canvas {
-            canvas = resolve(canvas, &field, &seeds, ROUNDS)?.canvas;
-        }
-        let diagram = Diagram::of_vertices(&canvas, &field, &seeds, method, Care::Full)?;
-        let nerve = diagram.sharp_nerve();
-        let ends = |side: [u32; 2]| in_order(side.map(|i| ids[i as usize]));
-        let sides = nerve.sides(|_| true).map(ends);
-        let wanted: HashSet<[VertexId; 2]> = sides.filter(|s| s.iter().all(|v| is_inner[v.index()])).collect();
-        let unsure = |t: &NerveTriangle| t.fourth.is_some_and(|(_, gap)| gap < BEYOND_CANVAS);
-        let unsure = nerve.sides(unsure).map(ends).collect();
+        let seeds = planar.topology.vertex_count();
+        let least = if WILD * asked.len() > seeds { LEAST_VERTICES } else { 0 };
+        let field = self.field;
+        let asking = Asking { field: &field, road, canvas, method };
+        let answer = |(planar, ids): (Planar, Vec<VertexId>)| {
+            let vertices = (ids.len() * per_seed as usize).max(least * ids.len() / seeds);
+            asking.answer(planar, &ids, vertices)
+        };
+        let answers: Vec<Result<Answer>> = planar.pieces().into_par_iter().map(answer).collect();
+        let answers = answers.into_iter().collect::<Result<Vec<Answer>>>()?;
+        let is_within = |side: &[VertexId; 2]| side.iter().all(|v| is_inner[v.index()]);
+        let wanted: HashSet<[VertexId; 2]> =
+            answers.iter().flat_map(|answer| &answer.sides).copied().filter(is_within).collect();
+        let unsure = answers.iter().flat_map(|answer| &answer.unsure).copied().collect();
         let mut found = self.compare(road, &wanted, &is_inner);
-        let orphans = diagram.orphan_components();
-        found.made = Some(Made {
-            canvas: canvas.figures(),
-            orphans: orphans.iter().map(Vec::len).sum(),
-            orphan_components: orphans.len(),
-            diagram: *diagram.counters(),
-        });
+        found.made = answers.into_iter().map(|answer| answer.made).reduce(Made::with);
         found.impossible = self.adopt(road, wanted);
         found.uncertain = self.uncertain_edges(&unsure);
         Ok(found)

@@ -21,6 +21,14 @@ impl Planar {
         let positions = old.iter().map(|&v| self.position(v)).collect();
         (Planar { topology, positions }, old)
     }
+
+    /// Its connected parts, each with the vertices of before that its own are. No vertex has several fans.
+    pub(crate) fn pieces(&self) -> Vec<(Planar, Vec<VertexId>)> {
+        let placed = |(topology, old): (_, Vec<VertexId>)| {
+            (Planar { topology, positions: old.iter().map(|&v| self.position(v)).collect() }, old)
+        };
+        self.topology.pieces().into_iter().map(placed).collect()
+    }
 }
 
 /// Indices of the points along a Hilbert curve on a 65,536 x 65,536 grid: neighbours in the order are near in the plane.

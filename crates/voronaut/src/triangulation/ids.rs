@@ -8,7 +8,7 @@ pub(super) const NONE: u32 = u32::MAX;
 pub struct VertexId(pub u32);
 
 /// A face (triangle).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceId(pub u32);
 
 /// One side of an edge: it belongs to the face on its left.

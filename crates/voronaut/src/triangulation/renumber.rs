@@ -2,7 +2,7 @@
 
 use super::ids::NONE;
 use super::{FaceId, HalfEdge, Triangulation, VertexId};
-use crate::lists::Rows;
+use crate::lists::{Classes, Rows, distinct};
 use crate::parallel::prelude::*;
 
 impl Triangulation {
@@ -13,18 +13,18 @@ impl Triangulation {
         let mut is_met = vec![false; self.face_slots()];
         let met = order.iter().flat_map(|&v| self.star(v)).map(HalfEdge::face);
         let faces: Vec<FaceId> = met.filter(|f| !std::mem::replace(&mut is_met[f.index()], true)).collect();
-        self.in_order(order, &numbers(self.vertex_slots(), order.iter().map(|v| v.index())), &faces)
+        self.in_order(order, &faces, &self.numbers(order, &faces))
     }
 
     /// The same with its faces in the order of the first of their corners, those of one corner in the order of before, and stars that begin
     /// at the last half-edge that may begin them.
     #[must_use]
     pub(crate) fn renumbered_by_corners(&self, order: &[VertexId]) -> Self {
-        let vertex = numbers(self.vertex_slots(), order.iter().map(|v| v.index()));
-        let first = |f: FaceId| self.corners(f).map(|v| vertex[v.index()]).into_iter().min().unwrap_or(NONE);
+        let Numbers { vertices, .. } = self.numbers(order, &[]);
+        let first = |f: FaceId| self.corners(f).map(|v| vertices[v.index()]).into_iter().min().unwrap_or(NONE);
         let faces = Rows::new(order.len(), self.faces().map(|f| (first(f), f.0))).into_items();
         let faces: Vec<FaceId> = faces.into_iter().map(FaceId).collect();
-        let mut new = self.in_order(order, &vertex, &faces);
+        let mut new = self.in_order(order, &faces, &self.numbers(order, &faces));
         new.start.fill(NONE);
         for h in (0..new.origin.len() as u32).map(HalfEdge) {
             new.set_start(h);
@@ -32,14 +32,39 @@ impl Triangulation {
         new
     }
 
-    /// Vertices and faces in an order, with the new numbers of vertices.
-    fn in_order(&self, order: &[VertexId], vertex: &[u32], faces: &[FaceId]) -> Self {
-        let face = numbers(self.face_slots(), faces.iter().map(|f| f.index()));
-        let half_edge = |h: u32| if h == NONE { NONE } else { 3 * face[HalfEdge(h).face().index()] + h % 3 };
+    /// Its connected parts, each with the vertices of before that its own are. No vertex has several fans.
+    pub(crate) fn pieces(&self) -> Vec<(Self, Vec<VertexId>)> {
+        let mut joined = Classes::new(self.face_slots());
+        for h in self.edges() {
+            if let Some(t) = self.twin(h) {
+                joined.join(h.face().0, t.face().0);
+            }
+        }
+        joined.flatten();
+        let by_piece = Rows::new(self.face_slots(), self.faces().map(|f| (joined.of(f.0), f)));
+        let pieces = (0..by_piece.count()).map(|piece| by_piece.row(piece)).filter(|faces| !faces.is_empty());
+        let pieces: Vec<(&[FaceId], Vec<VertexId>)> =
+            pieces.map(|faces| (faces, distinct(faces.iter().flat_map(|&f| self.corners(f))))).collect();
+        let mut numbers = self.numbers(&[], &[]);
+        for (faces, order) in &pieces {
+            numbers.give(order, faces);
+        }
+        pieces.into_iter().map(|(faces, order)| (self.in_order(&order, faces, &numbers), order)).collect()
+    }
+
+    fn numbers(&self, order: &[VertexId], faces: &[FaceId]) -> Numbers {
+        let mut numbers = Numbers { vertices: vec![NONE; self.vertex_slots()], faces: vec![NONE; self.face_slots()] };
+        numbers.give(order, faces);
+        numbers
+    }
+
+    /// Vertices and faces in an order.
+    fn in_order(&self, order: &[VertexId], faces: &[FaceId], new: &Numbers) -> Self {
+        let half_edge = |h: u32| if h == NONE { NONE } else { 3 * new.faces[HalfEdge(h).face().index()] + h % 3 };
         let slots = || (0..3 * faces.len()).into_par_iter().with_min_len(TOGETHER);
         let old = |slot: usize| 3 * faces[slot / 3].index() + slot % 3;
         Self {
-            origin: slots().map(|slot| VertexId(vertex[self.origin[old(slot)].index()])).collect(),
+            origin: slots().map(|slot| VertexId(new.vertices[self.origin[old(slot)].index()])).collect(),
             twin: slots().map(|slot| half_edge(self.twin[old(slot)])).collect(),
             length: slots().map(|slot| self.length[old(slot)]).collect(),
             constraint: slots().map(|slot| self.constraint[old(slot)]).collect(),
@@ -54,13 +79,18 @@ impl Triangulation {
 /// Half-edges that are worth a thread's while.
 const TOGETHER: usize = 1 << 14;
 
-/// The places of slots in a list, by slot; [`NONE`] of those that are not in it.
-fn numbers(slots: usize, list: impl Iterator<Item = usize>) -> Vec<u32> {
-    let mut numbers = vec![NONE; slots];
-    for (number, slot) in (0..).zip(list) {
-        numbers[slot] = number;
+/// New numbers by slots; [`NONE`] of what has none.
+struct Numbers {
+    vertices: Vec<u32>,
+    faces: Vec<u32>,
+}
+
+impl Numbers {
+    /// From 0 on.
+    fn give(&mut self, order: &[VertexId], faces: &[FaceId]) {
+        (0..).zip(order).for_each(|(number, v)| self.vertices[v.index()] = number);
+        (0..).zip(faces).for_each(|(number, f)| self.faces[f.index()] = number);
     }
-    numbers
 }
 
 #[cfg(test)]
@@ -84,5 +114,21 @@ mod tests {
         }
         let h = r.find(VertexId(2), VertexId(3)).unwrap();
         assert!((r.length(h) - 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn pieces_are_all_there() {
+        // Two fans, whose vertices and faces take turns.
+        let triangles: Vec<_> = (0..6).map(|i| [i % 2, 2 + i, 2 + (i + 2) % 6]).collect();
+        let whole = Triangulation::from_triangles(8, &triangles, &[0, 1, 2, 3, 4, 5]);
+        let pieces = whole.pieces();
+        assert_eq!(pieces.len(), 2);
+        for (i, (piece, old)) in pieces.iter().enumerate() {
+            piece.check().unwrap();
+            assert_eq!((piece.face_count(), piece.vertex_count()), (3, 4));
+            assert_eq!(old[0], VertexId(i as u32));
+            let found = piece.faces().map(|f| piece.corners(f).map(|v| old[v.index()].0)).collect::<Vec<_>>();
+            assert_eq!(found, [i, i + 2, i + 4].map(|k| triangles[k]));
+        }
     }
 }
