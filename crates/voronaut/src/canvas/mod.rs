@@ -77,6 +77,9 @@ pub fn size_for(seeds: usize, per_seed: u32) -> usize {
     seeds.saturating_mul(per_seed as usize).max(least)
 }
 
+/// Edges hide little that their ends do not tell where there are so many vertices for each seed of a mesh: they are a quarter as long as its own.
+const TOLD_BY: usize = 20;
+
 /// How a canvas came about. Deterministic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct CanvasCounters {
@@ -234,18 +237,24 @@ impl Canvas {
     /// # Errors
     /// As for [`Canvas::intrinsic`].
     pub fn new(kind: Kind, domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::from_planar(kind, domain.planar().clone(), field, vertices)
+        Self::made(kind, domain.planar().clone(), field, COARSE, vertices)
     }
 
-    /// [`Canvas::new`] from any embedded triangulation, which may cover a part of a domain only. Its vertices are vertices of the
-    /// canvas, under other ids.
+    /// [`Canvas::new`] from an embedded triangulation of seeds, which may cover a part of a domain only. Its vertices are vertices of
+    /// the canvas, under other ids.
     ///
     /// # Errors
     /// As for [`Canvas::new`].
     pub(crate) fn from_planar(kind: Kind, planar: Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        let coarse = COARSE.min(TOLD_BY * planar.topology.vertex_count());
+        Self::made(kind, planar, field, coarse, vertices)
+    }
+
+    /// Edges are measured with care while there are fewer vertices than `coarse`.
+    fn made(kind: Kind, planar: Planar, field: &dyn MetricField, coarse: usize, vertices: usize) -> Result<Self> {
         let mut counters = CanvasCounters::default();
         let planar = match kind {
-            Kind::Intrinsic => refine::refine(planar, field, COARSE, vertices, &mut counters)?,
+            Kind::Intrinsic => refine::refine(planar, field, coarse, vertices, &mut counters)?,
             Kind::Isotropic => isotropic::refine(planar, field, Until { vertices, sizes: 0.0 }, &mut counters)?,
             Kind::StarSet => star_set::refine(planar, field, vertices, &mut counters)?,
         };
