@@ -265,6 +265,7 @@ mod tests {
         let domain = Domain::shape("disk:0,0,1").unwrap();
         let size = |h: f64| move |_: Point| Tensor::isotropic(h);
         let sides = |h: f64, tolerance: f64| simplify(&domain, &[], &size(h), tolerance).boundary().len();
+        // To within the eighth of an edge by which vertices are looked at.
         assert!((62..=64).contains(&sides(0.1, 1.0)), "{}", sides(0.1, 1.0));
         assert!(sides(10.0, 1e-2) >= 22 && sides(10.0, 1e-2) < 60, "{}", sides(10.0, 1e-2));
         assert!(sides(10.0, 10.0) >= 3);
@@ -283,13 +284,13 @@ mod tests {
 
     #[test]
     fn edges_are_as_even_as_the_vertices_of_a_curve_let_them_be() {
-        // A circle whose sides are too long by a little to go into an edge by fours.
+        // Six sides of a circle make an edge, seven stray too far, and neither goes into 200: steps that stray must not be halved.
         let circle = (0..200).map(|i| (f64::from(i) * std::f64::consts::TAU / 200.0).sin_cos());
         let ring: Vec<[f64; 2]> = circle.map(|(sin, cos)| [cos, sin]).collect();
-        let unit = 5.9 * std::f64::consts::TAU / 200.0;
+        let unit = 6.37 * std::f64::consts::TAU / 200.0;
         let sides = simplify(&plate(&[&ring]), &[], &|_: Point| Tensor::isotropic(unit), 5e-3).boundary();
         let lengths: Vec<f64> = sides.iter().map(|(a, b)| a.distance(*b) / unit).collect();
-        assert!(lengths.iter().all(|length| (0.8..1.2).contains(length)), "{lengths:?}");
+        assert!(lengths.iter().all(|length| (0.75..1.2).contains(length)), "{lengths:?}");
     }
 
     #[test]
