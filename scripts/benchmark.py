@@ -173,6 +173,8 @@ def scaled(typed, mesh, first, *words):
 
 
 def fit(found):
+    if not found["valid"]:
+        raise Failed("its mesh is not valid")
     return {"unit edges": found["metric_edge_length"]["unit_fraction"], "mean quality": found["quality"]["mean"],
             "least quality": found["quality"]["min"]}
 
@@ -388,9 +390,11 @@ def surface(typed, model, size):
 
     def judge(made):
         found, own = scaled(typed, made, first, "--domain", model, "--metric", "curvature"), other.with_suffix(".sol")
-        away = {"RMS": found["fidelity"]["rms_share"], "greatest": found["fidelity"]["hausdorff_share"]}
-        in_own = {"mmgs's metric": fit(check(typed, made, "--domain", other, "--metric", own))} if own.exists() else {}
-        return {"metric of curvature": fit(found), **in_own, "distance": away}
+        figures = {"metric of curvature": fit(found)}
+        if own.exists():
+            figures["mmgs's metric"] = fit(check(typed, made, "--domain", other, "--metric", own))
+        away = found["fidelity"]
+        return figures | {"distance": {"RMS": away["rms_share"], "greatest": away["hausdorff_share"]}}
     return f"`{model.relative_to(ROOT)}`, {size:,}", subjects, judge
 
 

@@ -1,7 +1,7 @@
 //! `voronaut check`: examines a mesh that is there.
 
 use crate::fields;
-use crate::options::{Damage, MetricChoices, Outputs, Run, Show, positive, refuse};
+use crate::options::{Creases, Damage, MetricChoices, Outputs, Run, Show, positive, refuse};
 use crate::world::World;
 use crate::{account, curves, files, pictures};
 use clap::Args;
@@ -54,6 +54,8 @@ pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(crate) metric_choices: MetricChoices,
     #[command(flatten)]
+    pub(crate) creases: Creases,
+    #[command(flatten)]
     pub(crate) outputs: Outputs,
     #[command(flatten)]
     pub(crate) damage: Damage,
@@ -92,7 +94,7 @@ pub(crate) fn run(args: &CheckArgs, world: &World) -> Result<()> {
     report.metric_scale = args.metric.is_some().then_some(args.metric_scale.unwrap_or(1.0));
     report.notes.extend(mended.iter().flat_map(Mended::sentences).chain(meets));
     let picture = match given {
-        Some(Given::Surface(input)) => on_surface(args, world, &mesh, Some(&input), &mut report)?,
+        Some(Given::Surface(input)) => on_surface(args, world, &mesh, Some(input), &mut report)?,
         None if !mesh.is_planar() => on_surface(args, world, &mesh, None, &mut report)?,
         Some(Given::Plane(domain)) => in_plane(args, world, &mesh, Some(&domain), &mut report)?,
         None => in_plane(args, world, &mesh, None, &mut report)?,
@@ -143,6 +145,7 @@ fn in_plane(
         let what = format!("{} is not planar (z = 0), its domain is", args.mesh.display());
         return Err(Error::unsupported(what, "give the surface that it is a mesh of as --domain"));
     }
+    args.creases.demand_unset()?;
     let mut layers = Layers::default();
     let metric = args.metric.as_deref().map(|text| planar_metric(args, world, text, mesh, domain)).transpose()?;
     if let Some(metric) = metric.as_deref() {
@@ -167,11 +170,13 @@ fn on_surface(
     args: &CheckArgs,
     world: &World,
     mesh: &Mesh,
-    given: Option<&Input>,
+    given: Option<Input>,
     report: &mut Report,
 ) -> Result<Option<String>> {
     demand_for_surfaces(args, world)?;
-    if let Some(Input { surface, implicit, .. }) = given {
+    report.options["ar"] = json!(args.creases.options().ar);
+    let given = given.map(|whole| whole.cut(&args.creases.options())).transpose()?;
+    if let Some(Input { surface, implicit, .. }) = &given {
         let implicit = implicit.as_ref().map(|f| f as &dyn Implicit);
         report.fidelity = Some(Strayed::Surface(surface_fidelity(mesh, surface, implicit)?.into()));
     }
@@ -179,10 +184,10 @@ fn on_surface(
     let picture = |unmet: &Unmet| args.outputs.picture.as_ref().map(|_| drawn(unmet)).transpose();
     let mut unmet = Unmet::default();
     let own;
-    let input = if let Some(input) = given {
+    let input = if let Some(input) = &given {
         input
     } else if args.metric.is_some() || args.function.is_some() {
-        own = Input::new(Surface::new(mesh)?, None);
+        own = Input::new(Surface::new(mesh)?, None).cut(&args.creases.options())?;
         &own
     } else {
         return picture(&Unmet::default());

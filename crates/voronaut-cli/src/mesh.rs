@@ -1,7 +1,9 @@
 //! `voronaut mesh`: from the command line to the library and back. All calls of the mesher are here.
 
 use crate::fields;
-use crate::options::{Damage, MetricChoices, Outputs, Paged, Paired, Run, Show, not_negative, positive, refuse};
+use crate::options::{
+    Creases, Damage, MetricChoices, Outputs, Paged, Paired, Run, Show, not_negative, positive, refuse,
+};
 use crate::pages::{self, Drawn};
 use crate::parts::{self, InParts};
 use crate::world::World;
@@ -25,7 +27,7 @@ use voronaut::recipe::{
     self, Aim, Boundary, Centroid, Effort, GradedAt, Idle, MeshOptions, Meshed, Mesher, Seeding, Task,
 };
 use voronaut::surface::metric::{Scaled, Spec};
-use voronaut::surface::{FeatureOptions, Input, Mended};
+use voronaut::surface::{Input, Mended};
 use voronaut_draw::{Layers, Sheet};
 use voronaut_io::{Format, Given, Report};
 
@@ -89,13 +91,8 @@ pub(crate) struct MeshArgs {
     /// Surfaces: vertices where mesh and surface are closest in the sense of least squares, instead of on the surface
     #[arg(long)]
     pub(crate) fit: bool,
-    /// Edges of a surface where its normal turns by more than this angle are creases: they are kept, as borders, listed edges and
-    /// edges between labels are, and with them the corners where such curves turn by as much
-    #[arg(long, value_name = "DEGREES", value_parser = positive, default_value_t = FeatureOptions::DEFAULT_ANGLE)]
-    pub(crate) ar: f64,
-    /// Look for no creases and corners by angles
-    #[arg(long, conflicts_with = "ar")]
-    pub(crate) nr: bool,
+    #[command(flatten)]
+    pub(crate) creases: Creases,
     /// What makes the mesh: voronoi, or starset (Delaunay stars in the metrics of their vertices, refined until they agree: to
     /// compare; -n then sets the scale only)
     #[arg(long, value_name = "HOW", default_value_t = MeshOptions::default().mesher)]
@@ -152,10 +149,6 @@ pub(crate) struct MeshArgs {
 }
 
 impl MeshArgs {
-    pub(crate) fn features(&self) -> FeatureOptions {
-        FeatureOptions { ar: (!self.nr).then_some(self.ar) }
-    }
-
     /// Threads and limits: a part has one thread, for others are made beside it.
     pub(crate) fn run(&self) -> Cow<'_, Run> {
         match self.in_parts.part {
@@ -213,7 +206,7 @@ impl MeshArgs {
             "domain": self.domain, "metric": self.metric, "out": self.out, "background": self.metric_choices.background,
             "smooth_metric": self.metric_choices.smooth_metric, "tensor_order": self.metric_choices.tensor_order, "gradation": self.metric_choices.gradation,
             "norm": self.metric_choices.norm.to_string(), "recovery": self.metric_choices.recovery,
-            "ar": self.features().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
+            "ar": self.creases.options().ar, "h_min": bounds.h_min, "h_max": bounds.h_max, "a_max": bounds.a_max,
             "picture": self.outputs.picture, "view": self.paged.view, "cells": self.paged.cells, "pixels": self.outputs.pixels, "histograms": self.outputs.histograms, "report": self.run.report, "threads": self.run.threads,
             "repair": self.damage.repair, "required": self.required,
             "parts": self.in_parts.parts.map(|parts| parts.to_string()),
@@ -267,14 +260,7 @@ fn required(domain: &Domain) -> Result<Domain> {
 }
 
 fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, start: f64) -> Result<()> {
-    refuse([
-        (args.nr, "--nr in the plane", "leave out --nr: it is for surfaces"),
-        (
-            !args.nr && args.features() != FeatureOptions::default(),
-            "--ar in the plane",
-            "leave out --ar: it is for surfaces",
-        ),
-    ])?;
+    args.creases.demand_unset()?;
     let idle = args.idle(false, world)?;
     let (outputs, options) = (&args.outputs, args.options());
     let at = GradedAt::of(options.vertices, args.complexity);
@@ -336,9 +322,9 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
     refuse([(args.required, "--required on a surface", required)])?;
     pictures::demand_of_surfaces(&args.outputs)?;
     let idle = args.idle(true, world)?;
-    let is_whole = args.outputs.picture.is_some() || args.paged.view.is_some();
+    let is_whole = args.outputs.picture.is_some() || args.drawn().is_some();
     let whole = is_whole.then(|| Input::new(input.surface.clone(), input.implicit.clone()));
-    let input = &input.cut(&args.features())?;
+    let input = &input.cut(&args.creases.options())?;
     let at = GradedAt::of(args.options().vertices, args.complexity);
     let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, at)?;
     let aim = aimed(args);
@@ -368,12 +354,11 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
     let picture = drawn.map(|whole| drawn_on(args, world, whole, &meshed, &unmet)).transpose()?;
     report.histograms = files::histograms_on(&args.outputs, &meshed.mesh, input, &scaled)?;
     let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
-        let Some(whole) = &whole else { return Ok(()) };
+        pages::measured_on_surface(sheet, input, &scaled, true)?;
+        let (Some(whole), Some(drawn)) = (&whole, args.drawn()) else { return Ok(()) };
         let at = GradedAt::Scale(meshed.metric_scale);
         let field = fields::on_surface(world, &args.metric, whole, &args.metric_choices, at)?;
-        let scaled = Scaled { field: field.as_ref(), factor: meshed.metric_scale };
-        pages::measured_on_surface(sheet, whole, &scaled, true)?;
-        args.drawn().map_or(Ok(()), |drawn| pages::with_cells_on(sheet, whole, &scaled, drawn))
+        pages::with_cells_on(sheet, whole, &Scaled { field: field.as_ref(), factor: meshed.metric_scale }, drawn)
     })?;
     finish(args, world, meshed.mesh, picture, sheet, &report)
 }

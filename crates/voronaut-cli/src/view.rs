@@ -1,7 +1,7 @@
 //! `voronaut view`: a page to look at meshes with.
 
 use crate::fields;
-use crate::options::{Damage, MetricChoices, Run, positive, refuse};
+use crate::options::{Creases, Damage, MetricChoices, Run, positive, refuse};
 use crate::pages::{self, Drawn};
 use crate::stages::Stages;
 use crate::world::World;
@@ -62,6 +62,8 @@ pub(crate) struct ViewArgs {
     pub(crate) title: Option<String>,
     #[command(flatten)]
     pub(crate) metric_choices: MetricChoices,
+    #[command(flatten)]
+    pub(crate) creases: Creases,
     #[command(flatten)]
     pub(crate) damage: Damage,
     #[command(flatten)]
@@ -125,7 +127,7 @@ fn sheet(args: &ViewArgs, world: &World, path: &Path) -> Result<Sheet> {
     let Some(text) = &args.metric else { return Ok(sheet) };
     let given = args.domain.as_deref().map(|domain| world.given(domain, args.damage.options())).transpose()?;
     match given.map(|(given, _)| given) {
-        Some(Given::Surface(input)) => on_surface(args, world, &mut sheet, text, &input)?,
+        Some(Given::Surface(input)) => on_surface(args, world, &mut sheet, text, input)?,
         Some(Given::Plane(domain)) => in_plane(args, world, &mut sheet, text, path, &domain)?,
         None if sheet.mesh.is_planar() => {
             let domain = Domain::new(&from_mesh(&sheet.mesh)?)?;
@@ -133,7 +135,7 @@ fn sheet(args: &ViewArgs, world: &World, path: &Path) -> Result<Sheet> {
         }
         None => {
             let input = Input::new(Surface::new(&sheet.mesh)?, None);
-            on_surface(args, world, &mut sheet, text, &input)?;
+            on_surface(args, world, &mut sheet, text, input)?;
         }
     }
     Ok(sheet)
@@ -150,6 +152,7 @@ fn in_plane(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, path:
         let what = format!("{} is not planar (z = 0), its domain is", path.display());
         return Err(Error::unsupported(what, "give the surface that it is a mesh of as --domain"));
     }
+    args.creases.demand_unset()?;
     let own = args.domain.clone().unwrap_or_else(|| path.to_string_lossy().into_owned());
     let scale = args.metric_scale.unwrap_or(1.0);
     let choices = args.metric_choices.of_degree(curves::order_of(&sheet.mesh));
@@ -158,10 +161,13 @@ fn in_plane(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, path:
     args.drawn().map_or(Ok(()), |drawn| pages::with_cells(sheet, domain, metric.as_ref(), drawn))
 }
 
-fn on_surface(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, input: &Input) -> Result<()> {
+/// Figures are of the surface cut along its creases, cells are drawn across them.
+fn on_surface(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, whole: Input) -> Result<()> {
     let factor = args.metric_scale.unwrap_or(1.0);
-    let field = fields::on_surface(world, text, input, &args.metric_choices, GradedAt::Scale(factor))?;
-    let scaled = Scaled { field: field.as_ref(), factor };
-    pages::measured_on_surface(sheet, input, &scaled, true)?;
-    args.drawn().map_or(Ok(()), |drawn| pages::with_cells_on(sheet, input, &scaled, drawn))
+    let field = |input: &Input| fields::on_surface(world, text, input, &args.metric_choices, GradedAt::Scale(factor));
+    if let Some(drawn) = args.drawn() {
+        pages::with_cells_on(sheet, &whole, &Scaled { field: field(&whole)?.as_ref(), factor }, drawn)?;
+    }
+    let input = whole.cut(&args.creases.options())?;
+    pages::measured_on_surface(sheet, &input, &Scaled { field: field(&input)?.as_ref(), factor }, true)
 }

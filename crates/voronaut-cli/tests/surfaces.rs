@@ -110,6 +110,40 @@ fn metrics_on_surfaces_are_measured() {
     refused(&place, &["a.mesh", "--metric", "a.sol", "--domain", "sphere:2"], &["values for", "the surface"]);
 }
 
+/// A cylinder of radius 1 and height 2 with its lids: its rims are creases by their angle alone.
+fn can(sides: u32) -> Mesh {
+    let turn = std::f64::consts::TAU / f64::from(sides);
+    let rim = |z: f64| (0..sides).map(move |i| [(f64::from(i) * turn).cos(), (f64::from(i) * turn).sin(), z]);
+    let points: Vec<[f64; 3]> = rim(0.0).chain(rim(2.0)).chain([[0.0; 3], [0.0, 0.0, 2.0]]).collect();
+    let around = |i: u32| {
+        let (a, b, low, high) = (i, (i + 1) % sides, 2 * sides, 2 * sides + 1);
+        [[a, b, sides + b], [a, sides + b, sides + a], [b, a, low], [sides + a, sides + b, high]]
+    };
+    Mesh { points, triangles: (0..sides).flat_map(around).collect(), ..Mesh::default() }
+}
+
+#[test]
+fn a_mesh_of_what_has_creases_is_judged_as_it_was_made() {
+    let place = Place::new();
+    put(&place, "can.off", &can(24));
+    let output =
+        place.run(&["mesh", "can.off", "--metric", "curvature", "-n", "300", "-o", "o.mesh", "--report", "made.json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let made = json(&place, "made.json");
+    let scale = made["metric_scale"].to_string();
+    let asked = ["o.mesh", "--domain", "can.off", "--metric", "curvature", "--metric-scale", &scale];
+    let (found, _) = checked(&place, &asked);
+    let (whole, _) = checked(&place, &[&asked[..], &["--nr"]].concat());
+    for figure in ["/metric_edge_length/unit_fraction", "/metric_edge_length/mean", "/quality/mean", "/quality/min"] {
+        let [made, found, whole] = [&made, &found, &whole].map(|report| number(report, figure));
+        assert!((made - found).abs() < 1e-9 * made, "{figure}: {made} {found}");
+        assert!((made - whole).abs() > 1e-3 * made, "{figure}: {whole} across the rims");
+    }
+    let flat = ["mesh", "rect:0,0,1,1", "--metric", "uniform", "-n", "20", "-o", "flat.mesh"];
+    assert!(place.run(&flat).status.success());
+    refused(&place, &["flat.mesh", "--ar", "30"], &["--ar in the plane", "leave out --ar"]);
+}
+
 #[test]
 fn faults_of_surfaces_are_found_and_reported() {
     let place = Place::new();

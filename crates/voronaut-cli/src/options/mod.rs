@@ -14,7 +14,7 @@ use voronaut::geometry::Aabb;
 use voronaut::mesh::TensorOrder;
 use voronaut::metric::{Bounds, MOST_SWEEPS, Norm, Recovery};
 use voronaut::recipe::MetricOptions;
-use voronaut::surface::RepairOptions;
+use voronaut::surface::{FeatureOptions, RepairOptions};
 use voronaut::{Error, Result};
 use voronaut_draw::Picture;
 
@@ -85,6 +85,34 @@ impl Damage {
     /// What may be done to what files hold.
     pub(crate) fn options(&self) -> RepairOptions {
         RepairOptions { repair: self.repair }
+    }
+}
+
+/// Where surfaces are creased.
+#[derive(Debug, Args)]
+pub(crate) struct Creases {
+    /// Edges of a surface where its normal turns by more than this angle are creases: they are kept, as borders, listed edges and
+    /// edges between labels are, and with them the corners where such curves turn by as much. Metrics know nothing of what is beyond
+    #[arg(long, value_name = "DEGREES", value_parser = positive, default_value_t = FeatureOptions::DEFAULT_ANGLE)]
+    ar: f64,
+    /// Look for no creases and corners by angles
+    #[arg(long, conflicts_with = "ar")]
+    nr: bool,
+}
+
+impl Creases {
+    /// What counts as a feature.
+    pub(crate) fn options(&self) -> FeatureOptions {
+        FeatureOptions { ar: (!self.nr).then_some(self.ar) }
+    }
+
+    /// Refuses creases in the plane.
+    pub(crate) fn demand_unset(&self) -> Result<()> {
+        let is_other = !self.nr && self.options() != FeatureOptions::default();
+        refuse([
+            (self.nr, "--nr in the plane", "leave out --nr: it is for surfaces"),
+            (is_other, "--ar in the plane", "leave out --ar: it is for surfaces"),
+        ])
     }
 }
 
